@@ -1,0 +1,80 @@
+//! Points, lines and arcs in space.
+//!
+//! Coordinates are millimetres in a right-handed frame, angles are radians, and every function is a
+//! pure function of its arguments: the same input gives the same bits on every machine and thread.
+//! There is no input or output here and nothing knows of a machine.
+
+mod arc;
+
+pub use arc::{Arc, ArcError};
+pub use glam::{DAffine3 as Frame, DMat3 as Mat3, DVec3 as Vec3};
+
+/// Two directions count as the same below this angle (radians): 0.2 arc seconds, far below what any
+/// rotary axis resolves.
+pub const ANGLE_EPSILON: f64 = 1e-6;
+
+/// The unit vector of `v`, or `None` where `v` is zero, not finite, or so short or long that its
+/// direction is lost in rounding.
+pub fn direction(v: Vec3) -> Option<Vec3> {
+    let length = v.length();
+    (length.is_finite() && length > 1e-9).then(|| v / length)
+}
+
+/// The angle between two unit vectors, in radians, exact also for nearly parallel ones.
+pub fn angle_between(a: Vec3, b: Vec3) -> f64 {
+    a.cross(b).length().atan2(a.dot(b))
+}
+
+/// `v` turned by `angle` (radians) about the unit vector `axis` through the origin (Rodrigues).
+pub fn rotate(v: Vec3, axis: Vec3, angle: f64) -> Vec3 {
+    let (sin, cos) = angle.sin_cos();
+    v * cos + axis.cross(v) * sin + axis * (axis.dot(v) * (1.0 - cos))
+}
+
+/// `angle` (radians) brought into (−π, π].
+pub fn wrap(angle: f64) -> f64 {
+    let turn = std::f64::consts::TAU;
+    let wrapped = angle - turn * (angle / turn).round();
+    if wrapped <= -std::f64::consts::PI { wrapped + turn } else { wrapped }
+}
+
+/// Where `point` falls on the segment `from`..`to`: the parameter 0..=1 of the nearest point and the
+/// distance to it in mm. A segment without length has parameter 1.
+pub fn nearest_on_segment(from: Vec3, to: Vec3, point: Vec3) -> (f64, f64) {
+    let along = to - from;
+    let squared = along.length_squared();
+    let t = if squared > 0.0 { ((point - from).dot(along) / squared).clamp(0.0, 1.0) } else { 1.0 };
+    (t, point.distance(from + along * t))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::f64::consts::PI;
+
+    #[test]
+    fn a_zero_or_broken_vector_has_no_direction() {
+        assert_eq!(direction(Vec3::ZERO), None);
+        assert_eq!(direction(Vec3::new(f64::NAN, 0.0, 1.0)), None);
+        assert_eq!(direction(Vec3::splat(1e308)), None);
+        assert_eq!(direction(Vec3::new(0.0, 3.0, 4.0)), Some(Vec3::new(0.0, 0.6, 0.8)));
+    }
+
+    #[test]
+    fn wrapping_keeps_plus_180_and_never_gives_minus_180() {
+        assert_eq!(wrap(PI), PI);
+        assert_eq!(wrap(-PI), PI);
+        assert!((wrap(3.0 * PI / 2.0) + PI / 2.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn turning_x_about_z_by_a_quarter_gives_y() {
+        assert!(rotate(Vec3::X, Vec3::Z, PI / 2.0).distance(Vec3::Y) < 1e-15);
+    }
+
+    #[test]
+    fn the_angle_between_nearly_parallel_vectors_is_exact() {
+        let tilted = rotate(Vec3::Z, Vec3::X, 1e-7);
+        assert!((angle_between(Vec3::Z, tilted) - 1e-7).abs() < 1e-15);
+    }
+}

@@ -1,0 +1,182 @@
+//! What a reader, a writer or the proof has to say about a place in a file.
+
+use serde::Serialize;
+use std::fmt::{self, Write as _};
+
+/// How bad it is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Severity {
+    /// Worth knowing; the result is good.
+    Warning,
+    /// There is no result.
+    Error,
+}
+
+/// One finding: where, which rule, what, and the way out.
+#[derive(Clone, Debug, PartialEq, Serialize)]
+pub struct Diagnostic {
+    /// How bad it is.
+    pub severity: Severity,
+    /// Short name of the rule, in kebab case (`zero-vector`, `axis-limit`): stable, for machines.
+    pub rule: &'static str,
+    /// What is wrong, with values and units.
+    pub message: String,
+    /// The way out; empty where the message says it.
+    pub help: String,
+    /// Name of the file; empty where there is none.
+    pub file: String,
+    /// Line from 1; 0 where the finding is about the whole.
+    pub line: u32,
+    /// Column from 1 in characters; 0 where the finding is about the whole line.
+    pub column: u32,
+    /// How many characters it covers; 0 counts as 1.
+    pub width: u32,
+    /// The text of the line (cut to a window where it is long); empty where it is not at hand.
+    pub excerpt: String,
+    /// How often the same finding occurred; 1 for once.
+    pub count: u32,
+}
+
+/// The longest piece of a line that an excerpt keeps, characters.
+const EXCERPT: usize = 160;
+
+impl Diagnostic {
+    /// An error of `rule`.
+    pub fn error(rule: &'static str, message: impl Into<String>) -> Diagnostic {
+        Diagnostic::new(Severity::Error, rule, message.into())
+    }
+
+    /// A warning of `rule`.
+    pub fn warning(rule: &'static str, message: impl Into<String>) -> Diagnostic {
+        Diagnostic::new(Severity::Warning, rule, message.into())
+    }
+
+    fn new(severity: Severity, rule: &'static str, message: String) -> Diagnostic {
+        Diagnostic {
+            severity,
+            rule,
+            message,
+            help: String::new(),
+            file: String::new(),
+            line: 0,
+            column: 0,
+            width: 0,
+            excerpt: String::new(),
+            count: 1,
+        }
+    }
+
+    /// With the way out.
+    pub fn help(mut self, help: impl Into<String>) -> Diagnostic {
+        self.help = help.into();
+        self
+    }
+
+    /// In this file.
+    pub fn file(mut self, file: impl Into<String>) -> Diagnostic {
+        self.file = file.into();
+        self
+    }
+
+    /// On this line (from 1).
+    pub fn line(mut self, line: u32) -> Diagnostic {
+        self.line = line;
+        self
+    }
+
+    /// At bytes `start..end` of `text`, which is line `line` (from 1). Bytes that are not UTF-8 show
+    /// as replacement characters, control characters as blanks, a long line as a window.
+    pub fn at(mut self, line: u32, text: &[u8], start: usize, end: usize) -> Diagnostic {
+        let start = start.min(text.len());
+        let end = end.clamp(start, text.len());
+        let from = start.saturating_sub(EXCERPT / 2);
+        let to = (from + EXCERPT).min(text.len());
+        let show = |bytes: &[u8]| -> String {
+            let text = String::from_utf8_lossy(bytes);
+            text.chars().map(|c| if c.is_control() { ' ' } else { c }).collect()
+        };
+        let before = show(&text[from..start]);
+        let cut = if from > 0 { "…" } else { "" };
+        let rest = if to < text.len() { "…" } else { "" };
+        self.line = line;
+        // Columns count characters, but what lies before the window of a very long line is not read:
+        // there they count bytes.
+        let column = if from > 0 { start } else { before.chars().count() };
+        self.column = u32::try_from(column + 1).unwrap_or(u32::MAX);
+        self.width =
+            show(&text[start..end.clamp(start, to.max(start))]).chars().count().max(1) as u32;
+        self.excerpt = format!("{cut}{}{rest}", show(&text[from..to]));
+        let indent = before.chars().count() + cut.chars().count();
+        let _ = write!(self.excerpt, "\n{}{}", " ".repeat(indent), "^".repeat(self.width as usize));
+        self
+    }
+
+    /// Whether there is no result.
+    pub fn is_error(&self) -> bool {
+        self.severity == Severity::Error
+    }
+}
+
+/// `file:line:column: error[rule]: message`, then the line with a caret and the way out.
+impl fmt::Display for Diagnostic {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if !self.file.is_empty() {
+            write!(f, "{}:", self.file)?;
+        }
+        if self.line > 0 {
+            write!(f, "{}:", self.line)?;
+        }
+        if self.column > 0 {
+            write!(f, "{}:", self.column)?;
+        }
+        if !self.file.is_empty() || self.line > 0 {
+            f.write_str(" ")?;
+        }
+        let severity = if self.is_error() { "error" } else { "warning" };
+        write!(f, "{severity}[{}]: {}", self.rule, self.message)?;
+        if self.count > 1 {
+            write!(f, " ({} times, first here)", self.count)?;
+        }
+        for line in self.excerpt.lines() {
+            write!(f, "\n    | {line}")?;
+        }
+        if !self.help.is_empty() {
+            write!(f, "\n    = {}", self.help)?;
+        }
+        Ok(())
+    }
+}
+
+impl std::error::Error for Diagnostic {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_error_names_file_line_column_rule_and_way_out() {
+        let shown = Diagnostic::error("zero-vector", "the tool axis has no length")
+            .help("give a direction")
+            .file("a.cls")
+            .at(3, b"GOTO/1,2,3,0,0,0", 11, 16)
+            .to_string();
+        assert_eq!(
+            shown,
+            "a.cls:3:12: error[zero-vector]: the tool axis has no length\n    | GOTO/1,2,3,0,0,0\n    \
+             |            ^^^^^\n    = give a direction"
+        );
+    }
+
+    #[test]
+    fn a_very_long_line_is_shown_as_a_window() {
+        let mut text = vec![b'A'; 1_000_000];
+        text[500_000] = b'!';
+        let d = Diagnostic::error("x", "y").at(1, &text, 500_000, 500_001);
+        assert_eq!(d.column, 500_001);
+        assert!(d.excerpt.len() < 600);
+        let mut lines = d.excerpt.lines();
+        let caret = lines.next().unwrap().chars().position(|c| c == '!').unwrap();
+        assert_eq!(lines.next().unwrap().chars().position(|c| c == '^').unwrap(), caret);
+    }
+}

@@ -1,0 +1,133 @@
+//! What a program amounts to: lengths, extents, tools, counts.
+
+use crate::{Cycle, Op, Orientation, Program};
+use geom::{Arc, Vec3};
+use serde::Serialize;
+
+/// Totals of a program whose poses are in the work frame.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Statistics {
+    /// Records in all.
+    pub records: usize,
+    /// Rapid moves.
+    pub rapids: usize,
+    /// Straight cutting moves.
+    pub lines: usize,
+    /// Arcs and helices.
+    pub arcs: usize,
+    /// Holes of cycles.
+    pub holes: usize,
+    /// Tool numbers in the order of their first use.
+    pub tools: Vec<u32>,
+    /// Length of the cutting moves, holes included, mm.
+    pub cutting_length: f64,
+    /// Length of the rapid moves, as straight lines, mm.
+    pub rapid_length: f64,
+    /// Smallest coordinates of the tool tip, mm; all zero where nothing moves.
+    pub low: [f64; 3],
+    /// Largest coordinates of the tool tip, mm.
+    pub high: [f64; 3],
+    /// Whether the tool axis ever differs from +Z of the work frame.
+    pub tilted: bool,
+}
+
+impl Statistics {
+    /// Counts `program`. Records whose pose is not in the work frame count, but add no length.
+    pub fn of(program: &Program) -> Statistics {
+        let mut s = Statistics { records: program.records.len(), ..Statistics::default() };
+        let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
+        let mut here: Option<Vec3> = None;
+        let mut cycle: Option<Cycle> = None;
+        for record in &program.records {
+            let from = here;
+            if let Some(pose) = record.op.pose() {
+                low = low.min(pose.point);
+                high = high.max(pose.point);
+                here = Some(pose.point);
+                if let Orientation::Axis(axis) = pose.orientation {
+                    s.tilted |= axis.distance_squared(Vec3::Z) > 1e-12;
+                }
+            }
+            let step = |to: Vec3| from.map_or(0.0, |from| from.distance(to));
+            match &record.op {
+                Op::Rapid(pose) => {
+                    s.rapids += 1;
+                    s.rapid_length += step(pose.point);
+                }
+                Op::Line(pose) => {
+                    s.lines += 1;
+                    s.cutting_length += step(pose.point);
+                }
+                Op::Arc(to) => {
+                    s.arcs += 1;
+                    let arc = from.and_then(|from| {
+                        Arc::new(from, to.end.point, to.center, to.normal, to.turns, f64::MAX).ok()
+                    });
+                    if let Some(arc) = arc {
+                        s.cutting_length += arc.length();
+                        let (a, b) = arc.extents();
+                        low = low.min(a);
+                        high = high.max(b);
+                    }
+                }
+                Op::Hole(pose) => {
+                    s.holes += 1;
+                    if let (Some(cycle), Some(axis)) = (&cycle, pose.axis()) {
+                        let at = |height: f64| pose.point + axis * height;
+                        s.cutting_length += cycle.clearance + cycle.depth;
+                        s.rapid_length += step(at(cycle.clearance)) + cycle.retract + cycle.depth;
+                        low = low.min(at(-cycle.depth)).min(at(cycle.retract));
+                        high = high.max(at(-cycle.depth)).max(at(cycle.retract));
+                        here = Some(at(cycle.retract));
+                    }
+                }
+                Op::Cycle(c) => cycle = Some(**c),
+                Op::CycleOff => cycle = None,
+                Op::Tool(tool) if !s.tools.contains(&tool.number) => s.tools.push(tool.number),
+                _ => {}
+            }
+        }
+        if low.is_finite() && high.is_finite() {
+            s.low = low.to_array();
+            s.high = high.to_array();
+        }
+        s
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::{ArcTo, CycleKind, Pose};
+    use std::f64::consts::PI;
+
+    #[test]
+    fn lengths_and_extents_are_those_of_the_path() {
+        let at = |x: f64, y: f64, z: f64| Pose::new(Vec3::new(x, y, z), Vec3::Z);
+        let mut p = Program::new("t");
+        p.push(1, Op::Rapid(at(0.0, 0.0, 5.0)));
+        p.push(2, Op::Rapid(at(10.0, 0.0, 5.0)));
+        p.push(3, Op::Line(at(10.0, 0.0, 0.0)));
+        let end = at(-10.0, 0.0, 0.0);
+        p.push(4, Op::Arc(Box::new(ArcTo { end, center: Vec3::ZERO, normal: Vec3::Z, turns: 0 })));
+        let cycle = Cycle {
+            kind: CycleKind::Drill,
+            depth: 8.0,
+            clearance: 2.0,
+            retract: 5.0,
+            feed: None,
+            dwell: 0.0,
+            first_peck: None,
+            peck: None,
+        };
+        p.push(5, Op::Cycle(Box::new(cycle)));
+        p.push(6, Op::Hole(at(-10.0, 0.0, 0.0)));
+        let s = Statistics::of(&p);
+        assert_eq!((s.rapids, s.lines, s.arcs, s.holes), (2, 1, 1, 1));
+        assert!((s.cutting_length - (5.0 + 10.0 * PI + 10.0)).abs() < 1e-9);
+        assert!((s.rapid_length - (10.0 + 2.0 + 13.0)).abs() < 1e-9);
+        assert_eq!((s.low[2], s.high[0]), (-8.0, 10.0));
+        assert!((s.high[1] - 10.0).abs() < 1e-4);
+        assert!(!s.tilted);
+    }
+}
