@@ -53,7 +53,8 @@ impl Arc {
         if ra.is_nan() || ra <= 1e-9 {
             return Err(ArcError::NoRadius);
         }
-        if !((ra - rb).abs() <= tolerance) || rb <= 1e-9 {
+        let apart = (ra - rb).abs();
+        if apart.is_nan() || apart > tolerance || rb <= 1e-9 {
             return Err(ArcError::OffTheCircle(ra, rb));
         }
         let mut sweep = normal.dot(a.cross(b)).atan2(a.dot(b));

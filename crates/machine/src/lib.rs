@@ -1,1 +1,14 @@
-//! To come.
+//! Machines and controls as data.
+//!
+//! A control (a dialect) and a machine (axes, limits, kinematics) are TOML files. A machine extends a
+//! control, a control may extend another; loading merges the chain into one [`Machine`], with every
+//! mistake told by file, line and column. The kinematic chain, both ways, lives here and nowhere
+//! else: writers use the inverse, the proof uses the forward, and neither shares more than that.
+//!
+//! Lengths are mm, feeds mm/min, angles of rotary axes degrees where they are axis positions
+//! (`degrees` in the name) and radians elsewhere.
+
+pub mod kinematics;
+mod model;
+
+pub use model::*;

@@ -1,0 +1,9 @@
+//! SINUMERIK 840D sl and 828D.
+
+use crate::{Settings, Sink};
+use program::Diagnostic;
+
+/// Runs a program.
+pub(crate) fn run(_: &Settings, _: &[u8], _: &mut Sink) -> Result<(), Diagnostic> {
+    Err(Diagnostic::error("unsupported", "this dialect cannot be read yet"))
+}

@@ -1,0 +1,76 @@
+//! The kinematic chain.
+//!
+//! Programmed linear positions are where the tool tip would be, from the work zero, with the head in
+//! its zero position: that is what a control with tool length offset moves to. A table turns the part
+//! under the tool, a head turns the tool about points fixed to the spindle; so the tip in the work
+//! frame follows from the tip in the machine by undoing the table.
+
+use crate::{Machine, Mount, RotaryAxis};
+use geom::{Vec3, rotate};
+use program::{Orientation, Pose};
+
+impl Machine {
+    /// The tool tip (mm, work frame) and the tool axis (unit vector, work frame) for positions of the
+    /// linear axes (mm) and the rotary axes (degrees of A, B, C), with a tool of `tool_length` mm.
+    pub fn forward(&self, linear: Vec3, degrees: [f64; 3], tool_length: f64) -> (Vec3, Vec3) {
+        if self.rotary.is_empty() {
+            return (linear, Vec3::Z);
+        }
+        let zero = self.work_zero.unwrap_or(Vec3::ZERO);
+        let swing = self.head_swing(degrees, tool_length);
+        let tip = self.on(Mount::Table).fold(linear + swing + zero, |p, axis| {
+            axis.point + rotate(p - axis.point, axis.axis, -axis.turned(degrees[axis.index()]))
+        });
+        (tip - zero, self.axis_at(degrees))
+    }
+
+    /// The tool axis (unit vector, work frame) for positions of the rotary axes in degrees.
+    pub fn axis_at(&self, degrees: [f64; 3]) -> Vec3 {
+        let tool = self
+            .on(Mount::Head)
+            .rev()
+            .fold(Vec3::Z, |v, axis| rotate(v, axis.axis, axis.turned(degrees[axis.index()])));
+        self.on(Mount::Table)
+            .fold(tool, |v, axis| rotate(v, axis.axis, -axis.turned(degrees[axis.index()])))
+    }
+
+    /// The positions of the linear axes (mm) that bring the tool tip to `tip` (mm, work frame) with
+    /// the rotary axes at `degrees`: the inverse of [`Machine::forward`] for given rotary positions.
+    pub fn linear_for(&self, tip: Vec3, degrees: [f64; 3], tool_length: f64) -> Vec3 {
+        if self.rotary.is_empty() {
+            return tip;
+        }
+        let zero = self.work_zero.unwrap_or(Vec3::ZERO);
+        let turned = self.on(Mount::Table).rev().fold(tip + zero, |p, axis| {
+            axis.point + rotate(p - axis.point, axis.axis, axis.turned(degrees[axis.index()]))
+        });
+        turned - zero - self.head_swing(degrees, tool_length)
+    }
+
+    /// The tool tip and tool axis, both in the work frame, of a pose as a block gives it.
+    pub fn resolve(&self, pose: &Pose, tool_length: f64) -> (Vec3, Vec3) {
+        match pose.orientation {
+            Orientation::Axis(axis) => (pose.point, axis),
+            Orientation::Rotary { degrees, tool_center: true } => {
+                (pose.point, self.axis_at(degrees))
+            }
+            Orientation::Rotary { degrees, tool_center: false } => {
+                self.forward(pose.point, degrees, tool_length)
+            }
+        }
+    }
+
+    /// By how much the turned head moves the tip of a tool of `tool_length` from where it was.
+    fn head_swing(&self, degrees: [f64; 3], tool_length: f64) -> Vec3 {
+        let hanging = Vec3::new(0.0, 0.0, -tool_length);
+        let turned = self.on(Mount::Head).rev().fold(hanging, |p, axis| {
+            axis.point + rotate(p - axis.point, axis.axis, axis.turned(degrees[axis.index()]))
+        });
+        turned - hanging
+    }
+
+    /// The rotary axes of one side, from the machine's frame outwards.
+    fn on(&self, mount: Mount) -> impl DoubleEndedIterator<Item = &RotaryAxis> {
+        self.rotary.iter().filter(move |axis| axis.on == mount)
+    }
+}

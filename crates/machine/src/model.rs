@@ -1,0 +1,289 @@
+//! What a machine is, after its files are merged.
+
+use geom::Vec3;
+use std::collections::BTreeMap;
+
+/// A machine with its control.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Machine {
+    /// Name of the file without its ending: what `--machine` takes.
+    pub name: String,
+    /// What a person calls it.
+    pub title: String,
+    /// The control it extends.
+    pub control: String,
+    /// The dialect whose virtual control proves its programs (`sinumerik`, `fanuc`, `linuxcnc`,
+    /// `grbl`, `klartext`).
+    pub reader: String,
+    /// Ending of its programs, without the dot.
+    pub extension: String,
+    /// What the control can do.
+    pub capabilities: Capabilities,
+    /// How text is put together.
+    pub format: Format,
+    /// The words of the control by name (`X`, `F`, `N` ...).
+    pub words: BTreeMap<String, Word>,
+    /// The blocks (templates) of the control by name (`linear`, `tool_change` ...).
+    pub blocks: BTreeMap<String, Block>,
+    /// X, Y and Z.
+    pub linear: [LinearAxis; 3],
+    /// Rotary axes from the machine's frame outwards: those of the head towards the tool, those of the
+    /// table towards the part. At most two.
+    pub rotary: Vec<RotaryAxis>,
+    /// Work zero (`G54`) in machine coordinates, mm, where it is known. Limits are then checked in
+    /// machine coordinates; otherwise only the extent is held against the travel.
+    pub work_zero: Option<Vec3>,
+    /// How a tool orientation is written.
+    pub orientation: OrientationSettings,
+    /// What the spindle can do.
+    pub spindle: SpindleRange,
+    /// What the tool magazine takes.
+    pub tools: ToolRange,
+    /// Values that the templates of this machine read, by name.
+    pub options: BTreeMap<String, OptionValue>,
+}
+
+/// A linear axis.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct LinearAxis {
+    /// Lower end of the travel in machine coordinates, mm; minus infinity where none is given.
+    pub min: f64,
+    /// Upper end of the travel, mm.
+    pub max: f64,
+    /// Rapid, mm/min.
+    pub rapid: f64,
+    /// Acceleration, m/s².
+    pub acceleration: f64,
+}
+
+/// A rotary axis.
+#[derive(Clone, Debug, PartialEq)]
+pub struct RotaryAxis {
+    /// Its address: `A`, `B` or `C`.
+    pub letter: char,
+    /// What it carries.
+    pub on: Mount,
+    /// Unit vector of the axis at the zero position of all others, machine frame.
+    pub axis: Vec3,
+    /// A point of the axis, mm: for a table in machine coordinates, for a head from the gauge point
+    /// of the spindle (so `[0, 0, 150]` is a pivot 150 mm above it).
+    pub point: Vec3,
+    /// What a growing position does: +1 turns what the axis carries right-handed about `axis`, −1
+    /// left-handed (the way ISO 841 counts a table).
+    pub sign: f64,
+    /// Position in degrees at which the axis stands in its kinematic zero.
+    pub offset: f64,
+    /// Lower end of the travel in degrees; minus infinity for an axis that turns for ever.
+    pub min: f64,
+    /// Upper end of the travel in degrees.
+    pub max: f64,
+    /// Rapid, degrees/min.
+    pub rapid: f64,
+    /// Acceleration, degrees/s².
+    pub acceleration: f64,
+    /// Which of the two solutions is taken where nothing else decides: the one in which this axis is
+    /// positive or negative; 0 for no preference.
+    pub prefer: f64,
+}
+
+/// What a rotary axis carries.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Mount {
+    /// The part.
+    Table,
+    /// The tool.
+    Head,
+}
+
+/// How a tool orientation is written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct OrientationSettings {
+    /// While the tool axis turns in the cut.
+    pub simultaneous: OrientationMode,
+    /// While it stands still (3+2).
+    pub positioned: OrientationMode,
+    /// How far the tool tip may leave the commanded line before a point is added, mm.
+    pub tolerance: f64,
+}
+
+/// The ways to write a tool orientation.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum OrientationMode {
+    /// The machine cannot: the tool axis stays +Z.
+    Fixed,
+    /// Rotary positions, linear positions of the machine: the post does the kinematics.
+    MachineAngles,
+    /// Rotary positions, tool tip in the work frame: `TRAORI`, `G43.4`, `M128`.
+    ToolCenterAngles,
+    /// Vectors, tool tip in the work frame: `A3= B3= C3=`, `LN ... TX TY TZ`.
+    Vectors,
+    /// A tilted plane of work: `CYCLE800`, `G68.2`, `PLANE SPATIAL`.
+    TiltedPlane,
+}
+
+/// What a control can do; what it cannot is lowered.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Capabilities {
+    /// Planes in which it cuts arcs: any of `XY`, `XZ`, `YZ`.
+    pub arcs: Vec<Plane>,
+    /// Whether an arc may rise along the plane's normal.
+    pub helix: bool,
+    /// Whether one block may turn a full circle.
+    pub full_circle: bool,
+    /// Difference of the radii at the ends of an arc that the control accepts, mm.
+    pub arc_tolerance: f64,
+    /// Hole cycles it has: `drill`, `deep`, `break_chip`, `tap`, `ream`, `bore`.
+    pub cycles: Vec<String>,
+    /// Whether it has cutter radius compensation.
+    pub compensation: bool,
+    /// Whether it has feed per turn.
+    pub feed_per_turn: bool,
+    /// Whether it has inverse-time feed.
+    pub inverse_time: bool,
+    /// How the tool length offset is called.
+    pub length_offset: LengthOffset,
+    /// Largest number of characters in a line, its end not counted.
+    pub line_length: usize,
+    /// Chord error of arcs and curves that are split into lines, mm.
+    pub lowering_tolerance: f64,
+}
+
+/// How the tool length offset is called.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum LengthOffset {
+    /// The tool call does it, or there is none.
+    Implicit,
+    /// The first cutting edge of the tool (`D1`).
+    One,
+    /// The register with the tool's number (`G43 H`).
+    ToolNumber,
+}
+
+/// A plane of two axes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Plane {
+    /// `G17`.
+    XY,
+    /// `G18`.
+    XZ,
+    /// `G19`.
+    YZ,
+}
+
+/// How text is put together.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Format {
+    /// What stands between two words of a block.
+    pub separator: String,
+    /// What ends a line.
+    pub line_end: String,
+    /// What opens a comment.
+    pub comment_start: String,
+    /// What closes a comment.
+    pub comment_end: String,
+}
+
+/// How a number is written behind its address.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Word {
+    /// What stands before the number: `X`, `A3=`, `C=`.
+    pub address: String,
+    /// What stands behind it: `+R24`.
+    pub suffix: String,
+    /// Decimals, 0 to 9.
+    pub decimals: u8,
+    /// Whether trailing zeros (and a point behind which nothing stands) are dropped.
+    pub trim: bool,
+    /// Whether a whole number keeps its point: `10.`.
+    pub point: bool,
+    /// Whether a positive number has its sign: `X+10`.
+    pub plus: bool,
+    /// Least number of digits before the point, filled with zeros: `N0010`.
+    pub digits: u8,
+    /// Whether the word is left out while it repeats the active value.
+    pub modal: bool,
+    /// For the block number: what it grows by.
+    pub step: u32,
+}
+
+/// A template.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Block {
+    /// Its text.
+    pub text: String,
+    /// File that it stands in.
+    pub file: String,
+    /// Line (from 1) of that file on which the text begins.
+    pub line: u32,
+}
+
+/// What the spindle can do, 1/min.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct SpindleRange {
+    /// Slowest.
+    pub min: f64,
+    /// Fastest.
+    pub max: f64,
+}
+
+/// What the tool magazine takes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ToolRange {
+    /// Highest tool number.
+    pub max_number: u32,
+    /// Largest diameter, mm.
+    pub max_diameter: f64,
+    /// Longest tool, mm.
+    pub max_length: f64,
+}
+
+/// A value of `[options]`.
+#[derive(Clone, Debug, PartialEq)]
+pub enum OptionValue {
+    /// `true` or `false`.
+    Flag(bool),
+    /// A number.
+    Number(f64),
+    /// Text.
+    Text(String),
+}
+
+impl Machine {
+    /// Smallest step of a linear axis in its programs, mm.
+    pub fn resolution(&self) -> f64 {
+        self.words.get("X").map_or(1e-3, |word| 10f64.powi(-i32::from(word.decimals)))
+    }
+
+    /// Smallest step of a rotary axis in its programs, degrees.
+    pub fn rotary_resolution(&self) -> f64 {
+        let decimals = self.rotary.iter().filter_map(|r| self.words.get(&r.letter.to_string()));
+        decimals.map(|word| 10f64.powi(-i32::from(word.decimals))).fold(0.0, f64::max)
+    }
+}
+
+impl RotaryAxis {
+    /// Its place in the order A, B, C.
+    pub fn index(&self) -> usize {
+        match self.letter {
+            'A' => 0,
+            'B' => 1,
+            _ => 2,
+        }
+    }
+
+    /// Radians by which the axis turns what it carries, right-handed about its axis, at a position in
+    /// degrees.
+    pub fn turned(&self, degrees: f64) -> f64 {
+        self.sign * (degrees - self.offset).to_radians()
+    }
+
+    /// The position in degrees at which the axis has turned by so many radians.
+    pub fn degrees(&self, turned: f64) -> f64 {
+        (self.sign * turned).to_degrees() + self.offset
+    }
+
+    /// Whether it turns for ever.
+    pub fn unlimited(&self) -> bool {
+        self.min == f64::NEG_INFINITY && self.max == f64::INFINITY
+    }
+}
