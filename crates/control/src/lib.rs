@@ -56,7 +56,7 @@ pub struct Settings {
 }
 
 /// Where the records of a running program go. An error stops the run.
-pub type Sink<'a> = dyn FnMut(Record) -> Result<(), Diagnostic> + 'a;
+pub type Sink<'a> = dyn FnMut(Record) -> Result<(), Box<Diagnostic>> + 'a;
 
 /// Runs `text` on the virtual control of `settings` and hands each record to `sink`, in order. The
 /// line of a record is the line of the program (from 1).
@@ -69,11 +69,12 @@ pub fn read(
     file_name: &str,
     text: &[u8],
     sink: &mut Sink,
-) -> Result<(), Diagnostic> {
+) -> Result<(), Box<Diagnostic>> {
     let run = match settings.dialect {
         Dialect::Fanuc | Dialect::LinuxCnc | Dialect::Grbl => iso::run,
         Dialect::Sinumerik => sinumerik::run,
         Dialect::Klartext => klartext::run,
     };
-    run(settings, text, sink).map_err(|d| if d.file.is_empty() { d.file(file_name) } else { d })
+    run(settings, text, sink)
+        .map_err(|d| if d.file.is_empty() { d.file(file_name).into() } else { d })
 }

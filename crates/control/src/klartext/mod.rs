@@ -4,6 +4,6 @@ use crate::{Settings, Sink};
 use program::Diagnostic;
 
 /// Runs a program.
-pub(crate) fn run(_: &Settings, _: &[u8], _: &mut Sink) -> Result<(), Diagnostic> {
-    Err(Diagnostic::error("unsupported", "this dialect cannot be read yet"))
+pub(crate) fn run(_: &Settings, _: &[u8], _: &mut Sink) -> Result<(), Box<Diagnostic>> {
+    Err(Diagnostic::error("unsupported", "this dialect cannot be read yet").into())
 }
