@@ -39,6 +39,9 @@ pub struct Machine {
     pub spindle: SpindleRange,
     /// What the tool magazine takes.
     pub tools: ToolRange,
+    /// The order in which the axes approach the first position after a tool change or a new
+    /// orientation: each entry names the axes that move together (`XY`, then `Z`).
+    pub approach: Vec<String>,
     /// Values that the templates of this machine read, by name.
     pub options: BTreeMap<String, OptionValue>,
 }
@@ -204,6 +207,9 @@ pub struct Word {
     pub modal: bool,
     /// For the block number: what it grows by.
     pub step: u32,
+    /// For a word that is no number: its texts by what they mean (`linear` is `G1`). Empty for a
+    /// number.
+    pub codes: BTreeMap<String, String>,
 }
 
 /// A template.
