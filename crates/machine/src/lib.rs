@@ -9,6 +9,9 @@
 //! (`degrees` in the name) and radians elsewhere.
 
 pub mod kinematics;
+pub mod library;
+mod load;
 mod model;
 
+pub use load::{load, load_text};
 pub use model::*;

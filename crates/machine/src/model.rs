@@ -1,6 +1,8 @@
 //! What a machine is, after its files are merged.
 
 use geom::Vec3;
+use program::CycleKind;
+use serde::Deserialize;
 use std::collections::BTreeMap;
 
 /// A machine with its control.
@@ -90,7 +92,8 @@ pub struct RotaryAxis {
 }
 
 /// What a rotary axis carries.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Mount {
     /// The part.
     Table,
@@ -110,7 +113,8 @@ pub struct OrientationSettings {
 }
 
 /// The ways to write a tool orientation.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum OrientationMode {
     /// The machine cannot: the tool axis stays +Z.
     Fixed,
@@ -135,8 +139,8 @@ pub struct Capabilities {
     pub full_circle: bool,
     /// Difference of the radii at the ends of an arc that the control accepts, mm.
     pub arc_tolerance: f64,
-    /// Hole cycles it has: `drill`, `deep`, `break_chip`, `tap`, `ream`, `bore`.
-    pub cycles: Vec<String>,
+    /// Hole cycles it has.
+    pub cycles: Vec<CycleName>,
     /// Whether it has cutter radius compensation.
     pub compensation: bool,
     /// Whether it has feed per turn.
@@ -151,8 +155,40 @@ pub struct Capabilities {
     pub lowering_tolerance: f64,
 }
 
+/// A hole cycle that a control may have: [`program::CycleKind`] without its numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CycleName {
+    /// Feed in, rapid out.
+    Drill,
+    /// Pecks to the R plane.
+    Deep,
+    /// Pecks with a short break of the chip.
+    BreakChip,
+    /// Tapping.
+    Tap,
+    /// Feed in, feed out.
+    Ream,
+    /// Feed in, spindle stop, rapid out.
+    Bore,
+}
+
+impl From<CycleKind> for CycleName {
+    fn from(kind: CycleKind) -> CycleName {
+        match kind {
+            CycleKind::Drill => CycleName::Drill,
+            CycleKind::Deep => CycleName::Deep,
+            CycleKind::BreakChip => CycleName::BreakChip,
+            CycleKind::Tap { .. } => CycleName::Tap,
+            CycleKind::Ream => CycleName::Ream,
+            CycleKind::Bore => CycleName::Bore,
+        }
+    }
+}
+
 /// How the tool length offset is called.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum LengthOffset {
     /// The tool call does it, or there is none.
     Implicit,
@@ -163,7 +199,7 @@ pub enum LengthOffset {
 }
 
 /// A plane of two axes.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 pub enum Plane {
     /// `G17`.
     XY,

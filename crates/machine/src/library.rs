@@ -1,0 +1,50 @@
+//! The library of machines and controls that comes with the program.
+
+use include_dir::{Dir, include_dir};
+
+static CONTROLS: Dir = include_dir!("$CARGO_MANIFEST_DIR/../../controls");
+static MACHINE_FILES: Dir = include_dir!("$CARGO_MANIFEST_DIR/../../machines");
+
+/// A folder of the library.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Kind {
+    /// Dialects.
+    Control,
+    /// Machines.
+    Machine,
+}
+
+/// The machines alone.
+pub const MACHINES: &[Kind] = &[Kind::Machine];
+/// Machines and controls.
+pub const EVERYTHING: &[Kind] = &[Kind::Machine, Kind::Control];
+
+/// Path (within the library) and text of the file of that name.
+pub fn find(name: &str, kinds: &[Kind]) -> Option<(&'static str, &'static str)> {
+    files(kinds).find(|(path, _)| stem(path) == name)
+}
+
+/// The names in alphabetical order, folder by folder.
+pub fn names(kinds: &[Kind]) -> impl Iterator<Item = &'static str> {
+    files(kinds).map(|(path, _)| stem(path))
+}
+
+fn stem(path: &str) -> &str {
+    let file = path.rsplit('/').next().unwrap_or(path);
+    file.strip_suffix(".toml").unwrap_or(file)
+}
+
+fn files(kinds: &[Kind]) -> impl Iterator<Item = (&'static str, &'static str)> {
+    let folders = kinds.iter().map(|kind| match kind {
+        Kind::Control => ("controls", &CONTROLS),
+        Kind::Machine => ("machines", &MACHINE_FILES),
+    });
+    folders.flat_map(|(_, folder)| {
+        let mut files: Vec<_> = (folder.files())
+            .filter_map(|file| Some((file.path().to_str()?, file.contents_utf8()?)))
+            .filter(|(path, _)| path.ends_with(".toml"))
+            .collect();
+        files.sort();
+        files
+    })
+}
