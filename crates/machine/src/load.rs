@@ -168,7 +168,12 @@ impl SheetFile {
         let raw = self.text.get(span.clone()).unwrap_or_default();
         let opened = raw.starts_with("\"\"\"\n") || raw.starts_with("'''\n");
         let line = self.line_of(span.start) + u32::from(opened);
-        Block { text: value.into_inner(), file: self.name(), line }
+        let before = self.text.get(..span.start).unwrap_or_default();
+        let indent = before.chars().rev().take_while(|&c| c != '\n').count();
+        let quotes = raw.bytes().take_while(|&b| matches!(b, b'"' | b'\'')).count();
+        let column = if opened { 1 } else { 1 + indent + quotes.min(3) };
+        let column = u32::try_from(column).unwrap_or(u32::MAX);
+        Block { text: value.into_inner(), file: self.name(), line, column }
     }
 }
 
@@ -248,6 +253,9 @@ sheet!(WordSheet {
     digits: u8,
     modal: bool,
     step: u32,
+    first: u32,
+    scale: f64,
+    max: f64,
     codes: BTreeMap<String, String>,
 });
 
@@ -552,6 +560,9 @@ fn finish_word(name: String, sheet: WordSheet) -> (String, Word) {
         digits: sheet.digits.unwrap_or(1),
         modal: sheet.modal.unwrap_or(false),
         step: sheet.step.unwrap_or(10),
+        first: sheet.first.or(sheet.step).unwrap_or(10),
+        scale: sheet.scale.unwrap_or(1.0),
+        max: sheet.max.unwrap_or(f64::INFINITY),
         codes: sheet.codes.unwrap_or_default(),
     };
     (name, word)
@@ -593,10 +604,10 @@ max = 200.5
     }
 
     #[test]
-    fn a_block_knows_the_line_on_which_its_text_begins() {
+    fn a_block_knows_where_its_text_begins() {
         let mill = load_text("mill.toml", MILL).unwrap();
-        assert_eq!(mill.blocks["rapid"].line, 7);
-        assert_eq!(mill.blocks["tool_change"].line, 9);
+        assert_eq!((mill.blocks["rapid"].line, mill.blocks["rapid"].column), (7, 10));
+        assert_eq!((mill.blocks["tool_change"].line, mill.blocks["tool_change"].column), (9, 1));
         assert!(mill.blocks["tool_change"].text.starts_with("T{{T}}\n"));
     }
 

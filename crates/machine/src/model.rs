@@ -243,6 +243,13 @@ pub struct Word {
     pub modal: bool,
     /// For the block number: what it grows by.
     pub step: u32,
+    /// For the block number: the first one.
+    pub first: u32,
+    /// What the value is multiplied with before it is written: 1000 for a dwell in milliseconds.
+    pub scale: f64,
+    /// Largest number that the control takes, as it is written. A block number starts over behind it,
+    /// any other word beyond it is refused.
+    pub max: f64,
     /// For a word that is no number: its texts by what they mean (`linear` is `G1`). Empty for a
     /// number.
     pub codes: BTreeMap<String, String>,
@@ -257,6 +264,8 @@ pub struct Block {
     pub file: String,
     /// Line (from 1) of that file on which the text begins.
     pub line: u32,
+    /// Column (from 1) of that line at which the text begins.
+    pub column: u32,
 }
 
 /// What the spindle can do, 1/min.
