@@ -47,12 +47,16 @@ impl Dialect {
 }
 
 /// What a virtual control has to know of its machine.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Settings {
     /// The language.
     pub dialect: Dialect,
     /// Which of the rotary axes A, B, C exist; a word for one that does not is an error.
     pub rotary: [bool; 3],
+    /// Numbers of the M functions that the machine's builder has added (clamps, flaps, chip conveyor),
+    /// none of which moves an axis or touches spindle and coolant. Any other M function that is not
+    /// the control's own is an error.
+    pub auxiliary: Vec<u32>,
 }
 
 /// Where the records of a running program go. An error stops the run.
