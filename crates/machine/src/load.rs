@@ -203,6 +203,7 @@ struct Sheet {
     spindle: SpindleSheet,
     #[serde(default)]
     tools: ToolsSheet,
+    auxiliary: Option<Vec<u32>>,
     approach: Option<Vec<String>>,
     #[serde(default)]
     options: BTreeMap<String, OptionSheet>,
@@ -348,6 +349,7 @@ impl Sheet {
             orientation: self.orientation,
             spindle: self.spindle,
             tools: self.tools,
+            auxiliary: self.auxiliary,
             approach: self.approach,
             options: self.options,
         })
@@ -420,6 +422,7 @@ struct CheckedSheet {
     orientation: OrientationSheet,
     spindle: SpindleSheet,
     tools: ToolsSheet,
+    auxiliary: Option<Vec<u32>>,
     approach: Option<Vec<String>>,
     options: BTreeMap<String, OptionSheet>,
 }
@@ -457,6 +460,7 @@ impl CheckedSheet {
             orientation: self.orientation.under(nearer.orientation),
             spindle: self.spindle.under(nearer.spindle),
             tools: self.tools.under(nearer.tools),
+            auxiliary: nearer.auxiliary.or(self.auxiliary),
             approach: nearer.approach.or(self.approach),
             options: overlay(self.options, nearer.options, |_, nearer| nearer),
         }
@@ -528,6 +532,7 @@ impl CheckedSheet {
                 max_diameter: self.tools.max_diameter.unwrap_or(f64::INFINITY),
                 max_length: self.tools.max_length.unwrap_or(f64::INFINITY),
             },
+            auxiliary: self.auxiliary.unwrap_or_default(),
             approach: self.approach.unwrap_or_else(|| vec!["XY".into(), "Z".into()]),
             options: (self.options.into_iter())
                 .map(|(name, value)| match value {

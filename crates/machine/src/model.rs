@@ -41,6 +41,9 @@ pub struct Machine {
     pub spindle: SpindleRange,
     /// What the tool magazine takes.
     pub tools: ToolRange,
+    /// M functions of the machine's builder that its programs use; they switch something and move no
+    /// axis that the program drives (clamps, doors, air).
+    pub auxiliary: Vec<u32>,
     /// The order in which the axes approach the first position after a tool change or a new
     /// orientation: each entry names the axes that move together (`XY`, then `Z`).
     pub approach: Vec<String>,
