@@ -8,10 +8,12 @@
 //! Lengths are mm, feeds mm/min, angles of rotary axes degrees where they are axis positions
 //! (`degrees` in the name) and radians elsewhere.
 
+pub mod inverse;
 pub mod kinematics;
 pub mod library;
 mod load;
 mod model;
+pub mod plan;
 
 pub use load::{load, load_text};
 pub use model::*;

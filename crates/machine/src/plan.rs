@@ -1,0 +1,622 @@
+//! The rotary positions of a whole operation.
+//!
+//! Every tool axis has up to two solutions, and on a limited axis each of them may stand in several
+//! turns: those are the states of a target. The way through the states is chosen for the whole
+//! operation at once (dynamic programming), in this order:
+//!
+//! 1. no rotary axis leaves its travel;
+//! 2. in a cut the tool never swings out of the plane of its turn, and no axis turns by more than
+//!    half a turn: where the travel leaves no such way on, the tool must leave the part, turn back
+//!    and come in again, as late and therefore as seldom as possible;
+//! 3. the rotary travel within the operation is the shortest;
+//! 4. the preferred solution at its start; 5. the shortest way from where the axes stand to it.
+//!
+//! Unlimited axes wind on and never jump by a turn. In a singular pose, where one axis may stand
+//! anywhere, it holds its position, and turns to where it is needed next in the last rapid before that,
+//! or else in the move that leaves the pose.
+//!
+//! A target takes 16 bytes until its operation is written, and no more is kept.
+
+use crate::Machine;
+use crate::inverse::{Bearings, Chain, REACH_EPSILON, Unreachable};
+use geom::{ANGLE_EPSILON, Vec3, angle_between};
+use program::Diagnostic;
+use std::f64::consts::PI;
+
+/// A pose to be reached, as far as the rotary axes are concerned.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Target {
+    /// Unit vector from the tool tip towards the spindle, work frame.
+    pub axis: Vec3,
+    /// Line of the source, from 1.
+    pub line: u32,
+    /// How it is reached.
+    pub kind: TargetKind,
+}
+
+/// How a pose is reached.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TargetKind {
+    /// By rapid: the rotary axes may turn as they like.
+    Rapid,
+    /// In the cut.
+    Feed,
+    /// In the cut along an arc, during which the orientation holds.
+    Arc,
+}
+
+/// The rotary positions for the targets of one operation.
+#[derive(Clone, Debug)]
+pub struct Plan {
+    chain: Chain,
+    axes: [Axis; 2],
+    start: [f64; 2],
+    cells: Vec<Cell>,
+    /// Where the travel leaves no way on, in order.
+    pub rewinds: Vec<Rewind>,
+}
+
+/// A place in a cut at which the tool must be drawn back, turned and brought in again.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Rewind {
+    /// The target before which that happens, at the tip of the one before it.
+    pub index: usize,
+    /// Line of the source of that target.
+    pub line: u32,
+    /// Positions in which the tool comes in again.
+    pair: [f64; 2],
+}
+
+/// What the rotary axes do for one target.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Step {
+    /// Degrees of A, B, C at the target.
+    pub degrees: [f64; 3],
+    /// Where the travel leaves no way on: the degrees of A, B, C to which the axes turn first, at the
+    /// tip of the target before, with the tool drawn back along its axis and brought in again.
+    pub rewind: Option<[f64; 3]>,
+}
+
+/// The most states of a target: two solutions in four turns.
+const STATES: usize = 8;
+/// Bits that name a state.
+const BITS: u32 = 3;
+/// Every state follows from the state of the same number.
+const SAME: u32 = 0o76_543_210;
+/// Of a singular target: here the free axis turns to where it is needed next.
+const TURN: u32 = 1 << 31;
+
+/// Travel is compared to within this, degrees: what the tool axis may be out of reach by rounding.
+const SLACK: f64 = REACH_EPSILON * 180.0 / PI;
+/// The farthest that the tool may swing out of its way in a cut, radians (1°).
+const SWING: f64 = PI / 180.0;
+/// What not being the preferred solution costs, in degrees of travel: it decides between ways of the
+/// same length, which differ by rounding only.
+const PREFERENCE: f64 = 0.05;
+/// What a degree of the way to the operation costs, in degrees of travel within: less than preference.
+const APPROACH: f64 = 1e-5;
+
+/// A target while its operation is planned: its bearings, and for each state the state of the target
+/// before from which it is reached best; once that is settled, its own state.
+#[derive(Clone, Copy, Debug)]
+struct Cell {
+    bearings: Bearings,
+    link: u32,
+}
+
+/// The travel of a rotary axis; an axis that the machine lacks never moves.
+#[derive(Clone, Copy, Debug)]
+struct Axis {
+    min: f64,
+    max: f64,
+    unlimited: bool,
+}
+
+/// What a target can be in: positions of the outer and the inner axis.
+#[derive(Clone, Copy, Debug)]
+struct States {
+    pairs: [[f64; 2]; STATES],
+    count: usize,
+    /// How many of them are of the first solution; they come first.
+    first: usize,
+}
+
+/// The best way to each state of a target.
+struct Front {
+    states: States,
+    cost: [f64; STATES],
+    axis: Vec3,
+    /// The target they are of; −1 for the pose before the operation, −2 where that is singular.
+    index: isize,
+}
+
+/// Chooses the rotary positions for `targets`, from where the axes stand at `start` (degrees of A, B,
+/// C; `None` where that is not known).
+///
+/// # Errors
+/// `unreachable-orientation` where no position gives a tool axis, `axis-limit` where the travel has
+/// none that does, or none that the move can end in; `arc-orientation` where the tool axis turns during
+/// an arc. Each with the line of the source.
+pub fn plan(
+    machine: &Machine,
+    start: Option<[f64; 3]>,
+    targets: impl IntoIterator<Item = Target>,
+) -> Result<Plan, Box<Diagnostic>> {
+    let targets = targets.into_iter();
+    let mut search = Search::new(machine, start, targets.size_hint().0);
+    for target in targets {
+        search.add(&target)?;
+    }
+    Ok(search.finish())
+}
+
+struct Search<'a> {
+    machine: &'a Machine,
+    known: bool,
+    plan: Plan,
+    front: Option<Front>,
+    /// Tool axis of the last target.
+    last: Option<Vec3>,
+    /// The last target of the singular run just read at which the free axis may turn out of the cut.
+    turn_at: Option<usize>,
+    /// For each rewind the state in which the tool leaves the part, and those in which it can come in.
+    turns_back: Vec<(u32, [[f64; 2]; STATES])>,
+}
+
+impl<'a> Search<'a> {
+    fn new(machine: &'a Machine, start: Option<[f64; 3]>, expected: usize) -> Search<'a> {
+        let degrees = start.unwrap_or_default();
+        let chain = Chain::new(machine, degrees);
+        let axes = Axis::of(machine, &chain, degrees);
+        let held = chain.gather(degrees);
+        let start_pair = match start {
+            Some(_) => held,
+            None => [axes[0].nearest(held[0]), axes[1].nearest(held[1])],
+        };
+        let plan = Plan {
+            chain,
+            axes,
+            start: start_pair,
+            cells: Vec::with_capacity(expected),
+            rewinds: Vec::new(),
+        };
+        let front = start.map(|degrees| {
+            let axis = machine.axis_at(degrees);
+            let singular = plan.chain.bearings(axis).map_or(true, |bearings| bearings.free);
+            let states = States { pairs: [held; STATES], count: 1, first: 1 };
+            Front { states, cost: [0.0; STATES], axis, index: if singular { -2 } else { -1 } }
+        });
+        Search {
+            machine,
+            known: start.is_some(),
+            plan,
+            front,
+            last: None,
+            turn_at: None,
+            turns_back: Vec::new(),
+        }
+    }
+
+    fn add(&mut self, target: &Target) -> Result<(), Box<Diagnostic>> {
+        let index = self.plan.cells.len();
+        if let (Some(last), Some(cell)) = (self.last, self.plan.cells.last().copied()) {
+            let arc = target.kind == TargetKind::Arc;
+            if arc && angle_between(last, target.axis) > ANGLE_EPSILON {
+                let message = "the tool axis turns during an arc";
+                return Err(Diagnostic::error("arc-orientation", message)
+                    .help("split the arc into lines, or give its end the tool axis of its start")
+                    .line(target.line)
+                    .into());
+            }
+            if arc || (last == target.axis && target.kind == TargetKind::Feed) {
+                let link = SAME;
+                self.plan.cells.push(Cell { link, ..cell });
+                return Ok(());
+            }
+        }
+        self.last = Some(target.axis);
+        let bearings =
+            self.plan.chain.bearings(target.axis).map_err(|e| unreachable(target, &e))?;
+        let mut cell = Cell { bearings, link: SAME };
+        // The way to the first target is not cut, unless it follows on the operation before.
+        let approach = target.kind == TargetKind::Rapid || (index == 0 && !self.known);
+        if bearings.free {
+            if approach {
+                self.turn_at = Some(index);
+            }
+            if self.plan.inner(&bearings, 0.0).is_none() {
+                return Err(self.out_of_travel(target, &bearings));
+            }
+        } else {
+            cell.link = self.advance(target, index, &bearings, approach)?;
+        }
+        self.plan.cells.push(cell);
+        Ok(())
+    }
+
+    /// Carries the best ways on to a target that is not singular; returns its links.
+    fn advance(
+        &mut self,
+        target: &Target,
+        index: usize,
+        bearings: &Bearings,
+        approach: bool,
+    ) -> Result<u32, Box<Diagnostic>> {
+        let states = self.plan.states(bearings);
+        if states.count == 0 {
+            return Err(self.out_of_travel(target, bearings));
+        }
+        let turn_at = self.turn_at.take();
+        if let Some(cell) = turn_at.and_then(|at| self.plan.cells.get_mut(at)) {
+            cell.link |= TURN;
+        }
+        let index = index as isize;
+        let mut next = Front { states, cost: [0.0; STATES], axis: target.axis, index };
+        let loose = approach || turn_at.is_some();
+        // The first pose decides the solution; how the axes get there counts for little.
+        let opens = self.front.as_ref().is_none_or(|front| front.index < 0);
+        let mut link = SAME;
+        if opens && loose {
+            for (pair, cost) in states.pairs.iter().zip(&mut next.cost).take(states.count) {
+                let misses = self.machine.misses_preference(self.plan.chain.spread(*pair));
+                *cost = if misses { PREFERENCE } else { 0.0 }
+                    + APPROACH * self.plan.travel(&self.plan.start, pair).0;
+            }
+        } else if let Some(mut front) = self.front.take() {
+            link = match self.relax(&front, &mut next, loose) {
+                Some(link) => link,
+                None => self.rewind(target, &mut front, &mut next)?,
+            };
+        }
+        self.front = Some(next);
+        Ok(link)
+    }
+
+    /// The best way to each state of `next` from those of `front`; `None` where none can be reached.
+    /// Out of the cut (`loose`) every way is open.
+    fn relax(&self, front: &Front, next: &mut Front, loose: bool) -> Option<u32> {
+        let touching = front.touches(next);
+        let mut link = 0;
+        let mut reached = false;
+        for j in 0..next.states.count {
+            let (mut best, mut from) = (f64::INFINITY, 0);
+            for i in front.states.order(j < next.states.first) {
+                let a = &front.states.pairs[i];
+                let (travel, farthest) = self.plan.travel(a, &next.states.pairs[j]);
+                let cost = front.cost[i] + travel;
+                if cost < best {
+                    let same = (i < front.states.first) == (j < next.states.first);
+                    let open = loose
+                        || (farthest <= 180.0 + SLACK
+                            && (!touching
+                                || (same && travel <= 90.0)
+                                || self.stays_near(front, i, next, j)));
+                    if open {
+                        (best, from) = (cost, i as u32);
+                    }
+                }
+            }
+            next.cost[j] = best;
+            reached |= best < f64::INFINITY;
+            link |= from << (BITS * j as u32);
+        }
+        reached.then_some(link)
+    }
+
+    /// Whether the tool, half way from one position to the other, is still between the two tool axes.
+    fn stays_near(&self, front: &Front, i: usize, next: &Front, j: usize) -> bool {
+        let (from, to) = (&front.states.pairs[i], &next.states.pairs[j]);
+        let half = [0, 1].map(|k| from[k] + self.plan.axes[k].way(from[k], to[k]) / 2.0);
+        let axis = self.machine.axis_at(self.plan.chain.spread(half));
+        let turn = angle_between(front.axis, next.axis);
+        let swing = angle_between(axis, front.axis).max(angle_between(axis, next.axis));
+        swing <= turn + SWING
+    }
+
+    /// No way leads on: the tool leaves the part before `target` in the best state it can have
+    /// there, and comes in again in any other.
+    fn rewind(
+        &mut self,
+        target: &Target,
+        front: &mut Front,
+        next: &mut Front,
+    ) -> Result<u32, Box<Diagnostic>> {
+        let best = front.best();
+        let left = front.states.pairs[best];
+        if !front.touches(next) {
+            // Between them lies a singular pose: there the free axis comes in where it is needed.
+            front.states = next.states;
+            let inner = match self.plan.cells.last() {
+                Some(cell) => self.plan.inner(&cell.bearings, left[1]).unwrap_or(left[1]),
+                None => left[1],
+            };
+            front.states.pairs.iter_mut().for_each(|pair| pair[1] = inner);
+        } else if let (true, Ok(bearings)) = (front.index < 0, self.plan.chain.bearings(front.axis))
+        {
+            // Of the pose before the operation only the state taken was looked at so far.
+            front.states = self.plan.states(&bearings);
+        }
+        for (pair, cost) in front.states.pairs.iter().zip(&mut front.cost) {
+            // Of ways of the same length the one that leaves most travel on both sides.
+            let off_center: f64 = (0..2).map(|k| self.plan.axes[k].off_center(pair[k])).sum();
+            *cost = self.plan.travel(&left, pair).0 + 1e-3 * off_center;
+        }
+        let link = self.relax(front, next, false).ok_or_else(|| {
+            let message = "no way of the rotary axes through this move stays within their travel";
+            Diagnostic::error("axis-limit", message)
+                .help("turn the part on the table, or take a machine with more rotary travel")
+                .line(target.line)
+        })?;
+        let (index, line) = (self.plan.cells.len(), target.line);
+        self.plan.rewinds.push(Rewind { index, line, pair: left });
+        self.turns_back.push((best as u32, front.states.pairs));
+        Ok(link)
+    }
+
+    /// Follows the links back from the best end.
+    fn finish(mut self) -> Plan {
+        let mut state = self.front.as_ref().map_or(0, Front::best) as u32;
+        let mut rewinds = self.plan.rewinds.iter_mut().zip(&self.turns_back).rev().peekable();
+        for (index, cell) in self.plan.cells.iter_mut().enumerate().rev() {
+            if cell.bearings.free {
+                continue;
+            }
+            let before = (cell.link >> (BITS * state)) & (STATES as u32 - 1);
+            cell.link = state;
+            state = before;
+            if let Some((rewind, (left, pairs))) = rewinds.next_if(|(r, _)| r.index == index) {
+                rewind.pair = pairs[before as usize];
+                state = *left;
+            }
+        }
+        self.plan
+    }
+
+    fn out_of_travel(&self, target: &Target, bearings: &Bearings) -> Box<Diagnostic> {
+        let needs: Vec<String> = (0..self.plan.chain.families())
+            .map(|family| {
+                let turns = self.plan.chain.solution(bearings, family);
+                let degrees = self.plan.chain.spread(turns.map(|turn| turn.degrees()));
+                let axes = self.machine.rotary.iter();
+                let free = bearings.free.then_some(self.plan.chain.places[0]);
+                axes.filter(|axis| Some(axis.index()) != free)
+                    .map(|axis| format!("{} {:.3}", axis.letter, degrees[axis.index()]))
+                    .collect::<Vec<_>>()
+                    .join(" ")
+            })
+            .collect();
+        let travel: Vec<String> = (self.machine.rotary.iter())
+            .filter(|axis| !axis.unlimited())
+            .map(|axis| format!("{} {} to {}", axis.letter, axis.min, axis.max))
+            .collect();
+        let v = target.axis;
+        let message = format!(
+            "the tool axis {:.6}, {:.6}, {:.6} needs {}, out of the travel of {}",
+            v.x,
+            v.y,
+            v.z,
+            needs.join(" or "),
+            travel.join(", ")
+        );
+        Diagnostic::error("axis-limit", message).line(target.line).into()
+    }
+}
+
+fn unreachable(target: &Target, error: &Unreachable) -> Box<Diagnostic> {
+    let v = target.axis;
+    let message = format!(
+        "the tool axis {:.6}, {:.6}, {:.6} is out of reach by {:.4}°",
+        v.x,
+        v.y,
+        v.z,
+        error.deviation.to_degrees()
+    );
+    Diagnostic::error("unreachable-orientation", message)
+        .help("the rotary axes of this machine have no position for it")
+        .line(target.line)
+        .into()
+}
+
+impl Axis {
+    /// The travel in which the operation is planned. Where an axis turns so often that its states
+    /// would be too many, it is planned in the turns around where it stands.
+    fn of(machine: &Machine, chain: &Chain, start: [f64; 3]) -> [Axis; 2] {
+        let mut axes = [Axis { min: 0.0, max: 0.0, unlimited: false }; 2];
+        for (axis, &place) in axes.iter_mut().zip(&chain.places).take(chain.links) {
+            if let Some(rotary) = machine.rotary.iter().find(|r| r.index() == place) {
+                let unlimited = rotary.unlimited();
+                *axis = Axis { min: rotary.min, max: rotary.max, unlimited };
+            }
+        }
+        let start = chain.gather(start);
+        let most = STATES as f64 / 2.0;
+        if axes[0].states() * axes[1].states() > most {
+            let other = if axes[1].states() < most { axes[1].states() } else { 2.0 };
+            axes[0] = axes[0].around(start[0], (most / other).floor());
+            axes[1] = axes[1].around(start[1], (most / axes[0].states()).floor());
+        }
+        axes
+    }
+
+    /// In how many turns a position may stand, at the most.
+    fn states(&self) -> f64 {
+        if self.unlimited { 1.0 } else { ((self.max - self.min + SLACK) / 360.0).floor() + 1.0 }
+    }
+
+    fn around(self, position: f64, turns: f64) -> Axis {
+        if self.states() <= turns {
+            return self;
+        }
+        let width = 360.0 * turns - 1e-3;
+        let min = (position - width / 2.0).min(self.max - width).max(self.min);
+        Axis { min, max: min + width, ..self }
+    }
+
+    /// The positions within the travel that are `base` (−180, 180] but for whole turns.
+    fn turns(&self, base: f64) -> impl Iterator<Item = f64> + use<> {
+        let Axis { min, max, unlimited } = *self;
+        let first = if unlimited { 0.0 } else { ((min - base - SLACK) / 360.0).ceil() };
+        let last = if unlimited { 0.0 } else { ((max - base + SLACK) / 360.0).floor() };
+        (0..STATES / 2)
+            .map(move |i| first + i as f64)
+            .take_while(move |turn| *turn <= last)
+            .map(move |turn| (base + 360.0 * turn).max(min).min(max))
+    }
+
+    /// The position within the travel nearest to `position`.
+    fn nearest(&self, position: f64) -> f64 {
+        position.max(self.min).min(self.max)
+    }
+
+    /// The way from one position to the other, degrees: the short way round where the axis turns for
+    /// ever.
+    fn way(&self, from: f64, to: f64) -> f64 {
+        let way = to - from;
+        // Half a turn is taken upwards, also where rounding makes it a little more.
+        if self.unlimited { way - 360.0 * (way / 360.0 - 0.5 - 1e-9).ceil() } else { way }
+    }
+
+    fn off_center(&self, position: f64) -> f64 {
+        if self.unlimited { 0.0 } else { (position - (self.min + self.max) / 2.0).abs() }
+    }
+}
+
+impl States {
+    /// The numbers of the states, those of the same solution first: they are near.
+    fn order(&self, first_solution: bool) -> impl Iterator<Item = usize> + use<> {
+        let (first, count) = (self.first, self.count);
+        let (a, b) =
+            if first_solution { (0..first, first..count) } else { (first..count, 0..first) };
+        a.chain(b)
+    }
+}
+
+impl Front {
+    /// Whether no singular pose lies between the two.
+    fn touches(&self, next: &Front) -> bool {
+        self.index + 1 == next.index
+    }
+
+    /// The state that is reached best.
+    fn best(&self) -> usize {
+        let costs = self.cost.iter().take(self.states.count).enumerate();
+        costs.min_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(state, _)| state)
+    }
+}
+
+impl Rewind {
+    /// What the report says about it.
+    pub fn warning(&self) -> Diagnostic {
+        let message = "the travel of the rotary axes ends in this cut: the tool is drawn back, \
+                       turned and brought in again";
+        Diagnostic::warning("rewind", message).line(self.line)
+    }
+}
+
+impl Plan {
+    /// How many targets there are.
+    pub fn len(&self) -> usize {
+        self.cells.len()
+    }
+
+    /// Whether there are no targets.
+    pub fn is_empty(&self) -> bool {
+        self.cells.is_empty()
+    }
+
+    /// The positions for each target, in order.
+    pub fn iter(&self) -> Steps<'_> {
+        Steps { plan: self, index: 0, rewinds: &self.rewinds, last: self.start }
+    }
+
+    fn states(&self, bearings: &Bearings) -> States {
+        let mut states = States { pairs: [[0.0; 2]; STATES], count: 0, first: 0 };
+        for family in 0..self.chain.families() {
+            let [outer, inner] = self.chain.solution(bearings, family).map(|turn| turn.degrees());
+            for outer in self.axes[0].turns(outer) {
+                for inner in self.axes[1].turns(inner) {
+                    if let Some(pair) = states.pairs.get_mut(states.count) {
+                        *pair = [outer, inner];
+                        states.count += 1;
+                    }
+                }
+            }
+            if family == 0 {
+                states.first = states.count;
+            }
+        }
+        states
+    }
+
+    /// The position of the inner axis in a singular pose, where both solutions have the same, in the
+    /// turn nearest to `from`; `None` where its travel has none.
+    fn inner(&self, bearings: &Bearings, from: f64) -> Option<f64> {
+        let base = self.chain.solution(bearings, 0)[1].degrees();
+        let far = |position: f64| self.axes[1].way(from, position).abs();
+        self.axes[1].turns(base).min_by(|a, b| far(*a).total_cmp(&far(*b)))
+    }
+
+    /// The rotary travel between two positions, and that of the axis that turns most, degrees.
+    fn travel(&self, from: &[f64; 2], to: &[f64; 2]) -> (f64, f64) {
+        let [a, b] = [0, 1].map(|k| self.axes[k].way(from[k], to[k]).abs());
+        (a + b, a.max(b))
+    }
+
+    /// The positions settled for a target that is not singular.
+    fn settled(&self, cell: &Cell) -> [f64; 2] {
+        self.states(&cell.bearings).pairs[cell.link as usize % STATES]
+    }
+}
+
+/// The positions for the targets of a [`Plan`], in order.
+#[derive(Clone, Debug)]
+pub struct Steps<'a> {
+    plan: &'a Plan,
+    index: usize,
+    rewinds: &'a [Rewind],
+    last: [f64; 2],
+}
+
+impl Steps<'_> {
+    /// `pair` in the turns of unlimited axes that are nearest to where they stand.
+    fn wound(&self, pair: [f64; 2]) -> [f64; 2] {
+        [0, 1].map(|k| self.last[k] + self.plan.axes[k].way(self.last[k], pair[k]))
+    }
+
+    /// What a singular pose takes: the free axis where it stands, or where it is needed next.
+    fn singular(&self, cell: &Cell) -> [f64; 2] {
+        let mut outer = self.last[0];
+        if cell.link & TURN != 0 {
+            let next = self.plan.cells[self.index..].iter().find(|cell| !cell.bearings.free);
+            outer = next.map_or(outer, |cell| self.plan.settled(cell)[0]);
+        }
+        [outer, self.plan.inner(&cell.bearings, self.last[1]).unwrap_or(self.last[1])]
+    }
+}
+
+impl Iterator for Steps<'_> {
+    type Item = Step;
+
+    fn next(&mut self) -> Option<Step> {
+        let cell = self.plan.cells.get(self.index)?;
+        let mut rewind = None;
+        if let [first, rest @ ..] = self.rewinds
+            && first.index == self.index
+        {
+            self.rewinds = rest;
+            self.last = self.wound(first.pair);
+            rewind = Some(self.plan.chain.spread(self.last));
+        }
+        let pair = if cell.bearings.free { self.singular(cell) } else { self.plan.settled(cell) };
+        self.last = self.wound(pair);
+        self.index += 1;
+        Some(Step { degrees: self.plan.chain.spread(self.last), rewind })
+    }
+
+    fn size_hint(&self) -> (usize, Option<usize>) {
+        let left = self.plan.cells.len() - self.index;
+        (left, Some(left))
+    }
+}
+
+impl ExactSizeIterator for Steps<'_> {}

@@ -1,0 +1,82 @@
+//! Machines for the tests of kinematics: three linear axes and the rotary axes given.
+#![allow(dead_code)] // Each test file uses its own part of this.
+
+use geom::Vec3;
+use std::collections::BTreeMap;
+use toolpost_machine::*;
+
+pub fn machine(rotary: Vec<RotaryAxis>) -> Machine {
+    let linear = LinearAxis { min: -500.0, max: 500.0, rapid: 30_000.0, acceleration: 5.0 };
+    Machine {
+        name: "test".into(),
+        title: "Test".into(),
+        control: "iso".into(),
+        reader: "fanuc".into(),
+        extension: "nc".into(),
+        capabilities: Capabilities {
+            arcs: vec![Plane::XY],
+            helix: true,
+            full_circle: true,
+            arc_tolerance: 0.01,
+            cycles: Vec::new(),
+            compensation: true,
+            feed_per_turn: true,
+            inverse_time: true,
+            length_offset: LengthOffset::Implicit,
+            line_length: 120,
+            lowering_tolerance: 0.01,
+        },
+        format: Format {
+            separator: " ".into(),
+            line_end: "\n".into(),
+            comment_start: "(".into(),
+            comment_end: ")".into(),
+        },
+        words: BTreeMap::new(),
+        blocks: BTreeMap::new(),
+        linear: [linear; 3],
+        rotary,
+        work_zero: Some(Vec3::ZERO),
+        orientation: OrientationSettings {
+            simultaneous: OrientationMode::MachineAngles,
+            positioned: OrientationMode::MachineAngles,
+            tolerance: 0.01,
+        },
+        spindle: SpindleRange { min: 50.0, max: 12_000.0 },
+        tools: ToolRange { max_number: 99, max_diameter: 80.0, max_length: 300.0 },
+        auxiliary: Vec::new(),
+        approach: Vec::new(),
+        options: BTreeMap::new(),
+    }
+}
+
+/// An axis through the origin that turns for ever.
+pub fn axis(letter: char, on: Mount, direction: Vec3, sign: f64) -> RotaryAxis {
+    RotaryAxis {
+        letter,
+        on,
+        axis: direction.normalize(),
+        point: Vec3::ZERO,
+        sign,
+        offset: 0.0,
+        min: f64::NEG_INFINITY,
+        max: f64::INFINITY,
+        rapid: 10_800.0,
+        acceleration: 500.0,
+        prefer: 0.0,
+    }
+}
+
+pub fn within(min: f64, max: f64, axis: RotaryAxis) -> RotaryAxis {
+    RotaryAxis { min, max, ..axis }
+}
+
+pub fn prefer(sign: f64, axis: RotaryAxis) -> RotaryAxis {
+    RotaryAxis { prefer: sign, ..axis }
+}
+
+/// The trunnion of `cldata-sinumerik.md`, section 3: A carries C, both carry the part.
+pub fn table_ac() -> Machine {
+    let a = within(-120.0, 180.0, axis('A', Mount::Table, Vec3::X, 1.0));
+    machine(vec![prefer(1.0, a), axis('C', Mount::Table, Vec3::Z, -1.0)])
+}
