@@ -1,0 +1,302 @@
+//! Arcs: `CIRCLE` and `GOTO`, and the `TLON` of CATIA and Creo.
+//!
+//! A `CIRCLE` gives centre and axis, the `GOTO` after it the end. Which way the arc turns about the axis
+//! is a habit of the CAM system ([`Dialect::turn`]). The path itself tells whether the habit was taken
+//! rightly: contours are smooth, so an arc that turns the wrong way reverses the path at a straight
+//! move beside it. [`judge`] holds every file against that.
+
+use super::Reader;
+use super::dialect::{Dialect, Turn};
+use super::frame::no_direction;
+use super::motion::Next;
+use super::record::Record;
+use super::report::{Fault, Outcome};
+use geom::{ANGLE_EPSILON, Arc, ArcError, Vec3, angle_between, direction};
+use program::{ArcTo, Diagnostic, Op, Pose, Program};
+use std::f64::consts::TAU;
+
+/// How far the ends of an arc, and the radius the record gives, may be from each other, mm. Files give
+/// four decimals: in mm the radii of the real ones differ by up to 0.00015, and an inch has 25.4.
+pub(super) const RADIUS_TOLERANCE: f64 = 0.005;
+
+/// Cosine of 3°: closer than that to the tangent, a straight move goes on from the arc smoothly.
+const SMOOTH: f64 = 0.9986;
+
+/// A direction nearer to a coordinate axis than this (radians) is the axis: what `INDIRV` loses in five
+/// decimals.
+const SNAP: f64 = 1e-4;
+
+/// A circle of a record, in the work frame.
+#[derive(Clone, Debug)]
+pub(super) struct Circle {
+    center: Vec3,
+    /// As the record gives it.
+    axis: Vec3,
+    radius: Option<f64>,
+    /// `TIMES,n`: full turns in all.
+    times: u32,
+}
+
+impl Reader {
+    /// `CIRCLE/cx,cy,cz,i,j,k`, then `r`, and of Siemens NX and Makino tolerance, its share, and the
+    /// tool's diameter and corner radius; `TIMES,n` for a helix. The next `GOTO` is the end.
+    pub(super) fn circle(&mut self, record: &Record) -> Outcome {
+        self.no_pending_circle()?;
+        if matches!(self.next, Next::Rapid) {
+            return Err(Fault::new("unsupported", "an arc cannot be a rapid"));
+        }
+        if self.cycle.is_some() {
+            return Err(Fault::new("unsupported", "an arc within a hole cycle")
+                .help("add CYCLE/OFF before it"));
+        }
+        let first = usize::from(record.is(0, "CANON"));
+        let times = (first..record.fields.len()).find(|i| record.is(*i, "TIMES"));
+        let count = times.unwrap_or(record.fields.len()) - first;
+        if !matches!(count, 6..=11) {
+            let message = format!("{count} values where a circle takes 6 to 11");
+            return Err(Fault::new("malformed", message)
+                .help("write CIRCLE/cx,cy,cz,i,j,k,r")
+                .fields(first, count));
+        }
+        let center = self.setup.to_work.transform_point3(self.point(record, first)?);
+        let axis = Vec3::from_array(record.numbers(first + 3)?);
+        let axis = direction(axis).ok_or_else(|| no_direction().fields(first + 3, 3))?;
+        let radius = match count {
+            6 => None,
+            _ => Some(self.length(record.number(first + 6, "the radius")?)?),
+        };
+        let times = match times {
+            None => 1,
+            Some(i) => match record.number(i + 1, "the number of turns")? {
+                n if n.fract() == 0.0 && (1.0..=1e4).contains(&n) => n as u32,
+                n => {
+                    let message = format!("{n} turns cannot be made");
+                    return Err(Fault::new("malformed", message).fields(i + 1, 1));
+                }
+            },
+        };
+        let axis = self.setup.to_work.transform_vector3(axis);
+        self.next = Next::Arc(Box::new(Circle { center, axis, radius, times }));
+        self.circle_at = record.line;
+        Ok(())
+    }
+
+    /// A circle that waits for its `GOTO` must not be left waiting.
+    pub(super) fn no_pending_circle(&mut self) -> Outcome {
+        if !matches!(self.next, Next::Arc(_)) {
+            return Ok(());
+        }
+        self.next = Next::Line;
+        let message = format!("the CIRCLE of line {} has no GOTO", self.circle_at);
+        Err(Fault::new("circle-without-goto", message).help("add the GOTO that ends the arc"))
+    }
+
+    /// The arc of `circle` from where the tool is to `end`.
+    pub(super) fn arc(&mut self, record: &Record, circle: &Circle, end: Pose) -> Outcome {
+        self.circles = true;
+        let normal = match self.dialect.turn().unwrap_or(Turn::RightHand) {
+            Turn::RightHand => circle.axis,
+            Turn::LeftHand => -circle.axis,
+        };
+        self.arc_about(record, circle, normal, end)
+    }
+
+    /// The arc of `circle` counter-clockwise about `normal`.
+    fn arc_about(&mut self, record: &Record, circle: &Circle, normal: Vec3, end: Pose) -> Outcome {
+        self.prepare(record, true)?;
+        let Some(start) = self.tip else {
+            return Err(Fault::new("no-start", "an arc, but from nowhere")
+                .help("add a GOTO to its start before the CIRCLE"));
+        };
+        let arc = Arc::new(start.point, end.point, circle.center, normal, 0, RADIUS_TOLERANCE)
+            .map_err(|error| not_an_arc(&error))?;
+        let radius = arc.radius();
+        if let Some(given) = circle.radius
+            && (given - radius).abs() > RADIUS_TOLERANCE
+        {
+            let message = format!(
+                "the arc starts {radius:.4} mm from the centre, but its radius is {given:.4} mm"
+            );
+            return Err(Fault::new("off-the-circle", message));
+        }
+        if circle.times > 1 && arc.sweep < TAU {
+            let message = "several turns that do not end where they began (seen along the axis) are \
+                           not defined";
+            return Err(Fault::new("unsupported", message)
+                .help("end the full turns first, then the rest in an arc of its own"));
+        }
+        if start.orientation != end.orientation
+            && !matches!((start.axis(), end.axis()), (Some(a), Some(b)) if angle_between(a, b) <= ANGLE_EPSILON)
+        {
+            return Err(Fault::new("unsupported", "the tool axis turns during this arc")
+                .help("let the CAM system write lines where the axis turns"));
+        }
+        let turns = circle.times - 1;
+        let to = ArcTo { end, center: circle.center, normal: arc.normal, turns };
+        self.last_arc = Some(start.point);
+        self.push(record.line, Op::Arc(Box::new(to)));
+        self.arrive(end);
+        Ok(())
+    }
+
+    /// A further point of the arc that the last record made: the arc goes on to it. Whether there is
+    /// such an arc.
+    pub(super) fn lengthen_arc(&mut self, record: &Record) -> Result<bool, Box<Fault>> {
+        let Some(start) = self.last_arc else { return Ok(false) };
+        record.count(&[3, 6], "x,y,z")?;
+        let point = self.setup.to_work.transform_point3(self.point(record, 0)?);
+        let Some(Op::Arc(to)) = self.program.records.last_mut().map(|r| &mut r.op) else {
+            return Ok(false);
+        };
+        let arc = |end| Arc::new(start, end, to.center, to.normal, 0, RADIUS_TOLERANCE);
+        let so_far = arc(to.end.point).map_err(|error| not_an_arc(&error))?;
+        let further = arc(point).map_err(|error| not_an_arc(&error))?;
+        if further.sweep <= so_far.sweep {
+            let message = "the points of this arc do not follow each other the way it turns";
+            return Err(Fault::new("arc-direction", message));
+        }
+        to.end.point = point;
+        let end = to.end;
+        self.arrive(end);
+        Ok(true)
+    }
+
+    /// `INDIRV/i,j,k`: the direction in which the next `TLON` sets out.
+    pub(super) fn indirv(&mut self, record: &Record) -> Outcome {
+        record.count(&[3], "INDIRV/i,j,k")?;
+        let towards = Vec3::from_array(record.numbers(0)?);
+        self.towards = Some(self.work_axis(towards).map_err(|fault| fault.fields(0, 3))?);
+        Ok(())
+    }
+
+    /// `TLON,GOFWD/(CIRCLE/cx,cy,cz,r),ON,(LINE/x0,y0,z0,x1,y1,z1)`, with `ON,2,INTOF` for `ON`: along
+    /// the circle, setting out as `INDIRV` says, to the end of the line.
+    pub(super) fn tlon(&mut self, record: &Record) -> Outcome {
+        self.no_pending_circle()?;
+        let syntax = "write TLON,GOFWD/(CIRCLE/cx,cy,cz,r),ON,(LINE/x0,y0,z0,x1,y1,z1)";
+        let count = record.fields.len();
+        let line = if record.is(7, "INTOF") { 8 } else { 6 };
+        let known = record.is(0, "CIRCLE")
+            && record.is(5, "ON")
+            && record.is(line, "LINE")
+            && count == line + 7;
+        if !known {
+            let message = "only a circle up to a line is known here";
+            return Err(Fault::new("unsupported", message).help(syntax));
+        }
+        if self.cycle.is_some() {
+            return Err(Fault::new("unsupported", "an arc within a hole cycle"));
+        }
+        let center = self.setup.to_work.transform_point3(self.point(record, 1)?);
+        let radius = Some(self.length(record.number(4, "the radius")?)?);
+        let end = self.setup.to_work.transform_point3(self.point(record, line + 4)?);
+        let (Some(start), Some(towards)) = (self.tip, self.towards.take()) else {
+            return Err(Fault::new(
+                "no-start",
+                "the start or the direction of this arc is not known",
+            )
+            .help("add GOTO/ and INDIRV/ before it"));
+        };
+        let spoke = start.point - center;
+        let Some(normal) = direction(spoke.cross(towards)) else { return Err(no_direction()) };
+        if spoke.normalize_or_zero().dot(towards).abs() > 0.1 {
+            return Err(Fault::new("arc-direction", "INDIRV is not tangent to this circle"));
+        }
+        let principal = [Vec3::X, Vec3::Y, Vec3::Z].into_iter().flat_map(|axis| [axis, -axis]);
+        let normal = principal.into_iter().find(|a| a.distance(normal) < SNAP).unwrap_or(normal);
+        self.next = Next::Line;
+        let circle = Circle { center, axis: normal, radius, times: 1 };
+        self.arc_about(record, &circle, normal, Pose::new(end, self.axis))
+            .map_err(|fault| fault.fields(0, count))
+    }
+}
+
+/// The fault of three points and an axis that make no arc.
+fn not_an_arc(error: &ArcError) -> Box<Fault> {
+    match error {
+        ArcError::NoAxis => no_direction(),
+        ArcError::NoRadius => Fault::new("off-the-circle", "the arc starts at its centre"),
+        ArcError::OffTheCircle(start, end) => Fault::new(
+            "off-the-circle",
+            format!("the arc starts {start:.4} mm from the centre, but ends {end:.4} mm from it"),
+        )
+        .help(format!("the two may differ by {RADIUS_TOLERANCE} mm")),
+    }
+}
+
+/// What the straight moves beside the arcs of a file say about the way they turn.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(super) struct Evidence {
+    /// Arcs that go on smoothly from or into a straight move.
+    pub(super) smooth: usize,
+    /// Arcs that would do so if they turned the other way, and reverse the path as they are.
+    pub(super) reversed: usize,
+    /// Line of the first of these.
+    pub(super) first_reversed: u32,
+}
+
+/// Weighs the arcs of `program` against the straight moves beside them.
+pub(super) fn weigh(program: &Program) -> Evidence {
+    let mut evidence = Evidence::default();
+    // Direction of the straight cut that ended at `here`, and the arc (line, tangents) after it.
+    let (mut here, mut before): (Option<Vec3>, Option<Vec3>) = (None, None);
+    let mut open: Option<(u32, Option<Vec3>, Vec3, Vec3)> = None;
+    for record in &program.records {
+        let Some(pose) = record.op.pose() else { continue };
+        let straight = match (&record.op, here) {
+            (Op::Line(_), Some(here)) => direction(pose.point - here),
+            _ => None,
+        };
+        if let Some((line, before, start, end)) = open.take() {
+            let beside = [before.map(|b| b.dot(start)), straight.map(|s| s.dot(end))];
+            let mut beside = beside.into_iter().flatten().peekable();
+            // A cusp at one end is a corner being cleaned; one at every end is the wrong way round.
+            let reversed = beside.peek().is_some() && beside.clone().all(|c| c < -SMOOTH);
+            let smooth = beside.any(|c| c > SMOOTH);
+            evidence.smooth += usize::from(smooth);
+            if reversed {
+                if evidence.reversed == 0 {
+                    evidence.first_reversed = line;
+                }
+                evidence.reversed += 1;
+            }
+        }
+        if let (Op::Arc(to), Some(start)) = (&record.op, here)
+            && let Ok(arc) = Arc::new(start, pose.point, to.center, to.normal, to.turns, f64::MAX)
+        {
+            let back = Arc { start: arc.end, end: arc.start, normal: -arc.normal, ..arc };
+            open = Some((record.line, before, arc.tangent(), -back.tangent()));
+        }
+        before = straight;
+        here = Some(pose.point);
+    }
+    evidence
+}
+
+/// Holds the arcs of `program` against the path they are in. It is an error where more of them reverse
+/// the path than go on smoothly: then the habit of the file is another than was taken.
+pub(super) fn judge(program: &Program, dialect: Dialect) -> Option<Diagnostic> {
+    let Evidence { smooth, reversed, first_reversed } = weigh(program);
+    if reversed > smooth {
+        let message = format!(
+            "the path says that the arcs turn the other way: {reversed} of them reverse it, {smooth} \
+             go on smoothly"
+        );
+        let help = "let the CAM system write lines for arcs, or TLON with INDIRV";
+        return Some(Diagnostic::error("arc-direction", message).help(help).line(first_reversed));
+    }
+    if reversed > 0 {
+        let message = format!(
+            "{reversed} arcs reverse the path, and would not if they turned the other way; {smooth} go \
+             on smoothly"
+        );
+        let warning = Diagnostic::warning("arc-direction", message);
+        return Some(warning.help("look at the path here").line(first_reversed));
+    }
+    if smooth == 0 && dialect.turn().is_none() {
+        let message = "neither the file nor its path says which way arcs turn: taken as \
+                       counter-clockwise about the vector of CIRCLE";
+        return Some(Diagnostic::warning("arc-direction", message).help("look at the arcs"));
+    }
+    None
+}

@@ -1,0 +1,372 @@
+//! Hole cycles: `CYCLE/` and the points that follow.
+//!
+//! Heights count from the point of the hole along the tool axis, away from the part. The record gives
+//! them as couplets of a word and a value in any order (ISO 4343:2000).
+
+use super::record::{Field, Record};
+use super::report::{Fault, Outcome};
+use super::technology::{FeedUnit, speed_of};
+use super::{Dialect, Reader, Ready};
+use geom::Vec3;
+use program::{Cycle, CycleKind, Feed, Op, Pose, Spindle};
+
+/// What a minor word of a `CYCLE` record is about.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Part {
+    /// Depth of the bottom.
+    Depth,
+    /// Height from which the tool feeds.
+    Clearance,
+    /// Height to which it goes back.
+    Retract,
+    /// Depth of the first peck.
+    FirstPeck,
+    /// Depth of the pecks.
+    Peck,
+    /// Dwell at the bottom.
+    Dwell,
+    /// Dwell at the bottom, in turns.
+    DwellTurns,
+    /// Threads an inch.
+    ThreadsPerInch,
+    /// Diameter of a countersink.
+    Diameter,
+    /// Point angle of the tool, degrees.
+    Angle,
+}
+
+const PARTS: [(&str, Part); 17] = [
+    ("FEDTO", Part::Depth),
+    ("DEPTH", Part::Depth),
+    ("RAPTO", Part::Clearance),
+    ("CLEAR", Part::Clearance),
+    ("RTRCTO", Part::Retract),
+    ("RETURN", Part::Retract),
+    ("1STPECK", Part::FirstPeck),
+    ("SUBPECK", Part::Peck),
+    ("INCR", Part::Peck),
+    ("STEP", Part::Peck),
+    ("DWELL", Part::Dwell),
+    ("REV", Part::DwellTurns),
+    ("TPI", Part::ThreadsPerInch),
+    ("DIAMET", Part::Diameter),
+    ("DIAMETR", Part::Diameter),
+    ("TLANGL", Part::Angle),
+    ("ANGLE", Part::Angle),
+];
+
+/// What the first words of a `CYCLE` record ask for.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Kind {
+    Drill,
+    Face,
+    Countersink,
+    Deep,
+    BreakChip,
+    Tap,
+    Ream,
+    Bore,
+}
+
+/// Names of cycles, longest first. Siemens NX has bores that feed out (`BORE`) and that stop (`BORE,DRAG`).
+const KINDS: [(&[&str], Kind); 14] = [
+    (&["DRILL", "DEEP"], Kind::Deep),
+    (&["DRILL", "BRKCHP"], Kind::BreakChip),
+    (&["DRILL", "CSINK"], Kind::Countersink),
+    (&["BORE", "DRAG"], Kind::Bore),
+    (&["DRILL"], Kind::Drill),
+    (&["THRU"], Kind::Drill),
+    (&["FACE"], Kind::Face),
+    (&["CSINK"], Kind::Countersink),
+    (&["DEEP2"], Kind::Deep),
+    (&["DEEP"], Kind::Deep),
+    (&["BRKCHP"], Kind::BreakChip),
+    (&["TAP"], Kind::Tap),
+    (&["REAM"], Kind::Ream),
+    (&["BORE"], Kind::Bore),
+];
+
+/// The active cycle.
+#[derive(Clone, Debug)]
+pub(super) struct ActiveCycle {
+    line: u32,
+    cycle: Cycle,
+    /// Retract to the level at which the tool was before the cycle.
+    to_initial: bool,
+    /// Where the tool was before the cycle, where that is known.
+    initial: Option<Vec3>,
+    /// What was last told to the writers.
+    told: Option<Cycle>,
+}
+
+impl ActiveCycle {
+    /// The feed of the cycle itself.
+    pub(super) fn feed(&self) -> Option<Feed> {
+        self.cycle.feed
+    }
+}
+
+impl Reader {
+    /// `CYCLE/kind,word,value,...`, `CYCLE/OFF`, `CYCLE/ON`; `CYCLE/INIT` and `CYCLE/CLEAR` of
+    /// SolidWorks CAM before the kind.
+    pub(super) fn cycle_record(&mut self, record: &Record) -> Outcome {
+        self.no_pending_circle()?;
+        self.ready = Ready::No;
+        match () {
+            () if record.is(0, "OFF") || record.is(0, "NOMORE") => {
+                self.end_cycle(record);
+                return Ok(());
+            }
+            () if record.is(0, "ON") => {
+                self.cycle = self.last_cycle.take();
+                return match self.cycle {
+                    Some(_) => Ok(()),
+                    None => Err(Fault::new("malformed", "no cycle has been given yet")),
+                };
+            }
+            // Both say to which level the tool goes back between holes. The record that follows gives
+            // RTRCTO, the higher of the two, and that is what is kept.
+            () if record.is(0, "INIT") || record.is(0, "CLEAR") => return Ok(()),
+            () => {}
+        }
+        let active = self.define(record)?;
+        self.cycle = Some(active);
+        Ok(())
+    }
+
+    fn end_cycle(&mut self, record: &Record) {
+        let Some(mut active) = self.cycle.take() else { return };
+        if active.told.take().is_some() {
+            self.push(record.line, Op::CycleOff);
+        }
+        self.last_cycle = Some(active);
+    }
+
+    /// The cycle that `record` describes.
+    fn define(&mut self, record: &Record) -> Result<ActiveCycle, Box<Fault>> {
+        let (words, kind) = self.kind(record)?;
+        let mut value: [Option<f64>; 10] = [None; 10];
+        let (mut feed, mut to_initial, mut returns) = (None, false, false);
+        let mut i = words;
+        while i < record.fields.len() {
+            if let Some(unit) = FeedUnit::of(record, i) {
+                let number = record.number(i + 1, "the feed")?;
+                feed = Some(self.feed_of(number, unit).map_err(|fault| fault.fields(i + 1, 1))?);
+                i += 2;
+                continue;
+            }
+            let known = PARTS.iter().find(|(word, _)| record.is(i, word));
+            let Some((_, part)) = known else {
+                return Err(Fault::new("unsupported", "this is not known of a cycle")
+                    .help("write a word and its value: FEDTO, RAPTO, RTRCTO, INCR, DWELL, MMPM")
+                    .fields(i, 1));
+            };
+            if *part == Part::Dwell && record.is(i + 1, "REV") {
+                i += 1;
+                continue;
+            }
+            if *part == Part::Retract && record.is(i + 1, "AUTO") {
+                to_initial = true;
+                i += 2;
+                continue;
+            }
+            let number = record.number(i + 1, "its value")?;
+            if matches!(record.fields.get(i + 2), Some(Field::Number(_))) {
+                return Err(Fault::new("unsupported", "one value is taken here").fields(i + 2, 1));
+            }
+            returns |= record.is(i, "RETURN");
+            let number = match part {
+                Part::Dwell | Part::DwellTurns => self.dwell(number, *part == Part::DwellTurns),
+                Part::ThreadsPerInch | Part::Angle => Ok(number),
+                _ => self.length(number),
+            };
+            let number = number.map_err(|fault| fault.fields(i + 1, 1))?;
+            let slot = match part {
+                Part::DwellTurns => Part::Dwell,
+                part => *part,
+            };
+            let slot = &mut value[slot as usize];
+            if let Some(earlier) = *slot {
+                self.twice(record, i, *part, earlier, number)?;
+            }
+            // Of two heights from which to feed, the higher is safe.
+            *slot = Some(slot.map_or(number, |earlier| earlier.max(number)));
+            i += 2;
+        }
+        let get = |part: Part| value[part as usize];
+        // Creo: a return of 0 is to the retract plane.
+        if returns && get(Part::Retract) == Some(0.0) {
+            to_initial = true;
+        }
+        let clearance = get(Part::Clearance).ok_or_else(|| {
+            Fault::new("no-clear-plane", "this cycle does not say from which height the tool feeds")
+                .help("add RAPTO,height or CLEAR,height")
+        })?;
+        let depth = self.depth(kind, get(Part::Depth), get(Part::Diameter), get(Part::Angle))?;
+        if clearance <= -depth {
+            let message = "the tool would feed from below the bottom of the hole";
+            return Err(Fault::new("no-clear-plane", message));
+        }
+        let retract = get(Part::Retract).filter(|_| !to_initial).unwrap_or(clearance);
+        if retract < clearance {
+            let help = "the tool goes back to the higher of the two";
+            let message = "RTRCTO is lower than RAPTO";
+            self.report.warn(record, "retract", message, help);
+        }
+        let kind = self.cycle_kind(kind, &mut feed, get(Part::ThreadsPerInch))?;
+        let pecks = matches!(kind, CycleKind::Deep | CycleKind::BreakChip);
+        let (first_peck, peck) = (get(Part::FirstPeck), get(Part::Peck));
+        let given = [first_peck, peck];
+        if pecks != given.iter().any(Option::is_some) || given.iter().flatten().any(|p| *p <= 0.0) {
+            let message = "a cycle that pecks, and no other, takes a peck greater than 0";
+            return Err(Fault::new("peck", message).help("write DEEP or BRKCHP with INCR,depth"));
+        }
+        let cycle = Cycle {
+            kind,
+            depth,
+            clearance,
+            retract: retract.max(clearance),
+            feed,
+            dwell: get(Part::Dwell).unwrap_or(0.0),
+            first_peck,
+            peck,
+        };
+        let initial = match &self.cycle {
+            Some(active) => active.initial,
+            None => self.tip.map(|tip| tip.point),
+        };
+        let told = self.cycle.as_ref().and_then(|active| active.told);
+        Ok(ActiveCycle { line: record.line, cycle, to_initial, initial, told })
+    }
+
+    /// A part that is given twice: only two heights from which to feed make sense together.
+    fn twice(
+        &mut self,
+        record: &Record,
+        field: usize,
+        part: Part,
+        earlier: f64,
+        now: f64,
+    ) -> Outcome {
+        if part != Part::Clearance {
+            return Err(Fault::new("malformed", "this is given twice").fields(field, 2));
+        }
+        if earlier != now {
+            let help = "the tool feeds from the higher of the two";
+            self.report.warn(record, "clear-plane", "CLEAR and RAPTO are both given", help);
+        }
+        Ok(())
+    }
+
+    /// How many words name the cycle, and which it is.
+    fn kind(&self, record: &Record) -> Result<(usize, Kind), Box<Fault>> {
+        let matches = |words: &&[&str]| words.iter().enumerate().all(|(i, w)| record.is(i, w));
+        let known = KINDS.iter().find(|(words, _)| matches(words));
+        let (words, kind) = known.ok_or_else(|| {
+            Fault::new("unsupported", "this cycle is not known")
+                .help("cycles are DRILL, DEEP, DEEP2, BRKCHP, TAP, BORE, REAM, FACE, CSINK, THRU")
+                .fields(0, 1)
+        })?;
+        if matches!(record.fields.get(words.len()), Some(Field::Number(_))) {
+            return Err(Fault::new("unsupported", "the form of ISO 4343:1978, by position")
+                .help("let the CAM system write words and values: FEDTO,depth,RAPTO,height")
+                .fields(words.len(), 1));
+        }
+        // Siemens NX calls the bore that stops the spindle BORE,DRAG; its BORE feeds out again.
+        let feeds_out = self.dialect == Dialect::Nx && *words == ["BORE"];
+        Ok((words.len(), if feeds_out { Kind::Ream } else { *kind }))
+    }
+
+    /// The depth below the point of the hole. Siemens NX gives it as a height, below zero.
+    fn depth(
+        &self,
+        kind: Kind,
+        depth: Option<f64>,
+        diameter: Option<f64>,
+        angle: Option<f64>,
+    ) -> Result<f64, Box<Fault>> {
+        let depth = match (depth, diameter) {
+            (Some(depth), _) if self.dialect == Dialect::Nx => -depth,
+            (Some(depth), _) => depth,
+            (None, Some(diameter)) if kind == Kind::Countersink => {
+                let angle = angle.or(self.point_angle).filter(|a| (1.0..180.0).contains(a));
+                let angle = angle.ok_or_else(|| {
+                    Fault::new(
+                        "cycle-depth",
+                        "a countersink by diameter needs the tool's point angle",
+                    )
+                    .help("add TLANGL,degrees or FEDTO,depth")
+                })?;
+                diameter / 2.0 / (angle / 2.0).to_radians().tan()
+            }
+            _ => f64::NAN,
+        };
+        if depth > 0.0 {
+            return Ok(depth);
+        }
+        let message = "this cycle has no depth below the point of the hole";
+        let sign = match self.dialect {
+            Dialect::Nx => "FEDTO,-depth (NX counts it as a height)",
+            _ => "FEDTO,depth or DEPTH,depth, greater than 0",
+        };
+        Err(Fault::new("cycle-depth", message).help(format!("give {sign}")))
+    }
+
+    /// The kind of the neutral program. The pitch of a tap is the threads an inch, or the feed a turn,
+    /// or the feed a minute over the speed.
+    fn cycle_kind(
+        &self,
+        kind: Kind,
+        feed: &mut Option<Feed>,
+        threads: Option<f64>,
+    ) -> Result<CycleKind, Box<Fault>> {
+        Ok(match kind {
+            Kind::Drill | Kind::Face | Kind::Countersink => CycleKind::Drill,
+            Kind::Deep => CycleKind::Deep,
+            Kind::BreakChip => CycleKind::BreakChip,
+            Kind::Ream => CycleKind::Ream,
+            Kind::Bore => CycleKind::Bore,
+            Kind::Tap => {
+                let rpm = speed_of(self.spindle);
+                let pitch = match (threads, (*feed).or(self.feed)) {
+                    (Some(threads), _) => super::frame::INCH / threads,
+                    (None, Some(Feed::PerTurn(pitch))) => pitch,
+                    (None, Some(Feed::PerMinute(feed))) if rpm > 0.0 => feed / rpm,
+                    _ => f64::NAN,
+                };
+                if !(pitch > 0.0 && pitch.is_finite()) {
+                    return Err(Fault::new("tap-pitch", "the pitch of this tap is not known")
+                        .help("give MMPR,pitch or TPI,threads, or feed and spindle speed"));
+                }
+                let left = matches!(self.spindle, Spindle::CounterClockwise(_));
+                CycleKind::Tap { pitch, left }
+            }
+        })
+    }
+
+    /// One hole of the active cycle, at `pose`.
+    pub(super) fn hole(&mut self, record: &Record, pose: Pose) -> Outcome {
+        let Some(active) = &mut self.cycle else { return Ok(()) };
+        let mut cycle = active.cycle;
+        let axis = self.axis;
+        if active.to_initial {
+            let Some(initial) = active.initial else {
+                return Err(Fault::new(
+                    "no-start",
+                    "the retract level is that before the cycle, which \
+                                                   is not known",
+                )
+                .help("add a RAPID GOTO before the cycle"));
+            };
+            cycle.retract = cycle.clearance.max((initial - pose.point).dot(axis));
+        }
+        if active.told.replace(cycle) != Some(cycle) {
+            let line = active.line;
+            self.push(line, Op::Cycle(Box::new(cycle)));
+        }
+        self.push(record.line, Op::Hole(pose));
+        self.point = Some(pose.point);
+        self.tip = Some(Pose { point: pose.point + axis * cycle.retract, ..pose });
+        Ok(())
+    }
+}

@@ -1,0 +1,316 @@
+//! Units and frames: everything that moves or turns what the coordinates mean.
+//!
+//! The frame in which the file's first coordinates stand is the work frame. A later one is resolved
+//! relative to it, so that all poses leave the reader in the work frame.
+
+use super::record::Record;
+use super::report::{Fault, Outcome};
+use super::{Dialect, Reader};
+use geom::{Frame, Mat3, Vec3, direction};
+use program::Op;
+
+/// mm in an inch.
+pub(super) const INCH: f64 = 25.4;
+
+/// Coordinates beyond this are a fault of the file, mm: no machine is a kilometre long.
+pub(super) const FARTHEST: f64 = 1e6;
+
+/// How far axis vectors printed with a few decimals may be from unit length and a right angle.
+const SKEW: f64 = 1e-3;
+
+/// Where the coordinates of the file stand.
+pub(super) struct Setup {
+    /// From the coordinates of the records to the work frame.
+    pub(super) to_work: Frame,
+    /// Whether that is no change at all; spares the product on the fast path.
+    pub(super) identity: bool,
+    /// The first `MSYS` (or axis system of CATIA): the frame all others are relative to.
+    first: Option<Frame>,
+    /// Of `ORIGIN`, in the coordinates of the file.
+    origin: Vec3,
+    /// Of `TRANS`, in the coordinates of the file.
+    shift: Vec3,
+    /// The frame of the set-up, without origin and shift.
+    base: Frame,
+    /// Orientation that was last told to the writers.
+    told: Mat3,
+    /// `TRNTYP/WORLD` was given: coordinates are in the world whatever `CSYS` says.
+    world: bool,
+    /// Origin of the first `CSYS`.
+    csys_origin: Option<Vec3>,
+    /// Rows of an axis system of CATIA that is being read, and where it began.
+    rows: Option<(u32, Vec<[f64; 4]>)>,
+}
+
+impl Setup {
+    /// The work frame itself.
+    pub(super) fn new() -> Setup {
+        Setup {
+            to_work: Frame::IDENTITY,
+            identity: true,
+            first: None,
+            origin: Vec3::ZERO,
+            shift: Vec3::ZERO,
+            base: Frame::IDENTITY,
+            told: Mat3::IDENTITY,
+            world: false,
+            csys_origin: None,
+            rows: None,
+        }
+    }
+}
+
+/// The frame with these axes and origin, its axes made exactly perpendicular.
+fn frame(origin: Vec3, x: Vec3, y: Vec3) -> Result<Frame, Box<Fault>> {
+    let skew = || {
+        Fault::new("frame", "the axes of this frame are not perpendicular unit vectors")
+            .help("give x and y axes of length 1 at a right angle")
+    };
+    let unit = |v: Vec3| (v.length() - 1.0).abs() <= SKEW;
+    if !(unit(x) && unit(y) && x.dot(y).abs() <= SKEW) {
+        return Err(skew());
+    }
+    let x = direction(x).ok_or_else(skew)?;
+    let z = direction(x.cross(y)).ok_or_else(skew)?;
+    Ok(Frame::from_mat3_translation(Mat3::from_cols(x, z.cross(x), z), origin))
+}
+
+/// The frame of a matrix given in rows of three axis components and one of the origin.
+fn frame_of_rows(rows: &[[f64; 4]]) -> Result<Frame, Box<Fault>> {
+    let [a, b, c] = rows else {
+        return Err(Fault::new("frame", "this frame has not three rows"));
+    };
+    let column = |i: usize| Vec3::new(a[i], b[i], c[i]);
+    let frame = frame(column(3), column(0), column(1))?;
+    if frame.matrix3.z_axis.distance(column(2)) > 2.0 * SKEW {
+        return Err(Fault::new("frame", "the axes of this frame are not right-handed"));
+    }
+    Ok(frame)
+}
+
+impl Reader {
+    /// `UNITS/MM`, `UNITS/INCHES`, `UNIT/MM`, `UNIT/IN`.
+    pub(super) fn units(&mut self, record: &Record) -> Outcome {
+        record.count(&[1], "UNITS/MM or UNITS/INCHES")?;
+        let mm = ["MM", "MMS", "MILLIMETER", "MILLIMETERS", "METRIC"];
+        let inch = ["IN", "INCH", "INCHES"];
+        self.unit = match () {
+            () if mm.iter().any(|word| record.is(0, word)) => 1.0,
+            () if inch.iter().any(|word| record.is(0, word)) => INCH,
+            () => {
+                return Err(Fault::new("unknown-unit", "this unit is not known")
+                    .help("units are MM and INCHES")
+                    .fields(0, 1));
+            }
+        };
+        self.unit_known = true;
+        Ok(())
+    }
+
+    /// `value` in the unit of the file as mm.
+    ///
+    /// # Errors
+    /// `out-of-range` beyond [`FARTHEST`] or where it is no number.
+    pub(super) fn length(&self, value: f64) -> Result<f64, Box<Fault>> {
+        let mm = value * self.unit;
+        if mm.abs() <= FARTHEST {
+            return Ok(mm);
+        }
+        let message = format!("{value:e} is farther than {FARTHEST} mm");
+        Err(Fault::new("out-of-range", message))
+    }
+
+    /// Three values from field `first` on as a point or shift in mm.
+    pub(super) fn point(&self, record: &Record, first: usize) -> Result<Vec3, Box<Fault>> {
+        let mut point = record.numbers::<3>(first)?;
+        for (i, value) in point.iter_mut().enumerate() {
+            *value = self.length(*value).map_err(|fault| fault.fields(first + i, 1))?;
+        }
+        Ok(Vec3::from_array(point))
+    }
+
+    /// Takes `base` as the frame of the records that follow and turns the tool axis to its Z.
+    fn set_up(&mut self, line: u32, base: Frame) {
+        self.setup.base = base;
+        self.reframe();
+        self.axis = base.matrix3.z_axis;
+        self.tell(line, base);
+    }
+
+    /// Tells the writers of the plane of work, where its orientation changed.
+    fn tell(&mut self, line: u32, frame: Frame) {
+        if !frame.matrix3.abs_diff_eq(self.setup.told, 1e-9) {
+            self.setup.told = frame.matrix3;
+            self.push(line, Op::Frame(Box::new(frame)));
+        }
+    }
+
+    /// Works out where coordinates stand after a change.
+    fn reframe(&mut self) {
+        let shift = Frame::from_translation(self.setup.shift - self.setup.origin);
+        self.setup.to_work = self.setup.base * shift;
+        self.setup.identity = self.setup.to_work == Frame::IDENTITY;
+    }
+
+    /// `MSYS/ox,oy,oz,xx,xy,xz,yx,yy,yz`: the coordinate system of a Siemens NX operation.
+    pub(super) fn msys(&mut self, record: &Record) -> Outcome {
+        record.count(&[9], "MSYS/ox,oy,oz,xx,xy,xz,yx,yy,yz")?;
+        let x = Vec3::from_array(record.numbers(3)?);
+        let y = Vec3::from_array(record.numbers(6)?);
+        let frame = frame(self.point(record, 0)?, x, y).map_err(|fault| fault.fields(3, 6))?;
+        self.relative_set_up(record.line, frame);
+        Ok(())
+    }
+
+    /// A frame given in the part's coordinates: the first is the work frame, others follow from it.
+    fn relative_set_up(&mut self, line: u32, frame: Frame) {
+        // What moved before any frame was given stands in the part's coordinates.
+        let moved = self.point.is_some();
+        let first = *self.setup.first.get_or_insert(if moved { Frame::IDENTITY } else { frame });
+        let base = if first == frame { Frame::IDENTITY } else { first.inverse() * frame };
+        self.set_up(line, base);
+    }
+
+    /// `TRNTYP/WORLD,0,0,0`: the coordinates stay in the world, whatever `CSYS` says.
+    pub(super) fn trntyp(&mut self, record: &Record) -> Outcome {
+        record.count(&[1, 4], "TRNTYP/WORLD,0,0,0")?;
+        if !record.is(0, "WORLD") {
+            return Err(Fault::new("frame", "only TRNTYP/WORLD is known").fields(0, 1));
+        }
+        if record.fields.len() == 4 && record.numbers::<3>(1)? != [0.0; 3] {
+            return Err(Fault::new("frame", "a shift of the world is not known").fields(1, 3));
+        }
+        self.setup.world = true;
+        Ok(())
+    }
+
+    /// `CSYS/xx,yx,zx,ox,xy,yy,zy,oy,xz,yz,zz,oz`: the set-up of a SolidWorks CAM operation. Points
+    /// and vectors are in the world already; the set-up tells the plane of work.
+    pub(super) fn csys(&mut self, record: &Record) -> Outcome {
+        record.count(&[12], "CSYS/ and three rows of four values")?;
+        let values = record.numbers::<12>(0)?;
+        let rows: Vec<[f64; 4]> =
+            values.chunks_exact(4).map(|r| [r[0], r[1], r[2], r[3]]).collect();
+        let frame = frame_of_rows(&rows).map_err(|fault| fault.fields(0, 12))?;
+        if !self.setup.world && frame.matrix3 != Mat3::IDENTITY {
+            let message = "without TRNTYP/WORLD it is not known where the coordinates stand";
+            return Err(Fault::new("frame", message));
+        }
+        let origin = *self.setup.csys_origin.get_or_insert(frame.translation);
+        if origin.distance(frame.translation) > 1e-6 {
+            let message = "this set-up has another origin than the first, and whether the \
+                           coordinates move with it is not known";
+            return Err(Fault::new("frame", message)
+                .help("post the set-ups one by one, or give them one origin"));
+        }
+        self.axis = frame.matrix3.z_axis;
+        self.tell(record.line, Frame::from_mat3(frame.matrix3));
+        Ok(())
+    }
+
+    /// `ORIGIN/x,y,z`: this point of the part is the zero of the coordinates that leave.
+    pub(super) fn origin(&mut self, record: &Record) -> Outcome {
+        let count = record.count(&[3, 9], "ORIGIN/x,y,z")?;
+        if count == 9 {
+            let [xx, xy, xz, zx, zy, zz] = record.numbers(3)?;
+            let (x, z) = (Vec3::new(xx, xy, xz), Vec3::new(zx, zy, zz));
+            let frame =
+                frame(self.point(record, 0)?, x, z.cross(x)).map_err(|fault| fault.fields(3, 6))?;
+            self.relative_set_up(record.line, frame);
+            return Ok(());
+        }
+        self.setup.origin = self.point(record, 0)?;
+        self.reframe();
+        Ok(())
+    }
+
+    /// `TRANS/x,y,z`: adds to the coordinates that follow.
+    pub(super) fn trans(&mut self, record: &Record) -> Outcome {
+        record.count(&[3], "TRANS/x,y,z")?;
+        self.setup.shift = self.point(record, 0)?;
+        self.reframe();
+        Ok(())
+    }
+
+    /// `ROTATE/...`: a rotary axis sent to an angle. Only no rotation at all can be resolved: for any
+    /// other the file does not say whether the coordinates turn with the table.
+    pub(super) fn rotate(&mut self, record: &Record) -> Outcome {
+        let angles = record.fields.iter().filter_map(|field| match field {
+            super::record::Field::Number(angle) => Some(*angle),
+            _ => None,
+        });
+        let angles: Vec<f64> = angles.collect();
+        if angles == [0.0] {
+            return Ok(());
+        }
+        let message = "ROTATE turns a rotary axis, and the file does not say what that does to the \
+                       coordinates after it";
+        Err(Fault::new("unsupported", message)
+            .help("let the CAM system write tool-axis vectors (multi-axis output)"))
+    }
+
+    /// `MULTAX/ON`, `MULTAX/OFF`. Without multi-axis output the tool stands along Z.
+    pub(super) fn multax(&mut self, record: &Record) -> Outcome {
+        record.count(&[0, 1], "MULTAX/ON or MULTAX/OFF")?;
+        match () {
+            () if record.fields.is_empty() || record.is(0, "ON") => Ok(()),
+            () if record.is(0, "OFF") => {
+                self.axis = self.setup.to_work.matrix3.z_axis;
+                Ok(())
+            }
+            () => Err(Fault::new("malformed", "MULTAX is ON or OFF").fields(0, 1)),
+        }
+    }
+
+    /// `TLAXIS/i,j,k`: the tool axis from here on.
+    pub(super) fn tlaxis(&mut self, record: &Record) -> Outcome {
+        record.count(&[3], "TLAXIS/i,j,k")?;
+        let axis = Vec3::from_array(record.numbers(0)?);
+        self.axis = self.work_axis(axis).map_err(|fault| fault.fields(0, 3))?;
+        Ok(())
+    }
+
+    /// An axis of the file as a unit vector of the work frame.
+    #[inline]
+    pub(super) fn work_axis(&self, axis: Vec3) -> Result<Vec3, Box<Fault>> {
+        let Some(axis) = direction(axis) else { return Err(no_direction()) };
+        Ok(if self.setup.identity { axis } else { self.setup.to_work.transform_vector3(axis) })
+    }
+
+    /// Reads the remarks `$$*CATIA0`, a name, and three rows of a matrix: the axis system in which
+    /// CATIA gives the coordinates that follow. Whether this remark was part of one.
+    pub(super) fn axis_system(&mut self, record: &Record, text: &str) -> Result<bool, Box<Fault>> {
+        if text == "*CATIA0" {
+            self.setup.rows = Some((record.line, Vec::with_capacity(3)));
+            return Ok(true);
+        }
+        let Some((_, rows)) = &mut self.setup.rows else { return Ok(false) };
+        let values: Vec<f64> =
+            text.split_ascii_whitespace().map_while(|v| v.parse().ok()).collect();
+        match values[..] {
+            [a, b, c, d] if d.abs() <= FARTHEST / INCH => rows.push([a, b, c, d]),
+            // The name of the axis system.
+            _ if rows.is_empty() => return Ok(true),
+            _ => {
+                self.setup.rows = None;
+                return Err(Fault::new("frame", "this axis system of CATIA has not three rows"));
+            }
+        }
+        if rows.len() == 3 {
+            let mut frame = frame_of_rows(rows)?;
+            self.setup.rows = None;
+            frame.translation *= self.unit;
+            if self.dialect == Dialect::Catia {
+                self.relative_set_up(record.line, frame);
+            }
+        }
+        Ok(true)
+    }
+}
+
+/// The fault of a tool axis or arc axis without a direction.
+#[cold]
+pub(super) fn no_direction() -> Box<Fault> {
+    Fault::new("zero-vector", "this vector has no direction")
+        .help("give the direction of the tool axis, not zero")
+}

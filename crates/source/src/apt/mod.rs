@@ -1,0 +1,288 @@
+//! Cutter-location data in text form (APT, ISO 4343), of any CAM system.
+//!
+//! [`read`] takes the bytes of a file and gives a [`Program`] whose poses are all in the work frame
+//! and in mm: inches, frames, relative motion, surface speeds and modal words are resolved. The CAM
+//! system is told by what is in the file ([`Dialect`]); nothing has to be set.
+//!
+//! What cannot be resolved is an error with file, line and column, never a guess and never left out
+//! silently. What is known not to matter for the program is ignored; what is not known is a warning,
+//! one a word. The records and the sources of their meaning are in `docs/sources/apt.md`.
+//!
+//! From bytes to program: `record` finds lines and fields, `table` the handler of each major word,
+//! and the handlers are in `motion`, `arc`, `cycle`, `frame`, `technology` and `text`.
+
+mod arc;
+mod cycle;
+mod dialect;
+mod frame;
+mod motion;
+mod number;
+mod record;
+mod report;
+mod table;
+mod technology;
+mod text;
+
+pub use dialect::Dialect;
+
+use cycle::ActiveCycle;
+use frame::Setup;
+use geom::Vec3;
+use motion::Next;
+use program::{Compensation, Diagnostic, Feed, Op, Pose, Program, Record as Step, Spindle, Tool};
+use record::{Joiner, Line, Lines, is_blank};
+use report::Report;
+use technology::FeedUnit;
+
+/// How to read.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Options {
+    /// Warnings are errors.
+    pub strict: bool,
+}
+
+/// What a file says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reading {
+    /// Its program.
+    pub program: Program,
+    /// What the reader did not pass on or had to assume, one for each cause.
+    pub warnings: Vec<Diagnostic>,
+    /// The CAM system that wrote it.
+    pub dialect: Dialect,
+}
+
+/// Reads cutter-location data. `file_name` is for the messages, and names the program where the file
+/// does not.
+///
+/// Time and memory are linear in `text`; a move takes at most 72 bytes.
+///
+/// # Errors
+/// Every error found, at most twenty, in the order of their lines. There is no partial program.
+pub fn read(file_name: &str, text: &[u8], options: &Options) -> Result<Reading, Vec<Diagnostic>> {
+    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+    let mut reader = Reader::new(file_name, text, options);
+    if text.starts_with(b"\xff\xfe") || text.starts_with(b"\xfe\xff") {
+        let error = Diagnostic::error("encoding", "this file is in UTF-16");
+        reader.report.error(error.help("save it as plain text (ASCII, Latin-1 or UTF-8)").line(1));
+        return Err(reader.report.errors);
+    }
+    let mut joiner = Joiner::default();
+    let mut lines = Lines::of(text);
+    let mut last = Line { number: 0, text: b"" };
+    while let Some(line) = lines.next() {
+        if reader.obey_plain_goto(line.number, line.text) {
+            continue;
+        }
+        if line.text.len() <= record::LONGEST && line.text.iter().all(|c| is_blank(*c)) {
+            continue;
+        }
+        last = line;
+        match joiner.record(line, &mut lines, &table::Words) {
+            Ok(record) => {
+                if let Err(fault) = reader.obey(&record) {
+                    reader.report.fault(&record, *fault);
+                }
+            }
+            Err(error) => reader.report.error(*error),
+        }
+        if reader.hopeless || reader.report.is_full() {
+            break;
+        }
+    }
+    reader.finish(last)
+}
+
+/// How far what a motion needs has been settled since the last record that could change it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Ready {
+    /// Not at all.
+    No,
+    /// For a rapid.
+    Rapid,
+    /// For a cut.
+    Cut,
+}
+
+/// What has been read, and what holds.
+struct Reader {
+    report: Report,
+    program: Program,
+    dialect: Dialect,
+    /// mm in a unit of the file.
+    unit: f64,
+    /// Whether the file has said so, or the lack has been reported.
+    unit_known: bool,
+    setup: Setup,
+    /// The last point of the data, work frame; missing values and relative motion count from it.
+    point: Option<Vec3>,
+    /// Where the tool is; above the point after a hole.
+    tip: Option<Pose>,
+    /// The tool axis, work frame.
+    axis: Vec3,
+    /// `FROM`, until the first motion.
+    from: Option<(u32, Pose)>,
+    next: Next,
+    /// Line of the `CIRCLE` that waits for its `GOTO`.
+    circle_at: u32,
+    /// `INDIRV`, work frame.
+    towards: Option<Vec3>,
+    /// Where the arc of the last record starts, where that record made one.
+    last_arc: Option<Vec3>,
+    /// Whether the last record was a `GOTO`, which lines of coordinates may continue.
+    inside_goto: bool,
+    /// Whether there is an arc of a `CIRCLE`, whose direction is a habit.
+    circles: bool,
+    feed: Option<Feed>,
+    feed_unit: FeedUnit,
+    spindle: Spindle,
+    /// The last that turned, for `SPINDL/ON`.
+    last_spindle: Option<Spindle>,
+    /// The last side, for `CUTCOM/ON`.
+    last_side: Option<Compensation>,
+    /// The tool in the spindle; number 0 for none.
+    tool: Tool,
+    /// Its record, until the first motion with it.
+    tool_record: Option<usize>,
+    /// What is said of the tool to come.
+    next_tool: Tool,
+    /// Line that says it.
+    next_line: u32,
+    /// Point angle of the tool, degrees.
+    point_angle: Option<f64>,
+    /// Number of records right after a comment that may turn out to be the name of a tool.
+    inserted: Option<usize>,
+    cycle: Option<ActiveCycle>,
+    /// For `CYCLE/ON`.
+    last_cycle: Option<ActiveCycle>,
+    /// Open `TOOL PATH`, with its line.
+    operation: Option<(u32, Box<str>)>,
+    /// Open sections of a Makino file, with their lines.
+    sections: Vec<(u32, Box<str>)>,
+    ready: Ready,
+    /// A cut with a standing spindle, or without a feed, has been reported.
+    stands: bool,
+    no_feed: bool,
+    ended: bool,
+    /// Some record was cutter-location data.
+    known: bool,
+    /// The file is something else.
+    hopeless: bool,
+}
+
+impl Reader {
+    fn new(file_name: &str, text: &[u8], options: &Options) -> Reader {
+        let stem = file_name.rsplit(['/', '\\']).next().unwrap_or(file_name);
+        let stem = stem.rsplit_once('.').map_or(stem, |(stem, _)| stem);
+        Reader {
+            report: Report::new(file_name, options.strict),
+            program: Program::new(stem),
+            dialect: Dialect::of(text),
+            unit: 1.0,
+            unit_known: false,
+            setup: Setup::new(),
+            point: None,
+            tip: None,
+            axis: Vec3::Z,
+            from: None,
+            next: Next::Line,
+            circle_at: 0,
+            towards: None,
+            last_arc: None,
+            inside_goto: false,
+            circles: false,
+            feed: None,
+            feed_unit: FeedUnit::PerMinute,
+            spindle: Spindle::Off,
+            last_spindle: None,
+            last_side: None,
+            tool: Tool::default(),
+            tool_record: None,
+            next_tool: Tool::default(),
+            next_line: 0,
+            point_angle: None,
+            inserted: None,
+            cycle: None,
+            last_cycle: None,
+            operation: None,
+            sections: Vec::new(),
+            ready: Ready::No,
+            stands: false,
+            no_feed: false,
+            ended: false,
+            known: false,
+            hopeless: false,
+        }
+    }
+
+    #[inline]
+    fn push(&mut self, line: u32, op: Op) {
+        self.program.records.push(Step { line, op });
+    }
+
+    /// What can only be said at the end; `last` is the last line that was read.
+    fn finish(mut self, last: Line) -> Result<Reading, Vec<Diagnostic>> {
+        if self.report.errors.is_empty() {
+            self.judge_the_end(last);
+            self.judge_the_arcs();
+        }
+        if self.report.errors.is_empty() {
+            let Reader { program, report, dialect, .. } = self;
+            return Ok(Reading { program, warnings: report.warnings, dialect });
+        }
+        Err(self.report.errors)
+    }
+
+    /// Whether the file ends as one of its kind does.
+    fn judge_the_end(&mut self, last: Line) {
+        let place = |d: Diagnostic| match last.number {
+            0 => d,
+            number => d.at(number, last.text, 0, last.text.len()),
+        };
+        if !self.known {
+            let what = if last.number == 0 { "the file is empty" } else { "no record is known" };
+            let help = "cutter-location data (APT, .cls, .apt, .ncl) is expected";
+            return self.report.error(Diagnostic::error("not-cldata", what).help(help));
+        }
+        if let Err(fault) = self.no_pending_circle() {
+            let record = record::Record::whole(last);
+            return self.report.fault(&record, *fault);
+        }
+        if self.point.is_none() {
+            return self.report.error(Diagnostic::error("no-motion", "nothing moves in this file"));
+        }
+        let open = self.operation.take().or_else(|| self.sections.pop());
+        if let Some((line, name)) = open {
+            let message = format!("the file ends within {name}, which line {line} begins");
+            let error = Diagnostic::error("truncated", message);
+            return self.report.error(place(error.help("the file is cut off: write it again")));
+        }
+        match self.dialect {
+            _ if self.ended => {}
+            Dialect::SolidWorksCam => {
+                let error = Diagnostic::error("truncated", "the file ends without FINI");
+                self.report.error(place(error.help("the file is cut off: write it again")));
+            }
+            // These close what they open instead.
+            Dialect::Nx | Dialect::Makino => self.push(last.number, Op::End),
+            Dialect::Iso | Dialect::Catia | Dialect::Creo => {
+                let warning = Diagnostic::warning("no-fini", "the file ends without FINI");
+                let help = "check that it is not cut off";
+                self.report.warning(place(warning.help(help)));
+                self.push(last.number, Op::End);
+            }
+        }
+    }
+
+    /// Whether the arcs turn the way the path says.
+    fn judge_the_arcs(&mut self) {
+        if !self.circles {
+            return;
+        }
+        match arc::judge(&self.program, self.dialect) {
+            Some(finding) if finding.is_error() => self.report.error(finding),
+            Some(finding) => self.report.warning(finding),
+            None => {}
+        }
+    }
+}

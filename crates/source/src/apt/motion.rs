@@ -1,0 +1,318 @@
+//! Records that move the tool.
+
+use super::arc::Circle;
+use super::frame::FARTHEST;
+use super::number;
+use super::record::{Field, Record, is_blank};
+use super::report::{Fault, Outcome};
+use super::{Reader, Ready};
+use geom::Vec3;
+use program::{Feed, Op, Pose, Spindle};
+
+/// How the next `GOTO` goes.
+#[derive(Clone, Debug, Default)]
+pub(super) enum Next {
+    /// Straight, at the active feed.
+    #[default]
+    Line,
+    /// By rapid.
+    Rapid,
+    /// Along a circle.
+    Arc(Box<Circle>),
+}
+
+/// The values of a `GOTO` line in its plain shape, read without taking the record apart: three or six
+/// numbers and nothing else.
+#[inline]
+pub(super) fn plain_goto(text: &[u8]) -> Option<([f64; 6], bool)> {
+    let mut rest = text.strip_prefix(b"GOTO")?;
+    if rest.first() != Some(&b'/') {
+        let slash = rest.iter().position(|c| *c != b' ')?;
+        rest = rest.get(slash..)?;
+    }
+    rest = rest.strip_prefix(b"/")?;
+    let mut values = [0.0; 6];
+    let mut count = 0;
+    loop {
+        while let [b' ', after @ ..] = rest {
+            rest = after;
+        }
+        let (value, length) = number::leading(rest)?;
+        *values.get_mut(count)? = value;
+        count += 1;
+        rest = rest.get(length..)?;
+        match rest {
+            [b',', after @ ..] => rest = after,
+            [] => break,
+            _ if rest.iter().all(|c| is_blank(*c)) => break,
+            // A blank before the comma, a remark, a continuation: the long way reads them.
+            _ => return None,
+        }
+    }
+    matches!(count, 3 | 6).then_some((values, count == 6))
+}
+
+impl Reader {
+    /// A plain `GOTO` line where nothing else is going on. Whether it was one, and was obeyed; if not,
+    /// nothing has changed.
+    #[inline]
+    pub(super) fn obey_plain_goto(&mut self, line: u32, text: &[u8]) -> bool {
+        if self.cycle.is_some() || self.ready != Ready::Cut {
+            return false;
+        }
+        let rapid = match self.next {
+            Next::Line => false,
+            Next::Rapid => true,
+            Next::Arc(_) => return false,
+        };
+        let Some((values, with_axis)) = plain_goto(text) else { return false };
+        let [x, y, z, i, j, k] = values;
+        let mut point = Vec3::new(x, y, z) * self.unit;
+        if point.abs().max_element() > FARTHEST {
+            return false;
+        }
+        let mut axis = self.axis;
+        if with_axis {
+            match self.work_axis(Vec3::new(i, j, k)) {
+                Ok(given) => axis = given,
+                Err(_) => return false,
+            }
+        }
+        if !self.setup.identity {
+            point = self.setup.to_work.transform_point3(point);
+        }
+        self.axis = axis;
+        self.next = Next::Line;
+        self.inside_goto = true;
+        self.last_arc = None;
+        let pose = Pose::new(point, axis);
+        self.arrive(pose);
+        self.push(line, if rapid { Op::Rapid(pose) } else { Op::Line(pose) });
+        true
+    }
+
+    /// `GOTO/x,y,z`, `GOTO/x,y,z,i,j,k`: a value left out stays.
+    pub(super) fn goto(&mut self, record: &Record) -> Outcome {
+        self.goto_from(record, 0)
+    }
+
+    /// A `GOTO` whose values begin at field `first`.
+    pub(super) fn goto_from(&mut self, record: &Record, first: usize) -> Outcome {
+        self.inside_goto = true;
+        let count = record.fields.len() - first.min(record.fields.len());
+        if count != 3 && count != 6 {
+            let message = format!("{count} values where a point takes 3, or 6 with the tool axis");
+            return Err(Fault::new("malformed", message)
+                .help("write GOTO/x,y,z or GOTO/x,y,z,i,j,k")
+                .fields(first, count));
+        }
+        let point = self.given_point(record, first)?;
+        if count == 6 {
+            let axis = Vec3::from_array(record.numbers(first + 3)?);
+            self.axis = self.work_axis(axis).map_err(|fault| fault.fields(first + 3, 3))?;
+        }
+        self.go(record, Pose::new(point, self.axis)).map_err(|fault| fault.fields(first, count))
+    }
+
+    /// The point at field `first`, in the work frame; a blank keeps the last value.
+    fn given_point(&self, record: &Record, first: usize) -> Result<Vec3, Box<Fault>> {
+        let last = self.point.map(|p| self.setup.to_work.inverse().transform_point3(p));
+        let mut point = [0.0; 3];
+        for (i, value) in point.iter_mut().enumerate() {
+            *value = match (record.fields.get(first + i), last) {
+                (Some(Field::Blank), Some(last)) => last[i],
+                (Some(Field::Blank), None) => {
+                    return Err(Fault::new("malformed", "no earlier point has this value to keep")
+                        .fields(first + i, 1));
+                }
+                _ => {
+                    let value = record.number(first + i, "a coordinate")?;
+                    self.length(value).map_err(|fault| fault.fields(first + i, 1))?
+                }
+            };
+        }
+        Ok(self.setup.to_work.transform_point3(Vec3::from_array(point)))
+    }
+
+    /// Goes to `pose` the way the records before have asked for.
+    fn go(&mut self, record: &Record, pose: Pose) -> Outcome {
+        match std::mem::take(&mut self.next) {
+            Next::Arc(circle) => self.arc(record, &circle, pose),
+            Next::Rapid => {
+                self.prepare(record, false)?;
+                self.push(record.line, Op::Rapid(pose));
+                self.arrive(pose);
+                Ok(())
+            }
+            Next::Line if self.cycle.is_some() => {
+                self.prepare(record, true)?;
+                self.hole(record, pose)
+            }
+            Next::Line => {
+                self.prepare(record, true)?;
+                self.push(record.line, Op::Line(pose));
+                self.arrive(pose);
+                Ok(())
+            }
+        }
+    }
+
+    /// The tool is at `pose` now.
+    #[inline]
+    pub(super) fn arrive(&mut self, pose: Pose) {
+        self.point = Some(pose.point);
+        self.tip = Some(pose);
+    }
+
+    /// What has to be settled before the tool moves; with `cut`, in the part.
+    pub(super) fn prepare(&mut self, record: &Record, cut: bool) -> Outcome {
+        if self.ready == Ready::Cut || (self.ready == Ready::Rapid && !cut) {
+            return Ok(());
+        }
+        if !self.unit_known {
+            self.unit_known = true;
+            let help = "add UNITS/MM, or UNITS/INCHES where that is meant";
+            let message = "the file does not say its unit: read as mm";
+            self.report.warn(record, "unknown-unit", message, help);
+        }
+        self.settle_tool(record)?;
+        if let Some((line, pose)) = self.from.take()
+            && cut
+        {
+            let message = "the first motion from FROM is a cut: a rapid to FROM goes before it";
+            self.report.warn(record, "from", message, "check that the way there is free");
+            self.push(line, Op::Rapid(pose));
+        }
+        self.ready = Ready::Rapid;
+        if !cut {
+            return Ok(());
+        }
+        let stands = self.spindle == Spindle::Off;
+        let no_feed = match self.cycle.as_ref().and_then(|cycle| cycle.feed()).or(self.feed) {
+            Some(Feed::PerMinute(f) | Feed::PerTurn(f) | Feed::InverseTime(f)) => f <= 0.0,
+            None => true,
+        };
+        self.ready = Ready::Cut;
+        if stands && !std::mem::replace(&mut self.stands, true) {
+            return Err(Fault::new("spindle-off", "the tool cuts here, but the spindle stands")
+                .help("add SPINDL/speed,RPM,CLW before it"));
+        }
+        if no_feed && !std::mem::replace(&mut self.no_feed, true) {
+            return Err(Fault::new("no-feed", "the tool cuts here without a feed")
+                .help("add FEDRAT/value,MMPM before it"));
+        }
+        Ok(())
+    }
+
+    /// Makes sure that a tool is in the spindle, and that it is the one the operation names.
+    fn settle_tool(&mut self, record: &Record) -> Outcome {
+        if self.tool.number == 0 {
+            let mut tool = std::mem::take(&mut self.next_tool);
+            tool.number = 1;
+            let line = if self.next_line > 0 { self.next_line } else { record.line };
+            let message = "the file loads no tool: the tool is taken as number 1";
+            let help = "add LOAD/TOOL,n before the first motion";
+            self.report.warn(record, "tool-number", message, help);
+            self.change_tool(line, tool);
+        }
+        self.tool_record = None;
+        let wanted = std::mem::take(&mut self.next_tool.name);
+        if self.operation.is_some()
+            && ![&self.tool.name, ""].contains(&wanted.as_str())
+            && !self.tool.name.is_empty()
+        {
+            let message = format!(
+                "this operation is for tool {wanted}, but {} is in the spindle",
+                self.tool.name
+            );
+            return Err(Fault::new("tool-change", message)
+                .help("add LOAD/TOOL,n at the start of the operation"));
+        }
+        Ok(())
+    }
+
+    /// `FROM/x,y,z`, `FROM/x,y,z,i,j,k`: where the tool is. It is no motion.
+    pub(super) fn from(&mut self, record: &Record) -> Outcome {
+        let count = record.count(&[3, 6], "FROM/x,y,z or FROM/x,y,z,i,j,k")?;
+        let point = self.given_point(record, 0)?;
+        if count == 6 {
+            let axis = Vec3::from_array(record.numbers(3)?);
+            self.axis = self.work_axis(axis).map_err(|fault| fault.fields(3, 3))?;
+        }
+        let pose = Pose::new(point, self.axis);
+        self.arrive(pose);
+        self.from = Some((record.line, pose));
+        self.ready = Ready::No;
+        Ok(())
+    }
+
+    /// `GODLTA/dx,dy,dz`, `GODLTA/dx,dy,dz,i,j,k`, `GODLTA/d` along the tool axis: relative motion.
+    pub(super) fn godlta(&mut self, record: &Record) -> Outcome {
+        let count = record.count(&[1, 3, 6], "GODLTA/dx,dy,dz or GODLTA/d")?;
+        let Some(last) = self.point else {
+            return Err(Fault::new("no-start", "a relative motion, but from nowhere")
+                .help("add FROM/x,y,z or an absolute GOTO before it"));
+        };
+        let step = if count == 1 {
+            let along = record.number(0, "a distance")?;
+            self.axis * self.length(along).map_err(|fault| fault.fields(0, 1))?
+        } else {
+            self.setup.to_work.transform_vector3(self.point(record, 0)?)
+        };
+        if count == 6 {
+            let axis = Vec3::from_array(record.numbers(3)?);
+            self.axis = self.work_axis(axis).map_err(|fault| fault.fields(3, 3))?;
+        }
+        let to = last + step;
+        if to.abs().max_element() > FARTHEST {
+            return Err(Fault::new("out-of-range", "this leads beyond the farthest point"));
+        }
+        self.go(record, Pose::new(to, self.axis))
+    }
+
+    /// `RAPID`: the next motion is one.
+    pub(super) fn rapid(&mut self, record: &Record) -> Outcome {
+        self.no_pending_circle()?;
+        record.count(&[0], "RAPID")?;
+        self.next = Next::Rapid;
+        Ok(())
+    }
+
+    /// `x,y,z` alone on a line: a further point of the `GOTO` before it, as Creo lists the points of
+    /// an arc.
+    pub(super) fn further_point(&mut self, record: &Record) -> Outcome {
+        if !self.inside_goto {
+            return Err(Fault::new("malformed", "a line of numbers, but no GOTO before it"));
+        }
+        if self.lengthen_arc(record)? { Ok(()) } else { self.goto(record) }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_plain_goto_is_three_or_six_numbers_and_nothing_else() {
+        let three = Some(([1.0, -2.5, 0.25, 0.0, 0.0, 0.0], false));
+        let six = Some(([1.0, 2.0, 3.0, 0.0, 0.5, -1.0], true));
+        assert_eq!(plain_goto(b"GOTO/1,-2.5,.25"), three);
+        assert_eq!(plain_goto(b"GOTO / 1.0, -2.5, .25  "), three);
+        assert_eq!(plain_goto(b"GOTO/1,2,3,0,.5,-1."), six);
+        for text in [
+            "GOTO/1,2",
+            "GOTO/1,2,3,4",
+            "GOTO/1,,3",
+            "GOTO/1,2,3,0,0,1,2",
+            "GOTO/1,2,3$",
+            "GOTO/1,2,3,$",
+            "GOTO/1,2,3 $$ remark",
+            "GOTO/1,2,x",
+            "GOTO 1,2,3",
+            "FROM/1,2,3",
+            "GOTO/1 2,3,4",
+        ] {
+            assert_eq!(plain_goto(text.as_bytes()), None, "{text}");
+        }
+    }
+}

@@ -1,0 +1,456 @@
+//! From bytes to records: lines, `$` continuation, major word and fields.
+//!
+//! A line ends with LF, CR LF or CR. A record is a line, and as many more as the `$` at their ends
+//! (or a comma at their ends) ask for. `$$` starts a remark. Blanks and control characters between
+//! the parts of a record mean nothing.
+
+use super::number;
+use super::report::Fault;
+use program::Diagnostic;
+
+/// The longest line and the longest joined record, bytes: a thousand times what any CAM system
+/// writes, and short enough that a file of one endless line costs no memory.
+pub(super) const LONGEST: usize = 1 << 16;
+
+/// A line of the file.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Line<'t> {
+    /// From 1.
+    pub(super) number: u32,
+    /// Without its end.
+    pub(super) text: &'t [u8],
+}
+
+/// The lines of a file, one after the other.
+#[derive(Clone, Debug)]
+pub(super) struct Lines<'t> {
+    rest: &'t [u8],
+    number: u32,
+}
+
+impl<'t> Lines<'t> {
+    /// The lines of `text`.
+    pub(super) fn of(text: &'t [u8]) -> Lines<'t> {
+        Lines { rest: text, number: 0 }
+    }
+}
+
+impl<'t> Iterator for Lines<'t> {
+    type Item = Line<'t>;
+
+    #[inline]
+    fn next(&mut self) -> Option<Line<'t>> {
+        if self.rest.is_empty() {
+            return None;
+        }
+        let end = memchr::memchr2(b'\n', b'\r', self.rest).unwrap_or(self.rest.len());
+        let (text, mut rest) = self.rest.split_at(end);
+        rest = match rest {
+            [b'\r', b'\n', rest @ ..] | [_, rest @ ..] => rest,
+            [] => rest,
+        };
+        self.rest = rest;
+        self.number = self.number.saturating_add(1);
+        Some(Line { number: self.number, text })
+    }
+}
+
+/// A field of a record: what stands between two commas.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Field {
+    /// A number.
+    Number(f64),
+    /// A word, at these bytes of the record.
+    Word(usize, usize),
+    /// Nothing.
+    Blank,
+}
+
+/// A record: its major word and the fields after it.
+pub(super) struct Record<'r> {
+    /// Line on which it starts.
+    pub(super) line: u32,
+    /// Its whole text, joined where it ran over several lines.
+    pub(super) text: &'r [u8],
+    /// The major word, in the case of the file.
+    pub(super) major: &'r [u8],
+    /// What follows the major word and its slash, as written; where it begins in `text`.
+    pub(super) body: (&'r [u8], usize),
+    /// The fields of the body; none where the record is text.
+    pub(super) fields: &'r [Field],
+    spans: &'r [(usize, usize)],
+    pieces: &'r [(usize, Line<'r>)],
+}
+
+impl<'r> Record<'r> {
+    /// `line` as a record that is not taken apart.
+    pub(super) fn whole(line: Line<'r>) -> Record<'r> {
+        let body = (line.text, 0);
+        let major = b"";
+        Record {
+            line: line.number,
+            text: line.text,
+            major,
+            body,
+            fields: &[],
+            spans: &[],
+            pieces: &[],
+        }
+    }
+
+    /// The word in field `index`, as written.
+    pub(super) fn word(&self, index: usize) -> Option<&'r [u8]> {
+        match self.fields.get(index)? {
+            Field::Word(from, to) => self.text.get(*from..*to),
+            _ => None,
+        }
+    }
+
+    /// Whether field `index` is the word `word` (capitals).
+    pub(super) fn is(&self, index: usize, word: &str) -> bool {
+        self.word(index).is_some_and(|w| w.eq_ignore_ascii_case(word.as_bytes()))
+    }
+
+    /// The number in field `index`.
+    ///
+    /// # Errors
+    /// `malformed` where there is none; `what` says what it should have been.
+    pub(super) fn number(&self, index: usize, what: &str) -> Result<f64, Box<Fault>> {
+        match self.fields.get(index) {
+            Some(Field::Number(value)) => Ok(*value),
+            _ => Err(Fault::new("malformed", format!("{what} is missing")).fields(index, 1)),
+        }
+    }
+
+    /// The fields from `first` on as numbers.
+    ///
+    /// # Errors
+    /// `malformed` where one is not a number.
+    pub(super) fn numbers<const N: usize>(&self, first: usize) -> Result<[f64; N], Box<Fault>> {
+        let mut values = [0.0; N];
+        for (i, value) in values.iter_mut().enumerate() {
+            *value = self.number(first + i, &format!("number {} of {N}", i + 1))?;
+        }
+        Ok(values)
+    }
+
+    /// How many fields there are; fails where it is none of `allowed`.
+    ///
+    /// # Errors
+    /// `malformed`, with `syntax` as the way out.
+    pub(super) fn count(&self, allowed: &[usize], syntax: &str) -> Result<usize, Box<Fault>> {
+        let count = self.fields.len();
+        if allowed.contains(&count) {
+            return Ok(count);
+        }
+        let message = format!("{count} values where this record takes {}", list(allowed));
+        Err(Fault::new("malformed", message).help(format!("write {syntax}")).fields(0, count))
+    }
+
+    /// `diagnostic` placed at `fields` (first and how many) of this record, or at the record as a whole.
+    pub(super) fn locate(
+        &self,
+        diagnostic: Diagnostic,
+        fields: Option<(usize, usize)>,
+    ) -> Diagnostic {
+        let end = self.text.len();
+        let (start, end) = match fields {
+            None => (0, end),
+            Some((first, count)) => {
+                let from = self.spans.get(first).map_or(end, |span| span.0);
+                let last = self.spans.len().min(first + count.max(1));
+                let to = self.spans.get(last.saturating_sub(1)).map_or(end, |span| span.1);
+                (from, to.max(from))
+            }
+        };
+        // The record may have been joined from several lines; the one on which the place begins is
+        // shown.
+        let piece = self.pieces.iter().rev().find(|(offset, _)| *offset <= start);
+        match piece.or(self.pieces.first()) {
+            Some((offset, line)) => {
+                let trimmed = line.text.trim_ascii_end().len();
+                let (start, end) = (start - offset.min(&start), end - offset.min(&end));
+                diagnostic.at(line.number, line.text, start.min(trimmed), end.min(trimmed))
+            }
+            None => diagnostic.line(self.line),
+        }
+    }
+}
+
+/// `3`, `3 or 6`, `1, 3 or 6`.
+fn list(counts: &[usize]) -> String {
+    let words: Vec<String> = counts.iter().map(usize::to_string).collect();
+    match words.split_last() {
+        Some((last, [])) => last.clone(),
+        Some((last, first)) => format!("{} or {last}", first.join(", ")),
+        None => String::new(),
+    }
+}
+
+/// Joins lines to records and takes them apart; its memory is used again for each.
+#[derive(Default)]
+pub(super) struct Joiner<'t> {
+    joined: Vec<u8>,
+    pieces: Vec<(usize, Line<'t>)>,
+    fields: Vec<Field>,
+    spans: Vec<(usize, usize)>,
+}
+
+/// How a record's words are told apart; the joiner asks it where the major word of a line ends.
+pub(super) trait Vocabulary {
+    /// Whether `word` is a major word, and whether what follows it is free text.
+    fn takes_text(&self, word: &[u8]) -> Option<bool>;
+}
+
+impl<'t> Joiner<'t> {
+    /// The record that starts on `first`; further lines are taken from `lines` as it asks for them.
+    ///
+    /// # Errors
+    /// `malformed`, `line-too-long`; the place is in the diagnostic.
+    pub(super) fn record<'r>(
+        &'r mut self,
+        first: Line<'t>,
+        lines: &mut Lines<'t>,
+        vocabulary: &impl Vocabulary,
+    ) -> Result<Record<'r>, Box<Diagnostic>>
+    where
+        't: 'r,
+    {
+        self.pieces.clear();
+        self.joined.clear();
+        self.fields.clear();
+        self.spans.clear();
+        too_long(first)?;
+        self.pieces.push((0, first));
+        let (major, body, is_text) = split_major(first.text, vocabulary);
+        let mut end = first.text.len();
+        let mut text = first.text;
+        if !is_text {
+            let (content, continued) = strip(first.text);
+            end = content;
+            if continued {
+                self.joined.extend_from_slice(&first.text[..content]);
+                self.join(first, lines)?;
+                end = self.joined.len();
+            }
+        }
+        if !self.joined.is_empty() {
+            text = &self.joined;
+        }
+        let text = text.get(..end).unwrap_or(text);
+        let mut record = Record {
+            line: first.number,
+            text,
+            major: text.get(major.0..major.1).unwrap_or_default(),
+            body: (text.get(body..).unwrap_or_default(), body),
+            fields: &[],
+            spans: &[],
+            pieces: &self.pieces,
+        };
+        if is_text {
+            return Ok(record);
+        }
+        let result = split_fields(text, body, &mut self.fields, &mut self.spans);
+        record.fields = &self.fields;
+        record.spans = &self.spans;
+        match result {
+            Ok(()) => Ok(record),
+            Err((from, to, message)) => {
+                record.spans = &[];
+                let spans = [(from, to)];
+                let record = Record { spans: &spans, ..record };
+                Err(Box::new(record.locate(Diagnostic::error("malformed", message), Some((0, 1)))))
+            }
+        }
+    }
+
+    /// Appends the continuation lines of the record that starts on `first`.
+    fn join(&mut self, first: Line<'t>, lines: &mut Lines<'t>) -> Result<(), Box<Diagnostic>> {
+        loop {
+            let Some(next) = lines.next() else {
+                let end = first.text.len();
+                let error = Diagnostic::error("truncated", "the file ends inside this record")
+                    .help("the file is cut off: write it again")
+                    .at(first.number, first.text, 0, end);
+                return Err(Box::new(error));
+            };
+            too_long(next)?;
+            if self.joined.len() + next.text.len() > LONGEST {
+                return Err(Box::new(too_long_error(first)));
+            }
+            self.pieces.push((self.joined.len(), next));
+            let (content, continued) = strip(next.text);
+            self.joined.extend_from_slice(&next.text[..content]);
+            if !continued {
+                return Ok(());
+            }
+        }
+    }
+}
+
+fn too_long(line: Line) -> Result<(), Box<Diagnostic>> {
+    if line.text.len() <= LONGEST { Ok(()) } else { Err(Box::new(too_long_error(line))) }
+}
+
+#[cold]
+fn too_long_error(line: Line) -> Diagnostic {
+    Diagnostic::error("line-too-long", format!("a record of more than {LONGEST} bytes"))
+        .help("this is not cutter-location data in text form")
+        .at(line.number, line.text, 0, 1)
+}
+
+/// How many bytes of a line belong to its record, and whether the next line does too. A `$` at the end
+/// continues it, `$$` ends it; a comma at the end continues it too, as CATIA's records are printed.
+fn strip(text: &[u8]) -> (usize, bool) {
+    let end = memchr::memmem::find(text, b"$$").unwrap_or(text.len());
+    let content = trim_end(&text[..end]);
+    match text[..content].last() {
+        Some(b'$') => (content - 1, true),
+        Some(b',') => (content, true),
+        _ => (content, false),
+    }
+}
+
+/// Length of `text` without the blanks and control characters at its end.
+fn trim_end(text: &[u8]) -> usize {
+    text.iter().rposition(|c| !is_blank(*c)).map_or(0, |last| last + 1)
+}
+
+/// Blanks and control characters.
+pub(super) fn is_blank(c: u8) -> bool {
+    c <= b' ' || c == 0x7f
+}
+
+/// Where the major word of a line is, where its body starts, and whether the body is text.
+fn split_major(text: &[u8], vocabulary: &impl Vocabulary) -> ((usize, usize), usize, bool) {
+    let start = text.iter().position(|c| !is_blank(*c)).unwrap_or(text.len());
+    if text[start..].starts_with(b"$$") {
+        return ((start, start + 2), start + 2, true);
+    }
+    if matches!(text.get(start), Some(b'0'..=b'9' | b'-' | b'+' | b'.')) {
+        // A line of coordinates alone: further points of the record before.
+        return ((start, start), start, false);
+    }
+    let slash = memchr::memchr(b'/', text);
+    if let Some(slash) = slash {
+        let end = start.max(trim_end(&text[..slash]));
+        if let Some(is_text) = vocabulary.takes_text(&text[start..end]) {
+            return ((start, end), slash + 1, is_text);
+        }
+    }
+    // Words without a slash, and the old form of the text records: `PARTNO a name`.
+    let is_part = |c: &u8| c.is_ascii_alphanumeric() || matches!(c, b'-' | b'_' | b'.' | b'+');
+    let word = text[start..].iter().position(|c| !is_part(c)).map_or(text.len(), |n| start + n);
+    if let Some(is_text) = vocabulary.takes_text(&text[start..word])
+        && (is_text || slash.is_none())
+    {
+        return ((start, word), word, is_text);
+    }
+    match slash {
+        Some(slash) => ((start, start.max(trim_end(&text[..slash]))), slash + 1, false),
+        None => ((start, word.max(start)), word, false),
+    }
+}
+
+/// Takes `text` from `at` on apart. Commas part the fields; so do the slash after a word and
+/// parentheses, which set off a nested definition (`(CIRCLE/...)`).
+fn split_fields(
+    text: &[u8],
+    mut at: usize,
+    fields: &mut Vec<Field>,
+    spans: &mut Vec<(usize, usize)>,
+) -> Result<(), (usize, usize, String)> {
+    let mut open = 0usize;
+    // Whether a field may end here: after a comma, or at the start, what follows is a field.
+    let mut expected = false;
+    let mut any = false;
+    loop {
+        // A single `$` inside a line marks where it was continued, in print.
+        while at < text.len() && (is_blank(text[at]) || text[at] == b'$') {
+            at += 1;
+        }
+        let Some(&c) = text.get(at) else { break };
+        any = true;
+        match c {
+            b',' => {
+                if expected || fields.is_empty() {
+                    fields.push(Field::Blank);
+                    spans.push((at, at + 1));
+                }
+                expected = true;
+                at += 1;
+            }
+            b'(' => {
+                open += 1;
+                at += 1;
+                expected = true;
+            }
+            b')' if open > 0 && !expected => {
+                open -= 1;
+                at += 1;
+            }
+            b'-' | b'+' | b'.' | b'0'..=b'9' => {
+                let length = text[at..].iter().position(|c| b",)/$(".contains(c) || is_blank(*c));
+                let end = length.map_or(text.len(), |n| at + n);
+                if !expected && !fields.is_empty() {
+                    return Err((at, end, "a comma is missing before this number".into()));
+                }
+                let after = text[end..].iter().find(|c| !is_blank(**c));
+                if after.is_some_and(|c| !b",)$".contains(c)) {
+                    return Err((end, end + 1, "a number must end with a comma".into()));
+                }
+                let field = match number::leading(&text[at..end]) {
+                    Some((value, length)) if length == end - at => Field::Number(value),
+                    // A word may begin with a digit: `1STPECK`.
+                    _ if c.is_ascii_digit() && text[at..end].iter().any(is_letter) => {
+                        if exponent_only(&text[at..end]) {
+                            return Err((at, end, "this number is too large".into()));
+                        }
+                        Field::Word(at, end)
+                    }
+                    _ => return Err((at, end, "this is not a number".into())),
+                };
+                fields.push(field);
+                spans.push((at, end));
+                at = end;
+                expected = false;
+            }
+            _ if is_word(c) => {
+                let length = text[at..].iter().position(|c| !is_word(*c));
+                let end = length.map_or(text.len(), |n| at + n);
+                fields.push(Field::Word(at, end));
+                spans.push((at, end));
+                at = end;
+                expected = false;
+                while at < text.len() && is_blank(text[at]) {
+                    at += 1;
+                }
+                if text.get(at) == Some(&b'/') {
+                    at += 1;
+                    expected = true;
+                }
+            }
+            _ => return Err((at, at + 1, "this character has no place here".into())),
+        }
+    }
+    if expected && any && text[..at].iter().rev().find(|c| !is_blank(**c)) == Some(&b',') {
+        return Err((at.saturating_sub(1), at, "a value is missing after the last comma".into()));
+    }
+    if open > 0 {
+        return Err((at.saturating_sub(1), at, "a parenthesis is not closed".into()));
+    }
+    Ok(())
+}
+
+fn is_letter(c: &u8) -> bool {
+    c.is_ascii_alphabetic()
+}
+
+/// Whether `text` is shaped like a number with an exponent.
+fn exponent_only(text: &[u8]) -> bool {
+    text.iter().all(|c| c.is_ascii_digit() || b".eE+-".contains(c))
+}
+
+fn is_word(c: u8) -> bool {
+    c.is_ascii_alphanumeric() || b"-_.+*#:;&'\"=<>%@!?\\|~^`[]{}".contains(&c) || c >= 0x80
+}

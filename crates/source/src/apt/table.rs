@@ -1,0 +1,242 @@
+//! The table from major word to handler. Each handler is headed by the syntax it takes.
+
+use super::Reader;
+use super::record::{Record, Vocabulary};
+use super::report::{Fault, Outcome};
+
+/// What becomes of a record.
+#[derive(Clone, Copy)]
+pub(super) enum Use {
+    /// The handler takes it.
+    By(fn(&mut Reader, &Record) -> Outcome),
+    /// The handler takes it, and what follows the word is free text.
+    Text(fn(&mut Reader, &Record) -> Outcome),
+    /// It says nothing that a program needs: display, tolerances already applied, bookkeeping.
+    Ignored,
+    /// As [`Use::Ignored`], with free text after the word.
+    IgnoredText,
+    /// It would change what the machine does, and is not passed on: a warning.
+    NotPassedOn,
+    /// It would change where the tool goes, and cannot be resolved: an error.
+    Refused,
+}
+
+use Use::{By, Ignored, IgnoredText, NotPassedOn, Refused, Text};
+
+/// Every major word that is known, in alphabetical order.
+pub(super) const WORDS: &[(&str, Use)] = &[
+    ("", By(Reader::further_point)),
+    ("$$", Text(Reader::remark)),
+    ("ARCSLP", Refused),
+    ("AUTOPS", Ignored),
+    ("AUXFUN", NotPassedOn),
+    ("CALL", Refused),
+    ("CIRCLE", By(Reader::circle)),
+    ("CLAMP", NotPassedOn),
+    ("CLEARP", Ignored),
+    ("CLPRNT", Ignored),
+    ("COOLNT", By(Reader::coolnt)),
+    ("COPY", Refused),
+    ("CSYS", By(Reader::csys)),
+    ("CUTCOM", By(Reader::cutcom)),
+    ("CUTTER", By(Reader::cutter)),
+    ("CYCLE", By(Reader::cycle_record)),
+    ("DELAY", By(Reader::delay)),
+    ("DISPLY", IgnoredText),
+    ("END", By(Reader::fini)),
+    ("END-OF-PATH", By(Reader::end_of_path)),
+    ("FEDRAT", By(Reader::fedrat)),
+    ("FINI", By(Reader::fini)),
+    ("FROM", By(Reader::from)),
+    ("GOBACK", Refused),
+    ("GODLTA", By(Reader::godlta)),
+    ("GODOWN", Refused),
+    ("GOFWD", Refused),
+    ("GOHOME", Refused),
+    ("GOLFT", Refused),
+    ("GORGT", Refused),
+    ("GOTO", By(Reader::goto)),
+    ("GOUP", Refused),
+    ("HEAD", Refused),
+    ("INCLUD", Refused),
+    ("INDEX", Refused),
+    ("INDIRP", Refused),
+    ("INDIRV", By(Reader::indirv)),
+    ("INSERT", Text(Reader::insert)),
+    ("INTOL", Ignored),
+    ("LINTOL", Ignored),
+    ("LOAD", By(Reader::load)),
+    ("LOADTL", By(Reader::load)),
+    ("MACHIN", IgnoredText),
+    ("MCHTOL", Ignored),
+    ("MODE", By(Reader::mode)),
+    ("MSYS", By(Reader::msys)),
+    ("MULTAX", By(Reader::multax)),
+    ("NOPOST", Ignored),
+    ("OPSKIP", NotPassedOn),
+    ("OPSTOP", By(Reader::opstop)),
+    ("ORIGIN", By(Reader::origin)),
+    ("OUTTOL", Ignored),
+    ("PAINT", IgnoredText),
+    ("PARTNO", Text(Reader::partno)),
+    ("PPRINT", Text(Reader::pprint)),
+    ("PREFUN", Refused),
+    ("PSIS", Ignored),
+    ("RAPID", By(Reader::rapid)),
+    ("RETRCT", Refused),
+    ("REWIND", Ignored),
+    ("ROTABL", Refused),
+    ("ROTATE", By(Reader::rotate)),
+    ("ROTHED", Refused),
+    ("SCALE", Refused),
+    ("SELCTL", By(Reader::select)),
+    ("SELECT", By(Reader::select)),
+    ("SEQNO", Ignored),
+    ("SET", By(Reader::mode)),
+    ("SPINDL", By(Reader::spindl)),
+    ("STOP", By(Reader::stop)),
+    ("THREAD", Refused),
+    ("TLAXIS", By(Reader::tlaxis)),
+    ("TLDATA", By(Reader::tldata)),
+    ("TLON,GOFWD", By(Reader::tlon)),
+    ("TLON,GOLFT", Refused),
+    ("TLON,GORGT", Refused),
+    ("TMARK", Ignored),
+    ("TOLER", Ignored),
+    ("TOOL PATH", Text(Reader::tool_path)),
+    ("TPRINT", Text(Reader::tprint)),
+    ("TRACUT", Refused),
+    ("TRANS", By(Reader::trans)),
+    ("TRNTYP", By(Reader::trntyp)),
+    ("TURRET", Refused),
+    ("UNIT", By(Reader::units)),
+    ("UNITS", By(Reader::units)),
+];
+
+/// Private words of SolidWorks CAM: they describe tools for its own simulation.
+const PRIVATE: &[u8] = b"CSI_";
+
+/// What becomes of records with the major word `word`; `None` where it is not known.
+pub(super) fn find(word: &[u8]) -> Option<Use> {
+    if word.get(..PRIVATE.len()).is_some_and(|head| head.eq_ignore_ascii_case(PRIVATE)) {
+        return Some(IgnoredText);
+    }
+    let upper = |c: &u8| c.to_ascii_uppercase();
+    WORDS
+        .binary_search_by(|(known, _)| known.bytes().cmp(word.iter().map(upper)))
+        .ok()
+        .and_then(|index| WORDS.get(index))
+        .map(|(_, use_)| *use_)
+}
+
+/// The words of [`WORDS`].
+pub(super) struct Words;
+
+impl Vocabulary for Words {
+    fn takes_text(&self, word: &[u8]) -> Option<bool> {
+        find(word).map(|use_| matches!(use_, Text(_) | IgnoredText))
+    }
+}
+
+impl Reader {
+    /// Obeys a record by the table.
+    pub(super) fn obey(&mut self, record: &Record) -> Outcome {
+        let known = find(record.major);
+        if !record.major.is_empty() {
+            self.inside_goto = false;
+        }
+        if let Some(By(_) | Text(_)) = known
+            && self.ended
+            && record.major != b"$$"
+            && !record.major.eq_ignore_ascii_case(b"FINI")
+        {
+            return Err(Fault::new("after-the-end", "a record after the end of the program")
+                .help("post the programs of this file one by one"));
+        }
+        match known {
+            Some(By(handler) | Text(handler)) => {
+                self.known = true;
+                handler(self, record)
+            }
+            Some(Ignored | IgnoredText) => {
+                self.known = true;
+                Ok(())
+            }
+            Some(NotPassedOn) => {
+                let word = super::text::decode(record.major);
+                let message = format!("{word} is not passed on");
+                self.report.warn(
+                    record,
+                    "ignored-word",
+                    &message,
+                    "check whether the job needs it",
+                );
+                Ok(())
+            }
+            Some(Refused) => {
+                let word = super::text::decode(record.major);
+                let message = format!("{word} changes where the tool goes, and cannot be resolved");
+                Err(Fault::new("unsupported", message)
+                    .help("let the CAM system write points (GOTO) instead"))
+            }
+            None => self.unknown(record),
+        }
+    }
+
+    /// A word that is not known: one warning for each, but not without end.
+    fn unknown(&mut self, record: &Record) -> Outcome {
+        const RULE: &str = "unknown-word";
+        /// More different unknown words than any CAM system has of its own.
+        const MAX_WORDS: usize = 20;
+        if self.report.count_of(RULE) >= MAX_WORDS {
+            self.hopeless = true;
+            return Err(Fault::new(
+                "not-cldata",
+                "too many words that are not cutter-location data",
+            ));
+        }
+        let word = super::text::decode(record.major.get(..40).unwrap_or(record.major));
+        let message = format!("the word {word} is not known and its records are ignored");
+        self.report.warn(record, RULE, &message, "check whether the job needs it");
+        Ok(())
+    }
+
+    /// `MODE/...`, `SET/MODE,ABSOL`: only absolute coordinates of a mill are known.
+    pub(super) fn mode(&mut self, record: &Record) -> Outcome {
+        let foreign = ["INCR", "TURN", "LATHE", "WIRE"];
+        let word = |i: &usize| foreign.iter().any(|word| record.is(*i, word));
+        match (0..record.fields.len()).find(word) {
+            Some(i) => {
+                Err(Fault::new("unsupported", "coordinates in this mode are not known")
+                    .fields(i, 1))
+            }
+            None => Ok(()),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_words_are_in_order_so_that_each_is_found() {
+        for pair in WORDS.windows(2) {
+            assert!(pair[0].0 < pair[1].0, "{} {}", pair[0].0, pair[1].0);
+        }
+        for (word, _) in WORDS {
+            assert!(find(word.as_bytes()).is_some());
+            assert!(find(word.to_lowercase().as_bytes()).is_some());
+        }
+        assert!(find(b"NOSUCH").is_none());
+        assert!(find(b"CSI_SET_FLUTE_LENGTH").is_some());
+    }
+
+    #[test]
+    fn the_manual_explains_every_word() {
+        let manual = include_str!("../../../../docs/sources/apt.md");
+        for (word, _) in WORDS.iter().filter(|(word, _)| !word.is_empty()) {
+            assert!(manual.contains(&format!("`{word}")), "{word} is not in docs/sources/apt.md");
+        }
+    }
+}

@@ -1,0 +1,437 @@
+//! What the tool is and does besides moving: tool, feed, spindle, coolant, compensation, dwell, stop.
+
+use super::frame::INCH;
+use super::record::{Field, Record};
+use super::report::{Fault, Outcome};
+use super::text::decode;
+use super::{Reader, Ready};
+use program::{Compensation, Coolant, Feed, Op, Spindle, Tool};
+use std::f64::consts::PI;
+
+/// The largest number of a tool or an offset.
+const MAX_NUMBER: f64 = 99_999_999.0;
+
+/// The unit of a feed, as its minor word says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum FeedUnit {
+    /// `MMPM`.
+    MmPerMinute,
+    /// `IPM`.
+    InchPerMinute,
+    /// `PERMIN`: units of the file a minute.
+    PerMinute,
+    /// `MMPR`.
+    MmPerTurn,
+    /// `IPR`.
+    InchPerTurn,
+    /// `PERREV`: units of the file a turn.
+    PerTurn,
+    /// `INVERS`: moves a minute.
+    Inverse,
+}
+
+/// Minor words and the units they name.
+const FEED_UNITS: [(&str, FeedUnit); 8] = [
+    ("MMPM", FeedUnit::MmPerMinute),
+    ("IPM", FeedUnit::InchPerMinute),
+    ("PERMIN", FeedUnit::PerMinute),
+    ("MMPR", FeedUnit::MmPerTurn),
+    ("IPR", FeedUnit::InchPerTurn),
+    ("PERREV", FeedUnit::PerTurn),
+    ("INVERS", FeedUnit::Inverse),
+    ("INVERSE", FeedUnit::Inverse),
+];
+
+impl FeedUnit {
+    /// The unit that field `index` of `record` names.
+    pub(super) fn of(record: &Record, index: usize) -> Option<FeedUnit> {
+        FEED_UNITS.iter().find(|(word, _)| record.is(index, word)).map(|(_, unit)| *unit)
+    }
+}
+
+/// A whole number from `least` on as a number of a tool or register.
+fn whole(record: &Record, index: usize, least: f64, rule: &'static str) -> Result<u32, Box<Fault>> {
+    let value = record.number(index, "a number")?;
+    if value.fract() == 0.0 && (least..=MAX_NUMBER).contains(&value) {
+        return Ok(value as u32);
+    }
+    let message = format!("{value} is not a whole number from {least} on");
+    Err(Fault::new(rule, message).fields(index, 1))
+}
+
+/// Field after the word `word`, where the record has that word.
+fn after(record: &Record, word: &str) -> Option<usize> {
+    (0..record.fields.len()).find(|i| record.is(*i, word)).map(|i| i + 1)
+}
+
+impl Reader {
+    /// `FEDRAT/v`, `FEDRAT/v,unit`, `FEDRAT/unit,v`. Without a unit the last one holds; at the start,
+    /// units of the file a minute.
+    pub(super) fn fedrat(&mut self, record: &Record) -> Outcome {
+        record.count(&[1, 2], "FEDRAT/value,MMPM")?;
+        let number = usize::from(!matches!(record.fields.first(), Some(Field::Number(_))));
+        let value = record.number(number, "the feed")?;
+        if record.fields.len() == 2 {
+            self.feed_unit =
+                FeedUnit::of(record, 1 - number).ok_or_else(|| unknown_feed(1 - number))?;
+        }
+        let feed = self.feed_of(value, self.feed_unit).map_err(|fault| fault.fields(number, 1))?;
+        self.feed = Some(feed);
+        self.ready = Ready::No;
+        self.push(record.line, Op::Feed(feed));
+        Ok(())
+    }
+
+    /// `value` in `unit` as a feed. A feed of 0 is taken; it is an error at the first cut.
+    pub(super) fn feed_of(&mut self, value: f64, unit: FeedUnit) -> Result<Feed, Box<Fault>> {
+        if !(0.0..=1e9).contains(&value) {
+            return Err(Fault::new("feed", format!("{value:e} is no feed")));
+        }
+        if matches!(unit, FeedUnit::InchPerMinute | FeedUnit::InchPerTurn) && !self.unit_known {
+            let message =
+                "feeds in inches, but the file does not say in which unit its coordinates are";
+            return Err(Fault::new("unknown-unit", message).help("add UNITS/INCHES or UNITS/MM"));
+        }
+        Ok(match unit {
+            FeedUnit::MmPerMinute => Feed::PerMinute(value),
+            FeedUnit::InchPerMinute => Feed::PerMinute(value * INCH),
+            FeedUnit::PerMinute => Feed::PerMinute(value * self.unit),
+            FeedUnit::MmPerTurn => Feed::PerTurn(value),
+            FeedUnit::InchPerTurn => Feed::PerTurn(value * INCH),
+            FeedUnit::PerTurn => Feed::PerTurn(value * self.unit),
+            FeedUnit::Inverse => Feed::InverseTime(value),
+        })
+    }
+
+    /// `SPINDL/` with, in any order, a speed, `RPM`, `SFM` or `SMM`, and `CLW` or `CCLW`; or `ON`,
+    /// `OFF`. Surface speeds are resolved with the diameter of the tool.
+    pub(super) fn spindl(&mut self, record: &Record) -> Outcome {
+        let (mut speed, mut surface, mut left) = (None, None, None);
+        for (i, field) in record.fields.iter().enumerate() {
+            match field {
+                Field::Number(value) if speed.is_none() => speed = Some((i, *value)),
+                _ if record.is(i, "RPM") => surface = None,
+                _ if record.is(i, "SFM") => surface = Some(12.0 * INCH),
+                _ if record.is(i, "SMM") => surface = Some(1000.0),
+                _ if record.is(i, "CLW") => left = Some(false),
+                _ if record.is(i, "CCLW") => left = Some(true),
+                _ if record.is(i, "ON") => {}
+                _ if record.is(i, "OFF") => return self.turn(record, Spindle::Off),
+                _ => {
+                    return Err(Fault::new("malformed", "this is not known of a spindle")
+                        .help("write SPINDL/speed,RPM,CLW or SPINDL/OFF")
+                        .fields(i, 1));
+                }
+            }
+        }
+        if speed.is_none() && left.is_none() {
+            return match self.last_spindle {
+                Some(spindle) => self.turn(record, spindle),
+                None => Err(Fault::new("malformed", "no speed has been given yet")
+                    .help("write SPINDL/speed,RPM,CLW")),
+            };
+        }
+        let was_left = matches!(self.last_spindle, Some(Spindle::CounterClockwise(_)));
+        let left = left.unwrap_or(was_left);
+        let rpm = match (speed, self.last_spindle) {
+            (Some((field, value)), _) => {
+                self.speed(value, surface).map_err(|fault| fault.fields(field, 1))?
+            }
+            (None, Some(last)) => speed_of(last),
+            (None, None) => return Err(Fault::new("malformed", "a speed is missing")),
+        };
+        let spindle = match (rpm, left) {
+            (0.0, _) => Spindle::Off,
+            (rpm, false) => Spindle::Clockwise(rpm),
+            (rpm, true) => Spindle::CounterClockwise(rpm),
+        };
+        self.turn(record, spindle)
+    }
+
+    /// A speed in 1/min; with `surface`, a surface speed of so many mm a unit.
+    fn speed(&self, value: f64, surface: Option<f64>) -> Result<f64, Box<Fault>> {
+        if !(0.0..=1e7).contains(&value) {
+            return Err(Fault::new("spindle", format!("{value:e} is no spindle speed")));
+        }
+        let Some(mm) = surface else { return Ok(value) };
+        // A description that no LOAD has taken yet is of the tool to come.
+        let diameter = match self.tool_record {
+            Some(_) => self.tool.diameter,
+            None => self.next_tool.diameter.or(self.tool.diameter),
+        };
+        match diameter {
+            Some(diameter) if diameter > 0.0 => Ok(value * mm / (PI * diameter)),
+            _ => Err(Fault::new("spindle", "a surface speed needs the diameter of the tool")
+                .help("add CUTTER/ or TLDATA/ before it, or give the speed in RPM")),
+        }
+    }
+
+    fn turn(&mut self, record: &Record, spindle: Spindle) -> Outcome {
+        if spindle != Spindle::Off {
+            self.last_spindle = Some(spindle);
+        }
+        self.spindle = spindle;
+        self.ready = Ready::No;
+        self.push(record.line, Op::Spindle(spindle));
+        Ok(())
+    }
+
+    /// `COOLNT/ON`, `FLOOD`, `MIST`, `THRU`, `OFF`.
+    pub(super) fn coolnt(&mut self, record: &Record) -> Outcome {
+        let words = [
+            ("ON", Coolant::Flood),
+            ("FLOOD", Coolant::Flood),
+            ("TAPKUL", Coolant::Flood),
+            ("MIST", Coolant::Mist),
+            ("THRU", Coolant::Through),
+            ("TOOL", Coolant::Through),
+            ("OFF", Coolant::Off),
+        ];
+        record.count(&[1], "COOLNT/FLOOD, MIST, THRU or OFF")?;
+        let known = words.iter().find(|(word, _)| record.is(0, word));
+        let (_, coolant) = known.ok_or_else(|| {
+            Fault::new("malformed", "this coolant is not known")
+                .help("coolants are ON, FLOOD, MIST, THRU and OFF")
+                .fields(0, 1)
+        })?;
+        self.push(record.line, Op::Coolant(*coolant));
+        Ok(())
+    }
+
+    /// `CUTCOM/LEFT`, `RIGHT`, `ON`, `OFF`, with the register after it or after `ADJUST`; a `GOTO` may
+    /// follow in the same record.
+    pub(super) fn cutcom(&mut self, record: &Record) -> Outcome {
+        let goto = after(record, "GOTO");
+        let own = goto.map_or(record.fields.len(), |i| i - 1);
+        let mut register = None;
+        for i in 1..own {
+            match record.fields.get(i) {
+                Some(Field::Number(_)) if register.is_none() => {
+                    register = Some(whole(record, i, 0.0, "malformed")?);
+                }
+                _ if ["ADJUST", "OSETNO", "XYPLAN"].iter().any(|word| record.is(i, word)) => {}
+                _ => {
+                    return Err(Fault::new("malformed", "this is not known of a compensation")
+                        .help("write CUTCOM/LEFT, CUTCOM/RIGHT or CUTCOM/OFF")
+                        .fields(i, 1));
+                }
+            }
+        }
+        let compensation = match () {
+            () if record.is(0, "LEFT") => Compensation::Left(register),
+            () if record.is(0, "RIGHT") => Compensation::Right(register),
+            () if record.is(0, "OFF") => Compensation::Off,
+            () if record.is(0, "ON") => self.last_side.ok_or_else(|| {
+                Fault::new("malformed", "CUTCOM/ON before any side was given").fields(0, 1)
+            })?,
+            () => {
+                return Err(Fault::new("malformed", "a compensation is LEFT, RIGHT, ON or OFF")
+                    .fields(0, 1));
+            }
+        };
+        if compensation != Compensation::Off {
+            self.last_side = Some(compensation);
+        }
+        self.push(record.line, Op::Compensation(compensation));
+        match goto {
+            Some(first) => self.goto_from(record, first),
+            None => Ok(()),
+        }
+    }
+
+    /// `LOAD/TOOL,n` with, in any order, `ADJUST,k` or `OSETNO,k` (register) and `LENGTH,l` (gauge
+    /// length); `LOADTL/n` and `LOADTL/n,k` of CATIA.
+    pub(super) fn load(&mut self, record: &Record) -> Outcome {
+        let first = usize::from(record.major.eq_ignore_ascii_case(b"LOAD"));
+        if first == 1 && !record.is(0, "TOOL") {
+            return Err(Fault::new("unsupported", "only tools can be loaded").fields(0, 1));
+        }
+        let mut tool = std::mem::take(&mut self.next_tool);
+        tool.number = whole(record, first, 1.0, "tool-number")?;
+        let mut i = first + 1;
+        if let Some(Field::Number(_)) = record.fields.get(i) {
+            tool.offset = Some(whole(record, i, 0.0, "malformed")?);
+            i += 1;
+        }
+        while i < record.fields.len() {
+            match () {
+                () if record.is(i, "ADJUST") || record.is(i, "OSETNO") => {
+                    tool.offset = Some(whole(record, i + 1, 0.0, "malformed")?);
+                }
+                () if record.is(i, "LENGTH") => {
+                    let length = record.number(i + 1, "the length")?;
+                    tool.length = Some(self.length(length)?);
+                }
+                () => {
+                    return Err(Fault::new("malformed", "this is not known of a tool change")
+                        .help("write LOAD/TOOL,number,ADJUST,register")
+                        .fields(i, 1));
+                }
+            }
+            i += 2;
+        }
+        self.no_pending_circle()?;
+        self.change_tool(record.line, tool);
+        Ok(())
+    }
+
+    /// Changes to `tool`. Until the next motion its description may still be completed.
+    pub(super) fn change_tool(&mut self, line: u32, tool: Tool) {
+        self.tool = tool.clone();
+        self.tool_record = Some(self.program.records.len());
+        self.ready = Ready::No;
+        self.push(line, Op::Tool(Box::new(tool)));
+    }
+
+    /// `SELECT/TOOL,n`, `SELCTL/n`: the tool to come.
+    pub(super) fn select(&mut self, record: &Record) -> Outcome {
+        let first = usize::from(record.major.eq_ignore_ascii_case(b"SELECT"));
+        if first == 1 && !record.is(0, "TOOL") {
+            let help = "only SELECT/TOOL is passed on";
+            self.report.warn(record, "ignored-word", "SELECT of another thing is ignored", help);
+            return Ok(());
+        }
+        let number = whole(record, first, 1.0, "tool-number")?;
+        self.push(record.line, Op::Preselect(number));
+        Ok(())
+    }
+
+    /// Describes the tool: the one loaded last where it has not moved since, else the next.
+    pub(super) fn describe_tool(&mut self, record: &Record, describe: impl FnOnce(&mut Tool)) {
+        let Some(index) = self.tool_record else {
+            self.next_line = record.line;
+            return describe(&mut self.next_tool);
+        };
+        describe(&mut self.tool);
+        if let Some(Op::Tool(tool)) = self.program.records.get_mut(index).map(|r| &mut r.op) {
+            **tool = self.tool.clone();
+        }
+    }
+
+    /// `CUTTER/d,r,e,f,a,b,h`: diameter and corner radius (ISO 4343); the rest of its seven values
+    /// says the same in other words, and the height of the cutter, which is not a gauge length.
+    pub(super) fn cutter(&mut self, record: &Record) -> Outcome {
+        let diameter = self.diameter(record, 0)?;
+        let radius = match record.fields.get(1) {
+            Some(Field::Number(_)) => Some(self.length(record.number(1, "the corner radius")?)?),
+            _ => None,
+        };
+        // SolidWorks CAM writes the name of the tool just before.
+        let name = match self.program.records.last().map(|r| &r.op) {
+            Some(Op::Comment(text)) if self.inserted == Some(self.program.records.len()) => {
+                Some(String::from(text.as_ref()))
+            }
+            _ => None,
+        };
+        if name.is_some() {
+            self.program.records.pop();
+        }
+        let angle = match record.fields.get(4) {
+            Some(Field::Number(angle)) if *angle > 0.0 => Some(180.0 - 2.0 * angle),
+            _ => None,
+        };
+        self.describe_tool(record, |tool| {
+            tool.diameter = Some(diameter);
+            tool.corner_radius = radius;
+            if let Some(name) = name {
+                tool.name = name;
+            }
+        });
+        self.point_angle = angle;
+        Ok(())
+    }
+
+    /// `TLDATA/MILL,d,r,length,taper,tip`, `TLDATA/DRILL,MILL,d,r,length,point angle,...`.
+    pub(super) fn tldata(&mut self, record: &Record) -> Outcome {
+        let is_word = |field: &&Field| matches!(field, Field::Word(..));
+        let first = record.fields.iter().take_while(is_word).count();
+        let diameter = self.diameter(record, first)?;
+        let radius = match record.fields.get(first + 1) {
+            Some(Field::Number(_)) => {
+                Some(self.length(record.number(first + 1, "the corner radius")?)?)
+            }
+            _ => None,
+        };
+        let angle = match record.fields.get(first + 3) {
+            Some(Field::Number(angle)) if record.is(0, "DRILL") => Some(*angle),
+            _ => None,
+        };
+        // It belongs to the operation that has just begun, never to a tool loaded before it.
+        self.next_line = record.line;
+        self.next_tool.diameter = Some(diameter);
+        self.next_tool.corner_radius = radius;
+        self.point_angle = angle;
+        self.tool_record = None;
+        Ok(())
+    }
+
+    fn diameter(&self, record: &Record, index: usize) -> Result<f64, Box<Fault>> {
+        let value = record.number(index, "the diameter")?;
+        let diameter = self.length(value).map_err(|fault| fault.fields(index, 1))?;
+        if diameter >= 0.0 {
+            return Ok(diameter);
+        }
+        Err(Fault::new("malformed", "a diameter cannot be negative").fields(index, 1))
+    }
+
+    /// `TPRINT/text`: the name of the tool.
+    pub(super) fn tprint(&mut self, record: &Record) -> Outcome {
+        let name = decode(record.body.0);
+        self.describe_tool(record, |tool| tool.name = name);
+        Ok(())
+    }
+
+    /// `DELAY/t`, `DELAY/n,REV`: dwell in seconds or turns of the spindle.
+    pub(super) fn delay(&mut self, record: &Record) -> Outcome {
+        record.count(&[1, 2], "DELAY/seconds or DELAY/turns,REV")?;
+        let number = usize::from(!matches!(record.fields.first(), Some(Field::Number(_))));
+        let turns = record.is(1 - number, "REV");
+        if record.fields.len() == 2 && !turns {
+            return Err(
+                Fault::new("malformed", "a dwell is in seconds, or in REV").fields(1 - number, 1)
+            );
+        }
+        let value = record.number(number, "the dwell")?;
+        let seconds = self.dwell(value, turns).map_err(|fault| fault.fields(number, 1))?;
+        self.push(record.line, Op::Dwell(seconds));
+        Ok(())
+    }
+
+    /// A dwell in seconds, given so or in turns of the spindle.
+    pub(super) fn dwell(&self, value: f64, turns: bool) -> Result<f64, Box<Fault>> {
+        if !(0.0..=86_400.0).contains(&value) {
+            return Err(Fault::new("dwell", format!("{value:e} is no dwell")));
+        }
+        match speed_of(self.spindle) {
+            _ if !turns => Ok(value),
+            rpm if rpm > 0.0 => Ok(value * 60.0 / rpm),
+            _ => Err(Fault::new("dwell", "a dwell in turns needs a running spindle")),
+        }
+    }
+
+    /// `STOP`.
+    pub(super) fn stop(&mut self, record: &Record) -> Outcome {
+        self.push(record.line, Op::Stop);
+        Ok(())
+    }
+
+    /// `OPSTOP`.
+    pub(super) fn opstop(&mut self, record: &Record) -> Outcome {
+        self.push(record.line, Op::OptionalStop);
+        Ok(())
+    }
+}
+
+/// Speed of a spindle in 1/min; 0 where it stands.
+pub(super) fn speed_of(spindle: Spindle) -> f64 {
+    match spindle {
+        Spindle::Off => 0.0,
+        Spindle::Clockwise(rpm) | Spindle::CounterClockwise(rpm) => rpm,
+    }
+}
+
+fn unknown_feed(field: usize) -> Box<Fault> {
+    Fault::new("unknown-unit", "this unit of a feed is not known")
+        .help("units are MMPM, IPM, PERMIN, MMPR, IPR, PERREV and INVERS")
+        .fields(field, 1)
+}

@@ -1,0 +1,173 @@
+//! Records that are words for people: names, comments, the end.
+
+use super::record::Record;
+use super::report::{Fault, Outcome};
+use super::{Dialect, Reader};
+use program::Op;
+
+/// The longest comment that is passed on, characters.
+const LONGEST_COMMENT: usize = 250;
+
+/// Bytes as text: UTF-8 where they are, else Latin-1; control characters as blanks, without the
+/// blanks at both ends.
+pub(super) fn decode(bytes: &[u8]) -> String {
+    let clean = |c: char| if c.is_control() { ' ' } else { c };
+    let text: String = match std::str::from_utf8(bytes) {
+        Ok(text) => text.chars().map(clean).take(LONGEST_COMMENT).collect(),
+        Err(_) => bytes.iter().map(|c| clean(char::from(*c))).take(LONGEST_COMMENT).collect(),
+    };
+    text.trim().to_owned()
+}
+
+/// What follows `key` in `text`, where `text` begins with it in any case.
+fn after<'t>(text: &'t str, key: &str) -> Option<&'t str> {
+    text.get(..key.len()).filter(|head| head.eq_ignore_ascii_case(key))?;
+    text.get(key.len()..)
+}
+
+impl Reader {
+    /// `$$ text`. CATIA names its operations so, and gives its axis system; Creo the diameter of the
+    /// tool.
+    pub(super) fn remark(&mut self, record: &Record) -> Outcome {
+        let body = record.body.0;
+        if let Some(directive) = body.strip_prefix(b"->") {
+            return self.creo_directive(record, directive);
+        }
+        let text = decode(body);
+        if self.axis_system(record, &text)? || text.starts_with('*') || text.is_empty() {
+            return Ok(());
+        }
+        if let Some(name) = after(&text, "OPERATION NAME") {
+            let name = name.trim_start_matches([' ', ':']);
+            self.push(record.line, Op::Operation(name.into()));
+        } else {
+            self.push(record.line, Op::Comment(text.into()));
+        }
+        Ok(())
+    }
+
+    /// `$$-> CUTTER / d` of Creo; its other directives say what is in the records too.
+    fn creo_directive(&mut self, record: &Record, directive: &[u8]) -> Outcome {
+        let text = decode(directive);
+        let diameter = after(&text, "CUTTER").and_then(|rest| rest.split_once('/'));
+        if let Some((_, diameter)) = diameter {
+            let value: f64 = diameter.trim().parse().unwrap_or(f64::NAN);
+            let diameter = self.length(value)?;
+            self.describe_tool(record, |tool| tool.diameter = Some(diameter));
+        }
+        Ok(())
+    }
+
+    /// `PARTNO/text`: the name of the program.
+    pub(super) fn partno(&mut self, record: &Record) -> Outcome {
+        let name = decode(record.body.0);
+        if !name.is_empty() {
+            self.program.name = name;
+        }
+        Ok(())
+    }
+
+    /// `PPRINT/text`: a comment. Makino states there what its points are; the rest of its sections
+    /// repeats the records.
+    pub(super) fn pprint(&mut self, record: &Record) -> Outcome {
+        let text = decode(record.body.0);
+        if self.dialect != Dialect::Makino {
+            self.push(record.line, Op::Comment(text.into()));
+            return Ok(());
+        }
+        match text.split_once(',') {
+            Some(("TOOL-POSITION", place)) if place != "TOOL-NOSE" => {
+                let message = format!("the points of this file are not the tool tip but {place}");
+                Err(Fault::new("tool-position", message)
+                    .help("let the CAM system write the tool nose"))
+            }
+            Some(("BEGIN-SECTION", name)) => {
+                self.sections.push((record.line, name.into()));
+                Ok(())
+            }
+            Some(("END-SECTION", name)) => match self.sections.pop() {
+                Some((_, open)) if *open == *name => Ok(()),
+                _ => Err(Fault::new("malformed", format!("section {name} ends but is not open"))),
+            },
+            _ => Ok(()),
+        }
+    }
+
+    /// `INSERT/text`. The text is meant for one control and is never passed on as code: it is a
+    /// comment, and `INSERT/STOP text` a stop with a message.
+    pub(super) fn insert(&mut self, record: &Record) -> Outcome {
+        let text = decode(record.body.0);
+        if let Some(message) = after(&text, "STOP") {
+            let help = "check that the operator is to stop here";
+            self.report.warn(record, "insert", "INSERT/STOP is read as a stop and a message", help);
+            self.push(record.line, Op::Stop);
+            let message = message.trim();
+            if !message.is_empty() {
+                self.push(record.line, Op::Message(message.into()));
+            }
+            return Ok(());
+        }
+        // SolidWorks CAM writes the names of tools and the size of the stock so.
+        if self.dialect != Dialect::SolidWorksCam {
+            let help = "what the control must do has to be in a record of its own";
+            self.report.warn(
+                record,
+                "insert",
+                "INSERT is passed on as a comment, not as code",
+                help,
+            );
+        }
+        self.push(record.line, Op::Comment(text.into()));
+        self.inserted = Some(self.program.records.len());
+        Ok(())
+    }
+
+    /// `TOOL PATH/name,TOOL,tool name`: an operation of Siemens NX begins.
+    pub(super) fn tool_path(&mut self, record: &Record) -> Outcome {
+        let text = decode(record.body.0);
+        let (name, tool) = text.split_once(",TOOL,").unwrap_or((&text, ""));
+        self.operation = Some((record.line, name.into()));
+        self.next_tool = program::Tool { name: tool.trim().into(), ..Default::default() };
+        self.tool_record = None;
+        self.ready = super::Ready::No;
+        self.push(record.line, Op::Operation(name.trim().into()));
+        Ok(())
+    }
+
+    /// `END-OF-PATH`: the operation ends.
+    pub(super) fn end_of_path(&mut self, record: &Record) -> Outcome {
+        self.no_pending_circle()?;
+        if self.operation.take().is_none() {
+            return Err(Fault::new("malformed", "no TOOL PATH is open here"));
+        }
+        self.push(record.line, Op::EndOfOperation);
+        Ok(())
+    }
+
+    /// `FINI`, `END`: the end of the program.
+    pub(super) fn fini(&mut self, record: &Record) -> Outcome {
+        self.no_pending_circle()?;
+        if !self.ended {
+            self.ended = true;
+            self.push(record.line, Op::End);
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn latin_1_and_utf_8_are_both_read() {
+        assert_eq!(decode(b" Fr\xe4ser \x00 10 "), "Fräser   10");
+        assert_eq!(decode("Fräser".as_bytes()), "Fräser");
+    }
+
+    #[test]
+    fn a_key_is_found_in_any_case_and_never_cuts_a_character() {
+        assert_eq!(after("stop here", "STOP"), Some(" here"));
+        assert_eq!(after("stö", "STOP"), None);
+    }
+}
