@@ -1,0 +1,236 @@
+//! Tilted planes of work and the keeping of the tool tip.
+
+use super::scan::{Result, Scanner};
+use super::state::{Control, Tip};
+use super::words::feed_word;
+use geom::{Mat3, Vec3, direction};
+use program::Op;
+
+/// A tilted plane of work.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Tilt {
+    /// From the tilted coordinates to the work frame.
+    pub(super) turn: Mat3,
+    /// Datum shift within the plane, mm.
+    pub(super) shift: Vec3,
+    /// Whether the control has put the rotary axes there (`TURN`, `MOVE`).
+    pub(super) turned: bool,
+}
+
+/// What the rotary axes do when a plane is declared.
+enum Positioning {
+    Turn { rapid: bool, retract: bool },
+    Stay,
+}
+
+/// The frame of spatial angles in degrees: about the fixed axes, first A, then B, then C (TNC 640
+/// manual, PLANE SPATIAL).
+pub(super) fn spatial([a, b, c]: [f64; 3]) -> Mat3 {
+    Mat3::from_rotation_z(c.to_radians())
+        * Mat3::from_rotation_y(b.to_radians())
+        * Mat3::from_rotation_x(a.to_radians())
+}
+
+impl Control<'_, '_> {
+    /// A `PLANE` block, from behind the keyword.
+    pub(super) fn plane(&mut self, s: &mut Scanner) -> Result<()> {
+        if self.compensation != program::Compensation::Off {
+            return Err(s.error_block("plane", "a plane is tilted with R0"));
+        }
+        let (kind, span) = s.token();
+        let turn = match kind {
+            b"SPATIAL" => {
+                let angles = numbers(s, [b"SPA", b"SPB", b"SPC"])?;
+                Some(spatial(angles))
+            }
+            b"VECTOR" => {
+                let base = Vec3::from(numbers(s, [b"BX", b"BY", b"BZ"])?);
+                let normal = Vec3::from(numbers(s, [b"NX", b"NY", b"NZ"])?);
+                Some(upright(base, normal).ok_or_else(|| {
+                    s.error_block("plane", "the two vectors of the plane do not span it")
+                })?)
+            }
+            b"RESET" => None,
+            b"EULER" | b"PROJECTED" | b"POINTS" | b"RELATIV" | b"AXIAL" => {
+                return Err(s
+                    .error("unsupported", span, "this kind of PLANE is not supported yet")
+                    .help("use PLANE SPATIAL")
+                    .into());
+            }
+            _ => return Err(s.error("unknown-word", span, "this kind of PLANE is not known")),
+        };
+        let positioning = positioning(s)?;
+        if !self.settings.rotary.contains(&true) {
+            return Err(s.error_block("plane", "the machine has no rotary axes"));
+        }
+        if self.tilt.is_some_and(|tilt| tilt.shift != Vec3::ZERO) {
+            let message = "the datum is shifted within the plane that is left";
+            let help = "set CYCL DEF 7 back to zero first";
+            return Err(s.error_block("plane", message).help(help).into());
+        }
+        self.tilt_to(turn, positioning)
+    }
+
+    fn tilt_to(&mut self, turn: Option<Mat3>, positioning: Positioning) -> Result<()> {
+        let turned = matches!(positioning, Positioning::Turn { .. });
+        self.forget_position();
+        self.forget_rotary();
+        self.tilt = turn.map(|turn| Tilt { turn, shift: Vec3::ZERO, turned });
+        if let Positioning::Turn { rapid, retract } = positioning {
+            if retract {
+                self.emit(Op::Home(0b100))?;
+            }
+            if self.tilt.is_none() {
+                self.degrees = [0.0; 3];
+            }
+            let pose = self.pose(self.here);
+            self.emit(if rapid { Op::Rapid(pose) } else { Op::Line(pose) })?;
+        }
+        Ok(())
+    }
+
+    /// A `FUNCTION` block, from behind the keyword.
+    pub(super) fn function_block(&mut self, s: &mut Scanner) -> Result<()> {
+        if s.take(b"RESET") {
+            s.expect(b"TCPM")?;
+            s.finish()?;
+            self.release_tip();
+            return Ok(());
+        }
+        s.expect(b"TCPM")?;
+        s.expect(b"F")?;
+        if s.take(b"CONT") {
+            let message = "F CONT (feed of the axes as programmed) is not supported yet";
+            return Err(s.error_block("unsupported", message).help("use F TCP").into());
+        }
+        s.expect(b"TCP")?;
+        s.expect(b"AXIS")?;
+        let tip = match s.token() {
+            (b"POS", _) => Tip::Kept,
+            (b"SPAT", _) => Tip::KeptSpatial,
+            (_, span) => return Err(s.error("unknown-word", span, "AXIS takes POS or SPAT")),
+        };
+        s.expect(b"PATHCTRL")?;
+        if !s.take(b"AXIS") {
+            s.expect(b"VECTOR")?;
+        }
+        // Which point of the tool is kept (newer software); the tip is also what is kept without.
+        if s.take(b"REFPNT") {
+            s.expect(b"TIP-TIP")?;
+        }
+        if s.peek().starts_with(b"F")
+            && let Some(word) = s.word()?
+        {
+            feed_word(s, &word)?;
+        }
+        s.finish()?;
+        self.keep_tip(s, tip)
+    }
+
+    pub(super) fn keep_tip(&mut self, s: &Scanner, tip: Tip) -> Result<()> {
+        if !self.settings.rotary.contains(&true) {
+            return Err(s.error_block("tool-center", "the machine has no rotary axes"));
+        }
+        self.change_tip(tip);
+        Ok(())
+    }
+
+    pub(super) fn release_tip(&mut self) {
+        self.change_tip(Tip::Free);
+    }
+
+    /// With turned rotary axes the same place has other coordinates with and without M128; a vector
+    /// or spatial angles leave the axes where only the kinematics know.
+    fn change_tip(&mut self, tip: Tip) {
+        if self.tip == tip {
+            return;
+        }
+        let upright = self.vector.is_none() && self.degrees == [0.0; 3];
+        if !upright && self.tilt.is_none() {
+            self.forget_position();
+        }
+        if !upright
+            && (self.vector.is_some() || Tip::KeptSpatial == tip || Tip::KeptSpatial == self.tip)
+        {
+            self.forget_rotary();
+        }
+        self.tip = tip;
+    }
+}
+
+/// Three words that must stand in this order, each with a number.
+fn numbers(s: &mut Scanner, addresses: [&[u8]; 3]) -> Result<[f64; 3]> {
+    let mut values = [0.0; 3];
+    for (value, address) in values.iter_mut().zip(addresses) {
+        *value = match s.word()? {
+            Some(word) if word.address == address && word.number.is_some() => {
+                word.number.unwrap_or_default()
+            }
+            _ => {
+                let address = String::from_utf8_lossy(address);
+                return Err(s.error_block("plane", format!("{address} with a number is missing")));
+            }
+        };
+    }
+    Ok(values)
+}
+
+/// The frame whose Z is along `normal` and whose X is `base` as far as it lies in the plane.
+fn upright(base: Vec3, normal: Vec3) -> Option<Mat3> {
+    let z = direction(normal)?;
+    let x = direction(direction(base)?.reject_from_normalized(z))?;
+    Some(Mat3::from_cols(x, z.cross(x), z))
+}
+
+/// The end of a PLANE block: what the rotary axes do, and which solution they take.
+fn positioning(s: &mut Scanner) -> Result<Positioning> {
+    let mut positioning = None;
+    while !s.is_done() {
+        let (token, span) = s.token();
+        let known = match token {
+            b"TURN" | b"MOVE" if positioning.is_none() => {
+                positioning = Some(turning(s)?);
+                true
+            }
+            b"STAY" if positioning.is_none() => {
+                positioning = Some(Positioning::Stay);
+                true
+            }
+            // Which of the two solutions, and what a free C axis does: neither changes the plane.
+            b"SEQ+" | b"SEQ-" | b"SYM+" | b"SYM-" => true,
+            b"TABLE" | b"COORD" => s.take(b"ROT"),
+            _ => false,
+        };
+        if !known {
+            return Err(s.error(
+                "unknown-word",
+                span,
+                "this word is not understood in a PLANE block",
+            ));
+        }
+    }
+    positioning.ok_or_else(|| {
+        let message = "the block must say what the rotary axes do";
+        s.error_block("plane", message).help("TURN FMAX, MOVE FMAX or STAY").into()
+    })
+}
+
+/// Behind TURN or MOVE: `MB MAX` and the feed, in any order.
+fn turning(s: &mut Scanner) -> Result<Positioning> {
+    let (mut rapid, mut retract) = (None, false);
+    loop {
+        if s.peek().starts_with(b"F") && rapid.is_none() {
+            let Some(word) = s.word()? else { break };
+            rapid = Some(feed_word(s, &word)? == super::words::FeedWord::Max);
+        } else if s.peek() == b"MB" && !retract {
+            s.expect(b"MB")?;
+            s.expect(b"MAX")?;
+            retract = true;
+        } else {
+            break;
+        }
+    }
+    let rapid = rapid
+        .ok_or_else(|| s.error_block("feed", "the turning of the rotary axes needs F or FMAX"))?;
+    Ok(Positioning::Turn { rapid, retract })
+}

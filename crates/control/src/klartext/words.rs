@@ -1,0 +1,221 @@
+//! The words of a positioning block, read and checked before anything moves.
+
+use super::functions::{Function, Functions};
+use super::scan::{Result, Scanner, Word};
+use super::state::Control;
+use program::Compensation;
+
+/// Where a word's value is kept. The first six are the axes in the order of their coordinates.
+pub(super) mod slot {
+    /// X, the first of the linear axes.
+    pub(crate) const X: usize = 0;
+    /// Y.
+    pub(crate) const Y: usize = 1;
+    /// Z.
+    pub(crate) const Z: usize = 2;
+    /// A, the first of the rotary axes.
+    pub(crate) const A: usize = 3;
+    /// Polar radius.
+    pub(crate) const PR: usize = 6;
+    /// Polar angle.
+    pub(crate) const PA: usize = 7;
+    /// Radius of `CR`.
+    pub(crate) const R: usize = 8;
+    /// First of the surface normal NX NY NZ.
+    pub(crate) const NX: usize = 9;
+    /// First of the tool vector TX TY TZ.
+    pub(crate) const TX: usize = 12;
+    /// How many there are.
+    pub(crate) const COUNT: usize = 15;
+}
+
+/// X, Y and Z.
+pub(super) const LINEAR: u16 = 0b111;
+/// A, B and C.
+pub(super) const ROTARY: u16 = 0b111 << slot::A;
+/// NX NY NZ and TX TY TZ.
+pub(super) const VECTORS: u16 = 0b11_1111 << slot::NX;
+/// Polar radius.
+pub(super) const PR: u16 = 1 << slot::PR;
+/// Polar angle.
+pub(super) const PA: u16 = 1 << slot::PA;
+/// Radius of `CR`.
+pub(super) const RADIUS: u16 = 1 << slot::R;
+/// Sense of rotation `DR+`, `DR-`.
+pub(super) const TURN: u16 = 1 << 15;
+
+/// What an F word says.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum FeedWord {
+    /// `F` with a number, in the unit of the program.
+    Value(f64),
+    /// `FU`: per turn of the spindle, in the unit of the program.
+    PerTurn(f64),
+    /// `FMAX`: rapid in this block.
+    Max,
+}
+
+/// The words of one block. Lengths are mm.
+#[derive(Default)]
+pub(super) struct Words {
+    value: [f64; slot::COUNT],
+    given: u16,
+    incremental: u16,
+    /// Sense of rotation: 1 counter-clockwise, −1 clockwise; 0 where the block does not say.
+    pub(super) turn: f64,
+    /// F, FU or FMAX.
+    pub(super) feed: Option<FeedWord>,
+    /// R0, RL or RR.
+    pub(super) compensation: Option<Compensation>,
+    /// M functions.
+    pub(super) functions: Functions,
+}
+
+impl Words {
+    /// Reads words to the end of the block. Those of `allowed` may stand there, besides feed, radius
+    /// compensation and M functions.
+    pub(super) fn read(s: &mut Scanner, allowed: u16, control: &Control) -> Result<Words> {
+        let mut words = Words::default();
+        while let Some(word) = s.word()? {
+            words.add(s, &word, allowed, control)?;
+        }
+        Ok(words)
+    }
+
+    /// The value of a slot, where the block gives one.
+    pub(super) fn get(&self, slot: usize) -> Option<f64> {
+        self.has(1 << slot).then(|| self.value[slot])
+    }
+
+    /// Puts an absolute value in the place of a word that the block gave in another way.
+    pub(super) fn set(&mut self, slot: usize, value: f64) {
+        self.value[slot] = value;
+        self.given |= 1 << slot;
+    }
+
+    /// Whether any of a set of words stands in the block.
+    pub(super) fn has(&self, set: u16) -> bool {
+        self.given & set != 0
+    }
+
+    /// Whether all of a set of words stand in the block.
+    pub(super) fn has_all(&self, set: u16) -> bool {
+        self.given & set == set
+    }
+
+    /// Whether any of a set of words is incremental.
+    pub(super) fn is_incremental(&self, set: u16) -> bool {
+        self.incremental & set != 0
+    }
+
+    /// Where a coordinate goes that is at `here` now.
+    pub(super) fn target(&self, slot: usize, here: f64) -> f64 {
+        match self.get(slot) {
+            Some(step) if self.is_incremental(1 << slot) => here + step,
+            Some(value) => value,
+            None => here,
+        }
+    }
+
+    fn add(&mut self, s: &mut Scanner, word: &Word, allowed: u16, control: &Control) -> Result<()> {
+        let unit = control.unit;
+        let (incremental, address) = match word.address {
+            [b'I', rest @ ..] if !rest.is_empty() => (true, rest),
+            address => (false, address),
+        };
+        let found = match address {
+            [axis @ b'X'..=b'Z'] => (slot::X + usize::from(axis - b'X'), unit),
+            [axis @ b'A'..=b'C'] => (slot::A + usize::from(axis - b'A'), 1.0),
+            b"PR" => (slot::PR, unit),
+            b"PA" => (slot::PA, 1.0),
+            _ if incremental => return Err(unknown(s, word)),
+            b"F" | b"FU" | b"FMAX" | b"FAUTO" => {
+                let feed = feed_word(s, word)?;
+                return once(s, word, &mut self.feed, feed);
+            }
+            b"M" => return self.add_function(s, word, control),
+            b"R" if allowed & RADIUS != 0 && word.sign != 0.0 => (slot::R, unit),
+            b"R" if word.sign == 0.0 && word.number == Some(0.0) => {
+                return once(s, word, &mut self.compensation, Compensation::Off);
+            }
+            b"RL" if word.number.is_none() => {
+                return once(s, word, &mut self.compensation, Compensation::Left(None));
+            }
+            b"RR" if word.number.is_none() => {
+                return once(s, word, &mut self.compensation, Compensation::Right(None));
+            }
+            b"DR" if allowed & TURN != 0 && word.sign != 0.0 && word.number.is_none() => {
+                if self.turn != 0.0 {
+                    return Err(twice(s, word));
+                }
+                self.turn = word.sign;
+                return Ok(());
+            }
+            [b'N', axis @ b'X'..=b'Z'] => (slot::NX + usize::from(axis - b'X'), 1.0),
+            [b'T', axis @ b'X'..=b'Z'] => (slot::TX + usize::from(axis - b'X'), 1.0),
+            _ => return Err(unknown(s, word)),
+        };
+        let (slot, scale) = found;
+        let Some(number) = word.number.filter(|_| allowed & (1 << slot) != 0) else {
+            return Err(unknown(s, word));
+        };
+        if self.has(1 << slot) {
+            return Err(twice(s, word));
+        }
+        self.value[slot] = number * scale;
+        self.given |= 1 << slot;
+        self.incremental |= u16::from(incremental) << slot;
+        Ok(())
+    }
+
+    fn add_function(&mut self, s: &mut Scanner, word: &Word, control: &Control) -> Result<()> {
+        let function = Function::read(s, word, control)?;
+        self.functions.push(function).map_err(|message| s.error("m-function", word.span, message))
+    }
+}
+
+/// What an F word says; `F MAX` may be written with a blank.
+pub(super) fn feed_word(s: &mut Scanner, word: &Word) -> Result<FeedWord> {
+    match (word.address, word.number) {
+        (b"FMAX", None) => Ok(FeedWord::Max),
+        (b"F", None) if word.sign == 0.0 && s.take(b"MAX") => Ok(FeedWord::Max),
+        (b"F" | b"FU", Some(number)) => {
+            if number <= 0.0 {
+                return Err(s.error("feed", word.span, "a feed must be greater than 0"));
+            }
+            Ok(if word.address == b"F" {
+                FeedWord::Value(number)
+            } else {
+                FeedWord::PerTurn(number)
+            })
+        }
+        (b"FAUTO", None) => Err(automatic(s, word)),
+        (b"F", None) if s.peek() == b"AUTO" => Err(automatic(s, word)),
+        _ => Err(unknown(s, word)),
+    }
+}
+
+fn automatic(s: &Scanner, word: &Word) -> Box<program::Diagnostic> {
+    s.error("feed", word.span, "F AUTO takes the feed from a table that is not at hand")
+        .help("write the feed as a number")
+        .into()
+}
+
+fn once<T>(s: &Scanner, word: &Word, place: &mut Option<T>, value: T) -> Result<()> {
+    match place.replace(value) {
+        None => Ok(()),
+        Some(_) => Err(twice(s, word)),
+    }
+}
+
+/// A word that is not understood where it stands.
+pub(super) fn unknown(s: &Scanner, word: &Word) -> Box<program::Diagnostic> {
+    let address = String::from_utf8_lossy(word.address);
+    let message = format!("the word {address} is not understood here");
+    s.error("unknown-word", word.span, message)
+}
+
+fn twice(s: &Scanner, word: &Word) -> Box<program::Diagnostic> {
+    let address = String::from_utf8_lossy(word.address);
+    s.error("word-twice", word.span, format!("{address} stands twice in the block"))
+}
