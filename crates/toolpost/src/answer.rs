@@ -1,0 +1,151 @@
+//! What a command has to say, and where it is said: findings to the error stream, the rest to the
+//! output, or everything as one JSON object.
+
+use program::Diagnostic;
+use serde_json::{Map, Value, json};
+use std::io::{self, Write};
+use std::process::ExitCode;
+
+/// How a command ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// What was asked for is done.
+    Done,
+    /// The machine cannot do it, or the proof failed.
+    Failed,
+    /// The input or the call is wrong.
+    Invalid,
+}
+
+impl Verdict {
+    fn name(self) -> &'static str {
+        match self {
+            Verdict::Done => "done",
+            Verdict::Failed => "failed",
+            Verdict::Invalid => "invalid",
+        }
+    }
+
+    fn code(self) -> u8 {
+        match self {
+            Verdict::Done => 0,
+            Verdict::Failed => 1,
+            Verdict::Invalid => 2,
+        }
+    }
+}
+
+/// The answer of a command.
+#[derive(Debug)]
+pub struct Answer {
+    verdict: Verdict,
+    text: String,
+    /// Whether the text only tells what was done, so that `--quiet` drops it.
+    summary: bool,
+    /// The same as the text, for machines: an object.
+    data: Value,
+    findings: Vec<Diagnostic>,
+}
+
+/// What stops a command: how it ended, and why.
+#[derive(Debug)]
+pub struct Stop {
+    /// How.
+    pub verdict: Verdict,
+    /// Why.
+    pub findings: Vec<Diagnostic>,
+}
+
+/// A finding that stops a command is about its input, unless the command says otherwise.
+impl From<Box<Diagnostic>> for Stop {
+    fn from(finding: Box<Diagnostic>) -> Stop {
+        Stop { verdict: Verdict::Invalid, findings: vec![*finding] }
+    }
+}
+
+impl From<Diagnostic> for Stop {
+    fn from(finding: Diagnostic) -> Stop {
+        Box::new(finding).into()
+    }
+}
+
+impl Answer {
+    /// What was asked for.
+    pub fn product(text: impl Into<String>, data: Value) -> Answer {
+        let (verdict, findings) = (Verdict::Done, Vec::new());
+        Answer { verdict, text: text.into(), summary: false, data, findings }
+    }
+
+    /// What was done.
+    pub fn summary(verdict: Verdict, text: impl Into<String>, data: Value) -> Answer {
+        Answer { verdict, summary: true, ..Answer::product(text, data) }
+    }
+
+    /// With findings.
+    pub fn findings(mut self, findings: Vec<Diagnostic>) -> Answer {
+        self.findings.extend(findings);
+        self
+    }
+
+    /// Says it, and answers the exit code.
+    pub fn say(self, quiet: bool, json: bool) -> ExitCode {
+        let code = self.verdict.code();
+        let said = if json { self.say_json() } else { self.say_text(quiet) };
+        match said {
+            Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
+                let _ = writeln!(io::stderr(), "error: the answer cannot be printed: {error}");
+                ExitCode::from(Verdict::Invalid.code().max(code))
+            }
+            _ => ExitCode::from(code),
+        }
+    }
+
+    fn say_text(self, quiet: bool) -> io::Result<()> {
+        let mut err = io::stderr().lock();
+        for finding in self.findings.iter().filter(|f| f.is_error() || !quiet) {
+            writeln!(err, "{}", printable(&finding.to_string()))?;
+        }
+        let mut out = io::stdout().lock();
+        if !(quiet && self.summary) {
+            out.write_all(printable(&self.text).as_bytes())?;
+        }
+        out.flush()
+    }
+
+    fn say_json(self) -> io::Result<()> {
+        let (errors, warnings): (Vec<_>, Vec<_>) =
+            self.findings.into_iter().partition(Diagnostic::is_error);
+        let mut object = Map::new();
+        object.insert("status".into(), self.verdict.name().into());
+        if let Value::Object(data) = self.data {
+            object.extend(data);
+        }
+        object.insert("errors".into(), json!(errors));
+        object.insert("warnings".into(), json!(warnings));
+        let mut out = io::stdout().lock();
+        serde_json::to_writer_pretty(&mut out, &object)?;
+        writeln!(out)?;
+        out.flush()
+    }
+}
+
+impl From<Stop> for Answer {
+    fn from(stop: Stop) -> Answer {
+        Answer::summary(stop.verdict, "", Value::Null).findings(stop.findings)
+    }
+}
+
+/// Text from a file may hold control characters that would steer a terminal: they show as blanks.
+fn printable(text: &str) -> String {
+    text.chars().map(|c| if c.is_control() && c != '\n' && c != '\t' { ' ' } else { c }).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_steers_a_terminal_is_not_printed() {
+        assert_eq!(printable("a\u{1b}[2Jb\r\n\tc"), "a [2Jb \n\tc");
+    }
+}

@@ -1,0 +1,211 @@
+//! Files: read whole, and written whole or not at all.
+
+use program::Diagnostic;
+use std::fs::{self, File};
+use std::io::{self, Read, Write};
+use std::path::{Path, PathBuf};
+use tempfile::{Builder, NamedTempFile};
+
+/// The largest file that is read, bytes: more lines than a line number counts.
+const LARGEST: u64 = 4 << 30;
+
+/// The bytes of a file.
+///
+/// # Errors
+/// Where it cannot be opened, is no file (a folder, a device), or is larger than the memory or 4 GiB.
+pub fn read(path: &Path) -> Result<Vec<u8>, Box<Diagnostic>> {
+    let unreadable = |why: String| about(path, "unreadable", format!("cannot be read: {why}"));
+    // Looked at before it is opened: opening a pipe would wait for ever.
+    let metadata = fs::metadata(path).map_err(|error| unreadable(error.to_string()))?;
+    if !metadata.is_file() {
+        return Err(unreadable(String::from("it is not a file")).into());
+    }
+    if metadata.len() > LARGEST {
+        return Err(unreadable(format!("it is larger than {} GiB", LARGEST >> 30)).into());
+    }
+    let mut bytes = Vec::new();
+    let room = usize::try_from(metadata.len()).unwrap_or(usize::MAX);
+    bytes.try_reserve_exact(room).map_err(|error| unreadable(error.to_string()))?;
+    let file = File::open(path).map_err(|error| unreadable(error.to_string()))?;
+    // A file that grows while it is read ends where it ended.
+    file.take(metadata.len()).read_to_end(&mut bytes).map_err(|e| unreadable(e.to_string()))?;
+    Ok(bytes)
+}
+
+/// The name of a file, for findings and reports: without its folder, so that they do not depend on
+/// where it lies.
+pub fn name(path: &Path) -> String {
+    path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
+}
+
+/// A place where a file will be saved, looked at before the work begins.
+#[derive(Debug)]
+pub struct Target {
+    /// The path as it was given.
+    given: PathBuf,
+    /// The file itself, links followed.
+    path: PathBuf,
+    folder: PathBuf,
+}
+
+impl Target {
+    /// The file `path`, which must be none of `inputs`.
+    ///
+    /// # Errors
+    /// Where its folder is missing, it is no ordinary file, or it is one of the inputs, by whatever
+    /// links.
+    pub fn new(path: &Path, inputs: &[&Path]) -> Result<Target, Box<Diagnostic>> {
+        let refused = |rule, why: &str, way_out: &str| {
+            Err(about(path, rule, format!("cannot be saved: {why}")).help(way_out).into())
+        };
+        if path.file_name().is_none() {
+            return refused("output", "it names no file", "give a file name");
+        }
+        let existing = fs::metadata(path);
+        let linked = fs::symlink_metadata(path).is_ok_and(|metadata| metadata.is_symlink());
+        let resolved = match &existing {
+            Ok(metadata) if !metadata.is_file() => {
+                return refused("output", "it is not a file", "give the name of a file");
+            }
+            Ok(_) => fs::canonicalize(path).unwrap_or_else(|_| path.to_owned()),
+            Err(_) if linked => {
+                return refused("output", "it is a link to nothing", "remove the link");
+            }
+            Err(_) => path.to_owned(),
+        };
+        let folder = match resolved.parent() {
+            Some(folder) if !folder.as_os_str().is_empty() => folder.to_owned(),
+            _ => PathBuf::from("."),
+        };
+        if !folder.is_dir() {
+            let why = format!("there is no folder {}", folder.display());
+            return refused("output-folder", &why, "make the folder first");
+        }
+        if inputs.iter().any(|input| same_file(&resolved, input)) {
+            return refused("output", "it is the input itself", "give another name");
+        }
+        Ok(Target { given: path.to_owned(), path: resolved, folder })
+    }
+
+    fn full(&self, error: &io::Error) -> Diagnostic {
+        about(&self.given, "output", format!("cannot be saved: {error}"))
+            .help("nothing was changed; make room or give another folder")
+    }
+
+    /// A file in the same folder, gone when it is dropped.
+    fn beside(&self) -> io::Result<NamedTempFile> {
+        let mut builder = Builder::new();
+        builder.prefix(".toolpost-");
+        #[cfg(unix)]
+        {
+            use std::os::unix::fs::PermissionsExt;
+            let ordinary = fs::Permissions::from_mode(0o666);
+            let same = fs::metadata(&self.path).map(|metadata| metadata.permissions());
+            builder.permissions(same.unwrap_or(ordinary));
+        }
+        builder.tempfile_in(&self.folder)
+    }
+}
+
+/// Saves all of the files or, where one cannot be saved, none: what was there before stays. A copy of
+/// what is there is kept of all but the last, so the largest should be the last.
+///
+/// # Errors
+/// The file that could not be saved, and why.
+pub fn save(files: &[(&Target, &[u8])]) -> Result<(), Box<Diagnostic>> {
+    let mut staged = Vec::with_capacity(files.len());
+    for (i, (target, bytes)) in files.iter().enumerate() {
+        let kept = i + 1 < files.len() && target.path.exists();
+        let stage = || -> io::Result<_> {
+            let mut new = target.beside()?;
+            new.write_all(bytes)?;
+            new.as_file().sync_all()?;
+            let old = kept.then(|| target.beside()).transpose()?;
+            if let Some(old) = &old {
+                fs::copy(&target.path, old.path())?;
+            }
+            Ok((*target, new, old))
+        };
+        staged.push(stage().map_err(|error| target.full(&error))?);
+    }
+    let mut saved: Vec<(&Target, Option<NamedTempFile>)> = Vec::with_capacity(files.len());
+    for (target, new, old) in staged {
+        if let Err(error) = new.persist(&target.path) {
+            for (target, old) in saved {
+                let _ = match old {
+                    Some(old) => old.persist(&target.path).map(drop).map_err(|e| e.error),
+                    None => fs::remove_file(&target.path),
+                };
+            }
+            return Err(target.full(&error.error).into());
+        }
+        saved.push((target, old));
+    }
+    for (target, _) in &saved {
+        // The names are safe once the folder is; where that cannot be asked for, nothing is lost.
+        let _ = File::open(&target.folder).and_then(|folder| folder.sync_all());
+    }
+    Ok(())
+}
+
+/// A finding about a file as a whole.
+fn about(path: &Path, rule: &'static str, message: String) -> Diagnostic {
+    Diagnostic::error(rule, message).file(path.display().to_string())
+}
+
+/// Whether two paths are one file, also by links of either kind.
+fn same_file(a: &Path, b: &Path) -> bool {
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::MetadataExt;
+        let identity = |path| fs::metadata(path).map(|m| (m.dev(), m.ino()));
+        matches!((identity(a), identity(b)), (Ok(a), Ok(b)) if a == b)
+    }
+    #[cfg(not(unix))]
+    {
+        matches!((fs::canonicalize(a), fs::canonicalize(b)), (Ok(a), Ok(b)) if a == b)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn names(folder: &Path) -> Vec<String> {
+        let mut names: Vec<_> =
+            fs::read_dir(folder).unwrap().map(|e| name(&e.unwrap().path())).collect();
+        names.sort();
+        names
+    }
+
+    #[test]
+    fn when_the_second_file_cannot_be_saved_the_first_is_as_before() {
+        let folder = tempfile::tempdir().unwrap();
+        let (a, b) = (folder.path().join("a"), folder.path().join("b"));
+        for before in [None, Some("before")] {
+            if let Some(before) = before {
+                fs::write(&a, before).unwrap();
+            }
+            let (first, second) = (Target::new(&a, &[]).unwrap(), Target::new(&b, &[]).unwrap());
+            // A folder that appears after the check, so that the rename fails.
+            fs::create_dir(&b).unwrap();
+            fs::write(b.join("in the way"), "").unwrap();
+            assert!(save(&[(&first, b"new"), (&second, b"new")]).is_err());
+            fs::remove_dir_all(&b).unwrap();
+            assert_eq!(fs::read_to_string(&a).ok().as_deref(), before);
+            assert_eq!(names(folder.path()).len(), usize::from(before.is_some()));
+        }
+    }
+
+    #[test]
+    fn a_file_is_replaced_with_its_permissions_kept_and_nothing_left_beside_it() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a.mpf");
+        fs::write(&path, "old").unwrap();
+        let before = fs::metadata(&path).unwrap().permissions();
+        save(&[(&Target::new(&path, &[]).unwrap(), b"new")]).unwrap();
+        assert_eq!(fs::read_to_string(&path).unwrap(), "new");
+        assert_eq!(fs::metadata(&path).unwrap().permissions(), before);
+        assert_eq!(names(folder.path()), ["a.mpf"]);
+    }
+}

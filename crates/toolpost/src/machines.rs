@@ -1,0 +1,98 @@
+//! `toolpost machines`: the library, and files of one's own.
+
+use crate::answer::{Answer, Stop, Verdict};
+use crate::args::Machines;
+use crate::files::{self, Target};
+use crate::{summary, toolpath};
+use machine::{Machine, library};
+use program::Diagnostic;
+use serde_json::{Value, json};
+use std::path::Path;
+
+/// Lists, prints, starts or checks machines.
+pub fn run(command: &Machines) -> Result<Answer, Stop> {
+    match command {
+        Machines::List => list(),
+        Machines::Show { name } => show(name),
+        Machines::New { name, from } => new(name, from),
+        Machines::Check { file } => check(file),
+    }
+}
+
+fn list() -> Result<Answer, Stop> {
+    let machines: Result<Vec<Machine>, Stop> =
+        library::names(library::MACHINES).map(toolpath::machine).collect();
+    let machines = machines?;
+    let lines: Vec<_> = machines.iter().map(|m| (m.name.as_str(), m.title.clone())).collect();
+    let data: Vec<Value> = machines.iter().map(describe).collect();
+    Ok(Answer::product(summary::rows(&lines), json!({ "machines": data })))
+}
+
+/// The text of a file of the library.
+fn show(name: &str) -> Result<Answer, Stop> {
+    let text = library_text(name)?;
+    Ok(Answer::product(text, json!({ "name": name, "text": text })))
+}
+
+/// Copies a machine to a new file of this folder.
+fn new(name: &str, from: &str) -> Result<Answer, Stop> {
+    let plain = |c: char| c.is_ascii_alphanumeric() || matches!(c, '-' | '_');
+    if name.is_empty() || !name.chars().all(plain) {
+        return Err(Diagnostic::error(
+            "machine-name",
+            format!("`{name}` is no name for a machine"),
+        )
+        .help("letters, digits, - and _ make a name; the file is NAME.toml in this folder")
+        .into());
+    }
+    let path = Path::new(name).with_extension("toml");
+    if path.symlink_metadata().is_ok() {
+        return Err(Diagnostic::error("output", "there is such a file already")
+            .file(path.display().to_string())
+            .help("give another name, or edit the file that is there")
+            .into());
+    }
+    let text = if from.contains(['/', '\\']) || from.ends_with(".toml") {
+        let bytes = files::read(Path::new(from))?;
+        String::from_utf8(bytes)
+            .map_err(|_| Diagnostic::error("encoding", "this file is not UTF-8").file(from))?
+    } else {
+        library_text(from)?.to_owned()
+    };
+    let file = path.display().to_string();
+    let machine = machine::load_text(&file, &text)?;
+    let target = Target::new(&path, &[])?;
+    files::save(&[(&target, text.as_bytes())])?;
+    let lines =
+        [("saved", file.clone()), ("use it", format!("toolpost post ... --machine {file}"))];
+    let data = json!({ "file": file, "machine": describe(&machine) });
+    Ok(Answer::summary(Verdict::Done, summary::rows(&lines), data))
+}
+
+/// Loads a file and compiles its templates.
+fn check(file: &str) -> Result<Answer, Stop> {
+    let machine = toolpath::machine(file)?;
+    let lines = [("machine", machine.title.clone()), ("mistakes", String::from("none"))];
+    let data = json!({ "machine": describe(&machine) });
+    Ok(Answer::summary(Verdict::Done, summary::rows(&lines), data))
+}
+
+fn library_text(name: &str) -> Result<&'static str, Stop> {
+    let found = library::find(name, library::EVERYTHING).map(|(_, text)| text);
+    found.ok_or_else(|| {
+        let names: Vec<_> = library::names(library::EVERYTHING).collect();
+        Diagnostic::error("unknown-machine", format!("`{name}` is not in the library"))
+            .help(format!("there are {}", names.join(", ")))
+            .into()
+    })
+}
+
+fn describe(machine: &Machine) -> Value {
+    json!({
+        "name": machine.name,
+        "title": machine.title,
+        "control": machine.control,
+        "reader": machine.reader,
+        "extension": machine.extension,
+    })
+}
