@@ -441,8 +441,30 @@ L X+1 Y+2 Z+3",
     assert_eq!(poses[3], Pose { orientation: rotary(40.0, -90.0, true), ..poses[2] });
     assert_eq!(poses[4].orientation, rotary(40.0, -90.0, false));
     // The same numbers are another place, so a single word does not make the others known.
-    let ops = run_five("L X+1 Y+2 Z+3 B+30 C+0 R0 FMAX\nM128\nL X+1 F100");
-    assert!(ops.iter().filter_map(Op::pose).next_back().unwrap().point.y.is_nan());
+    let error = refused_five("L X+1 Y+2 Z+3 B+30 C+0 R0 FMAX\nM128\nL X+1 F100");
+    assert!(error.message.contains("Y, Z"), "{error}");
+}
+
+#[test]
+fn the_seeds_of_the_fuzz_target_are_legal_programs() {
+    let seeds = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds/klartext");
+    for (name, rotary) in
+        [("milling.h", [false; 3]), ("drilling.h", [false; 3]), ("tilted.h", FIVE_AXES)]
+    {
+        let text = std::fs::read(seeds.join(name)).unwrap();
+        let records = read_on(rotary, &text).unwrap_or_else(|error| panic!("{name}: {error}"));
+        assert_eq!(records.last().unwrap().op, Op::End);
+    }
+}
+
+#[test]
+fn nothing_cuts_where_the_axes_are_not_known() {
+    assert!(refused_five("L X+1 Y+2 Z+3 FMAX\nL X+2 F100").message.contains("B, C"));
+    assert!(refused("L X+1 Y+2 FMAX\nL X+2 F100").message.contains("Z"));
+    let error = refused_five(&format!(
+        "TOOL CALL 1 Z S1 F1\nL X+1 Y+2 Z+3 B+30 C+0 FMAX\nM128\nL X+1 Y+2 FMAX\n{DRILLING}CYCL CALL"
+    ));
+    assert_eq!(error.rule, "cycle");
 }
 
 #[test]

@@ -5,7 +5,7 @@ use super::scan::{Result, Scanner};
 use super::state::{AXES, Control, Tip};
 use super::words::{FeedWord, LINEAR, PA, PR, RADIUS, ROTARY, TURN, VECTORS, Words, slot};
 use geom::{Arc, ArcError, Vec3, direction};
-use program::{ArcTo, Compensation, Op};
+use program::{ArcTo, Compensation, Op, Orientation, Pose};
 
 /// By how much the radii at the two ends of an arc may differ, mm: the most that the machine
 /// parameter circleDeviation (MP7431) takes.
@@ -139,8 +139,31 @@ impl Control<'_, '_> {
                 self.forget_position();
             }
         }
-        let pose = self.pose(self.here);
-        self.emit(if rapid { Op::Rapid(pose) } else { Op::Line(pose) })
+        if rapid {
+            return self.emit(Op::Rapid(self.pose(self.here)));
+        }
+        self.emit(Op::Line(self.cutting_pose(s, self.here)?))
+    }
+
+    /// The pose at a programmed position where something is cut, which must be known.
+    pub(super) fn cutting_pose(&self, s: &Scanner, programmed: Vec3) -> Result<Pose> {
+        let pose = self.pose(programmed);
+        let rotary_known = match pose.orientation {
+            Orientation::Axis(axis) => axis.is_finite(),
+            Orientation::Rotary { degrees, .. } => degrees.iter().all(|d| d.is_finite()),
+        };
+        if pose.point.is_finite() && rotary_known {
+            return Ok(pose);
+        }
+        let unknown: Vec<String> = (0..6)
+            .filter(|i| match i {
+                0..3 => programmed[*i].is_nan(),
+                _ => !rotary_known && self.degrees[i - 3].is_nan(),
+            })
+            .map(|i| AXES[i].to_string())
+            .collect();
+        let message = format!("a cut where the position of {} is not known", unknown.join(", "));
+        Err(s.error_block("unknown-position", message).help("move there with FMAX first").into())
     }
 
     /// `M91`, `M92`: the axes go to a place of the machine; where that is in the work is not known.
@@ -324,7 +347,7 @@ impl Control<'_, '_> {
         self.set_feed(s, words.feed)?;
         self.needs_feed(s, false)?;
         let arc = ArcTo {
-            end: self.pose(end),
+            end: self.cutting_pose(s, end)?,
             center: self.work_point(center),
             normal: self.work_direction(normal),
             turns,

@@ -235,25 +235,41 @@ impl<'t> Scanner<'t> {
             Some(b'-') => -1.0,
             _ => 0.0,
         };
-        if sign != 0.0 {
-            self.at += 1;
-        }
+        self.at += usize::from(sign != 0.0);
         let start = self.at;
-        let mut points = 0;
-        while let Some(b @ (b'0'..=b'9' | b'.')) = self.byte() {
-            points += usize::from(b == b'.');
-            if points > 1 {
-                break;
+        let (mut digits, mut point, mut whole) = (0, None, 0u64);
+        let rest = self.text.get(start..self.end).unwrap_or_default();
+        for byte in rest {
+            match byte {
+                b'0'..=b'9' => {
+                    whole = whole.wrapping_mul(10).wrapping_add(u64::from(byte - b'0'));
+                    digits += 1;
+                }
+                b'.' if point.is_none() => point = Some(digits),
+                _ => break,
             }
-            self.at += 1;
         }
-        let digits = self.text.get(start..self.at).unwrap_or_default();
-        let number = std::str::from_utf8(digits).ok().and_then(|d| d.parse::<f64>().ok());
-        if number.is_none() {
-            self.at = start;
+        if digits == 0 {
+            return (sign, None);
         }
+        self.at += digits + usize::from(point.is_some());
+        let decimals = point.map_or(0, |point| digits - point);
+        let number = match POWERS.get(decimals) {
+            // Both are exact, so their quotient is the nearest number there is.
+            Some(power) if digits <= 15 => whole as f64 / power,
+            _ => rest.get(..self.at - start).map_or(f64::NAN, long_number),
+        };
         // A zero has no sign: -0 would print and compare oddly.
-        let signed = |n: f64| if sign < 0.0 && n != 0.0 { -n } else { n };
-        (sign, number.filter(|n| n.is_finite()).map(signed))
+        let signed = if sign < 0.0 && number != 0.0 { -number } else { number };
+        (sign, Some(signed).filter(|n| n.is_finite()))
     }
+}
+
+/// Powers of ten that are exact.
+const POWERS: [f64; 16] =
+    [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15];
+
+/// A number with more digits than a mantissa holds.
+fn long_number(text: &[u8]) -> f64 {
+    std::str::from_utf8(text).ok().and_then(|text| text.parse().ok()).unwrap_or(f64::NAN)
 }

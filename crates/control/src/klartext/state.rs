@@ -331,15 +331,17 @@ impl<'a, 's> Control<'a, 's> {
             let left = matches!(self.spindle, Spindle::CounterClockwise(_));
             cycle.kind = CycleKind::Tap { pitch: feed / speed, left };
         }
-        if !self.here.x.is_finite() || !self.here.y.is_finite() {
-            return Err(s.error_block("unknown-position", "X and Y of the hole are not known"));
+        // The cycle drills along Z of the coordinates of the program.
+        if self.tip != Tip::Free && self.tilt.is_none() && !self.stands_upright() {
+            let message = "with M128 a cycle does not drill along an inclined tool";
+            return Err(s.error_block("cycle", message).help("use PLANE SPATIAL").into());
         }
+        let hole = self.cutting_pose(s, self.here.with_z(surface))?;
         if self.told != Some(cycle) {
             self.told = Some(cycle);
             self.emit(Op::Cycle(Box::new(cycle)))?;
         }
-        self.here.z = surface;
-        self.emit(Op::Hole(self.pose(self.here)))?;
+        self.emit(Op::Hole(hole))?;
         self.here.z = surface + cycle.retract;
         Ok(())
     }

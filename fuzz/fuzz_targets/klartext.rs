@@ -1,0 +1,32 @@
+//! Any bytes as a Klartext program: no panic, and what runs makes sense.
+#![no_main]
+
+use control::{Dialect, Settings, read};
+use libfuzzer_sys::fuzz_target;
+use program::{Op, Orientation};
+
+fuzz_target!(|data: &[u8]| {
+    for rotary in [[false; 3], [false, true, true]] {
+        let settings = Settings { dialect: Dialect::Klartext, rotary, auxiliary: vec![60] };
+        let lines = data.split(|byte| matches!(byte, b'\n' | b'\r')).count();
+        let mut line = 0;
+        let mut ended = false;
+        let ran = read(&settings, "fuzz.h", data, &mut |record| {
+            assert!(!ended && record.line >= line && record.line as usize <= lines);
+            line = record.line;
+            ended = record.op == Op::End;
+            if let Op::Arc(arc) = &record.op {
+                assert!(arc.end.point.is_finite() && arc.center.is_finite());
+                assert!((arc.normal.length() - 1.0).abs() < 1e-9);
+            }
+            if let Some(Orientation::Axis(axis)) = record.op.pose().map(|pose| pose.orientation) {
+                assert!(axis.is_nan() || (axis.length() - 1.0).abs() < 1e-9);
+            }
+            Ok(())
+        });
+        match ran {
+            Ok(()) => assert!(ended),
+            Err(error) => assert!(error.line > 0 && error.column > 0 && error.is_error()),
+        }
+    }
+});
