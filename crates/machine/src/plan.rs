@@ -280,7 +280,9 @@ impl<'a> Search<'a> {
         let mut reached = false;
         for j in 0..next.states.count {
             let (mut best, mut from) = (f64::INFINITY, 0);
-            for i in front.states.order(j < next.states.first) {
+            for k in 0..front.states.count {
+                // Those of the same solution first: they are near.
+                let i = if j < next.states.first { k } else { front.states.count - 1 - k };
                 let a = &front.states.pairs[i];
                 let (travel, farthest) = self.plan.travel(a, &next.states.pairs[j]);
                 let cost = front.cost[i] + travel;
@@ -417,6 +419,12 @@ fn unreachable(target: &Target, error: &Unreachable) -> Box<Diagnostic> {
         .into()
 }
 
+/// The least whole number that is not below `x`: `ceil` for numbers of turns, without its call.
+fn up(x: f64) -> f64 {
+    let whole = x as i64 as f64;
+    if whole < x { whole + 1.0 } else { whole }
+}
+
 impl Axis {
     /// The travel in which the operation is planned. Where an axis turns so often that its states
     /// would be too many, it is planned in the turns around where it stands.
@@ -455,12 +463,14 @@ impl Axis {
     /// The positions within the travel that are `base` (−180, 180] but for whole turns.
     fn turns(&self, base: f64) -> impl Iterator<Item = f64> + use<> {
         let Axis { min, max, unlimited } = *self;
-        let first = if unlimited { 0.0 } else { ((min - base - SLACK) / 360.0).ceil() };
-        let last = if unlimited { 0.0 } else { ((max - base + SLACK) / 360.0).floor() };
-        (0..STATES / 2)
-            .map(move |i| first + i as f64)
-            .take_while(move |turn| *turn <= last)
-            .map(move |turn| (base + 360.0 * turn).max(min).min(max))
+        let (first, count) = if unlimited {
+            (base, 1)
+        } else {
+            let first = up((min - base - SLACK) / 360.0);
+            let last = -up((base - max - SLACK) / 360.0);
+            (base + 360.0 * first, (last - first + 1.0) as usize)
+        };
+        (0..count.min(STATES)).map(move |i| (first + 360.0 * i as f64).max(min).min(max))
     }
 
     /// The position within the travel nearest to `position`.
@@ -473,21 +483,11 @@ impl Axis {
     fn way(&self, from: f64, to: f64) -> f64 {
         let way = to - from;
         // Half a turn is taken upwards, also where rounding makes it a little more.
-        if self.unlimited { way - 360.0 * (way / 360.0 - 0.5 - 1e-9).ceil() } else { way }
+        if self.unlimited { way - 360.0 * up(way / 360.0 - 0.5 - 1e-9) } else { way }
     }
 
     fn off_center(&self, position: f64) -> f64 {
         if self.unlimited { 0.0 } else { (position - (self.min + self.max) / 2.0).abs() }
-    }
-}
-
-impl States {
-    /// The numbers of the states, those of the same solution first: they are near.
-    fn order(&self, first_solution: bool) -> impl Iterator<Item = usize> + use<> {
-        let (first, count) = (self.first, self.count);
-        let (a, b) =
-            if first_solution { (0..first, first..count) } else { (first..count, 0..first) };
-        a.chain(b)
     }
 }
 
