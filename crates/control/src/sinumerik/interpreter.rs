@@ -1,0 +1,421 @@
+//! A block is carried out.
+//!
+//! Order within a block: assignments and G commands; then tool, offset, feed, spindle and coolant
+//! (auxiliary functions come before the motion, Function Manual H2); then the motion; then the hole of
+//! a modal cycle; then stops and the end of the program (`M0 M1 M2 M17 M30` come after the motion).
+
+use super::Fallible;
+use super::block::{Block, ToolCall};
+use super::call::{Call, Procedure};
+use super::commands::{Code, FeedType, Motion};
+use super::cycles::{Drilling, Pause};
+use super::scan::Source;
+use super::state::State;
+use crate::{Settings, Sink};
+use program::{Compensation, Coolant, Cycle, Feed, Op, Record, Spindle, Tool};
+
+/// Runs blocks.
+pub(super) struct Interpreter<'a> {
+    /// What is remembered.
+    pub state: State,
+    /// The machine.
+    pub settings: &'a Settings,
+    sink: &'a mut Sink<'a>,
+    reported_cycle: Option<Cycle>,
+}
+
+/// M functions of which a block has at most one, and those that stand for no motion at all.
+const STOPS: &[u32] = &[0, 1, 2, 17, 30];
+const SPINDLE: &[u32] = &[3, 4, 5];
+const COOLANT: &[u32] = &[7, 8, 9];
+/// Automatic gear stage, gear stages 1 to 5.
+const GEARS: std::ops::RangeInclusive<u32> = 40..=45;
+
+impl<'a> Interpreter<'a> {
+    /// At the start of a program.
+    pub fn new(settings: &'a Settings, sink: &'a mut Sink<'a>) -> Interpreter<'a> {
+        let state = State::new(settings.rotary);
+        Interpreter { state, settings, sink, reported_cycle: None }
+    }
+
+    /// Reports what happens.
+    #[inline]
+    pub fn emit(&mut self, source: &Source, op: Op) -> Fallible<()> {
+        (self.sink)(Record { line: source.line, op })
+    }
+
+    /// Carries out a block.
+    pub fn run(&mut self, source: &Source, block: &mut Block) -> Fallible<()> {
+        if let Some(comment) = block.comment.take() {
+            self.emit(source, Op::Comment(comment.into()))?;
+        }
+        if !block.any {
+            return Ok(());
+        }
+        for (index, value) in &block.assigned {
+            self.state.parameters.set(*index, *value);
+        }
+        if let Some(message) = block.message.take() {
+            self.emit(source, Op::Message(message.into()))?;
+        }
+        if let Some(call) = block.call.take() {
+            return self.call(source, block, &call);
+        }
+        self.check_m(source, block)?;
+        self.modes(source, block)?;
+        if let Some(Code::Frame(command)) = block.code(3) {
+            return self.frame_command(source, block, command);
+        }
+        match block.code(2) {
+            Some(Code::Dwell) => return self.dwell(source, block),
+            Some(Code::Home) => {
+                self.technology(source, block)?;
+                self.approach_fixed_point(source, block)?;
+            }
+            _ => {
+                self.technology(source, block)?;
+                self.motion(source, block)?;
+            }
+        }
+        self.stops(source, block)
+    }
+
+    fn check_m(&self, source: &Source, block: &Block) -> Fallible<()> {
+        for group in [STOPS, SPINDLE, COOLANT] {
+            if block.m.iter().flatten().filter(|m| group.contains(m)).count() > 1 {
+                let message = "two M functions of one kind in a block contradict each other";
+                return Err(source.block_error("group-conflict", message));
+            }
+        }
+        for m in block.m.iter().flatten() {
+            let known = *m == 6
+                || [STOPS, SPINDLE, COOLANT].iter().any(|group| group.contains(m))
+                || GEARS.contains(m)
+                || self.settings.auxiliary.contains(m);
+            if !known {
+                let message = format!("M{m} is not an M function of the control");
+                let mut error = source.block_error("unknown-m", message);
+                error.help =
+                    "a function of the machine's builder that moves no axis belongs in the \
+                              list of auxiliary functions of the machine"
+                        .into();
+                return Err(error);
+            }
+        }
+        Ok(())
+    }
+
+    /// The modal G commands.
+    fn modes(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+        let state = &mut self.state;
+        if let Some(Code::Motion(motion)) = block.code(1) {
+            state.motion = motion;
+        }
+        if let Some(Code::Plane(normal)) = block.code(6) {
+            if normal != state.plane_normal && state.compensation != Compensation::Off {
+                let message = "the plane changes while cutter radius compensation is active";
+                return Err(source.block_error("compensation", message));
+            }
+            state.plane_normal = normal;
+        }
+        if let Some(Code::Units(unit, of_feed)) = block.code(13) {
+            state.unit = unit;
+            // G70 and G71 leave feeds in the basic system, which is metric.
+            let feed_unit = if of_feed { unit } else { 1.0 };
+            if feed_unit != state.feed_unit {
+                state.feed_unit = feed_unit;
+                state.feed = None;
+            }
+        }
+        if let Some(Code::Absolute(absolute)) = block.code(14) {
+            state.absolute = absolute;
+        }
+        if let Some(Code::Feed(feed_type)) = block.code(15)
+            && feed_type != state.feed_type
+        {
+            state.feed_type = feed_type;
+            state.feed = None;
+        }
+        if let Some(Code::VectorsInWorkFrame(in_work_frame)) = block.code(25) {
+            state.vectors_in_work_frame = in_work_frame;
+        }
+        if let Some(Code::Compensation(compensation)) = block.code(7) {
+            self.select_compensation(source, compensation)?;
+        }
+        if let Some(Code::WorkOffset(number)) = block.code(8)
+            && number != self.state.work_offset
+        {
+            self.state.work_offset = number;
+            self.state.lose_position();
+            self.emit(source, Op::WorkOffset(number))?;
+        }
+        Ok(())
+    }
+
+    fn select_compensation(&mut self, source: &Source, compensation: Compensation) -> Fallible<()> {
+        if compensation == self.state.compensation {
+            return Ok(());
+        }
+        if !matches!(self.state.motion, Motion::Rapid | Motion::Line) {
+            let message = "cutter radius compensation is switched in a block with G0 or G1 \
+                           (alarms 10753, 10754)";
+            return Err(source.block_error("compensation", message));
+        }
+        self.state.compensation = compensation;
+        Ok(())
+    }
+
+    /// Tool, offset, feed, spindle, coolant.
+    fn technology(&mut self, source: &Source, block: &mut Block) -> Fallible<()> {
+        if block.tool.is_some() || block.edge.is_some() || block.has_m(6) {
+            self.tool(source, block)?;
+        }
+        if let Some(feed) = block.feed {
+            self.feed(source, feed)?;
+        }
+        if block.speed.is_some() || block.m[0].is_some() {
+            self.spindle_and_coolant(source, block)?;
+        }
+        Ok(())
+    }
+
+    fn tool(&mut self, source: &Source, block: &mut Block) -> Fallible<()> {
+        if let Some(call) = block.tool.take() {
+            let tool = match call {
+                ToolCall::Number(number) => Tool { number, ..Tool::default() },
+                ToolCall::Name(name) => Tool { name, ..Tool::default() },
+            };
+            // A name has no number to report before the change.
+            if !block.has_m(6) && tool.name.is_empty() {
+                self.emit(source, Op::Preselect(tool.number))?;
+            }
+            self.state.selected = Some(Box::new(tool));
+        }
+        let mut edge = block.edge;
+        if block.has_m(6) {
+            let Some(tool) = self.state.selected.clone() else {
+                return Err(
+                    source.block_error("tool", "M6 changes the tool, but no T has chosen one")
+                );
+            };
+            self.emit(source, Op::Tool(tool))?;
+            // The change activates edge 1 unless the block says another (MD20270 = 1).
+            edge = edge.or(Some(1));
+            self.state.edge = None;
+        }
+        if let Some(number) = edge {
+            let active = (number > 0).then_some(number);
+            if active != self.state.edge || block.has_m(6) {
+                self.state.edge = active;
+                self.emit(source, Op::LengthOffset(active))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn feed(&mut self, source: &Source, value: f64) -> Fallible<()> {
+        if value <= 0.0 {
+            let message = "the feed must be above 0 (alarm 14800)";
+            return Err(source.block_error("feed", message));
+        }
+        let state = &mut self.state;
+        let unit = if state.feed_type == FeedType::InverseTime { 1.0 } else { state.feed_unit };
+        state.feed = Some(value * unit);
+        if state.active_feed() != state.reported_feed {
+            self.report_feed(source)?;
+        }
+        Ok(())
+    }
+
+    fn report_feed(&mut self, source: &Source) -> Fallible<()> {
+        self.state.reported_feed = self.state.active_feed();
+        match self.state.reported_feed {
+            Some(feed) => self.emit(source, Op::Feed(feed)),
+            None => Ok(()),
+        }
+    }
+
+    /// Says that the feed has been used by a motion; in inverse time it holds for one block only.
+    pub fn use_feed(&mut self, source: &Source) -> Fallible<()> {
+        if self.state.feed.is_none() {
+            let mut error = source.block_error("missing-feed", "there is no feed (alarm 10860)");
+            error.help = "give F: once after G94 or G95, in every block under G93".into();
+            return Err(error);
+        }
+        if let Some(Feed::InverseTime(_)) = self.state.reported_feed {
+            self.state.feed = None;
+            self.state.reported_feed = None;
+        }
+        Ok(())
+    }
+
+    fn spindle_and_coolant(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+        if let Some(speed) = block.speed {
+            if speed < 0.0 {
+                return Err(source.block_error("spindle", "the speed of the spindle has no sign"));
+            }
+            self.state.speed = speed;
+        }
+        let speed = self.state.speed;
+        let running = self.state.spindle;
+        let spindle = match block.m.iter().flatten().find(|m| SPINDLE.contains(m)) {
+            Some(3) => Spindle::Clockwise(speed),
+            Some(4) => Spindle::CounterClockwise(speed),
+            Some(_) => Spindle::Off,
+            None => match running {
+                Spindle::Off => Spindle::Off,
+                Spindle::Clockwise(_) => Spindle::Clockwise(speed),
+                Spindle::CounterClockwise(_) => Spindle::CounterClockwise(speed),
+            },
+        };
+        self.report_spindle(source, spindle)?;
+        let coolant = match block.m.iter().flatten().find(|m| COOLANT.contains(m)) {
+            Some(7) => Coolant::Mist,
+            Some(8) => Coolant::Flood,
+            Some(_) => Coolant::Off,
+            None => self.state.coolant,
+        };
+        if coolant != self.state.coolant {
+            self.state.coolant = coolant;
+            self.emit(source, Op::Coolant(coolant))?;
+        }
+        Ok(())
+    }
+
+    fn report_spindle(&mut self, source: &Source, spindle: Spindle) -> Fallible<()> {
+        if spindle == self.state.spindle {
+            return Ok(());
+        }
+        self.state.spindle = spindle;
+        self.emit(source, Op::Spindle(spindle))
+    }
+
+    fn stops(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+        match block.m.iter().flatten().find(|m| STOPS.contains(m)) {
+            Some(0) => self.emit(source, Op::Stop),
+            Some(1) => self.emit(source, Op::OptionalStop),
+            Some(_) => self.end(source),
+            None => Ok(()),
+        }
+    }
+
+    fn end(&mut self, source: &Source) -> Fallible<()> {
+        self.state.ended = true;
+        self.emit(source, Op::End)
+    }
+
+    /// `G4`: in a block of its own; its `F` (seconds) and `S` (turns) change neither feed nor speed.
+    fn dwell(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+        let pause = match (block.feed, block.speed) {
+            (Some(seconds), None) => Pause::Seconds(seconds),
+            (None, Some(turns)) => Pause::Turns(turns),
+            _ => return Err(source.block_error("dwell", "G4 needs F (seconds) or S (turns)")),
+        };
+        if !block.only_group(2) || block.has_position() {
+            return Err(source.block_error("dwell", "G4 stands in a block of its own"));
+        }
+        match pause.seconds(self.state.spindle) {
+            Some(seconds) if seconds >= 0.0 => self.emit(source, Op::Dwell(seconds)),
+            Some(_) => Err(source.block_error("dwell", "a dwell has no sign")),
+            None => Err(source.block_error("dwell", "turns of a spindle that stands")),
+        }
+    }
+
+    /// A call stands in a block of its own.
+    fn call(&mut self, source: &Source, block: &Block, call: &Call) -> Fallible<()> {
+        let alone = block.only_group(0)
+            && !block.has_position()
+            && block.feed.is_none()
+            && block.speed.is_none();
+        if !alone {
+            let message = format!("{} stands in a block of its own", call.name);
+            return Err(source.block_error("syntax", message));
+        }
+        match call.procedure {
+            Procedure::NoMotion => self.check_high_speed(source, call),
+            Procedure::Traori => self.traori(source, call),
+            Procedure::Trafoof => self.trafoof(source),
+            Procedure::Swivel => self.swivel(source, call),
+            Procedure::Return => self.end(source),
+            Procedure::EndOfModalCall => {
+                self.state.modal_cycle = None;
+                self.cycle_off(source)
+            }
+            Procedure::Drill(form) => {
+                let drilling = Drilling::read(source, call, form, &self.state)?;
+                if call.modal {
+                    self.state.modal_cycle = Some(drilling);
+                    return Ok(());
+                }
+                if self.state.modal_cycle.is_some() {
+                    let message = "a cycle is called while MCALL is active";
+                    return Err(source.block_error("cycle", message));
+                }
+                self.drill(source, &drilling)?;
+                self.cycle_off(source)
+            }
+        }
+    }
+
+    /// The older `CYCLE832` has a packed second argument that can switch the transformation too.
+    fn check_high_speed(&self, source: &Source, call: &Call) -> Fallible<()> {
+        let packed = call.name == "CYCLE832"
+            && matches!(call.arguments.get(1), Some(super::call::Argument::Number(n)) if *n > 9999.0);
+        if packed {
+            let message = "the older form of CYCLE832, which can switch TRAORI, is not supported";
+            return Err(source.block_error("unsupported", message));
+        }
+        Ok(())
+    }
+
+    fn cycle_off(&mut self, source: &Source) -> Fallible<()> {
+        if self.reported_cycle.take().is_some() {
+            self.emit(source, Op::CycleOff)?;
+        }
+        Ok(())
+    }
+
+    /// The hole of the modal cycle after a block with a position.
+    pub fn drill_modally(&mut self, source: &Source) -> Fallible<()> {
+        match self.state.modal_cycle.clone() {
+            Some(drilling) => self.drill(source, &drilling),
+            None => Ok(()),
+        }
+    }
+
+    fn drill(&mut self, source: &Source, drilling: &Drilling) -> Fallible<()> {
+        let state = &self.state;
+        if state.plane_normal != 2 {
+            let message = "drilling along X or Y (G18, G19) is not supported";
+            return Err(source.block_error("unsupported", message));
+        }
+        if state.position.x.is_nan() || state.position.y.is_nan() {
+            let message = "the place of the hole is not known: no block has said X and Y";
+            return Err(source.block_error("unknown-position", message));
+        }
+        if drilling.needs_feed {
+            self.use_feed(source)?;
+        }
+        if let Some(spindle) = drilling.spindle_before {
+            self.report_spindle(source, spindle)?;
+        }
+        let Some(dwell) = drilling.dwell.seconds(self.state.spindle) else {
+            let message = "the dwell counts turns of a spindle that stands";
+            return Err(source.block_error("dwell", message));
+        };
+        let cycle = Cycle { dwell, ..drilling.cycle };
+        if self.reported_cycle != Some(cycle) {
+            self.reported_cycle = Some(cycle);
+            self.emit(source, Op::Cycle(cycle.into()))?;
+        }
+        self.state.position.z = drilling.surface;
+        let pose = self.state.pose(self.state.position);
+        self.state.position.z = drilling.surface + cycle.retract;
+        self.state.programmed.z = self.state.position.z;
+        self.emit(source, Op::Hole(pose))?;
+        if let Some(spindle) = drilling.spindle_after {
+            self.report_spindle(source, spindle)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,296 @@
+//! Where a block sends the axes.
+
+use super::Fallible;
+use super::block::{Block, Coordinate, Count};
+use super::commands::{Code, Motion};
+use super::interpreter::Interpreter;
+use super::scan::Source;
+use super::state::ToolAxis;
+use geom::{Vec3, direction};
+use program::{Compensation, Op};
+
+const AXIS_NAMES: [&str; 6] = ["X", "Y", "Z", "A", "B", "C"];
+
+impl Interpreter<'_> {
+    /// The motion of a block, if it has one.
+    #[inline]
+    pub fn motion(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+        if block.rotation.is_some()
+            || block.fixed_point.is_some()
+            || block.machine_axes.contains(&true)
+        {
+            let message = "RPL=, FP= and machine axes belong to ROT, G75 and G74";
+            return Err(source.block_error("syntax", message));
+        }
+        if block.code(9) == Some(Code::MachineCoordinates) {
+            return self.machine_position(source, block);
+        }
+        let motion = self.state.motion;
+        let round = !matches!(motion, Motion::Rapid | Motion::Line);
+        if !round && block.has_arc_word() {
+            let message = "words of an arc without G2, G3 or CIP";
+            return Err(source.block_error("arc", message));
+        }
+        if !(block.has_position() || round && block.has_arc_word()) {
+            return self.no_motion(source, block);
+        }
+        if round {
+            self.settle_compensation(source, block, true)?;
+            self.use_feed(source)?;
+            self.arc(source, block)?;
+        } else {
+            let (position, programmed) = self.target(source, block)?;
+            self.orient(source, block)?;
+            self.settle_compensation(source, block, false)?;
+            if motion == Motion::Line {
+                self.use_feed(source)?;
+            }
+            self.state.position = position;
+            self.state.programmed = programmed;
+            let pose = self.state.pose(position);
+            self.emit(
+                source,
+                if motion == Motion::Rapid { Op::Rapid(pose) } else { Op::Line(pose) },
+            )?;
+        }
+        self.drill_modally(source)
+    }
+
+    /// A block without a motion. While a cycle is modal, `F`, `S` or `G0` alone would drill once more
+    /// (Programming Manual 06/2019, 3.2.3.4): nobody means that.
+    fn no_motion(&self, source: &Source, block: &Block) -> Fallible<()> {
+        let drills = block.feed.is_some() || block.speed.is_some() || block.code(1).is_some();
+        if drills && self.state.modal_cycle.is_some() {
+            let message = "F, S or a motion command without a position drills the last hole again \
+                           while MCALL is active";
+            return Err(source.block_error("cycle", message));
+        }
+        Ok(())
+    }
+
+    /// The linear axes' end of a block: where they are in the coordinates of the program, and what
+    /// incremental words count from afterwards; mm.
+    #[inline]
+    pub fn target(&self, source: &Source, block: &Block) -> Fallible<(Vec3, Vec3)> {
+        let mut position = self.state.position;
+        let mut programmed = self.state.programmed;
+        for i in 0..3 {
+            if let Some(coordinate) = block.axes[i] {
+                let base = self.state.programmed[i];
+                let value = self.linear(source, coordinate, base, AXIS_NAMES[i])?;
+                position[i] = value;
+                programmed[i] = value;
+            }
+        }
+        Ok((position, programmed))
+    }
+
+    /// A linear coordinate, mm, that counts from `base` where it is incremental.
+    #[inline]
+    pub fn linear(
+        &self,
+        source: &Source,
+        coordinate: Coordinate,
+        base: f64,
+        name: &str,
+    ) -> Fallible<f64> {
+        let value = coordinate.value * self.state.unit;
+        let incremental = match coordinate.count {
+            Count::Modal => !self.state.absolute,
+            Count::Absolute => false,
+            Count::Incremental => true,
+            Count::Shorter | Count::Positive | Count::Negative => {
+                let message = format!("DC, ACP and ACN are for rotary axes, not for {name}");
+                return Err(source.block_error("syntax", message));
+            }
+        };
+        if !incremental {
+            return Ok(value);
+        }
+        if base.is_nan() {
+            let message = format!("{name} is incremental, but it is not known from where");
+            return Err(source.block_error("unknown-position", message));
+        }
+        Ok(base + value)
+    }
+
+    /// Rotary positions and tool vectors of a block.
+    #[inline]
+    fn orient(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+        if block.has_vector() {
+            return self.orient_by_vector(source, block);
+        }
+        if !block.has_rotary() {
+            return Ok(());
+        }
+        if self.state.frames.swivel().is_some() {
+            let message = "a rotary axis moves in a plane swivelled by CYCLE800";
+            return Err(source.block_error("orientation", message));
+        }
+        for i in 0..3 {
+            if let Some(coordinate) = block.axes[i + 3] {
+                self.state.rotary[i] = self.turned_to(source, coordinate, i)?;
+            }
+        }
+        self.state.tool_axis = ToolAxis::Rotary;
+        Ok(())
+    }
+
+    /// Position of rotary axis `index`, degrees. `DC`, `ACP` and `ACN` go on counting, so that the way
+    /// shows in the value.
+    fn turned_to(&self, source: &Source, coordinate: Coordinate, index: usize) -> Fallible<f64> {
+        let name = AXIS_NAMES[index + 3];
+        self.check_rotary(source, index)?;
+        let value = coordinate.value;
+        let from = self.state.rotary[index];
+        let incremental = coordinate.count == Count::Incremental
+            || coordinate.count == Count::Modal && !self.state.absolute;
+        if incremental && from.is_nan() {
+            let message = format!("{name} is incremental, but it is not known from where");
+            return Err(source.block_error("unknown-position", message));
+        }
+        Ok(match coordinate.count {
+            _ if incremental => from + value,
+            Count::Shorter | Count::Positive | Count::Negative if from.is_nan() => value,
+            Count::Shorter => from + geom::wrap((value - from).to_radians()).to_degrees(),
+            Count::Positive => from + (value - from).rem_euclid(360.0),
+            Count::Negative => from - (from - value).rem_euclid(360.0),
+            _ => value,
+        })
+    }
+
+    fn check_rotary(&self, source: &Source, index: usize) -> Fallible<()> {
+        if self.settings.rotary[index] {
+            return Ok(());
+        }
+        let message = format!("the machine has no axis {}", AXIS_NAMES[index + 3]);
+        Err(source.block_error("unknown-axis", message))
+    }
+
+    /// `A3= B3= C3=`: any length, what is left out is 0 (Programming Guide Advanced 04.00, 7.1).
+    fn orient_by_vector(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+        if block.has_rotary() {
+            let message = "positions of rotary axes and a vector of the tool in one block";
+            return Err(source.block_error("orientation", message));
+        }
+        if !self.state.tool_center {
+            let message = "A3= B3= C3= need TRAORI";
+            return Err(source.block_error("orientation", message));
+        }
+        if !self.state.vectors_in_work_frame {
+            let message = "a vector of the tool in machine coordinates (ORIMKS) is not supported";
+            return Err(source.block_error("unsupported", message));
+        }
+        let [x, y, z] = block.vector.map(|v| v.unwrap_or(0.0));
+        let Some(axis) = direction(self.state.frames.direction(Vec3::new(x, y, z))) else {
+            let message = "the vector of the tool (A3= B3= C3=) has no length";
+            return Err(source.block_error("zero-vector", message));
+        };
+        self.state.tool_axis = ToolAxis::Vector(axis);
+        self.state.rotary = self.settings.rotary.map(|exists| if exists { f64::NAN } else { 0.0 });
+        Ok(())
+    }
+
+    /// Compensation takes effect with the first move in the plane, which must be straight.
+    fn settle_compensation(&mut self, source: &Source, block: &Block, round: bool) -> Fallible<()> {
+        let state = &mut self.state;
+        let normal = state.plane_normal;
+        let in_plane = round || (0..3).any(|i| i != normal && block.axes[i].is_some());
+        if state.compensation == state.compensation_in_effect || !in_plane {
+            return Ok(());
+        }
+        if round {
+            let message =
+                "cutter radius compensation starts or ends in an arc (alarms 10753, 10754)";
+            return Err(source.block_error("compensation", message));
+        }
+        if state.compensation != Compensation::Off && state.edge.is_none() {
+            let message = "cutter radius compensation without a tool edge D (alarm 10750)";
+            return Err(source.block_error("compensation", message));
+        }
+        state.compensation_in_effect = state.compensation;
+        let compensation = match state.compensation {
+            Compensation::Left(_) => Compensation::Left(state.edge),
+            Compensation::Right(_) => Compensation::Right(state.edge),
+            Compensation::Off => Compensation::Off,
+        };
+        self.emit(source, Op::Compensation(compensation))
+    }
+
+    /// `G53`, `G153`, `SUPA`: a position of the machine, not of the work frame.
+    fn machine_position(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+        if !block.has_position() {
+            return self.no_motion(source, block);
+        }
+        if !matches!(self.state.motion, Motion::Rapid | Motion::Line)
+            || block.has_arc_word()
+            || block.has_vector()
+        {
+            let name = block.command(9);
+            let message = format!("{name} is for straight moves of axes");
+            return Err(source.block_error("machine-position", message));
+        }
+        self.check_free(source, block.command(9))?;
+        if self.state.motion == Motion::Line {
+            self.use_feed(source)?;
+        }
+        self.home(source, block.axes.map(|axis| axis.is_some()))
+    }
+
+    /// `G74`, `G75`: the values of the axes mean nothing, only their names.
+    pub fn approach_fixed_point(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+        let name = block.command(2);
+        let mut named = block.machine_axes;
+        for (named, axis) in named.iter_mut().zip(&block.axes) {
+            *named |= axis.is_some();
+        }
+        if !named.contains(&true) {
+            return Err(source.block_error("home", format!("{name} needs the names of axes")));
+        }
+        if block.has_arc_word() || block.has_vector() || block.rotation.is_some() {
+            let message = format!("{name} takes axes and FP= only");
+            return Err(source.block_error("home", message));
+        }
+        self.check_free(source, name)?;
+        if self.state.tool_center {
+            let message = format!("{name} while TRAORI is active; switch it off (TRAFOOF) first");
+            return Err(source.block_error("home", message));
+        }
+        self.home(source, named)
+    }
+
+    /// Moves in machine coordinates are made neither with compensation nor between modal holes.
+    fn check_free(&self, source: &Source, name: &str) -> Fallible<()> {
+        if self.state.compensation != Compensation::Off
+            || self.state.compensation_in_effect != Compensation::Off
+        {
+            let message = format!("{name} while cutter radius compensation is active");
+            return Err(source.block_error("compensation", message));
+        }
+        if self.state.modal_cycle.is_some() {
+            let message = format!("{name} while MCALL is active: it would drill");
+            return Err(source.block_error("cycle", message));
+        }
+        Ok(())
+    }
+
+    /// The named axes go to a place of the machine.
+    fn home(&mut self, source: &Source, named: [bool; 6]) -> Fallible<()> {
+        let turned = self.state.frames.turned();
+        let mut bits = 0;
+        for (i, _) in named.iter().enumerate().filter(|(_, named)| **named) {
+            bits |= 1 << i;
+            if i >= 3 {
+                self.check_rotary(source, i - 3)?;
+                self.state.rotary[i - 3] = f64::NAN;
+                self.state.tool_axis = ToolAxis::Rotary;
+            } else if turned {
+                self.state.lose_position();
+            } else {
+                self.state.position[i] = f64::NAN;
+                self.state.programmed[i] = f64::NAN;
+            }
+        }
+        self.emit(source, Op::Home(bits))
+    }
+}

@@ -1,0 +1,154 @@
+//! What the control remembers from block to block.
+
+use super::commands::{FeedType, Motion};
+use super::cycles::Drilling;
+use super::expression::Parameters;
+use super::frames::Frames;
+use geom::Vec3;
+use program::{Compensation, Coolant, Feed, Orientation, Pose, Spindle, Tool};
+
+/// Where the tool axis comes from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum ToolAxis {
+    /// The positions of the rotary axes.
+    Rotary,
+    /// A vector or the swivelled plane; in the work frame.
+    Vector(Vec3),
+}
+
+/// The state between two blocks. The words are in units of the machine: mm, degrees, 1/min.
+pub(super) struct State {
+    /// G group 1.
+    pub motion: Motion,
+    /// G group 6: the axis perpendicular to the plane.
+    pub plane_normal: usize,
+    /// G group 13: mm in a unit of length, and in a unit of length of a feed.
+    pub unit: f64,
+    /// mm in the unit of length of a feed.
+    pub feed_unit: f64,
+    /// G group 14.
+    pub absolute: bool,
+    /// G group 15.
+    pub feed_type: FeedType,
+    /// G group 25.
+    pub vectors_in_work_frame: bool,
+    /// G group 8: 500 for none.
+    pub work_offset: u32,
+    /// G group 7 as the blocks say.
+    pub compensation: Compensation,
+    /// G group 7 as the axes move.
+    pub compensation_in_effect: Compensation,
+    /// `F` in the active type, mm/min or mm.
+    pub feed: Option<f64>,
+    /// The feed that was reported last.
+    pub reported_feed: Option<Feed>,
+    /// `S`, 1/min.
+    pub speed: f64,
+    /// `M3`, `M4`, `M5`, as reported.
+    pub spindle: Spindle,
+    /// `M7`, `M8`, `M9`, as reported.
+    pub coolant: Coolant,
+    /// The tool that the next `M6` changes to.
+    pub selected: Option<Box<Tool>>,
+    /// `D`; none for `D0`, and before the first tool.
+    pub edge: Option<u32>,
+    /// Whether positions are those of the tool tip (`TRAORI`).
+    pub tool_center: bool,
+    /// The frames.
+    pub frames: Frames,
+    /// Where the tool is in the coordinates of the program, mm.
+    pub position: Vec3,
+    /// The coordinates that were programmed last, mm: what incremental ones count from.
+    pub programmed: Vec3,
+    /// Positions of A, B, C, degrees.
+    pub rotary: [f64; 3],
+    /// Where the tool axis comes from.
+    pub tool_axis: ToolAxis,
+    /// `MCALL`.
+    pub modal_cycle: Option<Drilling>,
+    /// R parameters.
+    pub parameters: Parameters,
+    /// Whether the program has ended.
+    pub ended: bool,
+}
+
+impl State {
+    /// The reset state that the maker delivers (Programming Manual 06/2019, 4.3; `G1 G17 G40 G500 G71
+    /// G90 G94 ORIWKS`); where the axes stand is not known.
+    pub fn new(rotary: [bool; 3]) -> State {
+        State {
+            motion: Motion::Line,
+            plane_normal: 2,
+            unit: 1.0,
+            feed_unit: 1.0,
+            absolute: true,
+            feed_type: FeedType::PerMinute,
+            vectors_in_work_frame: true,
+            work_offset: 500,
+            compensation: Compensation::Off,
+            compensation_in_effect: Compensation::Off,
+            feed: None,
+            reported_feed: None,
+            speed: 0.0,
+            spindle: Spindle::Off,
+            coolant: Coolant::Off,
+            selected: None,
+            edge: None,
+            tool_center: false,
+            frames: Frames::new(),
+            position: Vec3::NAN,
+            programmed: Vec3::NAN,
+            rotary: rotary.map(|exists| if exists { f64::NAN } else { 0.0 }),
+            tool_axis: ToolAxis::Rotary,
+            modal_cycle: None,
+            parameters: Parameters::new(),
+            ended: false,
+        }
+    }
+
+    /// The pose at `point` of the program.
+    #[inline]
+    pub fn pose(&self, point: Vec3) -> Pose {
+        let orientation = match self.tool_axis {
+            ToolAxis::Rotary => {
+                Orientation::Rotary { degrees: self.rotary, tool_center: self.tool_center }
+            }
+            ToolAxis::Vector(axis) => Orientation::Axis(axis),
+        };
+        Pose { point: self.frames.in_work_frame(point), orientation }
+    }
+
+    /// The active feed, where `F` has been given.
+    pub fn active_feed(&self) -> Option<Feed> {
+        self.feed.map(|value| match self.feed_type {
+            FeedType::PerMinute => Feed::PerMinute(value),
+            FeedType::PerTurn => Feed::PerTurn(value),
+            FeedType::InverseTime => Feed::InverseTime(value),
+        })
+    }
+
+    /// Nobody knows any more where the linear axes are.
+    pub fn lose_position(&mut self) {
+        self.position = Vec3::NAN;
+        self.programmed = Vec3::NAN;
+    }
+
+    /// Nobody knows any more where the existing rotary axes are.
+    pub fn lose_rotary(&mut self, existing: [bool; 3]) {
+        self.rotary = existing.map(|exists| if exists { f64::NAN } else { 0.0 });
+        self.tool_axis = ToolAxis::Rotary;
+    }
+
+    /// Changes the frames; the axes stay where they are. A translation alone leaves the programmed
+    /// values, so that the next incremental word travels the offset as well (SD42440 = 1, the
+    /// delivery state); after a rotation they mean nothing.
+    pub fn change_frames(&mut self, change: impl FnOnce(&mut Frames)) {
+        let base = self.frames.in_work_frame(self.position);
+        let turned = self.frames.turned();
+        change(&mut self.frames);
+        self.position = self.frames.in_program(base);
+        if turned || self.frames.turned() {
+            self.programmed = Vec3::NAN;
+        }
+    }
+}
