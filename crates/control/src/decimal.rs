@@ -1,0 +1,82 @@
+//! Decimal numbers as NC programs write them: a sign, digits, a point; never an exponent.
+
+/// A number and how it was written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Decimal {
+    /// Its value, the nearest double.
+    pub value: f64,
+    /// How many bytes it takes, the sign included.
+    pub len: usize,
+    /// Whether it has a decimal point.
+    pub point: bool,
+}
+
+/// Powers of ten that a double holds exactly.
+const POWERS: [f64; 23] = [
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
+    1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
+];
+
+/// The number that `text` begins with (`-1.5`, `+3.`, `.25`), or `None` where there is no digit.
+///
+/// The value is correctly rounded: up to 15 digits the digits and the power of ten are both exact
+/// doubles, so one division rounds once (Clinger 1990); longer ones go to the standard library.
+pub(crate) fn parse(text: &[u8]) -> Option<Decimal> {
+    let (negative, sign) = match text.first() {
+        Some(b'-') => (true, 1),
+        Some(b'+') => (false, 1),
+        _ => (false, 0),
+    };
+    let (mut digits, mut places, mut count) = (0u64, 0usize, 0usize);
+    let (mut point, mut len) = (false, sign);
+    for &byte in text.get(sign..)? {
+        match byte {
+            b'0'..=b'9' => {
+                digits = digits.wrapping_mul(10).wrapping_add(u64::from(byte - b'0'));
+                count += 1;
+                places += usize::from(point);
+            }
+            b'.' if !point => point = true,
+            _ => break,
+        }
+        len += 1;
+    }
+    if count == 0 {
+        return None;
+    }
+    let magnitude = if count <= 15 {
+        digits as f64 / POWERS[places]
+    } else {
+        std::str::from_utf8(&text[sign..len]).ok()?.parse().ok()?
+    };
+    Some(Decimal { value: if negative { -magnitude } else { magnitude }, len, point })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn numbers_are_read_up_to_the_first_other_byte() {
+        let read = |text: &str| parse(text.as_bytes()).map(|d| (d.value, d.len, d.point));
+        assert_eq!(read("-1.5Y2"), Some((-1.5, 4, true)));
+        assert_eq!(read("+3."), Some((3.0, 3, true)));
+        assert_eq!(read(".25 "), Some((0.25, 3, true)));
+        assert_eq!(read("100"), Some((100.0, 3, false)));
+        assert_eq!(read("1e5"), Some((1.0, 1, false)));
+        assert_eq!(read("1.2.3"), Some((1.2, 3, true)));
+        for nothing in ["", "-", ".", "+.", "X1", "--1"] {
+            assert_eq!(read(nothing), None, "{nothing:?}");
+        }
+    }
+
+    proptest! {
+        #[test]
+        fn every_decimal_has_the_nearest_double(text in "-?[0-9]{1,25}(\\.[0-9]{0,25})?") {
+            let read = parse(text.as_bytes()).unwrap();
+            prop_assert_eq!(read.value, text.parse::<f64>().unwrap());
+            prop_assert_eq!(read.len, text.len());
+        }
+    }
+}

@@ -1,0 +1,355 @@
+//! A block (a line of NC) taken apart into words.
+
+use super::words::{Dictionary, Flavor, G, Group, M, why_refused};
+use crate::decimal;
+use program::{Diagnostic, Op};
+
+/// A finding about a block.
+pub(super) type Fault = Box<Diagnostic>;
+
+/// A letter with its number.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct Word {
+    /// The number.
+    pub value: f64,
+    /// Whether a decimal point was written.
+    pub point: bool,
+    start: u32,
+    end: u32,
+}
+
+/// What a block says. A word is *taken* by what uses it; a word that nothing took is a mistake.
+#[derive(Debug)]
+pub(super) struct Block<'a> {
+    dictionary: &'static Dictionary,
+    /// M functions that the builder of the machine has added.
+    auxiliary: &'a [u32],
+    /// The line as it stands.
+    pub text: &'a [u8],
+    /// Its number, from 1.
+    pub line: u32,
+    /// Whether there is anything but blanks and comments.
+    pub is_empty: bool,
+    /// How many M words there are.
+    pub m_count: u32,
+    /// A word has been read.
+    started: bool,
+    words: [Word; 26],
+    given: u32,
+    pending: u32,
+    g: [Option<G>; Group::COUNT],
+    m: [Option<M>; Group::COUNT],
+    places: [Word; Group::COUNT],
+    comments: Vec<(usize, usize)>,
+}
+
+/// The bit of a letter in a set of letters.
+const fn bit(letter: u8) -> u32 {
+    1 << (letter - b'A')
+}
+
+impl<'a> Block<'a> {
+    /// A block without words, for programs in the words of `dictionary` and the M functions that the
+    /// builder of the machine has added (`auxiliary`), which change nothing that is followed here.
+    pub(super) fn new(dictionary: &'static Dictionary, auxiliary: &'a [u32]) -> Block<'a> {
+        Block {
+            dictionary,
+            auxiliary,
+            text: b"",
+            line: 0,
+            is_empty: true,
+            m_count: 0,
+            started: false,
+            words: [Word::default(); 26],
+            given: 0,
+            pending: 0,
+            g: [None; Group::COUNT],
+            m: [None; Group::COUNT],
+            places: [Word::default(); Group::COUNT],
+            comments: Vec::new(),
+        }
+    }
+
+    /// Takes the words of `text` in place of those of the last block.
+    ///
+    /// # Errors
+    /// What is no word of the flavour, a number that is none, a word given twice, two words of a
+    /// modal group, a comment without an end, a block that is too long.
+    pub(super) fn read(&mut self, line: u32, text: &'a [u8]) -> Result<(), Fault> {
+        let dictionary = self.dictionary;
+        (self.text, self.line) = (text, line);
+        (self.is_empty, self.started) = (true, false);
+        (self.m_count, self.given, self.pending) = (0, 0, 0);
+        self.g = [None; Group::COUNT];
+        self.m = [None; Group::COUNT];
+        self.comments.clear();
+        let (mut at, mut length) = (0, 0);
+        while let Some(&byte) = text.get(at) {
+            let from = at;
+            match byte {
+                b' ' | b'\t' => {
+                    at += 1;
+                    continue;
+                }
+                b'A'..=b'Z' => at = self.word(byte, at)?,
+                b'a'..=b'z' if dictionary.flavor != Flavor::Fanuc => {
+                    at = self.word(byte.to_ascii_uppercase(), at)?;
+                }
+                b'(' => {
+                    at = self.comment(at)?;
+                    continue;
+                }
+                b';' if dictionary.flavor != Flavor::Fanuc => {
+                    self.comments.push((at + 1, text.len()));
+                    break;
+                }
+                // The proof holds for the block-delete switch off: the block is run.
+                b'/' if self.is_empty => at = after_block_delete(dictionary.flavor, text, at),
+                _ => return Err(self.stray(dictionary.flavor, byte, at)),
+            }
+            self.is_empty = false;
+            length += at - from;
+        }
+        if length > dictionary.longest {
+            let message =
+                format!("the block has {length} characters, at most {}", dictionary.longest);
+            return Err(self.fault("nc-long-block", message, 0, text.len()));
+        }
+        Ok(())
+    }
+
+    /// Reads the word at `at` and gives the place after it.
+    fn word(&mut self, letter: u8, at: usize) -> Result<usize, Fault> {
+        let dictionary = self.dictionary;
+        let mut from = at + 1;
+        while matches!(self.text.get(from), Some(b' ' | b'\t')) {
+            from += 1;
+        }
+        let Some(number) = self.text.get(from..).and_then(decimal::parse) else {
+            return Err(self.no_number(letter, at, from));
+        };
+        let end = from + number.len;
+        let word = Word {
+            value: number.value,
+            point: number.point,
+            start: u32::try_from(at).unwrap_or(u32::MAX),
+            end: u32::try_from(end).unwrap_or(u32::MAX),
+        };
+        match letter {
+            b'G' => match dictionary.g(word.value) {
+                Some((group, meaning)) => {
+                    if self.g[group as usize].replace(meaning).is_some() {
+                        return Err(self.same_group(group, at, end));
+                    }
+                    self.places[group as usize] = word;
+                }
+                None => return Err(self.unknown(letter, word)),
+            },
+            b'M' => match dictionary.m(word.value) {
+                Some((group, meaning)) => {
+                    if self.m[group as usize].replace(meaning).is_some() {
+                        return Err(self.same_group(group, at, end));
+                    }
+                    self.places[group as usize] = word;
+                    self.m_count += 1;
+                }
+                None if self.auxiliary.iter().any(|&m| f64::from(m) == word.value) => {
+                    self.m_count += 1;
+                }
+                None => return Err(self.unknown(letter, word)),
+            },
+            _ => {
+                let letter_bit = bit(letter);
+                if dictionary.letters & letter_bit == 0 {
+                    return Err(self.unknown(letter, word));
+                }
+                if self.given & letter_bit != 0 {
+                    let message = format!("{} is given twice in the block", char::from(letter));
+                    return Err(self.fault("nc-repeated-word", message, at, end));
+                }
+                if letter == b'N' && (self.started || word.point || word.value < 0.0) {
+                    let message = "N is a whole number and stands first in its block";
+                    return Err(self.fault("nc-block-number", message, at, end));
+                }
+                self.given |= letter_bit;
+                if letter != b'N' {
+                    self.pending |= letter_bit;
+                }
+                self.words[usize::from(letter - b'A')] = word;
+            }
+        }
+        self.started = true;
+        Ok(end)
+    }
+
+    /// Reads the comment at `at` and gives the place after it.
+    fn comment(&mut self, at: usize) -> Result<usize, Fault> {
+        let rest = self.text.get(at + 1..).unwrap_or_default();
+        match rest.iter().position(|b| matches!(b, b'(' | b')')) {
+            Some(n) if rest[n] == b')' => {
+                self.comments.push((at + 1, at + 1 + n));
+                Ok(at + n + 2)
+            }
+            Some(n) => {
+                let place = at + 1 + n;
+                Err(self.fault("nc-comment", "comments cannot be nested", place, place + 1))
+            }
+            None => Err(self.fault("nc-comment", "the comment has no end", at, self.text.len())),
+        }
+    }
+
+    /// The comments of the block as records.
+    pub(super) fn comments(&self) -> impl Iterator<Item = Op> + '_ {
+        self.comments.iter().map(|&(from, to)| {
+            let text = String::from_utf8_lossy(self.text.get(from..to).unwrap_or_default());
+            match text.split_once(',') {
+                Some((head, message)) if head.trim().eq_ignore_ascii_case("MSG") => {
+                    Op::Message(message.trim().into())
+                }
+                _ => Op::Comment(text.trim().into()),
+            }
+        })
+    }
+
+    /// The G word of a group.
+    pub(super) fn g(&self, group: Group) -> Option<G> {
+        self.g[group as usize]
+    }
+
+    /// The M word of a group.
+    pub(super) fn m(&self, group: Group) -> Option<M> {
+        self.m[group as usize]
+    }
+
+    /// Whether the block has this letter, taken or not.
+    pub(super) fn has(&self, letter: u8) -> bool {
+        self.given & bit(letter) != 0
+    }
+
+    /// The word of this letter, which then counts as used.
+    pub(super) fn take(&mut self, letter: u8) -> Option<Word> {
+        if self.pending & bit(letter) == 0 {
+            return None;
+        }
+        self.pending &= !bit(letter);
+        Some(self.words[usize::from(letter - b'A')])
+    }
+
+    /// # Errors
+    /// A word that nothing in the block uses.
+    pub(super) fn all_taken(&self) -> Result<(), Fault> {
+        if self.pending == 0 {
+            return Ok(());
+        }
+        let letter = b'A' + self.pending.trailing_zeros() as u8;
+        let message = format!("nothing in the block uses {}", self.shown(letter));
+        Err(self.at_word(letter, "nc-unused-word", message))
+    }
+
+    /// A word as it is written.
+    pub(super) fn shown(&self, letter: u8) -> String {
+        let word = self.words[usize::from(letter - b'A')];
+        let text = self.text.get(word.start as usize..word.end as usize).unwrap_or_default();
+        String::from_utf8_lossy(text).into_owned()
+    }
+
+    /// A finding at the word of this letter.
+    pub(super) fn at_word(
+        &self,
+        letter: u8,
+        rule: &'static str,
+        message: impl Into<String>,
+    ) -> Fault {
+        let word = self.words[usize::from(letter - b'A')];
+        self.fault(rule, message, word.start as usize, word.end as usize)
+    }
+
+    /// A finding at the G or M word of this group; at the whole block where there is none.
+    pub(super) fn at_group(
+        &self,
+        group: Group,
+        rule: &'static str,
+        message: impl Into<String>,
+    ) -> Fault {
+        if self.g(group).is_none() && self.m(group).is_none() {
+            return self.whole(rule, message);
+        }
+        let word = self.places[group as usize];
+        self.fault(rule, message, word.start as usize, word.end as usize)
+    }
+
+    /// A finding about the whole block.
+    pub(super) fn whole(&self, rule: &'static str, message: impl Into<String>) -> Fault {
+        self.fault(rule, message, 0, self.text.len())
+    }
+
+    fn fault(
+        &self,
+        rule: &'static str,
+        message: impl Into<String>,
+        start: usize,
+        end: usize,
+    ) -> Fault {
+        Diagnostic::error(rule, message).at(self.line, self.text, start, end).into()
+    }
+
+    fn same_group(&self, group: Group, start: usize, end: usize) -> Fault {
+        let first = self.places[group as usize];
+        let show = |from: usize, to: usize| {
+            String::from_utf8_lossy(self.text.get(from..to).unwrap_or_default()).into_owned()
+        };
+        let message = format!(
+            "{} and {} exclude each other in a block",
+            show(first.start as usize, first.end as usize),
+            show(start, end)
+        );
+        self.fault("nc-modal-group", message, start, end)
+    }
+
+    fn unknown(&self, letter: u8, word: Word) -> Fault {
+        let (start, end) = (word.start as usize, word.end as usize);
+        let shown = String::from_utf8_lossy(self.text.get(start..end).unwrap_or_default());
+        let message = if matches!(letter, b'G' | b'M') {
+            format!("{shown} is not known to this control")
+        } else {
+            format!("{} is no word of this control", char::from(letter))
+        };
+        let mut fault = Diagnostic::error("nc-unknown-word", message);
+        if let Some(reason) = Some(letter)
+            .filter(|l| matches!(l, b'G' | b'M'))
+            .and_then(|letter| why_refused(letter, word.value))
+        {
+            fault = fault.help(reason);
+        }
+        fault.at(self.line, self.text, start, end).into()
+    }
+
+    fn no_number(&self, letter: u8, at: usize, from: usize) -> Fault {
+        match self.text.get(from) {
+            Some(b'#' | b'[') => self.stray(Flavor::Fanuc, self.text[from], from),
+            _ => {
+                let message = format!("a number is missing after {}", char::from(letter));
+                self.fault("nc-number", message, at, from)
+            }
+        }
+    }
+
+    fn stray(&self, flavor: Flavor, byte: u8, at: usize) -> Fault {
+        let message = match byte {
+            b'#' | b'[' | b']' | b'=' => "parameters and expressions are not followed".to_owned(),
+            b'%' => "% stands alone on its line".to_owned(),
+            b';' => "; does not begin a comment here; write ( )".to_owned(),
+            b'0'..=b'9' | b'.' | b'+' | b'-' => "a number without its letter".to_owned(),
+            b'a'..=b'z' if flavor == Flavor::Fanuc => "small letters are no words".to_owned(),
+            b'!'..=b'~' => format!("{} begins no word", char::from(byte)),
+            _ => format!("byte {byte:#04x} begins no word"),
+        };
+        self.fault("nc-syntax", message, at, at + 1)
+    }
+}
+
+/// The place after `/`, or on FANUC `/1` to `/9`.
+fn after_block_delete(flavor: Flavor, text: &[u8], at: usize) -> usize {
+    let numbered = flavor == Flavor::Fanuc && matches!(text.get(at + 1), Some(b'1'..=b'9'));
+    at + 1 + usize::from(numbered)
+}

@@ -1,0 +1,186 @@
+//! What the control remembers from block to block.
+
+use super::cycles::Holding;
+use super::words::{FeedMode, Flavor, Motion, Plane, Side};
+use geom::{Frame, Vec3};
+use program::{Coolant, Feed, Orientation, Pose, Spindle};
+
+/// The modes, the position and what the machine was last told. It is copied before each block, so
+/// that a bad block changes nothing.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct State {
+    /// Interpolation; none where axis words mean nothing (LinuxCNC and GRBL after `G80`).
+    pub motion: Option<Motion>,
+    pub plane: Plane,
+    pub incremental: bool,
+    pub centers_absolute: bool,
+    pub inches: bool,
+    pub feed_mode: FeedMode,
+    pub feed: Option<Feed>,
+    pub spindle: Spindle,
+    /// Last S, 1/min.
+    pub speed: Option<f64>,
+    /// `M29` has been given: the next tapping cycle turns the spindle itself.
+    pub rigid: bool,
+    pub coolant: Coolant,
+    /// Last T.
+    pub selected: Option<u32>,
+    /// Tool in the spindle.
+    pub tool: Option<u32>,
+    pub length: Length,
+    pub compensation: Compensation,
+    pub work_offset: Option<u16>,
+    /// Programmed position in the frame in which words are read, mm; NaN where not known.
+    pub position: Vec3,
+    /// Positions of A, B, C in degrees; 0 for axes that the machine lacks, NaN where not known.
+    pub rotary: [f64; 3],
+    pub tilt: Tilt,
+    /// `G99`: holes end at the R plane; `G98`: at the initial level. LinuxCNC's manual names no
+    /// default, so there it is open until the program says it.
+    pub return_to_r: Option<bool>,
+    /// The last P of a cycle, s.
+    pub cycle_dwell: Option<f64>,
+    pub cycle: Option<Holding>,
+    /// Something has moved.
+    pub moved: bool,
+    /// `M2` or `M30` has been executed.
+    pub ended: bool,
+}
+
+/// Tool length offset.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Length {
+    None,
+    /// `G43 H`: the register.
+    Register(u32),
+    /// `G43.4 H`: the register; the control keeps the tool centre point.
+    Center(u32),
+    /// `G43.1 Z`: the length itself, mm.
+    Value(f64),
+}
+
+/// Cutter radius compensation: what runs, and what the next linear move in the plane switches to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Compensation {
+    pub active: program::Compensation,
+    pub asked: program::Compensation,
+}
+
+impl Compensation {
+    /// Whether the program wants the path offset.
+    pub(super) fn is_on(&self) -> bool {
+        self.asked != program::Compensation::Off
+    }
+}
+
+impl Side {
+    /// The side with its register, for the neutral program.
+    pub(super) fn with(self, register: Option<u32>) -> program::Compensation {
+        match self {
+            Side::Off => program::Compensation::Off,
+            Side::Left => program::Compensation::Left(register),
+            Side::Right => program::Compensation::Right(register),
+        }
+    }
+}
+
+/// Tilted working plane (`G68.2`); the frame turns programmed coordinates into the work frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Tilt {
+    None,
+    /// Declared; the tool does not stand along its Z yet.
+    Declared(Frame),
+    /// `G53.1` has brought the tool along its Z.
+    Reached(Frame),
+}
+
+/// The unknown position.
+pub(super) const UNKNOWN: Vec3 = Vec3::NAN;
+
+impl State {
+    /// The state at the start of a program: that of a control after power on. FANUC: parameters 3401
+    /// and 3402 as delivered; LinuxCNC: `RS274NGC_STARTUP_CODE` empty; GRBL: its first `$G` report.
+    pub(super) fn new(flavor: Flavor, rotary: [bool; 3]) -> State {
+        State {
+            motion: (flavor == Flavor::Grbl).then_some(Motion::Rapid),
+            plane: Plane::Xy,
+            incremental: false,
+            centers_absolute: false,
+            inches: false,
+            feed_mode: FeedMode::PerMinute,
+            feed: None,
+            spindle: Spindle::Off,
+            speed: None,
+            rigid: false,
+            coolant: Coolant::Off,
+            selected: None,
+            tool: None,
+            length: Length::None,
+            compensation: Compensation {
+                active: program::Compensation::Off,
+                asked: program::Compensation::Off,
+            },
+            work_offset: None,
+            position: UNKNOWN,
+            rotary: rotary.map(|exists| if exists { f64::NAN } else { 0.0 }),
+            tilt: Tilt::None,
+            return_to_r: (flavor == Flavor::Fanuc).then_some(false),
+            cycle_dwell: None,
+            cycle: None,
+            moved: false,
+            ended: false,
+        }
+    }
+
+    /// The pose of a programmed point with the rotary axes at `rotary` (degrees).
+    pub(super) fn pose(&self, point: Vec3, rotary: [f64; 3]) -> Pose {
+        match self.tilt {
+            Tilt::Reached(frame) => {
+                Pose::new(frame.transform_point3(point), frame.matrix3 * Vec3::Z)
+            }
+            Tilt::None | Tilt::Declared(_) => Pose {
+                point,
+                orientation: Orientation::Rotary {
+                    degrees: rotary,
+                    tool_center: matches!(self.length, Length::Center(_)),
+                },
+            },
+        }
+    }
+
+    /// A direction of the programmed frame in the frame of the poses.
+    pub(super) fn direction(&self, v: Vec3) -> Vec3 {
+        match self.tilt {
+            Tilt::Reached(frame) => frame.matrix3 * v,
+            Tilt::None | Tilt::Declared(_) => v,
+        }
+    }
+
+    /// A programmed point in the frame of the poses.
+    pub(super) fn point(&self, p: Vec3) -> Vec3 {
+        match self.tilt {
+            Tilt::Reached(frame) => frame.transform_point3(p),
+            Tilt::None | Tilt::Declared(_) => p,
+        }
+    }
+}
+
+impl Plane {
+    /// Index of the first, the second and the perpendicular axis, right-handed: `G18` is Z, X, Y.
+    pub(super) fn axes(self) -> [usize; 3] {
+        match self {
+            Plane::Xy => [0, 1, 2],
+            Plane::Zx => [2, 0, 1],
+            Plane::Yz => [1, 2, 0],
+        }
+    }
+
+    /// As the word says it.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Plane::Xy => "G17",
+            Plane::Zx => "G18",
+            Plane::Yz => "G19",
+        }
+    }
+}

@@ -1,0 +1,381 @@
+//! LinuxCNC's own interpreter as the judge: programs run through `rs274` and through our control must
+//! make the same moves, and what it refuses we refuse.
+
+use program::{Cycle, CycleKind, Op, Pose};
+use std::process::Command;
+use std::sync::Mutex;
+use toolpost_control::{Dialect, Settings, read};
+
+/// A move as the machine makes it: end point in mm; for an arc its centre, the axis about which it
+/// turns (0 X, 1 Y, 2 Z) and its turns begun, negative clockwise.
+#[derive(Clone, Debug, PartialEq)]
+enum Motion {
+    Rapid([f64; 3]),
+    Feed([f64; 3]),
+    Arc { end: [f64; 3], center: [f64; 3], axis: usize, turns: i32 },
+    Dwell(f64),
+}
+
+/// What `rs274 -g` makes of a program: its moves, or its error. `None` where it is not installed.
+fn judged(program: &str) -> Option<Result<Vec<Motion>, String>> {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name);
+    std::fs::write(path("tool.tbl"), "T1 P1 Z25 D6\nT2 P2 Z50 D10\n").unwrap();
+    std::fs::write(path("rs274.var"), "").unwrap();
+    std::fs::write(path("program.ngc"), program).unwrap();
+    // Two interpreters at once disturb each other (one dies of SIGBUS): one at a time, and again
+    // where another test program was in the way.
+    static ONE_AT_A_TIME: Mutex<()> = Mutex::new(());
+    let _turn = ONE_AT_A_TIME.lock().unwrap_or_else(|poisoned| poisoned.into_inner());
+    let output = (0..20).find_map(|_| {
+        let run = Command::new("rs274")
+            .args(["-t", "tool.tbl", "-v", "rs274.var", "-g", "program.ngc"])
+            .current_dir(folder.path())
+            .output();
+        run.map_or_else(|e| Some(Err(e)), |o| o.status.code().is_some().then_some(Ok(o)))
+    });
+    let Ok(output) = output.expect("rs274 dies each time") else {
+        eprintln!("rs274 (Debian package linuxcnc-uspace) is not installed: LinuxCNC is not asked");
+        return None;
+    };
+    if !output.status.success() {
+        return Some(Err(String::from_utf8_lossy(&output.stderr).into_owned()
+            + &String::from_utf8_lossy(&output.stdout)));
+    }
+    Some(Ok(canonical(&String::from_utf8_lossy(&output.stdout))))
+}
+
+/// The moves among the canonical calls that `rs274` prints.
+fn canonical(printed: &str) -> Vec<Motion> {
+    let (mut moves, mut plane, mut unit) = (Vec::new(), [0, 1, 2], 1.0);
+    for line in printed.lines() {
+        let Some((name, arguments)) = line.split_once('(') else { continue };
+        let name = name.rsplit(' ').next().unwrap();
+        let numbers: Vec<f64> = arguments
+            .trim_end_matches(')')
+            .split(',')
+            .filter_map(|number| number.trim().parse().ok())
+            .collect();
+        let point = || [numbers[0] * unit, numbers[1] * unit, numbers[2] * unit];
+        match name {
+            "STRAIGHT_TRAVERSE" => moves.push(Motion::Rapid(point())),
+            "STRAIGHT_FEED" => moves.push(Motion::Feed(point())),
+            "DWELL" => moves.push(Motion::Dwell(numbers[0])),
+            "ARC_FEED" => {
+                let (mut end, mut center) = ([0.0; 3], [f64::NAN; 3]);
+                (end[plane[0]], end[plane[1]]) = (numbers[0] * unit, numbers[1] * unit);
+                (center[plane[0]], center[plane[1]]) = (numbers[2] * unit, numbers[3] * unit);
+                end[plane[2]] = numbers[5] * unit;
+                moves.push(Motion::Arc { end, center, axis: plane[2], turns: numbers[4] as i32 });
+            }
+            "SELECT_PLANE" => {
+                plane = match arguments {
+                    "CANON_PLANE_XY)" => [0, 1, 2],
+                    "CANON_PLANE_XZ)" => [2, 0, 1],
+                    _ => [1, 2, 0],
+                }
+            }
+            "USE_LENGTH_UNITS" => unit = if arguments.contains("INCHES") { 25.4 } else { 1.0 },
+            _ => {}
+        }
+    }
+    moves
+}
+
+/// What our control makes of it. Homing goes to 0, as with `rs274`'s empty parameter file; holes are
+/// expanded as LinuxCNC's manual describes each cycle.
+fn ours(program: &str) -> Result<Vec<Motion>, String> {
+    let settings =
+        Settings { dialect: Dialect::LinuxCnc, rotary: [false; 3], auxiliary: Vec::new() };
+    let (mut moves, mut at, mut active) = (Vec::new(), [0.0; 3], None);
+    read(&settings, "program.ngc", program.as_bytes(), &mut |record| {
+        let to = |pose: &Pose, at: [f64; 3]| {
+            let p = pose.point.to_array();
+            [0, 1, 2].map(|i| if p[i].is_nan() { at[i] } else { p[i] })
+        };
+        match record.op {
+            Op::Rapid(pose) => {
+                at = to(&pose, at);
+                moves.push(Motion::Rapid(at));
+            }
+            Op::Line(pose) => {
+                at = to(&pose, at);
+                moves.push(Motion::Feed(at));
+            }
+            Op::Arc(arc) => {
+                at = to(&arc.end, at);
+                let axis = (0..3).find(|&i| arc.normal[i] != 0.0).unwrap();
+                let mut center = arc.center.to_array();
+                center[axis] = f64::NAN;
+                let turns = (arc.turns as i32 + 1) * arc.normal[axis] as i32;
+                moves.push(Motion::Arc { end: at, center, axis, turns });
+            }
+            Op::Home(axes) => {
+                at = [0, 1, 2].map(|i| if axes & 1 << i != 0 { 0.0 } else { at[i] });
+                moves.push(Motion::Rapid(at));
+            }
+            Op::Dwell(seconds) => moves.push(Motion::Dwell(seconds)),
+            Op::Cycle(cycle) => active = Some(*cycle),
+            Op::Hole(pose) => {
+                let axis = pose.axis().map_or(2, |a| a.abs().max_position());
+                at = hole(&mut moves, active.as_ref().unwrap(), at, pose.point.to_array(), axis);
+            }
+            _ => {}
+        }
+        Ok(())
+    })
+    .map_err(|diagnostic| diagnostic.to_string())?;
+    Ok(moves)
+}
+
+/// The moves of one hole ("Canned cycles" in LinuxCNC's G-code reference).
+fn hole(
+    moves: &mut Vec<Motion>,
+    cycle: &Cycle,
+    at: [f64; 3],
+    top: [f64; 3],
+    axis: usize,
+) -> [f64; 3] {
+    let level = |height: f64| {
+        let mut p = top;
+        p[axis] += height;
+        p
+    };
+    // With G98 the way in the plane is at the initial level, also after holes with G99.
+    moves.push(Motion::Rapid(level((at[axis] - top[axis]).max(cycle.retract))));
+    moves.push(Motion::Rapid(level(0.0)));
+    let mut depth = 0.0;
+    while let Some(peck) = cycle.peck
+        && depth + peck < cycle.depth
+    {
+        depth += peck;
+        moves.push(Motion::Feed(level(-depth)));
+        if cycle.kind == CycleKind::Deep {
+            moves.push(Motion::Rapid(level(0.0)));
+        }
+        // 0.010 inch, both for breaking the chip and for going back in.
+        moves.push(Motion::Rapid(level(-depth + 0.254)));
+    }
+    moves.push(Motion::Feed(level(-cycle.depth)));
+    if cycle.dwell > 0.0 || matches!(cycle.kind, CycleKind::Tap { .. }) {
+        moves.push(Motion::Dwell(cycle.dwell));
+    }
+    match cycle.kind {
+        // G85: at feed up to R, by rapid from there.
+        CycleKind::Ream if cycle.dwell == 0.0 => moves.push(Motion::Feed(level(0.0))),
+        // G89, G84, G74: at feed up to the retract level, also where that is the initial one.
+        CycleKind::Ream | CycleKind::Tap { .. } => moves.push(Motion::Feed(level(cycle.retract))),
+        _ => {}
+    }
+    moves.push(Motion::Rapid(level(cycle.retract)));
+    level(cycle.retract)
+}
+
+/// Without the moves that go nowhere, of which both sides have some.
+fn essential(moves: Vec<Motion>) -> Vec<Motion> {
+    let mut at = [0.0; 3];
+    let mut kept = Vec::new();
+    for motion in moves {
+        let end = match &motion {
+            Motion::Rapid(end) | Motion::Feed(end) => {
+                if near(end, &at) {
+                    continue;
+                }
+                *end
+            }
+            Motion::Arc { end, .. } => *end,
+            Motion::Dwell(_) => at,
+        };
+        at = end;
+        kept.push(motion);
+    }
+    kept
+}
+
+/// Equal to the four decimals that `rs274` prints, in inches too.
+fn near(a: &[f64; 3], b: &[f64; 3]) -> bool {
+    a.iter().zip(b).all(|(a, b)| (a - b).abs() < 2.6e-3 || (a.is_nan() && b.is_nan()))
+}
+
+fn same(a: &Motion, b: &Motion) -> bool {
+    match (a, b) {
+        (Motion::Rapid(a), Motion::Rapid(b)) | (Motion::Feed(a), Motion::Feed(b)) => near(a, b),
+        (Motion::Dwell(a), Motion::Dwell(b)) => a == b,
+        (
+            Motion::Arc { end, center, axis, turns },
+            Motion::Arc { end: end_b, center: center_b, axis: axis_b, turns: turns_b },
+        ) => near(end, end_b) && near(center, center_b) && axis == axis_b && turns == turns_b,
+        _ => false,
+    }
+}
+
+fn makes_the_same_moves(program: &str) {
+    let ours = ours(program).unwrap_or_else(|error| panic!("we refuse\n{program}\n{error}"));
+    let Some(theirs) = judged(program) else { return };
+    let theirs = theirs.unwrap_or_else(|error| panic!("LinuxCNC refuses\n{program}\n{error}"));
+    let (ours, theirs) = (essential(ours), essential(theirs));
+    for n in 0..ours.len().max(theirs.len()) {
+        match (ours.get(n), theirs.get(n)) {
+            (Some(a), Some(b)) if same(a, b) => {}
+            (a, b) => panic!("move {n} of\n{program}\nours   {a:?}\ntheirs {b:?}"),
+        }
+    }
+}
+
+fn is_refused_by_both(program: &str) {
+    assert!(ours(program).is_err(), "we take\n{program}");
+    if let Some(theirs) = judged(program) {
+        assert!(theirs.is_err(), "LinuxCNC takes\n{program}");
+    }
+}
+
+#[test]
+fn lines_in_both_units_and_both_distance_modes() {
+    makes_the_same_moves(
+        "G21 G90\nG0 X0 Y0 Z10\nG1 X10.5 F100\nY-3.25 Z1\nG91 X1 Y1\nX-2\nG0 Z5\nG90 G1 X0\n\
+         G20 X1 Y2\nG91 Z-.5\nG21 Z-.5\nM2\n",
+    );
+}
+
+#[test]
+fn arcs_in_every_plane_turn_the_same_way() {
+    makes_the_same_moves(
+        "G21 G90 G17\nG0 X0 Y0 Z0\nF100\nG2 X10 Y0 I5 J0\nG3 X0 Y0 I-5 J0\nG2 I5 J5\n\
+         G18 G2 X10 Z0 I5 K0\nG3 X0 Z0 I-5 K0\nG2 X5 Z-5 I5 K0\nG3 X0 Z0 R5\nG2 X5 Z5 R-5\n\
+         G19 G2 Y10 Z5 J5 K0\nG3 Y0 Z5 J-5\nG2 Y5 Z0 R5\nG3 Y0 Z5 R-5\nM2\n",
+    );
+}
+
+#[test]
+fn arcs_by_radius_take_the_short_or_the_long_way() {
+    makes_the_same_moves(
+        "G90 G0 X0 Y0 Z0 F50\nG2 X10 Y0 R6\nG3 X0 R6\nG2 X10 R-6\nG3 X0 R-6\nG2 X10 Y0 R5\nG2 X0 R4.999\n\
+         M2\n",
+    );
+}
+
+#[test]
+fn arcs_with_absolute_centres_helices_and_turns() {
+    makes_the_same_moves(
+        "G90 G0 X1 Y2 Z0 F50\nG90.1 G3 X11 Y2 I6 J2\nG91.1 G3 X1 I-5 Z-2\nG2 I5 P3 Z-4\nG3 X11 I5 P2\n\
+         G18 G2 Z-14 X11 K-5 Y8 P2\nG17 G91 G2 X-10 I-5 Z1\nM2\n",
+    );
+}
+
+#[test]
+fn drilling_cycles_return_to_either_level() {
+    makes_the_same_moves(
+        "G21 G90 G0 X0 Y0 Z10\nF100\nG98 G81 X1 Y2 Z-5 R2\nX3\nG99 Y7\nX4\nG98 X5\nG80\n\
+         G0 X0 Z20\nG99 G82 X5 Z-3 R1 P0.5\nX6 Z-4\nX7 R2\nG98 G81 X8 Z-1 R3\nG80\nG0 X0\nM2\n",
+    );
+}
+
+#[test]
+fn pecking_cycles_go_in_steps_of_q_from_the_r_plane() {
+    makes_the_same_moves(
+        "G21 G90 G0 X0 Y0 Z10\nF100\nG98 G83 X1 Y2 Z-5 R2 Q2\nX3\nG99 X4 Q3.5\nG80\nG73 X0 Y0 Z-7 R1 Q2\n\
+         G98 Y4\nM2\n",
+    );
+}
+
+#[test]
+fn boring_reaming_and_tapping_cycles() {
+    makes_the_same_moves(
+        "G21 G90 G98 G0 X0 Y0 Z10\nF100 S500 M3\nG85 X1 Z-5 R2\nX2\nG89 X3 Z-5 R2 P0.25\nG86 X4 Z-5 R2 P0.5\n\
+         G84 X5 Z-5 R2\nX6\nG80 M4\nG74 X7 Z-5 R2\nM2\n",
+    );
+}
+
+#[test]
+fn incremental_cycles_count_from_where_the_tool_is() {
+    makes_the_same_moves(
+        "G21 G90 G0 X0 Y0 Z10\nF100\nG91 G98 G81 X1 Y1 Z-3 R-1 L3\nX5\nG80\n\
+         G99 G81 X1 Z-3 R-1 L2\nX5\nX5 Y1\nG80\nM2\n",
+    );
+}
+
+#[test]
+fn cycles_that_start_below_the_r_plane_go_up_first() {
+    makes_the_same_moves("G90 G0 X0 Y0 Z0\nF100\nG98 G81 X1 Z-1 R2\nX2\nG99 X3 R4 Z-2\nM2\n");
+}
+
+#[test]
+fn cycles_in_the_other_planes_drill_along_their_axis() {
+    makes_the_same_moves(
+        "G90 G18 G0 X0 Y20 Z0\nF100\nG98 G81 X1 Z4 Y-3 R2\nX5\nG80\nG19 G0 X30\nG99 G83 Y1 Z2 X-3 R2 Q2\n\
+         G80\nM2\n",
+    );
+}
+
+#[test]
+fn homing_goes_through_the_point_of_the_block() {
+    makes_the_same_moves(
+        "G90 G0 X5 Y6 Z7\nG28 Z20\nG0 X5 Y6 Z7\nG91 G28 Z0\nG28 X1 Y0\nG90 G0 X1 Y1 Z1\nG30\n\
+         G0 X1 Y1 Z1\nG53 G0 Z0\nM2\n",
+    );
+}
+
+#[test]
+fn tools_offsets_dwells_and_comments_leave_the_path_alone() {
+    makes_the_same_moves(
+        "%\n(a comment) G21 ; and another\nN10 G17 G40 G49 G54 G64 P0.01 Q0.02 G80 G90 G94 G97\nT1 M6\n\
+         S1000 M3\nG43 H1\nG0 X1 Y2 Z30 M8\nG4 P1.5\n/G1 X2 F100\ng1x3y4\nG 1 X5\nM5 M9\nG49\n%\n",
+    );
+}
+
+#[test]
+fn what_the_judge_refuses_we_refuse() {
+    for block in [
+        "G1 X1",
+        "X1",
+        "G0 X1 X2",
+        "G0 G1 X1",
+        "G54 G55",
+        "M3 M5 S1",
+        "M8 M9",
+        "M0 M30",
+        "G4",
+        "G4 P1 G28",
+        "G0 G28 Z0",
+        "G4 P1\nX1",
+        "G0 X1 (a (b) )",
+        "G0 X1 (a",
+        "G0X1Y",
+        "G0 U1",
+        "T1.5",
+        "M3.1",
+        "G1.5",
+        "G0 N10 X1",
+        "F-1",
+        "G0 X0 Y0 Z0 F10\nG2 X10",
+        "G0 X0 Y0 Z0 F10\nG2 X10 I5 K1",
+        "G0 X0 Y0 Z0 F10\nG2 X10 I5 R5",
+        "G0 X0 Y0 Z0 F10\nG2 X10 R4.9",
+        "G0 X0 Y0 Z0 F10\nG2 X0 Y0 R5",
+        "G0 X0 Y0 Z0 F10\nG2 X10 I4",
+        "G0 X0 Y0 Z0 F10\nG90.1 G2 X10 I5",
+        "G0 X0 Y0 Z0 F10\nG2 I5 P0",
+        "G0 X0 Y0 Z0 F10\nG2 I5 P1.5",
+        "G0 X0 Y0 Z0 F10\nG2 I5\nX5",
+        "G98 G0 X0 Y0 Z9 F10\nG81 X1 Z-1",
+        "G98 G0 X0 Y0 Z9 F10\nG81 X1 R2",
+        "G98 G0 X0 Y0 Z9 F10\nG81 R2",
+        "G98 G0 X0 Y0 Z9 F10\nG81 X1 Z5 R2",
+        "G98 G0 X0 Y0 Z9 F10\nG81 X1 Z-1 R2 L0",
+        "G98 G0 X0 Y0 Z9 F10\nG81 X1 Z-1 R2 K2",
+        "G98 G0 X0 Y0 Z9 F10\nG83 X1 Z-1 R2",
+        "G98 G0 X0 Y0 Z9 F10\nG82 X1 Z-1 R2",
+        "G98 G0 X0 Y0 Z9 F10\nG89 X1 Z-1 R2",
+        "G98 G0 X0 Y0 Z9 F10 S9 M3\nG86 X1 Z-1 R2",
+        "G98 G0 X0 Y0 Z9 F10\nG81 X1 Z-1 R2\nR3",
+        "G98 G0 X0 Y0 Z9 F10\nG81 X1 Z-1 R2\nG82 X2 P1",
+        "G98 G0 X0 Y0 Z9 F10\nG81 X1 Z-1 R2\nG80\nX2",
+        "G98 G0 X0 Y0 Z9 F10\nG91 G53 G0 X1",
+        "G53 X1",
+        "G93 F2 G1 X1\nX2",
+        "G94 F10\nG93 G1 X1 F2\nG94 X2",
+        "G95 F0.1 G1 X1",
+    ] {
+        is_refused_by_both(&format!("{block}\nM2\n"));
+    }
+}
