@@ -4,6 +4,24 @@
 //! the template engine, so that readability costs no speed. What the control lacks is lowered within a
 //! stated tolerance and told in the warnings; what can be neither written nor lowered is refused.
 //! Nothing here reads NC text: whether the program is right is the proof's to say.
+//!
+//! [`catalogue`] names every block, word and variable that a control file may use. One record at a time
+//! goes through `walk`, which knows what the control has been told; `place` brings the tool into its
+//! orientation, `motion`, `arcs` and `cycles` say where it goes, and `writer` leaves out what repeats.
+
+mod arcs;
+mod catalogue;
+mod cycles;
+mod findings;
+mod motion;
+mod number;
+mod place;
+mod promises;
+mod template;
+mod walk;
+mod writer;
+
+pub use catalogue::{Kind, Parameter, catalogue};
 
 use machine::Machine;
 use program::{Diagnostic, Program};
@@ -23,8 +41,7 @@ pub struct Output {
 ///
 /// # Errors
 /// Everything that keeps the program from being written, up to a fixed number of findings, each with
-/// the source line it comes from.
+/// the source line it comes from; mistakes in the machine's own files with their place there.
 pub fn write(program: &Program, machine: &Machine) -> Result<Output, Vec<Diagnostic>> {
-    let _ = (program, machine);
-    Err(vec![Diagnostic::error("unsupported", "nothing can be written yet")])
+    walk::Walk::new(program, machine)?.run()
 }

@@ -1,0 +1,251 @@
+//! Arcs: written as arcs where the control takes them, also after rounding; as lines where not.
+
+use crate::catalogue::{BlockName, WordName};
+use crate::place::{Kind, Stop};
+use crate::template::bit;
+use crate::walk::{Done, PLANE_XY, Walk, motion, refuse};
+use geom::{ANGLE_EPSILON, Arc, ArcError, Vec3, angle_between};
+use machine::Plane;
+use program::{ArcTo, Diagnostic, Pose};
+use std::f64::consts::{PI, TAU};
+
+/// A plane of arcs: its code, its axes (first, second, normal) as places in X, Y, Z, and the words of
+/// its centre.
+struct Facts {
+    plane: Plane,
+    code: usize,
+    axes: [usize; 3],
+}
+
+/// Counter-clockwise is counted about the third axis of each plane (ISO 6983: G18 is ZX).
+const PLANES: [Facts; 3] = [
+    Facts { plane: Plane::XY, code: PLANE_XY, axes: [0, 1, 2] },
+    Facts { plane: Plane::XZ, code: 1, axes: [2, 0, 1] },
+    Facts { plane: Plane::YZ, code: 2, axes: [1, 2, 0] },
+];
+
+const END: [WordName; 3] = [WordName::X, WordName::Y, WordName::Z];
+const FROM_START: [WordName; 3] = [WordName::I, WordName::J, WordName::K];
+const ABSOLUTE: [WordName; 3] = [WordName::CX, WordName::CY, WordName::CZ];
+
+/// How many steps of the last decimal an arc may change in length when its ends are rounded.
+const ROUNDING_STEPS: f64 = 6.0;
+
+/// Part of an arc as one block.
+struct Block {
+    end: Vec3,
+    center: Vec3,
+    /// Signed angle about the plane's normal, radians.
+    sweep: f64,
+    rise: f64,
+}
+
+impl Walk<'_> {
+    /// An arc of the source.
+    pub(crate) fn arc(&mut self, to: &ArcTo, stop: &Stop) -> Done {
+        self.end_cycle()?;
+        self.before_cut()?;
+        self.settle(&to.end, stop, true)?;
+        let Some(here) = self.here.filter(|_| self.located) else {
+            return Err(refuse("arc-start", "an arc from a position that is not known"));
+        };
+        // The reader holds arcs against its own tolerance; here the ends are what they are.
+        let arc = Arc::new(here.point, to.end.point, to.center, to.normal, to.turns, f64::MAX)
+            .map_err(no_arc)?;
+        let local = Arc {
+            start: self.local(arc.start),
+            end: self.local(arc.end),
+            center: self.local(arc.center),
+            normal: self.local(arc.center + arc.normal) - self.local(arc.center),
+            sweep: arc.sweep,
+        };
+        let Some(facts) = self.plane_of(&local) else {
+            return self.lower(&arc, 0.0, 1.0, to, stop, "arcs outside the planes of the control");
+        };
+        let rises = local.rise().abs() > 0.5 * self.machine.resolution();
+        if rises && !self.machine.capabilities.helix {
+            return self.lower(&arc, 0.0, 1.0, to, stop, "helices");
+        }
+        let pieces = self.pieces(&local, rises);
+        for piece in 0..pieces {
+            let [from, until] = [piece, piece + 1].map(|i| i as f64 / pieces as f64);
+            match self.rounded_arc(&local, facts, from, until) {
+                Some(block) => {
+                    self.arc_block(&arc, facts, &block, rises)?;
+                    self.here = Some(Pose { point: arc.at(until), ..to.end });
+                }
+                None => {
+                    self.lower(&arc, from, until, to, stop, "arcs too short for the decimals")?
+                }
+            }
+        }
+        self.here = Some(to.end);
+        Ok(())
+    }
+
+    /// The plane in which the control can cut the arc.
+    fn plane_of(&self, arc: &Arc) -> Option<&'static Facts> {
+        // Under tool center point control the plane turns with the tool.
+        let upright = match self.place.kind {
+            Kind::ToolCenter | Kind::Vectors => self
+                .here
+                .and_then(|here| here.axis())
+                .is_some_and(|a| crate::place::same(a, Vec3::Z)),
+            _ => true,
+        };
+        let most = (self.machine.resolution() / (2.0 * arc.radius())).max(ANGLE_EPSILON);
+        PLANES.iter().filter(|_| upright).find(|facts| {
+            let along = Vec3::AXES[facts.axes[2]];
+            let off = angle_between(along, arc.normal);
+            self.machine.capabilities.arcs.contains(&facts.plane) && off.min(PI - off) <= most
+        })
+    }
+
+    /// Into how many blocks the arc goes.
+    fn pieces(&self, arc: &Arc, rises: bool) -> usize {
+        let name = self.arc_name(true, rises);
+        let turns = arc.sweep / TAU;
+        if turns <= 1.0 - 1e-9 {
+            return 1;
+        }
+        let takes = |word| self.templates.places(name, word);
+        if takes(WordName::Sweep) || (turns > 1.0 + 1e-9 && takes(WordName::Turn)) {
+            return 1;
+        }
+        let each = if self.machine.capabilities.full_circle { 1.0 } else { 0.5 };
+        (turns / each - 1e-9).ceil() as usize
+    }
+
+    /// The part of the arc between two parameters as the control will read it; `None` where rounding
+    /// leaves no legal arc.
+    fn rounded_arc(&self, arc: &Arc, facts: &Facts, from: f64, until: f64) -> Option<Block> {
+        let round = |words: &[WordName; 3], p: Vec3| {
+            Vec3::from_array([0, 1, 2].map(|i| self.writer.rounded(words[i], p[i])))
+        };
+        let begin = round(&END, arc.at(from));
+        let start =
+            Vec3::from_array([0, 1, 2].map(|i| self.writer.active(END[i]).unwrap_or(begin[i])));
+        let end = round(&END, arc.at(until));
+        let [u, v, w] = facts.axes;
+        let flat = |p: Vec3| Vec3::new(p[u], p[v], 0.0);
+        let (s, e, c) = (flat(start), flat(end), flat(arc.center));
+        let sign = arc.normal[w].signum();
+        let wanted = arc.sweep * (until - from);
+        let chord = e - s;
+        // The same radius at both ends: the nearest centre on the perpendicular bisector.
+        let along = chord.normalize_or_zero();
+        let even = c + along * ((s + e) * 0.5 - c).dot(along);
+        let can = &self.machine.capabilities;
+        let absolute = self.templates.places(self.arc_name(sign > 0.0, false), WordName::CX);
+        let legal = |c: Vec3| {
+            let mut center = arc.center;
+            (center[u], center[v]) = (c.x, c.y);
+            let written = if absolute {
+                round(&ABSOLUTE, center)
+            } else {
+                start + round(&FROM_START, center - start)
+            };
+            let (a, b) = (s - flat(written), e - flat(written));
+            let mut sweep = sign * a.x.mul_add(b.y, -(a.y * b.x)).atan2(a.dot(b));
+            if sweep <= 0.0 || chord == Vec3::ZERO {
+                sweep += TAU;
+            }
+            sweep += TAU * ((wanted - sweep) / TAU).round().max(0.0);
+            let radius = a.length();
+            let near =
+                (sweep - wanted).abs() * radius <= ROUNDING_STEPS * self.machine.resolution();
+            let even = (radius - b.length()).abs() <= can.arc_tolerance / 2.0;
+            let moved = flat(written).distance(flat(arc.center)) <= can.lowering_tolerance;
+            let rise = end[w] - start[w];
+            (near && even && moved && radius > 0.0).then_some(Block {
+                end,
+                center: written,
+                sweep: sign * sweep,
+                rise,
+            })
+        };
+        legal(even).or_else(|| legal(c))
+    }
+
+    fn arc_block(&mut self, arc: &Arc, facts: &Facts, block: &Block, rises: bool) -> Done {
+        let ccw = block.sweep > 0.0;
+        let [u, v, w] = facts.axes;
+        let start = Vec3::from_array(
+            [0, 1, 2].map(|i| self.writer.active(END[i]).unwrap_or(self.local(arc.start)[i])),
+        );
+        let full = [u, v].iter().all(|&i| block.end[i] == start[i]);
+        if rises || full {
+            // A helix or a circle says where it ends in the plane even where that is where it began:
+            // the SINUMERIK takes the centre for wrong otherwise, GRBL and LinuxCNC miss the words.
+            self.writer.forget(bit(END[u]) | bit(END[v]));
+        }
+        for i in [u, v] {
+            self.writer.set(FROM_START[i], block.center[i] - start[i]);
+            self.writer.set(ABSOLUTE[i], block.center[i]);
+        }
+        for i in [u, v, w] {
+            self.writer.set(END[i], block.end[i]);
+        }
+        let turns = (block.sweep.abs() / TAU - 1e-9).floor();
+        if turns > 0.0 {
+            self.writer.set(WordName::Turn, turns);
+        }
+        self.writer.set(WordName::Sweep, block.sweep.to_degrees());
+        self.writer.set(WordName::Rise, block.rise);
+        let radius = (start - block.center).reject_from_normalized(Vec3::AXES[w]).length();
+        self.say_feed((radius * block.sweep).hypot(block.rise), false)?;
+        self.compensate(false)?;
+        self.writer.code(WordName::Plane, facts.code);
+        self.writer.code(WordName::Motion, if ccw { motion::ARC_CCW } else { motion::ARC_CW });
+        self.block(self.arc_name(ccw, rises))
+    }
+
+    fn arc_name(&self, ccw: bool, rises: bool) -> BlockName {
+        let (arc, helix) = if ccw {
+            (BlockName::ArcCcw, BlockName::HelixCcw)
+        } else {
+            (BlockName::ArcCw, BlockName::HelixCw)
+        };
+        if rises && self.templates.has(helix) { helix } else { arc }
+    }
+
+    /// Part of an arc as lines within the tolerance of the control.
+    fn lower(
+        &mut self,
+        arc: &Arc,
+        from: f64,
+        until: f64,
+        to: &ArcTo,
+        stop: &Stop,
+        what: &'static str,
+    ) -> Done {
+        let all = arc.chords(self.machine.capabilities.lowering_tolerance) as f64;
+        let lines = ((until - from) * all - 1e-9).ceil().max(1.0) as usize;
+        for line in 1..=lines {
+            let t = from + (until - from) * line as f64 / lines as f64;
+            let point = if line == lines && until == 1.0 { arc.end } else { arc.at(t) };
+            self.line_to(&Pose { point, ..to.end }, stop)?;
+        }
+        self.findings.lowered("arc-lowered", what, self.line, lines);
+        Ok(())
+    }
+
+    /// Back to the plane XY, which cutter compensation and cycles need.
+    pub(crate) fn plane_xy(&mut self) -> Done {
+        self.writer.code(WordName::Plane, PLANE_XY);
+        if self.writer.changes(bit(WordName::Plane)) {
+            return self.required(BlockName::PlaneSelect);
+        }
+        self.writer.unset(bit(WordName::Plane));
+        Ok(())
+    }
+}
+
+fn no_arc(error: ArcError) -> Box<Diagnostic> {
+    let why = match error {
+        ArcError::NoAxis => "its axis has no direction".to_string(),
+        ArcError::NoRadius => "it starts on its own axis".to_string(),
+        ArcError::OffTheCircle(a, b) => format!("its ends have the radii {a} mm and {b} mm"),
+    };
+    refuse("arc", format!("this is no arc: {why}"))
+}

@@ -1,0 +1,265 @@
+//! Every name that a control file may use, in one table.
+//!
+//! The template compiler refuses what is not here, `toolpost explain` and the documentation print it,
+//! and the writer's own names are generated from it, so that no name is known in two places.
+
+use serde::Serialize;
+use std::sync::LazyLock;
+
+/// A name that a control file may use.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Parameter {
+    /// What kind of name it is.
+    pub kind: Kind,
+    /// The name, as it is written in the file.
+    pub name: &'static str,
+    /// Unit of the value; empty where there is none.
+    pub unit: &'static str,
+    /// What it is or when it is written, in a sentence.
+    pub help: &'static str,
+}
+
+/// The kinds of names.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Kind {
+    /// A template of `[blocks]`.
+    Block,
+    /// A number with its address, of `[words]`: `{{X}}`.
+    Word,
+    /// A word whose text comes from a table, of `[words]`: `{{motion}}`. Its unit names the entries.
+    Code,
+    /// A value that templates may read: `{{ tool.name }}`.
+    Variable,
+}
+
+/// The whole catalogue: blocks, words, codes, variables.
+pub fn catalogue() -> &'static [Parameter] {
+    static ALL: LazyLock<Vec<Parameter>> =
+        LazyLock::new(|| [BlockName::TABLE, WordName::TABLE, VARIABLES].concat());
+    &ALL
+}
+
+/// An enum whose variants are the rows of a table of parameters, in the same order.
+macro_rules! names {
+    ($(#[$doc:meta])* $enum:ident { $($variant:ident $kind:ident $name:literal, $unit:literal, $help:literal;)* }) => {
+        $(#[$doc])*
+        #[derive(Clone, Copy, Debug, PartialEq, Eq)]
+        pub(crate) enum $enum { $($variant),* }
+
+        impl $enum {
+            pub(crate) const TABLE: &'static [Parameter] =
+                &[$(Parameter { kind: Kind::$kind, name: $name, unit: $unit, help: $help }),*];
+            pub(crate) const ALL: &'static [$enum] = &[$($enum::$variant),*];
+            pub(crate) const COUNT: usize = Self::ALL.len();
+
+            pub(crate) fn name(self) -> &'static str {
+                Self::TABLE[self as usize].name
+            }
+
+            pub(crate) fn named(name: &str) -> Option<$enum> {
+                Self::TABLE.iter().position(|row| row.name == name).map(|i| Self::ALL[i])
+            }
+        }
+    };
+}
+
+names! {
+    /// The blocks.
+    BlockName {
+        ProgramStart Block "program_start", "", "Once, first. It has to bring the control to millimetres, absolute positions, plane XY, feed per minute, no cutter compensation and the work offset.";
+        ProgramEnd Block "program_end", "", "Once, last: retract, spindle and coolant off, end of program.";
+        OperationStart Block "operation_start", "", "At the start of each operation of the source.";
+        OperationEnd Block "operation_end", "", "At the end of each operation of the source.";
+        Comment Block "comment", "", "For each comment of the source; `text` is the comment.";
+        Message Block "message", "", "For each message to the operator; `comment` where it is missing.";
+        ToolPreselect Block "tool_preselect", "", "Where the source makes the next tool ready; nothing where it is missing.";
+        ToolChange Block "tool_change", "", "At each tool change: to a safe place in machine coordinates, the tool, its length offset.";
+        SpindleCw Block "spindle_cw", "", "Before the first motion that needs the spindle clockwise at a new speed.";
+        SpindleCcw Block "spindle_ccw", "", "The same, counter-clockwise.";
+        SpindleOff Block "spindle_off", "", "Where the source stops the spindle.";
+        CoolantFlood Block "coolant_flood", "", "Before the first cut with flood coolant.";
+        CoolantMist Block "coolant_mist", "", "Before the first cut with mist.";
+        CoolantThrough Block "coolant_through", "", "Before the first cut with coolant through the tool.";
+        CoolantOff Block "coolant_off", "", "Where the source stops the coolant.";
+        Rapid Block "rapid", "", "Each rapid move.";
+        Linear Block "linear", "", "Each straight cutting move.";
+        RapidVector Block "rapid_vector", "", "Each rapid move while the tool axis is written as a vector; `rapid` where it is missing.";
+        LinearVector Block "linear_vector", "", "Each straight cutting move while the tool axis is written as a vector; `linear` where it is missing.";
+        ArcCw Block "arc_cw", "", "Each clockwise arc.";
+        ArcCcw Block "arc_ccw", "", "Each counter-clockwise arc.";
+        HelixCw Block "helix_cw", "", "Each clockwise arc that rises; `arc_cw` where it is missing.";
+        HelixCcw Block "helix_ccw", "", "Each counter-clockwise arc that rises; `arc_ccw` where it is missing.";
+        PlaneSelect Block "plane_select", "", "Where the plane must change before a block that does not say it.";
+        Retract Block "retract", "", "Before the rotary axes turn away from a known position: the tool leaves the part in machine coordinates.";
+        Rotate Block "rotate", "", "Rotary axes to their positions while the tool is clear of the part.";
+        PlaneTilt Block "plane_tilt", "", "Tilted plane of work on: frame and swivelling.";
+        PlaneTiltOff Block "plane_tilt_off", "", "Tilted plane of work off, rotary axes to zero.";
+        ToolCenterOn Block "tool_center_on", "", "Tool center point control on.";
+        ToolCenterOff Block "tool_center_off", "", "Tool center point control off.";
+        CycleDrill Block "cycle_drill", "", "Definition of a drilling cycle. A definition that places {{X}} drills the first hole itself.";
+        CycleDwell Block "cycle_dwell", "", "The same with a dwell at the bottom; `cycle_drill` where it is missing and places {{DWELL}}.";
+        CycleDeep Block "cycle_deep", "", "Definition of deep drilling: out of the hole after each peck.";
+        CycleBreakChip Block "cycle_break_chip", "", "Definition of drilling with chip breaking.";
+        CycleTap Block "cycle_tap", "", "Definition of tapping, right-hand.";
+        CycleTapLeft Block "cycle_tap_left", "", "Definition of tapping, left-hand.";
+        CycleReam Block "cycle_ream", "", "Definition of reaming: feed in, feed out.";
+        CycleBore Block "cycle_bore", "", "Definition of boring: feed in, spindle stop, rapid out.";
+        CycleHole Block "cycle_hole", "", "Each hole of the cycle that its definition has not drilled.";
+        CycleOff Block "cycle_off", "", "End of the cycle.";
+        Dwell Block "dwell", "", "A dwell.";
+        Stop Block "stop", "", "An unconditional stop.";
+        OptionalStop Block "optional_stop", "", "A stop that the operator can switch off.";
+    }
+}
+
+names! {
+    /// The words and codes.
+    WordName {
+        N Word "N", "", "Block number: counts the lines that carry it. With step 0 it is left out.";
+        X Word "X", "mm", "End of the move.";
+        Y Word "Y", "mm", "End of the move.";
+        Z Word "Z", "mm", "End of the move.";
+        A Word "A", "degrees", "Position of the rotary axis A; left out where the machine has none.";
+        B Word "B", "degrees", "Position of the rotary axis B; left out where the machine has none.";
+        C Word "C", "degrees", "Position of the rotary axis C; left out where the machine has none.";
+        VX Word "VX", "", "Tool axis, a unit vector from the tip to the spindle: X.";
+        VY Word "VY", "", "Tool axis: Y.";
+        VZ Word "VZ", "", "Tool axis: Z.";
+        I Word "I", "mm", "Centre of the arc from its start, X.";
+        J Word "J", "mm", "Centre of the arc from its start, Y.";
+        K Word "K", "mm", "Centre of the arc from its start, Z.";
+        CX Word "CX", "mm", "Centre of the arc, absolute, X.";
+        CY Word "CY", "mm", "Centre of the arc, absolute, Y.";
+        CZ Word "CZ", "mm", "Centre of the arc, absolute, Z.";
+        Sweep Word "SWEEP", "degrees", "Angle of the arc, counter-clockwise positive, several turns over 360.";
+        Rise Word "RISE", "mm", "Travel of a helix along the normal of the plane.";
+        Turn Word "TURN", "turns", "Full turns of an arc before the one that ends it. An arc whose block lacks the word is cut into single turns.";
+        F Word "F", "mm/min", "Feed of the move.";
+        FeedPerTurn Word "F_per_turn", "mm", "How {{F}} is written while the feed is per turn of the spindle.";
+        FeedInverse Word "F_inverse_time", "1/min", "How {{F}} is written while the feed is inverse time.";
+        S Word "S", "1/min", "Speed of the spindle.";
+        T Word "T", "", "Number of the tool.";
+        H Word "H", "", "Register of the tool length offset, 1 or the tool's as `length_offset` says: at the tool change, when tool center point control goes on, and with each straight move that says Z.";
+        D Word "D", "", "Register of the cutter radius, in a block that switches compensation on: the source's or the tool's number.";
+        P Word "P", "s", "Dwell of the `dwell` block.";
+        OX Word "OX", "mm", "Origin of the tilted plane in the work frame, X.";
+        OY Word "OY", "mm", "Origin of the tilted plane, Y.";
+        OZ Word "OZ", "mm", "Origin of the tilted plane, Z.";
+        RX Word "RX", "degrees", "Turn of the tilted plane about X, first of X-Y'-Z''.";
+        RY Word "RY", "degrees", "Turn about the new Y, second.";
+        RZ Word "RZ", "degrees", "Turn about the new Z, third.";
+        SpatialA Word "SPA", "degrees", "Turn of the tilted plane about the fixed X, first of X-Y-Z.";
+        SpatialB Word "SPB", "degrees", "Turn about the fixed Y, second.";
+        SpatialC Word "SPC", "degrees", "Turn about the fixed Z, third.";
+        Euler1 Word "E1", "degrees", "Turn of the tilted plane about Z, first of the Euler angles Z-X'-Z''.";
+        Euler2 Word "E2", "degrees", "Turn about the new X, second.";
+        Euler3 Word "E3", "degrees", "Turn about the new Z, third.";
+        Surface Word "SURFACE", "mm", "Cycle: level of the point of the hole.";
+        Clear Word "CLEAR", "mm", "Cycle: level from which the tool feeds (R plane).";
+        Bottom Word "BOTTOM", "mm", "Cycle: level of the bottom.";
+        Retract Word "RETRACT", "mm", "Cycle: level to which the tool goes back.";
+        Depth Word "DEPTH", "mm", "Cycle: depth from the point of the hole, positive.";
+        Safety Word "SAFETY", "mm", "Cycle: height of the R plane above the point of the hole.";
+        Lift Word "LIFT", "mm", "Cycle: height of the retract level above the point of the hole.";
+        Peck Word "PECK", "mm", "Cycle: depth of a peck; the whole depth where the cycle does not peck.";
+        Dwell Word "DWELL", "s", "Cycle: dwell at the bottom.";
+        Pitch Word "PITCH", "mm", "Cycle: pitch of the thread, negative for left-hand.";
+        Plunge Word "PLUNGE", "mm/min", "Cycle: feed into the hole, where it is a parameter.";
+        Speed Word "SPEED", "1/min", "Cycle: speed of the spindle, where it is a parameter.";
+        Motion Code "motion", "rapid, linear, arc_cw, arc_ccw", "Kind of motion.";
+        Plane Code "plane", "xy, xz, yz", "Plane of arcs and of cutter compensation.";
+        Compensation Code "compensation", "off, left, right", "Cutter radius compensation; switched with the first move in the plane.";
+        Length Code "length", "on", "Tool length offset, with each straight move that says Z.";
+        FeedMode Code "feed_mode", "per_minute, per_turn, inverse_time", "What {{F}} means.";
+    }
+}
+
+/// What templates may read beside words. `options.` stands for the machine's own `[options]`.
+pub(crate) const VARIABLES: &[Parameter] = &[
+    variable("program.name", "", "Name of the program: letters, digits, `_` and `-` only."),
+    variable("program.tools", "", "The tools in the order of their first use, each as `tool`."),
+    variable("machine.name", "", "Name of the machine, as `--machine` takes it."),
+    variable("machine.title", "", "What a person calls the machine."),
+    variable("operation.name", "", "Name of the operation, in its blocks and all that follow."),
+    variable("tool.number", "", "Number of the tool."),
+    variable("tool.first", "", "Whether no tool has been called before."),
+    variable("tool.name", "", "Name of the tool."),
+    variable("tool.diameter", "mm", "Cutting diameter; undefined where the source is silent."),
+    variable("tool.corner_radius", "mm", "Corner radius; undefined where the source is silent."),
+    variable("tool.length", "mm", "Length of the tool; undefined where the source is silent."),
+    variable("spindle.changed", "", "Whether the speed is another than the one last written."),
+    variable("text", "", "The text of a comment or a message."),
+    variable("options", "", "The values of `[options]` of the machine: `{{ options.NAME }}`."),
+];
+
+const fn variable(name: &'static str, unit: &'static str, help: &'static str) -> Parameter {
+    Parameter { kind: Kind::Variable, name, unit, help }
+}
+
+impl WordName {
+    /// The entries of a code word; none for a number.
+    pub(crate) fn codes(self) -> impl Iterator<Item = &'static str> {
+        let row = &WordName::TABLE[self as usize];
+        row.unit.split(", ").filter(move |_| row.kind == Kind::Code)
+    }
+}
+
+/// The names of `known` that `name` was most likely meant to be, for an error: at most three.
+pub(crate) fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
+    let mut ranked: Vec<(usize, &str)> = known
+        .map(|k| (distance(&name.to_lowercase(), &k.to_lowercase()), k))
+        .filter(|&(d, k)| d <= 1 + k.len().max(name.len()) / 3)
+        .collect();
+    ranked.sort();
+    ranked.truncate(3);
+    ranked.iter().map(|(_, k)| format!("`{k}`")).collect::<Vec<_>>().join(", ")
+}
+
+/// Edit distance (Levenshtein), by one row.
+fn distance(a: &str, b: &str) -> usize {
+    let b: Vec<char> = b.chars().collect();
+    let mut row: Vec<usize> = (0..=b.len()).collect();
+    for (i, x) in a.chars().take(64).enumerate() {
+        let mut corner = i;
+        row[0] = i + 1;
+        for (j, &y) in b.iter().enumerate() {
+            let replaced = corner + usize::from(x != y);
+            corner = row[j + 1];
+            row[j + 1] = replaced.min(row[j] + 1).min(corner + 1);
+        }
+    }
+    row[b.len()]
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_name_stands_once_and_has_help() {
+        let mut names: Vec<_> = catalogue().iter().map(|p| p.name).collect();
+        assert!(catalogue().iter().all(|p| p.help.ends_with('.')));
+        names.sort();
+        let all = names.len();
+        names.dedup();
+        assert_eq!(names.len(), all);
+        assert!(WordName::COUNT <= 64, "sets of words are bits of a u64");
+    }
+
+    #[test]
+    fn a_slip_of_the_keyboard_finds_the_name_that_was_meant() {
+        let blocks = || BlockName::TABLE.iter().map(|p| p.name);
+        assert_eq!(nearest("liner", blocks()), "`linear`");
+        assert!(nearest("tool_chnge", blocks()).starts_with("`tool_change`"));
+        assert_eq!(nearest("qqqqqqqqqqq", blocks()), "");
+    }
+
+    #[test]
+    fn names_and_variants_agree() {
+        assert_eq!(WordName::named("PECK"), Some(WordName::Peck));
+        assert_eq!(WordName::Peck.name(), "PECK");
+        assert_eq!(WordName::Plane.codes().collect::<Vec<_>>(), ["xy", "xz", "yz"]);
+        assert_eq!(WordName::X.codes().count(), 0);
+    }
+}

@@ -1,0 +1,239 @@
+//! Hole cycles: the control's own where it has them, moves where not.
+
+use crate::catalogue::{BlockName, WordName};
+use crate::place::{Kind, Stop};
+use crate::template::bit;
+use crate::walk::{Done, Walk, motion, refuse};
+use geom::{ANGLE_EPSILON, Vec3};
+use machine::CycleName;
+use program::{Cycle, CycleKind, Diagnostic, Feed, Op, Pose, Spindle, lowering};
+
+/// The cycle that the control has on: its definition and the levels it was given, mm along Z.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Open {
+    levels: Levels,
+}
+
+/// Levels of a hole along the local Z, mm, as they are written.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Levels {
+    surface: f64,
+    clear: f64,
+    bottom: f64,
+    retract: f64,
+}
+
+impl Walk<'_> {
+    /// One hole of the source.
+    pub(crate) fn hole(&mut self, pose: &Pose, stop: &Stop) -> Done {
+        let Some(cycle) = self.cycle else {
+            return Err(refuse("cycle-missing", "a hole without a cycle"));
+        };
+        check(cycle)?;
+        self.before_cut()?;
+        if self.open_cycle.is_none() {
+            self.settle(pose, stop, false)?;
+        }
+        let own = self.own_cycle(cycle, pose);
+        match own {
+            Some(name) => self.native(name, cycle, pose, stop),
+            None if matches!(cycle.kind, CycleKind::Tap { .. }) => {
+                let message =
+                    "the control has no tapping cycle for this hole, and moves cannot tap";
+                Err(refuse("cycle-tap", message))
+            }
+            None => self.expand(cycle, pose, stop),
+        }
+    }
+
+    /// The block of the control's own cycle, where it has one that says everything.
+    fn own_cycle(&self, cycle: &Cycle, pose: &Pose) -> Option<BlockName> {
+        let dwells = cycle.dwell > 0.0;
+        let name = match cycle.kind {
+            CycleKind::Drill if dwells && self.templates.has(BlockName::CycleDwell) => {
+                BlockName::CycleDwell
+            }
+            CycleKind::Drill => BlockName::CycleDrill,
+            CycleKind::Deep => BlockName::CycleDeep,
+            CycleKind::BreakChip => BlockName::CycleBreakChip,
+            CycleKind::Tap { left: true, .. } => BlockName::CycleTapLeft,
+            CycleKind::Tap { .. } => BlockName::CycleTap,
+            CycleKind::Ream => BlockName::CycleReam,
+            CycleKind::Bore => BlockName::CycleBore,
+        };
+        let known = self.machine.capabilities.cycles.contains(&CycleName::from(cycle.kind));
+        let says_dwell = !dwells || self.templates.places(name, WordName::Dwell);
+        let per_minute = !matches!(cycle.feed.or(self.feed), Some(Feed::InverseTime(_)));
+        let along_z = match self.place.kind {
+            Kind::Plain | Kind::Tilted(..) => true,
+            Kind::Machine => {
+                let axis = pose.axis().unwrap_or(Vec3::Z);
+                let up = self.local(pose.point + axis) - self.local(pose.point);
+                up.distance(Vec3::Z) < 10.0 * ANGLE_EPSILON
+            }
+            _ => false,
+        };
+        (known && self.templates.has(name) && says_dwell && per_minute && along_z).then_some(name)
+    }
+
+    fn native(&mut self, name: BlockName, cycle: &Cycle, pose: &Pose, stop: &Stop) -> Done {
+        let at = self.local(pose.point);
+        let level = |word, height: f64| self.writer.rounded(word, at.z + height);
+        let levels = Levels {
+            surface: level(WordName::Surface, 0.0),
+            clear: level(WordName::Clear, cycle.clearance),
+            bottom: level(WordName::Bottom, -cycle.depth),
+            retract: level(WordName::Retract, cycle.retract),
+        };
+        let over = lifted(pose, cycle.retract);
+        if self.open_cycle == Some(Open { levels }) {
+            self.say_hole(at, &levels);
+            self.block(BlockName::CycleHole)?;
+        } else {
+            self.end_cycle()?;
+            self.settle(pose, stop, false)?;
+            self.go_over(&over, stop)?;
+            self.plane_xy()?;
+            self.say_cycle(cycle, &levels)?;
+            self.say_hole(at, &levels);
+            self.block(name)?;
+            if !self.templates.places(name, WordName::X) {
+                self.say_hole(at, &levels);
+                self.block(BlockName::CycleHole)?;
+            }
+            self.open_cycle = Some(Open { levels });
+        }
+        self.here = Some(over);
+        Ok(())
+    }
+
+    /// To the retract level over the first hole: up first and then across, or across and then down.
+    fn go_over(&mut self, over: &Pose, stop: &Stop) -> Done {
+        let (Some(here), true) = (self.here, self.located) else {
+            return self.rapid_to(over, stop);
+        };
+        let axis = over.axis().unwrap_or(Vec3::Z);
+        let height = (over.point - here.point).dot(axis);
+        let corner =
+            if height > 0.0 { here.point + axis * height } else { over.point - axis * height };
+        self.rapid_to(&Pose { point: corner, ..*over }, stop)?;
+        self.rapid_to(over, stop)
+    }
+
+    fn say_hole(&mut self, at: Vec3, levels: &Levels) {
+        // A block without a position drills nothing, so it is said even where it is the old one.
+        self.writer.forget(bit(WordName::X) | bit(WordName::Y));
+        self.writer.set(WordName::X, at.x);
+        self.writer.set(WordName::Y, at.y);
+        self.writer.set(WordName::Bottom, levels.bottom);
+        self.writer.set(WordName::Clear, levels.clear);
+        self.writer.code(WordName::Motion, motion::RAPID);
+    }
+
+    fn say_cycle(&mut self, cycle: &Cycle, levels: &Levels) -> Done {
+        let w = &mut self.writer;
+        w.forget(bit(WordName::Bottom) | bit(WordName::Clear) | bit(WordName::Motion));
+        w.set(WordName::Surface, levels.surface);
+        w.set(WordName::Retract, levels.retract);
+        w.set(WordName::Depth, levels.surface - levels.bottom);
+        w.set(WordName::Safety, levels.clear - levels.surface);
+        w.set(WordName::Lift, levels.retract - levels.surface);
+        w.set(WordName::Dwell, cycle.dwell);
+        w.set(WordName::Peck, levels.surface - levels.bottom);
+        if let (CycleKind::Deep | CycleKind::BreakChip, Some(pecks)) =
+            (cycle.kind, lowering::pecks(cycle))
+        {
+            // One size of peck: the smaller of the first and the further ones, never more than asked.
+            let asked = [cycle.first_peck, cycle.peck].into_iter().flatten();
+            let peck = asked.fold(f64::INFINITY, f64::min).min(cycle.depth);
+            w.set(WordName::Peck, peck);
+            if cycle.first_peck.is_some_and(|first| first > peck) && pecks.len() > 1 {
+                let message = "the first peck is made as small as the further ones";
+                self.findings.warn(Diagnostic::warning("peck", message).line(self.line));
+            }
+        }
+        let speed = match self.spindle {
+            Spindle::Off => 0.0,
+            Spindle::Clockwise(speed) | Spindle::CounterClockwise(speed) => speed,
+        };
+        let mut feed = cycle.feed.or(self.feed);
+        if let CycleKind::Tap { pitch, left } = cycle.kind {
+            self.writer.set(WordName::Pitch, if left { -pitch } else { pitch });
+            // The feed of a tap follows from its pitch, whatever else is active.
+            feed = Some(Feed::PerMinute(pitch * speed));
+        }
+        self.writer.set(WordName::S, speed);
+        self.writer.set(WordName::Speed, speed);
+        let before = std::mem::replace(&mut self.feed, feed);
+        let said = self.say_feed(0.0, false);
+        self.feed = before;
+        said?;
+        if let Some(feed) = feed {
+            self.writer.set(WordName::Plunge, lowering::feed_per_minute(feed, 0.0, speed));
+        }
+        Ok(())
+    }
+
+    /// The control's cycle goes off.
+    #[inline]
+    pub(crate) fn end_cycle(&mut self) -> Done {
+        if self.open_cycle.take().is_none() {
+            return Ok(());
+        }
+        self.block(BlockName::CycleOff)?;
+        self.writer.forget(bit(WordName::Motion) | bit(WordName::Dwell));
+        Ok(())
+    }
+
+    /// One hole as moves.
+    fn expand(&mut self, cycle: &Cycle, pose: &Pose, stop: &Stop) -> Done {
+        let Some(moves) = lowering::hole(cycle, pose, self.spindle) else {
+            return Err(refuse("cycle-peck", "the pecks of this cycle have no end"));
+        };
+        self.settle(pose, stop, false)?;
+        self.go_over(&lifted(pose, cycle.retract), stop)?;
+        self.rapid_to(&lifted(pose, cycle.clearance), stop)?;
+        let (spindle, feed) = (self.spindle, self.feed);
+        self.feed = cycle.feed.or(feed);
+        let count = moves.len();
+        let done = moves.into_iter().try_for_each(|op| match op {
+            Op::Rapid(pose) => self.rapid_to(&pose, stop),
+            Op::Line(pose) => self.line_to(&pose, stop),
+            Op::Dwell(seconds) => {
+                self.writer.set(WordName::P, seconds);
+                self.required(BlockName::Dwell)
+            }
+            Op::Spindle(spindle) => {
+                self.spindle = spindle;
+                self.sync_spindle()
+            }
+            _ => Ok(()),
+        });
+        (self.spindle, self.feed) = (spindle, feed);
+        self.findings.lowered("cycle-expanded", "holes of cycles", self.line, count);
+        done
+    }
+}
+
+/// The pose so far above a hole.
+fn lifted(pose: &Pose, height: f64) -> Pose {
+    Pose { point: pose.point + pose.axis().unwrap_or(Vec3::Z) * height, ..*pose }
+}
+
+/// What no cycle makes sense without.
+fn check(cycle: &Cycle) -> Done {
+    let levels = [cycle.depth, cycle.clearance, cycle.retract, cycle.dwell];
+    let possible = levels.iter().all(|level| level.is_finite())
+        && cycle.depth > 0.0
+        && cycle.clearance > -cycle.depth
+        && cycle.retract >= cycle.clearance
+        && cycle.dwell >= 0.0;
+    if possible {
+        return Ok(());
+    }
+    let message = format!(
+        "a hole {} mm deep, from {} mm above it and back to {} mm, dwell {} s",
+        cycle.depth, cycle.clearance, cycle.retract, cycle.dwell
+    );
+    Err(refuse("cycle", message))
+}

@@ -1,0 +1,74 @@
+//! What the writer has to say about its work: each kind of lowering once, with how often and from
+//! which source line on.
+
+use program::Diagnostic;
+
+/// More errors than this nobody reads.
+const MOST_ERRORS: usize = 20;
+
+/// Errors and warnings as they are collected.
+#[derive(Default)]
+pub(crate) struct Findings {
+    errors: Vec<Diagnostic>,
+    warnings: Vec<Diagnostic>,
+    lowered: Vec<Lowered>,
+}
+
+/// One kind of lowering.
+struct Lowered {
+    rule: &'static str,
+    what: &'static str,
+    line: u32,
+    count: usize,
+    blocks: usize,
+}
+
+impl Findings {
+    /// Keeps an error; `false` when there are enough of them.
+    pub(crate) fn error(&mut self, error: Diagnostic) -> bool {
+        self.errors.push(error);
+        self.errors.len() < MOST_ERRORS
+    }
+
+    /// Keeps a warning; one of the same rule and message is counted.
+    pub(crate) fn warn(&mut self, warning: Diagnostic) {
+        let same = |w: &&mut Diagnostic| w.rule == warning.rule && w.message == warning.message;
+        match self.warnings.iter_mut().find(same) {
+            Some(known) => known.count += 1,
+            None => self.warnings.push(warning),
+        }
+    }
+
+    /// Counts one thing (`what`, in the plural) that was written as so many lines.
+    pub(crate) fn lowered(
+        &mut self,
+        rule: &'static str,
+        what: &'static str,
+        line: u32,
+        blocks: usize,
+    ) {
+        match self.lowered.iter_mut().find(|l| l.rule == rule && l.what == what) {
+            Some(known) => {
+                known.count += 1;
+                known.blocks += blocks;
+            }
+            None => self.lowered.push(Lowered { rule, what, line, count: 1, blocks }),
+        }
+    }
+
+    /// The warnings, or the errors where there are some.
+    pub(crate) fn finish(self, tolerance: f64) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
+        if !self.errors.is_empty() {
+            return Err(self.errors);
+        }
+        let mut warnings = self.warnings;
+        warnings.extend(self.lowered.iter().map(|l| {
+            let Lowered { rule, what, count, blocks, line } = l;
+            let message = format!(
+                "{what}: {count} written as {blocks} lines, tolerance {tolerance} mm, first here"
+            );
+            Diagnostic::warning(rule, message).line(*line)
+        }));
+        Ok(warnings)
+    }
+}

@@ -1,0 +1,468 @@
+//! Where positions are counted from, and how the tool axis is said: the work frame, a tilted plane,
+//! tool center point control by angles or vectors, or the positions of the machine's own axes.
+
+use crate::catalogue::{BlockName, WordName};
+use crate::template::bit;
+use crate::walk::{Done, LENGTH_OFFSET, ORIENTATION, POSITION, Walk, refuse};
+use geom::{ANGLE_EPSILON, Frame, Mat3, Vec3, angle_between};
+use machine::plan::{self, Plan, Step, Target, TargetKind};
+use machine::{Machine, OrientationMode};
+use program::{Diagnostic, Op, Pose, Record};
+
+/// How the control counts at the moment.
+#[derive(Clone, Debug)]
+pub(crate) enum Kind {
+    /// The machine's own coordinates, tool axis not said: nothing is on.
+    Bare,
+    /// The work frame, tool axis +Z.
+    Plain,
+    /// A tilted plane: from the work frame into it, and the tool axis in the work frame.
+    Tilted(Frame, Vec3),
+    /// The tool tip in the work frame, rotary positions beside it.
+    ToolCenter,
+    /// The tool tip in the work frame, the tool axis as a vector.
+    Vectors,
+    /// Positions of the linear and rotary axes.
+    Machine,
+}
+
+/// How the control counts, and where the rotary axes stand.
+#[derive(Clone, Debug)]
+pub(crate) struct Place {
+    pub(crate) kind: Kind,
+    /// Degrees of A, B, C as they are written; `None` where the program does not know them.
+    degrees: Option<[f64; 3]>,
+    /// The frame of the set-up in the source.
+    set_up: Frame,
+}
+
+impl Place {
+    pub(crate) fn start(machine: &Machine) -> Place {
+        let fixed = machine.rotary.is_empty();
+        let kind = if fixed { Kind::Plain } else { Kind::Bare };
+        Place { kind, degrees: None, set_up: Frame::IDENTITY }
+    }
+
+    pub(crate) fn degrees(&self) -> Option<[f64; 3]> {
+        self.degrees
+    }
+
+    pub(crate) fn turn_to(&mut self, degrees: [f64; 3]) {
+        self.degrees = Some(degrees);
+    }
+
+    pub(crate) fn set_up(&mut self, frame: Frame) {
+        self.set_up = frame;
+    }
+}
+
+/// Part of a program in which the tool axis is written in one way: up to the next operation or tool.
+pub(crate) struct Route {
+    /// How many records it has.
+    pub(crate) records: usize,
+    mode: OrientationMode,
+    turning: bool,
+    plan: Option<Plan>,
+}
+
+/// How one pose of a route is written.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Stop {
+    pub(crate) mode: OrientationMode,
+    /// Whether the tool axis turns in cuts of this operation.
+    pub(crate) turning: bool,
+    /// Whether this is the first pose of the route.
+    pub(crate) first: bool,
+    /// Where the rotary axes go, as far as the program says it.
+    pub(crate) step: Option<Step>,
+}
+
+impl Route {
+    /// How many of `records` belong to the operation that begins with them.
+    pub(crate) fn length(records: &[Record]) -> usize {
+        let starts = |r: &Record| matches!(r.op, Op::Tool(_) | Op::Operation(_));
+        records.iter().skip(1).position(starts).map_or(records.len(), |i| i + 1)
+    }
+
+    /// The operation that begins with `records`, after the pose `here`, with the rotary axes at
+    /// `degrees`.
+    ///
+    /// # Errors
+    /// A tool axis that the machine cannot reach.
+    pub(crate) fn of(
+        machine: &Machine,
+        records: &[Record],
+        here: Option<Pose>,
+        degrees: Option<[f64; 3]>,
+    ) -> Result<Route, Box<Diagnostic>> {
+        let count = Route::length(records);
+        if machine.rotary.is_empty() {
+            let mode = OrientationMode::Fixed;
+            return Ok(Route { records: count, mode, turning: false, plan: None });
+        }
+        let turning = turns_in_a_cut(&records[..count], here);
+        let settings = &machine.orientation;
+        let mode = if turning { settings.simultaneous } else { settings.positioned };
+        let targets = records[..count].iter().filter_map(target);
+        let plan = match mode {
+            OrientationMode::Fixed | OrientationMode::TiltedPlane => None,
+            _ => Some(plan::plan(machine, degrees, targets)?),
+        };
+        Ok(Route { records: count, mode, turning, plan })
+    }
+
+    pub(crate) fn warnings(&self) -> impl Iterator<Item = Diagnostic> {
+        self.plan.iter().flat_map(|plan| plan.rewinds.iter().map(|rewind| rewind.warning()))
+    }
+
+    /// How its poses are written, in order.
+    pub(crate) fn stops(&self) -> impl Iterator<Item = Stop> {
+        let mut steps = self.plan.as_ref().map(Plan::iter);
+        let Route { mode, turning, .. } = *self;
+        let mut first = true;
+        std::iter::from_fn(move || {
+            let step = match &mut steps {
+                Some(steps) => Some(steps.next()?),
+                None => None,
+            };
+            Some(Stop { mode, turning, first: std::mem::take(&mut first), step })
+        })
+    }
+}
+
+fn target(record: &Record) -> Option<Target> {
+    let kind = match record.op {
+        Op::Rapid(_) | Op::Hole(_) => TargetKind::Rapid,
+        Op::Arc(_) => TargetKind::Arc,
+        _ => TargetKind::Feed,
+    };
+    let axis = record.op.pose()?.axis()?;
+    Some(Target { axis, line: record.line, kind })
+}
+
+/// Whether the tool axis changes while the tool cuts.
+fn turns_in_a_cut(records: &[Record], here: Option<Pose>) -> bool {
+    let mut last = here.and_then(|pose| pose.axis());
+    records.iter().any(|record| {
+        let Some(axis) = record.op.pose().and_then(Pose::axis) else { return false };
+        let before = last.replace(axis);
+        let cut = matches!(record.op, Op::Line(_) | Op::Arc(_));
+        cut && before.is_some_and(|before| !same(before, axis))
+    })
+}
+
+/// Whether two tool axes are one.
+#[inline]
+pub(crate) fn same(a: Vec3, b: Vec3) -> bool {
+    a.distance_squared(b) < ANGLE_EPSILON * ANGLE_EPSILON
+}
+
+impl Walk<'_> {
+    /// Brings the control to where `pose` can be written. In a cut nothing may have to change.
+    #[inline]
+    pub(crate) fn settle(&mut self, pose: &Pose, stop: &Stop, cut: bool) -> Done {
+        let axis = pose.axis().unwrap_or(Vec3::Z);
+        let ready = match (&self.place.kind, stop.mode) {
+            (Kind::Plain, OrientationMode::Fixed) if !same(axis, Vec3::Z) => {
+                return Err(unreachable(axis));
+            }
+            (Kind::Plain, OrientationMode::Fixed) => true,
+            (Kind::Plain, OrientationMode::TiltedPlane) => same(axis, Vec3::Z),
+            (Kind::Tilted(_, tilted), OrientationMode::TiltedPlane) => same(*tilted, axis),
+            (Kind::ToolCenter, OrientationMode::ToolCenterAngles)
+            | (Kind::Vectors, OrientationMode::Vectors)
+            | (Kind::Machine, OrientationMode::MachineAngles) => {
+                // Between cuts that turn the axes go along with the rapid; otherwise they turn alone.
+                (stop.turning && (!stop.first || cut)) || self.stands_at(stop)
+            }
+            _ => false,
+        };
+        if ready {
+            return Ok(());
+        }
+        if cut && self.located {
+            let help = "begin the operation with a rapid move in the new orientation";
+            let found = refuse("orientation-in-cut", "the plane of work changes in a cut");
+            return Err(found.help(help).into());
+        }
+        self.turn(axis, stop)
+    }
+
+    fn stands_at(&self, stop: &Stop) -> bool {
+        match (stop.step, self.place.degrees) {
+            (Some(step), Some(degrees)) => self.written(step.degrees) == degrees,
+            _ => false,
+        }
+    }
+
+    /// Degrees of A, B, C as their words give them.
+    pub(crate) fn written(&self, degrees: [f64; 3]) -> [f64; 3] {
+        let mut written = degrees;
+        for rotary in &self.machine.rotary {
+            let (word, index) = (rotary_word(rotary.index()), rotary.index());
+            written[index] = self.writer.rounded(word, degrees[index]);
+        }
+        written
+    }
+
+    /// The tool leaves the part, the rotary axes turn, and the control counts as `stop` says.
+    fn turn(&mut self, axis: Vec3, stop: &Stop) -> Done {
+        let upright = same(axis, Vec3::Z) && stop.mode == OrientationMode::TiltedPlane;
+        if upright && matches!(self.place.kind, Kind::Bare) && self.place.degrees == Some([0.0; 3])
+        {
+            self.place.kind = Kind::Plain;
+            return Ok(());
+        }
+        self.leave_part()?;
+        self.leave_place()?;
+        match stop.mode {
+            OrientationMode::Fixed => return Err(unreachable(axis)),
+            OrientationMode::TiltedPlane if upright => {
+                if self.place.degrees != Some([0.0; 3]) {
+                    self.plane_tilt_off()?;
+                }
+                self.place.kind = Kind::Plain;
+            }
+            OrientationMode::TiltedPlane => self.tilt(axis)?,
+            mode => {
+                self.rotate(stop.step.map(|step| step.rewind.unwrap_or(step.degrees)))?;
+                self.place.kind = match mode {
+                    OrientationMode::ToolCenterAngles => Kind::ToolCenter,
+                    OrientationMode::Vectors => Kind::Vectors,
+                    _ => Kind::Machine,
+                };
+                if mode != OrientationMode::MachineAngles {
+                    self.writer.forget(LENGTH_OFFSET);
+                    self.say_length_offset();
+                    self.required(BlockName::ToolCenterOn)?;
+                }
+            }
+        }
+        self.lose_position();
+        Ok(())
+    }
+
+    /// Positions are written in full from here on.
+    fn lose_position(&mut self) {
+        let vector = bit(WordName::VX) | bit(WordName::VY) | bit(WordName::VZ);
+        self.writer.forget(POSITION | LENGTH_OFFSET | vector | bit(WordName::Motion));
+        self.located = false;
+    }
+
+    /// Away from the part in machine coordinates, before a rotary axis turns.
+    fn leave_part(&mut self) -> Done {
+        if self.located {
+            self.required(BlockName::Retract)?;
+            self.lose_position();
+        }
+        Ok(())
+    }
+
+    /// Whatever is on goes off.
+    pub(crate) fn leave_place(&mut self) -> Done {
+        match self.place.kind {
+            Kind::Bare => {}
+            Kind::Plain | Kind::Machine => {
+                if !self.machine.rotary.is_empty() {
+                    self.place.kind = Kind::Bare;
+                }
+            }
+            Kind::Tilted(..) => {
+                self.leave_part()?;
+                self.plane_tilt_off()?;
+                self.lose_position();
+            }
+            Kind::ToolCenter | Kind::Vectors => {
+                self.required(BlockName::ToolCenterOff)?;
+                self.place.kind = Kind::Bare;
+                self.lose_position();
+            }
+        }
+        Ok(())
+    }
+
+    /// The rotary axes to these positions, while the tool is clear of the part.
+    fn rotate(&mut self, degrees: Option<[f64; 3]>) -> Done {
+        let Some(degrees) = degrees else { return Ok(()) };
+        self.say_degrees(degrees);
+        self.place.degrees = Some(self.written(degrees));
+        if self.writer.changes(ORIENTATION) { self.required(BlockName::Rotate) } else { Ok(()) }
+    }
+
+    pub(crate) fn say_degrees(&mut self, degrees: [f64; 3]) {
+        for rotary in &self.machine.rotary {
+            self.writer.set(rotary_word(rotary.index()), degrees[rotary.index()]);
+        }
+    }
+
+    fn plane_tilt_off(&mut self) -> Done {
+        self.writer.forget(ORIENTATION);
+        self.say_degrees([0.0; 3]);
+        self.required(BlockName::PlaneTiltOff)?;
+        self.place.kind = Kind::Bare;
+        self.place.degrees = Some([0.0; 3]);
+        Ok(())
+    }
+
+    /// A tilted plane whose Z is `axis`: that of the set-up where it fits, else the one that turns
+    /// about X and Y only.
+    fn tilt(&mut self, axis: Vec3) -> Done {
+        if self.machine.inverse(axis).is_err() {
+            return Err(unreachable(axis));
+        }
+        let set_up = self.place.set_up;
+        let (matrix, origin) = if angle_between(set_up.matrix3.z_axis, axis) < ANGLE_EPSILON {
+            (set_up.matrix3, set_up.translation)
+        } else {
+            (leaning(axis), Vec3::ZERO)
+        };
+        let origin_words = [WordName::OX, WordName::OY, WordName::OZ];
+        let mut written = origin;
+        for (i, word) in origin_words.into_iter().enumerate() {
+            written[i] = self.writer.rounded(word, origin[i]);
+            self.writer.set(word, origin[i]);
+        }
+        // Positions are counted from the frame that is written, so that its rounding moves no point.
+        let mut frame = Frame::from_mat3_translation(matrix, written);
+        for angles in Angles::ALL {
+            let degrees = angles.of(&matrix);
+            let words = angles.words();
+            for (word, degrees) in words.into_iter().zip(degrees) {
+                self.writer.set(word, degrees);
+            }
+            if self.templates.places(BlockName::PlaneTilt, words[0]) {
+                let rounded = [0, 1, 2].map(|i| self.writer.rounded(words[i], degrees[i]));
+                frame.matrix3 = angles.matrix(rounded);
+            }
+        }
+        self.required(BlockName::PlaneTilt)?;
+        self.place.kind = Kind::Tilted(frame.inverse(), axis);
+        self.place.degrees = None;
+        self.writer.forget(ORIENTATION);
+        Ok(())
+    }
+}
+
+fn unreachable(axis: Vec3) -> Box<Diagnostic> {
+    let message = format!(
+        "the machine cannot bring the tool axis to ({:.6}, {:.6}, {:.6})",
+        axis.x, axis.y, axis.z
+    );
+    refuse("unreachable-orientation", message)
+}
+
+/// The word of the rotary axis with that place in the order A, B, C.
+pub(crate) fn rotary_word(index: usize) -> WordName {
+    [WordName::A, WordName::B, WordName::C][index.min(2)]
+}
+
+/// The frame whose Z is `axis`, turned about X and then about the new Y, and not about Z.
+fn leaning(axis: Vec3) -> Mat3 {
+    let about_y = axis.x.clamp(-1.0, 1.0).asin();
+    let about_x = if axis.y.hypot(axis.z) < 1e-12 { 0.0 } else { (-axis.y).atan2(axis.z) };
+    Mat3::from_rotation_x(about_x) * Mat3::from_rotation_y(about_y)
+}
+
+/// The notations for a rotation by three angles.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Angles {
+    /// About X, the new Y, the new Z (`CYCLE800` with mode 57).
+    Turned,
+    /// About the fixed X, Y, Z in this order (`PLANE SPATIAL`).
+    Spatial,
+    /// About Z, the new X, the new Z (`G68.2`).
+    Euler,
+}
+
+impl Angles {
+    const ALL: [Angles; 3] = [Angles::Turned, Angles::Spatial, Angles::Euler];
+
+    fn words(self) -> [WordName; 3] {
+        match self {
+            Angles::Turned => [WordName::RX, WordName::RY, WordName::RZ],
+            Angles::Spatial => [WordName::SpatialA, WordName::SpatialB, WordName::SpatialC],
+            Angles::Euler => [WordName::Euler1, WordName::Euler2, WordName::Euler3],
+        }
+    }
+
+    /// The rotation by so many degrees.
+    fn matrix(self, degrees: [f64; 3]) -> Mat3 {
+        let [a, b, c] = degrees.map(f64::to_radians);
+        let (x, y, z) = (Mat3::from_rotation_x, Mat3::from_rotation_y, Mat3::from_rotation_z);
+        match self {
+            Angles::Turned => x(a) * y(b) * z(c),
+            Angles::Spatial => z(c) * y(b) * x(a),
+            Angles::Euler => z(a) * x(b) * z(c),
+        }
+    }
+
+    /// The degrees of a rotation. Where two of the angles turn about the same axis, one of them is 0.
+    fn of(self, matrix: &Mat3) -> [f64; 3] {
+        let m = |row: usize, column: usize| matrix.col(column)[row];
+        // As near to a pole as rounding lets a sine come.
+        let pole = |sine: f64| 1.0 - sine.abs() < 1e-12;
+        let radians = match self {
+            Angles::Turned if pole(m(0, 2)) => {
+                [m(2, 1).atan2(m(1, 1)), m(0, 2).clamp(-1.0, 1.0).asin(), 0.0]
+            }
+            Angles::Turned => [
+                (-m(1, 2)).atan2(m(2, 2)),
+                m(0, 2).clamp(-1.0, 1.0).asin(),
+                (-m(0, 1)).atan2(m(0, 0)),
+            ],
+            Angles::Spatial if pole(m(2, 0)) => {
+                [(-m(1, 2)).atan2(m(1, 1)), -m(2, 0).clamp(-1.0, 1.0).asin(), 0.0]
+            }
+            Angles::Spatial => {
+                [m(2, 1).atan2(m(2, 2)), -m(2, 0).clamp(-1.0, 1.0).asin(), m(1, 0).atan2(m(0, 0))]
+            }
+            Angles::Euler if pole(m(2, 2)) => {
+                [m(1, 0).atan2(m(0, 0)), m(2, 2).clamp(-1.0, 1.0).acos(), 0.0]
+            }
+            Angles::Euler => {
+                [m(0, 2).atan2(-m(1, 2)), m(2, 2).clamp(-1.0, 1.0).acos(), m(2, 0).atan2(m(2, 1))]
+            }
+        };
+        radians.map(|angle| angle.to_degrees() + 0.0)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use proptest::prelude::*;
+
+    #[test]
+    fn the_angles_of_a_plane_tilted_about_y_are_the_same_in_all_but_euler() {
+        // Z leans 30° towards X: by hand, one turn of 30° about Y; as Euler angles 90°, 30°, −90°.
+        let tilted = Mat3::from_rotation_y(30f64.to_radians());
+        let near = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-9);
+        assert!(near(Angles::Turned.of(&tilted), [0.0, 30.0, 0.0]));
+        assert!(near(Angles::Spatial.of(&tilted), [0.0, 30.0, 0.0]));
+        assert!(near(Angles::Euler.of(&tilted), [90.0, 30.0, -90.0]));
+    }
+
+    proptest! {
+        #[test]
+        fn angles_give_their_matrix_back(
+            a in prop_oneof![-180.0..180.0f64, (-2i32..=2).prop_map(|q| f64::from(q) * 90.0)],
+            b in prop_oneof![-180.0..180.0f64, (-2i32..=2).prop_map(|q| f64::from(q) * 90.0)],
+            c in prop_oneof![-180.0..180.0f64, (-2i32..=2).prop_map(|q| f64::from(q) * 90.0)],
+        ) {
+            for angles in Angles::ALL {
+                let matrix = angles.matrix([a, b, c]);
+                let again = angles.matrix(angles.of(&matrix));
+                prop_assert!(matrix.abs_diff_eq(again, 3e-6), "{angles:?}");
+            }
+        }
+
+        #[test]
+        fn a_leaning_frame_has_its_z_along_the_axis(
+            x in -1.0..1.0f64, y in -1.0..1.0f64, z in -1.0..1.0f64,
+        ) {
+            if let Some(axis) = geom::direction(Vec3::new(x, y, z)) {
+                prop_assert!(leaning(axis).z_axis.distance(axis) < 1e-9);
+            }
+        }
+    }
+}

@@ -1,0 +1,127 @@
+//! What a machine's files must hold so that nothing is missing when it is needed: checked before
+//! anything is written.
+
+use crate::catalogue::{BlockName, WordName, nearest};
+use crate::template::Templates;
+use machine::{CycleName, Machine, OrientationMode};
+use program::Diagnostic;
+
+/// Checks words against the catalogue, words that blocks place against the words that there are, and
+/// blocks against the capabilities.
+///
+/// # Errors
+/// Each promise that is not kept.
+pub(crate) fn check(machine: &Machine, templates: &Templates) -> Result<(), Vec<Diagnostic>> {
+    let mut errors = Vec::new();
+    let file = |error: Diagnostic| error.file(machine.name.clone());
+    for name in machine.words.keys() {
+        if WordName::named(name).is_none() {
+            let near = nearest(name, WordName::TABLE.iter().map(|row| row.name));
+            let help = if near.is_empty() { near } else { format!("did you mean {near}?") };
+            let message = format!("no word is called `{name}`");
+            errors.push(file(Diagnostic::error("word", message).help(help)));
+        }
+    }
+    for (word, block) in templates.words() {
+        let name = word.name();
+        let Some(known) = machine.words.get(name) else {
+            let message = format!("the block places `{name}`, and [words.{name}] is missing");
+            let error = Diagnostic::error("word", message);
+            errors.push(error.file(block.file.clone()).line(block.line));
+            continue;
+        };
+        let lacks = |code: &&str| !known.codes.contains_key(*code) && needs(machine, code);
+        for code in word.codes().filter(lacks) {
+            let message = format!("[words.{name}] has no text for `{code}` in its `codes`");
+            errors.push(file(Diagnostic::error("word", message)));
+        }
+        for code in known.codes.keys().filter(|code| word.codes().all(|known| known != **code)) {
+            let message = format!("[words.{name}] has no code called `{code}`");
+            errors.push(file(Diagnostic::error("word", message)));
+        }
+    }
+    for word in [WordName::X, WordName::Y, WordName::Z] {
+        if !machine.words.contains_key(word.name()) {
+            let message = format!("[words.{}] is missing", word.name());
+            errors.push(file(Diagnostic::error("word", message)));
+        }
+    }
+    for (block, why) in promised(machine) {
+        if !templates.has(block) {
+            let message = format!("the block `{}` is missing: {why}", block.name());
+            errors.push(file(Diagnostic::error("missing-block", message)));
+        }
+    }
+    let can = &machine.capabilities;
+    let linear = |word| templates.places(BlockName::Linear, word);
+    for (promise, what, word) in [
+        (can.compensation, "compensation", WordName::Compensation),
+        (can.feed_per_turn, "feed_per_turn", WordName::FeedMode),
+        (can.inverse_time, "inverse_time", WordName::FeedMode),
+    ] {
+        if promise && !linear(word) {
+            let message =
+                format!("`{what}` is promised, and the block `linear` lacks `{}`", word.name());
+            errors.push(file(Diagnostic::error("missing-word", message)));
+        }
+    }
+    if errors.is_empty() { Ok(()) } else { Err(errors) }
+}
+
+/// Whether the machine can come to say this entry of a code.
+fn needs(machine: &Machine, code: &str) -> bool {
+    let can = &machine.capabilities;
+    let plane = |name: &str| can.arcs.iter().any(|p| format!("{p:?}").eq_ignore_ascii_case(name));
+    match code {
+        "arc_cw" | "arc_ccw" => !can.arcs.is_empty(),
+        "xz" | "yz" => plane(code),
+        "left" | "right" => can.compensation,
+        "per_turn" => can.feed_per_turn,
+        "inverse_time" => can.inverse_time,
+        _ => true,
+    }
+}
+
+/// The blocks that a machine needs, and why.
+fn promised(machine: &Machine) -> Vec<(BlockName, &'static str)> {
+    use BlockName as B;
+    let can = &machine.capabilities;
+    let mut all = vec![
+        (B::Rapid, "every program moves"),
+        (B::Linear, "every program cuts"),
+        (B::ToolChange, "every program calls a tool"),
+        (B::ProgramEnd, "every program ends"),
+    ];
+    if !can.arcs.is_empty() {
+        all.extend([B::ArcCw, B::ArcCcw].map(|block| (block, "`arcs` are promised")));
+    }
+    if can.arcs.len() > 1 {
+        all.push((B::PlaneSelect, "`arcs` are promised in several planes"));
+    }
+    for cycle in &can.cycles {
+        let block = match cycle {
+            CycleName::Drill => B::CycleDrill,
+            CycleName::Deep => B::CycleDeep,
+            CycleName::BreakChip => B::CycleBreakChip,
+            CycleName::Tap => B::CycleTap,
+            CycleName::Ream => B::CycleReam,
+            CycleName::Bore => B::CycleBore,
+        };
+        all.push((block, "its cycle is promised"));
+        all.extend([B::CycleHole, B::CycleOff].map(|block| (block, "`cycles` are promised")));
+    }
+    let settings = &machine.orientation;
+    for mode in [settings.simultaneous, settings.positioned] {
+        let blocks: &[BlockName] = match mode {
+            OrientationMode::Fixed => &[],
+            OrientationMode::MachineAngles => &[B::Retract, B::Rotate],
+            OrientationMode::ToolCenterAngles | OrientationMode::Vectors => {
+                &[B::Retract, B::Rotate, B::ToolCenterOn, B::ToolCenterOff]
+            }
+            OrientationMode::TiltedPlane => &[B::Retract, B::PlaneTilt, B::PlaneTiltOff],
+        };
+        all.extend(blocks.iter().map(|&block| (block, "the orientation is written with it")));
+    }
+    all.dedup();
+    all
+}

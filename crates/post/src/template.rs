@@ -1,0 +1,430 @@
+//! Templates: what a block looks like.
+//!
+//! A template is Jinja. One that consists only of literal text and words is compiled once into a list
+//! of steps and runs without the engine; in any other the engine renders the statements and leaves
+//! the words standing, so that both end as the same steps and follow the same rules of modality and
+//! spacing.
+
+use crate::catalogue::{BlockName, VARIABLES, WordName, nearest};
+use machine::{Block, Format, Machine, OptionValue};
+use minijinja::value::{Object, Value};
+use minijinja::{AutoEscape, Environment, UndefinedBehavior};
+use program::{Diagnostic, Op, Program, Tool};
+use std::collections::BTreeMap;
+use std::io;
+use std::sync::Arc;
+
+/// Steps of the engine after which a template is stopped: an endless loop.
+const FUEL: u64 = 100_000;
+
+/// The most bytes that one block may give.
+const MOST_BYTES: usize = 1 << 20;
+
+/// A word in text stands as one character of the private use area, from here on.
+const FIRST_WORD: u32 = 0xE000;
+
+/// A set of words, one bit each.
+pub(crate) type Words = u64;
+
+/// The bit of a word.
+pub(crate) const fn bit(word: WordName) -> Words {
+    1 << word as u64
+}
+
+/// One step of a block.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Step {
+    /// Bytes of [`Lines::text`].
+    Text(u32, u32),
+    /// A word, left out where it repeats itself.
+    Word(WordName),
+    /// What separates two words, if something stands on both sides.
+    Gap,
+    /// End of the line.
+    End,
+}
+
+/// A block without statements.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(crate) struct Lines {
+    pub(crate) text: String,
+    pub(crate) steps: Vec<Step>,
+}
+
+impl Lines {
+    /// Cuts `text` into steps. Blanks outside of comments and quotes separate words.
+    fn of(text: String, format: &Format) -> Lines {
+        let mut steps = Vec::new();
+        for line in text.split('\n') {
+            let origin = line.as_ptr() as usize - text.as_ptr() as usize;
+            let mut from = 0;
+            let (mut quoted, mut comment) = (false, false);
+            let literal = |steps: &mut Vec<Step>, from: usize, to: usize| {
+                if from < to {
+                    steps.push(Step::Text((origin + from) as u32, (origin + to) as u32));
+                }
+            };
+            for (at, c) in line.char_indices() {
+                let rest = &line[at..];
+                if !quoted && !comment && !format.comment_start.is_empty() {
+                    comment = rest.starts_with(&format.comment_start);
+                } else if comment && !format.comment_end.is_empty() {
+                    comment = !rest.starts_with(&format.comment_end);
+                }
+                quoted ^= c == '"' && !comment;
+                let word = u32::from(c).checked_sub(FIRST_WORD).map(|i| i as usize);
+                let step = match word.and_then(|i| WordName::ALL.get(i)) {
+                    Some(&word) => Step::Word(word),
+                    None if c == '\r' => Step::Gap,
+                    None if c.is_ascii_whitespace() && !quoted && !comment => Step::Gap,
+                    None => continue,
+                };
+                literal(&mut steps, from, at);
+                from = at + c.len_utf8();
+                steps.push(step);
+            }
+            literal(&mut steps, from, line.len());
+            steps.push(Step::End);
+        }
+        Lines { text, steps }
+    }
+
+    fn uses(&self) -> Words {
+        let words = self.steps.iter().filter_map(|step| match step {
+            Step::Word(word) => Some(bit(*word)),
+            _ => None,
+        });
+        words.fold(0, |all, word| all | word)
+    }
+}
+
+/// `text` with each `{{ word }}` as one character, where it consists of nothing but text and words.
+fn plain(text: &str) -> Option<String> {
+    let mut plain = String::with_capacity(text.len());
+    let mut rest = text;
+    while let Some(at) = rest.find('{') {
+        plain.push_str(&rest[..at]);
+        rest = &rest[at..];
+        if let Some(inner) = rest.strip_prefix("{{") {
+            let (name, behind) = inner.split_once("}}")?;
+            plain.push(placeholder(WordName::named(name.trim())?));
+            rest = behind;
+        } else if rest.starts_with("{%") || rest.starts_with("{#") {
+            return None;
+        } else {
+            plain.push('{');
+            rest = &rest[1..];
+        }
+    }
+    plain.push_str(rest);
+    Some(plain)
+}
+
+fn placeholder(word: WordName) -> char {
+    char::from_u32(FIRST_WORD + word as u32).unwrap_or_default()
+}
+
+/// A block of a machine, ready to run.
+pub(crate) struct Template<'a> {
+    block: &'a Block,
+    uses: Words,
+    /// `None`: the engine renders it.
+    lines: Option<Lines>,
+}
+
+/// What the statements of a template may read.
+#[derive(Clone, Debug)]
+pub(crate) struct Scope {
+    /// The words that the block may write.
+    pub(crate) set: Words,
+    pub(crate) program: Value,
+    pub(crate) machine: Value,
+    pub(crate) options: Value,
+    pub(crate) operation: Value,
+    pub(crate) tool: Value,
+    pub(crate) spindle: Value,
+    pub(crate) text: Value,
+}
+
+impl Object for Scope {
+    fn get_value(self: &Arc<Self>, key: &Value) -> Option<Value> {
+        let value = match key.as_str()? {
+            "program" => &self.program,
+            "machine" => &self.machine,
+            "options" => &self.options,
+            "operation" => &self.operation,
+            "tool" => &self.tool,
+            "spindle" => &self.spindle,
+            "text" => &self.text,
+            name => {
+                let word = WordName::named(name)?;
+                let text = if self.set & bit(word) == 0 { None } else { Some(placeholder(word)) };
+                return Some(Value::from(text.map(String::from).unwrap_or_default()));
+            }
+        };
+        Some(value.clone())
+    }
+}
+
+impl Scope {
+    pub(crate) fn new(machine: &Machine) -> Scope {
+        let options = machine.options.iter().map(|(name, value)| {
+            let value = match value {
+                OptionValue::Flag(flag) => Value::from(*flag),
+                OptionValue::Number(number) => number_value(*number),
+                OptionValue::Text(text) => Value::from(text.as_str()),
+            };
+            (name.clone(), value)
+        });
+        let names = [("name", &machine.name), ("title", &machine.title)];
+        Scope {
+            set: 0,
+            program: Value::UNDEFINED,
+            machine: map(names.map(|(key, name)| (key, Value::from(clean(name))))),
+            options: Value::from(options.collect::<BTreeMap<String, Value>>()),
+            operation: map([("name", Value::from(""))]),
+            tool: tool_value(&Tool::default(), true),
+            spindle: map([("changed", Value::from(true))]),
+            text: Value::from(""),
+        }
+    }
+}
+
+/// A whole number without a point, any other as it is.
+fn number_value(number: f64) -> Value {
+    let whole = number.fract() == 0.0 && number.abs() < 1e15;
+    if whole { Value::from(number as i64) } else { Value::from(number) }
+}
+
+/// A value with members.
+pub(crate) fn map(members: impl IntoIterator<Item = (&'static str, Value)>) -> Value {
+    Value::from(members.into_iter().collect::<BTreeMap<&'static str, Value>>())
+}
+
+/// A tool as templates see it; `first` where none has been called before.
+pub(crate) fn tool_value(tool: &Tool, first: bool) -> Value {
+    let sizes = [
+        ("diameter", tool.diameter),
+        ("corner_radius", tool.corner_radius),
+        ("length", tool.length),
+    ];
+    let sizes = sizes.into_iter().filter_map(|(key, size)| Some((key, number_value(size?))));
+    let named = [
+        ("number", Value::from(tool.number)),
+        ("name", Value::from(clean(&tool.name).trim())),
+        ("first", Value::from(first)),
+    ];
+    map(named.into_iter().chain(sizes))
+}
+
+/// Text from outside, as no control and no template can misread it: letters, digits, blanks and a few
+/// signs. Whatever ends a comment or a string, starts an expression, or is a command even inside a
+/// comment (`!`, `?`, `~`, `%` of GRBL and tapes, `MSG,` and `LOGOPEN,` of LinuxCNC) becomes a blank.
+pub(crate) fn clean(text: &str) -> String {
+    let harmless = |c: char| c.is_ascii_alphanumeric() || " .:+-*/=_<>&@#".contains(c);
+    text.chars().map(|c| if harmless(c) { c } else { ' ' }).collect()
+}
+
+/// A program as templates see it. Its name becomes a file name on the control: the last part of a
+/// path, letters, digits, `_` and `-`, at most 24 of them (SINUMERIK), never empty.
+pub(crate) fn program_value(program: &Program) -> Value {
+    let name = program.name.rsplit(['/', '\\']).next().unwrap_or_default();
+    let name = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
+    let kept = |c: &char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
+    let mut name: String = name.chars().filter(kept).take(24).collect();
+    if name.is_empty() {
+        name = "PROGRAM".into();
+    }
+    let mut seen = Vec::new();
+    let mut tools = Vec::new();
+    for record in &program.records {
+        if let Op::Tool(tool) = &record.op
+            && !seen.contains(&tool.number)
+        {
+            tools.push(tool_value(tool, seen.is_empty()));
+            seen.push(tool.number);
+        }
+    }
+    map([("name", Value::from(name)), ("tools", Value::from(tools))])
+}
+
+/// All blocks of a machine.
+pub(crate) struct Templates<'a> {
+    machine: &'a Machine,
+    engine: Environment<'a>,
+    blocks: Vec<Option<Template<'a>>>,
+}
+
+impl<'a> Templates<'a> {
+    /// Compiles the blocks of `machine`.
+    ///
+    /// # Errors
+    /// Every block, word or variable that the catalogue does not know, and every template that the
+    /// engine does not understand, each with its place in the machine's files.
+    pub(crate) fn compile(machine: &'a Machine) -> Result<Templates<'a>, Vec<Diagnostic>> {
+        let mut engine = Environment::new();
+        // `'%1000000000d'|format(1)` takes a gigabyte before any limit of ours sees it.
+        engine.remove_filter("format");
+        engine.set_undefined_behavior(UndefinedBehavior::SemiStrict);
+        engine.set_auto_escape_callback(|_| AutoEscape::None);
+        engine.set_fuel(Some(FUEL));
+        let mut templates = Templates { machine, engine, blocks: Vec::new() };
+        templates.blocks.resize_with(BlockName::COUNT, || None);
+        let mut errors = Vec::new();
+        for (name, block) in &machine.blocks {
+            let compiled = match BlockName::named(name) {
+                Some(known) => templates.one(block).map(|template| (known, template)),
+                None => Err(unknown_block(name, block)),
+            };
+            match compiled {
+                Ok((known, template)) => templates.blocks[known as usize] = Some(template),
+                Err(error) => errors.push(*error),
+            }
+        }
+        if errors.is_empty() { Ok(templates) } else { Err(errors) }
+    }
+
+    fn one(&self, block: &'a Block) -> Result<Template<'a>, Box<Diagnostic>> {
+        if let Some(text) = plain(&block.text) {
+            let lines = Lines::of(text, &self.machine.format);
+            return Ok(Template { block, uses: lines.uses(), lines: Some(lines) });
+        }
+        let compiled = self.engine.template_from_str(&block.text).map_err(|e| fault(block, &e))?;
+        let mut uses = 0;
+        let mut names: Vec<String> = compiled.undeclared_variables(true).into_iter().collect();
+        names.sort();
+        for name in names {
+            match WordName::named(&name) {
+                Some(word) => uses |= bit(word),
+                None => self.check_variable(block, &name)?,
+            }
+        }
+        Ok(Template { block, uses, lines: None })
+    }
+
+    fn check_variable(&self, block: &Block, name: &str) -> Result<(), Box<Diagnostic>> {
+        let known = match name.split_once('.') {
+            Some(("options", option)) => self.machine.options.contains_key(option),
+            Some(("tool" | "spindle" | "operation" | "program" | "machine", _)) => {
+                VARIABLES.iter().any(|row| row.name == name)
+            }
+            _ => {
+                let root = |row: &crate::Parameter| row.name.split('.').next() == Some(name);
+                VARIABLES.iter().any(root)
+                    || self.engine.globals().any(|(global, _)| global == name)
+            }
+        };
+        if known {
+            return Ok(());
+        }
+        let options: Vec<String> =
+            self.machine.options.keys().map(|option| format!("options.{option}")).collect();
+        let names = WordName::TABLE.iter().chain(VARIABLES).map(|row| row.name);
+        let near = nearest(name, names.chain(options.iter().map(String::as_str)));
+        let help = if near.is_empty() { String::new() } else { format!("did you mean {near}? ") };
+        let error =
+            Diagnostic::error("template-name", format!("no word or variable is called `{name}`"))
+                .help(help + "`toolpost explain` lists them");
+        let place = block.text.find(name).unwrap_or(0);
+        Err(Box::new(at(block, error, place, place + name.len())))
+    }
+
+    /// Whether the machine has the block.
+    pub(crate) fn has(&self, name: BlockName) -> bool {
+        self.blocks[name as usize].is_some()
+    }
+
+    /// Whether the machine has the block, and the block places the word.
+    pub(crate) fn places(&self, name: BlockName, word: WordName) -> bool {
+        self.blocks[name as usize].as_ref().is_some_and(|block| block.uses & bit(word) != 0)
+    }
+
+    /// Each word that some block places, and a block that does.
+    pub(crate) fn words(&self) -> impl Iterator<Item = (WordName, &'a Block)> {
+        WordName::ALL.iter().filter_map(|&word| {
+            let places = self.blocks.iter().flatten().find(|block| block.uses & bit(word) != 0);
+            places.map(|template| (word, template.block))
+        })
+    }
+
+    /// The compiled lines of a block that needs no engine.
+    #[inline]
+    pub(crate) fn lines(&self, name: BlockName) -> Option<&Lines> {
+        self.blocks[name as usize].as_ref()?.lines.as_ref()
+    }
+
+    /// Runs the engine on a block that needs it; nothing where the machine lacks the block.
+    ///
+    /// # Errors
+    /// What the engine found, with the place in the machine's file: an undefined value, an endless
+    /// loop, an output without end.
+    pub(crate) fn render(&self, name: BlockName, scope: Scope) -> Result<Lines, Box<Diagnostic>> {
+        let Some(template) = &self.blocks[name as usize] else { return Ok(Lines::default()) };
+        let block = template.block;
+        let mut out = Capped(Vec::new());
+        self.engine
+            .template_from_str(&block.text)
+            .and_then(|compiled| {
+                compiled.render_captured_to(Value::from_object(scope), &mut out).map(drop)
+            })
+            .map_err(|e| fault(block, &e))?;
+        let text = String::from_utf8_lossy(&out.0).into_owned();
+        Ok(Lines::of(text, &self.machine.format))
+    }
+}
+
+fn unknown_block(name: &str, block: &Block) -> Box<Diagnostic> {
+    let near = nearest(name, BlockName::TABLE.iter().map(|row| row.name));
+    let help = if near.is_empty() { String::new() } else { format!("did you mean {near}? ") };
+    let error = Diagnostic::error("template-block", format!("no block is called `{name}`"))
+        .help(help + "`toolpost explain` lists them")
+        .file(block.file.clone())
+        .line(block.line);
+    Box::new(error)
+}
+
+/// What the engine says, at its place.
+fn fault(block: &Block, error: &minijinja::Error) -> Box<Diagnostic> {
+    let mut message = error.kind().to_string();
+    if let Some(detail) = error.detail() {
+        message = format!("{message}: {detail}");
+    }
+    let source = std::error::Error::source(error).map(|s| format!(": {s}")).unwrap_or_default();
+    let found =
+        Diagnostic::error("template", format!("the template cannot run: {message}{source}"));
+    let range = error.range().unwrap_or(0..0);
+    Box::new(at(block, found, range.start, range.end))
+}
+
+/// `found` at bytes `from..to` of the block's text, as a place of the machine's file.
+fn at(block: &Block, found: Diagnostic, from: usize, to: usize) -> Diagnostic {
+    let text = block.text.as_bytes();
+    let from = from.min(text.len());
+    let start = text[..from].iter().rposition(|&b| b == b'\n').map_or(0, |i| i + 1);
+    let line = text[start..].split(|&b| b == b'\n').next().unwrap_or_default();
+    let before = text[..start].iter().filter(|&&b| b == b'\n').count() as u32;
+    let mut found =
+        found.file(block.file.clone()).at(block.line + before, line, from - start, to - start);
+    if before == 0 {
+        found.column += block.column - 1;
+    }
+    found
+}
+
+/// Takes so many bytes and no more.
+struct Capped(Vec<u8>);
+
+impl io::Write for Capped {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        if self.0.len() + bytes.len() > MOST_BYTES {
+            let message = format!("one block gives more than {MOST_BYTES} bytes");
+            return Err(io::Error::other(message));
+        }
+        self.0.extend_from_slice(bytes);
+        Ok(bytes.len())
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        Ok(())
+    }
+}

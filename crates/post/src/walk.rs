@@ -1,0 +1,553 @@
+//! The way through the program, record by record: what the machine is told, and when.
+
+use crate::catalogue::{BlockName, WordName};
+use crate::findings::Findings;
+use crate::place::{Place, Route};
+use crate::template::{Scope, Templates, Words, bit, clean, map, program_value, tool_value};
+use crate::writer::Writer;
+use machine::{LengthOffset, Machine, OptionValue};
+use minijinja::value::Value;
+use program::{
+    Compensation, Coolant, Cycle, Diagnostic, Feed, Op, Pose, Program, Record, Spindle, Tool,
+    lowering,
+};
+
+/// A step that may be refused.
+pub(crate) type Done = Result<(), Box<Diagnostic>>;
+
+/// The words that say where the tool is.
+pub(crate) const POSITION: Words = bit(WordName::X) | bit(WordName::Y) | bit(WordName::Z);
+/// The words that call the tool length offset.
+pub(crate) const LENGTH_OFFSET: Words = bit(WordName::H) | bit(WordName::Length);
+/// The words that say where it points.
+pub(crate) const ORIENTATION: Words = bit(WordName::A)
+    | bit(WordName::B)
+    | bit(WordName::C)
+    | bit(WordName::VX)
+    | bit(WordName::VY)
+    | bit(WordName::VZ);
+
+/// Entries of the code word `motion`.
+pub(crate) mod motion {
+    pub(crate) const RAPID: usize = 0;
+    pub(crate) const LINEAR: usize = 1;
+    pub(crate) const ARC_CW: usize = 2;
+    pub(crate) const ARC_CCW: usize = 3;
+}
+
+/// Entries of the code word `feed_mode`.
+mod feed_mode {
+    pub(super) const PER_MINUTE: usize = 0;
+    pub(super) const PER_TURN: usize = 1;
+    pub(super) const INVERSE_TIME: usize = 2;
+}
+
+/// The entry of the code word `plane` for the plane XY.
+pub(crate) const PLANE_XY: usize = 0;
+
+/// A program being written.
+pub(crate) struct Walk<'a> {
+    pub(crate) machine: &'a Machine,
+    pub(crate) templates: Templates<'a>,
+    pub(crate) writer: Writer,
+    pub(crate) findings: Findings,
+    scope: Scope,
+    records: &'a [Record],
+    /// Where in `records` we are.
+    index: usize,
+    /// Source line of the record at hand.
+    pub(crate) line: u32,
+    pub(crate) tool: Option<Tool>,
+    /// The register of its length offset, where the control wants one.
+    pub(crate) length_offset: Option<f64>,
+    /// What the source wants, and what the control has been told.
+    pub(crate) spindle: Spindle,
+    active_spindle: Spindle,
+    coolant: Coolant,
+    active_coolant: Coolant,
+    pub(crate) feed: Option<Feed>,
+    compensation: Compensation,
+    active_compensation: Compensation,
+    compensation_line: u32,
+    pub(crate) cycle: Option<&'a Cycle>,
+    /// The definition that the control has, where a cycle is on.
+    pub(crate) open_cycle: Option<crate::cycles::Open>,
+    /// The last pose of the source.
+    pub(crate) here: Option<Pose>,
+    /// Whether the control stands where the last pose says.
+    pub(crate) located: bool,
+    pub(crate) place: Place,
+    ended: bool,
+}
+
+impl<'a> Walk<'a> {
+    pub(crate) fn new(program: &'a Program, machine: &'a Machine) -> Result<Self, Vec<Diagnostic>> {
+        let templates = Templates::compile(machine)?;
+        crate::promises::check(machine, &templates)?;
+        let mut scope = Scope::new(machine);
+        scope.program = program_value(program);
+        let mut writer = Writer::new(machine);
+        // What the catalogue asks of `program_start`.
+        writer.assume(WordName::Plane, PLANE_XY);
+        writer.assume(WordName::Compensation, compensation_code(Compensation::Off));
+        writer.assume(WordName::FeedMode, feed_mode::PER_MINUTE);
+        Ok(Walk {
+            machine,
+            templates,
+            writer,
+            findings: Findings::default(),
+            scope,
+            records: &program.records,
+            index: 0,
+            line: 0,
+            tool: None,
+            length_offset: None,
+            spindle: Spindle::Off,
+            active_spindle: Spindle::Off,
+            coolant: Coolant::Off,
+            active_coolant: Coolant::Off,
+            feed: None,
+            compensation: Compensation::Off,
+            active_compensation: Compensation::Off,
+            compensation_line: 0,
+            cycle: None,
+            open_cycle: None,
+            here: None,
+            located: false,
+            place: Place::start(machine),
+            ended: false,
+        })
+    }
+
+    /// Writes everything; the text and its lines, or what keeps it from being written.
+    pub(crate) fn run(mut self) -> Result<crate::Output, Vec<Diagnostic>> {
+        if let Err(error) = self.records() {
+            self.findings.error(*error);
+        }
+        let warnings = self.findings.finish(self.machine.capabilities.lowering_tolerance)?;
+        let (text, blocks) = self.writer.finish();
+        Ok(crate::Output { text, blocks, warnings })
+    }
+
+    fn records(&mut self) -> Done {
+        self.block(BlockName::ProgramStart)?;
+        while self.index < self.records.len() {
+            let rest = &self.records[self.index..];
+            let route = Route::of(self.machine, rest, self.here, self.place.degrees());
+            let route = match route {
+                Ok(route) => route,
+                // Without an orientation for each pose the operation cannot be written at all.
+                Err(error) => {
+                    if !self.findings.error(*error) {
+                        return Ok(());
+                    }
+                    self.index += Route::length(rest);
+                    continue;
+                }
+            };
+            route.warnings().for_each(|warning| self.findings.warn(warning));
+            let mut stops = route.stops();
+            for record in &rest[..route.records] {
+                self.line = record.line;
+                let stop = record.op.pose().and_then(|_| stops.next());
+                if let Err(error) = self.record(record, stop) {
+                    let error = if error.line == 0 { error.line(self.line) } else { *error };
+                    if !self.findings.error(error) {
+                        return Ok(());
+                    }
+                }
+                self.index += 1;
+            }
+        }
+        if self.ended { Ok(()) } else { self.end() }
+    }
+
+    fn record(&mut self, record: &'a Record, stop: Option<crate::place::Stop>) -> Done {
+        if self.ended {
+            return match record.op {
+                Op::End | Op::Comment(_) | Op::EndOfOperation => Ok(()),
+                _ => Err(refuse("after-end", "the program goes on after its end")),
+            };
+        }
+        if record.op.pose().is_some() {
+            return self.motion(&record.op, stop);
+        }
+        match &record.op {
+            Op::Rapid(_) | Op::Line(_) | Op::Arc(_) | Op::Hole(_) => Ok(()),
+            Op::Cycle(cycle) => {
+                self.end_cycle()?;
+                self.cycle = Some(cycle);
+                Ok(())
+            }
+            Op::CycleOff => {
+                self.cycle = None;
+                self.end_cycle()
+            }
+            Op::Feed(feed) => {
+                self.feed = Some(*feed);
+                Ok(())
+            }
+            Op::Spindle(spindle) => self.set_spindle(*spindle),
+            Op::Coolant(coolant) => {
+                self.coolant = *coolant;
+                if *coolant == Coolant::Off { self.sync_coolant() } else { Ok(()) }
+            }
+            Op::Tool(tool) => self.change_tool(tool),
+            Op::Preselect(number) => {
+                self.check_tool_number(*number)?;
+                self.writer.set(WordName::T, f64::from(*number));
+                self.block(BlockName::ToolPreselect)
+            }
+            Op::Compensation(compensation) => self.set_compensation(*compensation),
+            Op::Frame(frame) => {
+                self.place.set_up(**frame);
+                Ok(())
+            }
+            Op::Dwell(seconds) => self.dwell(*seconds),
+            Op::Stop => self.required(BlockName::Stop),
+            Op::OptionalStop => self.required(BlockName::OptionalStop),
+            Op::Operation(name) => {
+                self.scope.operation = map([("name", Value::from(clean(name).trim()))]);
+                self.block(BlockName::OperationStart)
+            }
+            Op::EndOfOperation => {
+                self.end_cycle()?;
+                self.block(BlockName::OperationEnd)
+            }
+            Op::Comment(text) => self.text(BlockName::Comment, text),
+            Op::Message(text) if self.templates.has(BlockName::Message) => {
+                self.text(BlockName::Message, text)
+            }
+            Op::Message(text) => self.text(BlockName::Comment, text),
+            Op::End => self.end(),
+            Op::LengthOffset(_) | Op::WorkOffset(_) | Op::Home(_) => {
+                Err(refuse("unsupported", "only virtual controls give this record"))
+            }
+        }
+    }
+
+    fn motion(&mut self, op: &'a Op, stop: Option<crate::place::Stop>) -> Done {
+        if self.tool.is_none() {
+            self.default_tool()?;
+        }
+        let Some(stop) = stop else { return Ok(()) };
+        match op {
+            Op::Rapid(pose) => self.rapid(pose, &stop),
+            Op::Line(pose) => self.line(pose, &stop),
+            Op::Arc(to) => self.arc(to, &stop),
+            Op::Hole(pose) => self.hole(pose, &stop),
+            _ => Ok(()),
+        }
+    }
+
+    /// Writes a block, where the machine has it.
+    pub(crate) fn block(&mut self, name: BlockName) -> Done {
+        match self.templates.lines(name) {
+            Some(lines) => self.writer.block(lines),
+            None => {
+                let scope = Scope { set: self.writer.set_words(), ..self.scope.clone() };
+                self.writer.block(&self.templates.render(name, scope)?)
+            }
+        }
+    }
+
+    /// Writes a block that must be there.
+    pub(crate) fn required(&mut self, name: BlockName) -> Done {
+        if self.templates.has(name) {
+            return self.block(name);
+        }
+        let message = format!("the control has no block `{}`", name.name());
+        Err(refuse("missing-block", message))
+    }
+
+    fn text(&mut self, name: BlockName, text: &str) -> Done {
+        let room = self.machine.capabilities.line_length.saturating_sub(24).max(8);
+        let text: String = clean(text).trim().chars().take(room).collect();
+        self.scope.text = Value::from(text);
+        self.block(name)
+    }
+
+    /// Everything is said, the control goes off.
+    fn end(&mut self) -> Done {
+        self.end_cycle()?;
+        self.leave_place()?;
+        if self.compensation != self.active_compensation {
+            let message = "cutter compensation is switched here, and no move in the plane follows";
+            let found = Diagnostic::warning("compensation-pending", message);
+            self.findings.warn(found.line(self.compensation_line));
+        }
+        self.ended = true;
+        self.block(BlockName::ProgramEnd)
+    }
+
+    fn dwell(&mut self, seconds: f64) -> Done {
+        let positive = seconds > 0.0 && seconds.is_finite();
+        if !positive {
+            return Err(refuse("dwell", format!("a dwell of {seconds} s")));
+        }
+        self.sync_spindle()?;
+        self.writer.set(WordName::P, seconds);
+        self.required(BlockName::Dwell)
+    }
+
+    // Tools.
+
+    fn change_tool(&mut self, tool: &Tool) -> Done {
+        self.end_cycle()?;
+        self.leave_place()?;
+        if self.active_compensation != Compensation::Off {
+            let help = "CUTCOM/OFF and a move in the plane before the tool change";
+            return Err(Box::new(
+                refuse("compensation-active", "cutter compensation is on at the tool change")
+                    .help(help),
+            ));
+        }
+        self.check_tool(tool)?;
+        let number = f64::from(tool.number);
+        self.length_offset = match self.machine.capabilities.length_offset {
+            LengthOffset::Implicit => None,
+            LengthOffset::One => Some(1.0),
+            LengthOffset::ToolNumber => Some(tool.offset.map_or(number, f64::from)),
+        };
+        self.writer.set(WordName::T, number);
+        self.writer.forget(LENGTH_OFFSET);
+        self.say_length_offset();
+        if let Some(speed) = self.coming_speed() {
+            self.writer.set(WordName::S, speed);
+        }
+        self.scope.tool = tool_value(tool, self.tool.is_none());
+        self.required(BlockName::ToolChange)?;
+        self.tool = Some(tool.clone());
+        self.writer.forget(
+            POSITION | ORIENTATION | bit(WordName::F) | bit(WordName::D) | bit(WordName::Motion),
+        );
+        self.located = false;
+        (self.active_spindle, self.active_coolant) = (Spindle::Off, Coolant::Off);
+        Ok(())
+    }
+
+    /// The speed at which the tool that is called now will cut first.
+    fn coming_speed(&self) -> Option<f64> {
+        let coming = self.records[self.index..].iter().map(|record| &record.op);
+        let mut until_cut =
+            coming.take_while(|op| !matches!(op, Op::Line(_) | Op::Arc(_) | Op::Hole(_)));
+        let next = until_cut.find_map(|op| match op {
+            Op::Spindle(spindle) => speed(*spindle),
+            _ => None,
+        });
+        next.or(speed(self.spindle))
+    }
+
+    /// The source calls no tool: the machine file may say which one that means.
+    fn default_tool(&mut self) -> Done {
+        let number = match self.machine.options.get("default_tool") {
+            Some(OptionValue::Number(number)) => *number as u32,
+            _ => {
+                let help =
+                    "LOAD/TOOL in the source, or `default_tool` in the [options] of the machine";
+                return Err(Box::new(
+                    refuse("no-tool", "the source moves before it calls a tool").help(help),
+                ));
+            }
+        };
+        let message = format!("the source calls no tool: tool {number} (`default_tool`) is called");
+        self.findings.warn(Diagnostic::warning("no-tool", message).line(self.line));
+        self.change_tool(&Tool { number, ..Tool::default() })
+    }
+
+    fn check_tool(&self, tool: &Tool) -> Done {
+        self.check_tool_number(tool.number)?;
+        let range = &self.machine.tools;
+        let sizes = [
+            ("diameter", tool.diameter, range.max_diameter),
+            ("length", tool.length, range.max_length),
+        ];
+        for (what, size, most) in sizes {
+            if let Some(size) = size
+                && size > most
+            {
+                let message = format!(
+                    "tool {} has a {what} of {size} mm, the machine takes {most} mm",
+                    tool.number
+                );
+                return Err(refuse("tool-range", message));
+            }
+        }
+        Ok(())
+    }
+
+    fn check_tool_number(&self, number: u32) -> Done {
+        let most = self.machine.tools.max_number;
+        if (1..=most).contains(&number) {
+            return Ok(());
+        }
+        let message = format!("tool {number}: the machine has the tools 1 to {most}");
+        Err(refuse("tool-number", message))
+    }
+
+    // Spindle and coolant.
+
+    fn set_spindle(&mut self, spindle: Spindle) -> Done {
+        self.spindle = spindle;
+        let Some(speed) = speed(spindle) else { return self.sync_spindle() };
+        let range = &self.machine.spindle;
+        if speed > 0.0 && (range.min..=range.max).contains(&speed) {
+            return Ok(());
+        }
+        let message =
+            format!("{speed} 1/min: the spindle turns from {} to {} 1/min", range.min, range.max);
+        Err(refuse("spindle-range", message))
+    }
+
+    /// Tells the control the spindle that the source wants.
+    pub(crate) fn sync_spindle(&mut self) -> Done {
+        if self.spindle == self.active_spindle {
+            return Ok(());
+        }
+        self.active_spindle = self.spindle;
+        if let Some(speed) = speed(self.spindle) {
+            self.writer.set(WordName::S, speed);
+        }
+        let changed = speed(self.spindle) != self.writer.active(WordName::S);
+        self.scope.spindle = map([("changed", Value::from(changed))]);
+        self.required(match self.spindle {
+            Spindle::Off => BlockName::SpindleOff,
+            Spindle::Clockwise(_) => BlockName::SpindleCw,
+            Spindle::CounterClockwise(_) => BlockName::SpindleCcw,
+        })
+    }
+
+    fn sync_coolant(&mut self) -> Done {
+        if self.coolant == self.active_coolant {
+            return Ok(());
+        }
+        self.active_coolant = self.coolant;
+        self.required(match self.coolant {
+            Coolant::Off => BlockName::CoolantOff,
+            Coolant::Flood => BlockName::CoolantFlood,
+            Coolant::Mist => BlockName::CoolantMist,
+            Coolant::Through => BlockName::CoolantThrough,
+        })
+    }
+
+    /// Before the tool touches the part: it turns, and coolant runs.
+    #[inline]
+    pub(crate) fn before_cut(&mut self) -> Done {
+        if self.spindle == Spindle::Off {
+            let help = "SPINDL/ with a speed before the first cut";
+            return Err(Box::new(
+                refuse("spindle-off", "a cut while the spindle stands").help(help),
+            ));
+        }
+        self.sync_spindle()?;
+        self.sync_coolant()
+    }
+
+    // Cutter compensation: it is switched with the first straight cut in the plane.
+
+    fn set_compensation(&mut self, compensation: Compensation) -> Done {
+        if compensation != Compensation::Off && !self.machine.capabilities.compensation {
+            return Err(refuse("compensation", "the control has no cutter compensation"));
+        }
+        self.compensation = compensation;
+        self.compensation_line = self.line;
+        Ok(())
+    }
+
+    /// Says the compensation in the next block; a straight cut in the plane may switch it.
+    pub(crate) fn compensate(&mut self, straight: bool) -> Done {
+        let in_plane = bit(WordName::X) | bit(WordName::Y);
+        if straight
+            && self.compensation != self.active_compensation
+            && self.writer.changes(in_plane)
+        {
+            self.active_compensation = self.compensation;
+            let tool = self.tool.as_ref().map(|tool| tool.number);
+            match self.compensation {
+                Compensation::Left(register) | Compensation::Right(register) => {
+                    if let Some(register) = register.or(tool) {
+                        self.writer.set(WordName::D, f64::from(register));
+                    }
+                }
+                Compensation::Off => {}
+            }
+        }
+        self.writer.code(WordName::Compensation, compensation_code(self.active_compensation));
+        Ok(())
+    }
+
+    /// Whether the next straight cut in the plane switches the compensation.
+    pub(crate) fn compensation_pending(&self) -> bool {
+        self.compensation != self.active_compensation
+    }
+
+    // Feed.
+
+    /// Says the feed of a cut of `length` mm in the next block. With `turning` the control, which
+    /// knows nothing of the tool tip, is told the time instead, where it can be.
+    #[inline]
+    pub(crate) fn say_feed(&mut self, length: f64, turning: bool) -> Done {
+        let Some(feed) = self.feed else {
+            return Err(refuse("feed-missing", "a cut before the first feed"));
+        };
+        let can = &self.machine.capabilities;
+        let speed = speed(self.spindle).unwrap_or_default();
+        let per_minute = || lowering::feed_per_minute(feed, length, speed);
+        let (mode, value) = match feed {
+            Feed::PerTurn(value) if can.feed_per_turn && !turning => (feed_mode::PER_TURN, value),
+            Feed::InverseTime(value) if can.inverse_time => (feed_mode::INVERSE_TIME, value),
+            _ if turning && can.inverse_time && length > 0.0 => {
+                (feed_mode::INVERSE_TIME, per_minute() / length)
+            }
+            _ => (feed_mode::PER_MINUTE, per_minute()),
+        };
+        match feed {
+            Feed::PerTurn(_) if mode == feed_mode::PER_MINUTE => {
+                self.findings.lowered("feed-per-turn", "feeds per turn (as mm/min)", self.line, 1);
+            }
+            Feed::InverseTime(_) if mode == feed_mode::PER_MINUTE => {
+                let what = "inverse-time feeds (as mm/min)";
+                self.findings.lowered("feed-inverse-time", what, self.line, 1);
+            }
+            _ => {}
+        }
+        self.writer.feed_form(match mode {
+            feed_mode::PER_TURN => WordName::FeedPerTurn,
+            feed_mode::INVERSE_TIME => WordName::FeedInverse,
+            _ => WordName::F,
+        });
+        if mode == feed_mode::INVERSE_TIME {
+            // Every block in inverse time has a feed of its own, even an equal one.
+            self.writer.forget(bit(WordName::F));
+        }
+        let written = self.writer.rounded(WordName::F, value);
+        let moves = written > 0.0;
+        if !moves {
+            let message = format!("a cut with a feed of {value}, written as {written}");
+            return Err(refuse("feed-zero", message));
+        }
+        self.writer.set(WordName::F, value);
+        self.writer.code(WordName::FeedMode, mode);
+        Ok(())
+    }
+}
+
+/// An error; its line is that of the record at hand.
+pub(crate) fn refuse(rule: &'static str, message: impl Into<String>) -> Box<Diagnostic> {
+    Box::new(Diagnostic::error(rule, message))
+}
+
+fn speed(spindle: Spindle) -> Option<f64> {
+    match spindle {
+        Spindle::Off => None,
+        Spindle::Clockwise(speed) | Spindle::CounterClockwise(speed) => Some(speed),
+    }
+}
+
+fn compensation_code(compensation: Compensation) -> usize {
+    match compensation {
+        Compensation::Off => 0,
+        Compensation::Left(_) => 1,
+        Compensation::Right(_) => 2,
+    }
+}

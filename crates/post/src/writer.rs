@@ -1,0 +1,289 @@
+//! The text as it grows: words with their modality, block numbers, line lengths.
+
+use crate::catalogue::WordName;
+use crate::number::Number;
+use crate::template::{Lines, Step, Words, bit};
+use crate::walk::{ORIENTATION, POSITION};
+use machine::Machine;
+use program::Diagnostic;
+
+/// How one word is written on this machine.
+enum Form {
+    /// The control does not use it.
+    Absent,
+    Number(Number),
+    /// Its texts, in the order of [`WordName::codes`], and whether it is modal.
+    Code(Vec<Option<String>>, bool),
+}
+
+/// The program text and what the control remembers of it.
+pub(crate) struct Writer {
+    forms: Vec<Form>,
+    separator: Vec<u8>,
+    line_end: Vec<u8>,
+    line_length: usize,
+    first: u32,
+    step: u32,
+    /// The words of the block that comes next, and their values in steps (codes: their index).
+    set: Words,
+    values: [i64; WordName::COUNT],
+    /// The words whose active value is known, and those values.
+    known: Words,
+    active: [i64; WordName::COUNT],
+    /// The word whose form [`WordName::F`] has.
+    feed_form: WordName,
+    /// A value that its word cannot take.
+    refused: Option<(WordName, f64)>,
+    next_number: u64,
+    text: Vec<u8>,
+    lines: usize,
+}
+
+impl Writer {
+    pub(crate) fn new(machine: &Machine) -> Writer {
+        let form = |&name: &WordName| match machine.words.get(name.name()) {
+            None => Form::Absent,
+            Some(word) if name.codes().next().is_some() => {
+                let texts = name.codes().map(|code| word.codes.get(code).cloned()).collect();
+                Form::Code(texts, word.modal)
+            }
+            Some(word) if name == WordName::N && word.step == 0 => Form::Absent,
+            Some(word) => Form::Number(Number::new(word)),
+        };
+        let number = machine.words.get(WordName::N.name());
+        let first = number.map_or(1, |word| word.first);
+        Writer {
+            forms: WordName::ALL.iter().map(form).collect(),
+            separator: machine.format.separator.clone().into(),
+            line_end: machine.format.line_end.clone().into(),
+            line_length: machine.capabilities.line_length,
+            first,
+            step: number.map_or(1, |word| word.step),
+            set: 0,
+            values: [0; WordName::COUNT],
+            known: 0,
+            active: [0; WordName::COUNT],
+            feed_form: WordName::F,
+            refused: None,
+            next_number: first.into(),
+            text: Vec::new(),
+            lines: 0,
+        }
+    }
+
+    /// The next block may write `word` with this value. Nothing where the control lacks the word.
+    #[inline]
+    pub(crate) fn set(&mut self, word: WordName, value: f64) {
+        let Form::Number(number) = &self.forms[self.form(word) as usize] else { return };
+        match number.round(value) {
+            Some(steps) => {
+                self.values[word as usize] = steps;
+                self.set |= bit(word);
+            }
+            None => self.refused = Some((word, value)),
+        }
+    }
+
+    /// The next block may write the code `word` with its entry `index`.
+    #[inline]
+    pub(crate) fn code(&mut self, word: WordName, index: usize) {
+        self.values[word as usize] = index as i64;
+        self.set |= bit(word);
+    }
+
+    /// How `value` is rounded by `word`: what reading it gives. The value itself where the control
+    /// lacks the word or cannot take the value.
+    #[inline]
+    pub(crate) fn rounded(&self, word: WordName, value: f64) -> f64 {
+        match &self.forms[self.form(word) as usize] {
+            Form::Number(number) => number.round(value).map_or(value, |steps| number.value(steps)),
+            _ => value,
+        }
+    }
+
+    /// The active value of a number, where it is known.
+    #[inline]
+    pub(crate) fn active(&self, word: WordName) -> Option<f64> {
+        match &self.forms[self.form(word) as usize] {
+            Form::Number(number) if self.known & bit(word) != 0 => {
+                Some(number.value(self.active[word as usize]))
+            }
+            _ => None,
+        }
+    }
+
+    /// Whether the next block, writing all that is set, changes one of `words`.
+    #[inline]
+    pub(crate) fn changes(&self, words: Words) -> bool {
+        let mut rest = self.set & words;
+        while rest != 0 {
+            let word = rest.trailing_zeros() as usize;
+            if self.known & (1 << word) == 0 || self.values[word] != self.active[word] {
+                return true;
+            }
+            rest &= rest - 1;
+        }
+        false
+    }
+
+    /// Takes `words` out of the next block.
+    #[inline]
+    pub(crate) fn unset(&mut self, words: Words) {
+        self.set &= !words;
+    }
+
+    /// The words of the next block.
+    pub(crate) fn set_words(&self) -> Words {
+        self.set | bit(WordName::N)
+    }
+
+    /// The control is at this entry of a code without being told.
+    pub(crate) fn assume(&mut self, word: WordName, index: usize) {
+        self.active[word as usize] = index as i64;
+        self.known |= bit(word);
+    }
+
+    /// The active values of `words` are not known: they are written again.
+    #[inline]
+    pub(crate) fn forget(&mut self, words: Words) {
+        self.known &= !words;
+    }
+
+    /// `F` is written in the form of `word` from here on.
+    pub(crate) fn feed_form(&mut self, word: WordName) {
+        if self.feed_form != word {
+            self.feed_form = word;
+            self.forget(bit(WordName::F));
+        }
+    }
+
+    #[inline]
+    fn form(&self, word: WordName) -> WordName {
+        if word == WordName::F { self.feed_form } else { word }
+    }
+
+    /// Writes a block. A line on which nothing but a number would stand is left out.
+    ///
+    /// # Errors
+    /// A value that its word cannot take, a line longer than the control reads.
+    pub(crate) fn block(&mut self, block: &Lines) -> Result<(), Box<Diagnostic>> {
+        if let Some((word, value)) = self.refused.take() {
+            let message = format!("{value} cannot be written as the word `{}`", word.name());
+            return Err(Diagnostic::error("number-range", message).into());
+        }
+        let mut start = self.text.len();
+        let (mut gap, mut full, mut numbered) = (false, false, false);
+        let mut placed = 0;
+        for step in &block.steps {
+            match *step {
+                Step::Gap => gap = true,
+                Step::Text(from, to) => {
+                    self.gap(&mut gap, start);
+                    let text = &block.text.as_bytes()[from as usize..to as usize];
+                    self.text.extend_from_slice(text);
+                    full = true;
+                }
+                Step::Word(WordName::N) => {
+                    if let Form::Number(number) = &self.forms[WordName::N as usize] {
+                        let next = self.next_number as f64;
+                        let steps = number.round(next).or_else(|| {
+                            self.next_number = self.first.into();
+                            number.round(f64::from(self.first))
+                        });
+                        self.gap(&mut gap, start);
+                        self.write(WordName::N, steps.unwrap_or_default());
+                        numbered = true;
+                    }
+                }
+                Step::Word(word) => {
+                    placed |= bit(word);
+                    full |= self.word(word, &mut gap, start);
+                }
+                Step::End => {
+                    if full {
+                        self.end_line(start)?;
+                        self.next_number += if numbered { u64::from(self.step) } else { 0 };
+                    } else {
+                        self.text.truncate(start);
+                    }
+                    start = self.text.len();
+                    (gap, full, numbered) = (false, false, false);
+                }
+            }
+        }
+        // A position that the block leads to by other words (a helix by its angle) is not known by its own.
+        self.known &= !(self.set & !placed & (POSITION | ORIENTATION));
+        self.set = 0;
+        Ok(())
+    }
+
+    #[inline]
+    fn gap(&mut self, gap: &mut bool, start: usize) {
+        if std::mem::take(gap) && self.text.len() > start {
+            self.text.extend_from_slice(&self.separator);
+        }
+    }
+
+    /// Writes a word where it is set and says something new; whether it did.
+    #[inline]
+    fn word(&mut self, word: WordName, gap: &mut bool, start: usize) -> bool {
+        let (index, bit) = (word as usize, bit(word));
+        if self.set & bit == 0 {
+            return false;
+        }
+        let value = self.values[index];
+        let modal = match &self.forms[self.form(word) as usize] {
+            Form::Absent => return false,
+            Form::Number(number) => number.modal,
+            Form::Code(texts, modal) => {
+                if texts.get(value as usize).is_none_or(|text| text.as_deref() == Some("")) {
+                    return false;
+                }
+                *modal
+            }
+        };
+        if modal && self.known & bit != 0 && self.active[index] == value {
+            return false;
+        }
+        self.known |= bit;
+        self.active[index] = value;
+        self.gap(gap, start);
+        self.write(word, value);
+        true
+    }
+
+    #[inline]
+    fn write(&mut self, word: WordName, value: i64) {
+        match &self.forms[self.form(word) as usize] {
+            Form::Absent => {}
+            Form::Number(number) => number.write(value, &mut self.text),
+            Form::Code(texts, _) => {
+                if let Some(Some(text)) = texts.get(value as usize) {
+                    self.text.extend_from_slice(text.as_bytes());
+                }
+            }
+        }
+    }
+
+    fn end_line(&mut self, start: usize) -> Result<(), Box<Diagnostic>> {
+        self.lines += 1;
+        let line = &self.text[start..];
+        if line.len() > self.line_length {
+            let shown = String::from_utf8_lossy(&line[..line.len().min(40)]).into_owned();
+            let message = format!(
+                "line {} of the program has {} characters, the control reads {}: `{shown}…`",
+                self.lines,
+                line.len(),
+                self.line_length
+            );
+            return Err(Diagnostic::error("line-length", message).into());
+        }
+        self.text.extend_from_slice(&self.line_end);
+        Ok(())
+    }
+
+    /// The text and the number of its lines.
+    pub(crate) fn finish(self) -> (Vec<u8>, usize) {
+        (self.text, self.lines)
+    }
+}
