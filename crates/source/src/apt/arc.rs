@@ -13,7 +13,7 @@ use super::record::Record;
 use super::report::{Fault, Outcome};
 use geom::{ANGLE_EPSILON, Arc, ArcError, Vec3, angle_between, direction};
 use program::{ArcTo, Diagnostic, Op, Pose, Program};
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// How far the ends of an arc, and the radius the record gives, may be from each other, mm. Files give
 /// four decimals: in mm the radii of the real ones differ by up to 0.00015, and an inch has 25.4.
@@ -25,6 +25,9 @@ const SMOOTH: f64 = 0.9986;
 /// A direction nearer to a coordinate axis than this (radians) is the axis: what `INDIRV` loses in five
 /// decimals.
 const SNAP: f64 = 1e-4;
+
+/// Ends of an arc nearer than this, mm, differ by rounding.
+const NEARLY: f64 = 0.002;
 
 /// A circle of a record, in the work frame.
 #[derive(Clone, Debug)]
@@ -119,6 +122,13 @@ impl Reader {
             );
             return Err(Fault::new("off-the-circle", message));
         }
+        if arc.sweep < TAU && arc.sweep > PI && start.point.distance(end.point) < NEARLY {
+            let message = "the ends of this arc are not the same, but so near that it could be a full \
+                           circle or nothing";
+            return Err(
+                Fault::new("arc-chord", message).help("give the same point for a full circle")
+            );
+        }
         if circle.times > 1 && arc.sweep < TAU {
             let message = "several turns that do not end where they began (seen along the axis) are \
                            not defined";
@@ -133,9 +143,9 @@ impl Reader {
         }
         let turns = circle.times - 1;
         let to = ArcTo { end, center: circle.center, normal: arc.normal, turns };
-        self.last_arc = Some(start.point);
         self.push(record.line, Op::Arc(Box::new(to)));
         self.arrive(end);
+        self.last_arc = Some(start.point);
         Ok(())
     }
 
@@ -158,7 +168,25 @@ impl Reader {
         to.end.point = point;
         let end = to.end;
         self.arrive(end);
+        self.last_arc = Some(start);
         Ok(true)
+    }
+
+    /// Creo may list several points of an arc. In `GOTO`s of their own they could not be told from
+    /// chords, so a line of Creo to a further point of the circle it has just left is refused.
+    pub(super) fn not_on_the_arc(&self, pose: &Pose) -> Outcome {
+        let (Dialect::Creo, Some(_)) = (self.dialect, self.last_arc) else { return Ok(()) };
+        let Some(Op::Arc(to)) = self.program.records.last().map(|r| &r.op) else { return Ok(()) };
+        let on = Arc::new(to.end.point, pose.point, to.center, to.normal, 0, RADIUS_TOLERANCE);
+        match on {
+            Ok(arc) if arc.rise().abs() <= RADIUS_TOLERANCE => {
+                let message = "a line to another point of the circle just cut: is it a chord, or a \
+                               further point of the arc?";
+                Err(Fault::new("arc-points", message)
+                    .help("let Creo write one point for an arc (NUMBER_OF_ARC_PTS 1)"))
+            }
+            _ => Ok(()),
+        }
     }
 
     /// `INDIRV/i,j,k`: the direction in which the next `TLON` sets out.

@@ -113,7 +113,7 @@ impl Reader {
         self.no_pending_circle()?;
         self.ready = Ready::No;
         match () {
-            () if record.is(0, "OFF") || record.is(0, "NOMORE") => {
+            () if record.is(0, "OFF") => {
                 self.end_cycle(record);
                 return Ok(());
             }
@@ -126,7 +126,9 @@ impl Reader {
             }
             // Both say to which level the tool goes back between holes. The record that follows gives
             // RTRCTO, the higher of the two, and that is what is kept.
-            () if record.is(0, "INIT") || record.is(0, "CLEAR") => return Ok(()),
+            () if record.is(0, "INIT") || record.is(0, "CLEAR") => {
+                return record.count(&[1], "CYCLE/INIT or CYCLE/CLEAR").map(drop);
+            }
             () => {}
         }
         let active = self.define(record)?;

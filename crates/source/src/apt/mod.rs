@@ -111,8 +111,10 @@ struct Reader {
     dialect: Dialect,
     /// mm in a unit of the file.
     unit: f64,
-    /// Whether the file has said so, or the lack has been reported.
+    /// Whether the file has said so.
     unit_known: bool,
+    /// Whether it was reported that it has not.
+    unit_assumed: bool,
     setup: Setup,
     /// The last point of the data, work frame; missing values and relative motion count from it.
     point: Option<Vec3>,
@@ -127,7 +129,7 @@ struct Reader {
     circle_at: u32,
     /// `INDIRV`, work frame.
     towards: Option<Vec3>,
-    /// Where the arc of the last record starts, where that record made one.
+    /// Where the arc of the last motion starts, where that was one.
     last_arc: Option<Vec3>,
     /// Whether the last record was a `GOTO`, which lines of coordinates may continue.
     inside_goto: bool,
@@ -180,6 +182,7 @@ impl Reader {
             dialect: Dialect::of(text),
             unit: 1.0,
             unit_known: false,
+            unit_assumed: false,
             setup: Setup::new(),
             point: None,
             tip: None,

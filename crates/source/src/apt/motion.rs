@@ -57,7 +57,7 @@ impl Reader {
     /// nothing has changed.
     #[inline]
     pub(super) fn obey_plain_goto(&mut self, line: u32, text: &[u8]) -> bool {
-        if self.cycle.is_some() || self.ready != Ready::Cut {
+        if self.cycle.is_some() || self.ready != Ready::Cut || self.last_arc.is_some() {
             return false;
         }
         let rapid = match self.next {
@@ -84,7 +84,6 @@ impl Reader {
         self.axis = axis;
         self.next = Next::Line;
         self.inside_goto = true;
-        self.last_arc = None;
         let pose = Pose::new(point, axis);
         self.arrive(pose);
         self.push(line, if rapid { Op::Rapid(pose) } else { Op::Line(pose) });
@@ -150,6 +149,7 @@ impl Reader {
             }
             Next::Line => {
                 self.prepare(record, true)?;
+                self.not_on_the_arc(&pose)?;
                 self.push(record.line, Op::Line(pose));
                 self.arrive(pose);
                 Ok(())
@@ -162,6 +162,7 @@ impl Reader {
     pub(super) fn arrive(&mut self, pose: Pose) {
         self.point = Some(pose.point);
         self.tip = Some(pose);
+        self.last_arc = None;
     }
 
     /// What has to be settled before the tool moves; with `cut`, in the part.
@@ -169,8 +170,7 @@ impl Reader {
         if self.ready == Ready::Cut || (self.ready == Ready::Rapid && !cut) {
             return Ok(());
         }
-        if !self.unit_known {
-            self.unit_known = true;
+        if !self.unit_known && !std::mem::replace(&mut self.unit_assumed, true) {
             let help = "add UNITS/MM, or UNITS/INCHES where that is meant";
             let message = "the file does not say its unit: read as mm";
             self.report.warn(record, "unknown-unit", message, help);
@@ -253,6 +253,13 @@ impl Reader {
             return Err(Fault::new("no-start", "a relative motion, but from nowhere")
                 .help("add FROM/x,y,z or an absolute GOTO before it"));
         };
+        if self.cycle.is_none() && self.tip.is_some_and(|tip| tip.point != last) {
+            return Err(Fault::new(
+                "no-start",
+                "a relative motion after a hole: from which height?",
+            )
+            .help("write an absolute GOTO after CYCLE/OFF"));
+        }
         let step = if count == 1 {
             let along = record.number(0, "a distance")?;
             self.axis * self.length(along).map_err(|fault| fault.fields(0, 1))?

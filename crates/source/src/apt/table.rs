@@ -195,6 +195,11 @@ impl Reader {
                 "too many words that are not cutter-location data",
             ));
         }
+        let mut parts = record.major.split(|c| b" \t,".contains(c));
+        if parts.any(|part| !part.is_empty() && find(part).is_some()) {
+            return Err(Fault::new("malformed", "this record does not begin with its word")
+                .help("a record is a word, a slash, and values with commas between them"));
+        }
         let word = super::text::decode(record.major.get(..40).unwrap_or(record.major));
         let message = format!("the word {word} is not known and its records are ignored");
         self.report.warn(record, RULE, &message, "check whether the job needs it");

@@ -2,7 +2,7 @@
 
 use super::record::Record;
 use super::report::{Fault, Outcome};
-use super::{Dialect, Reader};
+use super::{Dialect, Reader, Ready};
 use program::Op;
 
 /// The longest comment that is passed on, characters.
@@ -129,7 +129,7 @@ impl Reader {
         self.operation = Some((record.line, name.into()));
         self.next_tool = program::Tool { name: tool.trim().into(), ..Default::default() };
         self.tool_record = None;
-        self.ready = super::Ready::No;
+        self.ready = Ready::No;
         self.push(record.line, Op::Operation(name.trim().into()));
         Ok(())
     }
@@ -149,6 +149,7 @@ impl Reader {
         self.no_pending_circle()?;
         if !self.ended {
             self.ended = true;
+            self.ready = Ready::No;
             self.push(record.line, Op::End);
         }
         Ok(())
