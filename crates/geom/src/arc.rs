@@ -1,7 +1,7 @@
 //! Circular arcs and helices.
 
 use crate::{ANGLE_EPSILON, Vec3, direction, rotate};
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
 /// An arc or a helix: from `start`, `sweep` radians counter-clockwise about `normal` (a unit vector)
 /// through `center`, ending at `end`. Its travel along the normal grows evenly with the angle, and so
@@ -150,19 +150,34 @@ impl Arc {
         (1..=n).map(move |i| self.at(i as f64 / n as f64))
     }
 
-    /// The corners of the smallest box around the arc whose sides are parallel to the axes, found by
-    /// chords of a micrometre.
+    /// The corners of the smallest box around the arc whose sides are parallel to the axes.
     pub fn extents(&self) -> (Vec3, Vec3) {
-        let tolerance = (self.radius() * 1e-6).max(1e-3);
-        self.flatten(tolerance)
-            .fold((self.start, self.start), |(low, high), p| (low.min(p), high.max(p)))
+        let cos = (self.start - self.center).reject_from_normalized(self.normal);
+        let sin = self.normal.cross(cos);
+        let (mut low, mut high) = (self.start.min(self.end), self.start.max(self.end));
+        for i in 0..3 {
+            // The coordinate is r cos(φ − φ₀) + c φ; it turns where sin(φ − φ₀) = c / r. Of the turns
+            // of a helix it is the first or the last that goes farthest.
+            let (phi0, r) = (sin[i].atan2(cos[i]), cos[i].hypot(sin[i]));
+            let lift = (self.normal[i] * self.rise() / self.sweep / r).asin();
+            for turning in [phi0 + lift, phi0 + PI - lift] {
+                let first = turning.rem_euclid(TAU);
+                let last = first + ((self.sweep - first) / TAU).floor() * TAU;
+                for angle in [first, last] {
+                    if (0.0..=self.sweep).contains(&angle) {
+                        let point = self.at(angle / self.sweep);
+                        (low, high) = (low.min(point), high.max(point));
+                    }
+                }
+            }
+        }
+        (low, high)
     }
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::f64::consts::PI;
 
     fn quarter() -> Arc {
         let (start, end) = (Vec3::new(10.0, 0.0, 0.0), Vec3::new(0.0, 10.0, 0.0));
@@ -218,6 +233,33 @@ mod tests {
                 last = p;
             }
             assert_eq!(last, arc.end);
+        }
+    }
+
+    #[test]
+    fn the_box_around_an_arc_touches_it_exactly() {
+        let (start, end) = (Vec3::new(3.0, -4.0, 1.0), Vec3::new(3.0, 4.0, 1.0));
+        let arc = Arc::new(start, end, Vec3::Z, Vec3::Z, 0, 1e-3).unwrap();
+        let (low, high) = arc.extents();
+        assert!(low.distance(start) < 1e-12);
+        assert!(high.distance(Vec3::new(5.0, 4.0, 1.0)) < 1e-12);
+    }
+
+    #[test]
+    fn the_box_around_a_leaning_helix_holds_all_of_it_and_no_more() {
+        for (normal, turns) in [(Vec3::new(1.0, 2.0, 3.0), 0), (Vec3::new(-1.0, 0.1, 0.0), 3)] {
+            let normal = normal.normalize();
+            let out = normal.any_orthonormal_vector() * 20.0;
+            let end = rotate(out, normal, 2.0) + normal * 7.0;
+            let arc = Arc::new(out, end, Vec3::ZERO, normal, turns, 1e-3).unwrap();
+            let (low, high) = arc.extents();
+            let mut seen = (out, out);
+            for i in 0..=100_000 {
+                let p = arc.at(f64::from(i) / 1e5);
+                seen = (seen.0.min(p), seen.1.max(p));
+            }
+            assert!(seen.0.cmpge(low - 1e-9).all() && seen.1.cmple(high + 1e-9).all());
+            assert!(seen.0.distance(low) < 1e-5 && seen.1.distance(high) < 1e-5);
         }
     }
 }
