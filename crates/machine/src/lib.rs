@@ -11,6 +11,8 @@
 pub mod inverse;
 pub mod kinematics;
 pub mod library;
+pub mod limits;
+pub mod linearise;
 mod load;
 mod model;
 pub mod plan;

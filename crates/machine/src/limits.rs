@@ -1,0 +1,165 @@
+//! Whether a program stays within what the machine can do.
+//!
+//! Where the work zero is known, every axis is held against its travel in machine coordinates: the
+//! position of the tool tip, the work zero and, along Z, the length of the tool. Otherwise only what
+//! can be said without it is: no axis may need more way than its travel is long.
+
+use crate::{LinearAxis, Machine};
+use geom::{Arc, Vec3};
+use program::{Diagnostic, Spindle, Tool};
+
+/// What rounding may add to a position that stands exactly on a limit, mm or degrees.
+const ROUNDING: f64 = 1e-6;
+
+/// Holds one program after the other against the limits of a machine.
+#[derive(Clone, Debug)]
+pub struct Limits<'a> {
+    machine: &'a Machine,
+    /// Lowest and highest position of each linear axis so far, with the line that asked for it.
+    extent: [[(f64, u32); 2]; 3],
+}
+
+impl<'a> Limits<'a> {
+    /// The limits of `machine`, nothing having moved yet.
+    pub fn new(machine: &'a Machine) -> Limits<'a> {
+        Limits { machine, extent: [[(f64::INFINITY, 0), (f64::NEG_INFINITY, 0)]; 3] }
+    }
+
+    /// Checks positions of the linear axes (mm, as a program gives them) and the rotary axes (degrees
+    /// of A, B, C) with a tool of `tool_length` mm, asked for by `line` of the source. A coordinate
+    /// that is not known (NaN) breaks no limit.
+    ///
+    /// # Errors
+    /// `axis-limit`, with the axis, its position, the limit and by how much it is broken.
+    pub fn position(
+        &mut self,
+        linear: Vec3,
+        degrees: [f64; 3],
+        tool_length: f64,
+        line: u32,
+    ) -> Result<(), Box<Diagnostic>> {
+        for axis in &self.machine.rotary {
+            let at = degrees[axis.index()];
+            held(axis.letter, at, axis.min, axis.max, "°", line)?;
+        }
+        let slides = linear + Vec3::Z * tool_length + self.machine.work_zero.unwrap_or_default();
+        let known = self.machine.work_zero.is_some();
+        for (i, (axis, letter)) in self.machine.linear.iter().zip(['X', 'Y', 'Z']).enumerate() {
+            if known {
+                held(letter, slides[i], axis.min, axis.max, " mm", line)?;
+            } else {
+                self.stretch(i, letter, axis, slides[i], line)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// Checks every position of an arc that the linear axes run with the rotary axes standing still;
+    /// else like [`Limits::position`].
+    ///
+    /// # Errors
+    /// Those of [`Limits::position`].
+    pub fn arc(
+        &mut self,
+        arc: &Arc,
+        degrees: [f64; 3],
+        tool_length: f64,
+        line: u32,
+    ) -> Result<(), Box<Diagnostic>> {
+        let (low, high) = arc.extents();
+        self.position(low, degrees, tool_length, line)?;
+        self.position(high, degrees, tool_length, line)
+    }
+
+    /// Checks the speed of the spindle.
+    ///
+    /// # Errors
+    /// `spindle-range`.
+    pub fn spindle(&self, spindle: Spindle, line: u32) -> Result<(), Box<Diagnostic>> {
+        let (Spindle::Clockwise(speed) | Spindle::CounterClockwise(speed)) = spindle else {
+            return Ok(());
+        };
+        let range = self.machine.spindle;
+        if speed >= range.min && speed <= range.max {
+            return Ok(());
+        }
+        let message = format!("spindle speed {speed} 1/min");
+        let help = format!("the spindle turns at {} to {} 1/min", range.min, range.max);
+        Err(Diagnostic::error("spindle-range", message).help(help).line(line).into())
+    }
+
+    /// Checks what is known of a tool against what the magazine takes.
+    ///
+    /// # Errors
+    /// `tool-range`.
+    pub fn tool(&self, tool: &Tool, line: u32) -> Result<(), Box<Diagnostic>> {
+        let range = self.machine.tools;
+        let too_much = |what: &str, value: Option<f64>, most: f64| {
+            let value = value.filter(|value| *value > most + ROUNDING)?;
+            Some(format!("tool {} has a {what} of {value} mm, the most is {most} mm", tool.number))
+        };
+        let fault = if !(1..=range.max_number).contains(&tool.number) {
+            Some(format!("tool {} is not one of 1 to {}", tool.number, range.max_number))
+        } else {
+            too_much("diameter", tool.diameter, range.max_diameter)
+                .or_else(|| too_much("length", tool.length, range.max_length))
+        };
+        fault.map_or(Ok(()), |message| {
+            Err(Diagnostic::error("tool-range", message).line(line).into())
+        })
+    }
+
+    /// Checks the way an axis needs against the length of its travel.
+    fn stretch(
+        &mut self,
+        i: usize,
+        letter: char,
+        axis: &LinearAxis,
+        at: f64,
+        line: u32,
+    ) -> Result<(), Box<Diagnostic>> {
+        let [low, high] = &mut self.extent[i];
+        if at < low.0 {
+            *low = (at, line);
+        }
+        if at > high.0 {
+            *high = (at, line);
+        }
+        let (way, travel) = (high.0 - low.0, axis.max - axis.min);
+        if way <= travel + ROUNDING || way < 0.0 {
+            return Ok(());
+        }
+        let message = format!(
+            "{letter} moves from {:.4} mm (line {}) to {:.4} mm (line {}): {:.4} mm more than its \
+             travel of {travel} mm",
+            low.0,
+            low.1,
+            high.0,
+            high.1,
+            way - travel
+        );
+        Err(Diagnostic::error("axis-limit", message).line(line).into())
+    }
+}
+
+/// Refuses a position out of its travel.
+fn held(
+    letter: char,
+    at: f64,
+    min: f64,
+    max: f64,
+    unit: &str,
+    line: u32,
+) -> Result<(), Box<Diagnostic>> {
+    let (limit, beyond) = if at > max + ROUNDING {
+        (max, at - max)
+    } else if at < min - ROUNDING {
+        (min, min - at)
+    } else {
+        return Ok(());
+    };
+    let message =
+        format!("{letter} at {at:.4}{unit} is {beyond:.4}{unit} beyond its limit of {limit}{unit}");
+    let help = format!("{letter} travels from {min}{unit} to {max}{unit} in machine coordinates");
+    Err(Diagnostic::error("axis-limit", message).help(help).line(line).into())
+}

@@ -1,0 +1,96 @@
+//! What a machine cannot do is refused with the axis, the amount and the line.
+
+mod common;
+
+use common::{axis, machine, within};
+use geom::{Arc, Vec3};
+use program::{Spindle, Tool};
+use toolpost_machine::limits::Limits;
+use toolpost_machine::{Machine, Mount};
+
+fn mill() -> Machine {
+    machine(vec![within(-30.0, 120.0, axis('A', Mount::Table, Vec3::X, 1.0))])
+}
+
+#[test]
+fn a_thousandth_beyond_the_travel_is_refused_with_axis_amount_and_line() {
+    let mill = Machine { work_zero: Some(Vec3::new(100.0, 0.0, 0.0)), ..mill() };
+    let mut limits = Limits::new(&mill);
+    assert!(limits.position(Vec3::X * 400.0, [0.0; 3], 0.0, 1).is_ok());
+    let refused = limits.position(Vec3::X * 400.001, [0.0; 3], 0.0, 17).unwrap_err();
+    assert_eq!((refused.rule, refused.line), ("axis-limit", 17));
+    assert_eq!(refused.message, "X at 500.0010 mm is 0.0010 mm beyond its limit of 500 mm");
+    let refused = limits.position(Vec3::Y * -500.25, [0.0; 3], 0.0, 18).unwrap_err();
+    assert_eq!(refused.message, "Y at -500.2500 mm is 0.2500 mm beyond its limit of -500 mm");
+}
+
+#[test]
+fn the_tool_lifts_the_spindle_by_its_length() {
+    let mill = mill();
+    let mut limits = Limits::new(&mill);
+    assert!(limits.position(Vec3::Z * 400.0, [0.0; 3], 100.0, 1).is_ok());
+    let refused = limits.position(Vec3::Z * 400.0, [0.0; 3], 100.5, 2).unwrap_err();
+    assert!(refused.message.starts_with("Z at 500.5000 mm"), "{}", refused.message);
+}
+
+#[test]
+fn without_a_work_zero_the_way_is_held_against_the_length_of_the_travel() {
+    let mill = Machine { work_zero: None, ..mill() };
+    let mut limits = Limits::new(&mill);
+    assert!(limits.position(Vec3::X * 3000.0, [0.0; 3], 0.0, 4).is_ok());
+    assert!(limits.position(Vec3::X * 2000.0, [0.0; 3], 0.0, 5).is_ok());
+    let refused = limits.position(Vec3::X * 1999.999, [0.0; 3], 0.0, 6).unwrap_err();
+    assert_eq!((refused.rule, refused.line), ("axis-limit", 6));
+    assert_eq!(
+        refused.message,
+        "X moves from 1999.9990 mm (line 6) to 3000.0000 mm (line 4): 0.0010 mm more than its travel \
+         of 1000 mm"
+    );
+}
+
+#[test]
+fn a_rotary_axis_has_limits_too_and_an_unknown_position_breaks_none() {
+    let mill = mill();
+    let mut limits = Limits::new(&mill);
+    assert!(limits.position(Vec3::NAN, [120.0, 0.0, 0.0], 0.0, 1).is_ok());
+    let refused = limits.position(Vec3::ZERO, [-30.001, 0.0, 0.0], 0.0, 2).unwrap_err();
+    assert_eq!(refused.message, "A at -30.0010° is 0.0010° beyond its limit of -30°");
+}
+
+#[test]
+fn an_arc_may_bulge_over_a_limit_that_its_ends_keep() {
+    let mill = mill();
+    let half_round = |x: f64| {
+        let (from, to) = (Vec3::new(x, -10.0, 0.0), Vec3::new(x, 10.0, 0.0));
+        Arc::new(from, to, Vec3::new(x, 0.0, 0.0), Vec3::Z, 0, 1e-3).unwrap()
+    };
+    let mut limits = Limits::new(&mill);
+    assert!(limits.arc(&half_round(490.0), [0.0; 3], 0.0, 1).is_ok());
+    let refused = limits.arc(&half_round(490.001), [0.0; 3], 0.0, 2).unwrap_err();
+    assert!(refused.message.starts_with("X at 500.0010 mm is 0.0010 mm"), "{}", refused.message);
+}
+
+#[test]
+fn spindle_and_tool_have_ranges() {
+    let mill = mill();
+    let limits = Limits::new(&mill);
+    assert!(limits.spindle(Spindle::Off, 1).is_ok());
+    assert!(limits.spindle(Spindle::Clockwise(12_000.0), 1).is_ok());
+    for speed in [12_000.5, 49.0, 0.0, f64::NAN] {
+        let refused = limits.spindle(Spindle::CounterClockwise(speed), 3).unwrap_err();
+        assert_eq!((refused.rule, refused.line), ("spindle-range", 3));
+    }
+    let tool = |number, diameter, length| Tool {
+        number,
+        diameter: Some(diameter),
+        length: Some(length),
+        ..Tool::default()
+    };
+    assert!(limits.tool(&tool(99, 80.0, 300.0), 1).is_ok());
+    for unfit in
+        [tool(0, 10.0, 50.0), tool(100, 10.0, 50.0), tool(1, 80.1, 50.0), tool(1, 10.0, 301.0)]
+    {
+        let refused = limits.tool(&unfit, 9).unwrap_err();
+        assert_eq!((refused.rule, refused.line), ("tool-range", 9));
+    }
+}
