@@ -5,29 +5,25 @@
 //! order, rapid or feed, feed, spindle, coolant, tool, compensation, dwell. The control's records are
 //! compared as they come and not kept, so memory does not grow with the program.
 
+mod arc;
+mod expected;
+mod gauge;
+mod hole;
+mod line;
+mod place;
+mod prover;
+mod report;
+mod state;
+mod stops;
+mod tolerance;
+
+pub use prover::Prover;
+pub use report::{Compared, Deviations, Excursion, Extent, Report, SideBySide, Summary, Worst};
+pub use tolerance::{Applied, Tolerances};
+
+use control::{Dialect, Settings};
 use machine::Machine;
 use program::{Diagnostic, Program};
-use serde::Serialize;
-
-/// How close the two motions must be.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Tolerances {
-    /// Distance of the tool tips, mm; by default from the resolution of the machine's words.
-    pub position: Option<f64>,
-    /// Angle between the tool axes, degrees; by default from the resolution of the rotary words.
-    pub angle: Option<f64>,
-}
-
-/// What the proof found.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
-pub struct Report {
-    /// Whether the program makes the motion of the source.
-    pub proven: bool,
-    /// The mismatches, first to last, up to a fixed number.
-    pub mismatches: Vec<Diagnostic>,
-    /// What is worth knowing.
-    pub warnings: Vec<Diagnostic>,
-}
 
 /// Runs `text` on the virtual control of `machine` and holds it against `source`.
 ///
@@ -39,6 +35,31 @@ pub fn prove(
     text: &[u8],
     tolerances: &Tolerances,
 ) -> Report {
-    let _ = (source, machine, file_name, text, tolerances);
-    Report::default()
+    let mut prover = Prover::new(source, machine, tolerances);
+    let run = match settings(machine) {
+        Ok(settings) => {
+            control::read(&settings, file_name, text, &mut |record| prover.record(&record))
+        }
+        Err(found) => Err(found),
+    };
+    if let Err(found) = run {
+        prover.refused(*found);
+    }
+    let mut report = prover.finish();
+    report.quote(file_name, text);
+    report
+}
+
+/// What the virtual control has to know of `machine`.
+fn settings(machine: &Machine) -> Result<Settings, Box<Diagnostic>> {
+    let Some(dialect) = Dialect::named(&machine.reader) else {
+        let message = format!("machine \"{}\" has no reader \"{}\"", machine.name, machine.reader);
+        let names = Dialect::NAMES.map(|(name, _)| name).join(", ");
+        return Err(Diagnostic::error("reader", message).help(format!("one of {names}")).into());
+    };
+    let mut rotary = [false; 3];
+    for axis in &machine.rotary {
+        rotary[axis.index()] = true;
+    }
+    Ok(Settings { dialect, rotary, auxiliary: machine.auxiliary.clone() })
 }

@@ -1,0 +1,102 @@
+//! An arc of the source against the arcs, or the lowered lines, of the program.
+
+use crate::expected::Goal;
+use crate::gauge::Gauge;
+use crate::line::{Followed, turn, within};
+use crate::place::{Place, Station};
+use geom::{Arc, Vec3};
+use program::{ArcTo, Pose};
+use std::f64::consts::PI;
+
+/// Rounding of both ends and of the centre add up on the way of an arc: so many tip tolerances.
+const ROUNDINGS: f64 = 2.0;
+
+/// The arc that a block of the program makes, in the work frame, or `None` where it makes none.
+pub(crate) fn of_block(gauge: &Gauge, here: &Station, to: &ArcTo) -> Option<Arc> {
+    let tip =
+        |point: Vec3| Place::of(gauge.machine, &Pose { point, ..to.end }, gauge.tool_length).tip;
+    let center = tip(to.center);
+    let normal = tip(to.center + to.normal) - center;
+    let start = here.place.tip;
+    let radius = start.distance(center);
+    Arc::new(start, tip(to.end.point), center, normal, to.turns, radius).ok()
+}
+
+/// Follows an arc of the program on the source arc `arc`, of which `t` is done.
+///
+/// # Errors
+/// How it leaves the arc: another plane or direction, another way round, another centre.
+pub(crate) fn follow(
+    gauge: &Gauge,
+    arc: &Arc,
+    goal: &Goal,
+    t: f64,
+    block: &Arc,
+    here: &Station,
+    to: &Station,
+) -> Result<Followed, String> {
+    let aligned = arc.normal.dot(block.normal);
+    if aligned.is_nan() || aligned <= 0.0 {
+        return Err("turns the other way round, or in another plane".into());
+    }
+    let reached = t + block.sweep / arc.sweep;
+    let allowed = ROUNDINGS * gauge.slack(to);
+    let mut followed = Followed { t: reached, path_mm: 0.0 };
+    // Four chords of a half circle do not hide a wrong centre; longer arcs get more samples.
+    let samples = 4 * (block.sweep / PI).ceil().clamp(1.0, 100.0) as u32;
+    for i in 1..=samples {
+        let part = f64::from(i) / f64::from(samples);
+        let beside = arc_point(arc, t + part * (reached - t)).distance(block.at(part));
+        within("leaves the arc", beside, allowed, "mm")?;
+        followed.path_mm = followed.path_mm.max(beside);
+    }
+    axis(gauge, goal, here, to)?;
+    Ok(followed)
+}
+
+/// Follows a straight move of the program as a chord of the source arc `arc`, of which `t` is done.
+///
+/// # Errors
+/// How it leaves the arc.
+pub(crate) fn follow_chord(
+    gauge: &Gauge,
+    arc: &Arc,
+    goal: &Goal,
+    t: f64,
+    here: &Station,
+    to: &Station,
+) -> Result<Followed, String> {
+    let spoke = |p: Vec3| (p - arc.center).reject_from_normalized(arc.normal);
+    let (a, b) = (spoke(here.place.tip), spoke(to.place.tip));
+    let turned = arc.normal.dot(a.cross(b)).atan2(a.dot(b));
+    let slack = gauge.slack(to);
+    within("goes back on the arc", -turned * arc.radius(), slack, "mm")?;
+    let reached = t + turned / arc.sweep;
+    let end = arc_point(arc, reached).distance(to.place.tip);
+    within("leaves the arc", end, ROUNDINGS * slack, "mm")?;
+    let middle =
+        arc_point(arc, (t + reached) / 2.0).distance((here.place.tip + to.place.tip) / 2.0);
+    within("cuts the arc off", middle, ROUNDINGS * slack + gauge.allowed.chord_mm, "mm")?;
+    axis(gauge, goal, here, to)?;
+    Ok(Followed { t: reached, path_mm: end.max(middle) })
+}
+
+/// The point of `arc` at `t`, which may lie a little behind its end: there it goes on as it came.
+fn arc_point(arc: &Arc, t: f64) -> Vec3 {
+    if t <= 1.0 {
+        return arc.at(t);
+    }
+    let over = t - 1.0;
+    arc.center
+        + geom::rotate(arc.end - arc.center, arc.normal, arc.sweep * over)
+        + arc.normal * (arc.rise() * over)
+}
+
+/// Holds the tool axis against the source, in which it stands still during an arc.
+fn axis(gauge: &Gauge, goal: &Goal, here: &Station, to: &Station) -> Result<(), String> {
+    if turn(&here.pose, &to.pose).is_some() {
+        return Err("turns a rotary axis during an arc".into());
+    }
+    let off = goal.to.apart(&to.place).1;
+    within("tilts the tool during an arc", off, gauge.allowed.axis_degrees, "°")
+}

@@ -1,0 +1,209 @@
+//! What the source says comes next.
+
+use crate::place::Place;
+use geom::Arc;
+use machine::Machine;
+use program::{Compensation, Coolant, Cycle, Feed, Op, Record, Spindle, Tool};
+
+/// A motion of the source, from where the one before it ends.
+#[derive(Clone, Debug)]
+pub(crate) struct Goal {
+    /// Line of the source.
+    pub line: u32,
+    pub kind: Kind,
+    /// Where the tool is before it; nothing before the first motion.
+    pub from: Option<Place>,
+    /// Where it goes; for a hole the point of the hole.
+    pub to: Place,
+    /// Whether the tool is changed before it.
+    pub tool_change: bool,
+    /// Whether the set-up changes before it.
+    pub reset: bool,
+}
+
+#[derive(Clone, Debug)]
+pub(crate) enum Kind {
+    Rapid,
+    Line,
+    Arc(Arc),
+    Hole(Cycle),
+    /// A record that makes no motion, and why.
+    Broken(&'static str),
+}
+
+/// What comes next.
+#[derive(Clone, Debug)]
+#[expect(clippy::large_enum_variant, reason = "there is one step at a time, mostly a motion")]
+pub(crate) enum Step {
+    Move(Goal),
+    /// A dwell in s.
+    Dwell(f64),
+    Stop,
+    OptionalStop,
+    End,
+}
+
+/// What holds at a step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Wanted<'a> {
+    pub feed: Option<Feed>,
+    pub spindle: Spindle,
+    pub coolant: Coolant,
+    pub tool: Option<&'a Tool>,
+    pub compensation: Compensation,
+    cycle: Option<Cycle>,
+}
+
+/// A walk along the source that stops at every motion, dwell and stop.
+#[derive(Clone)]
+pub(crate) struct Cursor<'a> {
+    machine: &'a Machine,
+    records: &'a [Record],
+    next: usize,
+    here: Option<Place>,
+    /// Line of the source of the step.
+    pub line: u32,
+    pub step: Step,
+    pub wanted: Wanted<'a>,
+    tool_change: bool,
+    reset: bool,
+}
+
+impl<'a> Cursor<'a> {
+    /// A walk that stands at the first step.
+    pub fn new(machine: &'a Machine, records: &'a [Record]) -> Cursor<'a> {
+        let wanted = Wanted {
+            feed: None,
+            spindle: Spindle::Off,
+            coolant: Coolant::Off,
+            tool: None,
+            compensation: Compensation::Off,
+            cycle: None,
+        };
+        let mut cursor = Cursor {
+            machine,
+            records,
+            next: 0,
+            here: None,
+            line: 0,
+            step: Step::End,
+            wanted,
+            tool_change: false,
+            reset: false,
+        };
+        cursor.advance();
+        cursor
+    }
+
+    /// Goes to the next step.
+    pub fn advance(&mut self) {
+        if let Step::Move(goal) = &self.step {
+            self.here = Some(goal.end());
+            self.tool_change = false;
+            self.reset = false;
+        }
+        while let Some(record) = self.records.get(self.next) {
+            self.next += 1;
+            self.line = record.line;
+            let step = match &record.op {
+                Op::Rapid(pose) => self.motion(Kind::Rapid, pose),
+                Op::Line(pose) => self.motion(Kind::Line, pose),
+                Op::Arc(to) => {
+                    let end = self.place(&to.end);
+                    let arc = self.here.and_then(|here| {
+                        let radius = here.tip.distance(to.center);
+                        Arc::new(here.tip, end.tip, to.center, to.normal, to.turns, radius).ok()
+                    });
+                    self.motion(
+                        arc.map_or(Kind::Broken("its points make no arc"), Kind::Arc),
+                        &to.end,
+                    )
+                }
+                Op::Hole(pose) => {
+                    let cycle = self.wanted.cycle.map(Kind::Hole);
+                    self.motion(cycle.unwrap_or(Kind::Broken("no cycle is active")), pose)
+                }
+                Op::Dwell(seconds) if *seconds > 0.0 => Step::Dwell(*seconds),
+                Op::Stop => Step::Stop,
+                Op::OptionalStop => Step::OptionalStop,
+                op => {
+                    self.note(op);
+                    continue;
+                }
+            };
+            self.step = step;
+            return;
+        }
+        self.step = Step::End;
+    }
+
+    /// Whether the tool is changed here, or nothing has moved yet.
+    pub fn at_tool_change(&self) -> bool {
+        self.tool_change || self.here.is_none()
+    }
+
+    /// The next motion, whatever dwells and stops come before it.
+    fn motion(&self, kind: Kind, pose: &program::Pose) -> Step {
+        Step::Move(Goal {
+            line: self.line,
+            kind,
+            from: self.here,
+            to: self.place(pose),
+            tool_change: self.tool_change,
+            reset: self.reset,
+        })
+    }
+
+    fn place(&self, pose: &program::Pose) -> Place {
+        Place::of(self.machine, pose, self.tool_length())
+    }
+
+    /// Length of the active tool, mm; 0 where the source does not say.
+    pub fn tool_length(&self) -> f64 {
+        self.wanted.tool.and_then(|tool| tool.length).unwrap_or(0.0)
+    }
+
+    fn note(&mut self, op: &'a Op) {
+        let wanted = &mut self.wanted;
+        match op {
+            Op::Feed(feed) => wanted.feed = Some(*feed),
+            Op::Spindle(spindle) => wanted.spindle = *spindle,
+            Op::Coolant(coolant) => wanted.coolant = *coolant,
+            Op::Compensation(side) => wanted.compensation = *side,
+            Op::Cycle(cycle) => wanted.cycle = Some(**cycle),
+            Op::CycleOff => wanted.cycle = None,
+            Op::Tool(tool) => {
+                wanted.tool = Some(tool);
+                self.tool_change = true;
+            }
+            Op::Frame(_) => self.reset = true,
+            _ => {}
+        }
+    }
+}
+
+impl Goal {
+    /// Where the tool is after it.
+    pub fn end(&self) -> Place {
+        match &self.kind {
+            Kind::Hole(cycle) => self.to.lifted(cycle.retract),
+            _ => self.to,
+        }
+    }
+
+    /// Length of the way of the tip, mm; 0 from an unknown start.
+    pub fn length(&self) -> f64 {
+        match &self.kind {
+            Kind::Arc(arc) => arc.length(),
+            _ => self.from.map_or(0.0, |from| from.tip.distance(self.to.tip)),
+        }
+    }
+
+    /// Whether home positions and turns of the rotary axes are in place before it: at the start,
+    /// around a tool change, and where a rapid goes to another set-up or orientation.
+    pub fn free(&self, axis_degrees: f64) -> bool {
+        let Some(from) = &self.from else { return true };
+        let by_rapid = matches!(self.kind, Kind::Rapid | Kind::Hole(_));
+        self.tool_change || (by_rapid && (self.reset || from.apart(&self.to).1 > axis_degrees))
+    }
+}

@@ -1,0 +1,63 @@
+//! What every comparison needs to know: the machine, the tolerances, the length of the tool.
+
+use crate::place::{Place, Station};
+use crate::tolerance::Applied;
+use geom::{Vec3, angle_between};
+use machine::Machine;
+use program::Pose;
+
+/// The machine, the tolerances, the length of the active tool.
+#[derive(Clone, Copy)]
+pub(crate) struct Gauge<'a> {
+    pub machine: &'a Machine,
+    pub allowed: Applied,
+    /// mm; 0 where the source does not say.
+    pub tool_length: f64,
+}
+
+impl Gauge<'_> {
+    /// The place that a block says.
+    pub fn station(&self, line: u32, pose: Pose) -> Station {
+        Station { line, pose, place: Place::of(self.machine, &pose, self.tool_length) }
+    }
+
+    /// How far the tip may be from where it should be at `station`, mm.
+    pub fn slack(&self, station: &Station) -> f64 {
+        self.allowed.tip(self.machine, &station.pose, &station.place, self.tool_length)
+    }
+
+    /// Whether `station` is at `place`: tip and axis. Never where a coordinate is not known.
+    pub fn at(&self, station: &Station, place: &Place) -> bool {
+        let (tip, axis) = station.place.apart(place);
+        tip <= self.slack(station) && axis <= self.allowed.axis_degrees
+    }
+
+    /// How far `station` stands above `place` along its axis, where it stands on that axis.
+    pub fn height_over(&self, place: &Place, station: &Station) -> Option<f64> {
+        let (height, beside) = place.above(station.place.tip);
+        (beside <= self.slack(station)).then_some(height)
+    }
+}
+
+/// The unit vector `t` (0 to 1) of the way from `a` to `b` on their great circle.
+pub(crate) fn between(a: Vec3, b: Vec3, t: f64) -> Vec3 {
+    let angle = angle_between(a, b);
+    let (from, to) = match angle > 0.1 && angle < 3.1 {
+        true => (((1.0 - t) * angle).sin(), (t * angle).sin()),
+        // Chord and arc are the same here, far below any tolerance of an axis within a move.
+        false => (1.0 - t, t),
+    };
+    (a * from + b * to).normalize_or(b)
+}
+
+/// Angle of the unit vector `v` from the great circle between `a` and `b`, degrees.
+pub(crate) fn off_great_circle(a: Vec3, b: Vec3, v: Vec3) -> f64 {
+    let normal = a.cross(b);
+    let ends = angle_between(v, a).min(angle_between(v, b));
+    let within = normal.cross(a).dot(v) >= 0.0 && b.cross(normal).dot(v) >= 0.0;
+    let off = match normal.try_normalize() {
+        Some(normal) if within => normal.dot(v).clamp(-1.0, 1.0).asin().abs().min(ends),
+        _ => ends,
+    };
+    off.to_degrees()
+}

@@ -1,0 +1,350 @@
+//! A hole of the source against a canned cycle of the program, or against the moves that make it.
+//!
+//! Heights are mm above the point of the source's hole along its axis; a depth is a negative height.
+
+use crate::gauge::Gauge;
+use crate::line::within;
+use crate::place::{Number, Place, Station};
+use crate::state::Difference;
+use geom::Vec3;
+use program::{Cycle, CycleKind, Orientation, Pose};
+
+/// A hole of the source.
+pub(crate) struct Hole<'a> {
+    pub gauge: &'a Gauge<'a>,
+    /// The point of the hole and its axis.
+    pub point: &'a Place,
+    pub cycle: &'a Cycle,
+}
+
+/// How far a hole is that the program makes by single moves.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Run {
+    /// Whether the tool stands over the hole; before that it is on its way there.
+    pub over: bool,
+    /// Height of the deepest point so far; the R plane before the first.
+    deepest: f64,
+    /// Pecks that are done: drilled and left.
+    pecks: u32,
+    dwelled: bool,
+    /// How far above the last depth a rapid back into the hole ends, mm: the writer's choice, but one
+    /// for all holes.
+    reentry: Option<f64>,
+    /// How far the tool draws back to break the chip, mm: likewise.
+    chip_break: Option<f64>,
+}
+
+/// A gap larger than this, mm, is not one any more: the feed would cut air, or the rapid is misplaced.
+const LARGEST_GAP: f64 = 2.0;
+
+/// A rest of a peck below this, mm, is rounding.
+const REST: f64 = 1e-3;
+
+impl Hole<'_> {
+    /// Whether `station` stands over the hole, at the R plane or higher.
+    pub fn is_over(&self, station: &Station) -> bool {
+        let aligned = station.place.apart(self.point).1 <= self.gauge.allowed.axis_degrees;
+        let height = self.gauge.height_over(self.point, station);
+        aligned && height.is_some_and(|h| h >= self.cycle.clearance - self.gauge.slack(station))
+    }
+
+    /// The height of a station on the axis of the hole.
+    fn height(&self, station: &Station) -> Result<f64, String> {
+        let angle = station.place.apart(self.point).1;
+        within("tilts the tool in the hole", angle, self.gauge.allowed.axis_degrees, "°")?;
+        let (height, beside) = self.point.above(station.place.tip);
+        within("leaves the axis of the hole", beside, self.gauge.slack(station), "mm")?;
+        Ok(height)
+    }
+
+    /// Depth below the point at which peck `done` + 1 ends, mm: the first counts from the point.
+    fn depth_of_peck(&self, done: u32) -> f64 {
+        let cycle = self.cycle;
+        if !cycle_pecks(cycle) {
+            return cycle.depth;
+        }
+        let further = cycle.peck.or(cycle.first_peck).unwrap_or(cycle.depth);
+        let depth = cycle.first_peck.unwrap_or(further) + f64::from(done) * further;
+        if depth < cycle.depth - REST { depth } else { cycle.depth }
+    }
+}
+
+fn cycle_pecks(cycle: &Cycle) -> bool {
+    matches!(cycle.kind, CycleKind::Deep | CycleKind::BreakChip)
+}
+
+impl Run {
+    /// Forgets the last hole, but not the writer's choices; the next is one of `cycle`.
+    pub fn restart(&mut self, cycle: &Cycle) {
+        let (reentry, chip_break) = (self.reentry, self.chip_break);
+        *self = Run { deepest: cycle.clearance, reentry, chip_break, ..Run::default() };
+    }
+
+    /// Whether the tool is in the hole.
+    pub fn begun(&self, cycle: &Cycle) -> bool {
+        self.over && self.deepest < cycle.clearance
+    }
+
+    /// A rapid over or in the hole. True where the hole is done.
+    ///
+    /// # Errors
+    /// How the move is not one of this hole.
+    pub fn rapid(
+        &mut self,
+        hole: &Hole,
+        here: &Station,
+        to: &Station,
+        spindle_stopped: bool,
+    ) -> Result<bool, String> {
+        let (from, height) = (hole.height(here)?, hole.height(to)?);
+        let (cycle, slack) = (hole.cycle, hole.gauge.slack(to));
+        if height < from {
+            return self.back_in(cycle, height, slack).map(|()| false);
+        }
+        if !self.begun(cycle) {
+            return Ok(false);
+        }
+        if !self.at_bottom(cycle, slack) {
+            return self.leave_peck(hole, height, slack).map(|()| false);
+        }
+        self.leave_bottom(cycle)?;
+        if from < cycle.clearance - slack {
+            if cycle.kind == CycleKind::Ream {
+                return Err("leaves the hole by rapid, but should feed out".into());
+            }
+            if (cycle.kind == CycleKind::Bore) != spindle_stopped {
+                let should = if spindle_stopped { "turning" } else { "stopped" };
+                return Err(format!("leaves the hole, but not with the spindle {should}"));
+            }
+        }
+        within("goes above the retract level", height - cycle.retract, slack, "mm")?;
+        Ok((height - cycle.retract).abs() <= slack)
+    }
+
+    /// A feed move over or in the hole. True where the hole is done.
+    ///
+    /// # Errors
+    /// How the move is not one of this hole.
+    pub fn feed(&mut self, hole: &Hole, here: &Station, to: &Station) -> Result<bool, String> {
+        let (from, height) = (hole.height(here)?, hole.height(to)?);
+        let (cycle, slack) = (hole.cycle, hole.gauge.slack(to));
+        if matches!(cycle.kind, CycleKind::Tap { .. }) {
+            return Err("taps by single moves; the control has to couple feed and spindle".into());
+        }
+        if height < from {
+            within("feeds from above the R plane", from - cycle.clearance, slack, "mm")?;
+            within("feeds above the last depth", from - self.deepest, LARGEST_GAP, "mm")?;
+            let floor = -hole.depth_of_peck(self.pecks);
+            within("feeds deeper than one peck", floor - height, slack, "mm")?;
+            self.deepest = self.deepest.min(height);
+            return Ok(false);
+        }
+        if cycle.kind != CycleKind::Ream || !self.at_bottom(cycle, slack) {
+            return Err("feeds upwards".into());
+        }
+        self.leave_bottom(cycle)?;
+        within("feeds above the R plane", height - cycle.clearance, slack, "mm")?;
+        Ok((height - cycle.retract).abs() <= slack)
+    }
+
+    /// A dwell of `seconds` while the tool stands at `here`: whether it is that of the cycle.
+    pub fn dwell(&mut self, hole: &Hole, here: &Station, seconds: f64) -> bool {
+        let (cycle, slack) = (hole.cycle, hole.gauge.slack(here));
+        let height = hole.height(here).unwrap_or(f64::INFINITY);
+        let right = !self.dwelled
+            && self.begun(cycle)
+            && self.at_bottom(cycle, slack)
+            && height <= self.deepest + slack
+            && (seconds - cycle.dwell).abs() <= hole.gauge.allowed.dwell_s;
+        self.dwelled |= right;
+        right
+    }
+
+    fn at_bottom(&self, cycle: &Cycle, slack: f64) -> bool {
+        self.deepest <= slack - cycle.depth
+    }
+
+    /// A rapid down: to the R plane, or back to a little above the last depth.
+    fn back_in(&mut self, cycle: &Cycle, height: f64, slack: f64) -> Result<(), String> {
+        if !self.begun(cycle) {
+            return within(
+                "goes by rapid below the R plane",
+                cycle.clearance - height,
+                slack,
+                "mm",
+            );
+        }
+        if self.at_bottom(cycle, slack) || height <= self.deepest + slack {
+            return Err("goes by rapid to the bottom of the hole".into());
+        }
+        gap("ends above the last depth", &mut self.reentry, height - self.deepest, slack)
+    }
+
+    /// A rapid up before the bottom is reached: the end of a peck.
+    fn leave_peck(&mut self, hole: &Hole, height: f64, slack: f64) -> Result<(), String> {
+        let short = (self.deepest + hole.depth_of_peck(self.pecks)).abs();
+        within("ends a peck off its depth", short, slack, "mm")?;
+        self.pecks += 1;
+        let below = hole.cycle.clearance - height;
+        match hole.cycle.kind {
+            CycleKind::Deep => within("clears the chips off the R plane", below.abs(), slack, "mm"),
+            CycleKind::BreakChip if below > slack => {
+                gap("breaks the chip", &mut self.chip_break, height - self.deepest, slack)
+            }
+            CycleKind::BreakChip => {
+                within("breaks the chip above the R plane", -below, slack, "mm")
+            }
+            _ => Err("leaves the hole before its bottom".into()),
+        }
+    }
+
+    fn leave_bottom(&self, cycle: &Cycle) -> Result<(), String> {
+        match cycle.dwell > 0.0 && !self.dwelled {
+            true => Err("leaves the bottom of the hole without the dwell".into()),
+            false => Ok(()),
+        }
+    }
+}
+
+/// Holds a gap against the one that the writer chose first.
+fn gap(what: &str, chosen: &mut Option<f64>, gap: f64, slack: f64) -> Result<(), String> {
+    within(what, gap, LARGEST_GAP, "mm")?;
+    let usual = *chosen.get_or_insert(gap);
+    match (gap - usual).abs() <= 2.0 * slack {
+        true => Ok(()),
+        false => Err(format!("{what} by {} mm, elsewhere by {} mm", Number(gap), Number(usual))),
+    }
+}
+
+/// A hole of a canned cycle, as the program has it.
+pub(crate) struct Drilled {
+    /// The bottom, the R plane and the end of the retraction: where the tool is there.
+    pub bottom: Station,
+    pub r_plane: Station,
+    pub retracted: Station,
+    pub cycle: Cycle,
+}
+
+impl Drilled {
+    /// The hole at `pose` on `line` of the program. The heights of a cycle count along Z of the
+    /// block's coordinates, which in the work frame is the tool axis.
+    pub fn new(gauge: &Gauge, line: u32, pose: &Pose, cycle: Cycle) -> Drilled {
+        let along = match pose.orientation {
+            Orientation::Axis(axis) => axis,
+            Orientation::Rotary { degrees, tool_center: true } => gauge.machine.axis_at(degrees),
+            Orientation::Rotary { .. } => Vec3::Z,
+        };
+        let at =
+            |height: f64| gauge.station(line, Pose { point: pose.point + along * height, ..*pose });
+        Drilled {
+            bottom: at(-cycle.depth),
+            r_plane: at(cycle.clearance),
+            retracted: at(cycle.retract),
+            cycle,
+        }
+    }
+
+    /// Holds the places of the hole against those of the source.
+    ///
+    /// # Errors
+    /// Which of them is elsewhere.
+    pub fn place(&self, hole: &Hole) -> Result<(), String> {
+        let cycle = hole.cycle;
+        for (what, station, height) in [
+            ("bottom of the hole", &self.bottom, -cycle.depth),
+            ("R plane", &self.r_plane, cycle.clearance),
+            ("retract level", &self.retracted, cycle.retract),
+        ] {
+            let should = hole.point.lifted(height);
+            if !hole.gauge.at(station, &should) {
+                let apart = Number(station.place.tip.distance(should.tip));
+                let (is, should): (&Place, _) = (&station.place, should);
+                return Err(format!("has the {what} at {is}, but should at {should}: {apart} mm"));
+            }
+        }
+        Ok(())
+    }
+
+    /// Holds what the tool does in the hole against the source.
+    pub fn kind(&self, hole: &Hole) -> Vec<Difference> {
+        let cycle = hole.cycle;
+        let mut found = Vec::new();
+        let kinds = (cycle.kind, self.cycle.kind);
+        let same = match kinds {
+            (CycleKind::Tap { pitch: a, left: l }, CycleKind::Tap { pitch: b, left: m }) => {
+                l == m && (a - b).abs() <= PITCH
+            }
+            (a, b) => a == b,
+        };
+        if !same {
+            let message =
+                format!("the cycle is {}, but should be {}", name(kinds.1), name(kinds.0));
+            found.push(("cycle", message));
+        }
+        let dwell = (self.cycle.dwell - cycle.dwell).abs();
+        if dwell.is_nan() || dwell > hole.gauge.allowed.dwell_s {
+            let (is, should) = (Number(self.cycle.dwell), Number(cycle.dwell));
+            found.push(("dwell", format!("the cycle dwells {is} s, but should {should} s")));
+        }
+        if cycle_pecks(cycle)
+            && let Err(message) = self.pecks(hole)
+        {
+            found.push(("peck", message));
+        }
+        found
+    }
+
+    /// Holds the pecks against the source: never deeper than it says, and each a depth that it names.
+    /// A control with one peck for all may take either; where its first counts from its R plane, the
+    /// clearance may be in it.
+    fn pecks(&self, hole: &Hole) -> Result<(), String> {
+        let cycle = hole.cycle;
+        let slack = hole.gauge.slack(&self.bottom);
+        let further = cycle.peck.or(cycle.first_peck).unwrap_or(cycle.depth);
+        let first = cycle.first_peck.unwrap_or(further);
+        let own = self.cycle.peck.or(self.cycle.first_peck).ok_or("the cycle does not peck")?;
+        let own_first = self.cycle.first_peck.unwrap_or(own);
+        let point = hole.point.above(self.bottom.place.tip).0 + self.cycle.depth;
+        let own_depth = own_first - point;
+        within("the first peck is too deep", own_depth - first, slack, "mm")?;
+        let many = own_depth < cycle.depth - REST;
+        if many {
+            within("a peck is too deep", own - further, slack, "mm")?;
+        }
+        let named = |peck: f64| {
+            let from_r = first + cycle.clearance;
+            [first, further, from_r].iter().any(|wanted| (peck - wanted).abs() <= slack)
+        };
+        let as_said = (own_depth - first).abs() <= slack || named(own_first);
+        match as_said && (!many || named(own)) {
+            true => Ok(()),
+            false => Err(format!(
+                "the cycle pecks {} mm, then {} mm, but should {} mm, then {} mm",
+                Number(own_first),
+                Number(own),
+                Number(first),
+                Number(further)
+            )),
+        }
+    }
+}
+
+/// Half a step of a pitch of three decimals, mm.
+const PITCH: f64 = 5.1e-4;
+
+fn name(kind: CycleKind) -> String {
+    match kind {
+        CycleKind::Drill => "drilling".into(),
+        CycleKind::Deep => "deep drilling".into(),
+        CycleKind::BreakChip => "drilling with chip break".into(),
+        CycleKind::Tap { pitch, left } => {
+            format!(
+                "tapping a {} thread of {} mm",
+                if left { "left" } else { "right" },
+                Number(pitch)
+            )
+        }
+        CycleKind::Ream => "reaming".into(),
+        CycleKind::Bore => "boring".into(),
+    }
+}

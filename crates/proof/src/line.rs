@@ -1,0 +1,138 @@
+//! A straight move of the source against the feed moves of the program.
+
+use crate::expected::Goal;
+use crate::gauge::{Gauge, between, off_great_circle};
+use crate::place::{Number, Place, Station};
+use geom::{Vec3, nearest_on_segment};
+use program::{Orientation, Pose};
+
+/// How far a program has come on a source move.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Followed {
+    /// 0 at the start, 1 at the end.
+    pub t: f64,
+    /// Largest distance of the tip from the path, mm.
+    pub path_mm: f64,
+}
+
+/// Rotary axes turn at most this much between two samples of a move, degrees.
+const SAMPLE: f64 = 3.0;
+
+/// Follows a feed move of the program from `here` to `to` on the source line `goal`, of which `t` is
+/// done.
+///
+/// # Errors
+/// How the move leaves the line: beside it, backwards, or with the tool axis elsewhere.
+pub(crate) fn follow(
+    gauge: &Gauge,
+    goal: &Goal,
+    t: f64,
+    here: &Station,
+    to: &Station,
+) -> Result<Followed, String> {
+    let from = goal.from.unwrap_or(goal.to);
+    let length = from.tip.distance(goal.to.tip);
+    let slack = gauge.slack(to);
+    let (reached, beside) = nearest_on_segment(from.tip, goal.to.tip, to.place.tip);
+    within("leaves the line", beside, slack, "mm")?;
+    within("goes back on the line", (t - reached) * length, slack, "mm")?;
+    let expected = |t: f64| match length > 2.0 * slack {
+        true => Some(between(from.axis, goal.to.axis, t)),
+        false => None,
+    };
+    axis(gauge, &from, &goal.to, expected(reached), to.place.axis)?;
+    let mut followed = Followed { t: reached, path_mm: beside };
+    if let Some(turn) = turn(&here.pose, &to.pose) {
+        let samples = (turn / SAMPLE).ceil().clamp(1.0, 360.0) as u32;
+        for i in 1..=samples {
+            let part = f64::from(i) / f64::from(samples + 1);
+            let pose = blend(&here.pose, &to.pose, part);
+            let place = Place::of(gauge.machine, &pose, gauge.tool_length);
+            if !matches!(pose.orientation, Orientation::Rotary { tool_center: true, .. }) {
+                let (_, beside) = nearest_on_segment(from.tip, goal.to.tip, place.tip);
+                let allowed = slack + gauge.allowed.linearisation_mm;
+                within("swings off the line between its ends", beside, allowed, "mm")?;
+                followed.path_mm = followed.path_mm.max(beside);
+            }
+            let expected = expected(t + (reached - t) * part);
+            axis(gauge, &from, &goal.to, expected, place.axis)?;
+        }
+    } else if unlike(here, to) {
+        return Err("turns the tool while the kind of coordinates changes".into());
+    }
+    Ok(followed)
+}
+
+/// Holds the tool axis on the way between the axes of `from` and `to` against where it should be, or
+/// against the great circle where the tip stands still.
+fn axis(
+    gauge: &Gauge,
+    from: &Place,
+    to: &Place,
+    expected: Option<Vec3>,
+    axis: Vec3,
+) -> Result<(), String> {
+    if from.axis == to.axis && axis == to.axis {
+        return Ok(());
+    }
+    let off = match expected {
+        Some(expected) => geom::angle_between(expected, axis).to_degrees(),
+        None => off_great_circle(from.axis, to.axis, axis),
+    };
+    let swept = from.apart(to).1 > gauge.allowed.axis_degrees;
+    let sweep = if swept { gauge.allowed.sweep_degrees } else { 0.0 };
+    within("turns the tool axis off its way", off, gauge.allowed.axis_degrees + sweep, "°")
+}
+
+/// The largest turn of a rotary axis between two poses, degrees, where one turns and both say so in
+/// the same kind of coordinates.
+pub(crate) fn turn(from: &Pose, to: &Pose) -> Option<f64> {
+    match (from.orientation, to.orientation) {
+        (
+            Orientation::Rotary { degrees: a, tool_center: s },
+            Orientation::Rotary { degrees: b, tool_center: t },
+        ) if s == t && a != b => {
+            Some(a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max))
+        }
+        _ => None,
+    }
+}
+
+/// Whether the machine turns the tool in a move of its own axes that began in other coordinates: the
+/// way of the tip is then not known.
+fn unlike(here: &Station, to: &Station) -> bool {
+    let same_kind = match (here.pose.orientation, to.pose.orientation) {
+        (
+            Orientation::Rotary { tool_center: s, .. },
+            Orientation::Rotary { tool_center: t, .. },
+        ) => s == t,
+        _ => false,
+    };
+    matches!(to.pose.orientation, Orientation::Rotary { tool_center: false, .. })
+        && !same_kind
+        && here.place.axis.distance_squared(to.place.axis) > 1e-18
+}
+
+/// The pose `t` (0 to 1) of the way between two poses of the same kind, as a control interpolates.
+fn blend(from: &Pose, to: &Pose, t: f64) -> Pose {
+    let point = from.point.lerp(to.point, t);
+    let orientation = match (from.orientation, to.orientation) {
+        (
+            Orientation::Rotary { degrees: a, .. },
+            Orientation::Rotary { degrees: b, tool_center },
+        ) => {
+            let degrees = std::array::from_fn(|i| a[i] + (b[i] - a[i]) * t);
+            Orientation::Rotary { degrees, tool_center }
+        }
+        (_, orientation) => orientation,
+    };
+    Pose { point, orientation }
+}
+
+/// Refuses a deviation that is larger than allowed, or not a number.
+pub(crate) fn within(what: &str, value: f64, allowed: f64, unit: &str) -> Result<(), String> {
+    match value <= allowed {
+        true => Ok(()),
+        false => Err(format!("{what} by {} {unit} ({} allowed)", Number(value), Number(allowed))),
+    }
+}

@@ -1,0 +1,84 @@
+//! Where a tool is.
+
+use geom::{Vec3, angle_between};
+use machine::Machine;
+use program::Pose;
+use std::fmt;
+
+/// A tool tip (mm) and a tool axis (unit vector), both in the work frame. What is not known is NaN.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Place {
+    pub tip: Vec3,
+    pub axis: Vec3,
+}
+
+impl Place {
+    /// The place of a pose, with a tool of `tool_length` mm.
+    pub fn of(machine: &Machine, pose: &Pose, tool_length: f64) -> Place {
+        let (tip, axis) = machine.resolve(pose, tool_length);
+        Place { tip, axis }
+    }
+
+    /// Whether every coordinate is known.
+    pub fn known(&self) -> bool {
+        self.tip.is_finite() && self.axis.is_finite()
+    }
+
+    /// How far `point` stands above this place along its axis, and how far beside it, mm.
+    pub fn above(&self, point: Vec3) -> (f64, f64) {
+        let from = point - self.tip;
+        let height = from.dot(self.axis);
+        (height, (from - self.axis * height).length())
+    }
+
+    /// This place moved along its axis, mm.
+    pub fn lifted(&self, height: f64) -> Place {
+        Place { tip: self.tip + self.axis * height, ..*self }
+    }
+
+    /// Distance of the tips, mm, and angle of the axes, degrees. NaN where either is not known.
+    pub fn apart(&self, other: &Place) -> (f64, f64) {
+        let angle =
+            if self.axis == other.axis { 0.0 } else { angle_between(self.axis, other.axis) };
+        (self.tip.distance(other.tip), angle.to_degrees())
+    }
+}
+
+/// `X1 Y2 Z3`, with the tool axis behind where it is not +Z; a `?` for what is not known.
+impl fmt::Display for Place {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        for (i, (letter, value)) in "XYZ".chars().zip(self.tip.to_array()).enumerate() {
+            let gap = if i > 0 { " " } else { "" };
+            match value.is_nan() {
+                true => write!(f, "{gap}{letter}?")?,
+                false => write!(f, "{gap}{letter}{}", Number(value))?,
+            }
+        }
+        if !self.axis.abs_diff_eq(Vec3::Z, 1e-9) {
+            let [i, j, k] = self.axis.to_array();
+            write!(f, " (tool axis {i:.6}, {j:.6}, {k:.6})")?;
+        }
+        Ok(())
+    }
+}
+
+/// A number for a person: at most four decimals, no trailing zeros, no `-0`.
+pub(crate) struct Number(pub f64);
+
+impl fmt::Display for Number {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let rounded = (self.0 * 1e4).round() / 1e4;
+        write!(f, "{}", if rounded == 0.0 { 0.0 } else { rounded })
+    }
+}
+
+/// A place that the NC program reached: what its block says, and where that is.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Station {
+    /// Line of the NC program.
+    pub line: u32,
+    /// What the block says.
+    pub pose: Pose,
+    /// Where that is in the work frame.
+    pub place: Place,
+}

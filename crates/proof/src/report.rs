@@ -1,0 +1,231 @@
+//! What a proof found, for a machinist and for a program that reads JSON.
+
+use crate::tolerance::Applied;
+use geom::{Arc, Vec3};
+use program::{Diagnostic, Orientation, Pose};
+use serde::Serialize;
+
+/// The most mismatches and the most warnings that a report names; more of a rule raise its count.
+pub(crate) const MOST: usize = 20;
+
+/// The most excursions that a report lists; all are counted.
+const MOST_EXCURSIONS: usize = 100;
+
+/// What the proof found.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Report {
+    /// Whether the program makes the motion of the source.
+    pub proven: bool,
+    /// The mismatches, first to last, up to a fixed number; the same rule is listed once, with its
+    /// count. Their lines are those of the NC program.
+    pub mismatches: Vec<Diagnostic>,
+    /// What is worth knowing.
+    pub warnings: Vec<Diagnostic>,
+    /// The first mismatch as source line beside program block.
+    pub first_mismatch: Option<SideBySide>,
+    /// How close the motions had to be.
+    pub tolerances: Applied,
+    /// How many motions and events of the source were found in the program.
+    pub compared: Compared,
+    /// The largest deviations.
+    pub deviations: Deviations,
+    /// Where the program leaves the source's path and comes back to it; the first hundred.
+    pub excursions: Vec<Excursion>,
+    /// What the program does, as the control runs it.
+    pub program: Summary,
+}
+
+/// A place of the source beside a place of the program.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct SideBySide {
+    /// Line of the source, from 1; 0 where the source has none.
+    pub source_line: u32,
+    /// Line of the NC program, from 1; 0 for its end.
+    pub program_line: u32,
+    /// The block on that line.
+    pub block: String,
+}
+
+/// Counts of what was compared.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+pub struct Compared {
+    /// Rapid moves of the source.
+    pub rapids: usize,
+    /// Straight cutting moves of the source.
+    pub lines: usize,
+    /// Arcs and helices of the source.
+    pub arcs: usize,
+    /// Holes of the source.
+    pub holes: usize,
+    /// Moves of the source too short to be a step of the machine, left out by the program.
+    pub left_out: usize,
+    /// Dwells, stops and optional stops.
+    pub events: usize,
+    /// Tool changes of the program.
+    pub tool_changes: usize,
+    /// Excursions of the program.
+    pub excursions: usize,
+}
+
+/// The largest deviations of the program from the source.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Deviations {
+    /// Of the tool tip at the end of a move, mm.
+    pub tip_mm: Worst,
+    /// Of the tool axis at the end of a move, degrees.
+    pub axis_degrees: Worst,
+    /// Of the tool tip from the path of a cutting move, mm.
+    pub path_mm: Worst,
+}
+
+/// A largest value and where it is.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Worst {
+    /// The value.
+    pub value: f64,
+    /// Line of the source.
+    pub source_line: u32,
+    /// Line of the NC program.
+    pub program_line: u32,
+}
+
+impl Worst {
+    pub(crate) fn note(&mut self, value: f64, source_line: u32, program_line: u32) {
+        if value > self.value {
+            *self = Worst { value, source_line, program_line };
+        }
+    }
+}
+
+/// A way away from the source's path and back to it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Excursion {
+    /// Line of the source move from which it leaves.
+    pub source_line: u32,
+    /// Line of the NC program on which it leaves.
+    pub first_program_line: u32,
+    /// Line of the NC program on which it is back.
+    pub last_program_line: u32,
+    /// How far the tool is lifted along its axis, mm; 0 where it goes home instead.
+    pub lift_mm: f64,
+}
+
+/// What the program does, as the control runs it.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct Summary {
+    /// Lines with something on them.
+    pub blocks: usize,
+    /// Tools in the order of their first call: numbers, or names where they are called so.
+    pub tools: Vec<String>,
+    /// Way of the tip in the work frame in feed moves, holes included, mm.
+    pub cutting_length_mm: f64,
+    /// Way of the tip in rapid moves between known places, as straight lines, mm.
+    pub rapid_length_mm: f64,
+    /// Programmed positions of X, Y and Z, mm.
+    pub linear_extents_mm: [Extent; 3],
+    /// Programmed positions of A, B and C, degrees.
+    pub rotary_extents_degrees: [Extent; 3],
+}
+
+/// Smallest and largest position of an axis; `null` both where it is never programmed.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Extent {
+    /// Smallest.
+    pub min: Option<f64>,
+    /// Largest.
+    pub max: Option<f64>,
+}
+
+impl Extent {
+    fn include(&mut self, value: f64) {
+        if value.is_nan() {
+            return;
+        }
+        self.min = Some(self.min.map_or(value, |min| min.min(value)));
+        self.max = Some(self.max.map_or(value, |max| max.max(value)));
+    }
+}
+
+impl Summary {
+    /// Takes a programmed pose into the extents.
+    pub(crate) fn include(&mut self, pose: &Pose) {
+        for (extent, value) in self.linear_extents_mm.iter_mut().zip(pose.point.to_array()) {
+            extent.include(value);
+        }
+        if let Orientation::Rotary { degrees, .. } = pose.orientation {
+            for (extent, value) in self.rotary_extents_degrees.iter_mut().zip(degrees) {
+                extent.include(value);
+            }
+        }
+    }
+
+    /// Takes the quadrants of an arc, in the coordinates of its block, into the extents.
+    pub(crate) fn include_arc(&mut self, arc: &Arc) {
+        let spoke = (arc.start - arc.center).reject_from_normalized(arc.normal);
+        for (i, extent) in self.linear_extents_mm.iter_mut().enumerate() {
+            // Along this direction of the arc's plane the coordinate grows fastest.
+            let uphill = Vec3::AXES[i].reject_from_normalized(arc.normal);
+            for peak in [uphill, -uphill] {
+                let angle = arc.normal.dot(spoke.cross(peak)).atan2(spoke.dot(peak));
+                let t = angle.rem_euclid(std::f64::consts::TAU) / arc.sweep;
+                if uphill.length_squared() > 1e-18 && t <= 1.0 {
+                    extent.include(arc.at(t)[i]);
+                }
+            }
+        }
+    }
+
+    pub(crate) fn tool(&mut self, name: String) {
+        if !self.tools.contains(&name) {
+            self.tools.push(name);
+        }
+    }
+}
+
+impl Report {
+    pub(crate) fn mismatch(&mut self, source_line: u32, found: Diagnostic) {
+        if self.first_mismatch.is_none() {
+            let block = String::new();
+            self.first_mismatch = Some(SideBySide { source_line, program_line: found.line, block });
+        }
+        note(&mut self.mismatches, found);
+    }
+
+    pub(crate) fn warn(&mut self, found: Diagnostic) {
+        note(&mut self.warnings, found);
+    }
+
+    pub(crate) fn excursion(&mut self, excursion: Excursion) {
+        self.compared.excursions += 1;
+        if self.excursions.len() < MOST_EXCURSIONS {
+            self.excursions.push(excursion);
+        }
+    }
+
+    /// Puts the file name and the blocks of the NC text beside what was found, and counts the blocks.
+    pub(crate) fn quote(&mut self, file_name: &str, text: &[u8]) {
+        let lines = || text.split(|byte| *byte == b'\n');
+        self.program.blocks = lines().filter(|line| !line.trim_ascii().is_empty()).count();
+        for found in self.mismatches.iter_mut().chain(&mut self.warnings) {
+            found.file = file_name.into();
+            let block = found.line.checked_sub(1).and_then(|index| lines().nth(index as usize));
+            if let (Some(block), true) = (block, found.excerpt.is_empty()) {
+                *found = found.clone().at(found.line, block, 0, 0);
+                // The finding is about the whole block.
+                found.column = 0;
+                found.excerpt.truncate(found.excerpt.find('\n').unwrap_or(usize::MAX));
+            }
+        }
+        if let (Some(first), Some(found)) = (&mut self.first_mismatch, self.mismatches.first()) {
+            first.block = found.excerpt.lines().next().unwrap_or_default().trim_end().into();
+        }
+    }
+}
+
+fn note(list: &mut Vec<Diagnostic>, found: Diagnostic) {
+    if let Some(same) = list.iter_mut().find(|d| d.rule == found.rule) {
+        same.count = same.count.saturating_add(1);
+    } else if list.len() < MOST {
+        list.push(found);
+    }
+}

@@ -1,0 +1,270 @@
+//! What holds while the tool moves: feed, spindle, coolant, tool, offsets.
+
+use crate::expected::Wanted;
+use crate::place::Number;
+use crate::tolerance::Applied;
+use machine::{LengthOffset, Machine, OptionValue};
+use program::{Compensation, Coolant, Cycle, Feed, Spindle, Tool};
+
+/// What the program has switched on.
+#[derive(Clone, Debug)]
+pub(crate) struct Running {
+    pub feed: Option<Feed>,
+    pub spindle: Spindle,
+    pub coolant: Coolant,
+    /// Line on which the spindle and the coolant were set last.
+    pub spindle_line: u32,
+    pub coolant_line: u32,
+    pub tool: Option<Tool>,
+    pub compensation: Compensation,
+    pub length_offset: Option<u32>,
+    pub work_offset: Option<u32>,
+    pub cycle: Option<Cycle>,
+}
+
+impl Default for Running {
+    fn default() -> Running {
+        Running {
+            feed: None,
+            spindle: Spindle::Off,
+            coolant: Coolant::Off,
+            spindle_line: 0,
+            coolant_line: 0,
+            tool: None,
+            compensation: Compensation::Off,
+            length_offset: None,
+            work_offset: None,
+            cycle: None,
+        }
+    }
+}
+
+impl Running {
+    /// A tool change on `line`: the machine stops spindle and coolant for it, except what the same
+    /// block switches on.
+    pub fn change_tool(&mut self, line: u32, tool: Tool) {
+        if self.spindle_line != line {
+            self.spindle = Spindle::Off;
+        }
+        if self.coolant_line != line {
+            self.coolant = Coolant::Off;
+        }
+        self.tool = Some(tool);
+    }
+}
+
+/// A difference: the rule and what is wrong.
+pub(crate) type Difference = (&'static str, String);
+
+/// What must be right on every move to a known place: tool, length offset, work offset.
+pub(crate) fn set_up(machine: &Machine, wanted: &Wanted, running: &Running) -> Option<Difference> {
+    if let Some(tool) = wanted.tool {
+        match &running.tool {
+            None => return Some(("tool", format!("{} is not called", named(tool)))),
+            Some(other) if !same_tool(tool, other) => {
+                return Some(("tool", format!("{} runs, not {}", named(other), named(tool))));
+            }
+            Some(_) => {}
+        }
+    }
+    let called = running.tool.as_ref().or(wanted.tool).map_or(0, |tool| tool.number);
+    let offset = match machine.capabilities.length_offset {
+        LengthOffset::Implicit => running.length_offset,
+        LengthOffset::One => Some(1),
+        LengthOffset::ToolNumber => {
+            wanted.tool.and_then(|tool| tool.offset).or((called > 0).then_some(called))
+        }
+    };
+    let shown = |offset: Option<u32>| offset.map_or("none".into(), |n| n.to_string());
+    if offset.is_some() && running.length_offset != offset {
+        let (found, wanted) = (shown(running.length_offset), shown(offset));
+        return Some(("length-offset", format!("length offset {found} is active, not {wanted}")));
+    }
+    let zero = match machine.options.get("work_offset") {
+        Some(OptionValue::Number(n)) => *n,
+        _ => 54.0,
+    };
+    match running.work_offset {
+        Some(n) if f64::from(n) != zero => {
+            Some(("work-offset", format!("work offset G{n} is active, not G{zero}")))
+        }
+        _ => None,
+    }
+}
+
+/// What must be right in the cut besides: spindle and coolant.
+pub(crate) fn spindle_and_coolant(
+    allowed: &Applied,
+    wanted: &Wanted,
+    running: &Running,
+) -> Option<Difference> {
+    if !same_spindle(allowed, wanted.spindle, running.spindle) {
+        let (is, should) = (spindle(running.spindle), spindle(wanted.spindle));
+        return Some(("spindle", format!("the spindle is {is}, but should be {should}")));
+    }
+    (wanted.coolant != running.coolant).then(|| {
+        let (is, should) = (coolant(running.coolant), coolant(wanted.coolant));
+        ("coolant", format!("coolant is {is}, but should be {should}"))
+    })
+}
+
+/// The lengths (mm) that feed in inverse time counts with.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Lengths {
+    /// Way of the tip in the source move.
+    pub source: f64,
+    /// Way of the tip in the block.
+    pub block: f64,
+    /// Rounding of either.
+    pub rounding: f64,
+}
+
+/// Holds a feed against what the source wants. Both count as mm/min where they are in different
+/// units.
+pub(crate) fn feed(
+    allowed: &Applied,
+    wanted: Option<Feed>,
+    running: Option<Feed>,
+    spindle: Spindle,
+    lengths: &Lengths,
+) -> Option<Difference> {
+    let Some(wanted) = wanted else {
+        return Some(("feed", "the source names no feed".into()));
+    };
+    let Some(running) = running else {
+        return Some(("feed", format!("no feed is set, but should be {}", shown(wanted))));
+    };
+    let speed = match spindle {
+        Spindle::Off => 0.0,
+        Spindle::Clockwise(speed) | Spindle::CounterClockwise(speed) => speed,
+    };
+    // Too short a move has no meaningful time.
+    let timed = |length: f64| length > 8.0 * lengths.rounding;
+    let blurred = |feed: f64, length: f64| feed * lengths.rounding / length;
+    let same = match (wanted, running) {
+        (Feed::PerMinute(a), Feed::PerMinute(b)) | (Feed::PerTurn(a), Feed::PerTurn(b)) => {
+            (a - b).abs() <= allowed.feed
+        }
+        (Feed::PerMinute(a), Feed::PerTurn(b)) => (a - b * speed).abs() <= allowed.feed * speed,
+        (Feed::PerTurn(a), Feed::PerMinute(b)) => (a * speed - b).abs() <= allowed.feed,
+        (Feed::InverseTime(a), Feed::InverseTime(b)) if lengths.source == lengths.block => {
+            (a - b).abs() <= allowed.feed
+        }
+        (Feed::InverseTime(rate), _) if !timed(lengths.source) => rate > 0.0,
+        (wanted, Feed::InverseTime(rate)) if timed(lengths.block) => {
+            let per_minute = match wanted {
+                Feed::PerMinute(feed) => feed,
+                Feed::PerTurn(feed) => feed * speed,
+                Feed::InverseTime(rate) => rate * lengths.source,
+            };
+            let expected = per_minute / lengths.block;
+            (expected - rate).abs() <= allowed.feed + 2.0 * blurred(expected, lengths.block)
+        }
+        (_, Feed::InverseTime(rate)) => rate > 0.0,
+        (Feed::InverseTime(rate), Feed::PerMinute(b)) => {
+            let expected = rate * lengths.source;
+            (expected - b).abs() <= allowed.feed + 2.0 * blurred(expected, lengths.source)
+        }
+        (Feed::InverseTime(rate), Feed::PerTurn(b)) => {
+            let expected = rate * lengths.source;
+            let blur = 2.0 * blurred(expected, lengths.source);
+            (expected - b * speed).abs() <= allowed.feed * speed + blur
+        }
+    };
+    (!same).then(|| {
+        ("feed", format!("the feed is {}, but should be {}", shown(running), shown(wanted)))
+    })
+}
+
+/// Whether the program's compensation is the source's. A register that the source does not name may
+/// be that of the tool.
+pub(crate) fn same_compensation(
+    source: Compensation,
+    block: Compensation,
+    tool: Option<&Tool>,
+) -> bool {
+    let register = |wanted: Option<u32>, named: Option<u32>| match (wanted, named) {
+        (_, None) => true,
+        (Some(wanted), Some(named)) => wanted == named,
+        (None, Some(named)) => tool.is_none_or(|tool| {
+            tool.number == 0 || tool.number == named || tool.offset == Some(named)
+        }),
+    };
+    match (source, block) {
+        (Compensation::Off, Compensation::Off) => true,
+        (Compensation::Left(a), Compensation::Left(b))
+        | (Compensation::Right(a), Compensation::Right(b)) => register(a, b),
+        _ => false,
+    }
+}
+
+/// Whether two tools are one: by number, or by name where a side knows only a name.
+pub(crate) fn same_tool(source: &Tool, block: &Tool) -> bool {
+    match (source.number, block.number) {
+        (0, _) if source.name.is_empty() || block.name.is_empty() => true,
+        (0, _) | (_, 0) => plain(&source.name).eq(plain(&block.name)),
+        (a, b) => a == b,
+    }
+}
+
+/// A name without what a control does not take in a tool name.
+fn plain(name: &str) -> impl Iterator<Item = char> + '_ {
+    name.trim()
+        .chars()
+        .map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_uppercase() } else { '_' })
+}
+
+pub(crate) fn same_spindle(allowed: &Applied, a: Spindle, b: Spindle) -> bool {
+    match (a, b) {
+        (Spindle::Off, Spindle::Off) => true,
+        (Spindle::Clockwise(a), Spindle::Clockwise(b))
+        | (Spindle::CounterClockwise(a), Spindle::CounterClockwise(b)) => {
+            (a - b).abs() <= allowed.speed_per_min
+        }
+        _ => false,
+    }
+}
+
+fn named(tool: &Tool) -> String {
+    match tool.number {
+        0 => format!("tool \"{}\"", tool.name),
+        number => format!("tool {number}"),
+    }
+}
+
+fn spindle(spindle: Spindle) -> String {
+    match spindle {
+        Spindle::Off => "stopped".into(),
+        Spindle::Clockwise(speed) => format!("clockwise at {} 1/min", Number(speed)),
+        Spindle::CounterClockwise(speed) => {
+            format!("counter-clockwise at {} 1/min", Number(speed))
+        }
+    }
+}
+
+fn coolant(coolant: Coolant) -> &'static str {
+    match coolant {
+        Coolant::Off => "off",
+        Coolant::Flood => "flood",
+        Coolant::Mist => "mist",
+        Coolant::Through => "through the tool",
+    }
+}
+
+/// A side of compensation, for a person.
+pub(crate) fn compensation(side: Compensation) -> String {
+    let register = |n: Option<u32>| n.map_or(String::new(), |n| format!(" with register {n}"));
+    match side {
+        Compensation::Off => "off".into(),
+        Compensation::Left(n) => format!("left{}", register(n)),
+        Compensation::Right(n) => format!("right{}", register(n)),
+    }
+}
+
+fn shown(feed: Feed) -> String {
+    match feed {
+        Feed::PerMinute(f) => format!("{} mm/min", Number(f)),
+        Feed::PerTurn(f) => format!("{} mm per turn", Number(f)),
+        Feed::InverseTime(f) => format!("{} per minute (inverse time)", Number(f)),
+    }
+}

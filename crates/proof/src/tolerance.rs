@@ -1,0 +1,112 @@
+//! How close the two motions must be.
+
+use crate::place::Place;
+use geom::Vec3;
+use machine::{Machine, Mount};
+use program::{Orientation, Pose};
+use serde::Serialize;
+
+/// How close the two motions must be.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Tolerances {
+    /// Distance of the tool tips, mm; by default from the resolution of the machine's words.
+    pub position: Option<f64>,
+    /// Angle between the tool axes, degrees; by default from the resolution of the rotary words.
+    pub angle: Option<f64>,
+}
+
+/// The tolerances that a proof used, each with its unit in its name.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Applied {
+    /// Distance of the tool tips that rounding of the linear words explains, mm.
+    pub tip_mm: f64,
+    /// Error of one rotary word, degrees: it moves the tip by its angle at the distance from the
+    /// centre of rotation, which is allowed on top of `tip_mm`.
+    pub rotary_degrees: f64,
+    /// Angle between the tool axes at the end of a move, degrees.
+    pub axis_degrees: f64,
+    /// Angle by which the tool axis may leave the great circle within a move, degrees.
+    pub sweep_degrees: f64,
+    /// Distance of the tip from a commanded line while rotary axes turn without tool-center control,
+    /// mm, on top of `tip_mm`.
+    pub linearisation_mm: f64,
+    /// Chord error of arcs that are written as lines, mm, on top of `tip_mm`.
+    pub chord_mm: f64,
+    /// Feed, in the unit it is programmed in.
+    pub feed: f64,
+    /// Spindle speed, 1/min.
+    pub speed_per_min: f64,
+    /// Dwell, s.
+    pub dwell_s: f64,
+}
+
+/// The two rotary axes turn evenly between two points, which is not a great circle of the tool axis;
+/// how far it may leave that within one move, degrees.
+const SWEEP: f64 = 1.0;
+
+/// A position counts as unchanged below this, mm: noise of the kinematics, far below any word.
+const NOISE: f64 = 1e-6;
+
+impl Applied {
+    /// The tolerances of `machine`, or those given.
+    pub fn new(machine: &Machine, given: &Tolerances) -> Applied {
+        let step = |name: &str, otherwise: i32| {
+            let decimals = machine.words.get(name).map_or(otherwise, |w| i32::from(w.decimals));
+            10f64.powi(-decimals)
+        };
+        let rotary = match given.angle {
+            Some(_) => 0.0,
+            None if machine.rotary.is_empty() => 0.0,
+            None => machine.rotary_resolution().max(step("A", 3)) / 2.0,
+        };
+        // Vector words are components of a unit vector: half a step is an angle in radians.
+        let vector = machine
+            .words
+            .iter()
+            .filter(|(name, _)| ["A3", "B3", "C3", "TX", "TY", "TZ"].contains(&name.as_str()))
+            .map(|(_, word)| {
+                (3f64.sqrt() / 2.0 * 10f64.powi(-i32::from(word.decimals))).to_degrees()
+            })
+            .fold(0.0, f64::max);
+        Applied {
+            tip_mm: given.position.unwrap_or(machine.resolution() / 2.0 * 3f64.sqrt()) + NOISE,
+            rotary_degrees: rotary,
+            axis_degrees: given.angle.unwrap_or((rotary * 2f64.sqrt()).max(vector)) + NOISE,
+            sweep_degrees: SWEEP,
+            linearisation_mm: machine.orientation.tolerance,
+            chord_mm: machine.capabilities.lowering_tolerance,
+            feed: step("F", 3) / 2.0 * (1.0 + 1e-9),
+            speed_per_min: step("S", 0) / 2.0 * (1.0 + 1e-9),
+            dwell_s: 1e-3,
+        }
+    }
+
+    /// How far the tip may be from where it should be, mm, when a block says `pose`: the rounding of
+    /// its linear words, and that of its rotary words at the distance from the centre.
+    pub(crate) fn tip(
+        &self,
+        machine: &Machine,
+        pose: &Pose,
+        place: &Place,
+        tool_length: f64,
+    ) -> f64 {
+        if self.rotary_degrees == 0.0 {
+            return self.tip_mm;
+        }
+        let lever = match pose.orientation {
+            Orientation::Rotary { tool_center: true, .. } => 0.0,
+            // Only a tilted plane turns the coordinates of a block.
+            Orientation::Axis(axis) if axis == Vec3::Z => 0.0,
+            Orientation::Axis(_) => place.tip.length() * 3f64.sqrt(),
+            Orientation::Rotary { .. } => {
+                let zero = machine.work_zero.unwrap_or(Vec3::ZERO);
+                let arm = |axis: &machine::RotaryAxis| match axis.on {
+                    Mount::Table => (place.tip + zero).distance(axis.point),
+                    Mount::Head => axis.point.length() + tool_length,
+                };
+                machine.rotary.iter().map(arm).sum()
+            }
+        };
+        self.tip_mm + lever * self.rotary_degrees.to_radians()
+    }
+}

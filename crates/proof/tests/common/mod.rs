@@ -1,0 +1,149 @@
+//! A machine, a source and faithful records to disturb.
+
+#![allow(dead_code, reason = "each test file uses its part")]
+
+use geom::Vec3;
+use machine::Machine;
+use program::*;
+use toolpost_proof::{Prover, Report, Tolerances};
+
+/// Three axes, three decimals, `G43 H` with the tool's number.
+const MILL: &str = r#"
+reader = "fanuc"
+[capabilities]
+length_offset = "tool-number"
+lowering_tolerance = 0.01
+[words]
+X = { decimals = 3 }
+A = { decimals = 3 }
+C = { decimals = 3 }
+F = { decimals = 0 }
+S = { decimals = 0 }
+[orientation]
+tolerance = 0.01
+"#;
+
+/// A table that turns by C on A, the centre 50 mm below the work zero.
+const TABLE: &str = r#"
+[[rotary]]
+letter = "A"
+on = "table"
+axis = [1, 0, 0]
+point = [0, 0, -50]
+sign = -1
+rapid = 1e4
+acceleration = 100
+[[rotary]]
+letter = "C"
+on = "table"
+axis = [0, 0, 1]
+point = [0, 0, -50]
+sign = -1
+rapid = 1e4
+acceleration = 100
+"#;
+
+pub fn mill() -> Machine {
+    machine::load_text("mill.toml", MILL).unwrap()
+}
+
+/// The mill with the table.
+pub fn five_axes() -> Machine {
+    let mill = MILL.replace("[orientation]", "[orientation]\nsimultaneous = \"machine-angles\"");
+    machine::load_text("five.toml", &format!("work_zero = [0, 0, 0]\n{mill}{TABLE}")).unwrap()
+}
+
+pub fn at(x: f64, y: f64, z: f64) -> Pose {
+    Pose::new(Vec3::new(x, y, z), Vec3::Z)
+}
+
+/// What a block of a three-axis program says.
+pub fn block(x: f64, y: f64, z: f64) -> Pose {
+    let orientation = Orientation::Rotary { degrees: [0.0; 3], tool_center: false };
+    Pose { point: Vec3::new(x, y, z), orientation }
+}
+
+pub fn arc(end: Pose, center: (f64, f64, f64), normal: Vec3) -> Op {
+    let center = Vec3::new(center.0, center.1, center.2);
+    Op::Arc(Box::new(ArcTo { end, center, normal, turns: 0 }))
+}
+
+pub fn tool(number: u32) -> Op {
+    Op::Tool(Box::new(Tool { number, ..Tool::default() }))
+}
+
+pub fn drill() -> Cycle {
+    Cycle {
+        kind: CycleKind::Drill,
+        depth: 10.0,
+        clearance: 2.0,
+        retract: 20.0,
+        feed: Some(Feed::PerMinute(120.0)),
+        dwell: 0.0,
+        first_peck: None,
+        peck: None,
+    }
+}
+
+pub fn cycle(cycle: Cycle) -> Op {
+    Op::Cycle(Box::new(cycle))
+}
+
+pub fn program(ops: Vec<Op>) -> Program {
+    let mut program = Program::new("test");
+    for (line, op) in (1..).zip(ops) {
+        program.push(line, op);
+    }
+    program
+}
+
+/// Tool 1 at 1000 1/min with flood and 300 mm/min, for either side.
+pub fn start() -> Vec<Op> {
+    vec![
+        tool(1),
+        Op::Spindle(Spindle::Clockwise(1000.0)),
+        Op::Coolant(Coolant::Flood),
+        Op::Feed(Feed::PerMinute(300.0)),
+    ]
+}
+
+/// The same in a program, with what only a program says.
+pub fn nc_start() -> Vec<Op> {
+    let mut ops = vec![Op::WorkOffset(54)];
+    ops.extend(start());
+    ops.push(Op::LengthOffset(Some(1)));
+    ops
+}
+
+/// A source of these motions, after the start.
+pub fn source(motions: Vec<Op>) -> Program {
+    program([start(), motions].concat())
+}
+
+/// The report on a program that begins and ends well and does `ops` between.
+pub fn judge(machine: &Machine, source: &Program, ops: Vec<Op>) -> Report {
+    run(machine, source, [nc_start(), ops, vec![Op::Home(4), Op::End]].concat())
+}
+
+/// The report on these records, on line 1, 2 ...
+pub fn run(machine: &Machine, source: &Program, ops: Vec<Op>) -> Report {
+    let mut prover = Prover::new(source, machine, &Tolerances::default());
+    for (line, op) in (1..).zip(ops) {
+        if prover.record(&Record { line, op }).is_err() {
+            break;
+        }
+    }
+    prover.finish()
+}
+
+/// The rules that a report names.
+pub fn rules(report: &Report) -> Vec<&'static str> {
+    assert_eq!(report.proven, report.mismatches.is_empty());
+    report.mismatches.iter().map(|found| found.rule).collect()
+}
+
+#[track_caller]
+pub fn proven(report: &Report) {
+    let found: Vec<String> = report.mismatches.iter().map(ToString::to_string).collect();
+    assert!(report.proven, "{found:#?}");
+}
