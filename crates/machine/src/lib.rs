@@ -16,6 +16,7 @@ pub mod linearise;
 mod load;
 mod model;
 pub mod plan;
+pub mod time;
 
 pub use load::{load, load_text};
 pub use model::*;

@@ -1,0 +1,200 @@
+//! How long a machine takes for a program.
+//!
+//! - A rapid takes as long as its slowest axis, each going from rest to rest with its acceleration up
+//!   to its rapid (trapezoid), all at the same time.
+//! - A cut takes its length at its feed, and no less than its fastest axis needs at its rapid. Corners
+//!   are taken for free, as a control that looks ahead nearly does.
+//! - A tool change takes [`TOOL_CHANGE`], a dwell what it says; what waits for a person takes nothing.
+//!
+//! The linear axes are taken to move as the program says: with tool center point control, that is the
+//! way of the tip.
+
+use crate::Machine;
+use geom::{Arc, Vec3};
+use program::{Cycle, CycleKind, Feed, Op, Orientation, Pose, Program, Spindle, lowering};
+use serde::Serialize;
+
+/// A tool change, seconds: a common machining centre, chip to chip.
+pub const TOOL_CHANGE: f64 = 6.0;
+
+/// Seconds that a program takes, by what they are spent on.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Times {
+    /// Cutting moves.
+    pub cutting: f64,
+    /// Rapid moves.
+    pub rapid: f64,
+    /// Dwells.
+    pub dwell: f64,
+    /// Tool changes.
+    pub tool_change: f64,
+}
+
+impl Times {
+    /// All of them, seconds.
+    pub fn total(&self) -> f64 {
+        self.cutting + self.rapid + self.dwell + self.tool_change
+    }
+
+    /// The times of `program`, from either side: poses of the work frame or positions of axes.
+    pub fn of(program: &Program, machine: &Machine) -> Times {
+        let mut clock = Clock::new(machine);
+        program.records.iter().for_each(|record| clock.run(&record.op));
+        clock.times
+    }
+}
+
+/// Adds up the times of a program as its records come.
+#[derive(Clone, Debug)]
+pub struct Clock<'a> {
+    machine: &'a Machine,
+    /// What has been spent so far.
+    pub times: Times,
+    here: Option<Pose>,
+    /// Degrees of A, B, C.
+    degrees: [f64; 3],
+    feed: Feed,
+    spindle: Spindle,
+    cycle: Option<Cycle>,
+}
+
+impl<'a> Clock<'a> {
+    /// A clock at zero; the machine stands where its first move begins.
+    pub fn new(machine: &'a Machine) -> Clock<'a> {
+        Clock {
+            machine,
+            times: Times::default(),
+            here: None,
+            degrees: [0.0; 3],
+            feed: Feed::PerMinute(0.0),
+            spindle: Spindle::Off,
+            cycle: None,
+        }
+    }
+
+    /// Adds the time of one record.
+    pub fn run(&mut self, op: &Op) {
+        match op {
+            Op::Rapid(pose) => self.rapid(pose),
+            Op::Line(pose) => {
+                let length = self.here.map_or(0.0, |here| known(pose.point - here.point).length());
+                self.cut(pose, length);
+            }
+            Op::Arc(to) => {
+                let arc = self.here.and_then(|here| {
+                    let end = to.end.point;
+                    Arc::new(here.point, end, to.center, to.normal, to.turns, f64::MAX).ok()
+                });
+                self.cut(&to.end, arc.map_or(0.0, |arc| arc.length()));
+            }
+            Op::Hole(pose) => self.hole(pose),
+            Op::Cycle(cycle) => self.cycle = Some(**cycle),
+            Op::CycleOff => self.cycle = None,
+            Op::Feed(feed) => self.feed = *feed,
+            Op::Spindle(spindle) => self.spindle = *spindle,
+            Op::Tool(_) => self.times.tool_change += TOOL_CHANGE,
+            Op::Dwell(seconds) => self.times.dwell += seconds,
+            _ => {}
+        }
+    }
+
+    fn rapid(&mut self, to: &Pose) {
+        let (way, turn) = self.go(to);
+        let linear = self.machine.linear.iter().zip(way.to_array()).map(|(axis, way)| {
+            from_rest_to_rest(way, axis.rapid / 60.0, axis.acceleration * 1000.0)
+        });
+        let rotary = self.machine.rotary.iter().map(|axis| {
+            from_rest_to_rest(turn[axis.index()], axis.rapid / 60.0, axis.acceleration)
+        });
+        self.times.rapid += linear.chain(rotary).fold(0.0, f64::max);
+    }
+
+    fn cut(&mut self, to: &Pose, length: f64) {
+        let (way, turn) = self.go(to);
+        let speed = match self.spindle {
+            Spindle::Off => 0.0,
+            Spindle::Clockwise(speed) | Spindle::CounterClockwise(speed) => speed,
+        };
+        let at_feed = match self.feed {
+            Feed::InverseTime(moves) => 1.0 / moves,
+            feed => length / lowering::feed_per_minute(feed, length, speed),
+        };
+        let linear = self.machine.linear.iter().zip(way.to_array());
+        let linear = linear.map(|(axis, way)| way.abs() / axis.rapid);
+        let rotary = self.machine.rotary.iter();
+        let rotary = rotary.map(|axis| turn[axis.index()].abs() / axis.rapid);
+        // A feed that is missing makes no sensible time: what the axes need is left.
+        let at_feed = if at_feed.is_finite() { at_feed } else { 0.0 };
+        self.times.cutting += 60.0 * linear.chain(rotary).fold(at_feed, f64::max);
+    }
+
+    /// The moves of a hole, as if there were no cycle. Tapping goes in and out in step with the spindle.
+    fn hole(&mut self, pose: &Pose) {
+        let Some(cycle) = self.cycle else { return self.rapid(pose) };
+        let axis = pose.axis().unwrap_or(Vec3::Z);
+        let at = |height: f64| Pose { point: pose.point + axis * height, ..*pose };
+        self.rapid(&at(cycle.clearance));
+        let feed = self.feed;
+        if let Some(feed) = cycle.feed {
+            self.feed = feed;
+        }
+        if let CycleKind::Tap { pitch, .. } = cycle.kind {
+            self.feed = Feed::PerTurn(pitch);
+            for height in [-cycle.depth, cycle.clearance] {
+                self.run(&Op::Line(at(height)));
+            }
+            self.times.dwell += cycle.dwell;
+            self.rapid(&at(cycle.retract));
+        } else {
+            let pose = Pose::new(pose.point, axis);
+            let moves = lowering::hole(&cycle, &pose, self.spindle).unwrap_or_default();
+            moves.iter().for_each(|op| self.run(op));
+        }
+        self.feed = feed;
+    }
+
+    /// Moves to a pose; returns the way of the linear axes in mm and of A, B, C in degrees.
+    fn go(&mut self, to: &Pose) -> (Vec3, [f64; 3]) {
+        let degrees = match to.orientation {
+            Orientation::Rotary { degrees, .. } => degrees,
+            Orientation::Axis(_) if self.here.is_some_and(|h| h.orientation == to.orientation) => {
+                self.degrees
+            }
+            Orientation::Axis(axis) => self.nearest(axis),
+        };
+        let way = self.here.map_or(Vec3::ZERO, |here| known(to.point - here.point));
+        let turn = [0, 1, 2].map(|i| degrees[i] - self.degrees[i]);
+        self.degrees = degrees;
+        self.here = Some(*to);
+        (way, turn)
+    }
+
+    /// The positions for a tool axis that are reached soonest from where the axes stand.
+    fn nearest(&self, axis: Vec3) -> [f64; 3] {
+        let Ok(solutions) = self.machine.inverse(axis) else { return self.degrees };
+        let near = solutions.degrees.map(|degrees| {
+            [0, 1, 2].map(|i| {
+                let turn = (degrees[i] - self.degrees[i]).to_radians();
+                let turn = if solutions.free == Some(i) { 0.0 } else { geom::wrap(turn) };
+                self.degrees[i] + turn.to_degrees()
+            })
+        });
+        let far = |to: [f64; 3]| (0..3).map(|i| (to[i] - self.degrees[i]).abs()).sum::<f64>();
+        if far(near[1]) < far(near[0]) { near[1] } else { near[0] }
+    }
+}
+
+/// The way without the coordinates that are not known.
+fn known(way: Vec3) -> Vec3 {
+    Vec3::select(way.is_nan_mask(), Vec3::ZERO, way)
+}
+
+/// Seconds for `way` with the speed (per s) and the acceleration (per s²) of an axis.
+fn from_rest_to_rest(way: f64, speed: f64, acceleration: f64) -> f64 {
+    let way = way.abs();
+    if way >= speed * speed / acceleration {
+        way / speed + speed / acceleration
+    } else {
+        2.0 * (way / acceleration).sqrt()
+    }
+}
