@@ -25,7 +25,9 @@ use words::{LINEAR, Words, feed_word};
 pub(crate) fn run(settings: &Settings, text: &[u8], sink: &mut Sink) -> Result<()> {
     let mut lines = Lines::new(text);
     let Some(mut first) = lines.next() else {
-        return Err(Diagnostic::error("program-frame", "the program is empty").line(1).into());
+        return Err(Diagnostic::error("program-frame", "the program is empty")
+            .at(1, text, 0, 0)
+            .into());
     };
     let (name, unit) = begin(&mut first)?;
     let mut program = Run {
