@@ -197,6 +197,16 @@ fn a_helix_counts_its_turns_by_the_angle() {
 }
 
 #[test]
+fn the_thread_of_the_manual_has_five_turns() {
+    // TNC 426/430 manual, "Programming a helix": M6 x 1, five revolutions, blocks 12 to 15.
+    let ops = run("TOOL CALL 1 Z S100\nL X+0 Y+0 Z+20 FMAX\nCC X+40 Y+25\nL Z+0 F100 M3
+LP PR+3 PA+270 RL F50\nCP IPA-1800 IZ+5 DR-");
+    let arc = arcs(&ops)[0];
+    assert!(arc.end.point.distance(Vec3::new(40.0, 22.0, 5.0)) < 1e-12);
+    assert_eq!((arc.turns, arc.normal), (4, Vec3::NEG_Z));
+}
+
+#[test]
 fn polar_coordinates_count_from_the_pole_and_the_x_axis() {
     let ops = run(&format!("{START}CC X+45 Y+25\nLP PR+30 PA+60 F100\nCP PA+180 DR+"));
     let end = points(&ops)[1];
@@ -530,6 +540,9 @@ L X+2 Y+0 Z+0 R0 FMAX\nPLANE RESET TURN FMAX\nL X+1 Y+1 Z+1 FMAX",
     let poses = poses(&ops);
     assert!(poses[1].point.distance(Vec3::new(0.0, 2.0, 0.0)) < 1e-12);
     assert_eq!(poses.last(), Some(&upright(1.0, 1.0, 1.0)));
+    // The vectors of the manual's example are not at right angles.
+    let error = refused_five("PLANE VECTOR BX0.8 BY-0.4 BZ-0.42 NX0.2 NY0.2 NZ0.92 TURN FMAX");
+    assert_eq!(error.rule, "plane");
 }
 
 #[test]
@@ -557,6 +570,14 @@ fn in_a_plane_that_stays_the_words_turn_the_axes() {
     assert!(last.point.distance(Vec3::new(5.0, 0.0, 75f64.sqrt())) < 1e-12);
     let error = refused_five("PLANE SPATIAL SPA+0 SPB+30 SPC+0 TURN FMAX\nL B+30 R0 FMAX");
     assert_eq!(error.rule, "plane");
+}
+
+#[test]
+fn nothing_happens_after_the_end() {
+    assert_eq!(run("L X+1 FMAX M30\n; TOOL LIST").last(), Some(&Op::End));
+    assert_eq!(refused("L X+1 FMAX M30 M9").rule, "program-frame");
+    let error = refused(&format!("{START}{DRILLING}L X+1 FMAX M89\nL X+2 FMAX M30"));
+    assert_eq!(error.rule, "cycle");
 }
 
 #[test]

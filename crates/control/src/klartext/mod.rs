@@ -207,8 +207,11 @@ impl<'t> Run<'t, '_, '_> {
         let text = s.rest();
         let text = text.strip_prefix(b";").unwrap_or(text).trim_ascii_start();
         let text = String::from_utf8_lossy(text);
-        self.control.at_line(s.line);
-        self.control.emit(Op::Comment(text.into()))?;
+        // What stands behind M30 never comes to the operator.
+        if !self.control.ended {
+            self.control.at_line(s.line);
+            self.control.emit(Op::Comment(text.into()))?;
+        }
         if continued {
             self.open = Continued::Comment;
         }

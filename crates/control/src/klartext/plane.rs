@@ -17,6 +17,9 @@ pub(super) struct Tilt {
     pub(super) turned: bool,
 }
 
+/// Cosine up to which two vectors, written with a few decimals, count as being at right angles.
+const SQUARE: f64 = 1e-4;
+
 /// What the rotary axes do when a plane is declared.
 enum Positioning {
     Turn { rapid: bool, retract: bool },
@@ -47,7 +50,7 @@ impl Control<'_, '_> {
                 let base = Vec3::from(numbers(s, [b"BX", b"BY", b"BZ"])?);
                 let normal = Vec3::from(numbers(s, [b"NX", b"NY", b"NZ"])?);
                 Some(upright(base, normal).ok_or_else(|| {
-                    s.error_block("plane", "the two vectors of the plane do not span it")
+                    s.error_block("plane", "the base and the normal vector must be at right angles")
                 })?)
             }
             b"RESET" => None,
@@ -175,11 +178,13 @@ fn numbers(s: &mut Scanner, addresses: [&[u8]; 3]) -> Result<[f64; 3]> {
     Ok(values)
 }
 
-/// The frame whose Z is along `normal` and whose X is `base` as far as it lies in the plane.
+/// The frame whose Z is along `normal` and whose X is along `base`, which must be at right angles: what
+/// a control does with a base that is not is a matter of its machine parameters.
 fn upright(base: Vec3, normal: Vec3) -> Option<Mat3> {
     let z = direction(normal)?;
-    let x = direction(direction(base)?.reject_from_normalized(z))?;
-    Some(Mat3::from_cols(x, z.cross(x), z))
+    let base = direction(base)?;
+    let x = direction(base.reject_from_normalized(z))?;
+    (base.dot(z).abs() < SQUARE).then(|| Mat3::from_cols(x, z.cross(x), z))
 }
 
 /// The end of a PLANE block: what the rotary axes do, and which solution they take.

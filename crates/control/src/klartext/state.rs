@@ -216,6 +216,9 @@ impl<'a, 's> Control<'a, 's> {
     }
 
     fn function(&mut self, s: &Scanner, function: Function) -> Result<()> {
+        if self.ended {
+            return Err(s.error_block("program-frame", "nothing may follow M2 or M30 in its block"));
+        }
         match function {
             Function::Clockwise { coolant } => {
                 let speed = self.needs_speed(s)?;
@@ -309,6 +312,9 @@ impl<'a, 's> Control<'a, 's> {
 
     /// Runs the defined cycle where the tool stands.
     pub(super) fn call_cycle(&mut self, s: &Scanner) -> Result<()> {
+        if self.ended {
+            return Err(s.error_block("cycle", "no cycle is called where the program ends"));
+        }
         let Some(definition) = &self.cycle else {
             return Err(s.error_block("cycle", "no cycle is defined yet"));
         };
