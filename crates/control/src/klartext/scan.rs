@@ -1,5 +1,6 @@
 //! Lines and words of the text.
 
+use crate::decimal;
 use program::Diagnostic;
 
 /// What a step of the control answers.
@@ -227,49 +228,20 @@ impl<'t> Scanner<'t> {
         if self.at < self.end { self.text.get(self.at).copied() } else { None }
     }
 
-    /// The sign and the number here, as far as there are any. A number is digits with at most one
-    /// decimal point, no exponent.
+    /// The sign that is written here, and the number with it, as far as there are any.
     fn number(&mut self) -> (f64, Option<f64>) {
         let sign = match self.byte() {
             Some(b'+') => 1.0,
             Some(b'-') => -1.0,
             _ => 0.0,
         };
-        self.at += usize::from(sign != 0.0);
-        let start = self.at;
-        let (mut digits, mut point, mut whole) = (0, None, 0u64);
-        let rest = self.text.get(start..self.end).unwrap_or_default();
-        for byte in rest {
-            match byte {
-                b'0'..=b'9' => {
-                    whole = whole.wrapping_mul(10).wrapping_add(u64::from(byte - b'0'));
-                    digits += 1;
-                }
-                b'.' if point.is_none() => point = Some(digits),
-                _ => break,
-            }
-        }
-        if digits == 0 {
+        let rest = self.text.get(self.at..self.end).unwrap_or_default();
+        let Some(decimal) = decimal::parse(rest) else {
+            self.at += usize::from(sign != 0.0);
             return (sign, None);
-        }
-        self.at += digits + usize::from(point.is_some());
-        let decimals = point.map_or(0, |point| digits - point);
-        let number = match POWERS.get(decimals) {
-            // Both are exact, so their quotient is the nearest number there is.
-            Some(power) if digits <= 15 => whole as f64 / power,
-            _ => rest.get(..self.at - start).map_or(f64::NAN, long_number),
         };
-        // A zero has no sign: -0 would print and compare oddly.
-        let signed = if sign < 0.0 && number != 0.0 { -number } else { number };
-        (sign, Some(signed).filter(|n| n.is_finite()))
+        self.at += decimal.len;
+        // The sum takes the sign off a zero: -0 would print and compare oddly.
+        (sign, Some(decimal.value + 0.0).filter(|number| number.is_finite()))
     }
-}
-
-/// Powers of ten that are exact.
-const POWERS: [f64; 16] =
-    [1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15];
-
-/// A number with more digits than a mantissa holds.
-fn long_number(text: &[u8]) -> f64 {
-    std::str::from_utf8(text).ok().and_then(|text| text.parse().ok()).unwrap_or(f64::NAN)
 }
