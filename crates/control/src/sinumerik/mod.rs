@@ -37,7 +37,7 @@ pub(crate) fn run(settings: &Settings, text: &[u8], sink: &mut Sink) -> Fallible
     let mut started = false;
     let mut rest = text;
     while !rest.is_empty() {
-        let end = rest.iter().position(|byte| *byte == b'\n');
+        let end = memchr::memchr(b'\n', rest);
         let (piece, after) = rest.split_at(end.unwrap_or(rest.len()));
         rest = after.get(1..).unwrap_or(&[]);
         line = line.saturating_add(1);

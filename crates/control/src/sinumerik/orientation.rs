@@ -20,6 +20,7 @@ const MODE: usize = 3;
 const BEFORE: usize = 4;
 const ANGLES: usize = 7;
 const AFTER: usize = 10;
+const DIRECTION: usize = 13;
 const PARAMETERS: usize = 16;
 
 impl Interpreter<'_> {
@@ -190,6 +191,11 @@ impl Interpreter<'_> {
                 return Err(source.block_error("unsupported", message));
             }
         };
+        if !matches!(number(DIRECTION)?, -1.0 | 1.0) {
+            let message = "_DIR of CYCLE800 must be -1 or 1: without it only the frame turns, not the \
+                           machine";
+            return error("unsupported", message);
+        }
         let unit = self.state.unit;
         let angles = vector(ANGLES, 1.0)?.to_array();
         let plane = swivelled(vector(BEFORE, unit)?, order, angles, vector(AFTER, unit)?);

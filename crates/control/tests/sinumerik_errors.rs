@@ -1,0 +1,201 @@
+//! Programs that the SINUMERIK virtual control refuses, and where it says so.
+
+mod sinumerik_common;
+
+use program::{Diagnostic, Op};
+use sinumerik_common::{blocks, error, run, settings};
+use toolpost_control::read;
+
+#[test]
+fn an_error_names_its_rule_and_place() {
+    let mut wrong = Vec::new();
+    for (text, rule, column) in [
+        // words
+        ("G1 X10 Q5", "unknown-word", 8),
+        ("G1 X10 U5", "unknown-word", 8),
+        ("N10 N20 X1", "syntax", 5),
+        ("G0 X1 X=3", "repeated-word", 7),
+        ("G43 H1", "unknown-word", 1),
+        ("H5", "unknown-word", 1),
+        ("GOTOF END", "unsupported", 1),
+        ("DEF REAL A", "unsupported", 1),
+        ("IF R1", "unsupported", 1),
+        ("(comment)", "syntax", 1),
+        ("G1 X=$AA_IW[X]", "unsupported", 6),
+        ("$P_UIFR", "syntax", 1),
+        ("PART_2", "unknown-word", 1),
+        ("G1X1GO", "unknown-word", 5),
+        ("TRANSX10", "unknown-word", 1),
+        ("MSG(\"open)", "syntax", 5),
+        ("G1 X", "number", 5),
+        ("G1 X--5", "number", 6),
+        ("G1 X1.2.3", "syntax", 8),
+        ("G1 X1e5", "unknown-word", 6),
+        ("G1 X1EX", "number", 8),
+        ("G1 X999999999", "number", 5),
+        ("G1 X=1EX9*1EX300", "number", 6),
+        ("S1.5 M3.5", "number", 6),
+        ("T-1", "number", 1),
+        ("T=\"\"", "tool", 1),
+        ("G1 \u{0}", "syntax", 4),
+        // expressions
+        ("X=1/0", "arithmetic", 4),
+        ("X=5 MOD 0", "arithmetic", 4),
+        ("X=SQRT(-1)", "arithmetic", 3),
+        ("X=ASIN(2)", "arithmetic", 3),
+        ("X=R1000", "r-parameter", 4),
+        ("R1=5 X=R1", "r-parameter", 8),
+        ("X=FOO(1)", "unknown-word", 3),
+        ("X=(1+2", "syntax", 7),
+        ("X=", "syntax", 3),
+        ("C=45+R24F100", "syntax", 9),
+        ("X=SIN 30", "syntax", 7),
+        // groups
+        ("G1 G0 X1", "group-conflict", 4),
+        ("G54 G505", "repeated-word", 5),
+        ("G505 G54", "group-conflict", 6),
+        ("G90 G91", "group-conflict", 5),
+        ("M3 M5", "group-conflict", 1),
+        ("M0 M30", "group-conflict", 1),
+        ("M8 M9", "group-conflict", 1),
+        ("M26 M27 M28 M29 M3 M8", "syntax", 20),
+        // functions
+        ("M10", "unknown-m", 1),
+        ("M19", "unknown-m", 1),
+        ("M1=30", "unknown-word", 1),
+        ("S2=100", "unknown-word", 1),
+        ("CT X5 Y5", "unsupported", 1),
+        ("G33 Z5 K1", "unsupported", 1),
+        ("G96 S100", "unsupported", 1),
+        ("DIAMON", "unsupported", 1),
+        ("MIRROR X0", "unsupported", 1),
+        ("G291", "unsupported", 1),
+        // axes
+        ("G0 B5", "unknown-axis", 1),
+        ("X=DC(5)", "syntax", 1),
+        ("G75 B0", "unknown-axis", 1),
+        ("G74", "home", 1),
+        ("SUPA G2 X5 Y5", "machine-position", 1),
+        ("G75 Z0\nG91 G0 Z5", "unknown-position", 1),
+        ("X1=5", "syntax", 1),
+        // feed and arcs
+        ("G95\nG1 X5", "missing-feed", 1),
+        ("G93 G1 X5 F10\nX6", "missing-feed", 1),
+        ("F0", "feed", 1),
+        ("F-5", "feed", 1),
+        ("G1 X5 I3", "arc", 1),
+        ("G2 X5 Y5", "arc", 1),
+        ("G2 X5 Y5 K5", "arc", 1),
+        ("G2 X5 Y5 I5 CR=5", "arc", 1),
+        ("G2 X0 Y0 CR=5", "arc", 1),
+        ("G2 X20 Y0 CR=9", "arc-radius", 1),
+        ("G2 X20.011 Y0 I10 J0", "arc-radius", 1),
+        ("G2 X0 Y5 I0 J0", "arc", 1),
+        ("G2 X5 Y5 AR=360", "arc", 1),
+        ("G2 X5 AR=90 I5", "arc", 1),
+        ("G2 X20 Y0 I10 TURN=1.5", "arc", 1),
+        ("G2 X20 Y0 I10 A5", "arc", 1),
+        ("G2 X20 Z90 I10 J0", "helix-end-point", 1),
+        ("G2 Y0 Z90 I10 J0", "helix-end-point", 1),
+        ("G75 X0\nG2 X20 Y0 I10", "arc", 1),
+        ("CIP X20 Y0 I1=10 J1=0", "arc", 1),
+        ("CIP X20 Y20 I1=10", "arc", 1),
+        ("CIP X20 Y0 I1=10 J1=5 TURN=1", "arc", 1),
+        // compensation
+        ("G2 G41 X20 Y0 I10 J0", "compensation", 1),
+        ("G1 G41\nG2 X20 Y0 I10 J0", "compensation", 1),
+        ("G1 G41 X5\nG2 G40 X20 Y0 CR=20", "compensation", 1),
+        ("D0\nG1 G42 X5", "compensation", 1),
+        ("G1 G41 X5\nG18", "compensation", 1),
+        ("G1 G41 X5\nG75 Z0", "compensation", 1),
+        ("G1 G41 X5\nTRAORI", "compensation", 1),
+        ("G1 G41 X5\nTRANS X5", "compensation", 1),
+        // dwell, frames, orientation
+        ("G4", "dwell", 1),
+        ("G4 F1 X5", "dwell", 1),
+        ("G4 S5", "dwell", 1),
+        ("TRANS X5 F5", "frame", 1),
+        ("ROT RPL=5 X5", "frame", 1),
+        ("TRANS RPL=5", "frame", 1),
+        ("A3=0 B3=0 C3=1", "orientation", 1),
+        ("TRAORI\nA3=0 B3=0 C3=0", "zero-vector", 1),
+        ("TRAORI\nORIMKS\nA3=1", "unsupported", 1),
+        ("TRAORI\nA3=1 C5", "orientation", 1),
+        ("TRAORI(2)", "unsupported", 1),
+        ("TRAORI\nG75 Z0", "home", 1),
+        ("TRAORI X5", "syntax", 1),
+        ("CYCLE800(1,\"\",0,192,0,0,0,30,45,0,0,0,0,1)", "unsupported", 1),
+        ("CYCLE800(1,\"\",0,57,0,0,0,30,45,0,0,0,0,0)", "unsupported", 1),
+        ("CYCLE800(3,\"\",0,57,0,0,0,30,45,0,0,0,0,1)", "unsupported", 1),
+        ("CYCLE800(1,\"\",100,57,0,0,0,30,45,0,0,0,0,1)", "unsupported", 1),
+        ("CYCLE800(1,5,0,57,0,0,0,30,45,0,0,0,0,1)", "cycle-parameter", 1),
+        ("CYCLE800(0,\"\",0,57,0,0,0,30,0,0,0,0,0,1)\nG0 A5", "orientation", 1),
+        ("CYCLE832(0.01,112103)", "unsupported", 1),
+    ] {
+        let found = error(text);
+        let line = text.lines().count() as u32;
+        if (found.rule, found.line, found.column) != (rule, line, column) {
+            wrong.push(format!("{text:?} should be {rule} at column {column}: {found}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn a_program_ends_once_at_its_last_line() {
+    for (text, line) in [
+        ("G0 X1\n", 1),
+        ("", 0),
+        ("G0 X1\nM30", 2),
+        ("M30\nG0 X1\n", 2),
+        ("M17\nM30\n", 2),
+        ("G0 X1 RET\n", 1),
+    ] {
+        let error = run(text).unwrap_err();
+        assert!(error.line == line && error.is_error(), "{text:?}: {error}");
+    }
+    assert!(run("RET\n\n; words\n").is_ok());
+}
+
+#[test]
+fn a_block_is_not_longer_than_512_characters() {
+    let longest = format!(";{}\nM30\n", "x".repeat(510));
+    assert!(run(&longest).is_ok());
+    let longer = format!(";{}\nM30\n", "x".repeat(511));
+    assert_eq!(run(&longer).unwrap_err().rule, "block-length");
+}
+
+#[test]
+fn a_header_stands_first_and_names_a_program() {
+    assert!(run("%_N_A_MPF\nM30\n").is_ok());
+    assert_eq!(run("%\nM30\n").unwrap_err().rule, "header");
+    assert_eq!(run("G0 X1\n%_N_A_MPF\nM30\n").unwrap_err().rule, "syntax");
+}
+
+#[test]
+fn traori_needs_rotary_axes() {
+    let three_axes = toolpost_control::Settings { rotary: [false; 3], ..settings() };
+    let text = b"TRAORI\nM30\n";
+    let error = read(&three_axes, "p.mpf", text, &mut |_| Ok(())).unwrap_err();
+    assert_eq!(error.rule, "orientation");
+}
+
+#[test]
+fn brackets_and_signs_nest_so_deep_and_no_deeper() {
+    let nested = |n: usize| format!("G0 X={}1{}", "(".repeat(n), ")".repeat(n));
+    assert_eq!(blocks(&nested(30)).len(), 2);
+    assert_eq!(error(&nested(100)).rule, "syntax");
+    assert_eq!(error(&format!("G0 X={}1", "-".repeat(200))).rule, "syntax");
+}
+
+#[test]
+fn what_the_sink_answers_stops_the_program_unchanged() {
+    let answer = Diagnostic::error("stop", "enough");
+    let mut count = 0;
+    let error = read(&settings(), "p.mpf", b"G0 X1\nG0 X2\nM30\n", &mut |record| {
+        count += 1;
+        if matches!(record.op, Op::Rapid(_)) { Err(answer.clone().into()) } else { Ok(()) }
+    })
+    .unwrap_err();
+    assert_eq!((count, error.rule, error.line), (1, "stop", 0));
+}
