@@ -244,7 +244,7 @@ mod tests {
         let all = names.len();
         names.dedup();
         assert_eq!(names.len(), all);
-        assert!(WordName::COUNT <= 64, "sets of words are bits of a u64");
+        const { assert!(WordName::COUNT <= 64, "sets of words are bits of a u64") };
     }
 
     #[test]

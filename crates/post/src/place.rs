@@ -2,9 +2,9 @@
 //! tool center point control by angles or vectors, or the positions of the machine's own axes.
 
 use crate::catalogue::{BlockName, WordName};
-use crate::template::bit;
-use crate::walk::{Done, LENGTH_OFFSET, ORIENTATION, POSITION, Walk, refuse};
-use geom::{ANGLE_EPSILON, Frame, Mat3, Vec3, angle_between};
+use crate::template::{Words, bit};
+use crate::walk::{Done, LENGTH_OFFSET, ORIENTATION, POSITION, Walk, motion, refuse};
+use geom::{ANGLE_EPSILON, Euler, Frame, Mat3, Vec3, angle_between};
 use machine::plan::{self, Plan, Step, Target, TargetKind};
 use machine::{Machine, OrientationMode};
 use program::{Diagnostic, Op, Pose, Record};
@@ -215,6 +215,7 @@ impl Walk<'_> {
         }
         self.leave_part()?;
         self.leave_place()?;
+        self.lose_position();
         match stop.mode {
             OrientationMode::Fixed => return Err(unreachable(axis)),
             OrientationMode::TiltedPlane if upright => {
@@ -238,7 +239,6 @@ impl Walk<'_> {
                 }
             }
         }
-        self.lose_position();
         Ok(())
     }
 
@@ -286,7 +286,13 @@ impl Walk<'_> {
         let Some(degrees) = degrees else { return Ok(()) };
         self.say_degrees(degrees);
         self.place.degrees = Some(self.written(degrees));
-        if self.writer.changes(ORIENTATION) { self.required(BlockName::Rotate) } else { Ok(()) }
+        self.writer.code(WordName::Motion, motion::RAPID);
+        if self.writer.changes(ORIENTATION) {
+            self.required(BlockName::Rotate)
+        } else {
+            self.writer.unset(Words::MAX);
+            Ok(())
+        }
     }
 
     pub(crate) fn say_degrees(&mut self, degrees: [f64; 3]) {
@@ -298,6 +304,7 @@ impl Walk<'_> {
     fn plane_tilt_off(&mut self) -> Done {
         self.writer.forget(ORIENTATION);
         self.say_degrees([0.0; 3]);
+        self.writer.code(WordName::Motion, motion::RAPID);
         self.required(BlockName::PlaneTiltOff)?;
         self.place.kind = Kind::Bare;
         self.place.degrees = Some([0.0; 3]);
@@ -324,15 +331,14 @@ impl Walk<'_> {
         }
         // Positions are counted from the frame that is written, so that its rounding moves no point.
         let mut frame = Frame::from_mat3_translation(matrix, written);
-        for angles in Angles::ALL {
-            let degrees = angles.of(&matrix);
-            let words = angles.words();
+        for (notation, words) in NOTATIONS {
+            let degrees = notation.angles(&matrix).map(f64::to_degrees);
             for (word, degrees) in words.into_iter().zip(degrees) {
                 self.writer.set(word, degrees);
             }
             if self.templates.places(BlockName::PlaneTilt, words[0]) {
                 let rounded = [0, 1, 2].map(|i| self.writer.rounded(words[i], degrees[i]));
-                frame.matrix3 = angles.matrix(rounded);
+                frame.matrix3 = notation.matrix(rounded.map(f64::to_radians));
             }
         }
         self.required(BlockName::PlaneTilt)?;
@@ -363,99 +369,20 @@ fn leaning(axis: Vec3) -> Mat3 {
     Mat3::from_rotation_x(about_x) * Mat3::from_rotation_y(about_y)
 }
 
-/// The notations for a rotation by three angles.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) enum Angles {
-    /// About X, the new Y, the new Z (`CYCLE800` with mode 57).
-    Turned,
-    /// About the fixed X, Y, Z in this order (`PLANE SPATIAL`).
-    Spatial,
-    /// About Z, the new X, the new Z (`G68.2`).
-    Euler,
-}
-
-impl Angles {
-    const ALL: [Angles; 3] = [Angles::Turned, Angles::Spatial, Angles::Euler];
-
-    fn words(self) -> [WordName; 3] {
-        match self {
-            Angles::Turned => [WordName::RX, WordName::RY, WordName::RZ],
-            Angles::Spatial => [WordName::SpatialA, WordName::SpatialB, WordName::SpatialC],
-            Angles::Euler => [WordName::Euler1, WordName::Euler2, WordName::Euler3],
-        }
-    }
-
-    /// The rotation by so many degrees.
-    fn matrix(self, degrees: [f64; 3]) -> Mat3 {
-        let [a, b, c] = degrees.map(f64::to_radians);
-        let (x, y, z) = (Mat3::from_rotation_x, Mat3::from_rotation_y, Mat3::from_rotation_z);
-        match self {
-            Angles::Turned => x(a) * y(b) * z(c),
-            Angles::Spatial => z(c) * y(b) * x(a),
-            Angles::Euler => z(a) * x(b) * z(c),
-        }
-    }
-
-    /// The degrees of a rotation. Where two of the angles turn about the same axis, one of them is 0.
-    fn of(self, matrix: &Mat3) -> [f64; 3] {
-        let m = |row: usize, column: usize| matrix.col(column)[row];
-        // As near to a pole as rounding lets a sine come.
-        let pole = |sine: f64| 1.0 - sine.abs() < 1e-12;
-        let radians = match self {
-            Angles::Turned if pole(m(0, 2)) => {
-                [m(2, 1).atan2(m(1, 1)), m(0, 2).clamp(-1.0, 1.0).asin(), 0.0]
-            }
-            Angles::Turned => [
-                (-m(1, 2)).atan2(m(2, 2)),
-                m(0, 2).clamp(-1.0, 1.0).asin(),
-                (-m(0, 1)).atan2(m(0, 0)),
-            ],
-            Angles::Spatial if pole(m(2, 0)) => {
-                [(-m(1, 2)).atan2(m(1, 1)), -m(2, 0).clamp(-1.0, 1.0).asin(), 0.0]
-            }
-            Angles::Spatial => {
-                [m(2, 1).atan2(m(2, 2)), -m(2, 0).clamp(-1.0, 1.0).asin(), m(1, 0).atan2(m(0, 0))]
-            }
-            Angles::Euler if pole(m(2, 2)) => {
-                [m(1, 0).atan2(m(0, 0)), m(2, 2).clamp(-1.0, 1.0).acos(), 0.0]
-            }
-            Angles::Euler => {
-                [m(0, 2).atan2(-m(1, 2)), m(2, 2).clamp(-1.0, 1.0).acos(), m(2, 0).atan2(m(2, 1))]
-            }
-        };
-        radians.map(|angle| angle.to_degrees() + 0.0)
-    }
-}
+/// The notations for the rotation of a tilted plane, and the words that say them: those of `CYCLE800`
+/// with mode 57, of `PLANE SPATIAL`, and of `G68.2`.
+const NOTATIONS: [(Euler, [WordName; 3]); 3] = [
+    (Euler::MovingXyz, [WordName::RX, WordName::RY, WordName::RZ]),
+    (Euler::FixedXyz, [WordName::SpatialA, WordName::SpatialB, WordName::SpatialC]),
+    (Euler::MovingZxz, [WordName::Euler1, WordName::Euler2, WordName::Euler3]),
+];
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use proptest::prelude::*;
 
-    #[test]
-    fn the_angles_of_a_plane_tilted_about_y_are_the_same_in_all_but_euler() {
-        // Z leans 30° towards X: by hand, one turn of 30° about Y; as Euler angles 90°, 30°, −90°.
-        let tilted = Mat3::from_rotation_y(30f64.to_radians());
-        let near = |a: [f64; 3], b: [f64; 3]| a.iter().zip(b).all(|(a, b)| (a - b).abs() < 1e-9);
-        assert!(near(Angles::Turned.of(&tilted), [0.0, 30.0, 0.0]));
-        assert!(near(Angles::Spatial.of(&tilted), [0.0, 30.0, 0.0]));
-        assert!(near(Angles::Euler.of(&tilted), [90.0, 30.0, -90.0]));
-    }
-
     proptest! {
-        #[test]
-        fn angles_give_their_matrix_back(
-            a in prop_oneof![-180.0..180.0f64, (-2i32..=2).prop_map(|q| f64::from(q) * 90.0)],
-            b in prop_oneof![-180.0..180.0f64, (-2i32..=2).prop_map(|q| f64::from(q) * 90.0)],
-            c in prop_oneof![-180.0..180.0f64, (-2i32..=2).prop_map(|q| f64::from(q) * 90.0)],
-        ) {
-            for angles in Angles::ALL {
-                let matrix = angles.matrix([a, b, c]);
-                let again = angles.matrix(angles.of(&matrix));
-                prop_assert!(matrix.abs_diff_eq(again, 3e-6), "{angles:?}");
-            }
-        }
-
         #[test]
         fn a_leaning_frame_has_its_z_along_the_axis(
             x in -1.0..1.0f64, y in -1.0..1.0f64, z in -1.0..1.0f64,

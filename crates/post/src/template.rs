@@ -52,7 +52,7 @@ pub(crate) struct Lines {
 }
 
 impl Lines {
-    /// Cuts `text` into steps. Blanks outside of comments and quotes separate words.
+    /// Cuts `text` into steps. A blank beside a word, outside of comments and quotes, is a separator.
     fn of(text: String, format: &Format) -> Lines {
         let mut steps = Vec::new();
         for line in text.split('\n') {
@@ -85,6 +85,14 @@ impl Lines {
             }
             literal(&mut steps, from, line.len());
             steps.push(Step::End);
+        }
+        // The author of the text has put a blank between two literals, or none: it stays.
+        for i in 1..steps.len().saturating_sub(1) {
+            if let (Step::Text(_, end), Step::Gap, Step::Text(..)) =
+                (steps[i - 1], steps[i], steps[i + 1])
+            {
+                steps[i] = Step::Text(end, end + 1);
+            }
         }
         Lines { text, steps }
     }
