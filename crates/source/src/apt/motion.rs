@@ -5,7 +5,7 @@ use super::frame::FARTHEST;
 use super::number;
 use super::record::{Field, Record, is_blank};
 use super::report::{Fault, Outcome};
-use super::{Reader, Ready};
+use super::{Dialect, Reader, Ready};
 use geom::Vec3;
 use program::{Feed, Op, Pose, Spindle};
 
@@ -71,6 +71,9 @@ impl Reader {
         if point.abs().max_element() > FARTHEST {
             return false;
         }
+        if !with_axis && self.axis_is_due() {
+            return false;
+        }
         let mut axis = self.axis;
         if with_axis {
             match self.work_axis(Vec3::new(i, j, k)) {
@@ -109,8 +112,21 @@ impl Reader {
         if count == 6 {
             let axis = Vec3::from_array(record.numbers(first + 3)?);
             self.axis = self.work_axis(axis).map_err(|fault| fault.fields(first + 3, 3))?;
+        } else if self.axis_is_due() {
+            let message = "the tool is tilted, and this system gives its axis in every GOTO: is it kept \
+                           here, or along Z again?";
+            return Err(Fault::new("tool-axis", message)
+                .help("give the vector: GOTO/x,y,z,i,j,k")
+                .fields(first, count));
         }
         self.go(record, Pose::new(point, self.axis)).map_err(|fault| fault.fields(first, count))
+    }
+
+    /// Whether a `GOTO` without a vector leaves the tool axis in doubt. In the measured set-ups of
+    /// SolidWorks CAM every `GOTO` of a tilted tool has its vector, so leaving it out may mean Z.
+    #[inline]
+    fn axis_is_due(&self) -> bool {
+        self.dialect == Dialect::SolidWorksCam && self.axis != Vec3::Z
     }
 
     /// The point at field `first`, in the work frame; a blank keeps the last value.

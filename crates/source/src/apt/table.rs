@@ -104,6 +104,7 @@ pub(super) const WORDS: &[(&str, Use)] = &[
     ("TMARK", Ignored),
     ("TOLER", Ignored),
     ("TOOL PATH", Text(Reader::tool_path)),
+    ("TOOLNO", Ignored),
     ("TPRINT", Text(Reader::tprint)),
     ("TRACUT", Refused),
     ("TRANS", By(Reader::trans)),

@@ -77,7 +77,9 @@ impl Reader {
         }
         let feed = self.feed_of(value, self.feed_unit).map_err(|fault| fault.fields(number, 1))?;
         self.feed = Some(feed);
-        self.ready = Ready::No;
+        if value <= 0.0 {
+            self.ready = Ready::No;
+        }
         self.push(record.line, Op::Feed(feed));
         Ok(())
     }
@@ -381,12 +383,13 @@ impl Reader {
         Ok(())
     }
 
-    /// `DELAY/t`, `DELAY/n,REV`: dwell in seconds or turns of the spindle.
+    /// `DELAY/t`, `DELAY/t,SEC`, `DELAY/n,REV`, and the other way round: dwell in seconds or turns of
+    /// the spindle.
     pub(super) fn delay(&mut self, record: &Record) -> Outcome {
         record.count(&[1, 2], "DELAY/seconds or DELAY/turns,REV")?;
         let number = usize::from(!matches!(record.fields.first(), Some(Field::Number(_))));
         let turns = record.is(1 - number, "REV");
-        if record.fields.len() == 2 && !turns {
+        if record.fields.len() == 2 && !turns && !record.is(1 - number, "SEC") {
             return Err(
                 Fault::new("malformed", "a dwell is in seconds, or in REV").fields(1 - number, 1)
             );

@@ -26,8 +26,7 @@ fn after<'t>(text: &'t str, key: &str) -> Option<&'t str> {
 }
 
 impl Reader {
-    /// `$$ text`. CATIA names its operations so, and gives its axis system; Creo the diameter of the
-    /// tool.
+    /// `$$ text`. CATIA gives its axis system so, Creo the diameter of the tool.
     pub(super) fn remark(&mut self, record: &Record) -> Outcome {
         let body = record.body.0;
         if let Some(directive) = body.strip_prefix(b"->") {
@@ -37,13 +36,17 @@ impl Reader {
         if self.axis_system(record, &text)? || text.starts_with('*') || text.is_empty() {
             return Ok(());
         }
-        if let Some(name) = after(&text, "OPERATION NAME") {
-            let name = name.trim_start_matches([' ', ':']);
-            self.push(record.line, Op::Operation(name.into()));
-        } else {
-            self.push(record.line, Op::Comment(text.into()));
-        }
+        self.comment(record, &text);
         Ok(())
+    }
+
+    /// A comment; CATIA names its operations in such.
+    fn comment(&mut self, record: &Record, text: &str) {
+        let op = match after(text, "OPERATION NAME") {
+            Some(name) => Op::Operation(name.trim_start_matches([' ', ':']).into()),
+            None => Op::Comment(text.into()),
+        };
+        self.push(record.line, op);
     }
 
     /// `$$-> CUTTER / d` of Creo; its other directives say what is in the records too.
@@ -72,7 +75,7 @@ impl Reader {
     pub(super) fn pprint(&mut self, record: &Record) -> Outcome {
         let text = decode(record.body.0);
         if self.dialect != Dialect::Makino {
-            self.push(record.line, Op::Comment(text.into()));
+            self.comment(record, &text);
             return Ok(());
         }
         match text.split_once(',') {

@@ -1,0 +1,88 @@
+//! Units, frames, origins and shifts.
+
+use crate::support::{HEAD, Z, assert_poses, error, ops, reading};
+use geom::Vec3;
+use program::Op;
+use toolpost_source::apt::Dialect;
+
+#[test]
+fn frames_are_resolved_relative_to_the_first() {
+    let msys = |values: &str| format!("MSYS/{values}\n");
+    let first = msys("100,0,0,1,0,0,0,1,0");
+    // Turned by a quarter about Z, and 10 further along X.
+    let second = msys("110,0,0,0,1,0,-1,0,0");
+    let text = format!("{first}GOTO/1,2,3\n{second}GOTO/1,2,3\n{first}GOTO/1,2,3");
+    let whole = reading(&format!("{HEAD}{text}\n"));
+    assert_eq!(whole.dialect, Dialect::Nx);
+    let ops: Vec<Op> = whole.program.records.into_iter().map(|r| r.op).collect();
+    assert_poses(&ops, &[([1., 2., 3.], Z), ([10. - 2., 1., 3.], Z), ([1., 2., 3.], Z)]);
+    let frames: Vec<Vec3> = ops
+        .iter()
+        .filter_map(|op| match op {
+            Op::Frame(frame) => Some(frame.matrix3.x_axis),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(frames, [Vec3::Y, Vec3::X]);
+    // On its side: Z of the set-up is X of the work frame, and the tool stands along it.
+    let side = msys("0,0,0,0,1,0,0,0,1");
+    let text =
+        format!("{}GOTO/0,0,0\n{side}GOTO/1,2,3\nGOTO/1,2,3,1,0,0", msys("0,0,0,1,0,0,0,1,0"));
+    let ops: Vec<Op> =
+        reading(&format!("{HEAD}{text}\n")).program.records.into_iter().map(|r| r.op).collect();
+    let x = [1., 0., 0.];
+    assert_poses(&ops, &[([0.; 3], Z), ([3., 1., 2.], x), ([3., 1., 2.], [0., 1., 0.])]);
+    assert_eq!(error("MSYS/0,0,0,1,0,0,1,0,0"), "frame");
+    assert_eq!(error("MSYS/0,0,0,1,0,0,0,2,0"), "frame");
+}
+
+#[test]
+fn origins_shifts_inches_and_axes_are_resolved() {
+    for (text, poses) in [
+        ("ORIGIN/1,2,3\nGOTO/1,2,3", vec![([0.; 3], Z)]),
+        ("TRANS/1,2,3\nGOTO/1,2,3", vec![([2., 4., 6.], Z)]),
+        ("TRANS/1,2,3\nORIGIN/1,0,0\nGOTO/0,0,0", vec![([0., 2., 3.], Z)]),
+        ("UNITS/INCHES\nTRANS/0,0,1\nGOTO/1,0,0", vec![([25.4, 0., 25.4], Z)]),
+        (
+            "TRANS/5,0,0\nGOTO/1,0,0\nTRANS/0,0,0\nGOTO/,7,0",
+            vec![([6., 0., 0.], Z), ([6., 7., 0.], Z)],
+        ),
+        ("TLAXIS/0,3,4\nGOTO/1,2,3", vec![([1., 2., 3.], [0., 0.6, 0.8])]),
+        (
+            "GOTO/1,2,3,1,0,0\nMULTAX/OFF\nGOTO/1,2,3",
+            vec![([1., 2., 3.], [1., 0., 0.]), ([1., 2., 3.], Z)],
+        ),
+        ("MULTAX/ON\nGOTO/1,2,3,1,0,0", vec![([1., 2., 3.], [1., 0., 0.])]),
+        ("ROTATE/TABLE,ATANGL,0\nMODE/ABSOL\nGOTO/1,2,3", vec![([1., 2., 3.], Z)]),
+    ] {
+        assert_poses(&ops(text), &poses);
+    }
+    for (text, rule) in [
+        ("UNITS/FURLONG", "unknown-unit"),
+        ("ROTATE/TABLE,ATANGL,90", "unsupported"),
+        ("ROTATE/TABLE,INCR,0,0", "unsupported"),
+        ("MODE/INCR", "unsupported"),
+        ("HEAD/2", "unsupported"),
+        ("TRACUT/A", "unsupported"),
+        ("GOHOME", "unsupported"),
+        ("TRNTYP/LOCAL,0,0,0", "frame"),
+        ("TRNTYP/WORLD,0,0,5", "frame"),
+        ("CSYS/0,0,1,0,0,1,0,0,-1,0,0,0", "frame"),
+        ("TRNTYP/WORLD\nCSYS/1,0,0,0,0,1,0,0,0,0,-1,0", "frame"),
+        ("TRNTYP/WORLD\nCSYS/1,0,0,0,0,1,0,0,0,0,1,0\nCSYS/1,0,0,5,0,1,0,0,0,0,1,0", "frame"),
+    ] {
+        assert_eq!(error(text), rule, "{text}");
+    }
+}
+
+#[test]
+fn catia_gives_its_axis_system_in_remarks() {
+    let system = |rows: &str| format!("$$*CATIA0\n$$ Axis.1\n{rows}");
+    let first = system("$$ 1.0 0.0 0.0 50.0\n$$ 0.0 1.0 0.0 0.0\n$$ 0.0 0.0 1.0 0.0\n");
+    let turned = system("$$ 0.0 -1.0 0.0 50.0\n$$ 1.0 0.0 0.0 0.0\n$$ 0.0 0.0 1.0 7.0\n");
+    let whole = reading(&format!("{first}{HEAD}GOTO/1,2,3\n{turned}GOTO/1,2,3\nFINI"));
+    assert_eq!(whole.dialect, Dialect::Catia);
+    let ops: Vec<Op> = whole.program.records.into_iter().map(|r| r.op).collect();
+    assert_poses(&ops, &[([1., 2., 3.], Z), ([-2., 1., 10.], Z)]);
+    assert!(!ops.iter().any(|op| matches!(op, Op::Comment(_))));
+}

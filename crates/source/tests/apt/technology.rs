@@ -1,0 +1,193 @@
+//! Feed, spindle, tool, coolant, compensation, dwell and stop.
+
+use crate::support::{at, error, ops, reading};
+use program::{Compensation, Coolant, Feed, Op, Spindle, Tool};
+use toolpost_source::apt::{Options, read};
+
+#[test]
+fn feeds_come_in_every_unit_and_both_orders() {
+    for (text, feed) in [
+        ("FEDRAT/250", Feed::PerMinute(250.0)),
+        ("FEDRAT/ 1000.0000,MMPM", Feed::PerMinute(1000.0)),
+        ("FEDRAT/MMPM,250.5", Feed::PerMinute(250.5)),
+        ("FEDRAT/10,IPM", Feed::PerMinute(254.0)),
+        ("FEDRAT/PERMIN,141", Feed::PerMinute(141.0)),
+        ("FEDRAT/0.2,MMPR", Feed::PerTurn(0.2)),
+        ("FEDRAT/IPR,.01", Feed::PerTurn(0.254)),
+        ("FEDRAT/PERREV,.3", Feed::PerTurn(0.3)),
+        ("FEDRAT/INVERS,2.5", Feed::InverseTime(2.5)),
+        ("FEDRAT/0.1,MMPR\nFEDRAT/0.2", Feed::PerTurn(0.2)),
+        ("UNITS/INCHES\nFEDRAT/PERMIN,2", Feed::PerMinute(50.8)),
+        ("UNITS/INCHES\nFEDRAT/2,MMPM", Feed::PerMinute(2.0)),
+    ] {
+        let ops = ops(&format!("{text}\nGOTO/1,2,3"));
+        let last = ops.iter().rev().find_map(|op| match op {
+            Op::Feed(feed) => Some(*feed),
+            _ => None,
+        });
+        assert_eq!(last, Some(feed), "{text}");
+    }
+    let bare = "UNITS/INCHES\nLOAD/TOOL,1\nSPINDL/1000,CLW\nFEDRAT/2\nGOTO/1,2,3\nFINI";
+    assert_eq!(reading(bare).program.records[2].op, Op::Feed(Feed::PerMinute(50.8)));
+    for (text, rule) in [
+        ("FEDRAT/1,FURLONG", "unknown-unit"),
+        ("FEDRAT/MMPM", "malformed"),
+        ("FEDRAT/-1,MMPM", "feed"),
+        ("FEDRAT/MMPM,1,2", "malformed"),
+    ] {
+        assert_eq!(error(text), rule, "{text}");
+    }
+}
+
+#[test]
+fn spindles_come_in_every_order_and_by_surface_speed() {
+    use Spindle::{Clockwise, CounterClockwise, Off};
+    // 100 m/min on a diameter of 10 mm; 300 feet/min on one of 0.5 inch: v / (pi d).
+    let smm = 100_000.0 / (10.0 * std::f64::consts::PI);
+    let sfm = 300.0 * 12.0 / (0.5 * std::f64::consts::PI);
+    for (text, spindle) in [
+        ("SPINDL/RPM,1310,CLW", Clockwise(1310.0)),
+        ("SPINDL/12000,RPM,CLW", Clockwise(12000.0)),
+        ("SPINDL/ 70.0000,RPM,CCLW", CounterClockwise(70.0)),
+        ("SPINDL/CCLW,RPM,500", CounterClockwise(500.0)),
+        ("SPINDL/CLW,500,RPM", Clockwise(500.0)),
+        ("SPINDL/500,CCLW", CounterClockwise(500.0)),
+        ("SPINDL/700", Clockwise(700.0)),
+        ("SPINDL/500,RPM,CCLW\nSPINDL/700", CounterClockwise(700.0)),
+        ("SPINDL/OFF", Off),
+        ("SPINDL/500,CCLW\nSPINDL/OFF\nSPINDL/ON", CounterClockwise(500.0)),
+        ("CUTTER/10,0\nSPINDL/SMM,100,CLW", Clockwise(smm)),
+        ("RAPID\nGOTO/0,0,9\nCUTTER/10,0\nLOAD/TOOL,2\nSPINDL/100,SMM,CLW", Clockwise(smm)),
+        ("UNITS/IN\nCUTTER/.5\nSPINDL/300,SFM,CLW", Clockwise(sfm)),
+    ] {
+        let ops = ops(&format!("{text}\nRAPID\nGOTO/1,2,3"));
+        let last = ops.iter().rev().find_map(|op| match op {
+            Op::Spindle(spindle) => Some(*spindle),
+            _ => None,
+        });
+        let (Some(Clockwise(a) | CounterClockwise(a)), Clockwise(b) | CounterClockwise(b)) =
+            (last, spindle)
+        else {
+            assert_eq!(last, Some(spindle), "{text}");
+            continue;
+        };
+        assert!((a - b).abs() < 1e-9, "{text}: {a} {b}");
+        assert_eq!(matches!(last, Some(Clockwise(_))), matches!(spindle, Clockwise(_)), "{text}");
+    }
+    assert_eq!(error("SPINDL/SMM,100,CLW"), "spindle");
+    assert_eq!(error("SPINDL/-5,RPM,CLW"), "spindle");
+    assert_eq!(error("SPINDL/100,FAST"), "malformed");
+}
+
+#[test]
+fn coolants_compensations_dwells_and_stops() {
+    let cases: [(&str, Vec<Op>); 15] = [
+        ("COOLNT/ON", vec![Op::Coolant(Coolant::Flood)]),
+        ("COOLNT/FLOOD", vec![Op::Coolant(Coolant::Flood)]),
+        ("COOLNT/MIST", vec![Op::Coolant(Coolant::Mist)]),
+        ("COOLNT/THRU", vec![Op::Coolant(Coolant::Through)]),
+        ("COOLNT/OFF", vec![Op::Coolant(Coolant::Off)]),
+        ("CUTCOM/LEFT", vec![Op::Compensation(Compensation::Left(None))]),
+        ("CUTCOM/RIGHT,12", vec![Op::Compensation(Compensation::Right(Some(12)))]),
+        ("CUTCOM/LEFT,ADJUST,3", vec![Op::Compensation(Compensation::Left(Some(3)))]),
+        (
+            "CUTCOM/RIGHT\nCUTCOM/OFF\nCUTCOM/ON",
+            vec![
+                Op::Compensation(Compensation::Right(None)),
+                Op::Compensation(Compensation::Off),
+                Op::Compensation(Compensation::Right(None)),
+            ],
+        ),
+        (
+            "CUTCOM/LEFT,GOTO/1,2,3",
+            vec![Op::Compensation(Compensation::Left(None)), Op::Line(at(1., 2., 3.))],
+        ),
+        (
+            "CUTCOM/OFF GOTO/1,2,3,0,0,1",
+            vec![Op::Compensation(Compensation::Off), Op::Line(at(1., 2., 3.))],
+        ),
+        ("DELAY/1.5", vec![Op::Dwell(1.5)]),
+        ("DELAY/SEC,2", vec![Op::Dwell(2.0)]),
+        // Ten turns at 1000 1/min.
+        ("DELAY/10,REV", vec![Op::Dwell(0.6)]),
+        ("STOP\nOPSTOP", vec![Op::Stop, Op::OptionalStop]),
+    ];
+    for (text, expected) in cases {
+        let mut expected = expected;
+        expected.push(Op::Line(at(9., 9., 9.)));
+        assert_eq!(ops(&format!("{text}\nGOTO/9,9,9")), expected, "{text}");
+    }
+    for text in ["COOLNT/BEER", "CUTCOM/UP", "CUTCOM/ON", "DELAY/1,HOUR"] {
+        assert_eq!(error(text), "malformed", "{text}");
+    }
+    assert_eq!(error("DELAY/-1"), "dwell");
+}
+
+#[test]
+fn tools_are_described_before_or_after_they_are_loaded() {
+    let tool = |text: &str| {
+        let all = ops(&format!("{text}\nRAPID\nGOTO/0,0,0"));
+        let tools = all.into_iter().rev().find_map(|op| match op {
+            Op::Tool(tool) => Some(*tool),
+            _ => None,
+        });
+        tools.unwrap()
+    };
+    let plain = Tool { number: 7, ..Tool::default() };
+    assert_eq!(tool("LOAD/TOOL,7"), plain);
+    assert_eq!(tool("LOADTL/7"), plain);
+    assert_eq!(tool("LOADTL/7,1"), Tool { offset: Some(1), ..plain.clone() });
+    assert_eq!(tool("LOAD/TOOL,7,ADJUST,3"), Tool { offset: Some(3), ..plain.clone() });
+    assert_eq!(
+        tool("LOADTL/7,LENGTH,120.5,OSETNO,2"),
+        Tool { offset: Some(2), length: Some(120.5), ..plain.clone() }
+    );
+    let mill = Tool {
+        name: "BALL10".into(),
+        diameter: Some(10.0),
+        corner_radius: Some(5.0),
+        ..plain.clone()
+    };
+    let move_first = "RAPID\nGOTO/1,1,1\n";
+    for text in [
+        "LOAD/TOOL,7\nCUTTER/10,5,0,5,0,0,70\nTPRINT/BALL10",
+        "LOAD/TOOL,7\nTPRINT/BALL10\nCUTTER/10,5",
+    ] {
+        assert_eq!(tool(text), mill, "{text}");
+    }
+    assert_eq!(tool(&format!("{move_first}CUTTER/10,5\nTPRINT/BALL10\nLOAD/TOOL,7")), mill);
+    assert_eq!(
+        tool("CUTTER/8,1\nRAPID\nGOTO/1,1,1\nUNITS/INCHES\nCUTTER/.5,.25\nLOAD/TOOL,7"),
+        Tool { diameter: Some(12.7), corner_radius: Some(6.35), ..plain }
+    );
+    for text in ["LOAD/TOOL,0", "LOAD/TOOL,1.5", "LOADTL/-3", "LOAD/TOOL,1e12"] {
+        assert_eq!(error(text), "tool-number", "{text}");
+    }
+    assert_eq!(
+        ops("SELECT/TOOL,16\nSELCTL/4\nGOTO/0,0,0")[..2],
+        [Op::Preselect(16), Op::Preselect(4)]
+    );
+}
+
+#[test]
+fn without_a_load_the_tool_is_number_one_and_a_second_tool_is_refused() {
+    let text = "UNITS/MM\nTOOL PATH/A,TOOL,MILL\nTLDATA/MILL,30.0,2.0,75.0,0.0,0.0\n\
+                SPINDL/RPM,1000,CLW\nFEDRAT/MMPM,250\nGOTO/0,0,0\nEND-OF-PATH\n";
+    let first = reading(text);
+    assert_eq!(first.warnings[0].rule, "tool-number");
+    let expected = Tool {
+        number: 1,
+        name: "MILL".into(),
+        diameter: Some(30.0),
+        corner_radius: Some(2.0),
+        ..Tool::default()
+    };
+    assert!(first.program.records.iter().any(|r| r.op == Op::Tool(Box::new(expected.clone()))));
+    let second = "TOOL PATH/B,TOOL,DRILL\nTLDATA/DRILL,MILL,8.0,0.0,80.0,118.0,35.0\nGOTO/0,0,1\nEND-OF-PATH\n";
+    let errors = read("t.cls", format!("{text}{second}").as_bytes(), &Options::default());
+    assert_eq!(errors.unwrap_err()[0].rule, "tool-change");
+    // With its own LOAD it is changed to.
+    let loaded = second.replace("GOTO", "LOAD/TOOL,2\nGOTO");
+    let both = reading(&format!("{text}{loaded}"));
+    assert!(both.program.records.iter().any(|r| matches!(&r.op, Op::Tool(t) if t.name == "DRILL")));
+}
