@@ -221,8 +221,13 @@ impl<'a> Block<'a> {
         self.m[group as usize]
     }
 
-    /// Whether the block has this letter, taken or not.
+    /// Whether the block has this letter and nothing has taken it yet.
     pub(super) fn has(&self, letter: u8) -> bool {
+        self.pending & bit(letter) != 0
+    }
+
+    /// Whether the block has this letter, taken or not.
+    pub(super) fn gives(&self, letter: u8) -> bool {
         self.given & bit(letter) != 0
     }
 

@@ -2,7 +2,7 @@
 
 use super::block::{Block, Fault, Word};
 use super::state::{Length, State, Tilt, UNKNOWN};
-use super::words::{FeedMode, Flavor, G, Group, M, Side};
+use super::words::{FeedMode, Flavor, G, Group, M, Motion, Side};
 use crate::Settings;
 use geom::{Frame, Mat3, Vec3};
 use program::{Coolant, Feed, Op, Spindle, Tool};
@@ -78,7 +78,13 @@ impl Step<'_, '_, '_> {
         self.block.all_taken()
     }
 
+    /// `O` names the program and stands at its start: another one is another program.
     fn program_number(&mut self) -> Result<(), Fault> {
+        if self.block.has(b'O') && self.state.begun {
+            let message = "another program begins here; a program has its number O first";
+            return Err(self.block.at_word(b'O', "nc-program-number", message));
+        }
+        self.state.begun = true;
         self.take_whole(b'O').map(|_| ())
     }
 
@@ -92,12 +98,14 @@ impl Step<'_, '_, '_> {
             let message = "FANUC runs one M function a block (parameter 3404#7)";
             return Err(self.block.whole("nc-many-m", message));
         }
-        let off = |m| matches!(m, Some(M::SpindleOff | M::CoolantOff | M::Orient));
-        let cutting = !matches!(self.motion_of_block(), Some(super::words::Motion::Rapid) | None)
-            && b"XYZABC".iter().any(|&letter| self.block.has(letter))
+        let drills = self.state.cycle.is_some() || self.block.g(Group::Cycle).is_some();
+        let cuts = !matches!(self.motion_of_block(), Some(Motion::Rapid) | None) || drills;
+        let moves = b"XYZABC".iter().any(|&letter| self.block.has(letter))
             && self.block.g(Group::OneShot).is_none();
         for group in [Group::Spindle, Group::Coolant] {
-            if off(self.block.m(group)) && cutting {
+            let off =
+                matches!(self.block.m(group), Some(M::SpindleOff | M::CoolantOff | M::Orient));
+            if off && cuts && moves {
                 let message = "whether this acts before or after the cut is up to the machine";
                 return Err(self.block.at_group(group, "nc-m-beside-cut", message));
             }

@@ -179,7 +179,7 @@ impl Step<'_, '_, '_> {
     pub(super) fn feed_for_cut(&self) -> Result<(), Fault> {
         let message = match self.state.feed {
             None => "a move at feed, and no feed has been given by F",
-            Some(Feed::InverseTime(_)) if !self.block.has(b'F') => {
+            Some(Feed::InverseTime(_)) if !self.block.gives(b'F') => {
                 "in G93 each move needs its own F"
             }
             Some(_) if self.state.feed_mode == FeedMode::PerTurn && self.spindle_stands() => {

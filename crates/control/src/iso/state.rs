@@ -41,6 +41,8 @@ pub(super) struct State {
     /// The last P of a cycle, s.
     pub cycle_dwell: Option<f64>,
     pub cycle: Option<Holding>,
+    /// A block has been executed.
+    pub begun: bool,
     /// Something has moved.
     pub moved: bool,
     /// `M2` or `M30` has been executed.
@@ -127,6 +129,7 @@ impl State {
             return_to_r: (flavor == Flavor::Fanuc).then_some(false),
             cycle_dwell: None,
             cycle: None,
+            begun: false,
             moved: false,
             ended: false,
         }

@@ -1,0 +1,574 @@
+//! What the makers' manuals say of ISO code, as programs and the records they must give. Sources are
+//! in `docs/controls/`.
+
+use geom::Vec3;
+use program::{
+    ArcTo, Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, Op, Orientation, Pose,
+    Spindle,
+};
+use toolpost_control::{Dialect, Settings, read};
+
+const FANUC: Dialect = Dialect::Fanuc;
+const LINUXCNC: Dialect = Dialect::LinuxCnc;
+const GRBL: Dialect = Dialect::Grbl;
+
+fn run(dialect: Dialect, rotary: [bool; 3], text: &str) -> Result<Vec<Op>, Box<Diagnostic>> {
+    let settings = Settings { dialect, rotary, auxiliary: vec![26] };
+    let mut ops = Vec::new();
+    read(&settings, "p.nc", text.as_bytes(), &mut |record| {
+        ops.push(record.op);
+        Ok(())
+    })?;
+    Ok(ops)
+}
+
+/// The records of a program on a machine with A and C.
+fn ops(dialect: Dialect, text: &str) -> Vec<Op> {
+    run(dialect, [true, false, true], text).unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+/// The records of a program on a machine with three axes.
+fn ops_3(dialect: Dialect, text: &str) -> Vec<Op> {
+    run(dialect, [false; 3], text).unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+/// The rule that a program breaks.
+#[track_caller]
+fn rule(dialect: Dialect, text: &str) -> &'static str {
+    match run(dialect, [true, false, true], text) {
+        Ok(ops) => panic!("taken:\n{text}\n{ops:?}"),
+        Err(error) => {
+            assert!(error.line > 0 && error.column > 0 && error.file == "p.nc", "{error}");
+            error.rule
+        }
+    }
+}
+
+/// A pose on a machine with three axes.
+fn at(x: f64, y: f64, z: f64) -> Pose {
+    let orientation = Orientation::Rotary { degrees: [0.0; 3], tool_center: false };
+    Pose { point: Vec3::new(x, y, z), orientation }
+}
+
+/// Arcs of a program: end, centre, normal.
+fn arcs(dialect: Dialect, text: &str) -> Vec<(Vec3, Vec3, Vec3)> {
+    let arc = |op| match op {
+        Op::Arc(arc) => Some((arc.end.point, arc.center, arc.normal)),
+        _ => None,
+    };
+    ops_3(dialect, text).into_iter().filter_map(arc).collect()
+}
+
+const HOLE: Cycle = Cycle {
+    kind: CycleKind::Drill,
+    depth: 12.0,
+    clearance: 0.0,
+    retract: 48.0,
+    feed: None,
+    dwell: 0.0,
+    first_peck: None,
+    peck: None,
+};
+
+#[test]
+fn a_fanuc_program_from_start_to_end() {
+    let got = ops_3(
+        FANUC,
+        "%\nO0001(PART)\nN10 G17 G21 G40 G49 G80 G90 G94\nG91 G28 Z0\nT5 M6\nG90 G54\nS3000 M3\n\
+         G0 X1. Y2.\nG43 H5 Z50. M8\nG1 Z-1. F100.\nX10. M26\nG0 Z50. M9\nM5\nG91 G28 Z0\nM30\n%\n",
+    );
+    let nan = f64::NAN;
+    let tool = program::Tool { number: 5, ..Default::default() };
+    let expected = [
+        Op::Comment("PART".into()),
+        Op::Home(4),
+        Op::Tool(Box::new(tool)),
+        Op::WorkOffset(54),
+        Op::Spindle(Spindle::Clockwise(3000.0)),
+        Op::Rapid(at(1.0, 2.0, nan)),
+        Op::Coolant(Coolant::Flood),
+        Op::LengthOffset(Some(5)),
+        Op::Rapid(at(1.0, 2.0, 50.0)),
+        Op::Feed(Feed::PerMinute(100.0)),
+        Op::Line(at(1.0, 2.0, -1.0)),
+        Op::Line(at(10.0, 2.0, -1.0)),
+        Op::Rapid(at(10.0, 2.0, 50.0)),
+        Op::Coolant(Coolant::Off),
+        Op::Spindle(Spindle::Off),
+        Op::Home(4),
+        Op::End,
+    ];
+    // NaN is not equal to itself: compare as they show.
+    assert_eq!(format!("{got:#?}"), format!("{:#?}", expected.to_vec()));
+}
+
+#[test]
+fn a_fanuc_number_without_a_point_is_refused_unless_it_is_zero() {
+    assert_eq!(rule(FANUC, "G0 X10\n"), "nc-decimal-point");
+    assert_eq!(rule(FANUC, "G0 X0. Y0. Z0.\nG2 X10. R5 F9\n"), "nc-decimal-point");
+    assert_eq!(rule(FANUC, "G0 C90\n"), "nc-decimal-point");
+    assert_eq!(rule(FANUC, "G0 Z9. X0 Y0\nG83 Z-1. R1. Q1 F9\n"), "nc-decimal-point");
+    assert_eq!(ops_3(FANUC, "G0 X0 Y-0 Z0.\n").len(), 1);
+    assert_eq!(ops_3(LINUXCNC, "G0 X10 Y-10 Z0.\n"), [Op::Rapid(at(10.0, -10.0, 0.0))]);
+}
+
+#[test]
+fn a_dwell_is_in_seconds_but_for_fanuc_p_in_milliseconds() {
+    assert_eq!(ops(FANUC, "G4 P1500\n"), [Op::Dwell(1.5)]);
+    assert_eq!(ops(FANUC, "G4 X1.5\n"), [Op::Dwell(1.5)]);
+    assert_eq!(ops(LINUXCNC, "G4 P1.5\n"), [Op::Dwell(1.5)]);
+    assert_eq!(ops(GRBL, "G4 P2\n"), [Op::Dwell(2.0)]);
+    assert_eq!(rule(FANUC, "G4 P1.5\n"), "nc-number");
+    assert_eq!(rule(FANUC, "G4 X2\n"), "nc-decimal-point");
+    assert_eq!(rule(FANUC, "G4 U1.\n"), "nc-unknown-word");
+}
+
+#[test]
+fn the_planes_are_right_handed_so_that_g2_in_g18_turns_from_z_to_x_backwards() {
+    let start = "G90 G0 X0. Y0. Z0.\nF100\n";
+    for dialect in [FANUC, LINUXCNC, GRBL] {
+        // From the origin round (5, 0, 0): the first quarter goes to (5, 0, ±5).
+        let g18 = arcs(dialect, &format!("{start}G18 G2 X5. Z5. I5. K0\n"));
+        assert_eq!(g18, [(Vec3::new(5.0, 0.0, 5.0), Vec3::new(5.0, 0.0, 0.0), Vec3::NEG_Y)]);
+        let g17 = arcs(dialect, &format!("{start}G17 G3 X5. Y-5. I5. J0\n"));
+        assert_eq!(g17, [(Vec3::new(5.0, -5.0, 0.0), Vec3::new(5.0, 0.0, 0.0), Vec3::Z)]);
+        let g19 = arcs(dialect, &format!("{start}G19 G2 Y5. Z5. J5. K0\n"));
+        assert_eq!(g19, [(Vec3::new(0.0, 5.0, 5.0), Vec3::new(0.0, 5.0, 0.0), Vec3::NEG_X)]);
+    }
+}
+
+#[test]
+fn a_negative_radius_is_the_long_way() {
+    for dialect in [FANUC, LINUXCNC, GRBL] {
+        let program = "G90 G0 X0. Y0. Z0.\nG2 X10. Y0. R13. F100\nG3 X0. R-13.\n";
+        let arcs = arcs(dialect, program);
+        // 5-12-13: clockwise the short way the centre is on the right of the way, which is below.
+        assert!(arcs[0].1.distance(Vec3::new(5.0, -12.0, 0.0)) < 1e-12, "{arcs:?}");
+        // Back, counter-clockwise the long way: on the right again, which is now above.
+        assert!(arcs[1].1.distance(Vec3::new(5.0, 12.0, 0.0)) < 1e-12, "{arcs:?}");
+    }
+}
+
+#[test]
+fn a_full_circle_has_a_centre_and_a_helix_a_third_axis() {
+    for dialect in [FANUC, LINUXCNC, GRBL] {
+        let program = "G90 G0 X1. Y2. Z3.\nG2 X1. Y2. I5. F100\nG3 X11. Y2. Z1. I5. J0\n";
+        let got = ops_3(dialect, program);
+        let circle = ArcTo {
+            end: at(1.0, 2.0, 3.0),
+            center: Vec3::new(6.0, 2.0, 3.0),
+            normal: Vec3::NEG_Z,
+            turns: 0,
+        };
+        assert!(got.contains(&Op::Arc(Box::new(circle))), "{got:?}");
+        let helix = ArcTo { end: at(11.0, 2.0, 1.0), normal: Vec3::Z, ..circle };
+        assert!(got.contains(&Op::Arc(Box::new(helix))), "{got:?}");
+        assert_eq!(rule(dialect, "G90 G0 X0. Y0. Z0.\nG2 X0. Y0. R5. F9\n"), "nc-arc");
+    }
+    // GRBL wants an axis word of the plane (its error 26), the others do not.
+    assert_eq!(rule(GRBL, "G0 X0 Y0 Z0\nG2 I5 F9\n"), "nc-arc");
+    assert_eq!(arcs(FANUC, "G90 G0 X0. Y0. Z0.\nG2 I5. F9\n").len(), 1);
+}
+
+#[test]
+fn the_radii_of_an_arc_may_differ_by_what_the_control_allows() {
+    let arc = |end: &str, center: &str| format!("G0 X0. Y0. Z0.\nG2 X{end} Y0. I{center} J0. F9\n");
+    // gcode.c: 0.005 mm, or 0.1 % of the radius up to 0.5 mm.
+    for dialect in [GRBL, LINUXCNC] {
+        assert_eq!(arcs(dialect, &arc("10.004", "5.")).len(), 1);
+        assert_eq!(rule(dialect, &arc("10.012", "5.")), "nc-arc");
+        assert_eq!(arcs(dialect, &arc("1000.4", "500.")).len(), 1);
+        assert_eq!(rule(dialect, &arc("1001.1", "500.")), "nc-arc");
+        assert_eq!(rule(dialect, &arc("2001.1", "1000.")), "nc-arc");
+    }
+    assert_eq!(arcs(FANUC, &arc("10.009", "5.")).len(), 1);
+    assert_eq!(rule(FANUC, &arc("10.011", "5.")), "nc-arc");
+    // A half circle by rounding: LinuxCNC has 0.000 05 inch to spare, the others have nothing.
+    assert_eq!(arcs(LINUXCNC, "G0 X0 Y0 Z0\nG2 X10 R4.999 F9\n").len(), 1);
+    assert_eq!(rule(GRBL, "G0 X0 Y0 Z0\nG2 X10 R4.999 F9\n"), "nc-arc");
+}
+
+#[test]
+fn an_arc_or_an_increment_from_nowhere_is_refused() {
+    for dialect in [FANUC, LINUXCNC, GRBL] {
+        assert_eq!(rule(dialect, "G0 X0. Y0.\nG2 X10. I5. F9\n"), "nc-unknown-position");
+        assert_eq!(rule(dialect, "G91 G0 X1.\n"), "nc-unknown-position");
+        assert_eq!(rule(dialect, "G0 X0. Y0. Z0.\nG55\nG91 X1.\n"), "nc-unknown-position");
+        assert_eq!(rule(dialect, "G0 X0. Y0. Z0.\nG28 Z5.\nG91 G0 Z1.\n"), "nc-unknown-position");
+    }
+}
+
+#[test]
+fn fanuc_drilling_returns_to_the_initial_level_or_to_r() {
+    let got = ops_3(
+        FANUC,
+        "G90 G0 X0 Y0 Z50.\nG98 G81 X10. Y5. Z-10. R2. F100\nX20.\nG99 X30.\nF50\nG80\nG0 Z50.\n",
+    );
+    let expected = [
+        Op::Rapid(at(0.0, 0.0, 50.0)),
+        Op::Feed(Feed::PerMinute(100.0)),
+        Op::Cycle(Box::new(HOLE)),
+        Op::Hole(at(10.0, 5.0, 2.0)),
+        Op::Hole(at(20.0, 5.0, 2.0)),
+        Op::Cycle(Box::new(Cycle { retract: 0.0, ..HOLE })),
+        Op::Hole(at(30.0, 5.0, 2.0)),
+        Op::Feed(Feed::PerMinute(50.0)),
+        Op::CycleOff,
+        Op::Rapid(at(30.0, 5.0, 50.0)),
+    ];
+    assert_eq!(got, expected);
+}
+
+#[test]
+fn fanuc_cycle_words_stay_until_g80_and_k_repeats_in_a_row() {
+    let got = ops_3(
+        FANUC,
+        "G90 G0 X0 Y0 Z50.\nG99 G83 X10. Y5. Z-10. R2. Q3. F100\nG82 X20. P250\nG91 X5. K2\nG90 X0 K0\n\
+         G80\n",
+    );
+    let deep = Cycle {
+        kind: CycleKind::Deep,
+        retract: 0.0,
+        first_peck: Some(3.0),
+        peck: Some(3.0),
+        ..HOLE
+    };
+    let expected = [
+        Op::Cycle(Box::new(deep)),
+        Op::Hole(at(10.0, 5.0, 2.0)),
+        Op::Cycle(Box::new(Cycle { retract: 0.0, dwell: 0.25, ..HOLE })),
+        Op::Hole(at(20.0, 5.0, 2.0)),
+        Op::Hole(at(25.0, 5.0, 2.0)),
+        Op::Hole(at(30.0, 5.0, 2.0)),
+        Op::CycleOff,
+    ];
+    assert_eq!(got[2..], expected);
+}
+
+#[test]
+fn in_g91_r_counts_from_the_initial_level_and_z_from_r() {
+    for (dialect, repeats) in [(FANUC, 'K'), (LINUXCNC, 'L')] {
+        let program =
+            format!("G90 G0 X0 Y0 Z50.\nG91 G98 G81 X10. Z-12. R-48. F100 {repeats}3\nG80\n");
+        let got = ops_3(dialect, &program);
+        let holes = [10.0, 20.0, 30.0].map(|x| Op::Hole(at(x, 0.0, 2.0)));
+        assert_eq!(got[2], Op::Cycle(Box::new(HOLE)));
+        assert_eq!(got[3..6], holes);
+    }
+}
+
+#[test]
+fn fanuc_rigid_tapping_turns_the_spindle_itself_and_leaves_it_standing() {
+    let got =
+        ops_3(FANUC, "G90 G0 X0 Y0 Z50.\nM29 S500\nG84 X10. Y5. Z-10. R2. F625.\nG80\nG0 Z60.\n");
+    let tap = Cycle { kind: CycleKind::Tap { pitch: 1.25, left: false }, ..HOLE };
+    let expected = [
+        Op::Feed(Feed::PerMinute(625.0)),
+        Op::Spindle(Spindle::Clockwise(500.0)),
+        Op::Cycle(Box::new(tap)),
+        Op::Hole(at(10.0, 5.0, 2.0)),
+        Op::CycleOff,
+        Op::Spindle(Spindle::Off),
+        Op::Rapid(at(10.0, 5.0, 60.0)),
+    ];
+    assert_eq!(got[1..], expected);
+    // In G95 the feed is the pitch; the left-hand tap turns the other way.
+    let got = ops_3(FANUC, "G90 G0 X0 Y0 Z50.\nS500 M4\nG95 G74 X10. Y5. Z-10. R2. F1.25\nG80\n");
+    let left = Cycle { kind: CycleKind::Tap { pitch: 1.25, left: true }, ..HOLE };
+    assert!(got.contains(&Op::Cycle(Box::new(left))), "{got:?}");
+    let wrong = "G90 G0 X0 Y0 Z50.\nS500 M4\nG84 X10. Y5. Z-10. R2. F625.\n";
+    assert_eq!(rule(FANUC, wrong), "nc-cycle");
+}
+
+#[test]
+fn every_cycle_has_its_kind() {
+    for (words, kind, dwell) in [
+        ("G73 Q3.", CycleKind::BreakChip, 0.0),
+        ("G81", CycleKind::Drill, 0.0),
+        ("G82 P500", CycleKind::Drill, 0.5),
+        ("G83 Q3.", CycleKind::Deep, 0.0),
+        ("G85", CycleKind::Ream, 0.0),
+        ("G86", CycleKind::Bore, 0.0),
+        ("G89 P500", CycleKind::Ream, 0.5),
+    ] {
+        let got = ops_3(FANUC, &format!("G90 G0 X0 Y0 Z50.\n{words} Z-10. R2. F100\n"));
+        let peck = words.contains('Q').then_some(3.0);
+        let cycle = Cycle { kind, dwell, first_peck: peck, peck, ..HOLE };
+        assert_eq!(got[2], Op::Cycle(Box::new(cycle)), "{words}");
+    }
+}
+
+#[test]
+fn a_cycle_that_lacks_something_is_refused() {
+    let start = "G90 G0 X0 Y0 Z50.\nF100\n";
+    for block in [
+        "G81 X1. Z-1.",
+        "G81 X1. R2.",
+        "G83 X1. Z-1. R2.",
+        "G82 X1. Z-1. R2.",
+        "G81 X1. Z5. R2.",
+        "G81 X1. Z-1. R60.",
+        "G18 G81 X1. Z-1. R2.",
+        "G84 X1. Z-1. R2.",
+        "G81 X1. Z-1. R2. A5.",
+        "G81 X1. Z-1. R2. K99999",
+    ] {
+        assert_eq!(rule(FANUC, &format!("{start}{block}\n")), "nc-cycle", "{block}");
+    }
+    assert_eq!(rule(FANUC, "G0 X0 Y0\nG81 X1. Z-1. R2. F9\n"), "nc-unknown-position");
+    // rs274 returns to R where neither is given, the manual does not say: so it must be said.
+    assert_eq!(rule(LINUXCNC, "G0 X0 Y0 Z9\nG81 Z-1 R2 F9\n"), "nc-cycle");
+    for word in ["G76", "G87", "G88"] {
+        assert_eq!(rule(FANUC, &format!("{start}{word} X1. Z-1. R2.\n")), "nc-unknown-word");
+    }
+}
+
+#[test]
+fn grbl_has_no_cycles_no_compensation_no_length_register_and_no_tool_change() {
+    for block in
+        ["G81 X1 Z-1 R1", "G41 D1 X1", "G43 H1", "M6", "G64", "G90.1", "G59.1", "G95", "M19"]
+    {
+        assert_eq!(rule(GRBL, &format!("G0 X0 Y0 Z9\n{block}\n")), "nc-unknown-word", "{block}");
+    }
+    for word in ["A1", "D1", "H1", "Q1", "U1", "O1"] {
+        assert_eq!(rule(GRBL, &format!("G0 {word}\n")), "nc-unknown-word", "{word}");
+    }
+    assert_eq!(rule(GRBL, "%\n"), "nc-syntax");
+    assert_eq!(rule(GRBL, "$H\n"), "nc-syntax");
+    assert_eq!(ops(GRBL, "T3\nM1\nG40 G49 G61 G92.1 G91.1\n"), [Op::Preselect(3)]);
+}
+
+#[test]
+fn a_grbl_block_has_79_characters_at_most_blanks_and_comments_apart() {
+    let block = |digits: usize| format!("G0 X0 Y0 Z1.{} (and a comment)\n", "0".repeat(digits));
+    assert_eq!(ops(GRBL, &block(79 - 9)).len(), 2);
+    assert_eq!(rule(GRBL, &block(79 - 8)), "nc-long-block");
+}
+
+#[test]
+fn grbl_starts_in_g0_and_the_others_need_a_motion_word() {
+    assert_eq!(ops(GRBL, "X1 Y2 Z3\n"), [Op::Rapid(at(1.0, 2.0, 3.0))]);
+    assert_eq!(rule(LINUXCNC, "X1\n"), "nc-no-motion");
+    assert_eq!(rule(FANUC, "X1.\n"), "nc-no-motion");
+    assert_eq!(rule(GRBL, "G0 X1\nG80\nX2\n"), "nc-no-motion");
+    assert_eq!(rule(GRBL, "G0 G80\n"), "nc-modal-group");
+    assert_eq!(ops_3(FANUC, "G0 G80 X1. Y1. Z1.\n").len(), 1);
+}
+
+#[test]
+fn two_words_of_a_modal_group_are_refused() {
+    for block in ["G0 G1", "G17 G18", "G90 G91", "G20 G21", "G54 G55", "G93 G94", "M3 M4", "M0 M30"]
+    {
+        for dialect in [FANUC, LINUXCNC, GRBL] {
+            assert_eq!(rule(dialect, &format!("{block}\n")), "nc-modal-group", "{block}");
+        }
+    }
+    assert_eq!(rule(FANUC, "G1 G81 X1.\n"), "nc-modal-group");
+    assert_eq!(rule(FANUC, "M3 M8 S9\n"), "nc-many-m");
+}
+
+#[test]
+fn a_word_that_nothing_uses_is_refused() {
+    for block in ["G0 X1. R5.", "G0 X1. P1", "G1 I5.", "G0 X1. K1.", "J1."] {
+        for dialect in [FANUC, LINUXCNC, GRBL] {
+            assert_eq!(rule(dialect, &format!("{block}\n")), "nc-unused-word", "{block}");
+        }
+    }
+    assert_eq!(rule(FANUC, "G43 H1 D2\n"), "nc-unused-word");
+}
+
+#[test]
+fn macros_expressions_and_subprograms_are_refused_by_name() {
+    for block in ["#1=5", "G0 X#1", "G0 X[1+2]", "IF[#1EQ0]GOTO5"] {
+        for dialect in [FANUC, LINUXCNC, GRBL] {
+            assert_eq!(rule(dialect, &format!("{block}\n")).get(..3), Some("nc-"), "{block}");
+        }
+    }
+    let error = run(FANUC, [false; 3], "N5 M98 P1000\n").unwrap_err();
+    assert_eq!((error.line, error.column, error.width), (1, 4, 3));
+    assert_eq!(error.help, "subprograms are not followed");
+    assert_eq!(rule(LINUXCNC, "o100 sub\n"), "nc-unknown-word");
+    assert_eq!(rule(FANUC, "M77\n"), "nc-unknown-word");
+    // The builder of this machine has an M26.
+    assert_eq!(ops(FANUC, "M26\n"), []);
+}
+
+#[test]
+fn a_feed_must_be_given_and_belongs_to_its_mode() {
+    for dialect in [FANUC, LINUXCNC, GRBL] {
+        assert_eq!(rule(dialect, "G1 X1.\n"), "nc-feed");
+        assert_eq!(rule(dialect, "G1 X1. F0\n"), "nc-feed");
+        assert_eq!(rule(dialect, "G1 X1. F9\nG93 X2.\n"), "nc-feed");
+        assert_eq!(rule(dialect, "G93 G1 X1. F9\nX2.\n"), "nc-feed");
+        assert_eq!(rule(dialect, "G20 F10\n"), "nc-feed");
+        let got = ops(dialect, "G20\nG93 G1 X1. F9\nG94 X2. F9\n");
+        let feeds: Vec<Op> = got.into_iter().filter(|op| matches!(op, Op::Feed(_))).collect();
+        assert_eq!(
+            feeds,
+            [Op::Feed(Feed::InverseTime(9.0)), Op::Feed(Feed::PerMinute(9.0 * 25.4))]
+        );
+    }
+}
+
+#[test]
+fn inches_are_25_4_mm() {
+    for dialect in [FANUC, LINUXCNC, GRBL] {
+        let got = ops_3(dialect, "G20\nG0 X1. Y-2. Z.5\nG1 X0. F10.\n");
+        let expected = [
+            Op::Rapid(at(25.4, -50.8, 12.7)),
+            Op::Feed(Feed::PerMinute(254.0)),
+            Op::Line(at(0.0, -50.8, 12.7)),
+        ];
+        assert_eq!(got, expected);
+    }
+    assert_eq!(rule(FANUC, "G21\nG0 X1.\nG20\n"), "nc-units");
+}
+
+#[test]
+fn compensation_starts_with_a_linear_move_in_the_plane() {
+    for (dialect, words) in [(FANUC, "G41 D7"), (LINUXCNC, "G41 D7")] {
+        let program =
+            format!("G0 X0 Y0 Z0\nG1 F9\n{words}\nZ-1.\nX5.\nG2 X15. Y0 I5.\nG40\nG1 Z5.\nX20.\n");
+        let got = ops_3(dialect, &program);
+        let start = got.iter().position(|op| *op == Op::Compensation(Compensation::Left(Some(7))));
+        let end = got.iter().position(|op| *op == Op::Compensation(Compensation::Off));
+        assert_eq!(got[start.unwrap() + 1], Op::Line(at(5.0, 0.0, -1.0)));
+        assert_eq!(got[end.unwrap() + 1], Op::Line(at(20.0, 0.0, 5.0)));
+        for wrong in [
+            "G41 D1 G2 X10. I5.",
+            "G1 G41 D1 X5.\nG40 G2 X15. I5.",
+            "G1 G41 D1 X5.\nG28 Z9.",
+            "G1 G41 D1 X5.\nG18",
+            "G1 G41 D1 X5.\nG98 G81 Z-5. R-2.",
+            "G18 G41 D1",
+            "G1 G41 D1 X5.\nT1 M6",
+        ] {
+            let program = format!("G0 X0 Y0 Z0\nF9 {wrong}\n");
+            assert_eq!(rule(dialect, &program), "nc-compensation", "{program}");
+        }
+    }
+    assert_eq!(rule(FANUC, "G41 X1.\n"), "nc-compensation");
+}
+
+#[test]
+fn the_way_home_leads_through_the_point_of_the_block() {
+    for dialect in [FANUC, LINUXCNC, GRBL] {
+        let got = ops_3(dialect, "G90 G0 X1. Y2. Z3.\nG28 Z20.\nG0 Z1.\nG91 G28 X0 Y0\n");
+        let nan = f64::NAN;
+        let expected = vec![
+            Op::Rapid(at(1.0, 2.0, 3.0)),
+            Op::Rapid(at(1.0, 2.0, 20.0)),
+            Op::Home(4),
+            Op::Rapid(at(1.0, 2.0, 1.0)),
+            Op::Home(3),
+        ];
+        assert_eq!(format!("{got:?}"), format!("{expected:?}"));
+        let after = ops_3(dialect, "G90 G0 X1. Y2. Z3.\nG53 G0 Z0\nX5.\n");
+        assert_eq!(format!("{:?}", after[2]), format!("{:?}", Op::Rapid(at(5.0, 2.0, nan))));
+        assert_eq!(rule(dialect, "G91 G53 G0 Z0\n"), "nc-machine-position");
+    }
+    assert_eq!(rule(FANUC, "G28\n"), "nc-home");
+    assert_eq!(ops(GRBL, "G28\n"), [Op::Home(7)]);
+    assert_eq!(ops(LINUXCNC, "G30\n"), [Op::Home(0b10_1111)]);
+}
+
+#[test]
+fn the_tool_centre_point_is_kept_from_g43_4_to_g49() {
+    let got = ops(FANUC, "G0 X0 Y0 Z0 A0 C0\nG43.4 H3 Z9.\nG1 X1. A30. C-45. F9\nG49\n");
+    let center = Orientation::Rotary { degrees: [30.0, 0.0, -45.0], tool_center: true };
+    assert_eq!(got[1], Op::LengthOffset(Some(3)));
+    assert_eq!(got[4], Op::Line(Pose { point: Vec3::new(1.0, 0.0, 9.0), orientation: center }));
+    assert_eq!(got[5], Op::LengthOffset(None));
+    let three = run(FANUC, [false; 3], "G43.4 H1\n").unwrap_err();
+    assert_eq!(three.rule, "nc-axis");
+    assert_eq!(rule(FANUC, "G0 B5.\n"), "nc-axis");
+}
+
+#[test]
+fn a_tilted_plane_turns_about_z_then_new_x_then_newest_z() {
+    // J90 alone turns Z to -Y and Y to Z; I90 before it turns X to Y.
+    let got =
+        ops(FANUC, "G68.2 X10. Y20. Z30. I90. J90. K0\nG53.1\nG0 X1. Y2. Z3.\nG69\nG0 X0 Y0 Z0\n");
+    let Op::Rapid(pose) = &got[0] else { panic!("{got:?}") };
+    // X of the plane is Y, its Z is X, so its Y is Z.
+    assert!(pose.point.distance(Vec3::new(10.0 + 3.0, 20.0 + 1.0, 30.0 + 2.0)) < 1e-12, "{pose:?}");
+    assert!(pose.axis().unwrap().distance(Vec3::X) < 1e-12, "{pose:?}");
+    let Op::Rapid(pose) = &got[1] else { panic!("{got:?}") };
+    let Orientation::Rotary { degrees, tool_center: false } = pose.orientation else { panic!() };
+    assert!(degrees[0].is_nan() && degrees[1] == 0.0 && degrees[2].is_nan());
+    // 45° about X: a hole along (0, -1, 1).
+    let got =
+        ops(FANUC, "G68.2 X0 Y0 Z0 I0 J45. K0\nG53.1\nG0 X0 Y0 Z50.\nG81 Z-10. R2. F9\nG80\n");
+    let Op::Hole(pose) = &got[3] else { panic!("{got:?}") };
+    let half = 0.5_f64.sqrt();
+    assert!(pose.axis().unwrap().distance(Vec3::new(0.0, -half, half)) < 1e-12);
+    assert!(pose.point.distance(Vec3::new(0.0, -2.0 * half, 2.0 * half)) < 1e-12);
+}
+
+#[test]
+fn a_tilted_plane_is_complete_and_reached_before_anything_moves() {
+    let plane = "G68.2 X0 Y0 Z0 I0 J45. K0\n";
+    for rest in
+        ["G0 X1.", "G53.1\nG0 A5.", "G53.1\nG28 Z0", "G53.1\nG43.4 H1", "G68.2 X0 Y0 Z0 I0 J0 K0"]
+    {
+        assert_eq!(rule(FANUC, &format!("{plane}{rest}\n")), "nc-tilt", "{rest}");
+    }
+    assert_eq!(rule(FANUC, "G68.2 X0 Y0 Z0 I0 J45.\n"), "nc-tilt");
+    assert_eq!(rule(FANUC, "G53.1\n"), "nc-tilt");
+}
+
+#[test]
+fn a_spindle_needs_a_speed_and_coolants_do_not_add_up() {
+    for dialect in [FANUC, LINUXCNC, GRBL] {
+        assert_eq!(rule(dialect, "M3\n"), "nc-spindle");
+        assert_eq!(rule(dialect, "M7\nM8\n"), "nc-coolant");
+        let got = ops(dialect, "S500 M4\nS600\nM5\nM7\nM9\nM2\n");
+        let expected = [
+            Op::Spindle(Spindle::CounterClockwise(500.0)),
+            Op::Spindle(Spindle::CounterClockwise(600.0)),
+            Op::Spindle(Spindle::Off),
+            Op::Coolant(Coolant::Mist),
+            Op::Coolant(Coolant::Off),
+            Op::End,
+        ];
+        assert_eq!(got, expected);
+    }
+    assert_eq!(rule(FANUC, "S1 M3\nG1 X1. F9 M5\n"), "nc-m-beside-cut");
+}
+
+#[test]
+fn nothing_follows_the_end_of_a_program() {
+    for dialect in [FANUC, LINUXCNC, GRBL] {
+        assert_eq!(rule(dialect, "M30\nG0 X1.\n"), "nc-after-end");
+        assert_eq!(ops(dialect, "M2\n\n(only words)\n").len(), 2);
+    }
+    assert_eq!(rule(FANUC, "%\nO1\nM30\n%\nO2\n"), "nc-after-end");
+    assert_eq!(rule(LINUXCNC, "%\n%\n%\n"), "nc-syntax");
+}
+
+#[test]
+fn what_shifts_the_coordinates_is_refused_with_the_reason() {
+    for block in ["G92 X0.", "G10 L2 P1 X0.", "G52 X1.", "G68 R5.", "G51 P2."] {
+        let error = run(FANUC, [false; 3], &format!("{block}\n")).unwrap_err();
+        assert_eq!(error.rule, "nc-unknown-word", "{block}");
+        assert!(!error.help.is_empty(), "{block}");
+    }
+}
+
+#[test]
+fn comments_are_told_and_messages_too() {
+    let got = ops(LINUXCNC, "(first) G0 (MSG, look) ; last\n");
+    let expected =
+        [Op::Comment("first".into()), Op::Message("look".into()), Op::Comment("last".into())];
+    assert_eq!(got, expected);
+    assert_eq!(rule(FANUC, "G0 ; no comment\n"), "nc-syntax");
+    assert_eq!(rule(FANUC, "(a (b))\n"), "nc-comment");
+    assert_eq!(rule(GRBL, "(never closed\n"), "nc-comment");
+}
+
+#[test]
+fn blanks_within_a_number_are_refused_though_linuxcnc_would_close_them_up() {
+    assert_eq!(rule(LINUXCNC, "G0 X1 0\n"), "nc-syntax");
+    assert_eq!(rule(FANUC, "g0 x1.\n"), "nc-syntax");
+    assert_eq!(ops_3(LINUXCNC, "g0 x 1 y2z3\n"), [Op::Rapid(at(1.0, 2.0, 3.0))]);
+}
