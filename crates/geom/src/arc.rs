@@ -152,21 +152,27 @@ impl Arc {
 
     /// The corners of the smallest box around the arc whose sides are parallel to the axes.
     pub fn extents(&self) -> (Vec3, Vec3) {
-        let cos = (self.start - self.center).reject_from_normalized(self.normal);
-        let sin = self.normal.cross(cos);
+        let spoke = (self.start - self.center).reject_from_normalized(self.normal);
+        let across = self.normal.cross(spoke);
+        let climb = self.normal * (self.rise() / self.sweep);
         let (mut low, mut high) = (self.start.min(self.end), self.start.max(self.end));
         for i in 0..3 {
-            // The coordinate is r cos(φ − φ₀) + c φ; it turns where sin(φ − φ₀) = c / r. Of the turns
-            // of a helix it is the first or the last that goes farthest.
-            let (phi0, r) = (sin[i].atan2(cos[i]), cos[i].hypot(sin[i]));
-            let lift = (self.normal[i] * self.rise() / self.sweep / r).asin();
-            for turning in [phi0 + lift, phi0 + PI - lift] {
-                let first = turning.rem_euclid(TAU);
-                let last = first + ((self.sweep - first) / TAU).floor() * TAU;
+            // A coordinate is r cos(θ − peak) + climb θ; it turns where its slope is zero.
+            let (r, peak) = (spoke[i].hypot(across[i]), across[i].atan2(spoke[i]));
+            let lean = climb[i] / r;
+            if lean.is_nan() || lean.abs() > 1.0 {
+                continue;
+            }
+            let shift = lean.asin();
+            for angle in [peak + shift, peak + PI - shift] {
+                // Of several turns the first and the last reach farthest.
+                let first = angle.rem_euclid(TAU);
+                let last = first + TAU * ((self.sweep - first) / TAU).floor();
                 for angle in [first, last] {
                     if (0.0..=self.sweep).contains(&angle) {
                         let point = self.at(angle / self.sweep);
-                        (low, high) = (low.min(point), high.max(point));
+                        low = low.min(point);
+                        high = high.max(point);
                     }
                 }
             }
@@ -260,6 +266,23 @@ mod tests {
             }
             assert!(seen.0.cmpge(low - 1e-9).all() && seen.1.cmple(high + 1e-9).all());
             assert!(seen.0.distance(low) < 1e-5 && seen.1.distance(high) < 1e-5);
+        }
+    }
+
+    #[test]
+    fn the_box_of_an_arc_is_that_of_its_points() {
+        let tilted = Vec3::new(0.3, -0.5, 0.8).normalize();
+        let start = Vec3::new(4.0, 1.0, -2.0);
+        let center = start + tilted.any_orthonormal_vector() * 7.0;
+        for (turns, rise) in [(0, 0.0), (0, 9.0), (2, -30.0)] {
+            for angle in [0.1, 2.0, 5.5] {
+                let end = center + rotate(start - center, tilted, angle) + tilted * rise;
+                let arc = Arc::new(start, end, center, tilted, turns, 1e-6).unwrap();
+                let points = (0..=20_000).map(|i| arc.at(f64::from(i) / 20_000.0));
+                let (low, high) = points.fold((start, start), |(l, h), p| (l.min(p), h.max(p)));
+                let (a, b) = arc.extents();
+                assert!(a.distance(low) < 1e-5 && b.distance(high) < 1e-5, "{turns} {angle}");
+            }
         }
     }
 }

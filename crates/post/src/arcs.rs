@@ -59,6 +59,10 @@ impl Walk<'_> {
             normal: self.local(arc.center + arc.normal) - self.local(arc.center),
             sweep: arc.sweep,
         };
+        if let Kind::Plain | Kind::Machine = self.place.kind {
+            let degrees = self.place.degrees().unwrap_or_default();
+            self.limits.arc(&local, degrees, self.tool_length(), self.line)?;
+        }
         let Some(facts) = self.plane_of(&local) else {
             return self.lower(&arc, 0.0, 1.0, to, stop, "arcs outside the planes of the control");
         };

@@ -5,7 +5,12 @@ use crate::place::{Kind, Stop};
 use crate::template::{Words, bit};
 use crate::walk::{Done, ORIENTATION, POSITION, Walk, motion};
 use geom::Vec3;
+use machine::linearise::Stance;
+use machine::plan::Step;
 use program::{Diagnostic, Pose};
+
+/// How far the tool is drawn back along its axis before it leaves the part to turn, mm.
+const DRAW_BACK: f64 = 20.0;
 
 impl Walk<'_> {
     /// A rapid of the source.
@@ -27,6 +32,7 @@ impl Walk<'_> {
             self.writer.unset(Words::MAX);
             return Ok(());
         }
+        self.check_limits()?;
         self.compensate(false)?;
         self.writer.code(WordName::Motion, motion::RAPID);
         self.block(self.straight(BlockName::Rapid))
@@ -51,7 +57,7 @@ impl Walk<'_> {
         }
         self.located = true;
         self.here = Some(*pose);
-        Ok(())
+        self.check_limits()
     }
 
     /// A straight cut of the source.
@@ -65,22 +71,70 @@ impl Walk<'_> {
             self.findings.warn(Diagnostic::warning("feed-approach", message).line(self.line));
             self.located = true;
         }
+        if let Some(degrees) = stop.step.and_then(|step| step.rewind) {
+            self.rewind(degrees, stop)?;
+        }
         self.line_to(pose, stop)
+    }
+
+    /// The travel of a rotary axis ends in a cut: out along the tool axis, away from the part, round,
+    /// and in again at the same point.
+    fn rewind(&mut self, degrees: [f64; 3], stop: &Stop) -> Done {
+        let Some(here) = self.here else { return Ok(()) };
+        let axis = here.axis().unwrap_or(Vec3::Z);
+        let out = Pose { point: here.point + axis * DRAW_BACK, ..here };
+        let at = |degrees| Stop { step: Some(Step { degrees, rewind: None }), ..*stop };
+        if let Some(held) = self.place.degrees() {
+            self.rapid_to(&out, &at(held))?;
+        }
+        self.turn(axis, &at(degrees))?;
+        self.rapid_to(&out, &at(degrees))?;
+        self.line_to(&here, &at(degrees))
     }
 
     /// A straight cut in the orientation at hand.
     pub(crate) fn line_to(&mut self, pose: &Pose, stop: &Stop) -> Done {
-        let length = self.here.map_or(0.0, |here| here.point.distance(pose.point));
+        let from = self.here.replace(*pose);
+        let length = from.map_or(0.0, |from| from.point.distance(pose.point));
         if self.compensation_pending() {
             self.plane_xy()?;
         }
+        if let (Kind::Machine, Some(from), Some(step), Some(degrees)) =
+            (&self.place.kind, from, stop.step, self.place.degrees())
+        {
+            let to = Stance { tip: pose.point, degrees: self.written(step.degrees) };
+            if to.degrees != degrees {
+                return self.turning_line(Stance { tip: from.point, degrees }, to, length);
+            }
+        }
         self.aim(pose, stop);
-        self.here = Some(*pose);
+        self.cut(length, false)
+    }
+
+    /// A straight cut while rotary axes turn that the control moves on their own: with as many points
+    /// between as keep the tool tip on the line.
+    fn turning_line(&mut self, from: Stance, to: Stance, length: f64) -> Done {
+        let tolerance = self.machine.orientation.tolerance;
+        let stances = self.machine.linearise(from, to, self.tool_length(), tolerance)?;
+        let count = stances.len();
+        for stance in stances {
+            self.aim_at(stance.tip, Vec3::Z, Some(stance.degrees));
+            self.cut(length / count as f64, true)?;
+        }
+        if count > 1 {
+            self.findings.lowered("linearised", "moves with turning axes", self.line, count);
+        }
+        Ok(())
+    }
+
+    /// Writes the straight cut that has been aimed.
+    #[inline]
+    fn cut(&mut self, length: f64, turning: bool) -> Done {
         if !self.writer.changes(POSITION | ORIENTATION) {
             self.writer.unset(Words::MAX);
             return Ok(());
         }
-        let turning = matches!(self.place.kind, Kind::Machine) && self.writer.changes(ORIENTATION);
+        self.check_limits()?;
         self.say_feed(length, turning)?;
         self.compensate(true)?;
         self.writer.code(WordName::Motion, motion::LINEAR);
@@ -101,12 +155,20 @@ impl Walk<'_> {
     /// Says in the next block where the tool goes.
     #[inline]
     pub(crate) fn aim(&mut self, pose: &Pose, stop: &Stop) {
-        if let (Kind::ToolCenter | Kind::Machine, Some(step)) = (&self.place.kind, &stop.step) {
-            self.say_degrees(step.degrees);
-            self.place.turn_to(self.written(step.degrees));
+        let degrees = stop.step.map(|step| step.degrees);
+        self.aim_at(pose.point, pose.axis().unwrap_or(Vec3::Z), degrees);
+    }
+
+    #[inline]
+    fn aim_at(&mut self, point: Vec3, axis: Vec3, degrees: Option<[f64; 3]>) {
+        self.tip = point;
+        if let Some(degrees) = degrees {
+            if matches!(self.place.kind, Kind::ToolCenter | Kind::Machine) {
+                self.say_degrees(degrees);
+            }
+            self.place.turn_to(self.written(degrees));
         }
         if matches!(self.place.kind, Kind::Vectors) {
-            let axis = pose.axis().unwrap_or(Vec3::Z);
             self.writer.set(WordName::VX, axis.x);
             self.writer.set(WordName::VY, axis.y);
             self.writer.set(WordName::VZ, axis.z);
@@ -114,7 +176,7 @@ impl Walk<'_> {
         if !matches!(self.place.kind, Kind::ToolCenter | Kind::Vectors) {
             self.say_length_offset();
         }
-        let local = self.local(pose.point);
+        let local = self.local(point);
         self.writer.set(WordName::X, local.x);
         self.writer.set(WordName::Y, local.y);
         self.writer.set(WordName::Z, local.z);
@@ -131,6 +193,20 @@ impl Walk<'_> {
                 self.machine.linear_for(point, degrees, self.tool_length())
             }
         }
+    }
+
+    /// Holds the position that has been aimed against the limits of the axes. Where the control finds
+    /// the rotary positions of a tilted plane by itself, they are not known here.
+    #[inline]
+    fn check_limits(&mut self) -> Done {
+        let degrees = self.place.degrees().unwrap_or_default();
+        let length = self.tool_length();
+        let linear = match self.place.kind {
+            Kind::Tilted(..) => return Ok(()),
+            Kind::Bare | Kind::Plain | Kind::Machine => self.local(self.tip),
+            Kind::ToolCenter | Kind::Vectors => self.machine.linear_for(self.tip, degrees, length),
+        };
+        self.limits.position(linear, degrees, length, self.line)
     }
 
     /// Says the tool length offset in the next block.

@@ -103,6 +103,9 @@ impl Route {
         let turning = turns_in_a_cut(&records[..count], here);
         let settings = &machine.orientation;
         let mode = if turning { settings.simultaneous } else { settings.positioned };
+        // Where the axes only position, each orientation is a route of its own: an axis that is free
+        // in one of them has no reason to turn for the next one there.
+        let count = if turning { count } else { one_orientation(&records[..count]) };
         let targets = records[..count].iter().filter_map(target);
         let plan = match mode {
             OrientationMode::Fixed | OrientationMode::TiltedPlane => None,
@@ -138,6 +141,16 @@ fn target(record: &Record) -> Option<Target> {
     };
     let axis = record.op.pose()?.axis()?;
     Some(Target { axis, line: record.line, kind })
+}
+
+/// How many records there are before the tool axis changes.
+fn one_orientation(records: &[Record]) -> usize {
+    let mut held = None;
+    let changes = |record: &Record| {
+        let axis = record.op.pose().and_then(Pose::axis);
+        axis.is_some_and(|axis| !same(*held.get_or_insert(axis), axis))
+    };
+    records.iter().position(changes).unwrap_or(records.len())
 }
 
 /// Whether the tool axis changes while the tool cuts.
@@ -206,7 +219,7 @@ impl Walk<'_> {
     }
 
     /// The tool leaves the part, the rotary axes turn, and the control counts as `stop` says.
-    fn turn(&mut self, axis: Vec3, stop: &Stop) -> Done {
+    pub(crate) fn turn(&mut self, axis: Vec3, stop: &Stop) -> Done {
         let upright = same(axis, Vec3::Z) && stop.mode == OrientationMode::TiltedPlane;
         if upright && matches!(self.place.kind, Kind::Bare) && self.place.degrees == Some([0.0; 3])
         {
@@ -226,7 +239,7 @@ impl Walk<'_> {
             }
             OrientationMode::TiltedPlane => self.tilt(axis)?,
             mode => {
-                self.rotate(stop.step.map(|step| step.rewind.unwrap_or(step.degrees)))?;
+                self.rotate(stop.step.map(|step| step.degrees))?;
                 self.place.kind = match mode {
                     OrientationMode::ToolCenterAngles => Kind::ToolCenter,
                     OrientationMode::Vectors => Kind::Vectors,

@@ -5,6 +5,8 @@ use crate::findings::Findings;
 use crate::place::{Place, Route};
 use crate::template::{Scope, Templates, Words, bit, clean, map, program_value, tool_value};
 use crate::writer::Writer;
+use geom::Vec3;
+use machine::limits::Limits;
 use machine::{LengthOffset, Machine, OptionValue};
 use minijinja::value::Value;
 use program::{
@@ -77,6 +79,9 @@ pub(crate) struct Walk<'a> {
     /// Whether the control stands where the last pose says.
     pub(crate) located: bool,
     pub(crate) place: Place,
+    /// Where the next block brings the tool tip, mm, work frame.
+    pub(crate) tip: Vec3,
+    pub(crate) limits: Limits<'a>,
     ended: bool,
 }
 
@@ -115,6 +120,8 @@ impl<'a> Walk<'a> {
             here: None,
             located: false,
             place: Place::start(machine),
+            tip: Vec3::ZERO,
+            limits: Limits::new(machine),
             ended: false,
         })
     }
@@ -194,7 +201,7 @@ impl<'a> Walk<'a> {
             }
             Op::Tool(tool) => self.change_tool(tool),
             Op::Preselect(number) => {
-                self.check_tool_number(*number)?;
+                self.limits.tool(&Tool { number: *number, ..Tool::default() }, self.line)?;
                 self.writer.set(WordName::T, f64::from(*number));
                 self.block(BlockName::ToolPreselect)
             }
@@ -302,7 +309,7 @@ impl<'a> Walk<'a> {
                     .help(help),
             ));
         }
-        self.check_tool(tool)?;
+        self.limits.tool(tool, self.line)?;
         let number = f64::from(tool.number);
         self.length_offset = match self.machine.capabilities.length_offset {
             LengthOffset::Implicit => None,
@@ -355,48 +362,15 @@ impl<'a> Walk<'a> {
         self.change_tool(&Tool { number, ..Tool::default() })
     }
 
-    fn check_tool(&self, tool: &Tool) -> Done {
-        self.check_tool_number(tool.number)?;
-        let range = &self.machine.tools;
-        let sizes = [
-            ("diameter", tool.diameter, range.max_diameter),
-            ("length", tool.length, range.max_length),
-        ];
-        for (what, size, most) in sizes {
-            if let Some(size) = size
-                && size > most
-            {
-                let message = format!(
-                    "tool {} has a {what} of {size} mm, the machine takes {most} mm",
-                    tool.number
-                );
-                return Err(refuse("tool-range", message));
-            }
-        }
-        Ok(())
-    }
-
-    fn check_tool_number(&self, number: u32) -> Done {
-        let most = self.machine.tools.max_number;
-        if (1..=most).contains(&number) {
-            return Ok(());
-        }
-        let message = format!("tool {number}: the machine has the tools 1 to {most}");
-        Err(refuse("tool-number", message))
-    }
-
     // Spindle and coolant.
 
     fn set_spindle(&mut self, spindle: Spindle) -> Done {
         self.spindle = spindle;
-        let Some(speed) = speed(spindle) else { return self.sync_spindle() };
-        let range = &self.machine.spindle;
-        if speed > 0.0 && (range.min..=range.max).contains(&speed) {
-            return Ok(());
+        match speed(spindle) {
+            None => self.sync_spindle(),
+            Some(speed) if speed > 0.0 => self.limits.spindle(spindle, self.line),
+            Some(speed) => Err(refuse("spindle-range", format!("spindle speed {speed} 1/min"))),
         }
-        let message =
-            format!("{speed} 1/min: the spindle turns from {} to {} 1/min", range.min, range.max);
-        Err(refuse("spindle-range", message))
     }
 
     /// Tells the control the spindle that the source wants.

@@ -72,13 +72,14 @@ pub fn read(file_name: &str, text: &[u8], options: &Options) -> Result<Reading, 
     let mut last = Line { number: 0, text: b"" };
     while let Some(line) = lines.next() {
         if reader.obey_plain_goto(line.number, line.text) {
+            last = line;
             continue;
         }
         if line.text.len() <= record::LONGEST && line.text.iter().all(|c| is_blank(*c)) {
             continue;
         }
         last = line;
-        match joiner.record(line, &mut lines, &table::Words) {
+        match joiner.record(line, &mut lines) {
             Ok(record) => {
                 if let Err(fault) = reader.obey(&record) {
                     reader.report.fault(&record, *fault);

@@ -6,6 +6,7 @@
 
 use super::number;
 use super::report::Fault;
+use super::table::takes_text;
 use program::Diagnostic;
 
 /// The longest line and the longest joined record, bytes: a thousand times what any CAM system
@@ -196,12 +197,6 @@ pub(super) struct Joiner<'t> {
     spans: Vec<(usize, usize)>,
 }
 
-/// How a record's words are told apart; the joiner asks it where the major word of a line ends.
-pub(super) trait Vocabulary {
-    /// Whether `word` is a major word, and whether what follows it is free text.
-    fn takes_text(&self, word: &[u8]) -> Option<bool>;
-}
-
 impl<'t> Joiner<'t> {
     /// The record that starts on `first`; further lines are taken from `lines` as it asks for them.
     ///
@@ -211,7 +206,6 @@ impl<'t> Joiner<'t> {
         &'r mut self,
         first: Line<'t>,
         lines: &mut Lines<'t>,
-        vocabulary: &impl Vocabulary,
     ) -> Result<Record<'r>, Box<Diagnostic>>
     where
         't: 'r,
@@ -222,22 +216,18 @@ impl<'t> Joiner<'t> {
         self.spans.clear();
         too_long(first)?;
         self.pieces.push((0, first));
-        let (major, body, is_text) = split_major(first.text, vocabulary);
-        let mut end = first.text.len();
+        let Head { major, body, free_text } = head(first.text);
+        let is_text = free_text == Some(true);
         let mut text = first.text;
         if !is_text {
-            let (content, continued) = strip(first.text);
-            end = content;
+            let (content, continued) = strip(first.text, lines);
+            text = &first.text[..content];
             if continued {
-                self.joined.extend_from_slice(&first.text[..content]);
+                self.joined.extend_from_slice(text);
                 self.join(first, lines)?;
-                end = self.joined.len();
+                text = &self.joined;
             }
         }
-        if !self.joined.is_empty() {
-            text = &self.joined;
-        }
-        let text = text.get(..end).unwrap_or(text);
         let mut record = Record {
             line: first.number,
             text,
@@ -255,6 +245,11 @@ impl<'t> Joiner<'t> {
         record.spans = &self.spans;
         match result {
             Ok(()) => Ok(record),
+            // What follows a word that is not known need not be made of fields.
+            Err(_) if free_text.is_none() => {
+                record.fields = &[];
+                Ok(record)
+            }
             Err((from, to, message)) => {
                 record.spans = &[];
                 let spans = [(from, to)];
@@ -279,7 +274,7 @@ impl<'t> Joiner<'t> {
                 return Err(Box::new(too_long_error(first)));
             }
             self.pieces.push((self.joined.len(), next));
-            let (content, continued) = strip(next.text);
+            let (content, continued) = strip(next.text, lines);
             self.joined.extend_from_slice(&next.text[..content]);
             if !continued {
                 return Ok(());
@@ -300,13 +295,18 @@ fn too_long_error(line: Line) -> Diagnostic {
 }
 
 /// How many bytes of a line belong to its record, and whether the next line does too. A `$` at the end
-/// continues it, `$$` ends it; a comma at the end continues it too, as CATIA's records are printed.
-fn strip(text: &[u8]) -> (usize, bool) {
+/// continues it, `$$` ends it; a comma at the end continues it too, as CATIA's records are printed,
+/// where no record begins on the next line.
+fn strip(text: &[u8], lines: &Lines) -> (usize, bool) {
     let end = memchr::memmem::find(text, b"$$").unwrap_or(text.len());
     let content = trim_end(&text[..end]);
     match text[..content].last() {
         Some(b'$') => (content - 1, true),
-        Some(b',') => (content, true),
+        Some(b',') => {
+            let next = lines.clone().next().map(|line| head(line.text));
+            let begins = |next: Head| next.free_text.is_some() && next.major.0 < next.major.1;
+            (content, !next.is_some_and(begins))
+        }
         _ => (content, false),
     }
 }
@@ -321,34 +321,41 @@ pub(super) fn is_blank(c: u8) -> bool {
     c <= b' ' || c == 0x7f
 }
 
-/// Where the major word of a line is, where its body starts, and whether the body is text.
-fn split_major(text: &[u8], vocabulary: &impl Vocabulary) -> ((usize, usize), usize, bool) {
+/// How a line begins.
+struct Head {
+    /// Where its major word is; empty for a line of coordinates alone.
+    major: (usize, usize),
+    /// Where its body starts.
+    body: usize,
+    /// Whether the body is free text; `None` where the word is not known.
+    free_text: Option<bool>,
+}
+
+/// How `text` begins.
+fn head(text: &[u8]) -> Head {
     let start = text.iter().position(|c| !is_blank(*c)).unwrap_or(text.len());
-    if text[start..].starts_with(b"$$") {
-        return ((start, start + 2), start + 2, true);
-    }
-    if matches!(text.get(start), Some(b'0'..=b'9' | b'-' | b'+' | b'.')) {
-        // A line of coordinates alone: further points of the record before.
-        return ((start, start), start, false);
+    let head = |end: usize, body| {
+        let major = (start, end.max(start));
+        Head { major, body, free_text: takes_text(&text[start..end.max(start)]) }
+    };
+    match text.get(start) {
+        Some(b'$') if text[start..].starts_with(b"$$") => return head(start + 2, start + 2),
+        // Coordinates alone: further points of the record before.
+        Some(b'0'..=b'9' | b'-' | b'+' | b'.') => return head(start, start),
+        _ => {}
     }
     let slash = memchr::memchr(b'/', text);
-    if let Some(slash) = slash {
-        let end = start.max(trim_end(&text[..slash]));
-        if let Some(is_text) = vocabulary.takes_text(&text[start..end]) {
-            return ((start, end), slash + 1, is_text);
-        }
+    let by_slash = slash.map(|slash| head(trim_end(&text[..slash]), slash + 1));
+    if let Some(found @ Head { free_text: Some(_), .. }) = by_slash {
+        return found;
     }
     // Words without a slash, and the old form of the text records: `PARTNO a name`.
-    let is_part = |c: &u8| c.is_ascii_alphanumeric() || matches!(c, b'-' | b'_' | b'.' | b'+');
-    let word = text[start..].iter().position(|c| !is_part(c)).map_or(text.len(), |n| start + n);
-    if let Some(is_text) = vocabulary.takes_text(&text[start..word])
-        && (is_text || slash.is_none())
-    {
-        return ((start, word), word, is_text);
-    }
-    match slash {
-        Some(slash) => ((start, start.max(trim_end(&text[..slash]))), slash + 1, false),
-        None => ((start, word.max(start)), word, false),
+    let is_part = |c: &u8| c.is_ascii_alphanumeric() || matches!(c, b'-' | b'_');
+    let length = text[start..].iter().position(|c| !is_part(c)).unwrap_or(text.len() - start);
+    let by_word = head(start + length.max(1).min(text.len() - start), start + length);
+    match (by_slash, by_word.free_text) {
+        (Some(by_slash), None | Some(false)) => by_slash,
+        _ => by_word,
     }
 }
 

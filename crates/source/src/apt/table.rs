@@ -1,7 +1,7 @@
 //! The table from major word to handler. Each handler is headed by the syntax it takes.
 
 use super::Reader;
-use super::record::{Record, Vocabulary};
+use super::record::Record;
 use super::report::{Fault, Outcome};
 
 /// What becomes of a record.
@@ -130,13 +130,9 @@ pub(super) fn find(word: &[u8]) -> Option<Use> {
         .map(|(_, use_)| *use_)
 }
 
-/// The words of [`WORDS`].
-pub(super) struct Words;
-
-impl Vocabulary for Words {
-    fn takes_text(&self, word: &[u8]) -> Option<bool> {
-        find(word).map(|use_| matches!(use_, Text(_) | IgnoredText))
-    }
+/// Whether `word` is a major word, and whether what follows it is free text.
+pub(super) fn takes_text(word: &[u8]) -> Option<bool> {
+    find(word).map(|use_| matches!(use_, Text(_) | IgnoredText))
 }
 
 impl Reader {
@@ -153,6 +149,11 @@ impl Reader {
         {
             return Err(Fault::new("after-the-end", "a record after the end of the program")
                 .help("post the programs of this file one by one"));
+        }
+        let ignored = !matches!(known, Some(By(_) | Text(_) | Refused));
+        if ignored && (0..record.fields.len()).any(|i| record.is(i, "GOTO")) {
+            let message = "a GOTO within a record that is ignored";
+            return Err(Fault::new("malformed", message).help("write it on a line of its own"));
         }
         match known {
             Some(By(handler) | Text(handler)) => {

@@ -42,7 +42,7 @@ fn a_goto_that_is_not_one_is_refused() {
         ("GOTO/1,2,3,0,0,0", "zero-vector"),
         ("GOTO/1,2,3,1E-12,0,0", "zero-vector"),
         ("GOTO/1,2,3,0,0,", "malformed"),
-        // A comma at the end continues the record: the value after it has to come.
+        // A comma at the end continues the record, but not into another one.
         ("GOTO/1,2,3\nGOTO/,5,", "malformed"),
         ("GOTO/1,2,1000001", "out-of-range"),
         ("GOTO/1,2,1e308", "out-of-range"),

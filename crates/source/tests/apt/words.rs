@@ -1,6 +1,6 @@
 //! Names, comments, unknown words, and the published sample of CATIA.
 
-use crate::support::{HEAD, HEAD_OPS, at, ops, reading};
+use crate::support::{HEAD, HEAD_OPS, at, error, ops, reading, warnings};
 use geom::Vec3;
 use program::{ArcTo, Feed, Op, Spindle, Tool};
 use toolpost_source::apt::{Dialect, Options, read};
@@ -79,8 +79,8 @@ fn words_for_people_stay_words() {
 #[test]
 fn words_that_are_not_known_are_one_warning_each() {
     let text = format!("{HEAD}FOO/1\nBAR\nFOO/2\nGOTO/1,2,3\nAUXFUN/8\nFINI");
-    let warnings = reading(&text).warnings;
-    let seen: Vec<(&str, u32, u32)> = warnings.iter().map(|w| (w.rule, w.line, w.count)).collect();
+    let found = reading(&text).warnings;
+    let seen: Vec<(&str, u32, u32)> = found.iter().map(|w| (w.rule, w.line, w.count)).collect();
     assert_eq!(seen, [("unknown-word", 5, 2), ("unknown-word", 6, 1), ("ignored-word", 9, 1)]);
     let strict = read("s.apt", text.as_bytes(), &Options { strict: true }).unwrap_err();
     assert!(strict.iter().all(|e| e.is_error()));
@@ -88,6 +88,14 @@ fn words_that_are_not_known_are_one_warning_each() {
         strict.iter().map(|e| (e.rule, e.line)).collect::<Vec<_>>()[..2],
         [("unknown-word", 5), ("unknown-word", 6)]
     );
+    for text in ["FOO/it's 5 o'clock (yes", "(remark)", "%", "FOO 1 2 3", "FOO/1,"] {
+        assert_eq!(warnings(&format!("{text}\nGOTO/1,2,3")), ["unknown-word"], "{text}");
+    }
+    for text in
+        ["FOO/1,$\nGOTO/1,2,3", "INTOL/.1,$\nGOTO/1,2,3", "N10 GOTO/1,2,3", "FOO GOTO/1,2,3"]
+    {
+        assert_eq!(error(text), "malformed", "{text}");
+    }
     let silent = "PAINT/COLOR,1\nDISPLY/ON\nINTOL/0.01\nCSI_ANY/X\nMACHIN/ANY, 3\nREWIND/0";
     assert_eq!(ops(&format!("{silent}\nGOTO/1,2,3")), [Op::Line(at(1., 2., 3.))]);
 }
