@@ -112,6 +112,20 @@ struct Axis {
     unlimited: bool,
 }
 
+/// The positions of one axis that differ by whole turns.
+struct Turns {
+    first: f64,
+    count: usize,
+    min: f64,
+    max: f64,
+}
+
+impl Turns {
+    fn at(&self, i: usize) -> f64 {
+        (self.first + 360.0 * i as f64).max(self.min).min(self.max)
+    }
+}
+
 /// What a target can be in: positions of the outer and the inner axis.
 #[derive(Clone, Copy, Debug)]
 struct States {
@@ -122,6 +136,7 @@ struct States {
 }
 
 /// The best way to each state of a target.
+#[derive(Clone)]
 struct Front {
     states: States,
     cost: [f64; STATES],
@@ -154,7 +169,10 @@ struct Search<'a> {
     machine: &'a Machine,
     known: bool,
     plan: Plan,
-    front: Option<Front>,
+    /// Of the last target that is not singular; without states before the first.
+    front: Box<Front>,
+    /// Of the target looked at; they change places from target to target.
+    next: Box<Front>,
     /// Tool axis of the last target.
     last: Option<Vec3>,
     /// The last target of the singular run just read at which the free axis may turn out of the cut.
@@ -180,16 +198,18 @@ impl<'a> Search<'a> {
             cells: Vec::with_capacity(expected),
             rewinds: Vec::new(),
         };
-        let front = start.map(|degrees| {
-            let axis = machine.axis_at(degrees);
-            let singular = plan.chain.bearings(axis).map_or(true, |bearings| bearings.free);
-            let states = States { pairs: [held; STATES], count: 1, first: 1 };
-            Front { states, cost: [0.0; STATES], axis, index: if singular { -2 } else { -1 } }
-        });
+        let mut front = Box::new(Front::empty());
+        if let Some(degrees) = start {
+            front.axis = machine.axis_at(degrees);
+            let bearings = plan.chain.bearings(front.axis);
+            front.index = if bearings.map_or(true, |b| b.free()) { -2 } else { -1 };
+            front.states = States { pairs: [held; STATES], count: 1, first: 1 };
+        }
         Search {
             machine,
             known: start.is_some(),
             plan,
+            next: front.clone(),
             front,
             last: None,
             turn_at: None,
@@ -209,8 +229,10 @@ impl<'a> Search<'a> {
                     .into());
             }
             if arc || (last == target.axis && target.kind == TargetKind::Feed) {
-                let link = SAME;
-                self.plan.cells.push(Cell { link, ..cell });
+                if !cell.bearings.free() {
+                    self.front.index = index as isize;
+                }
+                self.plan.cells.push(Cell { link: SAME, ..cell });
                 return Ok(());
             }
         }
@@ -220,7 +242,7 @@ impl<'a> Search<'a> {
         let mut cell = Cell { bearings, link: SAME };
         // The way to the first target is not cut, unless it follows on the operation before.
         let approach = target.kind == TargetKind::Rapid || (index == 0 && !self.known);
-        if bearings.free {
+        if bearings.free() {
             if approach {
                 self.turn_at = Some(index);
             }
@@ -242,87 +264,43 @@ impl<'a> Search<'a> {
         bearings: &Bearings,
         approach: bool,
     ) -> Result<u32, Box<Diagnostic>> {
-        let states = self.plan.states(bearings);
-        if states.count == 0 {
+        self.plan.states(bearings, &mut self.next.states);
+        if self.next.states.count == 0 {
             return Err(self.out_of_travel(target, bearings));
         }
+        (self.next.axis, self.next.index) = (target.axis, index as isize);
         let turn_at = self.turn_at.take();
         if let Some(cell) = turn_at.and_then(|at| self.plan.cells.get_mut(at)) {
             cell.link |= TURN;
         }
-        let index = index as isize;
-        let mut next = Front { states, cost: [0.0; STATES], axis: target.axis, index };
         let loose = approach || turn_at.is_some();
-        // The first pose decides the solution; how the axes get there counts for little.
-        let opens = self.front.as_ref().is_none_or(|front| front.index < 0);
-        let mut link = SAME;
-        if opens && loose {
-            for (pair, cost) in states.pairs.iter().zip(&mut next.cost).take(states.count) {
-                let misses = self.machine.misses_preference(self.plan.chain.spread(*pair));
-                *cost = if misses { PREFERENCE } else { 0.0 }
-                    + APPROACH * self.plan.travel(&self.plan.start, pair).0;
-            }
-        } else if let Some(mut front) = self.front.take() {
-            link = match self.relax(&front, &mut next, loose) {
+        let link = if loose && self.front.index < 0 {
+            self.open();
+            SAME
+        } else {
+            match self.plan.relax(self.machine, &self.front, &mut self.next, loose) {
                 Some(link) => link,
-                None => self.rewind(target, &mut front, &mut next)?,
-            };
-        }
-        self.front = Some(next);
+                None => self.rewind(target)?,
+            }
+        };
+        std::mem::swap(&mut self.front, &mut self.next);
         Ok(link)
     }
 
-    /// The best way to each state of `next` from those of `front`; `None` where none can be reached.
-    /// Out of the cut (`loose`) every way is open.
-    fn relax(&self, front: &Front, next: &mut Front, loose: bool) -> Option<u32> {
-        let touching = front.touches(next);
-        let mut link = 0;
-        let mut reached = false;
-        for j in 0..next.states.count {
-            let (mut best, mut from) = (f64::INFINITY, 0);
-            for k in 0..front.states.count {
-                // Those of the same solution first: they are near.
-                let i = if j < next.states.first { k } else { front.states.count - 1 - k };
-                let a = &front.states.pairs[i];
-                let (travel, farthest) = self.plan.travel(a, &next.states.pairs[j]);
-                let cost = front.cost[i] + travel;
-                if cost < best {
-                    let same = (i < front.states.first) == (j < next.states.first);
-                    let open = loose
-                        || (farthest <= 180.0 + SLACK
-                            && (!touching
-                                || (same && travel <= 90.0)
-                                || self.stays_near(front, i, next, j)));
-                    if open {
-                        (best, from) = (cost, i as u32);
-                    }
-                }
-            }
-            next.cost[j] = best;
-            reached |= best < f64::INFINITY;
-            link |= from << (BITS * j as u32);
+    /// The first pose decides the solution; how the axes get there counts for little.
+    fn open(&mut self) {
+        let Front { states, cost, .. } = &mut *self.next;
+        for (pair, cost) in states.pairs.iter().zip(cost) {
+            let misses = self.machine.misses_preference(self.plan.chain.spread(*pair));
+            *cost = if misses { PREFERENCE } else { 0.0 }
+                + APPROACH * self.plan.travel(&self.plan.start, pair).0;
         }
-        reached.then_some(link)
-    }
-
-    /// Whether the tool, half way from one position to the other, is still between the two tool axes.
-    fn stays_near(&self, front: &Front, i: usize, next: &Front, j: usize) -> bool {
-        let (from, to) = (&front.states.pairs[i], &next.states.pairs[j]);
-        let half = [0, 1].map(|k| from[k] + self.plan.axes[k].way(from[k], to[k]) / 2.0);
-        let axis = self.machine.axis_at(self.plan.chain.spread(half));
-        let turn = angle_between(front.axis, next.axis);
-        let swing = angle_between(axis, front.axis).max(angle_between(axis, next.axis));
-        swing <= turn + SWING
     }
 
     /// No way leads on: the tool leaves the part before `target` in the best state it can have
     /// there, and comes in again in any other.
-    fn rewind(
-        &mut self,
-        target: &Target,
-        front: &mut Front,
-        next: &mut Front,
-    ) -> Result<u32, Box<Diagnostic>> {
+    fn rewind(&mut self, target: &Target) -> Result<u32, Box<Diagnostic>> {
+        let (front, next) = (&mut *self.front, &mut *self.next);
         let best = front.best();
         let left = front.states.pairs[best];
         if !front.touches(next) {
@@ -336,14 +314,14 @@ impl<'a> Search<'a> {
         } else if let (true, Ok(bearings)) = (front.index < 0, self.plan.chain.bearings(front.axis))
         {
             // Of the pose before the operation only the state taken was looked at so far.
-            front.states = self.plan.states(&bearings);
+            self.plan.states(&bearings, &mut front.states);
         }
         for (pair, cost) in front.states.pairs.iter().zip(&mut front.cost) {
             // Of ways of the same length the one that leaves most travel on both sides.
             let off_center: f64 = (0..2).map(|k| self.plan.axes[k].off_center(pair[k])).sum();
             *cost = self.plan.travel(&left, pair).0 + 1e-3 * off_center;
         }
-        let link = self.relax(front, next, false).ok_or_else(|| {
+        let link = self.plan.relax(self.machine, front, next, false).ok_or_else(|| {
             let message = "no way of the rotary axes through this move stays within their travel";
             Diagnostic::error("axis-limit", message)
                 .help("turn the part on the table, or take a machine with more rotary travel")
@@ -357,10 +335,10 @@ impl<'a> Search<'a> {
 
     /// Follows the links back from the best end.
     fn finish(mut self) -> Plan {
-        let mut state = self.front.as_ref().map_or(0, Front::best) as u32;
+        let mut state = self.front.best() as u32;
         let mut rewinds = self.plan.rewinds.iter_mut().zip(&self.turns_back).rev().peekable();
         for (index, cell) in self.plan.cells.iter_mut().enumerate().rev() {
-            if cell.bearings.free {
+            if cell.bearings.free() {
                 continue;
             }
             let before = (cell.link >> (BITS * state)) & (STATES as u32 - 1);
@@ -380,7 +358,7 @@ impl<'a> Search<'a> {
                 let turns = self.plan.chain.solution(bearings, family);
                 let degrees = self.plan.chain.spread(turns.map(|turn| turn.degrees()));
                 let axes = self.machine.rotary.iter();
-                let free = bearings.free.then_some(self.plan.chain.places[0]);
+                let free = bearings.free().then_some(self.plan.chain.places[0]);
                 axes.filter(|axis| Some(axis.index()) != free)
                     .map(|axis| format!("{} {:.3}", axis.letter, degrees[axis.index()]))
                     .collect::<Vec<_>>()
@@ -461,16 +439,15 @@ impl Axis {
     }
 
     /// The positions within the travel that are `base` (−180, 180] but for whole turns.
-    fn turns(&self, base: f64) -> impl Iterator<Item = f64> + use<> {
+    fn turns(&self, base: f64) -> Turns {
         let Axis { min, max, unlimited } = *self;
-        let (first, count) = if unlimited {
-            (base, 1)
-        } else {
-            let first = up((min - base - SLACK) / 360.0);
-            let last = -up((base - max - SLACK) / 360.0);
-            (base + 360.0 * first, (last - first + 1.0) as usize)
-        };
-        (0..count.min(STATES)).map(move |i| (first + 360.0 * i as f64).max(min).min(max))
+        if unlimited {
+            return Turns { first: base, count: 1, min, max };
+        }
+        let first = up((min - base - SLACK) / 360.0);
+        let last = -up((base - max - SLACK) / 360.0);
+        let count = (last - first + 1.0) as usize;
+        Turns { first: base + 360.0 * first, count: count.min(STATES), min, max }
     }
 
     /// The position within the travel nearest to `position`.
@@ -491,7 +468,16 @@ impl Axis {
     }
 }
 
+impl States {
+    const EMPTY: States = States { pairs: [[0.0; 2]; STATES], count: 0, first: 0 };
+}
+
 impl Front {
+    /// Before the first target, with nothing known of where the axes stand.
+    fn empty() -> Front {
+        Front { states: States::EMPTY, cost: [0.0; STATES], axis: Vec3::Z, index: -1 }
+    }
+
     /// Whether no singular pose lies between the two.
     fn touches(&self, next: &Front) -> bool {
         self.index + 1 == next.index
@@ -529,14 +515,16 @@ impl Plan {
         Steps { plan: self, index: 0, rewinds: &self.rewinds, last: self.start }
     }
 
-    fn states(&self, bearings: &Bearings) -> States {
-        let mut states = States { pairs: [[0.0; 2]; STATES], count: 0, first: 0 };
+    /// Writes the states that the travel leaves into `states`.
+    fn states(&self, bearings: &Bearings, states: &mut States) {
+        states.count = 0;
         for family in 0..self.chain.families() {
-            let [outer, inner] = self.chain.solution(bearings, family).map(|turn| turn.degrees());
-            for outer in self.axes[0].turns(outer) {
-                for inner in self.axes[1].turns(inner) {
+            let pair = self.chain.solution(bearings, family).map(|turn| turn.degrees());
+            let [outer, inner] = [0, 1].map(|k| self.axes[k].turns(pair[k]));
+            for i in 0..outer.count {
+                for j in 0..inner.count {
                     if let Some(pair) = states.pairs.get_mut(states.count) {
-                        *pair = [outer, inner];
+                        *pair = [outer.at(i), inner.at(j)];
                         states.count += 1;
                     }
                 }
@@ -545,7 +533,65 @@ impl Plan {
                 states.first = states.count;
             }
         }
-        states
+    }
+
+    /// The best way to each state of `next` from those of `front`; `None` where none can be reached.
+    /// Out of the cut (`loose`) every way is open.
+    fn relax(
+        &self,
+        machine: &Machine,
+        front: &Front,
+        next: &mut Front,
+        loose: bool,
+    ) -> Option<u32> {
+        let touching = front.touches(next);
+        let mut link = 0;
+        let mut reached = false;
+        for j in 0..next.states.count {
+            let (mut best, mut from) = (f64::INFINITY, 0);
+            for k in 0..front.states.count {
+                // Those of the same solution first: they are near.
+                let i = if j < next.states.first { k } else { front.states.count - 1 - k };
+                if front.cost[i] >= best {
+                    continue;
+                }
+                let a = &front.states.pairs[i];
+                let (travel, farthest) = self.travel(a, &next.states.pairs[j]);
+                let cost = front.cost[i] + travel;
+                if cost < best {
+                    let same = (i < front.states.first) == (j < next.states.first);
+                    let open = loose
+                        || (farthest <= 180.0 + SLACK
+                            && (!touching
+                                || (same && travel <= 90.0)
+                                || self.stays_near(machine, front, i, next, j)));
+                    if open {
+                        (best, from) = (cost, i as u32);
+                    }
+                }
+            }
+            next.cost[j] = best;
+            reached |= best < f64::INFINITY;
+            link |= from << (BITS * j as u32);
+        }
+        reached.then_some(link)
+    }
+
+    /// Whether the tool, half way from one position to the other, is still between the two tool axes.
+    fn stays_near(
+        &self,
+        machine: &Machine,
+        front: &Front,
+        i: usize,
+        next: &Front,
+        j: usize,
+    ) -> bool {
+        let (from, to) = (&front.states.pairs[i], &next.states.pairs[j]);
+        let half = [0, 1].map(|k| from[k] + self.axes[k].way(from[k], to[k]) / 2.0);
+        let axis = machine.axis_at(self.chain.spread(half));
+        let turn = angle_between(front.axis, next.axis);
+        let swing = angle_between(axis, front.axis).max(angle_between(axis, next.axis));
+        swing <= turn + SWING
     }
 
     /// The position of the inner axis in a singular pose, where both solutions have the same, in the
@@ -553,7 +599,8 @@ impl Plan {
     fn inner(&self, bearings: &Bearings, from: f64) -> Option<f64> {
         let base = self.chain.solution(bearings, 0)[1].degrees();
         let far = |position: f64| self.axes[1].way(from, position).abs();
-        self.axes[1].turns(base).min_by(|a, b| far(*a).total_cmp(&far(*b)))
+        let turns = self.axes[1].turns(base);
+        (0..turns.count).map(|i| turns.at(i)).min_by(|a, b| far(*a).total_cmp(&far(*b)))
     }
 
     /// The rotary travel between two positions, and that of the axis that turns most, degrees.
@@ -564,7 +611,9 @@ impl Plan {
 
     /// The positions settled for a target that is not singular.
     fn settled(&self, cell: &Cell) -> [f64; 2] {
-        self.states(&cell.bearings).pairs[cell.link as usize % STATES]
+        let mut states = States::EMPTY;
+        self.states(&cell.bearings, &mut states);
+        states.pairs[cell.link as usize % STATES]
     }
 }
 
@@ -587,7 +636,7 @@ impl Steps<'_> {
     fn singular(&self, cell: &Cell) -> [f64; 2] {
         let mut outer = self.last[0];
         if cell.link & TURN != 0 {
-            let next = self.plan.cells[self.index..].iter().find(|cell| !cell.bearings.free);
+            let next = self.plan.cells[self.index..].iter().find(|cell| !cell.bearings.free());
             outer = next.map_or(outer, |cell| self.plan.settled(cell)[0]);
         }
         [outer, self.plan.inner(&cell.bearings, self.last[1]).unwrap_or(self.last[1])]
@@ -607,7 +656,7 @@ impl Iterator for Steps<'_> {
             self.last = self.wound(first.pair);
             rewind = Some(self.plan.chain.spread(self.last));
         }
-        let pair = if cell.bearings.free { self.singular(cell) } else { self.plan.settled(cell) };
+        let pair = if cell.bearings.free() { self.singular(cell) } else { self.plan.settled(cell) };
         self.last = self.wound(pair);
         self.index += 1;
         Some(Step { degrees: self.plan.chain.spread(self.last), rewind })
