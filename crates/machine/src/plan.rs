@@ -50,6 +50,8 @@ pub enum TargetKind {
 pub struct Plan {
     chain: Chain,
     axes: [Axis; 2],
+    /// For each state of a solution the turn of the outer and of the inner axis.
+    turns: Vec<[f64; 2]>,
     start: [f64; 2],
     cells: Vec<Cell>,
     /// Where the travel leaves no way on, in order.
@@ -77,8 +79,10 @@ pub struct Step {
     pub rewind: Option<[f64; 3]>,
 }
 
-/// The most states of a target: two solutions in four turns.
-const STATES: usize = 8;
+/// The most turns in which a solution may stand, those of the two axes multiplied.
+const TURNS: usize = 4;
+/// The most states of a target: two solutions.
+const STATES: usize = 2 * TURNS;
 /// Bits that name a state.
 const BITS: u32 = 3;
 /// Every state follows from the state of the same number.
@@ -112,28 +116,9 @@ struct Axis {
     unlimited: bool,
 }
 
-/// The positions of one axis that differ by whole turns.
-struct Turns {
-    first: f64,
-    count: usize,
-    min: f64,
-    max: f64,
-}
-
-impl Turns {
-    fn at(&self, i: usize) -> f64 {
-        (self.first + 360.0 * i as f64).max(self.min).min(self.max)
-    }
-}
-
-/// What a target can be in: positions of the outer and the inner axis.
-#[derive(Clone, Copy, Debug)]
-struct States {
-    pairs: [[f64; 2]; STATES],
-    count: usize,
-    /// How many of them are of the first solution; they come first.
-    first: usize,
-}
+/// What a target can be in: positions of the outer and the inner axis by the number of the state, the
+/// first solution from 0 on, the second from [`TURNS`] on; infinite where there is no such state.
+type States = [[f64; 2]; STATES];
 
 /// The best way to each state of a target.
 #[derive(Clone)]
@@ -178,7 +163,7 @@ struct Search<'a> {
     /// The last target of the singular run just read at which the free axis may turn out of the cut.
     turn_at: Option<usize>,
     /// For each rewind the state in which the tool leaves the part, and those in which it can come in.
-    turns_back: Vec<(u32, [[f64; 2]; STATES])>,
+    turns_back: Vec<(u32, States)>,
 }
 
 impl<'a> Search<'a> {
@@ -186,6 +171,8 @@ impl<'a> Search<'a> {
         let degrees = start.unwrap_or_default();
         let chain = Chain::new(machine, degrees);
         let axes = Axis::of(machine, &chain, degrees);
+        let [outer, inner] = axes.map(|axis| axis.turns() as u32);
+        let turns = (0..outer).flat_map(|i| (0..inner).map(move |j| [i, j].map(f64::from)));
         let held = chain.gather(degrees);
         let start_pair = match start {
             Some(_) => held,
@@ -194,6 +181,7 @@ impl<'a> Search<'a> {
         let plan = Plan {
             chain,
             axes,
+            turns: turns.take(TURNS).collect(),
             start: start_pair,
             cells: Vec::with_capacity(expected),
             rewinds: Vec::new(),
@@ -203,7 +191,7 @@ impl<'a> Search<'a> {
             front.axis = machine.axis_at(degrees);
             let bearings = plan.chain.bearings(front.axis);
             front.index = if bearings.map_or(true, |b| b.free()) { -2 } else { -1 };
-            front.states = States { pairs: [held; STATES], count: 1, first: 1 };
+            (front.states[0], front.cost[0]) = (held, 0.0);
         }
         Search {
             machine,
@@ -265,7 +253,7 @@ impl<'a> Search<'a> {
         approach: bool,
     ) -> Result<u32, Box<Diagnostic>> {
         self.plan.states(bearings, &mut self.next.states);
-        if self.next.states.count == 0 {
+        if !self.next.states.iter().any(exists) {
             return Err(self.out_of_travel(target, bearings));
         }
         (self.next.axis, self.next.index) = (target.axis, index as isize);
@@ -290,10 +278,10 @@ impl<'a> Search<'a> {
     /// The first pose decides the solution; how the axes get there counts for little.
     fn open(&mut self) {
         let Front { states, cost, .. } = &mut *self.next;
-        for (pair, cost) in states.pairs.iter().zip(cost) {
-            let misses = self.machine.misses_preference(self.plan.chain.spread(*pair));
+        for (state, cost) in states.iter().zip(cost) {
+            let misses = self.machine.misses_preference(self.plan.chain.spread(*state));
             *cost = if misses { PREFERENCE } else { 0.0 }
-                + APPROACH * self.plan.travel(&self.plan.start, pair).0;
+                + APPROACH * self.plan.travel(&self.plan.start, state).0;
         }
     }
 
@@ -302,7 +290,7 @@ impl<'a> Search<'a> {
     fn rewind(&mut self, target: &Target) -> Result<u32, Box<Diagnostic>> {
         let (front, next) = (&mut *self.front, &mut *self.next);
         let best = front.best();
-        let left = front.states.pairs[best];
+        let left = front.states[best];
         if !front.touches(next) {
             // Between them lies a singular pose: there the free axis comes in where it is needed.
             front.states = next.states;
@@ -310,16 +298,16 @@ impl<'a> Search<'a> {
                 Some(cell) => self.plan.inner(&cell.bearings, left[1]).unwrap_or(left[1]),
                 None => left[1],
             };
-            front.states.pairs.iter_mut().for_each(|pair| pair[1] = inner);
+            front.states.iter_mut().for_each(|state| state[1] = inner);
         } else if let (true, Ok(bearings)) = (front.index < 0, self.plan.chain.bearings(front.axis))
         {
             // Of the pose before the operation only the state taken was looked at so far.
             self.plan.states(&bearings, &mut front.states);
         }
-        for (pair, cost) in front.states.pairs.iter().zip(&mut front.cost) {
+        for (state, cost) in front.states.iter().zip(&mut front.cost) {
             // Of ways of the same length the one that leaves most travel on both sides.
-            let off_center: f64 = (0..2).map(|k| self.plan.axes[k].off_center(pair[k])).sum();
-            *cost = self.plan.travel(&left, pair).0 + 1e-3 * off_center;
+            let off_center: f64 = (0..2).map(|k| self.plan.axes[k].off_center(state[k])).sum();
+            *cost = self.plan.travel(&left, state).0 + 1e-3 * off_center;
         }
         let link = self.plan.relax(self.machine, front, next, false).ok_or_else(|| {
             let message = "no way of the rotary axes through this move stays within their travel";
@@ -329,7 +317,7 @@ impl<'a> Search<'a> {
         })?;
         let (index, line) = (self.plan.cells.len(), target.line);
         self.plan.rewinds.push(Rewind { index, line, pair: left });
-        self.turns_back.push((best as u32, front.states.pairs));
+        self.turns_back.push((best as u32, front.states));
         Ok(link)
     }
 
@@ -344,8 +332,8 @@ impl<'a> Search<'a> {
             let before = (cell.link >> (BITS * state)) & (STATES as u32 - 1);
             cell.link = state;
             state = before;
-            if let Some((rewind, (left, pairs))) = rewinds.next_if(|(r, _)| r.index == index) {
-                rewind.pair = pairs[before as usize];
+            if let Some((rewind, (left, states))) = rewinds.next_if(|(r, _)| r.index == index) {
+                rewind.pair = states[before as usize];
                 state = *left;
             }
         }
@@ -403,6 +391,11 @@ fn up(x: f64) -> f64 {
     if whole < x { whole + 1.0 } else { whole }
 }
 
+/// Whether there is such a state.
+fn exists(state: &[f64; 2]) -> bool {
+    state[0] + state[1] < f64::INFINITY
+}
+
 impl Axis {
     /// The travel in which the operation is planned. Where an axis turns so often that its states
     /// would be too many, it is planned in the turns around where it stands.
@@ -415,22 +408,22 @@ impl Axis {
             }
         }
         let start = chain.gather(start);
-        let most = STATES as f64 / 2.0;
-        if axes[0].states() * axes[1].states() > most {
-            let other = if axes[1].states() < most { axes[1].states() } else { 2.0 };
+        let most = TURNS as f64;
+        if axes[0].turns() * axes[1].turns() > most {
+            let other = if axes[1].turns() < most { axes[1].turns() } else { 2.0 };
             axes[0] = axes[0].around(start[0], (most / other).floor());
-            axes[1] = axes[1].around(start[1], (most / axes[0].states()).floor());
+            axes[1] = axes[1].around(start[1], (most / axes[0].turns()).floor());
         }
         axes
     }
 
     /// In how many turns a position may stand, at the most.
-    fn states(&self) -> f64 {
+    fn turns(&self) -> f64 {
         if self.unlimited { 1.0 } else { ((self.max - self.min + SLACK) / 360.0).floor() + 1.0 }
     }
 
     fn around(self, position: f64, turns: f64) -> Axis {
-        if self.states() <= turns {
+        if self.turns() <= turns {
             return self;
         }
         let width = 360.0 * turns - 1e-3;
@@ -438,16 +431,14 @@ impl Axis {
         Axis { min, max: min + width, ..self }
     }
 
-    /// The positions within the travel that are `base` (−180, 180] but for whole turns.
-    fn turns(&self, base: f64) -> Turns {
-        let Axis { min, max, unlimited } = *self;
-        if unlimited {
-            return Turns { first: base, count: 1, min, max };
+    /// The position that is `base` but for whole turns, in turn `turn` of those that the travel has for
+    /// it; infinite where it has no such turn.
+    fn position(&self, base: f64, turn: f64) -> f64 {
+        if self.unlimited {
+            return base;
         }
-        let first = up((min - base - SLACK) / 360.0);
-        let last = -up((base - max - SLACK) / 360.0);
-        let count = (last - first + 1.0) as usize;
-        Turns { first: base + 360.0 * first, count: count.min(STATES), min, max }
+        let position = base + 360.0 * (up((self.min - base - SLACK) / 360.0) + turn);
+        if position > self.max + SLACK { f64::INFINITY } else { self.nearest(position) }
     }
 
     /// The position within the travel nearest to `position`.
@@ -468,14 +459,11 @@ impl Axis {
     }
 }
 
-impl States {
-    const EMPTY: States = States { pairs: [[0.0; 2]; STATES], count: 0, first: 0 };
-}
-
 impl Front {
     /// Before the first target, with nothing known of where the axes stand.
     fn empty() -> Front {
-        Front { states: States::EMPTY, cost: [0.0; STATES], axis: Vec3::Z, index: -1 }
+        let states = [[f64::INFINITY; 2]; STATES];
+        Front { states, cost: [f64::INFINITY; STATES], axis: Vec3::Z, index: -1 }
     }
 
     /// Whether no singular pose lies between the two.
@@ -485,7 +473,7 @@ impl Front {
 
     /// The state that is reached best.
     fn best(&self) -> usize {
-        let costs = self.cost.iter().take(self.states.count).enumerate();
+        let costs = self.cost.iter().enumerate();
         costs.min_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(state, _)| state)
     }
 }
@@ -517,22 +505,21 @@ impl Plan {
 
     /// Writes the states that the travel leaves into `states`.
     fn states(&self, bearings: &Bearings, states: &mut States) {
-        states.count = 0;
-        for family in 0..self.chain.families() {
-            let pair = self.chain.solution(bearings, family).map(|turn| turn.degrees());
-            let [outer, inner] = [0, 1].map(|k| self.axes[k].turns(pair[k]));
-            for i in 0..outer.count {
-                for j in 0..inner.count {
-                    if let Some(pair) = states.pairs.get_mut(states.count) {
-                        *pair = [outer.at(i), inner.at(j)];
-                        states.count += 1;
-                    }
-                }
-            }
-            if family == 0 {
-                states.first = states.count;
+        for (family, states) in
+            states.chunks_exact_mut(TURNS).enumerate().take(self.chain.families())
+        {
+            let base = self.chain.solution(bearings, family).map(|turn| turn.degrees());
+            for (state, turns) in states.iter_mut().zip(&self.turns) {
+                *state = [0, 1].map(|k| self.axes[k].position(base[k], turns[k]));
             }
         }
+    }
+
+    /// The positions settled for a target that is not singular.
+    fn settled(&self, cell: &Cell) -> [f64; 2] {
+        let (family, turn) = (cell.link as usize / TURNS, cell.link as usize % TURNS);
+        let base = self.chain.solution(&cell.bearings, family).map(|turn| turn.degrees());
+        [0, 1].map(|k| self.axes[k].position(base[k], self.turns[turn][k]))
     }
 
     /// The best way to each state of `next` from those of `front`; `None` where none can be reached.
@@ -545,28 +532,30 @@ impl Plan {
         loose: bool,
     ) -> Option<u32> {
         let touching = front.touches(next);
+        let (families, turns) = (self.chain.families(), self.turns.len());
         let mut link = 0;
         let mut reached = false;
-        for j in 0..next.states.count {
+        for j in (0..families).flat_map(|family| (0..turns).map(move |k| TURNS * family + k)) {
             let (mut best, mut from) = (f64::INFINITY, 0);
-            for k in 0..front.states.count {
-                // Those of the same solution first: they are near.
-                let i = if j < next.states.first { k } else { front.states.count - 1 - k };
-                if front.cost[i] >= best {
-                    continue;
-                }
-                let a = &front.states.pairs[i];
-                let (travel, farthest) = self.travel(a, &next.states.pairs[j]);
-                let cost = front.cost[i] + travel;
-                if cost < best {
-                    let same = (i < front.states.first) == (j < next.states.first);
-                    let open = loose
-                        || (farthest <= 180.0 + SLACK
-                            && (!touching
-                                || (same && travel <= 90.0)
-                                || self.stays_near(machine, front, i, next, j)));
-                    if open {
-                        (best, from) = (cost, i as u32);
+            if exists(&next.states[j]) {
+                // The same solution first: it is near, and mostly settles it.
+                for other in 0..families {
+                    for i in (0..turns).map(|k| (TURNS * other) ^ (j / TURNS * TURNS) | k) {
+                        if front.cost[i] >= best {
+                            continue;
+                        }
+                        let (travel, farthest) = self.travel(&front.states[i], &next.states[j]);
+                        let cost = front.cost[i] + travel;
+                        let open = |near: bool| {
+                            loose
+                                || farthest <= 180.0 + SLACK
+                                    && (!touching
+                                        || near
+                                        || self.stays_near(machine, front, i, next, j))
+                        };
+                        if cost < best && open(other == 0 && travel <= 90.0) {
+                            (best, from) = (cost, i as u32);
+                        }
                     }
                 }
             }
@@ -586,7 +575,7 @@ impl Plan {
         next: &Front,
         j: usize,
     ) -> bool {
-        let (from, to) = (&front.states.pairs[i], &next.states.pairs[j]);
+        let (from, to) = (&front.states[i], &next.states[j]);
         let half = [0, 1].map(|k| from[k] + self.axes[k].way(from[k], to[k]) / 2.0);
         let axis = machine.axis_at(self.chain.spread(half));
         let turn = angle_between(front.axis, next.axis);
@@ -599,21 +588,15 @@ impl Plan {
     fn inner(&self, bearings: &Bearings, from: f64) -> Option<f64> {
         let base = self.chain.solution(bearings, 0)[1].degrees();
         let far = |position: f64| self.axes[1].way(from, position).abs();
-        let turns = self.axes[1].turns(base);
-        (0..turns.count).map(|i| turns.at(i)).min_by(|a, b| far(*a).total_cmp(&far(*b)))
+        let positions = (0..TURNS).map(|turn| self.axes[1].position(base, turn as f64));
+        let within = positions.filter(|position| position.is_finite());
+        within.min_by(|a, b| far(*a).total_cmp(&far(*b)))
     }
 
     /// The rotary travel between two positions, and that of the axis that turns most, degrees.
     fn travel(&self, from: &[f64; 2], to: &[f64; 2]) -> (f64, f64) {
         let [a, b] = [0, 1].map(|k| self.axes[k].way(from[k], to[k]).abs());
         (a + b, a.max(b))
-    }
-
-    /// The positions settled for a target that is not singular.
-    fn settled(&self, cell: &Cell) -> [f64; 2] {
-        let mut states = States::EMPTY;
-        self.states(&cell.bearings, &mut states);
-        states.pairs[cell.link as usize % STATES]
     }
 }
 
@@ -669,3 +652,13 @@ impl Iterator for Steps<'_> {
 }
 
 impl ExactSizeIterator for Steps<'_> {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_target_takes_16_bytes() {
+        assert_eq!(size_of::<Cell>(), 16);
+    }
+}
