@@ -50,8 +50,9 @@ pub enum TargetKind {
 pub struct Plan {
     chain: Chain,
     axes: [Axis; 2],
-    /// For each state of a solution the turn of the outer and of the inner axis.
-    turns: Vec<[f64; 2]>,
+    /// For each of the `in_turns` states of a solution the turn of the outer and of the inner axis.
+    turns: [[f64; 2]; TURNS],
+    in_turns: usize,
     start: [f64; 2],
     cells: Vec<Cell>,
     /// Where the travel leaves no way on, in order.
@@ -171,8 +172,11 @@ impl<'a> Search<'a> {
         let degrees = start.unwrap_or_default();
         let chain = Chain::new(machine, degrees);
         let axes = Axis::of(machine, &chain, degrees);
-        let [outer, inner] = axes.map(|axis| axis.turns() as u32);
-        let turns = (0..outer).flat_map(|i| (0..inner).map(move |j| [i, j].map(f64::from)));
+        let [outer, inner] = axes.map(|axis| axis.turns() as usize);
+        let mut turns = [[0.0; 2]; TURNS];
+        for (k, turns) in turns.iter_mut().enumerate() {
+            *turns = [k / inner.max(1), k % inner.max(1)].map(|turn| turn as f64);
+        }
         let held = chain.gather(degrees);
         let start_pair = match start {
             Some(_) => held,
@@ -181,7 +185,8 @@ impl<'a> Search<'a> {
         let plan = Plan {
             chain,
             axes,
-            turns: turns.take(TURNS).collect(),
+            turns,
+            in_turns: (outer * inner).min(TURNS),
             start: start_pair,
             cells: Vec::with_capacity(expected),
             rewinds: Vec::new(),
@@ -191,7 +196,7 @@ impl<'a> Search<'a> {
             front.axis = machine.axis_at(degrees);
             let bearings = plan.chain.bearings(front.axis);
             front.index = if bearings.map_or(true, |b| b.free()) { -2 } else { -1 };
-            (front.states[0], front.cost[0]) = (held, 0.0);
+            (front.states[0], front.cost[0]) = ([0, 1].map(|k| axes[k].base(held[k])), 0.0);
         }
         Search {
             machine,
@@ -278,10 +283,11 @@ impl<'a> Search<'a> {
     /// The first pose decides the solution; how the axes get there counts for little.
     fn open(&mut self) {
         let Front { states, cost, .. } = &mut *self.next;
+        let start = [0, 1].map(|k| self.plan.axes[k].base(self.plan.start[k]));
         for (state, cost) in states.iter().zip(cost) {
             let misses = self.machine.misses_preference(self.plan.chain.spread(*state));
-            *cost = if misses { PREFERENCE } else { 0.0 }
-                + APPROACH * self.plan.travel(&self.plan.start, state).0;
+            *cost =
+                if misses { PREFERENCE } else { 0.0 } + APPROACH * self.plan.travel(&start, state);
         }
     }
 
@@ -307,7 +313,7 @@ impl<'a> Search<'a> {
         for (state, cost) in front.states.iter().zip(&mut front.cost) {
             // Of ways of the same length the one that leaves most travel on both sides.
             let off_center: f64 = (0..2).map(|k| self.plan.axes[k].off_center(state[k])).sum();
-            *cost = self.plan.travel(&left, state).0 + 1e-3 * off_center;
+            *cost = self.plan.travel(&left, state) + 1e-3 * off_center;
         }
         let link = self.plan.relax(self.machine, front, next, false).ok_or_else(|| {
             let message = "no way of the rotary axes through this move stays within their travel";
@@ -454,6 +460,17 @@ impl Axis {
         if self.unlimited { way - 360.0 * up(way / 360.0 - 0.5 - 1e-9) } else { way }
     }
 
+    /// How far it is from one state to the other, degrees.
+    fn travel(&self, from: f64, to: f64) -> f64 {
+        let travel = (to - from).abs();
+        if self.unlimited { travel.min((360.0 - travel).abs()) } else { travel }
+    }
+
+    /// `position` as a state has it: without its whole turns where the axis turns for ever.
+    fn base(&self, position: f64) -> f64 {
+        if self.unlimited { self.way(0.0, position) } else { position }
+    }
+
     fn off_center(&self, position: f64) -> f64 {
         if self.unlimited { 0.0 } else { (position - (self.min + self.max) / 2.0).abs() }
     }
@@ -509,7 +526,7 @@ impl Plan {
             states.chunks_exact_mut(TURNS).enumerate().take(self.chain.families())
         {
             let base = self.chain.solution(bearings, family).map(|turn| turn.degrees());
-            for (state, turns) in states.iter_mut().zip(&self.turns) {
+            for (state, turns) in states.iter_mut().zip(&self.turns).take(self.in_turns) {
                 *state = [0, 1].map(|k| self.axes[k].position(base[k], turns[k]));
             }
         }
@@ -532,28 +549,30 @@ impl Plan {
         loose: bool,
     ) -> Option<u32> {
         let touching = front.touches(next);
-        let (families, turns) = (self.chain.families(), self.turns.len());
+        let (families, turns) = (self.chain.families(), self.in_turns);
         let mut link = 0;
         let mut reached = false;
         for j in (0..families).flat_map(|family| (0..turns).map(move |k| TURNS * family + k)) {
+            let to = &next.states[j];
+            if !exists(to) {
+                next.cost[j] = f64::INFINITY;
+                continue;
+            }
             let (mut best, mut from) = (f64::INFINITY, 0);
-            if exists(&next.states[j]) {
-                // The same solution first: it is near, and mostly settles it.
-                for other in 0..families {
-                    for i in (0..turns).map(|k| (TURNS * other) ^ (j / TURNS * TURNS) | k) {
-                        if front.cost[i] >= best {
-                            continue;
-                        }
-                        let (travel, farthest) = self.travel(&front.states[i], &next.states[j]);
-                        let cost = front.cost[i] + travel;
-                        let open = |near: bool| {
-                            loose
-                                || farthest <= 180.0 + SLACK
-                                    && (!touching
-                                        || near
-                                        || self.stays_near(machine, front, i, next, j))
-                        };
-                        if cost < best && open(other == 0 && travel <= 90.0) {
+            // The same solution first: it is near, and mostly settles it.
+            for first in [0, TURNS].into_iter().take(families).map(|other| other ^ (j & TURNS)) {
+                for i in first..first + turns {
+                    let state = &front.states[i];
+                    let travel = [0, 1].map(|k| self.axes[k].travel(state[k], to[k]));
+                    let cost = front.cost[i] + travel[0] + travel[1];
+                    if cost < best {
+                        let near = first == (j & TURNS) && travel[0] + travel[1] <= 90.0;
+                        let open = loose
+                            || travel[0].max(travel[1]) <= 180.0 + SLACK
+                                && (near
+                                    || !touching
+                                    || self.stays_near(machine, front, i, next, j));
+                        if open {
                             (best, from) = (cost, i as u32);
                         }
                     }
@@ -593,10 +612,9 @@ impl Plan {
         within.min_by(|a, b| far(*a).total_cmp(&far(*b)))
     }
 
-    /// The rotary travel between two positions, and that of the axis that turns most, degrees.
-    fn travel(&self, from: &[f64; 2], to: &[f64; 2]) -> (f64, f64) {
-        let [a, b] = [0, 1].map(|k| self.axes[k].way(from[k], to[k]).abs());
-        (a + b, a.max(b))
+    /// The rotary travel between two states, degrees.
+    fn travel(&self, from: &[f64; 2], to: &[f64; 2]) -> f64 {
+        self.axes[0].travel(from[0], to[0]) + self.axes[1].travel(from[1], to[1])
     }
 }
 
