@@ -27,6 +27,7 @@ use Use::{By, Ignored, IgnoredText, NotPassedOn, Refused, Text};
 pub(super) const WORDS: &[(&str, Use)] = &[
     ("", By(Reader::further_point)),
     ("$$", Text(Reader::remark)),
+    ("$$->", By(Reader::creo_directive)),
     ("ARCSLP", Refused),
     ("AUTOPS", Ignored),
     ("AUXFUN", NotPassedOn),
