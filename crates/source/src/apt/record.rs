@@ -130,7 +130,7 @@ impl<'r> Record<'r> {
     pub(super) fn numbers<const N: usize>(&self, first: usize) -> Result<[f64; N], Box<Fault>> {
         let mut values = [0.0; N];
         for (i, value) in values.iter_mut().enumerate() {
-            *value = self.number(first + i, &format!("number {} of {N}", i + 1))?;
+            *value = self.number(first + i, "a value")?;
         }
         Ok(values)
     }
