@@ -69,6 +69,15 @@ impl Hole<'_> {
     }
 }
 
+/// What the tool does in the hole: to drill it in one peck is to drill it.
+fn in_effect(cycle: &Cycle) -> CycleKind {
+    let one = |first: f64| first >= cycle.depth - REST;
+    match cycle_pecks(cycle) && cycle.first_peck.or(cycle.peck).is_some_and(one) {
+        true => CycleKind::Drill,
+        false => cycle.kind,
+    }
+}
+
 fn cycle_pecks(cycle: &Cycle) -> bool {
     matches!(cycle.kind, CycleKind::Deep | CycleKind::BreakChip)
 }
@@ -274,7 +283,8 @@ impl Drilled {
             (CycleKind::Tap { pitch: a, left: l }, CycleKind::Tap { pitch: b, left: m }) => {
                 l == m && (a - b).abs() <= PITCH
             }
-            (a, b) => a == b,
+            // In one peck the three ways to drill are one.
+            (a, b) => a == b || in_effect(cycle) == in_effect(&self.cycle),
         };
         if !same {
             let message =
@@ -287,6 +297,7 @@ impl Drilled {
             found.push(("dwell", format!("the cycle dwells {is} s, but should {should} s")));
         }
         if cycle_pecks(cycle)
+            && cycle_pecks(&self.cycle)
             && let Err(message) = self.pecks(hole)
         {
             found.push(("peck", message));
@@ -300,8 +311,8 @@ impl Drilled {
     fn pecks(&self, hole: &Hole) -> Result<(), String> {
         let cycle = hole.cycle;
         let slack = hole.gauge.slack(&self.bottom);
-        let further = cycle.peck.or(cycle.first_peck).unwrap_or(cycle.depth);
-        let first = cycle.first_peck.unwrap_or(further);
+        let further = cycle.peck.or(cycle.first_peck).unwrap_or(cycle.depth).min(cycle.depth);
+        let first = cycle.first_peck.unwrap_or(further).min(cycle.depth);
         let own = self.cycle.peck.or(self.cycle.first_peck).ok_or("the cycle does not peck")?;
         let own_first = self.cycle.first_peck.unwrap_or(own);
         let point = hole.point.above(self.bottom.place.tip).0 + self.cycle.depth;

@@ -421,8 +421,9 @@ impl<'a> Prover<'a> {
     fn check_compensation(&mut self, line: u32, must: bool, on_arc: bool) {
         let (wanted, is) = (self.cursor.wanted.compensation, self.running.compensation);
         let tool = self.cursor.wanted.tool;
-        let switched = state::same_compensation(wanted, is, tool);
-        let kept = state::same_compensation(self.compensation, is, tool);
+        let offset = self.running.length_offset;
+        let switched = state::same_compensation(wanted, is, tool, offset);
+        let kept = state::same_compensation(self.compensation, is, tool, offset);
         if switched && (kept || !on_arc) {
             self.compensation = wanted;
         } else if !kept || must {

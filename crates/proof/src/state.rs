@@ -177,18 +177,21 @@ pub(crate) fn feed(
 }
 
 /// Whether the program's compensation is the source's. A register that the source does not name may
-/// be that of the tool.
+/// be that of the tool, or the one that its length offset is in.
 pub(crate) fn same_compensation(
     source: Compensation,
     block: Compensation,
     tool: Option<&Tool>,
+    length_offset: Option<u32>,
 ) -> bool {
     let register = |wanted: Option<u32>, named: Option<u32>| match (wanted, named) {
         (_, None) => true,
         (Some(wanted), Some(named)) => wanted == named,
-        (None, Some(named)) => tool.is_none_or(|tool| {
-            tool.number == 0 || tool.number == named || tool.offset == Some(named)
-        }),
+        (None, Some(named)) => {
+            let of_tool = |tool: &Tool| tool.number == named || tool.offset == Some(named);
+            length_offset == Some(named)
+                || tool.is_none_or(|tool| tool.number == 0 || of_tool(tool))
+        }
     };
     match (source, block) {
         (Compensation::Off, Compensation::Off) => true,
