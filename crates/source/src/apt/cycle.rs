@@ -84,7 +84,7 @@ enum Kind {
     Bore,
 }
 
-/// Names of cycles, longest first. Siemens NX has bores that feed out (`BORE`) and that stop (`BORE,DRAG`).
+/// Names of cycles, longest first.
 const KINDS: [(&[&str], Kind); 14] = [
     (&["DRILL", "DEEP"], Kind::Deep),
     (&["DRILL", "BRKCHP"], Kind::BreakChip),
