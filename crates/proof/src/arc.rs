@@ -9,7 +9,10 @@ use program::{ArcTo, Pose};
 use std::f64::consts::PI;
 
 /// Rounding of both ends and of the centre add up on the way of an arc: so many tip tolerances.
-const ROUNDINGS: f64 = 2.0;
+const ROUNDINGS: f64 = 3.0;
+
+/// How far an arc may turn past its end by rounding: so many tip tolerances.
+pub(crate) const PAST: f64 = 4.0;
 
 /// The arc that a block of the program makes, in the work frame, or `None` where it makes none.
 pub(crate) fn of_block(gauge: &Gauge, here: &Station, to: &ArcTo) -> Option<Arc> {
@@ -35,19 +38,23 @@ pub(crate) fn follow(
     here: &Station,
     to: &Station,
 ) -> Result<Followed, String> {
+    let slack = gauge.slack(to);
     let aligned = arc.normal.dot(block.normal);
     if aligned.is_nan() || aligned <= 0.0 {
         return Err("turns the other way round, or in another plane".into());
     }
     let reached = t + block.sweep / arc.sweep;
-    let allowed = ROUNDINGS * gauge.slack(to);
-    let mut followed = Followed { t: reached, path_mm: 0.0 };
+    let left_mm = left(arc, reached);
+    within("turns past the end of the arc", -left_mm, PAST * slack, "mm")?;
+    let allowed = ROUNDINGS * slack;
+    let mut followed = Followed { t: reached, path_mm: 0.0, left_mm };
     // Four chords of a half circle do not hide a wrong centre; longer arcs get more samples.
     let samples = 4 * (block.sweep / PI).ceil().clamp(1.0, 100.0) as u32;
     for i in 1..=samples {
         let part = f64::from(i) / f64::from(samples);
-        let beside = arc_point(arc, t + part * (reached - t)).distance(block.at(part));
+        let (beside, along) = off(arc, t + part * (reached - t), block.at(part));
         within("leaves the arc", beside, allowed, "mm")?;
+        within("is elsewhere on the arc", along, allowed, "mm")?;
         followed.path_mm = followed.path_mm.max(beside);
     }
     axis(gauge, goal, here, to)?;
@@ -72,13 +79,36 @@ pub(crate) fn follow_chord(
     let slack = gauge.slack(to);
     within("goes back on the arc", -turned * arc.radius(), slack, "mm")?;
     let reached = t + turned / arc.sweep;
-    let end = arc_point(arc, reached).distance(to.place.tip);
+    let left_mm = left(arc, reached);
+    within("turns past the end of the arc", -left_mm, PAST * slack, "mm")?;
+    let (end, along) = off(arc, reached, to.place.tip);
     within("leaves the arc", end, ROUNDINGS * slack, "mm")?;
-    let middle =
-        arc_point(arc, (t + reached) / 2.0).distance((here.place.tip + to.place.tip) / 2.0);
+    within("is elsewhere on the arc", along, ROUNDINGS * slack, "mm")?;
+    let (middle, _) = off(arc, (t + reached) / 2.0, (here.place.tip + to.place.tip) / 2.0);
     within("cuts the arc off", middle, ROUNDINGS * slack + gauge.allowed.chord_mm, "mm")?;
     axis(gauge, goal, here, to)?;
-    Ok(Followed { t: reached, path_mm: end.max(middle) })
+    Ok(Followed { t: reached, path_mm: end.max(middle), left_mm })
+}
+
+/// How far `point` is beside `arc` at `t`, and along it, mm. Along a steep helix counts as its turn
+/// does: a small error of the angle is a long way there, but no other path.
+fn off(arc: &Arc, t: f64, point: Vec3) -> (f64, f64) {
+    let on = arc_point(arc, t);
+    let spoke = (on - arc.center).reject_from_normalized(arc.normal);
+    let tangent = arc.normal.cross(spoke) * arc.sweep + arc.normal * arc.rise();
+    let along = (point - on).dot(tangent) / tangent.length();
+    let beside = (point - on - tangent.normalize() * along).length();
+    (beside, along.abs() / steepness(arc))
+}
+
+/// What is left of `arc` from `t` on, mm of its turn.
+fn left(arc: &Arc, t: f64) -> f64 {
+    (1.0 - t) * arc.length() / steepness(arc)
+}
+
+/// Length of a helix as a multiple of its turn.
+fn steepness(arc: &Arc) -> f64 {
+    arc.length() / (arc.radius() * arc.sweep)
 }
 
 /// The point of `arc` at `t`, which may lie a little behind its end: there it goes on as it came.

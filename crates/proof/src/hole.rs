@@ -60,7 +60,7 @@ impl Hole<'_> {
     /// Depth below the point at which peck `done` + 1 ends, mm: the first counts from the point.
     fn depth_of_peck(&self, done: u32) -> f64 {
         let cycle = self.cycle;
-        if !cycle_pecks(cycle) {
+        if !matches!(cycle.kind, CycleKind::Deep | CycleKind::BreakChip) {
             return cycle.depth;
         }
         let further = cycle.peck.or(cycle.first_peck).unwrap_or(cycle.depth);
@@ -69,17 +69,17 @@ impl Hole<'_> {
     }
 }
 
-/// What the tool does in the hole: to drill it in one peck is to drill it.
-fn in_effect(cycle: &Cycle) -> CycleKind {
-    let one = |first: f64| first >= cycle.depth - REST;
-    match cycle_pecks(cycle) && cycle.first_peck.or(cycle.peck).is_some_and(one) {
-        true => CycleKind::Drill,
-        false => cycle.kind,
+/// What a cycle does: one whose first peck reaches the bottom drills in one go.
+fn kind_in_effect(cycle: &Cycle) -> CycleKind {
+    let first = cycle.first_peck.or(cycle.peck);
+    match cycle.kind {
+        CycleKind::Deep | CycleKind::BreakChip
+            if first.is_some_and(|f| f >= cycle.depth - REST) =>
+        {
+            CycleKind::Drill
+        }
+        kind => kind,
     }
-}
-
-fn cycle_pecks(cycle: &Cycle) -> bool {
-    matches!(cycle.kind, CycleKind::Deep | CycleKind::BreakChip)
 }
 
 impl Run {
@@ -278,13 +278,12 @@ impl Drilled {
     pub fn kind(&self, hole: &Hole) -> Vec<Difference> {
         let cycle = hole.cycle;
         let mut found = Vec::new();
-        let kinds = (cycle.kind, self.cycle.kind);
+        let kinds = (kind_in_effect(cycle), kind_in_effect(&self.cycle));
         let same = match kinds {
             (CycleKind::Tap { pitch: a, left: l }, CycleKind::Tap { pitch: b, left: m }) => {
                 l == m && (a - b).abs() <= PITCH
             }
-            // In one peck the three ways to drill are one.
-            (a, b) => a == b || in_effect(cycle) == in_effect(&self.cycle),
+            (a, b) => a == b,
         };
         if !same {
             let message =
@@ -296,8 +295,8 @@ impl Drilled {
             let (is, should) = (Number(self.cycle.dwell), Number(cycle.dwell));
             found.push(("dwell", format!("the cycle dwells {is} s, but should {should} s")));
         }
-        if cycle_pecks(cycle)
-            && cycle_pecks(&self.cycle)
+        if matches!(kinds.0, CycleKind::Deep | CycleKind::BreakChip)
+            && same
             && let Err(message) = self.pecks(hole)
         {
             found.push(("peck", message));
@@ -311,8 +310,8 @@ impl Drilled {
     fn pecks(&self, hole: &Hole) -> Result<(), String> {
         let cycle = hole.cycle;
         let slack = hole.gauge.slack(&self.bottom);
-        let further = cycle.peck.or(cycle.first_peck).unwrap_or(cycle.depth).min(cycle.depth);
-        let first = cycle.first_peck.unwrap_or(further).min(cycle.depth);
+        let further = cycle.peck.or(cycle.first_peck).unwrap_or(cycle.depth);
+        let first = cycle.first_peck.unwrap_or(further);
         let own = self.cycle.peck.or(self.cycle.first_peck).ok_or("the cycle does not peck")?;
         let own_first = self.cycle.first_peck.unwrap_or(own);
         let point = hole.point.above(self.bottom.place.tip).0 + self.cycle.depth;

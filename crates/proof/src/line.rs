@@ -13,6 +13,8 @@ pub(crate) struct Followed {
     pub t: f64,
     /// Largest distance of the tip from the path, mm.
     pub path_mm: f64,
+    /// What is left of the path, mm; less than 0 behind its end.
+    pub left_mm: f64,
 }
 
 /// Rotary axes turn at most this much between two samples of a move, degrees.
@@ -41,7 +43,8 @@ pub(crate) fn follow(
         false => None,
     };
     axis(gauge, &from, &goal.to, expected(reached), to.place.axis)?;
-    let mut followed = Followed { t: reached, path_mm: beside };
+    let left_mm = (1.0 - reached) * length;
+    let mut followed = Followed { t: reached, path_mm: beside, left_mm };
     if let Some(turn) = turn(&here.pose, &to.pose) {
         let samples = (turn / SAMPLE).ceil().clamp(1.0, 360.0) as u32;
         for i in 1..=samples {

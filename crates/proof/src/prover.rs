@@ -55,6 +55,9 @@ enum Gait {
 /// The most stops that a rapid may have: a corner for each of five axes, and lifts.
 const MOST_STOPS: usize = 16;
 
+/// The reader whose control has no tool change: `T` only names the tool for the operator.
+const HAND_CHANGED: &str = "grbl";
+
 /// What a comparison answers: the mismatch after which the two motions cannot be laid beside each
 /// other any more.
 type Outcome = Result<(), Box<Diagnostic>>;
@@ -143,6 +146,9 @@ impl<'a> Prover<'a> {
             Op::Hole(pose) => self.drilled(line, pose),
             Op::Home(axes) => self.home(line, *axes),
             Op::Tool(tool) => self.change_tool(line, tool),
+            Op::Preselect(number) if self.gauge.machine.reader == HAND_CHANGED => {
+                self.change_tool(line, &Tool { number: *number, ..Tool::default() })
+            }
             op => {
                 match op {
                     Op::Dwell(seconds) if *seconds == 0.0 => {}
@@ -358,15 +364,14 @@ impl<'a> Prover<'a> {
             (_, Some(_)) => Err("makes an arc where the source has a line".into()),
             (_, None) => line::follow(&self.gauge, goal, self.leg.t, &here, to),
         };
-        let Followed { t, path_mm } = followed.map_err(|how| {
+        let Followed { t, path_mm, left_mm } = followed.map_err(|how| {
             let message = format!("goes to {} and {how}; the source goes to {}", to.place, goal.to);
             self.lost_at(to.line, "path", &message)
         })?;
         let length = block.map_or(here.place.tip.distance(to.place.tip), Arc::length);
         let lengths =
             Lengths { source: goal.length(), block: length, rounding: self.gauge.slack(to) };
-        let done =
-            self.gauge.at(to, &goal.to) && (1.0 - t) * lengths.source <= 4.0 * lengths.rounding;
+        let done = self.gauge.at(to, &goal.to) && left_mm <= arc::PAST * lengths.rounding;
         self.leg.t = t;
         self.check_cut(to, &lengths, block.is_some());
         self.report.deviations.path_mm.note(path_mm, self.cursor.line, to.line);
@@ -421,9 +426,8 @@ impl<'a> Prover<'a> {
     fn check_compensation(&mut self, line: u32, must: bool, on_arc: bool) {
         let (wanted, is) = (self.cursor.wanted.compensation, self.running.compensation);
         let tool = self.cursor.wanted.tool;
-        let offset = self.running.length_offset;
-        let switched = state::same_compensation(wanted, is, tool, offset);
-        let kept = state::same_compensation(self.compensation, is, tool, offset);
+        let switched = state::same_compensation(self.gauge.machine, wanted, is, tool);
+        let kept = state::same_compensation(self.gauge.machine, self.compensation, is, tool);
         if switched && (kept || !on_arc) {
             self.compensation = wanted;
         } else if !kept || must {
@@ -482,7 +486,11 @@ impl<'a> Prover<'a> {
         self.pass_left_out(|_| false);
         self.miss_events(line);
         let Step::Move(Goal { kind: Kind::Hole(cycle), to: point, .. }) = &self.cursor.step else {
-            return Err(self.lost_at(line, "hole", "drills a hole that the source does not have"));
+            let message = "drills a hole that the source does not have";
+            return Err(match self.nearest_stop() {
+                Some(stop) => self.lost_at(stop.line, "end-point", &self.not_reached(&stop)),
+                None => self.lost_at(line, "hole", message),
+            });
         };
         let (gauge, cycle, point) = (self.gauge, *cycle, *point);
         let hole = Hole { gauge: &gauge, point: &point, cycle: &cycle };
@@ -615,12 +623,16 @@ impl<'a> Prover<'a> {
         self.report.compared.tool_changes += 1;
         let name = if tool.number > 0 { tool.number.to_string() } else { tool.name.clone() };
         self.report.program.tool(name);
-        self.running.change_tool(line, tool.clone());
+        match self.gauge.machine.reader == HAND_CHANGED {
+            true => self.running.call_by_hand(line, tool.clone()),
+            false => self.running.change_tool(line, tool.clone()),
+        }
         Ok(())
     }
 
     /// A dwell or a stop.
     fn event(&mut self, line: u32, event: Step) {
+        self.running.by_hand &= !matches!(event, Step::Stop);
         if let (Step::Move(Goal { kind: Kind::Hole(cycle), to, .. }), Step::Dwell(seconds)) =
             (&self.cursor.step, &event)
         {
@@ -649,7 +661,7 @@ impl<'a> Prover<'a> {
             let message = format!("dwells {} s, but should {} s", Number(*b), Number(*a));
             self.differs(line, ("dwell", message));
             self.advance();
-        } else if !self.at_tool_change() {
+        } else if matches!(event, Step::Dwell(_)) || !self.at_tool_change() {
             let (rule, what) = match event {
                 Step::Dwell(_) => ("dwell", "dwells"),
                 Step::Stop => ("stop", "stops"),

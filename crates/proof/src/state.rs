@@ -16,6 +16,8 @@ pub(crate) struct Running {
     pub spindle_line: u32,
     pub coolant_line: u32,
     pub tool: Option<Tool>,
+    /// Whether the operator has to change the tool, and the program has not stopped for it yet.
+    pub by_hand: bool,
     pub compensation: Compensation,
     pub length_offset: Option<u32>,
     pub work_offset: Option<u32>,
@@ -31,6 +33,7 @@ impl Default for Running {
             spindle_line: 0,
             coolant_line: 0,
             tool: None,
+            by_hand: false,
             compensation: Compensation::Off,
             length_offset: None,
             work_offset: None,
@@ -40,6 +43,18 @@ impl Default for Running {
 }
 
 impl Running {
+    /// A tool called on `line` of a program whose control has no tool change: the operator puts it in
+    /// while the program stands still. The first one is there before the program begins.
+    pub fn call_by_hand(&mut self, line: u32, tool: Tool) {
+        match &self.tool {
+            Some(other) if other.number == tool.number => {}
+            other => {
+                self.by_hand = other.is_some();
+                self.change_tool(line, tool);
+            }
+        }
+    }
+
     /// A tool change on `line`: the machine stops spindle and coolant for it, except what the same
     /// block switches on.
     pub fn change_tool(&mut self, line: u32, tool: Tool) {
@@ -58,6 +73,9 @@ pub(crate) type Difference = (&'static str, String);
 
 /// What must be right on every move to a known place: tool, length offset, work offset.
 pub(crate) fn set_up(machine: &Machine, wanted: &Wanted, running: &Running) -> Option<Difference> {
+    if running.by_hand {
+        return Some(("tool", "the program does not stop for the change of the tool".into()));
+    }
     if let Some(tool) = wanted.tool {
         match &running.tool {
             None => return Some(("tool", format!("{} is not called", named(tool)))),
@@ -177,21 +195,21 @@ pub(crate) fn feed(
 }
 
 /// Whether the program's compensation is the source's. A register that the source does not name may
-/// be that of the tool, or the one that its length offset is in.
+/// be that of the tool; where the cutting edge holds length and radius, it is the first edge.
 pub(crate) fn same_compensation(
+    machine: &Machine,
     source: Compensation,
     block: Compensation,
     tool: Option<&Tool>,
-    length_offset: Option<u32>,
 ) -> bool {
+    let edge = machine.capabilities.length_offset == LengthOffset::One;
     let register = |wanted: Option<u32>, named: Option<u32>| match (wanted, named) {
         (_, None) => true,
+        (_, Some(named)) if edge => named == 1,
         (Some(wanted), Some(named)) => wanted == named,
-        (None, Some(named)) => {
-            let of_tool = |tool: &Tool| tool.number == named || tool.offset == Some(named);
-            length_offset == Some(named)
-                || tool.is_none_or(|tool| tool.number == 0 || of_tool(tool))
-        }
+        (None, Some(named)) => tool.is_none_or(|tool| {
+            tool.number == 0 || tool.number == named || tool.offset == Some(named)
+        }),
     };
     match (source, block) {
         (Compensation::Off, Compensation::Off) => true,

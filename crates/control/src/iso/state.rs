@@ -14,8 +14,7 @@ pub(super) struct State {
     pub plane: Plane,
     pub incremental: bool,
     pub centers_absolute: bool,
-    /// `G20` or `G21`; none before the program has said it: controls keep the unit of the program before.
-    pub inches: Option<bool>,
+    pub inches: bool,
     pub feed_mode: FeedMode,
     pub feed: Option<Feed>,
     pub spindle: Spindle,
@@ -109,7 +108,7 @@ impl State {
             plane: Plane::Xy,
             incremental: false,
             centers_absolute: false,
-            inches: None,
+            inches: false,
             feed_mode: FeedMode::PerMinute,
             feed: None,
             spindle: Spindle::Off,

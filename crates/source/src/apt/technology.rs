@@ -367,8 +367,7 @@ impl Reader {
         Ok(())
     }
 
-    /// A diameter in mm, at field `index`.
-    pub(super) fn diameter(&self, record: &Record, index: usize) -> Result<f64, Box<Fault>> {
+    fn diameter(&self, record: &Record, index: usize) -> Result<f64, Box<Fault>> {
         let value = record.number(index, "the diameter")?;
         let diameter = self.length(value).map_err(|fault| fault.fields(index, 1))?;
         if diameter >= 0.0 {

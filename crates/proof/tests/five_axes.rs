@@ -1,0 +1,238 @@
+//! Tool axes: a table that turns under the tool, and controls that keep the tool tip.
+
+mod common;
+
+use common::*;
+use geom::Vec3;
+use machine::Machine;
+use program::*;
+
+/// A tip and the positions of A and C.
+type Point = (Vec3, f64, f64);
+
+fn degrees(point: Point) -> [f64; 3] {
+    [point.1, 0.0, point.2]
+}
+
+/// What the source says of a point.
+fn wanted(machine: &Machine, point: Point) -> Pose {
+    Pose::new(point.0, machine.axis_at(degrees(point)))
+}
+
+/// What a block without tool-center control says.
+fn axes(machine: &Machine, point: Point) -> Pose {
+    let degrees = degrees(point);
+    let linear = machine.linear_for(point.0, degrees, 0.0);
+    Pose { point: linear, orientation: Orientation::Rotary { degrees, tool_center: false } }
+}
+
+/// What a block with tool-center control says.
+fn centered(_: &Machine, point: Point) -> Pose {
+    let orientation = Orientation::Rotary { degrees: degrees(point), tool_center: true };
+    Pose { point: point.0, orientation }
+}
+
+/// What a block in a tilted plane, or with a vector, says.
+fn vector(machine: &Machine, point: Point) -> Pose {
+    wanted(machine, point)
+}
+
+type Notation = fn(&Machine, Point) -> Pose;
+
+const NOTATIONS: [Notation; 3] = [axes, centered, vector];
+
+fn at_point(x: f64, y: f64, z: f64, a: f64, c: f64) -> Point {
+    (Vec3::new(x, y, z), a, c)
+}
+
+/// A cut along X in steps of `step` degrees of A and C.
+fn path(step: f64) -> Vec<Point> {
+    (0..8).map(f64::from).map(|i| at_point(10.0 + i, 5.0, 2.0, 20.0 + i * step, i * step)).collect()
+}
+
+fn along(points: &[Point], pose: impl Fn(Point) -> Pose) -> Vec<Op> {
+    let mut ops: Vec<Op> = points.iter().map(|point| Op::Line(pose(*point))).collect();
+    ops[0] = Op::Rapid(pose(points[0]));
+    ops
+}
+
+fn judged(notation: Notation, own: &[Point], nc: &[Point]) -> Vec<&'static str> {
+    let machine = five_axes();
+    let own = source(along(own, |point| wanted(&machine, point)));
+    rules(&judge(&machine, &own, along(nc, |point| notation(&machine, point))))
+}
+
+#[test]
+fn the_same_tip_and_axis_are_proven_in_every_notation() {
+    for notation in NOTATIONS {
+        assert!(judged(notation, &path(0.5), &path(0.5)).is_empty());
+    }
+}
+
+#[test]
+fn another_tip_or_another_axis_is_refused_in_every_notation() {
+    for notation in NOTATIONS {
+        let off = |alter: fn(&mut Point)| {
+            let mut nc = path(0.5);
+            alter(&mut nc[4]);
+            judged(notation, &path(0.5), &nc)
+        };
+        assert_eq!(off(|point| point.0.y += 0.01), ["path"]);
+        assert_eq!(off(|point| point.1 += 5.0), ["path"]);
+        assert_eq!(off(|point| point.2 -= 10.0), ["path"]);
+        assert_eq!(off(|point| point.1 = f64::NAN), ["path"]);
+    }
+    // One step more than rounding, at the end of the cut.
+    let mut nc = path(0.5);
+    nc[7].1 += 0.002;
+    assert_eq!(judged(centered, &path(0.5), &nc), ["missing"]);
+}
+
+#[test]
+fn a_block_that_swings_the_tip_off_the_line_is_refused_unless_it_is_split() {
+    let (from, to) = (at_point(10.0, 5.0, 2.0, 20.0, 0.0), at_point(60.0, 5.0, 2.0, 30.0, 8.0));
+    let split = |n: u32| -> Vec<Point> {
+        let lerp = |a: f64, b: f64, i: u32| a + (b - a) * f64::from(i) / f64::from(n);
+        (0..=n)
+            .map(|i| {
+                (from.0.lerp(to.0, lerp(0.0, 1.0, i)), lerp(from.1, to.1, i), lerp(from.2, to.2, i))
+            })
+            .collect()
+    };
+    assert_eq!(judged(axes, &[from, to], &split(1)), ["path"]);
+    assert!(judged(axes, &[from, to], &split(64)).is_empty());
+    // The control itself keeps the tip on the line.
+    assert!(judged(centered, &[from, to], &split(1)).is_empty());
+}
+
+#[test]
+fn a_whole_turn_of_the_table_in_a_cut_is_refused() {
+    let (from, to) = (at_point(10.0, 5.0, 2.0, 20.0, 0.0), at_point(11.0, 5.0, 2.0, 20.0, 0.0));
+    let around = at_point(11.0, 5.0, 2.0, 20.0, 360.0);
+    for notation in [axes, centered] {
+        assert!(judged(notation, &[from, to], &[from, to]).is_empty());
+        assert_eq!(judged(notation, &[from, to], &[from, around]), ["path"]);
+    }
+}
+
+#[test]
+fn the_length_of_the_tool_counts_where_a_head_swings_it() {
+    let text = r#"
+        reader = "fanuc"
+        [orientation]
+        simultaneous = "machine-angles"
+        [[rotary]]
+        letter = "B"
+        on = "head"
+        axis = [0, 1, 0]
+        rapid = 1e4
+        acceleration = 100
+    "#;
+    let machine = machine::load_text("head.toml", text).unwrap();
+    let posed = |length: f64| {
+        let degrees = [0.0, 30.0, 0.0];
+        let point = machine.linear_for(Vec3::new(1.0, 2.0, 3.0), degrees, length);
+        Pose { point, orientation: Orientation::Rotary { degrees, tool_center: false } }
+    };
+    let call = Tool { number: 1, length: Some(100.0), ..Tool::default() };
+    let to = Pose::new(Vec3::new(1.0, 2.0, 3.0), machine.axis_at([0.0, 30.0, 0.0]));
+    let own = program(vec![Op::Tool(Box::new(call)), Op::Rapid(to)]);
+    let judged = |length| rules(&judge(&machine, &own, vec![Op::Rapid(posed(length))]));
+    assert!(judged(100.0).is_empty());
+    assert_eq!(judged(101.0), ["end-point"]);
+}
+
+/// From one set-up to another: a source rapid that turns the tool, and the program's way.
+fn set_up(way: impl Fn(&Machine) -> Vec<Op>) -> Report {
+    let machine = five_axes();
+    let (a, b) = (at_point(5.0, 6.0, 1.0, 0.0, 0.0), at_point(7.0, -9.0, 40.0, 90.0, 45.0));
+    let to = |point| wanted(&machine, point);
+    let own = source(vec![Op::Rapid(to(a)), Op::Line(to(a)), Op::Rapid(to(b))]);
+    judge(&machine, &own, [vec![Op::Rapid(axes(&machine, a))], way(&machine)].concat())
+}
+
+use toolpost_proof::Report;
+
+#[test]
+fn between_set_ups_the_machine_may_go_home_and_turn_then_approach() {
+    let b = at_point(7.0, -9.0, 40.0, 90.0, 45.0);
+    let stop = |x: f64, y: f64, z: f64, a: f64, c: f64| {
+        let orientation = Orientation::Rotary { degrees: [a, 0.0, c], tool_center: false };
+        Op::Rapid(Pose { point: Vec3::new(x, y, z), orientation })
+    };
+    let end = |machine: &Machine| axes(machine, b).point;
+    let approach = |machine: &Machine| {
+        let to = end(machine);
+        vec![
+            Op::Home(4),
+            stop(5.0, 6.0, f64::NAN, 90.0, 45.0),
+            stop(to.x, 6.0, f64::NAN, 90.0, 45.0),
+            stop(to.x, to.y, f64::NAN, 90.0, 45.0),
+            Op::Rapid(axes(machine, b)),
+        ]
+    };
+    proven(&set_up(approach));
+    proven(&set_up(|machine| vec![Op::Rapid(axes(machine, b))]));
+    let astray =
+        |machine: &Machine| vec![stop(90.0, 6.0, 1.0, 0.0, 0.0), Op::Rapid(axes(machine, b))];
+    assert_eq!(rules(&set_up(astray)), ["rapid-stop"]);
+    let half_turned =
+        |machine: &Machine| vec![stop(5.0, 6.0, 1.0, 45.0, 0.0), Op::Rapid(axes(machine, b))];
+    assert_eq!(rules(&set_up(half_turned)), ["rapid-stop"]);
+}
+
+#[test]
+fn a_rotary_axis_is_rewound_above_the_part_and_the_tool_comes_back() {
+    let machine = five_axes();
+    let (from, to) = (at_point(10.0, 5.0, 2.0, 20.0, 350.0), at_point(12.0, 5.0, 2.0, 20.0, 351.0));
+    let lifted = |point: Point| {
+        let pose = wanted(&machine, point);
+        (pose.point + machine.axis_at(degrees(point)) * 80.0, point.1, point.2)
+    };
+    let unwound = |point: Point| (point.0, point.1, point.2 - 360.0);
+    let own = source(along(&[from, to], |point| wanted(&machine, point)));
+    let rewind = |turned: fn(Point) -> Point| {
+        let block = |point| axes(&machine, point);
+        let nc = vec![
+            Op::Rapid(block(from)),
+            Op::Rapid(block(lifted(from))),
+            Op::Rapid(block(turned(lifted(from)))),
+            Op::Line(block(turned(from))),
+            Op::Line(block(turned(to))),
+        ];
+        judge(&machine, &own, nc)
+    };
+    let report = rewind(unwound);
+    proven(&report);
+    assert_eq!(report.compared.excursions, 1);
+    assert!((report.excursions[0].lift_mm - 80.0).abs() < 1e-6);
+    assert_eq!(report.program.rotary_extents_degrees[2].min, Some(-10.0));
+    // The other side of the part is not where it left.
+    assert!(!rewind(|point| (point.0, -point.1, point.2)).proven);
+}
+
+#[test]
+fn a_canned_cycle_in_a_tilted_plane_drills_along_the_tool() {
+    let machine = five_axes();
+    let point = at_point(10.0, 5.0, 2.0, 30.0, 40.0);
+    let above = (point.0 + machine.axis_at(degrees(point)) * 20.0, point.1, point.2);
+    let own = source(vec![
+        Op::Rapid(wanted(&machine, above)),
+        cycle(drill()),
+        Op::Hole(wanted(&machine, point)),
+    ]);
+    for notation in NOTATIONS {
+        let nc = vec![
+            Op::Rapid(notation(&machine, above)),
+            cycle(drill()),
+            Op::Hole(notation(&machine, point)),
+        ];
+        proven(&judge(&machine, &own, nc));
+    }
+    let straight = vec![
+        Op::Rapid(centered(&machine, above)),
+        cycle(drill()),
+        Op::Hole(Pose::new(point.0, Vec3::Z)),
+    ];
+    assert_eq!(rules(&judge(&machine, &own, straight)), ["hole"]);
+}

@@ -1,0 +1,305 @@
+//! What holds in the cut, events, tool changes, home positions, the end.
+
+mod common;
+
+use common::*;
+use program::*;
+
+fn cut() -> Vec<Op> {
+    vec![
+        Op::Rapid(at(0.0, 0.0, 5.0)),
+        Op::Line(at(0.0, 0.0, -1.0)),
+        Op::Line(at(30.0, 0.0, -1.0)),
+        Op::Rapid(at(30.0, 0.0, 5.0)),
+    ]
+}
+
+fn cut_nc() -> Vec<Op> {
+    vec![
+        Op::Rapid(block(0.0, 0.0, 5.0)),
+        Op::Line(block(0.0, 0.0, -1.0)),
+        Op::Line(block(30.0, 0.0, -1.0)),
+        Op::Rapid(block(30.0, 0.0, 5.0)),
+    ]
+}
+
+/// Judges the cut with this before its first record.
+fn after_start(ops: Vec<Op>) -> Vec<&'static str> {
+    rules(&judge(&mill(), &source(cut()), [ops, cut_nc()].concat()))
+}
+
+/// Judges the cut with these before record `index` of the source and of the program.
+fn at_record(index: usize, source_ops: Vec<Op>, nc_ops: Vec<Op>) -> Vec<&'static str> {
+    let (mut own, mut nc) = (cut(), cut_nc());
+    own.splice(index..index, source_ops);
+    nc.splice(index..index, nc_ops);
+    rules(&judge(&mill(), &source(own), nc))
+}
+
+/// Judges the cut of a program that lacks a record of its start.
+fn without(missing: impl Fn(&Op) -> bool) -> Vec<&'static str> {
+    let start = nc_start().into_iter().filter(|op| !missing(op));
+    let nc = start.chain(cut_nc()).chain([Op::Home(4), Op::End]).collect();
+    rules(&run(&mill(), &source(cut()), nc))
+}
+
+#[test]
+fn each_word_of_the_start_is_needed() {
+    assert_eq!(without(|op| matches!(op, Op::Feed(_))), ["feed"]);
+    assert_eq!(without(|op| matches!(op, Op::Spindle(_))), ["spindle"]);
+    assert_eq!(without(|op| matches!(op, Op::Coolant(_))), ["coolant"]);
+    assert_eq!(without(|op| matches!(op, Op::LengthOffset(_))), ["length-offset"]);
+    assert_eq!(without(|op| matches!(op, Op::Tool(_)))[0], "tool");
+}
+
+#[test]
+fn another_feed_is_refused_and_half_a_step_is_rounding() {
+    let feed = |f| after_start(vec![Op::Feed(Feed::PerMinute(f))]);
+    assert!(feed(300.5).is_empty());
+    assert_eq!(feed(301.0), ["feed"]);
+    assert_eq!(feed(f64::NAN), ["feed"]);
+}
+
+#[test]
+fn feed_per_turn_counts_with_the_speed() {
+    let per_turn = |f| after_start(vec![Op::Feed(Feed::PerTurn(f))]);
+    assert!(per_turn(0.3).is_empty());
+    assert_eq!(per_turn(300.0), ["feed"]);
+}
+
+#[test]
+fn inverse_time_counts_with_the_length_of_each_block() {
+    // 300 mm/min: 6 mm take 1/50 min, 30 mm take 1/10 min.
+    let timed = |plunge, along| {
+        let (mut nc, rate) = (cut_nc(), |r| Op::Feed(Feed::InverseTime(r)));
+        nc.splice(1..3, [rate(plunge), nc[1].clone(), rate(along), nc[2].clone()]);
+        rules(&judge(&mill(), &source(cut()), nc))
+    };
+    assert!(timed(50.0, 10.0).is_empty());
+    assert_eq!(timed(50.0, 50.0), ["feed"]);
+    let own = at_record(
+        2,
+        vec![Op::Feed(Feed::InverseTime(20.0))],
+        vec![Op::Feed(Feed::PerMinute(600.0))],
+    );
+    assert!(own.is_empty());
+}
+
+#[test]
+fn the_spindle_turns_as_fast_and_the_way_the_source_says() {
+    assert_eq!(after_start(vec![Op::Spindle(Spindle::CounterClockwise(1000.0))]), ["spindle"]);
+    assert_eq!(after_start(vec![Op::Spindle(Spindle::Clockwise(100.0))]), ["spindle"]);
+    assert_eq!(after_start(vec![Op::Spindle(Spindle::Off)]), ["spindle"]);
+    assert_eq!(after_start(vec![Op::Coolant(Coolant::Mist)]), ["coolant"]);
+}
+
+#[test]
+fn spindle_and_coolant_count_in_the_cut_not_where_their_word_stands() {
+    let (mut own, mut nc) = (cut(), cut_nc());
+    own.push(Op::Spindle(Spindle::Off));
+    nc.insert(3, Op::Coolant(Coolant::Off));
+    proven(&judge(&mill(), &source(own), nc));
+}
+
+#[test]
+fn a_wrong_offset_or_tool_is_refused() {
+    assert_eq!(after_start(vec![Op::LengthOffset(Some(2))]), ["length-offset"]);
+    assert_eq!(after_start(vec![Op::LengthOffset(None)]), ["length-offset"]);
+    assert_eq!(after_start(vec![Op::WorkOffset(55)]), ["work-offset"]);
+    let mut start = nc_start();
+    start[1] = tool(2);
+    let nc = [start, cut_nc(), vec![Op::End]].concat();
+    assert_eq!(rules(&run(&mill(), &source(cut()), nc)), ["tool"]);
+}
+
+#[test]
+fn compensation_switches_with_the_first_straight_cut_in_the_plane() {
+    use Compensation::*;
+    let on = |side| vec![Op::Compensation(side)];
+    // Before the plunge the source asks for it; the program may wait for the move in X.
+    assert!(at_record(1, on(Left(None)), on(Left(Some(1)))).is_empty());
+    let late = |op: Vec<Op>| {
+        let (mut own, mut nc) = (cut(), cut_nc());
+        own.splice(1..1, on(Left(None)));
+        nc.splice(2..2, op);
+        rules(&judge(&mill(), &source(own), nc))
+    };
+    assert!(late(on(Left(None))).is_empty());
+    assert_eq!(late(on(Right(None))), ["compensation"]);
+    assert_eq!(late(on(Left(Some(7)))), ["compensation"]);
+    assert_eq!(late(vec![]), ["compensation"]);
+    assert_eq!(at_record(2, vec![], on(Left(None))), ["compensation"]);
+}
+
+#[test]
+fn compensation_does_not_switch_on_an_arc() {
+    let round = |z: f64, pose: fn(f64, f64, f64) -> Pose| {
+        let up = geom::Vec3::Z;
+        vec![
+            Op::Rapid(pose(10.0, 0.0, z)),
+            Op::Line(pose(11.0, 0.0, z)),
+            Op::Line(pose(10.0, 0.0, z)),
+            arc(pose(0.0, 10.0, z), (0.0, 0.0, 0.0), up),
+            Op::Line(pose(0.0, 20.0, z)),
+        ]
+    };
+    let on = Op::Compensation(Compensation::Left(None));
+    let (mut own, mut early, mut late) = (round(0.0, at), round(0.0, block), round(0.0, block));
+    own.insert(3, on.clone());
+    early.insert(3, on.clone());
+    late.insert(4, on);
+    assert_eq!(rules(&judge(&mill(), &source(own.clone()), early)), ["compensation"]);
+    proven(&judge(&mill(), &source(own), late));
+}
+
+#[test]
+fn dwells_and_stops_come_in_their_place() {
+    let dwell = |s| vec![Op::Dwell(s)];
+    assert!(at_record(2, dwell(1.5), dwell(1.5)).is_empty());
+    assert_eq!(at_record(2, dwell(1.5), dwell(15.0)), ["dwell"]);
+    assert_eq!(at_record(2, dwell(1.5), vec![]), ["dwell"]);
+    assert_eq!(at_record(2, vec![], dwell(1.5)), ["dwell"]);
+    assert!(at_record(2, vec![Op::Stop], vec![Op::Stop, Op::Comment("x".into())]).is_empty());
+    assert_eq!(at_record(2, vec![Op::Stop], vec![Op::OptionalStop]), ["stop"]);
+    assert_eq!(at_record(3, vec![], vec![Op::Stop]), ["stop"]);
+    let mut moved = cut_nc();
+    moved.insert(3, Op::Dwell(1.5));
+    let mut own = cut();
+    own.insert(2, Op::Dwell(1.5));
+    assert_eq!(rules(&judge(&mill(), &source(own), moved)), ["dwell"]);
+}
+
+#[test]
+fn the_spindle_stands_where_the_source_stops_it_for_the_operator() {
+    let stop = vec![Op::Spindle(Spindle::Off), Op::Stop, Op::Spindle(Spindle::Clockwise(1000.0))];
+    assert!(at_record(1, stop.clone(), stop.clone()).is_empty());
+    assert_eq!(at_record(1, stop, vec![Op::Stop]), ["spindle"]);
+}
+
+fn two_tools() -> Vec<Op> {
+    let mut ops = cut();
+    ops.extend([tool(2), Op::Spindle(Spindle::Clockwise(500.0))]);
+    ops.extend(cut());
+    ops
+}
+
+fn change() -> Vec<Op> {
+    vec![
+        Op::Home(4),
+        Op::Spindle(Spindle::Off),
+        tool(2),
+        Op::Spindle(Spindle::Clockwise(500.0)),
+        Op::Coolant(Coolant::Flood),
+        Op::LengthOffset(Some(2)),
+        Op::Rapid(block(0.0, 0.0, f64::NAN)),
+    ]
+}
+
+fn changed(change: Vec<Op>) -> Vec<&'static str> {
+    rules(&judge(&mill(), &source(two_tools()), [cut_nc(), change, cut_nc()].concat()))
+}
+
+#[test]
+fn a_tool_change_establishes_everything_again() {
+    assert!(changed(change()).is_empty());
+    let without = |index: usize| {
+        let mut ops = change();
+        ops.remove(index);
+        changed(ops)
+    };
+    assert!(without(0).is_empty());
+    assert_eq!(without(2), ["tool"]);
+    assert_eq!(without(3), ["spindle"]);
+    assert_eq!(without(4), ["coolant"]);
+    assert_eq!(without(5), ["length-offset"]);
+}
+
+#[test]
+fn a_tool_change_that_the_source_does_not_have_is_refused() {
+    assert_eq!(at_record(2, vec![], vec![tool(1)]), ["extra-tool-change"]);
+    assert_eq!(at_record(4, vec![], vec![tool(1)]), ["extra-tool-change"]);
+}
+
+#[test]
+fn a_part_without_tool_calls_takes_any_one_tool() {
+    let own = program([start()[1..].to_vec(), cut()].concat());
+    proven(&judge(&mill(), &own, cut_nc()));
+    let nc = [cut_nc(), vec![Op::Home(4), tool(2)]].concat();
+    assert_eq!(rules(&judge(&mill(), &own, nc)), ["extra-tool-change"]);
+}
+
+#[test]
+fn home_in_the_middle_of_the_work_is_refused() {
+    // Only Z, and only when the tool comes back down to where it left, is an excursion.
+    let back = vec![Op::Home(4), Op::Rapid(block(0.0, 0.0, -1.0))];
+    let report = |nc_ops: Vec<Op>| {
+        let mut nc = cut_nc();
+        nc.splice(2..2, nc_ops);
+        judge(&mill(), &source(cut()), nc)
+    };
+    let there_and_back = report(back);
+    proven(&there_and_back);
+    assert_eq!(there_and_back.compared.excursions, 1);
+    assert_eq!(there_and_back.excursions[0].source_line, 7);
+    assert_eq!(rules(&report(vec![Op::Home(7), Op::Rapid(block(0.0, 0.0, -1.0))])), ["home"]);
+    assert_eq!(rules(&report(vec![Op::Home(1)])), ["home"]);
+    assert_eq!(rules(&report(vec![Op::Home(4)])), ["rapid-feed"]);
+}
+
+#[test]
+fn a_lift_along_the_tool_axis_and_back_is_an_excursion() {
+    let report = |ops: Vec<Op>| {
+        let mut nc = cut_nc();
+        nc.splice(2..2, [vec![Op::Line(block(10.0, 0.0, -1.0))], ops].concat());
+        judge(&mill(), &source(cut()), nc)
+    };
+    let rapid = |x, y, z| Op::Rapid(block(x, y, z));
+    let lifted = report(vec![rapid(10.0, 0.0, 40.0), Op::Line(block(10.0, 0.0, -1.0))]);
+    proven(&lifted);
+    assert_eq!(lifted.excursions[0].lift_mm, 41.0);
+    let (up, down) = (rapid(10.0, 0.0, 40.0), rapid(10.0, 0.0, -1.0));
+    // Down into the part, beside, and back on a slope are not.
+    assert_eq!(rules(&report(vec![rapid(10.0, 0.0, -5.0), down.clone()])), ["rapid-feed"]);
+    assert_eq!(rules(&report(vec![rapid(12.0, 0.0, 40.0), down.clone()])), ["rapid-feed"]);
+    let aside = vec![up.clone(), rapid(10.0, 9.0, 40.0), down.clone()];
+    assert_eq!(rules(&report(aside)), ["excursion"]);
+    let astray = vec![up.clone(), rapid(10.0, 9.0, -1.0), up.clone(), down];
+    assert_eq!(rules(&report(astray)), ["rapid-stop"]);
+    assert_eq!(rules(&report(vec![up])), ["rapid-feed"]);
+}
+
+#[test]
+fn after_the_last_motion_the_tool_only_leaves() {
+    let ending =
+        |ops: Vec<Op>| rules(&run(&mill(), &source(cut()), [nc_start(), cut_nc(), ops].concat()));
+    let away = Op::Rapid(block(30.0, 0.0, 100.0));
+    assert!(ending(vec![away.clone(), Op::Home(4), Op::Home(3), Op::End]).is_empty());
+    assert_eq!(ending(vec![Op::Home(4)]), ["no-end"]);
+    assert_eq!(ending(vec![Op::Rapid(block(30.0, 5.0, 5.0)), Op::End]), ["extra-motion"]);
+    assert_eq!(ending(vec![Op::Rapid(block(30.0, 0.0, -5.0)), Op::End]), ["extra-motion"]);
+    assert_eq!(ending(vec![Op::Line(block(30.0, 0.0, 9.0)), Op::End]), ["extra-motion"]);
+    assert_eq!(ending(vec![Op::Home(3), Op::End]), ["home"]);
+    assert_eq!(ending(vec![Op::End, away]), ["after-end"]);
+    assert_eq!(ending(vec![Op::End, Op::Spindle(Spindle::Clockwise(9.0))]), ["after-end"]);
+}
+
+#[test]
+fn a_first_cut_from_an_unknown_place_has_to_go_straight_to_its_end() {
+    let own = source(cut()[1..].to_vec());
+    let report = judge(&mill(), &own, cut_nc()[1..].to_vec());
+    proven(&report);
+    assert_eq!(report.warnings[0].rule, "unknown-start");
+    let mut nc = cut_nc()[1..].to_vec();
+    nc.insert(0, Op::Line(block(0.0, 3.0, -1.0)));
+    assert_eq!(rules(&judge(&mill(), &own, nc)), ["unknown-start"]);
+}
+
+#[test]
+fn the_same_difference_is_told_once_with_its_count() {
+    let report =
+        judge(&mill(), &source(cut()), [vec![Op::Feed(Feed::PerMinute(30.0))], cut_nc()].concat());
+    assert_eq!(report.mismatches.len(), 1);
+    assert_eq!(report.mismatches[0].count, 2);
+    let message = "source line 6: the feed is 30 mm/min, but should be 300 mm/min";
+    assert_eq!(report.mismatches[0].message, message);
+}
