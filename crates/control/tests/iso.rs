@@ -335,7 +335,21 @@ fn grbl_has_no_cycles_no_compensation_no_length_register_and_no_tool_change() {
     }
     assert_eq!(rule(GRBL, "%\n"), "nc-syntax");
     assert_eq!(rule(GRBL, "$H\n"), "nc-syntax");
-    assert_eq!(ops(GRBL, "T3\nM1\nG40 G49 G61 G92.1 G91.1\n"), [Op::Preselect(3)]);
+    assert_eq!(ops(GRBL, "M1\nG40 G49 G61 G92.1 G91.1\n"), []);
+}
+
+#[test]
+fn a_grbl_tool_is_set_up_at_first_and_changed_by_hand_at_m0_later() {
+    let tool = |number| Op::Tool(Box::new(program::Tool { number, ..Default::default() }));
+    let start = "G53 G0 Z0\nT3\nG0 X0 Y0 Z5\nG1 Z0 F9\n";
+    let got = ops_3(GRBL, &format!("{start}T4\nG0 Z9\nM0\nG1 X1\nM0\n"));
+    assert_eq!(got[1], tool(3));
+    assert_eq!((&got[6], &got[8]), (&tool(4), &Op::Stop));
+    // The new tool is of another length.
+    assert!(got[7].pose().unwrap().point.z.is_nan());
+    assert_eq!(rule(GRBL, &format!("{start}T4\nG1 X1\n")), "nc-tool");
+    assert_eq!(rule(GRBL, &format!("S9 M3\n{start}T4\nM0\n")), "nc-tool");
+    assert_eq!(rule(GRBL, "G0 X0\nG1 X1 F9\nT4\nX2\n"), "nc-tool");
 }
 
 #[test]

@@ -168,6 +168,13 @@ impl Step<'_, '_, '_> {
     fn tool(&mut self) -> Result<(), Fault> {
         let number = self.take_whole(b'T')?;
         self.state.selected = number.or(self.state.selected);
+        if self.flavor == Flavor::Grbl {
+            // There is no tool change: the first T names the tool that is set up.
+            if self.state.tool.is_none() && !self.state.cut {
+                self.change_by_hand();
+            }
+            return Ok(());
+        }
         let Some(M::ChangeTool) = self.block.m(Group::ToolChange) else {
             self.ops.extend(number.map(Op::Preselect));
             return Ok(());
@@ -178,11 +185,27 @@ impl Step<'_, '_, '_> {
         };
         self.not_compensated("a tool change")?;
         self.turn(Spindle::Off);
-        self.state.tool = Some(number);
-        self.ops.push(Op::Tool(Box::new(Tool { number, ..Tool::default() })));
+        self.put_in(number);
         // The machine may go to a place of its own for the change.
         self.state.position = UNKNOWN;
         Ok(())
+    }
+
+    /// The operator puts in the tool that T has named; its length is another one.
+    fn change_by_hand(&mut self) {
+        let Some(number) = self.state.selected else { return };
+        self.put_in(number);
+        self.state.position.z = f64::NAN;
+    }
+
+    fn put_in(&mut self, number: u32) {
+        self.state.tool = Some(number);
+        self.ops.push(Op::Tool(Box::new(Tool { number, ..Tool::default() })));
+    }
+
+    /// GRBL: T has named another tool, which the operator puts in at the next `M0`.
+    pub(super) fn awaits_tool(&self) -> bool {
+        self.flavor == Flavor::Grbl && self.state.selected != self.state.tool
     }
 
     fn spindle_and_coolant(&mut self) -> Result<(), Fault> {
@@ -425,6 +448,14 @@ impl Step<'_, '_, '_> {
             }
         }
         match self.block.m(Group::Flow) {
+            Some(M::Stop) if self.awaits_tool() => {
+                if self.state.spindle != Spindle::Off {
+                    let message =
+                        "a tool is changed by hand while the spindle turns; write M5 first";
+                    return Err(self.block.at_group(Group::Flow, "nc-tool", message));
+                }
+                self.change_by_hand();
+            }
             Some(M::Stop) => self.ops.push(Op::Stop),
             // GRBL reads M1 and does nothing.
             Some(M::OptionalStop) if self.flavor != Flavor::Grbl => self.ops.push(Op::OptionalStop),

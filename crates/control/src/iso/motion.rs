@@ -174,9 +174,11 @@ impl Step<'_, '_, '_> {
         Ok(from + value)
     }
 
+    /// Whether the block may move at feed.
+    ///
     /// # Errors
-    /// No feed is active, or in `G93` the block has none of its own.
-    pub(super) fn feed_for_cut(&self) -> Result<(), Fault> {
+    /// No feed is active, or in `G93` the block has none of its own, or the tool is not in.
+    pub(super) fn feed_for_cut(&mut self) -> Result<(), Fault> {
         let message = match self.state.feed {
             None => "a move at feed, and no feed has been given by F",
             Some(Feed::InverseTime(_)) if !self.block.gives(b'F') => {
@@ -185,7 +187,14 @@ impl Step<'_, '_, '_> {
             Some(_) if self.state.feed_mode == FeedMode::PerTurn && self.spindle_stands() => {
                 "a feed per turn while the spindle stands"
             }
-            Some(_) => return Ok(()),
+            Some(_) if self.awaits_tool() => {
+                let message = "T has named a tool, and no M0 has stopped the program to put it in";
+                return Err(self.block.whole("nc-tool", message));
+            }
+            Some(_) => {
+                self.state.cut = true;
+                return Ok(());
+            }
         };
         Err(self.block.whole("nc-feed", message))
     }

@@ -45,6 +45,8 @@ pub(super) struct State {
     pub begun: bool,
     /// Something has moved.
     pub moved: bool,
+    /// Something has moved at feed.
+    pub cut: bool,
     /// `M2` or `M30` has been executed.
     pub ended: bool,
 }
@@ -131,6 +133,7 @@ impl State {
             cycle: None,
             begun: false,
             moved: false,
+            cut: false,
             ended: false,
         }
     }
