@@ -15,6 +15,9 @@ const GRBL: Dialect = Dialect::Grbl;
 fn run(dialect: Dialect, rotary: [bool; 3], text: &str) -> Result<Vec<Op>, Box<Diagnostic>> {
     let settings = Settings { dialect, rotary, auxiliary: vec![26] };
     let mut ops = Vec::new();
+    // Most of these programs are in mm and do not say so.
+    let says_unit = ["%", "G20", "G21"].iter().any(|word| text.contains(word));
+    let text = if says_unit { text.to_owned() } else { format!("G21\n{text}") };
     read(&settings, "p.nc", text.as_bytes(), &mut |record| {
         ops.push(record.op);
         Ok(())
@@ -399,7 +402,7 @@ fn macros_expressions_and_subprograms_are_refused_by_name() {
         }
     }
     let error = run(FANUC, [false; 3], "N5 M98 P1000\n").unwrap_err();
-    assert_eq!((error.line, error.column, error.width), (1, 4, 3));
+    assert_eq!((error.line, error.column, error.width), (2, 4, 3));
     assert_eq!(error.help, "subprograms are not followed");
     assert_eq!(rule(LINUXCNC, "o100 sub\n"), "nc-unknown-word");
     assert_eq!(rule(FANUC, "M77\n"), "nc-unknown-word");
@@ -436,6 +439,12 @@ fn inches_are_25_4_mm() {
         assert_eq!(got, expected);
     }
     assert_eq!(rule(FANUC, "G21\nG0 X1.\nG20\n"), "nc-units");
+    // Before either has been given the unit is that of the program before.
+    for dialect in [FANUC, LINUXCNC] {
+        assert_eq!(rule(dialect, "%\nG90 G0 X1.\n"), "nc-units");
+        assert_eq!(rule(dialect, "%\nF100\n"), "nc-units");
+        assert_eq!(rule(dialect, "%\nG91 G28 Z0\nG21 F100\n"), "nc-feed");
+    }
 }
 
 #[test]

@@ -183,7 +183,7 @@ proptest! {
     fn a_program_goes_where_its_writer_reckoned(blocks in blocks()) {
         let (text, expected) = write(&blocks);
         for dialect in FLAVORS {
-            check(dialect, &text, &expected, 1.0);
+            check(dialect, &format!("G21\n{text}"), &expected, 1.0);
             check(dialect, &format!("G20\n{text}"), &expected, 25.4);
         }
     }

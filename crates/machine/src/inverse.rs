@@ -49,13 +49,13 @@ impl Machine {
         let bearings = chain.bearings(axis)?;
         let mut degrees = [0, 1].map(|family| {
             let turns = chain.solution(&bearings, family);
-            let held = if bearings.free { zero[chain.places[0]] } else { turns[0].degrees() };
+            let held = if bearings.free() { zero[chain.places[0]] } else { turns[0].degrees() };
             chain.spread([held, turns[1].degrees()])
         });
         if self.misses_preference(degrees[0]) && !self.misses_preference(degrees[1]) {
             degrees.swap(0, 1);
         }
-        let free = (bearings.free && chain.links > 0).then_some(chain.places[0]);
+        let free = (bearings.free() && chain.links > 0).then_some(chain.places[0]);
         Ok(Solutions { degrees, free })
     }
 
@@ -75,7 +75,8 @@ impl Turn {
 
     fn of_radians(angle: f64) -> Turn {
         // A float beyond the range of i64 saturates, so no angle, however broken, can do harm here.
-        Turn((angle * (Turn::STEPS / TAU)).round() as i64 as i32)
+        let steps = angle * (Turn::STEPS / TAU);
+        Turn((steps + 0.5f64.copysign(steps)) as i64 as i32)
     }
 
     /// Degrees in (−180, 180]. What is within rounding of −180 is 180.
@@ -100,10 +101,18 @@ pub(crate) struct Bearings {
     around: Turn,
     /// By how much the inner axis is turned out of the plane of the two axes, one way or the other.
     inner: Turn,
-    /// What that makes about the outer axis.
+    /// What that makes about the outer axis: 0 to half a turn, or [`Bearings::FREE`].
     outer: Turn,
+}
+
+impl Bearings {
+    /// The outer axis may stand anywhere.
+    const FREE: Turn = Turn(-1);
+
     /// Whether the outer axis may stand anywhere.
-    pub(crate) free: bool,
+    pub(crate) fn free(&self) -> bool {
+        self.outer == Bearings::FREE
+    }
 }
 
 /// The rotary axes in the order in which they turn the tool axis: the outer one is nearest to the
@@ -198,7 +207,7 @@ impl Chain {
         match &self.solver {
             Solver::Fixed { tool, still } => {
                 within(angle_between(*tool, v))?;
-                Ok(Bearings { inner: *still, free: true, ..Bearings::default() })
+                Ok(Bearings { inner: *still, outer: Bearings::FREE, ..Bearings::default() })
             }
             Solver::One { k, x, y, polar, still } => {
                 within(angle_between(*k, v) - polar)?;
@@ -211,7 +220,7 @@ impl Chain {
 
     /// The positions of the outer and the inner axis in solution `family` (0 or 1).
     pub(crate) fn solution(&self, bearings: &Bearings, family: usize) -> [Turn; 2] {
-        let Bearings { around, inner, outer, .. } = *bearings;
+        let Bearings { around, inner, outer } = *bearings;
         let turned = match &self.solver {
             Solver::Two(Pair { in_plane, .. }) if family == 0 => {
                 [around.minus(outer), in_plane.minus(inner)]
@@ -287,9 +296,9 @@ impl Pair {
         }
         let (mut alpha, mut beta) = self.in_plane_part(along);
         let mut gamma2 = 1.0 - alpha * alpha - beta * beta - 2.0 * alpha * beta * self.d;
-        if gamma2 <= 0.0 || free {
-            let polar = (x.hypot(y) / self.s2.sqrt()).atan2(along);
-            let polar = if free { along.acos() } else { polar };
+        if gamma2 <= 0.0 || gamma2.is_nan() || free {
+            let polar =
+                if free { along.acos() } else { (x.hypot(y) / self.s2.sqrt()).atan2(along) };
             let nearest = polar.clamp(self.reach[0], self.reach[1]);
             within(polar - nearest)?;
             (alpha, beta) = self.in_plane_part(nearest.cos());
@@ -299,8 +308,7 @@ impl Pair {
         Ok(Bearings {
             around: Turn::of_radians(y.atan2(x)),
             inner: Turn::of_radians(gamma.atan2(alpha)),
-            outer: Turn::of_radians(gamma.atan2(beta)),
-            free,
+            outer: if free { Bearings::FREE } else { Turn::of_radians(gamma.atan2(beta)) },
         })
     }
 

@@ -50,6 +50,9 @@ pub enum TargetKind {
 pub struct Plan {
     chain: Chain,
     axes: [Axis; 2],
+    /// For each of the `in_turns` states of a solution the turn of the outer and of the inner axis.
+    turns: [[f64; 2]; TURNS],
+    in_turns: usize,
     start: [f64; 2],
     cells: Vec<Cell>,
     /// Where the travel leaves no way on, in order.
@@ -77,8 +80,10 @@ pub struct Step {
     pub rewind: Option<[f64; 3]>,
 }
 
-/// The most states of a target: two solutions in four turns.
-const STATES: usize = 8;
+/// The most turns in which a solution may stand, those of the two axes multiplied.
+const TURNS: usize = 4;
+/// The most states of a target: two solutions.
+const STATES: usize = 2 * TURNS;
 /// Bits that name a state.
 const BITS: u32 = 3;
 /// Every state follows from the state of the same number.
@@ -112,16 +117,12 @@ struct Axis {
     unlimited: bool,
 }
 
-/// What a target can be in: positions of the outer and the inner axis.
-#[derive(Clone, Copy, Debug)]
-struct States {
-    pairs: [[f64; 2]; STATES],
-    count: usize,
-    /// How many of them are of the first solution; they come first.
-    first: usize,
-}
+/// What a target can be in: positions of the outer and the inner axis by the number of the state, the
+/// first solution from 0 on, the second from [`TURNS`] on; infinite where there is no such state.
+type States = [[f64; 2]; STATES];
 
 /// The best way to each state of a target.
+#[derive(Clone)]
 struct Front {
     states: States,
     cost: [f64; STATES],
@@ -154,13 +155,16 @@ struct Search<'a> {
     machine: &'a Machine,
     known: bool,
     plan: Plan,
-    front: Option<Front>,
+    /// Of the last target that is not singular; without states before the first.
+    front: Box<Front>,
+    /// Of the target looked at; they change places from target to target.
+    next: Box<Front>,
     /// Tool axis of the last target.
     last: Option<Vec3>,
     /// The last target of the singular run just read at which the free axis may turn out of the cut.
     turn_at: Option<usize>,
     /// For each rewind the state in which the tool leaves the part, and those in which it can come in.
-    turns_back: Vec<(u32, [[f64; 2]; STATES])>,
+    turns_back: Vec<(u32, States)>,
 }
 
 impl<'a> Search<'a> {
@@ -168,6 +172,11 @@ impl<'a> Search<'a> {
         let degrees = start.unwrap_or_default();
         let chain = Chain::new(machine, degrees);
         let axes = Axis::of(machine, &chain, degrees);
+        let [outer, inner] = axes.map(|axis| axis.turns() as usize);
+        let mut turns = [[0.0; 2]; TURNS];
+        for (k, turns) in turns.iter_mut().enumerate() {
+            *turns = [k / inner.max(1), k % inner.max(1)].map(|turn| turn as f64);
+        }
         let held = chain.gather(degrees);
         let start_pair = match start {
             Some(_) => held,
@@ -176,20 +185,24 @@ impl<'a> Search<'a> {
         let plan = Plan {
             chain,
             axes,
+            turns,
+            in_turns: (outer * inner).min(TURNS),
             start: start_pair,
             cells: Vec::with_capacity(expected),
             rewinds: Vec::new(),
         };
-        let front = start.map(|degrees| {
-            let axis = machine.axis_at(degrees);
-            let singular = plan.chain.bearings(axis).map_or(true, |bearings| bearings.free);
-            let states = States { pairs: [held; STATES], count: 1, first: 1 };
-            Front { states, cost: [0.0; STATES], axis, index: if singular { -2 } else { -1 } }
-        });
+        let mut front = Box::new(Front::empty());
+        if let Some(degrees) = start {
+            front.axis = machine.axis_at(degrees);
+            let bearings = plan.chain.bearings(front.axis);
+            front.index = if bearings.map_or(true, |b| b.free()) { -2 } else { -1 };
+            (front.states[0], front.cost[0]) = ([0, 1].map(|k| axes[k].base(held[k])), 0.0);
+        }
         Search {
             machine,
             known: start.is_some(),
             plan,
+            next: front.clone(),
             front,
             last: None,
             turn_at: None,
@@ -209,8 +222,10 @@ impl<'a> Search<'a> {
                     .into());
             }
             if arc || (last == target.axis && target.kind == TargetKind::Feed) {
-                let link = SAME;
-                self.plan.cells.push(Cell { link, ..cell });
+                if !cell.bearings.free() {
+                    self.front.index = index as isize;
+                }
+                self.plan.cells.push(Cell { link: SAME, ..cell });
                 return Ok(());
             }
         }
@@ -220,7 +235,7 @@ impl<'a> Search<'a> {
         let mut cell = Cell { bearings, link: SAME };
         // The way to the first target is not cut, unless it follows on the operation before.
         let approach = target.kind == TargetKind::Rapid || (index == 0 && !self.known);
-        if bearings.free {
+        if bearings.free() {
             if approach {
                 self.turn_at = Some(index);
             }
@@ -242,89 +257,46 @@ impl<'a> Search<'a> {
         bearings: &Bearings,
         approach: bool,
     ) -> Result<u32, Box<Diagnostic>> {
-        let states = self.plan.states(bearings);
-        if states.count == 0 {
+        self.plan.states(bearings, &mut self.next.states);
+        if !self.next.states.iter().any(exists) {
             return Err(self.out_of_travel(target, bearings));
         }
+        (self.next.axis, self.next.index) = (target.axis, index as isize);
         let turn_at = self.turn_at.take();
         if let Some(cell) = turn_at.and_then(|at| self.plan.cells.get_mut(at)) {
             cell.link |= TURN;
         }
-        let index = index as isize;
-        let mut next = Front { states, cost: [0.0; STATES], axis: target.axis, index };
         let loose = approach || turn_at.is_some();
-        // The first pose decides the solution; how the axes get there counts for little.
-        let opens = self.front.as_ref().is_none_or(|front| front.index < 0);
-        let mut link = SAME;
-        if opens && loose {
-            for (pair, cost) in states.pairs.iter().zip(&mut next.cost).take(states.count) {
-                let misses = self.machine.misses_preference(self.plan.chain.spread(*pair));
-                *cost = if misses { PREFERENCE } else { 0.0 }
-                    + APPROACH * self.plan.travel(&self.plan.start, pair).0;
-            }
-        } else if let Some(mut front) = self.front.take() {
-            link = match self.relax(&front, &mut next, loose) {
+        let link = if loose && self.front.index < 0 {
+            self.open();
+            SAME
+        } else {
+            match self.plan.relax(self.machine, &self.front, &mut self.next, loose) {
                 Some(link) => link,
-                None => self.rewind(target, &mut front, &mut next)?,
-            };
-        }
-        self.front = Some(next);
+                None => self.rewind(target)?,
+            }
+        };
+        std::mem::swap(&mut self.front, &mut self.next);
         Ok(link)
     }
 
-    /// The best way to each state of `next` from those of `front`; `None` where none can be reached.
-    /// Out of the cut (`loose`) every way is open.
-    fn relax(&self, front: &Front, next: &mut Front, loose: bool) -> Option<u32> {
-        let touching = front.touches(next);
-        let mut link = 0;
-        let mut reached = false;
-        for j in 0..next.states.count {
-            let (mut best, mut from) = (f64::INFINITY, 0);
-            for k in 0..front.states.count {
-                // Those of the same solution first: they are near.
-                let i = if j < next.states.first { k } else { front.states.count - 1 - k };
-                let a = &front.states.pairs[i];
-                let (travel, farthest) = self.plan.travel(a, &next.states.pairs[j]);
-                let cost = front.cost[i] + travel;
-                if cost < best {
-                    let same = (i < front.states.first) == (j < next.states.first);
-                    let open = loose
-                        || (farthest <= 180.0 + SLACK
-                            && (!touching
-                                || (same && travel <= 90.0)
-                                || self.stays_near(front, i, next, j)));
-                    if open {
-                        (best, from) = (cost, i as u32);
-                    }
-                }
-            }
-            next.cost[j] = best;
-            reached |= best < f64::INFINITY;
-            link |= from << (BITS * j as u32);
+    /// The first pose decides the solution; how the axes get there counts for little.
+    fn open(&mut self) {
+        let Front { states, cost, .. } = &mut *self.next;
+        let start = [0, 1].map(|k| self.plan.axes[k].base(self.plan.start[k]));
+        for (state, cost) in states.iter().zip(cost) {
+            let misses = self.machine.misses_preference(self.plan.chain.spread(*state));
+            *cost =
+                if misses { PREFERENCE } else { 0.0 } + APPROACH * self.plan.travel(&start, state);
         }
-        reached.then_some(link)
-    }
-
-    /// Whether the tool, half way from one position to the other, is still between the two tool axes.
-    fn stays_near(&self, front: &Front, i: usize, next: &Front, j: usize) -> bool {
-        let (from, to) = (&front.states.pairs[i], &next.states.pairs[j]);
-        let half = [0, 1].map(|k| from[k] + self.plan.axes[k].way(from[k], to[k]) / 2.0);
-        let axis = self.machine.axis_at(self.plan.chain.spread(half));
-        let turn = angle_between(front.axis, next.axis);
-        let swing = angle_between(axis, front.axis).max(angle_between(axis, next.axis));
-        swing <= turn + SWING
     }
 
     /// No way leads on: the tool leaves the part before `target` in the best state it can have
     /// there, and comes in again in any other.
-    fn rewind(
-        &mut self,
-        target: &Target,
-        front: &mut Front,
-        next: &mut Front,
-    ) -> Result<u32, Box<Diagnostic>> {
+    fn rewind(&mut self, target: &Target) -> Result<u32, Box<Diagnostic>> {
+        let (front, next) = (&mut *self.front, &mut *self.next);
         let best = front.best();
-        let left = front.states.pairs[best];
+        let left = front.states[best];
         if !front.touches(next) {
             // Between them lies a singular pose: there the free axis comes in where it is needed.
             front.states = next.states;
@@ -332,18 +304,18 @@ impl<'a> Search<'a> {
                 Some(cell) => self.plan.inner(&cell.bearings, left[1]).unwrap_or(left[1]),
                 None => left[1],
             };
-            front.states.pairs.iter_mut().for_each(|pair| pair[1] = inner);
+            front.states.iter_mut().for_each(|state| state[1] = inner);
         } else if let (true, Ok(bearings)) = (front.index < 0, self.plan.chain.bearings(front.axis))
         {
             // Of the pose before the operation only the state taken was looked at so far.
-            front.states = self.plan.states(&bearings);
+            self.plan.states(&bearings, &mut front.states);
         }
-        for (pair, cost) in front.states.pairs.iter().zip(&mut front.cost) {
+        for (state, cost) in front.states.iter().zip(&mut front.cost) {
             // Of ways of the same length the one that leaves most travel on both sides.
-            let off_center: f64 = (0..2).map(|k| self.plan.axes[k].off_center(pair[k])).sum();
-            *cost = self.plan.travel(&left, pair).0 + 1e-3 * off_center;
+            let off_center: f64 = (0..2).map(|k| self.plan.axes[k].off_center(state[k])).sum();
+            *cost = self.plan.travel(&left, state) + 1e-3 * off_center;
         }
-        let link = self.relax(front, next, false).ok_or_else(|| {
+        let link = self.plan.relax(self.machine, front, next, false).ok_or_else(|| {
             let message = "no way of the rotary axes through this move stays within their travel";
             Diagnostic::error("axis-limit", message)
                 .help("turn the part on the table, or take a machine with more rotary travel")
@@ -351,23 +323,23 @@ impl<'a> Search<'a> {
         })?;
         let (index, line) = (self.plan.cells.len(), target.line);
         self.plan.rewinds.push(Rewind { index, line, pair: left });
-        self.turns_back.push((best as u32, front.states.pairs));
+        self.turns_back.push((best as u32, front.states));
         Ok(link)
     }
 
     /// Follows the links back from the best end.
     fn finish(mut self) -> Plan {
-        let mut state = self.front.as_ref().map_or(0, Front::best) as u32;
+        let mut state = self.front.best() as u32;
         let mut rewinds = self.plan.rewinds.iter_mut().zip(&self.turns_back).rev().peekable();
         for (index, cell) in self.plan.cells.iter_mut().enumerate().rev() {
-            if cell.bearings.free {
+            if cell.bearings.free() {
                 continue;
             }
             let before = (cell.link >> (BITS * state)) & (STATES as u32 - 1);
             cell.link = state;
             state = before;
-            if let Some((rewind, (left, pairs))) = rewinds.next_if(|(r, _)| r.index == index) {
-                rewind.pair = pairs[before as usize];
+            if let Some((rewind, (left, states))) = rewinds.next_if(|(r, _)| r.index == index) {
+                rewind.pair = states[before as usize];
                 state = *left;
             }
         }
@@ -380,7 +352,7 @@ impl<'a> Search<'a> {
                 let turns = self.plan.chain.solution(bearings, family);
                 let degrees = self.plan.chain.spread(turns.map(|turn| turn.degrees()));
                 let axes = self.machine.rotary.iter();
-                let free = bearings.free.then_some(self.plan.chain.places[0]);
+                let free = bearings.free().then_some(self.plan.chain.places[0]);
                 axes.filter(|axis| Some(axis.index()) != free)
                     .map(|axis| format!("{} {:.3}", axis.letter, degrees[axis.index()]))
                     .collect::<Vec<_>>()
@@ -425,6 +397,11 @@ fn up(x: f64) -> f64 {
     if whole < x { whole + 1.0 } else { whole }
 }
 
+/// Whether there is such a state.
+fn exists(state: &[f64; 2]) -> bool {
+    state[0] + state[1] < f64::INFINITY
+}
+
 impl Axis {
     /// The travel in which the operation is planned. Where an axis turns so often that its states
     /// would be too many, it is planned in the turns around where it stands.
@@ -437,22 +414,22 @@ impl Axis {
             }
         }
         let start = chain.gather(start);
-        let most = STATES as f64 / 2.0;
-        if axes[0].states() * axes[1].states() > most {
-            let other = if axes[1].states() < most { axes[1].states() } else { 2.0 };
+        let most = TURNS as f64;
+        if axes[0].turns() * axes[1].turns() > most {
+            let other = if axes[1].turns() < most { axes[1].turns() } else { 2.0 };
             axes[0] = axes[0].around(start[0], (most / other).floor());
-            axes[1] = axes[1].around(start[1], (most / axes[0].states()).floor());
+            axes[1] = axes[1].around(start[1], (most / axes[0].turns()).floor());
         }
         axes
     }
 
     /// In how many turns a position may stand, at the most.
-    fn states(&self) -> f64 {
+    fn turns(&self) -> f64 {
         if self.unlimited { 1.0 } else { ((self.max - self.min + SLACK) / 360.0).floor() + 1.0 }
     }
 
     fn around(self, position: f64, turns: f64) -> Axis {
-        if self.states() <= turns {
+        if self.turns() <= turns {
             return self;
         }
         let width = 360.0 * turns - 1e-3;
@@ -460,17 +437,14 @@ impl Axis {
         Axis { min, max: min + width, ..self }
     }
 
-    /// The positions within the travel that are `base` (−180, 180] but for whole turns.
-    fn turns(&self, base: f64) -> impl Iterator<Item = f64> + use<> {
-        let Axis { min, max, unlimited } = *self;
-        let (first, count) = if unlimited {
-            (base, 1)
-        } else {
-            let first = up((min - base - SLACK) / 360.0);
-            let last = -up((base - max - SLACK) / 360.0);
-            (base + 360.0 * first, (last - first + 1.0) as usize)
-        };
-        (0..count.min(STATES)).map(move |i| (first + 360.0 * i as f64).max(min).min(max))
+    /// The position that is `base` but for whole turns, in turn `turn` of those that the travel has for
+    /// it; infinite where it has no such turn.
+    fn position(&self, base: f64, turn: f64) -> f64 {
+        if self.unlimited {
+            return base;
+        }
+        let position = base + 360.0 * (up((self.min - base - SLACK) / 360.0) + turn);
+        if position > self.max + SLACK { f64::INFINITY } else { self.nearest(position) }
     }
 
     /// The position within the travel nearest to `position`.
@@ -486,12 +460,29 @@ impl Axis {
         if self.unlimited { way - 360.0 * up(way / 360.0 - 0.5 - 1e-9) } else { way }
     }
 
+    /// How far it is from one state to the other, degrees.
+    fn travel(&self, from: f64, to: f64) -> f64 {
+        let travel = (to - from).abs();
+        if self.unlimited { travel.min((360.0 - travel).abs()) } else { travel }
+    }
+
+    /// `position` as a state has it: without its whole turns where the axis turns for ever.
+    fn base(&self, position: f64) -> f64 {
+        if self.unlimited { self.way(0.0, position) } else { position }
+    }
+
     fn off_center(&self, position: f64) -> f64 {
         if self.unlimited { 0.0 } else { (position - (self.min + self.max) / 2.0).abs() }
     }
 }
 
 impl Front {
+    /// Before the first target, with nothing known of where the axes stand.
+    fn empty() -> Front {
+        let states = [[f64::INFINITY; 2]; STATES];
+        Front { states, cost: [f64::INFINITY; STATES], axis: Vec3::Z, index: -1 }
+    }
+
     /// Whether no singular pose lies between the two.
     fn touches(&self, next: &Front) -> bool {
         self.index + 1 == next.index
@@ -499,7 +490,7 @@ impl Front {
 
     /// The state that is reached best.
     fn best(&self) -> usize {
-        let costs = self.cost.iter().take(self.states.count).enumerate();
+        let costs = self.cost.iter().enumerate();
         costs.min_by(|a, b| a.1.total_cmp(b.1)).map_or(0, |(state, _)| state)
     }
 }
@@ -529,23 +520,86 @@ impl Plan {
         Steps { plan: self, index: 0, rewinds: &self.rewinds, last: self.start }
     }
 
-    fn states(&self, bearings: &Bearings) -> States {
-        let mut states = States { pairs: [[0.0; 2]; STATES], count: 0, first: 0 };
-        for family in 0..self.chain.families() {
-            let [outer, inner] = self.chain.solution(bearings, family).map(|turn| turn.degrees());
-            for outer in self.axes[0].turns(outer) {
-                for inner in self.axes[1].turns(inner) {
-                    if let Some(pair) = states.pairs.get_mut(states.count) {
-                        *pair = [outer, inner];
-                        states.count += 1;
+    /// Writes the states that the travel leaves into `states`.
+    fn states(&self, bearings: &Bearings, states: &mut States) {
+        for (family, states) in
+            states.chunks_exact_mut(TURNS).enumerate().take(self.chain.families())
+        {
+            let base = self.chain.solution(bearings, family).map(|turn| turn.degrees());
+            for (state, turns) in states.iter_mut().zip(&self.turns).take(self.in_turns) {
+                *state = [0, 1].map(|k| self.axes[k].position(base[k], turns[k]));
+            }
+        }
+    }
+
+    /// The positions settled for a target that is not singular.
+    fn settled(&self, cell: &Cell) -> [f64; 2] {
+        let (family, turn) = (cell.link as usize / TURNS, cell.link as usize % TURNS);
+        let base = self.chain.solution(&cell.bearings, family).map(|turn| turn.degrees());
+        [0, 1].map(|k| self.axes[k].position(base[k], self.turns[turn][k]))
+    }
+
+    /// The best way to each state of `next` from those of `front`; `None` where none can be reached.
+    /// Out of the cut (`loose`) every way is open.
+    fn relax(
+        &self,
+        machine: &Machine,
+        front: &Front,
+        next: &mut Front,
+        loose: bool,
+    ) -> Option<u32> {
+        let touching = front.touches(next);
+        let (families, turns) = (self.chain.families(), self.in_turns);
+        let mut link = 0;
+        let mut reached = false;
+        for j in (0..families).flat_map(|family| (0..turns).map(move |k| TURNS * family + k)) {
+            let to = &next.states[j];
+            if !exists(to) {
+                next.cost[j] = f64::INFINITY;
+                continue;
+            }
+            let (mut best, mut from) = (f64::INFINITY, 0);
+            // The same solution first: it is near, and mostly settles it.
+            for first in [0, TURNS].into_iter().take(families).map(|other| other ^ (j & TURNS)) {
+                for i in first..first + turns {
+                    let state = &front.states[i];
+                    let travel = [0, 1].map(|k| self.axes[k].travel(state[k], to[k]));
+                    let cost = front.cost[i] + travel[0] + travel[1];
+                    if cost < best {
+                        let near = first == (j & TURNS) && travel[0] + travel[1] <= 90.0;
+                        let open = loose
+                            || travel[0].max(travel[1]) <= 180.0 + SLACK
+                                && (near
+                                    || !touching
+                                    || self.stays_near(machine, front, i, next, j));
+                        if open {
+                            (best, from) = (cost, i as u32);
+                        }
                     }
                 }
             }
-            if family == 0 {
-                states.first = states.count;
-            }
+            next.cost[j] = best;
+            reached |= best < f64::INFINITY;
+            link |= from << (BITS * j as u32);
         }
-        states
+        reached.then_some(link)
+    }
+
+    /// Whether the tool, half way from one position to the other, is still between the two tool axes.
+    fn stays_near(
+        &self,
+        machine: &Machine,
+        front: &Front,
+        i: usize,
+        next: &Front,
+        j: usize,
+    ) -> bool {
+        let (from, to) = (&front.states[i], &next.states[j]);
+        let half = [0, 1].map(|k| from[k] + self.axes[k].way(from[k], to[k]) / 2.0);
+        let axis = machine.axis_at(self.chain.spread(half));
+        let turn = angle_between(front.axis, next.axis);
+        let swing = angle_between(axis, front.axis).max(angle_between(axis, next.axis));
+        swing <= turn + SWING
     }
 
     /// The position of the inner axis in a singular pose, where both solutions have the same, in the
@@ -553,18 +607,14 @@ impl Plan {
     fn inner(&self, bearings: &Bearings, from: f64) -> Option<f64> {
         let base = self.chain.solution(bearings, 0)[1].degrees();
         let far = |position: f64| self.axes[1].way(from, position).abs();
-        self.axes[1].turns(base).min_by(|a, b| far(*a).total_cmp(&far(*b)))
+        let positions = (0..TURNS).map(|turn| self.axes[1].position(base, turn as f64));
+        let within = positions.filter(|position| position.is_finite());
+        within.min_by(|a, b| far(*a).total_cmp(&far(*b)))
     }
 
-    /// The rotary travel between two positions, and that of the axis that turns most, degrees.
-    fn travel(&self, from: &[f64; 2], to: &[f64; 2]) -> (f64, f64) {
-        let [a, b] = [0, 1].map(|k| self.axes[k].way(from[k], to[k]).abs());
-        (a + b, a.max(b))
-    }
-
-    /// The positions settled for a target that is not singular.
-    fn settled(&self, cell: &Cell) -> [f64; 2] {
-        self.states(&cell.bearings).pairs[cell.link as usize % STATES]
+    /// The rotary travel between two states, degrees.
+    fn travel(&self, from: &[f64; 2], to: &[f64; 2]) -> f64 {
+        self.axes[0].travel(from[0], to[0]) + self.axes[1].travel(from[1], to[1])
     }
 }
 
@@ -587,7 +637,7 @@ impl Steps<'_> {
     fn singular(&self, cell: &Cell) -> [f64; 2] {
         let mut outer = self.last[0];
         if cell.link & TURN != 0 {
-            let next = self.plan.cells[self.index..].iter().find(|cell| !cell.bearings.free);
+            let next = self.plan.cells[self.index..].iter().find(|cell| !cell.bearings.free());
             outer = next.map_or(outer, |cell| self.plan.settled(cell)[0]);
         }
         [outer, self.plan.inner(&cell.bearings, self.last[1]).unwrap_or(self.last[1])]
@@ -607,7 +657,7 @@ impl Iterator for Steps<'_> {
             self.last = self.wound(first.pair);
             rewind = Some(self.plan.chain.spread(self.last));
         }
-        let pair = if cell.bearings.free { self.singular(cell) } else { self.plan.settled(cell) };
+        let pair = if cell.bearings.free() { self.singular(cell) } else { self.plan.settled(cell) };
         self.last = self.wound(pair);
         self.index += 1;
         Some(Step { degrees: self.plan.chain.spread(self.last), rewind })
@@ -620,3 +670,13 @@ impl Iterator for Steps<'_> {
 }
 
 impl ExactSizeIterator for Steps<'_> {}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_target_takes_16_bytes() {
+        assert_eq!(size_of::<Cell>(), 16);
+    }
+}

@@ -116,6 +116,23 @@ fn where_the_travel_ends_the_tool_turns_back_and_comes_in_again() {
 }
 
 #[test]
+fn the_tool_never_swings_to_the_other_solution_in_the_cut() {
+    // C ends at 100°, where the other solution goes on at −80°, but at 60° the tool would swing over.
+    let machine = machine(vec![
+        within(-120.0, 120.0, axis('A', Mount::Table, Vec3::X, 1.0)),
+        within(-100.0, 100.0, axis('C', Mount::Table, Vec3::Z, -1.0)),
+    ]);
+    for (polar, rewinds) in [(60.0, 1), (0.4, 0)] {
+        let once: Vec<_> =
+            (0..=14).map(|i| feed(leaning(polar, 90.0 - f64::from(i) * 10.0))).collect();
+        let twice: Vec<_> = once.iter().flat_map(|t| [*t, *t]).collect();
+        for path in [once, twice] {
+            assert_eq!(plan(&machine, None, path).unwrap().rewinds.len(), rewinds);
+        }
+    }
+}
+
+#[test]
 fn a_rapid_turns_back_without_a_rewind() {
     let turn = |i: u32| leaning(60.0, 90.0 - f64::from(i) * 10.0);
     let mut path: Vec<_> = (0..=108).map(|i| feed(turn(i))).collect();

@@ -45,3 +45,11 @@ pub struct Output {
 pub fn write(program: &Program, machine: &Machine) -> Result<Output, Vec<Diagnostic>> {
     walk::Walk::new(program, machine)?.run()
 }
+
+/// Compiles the templates of `machine` and holds them against what its capabilities promise.
+///
+/// # Errors
+/// The mistakes in the machine's files, with their place there.
+pub fn check(machine: &Machine) -> Result<(), Vec<Diagnostic>> {
+    walk::Walk::new(&Program::default(), machine).map(drop)
+}

@@ -112,6 +112,14 @@ impl Diagnostic {
         self
     }
 
+    /// About the whole of line `line` (from 1), which is `text`.
+    pub fn on(mut self, line: u32, text: &[u8]) -> Diagnostic {
+        self = self.at(line, text, 0, 0);
+        (self.column, self.width) = (0, 0);
+        self.excerpt.truncate(self.excerpt.find('\n').unwrap_or(0));
+        self
+    }
+
     /// Whether there is no result.
     pub fn is_error(&self) -> bool {
         self.severity == Severity::Error
@@ -166,6 +174,12 @@ mod tests {
             "a.cls:3:12: error[zero-vector]: the tool axis has no length\n    | GOTO/1,2,3,0,0,0\n    \
              |            ^^^^^\n    = give a direction"
         );
+    }
+
+    #[test]
+    fn a_finding_about_a_whole_line_shows_it_without_a_caret() {
+        let shown = Diagnostic::error("x", "y").on(3, b"GOTO/1,2,3").to_string();
+        assert_eq!(shown, "3: error[x]: y\n    | GOTO/1,2,3");
     }
 
     #[test]

@@ -35,6 +35,11 @@ pub enum Command {
     Machines(Machines),
     /// Count and measure a toolpath, and draw it.
     Show(Show),
+    /// Say what a name of the templates means.
+    Explain {
+        /// A word, a block or a variable; without one, all of them.
+        topic: Option<String>,
+    },
     /// Print the completions of a shell.
     Completions {
         /// Which shell.

@@ -36,7 +36,7 @@ const LEGEND_TOOLS: usize = 14;
 const SHADES: usize = 6;
 
 /// How many hair lines show the tool axis, and how long they are, pixels.
-const HAIRS: (f64, f64) = (260.0, 22.0);
+const HAIRS: (f64, f64) = (300.0, 30.0);
 
 /// The most rings that mark holes.
 const MAX_RINGS: usize = 20_000;
@@ -156,14 +156,15 @@ impl Picture {
         };
         let chord = tolerance / view.scale;
 
-        let (mut low, mut high, mut tilted) = (f64::INFINITY, f64::NEG_INFINITY, false);
+        let tilts = |axis: Vec3| axis.distance_squared(Vec3::Z) > 1e-6;
+        let (mut low, mut high, mut tilted) = (f64::INFINITY, f64::NEG_INFINITY, 0.0);
         picture.tools = walk(program, chord, &mut |segment| {
             picture.cutting.resize(picture.cutting.len().max(segment.tool + 1), 0.0);
             if segment.cuts {
                 low = low.min(segment.to.z);
                 high = high.max(segment.to.z);
                 picture.cutting[segment.tool] += segment.length;
-                tilted |= segment.axis.distance_squared(Vec3::Z) > 1e-6;
+                tilted += if tilts(segment.axis) { segment.length } else { 0.0 };
             } else {
                 picture.rapid += segment.length;
             }
@@ -172,7 +173,7 @@ impl Picture {
             part if part.is_finite() => ((part * SHADES as f64) as usize).min(SHADES - 1),
             _ => SHADES - 1,
         };
-        let hair_every = picture.cutting.iter().sum::<f64>() / HAIRS.0;
+        let hair_every = tilted / HAIRS.0;
         let pen = || Trace::new(tolerance);
         let (mut since_hair, mut rings) = (0.0, 0);
         walk(program, chord, &mut |segment| {
@@ -184,8 +185,10 @@ impl Picture {
             }
             let shade = shades((from.z + to.z) / 2.0);
             picture.cuts.entry((shade, tool)).or_insert_with(pen).segment(start, end);
-            since_hair += segment.length;
-            if tilted && since_hair >= hair_every {
+            if tilts(segment.axis) {
+                since_hair += segment.length;
+            }
+            if tilts(segment.axis) && since_hair >= hair_every {
                 since_hair = 0.0;
                 let tip = view.at(to + segment.axis * (HAIRS.1 / view.scale));
                 picture.hairs.entry(tool).or_insert_with(pen).segment(end, tip);

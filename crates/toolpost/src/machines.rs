@@ -3,7 +3,8 @@
 use crate::answer::{Answer, Stop, Verdict};
 use crate::args::Machines;
 use crate::files::{self, Target};
-use crate::{summary, toolpath};
+use crate::summary;
+use crate::toolpath::{self, describe};
 use machine::{Machine, library};
 use program::Diagnostic;
 use serde_json::{Value, json};
@@ -72,6 +73,7 @@ fn new(name: &str, from: &str) -> Result<Answer, Stop> {
 /// Loads a file and compiles its templates.
 fn check(file: &str) -> Result<Answer, Stop> {
     let machine = toolpath::machine(file)?;
+    post::check(&machine).map_err(|findings| Stop { verdict: Verdict::Invalid, findings })?;
     let lines = [("machine", machine.title.clone()), ("mistakes", String::from("none"))];
     let data = json!({ "machine": describe(&machine) });
     Ok(Answer::summary(Verdict::Done, summary::rows(&lines), data))
@@ -84,15 +86,5 @@ fn library_text(name: &str) -> Result<&'static str, Stop> {
         Diagnostic::error("unknown-machine", format!("`{name}` is not in the library"))
             .help(format!("there are {}", names.join(", ")))
             .into()
-    })
-}
-
-fn describe(machine: &Machine) -> Value {
-    json!({
-        "name": machine.name,
-        "title": machine.title,
-        "control": machine.control,
-        "reader": machine.reader,
-        "extension": machine.extension,
     })
 }

@@ -7,6 +7,7 @@
 mod answer;
 mod args;
 mod drawing;
+mod explain;
 mod files;
 mod machines;
 mod post;
@@ -31,6 +32,7 @@ fn main() -> ExitCode {
         Command::Prove(args) => prove::run(&args, silent),
         Command::Machines(command) => machines::run(&command),
         Command::Show(args) => show::run(&args, silent),
+        Command::Explain { topic } => explain::run(topic.as_deref()),
         Command::Completions { shell } => Ok(completions(shell)),
     };
     answer.unwrap_or_else(Answer::from).say(quiet, json)

@@ -4,10 +4,28 @@ use crate::answer::{Answer, Stop, Verdict};
 use crate::args::Post;
 use crate::files::{self, Target};
 use crate::progress::Progress;
-use crate::summary::{Shape, rows};
+use crate::summary::{Shape, rows, time};
 use crate::{prove, toolpath};
+use machine::time::Times;
+use program::Diagnostic;
 use serde_json::json;
 use std::path::Path;
+
+/// Rules whose findings say that the machine cannot do what the toolpath asks for. All others of the
+/// writer are mistakes of the input: of the toolpath, or of the machine's file.
+const MACHINE_CANNOT: [&str; 11] = [
+    "arc-orientation",
+    "axis-limit",
+    "cycle-missing",
+    "cycle-tap",
+    "line-length",
+    "number-range",
+    "orientation-in-cut",
+    "spindle-range",
+    "tool-range",
+    "unreachable-orientation",
+    "unsupported",
+];
 
 /// Writes the program, proves it, and only then saves it with its report.
 pub fn run(args: &Post, silent: bool) -> Result<Answer, Stop> {
@@ -20,53 +38,57 @@ pub fn run(args: &Post, silent: bool) -> Result<Answer, Stop> {
 
     let progress = Progress::new(4, silent);
     progress.step("reading");
-    let toolpath = toolpath::read(source, args.source.strict)?;
+    let mut toolpath = toolpath::read(source, args.source.strict)?;
+    let mut warnings = std::mem::take(&mut toolpath.warnings);
     progress.step("writing");
-    let output = post::write(&toolpath.program, &machine)
-        .map_err(|findings| Stop { verdict: Verdict::Failed, findings })?;
-    progress.step("proving");
-    let program_file = files::name(&args.output);
-    let proof = proof::prove(
-        &toolpath.program,
-        &machine,
-        &program_file,
-        &output.text,
-        &args.closeness.tolerances(),
-    );
-    let mut warnings = toolpath.warnings;
+    let output = post::write(&toolpath.program, &machine).map_err(|mut findings| {
+        toolpath.quote(&mut findings);
+        let verdict = verdict(&findings);
+        findings.splice(0..0, std::mem::take(&mut warnings));
+        Stop { verdict, findings }
+    })?;
     warnings.extend(output.warnings);
+    toolpath.quote(&mut warnings);
+    progress.step("proving");
+    let file = files::name(&args.output);
+    let tolerances = args.closeness.tolerances();
+    let proof = proof::prove(&toolpath.program, &machine, &file, &output.text, &tolerances);
     if !proof.proven {
-        let stop = prove::failed(&proof, "nothing was saved");
-        return Ok(stop.findings(warnings));
+        let failed = prove::failed(&proof, &toolpath, &file, "not saved: nothing was changed");
+        return Ok(failed.findings(warnings));
     }
 
     progress.step("saving");
-    let shape = Shape::of(&toolpath.program);
     warnings.extend(proof.warnings.iter().cloned());
+    let shape = Shape::of(&toolpath.program);
+    let times = Times::of(&toolpath.program, &machine);
     let data = json!({
         "toolpost": env!("CARGO_PKG_VERSION"),
-        "toolpath": toolpath.file,
-        "dialect": toolpath.dialect,
-        "machine": { "name": machine.name, "title": machine.title, "control": machine.control },
-        "program": program_file,
-        "blocks": output.blocks,
-        "bytes": output.text.len(),
-        "shape": shape,
+        "source": toolpath.describe(&shape),
+        "machine": toolpath::describe(&machine),
+        "program": { "file": file, "blocks": output.blocks, "bytes": output.text.len() },
+        "time_s": { "total": times.total(), "cutting": times.cutting, "rapid": times.rapid },
         "proof": proof,
-        "warnings": warnings,
     });
-    let mut report = serde_json::to_vec_pretty(&data).unwrap_or_default();
-    report.push(b'\n');
-    files::save(&[(&report_target, &report), (&target, &output.text)])?;
+    let mut report = data.clone();
+    report["warnings"] = json!(warnings);
+    let report = format!("{report:#}\n");
+    files::save(&[(&report_target, report.as_bytes()), (&target, &output.text)])?;
 
-    let mut lines = vec![
-        ("toolpath", format!("{} ({})", toolpath.file, toolpath.dialect)),
-        ("machine", format!("{} ({})", machine.title, machine.name)),
-    ];
+    let mut lines = toolpath.rows(&machine);
     lines.extend(shape.rows());
-    lines.push(("program", format!("{} blocks", output.blocks)));
-    lines.extend(prove::rows(&proof));
+    lines.push(("time", time(&times)));
+    lines.extend(prove::rows(&proof, &machine));
     lines.push(("saved", args.output.display().to_string()));
-    lines.push(("report", report_path.display().to_string()));
+    lines.push(("", report_path.display().to_string()));
     Ok(Answer::summary(Verdict::Done, rows(&lines), data).findings(warnings))
+}
+
+/// Whose fault it is that nothing could be written.
+fn verdict(findings: &[Diagnostic]) -> Verdict {
+    let mut errors = findings.iter().filter(|finding| finding.is_error());
+    match errors.all(|error| MACHINE_CANNOT.contains(&error.rule)) {
+        true => Verdict::Failed,
+        false => Verdict::Invalid,
+    }
 }

@@ -2,8 +2,11 @@
 
 use crate::answer::{Answer, Stop, Verdict};
 use crate::args::{Closeness, Prove};
+use crate::files;
 use crate::progress::Progress;
-use crate::{files, summary, toolpath};
+use crate::summary::{self, Shape, number};
+use crate::toolpath::{self, Toolpath};
+use machine::Machine;
 use proof::{Report, Tolerances};
 use serde_json::json;
 
@@ -12,29 +15,27 @@ pub fn run(args: &Prove, silent: bool) -> Result<Answer, Stop> {
     let machine = toolpath::machine(&args.machine)?;
     let progress = Progress::new(2, silent);
     progress.step("reading");
-    let toolpath = toolpath::read(&args.against, false)?;
+    let mut toolpath = toolpath::read(&args.against, false)?;
+    let mut warnings = std::mem::take(&mut toolpath.warnings);
     let text = files::read(&args.program)?;
     progress.step("proving");
-    let program_file = files::name(&args.program);
+    let file = files::name(&args.program);
     let tolerances = args.closeness.tolerances();
-    let report = proof::prove(&toolpath.program, &machine, &program_file, &text, &tolerances);
-    if !report.proven {
-        return Ok(failed(&report, "").findings(toolpath.warnings));
+    let proof = proof::prove(&toolpath.program, &machine, &file, &text, &tolerances);
+    if !proof.proven {
+        return Ok(failed(&proof, &toolpath, &file, "it makes another motion").findings(warnings));
     }
-    let mut lines = vec![
-        ("toolpath", format!("{} ({})", toolpath.file, toolpath.dialect)),
-        ("program", program_file.clone()),
-        ("machine", format!("{} ({})", machine.title, machine.name)),
-    ];
-    lines.extend(rows(&report));
+    warnings.extend(proof.warnings.iter().cloned());
+    let shape = Shape::of(&toolpath.program);
     let data = json!({
-        "toolpath": toolpath.file,
-        "program": program_file,
-        "machine": machine.name,
-        "proof": report,
+        "source": toolpath.describe(&shape),
+        "machine": toolpath::describe(&machine),
+        "program": { "file": file, "blocks": proof.program.blocks, "bytes": text.len() },
+        "proof": proof,
     });
-    let mut warnings = toolpath.warnings;
-    warnings.extend(report.warnings);
+    let mut lines = toolpath.rows(&machine);
+    lines.extend(shape.rows());
+    lines.extend(rows(&proof, &machine));
     Ok(Answer::summary(Verdict::Done, summary::rows(&lines), data).findings(warnings))
 }
 
@@ -45,22 +46,48 @@ impl Closeness {
     }
 }
 
-/// The lines of a summary that tell of a proof that held.
-pub fn rows(_report: &Report) -> Vec<(&'static str, String)> {
-    vec![("proof", String::from("the program makes the motion of the toolpath"))]
-}
-
-/// The answer of a proof that failed: the mismatches, first to last.
-pub fn failed(report: &Report, consequence: &str) -> Answer {
-    let data = json!({ "proof": report });
-    let text = rows_of_failure(consequence);
-    Answer::summary(Verdict::Failed, text, data).findings(report.mismatches.clone())
-}
-
-fn rows_of_failure(consequence: &str) -> String {
-    let mut lines = vec![("proof", String::from("failed"))];
-    if !consequence.is_empty() {
-        lines.push(("saved", consequence.to_owned()));
+/// The lines of a summary that tell of a program and its proof, which held.
+pub fn rows(proof: &Report, machine: &Machine) -> Vec<(&'static str, String)> {
+    let (program, worst, allowed) = (&proof.program, &proof.deviations, &proof.tolerances);
+    let mut rows = vec![("program", format!("{} blocks", program.blocks))];
+    let linear = ["X", "Y", "Z"].into_iter().zip(program.linear_extents_mm);
+    let rotary = ["A", "B", "C"].into_iter().zip(program.rotary_extents_degrees);
+    let rotary =
+        rotary.filter(|(letter, _)| machine.rotary.iter().any(|r| letter.starts_with(r.letter)));
+    let axes = linear.map(|axis| (axis, "mm")).chain(rotary.map(|axis| (axis, "degrees")));
+    for ((letter, extent), unit) in axes {
+        if let (Some(min), Some(max)) = (extent.min, extent.max) {
+            rows.push((letter, summary::extent(min, max, unit)));
+        }
     }
-    summary::rows(&lines)
+    let compared = &proof.compared;
+    let moves = compared.rapids + compared.lines + compared.arcs + compared.holes;
+    rows.push(("proof", format!("all {moves} moves are those of the toolpath")));
+    let deviation = |value: f64, allowed: f64, unit: &str, line: u32| {
+        let place = if line > 0 { format!(" (line {line})") } else { String::new() };
+        format!("{} {unit} at most{place}; {} allowed", number(value, 5), number(allowed, 5))
+    };
+    let (tip, axis) = (worst.tip_mm, worst.axis_degrees);
+    rows.push(("tip off by", deviation(tip.value, allowed.tip_mm, "mm", tip.program_line)));
+    if axis.value > 0.0 {
+        let text = deviation(axis.value, allowed.axis_degrees, "degrees", axis.program_line);
+        rows.push(("axis off by", text));
+    }
+    if compared.excursions > 0 {
+        rows.push(("excursions", format!("{}, listed in the report", compared.excursions)));
+    }
+    rows
+}
+
+/// The answer of a proof that failed: the first mismatch side by side, and all of them as findings.
+pub fn failed(proof: &Report, source: &Toolpath, program: &str, consequence: &str) -> Answer {
+    let mut lines = vec![("proof", String::from("FAILED")), ("program", consequence.to_owned())];
+    if let Some(first) = &proof.first_mismatch {
+        let source_line = source.line(first.source_line);
+        let beside = |file: &str, line: u32, text: &str| format!("{file}:{line}  {}", text.trim());
+        lines.push(("source says", beside(&source.file, first.source_line, &source_line)));
+        lines.push(("program says", beside(program, first.program_line, &first.block)));
+    }
+    let data = json!({ "proof": proof });
+    Answer::summary(Verdict::Failed, summary::rows(&lines), data).findings(proof.mismatches.clone())
 }

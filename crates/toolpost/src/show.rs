@@ -1,6 +1,6 @@
 //! `toolpost show`: what a toolpath amounts to, and what it looks like.
 
-use crate::answer::{Answer, Stop, Verdict};
+use crate::answer::{Answer, Stop};
 use crate::args::Show;
 use crate::files::{self, Target};
 use crate::progress::Progress;
@@ -30,14 +30,13 @@ pub fn run(args: &Show, silent: bool) -> Result<Answer, Stop> {
     }
     let mut lines = vec![("toolpath", format!("{} ({})", toolpath.file, toolpath.dialect))];
     lines.extend(shape.rows());
+    lines.extend(shape.extents());
     lines.extend(output.map(|output| ("drawing", output.display().to_string())));
     let data = json!({
-        "toolpath": toolpath.file,
-        "dialect": toolpath.dialect,
-        "shape": shape,
+        "source": toolpath.describe(&shape),
         "drawing": output,
     });
-    Ok(Answer::summary(Verdict::Done, rows(&lines), data).findings(toolpath.warnings))
+    Ok(Answer::product(rows(&lines), data).findings(toolpath.warnings))
 }
 
 /// Whether a drawing is saved as PNG; otherwise it is SVG.

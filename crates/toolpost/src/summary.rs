@@ -1,6 +1,7 @@
 //! What a program amounts to, as a machinist reads it and as JSON.
 
 use crate::walk::walk;
+use machine::time::Times;
 use program::Program;
 use program::statistics::Statistics;
 use serde::Serialize;
@@ -67,17 +68,50 @@ impl Shape {
         ));
         rows.push(("cutting", length(s.cutting_length)));
         rows.push(("rapid", length(s.rapid_length)));
-        for (i, letter) in ["X", "Y", "Z"].into_iter().enumerate() {
-            let (low, high) = (s.low[i], s.high[i]);
-            rows.push((letter, format!("{low:.3} ... {high:.3} mm  ({:.3})", high - low)));
-        }
         rows
+    }
+
+    /// The lines of a summary that tell how far the tool tip goes.
+    pub fn extents(&self) -> impl Iterator<Item = (&'static str, String)> {
+        let (low, high) = (self.statistics.low, self.statistics.high);
+        let axes = ["X", "Y", "Z"].into_iter().enumerate();
+        axes.map(move |(i, letter)| (letter, extent(low[i], high[i], "mm")))
     }
 }
 
 /// A length for a person: mm below ten metres, then metres.
 fn length(mm: f64) -> String {
     if mm < 10_000.0 { format!("{mm:.1} mm") } else { format!("{:.2} m", mm / 1000.0) }
+}
+
+/// What a machine needs for a program.
+pub fn time(times: &Times) -> String {
+    let (total, cutting) = (duration(times.total()), duration(times.cutting));
+    format!("{total}, {cutting} of it cutting")
+}
+
+/// A time for a person.
+fn duration(seconds: f64) -> String {
+    let seconds = seconds.round() as u64;
+    let (hours, minutes, seconds) = (seconds / 3600, seconds / 60 % 60, seconds % 60);
+    match (hours, minutes) {
+        (0, 0) => format!("{seconds} s"),
+        (0, _) => format!("{minutes} min {seconds:02} s"),
+        _ => format!("{hours} h {minutes:02} min"),
+    }
+}
+
+/// How far something goes.
+pub fn extent(low: f64, high: f64, unit: &str) -> String {
+    let (low, high, size) = (number(low, 3), number(high, 3), number(high - low, 3));
+    format!("{low} ... {high} {unit} ({size})")
+}
+
+/// A number with so many decimals, without zeros at its end.
+pub fn number(value: f64, decimals: usize) -> String {
+    let text = format!("{value:.decimals$}");
+    let text = text.trim_end_matches('0').trim_end_matches('.');
+    if text == "-0" { String::from("0") } else { text.to_owned() }
 }
 
 /// Lines of two columns.
@@ -92,6 +126,18 @@ mod tests {
     use geom::Vec3;
     use program::{ArcTo, Op, Pose, Tool};
     use std::f64::consts::TAU;
+
+    #[test]
+    fn times_are_told_in_the_units_of_a_watch() {
+        let told = [0.4, 59.6, 3599.0, 3661.0].map(duration);
+        assert_eq!(told, ["0 s", "1 min 00 s", "59 min 59 s", "1 h 01 min"]);
+    }
+
+    #[test]
+    fn numbers_have_no_needless_zeros() {
+        let told = [-0.0001, 100.0, -2.5, 0.12345].map(|value| number(value, 3));
+        assert_eq!(told, ["0", "100", "-2.5", "0.123"]);
+    }
 
     #[test]
     fn each_tool_has_the_length_that_it_cuts() {

@@ -123,7 +123,7 @@ impl Step<'_, '_, '_> {
         }
         let Some(word) = self.block.take(b'F') else { return Ok(()) };
         if let Some(G::Inches(inches)) = self.block.g(Group::Units)
-            && inches != self.state.inches
+            && self.state.inches != Some(inches)
         {
             let message = "F in the block that changes the units: controls differ in which it is";
             return Err(self.block.at_word(b'F', "nc-feed", message));
@@ -131,10 +131,9 @@ impl Step<'_, '_, '_> {
         if word.value <= 0.0 {
             return Err(self.block.at_word(b'F', "nc-feed", "the feed must be greater than 0"));
         }
-        let length = word.value * self.unit();
         let feed = match self.state.feed_mode {
-            FeedMode::PerMinute => Feed::PerMinute(length),
-            FeedMode::PerTurn => Feed::PerTurn(length),
+            FeedMode::PerMinute => Feed::PerMinute(word.value * self.unit(b'F')?),
+            FeedMode::PerTurn => Feed::PerTurn(word.value * self.unit(b'F')?),
             FeedMode::InverseTime => Feed::InverseTime(word.value),
         };
         if self.state.feed.replace(feed) != Some(feed) {
@@ -289,14 +288,14 @@ impl Step<'_, '_, '_> {
             self.state.plane = plane;
         }
         if let Some(G::Inches(inches)) = self.block.g(Group::Units)
-            && inches != self.state.inches
+            && self.state.inches != Some(inches)
         {
             self.not_compensated("a change of units")?;
             if self.flavor == Flavor::Fanuc && self.state.moved {
                 let message = "FANUC takes G20 or G21 before the first move only";
                 return Err(self.block.at_group(Group::Units, "nc-units", message));
             }
-            self.state.inches = inches;
+            self.state.inches = Some(inches);
         }
         if let Some(G::Compensation(side)) = self.block.g(Group::Compensation) {
             self.compensation(side)?;
@@ -473,19 +472,32 @@ impl Step<'_, '_, '_> {
         Ok(())
     }
 
-    /// mm in the unit of length.
-    pub(super) fn unit(&self) -> f64 {
-        if self.state.inches { INCH } else { 1.0 }
+    /// mm in the unit of length, for the word of this letter.
+    ///
+    /// # Errors
+    /// The program has not said which unit it is in.
+    fn unit(&self, letter: u8) -> Result<f64, Fault> {
+        match self.state.inches {
+            Some(true) => Ok(INCH),
+            Some(false) => Ok(1.0),
+            None => {
+                let message = "a length, and neither G20 nor G21 has been given";
+                let fault = self.block.at_word(letter, "nc-units", message);
+                Err(fault.help("a control keeps the unit of the program before").into())
+            }
+        }
     }
 
     /// The length (mm) of this letter.
     ///
     /// # Errors
-    /// On FANUC a number other than 0 without a point: whether it counts units or least increments is
-    /// a setting of the machine (parameter 3401, bit 0).
+    /// A length other than 0 before the unit is known. On FANUC a number other than 0 without a point:
+    /// whether it counts units or least increments is a setting of the machine (parameter 3401, bit 0).
     pub(super) fn take_length(&mut self, letter: u8) -> Result<Option<f64>, Fault> {
-        let unit = self.unit();
-        Ok(self.take_pointed(letter)?.map(|word| word.value * unit))
+        match self.take_pointed(letter)? {
+            Some(word) if word.value != 0.0 => Ok(Some(word.value * self.unit(letter)?)),
+            word => Ok(word.map(|_| 0.0)),
+        }
     }
 
     /// The angle (degrees) of this letter; errors as [`Step::take_length`].

@@ -14,7 +14,8 @@ pub(super) struct State {
     pub plane: Plane,
     pub incremental: bool,
     pub centers_absolute: bool,
-    pub inches: bool,
+    /// `G20` or `G21`; none before the program has said it: controls keep the unit of the program before.
+    pub inches: Option<bool>,
     pub feed_mode: FeedMode,
     pub feed: Option<Feed>,
     pub spindle: Spindle,
@@ -110,7 +111,7 @@ impl State {
             plane: Plane::Xy,
             incremental: false,
             centers_absolute: false,
-            inches: false,
+            inches: None,
             feed_mode: FeedMode::PerMinute,
             feed: None,
             spindle: Spindle::Off,

@@ -135,9 +135,8 @@ impl Reader {
             return Err(Fault::new("unsupported", message)
                 .help("end the full turns first, then the rest in an arc of its own"));
         }
-        if start.orientation != end.orientation
-            && !matches!((start.axis(), end.axis()), (Some(a), Some(b)) if angle_between(a, b) <= ANGLE_EPSILON)
-        {
+        let tilt = start.axis().zip(end.axis()).map_or(PI, |(a, b)| angle_between(a, b));
+        if tilt > ANGLE_EPSILON {
             return Err(Fault::new("unsupported", "the tool axis turns during this arc")
                 .help("let the CAM system write lines where the axis turns"));
         }

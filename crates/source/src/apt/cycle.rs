@@ -55,6 +55,22 @@ const PARTS: [(&str, Part); 17] = [
     ("ANGLE", Part::Angle),
 ];
 
+/// The words and values of a `CYCLE` record.
+#[derive(Default)]
+struct Parts {
+    /// By [`Part`].
+    values: [Option<f64>; PARTS.len()],
+    feed: Option<Feed>,
+    /// Retract to the level before the cycle.
+    to_initial: bool,
+}
+
+impl Parts {
+    fn get(&self, part: Part) -> Option<f64> {
+        self.values.get(part as usize).copied().flatten()
+    }
+}
+
 /// What the first words of a `CYCLE` record ask for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Kind {
@@ -68,7 +84,7 @@ enum Kind {
     Bore,
 }
 
-/// Names of cycles, longest first. Siemens NX has bores that feed out (`BORE`) and that stop (`BORE,DRAG`).
+/// Names of cycles, longest first.
 const KINDS: [(&[&str], Kind); 14] = [
     (&["DRILL", "DEEP"], Kind::Deep),
     (&["DRILL", "BRKCHP"], Kind::BreakChip),
@@ -118,7 +134,9 @@ impl Reader {
                 return Ok(());
             }
             () if record.is(0, "ON") => {
-                self.cycle = self.last_cycle.take();
+                let initial = self.tip.map(|tip| tip.point);
+                let last = self.cycle.take().or_else(|| self.last_cycle.take());
+                self.cycle = last.map(|last| ActiveCycle { initial, ..last });
                 return match self.cycle {
                     Some(_) => Ok(()),
                     None => Err(Fault::new("malformed", "no cycle has been given yet")),
@@ -147,79 +165,26 @@ impl Reader {
     /// The cycle that `record` describes.
     fn define(&mut self, record: &Record) -> Result<ActiveCycle, Box<Fault>> {
         let (words, kind) = self.kind(record)?;
-        let mut value: [Option<f64>; 10] = [None; 10];
-        let (mut feed, mut to_initial, mut returns) = (None, false, false);
-        let mut i = words;
-        while i < record.fields.len() {
-            if let Some(unit) = FeedUnit::of(record, i) {
-                let number = record.number(i + 1, "the feed")?;
-                feed = Some(self.feed_of(number, unit).map_err(|fault| fault.fields(i + 1, 1))?);
-                i += 2;
-                continue;
-            }
-            let known = PARTS.iter().find(|(word, _)| record.is(i, word));
-            let Some((_, part)) = known else {
-                return Err(Fault::new("unsupported", "this is not known of a cycle")
-                    .help("write a word and its value: FEDTO, RAPTO, RTRCTO, INCR, DWELL, MMPM")
-                    .fields(i, 1));
-            };
-            if *part == Part::Dwell && record.is(i + 1, "REV") {
-                i += 1;
-                continue;
-            }
-            if *part == Part::Retract && record.is(i + 1, "AUTO") {
-                to_initial = true;
-                i += 2;
-                continue;
-            }
-            let number = record.number(i + 1, "its value")?;
-            if matches!(record.fields.get(i + 2), Some(Field::Number(_))) {
-                return Err(Fault::new("unsupported", "one value is taken here").fields(i + 2, 1));
-            }
-            returns |= record.is(i, "RETURN");
-            let number = match part {
-                Part::Dwell | Part::DwellTurns => self.dwell(number, *part == Part::DwellTurns),
-                Part::ThreadsPerInch | Part::Angle => Ok(number),
-                _ => self.length(number),
-            };
-            let number = number.map_err(|fault| fault.fields(i + 1, 1))?;
-            let slot = match part {
-                Part::DwellTurns => Part::Dwell,
-                part => *part,
-            };
-            let slot = &mut value[slot as usize];
-            if let Some(earlier) = *slot {
-                self.twice(record, i, *part, earlier, number)?;
-            }
-            // Of two heights from which to feed, the higher is safe.
-            *slot = Some(slot.map_or(number, |earlier| earlier.max(number)));
-            i += 2;
-        }
-        let get = |part: Part| value[part as usize];
-        // Creo: a return of 0 is to the retract plane.
-        if returns && get(Part::Retract) == Some(0.0) {
-            to_initial = true;
-        }
-        let clearance = get(Part::Clearance).ok_or_else(|| {
+        let parts = self.parts(record, words)?;
+        let clearance = parts.get(Part::Clearance).ok_or_else(|| {
             Fault::new("no-clear-plane", "this cycle does not say from which height the tool feeds")
                 .help("add RAPTO,height or CLEAR,height")
         })?;
-        let depth = self.depth(kind, get(Part::Depth), get(Part::Diameter), get(Part::Angle))?;
+        let depth = self.depth(kind, &parts)?;
         if clearance <= -depth {
             let message = "the tool would feed from below the bottom of the hole";
             return Err(Fault::new("no-clear-plane", message));
         }
-        let retract = get(Part::Retract).filter(|_| !to_initial).unwrap_or(clearance);
-        if retract < clearance {
+        let retract = parts.get(Part::Retract).unwrap_or(clearance);
+        if retract < clearance && !parts.to_initial {
             let help = "the tool goes back to the higher of the two";
-            let message = "RTRCTO is lower than RAPTO";
-            self.report.warn(record, "retract", message, help);
+            self.report.warn(record, "retract", "RTRCTO is lower than RAPTO", help);
         }
-        let kind = self.cycle_kind(kind, &mut feed, get(Part::ThreadsPerInch))?;
-        let pecks = matches!(kind, CycleKind::Deep | CycleKind::BreakChip);
-        let (first_peck, peck) = (get(Part::FirstPeck), get(Part::Peck));
-        let given = [first_peck, peck];
-        if pecks != given.iter().any(Option::is_some) || given.iter().flatten().any(|p| *p <= 0.0) {
+        let kind = self.cycle_kind(kind, &parts)?;
+        let (first_peck, peck) = (parts.get(Part::FirstPeck), parts.get(Part::Peck));
+        let mut pecks = first_peck.iter().chain(&peck).peekable();
+        let is_pecking = matches!(kind, CycleKind::Deep | CycleKind::BreakChip);
+        if is_pecking != pecks.peek().is_some() || pecks.any(|peck| *peck <= 0.0) {
             let message = "a cycle that pecks, and no other, takes a peck greater than 0";
             return Err(Fault::new("peck", message).help("write DEEP or BRKCHP with INCR,depth"));
         }
@@ -228,32 +193,75 @@ impl Reader {
             depth,
             clearance,
             retract: retract.max(clearance),
-            feed,
-            dwell: get(Part::Dwell).unwrap_or(0.0),
+            feed: parts.feed,
+            dwell: parts.get(Part::Dwell).unwrap_or(0.0),
             first_peck,
             peck,
         };
-        let initial = match &self.cycle {
-            Some(active) => active.initial,
-            None => self.tip.map(|tip| tip.point),
+        let (initial, told) = match &self.cycle {
+            Some(active) => (active.initial, active.told),
+            None => (self.tip.map(|tip| tip.point), None),
         };
-        let told = self.cycle.as_ref().and_then(|active| active.told);
-        Ok(ActiveCycle { line: record.line, cycle, to_initial, initial, told })
+        Ok(ActiveCycle { line: record.line, cycle, to_initial: parts.to_initial, initial, told })
+    }
+
+    /// The words and values of `record` from field `i` on.
+    fn parts(&mut self, record: &Record, mut i: usize) -> Result<Parts, Box<Fault>> {
+        let mut parts = Parts::default();
+        while i < record.fields.len() {
+            if let Some(unit) = FeedUnit::of(record, i) {
+                let number = record.number(i + 1, "the feed")?;
+                let feed = self.feed_of(number, unit).map_err(|fault| fault.fields(i + 1, 1))?;
+                parts.feed = Some(feed);
+                i += 2;
+                continue;
+            }
+            let known = PARTS.iter().find(|(word, _)| record.is(i, word));
+            let (word, mut part) = *known.ok_or_else(|| {
+                Fault::new("unsupported", "this is not known of a cycle")
+                    .help("write a word and its value: FEDTO, RAPTO, RTRCTO, INCR, DWELL, MMPM")
+                    .fields(i, 1)
+            })?;
+            if part == Part::Retract && record.is(i + 1, "AUTO") {
+                parts.to_initial = true;
+                i += 2;
+                continue;
+            }
+            if part == Part::Dwell && record.is(i + 1, "REV") {
+                part = Part::DwellTurns;
+                i += 1;
+            }
+            let number = record.number(i + 1, "its value")?;
+            if matches!(record.fields.get(i + 2), Some(Field::Number(_))) {
+                return Err(Fault::new("unsupported", "one value is taken here").fields(i + 2, 1));
+            }
+            // Creo: a return of 0 is to the retract plane.
+            parts.to_initial |= word == "RETURN" && number == 0.0;
+            let number = match part {
+                Part::Dwell => self.dwell(number, false),
+                Part::DwellTurns => self.dwell(number, true),
+                Part::ThreadsPerInch | Part::Angle => Ok(number),
+                _ => self.length(number),
+            };
+            let number = number.map_err(|fault| fault.fields(i + 1, 1))?;
+            let slot = if part == Part::DwellTurns { Part::Dwell } else { part };
+            if let Some(earlier) = parts.get(slot) {
+                self.twice(record, i, slot, earlier != number)?;
+            }
+            let slot = &mut parts.values[slot as usize];
+            // Of two heights from which to feed, the higher is safe.
+            *slot = Some(slot.map_or(number, |earlier| earlier.max(number)));
+            i += 2;
+        }
+        Ok(parts)
     }
 
     /// A part that is given twice: only two heights from which to feed make sense together.
-    fn twice(
-        &mut self,
-        record: &Record,
-        field: usize,
-        part: Part,
-        earlier: f64,
-        now: f64,
-    ) -> Outcome {
+    fn twice(&mut self, record: &Record, field: usize, part: Part, differ: bool) -> Outcome {
         if part != Part::Clearance {
             return Err(Fault::new("malformed", "this is given twice").fields(field, 2));
         }
-        if earlier != now {
+        if differ {
             let help = "the tool feeds from the higher of the two";
             self.report.warn(record, "clear-plane", "CLEAR and RAPTO are both given", help);
         }
@@ -280,18 +288,13 @@ impl Reader {
     }
 
     /// The depth below the point of the hole. Siemens NX gives it as a height, below zero.
-    fn depth(
-        &self,
-        kind: Kind,
-        depth: Option<f64>,
-        diameter: Option<f64>,
-        angle: Option<f64>,
-    ) -> Result<f64, Box<Fault>> {
-        let depth = match (depth, diameter) {
+    fn depth(&self, kind: Kind, parts: &Parts) -> Result<f64, Box<Fault>> {
+        let depth = match (parts.get(Part::Depth), parts.get(Part::Diameter)) {
             (Some(depth), _) if self.dialect == Dialect::Nx => -depth,
             (Some(depth), _) => depth,
             (None, Some(diameter)) if kind == Kind::Countersink => {
-                let angle = angle.or(self.point_angle).filter(|a| (1.0..180.0).contains(a));
+                let angle = parts.get(Part::Angle).or(self.point_angle);
+                let angle = angle.filter(|a| (1.0..180.0).contains(a));
                 let angle = angle.ok_or_else(|| {
                     Fault::new(
                         "cycle-depth",
@@ -316,12 +319,7 @@ impl Reader {
 
     /// The kind of the neutral program. The pitch of a tap is the threads an inch, or the feed a turn,
     /// or the feed a minute over the speed.
-    fn cycle_kind(
-        &self,
-        kind: Kind,
-        feed: &mut Option<Feed>,
-        threads: Option<f64>,
-    ) -> Result<CycleKind, Box<Fault>> {
+    fn cycle_kind(&self, kind: Kind, parts: &Parts) -> Result<CycleKind, Box<Fault>> {
         Ok(match kind {
             Kind::Drill | Kind::Face | Kind::Countersink => CycleKind::Drill,
             Kind::Deep => CycleKind::Deep,
@@ -330,7 +328,7 @@ impl Reader {
             Kind::Bore => CycleKind::Bore,
             Kind::Tap => {
                 let rpm = speed_of(self.spindle);
-                let pitch = match (threads, (*feed).or(self.feed)) {
+                let pitch = match (parts.get(Part::ThreadsPerInch), parts.feed.or(self.feed)) {
                     (Some(threads), _) => super::frame::INCH / threads,
                     (None, Some(Feed::PerTurn(pitch))) => pitch,
                     (None, Some(Feed::PerMinute(feed))) if rpm > 0.0 => feed / rpm,

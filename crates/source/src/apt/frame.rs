@@ -38,6 +38,8 @@ pub(super) struct Setup {
     world: bool,
     /// Origin of the first `CSYS`.
     csys_origin: Option<Vec3>,
+    /// The first coordinate system of a Creo file.
+    creo_system: Option<[f64; 12]>,
     /// Rows of an axis system of CATIA that is being read, and where it began.
     rows: Option<(u32, Vec<[f64; 4]>)>,
 }
@@ -55,6 +57,7 @@ impl Setup {
             told: Mat3::IDENTITY,
             world: false,
             csys_origin: None,
+            creo_system: None,
             rows: None,
         }
     }
@@ -210,18 +213,21 @@ impl Reader {
 
     /// `ORIGIN/x,y,z`: this point of the part is the zero of the coordinates that leave.
     pub(super) fn origin(&mut self, record: &Record) -> Outcome {
-        let count = record.count(&[3, 9], "ORIGIN/x,y,z")?;
-        if count == 9 {
-            let [xx, xy, xz, zx, zy, zz] = record.numbers(3)?;
-            let (x, z) = (Vec3::new(xx, xy, xz), Vec3::new(zx, zy, zz));
-            let frame =
-                frame(self.point(record, 0)?, x, z.cross(x)).map_err(|fault| fault.fields(3, 6))?;
-            self.relative_set_up(record.line, frame);
-            return Ok(());
-        }
+        record.count(&[3], "ORIGIN/x,y,z")?;
         self.setup.origin = self.point(record, 0)?;
         self.reframe();
         Ok(())
+    }
+
+    /// `$$-> CSYS / ...` of Creo: the coordinate system of a sequence.
+    pub(super) fn creo_csys(&mut self, record: &Record) -> Outcome {
+        let system = record.numbers::<12>(1)?;
+        if *self.setup.creo_system.get_or_insert(system) == system {
+            return Ok(());
+        }
+        let message = "this sequence has another coordinate system than the first, and how the two \
+                       stand to each other is not known";
+        Err(Fault::new("frame", message).help("post the sequences one by one").fields(1, 12))
     }
 
     /// `TRANS/x,y,z`: adds to the coordinates that follow.

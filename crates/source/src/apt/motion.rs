@@ -6,7 +6,7 @@ use super::number;
 use super::record::{Field, Record, is_blank};
 use super::report::{Fault, Outcome};
 use super::{Dialect, Reader, Ready};
-use geom::Vec3;
+use geom::{ANGLE_EPSILON, Vec3};
 use program::{Feed, Op, Pose, Spindle};
 
 /// How the next `GOTO` goes.
@@ -126,20 +126,19 @@ impl Reader {
     /// SolidWorks CAM every `GOTO` of a tilted tool has its vector, so leaving it out may mean Z.
     #[inline]
     fn axis_is_due(&self) -> bool {
-        self.dialect == Dialect::SolidWorksCam && self.axis != Vec3::Z
+        self.dialect == Dialect::SolidWorksCam && self.axis.distance(Vec3::Z) > ANGLE_EPSILON
     }
 
     /// The point at field `first`, in the work frame; a blank keeps the last value.
     fn given_point(&self, record: &Record, first: usize) -> Result<Vec3, Box<Fault>> {
-        let last = self.point.map(|p| self.setup.to_work.inverse().transform_point3(p));
+        let last = || Some(self.setup.to_work.inverse().transform_point3(self.point?));
         let mut point = [0.0; 3];
         for (i, value) in point.iter_mut().enumerate() {
-            *value = match (record.fields.get(first + i), last) {
-                (Some(Field::Blank), Some(last)) => last[i],
-                (Some(Field::Blank), None) => {
-                    return Err(Fault::new("malformed", "no earlier point has this value to keep")
-                        .fields(first + i, 1));
-                }
+            *value = match record.fields.get(first + i) {
+                Some(Field::Blank) => last().map(|last| last[i]).ok_or_else(|| {
+                    Fault::new("malformed", "no earlier point has this value to keep")
+                        .fields(first + i, 1)
+                })?,
                 _ => {
                     let value = record.number(first + i, "a coordinate")?;
                     self.length(value).map_err(|fault| fault.fields(first + i, 1))?
@@ -233,10 +232,8 @@ impl Reader {
         }
         self.tool_record = None;
         let wanted = std::mem::take(&mut self.next_tool.name);
-        if self.operation.is_some()
-            && ![&self.tool.name, ""].contains(&wanted.as_str())
-            && !self.tool.name.is_empty()
-        {
+        let both_named = !wanted.is_empty() && !self.tool.name.is_empty();
+        if self.operation.is_some() && both_named && wanted != self.tool.name {
             let message = format!(
                 "this operation is for tool {wanted}, but {} is in the spindle",
                 self.tool.name

@@ -130,7 +130,7 @@ impl<'r> Record<'r> {
     pub(super) fn numbers<const N: usize>(&self, first: usize) -> Result<[f64; N], Box<Fault>> {
         let mut values = [0.0; N];
         for (i, value) in values.iter_mut().enumerate() {
-            *value = self.number(first + i, &format!("number {} of {N}", i + 1))?;
+            *value = self.number(first + i, "a value")?;
         }
         Ok(values)
     }
@@ -220,8 +220,8 @@ impl<'t> Joiner<'t> {
         let is_text = free_text == Some(true);
         let mut text = first.text;
         if !is_text {
-            let (content, continued) = strip(first.text, lines);
-            text = &first.text[..content];
+            let (content, continued) = strip(&first.text[body..], lines);
+            text = &first.text[..body + content];
             if continued {
                 self.joined.extend_from_slice(text);
                 self.join(first, lines)?;
@@ -245,11 +245,8 @@ impl<'t> Joiner<'t> {
         record.spans = &self.spans;
         match result {
             Ok(()) => Ok(record),
-            // What follows a word that is not known need not be made of fields.
-            Err(_) if free_text.is_none() => {
-                record.fields = &[];
-                Ok(record)
-            }
+            // What follows a word that is not known, or a directive, need not be made of fields.
+            Err(_) if free_text.is_none() || record.major == b"$$->" => Ok(record),
             Err((from, to, message)) => {
                 record.spans = &[];
                 let spans = [(from, to)];
@@ -339,6 +336,7 @@ fn head(text: &[u8]) -> Head {
         Head { major, body, free_text: takes_text(&text[start..end.max(start)]) }
     };
     match text.get(start) {
+        Some(b'$') if text[start..].starts_with(b"$$->") => return head(start + 4, start + 4),
         Some(b'$') if text[start..].starts_with(b"$$") => return head(start + 2, start + 2),
         // Coordinates alone: further points of the record before.
         Some(b'0'..=b'9' | b'-' | b'+' | b'.') => return head(start, start),

@@ -27,6 +27,7 @@ use Use::{By, Ignored, IgnoredText, NotPassedOn, Refused, Text};
 pub(super) const WORDS: &[(&str, Use)] = &[
     ("", By(Reader::further_point)),
     ("$$", Text(Reader::remark)),
+    ("$$->", By(Reader::creo_directive)),
     ("ARCSLP", Refused),
     ("AUTOPS", Ignored),
     ("AUXFUN", NotPassedOn),
@@ -167,12 +168,8 @@ impl Reader {
             Some(NotPassedOn) => {
                 let word = super::text::decode(record.major);
                 let message = format!("{word} is not passed on");
-                self.report.warn(
-                    record,
-                    "ignored-word",
-                    &message,
-                    "check whether the job needs it",
-                );
+                let help = "check whether the job needs it";
+                self.report.warn(record, "ignored-word", &message, help);
                 Ok(())
             }
             Some(Refused) => {
@@ -190,13 +187,6 @@ impl Reader {
         const RULE: &str = "unknown-word";
         /// More different unknown words than any CAM system has of its own.
         const MAX_WORDS: usize = 20;
-        if self.report.count_of(RULE) >= MAX_WORDS {
-            self.hopeless = true;
-            return Err(Fault::new(
-                "not-cldata",
-                "too many words that are not cutter-location data",
-            ));
-        }
         let mut parts = record.major.split(|c| b" \t,".contains(c));
         if parts.any(|part| !part.is_empty() && find(part).is_some()) {
             return Err(Fault::new("malformed", "this record does not begin with its word")
@@ -205,6 +195,11 @@ impl Reader {
         let word = super::text::decode(record.major.get(..40).unwrap_or(record.major));
         let message = format!("the word {word} is not known and its records are ignored");
         self.report.warn(record, RULE, &message, "check whether the job needs it");
+        if self.report.count_of(RULE) > MAX_WORDS {
+            self.hopeless = true;
+            let message = "too many words that are not cutter-location data";
+            return Err(Fault::new("not-cldata", message));
+        }
         Ok(())
     }
 

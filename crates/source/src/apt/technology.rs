@@ -367,7 +367,8 @@ impl Reader {
         Ok(())
     }
 
-    fn diameter(&self, record: &Record, index: usize) -> Result<f64, Box<Fault>> {
+    /// A diameter in mm, at field `index`.
+    pub(super) fn diameter(&self, record: &Record, index: usize) -> Result<f64, Box<Fault>> {
         let value = record.number(index, "the diameter")?;
         let diameter = self.length(value).map_err(|fault| fault.fields(index, 1))?;
         if diameter >= 0.0 {

@@ -26,13 +26,9 @@ fn after<'t>(text: &'t str, key: &str) -> Option<&'t str> {
 }
 
 impl Reader {
-    /// `$$ text`. CATIA gives its axis system so, Creo the diameter of the tool.
+    /// `$$ text`. CATIA gives its axis system so.
     pub(super) fn remark(&mut self, record: &Record) -> Outcome {
-        let body = record.body.0;
-        if let Some(directive) = body.strip_prefix(b"->") {
-            return self.creo_directive(record, directive);
-        }
-        let text = decode(body);
+        let text = decode(record.body.0);
         if self.axis_system(record, &text)? || text.starts_with('*') || text.is_empty() {
             return Ok(());
         }
@@ -49,13 +45,14 @@ impl Reader {
         self.push(record.line, op);
     }
 
-    /// `$$-> CUTTER / d` of Creo; its other directives say what is in the records too.
-    fn creo_directive(&mut self, record: &Record, directive: &[u8]) -> Outcome {
-        let text = decode(directive);
-        let diameter = after(&text, "CUTTER").and_then(|rest| rest.split_once('/'));
-        if let Some((_, diameter)) = diameter {
-            let value: f64 = diameter.trim().parse().unwrap_or(f64::NAN);
-            let diameter = self.length(value)?;
+    /// `$$-> word / values` of Creo: the diameter of the tool and the coordinate system. What its other
+    /// directives say is in the records too.
+    pub(super) fn creo_directive(&mut self, record: &Record) -> Outcome {
+        if record.is(0, "CSYS") {
+            return self.creo_csys(record);
+        }
+        if record.is(0, "CUTTER") {
+            let diameter = self.diameter(record, 1)?;
             self.describe_tool(record, |tool| tool.diameter = Some(diameter));
         }
         Ok(())

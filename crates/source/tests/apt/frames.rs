@@ -58,6 +58,7 @@ fn origins_shifts_inches_and_axes_are_resolved() {
         assert_poses(&ops(text), &poses);
     }
     for (text, rule) in [
+        ("ORIGIN/0,0,0,1,0,0,0,0,1", "malformed"),
         ("UNITS/FURLONG", "unknown-unit"),
         ("ROTATE/TABLE,ATANGL,90", "unsupported"),
         ("ROTATE/TABLE,INCR,0,0", "unsupported"),
@@ -73,6 +74,26 @@ fn origins_shifts_inches_and_axes_are_resolved() {
     ] {
         assert_eq!(error(text), rule, "{text}");
     }
+}
+
+#[test]
+fn creo_gives_its_tool_and_its_coordinate_system_in_directives() {
+    let system = |x: &str| {
+        format!("$$-> CSYS / {x}, 0.0, 0.0, 0.0, $\n 0.0, 1.0, 0.0, 0.0, $\n 0.0, 0.0, 1.0, 0.0\n")
+    };
+    let head = "$$* Pro/CLfile  Version Creo\n$$-> MFGNO / MFG0001\n$$-> FEATNO / 4 2 B\n";
+    let same = format!(
+        "{head}{HEAD}$$-> CUTTER / 12.5\n{}GOTO/1,2,3\n{}GOTO/4,5,6\nFINI",
+        system("1.0"),
+        system("1.0")
+    );
+    let whole = reading(&same);
+    assert!(whole.warnings.is_empty(), "{}", whole.warnings[0]);
+    let ops: Vec<Op> = whole.program.records.into_iter().map(|r| r.op).collect();
+    assert_poses(&ops, &[([1., 2., 3.], Z), ([4., 5., 6.], Z)]);
+    assert!(matches!(&ops[0], Op::Tool(tool) if tool.diameter == Some(12.5)));
+    let other = format!("{}GOTO/1,2,3\n{}", system("1.0"), system("-1.0"));
+    assert_eq!(error(&other), "frame");
 }
 
 #[test]

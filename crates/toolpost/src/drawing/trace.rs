@@ -181,7 +181,11 @@ mod tests {
             for w in points.windows(2) {
                 trace.segment(w[0], w[1]);
             }
-            let drawn = read(&trace.finish());
+            let mut drawn = read(&trace.finish());
+            if drawn.is_empty() {
+                // A line that stays at its start is left out.
+                drawn = vec![points[0]; 2];
+            }
             for &p in &points {
                 // A turn back within the tolerance adds one tolerance along the line; the grid of a
                 // tenth of a pixel adds its half diagonal.

@@ -1,0 +1,50 @@
+# `make demo` and `make test` need nothing but a Debian machine: Rust is installed where it is missing.
+
+export PATH := $(CURDIR)/.venv/bin:$(or $(CARGO_HOME),$(HOME)/.cargo)/bin:$(PATH)
+
+# The part of the demo: a real one where the folder of real input is there, otherwise our own.
+DATA    := $(or $(TOOLPOST_DATA),../shared/data)
+PART    ?= $(firstword $(wildcard $(DATA)/cldata/nx/coremill.cls) examples/dome.cls)
+MACHINE ?= sinumerik-840d-table-ac
+DEMO    := out/$(basename $(notdir $(PART)))
+
+TOOLPOST := cargo run --quiet --release --bin toolpost --
+
+.PHONY: demo test bench lint judges images rust
+
+## Post a part, prove it, draw it.
+demo: rust
+	@mkdir -p out
+	$(TOOLPOST) post $(PART) --machine $(MACHINE) --output $(DEMO).mpf
+	@echo
+	@head -n 24 $(DEMO).mpf
+	@echo "..."
+	@echo
+	$(TOOLPOST) --quiet show $(PART) --output $(DEMO).png
+	@echo "the program is $(DEMO).mpf, its report $(DEMO).report.json, its picture $(DEMO).png"
+
+## Every test; those that need an outside judge or real input say so where it is missing.
+test: rust
+	cargo test --workspace --no-fail-fast
+
+## Speed and memory, each beside a floor in the same run.
+bench: rust
+	cargo bench --workspace
+
+## Format, lints, documentation.
+lint: rust
+	cargo fmt --all --check
+	cargo clippy --workspace --all-targets -- -D warnings
+	RUSTDOCFLAGS="-D warnings" cargo doc --quiet --workspace --no-deps --document-private-items
+
+## The tests with the outside judges, which are installed first.
+judges:
+	scripts/setup judges
+	$(MAKE) test
+
+## The pictures of the documentation, drawn anew.
+images: rust
+	$(TOOLPOST) --quiet show examples/dome.cls --output docs/images/dome.png
+
+rust:
+	@scripts/setup rust

@@ -1,0 +1,153 @@
+//! Bad input: a clear error that names file, line and rule; nothing saved.
+
+use crate::folder::{Folder, MACHINE, SOURCE, Said};
+use std::fs::File;
+use std::io::Write;
+
+/// Posts `source` with `machine` and expects an error of `rule` on `line` of it (0 for the whole file).
+fn refused(source: impl AsRef<[u8]>, machine: &str, code: i32, line: u32, rule: &str) -> Said {
+    let folder = Folder::new();
+    folder.write("part.cls", source);
+    let said = folder.run(&["post", "part.cls", "-m", machine, "-o", "out.mpf"]);
+    assert_eq!(said.code, code, "{rule}: {said:?}");
+    let place = if line > 0 { format!("part.cls:{line}:") } else { String::from("part.cls: ") };
+    let found = said
+        .err
+        .lines()
+        .any(|text| text.starts_with(&place) && text.contains(&format!("error[{rule}]")));
+    assert!(found, "error[{rule}] on line {line} is missing in\n{}", said.err);
+    assert_eq!(folder.names(), ["part.cls"]);
+    said
+}
+
+/// [`SOURCE`] with its line `line` (from 1) replaced.
+fn with_line(line: usize, text: &str) -> String {
+    let lines = SOURCE.lines().enumerate();
+    lines.map(|(i, old)| format!("{}\n", if i + 1 == line { text } else { old })).collect()
+}
+
+#[test]
+fn a_file_that_is_no_toolpath() {
+    refused("", MACHINE, 2, 0, "not-cldata");
+    let binary: Vec<u8> =
+        (0..4096u32).map(|i| (i.wrapping_mul(2_654_435_761) >> 13) as u8).collect();
+    let folder = Folder::new();
+    folder.write("part.cls", binary);
+    let said = folder.post();
+    assert_eq!((said.code, said.err.contains("part.cls:")), (2, true), "{said:?}");
+    assert_eq!(folder.names(), ["part.cls"]);
+}
+
+#[test]
+fn a_file_that_is_not_there() {
+    let folder = Folder::new();
+    for path in ["missing.cls", ".", "/dev/zero"] {
+        let said = folder.run(&["post", path, "-m", MACHINE, "-o", "out.mpf"]);
+        assert_eq!(said.code, 2);
+        assert!(said.err.contains(&format!("{path}: error[unreadable]")), "{said:?}");
+    }
+}
+
+#[test]
+fn a_line_of_a_gigabyte() {
+    let folder = Folder::new();
+    // A sparse file: the gigabyte is NUL bytes, and takes no room on the disk.
+    let mut file = File::create(folder.path().join("part.cls")).unwrap();
+    file.write_all(b"UNITS/MM\nGOTO/1,2,").unwrap();
+    file.set_len(1 << 30).unwrap();
+    let said = folder.post();
+    assert_eq!(said.code, 2, "{said:?}");
+    assert!(said.err.contains("part.cls:2:"), "{said:?}");
+    assert_eq!(folder.names(), ["part.cls"]);
+}
+
+#[test]
+fn every_way_to_end_a_line_and_to_write_a_letter_makes_the_same_program() {
+    let folder = Folder::new();
+    assert_eq!(folder.post().code, 0);
+    let program = folder.read("out.mpf");
+    for end in ["\r\n", "\r", "\0\n"] {
+        folder.write("part.cls", SOURCE.replace('\n', end));
+        assert_eq!(folder.post().code, 0);
+        assert_eq!(folder.read("out.mpf"), program);
+    }
+    let mut latin = b"$$ Kopf fr\xe4sen\n".to_vec();
+    latin.extend(SOURCE.bytes());
+    folder.write("part.cls", latin);
+    let said = folder.post();
+    assert_eq!(said.code, 0, "{said:?}");
+}
+
+#[test]
+fn a_record_that_is_malformed_or_means_nothing() {
+    for (line, text, at, rule) in [
+        (7, "GOTO/0,0,50,0,0,0", 7, "zero-vector"),
+        (12, "GOTO/40,NaN,-2", 12, "malformed"),
+        (12, "GOTO/1e308,0,-2", 12, "out-of-range"),
+        (2, "UNITS/PARSEC", 2, "unknown-unit"),
+        (12, "CIRCLE/20,0,-2,0,0,1,20\nGOTO/41,0,-2", 13, "off-the-circle"),
+        (12, "CYCLE/DRILL,FEDTO,10\nGOTO/40,0,-2", 12, "no-clear-plane"),
+        (3, "LOAD/TOOL,0", 3, "tool-number"),
+    ] {
+        refused(with_line(line, text), MACHINE, 2, at, rule);
+    }
+    let no_end = SOURCE.replace("RAPID\nGOTO/40,30,50\n", "CIRCLE/40,20,-2,0,0,1,10\n");
+    refused(no_end, MACHINE, 2, 15, "circle-without-goto");
+    let truncated = &SOURCE[..SOURCE.find("30,-2").unwrap()];
+    refused(truncated, MACHINE, 2, 13, "malformed");
+}
+
+#[test]
+fn a_cut_that_no_machine_may_make() {
+    // Feed 0, and a spindle that was never started: told at the first cut.
+    refused(with_line(10, "FEDRAT/MMPM,0"), MACHINE, 2, 11, "no-feed");
+    refused(with_line(4, "$$"), MACHINE, 2, 11, "spindle-off");
+}
+
+#[test]
+fn an_orientation_out_of_reach() {
+    let tilted = with_line(7, "GOTO/0,0,50,0,0,1\nRAPID\nGOTO/0,0,50,0,0.6,0.8");
+    refused(&tilted, MACHINE, 1, 9, "unreachable-orientation");
+    // A goes from -30 to 120 degrees there: upside down is out of reach.
+    let under = with_line(7, "MULTAX/ON\nGOTO/0,0,50,0,0,-1");
+    refused(under, "sinumerik-840d-table-ac", 1, 8, "axis-limit");
+}
+
+/// Checks and posts with a machine that extends [`MACHINE`] by `text`; both must refuse it at `place`.
+fn machine_refused(text: &str, place: &str, rule: &str) {
+    let folder = Folder::new();
+    folder.write("mine.toml", format!("extends = \"{MACHINE}\"\ntitle = \"mine\"\n{text}"));
+    for arguments in [
+        &["machines", "check", "mine.toml"][..],
+        &["post", "part.cls", "-m", "mine.toml", "-o", "out.mpf"],
+    ] {
+        let said = folder.run(arguments);
+        assert_eq!(said.code, 2, "{text}: {said:?}");
+        assert!(said.err.contains(&format!("mine.toml:{place}")), "{text}: {said:?}");
+        assert!(said.err.contains(&format!("error[{rule}]")), "{text}: {said:?}");
+    }
+    assert_eq!(folder.names(), ["mine.toml", "part.cls"]);
+}
+
+#[test]
+fn a_machine_file_with_a_mistake() {
+    machine_refused("colour = \"red\"\n", "3:1:", "machine-file");
+    machine_refused("[blocks]\nlinear = \"{{N}} G1 {{XX}}\"\n", "4:", "template-name");
+    machine_refused("[blocks]\nlinear = \"{{N} G1\"\n", "4:", "template");
+}
+
+#[test]
+fn a_template_that_never_ends_or_writes_without_end() {
+    let endless = "{% for a in range(99999) %}{% for b in range(99999) %}{% endfor %}{% endfor %}";
+    let flood = "{{ '%1000000000d'|format(1) }}";
+    let path = "{% include '../../etc/passwd' %}";
+    for template in [endless, flood, path] {
+        let folder = Folder::new();
+        let text = format!("extends = \"{MACHINE}\"\n[blocks]\nprogram_start = \"{template}\"\n");
+        folder.write("mine.toml", text);
+        let said = folder.run(&["post", "part.cls", "-m", "mine.toml", "-o", "out.mpf"]);
+        assert_eq!(said.code, 2, "{template}: {said:?}");
+        assert!(said.err.contains("mine.toml:3:") && said.err.contains("error["), "{said:?}");
+        assert_eq!(folder.names(), ["mine.toml", "part.cls"]);
+    }
+}

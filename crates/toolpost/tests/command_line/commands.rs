@@ -1,0 +1,191 @@
+//! Every command: what it says, on which stream, with which exit code.
+
+use crate::folder::{Folder, MACHINE, SOURCE};
+use serde_json::json;
+
+#[test]
+fn a_summary_tells_tools_lengths_extents_and_proof() {
+    let said = Folder::new().post();
+    assert_eq!((said.code, said.err.as_str()), (0, ""), "{said:?}");
+    // Cut: 7 mm down, 40 mm, 30 mm; rapid: 45 mm down, 52 mm up.
+    for line in [
+        "toolpath    part.cls (ISO 4343)",
+        "tools       T1  cuts 77.0 mm",
+        "moves       3 lines, 0 arcs, 0 holes, 3 rapids",
+        "rapid       97.0 mm",
+        "X           0 ... 40 mm (40)",
+        "Z           -2 ... 50 mm (52)",
+        "saved       out.mpf",
+    ] {
+        assert!(said.out.contains(line), "{line} is missing in\n{}", said.out);
+    }
+}
+
+#[test]
+fn quiet_says_nothing_when_all_is_well() {
+    let folder = Folder::new();
+    folder.write("part.cls", SOURCE.replace("COOLNT/ON", "NEVERHEARD/1"));
+    let arguments = ["post", "part.cls", "-m", MACHINE, "-o", "out.mpf", "--quiet"];
+    let said = folder.run(&arguments);
+    assert_eq!((said.code, said.out.as_str(), said.err.as_str()), (0, "", ""));
+}
+
+#[test]
+fn strict_takes_a_warning_as_an_error() {
+    let folder = Folder::new();
+    folder.write("part.cls", SOURCE.replace("COOLNT/ON", "NEVERHEARD/1"));
+    let said = folder.post();
+    assert_eq!(said.code, 0);
+    assert!(said.err.contains("part.cls:5:") && said.err.contains("warning["), "{said:?}");
+    let said = folder.run(&["post", "part.cls", "--strict", "-m", MACHINE, "-o", "strict.mpf"]);
+    assert_eq!(said.code, 2);
+    assert!(said.err.contains("part.cls:5:") && said.err.contains("error["), "{said:?}");
+}
+
+#[test]
+fn json_is_one_object_with_status_and_findings() {
+    let folder = Folder::new();
+    let said = folder.run(&["post", "part.cls", "-m", MACHINE, "-o", "out.mpf", "--json"]);
+    let answer = said.json();
+    assert_eq!((said.code, said.err.as_str()), (0, ""));
+    assert_eq!(answer["status"], "done");
+    assert_eq!(answer["source"]["file"], "part.cls");
+    assert_eq!(answer["source"]["measures"]["cutting_length"], 77.0);
+    assert_eq!(answer["machine"]["name"], MACHINE);
+    assert_eq!(answer["proof"]["proven"], true);
+    assert_eq!((&answer["errors"], &answer["warnings"]), (&json!([]), &json!([])));
+
+    folder.write("part.cls", SOURCE.replace("GOTO/40,0,-2", "GOTO/40,abc,-2"));
+    let said = folder.run(&["--json", "post", "part.cls", "-m", MACHINE, "-o", "out.mpf"]);
+    let answer = said.json();
+    assert_eq!((said.code, said.err.as_str()), (2, ""));
+    assert_eq!(answer["status"], "invalid");
+    assert_eq!(answer["errors"][0]["file"], "part.cls");
+    assert_eq!(answer["errors"][0]["line"], 12);
+}
+
+#[test]
+fn a_damaged_program_is_shown_beside_its_source() {
+    let folder = Folder::new();
+    assert_eq!(folder.post().code, 0);
+    let prove = ["prove", "out.mpf", "-m", MACHINE, "--against", "part.cls"];
+    let said = folder.run(&prove);
+    assert_eq!(said.code, 0, "{said:?}");
+
+    let program = folder.read("out.mpf");
+    assert_eq!(program.matches("Y30").count(), 1, "{program}");
+    folder.write("out.mpf", program.replace("Y30", "Y31"));
+    let said = folder.run(&prove);
+    assert_eq!(said.code, 1, "{said:?}");
+    assert!(said.out.contains("source says   part.cls:13  GOTO/40,30,-2"), "{}", said.out);
+    assert!(said.out.contains("Y31"), "{}", said.out);
+    assert_eq!(folder.run(&[&prove[..], &["--json"]].concat()).json()["status"], "failed");
+    // A wider tolerance is for the user to ask for.
+    assert_eq!(folder.run(&[&prove[..], &["--tolerance", "1.5"]].concat()).code, 0);
+}
+
+#[test]
+fn show_counts_and_draws_the_same_picture_every_time() {
+    let folder = Folder::new();
+    let said = folder.run(&["show", "part.cls", "-o", "a.svg"]);
+    assert_eq!((said.code, said.err.as_str()), (0, ""));
+    assert!(said.out.contains("cutting   77.0 mm"), "{}", said.out);
+    assert_eq!(folder.run(&["show", "part.cls", "-o", "b.svg"]).code, 0);
+    assert_eq!(folder.run(&["show", "part.cls", "-o", "c.png"]).code, 0);
+    let svg = folder.read("a.svg");
+    assert_eq!(svg, folder.read("b.svg"));
+    assert!(svg.starts_with("<svg") && svg.contains("stroke-dasharray"), "{svg}");
+    let png = std::fs::read(folder.path().join("c.png")).unwrap();
+    assert!(png.starts_with(b"\x89PNG"));
+    assert_eq!(folder.run(&["show", "part.cls", "-o", "d.gif"]).code, 2);
+    assert_eq!(folder.names(), ["a.svg", "b.svg", "c.png", "part.cls"]);
+}
+
+#[test]
+fn every_machine_of_the_library_is_listed_and_has_no_mistake() {
+    let folder = Folder::new();
+    let listed = folder.run(&["machines", "list", "--json"]).json();
+    let machines = listed["machines"].as_array().unwrap();
+    for name in ["sinumerik-840d-table-ac", "sinumerik-840d-traori", "dmu50-heidenhain"] {
+        assert!(machines.iter().any(|machine| machine["name"] == name), "{name}");
+    }
+    for machine in machines {
+        let said = folder.run(&["machines", "check", machine["name"].as_str().unwrap()]);
+        assert_eq!(said.code, 0, "{said:?}");
+    }
+}
+
+#[test]
+fn a_machine_of_ones_own_starts_as_a_copy() {
+    let folder = Folder::new();
+    assert_eq!(folder.run(&["machines", "new", "mine", "--from", MACHINE]).code, 0);
+    assert_eq!(folder.read("mine.toml"), folder.run(&["machines", "show", MACHINE]).out);
+    assert_eq!(folder.run(&["machines", "check", "mine.toml"]).code, 0);
+    let said = folder.run(&["machines", "new", "mine", "--from", MACHINE]);
+    assert_eq!(said.code, 2);
+    assert!(said.err.contains("there is such a file already"), "{said:?}");
+    assert_eq!(folder.run(&["machines", "new", "other", "--from", "mine.toml"]).code, 0);
+    let said = folder.run(&["post", "part.cls", "-m", "other.toml", "-o", "out.mpf"]);
+    assert_eq!(said.code, 0, "{said:?}");
+    for name in ["../mine", "", "a/b", ".hidden", "/tmp/x"] {
+        let said = folder.run(&["machines", "new", name, "--from", MACHINE]);
+        assert_eq!(said.code, 2, "{name}");
+        assert!(said.err.contains("machine-name"), "{said:?}");
+    }
+}
+
+#[test]
+fn a_machine_that_is_not_there_is_told_with_those_that_are() {
+    let folder = Folder::new();
+    for arguments in [
+        &["machines", "show", "nonesuch"][..],
+        &["machines", "new", "mine", "--from", "nonesuch"],
+        &["machines", "check", "nonesuch"],
+        &["post", "part.cls", "-m", "nonesuch", "-o", "out.mpf"],
+    ] {
+        let said = folder.run(arguments);
+        assert_eq!(said.code, 2, "{said:?}");
+        assert!(said.err.contains("nonesuch") && said.err.contains(MACHINE), "{said:?}");
+    }
+}
+
+#[test]
+fn explain_gives_unit_and_help_of_every_name() {
+    let folder = Folder::new();
+    let one = folder.run(&["explain", "f"]);
+    assert_eq!(one.code, 0);
+    assert!(one.out.starts_with('F') && one.out.contains("mm/min"), "{one:?}");
+    let all = folder.run(&["explain", "--json"]).json();
+    let names = all["names"].as_array().unwrap();
+    assert!(names.len() > 30);
+    assert!(names.iter().all(|name| name["help"].as_str().is_some_and(|help| !help.is_empty())));
+    assert_eq!(folder.run(&["explain", "nonesuch"]).code, 2);
+}
+
+#[test]
+fn completions_are_there_for_the_usual_shells() {
+    for shell in ["bash", "zsh", "fish", "powershell"] {
+        let said = Folder::new().run(&["completions", shell]);
+        assert_eq!(said.code, 0);
+        assert!(said.out.contains("machines"), "{shell}");
+    }
+}
+
+#[test]
+fn a_wrong_call_is_a_mistake_of_usage() {
+    let folder = Folder::new();
+    for arguments in [
+        &[][..],
+        &["nonesuch"],
+        &["post", "part.cls"],
+        &["post", "part.cls", "-m", MACHINE, "-o", "out.mpf", "--tolerance", "0"],
+        &["post", "part.cls", "-m", MACHINE, "-o", "out.mpf", "--tolerance", "nan"],
+        &["completions", "nonesuch"],
+    ] {
+        let said = folder.run(arguments);
+        assert_eq!(said.code, 2, "{arguments:?}");
+        assert!(!said.err.is_empty() && said.out.is_empty());
+    }
+    assert_eq!(folder.run(&["--help"]).code, 0);
+    assert_eq!(folder.run(&["--version"]).code, 0);
+}

@@ -1,0 +1,277 @@
+//! Programs we write, run by interpreters that others wrote: `rs274` of LinuxCNC (Debian package
+//! `linuxcnc-uspace`) and `nc-gcode-interpreter` (PyPI). Both are programs run beside ours; their
+//! motion is held against the source, so nothing of ours but the reader and the writer is trusted.
+//!
+//! A judge that is not installed is named on stderr and its test passes; CI installs both.
+
+use geom::{Arc, Vec3};
+use program::{Cycle, Op, Program};
+use std::path::{Path, PathBuf};
+use std::process::{Command, Stdio};
+
+/// Where the real files are: `TOOLPOST_DATA`, or `../shared/data` beside the checkout.
+fn data() -> PathBuf {
+    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
+    std::env::var_os("TOOLPOST_DATA").map_or(beside, PathBuf::from)
+}
+
+/// Every file of cutter-location data that there is: our examples, then the real ones.
+fn sources() -> Vec<PathBuf> {
+    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
+    let cldata = data().join("cldata");
+    let mut folders = vec![examples];
+    folders.extend(["makino", "nx", "solidworks"].map(|system| cldata.join(system)));
+    let mut files = Vec::new();
+    for folder in folders {
+        let Ok(entries) = std::fs::read_dir(&folder) else {
+            eprintln!("note: no {} here", folder.display());
+            continue;
+        };
+        files.extend(entries.map(|entry| entry.unwrap().path()).filter(|path| path.is_file()));
+    }
+    files.sort();
+    files
+}
+
+/// The source and what is written of it for `machine`; `None` where the machine refuses it.
+fn posted(file: &Path, machine: &str) -> Option<(Program, Vec<u8>)> {
+    let text = std::fs::read(file).unwrap();
+    let reading =
+        source::apt::read(&file.display().to_string(), &text, &Default::default()).unwrap();
+    let machine = machine::load(machine).unwrap();
+    match post::write(&reading.program, &machine) {
+        Ok(output) => Some((reading.program, output.text)),
+        Err(refusals) => {
+            eprintln!("{}: refused: {}", file.display(), refusals[0]);
+            None
+        }
+    }
+}
+
+/// A cutting move that a judge reports.
+#[derive(Debug)]
+struct Cut {
+    from: Vec3,
+    to: Vec3,
+    /// Length of the way, mm; `None` where the judge tells ends only.
+    length: Option<f64>,
+}
+
+/// Holds the judge's cuts against the source: every cut of the source is made by one or more of the
+/// judge's, from its start to its end, over its length; every hole goes to its bottom and not
+/// below; and nothing else is cut. Positions agree within `tolerance` mm.
+fn assert_same_cuts(program: &Program, cuts: &[Cut], tolerance: f64, holes: bool) -> (usize, f64) {
+    let mut cuts = cuts.iter();
+    let mut here: Option<Vec3> = None;
+    let mut cycle: Option<Cycle> = None;
+    let (mut count, mut total) = (0, 0.0);
+    for record in &program.records {
+        let line = record.line;
+        let mut follow = |from: Option<Vec3>, end: Vec3, length: Option<f64>| {
+            let (mut at, mut way) = (from, 0.0);
+            loop {
+                let cut =
+                    cuts.next().unwrap_or_else(|| panic!("line {line}: the judge stops early"));
+                if let Some(at) = at {
+                    let apart = cut.from.distance(at);
+                    assert!(apart <= tolerance, "line {line}: starts {apart} mm off: {cut:?}");
+                }
+                at = Some(cut.to);
+                way = way + cut.length.unwrap_or(f64::NAN);
+                if cut.to.distance(end) <= tolerance {
+                    // A full circle ends where it began: the length tells whether it was run.
+                    if length.is_none_or(|length| way.is_nan() || way >= length - 0.05) {
+                        break;
+                    }
+                }
+                assert!(
+                    length.is_none_or(|l| way.is_nan() || way <= l + 0.05),
+                    "line {line}: {cut:?}"
+                );
+            }
+            if let (Some(length), false) = (length, way.is_nan()) {
+                let allowed = 0.003 + 1e-4 * length;
+                assert!((way - length).abs() <= allowed, "line {line}: {way} mm, not {length} mm");
+                total += way;
+            }
+            count += 1;
+        };
+        match &record.op {
+            Op::Line(to) => {
+                let length = here.map(|from| from.distance(to.point));
+                // A move shorter than the resolution is not there on the control.
+                if length.is_none_or(|length| length > tolerance) {
+                    follow(here, to.point, length);
+                }
+            }
+            Op::Arc(to) => {
+                let from = here.expect("an arc has a start");
+                let arc =
+                    Arc::new(from, to.end.point, to.center, to.normal, to.turns, 0.01).unwrap();
+                follow(here, to.end.point, Some(arc.length()));
+            }
+            Op::Cycle(new) => cycle = Some(**new),
+            Op::Hole(at) if holes => {
+                let cycle = cycle.expect("a hole has a cycle");
+                follow(None, at.point - at.axis().unwrap() * cycle.depth, None);
+            }
+            _ => {}
+        }
+        match (&record.op, &cycle) {
+            (Op::Hole(at), Some(cycle)) => {
+                here = Some(at.point + at.axis().unwrap() * cycle.retract);
+            }
+            (op, _) => here = op.pose().map(|pose| pose.point).or(here),
+        }
+    }
+    assert!(cuts.next().is_none(), "the judge cuts on after the end of the source");
+    (count, total)
+}
+
+/// The cuts that `rs274 -g` makes of a program, or what it says against it.
+fn rs274(folder: &Path, text: &[u8]) -> Result<Vec<Cut>, String> {
+    let program = folder.join("program.ngc");
+    std::fs::write(&program, text).unwrap();
+    // Every tool is there, without length and without wear.
+    let table: String = (1..100).map(|tool| format!("T{tool} P{tool} D0 Z0\n")).collect();
+    std::fs::write(folder.join("tools.tbl"), table).unwrap();
+    let run = Command::new("rs274")
+        .args(["-t", "tools.tbl", "-g", "program.ngc"])
+        .current_dir(folder)
+        .stdin(Stdio::null())
+        .output()
+        .unwrap();
+    let said = String::from_utf8_lossy(&run.stdout).into_owned();
+    if !run.status.success() {
+        return Err(format!(
+            "{}{}",
+            said.lines().last().unwrap_or_default(),
+            String::from_utf8_lossy(&run.stderr)
+        ));
+    }
+    let (mut at, mut plane, mut cuts) = (Vec3::ZERO, 0, Vec::new());
+    for line in said.lines() {
+        let Some((call, rest)) = line.get(14..).unwrap_or_default().trim().split_once('(') else {
+            continue;
+        };
+        let numbers: Vec<f64> =
+            rest.trim_end_matches(')').split(',').filter_map(|n| n.trim().parse().ok()).collect();
+        match call {
+            "SELECT_PLANE" => {
+                plane = ["XY", "YZ", "XZ"].iter().position(|p| rest.contains(p)).unwrap()
+            }
+            "STRAIGHT_TRAVERSE" => at = Vec3::new(numbers[0], numbers[1], numbers[2]),
+            "STRAIGHT_FEED" => {
+                let to = Vec3::new(numbers[0], numbers[1], numbers[2]);
+                cuts.push(Cut { from: at, to, length: Some(at.distance(to)) });
+                at = to;
+            }
+            "ARC_FEED" => {
+                // First and second axis of the plane (X Y, Y Z, Z X), then the one it rises along.
+                let turned = |a: f64, b: f64, c: f64| match plane {
+                    0 => Vec3::new(a, b, c),
+                    1 => Vec3::new(c, a, b),
+                    _ => Vec3::new(b, c, a),
+                };
+                let to = turned(numbers[0], numbers[1], numbers[5]);
+                let center = turned(numbers[2], numbers[3], numbers[5]);
+                let normal = turned(0.0, 0.0, numbers[4].signum());
+                let turns = numbers[4].abs() as u32 - 1;
+                let arc = Arc::new(at, to, center, normal, turns, 0.01)
+                    .map_err(|e| format!("{line}: {e:?}"))?;
+                cuts.push(Cut { from: at, to, length: Some(arc.length()) });
+                at = to;
+            }
+            _ => {}
+        }
+    }
+    Ok(cuts)
+}
+
+#[test]
+fn linuxcnc_itself_runs_our_programs_along_the_source() {
+    if Command::new("rs274").arg("-h").stdin(Stdio::null()).output().is_err() {
+        return eprintln!("note: rs274 (Debian package linuxcnc-uspace) is not installed");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let mut judged = 0;
+    for file in sources() {
+        let Some((program, text)) = posted(&file, "generic-3axis-linuxcnc") else { continue };
+        let cuts =
+            rs274(folder.path(), &text).unwrap_or_else(|e| panic!("{}: {e}", file.display()));
+        let (count, length) = assert_same_cuts(&program, &cuts, 1e-3, true);
+        eprintln!("{}: {count} cuts, {length:.1} mm", file.display());
+        judged += 1;
+    }
+    assert!(judged > 0);
+}
+
+/// Prints a line `x y z` for every block that cuts.
+const INTERPRET: &str = r#"
+import sys, nc_gcode_interpreter as judge
+frame, _ = judge.nc_to_dataframe(open(sys.argv[1]).read())
+for row in frame.iter_rows(named=True):
+    if row.get("gg01_motion") in ("G1", "G2", "G3") and row.get("function_call") is None:
+        print(row["gg01_motion"], *(row.get(axis) for axis in "XYZ"))
+"#;
+
+#[test]
+fn another_sinumerik_interpreter_ends_every_block_where_the_source_does() {
+    let python = std::env::var("TOOLPOST_JUDGE_PYTHON").unwrap_or_else(|_| "python3".into());
+    let there = Command::new(&python).args(["-c", "import nc_gcode_interpreter"]).output();
+    if !there.is_ok_and(|run| run.status.success()) {
+        return eprintln!("note: {python} has no nc-gcode-interpreter (PyPI)");
+    }
+    let folder = tempfile::tempdir().unwrap();
+    let mut judged = 0;
+    for file in sources() {
+        let Some((program, text)) = posted(&file, "generic-3axis-sinumerik") else { continue };
+        let path = folder.path().join("program.mpf");
+        std::fs::write(&path, text).unwrap();
+        let run = Command::new(&python).args(["-c", INTERPRET]).arg(&path).output().unwrap();
+        let said = String::from_utf8_lossy(&run.stdout);
+        assert!(
+            run.status.success(),
+            "{}: {}",
+            file.display(),
+            String::from_utf8_lossy(&run.stderr)
+        );
+        let mut ends = Vec::new();
+        for line in said.lines() {
+            let numbers: Vec<f64> =
+                line.split(' ').skip(1).filter_map(|n| n.parse().ok()).collect();
+            let end = Vec3::from_slice(&numbers);
+            // Blocks without a motion of their own (M8, F) repeat the last position; so does a full
+            // circle, which has its own block.
+            if ends.last() != Some(&end) || !line.starts_with("G1") {
+                ends.push(end);
+            }
+        }
+        let mut expected = Vec::new();
+        let mut here = Vec3::NAN;
+        for record in &program.records {
+            if let Some(pose) = record.op.pose() {
+                let cut = matches!(record.op, Op::Line(_) | Op::Arc(_));
+                if cut
+                    && (matches!(record.op, Op::Arc(_))
+                        || here.distance(pose.point) > 1e-3
+                        || here.is_nan())
+                {
+                    expected.push((record.line, pose.point));
+                }
+                here = pose.point;
+            }
+        }
+        assert_eq!(ends.len(), expected.len(), "{}", file.display());
+        for (end, (line, point)) in ends.iter().zip(&expected) {
+            assert!(
+                end.distance(*point) < 1.5e-3,
+                "{}:{line}: {end} is not {point}",
+                file.display()
+            );
+        }
+        eprintln!("{}: {} blocks", file.display(), ends.len());
+        judged += 1;
+    }
+    assert!(judged > 0);
+}
