@@ -44,14 +44,7 @@ impl Reader {
     /// `CIRCLE/cx,cy,cz,i,j,k`, then `r`, and of Siemens NX and Makino tolerance, its share, and the
     /// tool's diameter and corner radius; `TIMES,n` for a helix. The next `GOTO` is the end.
     pub(super) fn circle(&mut self, record: &Record) -> Outcome {
-        self.no_pending_circle()?;
-        if matches!(self.next, Next::Rapid) {
-            return Err(Fault::new("unsupported", "an arc cannot be a rapid"));
-        }
-        if self.cycle.is_some() {
-            return Err(Fault::new("unsupported", "an arc within a hole cycle")
-                .help("add CYCLE/OFF before it"));
-        }
+        self.may_turn()?;
         let first = usize::from(record.is(0, "CANON"));
         let times = (first..record.fields.len()).find(|i| record.is(*i, "TIMES"));
         let count = times.unwrap_or(record.fields.len()) - first;
@@ -81,6 +74,19 @@ impl Reader {
         let axis = self.setup.to_work.transform_vector3(axis);
         self.next = Next::Arc(Box::new(Circle { center, axis, radius, times }));
         self.circle_at = record.line;
+        Ok(())
+    }
+
+    /// Whether an arc may come here.
+    fn may_turn(&mut self) -> Outcome {
+        self.no_pending_circle()?;
+        if matches!(self.next, Next::Rapid) {
+            return Err(Fault::new("unsupported", "an arc cannot be a rapid"));
+        }
+        if self.cycle.is_some() {
+            return Err(Fault::new("unsupported", "an arc within a hole cycle")
+                .help("add CYCLE/OFF before it"));
+        }
         Ok(())
     }
 
@@ -199,7 +205,7 @@ impl Reader {
     /// `TLON,GOFWD/(CIRCLE/cx,cy,cz,r),ON,(LINE/x0,y0,z0,x1,y1,z1)`, with `ON,2,INTOF` for `ON`: along
     /// the circle, setting out as `INDIRV` says, to the end of the line.
     pub(super) fn tlon(&mut self, record: &Record) -> Outcome {
-        self.no_pending_circle()?;
+        self.may_turn()?;
         let syntax = "write TLON,GOFWD/(CIRCLE/cx,cy,cz,r),ON,(LINE/x0,y0,z0,x1,y1,z1)";
         let count = record.fields.len();
         let line = if record.is(7, "INTOF") { 8 } else { 6 };
@@ -210,9 +216,6 @@ impl Reader {
         if !known {
             let message = "only a circle up to a line is known here";
             return Err(Fault::new("unsupported", message).help(syntax));
-        }
-        if self.cycle.is_some() {
-            return Err(Fault::new("unsupported", "an arc within a hole cycle"));
         }
         let center = self.setup.to_work.transform_point3(self.point(record, 1)?);
         let radius = Some(self.length(record.number(4, "the radius")?)?);

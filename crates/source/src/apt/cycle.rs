@@ -3,6 +3,7 @@
 //! Heights count from the point of the hole along the tool axis, away from the part. The record gives
 //! them as couplets of a word and a value in any order (ISO 4343:2000).
 
+use super::motion::Next;
 use super::record::{Field, Record};
 use super::report::{Fault, Outcome};
 use super::technology::{FeedUnit, speed_of};
@@ -148,6 +149,13 @@ impl Reader {
                 return record.count(&[1], "CYCLE/INIT or CYCLE/CLEAR").map(drop);
             }
             () => {}
+        }
+        if matches!(self.next, Next::Rapid) {
+            let message = "RAPID before a cycle: is the next GOTO a rapid or a hole?";
+            return Err(Fault::new("unsupported", message).help(
+                "write the RAPID after the cycle, or \
+                                                               not at all",
+            ));
         }
         let active = self.define(record)?;
         self.cycle = Some(active);
@@ -365,7 +373,7 @@ impl Reader {
             self.push(line, Op::Cycle(Box::new(cycle)));
         }
         self.push(record.line, Op::Hole(pose));
-        self.point = Some(pose.point);
+        self.arrive(pose);
         self.tip = Some(Pose { point: pose.point + axis * cycle.retract, ..pose });
         Ok(())
     }

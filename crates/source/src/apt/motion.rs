@@ -178,6 +178,7 @@ impl Reader {
         self.point = Some(pose.point);
         self.tip = Some(pose);
         self.last_arc = None;
+        self.towards = None;
     }
 
     /// What has to be settled before the tool moves; with `cut`, in the part.

@@ -136,6 +136,11 @@ fn tlon_turns_the_way_indirv_points_in_any_plane() {
     assert_eq!(normal(&tlon("0,0,1", "ON,(LINE/0,0,0,0,0,10)")), Vec3::NEG_Y);
     assert_eq!(normal(&tlon("0,1,0", "ON,2,INTOF,(LINE/0,0,0,0,-10,0)")), Vec3::Z);
     for (text, rule) in [
+        (
+            format!("GOTO/10,0,0\nRAPID\n{}", &tlon("0,1,0", "ON,(LINE/0,0,0,0,10,0)")[12..]),
+            "unsupported",
+        ),
+        (tlon("0,1,0\nGOTO/10,0,0", "ON,(LINE/0,0,0,0,10,0)"), "no-start"),
         (tlon("1,0,0", "ON,(LINE/0,0,0,0,10,0)"), "zero-vector"),
         (tlon("1,1,0", "ON,(LINE/0,0,0,0,10,0)"), "arc-direction"),
         (tlon("0,1,0", "ON,(LINE/0,0,0,0,11,0)"), "off-the-circle"),

@@ -153,6 +153,7 @@ fn a_cycle_that_is_not_whole_is_refused() {
         ("CYCLE/MILL,FEDTO,5,RAPTO,3", "unsupported"),
         ("CYCLE/CSINK,DIAMETR,20,RAPTO,3", "cycle-depth"),
         ("CYCLE/ON", "malformed"),
+        ("RAPID\nCYCLE/DRILL,FEDTO,5,RAPTO,3\nGOTO/0,0,0", "unsupported"),
         ("CYCLE/DRILL,FEDTO,5,RAPTO,3,RTRCTO,AUTO\nGOTO/0,0,0", "no-start"),
         ("CYCLE/DRILL,FEDTO,5,RAPTO,3\nCIRCLE/0,0,0,0,0,1\nGOTO/0,0,0", "unsupported"),
         ("CYCLE/DRILL,FEDTO,5,RAPTO,3\nGOTO/0,0,0\nCYCLE/OFF\nGODLTA/0,0,5", "no-start"),
