@@ -91,7 +91,7 @@ pub fn read(file_name: &str, text: &[u8], options: &Options) -> Result<Reading, 
             break;
         }
     }
-    reader.finish(last)
+    reader.finish(text, last)
 }
 
 /// How far what a motion needs has been settled since the last record that could change it.
@@ -224,11 +224,11 @@ impl Reader {
         self.program.records.push(Step { line, op });
     }
 
-    /// What can only be said at the end; `last` is the last line that was read.
-    fn finish(mut self, last: Line) -> Result<Reading, Vec<Diagnostic>> {
+    /// What can only be said at the end of `text`, of which `last` is the last line that was read.
+    fn finish(mut self, text: &[u8], last: Line) -> Result<Reading, Vec<Diagnostic>> {
         if self.report.errors.is_empty() {
             self.judge_the_end(last);
-            self.judge_the_arcs();
+            self.judge_the_arcs(text);
         }
         if self.report.errors.is_empty() {
             let Reader { program, report, dialect, .. } = self;
@@ -279,14 +279,18 @@ impl Reader {
     }
 
     /// Whether the arcs turn the way the path says.
-    fn judge_the_arcs(&mut self) {
+    fn judge_the_arcs(&mut self, text: &[u8]) {
         if !self.circles {
             return;
         }
-        match arc::judge(&self.program, self.dialect) {
-            Some(finding) if finding.is_error() => self.report.error(finding),
-            Some(finding) => self.report.warning(finding),
-            None => {}
+        let Some(mut finding) = arc::judge(&self.program, self.dialect) else { return };
+        if let Some(line) = Lines::of(text).find(|line| line.number == finding.line) {
+            finding = finding.at(line.number, line.text, 0, line.text.len());
+        }
+        if finding.is_error() {
+            self.report.error(finding);
+        } else {
+            self.report.warning(finding);
         }
     }
 }

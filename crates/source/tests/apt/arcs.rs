@@ -52,6 +52,7 @@ fn the_path_is_held_against_the_habit() {
     let mixed = format!("{HEAD}{}\n{}\n{}\nFINI", path(1), path(1), path(-1));
     let warnings = reading(&mixed).warnings;
     assert_eq!((warnings[0].rule, warnings[0].line), ("arc-direction", 18));
+    assert!(warnings[0].excerpt.starts_with("GOTO/0,10,0\n^"));
 }
 
 #[test]
