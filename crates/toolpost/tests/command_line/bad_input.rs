@@ -94,7 +94,7 @@ fn a_record_that_is_malformed_or_means_nothing() {
     let no_end = SOURCE.replace("RAPID\nGOTO/40,30,50\n", "CIRCLE/40,20,-2,0,0,1,10\n");
     refused(no_end, MACHINE, 2, 15, "circle-without-goto");
     let truncated = &SOURCE[..SOURCE.find("30,-2").unwrap()];
-    refused(truncated, MACHINE, 2, 13, "malformed");
+    refused(truncated, MACHINE, 2, 13, "truncated");
 }
 
 #[test]
@@ -111,6 +111,36 @@ fn an_orientation_out_of_reach() {
     // A goes from -30 to 120 degrees there: upside down is out of reach.
     let under = with_line(7, "MULTAX/ON\nGOTO/0,0,50,0,0,-1");
     refused(under, "sinumerik-840d-table-ac", 1, 8, "axis-limit");
+}
+
+#[test]
+fn a_limit_broken_by_a_micrometre() {
+    // X travels 800 mm, and the work zero is not known: the part may be 800 mm long.
+    let machine = "sinumerik-840d-table-ac";
+    let folder = Folder::new();
+    folder.write("part.cls", with_line(12, "GOTO/800,0,-2"));
+    let said = folder.run(&["post", "part.cls", "-m", machine, "-o", "out.mpf"]);
+    assert_eq!(said.code, 0, "{said:?}");
+    refused(with_line(12, "GOTO/800.001,0,-2"), machine, 1, 12, "axis-limit");
+}
+
+#[test]
+fn a_limit_in_machine_coordinates_broken_by_a_micrometre() {
+    // The work zero stands 300 mm from the middle of a travel of 400 mm each way.
+    let folder = Folder::new();
+    let text = "extends = \"sinumerik-840d-table-ac\"\nwork_zero = [300, 0, 0]\n";
+    folder.write("mine.toml", text);
+    let post = ["post", "part.cls", "-m", "mine.toml", "-o", "out.mpf"];
+    folder.write("part.cls", with_line(12, "GOTO/100.001,0,-2"));
+    let said = folder.run(&post);
+    assert_eq!(said.code, 1, "{said:?}");
+    assert!(
+        said.err.contains("part.cls:12:") && said.err.contains("error[axis-limit]"),
+        "{said:?}"
+    );
+    folder.write("part.cls", with_line(12, "GOTO/100,0,-2"));
+    let said = folder.run(&post);
+    assert_eq!(said.code, 0, "{said:?}");
 }
 
 /// Checks and posts with a machine that extends [`MACHINE`] by `text`; both must refuse it at `place`.
