@@ -20,7 +20,7 @@ demo: rust
 	@head -n 24 $(DEMO).mpf
 	@echo "..."
 	@echo
-	$(TOOLPOST) --quiet show $(PART) --output $(DEMO).png
+	@$(TOOLPOST) show $(PART) --output $(DEMO).png > /dev/null
 	@echo "the program is $(DEMO).mpf, its report $(DEMO).report.json, its picture $(DEMO).png"
 
 ## Every test; those that need an outside judge or real input say so where it is missing.
@@ -44,7 +44,7 @@ judges:
 
 ## The pictures of the documentation, drawn anew.
 images: rust
-	$(TOOLPOST) --quiet show examples/dome.cls --output docs/images/dome.png
+	$(TOOLPOST) show examples/dome.cls --output docs/images/dome.png > /dev/null
 
 rust:
 	@scripts/setup rust
