@@ -340,26 +340,18 @@ impl Reader<'_, '_> {
         }
     }
 
-    /// The digits of an address with a numeric extension (`A3=`), only where `=` follows.
-    fn extension(&mut self) -> Option<u32> {
-        let mut ahead = 0;
-        while self.scanner.peek_at(ahead).is_ascii_digit() {
-            ahead += 1;
-        }
-        if ahead == 0 || ahead > 3 {
+    /// The digit of an address with a numeric extension (`A3=`), only where `=` follows.
+    #[inline]
+    fn extension(&mut self) -> Option<u8> {
+        let digit = self.scanner.peek();
+        if !digit.is_ascii_digit() || self.scanner.peek_at(1) != b'=' {
             return None;
         }
-        let mut equals = ahead;
-        while self.scanner.peek_at(equals) == b' ' {
-            equals += 1;
-        }
-        if self.scanner.peek_at(equals) != b'=' {
-            return None;
-        }
-        self.scanner.integer().ok()
+        self.scanner.at += 1;
+        Some(digit - b'0')
     }
 
-    fn extended_word(&mut self, start: usize, letter: u8, extension: u32) -> Fallible<()> {
+    fn extended_word(&mut self, start: usize, letter: u8, extension: u8) -> Fallible<()> {
         match (letter, extension) {
             (b'A'..=b'C', 3) => {
                 let value = self.value()?;
