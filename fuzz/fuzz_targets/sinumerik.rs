@@ -1,0 +1,35 @@
+//! Any bytes as a SINUMERIK program: no panic, and what runs makes sense.
+#![no_main]
+
+use control::{Dialect, Settings, read};
+use libfuzzer_sys::fuzz_target;
+use program::{Op, Orientation};
+
+fuzz_target!(|data: &[u8]| {
+    for rotary in [[false; 3], [true, false, true]] {
+        let settings = Settings { dialect: Dialect::Sinumerik, rotary, auxiliary: vec![26, 60] };
+        let lines = data.split(|byte| *byte == b'\n').count();
+        let mut line = 0;
+        let mut ended = false;
+        let ran = read(&settings, "fuzz.mpf", data, &mut |record| {
+            assert!(!ended && record.line >= line && record.line as usize <= lines);
+            line = record.line;
+            ended = record.op == Op::End;
+            if let Op::Arc(arc) = &record.op {
+                assert!(arc.end.point.is_finite() && arc.center.is_finite());
+                assert!((arc.normal.length() - 1.0).abs() < 1e-9);
+            }
+            if let Op::Cycle(cycle) = &record.op {
+                assert!(cycle.depth > 0.0 && cycle.clearance >= 0.0 && cycle.retract >= 0.0);
+            }
+            if let Some(Orientation::Axis(axis)) = record.op.pose().map(|pose| pose.orientation) {
+                assert!((axis.length() - 1.0).abs() < 1e-9);
+            }
+            Ok(())
+        });
+        match ran {
+            Ok(()) => assert!(ended),
+            Err(error) => assert!(error.is_error() && error.line as usize <= lines),
+        }
+    }
+});
