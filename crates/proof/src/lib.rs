@@ -3,7 +3,33 @@
 //! The text is run on the virtual control of its dialect; every pose goes through the machine's forward
 //! kinematics into the work frame and is compared there with the source: tool tip, tool axis, arcs,
 //! order, rapid or feed, feed, spindle, coolant, tool, compensation, dwell. The control's records are
-//! compared as they come and not kept, so memory does not grow with the program.
+//! compared as they come and not kept, so memory does not grow with the program. A coordinate that no
+//! block has set is not equal to anything.
+//!
+//! # What is accepted
+//!
+//! 1. **Every motion of the source, in its order.** Each ends with the tool tip and the tool axis within
+//!    the tolerances of the report ([`Applied`]). Only a motion that is shorter than a step of the
+//!    machine may be missing.
+//! 2. **A rapid for a rapid.** It may stop on its way where each coordinate of the block is as before
+//!    or as after (axis by axis), or on the tool axis above either end.
+//! 3. **Feed for a line**: one block or several, each on the line, none back. While rotary axes turn,
+//!    the way between the ends is sampled through the kinematics.
+//! 4. **Arcs for an arc**, in its plane and direction, points between the ends compared; or chords
+//!    within the machine's lowering tolerance.
+//! 5. **Excursions**: from any point of a cut away along the tool axis by rapid (or Z home), axis by
+//!    axis where it must, and back along the tool axis to the same point. Each is reported. Otherwise
+//!    home positions are for the start, tool changes, new set-ups by rapid, and the end, Z first.
+//! 6. **A hole** by a canned cycle (bottom, R plane, retract level, kind, pecks, dwell, pitch), or by
+//!    the moves that make it. A thread only by a cycle.
+//! 7. **In every cut**: feed, spindle, coolant, tool, length offset, work offset, compensation.
+//!    Compensation switches with the first straight cut in the plane at the latest. A tool change stops
+//!    spindle and coolant.
+//! 8. **Dwells and stops** between the same motions; where the source has stopped the spindle, it
+//!    stands at the stop.
+//! 9. **An end**, and before it, after the last motion, only ways away from the part.
+//!
+//! The rules in full, with what each keeps out, are in `docs/proof.md`.
 
 mod arc;
 mod expected;

@@ -55,9 +55,6 @@ enum Gait {
 /// The most stops that a rapid may have: a corner for each of five axes, and lifts.
 const MOST_STOPS: usize = 16;
 
-/// The reader whose control has no tool change: `T` only names the tool for the operator.
-const HAND_CHANGED: &str = "grbl";
-
 /// What a comparison answers: the mismatch after which the two motions cannot be laid beside each
 /// other any more.
 type Outcome = Result<(), Box<Diagnostic>>;
@@ -146,9 +143,6 @@ impl<'a> Prover<'a> {
             Op::Hole(pose) => self.drilled(line, pose),
             Op::Home(axes) => self.home(line, *axes),
             Op::Tool(tool) => self.change_tool(line, tool),
-            Op::Preselect(number) if self.gauge.machine.reader == HAND_CHANGED => {
-                self.change_tool(line, &Tool { number: *number, ..Tool::default() })
-            }
             op => {
                 match op {
                     Op::Dwell(seconds) if *seconds == 0.0 => {}
@@ -623,16 +617,12 @@ impl<'a> Prover<'a> {
         self.report.compared.tool_changes += 1;
         let name = if tool.number > 0 { tool.number.to_string() } else { tool.name.clone() };
         self.report.program.tool(name);
-        match self.gauge.machine.reader == HAND_CHANGED {
-            true => self.running.call_by_hand(line, tool.clone()),
-            false => self.running.change_tool(line, tool.clone()),
-        }
+        self.running.change_tool(line, tool.clone());
         Ok(())
     }
 
     /// A dwell or a stop.
     fn event(&mut self, line: u32, event: Step) {
-        self.running.by_hand &= !matches!(event, Step::Stop);
         if let (Step::Move(Goal { kind: Kind::Hole(cycle), to, .. }), Step::Dwell(seconds)) =
             (&self.cursor.step, &event)
         {

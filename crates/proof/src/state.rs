@@ -16,8 +16,6 @@ pub(crate) struct Running {
     pub spindle_line: u32,
     pub coolant_line: u32,
     pub tool: Option<Tool>,
-    /// Whether the operator has to change the tool, and the program has not stopped for it yet.
-    pub by_hand: bool,
     pub compensation: Compensation,
     pub length_offset: Option<u32>,
     pub work_offset: Option<u32>,
@@ -33,7 +31,6 @@ impl Default for Running {
             spindle_line: 0,
             coolant_line: 0,
             tool: None,
-            by_hand: false,
             compensation: Compensation::Off,
             length_offset: None,
             work_offset: None,
@@ -43,18 +40,6 @@ impl Default for Running {
 }
 
 impl Running {
-    /// A tool called on `line` of a program whose control has no tool change: the operator puts it in
-    /// while the program stands still. The first one is there before the program begins.
-    pub fn call_by_hand(&mut self, line: u32, tool: Tool) {
-        match &self.tool {
-            Some(other) if other.number == tool.number => {}
-            other => {
-                self.by_hand = other.is_some();
-                self.change_tool(line, tool);
-            }
-        }
-    }
-
     /// A tool change on `line`: the machine stops spindle and coolant for it, except what the same
     /// block switches on.
     pub fn change_tool(&mut self, line: u32, tool: Tool) {
@@ -73,9 +58,6 @@ pub(crate) type Difference = (&'static str, String);
 
 /// What must be right on every move to a known place: tool, length offset, work offset.
 pub(crate) fn set_up(machine: &Machine, wanted: &Wanted, running: &Running) -> Option<Difference> {
-    if running.by_hand {
-        return Some(("tool", "the program does not stop for the change of the tool".into()));
-    }
     if let Some(tool) = wanted.tool {
         match &running.tool {
             None => return Some(("tool", format!("{} is not called", named(tool)))),
