@@ -64,9 +64,9 @@ pub(crate) struct Walk<'a> {
     pub(crate) length_offset: Option<f64>,
     /// What the source wants, and what the control has been told.
     pub(crate) spindle: Spindle,
-    active_spindle: Spindle,
+    active_spindle: Option<Spindle>,
     coolant: Coolant,
-    active_coolant: Coolant,
+    active_coolant: Option<Coolant>,
     pub(crate) feed: Option<Feed>,
     compensation: Compensation,
     active_compensation: Compensation,
@@ -108,9 +108,9 @@ impl<'a> Walk<'a> {
             tool: None,
             length_offset: None,
             spindle: Spindle::Off,
-            active_spindle: Spindle::Off,
+            active_spindle: Some(Spindle::Off),
             coolant: Coolant::Off,
-            active_coolant: Coolant::Off,
+            active_coolant: Some(Coolant::Off),
             feed: None,
             compensation: Compensation::Off,
             active_compensation: Compensation::Off,
@@ -211,8 +211,8 @@ impl<'a> Walk<'a> {
                 Ok(())
             }
             Op::Dwell(seconds) => self.dwell(*seconds),
-            Op::Stop => self.required(BlockName::Stop),
-            Op::OptionalStop => self.required(BlockName::OptionalStop),
+            Op::Stop => self.stop(BlockName::Stop),
+            Op::OptionalStop => self.stop(BlockName::OptionalStop),
             Op::Operation(name) => {
                 self.scope.operation = map([("name", Value::from(clean(name).trim()))]);
                 self.block(BlockName::OperationStart)
@@ -297,6 +297,13 @@ impl<'a> Walk<'a> {
         self.required(BlockName::Dwell)
     }
 
+    /// A stop, after which spindle and coolant are told anew: some controls switch both off for it
+    /// (HEIDENHAIN's `M0`), and so may the operator.
+    fn stop(&mut self, name: BlockName) -> Done {
+        (self.active_spindle, self.active_coolant) = (None, None);
+        self.required(name)
+    }
+
     // Tools.
 
     fn change_tool(&mut self, tool: &Tool) -> Done {
@@ -329,7 +336,7 @@ impl<'a> Walk<'a> {
             POSITION | ORIENTATION | bit(WordName::F) | bit(WordName::D) | bit(WordName::Motion),
         );
         self.located = false;
-        (self.active_spindle, self.active_coolant) = (Spindle::Off, Coolant::Off);
+        (self.active_spindle, self.active_coolant) = (Some(Spindle::Off), Some(Coolant::Off));
         Ok(())
     }
 
@@ -375,10 +382,10 @@ impl<'a> Walk<'a> {
 
     /// Tells the control the spindle that the source wants.
     pub(crate) fn sync_spindle(&mut self) -> Done {
-        if self.spindle == self.active_spindle {
+        if self.active_spindle == Some(self.spindle) {
             return Ok(());
         }
-        self.active_spindle = self.spindle;
+        self.active_spindle = Some(self.spindle);
         if let Some(speed) = speed(self.spindle) {
             self.writer.set(WordName::S, speed);
         }
@@ -392,10 +399,10 @@ impl<'a> Walk<'a> {
     }
 
     fn sync_coolant(&mut self) -> Done {
-        if self.coolant == self.active_coolant {
+        if self.active_coolant == Some(self.coolant) {
             return Ok(());
         }
-        self.active_coolant = self.coolant;
+        self.active_coolant = Some(self.coolant);
         self.required(match self.coolant {
             Coolant::Off => BlockName::CoolantOff,
             Coolant::Flood => BlockName::CoolantFlood,
@@ -420,8 +427,16 @@ impl<'a> Walk<'a> {
     // Cutter compensation: it is switched with the first straight cut in the plane.
 
     fn set_compensation(&mut self, compensation: Compensation) -> Done {
-        if compensation != Compensation::Off && !self.machine.capabilities.compensation {
-            return Err(refuse("compensation", "the control has no cutter compensation"));
+        if !self.machine.capabilities.compensation {
+            // Cutter-location data is the path of the tool's centre: without compensation it is
+            // still the right one, but the operator cannot correct it for wear.
+            if compensation != Compensation::Off {
+                let message = "the control has no cutter compensation: the path of the source is cut \
+                               as it is, and cannot be corrected at the machine";
+                let found = Diagnostic::warning("compensation-left-out", message);
+                self.findings.warn(found.line(self.line));
+            }
+            return Ok(());
         }
         self.compensation = compensation;
         self.compensation_line = self.line;

@@ -175,7 +175,11 @@ impl Step<'_, '_, '_> {
             return Ok(());
         }
         let Some(M::ChangeTool) = self.block.m(Group::ToolChange) else {
-            self.ops.extend(number.map(Op::Preselect));
+            self.ops.extend(number.map(|number| match self.flavor {
+                // GRBL has no M6: T is all it is told of the tool that the operator has put in.
+                Flavor::Grbl => Op::Tool(Box::new(Tool { number, ..Tool::default() })),
+                _ => Op::Preselect(number),
+            }));
             return Ok(());
         };
         let Some(number) = self.state.selected else {
