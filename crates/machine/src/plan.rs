@@ -13,7 +13,7 @@
 //!
 //! Unlimited axes wind on and never jump by a turn. In a singular pose, where one axis may stand
 //! anywhere, it holds its position, and turns to where it is needed next in the last rapid before that,
-//! or else in the move that leaves the pose.
+//! else in the last move from one singular pose to another, else in the move that leaves the pose.
 //!
 //! A target takes 16 bytes until its operation is written, and no more is kept.
 
@@ -127,8 +127,19 @@ struct Front {
     states: States,
     cost: [f64; STATES],
     axis: Vec3,
-    /// The target they are of; −1 for the pose before the operation, −2 where that is singular.
-    index: isize,
+    /// Whether that is a singular pose; the outer axis may then stand in other places as well.
+    singular: bool,
+}
+
+/// What the axes may do on the way to a target.
+#[derive(Clone, Copy, PartialEq)]
+enum Freedom {
+    /// It is cut.
+    None,
+    /// It is cut, but the free axis turns before, about the tool.
+    AboutTool,
+    /// It is not cut.
+    All,
 }
 
 /// Chooses the rotary positions for `targets`, from where the axes stand at `start` (degrees of A, B,
@@ -155,14 +166,17 @@ struct Search<'a> {
     machine: &'a Machine,
     known: bool,
     plan: Plan,
-    /// Of the last target that is not singular; without states before the first.
+    /// Of the last target; without states before the first that is not singular.
     front: Box<Front>,
     /// Of the target looked at; they change places from target to target.
     next: Box<Front>,
     /// Tool axis of the last target.
     last: Option<Vec3>,
-    /// The last target of the singular run just read at which the free axis may turn out of the cut.
-    turn_at: Option<usize>,
+    /// Whether a target was not singular yet.
+    opened: bool,
+    /// The target of the singular run just read at which the free axis turns best, and whether that is
+    /// a rapid.
+    turn_at: Option<(usize, bool)>,
     /// For each rewind the state in which the tool leaves the part, and those in which it can come in.
     turns_back: Vec<(u32, States)>,
 }
@@ -195,7 +209,7 @@ impl<'a> Search<'a> {
         if let Some(degrees) = start {
             front.axis = machine.axis_at(degrees);
             let bearings = plan.chain.bearings(front.axis);
-            front.index = if bearings.map_or(true, |b| b.free()) { -2 } else { -1 };
+            front.singular = bearings.map_or(true, |b| b.free());
             (front.states[0], front.cost[0]) = ([0, 1].map(|k| axes[k].base(held[k])), 0.0);
         }
         Search {
@@ -205,6 +219,7 @@ impl<'a> Search<'a> {
             next: front.clone(),
             front,
             last: None,
+            opened: false,
             turn_at: None,
             turns_back: Vec::new(),
         }
@@ -222,8 +237,8 @@ impl<'a> Search<'a> {
                     .into());
             }
             if arc || (last == target.axis && target.kind == TargetKind::Feed) {
-                if !cell.bearings.free() {
-                    self.front.index = index as isize;
+                if cell.bearings.free() && !arc {
+                    self.may_turn(index, false);
                 }
                 self.plan.cells.push(Cell { link: SAME, ..cell });
                 return Ok(());
@@ -236,16 +251,38 @@ impl<'a> Search<'a> {
         // The way to the first target is not cut, unless it follows on the operation before.
         let approach = target.kind == TargetKind::Rapid || (index == 0 && !self.known);
         if bearings.free() {
-            if approach {
-                self.turn_at = Some(index);
+            if approach || (self.front.singular && target.kind == TargetKind::Feed) {
+                self.may_turn(index, approach);
             }
-            if self.plan.inner(&bearings, 0.0).is_none() {
-                return Err(self.out_of_travel(target, &bearings));
-            }
+            self.pass(target, &bearings)?;
         } else {
-            cell.link = self.advance(target, index, &bearings, approach)?;
+            cell.link = self.advance(target, &bearings, approach)?;
         }
         self.plan.cells.push(cell);
+        Ok(())
+    }
+
+    /// Notes that the free axis may turn on the way to the singular target `index`: on the way from
+    /// another singular pose it turns about the tool, and in a rapid it does as it likes.
+    fn may_turn(&mut self, index: usize, rapid: bool) {
+        if rapid || !matches!(self.turn_at, Some((_, true))) {
+            self.turn_at = Some((index, rapid));
+        }
+    }
+
+    /// Carries the best ways on to a singular target: the outer axis holds.
+    fn pass(&mut self, target: &Target, bearings: &Bearings) -> Result<(), Box<Diagnostic>> {
+        if self.plan.inner(bearings, 0.0).is_none() {
+            return Err(self.out_of_travel(target, bearings));
+        }
+        for (state, cost) in self.front.states.iter_mut().zip(&mut self.front.cost) {
+            let inner = self.plan.inner(bearings, state[1]).filter(|_| exists(state));
+            if let Some(inner) = inner {
+                *cost += self.plan.axes[1].travel(state[1], inner);
+                state[1] = inner;
+            }
+        }
+        (self.front.axis, self.front.singular) = (target.axis, true);
         Ok(())
     }
 
@@ -253,7 +290,6 @@ impl<'a> Search<'a> {
     fn advance(
         &mut self,
         target: &Target,
-        index: usize,
         bearings: &Bearings,
         approach: bool,
     ) -> Result<u32, Box<Diagnostic>> {
@@ -261,21 +297,30 @@ impl<'a> Search<'a> {
         if !self.next.states.iter().any(exists) {
             return Err(self.out_of_travel(target, bearings));
         }
-        (self.next.axis, self.next.index) = (target.axis, index as isize);
-        let turn_at = self.turn_at.take();
-        if let Some(cell) = turn_at.and_then(|at| self.plan.cells.get_mut(at)) {
-            cell.link |= TURN;
-        }
-        let loose = approach || turn_at.is_some();
-        let link = if loose && self.front.index < 0 {
+        (self.next.axis, self.next.singular) = (target.axis, false);
+        // On the way to a rapid the free axis turns in that, at the latest.
+        let mut turn_at = self.turn_at.take().filter(|(_, rapid)| *rapid || !approach);
+        let loose = approach || matches!(turn_at, Some((_, true)));
+        let freedom = match turn_at {
+            _ if loose => Freedom::All,
+            Some(_) => Freedom::AboutTool,
+            None => Freedom::None,
+        };
+        let link = if loose && !self.opened {
             self.open();
             SAME
+        } else if let Some(link) =
+            self.plan.relax(self.machine, &self.front, &mut self.next, freedom)
+        {
+            link
         } else {
-            match self.plan.relax(self.machine, &self.front, &mut self.next, loose) {
-                Some(link) => link,
-                None => self.rewind(target)?,
-            }
+            turn_at = None;
+            self.rewind(target)?
         };
+        if let Some(cell) = turn_at.and_then(|(at, _)| self.plan.cells.get_mut(at)) {
+            cell.link |= TURN;
+        }
+        self.opened = true;
         std::mem::swap(&mut self.front, &mut self.next);
         Ok(link)
     }
@@ -297,16 +342,11 @@ impl<'a> Search<'a> {
         let (front, next) = (&mut *self.front, &mut *self.next);
         let best = front.best();
         let left = front.states[best];
-        if !front.touches(next) {
-            // Between them lies a singular pose: there the free axis comes in where it is needed.
+        if front.singular {
+            // The free axis comes in where it is needed.
             front.states = next.states;
-            let inner = match self.plan.cells.last() {
-                Some(cell) => self.plan.inner(&cell.bearings, left[1]).unwrap_or(left[1]),
-                None => left[1],
-            };
-            front.states.iter_mut().for_each(|state| state[1] = inner);
-        } else if let (true, Ok(bearings)) = (front.index < 0, self.plan.chain.bearings(front.axis))
-        {
+            front.states.iter_mut().for_each(|state| state[1] = left[1]);
+        } else if let (false, Ok(bearings)) = (self.opened, self.plan.chain.bearings(front.axis)) {
             // Of the pose before the operation only the state taken was looked at so far.
             self.plan.states(&bearings, &mut front.states);
         }
@@ -315,10 +355,14 @@ impl<'a> Search<'a> {
             let off_center: f64 = (0..2).map(|k| self.plan.axes[k].off_center(state[k])).sum();
             *cost = self.plan.travel(&left, state) + 1e-3 * off_center;
         }
-        let link = self.plan.relax(self.machine, front, next, false).ok_or_else(|| {
-            let message = "no way of the rotary axes through this move stays within their travel";
+        let link = self.plan.relax(self.machine, front, next, Freedom::None).ok_or_else(|| {
+            let turn = angle_between(front.axis, next.axis).to_degrees();
+            let message = format!(
+                "the tool axis turns by {turn:.3}° in one move, and the rotary axes have no way \
+                 through it that stays between its ends and within their travel"
+            );
             Diagnostic::error("axis-limit", message)
-                .help("turn the part on the table, or take a machine with more rotary travel")
+                .help("make the steps of the tool axis smaller, or turn the part on the table")
                 .line(target.line)
         })?;
         let (index, line) = (self.plan.cells.len(), target.line);
@@ -480,12 +524,7 @@ impl Front {
     /// Before the first target, with nothing known of where the axes stand.
     fn empty() -> Front {
         let states = [[f64::INFINITY; 2]; STATES];
-        Front { states, cost: [f64::INFINITY; STATES], axis: Vec3::Z, index: -1 }
-    }
-
-    /// Whether no singular pose lies between the two.
-    fn touches(&self, next: &Front) -> bool {
-        self.index + 1 == next.index
+        Front { states, cost: [f64::INFINITY; STATES], axis: Vec3::Z, singular: false }
     }
 
     /// The state that is reached best.
@@ -540,15 +579,13 @@ impl Plan {
     }
 
     /// The best way to each state of `next` from those of `front`; `None` where none can be reached.
-    /// Out of the cut (`loose`) every way is open.
     fn relax(
         &self,
         machine: &Machine,
         front: &Front,
         next: &mut Front,
-        loose: bool,
+        freedom: Freedom,
     ) -> Option<u32> {
-        let touching = front.touches(next);
         let (families, turns) = (self.chain.families(), self.in_turns);
         let mut link = 0;
         let mut reached = false;
@@ -562,15 +599,18 @@ impl Plan {
             // The same solution first: it is near, and mostly settles it.
             for first in [0, TURNS].into_iter().take(families).map(|other| other ^ (j & TURNS)) {
                 for i in first..first + turns {
+                    if front.cost[i] >= best {
+                        continue;
+                    }
                     let state = &front.states[i];
                     let travel = [0, 1].map(|k| self.axes[k].travel(state[k], to[k]));
                     let cost = front.cost[i] + travel[0] + travel[1];
                     if cost < best {
                         let near = first == (j & TURNS) && travel[0] + travel[1] <= 90.0;
-                        let open = loose
+                        let open = freedom == Freedom::All
                             || travel[0].max(travel[1]) <= 180.0 + SLACK
                                 && (near
-                                    || !touching
+                                    || freedom == Freedom::AboutTool
                                     || self.stays_near(machine, front, i, next, j));
                         if open {
                             (best, from) = (cost, i as u32);

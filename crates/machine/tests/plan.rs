@@ -163,6 +163,15 @@ fn the_free_axis_turns_in_the_last_rapid_before_it_is_needed() {
 }
 
 #[test]
+fn without_a_rapid_the_free_axis_turns_while_the_tool_stands_upright() {
+    let path = [rapid(leaning(20.0, 90.0)), feed(Vec3::Z), feed(Vec3::Z), feed(leaning(60.0, 0.0))];
+    let found = degrees(&plan(&limited_ac(), None, path).unwrap());
+    assert_near(found[1], [0.0, 0.0, 0.0]);
+    assert_near(found[2], [0.0, 0.0, -90.0]);
+    assert_near(found[3], [60.0, 0.0, -90.0]);
+}
+
+#[test]
 fn through_the_pole_the_table_does_not_turn() {
     let path = (-5..=5).map(|i| feed(leaning(f64::from(i) * 2.0, 90.0)));
     let found = degrees(&plan(&table_ac(), None, path).unwrap());
@@ -216,22 +225,59 @@ fn any_travel() -> impl Strategy<Value = (f64, f64)> {
     ]
 }
 
+/// Two rotary axes as they are built, the second with the travel given.
+fn any_machine() -> impl Strategy<Value = Machine> {
+    let tilt = prop_oneof![Just((-120.0, 120.0)), Just((-5.0, 110.0)), Just((-200.0, 200.0))];
+    let nutating = Vec3::new(0.0, 1.0, 1.0);
+    (0..5usize, tilt, any_travel()).prop_map(move |(kind, tilt, turn)| {
+        let tilting = |letter, on, direction, sign| {
+            prefer(1.0, within(tilt.0, tilt.1, axis(letter, on, direction, sign)))
+        };
+        let turning = |on, sign| within(turn.0, turn.1, axis('C', on, Vec3::Z, sign));
+        machine(match kind {
+            0 => vec![tilting('A', Mount::Table, Vec3::X, 1.0), turning(Mount::Table, -1.0)],
+            1 => vec![tilting('B', Mount::Table, nutating, 1.0), turning(Mount::Table, -1.0)],
+            2 => vec![turning(Mount::Table, -1.0), tilting('B', Mount::Head, Vec3::Y, 1.0)],
+            3 => vec![turning(Mount::Head, 1.0), tilting('A', Mount::Head, Vec3::X, 1.0)],
+            _ => vec![turning(Mount::Head, 1.0), tilting('B', Mount::Head, nutating, -1.0)],
+        })
+    })
+}
+
+/// The angle, radians, by which the tool axis half way between two positions is farther from the ends
+/// than they are from each other.
+fn swing(machine: &Machine, from: [f64; 3], to: [f64; 3]) -> f64 {
+    let half = machine.axis_at([0, 1, 2].map(|i| (from[i] + to[i]) / 2.0));
+    let (from, to) = (machine.axis_at(from), machine.axis_at(to));
+    angle_between(half, from).max(angle_between(half, to)) - angle_between(from, to)
+}
+
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(500))]
 
     #[test]
     fn no_plan_leaves_the_travel_misses_the_axis_or_jumps_in_the_cut(
         path in any_path(),
-        travel in any_travel(),
-        tilt in prop_oneof![Just((-120.0, 120.0)), Just((-5.0, 110.0))],
+        machine in any_machine(),
         start in prop::option::of((-5.0..100.0f64, -180.0..180.0f64)),
     ) {
-        let machine = machine(vec![
-            prefer(1.0, within(tilt.0, tilt.1, axis('A', Mount::Table, Vec3::X, 1.0))),
-            within(travel.0, travel.1, axis('C', Mount::Table, Vec3::Z, -1.0)),
-        ]);
-        let start = start.map(|(a, c)| [a, 0.0, c]);
-        let Ok(plan) = plan(&machine, start, path.clone()) else { return Ok(()) };
+        let start = start.map(|(tilt, turn)| {
+            let mut degrees = [tilt, tilt, turn];
+            // An axis that the machine lacks stands at 0.
+            for (i, letter) in ['A', 'B', 'C'].into_iter().enumerate() {
+                if machine.rotary.iter().all(|axis| axis.letter != letter) {
+                    degrees[i] = 0.0;
+                }
+            }
+            degrees
+        });
+        let planned = plan(&machine, start, path.clone());
+        let Ok(plan) = planned else {
+            // With a turn of travel on both axes there is always a way.
+            let tight = machine.rotary.iter().any(|axis| axis.max - axis.min < 400.0);
+            prop_assert!(tight, "{}", planned.unwrap_err());
+            return Ok(());
+        };
         prop_assert_eq!(plan.len(), path.len());
         let mut last = start;
         for (step, target) in plan.iter().zip(&path) {
@@ -241,11 +287,17 @@ proptest! {
                 let d = step.degrees[axis.index()];
                 prop_assert!(axis.min <= d && d <= axis.max);
             }
+            if let (Some(again), Some(last)) = (step.rewind, last) {
+                let moved = angle_between(machine.axis_at(again), machine.axis_at(last));
+                prop_assert!(moved < 2e-6, "the tool comes in again turned by {}", moved);
+            }
             let from = step.rewind.or(last);
             if let (Some(from), TargetKind::Feed) = (from, target.kind) {
                 for (a, b) in from.iter().zip(step.degrees) {
                     prop_assert!((b - a).abs() <= 180.001, "{:?} to {:?}", from, step.degrees);
                 }
+                let swing = swing(&machine, from, step.degrees).to_degrees();
+                prop_assert!(swing <= 2.0, "{}° from {:?} to {:?}", swing, from, step.degrees);
             }
             last = Some(step.degrees);
         }
