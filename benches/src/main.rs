@@ -1,0 +1,154 @@
+//! How fast a five-axis program is read, written and proven, and how much memory that takes, beside a
+//! floor in the same run.
+//!
+//! The toolpath is generated ([`path`]); every stage runs `--rounds` times on one core, and its fastest
+//! round counts ([`clock`]). Memory is what the program asks the allocator for ([`memory`]).
+
+mod clock;
+mod floor;
+mod memory;
+mod path;
+
+use clap::Parser;
+use machine::Machine;
+use program::{Diagnostic, Program};
+use std::process::ExitCode;
+use std::time::Duration;
+
+#[global_allocator]
+static ALLOCATOR: memory::Counting = memory::Counting;
+
+/// Measures reading, writing and proving against a floor.
+#[derive(Parser)]
+struct Arguments {
+    /// Points of the toolpath.
+    #[arg(long, default_value_t = 2_000_000)]
+    records: usize,
+    /// Machine of the library, or the path of its file; may be given several times.
+    #[arg(long, default_values_t = [String::from("sinumerik-840d-traori"), String::from("dmu50-heidenhain")])]
+    machine: Vec<String>,
+    /// Rounds of each stage; the fastest counts.
+    #[arg(long, default_value_t = 3)]
+    rounds: usize,
+}
+
+/// What a stage took.
+struct Measured {
+    time: Duration,
+    /// The most bytes in use at once, beyond those before it.
+    peak: usize,
+}
+
+fn main() -> ExitCode {
+    let arguments = Arguments::parse();
+    match run(&arguments) {
+        Ok(()) => ExitCode::SUCCESS,
+        Err(findings) => {
+            findings.iter().take(5).for_each(|finding| eprintln!("{finding}"));
+            ExitCode::FAILURE
+        }
+    }
+}
+
+fn run(arguments: &Arguments) -> Result<(), Vec<Diagnostic>> {
+    let text = path::cutter_location_data(arguments.records);
+    let table = Table { records: arguments.records };
+    println!("{} GOTO, {} MB of cutter-location data", arguments.records, text.len() / 1_000_000);
+    let measure =
+        |work: &mut dyn FnMut() -> Result<(), Vec<Diagnostic>>| fastest(arguments.rounds, work);
+
+    let by_hand = measure(&mut || keep(floor::by_hand(text.as_bytes())))?;
+    let standard = measure(&mut || keep(floor::standard(text.as_bytes())))?;
+    table.head();
+    table.row("floor: numbers in and out, by hand", &by_hand, &by_hand, &standard);
+    table.row("floor: the same, standard library", &standard, &by_hand, &standard);
+    let reading = measure(&mut || keep(read(&text)?))?;
+    table.row("read", &reading, &by_hand, &standard);
+    let before = memory::live();
+    let source = read(&text)?;
+    let stored = memory::live() - before;
+
+    for name in &arguments.machine {
+        let machine = machine::load(name).map_err(|finding| vec![*finding])?;
+        println!("{name}");
+        let writing = measure(&mut || keep(post::write(&read(&text)?, &machine)?))?;
+        table.row("read, kinematics, write", &writing, &by_hand, &standard);
+        let output = post::write(&source, &machine)?;
+        let proving = measure(&mut || read_write_prove(&text, &machine))?;
+        table.row("read, kinematics, write, prove", &proving, &by_hand, &standard);
+        println!(
+            "  proof: {:.2} times the program without; program text {} MB; beside the texts {} bytes a \
+             move to write, {} to prove",
+            proving.time.as_secs_f64() / writing.time.as_secs_f64(),
+            output.text.len() / 1_000_000,
+            table.each(writing.peak.saturating_sub(output.text.capacity())),
+            table.each(proving.peak.saturating_sub(output.text.capacity())),
+        );
+    }
+    println!("the program in memory: {} bytes a move", table.each(stored));
+    Ok(())
+}
+
+fn read(text: &str) -> Result<Program, Vec<Diagnostic>> {
+    let options = source::apt::Options::default();
+    Ok(source::apt::read("wave.apt", text.as_bytes(), &options)?.program)
+}
+
+fn read_write_prove(text: &str, machine: &Machine) -> Result<(), Vec<Diagnostic>> {
+    let program = read(text)?;
+    let output = post::write(&program, machine)?;
+    let report =
+        proof::prove(&program, machine, "wave.nc", &output.text, &proof::Tolerances::default());
+    if report.proven { Ok(()) } else { Err(report.mismatches) }
+}
+
+/// Keeps a result from being optimised away.
+fn keep<T>(result: T) -> Result<(), Vec<Diagnostic>> {
+    std::hint::black_box(&result);
+    Ok(())
+}
+
+/// The fastest of several rounds, and the memory of the last.
+fn fastest(
+    rounds: usize,
+    work: &mut dyn FnMut() -> Result<(), Vec<Diagnostic>>,
+) -> Result<Measured, Vec<Diagnostic>> {
+    let mut best = Measured { time: Duration::MAX, peak: 0 };
+    for _ in 0..rounds.max(1) {
+        let start = clock::now();
+        let (result, peak) = memory::peak(&mut *work);
+        result?;
+        best = Measured { time: best.time.min(clock::now().saturating_sub(start)), peak };
+    }
+    Ok(best)
+}
+
+/// The figures, a row a stage.
+struct Table {
+    records: usize,
+}
+
+impl Table {
+    fn head(&self) {
+        println!(
+            "{:36}{:>9}{:>12}{:>9}{:>10}{:>11}",
+            "", "s", "records/s", "ns each", "by hand", "standard"
+        );
+    }
+
+    fn row(&self, name: &str, stage: &Measured, by_hand: &Measured, standard: &Measured) {
+        let seconds = stage.time.as_secs_f64();
+        println!(
+            "{name:36}{seconds:9.3}{:11.2}M{:9.0}{:9.2}x{:10.2}x",
+            self.records as f64 / seconds / 1e6,
+            seconds / self.records as f64 * 1e9,
+            seconds / by_hand.time.as_secs_f64(),
+            seconds / standard.time.as_secs_f64(),
+        );
+    }
+
+    /// Bytes for each record, rounded up.
+    fn each(&self, bytes: usize) -> usize {
+        bytes.div_ceil(self.records.max(1))
+    }
+}
