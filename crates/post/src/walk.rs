@@ -427,16 +427,12 @@ impl<'a> Walk<'a> {
     // Cutter compensation: it is switched with the first straight cut in the plane.
 
     fn set_compensation(&mut self, compensation: Compensation) -> Done {
-        if !self.machine.capabilities.compensation {
-            // Cutter-location data is the path of the tool's centre: without compensation it is
-            // still the right one, but the operator cannot correct it for wear.
-            if compensation != Compensation::Off {
-                let message = "the control has no cutter compensation: the path of the source is cut \
-                               as it is, and cannot be corrected at the machine";
-                let found = Diagnostic::warning("compensation-left-out", message);
-                self.findings.warn(found.line(self.line));
-            }
-            return Ok(());
+        if compensation != Compensation::Off && !self.machine.capabilities.compensation {
+            // Whether the path is that of the tool's centre or the contour, only its author knows.
+            let help = "post the operation as the path of the tool's centre, without CUTCOM";
+            return Err(Box::new(
+                refuse("compensation", "the control has no cutter compensation").help(help),
+            ));
         }
         self.compensation = compensation;
         self.compensation_line = self.line;

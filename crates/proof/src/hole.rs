@@ -278,7 +278,10 @@ impl Drilled {
     pub fn kind(&self, hole: &Hole) -> Vec<Difference> {
         let cycle = hole.cycle;
         let mut found = Vec::new();
-        let kinds = (kind_in_effect(cycle), kind_in_effect(&self.cycle));
+        let kinds = match cycle.kind == self.cycle.kind {
+            true => (cycle.kind, self.cycle.kind),
+            false => (kind_in_effect(cycle), kind_in_effect(&self.cycle)),
+        };
         let same = match kinds {
             (CycleKind::Tap { pitch: a, left: l }, CycleKind::Tap { pitch: b, left: m }) => {
                 l == m && (a - b).abs() <= PITCH
@@ -310,8 +313,8 @@ impl Drilled {
     fn pecks(&self, hole: &Hole) -> Result<(), String> {
         let cycle = hole.cycle;
         let slack = hole.gauge.slack(&self.bottom);
-        let further = cycle.peck.or(cycle.first_peck).unwrap_or(cycle.depth);
-        let first = cycle.first_peck.unwrap_or(further);
+        let further = cycle.peck.or(cycle.first_peck).unwrap_or(cycle.depth).min(cycle.depth);
+        let first = cycle.first_peck.unwrap_or(further).min(cycle.depth);
         let own = self.cycle.peck.or(self.cycle.first_peck).ok_or("the cycle does not peck")?;
         let own_first = self.cycle.first_peck.unwrap_or(own);
         let point = hole.point.above(self.bottom.place.tip).0 + self.cycle.depth;

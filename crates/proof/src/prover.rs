@@ -418,12 +418,7 @@ impl<'a> Prover<'a> {
 
     /// Compensation switches with the first straight cut in the plane at the latest, never on an arc.
     fn check_compensation(&mut self, line: u32, must: bool, on_arc: bool) {
-        let is = self.running.compensation;
-        // A control without compensation cuts the path of the tool's centre, which the source is.
-        let wanted = match self.gauge.machine.capabilities.compensation {
-            true => self.cursor.wanted.compensation,
-            false => Compensation::Off,
-        };
+        let (wanted, is) = (self.cursor.wanted.compensation, self.running.compensation);
         let tool = self.cursor.wanted.tool;
         let switched = state::same_compensation(self.gauge.machine, wanted, is, tool);
         let kept = state::same_compensation(self.gauge.machine, self.compensation, is, tool);
