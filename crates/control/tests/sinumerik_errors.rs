@@ -123,6 +123,7 @@ fn an_error_names_its_rule_and_place() {
         ("TRAORI\nA3=1 C5", "orientation", 1),
         ("TRAORI(2)", "unsupported", 1),
         ("TRAORI\nG75 Z0", "home", 1),
+        ("TRAORI\nG0 SUPA Z0 D0", "home", 1),
         ("TRAORI X5", "syntax", 1),
         ("CYCLE800(1,\"\",0,192,0,0,0,30,45,0,0,0,0,1)", "unsupported", 1),
         ("CYCLE800(1,\"\",0,57,0,0,0,30,45,0,0,0,0,0)", "unsupported", 1),

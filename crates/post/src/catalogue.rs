@@ -185,6 +185,11 @@ pub(crate) const VARIABLES: &[Parameter] = &[
     variable("tool.number", "", "Number of the tool."),
     variable("tool.first", "", "Whether no tool has been called before."),
     variable("tool.name", "", "Name of the tool."),
+    variable(
+        "tool.identifier",
+        "",
+        "Name of the tool where it can call the tool: letters, digits, `_`, `.` and `-` only, at most 32; otherwise undefined.",
+    ),
     variable("tool.diameter", "mm", "Cutting diameter; undefined where the source is silent."),
     variable("tool.corner_radius", "mm", "Corner radius; undefined where the source is silent."),
     variable("tool.length", "mm", "Length of the tool; undefined where the source is silent."),

@@ -9,8 +9,8 @@ use machine::linearise::Stance;
 use machine::plan::Step;
 use program::{Diagnostic, Pose};
 
-/// How far the tool is drawn back along its axis before it leaves the part to turn, mm.
-const DRAW_BACK: f64 = 20.0;
+/// How far beyond everything the source touches the tool is drawn back before it turns, mm.
+const CLEAR: f64 = 5.0;
 
 impl Walk<'_> {
     /// A rapid of the source.
@@ -77,12 +77,13 @@ impl Walk<'_> {
         self.line_to(pose, stop)
     }
 
-    /// The travel of a rotary axis ends in a cut: out along the tool axis, away from the part, round,
-    /// and in again at the same point.
+    /// The travel of a rotary axis ends in a cut: out along the tool axis, beyond every point of the
+    /// source, to where the machine may turn, and in again at the same point.
     fn rewind(&mut self, degrees: [f64; 3], stop: &Stop) -> Done {
         let Some(here) = self.here else { return Ok(()) };
         let axis = here.axis().unwrap_or(Vec3::Z);
-        let out = Pose { point: here.point + axis * DRAW_BACK, ..here };
+        let way = self.reach(axis) - here.point.dot(axis) + CLEAR;
+        let out = Pose { point: here.point + axis * way, ..here };
         let at = |degrees| Stop { step: Some(Step { degrees, rewind: None }), ..*stop };
         if let Some(held) = self.place.degrees() {
             self.rapid_to(&out, &at(held))?;

@@ -262,10 +262,26 @@ impl Walk<'_> {
         self.located = false;
     }
 
-    /// Away from the part in machine coordinates, before a rotary axis turns.
+    /// Away from the part in machine coordinates, before a rotary axis turns. These are positions of
+    /// the axes only while the control does not keep the tool tip: SINUMERIK's `SUPA` leaves `TRAORI`
+    /// on, and HEIDENHAIN wants `M129` before `M91`.
     fn leave_part(&mut self) -> Done {
         if self.located {
+            self.tool_center_off()?;
             self.required(BlockName::Retract)?;
+            self.lose_position();
+        }
+        Ok(())
+    }
+
+    fn tool_center_off(&mut self) -> Done {
+        if matches!(self.place.kind, Kind::ToolCenter | Kind::Vectors) {
+            self.required(BlockName::ToolCenterOff)?;
+            if matches!(self.place.kind, Kind::Vectors) {
+                // Where the rotary axes stand now, the control has chosen.
+                self.writer.forget(ORIENTATION);
+            }
+            self.place.kind = Kind::Bare;
             self.lose_position();
         }
         Ok(())
@@ -285,11 +301,7 @@ impl Walk<'_> {
                 self.plane_tilt_off()?;
                 self.lose_position();
             }
-            Kind::ToolCenter | Kind::Vectors => {
-                self.required(BlockName::ToolCenterOff)?;
-                self.place.kind = Kind::Bare;
-                self.lose_position();
-            }
+            Kind::ToolCenter | Kind::Vectors => self.tool_center_off()?,
         }
         Ok(())
     }

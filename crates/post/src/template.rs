@@ -222,7 +222,15 @@ pub(crate) fn tool_value(tool: &Tool, first: bool) -> Value {
         ("name", Value::from(clean(&tool.name).trim())),
         ("first", Value::from(first)),
     ];
-    map(named.into_iter().chain(sizes))
+    let identifier = identifies(&tool.name).then(|| ("identifier", Value::from(&tool.name)));
+    map(named.into_iter().chain(identifier).chain(sizes))
+}
+
+/// Whether a control can call a tool by this name: what is longer (SINUMERIK: 32 characters) or has
+/// blanks describes the tool rather than naming it.
+fn identifies(name: &str) -> bool {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "_.-".contains(c);
+    (1..=32).contains(&name.len()) && name.chars().all(plain)
 }
 
 /// Text from outside, as no control and no template can misread it: letters, digits, blanks and a few

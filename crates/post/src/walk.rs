@@ -9,6 +9,7 @@ use geom::Vec3;
 use machine::limits::Limits;
 use machine::{LengthOffset, Machine, OptionValue};
 use minijinja::value::Value;
+use program::statistics::Statistics;
 use program::{
     Compensation, Coolant, Cycle, Diagnostic, Feed, Op, Pose, Program, Record, Spindle, Tool,
     lowering,
@@ -54,8 +55,10 @@ pub(crate) struct Walk<'a> {
     pub(crate) writer: Writer,
     pub(crate) findings: Findings,
     scope: Scope,
-    records: &'a [Record],
-    /// Where in `records` we are.
+    source: &'a Program,
+    /// How far the source reaches; counted where it is asked for.
+    statistics: Option<Statistics>,
+    /// Where in its records we are.
     index: usize,
     /// Source line of the record at hand.
     pub(crate) line: u32,
@@ -102,7 +105,8 @@ impl<'a> Walk<'a> {
             writer,
             findings: Findings::default(),
             scope,
-            records: &program.records,
+            source: program,
+            statistics: None,
             index: 0,
             line: 0,
             tool: None,
@@ -138,8 +142,8 @@ impl<'a> Walk<'a> {
 
     fn records(&mut self) -> Done {
         self.block(BlockName::ProgramStart)?;
-        while self.index < self.records.len() {
-            let rest = &self.records[self.index..];
+        while self.index < self.source.records.len() {
+            let rest = &self.source.records[self.index..];
             let route = Route::of(self.machine, rest, self.here, self.place.degrees());
             let route = match route {
                 Ok(route) => route,
@@ -247,6 +251,11 @@ impl<'a> Walk<'a> {
         }
     }
 
+    /// How far the source reaches along the unit vector `direction`, mm.
+    pub(crate) fn reach(&mut self, direction: Vec3) -> f64 {
+        self.statistics.get_or_insert_with(|| Statistics::of(self.source)).reach(direction)
+    }
+
     /// Writes a block, where the machine has it.
     pub(crate) fn block(&mut self, name: BlockName) -> Done {
         match self.templates.lines(name) {
@@ -342,7 +351,7 @@ impl<'a> Walk<'a> {
 
     /// The speed at which the tool that is called now will cut first.
     fn coming_speed(&self) -> Option<f64> {
-        let coming = self.records[self.index..].iter().map(|record| &record.op);
+        let coming = self.source.records[self.index..].iter().map(|record| &record.op);
         let mut until_cut =
             coming.take_while(|op| !matches!(op, Op::Line(_) | Op::Arc(_) | Op::Hole(_)));
         let next = until_cut.find_map(|op| match op {

@@ -93,6 +93,12 @@ impl Statistics {
         }
         s
     }
+
+    /// How far the box of all tool tips reaches along the unit vector `direction`, mm from the origin.
+    pub fn reach(&self, direction: Vec3) -> f64 {
+        let (low, high) = (Vec3::from(self.low), Vec3::from(self.high));
+        (low * direction).max(high * direction).element_sum()
+    }
 }
 
 #[cfg(test)]
@@ -129,5 +135,14 @@ mod tests {
         assert_eq!((s.low[2], s.high[0]), (-8.0, 10.0));
         assert!((s.high[1] - 10.0).abs() < 1e-4);
         assert!(!s.tilted);
+    }
+
+    #[test]
+    fn the_reach_of_a_box_is_that_of_its_farthest_corner() {
+        let (low, high) = ([-1.0, -2.0, -3.0], [4.0, 5.0, 6.0]);
+        let s = Statistics { low, high, ..Statistics::default() };
+        assert_eq!(s.reach(Vec3::Z), 6.0);
+        assert_eq!(s.reach(Vec3::NEG_X), 1.0);
+        assert!((s.reach(Vec3::new(0.6, 0.0, -0.8)) - 4.8).abs() < 1e-12);
     }
 }

@@ -4,19 +4,23 @@ use crate::expected::{Cursor, Goal, Kind, Step};
 use crate::gauge::Gauge;
 use crate::hole::{Drilled, Hole, Run};
 use crate::line::Followed;
-use crate::place::{Number, Station};
+use crate::place::{Number, Place, Station};
 use crate::report::{Excursion, Report};
 use crate::state::{self, Difference, Lengths, Running};
 use crate::tolerance::{Applied, Tolerances};
 use crate::{arc, line, stops};
 use geom::{Arc, Vec3};
 use machine::{Machine, Mount};
+use program::statistics::Statistics;
 use program::{
     ArcTo, Compensation, Diagnostic, Op, Orientation, Pose, Program, Record, Spindle, Tool,
 };
 
 /// Compares a program with its source, record by record, as a control runs it.
 pub struct Prover<'a> {
+    source: &'a Program,
+    /// How far the source reaches; counted where it is asked for.
+    statistics: Option<Statistics>,
     gauge: Gauge<'a>,
     cursor: Cursor<'a>,
     running: Running,
@@ -70,6 +74,8 @@ impl<'a> Prover<'a> {
             orientation: Orientation::Rotary { degrees: [f64::NAN; 3], tool_center: false },
         };
         let mut prover = Prover {
+            source,
+            statistics: None,
             here: gauge.station(0, unknown),
             gauge,
             cursor,
@@ -555,7 +561,8 @@ impl<'a> Prover<'a> {
         if !first && !retracted && !z {
             return Err(self.lost_at(line, "home", "sends axes home before the tool is retracted"));
         }
-        if !first && !free && (axes != 4 || !self.hangs_down() || self.leg.hole.over) {
+        let up = axes == 4 && (self.hangs_down() || self.clear_of_part());
+        if !first && !free && (!up || self.leg.hole.over) {
             return Err(self.lost_at(line, "home", "sends axes home in the middle of the work"));
         }
         if !first && !retracted && axes & 3 != 0 {
@@ -589,6 +596,14 @@ impl<'a> Prover<'a> {
         }
         self.here = to;
         Ok(())
+    }
+
+    /// Whether the tool is beyond every point of the source along its axis, which does not point
+    /// down: then Z home is away from all of them.
+    fn clear_of_part(&mut self) -> bool {
+        let Place { tip, axis } = self.here.place;
+        let statistics = self.statistics.get_or_insert_with(|| Statistics::of(self.source));
+        axis.z >= 0.0 && tip.dot(axis) >= statistics.reach(axis)
     }
 
     /// Whether the tool hangs along Z of the machine, so that Z home is away from the part.

@@ -252,14 +252,11 @@ impl Interpreter<'_> {
             return Err(source.block_error("home", message));
         }
         self.check_free(source, name)?;
-        if self.state.tool_center {
-            let message = format!("{name} while TRAORI is active; switch it off (TRAFOOF) first");
-            return Err(source.block_error("home", message));
-        }
         self.home(source, named)
     }
 
-    /// Moves in machine coordinates are made neither with compensation nor between modal holes.
+    /// Moves in machine coordinates are made neither with compensation nor between modal holes, nor
+    /// with `TRAORI`: what they switch off are offsets, so positions would still be the tool tip's.
     fn check_free(&self, source: &Source, name: &str) -> Fallible<()> {
         if self.state.compensation != Compensation::Off
             || self.state.compensation_in_effect != Compensation::Off
@@ -270,6 +267,10 @@ impl Interpreter<'_> {
         if self.state.modal_cycle.is_some() {
             let message = format!("{name} while MCALL is active: it would drill");
             return Err(source.block_error("cycle", message));
+        }
+        if self.state.tool_center {
+            let message = format!("{name} while TRAORI is active; switch it off (TRAFOOF) first");
+            return Err(source.block_error("home", message));
         }
         Ok(())
     }

@@ -12,6 +12,7 @@ const MILL: &str = r#"
 reader = "fanuc"
 [capabilities]
 length_offset = "tool-number"
+compensation = true
 lowering_tolerance = 0.01
 [words]
 X = { decimals = 3 }
