@@ -5,7 +5,7 @@
 //! stated tolerance and told in the warnings; what can be neither written nor lowered is refused.
 //! Nothing here reads NC text: whether the program is right is the proof's to say.
 //!
-//! [`catalogue`] names every block, word and variable that a control file may use. One record at a time
+//! [`catalogue()`] names every block, word and variable that a control file may use. One record at a time
 //! goes through `walk`, which knows what the control has been told; `place` brings the tool into its
 //! orientation, `motion`, `arcs` and `cycles` say where it goes, and `writer` leaves out what repeats.
 
