@@ -95,6 +95,8 @@ const TURN: u32 = 1 << 31;
 const SLACK: f64 = REACH_EPSILON * 180.0 / PI;
 /// The farthest that the tool may swing out of its way in a cut, radians (1°).
 const SWING: f64 = PI / 180.0;
+/// Within one solution, turns of less than this in all (degrees) do not swing the tool out of its way.
+const NEAR: f64 = 90.0;
 /// What not being the preferred solution costs, in degrees of travel: it decides between ways of the
 /// same length, which differ by rounding only.
 const PREFERENCE: f64 = 0.05;
@@ -129,6 +131,9 @@ struct Front {
     axis: Vec3,
     /// Whether that is a singular pose; the outer axis may then stand in other places as well.
     singular: bool,
+    /// By how many degrees, at least, each state is reached better by its own way than by a change
+    /// from any other state: a step of less than half of that changes no state.
+    margin: f64,
 }
 
 /// What the axes may do on the way to a target.
@@ -282,7 +287,7 @@ impl<'a> Search<'a> {
                 state[1] = inner;
             }
         }
-        (self.front.axis, self.front.singular) = (target.axis, true);
+        (self.front.axis, self.front.singular, self.front.margin) = (target.axis, true, 0.0);
         Ok(())
     }
 
@@ -297,7 +302,7 @@ impl<'a> Search<'a> {
         if !self.next.states.iter().any(exists) {
             return Err(self.out_of_travel(target, bearings));
         }
-        (self.next.axis, self.next.singular) = (target.axis, false);
+        (self.next.axis, self.next.singular, self.next.margin) = (target.axis, false, 0.0);
         // On the way to a rapid the free axis turns in that, at the latest.
         let mut turn_at = self.turn_at.take().filter(|(_, rapid)| *rapid || !approach);
         let loose = approach || matches!(turn_at, Some((_, true)));
@@ -308,6 +313,8 @@ impl<'a> Search<'a> {
         };
         let link = if loose && !self.opened {
             self.open();
+            SAME
+        } else if freedom == Freedom::None && self.plan.keep(&self.front, &mut self.next) {
             SAME
         } else if let Some(link) =
             self.plan.relax(self.machine, &self.front, &mut self.next, freedom)
@@ -481,13 +488,20 @@ impl Axis {
         Axis { min, max: min + width, ..self }
     }
 
-    /// The position that is `base` but for whole turns, in turn `turn` of those that the travel has for
-    /// it; infinite where it has no such turn.
-    fn position(&self, base: f64, turn: f64) -> f64 {
+    /// The first position from the lower end of the travel on that is `base` but for whole turns.
+    fn first(&self, base: f64) -> f64 {
         if self.unlimited {
             return base;
         }
-        let position = base + 360.0 * (up((self.min - base - SLACK) / 360.0) + turn);
+        base + 360.0 * up((self.min - base - SLACK) * (1.0 / 360.0))
+    }
+
+    /// The position `turn` turns behind the first; infinite where the travel ends before.
+    fn position(&self, first: f64, turn: f64) -> f64 {
+        if self.unlimited {
+            return first;
+        }
+        let position = first + 360.0 * turn;
         if position > self.max + SLACK { f64::INFINITY } else { self.nearest(position) }
     }
 
@@ -524,7 +538,8 @@ impl Front {
     /// Before the first target, with nothing known of where the axes stand.
     fn empty() -> Front {
         let states = [[f64::INFINITY; 2]; STATES];
-        Front { states, cost: [f64::INFINITY; STATES], axis: Vec3::Z, singular: false }
+        let cost = [f64::INFINITY; STATES];
+        Front { states, cost, axis: Vec3::Z, singular: false, margin: 0.0 }
     }
 
     /// The state that is reached best.
@@ -564,9 +579,10 @@ impl Plan {
         for (family, states) in
             states.chunks_exact_mut(TURNS).enumerate().take(self.chain.families())
         {
-            let base = self.chain.solution(bearings, family).map(|turn| turn.degrees());
+            let base = self.chain.solution(bearings, family);
+            let first = [0, 1].map(|k| self.axes[k].first(base[k].degrees()));
             for (state, turns) in states.iter_mut().zip(&self.turns).take(self.in_turns) {
-                *state = [0, 1].map(|k| self.axes[k].position(base[k], turns[k]));
+                *state = [0, 1].map(|k| self.axes[k].position(first[k], turns[k]));
             }
         }
     }
@@ -574,8 +590,49 @@ impl Plan {
     /// The positions settled for a target that is not singular.
     fn settled(&self, cell: &Cell) -> [f64; 2] {
         let (family, turn) = (cell.link as usize / TURNS, cell.link as usize % TURNS);
-        let base = self.chain.solution(&cell.bearings, family).map(|turn| turn.degrees());
-        [0, 1].map(|k| self.axes[k].position(base[k], self.turns[turn][k]))
+        let base = self.chain.solution(&cell.bearings, family);
+        [0, 1].map(|k| {
+            let first = self.axes[k].first(base[k].degrees());
+            self.axes[k].position(first, self.turns[turn][k])
+        })
+    }
+
+    /// Goes on in every state of `front` where the way to `next` is so short that no change can be
+    /// better, which the triangle inequality tells without looking at any; whether it was.
+    fn keep(&self, front: &Front, next: &mut Front) -> bool {
+        let mut longest: f64 = 0.0;
+        for first in [0, TURNS].into_iter().take(self.chain.families()) {
+            for j in first..first + self.in_turns {
+                let (from, to) = (&front.states[j], &next.states[j]);
+                if exists(from) != exists(to) {
+                    return false;
+                }
+                let travel = if exists(to) { self.travel(from, to) } else { 0.0 };
+                longest = longest.max(travel);
+                next.cost[j] = front.cost[j] + travel;
+            }
+        }
+        next.margin = front.margin - 2.0 * longest;
+        next.margin > 0.0 && longest <= NEAR
+    }
+
+    /// By how much, at least, going on in a state of `front` is better than changing to it; nothing
+    /// where there is a state that no way leads to yet.
+    fn margin(&self, front: &Front) -> f64 {
+        let mut states = front.states.iter().zip(&front.cost);
+        if states.any(|(state, cost)| exists(state) && *cost == f64::INFINITY) {
+            return 0.0;
+        }
+        let mut margin = f64::INFINITY;
+        for (j, to) in front.states.iter().enumerate().filter(|(_, state)| exists(state)) {
+            for (i, from) in front.states.iter().enumerate() {
+                if i != j && exists(from) {
+                    let change = front.cost[i] + self.travel(from, to) - front.cost[j];
+                    margin = margin.min(change);
+                }
+            }
+        }
+        margin
     }
 
     /// The best way to each state of `next` from those of `front`; `None` where none can be reached.
@@ -606,7 +663,7 @@ impl Plan {
                     let travel = [0, 1].map(|k| self.axes[k].travel(state[k], to[k]));
                     let cost = front.cost[i] + travel[0] + travel[1];
                     if cost < best {
-                        let near = first == (j & TURNS) && travel[0] + travel[1] <= 90.0;
+                        let near = first == (j & TURNS) && travel[0] + travel[1] <= NEAR;
                         let open = freedom == Freedom::All
                             || travel[0].max(travel[1]) <= 180.0 + SLACK
                                 && (near
@@ -622,6 +679,7 @@ impl Plan {
             reached |= best < f64::INFINITY;
             link |= from << (BITS * j as u32);
         }
+        next.margin = self.margin(next);
         reached.then_some(link)
     }
 
@@ -645,9 +703,9 @@ impl Plan {
     /// The position of the inner axis in a singular pose, where both solutions have the same, in the
     /// turn nearest to `from`; `None` where its travel has none.
     fn inner(&self, bearings: &Bearings, from: f64) -> Option<f64> {
-        let base = self.chain.solution(bearings, 0)[1].degrees();
+        let first = self.axes[1].first(self.chain.solution(bearings, 0)[1].degrees());
         let far = |position: f64| self.axes[1].way(from, position).abs();
-        let positions = (0..TURNS).map(|turn| self.axes[1].position(base, turn as f64));
+        let positions = (0..TURNS).map(|turn| self.axes[1].position(first, turn as f64));
         let within = positions.filter(|position| position.is_finite());
         within.min_by(|a, b| far(*a).total_cmp(&far(*b)))
     }

@@ -177,10 +177,10 @@ impl Walk<'_> {
         if !matches!(self.place.kind, Kind::ToolCenter | Kind::Vectors) {
             self.say_length_offset();
         }
-        let local = self.local(point);
-        self.writer.set(WordName::X, local.x);
-        self.writer.set(WordName::Y, local.y);
-        self.writer.set(WordName::Z, local.z);
+        self.said = self.local(point);
+        self.writer.set(WordName::X, self.said.x);
+        self.writer.set(WordName::Y, self.said.y);
+        self.writer.set(WordName::Z, self.said.z);
     }
 
     /// A point of the work frame as blocks give it at the moment.
@@ -204,7 +204,7 @@ impl Walk<'_> {
         let length = self.tool_length();
         let linear = match self.place.kind {
             Kind::Tilted(..) => return Ok(()),
-            Kind::Bare | Kind::Plain | Kind::Machine => self.local(self.tip),
+            Kind::Bare | Kind::Plain | Kind::Machine => self.said,
             Kind::ToolCenter | Kind::Vectors => self.machine.linear_for(self.tip, degrees, length),
         };
         self.limits.position(linear, degrees, length, self.line)

@@ -12,8 +12,11 @@ const ROUNDER: f64 = (3u64 << 51) as f64;
 /// How one word is written.
 #[derive(Clone, Debug)]
 pub(crate) struct Number {
-    pub(crate) address: String,
-    pub(crate) suffix: String,
+    /// What separates words, and the address.
+    separated: Lead,
+    /// The address alone.
+    address: Lead,
+    suffix: String,
     pub(crate) modal: bool,
     decimals: usize,
     trim: bool,
@@ -22,17 +25,16 @@ pub(crate) struct Number {
     digits: usize,
     /// Steps in a unit of the value.
     factor: f64,
-    /// Steps in 1 as it is written.
-    power: u64,
     most: f64,
 }
 
 impl Number {
-    pub(crate) fn new(word: &Word) -> Number {
+    pub(crate) fn new(separator: &str, word: &Word) -> Number {
         let decimals = usize::from(word.decimals.min(9));
         let power = 10u64.pow(decimals as u32);
         Number {
-            address: word.address.clone(),
+            separated: Lead::new(&[separator, &word.address].concat()),
+            address: Lead::new(&word.address),
             suffix: word.suffix.clone(),
             modal: word.modal,
             decimals,
@@ -41,7 +43,6 @@ impl Number {
             plus: word.plus,
             digits: usize::from(word.digits),
             factor: power as f64 * word.scale,
-            power,
             most: (word.max * power as f64).min(MOST_STEPS),
         }
     }
@@ -73,51 +74,97 @@ impl Number {
         steps as f64 / self.factor
     }
 
-    /// The whole word: address, number, suffix.
+    /// The whole word: address, number, suffix; `separator` first, where there is one.
     #[inline]
-    pub(crate) fn write(&self, steps: i64, out: &mut Vec<u8>) {
-        out.extend_from_slice(self.address.as_bytes());
-        self.digits(steps, out);
-        out.extend_from_slice(self.suffix.as_bytes());
+    pub(crate) fn write(&self, separated: bool, steps: i64, out: &mut Vec<u8>) {
+        self.digits(if separated { &self.separated } else { &self.address }, steps, out);
+        if !self.suffix.is_empty() {
+            out.extend_from_slice(self.suffix.as_bytes());
+        }
     }
 
     #[inline]
-    fn digits(&self, steps: i64, out: &mut Vec<u8>) {
-        if steps < 0 {
-            out.push(b'-');
-        } else if self.plus {
-            out.push(b'+');
+    fn digits(&self, lead: &Lead, steps: i64, out: &mut Vec<u8>) {
+        // All digits from the right to the left, and in front of them what leads.
+        let mut text = [b'0'; 64];
+        let mut rest = steps.unsigned_abs();
+        let mut at = text.len();
+        while rest >= 100 {
+            at -= 2;
+            let pair = (rest % 100) as usize * 2;
+            text[at..at + 2].copy_from_slice(&PAIRS[pair..pair + 2]);
+            rest /= 100;
         }
-        let steps = steps.unsigned_abs();
-        let (whole, fraction) = (steps / self.power, steps % self.power);
-        let mut text = [b'0'; 40];
-        let mut at = text.len() / 2;
-        let mut rest = whole;
         while rest > 0 {
             at -= 1;
             text[at] = b'0' + (rest % 10) as u8;
             rest /= 10;
         }
-        let at = at.min(text.len() / 2 - self.digits.clamp(1, text.len() / 2));
-        let mut end = text.len() / 2;
-        if self.decimals > 0 && !(self.trim && fraction == 0) {
-            text[end] = b'.';
-            end += 1 + self.decimals;
-            let mut rest = fraction;
-            for digit in text[end - self.decimals..end].iter_mut().rev() {
-                *digit = b'0' + (rest % 10) as u8;
-                rest /= 10;
-            }
-            while self.trim && text[end - 1] == b'0' {
+        let point = text.len() - self.decimals;
+        at = at.min(point - self.digits.clamp(1, 20));
+        let mut end = text.len();
+        if self.trim {
+            while end > point && text[end - 1] == b'0' {
                 end -= 1;
             }
-        } else if self.point {
-            text[end] = b'.';
-            end += 1;
         }
-        out.extend_from_slice(&text[at..end]);
+        let pointed = end > point || self.point || (self.decimals > 0 && !self.trim);
+        if pointed {
+            // The whole part goes one to the left.
+            text.copy_within(at..point, at - 1);
+            text[point - 1] = b'.';
+            at -= 1;
+        }
+        if steps < 0 || self.plus {
+            at -= 1;
+            text[at] = if steps < 0 { b'-' } else { b'+' };
+        }
+        // One copy of fixed size costs less than a second append.
+        text[at - Lead::SHORT..at].copy_from_slice(&lead.short);
+        if !lead.long.is_empty() {
+            out.extend_from_slice(lead.long.as_bytes());
+        }
+        out.extend_from_slice(&text[at - lead.length..end]);
     }
 }
+
+/// What stands before the digits of a word.
+#[derive(Clone, Debug)]
+struct Lead {
+    /// Its last characters, at the right.
+    short: [u8; Lead::SHORT],
+    /// How many these are.
+    length: usize,
+    /// All before them.
+    long: String,
+}
+
+impl Lead {
+    const SHORT: usize = 8;
+
+    fn new(text: &str) -> Lead {
+        let mut at = text.len().saturating_sub(Lead::SHORT);
+        while !text.is_char_boundary(at) {
+            at += 1;
+        }
+        let (long, last) = text.split_at(at);
+        let mut short = [0; Lead::SHORT];
+        short[Lead::SHORT - last.len()..].copy_from_slice(last.as_bytes());
+        Lead { short, length: last.len(), long: long.into() }
+    }
+}
+
+/// The numbers from 00 to 99.
+const PAIRS: [u8; 200] = {
+    let mut pairs = [b'0'; 200];
+    let mut i = 0;
+    while i < 100 {
+        pairs[2 * i] += (i / 10) as u8;
+        pairs[2 * i + 1] += (i % 10) as u8;
+        i += 1;
+    }
+    pairs
+};
 
 #[cfg(test)]
 mod tests {
@@ -144,9 +191,9 @@ mod tests {
     }
 
     fn text(word: Word, value: f64) -> String {
-        let number = Number::new(&word);
+        let number = Number::new("", &word);
         let mut out = Vec::new();
-        number.write(number.round(value).unwrap(), &mut out);
+        number.write(false, number.round(value).unwrap(), &mut out);
         String::from_utf8(out).unwrap()
     }
 
@@ -167,6 +214,8 @@ mod tests {
 
     #[test]
     fn address_suffix_and_scale_stand_round_the_number() {
+        let q = Word { address: "Q201=DEPTH ".into(), ..word(0) };
+        assert_eq!(text(q, -5.0), "Q201=DEPTH -5");
         let c = Word { address: "C=".into(), suffix: "+R24".into(), trim: true, ..word(3) };
         assert_eq!(text(c, 45.0), "C=45+R24");
         assert_eq!(text(Word { address: "P".into(), scale: 1000.0, ..word(0) }, 1.5), "P1500");
@@ -175,10 +224,10 @@ mod tests {
     #[test]
     fn what_is_too_large_or_no_number_has_no_text() {
         for value in [f64::NAN, f64::INFINITY, 1e308, -1e14] {
-            assert_eq!(Number::new(&word(3)).round(value), None);
+            assert_eq!(Number::new("", &word(3)).round(value), None);
         }
-        assert_eq!(Number::new(&Word { max: 99.0, ..word(1) }).round(99.1), None);
-        assert_eq!(Number::new(&Word { max: 99.0, ..word(1) }).round(-99.0), Some(-990));
+        assert_eq!(Number::new("", &Word { max: 99.0, ..word(1) }).round(99.1), None);
+        assert_eq!(Number::new("", &Word { max: 99.0, ..word(1) }).round(-99.0), Some(-990));
     }
 
     proptest! {
@@ -195,7 +244,7 @@ mod tests {
 
         #[test]
         fn reading_the_text_gives_the_rounded_value(value in -1e5..1e5f64, decimals in 0u8..=9) {
-            let number = Number::new(&word(decimals));
+            let number = Number::new("", &word(decimals));
             let rounded = number.value(number.round(value).unwrap());
             prop_assert_eq!(text(word(decimals), value).parse::<f64>().unwrap(), rounded);
         }

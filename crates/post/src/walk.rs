@@ -84,6 +84,8 @@ pub(crate) struct Walk<'a> {
     pub(crate) place: Place,
     /// Where the next block brings the tool tip, mm, work frame.
     pub(crate) tip: Vec3,
+    /// The same in the coordinates of the block, mm.
+    pub(crate) said: Vec3,
     pub(crate) limits: Limits<'a>,
     ended: bool,
 }
@@ -125,6 +127,7 @@ impl<'a> Walk<'a> {
             located: false,
             place: Place::start(machine),
             tip: Vec3::ZERO,
+            said: Vec3::ZERO,
             limits: Limits::new(machine),
             ended: false,
         })

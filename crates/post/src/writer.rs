@@ -48,7 +48,7 @@ impl Writer {
                 Form::Code(texts, word.modal)
             }
             Some(word) if name == WordName::N && word.step == 0 => Form::Absent,
-            Some(word) => Form::Number(Number::new(word)),
+            Some(word) => Form::Number(Number::new(&machine.format.separator, word)),
         };
         let number = machine.words.get(WordName::N.name());
         let first = number.map_or(1, |word| word.first);
@@ -178,7 +178,9 @@ impl Writer {
             match *step {
                 Step::Gap => gap = true,
                 Step::Text(from, to) => {
-                    self.gap(&mut gap, start);
+                    if self.separated(&mut gap, start) {
+                        self.text.extend_from_slice(&self.separator);
+                    }
                     let text = &block.text.as_bytes()[from as usize..to as usize];
                     self.text.extend_from_slice(text);
                     full = true;
@@ -190,8 +192,8 @@ impl Writer {
                             self.next_number = self.first.into();
                             number.round(f64::from(self.first))
                         });
-                        self.gap(&mut gap, start);
-                        self.write(WordName::N, steps.unwrap_or_default());
+                        let separated = self.separated(&mut gap, start);
+                        self.write(WordName::N, separated, steps.unwrap_or_default());
                         numbered = true;
                     }
                 }
@@ -217,11 +219,10 @@ impl Writer {
         Ok(())
     }
 
+    /// Whether something stands before on the line that began at `start`, and a gap after it.
     #[inline]
-    fn gap(&mut self, gap: &mut bool, start: usize) {
-        if std::mem::take(gap) && self.text.len() > start {
-            self.text.extend_from_slice(&self.separator);
-        }
+    fn separated(&self, gap: &mut bool, start: usize) -> bool {
+        std::mem::take(gap) && self.text.len() > start
     }
 
     /// Writes a word where it is set and says something new; whether it did.
@@ -247,18 +248,21 @@ impl Writer {
         }
         self.known |= bit;
         self.active[index] = value;
-        self.gap(gap, start);
-        self.write(word, value);
+        let separated = self.separated(gap, start);
+        self.write(word, separated, value);
         true
     }
 
     #[inline]
-    fn write(&mut self, word: WordName, value: i64) {
+    fn write(&mut self, word: WordName, separated: bool, value: i64) {
         match &self.forms[self.form(word) as usize] {
             Form::Absent => {}
-            Form::Number(number) => number.write(value, &mut self.text),
+            Form::Number(number) => number.write(separated, value, &mut self.text),
             Form::Code(texts, _) => {
                 if let Some(Some(text)) = texts.get(value as usize) {
+                    if separated {
+                        self.text.extend_from_slice(&self.separator);
+                    }
                     self.text.extend_from_slice(text.as_bytes());
                 }
             }
