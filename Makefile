@@ -10,7 +10,7 @@ DEMO    := out/$(basename $(notdir $(PART)))
 
 TOOLPOST := cargo run --quiet --release --bin toolpost --
 
-.PHONY: demo test bench lint judges images rust
+.PHONY: demo test bench lint judges images samples rust
 
 ## Post a part, prove it, draw it.
 demo: rust
@@ -29,7 +29,7 @@ test: rust
 
 ## Speed and memory, each beside a floor in the same run.
 bench: rust
-	cargo bench --workspace
+	cargo run --quiet --release --package toolpost-bench
 
 ## Format, lints, documentation.
 lint: rust
@@ -45,6 +45,18 @@ judges:
 ## The pictures of the documentation, drawn anew.
 images: rust
 	$(TOOLPOST) show examples/dome.cls --output docs/images/dome.png > /dev/null
+
+## The sample programs beside the machines, written anew: to be read before they are committed.
+samples: rust
+	@mkdir -p out/samples
+	@for sample in $(filter-out %.cls,$(wildcard machines/samples/*.*)); do \
+		name=$$(basename $${sample%.*}); axes=three-axes; \
+		grep -q '^\[\[rotary\]\]' machines/$$name.toml && axes=five-axes; \
+		$(TOOLPOST) --quiet post machines/samples/$$axes.cls -m $$name \
+			-o out/samples/$$(basename $$sample) || exit; \
+	done
+	@rm out/samples/*.report.json
+	@mv out/samples/* machines/samples/
 
 rust:
 	@scripts/setup rust

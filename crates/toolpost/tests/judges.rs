@@ -4,34 +4,13 @@
 //!
 //! A judge that is not installed is named on stderr and its test passes; CI installs both.
 
+mod files;
+
+use files::sources;
 use geom::{Arc, Vec3};
 use program::{Cycle, CycleKind, Op, Program};
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::{Command, Stdio};
-
-/// Where the real files are: `TOOLPOST_DATA`, or `../shared/data` beside the checkout.
-fn data() -> PathBuf {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    std::env::var_os("TOOLPOST_DATA").map_or(beside, PathBuf::from)
-}
-
-/// Every file of cutter-location data that there is: our examples, then the real ones.
-fn sources() -> Vec<PathBuf> {
-    let examples = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples");
-    let cldata = data().join("cldata");
-    let mut folders = vec![examples];
-    folders.extend(["makino", "nx", "solidworks"].map(|system| cldata.join(system)));
-    let mut files = Vec::new();
-    for folder in folders {
-        let Ok(entries) = std::fs::read_dir(&folder) else {
-            eprintln!("note: no {} here", folder.display());
-            continue;
-        };
-        files.extend(entries.map(|entry| entry.unwrap().path()).filter(|path| path.is_file()));
-    }
-    files.sort();
-    files
-}
 
 /// The source and what is written of it for `machine`; `None` where the machine refuses it.
 fn posted(file: &Path, machine: &str) -> Option<(Program, Vec<u8>)> {

@@ -1,0 +1,121 @@
+//! The machines of the library: the sample program beside each, and what each makes of every file of
+//! cutter-location data.
+
+mod files;
+
+use files::{root, sources};
+use machine::Machine;
+use machine::library::{MACHINES, names};
+use program::{Diagnostic, Program};
+use std::path::Path;
+
+fn read(path: &Path) -> Program {
+    let text = std::fs::read(path).unwrap();
+    let name = path.file_name().unwrap().to_string_lossy();
+    source::apt::read(&name, &text, &Default::default()).unwrap().program
+}
+
+/// The proven program, or why there is none.
+fn proven(program: &Program, machine: &Machine) -> Result<Vec<u8>, Box<Diagnostic>> {
+    let first = |found: Vec<Diagnostic>| found.into_iter().next().map(Box::new);
+    let text = post::write(program, machine).map_err(|errors| first(errors).unwrap())?.text;
+    let report = proof::prove(program, machine, "program", &text, &Default::default());
+    first(report.mismatches).map_or(Ok(text), Err)
+}
+
+/// The samples were read by a person, against the programming manual of each control. Whoever changes
+/// one on purpose writes it anew (`make samples`) and reads what has changed.
+#[test]
+fn the_sample_program_of_each_machine_is_as_it_was_read() {
+    let samples = root().join("machines/samples");
+    for name in names(MACHINES) {
+        let machine = machine::load(name).unwrap();
+        let axes = if machine.rotary.is_empty() { "three-axes" } else { "five-axes" };
+        let program = read(&samples.join(axes).with_extension("cls"));
+        let text = proven(&program, &machine).unwrap_or_else(|why| panic!("{name}: {why}"));
+        let sample = samples.join(format!("{name}.{}", machine.extension));
+        let expected = std::fs::read_to_string(&sample).unwrap_or_default();
+        let written = String::from_utf8(text).unwrap();
+        let differs = written.lines().zip(expected.lines()).position(|(a, b)| a != b);
+        let at = differs.unwrap_or(written.lines().count().min(expected.lines().count()));
+        assert!(
+            written == expected,
+            "{}:{}: {:?}, but now {:?}",
+            sample.display(),
+            at + 1,
+            expected.lines().nth(at),
+            written.lines().nth(at)
+        );
+    }
+}
+
+/// What a machine cannot make, and why: the rule by which it refuses. Everything else is proven.
+const REFUSED: &[(&str, &[&str], &str)] = &[
+    // The tool axis of these turns, or points elsewhere than up.
+    (
+        "generic-3axis-",
+        &["dome.cls", "Sacrifice-Board.apt", "Teste-Metrologia.apt", "shimemcunha.apt"],
+        "unreachable-orientation",
+    ),
+    // From below: no table of these turns that far.
+    ("sinumerik-840d-table-ac", &["Sacrifice-Board.apt"], "axis-limit"),
+    ("dmu50-heidenhain", &["Sacrifice-Board.apt"], "unreachable-orientation"),
+    // No compensation, no tapping.
+    (
+        "generic-3axis-grbl",
+        &[
+            "plate.cls",
+            "Dem-target2.apt",
+            "Interface-glue.apt",
+            "Sacrifice-Board.apt",
+            "SupPetriLED.apt",
+            "Teflon-gasket.apt",
+            "Teste-Metrologia.apt",
+            "Top-light-cover.apt",
+            "basemach.apt",
+        ],
+        "compensation",
+    ),
+    // A small mill: 5000 1/min, ten tools, 150 mm in Y.
+    ("emco-", &["dome.cls", "plate.cls", "Teste-Metrologia.apt"], "spindle-range"),
+    ("emco-", &["coremill.cls"], "axis-limit"),
+    (
+        "emco-",
+        &[
+            "Plane_1.cldata",
+            "Plane_2.cldata",
+            "Dem-target1.apt",
+            "Dem-target2.apt",
+            "Interface-glue.apt",
+            "Sacrifice-Board.apt",
+            "SupPetriLED.apt",
+            "Teflon-gasket.apt",
+            "Top-light-cover.apt",
+            "basemach.apt",
+            "shimemcunha.apt",
+        ],
+        "tool-range",
+    ),
+];
+
+#[test]
+fn every_file_is_proven_on_every_machine_that_can_make_it() {
+    for file in &sources() {
+        let (program, file) = (read(file), file.file_name().unwrap().to_string_lossy());
+        for name in names(MACHINES) {
+            let rules: Vec<&str> = (REFUSED.iter())
+                .filter(|(machine, files, _)| {
+                    name.starts_with(machine) && files.contains(&file.as_ref())
+                })
+                .map(|(_, _, rule)| *rule)
+                .collect();
+            match proven(&program, &machine::load(name).unwrap()) {
+                Ok(_) => assert!(rules.is_empty(), "{file} on {name}: made, not {rules:?}"),
+                Err(why) => {
+                    assert!(rules.contains(&why.rule), "{file} on {name}, {rules:?}: {why}");
+                    assert!(why.line > 0, "{file} on {name}: no line in {why}");
+                }
+            }
+        }
+    }
+}
