@@ -29,7 +29,10 @@ test: rust
 
 ## Speed and memory, each beside a floor in the same run.
 bench: rust
-	cargo run --quiet --release --package toolpost-bench
+	cargo run --quiet --release --package toolpost-bench -- \
+		--machine sinumerik-840d-table-ac --machine sinumerik-840d-traori \
+		--machine dmu50-heidenhain --machine fanuc-table-bc \
+		$(wildcard $(addprefix $(DATA)/cldata/,makino/* nx/* solidworks/*))
 
 ## Format, lints, documentation.
 lint: rust

@@ -2,16 +2,19 @@
 //! floor in the same run.
 //!
 //! The toolpath is generated ([`path`]); every stage runs `--rounds` times on one core, and its fastest
-//! round counts ([`clock`]). Memory is what the program asks the allocator for ([`memory`]).
+//! round counts ([`clock`]). Memory is what the program asks the allocator for ([`memory`]). A path ten
+//! times as long shows that time and memory grow no faster. Then come real files ([`library`]).
 
 mod clock;
 mod floor;
+mod library;
 mod memory;
 mod path;
 
 use clap::Parser;
 use machine::Machine;
 use program::{Diagnostic, Program};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Duration;
 
@@ -25,11 +28,13 @@ struct Arguments {
     #[arg(long, default_value_t = 2_000_000)]
     records: usize,
     /// Machine of the library, or the path of its file; may be given several times.
-    #[arg(long, default_values_t = [String::from("sinumerik-840d-traori"), String::from("dmu50-heidenhain")])]
+    #[arg(long, default_values_t = [String::from("dmu50-heidenhain")])]
     machine: Vec<String>,
     /// Rounds of each stage; the fastest counts.
     #[arg(long, default_value_t = 3)]
     rounds: usize,
+    /// Real files of cutter-location data, to be proven on every machine of the library.
+    files: Vec<PathBuf>,
 }
 
 /// What a stage took.
@@ -84,8 +89,26 @@ fn run(arguments: &Arguments) -> Result<(), Vec<Diagnostic>> {
             table.each(writing.peak.saturating_sub(output.text.capacity())),
             table.each(proving.peak.saturating_sub(output.text.capacity())),
         );
+        drop(output);
+        ten_times(arguments.records, &machine, &proving)?;
     }
     println!("the program in memory: {} bytes a move", table.each(stored));
+    drop((source, text));
+    library::measure(&arguments.files, arguments.rounds)
+}
+
+/// Reads, writes and proves a path ten times as long as that of `once`.
+fn ten_times(records: usize, machine: &Machine, once: &Measured) -> Result<(), Vec<Diagnostic>> {
+    let text = path::cutter_location_data(10 * records);
+    let all = fastest(1, &mut || read_write_prove(&text, machine))?;
+    println!(
+        "  {} GOTO: {:.1} s to read, write and prove, {:.2} times ten times the above; peak {} bytes a \
+         move, program text included",
+        10 * records,
+        all.time.as_secs_f64(),
+        all.time.as_secs_f64() / (10.0 * once.time.as_secs_f64()),
+        all.peak.div_ceil(10 * records.max(1)),
+    );
     Ok(())
 }
 
