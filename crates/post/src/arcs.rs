@@ -31,6 +31,12 @@ const ABSOLUTE: [WordName; 3] = [WordName::CX, WordName::CY, WordName::CZ];
 /// How many steps of the last decimal an arc may change in length when its ends are rounded.
 const ROUNDING_STEPS: f64 = 6.0;
 
+/// How many steps a point of an arc may move by that: its two ends and its centre by less than one each.
+const POINT_STEPS: f64 = 2.4;
+
+/// At how many points a part of an arc is looked at.
+const SAMPLES: usize = 8;
+
 /// Part of an arc as one block.
 struct Block {
     end: Vec3,
@@ -43,6 +49,11 @@ struct Block {
 impl Walk<'_> {
     /// An arc of the source.
     pub(crate) fn arc(&mut self, to: &ArcTo, stop: &Stop) -> Done {
+        if self.compensation_pending() {
+            let help = "a straight move in the plane between CUTCOM and the arc";
+            let message = "cutter compensation cannot be switched on an arc";
+            return Err(refuse("compensation", message).help(help).into());
+        }
         self.end_cycle()?;
         self.before_cut()?;
         self.settle(&to.end, stop, true)?;
@@ -52,6 +63,7 @@ impl Walk<'_> {
         // The reader holds arcs against its own tolerance; here the ends are what they are.
         let arc = Arc::new(here.point, to.end.point, to.center, to.normal, to.turns, f64::MAX)
             .map_err(no_arc)?;
+        self.whole = arc.length();
         let local = Arc {
             start: self.local(arc.start),
             end: self.local(arc.end),
@@ -161,7 +173,15 @@ impl Walk<'_> {
             let even = (radius - b.length()).abs() <= can.arc_tolerance / 2.0;
             let moved = flat(written).distance(flat(arc.center)) <= can.lowering_tolerance;
             let rise = end[w] - start[w];
-            (near && even && moved && radius > 0.0).then_some(Block {
+            // A short chord is a long lever: its rounding may swing the whole arc about.
+            let close = (1..SAMPLES).map(|i| i as f64 / SAMPLES as f64).all(|t| {
+                let (sin, cos) = (sign * sweep * t).sin_cos();
+                let point =
+                    flat(written) + Vec3::new(a.x * cos - a.y * sin, a.x * sin + a.y * cos, 0.0);
+                let should = flat(arc.at(from + (until - from) * t));
+                point.distance(should) <= POINT_STEPS * self.machine.resolution()
+            });
+            (near && even && moved && close && radius > 0.0).then_some(Block {
                 end,
                 center: written,
                 sweep: sign * sweep,
@@ -197,8 +217,8 @@ impl Walk<'_> {
         self.writer.set(WordName::Sweep, block.sweep.to_degrees());
         self.writer.set(WordName::Rise, block.rise);
         let radius = (start - block.center).reject_from_normalized(Vec3::AXES[w]).length();
-        self.say_feed((radius * block.sweep).hypot(block.rise), false)?;
-        self.compensate(false)?;
+        self.say_feed((radius * block.sweep).hypot(block.rise), 1, false)?;
+        self.keep_compensation();
         self.writer.code(WordName::Plane, facts.code);
         self.writer.code(WordName::Motion, if ccw { motion::ARC_CCW } else { motion::ARC_CW });
         self.block(self.arc_name(ccw, rises))

@@ -30,7 +30,14 @@ impl Walk<'_> {
             return Err(refuse("cycle-missing", "a hole without a cycle"));
         };
         check(cycle)?;
+        self.uncompensated("a hole")?;
+        if self.compensation_pending() {
+            return Err(refuse("compensation", "cutter compensation cannot be switched at a hole"));
+        }
         self.before_cut()?;
+        if self.open_cycle.is_some() && !self.settled(pose, stop, false)? {
+            self.end_cycle()?;
+        }
         if self.open_cycle.is_none() {
             self.settle(pose, stop, false)?;
         }
@@ -165,7 +172,7 @@ impl Walk<'_> {
         self.writer.set(WordName::S, speed);
         self.writer.set(WordName::Speed, speed);
         let before = std::mem::replace(&mut self.feed, feed);
-        let said = self.say_feed(0.0, false);
+        let said = self.say_feed(0.0, 1, false);
         self.feed = before;
         said?;
         if let Some(feed) = feed {

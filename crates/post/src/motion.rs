@@ -26,6 +26,9 @@ impl Walk<'_> {
         if !self.located {
             return self.approach(pose, stop);
         }
+        if self.compensation_pending() {
+            self.plane_xy()?;
+        }
         self.aim(pose, stop);
         self.here = Some(*pose);
         if !self.writer.changes(POSITION | ORIENTATION) {
@@ -33,7 +36,7 @@ impl Walk<'_> {
             return Ok(());
         }
         self.check_limits()?;
-        self.compensate(false)?;
+        self.compensate();
         self.writer.code(WordName::Motion, motion::RAPID);
         self.block(self.straight(BlockName::Rapid))
     }
@@ -50,7 +53,7 @@ impl Walk<'_> {
             self.writer.unset((POSITION & !group) | held);
             if self.writer.changes(POSITION | ORIENTATION) {
                 self.writer.code(WordName::Motion, motion::RAPID);
-                self.compensate(false)?;
+                self.keep_compensation();
                 self.block(BlockName::Rapid)?;
             }
             self.writer.unset(Words::MAX);
@@ -71,6 +74,7 @@ impl Walk<'_> {
             self.findings.warn(Diagnostic::warning("feed-approach", message).line(self.line));
             self.located = true;
         }
+        self.whole = self.here.map_or(0.0, |here| here.point.distance(pose.point));
         if let Some(degrees) = stop.step.and_then(|step| step.rewind) {
             self.rewind(degrees, stop)?;
         }
@@ -109,7 +113,7 @@ impl Walk<'_> {
             }
         }
         self.aim(pose, stop);
-        self.cut(length, false)
+        self.cut(length, 0)
     }
 
     /// A straight cut while rotary axes turn that the control moves on their own: with as many points
@@ -120,7 +124,7 @@ impl Walk<'_> {
         let count = stances.len();
         for stance in stances {
             self.aim_at(stance.tip, Vec3::Z, Some(stance.degrees));
-            self.cut(length / count as f64, true)?;
+            self.cut(length / count as f64, count)?;
         }
         if count > 1 {
             self.findings.lowered("linearised", "moves with turning axes", self.line, count);
@@ -128,16 +132,17 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// Writes the straight cut that has been aimed.
+    /// Writes the straight cut that has been aimed, `length` mm long; while rotary axes turn, one of so
+    /// many pieces.
     #[inline]
-    fn cut(&mut self, length: f64, turning: bool) -> Done {
+    fn cut(&mut self, length: f64, turning: usize) -> Done {
         if !self.writer.changes(POSITION | ORIENTATION) {
             self.writer.unset(Words::MAX);
             return Ok(());
         }
         self.check_limits()?;
-        self.say_feed(length, turning)?;
-        self.compensate(true)?;
+        self.say_feed(length, turning.max(1), turning > 0)?;
+        self.compensate();
         self.writer.code(WordName::Motion, motion::LINEAR);
         self.block(self.straight(BlockName::Linear))
     }

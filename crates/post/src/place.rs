@@ -174,8 +174,30 @@ impl Walk<'_> {
     /// Brings the control to where `pose` can be written. In a cut nothing may have to change.
     #[inline]
     pub(crate) fn settle(&mut self, pose: &Pose, stop: &Stop, cut: bool) -> Done {
+        if self.settled(pose, stop, cut)? {
+            return Ok(());
+        }
+        if cut && self.located {
+            let help = "begin the operation with a rapid move in the new orientation";
+            let found = refuse("orientation-in-cut", "the plane of work changes in a cut");
+            return Err(found.help(help).into());
+        }
+        self.turn(pose.axis().unwrap_or(Vec3::Z), stop)
+    }
+
+    /// Whether `pose` can be written as the control counts, and with the rotary axes as they stand.
+    ///
+    /// # Errors
+    /// A tool axis that a machine without rotary axes does not have.
+    #[inline]
+    pub(crate) fn settled(
+        &self,
+        pose: &Pose,
+        stop: &Stop,
+        cut: bool,
+    ) -> Result<bool, Box<Diagnostic>> {
         let axis = pose.axis().unwrap_or(Vec3::Z);
-        let ready = match (&self.place.kind, stop.mode) {
+        Ok(match (&self.place.kind, stop.mode) {
             (Kind::Plain, OrientationMode::Fixed) if !same(axis, Vec3::Z) => {
                 return Err(unreachable(axis));
             }
@@ -189,16 +211,7 @@ impl Walk<'_> {
                 (stop.turning && (!stop.first || cut)) || self.stands_at(stop)
             }
             _ => false,
-        };
-        if ready {
-            return Ok(());
-        }
-        if cut && self.located {
-            let help = "begin the operation with a rapid move in the new orientation";
-            let found = refuse("orientation-in-cut", "the plane of work changes in a cut");
-            return Err(found.help(help).into());
-        }
-        self.turn(axis, stop)
+        })
     }
 
     fn stands_at(&self, stop: &Stop) -> bool {
@@ -267,6 +280,7 @@ impl Walk<'_> {
     /// on, and HEIDENHAIN wants `M129` before `M91`.
     fn leave_part(&mut self) -> Done {
         if self.located {
+            self.uncompensated("a new orientation")?;
             self.tool_center_off()?;
             self.required(BlockName::Retract)?;
             self.lose_position();

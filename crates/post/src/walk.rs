@@ -77,6 +77,8 @@ pub(crate) struct Walk<'a> {
     pub(crate) cycle: Option<&'a Cycle>,
     /// The definition that the control has, where a cycle is on.
     pub(crate) open_cycle: Option<crate::cycles::Open>,
+    /// Length of the way of the tip in the cut of the source at hand, mm.
+    pub(crate) whole: f64,
     /// The last pose of the source.
     pub(crate) here: Option<Pose>,
     /// Whether the control stands where the last pose says.
@@ -123,6 +125,7 @@ impl<'a> Walk<'a> {
             compensation_line: 0,
             cycle: None,
             open_cycle: None,
+            whole: 0.0,
             here: None,
             located: false,
             place: Place::start(machine),
@@ -197,12 +200,19 @@ impl<'a> Walk<'a> {
                 self.cycle = None;
                 self.end_cycle()
             }
+            // What changes while a cycle is on holds from the next hole on, which defines it anew: a
+            // block without a position would drill once more (SINUMERIK's MCALL), or not be heard.
             Op::Feed(feed) => {
+                self.end_cycle()?;
                 self.feed = Some(*feed);
                 Ok(())
             }
-            Op::Spindle(spindle) => self.set_spindle(*spindle),
+            Op::Spindle(spindle) => {
+                self.end_cycle()?;
+                self.set_spindle(*spindle)
+            }
             Op::Coolant(coolant) => {
+                self.end_cycle()?;
                 self.coolant = *coolant;
                 if *coolant == Coolant::Off { self.sync_coolant() } else { Ok(()) }
             }
@@ -288,6 +298,8 @@ impl<'a> Walk<'a> {
 
     /// Everything is said, the control goes off.
     fn end(&mut self) -> Done {
+        self.ended = true;
+        self.uncompensated("the end of the program")?;
         self.end_cycle()?;
         self.leave_place()?;
         if self.compensation != self.active_compensation {
@@ -295,7 +307,6 @@ impl<'a> Walk<'a> {
             let found = Diagnostic::warning("compensation-pending", message);
             self.findings.warn(found.line(self.compensation_line));
         }
-        self.ended = true;
         self.block(BlockName::ProgramEnd)
     }
 
@@ -304,6 +315,7 @@ impl<'a> Walk<'a> {
         if !positive {
             return Err(refuse("dwell", format!("a dwell of {seconds} s")));
         }
+        self.end_cycle()?;
         self.sync_spindle()?;
         self.writer.set(WordName::P, seconds);
         self.required(BlockName::Dwell)
@@ -312,6 +324,7 @@ impl<'a> Walk<'a> {
     /// A stop, after which spindle and coolant are told anew: some controls switch both off for it
     /// (HEIDENHAIN's `M0`), and so may the operator.
     fn stop(&mut self, name: BlockName) -> Done {
+        self.end_cycle()?;
         (self.active_spindle, self.active_coolant) = (None, None);
         self.required(name)
     }
@@ -319,17 +332,18 @@ impl<'a> Walk<'a> {
     // Tools.
 
     fn change_tool(&mut self, tool: &Tool) -> Done {
+        self.uncompensated("the tool change")?;
         self.end_cycle()?;
         self.leave_place()?;
-        if self.active_compensation != Compensation::Off {
-            let help = "CUTCOM/OFF and a move in the plane before the tool change";
-            return Err(Box::new(
-                refuse("compensation-active", "cutter compensation is on at the tool change")
-                    .help(help),
-            ));
-        }
         self.limits.tool(tool, self.line)?;
         let number = f64::from(tool.number);
+        let edge = self.machine.capabilities.length_offset != LengthOffset::ToolNumber;
+        if let Some(register) = tool.offset.filter(|_| edge) {
+            let message = format!(
+                "length register {register} is left out: the control takes the length with the tool"
+            );
+            self.findings.warn(Diagnostic::warning("register", message).line(self.line));
+        }
         self.length_offset = match self.machine.capabilities.length_offset {
             LengthOffset::Implicit => None,
             LengthOffset::One => Some(1.0),
@@ -387,8 +401,14 @@ impl<'a> Walk<'a> {
         self.spindle = spindle;
         match speed(spindle) {
             None => self.sync_spindle(),
-            Some(speed) if speed > 0.0 => self.limits.spindle(spindle, self.line),
-            Some(speed) => Err(refuse("spindle-range", format!("spindle speed {speed} 1/min"))),
+            Some(speed) if self.writer.rounded(WordName::S, speed) > 0.0 => {
+                self.limits.spindle(spindle, self.line)
+            }
+            Some(speed) => {
+                let help = "SPINDL/OFF where the spindle is to stand";
+                let message = format!("spindle speed {speed} 1/min, written as 0");
+                Err(refuse("spindle-range", message).help(help).into())
+            }
         }
     }
 
@@ -436,7 +456,8 @@ impl<'a> Walk<'a> {
         self.sync_coolant()
     }
 
-    // Cutter compensation: it is switched with the first straight cut in the plane.
+    // Cutter compensation: it is switched with the first straight move in the plane, by rapid or in
+    // the cut, but not on the way from a place that the program does not know.
 
     fn set_compensation(&mut self, compensation: Compensation) -> Done {
         if compensation != Compensation::Off && !self.machine.capabilities.compensation {
@@ -446,18 +467,24 @@ impl<'a> Walk<'a> {
                 refuse("compensation", "the control has no cutter compensation").help(help),
             ));
         }
+        if let Compensation::Left(Some(register)) | Compensation::Right(Some(register)) =
+            compensation
+            && !self.templates.places(BlockName::Linear, WordName::D)
+        {
+            let message = format!(
+                "radius register {register} is left out: the control takes the radius with the tool"
+            );
+            self.findings.warn(Diagnostic::warning("register", message).line(self.line));
+        }
         self.compensation = compensation;
         self.compensation_line = self.line;
         Ok(())
     }
 
-    /// Says the compensation in the next block; a straight cut in the plane may switch it.
-    pub(crate) fn compensate(&mut self, straight: bool) -> Done {
+    /// Says the compensation in the next block, a straight move; one in the plane switches it.
+    pub(crate) fn compensate(&mut self) {
         let in_plane = bit(WordName::X) | bit(WordName::Y);
-        if straight
-            && self.compensation != self.active_compensation
-            && self.writer.changes(in_plane)
-        {
+        if self.compensation_pending() && self.writer.changes(in_plane) {
             self.active_compensation = self.compensation;
             let tool = self.tool.as_ref().map(|tool| tool.number);
             match self.compensation {
@@ -469,24 +496,44 @@ impl<'a> Walk<'a> {
                 Compensation::Off => {}
             }
         }
-        self.writer.code(WordName::Compensation, compensation_code(self.active_compensation));
-        Ok(())
+        self.keep_compensation();
     }
 
-    /// Whether the next straight cut in the plane switches the compensation.
+    /// Says in the next block the compensation that is active.
+    pub(crate) fn keep_compensation(&mut self) {
+        self.writer.code(WordName::Compensation, compensation_code(self.active_compensation));
+    }
+
+    /// Compensation has to be off before `what`.
+    pub(crate) fn uncompensated(&self, what: &str) -> Done {
+        if self.active_compensation == Compensation::Off {
+            return Ok(());
+        }
+        let help = "CUTCOM/OFF and a straight move in the plane before it";
+        let message = format!("cutter compensation is still on at {what}");
+        Err(refuse("compensation-active", message).help(help).into())
+    }
+
+    /// Whether the next straight move in the plane switches the compensation.
     pub(crate) fn compensation_pending(&self) -> bool {
         self.compensation != self.active_compensation
     }
 
     // Feed.
 
-    /// Says the feed of a cut of `length` mm in the next block. With `turning` the control, which
-    /// knows nothing of the tool tip, is told the time instead, where it can be.
+    /// Says the feed of a cut of `length` mm in the next block, one of `pieces` of the source's. With
+    /// `turning` the control, which knows nothing of the tool tip, is told the time instead, where it
+    /// can be.
     #[inline]
-    pub(crate) fn say_feed(&mut self, length: f64, turning: bool) -> Done {
-        let Some(feed) = self.feed else {
+    pub(crate) fn say_feed(&mut self, length: f64, pieces: usize, turning: bool) -> Done {
+        let Some(mut feed) = self.feed else {
             return Err(refuse("feed-missing", "a cut before the first feed"));
         };
+        if let Feed::InverseTime(rate) = &mut feed {
+            // A piece has its part of the time.
+            let within = self.whole > 0.0 && length > 0.0;
+            *rate *= if within { self.whole / length } else { pieces as f64 };
+        }
         let can = &self.machine.capabilities;
         let speed = speed(self.spindle).unwrap_or_default();
         let per_minute = || lowering::feed_per_minute(feed, length, speed);

@@ -194,9 +194,13 @@ impl<'a> Prover<'a> {
         if self.leg.left.is_none() {
             let gauge = self.gauge;
             self.pass_left_out(|goal| {
-                matches!((&goal.kind, gait), (Kind::Rapid, Gait::Rapid) | (Kind::Line, Gait::Feed))
-                    && block.is_none()
-                    && gauge.at(&to, &goal.to)
+                let alike = match goal.kind {
+                    Kind::Rapid => gait == Gait::Rapid,
+                    Kind::Line => gait == Gait::Feed && block.is_none(),
+                    Kind::Arc(_) => gait == Gait::Feed,
+                    Kind::Hole(_) | Kind::Broken(_) => false,
+                };
+                alike && gauge.at(&to, &goal.to)
             });
         }
         self.miss_events(line);
@@ -232,6 +236,13 @@ impl<'a> Prover<'a> {
         }
         let Step::Move(goal) = &self.cursor.step else { return Ok(()) };
         if self.gauge.at(to, &goal.to) {
+            let across = goal.from.is_none_or(|from| {
+                let way = goal.to.tip - from.tip;
+                way.reject_from_normalized(from.axis).length() > self.gauge.slack(to)
+            });
+            // What is switched off is off from the first straight move on, before the tool comes down.
+            let off = self.cursor.wanted.compensation == Compensation::Off;
+            self.check_compensation(to.line, across && off, false);
             self.approached(to)?;
             self.arrive(to);
             return Ok(());
@@ -419,10 +430,11 @@ impl<'a> Prover<'a> {
         for difference in found {
             self.check(to.line, difference);
         }
-        self.check_compensation(to.line, in_plane && !on_arc, on_arc);
+        self.check_compensation(to.line, in_plane, on_arc);
     }
 
-    /// Compensation switches with the first straight cut in the plane at the latest, never on an arc.
+    /// Compensation goes on with the first straight cut in the plane at the latest, off with the first
+    /// straight move there, and neither on an arc, which has to be as the source wants it.
     fn check_compensation(&mut self, line: u32, must: bool, on_arc: bool) {
         let (wanted, is) = (self.cursor.wanted.compensation, self.running.compensation);
         let tool = self.cursor.wanted.tool;
@@ -430,9 +442,10 @@ impl<'a> Prover<'a> {
         let kept = state::same_compensation(self.gauge.machine, self.compensation, is, tool);
         if switched && (kept || !on_arc) {
             self.compensation = wanted;
+        } else if switched {
+            self.differs(line, ("compensation", "compensation is switched on an arc".into()));
         } else if !kept || must {
-            let should = if on_arc { self.compensation } else { wanted };
-            let (is, should) = (state::compensation(is), state::compensation(should));
+            let (is, should) = (state::compensation(is), state::compensation(wanted));
             let message = format!("compensation is {is}, but should be {should}");
             self.differs(line, ("compensation", message));
         }

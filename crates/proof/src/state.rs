@@ -222,7 +222,8 @@ pub(crate) fn same_spindle(allowed: &Applied, a: Spindle, b: Spindle) -> bool {
         (Spindle::Off, Spindle::Off) => true,
         (Spindle::Clockwise(a), Spindle::Clockwise(b))
         | (Spindle::CounterClockwise(a), Spindle::CounterClockwise(b)) => {
-            (a - b).abs() <= allowed.speed_per_min
+            // Rounding does not stop a spindle.
+            (a - b).abs() <= allowed.speed_per_min && (b > 0.0) == (a > 0.0)
         }
         _ => false,
     }

@@ -149,7 +149,31 @@ fn compensation_does_not_switch_on_an_arc() {
     early.insert(3, on.clone());
     late.insert(4, on);
     assert_eq!(rules(&judge(&mill(), &source(own.clone()), early)), ["compensation"]);
-    proven(&judge(&mill(), &source(own), late));
+    // Nor may the arc be cut without it.
+    assert_eq!(rules(&judge(&mill(), &source(own), late)), ["compensation"]);
+}
+
+#[test]
+fn compensation_goes_off_with_a_rapid_before_the_tool_comes_down_elsewhere() {
+    let path = |pose: fn(f64, f64, f64) -> Pose| {
+        vec![
+            Op::Rapid(pose(0.0, 0.0, 5.0)),
+            Op::Line(pose(0.0, 0.0, -1.0)),
+            Op::Compensation(Compensation::Left(None)),
+            Op::Line(pose(10.0, 0.0, -1.0)),
+            Op::Compensation(Compensation::Off),
+            Op::Line(pose(10.0, 0.0, 5.0)),
+            Op::Rapid(pose(50.0, 0.0, 5.0)),
+            Op::Line(pose(50.0, 0.0, -1.0)),
+            Op::Line(pose(60.0, 0.0, -1.0)),
+        ]
+    };
+    let (own, nc) = (path(at), path(block));
+    let mut late = nc.clone();
+    let off = late.remove(4);
+    late.insert(7, off);
+    proven(&judge(&mill(), &source(own.clone()), nc));
+    assert_eq!(rules(&judge(&mill(), &source(own), late)), ["compensation"]);
 }
 
 #[test]
