@@ -303,6 +303,11 @@ pub enum OptionValue {
 }
 
 impl Machine {
+    /// Whether its file says, by an empty block of that name, that the control does nothing for it.
+    pub fn leaves_out(&self, block: &str) -> bool {
+        self.blocks.get(block).is_some_and(|block| block.text.trim().is_empty())
+    }
+
     /// Smallest step of a linear axis in its programs, mm.
     pub fn resolution(&self) -> f64 {
         self.words.get("X").map_or(1e-3, |word| 10f64.powi(-i32::from(word.decimals)))

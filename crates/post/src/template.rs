@@ -191,7 +191,7 @@ impl Scope {
             machine: map(names.map(|(key, name)| (key, Value::from(clean(name))))),
             options: Value::from(options.collect::<BTreeMap<String, Value>>()),
             operation: map([("name", Value::from(""))]),
-            tool: tool_value(&Tool::default(), true),
+            tool: tool_value(machine, &Tool::default(), true),
             spindle: map([("changed", Value::from(true))]),
             text: Value::from(""),
         }
@@ -210,7 +210,7 @@ pub(crate) fn map(members: impl IntoIterator<Item = (&'static str, Value)>) -> V
 }
 
 /// A tool as templates see it; `first` where none has been called before.
-pub(crate) fn tool_value(tool: &Tool, first: bool) -> Value {
+pub(crate) fn tool_value(machine: &Machine, tool: &Tool, first: bool) -> Value {
     let sizes = [
         ("diameter", tool.diameter),
         ("corner_radius", tool.corner_radius),
@@ -219,7 +219,7 @@ pub(crate) fn tool_value(tool: &Tool, first: bool) -> Value {
     let sizes = sizes.into_iter().filter_map(|(key, size)| Some((key, number_value(size?))));
     let named = [
         ("number", Value::from(tool.number)),
-        ("name", Value::from(clean(&tool.name).trim())),
+        ("name", Value::from(printed(machine, &tool.name))),
         ("first", Value::from(first)),
     ];
     let identifier = identifies(&tool.name).then(|| ("identifier", Value::from(&tool.name)));
@@ -241,9 +241,15 @@ pub(crate) fn clean(text: &str) -> String {
     text.chars().map(|c| if harmless(c) { c } else { ' ' }).collect()
 }
 
+/// Text from outside for a comment, as far as a line of the control has room for it.
+pub(crate) fn printed(machine: &Machine, text: &str) -> String {
+    let room = machine.capabilities.line_length.saturating_sub(24).max(8);
+    clean(text).trim().chars().take(room).collect()
+}
+
 /// A program as templates see it. Its name becomes a file name on the control: the last part of a
 /// path, letters, digits, `_` and `-`, at most 24 of them (SINUMERIK), never empty.
-pub(crate) fn program_value(program: &Program) -> Value {
+pub(crate) fn program_value(machine: &Machine, program: &Program) -> Value {
     let name = program.name.rsplit(['/', '\\']).next().unwrap_or_default();
     let name = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
     let kept = |c: &char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
@@ -257,7 +263,7 @@ pub(crate) fn program_value(program: &Program) -> Value {
         if let Op::Tool(tool) = &record.op
             && !seen.contains(&tool.number)
         {
-            tools.push(tool_value(tool, seen.is_empty()));
+            tools.push(tool_value(machine, tool, seen.is_empty()));
             seen.push(tool.number);
         }
     }

@@ -3,7 +3,7 @@
 use crate::catalogue::{BlockName, WordName};
 use crate::findings::Findings;
 use crate::place::{Place, Route};
-use crate::template::{Scope, Templates, Words, bit, clean, map, program_value, tool_value};
+use crate::template::{Scope, Templates, Words, bit, map, printed, program_value, tool_value};
 use crate::writer::Writer;
 use geom::Vec3;
 use machine::limits::Limits;
@@ -97,7 +97,7 @@ impl<'a> Walk<'a> {
         let templates = Templates::compile(machine)?;
         crate::promises::check(machine, &templates)?;
         let mut scope = Scope::new(machine);
-        scope.program = program_value(program);
+        scope.program = program_value(machine, program);
         let mut writer = Writer::new(machine);
         // What the catalogue asks of `program_start`.
         writer.assume(WordName::Plane, PLANE_XY);
@@ -229,9 +229,15 @@ impl<'a> Walk<'a> {
             }
             Op::Dwell(seconds) => self.dwell(*seconds),
             Op::Stop => self.stop(BlockName::Stop),
+            Op::OptionalStop if self.machine.leaves_out("optional_stop") => {
+                let message = "the control has no optional stop: it is left out";
+                let found = Diagnostic::warning("optional-stop", message);
+                self.findings.warn(found.line(self.line));
+                Ok(())
+            }
             Op::OptionalStop => self.stop(BlockName::OptionalStop),
             Op::Operation(name) => {
-                self.scope.operation = map([("name", Value::from(clean(name).trim()))]);
+                self.scope.operation = map([("name", Value::from(printed(self.machine, name)))]);
                 self.block(BlockName::OperationStart)
             }
             Op::EndOfOperation => {
@@ -286,13 +292,12 @@ impl<'a> Walk<'a> {
             return self.block(name);
         }
         let message = format!("the control has no block `{}`", name.name());
-        Err(refuse("missing-block", message))
+        let help = format!("`{}` in its file, or a toolpath that does without", name.name());
+        Err(refuse("missing-block", message).help(help).into())
     }
 
     fn text(&mut self, name: BlockName, text: &str) -> Done {
-        let room = self.machine.capabilities.line_length.saturating_sub(24).max(8);
-        let text: String = clean(text).trim().chars().take(room).collect();
-        self.scope.text = Value::from(text);
+        self.scope.text = Value::from(printed(self.machine, text));
         self.block(name)
     }
 
@@ -314,6 +319,10 @@ impl<'a> Walk<'a> {
         let positive = seconds > 0.0 && seconds.is_finite();
         if !positive {
             return Err(refuse("dwell", format!("a dwell of {seconds} s")));
+        }
+        if self.writer.rounded(WordName::P, seconds) == 0.0 {
+            let message = format!("a dwell of {seconds} s, written as 0");
+            return Err(refuse("dwell", message).help("leave it out, or make it longer").into());
         }
         self.end_cycle()?;
         self.sync_spindle()?;
@@ -355,7 +364,7 @@ impl<'a> Walk<'a> {
         if let Some(speed) = self.coming_speed() {
             self.writer.set(WordName::S, speed);
         }
-        self.scope.tool = tool_value(tool, self.tool.is_none());
+        self.scope.tool = tool_value(self.machine, tool, self.tool.is_none());
         self.required(BlockName::ToolChange)?;
         self.tool = Some(tool.clone());
         self.writer.forget(

@@ -125,7 +125,7 @@ impl<'a> Cursor<'a> {
                 }
                 Op::Dwell(seconds) if *seconds > 0.0 => Step::Dwell(*seconds),
                 Op::Stop => Step::Stop,
-                Op::OptionalStop => Step::OptionalStop,
+                Op::OptionalStop if !self.machine.leaves_out("optional_stop") => Step::OptionalStop,
                 op => {
                     self.note(op);
                     continue;

@@ -133,3 +133,46 @@ fn registers_that_the_control_cannot_name_are_told() {
     assert!(!warnings.contains(&"register"), "{warnings:?}");
     stands(&blocks, &["G43 Z5 H12", "G1 Z0 F300", "G41 D5 X10", "G40 X20"]);
 }
+
+#[test]
+fn grbl_has_no_optional_stop_and_says_so() {
+    let path = "RAPID\nGOTO/0,0,5\nOPSTOP\nGOTO/0,0,0\nOPSTOP";
+    let stops = |machine: &str| {
+        let (text, warnings) =
+            written(machine, path).unwrap_or_else(|errors| panic!("{}", errors[0]));
+        let stops = text.lines().filter(|block| *block == "M1").count();
+        (stops, warnings.iter().map(|found| found.rule).collect::<Vec<_>>())
+    };
+    assert_eq!(stops("generic-3axis-grbl"), (0, vec!["optional-stop"]));
+    assert_eq!(stops(LINUXCNC), (2, vec![]));
+}
+
+#[test]
+fn what_cannot_be_said_is_refused_with_the_way_out() {
+    let dwell = "RAPID\nGOTO/0,0,5\nDELAY/0.0004\nGOTO/0,0,0";
+    assert_eq!(refused(LINUXCNC, dwell), ("dwell", 7));
+    let through = "COOLNT/THRU\nRAPID\nGOTO/0,0,5\nGOTO/0,0,0";
+    assert_eq!(refused(LINUXCNC, through), ("missing-block", 8));
+}
+
+#[test]
+fn a_long_text_is_cut_to_the_line_of_the_control() {
+    let text = "A".repeat(300);
+    let path = format!(
+        "LOAD/TOOL,2\nTPRINT/{text}\nPPRINT/{text}\nSPINDL/RPM,1000,CLW\nRAPID\nGOTO/0,0,5"
+    );
+    let (program, _) = written("generic-3axis-grbl", &path).unwrap_or_else(|e| panic!("{}", e[0]));
+    assert!(program.lines().all(|line| line.len() <= 70), "{program}");
+    assert!(program.contains(&"A".repeat(46)), "{program}");
+}
+
+/// A chord of a few micrometres swings a nearly full arc about: it is written as lines, and proven.
+#[test]
+fn an_arc_that_rounding_would_swing_is_made_of_lines() {
+    let arc = |x: f64, y: f64| {
+        format!("RAPID\nGOTO/{x},{y},5\nGOTO/{x},{y},0\nCIRCLE/0,0,0,0,0,1,100\nGOTO/100,0,0")
+    };
+    let angle = 0.000_04f64;
+    let path = arc(100.0 * angle.cos(), 100.0 * angle.sin());
+    written(LINUXCNC, &path).unwrap_or_else(|errors| panic!("{}", errors[0]));
+}
