@@ -27,6 +27,17 @@ pub fn angle_between(a: Vec3, b: Vec3) -> f64 {
     a.cross(b).length().atan2(a.dot(b))
 }
 
+/// The unit vector `t` (0 to 1) of the way from `a` to `b` on their great circle.
+pub fn between(a: Vec3, b: Vec3, t: f64) -> Vec3 {
+    let angle = angle_between(a, b);
+    let (from, to) = match angle > 0.1 && angle < 3.1 {
+        true => (((1.0 - t) * angle).sin(), (t * angle).sin()),
+        // Chord and arc are the same here, far below any tolerance of an axis within a move.
+        false => (1.0 - t, t),
+    };
+    (a * from + b * to).normalize_or(b)
+}
+
 /// `v` turned by `angle` (radians) about the unit vector `axis` through the origin (Rodrigues).
 pub fn rotate(v: Vec3, axis: Vec3, angle: f64) -> Vec3 {
     let (sin, cos) = angle.sin_cos();
@@ -53,6 +64,17 @@ pub fn nearest_on_segment(from: Vec3, to: Vec3, point: Vec3) -> (f64, f64) {
 mod tests {
     use super::*;
     use std::f64::consts::PI;
+
+    #[test]
+    fn between_two_directions_the_way_is_a_great_circle_at_even_speed() {
+        for angle in [0.05f64, 1.5, 3.0] {
+            let to = Vec3::new(angle.sin(), 0.0, angle.cos());
+            for t in [0.0, 0.25, 0.5, 1.0] {
+                let expected = Vec3::new((t * angle).sin(), 0.0, (t * angle).cos());
+                assert!(between(Vec3::Z, to, t).distance(expected) < 1e-5, "{angle} {t}");
+            }
+        }
+    }
 
     #[test]
     fn a_zero_or_broken_vector_has_no_direction() {

@@ -7,7 +7,8 @@
 //!
 //! [`catalogue()`] names every block, word and variable that a control file may use. One record at a time
 //! goes through `walk`, which knows what the control has been told; `place` brings the tool into its
-//! orientation, `motion`, `arcs` and `cycles` say where it goes, and `writer` leaves out what repeats.
+//! orientation, `motion`, `arcs` and `cycles` say where it goes, and `writer` leaves out what repeats. Before
+//! that, `sweep` splits cuts that would swing the tool out of its way.
 
 mod arcs;
 mod catalogue;
@@ -17,6 +18,7 @@ mod motion;
 mod number;
 mod place;
 mod promises;
+mod sweep;
 mod template;
 mod walk;
 mod writer;
@@ -43,7 +45,17 @@ pub struct Output {
 /// Everything that keeps the program from being written, up to a fixed number of findings, each with
 /// the source line it comes from; mistakes in the machine's own files with their place there.
 pub fn write(program: &Program, machine: &Machine) -> Result<Output, Vec<Diagnostic>> {
-    walk::Walk::new(program, machine)?.run()
+    let Some((records, lines)) = sweep::split(program, machine) else {
+        return walk::Walk::new(program, machine)?.run();
+    };
+    let name = program.name.clone();
+    let mut output = walk::Walk::new(&Program { name, records }, machine)?.run()?;
+    let message = format!(
+        "{} cuts turn the tool so far, or so near to a singular pose, that they are split, first here",
+        lines.len()
+    );
+    output.warnings.push(Diagnostic::warning("sweep", message).line(lines[0]));
+    Ok(output)
 }
 
 /// Compiles the templates of `machine` and holds them against what its capabilities promise.

@@ -39,17 +39,6 @@ impl Gauge<'_> {
     }
 }
 
-/// The unit vector `t` (0 to 1) of the way from `a` to `b` on their great circle.
-pub(crate) fn between(a: Vec3, b: Vec3, t: f64) -> Vec3 {
-    let angle = angle_between(a, b);
-    let (from, to) = match angle > 0.1 && angle < 3.1 {
-        true => (((1.0 - t) * angle).sin(), (t * angle).sin()),
-        // Chord and arc are the same here, far below any tolerance of an axis within a move.
-        false => (1.0 - t, t),
-    };
-    (a * from + b * to).normalize_or(b)
-}
-
 /// Angle of the unit vector `v` from the great circle between `a` and `b`, degrees.
 pub(crate) fn off_great_circle(a: Vec3, b: Vec3, v: Vec3) -> f64 {
     let normal = a.cross(b);

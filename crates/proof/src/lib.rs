@@ -23,8 +23,8 @@
 //! 6. **A hole** by a canned cycle (bottom, R plane, retract level, kind, pecks, dwell, pitch), or by
 //!    the moves that make it. A thread only by a cycle.
 //! 7. **In every cut**: feed, spindle, coolant, tool, length offset, work offset, compensation.
-//!    Compensation switches with the first straight cut in the plane at the latest. A tool change stops
-//!    spindle and coolant.
+//!    Compensation switches with the first straight cut in the plane at the latest, off with the first
+//!    straight move there, and never on an arc. A tool change stops spindle and coolant.
 //! 8. **Dwells and stops** between the same motions; where the source has stopped the spindle, it
 //!    stands at the stop.
 //! 9. **An end**, and before it, after the last motion, only ways away from the part.

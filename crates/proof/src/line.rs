@@ -1,9 +1,9 @@
 //! A straight move of the source against the feed moves of the program.
 
 use crate::expected::Goal;
-use crate::gauge::{Gauge, between, off_great_circle};
+use crate::gauge::{Gauge, off_great_circle};
 use crate::place::{Number, Place, Station};
-use geom::{Vec3, nearest_on_segment};
+use geom::{Vec3, between, nearest_on_segment};
 use program::{Orientation, Pose};
 
 /// How far a program has come on a source move.

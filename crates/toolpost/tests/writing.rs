@@ -176,3 +176,19 @@ fn an_arc_that_rounding_would_swing_is_made_of_lines() {
     let path = arc(100.0 * angle.cos(), 100.0 * angle.sin());
     written(LINUXCNC, &path).unwrap_or_else(|errors| panic!("{}", errors[0]));
 }
+
+/// From a lean of 30 degrees to upright, and on to a lean in another direction: on the upright tool the
+/// free axis turns by itself. A step of 90 degrees is split.
+#[test]
+fn the_tool_does_not_swing_out_of_its_way() {
+    let path = "MULTAX/ON\nRAPID\nGOTO/0,0,50,0,-0.5,0.8660254\nGOTO/0,0,20\nGOTO/0,10,20,0,0,1\n\
+                GOTO/0,20,20,0.5,0,0.8660254\nGOTO/0,30,20,0,1,0";
+    let (blocks, warnings) = posted("fanuc-table-bc", path);
+    assert!(warnings.contains(&"sweep"), "{warnings:?}");
+    let words: Vec<&str> =
+        blocks.iter().map(|block| block.split_once(' ').map_or("", |b| b.1)).collect();
+    let upright = words.iter().position(|block| *block == "Y10. B0.").unwrap();
+    assert_eq!(words[upright + 1..upright + 3], ["C180.", "Y20. B-30."], "{blocks:#?}");
+    let parts = words.iter().filter(|block| block.starts_with("Y2")).count();
+    assert!(parts >= 8, "{blocks:#?}");
+}
