@@ -403,13 +403,12 @@ impl Reader {
 
     /// A dwell in seconds, given so or in turns of the spindle.
     pub(super) fn dwell(&self, value: f64, turns: bool) -> Result<f64, Box<Fault>> {
-        if !(0.0..=86_400.0).contains(&value) {
-            return Err(Fault::new("dwell", format!("{value:e} is no dwell")));
-        }
+        is_dwell(value)?;
         match speed_of(self.spindle) {
             _ if !turns => Ok(value),
             rpm if rpm > 0.0 => Ok(value * 60.0 / rpm),
-            _ => Err(Fault::new("dwell", "a dwell in turns needs a running spindle")),
+            _ => Err(Fault::new("dwell", "a dwell in turns needs a running spindle")
+                .help("add SPINDL/speed,RPM,CLW before it, or give the dwell in seconds")),
         }
     }
 
@@ -424,6 +423,14 @@ impl Reader {
         self.push(record.line, Op::OptionalStop);
         Ok(())
     }
+}
+
+/// Whether `value` can be a dwell, in seconds or turns: at most a day, not before now.
+pub(super) fn is_dwell(value: f64) -> Outcome {
+    if (0.0..=86_400.0).contains(&value) {
+        return Ok(());
+    }
+    Err(Fault::new("dwell", format!("{value:e} is no dwell")).help("give seconds, 0 or more"))
 }
 
 /// Speed of a spindle in 1/min; 0 where it stands.
