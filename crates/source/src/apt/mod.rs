@@ -32,6 +32,7 @@ use motion::Next;
 use program::{Compensation, Diagnostic, Feed, Op, Pose, Program, Record as Step, Spindle, Tool};
 use record::{Joiner, Line, Lines, is_blank};
 use report::Report;
+use std::cell::Cell;
 use technology::FeedUnit;
 
 /// How to read.
@@ -116,6 +117,10 @@ struct Reader {
     unit_known: bool,
     /// Whether it was reported that it has not.
     unit_assumed: bool,
+    /// Line of the first value that was read before it has; 0 for none.
+    unit_used: Cell<u32>,
+    /// Line of the record at hand.
+    line: u32,
     setup: Setup,
     /// The last point of the data, work frame; missing values and relative motion count from it.
     point: Option<Vec3>,
@@ -184,6 +189,8 @@ impl Reader {
             unit: 1.0,
             unit_known: false,
             unit_assumed: false,
+            unit_used: Cell::new(0),
+            line: 0,
             setup: Setup::new(),
             point: None,
             tip: None,

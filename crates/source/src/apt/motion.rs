@@ -190,6 +190,10 @@ impl Reader {
             let help = "add UNITS/MM, or UNITS/INCHES where that is meant";
             let message = "the file does not say its unit: read as mm";
             self.report.warn(record, "unknown-unit", message, help);
+            // Plain points after this one are not looked at one by one.
+            if self.unit_used.get() == 0 {
+                self.unit_used.set(record.line);
+            }
         }
         self.settle_tool(record)?;
         if let Some((line, pose)) = self.from.take()

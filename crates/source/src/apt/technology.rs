@@ -97,10 +97,10 @@ impl Reader {
         Ok(match unit {
             FeedUnit::MmPerMinute => Feed::PerMinute(value),
             FeedUnit::InchPerMinute => Feed::PerMinute(value * INCH),
-            FeedUnit::PerMinute => Feed::PerMinute(value * self.unit),
+            FeedUnit::PerMinute => Feed::PerMinute(self.mm(value)),
             FeedUnit::MmPerTurn => Feed::PerTurn(value),
             FeedUnit::InchPerTurn => Feed::PerTurn(value * INCH),
-            FeedUnit::PerTurn => Feed::PerTurn(value * self.unit),
+            FeedUnit::PerTurn => Feed::PerTurn(self.mm(value)),
             FeedUnit::Inverse => Feed::InverseTime(value),
         })
     }
