@@ -106,6 +106,15 @@ enum Ready {
     Cut,
 }
 
+/// A rapid before the first tool is loaded.
+struct Early {
+    line: u32,
+    /// Number of records before it.
+    records: usize,
+    /// Diameter of the tool, where the file has given one by then.
+    diameter: Option<f64>,
+}
+
 /// What has been read, and what holds.
 struct Reader {
     report: Report,
@@ -152,6 +161,10 @@ struct Reader {
     tool: Tool,
     /// Its record, until the first motion with it.
     tool_record: Option<usize>,
+    /// Line of the first record of the file that loads a tool.
+    first_load: Option<u32>,
+    /// The first rapid, where it comes before that record.
+    early: Option<Early>,
     /// What is said of the tool to come.
     next_tool: Tool,
     /// Line that says it.
@@ -209,6 +222,8 @@ impl Reader {
             last_side: None,
             tool: Tool::default(),
             tool_record: None,
+            first_load: record::first_load(text),
+            early: None,
             next_tool: Tool::default(),
             next_line: 0,
             point_angle: None,
@@ -261,6 +276,12 @@ impl Reader {
         }
         if self.point.is_none() {
             return self.report.error(Diagnostic::error("no-motion", "nothing moves in this file"));
+        }
+        if let (Some(early), Some(load)) = (&self.early, self.first_load) {
+            // What looked like a record was part of another one.
+            let message = format!("line {} moves, but line {load} loads no tool", early.line);
+            let help = "add LOAD/TOOL,n before the first motion";
+            return self.report.error(place(Diagnostic::error("tool-number", message).help(help)));
         }
         let open = self.operation.take().or_else(|| self.sections.pop());
         if let Some((line, name)) = open {

@@ -5,7 +5,7 @@ use super::frame::FARTHEST;
 use super::number;
 use super::record::{Field, Record, is_blank};
 use super::report::{Fault, Outcome};
-use super::{Dialect, Reader, Ready};
+use super::{Dialect, Early, Reader, Ready};
 use geom::{ANGLE_EPSILON, Vec3};
 use program::{Feed, Op, Pose, Spindle};
 
@@ -195,7 +195,7 @@ impl Reader {
                 self.unit_used.set(record.line);
             }
         }
-        self.settle_tool(record)?;
+        self.settle_tool(record, cut)?;
         if let Some((line, pose)) = self.from.take()
             && cut
         {
@@ -225,8 +225,11 @@ impl Reader {
     }
 
     /// Makes sure that a tool is in the spindle, and that it is the one the operation names.
-    fn settle_tool(&mut self, record: &Record) -> Outcome {
+    fn settle_tool(&mut self, record: &Record, cut: bool) -> Outcome {
         if self.tool.number == 0 {
+            if let Some(load) = self.first_load {
+                return self.move_before_load(record, cut, load);
+            }
             let mut tool = std::mem::take(&mut self.next_tool);
             tool.number = 1;
             let line = if self.next_line > 0 { self.next_line } else { record.line };
@@ -245,6 +248,30 @@ impl Reader {
             );
             return Err(Fault::new("tool-change", message)
                 .help("add LOAD/TOOL,n at the start of the operation"));
+        }
+        Ok(())
+    }
+
+    /// A motion before line `load` loads the first tool. CATIA goes to the point of tool change so,
+    /// before it describes and loads the tool (Dassault Systèmes, *Syntax of Generated APT
+    /// Instructions*, MULTAX). A rapid has no other meaning than where the tool is to be: with the first
+    /// tool loaded before it, its tip is there. With which tool a cut is made is not known.
+    fn move_before_load(&mut self, record: &Record, cut: bool, load: u32) -> Outcome {
+        if cut {
+            let message =
+                format!("line {} cuts before the first tool is loaded (line {load})", record.line);
+            return Err(Fault::new("tool-number", message)
+                .help("load the tool first, or make the motion a RAPID"));
+        }
+        if self.early.is_none() {
+            let message = format!(
+                "line {} moves before the first tool is loaded (line {load}): the tool is loaded first",
+                record.line
+            );
+            let help = "check that the way there is free with this tool";
+            self.report.warn(record, "tool-number", &message, help);
+            let (line, records) = (record.line, self.program.records.len());
+            self.early = Some(Early { line, records, diameter: self.next_tool.diameter });
         }
         Ok(())
     }

@@ -56,6 +56,21 @@ impl<'t> Iterator for Lines<'t> {
     }
 }
 
+/// The first line of `text` that begins a record which loads a tool.
+pub(super) fn first_load(text: &[u8]) -> Option<u32> {
+    let loads = |line: &Line| {
+        let first = line.text.iter().find(|c| !is_blank(**c));
+        // Most lines are told by their first letter.
+        if !matches!(first, Some(b'L' | b'l')) {
+            return false;
+        }
+        let (from, to) = head(line.text).major;
+        let major = line.text.get(from..to).unwrap_or_default();
+        major.eq_ignore_ascii_case(b"LOAD") || major.eq_ignore_ascii_case(b"LOADTL")
+    };
+    Lines::of(text).find(loads).map(|line| line.number)
+}
+
 /// A field of a record: what stands between two commas.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Field {

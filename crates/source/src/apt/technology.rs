@@ -5,7 +5,7 @@ use super::record::{Field, Record};
 use super::report::{Fault, Outcome};
 use super::text::decode;
 use super::{Reader, Ready};
-use program::{Compensation, Coolant, Feed, Op, Spindle, Tool};
+use program::{Compensation, Coolant, Feed, Op, Record as Step, Spindle, Tool};
 use std::f64::consts::PI;
 
 /// The largest number of a tool or an offset.
@@ -273,16 +273,33 @@ impl Reader {
             i += 2;
         }
         self.no_pending_circle()?;
+        if let Some(early) = self.early.take() {
+            if early.diameter.is_some() && early.diameter != tool.diameter {
+                let message = format!(
+                    "line {} moves with a tool of another diameter, which is not loaded",
+                    early.line
+                );
+                return Err(Fault::new("tool-number", message)
+                    .help("add LOAD/TOOL,n before the first motion"));
+            }
+            self.change_tool_at(early.records, record.line, tool);
+            return Ok(());
+        }
         self.change_tool(record.line, tool);
         Ok(())
     }
 
     /// Changes to `tool`. Until the next motion its description may still be completed.
     pub(super) fn change_tool(&mut self, line: u32, tool: Tool) {
+        self.change_tool_at(self.program.records.len(), line, tool);
+    }
+
+    /// As [`Reader::change_tool`], before the record with number `index`.
+    fn change_tool_at(&mut self, index: usize, line: u32, tool: Tool) {
         self.tool = tool.clone();
-        self.tool_record = Some(self.program.records.len());
+        self.tool_record = Some(index);
         self.ready = Ready::No;
-        self.push(line, Op::Tool(Box::new(tool)));
+        self.program.records.insert(index, Step { line, op: Op::Tool(Box::new(tool)) });
     }
 
     /// `SELECT/TOOL,n`, `SELCTL/n`: the tool to come.

@@ -186,8 +186,58 @@ fn without_a_load_the_tool_is_number_one_and_a_second_tool_is_refused() {
     let second = "TOOL PATH/B,TOOL,DRILL\nTLDATA/DRILL,MILL,8.0,0.0,80.0,118.0,35.0\nGOTO/0,0,1\nEND-OF-PATH\n";
     let errors = read("t.cls", format!("{text}{second}").as_bytes(), &Options::default());
     assert_eq!(errors.unwrap_err()[0].rule, "tool-change");
-    // With its own LOAD it is changed to.
+    // With its own LOAD it is changed to; but then the number of the first tool is to be said as well.
     let loaded = second.replace("GOTO", "LOAD/TOOL,2\nGOTO");
-    let both = reading(&format!("{text}{loaded}"));
+    let first_unknown = read("t.cls", format!("{text}{loaded}").as_bytes(), &Options::default());
+    assert_eq!(first_unknown.unwrap_err()[0].rule, "tool-number");
+    let first = text.replace("SPINDL", "LOAD/TOOL,1\nSPINDL");
+    let both = reading(&format!("{first}{loaded}"));
     assert!(both.program.records.iter().any(|r| matches!(&r.op, Op::Tool(t) if t.name == "DRILL")));
+}
+
+#[test]
+fn a_rapid_before_the_first_load_is_made_with_that_tool_and_a_cut_is_refused() {
+    // A tool change of CATIA: its point, then the description, then the load.
+    let change = "UNITS/MM\nSPINDL/70,RPM,CLW\nRAPID\nGOTO/0,0,100\nCUTTER/10,2\nTOOLNO/5,10\n\
+                  TPRINT/Mill D 10\nLOADTL/5\n";
+    let rest = "FEDRAT/300,MMPM\nRAPID\nGOTO/1,0,50\nGOTO/1,0,-1\nFINI";
+    let text = format!("{change}{rest}");
+    let read_so = reading(&text);
+    let tool = Tool {
+        number: 5,
+        name: "Mill D 10".into(),
+        diameter: Some(10.0),
+        corner_radius: Some(2.0),
+        ..Tool::default()
+    };
+    let ops: Vec<&Op> = read_so.program.records.iter().map(|r| &r.op).collect();
+    let expected = [
+        Op::Spindle(Spindle::Clockwise(70.0)),
+        Op::Tool(Box::new(tool)),
+        Op::Rapid(at(0., 0., 100.)),
+        Op::Feed(Feed::PerMinute(300.0)),
+        Op::Rapid(at(1., 0., 50.)),
+        Op::Line(at(1., 0., -1.)),
+        Op::End,
+    ];
+    assert_eq!(ops, expected.iter().collect::<Vec<_>>());
+    let [warning] = &read_so.warnings[..] else { panic!("{:?}", read_so.warnings) };
+    assert_eq!((warning.rule, warning.line), ("tool-number", 4));
+    assert!(warning.message.contains("line 4 ") && warning.message.contains("line 8)"));
+    // The tool is described after the load as well.
+    let after = reading(&text.replace("LOADTL/5\n", "LOADTL/5\nCUTTER/12\n"));
+    assert!(matches!(&after.program.records[1].op, Op::Tool(t) if t.diameter == Some(12.0)));
+    // A cut, a cut after a rapid, another tool, and a load that is none.
+    let cut = text.replace("RAPID\nGOTO/0", "FEDRAT/9,MMPM\nGOTO/0");
+    let second = text.replace("CUTTER/10,2", "FEDRAT/9,MMPM\nGOTO/0,0,99");
+    let other = text.replace("RAPID\nGOTO/0", "CUTTER/8\nRAPID\nGOTO/0");
+    let none = format!("{}{}", change.replace("LOADTL/5\n", "INTOL/1,$\nLOADTL,5\n"), "FINI");
+    for (text, line, named) in
+        [(cut, 4, "line 8)"), (second, 6, "line 9)"), (other, 9, "line 5 "), (none, 10, "line 9 ")]
+    {
+        let error = read("t.apt", text.as_bytes(), &Options::default()).unwrap_err().remove(0);
+        assert_eq!((error.rule, error.line), ("tool-number", line), "{text}");
+        assert!(error.message.contains(named), "{}", error.message);
+        assert!(!error.help.is_empty());
+    }
 }
