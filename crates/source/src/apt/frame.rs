@@ -16,7 +16,7 @@ pub(super) const INCH: f64 = 25.4;
 pub(super) const FARTHEST: f64 = 1e6;
 
 /// How far axis vectors printed with a few decimals may be from unit length and a right angle.
-const SKEW: f64 = 1e-3;
+pub(super) const SKEW: f64 = 1e-3;
 
 /// Where the coordinates of the file stand.
 pub(super) struct Setup {

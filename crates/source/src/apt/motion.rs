@@ -1,7 +1,7 @@
 //! Records that move the tool.
 
 use super::arc::Circle;
-use super::frame::FARTHEST;
+use super::frame::{FARTHEST, SKEW};
 use super::number;
 use super::record::{Field, Record, is_blank};
 use super::report::{Fault, Outcome};
@@ -109,9 +109,9 @@ impl Reader {
                 .fields(first, count));
         }
         let point = self.given_point(record, first)?;
-        if count == 6 {
-            let axis = Vec3::from_array(record.numbers(first + 3)?);
-            self.axis = self.work_axis(axis).map_err(|fault| fault.fields(first + 3, 3))?;
+        let is_given = |i: usize| record.fields.get(i).is_some_and(|f| *f != Field::Blank);
+        if (first + 3..first + 6).any(is_given) {
+            self.axis = self.given_axis(record, first + 3)?;
         } else if self.axis_is_due() {
             let message = "the tool is tilted, and this system gives its axis in every GOTO: is it kept \
                            here, or along Z again?";
@@ -137,6 +137,7 @@ impl Reader {
             *value = match record.fields.get(first + i) {
                 Some(Field::Blank) => last().map(|last| last[i]).ok_or_else(|| {
                     Fault::new("malformed", "no earlier point has this value to keep")
+                        .help("give all three coordinates of the first point")
                         .fields(first + i, 1)
                 })?,
                 _ => {
@@ -146,6 +147,28 @@ impl Reader {
             };
         }
         Ok(self.setup.to_work.transform_point3(Vec3::from_array(point)))
+    }
+
+    /// The tool axis at field `first`, in the work frame; a blank keeps the last value.
+    fn given_axis(&self, record: &Record, first: usize) -> Result<Vec3, Box<Fault>> {
+        let blank = |i: usize| record.fields.get(first + i) == Some(&Field::Blank);
+        let mut axis = self.setup.to_work.inverse().transform_vector3(self.axis).to_array();
+        for (i, value) in axis.iter_mut().enumerate() {
+            if !blank(i) {
+                *value = record.number(first + i, "a value")?;
+            }
+        }
+        let axis = Vec3::from_array(axis);
+        // Values of two vectors make one vector only where both have the same length: that of 1, in
+        // which the last one is kept.
+        if (0..3).any(blank) && (axis.length() - 1.0).abs() > SKEW {
+            let message =
+                "what this vector gives and what it keeps of the last one are no unit vector";
+            return Err(Fault::new("tool-axis", message)
+                .help("give all three values of the vector")
+                .fields(first, 3));
+        }
+        self.work_axis(axis).map_err(|fault| fault.fields(first, 3))
     }
 
     /// Goes to `pose` the way the records before have asked for.
@@ -281,8 +304,7 @@ impl Reader {
         let count = record.count(&[3, 6], "FROM/x,y,z or FROM/x,y,z,i,j,k")?;
         let point = self.given_point(record, 0)?;
         if count == 6 {
-            let axis = Vec3::from_array(record.numbers(3)?);
-            self.axis = self.work_axis(axis).map_err(|fault| fault.fields(3, 3))?;
+            self.axis = self.given_axis(record, 3)?;
         }
         let pose = Pose::new(point, self.axis);
         self.arrive(pose);
