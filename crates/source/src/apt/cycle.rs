@@ -86,7 +86,7 @@ enum Kind {
 }
 
 /// Names of cycles, longest first.
-const KINDS: [(&[&str], Kind); 14] = [
+const KINDS: [(&[&str], Kind); 15] = [
     (&["DRILL", "DEEP"], Kind::Deep),
     (&["DRILL", "BRKCHP"], Kind::BreakChip),
     (&["DRILL", "CSINK"], Kind::Countersink),
@@ -98,9 +98,20 @@ const KINDS: [(&[&str], Kind); 14] = [
     (&["DEEP2"], Kind::Deep),
     (&["DEEP"], Kind::Deep),
     (&["BRKCHP"], Kind::BreakChip),
+    (&["TAP", "FLOAT"], Kind::Tap),
     (&["TAP"], Kind::Tap),
     (&["REAM"], Kind::Ream),
     (&["BORE"], Kind::Bore),
+];
+
+/// Bores of Siemens NX that are none of the kinds, and why.
+const OTHER_BORES: [(&str, &str); 3] = [
+    (
+        "NODRAG",
+        "orients the spindle and moves off the wall before it goes out, by a way that is not given",
+    ),
+    ("BACK", "goes in beside the axis and bores upwards, by a way that is not given"),
+    ("MANUAL", "stops in the hole for the operator to take the tool out"),
 ];
 
 /// The active cycle.
@@ -178,6 +189,11 @@ impl Reader {
     /// The cycle that `record` describes.
     fn define(&mut self, record: &Record) -> Result<ActiveCycle, Box<Fault>> {
         let (words, kind) = self.kind(record)?;
+        if record.is(0, "TAP") && record.is(1, "FLOAT") {
+            let help = "a floating holder takes it too; check which one holds the tap";
+            let message = "TAP,FLOAT is written as any tap, with its pitch";
+            self.report.warn(record, "tap-holder", message, help);
+        }
         let parts = self.parts(record, words)?;
         let clearance = parts.get(Part::Clearance).ok_or_else(|| {
             Fault::new("no-clear-plane", "this cycle does not say from which height the tool feeds")
@@ -229,6 +245,18 @@ impl Reader {
                 let feed = self.feed_of(number, unit).map_err(|fault| fault.fields(i + 1, 1))?;
                 parts.feed = Some(feed);
                 i += 2;
+                continue;
+            }
+            if let Some(word) = ["OPTION", "CAM"].iter().find(|word| record.is(i, word)) {
+                // Codes of one control (Siemens NX); OPTION may stand alone.
+                let has_value = matches!(record.fields.get(i + 1), Some(Field::Number(_)));
+                if !has_value && *word == "CAM" {
+                    record.number(i + 1, "its value")?;
+                }
+                let message = format!("{word} of a cycle is not passed on");
+                let help = "check whether the job needs it";
+                self.report.warn(record, "ignored-word", &message, help);
+                i += 1 + usize::from(has_value);
                 continue;
             }
             let known = PARTS.iter().find(|(word, _)| record.is(i, word));
@@ -289,6 +317,12 @@ impl Reader {
     /// How many words name the cycle, and which it is.
     fn kind(&self, record: &Record) -> Result<(usize, Kind), Box<Fault>> {
         let matches = |words: &&[&str]| words.iter().enumerate().all(|(i, w)| record.is(i, w));
+        let other = OTHER_BORES.iter().find(|(word, _)| record.is(0, "BORE") && record.is(1, word));
+        if let Some((word, reason)) = other {
+            return Err(Fault::new("unsupported", format!("BORE,{word} {reason}"))
+                .help("let the CAM system write BORE or BORE,DRAG, or the single moves")
+                .fields(0, 2));
+        }
         let known = KINDS.iter().find(|(words, _)| matches(words));
         let (words, kind) = known.ok_or_else(|| {
             Fault::new("unsupported", "this cycle is not known")

@@ -29,7 +29,9 @@ use cycle::ActiveCycle;
 use frame::Setup;
 use geom::Vec3;
 use motion::Next;
-use program::{Compensation, Diagnostic, Feed, Op, Pose, Program, Record as Step, Spindle, Tool};
+use program::{
+    Compensation, Coolant, Diagnostic, Feed, Op, Pose, Program, Record as Step, Spindle, Tool,
+};
 use record::{Joiner, Line, Lines, is_blank};
 use report::Report;
 use std::cell::Cell;
@@ -155,6 +157,8 @@ struct Reader {
     spindle: Spindle,
     /// The last that turned, for `SPINDL/ON`.
     last_spindle: Option<Spindle>,
+    /// The last kind, for `COOLNT/ON`.
+    last_coolant: Coolant,
     /// The last side, for `CUTCOM/ON`.
     last_side: Option<Compensation>,
     /// The tool in the spindle; number 0 for none.
@@ -219,6 +223,8 @@ impl Reader {
             feed_unit: FeedUnit::PerMinute,
             spindle: Spindle::Off,
             last_spindle: None,
+            // Coolant as such is flood.
+            last_coolant: Coolant::Flood,
             last_side: None,
             tool: Tool::default(),
             tool_record: None,

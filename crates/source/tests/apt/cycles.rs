@@ -166,6 +166,36 @@ fn siemens_nx_counts_depths_below_zero_and_bores_out_at_feed() {
 }
 
 #[test]
+fn words_of_one_control_are_named_and_bores_of_another_kind_refused() {
+    let rest = "RAPTO,3,FEDTO,5,MMPR,1.25";
+    for (text, rule) in [
+        (format!("CYCLE/DRILL,{rest},OPTION"), "ignored-word"),
+        (format!("CYCLE/DRILL,OPTION,1,{rest}"), "ignored-word"),
+        (format!("CYCLE/DRILL,{rest},CAM,2"), "ignored-word"),
+        (format!("CYCLE/TAP,FLOAT,{rest}"), "tap-holder"),
+    ] {
+        let program = reading(&format!("{HEAD}{text}\nGOTO/1,2,0\nFINI")).program;
+        let cycle = program.records.iter().find_map(|r| match &r.op {
+            Op::Cycle(cycle) => Some(**cycle),
+            _ => None,
+        });
+        let cycle = cycle.unwrap();
+        assert_eq!((cycle.depth, cycle.clearance), (5.0, 3.0), "{text}");
+        if rule == "tap-holder" {
+            assert_eq!(cycle.kind, CycleKind::Tap { pitch: 1.25, left: false });
+        }
+        assert_eq!(warnings(&format!("{text}\nGOTO/1,2,0")), [rule], "{text}");
+    }
+    assert_eq!(error(&format!("CYCLE/DRILL,{rest},CAM")), "malformed");
+    for word in ["NODRAG", "BACK", "MANUAL"] {
+        let text = format!("{HEAD}CYCLE/BORE,{word},{rest}\nGOTO/1,2,0\nFINI");
+        let error = read("b.apt", text.as_bytes(), &Options::default()).unwrap_err().remove(0);
+        assert_eq!((error.rule, error.line, error.column), ("unsupported", 5, 7));
+        assert!(error.message.starts_with(&format!("BORE,{word} ")) && !error.help.is_empty());
+    }
+}
+
+#[test]
 fn a_cycle_that_is_not_whole_is_refused() {
     for (text, rule) in [
         ("CYCLE/DRILL,FEDTO,10,MMPM,200", "no-clear-plane"),

@@ -1,6 +1,6 @@
 //! Feed, spindle, tool, coolant, compensation, dwell and stop.
 
-use crate::support::{at, error, ops, reading};
+use crate::support::{HEAD, at, error, ops, reading, warnings};
 use program::{Compensation, Coolant, Feed, Op, Spindle, Tool};
 use toolpost_source::apt::{Options, read};
 
@@ -80,16 +80,62 @@ fn spindles_come_in_every_order_and_by_surface_speed() {
 }
 
 #[test]
+fn maxrpm_caps_a_surface_speed_and_the_gear_range_is_named() {
+    let speed = |text: &str| {
+        let reading = reading(&format!("{HEAD}CUTTER/10,0\n{text}\nRAPID\nGOTO/1,2,3\nFINI"));
+        let speed = reading.program.records.iter().rev().find_map(|r| match r.op {
+            Op::Spindle(spindle) => Some(spindle),
+            _ => None,
+        });
+        let rules: Vec<&str> = reading.warnings.iter().map(|w| w.rule).collect();
+        (speed.unwrap(), rules)
+    };
+    // 100 m/min on a diameter of 10 mm are 3183 1/min, 60 m/min are 1910.
+    assert_eq!(speed("SPINDL/SMM,100,MAXRPM,2500,CLW"), (Spindle::Clockwise(2500.0), vec![]));
+    let (slow, rules) = speed("SPINDL/SMM,60,CCLW,MAXRPM,2500");
+    let Spindle::CounterClockwise(rpm) = slow else { panic!("{slow:?}") };
+    assert!((rpm - 1909.859).abs() < 1e-3 && rules.is_empty(), "{rpm}");
+    assert_eq!(speed("SPINDL/2000,RPM,MAXRPM,2500"), (Spindle::Clockwise(2000.0), vec![]));
+    for range in ["LOW", "MEDIUM", "HIGH", "2"] {
+        let (spindle, rules) = speed(&format!("SPINDL/RPM,700,RANGE,{range},CLW"));
+        assert_eq!((spindle, rules), (Spindle::Clockwise(700.0), vec!["spindle-range"]), "{range}");
+    }
+    // The range alone does not turn the spindle on.
+    assert_eq!(speed("SPINDL/OFF\nSPINDL/RANGE,2"), (Spindle::Off, vec!["spindle-range"]));
+    for (text, rule) in [
+        ("SPINDL/3000,RPM,MAXRPM,2500", "spindle"),
+        ("SPINDL/SMM,100,MAXRPM,0", "spindle"),
+        ("SPINDL/MAXRPM,2500", "spindle"),
+        ("SPINDL/700,MAXRPM", "malformed"),
+        ("SPINDL/700,RANGE,FAST", "malformed"),
+    ] {
+        assert_eq!(error(&format!("CUTTER/10\n{text}")), rule, "{text}");
+    }
+}
+
+#[test]
 fn coolants_compensations_dwells_and_stops() {
-    let cases: [(&str, Vec<Op>); 15] = [
+    let coolants = |kinds: &[Coolant]| kinds.iter().map(|kind| Op::Coolant(*kind)).collect();
+    let (flood, mist, through) = (Coolant::Flood, Coolant::Mist, Coolant::Through);
+    let cases: [(&str, Vec<Op>); 22] = [
         ("COOLNT/ON", vec![Op::Coolant(Coolant::Flood)]),
         ("COOLNT/FLOOD", vec![Op::Coolant(Coolant::Flood)]),
         ("COOLNT/MIST", vec![Op::Coolant(Coolant::Mist)]),
         ("COOLNT/THRU", vec![Op::Coolant(Coolant::Through)]),
         ("COOLNT/OFF", vec![Op::Coolant(Coolant::Off)]),
+        ("COOLNT/ON,FLOOD", coolants(&[flood])),
+        ("COOLNT/THRU,ON", coolants(&[through])),
+        ("COOLNT/MIST\nCOOLNT/OFF\nCOOLNT/ON", coolants(&[mist, Coolant::Off, mist])),
+        ("COOLNT/MIST\nCOOLNT/FLOOD,ON\nCOOLNT/ON", coolants(&[mist, flood, flood])),
         ("CUTCOM/LEFT", vec![Op::Compensation(Compensation::Left(None))]),
         ("CUTCOM/RIGHT,12", vec![Op::Compensation(Compensation::Right(Some(12)))]),
         ("CUTCOM/LEFT,ADJUST,3", vec![Op::Compensation(Compensation::Left(Some(3)))]),
+        ("CUTCOM/ADJUST,5,LEFT", vec![Op::Compensation(Compensation::Left(Some(5)))]),
+        ("CUTCOM/ADJUST,5,RIGHT,XYPLAN", vec![Op::Compensation(Compensation::Right(Some(5)))]),
+        (
+            "CUTCOM/ADJUST,5,LEFT,GOTO/1,2,3",
+            vec![Op::Compensation(Compensation::Left(Some(5))), Op::Line(at(1., 2., 3.))],
+        ),
         (
             "CUTCOM/RIGHT\nCUTCOM/OFF\nCUTCOM/ON",
             vec![
@@ -117,7 +163,22 @@ fn coolants_compensations_dwells_and_stops() {
         expected.push(Op::Line(at(9., 9., 9.)));
         assert_eq!(ops(&format!("{text}\nGOTO/9,9,9")), expected, "{text}");
     }
-    for text in ["COOLNT/BEER", "CUTCOM/UP", "CUTCOM/ON", "DELAY/1,HOUR"] {
+    for text in [
+        "COOLNT/BEER",
+        "COOLNT/ON,BEER",
+        "COOLNT/ON,OFF",
+        "COOLNT/OFF,MIST",
+        "COOLNT/FLOOD,MIST",
+        "COOLNT/ON,ON",
+        "CUTCOM/UP",
+        "CUTCOM/ON",
+        "CUTCOM/5,LEFT",
+        "CUTCOM/LEFT,RIGHT",
+        "CUTCOM/LEFT,ADJUST",
+        // An offset of the fixture in some systems.
+        "CUTCOM/ADJUST,5",
+        "DELAY/1,HOUR",
+    ] {
         assert_eq!(error(text), "malformed", "{text}");
     }
     assert_eq!(error("DELAY/-1"), "dwell");
@@ -142,6 +203,8 @@ fn tools_are_described_before_or_after_they_are_loaded() {
         tool("LOADTL/7,LENGTH,120.5,OSETNO,2"),
         Tool { offset: Some(2), length: Some(120.5), ..plain.clone() }
     );
+    assert_eq!(warnings("LOAD/TOOL,7,ZOFF,25.4,ADJUST,3\nRAPID\nGOTO/0,0,0"), ["tool-offset"]);
+    assert_eq!(tool("LOAD/TOOL,7,ZOFF,0.0"), plain);
     let mill = Tool {
         name: "BALL10".into(),
         diameter: Some(10.0),
