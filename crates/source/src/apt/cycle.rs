@@ -6,7 +6,7 @@
 use super::motion::Next;
 use super::record::{Field, Record};
 use super::report::{Fault, Outcome};
-use super::technology::{FeedUnit, speed_of};
+use super::technology::{FeedUnit, is_dwell, speed_of};
 use super::{Dialect, Reader, Ready};
 use geom::Vec3;
 use program::{Cycle, CycleKind, Feed, Op, Pose, Spindle};
@@ -86,7 +86,7 @@ enum Kind {
 }
 
 /// Names of cycles, longest first.
-const KINDS: [(&[&str], Kind); 14] = [
+const KINDS: [(&[&str], Kind); 15] = [
     (&["DRILL", "DEEP"], Kind::Deep),
     (&["DRILL", "BRKCHP"], Kind::BreakChip),
     (&["DRILL", "CSINK"], Kind::Countersink),
@@ -98,16 +98,32 @@ const KINDS: [(&[&str], Kind); 14] = [
     (&["DEEP2"], Kind::Deep),
     (&["DEEP"], Kind::Deep),
     (&["BRKCHP"], Kind::BreakChip),
+    (&["TAP", "FLOAT"], Kind::Tap),
     (&["TAP"], Kind::Tap),
     (&["REAM"], Kind::Ream),
     (&["BORE"], Kind::Bore),
+];
+
+/// Bores of Siemens NX that are none of the kinds, and why.
+const OTHER_BORES: [(&str, &str); 3] = [
+    (
+        "NODRAG",
+        "orients the spindle and moves off the wall before it goes out, by a way that is not given",
+    ),
+    ("BACK", "goes in beside the axis and bores upwards, by a way that is not given"),
+    ("MANUAL", "stops in the hole for the operator to take the tool out"),
 ];
 
 /// The active cycle.
 #[derive(Clone, Debug)]
 pub(super) struct ActiveCycle {
     line: u32,
+    /// As its record gives it; pitch, hand and a dwell in turns follow at each hole.
     cycle: Cycle,
+    /// Threads an inch of a tap, where the record gives them.
+    threads: Option<f64>,
+    /// Dwell in turns of the spindle.
+    turns: Option<f64>,
     /// Retract to the level at which the tool was before the cycle.
     to_initial: bool,
     /// Where the tool was before the cycle, where that is known.
@@ -173,6 +189,11 @@ impl Reader {
     /// The cycle that `record` describes.
     fn define(&mut self, record: &Record) -> Result<ActiveCycle, Box<Fault>> {
         let (words, kind) = self.kind(record)?;
+        if record.is(0, "TAP") && record.is(1, "FLOAT") {
+            let help = "a floating holder takes it too; check which one holds the tap";
+            let message = "TAP,FLOAT is written as any tap, with its pitch";
+            self.report.warn(record, "tap-holder", message, help);
+        }
         let parts = self.parts(record, words)?;
         let clearance = parts.get(Part::Clearance).ok_or_else(|| {
             Fault::new("no-clear-plane", "this cycle does not say from which height the tool feeds")
@@ -188,7 +209,7 @@ impl Reader {
             let help = "the tool goes back to the higher of the two";
             self.report.warn(record, "retract", "RTRCTO is lower than RAPTO", help);
         }
-        let kind = self.cycle_kind(kind, &parts)?;
+        let kind = cycle_kind(kind, &parts)?;
         let (first_peck, peck) = (parts.get(Part::FirstPeck), parts.get(Part::Peck));
         let mut pecks = first_peck.iter().chain(&peck).peekable();
         let is_pecking = matches!(kind, CycleKind::Deep | CycleKind::BreakChip);
@@ -206,11 +227,13 @@ impl Reader {
             first_peck,
             peck,
         };
+        let (threads, turns) = (parts.get(Part::ThreadsPerInch), parts.get(Part::DwellTurns));
         let (initial, told) = match &self.cycle {
             Some(active) => (active.initial, active.told),
             None => (self.tip.map(|tip| tip.point), None),
         };
-        Ok(ActiveCycle { line: record.line, cycle, to_initial: parts.to_initial, initial, told })
+        let (line, to_initial) = (record.line, parts.to_initial);
+        Ok(ActiveCycle { line, cycle, threads, turns, to_initial, initial, told })
     }
 
     /// The words and values of `record` from field `i` on.
@@ -222,6 +245,18 @@ impl Reader {
                 let feed = self.feed_of(number, unit).map_err(|fault| fault.fields(i + 1, 1))?;
                 parts.feed = Some(feed);
                 i += 2;
+                continue;
+            }
+            if let Some(word) = ["OPTION", "CAM"].iter().find(|word| record.is(i, word)) {
+                // Codes of one control (Siemens NX); OPTION may stand alone.
+                let has_value = matches!(record.fields.get(i + 1), Some(Field::Number(_)));
+                if !has_value && *word == "CAM" {
+                    record.number(i + 1, "its value")?;
+                }
+                let message = format!("{word} of a cycle is not passed on");
+                let help = "check whether the job needs it";
+                self.report.warn(record, "ignored-word", &message, help);
+                i += 1 + usize::from(has_value);
                 continue;
             }
             let known = PARTS.iter().find(|(word, _)| record.is(i, word));
@@ -246,17 +281,20 @@ impl Reader {
             // Creo: a return of 0 is to the retract plane.
             parts.to_initial |= word == "RETURN" && number == 0.0;
             let number = match part {
-                Part::Dwell => self.dwell(number, false),
-                Part::DwellTurns => self.dwell(number, true),
+                Part::Dwell | Part::DwellTurns => is_dwell(number).map(|()| number),
                 Part::ThreadsPerInch | Part::Angle => Ok(number),
                 _ => self.length(number),
             };
             let number = number.map_err(|fault| fault.fields(i + 1, 1))?;
-            let slot = if part == Part::DwellTurns { Part::Dwell } else { part };
-            if let Some(earlier) = parts.get(slot) {
-                self.twice(record, i, slot, earlier != number)?;
+            let other = match part {
+                Part::Dwell => Part::DwellTurns,
+                Part::DwellTurns => Part::Dwell,
+                part => part,
+            };
+            if let Some(earlier) = parts.get(part).or(parts.get(other)) {
+                self.twice(record, i, part, earlier != number)?;
             }
-            let slot = &mut parts.values[slot as usize];
+            let slot = &mut parts.values[part as usize];
             // Of two heights from which to feed, the higher is safe.
             *slot = Some(slot.map_or(number, |earlier| earlier.max(number)));
             i += 2;
@@ -279,6 +317,12 @@ impl Reader {
     /// How many words name the cycle, and which it is.
     fn kind(&self, record: &Record) -> Result<(usize, Kind), Box<Fault>> {
         let matches = |words: &&[&str]| words.iter().enumerate().all(|(i, w)| record.is(i, w));
+        let other = OTHER_BORES.iter().find(|(word, _)| record.is(0, "BORE") && record.is(1, word));
+        if let Some((word, reason)) = other {
+            return Err(Fault::new("unsupported", format!("BORE,{word} {reason}"))
+                .help("let the CAM system write BORE or BORE,DRAG, or the single moves")
+                .fields(0, 2));
+        }
         let known = KINDS.iter().find(|(words, _)| matches(words));
         let (words, kind) = known.ok_or_else(|| {
             Fault::new("unsupported", "this cycle is not known")
@@ -325,37 +369,41 @@ impl Reader {
         Err(Fault::new("cycle-depth", message).help(format!("give {sign}")))
     }
 
-    /// The kind of the neutral program. The pitch of a tap is the threads an inch, or the feed a turn,
-    /// or the feed a minute over the speed.
-    fn cycle_kind(&self, kind: Kind, parts: &Parts) -> Result<CycleKind, Box<Fault>> {
-        Ok(match kind {
-            Kind::Drill | Kind::Face | Kind::Countersink => CycleKind::Drill,
-            Kind::Deep => CycleKind::Deep,
-            Kind::BreakChip => CycleKind::BreakChip,
-            Kind::Ream => CycleKind::Ream,
-            Kind::Bore => CycleKind::Bore,
-            Kind::Tap => {
-                let rpm = speed_of(self.spindle);
-                let pitch = match (parts.get(Part::ThreadsPerInch), parts.feed.or(self.feed)) {
-                    (Some(threads), _) => super::frame::INCH / threads,
-                    (None, Some(Feed::PerTurn(pitch))) => pitch,
-                    (None, Some(Feed::PerMinute(feed))) if rpm > 0.0 => feed / rpm,
-                    _ => f64::NAN,
-                };
-                if !(pitch > 0.0 && pitch.is_finite()) {
-                    return Err(Fault::new("tap-pitch", "the pitch of this tap is not known")
-                        .help("give MMPR,pitch or TPI,threads, or feed and spindle speed"));
-                }
-                let left = matches!(self.spindle, Spindle::CounterClockwise(_));
-                CycleKind::Tap { pitch, left }
-            }
-        })
+    /// The tap of `active` with the spindle and the feed that hold now. The pitch is the threads an
+    /// inch, or the feed a turn, or the feed a minute over the speed.
+    fn tap(&self, active: &ActiveCycle) -> Result<CycleKind, Box<Fault>> {
+        let rpm = speed_of(self.spindle);
+        let pitch = match (active.threads, active.cycle.feed.or(self.feed)) {
+            (Some(threads), _) => super::frame::INCH / threads,
+            (None, Some(Feed::PerTurn(pitch))) => pitch,
+            (None, Some(Feed::PerMinute(feed))) if rpm > 0.0 => feed / rpm,
+            _ => f64::NAN,
+        };
+        if !(pitch > 0.0 && pitch.is_finite()) {
+            return Err(unknown_pitch());
+        }
+        let left = matches!(self.spindle, Spindle::CounterClockwise(_));
+        Ok(CycleKind::Tap { pitch, left })
+    }
+
+    /// The cycle of `active` as it is at a hole here. A tap and a dwell in turns hang on the speed, the
+    /// hand and the feed, which are modal and may change after the record of the cycle and between two
+    /// holes.
+    fn at_this_hole(&self, active: &ActiveCycle) -> Result<Cycle, Box<Fault>> {
+        let mut cycle = active.cycle;
+        if matches!(cycle.kind, CycleKind::Tap { .. }) {
+            cycle.kind = self.tap(active)?;
+        }
+        if let Some(turns) = active.turns {
+            cycle.dwell = self.dwell(turns, true)?;
+        }
+        Ok(cycle)
     }
 
     /// One hole of the active cycle, at `pose`.
     pub(super) fn hole(&mut self, record: &Record, pose: Pose) -> Outcome {
-        let Some(active) = &mut self.cycle else { return Ok(()) };
-        let mut cycle = active.cycle;
+        let Some(active) = &self.cycle else { return Ok(()) };
+        let mut cycle = self.at_this_hole(active)?;
         let axis = self.axis;
         if active.to_initial {
             let Some(initial) = active.initial else {
@@ -368,13 +416,37 @@ impl Reader {
             };
             cycle.retract = cycle.clearance.max((initial - pose.point).dot(axis));
         }
-        if active.told.replace(cycle) != Some(cycle) {
+        if active.told != Some(cycle) {
             let line = active.line;
             self.push(line, Op::Cycle(Box::new(cycle)));
+            if let Some(active) = &mut self.cycle {
+                active.told = Some(cycle);
+            }
         }
         self.push(record.line, Op::Hole(pose));
         self.arrive(pose);
         self.tip = Some(Pose { point: pose.point + axis * cycle.retract, ..pose });
         Ok(())
     }
+}
+
+/// The kind of the neutral program. Pitch and hand of a tap are not known before its hole.
+fn cycle_kind(kind: Kind, parts: &Parts) -> Result<CycleKind, Box<Fault>> {
+    Ok(match kind {
+        Kind::Drill | Kind::Face | Kind::Countersink => CycleKind::Drill,
+        Kind::Deep => CycleKind::Deep,
+        Kind::BreakChip => CycleKind::BreakChip,
+        Kind::Ream => CycleKind::Ream,
+        Kind::Bore => CycleKind::Bore,
+        Kind::Tap if parts.get(Part::ThreadsPerInch).is_some_and(|threads| threads <= 0.0) => {
+            return Err(unknown_pitch());
+        }
+        Kind::Tap => CycleKind::Tap { pitch: f64::NAN, left: false },
+    })
+}
+
+#[cold]
+fn unknown_pitch() -> Box<Fault> {
+    Fault::new("tap-pitch", "the pitch of this tap is not known")
+        .help("give MMPR,pitch or TPI,threads, or feed and spindle speed")
 }

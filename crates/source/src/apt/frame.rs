@@ -16,7 +16,7 @@ pub(super) const INCH: f64 = 25.4;
 pub(super) const FARTHEST: f64 = 1e6;
 
 /// How far axis vectors printed with a few decimals may be from unit length and a right angle.
-const SKEW: f64 = 1e-3;
+pub(super) const SKEW: f64 = 1e-3;
 
 /// Where the coordinates of the file stand.
 pub(super) struct Setup {
@@ -97,7 +97,7 @@ impl Reader {
         record.count(&[1], "UNITS/MM or UNITS/INCHES")?;
         let mm = ["MM", "MMS", "MILLIMETER", "MILLIMETERS", "METRIC"];
         let inch = ["IN", "INCH", "INCHES"];
-        self.unit = match () {
+        let unit = match () {
             () if mm.iter().any(|word| record.is(0, word)) => 1.0,
             () if inch.iter().any(|word| record.is(0, word)) => INCH,
             () => {
@@ -106,16 +106,40 @@ impl Reader {
                     .fields(0, 1));
             }
         };
+        // Whether the values before the first unit of a file are meant in that unit, or in one that the
+        // CAM system and its post-processor agreed upon elsewhere, the file does not say. Reading the
+        // unit ahead would be a guess by which a tool, a speed or a point may be wrong by 25.4, so a
+        // file that was begun in another unit is refused.
+        let read_in_mm = self.unit_used.get();
+        if !self.unit_known && read_in_mm > 0 && unit != self.unit {
+            let message = format!(
+                "line {read_in_mm} gives a length or a feed before line {} says the unit: is it in mm \
+                 or in inches?",
+                record.line
+            );
+            return Err(Fault::new("unknown-unit", message)
+                .help("write the unit before the first length: at the head of the file"));
+        }
+        self.unit = unit;
         self.unit_known = true;
         Ok(())
     }
 
-    /// `value` in the unit of the file as mm.
+    /// `value` of the record at hand, in the unit of the file, as mm.
+    pub(super) fn mm(&self, value: f64) -> f64 {
+        // Nothing is nothing in every unit.
+        if !self.unit_known && value != 0.0 && self.unit_used.get() == 0 {
+            self.unit_used.set(self.line);
+        }
+        value * self.unit
+    }
+
+    /// [`Reader::mm`] of a length.
     ///
     /// # Errors
     /// `out-of-range` beyond [`FARTHEST`] or where it is no number.
     pub(super) fn length(&self, value: f64) -> Result<f64, Box<Fault>> {
-        let mm = value * self.unit;
+        let mm = self.mm(value);
         if mm.abs() <= FARTHEST {
             return Ok(mm);
         }
@@ -305,7 +329,7 @@ impl Reader {
         if rows.len() == 3 {
             let mut frame = frame_of_rows(rows)?;
             self.setup.rows = None;
-            frame.translation *= self.unit;
+            frame.translation = frame.translation.to_array().map(|value| self.mm(value)).into();
             if self.dialect == Dialect::Catia {
                 self.relative_set_up(record.line, frame);
             }

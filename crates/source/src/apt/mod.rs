@@ -29,9 +29,12 @@ use cycle::ActiveCycle;
 use frame::Setup;
 use geom::Vec3;
 use motion::Next;
-use program::{Compensation, Diagnostic, Feed, Op, Pose, Program, Record as Step, Spindle, Tool};
+use program::{
+    Compensation, Coolant, Diagnostic, Feed, Op, Pose, Program, Record as Step, Spindle, Tool,
+};
 use record::{Joiner, Line, Lines, is_blank};
 use report::Report;
+use std::cell::Cell;
 use technology::FeedUnit;
 
 /// How to read.
@@ -105,6 +108,15 @@ enum Ready {
     Cut,
 }
 
+/// A rapid before the first tool is loaded.
+struct Early {
+    line: u32,
+    /// Number of records before it.
+    records: usize,
+    /// Diameter of the tool, where the file has given one by then.
+    diameter: Option<f64>,
+}
+
 /// What has been read, and what holds.
 struct Reader {
     report: Report,
@@ -116,6 +128,10 @@ struct Reader {
     unit_known: bool,
     /// Whether it was reported that it has not.
     unit_assumed: bool,
+    /// Line of the first value that was read before it has; 0 for none.
+    unit_used: Cell<u32>,
+    /// Line of the record at hand.
+    line: u32,
     setup: Setup,
     /// The last point of the data, work frame; missing values and relative motion count from it.
     point: Option<Vec3>,
@@ -141,12 +157,18 @@ struct Reader {
     spindle: Spindle,
     /// The last that turned, for `SPINDL/ON`.
     last_spindle: Option<Spindle>,
+    /// The last kind, for `COOLNT/ON`.
+    last_coolant: Coolant,
     /// The last side, for `CUTCOM/ON`.
     last_side: Option<Compensation>,
     /// The tool in the spindle; number 0 for none.
     tool: Tool,
     /// Its record, until the first motion with it.
     tool_record: Option<usize>,
+    /// Line of the first record of the file that loads a tool.
+    first_load: Option<u32>,
+    /// The first rapid, where it comes before that record.
+    early: Option<Early>,
     /// What is said of the tool to come.
     next_tool: Tool,
     /// Line that says it.
@@ -184,6 +206,8 @@ impl Reader {
             unit: 1.0,
             unit_known: false,
             unit_assumed: false,
+            unit_used: Cell::new(0),
+            line: 0,
             setup: Setup::new(),
             point: None,
             tip: None,
@@ -199,9 +223,13 @@ impl Reader {
             feed_unit: FeedUnit::PerMinute,
             spindle: Spindle::Off,
             last_spindle: None,
+            // Coolant as such is flood.
+            last_coolant: Coolant::Flood,
             last_side: None,
             tool: Tool::default(),
             tool_record: None,
+            first_load: record::first_load(text),
+            early: None,
             next_tool: Tool::default(),
             next_line: 0,
             point_angle: None,
@@ -254,6 +282,12 @@ impl Reader {
         }
         if self.point.is_none() {
             return self.report.error(Diagnostic::error("no-motion", "nothing moves in this file"));
+        }
+        if let (Some(early), Some(load)) = (&self.early, self.first_load) {
+            // What looked like a record was part of another one.
+            let message = format!("line {} moves, but line {load} loads no tool", early.line);
+            let help = "add LOAD/TOOL,n before the first motion";
+            return self.report.error(place(Diagnostic::error("tool-number", message).help(help)));
         }
         let open = self.operation.take().or_else(|| self.sections.pop());
         if let Some((line, name)) = open {

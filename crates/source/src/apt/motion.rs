@@ -1,11 +1,11 @@
 //! Records that move the tool.
 
 use super::arc::Circle;
-use super::frame::FARTHEST;
+use super::frame::{FARTHEST, SKEW};
 use super::number;
 use super::record::{Field, Record, is_blank};
 use super::report::{Fault, Outcome};
-use super::{Dialect, Reader, Ready};
+use super::{Dialect, Early, Reader, Ready};
 use geom::{ANGLE_EPSILON, Vec3};
 use program::{Feed, Op, Pose, Spindle};
 
@@ -109,9 +109,9 @@ impl Reader {
                 .fields(first, count));
         }
         let point = self.given_point(record, first)?;
-        if count == 6 {
-            let axis = Vec3::from_array(record.numbers(first + 3)?);
-            self.axis = self.work_axis(axis).map_err(|fault| fault.fields(first + 3, 3))?;
+        let is_given = |i: usize| record.fields.get(i).is_some_and(|f| *f != Field::Blank);
+        if (first + 3..first + 6).any(is_given) {
+            self.axis = self.given_axis(record, first + 3)?;
         } else if self.axis_is_due() {
             let message = "the tool is tilted, and this system gives its axis in every GOTO: is it kept \
                            here, or along Z again?";
@@ -137,6 +137,7 @@ impl Reader {
             *value = match record.fields.get(first + i) {
                 Some(Field::Blank) => last().map(|last| last[i]).ok_or_else(|| {
                     Fault::new("malformed", "no earlier point has this value to keep")
+                        .help("give all three coordinates of the first point")
                         .fields(first + i, 1)
                 })?,
                 _ => {
@@ -146,6 +147,28 @@ impl Reader {
             };
         }
         Ok(self.setup.to_work.transform_point3(Vec3::from_array(point)))
+    }
+
+    /// The tool axis at field `first`, in the work frame; a blank keeps the last value.
+    fn given_axis(&self, record: &Record, first: usize) -> Result<Vec3, Box<Fault>> {
+        let blank = |i: usize| record.fields.get(first + i) == Some(&Field::Blank);
+        let mut axis = self.setup.to_work.inverse().transform_vector3(self.axis).to_array();
+        for (i, value) in axis.iter_mut().enumerate() {
+            if !blank(i) {
+                *value = record.number(first + i, "a value")?;
+            }
+        }
+        let axis = Vec3::from_array(axis);
+        // Values of two vectors make one vector only where both have the same length: that of 1, in
+        // which the last one is kept.
+        if (0..3).any(blank) && (axis.length() - 1.0).abs() > SKEW {
+            let message =
+                "what this vector gives and what it keeps of the last one are no unit vector";
+            return Err(Fault::new("tool-axis", message)
+                .help("give all three values of the vector")
+                .fields(first, 3));
+        }
+        self.work_axis(axis).map_err(|fault| fault.fields(first, 3))
     }
 
     /// Goes to `pose` the way the records before have asked for.
@@ -190,8 +213,12 @@ impl Reader {
             let help = "add UNITS/MM, or UNITS/INCHES where that is meant";
             let message = "the file does not say its unit: read as mm";
             self.report.warn(record, "unknown-unit", message, help);
+            // Plain points after this one are not looked at one by one.
+            if self.unit_used.get() == 0 {
+                self.unit_used.set(record.line);
+            }
         }
-        self.settle_tool(record)?;
+        self.settle_tool(record, cut)?;
         if let Some((line, pose)) = self.from.take()
             && cut
         {
@@ -221,8 +248,11 @@ impl Reader {
     }
 
     /// Makes sure that a tool is in the spindle, and that it is the one the operation names.
-    fn settle_tool(&mut self, record: &Record) -> Outcome {
+    fn settle_tool(&mut self, record: &Record, cut: bool) -> Outcome {
         if self.tool.number == 0 {
+            if let Some(load) = self.first_load {
+                return self.move_before_load(record, cut, load);
+            }
             let mut tool = std::mem::take(&mut self.next_tool);
             tool.number = 1;
             let line = if self.next_line > 0 { self.next_line } else { record.line };
@@ -245,13 +275,36 @@ impl Reader {
         Ok(())
     }
 
+    /// A motion before line `load` loads the first tool. CATIA goes to the point of tool change so,
+    /// before it describes and loads the tool (Dassault Systèmes, *Syntax of Generated APT
+    /// Instructions*, MULTAX). A rapid has no other meaning than where the tool is to be: with the first
+    /// tool loaded before it, its tip is there. With which tool a cut is made is not known.
+    fn move_before_load(&mut self, record: &Record, cut: bool, load: u32) -> Outcome {
+        if cut {
+            let message =
+                format!("line {} cuts before the first tool is loaded (line {load})", record.line);
+            return Err(Fault::new("tool-number", message)
+                .help("load the tool first, or make the motion a RAPID"));
+        }
+        if self.early.is_none() {
+            let message = format!(
+                "line {} moves before the first tool is loaded (line {load}): the tool is loaded first",
+                record.line
+            );
+            let help = "check that the way there is free with this tool";
+            self.report.warn(record, "tool-number", &message, help);
+            let (line, records) = (record.line, self.program.records.len());
+            self.early = Some(Early { line, records, diameter: self.next_tool.diameter });
+        }
+        Ok(())
+    }
+
     /// `FROM/x,y,z`, `FROM/x,y,z,i,j,k`: where the tool is. It is no motion.
     pub(super) fn from(&mut self, record: &Record) -> Outcome {
         let count = record.count(&[3, 6], "FROM/x,y,z or FROM/x,y,z,i,j,k")?;
         let point = self.given_point(record, 0)?;
         if count == 6 {
-            let axis = Vec3::from_array(record.numbers(3)?);
-            self.axis = self.work_axis(axis).map_err(|fault| fault.fields(3, 3))?;
+            self.axis = self.given_axis(record, 3)?;
         }
         let pose = Pose::new(point, self.axis);
         self.arrive(pose);

@@ -56,6 +56,21 @@ impl<'t> Iterator for Lines<'t> {
     }
 }
 
+/// The first line of `text` that begins a record which loads a tool.
+pub(super) fn first_load(text: &[u8]) -> Option<u32> {
+    let loads = |line: &Line| {
+        let first = line.text.iter().find(|c| !is_blank(**c));
+        // Most lines are told by their first letter.
+        if !matches!(first, Some(b'L' | b'l')) {
+            return false;
+        }
+        let (from, to) = head(line.text).major;
+        let major = line.text.get(from..to).unwrap_or_default();
+        major.eq_ignore_ascii_case(b"LOAD") || major.eq_ignore_ascii_case(b"LOADTL")
+    };
+    Lines::of(text).find(loads).map(|line| line.number)
+}
+
 /// A field of a record: what stands between two commas.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Field {
@@ -240,7 +255,10 @@ impl<'t> Joiner<'t> {
         if is_text {
             return Ok(record);
         }
-        let result = split_fields(text, body, &mut self.fields, &mut self.spans);
+        // In a point a value left out stays, the last one too; elsewhere it is forgotten.
+        let is_point = ["GOTO", "FROM", "CUTCOM"];
+        let open_end = is_point.iter().any(|w| record.major.eq_ignore_ascii_case(w.as_bytes()));
+        let result = split_fields(text, body, open_end, &mut self.fields, &mut self.spans);
         record.fields = &self.fields;
         record.spans = &self.spans;
         match result {
@@ -358,10 +376,12 @@ fn head(text: &[u8]) -> Head {
 }
 
 /// Takes `text` from `at` on apart. Commas part the fields; so do the slash after a word and
-/// parentheses, which set off a nested definition (`(CIRCLE/...)`).
+/// parentheses, which set off a nested definition (`(CIRCLE/...)`). With `open_end` a comma at the end
+/// leaves a last field out.
 fn split_fields(
     text: &[u8],
     mut at: usize,
+    open_end: bool,
     fields: &mut Vec<Field>,
     spans: &mut Vec<(usize, usize)>,
 ) -> Result<(), (usize, usize, String)> {
@@ -439,7 +459,16 @@ fn split_fields(
         }
     }
     if expected && any && text[..at].iter().rev().find(|c| !is_blank(**c)) == Some(&b',') {
-        return Err((at.saturating_sub(1), at, "a value is missing after the last comma".into()));
+        if open_end {
+            fields.push(Field::Blank);
+            spans.push((at, at));
+        } else {
+            return Err((
+                at.saturating_sub(1),
+                at,
+                "a value is missing after the last comma".into(),
+            ));
+        }
     }
     if open > 0 {
         return Err((at.saturating_sub(1), at, "a parenthesis is not closed".into()));

@@ -140,6 +140,7 @@ impl Reader {
     /// Obeys a record by the table.
     pub(super) fn obey(&mut self, record: &Record) -> Outcome {
         let known = find(record.major);
+        self.line = record.line;
         if !record.major.is_empty() {
             self.inside_goto = false;
         }

@@ -5,7 +5,7 @@ use super::record::{Field, Record};
 use super::report::{Fault, Outcome};
 use super::text::decode;
 use super::{Reader, Ready};
-use program::{Compensation, Coolant, Feed, Op, Spindle, Tool};
+use program::{Compensation, Coolant, Feed, Op, Record as Step, Spindle, Tool};
 use std::f64::consts::PI;
 
 /// The largest number of a tool or an offset.
@@ -97,21 +97,24 @@ impl Reader {
         Ok(match unit {
             FeedUnit::MmPerMinute => Feed::PerMinute(value),
             FeedUnit::InchPerMinute => Feed::PerMinute(value * INCH),
-            FeedUnit::PerMinute => Feed::PerMinute(value * self.unit),
+            FeedUnit::PerMinute => Feed::PerMinute(self.mm(value)),
             FeedUnit::MmPerTurn => Feed::PerTurn(value),
             FeedUnit::InchPerTurn => Feed::PerTurn(value * INCH),
-            FeedUnit::PerTurn => Feed::PerTurn(value * self.unit),
+            FeedUnit::PerTurn => Feed::PerTurn(self.mm(value)),
             FeedUnit::Inverse => Feed::InverseTime(value),
         })
     }
 
-    /// `SPINDL/` with, in any order, a speed, `RPM`, `SFM` or `SMM`, and `CLW` or `CCLW`; or `ON`,
-    /// `OFF`. Surface speeds are resolved with the diameter of the tool.
+    /// `SPINDL/` with, in any order, a speed, `RPM`, `SFM` or `SMM`, `CLW` or `CCLW`, `MAXRPM,n` and
+    /// `RANGE,n`; or `ON`, `OFF`. Surface speeds are resolved with the diameter of the tool. `MAXRPM` is
+    /// "the maximum RPM to be reached during SFM motion" (Siemens NX, *SPINDL*).
     pub(super) fn spindl(&mut self, record: &Record) -> Outcome {
-        let (mut speed, mut surface, mut left) = (None, None, None);
-        for (i, field) in record.fields.iter().enumerate() {
-            match field {
-                Field::Number(value) if speed.is_none() => speed = Some((i, *value)),
+        let (mut speed, mut surface, mut left, mut max) = (None, None, None, None);
+        let mut range = false;
+        let mut i = 0;
+        while i < record.fields.len() {
+            match record.fields.get(i) {
+                Some(Field::Number(value)) if speed.is_none() => speed = Some((i, *value)),
                 _ if record.is(i, "RPM") => surface = None,
                 _ if record.is(i, "SFM") => surface = Some(12.0 * INCH),
                 _ if record.is(i, "SMM") => surface = Some(1000.0),
@@ -119,12 +122,41 @@ impl Reader {
                 _ if record.is(i, "CCLW") => left = Some(true),
                 _ if record.is(i, "ON") => {}
                 _ if record.is(i, "OFF") => return self.turn(record, Spindle::Off),
+                _ if record.is(i, "MAXRPM") => {
+                    i += 1;
+                    max = Some((i, record.number(i, "the greatest speed")?));
+                }
+                _ if record.is(i, "RANGE") => {
+                    i += 1;
+                    let gears = ["LOW", "MEDIUM", "HIGH"];
+                    if !gears.iter().any(|gear| record.is(i, gear)) {
+                        record.number(i, "the range")?;
+                    }
+                    range = true;
+                }
                 _ => {
                     return Err(Fault::new("malformed", "this is not known of a spindle")
                         .help("write SPINDL/speed,RPM,CLW or SPINDL/OFF")
                         .fields(i, 1));
                 }
             }
+            i += 1;
+        }
+        if range {
+            let help = "check that the control chooses the gear by the speed";
+            let message = "the gear range of SPINDL is not passed on";
+            self.report.warn(record, "spindle-range", message, help);
+            if record.fields.len() == 2 {
+                return Ok(());
+            }
+        }
+        if let Some((field, max)) = max
+            && (speed.is_none() || !(1.0..=1e7).contains(&max))
+        {
+            let message = "MAXRPM takes a speed greater than 0, in the record of the surface speed";
+            return Err(Fault::new("spindle", message)
+                .help("write SPINDL/SFM,speed,MAXRPM,greatest,CLW")
+                .fields(field, 1));
         }
         if speed.is_none() && left.is_none() {
             return match self.last_spindle {
@@ -137,7 +169,15 @@ impl Reader {
         let left = left.unwrap_or(was_left);
         let rpm = match (speed, self.last_spindle) {
             (Some((field, value)), _) => {
-                self.speed(value, surface).map_err(|fault| fault.fields(field, 1))?
+                let max = max.map_or(f64::INFINITY, |(_, max)| max);
+                let rpm = self.speed(value, surface).map_err(|fault| fault.fields(field, 1))?;
+                if rpm > max && surface.is_none() {
+                    let message = format!("a speed of {rpm} 1/min above its MAXRPM of {max}");
+                    return Err(Fault::new("spindle", message)
+                        .help("give the lower of the two as speed")
+                        .fields(field, 1));
+                }
+                rpm.min(max)
             }
             (None, Some(last)) => speed_of(last),
             (None, None) => return Err(Fault::new("malformed", "a speed is missing")),
@@ -178,40 +218,63 @@ impl Reader {
         Ok(())
     }
 
-    /// `COOLNT/ON`, `FLOOD`, `MIST`, `THRU`, `OFF`.
+    /// `COOLNT/FLOOD`, `MIST`, `THRU`, also with `ON`; `ON` alone, which is the last kind again;
+    /// `OFF`.
     pub(super) fn coolnt(&mut self, record: &Record) -> Outcome {
-        let words = [
-            ("ON", Coolant::Flood),
+        let kinds = [
             ("FLOOD", Coolant::Flood),
             ("TAPKUL", Coolant::Flood),
             ("MIST", Coolant::Mist),
             ("THRU", Coolant::Through),
             ("TOOL", Coolant::Through),
-            ("OFF", Coolant::Off),
         ];
-        record.count(&[1], "COOLNT/FLOOD, MIST, THRU or OFF")?;
-        let known = words.iter().find(|(word, _)| record.is(0, word));
-        let (_, coolant) = known.ok_or_else(|| {
-            Fault::new("malformed", "this coolant is not known")
-                .help("coolants are ON, FLOOD, MIST, THRU and OFF")
-                .fields(0, 1)
-        })?;
-        self.push(record.line, Op::Coolant(*coolant));
+        let count = record.count(&[1, 2], "COOLNT/FLOOD, MIST, THRU or OFF")?;
+        let on = (0..count).find(|i| record.is(*i, "ON"));
+        let coolant = match on {
+            Some(_) if count == 1 => self.last_coolant,
+            None if count == 1 && record.is(0, "OFF") => Coolant::Off,
+            _ => {
+                let field = usize::from(on == Some(0));
+                let known = kinds.iter().find(|(word, _)| record.is(field, word));
+                // Two kinds, or OFF with one, are not one thing to do.
+                let known = known.filter(|_| on.is_some() || count == 1);
+                let (_, coolant) = known.ok_or_else(|| {
+                    Fault::new("malformed", "this coolant is not known")
+                        .help("write COOLNT/ON, FLOOD, MIST, THRU or OFF")
+                        .fields(field, 1)
+                })?;
+                *coolant
+            }
+        };
+        if coolant != Coolant::Off {
+            self.last_coolant = coolant;
+        }
+        self.push(record.line, Op::Coolant(coolant));
         Ok(())
     }
 
-    /// `CUTCOM/LEFT`, `RIGHT`, `ON`, `OFF`, with the register after it or after `ADJUST`; a `GOTO` may
-    /// follow in the same record.
+    /// `CUTCOM/LEFT`, `RIGHT`, `ON`, `OFF`, with the register after it or after `ADJUST`, which may also
+    /// come first (Siemens NX); a `GOTO` may follow in the same record.
     pub(super) fn cutcom(&mut self, record: &Record) -> Outcome {
         let goto = after(record, "GOTO");
         let own = goto.map_or(record.fields.len(), |i| i - 1);
-        let mut register = None;
-        for i in 1..own {
+        let (mut side, mut register) = (None, None);
+        for i in 0..own {
             match record.fields.get(i) {
-                Some(Field::Number(_)) if register.is_none() => {
+                Some(Field::Number(_)) if register.is_none() && i > 0 => {
                     register = Some(whole(record, i, 0.0, "malformed")?);
                 }
-                _ if ["ADJUST", "OSETNO", "XYPLAN"].iter().any(|word| record.is(i, word)) => {}
+                _ if ["LEFT", "RIGHT", "OFF", "ON"].iter().any(|word| record.is(i, word))
+                    && side.is_none() =>
+                {
+                    side = Some(i);
+                }
+                _ if record.is(i, "ADJUST") || record.is(i, "OSETNO") => {
+                    if !matches!(record.fields.get(i + 1), Some(Field::Number(_))) {
+                        return Err(no_register(i));
+                    }
+                }
+                _ if record.is(i, "XYPLAN") => {}
                 _ => {
                     return Err(Fault::new("malformed", "this is not known of a compensation")
                         .help("write CUTCOM/LEFT, CUTCOM/RIGHT or CUTCOM/OFF")
@@ -219,17 +282,20 @@ impl Reader {
                 }
             }
         }
+        // Without a side ADJUST is an offset of the fixture in some systems.
+        let side = side.ok_or_else(|| {
+            Fault::new("malformed", "a compensation is LEFT, RIGHT, ON or OFF")
+                .help("write CUTCOM/LEFT,register, CUTCOM/RIGHT,register or CUTCOM/OFF")
+        })?;
         let compensation = match () {
-            () if record.is(0, "LEFT") => Compensation::Left(register),
-            () if record.is(0, "RIGHT") => Compensation::Right(register),
-            () if record.is(0, "OFF") => Compensation::Off,
-            () if record.is(0, "ON") => self.last_side.ok_or_else(|| {
-                Fault::new("malformed", "CUTCOM/ON before any side was given").fields(0, 1)
+            () if record.is(side, "LEFT") => Compensation::Left(register),
+            () if record.is(side, "RIGHT") => Compensation::Right(register),
+            () if record.is(side, "OFF") => Compensation::Off,
+            () => self.last_side.ok_or_else(|| {
+                Fault::new("malformed", "CUTCOM/ON before any side was given")
+                    .help("write CUTCOM/LEFT or CUTCOM/RIGHT")
+                    .fields(side, 1)
             })?,
-            () => {
-                return Err(Fault::new("malformed", "a compensation is LEFT, RIGHT, ON or OFF")
-                    .fields(0, 1));
-            }
         };
         if compensation != Compensation::Off {
             self.last_side = Some(compensation);
@@ -241,8 +307,8 @@ impl Reader {
         }
     }
 
-    /// `LOAD/TOOL,n` with, in any order, `ADJUST,k` or `OSETNO,k` (register) and `LENGTH,l` (gauge
-    /// length); `LOADTL/n` and `LOADTL/n,k` of CATIA.
+    /// `LOAD/TOOL,n` with, in any order, `ADJUST,k` or `OSETNO,k` (register), `LENGTH,l` (gauge length)
+    /// and `ZOFF,z` of Siemens NX; `LOADTL/n` and `LOADTL/n,k` of CATIA.
     pub(super) fn load(&mut self, record: &Record) -> Outcome {
         let first = usize::from(record.major.eq_ignore_ascii_case(b"LOAD"));
         if first == 1 && !record.is(0, "TOOL") {
@@ -264,6 +330,14 @@ impl Reader {
                     let length = record.number(i + 1, "the length")?;
                     tool.length = Some(self.length(length)?);
                 }
+                // Whether the shift is in the register already is known at the machine only.
+                () if record.is(i, "ZOFF") => {
+                    if record.number(i + 1, "the offset")? != 0.0 {
+                        let help = "check that the register of the tool length has it";
+                        let message = "the Z offset of LOAD/TOOL is not passed on";
+                        self.report.warn(record, "tool-offset", message, help);
+                    }
+                }
                 () => {
                     return Err(Fault::new("malformed", "this is not known of a tool change")
                         .help("write LOAD/TOOL,number,ADJUST,register")
@@ -273,16 +347,33 @@ impl Reader {
             i += 2;
         }
         self.no_pending_circle()?;
+        if let Some(early) = self.early.take() {
+            if early.diameter.is_some() && early.diameter != tool.diameter {
+                let message = format!(
+                    "line {} moves with a tool of another diameter, which is not loaded",
+                    early.line
+                );
+                return Err(Fault::new("tool-number", message)
+                    .help("add LOAD/TOOL,n before the first motion"));
+            }
+            self.change_tool_at(early.records, record.line, tool);
+            return Ok(());
+        }
         self.change_tool(record.line, tool);
         Ok(())
     }
 
     /// Changes to `tool`. Until the next motion its description may still be completed.
     pub(super) fn change_tool(&mut self, line: u32, tool: Tool) {
+        self.change_tool_at(self.program.records.len(), line, tool);
+    }
+
+    /// As [`Reader::change_tool`], before the record with number `index`.
+    fn change_tool_at(&mut self, index: usize, line: u32, tool: Tool) {
         self.tool = tool.clone();
-        self.tool_record = Some(self.program.records.len());
+        self.tool_record = Some(index);
         self.ready = Ready::No;
-        self.push(line, Op::Tool(Box::new(tool)));
+        self.program.records.insert(index, Step { line, op: Op::Tool(Box::new(tool)) });
     }
 
     /// `SELECT/TOOL,n`, `SELCTL/n`: the tool to come.
@@ -403,13 +494,12 @@ impl Reader {
 
     /// A dwell in seconds, given so or in turns of the spindle.
     pub(super) fn dwell(&self, value: f64, turns: bool) -> Result<f64, Box<Fault>> {
-        if !(0.0..=86_400.0).contains(&value) {
-            return Err(Fault::new("dwell", format!("{value:e} is no dwell")));
-        }
+        is_dwell(value)?;
         match speed_of(self.spindle) {
             _ if !turns => Ok(value),
             rpm if rpm > 0.0 => Ok(value * 60.0 / rpm),
-            _ => Err(Fault::new("dwell", "a dwell in turns needs a running spindle")),
+            _ => Err(Fault::new("dwell", "a dwell in turns needs a running spindle")
+                .help("add SPINDL/speed,RPM,CLW before it, or give the dwell in seconds")),
         }
     }
 
@@ -424,6 +514,21 @@ impl Reader {
         self.push(record.line, Op::OptionalStop);
         Ok(())
     }
+}
+
+#[cold]
+fn no_register(field: usize) -> Box<Fault> {
+    Fault::new("malformed", "the number of a register is missing here")
+        .help("write CUTCOM/LEFT,ADJUST,register")
+        .fields(field, 1)
+}
+
+/// Whether `value` can be a dwell, in seconds or turns: at most a day, not before now.
+pub(super) fn is_dwell(value: f64) -> Outcome {
+    if (0.0..=86_400.0).contains(&value) {
+        return Ok(());
+    }
+    Err(Fault::new("dwell", format!("{value:e} is no dwell")).help("give seconds, 0 or more"))
 }
 
 /// Speed of a spindle in 1/min; 0 where it stands.

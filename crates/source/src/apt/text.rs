@@ -94,17 +94,18 @@ impl Reader {
     }
 
     /// `INSERT/text`. The text is meant for one control and is never passed on as code: it is a
-    /// comment, and `INSERT/STOP text` a stop with a message.
+    /// comment, and `INSERT/STOP text` a message and a stop.
     pub(super) fn insert(&mut self, record: &Record) -> Outcome {
         let text = decode(record.body.0);
         if let Some(message) = after(&text, "STOP") {
             let help = "check that the operator is to stop here";
             self.report.warn(record, "insert", "INSERT/STOP is read as a stop and a message", help);
-            self.push(record.line, Op::Stop);
+            // First what the operator is to do, then the stop at which it is read.
             let message = message.trim();
             if !message.is_empty() {
                 self.push(record.line, Op::Message(message.into()));
             }
+            self.push(record.line, Op::Stop);
             return Ok(());
         }
         // SolidWorks CAM writes the names of tools and the size of the stock so.

@@ -138,6 +138,37 @@ fn cuts_need_a_spindle_and_a_feed_and_tools_a_number() {
 }
 
 #[test]
+fn a_unit_that_comes_after_the_first_length_is_refused_where_it_changes_that() {
+    let rest = "FEDRAT/10,MMPM\nRAPID\nGOTO/0,0,2\nGOTO/0,0,-1\nFINI";
+    // A cutter of 0.5 inches read as 0.5 mm turned 25.4 times too fast: 300 feet/min are 2292 1/min.
+    for (before, line) in [
+        ("CUTTER/0.5", 2),
+        ("SPINDL/3000,CLW\nFEDRAT/10", 3),
+        ("SPINDL/3000,CLW\nFEDRAT/0.1,PERREV", 3),
+        ("RAPID\nGOTO/0,0,2", 3),
+        ("SPINDL/9,CLW\nFEDRAT/1,MMPM\nGOTO/0,0,0\nGOTO/1,2,3", 4),
+        ("ORIGIN/0,0,1", 2),
+        ("LOADTL/2,LENGTH,100", 2),
+    ] {
+        let units = before.lines().count() as u32 + 2;
+        let text = format!("LOAD/TOOL,1\n{before}\nUNITS/INCHES\nSPINDL/SFM,300,CLW\n{rest}");
+        let error = refusal(text);
+        assert_eq!((error.rule, error.line), ("unknown-unit", units), "{before}");
+        assert!(error.message.contains(&format!("line {line} ")), "{}", error.message);
+        assert!(!error.help.is_empty());
+    }
+    // Nothing was read that the unit would change.
+    for before in
+        ["ORIGIN/0,0,0", "MSYS/0,0,0,1,0,0,0,1,0", "FEDRAT/10,MMPM", "UNITS/MM\nCUTTER/0.5"]
+    {
+        let text = format!("LOAD/TOOL,1\n{before}\nUNITS/INCHES\nSPINDL/9,CLW\n{rest}");
+        assert!(try_read(text).is_ok(), "{before}");
+    }
+    let millimetres = format!("LOAD/TOOL,1\nCUTTER/10\nUNITS/MM\nSPINDL/9,CLW\n{rest}");
+    assert_eq!(try_read(millimetres).unwrap().warnings, []);
+}
+
+#[test]
 fn what_is_cut_off_is_refused_or_said() {
     let nx =
         "UNITS/MM\nTOOL PATH/A,TOOL,B\nLOAD/TOOL,1\nSPINDL/RPM,1,CLW\nFEDRAT/1,MMPM\nGOTO/1,2,3\n";

@@ -77,6 +77,37 @@ fn every_cycle_gives_its_kind_and_its_numbers() {
 }
 
 #[test]
+fn pitch_hand_and_turns_are_those_at_the_hole() {
+    // Kinds and dwells of the cycles told, in their order.
+    let told = |text: &str| -> Vec<(CycleKind, f64)> {
+        let cycles = ops(text).into_iter().filter_map(|op| match op {
+            Op::Cycle(cycle) => Some((cycle.kind, cycle.dwell)),
+            _ => None,
+        });
+        cycles.collect()
+    };
+    let tap = |pitch, left| (CycleKind::Tap { pitch, left }, 0.0);
+    // The speed comes after the cycle: 500 mm/min at 500 1/min, not at 1000.
+    let late = "CYCLE/TAP,FEDTO,10,RAPTO,5,MMPM,500\nSPINDL/RPM,500,CLW\nGOTO/30,10,0";
+    assert_eq!(told(late), [tap(1.0, false)]);
+    // The feed changes between two holes: 500 / 500, then 625 / 500; the third is as the second.
+    let between = "SPINDL/500,CLW\nFEDRAT/500,MMPM\nCYCLE/TAP,FEDTO,10,RAPTO,5\nGOTO/10,0,0\n\
+                   FEDRAT/625,MMPM\nGOTO/20,0,0\nGOTO/30,0,0";
+    assert_eq!(told(between), [tap(1.0, false), tap(1.25, false)]);
+    let hand = "FEDRAT/1,MMPR\nCYCLE/TAP,FEDTO,10,RAPTO,5\nSPINDL/RPM,400,CCLW\nFEDRAT/1.5,MMPR\n\
+                GOTO/30,10,0";
+    assert_eq!(told(hand), [tap(1.5, true)]);
+    // Five turns are 0.6 s at 500 1/min and 0.3 s at 1000.
+    let dwell = "CYCLE/FACE,FEDTO,10,RAPTO,5,DWELL,REV,5\nSPINDL/500,CLW\nGOTO/1,0,0\n\
+                 SPINDL/1000,CLW\nGOTO/2,0,0";
+    assert_eq!(told(dwell), [(CycleKind::Drill, 0.6), (CycleKind::Drill, 0.3)]);
+    // The pitch is asked for where the hole is.
+    let inverse = "FEDRAT/INVERS,2\nCYCLE/TAP,FEDTO,5,RAPTO,3";
+    assert_eq!(told(&format!("{inverse}\nFEDRAT/1,MMPR\nGOTO/1,0,0")), [tap(1.0, false)]);
+    assert_eq!(error(&format!("{inverse}\nGOTO/1,0,0")), "tap-pitch");
+}
+
+#[test]
 fn a_cycle_begins_before_its_first_hole_and_ends_once() {
     let text = "CYCLE/INIT\nCYCLE/DRILL,FEDTO,10,MMPM,200,RAPTO,3,RTRCTO,25\nGOTO/1,1,0\nRAPID\n\
                 GOTO/1,1,30\nGOTO/2,2,0\nCYCLE/OFF\nCYCLE/OFF\nRAPID\nGOTO/5,5,50\nCYCLE/ON\nGOTO/3,3,0";
@@ -135,6 +166,36 @@ fn siemens_nx_counts_depths_below_zero_and_bores_out_at_feed() {
 }
 
 #[test]
+fn words_of_one_control_are_named_and_bores_of_another_kind_refused() {
+    let rest = "RAPTO,3,FEDTO,5,MMPR,1.25";
+    for (text, rule) in [
+        (format!("CYCLE/DRILL,{rest},OPTION"), "ignored-word"),
+        (format!("CYCLE/DRILL,OPTION,1,{rest}"), "ignored-word"),
+        (format!("CYCLE/DRILL,{rest},CAM,2"), "ignored-word"),
+        (format!("CYCLE/TAP,FLOAT,{rest}"), "tap-holder"),
+    ] {
+        let program = reading(&format!("{HEAD}{text}\nGOTO/1,2,0\nFINI")).program;
+        let cycle = program.records.iter().find_map(|r| match &r.op {
+            Op::Cycle(cycle) => Some(**cycle),
+            _ => None,
+        });
+        let cycle = cycle.unwrap();
+        assert_eq!((cycle.depth, cycle.clearance), (5.0, 3.0), "{text}");
+        if rule == "tap-holder" {
+            assert_eq!(cycle.kind, CycleKind::Tap { pitch: 1.25, left: false });
+        }
+        assert_eq!(warnings(&format!("{text}\nGOTO/1,2,0")), [rule], "{text}");
+    }
+    assert_eq!(error(&format!("CYCLE/DRILL,{rest},CAM")), "malformed");
+    for word in ["NODRAG", "BACK", "MANUAL"] {
+        let text = format!("{HEAD}CYCLE/BORE,{word},{rest}\nGOTO/1,2,0\nFINI");
+        let error = read("b.apt", text.as_bytes(), &Options::default()).unwrap_err().remove(0);
+        assert_eq!((error.rule, error.line, error.column), ("unsupported", 5, 7));
+        assert!(error.message.starts_with(&format!("BORE,{word} ")) && !error.help.is_empty());
+    }
+}
+
+#[test]
 fn a_cycle_that_is_not_whole_is_refused() {
     for (text, rule) in [
         ("CYCLE/DRILL,FEDTO,10,MMPM,200", "no-clear-plane"),
@@ -143,6 +204,8 @@ fn a_cycle_that_is_not_whole_is_refused() {
         ("CYCLE/DRILL,FEDTO,0,RAPTO,3", "cycle-depth"),
         ("CYCLE/DRILL,FEDTO,-5,RAPTO,3", "cycle-depth"),
         ("CYCLE/DRILL,FEDTO,5,FEDTO,6,RAPTO,3", "malformed"),
+        ("CYCLE/DRILL,FEDTO,5,RAPTO,3,DWELL,1,REV,5", "malformed"),
+        ("CYCLE/DRILL,FEDTO,5,RAPTO,3,REV,-1", "dwell"),
         ("CYCLE/DRILL,10,200,MMPM,3", "unsupported"),
         ("CYCLE/DRILL,FEDTO,5,RAPTO,3,ORIENT,90", "unsupported"),
         ("CYCLE/DRILL,FEDTO,5,RAPTO", "malformed"),

@@ -17,10 +17,27 @@ fn goto_moves_at_feed_and_keeps_what_is_left_out() {
             "GOTO/1,2,3,0,1,1\nGOTO/4,5,6",
             vec![([1., 2., 3.], [0., s, s]), ([4., 5., 6.], [0., s, s])],
         ),
+        ("GOTO/1,2,3\nGOTO/10,,", vec![([1., 2., 3.], up), ([10., 2., 3.], up)]),
+        ("GOTO/1,2,3\nGOTO/,5,", vec![([1., 2., 3.], up), ([1., 5., 3.], up)]),
+        // A comma at the end continues the record where no other begins.
+        ("GOTO/1,2,3\nGOTO/10,,\n7", vec![([1., 2., 3.], up), ([10., 2., 7.], up)]),
+        ("GOTO/1,2,3\nCUTCOM/OFF,GOTO/,,9", vec![([1., 2., 3.], up), ([1., 2., 9.], up)]),
+        ("FROM/7,8,9\nRAPID\nGOTO/,0,", vec![([7., 0., 9.], up)]),
+        (
+            "GOTO/1,2,3,0,.6,.8\nGOTO/4,5,6,,,",
+            vec![([1., 2., 3.], [0., 0.6, 0.8]), ([4., 5., 6.], [0., 0.6, 0.8])],
+        ),
+        // From 0, 0.6, 0.8 only the middle value changes; the vector keeps its length of 1.
+        (
+            "GOTO/1,2,3,0,.6,.8\nGOTO/,,,,-.6,",
+            vec![([1., 2., 3.], [0., 0.6, 0.8]), ([1., 2., 3.], [0., -0.6, 0.8])],
+        ),
+        ("GOTO/1,2,3,0,0,\nGOTO/1,2,3", vec![([1., 2., 3.], up), ([1., 2., 3.], up)]),
         ("GOTO/1,2,3,0,0,-250", vec![([1., 2., 3.], [0., 0., -1.])]),
     ] {
         let ops = ops(text);
-        assert!(ops.iter().all(|op| matches!(op, Op::Line(_))), "{text}");
+        let moves = |op: &Op| matches!(op, Op::Line(_) | Op::Rapid(_) | Op::Compensation(_));
+        assert!(ops.iter().all(moves), "{text}");
         assert_poses(&ops, &poses);
     }
 }
@@ -41,9 +58,12 @@ fn a_goto_that_is_not_one_is_refused() {
         ("GOTO/1.2.3,4,5", "malformed"),
         ("GOTO/1,2,3,0,0,0", "zero-vector"),
         ("GOTO/1,2,3,1E-12,0,0", "zero-vector"),
-        ("GOTO/1,2,3,0,0,", "malformed"),
-        // A comma at the end continues the record, but not into another one.
-        ("GOTO/1,2,3\nGOTO/,5,", "malformed"),
+        // No earlier point, a value too many, and vectors of parts that do not belong together.
+        ("GOTO/10,,", "malformed"),
+        ("GOTO/1,2,3\nGOTO/10,,,", "malformed"),
+        ("GOTO/1,2,3\nGODLTA/1,,", "malformed"),
+        ("GOTO/1,2,3,1,0,", "tool-axis"),
+        ("GOTO/1,2,3,,0,0", "tool-axis"),
         ("GOTO/1,2,1000001", "out-of-range"),
         ("GOTO/1,2,1e308", "out-of-range"),
         ("GOTO/1,2,1e999", "malformed"),

@@ -1,6 +1,6 @@
 //! Feed, spindle, tool, coolant, compensation, dwell and stop.
 
-use crate::support::{at, error, ops, reading};
+use crate::support::{HEAD, at, error, ops, reading, warnings};
 use program::{Compensation, Coolant, Feed, Op, Spindle, Tool};
 use toolpost_source::apt::{Options, read};
 
@@ -80,16 +80,62 @@ fn spindles_come_in_every_order_and_by_surface_speed() {
 }
 
 #[test]
+fn maxrpm_caps_a_surface_speed_and_the_gear_range_is_named() {
+    let speed = |text: &str| {
+        let reading = reading(&format!("{HEAD}CUTTER/10,0\n{text}\nRAPID\nGOTO/1,2,3\nFINI"));
+        let speed = reading.program.records.iter().rev().find_map(|r| match r.op {
+            Op::Spindle(spindle) => Some(spindle),
+            _ => None,
+        });
+        let rules: Vec<&str> = reading.warnings.iter().map(|w| w.rule).collect();
+        (speed.unwrap(), rules)
+    };
+    // 100 m/min on a diameter of 10 mm are 3183 1/min, 60 m/min are 1910.
+    assert_eq!(speed("SPINDL/SMM,100,MAXRPM,2500,CLW"), (Spindle::Clockwise(2500.0), vec![]));
+    let (slow, rules) = speed("SPINDL/SMM,60,CCLW,MAXRPM,2500");
+    let Spindle::CounterClockwise(rpm) = slow else { panic!("{slow:?}") };
+    assert!((rpm - 1909.859).abs() < 1e-3 && rules.is_empty(), "{rpm}");
+    assert_eq!(speed("SPINDL/2000,RPM,MAXRPM,2500"), (Spindle::Clockwise(2000.0), vec![]));
+    for range in ["LOW", "MEDIUM", "HIGH", "2"] {
+        let (spindle, rules) = speed(&format!("SPINDL/RPM,700,RANGE,{range},CLW"));
+        assert_eq!((spindle, rules), (Spindle::Clockwise(700.0), vec!["spindle-range"]), "{range}");
+    }
+    // The range alone does not turn the spindle on.
+    assert_eq!(speed("SPINDL/OFF\nSPINDL/RANGE,2"), (Spindle::Off, vec!["spindle-range"]));
+    for (text, rule) in [
+        ("SPINDL/3000,RPM,MAXRPM,2500", "spindle"),
+        ("SPINDL/SMM,100,MAXRPM,0", "spindle"),
+        ("SPINDL/MAXRPM,2500", "spindle"),
+        ("SPINDL/700,MAXRPM", "malformed"),
+        ("SPINDL/700,RANGE,FAST", "malformed"),
+    ] {
+        assert_eq!(error(&format!("CUTTER/10\n{text}")), rule, "{text}");
+    }
+}
+
+#[test]
 fn coolants_compensations_dwells_and_stops() {
-    let cases: [(&str, Vec<Op>); 15] = [
+    let coolants = |kinds: &[Coolant]| kinds.iter().map(|kind| Op::Coolant(*kind)).collect();
+    let (flood, mist, through) = (Coolant::Flood, Coolant::Mist, Coolant::Through);
+    let cases: [(&str, Vec<Op>); 22] = [
         ("COOLNT/ON", vec![Op::Coolant(Coolant::Flood)]),
         ("COOLNT/FLOOD", vec![Op::Coolant(Coolant::Flood)]),
         ("COOLNT/MIST", vec![Op::Coolant(Coolant::Mist)]),
         ("COOLNT/THRU", vec![Op::Coolant(Coolant::Through)]),
         ("COOLNT/OFF", vec![Op::Coolant(Coolant::Off)]),
+        ("COOLNT/ON,FLOOD", coolants(&[flood])),
+        ("COOLNT/THRU,ON", coolants(&[through])),
+        ("COOLNT/MIST\nCOOLNT/OFF\nCOOLNT/ON", coolants(&[mist, Coolant::Off, mist])),
+        ("COOLNT/MIST\nCOOLNT/FLOOD,ON\nCOOLNT/ON", coolants(&[mist, flood, flood])),
         ("CUTCOM/LEFT", vec![Op::Compensation(Compensation::Left(None))]),
         ("CUTCOM/RIGHT,12", vec![Op::Compensation(Compensation::Right(Some(12)))]),
         ("CUTCOM/LEFT,ADJUST,3", vec![Op::Compensation(Compensation::Left(Some(3)))]),
+        ("CUTCOM/ADJUST,5,LEFT", vec![Op::Compensation(Compensation::Left(Some(5)))]),
+        ("CUTCOM/ADJUST,5,RIGHT,XYPLAN", vec![Op::Compensation(Compensation::Right(Some(5)))]),
+        (
+            "CUTCOM/ADJUST,5,LEFT,GOTO/1,2,3",
+            vec![Op::Compensation(Compensation::Left(Some(5))), Op::Line(at(1., 2., 3.))],
+        ),
         (
             "CUTCOM/RIGHT\nCUTCOM/OFF\nCUTCOM/ON",
             vec![
@@ -117,7 +163,22 @@ fn coolants_compensations_dwells_and_stops() {
         expected.push(Op::Line(at(9., 9., 9.)));
         assert_eq!(ops(&format!("{text}\nGOTO/9,9,9")), expected, "{text}");
     }
-    for text in ["COOLNT/BEER", "CUTCOM/UP", "CUTCOM/ON", "DELAY/1,HOUR"] {
+    for text in [
+        "COOLNT/BEER",
+        "COOLNT/ON,BEER",
+        "COOLNT/ON,OFF",
+        "COOLNT/OFF,MIST",
+        "COOLNT/FLOOD,MIST",
+        "COOLNT/ON,ON",
+        "CUTCOM/UP",
+        "CUTCOM/ON",
+        "CUTCOM/5,LEFT",
+        "CUTCOM/LEFT,RIGHT",
+        "CUTCOM/LEFT,ADJUST",
+        // An offset of the fixture in some systems.
+        "CUTCOM/ADJUST,5",
+        "DELAY/1,HOUR",
+    ] {
         assert_eq!(error(text), "malformed", "{text}");
     }
     assert_eq!(error("DELAY/-1"), "dwell");
@@ -142,6 +203,8 @@ fn tools_are_described_before_or_after_they_are_loaded() {
         tool("LOADTL/7,LENGTH,120.5,OSETNO,2"),
         Tool { offset: Some(2), length: Some(120.5), ..plain.clone() }
     );
+    assert_eq!(warnings("LOAD/TOOL,7,ZOFF,25.4,ADJUST,3\nRAPID\nGOTO/0,0,0"), ["tool-offset"]);
+    assert_eq!(tool("LOAD/TOOL,7,ZOFF,0.0"), plain);
     let mill = Tool {
         name: "BALL10".into(),
         diameter: Some(10.0),
@@ -186,8 +249,58 @@ fn without_a_load_the_tool_is_number_one_and_a_second_tool_is_refused() {
     let second = "TOOL PATH/B,TOOL,DRILL\nTLDATA/DRILL,MILL,8.0,0.0,80.0,118.0,35.0\nGOTO/0,0,1\nEND-OF-PATH\n";
     let errors = read("t.cls", format!("{text}{second}").as_bytes(), &Options::default());
     assert_eq!(errors.unwrap_err()[0].rule, "tool-change");
-    // With its own LOAD it is changed to.
+    // With its own LOAD it is changed to; but then the number of the first tool is to be said as well.
     let loaded = second.replace("GOTO", "LOAD/TOOL,2\nGOTO");
-    let both = reading(&format!("{text}{loaded}"));
+    let first_unknown = read("t.cls", format!("{text}{loaded}").as_bytes(), &Options::default());
+    assert_eq!(first_unknown.unwrap_err()[0].rule, "tool-number");
+    let first = text.replace("SPINDL", "LOAD/TOOL,1\nSPINDL");
+    let both = reading(&format!("{first}{loaded}"));
     assert!(both.program.records.iter().any(|r| matches!(&r.op, Op::Tool(t) if t.name == "DRILL")));
+}
+
+#[test]
+fn a_rapid_before_the_first_load_is_made_with_that_tool_and_a_cut_is_refused() {
+    // A tool change of CATIA: its point, then the description, then the load.
+    let change = "UNITS/MM\nSPINDL/70,RPM,CLW\nRAPID\nGOTO/0,0,100\nCUTTER/10,2\nTOOLNO/5,10\n\
+                  TPRINT/Mill D 10\nLOADTL/5\n";
+    let rest = "FEDRAT/300,MMPM\nRAPID\nGOTO/1,0,50\nGOTO/1,0,-1\nFINI";
+    let text = format!("{change}{rest}");
+    let read_so = reading(&text);
+    let tool = Tool {
+        number: 5,
+        name: "Mill D 10".into(),
+        diameter: Some(10.0),
+        corner_radius: Some(2.0),
+        ..Tool::default()
+    };
+    let ops: Vec<&Op> = read_so.program.records.iter().map(|r| &r.op).collect();
+    let expected = [
+        Op::Spindle(Spindle::Clockwise(70.0)),
+        Op::Tool(Box::new(tool)),
+        Op::Rapid(at(0., 0., 100.)),
+        Op::Feed(Feed::PerMinute(300.0)),
+        Op::Rapid(at(1., 0., 50.)),
+        Op::Line(at(1., 0., -1.)),
+        Op::End,
+    ];
+    assert_eq!(ops, expected.iter().collect::<Vec<_>>());
+    let [warning] = &read_so.warnings[..] else { panic!("{:?}", read_so.warnings) };
+    assert_eq!((warning.rule, warning.line), ("tool-number", 4));
+    assert!(warning.message.contains("line 4 ") && warning.message.contains("line 8)"));
+    // The tool is described after the load as well.
+    let after = reading(&text.replace("LOADTL/5\n", "LOADTL/5\nCUTTER/12\n"));
+    assert!(matches!(&after.program.records[1].op, Op::Tool(t) if t.diameter == Some(12.0)));
+    // A cut, a cut after a rapid, another tool, and a load that is none.
+    let cut = text.replace("RAPID\nGOTO/0", "FEDRAT/9,MMPM\nGOTO/0");
+    let second = text.replace("CUTTER/10,2", "FEDRAT/9,MMPM\nGOTO/0,0,99");
+    let other = text.replace("RAPID\nGOTO/0", "CUTTER/8\nRAPID\nGOTO/0");
+    let none = format!("{}{}", change.replace("LOADTL/5\n", "INTOL/1,$\nLOADTL,5\n"), "FINI");
+    for (text, line, named) in
+        [(cut, 4, "line 8)"), (second, 6, "line 9)"), (other, 9, "line 5 "), (none, 10, "line 9 ")]
+    {
+        let error = read("t.apt", text.as_bytes(), &Options::default()).unwrap_err().remove(0);
+        assert_eq!((error.rule, error.line), ("tool-number", line), "{text}");
+        assert!(error.message.contains(named), "{}", error.message);
+        assert!(!error.help.is_empty());
+    }
 }

@@ -66,7 +66,7 @@ fn words_for_people_stay_words() {
         inserted.program.records[HEAD_OPS..HEAD_OPS + 3].iter().map(|r| &r.op).collect();
     assert_eq!(
         ops,
-        [&Op::Comment("M00 G91".into()), &Op::Stop, &Op::Message("turn the part".into())]
+        [&Op::Comment("M00 G91".into()), &Op::Message("turn the part".into()), &Op::Stop]
     );
     assert_eq!(inserted.warnings.iter().map(|w| w.rule).collect::<Vec<_>>(), ["insert", "insert"]);
     assert_eq!(
