@@ -187,7 +187,7 @@ impl Reader {
             }
             Next::Line => {
                 self.prepare(record, true)?;
-                self.not_on_the_arc(&pose)?;
+                self.not_on_the_arc(record, &pose)?;
                 self.push(record.line, Op::Line(pose));
                 self.arrive(pose);
                 Ok(())
