@@ -292,12 +292,17 @@ impl Reader {
         ))
     }
 
-    /// `MULTAX/ON`, `MULTAX/OFF`. Without multi-axis output the tool stands along Z.
+    /// `MULTAX/ON`, `MULTAX/OFF`. Without multi-axis output the tool stands along Z; in CATIA its axis is
+    /// locked as it was in the last point before, and no `TLAXIS` says so (Dassault Systèmes, *Syntax of
+    /// Generated APT Instructions*, MULTAX influence).
     pub(super) fn multax(&mut self, record: &Record) -> Outcome {
         record.count(&[0, 1], "MULTAX/ON or MULTAX/OFF")?;
         match () {
             () if record.fields.is_empty() || record.is(0, "ON") => Ok(()),
             () if record.is(0, "OFF") => {
+                if self.dialect == Dialect::Catia {
+                    return Ok(());
+                }
                 self.axis = self.setup.to_work.matrix3.z_axis;
                 Ok(())
             }

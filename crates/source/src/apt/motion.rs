@@ -276,8 +276,8 @@ impl Reader {
     }
 
     /// A motion before line `load` loads the first tool. CATIA goes to the point of tool change so,
-    /// before it describes and loads the tool (Dassault Systèmes, *Syntax of Generated APT
-    /// Instructions*, MULTAX). A rapid has no other meaning than where the tool is to be: with the first
+    /// before it describes and loads the tool (Dassault Systèmes, *NC Data Options*, "Include GOTO for
+    /// tool change"; example in *Syntax of Generated APT Instructions*). A rapid has no other meaning than where the tool is to be: with the first
     /// tool loaded before it, its tip is there. With which tool a cut is made is not known.
     fn move_before_load(&mut self, record: &Record, cut: bool, load: u32) -> Outcome {
         if cut {

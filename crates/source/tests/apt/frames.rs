@@ -112,6 +112,16 @@ fn creo_gives_its_tool_and_its_coordinate_system_in_directives() {
 }
 
 #[test]
+fn catia_locks_the_tool_axis_where_multi_axis_output_ends() {
+    let text = format!(
+        "$$ Start generation of : Sweeping.1\n{HEAD}MULTAX/ON\nGOTO/1,2,3,0,-.6,.8\nMULTAX/OFF\n\
+         GOTO/4,5,6\nFINI"
+    );
+    let ops: Vec<Op> = reading(&text).program.records.into_iter().map(|r| r.op).collect();
+    assert_poses(&ops, &[([1., 2., 3.], [0., -0.6, 0.8]), ([4., 5., 6.], [0., -0.6, 0.8])]);
+}
+
+#[test]
 fn catia_gives_its_axis_system_in_remarks() {
     let system = |rows: &str| format!("$$*CATIA0\n$$ Axis.1\n{rows}");
     let first = system("$$ 1.0 0.0 0.0 50.0\n$$ 0.0 1.0 0.0 0.0\n$$ 0.0 0.0 1.0 0.0\n");
