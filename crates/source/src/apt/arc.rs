@@ -178,9 +178,17 @@ impl Reader {
     }
 
     /// Creo may list several points of an arc. In `GOTO`s of their own they could not be told from
-    /// chords, so a line of Creo to a further point of the circle it has just left is refused.
-    pub(super) fn not_on_the_arc(&self, pose: &Pose) -> Outcome {
-        let (Dialect::Creo, Some(_)) = (self.dialect, self.last_arc) else { return Ok(()) };
+    /// chords, so a line of Creo to a further point of the circle it has just left is refused. The line
+    /// back to its start is the chord that closes the contour: a full circle ends at its start in its
+    /// own record.
+    pub(super) fn not_on_the_arc(&mut self, record: &Record, pose: &Pose) -> Outcome {
+        let (Dialect::Creo, Some(start)) = (self.dialect, self.last_arc) else { return Ok(()) };
+        if start.distance(pose.point) <= RADIUS_TOLERANCE {
+            let message =
+                "a line to the start of the arc just cut: read as the chord that closes it";
+            self.report.warn(record, "arc-points", message, "check that no full circle is meant");
+            return Ok(());
+        }
         let Some(Op::Arc(to)) = self.program.records.last().map(|r| &r.op) else { return Ok(()) };
         let on = Arc::new(to.end.point, pose.point, to.center, to.normal, 0, RADIUS_TOLERANCE);
         match on {

@@ -330,13 +330,37 @@ impl Reader {
                 .fields(0, 1)
         })?;
         if matches!(record.fields.get(words.len()), Some(Field::Number(_))) {
-            return Err(Fault::new("unsupported", "the form of ISO 4343:1978, by position")
-                .help("let the CAM system write words and values: FEDTO,depth,RAPTO,height")
-                .fields(words.len(), 1));
+            return Err(self.by_position().fields(words.len(), 1));
         }
         // Siemens NX calls the bore that stops the spindle BORE,DRAG; its BORE feeds out again.
         let feeds_out = self.dialect == Dialect::Nx && *words == ["BORE"];
         Ok((words.len(), if feeds_out { Kind::Ream } else { *kind }))
+    }
+
+    /// The refusal of a cycle whose values have no words. What each place means is not in the file:
+    /// CATIA fills it from the table of the machine (Dassault Systèmes, *PP Tables and Word Syntaxes*:
+    /// `CYCLE/TAP,%MFG_TOTAL_DEPTH,%MFG_CLEAR_TIP`; published files have depth, feed, unit, clearance,
+    /// and others two lengths before the feed), Creo counts `z` as the depth to feed to (PTC, *CL Output
+    /// for Holemaking Cycles*) and does not say from where.
+    #[cold]
+    fn by_position(&self) -> Box<Fault> {
+        let (message, help) = match self.dialect {
+            Dialect::Catia => (
+                "a cycle by position: what each place means is in the PP table of the CATIA machine, not \
+                 in the file",
+                "let the PP table write words: CYCLE/DRILL,DEPTH,depth,MMPM,feed,CLEAR,height; or \
+                 output the single moves",
+            ),
+            Dialect::Creo => (
+                "a cycle by position (cycle_format fixed): from where its depths count is not said",
+                "set the Creo option cycle_format to couplet",
+            ),
+            _ => (
+                "the form of ISO 4343:1978, by position",
+                "let the CAM system write words and values: FEDTO,depth,RAPTO,height",
+            ),
+        };
+        Fault::new("unsupported", message).help(help)
     }
 
     /// The depth below the point of the hole. Siemens NX gives it as a height, below zero.

@@ -262,8 +262,9 @@ impl Reader {
         Ok(())
     }
 
-    /// `ROTATE/...`: a rotary axis sent to an angle. Only no rotation at all can be resolved: for any
-    /// other the file does not say whether the coordinates turn with the table.
+    /// `ROTATE/...`, `ROTABL/...`, `ROTHED/...`: a rotary axis sent to an angle. Only no rotation at all
+    /// can be resolved: for any other the file does not say whether the coordinates turn with the table,
+    /// and a file whose points have tool axes has no need of it.
     pub(super) fn rotate(&mut self, record: &Record) -> Outcome {
         let angles = record.fields.iter().filter_map(|field| match field {
             super::record::Field::Number(angle) => Some(*angle),
@@ -273,18 +274,35 @@ impl Reader {
         if angles == [0.0] {
             return Ok(());
         }
-        let message = "ROTATE turns a rotary axis, and the file does not say what that does to the \
-                       coordinates after it";
+        let word = super::text::decode(record.major);
+        let message = format!(
+            "{word} turns a rotary axis, and the file does not say what that does to the coordinates \
+             after it"
+        );
         Err(Fault::new("unsupported", message)
-            .help("let the CAM system write tool-axis vectors (multi-axis output)"))
+            .help("let the CAM system write tool-axis vectors (multi-axis output) instead"))
     }
 
-    /// `MULTAX/ON`, `MULTAX/OFF`. Without multi-axis output the tool stands along Z.
+    /// `HEAD/...`: another head of the machine. Where it holds the tool is not in the file.
+    pub(super) fn head(&mut self, _: &Record) -> Outcome {
+        let message = "HEAD changes to another head of the machine, and how that holds the tool is not in \
+                       the file";
+        Err(Fault::new("unsupported", message).help(
+            "post the operations of each head as a file of its own, with the machine file of that head",
+        ))
+    }
+
+    /// `MULTAX/ON`, `MULTAX/OFF`. Without multi-axis output the tool stands along Z; in CATIA its axis is
+    /// locked as it was in the last point before, and no `TLAXIS` says so (Dassault Systèmes, *Syntax of
+    /// Generated APT Instructions*, MULTAX influence).
     pub(super) fn multax(&mut self, record: &Record) -> Outcome {
         record.count(&[0, 1], "MULTAX/ON or MULTAX/OFF")?;
         match () {
             () if record.fields.is_empty() || record.is(0, "ON") => Ok(()),
             () if record.is(0, "OFF") => {
+                if self.dialect == Dialect::Catia {
+                    return Ok(());
+                }
                 self.axis = self.setup.to_work.matrix3.z_axis;
                 Ok(())
             }

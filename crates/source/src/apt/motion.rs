@@ -187,7 +187,7 @@ impl Reader {
             }
             Next::Line => {
                 self.prepare(record, true)?;
-                self.not_on_the_arc(&pose)?;
+                self.not_on_the_arc(record, &pose)?;
                 self.push(record.line, Op::Line(pose));
                 self.arrive(pose);
                 Ok(())
@@ -276,8 +276,8 @@ impl Reader {
     }
 
     /// A motion before line `load` loads the first tool. CATIA goes to the point of tool change so,
-    /// before it describes and loads the tool (Dassault Systèmes, *Syntax of Generated APT
-    /// Instructions*, MULTAX). A rapid has no other meaning than where the tool is to be: with the first
+    /// before it describes and loads the tool (Dassault Systèmes, *NC Data Options*, "Include GOTO for
+    /// tool change"; example in *Syntax of Generated APT Instructions*). A rapid has no other meaning than where the tool is to be: with the first
     /// tool loaded before it, its tip is there. With which tool a cut is made is not known.
     fn move_before_load(&mut self, record: &Record, cut: bool, load: u32) -> Outcome {
         if cut {

@@ -1,7 +1,8 @@
 //! Decimal numbers, exactly.
 //!
 //! Every number of a toolpath passes here, so the common shape (a sign, at most 15 or so digits, a
-//! point) is read by hand; all else goes to the standard library. Both give the nearest `f64`.
+//! point) is read by hand; all else goes to the standard library. Both give the nearest `f64`. An
+//! exponent may be written with `D`, as Fortran does.
 
 /// Powers of ten that an `f64` holds exactly.
 const POWERS: [f64; 23] = [
@@ -45,7 +46,8 @@ pub(super) fn leading(text: &[u8]) -> Option<(f64, usize)> {
     if digits == 0 {
         return None;
     }
-    if matches!(text.get(at), Some(b'e' | b'E')) || digits > 19 || mantissa >= 1 << 53 {
+    if matches!(text.get(at), Some(b'e' | b'E' | b'd' | b'D')) || digits > 19 || mantissa >= 1 << 53
+    {
         return by_the_standard_library(text, at);
     }
     // Mantissa and power are exact, so their quotient is the correctly rounded value.
@@ -59,7 +61,9 @@ pub(super) fn leading(text: &[u8]) -> Option<(f64, usize)> {
 /// As [`leading`], for a number whose digits end at `at` and which an exponent may follow.
 #[cold]
 fn by_the_standard_library(text: &[u8], mut at: usize) -> Option<(f64, usize)> {
-    if matches!(text.get(at), Some(b'e' | b'E')) {
+    let mut fortran = None;
+    if let Some(mark @ (b'e' | b'E' | b'd' | b'D')) = text.get(at) {
+        fortran = matches!(mark, b'd' | b'D').then_some(at);
         at += 1;
         if matches!(text.get(at), Some(b'+' | b'-')) {
             at += 1;
@@ -68,7 +72,13 @@ fn by_the_standard_library(text: &[u8], mut at: usize) -> Option<(f64, usize)> {
             at += 1;
         }
     }
-    let value: f64 = std::str::from_utf8(text.get(..at)?).ok()?.parse().ok()?;
+    let number = std::str::from_utf8(text.get(..at)?).ok()?;
+    let value: f64 = match fortran {
+        Some(mark) => {
+            format!("{}E{}", number.get(..mark)?, number.get(mark + 1..)?).parse().ok()?
+        }
+        None => number.parse().ok()?,
+    };
     value.is_finite().then_some((value, at))
 }
 
@@ -88,6 +98,8 @@ mod tests {
             ("-0.0000000", -0.0),
             ("1E-3", 1e-3),
             ("1.5e+2", 150.0),
+            ("1D2", 100.0),
+            ("-.25d-01", -0.025),
             ("0000000000000000000000000012.5", 12.5),
             ("0.1000000000000000055511151231257827021181583404541015625", 0.1),
         ] {
@@ -98,7 +110,9 @@ mod tests {
 
     #[test]
     fn what_is_no_finite_number_is_none() {
-        for text in ["", "-", ".", "+.", "abc", "nan", "inf", "-inf", "1e999", "1e", "E5", "--1"] {
+        for text in
+            ["", "-", ".", "+.", "abc", "nan", "inf", "-inf", "1e999", "1e", "1d", "E5", "--1"]
+        {
             assert_eq!(leading(text.as_bytes()), None, "{text}");
         }
         assert_eq!(leading(b"1,2"), Some((1.0, 1)));
@@ -110,9 +124,9 @@ mod tests {
 
         #[test]
         fn every_decimal_is_read_as_the_standard_library_reads_it(
-            text in "[-+]?([0-9]{1,24}\\.?[0-9]{0,30}|\\.[0-9]{1,25})([eE][-+]?[0-9]{1,3})?",
+            text in "[-+]?([0-9]{1,24}\\.?[0-9]{0,30}|\\.[0-9]{1,25})([eEdD][-+]?[0-9]{1,3})?",
         ) {
-            let expected: f64 = text.parse().unwrap();
+            let expected: f64 = text.replace(['d', 'D'], "e").parse().unwrap();
             match leading(text.as_bytes()) {
                 Some((value, length)) => {
                     prop_assert_eq!(value.to_bits(), expected.to_bits());

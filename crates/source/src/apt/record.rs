@@ -134,7 +134,15 @@ impl<'r> Record<'r> {
     pub(super) fn number(&self, index: usize, what: &str) -> Result<f64, Box<Fault>> {
         match self.fields.get(index) {
             Some(Field::Number(value)) => Ok(*value),
-            _ => Err(Fault::new("malformed", format!("{what} is missing")).fields(index, 1)),
+            Some(Field::Word(from, to)) => {
+                let word = self.text.get(*from..*to).unwrap_or_default();
+                Err(Fault::new("malformed", not_a_number(word))
+                    .help(format!("{what} is a decimal number"))
+                    .fields(index, 1))
+            }
+            _ => Err(Fault::new("malformed", format!("{what} is missing"))
+                .help("write a decimal number here")
+                .fields(index, 1)),
         }
     }
 
@@ -269,7 +277,9 @@ impl<'t> Joiner<'t> {
                 record.spans = &[];
                 let spans = [(from, to)];
                 let record = Record { spans: &spans, ..record };
-                Err(Box::new(record.locate(Diagnostic::error("malformed", message), Some((0, 1)))))
+                let error = Diagnostic::error("malformed", message)
+                    .help("values are decimal numbers and words, with commas between them");
+                Err(Box::new(record.locate(error, Some((0, 1)))))
             }
         }
     }
@@ -433,7 +443,7 @@ fn split_fields(
                         }
                         Field::Word(at, end)
                     }
-                    _ => return Err((at, end, "this is not a number".into())),
+                    _ => return Err((at, end, not_a_number(&text[at..end]))),
                 };
                 fields.push(field);
                 spans.push((at, end));
@@ -482,7 +492,15 @@ fn is_letter(c: &u8) -> bool {
 
 /// Whether `text` is shaped like a number with an exponent.
 fn exponent_only(text: &[u8]) -> bool {
-    text.iter().all(|c| c.is_ascii_digit() || b".eE+-".contains(c))
+    text.last().is_some_and(u8::is_ascii_digit)
+        && text.iter().all(|c| c.is_ascii_digit() || b".eEdD+-".contains(c))
+}
+
+/// What to say of `text` where a number should be.
+#[cold]
+fn not_a_number(text: &[u8]) -> String {
+    let shown = text.get(..40).unwrap_or(text);
+    format!("{} is not a number", String::from_utf8_lossy(shown))
 }
 
 fn is_word(c: u8) -> bool {

@@ -119,6 +119,13 @@ fn creo_lists_the_points_of_an_arc_line_by_line() {
     };
     assert_eq!(wrong("GOTO / -10,0,0\n0,10,0"), "arc-direction");
     assert_eq!(wrong("GOTO / 0,10,0\nGOTO / -10,0,0"), "arc-points");
+    // A half circle and its diameter.
+    let closed = reading(&format!("{head}GOTO / -10,0,0\nGOTO / 10,0,0\nFINI"));
+    assert_eq!(closed.program.records[5].op, Op::Line(at(10., 0., 0.)));
+    assert_eq!(
+        closed.warnings.iter().map(|w| (w.rule, w.line)).collect::<Vec<_>>(),
+        [("arc-points", 9)]
+    );
     assert_eq!(error("1,2,3"), "malformed");
     assert_poses(&ops("GOTO/1,2,3\n4,5,6"), &[([1., 2., 3.], Z), ([4., 5., 6.], Z)]);
 }

@@ -107,6 +107,26 @@ fn errors_are_all_shown_up_to_a_cap_and_there_is_no_partial_program() {
 }
 
 #[test]
+fn an_error_says_which_word_is_no_number() {
+    for (word, message) in [
+        ("nan", "nan is not a number"),
+        ("A12", "A12 is not a number"),
+        ("-inf", "-inf is not a number"),
+        ("1E", "1E is not a number"),
+        ("1D999", "this number is too large"),
+    ] {
+        let error = refusal(GOOD.replace("2.5", word));
+        assert_eq!((error.rule, error.line, error.column), ("malformed", 7, 10), "{word}");
+        assert_eq!(error.message, message);
+        assert!(!error.help.is_empty());
+    }
+    let missing = refusal(GOOD.replace("LOAD/TOOL,1", "CUTTER/\nLOAD/TOOL,1"));
+    assert_eq!(missing.message, "the diameter is missing");
+    // An exponent as Fortran writes it.
+    assert_eq!(try_read(GOOD.replace("2.5", ".25D1")), try_read(GOOD));
+}
+
+#[test]
 fn an_error_shows_its_place() {
     let text = GOOD.replace("GOTO/1.5,2.5,-3", "GOTO/1.5,2.5,-3,0,0,0");
     let shown = refusal(&text).to_string();

@@ -196,6 +196,20 @@ fn words_of_one_control_are_named_and_bores_of_another_kind_refused() {
 }
 
 #[test]
+fn a_cycle_by_position_is_refused_with_the_way_out_of_its_system() {
+    for (sign, way_out) in [
+        ("$$ Start generation of : Drilling.1", "PP table"),
+        ("$$* Pro/CLfile", "cycle_format to couplet"),
+        ("$$ any", "FEDTO,depth"),
+    ] {
+        let text = format!("{sign}\n{HEAD}CYCLE/DRILL,10.,300.,MMPM,2.\nGOTO/1,2,0\nFINI");
+        let error = read("b.apt", text.as_bytes(), &Options::default()).unwrap_err().remove(0);
+        assert_eq!((error.rule, error.line, error.column), ("unsupported", 6, 13));
+        assert!(error.message.contains("by position") && error.help.contains(way_out), "{sign}");
+    }
+}
+
+#[test]
 fn a_cycle_that_is_not_whole_is_refused() {
     for (text, rule) in [
         ("CYCLE/DRILL,FEDTO,10,MMPM,200", "no-clear-plane"),

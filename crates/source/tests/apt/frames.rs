@@ -3,7 +3,7 @@
 use crate::support::{HEAD, Z, assert_poses, error, ops, reading};
 use geom::Vec3;
 use program::Op;
-use toolpost_source::apt::Dialect;
+use toolpost_source::apt::{Dialect, Options, read};
 
 #[test]
 fn frames_are_resolved_relative_to_the_first() {
@@ -63,6 +63,7 @@ fn origins_shifts_inches_and_axes_are_resolved() {
         ("ROTATE/TABLE,ATANGL,90", "unsupported"),
         ("ROTATE/TABLE,INCR,0,0", "unsupported"),
         ("MODE/INCR", "unsupported"),
+        ("ROTABL/ATANGL,90", "unsupported"),
         ("HEAD/2", "unsupported"),
         ("TRACUT/A", "unsupported"),
         ("GOHOME", "unsupported"),
@@ -73,6 +74,20 @@ fn origins_shifts_inches_and_axes_are_resolved() {
         ("TRNTYP/WORLD\nCSYS/1,0,0,0,0,1,0,0,0,0,1,0\nCSYS/1,0,0,5,0,1,0,0,0,0,1,0", "frame"),
     ] {
         assert_eq!(error(text), rule, "{text}");
+    }
+}
+
+#[test]
+fn a_rotary_axis_or_another_head_is_refused_with_the_reason_and_the_way_out() {
+    for (text, reason, way_out) in [
+        ("ROTATE/TABLE,90", "ROTATE turns a rotary axis", "tool-axis vectors"),
+        ("ROTHED/AAXIS,ATANGL,30", "ROTHED turns a rotary axis", "tool-axis vectors"),
+        ("HEAD/2", "another head", "file of its own"),
+    ] {
+        let whole = format!("{HEAD}{text}\nGOTO/1,2,3\nFINI");
+        let error = read("r.apt", whole.as_bytes(), &Options::default()).unwrap_err().remove(0);
+        assert_eq!((error.rule, error.line, error.column), ("unsupported", 5, 1), "{text}");
+        assert!(error.message.contains(reason) && error.help.contains(way_out), "{error}");
     }
 }
 
@@ -94,6 +109,16 @@ fn creo_gives_its_tool_and_its_coordinate_system_in_directives() {
     assert!(matches!(&ops[0], Op::Tool(tool) if tool.diameter == Some(12.5)));
     let other = format!("{}GOTO/1,2,3\n{}", system("1.0"), system("-1.0"));
     assert_eq!(error(&other), "frame");
+}
+
+#[test]
+fn catia_locks_the_tool_axis_where_multi_axis_output_ends() {
+    let text = format!(
+        "$$ Start generation of : Sweeping.1\n{HEAD}MULTAX/ON\nGOTO/1,2,3,0,-.6,.8\nMULTAX/OFF\n\
+         GOTO/4,5,6\nFINI"
+    );
+    let ops: Vec<Op> = reading(&text).program.records.into_iter().map(|r| r.op).collect();
+    assert_poses(&ops, &[([1., 2., 3.], [0., -0.6, 0.8]), ([4., 5., 6.], [0., -0.6, 0.8])]);
 }
 
 #[test]
