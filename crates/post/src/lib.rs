@@ -14,6 +14,7 @@ mod arcs;
 mod catalogue;
 mod cycles;
 mod findings;
+mod guard;
 mod motion;
 mod number;
 mod place;

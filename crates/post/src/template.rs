@@ -6,9 +6,10 @@
 //! spacing.
 
 use crate::catalogue::{BlockName, VARIABLES, WordName, nearest};
+use crate::guard::{self, Fault};
 use machine::{Block, Format, Machine, OptionValue};
 use minijinja::value::{Object, Value};
-use minijinja::{AutoEscape, Environment, UndefinedBehavior};
+use minijinja::{AutoEscape, Environment, ErrorKind, UndefinedBehavior};
 use program::{Diagnostic, Op, Program, Tool};
 use std::collections::BTreeMap;
 use std::io;
@@ -44,6 +45,29 @@ pub(crate) enum Step {
     End,
 }
 
+/// Whether a place of a line stands in a comment or in quotes.
+#[derive(Clone, Copy, Default)]
+struct Marks {
+    quoted: bool,
+    comment: bool,
+}
+
+impl Marks {
+    /// Goes past the first character of `rest`.
+    fn pass(&mut self, rest: &str, format: &Format) {
+        if !self.quoted && !self.comment && !format.comment_start.is_empty() {
+            self.comment = rest.starts_with(&format.comment_start);
+        } else if self.comment && !format.comment_end.is_empty() {
+            self.comment = !rest.starts_with(&format.comment_end);
+        }
+        self.quoted ^= rest.starts_with('"') && !self.comment;
+    }
+
+    fn inside(self) -> bool {
+        self.quoted || self.comment
+    }
+}
+
 /// A block without statements.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Lines {
@@ -58,25 +82,19 @@ impl Lines {
         for line in text.split('\n') {
             let origin = line.as_ptr() as usize - text.as_ptr() as usize;
             let mut from = 0;
-            let (mut quoted, mut comment) = (false, false);
+            let mut marks = Marks::default();
             let literal = |steps: &mut Vec<Step>, from: usize, to: usize| {
                 if from < to {
                     steps.push(Step::Text((origin + from) as u32, (origin + to) as u32));
                 }
             };
             for (at, c) in line.char_indices() {
-                let rest = &line[at..];
-                if !quoted && !comment && !format.comment_start.is_empty() {
-                    comment = rest.starts_with(&format.comment_start);
-                } else if comment && !format.comment_end.is_empty() {
-                    comment = !rest.starts_with(&format.comment_end);
-                }
-                quoted ^= c == '"' && !comment;
+                marks.pass(&line[at..], format);
                 let word = u32::from(c).checked_sub(FIRST_WORD).map(|i| i as usize);
                 let step = match word.and_then(|i| WordName::ALL.get(i)) {
                     Some(&word) => Step::Word(word),
                     None if c == '\r' => Step::Gap,
-                    None if c.is_ascii_whitespace() && !quoted && !comment => Step::Gap,
+                    None if c.is_ascii_whitespace() && !marks.inside() => Step::Gap,
                     None => continue,
                 };
                 literal(&mut steps, from, at);
@@ -174,7 +192,46 @@ impl Object for Scope {
     }
 }
 
+/// Free text of a source as a trial fills it in: nothing that a control could run.
+const SAMPLES: [(&str, &str); 3] = [
+    ("text", "sample of a text"),
+    ("operation.name", "sample of an operation"),
+    ("tool.name", "sample of a tool"),
+];
+
+/// Whether `sample` stands anywhere in `text` outside of comments and quotes.
+fn bare(text: &str, sample: &str, format: &Format) -> bool {
+    text.split('\n').any(|line| {
+        let mut marks = Marks::default();
+        line.char_indices().any(|(at, _)| {
+            marks.pass(&line[at..], format);
+            !marks.inside() && line[at..].starts_with(sample)
+        })
+    })
+}
+
 impl Scope {
+    /// What a trial runs on: every value is there. With `first` the tool is the first one and has a
+    /// name that describes it, and every word may be written; else its name identifies it.
+    fn sample(machine: &Machine, first: bool) -> Scope {
+        let [(_, text), (_, operation), (_, name)] = SAMPLES;
+        let name = if first { name } else { "SAMPLE" };
+        let (diameter, corner_radius, length) = (Some(10.0), Some(0.5), Some(100.0));
+        let tool =
+            Tool { number: 1, name: name.into(), diameter, corner_radius, length, offset: None };
+        let mut program = Program::new("sample");
+        program.push(1, Op::Tool(Box::new(tool.clone())));
+        Scope {
+            set: if first { Words::MAX } else { 0 },
+            program: program_value(&program),
+            operation: map([("name", Value::from(operation))]),
+            tool: tool_value(&tool, first),
+            spindle: map([("changed", Value::from(first))]),
+            text: Value::from(text),
+            ..Scope::new(machine)
+        }
+    }
+
     pub(crate) fn new(machine: &Machine) -> Scope {
         let options = machine.options.iter().map(|(name, value)| {
             let value = match value {
@@ -284,9 +341,7 @@ impl<'a> Templates<'a> {
     /// Every block, word or variable that the catalogue does not know, and every template that the
     /// engine does not understand, each with its place in the machine's files.
     pub(crate) fn compile(machine: &'a Machine) -> Result<Templates<'a>, Vec<Diagnostic>> {
-        let mut engine = Environment::new();
-        // `'%1000000000d'|format(1)` takes a gigabyte before any limit of ours sees it.
-        engine.remove_filter("format");
+        let mut engine = guard::engine();
         engine.set_undefined_behavior(UndefinedBehavior::SemiStrict);
         engine.set_auto_escape_callback(|_| AutoEscape::None);
         engine.set_fuel(Some(FUEL));
@@ -303,7 +358,39 @@ impl<'a> Templates<'a> {
                 Err(error) => errors.push(*error),
             }
         }
+        if errors.is_empty() {
+            let names = BlockName::ALL.iter();
+            errors.extend(names.filter_map(|&name| templates.attempt(name).err()).map(|e| *e));
+        }
         if errors.is_empty() { Ok(templates) } else { Err(errors) }
+    }
+
+    /// Runs a block on samples, so that one that can never run is told before a program needs it.
+    fn attempt(&self, name: BlockName) -> Result<(), Box<Diagnostic>> {
+        let (Some(template), None) = (&self.blocks[name as usize], self.lines(name)) else {
+            return Ok(());
+        };
+        for first in [true, false] {
+            let rendered = self.render(name, Scope::sample(self.machine, first))?;
+            let spoken =
+                SAMPLES.iter().find(|(_, text)| bare(&rendered.text, text, &self.machine.format));
+            if let Some((variable, _)) = spoken {
+                let Format { comment_start, comment_end, .. } = &self.machine.format;
+                let message = format!(
+                    "`{variable}` stands outside of comments and quotes: the control would take it for words"
+                );
+                let help = format!("put it between `{comment_start}` and the end of the line");
+                let help = if comment_end.is_empty() {
+                    help
+                } else {
+                    format!("put it between `{comment_start}` and `{comment_end}`")
+                };
+                let found = Diagnostic::error("template-comment", message).help(help);
+                let place = template.block.text.find(variable).unwrap_or(0);
+                return Err(Box::new(at(template.block, found, place, place + variable.len())));
+            }
+        }
+        Ok(())
     }
 
     fn one(&self, block: &'a Block) -> Result<Template<'a>, Box<Diagnostic>> {
@@ -311,6 +398,17 @@ impl<'a> Templates<'a> {
             let lines = Lines::of(text, &self.machine.format);
             return Ok(Template { block, uses: lines.uses(), lines: Some(lines) });
         }
+        guard::check(&block.text, self.machine).map_err(|fault| match fault {
+            Fault::Syntax(error) => {
+                let mut found = self::fault(block, &error);
+                found.help = guard::STATEMENTS.into();
+                found
+            }
+            Fault::Refused(no) => {
+                let found = Diagnostic::error(no.rule, no.message).help(no.help);
+                Box::new(at(block, found, no.place.start, no.place.end))
+            }
+        })?;
         let compiled = self.engine.template_from_str(&block.text).map_err(|e| fault(block, &e))?;
         let mut uses = 0;
         let mut names: Vec<String> = compiled.undeclared_variables(true).into_iter().collect();
@@ -407,7 +505,10 @@ fn unknown_block(name: &str, block: &Block) -> Box<Diagnostic> {
 
 /// What the engine says, at its place.
 fn fault(block: &Block, error: &minijinja::Error) -> Box<Diagnostic> {
-    let mut message = error.kind().to_string();
+    let mut message = match error.kind() {
+        ErrorKind::OutOfFuel => String::from("it does not come to an end"),
+        kind => kind.to_string(),
+    };
     if let Some(detail) = error.detail() {
         message = format!("{message}: {detail}");
     }

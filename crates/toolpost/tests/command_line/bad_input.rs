@@ -167,17 +167,23 @@ fn a_machine_file_with_a_mistake() {
 }
 
 #[test]
-fn a_template_that_never_ends_or_writes_without_end() {
-    let endless = "{% for a in range(99999) %}{% for b in range(99999) %}{% endfor %}{% endfor %}";
-    let flood = "{{ '%1000000000d'|format(1) }}";
-    let path = "{% include '../../etc/passwd' %}";
-    for template in [endless, flood, path] {
-        let folder = Folder::new();
-        let text = format!("extends = \"{MACHINE}\"\n[blocks]\nprogram_start = \"{template}\"\n");
-        folder.write("mine.toml", text);
-        let said = folder.run(&["post", "part.cls", "-m", "mine.toml", "-o", "out.mpf"]);
-        assert_eq!(said.code, 2, "{template}: {said:?}");
-        assert!(said.err.contains("mine.toml:3:") && said.err.contains("error["), "{said:?}");
-        assert_eq!(folder.names(), ["mine.toml", "part.cls"]);
+fn a_template_that_can_never_run() {
+    for (template, rule) in [
+        ("{% for a in range(999) %}{% for b in range(999) %}{% endfor %}{% endfor %}", "template"),
+        ("{{ '%1000000000d'|format(1) }}", "template"),
+        ("{% include '../../etc/passwd' %}", "template"),
+        ("{{ tool.number / 0 }}", "template"),
+        ("{{ tool.name|nonesuch }}", "template-name"),
+        ("{{ options.default_tool ~ 'x' * 99999999 }}", "template-output"),
+    ] {
+        machine_refused(&format!("[blocks]\nprogram_start = \"{template}\"\n"), "4:", rule);
     }
+}
+
+#[test]
+fn a_text_that_the_control_would_run() {
+    let refused = |text, place| machine_refused(text, place, "template-comment");
+    refused("[blocks]\ncomment = \"{{N}} {{ text }}\"\n", "4:21");
+    refused("[blocks]\nmessage = '''\n; said\nMSG({{ text }})\n'''\n", "6:8");
+    refused("[blocks]\noperation_start = \"{{ operation.name }} ; begins\"\n", "4:23");
 }

@@ -1,0 +1,92 @@
+//! Templates that are refused before anything is written, and those that are not.
+
+use std::time::{Duration, Instant};
+
+/// What `post::check` says of a machine with this `program_start`.
+fn checked(template: &str) -> Result<(), String> {
+    let text = format!(
+        "extends = \"linuxcnc\"\n[options]\nfirst_offset = 100\nshop = \"north\"\n[blocks]\n\
+         program_start = '''{template}'''\n"
+    );
+    let machine = machine::load_text("mine.toml", &text).unwrap();
+    toolpost_post::check(&machine).map_err(|found| found[0].to_string())
+}
+
+/// Each would take more memory than a machine has, or more time than a person.
+#[test]
+fn a_value_that_grows_without_bound_is_refused_at_once() {
+    let doubled =
+        "{% set a = program.name %}".to_owned() + &"{% set a = a ~ a %}".repeat(50) + "{{ a }}";
+    let nested =
+        "{{ ".to_owned() + &"(".repeat(100) + "program.name" + &" ~ 'x' * 99)".repeat(100) + "}}";
+    let deep = "{{ 1".to_owned() + &"+1".repeat(1_000_000) + "}}";
+    let replaced = "{{ 'xxxxxxxx'".to_owned() + &"|replace('x','xxxxxxxx')".repeat(12) + "}}";
+    let chained = "{{ program.name".to_owned() + &" ~ program.name".repeat(500) + "}}";
+    for (template, rule) in [
+        (
+            "{% set x = range(99999) %}{{ x|list|join('xxxxxxxxxx')|upper|replace('X','XXXXXXXXXX') }}",
+            "template-name",
+        ),
+        ("{{ 'x' * 2000000000 }}", "template-output"),
+        ("{{ program.name * 99999999 }}", "template-output"),
+        ("{{ [1] * 99999999 }}", "template"),
+        ("{{ options.shop + options.shop }}", "template-output"),
+        (&doubled, "template-output"),
+        (&nested, "template"),
+        (&deep, "template-output"),
+        (&deep[..8000], "template"),
+        (&(deep[..8000].to_owned() + "}}"), "template-output"),
+        (&replaced, "template"),
+        (&chained, "template-output"),
+        ("{% for t in program.tools %}{% set a = a ~ a %}{% endfor %}", "template-output"),
+        ("{% for a in ['x' ~ 'x'] %}{{ a }}{% endfor %}", "template"),
+        ("{% for i in range(1000) recursive %}{{ loop(i) }}{% endfor %}", "template"),
+        ("{{ 5 in range(100000) }}", "template-name"),
+        ("{{ '%1000000000d'|format(1) }}", "template"),
+        ("{{ '%*d'|format(1000000000, 1) }}", "template"),
+        ("{% set a %}{{ program.name }}{% endset %}", "template"),
+        ("{% with a = 1 %}{% endwith %}", "template"),
+        ("{% filter upper %}x{% endfilter %}", "template"),
+        ("{% macro a() %}x{% endmacro %}", "template"),
+        ("{% set n = namespace() %}", "template-name"),
+        ("{{ program }}", "template"),
+        ("{{ program.tools|default(1) }}", "template"),
+        ("{{ (program or 1) ~ 1 }}", "template"),
+    ] {
+        let started = Instant::now();
+        let said = checked(template).expect_err(template);
+        assert!(said.starts_with("mine.toml:6:"), "{said}");
+        assert!(said.contains(&format!("error[{rule}]")), "{rule}: {said}");
+        assert!(started.elapsed() < Duration::from_secs(2), "{template}");
+    }
+}
+
+#[test]
+fn what_a_machinist_needs_of_jinja_is_there() {
+    for template in [
+        "O{{ '%04d'|format(options.first_offset + 5) }}",
+        "{% set base = options.first_offset %}{% for t in program.tools %}{% if t.number > 2 %}\
+         (T{{ t.number + base * 10 }} {{ t.name[0:8]|upper }}){% endif %}{% endfor %}",
+        "({{ tool.name|replace(' ', '_')|default('NONE') }} {{ tool.diameter|round(2) }})",
+        "({{ (tool.diameter|default(10)) / 2 }} {{ -tool.length // 3 }})",
+        "{% if tool.number in [1, 2, 3] and options.shop == 'north' %}M50{% else %}M51{% endif %}",
+        "({{ program.tools|length }} {{ (program.tools|first).number }} {{ program.tools[0].name }})",
+        "{% if tool is defined and tool.corner_radius is number %}M52{% endif %}",
+        "({{ machine.title }} {{ 'a' if tool.first else 'b' }} {{ options.shop ~ '-' ~ tool.number }})",
+        "{% for i in range(3) %}M5{{ loop.index * i }}\n{% endfor %}",
+    ] {
+        assert_eq!(checked(template), Ok(()), "{template}");
+    }
+}
+
+#[test]
+fn a_name_that_the_engine_does_not_know_is_told_with_those_that_it_knows() {
+    let said = checked("{{ program.name|uper }}").unwrap_err();
+    assert!(said.contains("there is no filter `uper`") && said.contains("`upper`"), "{said}");
+    let said = checked("{% if tool is definde %}{% endif %}").unwrap_err();
+    assert!(said.contains("there is no test `definde`") && said.contains("`defined`"), "{said}");
+    let said = checked("{% include '/etc/passwd' %}").unwrap_err();
+    assert!(said.contains("include") && said.contains("`if`, `for` and `set`"), "{said}");
+    let said = checked("{% set X = 1 %}").unwrap_err();
+    assert!(said.contains("`X` has a meaning already"), "{said}");
+}
