@@ -223,9 +223,9 @@ impl Scope {
         program.push(1, Op::Tool(Box::new(tool.clone())));
         Scope {
             set: if first { Words::MAX } else { 0 },
-            program: program_value(&program),
+            program: program_value(machine, &program),
             operation: map([("name", Value::from(operation))]),
-            tool: tool_value(&tool, first),
+            tool: tool_value(machine, &tool, first),
             spindle: map([("changed", Value::from(first))]),
             text: Value::from(text),
             ..Scope::new(machine)
