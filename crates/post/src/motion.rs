@@ -2,8 +2,8 @@
 
 use crate::catalogue::{BlockName, WordName};
 use crate::place::{Kind, Stop};
-use crate::template::{Words, bit};
-use crate::walk::{Done, ORIENTATION, POSITION, Walk, motion};
+use crate::template::{ORIENTATION, POSITION, Words, bit};
+use crate::walk::{Done, Walk, motion};
 use geom::Vec3;
 use machine::linearise::Stance;
 use machine::plan::Step;

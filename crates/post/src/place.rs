@@ -2,8 +2,8 @@
 //! tool center point control by angles or vectors, or the positions of the machine's own axes.
 
 use crate::catalogue::{BlockName, WordName};
-use crate::template::{Words, bit};
-use crate::walk::{Done, LENGTH_OFFSET, ORIENTATION, POSITION, Walk, motion, refuse};
+use crate::template::{LENGTH_OFFSET, ORIENTATION, POSITION, Words, bit};
+use crate::walk::{Done, Walk, motion, refuse};
 use geom::{ANGLE_EPSILON, Euler, Frame, Mat3, Vec3, angle_between};
 use machine::plan::{self, Plan, Step, Target, TargetKind};
 use machine::{Machine, OrientationMode};

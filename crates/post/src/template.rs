@@ -32,6 +32,18 @@ pub(crate) const fn bit(word: WordName) -> Words {
     1 << word as u64
 }
 
+/// The words that say where the tool is.
+pub(crate) const POSITION: Words = bit(WordName::X) | bit(WordName::Y) | bit(WordName::Z);
+/// The words that call the tool length offset.
+pub(crate) const LENGTH_OFFSET: Words = bit(WordName::H) | bit(WordName::Length);
+/// The words that say where it points.
+pub(crate) const ORIENTATION: Words = bit(WordName::A)
+    | bit(WordName::B)
+    | bit(WordName::C)
+    | bit(WordName::VX)
+    | bit(WordName::VY)
+    | bit(WordName::VZ);
+
 /// One step of a block.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Step {

@@ -3,7 +3,10 @@
 use crate::catalogue::{BlockName, WordName};
 use crate::findings::Findings;
 use crate::place::{Place, Route};
-use crate::template::{Scope, Templates, Words, bit, map, printed, program_value, tool_value};
+use crate::template::{
+    LENGTH_OFFSET, ORIENTATION, POSITION, Scope, Templates, bit, map, printed, program_value,
+    tool_value,
+};
 use crate::writer::Writer;
 use geom::Vec3;
 use machine::limits::Limits;
@@ -17,18 +20,6 @@ use program::{
 
 /// A step that may be refused.
 pub(crate) type Done = Result<(), Box<Diagnostic>>;
-
-/// The words that say where the tool is.
-pub(crate) const POSITION: Words = bit(WordName::X) | bit(WordName::Y) | bit(WordName::Z);
-/// The words that call the tool length offset.
-pub(crate) const LENGTH_OFFSET: Words = bit(WordName::H) | bit(WordName::Length);
-/// The words that say where it points.
-pub(crate) const ORIENTATION: Words = bit(WordName::A)
-    | bit(WordName::B)
-    | bit(WordName::C)
-    | bit(WordName::VX)
-    | bit(WordName::VY)
-    | bit(WordName::VZ);
 
 /// Entries of the code word `motion`.
 pub(crate) mod motion {

@@ -2,8 +2,7 @@
 
 use crate::catalogue::WordName;
 use crate::number::Number;
-use crate::template::{Lines, Step, Words, bit};
-use crate::walk::{ORIENTATION, POSITION};
+use crate::template::{Lines, ORIENTATION, POSITION, Step, Words, bit};
 use machine::Machine;
 use program::Diagnostic;
 
