@@ -111,7 +111,10 @@ impl Reader {
         // unit ahead would be a guess by which a tool, a speed or a point may be wrong by 25.4, so a
         // file that was begun in another unit is refused.
         let read_in_mm = self.unit_used.get();
-        if !self.unit_known && read_in_mm > 0 && unit != self.unit {
+        let changes = !self.unit_known && read_in_mm > 0 && unit != self.unit;
+        self.unit = unit;
+        self.unit_known = true;
+        if changes {
             let message = format!(
                 "line {read_in_mm} gives a length or a feed before line {} says the unit: is it in mm \
                  or in inches?",
@@ -120,8 +123,6 @@ impl Reader {
             return Err(Fault::new("unknown-unit", message)
                 .help("write the unit before the first length: at the head of the file"));
         }
-        self.unit = unit;
-        self.unit_known = true;
         Ok(())
     }
 

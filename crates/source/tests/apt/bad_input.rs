@@ -160,7 +160,7 @@ fn cuts_need_a_spindle_and_a_feed_and_tools_a_number() {
 #[test]
 fn a_unit_that_comes_after_the_first_length_is_refused_where_it_changes_that() {
     let rest = "FEDRAT/10,MMPM\nRAPID\nGOTO/0,0,2\nGOTO/0,0,-1\nFINI";
-    // A cutter of 0.5 inches read as 0.5 mm turned 25.4 times too fast: 300 feet/min are 2292 1/min.
+    // A cutter of 0.5 inches read as 0.5 mm would turn 25.4 times too fast by its surface speed.
     for (before, line) in [
         ("CUTTER/0.5", 2),
         ("SPINDL/3000,CLW\nFEDRAT/10", 3),
@@ -171,8 +171,10 @@ fn a_unit_that_comes_after_the_first_length_is_refused_where_it_changes_that() {
         ("LOADTL/2,LENGTH,100", 2),
     ] {
         let units = before.lines().count() as u32 + 2;
-        let text = format!("LOAD/TOOL,1\n{before}\nUNITS/INCHES\nSPINDL/SFM,300,CLW\n{rest}");
-        let error = refusal(text);
+        let text = format!("LOAD/TOOL,1\n{before}\nUNITS/INCHES\nSPINDL/9,CLW\n{rest}");
+        let mut errors = try_read(text).unwrap_err();
+        assert_eq!(errors.len(), 1, "{errors:?}");
+        let error = errors.remove(0);
         assert_eq!((error.rule, error.line), ("unknown-unit", units), "{before}");
         assert!(error.message.contains(&format!("line {line} ")), "{}", error.message);
         assert!(!error.help.is_empty());
