@@ -45,6 +45,16 @@ impl Dialect {
     pub fn named(name: &str) -> Option<Dialect> {
         Dialect::NAMES.iter().find(|(n, _)| *n == name).map(|(_, dialect)| *dialect)
     }
+
+    /// The work offset that is active before a program names one: on a SINUMERIK `G500`, which is none.
+    /// A FANUC may keep that of the last program, and Klartext takes the operator's preset.
+    pub fn work_offset_at_reset(self) -> Option<u32> {
+        match self {
+            Dialect::Sinumerik => Some(sinumerik::WORK_OFFSET_AT_RESET),
+            Dialect::LinuxCnc | Dialect::Grbl => Some(54),
+            Dialect::Fanuc | Dialect::Klartext => None,
+        }
+    }
 }
 
 /// What a virtual control has to know of its machine.

@@ -541,6 +541,13 @@ fn a_tilted_plane_is_complete_and_reached_before_anything_moves() {
 }
 
 #[test]
+fn in_a_tilted_plane_nothing_goes_down_at_an_unknown_place() {
+    let plane = "G68.2 X0 Y0 Z0 I0 J45. K0\nG53.1\nG0 ";
+    assert_eq!(rule(FANUC, &format!("{plane}X0 Z9.\n")), "nc-unknown-position");
+    assert_eq!(ops(FANUC, &format!("{plane}X0 Y0\nZ9.\n")).len(), 2);
+}
+
+#[test]
 fn a_spindle_needs_a_speed_and_coolants_do_not_add_up() {
     for dialect in [FANUC, LINUXCNC, GRBL] {
         assert_eq!(rule(dialect, "M3\n"), "nc-spindle");

@@ -573,6 +573,13 @@ fn in_a_plane_that_stays_the_words_turn_the_axes() {
 }
 
 #[test]
+fn in_a_tilted_plane_nothing_goes_down_at_an_unknown_place() {
+    let plane = "PLANE SPATIAL SPA+0 SPB+30 SPC+0 TURN FMAX\nL ";
+    assert_eq!(refused_five(&format!("{plane}Y+0 Z+9 FMAX")).rule, "unknown-position");
+    run_five(&format!("{plane}X+0 Y+0 FMAX\nL Z+9 FMAX"));
+}
+
+#[test]
 fn nothing_happens_after_the_end() {
     assert_eq!(run("L X+1 FMAX M30\n; TOOL LIST").last(), Some(&Op::End));
     assert_eq!(refused("L X+1 FMAX M30 M9").rule, "program-frame");

@@ -132,6 +132,7 @@ fn an_error_names_its_rule_and_place() {
         ("CYCLE800(1,5,0,57,0,0,0,30,45,0,0,0,0,1)", "cycle-parameter", 1),
         ("CYCLE800(0,\"\",0,57,0,0,0,30,0,0,0,0,0,1)\nG0 A5", "orientation", 1),
         ("CYCLE832(0.01,112103)", "unsupported", 1),
+        ("CYCLE800(1,\"\",0,57,0,0,0,90,0,0,0,0,0,1)\nG0 X5 Z50", "unknown-position", 1),
     ] {
         let found = error(text);
         let line = text.lines().count() as u32;

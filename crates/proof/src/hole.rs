@@ -48,6 +48,18 @@ impl Hole<'_> {
         aligned && height.is_some_and(|h| h >= self.cycle.clearance - self.gauge.slack(station))
     }
 
+    /// Whether a move goes down beside the hole, with the tool along its axis. What is not known is not.
+    pub fn beside_and_down(&self, from: &Station, to: &Station) -> bool {
+        let aligned = |station: &Station| {
+            station.place.apart(self.point).1 <= self.gauge.allowed.axis_degrees
+        };
+        let ((high, _), (low, _)) =
+            (self.point.above(from.place.tip), self.point.above(to.place.tip));
+        let slack = self.gauge.slack(to);
+        let beside = |station: &Station| self.point.above(station.place.tip).1 > slack;
+        aligned(from) && aligned(to) && high - low > slack && (beside(from) || beside(to))
+    }
+
     /// The height of a station on the axis of the hole.
     fn height(&self, station: &Station) -> Result<f64, String> {
         let angle = station.place.apart(self.point).1;

@@ -21,7 +21,7 @@
 //!    axis where it must, and back along the tool axis to the same point. Each is reported. Otherwise
 //!    home positions are for the start, tool changes, new set-ups by rapid, and the end, Z first.
 //! 6. **A hole** by a canned cycle (bottom, R plane, retract level, kind, pecks, dwell, pitch), or by
-//!    the moves that make it. A thread only by a cycle.
+//!    the moves that make it. The tool goes down only over it. A thread only by a cycle.
 //! 7. **In every cut**: feed, spindle, coolant, tool, length offset, work offset, compensation.
 //!    Compensation switches with the first straight cut in the plane at the latest, off with the first
 //!    straight move there, and never on an arc. A tool change stops spindle and coolant.

@@ -79,7 +79,7 @@ impl<'a> Prover<'a> {
             here: gauge.station(0, unknown),
             gauge,
             cursor,
-            running: Running::default(),
+            running: Running::at_reset(machine),
             compensation: Compensation::Off,
             leg: Leg::default(),
             report: Report { tolerances: allowed, ..Report::default() },
@@ -252,10 +252,9 @@ impl<'a> Prover<'a> {
 
     /// Keeps a stop of a rapid until its end explains it.
     fn stop_at(&mut self, to: &Station) -> Outcome {
-        // On the way to a tool change the last tool is still in the spindle.
         if to.place.known() {
-            let found = state::set_up(self.gauge.machine, &self.cursor.wanted, &self.running);
-            self.check(to.line, found.filter(|(rule, _)| *rule != "tool"));
+            let found = state::at_stop(self.gauge.machine, &self.cursor.wanted, &self.running);
+            self.check(to.line, found);
         }
         if self.leg.stops.len() >= MOST_STOPS {
             let stop = self.nearest_stop().unwrap_or(*to);
@@ -465,6 +464,7 @@ impl<'a> Prover<'a> {
             }
             if gait == Gait::Rapid {
                 self.approached(to)?;
+                self.comes_from_above(&hole, Some(to))?;
                 self.leg.stops.clear();
                 self.leg.hole.over = true;
                 return Ok(());
@@ -513,6 +513,8 @@ impl<'a> Prover<'a> {
         }
         drilled.place(&hole).map_err(|how| self.lost_at(line, "hole", &how))?;
         self.approached(&drilled.r_plane)?;
+        // A cycle itself goes across first, then down.
+        self.comes_from_above(&hole, None)?;
         for difference in drilled.kind(&hole) {
             self.differs(line, difference);
         }
@@ -527,6 +529,20 @@ impl<'a> Prover<'a> {
         summary.rapid_length_mm += if over.is_nan() { out } else { over + out };
         self.here = drilled.retracted;
         self.arrive(&drilled.retracted);
+        Ok(())
+    }
+
+    /// Whether the way to a hole goes down nowhere but over it: as a canned cycle goes, for what the
+    /// tool was drawn back from may stand between the holes.
+    fn comes_from_above(&self, hole: &Hole, to: Option<&Station>) -> Outcome {
+        let mut last = self.leg.start.unwrap_or(self.here);
+        for stop in self.leg.stops.iter().chain(to) {
+            if hole.beside_and_down(&last, stop) {
+                let message = format!("goes down by rapid to {}, beside the hole", stop.place);
+                return Err(self.lost_at(stop.line, "hole", &message));
+            }
+            last = *stop;
+        }
         Ok(())
     }
 
@@ -578,7 +594,11 @@ impl<'a> Prover<'a> {
         if !first && !free && (!up || self.leg.hole.over) {
             return Err(self.lost_at(line, "home", "sends axes home in the middle of the work"));
         }
-        if !first && !retracted && axes & 3 != 0 {
+        if !first && !retracted && axes != 4 {
+            if !self.clear_of_part() {
+                let message = "sends axes home together with Z, not after it, beside the part";
+                return Err(self.lost_at(line, "home", message));
+            }
             let message = "Z goes home together with other axes, not before them";
             self.report.warn(Diagnostic::warning("home", message).line(line));
         }

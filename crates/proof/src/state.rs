@@ -3,6 +3,7 @@
 use crate::expected::Wanted;
 use crate::place::Number;
 use crate::tolerance::Applied;
+use control::Dialect;
 use machine::{LengthOffset, Machine, OptionValue};
 use program::{Compensation, Coolant, Cycle, Feed, Spindle, Tool};
 
@@ -22,8 +23,10 @@ pub(crate) struct Running {
     pub cycle: Option<Cycle>,
 }
 
-impl Default for Running {
-    fn default() -> Running {
+impl Running {
+    /// What runs before the first block.
+    pub fn at_reset(machine: &Machine) -> Running {
+        let dialect = Dialect::named(&machine.reader);
         Running {
             feed: None,
             spindle: Spindle::Off,
@@ -33,13 +36,11 @@ impl Default for Running {
             tool: None,
             compensation: Compensation::Off,
             length_offset: None,
-            work_offset: None,
+            work_offset: dialect.and_then(Dialect::work_offset_at_reset),
             cycle: None,
         }
     }
-}
 
-impl Running {
     /// A tool change on `line`: the machine stops spindle and coolant for it, except what the same
     /// block switches on.
     pub fn change_tool(&mut self, line: u32, tool: Tool) {
@@ -80,6 +81,26 @@ pub(crate) fn set_up(machine: &Machine, wanted: &Wanted, running: &Running) -> O
         let (found, wanted) = (shown(running.length_offset), shown(offset));
         return Some(("length-offset", format!("length offset {found} is active, not {wanted}")));
     }
+    work_offset(machine, running)
+}
+
+/// The same at a stop of a rapid. On its way to a tool change the last tool is still in the spindle,
+/// with the register that was its own.
+pub(crate) fn at_stop(machine: &Machine, wanted: &Wanted, running: &Running) -> Option<Difference> {
+    match (wanted.tool, &running.tool) {
+        (Some(_), None) => None,
+        (Some(tool), Some(last)) if !same_tool(tool, last) => {
+            let needed = machine.capabilities.length_offset != LengthOffset::Implicit;
+            let message = || "no length offset is active on the way to the tool change".into();
+            (needed && running.length_offset.is_none())
+                .then(|| ("length-offset", message()))
+                .or_else(|| work_offset(machine, running))
+        }
+        _ => set_up(machine, wanted, running),
+    }
+}
+
+fn work_offset(machine: &Machine, running: &Running) -> Option<Difference> {
     let zero = match machine.options.get("work_offset") {
         Some(OptionValue::Number(n)) => *n,
         _ => 54.0,
@@ -87,6 +108,10 @@ pub(crate) fn set_up(machine: &Machine, wanted: &Wanted, running: &Running) -> O
     match running.work_offset {
         Some(n) if f64::from(n) != zero => {
             Some(("work-offset", format!("work offset G{n} is active, not G{zero}")))
+        }
+        None if Dialect::named(&machine.reader) == Some(Dialect::Fanuc) => {
+            let message = "no work offset is named: that of the last program may be active";
+            Some(("work-offset", message.into()))
         }
         _ => None,
     }
@@ -201,20 +226,22 @@ pub(crate) fn same_compensation(
     }
 }
 
-/// Whether two tools are one: by number, or by name where a side knows only a name.
+/// Whether two tools are one: by number, or by name where a side knows only a name. `T0` is no tool.
 pub(crate) fn same_tool(source: &Tool, block: &Tool) -> bool {
     match (source.number, block.number) {
+        (_, 0) if block.name.is_empty() => false,
         (0, _) if source.name.is_empty() || block.name.is_empty() => true,
-        (0, _) | (_, 0) => plain(&source.name).eq(plain(&block.name)),
+        (0, _) | (_, 0) => {
+            let name = source.name.trim();
+            [name, &plain(name)].iter().any(|name| name.eq_ignore_ascii_case(&block.name))
+        }
         (a, b) => a == b,
     }
 }
 
 /// A name without what a control does not take in a tool name.
-fn plain(name: &str) -> impl Iterator<Item = char> + '_ {
-    name.trim()
-        .chars()
-        .map(|c| if c.is_ascii_alphanumeric() { c.to_ascii_uppercase() } else { '_' })
+fn plain(name: &str) -> String {
+    name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect()
 }
 
 pub(crate) fn same_spindle(allowed: &Applied, a: Spindle, b: Spindle) -> bool {

@@ -61,13 +61,18 @@ pub(crate) fn lifted(gauge: &Gauge, base: &Station, stop: &Station) -> bool {
     height > slack && beside <= slack && same_axis
 }
 
+/// Whether `s` is `a`, or `b`, or not known.
+fn either(s: f64, a: f64, b: f64, slack: f64) -> bool {
+    s.is_nan() || (s - a).abs() <= slack || (s - b).abs() <= slack
+}
+
+/// The same for each coordinate.
+fn each(s: Vec3, a: Vec3, b: Vec3, slack: f64) -> bool {
+    (0..3).all(|i| either(s[i], a[i], b[i], slack))
+}
+
 /// Whether each coordinate of `stop` is that of `start`, that of `end`, or not known.
 fn corner(gauge: &Gauge, stop: &Station, start: &Station, end: &Station, free: bool) -> bool {
-    let either = |s: f64, a: f64, b: f64, slack: f64| {
-        s.is_nan() || (s - a).abs() <= slack || (s - b).abs() <= slack
-    };
-    let each =
-        |s: Vec3, a: Vec3, b: Vec3, slack: f64| (0..3).all(|i| either(s[i], a[i], b[i], slack));
     let rotary = |station: &Station| match station.pose.orientation {
         Orientation::Rotary { degrees, tool_center } => Some((degrees, tool_center)),
         Orientation::Axis(_) => None,
@@ -88,10 +93,23 @@ fn corner(gauge: &Gauge, stop: &Station, start: &Station, end: &Station, free: b
     let same_axis =
         |other: Vec3| geom::angle_between(axis, other).to_degrees() <= gauge.allowed.axis_degrees;
     if !s.is_finite() {
-        return true;
+        return partly_known(stop, start, end, gauge.slack(end));
     }
     let aligned = same_axis(start.place.axis) || same_axis(end.place.axis);
     aligned && (each(s, a, b, slack) || corner_of_tilted_box(s, a, b, axis, slack))
+}
+
+/// The same for a stop whose place is not known, in a kind of coordinates that not both ends have. What
+/// its block says counts against the end that has the same; where neither has, only the height must be
+/// unknown: then Z is home, and nothing has gone down yet.
+fn partly_known(stop: &Station, start: &Station, end: &Station, slack: f64) -> bool {
+    let s = stop.pose;
+    let alike = |other: &Station| s.orientation == other.pose.orientation;
+    let said = |other: &Station| if alike(other) { other.pose.point } else { Vec3::NAN };
+    match alike(start) || alike(end) {
+        true => each(s.point, said(start), said(end), slack),
+        false => s.point.z.is_nan(),
+    }
 }
 
 /// Whether `s` is a corner of a box between `a` and `b` that stands along `axis`, turned about it in

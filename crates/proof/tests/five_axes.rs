@@ -182,6 +182,28 @@ fn between_set_ups_the_machine_may_go_home_and_turn_then_approach() {
 }
 
 #[test]
+fn a_stop_at_a_place_half_known_has_the_coordinates_of_an_end() {
+    let machine = five_axes();
+    let (a, b) = (at_point(5.0, 6.0, 60.0, 20.0, 0.0), at_point(7.0, -9.0, 40.0, 0.0, 0.0));
+    let to = |point| wanted(&machine, point);
+    let own = source(vec![Op::Rapid(to(a)), Op::Rapid(to(b))]);
+    let stop = |x: f64, z: f64, a: f64| {
+        let orientation = Orientation::Rotary { degrees: [a, 0.0, 0.0], tool_center: false };
+        Op::Rapid(Pose { point: Vec3::new(x, f64::NAN, z), orientation })
+    };
+    let by = |stop: Op| {
+        let (start, end) = (Op::Rapid(centered(&machine, a)), Op::Rapid(axes(&machine, b)));
+        rules(&judge(&machine, &own, vec![start, stop, end]))
+    };
+    let unknown = f64::NAN;
+    assert!(by(stop(unknown, unknown, 20.0)).is_empty());
+    assert!(by(stop(7.0, 40.0, 0.0)).is_empty());
+    assert_eq!(by(stop(7.0, 39.0, 0.0)), ["rapid-stop"]);
+    // Z0 of the turned machine is somewhere in the part.
+    assert_eq!(by(stop(unknown, 0.0, 20.0)), ["rapid-stop"]);
+}
+
+#[test]
 fn a_rotary_axis_is_rewound_above_the_part_and_the_tool_comes_back() {
     let machine = five_axes();
     let (from, to) = (at_point(10.0, 5.0, 2.0, 20.0, 350.0), at_point(12.0, 5.0, 2.0, 20.0, 351.0));

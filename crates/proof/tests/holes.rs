@@ -39,6 +39,10 @@ fn first() -> Op {
     Op::Hole(block(5.0, 0.0, 1.0))
 }
 
+fn second() -> Op {
+    Op::Hole(block(15.0, 0.0, 1.0))
+}
+
 #[test]
 fn a_cycle_may_count_from_another_plane() {
     assert!(canned(drill(), first()).is_empty());
@@ -152,6 +156,25 @@ fn drilling_by_moves_is_proven() {
         });
         assert_eq!(found, [rule], "{wrong:?}");
     }
+}
+
+#[test]
+fn the_way_to_a_hole_goes_down_only_over_it() {
+    let seen = Cycle { depth: 12.0, clearance: 0.0, retract: 18.0, ..drill() };
+    let rapid = |x, z| Op::Rapid(block(x, 0.0, z));
+    let by_moves = |way: Vec<Op>| {
+        let hole = vec![Op::Line(block(15.0, 0.0, -11.0)), rapid(15.0, 19.0)];
+        let words = vec![cycle(seen), first(), Op::CycleOff, Op::Feed(Feed::PerMinute(120.0))];
+        judged(drill(), [words, way, hole].concat())
+    };
+    assert!(by_moves(vec![rapid(15.0, 19.0), rapid(15.0, 1.0)]).is_empty());
+    assert!(by_moves(vec![rapid(5.0, 25.0), rapid(15.0, 25.0), rapid(15.0, 1.0)]).is_empty());
+    assert_eq!(by_moves(vec![rapid(15.0, 1.0)]), ["hole"]);
+    assert_eq!(by_moves(vec![rapid(5.0, 1.0), rapid(15.0, 1.0)]), ["hole"]);
+    let by_cycle =
+        |way: Vec<Op>| judged(drill(), [vec![cycle(seen), first()], way, vec![second()]].concat());
+    assert!(by_cycle(vec![rapid(15.0, 19.0)]).is_empty());
+    assert_eq!(by_cycle(vec![rapid(5.0, 1.0)]), ["hole"]);
 }
 
 /// The moves that [`lowering::hole`] makes, in blocks.

@@ -3,6 +3,7 @@
 mod common;
 
 use common::*;
+use machine::{LengthOffset, Machine};
 use program::*;
 
 fn cut() -> Vec<Op> {
@@ -106,6 +107,15 @@ fn a_wrong_offset_or_tool_is_refused() {
     assert_eq!(after_start(vec![Op::LengthOffset(Some(2))]), ["length-offset"]);
     assert_eq!(after_start(vec![Op::LengthOffset(None)]), ["length-offset"]);
     assert_eq!(after_start(vec![Op::WorkOffset(55)]), ["work-offset"]);
+    // Without a word a FANUC may keep that of the last program, and a SINUMERIK has none.
+    let nc = [nc_start(), cut_nc(), vec![Op::End]].concat();
+    for (reader, wrong) in [("fanuc", true), ("sinumerik", true), ("grbl", false)] {
+        let machine = Machine { reader: reader.into(), ..mill() };
+        proven(&run(&machine, &source(cut()), nc.clone()));
+        let unsaid = run(&machine, &source(cut()), nc[1..].to_vec());
+        assert_eq!(unsaid.proven, !wrong, "{reader}");
+        assert_eq!(rules(&unsaid).contains(&"work-offset"), wrong, "{reader}");
+    }
     let mut start = nc_start();
     start[1] = tool(2);
     let nc = [start, cut_nc(), vec![Op::End]].concat();
@@ -268,6 +278,54 @@ fn home_in_the_middle_of_the_work_is_refused() {
     assert_eq!(rules(&report(vec![Op::Home(7), Op::Rapid(block(0.0, 0.0, -1.0))])), ["home"]);
     assert_eq!(rules(&report(vec![Op::Home(1)])), ["home"]);
     assert_eq!(rules(&report(vec![Op::Home(4)])), ["rapid-feed"]);
+}
+
+#[test]
+fn a_tool_is_called_by_its_number_or_by_its_own_name() {
+    let mut implicit = mill();
+    implicit.capabilities.length_offset = LengthOffset::Implicit;
+    let called = |source: (u32, &str), block: (u32, &str)| {
+        let tool = |(number, name): (u32, &str)| {
+            Op::Tool(Box::new(Tool { number, name: name.into(), ..Tool::default() }))
+        };
+        let own = program([vec![tool(source)], start()[1..].to_vec(), cut()].concat());
+        let mut nc = [nc_start(), cut_nc(), vec![Op::End]].concat();
+        nc[1] = tool(block);
+        run(&implicit, &own, nc).proven
+    };
+    assert!(called((3, ""), (3, "")) && called((3, "MILL 16"), (0, "mill_16")));
+    assert!(called((0, ""), (3, "")) && called((0, "M.1"), (0, "M.1")));
+    assert!(!called((3, "MILL_16"), (0, "MILL.16")) && !called((3, "MILL_16"), (0, "MILL_16 ")));
+    // T0 is an empty spindle.
+    assert!(!called((3, ""), (0, "")) && !called((0, ""), (0, "")));
+}
+
+#[test]
+fn the_length_offset_holds_on_the_way_to_a_tool_change() {
+    let report = |off: Vec<Op>| {
+        let mut own = cut();
+        own.extend([vec![tool(2)], start()[1..].to_vec(), cut()].concat());
+        let mut nc = [cut_nc(), off, vec![Op::Rapid(block(30.0, 0.0, 60.0)), tool(2)]].concat();
+        nc.extend([start()[1..].to_vec(), vec![Op::LengthOffset(Some(2))], cut_nc()].concat());
+        rules(&judge(&mill(), &source(own), nc))
+    };
+    assert!(report(vec![]).is_empty());
+    assert_eq!(report(vec![Op::LengthOffset(None)]), ["length-offset"]);
+    assert_eq!(report(vec![Op::WorkOffset(55)]), ["work-offset"]);
+}
+
+#[test]
+fn other_axes_go_home_with_z_only_from_above_the_part() {
+    let report = |above: f64| {
+        let (mut own, mut nc) = (cut(), cut_nc());
+        own.extend([vec![Op::Rapid(at(30.0, 0.0, above))], start(), cut()].concat());
+        nc.extend([vec![Op::Rapid(block(30.0, 0.0, above)), Op::Home(7)], nc_start()].concat());
+        judge(&mill(), &source(own), [nc, cut_nc()].concat())
+    };
+    let from_above = report(5.0);
+    proven(&from_above);
+    assert_eq!(from_above.warnings[0].rule, "home");
+    assert_eq!(rules(&report(4.0)), ["home"]);
 }
 
 #[test]

@@ -210,11 +210,17 @@ impl Step<'_, '_, '_> {
                 "a move in a tilted plane before G53.1 has brought the tool upright to it";
             return Err(self.block.whole("nc-tilt", message));
         }
-        let from = self.state.position;
-        if from.x != target.point.x || from.y != target.point.y {
+        let (from, to) = (self.state.position, target.point);
+        let aside = !(to.x.is_finite() && to.y.is_finite());
+        if matches!(self.state.tilt, Tilt::Reached(_)) && to.z.is_finite() && aside {
+            let message =
+                "Z in a tilted plane before X and Y: where the tool goes down is not known";
+            return Err(self.block.whole("nc-unknown-position", message));
+        }
+        if from.x != to.x || from.y != to.y {
             self.switch_compensation();
         }
-        let pose = self.state.pose(target.point, target.rotary);
+        let pose = self.state.pose(to, target.rotary);
         self.ops.push(if rapid { Op::Rapid(pose) } else { Op::Line(pose) });
         self.arrive(target);
         Ok(())

@@ -140,6 +140,13 @@ impl Control<'_, '_> {
             }
         }
         if rapid {
+            let [x, y, z] = self.here.to_array();
+            let known = x.is_finite() && y.is_finite();
+            if self.tilt.is_some_and(|tilt| tilt.turned) && z.is_finite() && !known {
+                let message =
+                    "Z in a tilted plane before X and Y: where the tool goes down is not known";
+                return Err(s.error_block("unknown-position", message));
+            }
             return self.emit(Op::Rapid(self.pose(self.here)));
         }
         self.emit(Op::Line(self.cutting_pose(s, self.here)?))

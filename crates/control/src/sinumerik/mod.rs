@@ -23,6 +23,8 @@ use interpreter::Interpreter;
 use program::Diagnostic;
 use scan::Source;
 
+pub(crate) use state::WORK_OFFSET_AT_RESET;
+
 /// What may go wrong.
 type Fallible<T> = Result<T, Box<Diagnostic>>;
 

@@ -45,6 +45,12 @@ impl Interpreter<'_> {
             if motion == Motion::Line {
                 self.use_feed(source)?;
             }
+            let [x, y, z] = position.to_array();
+            if self.state.frames.turned() && z.is_finite() && !(x.is_finite() && y.is_finite()) {
+                let message =
+                    "Z in a turned frame before X and Y: where the tool goes down is not known";
+                return Err(source.block_error("unknown-position", message));
+            }
             self.state.position = position;
             self.state.programmed = programmed;
             let pose = self.state.pose(position);

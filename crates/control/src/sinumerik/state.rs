@@ -7,6 +7,9 @@ use super::frames::Frames;
 use geom::Vec3;
 use program::{Compensation, Coolant, Feed, Orientation, Pose, Spindle, Tool};
 
+/// `G500`: none, in the reset state that the maker delivers.
+pub const WORK_OFFSET_AT_RESET: u32 = 500;
+
 /// Where the tool axis comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum ToolAxis {
@@ -84,7 +87,7 @@ impl State {
             absolute: true,
             feed_type: FeedType::PerMinute,
             vectors_in_work_frame: true,
-            work_offset: 500,
+            work_offset: WORK_OFFSET_AT_RESET,
             compensation: Compensation::Off,
             compensation_in_effect: Compensation::Off,
             feed: None,
