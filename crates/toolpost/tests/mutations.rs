@@ -3,7 +3,10 @@
 //! What a surviving program does is shown without the proof: the virtual control runs it beside the
 //! one it came from, and both do the same things at the same places.
 
+mod files;
+
 use control::{Dialect, Settings};
+use files::{cldata, root};
 use geom::{Arc, Vec3, nearest_on_segment};
 use machine::Machine;
 use program::{
@@ -13,7 +16,7 @@ use program::{
 use proof::{Applied, Tolerances};
 use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// So many damages, spread evenly over the programs.
 const DAMAGES: usize = 200;
@@ -620,10 +623,9 @@ impl Act {
 /// with the tool centre kept (`G43.4`, `M128`), in vectors (`TRAORI`); our examples, and small real
 /// files where they are.
 fn samples() -> Vec<Sample> {
-    let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let read = |path: PathBuf| std::fs::read_to_string(path).unwrap();
-    let dome = read(root.join("../../examples/dome.cls"));
-    let plate = read(root.join("../../examples/plate.cls"));
+    let dome = read(root().join("examples/dome.cls"));
+    let plate = read(root().join("examples/plate.cls"));
     let lines = |text: &str, ranges: &[RangeInclusive<usize>]| -> String {
         let lines: Vec<&str> = text.lines().collect();
         let kept = ranges.iter().flat_map(|range| &lines[range.start() - 1..*range.end()]);
@@ -654,15 +656,13 @@ fn samples() -> Vec<Sample> {
     ]
     .map(|(name, cldata, machine)| Sample::new(name, cldata, machine))
     .into();
-    let beside = root.join("../../../shared/data");
-    let data = std::env::var_os("TOOLPOST_DATA").map_or(beside, PathBuf::from).join("cldata");
     for (file, machine) in [
         ("makino/Plane_2.cldata", "generic-3axis-fanuc"),
         ("nx/simple_block.cls", "generic-3axis-linuxcnc"),
         ("solidworks/shimemcunha.apt", "dmu50-heidenhain"),
         ("solidworks/SupPetriLED.apt", "sinumerik-840d-traori"),
     ] {
-        match data.join(file) {
+        match cldata().join(file) {
             path if path.is_file() => samples.push(Sample::new(file, &read(path), machine)),
             path => eprintln!("note: no {} here", path.display()),
         }

@@ -1,5 +1,7 @@
 //! The files of cutter-location data that the tests read.
 
+#![allow(dead_code, reason = "each test file uses its part")]
+
 use std::path::{Path, PathBuf};
 
 /// The top folder of the project.
@@ -7,12 +9,17 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// Every file of cutter-location data that there is: our examples, and the real ones in `TOOLPOST_DATA`
-/// or in `../shared/data` beside the checkout. A folder that is missing is named on stderr.
-pub fn sources() -> Vec<PathBuf> {
+/// The folder of real cutter-location data: in `TOOLPOST_DATA`, or in `../shared/data` beside the
+/// checkout.
+pub fn cldata() -> PathBuf {
     let beside = root().join("../shared/data");
-    let cldata = std::env::var_os("TOOLPOST_DATA").map_or(beside, PathBuf::from).join("cldata");
-    let real = ["makino", "nx", "solidworks"].map(|system| cldata.join(system));
+    std::env::var_os("TOOLPOST_DATA").map_or(beside, PathBuf::from).join("cldata")
+}
+
+/// Every file of cutter-location data that there is: our examples and the real ones. A folder that is
+/// missing is named on stderr.
+pub fn sources() -> Vec<PathBuf> {
+    let real = ["makino", "nx", "solidworks"].map(|system| cldata().join(system));
     let mut files = Vec::new();
     for folder in real.into_iter().chain([root().join("examples")]) {
         let Ok(entries) = std::fs::read_dir(&folder) else {

@@ -1,0 +1,98 @@
+//! Cuts: lines and arcs, and what must hold in them.
+
+use super::*;
+
+impl Prover<'_> {
+    /// A feed move while the source cuts a line or an arc.
+    pub(super) fn cut(&mut self, to: &Station, block: Option<&Arc>) -> Outcome {
+        let Step::Move(goal) = &self.cursor.step else { return Ok(()) };
+        let here = self.here;
+        if !here.place.known() || goal.from.is_none() {
+            return self.cut_from_nowhere(to, block);
+        }
+        let followed = match (&goal.kind, block) {
+            (Kind::Arc(arc), Some(block)) => {
+                arc::follow(&self.gauge, arc, goal, self.leg.t, block, &here, to)
+            }
+            (Kind::Arc(arc), None) => {
+                arc::follow_chord(&self.gauge, arc, goal, self.leg.t, &here, to)
+            }
+            (_, Some(_)) => Err("makes an arc where the source has a line".into()),
+            (_, None) => line::follow(&self.gauge, goal, self.leg.t, &here, to),
+        };
+        let Followed { t, path_mm, left_mm } = followed.map_err(|how| {
+            let message = format!("goes to {} and {how}; the source goes to {}", to.place, goal.to);
+            self.lost_at(to.line, "path", &message)
+        })?;
+        let length = block.map_or(here.place.tip.distance(to.place.tip), Arc::length);
+        let lengths =
+            Lengths { source: goal.length(), block: length, rounding: self.gauge.slack(to) };
+        let done = self.gauge.at(to, &goal.to) && left_mm <= arc::PAST * lengths.rounding;
+        self.leg.t = t;
+        self.check_cut(to, &lengths, block.is_some());
+        self.report.deviations.path_mm.note(path_mm, self.cursor.line, to.line);
+        if done {
+            self.arrive(to);
+        }
+        Ok(())
+    }
+
+    /// A feed move from where the tool is not known: only the first motion, or the first after a tool
+    /// change, may be one, and it has to go to the end at once.
+    pub(super) fn cut_from_nowhere(&mut self, to: &Station, block: Option<&Arc>) -> Outcome {
+        let Step::Move(goal) = &self.cursor.step else { return Ok(()) };
+        let first = goal.from.is_none() || goal.tool_change;
+        let straight = block.is_none() && self.gauge.at(to, &goal.to);
+        let start = self.leg.start.unwrap_or(self.here);
+        let explained = stops::explain(&self.gauge, &start, &self.leg.stops, to, true).is_ok();
+        if !(first && straight && explained) {
+            let message = format!(
+                "feeds to {} from a place that is not known; the source goes to {}",
+                to.place, goal.to
+            );
+            return Err(self.lost_at(to.line, "unknown-start", &message));
+        }
+        let message =
+            format!("source line {}: feeds to {} from an unknown place", goal.line, to.place);
+        self.report.warn(Diagnostic::warning("unknown-start", message).line(to.line));
+        let lengths = Lengths { source: 0.0, block: 0.0, rounding: self.gauge.slack(to) };
+        self.check_cut(to, &lengths, false);
+        self.arrive(to);
+        Ok(())
+    }
+
+    /// What must hold in a cut.
+    pub(super) fn check_cut(&mut self, to: &Station, lengths: &Lengths, on_arc: bool) {
+        let (allowed, wanted, running) = (&self.gauge.allowed, &self.cursor.wanted, &self.running);
+        let found = [
+            state::set_up(self.gauge.machine, wanted, running),
+            state::spindle_and_coolant(allowed, wanted, running),
+            state::feed(allowed, wanted.feed, running.feed, wanted.spindle, lengths),
+        ];
+        let travel = to.place.tip - self.here.place.tip;
+        let across = travel.reject_from_normalized(to.place.axis).length();
+        let in_plane = across.is_nan() || across > lengths.rounding;
+        for difference in found {
+            self.check(to.line, difference);
+        }
+        self.check_compensation(to.line, in_plane, on_arc);
+    }
+
+    /// Compensation goes on with the first straight cut in the plane at the latest, off with the first
+    /// straight move there, and neither on an arc, which has to be as the source wants it.
+    pub(super) fn check_compensation(&mut self, line: u32, must: bool, on_arc: bool) {
+        let (wanted, is) = (self.cursor.wanted.compensation, self.running.compensation);
+        let tool = self.cursor.wanted.tool;
+        let switched = state::same_compensation(self.gauge.machine, wanted, is, tool);
+        let kept = state::same_compensation(self.gauge.machine, self.compensation, is, tool);
+        if switched && (kept || !on_arc) {
+            self.compensation = wanted;
+        } else if switched {
+            self.differs(line, ("compensation", "compensation is switched on an arc".into()));
+        } else if !kept || must {
+            let (is, should) = (state::compensation(is), state::compensation(wanted));
+            let message = format!("compensation is {is}, but should be {should}");
+            self.differs(line, ("compensation", message));
+        }
+    }
+}

@@ -1,0 +1,129 @@
+//! Holes: by canned cycles, and by the moves that make them.
+
+use super::*;
+
+impl Prover<'_> {
+    /// A single move while the source drills.
+    pub(super) fn hole_move(&mut self, gait: Gait, to: &Station) -> Outcome {
+        let Step::Move(Goal { kind: Kind::Hole(cycle), to: point, .. }) = &self.cursor.step else {
+            return Ok(());
+        };
+        let (gauge, cycle, point) = (self.gauge, *cycle, *point);
+        let hole = Hole { gauge: &gauge, point: &point, cycle: &cycle };
+        let here = self.here;
+        if !self.leg.hole.over {
+            if gait == Gait::Rapid && !hole.is_over(to) {
+                return self.stop_at(to);
+            }
+            if gait == Gait::Rapid {
+                self.approached(to)?;
+                self.comes_from_above(&hole, Some(to))?;
+                self.leg.stops.clear();
+                self.leg.hole.over = true;
+                return Ok(());
+            }
+            if !hole.is_over(&here) {
+                let message = format!("feeds to {}, but the hole is at {point}", to.place);
+                return Err(self.lost_at(to.line, "hole", &message));
+            }
+            self.leg.hole.over = true;
+        }
+        let stopped = self.running.spindle == Spindle::Off;
+        let run = &mut self.leg.hole;
+        let done = match gait {
+            Gait::Rapid => run.rapid(&hole, &here, to, stopped),
+            Gait::Feed => run.feed(&hole, &here, to),
+        }
+        .map_err(|how| self.lost_at(to.line, "hole", &how))?;
+        if gait == Gait::Feed {
+            self.check_drilling(to.line, cycle.feed, self.running.feed);
+        }
+        if done {
+            self.arrive(to);
+        }
+        Ok(())
+    }
+
+    /// A hole of a canned cycle.
+    pub(super) fn drilled(&mut self, line: u32, pose: &Pose) -> Outcome {
+        let Some(own) = self.running.cycle else {
+            return Err(self.lost_at(line, "hole", "drills without a cycle"));
+        };
+        self.pass_left_out(|_| false);
+        self.miss_events(line);
+        let Step::Move(Goal { kind: Kind::Hole(cycle), to: point, .. }) = &self.cursor.step else {
+            let message = "drills a hole that the source does not have";
+            return Err(match self.nearest_stop() {
+                Some(stop) => self.lost_at(stop.line, "end-point", &self.not_reached(&stop)),
+                None => self.lost_at(line, "hole", message),
+            });
+        };
+        let (gauge, cycle, point) = (self.gauge, *cycle, *point);
+        let hole = Hole { gauge: &gauge, point: &point, cycle: &cycle };
+        let drilled = Drilled::new(&gauge, line, pose, own);
+        if self.leg.hole.begun(&cycle) {
+            return Err(self.lost_at(line, "hole", "drills a hole that has been begun by moves"));
+        }
+        drilled.place(&hole).map_err(|how| self.lost_at(line, "hole", &how))?;
+        self.approached(&drilled.r_plane)?;
+        // A cycle itself goes across first, then down.
+        self.comes_from_above(&hole, None)?;
+        for difference in drilled.kind(&hole) {
+            self.differs(line, difference);
+        }
+        self.check_drilling(line, cycle.feed, own.feed.or(self.running.feed));
+        let summary = &mut self.report.program;
+        summary.cutting_length_mm += own.clearance + own.depth;
+        for station in [&drilled.bottom, &drilled.r_plane, &drilled.retracted] {
+            summary.include(&station.pose);
+        }
+        let over = self.here.place.tip.distance(drilled.r_plane.place.tip);
+        let out = drilled.bottom.place.tip.distance(drilled.retracted.place.tip);
+        summary.rapid_length_mm += if over.is_nan() { out } else { over + out };
+        self.here = drilled.retracted;
+        self.arrive(&drilled.retracted);
+        Ok(())
+    }
+
+    /// What must hold while a hole is drilled. A tap's feed is its pitch, which the cycle compares.
+    pub(super) fn check_drilling(
+        &mut self,
+        line: u32,
+        cycle: Option<program::Feed>,
+        is: Option<program::Feed>,
+    ) {
+        let (allowed, wanted, running) = (&self.gauge.allowed, &self.cursor.wanted, &self.running);
+        let lengths = Lengths { source: 0.0, block: 0.0, rounding: 1.0 };
+        let tapping = matches!(
+            &self.cursor.step,
+            Step::Move(Goal { kind: Kind::Hole(c), .. })
+                if matches!(c.kind, program::CycleKind::Tap { .. })
+        );
+        let found = [
+            state::set_up(self.gauge.machine, wanted, running),
+            state::spindle_and_coolant(allowed, wanted, running),
+            match tapping {
+                true => None,
+                false => state::feed(allowed, cycle.or(wanted.feed), is, wanted.spindle, &lengths),
+            },
+        ];
+        for difference in found {
+            self.check(line, difference);
+        }
+        self.check_compensation(line, true, false);
+    }
+
+    /// Whether the way to a hole goes down nowhere but over it: as a canned cycle goes, for what the
+    /// tool was drawn back from may stand between the holes.
+    fn comes_from_above(&self, hole: &Hole, to: Option<&Station>) -> Outcome {
+        let mut last = self.leg.start.unwrap_or(self.here);
+        for stop in self.leg.stops.iter().chain(to) {
+            if hole.beside_and_down(&last, stop) {
+                let message = format!("goes down by rapid to {}, beside the hole", stop.place);
+                return Err(self.lost_at(stop.line, "hole", &message));
+            }
+            last = *stop;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,331 @@
+//! The walk of the program along the source.
+
+mod cut;
+mod drilling;
+mod events;
+mod rapid;
+
+use crate::expected::{Cursor, Goal, Kind, Step};
+use crate::gauge::Gauge;
+use crate::hole::{Drilled, Hole, Run};
+use crate::line::Followed;
+use crate::place::{Number, Place, Station};
+use crate::report::{Excursion, Report};
+use crate::state::{self, Difference, Lengths, Running};
+use crate::tolerance::{Applied, Tolerances};
+use crate::{arc, line, stops};
+use geom::{Arc, Vec3};
+use machine::{Machine, Mount};
+use program::statistics::Statistics;
+use program::{
+    ArcTo, Compensation, Diagnostic, Op, Orientation, Pose, Program, Record, Spindle, Tool,
+};
+
+/// Compares a program with its source, record by record, as a control runs it.
+pub struct Prover<'a> {
+    source: &'a Program,
+    /// How far the source reaches; counted where it is asked for.
+    statistics: Option<Statistics>,
+    gauge: Gauge<'a>,
+    cursor: Cursor<'a>,
+    running: Running,
+    /// Compensation of the source as far as moves have switched it.
+    compensation: Compensation,
+    here: Station,
+    leg: Leg,
+    report: Report,
+    ended: bool,
+    lost: bool,
+}
+
+/// How far the program is with the source motion at hand.
+#[derive(Default)]
+struct Leg {
+    /// Part of a line or an arc that is done, 0 to 1.
+    t: f64,
+    /// Where the last motion ended.
+    start: Option<Station>,
+    /// Where rapids have stopped since then, or since the tool left the path.
+    stops: Vec<Station>,
+    /// Where an excursion left the path.
+    left: Option<Station>,
+    /// Whether Z was sent home since.
+    homed: bool,
+    hole: Run,
+}
+
+/// How a block moves.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Gait {
+    Rapid,
+    Feed,
+}
+
+/// The most stops that a rapid may have: a corner for each of five axes, and lifts.
+const MOST_STOPS: usize = 16;
+
+/// What a comparison answers: the mismatch after which the two motions cannot be laid beside each
+/// other any more.
+type Outcome = Result<(), Box<Diagnostic>>;
+
+impl<'a> Prover<'a> {
+    /// Before the first record of a program for `machine`.
+    pub fn new(source: &'a Program, machine: &'a Machine, tolerances: &Tolerances) -> Prover<'a> {
+        let allowed = Applied::new(machine, tolerances);
+        let cursor = Cursor::new(machine, &source.records);
+        let gauge = Gauge { machine, allowed, tool_length: cursor.tool_length() };
+        let unknown = Pose {
+            point: Vec3::NAN,
+            orientation: Orientation::Rotary { degrees: [f64::NAN; 3], tool_center: false },
+        };
+        let mut prover = Prover {
+            source,
+            statistics: None,
+            here: gauge.station(0, unknown),
+            gauge,
+            cursor,
+            running: Running::at_reset(machine),
+            compensation: Compensation::Off,
+            leg: Leg::default(),
+            report: Report { tolerances: allowed, ..Report::default() },
+            ended: false,
+            lost: false,
+        };
+        prover.enter();
+        prover
+    }
+
+    /// The next record of the program.
+    ///
+    /// # Errors
+    /// The mismatch after which nothing can be compared any more; it is in the report too.
+    pub fn record(&mut self, record: &Record) -> Outcome {
+        if self.lost {
+            return Ok(());
+        }
+        let outcome = self.take(record);
+        if let Err(found) = &outcome {
+            self.lost = true;
+            self.report.mismatch(self.cursor.line, (**found).clone());
+        }
+        outcome
+    }
+
+    /// The report, after the last record.
+    pub fn finish(mut self) -> Report {
+        if !self.lost {
+            self.pass_left_out(|_| false);
+            let stop = self.nearest_stop().filter(|_| self.leg.left.is_none());
+            match (&self.cursor.step, stop) {
+                (Step::End, _) => {}
+                (_, Some(stop)) => self.differs(stop.line, ("end-point", self.not_reached(&stop))),
+                _ => self.differs(0, ("missing", "the program ends before this".into())),
+            }
+            if !self.ended {
+                self.differs(0, ("no-end", "the program has no end".into()));
+            }
+        }
+        self.report.proven = self.report.mismatches.is_empty();
+        self.report
+    }
+
+    /// The control refused a block, so the rest is not known. What [`Prover::record`] answered is
+    /// in the report already.
+    pub(crate) fn refused(&mut self, found: Diagnostic) {
+        if !self.lost {
+            self.lost = true;
+            self.report.mismatch(self.cursor.line, found);
+        }
+    }
+
+    fn take(&mut self, record: &Record) -> Outcome {
+        let line = record.line;
+        let passive = matches!(
+            record.op,
+            Op::Comment(_) | Op::Message(_) | Op::Operation(_) | Op::EndOfOperation | Op::End
+        );
+        if self.ended && !passive {
+            return Err(self.lost_at(line, "after-end", "goes on after the end of the program"));
+        }
+        match &record.op {
+            Op::Rapid(pose) => self.motion(line, Gait::Rapid, pose, None),
+            Op::Line(pose) => self.motion(line, Gait::Feed, pose, None),
+            Op::Arc(to) => self.motion(line, Gait::Feed, &to.end, Some(to)),
+            Op::Hole(pose) => self.drilled(line, pose),
+            Op::Home(axes) => self.home(line, *axes),
+            Op::Tool(tool) => self.change_tool(line, tool),
+            op => {
+                match op {
+                    Op::Dwell(seconds) if *seconds == 0.0 => {}
+                    Op::Dwell(seconds) => self.event(line, Step::Dwell(*seconds)),
+                    Op::Stop => self.event(line, Step::Stop),
+                    Op::OptionalStop => self.event(line, Step::OptionalStop),
+                    op => self.switch(line, op),
+                }
+                Ok(())
+            }
+        }
+    }
+
+    /// A modal word.
+    fn switch(&mut self, line: u32, op: &Op) {
+        let running = &mut self.running;
+        match op {
+            Op::Feed(feed) => running.feed = Some(*feed),
+            Op::Spindle(spindle) => (running.spindle, running.spindle_line) = (*spindle, line),
+            Op::Coolant(coolant) => (running.coolant, running.coolant_line) = (*coolant, line),
+            Op::Compensation(side) => running.compensation = *side,
+            Op::LengthOffset(register) => running.length_offset = *register,
+            Op::WorkOffset(number) => running.work_offset = Some(*number),
+            Op::Cycle(cycle) => running.cycle = Some(**cycle),
+            Op::CycleOff => running.cycle = None,
+            Op::End => self.ended = true,
+            _ => {}
+        }
+    }
+
+    /// A move to `pose`.
+    fn motion(&mut self, line: u32, gait: Gait, pose: &Pose, arc: Option<&ArcTo>) -> Outcome {
+        if arc.is_none() && *pose == self.here.pose {
+            return Ok(());
+        }
+        let to = self.gauge.station(line, *pose);
+        let block = arc.map(|arc| arc::of_block(&self.gauge, &self.here, arc));
+        if block == Some(None) {
+            return Err(self.lost_at(line, "arc", "makes no arc"));
+        }
+        let block = block.flatten();
+        self.count(gait, &to, arc, block.as_ref());
+        if self.leg.left.is_none() {
+            let gauge = self.gauge;
+            self.pass_left_out(|goal| {
+                let alike = match goal.kind {
+                    Kind::Rapid => gait == Gait::Rapid,
+                    Kind::Line => gait == Gait::Feed && block.is_none(),
+                    Kind::Arc(_) => gait == Gait::Feed,
+                    Kind::Hole(_) | Kind::Broken(_) => false,
+                };
+                alike && gauge.at(&to, &goal.to)
+            });
+        }
+        self.miss_events(line);
+        let outcome = match &self.cursor.step {
+            Step::Move(goal) => match &goal.kind {
+                Kind::Rapid => self.rapid(gait, &to),
+                Kind::Line | Kind::Arc(_) if gait == Gait::Rapid || self.leg.left.is_some() => {
+                    self.excursion(gait, &to)
+                }
+                Kind::Line | Kind::Arc(_) => self.cut(&to, block.as_ref()),
+                Kind::Hole(_) if block.is_some() => {
+                    Err(self.lost_at(line, "hole", "makes an arc where the source has a hole"))
+                }
+                Kind::Hole(_) => self.hole_move(gait, &to),
+                Kind::Broken(why) => {
+                    let message = format!("has no motion to hold against: {why}");
+                    Err(self.lost_at(line, "source", &message))
+                }
+            },
+            _ => self.closing(gait, &to),
+        };
+        self.here = to;
+        outcome
+    }
+
+    /// Passes motions that the tool need not make: those shorter than the resolution of the machine,
+    /// at whose end it already is. Stops before one that `wanted` asks for.
+    fn pass_left_out(&mut self, wanted: impl Fn(&Goal) -> bool) {
+        while self.leg.stops.is_empty() && self.leg.left.is_none() && !self.leg.hole.over {
+            let Step::Move(goal) = &self.cursor.step else { return };
+            let slack = self.gauge.slack(&self.here);
+            let short = match &goal.kind {
+                Kind::Rapid => true,
+                Kind::Line => goal.from.is_some(),
+                Kind::Arc(arc) => arc.length() <= 2.0 * slack,
+                Kind::Hole(_) | Kind::Broken(_) => false,
+            };
+            if !short || !self.gauge.at(&self.here, &goal.to) || wanted(goal) {
+                return;
+            }
+            self.report.compared.left_out += 1;
+            self.advance();
+        }
+    }
+
+    /// The source motion is done.
+    fn arrive(&mut self, to: &Station) {
+        if let Step::Move(goal) = &self.cursor.step {
+            let compared = &mut self.report.compared;
+            match goal.kind {
+                Kind::Rapid => compared.rapids += 1,
+                Kind::Line => compared.lines += 1,
+                Kind::Arc(_) => compared.arcs += 1,
+                Kind::Hole(_) => compared.holes += 1,
+                Kind::Broken(_) => {}
+            }
+            let (tip, axis) = to.place.apart(&goal.end());
+            self.report.deviations.tip_mm.note(tip, goal.line, to.line);
+            self.report.deviations.axis_degrees.note(axis, goal.line, to.line);
+        }
+        self.here = *to;
+        self.advance();
+    }
+
+    fn advance(&mut self) {
+        self.cursor.advance();
+        self.enter();
+    }
+
+    /// Makes ready for the step at hand.
+    fn enter(&mut self) {
+        self.leg.t = 0.0;
+        self.leg.start = Some(self.here);
+        self.leg.stops.clear();
+        self.leg.left = None;
+        self.leg.homed = false;
+        self.gauge.tool_length = self.cursor.tool_length();
+        if let Step::Move(Goal { kind: Kind::Hole(cycle), .. }) = &self.cursor.step {
+            self.leg.hole.restart(cycle);
+        } else {
+            self.leg.hole.over = false;
+        }
+    }
+
+    /// Adds a move to the totals of the program.
+    fn count(&mut self, gait: Gait, to: &Station, arc: Option<&ArcTo>, block: Option<&Arc>) {
+        let summary = &mut self.report.program;
+        summary.include(&to.pose);
+        let length = block.map_or(self.here.place.tip.distance(to.place.tip), Arc::length);
+        if length.is_finite() {
+            match gait {
+                Gait::Rapid => summary.rapid_length_mm += length,
+                Gait::Feed => summary.cutting_length_mm += length,
+            }
+        }
+        if let Some(to) = arc {
+            let (start, end) = (self.here.pose.point, to.end.point);
+            let radius = start.distance(to.center);
+            if let Ok(arc) = Arc::new(start, end, to.center, to.normal, to.turns, radius) {
+                summary.include_arc(&arc);
+            }
+        }
+    }
+
+    /// A difference after which the comparison goes on.
+    fn differs(&mut self, line: u32, (rule, what): Difference) {
+        let source = self.cursor.line;
+        let message = format!("source line {source}: {what}");
+        self.report.mismatch(source, Diagnostic::error(rule, message).line(line));
+    }
+
+    fn check(&mut self, line: u32, difference: Option<Difference>) {
+        if let Some(difference) = difference {
+            self.differs(line, difference);
+        }
+    }
+
+    /// The mismatch on `line` of the program after which the comparison cannot go on.
+    fn lost_at(&self, line: u32, rule: &'static str, what: &str) -> Box<Diagnostic> {
+        let message = format!("source line {}: the program {what}", self.cursor.line);
+        Diagnostic::error(rule, message).line(line).into()
+    }
+}

@@ -1,0 +1,257 @@
+//! Rapids, excursions from the path of a cut, home positions, and the way out at the end.
+
+use super::*;
+
+impl Prover<'_> {
+    /// A move while the source goes by rapid.
+    pub(super) fn rapid(&mut self, gait: Gait, to: &Station) -> Outcome {
+        if gait == Gait::Feed {
+            return Err(match self.nearest_stop() {
+                Some(stop) => self.lost_at(stop.line, "end-point", &self.not_reached(&stop)),
+                None => self.lost_at(to.line, "rapid-feed", "feeds where the source goes by rapid"),
+            });
+        }
+        let Step::Move(goal) = &self.cursor.step else { return Ok(()) };
+        if self.gauge.at(to, &goal.to) {
+            let across = goal.from.is_none_or(|from| {
+                let way = goal.to.tip - from.tip;
+                way.reject_from_normalized(from.axis).length() > self.gauge.slack(to)
+            });
+            // What is switched off is off from the first straight move on, before the tool comes down.
+            let off = self.cursor.wanted.compensation == Compensation::Off;
+            self.check_compensation(to.line, across && off, false);
+            self.approached(to)?;
+            self.arrive(to);
+            return Ok(());
+        }
+        self.stop_at(to)
+    }
+
+    /// Keeps a stop of a rapid until its end explains it.
+    pub(super) fn stop_at(&mut self, to: &Station) -> Outcome {
+        if to.place.known() {
+            let found = state::at_stop(self.gauge.machine, &self.cursor.wanted, &self.running);
+            self.check(to.line, found);
+        }
+        if self.leg.stops.len() >= MOST_STOPS {
+            let stop = self.nearest_stop().unwrap_or(*to);
+            return Err(self.lost_at(stop.line, "end-point", &self.not_reached(&stop)));
+        }
+        self.leg.stops.push(*to);
+        Ok(())
+    }
+
+    /// Explains the stops of a rapid that has come to its end.
+    pub(super) fn approached(&mut self, to: &Station) -> Outcome {
+        self.check(to.line, state::set_up(self.gauge.machine, &self.cursor.wanted, &self.running));
+        let Step::Move(goal) = &self.cursor.step else { return Ok(()) };
+        let free = goal.free(self.gauge.allowed.axis_degrees);
+        if self.leg.stops.is_empty() {
+            return Ok(());
+        }
+        let start = self.leg.start.unwrap_or(self.here);
+        match stops::explain(&self.gauge, &start, &self.leg.stops, to, free) {
+            Ok(lift) => {
+                if self.leg.homed && !free || lift.left_mm > 0.0 && lift.came_mm > 0.0 {
+                    self.note_excursion(to, lift.left_mm);
+                }
+                Ok(())
+            }
+            Err(stop) => {
+                let message = format!(
+                    "stops by rapid at {}, on no way axis by axis to {}",
+                    stop.place, to.place
+                );
+                Err(self.lost_at(stop.line, "rapid-stop", &message))
+            }
+        }
+    }
+
+    /// A move off the path of a cut, or back to it.
+    pub(super) fn excursion(&mut self, gait: Gait, to: &Station) -> Outcome {
+        let Step::Move(goal) = &self.cursor.step else { return Ok(()) };
+        let Some(left) = self.leg.left else {
+            if goal.from.is_none() {
+                return self.stop_at(to);
+            }
+            if self.gauge.at(to, &goal.to) || !stops::lifted(&self.gauge, &self.here, to) {
+                let message = "goes by rapid where the source feeds";
+                return Err(self.lost_at(to.line, "rapid-feed", message));
+            }
+            self.leg.left = Some(self.here);
+            return self.stop_at(to);
+        };
+        if gait == Gait::Feed && goal.tool_change && !self.here.place.known() {
+            return self.cut_from_nowhere(to, None);
+        }
+        if self.gauge.at(to, &left.place) {
+            let last = self.leg.stops.last().copied().unwrap_or(left);
+            if !self.comes_down(&last, to) {
+                return Err(self.lost_at(
+                    to.line,
+                    "excursion",
+                    "comes back, but not along the tool axis",
+                ));
+            }
+            let lift =
+                stops::explain(&self.gauge, &left, &self.leg.stops, to, true).map_err(|stop| {
+                    let message = format!("stops by rapid at {}, away from the path", stop.place);
+                    self.lost_at(stop.line, "rapid-stop", &message)
+                })?;
+            self.note_excursion(to, lift.left_mm);
+            self.leg.left = None;
+            self.leg.homed = false;
+            self.leg.stops.clear();
+            return Ok(());
+        }
+        if gait == Gait::Feed {
+            let line = self.leg.stops.first().map_or(to.line, |stop| stop.line);
+            let message = "leaves the cut by rapid and does not come back to where it left";
+            return Err(self.lost_at(line, "rapid-feed", message));
+        }
+        self.stop_at(to)
+    }
+
+    /// Whether the last move of an excursion goes along the tool axis, towards the part.
+    pub(super) fn comes_down(&self, last: &Station, to: &Station) -> bool {
+        if last.place.known() {
+            return stops::lifted(&self.gauge, to, last);
+        }
+        // From home only Z is left to go.
+        let (a, b) = (last.pose.point, to.pose.point);
+        (a.x - b.x).abs() <= 1e-6
+            && (a.y - b.y).abs() <= 1e-6
+            && last.pose.orientation == to.pose.orientation
+    }
+
+    pub(super) fn note_excursion(&mut self, to: &Station, lift_mm: f64) {
+        let first = self.leg.stops.first().map_or(to.line, |stop| stop.line);
+        self.report.excursion(Excursion {
+            source_line: self.cursor.line,
+            first_program_line: first,
+            last_program_line: to.line,
+            lift_mm,
+        });
+    }
+
+    /// Axes sent to a fixed position.
+    pub(super) fn home(&mut self, line: u32, axes: u8) -> Outcome {
+        let axis_degrees = self.gauge.allowed.axis_degrees;
+        self.pass_left_out(|goal| goal.free(axis_degrees));
+        let (first, free, holding) = match &self.cursor.step {
+            Step::Move(goal) => {
+                let free = goal.free(axis_degrees) && self.leg.left.is_none();
+                (goal.from.is_none(), free, matches!(goal.kind, Kind::Line | Kind::Arc(_)))
+            }
+            _ => (false, true, false),
+        };
+        let z = axes & 4 != 0;
+        let retracted = self.here.pose.point.z.is_nan() || self.leg.homed;
+        if !first && !retracted && !z {
+            return Err(self.lost_at(line, "home", "sends axes home before the tool is retracted"));
+        }
+        let up = axes == 4 && (self.hangs_down() || self.clear_of_part());
+        if !first && !free && (!up || self.leg.hole.over) {
+            return Err(self.lost_at(line, "home", "sends axes home in the middle of the work"));
+        }
+        if !first && !retracted && axes != 4 {
+            if !self.clear_of_part() {
+                let message = "sends axes home together with Z, not after it, beside the part";
+                return Err(self.lost_at(line, "home", message));
+            }
+            let message = "Z goes home together with other axes, not before them";
+            self.report.warn(Diagnostic::warning("home", message).line(line));
+        }
+        if holding && !first && self.leg.left.is_none() {
+            self.leg.left = Some(self.here);
+        }
+        self.leg.homed |= z;
+        let mut pose = self.here.pose;
+        for (i, bit) in [(0, 1), (1, 2), (2, 4)] {
+            if axes & bit != 0 {
+                pose.point[i] = f64::NAN;
+            }
+        }
+        match &mut pose.orientation {
+            Orientation::Axis(axis) if *axis != Vec3::Z => pose.point = Vec3::NAN,
+            Orientation::Axis(_) => {}
+            Orientation::Rotary { degrees, .. } => {
+                for (i, degrees) in degrees.iter_mut().enumerate() {
+                    if axes & (8 << i) != 0 {
+                        *degrees = f64::NAN;
+                    }
+                }
+            }
+        }
+        let to = self.gauge.station(line, pose);
+        if self.leg.left.is_some() {
+            self.stop_at(&to)?;
+        }
+        self.here = to;
+        Ok(())
+    }
+
+    /// Whether the tool is beyond every point of the source along its axis, which does not point
+    /// down: then Z home is away from all of them.
+    pub(super) fn clear_of_part(&mut self) -> bool {
+        let Place { tip, axis } = self.here.place;
+        let statistics = self.statistics.get_or_insert_with(|| Statistics::of(self.source));
+        axis.z >= 0.0 && tip.dot(axis) >= statistics.reach(axis)
+    }
+
+    /// Whether the tool hangs along Z of the machine, so that Z home is away from the part.
+    pub(super) fn hangs_down(&self) -> bool {
+        let machine = self.gauge.machine;
+        let mut heads = machine.rotary.iter().filter(|axis| axis.on == Mount::Head).peekable();
+        if heads.peek().is_none() {
+            return true;
+        }
+        match self.here.pose.orientation {
+            Orientation::Rotary { degrees, .. } => {
+                heads.all(|axis| axis.turned(degrees[axis.index()]).abs() < 1e-6)
+            }
+            Orientation::Axis(axis) => {
+                machine.rotary.iter().all(|axis| axis.on == Mount::Head) && axis == Vec3::Z
+            }
+        }
+    }
+
+    /// A move after the last motion of the source: away along the tool axis, or turning rotary axes
+    /// while the machine is at home.
+    pub(super) fn closing(&mut self, gait: Gait, to: &Station) -> Outcome {
+        let lifts = stops::lifted(&self.gauge, &self.here, to);
+        let turns_at_home = to.pose.point.z.is_nan() && self.leg.homed && {
+            let (a, b) = (self.here.pose.point, to.pose.point);
+            (0..3).all(|i| a[i] == b[i] || b[i].is_nan())
+        };
+        match gait == Gait::Rapid && (lifts || turns_at_home) {
+            true => Ok(()),
+            false => {
+                let message = format!("goes to {} after the last motion of the source", to.place);
+                Err(self.lost_at(to.line, "extra-motion", &message))
+            }
+        }
+    }
+
+    /// The stop that comes nearest to where the source goes.
+    pub(super) fn nearest_stop(&self) -> Option<Station> {
+        let Step::Move(goal) = &self.cursor.step else { return None };
+        let far = |stop: &Station| {
+            let apart = stop.place.tip.distance(goal.to.tip);
+            if apart.is_nan() { f64::INFINITY } else { apart }
+        };
+        self.leg.stops.iter().min_by(|a, b| far(a).total_cmp(&far(b))).copied()
+    }
+
+    pub(super) fn not_reached(&self, stop: &Station) -> String {
+        let Step::Move(goal) = &self.cursor.step else { return String::new() };
+        let (tip, axis) = stop.place.apart(&goal.to);
+        format!(
+            "goes to {}, but the source goes to {}: {} mm and {}° apart",
+            stop.place,
+            goal.to,
+            Number(tip),
+            Number(axis)
+        )
+    }
+}
