@@ -33,6 +33,14 @@ pub fn load(name_or_path: &str) -> Result<Machine> {
     build(file)
 }
 
+/// Loads a control of the library by its name, as the machine that says nothing beyond it.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_control(name: &str) -> Result<Machine> {
+    build(SheetFile::of_library(name, library::CONTROLS)?)
+}
+
 /// Loads a machine from TOML text, as if it stood in `file_name`. What it extends by path is looked up
 /// from the folder of that name.
 ///
@@ -69,6 +77,18 @@ fn build(file: SheetFile) -> Result<Machine> {
     merged.finish(name.clone(), shown.clone(), control, &missing)
 }
 
+/// The machines of the library that build on a control, in however many steps.
+fn builders(control: &str) -> impl Iterator<Item = &'static str> {
+    let parent = |name: &str| {
+        let file = SheetFile::of_library(name, library::EVERYTHING).ok()?;
+        file.parse().ok()?.extends.map(Spanned::into_inner)
+    };
+    library::names(library::MACHINES).filter(move |name| {
+        let mut chain = std::iter::successors(parent(name), |name| parent(name));
+        chain.any(|ancestor| ancestor == control)
+    })
+}
+
 fn is_path(name: &str) -> bool {
     name.contains(['/', '\\']) || name.ends_with(".toml")
 }
@@ -102,6 +122,13 @@ impl SheetFile {
         match library::find(name, kinds) {
             Some((path, text)) => {
                 Ok(SheetFile { path: PathBuf::from(path), text: text.to_string(), own: false })
+            }
+            None if library::find(name, library::EVERYTHING).is_some() => {
+                let known = builders(name).collect::<Vec<_>>().join(", ");
+                let message = format!("`{name}` is a control, not a machine");
+                let own = format!("a file of your own that says `extends = \"{name}\"`");
+                let help = format!("the machines that build on it are {known}; or {own}");
+                Err(Diagnostic::error("machine-is-control", message).help(help).into())
             }
             None => {
                 let known = library::names(kinds).collect::<Vec<_>>().join(", ");
