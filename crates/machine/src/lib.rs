@@ -16,7 +16,9 @@ pub mod linearise;
 mod load;
 mod model;
 pub mod plan;
+mod sheet;
 pub mod time;
 
-pub use load::{load, load_text};
+pub use load::{load, load_control, load_text};
 pub use model::*;
+pub use sheet::{Key, keys};

@@ -2,7 +2,7 @@
 
 use include_dir::{Dir, include_dir};
 
-static CONTROLS: Dir = include_dir!("$CARGO_MANIFEST_DIR/../../controls");
+static CONTROL_FILES: Dir = include_dir!("$CARGO_MANIFEST_DIR/../../controls");
 static MACHINE_FILES: Dir = include_dir!("$CARGO_MANIFEST_DIR/../../machines");
 
 /// A folder of the library.
@@ -16,6 +16,8 @@ pub enum Kind {
 
 /// The machines alone.
 pub const MACHINES: &[Kind] = &[Kind::Machine];
+/// The controls alone.
+pub const CONTROLS: &[Kind] = &[Kind::Control];
 /// Machines and controls.
 pub const EVERYTHING: &[Kind] = &[Kind::Machine, Kind::Control];
 
@@ -36,7 +38,7 @@ fn stem(path: &str) -> &str {
 
 fn files(kinds: &[Kind]) -> impl Iterator<Item = (&'static str, &'static str)> {
     let folders = kinds.iter().map(|kind| match kind {
-        Kind::Control => ("controls", &CONTROLS),
+        Kind::Control => ("controls", &CONTROL_FILES),
         Kind::Machine => ("machines", &MACHINE_FILES),
     });
     folders.flat_map(|(_, folder)| {

@@ -1,13 +1,13 @@
 //! From files to a [`Machine`]: reading, merging along `extends`, checking.
 //!
-//! A [`Sheet`] is one file as it stands; every field may be missing, no other field may be there. The
+//! A [`Sheet`] is one file as it stands; every key may be missing, no other key may be there. The
 //! sheets of a chain are merged, the nearer one winning field by field, and the result must be whole.
 
 use crate::library;
 use crate::model::*;
+use crate::sheet::*;
 use geom::{Vec3, direction};
 use program::Diagnostic;
-use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use toml::Spanned;
@@ -33,6 +33,14 @@ pub fn load(name_or_path: &str) -> Result<Machine> {
     build(file)
 }
 
+/// Loads a control of the library by its name, as the machine that says nothing beyond it.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_control(name: &str) -> Result<Machine> {
+    build(SheetFile::of_library(name, library::CONTROLS)?)
+}
+
 /// Loads a machine from TOML text, as if it stood in `file_name`. What it extends by path is looked up
 /// from the folder of that name.
 ///
@@ -44,9 +52,9 @@ pub fn load_text(file_name: &str, text: &str) -> Result<Machine> {
 
 fn build(file: SheetFile) -> Result<Machine> {
     let name = file.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-    let leaf = file.parse()?;
+    let shown = file.name();
     let mut control = None;
-    let mut merged = leaf.check(&file)?;
+    let mut merged = CheckedSheet::new(file.parse()?, &file)?;
     let mut here = file;
     for depth in 0.. {
         let Some(parent) = merged.extends.take() else { break };
@@ -58,14 +66,27 @@ fn build(file: SheetFile) -> Result<Machine> {
         }
         let next = here.parent(&parent)?;
         control.get_or_insert_with(|| parent.get_ref().clone());
-        merged = next.parse()?.check(&next)?.under(merged);
+        merged = CheckedSheet::new(next.parse()?, &next)?.under(merged);
         here = next;
     }
     let missing = |what: &str| {
         let message = format!("{what} is missing, here and in everything that this file extends");
-        Box::new(Diagnostic::error("machine-incomplete", message).file(name.clone()))
+        Box::new(Diagnostic::error("machine-incomplete", message).file(shown.clone()))
     };
-    merged.finish(name.clone(), control.unwrap_or_else(|| name.clone()), &missing)
+    let control = control.unwrap_or_else(|| name.clone());
+    merged.finish(name.clone(), shown.clone(), control, &missing)
+}
+
+/// The machines of the library that build on a control, in however many steps.
+fn builders(control: &str) -> impl Iterator<Item = &'static str> {
+    let parent = |name: &str| {
+        let file = SheetFile::of_library(name, library::EVERYTHING).ok()?;
+        file.parse().ok()?.extends.map(Spanned::into_inner)
+    };
+    library::names(library::MACHINES).filter(move |name| {
+        let mut chain = std::iter::successors(parent(name), |name| parent(name));
+        chain.any(|ancestor| ancestor == control)
+    })
 }
 
 fn is_path(name: &str) -> bool {
@@ -101,6 +122,13 @@ impl SheetFile {
         match library::find(name, kinds) {
             Some((path, text)) => {
                 Ok(SheetFile { path: PathBuf::from(path), text: text.to_string(), own: false })
+            }
+            None if library::find(name, library::EVERYTHING).is_some() => {
+                let known = builders(name).collect::<Vec<_>>().join(", ");
+                let message = format!("`{name}` is a control, not a machine");
+                let own = format!("a file of your own that says `extends = \"{name}\"`");
+                let help = format!("the machines that build on it are {known}; or {own}");
+                Err(Diagnostic::error("machine-is-control", message).help(help).into())
             }
             None => {
                 let known = library::names(kinds).collect::<Vec<_>>().join(", ");
@@ -177,233 +205,39 @@ impl SheetFile {
     }
 }
 
-/// One file as it stands.
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct Sheet {
-    extends: Option<Spanned<String>>,
-    title: Option<String>,
-    reader: Option<String>,
-    extension: Option<String>,
-    #[serde(default)]
-    capabilities: CapabilitiesSheet,
-    #[serde(default)]
-    format: FormatSheet,
-    #[serde(default)]
-    words: BTreeMap<String, WordSheet>,
-    #[serde(default)]
-    blocks: BTreeMap<String, Spanned<String>>,
-    #[serde(default)]
-    axes: BTreeMap<LinearName, LinearSheet>,
-    rotary: Option<Vec<Spanned<RotarySheet>>>,
-    work_zero: Option<[f64; 3]>,
-    #[serde(default)]
-    orientation: OrientationSheet,
-    #[serde(default)]
-    spindle: SpindleSheet,
-    #[serde(default)]
-    tools: ToolsSheet,
-    auxiliary: Option<Vec<u32>>,
-    approach: Option<Vec<String>>,
-    #[serde(default)]
-    options: BTreeMap<String, OptionSheet>,
+/// A part of a file, with the place to tell where it turns out wrong after merging.
+struct Placed<T> {
+    sheet: T,
+    place: Diagnostic,
 }
 
-/// A struct whose fields are all optional, and how a nearer one lies over it.
-macro_rules! sheet {
-    ($name:ident { $($field:ident: $type:ty),* $(,)? }) => {
-        #[derive(Default, Deserialize)]
-        #[serde(deny_unknown_fields)]
-        struct $name { $($field: Option<$type>,)* }
-        impl $name {
-            fn under(self, nearer: $name) -> $name {
-                $name { $($field: nearer.$field.or(self.$field),)* }
-            }
-        }
-    };
-}
+impl<T> Placed<T> {
+    fn new(file: &SheetFile, what: &str, spanned: Spanned<T>) -> Placed<T> {
+        let place = file.at(what, &spanned, "");
+        Placed { sheet: spanned.into_inner(), place }
+    }
 
-sheet!(CapabilitiesSheet {
-    arcs: Vec<Plane>,
-    helix: bool,
-    full_circle: bool,
-    arc_tolerance: f64,
-    cycles: Vec<CycleName>,
-    compensation: bool,
-    feed_per_turn: bool,
-    inverse_time: bool,
-    length_offset: LengthOffset,
-    line_length: usize,
-    lowering_tolerance: f64,
-});
-
-sheet!(FormatSheet {
-    separator: String,
-    line_end: String,
-    comment_start: String,
-    comment_end: String,
-});
-
-sheet!(WordSheet {
-    address: String,
-    suffix: String,
-    decimals: Spanned<u8>,
-    trim: bool,
-    point: bool,
-    plus: bool,
-    digits: u8,
-    modal: bool,
-    step: u32,
-    first: u32,
-    scale: f64,
-    max: f64,
-    codes: BTreeMap<String, String>,
-});
-
-sheet!(LinearSheet { min: f64, max: f64, rapid: f64, acceleration: f64 });
-
-sheet!(OrientationSheet {
-    simultaneous: OrientationMode,
-    positioned: OrientationMode,
-    tolerance: f64,
-});
-
-sheet!(SpindleSheet { min: f64, max: f64 });
-
-sheet!(ToolsSheet { max_number: u32, max_diameter: f64, max_length: f64 });
-
-#[derive(Deserialize)]
-#[serde(deny_unknown_fields)]
-struct RotarySheet {
-    letter: char,
-    on: Mount,
-    axis: [f64; 3],
-    #[serde(default)]
-    point: [f64; 3],
-    #[serde(default = "one")]
-    sign: f64,
-    #[serde(default)]
-    offset: f64,
-    #[serde(default = "no_minimum")]
-    min: f64,
-    #[serde(default = "no_maximum")]
-    max: f64,
-    rapid: f64,
-    acceleration: f64,
-    #[serde(default)]
-    prefer: f64,
-}
-
-fn one() -> f64 {
-    1.0
-}
-
-fn no_minimum() -> f64 {
-    f64::NEG_INFINITY
-}
-
-fn no_maximum() -> f64 {
-    f64::INFINITY
-}
-
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
-enum LinearName {
-    X,
-    Y,
-    Z,
-}
-
-#[derive(Deserialize)]
-#[serde(untagged)]
-enum OptionSheet {
-    Flag(bool),
-    Number(f64),
-    Text(String),
-}
-
-impl Sheet {
-    /// What serde cannot see, told at its place in the file.
-    fn check(self, file: &SheetFile) -> Result<CheckedSheet> {
-        for (name, word) in &self.words {
-            if let Some(decimals) = &word.decimals
-                && *decimals.get_ref() > 9
-            {
-                let what = format!("words.{name}.decimals");
-                return Err(file.at(&what, decimals, "at most 9 decimals can be written").into());
-            }
-        }
-        let rotary = self.rotary.map(|axes| check_rotary(file, axes)).transpose()?;
-        let blocks = self.blocks.into_iter().map(|(name, text)| (name, file.block(text))).collect();
-        Ok(CheckedSheet {
-            extends: self.extends,
-            title: self.title,
-            reader: self.reader,
-            extension: self.extension,
-            capabilities: self.capabilities,
-            format: self.format,
-            words: self.words,
-            blocks,
-            axes: self.axes,
-            rotary,
-            work_zero: self.work_zero,
-            orientation: self.orientation,
-            spindle: self.spindle,
-            tools: self.tools,
-            auxiliary: self.auxiliary,
-            approach: self.approach,
-            options: self.options,
-        })
+    /// Both have been in order by themselves; what is wrong together is told at the nearer place.
+    fn under(self, nearer: Placed<T>, join: impl Fn(T, T) -> T) -> Placed<T> {
+        Placed { sheet: join(self.sheet, nearer.sheet), place: nearer.place }
     }
 }
 
-fn check_rotary(file: &SheetFile, axes: Vec<Spanned<RotarySheet>>) -> Result<Vec<RotaryAxis>> {
-    let mut checked: Vec<RotaryAxis> = Vec::new();
-    for spanned in axes {
-        let fail = |message: &str| Box::new(file.at("rotary", &spanned, message));
-        let sheet = spanned.get_ref();
-        if !matches!(sheet.letter, 'A' | 'B' | 'C') {
-            return Err(fail("`letter` is one of A, B, C"));
-        }
-        if checked.iter().any(|axis| axis.letter == sheet.letter) {
-            return Err(fail("this letter is taken by another rotary axis"));
-        }
-        if checked.len() == 2 {
-            return Err(fail("more than two rotary axes cannot be driven"));
-        }
-        let axis = direction(Vec3::from_array(sheet.axis))
-            .ok_or_else(|| fail("`axis` has no direction: give a vector of some length"))?;
-        if !Vec3::from_array(sheet.point).is_finite() || !sheet.offset.is_finite() {
-            return Err(fail("`point` and `offset` are finite numbers"));
-        }
-        if sheet.sign.abs() != 1.0 {
-            return Err(fail("`sign` is 1 or -1"));
-        }
-        let limits = sheet.min < sheet.max;
-        if !limits {
-            return Err(fail("`min` is less than `max`, in degrees"));
-        }
-        if !(is_rate(sheet.rapid) && is_rate(sheet.acceleration)) {
-            return Err(fail("`rapid` (degrees/min) and `acceleration` (degrees/s²) are positive"));
-        }
-        checked.push(RotaryAxis {
-            letter: sheet.letter,
-            on: sheet.on,
-            axis,
-            point: Vec3::from_array(sheet.point),
-            sign: sheet.sign,
-            offset: sheet.offset,
-            min: sheet.min,
-            max: sheet.max,
-            rapid: sheet.rapid,
-            acceleration: sheet.acceleration,
-            prefer: sheet.prefer,
-        });
+/// `under` for what both may lack.
+fn joined<T>(
+    farther: Option<Placed<T>>,
+    nearer: Option<Placed<T>>,
+    join: impl Fn(T, T) -> T,
+) -> Option<Placed<T>> {
+    match (farther, nearer) {
+        (Some(farther), Some(nearer)) => Some(farther.under(nearer, join)),
+        (farther, nearer) => nearer.or(farther),
     }
-    Ok(checked)
 }
 
-fn is_rate(value: f64) -> bool {
-    value.is_finite() && value > 0.0
+/// What is wrong at a place.
+fn wrong(place: &Diagnostic, message: &str) -> Box<Diagnostic> {
+    Box::new(Diagnostic { message: format!("{}{message}", place.message), ..place.clone() })
 }
 
 /// A file whose own values are in order.
@@ -414,17 +248,139 @@ struct CheckedSheet {
     extension: Option<String>,
     capabilities: CapabilitiesSheet,
     format: FormatSheet,
-    words: BTreeMap<String, WordSheet>,
+    words: BTreeMap<String, (WordSheet, Place)>,
     blocks: BTreeMap<String, Block>,
-    axes: BTreeMap<LinearName, LinearSheet>,
-    rotary: Option<Vec<RotaryAxis>>,
-    work_zero: Option<[f64; 3]>,
-    orientation: OrientationSheet,
-    spindle: SpindleSheet,
+    axes: BTreeMap<LinearName, Placed<LinearSheet>>,
+    rotary: Option<Placed<Vec<RotaryAxis>>>,
+    work_zero: Option<Point>,
+    orientation: Option<Placed<OrientationSheet>>,
+    spindle: Option<Placed<SpindleSheet>>,
+    feed_max: Option<Positive>,
     tools: ToolsSheet,
     auxiliary: Option<Vec<u32>>,
     approach: Option<Vec<String>>,
     options: BTreeMap<String, OptionSheet>,
+}
+
+impl CheckedSheet {
+    /// What serde cannot see, told at its place in the file.
+    fn new(sheet: Sheet, file: &SheetFile) -> Result<CheckedSheet> {
+        let word = |(name, word): (String, Spanned<WordSheet>)| {
+            let place = Place { file: file.name(), line: file.line_of(word.span().start) };
+            (name, (word.into_inner(), place))
+        };
+        let axis = |(name, axis): (LinearName, Spanned<LinearSheet>)| {
+            let placed = Placed::new(file, &format!("axes.{name:?}"), axis);
+            check_range(&placed.place, placed.sheet.min, placed.sheet.max, "mm")?;
+            Ok((name, placed))
+        };
+        let axes: Result<_> = sheet.axes.unwrap_or_default().into_iter().map(axis).collect();
+        let blocks = sheet.blocks.unwrap_or_default().into_iter();
+        let spindle = sheet.spindle.map(|spindle| Placed::new(file, "spindle", spindle));
+        if let Some(Placed { sheet, place }) = &spindle {
+            check_range(place, sheet.min, sheet.max, "1/min")?;
+        }
+        Ok(CheckedSheet {
+            extends: sheet.extends,
+            title: sheet.title,
+            reader: sheet.reader,
+            extension: sheet.extension,
+            capabilities: sheet.capabilities.unwrap_or_default(),
+            format: sheet.format.unwrap_or_default(),
+            words: sheet.words.unwrap_or_default().into_iter().map(word).collect(),
+            blocks: blocks.map(|(name, text)| (name, file.block(text))).collect(),
+            axes: axes?,
+            rotary: sheet.rotary.map(|axes| check_rotary(file, axes)).transpose()?,
+            work_zero: sheet.work_zero,
+            orientation: sheet.orientation.map(|o| Placed::new(file, "orientation", o)),
+            spindle,
+            feed_max: sheet.feed_max,
+            tools: sheet.tools.unwrap_or_default(),
+            auxiliary: sheet.auxiliary,
+            approach: sheet.approach.map(|order| check_approach(file, order)).transpose()?,
+            options: sheet.options.unwrap_or_default(),
+        })
+    }
+}
+
+/// Refuses a range that holds nothing.
+fn check_range(
+    place: &Diagnostic,
+    min: Option<Number>,
+    max: Option<Number>,
+    unit: &str,
+) -> Result<()> {
+    match (min, max) {
+        (Some(Number(min)), Some(Number(max))) if min >= max => {
+            let message = format!("`min` is less than `max`, not {min} {unit} and {max} {unit}");
+            Err(wrong(place, &message))
+        }
+        _ => Ok(()),
+    }
+}
+
+/// Every linear axis comes once.
+fn check_approach(file: &SheetFile, order: Spanned<Vec<String>>) -> Result<Vec<String>> {
+    let mut letters: Vec<char> = order.get_ref().concat().chars().collect();
+    letters.sort_unstable();
+    if letters != ['X', 'Y', 'Z'] || order.get_ref().iter().any(String::is_empty) {
+        let message = "X, Y and Z come once each, such as [\"XY\", \"Z\"]";
+        return Err(file.at("approach", &order, message).into());
+    }
+    Ok(order.into_inner())
+}
+
+fn check_rotary(
+    file: &SheetFile,
+    axes: Spanned<Vec<Spanned<RotarySheet>>>,
+) -> Result<Placed<Vec<RotaryAxis>>> {
+    let place = file.at("rotary", &axes, "");
+    let mut checked: Vec<RotaryAxis> = Vec::new();
+    for spanned in axes.into_inner() {
+        let sheet = spanned.get_ref();
+        let what = sheet.letter.map_or("rotary".into(), |letter| format!("rotary {letter}"));
+        let fail = |message: &str| Box::new(file.at(&what, &spanned, message));
+        let missing = |key: &str| fail(&format!("`{key}` is missing"));
+        let letter = sheet.letter.ok_or_else(|| missing("letter"))?;
+        if !matches!(letter, 'A' | 'B' | 'C') {
+            return Err(fail("`letter` is one of A, B, C"));
+        }
+        if checked.iter().any(|axis| axis.letter == letter) {
+            return Err(fail("this letter is taken by another rotary axis"));
+        }
+        if checked.len() == 2 {
+            return Err(fail("more than two rotary axes cannot be driven"));
+        }
+        let axis = sheet.axis.ok_or_else(|| missing("axis"))?.0;
+        let axis = direction(Vec3::from_array(axis))
+            .ok_or_else(|| fail("`axis` has no direction: give a vector of some length"))?;
+        let sign = sheet.sign.unwrap_or(1.0);
+        if sign.abs() != 1.0 {
+            return Err(fail("`sign` is 1 or -1"));
+        }
+        let min = sheet.min.map_or(f64::NEG_INFINITY, |min| min.0);
+        let max = sheet.max.map_or(f64::INFINITY, |max| max.0);
+        check_range(
+            &file.at(&what, &spanned, ""),
+            Some(Number(min)),
+            Some(Number(max)),
+            "degrees",
+        )?;
+        checked.push(RotaryAxis {
+            letter,
+            on: sheet.on.ok_or_else(|| missing("on"))?,
+            axis,
+            point: sheet.point.map_or(Vec3::ZERO, |point| Vec3::from_array(point.0)),
+            sign,
+            offset: sheet.offset.map_or(0.0, |offset| offset.0),
+            min,
+            max,
+            rapid: sheet.rapid.ok_or_else(|| missing("rapid"))?.0,
+            acceleration: sheet.acceleration.ok_or_else(|| missing("acceleration"))?.0,
+            prefer: sheet.prefer.map_or(0.0, |prefer| prefer.0),
+        });
+    }
+    Ok(Placed { sheet: checked, place })
 }
 
 /// `nearer` over `farther`, entry by entry; what both have is joined by `join`.
@@ -452,13 +408,18 @@ impl CheckedSheet {
             extension: nearer.extension.or(self.extension),
             capabilities: self.capabilities.under(nearer.capabilities),
             format: self.format.under(nearer.format),
-            words: overlay(self.words, nearer.words, WordSheet::under),
+            words: overlay(self.words, nearer.words, |farther, nearer| {
+                (farther.0.under(nearer.0), nearer.1)
+            }),
             blocks: overlay(self.blocks, nearer.blocks, |_, nearer| nearer),
-            axes: overlay(self.axes, nearer.axes, LinearSheet::under),
+            axes: overlay(self.axes, nearer.axes, |farther, nearer| {
+                farther.under(nearer, LinearSheet::under)
+            }),
             rotary: nearer.rotary.or(self.rotary),
             work_zero: nearer.work_zero.or(self.work_zero),
-            orientation: self.orientation.under(nearer.orientation),
-            spindle: self.spindle.under(nearer.spindle),
+            orientation: joined(self.orientation, nearer.orientation, OrientationSheet::under),
+            spindle: joined(self.spindle, nearer.spindle, SpindleSheet::under),
+            feed_max: nearer.feed_max.or(self.feed_max),
             tools: self.tools.under(nearer.tools),
             auxiliary: nearer.auxiliary.or(self.auxiliary),
             approach: nearer.approach.or(self.approach),
@@ -469,28 +430,48 @@ impl CheckedSheet {
     fn finish(
         mut self,
         name: String,
+        file: String,
         control: String,
         missing: &dyn Fn(&str) -> Box<Diagnostic>,
     ) -> Result<Machine> {
-        let rotary = self.rotary.take().unwrap_or_default();
-        let orientation = self.orientation;
+        let mut linear = [LinearAxis::default(); 3];
+        for (axis, name) in linear.iter_mut().zip([LinearName::X, LinearName::Y, LinearName::Z]) {
+            if let Some(Placed { sheet, place }) = self.axes.remove(&name) {
+                check_range(&place, sheet.min, sheet.max, "mm")?;
+                *axis = finish_linear(&sheet);
+            }
+        }
+        let (mut spindle, mut orientation) = (SpindleSheet::default(), OrientationSheet::default());
+        if let Some(Placed { sheet, place }) = self.spindle {
+            check_range(&place, sheet.min, sheet.max, "1/min")?;
+            spindle = sheet;
+        }
+        let mut rotary = Vec::new();
+        if let Some(Placed { sheet, place }) = self.rotary {
+            let modes = self.orientation.as_ref().and_then(|o| o.sheet.simultaneous);
+            if matches!(modes, None | Some(OrientationMode::Fixed)) && !sheet.is_empty() {
+                let message = "`orientation.simultaneous` does not say how their positions are \
+                               written: machine-angles, tool-center-angles or vectors";
+                return Err(wrong(&place, message));
+            }
+            rotary = sheet;
+        }
+        if let Some(Placed { sheet, place }) = self.orientation {
+            let modes = [sheet.simultaneous, sheet.positioned];
+            let turns = |mode: &OrientationMode| *mode != OrientationMode::Fixed;
+            if rotary.is_empty() && modes.iter().flatten().any(turns) {
+                return Err(wrong(&place, "there are no [[rotary]] axes to turn the tool with"));
+            }
+            orientation = sheet;
+        }
         let simultaneous = orientation.simultaneous.unwrap_or(OrientationMode::Fixed);
         let positioned = orientation.positioned.unwrap_or(simultaneous);
         let capabilities = self.capabilities;
-        let linear = [LinearName::X, LinearName::Y, LinearName::Z];
-        let linear = linear.map(|axis| finish_linear(self.axes.remove(&axis).unwrap_or_default()));
-        if linear.iter().any(|axis| axis.min >= axis.max || !is_rate(axis.rapid)) {
-            return Err(missing("a travel with `min` less than `max` and a positive `rapid`"));
-        }
-        if rotary.is_empty() != (simultaneous == OrientationMode::Fixed) {
-            return Err(missing(
-                "`orientation.simultaneous` for the rotary axes (or the rotary axes themselves)",
-            ));
-        }
         let format = self.format;
         Ok(Machine {
             title: self.title.unwrap_or_else(|| name.clone()),
             name,
+            file,
             control,
             reader: self.reader.ok_or_else(|| missing("`reader`, the virtual control,"))?,
             extension: self.extension.unwrap_or_else(|| "nc".into()),
@@ -498,14 +479,14 @@ impl CheckedSheet {
                 arcs: capabilities.arcs.unwrap_or_default(),
                 helix: capabilities.helix.unwrap_or(false),
                 full_circle: capabilities.full_circle.unwrap_or(false),
-                arc_tolerance: capabilities.arc_tolerance.unwrap_or(0.001),
+                arc_tolerance: capabilities.arc_tolerance.map_or(0.001, |mm| mm.0),
                 cycles: capabilities.cycles.unwrap_or_default(),
                 compensation: capabilities.compensation.unwrap_or(false),
                 feed_per_turn: capabilities.feed_per_turn.unwrap_or(false),
                 inverse_time: capabilities.inverse_time.unwrap_or(false),
                 length_offset: capabilities.length_offset.unwrap_or(LengthOffset::Implicit),
                 line_length: capabilities.line_length.unwrap_or(256),
-                lowering_tolerance: capabilities.lowering_tolerance.unwrap_or(0.005),
+                lowering_tolerance: capabilities.lowering_tolerance.map_or(0.005, |mm| mm.0),
             },
             format: Format {
                 separator: format.separator.unwrap_or_else(|| " ".into()),
@@ -517,20 +498,21 @@ impl CheckedSheet {
             blocks: self.blocks,
             linear,
             rotary,
-            work_zero: self.work_zero.map(Vec3::from_array),
+            work_zero: self.work_zero.map(|point| Vec3::from_array(point.0)),
             orientation: OrientationSettings {
                 simultaneous,
                 positioned,
-                tolerance: orientation.tolerance.unwrap_or(0.005),
+                tolerance: orientation.tolerance.map_or(0.005, |mm| mm.0),
             },
             spindle: SpindleRange {
-                min: self.spindle.min.unwrap_or(0.0),
-                max: self.spindle.max.unwrap_or(f64::INFINITY),
+                min: spindle.min.map_or(0.0, |speed| speed.0),
+                max: spindle.max.map_or(f64::INFINITY, |speed| speed.0),
             },
+            feed_max: self.feed_max.map_or(f64::INFINITY, |feed| feed.0),
             tools: ToolRange {
                 max_number: self.tools.max_number.unwrap_or(u32::MAX),
-                max_diameter: self.tools.max_diameter.unwrap_or(f64::INFINITY),
-                max_length: self.tools.max_length.unwrap_or(f64::INFINITY),
+                max_diameter: self.tools.max_diameter.map_or(f64::INFINITY, |mm| mm.0),
+                max_length: self.tools.max_length.map_or(f64::INFINITY, |mm| mm.0),
             },
             auxiliary: self.auxiliary.unwrap_or_default(),
             approach: self.approach.unwrap_or_else(|| vec!["XY".into(), "Z".into()]),
@@ -545,20 +527,21 @@ impl CheckedSheet {
     }
 }
 
-fn finish_linear(sheet: LinearSheet) -> LinearAxis {
+fn finish_linear(sheet: &LinearSheet) -> LinearAxis {
+    let default = LinearAxis::default();
     LinearAxis {
-        min: sheet.min.unwrap_or(f64::NEG_INFINITY),
-        max: sheet.max.unwrap_or(f64::INFINITY),
-        rapid: sheet.rapid.unwrap_or(10_000.0),
-        acceleration: sheet.acceleration.unwrap_or(2.0),
+        min: sheet.min.map_or(default.min, |mm| mm.0),
+        max: sheet.max.map_or(default.max, |mm| mm.0),
+        rapid: sheet.rapid.map_or(default.rapid, |rate| rate.0),
+        acceleration: sheet.acceleration.map_or(default.acceleration, |rate| rate.0),
     }
 }
 
-fn finish_word(name: String, sheet: WordSheet) -> (String, Word) {
+fn finish_word(name: String, (sheet, place): (WordSheet, Place)) -> (String, Word) {
     let word = Word {
         address: sheet.address.unwrap_or_else(|| name.clone()),
         suffix: sheet.suffix.unwrap_or_default(),
-        decimals: sheet.decimals.map_or(3, Spanned::into_inner),
+        decimals: sheet.decimals.map_or(3, |decimals| decimals.0),
         trim: sheet.trim.unwrap_or(false),
         point: sheet.point.unwrap_or(false),
         plus: sheet.plus.unwrap_or(false),
@@ -566,9 +549,10 @@ fn finish_word(name: String, sheet: WordSheet) -> (String, Word) {
         modal: sheet.modal.unwrap_or(false),
         step: sheet.step.unwrap_or(10),
         first: sheet.first.or(sheet.step).unwrap_or(10),
-        scale: sheet.scale.unwrap_or(1.0),
-        max: sheet.max.unwrap_or(f64::INFINITY),
+        scale: sheet.scale.map_or(1.0, |scale| scale.0),
+        max: sheet.max.map_or(f64::INFINITY, |max| max.0),
         codes: sheet.codes.unwrap_or_default(),
+        place,
     };
     (name, word)
 }
@@ -631,19 +615,50 @@ max = 200.5
                  \"A\"\non = \"table\"\nrapid = 1\nacceleration = 1\n{fields}\n"
             ))
         };
-        assert!(rotary("axis = [0, 0, 0]").contains("`axis` has no direction"));
+        assert!(rotary("axis = [0, 0, 0]").contains("rotary A: `axis` has no direction"));
         assert!(rotary("axis = [1, 0, 0]\nsign = 2").contains("`sign` is 1 or -1"));
         assert!(rotary("axis = [1, 0, 0]\nmin = 5\nmax = 5").contains("`min` is less than `max`"));
         assert!(refusal("reader = \"g\"\n[words.X]\ndecimals = 12").contains(":3:12:"));
-        assert!(refusal("reader = \"g\"\n[axes.X]\nmin = 3\nmax = 3").contains("travel"));
+        let travel = refusal("reader = \"g\"\n[axes.X]\nmin = 3\nmax = 3");
+        assert!(travel.starts_with("mill.toml:2:1: "), "{travel}");
+        assert!(travel.contains("axes.X: `min` is less than `max`, not 3 mm and 3 mm"), "{travel}");
+        let refused = |text, place, what| {
+            let shown = refusal(text);
+            assert!(shown.starts_with(&format!("mill.toml:{place}: ")), "{shown}");
+            assert!(shown.contains(what), "{shown}");
+        };
+        refused("[axes]\nX = { min = 100, max = -100 }", "2:5", "axes.X: `min` is less than `max`");
+        refused("[axes]\nY = { rapid = 0 }", "2:15", "a number above 0 is needed");
+        refused("[spindle]\nmin = 9\nmax = 1", "1:1", "spindle: `min`");
+        refused("approach = [\"XY\"]", "1:12", "approach: X, Y and Z come once each");
+        refused("[tools]\nmax_length = -1", "2:14", "a number above 0 is needed");
+        refused("work_zero = [0, nan, 0]", "1:13", "three finite numbers");
         assert!(refusal("title = \"no reader\"").contains("`reader`"));
     }
 
     #[test]
     fn orientation_needs_rotary_axes_and_the_other_way_round() {
+        let shown = refusal("reader = \"g\"\n[orientation]\nsimultaneous = \"vectors\"");
+        assert!(shown.starts_with("mill.toml:2:1: ") && shown.contains("[[rotary]]"), "{shown}");
+        let axis = "letter = \"A\"\non = \"head\"\naxis = [1, 0, 0]\nrapid = 1\nacceleration = 1";
+        let shown = refusal(&format!("reader = \"g\"\n[[rotary]]\n{axis}"));
+        assert!(shown.starts_with("mill.toml:2:"), "{shown}");
+        assert!(shown.contains("`orientation.simultaneous`"), "{shown}");
+    }
+
+    #[test]
+    fn what_two_files_make_wrong_together_is_told_in_the_nearer_one() {
+        let folder = std::env::temp_dir().join(format!("toolpost-both-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        std::fs::write(folder.join("base.toml"), MILL).unwrap();
+        let file = folder.join("mine.toml");
+        std::fs::write(&file, "extends = \"base.toml\"\n\n[axes.X]\nmax = -1\n").unwrap();
+        let shown = load(file.to_str().unwrap()).unwrap_err().to_string();
         assert!(
-            refusal("reader = \"g\"\n[orientation]\nsimultaneous = \"vectors\"").contains("rotary")
+            shown.contains("mine.toml:3:1: ") && shown.contains("not 0 mm and -1 mm"),
+            "{shown}"
         );
+        std::fs::remove_dir_all(&folder).unwrap();
     }
 
     #[test]

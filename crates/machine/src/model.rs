@@ -10,6 +10,8 @@ use std::collections::BTreeMap;
 pub struct Machine {
     /// Name of the file without its ending: what `--machine` takes.
     pub name: String,
+    /// The file it was loaded from, for findings.
+    pub file: String,
     /// What a person calls it.
     pub title: String,
     /// The control it extends.
@@ -39,6 +41,8 @@ pub struct Machine {
     pub orientation: OrientationSettings,
     /// What the spindle can do.
     pub spindle: SpindleRange,
+    /// Fastest feed, mm/min; infinite where none is given.
+    pub feed_max: f64,
     /// What the tool magazine takes.
     pub tools: ToolRange,
     /// M functions of the machine's builder that its programs use; they switch something and move no
@@ -62,6 +66,14 @@ pub struct LinearAxis {
     pub rapid: f64,
     /// Acceleration, m/s².
     pub acceleration: f64,
+}
+
+impl Default for LinearAxis {
+    /// An axis of which nothing is known.
+    fn default() -> LinearAxis {
+        let (min, max) = (f64::NEG_INFINITY, f64::INFINITY);
+        LinearAxis { min, max, rapid: 10_000.0, acceleration: 2.0 }
+    }
 }
 
 /// A rotary axis.
@@ -256,6 +268,17 @@ pub struct Word {
     /// For a word that is no number: its texts by what they mean (`linear` is `G1`). Empty for a
     /// number.
     pub codes: BTreeMap<String, String>,
+    /// Where its nearest table stands.
+    pub place: Place,
+}
+
+/// A line of a machine's files.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct Place {
+    /// The file.
+    pub file: String,
+    /// The line, from 1.
+    pub line: u32,
 }
 
 /// A template.

@@ -169,6 +169,7 @@ const PAIRS: [u8; 200] = {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use machine::Place;
     use proptest::prelude::*;
     use std::collections::BTreeMap;
 
@@ -187,6 +188,7 @@ mod tests {
             scale: 1.0,
             max: f64::INFINITY,
             codes: BTreeMap::new(),
+            place: Place::default(),
         }
     }
 

@@ -3,7 +3,7 @@
 
 use crate::catalogue::{BlockName, WordName, nearest};
 use crate::template::Templates;
-use machine::{CycleName, Machine, OrientationMode};
+use machine::{CycleName, Machine, OrientationMode, Place};
 use program::Diagnostic;
 
 /// Checks words against the catalogue, words that blocks place against the words that there are, and
@@ -13,13 +13,14 @@ use program::Diagnostic;
 /// Each promise that is not kept.
 pub(crate) fn check(machine: &Machine, templates: &Templates) -> Result<(), Vec<Diagnostic>> {
     let mut errors = Vec::new();
-    let file = |error: Diagnostic| error.file(machine.name.clone());
-    for name in machine.words.keys() {
+    let file = |error: Diagnostic| error.file(machine.file.clone());
+    let at = |error: Diagnostic, place: &Place| error.file(place.file.clone()).line(place.line);
+    for (name, word) in &machine.words {
         if WordName::named(name).is_none() {
             let near = nearest(name, WordName::TABLE.iter().map(|row| row.name));
             let help = if near.is_empty() { near } else { format!("did you mean {near}?") };
             let message = format!("no word is called `{name}`");
-            errors.push(file(Diagnostic::error("word", message).help(help)));
+            errors.push(at(Diagnostic::error("word", message).help(help), &word.place));
         }
     }
     for (word, block) in templates.words() {
@@ -33,11 +34,11 @@ pub(crate) fn check(machine: &Machine, templates: &Templates) -> Result<(), Vec<
         let lacks = |code: &&str| !known.codes.contains_key(*code) && needs(machine, code);
         for code in word.codes().filter(lacks) {
             let message = format!("[words.{name}] has no text for `{code}` in its `codes`");
-            errors.push(file(Diagnostic::error("word", message)));
+            errors.push(at(Diagnostic::error("word", message), &known.place));
         }
         for code in known.codes.keys().filter(|code| word.codes().all(|known| known != **code)) {
             let message = format!("[words.{name}] has no code called `{code}`");
-            errors.push(file(Diagnostic::error("word", message)));
+            errors.push(at(Diagnostic::error("word", message), &known.place));
         }
     }
     for word in [WordName::X, WordName::Y, WordName::Z] {
@@ -53,16 +54,26 @@ pub(crate) fn check(machine: &Machine, templates: &Templates) -> Result<(), Vec<
         }
     }
     let can = &machine.capabilities;
-    let linear = |word| templates.places(BlockName::Linear, word);
-    for (promise, what, word) in [
-        (can.compensation, "compensation", WordName::Compensation),
-        (can.feed_per_turn, "feed_per_turn", WordName::FeedMode),
-        (can.inverse_time, "inverse_time", WordName::FeedMode),
+    let mut placed = |block: BlockName, words: &[WordName], why: &str| {
+        let Some(text) = machine.blocks.get(block.name()) else { return };
+        for word in words.iter().filter(|word| !templates.places(block, **word)) {
+            let message = format!("the block `{}` lacks `{}`: {why}", block.name(), word.name());
+            let help = format!("put {{{{{}}}}} where the control reads it", word.name());
+            let error = Diagnostic::error("missing-word", message).help(help);
+            errors.push(error.file(text.file.clone()).line(text.line));
+        }
+    };
+    let axes = [WordName::X, WordName::Y, WordName::Z];
+    placed(BlockName::Rapid, &axes, "no move could go there");
+    placed(BlockName::Linear, &axes, "no move could go there");
+    for (promise, why, word) in [
+        (true, "no feed could be said", WordName::F),
+        (can.compensation, "`compensation` is promised", WordName::Compensation),
+        (can.feed_per_turn, "`feed_per_turn` is promised", WordName::FeedMode),
+        (can.inverse_time, "`inverse_time` is promised", WordName::FeedMode),
     ] {
-        if promise && !linear(word) {
-            let message =
-                format!("`{what}` is promised, and the block `linear` lacks `{}`", word.name());
-            errors.push(file(Diagnostic::error("missing-word", message)));
+        if promise {
+            placed(BlockName::Linear, &[word], why);
         }
     }
     if errors.is_empty() { Ok(()) } else { Err(errors) }

@@ -90,3 +90,26 @@ fn a_name_that_the_engine_does_not_know_is_told_with_those_that_it_knows() {
     let said = checked("{% set X = 1 %}").unwrap_err();
     assert!(said.contains("`X` has a meaning already"), "{said}");
 }
+
+#[test]
+fn a_promise_that_a_file_does_not_keep_is_told_where_the_file_makes_it() {
+    let found = |text: &str| {
+        let text = format!("extends = \"linuxcnc\"\n{text}");
+        let machine = machine::load_text("mine.toml", &text).unwrap();
+        let found = toolpost_post::check(&machine).expect_err(&text);
+        found.iter().map(|error| format!("{error}\n")).collect::<String>()
+    };
+    let said = found("[blocks]\nlinear = \"{{N}} G1 {{X}} {{Y}}\"\n");
+    assert!(
+        said.contains("mine.toml:3: error[missing-word]: the block `linear` lacks `Z`"),
+        "{said}"
+    );
+    assert!(said.contains("lacks `F`"), "{said}");
+    let said = found("[words]\nQQ = { decimals = 3 }\n");
+    assert!(said.contains("mine.toml:3: error[word]: no word is called `QQ`"), "{said}");
+    let said = found("[words.motion]\ncodes = { rapid = \"G0\" }\n");
+    assert!(
+        said.contains("mine.toml:2: error[word]: [words.motion] has no text for `linear`"),
+        "{said}"
+    );
+}

@@ -35,9 +35,9 @@ pub enum Command {
     Machines(Machines),
     /// Count and measure a toolpath, and draw it.
     Show(Show),
-    /// Say what a name of the templates means.
+    /// Say what a name of machine and control files means.
     Explain {
-        /// A word, a block or a variable; without one, all of them.
+        /// A key, a word, a block or a variable; without one, all of them.
         topic: Option<String>,
     },
     /// Print the completions of a shell.
@@ -111,7 +111,7 @@ pub struct Show {
 /// Commands of `machines`.
 #[derive(Debug, Subcommand)]
 pub enum Machines {
-    /// The machines of the library.
+    /// The machines and controls of the library.
     List,
     /// Print a machine or a control of the library, ready to be copied.
     Show {

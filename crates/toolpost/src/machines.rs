@@ -23,10 +23,21 @@ pub fn run(command: &Machines) -> Result<Answer, Stop> {
 fn list() -> Result<Answer, Stop> {
     let machines: Result<Vec<Machine>, Stop> =
         library::names(library::MACHINES).map(toolpath::machine).collect();
-    let machines = machines?;
-    let lines: Vec<_> = machines.iter().map(|m| (m.name.as_str(), m.title.clone())).collect();
-    let data: Vec<Value> = machines.iter().map(describe).collect();
-    Ok(Answer::product(summary::rows(&lines), json!({ "machines": data })))
+    let controls: Result<Vec<Machine>, Stop> =
+        library::names(library::CONTROLS).map(|name| Ok(machine::load_control(name)?)).collect();
+    let (machines, controls) = (machines?, controls?);
+    let rows = |all: &[Machine]| {
+        let lines: Vec<_> = all.iter().map(|m| (m.name.as_str(), m.title.clone())).collect();
+        summary::rows(&lines)
+    };
+    let text = format!(
+        "{}\ncontrols, for machines of your own to extend:\n{}",
+        rows(&machines),
+        rows(&controls)
+    );
+    let data = |all: &[Machine]| all.iter().map(describe).collect::<Vec<Value>>();
+    let data = json!({ "machines": data(&machines), "controls": data(&controls) });
+    Ok(Answer::product(text, data))
 }
 
 /// The text of a file of the library.

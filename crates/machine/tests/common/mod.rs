@@ -9,6 +9,7 @@ pub fn machine(rotary: Vec<RotaryAxis>) -> Machine {
     let linear = LinearAxis { min: -500.0, max: 500.0, rapid: 30_000.0, acceleration: 5.0 };
     Machine {
         name: "test".into(),
+        file: "test.toml".into(),
         title: "Test".into(),
         control: "iso".into(),
         reader: "fanuc".into(),
@@ -43,6 +44,7 @@ pub fn machine(rotary: Vec<RotaryAxis>) -> Machine {
             tolerance: 0.01,
         },
         spindle: SpindleRange { min: 50.0, max: 12_000.0 },
+        feed_max: f64::INFINITY,
         tools: ToolRange { max_number: 99, max_diameter: 80.0, max_length: 300.0 },
         auxiliary: Vec::new(),
         approach: Vec::new(),

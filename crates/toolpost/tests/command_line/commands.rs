@@ -109,6 +109,8 @@ fn every_machine_of_the_library_is_listed_and_has_no_mistake() {
     for name in ["sinumerik-840d-table-ac", "sinumerik-840d-traori", "dmu50-heidenhain"] {
         assert!(machines.iter().any(|machine| machine["name"] == name), "{name}");
     }
+    let listed = folder.run(&["machines", "list"]).out;
+    assert!(listed.contains("\ncontrols,") && listed.contains("\ngrbl "), "{listed}");
     for machine in machines {
         let said = folder.run(&["machines", "check", machine["name"].as_str().unwrap()]);
         assert_eq!(said.code, 0, "{said:?}");
@@ -150,6 +152,18 @@ fn a_machine_that_is_not_there_is_told_with_those_that_are() {
 }
 
 #[test]
+fn a_control_in_place_of_a_machine_is_told_with_the_machines_that_build_on_it() {
+    let folder = Folder::new();
+    let said = folder.run(&["post", "part.cls", "-m", "grbl", "-o", "out.mpf"]);
+    assert_eq!(said.code, 2);
+    assert!(said.err.contains("`grbl` is a control, not a machine"), "{said:?}");
+    assert!(said.err.contains("generic-3axis-grbl") && !said.err.contains("fanuc"), "{said:?}");
+    // 828D extends 840D: its machines build on both.
+    let said = folder.run(&["machines", "check", "sinumerik-840d"]);
+    assert!(said.err.contains("emco-concept-mill-105"), "{said:?}");
+}
+
+#[test]
 fn explain_gives_unit_and_help_of_every_name() {
     let folder = Folder::new();
     let one = folder.run(&["explain", "f"]);
@@ -160,6 +174,16 @@ fn explain_gives_unit_and_help_of_every_name() {
     assert!(names.len() > 30);
     assert!(names.iter().all(|name| name["help"].as_str().is_some_and(|help| !help.is_empty())));
     assert_eq!(folder.run(&["explain", "nonesuch"]).code, 2);
+    // The keys of the files too: each table that has one of the name, with its own unit.
+    let min = folder.run(&["explain", "min"]).out;
+    for row in ["axes.X.min   Lower end of", "rotary.min   Lower", "spindle.min  The slowest"] {
+        assert!(min.contains(row), "{row}: {min}");
+    }
+    assert!(min.contains("(degrees)") && min.contains("(mm)") && min.contains("(1/min)"), "{min}");
+    for key in ["decimals", "trim", "lowering_tolerance", "prefer", "rapid", "work_zero"] {
+        assert_eq!(folder.run(&["explain", key]).code, 0, "{key}");
+    }
+    assert_eq!(folder.run(&["explain", "orientation.simultaneous"]).out.lines().count(), 1);
 }
 
 #[test]

@@ -1,0 +1,215 @@
+//! What one file may say: every key, in one table with its unit and help. The structs that a file is
+//! read into are generated from it, and `toolpost explain` prints it.
+
+use crate::model::*;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+use toml::Spanned;
+
+/// A key of machine and control files.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub struct Key {
+    /// The table it stands in; empty for the top of the file.
+    pub table: &'static str,
+    /// The key.
+    pub name: &'static str,
+    /// Unit of the value; empty where there is none.
+    pub unit: &'static str,
+    /// What it says, in a sentence.
+    pub help: &'static str,
+}
+
+/// Every key of machine and control files.
+pub fn keys() -> impl Iterator<Item = &'static Key> {
+    let tables = [
+        Sheet::KEYS,
+        CapabilitiesSheet::KEYS,
+        FormatSheet::KEYS,
+        WordSheet::KEYS,
+        LinearSheet::KEYS,
+        RotarySheet::KEYS,
+        OrientationSheet::KEYS,
+        SpindleSheet::KEYS,
+        ToolsSheet::KEYS,
+    ];
+    tables.into_iter().flatten()
+}
+
+/// A struct whose fields are all optional, its keys, and (`merged`) how a nearer one lies over it.
+macro_rules! sheet {
+    (merged $sheet:ident $table:literal {
+        $($field:ident: $type:ty, $unit:literal, $help:literal;)*
+    }) => {
+        sheet!($sheet $table { $($field: $type, $unit, $help;)* });
+        impl $sheet {
+            pub(crate) fn under(self, nearer: $sheet) -> $sheet {
+                $sheet { $($field: nearer.$field.or(self.$field),)* }
+            }
+        }
+    };
+    ($sheet:ident $table:literal {
+        $($field:ident: $type:ty, $unit:literal, $help:literal;)*
+    }) => {
+        #[derive(Default, Deserialize)]
+        #[serde(deny_unknown_fields)]
+        pub(crate) struct $sheet { $(pub(crate) $field: Option<$type>,)* }
+        impl $sheet {
+            const KEYS: &[Key] = &[$(
+                Key { table: $table, name: stringify!($field), unit: $unit, help: $help },
+            )*];
+        }
+    };
+}
+
+sheet!(Sheet "" {
+    extends: Spanned<String>, "", "The machine or control that this file changes: a name in the library, or the path of a file.";
+    title: String, "", "What a person calls it.";
+    reader: String, "", "The virtual control that proves its programs: sinumerik, fanuc, linuxcnc, grbl, klartext.";
+    extension: String, "", "Ending of its programs, without the dot.";
+    capabilities: CapabilitiesSheet, "", "Table: what the control can do; what it cannot is lowered.";
+    format: FormatSheet, "", "Table: how text is put together.";
+    words: BTreeMap<String, Spanned<WordSheet>>, "", "Table: how each word is written.";
+    blocks: BTreeMap<String, Spanned<String>>, "", "Table: the templates of the blocks.";
+    axes: BTreeMap<LinearName, Spanned<LinearSheet>>, "", "Table: X, Y and Z.";
+    rotary: Spanned<Vec<Spanned<RotarySheet>>>, "", "Tables [[rotary]]: the rotary axes from the machine's frame outwards, at most two.";
+    work_zero: Point, "mm", "The work zero (G54) in machine coordinates, where it is known: travels are then checked in machine coordinates, otherwise only their length.";
+    orientation: Spanned<OrientationSheet>, "", "Table: how a tool axis is written.";
+    spindle: Spanned<SpindleSheet>, "", "Table: the speeds of the spindle.";
+    feed_max: Positive, "mm/min", "The fastest feed of the machine; a program that asks for more is refused.";
+    tools: ToolsSheet, "", "Table: what the magazine takes.";
+    auxiliary: Vec<u32>, "", "Numbers of the M functions of the builder that programs use; none moves an axis that the program drives.";
+    approach: Spanned<Vec<String>>, "", "In which order the axes go to the first position after a tool change: each entry names axes that move together.";
+    options: BTreeMap<String, OptionSheet>, "", "Table: values of this machine that its templates read.";
+});
+
+sheet!(merged CapabilitiesSheet "capabilities" {
+    arcs: Vec<Plane>, "", "Planes in which it cuts arcs: XY, XZ, YZ.";
+    helix: bool, "", "Whether an arc may rise along the normal of the plane.";
+    full_circle: bool, "", "Whether one block may turn a full circle.";
+    arc_tolerance: Positive, "mm", "Difference of the radii at the ends of an arc that the control accepts.";
+    cycles: Vec<CycleName>, "", "Hole cycles that it has: drill, deep, break-chip, tap, ream, bore.";
+    compensation: bool, "", "Whether it has cutter radius compensation.";
+    feed_per_turn: bool, "", "Whether it has feed per turn.";
+    inverse_time: bool, "", "Whether it has inverse-time feed.";
+    length_offset: LengthOffset, "", "How the tool length offset is called: implicit, one, tool-number.";
+    line_length: usize, "", "Most characters of a line, its end not counted.";
+    lowering_tolerance: Positive, "mm", "How far arcs and curves that are split into lines may leave the path.";
+});
+
+sheet!(merged FormatSheet "format" {
+    separator: String, "", "What stands between two words.";
+    line_end: String, "", "What ends a line.";
+    comment_start: String, "", "What opens a comment.";
+    comment_end: String, "", "What closes a comment; empty where the end of the line does.";
+});
+
+sheet!(merged WordSheet "words.NAME" {
+    address: String, "", "What stands before the number; the name of the word where it is missing.";
+    suffix: String, "", "What stands behind the number.";
+    decimals: Decimals, "", "How many decimals are written, 0 to 9.";
+    trim: bool, "", "Whether zeros at the end of the decimals are left out.";
+    point: bool, "", "Whether a whole number keeps its point.";
+    plus: bool, "", "Whether a positive number has its sign.";
+    digits: u8, "", "Fewest digits before the point, filled with zeros.";
+    modal: bool, "", "Whether the word is left out while it repeats the active value.";
+    step: u32, "", "Block number: what it grows by; 0 for none.";
+    first: u32, "", "Block number: the first one.";
+    scale: Positive, "", "What the value is multiplied with before it is written: 1000 for a dwell in milliseconds.";
+    max: Positive, "", "Largest number that the control takes, as it is written. A block number starts over behind it.";
+    codes: BTreeMap<String, String>, "", "Texts of a word that is no number, by what they mean.";
+});
+
+sheet!(merged LinearSheet "axes.X" {
+    min: Number, "mm", "Lower end of the travel in machine coordinates; without one there is no limit.";
+    max: Number, "mm", "Upper end of the travel.";
+    rapid: Positive, "mm/min", "Speed of a rapid move.";
+    acceleration: Positive, "m/s²", "Acceleration.";
+});
+
+sheet!(RotarySheet "rotary" {
+    letter: char, "", "Its address: A, B or C.";
+    on: Mount, "", "What it carries: table (the part) or head (the tool).";
+    axis: Point, "", "Direction of the axis while all others stand at zero.";
+    point: Point, "mm", "A point of the axis: of a table in machine coordinates, of a head from the gauge point of the spindle.";
+    sign: f64, "", "1 where a growing position turns what the axis carries right-handed about it, -1 where left-handed.";
+    offset: Finite, "degrees", "Position at which the axis stands in its kinematic zero.";
+    min: Number, "degrees", "Lower end of the travel; without one there is no limit.";
+    max: Number, "degrees", "Upper end of the travel.";
+    rapid: Positive, "degrees/min", "Speed of a rapid move.";
+    acceleration: Positive, "degrees/s²", "Acceleration.";
+    prefer: Finite, "", "Which solution is taken where nothing else decides: the one in which this axis is positive (1) or negative (-1).";
+});
+
+sheet!(merged OrientationSheet "orientation" {
+    simultaneous: OrientationMode, "", "How the tool axis is written while it turns in the cut: fixed, machine-angles, tool-center-angles, vectors, tilted-plane.";
+    positioned: OrientationMode, "", "The same while it stands still (3+2); as `simultaneous` where it is missing.";
+    tolerance: Positive, "mm", "How far the tool tip may leave the line between two points before a point is added.";
+});
+
+sheet!(merged SpindleSheet "spindle" {
+    min: Number, "1/min", "The slowest speed.";
+    max: Number, "1/min", "The fastest speed.";
+});
+
+sheet!(merged ToolsSheet "tools" {
+    max_number: u32, "", "Highest number of a tool.";
+    max_diameter: Positive, "mm", "Largest diameter.";
+    max_length: Positive, "mm", "Longest tool.";
+});
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
+pub(crate) enum LinearName {
+    X,
+    Y,
+    Z,
+}
+
+#[derive(Deserialize)]
+#[serde(untagged)]
+pub(crate) enum OptionSheet {
+    Flag(bool),
+    Number(f64),
+    Text(String),
+}
+
+/// Values that are looked at when they are read, so that a mistake is told where it stands.
+macro_rules! value {
+    ($($name:ident($type:ty, $as:literal) $good:expr, $need:literal;)*) => {$(
+        #[derive(Clone, Copy, Deserialize)]
+        #[serde(try_from = $as)]
+        pub(crate) struct $name(pub(crate) $type);
+
+        impl TryFrom<$type> for $name {
+            type Error = String;
+
+            fn try_from(value: $type) -> Result<$name, String> {
+                let good: fn(&$type) -> bool = $good;
+                let need = || format!("{value:?} is given, and {} is needed", $need);
+                good(&value).then_some($name(value)).ok_or_else(need)
+            }
+        }
+    )*};
+}
+
+value! {
+    Number(f64, "f64") |value| !value.is_nan(), "a number";
+    Finite(f64, "f64") |value| value.is_finite(), "a finite number";
+    Positive(f64, "f64") |value| *value > 0.0 && value.is_finite(), "a number above 0";
+    Decimals(u8, "u8") |value| *value <= 9, "0 to 9";
+    Point([f64; 3], "[f64; 3]") |point| point.iter().all(|value| value.is_finite()), "three finite numbers";
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn every_key_stands_once_and_has_help() {
+        let mut names: Vec<_> = keys().map(|key| (key.table, key.name)).collect();
+        assert!(keys().all(|key| key.help.ends_with('.')));
+        let all = names.len();
+        names.sort();
+        names.dedup();
+        assert_eq!(names.len(), all);
+    }
+}
