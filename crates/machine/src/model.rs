@@ -48,6 +48,8 @@ pub struct Machine {
     /// M functions of the machine's builder that its programs use; they switch something and move no
     /// axis that the program drives (clamps, doors, air).
     pub auxiliary: Vec<u32>,
+    /// R parameters with which the operator shifts the zero of a rotary axis (SINUMERIK).
+    pub operator_parameters: Vec<u32>,
     /// The order in which the axes approach the first position after a tool change or a new
     /// orientation: each entry names the axes that move together (`XY`, then `Z`).
     pub approach: Vec<String>,
@@ -326,6 +328,15 @@ pub enum OptionValue {
 }
 
 impl Machine {
+    /// How far its control may leave the path while it smooths it, mm: `path_tolerance` of the options,
+    /// which the templates write. The proof does not see that deviation.
+    pub fn path_tolerance(&self) -> f64 {
+        match self.options.get("path_tolerance") {
+            Some(OptionValue::Number(mm)) => *mm,
+            _ => 0.0,
+        }
+    }
+
     /// Smallest step of a linear axis in its programs, mm.
     pub fn resolution(&self) -> f64 {
         self.words.get("X").map_or(1e-3, |word| 10f64.powi(-i32::from(word.decimals)))

@@ -87,5 +87,10 @@ fn settings(machine: &Machine) -> Result<Settings, Box<Diagnostic>> {
     for axis in &machine.rotary {
         rotary[axis.index()] = true;
     }
-    Ok(Settings { dialect, rotary, auxiliary: machine.auxiliary.clone() })
+    Ok(Settings {
+        auxiliary: machine.auxiliary.clone(),
+        operator_parameters: machine.operator_parameters.clone(),
+        path_tolerance: machine.path_tolerance(),
+        ..Settings::new(dialect, rotary)
+    })
 }
