@@ -9,7 +9,7 @@ fuzz_target!(|data: &[u8]| {
     let Some((&first, text)) = data.split_first() else { return };
     let dialect = [Dialect::Fanuc, Dialect::LinuxCnc, Dialect::Grbl][usize::from(first) % 3];
     for rotary in [[false; 3], [true, false, true]] {
-        let settings = Settings { dialect, rotary, auxiliary: vec![26] };
+        let settings = Settings { auxiliary: vec![26], ..Settings::new(dialect, rotary) };
         let lines = text.split(|&byte| byte == b'\n').count();
         let mut line = 0;
         let mut ended = false;

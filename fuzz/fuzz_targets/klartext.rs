@@ -7,7 +7,7 @@ use program::{Op, Orientation};
 
 fuzz_target!(|data: &[u8]| {
     for rotary in [[false; 3], [false, true, true]] {
-        let settings = Settings { dialect: Dialect::Klartext, rotary, auxiliary: vec![60] };
+        let settings = Settings { auxiliary: vec![60], ..Settings::new(Dialect::Klartext, rotary) };
         let lines = data.split(|byte| matches!(byte, b'\n' | b'\r')).count();
         let mut line = 0;
         let mut ended = false;

@@ -7,7 +7,12 @@ use program::{Op, Orientation};
 
 fuzz_target!(|data: &[u8]| {
     for rotary in [[false; 3], [true, false, true]] {
-        let settings = Settings { dialect: Dialect::Sinumerik, rotary, auxiliary: vec![26, 60] };
+        let settings = Settings {
+            auxiliary: vec![26, 60],
+            operator_parameters: vec![24],
+            path_tolerance: 0.1,
+            ..Settings::new(Dialect::Sinumerik, rotary)
+        };
         let lines = data.split(|byte| *byte == b'\n').count();
         let mut line = 0;
         let mut ended = false;

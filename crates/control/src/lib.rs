@@ -58,7 +58,7 @@ impl Dialect {
 }
 
 /// What a virtual control has to know of its machine.
-#[derive(Clone, Debug, PartialEq, Eq)]
+#[derive(Clone, Debug, PartialEq)]
 pub struct Settings {
     /// The language.
     pub dialect: Dialect,
@@ -68,6 +68,19 @@ pub struct Settings {
     /// none of which moves an axis or touches spindle and coolant. Any other M function that is not
     /// the control's own is an error.
     pub auxiliary: Vec<u32>,
+    /// R parameters that the operator sets at the machine to shift the zero of a rotary axis
+    /// (SINUMERIK). They count as 0; any other that no block has set is an error.
+    pub operator_parameters: Vec<u32>,
+    /// How far the control may be allowed to leave the path while it smooths it, mm.
+    pub path_tolerance: f64,
+}
+
+impl Settings {
+    /// A machine with these rotary axes that has nothing of its own.
+    pub fn new(dialect: Dialect, rotary: [bool; 3]) -> Settings {
+        let (auxiliary, operator_parameters) = (Vec::new(), Vec::new());
+        Settings { dialect, rotary, auxiliary, operator_parameters, path_tolerance: 0.0 }
+    }
 }
 
 /// Where the records of a running program go. An error stops the run.

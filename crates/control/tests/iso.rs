@@ -13,7 +13,7 @@ const LINUXCNC: Dialect = Dialect::LinuxCnc;
 const GRBL: Dialect = Dialect::Grbl;
 
 fn run(dialect: Dialect, rotary: [bool; 3], text: &str) -> Result<Vec<Op>, Box<Diagnostic>> {
-    let settings = Settings { dialect, rotary, auxiliary: vec![26] };
+    let settings = Settings { auxiliary: vec![26], ..Settings::new(dialect, rotary) };
     let mut ops = Vec::new();
     // Most of these programs are in mm and do not say so.
     let says_unit = ["%", "G20", "G21"].iter().any(|word| text.contains(word));

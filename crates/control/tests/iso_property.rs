@@ -9,7 +9,7 @@ use toolpost_control::{Dialect, Settings, read};
 const FLAVORS: [Dialect; 3] = [Dialect::Fanuc, Dialect::LinuxCnc, Dialect::Grbl];
 
 fn run(dialect: Dialect, text: &str) -> Result<Vec<Record>, Box<program::Diagnostic>> {
-    let settings = Settings { dialect, rotary: [true, false, true], auxiliary: Vec::new() };
+    let settings = Settings::new(dialect, [true, false, true]);
     let mut records = Vec::new();
     read(&settings, "t.nc", text.as_bytes(), &mut |record| {
         records.push(record);

@@ -28,7 +28,7 @@ fn run_on(rotary: [bool; 3], unit: &str, blocks: &str) -> Result<Vec<Record>, Bo
 
 fn read_on(rotary: [bool; 3], text: &[u8]) -> Result<Vec<Record>, Box<Diagnostic>> {
     let mut records = Vec::new();
-    let settings = Settings { dialect: Dialect::Klartext, rotary, auxiliary: vec![60] };
+    let settings = Settings { auxiliary: vec![60], ..Settings::new(Dialect::Klartext, rotary) };
     control::read(&settings, "t.h", text, &mut |record| {
         records.push(record);
         Ok(())

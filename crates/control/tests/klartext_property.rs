@@ -6,8 +6,7 @@ use proptest::prelude::*;
 use toolpost_control::{Dialect, Settings, read};
 
 fn run(text: &str) -> Vec<Record> {
-    let settings =
-        Settings { dialect: Dialect::Klartext, rotary: [false; 3], auxiliary: Vec::new() };
+    let settings = Settings::new(Dialect::Klartext, [false; 3]);
     let mut records = Vec::new();
     let sink = &mut |record| {
         records.push(record);
@@ -237,7 +236,7 @@ proptest! {
     ) {
         let text = format!("0 BEGIN PGM T MM\n1 {}\n2 END PGM T MM", words.join(" "));
         let settings =
-            Settings { dialect: Dialect::Klartext, rotary: [false, true, true], auxiliary: Vec::new() };
+            Settings::new(Dialect::Klartext, [false, true, true]);
         if let Err(error) = read(&settings, "t.h", text.as_bytes(), &mut |_| Ok(())) {
             prop_assert!(error.line > 0 && error.column > 0 && !error.message.is_empty());
         }

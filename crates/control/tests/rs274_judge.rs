@@ -85,8 +85,7 @@ fn canonical(printed: &str) -> Vec<Motion> {
 /// What our control makes of it. Homing goes to 0, as with `rs274`'s empty parameter file; holes are
 /// expanded as LinuxCNC's manual describes each cycle.
 fn ours(program: &str) -> Result<Vec<Motion>, String> {
-    let settings =
-        Settings { dialect: Dialect::LinuxCnc, rotary: [false; 3], auxiliary: Vec::new() };
+    let settings = Settings::new(Dialect::LinuxCnc, [false; 3]);
     let (mut moves, mut at, mut active) = (Vec::new(), [0.0; 3], None);
     read(&settings, "program.ngc", program.as_bytes(), &mut |record| {
         let to = |pose: &Pose, at: [f64; 3]| {

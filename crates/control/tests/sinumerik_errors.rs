@@ -201,3 +201,68 @@ fn what_the_sink_answers_stops_the_program_unchanged() {
     .unwrap_err();
     assert_eq!((count, error.rule, error.line), (1, "stop", 0));
 }
+
+#[test]
+fn a_parameter_that_no_block_has_set_keeps_what_another_program_left_there() {
+    let found = error("G0 C=45+R25");
+    assert_eq!((found.rule, found.line, found.column), ("r-parameter", 1, 9), "{found}");
+    assert!(found.help.contains("operator_parameters = [\"R25\"]"), "{found}");
+    assert_eq!(error("R1=R2+1").rule, "r-parameter");
+    assert_eq!(error("G0 X=R[R24]").rule, "operator-offset");
+    assert_eq!(blocks("R25=5\nG0 X=R25").len(), 2);
+}
+
+#[test]
+fn an_axis_that_the_operator_shifts_is_shifted_in_every_block() {
+    // The start of the tests has written C0: the operator's 5 degrees would move C from there.
+    let jump = error("G0 C=45+R24");
+    assert_eq!((jump.rule, jump.line), ("operator-offset", 1), "{jump}");
+    assert!(jump.message.contains("in line 2"), "{jump}");
+    let start = "T1 M6\nG0 X0 Y0 Z100 A0 C=0+R24 F500\n";
+    let found = |text: &str| run(&format!("{start}{text}\nM30\n"));
+    assert!(found("G0 C=45+R24\nG1 C=R24+50.5 X5\nG0 C=AC(10+R24)\nG91 C5\nG90 C=R24").is_ok());
+    for text in ["C45", "C=45", "C=DC(45)", "R24=0\nC=45+R24"] {
+        let found = *found(text).expect_err(text);
+        assert_eq!(found.rule, "operator-offset", "{found}");
+        assert!(found.message.contains("in line 2"), "{found}");
+    }
+    for text in [
+        "C=45-R24",
+        "C=45+2*R24",
+        "C=45+(R24)",
+        "C=45+R24+R24",
+        "C=ABS(R24)",
+        "C=-R24",
+        "G91 C=5+R24",
+        "C=IC(5+R24)",
+        "X=5+R24",
+        "G1 X5 F=100+R24",
+        "R1=R24",
+        "M=R24",
+    ] {
+        let found = *found(text).expect_err(text);
+        assert_eq!(found.rule, "operator-offset", "{text}: {found}");
+    }
+}
+
+#[test]
+fn a_feed_group_without_a_linear_axis_makes_another_feed() {
+    assert_eq!(error("FGROUP(X,Y,A,C)").rule, "feed-group");
+    assert!(error("FGROUP(X,Y)").message.contains("without Z"));
+    assert_eq!(error("FGROUP(X,Y,Z,Q)").rule, "feed-group");
+    assert_eq!(error("FGROUP(X,Y,Z,B)").rule, "unknown-axis");
+    assert_eq!(blocks("FGROUP()\nFGROUP(X,Y,Z)\nFGROUP(X,Y,Z,A,C)"), [Op::End]);
+}
+
+#[test]
+fn a_path_tolerance_beyond_what_the_machine_file_says_is_refused() {
+    for text in ["CYCLE832(0.11,_FINISH,1)", "CTOL=0.2", "G641 ADIS=1", "G70 CTOL=0.01"] {
+        let found = error(text);
+        assert_eq!(found.rule, "path-tolerance", "{found}");
+        assert!(found.message.contains("allows 0.1 mm"), "{found}");
+    }
+    assert_eq!(
+        blocks("CYCLE832(0.1,_FINISH,1)\nCTOL=0.1\nCYCLE832(0,_OFF,1)\nCYCLE832()"),
+        [Op::End]
+    );
+}

@@ -70,7 +70,7 @@ enum Expected {
 /// The program, and what it must do. Positions are thousandths in the program's coordinates.
 fn write(blocks: &[Block], blanks: bool) -> (String, Vec<Expected>) {
     let gap = if blanks { " " } else { "" };
-    let mut text = "T1M6\nG0X0Y0Z0A0C0F100\n".to_owned();
+    let mut text = "T1M6\nG0X0Y0Z0A=R24 C=R24 F100\n".to_owned();
     let (mut at, mut turned, mut offset) = ([0i64; 3], [0i64; 2], [0i64; 3]);
     let mut expected = Vec::new();
     for (n, block) in blocks.iter().enumerate() {

@@ -6,10 +6,35 @@
 
 use crate::{LinearAxis, Machine};
 use geom::{Arc, Vec3};
-use program::{Diagnostic, Spindle, Tool};
+use program::{Diagnostic, Feed, Spindle, Tool};
+use serde::Serialize;
 
 /// What rounding may add to a position that stands exactly on a limit, mm or degrees.
 const ROUNDING: f64 = 1e-6;
+
+/// What is known of the travel of the linear axes, and so how a program is held against it.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Travel {
+    /// No axis has a limit.
+    Unlimited,
+    /// The work zero is not known: no axis may need more way than its travel is long.
+    Lengths,
+    /// Every position is held against the travel in machine coordinates.
+    MachineCoordinates,
+}
+
+impl Travel {
+    /// What is known of `machine`.
+    pub fn of(machine: &Machine) -> Travel {
+        let limited = |axis: &LinearAxis| axis.min.is_finite() || axis.max.is_finite();
+        match machine.work_zero {
+            _ if !machine.linear.iter().any(limited) => Travel::Unlimited,
+            None => Travel::Lengths,
+            Some(_) => Travel::MachineCoordinates,
+        }
+    }
+}
 
 /// Holds one program after the other against the limits of a machine.
 #[derive(Clone, Debug)]
@@ -86,6 +111,28 @@ impl<'a> Limits<'a> {
         let message = format!("spindle speed {speed} 1/min");
         let help = format!("the spindle turns at {} to {} 1/min", range.min, range.max);
         Err(Diagnostic::error("spindle-range", message).help(help).line(line).into())
+    }
+
+    /// Checks the feed of a cut, with the spindle as it turns. How fast a feed in inverse time is
+    /// depends on the way of each block: it is not checked here.
+    ///
+    /// # Errors
+    /// `feed-range`.
+    pub fn feed(&self, feed: Feed, spindle: Spindle, line: u32) -> Result<(), Box<Diagnostic>> {
+        let speed = match (feed, spindle) {
+            (Feed::PerMinute(speed), _) => speed,
+            (Feed::PerTurn(way), Spindle::Clockwise(turns) | Spindle::CounterClockwise(turns)) => {
+                way * turns
+            }
+            (Feed::PerTurn(_), Spindle::Off) | (Feed::InverseTime(_), _) => return Ok(()),
+        };
+        let most = self.machine.feed_max;
+        if speed <= most {
+            return Ok(());
+        }
+        let message = format!("feed {speed} mm/min");
+        let help = format!("the machine feeds at most {most} mm/min (feed_max)");
+        Err(Diagnostic::error("feed-range", message).help(help).line(line).into())
     }
 
     /// Checks what is known of a tool against what the magazine takes.

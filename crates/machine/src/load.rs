@@ -258,6 +258,7 @@ struct CheckedSheet {
     feed_max: Option<Positive>,
     tools: ToolsSheet,
     auxiliary: Option<Vec<u32>>,
+    operator_parameters: Option<Vec<OperatorParameter>>,
     approach: Option<Vec<String>>,
     options: BTreeMap<String, OptionSheet>,
 }
@@ -297,6 +298,7 @@ impl CheckedSheet {
             feed_max: sheet.feed_max,
             tools: sheet.tools.unwrap_or_default(),
             auxiliary: sheet.auxiliary,
+            operator_parameters: sheet.operator_parameters,
             approach: sheet.approach.map(|order| check_approach(file, order)).transpose()?,
             options: sheet.options.unwrap_or_default(),
         })
@@ -422,6 +424,7 @@ impl CheckedSheet {
             feed_max: nearer.feed_max.or(self.feed_max),
             tools: self.tools.under(nearer.tools),
             auxiliary: nearer.auxiliary.or(self.auxiliary),
+            operator_parameters: nearer.operator_parameters.or(self.operator_parameters),
             approach: nearer.approach.or(self.approach),
             options: overlay(self.options, nearer.options, |_, nearer| nearer),
         }
@@ -515,6 +518,9 @@ impl CheckedSheet {
                 max_length: self.tools.max_length.map_or(f64::INFINITY, |mm| mm.0),
             },
             auxiliary: self.auxiliary.unwrap_or_default(),
+            operator_parameters: (self.operator_parameters.into_iter().flatten())
+                .map(|parameter| parameter.0)
+                .collect(),
             approach: self.approach.unwrap_or_else(|| vec!["XY".into(), "Z".into()]),
             options: (self.options.into_iter())
                 .map(|(name, value)| match value {

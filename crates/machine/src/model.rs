@@ -48,6 +48,8 @@ pub struct Machine {
     /// M functions of the machine's builder that its programs use; they switch something and move no
     /// axis that the program drives (clamps, doors, air).
     pub auxiliary: Vec<u32>,
+    /// R parameters with which the operator shifts the zero of a rotary axis (SINUMERIK).
+    pub operator_parameters: Vec<u32>,
     /// The order in which the axes approach the first position after a tool change or a new
     /// orientation: each entry names the axes that move together (`XY`, then `Z`).
     pub approach: Vec<String>,
@@ -329,6 +331,15 @@ impl Machine {
     /// Whether its file says, by an empty block of that name, that the control does nothing for it.
     pub fn leaves_out(&self, block: &str) -> bool {
         self.blocks.get(block).is_some_and(|block| block.text.trim().is_empty())
+    }
+
+    /// How far its control may leave the path while it smooths it, mm: `path_tolerance` of the options,
+    /// which the templates write. The proof does not see that deviation.
+    pub fn path_tolerance(&self) -> f64 {
+        match self.options.get("path_tolerance") {
+            Some(OptionValue::Number(mm)) => *mm,
+            _ => 0.0,
+        }
     }
 
     /// Smallest step of a linear axis in its programs, mm.

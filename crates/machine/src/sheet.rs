@@ -78,6 +78,7 @@ sheet!(Sheet "" {
     feed_max: Positive, "mm/min", "The fastest feed of the machine; a program that asks for more is refused.";
     tools: ToolsSheet, "", "Table: what the magazine takes.";
     auxiliary: Vec<u32>, "", "Numbers of the M functions of the builder that programs use; none moves an axis that the program drives.";
+    operator_parameters: Vec<OperatorParameter>, "", "R parameters with which the operator shifts the zero of a rotary axis, such as [\"R24\"] (SINUMERIK).";
     approach: Spanned<Vec<String>>, "", "In which order the axes go to the first position after a tool change: each entry names axes that move together.";
     options: BTreeMap<String, OptionSheet>, "", "Table: values of this machine that its templates read.";
 });
@@ -197,6 +198,21 @@ value! {
     Positive(f64, "f64") |value| *value > 0.0 && value.is_finite(), "a number above 0";
     Decimals(u8, "u8") |value| *value <= 9, "0 to 9";
     Point([f64; 3], "[f64; 3]") |point| point.iter().all(|value| value.is_finite()), "three finite numbers";
+}
+
+/// `R24`.
+#[derive(Clone, Copy, Deserialize)]
+#[serde(try_from = "String")]
+pub(crate) struct OperatorParameter(pub(crate) u32);
+
+impl TryFrom<String> for OperatorParameter {
+    type Error = String;
+
+    fn try_from(name: String) -> Result<OperatorParameter, String> {
+        let number = name.strip_prefix('R').and_then(|number| number.parse().ok());
+        let number = number.filter(|number| *number < 1000);
+        number.map(OperatorParameter).ok_or_else(|| format!("{name:?} is not one of R0 to R999"))
+    }
 }
 
 #[cfg(test)]

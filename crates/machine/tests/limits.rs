@@ -4,8 +4,8 @@ mod common;
 
 use common::{axis, machine, within};
 use geom::{Arc, Vec3};
-use program::{Spindle, Tool};
-use toolpost_machine::limits::Limits;
+use program::{Feed, Spindle, Tool};
+use toolpost_machine::limits::{Limits, Travel};
 use toolpost_machine::{Machine, Mount};
 
 fn mill() -> Machine {
@@ -93,4 +93,31 @@ fn spindle_and_tool_have_ranges() {
         let refused = limits.tool(&unfit, 9).unwrap_err();
         assert_eq!((refused.rule, refused.line), ("tool-range", 9));
     }
+}
+
+#[test]
+fn a_feed_beyond_the_fastest_is_refused_in_mm_a_minute() {
+    let mill = Machine { feed_max: 5000.0, ..mill() };
+    let limits = Limits::new(&mill);
+    let check =
+        |feed, spindle| limits.feed(feed, spindle, 7).map_err(|e| (e.rule, e.line, e.message));
+    let refused = |message: &str| Err(("feed-range", 7, message.to_owned()));
+    assert_eq!(check(Feed::PerMinute(5000.0), Spindle::Off), Ok(()));
+    assert_eq!(check(Feed::PerMinute(5000.1), Spindle::Off), refused("feed 5000.1 mm/min"));
+    // 0.5 mm a turn at 12000 1/min.
+    let turns = Spindle::CounterClockwise(12_000.0);
+    assert_eq!(check(Feed::PerTurn(0.5), turns), refused("feed 6000 mm/min"));
+    assert_eq!(check(Feed::PerTurn(0.25), turns), Ok(()));
+    assert_eq!(Limits::new(&self::mill()).feed(Feed::PerMinute(1e6), turns, 7), Ok(()));
+}
+
+#[test]
+fn what_is_held_against_the_travel_depends_on_what_the_file_says() {
+    assert_eq!(Travel::of(&mill()), Travel::MachineCoordinates);
+    assert_eq!(Travel::of(&Machine { work_zero: None, ..mill() }), Travel::Lengths);
+    let mut free = mill();
+    for axis in &mut free.linear {
+        (axis.min, axis.max) = (f64::NEG_INFINITY, f64::INFINITY);
+    }
+    assert_eq!(Travel::of(&free), Travel::Unlimited);
 }

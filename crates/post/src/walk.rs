@@ -529,6 +529,7 @@ impl<'a> Walk<'a> {
         let Some(mut feed) = self.feed else {
             return Err(refuse("feed-missing", "a cut before the first feed"));
         };
+        self.limits.feed(feed, self.spindle, self.line)?;
         if let Feed::InverseTime(rate) = &mut feed {
             // A piece has its part of the time.
             let within = self.whole > 0.0 && length > 0.0;

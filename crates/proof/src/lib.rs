@@ -77,7 +77,10 @@ pub fn prove(
 }
 
 /// What the virtual control has to know of `machine`.
-fn settings(machine: &Machine) -> Result<Settings, Box<Diagnostic>> {
+///
+/// # Errors
+/// `reader` where there is no control of that name.
+pub fn settings(machine: &Machine) -> Result<Settings, Box<Diagnostic>> {
     let Some(dialect) = Dialect::named(&machine.reader) else {
         let message = format!("machine \"{}\" has no reader \"{}\"", machine.name, machine.reader);
         let names = Dialect::NAMES.map(|(name, _)| name).join(", ");
@@ -87,5 +90,10 @@ fn settings(machine: &Machine) -> Result<Settings, Box<Diagnostic>> {
     for axis in &machine.rotary {
         rotary[axis.index()] = true;
     }
-    Ok(Settings { dialect, rotary, auxiliary: machine.auxiliary.clone() })
+    Ok(Settings {
+        auxiliary: machine.auxiliary.clone(),
+        operator_parameters: machine.operator_parameters.clone(),
+        path_tolerance: machine.path_tolerance(),
+        ..Settings::new(dialect, rotary)
+    })
 }

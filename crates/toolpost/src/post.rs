@@ -4,8 +4,9 @@ use crate::answer::{Answer, Stop, Verdict};
 use crate::args::Post;
 use crate::files::{self, Target};
 use crate::progress::Progress;
-use crate::summary::{Shape, rows, time};
+use crate::summary::{Shape, rows, time, travel};
 use crate::{prove, toolpath};
+use machine::limits::Travel;
 use machine::time::Times;
 use program::Diagnostic;
 use serde_json::json;
@@ -13,11 +14,12 @@ use std::path::Path;
 
 /// Rules whose findings say that the machine cannot do what the toolpath asks for. All others of the
 /// writer are mistakes of the input: of the toolpath, or of the machine's file.
-const MACHINE_CANNOT: [&str; 11] = [
+const MACHINE_CANNOT: [&str; 12] = [
     "arc-orientation",
     "axis-limit",
     "cycle-missing",
     "cycle-tap",
+    "feed-range",
     "line-length",
     "number-range",
     "orientation-in-cut",
@@ -67,6 +69,7 @@ pub fn run(args: &Post, silent: bool) -> Result<Answer, Stop> {
         "source": toolpath.describe(&shape),
         "machine": toolpath::describe(&machine),
         "program": { "file": file, "blocks": output.blocks, "bytes": output.text.len() },
+        "travel": Travel::of(&machine),
         "time_s": { "total": times.total(), "cutting": times.cutting, "rapid": times.rapid },
         "proof": proof,
     });
@@ -78,6 +81,7 @@ pub fn run(args: &Post, silent: bool) -> Result<Answer, Stop> {
     let mut lines = toolpath.rows(&machine);
     lines.extend(shape.rows());
     lines.push(("time", time(&times)));
+    lines.push(("travel", travel(Travel::of(&machine))));
     lines.extend(prove::rows(&proof, &machine));
     lines.push(("saved", args.output.display().to_string()));
     lines.push(("", report_path.display().to_string()));

@@ -73,6 +73,11 @@ pub fn rows(proof: &Report, machine: &Machine) -> Vec<(&'static str, String)> {
         let text = deviation(axis.value, allowed.axis_degrees, "degrees", axis.program_line);
         rows.push(("axis off by", text));
     }
+    if machine.path_tolerance() > 0.0 {
+        let most = number(machine.path_tolerance(), 5);
+        let text = format!("by up to {most} mm where the program lets it, which no proof sees");
+        rows.push(("smoothing", text));
+    }
     if compared.excursions > 0 {
         rows.push(("excursions", format!("{}, listed in the report", compared.excursions)));
     }

@@ -1,6 +1,7 @@
 //! What a program amounts to, as a machinist reads it and as JSON.
 
 use crate::walk::walk;
+use machine::limits::Travel;
 use machine::time::Times;
 use program::Program;
 use program::statistics::Statistics;
@@ -99,6 +100,17 @@ fn duration(seconds: f64) -> String {
         (0, _) => format!("{minutes} min {seconds:02} s"),
         _ => format!("{hours} h {minutes:02} min"),
     }
+}
+
+/// How the positions of a program are held against the travel of the machine.
+pub fn travel(travel: Travel) -> String {
+    String::from(match travel {
+        Travel::Unlimited => "not checked: the machine file gives no travel",
+        Travel::Lengths => {
+            "only the lengths of the ways are held against the travel: work_zero is not given"
+        }
+        Travel::MachineCoordinates => "every position is within it, in machine coordinates",
+    })
 }
 
 /// How far something goes.

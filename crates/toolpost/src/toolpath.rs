@@ -100,6 +100,7 @@ pub fn describe(machine: &Machine) -> Value {
         "control": machine.control,
         "reader": machine.reader,
         "extension": machine.extension,
+        "path_tolerance_mm": machine.path_tolerance(),
     })
 }
 

@@ -5,7 +5,6 @@
 
 mod files;
 
-use control::{Dialect, Settings};
 use files::{cldata, root};
 use geom::{Arc, Vec3, nearest_on_segment};
 use machine::Machine;
@@ -116,12 +115,7 @@ impl Sample {
 
 /// What the control of `machine` makes of `text`.
 fn records(machine: &Machine, text: &[u8]) -> Vec<Record> {
-    let mut rotary = [false; 3];
-    for axis in &machine.rotary {
-        rotary[axis.index()] = true;
-    }
-    let dialect = Dialect::named(&machine.reader).unwrap();
-    let settings = Settings { dialect, rotary, auxiliary: machine.auxiliary.clone() };
+    let settings = proof::settings(machine).unwrap();
     let mut records = Vec::new();
     control::read(&settings, "", text, &mut |record| {
         records.push(record);

@@ -124,6 +124,17 @@ fn a_speed_that_rounds_to_nothing_is_refused() {
 }
 
 #[test]
+fn a_feed_beyond_the_machine_is_refused() {
+    let folder = tempfile::tempdir().unwrap();
+    let file = folder.path().join("mill.toml");
+    std::fs::write(&file, "extends = \"generic-3axis-linuxcnc\"\nfeed_max = 2000\n").unwrap();
+    let path = |feed: u32| format!("RAPID\nGOTO/0,0,5\nFEDRAT/{feed},MMPM\nGOTO/0,0,0");
+    let machine = file.to_str().unwrap();
+    assert_eq!(refused(machine, &path(2001)), ("feed-range", 8));
+    posted(machine, &path(2000));
+}
+
+#[test]
 fn registers_that_the_control_cannot_name_are_told() {
     let path = "LOAD/TOOL,2,ADJUST,12\nSPINDL/RPM,1000,CLW\nRAPID\nGOTO/0,0,5\nGOTO/0,0,0\n\
                 CUTCOM/LEFT,5\nGOTO/10,0,0\nCUTCOM/OFF\nGOTO/20,0,0";

@@ -28,8 +28,10 @@ pub(super) enum Count {
 pub(super) struct Coordinate {
     /// How it counts.
     pub count: Count,
-    /// Its value.
+    /// Its value, without what the operator adds.
     pub value: f64,
+    /// The R parameter with which the operator shifts it.
+    pub offset: Option<usize>,
 }
 
 /// A tool as it is called.
@@ -76,6 +78,8 @@ pub(super) struct Block {
     pub edge: Option<u32>,
     /// M functions.
     pub m: [Option<u32>; MOST_M],
+    /// `CTOL`, `ADIS`: which, and the value.
+    pub path_tolerance: Option<(&'static str, f64)>,
     /// Assignments to R parameters.
     pub assigned: Vec<(usize, f64)>,
     /// A call; it stands alone.
@@ -172,6 +176,7 @@ impl Block {
             tool: None,
             edge: None,
             m: [None; MOST_M],
+            path_tolerance: None,
             assigned: Vec::new(),
             call: None,
             message: None,
@@ -396,7 +401,7 @@ impl Reader<'_, '_> {
     /// `R1=...` behind the `R`.
     fn assignment(&mut self) -> Fallible<()> {
         let start = self.scanner.at - 1;
-        let evaluator = evaluator(self.parameters, &self.block.assigned);
+        let evaluator = Evaluator::new(self.parameters, &self.block.assigned);
         let index = evaluator.index(&mut self.scanner)?;
         self.scanner.expect(b'=')?;
         let value = evaluator.expression(&mut self.scanner)?;
@@ -406,7 +411,7 @@ impl Reader<'_, '_> {
     }
 
     fn axis(&mut self, start: usize, index: usize) -> Fallible<()> {
-        let value = self.coordinate()?;
+        let value = self.offset_coordinate(index >= 3)?;
         let repeated = match self.block.axes.get_mut(index) {
             Some(place) => place.replace(value).is_some(),
             None => false,
@@ -417,9 +422,15 @@ impl Reader<'_, '_> {
     /// The value of an address that may stand in `AC()`, `IC()` ...
     #[inline]
     fn coordinate(&mut self) -> Fallible<Coordinate> {
+        self.offset_coordinate(false)
+    }
+
+    /// The same, to which the operator's offset may be added where `may`.
+    #[inline]
+    fn offset_coordinate(&mut self, may: bool) -> Fallible<Coordinate> {
         if !self.scanner.take(b'=') {
             let value = self.constant()?;
-            return Ok(Coordinate { count: Count::Modal, value });
+            return Ok(Coordinate { count: Count::Modal, value, offset: None });
         }
         self.scanner.blanks();
         let back = self.scanner.at;
@@ -430,17 +441,26 @@ impl Reader<'_, '_> {
             let count = COUNTS.iter().find(|(n, _)| *n == name.as_str()).map(|(_, count)| *count);
             if let Some(count) = count {
                 self.scanner.expect(b'(')?;
-                let value = self.expression()?;
+                let (value, offset) = self.offset_expression(may)?;
                 self.scanner.expect(b')')?;
-                return Ok(Coordinate { count, value });
+                return Ok(Coordinate { count, value, offset });
             }
             self.scanner.at = back;
         }
-        Ok(Coordinate { count: Count::Modal, value: self.expression()? })
+        let (value, offset) = self.offset_expression(may)?;
+        Ok(Coordinate { count: Count::Modal, value, offset })
+    }
+
+    fn offset_expression(&mut self, may: bool) -> Fallible<(f64, Option<usize>)> {
+        if !may {
+            return Ok((self.expression()?, None));
+        }
+        let evaluator = Evaluator::new(self.parameters, &self.block.assigned);
+        evaluator.offset_expression(&mut self.scanner)
     }
 
     fn expression(&mut self) -> Fallible<f64> {
-        evaluator(self.parameters, &self.block.assigned).expression(&mut self.scanner)
+        Evaluator::new(self.parameters, &self.block.assigned).expression(&mut self.scanner)
     }
 
     /// A constant, perhaps behind blanks.
@@ -533,7 +553,7 @@ impl Reader<'_, '_> {
         if let Some(index) = commands::named(name) {
             return self.command(start, index);
         }
-        if let Some((_, setting)) = SETTINGS.iter().find(|(n, _)| *n == name) {
+        if let Some((said, setting)) = SETTINGS.iter().find(|(n, _)| *n == name) {
             self.scanner.expect(b'=')?;
             let value = self.expression()?;
             let block = &mut *self.block;
@@ -543,6 +563,10 @@ impl Reader<'_, '_> {
                 Setting::Turns => &mut block.turns,
                 Setting::Rotation => &mut block.rotation,
                 Setting::FixedPoint => &mut block.fixed_point,
+                Setting::PathTolerance => {
+                    let repeated = block.path_tolerance.replace((said, value)).is_some();
+                    return self.once(start, repeated);
+                }
                 Setting::NoMotion => return Ok(()),
             };
             let repeated = place.replace(value).is_some();
@@ -551,7 +575,7 @@ impl Reader<'_, '_> {
         if name == "MSG" {
             return self.message(start);
         }
-        let evaluator = evaluator(self.parameters, &self.block.assigned);
+        let evaluator = Evaluator::new(self.parameters, &self.block.assigned);
         let call = Call::read(&mut self.scanner, start, name, &evaluator)?;
         let repeated = self.block.call.replace(call).is_some();
         self.once(start, repeated)
@@ -582,11 +606,6 @@ impl Reader<'_, '_> {
     }
 }
 
-/// The evaluator for a block that has assigned `assigned` so far.
-fn evaluator<'a>(parameters: &'a Parameters, assigned: &'a [(usize, f64)]) -> Evaluator<'a> {
-    Evaluator { parameters, assigned }
-}
-
 /// The functions around a coordinate.
 const COUNTS: &[(&str, Count)] = &[
     ("AC", Count::Absolute),
@@ -603,7 +622,9 @@ enum Setting {
     Turns,
     Rotation,
     FixedPoint,
-    /// How closely the path is followed, within the tolerances that the machine is set up for.
+    /// How far the control may leave the path of a cut.
+    PathTolerance,
+    /// How rapids and corrections are rounded, and how far the tool axis may turn.
     NoMotion,
 }
 
@@ -614,9 +635,9 @@ const SETTINGS: &[(&str, Setting)] = &[
     ("TURN", Setting::Turns),
     ("RPL", Setting::Rotation),
     ("FP", Setting::FixedPoint),
-    ("ADIS", Setting::NoMotion),
+    ("ADIS", Setting::PathTolerance),
     ("ADISPOS", Setting::NoMotion),
-    ("CTOL", Setting::NoMotion),
+    ("CTOL", Setting::PathTolerance),
     ("OTOL", Setting::NoMotion),
     ("DISC", Setting::NoMotion),
 ];

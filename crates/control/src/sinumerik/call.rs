@@ -15,6 +15,10 @@ pub(super) enum Procedure {
     Trafoof,
     /// `CYCLE800`.
     Swivel,
+    /// `CYCLE832`: how closely the path is followed.
+    HighSpeed,
+    /// `FGROUP`: which axes the feed is the speed of.
+    FeedGroup,
     /// Nothing that moves an axis or changes where one goes.
     NoMotion,
     /// `MCALL` without a cycle.
@@ -53,10 +57,8 @@ const PROCEDURES: &[(&str, Procedure)] = &[
     ("TRAORI", Procedure::Traori),
     ("TRAFOOF", Procedure::Trafoof),
     ("CYCLE800", Procedure::Swivel),
-    // Tolerance, dynamics, compression: how, not where.
-    ("CYCLE832", Procedure::NoMotion),
-    // Which axes the feed is the speed of.
-    ("FGROUP", Procedure::NoMotion),
+    ("CYCLE832", Procedure::HighSpeed),
+    ("FGROUP", Procedure::FeedGroup),
     // Look-ahead stops.
     ("STOPRE", Procedure::NoMotion),
     // The raw part, for the control's picture.

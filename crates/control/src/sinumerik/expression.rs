@@ -6,6 +6,8 @@
 
 use super::Fallible;
 use super::scan::Scanner;
+use program::Diagnostic;
+use std::cell::Cell;
 
 /// How many R parameters there are (`R0` to `R999`; the machine's builder says how many, MD28050).
 pub(super) const R_PARAMETERS: usize = 1000;
@@ -13,26 +15,43 @@ pub(super) const R_PARAMETERS: usize = 1000;
 /// How deep brackets and signs may nest.
 const DEEPEST: usize = 32;
 
-/// The R parameters; those that no block has set are 0.
+/// What is known of an R parameter.
+#[derive(Clone, Copy)]
+enum Parameter {
+    /// A block has set it.
+    Set(f64),
+    /// The operator sets it at the machine.
+    Operator,
+    /// Nothing: it keeps what another program has left there.
+    Unknown,
+}
+
+/// The R parameters.
 pub(super) struct Parameters {
-    values: Vec<f64>,
+    values: Vec<Parameter>,
 }
 
 impl Parameters {
-    /// All 0.
-    pub fn new() -> Parameters {
-        Parameters { values: vec![0.0; R_PARAMETERS] }
+    /// Before a program: those of the operator, and no other.
+    pub fn new(operator: &[u32]) -> Parameters {
+        let mut values = vec![Parameter::Unknown; R_PARAMETERS];
+        for index in operator {
+            if let Some(place) = values.get_mut(*index as usize) {
+                *place = Parameter::Operator;
+            }
+        }
+        Parameters { values }
     }
 
     /// Sets a parameter (an index beyond the last is checked where it is read).
     pub fn set(&mut self, index: usize, value: f64) {
         if let Some(place) = self.values.get_mut(index) {
-            *place = value;
+            *place = Parameter::Set(value);
         }
     }
 
-    fn get(&self, index: usize) -> f64 {
-        self.values.get(index).copied().unwrap_or(0.0)
+    fn get(&self, index: usize) -> Parameter {
+        self.values.get(index).copied().unwrap_or(Parameter::Unknown)
     }
 }
 
@@ -42,11 +61,34 @@ pub(super) struct Evaluator<'a> {
     pub parameters: &'a Parameters,
     /// What the block has assigned so far.
     pub assigned: &'a [(usize, f64)],
+    /// The operator's parameter that the expression has added; it counts as 0.
+    offset: Cell<Option<usize>>,
 }
 
-impl Evaluator<'_> {
+impl<'a> Evaluator<'a> {
+    /// For a block that has assigned `assigned` so far.
+    pub fn new(parameters: &'a Parameters, assigned: &'a [(usize, f64)]) -> Evaluator<'a> {
+        Evaluator { parameters, assigned, offset: Cell::new(None) }
+    }
+
     /// Takes an expression.
     pub fn expression(&self, scanner: &mut Scanner) -> Fallible<f64> {
+        let start = scanner.at;
+        let value = self.finite(scanner)?;
+        match self.offset.get() {
+            None => Ok(value),
+            Some(index) => Err(only_added(scanner, start, index)),
+        }
+    }
+
+    /// Takes an expression to which one parameter of the operator may be added: its value without
+    /// that, and the parameter.
+    pub fn offset_expression(&self, scanner: &mut Scanner) -> Fallible<(f64, Option<usize>)> {
+        let value = self.finite(scanner)?;
+        Ok((value, self.offset.take()))
+    }
+
+    fn finite(&self, scanner: &mut Scanner) -> Fallible<f64> {
         let start = scanner.at;
         let value = self.sum(scanner, 0)?;
         if value.is_finite() {
@@ -75,16 +117,35 @@ impl Evaluator<'_> {
         if depth > DEEPEST {
             return Err(scanner.error_here("syntax", "brackets nest too deep"));
         }
-        let mut value = self.product(scanner, depth)?;
+        let mut value = self.term(scanner, depth, true)?;
         loop {
             if scanner.take(b'+') {
-                value += self.product(scanner, depth)?;
+                value += self.term(scanner, depth, true)?;
             } else if scanner.take(b'-') {
-                value -= self.product(scanner, depth)?;
+                value -= self.term(scanner, depth, false)?;
             } else {
                 return Ok(value);
             }
         }
+    }
+
+    /// A product, which is added or taken off. A parameter of the operator is one by itself, outside
+    /// of brackets and added: anything else would not be an offset.
+    fn term(&self, scanner: &mut Scanner, depth: usize, added: bool) -> Fallible<f64> {
+        scanner.blanks();
+        let start = scanner.at;
+        let before = self.offset.take();
+        let value = self.product(scanner, depth)?;
+        let Some(index) = self.offset.get() else {
+            self.offset.set(before);
+            return Ok(value);
+        };
+        let text = scanner.source.text.get(start..scanner.at).unwrap_or_default().trim_ascii();
+        let alone = text[1..].iter().all(u8::is_ascii_digit);
+        if alone && added && depth == 0 && before.is_none() {
+            return Ok(value);
+        }
+        Err(only_added(scanner, start, index))
     }
 
     fn product(&self, scanner: &mut Scanner, depth: usize) -> Fallible<f64> {
@@ -164,7 +225,22 @@ impl Evaluator<'_> {
                 format!("R{index} is set and read in one block"),
             ));
         }
-        Ok(self.parameters.get(index))
+        match self.parameters.get(index) {
+            Parameter::Set(value) => Ok(value),
+            Parameter::Operator => {
+                self.offset.set(Some(index));
+                Ok(0.0)
+            }
+            Parameter::Unknown => {
+                let message = format!("R{index} is read, and no block before has set it");
+                let mut error = scanner.error_since(start, "r-parameter", message);
+                error.help = format!(
+                    "set it in the program; or, where the operator sets it, write \
+                     operator_parameters = [\"R{index}\"] into the machine file"
+                );
+                Err(error)
+            }
+        }
     }
 
     fn function(&self, scanner: &mut Scanner, depth: usize) -> Fallible<f64> {
@@ -190,6 +266,14 @@ impl Evaluator<'_> {
         let message = format!("{} has no value here", name.as_str());
         Err(scanner.error_since(start, "arithmetic", message))
     }
+}
+
+fn only_added(scanner: &Scanner, start: usize, index: usize) -> Box<Diagnostic> {
+    let message = format!(
+        "R{index} is the operator's: it is only added to the position of a rotary axis, once, as in \
+         C=45+R{index}"
+    );
+    scanner.error_since(start, "operator-offset", message)
 }
 
 /// Takes `DIV` (true) or `MOD` (false).

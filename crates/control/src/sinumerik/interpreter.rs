@@ -6,9 +6,10 @@
 
 use super::Fallible;
 use super::block::{Block, ToolCall};
-use super::call::{Call, Procedure};
+use super::call::{Argument, Call, Procedure};
 use super::commands::{Code, FeedType, Motion};
 use super::cycles::{Drilling, Pause};
+use super::motion::AXIS_NAMES;
 use super::scan::Source;
 use super::state::State;
 use crate::{Settings, Sink};
@@ -34,7 +35,7 @@ const GEARS: std::ops::RangeInclusive<u32> = 40..=45;
 impl<'a> Interpreter<'a> {
     /// At the start of a program.
     pub fn new(settings: &'a Settings, sink: &'a mut Sink<'a>) -> Interpreter<'a> {
-        let state = State::new(settings.rotary);
+        let state = State::new(settings);
         Interpreter { state, settings, sink, reported_cycle: None }
     }
 
@@ -63,6 +64,9 @@ impl<'a> Interpreter<'a> {
         }
         self.check_m(source, block)?;
         self.modes(source, block)?;
+        if let Some((name, tolerance)) = block.path_tolerance {
+            self.path_tolerance(source, name, tolerance * self.state.unit)?;
+        }
         if let Some(Code::Frame(command)) = block.code(3) {
             return self.frame_command(source, block, command);
         }
@@ -332,7 +336,9 @@ impl<'a> Interpreter<'a> {
             return Err(source.block_error("syntax", message));
         }
         match call.procedure {
-            Procedure::NoMotion => self.check_high_speed(source, call),
+            Procedure::NoMotion => Ok(()),
+            Procedure::HighSpeed => self.high_speed(source, call),
+            Procedure::FeedGroup => self.feed_group(source, call),
             Procedure::Traori => self.traori(source, call),
             Procedure::Trafoof => self.trafoof(source),
             Procedure::Swivel => self.swivel(source, call),
@@ -357,15 +363,56 @@ impl<'a> Interpreter<'a> {
         }
     }
 
-    /// The older `CYCLE832` has a packed second argument that can switch the transformation too.
-    fn check_high_speed(&self, source: &Source, call: &Call) -> Fallible<()> {
-        let packed = call.name == "CYCLE832"
-            && matches!(call.arguments.get(1), Some(super::call::Argument::Number(n)) if *n > 9999.0);
-        if packed {
+    /// `CYCLE832(tolerance, mode, version)`. The older form has a packed second argument that can
+    /// switch the transformation too.
+    fn high_speed(&self, source: &Source, call: &Call) -> Fallible<()> {
+        if matches!(call.arguments.get(1), Some(Argument::Number(n)) if *n > 9999.0) {
             let message = "the older form of CYCLE832, which can switch TRAORI, is not supported";
             return Err(source.block_error("unsupported", message));
         }
-        Ok(())
+        let tolerance = call.number(source, 0)?.unwrap_or(0.0);
+        self.path_tolerance(source, call.name, tolerance * self.state.unit)
+    }
+
+    /// How far the control may leave the path, mm: what it then does is not seen here.
+    fn path_tolerance(&self, source: &Source, name: &str, tolerance: f64) -> Fallible<()> {
+        let most = self.settings.path_tolerance;
+        if tolerance <= most {
+            return Ok(());
+        }
+        let message = format!(
+            "{name} lets the control leave the path by {tolerance} mm, the machine file allows {most} \
+             mm"
+        );
+        let mut error = source.block_error("path-tolerance", message);
+        error.help = "path_tolerance in [options] of the machine file says how far".into();
+        Err(error)
+    }
+
+    /// `FGROUP(...)`: the axes that F is the speed of. Without one of X, Y, Z the tool would move at
+    /// another feed than F wherever that axis takes part.
+    fn feed_group(&self, source: &Source, call: &Call) -> Fallible<()> {
+        let mut named = [false; 6];
+        for argument in &call.arguments {
+            let name = if let Argument::Text(name) = argument { name.as_str() } else { "" };
+            let Some(index) = AXIS_NAMES.iter().position(|axis| *axis == name) else {
+                let message = "FGROUP takes the names of axes: FGROUP(X,Y,Z)";
+                return Err(source.block_error("feed-group", message));
+            };
+            if index >= 3 && !self.settings.rotary[index - 3] {
+                let message = format!("the machine has no axis {name}");
+                return Err(source.block_error("unknown-axis", message));
+            }
+            named[index] = true;
+        }
+        // FGROUP() goes back to the basic setting: the geometry axes.
+        let missing = (0..3).find(|i| !call.arguments.is_empty() && !named[*i]);
+        let Some(missing) = missing else { return Ok(()) };
+        let message = format!(
+            "FGROUP without {}: F would not be the speed of the tool where that axis moves",
+            AXIS_NAMES[missing]
+        );
+        Err(source.block_error("feed-group", message))
     }
 
     fn cycle_off(&mut self, source: &Source) -> Fallible<()> {

@@ -9,7 +9,7 @@ use super::state::ToolAxis;
 use geom::{Vec3, direction};
 use program::{Compensation, Op};
 
-const AXIS_NAMES: [&str; 6] = ["X", "Y", "Z", "A", "B", "C"];
+pub(super) const AXIS_NAMES: [&str; 6] = ["X", "Y", "Z", "A", "B", "C"];
 
 impl Interpreter<'_> {
     /// The motion of a block, if it has one.
@@ -136,6 +136,7 @@ impl Interpreter<'_> {
         for i in 0..3 {
             if let Some(coordinate) = block.axes[i + 3] {
                 self.state.rotary[i] = self.turned_to(source, coordinate, i)?;
+                self.check_offset(source, coordinate, i)?;
             }
         }
         self.state.tool_axis = ToolAxis::Rotary;
@@ -163,6 +164,37 @@ impl Interpreter<'_> {
             Count::Negative => from - (from - value).rem_euclid(360.0),
             _ => value,
         })
+    }
+
+    /// The proof takes the operator's offset as 0. So it must shift every position of its axis alike:
+    /// one block without it, or with another, and the axis would go elsewhere by that much.
+    fn check_offset(&mut self, source: &Source, coordinate: Coordinate, i: usize) -> Fallible<()> {
+        let name = AXIS_NAMES[i + 3];
+        let incremental = coordinate.count == Count::Incremental
+            || coordinate.count == Count::Modal && !self.state.absolute;
+        if let (true, Some(index)) = (incremental, coordinate.offset) {
+            let message = format!("{name} is incremental, and R{index} would be added once more");
+            return Err(source.block_error("operator-offset", message));
+        }
+        if incremental {
+            return Ok(());
+        }
+        let (first, line) = *self.state.offsets[i].get_or_insert((coordinate.offset, source.line));
+        if first == coordinate.offset {
+            return Ok(());
+        }
+        let with = |offset: Option<usize>| match offset {
+            Some(index) => format!("with +R{index}"),
+            None => String::from("without an operator's offset"),
+        };
+        let message = format!(
+            "{name} is written {} here and {} in line {line}: the axis would stand elsewhere by that",
+            with(coordinate.offset),
+            with(first)
+        );
+        let mut error = source.block_error("operator-offset", message);
+        error.help = format!("write every position of {name} with the same one");
+        Err(error)
     }
 
     fn check_rotary(&self, source: &Source, index: usize) -> Fallible<()> {

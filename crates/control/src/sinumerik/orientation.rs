@@ -51,7 +51,7 @@ impl Interpreter<'_> {
             let mut vector = Vec3::ZERO;
             for i in 0..3 {
                 match block.axes[i] {
-                    Some(Coordinate { count: Count::Modal, value }) => vector[i] = value * unit,
+                    Some(Coordinate { count: Count::Modal, value, .. }) => vector[i] = value * unit,
                     Some(_) => {
                         return Err(source.block_error("frame", "a frame takes plain values"));
                     }

@@ -4,6 +4,7 @@ use super::commands::{FeedType, Motion};
 use super::cycles::Drilling;
 use super::expression::Parameters;
 use super::frames::Frames;
+use crate::Settings;
 use geom::Vec3;
 use program::{Compensation, Coolant, Feed, Orientation, Pose, Spindle, Tool};
 
@@ -71,6 +72,9 @@ pub(super) struct State {
     pub modal_cycle: Option<Drilling>,
     /// R parameters.
     pub parameters: Parameters,
+    /// The operator's parameter that the positions of A, B, C are written with, and the line that
+    /// wrote one first.
+    pub offsets: [Option<(Option<usize>, u32)>; 3],
     /// Whether the program has ended.
     pub ended: bool,
 }
@@ -78,7 +82,7 @@ pub(super) struct State {
 impl State {
     /// The reset state that the maker delivers (Programming Manual 06/2019, 4.3; `G1 G17 G40 G500 G71
     /// G90 G94 ORIWKS`); where the axes stand is not known.
-    pub fn new(rotary: [bool; 3]) -> State {
+    pub fn new(settings: &Settings) -> State {
         State {
             motion: Motion::Line,
             plane_normal: 2,
@@ -101,10 +105,11 @@ impl State {
             frames: Frames::new(),
             position: Vec3::NAN,
             programmed: Vec3::NAN,
-            rotary: rotary.map(|exists| if exists { f64::NAN } else { 0.0 }),
+            rotary: settings.rotary.map(|exists| if exists { f64::NAN } else { 0.0 }),
             tool_axis: ToolAxis::Rotary,
             modal_cycle: None,
-            parameters: Parameters::new(),
+            parameters: Parameters::new(&settings.operator_parameters),
+            offsets: [None; 3],
             ended: false,
         }
     }

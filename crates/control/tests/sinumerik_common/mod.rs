@@ -8,7 +8,13 @@ use toolpost_control::{Dialect, Settings, read};
 /// A machine with A and C and clamps.
 pub fn settings() -> Settings {
     let auxiliary = vec![26, 27, 28, 29];
-    Settings { dialect: Dialect::Sinumerik, rotary: [true, false, true], auxiliary }
+    let rotary = [true, false, true];
+    Settings {
+        auxiliary,
+        operator_parameters: vec![24],
+        path_tolerance: 0.1,
+        ..Settings::new(Dialect::Sinumerik, rotary)
+    }
 }
 
 /// What a program does.

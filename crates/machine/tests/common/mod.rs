@@ -47,6 +47,7 @@ pub fn machine(rotary: Vec<RotaryAxis>) -> Machine {
         feed_max: f64::INFINITY,
         tools: ToolRange { max_number: 99, max_diameter: 80.0, max_length: 300.0 },
         auxiliary: Vec::new(),
+        operator_parameters: Vec::new(),
         approach: Vec::new(),
         options: BTreeMap::new(),
     }

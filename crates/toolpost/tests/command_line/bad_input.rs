@@ -115,13 +115,14 @@ fn an_orientation_out_of_reach() {
 
 #[test]
 fn a_limit_broken_by_a_micrometre() {
-    // X travels 800 mm, and the work zero is not known: the part may be 800 mm long.
-    let machine = "sinumerik-840d-table-ac";
+    // X travels 850 mm, and the work zero is not known: the part may be 850 mm long.
+    let machine = "fanuc-table-bc";
     let folder = Folder::new();
-    folder.write("part.cls", with_line(12, "GOTO/800,0,-2"));
+    folder.write("part.cls", with_line(12, "GOTO/850,0,-2"));
     let said = folder.run(&["post", "part.cls", "-m", machine, "-o", "out.mpf"]);
     assert_eq!(said.code, 0, "{said:?}");
-    refused(with_line(12, "GOTO/800.001,0,-2"), machine, 1, 12, "axis-limit");
+    assert!(said.out.contains("travel      only the lengths of the ways"), "{said:?}");
+    refused(with_line(12, "GOTO/850.001,0,-2"), machine, 1, 12, "axis-limit");
 }
 
 #[test]
@@ -141,6 +142,7 @@ fn a_limit_in_machine_coordinates_broken_by_a_micrometre() {
     folder.write("part.cls", with_line(12, "GOTO/100,0,-2"));
     let said = folder.run(&post);
     assert_eq!(said.code, 0, "{said:?}");
+    assert!(said.out.contains("travel      every position is within it"), "{said:?}");
 }
 
 /// Checks and posts with a machine that extends [`MACHINE`] by `text`; both must refuse it at `place`.

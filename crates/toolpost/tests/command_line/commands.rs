@@ -15,6 +15,7 @@ fn a_summary_tells_tools_lengths_extents_and_proof() {
         "rapid       97.0 mm",
         "X           0 ... 40 mm (40)",
         "Z           -2 ... 50 mm (52)",
+        "travel      not checked: the machine file gives no travel",
         "saved       out.mpf",
     ] {
         assert!(said.out.contains(line), "{line} is missing in\n{}", said.out);
