@@ -190,6 +190,11 @@ impl SheetFile {
         1 + before.iter().filter(|&&b| b == b'\n').count() as u32
     }
 
+    fn placed<T>(&self, value: Spanned<T>) -> (T, Place) {
+        let place = Place { file: self.name(), line: self.line_of(value.span().start) };
+        (value.into_inner(), place)
+    }
+
     /// The block whose TOML value stands at `value`: a text in triple quotes begins on the line after.
     fn block(&self, value: Spanned<String>) -> Block {
         let span = value.span();
@@ -244,7 +249,7 @@ fn wrong(place: &Diagnostic, message: &str) -> Box<Diagnostic> {
 struct CheckedSheet {
     extends: Option<Spanned<String>>,
     title: Option<String>,
-    reader: Option<String>,
+    reader: Option<(String, Place)>,
     extension: Option<String>,
     capabilities: CapabilitiesSheet,
     format: FormatSheet,
@@ -266,10 +271,7 @@ struct CheckedSheet {
 impl CheckedSheet {
     /// What serde cannot see, told at its place in the file.
     fn new(sheet: Sheet, file: &SheetFile) -> Result<CheckedSheet> {
-        let word = |(name, word): (String, Spanned<WordSheet>)| {
-            let place = Place { file: file.name(), line: file.line_of(word.span().start) };
-            (name, (word.into_inner(), place))
-        };
+        let word = |(name, word)| (name, file.placed(word));
         let axis = |(name, axis): (LinearName, Spanned<LinearSheet>)| {
             let placed = Placed::new(file, &format!("axes.{name:?}"), axis);
             check_range(&placed.place, placed.sheet.min, placed.sheet.max, "mm")?;
@@ -284,7 +286,7 @@ impl CheckedSheet {
         Ok(CheckedSheet {
             extends: sheet.extends,
             title: sheet.title,
-            reader: sheet.reader,
+            reader: sheet.reader.map(|reader| file.placed(reader)),
             extension: sheet.extension,
             capabilities: sheet.capabilities.unwrap_or_default(),
             format: sheet.format.unwrap_or_default(),
@@ -471,12 +473,15 @@ impl CheckedSheet {
         let positioned = orientation.positioned.unwrap_or(simultaneous);
         let capabilities = self.capabilities;
         let format = self.format;
+        let (reader, reader_place) =
+            self.reader.ok_or_else(|| missing("`reader`, the virtual control,"))?;
         Ok(Machine {
             title: self.title.unwrap_or_else(|| name.clone()),
             name,
             file,
             control,
-            reader: self.reader.ok_or_else(|| missing("`reader`, the virtual control,"))?,
+            reader,
+            reader_place,
             extension: self.extension.unwrap_or_else(|| "nc".into()),
             capabilities: Capabilities {
                 arcs: capabilities.arcs.unwrap_or_default(),

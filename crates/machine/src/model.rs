@@ -19,6 +19,8 @@ pub struct Machine {
     /// The dialect whose virtual control proves its programs (`sinumerik`, `fanuc`, `linuxcnc`,
     /// `grbl`, `klartext`).
     pub reader: String,
+    /// Where that is said.
+    pub reader_place: Place,
     /// Ending of its programs, without the dot.
     pub extension: String,
     /// What the control can do.

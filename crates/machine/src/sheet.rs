@@ -64,7 +64,7 @@ macro_rules! sheet {
 sheet!(Sheet "" {
     extends: Spanned<String>, "", "The machine or control that this file changes: a name in the library, or the path of a file.";
     title: String, "", "What a person calls it.";
-    reader: String, "", "The virtual control that proves its programs: sinumerik, fanuc, linuxcnc, grbl, klartext.";
+    reader: Spanned<String>, "", "The virtual control that proves its programs: sinumerik, fanuc, linuxcnc, grbl, klartext.";
     extension: String, "", "Ending of its programs, without the dot.";
     capabilities: CapabilitiesSheet, "", "Table: what the control can do; what it cannot is lowered.";
     format: FormatSheet, "", "Table: how text is put together.";

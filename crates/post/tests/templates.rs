@@ -43,6 +43,11 @@ fn a_value_that_grows_without_bound_is_refused_at_once() {
         ("{% for i in range(1000) recursive %}{{ loop(i) }}{% endfor %}", "template"),
         ("{{ 5 in range(100000) }}", "template-name"),
         ("{{ '%1000000000d'|format(1) }}", "template"),
+        ("{% if 5 is divisibleby(0) %}{% endif %}", "template"),
+        (
+            "{% for i in range(9223372036854775807, -9223372036854775807, -1) %}{% endfor %}",
+            "template",
+        ),
         ("{{ '%*d'|format(1000000000, 1) }}", "template"),
         ("{% set a %}{{ program.name }}{% endset %}", "template"),
         ("{% with a = 1 %}{% endwith %}", "template"),
@@ -74,6 +79,7 @@ fn what_a_machinist_needs_of_jinja_is_there() {
         "{% if tool is defined and tool.corner_radius is number %}M52{% endif %}",
         "({{ machine.title }} {{ 'a' if tool.first else 'b' }} {{ options.shop ~ '-' ~ tool.number }})",
         "{% for i in range(3) %}M5{{ loop.index * i }}\n{% endfor %}",
+        "{% if tool.number is divisibleby(2) %}M50{% endif %}",
     ] {
         assert_eq!(checked(template), Ok(()), "{template}");
     }

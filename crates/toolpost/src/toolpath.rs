@@ -89,7 +89,18 @@ fn line(text: &[u8], number: u32) -> &[u8] {
 /// # Errors
 /// Where there is none, or its file has a mistake.
 pub fn machine(name_or_path: &str) -> Result<Machine, Stop> {
-    machine::load(name_or_path).map_err(|finding| finding.into())
+    let machine = machine::load(name_or_path)?;
+    if control::Dialect::named(&machine.reader).is_none() {
+        let names = control::Dialect::NAMES.map(|(name, _)| name).join(", ");
+        let message = format!("there is no virtual control `{}`", machine.reader);
+        let place = machine.reader_place;
+        return Err(Diagnostic::error("reader", message)
+            .help(format!("`reader` is one of {names}"))
+            .file(place.file)
+            .line(place.line)
+            .into());
+    }
+    Ok(machine)
 }
 
 /// What a machine is called, as JSON.

@@ -163,6 +163,7 @@ fn machine_refused(text: &str, place: &str, rule: &str) {
 
 #[test]
 fn a_machine_file_with_a_mistake() {
+    machine_refused("reader = \"nonesuch\"\n", "3:", "reader");
     machine_refused("colour = \"red\"\n", "3:1:", "machine-file");
     machine_refused("[blocks]\nlinear = \"{{N}} G1 {{XX}}\"\n", "4:", "template-name");
     machine_refused("[blocks]\nlinear = \"{{N} G1\"\n", "4:", "template");
