@@ -110,13 +110,17 @@ fn turns_round(machine: &Machine, came: Vec3, at: Vec3, to: Vec3) -> bool {
         return false;
     };
     let Some(free) = singular.free.filter(|_| after.free.is_none()) else { return false };
-    let turns = (0..4).map(|k| {
-        let turn = after.degrees[k % 2][free] - before.degrees[k / 2][free];
-        (turn - 360.0 * (turn / 360.0).round()).abs()
-    });
+    let turns =
+        (0..4).map(|k| short_way(before.degrees[k / 2][free], after.degrees[k % 2][free]).abs());
     let turn = turns.fold(f64::INFINITY, f64::min).to_radians();
     // Half way out it is off by half of the turn, seen from the pole.
     angle_between(at, to) / 2.0 * turn / 2.0 > SWING
+}
+
+/// The short way round from one position of a rotary axis to another, degrees.
+fn short_way(from: f64, to: f64) -> f64 {
+    let turn = to - from;
+    turn - 360.0 * (turn / 360.0).round()
 }
 
 /// How far the tool axis leaves the great circle from `a` to `b` while the rotary axes go evenly and the
@@ -130,10 +134,7 @@ fn swing(machine: &Machine, a: Vec3, b: Vec3) -> f64 {
         if let Some(free) = to.free {
             end[free] = start[free];
         }
-        [0, 1, 2].map(|i| {
-            let turn = end[i] - start[i];
-            (start[i], turn - 360.0 * (turn / 360.0).round())
-        })
+        [0, 1, 2].map(|i| (start[i], short_way(start[i], end[i])))
     };
     let ways = (0..4).map(|k| way(from.degrees[k / 2], to.degrees[k % 2]));
     let length = |way: &[(f64, f64); 3]| way.iter().map(|(_, turn)| turn.abs()).sum::<f64>();

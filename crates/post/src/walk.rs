@@ -339,10 +339,7 @@ impl<'a> Walk<'a> {
         let number = f64::from(tool.number);
         let edge = self.machine.capabilities.length_offset != LengthOffset::ToolNumber;
         if let Some(register) = tool.offset.filter(|_| edge) {
-            let message = format!(
-                "length register {register} is left out: the control takes the length with the tool"
-            );
-            self.findings.warn(Diagnostic::warning("register", message).line(self.line));
+            self.leave_register_out("length", register);
         }
         self.length_offset = match self.machine.capabilities.length_offset {
             LengthOffset::Implicit => None,
@@ -364,6 +361,14 @@ impl<'a> Walk<'a> {
         self.located = false;
         (self.active_spindle, self.active_coolant) = (Some(Spindle::Off), Some(Coolant::Off));
         Ok(())
+    }
+
+    /// The control has no word for the register that the source names for the `what` of the tool.
+    fn leave_register_out(&mut self, what: &str, register: u32) {
+        let message = format!(
+            "{what} register {register} is left out: the control takes the {what} with the tool"
+        );
+        self.findings.warn(Diagnostic::warning("register", message).line(self.line));
     }
 
     /// The speed at which the tool that is called now will cut first.
@@ -471,10 +476,7 @@ impl<'a> Walk<'a> {
             compensation
             && !self.templates.places(BlockName::Linear, WordName::D)
         {
-            let message = format!(
-                "radius register {register} is left out: the control takes the radius with the tool"
-            );
-            self.findings.warn(Diagnostic::warning("register", message).line(self.line));
+            self.leave_register_out("radius", register);
         }
         self.compensation = compensation;
         self.compensation_line = self.line;

@@ -31,6 +31,13 @@ impl Place {
         (height, (from - self.axis * height).length())
     }
 
+    /// Whether `tip` stands beside this place's axis by more than `slack` mm, or nobody knows where: the
+    /// way between the two moves in the plane of work.
+    pub fn is_across(&self, tip: Vec3, slack: f64) -> bool {
+        let across = self.above(tip).1;
+        across.is_nan() || across > slack
+    }
+
     /// This place moved along its axis, mm.
     pub fn lifted(&self, height: f64) -> Place {
         Place { tip: self.tip + self.axis * height, ..*self }

@@ -69,9 +69,7 @@ impl Prover<'_> {
             state::spindle_and_coolant(allowed, wanted, running),
             state::feed(allowed, wanted.feed, running.feed, wanted.spindle, lengths),
         ];
-        let travel = to.place.tip - self.here.place.tip;
-        let across = travel.reject_from_normalized(to.place.axis).length();
-        let in_plane = across.is_nan() || across > lengths.rounding;
+        let in_plane = to.place.is_across(self.here.place.tip, lengths.rounding);
         for difference in found {
             self.check(to.line, difference);
         }

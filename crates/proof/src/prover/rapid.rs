@@ -13,10 +13,8 @@ impl Prover<'_> {
         }
         let Step::Move(goal) = &self.cursor.step else { return Ok(()) };
         if self.gauge.at(to, &goal.to) {
-            let across = goal.from.is_none_or(|from| {
-                let way = goal.to.tip - from.tip;
-                way.reject_from_normalized(from.axis).length() > self.gauge.slack(to)
-            });
+            let slack = self.gauge.slack(to);
+            let across = goal.from.is_none_or(|from| from.is_across(goal.to.tip, slack));
             // What is switched off is off from the first straight move on, before the tool comes down.
             let off = self.cursor.wanted.compensation == Compensation::Off;
             self.check_compensation(to.line, across && off, false);
