@@ -10,11 +10,17 @@
 //! [`program::Orientation::Axis`]. Kinematics are not this crate's business.
 
 mod decimal;
+#[allow(dead_code, reason = "the dialects take it up one by one")]
+mod flow;
+#[allow(dead_code, reason = "the dialects take it up one by one")]
+mod folders;
 mod iso;
 mod klartext;
 mod sinumerik;
 
+use geom::Vec3;
 use program::{Diagnostic, Record};
+use std::path::PathBuf;
 
 /// The languages that are understood.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -73,13 +79,64 @@ pub struct Settings {
     pub operator_parameters: Vec<u32>,
     /// How far the control may be allowed to leave the path while it smooths it, mm.
     pub path_tolerance: f64,
+    /// What the operator has set up.
+    pub setup: Setup,
+}
+
+/// What a program leans on that stands in the control and not in its text. Nothing of it is known by
+/// default; what the program then asks for without having set it is an error.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Setup {
+    /// The tool table. Cutter radius compensation with a tool of the table is resolved into the path
+    /// of the tool's centre; with any other it stays a state ([`program::Op::Compensation`]).
+    pub tools: Vec<ToolData>,
+    /// Folders in which called programs are looked for, in this order. Nothing outside them is opened.
+    pub folders: Vec<PathBuf>,
+    /// What a length or an angle without a decimal point counts.
+    pub whole_numbers: WholeNumbers,
+    /// Whether the operator has switched block delete on: blocks that begin with `/` are skipped.
+    pub block_delete: bool,
+    /// Where the tool stands in the work frame when the program starts, mm, with all offsets of the
+    /// control at 0; `None` where that is not known, and no offset is.
+    pub start: Option<Vec3>,
+}
+
+/// A line of the control's tool table.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ToolData {
+    /// Number of the tool and of its registers.
+    pub number: u32,
+    /// Name, where the control calls tools by it; empty otherwise.
+    pub name: String,
+    /// Cutting radius, mm.
+    pub radius: f64,
+    /// Length from the gauge line, mm.
+    pub length: f64,
+}
+
+/// What a length or an angle without a decimal point counts (FANUC, parameter 3401#0).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum WholeNumbers {
+    /// Not known: such a word is an error.
+    #[default]
+    Unknown,
+    /// mm, inches or degrees, as a calculator.
+    Units,
+    /// Least input increments: 0.001 mm, 0.0001 inch, 0.001°.
+    Increments,
 }
 
 impl Settings {
     /// A machine with these rotary axes that has nothing of its own.
     pub fn new(dialect: Dialect, rotary: [bool; 3]) -> Settings {
-        let (auxiliary, operator_parameters) = (Vec::new(), Vec::new());
-        Settings { dialect, rotary, auxiliary, operator_parameters, path_tolerance: 0.0 }
+        Settings {
+            dialect,
+            rotary,
+            auxiliary: Vec::new(),
+            operator_parameters: Vec::new(),
+            path_tolerance: 0.0,
+            setup: Setup::default(),
+        }
     }
 }
 
@@ -87,7 +144,8 @@ impl Settings {
 pub type Sink<'a> = dyn FnMut(Record) -> Result<(), Box<Diagnostic>> + 'a;
 
 /// Runs `text` on the virtual control of `settings` and hands each record to `sink`, in order. The
-/// line of a record is the line of the program (from 1).
+/// line of a record is the line of the program (from 1); in a program that is called from another
+/// file, the line of the call in `text`.
 ///
 /// # Errors
 /// The first block that is not understood, or not legal where it stands, with `file_name`, line and

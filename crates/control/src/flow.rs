@@ -1,0 +1,57 @@
+//! How far a program may run: loops, calls and jumps end, whatever is written.
+
+/// Deepest nesting of calls. FANUC has 4 with macros 5 more, SINUMERIK 16, LinuxCNC 10 (`interp_internal.hh`),
+/// HEIDENHAIN 19: each control states its own and none goes beyond this.
+pub(crate) const DEEPEST: usize = 20;
+
+/// Most jumps and calls between two records: a loop that does nothing for so long is taken as endless.
+const IDLE: u32 = 1_000_000;
+
+/// Most jumps and calls of a run.
+const MOST: u64 = 100_000_000;
+
+/// Counts the jumps of a run.
+#[derive(Debug, Default)]
+pub(crate) struct Budget {
+    idle: u32,
+    all: u64,
+}
+
+impl Budget {
+    /// A jump, a call, or another turn of a loop.
+    ///
+    /// # Errors
+    /// What to say of a program that jumps without end.
+    pub(crate) fn jump(&mut self) -> Result<(), String> {
+        self.idle += 1;
+        self.all += 1;
+        if self.idle > IDLE {
+            return Err(format!("{IDLE} jumps without a move: the program never ends"));
+        }
+        if self.all > MOST {
+            return Err(format!("{MOST} jumps: a program this long is not followed"));
+        }
+        Ok(())
+    }
+
+    /// Something has happened.
+    pub(crate) fn record(&mut self) {
+        self.idle = 0;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_loop_without_a_record_ends_and_one_with_records_goes_on() {
+        let mut budget = Budget::default();
+        for _ in 0..3 {
+            assert!((0..IDLE).all(|_| budget.jump().is_ok()));
+            budget.record();
+        }
+        assert!((0..IDLE).all(|_| budget.jump().is_ok()));
+        assert!(budget.jump().is_err());
+    }
+}

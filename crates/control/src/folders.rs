@@ -1,0 +1,73 @@
+//! Programs that a program calls, from the folders that the operator has given.
+
+use std::fs;
+use std::io::Read;
+use std::path::{Component, Path, PathBuf};
+
+/// Largest called program, bytes.
+const LARGEST: u64 = 64 << 20;
+
+/// Finds a called program in `folders`, the first that has it, and reads it. `name` may lead into a
+/// folder below, never out: a name with `..` or a root, or a link that leads out, finds nothing.
+///
+/// # Errors
+/// What to say where there is none, or it cannot be read.
+pub(crate) fn open(folders: &[PathBuf], name: &str) -> Result<Vec<u8>, String> {
+    let inside = Path::new(name).components().all(|part| matches!(part, Component::Normal(_)));
+    if !inside || name.is_empty() {
+        return Err(format!("{name:?} does not name a file within the given folders"));
+    }
+    for folder in folders {
+        let path = folder.join(name);
+        let (Ok(root), Ok(real)) = (folder.canonicalize(), path.canonicalize()) else { continue };
+        if !real.starts_with(root) || !real.is_file() {
+            continue;
+        }
+        let mut text = Vec::new();
+        let file = fs::File::open(&real).map_err(|e| format!("{name} cannot be read: {e}"))?;
+        file.take(LARGEST + 1)
+            .read_to_end(&mut text)
+            .map_err(|e| format!("{name} cannot be read: {e}"))?;
+        if text.len() as u64 > LARGEST {
+            return Err(format!("{name} is larger than {} MB", LARGEST >> 20));
+        }
+        return Ok(text);
+    }
+    let among = match folders {
+        [] => String::from("no folder for called programs is given"),
+        _ => {
+            let names: Vec<String> = folders.iter().map(|f| f.display().to_string()).collect();
+            format!("looked in {}", names.join(", "))
+        }
+    };
+    Err(format!("the called program {name} is not there ({among})"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_program_is_found_in_the_first_folder_that_has_it_and_never_outside() {
+        let outside = tempfile::tempdir().unwrap();
+        let folders = [outside.path().join("a"), outside.path().join("b")];
+        for folder in &folders {
+            fs::create_dir(folder).unwrap();
+        }
+        fs::write(outside.path().join("secret.ngc"), "no").unwrap();
+        fs::write(folders[1].join("sub.ngc"), "second").unwrap();
+        assert_eq!(open(&folders, "sub.ngc").unwrap(), b"second");
+        fs::write(folders[0].join("sub.ngc"), "first").unwrap();
+        assert_eq!(open(&folders, "sub.ngc").unwrap(), b"first");
+        let absolute = outside.path().join("secret.ngc").display().to_string();
+        for name in ["../secret.ngc", &absolute, "a/../../secret.ngc", "", "missing.ngc"] {
+            assert!(open(&folders, name).is_err(), "{name}");
+        }
+        #[cfg(unix)]
+        {
+            std::os::unix::fs::symlink(outside.path().join("secret.ngc"), folders[0].join("link"))
+                .unwrap();
+            assert!(open(&folders, "link").is_err());
+        }
+    }
+}
