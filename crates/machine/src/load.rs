@@ -41,6 +41,17 @@ pub fn load_control(name: &str) -> Result<Machine> {
     build(SheetFile::of_library(name, library::CONTROLS)?)
 }
 
+/// Loads what a program was written for: a machine as [`load`] does, or a control of the library.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_origin(name_or_path: &str) -> Result<Machine> {
+    match library::find(name_or_path, library::CONTROLS) {
+        Some(_) => load_control(name_or_path),
+        None => load(name_or_path),
+    }
+}
+
 /// Loads a machine from TOML text, as if it stood in `file_name`. What it extends by path is looked up
 /// from the folder of that name.
 ///

@@ -278,7 +278,7 @@ impl Walk<'_> {
     /// Away from the part in machine coordinates, before a rotary axis turns. These are positions of
     /// the axes only while the control does not keep the tool tip: SINUMERIK's `SUPA` leaves `TRAORI`
     /// on, and HEIDENHAIN wants `M129` before `M91`.
-    fn leave_part(&mut self) -> Done {
+    pub(crate) fn leave_part(&mut self) -> Done {
         if self.located {
             self.uncompensated("a new orientation")?;
             self.tool_center_off()?;

@@ -241,7 +241,11 @@ impl<'a> Walk<'a> {
             }
             Op::Message(text) => self.text(BlockName::Comment, text),
             Op::End => self.end(),
-            Op::LengthOffset(_) | Op::WorkOffset(_) | Op::Home(_) => {
+            Op::Home(_) => {
+                self.end_cycle()?;
+                self.leave_part()
+            }
+            Op::LengthOffset(_) | Op::WorkOffset(_) => {
                 Err(refuse("unsupported", "only virtual controls give this record"))
             }
         }

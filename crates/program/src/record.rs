@@ -56,8 +56,8 @@ pub enum Op {
     Frame(Box<Frame>),
     /// Work offset from here on (virtual controls only): 54 for `G54`.
     WorkOffset(u32),
-    /// Axes sent to a fixed position of the machine (virtual controls only); bit 0 is X, 1 Y, 2 Z,
-    /// 3 A, 4 B, 5 C. Their positions are not known afterwards.
+    /// Axes sent to a fixed position of the machine; bit 0 is X, 1 Y, 2 Z, 3 A, 4 B, 5 C. Their
+    /// positions are not known afterwards. A source has Z alone: the tool leaves the part.
     Home(u8),
     /// Dwell, seconds.
     Dwell(f64),

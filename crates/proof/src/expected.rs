@@ -19,6 +19,8 @@ pub(crate) struct Goal {
     pub tool_change: bool,
     /// Whether the set-up changes before it.
     pub reset: bool,
+    /// Whether Z goes home before it.
+    pub homed: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -67,6 +69,7 @@ pub(crate) struct Cursor<'a> {
     pub wanted: Wanted<'a>,
     tool_change: bool,
     reset: bool,
+    homed: bool,
 }
 
 impl<'a> Cursor<'a> {
@@ -90,6 +93,7 @@ impl<'a> Cursor<'a> {
             wanted,
             tool_change: false,
             reset: false,
+            homed: false,
         };
         cursor.advance();
         cursor
@@ -101,6 +105,7 @@ impl<'a> Cursor<'a> {
             self.here = Some(goal.end());
             self.tool_change = false;
             self.reset = false;
+            self.homed = false;
         }
         while let Some(record) = self.records.get(self.next) {
             self.next += 1;
@@ -151,6 +156,7 @@ impl<'a> Cursor<'a> {
             to: self.place(pose),
             tool_change: self.tool_change,
             reset: self.reset,
+            homed: self.homed,
         })
     }
 
@@ -177,6 +183,7 @@ impl<'a> Cursor<'a> {
                 self.tool_change = true;
             }
             Op::Frame(_) => self.reset = true,
+            Op::Home(_) => self.homed = true,
             _ => {}
         }
     }
@@ -200,10 +207,13 @@ impl Goal {
     }
 
     /// Whether home positions and turns of the rotary axes are in place before it: at the start,
-    /// around a tool change, and where a rapid goes to another set-up or orientation.
+    /// around a tool change, where the source goes home, and where a rapid goes to another set-up or
+    /// orientation.
     pub fn free(&self, axis_degrees: f64) -> bool {
         let Some(from) = &self.from else { return true };
         let by_rapid = matches!(self.kind, Kind::Rapid | Kind::Hole(_));
-        self.tool_change || (by_rapid && (self.reset || from.apart(&self.to).1 > axis_degrees))
+        self.tool_change
+            || self.homed
+            || (by_rapid && (self.reset || from.apart(&self.to).1 > axis_degrees))
     }
 }

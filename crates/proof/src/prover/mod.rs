@@ -243,7 +243,7 @@ impl<'a> Prover<'a> {
                 Kind::Arc(arc) => arc.length() <= 2.0 * slack,
                 Kind::Hole(_) | Kind::Broken(_) => false,
             };
-            if !short || !self.gauge.at(&self.here, &goal.to) || wanted(goal) {
+            if !short || goal.homed || !self.gauge.at(&self.here, &goal.to) || wanted(goal) {
                 return;
             }
             self.report.compared.left_out += 1;

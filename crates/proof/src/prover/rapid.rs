@@ -44,6 +44,10 @@ impl Prover<'_> {
         self.check(to.line, state::set_up(self.gauge.machine, &self.cursor.wanted, &self.running));
         let Step::Move(goal) = &self.cursor.step else { return Ok(()) };
         let free = goal.free(self.gauge.allowed.axis_degrees);
+        if goal.homed && goal.from.is_some() && !self.leg.homed {
+            let message = "does not go home in Z before this, as the source does";
+            return Err(self.lost_at(to.line, "home", message));
+        }
         if self.leg.stops.is_empty() {
             return Ok(());
         }
