@@ -6,8 +6,8 @@ use machine::{Machine, load, load_origin};
 use program::{Diagnostic, Op, Pose, Program};
 use toolpost_nc as nc;
 
-fn read_for(machine: &Machine, setup: Setup, text: &str) -> Result<nc::Reading, Diagnostic> {
-    nc::read(machine, setup, "old.nc", text.as_bytes()).map_err(|found| *found)
+fn read_for(machine: &Machine, setup: Setup, text: &str) -> Result<nc::Reading, Box<Diagnostic>> {
+    nc::read(machine, setup, "old.nc", text.as_bytes())
 }
 
 fn fanuc(text: &str) -> Program {
@@ -15,7 +15,7 @@ fn fanuc(text: &str) -> Program {
     read_for(&machine, Setup::default(), text).unwrap().program
 }
 
-fn refused(text: &str) -> Diagnostic {
+fn refused(text: &str) -> Box<Diagnostic> {
     read_for(&load_origin("fanuc-31i").unwrap(), Setup::default(), text).unwrap_err()
 }
 
@@ -91,6 +91,18 @@ fn rotary_positions_become_a_tool_axis_by_the_machine_of_the_program() {
     let axis = ways(&reading.program)[1].1.pose().unwrap().axis().unwrap();
     let leaning = Vec3::new(-0.5, 0.0, 0.75_f64.sqrt());
     assert!(axis.distance(leaning) < 1e-9, "{axis}");
+}
+
+#[test]
+fn an_arc_on_a_turned_table_turns_with_it() {
+    let machine = load("fanuc-table-bc").unwrap();
+    let text =
+        "G21 G90 G54\nT1 M6\nG0 B0 C90.\nX10. Y0.\nG43 Z5. H1\nG3 X0. Y10. I-10. J0. F100.\nM30\n";
+    let reading = read_for(&machine, Setup::default(), text).unwrap();
+    let Op::Arc(arc) = ways(&reading.program)[2].1 else { panic!("no arc") };
+    let apart = |a: Vec3, b: Vec3| a.distance(b) < 1e-9;
+    assert!(apart(arc.end.point, Vec3::new(-10.0, 0.0, 5.0)), "{}", arc.end.point);
+    assert!(apart(arc.center, Vec3::new(0.0, 0.0, 5.0)) && apart(arc.normal, Vec3::Z));
 }
 
 #[test]
