@@ -10,6 +10,7 @@
 //!   return: `X10 Y20`, then `Z5`, is one way to a known place. A cut from such a place is refused.
 //! - Z sent home between two moves stays, as [`Op::Home`]. At a tool change and at the end it goes: a
 //!   writer brings the tool home there by itself.
+//! - A change of the work offset stays; the tool comes to the first place in it from above.
 //! - A length offset becomes the register of the tool; a tool that is called by its name gets a number.
 //!
 //! What cannot be told truly is refused with its line.
@@ -17,7 +18,7 @@
 use control::{Dialect, Settings, Setup};
 use geom::Vec3;
 use machine::{LengthOffset, Machine, Mount};
-use program::{Diagnostic, Op, Orientation, Pose, Program, Record, Tool};
+use program::{Diagnostic, FIRST_WORK_OFFSET, Op, Orientation, Pose, Program, Record, Tool};
 
 /// A step that may be refused.
 type Done = Result<(), Box<Diagnostic>>;
@@ -81,7 +82,7 @@ pub fn read(
             found.on(line, text.strip_suffix(b"\r").unwrap_or(text)).file(file_name).into()
         })
     })?;
-    Ok(Reading { program: lift.program, warnings: lift.warnings })
+    Ok(lift.finish())
 }
 
 /// The records of a control on their way into a neutral program.
@@ -98,6 +99,8 @@ struct Lift<'a> {
     tool: Option<(usize, bool)>,
     /// The work offset that the program names.
     work_offset: Option<u32>,
+    /// Whether it works in more than the first.
+    several: bool,
     /// Numbers of the tools that the program calls, with the names of those that it calls by name.
     numbers: Vec<(u32, String)>,
 }
@@ -113,6 +116,7 @@ impl<'a> Lift<'a> {
             home: None,
             tool: None,
             work_offset: None,
+            several: false,
             numbers: Vec::new(),
         }
     }
@@ -156,7 +160,7 @@ impl<'a> Lift<'a> {
                 self.program.push(line, Op::Tool(tool));
             }
             Op::LengthOffset(register) => return self.length_offset(line, register),
-            Op::WorkOffset(number) => return self.work_offset(number),
+            Op::WorkOffset(number) => self.set_work_offset(line, number),
             op => self.program.push(line, op),
         }
         Ok(())
@@ -289,18 +293,23 @@ impl<'a> Lift<'a> {
         Ok(())
     }
 
-    fn work_offset(&mut self, number: u32) -> Done {
-        match self.work_offset.replace(number) {
-            Some(before) if before != number && self.here.is_some() => {
-                let message = format!(
-                    "the program goes from work offset {before} to {number}: how far apart they are is \
-                     not in it"
-                );
-                let help = "post what belongs to each work offset as a program of its own";
-                Err(refuse("work-offset", message, help))
-            }
-            _ => Ok(()),
+    /// Positions are counted from another work offset from here on.
+    fn set_work_offset(&mut self, line: u32, number: u32) {
+        if self.work_offset.replace(number) == Some(number) {
+            return;
         }
+        self.several |= self.here.is_some() || number != FIRST_WORK_OFFSET;
+        self.here = None;
+        self.program.push(line, Op::WorkOffset(number));
+    }
+
+    /// The program, after its last record. One that works in the first work offset alone leaves it to
+    /// the machine.
+    fn finish(mut self) -> Reading {
+        if !self.several {
+            self.program.records.retain(|record| !matches!(record.op, Op::WorkOffset(_)));
+        }
+        Reading { program: self.program, warnings: self.warnings }
     }
 }
 

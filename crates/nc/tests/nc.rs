@@ -140,3 +140,19 @@ fn axes_are_not_sent_home_beside_the_part() {
     assert_eq!((found.rule, found.line), ("home", 3));
     fanuc("G21 G90 G54\nG0 X0. Y0. Z5.\nG91 G28 Z0\nG28 X0 Y0\nM30\n");
 }
+
+#[test]
+fn several_work_offsets_stay_and_the_first_alone_is_left_to_the_machine() {
+    let cut = "G0 X0. Y0.\nZ5.\nG1 Z-1. F100.\nG0 Z5.\n";
+    let offsets = |program: &Program| -> Vec<(u32, u32)> {
+        let number = |op: &Op| if let Op::WorkOffset(n) = op { Some(*n) } else { None };
+        program.records.iter().filter_map(|r| Some((r.line, number(&r.op)?))).collect()
+    };
+    assert_eq!(offsets(&fanuc(&format!("G21 G90 G54\n{cut}M30\n"))), []);
+    assert_eq!(offsets(&fanuc(&format!("G21 G90 G55\n{cut}M30\n"))), [(1, 55)]);
+    let two = format!("G21 G90 G54\n{cut}G55\n{cut}M30\n");
+    assert_eq!(offsets(&fanuc(&two)), [(1, 54), (6, 55)]);
+    // Where the tool stands in the new frame nobody knows.
+    let found = refused("G21 G90 G54\nG0 X0. Y0. Z5.\nG55\nG1 Z-1. F100.\nM30\n");
+    assert_eq!(found.line, 4);
+}

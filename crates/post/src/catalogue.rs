@@ -91,7 +91,8 @@ names! {
         HelixCw Block "helix_cw", "", "Each clockwise arc that rises; `arc_cw` where it is missing.";
         HelixCcw Block "helix_ccw", "", "Each counter-clockwise arc that rises; `arc_ccw` where it is missing.";
         PlaneSelect Block "plane_select", "", "Where the plane must change before a block that does not say it.";
-        Retract Block "retract", "", "Before the rotary axes turn away from a known position: the tool leaves the part in machine coordinates.";
+        Retract Block "retract", "", "Before the rotary axes turn away from a known position, or the work offset changes: the tool leaves the part in machine coordinates.";
+        WorkOffsetSelect Block "work_offset_select", "", "Where the source names a work offset: `{{work_offset}}` is active from here on.";
         Rotate Block "rotate", "", "Rotary axes to their positions while the tool is clear of the part.";
         PlaneTilt Block "plane_tilt", "", "Tilted plane of work on: frame and swivelling.";
         PlaneTiltOff Block "plane_tilt_off", "", "Tilted plane of work off, rotary axes to zero.";
@@ -171,6 +172,7 @@ names! {
         Plane Code "plane", "xy, xz, yz", "Plane of arcs and of cutter compensation.";
         Compensation Code "compensation", "off, left, right", "Cutter radius compensation; switched with the first move in the plane.";
         Length Code "length", "on", "Tool length offset, with each straight move that says Z.";
+        WorkOffset Code "work_offset", "54, 55, 56, 57, 58, 59, 60, 61, 62", "The active work offset, in every block: 54 is the first that the control can set. Those that it lacks are left out.";
         FeedMode Code "feed_mode", "per_minute, per_turn, inverse_time", "What {{F}} means.";
     }
 }

@@ -269,7 +269,7 @@ impl Walk<'_> {
     }
 
     /// Positions are written in full from here on.
-    fn lose_position(&mut self) {
+    pub(crate) fn lose_position(&mut self) {
         let vector = bit(WordName::VX) | bit(WordName::VY) | bit(WordName::VZ);
         self.writer.forget(POSITION | LENGTH_OFFSET | vector | bit(WordName::Motion));
         self.located = false;

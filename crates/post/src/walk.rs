@@ -80,6 +80,8 @@ pub(crate) struct Walk<'a> {
     /// The same in the coordinates of the block, mm.
     pub(crate) said: Vec3,
     pub(crate) limits: Limits<'a>,
+    /// Entry of the code word `work_offset` that is active.
+    work_offset: usize,
     ended: bool,
 }
 
@@ -123,6 +125,7 @@ impl<'a> Walk<'a> {
             tip: Vec3::ZERO,
             said: Vec3::ZERO,
             limits: Limits::new(machine),
+            work_offset: 0,
             ended: false,
         })
     }
@@ -245,7 +248,8 @@ impl<'a> Walk<'a> {
                 self.end_cycle()?;
                 self.leave_part()
             }
-            Op::LengthOffset(_) | Op::WorkOffset(_) => {
+            Op::WorkOffset(number) => self.set_work_offset(*number),
+            Op::LengthOffset(_) => {
                 Err(refuse("unsupported", "only virtual controls give this record"))
             }
         }
@@ -265,6 +269,27 @@ impl<'a> Walk<'a> {
         }
     }
 
+    /// Positions are counted from another work offset from here on; the way there leads over the part.
+    fn set_work_offset(&mut self, number: u32) -> Done {
+        let name = number.to_string();
+        let texts = self.machine.words.get(WordName::WorkOffset.name()).map(|word| &word.codes);
+        let known = WordName::WorkOffset.codes().position(|code| code == name);
+        let Some(index) = known.filter(|_| texts.is_some_and(|texts| texts.contains_key(&name)))
+        else {
+            let message = format!("the control has no text for work offset {number}");
+            let help =
+                format!("`{name}` in [words.work_offset] of its file, or another work offset");
+            return Err(refuse("unsupported", message).help(help).into());
+        };
+        self.end_cycle()?;
+        self.leave_part()?;
+        self.leave_place()?;
+        self.work_offset = index;
+        self.required(BlockName::WorkOffsetSelect)?;
+        self.lose_position();
+        Ok(())
+    }
+
     /// How far the source reaches along the unit vector `direction`, mm.
     pub(crate) fn reach(&mut self, direction: Vec3) -> f64 {
         self.statistics.get_or_insert_with(|| Statistics::of(self.source)).reach(direction)
@@ -272,6 +297,7 @@ impl<'a> Walk<'a> {
 
     /// Writes a block, where the machine has it.
     pub(crate) fn block(&mut self, name: BlockName) -> Done {
+        self.writer.code(WordName::WorkOffset, self.work_offset);
         match self.templates.lines(name) {
             Some(lines) => self.writer.block(lines),
             None => {

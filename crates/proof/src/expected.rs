@@ -53,6 +53,8 @@ pub(crate) struct Wanted<'a> {
     pub coolant: Coolant,
     pub tool: Option<&'a Tool>,
     pub compensation: Compensation,
+    /// The work offset, where the source names one.
+    pub work_offset: Option<u32>,
     cycle: Option<Cycle>,
 }
 
@@ -81,6 +83,7 @@ impl<'a> Cursor<'a> {
             coolant: Coolant::Off,
             tool: None,
             compensation: Compensation::Off,
+            work_offset: None,
             cycle: None,
         };
         let mut cursor = Cursor {
@@ -184,6 +187,11 @@ impl<'a> Cursor<'a> {
             }
             Op::Frame(_) => self.reset = true,
             Op::Home(_) => self.homed = true,
+            Op::WorkOffset(number) => {
+                wanted.work_offset = Some(*number);
+                // How far the new frame is from the old is not known: the tool comes from above.
+                self.homed |= self.here.take().is_some();
+            }
             _ => {}
         }
     }

@@ -176,7 +176,11 @@ impl<'a> Prover<'a> {
             Op::Coolant(coolant) => (running.coolant, running.coolant_line) = (*coolant, line),
             Op::Compensation(side) => running.compensation = *side,
             Op::LengthOffset(register) => running.length_offset = *register,
-            Op::WorkOffset(number) => running.work_offset = Some(*number),
+            Op::WorkOffset(number) => {
+                running.work_offset = Some(*number);
+                let pose = Pose { point: Vec3::NAN, ..self.here.pose };
+                self.here = self.gauge.station(line, pose);
+            }
             Op::Cycle(cycle) => running.cycle = Some(**cycle),
             Op::CycleOff => running.cycle = None,
             Op::End => self.ended = true,
