@@ -61,6 +61,10 @@ pub enum Op {
     Frame(Box<Frame>),
     /// Work offset from here on (virtual controls only): 54 for `G54`.
     WorkOffset(u32),
+    /// The wire is threaded where it stands (wire EDM), and cuts from here on.
+    ThreadWire,
+    /// The wire is cut: it is free of the part until it is threaded again.
+    CutWire,
     /// Axes sent to a fixed position of the machine; bit 0 is X, 1 Y, 2 Z, 3 A, 4 B, 5 C. Their
     /// positions are not known afterwards. A source has Z alone: the tool leaves the part.
     Home(u8),
@@ -83,6 +87,9 @@ pub enum Op {
 }
 
 /// A tool tip and an orientation.
+///
+/// A wire is a tool with a direction: its point is where it crosses the lower plane, Z 0, and its axis
+/// points from there to the upper end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     /// Tool tip, mm. In a virtual control's output a coordinate that no block has set yet (or that a

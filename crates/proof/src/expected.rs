@@ -42,6 +42,8 @@ pub(crate) enum Step {
     Dwell(f64),
     Stop,
     OptionalStop,
+    ThreadWire,
+    CutWire,
     End,
 }
 
@@ -136,6 +138,8 @@ impl<'a> Cursor<'a> {
                 }
                 Op::Dwell(seconds) if *seconds > 0.0 => Step::Dwell(*seconds),
                 Op::Stop => Step::Stop,
+                Op::ThreadWire => Step::ThreadWire,
+                Op::CutWire => Step::CutWire,
                 Op::OptionalStop if !self.machine.leaves_out("optional_stop") => Step::OptionalStop,
                 op => {
                     self.note(op);

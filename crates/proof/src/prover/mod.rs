@@ -165,6 +165,8 @@ impl<'a> Prover<'a> {
                     Op::Dwell(seconds) => self.event(line, Step::Dwell(*seconds)),
                     Op::Stop => self.event(line, Step::Stop),
                     Op::OptionalStop => self.event(line, Step::OptionalStop),
+                    Op::ThreadWire => self.event(line, Step::ThreadWire),
+                    Op::CutWire => self.event(line, Step::CutWire),
                     op => self.switch(line, op),
                 }
                 Ok(())
