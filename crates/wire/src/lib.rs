@@ -16,7 +16,10 @@
 
 mod accuracy;
 mod contour;
+mod crossing;
 mod element;
+mod near;
+pub mod offset;
 mod path;
 pub mod points;
 mod sync;
