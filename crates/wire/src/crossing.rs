@@ -17,25 +17,7 @@ impl Element {
     /// The places where `other` meets this element; where they run along each other, the ends of that.
     pub(crate) fn meets(&self, other: &Element) -> Vec<Vec2> {
         let mut places = vec![self.start, self.end, other.start, other.end];
-        match (self.turn, other.turn) {
-            (None, None) => {
-                let (a, b) = (self.end - self.start, other.end - other.start);
-                let t = (other.start - self.start).perp_dot(b) / a.perp_dot(b);
-                places.push(self.start + a * t);
-            }
-            (None, Some(turn)) => line_and_circle(self, turn, other, &mut places),
-            (Some(turn), None) => line_and_circle(other, turn, self, &mut places),
-            (Some(p), Some(q)) => {
-                let (r, s) = (self.start.distance(p.center), other.start.distance(q.center));
-                let between = q.center - p.center;
-                let apart = between.length();
-                let along = (apart * apart + r * r - s * s) / (2.0 * apart);
-                let across = (r * r - along * along).max(0.0).sqrt();
-                let foot = p.center + between / apart * along;
-                let side = between.perp() / apart * across;
-                places.extend([foot + side, foot - side]);
-            }
-        }
+        places.extend(crossings(self, other));
         places.retain(|p| {
             p.is_finite() && self.nearest(*p).1 <= TOUCH && other.nearest(*p).1 <= TOUCH
         });
@@ -79,12 +61,36 @@ impl Element {
     }
 }
 
-fn line_and_circle(line: &Element, turn: Turn, arc: &Element, places: &mut Vec<Vec2>) {
+/// Where the whole line or circle of `a` crosses that of `b`: two places, equal ones where they only
+/// touch, not finite ones for parallels. Where they miss each other it is between them.
+pub(crate) fn crossings(a: &Element, b: &Element) -> [Vec2; 2] {
+    let (foot, square, along) = match (a.turn, b.turn) {
+        (None, None) => {
+            let (p, q) = (a.end - a.start, b.end - b.start);
+            let t = (b.start - a.start).perp_dot(q) / p.perp_dot(q);
+            (a.start + p * t, 0.0, Vec2::ZERO)
+        }
+        (None, Some(turn)) => line_and_circle(a, turn, b),
+        (Some(turn), None) => line_and_circle(b, turn, a),
+        (Some(p), Some(q)) => {
+            let (r, s) = (a.start.distance(p.center), b.start.distance(q.center));
+            let between = q.center - p.center;
+            let apart = between.length();
+            let foot = (apart * apart + r * r - s * s) / (2.0 * apart);
+            let axis = between / apart;
+            (p.center + axis * foot, r * r - foot * foot, axis.perp())
+        }
+    };
+    let half = along * square.max(0.0).sqrt();
+    [foot + half, foot - half]
+}
+
+/// The point of a line nearest to a circle's centre, the square of half the chord, its direction.
+fn line_and_circle(line: &Element, turn: Turn, arc: &Element) -> (Vec2, f64, Vec2) {
     let radius = arc.start.distance(turn.center);
     let along = (line.end - line.start).normalize_or_zero();
     let foot = line.start + along * (turn.center - line.start).dot(along);
-    let half = (radius * radius - foot.distance_squared(turn.center)).max(0.0).sqrt();
-    places.extend([foot + along * half, foot - along * half]);
+    (foot, radius * radius - foot.distance_squared(turn.center), along)
 }
 
 impl Contour {

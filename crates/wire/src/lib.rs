@@ -23,6 +23,7 @@ pub mod offset;
 mod path;
 pub mod points;
 mod sync;
+pub mod taper;
 mod trace;
 
 pub use accuracy::{Accuracy, ArcChords, Chords};

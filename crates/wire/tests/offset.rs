@@ -190,7 +190,7 @@ proptest! {
         for element in way.contour.elements() {
             for i in 0..8 {
                 let p = element.at(f64::from(i) / 8.0);
-                let found = contour.nearest(p).distance;
+                let found = contour.nearest(p).point.distance(p);
                 prop_assert!((found - distance).abs() < 2e-4, "{found} for {distance} at {p}");
             }
         }
