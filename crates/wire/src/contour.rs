@@ -21,8 +21,6 @@ pub struct Place {
     pub t: f64,
     /// The point, mm.
     pub point: Vec2,
-    /// How far it is from the point that was asked for, mm.
-    pub distance: f64,
 }
 
 impl Contour {
@@ -58,7 +56,7 @@ impl Contour {
                     .line(next.line)
                     .into());
             }
-            *next = next.between(last, next.end);
+            *next = next.spanning(last, next.end);
         }
         let many = chain.len() > 1;
         let (Some(start), Some(last)) = (chain.first().map(|e| e.start), chain.last_mut()) else {
@@ -66,7 +64,7 @@ impl Contour {
         };
         let whole = last.turn.is_some_and(|turn| turn.sweep.abs() > PI);
         if last.end.distance(start) <= gap && (many || whole) {
-            *last = last.between(last.start, start);
+            *last = last.spanning(last.start, start);
         }
         Ok(Contour { elements: chain })
     }
@@ -128,11 +126,12 @@ impl Contour {
 
     /// The place nearest to `point`; of equally near ones the first.
     pub fn nearest(&self, point: Vec2) -> Place {
-        let mut best = Place { element: 0, t: 0.0, point: self.start(), distance: f64::INFINITY };
+        let mut best = Place { element: 0, t: 0.0, point: self.start() };
+        let mut least = f64::INFINITY;
         for (i, element) in self.elements.iter().enumerate() {
             let (t, distance) = element.nearest(point);
-            if distance < best.distance {
-                best = Place { element: i, t, point: element.at(t), distance };
+            if distance < least {
+                (least, best) = (distance, Place::on(element, i, t));
             }
         }
         best
@@ -143,46 +142,45 @@ impl Contour {
         let mut left = along.max(0.0);
         for (i, element) in self.elements.iter().enumerate() {
             let length = element.length();
-            if left <= length {
-                let t = left / length;
-                return Place { element: i, t, point: element.at(t), distance: 0.0 };
+            if left < length {
+                return Place::on(element, i, left / length);
             }
             left -= length;
         }
-        let last = self.elements.len().saturating_sub(1);
-        Place { element: last, t: 1.0, point: self.end(), distance: 0.0 }
+        Place { element: self.elements.len().saturating_sub(1), t: 1.0, point: self.end() }
     }
 
-    /// The elements from `from` to `to`, of which `to` comes later.
-    pub(crate) fn part(&self, from: &Place, to: &Place) -> Vec<Element> {
-        let mut part = Vec::new();
-        for (i, element) in self.elements.iter().enumerate().skip(from.element) {
-            if i > to.element {
-                break;
-            }
+    /// The elements between two places, of which `to` comes later.
+    pub(crate) fn between(&self, from: &Place, to: &Place) -> Vec<Element> {
+        let elements = self.elements.iter().enumerate().take(to.element + 1).skip(from.element);
+        let parts = elements.map(|(i, element)| {
             let start = if i == from.element { from.t } else { 0.0 };
             let end = if i == to.element { to.t } else { 1.0 };
-            if (end - start) * element.length() > SAME {
-                part.push(element.part(start, end));
-            }
-        }
-        // What was too short to keep moves its neighbour's start by less than `SAME`.
-        for i in 1..part.len() {
-            let start = part[i - 1].end;
-            part[i] = part[i].between(start, part[i].end);
-        }
-        part
+            (start < end).then(|| element.part(start, end))
+        });
+        parts.flatten().collect()
     }
 
     /// A closed contour with its start moved to `place`; an open one as it is.
     pub fn started_at(&self, place: &Place) -> Contour {
-        if !self.is_closed() {
+        if !self.is_closed() || place.point == self.start() {
             return self.clone();
         }
-        let first = Place { element: 0, t: 0.0, point: self.start(), distance: 0.0 };
-        let last = self.place_at(f64::INFINITY);
-        let mut elements = self.part(place, &last);
-        elements.extend(self.part(&first, place));
-        Contour::new(elements, 10.0 * SAME).unwrap_or_else(|_| self.clone())
+        let mut elements = self.between(place, &self.place_at(f64::INFINITY));
+        elements.extend(self.between(&self.place_at(0.0), place));
+        Contour { elements }
+    }
+}
+
+impl Place {
+    /// At `t` of element `index`; what is nearly its end is its end.
+    fn on(element: &Element, index: usize, t: f64) -> Place {
+        let length = element.length();
+        let t = match t {
+            t if t * length < 1e-6 => 0.0,
+            t if (1.0 - t) * length < 1e-6 => 1.0,
+            t => t,
+        };
+        Place { element: index, t, point: element.at(t) }
     }
 }

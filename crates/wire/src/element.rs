@@ -211,7 +211,7 @@ impl Element {
     }
 
     /// The same shape between other ends: an arc keeps its sweep, a full circle its radius.
-    pub(crate) fn between(&self, start: Vec2, end: Vec2) -> Element {
+    pub(crate) fn spanning(&self, start: Vec2, end: Vec2) -> Element {
         if start == self.start && end == self.end {
             return *self;
         }

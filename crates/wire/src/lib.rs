@@ -16,10 +16,14 @@
 
 mod accuracy;
 mod contour;
+mod crossing;
 mod element;
+mod near;
+pub mod offset;
 mod path;
 pub mod points;
 mod sync;
+pub mod taper;
 mod trace;
 
 pub use accuracy::{Accuracy, ArcChords, Chords};

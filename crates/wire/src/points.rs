@@ -55,86 +55,77 @@ impl From<Box<Diagnostic>> for Refusal {
     }
 }
 
-/// Divides `path` into points, of which the control's memory takes at most `memory`. Straight moves
-/// give their ends, arcs are divided by `step`; where the wire leans both ends are divided into as
-/// many parts as the one that needs more. The last point of each element is exactly its end.
+/// Divides `paths`, which share the memory of one program, into points, of which the control takes at
+/// most `memory`. Straight moves give their ends, arcs are divided by `step`; where the wire leans both
+/// ends are divided into as many parts as the one that needs more. The last point of each element is
+/// exactly its end.
 ///
 /// # Errors
-/// `step` for a step that is not positive, is longer than the path or makes more than [`MOST`]
-/// points; `memory` where the points do not fit, with the step that would; `fit-without-memory`.
-pub fn points(path: &Path, step: Step, memory: Option<usize>) -> Result<Points, Refusal> {
+/// `step` for a step that is not positive, or longer than every path; `memory` where the points do
+/// not fit (or are more than [`MOST`]), with the step that would; `fit-without-memory`.
+pub fn points(paths: &[&Path], step: Step, memory: Option<usize>) -> Result<Vec<Points>, Refusal> {
     let most = memory.unwrap_or(MOST).min(MOST);
-    if step == Step::Fit && memory.is_none() {
-        let message = "a step that fits the memory, and the memory is not known";
-        return Err(Box::new(
-            Diagnostic::error("fit-without-memory", message)
-                .help("give the number of points that the control takes, or a step"),
-        )
-        .into());
-    }
-    let least = count(path, Step::Fit);
-    if least > most {
-        let message = format!("the ends of the moves alone are {least} points, and {most} fit");
-        return Err(Box::new(
-            Diagnostic::error("memory", message).help("divide the contour into several programs"),
-        )
-        .into());
-    }
+    let refuse = |rule, message: String, way_out: String| -> Refusal {
+        Box::new(Diagnostic::error(rule, message).help(way_out)).into()
+    };
     let (kind, size, name): (fn(f64) -> Step, f64, &str) = match step {
-        Step::Fit => {
-            return Ok(divide(path, Step::ChordError(finest(path, Step::ChordError, most))));
-        }
         Step::Length(length) => (Step::Length, length, "step"),
         Step::ChordError(error) => (Step::ChordError, error, "chord error"),
+        Step::Fit if memory.is_some() => (Step::ChordError, 0.0, "chord error"),
+        Step::Fit => {
+            let message = "a step that fits the memory, and the memory is not known".into();
+            let way_out = "give the number of points that the control takes, or a step".into();
+            return Err(refuse("fit-without-memory", message, way_out));
+        }
     };
-    sensible(path, size, name)?;
-    let count = count(path, step);
+    let length = paths.iter().map(|path| path.length()).fold(0.0, f64::max);
+    let positive = size.is_finite() && size > 0.0;
+    if step != Step::Fit && (!positive || size > length) {
+        let message = format!("a {name} of {size} mm on a contour of {length:.4} mm");
+        let way_out = format!("give a {name} above 0 and below the length of the contour");
+        return Err(refuse("step", message, way_out));
+    }
+    let least = count(paths, Step::Fit);
+    if least > most {
+        let message = format!("the ends of the moves alone are {least} points, and {most} fit");
+        return Err(refuse("memory", message, "divide the contour into several programs".into()));
+    }
+    if step == Step::Fit {
+        let step = Step::ChordError(finest(paths, kind, most));
+        return Ok(paths.iter().map(|path| divide(path, step)).collect());
+    }
+    let count = count(paths, step);
     if count > most {
-        let finest = finest(path, kind, most);
+        let finest = finest(paths, kind, most);
         let message = format!("a {name} of {size} mm makes {count} points, and {most} fit");
         let way_out = format!("a {name} of {finest:.6} mm is the finest that fits");
-        return Err(Refusal {
-            diagnostic: Diagnostic::error("memory", message).help(way_out).into(),
-            offer: Some(kind(finest)),
-        });
+        return Err(Refusal { offer: Some(kind(finest)), ..refuse("memory", message, way_out) });
     }
-    Ok(divide(path, step))
-}
-
-fn sensible(path: &Path, size: f64, name: &str) -> Result<(), Box<Diagnostic>> {
-    let length = path.length();
-    let message = if !(size.is_finite() && size > 0.0) {
-        format!("a {name} of {size} mm")
-    } else if size > length {
-        format!("a {name} of {size} mm, and the whole contour is {length:.4} mm long")
-    } else {
-        return Ok(());
-    };
-    Err(Diagnostic::error("step", message)
-        .help(format!("give a {name} above 0 and below the length of the contour"))
-        .into())
+    Ok(paths.iter().map(|path| divide(path, step)).collect())
 }
 
 /// The smallest step of a kind whose points fit, by halving: more points never come from a larger
 /// step.
-fn finest(path: &Path, kind: fn(f64) -> Step, most: usize) -> f64 {
-    // A step as large as the longest way round leaves every arc its fewest chords.
-    let (mut fits, mut fails) = (path.length().max(1e-6), 0.0);
+fn finest(paths: &[&Path], kind: fn(f64) -> Step, most: usize) -> f64 {
+    // A step as long as the longest path leaves every arc its fewest chords.
+    let longest = paths.iter().map(|path| path.length()).fold(1e-6, f64::max);
+    let (mut fits, mut fails) = (longest, 0.0);
     for _ in 0..100 {
         // By orders of magnitude first, then evenly.
         let middle = if fails == 0.0 { fits / 1024.0 } else { f64::midpoint(fails, fits) };
         if middle <= 1e-9 || fits - fails <= fits * 1e-12 {
             break;
         }
-        if count(path, kind(middle)) <= most { fits = middle } else { fails = middle }
+        if count(paths, kind(middle)) <= most { fits = middle } else { fails = middle }
     }
     fits
 }
 
-/// How many points `step` makes, the start among them; [`Step::Fit`]: the fewest.
-fn count(path: &Path, step: Step) -> usize {
-    let parts = path.elements().map(|(p, q)| Parts::of_pair(p, q, step).count);
-    parts.fold(1, usize::saturating_add)
+/// How many points `step` makes, the starts among them; [`Step::Fit`]: the fewest.
+fn count(paths: &[&Path], step: Step) -> usize {
+    let parts = paths.iter().flat_map(|path| path.elements());
+    let parts = parts.map(|(p, q)| Parts::of_pair(p, q, step).count);
+    parts.fold(paths.len(), usize::saturating_add)
 }
 
 /// Into how many parts an element is divided and how long all but the last are, of 1.

@@ -3,7 +3,7 @@
 use geom::Vec2;
 use proptest::prelude::*;
 use std::f64::consts::PI;
-use toolpost_wire::points::{Points, Refusal, Step, points};
+use toolpost_wire::points::{self, Points, Refusal, Step};
 use toolpost_wire::{Accuracy, Contour, Element, Path};
 
 /// The sector of the source: two radii of 40 mm and a quarter circle, from line 10 on.
@@ -15,6 +15,10 @@ fn sector() -> Contour {
         Element::line(top, Vec2::ZERO).from_line(30),
     ];
     Contour::new(elements, 0.0).unwrap()
+}
+
+fn points(path: &Path, step: Step, memory: Option<usize>) -> Result<Points, Refusal> {
+    points::points(&[path], step, memory).map(|mut all| all.remove(0))
 }
 
 fn divided(contour: &Contour, step: Step, memory: Option<usize>) -> Result<Points, Refusal> {
@@ -112,6 +116,15 @@ fn fit_takes_the_smallest_chord_error_whose_points_fit() {
     assert!(refused.diagnostic.message.contains("4 points"), "{}", refused.diagnostic);
     let refused = divided(&sector(), Step::Fit, None).unwrap_err();
     assert_eq!(refused.diagnostic.rule, "fit-without-memory");
+}
+
+#[test]
+fn several_paths_share_the_memory() {
+    let path = Path::upright(sector());
+    let found = points::points(&[&path, &path], Step::Fit, Some(100)).unwrap();
+    // Two starts and four ends of lines leave 47 for each arc.
+    assert!(found.iter().all(|points| points.lower.len() == 50));
+    assert!(points::points(&[&path, &path], Step::Fit, Some(7)).is_err());
 }
 
 #[test]

@@ -30,7 +30,7 @@ fn by_block_an_arc_and_a_line_get_as_many_points() {
     let upper = vec![Element::arc(start, end, Vec2::ZERO, PI / 2.0)];
     let path = Path::by_block(lower, upper).unwrap();
     // 10π mm of arc in steps of π: ten parts on both sides.
-    let found = points(&path, Step::Length(PI), None).unwrap();
+    let found = points(&[&path], Step::Length(PI), None).unwrap().remove(0);
     assert_eq!((found.lower.len(), found.upper.len()), (11, 11));
     assert!(found.lower[5].distance(Vec2::new(5.0, 5.0)) < 1e-12);
     assert!(found.upper[5].distance(Vec2::splat(200f64.sqrt())) < 1e-12);
@@ -51,7 +51,7 @@ fn one_end_may_stand_still() {
     let lower = square(10.0).elements().to_vec();
     let upper = lower.iter().map(|_| Element::line(tip, tip)).collect();
     let path = Path::by_block(lower, upper).unwrap();
-    let found = points(&path, Step::Length(1.0), None).unwrap();
+    let found = points(&[&path], Step::Length(1.0), None).unwrap().remove(0);
     assert_eq!(found.upper, vec![tip; 5]);
 }
 
@@ -141,7 +141,7 @@ proptest! {
         };
         let (lower, upper) = (star(&lower), star(&upper));
         if let Ok(path) = Path::by_length(&lower, &upper) {
-            let found = points(&path, Step::Length(step), None).unwrap();
+            let found = points(&[&path], Step::Length(step), None).unwrap().remove(0);
             prop_assert_eq!(found.lower.len(), found.upper.len());
             let along = |ends: &[Vec2]| ends.windows(2).map(|p| p[0].distance(p[1])).sum::<f64>();
             prop_assert!((along(&found.lower) - lower.length()).abs() < 1e-6);
