@@ -54,6 +54,7 @@ pub fn settings(machine: &Machine, setup: Setup) -> Result<Settings, Box<Diagnos
     Ok(Settings {
         auxiliary: machine.auxiliary.clone(),
         operator_parameters: machine.operator_parameters.clone(),
+        upper_plane: machine.wire.and_then(|wire| wire.height),
         path_tolerance: machine.path_tolerance(),
         setup,
         ..Settings::new(dialect, rotary)

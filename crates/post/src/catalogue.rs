@@ -98,6 +98,8 @@ names! {
         PlaneTiltOff Block "plane_tilt_off", "", "Tilted plane of work off, rotary axes to zero.";
         ToolCenterOn Block "tool_center_on", "", "Tool center point control on.";
         ToolCenterOff Block "tool_center_off", "", "Tool center point control off.";
+        ThreadWire Block "thread_wire", "", "Where the wire is threaded (wire EDM). Empty on a control that is told of no wire: its program cuts one opening.";
+        CutWire Block "cut_wire", "", "Where the wire is cut (wire EDM).";
         CycleDrill Block "cycle_drill", "", "Definition of a drilling cycle. A definition that places {{X}} drills the first hole itself.";
         CycleDwell Block "cycle_dwell", "", "The same with a dwell at the bottom; `cycle_drill` where it is missing and places {{DWELL}}.";
         CycleDeep Block "cycle_deep", "", "Definition of deep drilling: out of the hole after each peck.";
@@ -124,6 +126,8 @@ names! {
         A Word "A", "degrees", "Position of the rotary axis A; left out where the machine has none.";
         B Word "B", "degrees", "Position of the rotary axis B; left out where the machine has none.";
         C Word "C", "degrees", "Position of the rotary axis C; left out where the machine has none.";
+        U Word "U", "mm", "How far the wire is beside X at the upper plane (wire EDM); left out where it stands upright in the whole program.";
+        V Word "V", "mm", "How far it is beside Y there.";
         VX Word "VX", "", "Tool axis, a unit vector from the tip to the spindle: X.";
         VY Word "VY", "", "Tool axis: Y.";
         VZ Word "VZ", "", "Tool axis: Z.";

@@ -188,7 +188,7 @@ impl Walk<'_> {
     /// Whether `pose` can be written as the control counts, and with the rotary axes as they stand.
     ///
     /// # Errors
-    /// A tool axis that a machine without rotary axes does not have.
+    /// A tool axis that a machine without rotary axes does not have, a lean that a wire cannot take.
     #[inline]
     pub(crate) fn settled(
         &self,
@@ -198,10 +198,11 @@ impl Walk<'_> {
     ) -> Result<bool, Box<Diagnostic>> {
         let axis = pose.axis().unwrap_or(Vec3::Z);
         Ok(match (&self.place.kind, stop.mode) {
-            (Kind::Plain, OrientationMode::Fixed) if !same(axis, Vec3::Z) => {
-                return Err(unreachable(axis));
-            }
-            (Kind::Plain, OrientationMode::Fixed) => true,
+            (Kind::Plain, OrientationMode::Fixed) => match &self.wire {
+                Some(wire) => self.wire_stands(wire, pose).map(|()| true)?,
+                None if same(axis, Vec3::Z) => true,
+                None => return Err(unreachable(axis)),
+            },
             (Kind::Plain, OrientationMode::TiltedPlane) => same(axis, Vec3::Z),
             (Kind::Tilted(_, tilted), OrientationMode::TiltedPlane) => same(*tilted, axis),
             (Kind::ToolCenter, OrientationMode::ToolCenterAngles)

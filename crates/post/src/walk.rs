@@ -7,6 +7,7 @@ use crate::template::{
     LENGTH_OFFSET, ORIENTATION, POSITION, Scope, Templates, bit, map, printed, program_value,
     tool_value,
 };
+use crate::wire::Wire;
 use crate::writer::Writer;
 use geom::Vec3;
 use machine::limits::Limits;
@@ -75,6 +76,8 @@ pub(crate) struct Walk<'a> {
     /// Whether the control stands where the last pose says.
     pub(crate) located: bool,
     pub(crate) place: Place,
+    /// The wire, where the machine has one.
+    pub(crate) wire: Option<Wire>,
     /// Where the next block brings the tool tip, mm, work frame.
     pub(crate) tip: Vec3,
     /// The same in the coordinates of the block, mm.
@@ -122,6 +125,7 @@ impl<'a> Walk<'a> {
             here: None,
             located: false,
             place: Place::start(machine),
+            wire: Wire::of(machine, program),
             tip: Vec3::ZERO,
             said: Vec3::ZERO,
             limits: Limits::new(machine),
@@ -137,6 +141,7 @@ impl<'a> Walk<'a> {
         }
         let warnings = self.findings.finish(self.machine.capabilities.lowering_tolerance)?;
         let (text, blocks) = self.writer.finish();
+        self.limits.memory(blocks).map_err(|found| vec![*found])?;
         Ok(crate::Output { text, blocks, warnings })
     }
 
@@ -184,7 +189,8 @@ impl<'a> Walk<'a> {
             return self.motion(&record.op, stop);
         }
         match &record.op {
-            Op::Rapid(_) | Op::Line(_) | Op::Arc(_) | Op::Hole(_) => Ok(()),
+            Op::Rapid(_) | Op::Line(_) | Op::Arc(_) | Op::Thread(_) | Op::Hole(_) => Ok(()),
+            Op::Probe(_) => Err(refuse("unsupported", "a probing move is not written")),
             Op::Cycle(cycle) => {
                 self.end_cycle()?;
                 self.cycle = Some(cycle);
@@ -244,6 +250,8 @@ impl<'a> Walk<'a> {
             }
             Op::Message(text) => self.text(BlockName::Comment, text),
             Op::End => self.end(),
+            Op::ThreadWire => self.thread_wire(),
+            Op::CutWire => self.cut_wire(),
             Op::Home(_) => {
                 self.end_cycle()?;
                 self.leave_part()
@@ -256,7 +264,7 @@ impl<'a> Walk<'a> {
     }
 
     fn motion(&mut self, op: &'a Op, stop: Option<crate::place::Stop>) -> Done {
-        if self.tool.is_none() {
+        if self.tool.is_none() && self.wire.is_none() {
             self.default_tool()?;
         }
         let Some(stop) = stop else { return Ok(()) };
@@ -265,6 +273,10 @@ impl<'a> Walk<'a> {
             Op::Line(pose) => self.line(pose, &stop),
             Op::Arc(to) => self.arc(to, &stop),
             Op::Hole(pose) => self.hole(pose, &stop),
+            Op::Thread(_) => Err(refuse(
+                "unsupported",
+                "a thread in step with the spindle is not written; tap it",
+            )),
             _ => Ok(()),
         }
     }
@@ -325,6 +337,7 @@ impl<'a> Walk<'a> {
     /// Everything is said, the control goes off.
     fn end(&mut self) -> Done {
         self.ended = true;
+        self.wire_for(false, "the end of the program")?;
         self.uncompensated("the end of the program")?;
         self.end_cycle()?;
         self.leave_place()?;
@@ -470,18 +483,24 @@ impl<'a> Walk<'a> {
             return Ok(());
         }
         self.active_coolant = Some(self.coolant);
-        self.required(match self.coolant {
+        let block = match self.coolant {
             Coolant::Off => BlockName::CoolantOff,
             Coolant::Flood => BlockName::CoolantFlood,
             Coolant::Mist => BlockName::CoolantMist,
+            Coolant::FloodAndMist => {
+                self.required(BlockName::CoolantMist)?;
+                BlockName::CoolantFlood
+            }
             Coolant::Through => BlockName::CoolantThrough,
-        })
+        };
+        self.required(block)
     }
 
     /// Before the tool touches the part: it turns, and coolant runs.
     #[inline]
     pub(crate) fn before_cut(&mut self) -> Done {
-        if self.spindle == Spindle::Off {
+        self.wire_for(true, "a cut")?;
+        if self.spindle == Spindle::Off && self.wire.is_none() {
             let help = "SPINDL/ with a speed before the first cut";
             return Err(Box::new(
                 refuse("spindle-off", "a cut while the spindle stands").help(help),
@@ -559,6 +578,10 @@ impl<'a> Walk<'a> {
     #[inline]
     pub(crate) fn say_feed(&mut self, length: f64, pieces: usize, turning: bool) -> Done {
         let Some(mut feed) = self.feed else {
+            // The generator of a wire machine holds the gap, and finds the feed by it.
+            if self.wire.is_some() {
+                return Ok(());
+            }
             return Err(refuse("feed-missing", "a cut before the first feed"));
         };
         self.limits.feed(feed, self.spindle, self.line)?;

@@ -42,6 +42,8 @@ pub(crate) enum Step {
     Dwell(f64),
     Stop,
     OptionalStop,
+    ThreadWire,
+    CutWire,
     End,
 }
 
@@ -131,8 +133,16 @@ impl<'a> Cursor<'a> {
                     let cycle = self.wanted.cycle.map(Kind::Hole);
                     self.motion(cycle.unwrap_or(Kind::Broken("no cycle is active")), pose)
                 }
+                Op::Thread(thread) => {
+                    self.motion(Kind::Broken("a thread is not compared"), &thread.end)
+                }
+                Op::Probe(pose) => {
+                    self.motion(Kind::Broken("a probing move is not compared"), pose)
+                }
                 Op::Dwell(seconds) if *seconds > 0.0 => Step::Dwell(*seconds),
                 Op::Stop => Step::Stop,
+                Op::ThreadWire => Step::ThreadWire,
+                Op::CutWire => Step::CutWire,
                 Op::OptionalStop if !self.machine.leaves_out("optional_stop") => Step::OptionalStop,
                 op => {
                     self.note(op);

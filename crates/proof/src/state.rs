@@ -149,6 +149,7 @@ pub(crate) struct Lengths {
 /// Holds a feed against what the source wants. Both count as mm/min where they are in different
 /// units.
 pub(crate) fn feed(
+    machine: &Machine,
     allowed: &Applied,
     wanted: Option<Feed>,
     running: Option<Feed>,
@@ -156,6 +157,11 @@ pub(crate) fn feed(
     lengths: &Lengths,
 ) -> Option<Difference> {
     let Some(wanted) = wanted else {
+        // A wire goes as fast as its generator lets it, where nobody says otherwise.
+        if machine.wire.is_some() {
+            return running
+                .map(|feed| ("feed", format!("the feed is {}, but should be none", shown(feed))));
+        }
         return Some(("feed", "the source names no feed".into()));
     };
     let Some(running) = running else {
@@ -280,6 +286,7 @@ fn coolant(coolant: Coolant) -> &'static str {
         Coolant::Off => "off",
         Coolant::Flood => "flood",
         Coolant::Mist => "mist",
+        Coolant::FloodAndMist => "flood and mist",
         Coolant::Through => "through the tool",
     }
 }

@@ -3,30 +3,29 @@
 mod files;
 
 use control::Setup;
-use files::root;
-use machine::library::{MACHINES, names};
+use files::{mills, root};
+use machine::Machine;
 use program::{Op, Pose, Program};
 
 /// The sample of a machine as its control reads it.
-fn sample(name: &str) -> Program {
-    let machine = machine::load(name).unwrap();
-    let file = format!("{name}.{}", machine.extension);
+fn sample(machine: &Machine) -> Program {
+    let file = format!("{}.{}", machine.name, machine.extension);
     let text = std::fs::read(root().join("machines/samples").join(&file)).unwrap();
-    nc::read(&machine, Setup::default(), &file, &text).unwrap_or_else(|e| panic!("{e}")).program
+    nc::read(machine, Setup::default(), &file, &text).unwrap_or_else(|e| panic!("{e}")).program
 }
 
 /// The sample programs are read by a person, so what they say is known: what is read from one must be
 /// the toolpath that it was made from, by the proof's measure.
 #[test]
 fn the_sample_of_each_machine_is_the_toolpath_that_it_was_made_from() {
-    for name in names(MACHINES) {
-        let machine = machine::load(name).unwrap();
+    for machine in mills() {
+        let name = &machine.name;
         let axes = if machine.rotary.is_empty() { "three-axes" } else { "five-axes" };
         let path = root().join("machines/samples").join(axes).with_extension("cls");
         let text = std::fs::read(path).unwrap();
         let source = source::apt::read("source", &text, &Default::default()).unwrap().program;
         // Every place of the source is one of the program that was read, in the same order.
-        let mut rest = places(&sample(name)).into_iter();
+        let mut rest = places(&sample(&machine)).into_iter();
         for place in places(&source) {
             let near = rest.any(|p| {
                 let (a, b) = (p.axis().unwrap(), place.axis().unwrap());
@@ -55,11 +54,10 @@ fn places(program: &Program) -> Vec<Pose> {
 
 #[test]
 fn the_sample_of_each_machine_is_proven_on_every_other_that_can_make_it() {
-    for from in names(MACHINES) {
-        let program = sample(from);
-        for to in names(MACHINES) {
-            let machine = machine::load(to).unwrap();
-            let tilts = !machine::load(from).unwrap().rotary.is_empty();
+    for from in mills() {
+        let program = sample(&from);
+        for machine in mills() {
+            let (from, to, tilts) = (&from.name, &machine.name, !from.rotary.is_empty());
             match post::write(&program, &machine) {
                 Ok(output) => {
                     let tolerances = Default::default();
