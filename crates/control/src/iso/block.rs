@@ -1,6 +1,6 @@
 //! A block (a line of NC) taken apart into words.
 
-use super::words::{Dictionary, Flavor, G, Group, M, why_refused};
+use super::words::{Dictionary, Flavor, G, Group, LETTERS, M, bit, index};
 use crate::decimal;
 use program::{Diagnostic, Op};
 
@@ -34,18 +34,13 @@ pub(super) struct Block<'a> {
     pub m_count: u32,
     /// A word has been read.
     started: bool,
-    words: [Word; 26],
+    words: [Word; LETTERS.len()],
     given: u32,
     pending: u32,
     g: [Option<G>; Group::COUNT],
     m: [Option<M>; Group::COUNT],
     places: [Word; Group::COUNT],
     comments: Vec<(usize, usize)>,
-}
-
-/// The bit of a letter in a set of letters.
-const fn bit(letter: u8) -> u32 {
-    1 << (letter - b'A')
 }
 
 impl<'a> Block<'a> {
@@ -60,7 +55,7 @@ impl<'a> Block<'a> {
             is_empty: true,
             m_count: 0,
             started: false,
-            words: [Word::default(); 26],
+            words: [Word::default(); LETTERS.len()],
             given: 0,
             pending: 0,
             g: [None; Group::COUNT],
@@ -92,19 +87,24 @@ impl<'a> Block<'a> {
                     continue;
                 }
                 b'A'..=b'Z' => at = self.word(byte, at)?,
-                b'a'..=b'z' if dictionary.flavor != Flavor::Fanuc => {
+                b'@' | b'^' | b'$' if dictionary.letters & bit(byte) != 0 => {
+                    at = self.word(byte, at)?
+                }
+                b'a'..=b'z' if dictionary.flavor.has_small_letters() => {
                     at = self.word(byte.to_ascii_uppercase(), at)?;
                 }
-                b'(' => {
+                b'(' if dictionary.flavor != Flavor::Marlin => {
                     at = self.comment(at)?;
                     continue;
                 }
-                b';' if dictionary.flavor != Flavor::Fanuc => {
+                b';' if !dictionary.flavor.is_fanuc() => {
                     self.comments.push((at + 1, text.len()));
                     break;
                 }
                 // The proof holds for the block-delete switch off: the block is run.
-                b'/' if self.is_empty => at = after_block_delete(dictionary.flavor, text, at),
+                b'/' if self.is_empty && dictionary.flavor != Flavor::Marlin => {
+                    at = after_block_delete(dictionary.flavor, text, at)
+                }
                 _ => return Err(self.stray(dictionary.flavor, byte, at)),
             }
             self.is_empty = false;
@@ -175,7 +175,7 @@ impl<'a> Block<'a> {
                 if letter != b'N' {
                     self.pending |= letter_bit;
                 }
-                self.words[usize::from(letter - b'A')] = word;
+                self.words[index(letter)] = word;
             }
         }
         self.started = true;
@@ -237,7 +237,14 @@ impl<'a> Block<'a> {
             return None;
         }
         self.pending &= !bit(letter);
-        Some(self.words[usize::from(letter - b'A')])
+        Some(self.words[index(letter)])
+    }
+
+    /// The words of these letters count as used.
+    pub(super) fn pass(&mut self, letters: &[u8]) {
+        for &letter in letters {
+            self.pending &= !bit(letter);
+        }
     }
 
     /// # Errors
@@ -246,14 +253,14 @@ impl<'a> Block<'a> {
         if self.pending == 0 {
             return Ok(());
         }
-        let letter = b'A' + self.pending.trailing_zeros() as u8;
+        let letter = LETTERS[self.pending.trailing_zeros() as usize % LETTERS.len()];
         let message = format!("nothing in the block uses {}", self.shown(letter));
         Err(self.at_word(letter, "nc-unused-word", message))
     }
 
     /// A word as it is written.
     pub(super) fn shown(&self, letter: u8) -> String {
-        let word = self.words[usize::from(letter - b'A')];
+        let word = self.words[index(letter)];
         let text = self.text.get(word.start as usize..word.end as usize).unwrap_or_default();
         String::from_utf8_lossy(text).into_owned()
     }
@@ -265,7 +272,7 @@ impl<'a> Block<'a> {
         rule: &'static str,
         message: impl Into<String>,
     ) -> Fault {
-        let word = self.words[usize::from(letter - b'A')];
+        let word = self.words[index(letter)];
         self.fault(rule, message, word.start as usize, word.end as usize)
     }
 
@@ -320,10 +327,7 @@ impl<'a> Block<'a> {
             format!("{} is no word of this control", char::from(letter))
         };
         let mut fault = Diagnostic::error("nc-unknown-word", message);
-        if let Some(reason) = Some(letter)
-            .filter(|l| matches!(l, b'G' | b'M'))
-            .and_then(|letter| why_refused(letter, word.value))
-        {
+        if let Some(reason) = self.dictionary.why_refused(letter, word.value) {
             fault = fault.help(reason);
         }
         fault.at(self.line, self.text, start, end).into()
@@ -345,7 +349,7 @@ impl<'a> Block<'a> {
             b'%' => "% stands alone on its line".to_owned(),
             b';' => "; does not begin a comment here; write ( )".to_owned(),
             b'0'..=b'9' | b'.' | b'+' | b'-' => "a number without its letter".to_owned(),
-            b'a'..=b'z' if flavor == Flavor::Fanuc => "small letters are no words".to_owned(),
+            b'a'..=b'z' if !flavor.has_small_letters() => "small letters are no words".to_owned(),
             b'!'..=b'~' => format!("{} begins no word", char::from(byte)),
             _ => format!("byte {byte:#04x} begins no word"),
         };
@@ -355,6 +359,6 @@ impl<'a> Block<'a> {
 
 /// The place after `/`, or on FANUC `/1` to `/9`.
 fn after_block_delete(flavor: Flavor, text: &[u8], at: usize) -> usize {
-    let numbered = flavor == Flavor::Fanuc && matches!(text.get(at + 1), Some(b'1'..=b'9'));
+    let numbered = flavor.is_fanuc() && matches!(text.get(at + 1), Some(b'1'..=b'9'));
     at + 1 + usize::from(numbered)
 }

@@ -1,27 +1,35 @@
-//! ISO code: FANUC 30i for milling, LinuxCNC's RS-274, and GRBL 1.1.
+//! ISO code: FANUC 30i for milling, Haas, LinuxCNC's RS-274, Mach3, GRBL 1.1, Marlin.
 //!
-//! The three share the words and the order of execution and differ in tables ([`words`]) and in the
+//! They share the words and the order of execution and differ in tables ([`flavors`]) and in the
 //! rules that each maker states; `docs/controls/iso.md` and its neighbours say which, with sources.
-//! A block is taken apart ([`block`]), run on a copy of the [`state`] with its records held back
-//! ([`execute`], [`motion`], [`arcs`], [`cycles`]), and only a block without a mistake takes effect.
+//! A block is taken apart ([`block`]) and run with its records held back ([`execute`], [`motion`],
+//! [`arcs`], [`cycles`], [`coordinates`], [`tools`]): a block with a mistake leaves none.
 
 mod arcs;
 mod block;
+mod coordinates;
 mod cycles;
 mod execute;
+mod flavors;
+mod frames;
 mod motion;
+mod patterns;
+mod places;
+
+mod splines;
 mod state;
+mod threads;
+mod tools;
 mod words;
 
 use crate::{Settings, Sink};
 use block::{Block, Fault};
 use execute::Control;
 use program::{Diagnostic, Record};
-use words::{Dictionary, Flavor};
 
 /// Runs a program.
 pub(crate) fn run(settings: &Settings, text: &[u8], sink: &mut Sink) -> Result<(), Fault> {
-    let dictionary = Dictionary::of(settings.dialect);
+    let dictionary = flavors::dictionary(settings.dialect);
     let mut control = Control::new(settings, dictionary.flavor);
     let mut block = Block::new(dictionary, &settings.auxiliary);
     let mut ops = Vec::new();
@@ -29,7 +37,7 @@ pub(crate) fn run(settings: &Settings, text: &[u8], sink: &mut Sink) -> Result<(
     for (index, line) in text.split(|&b| b == b'\n').enumerate() {
         let number = u32::try_from(index + 1).unwrap_or(u32::MAX);
         let line = line.strip_suffix(b"\r").unwrap_or(line);
-        if line.first() == Some(&b'%') && dictionary.flavor != Flavor::Grbl {
+        if line.first() == Some(&b'%') && !dictionary.flavor.changes_by_hand() {
             percent_signs += 1;
             if !line[1..].iter().all(|b| matches!(b, b' ' | b'\t')) || percent_signs > 2 {
                 let message = "a line with % holds nothing else, and a program has two at most";
