@@ -105,7 +105,7 @@ impl Step<'_, '_, '_> {
     pub(super) fn holes(&mut self) -> Result<(), Fault> {
         let Some(mut held) = self.state.cycle else { return Ok(()) };
         let axis = self.state.plane.axes()[2];
-        let drills = b"XYZ".iter().any(|&letter| self.block.has(letter))
+        let drills = b"XYZ@^".iter().any(|&letter| self.block.has(letter))
             || self.flavor.is_fanuc() && self.block.has(b'R');
         if !drills {
             let asked = matches!(self.block.g(Group::Motion), Some(G::Cycle(_)));

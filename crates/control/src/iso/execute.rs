@@ -178,6 +178,9 @@ impl Step<'_, '_, '_> {
     }
 
     fn spindle_and_coolant(&mut self) -> Result<(), Fault> {
+        if self.block.take(b'$').is_some_and(|word| word.value != 0.0) {
+            return Err(self.block.at_word(b'$', "nc-spindle", "there is one spindle, $0"));
+        }
         let speed = || {
             self.state.speed.ok_or_else(|| {
                 let message = "the spindle starts and no speed has been given by S";

@@ -46,7 +46,7 @@ pub(super) enum G {
     DynamicLength,
     CancelLength,
     ReturnToR(bool),
-    WorkOffset(u16),
+    WorkOffset(u32),
     /// How the path is smoothed, or a mode that is off anyway: nothing moves elsewhere for it. The
     /// letters may stand beside it.
     Neutral(&'static [u8]),
