@@ -41,6 +41,12 @@ pub(super) enum G {
     Machine,
     LookAhead,
     SwingToTilt,
+    /// `G65`, `G66`: the macro that P names, once or after each move.
+    MacroCall {
+        modal: bool,
+    },
+    /// `G67`.
+    CancelMacroCall,
 }
 
 /// Interpolation (`G0` to `G3`).
@@ -105,6 +111,15 @@ pub(super) enum M {
     CoolantOff,
     Overrides,
     RigidTap,
+    /// `M98`, `M99`: the subprogram that P names, and the way back from it.
+    Call,
+    Return,
+    /// `M70` to `M73`: the modes kept for `M72`, and for the end of the subroutine too.
+    SaveModes {
+        until_return: bool,
+    },
+    ForgetModes,
+    RestoreModes,
 }
 
 /// Words of one group exclude each other in a block.
@@ -134,11 +149,12 @@ pub(super) enum Group {
     Spindle,
     Coolant,
     Override,
+    Modes,
 }
 
 impl Group {
     /// How many groups there are.
-    pub(super) const COUNT: usize = Group::Override as usize + 1;
+    pub(super) const COUNT: usize = Group::Modes as usize + 1;
 }
 
 /// A G word: ten times its number (`G43.4` is 434), its group, its meaning.
@@ -187,7 +203,9 @@ const FANUC_G: &[GRow] = &[
     (590, Group::WorkOffset, G::WorkOffset(59)),
     (610, Group::Path, G::ExactStop),
     (640, Group::Path, G::ExactStop),
-    (670, Group::Macro, G::Neutral),
+    (650, Group::Macro, G::MacroCall { modal: false }),
+    (660, Group::Macro, G::MacroCall { modal: true }),
+    (670, Group::Macro, G::CancelMacroCall),
     (682, Group::Tilt, G::Tilt),
     (690, Group::Tilt, G::CancelTilt),
     (730, Group::Cycle, G::Cycle(Canned::BreakChip)),
@@ -305,6 +323,8 @@ const FANUC_M: &[MRow] = &[
     (1, Group::Flow, M::OptionalStop),
     (2, Group::Flow, M::End),
     (30, Group::Flow, M::End),
+    (98, Group::Flow, M::Call),
+    (99, Group::Flow, M::Return),
     (3, Group::Spindle, M::Clockwise),
     (4, Group::Spindle, M::CounterClockwise),
     (5, Group::Spindle, M::SpindleOff),
@@ -323,6 +343,12 @@ const LINUXCNC_M: &[MRow] = &[
     (1, Group::Flow, M::OptionalStop),
     (2, Group::Flow, M::End),
     (30, Group::Flow, M::End),
+    (98, Group::Flow, M::Call),
+    (99, Group::Flow, M::Return),
+    (70, Group::Modes, M::SaveModes { until_return: false }),
+    (71, Group::Modes, M::ForgetModes),
+    (72, Group::Modes, M::RestoreModes),
+    (73, Group::Modes, M::SaveModes { until_return: true }),
     (3, Group::Spindle, M::Clockwise),
     (4, Group::Spindle, M::CounterClockwise),
     (5, Group::Spindle, M::SpindleOff),
@@ -360,8 +386,7 @@ const REFUSED_G: &[(u16, &str)] = &[
     (510, "scaling is not followed; write the final coordinates"),
     (520, "local shifts are not followed; write the final coordinates"),
     (541, "only the work offsets G54 to G59 are known"),
-    (650, "macro calls are not followed"),
-    (660, "macro calls are not followed"),
+    (661, "a macro called for every block is not followed; use G66"),
     (680, "rotated coordinates are not followed; write the final coordinates"),
     (760, "the sideways shift of fine boring cannot be told in the neutral program; use G86"),
     (870, "back boring cannot be told in the neutral program"),
@@ -373,8 +398,8 @@ const REFUSED_G: &[(u16, &str)] = &[
 /// M words that exist and are refused on purpose, each with the reason.
 const REFUSED_M: &[(u16, &str)] = &[
     (6, "this control has no tool change; stop with M0 instead"),
-    (98, "subprograms are not followed"),
-    (99, "subprograms are not followed"),
+    (98, "this control has no subprograms"),
+    (99, "this control has no subprograms"),
 ];
 
 /// The words of one flavour, found by number.
