@@ -10,7 +10,7 @@ use super::run::{Kind, Repeat, Run};
 use super::source::{self, Place, Source};
 use crate::decimal;
 use program::Diagnostic;
-use std::collections::{HashMap, HashSet};
+use std::collections::HashMap;
 
 /// How deep branches and loops may nest.
 const DEEPEST: usize = 100;
@@ -75,6 +75,8 @@ struct OWord {
     partner: usize,
     /// The end of the branch that a clause belongs to.
     end: usize,
+    /// The first O-word of this name in the subroutine, where it begins more than one branch or loop.
+    twin: Option<usize>,
 }
 
 /// The O-words of a file.
@@ -196,8 +198,8 @@ impl OWords {
     pub(super) fn of(text: &[u8], deletes: bool) -> Result<OWords, Fault> {
         let mut found = OWords::default();
         let mut open: Vec<Open> = Vec::new();
-        // A name stands for one thing in a subroutine, or outside of all.
-        let mut names: HashSet<(Vec<u8>, Vec<u8>)> = HashSet::new();
+        // The names of branches and loops, within their subroutine.
+        let mut names: HashMap<(Vec<u8>, Vec<u8>), usize> = HashMap::new();
         let mut percent_signs = 0;
         for (from, next, line, content) in source::lines(text) {
             percent_signs += u8::from(content.first() == Some(&b'%'));
@@ -213,7 +215,8 @@ impl OWords {
             };
             let (name, keyword, rest) = parse(content, o).map_err(fault)?;
             let index = found.words.len();
-            let mut word = OWord { keyword, from, next, line, rest, partner: index, end: index };
+            let mut word =
+                OWord { keyword, from, next, line, rest, partner: index, end: index, twin: None };
             let name = match name {
                 Name::Written(name) => name,
                 Name::Calculated if keyword == Keyword::Call => Vec::new(),
@@ -267,8 +270,10 @@ impl OWords {
                         word if found.words[word].keyword == Keyword::Sub => sub.name.clone(),
                         _ => Vec::new(),
                     });
-                    if !names.insert((within, name.clone())) {
-                        return Err(fault("this O number is used already; give it another one"));
+                    let first = *names.entry((within, name.clone())).or_insert(index);
+                    if first != index {
+                        word.twin = Some(first);
+                        found.words[first].twin = Some(first);
                     }
                     open.push(Open { word: index, last: index, name });
                 }
@@ -278,9 +283,6 @@ impl OWords {
                     }
                     let Some(branch) = open.last_mut() else { continue };
                     let last = std::mem::replace(&mut branch.last, index);
-                    if found.words[last].keyword == Keyword::Else && keyword != Keyword::EndIf {
-                        return Err(fault("a clause behind the else"));
-                    }
                     found.words[last].partner = index;
                     if keyword == Keyword::EndIf
                         && let Some(branch) = open.pop()
@@ -359,6 +361,13 @@ impl<'a> Run<'a, '_> {
             return Err(self.wrong(text, o, "this O-word stands behind the end of the program"));
         };
         let word = &words.words[index];
+        if let Some(first) = word.twin
+            && *self.twins.entry((source.text.as_ptr(), first)).or_insert(index) != index
+        {
+            let message =
+                "another branch or loop of this name has been run; give it one of its own";
+            return Err(self.wrong(text, o, message));
+        }
         match word.keyword {
             // A definition is passed by; a called subprogram begins behind its O-word.
             Keyword::Sub => self.go(words, word.partner),

@@ -11,6 +11,8 @@ use super::state::{Length, State};
 use super::words::{Dictionary, Flavor, G, Group, M};
 use crate::flow::Budget;
 use crate::{Settings, Sink};
+use std::collections::HashMap;
+
 use program::{Compensation, Coolant, Diagnostic, Feed, Op, Record, Spindle};
 
 /// How many calls LinuxCNC nests (`INTERP_SUB_ROUTINE_LEVELS` less that of the program).
@@ -40,6 +42,8 @@ pub(super) struct Run<'a, 's> {
     caller: Option<u32>,
     frames: Vec<Frame<'a>>,
     budget: Budget,
+    /// Which of several O-words of a name (of a file, the first) has been run.
+    pub twins: HashMap<(*const u8, usize), usize>,
     /// The program has jumped, called or calculated: what stands behind its end may belong to it.
     pub flows: bool,
     /// The program has ended, and what follows is no part of it.
@@ -137,6 +141,7 @@ impl<'a, 's> Run<'a, 's> {
             caller: None,
             frames: vec![Frame::new(Kind::Main, here, here)],
             budget: Budget::default(),
+            twins: HashMap::new(),
             flows: false,
             over: false,
             sink,
