@@ -181,7 +181,8 @@ impl<'a> Walk<'a> {
             return self.motion(&record.op, stop);
         }
         match &record.op {
-            Op::Rapid(_) | Op::Line(_) | Op::Arc(_) | Op::Hole(_) => Ok(()),
+            Op::Rapid(_) | Op::Line(_) | Op::Arc(_) | Op::Thread(_) | Op::Hole(_) => Ok(()),
+            Op::Probe(_) => Err(refuse("unsupported", "a probing move is not written")),
             Op::Cycle(cycle) => {
                 self.end_cycle()?;
                 self.cycle = Some(cycle);
@@ -257,6 +258,10 @@ impl<'a> Walk<'a> {
             Op::Line(pose) => self.line(pose, &stop),
             Op::Arc(to) => self.arc(to, &stop),
             Op::Hole(pose) => self.hole(pose, &stop),
+            Op::Thread(_) => Err(refuse(
+                "unsupported",
+                "a thread in step with the spindle is not written; tap it",
+            )),
             _ => Ok(()),
         }
     }
@@ -440,12 +445,17 @@ impl<'a> Walk<'a> {
             return Ok(());
         }
         self.active_coolant = Some(self.coolant);
-        self.required(match self.coolant {
+        let block = match self.coolant {
             Coolant::Off => BlockName::CoolantOff,
             Coolant::Flood => BlockName::CoolantFlood,
             Coolant::Mist => BlockName::CoolantMist,
+            Coolant::FloodAndMist => {
+                self.required(BlockName::CoolantMist)?;
+                BlockName::CoolantFlood
+            }
             Coolant::Through => BlockName::CoolantThrough,
-        })
+        };
+        self.required(block)
     }
 
     /// Before the tool touches the part: it turns, and coolant runs.

@@ -30,6 +30,11 @@ pub enum Op {
     Line(Pose),
     /// Arc or helix of the tool tip at the active feed.
     Arc(Box<ArcTo>),
+    /// Straight line whose feed is tied to the turn of the spindle, as a thread needs it (`G33`).
+    Thread(Box<Thread>),
+    /// Straight line at the active feed that ends where the probe answers, at the pose at the latest.
+    /// Where the tool stands afterwards only the machine knows.
+    Probe(Pose),
     /// One hole of the active [`Cycle`]; the pose is the point of the cycle on the surface and the
     /// tool axis there. The tool ends at the cycle's retract level.
     Hole(Pose),
@@ -133,6 +138,15 @@ pub struct ArcTo {
     pub turns: u32,
 }
 
+/// A thread from where the tool is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Thread {
+    /// Where it ends.
+    pub end: Pose,
+    /// mm along the way for each turn of the spindle.
+    pub pitch: f64,
+}
+
 /// How fast the tool moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Feed {
@@ -164,6 +178,8 @@ pub enum Coolant {
     Flood,
     /// Mist (`M7`).
     Mist,
+    /// Flood and mist together.
+    FloodAndMist,
     /// Through the tool.
     Through,
 }
@@ -246,6 +262,7 @@ impl Op {
         match self {
             Op::Rapid(pose) | Op::Line(pose) | Op::Hole(pose) => Some(pose),
             Op::Arc(arc) => Some(&arc.end),
+            Op::Thread(thread) => Some(&thread.end),
             _ => None,
         }
     }

@@ -123,6 +123,12 @@ impl<'a> Cursor<'a> {
                     let cycle = self.wanted.cycle.map(Kind::Hole);
                     self.motion(cycle.unwrap_or(Kind::Broken("no cycle is active")), pose)
                 }
+                Op::Thread(thread) => {
+                    self.motion(Kind::Broken("a thread is not compared"), &thread.end)
+                }
+                Op::Probe(pose) => {
+                    self.motion(Kind::Broken("a probing move is not compared"), pose)
+                }
                 Op::Dwell(seconds) if *seconds > 0.0 => Step::Dwell(*seconds),
                 Op::Stop => Step::Stop,
                 Op::OptionalStop if !self.machine.leaves_out("optional_stop") => Step::OptionalStop,

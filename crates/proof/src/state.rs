@@ -278,6 +278,7 @@ fn coolant(coolant: Coolant) -> &'static str {
         Coolant::Off => "off",
         Coolant::Flood => "flood",
         Coolant::Mist => "mist",
+        Coolant::FloodAndMist => "flood and mist",
         Coolant::Through => "through the tool",
     }
 }

@@ -2,7 +2,7 @@
 
 use super::expression::{self, Reader, Target, Value};
 use super::parameters::{Language, Values};
-use super::words::{Dictionary, Flavor, G, Group, M, why_refused};
+use super::words::{Dictionary, Flavor, G, Group, LETTERS, M, bit, index};
 use crate::decimal;
 use program::Diagnostic;
 
@@ -45,7 +45,7 @@ pub(super) struct Block<'a> {
     pub m_count: u32,
     /// A word has been read.
     started: bool,
-    words: [Word; 26],
+    words: [Word; LETTERS.len()],
     given: u32,
     pending: u32,
     g: [Option<G>; Group::COUNT],
@@ -56,11 +56,6 @@ pub(super) struct Block<'a> {
     pub assignments: Vec<(Target<'a>, Value)>,
     /// The words behind `G65` or `G66`, in their order.
     pub arguments: Vec<(u8, Word)>,
-}
-
-/// The bit of a letter in a set of letters.
-const fn bit(letter: u8) -> u32 {
-    1 << (letter - b'A')
 }
 
 impl<'a> Block<'a> {
@@ -75,7 +70,7 @@ impl<'a> Block<'a> {
             is_empty: true,
             m_count: 0,
             started: false,
-            words: [Word::default(); 26],
+            words: [Word::default(); LETTERS.len()],
             given: 0,
             pending: 0,
             g: [None; Group::COUNT],
@@ -122,24 +117,31 @@ impl<'a> Block<'a> {
                     continue;
                 }
                 b'A'..=b'Z' => at = self.word(byte, at, values)?,
-                b'a'..=b'z' if dictionary.flavor != Flavor::Fanuc => {
+                b'@' | b'^' | b'$' if dictionary.letters & bit(byte) != 0 => {
+                    at = self.word(byte, at, values)?
+                }
+                b'a'..=b'z' if dictionary.flavor.has_small_letters() => {
                     at = self.word(byte.to_ascii_uppercase(), at, values)?;
                 }
-                b'#' if values.language() == Language::Ngc => at = self.assignment(at, values)?,
+                b'#' if matches!(values.language(), Language::Ngc | Language::Rs274) => {
+                    at = self.assignment(at, values)?
+                }
                 // In ISO code the colon is the O of EIA code.
                 b':' if values.language() == Language::MacroB => {
                     at = self.word(b'O', at, values)?
                 }
-                b'(' => {
+                b'(' if dictionary.flavor != Flavor::Marlin => {
                     at = self.comment(at)?;
                     continue;
                 }
-                b';' if dictionary.flavor != Flavor::Fanuc => {
+                b';' if !dictionary.flavor.is_fanuc() => {
                     self.comments.push((at + 1, text.len()));
                     break;
                 }
                 // The proof holds for the block-delete switch off: the block is run.
-                b'/' if self.is_empty => at = after_block_delete(dictionary.flavor, text, at),
+                b'/' if self.is_empty && dictionary.flavor != Flavor::Marlin => {
+                    at = after_block_delete(dictionary.flavor, text, at)
+                }
                 _ => return Err(self.stray(dictionary.flavor, byte, at)),
             }
             self.is_empty = false;
@@ -225,7 +227,7 @@ impl<'a> Block<'a> {
                 if letter != b'N' {
                     self.pending |= letter_bit;
                 }
-                self.words[usize::from(letter - b'A')] = word;
+                self.words[index(letter)] = word;
             }
         }
         self.started = true;
@@ -243,7 +245,7 @@ impl<'a> Block<'a> {
         let calculates = match (values.language(), self.text.get(from)) {
             (Language::Plain, _) => false,
             (_, Some(b'#' | b'[' | b'+' | b'-')) => true,
-            (language, Some(byte)) => language == Language::Ngc && byte.is_ascii_alphabetic(),
+            (language, Some(byte)) => language != Language::MacroB && byte.is_ascii_alphabetic(),
             _ => false,
         };
         if !calculates {
@@ -317,7 +319,7 @@ impl<'a> Block<'a> {
 
     /// Puts a calculated word into the block.
     pub(super) fn put(&mut self, letter: u8, value: f64) {
-        self.words[usize::from(letter - b'A')] = Word { value, computed: true, ..Word::default() };
+        self.words[index(letter)] = Word { value, computed: true, ..Word::default() };
         self.given |= bit(letter);
         self.pending |= bit(letter);
         self.is_empty = false;
@@ -349,7 +351,14 @@ impl<'a> Block<'a> {
             return None;
         }
         self.pending &= !bit(letter);
-        Some(self.words[usize::from(letter - b'A')])
+        Some(self.words[index(letter)])
+    }
+
+    /// The words of these letters count as used.
+    pub(super) fn pass(&mut self, letters: &[u8]) {
+        for &letter in letters {
+            self.pending &= !bit(letter);
+        }
     }
 
     /// # Errors
@@ -358,14 +367,14 @@ impl<'a> Block<'a> {
         if self.pending == 0 {
             return Ok(());
         }
-        let letter = b'A' + self.pending.trailing_zeros() as u8;
+        let letter = LETTERS[self.pending.trailing_zeros() as usize % LETTERS.len()];
         let message = format!("nothing in the block uses {}", self.shown(letter));
         Err(self.at_word(letter, "nc-unused-word", message))
     }
 
     /// A word as it is written.
     pub(super) fn shown(&self, letter: u8) -> String {
-        let word = self.words[usize::from(letter - b'A')];
+        let word = self.words[index(letter)];
         let text = self.text.get(word.start as usize..word.end as usize).unwrap_or_default();
         String::from_utf8_lossy(text).into_owned()
     }
@@ -377,7 +386,7 @@ impl<'a> Block<'a> {
         rule: &'static str,
         message: impl Into<String>,
     ) -> Fault {
-        let word = self.words[usize::from(letter - b'A')];
+        let word = self.words[index(letter)];
         self.fault(rule, message, word.start as usize, word.end as usize)
     }
 
@@ -432,10 +441,7 @@ impl<'a> Block<'a> {
             format!("{} is no word of this control", char::from(letter))
         };
         let mut fault = Diagnostic::error("nc-unknown-word", message);
-        if let Some(reason) = Some(letter)
-            .filter(|l| matches!(l, b'G' | b'M'))
-            .and_then(|letter| why_refused(letter, word.value))
-        {
+        if let Some(reason) = self.dictionary.why_refused(letter, word.value) {
             fault = fault.help(reason);
         }
         fault.at(self.line, self.text, start, end).into()
@@ -461,7 +467,7 @@ impl<'a> Block<'a> {
             b'%' => "% stands alone on its line".to_owned(),
             b';' => "; does not begin a comment here; write ( )".to_owned(),
             b'0'..=b'9' | b'.' | b'+' | b'-' => "a number without its letter".to_owned(),
-            b'a'..=b'z' if flavor == Flavor::Fanuc => "small letters are no words".to_owned(),
+            b'a'..=b'z' if !flavor.has_small_letters() => "small letters are no words".to_owned(),
             b'!'..=b'~' => format!("{} begins no word", char::from(byte)),
             _ => format!("byte {byte:#04x} begins no word"),
         };
@@ -471,6 +477,6 @@ impl<'a> Block<'a> {
 
 /// The place after `/`, or on FANUC `/1` to `/9`.
 fn after_block_delete(flavor: Flavor, text: &[u8], at: usize) -> usize {
-    let numbered = flavor == Flavor::Fanuc && matches!(text.get(at + 1), Some(b'1'..=b'9'));
+    let numbered = flavor.is_fanuc() && matches!(text.get(at + 1), Some(b'1'..=b'9'));
     at + 1 + usize::from(numbered)
 }

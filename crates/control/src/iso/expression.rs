@@ -295,20 +295,22 @@ impl<'t, 'v> Reader<'t, 'v> {
             b'-' => Binary::Minus,
             b'/' => Binary::Divide,
             b'*' if self.text.get(self.at + 1) == Some(&b'*')
-                && self.values.language() == Language::Ngc =>
+                && self.values.language() != Language::MacroB =>
             {
                 return Some((Binary::Power, 2));
             }
             b'*' => Binary::Times,
+            // The first RS274/NGC does not compare.
+            _ if self.values.language() == Language::Rs274 => return self.word(&BINARY[6..]),
             _ => return self.word(&BINARY),
         };
         Some((symbol, 1))
     }
 
-    /// The word of `table` that stands here and its length. Only RS274/NGC has small letters.
+    /// The word of `table` that stands here and its length. Macro B has no small letters.
     fn word<T: Copy>(&self, table: &[(&[u8], T)]) -> Option<(T, usize)> {
         let rest = self.text.get(self.at..)?;
-        let small = self.values.language() == Language::Ngc;
+        let small = self.values.language() != Language::MacroB;
         table.iter().find_map(|(word, meaning)| {
             let here = rest.get(..word.len())?;
             let same = here == *word || small && here.eq_ignore_ascii_case(word);
@@ -320,7 +322,8 @@ impl<'t, 'v> Reader<'t, 'v> {
         let start = self.at;
         let own: &[(&[u8], Function)] = match self.values.language() {
             Language::MacroB => &MACRO_FUNCTIONS,
-            _ => &NGC_FUNCTIONS,
+            Language::Ngc => &NGC_FUNCTIONS,
+            _ => &[],
         };
         let Some((function, length)) = self.word(&FUNCTIONS).or_else(|| self.word(own)) else {
             let message = "no function of this control begins here";

@@ -397,6 +397,16 @@ impl<'a> Run<'a, '_> {
         self.jump(at, line)
     }
 
+    /// Where the block N of this number is (Haas `M97`).
+    pub(super) fn block_of_program(&self, label: u32) -> Result<Result<Place<'a>, String>, Fault> {
+        let source = self.here.source;
+        let labels = source.labels(self.settings.setup.block_delete)?;
+        Ok(match labels.block(label, self.here.at) {
+            Some((at, line)) => Ok(Place { source, at, line, percent_signs: 1 }),
+            None => Err(format!("there is no block N{label} in this program")),
+        })
+    }
+
     /// Where the program of this number begins: in this file, in the program's own, or in one of its
     /// name.
     pub(super) fn macro_program(&self, number: u32) -> Result<Result<Place<'a>, String>, Fault> {

@@ -1,25 +1,35 @@
-//! ISO code: FANUC 30i for milling, LinuxCNC's RS-274, and GRBL 1.1.
+//! ISO code: FANUC 30i for milling, Haas, LinuxCNC's RS-274, Mach3, GRBL 1.1, Marlin.
 //!
-//! The three share the words and the order of execution and differ in tables ([`words`]) and in the
+//! They share the words and the order of execution and differ in tables ([`flavors`]) and in the
 //! rules that each maker states; `docs/controls/iso.md` and its neighbours say which, with sources.
 //! A line goes by as it stands ([`run`]), or leads elsewhere: O-words ([`owords`]) and statements of
 //! macro B ([`macros`]). A block is taken apart ([`block`]), its numbers calculated where it says so
-//! ([`expression`], [`parameters`], [`system`]), run on a copy of the [`state`] with its records held
-//! back ([`execute`], [`motion`], [`arcs`], [`cycles`]), and only a block without a mistake takes effect.
+//! ([`expression`], [`parameters`], [`system`]), and run with its records held back ([`execute`],
+//! [`motion`], [`arcs`], [`cycles`], [`coordinates`], [`tools`]): a block with a mistake leaves none.
 
 mod arcs;
 mod block;
+mod calls;
+mod coordinates;
 mod cycles;
 mod execute;
 mod expression;
+mod flavors;
+mod frames;
 mod macros;
+mod modes;
 mod motion;
 mod owords;
 mod parameters;
+mod patterns;
+mod places;
 mod run;
 mod source;
+mod splines;
 mod state;
 mod system;
+mod threads;
+mod tools;
 mod words;
 
 use crate::{Settings, Sink};

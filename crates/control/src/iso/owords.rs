@@ -4,9 +4,10 @@
 //! one is never looked at for that.
 
 use super::block::Fault;
+use super::calls::{Kind, Repeat};
 use super::expression::Reader;
 use super::parameters::Locals;
-use super::run::{Kind, Repeat, Run};
+use super::run::Run;
 use super::source::{self, Place, Source};
 use crate::decimal;
 use program::Diagnostic;

@@ -12,7 +12,9 @@ use std::collections::HashMap;
 pub(super) enum Language {
     /// Not at all.
     Plain,
-    /// RS274/NGC: parameters, also named ones, and O-words.
+    /// RS274/NGC as it was first written down: numbered parameters, no comparisons.
+    Rs274,
+    /// RS274/NGC as LinuxCNC has it: named parameters and O-words, too.
     Ngc,
     /// Custom macro B.
     MacroB,
@@ -23,8 +25,9 @@ impl Flavor {
     pub(super) fn language(self) -> Language {
         match self {
             Flavor::LinuxCnc => Language::Ngc,
-            Flavor::Fanuc => Language::MacroB,
-            Flavor::Grbl => Language::Plain,
+            Flavor::Mach3 => Language::Rs274,
+            Flavor::Fanuc | Flavor::Haas => Language::MacroB,
+            Flavor::Grbl | Flavor::Marlin => Language::Plain,
         }
     }
 }
@@ -103,13 +106,15 @@ impl Parameters {
     fn is_local(&self, number: u32) -> bool {
         match self.language {
             Language::Ngc => (1..=30).contains(&number),
-            _ => (1..=33).contains(&number),
+            Language::MacroB => (1..=33).contains(&number),
+            Language::Rs274 | Language::Plain => false,
         }
     }
 
     fn is_common(&self, number: u32) -> bool {
         match self.language {
             Language::Ngc => (31..=5000).contains(&number) || number == 5599,
+            Language::Rs274 => (1..=5000).contains(&number),
             _ => (100..=199).contains(&number) || (500..=999).contains(&number),
         }
     }
@@ -198,11 +203,12 @@ impl Values<'_> {
                 if !self.parameters.is_local(number) && !self.parameters.is_common(number) {
                     return match self.parameters.language {
                         Language::MacroB => system::macro_variable(self, number).map(Some),
-                        _ => system::ngc_parameter(self, number).map(Some),
+                        Language::Ngc => system::ngc_parameter(self, number).map(Some),
+                        _ => Err(format!("what #{number} holds is known only at the machine")),
                     };
                 }
                 match self.parameters.language {
-                    Language::Ngc if self.fresh => Ok(Some(0.0)),
+                    Language::Ngc | Language::Rs274 if self.fresh => Ok(Some(0.0)),
                     Language::MacroB if self.fresh && number < 200 => Ok(None),
                     _ => Err(format!(
                         "no block has set #{number}: it holds what another program or the operator \

@@ -314,6 +314,11 @@ fn motion_word(values: &Values) -> Result<f64, String> {
         Some(Motion::Line) => 1.0,
         Some(Motion::Arc { clockwise: true }) => 2.0,
         Some(Motion::Arc { clockwise: false }) => 3.0,
+        Some(Motion::Thread) => 33.0,
+        Some(Motion::RigidTap) => 33.1,
+        Some(Motion::Spline { cubic: true }) => 5.0,
+        Some(Motion::Spline { cubic: false }) => 5.1,
+        Some(Motion::Probe) => return Err("which probing move is active is not kept".into()),
         None => 80.0,
     })
 }

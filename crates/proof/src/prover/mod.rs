@@ -152,6 +152,11 @@ impl<'a> Prover<'a> {
             Op::Line(pose) => self.motion(line, Gait::Feed, pose, None),
             Op::Arc(to) => self.motion(line, Gait::Feed, &to.end, Some(to)),
             Op::Hole(pose) => self.drilled(line, pose),
+            Op::Thread(_) | Op::Probe(_) => Err(self.lost_at(
+                line,
+                "unsupported",
+                "probes or cuts a thread, which is not compared",
+            )),
             Op::Home(axes) => self.home(line, *axes),
             Op::Tool(tool) => self.change_tool(line, tool),
             op => {
