@@ -1,13 +1,14 @@
 //! One block, in the order in which a control executes it.
 
 use super::block::{Block, Fault};
+use super::expression;
 use super::state::State;
 use super::words::{FeedMode, Flavor, G, Group, M, Motion, Side};
 use crate::{Settings, WholeNumbers};
 use program::{Coolant, Feed, Op, Spindle};
 
 /// mm in an inch.
-const INCH: f64 = 25.4;
+pub(super) const INCH: f64 = 25.4;
 
 /// A virtual control: its flavour, its axes and its state.
 #[derive(Debug)]
@@ -16,7 +17,7 @@ pub(super) struct Control {
     /// Which of A, B, C exist.
     pub axes: [bool; 3],
     whole_numbers: WholeNumbers,
-    state: State,
+    pub state: State,
 }
 
 /// A block in the making: the control's rules, the state as it changes, the records so far.
@@ -41,23 +42,11 @@ impl Control {
         Control { flavor, axes, whole_numbers, state: State::new(flavor, axes, settings) }
     }
 
-    /// Executes `block` and puts its records into `ops`. `closed`: the last `%` has gone by.
+    /// Executes `block` and puts its records into `ops`.
     ///
     /// # Errors
     /// The block means nothing, or is not legal here: the run ends with it.
-    pub(super) fn execute(
-        &mut self,
-        block: &mut Block,
-        closed: bool,
-        ops: &mut Vec<Op>,
-    ) -> Result<(), Fault> {
-        ops.extend(block.comments());
-        if block.is_empty {
-            return Ok(());
-        }
-        if self.state.ended || closed {
-            return Err(block.whole("nc-after-end", "the program has ended before this block"));
-        }
+    pub(super) fn execute(&mut self, block: &mut Block, ops: &mut Vec<Op>) -> Result<(), Fault> {
         let Control { flavor, axes, whole_numbers, state } = self;
         let (flavor, axes, whole_numbers) = (*flavor, *axes, *whole_numbers);
         Step { flavor, axes, whole_numbers, state, block, ops }.run()
@@ -69,7 +58,6 @@ impl Step<'_, '_, '_> {
     /// is that of RS274/NGC 3.8. FANUC leaves the moment of an M function to the builder of the
     /// machine: what could matter there is refused.
     fn run(&mut self) -> Result<(), Fault> {
-        self.program_number()?;
         self.m_functions_beside_motion()?;
         self.feed()?;
         self.speed()?;
@@ -81,16 +69,6 @@ impl Step<'_, '_, '_> {
         self.motion()?;
         self.flow()?;
         self.block.all_taken()
-    }
-
-    /// `O` names the program and stands at its start: another one is another program.
-    fn program_number(&mut self) -> Result<(), Fault> {
-        if self.block.has(b'O') && self.state.begun {
-            let message = "another program begins here; a program has its number O first";
-            return Err(self.block.at_word(b'O', "nc-program-number", message));
-        }
-        self.state.begun = true;
-        self.take_whole(b'O').map(|_| ())
     }
 
     /// FANUC runs one M function a block (parameter 3404, bit 7, as delivered), and only the builder
@@ -438,7 +416,7 @@ impl Step<'_, '_, '_> {
     /// The number of this letter, and whether it counts least increments.
     fn take_pointed(&mut self, letter: u8) -> Result<Option<(f64, bool)>, Fault> {
         let Some(word) = self.block.take(letter) else { return Ok(None) };
-        if word.point || word.value == 0.0 {
+        if word.is_in_units() || word.value == 0.0 {
             return Ok(Some((word.value, false)));
         }
         match self.whole_numbers {
@@ -459,11 +437,14 @@ impl Step<'_, '_, '_> {
     pub(super) fn take_whole(&mut self, letter: u8) -> Result<Option<u32>, Fault> {
         let Some(word) = self.block.take(letter) else { return Ok(None) };
         let pointed = word.point && self.flavor.is_fanuc();
-        if pointed || word.value.fract() != 0.0 || !(0.0..=99_999_999.0).contains(&word.value) {
-            let message = format!("{} must be a whole number", char::from(letter));
-            return Err(self.block.at_word(letter, "nc-number", message));
+        let value = if word.computed { expression::whole(word.value) } else { exact(word.value) };
+        match value.filter(|&value| !pointed && value <= 99_999_999) {
+            Some(value) => Ok(Some(value)),
+            None => {
+                let message = format!("{} must be a whole number", char::from(letter));
+                Err(self.block.at_word(letter, "nc-number", message))
+            }
         }
-        Ok(Some(word.value as u32))
     }
 
     /// # Errors
@@ -482,4 +463,9 @@ impl Step<'_, '_, '_> {
         }
         Err(self.block.at_group(group, "nc-axis", "the machine has no rotary axis"))
     }
+}
+
+/// The whole number that is written.
+fn exact(value: f64) -> Option<u32> {
+    (value.fract() == 0.0 && (0.0..=f64::from(u32::MAX)).contains(&value)).then_some(value as u32)
 }

@@ -61,8 +61,6 @@ pub(super) struct State {
     /// The last P of a cycle, s.
     pub cycle_dwell: Option<f64>,
     pub cycle: Option<Holding>,
-    /// A block has been executed.
-    pub begun: bool,
     /// Something has moved.
     pub moved: bool,
     /// Something has moved at feed.
@@ -175,7 +173,6 @@ impl State {
             return_to_r: flavor.is_fanuc().then_some(false),
             cycle_dwell: None,
             cycle: None,
-            begun: false,
             moved: false,
             cut: false,
             ended: false,

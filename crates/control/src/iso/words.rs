@@ -76,6 +76,12 @@ pub(super) enum G {
     Machine,
     LookAhead,
     SwingToTilt,
+    /// `G65`, `G66`: the macro that P names, once or after each move.
+    MacroCall {
+        modal: bool,
+    },
+    /// `G67`.
+    CancelMacroCall,
     /// `G31`
     Skip,
     /// `G60`
@@ -187,6 +193,17 @@ pub(super) enum M {
     ThroughOff,
     CoolantOff,
     RigidTap,
+    /// `M98`, Haas `M97`, `M99`: the subprogram that P names, the one that begins at a block of this
+    /// program, and the way back.
+    Call,
+    CallBlock,
+    Return,
+    /// `M70` to `M73`: the modes kept for `M72`, and for the end of the subroutine too.
+    SaveModes {
+        until_return: bool,
+    },
+    ForgetModes,
+    RestoreModes,
     /// Nothing moves for it; the letters may stand beside it.
     Neutral(&'static [u8]),
 }
@@ -221,11 +238,12 @@ pub(super) enum Group {
     Coolant,
     Override,
     Output,
+    Modes,
 }
 
 impl Group {
     /// How many groups there are.
-    pub(super) const COUNT: usize = Group::Output as usize + 1;
+    pub(super) const COUNT: usize = Group::Modes as usize + 1;
 }
 
 /// A G word: ten times its number (`G43.4` is 434), its group, its meaning.

@@ -2,7 +2,9 @@
 //! 01, the interpolation.
 
 use super::super::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Motion, Refused};
-use super::{BASIC_G, BASIC_M, FRAME_G, MILL_G, MILL_M, TOOL_G, TOOL_M, cycles};
+use super::{
+    BASIC_G, BASIC_M, FRAME_G, MACRO_G, MILL_G, MILL_M, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles,
+};
 
 const G_WORDS: &[GRow] = &[
     (51, Group::OneShot, G::LookAhead),
@@ -21,7 +23,6 @@ const G_WORDS: &[GRow] = &[
     (620, Group::Path, G::Neutral(b"")),
     (630, Group::Path, G::Neutral(b"")),
     (640, Group::Path, G::Neutral(b"")),
-    (670, Group::Macro, G::Neutral(b"")),
     (682, Group::Tilt, G::Tilt),
     (800, Group::Cycle, G::CancelCycle),
 ];
@@ -37,23 +38,20 @@ const REFUSED_G: &[Refused] = &[
     (435, "tool vectors in the block are not followed; use G43.4"),
     (411, "a tool radius in the block is not followed; use G41 D"),
     (421, "a tool radius in the block is not followed; use G42 D"),
-    (650, "macro calls are not followed"),
-    (660, "macro calls are not followed"),
+    (661, "a macro called for every block is not followed; use G66"),
     (760, "the way out of fine boring is set by parameters 5101 and 5148; write its moves, or G86"),
     (870, "the way out of back boring is set by parameters 5101 and 5148; write its moves"),
     (921, "it goes back to an offset that stands in the control"),
     (960, "constant surface speed is for turning"),
 ];
 
-const REFUSED_M: &[Refused] =
-    &[(98, "subprograms are not followed"), (99, "subprograms are not followed")];
-
 pub(super) static WORDS: Dictionary =
     Dictionary::new(Flavor::Fanuc, b"ABCDFGHIJKLMNOPQRSTXYZ", usize::MAX)
         .with(BASIC_G, BASIC_M)
         .with(MILL_G, MILL_M)
         .with(TOOL_G, TOOL_M)
-        .with(FRAME_G, &[])
+        .with(FRAME_G, SUBPROGRAM_M)
+        .with(MACRO_G, &[])
         .with(&cycles(Group::Cycle), &[])
         .with(G_WORDS, M_WORDS)
-        .refusing(REFUSED_G, REFUSED_M);
+        .refusing(REFUSED_G, &[]);

@@ -1,7 +1,9 @@
 //! Haas NGC mills, "Mill Operator's Manual", chapters G codes and M codes.
 
 use super::super::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Pattern, Refused};
-use super::{BASIC_G, BASIC_M, FRAME_G, MILL_G, MILL_M, TOOL_G, TOOL_M, cycles};
+use super::{
+    BASIC_G, BASIC_M, FRAME_G, MACRO_G, MILL_G, MILL_M, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles,
+};
 
 const G_WORDS: &[GRow] = &[
     (90, Group::OneShot, G::Neutral(b"")),
@@ -41,7 +43,11 @@ const G_WORDS: &[GRow] = &[
     (1870, Group::OneShot, G::Neutral(b"PE")),
 ];
 
-const M_WORDS: &[MRow] = &[(88, Group::Coolant, M::Through), (89, Group::Coolant, M::ThroughOff)];
+const M_WORDS: &[MRow] = &[
+    (88, Group::Coolant, M::Through),
+    (89, Group::Coolant, M::ThroughOff),
+    (97, Group::Flow, M::CallBlock),
+];
 
 const REFUSED_G: &[Refused] = &[
     (120, "the size of the pocket depends on the register D; write its moves"),
@@ -52,7 +58,6 @@ const REFUSED_G: &[Refused] = &[
     (370, "a measured tool is known only at the machine"),
     (440, "it subtracts the register of the tool length; write G43 with the sign in the register"),
     (470, "engraving is not followed; write its moves"),
-    (650, "macro calls are not followed"),
     (760, "the way out of fine boring is setting 27; write its moves, or G86"),
     (770, "the way out of back boring is setting 27; write its moves"),
     (870, "a cycle that ends by hand is followed as G88 only"),
@@ -65,18 +70,13 @@ const REFUSED_G: &[Refused] = &[
     (1740, "tapping out of the vertical is not followed"),
 ];
 
-const REFUSED_M: &[Refused] = &[
-    (97, "subprograms are not followed"),
-    (98, "subprograms are not followed"),
-    (99, "subprograms are not followed"),
-];
-
 pub(super) static WORDS: Dictionary =
     Dictionary::new(Flavor::Haas, b"ABCDEFGHIJKLMNOPQRSTXYZ", usize::MAX)
         .with(BASIC_G, BASIC_M)
         .with(MILL_G, MILL_M)
         .with(TOOL_G, TOOL_M)
-        .with(FRAME_G, &[])
+        .with(FRAME_G, SUBPROGRAM_M)
+        .with(MACRO_G, &[])
         .with(&cycles(Group::Cycle), &[])
         .with(G_WORDS, M_WORDS)
-        .refusing(REFUSED_G, REFUSED_M);
+        .refusing(REFUSED_G, &[]);

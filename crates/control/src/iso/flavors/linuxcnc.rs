@@ -2,7 +2,7 @@
 //! a group of its own.
 
 use super::super::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Motion, Refused};
-use super::{BASIC_G, BASIC_M, MILL_G, MILL_M, TOOL_G, TOOL_M, cycles};
+use super::{BASIC_G, BASIC_M, MILL_G, MILL_M, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles};
 
 const G_WORDS: &[GRow] = &[
     (50, Group::Motion, G::Motion(Motion::Spline { cubic: true })),
@@ -47,6 +47,10 @@ const M_WORDS: &[MRow] = &[
     (66, Group::Output, M::Neutral(b"PELQ")),
     (67, Group::Output, M::Neutral(b"EQ")),
     (68, Group::Output, M::Neutral(b"EQ")),
+    (70, Group::Modes, M::SaveModes { until_return: false }),
+    (71, Group::Modes, M::ForgetModes),
+    (72, Group::Modes, M::RestoreModes),
+    (73, Group::Modes, M::SaveModes { until_return: true }),
 ];
 
 const REFUSED_G: &[Refused] = &[
@@ -65,14 +69,12 @@ const REFUSED_G: &[Refused] = &[
     (960, "constant surface speed is for turning"),
 ];
 
-const REFUSED_M: &[Refused] =
-    &[(98, "subprograms are not followed"), (99, "subprograms are not followed")];
-
 pub(super) static WORDS: Dictionary =
     Dictionary::new(Flavor::LinuxCnc, b"ABCDEFGHIJKLMNPQRSTXYZ@^$", 254)
         .with(BASIC_G, BASIC_M)
         .with(MILL_G, MILL_M)
         .with(TOOL_G, TOOL_M)
+        .with(&[], SUBPROGRAM_M)
         .with(&cycles(Group::Motion), &[])
         .with(G_WORDS, M_WORDS)
-        .refusing(REFUSED_G, REFUSED_M);
+        .refusing(REFUSED_G, &[]);

@@ -2,7 +2,7 @@
 //! on which it is built; `G80` may stand beside `G0` to `G3`.
 
 use super::super::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Refused};
-use super::{BASIC_G, BASIC_M, FRAME_G, MILL_G, MILL_M, TOOL_G, TOOL_M, cycles};
+use super::{BASIC_G, BASIC_M, FRAME_G, MILL_G, MILL_M, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles};
 
 const G_WORDS: &[GRow] = &[
     (100, Group::OneShot, G::WriteData),
@@ -31,18 +31,14 @@ const REFUSED_G: &[Refused] = &[
     (960, "constant surface speed is for turning"),
 ];
 
-const REFUSED_M: &[Refused] = &[
-    (47, "a program that begins again from its first line never ends"),
-    (98, "subprograms are not followed"),
-    (99, "subprograms are not followed"),
-];
+const REFUSED_M: &[Refused] = &[(47, "a program that begins again from its first line never ends")];
 
 pub(super) static WORDS: Dictionary =
     Dictionary::new(Flavor::Mach3, b"ABCDFGHIJKLMNOPQRSTXYZ", usize::MAX)
         .with(BASIC_G, BASIC_M)
         .with(MILL_G, MILL_M)
         .with(TOOL_G, TOOL_M)
-        .with(FRAME_G, &[])
+        .with(FRAME_G, SUBPROGRAM_M)
         .with(&cycles(Group::Motion), &[])
         .with(G_WORDS, M_WORDS)
         .refusing(REFUSED_G, REFUSED_M);

@@ -91,6 +91,16 @@ const TOOL_M: &[MRow] = &[
     (49, Group::Override, M::Neutral(b"")),
 ];
 
+/// Subprograms.
+const SUBPROGRAM_M: &[MRow] = &[(98, Group::Flow, M::Call), (99, Group::Flow, M::Return)];
+
+/// Calls of custom macro B.
+const MACRO_G: &[GRow] = &[
+    (650, Group::Macro, G::MacroCall { modal: false }),
+    (660, Group::Macro, G::MacroCall { modal: true }),
+    (670, Group::Macro, G::CancelMacroCall),
+];
+
 /// Turned, scaled, mirrored and polar coordinates.
 const FRAME_G: &[GRow] = &[
     (150, Group::Polar, G::Polar(false)),
