@@ -361,6 +361,13 @@ impl<'a> Block<'a> {
         }
     }
 
+    /// The words of these letters can be taken once more.
+    pub(super) fn again(&mut self, letters: &[u8]) {
+        for &letter in letters {
+            self.pending |= self.given & bit(letter);
+        }
+    }
+
     /// # Errors
     /// A word that nothing in the block uses.
     pub(super) fn all_taken(&self) -> Result<(), Fault> {

@@ -63,7 +63,7 @@ impl Step<'_, '_, '_> {
         self.speed()?;
         self.tool()?;
         self.spindle_and_coolant()?;
-        self.neutral_m();
+        self.neutral_m()?;
         self.dwell()?;
         self.modes()?;
         self.motion()?;
@@ -199,12 +199,21 @@ impl Step<'_, '_, '_> {
     }
 
     /// M functions for which nothing moves: their letters are taken.
-    fn neutral_m(&mut self) {
+    fn neutral_m(&mut self) -> Result<(), Fault> {
         for group in [Group::Override, Group::Output] {
-            if let Some(M::Neutral(letters)) = self.block.m(group) {
-                self.block.pass(letters);
+            match self.block.m(group) {
+                Some(M::Neutral(letters)) => self.block.pass(letters),
+                Some(M::Output(letters)) => {
+                    if let Some(&letter) = letters.iter().find(|&&letter| !self.block.has(letter)) {
+                        let message = format!("{} is missing", char::from(letter));
+                        return Err(self.block.at_group(group, "nc-output", message));
+                    }
+                    self.block.pass(letters);
+                }
+                _ => {}
             }
         }
+        Ok(())
     }
 
     fn cool(&mut self, coolant: Coolant) -> Result<(), Fault> {
@@ -290,9 +299,8 @@ impl Step<'_, '_, '_> {
         self.length()?;
         self.work_offset()?;
         for group in [Group::Path, Group::OneShot] {
-            if let Some(G::Neutral(letters)) = self.block.g(group) {
-                self.block.pass(letters);
-            }
+            let Some(G::Neutral(letters)) = self.block.g(group) else { continue };
+            self.block.pass(letters);
         }
         if let Some(G::Diameter(diameter)) = self.block.g(Group::Diameter) {
             self.state.diameter = diameter;

@@ -206,6 +206,8 @@ pub(super) enum M {
     RestoreModes,
     /// Nothing moves for it; the letters may stand beside it.
     Neutral(&'static [u8]),
+    /// An output of the machine; the letters must stand beside it.
+    Output(&'static [u8]),
 }
 
 /// Words of one group exclude each other in a block.
