@@ -168,6 +168,12 @@ impl<'a> Block<'a> {
                 (word.value, word.point) = (number.value, number.point);
                 from + number.len
             }
+            // Marlin's G28 X: an axis that is named.
+            None if self.g(Group::OneShot) == Some(G::Home)
+                && dictionary.flavor == Flavor::Marlin =>
+            {
+                at + 1
+            }
             None => {
                 let (value, end) = self.computed(letter, at, from, values)?;
                 self.started = true;
@@ -333,6 +339,11 @@ impl<'a> Block<'a> {
     /// The M word of a group.
     pub(super) fn m(&self, group: Group) -> Option<M> {
         self.m[group as usize]
+    }
+
+    /// How many G and M words there are, apart from those of the builder.
+    pub(super) fn commands(&self) -> usize {
+        self.g.iter().flatten().count() + self.m.iter().flatten().count()
     }
 
     /// Whether the block has this letter and nothing has taken it yet.

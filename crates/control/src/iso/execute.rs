@@ -58,6 +58,7 @@ impl Step<'_, '_, '_> {
     /// is that of RS274/NGC 3.8. FANUC leaves the moment of an M function to the builder of the
     /// machine: what could matter there is refused.
     fn run(&mut self) -> Result<(), Fault> {
+        self.one_command()?;
         self.m_functions_beside_motion()?;
         self.feed()?;
         self.speed()?;
@@ -69,6 +70,20 @@ impl Step<'_, '_, '_> {
         self.motion()?;
         self.flow()?;
         self.block.all_taken()
+    }
+
+    /// Marlin takes the first command of a line and what follows as its parameters; a line without one
+    /// means nothing to it (`GCODE_MOTION_MODES` as delivered).
+    fn one_command(&mut self) -> Result<(), Fault> {
+        if self.flavor != Flavor::Marlin {
+            return Ok(());
+        }
+        self.state.motion = None;
+        if self.block.commands() + usize::from(self.block.has(b'T')) > 1 {
+            let message = "this control takes one command a line";
+            return Err(self.block.whole("nc-many-commands", message));
+        }
+        Ok(())
     }
 
     /// FANUC runs one M function a block (parameter 3404, bit 7, as delivered), and only the builder
