@@ -395,10 +395,14 @@ fn a_word_that_nothing_uses_is_refused() {
 }
 
 #[test]
-fn grbl_has_no_macros_expressions_or_subprograms() {
-    for block in ["#1=5", "G0 X#1", "G0 X[1+2]", "IF[#1EQ0]GOTO5"] {
-        assert_eq!(rule(GRBL, &format!("{block}\n")).get(..3), Some("nc-"), "{block}");
+fn a_control_without_parameters_says_so() {
+    for block in ["#1=5", "G0 X#1", "G0 X[1+2]"] {
+        for dialect in [GRBL, Dialect::Marlin] {
+            let error = run(dialect, [false; 3], &format!("{block}\n")).unwrap_err();
+            assert!(error.message.contains("no parameters"), "{error}");
+        }
     }
+    assert_eq!(rule(GRBL, "o100 sub\n"), "nc-unknown-word");
     let error = run(GRBL, [false; 3], "N5 M98 P1000\n").unwrap_err();
     assert_eq!((error.line, error.column, error.width), (2, 4, 3));
     assert_eq!(error.help, "this control has no subprograms");
