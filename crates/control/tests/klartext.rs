@@ -1,90 +1,12 @@
 //! The Klartext control against examples of the HEIDENHAIN manuals and calculations by hand.
 
+mod klartext_common;
+
 use geom::Vec3;
+use klartext_common::*;
 use program::{
-    ArcTo, Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, Op, Orientation, Pose,
-    Record, Spindle,
+    Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, Op, Orientation, Pose, Spindle,
 };
-use toolpost_control::{self as control, Dialect, Settings};
-
-const FIVE_AXES: [bool; 3] = [false, true, true];
-
-/// Runs the blocks of a program, which are numbered here; a line that begins with a blank goes on
-/// with the block before it.
-fn run_on(rotary: [bool; 3], unit: &str, blocks: &str) -> Result<Vec<Record>, Box<Diagnostic>> {
-    let mut text = format!("0 BEGIN PGM T {unit}\n");
-    let mut number = 1;
-    for block in blocks.lines().filter(|block| !block.is_empty()) {
-        if block.starts_with(' ') {
-            text += &format!("{block}\n");
-        } else {
-            text += &format!("{number} {block}\n");
-            number += 1;
-        }
-    }
-    text += &format!("{number} END PGM T {unit}\n");
-    read_on(rotary, text.as_bytes())
-}
-
-fn read_on(rotary: [bool; 3], text: &[u8]) -> Result<Vec<Record>, Box<Diagnostic>> {
-    let mut records = Vec::new();
-    let settings = Settings { auxiliary: vec![60], ..Settings::new(Dialect::Klartext, rotary) };
-    control::read(&settings, "t.h", text, &mut |record| {
-        records.push(record);
-        Ok(())
-    })?;
-    Ok(records)
-}
-
-fn run(blocks: &str) -> Vec<Op> {
-    run_on([false; 3], "MM", blocks).unwrap().into_iter().map(|record| record.op).collect()
-}
-
-fn run_five(blocks: &str) -> Vec<Op> {
-    run_on(FIVE_AXES, "MM", blocks).unwrap().into_iter().map(|record| record.op).collect()
-}
-
-fn refused(blocks: &str) -> Box<Diagnostic> {
-    run_on([false; 3], "MM", blocks).unwrap_err()
-}
-
-fn refused_five(blocks: &str) -> Box<Diagnostic> {
-    run_on(FIVE_AXES, "MM", blocks).unwrap_err()
-}
-
-fn upright(x: f64, y: f64, z: f64) -> Pose {
-    let orientation = Orientation::Rotary { degrees: [0.0; 3], tool_center: false };
-    Pose { point: Vec3::new(x, y, z), orientation }
-}
-
-fn poses(ops: &[Op]) -> Vec<Pose> {
-    ops.iter().filter_map(|op| op.pose().copied()).collect()
-}
-
-fn points(ops: &[Op]) -> Vec<[f64; 3]> {
-    poses(ops).iter().map(|pose| pose.point.to_array()).collect()
-}
-
-fn arcs(ops: &[Op]) -> Vec<ArcTo> {
-    ops.iter()
-        .filter_map(|op| match op {
-            Op::Arc(arc) => Some(**arc),
-            _ => None,
-        })
-        .collect()
-}
-
-fn cycles(ops: &[Op]) -> Vec<Cycle> {
-    ops.iter()
-        .filter_map(|op| match op {
-            Op::Cycle(cycle) => Some(**cycle),
-            _ => None,
-        })
-        .collect()
-}
-
-/// To a known place, with the spindle turning.
-const START: &str = "TOOL CALL 5 Z S3000 F500\nL X+0 Y+0 Z+50 R0 FMAX M3\n";
 
 #[test]
 fn an_ordinary_program_runs_block_by_block() {

@@ -65,16 +65,22 @@ impl Control<'_, '_> {
     /// Moves as the words say: M functions of the start, the motion, M functions of the end.
     fn positioning(&mut self, s: &Scanner, words: &Words, corner: bool) -> Result<()> {
         let moves = words.has(LINEAR | ROTARY | VECTORS);
+        // What waits ends elsewhere than at the corner from which the words count.
+        let mut to = None;
         if self.waiting.is_some() {
-            let (end, _) = self.targets(s, words)?;
+            let (end, degrees) = self.targets(s, words)?;
             if !moves || words.is_rapid() || words.has(ROTARY | VECTORS) {
                 let message = "a line or an arc at a feed must follow RND, CHF and APPR";
                 return Err(s.error_block("contour", message));
             }
             self.meet(s, &Element { start: self.here, end, arc: None })?;
+            to = Some((end, degrees));
         }
         self.functions(s, words.functions, When::Start)?;
-        let to = self.targets(s, words)?;
+        let to = match to {
+            Some(to) => to,
+            None => self.targets(s, words)?,
+        };
         let rapid = self.set_feed(s, words.feed)?;
         if words.functions.contains(Function::MachineCoordinates) {
             self.machine_position(s, words)?;
