@@ -34,7 +34,7 @@ fn an_error_names_its_rule_and_place() {
         ("G1 X1e5", "unknown-word", 6),
         ("G1 X1EX", "number", 8),
         ("G1 X999999999", "number", 5),
-        ("G1 X=1EX9*1EX300", "number", 6),
+        ("G1 X=1EX9*1EX300", "arithmetic", 6),
         ("S1.5 M3.5", "number", 6),
         ("T-1", "number", 1),
         ("T=\"\"", "tool", 1),

@@ -737,7 +737,7 @@ fn rank_in_doubt(scanner: &Scanner, start: usize) -> Box<Diagnostic> {
 /// A number; one without a point is whole.
 fn constant(scanner: &mut Scanner) -> Fallible<Value> {
     let start = scanner.at;
-    let value = scanner.number()?;
+    let value = scanner.constant()?;
     let text = scanner.source.text.get(start..scanner.at).unwrap_or(&[]);
     if text.len() <= 10 && text.iter().all(u8::is_ascii_digit) {
         return Ok(Value::Int(value as i64));

@@ -253,9 +253,20 @@ impl<'a> Scanner<'a> {
         Ok(value)
     }
 
-    /// Takes a number: sign, digits, point, digits, exponent (`EX`).
+    /// Takes the number of an address.
     #[inline]
     pub fn number(&mut self) -> Fallible<f64> {
+        let start = self.at;
+        let value = self.constant()?;
+        if value.abs() <= LARGEST {
+            return Ok(value);
+        }
+        Err(self.error_since(start, "number", "the number is beyond 99999999.9999"))
+    }
+
+    /// Takes a number: sign, digits, point, digits, exponent (`EX`).
+    #[inline]
+    pub fn constant(&mut self) -> Fallible<f64> {
         let start = self.at;
         let negative = self.peek() == b'-';
         if negative || self.peek() == b'+' {
@@ -282,17 +293,13 @@ impl<'a> Scanner<'a> {
         }
         let exponent = self.peek() == b'E' && self.peek_at(1) == b'X';
         // Below 2^53 and 10^22 both are exact, so that the quotient is rounded correctly.
-        let value = match POWERS.get(decimals) {
+        match POWERS.get(decimals) {
             Some(power) if digits <= 15 && !exponent => {
                 let size = mantissa as f64 / power;
-                if negative { -size } else { size }
+                Ok(if negative { -size } else { size })
             }
-            _ => self.slow_number(start, exponent)?,
-        };
-        if value.abs() <= LARGEST {
-            return Ok(value);
+            _ => self.slow_number(start, exponent),
         }
-        Err(self.error_since(start, "number", "the number is beyond 99999999.9999"))
     }
 
     /// The number from `start` with many digits or an exponent.
