@@ -10,9 +10,7 @@
 //! [`program::Orientation::Axis`]. Kinematics are not this crate's business.
 
 mod decimal;
-#[allow(dead_code, reason = "the dialects take it up one by one")]
 mod flow;
-#[allow(dead_code, reason = "the dialects take it up one by one")]
 mod folders;
 mod iso;
 mod klartext;
