@@ -15,9 +15,12 @@
 //! [`program::Diagnostic`] with the line of the source; the caller, who knows it, adds the file.
 
 mod accuracy;
+mod chain;
 mod contour;
 mod crossing;
+pub mod dxf;
 mod element;
+mod fit;
 mod lead;
 mod near;
 pub mod offset;
