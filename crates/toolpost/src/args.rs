@@ -28,6 +28,9 @@ pub struct CommandLine {
 pub enum Command {
     /// Write the program of a toolpath for a machine, prove it, and save both program and report.
     Post(Post),
+    /// Write the program of a wire-EDM machine for a contour, prove it, and save both program and
+    /// report.
+    Wire(Wire),
     /// Hold any program, also one edited by hand, against the toolpath it should make.
     Prove(Prove),
     /// The library of machines, and machines of your own.
@@ -120,6 +123,76 @@ pub struct Post {
     pub closeness: Closeness,
 }
 
+/// Arguments of `wire`.
+#[derive(Debug, Args)]
+pub struct Wire {
+    #[command(flatten)]
+    pub source: Source,
+    /// Name in the library, or a file ending in .toml.
+    #[arg(long, short, value_name = "NAME|FILE")]
+    pub machine: String,
+    /// Where to save the program; the report goes beside it.
+    #[arg(long, short, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Draw the contour, its points and the ruled surface, as .svg or .png.
+    #[arg(long, value_name = "FILE")]
+    pub picture: Option<PathBuf>,
+    /// Mark what came from this line of the source.
+    #[arg(long, value_name = "LINE")]
+    pub select: Option<u32>,
+    #[command(flatten)]
+    pub ends: Ends,
+    #[command(flatten)]
+    pub division: Division,
+    #[command(flatten)]
+    pub closeness: Closeness,
+}
+
+/// What the two ends of the wire follow.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "The two ends of the wire")]
+pub struct Ends {
+    /// The upper contour, in a file like the source; the source is then the lower one.
+    #[arg(long, value_name = "FILE")]
+    pub upper: Option<PathBuf>,
+    /// Which point above belongs to which below.
+    #[arg(long, value_name = "HOW", default_value = "block", requires = "upper")]
+    pub sync: Sync,
+    /// Height of the upper contour over the lower [default: that of the machine file].
+    #[arg(long, value_name = "MM", value_parser = length)]
+    pub height: Option<f64>,
+}
+
+/// Which point above belongs to which below.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Sync {
+    /// Both programs have the same moves, block for block.
+    Block,
+    /// Both ends have covered the same part of their length.
+    Length,
+}
+
+/// Into how many points arcs are divided, for a control that cuts none.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Points, for a control without arcs")]
+pub struct Division {
+    /// One point every so many mm of arc.
+    #[arg(long, value_name = "MM", group = "how", value_parser = number, allow_hyphen_values = true)]
+    pub step: Option<f64>,
+    /// As many points as keep this chord error [default: lowering_tolerance of the machine file].
+    #[arg(long, value_name = "MM", group = "how", value_parser = number, allow_hyphen_values = true)]
+    pub chord_error: Option<f64>,
+    /// As many points as the memory of the control holds.
+    #[arg(long, group = "how")]
+    pub fit: bool,
+    /// How many points the control holds [default: that of the machine file].
+    #[arg(long, value_name = "POINTS")]
+    pub memory: Option<usize>,
+    /// Feed, for the cutting time.
+    #[arg(long, value_name = "MM/S", value_parser = length)]
+    pub feed: Option<f64>,
+}
+
 /// Arguments of `prove`.
 #[derive(Debug, Args)]
 pub struct Prove {
@@ -178,6 +251,11 @@ fn length(text: &str) -> Result<f64, String> {
         Ok(mm) if mm > 0.0 && mm.is_finite() => Ok(mm),
         _ => Err(String::from("a length in mm greater than 0 is needed, such as 0.01")),
     }
+}
+
+/// A number, whatever it is good for.
+fn number(text: &str) -> Result<f64, String> {
+    text.parse().map_err(|_| String::from("a number is needed, such as 0.1"))
 }
 
 /// Three lengths in mm.

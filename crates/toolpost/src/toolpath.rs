@@ -34,11 +34,38 @@ const NC_ENDINGS: [&str; 13] =
 /// # Errors
 /// What is wrong with the file; with `strict` also what would be a warning.
 pub fn read(path: &Path, strict: bool, origin: &Origin) -> Result<Toolpath, Stop> {
+    read_by(path, strict, origin, |machine| machine)
+}
+
+/// The same for a wire, whose upper contour is `height` mm over the lower where that is given.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_wire(
+    path: &Path,
+    strict: bool,
+    origin: &Origin,
+    height: Option<f64>,
+) -> Result<Toolpath, Stop> {
+    read_by(path, strict, origin, |mut machine| {
+        if let Some(wire) = &mut machine.wire {
+            wire.height = height.or(wire.height);
+        }
+        machine
+    })
+}
+
+fn read_by(
+    path: &Path,
+    strict: bool,
+    origin: &Origin,
+    set_up: impl Fn(Machine) -> Machine,
+) -> Result<Toolpath, Stop> {
     let bytes = files::read(path)?;
     let file = files::name(path);
     let (dialect, program, warnings) = match &origin.from {
         Some(from) => {
-            let machine = machine::load_origin(from)?;
+            let machine = set_up(machine::load_origin(from)?);
             let reading = nc::read(&machine, origin.setup()?, &file, &bytes)?;
             (machine.title, reading.program, reading.warnings)
         }
