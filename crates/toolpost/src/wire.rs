@@ -1,5 +1,6 @@
 //! `toolpost wire`: a contour in, the proven program of a wire-EDM machine and its report out.
 
+mod cutting;
 mod leg;
 mod proof;
 mod report;
@@ -13,8 +14,8 @@ use crate::post::verdict;
 use crate::progress::Progress;
 use crate::summary::rows;
 use crate::{prove, toolpath};
+use ::wire::Contour;
 use ::wire::points::{Refusal, Step, points};
-use ::wire::{Contour, Path};
 use leg::Leg;
 use machine::{Machine, Wire};
 use program::Diagnostic;
@@ -42,8 +43,12 @@ pub fn run(args: &args::Wire, silent: bool) -> Result<Answer, Stop> {
     let Source { mut toolpath, paths } = Source::read(args, &machine)?;
     let mut warnings = std::mem::take(&mut toolpath.warnings);
     progress.step("writing");
-    let legs = divide(paths, &args.division, &machine)?;
-    let cut = Cut::of(legs, &machine, &args.division);
+    let height = machine.wire.and_then(|wire| wire.height);
+    let planned = cutting::legs(paths, &args.cutting, height);
+    let (mut legs, rounded) = planned.map_err(|found| toolpath.refused(*found))?;
+    warnings.extend(rounded);
+    divide(&mut legs, &args.division, &machine)?;
+    let cut = Cut::of(legs, &machine);
     // What the proof lets chords leave their arcs by is what the conversion has made of them.
     machine.capabilities.lowering_tolerance = cut.chord_error().max(f64::MIN_POSITIVE);
     let program = cut.program(&toolpath.program.name);
@@ -116,9 +121,9 @@ fn set_up(machine: &mut Machine, args: &args::Wire) -> Result<(), Stop> {
     Ok(())
 }
 
-/// Makes points of the ways that the control cannot cut as they are, and of all where a step is asked
-/// for.
-fn divide(paths: Vec<Path>, how: &Division, machine: &Machine) -> Result<Vec<Leg>, Stop> {
+/// Makes points of the ways, where the control cannot cut all of them as they are, and where a step is
+/// asked for.
+fn divide(legs: &mut [Leg], how: &Division, machine: &Machine) -> Result<(), Stop> {
     let asked = match (how.step, how.chord_error, how.fit) {
         (Some(step), ..) => Some(Step::Length(step)),
         (_, Some(error), _) => Some(Step::ChordError(error)),
@@ -126,20 +131,19 @@ fn divide(paths: Vec<Path>, how: &Division, machine: &Machine) -> Result<Vec<Leg
         _ => None,
     };
     let arcs = |contour: &Contour| contour.elements().iter().any(|e| e.turn.is_some());
-    let cuts = |path: &Path| {
-        path.upper().is_none() && (!machine.capabilities.arcs.is_empty() || !arcs(path.lower()))
-    };
-    if asked.is_none() && paths.iter().all(cuts) {
-        return Ok(paths.into_iter().map(|path| Leg { path, points: None }).collect());
+    let no_arcs = machine.capabilities.arcs.is_empty();
+    let cannot = |leg: &Leg| leg.leans() || (no_arcs && arcs(leg.path.lower()));
+    if asked.is_none() && !legs.iter().any(cannot) {
+        return Ok(());
     }
     let step = asked.unwrap_or(Step::ChordError(machine.capabilities.lowering_tolerance));
     let memory = machine.wire.and_then(|wire| wire.memory);
-    let all = points(&paths.iter().collect::<Vec<_>>(), step, memory).map_err(refused)?;
-    Ok(paths
-        .into_iter()
-        .zip(all)
-        .map(|(path, points)| Leg { path, points: Some(points) })
-        .collect())
+    let paths: Vec<_> = legs.iter().map(|leg| &leg.path).collect();
+    let all = points(&paths, step, memory).map_err(refused)?;
+    for (leg, points) in legs.iter_mut().zip(all) {
+        leg.points = Some(points);
+    }
+    Ok(())
 }
 
 /// Why there are no points, with the step that would do where one would.

@@ -11,6 +11,20 @@ pub struct Leg {
     pub path: Path,
     /// The same as points, where the control takes those.
     pub points: Option<Points>,
+    /// mm/min.
+    pub feed: Option<f64>,
+    /// Index of the contour that it cuts.
+    pub opening: usize,
+    /// 0 for the first pass there.
+    pub pass: usize,
+    /// Whether it cuts the tab that has held the part.
+    pub tab: bool,
+    /// Whether the wire is threaded at its start; otherwise it stands there already.
+    pub thread: bool,
+    /// Whether the wire is cut at its end.
+    pub cut: bool,
+    /// Whether the machine stops before it, for the operator to hold the part.
+    pub stop: bool,
 }
 
 /// Which end of the wire.
@@ -21,6 +35,21 @@ pub enum End {
 }
 
 impl Leg {
+    /// A whole opening along `path`.
+    pub fn of(path: Path) -> Leg {
+        Leg {
+            path,
+            points: None,
+            feed: None,
+            opening: 0,
+            pass: 0,
+            tab: false,
+            thread: true,
+            cut: true,
+            stop: false,
+        }
+    }
+
     /// The line of the source where it begins.
     pub fn line(&self) -> u32 {
         self.path.lower().elements().first().map_or(0, |element| element.line)
@@ -40,52 +69,55 @@ impl Leg {
     }
 }
 
-/// The program of `legs`, each an opening of its own: as points where they have them, else with
-/// their arcs. Leaning wires reach the upper contour at `height` mm.
-pub fn program(name: &str, legs: &[Leg], height: f64, feed: Option<f64>) -> Program {
-    let each = |leg: &Leg, program: &mut Program| match &leg.points {
-        Some(points) => divided(program, points, leg.line(), height),
-        None => exact(program, leg.path.lower()),
-    };
-    assemble(name, legs, feed, each)
+/// The program of `legs`: as points where they have them, else with their arcs. Leaning wires reach
+/// the upper contour at `height` mm. With `feeds` it says how fast.
+pub fn program(name: &str, legs: &[Leg], height: f64, feeds: bool) -> Program {
+    assemble(name, legs, feeds, |leg| match &leg.points {
+        Some(points) => divided(points, leg.line(), height),
+        None => exact(leg.path.lower()),
+    })
 }
 
 /// The same with every arc, as one end of the wire goes.
-pub fn end(name: &str, legs: &[Leg], end: End, feed: Option<f64>) -> Program {
-    assemble(name, legs, feed, |leg, program| exact(program, leg.contour(end)))
+pub fn end(name: &str, legs: &[Leg], end: End, feeds: bool) -> Program {
+    assemble(name, legs, feeds, |leg| exact(leg.contour(end)))
 }
 
-fn assemble(
-    name: &str,
-    legs: &[Leg],
-    feed: Option<f64>,
-    each: impl Fn(&Leg, &mut Program),
-) -> Program {
+/// Where a leg starts, and its moves with their lines of the source.
+type Moves = (Pose, Vec<(u32, Op)>);
+
+fn assemble(name: &str, legs: &[Leg], feeds: bool, moves: impl Fn(&Leg) -> Moves) -> Program {
     let mut program = Program::new(name);
-    if let Some(feed) = feed {
-        program.push(0, Op::Feed(Feed::PerMinute(feed)));
-    }
+    let mut feed = None;
+    let mut line = 0;
     for leg in legs {
-        each(leg, &mut program);
-        let last = program.records.last().map_or(0, |record| record.line);
-        program.push(last, Op::CutWire);
+        let (start, moves) = moves(leg);
+        line = leg.line();
+        if leg.stop {
+            program.push(line, Op::Stop);
+        }
+        if leg.thread {
+            program.push(line, Op::Rapid(start));
+            program.push(line, Op::ThreadWire);
+        }
+        if let Some(new) = leg.feed.filter(|new| feeds && feed.replace(*new) != Some(*new)) {
+            program.push(line, Op::Feed(Feed::PerMinute(new)));
+        }
+        for (from, op) in moves {
+            line = from;
+            program.push(line, op);
+        }
+        if leg.cut {
+            program.push(line, Op::CutWire);
+        }
     }
-    let last = program.records.last().map_or(0, |record| record.line);
-    program.push(last, Op::End);
+    program.push(line, Op::End);
     program
 }
 
-fn begin(program: &mut Program, line: u32, start: Pose) {
-    program.push(line, Op::Rapid(start));
-    program.push(line, Op::ThreadWire);
-}
-
-fn exact(program: &mut Program, contour: &Contour) {
-    let line = contour.elements().first().map_or(0, |element| element.line);
-    begin(program, line, upright(contour.start()));
-    for element in contour.elements() {
-        program.push(element.line, op(element));
-    }
+fn exact(contour: &Contour) -> Moves {
+    let moves = contour.elements().iter().map(|element| (element.line, op(element)));
+    (upright(contour.start()), moves.collect())
 }
 
 fn op(element: &Element) -> Op {
@@ -99,21 +131,18 @@ fn op(element: &Element) -> Op {
     }
 }
 
-fn divided(program: &mut Program, points: &Points, first: u32, height: f64) {
-    let pose = |i: usize, lower: Vec2| {
-        let lean = points.upper.get(i).map_or(Vec2::ZERO, |upper| *upper - lower);
+fn divided(points: &Points, first: u32, height: f64) -> Moves {
+    let pose = |(i, lower): (usize, &Vec2)| {
+        let lean = points.upper.get(i).map_or(Vec2::ZERO, |upper| *upper - *lower);
         match lean == Vec2::ZERO {
-            true => upright(lower),
+            true => upright(*lower),
             false => Pose::new(lower.extend(0.0), lean.extend(height).normalize()),
         }
     };
-    let mut poses = points.lower.iter().enumerate().map(|(i, lower)| pose(i, *lower));
-    if let Some(start) = poses.next() {
-        begin(program, first, start);
-    }
-    for (i, pose) in (1..).zip(poses) {
-        program.push(points.line_of(i).unwrap_or(first), Op::Line(pose));
-    }
+    let mut poses = points.lower.iter().enumerate().map(pose);
+    let start = poses.next().unwrap_or(upright(Vec2::ZERO));
+    let line = |i| points.line_of(i).unwrap_or(first);
+    (start, (1..).zip(poses).map(|(i, pose)| (line(i), Op::Line(pose))).collect())
 }
 
 fn upright(point: Vec2) -> Pose {

@@ -87,7 +87,6 @@ fn one_end(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::args::Division;
     use geom::Vec2;
     use wire::points::{Step, points};
     use wire::{Element, Path};
@@ -101,11 +100,10 @@ mod tests {
         let path = Path::by_block(circle(5.0), circle(10.0)).unwrap();
         let mut all = points(&[&path], Step::ChordError(0.01), None).unwrap();
         all[0].upper[9].y += moved;
-        let leg = Leg { path, points: all.pop() };
+        let leg = Leg { points: all.pop(), ..Leg::of(path) };
         let text = "extends = \"bp-95d\"\n[wire]\nheight = 30\n";
         let mut machine = machine::load_text("shop.toml", text).unwrap();
-        let how = Division { step: None, chord_error: None, fit: false, memory: None, feed: None };
-        let cut = Cut::of(vec![leg], &machine, &how);
+        let cut = Cut::of(vec![leg], &machine);
         machine.capabilities.lowering_tolerance = 0.01;
         let written = post::write(&cut.program("cone"), &machine).unwrap().text;
         of(&cut, &machine, "cone", "cone.pts", &written, &Tolerances::default())

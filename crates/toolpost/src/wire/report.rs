@@ -1,7 +1,6 @@
 //! What a wire cuts, in numbers: points, chord errors, areas, time, and what came from which line.
 
 use super::leg::{self, End, Leg};
-use crate::args::Division;
 use crate::drawing::{WireLeg, WirePicture};
 use crate::summary::{duration, length, number};
 use ::wire::points::Step;
@@ -9,6 +8,9 @@ use ::wire::{Accuracy, Chords};
 use machine::Machine;
 use program::Program;
 use serde_json::{Value, json};
+
+/// The most ways that a summary lists.
+const MOST_ROWS: usize = 12;
 
 /// What is cut.
 pub struct Cut {
@@ -19,14 +21,13 @@ pub struct Cut {
     /// Height of the upper contour, mm.
     height: Option<f64>,
     memory: Option<usize>,
-    /// mm/s.
-    feed: Option<f64>,
-    /// Whether the program says the feed.
+    /// Whether the program says how fast.
     says_feed: bool,
 }
 
 impl Cut {
-    pub fn of(legs: Vec<Leg>, machine: &Machine, how: &Division) -> Cut {
+    /// `legs` as `machine` cuts them.
+    pub fn of(legs: Vec<Leg>, machine: &Machine) -> Cut {
         let measured = |leg: &Leg| match &leg.points {
             Some(points) => Accuracy::of(&leg.path, points),
             None => (Accuracy::default(), None),
@@ -35,7 +36,6 @@ impl Cut {
             accuracy: legs.iter().map(measured).collect(),
             height: machine.wire.and_then(|wire| wire.height),
             memory: machine.wire.and_then(|wire| wire.memory),
-            feed: how.feed,
             says_feed: machine.words.contains_key("F"),
             legs,
         }
@@ -43,17 +43,12 @@ impl Cut {
 
     /// The program to write.
     pub fn program(&self, name: &str) -> Program {
-        leg::program(name, &self.legs, self.height.unwrap_or(f64::INFINITY), self.feed_word())
+        leg::program(name, &self.legs, self.height.unwrap_or(f64::INFINITY), self.says_feed)
     }
 
     /// The same as one end of the wire goes, arcs and all.
     pub fn end(&self, name: &str, end: End) -> Program {
-        leg::end(name, &self.legs, end, self.feed_word())
-    }
-
-    /// mm/min, where the program says it.
-    fn feed_word(&self) -> Option<f64> {
-        self.feed.filter(|_| self.says_feed).map(|feed| feed * 60.0)
+        leg::end(name, &self.legs, end, self.says_feed)
     }
 
     /// The chord errors of both ends together.
@@ -78,8 +73,20 @@ impl Cut {
         self.chords().largest
     }
 
+    /// Points of the program: a leg that goes on from where the last one ended begins with its last.
     fn points(&self) -> Option<usize> {
-        self.legs.iter().map(|leg| Some(leg.points.as_ref()?.lower.len())).sum()
+        let points = |leg: &Leg| Some(leg.points.as_ref()?.lower.len() - usize::from(!leg.thread));
+        self.legs.iter().map(points).sum()
+    }
+
+    /// The legs with the number of points before each, which its own are counted on from.
+    fn counted(&self) -> impl Iterator<Item = (usize, &Leg)> {
+        let mut all = 0;
+        self.legs.iter().map(move |leg| {
+            let before = all - usize::from(!leg.thread);
+            all = before + leg.points.as_ref().map_or(1, |points| points.lower.len());
+            (before, leg)
+        })
     }
 
     fn length(&self) -> f64 {
@@ -88,7 +95,7 @@ impl Cut {
 
     /// Cutting time, s.
     fn time(&self) -> Option<f64> {
-        self.feed.map(|feed| self.length() / feed)
+        self.legs.iter().map(|leg| leg.feed.map(|feed| leg.path.length() / feed * 60.0)).sum()
     }
 
     /// By how much the area within the points differs from that within the contour, mm².
@@ -100,22 +107,25 @@ impl Cut {
         self.accuracy.iter().map(of).sum()
     }
 
-    /// The points that came from a line, as leg, first and last.
-    fn of_line(&self, line: u32) -> impl Iterator<Item = (usize, usize, usize)> {
-        self.legs.iter().enumerate().flat_map(move |(i, leg)| {
+    /// The points that came from a line, first and last, as the program counts them from 1.
+    fn of_line(&self, line: u32) -> impl Iterator<Item = (usize, usize)> {
+        self.counted().flat_map(move |(before, leg)| {
             let ranges = leg.points.iter().flat_map(move |points| points.of_line(line));
-            ranges.map(move |range| (i + 1, range.start + 1, range.end))
+            ranges.map(move |range| (before + range.start + 1, before + range.end))
         })
     }
 
     /// The numbers, as JSON.
     pub fn summary(&self, selected: Option<u32>) -> Value {
         let legs = self.legs.iter().zip(&self.accuracy);
-        let openings: Vec<Value> = legs.map(|(leg, accuracy)| opening(leg, accuracy)).collect();
-        let selected =
-            selected.map(|line| json!({ "line": line, "points": ranges(self.of_line(line)) }));
+        let ways: Vec<Value> = legs.map(|(leg, accuracy)| way(leg, accuracy)).collect();
+        let ranges = |line| -> Vec<Value> {
+            let found = self.of_line(line);
+            found.map(|(first, last)| json!({ "first": first, "last": last })).collect()
+        };
+        let selected = selected.map(|line| json!({ "line": line, "points": ranges(line) }));
         json!({
-            "openings": openings,
+            "ways": ways,
             "height_mm": self.height,
             "memory": self.memory,
             "points": self.points(),
@@ -123,24 +133,22 @@ impl Cut {
             "area_error_mm2": self.area_error(End::Lower),
             "upper_area_error_mm2": self.area_error(End::Upper),
             "length_mm": self.length(),
-            "feed_mm_per_s": self.feed,
             "cutting_time_s": self.time(),
             "selected": selected,
         })
     }
 
-    /// Which points came from which line of the source, as JSON. Points count from 1 in each opening.
+    /// Which points came from which line of the source, as JSON; points count from 1.
     pub fn instructions(&self) -> Value {
         let mut all = Vec::new();
-        for (i, leg) in self.legs.iter().enumerate() {
+        for (before, leg) in self.counted() {
             let Some(points) = &leg.points else { continue };
             for (element, found) in leg.path.lower().elements().iter().enumerate() {
                 let range = points.of_element(element);
                 all.push(json!({
                     "line": found.line,
-                    "opening": i + 1,
-                    "first_point": range.start + 1,
-                    "last_point": range.end,
+                    "first_point": before + range.start + 1,
+                    "last_point": before + range.end,
                 }));
             }
         }
@@ -150,29 +158,24 @@ impl Cut {
     /// The lines of a summary.
     pub fn rows(&self, selected: Option<u32>) -> Vec<(&'static str, String)> {
         let mut rows = Vec::new();
-        for (i, leg) in self.legs.iter().enumerate() {
-            let contour = leg.path.lower();
-            let area = match contour.is_closed() {
-                true => format!("closed, {} mm²", number(contour.area().abs(), 3)),
-                false => String::from("open"),
-            };
-            let leans = if leg.leans() { ", the wire leans" } else { "" };
-            let head = if i == 0 { "openings" } else { "" };
-            rows.push((head, format!("{}, {area}{leans}", length(leg.path.length()))));
+        for (i, leg) in self.legs.iter().enumerate().take(MOST_ROWS) {
+            rows.push((if i == 0 { "ways" } else { "" }, told(leg)));
         }
+        if self.legs.len() > MOST_ROWS {
+            rows.push(("", format!("and {} more", self.legs.len() - MOST_ROWS)));
+        }
+        rows.push(("length", length(self.length())));
         if let Some(points) = self.points() {
-            let chords = self.chords();
             let step = self.legs.iter().find_map(|leg| Some(leg.points.as_ref()?.step));
             rows.push(("points", format!("{points}, {}", step.map_or(String::new(), shown))));
-            rows.push((
-                "chord error",
-                format!(
-                    "{} mm at most, {} mm in the mean, {} of the radius",
-                    small(chords.largest),
-                    small(chords.mean),
-                    small(chords.mean_relative)
-                ),
-            ));
+            let chords = self.chords();
+            if chords.count > 0 {
+                let (largest, mean) = (small(chords.largest), small(chords.mean));
+                let of_radius = small(chords.mean_relative);
+                let text =
+                    format!("{largest} mm at most, mean {mean} mm, {of_radius} of the radius");
+                rows.push(("chord error", text));
+            }
             if let Some(area) = self.area_error(End::Lower) {
                 let upper = self.area_error(End::Upper);
                 let upper = upper.map(|area| format!(" below, {} mm² above", number(area, 6)));
@@ -189,25 +192,11 @@ impl Cut {
                 },
             ));
         }
-        rows.push((
-            "time",
-            match (self.time(), self.feed) {
-                (Some(time), Some(feed)) => format!("{} at {feed} mm/s", duration(time)),
-                _ => String::from("not known: --feed gives the feed"),
-            },
-        ));
+        let time = self.time().map_or(String::from("not known: --feed gives the feed"), duration);
+        rows.push(("time", time));
         if let Some(line) = selected {
-            let found: Vec<String> = self
-                .of_line(line)
-                .map(|(opening, first, last)| {
-                    let place = if self.legs.len() > 1 {
-                        format!(" of opening {opening}")
-                    } else {
-                        String::new()
-                    };
-                    format!("points {first} to {last}{place}")
-                })
-                .collect();
+            let found = self.of_line(line).map(|(first, last)| format!("points {first} to {last}"));
+            let found: Vec<String> = found.collect();
             let found = if found.is_empty() { String::from("no points") } else { found.join(", ") };
             rows.push(("selected", format!("line {line}: {found}")));
         }
@@ -222,7 +211,7 @@ impl Cut {
     }
 }
 
-fn opening(leg: &Leg, (lower, upper): &(Accuracy, Option<Accuracy>)) -> Value {
+fn way(leg: &Leg, (lower, upper): &(Accuracy, Option<Accuracy>)) -> Value {
     let contour = leg.path.lower();
     let arcs = |accuracy: &Accuracy| -> Vec<Value> {
         let arcs = accuracy.arcs.iter();
@@ -235,7 +224,11 @@ fn opening(leg: &Leg, (lower, upper): &(Accuracy, Option<Accuracy>)) -> Value {
         Step::Fit => json!("fit"),
     });
     json!({
+        "contour": leg.opening + 1,
+        "pass": leg.pass + 1,
+        "tab": leg.tab,
         "line": leg.line(),
+        "feed_mm_per_s": leg.feed.map(|feed| feed / 60.0),
         "closed": contour.is_closed(),
         "start_mm": contour.start().to_array(),
         "area_mm2": contour.is_closed().then(|| contour.area().abs()),
@@ -259,10 +252,19 @@ fn chords(chords: &Chords) -> Value {
     })
 }
 
-fn ranges(of_line: impl Iterator<Item = (usize, usize, usize)>) -> Vec<Value> {
-    of_line
-        .map(|(opening, first, last)| json!({ "opening": opening, "first": first, "last": last }))
-        .collect()
+/// A way of the wire, for a person.
+fn told(leg: &Leg) -> String {
+    let contour = leg.path.lower();
+    let area = match contour.is_closed() {
+        true => format!("closed, {} mm²", number(contour.area().abs(), 3)),
+        false => String::from("open"),
+    };
+    let pass = match (leg.tab, leg.pass) {
+        (true, _) => String::from("the tab"),
+        (false, pass) => format!("pass {}", pass + 1),
+    };
+    let leans = if leg.leans() { ", the wire leans" } else { "" };
+    format!("contour {}, {pass}: {}, {area}{leans}", leg.opening + 1, length(leg.path.length()))
 }
 
 fn shown(step: Step) -> String {

@@ -51,7 +51,7 @@ fn the_sector_has_the_points_errors_and_time_of_the_specification() {
         assert_eq!(folder.read("part.pts").lines().count(), points + 3);
         let report = report(&folder);
         let wire = &report["wire"];
-        let arc = &wire["openings"][0]["arcs"][0];
+        let arc = &wire["ways"][0]["arcs"][0];
         assert_eq!((&arc["line"], &arc["chord_error"]["points"]), (&6.into(), &points.into()));
         let largest = arc["chord_error"]["largest_mm"].as_f64().unwrap();
         assert!((largest / error - 1.0).abs() < 2e-4, "{largest}");
@@ -63,7 +63,7 @@ fn the_sector_has_the_points_errors_and_time_of_the_specification() {
         let last = report["instructions"].as_array().unwrap().last().unwrap();
         assert_eq!((&last["line"], &last["first_point"]), (&7.into(), &(points + 3).into()));
         assert_eq!(report["proof"]["proven"], true);
-        assert!(said.out.contains("21 min 38 s at 0.11 mm/s"), "{}", said.out);
+        assert!(said.out.contains("time         21 min 38 s"), "{}", said.out);
     }
     assert!(folder.read("part.pts").starts_with("0.000 0.000\n40.000 0.000\n39.988 1.000\n"));
 }
