@@ -114,9 +114,9 @@ impl Writer {
         if let Some((center, degrees)) = self.turn {
             place = add(center, times(unit(degrees), less(place, center)));
         }
-        for axis in 0..2 {
-            if let Some(at) = self.mirror[axis] {
-                place[axis] = 2.0 * at - place[axis];
+        for (coordinate, at) in place.iter_mut().zip(self.mirror) {
+            if let Some(at) = at {
+                *coordinate = 2.0 * at - *coordinate;
             }
         }
         let offset = self.offsets[self.active];
