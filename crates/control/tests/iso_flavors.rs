@@ -156,7 +156,7 @@ fn marlin_dwells_homes_and_ends_in_its_own_way() {
 fn grbl_writes_offsets_homes_and_probes() {
     let got = ops(
         Dialect::Grbl,
-        "G21 G90\nG10 L2 P1 X1 Y1 Z1\nG0 X1 Y1 Z1\nG10 L2 P1 X3\nX1\nG10 L20 P0 X0\nX1\nG92 Z0\nZ1\nG92.1\nZ1\n",
+        "G21 G90\nG92.1\nG10 L2 P1 X1 Y1 Z1\nG0 X1 Y1 Z1\nG10 L2 P1 X3\nX1\nG10 L20 P0 X0\nX1\nG92 Z0\nZ1\nG92.1\nZ1\n",
     );
     are(
         &points(&got),

@@ -44,9 +44,11 @@ impl Step<'_, '_, '_> {
                 self.reframe();
             }
             G::CancelShift { keep } => {
-                let shifted = self.state.frames.unshift(keep);
-                self.known(shifted)?;
+                let known = self.state.frames.unshift(keep);
                 self.reframe();
+                if !known {
+                    self.state.position = UNKNOWN;
+                }
             }
             _ => {
                 let shifted = self.state.frames.restore();
@@ -72,7 +74,7 @@ impl Step<'_, '_, '_> {
             let message = "by how much this moves the zero depends on what stands in the control";
             self.block
                 .at_group(Group::OneShot, "nc-unknown-shift", message)
-                .help("give the position in G90 first, or write the offset before the first move")
+                .help("write the offset, or clear G92, before the first move")
                 .into()
         })
     }
