@@ -143,6 +143,7 @@ fn marlin_dwells_homes_and_ends_in_its_own_way() {
         Op::Home(7),
         Op::Spindle(Spindle::Clockwise(1000.0)),
         Op::Spindle(Spindle::Off),
+        Op::End,
     ];
     assert_eq!(got, expected);
     for word in ["M2", "M30", "M6", "M106", "G81", "G43", "G41", "G10", "G5", "G93"] {
