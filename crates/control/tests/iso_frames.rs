@@ -127,7 +127,7 @@ fn the_additional_work_offsets_come_behind_the_first_six() {
     // G110 to G129 are G154 P1 to P20.
     assert_eq!(offsets(Dialect::Haas, "G110\nG154 P1\nG129\nG154 P99\n"), [60, 79, 158]);
     // G59 P6 is G59.
-    assert_eq!(offsets(Dialect::Mach3, "G59 P6\nG59 P7\nG54\n"), [59, 59_007, 54]);
+    assert_eq!(offsets(Dialect::Mach3, "G59 P6\nG59 P7\nG54\n"), [59, 60, 54]);
     assert_eq!(rule(Dialect::Fanuc, "G54.1 P301\n"), "nc-work-offset");
     assert_eq!(rule(Dialect::Haas, "G154\n"), "nc-work-offset");
 }
