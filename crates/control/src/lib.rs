@@ -63,11 +63,12 @@ impl Dialect {
         Dialect::NAMES.iter().find(|(n, _)| *n == name).map(|(_, dialect)| *dialect)
     }
 
-    /// The work offset that is active before a program names one: on a SINUMERIK `G500`, which is none.
+    /// The work offset that is active before a program names one, as [`program::Op::WorkOffset`] counts
+    /// them: on a SINUMERIK `G500`, which is none.
     /// A FANUC may keep that of the last program, and Klartext takes the operator's preset.
     pub fn work_offset_at_reset(self) -> Option<u32> {
         match self {
-            Dialect::Sinumerik => Some(sinumerik::WORK_OFFSET_AT_RESET),
+            Dialect::Sinumerik => Some(53),
             Dialect::LinuxCnc | Dialect::Grbl | Dialect::Mach3 | Dialect::Haas => Some(54),
             Dialect::Fanuc | Dialect::Marlin | Dialect::Klartext | Dialect::Points => None,
         }

@@ -138,7 +138,7 @@ fn two_offsets_that_the_program_writes_lie_as_it_says() {
 }
 
 #[test]
-fn the_additional_work_offsets_have_numbers_of_their_own() {
+fn the_additional_work_offsets_come_behind_the_first_six() {
     let offsets = |dialect, text: &str| -> Vec<u32> {
         let number = |op| if let Op::WorkOffset(number) = op { Some(number) } else { None };
         ops(dialect, text).into_iter().filter_map(number).collect()
