@@ -480,6 +480,14 @@ fn machine_coordinates_are_those_without_offsets() {
 }
 
 #[test]
+fn home_is_where_the_program_stores_it() {
+    makes_the_same_moves(
+        "G92 X5\nG28.1\nG0 X7 Y2 Z1\nG30.1\nG28 X0\nG91 X1\nG90 G30\nG91 Z1\nG90 G10 L2 P1 X3 R30\nG0 X1 Y1\n\
+         G28 Z4\nG0 X2 Y2\nG30 X1 Y0\nM2\n",
+    );
+}
+
+#[test]
 fn modes_and_functions_that_move_nothing() {
     makes_the_same_moves(
         "G61\nG61.1\nG64\nG64 P0.1 Q0.2\nM48\nM50 P0\nM51 P1\nM52\nM53 P0\nM62 P1\nM63 P1\nM64 P2\nM65 P2\n\

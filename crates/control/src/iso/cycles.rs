@@ -124,6 +124,7 @@ impl Step<'_, '_, '_> {
             let (point, rotary) = (self.state.position, self.state.rotary);
             let mut place = Target { point, rotary, named: 0 };
             self.in_plane(&mut place, false)?;
+            self.together(place.named)?;
             if repeats > 0 {
                 self.drill(place.point.with_axis(axis, r), &mut held)?;
             }
