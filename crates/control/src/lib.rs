@@ -109,6 +109,9 @@ pub struct Setup {
     pub folders: Vec<PathBuf>,
     /// What a length or an angle without a decimal point counts.
     pub whole_numbers: WholeNumbers,
+    /// What lengths count before the program says it (`G20`, `G21`): what the last program has left.
+    /// Not known, a length without it is an error.
+    pub units: Option<Units>,
     /// Whether the operator has switched block delete on: blocks that begin with `/` are skipped.
     pub block_delete: bool,
     /// Where the tool stands in the work frame when the program starts, mm, with all offsets of the
@@ -127,6 +130,15 @@ pub struct ToolData {
     pub radius: f64,
     /// Length from the gauge line, mm.
     pub length: f64,
+}
+
+/// What lengths count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Units {
+    /// mm.
+    Millimeters,
+    /// Inches.
+    Inches,
 }
 
 /// What a length or an angle without a decimal point counts (FANUC, parameter 3401#0).
