@@ -79,7 +79,10 @@ impl Step<'_, '_, '_> {
             return Ok(());
         }
         self.state.motion = None;
-        if self.block.commands() + usize::from(self.block.has(b'T')) > 1 {
+        // G53 stands before the move that it is for.
+        let others = self.block.g(Group::OneShot) == Some(G::Machine);
+        let commands = self.block.commands() + usize::from(self.block.has(b'T'));
+        if commands > 1 + usize::from(others) {
             let message = "this control takes one command a line";
             return Err(self.block.whole("nc-many-commands", message));
         }
