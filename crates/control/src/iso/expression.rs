@@ -205,6 +205,11 @@ impl<'t, 'v> Reader<'t, 'v> {
         Ok(Some(number.value))
     }
 
+    /// Numbers and operators, as they stand behind the `=` of macro B.
+    pub(super) fn formula(&mut self) -> Result<Value, Fault> {
+        self.chain(0)
+    }
+
     /// An expression in brackets.
     pub(super) fn expression(&mut self) -> Result<Value, Fault> {
         self.open()?;

@@ -333,7 +333,7 @@ impl<'a> Run<'a, '_> {
             if !reader.take(b'=') {
                 return Err(reader.wrong("= is missing"));
             }
-            (target, reader.value()?, reader.at)
+            (target, reader.formula()?, reader.at)
         };
         self.rest(text, behind)?;
         let Target::Number(number) = target else { return Ok(()) };
