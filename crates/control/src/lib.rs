@@ -10,12 +10,11 @@
 //! [`program::Orientation::Axis`]. Kinematics are not this crate's business.
 
 mod decimal;
-#[allow(dead_code, reason = "the dialects take it up one by one")]
 mod flow;
-#[allow(dead_code, reason = "the dialects take it up one by one")]
 mod folders;
 mod iso;
 mod klartext;
+mod points;
 mod sinumerik;
 
 use geom::Vec3;
@@ -41,11 +40,13 @@ pub enum Dialect {
     Sinumerik,
     /// HEIDENHAIN Klartext (TNC 640, iTNC 530).
     Klartext,
+    /// Lists of coordinates for wire EDM.
+    Points,
 }
 
 impl Dialect {
     /// Every dialect with the name that a control file gives as its `reader`.
-    pub const NAMES: [(&'static str, Dialect); 8] = [
+    pub const NAMES: [(&'static str, Dialect); 9] = [
         ("fanuc", Dialect::Fanuc),
         ("haas", Dialect::Haas),
         ("linuxcnc", Dialect::LinuxCnc),
@@ -54,6 +55,7 @@ impl Dialect {
         ("marlin", Dialect::Marlin),
         ("sinumerik", Dialect::Sinumerik),
         ("klartext", Dialect::Klartext),
+        ("points", Dialect::Points),
     ];
 
     /// The dialect of that name.
@@ -67,7 +69,7 @@ impl Dialect {
         match self {
             Dialect::Sinumerik => Some(sinumerik::WORK_OFFSET_AT_RESET),
             Dialect::LinuxCnc | Dialect::Grbl | Dialect::Mach3 | Dialect::Haas => Some(54),
-            Dialect::Fanuc | Dialect::Marlin | Dialect::Klartext => None,
+            Dialect::Fanuc | Dialect::Marlin | Dialect::Klartext | Dialect::Points => None,
         }
     }
 }
@@ -86,6 +88,9 @@ pub struct Settings {
     /// R parameters that the operator sets at the machine to shift the zero of a rotary axis
     /// (SINUMERIK). They count as 0; any other that no block has set is an error.
     pub operator_parameters: Vec<u32>,
+    /// Height over the lower plane at which U and V of a wire are counted, mm; `None` where it is not
+    /// known, or there is no wire.
+    pub upper_plane: Option<f64>,
     /// How far the control may be allowed to leave the path while it smooths it, mm.
     pub path_tolerance: f64,
     /// What the operator has set up.
@@ -143,6 +148,7 @@ impl Settings {
             rotary,
             auxiliary: Vec::new(),
             operator_parameters: Vec::new(),
+            upper_plane: None,
             path_tolerance: 0.0,
             setup: Setup::default(),
         }
@@ -168,6 +174,7 @@ pub fn read(
     let run = match settings.dialect {
         Dialect::Sinumerik => sinumerik::run,
         Dialect::Klartext => klartext::run,
+        Dialect::Points => points::run,
         _ => iso::run,
     };
     run(settings, text, sink)

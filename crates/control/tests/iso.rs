@@ -403,7 +403,13 @@ fn a_control_without_parameters_says_so() {
         }
     }
     assert_eq!(rule(GRBL, "o100 sub\n"), "nc-unknown-word");
-    assert_eq!(rule(GRBL, "M98 P1\n"), "nc-unknown-word");
+    let error = run(GRBL, [false; 3], "N5 M98 P1000\n").unwrap_err();
+    assert_eq!((error.line, error.column, error.width), (2, 4, 3));
+    assert_eq!(error.help, "this control has no subprograms");
+}
+
+#[test]
+fn an_m_function_is_the_controls_or_the_builders() {
     assert_eq!(rule(FANUC, "M77\n"), "nc-unknown-word");
     // The builder of this machine has an M26.
     assert_eq!(ops(FANUC, "M26\n"), []);

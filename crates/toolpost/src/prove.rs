@@ -15,7 +15,7 @@ pub fn run(args: &Prove, silent: bool) -> Result<Answer, Stop> {
     let machine = toolpath::machine(&args.machine)?;
     let progress = Progress::new(2, silent);
     progress.step("reading");
-    let mut toolpath = toolpath::read(&args.against, false)?;
+    let mut toolpath = toolpath::read(&args.against, false, &args.origin)?;
     let mut warnings = std::mem::take(&mut toolpath.warnings);
     let text = files::read(&args.program)?;
     progress.step("proving");
@@ -51,6 +51,7 @@ pub fn rows(proof: &Report, machine: &Machine) -> Vec<(&'static str, String)> {
     let (program, worst, allowed) = (&proof.program, &proof.deviations, &proof.tolerances);
     let mut rows = vec![("program", format!("{} blocks", program.blocks))];
     let linear = ["X", "Y", "Z"].into_iter().zip(program.linear_extents_mm);
+    let linear = linear.take(if machine.wire.is_some() { 2 } else { 3 });
     let rotary = ["A", "B", "C"].into_iter().zip(program.rotary_extents_degrees);
     let rotary =
         rotary.filter(|(letter, _)| machine.rotary.iter().any(|r| letter.starts_with(r.letter)));

@@ -169,6 +169,12 @@ impl<'a> Block<'a> {
                 (word.value, word.point) = (number.value, number.point);
                 from + number.len
             }
+            // Marlin's G28 X: an axis that is named.
+            None if self.g(Group::OneShot) == Some(G::Home)
+                && dictionary.flavor == Flavor::Marlin =>
+            {
+                at + 1
+            }
             None => {
                 let (value, end) = self.computed(letter, at, from, values)?;
                 self.started = true;
@@ -336,6 +342,11 @@ impl<'a> Block<'a> {
         self.m[group as usize]
     }
 
+    /// How many G and M words there are, apart from those of the builder.
+    pub(super) fn commands(&self) -> usize {
+        self.g.iter().flatten().count() + self.m.iter().flatten().count()
+    }
+
     /// Whether the block has this letter and nothing has taken it yet.
     pub(super) fn has(&self, letter: u8) -> bool {
         self.pending & bit(letter) != 0
@@ -359,6 +370,13 @@ impl<'a> Block<'a> {
     pub(super) fn pass(&mut self, letters: &[u8]) {
         for &letter in letters {
             self.pending &= !bit(letter);
+        }
+    }
+
+    /// The words of these letters can be taken once more.
+    pub(super) fn again(&mut self, letters: &[u8]) {
+        for &letter in letters {
+            self.pending |= self.given & bit(letter);
         }
     }
 

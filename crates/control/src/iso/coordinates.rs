@@ -150,13 +150,13 @@ impl Step<'_, '_, '_> {
 
     /// The number under which the neutral program knows an offset: `G54` is 54, `G59.1` 591,
     /// `G54.1 P7` 54 107, Haas `G154 P7` 154 007.
-    fn offset_number(&mut self, base: u16) -> Result<u32, Fault> {
+    fn offset_number(&mut self, base: u32) -> Result<u32, Fault> {
         let (least, most, from) = match (base, self.flavor) {
             (541, _) => (1, 300, 54_100),
             (154, _) => (1, 99, 154_000),
             (59, Flavor::Mach3) if self.block.has(b'P') => (1, 254, 59_000),
-            (110..=129, _) => return Ok(154_000 + u32::from(base) - 109),
-            _ => return Ok(u32::from(base)),
+            (110..=129, _) => return Ok(154_000 + base - 109),
+            _ => return Ok(base),
         };
         let number = self.take_whole(b'P')?;
         match number {

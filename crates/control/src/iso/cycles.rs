@@ -104,24 +104,26 @@ impl Step<'_, '_, '_> {
     /// Drills what the block says.
     pub(super) fn holes(&mut self) -> Result<(), Fault> {
         let Some(mut held) = self.state.cycle else { return Ok(()) };
-        let axis = self.state.plane.axes()[2];
-        let drills = b"XYZ".iter().any(|&letter| self.block.has(letter))
+        let drills = b"XYZ@^".iter().any(|&letter| self.block.has(letter))
             || self.flavor.is_fanuc() && self.block.has(b'R');
         if !drills {
             let asked = matches!(self.block.g(Group::Motion), Some(G::Cycle(_)));
             return if asked { Err(self.wrong("a cycle without an axis word")) } else { Ok(()) };
         }
-        let start = self.state.position;
-        let rotary = self.state.rotary;
-        let mut place = Target { point: start, rotary, named: 0 };
-        self.in_plane(&mut place, false)?;
         let r = self.series(&mut held)?;
-        let place = place.point.with_axis(axis, r);
         let repeats = self.repeats()?;
-        let step =
-            if self.state.incremental { place - start.with_axis(axis, r) } else { Vec3::ZERO };
-        for nth in 0..repeats {
-            self.drill(place + step * f64::from(nth), &mut held)?;
+        let [first, second, axis] = self.state.plane.axes();
+        for nth in 0..repeats.max(1) {
+            if nth > 0 {
+                // In G91 from hole to hole.
+                self.block.again(&[LINEAR[first], LINEAR[second], b'@', b'^']);
+            }
+            let (point, rotary) = (self.state.position, self.state.rotary);
+            let mut place = Target { point, rotary, named: 0 };
+            self.in_plane(&mut place, false)?;
+            if repeats > 0 {
+                self.drill(place.point.with_axis(axis, r), &mut held)?;
+            }
         }
         self.state.cycle = Some(held);
         Ok(())

@@ -58,17 +58,32 @@ impl Step<'_, '_, '_> {
     /// is that of RS274/NGC 3.8. FANUC leaves the moment of an M function to the builder of the
     /// machine: what could matter there is refused.
     fn run(&mut self) -> Result<(), Fault> {
+        self.one_command()?;
         self.m_functions_beside_motion()?;
         self.feed()?;
         self.speed()?;
         self.tool()?;
         self.spindle_and_coolant()?;
-        self.neutral_m();
+        self.neutral_m()?;
         self.dwell()?;
         self.modes()?;
         self.motion()?;
         self.flow()?;
         self.block.all_taken()
+    }
+
+    /// Marlin takes the first command of a line and what follows as its parameters; a line without one
+    /// means nothing to it (`GCODE_MOTION_MODES` as delivered).
+    fn one_command(&mut self) -> Result<(), Fault> {
+        if self.flavor != Flavor::Marlin {
+            return Ok(());
+        }
+        self.state.motion = None;
+        if self.block.commands() + usize::from(self.block.has(b'T')) > 1 {
+            let message = "this control takes one command a line";
+            return Err(self.block.whole("nc-many-commands", message));
+        }
+        Ok(())
     }
 
     /// FANUC runs one M function a block (parameter 3404, bit 7, as delivered), and only the builder
@@ -156,6 +171,9 @@ impl Step<'_, '_, '_> {
     }
 
     fn spindle_and_coolant(&mut self) -> Result<(), Fault> {
+        if self.block.take(b'$').is_some_and(|word| word.value != 0.0) {
+            return Err(self.block.at_word(b'$', "nc-spindle", "there is one spindle, $0"));
+        }
         let speed = || {
             self.state.speed.ok_or_else(|| {
                 let message = "the spindle starts and no speed has been given by S";
@@ -196,12 +214,21 @@ impl Step<'_, '_, '_> {
     }
 
     /// M functions for which nothing moves: their letters are taken.
-    fn neutral_m(&mut self) {
+    fn neutral_m(&mut self) -> Result<(), Fault> {
         for group in [Group::Override, Group::Output] {
-            if let Some(M::Neutral(letters)) = self.block.m(group) {
-                self.block.pass(letters);
+            match self.block.m(group) {
+                Some(M::Neutral(letters)) => self.block.pass(letters),
+                Some(M::Output(letters)) => {
+                    if let Some(&letter) = letters.iter().find(|&&letter| !self.block.has(letter)) {
+                        let message = format!("{} is missing", char::from(letter));
+                        return Err(self.block.at_group(group, "nc-output", message));
+                    }
+                    self.block.pass(letters);
+                }
+                _ => {}
             }
         }
+        Ok(())
     }
 
     fn cool(&mut self, coolant: Coolant) -> Result<(), Fault> {
@@ -287,9 +314,8 @@ impl Step<'_, '_, '_> {
         self.length()?;
         self.work_offset()?;
         for group in [Group::Path, Group::OneShot] {
-            if let Some(G::Neutral(letters)) = self.block.g(group) {
-                self.block.pass(letters);
-            }
+            let Some(G::Neutral(letters)) = self.block.g(group) else { continue };
+            self.block.pass(letters);
         }
         if let Some(G::Diameter(diameter)) = self.block.g(Group::Diameter) {
             self.state.diameter = diameter;

@@ -285,6 +285,16 @@ impl Frames {
         self.offset().is_some_and(|offset| offset.used)
     }
 
+    /// Whether the program has written no offset and shifted nothing.
+    pub(super) fn is_fresh(&self) -> bool {
+        let written = |offset: &Offset| {
+            let kept = |value: &f64| value.to_bits() == self.untouched.to_bits();
+            !offset.origin.iter().all(kept) || offset.slide != [0.0; 6] || offset.turned != 0.0
+        };
+        let shifted = self.shift != [0.0; 6] || self.beyond != [0.0; 6];
+        !shifted && !self.offsets.iter().any(written)
+    }
+
     /// The number of the active work offset.
     pub(super) fn active(&self) -> u32 {
         self.offset().map_or(0, |offset| offset.number)

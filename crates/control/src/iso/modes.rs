@@ -100,10 +100,8 @@ impl Run<'_, '_> {
         if let Some(to_r) = kept.return_to_r {
             block.put_g(Group::Return, G::ReturnToR(to_r));
         }
-        if now.work_offset != kept.work_offset
-            && let Ok(offset) = u16::try_from(kept.work_offset)
-        {
-            block.put_g(Group::WorkOffset, G::WorkOffset(offset));
+        if now.work_offset != kept.work_offset {
+            block.put_g(Group::WorkOffset, G::WorkOffset(kept.work_offset));
         }
         if now.compensation != kept.compensation {
             block.put_g(Group::Compensation, G::Compensation(Side::Off));

@@ -55,11 +55,26 @@ impl Step<'_, '_, '_> {
             G::OneSided => self.one_sided(),
             G::Pocket { clockwise } => self.pocket(clockwise),
             G::Pattern(pattern) => self.pattern(pattern),
-            G::WriteData | G::ShiftHere | G::ShiftTo | G::CancelShift { .. } | G::RestoreShift => {
-                self.coordinates(word)
+            G::WriteData | G::ShiftHere | G::ShiftTo => self.coordinates(word),
+            G::CancelShift { .. } | G::RestoreShift => {
+                self.coordinates(word)?;
+                self.go()
             }
             _ => self.go(),
         }
+    }
+
+    /// What a block without an axis word means for a motion that needs one.
+    ///
+    /// # Errors
+    /// The block asks for that motion.
+    pub(super) fn has_no_axis_word(&self) -> Result<(), Fault> {
+        let asks = matches!(self.block.g(Group::Motion), Some(G::Motion(_)))
+            || self.block.g(Group::OneShot) == Some(G::Skip);
+        if !asks {
+            return Ok(());
+        }
+        Err(self.block.whole("nc-no-motion", "no axis word says where the move goes"))
     }
 
     /// # Errors
@@ -120,13 +135,13 @@ impl Step<'_, '_, '_> {
     }
 
     /// Moves as the modes say.
-    fn go(&mut self) -> Result<(), Fault> {
+    pub(super) fn go(&mut self) -> Result<(), Fault> {
         if self.state.cycle.is_some() {
             return self.holes();
         }
         let arc_words = b"IJKR".iter().any(|&letter| self.block.has(letter));
         let Some(motion) = self.state.motion else {
-            return match b"XYZABC".iter().find(|&&letter| self.block.has(letter)) {
+            return match b"XYZABC@^".iter().find(|&&letter| self.block.has(letter)) {
                 Some(&letter) => {
                     let message = "an axis word, and no G0, G1, G2 or G3 says how to move";
                     Err(self.block.at_word(letter, "nc-no-motion", message))
@@ -199,6 +214,8 @@ impl Step<'_, '_, '_> {
         let [first, second, _] = self.state.plane.axes();
         if let Some(polar) = self.state.polar {
             self.by_angle(polar, target)?;
+        } else if self.block.has(b'@') || self.block.has(b'^') {
+            self.about_zero(target)?;
         } else {
             self.along(first, target, unknown_stays)?;
             self.along(second, target, unknown_stays)?;
@@ -267,6 +284,38 @@ impl Step<'_, '_, '_> {
         target.point[second] = polar.pole[second] + polar.radius * sin;
         target.named |= 1 << first | 1 << second;
         self.state.polar = Some(polar);
+        Ok(())
+    }
+
+    /// LinuxCNC's `@` and `^`: radius and angle about the zero, of which the one that is not given
+    /// stays what it is where the tool stands; in G91 both add to that.
+    fn about_zero(&mut self, target: &mut Target) -> Result<(), Fault> {
+        let Vec3 { x, y, .. } = target.point;
+        let cartesian = b"XY".iter().find(|&&letter| self.block.has(letter));
+        if self.state.plane.axes()[2] != 2 || cartesian.is_some() {
+            let message = "@ and ^ are for the plane G17, and not beside X or Y";
+            return Err(self.block.whole("nc-polar", message));
+        }
+        let (mut radius, mut degrees) = (x.hypot(y), y.atan2(x).to_degrees());
+        let from = if self.state.incremental { (radius, degrees) } else { (0.0, 0.0) };
+        if let Some(length) = self.take_length(b'@')? {
+            radius = from.0 + length;
+        }
+        if let Some(angle) = self.take_degrees(b'^')? {
+            degrees = from.1 + angle;
+        }
+        if radius.is_nan() || degrees.is_nan() {
+            let message =
+                "radius or angle stay what they are where the tool stands, which is not known";
+            return Err(self.block.whole("nc-unknown-position", message));
+        }
+        if self.state.incremental && from.0 == 0.0 {
+            let message = "a polar increment from the zero has no direction";
+            return Err(self.block.whole("nc-polar", message));
+        }
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        (target.point.x, target.point.y) = (radius * cos, radius * sin);
+        target.named |= 3;
         Ok(())
     }
 

@@ -67,7 +67,7 @@ impl Step<'_, '_, '_> {
     /// `G28.1`, `G30.1`: the reference position is where the machine stands.
     pub(super) fn store_home(&mut self, second: bool) -> Result<(), Fault> {
         self.state.homes[usize::from(second)] = self.machine();
-        Ok(())
+        self.go()
     }
 
     /// `G29`: by rapid through the point on the way of the last `G28`.
@@ -132,7 +132,7 @@ impl Step<'_, '_, '_> {
         self.not_compensated("probing")?;
         let target = self.target(false)?;
         if target.named == 0 {
-            return Ok(());
+            return self.has_no_axis_word();
         }
         if target.named >= 8 {
             return Err(self.block.whole("nc-probe", "a rotary axis in a probing move"));

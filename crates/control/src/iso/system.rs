@@ -17,8 +17,15 @@ pub(super) fn ngc_parameter(values: &Values, number: u32) -> Result<f64, String>
             Some(offset) => Ok(f64::from(offset) - 584.0),
             None => fresh(values, 1.0, "which work offset is active"),
         },
-        5161..=5169 | 5181..=5189 => fresh(values, 0.0, "where the reference position is"),
-        5210..=5219 | 5221..=5390 => fresh(values, 0.0, "how large the offset is"),
+        5161..=5169 | 5181..=5189 if values.state.homes.iter().all(|home| home.is_nan()) => {
+            fresh(values, 0.0, "where the reference position is")
+        }
+        5210..=5219 | 5221..=5390 if values.state.frames.is_fresh() => {
+            fresh(values, 0.0, "how large the offset is")
+        }
+        5161..=5169 | 5181..=5189 | 5210..=5219 | 5221..=5390 => {
+            Err("what the program has written there is kept in the machine's unit".into())
+        }
         5400 => tool_number(values),
         5401..=5402 | 5404..=5409 => tool(values, |_| 0.0),
         5403 => tool(values, |tool| tool.length / unit(values).unwrap_or(1.0)),

@@ -2,7 +2,6 @@
 
 use super::block::Fault;
 use super::execute::Step;
-use super::words::Flavor;
 use program::{Cycle, CycleKind, Op, Spindle, Thread};
 
 impl Step<'_, '_, '_> {
@@ -11,7 +10,7 @@ impl Step<'_, '_, '_> {
     pub(super) fn thread(&mut self) -> Result<(), Fault> {
         let target = self.target(false)?;
         if target.named == 0 {
-            return Ok(());
+            return self.has_no_axis_word();
         }
         self.not_compensated("a thread")?;
         if target.named >= 8 {
@@ -34,7 +33,7 @@ impl Step<'_, '_, '_> {
     pub(super) fn rigid_tap(&mut self) -> Result<(), Fault> {
         let target = self.target(false)?;
         if target.named == 0 {
-            return Ok(());
+            return self.has_no_axis_word();
         }
         self.not_compensated("tapping")?;
         let pitch = self.pitch(b'K')?;
@@ -79,11 +78,7 @@ impl Step<'_, '_, '_> {
     ///
     /// # Errors
     /// It stands.
-    fn spindle_turns(&mut self) -> Result<bool, Fault> {
-        if self.flavor == Flavor::LinuxCnc && self.block.take(b'$').is_some_and(|w| w.value != 0.0)
-        {
-            return Err(self.block.at_word(b'$', "nc-spindle", "there is one spindle, $0"));
-        }
+    fn spindle_turns(&self) -> Result<bool, Fault> {
         match self.state.spindle {
             Spindle::Clockwise(_) => Ok(false),
             Spindle::CounterClockwise(_) => Ok(true),

@@ -46,7 +46,7 @@ pub(super) enum G {
     DynamicLength,
     CancelLength,
     ReturnToR(bool),
-    WorkOffset(u16),
+    WorkOffset(u32),
     /// How the path is smoothed, or a mode that is off anyway: nothing moves elsewhere for it. The
     /// letters may stand beside it.
     Neutral(&'static [u8]),
@@ -206,6 +206,8 @@ pub(super) enum M {
     RestoreModes,
     /// Nothing moves for it; the letters may stand beside it.
     Neutral(&'static [u8]),
+    /// An output of the machine; the letters must stand beside it.
+    Output(&'static [u8]),
 }
 
 /// Words of one group exclude each other in a block.

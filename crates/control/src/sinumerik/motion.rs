@@ -34,6 +34,9 @@ impl Interpreter<'_> {
         if !(block.has_position() || round && block.has_arc_word()) {
             return self.no_motion(source, block);
         }
+        if !self.state.moved {
+            self.state.move_first();
+        }
         if round {
             self.settle_compensation(source, block, true)?;
             self.use_feed(source)?;

@@ -3,7 +3,8 @@
 
 use super::super::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Motion, Refused};
 use super::{
-    BASIC_G, BASIC_M, FRAME_G, MACRO_G, MILL_G, MILL_M, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles,
+    BASIC_G, BASIC_M, FRAME_G, MACRO_G, MILL_G, MILL_M, POLAR_G, SUBPROGRAM_M, TOOL_G, TOOL_M,
+    cycles,
 };
 
 const G_WORDS: &[GRow] = &[
@@ -51,6 +52,7 @@ pub(super) static WORDS: Dictionary =
         .with(MILL_G, MILL_M)
         .with(TOOL_G, TOOL_M)
         .with(FRAME_G, SUBPROGRAM_M)
+        .with(POLAR_G, &[])
         .with(MACRO_G, &[])
         .with(&cycles(Group::Cycle), &[])
         .with(G_WORDS, M_WORDS)

@@ -2,7 +2,9 @@
 //! on which it is built; `G80` may stand beside `G0` to `G3`.
 
 use super::super::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Refused};
-use super::{BASIC_G, BASIC_M, FRAME_G, MILL_G, MILL_M, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles};
+use super::{
+    BASIC_G, BASIC_M, FRAME_G, MILL_G, MILL_M, POLAR_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles,
+};
 
 const G_WORDS: &[GRow] = &[
     (100, Group::OneShot, G::WriteData),
@@ -39,6 +41,7 @@ pub(super) static WORDS: Dictionary =
         .with(MILL_G, MILL_M)
         .with(TOOL_G, TOOL_M)
         .with(FRAME_G, SUBPROGRAM_M)
+        .with(POLAR_G, &[])
         .with(&cycles(Group::Motion), &[])
         .with(G_WORDS, M_WORDS)
         .refusing(REFUSED_G, REFUSED_M);

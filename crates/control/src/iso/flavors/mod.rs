@@ -101,10 +101,12 @@ const MACRO_G: &[GRow] = &[
     (670, Group::Macro, G::CancelMacroCall),
 ];
 
-/// Turned, scaled, mirrored and polar coordinates.
+/// Polar coordinates.
+const POLAR_G: &[GRow] =
+    &[(150, Group::Polar, G::Polar(false)), (160, Group::Polar, G::Polar(true))];
+
+/// Turned and scaled coordinates.
 const FRAME_G: &[GRow] = &[
-    (150, Group::Polar, G::Polar(false)),
-    (160, Group::Polar, G::Polar(true)),
     (500, Group::Scaling, G::Scale(false)),
     (510, Group::Scaling, G::Scale(true)),
     (680, Group::Tilt, G::Turn),
