@@ -60,6 +60,9 @@ fn operators_functions_and_numbers() {
         "X[1+2*3-4/5] Y[2**3**2/10] Z[-7 MOD 3]",
         "X[1 EQ 1.00001] Y[1 NE 2] Z[2 GT 1]",
         "X[1 GE 2] Y[1 LT 2] Z[3 LE 2]",
+        // EQ and NE have a tolerance of 0.0001, GE and LE have none.
+        "X[1 EQ 1.00009] Y[1 EQ 1.00011] Z[1 NE 1.00009]",
+        "X[1 LE 0.99999] Y[1 GE 1.00001] Z[1 LE 1]",
         "X[2 AND 0 OR 1] Y[1 XOR 1] Z[1 OR 0 AND 0]",
         "X[1 + 2 EQ 3 AND 4 * 2 GT 7] Y[10 - 4 - 3] Z[8 / 4 / 2]",
         "X ABS[-3] Y ACOS[0.5] Z ASIN[0.5]",

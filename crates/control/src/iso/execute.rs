@@ -126,6 +126,7 @@ impl Step<'_, '_, '_> {
         let Some(word) = self.block.take(b'F') else { return Ok(()) };
         if let Some(G::Inches(inches)) = self.block.g(Group::Units)
             && self.state.inches != Some(inches)
+            && self.flavor != Flavor::LinuxCnc
         {
             let message = "F in the block that changes the units: controls differ in which it is";
             return Err(self.block.at_word(b'F', "nc-feed", message));
