@@ -92,7 +92,7 @@ fn parameters_are_numbered_named_indirect_and_set_together() {
     );
     agrees("G98\nG0 X[1+#<_retract_r_plane>] Y[1+#<_retract_old_z>]\nG99 X[3+#<_retract_r_plane>]");
     agrees("#1=1 #2=0 F100\nG#2 X1\nG#1 X2\nG[90 + #1] X1\nN1 G#2 Y1 M[3+#2] S#1");
-    agrees("T3 M6\nG0 X#5400 Y#<_current_tool> Z#5403\nX#5410");
+    agrees("T3 M6\nG0 X#5400 Y#<_current_tool>");
     agrees("S500 M3\nG0 X#<_rpm> Y#<_spindle_on> Z#<_spindle_cw>\nX[5*#<_ccomp>] Y#<_tool_offset>");
     agrees(
         "G1 F10 X1\nG0 X[#<_motion_mode>]\nX[1+#<_motion_mode>]\nG80\nG0 Y1\n#1=#<_motion_mode>\nX#1",
@@ -169,6 +169,11 @@ fn modes_are_kept_and_brought_back() {
 }
 
 #[test]
+fn a_feed_beside_another_unit_is_in_the_old_one() {
+    agrees("G1 X1 F254\nX[#<_feed>]\nG20 F25.4 X1\nX[#<_feed>]\nG21 X1\nX[#<_feed>]");
+}
+
+#[test]
 fn what_does_not_hold_together_is_refused() {
     for text in [
         "o1 endif",
@@ -228,6 +233,7 @@ fn a_control_that_is_not_fresh_does_not_know_what_no_block_has_set() {
         ("G0 X#100\n", "no block has set #100"),
         ("G0 X1\n#1=#5421\n", "where Y stands is not known"),
         ("#1=#5221\n", "set up at the machine"),
+        ("#1=#5403\n", "the units of the machine"),
         ("#1=#5070\n", "known only at the machine"),
         ("#1=#<_hal[a.b]>\n", "known only at the machine"),
     ] {

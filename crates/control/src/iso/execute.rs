@@ -126,7 +126,7 @@ impl Step<'_, '_, '_> {
         let Some(word) = self.block.take(b'F') else { return Ok(()) };
         if let Some(G::Inches(inches)) = self.block.g(Group::Units)
             && self.state.inches != Some(inches)
-            && self.flavor != Flavor::LinuxCnc
+            && (self.flavor != Flavor::LinuxCnc || self.state.inches.is_none())
         {
             let message = "F in the block that changes the units: controls differ in which it is";
             return Err(self.block.at_word(b'F', "nc-feed", message));
@@ -134,6 +134,7 @@ impl Step<'_, '_, '_> {
         if word.value <= 0.0 {
             return Err(self.block.at_word(b'F', "nc-feed", "the feed must be greater than 0"));
         }
+        self.state.f = Some(word.value);
         let feed = match self.state.feed_mode {
             FeedMode::PerMinute => Feed::PerMinute(word.value * self.unit(b'F')?),
             FeedMode::PerTurn => Feed::PerTurn(word.value * self.unit(b'F')?),

@@ -336,6 +336,5 @@ fn values<'v>(
     parameters: &'v Parameters,
     line: u32,
 ) -> Values<'v> {
-    let setup = &settings.setup;
-    Values { parameters, state, tools: &setup.tools, fresh: setup.start.is_some(), line }
+    Values { parameters, state, fresh: settings.setup.start.is_some(), line }
 }
