@@ -1,7 +1,7 @@
 //! One block, in the order in which a control executes it.
 
+use super::arithmetic;
 use super::block::{Block, Fault};
-use super::expression;
 use super::state::State;
 use super::words::{FeedMode, Flavor, G, Group, M, Motion, Side};
 use crate::{Settings, WholeNumbers};
@@ -129,6 +129,7 @@ impl Step<'_, '_, '_> {
         let Some(word) = self.block.take(b'F') else { return Ok(()) };
         if let Some(G::Inches(inches)) = self.block.g(Group::Units)
             && self.state.inches != Some(inches)
+            && (self.flavor != Flavor::LinuxCnc || self.state.inches.is_none())
         {
             let message = "F in the block that changes the units: controls differ in which it is";
             return Err(self.block.at_word(b'F', "nc-feed", message));
@@ -136,6 +137,7 @@ impl Step<'_, '_, '_> {
         if word.value <= 0.0 {
             return Err(self.block.at_word(b'F', "nc-feed", "the feed must be greater than 0"));
         }
+        self.state.f = Some(word.value);
         let feed = match self.state.feed_mode {
             FeedMode::PerMinute => Feed::PerMinute(word.value * self.unit(b'F')?),
             FeedMode::PerTurn => Feed::PerTurn(word.value * self.unit(b'F')?),
@@ -463,7 +465,7 @@ impl Step<'_, '_, '_> {
     pub(super) fn take_whole(&mut self, letter: u8) -> Result<Option<u32>, Fault> {
         let Some(word) = self.block.take(letter) else { return Ok(None) };
         let pointed = word.point && self.flavor.is_fanuc();
-        let value = if word.computed { expression::whole(word.value) } else { exact(word.value) };
+        let value = if word.computed { arithmetic::whole(word.value) } else { exact(word.value) };
         match value.filter(|&value| !pointed && value <= 99_999_999) {
             Some(value) => Ok(Some(value)),
             None => {

@@ -20,6 +20,8 @@ pub(super) struct State {
     pub inches: Option<bool>,
     pub feed_mode: FeedMode,
     pub feed: Option<Feed>,
+    /// F as it was written last.
+    pub f: Option<f64>,
     pub spindle: Spindle,
     /// Last S, 1/min.
     pub speed: Option<f64>,
@@ -147,6 +149,7 @@ impl State {
             inches: settings.setup.units.map(|units| units == Units::Inches),
             feed_mode: FeedMode::PerMinute,
             feed: None,
+            f: None,
             spindle: Spindle::Off,
             speed: None,
             rigid: false,
