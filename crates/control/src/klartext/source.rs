@@ -200,7 +200,11 @@ impl<'t> Source<'t> {
     #[inline]
     fn note(&mut self, place: Place, block: Line<'t>) -> Result<()> {
         let mut s = block.scanner;
-        if s.take_symbol(b"LBL") { self.note_label(place, &mut s) } else { Ok(()) }
+        if s.byte() == Some(b'L') && s.take_symbol(b"LBL") {
+            self.note_label(place, &mut s)
+        } else {
+            Ok(())
+        }
     }
 
     fn note_label(&mut self, place: Place, s: &mut Scanner<'t>) -> Result<()> {
