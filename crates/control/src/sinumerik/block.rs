@@ -188,6 +188,15 @@ impl Block {
             || self.turns.is_some()
     }
 
+    /// Whether the blocks behind it may count in another frame, or with another tool axis.
+    pub fn changes_frame(&self) -> bool {
+        self.call.is_some()
+            || self.has_rotary()
+            || self.has_vector()
+            || self.code(2) == Some(Code::Home)
+            || [3, 8, 9].into_iter().any(|group| self.code(group).is_some())
+    }
+
     /// Whether it has nothing but a command of `group` and perhaps a block number.
     pub fn only_group(&self, group: u8) -> bool {
         let others =
