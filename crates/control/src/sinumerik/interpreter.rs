@@ -495,6 +495,7 @@ impl<'a> Interpreter<'a> {
                 self.state.modal_cycle = None;
                 self.cycle_off(source)
             }
+            Procedure::Pattern(pattern) => self.pattern(source, call, pattern),
             Procedure::Drill(form) => {
                 let drilling = Drilling::read(source, call, form, &self.state)?;
                 if call.modal {

@@ -23,6 +23,7 @@ mod motion;
 mod offsets;
 mod orientation;
 mod outline;
+mod pattern;
 mod polar;
 mod programmable;
 mod run;
