@@ -116,7 +116,10 @@ impl Interpreter<'_> {
         if let Op::Arc(arc) = &mut op {
             arc.turns = turns;
         }
-        self.go(source, block, element, op)
+        if self.cornered(block) {
+            return self.go_round(source, block, element, op);
+        }
+        self.emit(source, op)
     }
 
     /// `I J K`: from the start, whatever `G90` and `G91` say, unless `AC()` says otherwise.

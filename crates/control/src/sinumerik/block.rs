@@ -121,7 +121,7 @@ pub(super) struct Block {
     /// A call; it stands alone.
     pub call: Option<Call>,
     /// A statement; it stands alone.
-    pub statement: Option<Statement>,
+    pub statement: Option<Box<Statement>>,
     /// `MSG`.
     pub message: Option<String>,
     /// Comment.

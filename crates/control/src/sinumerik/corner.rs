@@ -146,17 +146,15 @@ impl Locus {
 }
 
 impl Interpreter<'_> {
-    /// A block goes its way. Blocks without corners take the short way through here.
+    /// Whether a block has to do with a corner.
     #[inline]
-    pub fn go(&mut self, source: &Source, block: &Block, element: Element, op: Op) -> Fallible<()> {
-        if self.held.is_none() && block.rare.is_none() && self.state.modal_round == 0.0 {
-            return self.emit(source, op);
-        }
-        self.go_round(source, block, element, op)
+    pub fn cornered(&self, block: &Block) -> bool {
+        self.held.is_some() || block.rare.is_some() || self.state.modal_round != 0.0
     }
 
+    /// A block goes its way, round the corner of the block before it; it is held where it has one itself.
     #[cold]
-    fn go_round(
+    pub fn go_round(
         &mut self,
         source: &Source,
         block: &Block,

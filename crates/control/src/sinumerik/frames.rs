@@ -99,7 +99,7 @@ impl Frames {
 
     /// A point of the program in the work frame. Without a rotation each coordinate, known or not
     /// (NaN), stays for itself.
-    #[inline]
+    #[inline(always)]
     pub fn in_work_frame(&self, point: Vec3) -> Vec3 {
         if self.turned {
             self.total.transform_point3(point)

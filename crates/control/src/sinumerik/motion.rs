@@ -74,7 +74,12 @@ impl Interpreter<'_> {
             let pose = self.state.pose(position);
             let cut = motion == Motion::Line;
             let op = if cut { Op::Line(pose) } else { Op::Rapid(pose) };
-            self.go(source, block, Element { start, end: position, circle: None, cut }, op)?;
+            if self.cornered(block) {
+                let element = Element { start, end: position, circle: None, cut };
+                self.go_round(source, block, element, op)?;
+            } else {
+                self.emit(source, op)?;
+            }
         }
         self.drill_modally(source)
     }

@@ -173,7 +173,7 @@ impl State {
     }
 
     /// The pose at `point` of the program.
-    #[inline]
+    #[inline(always)]
     pub fn pose(&self, point: Vec3) -> Pose {
         let orientation = match self.tool_axis {
             ToolAxis::Rotary => {
@@ -263,7 +263,7 @@ impl State {
     }
 
     /// A straight way to `point` gives the direction of what follows, where it goes along the plane.
-    #[inline]
+    #[inline(always)]
     pub fn head_for(&mut self, point: Vec3) {
         let mut way = point - self.position;
         way[self.plane_normal] = 0.0;
