@@ -85,6 +85,11 @@ impl Element {
         .normalize_or_zero()
     }
 
+    /// By how much the way turns to the left, radians for each mm; 0 for a line.
+    pub fn curvature(&self) -> f64 {
+        self.turn.map_or(0.0, |turn| turn.sweep.signum() / self.start.distance(turn.center))
+    }
+
     /// The element that runs beside this one at `distance` mm on its left (on its right where
     /// negative): an arc stays an arc about its centre. `None` where the element has no length, or
     /// nothing is left of the radius of an arc.
@@ -226,6 +231,7 @@ mod tests {
         let outside = quarter(10.0).reversed().parallel(3.0).unwrap();
         assert!(outside.start.distance(Vec2::new(0.0, 13.0)) < 1e-12);
         assert_eq!(quarter(3.0).parallel(3.0), None);
+        assert_eq!((line.curvature(), outside.curvature()), (0.0, -1.0 / 13.0));
         assert_eq!(Element::line(Vec2::X, Vec2::X).parallel(3.0), None);
     }
 

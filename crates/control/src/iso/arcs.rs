@@ -90,10 +90,6 @@ impl Step<'_, '_, '_> {
             let message = "radius compensation starts and ends on a straight move, not on an arc";
             return Err(self.block.whole("nc-compensation", message));
         }
-        if self.is_compensated() && self.state.plane.axes()[2] != 2 {
-            let message = "radius compensation with an arc out of the plane G17";
-            return Err(self.block.whole("nc-compensation", message));
-        }
         let [first, second, _] = self.state.plane.axes();
         if self.flavor == Flavor::Grbl && target.named & (1 << first | 1 << second) == 0 {
             let message = "an arc needs an axis word of its plane";

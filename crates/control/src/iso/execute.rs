@@ -2,8 +2,9 @@
 
 use super::block::{Block, Fault, Word};
 use super::state::{Length, State, Tilt, UNKNOWN};
-use super::words::{FeedMode, Flavor, G, Group, M, Motion, Side};
+use super::words::{FeedMode, Flavor, G, Group, M, Motion, Plane, Side};
 use crate::Settings;
+use crate::compensation::Terms;
 use geom::{Frame, Mat3, Vec3};
 use program::{Coolant, Feed, Op, Spindle, Tool};
 
@@ -34,6 +35,11 @@ impl Control {
         // GRBL drives three axes only.
         let axes = if flavor == Flavor::Grbl { [false; 3] } else { settings.rotary };
         Control { flavor, axes, state: State::new(flavor, axes) }
+    }
+
+    /// What holds for compensation from here on.
+    pub(super) fn compensation(&self) -> Terms {
+        self.state.compensation_terms()
     }
 
     /// Executes `block` and puts its records into `ops`. `closed`: the last `%` has gone by.
@@ -301,8 +307,8 @@ impl Step<'_, '_, '_> {
             }
             self.state.inches = Some(inches);
         }
-        if let Some(G::Compensation(side)) = self.block.g(Group::Compensation) {
-            self.compensation(side)?;
+        if let Some(g) = self.block.g(Group::Compensation) {
+            self.compensation(g)?;
         }
         self.length()?;
         if let Some(G::WorkOffset(number)) = self.block.g(Group::WorkOffset)
@@ -329,20 +335,40 @@ impl Step<'_, '_, '_> {
         self.tilt()
     }
 
-    fn compensation(&mut self, side: Side) -> Result<(), Fault> {
+    /// `G40` to `G42` with the register D; LinuxCNC's `G41.1`, `G42.1` with D as the diameter.
+    fn compensation(&mut self, g: G) -> Result<(), Fault> {
+        let refused = |step: &Self, message| {
+            Err(step.block.at_group(Group::Compensation, "nc-compensation", message))
+        };
         let mut register = None;
-        if side != Side::Off {
-            register = self.take_whole(b'D')?;
-            if register.is_none() && self.flavor == Flavor::Fanuc {
-                let message = "G41 and G42 need their register D";
-                return Err(self.block.at_group(Group::Compensation, "nc-compensation", message));
+        let mut radius = None;
+        let side = match g {
+            G::Compensation(side) => side,
+            G::DynamicCompensation(side) => {
+                let Some(diameter) = self.take_length(b'D')? else {
+                    return refused(self, "G41.1 and G42.1 need the diameter D");
+                };
+                radius = Some(diameter / 2.0);
+                side
             }
-            if self.state.plane.axes()[2] != 2 {
-                let message = "the tool radius lies in the plane G17 only";
-                return Err(self.block.at_group(Group::Compensation, "nc-compensation", message));
+            _ => return Ok(()),
+        };
+        if side != Side::Off {
+            if self.flavor == Flavor::LinuxCnc && self.state.compensation.is_on() {
+                return refused(self, "compensation is on already: G40 first");
+            }
+            if self.flavor == Flavor::LinuxCnc && self.state.plane == Plane::Yz {
+                return refused(self, "LinuxCNC compensates in the planes G17 and G18 only");
+            }
+            if radius.is_none() {
+                register = self.take_whole(b'D')?;
+            }
+            if register.is_none() && self.flavor == Flavor::Fanuc {
+                return refused(self, "G41 and G42 need their register D");
             }
         }
         self.state.compensation.asked = side.with(register);
+        self.state.compensation.radius = radius;
         Ok(())
     }
 

@@ -13,14 +13,15 @@ mod motion;
 mod state;
 mod words;
 
-use crate::{Settings, Sink};
+use crate::Settings;
+use crate::compensation::Compensator;
 use block::{Block, Fault};
 use execute::Control;
-use program::{Diagnostic, Record};
+use program::{Diagnostic, Op, Record};
 use words::{Dictionary, Flavor};
 
 /// Runs a program.
-pub(crate) fn run(settings: &Settings, text: &[u8], sink: &mut Sink) -> Result<(), Fault> {
+pub(crate) fn run(settings: &Settings, text: &[u8], path: &mut Compensator) -> Result<(), Fault> {
     let dictionary = Dictionary::of(settings.dialect);
     let mut control = Control::new(settings, dictionary.flavor);
     let mut block = Block::new(dictionary, &settings.auxiliary);
@@ -41,7 +42,10 @@ pub(crate) fn run(settings: &Settings, text: &[u8], sink: &mut Sink) -> Result<(
         block.read(number, line)?;
         control.execute(&mut block, percent_signs == 2, &mut ops)?;
         for op in ops.drain(..) {
-            sink(Record { line: number, op })?;
+            match op {
+                Op::Compensation(side) => path.switch(number, side, control.compensation())?,
+                op => path.take(Record { line: number, op })?,
+            }
         }
     }
     Ok(())

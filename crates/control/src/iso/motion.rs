@@ -5,7 +5,7 @@ use super::execute::Step;
 use super::state::{Length, Tilt, UNKNOWN};
 use super::words::{FeedMode, Flavor, G, Group, Motion};
 use geom::Vec3;
-use program::{Compensation, Feed, Op};
+use program::{Feed, Op};
 
 /// Where a block goes.
 #[derive(Clone, Copy, Debug)]
@@ -217,7 +217,10 @@ impl Step<'_, '_, '_> {
                 "Z in a tilted plane before X and Y: where the tool goes down is not known";
             return Err(self.block.whole("nc-unknown-position", message));
         }
-        if from.x != to.x || from.y != to.y {
+        // On LinuxCNC with any straight move (`rs274`).
+        let [first, second, _] = self.state.plane.axes();
+        if from[first] != to[first] || from[second] != to[second] || self.flavor == Flavor::LinuxCnc
+        {
             self.switch_compensation();
         }
         let pose = self.state.pose(to, target.rotary);
@@ -370,10 +373,5 @@ impl Step<'_, '_, '_> {
     /// Whether the control keeps the tool centre point.
     pub(super) fn keeps_center(&self) -> bool {
         matches!(self.state.length, Length::Center(_))
-    }
-
-    /// Whether the path is offset by the tool radius.
-    pub(super) fn is_compensated(&self) -> bool {
-        self.state.compensation.active != Compensation::Off || self.compensation_waits()
     }
 }

@@ -2,6 +2,7 @@
 
 use super::cycles::Holding;
 use super::words::{FeedMode, Flavor, Motion, Plane, Side};
+use crate::compensation::Terms;
 use geom::{Frame, Vec3};
 use program::{Coolant, Feed, Orientation, Pose, Spindle};
 
@@ -69,6 +70,8 @@ pub(super) enum Length {
 pub(super) struct Compensation {
     pub active: program::Compensation,
     pub asked: program::Compensation,
+    /// Radius that the block itself gives (`G41.1`), mm.
+    pub radius: Option<f64>,
 }
 
 impl Compensation {
@@ -124,6 +127,7 @@ impl State {
             compensation: Compensation {
                 active: program::Compensation::Off,
                 asked: program::Compensation::Off,
+                radius: None,
             },
             work_offset: None,
             position: UNKNOWN,
@@ -152,6 +156,19 @@ impl State {
                     tool_center: matches!(self.length, Length::Center(_)),
                 },
             },
+        }
+    }
+
+    /// What compensation has to know of the block that switches it.
+    pub(super) fn compensation_terms(&self) -> Terms {
+        let mut normal = Vec3::ZERO;
+        normal[self.plane.axes()[2]] = 1.0;
+        Terms {
+            normal: self.direction(normal),
+            tool_axis: self.direction(Vec3::Z),
+            radius: self.compensation.radius,
+            outer: None,
+            around: false,
         }
     }
 

@@ -23,6 +23,8 @@ pub(super) enum G {
     FeedMode(FeedMode),
     Inches(bool),
     Compensation(Side),
+    /// With the diameter in the block (`G41.1`).
+    DynamicCompensation(Side),
     Length,
     ToolCenter,
     DynamicLength,
@@ -227,7 +229,9 @@ const LINUXCNC_G: &[GRow] = &[
     (300, Group::OneShot, G::SecondHome),
     (400, Group::Compensation, G::Compensation(Side::Off)),
     (410, Group::Compensation, G::Compensation(Side::Left)),
+    (411, Group::Compensation, G::DynamicCompensation(Side::Left)),
     (420, Group::Compensation, G::Compensation(Side::Right)),
+    (421, Group::Compensation, G::DynamicCompensation(Side::Right)),
     (430, Group::Length, G::Length),
     (490, Group::Length, G::CancelLength),
     (530, Group::OneShot, G::Machine),

@@ -12,7 +12,8 @@ mod scan;
 mod state;
 mod words;
 
-use crate::{Settings, Sink};
+use crate::Settings;
+use crate::compensation::Compensator;
 use cycle::{Open, cycle_number};
 use functions::{Function, When};
 use geom::Vec3;
@@ -22,7 +23,7 @@ use state::{Control, Tip};
 use words::{LINEAR, Words, feed_word};
 
 /// Runs a program.
-pub(crate) fn run(settings: &Settings, text: &[u8], sink: &mut Sink) -> Result<()> {
+pub(crate) fn run(settings: &Settings, text: &[u8], path: &mut Compensator) -> Result<()> {
     let mut lines = Lines::new(text);
     let Some(mut first) = lines.next() else {
         return Err(Diagnostic::error("program-frame", "the program is empty")
@@ -31,7 +32,7 @@ pub(crate) fn run(settings: &Settings, text: &[u8], sink: &mut Sink) -> Result<(
     };
     let (name, unit) = begin(&mut first)?;
     let mut program = Run {
-        control: Control::new(settings, sink, unit),
+        control: Control::new(settings, path, unit),
         name,
         next: 1,
         open: Continued::Nothing,

@@ -5,7 +5,8 @@ use super::functions::{Function, Functions, When};
 use super::plane::Tilt;
 use super::scan::{Result, Scanner};
 use super::words::FeedWord;
-use crate::{Settings, Sink};
+use crate::Settings;
+use crate::compensation::{Compensator, Terms};
 use geom::Vec3;
 use program::{
     Compensation, Coolant, Cycle, CycleKind, Feed, Op, Orientation, Pose, Record, Spindle,
@@ -31,7 +32,7 @@ pub(super) enum Tip {
 /// The state of the control.
 pub(super) struct Control<'a, 's> {
     pub(super) settings: &'a Settings,
-    sink: &'a mut Sink<'s>,
+    path: &'a mut Compensator<'s>,
     /// Line of the block that runs.
     line: u32,
     /// mm in the unit of length of the program.
@@ -63,10 +64,10 @@ pub(super) struct Control<'a, 's> {
 }
 
 impl<'a, 's> Control<'a, 's> {
-    pub(super) fn new(settings: &'a Settings, sink: &'a mut Sink<'s>, unit: f64) -> Self {
+    pub(super) fn new(settings: &'a Settings, path: &'a mut Compensator<'s>, unit: f64) -> Self {
         Control {
             settings,
-            sink,
+            path,
             line: 0,
             unit,
             here: Vec3::NAN,
@@ -95,7 +96,7 @@ impl<'a, 's> Control<'a, 's> {
     }
 
     pub(super) fn emit(&mut self, op: Op) -> Result<()> {
-        (self.sink)(Record { line: self.line, op })
+        self.path.take(Record { line: self.line, op })
     }
 
     /// The pose of the tool at a programmed position.
@@ -202,7 +203,11 @@ impl<'a, 's> Control<'a, 's> {
     pub(super) fn set_compensation(&mut self, compensation: Compensation) -> Result<()> {
         if self.compensation != compensation {
             self.compensation = compensation;
-            self.emit(Op::Compensation(compensation))?;
+            // The plane of work is that of the tool.
+            let normal = self.tilt.map_or(Vec3::Z, |tilt| tilt.turn * Vec3::Z);
+            let (radius, outer) = (None, None);
+            let terms = Terms { normal, tool_axis: normal, radius, outer, around: false };
+            self.path.switch(self.line, compensation, terms)?;
         }
         Ok(())
     }

@@ -12,16 +12,18 @@ use super::cycles::{Drilling, Pause};
 use super::motion::AXIS_NAMES;
 use super::scan::Source;
 use super::state::State;
-use crate::{Settings, Sink};
+use crate::Settings;
+use crate::compensation::Compensator;
 use program::{Compensation, Coolant, Cycle, Feed, Op, Record, Spindle, Tool};
 
 /// Runs blocks.
-pub(super) struct Interpreter<'a> {
+pub(super) struct Interpreter<'a, 's> {
     /// What is remembered.
     pub state: State,
     /// The machine.
     pub settings: &'a Settings,
-    sink: &'a mut Sink<'a>,
+    /// Where the records go.
+    pub path: &'a mut Compensator<'s>,
     reported_cycle: Option<Cycle>,
 }
 
@@ -32,17 +34,17 @@ const COOLANT: &[u32] = &[7, 8, 9];
 /// Automatic gear stage, gear stages 1 to 5.
 const GEARS: std::ops::RangeInclusive<u32> = 40..=45;
 
-impl<'a> Interpreter<'a> {
+impl<'a, 's> Interpreter<'a, 's> {
     /// At the start of a program.
-    pub fn new(settings: &'a Settings, sink: &'a mut Sink<'a>) -> Interpreter<'a> {
+    pub fn new(settings: &'a Settings, path: &'a mut Compensator<'s>) -> Interpreter<'a, 's> {
         let state = State::new(settings);
-        Interpreter { state, settings, sink, reported_cycle: None }
+        Interpreter { state, settings, path, reported_cycle: None }
     }
 
     /// Reports what happens.
     #[inline]
     pub fn emit(&mut self, source: &Source, op: Op) -> Fallible<()> {
-        (self.sink)(Record { line: source.line, op })
+        self.path.take(Record { line: source.line, op })
     }
 
     /// Carries out a block.
@@ -121,6 +123,12 @@ impl<'a> Interpreter<'a> {
                 return Err(source.block_error("compensation", message));
             }
             state.plane_normal = normal;
+        }
+        if let Some(Code::Corner(outer)) = block.code(18) {
+            state.corner = Some(outer);
+        }
+        if let Some(Code::Approach { around }) = block.code(17) {
+            state.goes_around = around;
         }
         if let Some(Code::Units(unit, of_feed)) = block.code(13) {
             state.unit = unit;

@@ -17,7 +17,8 @@ mod orientation;
 mod scan;
 mod state;
 
-use crate::{Settings, Sink};
+use crate::Settings;
+use crate::compensation::Compensator;
 use block::Block;
 use interpreter::Interpreter;
 use program::Diagnostic;
@@ -32,8 +33,8 @@ type Fallible<T> = Result<T, Box<Diagnostic>>;
 const LONGEST_BLOCK: usize = 512;
 
 /// Runs a program.
-pub(crate) fn run(settings: &Settings, text: &[u8], sink: &mut Sink) -> Fallible<()> {
-    let mut interpreter = Interpreter::new(settings, sink);
+pub(crate) fn run(settings: &Settings, text: &[u8], path: &mut Compensator) -> Fallible<()> {
+    let mut interpreter = Interpreter::new(settings, path);
     let mut block = Block::empty();
     let mut line = 0u32;
     let mut started = false;

@@ -6,12 +6,13 @@ use super::commands::{Code, Motion};
 use super::interpreter::Interpreter;
 use super::scan::Source;
 use super::state::ToolAxis;
+use crate::compensation::Terms;
 use geom::{Vec3, direction};
 use program::{Compensation, Op};
 
 pub(super) const AXIS_NAMES: [&str; 6] = ["X", "Y", "Z", "A", "B", "C"];
 
-impl Interpreter<'_> {
+impl Interpreter<'_, '_> {
     /// The motion of a block, if it has one.
     #[inline]
     pub fn motion(&mut self, source: &Source, block: &Block) -> Fallible<()> {
@@ -252,7 +253,19 @@ impl Interpreter<'_> {
             Compensation::Right(_) => Compensation::Right(state.edge),
             Compensation::Off => Compensation::Off,
         };
-        self.emit(source, Op::Compensation(compensation))
+        let axis = |index| {
+            let mut axis = Vec3::ZERO;
+            axis[index] = 1.0;
+            self.state.frames.direction(axis)
+        };
+        let terms = Terms {
+            normal: axis((normal + 1) % 3).cross(axis((normal + 2) % 3)),
+            tool_axis: axis(2),
+            radius: None,
+            outer: self.state.corner,
+            around: self.state.goes_around,
+        };
+        self.path.switch(source.line, compensation, terms)
     }
 
     /// `G53`, `G153`, `SUPA`: a position of the machine, not of the work frame.

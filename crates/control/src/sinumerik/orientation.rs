@@ -23,7 +23,7 @@ const AFTER: usize = 10;
 const DIRECTION: usize = 13;
 const PARAMETERS: usize = 16;
 
-impl Interpreter<'_> {
+impl Interpreter<'_, '_> {
     /// `TRANS`, `ROT` and their kin, in a block of their own.
     pub fn frame_command(
         &mut self,

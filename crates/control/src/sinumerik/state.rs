@@ -5,6 +5,7 @@ use super::cycles::Drilling;
 use super::expression::Parameters;
 use super::frames::Frames;
 use crate::Settings;
+use crate::compensation::Outer;
 use geom::Vec3;
 use program::{Compensation, Coolant, Feed, Orientation, Pose, Spindle, Tool};
 
@@ -42,6 +43,10 @@ pub(super) struct State {
     pub compensation: Compensation,
     /// G group 7 as the axes move.
     pub compensation_in_effect: Compensation,
+    /// How outer corners are gone around, where a block has said so.
+    pub corner: Option<Outer>,
+    /// `KONT`: from behind the contour the tool goes around its first point.
+    pub goes_around: bool,
     /// `F` in the active type, mm/min or mm.
     pub feed: Option<f64>,
     /// The feed that was reported last.
@@ -94,6 +99,8 @@ impl State {
             work_offset: WORK_OFFSET_AT_RESET,
             compensation: Compensation::Off,
             compensation_in_effect: Compensation::Off,
+            corner: None,
+            goes_around: false,
             feed: None,
             reported_feed: None,
             speed: 0.0,
