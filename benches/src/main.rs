@@ -2,7 +2,7 @@
 //! floor in the same run.
 //!
 //! The toolpath is generated ([`path`]); every stage runs `--rounds` times on one core, and its fastest
-//! round counts ([`clock`]). Memory is what the program asks the allocator for ([`memory`]). A path ten
+//! round counts ([`clock`]). NC programs are run on the virtual controls ([`programs`]). Memory is what the program asks the allocator for ([`memory`]). A path ten
 //! times as long shows that time and memory grow no faster. Then come real files ([`library`]).
 
 mod clock;
@@ -10,6 +10,7 @@ mod floor;
 mod library;
 mod memory;
 mod path;
+mod programs;
 
 use clap::Parser;
 use machine::Machine;
@@ -24,7 +25,7 @@ static ALLOCATOR: memory::Counting = memory::Counting;
 /// Measures reading, writing and proving against a floor.
 #[derive(Parser)]
 struct Arguments {
-    /// Points of the toolpath.
+    /// Points of the toolpath; 0 leaves it out.
     #[arg(long, default_value_t = 2_000_000)]
     records: usize,
     /// Machine of the library, or the path of its file; may be given several times.
@@ -33,6 +34,9 @@ struct Arguments {
     /// Rounds of each stage; the fastest counts.
     #[arg(long, default_value_t = 3)]
     rounds: usize,
+    /// Blocks of the NC programs; 0 leaves them out.
+    #[arg(long, default_value_t = 200_000)]
+    blocks: usize,
     /// Real files of cutter-location data, to be proven on every machine of the library.
     files: Vec<PathBuf>,
 }
@@ -56,6 +60,17 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Vec<Diagnostic>> {
+    if arguments.blocks > 0 {
+        programs::measure(arguments.blocks, arguments.rounds)?;
+    }
+    if arguments.records > 0 {
+        five_axes(arguments)?;
+    }
+    library::measure(&arguments.files, arguments.rounds)
+}
+
+/// A five-axis toolpath, read, written and proven.
+fn five_axes(arguments: &Arguments) -> Result<(), Vec<Diagnostic>> {
     let text = path::cutter_location_data(arguments.records);
     let table = Table { records: arguments.records };
     println!("{} GOTO, {} MB of cutter-location data", arguments.records, text.len() / 1_000_000);
@@ -93,8 +108,7 @@ fn run(arguments: &Arguments) -> Result<(), Vec<Diagnostic>> {
         ten_times(arguments.records, &machine, &proving)?;
     }
     println!("the program in memory: {} bytes a move", table.each(stored));
-    drop((source, text));
-    library::measure(&arguments.files, arguments.rounds)
+    Ok(())
 }
 
 /// Reads, writes and proves a path ten times as long as that of `once`.

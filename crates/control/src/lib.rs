@@ -17,6 +17,7 @@ mod flow;
 mod folders;
 mod iso;
 mod klartext;
+mod points;
 mod sinumerik;
 
 use compensation::Compensator;
@@ -37,16 +38,19 @@ pub enum Dialect {
     Sinumerik,
     /// HEIDENHAIN Klartext (TNC 640, iTNC 530).
     Klartext,
+    /// Lists of coordinates for wire EDM.
+    Points,
 }
 
 impl Dialect {
     /// Every dialect with the name that a control file gives as its `reader`.
-    pub const NAMES: [(&'static str, Dialect); 5] = [
+    pub const NAMES: [(&'static str, Dialect); 6] = [
         ("fanuc", Dialect::Fanuc),
         ("linuxcnc", Dialect::LinuxCnc),
         ("grbl", Dialect::Grbl),
         ("sinumerik", Dialect::Sinumerik),
         ("klartext", Dialect::Klartext),
+        ("points", Dialect::Points),
     ];
 
     /// The dialect of that name.
@@ -60,7 +64,7 @@ impl Dialect {
         match self {
             Dialect::Sinumerik => Some(sinumerik::WORK_OFFSET_AT_RESET),
             Dialect::LinuxCnc | Dialect::Grbl => Some(54),
-            Dialect::Fanuc | Dialect::Klartext => None,
+            Dialect::Fanuc | Dialect::Klartext | Dialect::Points => None,
         }
     }
 }
@@ -79,6 +83,9 @@ pub struct Settings {
     /// R parameters that the operator sets at the machine to shift the zero of a rotary axis
     /// (SINUMERIK). They count as 0; any other that no block has set is an error.
     pub operator_parameters: Vec<u32>,
+    /// Height over the lower plane at which U and V of a wire are counted, mm; `None` where it is not
+    /// known, or there is no wire.
+    pub upper_plane: Option<f64>,
     /// How far the control may be allowed to leave the path while it smooths it, mm.
     pub path_tolerance: f64,
     /// What the operator has set up.
@@ -136,6 +143,7 @@ impl Settings {
             rotary,
             auxiliary: Vec::new(),
             operator_parameters: Vec::new(),
+            upper_plane: None,
             path_tolerance: 0.0,
             setup: Setup::default(),
         }
@@ -162,6 +170,7 @@ pub fn read(
         Dialect::Fanuc | Dialect::LinuxCnc | Dialect::Grbl => iso::run,
         Dialect::Sinumerik => sinumerik::run,
         Dialect::Klartext => klartext::run,
+        Dialect::Points => points::run,
     };
     let mut compensator = Compensator::new(settings, sink);
     run(settings, text, &mut compensator)

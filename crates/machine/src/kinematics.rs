@@ -5,8 +5,8 @@
 //! under the tool, a head turns the tool about points fixed to the spindle; so the tip in the work
 //! frame follows from the tip in the machine by undoing the table.
 
-use crate::{Machine, Mount, RotaryAxis};
-use geom::{Vec3, rotate};
+use crate::{Machine, Mount, RotaryAxis, Wire};
+use geom::{Vec2, Vec3, rotate};
 use program::{Orientation, Pose};
 
 impl Machine {
@@ -72,5 +72,17 @@ impl Machine {
     /// The rotary axes of one side, from the machine's frame outwards.
     fn on(&self, mount: Mount) -> impl DoubleEndedIterator<Item = &RotaryAxis> {
         self.rotary.iter().filter(move |axis| axis.on == mount)
+    }
+}
+
+impl Wire {
+    /// U and V (mm) of a wire along `axis` (a unit vector, upwards); nothing where it leans and the
+    /// height of the upper plane is not known, or it lies flat.
+    pub fn lean(&self, axis: Vec3) -> Option<Vec2> {
+        let across = axis.truncate();
+        match self.height {
+            Some(height) if axis.z > 0.0 => Some(across * (height / axis.z)),
+            _ => (across == Vec2::ZERO).then_some(Vec2::ZERO),
+        }
     }
 }

@@ -19,6 +19,6 @@ pub mod plan;
 mod sheet;
 pub mod time;
 
-pub use load::{load, load_control, load_text};
+pub use load::{load, load_control, load_origin, load_text};
 pub use model::*;
 pub use sheet::{Key, keys};

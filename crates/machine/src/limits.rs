@@ -5,7 +5,7 @@
 //! can be said without it is: no axis may need more way than its travel is long.
 
 use crate::{LinearAxis, Machine};
-use geom::{Arc, Vec3};
+use geom::{Arc, Vec2, Vec3, angle_between};
 use program::{Diagnostic, Feed, Spindle, Tool};
 use serde::Serialize;
 
@@ -94,6 +94,43 @@ impl<'a> Limits<'a> {
         let (low, high) = arc.extents();
         self.position(low, degrees, tool_length, line)?;
         self.position(high, degrees, tool_length, line)
+    }
+
+    /// Checks the lean of a wire: U and V (mm), and its axis (a unit vector).
+    ///
+    /// # Errors
+    /// `uv-limit`, `taper-limit`.
+    pub fn lean(&self, uv: Vec2, axis: Vec3, line: u32) -> Result<(), Box<Diagnostic>> {
+        let Some(wire) = &self.machine.wire else { return Ok(()) };
+        let (most, taper) = (wire.uv_travel, angle_between(axis, Vec3::Z).to_degrees());
+        let (rule, message) = if uv.abs().max_element() > most + ROUNDING {
+            let message =
+                format!("U{:.4} V{:.4} mm: the travel is {most} mm either way", uv.x, uv.y);
+            ("uv-limit", message)
+        } else if taper > wire.taper_max + ROUNDING {
+            let most = wire.taper_max;
+            (
+                "taper-limit",
+                format!("the wire leans by {taper:.4}°: the machine by {most}° at most"),
+            )
+        } else {
+            return Ok(());
+        };
+        let help = "a smaller taper, or a machine whose wire leans farther";
+        Err(Diagnostic::error(rule, message).help(help).line(line).into())
+    }
+
+    /// Checks that the control holds a program of so many points.
+    ///
+    /// # Errors
+    /// `memory`.
+    pub fn memory(&self, points: usize) -> Result<(), Box<Diagnostic>> {
+        let most = self.machine.wire.and_then(|wire| wire.memory).unwrap_or(usize::MAX);
+        if points <= most {
+            return Ok(());
+        }
+        let message = format!("the program has {points} points, the control holds {most}");
+        Err(Diagnostic::error("memory", message).help("a coarser step, or several programs").into())
     }
 
     /// Checks the speed of the spindle.

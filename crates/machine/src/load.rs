@@ -41,6 +41,17 @@ pub fn load_control(name: &str) -> Result<Machine> {
     build(SheetFile::of_library(name, library::CONTROLS)?)
 }
 
+/// Loads what a program was written for: a machine as [`load`] does, or a control of the library.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_origin(name_or_path: &str) -> Result<Machine> {
+    match library::find(name_or_path, library::CONTROLS) {
+        Some(_) => load_control(name_or_path),
+        None => load(name_or_path),
+    }
+}
+
 /// Loads a machine from TOML text, as if it stood in `file_name`. What it extends by path is looked up
 /// from the folder of that name.
 ///
@@ -259,6 +270,7 @@ struct CheckedSheet {
     rotary: Option<Placed<Vec<RotaryAxis>>>,
     work_zero: Option<Point>,
     orientation: Option<Placed<OrientationSheet>>,
+    wire: Option<Placed<WireSheet>>,
     spindle: Option<Placed<SpindleSheet>>,
     feed_max: Option<Positive>,
     tools: ToolsSheet,
@@ -296,6 +308,7 @@ impl CheckedSheet {
             rotary: sheet.rotary.map(|axes| check_rotary(file, axes)).transpose()?,
             work_zero: sheet.work_zero,
             orientation: sheet.orientation.map(|o| Placed::new(file, "orientation", o)),
+            wire: sheet.wire.map(|wire| Placed::new(file, "wire", wire)),
             spindle,
             feed_max: sheet.feed_max,
             tools: sheet.tools.unwrap_or_default(),
@@ -422,6 +435,7 @@ impl CheckedSheet {
             rotary: nearer.rotary.or(self.rotary),
             work_zero: nearer.work_zero.or(self.work_zero),
             orientation: joined(self.orientation, nearer.orientation, OrientationSheet::under),
+            wire: joined(self.wire, nearer.wire, WireSheet::under),
             spindle: joined(self.spindle, nearer.spindle, SpindleSheet::under),
             feed_max: nearer.feed_max.or(self.feed_max),
             tools: self.tools.under(nearer.tools),
@@ -469,6 +483,12 @@ impl CheckedSheet {
             }
             orientation = sheet;
         }
+        if let Some(Placed { place, .. }) = self.wire.as_ref().filter(|_| !rotary.is_empty()) {
+            return Err(wrong(
+                place,
+                "a wire leans by U and V: there are no [[rotary]] axes beside",
+            ));
+        }
         let simultaneous = orientation.simultaneous.unwrap_or(OrientationMode::Fixed);
         let positioned = orientation.positioned.unwrap_or(simultaneous);
         let capabilities = self.capabilities;
@@ -512,6 +532,7 @@ impl CheckedSheet {
                 positioned,
                 tolerance: orientation.tolerance.map_or(0.005, |mm| mm.0),
             },
+            wire: self.wire.map(|wire| finish_wire(&wire.sheet)),
             spindle: SpindleRange {
                 min: spindle.min.map_or(0.0, |speed| speed.0),
                 max: spindle.max.map_or(f64::INFINITY, |speed| speed.0),
@@ -545,6 +566,15 @@ fn finish_linear(sheet: &LinearSheet) -> LinearAxis {
         max: sheet.max.map_or(default.max, |mm| mm.0),
         rapid: sheet.rapid.map_or(default.rapid, |rate| rate.0),
         acceleration: sheet.acceleration.map_or(default.acceleration, |rate| rate.0),
+    }
+}
+
+fn finish_wire(sheet: &WireSheet) -> Wire {
+    Wire {
+        height: sheet.height.map(|mm| mm.0),
+        uv_travel: sheet.uv_travel.map_or(f64::INFINITY, |mm| mm.0),
+        taper_max: sheet.taper_max.map_or(90.0, |degrees| degrees.0),
+        memory: sheet.memory.map(|points| points as usize),
     }
 }
 
@@ -655,6 +685,18 @@ max = 200.5
         let shown = refusal(&format!("reader = \"g\"\n[[rotary]]\n{axis}"));
         assert!(shown.starts_with("mill.toml:2:"), "{shown}");
         assert!(shown.contains("`orientation.simultaneous`"), "{shown}");
+    }
+
+    #[test]
+    fn a_wire_leans_by_u_and_v_and_by_no_rotary_axis() {
+        let wire = load_text("w.toml", "reader = \"g\"\n[wire]\nmemory = 900\n").unwrap().wire;
+        let unlimited =
+            Wire { height: None, uv_travel: f64::INFINITY, taper_max: 90.0, memory: Some(900) };
+        assert_eq!(wire, Some(unlimited));
+        let axis = "letter = \"A\"\non = \"head\"\naxis = [1, 0, 0]\nrapid = 1\nacceleration = 1";
+        let modes = "[orientation]\nsimultaneous = \"vectors\"";
+        let shown = refusal(&format!("reader = \"g\"\n[wire]\n{modes}\n[[rotary]]\n{axis}"));
+        assert!(shown.starts_with("mill.toml:2:1: ") && shown.contains("U and V"), "{shown}");
     }
 
     #[test]

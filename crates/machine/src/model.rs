@@ -41,6 +41,8 @@ pub struct Machine {
     pub work_zero: Option<Vec3>,
     /// How a tool orientation is written.
     pub orientation: OrientationSettings,
+    /// The wire, where the machine is one for wire EDM; a mill has none.
+    pub wire: Option<Wire>,
     /// What the spindle can do.
     pub spindle: SpindleRange,
     /// Fastest feed, mm/min; infinite where none is given.
@@ -118,6 +120,20 @@ pub enum Mount {
     Table,
     /// The tool.
     Head,
+}
+
+/// The wire of a machine for wire EDM. Its lower end moves in the plane Z 0 by X and Y; U and V say how
+/// far the wire is beside that where it crosses the upper plane.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wire {
+    /// Height of the upper plane over the lower, mm; without it no wire can lean.
+    pub height: Option<f64>,
+    /// Farthest U and V either way, mm; infinite where none is given.
+    pub uv_travel: f64,
+    /// How far the wire may lean from upright, degrees; 90 where nothing is given.
+    pub taper_max: f64,
+    /// The most points (lines of the program) that the control holds, where that is known.
+    pub memory: Option<usize>,
 }
 
 /// How a tool orientation is written.

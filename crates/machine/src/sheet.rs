@@ -29,6 +29,7 @@ pub fn keys() -> impl Iterator<Item = &'static Key> {
         LinearSheet::KEYS,
         RotarySheet::KEYS,
         OrientationSheet::KEYS,
+        WireSheet::KEYS,
         SpindleSheet::KEYS,
         ToolsSheet::KEYS,
     ];
@@ -64,7 +65,7 @@ macro_rules! sheet {
 sheet!(Sheet "" {
     extends: Spanned<String>, "", "The machine or control that this file changes: a name in the library, or the path of a file.";
     title: String, "", "What a person calls it.";
-    reader: Spanned<String>, "", "The virtual control that proves its programs: sinumerik, fanuc, linuxcnc, grbl, klartext.";
+    reader: Spanned<String>, "", "The virtual control that proves its programs: sinumerik, fanuc, linuxcnc, grbl, klartext, points.";
     extension: String, "", "Ending of its programs, without the dot.";
     capabilities: CapabilitiesSheet, "", "Table: what the control can do; what it cannot is lowered.";
     format: FormatSheet, "", "Table: how text is put together.";
@@ -74,6 +75,7 @@ sheet!(Sheet "" {
     rotary: Spanned<Vec<Spanned<RotarySheet>>>, "", "Tables [[rotary]]: the rotary axes from the machine's frame outwards, at most two.";
     work_zero: Point, "mm", "The work zero (G54) in machine coordinates, where it is known: travels are then checked in machine coordinates, otherwise only their length.";
     orientation: Spanned<OrientationSheet>, "", "Table: how a tool axis is written.";
+    wire: Spanned<WireSheet>, "", "Table: the wire of a machine for wire EDM; a machine without it is a mill.";
     spindle: Spanned<SpindleSheet>, "", "Table: the speeds of the spindle.";
     feed_max: Positive, "mm/min", "The fastest feed of the machine; a program that asks for more is refused.";
     tools: ToolsSheet, "", "Table: what the magazine takes.";
@@ -145,6 +147,13 @@ sheet!(merged OrientationSheet "orientation" {
     simultaneous: OrientationMode, "", "How the tool axis is written while it turns in the cut: fixed, machine-angles, tool-center-angles, vectors, tilted-plane.";
     positioned: OrientationMode, "", "The same while it stands still (3+2); as `simultaneous` where it is missing.";
     tolerance: Positive, "mm", "How far the tool tip may leave the line between two points before a point is added.";
+});
+
+sheet!(merged WireSheet "wire" {
+    height: Positive, "mm", "Height of the upper plane over the lower: U and V say how far the wire is beside X and Y there.";
+    uv_travel: Positive, "mm", "Farthest U and V either way; without it there is no limit.";
+    taper_max: Positive, "degrees", "How far the wire may lean from upright; without it there is no limit.";
+    memory: u32, "", "The most points that the control holds, one a line.";
 });
 
 sheet!(merged SpindleSheet "spindle" {

@@ -87,6 +87,11 @@ impl<'a> Clock<'a> {
                 });
                 self.cut(&to.end, arc.map_or(0.0, |arc| arc.length()));
             }
+            Op::Thread(thread) => {
+                let feed = std::mem::replace(&mut self.feed, Feed::PerTurn(thread.pitch));
+                self.run(&Op::Line(thread.end));
+                self.feed = feed;
+            }
             Op::Hole(pose) => self.hole(pose),
             Op::Cycle(cycle) => self.cycle = Some(**cycle),
             Op::CycleOff => self.cycle = None,

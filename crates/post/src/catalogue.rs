@@ -91,12 +91,15 @@ names! {
         HelixCw Block "helix_cw", "", "Each clockwise arc that rises; `arc_cw` where it is missing.";
         HelixCcw Block "helix_ccw", "", "Each counter-clockwise arc that rises; `arc_ccw` where it is missing.";
         PlaneSelect Block "plane_select", "", "Where the plane must change before a block that does not say it.";
-        Retract Block "retract", "", "Before the rotary axes turn away from a known position: the tool leaves the part in machine coordinates.";
+        Retract Block "retract", "", "Before the rotary axes turn away from a known position, or the work offset changes: the tool leaves the part in machine coordinates.";
+        WorkOffsetSelect Block "work_offset_select", "", "Where the source names a work offset: `{{work_offset}}` is active from here on.";
         Rotate Block "rotate", "", "Rotary axes to their positions while the tool is clear of the part.";
         PlaneTilt Block "plane_tilt", "", "Tilted plane of work on: frame and swivelling.";
         PlaneTiltOff Block "plane_tilt_off", "", "Tilted plane of work off, rotary axes to zero.";
         ToolCenterOn Block "tool_center_on", "", "Tool center point control on.";
         ToolCenterOff Block "tool_center_off", "", "Tool center point control off.";
+        ThreadWire Block "thread_wire", "", "Where the wire is threaded (wire EDM). Empty on a control that is told of no wire: its program cuts one opening.";
+        CutWire Block "cut_wire", "", "Where the wire is cut (wire EDM).";
         CycleDrill Block "cycle_drill", "", "Definition of a drilling cycle. A definition that places {{X}} drills the first hole itself.";
         CycleDwell Block "cycle_dwell", "", "The same with a dwell at the bottom; `cycle_drill` where it is missing and places {{DWELL}}.";
         CycleDeep Block "cycle_deep", "", "Definition of deep drilling: out of the hole after each peck.";
@@ -123,6 +126,8 @@ names! {
         A Word "A", "degrees", "Position of the rotary axis A; left out where the machine has none.";
         B Word "B", "degrees", "Position of the rotary axis B; left out where the machine has none.";
         C Word "C", "degrees", "Position of the rotary axis C; left out where the machine has none.";
+        U Word "U", "mm", "How far the wire is beside X at the upper plane (wire EDM); left out where it stands upright in the whole program.";
+        V Word "V", "mm", "How far it is beside Y there.";
         VX Word "VX", "", "Tool axis, a unit vector from the tip to the spindle: X.";
         VY Word "VY", "", "Tool axis: Y.";
         VZ Word "VZ", "", "Tool axis: Z.";
@@ -171,6 +176,7 @@ names! {
         Plane Code "plane", "xy, xz, yz", "Plane of arcs and of cutter compensation.";
         Compensation Code "compensation", "off, left, right", "Cutter radius compensation; switched with the first move in the plane.";
         Length Code "length", "on", "Tool length offset, with each straight move that says Z.";
+        WorkOffset Code "work_offset", "54, 55, 56, 57, 58, 59, 60, 61, 62", "The active work offset, in every block: 54 is the first that the control can set. Those that it lacks are left out.";
         FeedMode Code "feed_mode", "per_minute, per_turn, inverse_time", "What {{F}} means.";
     }
 }

@@ -7,8 +7,8 @@
 //!
 //! [`catalogue()`] names every block, word and variable that a control file may use. One record at a time
 //! goes through `walk`, which knows what the control has been told; `place` brings the tool into its
-//! orientation, `motion`, `arcs` and `cycles` say where it goes, and `writer` leaves out what repeats. Before
-//! that, `sweep` splits cuts that would swing the tool out of its way.
+//! orientation, `motion`, `arcs` and `cycles` say where it goes, `wire` says how a wire stands, and `writer`
+//! leaves out what repeats. Before that, `sweep` splits cuts that would swing the tool out of its way.
 
 mod arcs;
 mod catalogue;
@@ -22,6 +22,7 @@ mod promises;
 mod sweep;
 mod template;
 mod walk;
+mod wire;
 mod writer;
 
 pub use catalogue::{Kind, Parameter, catalogue};

@@ -16,6 +16,7 @@ impl Walk<'_> {
     /// A rapid of the source.
     pub(crate) fn rapid(&mut self, pose: &Pose, stop: &Stop) -> Done {
         self.end_cycle()?;
+        self.wire_for(false, "a rapid")?;
         self.sync_spindle()?;
         self.settle(pose, stop, false)?;
         self.rapid_to(pose, stop)
@@ -178,6 +179,9 @@ impl Walk<'_> {
             self.writer.set(WordName::VX, axis.x);
             self.writer.set(WordName::VY, axis.y);
             self.writer.set(WordName::VZ, axis.z);
+        }
+        if self.wire.is_some() {
+            self.say_lean(axis);
         }
         if !matches!(self.place.kind, Kind::ToolCenter | Kind::Vectors) {
             self.say_length_offset();

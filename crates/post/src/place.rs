@@ -188,7 +188,7 @@ impl Walk<'_> {
     /// Whether `pose` can be written as the control counts, and with the rotary axes as they stand.
     ///
     /// # Errors
-    /// A tool axis that a machine without rotary axes does not have.
+    /// A tool axis that a machine without rotary axes does not have, a lean that a wire cannot take.
     #[inline]
     pub(crate) fn settled(
         &self,
@@ -198,10 +198,11 @@ impl Walk<'_> {
     ) -> Result<bool, Box<Diagnostic>> {
         let axis = pose.axis().unwrap_or(Vec3::Z);
         Ok(match (&self.place.kind, stop.mode) {
-            (Kind::Plain, OrientationMode::Fixed) if !same(axis, Vec3::Z) => {
-                return Err(unreachable(axis));
-            }
-            (Kind::Plain, OrientationMode::Fixed) => true,
+            (Kind::Plain, OrientationMode::Fixed) => match &self.wire {
+                Some(wire) => self.wire_stands(wire, pose).map(|()| true)?,
+                None if same(axis, Vec3::Z) => true,
+                None => return Err(unreachable(axis)),
+            },
             (Kind::Plain, OrientationMode::TiltedPlane) => same(axis, Vec3::Z),
             (Kind::Tilted(_, tilted), OrientationMode::TiltedPlane) => same(*tilted, axis),
             (Kind::ToolCenter, OrientationMode::ToolCenterAngles)
@@ -269,7 +270,7 @@ impl Walk<'_> {
     }
 
     /// Positions are written in full from here on.
-    fn lose_position(&mut self) {
+    pub(crate) fn lose_position(&mut self) {
         let vector = bit(WordName::VX) | bit(WordName::VY) | bit(WordName::VZ);
         self.writer.forget(POSITION | LENGTH_OFFSET | vector | bit(WordName::Motion));
         self.located = false;
@@ -278,7 +279,7 @@ impl Walk<'_> {
     /// Away from the part in machine coordinates, before a rotary axis turns. These are positions of
     /// the axes only while the control does not keep the tool tip: SINUMERIK's `SUPA` leaves `TRAORI`
     /// on, and HEIDENHAIN wants `M129` before `M91`.
-    fn leave_part(&mut self) -> Done {
+    pub(crate) fn leave_part(&mut self) -> Done {
         if self.located {
             self.uncompensated("a new orientation")?;
             self.tool_center_off()?;

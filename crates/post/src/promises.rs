@@ -41,7 +41,10 @@ pub(crate) fn check(machine: &Machine, templates: &Templates) -> Result<(), Vec<
             errors.push(at(Diagnostic::error("word", message), &known.place));
         }
     }
-    for word in [WordName::X, WordName::Y, WordName::Z] {
+    let axes = [WordName::X, WordName::Y, WordName::Z];
+    // A wire has no height.
+    let axes = if machine.wire.is_some() { &axes[..2] } else { &axes[..] };
+    for word in axes {
         if !machine.words.contains_key(word.name()) {
             let message = format!("[words.{}] is missing", word.name());
             errors.push(file(Diagnostic::error("word", message)));
@@ -63,11 +66,10 @@ pub(crate) fn check(machine: &Machine, templates: &Templates) -> Result<(), Vec<
             errors.push(error.file(text.file.clone()).line(text.line));
         }
     };
-    let axes = [WordName::X, WordName::Y, WordName::Z];
-    placed(BlockName::Rapid, &axes, "no move could go there");
-    placed(BlockName::Linear, &axes, "no move could go there");
+    placed(BlockName::Rapid, axes, "no move could go there");
+    placed(BlockName::Linear, axes, "no move could go there");
     for (promise, why, word) in [
-        (true, "no feed could be said", WordName::F),
+        (machine.wire.is_none(), "no feed could be said", WordName::F),
         (can.compensation, "`compensation` is promised", WordName::Compensation),
         (can.feed_per_turn, "`feed_per_turn` is promised", WordName::FeedMode),
         (can.inverse_time, "`inverse_time` is promised", WordName::FeedMode),
@@ -89,6 +91,8 @@ fn needs(machine: &Machine, code: &str) -> bool {
         "left" | "right" => can.compensation,
         "per_turn" => can.feed_per_turn,
         "inverse_time" => can.inverse_time,
+        // A control has as many work offsets as it has; the first is the one that it works in.
+        number if number.starts_with(|c: char| c.is_ascii_digit()) => number == "54",
         _ => true,
     }
 }
@@ -100,9 +104,14 @@ fn promised(machine: &Machine) -> Vec<(BlockName, &'static str)> {
     let mut all = vec![
         (B::Rapid, "every program moves"),
         (B::Linear, "every program cuts"),
-        (B::ToolChange, "every program calls a tool"),
         (B::ProgramEnd, "every program ends"),
     ];
+    match machine.wire {
+        None => all.push((B::ToolChange, "every program calls a tool")),
+        Some(_) => {
+            all.extend([B::ThreadWire, B::CutWire].map(|block| (block, "the machine has a wire")))
+        }
+    }
     if !can.arcs.is_empty() {
         all.extend([B::ArcCw, B::ArcCcw].map(|block| (block, "`arcs` are promised")));
     }

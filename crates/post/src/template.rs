@@ -40,6 +40,8 @@ pub(crate) const LENGTH_OFFSET: Words = bit(WordName::H) | bit(WordName::Length)
 pub(crate) const ORIENTATION: Words = bit(WordName::A)
     | bit(WordName::B)
     | bit(WordName::C)
+    | bit(WordName::U)
+    | bit(WordName::V)
     | bit(WordName::VX)
     | bit(WordName::VY)
     | bit(WordName::VZ);

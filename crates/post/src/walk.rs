@@ -7,6 +7,7 @@ use crate::template::{
     LENGTH_OFFSET, ORIENTATION, POSITION, Scope, Templates, bit, map, printed, program_value,
     tool_value,
 };
+use crate::wire::Wire;
 use crate::writer::Writer;
 use geom::Vec3;
 use machine::limits::Limits;
@@ -75,11 +76,15 @@ pub(crate) struct Walk<'a> {
     /// Whether the control stands where the last pose says.
     pub(crate) located: bool,
     pub(crate) place: Place,
+    /// The wire, where the machine has one.
+    pub(crate) wire: Option<Wire>,
     /// Where the next block brings the tool tip, mm, work frame.
     pub(crate) tip: Vec3,
     /// The same in the coordinates of the block, mm.
     pub(crate) said: Vec3,
     pub(crate) limits: Limits<'a>,
+    /// Entry of the code word `work_offset` that is active.
+    work_offset: usize,
     ended: bool,
 }
 
@@ -120,9 +125,11 @@ impl<'a> Walk<'a> {
             here: None,
             located: false,
             place: Place::start(machine),
+            wire: Wire::of(machine, program),
             tip: Vec3::ZERO,
             said: Vec3::ZERO,
             limits: Limits::new(machine),
+            work_offset: 0,
             ended: false,
         })
     }
@@ -134,6 +141,7 @@ impl<'a> Walk<'a> {
         }
         let warnings = self.findings.finish(self.machine.capabilities.lowering_tolerance)?;
         let (text, blocks) = self.writer.finish();
+        self.limits.memory(blocks).map_err(|found| vec![*found])?;
         Ok(crate::Output { text, blocks, warnings })
     }
 
@@ -181,7 +189,8 @@ impl<'a> Walk<'a> {
             return self.motion(&record.op, stop);
         }
         match &record.op {
-            Op::Rapid(_) | Op::Line(_) | Op::Arc(_) | Op::Hole(_) => Ok(()),
+            Op::Rapid(_) | Op::Line(_) | Op::Arc(_) | Op::Thread(_) | Op::Hole(_) => Ok(()),
+            Op::Probe(_) => Err(refuse("unsupported", "a probing move is not written")),
             Op::Cycle(cycle) => {
                 self.end_cycle()?;
                 self.cycle = Some(cycle);
@@ -241,14 +250,21 @@ impl<'a> Walk<'a> {
             }
             Op::Message(text) => self.text(BlockName::Comment, text),
             Op::End => self.end(),
-            Op::LengthOffset(_) | Op::WorkOffset(_) | Op::Home(_) => {
+            Op::ThreadWire => self.thread_wire(),
+            Op::CutWire => self.cut_wire(),
+            Op::Home(_) => {
+                self.end_cycle()?;
+                self.leave_part()
+            }
+            Op::WorkOffset(number) => self.set_work_offset(*number),
+            Op::LengthOffset(_) => {
                 Err(refuse("unsupported", "only virtual controls give this record"))
             }
         }
     }
 
     fn motion(&mut self, op: &'a Op, stop: Option<crate::place::Stop>) -> Done {
-        if self.tool.is_none() {
+        if self.tool.is_none() && self.wire.is_none() {
             self.default_tool()?;
         }
         let Some(stop) = stop else { return Ok(()) };
@@ -257,8 +273,33 @@ impl<'a> Walk<'a> {
             Op::Line(pose) => self.line(pose, &stop),
             Op::Arc(to) => self.arc(to, &stop),
             Op::Hole(pose) => self.hole(pose, &stop),
+            Op::Thread(_) => Err(refuse(
+                "unsupported",
+                "a thread in step with the spindle is not written; tap it",
+            )),
             _ => Ok(()),
         }
+    }
+
+    /// Positions are counted from another work offset from here on; the way there leads over the part.
+    fn set_work_offset(&mut self, number: u32) -> Done {
+        let name = number.to_string();
+        let texts = self.machine.words.get(WordName::WorkOffset.name()).map(|word| &word.codes);
+        let known = WordName::WorkOffset.codes().position(|code| code == name);
+        let Some(index) = known.filter(|_| texts.is_some_and(|texts| texts.contains_key(&name)))
+        else {
+            let message = format!("the control has no text for work offset {number}");
+            let help =
+                format!("`{name}` in [words.work_offset] of its file, or another work offset");
+            return Err(refuse("unsupported", message).help(help).into());
+        };
+        self.end_cycle()?;
+        self.leave_part()?;
+        self.leave_place()?;
+        self.work_offset = index;
+        self.required(BlockName::WorkOffsetSelect)?;
+        self.lose_position();
+        Ok(())
     }
 
     /// How far the source reaches along the unit vector `direction`, mm.
@@ -268,6 +309,7 @@ impl<'a> Walk<'a> {
 
     /// Writes a block, where the machine has it.
     pub(crate) fn block(&mut self, name: BlockName) -> Done {
+        self.writer.code(WordName::WorkOffset, self.work_offset);
         match self.templates.lines(name) {
             Some(lines) => self.writer.block(lines),
             None => {
@@ -295,6 +337,7 @@ impl<'a> Walk<'a> {
     /// Everything is said, the control goes off.
     fn end(&mut self) -> Done {
         self.ended = true;
+        self.wire_for(false, "the end of the program")?;
         self.uncompensated("the end of the program")?;
         self.end_cycle()?;
         self.leave_place()?;
@@ -440,18 +483,24 @@ impl<'a> Walk<'a> {
             return Ok(());
         }
         self.active_coolant = Some(self.coolant);
-        self.required(match self.coolant {
+        let block = match self.coolant {
             Coolant::Off => BlockName::CoolantOff,
             Coolant::Flood => BlockName::CoolantFlood,
             Coolant::Mist => BlockName::CoolantMist,
+            Coolant::FloodAndMist => {
+                self.required(BlockName::CoolantMist)?;
+                BlockName::CoolantFlood
+            }
             Coolant::Through => BlockName::CoolantThrough,
-        })
+        };
+        self.required(block)
     }
 
     /// Before the tool touches the part: it turns, and coolant runs.
     #[inline]
     pub(crate) fn before_cut(&mut self) -> Done {
-        if self.spindle == Spindle::Off {
+        self.wire_for(true, "a cut")?;
+        if self.spindle == Spindle::Off && self.wire.is_none() {
             let help = "SPINDL/ with a speed before the first cut";
             return Err(Box::new(
                 refuse("spindle-off", "a cut while the spindle stands").help(help),
@@ -529,6 +578,10 @@ impl<'a> Walk<'a> {
     #[inline]
     pub(crate) fn say_feed(&mut self, length: f64, pieces: usize, turning: bool) -> Done {
         let Some(mut feed) = self.feed else {
+            // The generator of a wire machine holds the gap, and finds the feed by it.
+            if self.wire.is_some() {
+                return Ok(());
+            }
             return Err(refuse("feed-missing", "a cut before the first feed"));
         };
         self.limits.feed(feed, self.spindle, self.line)?;

@@ -30,6 +30,11 @@ pub enum Op {
     Line(Pose),
     /// Arc or helix of the tool tip at the active feed.
     Arc(Box<ArcTo>),
+    /// Straight line whose feed is tied to the turn of the spindle, as a thread needs it (`G33`).
+    Thread(Box<Thread>),
+    /// Straight line at the active feed that ends where the probe answers, at the pose at the latest.
+    /// Where the tool stands afterwards only the machine knows.
+    Probe(Pose),
     /// One hole of the active [`Cycle`]; the pose is the point of the cycle on the surface and the
     /// tool axis there. The tool ends at the cycle's retract level.
     Hole(Pose),
@@ -54,10 +59,16 @@ pub enum Op {
     /// Set-up frame from here on: local coordinates to the work frame. Poses are **already** in the
     /// work frame; writers use the frame to tilt the plane of work (3+2).
     Frame(Box<Frame>),
-    /// Work offset from here on (virtual controls only): 54 for `G54`.
+    /// Work offset from here on, by its place among those that the control can set: 54 is the first
+    /// (`G54`), 55 the second; 53 is none. Poses are in its frame, and how far it is from the one before
+    /// is not known. A source without one leaves it to the machine.
     WorkOffset(u32),
-    /// Axes sent to a fixed position of the machine (virtual controls only); bit 0 is X, 1 Y, 2 Z,
-    /// 3 A, 4 B, 5 C. Their positions are not known afterwards.
+    /// The wire is threaded where it stands (wire EDM), and cuts from here on.
+    ThreadWire,
+    /// The wire is cut: it is free of the part until it is threaded again.
+    CutWire,
+    /// Axes sent to a fixed position of the machine; bit 0 is X, 1 Y, 2 Z, 3 A, 4 B, 5 C. Their
+    /// positions are not known afterwards. A source has Z alone: the tool leaves the part.
     Home(u8),
     /// Dwell, seconds.
     Dwell(f64),
@@ -77,7 +88,13 @@ pub enum Op {
     End,
 }
 
+/// The first work offset that a control can set: `G54`.
+pub const FIRST_WORK_OFFSET: u32 = 54;
+
 /// A tool tip and an orientation.
+///
+/// A wire is a tool with a direction: its point is where it crosses the lower plane, Z 0, and its axis
+/// points from there to the upper end.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Pose {
     /// Tool tip, mm. In a virtual control's output a coordinate that no block has set yet (or that a
@@ -133,6 +150,15 @@ pub struct ArcTo {
     pub turns: u32,
 }
 
+/// A thread from where the tool is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Thread {
+    /// Where it ends.
+    pub end: Pose,
+    /// mm along the way for each turn of the spindle.
+    pub pitch: f64,
+}
+
 /// How fast the tool moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Feed {
@@ -164,6 +190,8 @@ pub enum Coolant {
     Flood,
     /// Mist (`M7`).
     Mist,
+    /// Flood and mist together.
+    FloodAndMist,
     /// Through the tool.
     Through,
 }
@@ -246,6 +274,7 @@ impl Op {
         match self {
             Op::Rapid(pose) | Op::Line(pose) | Op::Hole(pose) => Some(pose),
             Op::Arc(arc) => Some(&arc.end),
+            Op::Thread(thread) => Some(&thread.end),
             _ => None,
         }
     }

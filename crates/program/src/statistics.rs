@@ -58,6 +58,12 @@ impl Statistics {
                     s.lines += 1;
                     s.cutting_length += step(pose.point);
                 }
+                Op::Thread(thread) => {
+                    s.lines += 1;
+                    s.cutting_length += step(thread.end.point);
+                }
+                // How far it gets only the machine knows.
+                Op::Probe(_) => here = None,
                 Op::Arc(to) => {
                     s.arcs += 1;
                     let arc = from.and_then(|from| {

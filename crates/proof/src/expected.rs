@@ -19,6 +19,8 @@ pub(crate) struct Goal {
     pub tool_change: bool,
     /// Whether the set-up changes before it.
     pub reset: bool,
+    /// Whether Z goes home before it.
+    pub homed: bool,
 }
 
 #[derive(Clone, Debug)]
@@ -40,6 +42,8 @@ pub(crate) enum Step {
     Dwell(f64),
     Stop,
     OptionalStop,
+    ThreadWire,
+    CutWire,
     End,
 }
 
@@ -51,6 +55,8 @@ pub(crate) struct Wanted<'a> {
     pub coolant: Coolant,
     pub tool: Option<&'a Tool>,
     pub compensation: Compensation,
+    /// The work offset, where the source names one.
+    pub work_offset: Option<u32>,
     cycle: Option<Cycle>,
 }
 
@@ -67,6 +73,7 @@ pub(crate) struct Cursor<'a> {
     pub wanted: Wanted<'a>,
     tool_change: bool,
     reset: bool,
+    homed: bool,
 }
 
 impl<'a> Cursor<'a> {
@@ -78,6 +85,7 @@ impl<'a> Cursor<'a> {
             coolant: Coolant::Off,
             tool: None,
             compensation: Compensation::Off,
+            work_offset: None,
             cycle: None,
         };
         let mut cursor = Cursor {
@@ -90,6 +98,7 @@ impl<'a> Cursor<'a> {
             wanted,
             tool_change: false,
             reset: false,
+            homed: false,
         };
         cursor.advance();
         cursor
@@ -101,6 +110,7 @@ impl<'a> Cursor<'a> {
             self.here = Some(goal.end());
             self.tool_change = false;
             self.reset = false;
+            self.homed = false;
         }
         while let Some(record) = self.records.get(self.next) {
             self.next += 1;
@@ -123,8 +133,16 @@ impl<'a> Cursor<'a> {
                     let cycle = self.wanted.cycle.map(Kind::Hole);
                     self.motion(cycle.unwrap_or(Kind::Broken("no cycle is active")), pose)
                 }
+                Op::Thread(thread) => {
+                    self.motion(Kind::Broken("a thread is not compared"), &thread.end)
+                }
+                Op::Probe(pose) => {
+                    self.motion(Kind::Broken("a probing move is not compared"), pose)
+                }
                 Op::Dwell(seconds) if *seconds > 0.0 => Step::Dwell(*seconds),
                 Op::Stop => Step::Stop,
+                Op::ThreadWire => Step::ThreadWire,
+                Op::CutWire => Step::CutWire,
                 Op::OptionalStop if !self.machine.leaves_out("optional_stop") => Step::OptionalStop,
                 op => {
                     self.note(op);
@@ -151,6 +169,7 @@ impl<'a> Cursor<'a> {
             to: self.place(pose),
             tool_change: self.tool_change,
             reset: self.reset,
+            homed: self.homed,
         })
     }
 
@@ -177,6 +196,12 @@ impl<'a> Cursor<'a> {
                 self.tool_change = true;
             }
             Op::Frame(_) => self.reset = true,
+            Op::Home(_) => self.homed = true,
+            Op::WorkOffset(number) => {
+                wanted.work_offset = Some(*number);
+                // How far the new frame is from the old is not known: the tool comes from above.
+                self.homed |= self.here.take().is_some();
+            }
             _ => {}
         }
     }
@@ -200,10 +225,13 @@ impl Goal {
     }
 
     /// Whether home positions and turns of the rotary axes are in place before it: at the start,
-    /// around a tool change, and where a rapid goes to another set-up or orientation.
+    /// around a tool change, where the source goes home, and where a rapid goes to another set-up or
+    /// orientation.
     pub fn free(&self, axis_degrees: f64) -> bool {
         let Some(from) = &self.from else { return true };
         let by_rapid = matches!(self.kind, Kind::Rapid | Kind::Hole(_));
-        self.tool_change || (by_rapid && (self.reset || from.apart(&self.to).1 > axis_degrees))
+        self.tool_change
+            || self.homed
+            || (by_rapid && (self.reset || from.apart(&self.to).1 > axis_degrees))
     }
 }

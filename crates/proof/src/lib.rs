@@ -47,9 +47,9 @@ pub use prover::Prover;
 pub use report::{Compared, Deviations, Excursion, Extent, Report, SideBySide, Summary, Worst};
 pub use tolerance::{Applied, Tolerances};
 
-use control::{Dialect, Settings};
+use control::Setup;
 use machine::Machine;
-use program::{Diagnostic, Program};
+use program::Program;
 
 /// Runs `text` on the virtual control of `machine` and holds it against `source`.
 ///
@@ -62,7 +62,7 @@ pub fn prove(
     tolerances: &Tolerances,
 ) -> Report {
     let mut prover = Prover::new(source, machine, tolerances);
-    let run = match settings(machine) {
+    let run = match nc::settings(machine, Setup::default()) {
         Ok(settings) => {
             control::read(&settings, file_name, text, &mut |record| prover.record(&record))
         }
@@ -74,26 +74,4 @@ pub fn prove(
     let mut report = prover.finish();
     report.quote(file_name, text);
     report
-}
-
-/// What the virtual control has to know of `machine`.
-///
-/// # Errors
-/// `reader` where there is no control of that name.
-pub fn settings(machine: &Machine) -> Result<Settings, Box<Diagnostic>> {
-    let Some(dialect) = Dialect::named(&machine.reader) else {
-        let message = format!("machine \"{}\" has no reader \"{}\"", machine.name, machine.reader);
-        let names = Dialect::NAMES.map(|(name, _)| name).join(", ");
-        return Err(Diagnostic::error("reader", message).help(format!("one of {names}")).into());
-    };
-    let mut rotary = [false; 3];
-    for axis in &machine.rotary {
-        rotary[axis.index()] = true;
-    }
-    Ok(Settings {
-        auxiliary: machine.auxiliary.clone(),
-        operator_parameters: machine.operator_parameters.clone(),
-        path_tolerance: machine.path_tolerance(),
-        ..Settings::new(dialect, rotary)
-    })
 }

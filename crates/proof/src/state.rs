@@ -4,8 +4,8 @@ use crate::expected::Wanted;
 use crate::place::Number;
 use crate::tolerance::Applied;
 use control::Dialect;
-use machine::{LengthOffset, Machine, OptionValue};
-use program::{Compensation, Coolant, Cycle, Feed, Spindle, Tool};
+use machine::{LengthOffset, Machine};
+use program::{Compensation, Coolant, Cycle, FIRST_WORK_OFFSET, Feed, Spindle, Tool};
 
 /// What the program has switched on.
 #[derive(Clone, Debug)]
@@ -81,7 +81,7 @@ pub(crate) fn set_up(machine: &Machine, wanted: &Wanted, running: &Running) -> O
         let (found, wanted) = (shown(running.length_offset), shown(offset));
         return Some(("length-offset", format!("length offset {found} is active, not {wanted}")));
     }
-    work_offset(machine, running)
+    work_offset(machine, wanted, running)
 }
 
 /// The same at a stop of a rapid. On its way to a tool change the last tool is still in the spindle,
@@ -94,20 +94,22 @@ pub(crate) fn at_stop(machine: &Machine, wanted: &Wanted, running: &Running) -> 
             let message = || "no length offset is active on the way to the tool change".into();
             (needed && running.length_offset.is_none())
                 .then(|| ("length-offset", message()))
-                .or_else(|| work_offset(machine, running))
+                .or_else(|| work_offset(machine, wanted, running))
         }
         _ => set_up(machine, wanted, running),
     }
 }
 
-fn work_offset(machine: &Machine, running: &Running) -> Option<Difference> {
-    let zero = match machine.options.get("work_offset") {
-        Some(OptionValue::Number(n)) => *n,
-        _ => 54.0,
-    };
+fn work_offset(machine: &Machine, wanted: &Wanted, running: &Running) -> Option<Difference> {
+    let expected = wanted.work_offset.unwrap_or(FIRST_WORK_OFFSET);
     match running.work_offset {
-        Some(n) if f64::from(n) != zero => {
-            Some(("work-offset", format!("work offset G{n} is active, not G{zero}")))
+        Some(n) if n != expected => {
+            let message = format!("work offset {n} is active, not {expected} (54 is the first)");
+            Some(("work-offset", message))
+        }
+        None if wanted.work_offset.is_some() => {
+            let message = format!("no work offset is named, but should be {expected}");
+            Some(("work-offset", message))
         }
         None if Dialect::named(&machine.reader) == Some(Dialect::Fanuc) => {
             let message = "no work offset is named: that of the last program may be active";
@@ -147,6 +149,7 @@ pub(crate) struct Lengths {
 /// Holds a feed against what the source wants. Both count as mm/min where they are in different
 /// units.
 pub(crate) fn feed(
+    machine: &Machine,
     allowed: &Applied,
     wanted: Option<Feed>,
     running: Option<Feed>,
@@ -154,6 +157,11 @@ pub(crate) fn feed(
     lengths: &Lengths,
 ) -> Option<Difference> {
     let Some(wanted) = wanted else {
+        // A wire goes as fast as its generator lets it, where nobody says otherwise.
+        if machine.wire.is_some() {
+            return running
+                .map(|feed| ("feed", format!("the feed is {}, but should be none", shown(feed))));
+        }
         return Some(("feed", "the source names no feed".into()));
     };
     let Some(running) = running else {
@@ -278,6 +286,7 @@ fn coolant(coolant: Coolant) -> &'static str {
         Coolant::Off => "off",
         Coolant::Flood => "flood",
         Coolant::Mist => "mist",
+        Coolant::FloodAndMist => "flood and mist",
         Coolant::Through => "through the tool",
     }
 }

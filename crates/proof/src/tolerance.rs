@@ -68,10 +68,14 @@ impl Applied {
                 (3f64.sqrt() / 2.0 * 10f64.powi(-i32::from(word.decimals))).to_degrees()
             })
             .fold(0.0, f64::max);
+        // U and V are rounded each, at the height of the upper plane.
+        let height = machine.wire.and_then(|wire| wire.height).unwrap_or(f64::INFINITY);
+        let lean = (step("U", 3) / 2f64.sqrt() / height).atan().to_degrees();
         Applied {
             tip_mm: given.position.unwrap_or(machine.resolution() / 2.0 * 3f64.sqrt()) + NOISE,
             rotary_degrees: rotary,
-            axis_degrees: given.angle.unwrap_or((rotary * 2f64.sqrt()).max(vector)) + NOISE,
+            axis_degrees: given.angle.unwrap_or((rotary * 2f64.sqrt()).max(vector).max(lean))
+                + NOISE,
             sweep_degrees: SWEEP,
             linearisation_mm: machine.orientation.tolerance,
             chord_mm: machine.capabilities.lowering_tolerance,

@@ -385,3 +385,30 @@ fn the_same_difference_is_told_once_with_its_count() {
     let message = "source line 6: the feed is 30 mm/min, but should be 300 mm/min";
     assert_eq!(report.mismatches[0].message, message);
 }
+
+/// The cut, then the same cut after `between`.
+fn twice(cut: Vec<Op>, between: Vec<Op>) -> Vec<Op> {
+    [cut.clone(), between, cut].concat()
+}
+
+#[test]
+fn a_change_of_the_work_offset_is_made_from_above_and_to_the_right_one() {
+    let own = twice(cut(), vec![Op::WorkOffset(55)]);
+    let judged = |between| rules(&judge(&mill(), &source(own.clone()), twice(cut_nc(), between)));
+    assert!(judged(vec![Op::Home(4), Op::WorkOffset(55)]).is_empty());
+    assert_eq!(judged(vec![Op::Home(4), Op::WorkOffset(56)])[0], "work-offset");
+    assert_eq!(judged(vec![Op::WorkOffset(55)])[0], "home");
+    assert!(!judged(vec![Op::Home(4)]).is_empty());
+    // A source without work offsets is made in the first.
+    let once =
+        rules(&judge(&mill(), &source(cut()), [vec![Op::WorkOffset(55)], cut_nc()].concat()));
+    assert_eq!(once[0], "work-offset");
+}
+
+#[test]
+fn the_tool_goes_home_where_the_source_does() {
+    let own = twice(cut(), vec![Op::Home(4)]);
+    let judged = |between| rules(&judge(&mill(), &source(own.clone()), twice(cut_nc(), between)));
+    assert!(judged(vec![Op::Home(4)]).is_empty());
+    assert_eq!(judged(vec![])[0], "home");
+}

@@ -1,6 +1,6 @@
 //! What can be typed.
 
-use clap::{Args, Parser, Subcommand, value_parser};
+use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use clap_complete::Shell;
 use std::path::PathBuf;
 
@@ -51,12 +51,49 @@ pub enum Command {
 /// The toolpath.
 #[derive(Debug, Args)]
 pub struct Source {
-    /// File with the toolpath (cutter-location data).
+    /// File with the toolpath: cutter-location data, or with --from an NC program.
     #[arg(value_name = "SOURCE")]
     pub path: PathBuf,
     /// Take every warning about the toolpath as an error.
     #[arg(long)]
     pub strict: bool,
+    #[command(flatten)]
+    pub origin: Origin,
+}
+
+/// What an NC program was written for.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "NC program as the source")]
+pub struct Origin {
+    /// The source is an NC program of this control or machine: a name in the library, or a file
+    /// ending in .toml. A program with rotary axes needs its machine.
+    #[arg(long, value_name = "NAME|FILE")]
+    pub from: Option<String>,
+    /// Tool table (LinuxCNC's format): with it cutter radius compensation becomes the path of the
+    /// tool's centre.
+    #[arg(long, value_name = "FILE", requires = "from")]
+    pub tools: Option<PathBuf>,
+    /// Folder in which called programs are looked for; may be given several times.
+    #[arg(long, value_name = "FOLDER", requires = "from")]
+    pub folder: Vec<PathBuf>,
+    /// What a length without a decimal point counts on a control that can be set either way.
+    #[arg(long, value_name = "WHAT", requires = "from")]
+    pub whole_numbers: Option<WholeNumbers>,
+    /// Skip the blocks that begin with `/`.
+    #[arg(long, requires = "from")]
+    pub block_delete: bool,
+    /// Where the tool stands when the program starts, mm.
+    #[arg(long, value_name = "X,Y,Z", requires = "from", value_parser = point, allow_hyphen_values = true)]
+    pub start: Option<[f64; 3]>,
+}
+
+/// What a length without a decimal point counts.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum WholeNumbers {
+    /// mm, inches or degrees, as on a calculator.
+    Units,
+    /// Thousandths of a mm, ten-thousandths of an inch, thousandths of a degree.
+    Increments,
 }
 
 /// How close the proof must be.
@@ -91,9 +128,11 @@ pub struct Prove {
     /// Name in the library, or a file ending in .toml.
     #[arg(long, short, value_name = "NAME|FILE")]
     pub machine: String,
-    /// File with the toolpath.
+    /// File with the toolpath: cutter-location data, or with --from an NC program.
     #[arg(long, value_name = "SOURCE")]
     pub against: PathBuf,
+    #[command(flatten)]
+    pub origin: Origin,
     #[command(flatten)]
     pub closeness: Closeness,
 }
@@ -138,5 +177,17 @@ fn length(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
         Ok(mm) if mm > 0.0 && mm.is_finite() => Ok(mm),
         _ => Err(String::from("a length in mm greater than 0 is needed, such as 0.01")),
+    }
+}
+
+/// Three lengths in mm.
+fn point(text: &str) -> Result<[f64; 3], String> {
+    let parts: Vec<Option<f64>> = text
+        .split(',')
+        .map(|part| part.trim().parse().ok().filter(|v: &f64| v.is_finite()))
+        .collect();
+    match parts[..] {
+        [Some(x), Some(y), Some(z)] => Ok([x, y, z]),
+        _ => Err(String::from("three lengths in mm are needed, such as 0,0,50")),
     }
 }

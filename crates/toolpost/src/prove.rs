@@ -15,7 +15,7 @@ pub fn run(args: &Prove, silent: bool) -> Result<Answer, Stop> {
     let machine = toolpath::machine(&args.machine)?;
     let progress = Progress::new(2, silent);
     progress.step("reading");
-    let mut toolpath = toolpath::read(&args.against, false)?;
+    let mut toolpath = toolpath::read(&args.against, false, &args.origin)?;
     let mut warnings = std::mem::take(&mut toolpath.warnings);
     let text = files::read(&args.program)?;
     progress.step("proving");

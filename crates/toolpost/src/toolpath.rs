@@ -1,10 +1,13 @@
 //! Getting the toolpath and the machine that a command names.
 
 use crate::answer::{Stop, Verdict};
+use crate::args::{Origin, WholeNumbers};
 use crate::files;
 use crate::summary::Shape;
+use control::Setup;
+use geom::Vec3;
 use machine::Machine;
-use program::{Diagnostic, Program};
+use program::{Diagnostic, Program, Severity};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -13,7 +16,7 @@ pub struct Toolpath {
     path: PathBuf,
     /// Name of its file.
     pub file: String,
-    /// The CAM system whose habits the file has.
+    /// The CAM system whose habits the file has, or the control that it was written for.
     pub dialect: String,
     /// What it says.
     pub program: Program,
@@ -21,22 +24,72 @@ pub struct Toolpath {
     pub warnings: Vec<Diagnostic>,
 }
 
-/// Reads a toolpath.
+/// Endings that NC programs have.
+const NC_ENDINGS: [&str; 13] =
+    ["nc", "ngc", "mpf", "spf", "h", "gcode", "tap", "cnc", "eia", "min", "din", "gc", "g"];
+
+/// Reads a toolpath: an NC program where `origin` says what it was written for, else cutter-location
+/// data.
 ///
 /// # Errors
 /// What is wrong with the file; with `strict` also what would be a warning.
-pub fn read(path: &Path, strict: bool) -> Result<Toolpath, Stop> {
+pub fn read(path: &Path, strict: bool, origin: &Origin) -> Result<Toolpath, Stop> {
     let bytes = files::read(path)?;
     let file = files::name(path);
-    let reading = source::apt::read(&file, &bytes, &source::apt::Options { strict })
-        .map_err(|findings| Stop { verdict: Verdict::Invalid, findings })?;
-    Ok(Toolpath {
-        path: path.to_owned(),
-        file,
-        dialect: reading.dialect.to_string(),
-        program: reading.program,
-        warnings: reading.warnings,
-    })
+    let (dialect, program, warnings) = match &origin.from {
+        Some(from) => {
+            let machine = machine::load_origin(from)?;
+            let reading = nc::read(&machine, origin.setup()?, &file, &bytes)?;
+            (machine.title, reading.program, reading.warnings)
+        }
+        None => {
+            let reading = source::apt::read(&file, &bytes, &source::apt::Options { strict });
+            let reading = reading.map_err(|findings| match is_nc(path) {
+                true => without_origin(&file),
+                false => Stop { verdict: Verdict::Invalid, findings },
+            })?;
+            (reading.dialect.to_string(), reading.program, reading.warnings)
+        }
+    };
+    if strict && !warnings.is_empty() {
+        let strictly = |found: Diagnostic| Diagnostic { severity: Severity::Error, ..found };
+        let findings = warnings.into_iter().map(strictly).collect();
+        return Err(Stop { verdict: Verdict::Invalid, findings });
+    }
+    Ok(Toolpath { path: path.to_owned(), file, dialect, program, warnings })
+}
+
+/// Whether a file has the name of an NC program.
+fn is_nc(path: &Path) -> bool {
+    let ending = path.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+    NC_ENDINGS.contains(&ending.as_str())
+}
+
+/// What stops an NC program of which nobody has said what it was written for.
+fn without_origin(file: &str) -> Stop {
+    let controls = machine::library::names(machine::library::CONTROLS).collect::<Vec<_>>();
+    let message = "this is no cutter-location data, and as an NC program it has no control named";
+    Diagnostic::error("source", message)
+        .help(format!("--from with a machine or one of {}", controls.join(", ")))
+        .file(file)
+        .into()
+}
+
+impl Origin {
+    /// What the operator has set up at the control.
+    fn setup(&self) -> Result<Setup, Stop> {
+        Ok(Setup {
+            tools: Vec::new(),
+            folders: self.folder.clone(),
+            whole_numbers: match self.whole_numbers {
+                None => control::WholeNumbers::Unknown,
+                Some(WholeNumbers::Units) => control::WholeNumbers::Units,
+                Some(WholeNumbers::Increments) => control::WholeNumbers::Increments,
+            },
+            block_delete: self.block_delete,
+            start: self.start.map(Vec3::from_array),
+        })
+    }
 }
 
 impl Toolpath {

@@ -59,6 +59,11 @@ pub fn walk(program: &Program, tolerance: f64, draw: &mut dyn FnMut(Segment)) ->
         match &record.op {
             Op::Rapid(pose) => step(false, false, pose),
             Op::Line(pose) => step(true, false, pose),
+            Op::Thread(thread) => step(true, false, &thread.end),
+            Op::Probe(pose) => {
+                step(false, false, pose);
+                here = None;
+            }
             Op::Hole(pose) => {
                 if let (Some(cycle), Some(axis)) = (cycle, pose.axis()) {
                     let at = |height: f64| Pose::new(pose.point + axis * height, axis);

@@ -3,9 +3,8 @@
 
 mod files;
 
-use files::{root, sources};
+use files::{mills, root, sources};
 use machine::Machine;
-use machine::library::{MACHINES, names};
 use program::{Diagnostic, Program};
 use std::path::Path;
 
@@ -28,8 +27,8 @@ fn proven(program: &Program, machine: &Machine) -> Result<Vec<u8>, Box<Diagnosti
 #[test]
 fn the_sample_program_of_each_machine_is_as_it_was_read() {
     let samples = root().join("machines/samples");
-    for name in names(MACHINES) {
-        let machine = machine::load(name).unwrap();
+    for machine in mills() {
+        let name = &machine.name;
         let axes = if machine.rotary.is_empty() { "three-axes" } else { "five-axes" };
         let program = read(&samples.join(axes).with_extension("cls"));
         let text = proven(&program, &machine).unwrap_or_else(|why| panic!("{name}: {why}"));
@@ -102,14 +101,15 @@ const REFUSED: &[(&str, &[&str], &str)] = &[
 fn every_file_is_proven_on_every_machine_that_can_make_it() {
     for file in &sources() {
         let (program, file) = (read(file), file.file_name().unwrap().to_string_lossy());
-        for name in names(MACHINES) {
+        for machine in mills() {
+            let name = machine.name.as_str();
             let rules: Vec<&str> = (REFUSED.iter())
                 .filter(|(machine, files, _)| {
                     name.starts_with(machine) && files.contains(&file.as_ref())
                 })
                 .map(|(_, _, rule)| *rule)
                 .collect();
-            match proven(&program, &machine::load(name).unwrap()) {
+            match proven(&program, &machine) {
                 Ok(_) => assert!(rules.is_empty(), "{file} on {name}: made, not {rules:?}"),
                 Err(why) => {
                     assert!(rules.contains(&why.rule), "{file} on {name}, {rules:?}: {why}");

@@ -115,7 +115,7 @@ impl Sample {
 
 /// What the control of `machine` makes of `text`.
 fn records(machine: &Machine, text: &[u8]) -> Vec<Record> {
-    let settings = proof::settings(machine).unwrap();
+    let settings = nc::settings(machine, control::Setup::default()).unwrap();
     let mut records = Vec::new();
     control::read(&settings, "", text, &mut |record| {
         records.push(record);

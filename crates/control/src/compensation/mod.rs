@@ -170,7 +170,7 @@ impl<'a> Compensator<'a> {
                 };
                 self.at.point = Vec3::NAN;
             }
-            Op::WorkOffset(_) => self.at.point = Vec3::NAN,
+            Op::WorkOffset(_) | Op::Probe(_) => self.at.point = Vec3::NAN,
             Op::Home(axes) => {
                 self.leaving = None;
                 for axis in (0..3).filter(|axis| axes & 1 << axis != 0) {

@@ -108,7 +108,7 @@ impl Path {
                     .help("switch it off (G40, R0) with a straight move first")
                     .into())
             }
-            op if op.pose().is_some() => {
+            op if op.pose().is_some() || matches!(op, Op::Probe(_)) => {
                 let message = "only straight moves and arcs lead the tool while compensation is on";
                 Err(error("compensation-on", line, message).into())
             }

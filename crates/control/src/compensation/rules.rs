@@ -70,7 +70,7 @@ impl Rules {
             // NORM, G450; MD20250 CUTCOM_MAXNUM_DUMMY_BLOCKS = 3.
             Dialect::Sinumerik => Some(Rules { blind: 3, ..rules }),
             Dialect::Klartext => Some(rules),
-            Dialect::Grbl => None,
+            Dialect::Grbl | Dialect::Points => None,
         }
     }
 }

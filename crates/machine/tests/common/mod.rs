@@ -39,6 +39,7 @@ pub fn machine(rotary: Vec<RotaryAxis>) -> Machine {
         linear: [linear; 3],
         rotary,
         work_zero: Some(Vec3::ZERO),
+        wire: None,
         orientation: OrientationSettings {
             simultaneous: OrientationMode::MachineAngles,
             positioned: OrientationMode::MachineAngles,

@@ -64,10 +64,11 @@ impl Prover<'_> {
     /// What must hold in a cut.
     pub(super) fn check_cut(&mut self, to: &Station, lengths: &Lengths, on_arc: bool) {
         let (allowed, wanted, running) = (&self.gauge.allowed, &self.cursor.wanted, &self.running);
+        let machine = self.gauge.machine;
         let found = [
-            state::set_up(self.gauge.machine, wanted, running),
+            state::set_up(machine, wanted, running),
             state::spindle_and_coolant(allowed, wanted, running),
-            state::feed(allowed, wanted.feed, running.feed, wanted.spindle, lengths),
+            state::feed(machine, allowed, wanted.feed, running.feed, wanted.spindle, lengths),
         ];
         let in_plane = to.place.is_across(self.here.place.tip, lengths.rounding);
         for difference in found {

@@ -93,6 +93,7 @@ impl Prover<'_> {
         is: Option<program::Feed>,
     ) {
         let (allowed, wanted, running) = (&self.gauge.allowed, &self.cursor.wanted, &self.running);
+        let machine = self.gauge.machine;
         let lengths = Lengths { source: 0.0, block: 0.0, rounding: 1.0 };
         let tapping = matches!(
             &self.cursor.step,
@@ -100,11 +101,18 @@ impl Prover<'_> {
                 if matches!(c.kind, program::CycleKind::Tap { .. })
         );
         let found = [
-            state::set_up(self.gauge.machine, wanted, running),
+            state::set_up(machine, wanted, running),
             state::spindle_and_coolant(allowed, wanted, running),
             match tapping {
                 true => None,
-                false => state::feed(allowed, cycle.or(wanted.feed), is, wanted.spindle, &lengths),
+                false => state::feed(
+                    machine,
+                    allowed,
+                    cycle.or(wanted.feed),
+                    is,
+                    wanted.spindle,
+                    &lengths,
+                ),
             },
         ];
         for difference in found {

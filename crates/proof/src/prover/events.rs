@@ -1,4 +1,4 @@
-//! Tool changes, dwells and stops.
+//! Tool changes, dwells, stops, and the wire.
 
 use super::*;
 
@@ -16,7 +16,7 @@ impl Prover<'_> {
         Ok(())
     }
 
-    /// A dwell or a stop.
+    /// A dwell, a stop, or the wire threaded or cut.
     pub(super) fn event(&mut self, line: u32, event: Step) {
         if let (Step::Move(Goal { kind: Kind::Hole(cycle), to, .. }), Step::Dwell(seconds)) =
             (&self.cursor.step, &event)
@@ -32,7 +32,10 @@ impl Prover<'_> {
         let allowed = self.gauge.allowed.dwell_s;
         let same = match (&self.cursor.step, &event) {
             (Step::Dwell(a), Step::Dwell(b)) => (a - b).abs() <= allowed,
-            (Step::Stop, Step::Stop) | (Step::OptionalStop, Step::OptionalStop) => true,
+            (Step::Stop, Step::Stop)
+            | (Step::OptionalStop, Step::OptionalStop)
+            | (Step::ThreadWire, Step::ThreadWire)
+            | (Step::CutWire, Step::CutWire) => true,
             _ => false,
         };
         if same {
@@ -46,9 +49,11 @@ impl Prover<'_> {
             let message = format!("dwells {} s, but should {} s", Number(*b), Number(*a));
             self.differs(line, ("dwell", message));
             self.advance();
-        } else if matches!(event, Step::Dwell(_)) || !self.at_tool_change() {
+        } else if !matches!(event, Step::Stop | Step::OptionalStop) || !self.at_tool_change() {
             let (rule, what) = match event {
                 Step::Dwell(_) => ("dwell", "dwells"),
+                Step::ThreadWire => ("wire", "threads the wire"),
+                Step::CutWire => ("wire", "cuts the wire"),
                 Step::Stop => ("stop", "stops"),
                 _ => ("stop", "stops if the operator asks for it"),
             };
@@ -68,13 +73,15 @@ impl Prover<'_> {
         self.cursor.at_tool_change()
     }
 
-    /// Tells dwells and stops that stand before the next motion of the source.
+    /// Tells dwells, stops and the wire's events that stand before the next motion of the source.
     pub(super) fn miss_events(&mut self, line: u32) {
         loop {
             let (rule, what) = match &self.cursor.step {
                 Step::Dwell(seconds) => ("dwell", format!("a dwell of {} s", Number(*seconds))),
                 Step::Stop => ("stop", "a stop".into()),
                 Step::OptionalStop => ("stop", "an optional stop".into()),
+                Step::ThreadWire => ("wire", "threading the wire".into()),
+                Step::CutWire => ("wire", "cutting the wire".into()),
                 _ => return,
             };
             self.differs(line, (rule, format!("{what} is missing before this")));

@@ -152,6 +152,11 @@ impl<'a> Prover<'a> {
             Op::Line(pose) => self.motion(line, Gait::Feed, pose, None),
             Op::Arc(to) => self.motion(line, Gait::Feed, &to.end, Some(to)),
             Op::Hole(pose) => self.drilled(line, pose),
+            Op::Thread(_) | Op::Probe(_) => Err(self.lost_at(
+                line,
+                "unsupported",
+                "probes or cuts a thread, which is not compared",
+            )),
             Op::Home(axes) => self.home(line, *axes),
             Op::Tool(tool) => self.change_tool(line, tool),
             op => {
@@ -160,6 +165,8 @@ impl<'a> Prover<'a> {
                     Op::Dwell(seconds) => self.event(line, Step::Dwell(*seconds)),
                     Op::Stop => self.event(line, Step::Stop),
                     Op::OptionalStop => self.event(line, Step::OptionalStop),
+                    Op::ThreadWire => self.event(line, Step::ThreadWire),
+                    Op::CutWire => self.event(line, Step::CutWire),
                     op => self.switch(line, op),
                 }
                 Ok(())
@@ -176,7 +183,11 @@ impl<'a> Prover<'a> {
             Op::Coolant(coolant) => (running.coolant, running.coolant_line) = (*coolant, line),
             Op::Compensation(side) => running.compensation = *side,
             Op::LengthOffset(register) => running.length_offset = *register,
-            Op::WorkOffset(number) => running.work_offset = Some(*number),
+            Op::WorkOffset(number) => {
+                running.work_offset = Some(*number);
+                let pose = Pose { point: Vec3::NAN, ..self.here.pose };
+                self.here = self.gauge.station(line, pose);
+            }
             Op::Cycle(cycle) => running.cycle = Some(**cycle),
             Op::CycleOff => running.cycle = None,
             Op::End => self.ended = true,
@@ -243,7 +254,7 @@ impl<'a> Prover<'a> {
                 Kind::Arc(arc) => arc.length() <= 2.0 * slack,
                 Kind::Hole(_) | Kind::Broken(_) => false,
             };
-            if !short || !self.gauge.at(&self.here, &goal.to) || wanted(goal) {
+            if !short || goal.homed || !self.gauge.at(&self.here, &goal.to) || wanted(goal) {
                 return;
             }
             self.report.compared.left_out += 1;

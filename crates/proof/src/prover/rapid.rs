@@ -44,6 +44,10 @@ impl Prover<'_> {
         self.check(to.line, state::set_up(self.gauge.machine, &self.cursor.wanted, &self.running));
         let Step::Move(goal) = &self.cursor.step else { return Ok(()) };
         let free = goal.free(self.gauge.allowed.axis_degrees);
+        if goal.homed && !self.leg.homed {
+            let message = "does not go home in Z before this, as the source does";
+            return Err(self.lost_at(to.line, "home", message));
+        }
         if self.leg.stops.is_empty() {
             return Ok(());
         }
@@ -139,7 +143,11 @@ impl Prover<'_> {
         let (first, free, holding) = match &self.cursor.step {
             Step::Move(goal) => {
                 let free = goal.free(axis_degrees) && self.leg.left.is_none();
-                (goal.from.is_none(), free, matches!(goal.kind, Kind::Line | Kind::Arc(_)))
+                (
+                    goal.from.is_none() && !goal.homed,
+                    free,
+                    matches!(goal.kind, Kind::Line | Kind::Arc(_)),
+                )
             }
             _ => (false, true, false),
         };

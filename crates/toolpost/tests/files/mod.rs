@@ -1,7 +1,9 @@
-//! The files of cutter-location data that the tests read.
+//! The files of cutter-location data that the tests read, and the mills they are for.
 
 #![allow(dead_code, reason = "each test file uses its part")]
 
+use machine::Machine;
+use machine::library::{MACHINES, names};
 use std::path::{Path, PathBuf};
 
 /// The top folder of the project.
@@ -30,4 +32,9 @@ pub fn sources() -> Vec<PathBuf> {
     }
     files.sort();
     files
+}
+
+/// The mills of the library.
+pub fn mills() -> impl Iterator<Item = Machine> {
+    names(MACHINES).map(|name| machine::load(name).unwrap()).filter(|m| m.wire.is_none())
 }

@@ -1,0 +1,108 @@
+//! Lists of coordinates for a wire-EDM control that knows no G-code: a line a point, `X Y`, or
+//! `X Y U V` where the wire leans.
+//!
+//! The first point is where the wire is threaded; it cuts to each that follows, and is cut at the last.
+//! Nothing else can be said: `docs/controls/points.md`.
+
+use crate::compensation::Compensator;
+use crate::{Settings, decimal};
+use geom::Vec3;
+use program::{Diagnostic, Op, Pose, Record};
+
+type Result<T> = std::result::Result<T, Box<Diagnostic>>;
+
+/// The most numbers of a line.
+const MOST: usize = 4;
+
+/// Runs a list.
+pub(crate) fn run(settings: &Settings, text: &[u8], path: &mut Compensator) -> Result<()> {
+    let text = text.strip_suffix(b"\n").unwrap_or(text);
+    let mut width = 0;
+    let mut last = 0;
+    for (index, bytes) in text.split(|&b| b == b'\n').enumerate() {
+        let bytes = bytes.strip_suffix(b"\r").unwrap_or(bytes);
+        let line = Line { number: u32::try_from(index + 1).unwrap_or(u32::MAX), bytes };
+        let mut values = [0.0; MOST];
+        let count = line.read(&mut values)?;
+        if index > 0 && count != width {
+            let message = format!("{count} numbers, where the first line has {width}");
+            return Err(line.error("nc-syntax", (0, bytes.len()), message).into());
+        }
+        (width, last) = (count, line.number);
+        let pose = line.pose(values, count, settings.upper_plane)?;
+        let mut tell = |op| path.take(Record { line: line.number, op });
+        if index == 0 {
+            tell(Op::Rapid(pose))?;
+            tell(Op::ThreadWire)?;
+        } else {
+            tell(Op::Line(pose))?;
+        }
+    }
+    path.take(Record { line: last, op: Op::CutWire })?;
+    path.take(Record { line: last, op: Op::End })
+}
+
+/// A line of a list.
+struct Line<'a> {
+    number: u32,
+    bytes: &'a [u8],
+}
+
+impl Line<'_> {
+    /// Reads two or four numbers into `values`; how many there are.
+    fn read(&self, values: &mut [f64; MOST]) -> Result<usize> {
+        let blanks = |at: usize| {
+            let rest = self.bytes.get(at..).unwrap_or_default();
+            at + rest.iter().take_while(|b| matches!(b, b' ' | b'\t')).count()
+        };
+        let (mut at, mut count) = (blanks(0), 0);
+        while at < self.bytes.len() {
+            let number = decimal::parse(self.bytes.get(at..).unwrap_or_default());
+            let Some((number, value)) = number.zip(values.get_mut(count)) else {
+                let found = self.bytes.get(at).map_or(' ', |&b| char::from(b));
+                let message = format!("`{found}` where a number or the end of the line is needed");
+                return Err(self.error("nc-syntax", (at, at + 1), message).into());
+            };
+            let end = at + number.len;
+            if !number.value.is_finite() {
+                let message = "a number beyond all numbers";
+                return Err(self.error("nc-number", (at, end), message).into());
+            }
+            *value = number.value;
+            count += 1;
+            at = blanks(end);
+            if at == end && at < self.bytes.len() {
+                let message = "a blank is needed between two numbers";
+                return Err(self.error("nc-syntax", (at, at + 1), message).into());
+            }
+        }
+        if matches!(count, 2 | 4) {
+            return Ok(count);
+        }
+        let message = format!("{count} numbers: a point is X Y, or X Y U V");
+        Err(self.error("nc-syntax", (0, self.bytes.len()), message).into())
+    }
+
+    fn pose(&self, [x, y, u, v]: [f64; MOST], count: usize, height: Option<f64>) -> Result<Pose> {
+        let lower = Vec3::new(x, y, 0.0);
+        match height {
+            _ if count == 2 => Ok(Pose::new(lower, Vec3::Z)),
+            Some(height) => Ok(Pose::new(lower, Vec3::new(u, v, height).normalize())),
+            None => {
+                let message = "U and V, and the height of the upper plane is not known";
+                let found = self.error("upper-plane", (0, self.bytes.len()), message);
+                Err(found.help("`height` in the [wire] table of the machine").into())
+            }
+        }
+    }
+
+    fn error(
+        &self,
+        rule: &'static str,
+        (start, end): (usize, usize),
+        message: impl Into<String>,
+    ) -> Diagnostic {
+        let help = "a list of coordinates has one point a line: X Y, or X Y U V, parted by blanks";
+        Diagnostic::error(rule, message).at(self.number, self.bytes, start, end).help(help)
+    }
+}

@@ -1,0 +1,67 @@
+//! Lists of coordinates, and what is none.
+
+use geom::Vec3;
+use program::{Diagnostic, Op, Pose};
+use toolpost_control::{Dialect, Settings, read};
+
+fn run(text: &str, upper_plane: Option<f64>) -> Result<Vec<(u32, Op)>, Box<Diagnostic>> {
+    let settings = Settings { upper_plane, ..Settings::new(Dialect::Points, [false; 3]) };
+    let mut records = Vec::new();
+    read(&settings, "part.pts", text.as_bytes(), &mut |record| {
+        records.push((record.line, record.op));
+        Ok(())
+    })?;
+    Ok(records)
+}
+
+fn at(x: f64, y: f64) -> Pose {
+    Pose::new(Vec3::new(x, y, 0.0), Vec3::Z)
+}
+
+#[test]
+fn the_first_point_is_threaded_and_the_last_one_cut() {
+    let expected = vec![
+        (1, Op::Rapid(at(0.0, -1.5))),
+        (1, Op::ThreadWire),
+        (2, Op::Line(at(10.0, 0.25))),
+        (3, Op::Line(at(-0.0, 7.0))),
+        (3, Op::CutWire),
+        (3, Op::End),
+    ];
+    for text in ["0 -1.5\n10. .25\n-0 +7\n", "0\t-1.5 \r\n  10 0.25\r\n0 7"] {
+        assert_eq!(run(text, None).unwrap(), expected, "{text:?}");
+    }
+}
+
+#[test]
+fn u_and_v_lean_the_wire_over_the_height_of_the_upper_plane() {
+    let records = run("0 0 3 0\n5 0 0 -4\n", Some(4.0)).unwrap();
+    let axes: Vec<Vec3> = records.iter().filter_map(|(_, op)| op.pose()?.axis()).collect();
+    // 3-4-5, and 45 degrees.
+    assert!(axes[0].distance(Vec3::new(0.6, 0.0, 0.8)) < 1e-15);
+    let half = 0.5f64.sqrt();
+    assert!(axes[1].distance(Vec3::new(0.0, -half, half)) < 1e-15);
+}
+
+#[test]
+fn whatever_is_no_point_is_refused_where_it_stands() {
+    let refused = |text: &str| {
+        let found = run(text, None).unwrap_err();
+        assert_eq!(found.file, "part.pts");
+        (found.rule, found.line, found.column)
+    };
+    assert_eq!(refused(""), ("nc-syntax", 1, 1));
+    assert_eq!(refused("1 2\n\n3 4\n"), ("nc-syntax", 2, 1));
+    assert_eq!(refused("1 2\n3 4\n\n"), ("nc-syntax", 3, 1));
+    assert_eq!(refused("1 2\n3\n"), ("nc-syntax", 2, 1));
+    assert_eq!(refused("1 2 3\n"), ("nc-syntax", 1, 1));
+    assert_eq!(refused("1 2 3 4 5\n"), ("nc-syntax", 1, 9));
+    assert_eq!(refused("1 2\n3 4 0 0\n"), ("nc-syntax", 2, 1));
+    assert_eq!(refused("1 2\nX3 Y4\n"), ("nc-syntax", 2, 1));
+    assert_eq!(refused("1 2\n3,4\n"), ("nc-syntax", 2, 2));
+    assert_eq!(refused("1 2\n3-4\n"), ("nc-syntax", 2, 2));
+    assert_eq!(refused("1 2\n3 1e3\n"), ("nc-syntax", 2, 4));
+    assert_eq!(refused("1 2 0 0\n"), ("upper-plane", 1, 1));
+    let long = format!("1 {}\n", "9".repeat(400));
+    assert_eq!(refused(&long), ("nc-number", 1, 3));
+}

@@ -1,0 +1,344 @@
+//! NC programs as a source: what a virtual control makes of one, as a neutral program.
+//!
+//! A control's records say what its blocks say: positions of rotary axes, coordinates that nobody knows
+//! yet, axes sent home. A neutral program says where the tool is: every pose complete and in the work
+//! frame. This crate goes from the one to the other:
+//!
+//! - Rotary positions become a tool axis by the kinematics of the machine that the program was
+//!   written for.
+//! - A rapid whose end is not known in every coordinate waits for the next ones, as after a reference
+//!   return: `X10 Y20`, then `Z5`, is one way to a known place. A cut from such a place is refused.
+//! - Z sent home between two moves stays, as [`Op::Home`]. At a tool change and at the end it goes: a
+//!   writer brings the tool home there by itself.
+//! - A change of the work offset stays; the tool comes to the first place in it from above.
+//! - A length offset becomes the register of the tool; a tool that is called by its name gets a number.
+//!
+//! What cannot be told truly is refused with its line.
+
+use control::{Dialect, Settings, Setup};
+use geom::Vec3;
+use machine::{LengthOffset, Machine, Mount};
+use program::{Diagnostic, FIRST_WORK_OFFSET, Op, Orientation, Pose, Program, Record, Tool};
+
+/// A step that may be refused.
+type Done = Result<(), Box<Diagnostic>>;
+
+/// What was read.
+#[derive(Clone, Debug, Default)]
+pub struct Reading {
+    /// What the program does.
+    pub program: Program,
+    /// What is worth knowing, with lines.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// The virtual control of `machine`, with what the operator has set up.
+///
+/// # Errors
+/// `reader` where there is no control of the name that the machine file gives.
+pub fn settings(machine: &Machine, setup: Setup) -> Result<Settings, Box<Diagnostic>> {
+    let Some(dialect) = Dialect::named(&machine.reader) else {
+        let message = format!("machine \"{}\" has no reader \"{}\"", machine.name, machine.reader);
+        let names = Dialect::NAMES.map(|(name, _)| name).join(", ");
+        let place = &machine.reader_place;
+        return Err(Diagnostic::error("reader", message)
+            .help(format!("`reader` is one of {names}"))
+            .file(&place.file)
+            .line(place.line)
+            .into());
+    };
+    let mut rotary = [false; 3];
+    for axis in &machine.rotary {
+        rotary[axis.index()] = true;
+    }
+    Ok(Settings {
+        auxiliary: machine.auxiliary.clone(),
+        operator_parameters: machine.operator_parameters.clone(),
+        upper_plane: machine.wire.and_then(|wire| wire.height),
+        path_tolerance: machine.path_tolerance(),
+        setup,
+        ..Settings::new(dialect, rotary)
+    })
+}
+
+/// Reads the NC program `text`, which was written for `machine`.
+///
+/// # Errors
+/// The first block that the control does not understand, or that cannot be told as a neutral program,
+/// with `file_name`, line and the way out.
+pub fn read(
+    machine: &Machine,
+    setup: Setup,
+    file_name: &str,
+    text: &[u8],
+) -> Result<Reading, Box<Diagnostic>> {
+    let settings = settings(machine, setup)?;
+    let name = file_name.rsplit_once('.').map_or(file_name, |(stem, _)| stem);
+    let mut lift = Lift::new(machine, &settings.setup, name);
+    control::read(&settings, file_name, text, &mut |record| {
+        let line = record.line;
+        lift.record(record).map_err(|found| {
+            let text = text.split(|b| *b == b'\n').nth(line.saturating_sub(1) as usize);
+            let text = text.unwrap_or_default();
+            found.on(line, text.strip_suffix(b"\r").unwrap_or(text)).file(file_name).into()
+        })
+    })?;
+    Ok(lift.finish())
+}
+
+/// The records of a control on their way into a neutral program.
+struct Lift<'a> {
+    machine: &'a Machine,
+    setup: &'a Setup,
+    program: Program,
+    warnings: Vec<Diagnostic>,
+    /// Where the tool is, as far as the last block says it.
+    here: Option<Pose>,
+    /// Z has been sent home since the last move, on this line.
+    home: Option<u32>,
+    /// Where the program's last tool call is in its records, and whether nothing has moved since.
+    tool: Option<(usize, bool)>,
+    /// The work offset that the program names.
+    work_offset: Option<u32>,
+    /// Whether it works in more than the first.
+    several: bool,
+    /// Numbers of the tools that the program calls, with the names of those that it calls by name.
+    numbers: Vec<(u32, String)>,
+}
+
+impl<'a> Lift<'a> {
+    fn new(machine: &'a Machine, setup: &'a Setup, name: &str) -> Lift<'a> {
+        Lift {
+            machine,
+            setup,
+            program: Program::new(name),
+            warnings: Vec::new(),
+            here: setup.start.map(|start| Pose::new(start, Vec3::Z)),
+            home: None,
+            tool: None,
+            work_offset: None,
+            several: false,
+            numbers: Vec::new(),
+        }
+    }
+
+    fn record(&mut self, record: Record) -> Done {
+        let line = record.line;
+        match record.op {
+            Op::Rapid(pose) => {
+                let pose = self.pose(&pose);
+                self.here = Some(pose);
+                if known(&pose) {
+                    self.arrive(line, Op::Rapid(pose));
+                }
+                return Ok(());
+            }
+            Op::Line(pose) => {
+                let pose = self.cut(&pose)?;
+                self.arrive(line, Op::Line(pose));
+            }
+            Op::Arc(mut arc) => {
+                // The centre and the axis turn with the table, as the end does.
+                let of = |point| self.pose(&Pose { point, ..arc.end }).point;
+                let center = of(arc.center);
+                (arc.normal, arc.center) = (of(arc.center + arc.normal) - center, center);
+                arc.end = self.cut(&arc.end)?;
+                self.arrive(line, Op::Arc(arc));
+            }
+            Op::Hole(pose) => {
+                let pose = self.pose(&pose);
+                if !known(&pose) {
+                    return Err(unknown("a hole", &pose));
+                }
+                self.here = Some(pose);
+                self.arrive(line, Op::Hole(pose));
+            }
+            Op::Home(axes) => return self.go_home(line, axes),
+            Op::Tool(mut tool) => {
+                self.number(line, &mut tool)?;
+                self.home = None;
+                self.tool = Some((self.program.records.len(), true));
+                self.program.push(line, Op::Tool(tool));
+            }
+            Op::LengthOffset(register) => return self.length_offset(line, register),
+            Op::WorkOffset(number) => self.set_work_offset(line, number),
+            op => self.program.push(line, op),
+        }
+        Ok(())
+    }
+
+    /// The tool moves, after it has been home where it was sent there.
+    fn arrive(&mut self, line: u32, op: Op) {
+        if let Some(line) = self.home.take() {
+            self.program.push(line, Op::Home(Z));
+        }
+        if let Some((_, fresh)) = &mut self.tool {
+            *fresh = false;
+        }
+        self.program.push(line, op);
+    }
+
+    /// Where a cut ends; it must begin somewhere.
+    fn cut(&mut self, end: &Pose) -> Result<Pose, Box<Diagnostic>> {
+        let end = self.pose(end);
+        match self.here.replace(end) {
+            Some(start) if known(&start) && self.home.is_none() => {}
+            start => {
+                let start = start.filter(|_| self.home.is_none());
+                let nowhere = Pose::new(Vec3::NAN, Vec3::Z);
+                return Err(unknown("the start of a cut", &start.unwrap_or(nowhere)));
+            }
+        }
+        if known(&end) { Ok(end) } else { Err(unknown("the end of a cut", &end)) }
+    }
+
+    /// A pose as a block gives it, in the work frame. Where the tip of a tool of unknown length is that
+    /// a head has turned, is not known.
+    fn pose(&self, pose: &Pose) -> Pose {
+        let Orientation::Rotary { degrees, tool_center } = pose.orientation else { return *pose };
+        let length = self.tool_length();
+        let (mut tip, axis) = self.machine.resolve(pose, length.unwrap_or(0.0));
+        let mut heads = self.machine.rotary.iter().filter(|axis| axis.on == Mount::Head);
+        if length.is_none()
+            && !tool_center
+            && heads.any(|axis| axis.turned(degrees[axis.index()]) != 0.0)
+        {
+            tip = Vec3::NAN;
+        }
+        Pose::new(tip, axis)
+    }
+
+    /// Gives a tool that is called by its name a number, of which no other tool has it.
+    fn number(&mut self, line: u32, tool: &mut Tool) -> Done {
+        if tool.number > 0 {
+            let taken = self.numbers.iter().find(|(n, name)| *n == tool.number && !name.is_empty());
+            if let Some((number, name)) = taken {
+                let message = format!("T{number} is called, and stands for \"{name}\" already");
+                let help = "give the tools that are called by name their numbers in a tool table";
+                return Err(refuse("tool-number", message, help));
+            }
+            self.numbers.push((tool.number, String::new()));
+            return Ok(());
+        }
+        if let Some(entry) =
+            self.setup.tools.iter().find(|e| e.name.eq_ignore_ascii_case(&tool.name))
+        {
+            tool.number = entry.number;
+            return Ok(());
+        }
+        if let Some((number, _)) = self.numbers.iter().find(|(_, name)| *name == tool.name) {
+            tool.number = *number;
+            return Ok(());
+        }
+        let free = |n: &u32| {
+            self.numbers.iter().all(|(number, _)| number != n)
+                && self.setup.tools.iter().all(|entry| entry.number != *n)
+        };
+        tool.number = (1..).find(free).unwrap_or_default();
+        self.numbers.push((tool.number, tool.name.clone()));
+        let message =
+            format!("tool \"{}\" is called by its name, and T{} here", tool.name, tool.number);
+        let found = Diagnostic::warning("tool-number", message);
+        self.warnings.push(found.help("a tool table gives it a number of your own").line(line));
+        Ok(())
+    }
+
+    /// Length of the tool in the spindle, where it is known, mm.
+    fn tool_length(&self) -> Option<f64> {
+        let Op::Tool(tool) = &self.program.records.get(self.tool?.0)?.op else { return None };
+        let entry = self.setup.tools.iter().find(|entry| entry.number == tool.number);
+        entry.map(|entry| entry.length)
+    }
+
+    /// Axes go to a fixed place of the machine. Only what Z does there matters: the others come back
+    /// by words of their own, and their way is the machine's.
+    fn go_home(&mut self, line: u32, axes: u8) -> Done {
+        if axes & Z == 0 && self.home.is_none() && self.here.is_some_and(|here| known(&here)) {
+            let message =
+                "axes are sent home while Z is not: the way there beside the part is the machine's";
+            let help = "send Z home before";
+            return Err(refuse("home", message, help));
+        }
+        if axes & Z != 0 && self.here.is_some() {
+            self.home.get_or_insert(line);
+        }
+        Ok(())
+    }
+
+    fn length_offset(&mut self, line: u32, register: Option<u32>) -> Done {
+        let Some(register) = register else { return Ok(()) };
+        let Some((index, fresh)) = self.tool else {
+            let message = format!("length offset {register} is called, and no tool before it");
+            let found = Diagnostic::warning("length-offset", message);
+            self.warnings.push(found.help("the tool is that of the new machine").line(line));
+            return Ok(());
+        };
+        let Some(Op::Tool(tool)) = self.program.records.get_mut(index).map(|r| &mut r.op) else {
+            return Ok(());
+        };
+        // Where a register is an edge of the tool in the spindle (SINUMERIK's D), the first is the tool
+        // itself.
+        let edges = self.machine.capabilities.length_offset == LengthOffset::One;
+        let own = if edges { 1 } else { tool.offset.unwrap_or(tool.number) };
+        if register == own {
+            return Ok(());
+        }
+        if edges || !fresh {
+            let message = format!(
+                "length offset {register} where {own} is the tool's: a tool with two lengths cannot be told"
+            );
+            let help = "post the parts with each offset as programs of their own";
+            return Err(refuse("length-offset", message, help));
+        }
+        tool.offset = Some(register);
+        Ok(())
+    }
+
+    /// Positions are counted from another work offset from here on.
+    fn set_work_offset(&mut self, line: u32, number: u32) {
+        if self.work_offset.replace(number) == Some(number) {
+            return;
+        }
+        self.several |= self.here.is_some() || number != FIRST_WORK_OFFSET;
+        self.here = None;
+        self.program.push(line, Op::WorkOffset(number));
+    }
+
+    /// The program, after its last record. One that works in the first work offset alone leaves it to
+    /// the machine.
+    fn finish(mut self) -> Reading {
+        if !self.several {
+            self.program.records.retain(|record| !matches!(record.op, Op::WorkOffset(_)));
+        }
+        Reading { program: self.program, warnings: self.warnings }
+    }
+}
+
+/// The bit of Z in [`Op::Home`].
+const Z: u8 = 4;
+
+/// Whether every coordinate is known.
+fn known(pose: &Pose) -> bool {
+    pose.point.is_finite() && pose.axis().is_none_or(Vec3::is_finite)
+}
+
+/// What is refused because of coordinates that no block has given.
+fn unknown(what: &str, pose: &Pose) -> Box<Diagnostic> {
+    let letters = ["X", "Y", "Z"].into_iter().zip(pose.point.to_array());
+    let mut missing: Vec<&str> = letters.filter(|(_, v)| v.is_nan()).map(|(l, _)| l).collect();
+    if pose.axis().is_some_and(|axis| !axis.is_finite()) {
+        missing.push("the rotary axes");
+    }
+    let message = match missing.is_empty() {
+        true => format!("{what} is at the machine's home, which the program does not know"),
+        false => format!("{what} is not known in {}", missing.join(", ")),
+    };
+    let help = "go there by rapid with every axis named, before; where a head is turned and the control does \
+                not keep the tool's tip, its length has to be in the tool table";
+    refuse("unknown-position", message, help)
+}
+
+/// An error; its line is that of the record at hand.
+fn refuse(rule: &'static str, message: impl Into<String>, help: &str) -> Box<Diagnostic> {
+    Diagnostic::error(rule, message).help(help).into()
+}

@@ -1,0 +1,158 @@
+//! What becomes of a control's records on their way into a neutral program.
+
+use control::{Setup, ToolData};
+use geom::Vec3;
+use machine::{Machine, load, load_origin};
+use program::{Diagnostic, Op, Pose, Program};
+use toolpost_nc as nc;
+
+fn read_for(machine: &Machine, setup: Setup, text: &str) -> Result<nc::Reading, Box<Diagnostic>> {
+    nc::read(machine, setup, "old.nc", text.as_bytes())
+}
+
+fn fanuc(text: &str) -> Program {
+    let machine = load_origin("fanuc-31i").unwrap();
+    read_for(&machine, Setup::default(), text).unwrap().program
+}
+
+fn refused(text: &str) -> Box<Diagnostic> {
+    read_for(&load_origin("fanuc-31i").unwrap(), Setup::default(), text).unwrap_err()
+}
+
+/// What moves the tool, sends it home or changes it.
+fn ways(program: &Program) -> Vec<(u32, &Op)> {
+    let moves = |op: &Op| op.pose().is_some() || matches!(op, Op::Home(_) | Op::Tool(_));
+    program.records.iter().filter(|r| moves(&r.op)).map(|r| (r.line, &r.op)).collect()
+}
+
+fn at(x: f64, y: f64, z: f64) -> Pose {
+    Pose::new(Vec3::new(x, y, z), Vec3::Z)
+}
+
+#[test]
+fn a_rapid_waits_until_every_coordinate_is_known() {
+    let program = fanuc("G21 G90 G54 G0\nX10. Y20.\nZ5.\nG1 Z-1. F100.\nM30\n");
+    let expected = [(3, &Op::Rapid(at(10.0, 20.0, 5.0))), (4, &Op::Line(at(10.0, 20.0, -1.0)))];
+    assert_eq!(ways(&program), expected);
+}
+
+#[test]
+fn z_home_stays_between_two_moves_and_goes_where_the_tool_is_changed() {
+    let text = "G21 G90 G54 G0\nT1 M6\nX0. Y0.\nG43 Z5. H1\nG91 G28 Z0\nG90 X9. Y9.\nZ5.\n\
+                G91 G28 Z0\nG90 T2 M6\nX1. Y1.\nG43 Z5. H2\nG91 G28 Z0\nM30\n";
+    let program = fanuc(text);
+    let told: Vec<_> = ways(&program).into_iter().map(|(line, op)| (line, op.pose())).collect();
+    let expected = [
+        (2, None),
+        (4, Some(&at(0.0, 0.0, 5.0))),
+        (5, None),
+        (7, Some(&at(9.0, 9.0, 5.0))),
+        (9, None),
+        (11, Some(&at(1.0, 1.0, 5.0))),
+    ];
+    assert_eq!(told.len(), expected.len());
+    for ((line, pose), (wanted, expected)) in told.iter().zip(expected) {
+        assert_eq!((*line, *pose), (wanted, expected));
+    }
+    assert_eq!(ways(&program)[2].1, &Op::Home(4));
+}
+
+#[test]
+fn a_cut_from_a_place_that_is_not_known_is_refused_with_its_line() {
+    let found = refused("G21 G90 G54\nG0 X0. Y0.\nG1 Z-1. F100.\nM30\n");
+    assert_eq!((found.rule, found.line), ("unknown-position", 3));
+    assert!(found.message.ends_with("not known in Z"), "{found}");
+    let found = refused("G21 G90 G54\nG0 X0. Y0. Z9.\nG91 G28 Z0\nG90 G1 Z-1. F100.\nM30\n");
+    assert_eq!((found.rule, found.line), ("unknown-position", 4));
+}
+
+#[test]
+fn the_register_of_a_length_offset_is_that_of_the_tool() {
+    let program = fanuc("G21 G90 G54\nT3 M6\nG0 X0. Y0.\nG43 Z5. H13\nM30\n");
+    let Op::Tool(tool) = ways(&program)[0].1 else { panic!("no tool") };
+    assert_eq!((tool.number, tool.offset), (3, Some(13)));
+    let found = refused("G21 G90 G54\nT3 M6\nG0 X0. Y0.\nG43 Z5. H3\nG43 Z4. H13\nM30\n");
+    assert_eq!((found.rule, found.line), ("length-offset", 5));
+}
+
+#[test]
+fn rotary_positions_become_a_tool_axis_by_the_machine_of_the_program() {
+    // C turns the table left-handed about Z: at C90 a point on X of the machine is one on Y of the part.
+    let machine = load("fanuc-table-bc").unwrap();
+    let text = "G21 G90 G54\nT1 M6\nG0 B0 C90.\nX10. Y0.\nG43 Z5. H1\nG1 Z1. F100.\nM30\n";
+    let reading = read_for(&machine, Setup::default(), text).unwrap();
+    let poses: Vec<Vec3> =
+        ways(&reading.program).iter().filter_map(|(_, op)| op.pose()).map(|p| p.point).collect();
+    assert_eq!(poses.len(), 2);
+    assert!(poses[0].distance(Vec3::new(0.0, 10.0, 5.0)) < 1e-9, "{}", poses[0]);
+    // B tilts the table: what stood upright leans towards X.
+    let text = "G21 G90 G54\nT1 M6\nG0 B-30. C0.\nG43.4 H1 X0. Y0. Z5.\nG1 Z1. F100.\nM30\n";
+    let reading = read_for(&machine, Setup::default(), text).unwrap();
+    let axis = ways(&reading.program)[1].1.pose().unwrap().axis().unwrap();
+    let leaning = Vec3::new(-0.5, 0.0, 0.75_f64.sqrt());
+    assert!(axis.distance(leaning) < 1e-9, "{axis}");
+}
+
+#[test]
+fn an_arc_on_a_turned_table_turns_with_it() {
+    let machine = load("fanuc-table-bc").unwrap();
+    let text =
+        "G21 G90 G54\nT1 M6\nG0 B0 C90.\nX10. Y0.\nG43 Z5. H1\nG3 X0. Y10. I-10. J0. F100.\nM30\n";
+    let reading = read_for(&machine, Setup::default(), text).unwrap();
+    let Op::Arc(arc) = ways(&reading.program)[2].1 else { panic!("no arc") };
+    let apart = |a: Vec3, b: Vec3| a.distance(b) < 1e-9;
+    assert!(apart(arc.end.point, Vec3::new(-10.0, 0.0, 5.0)), "{}", arc.end.point);
+    assert!(apart(arc.center, Vec3::new(0.0, 0.0, 5.0)) && apart(arc.normal, Vec3::Z));
+}
+
+#[test]
+fn a_turned_head_needs_the_length_of_the_tool() {
+    let machine = load("sinumerik-840d-traori").unwrap();
+    let text = "G90 G54\nT1\nM6\nD1\nG0 A90 C0\nX0 Y0 Z0\nG1 X5 F100\nM30\n";
+    let found = read_for(&machine, Setup::default(), text).unwrap_err();
+    assert_eq!((found.rule, found.line), ("unknown-position", 7));
+    let tool = ToolData { number: 1, name: String::new(), radius: 3.0, length: 100.0 };
+    let setup = Setup { tools: vec![tool], ..Setup::default() };
+    assert!(read_for(&machine, setup, text).is_ok());
+}
+
+#[test]
+fn a_tool_with_a_name_gets_a_number_and_a_warning_says_so() {
+    let machine = load_origin("sinumerik-840d").unwrap();
+    let text = "G90 G54\nT=\"MILL\"\nM6\nT=\"DRILL\"\nM6\nT=\"MILL\"\nM6\nM30\n";
+    let numbers = |reading: &nc::Reading| -> Vec<u32> {
+        let tool = |op: &Op| if let Op::Tool(tool) = op { Some(tool.number) } else { None };
+        reading.program.records.iter().filter_map(|r| tool(&r.op)).collect()
+    };
+    let reading = read_for(&machine, Setup::default(), text).unwrap();
+    assert_eq!(numbers(&reading), [1, 2, 1]);
+    assert_eq!(reading.warnings.iter().map(|w| w.line).collect::<Vec<_>>(), [3, 5]);
+    let drill = ToolData { number: 7, name: "drill".into(), radius: 2.0, length: 80.0 };
+    let setup = Setup { tools: vec![drill], ..Setup::default() };
+    assert_eq!(numbers(&read_for(&machine, setup, text).unwrap()), [1, 7, 1]);
+    let text = "G90 G54\nT=\"MILL\"\nM6\nT1\nM6\nM30\n";
+    assert_eq!(read_for(&machine, Setup::default(), text).unwrap_err().rule, "tool-number");
+}
+
+#[test]
+fn axes_are_not_sent_home_beside_the_part() {
+    let found = refused("G21 G90 G54\nG0 X0. Y0. Z5.\nG91 G28 X0 Y0\nM30\n");
+    assert_eq!((found.rule, found.line), ("home", 3));
+    fanuc("G21 G90 G54\nG0 X0. Y0. Z5.\nG91 G28 Z0\nG28 X0 Y0\nM30\n");
+}
+
+#[test]
+fn several_work_offsets_stay_and_the_first_alone_is_left_to_the_machine() {
+    let cut = "G0 X0. Y0.\nZ5.\nG1 Z-1. F100.\nG0 Z5.\n";
+    let offsets = |program: &Program| -> Vec<(u32, u32)> {
+        let number = |op: &Op| if let Op::WorkOffset(n) = op { Some(*n) } else { None };
+        program.records.iter().filter_map(|r| Some((r.line, number(&r.op)?))).collect()
+    };
+    assert_eq!(offsets(&fanuc(&format!("G21 G90 G54\n{cut}M30\n"))), []);
+    assert_eq!(offsets(&fanuc(&format!("G21 G90 G55\n{cut}M30\n"))), [(1, 55)]);
+    let two = format!("G21 G90 G54\n{cut}G55\n{cut}M30\n");
+    assert_eq!(offsets(&fanuc(&two)), [(1, 54), (6, 55)]);
+    // Where the tool stands in the new frame nobody knows.
+    let found = refused("G21 G90 G54\nG0 X0. Y0. Z5.\nG55\nG1 Z-1. F100.\nM30\n");
+    assert_eq!(found.line, 4);
+}

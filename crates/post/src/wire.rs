@@ -1,0 +1,109 @@
+//! The wire of a machine for wire EDM: where it is threaded and cut, and how far it leans.
+
+use crate::catalogue::{BlockName, WordName};
+use crate::walk::{Done, Walk, refuse};
+use geom::{Vec2, Vec3};
+use machine::Machine;
+use program::{Diagnostic, Pose, Program};
+
+/// How far from the lower plane a pose may be, mm: rounding of its source.
+const FLAT: f64 = 1e-6;
+
+/// The wire while a program is written.
+pub(crate) struct Wire {
+    machine: machine::Wire,
+    /// Whether it leans anywhere in the program: every block then says how far.
+    leans: bool,
+    threaded: bool,
+    /// Openings that it has been threaded for.
+    openings: usize,
+}
+
+impl Wire {
+    /// The wire of `machine`, where it has one, not threaded.
+    pub(crate) fn of(machine: &Machine, program: &Program) -> Option<Wire> {
+        let leans = || {
+            let mut poses = program.records.iter().filter_map(|record| record.op.pose());
+            poses.any(|pose| pose.axis() != Some(Vec3::Z))
+        };
+        machine.wire.map(|machine| Wire { machine, leans: leans(), threaded: false, openings: 0 })
+    }
+}
+
+impl Walk<'_> {
+    /// The wire is threaded where it stands.
+    pub(crate) fn thread_wire(&mut self) -> Done {
+        let told = !self.machine.leaves_out(BlockName::ThreadWire.name());
+        let Some(wire) = &mut self.wire else { return Err(no_wire()) };
+        if wire.threaded {
+            return Err(refuse("wire-threaded", "the wire is threaded already"));
+        }
+        if wire.openings > 0 && !told {
+            let message = "a second opening: the control cannot be told to thread the wire again";
+            return Err(refuse("one-opening", message).help("a program for each opening").into());
+        }
+        (wire.threaded, wire.openings) = (true, wire.openings + 1);
+        self.block(BlockName::ThreadWire)
+    }
+
+    /// The wire is cut.
+    pub(crate) fn cut_wire(&mut self) -> Done {
+        self.uncompensated("the end of the opening")?;
+        let Some(wire) = &mut self.wire else { return Err(no_wire()) };
+        if !std::mem::take(&mut wire.threaded) {
+            return Err(refuse("wire-missing", "the wire is cut, and none is threaded"));
+        }
+        self.block(BlockName::CutWire)
+    }
+
+    /// Holds the wire against what comes next: a cut needs it threaded, a rapid or the end needs it cut.
+    pub(crate) fn wire_for(&self, cut: bool, what: &str) -> Done {
+        match &self.wire {
+            Some(wire) if wire.threaded && !cut => {
+                let message =
+                    format!("{what} while the wire is threaded: it would go through the part");
+                Err(refuse("wire-threaded", message).help("cut the wire before").into())
+            }
+            Some(wire) if !wire.threaded && cut => {
+                let message = format!("{what} before the wire is threaded");
+                Err(refuse("wire-missing", message).help("thread the wire at the start").into())
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Whether the wire can stand at `pose`.
+    pub(crate) fn wire_stands(&self, wire: &Wire, pose: &Pose) -> Done {
+        if pose.point.z.abs() > FLAT {
+            let message = format!("Z{:.4}: a wire crosses the lower plane at Z0", pose.point.z);
+            let help = "`toolpost wire` makes the way of a wire from a contour at any height";
+            return Err(refuse("wire-plane", message).help(help).into());
+        }
+        if !wire.leans {
+            return Ok(());
+        }
+        if !self.templates.places(BlockName::Linear, WordName::U) {
+            return Err(refuse("wire-leans", "the wire leans, and the control has no U and V"));
+        }
+        let axis = pose.axis().unwrap_or(Vec3::Z);
+        let Some(lean) = wire.machine.lean(axis) else {
+            let message = "the wire leans, and the height of the upper plane is not known";
+            let help = "give it with --height, or as `height` in the [wire] table of the machine";
+            return Err(refuse("wire-height", message).help(help).into());
+        };
+        self.limits.lean(lean, axis, self.line)
+    }
+
+    /// Says in the next block how far the wire leans.
+    pub(crate) fn say_lean(&mut self, axis: Vec3) {
+        let Some(wire) = self.wire.as_ref().filter(|wire| wire.leans) else { return };
+        let lean = wire.machine.lean(axis).unwrap_or(Vec2::ZERO);
+        self.writer.set(WordName::U, lean.x);
+        self.writer.set(WordName::V, lean.y);
+    }
+}
+
+fn no_wire() -> Box<Diagnostic> {
+    let help = "a machine for wire EDM: one whose file has a [wire] table";
+    refuse("unsupported", "the program threads a wire, and this machine has none").help(help).into()
+}

@@ -1,0 +1,75 @@
+//! NC programs as a source: the samples of the library, from each machine to each other.
+
+mod files;
+
+use control::Setup;
+use files::{mills, root};
+use machine::Machine;
+use program::{Op, Pose, Program};
+
+/// The sample of a machine as its control reads it.
+fn sample(machine: &Machine) -> Program {
+    let file = format!("{}.{}", machine.name, machine.extension);
+    let text = std::fs::read(root().join("machines/samples").join(&file)).unwrap();
+    nc::read(machine, Setup::default(), &file, &text).unwrap_or_else(|e| panic!("{e}")).program
+}
+
+/// The sample programs are read by a person, so what they say is known: what is read from one must be
+/// the toolpath that it was made from, by the proof's measure.
+#[test]
+fn the_sample_of_each_machine_is_the_toolpath_that_it_was_made_from() {
+    for machine in mills() {
+        let name = &machine.name;
+        let axes = if machine.rotary.is_empty() { "three-axes" } else { "five-axes" };
+        let path = root().join("machines/samples").join(axes).with_extension("cls");
+        let text = std::fs::read(path).unwrap();
+        let source = source::apt::read("source", &text, &Default::default()).unwrap().program;
+        // Every place of the source is one of the program that was read, in the same order.
+        let mut rest = places(&sample(&machine)).into_iter();
+        for place in places(&source) {
+            let near = rest.any(|p| {
+                let (a, b) = (p.axis().unwrap(), place.axis().unwrap());
+                p.point.distance(place.point) < 0.003 && a.distance(b) < 1e-4
+            });
+            assert!(near, "{name}: nothing at {}", place.point);
+        }
+    }
+}
+
+/// Where the tool goes; for a hole its bottom, since controls differ in where a cycle begins.
+fn places(program: &Program) -> Vec<Pose> {
+    let (mut places, mut depth) = (Vec::new(), 0.0);
+    for record in &program.records {
+        match &record.op {
+            Op::Cycle(cycle) => depth = cycle.depth,
+            Op::Hole(pose) => {
+                let axis = pose.axis().unwrap();
+                places.push(Pose::new(pose.point - axis * depth, axis));
+            }
+            op => places.extend(op.pose().copied()),
+        }
+    }
+    places
+}
+
+#[test]
+fn the_sample_of_each_machine_is_proven_on_every_other_that_can_make_it() {
+    for from in mills() {
+        let program = sample(&from);
+        for machine in mills() {
+            let (from, to, tilts) = (&from.name, &machine.name, !from.rotary.is_empty());
+            match post::write(&program, &machine) {
+                Ok(output) => {
+                    let tolerances = Default::default();
+                    let report = proof::prove(&program, &machine, "new", &output.text, &tolerances);
+                    assert!(report.proven, "{from} on {to}: {:?}", report.mismatches);
+                }
+                // Nothing else is refused than a tilted tool where no axis tilts it.
+                Err(found) => {
+                    assert!(tilts && machine.rotary.is_empty(), "{from} on {to}: {found:?}");
+                    assert_eq!(found[0].rule, "unreachable-orientation", "{from} on {to}");
+                }
+            }
+        }
+    }
+}

@@ -1,0 +1,171 @@
+//! Programs of wires: written, proven, damaged.
+
+use geom::Vec3;
+use machine::Machine;
+use program::{ArcTo, Diagnostic, Op, Pose, Program, Tool};
+use proof::{Report, Tolerances};
+
+/// The list of coordinates with its upper plane 40 mm over the lower.
+const LIST: &str = "extends = \"bp-95d\"\n[wire]\nheight = 40\nuv_travel = 15\ntaper_max = 20\n";
+
+fn machine(text: &str) -> Machine {
+    machine::load_text("shop.toml", text).unwrap()
+}
+
+fn upright(x: f64, y: f64) -> Pose {
+    Pose::new(Vec3::new(x, y, 0.0), Vec3::Z)
+}
+
+/// A wire that is at `x` `y` below, and `u` `v` beside that 40 mm above.
+fn leaning(x: f64, y: f64, u: f64, v: f64) -> Pose {
+    Pose::new(Vec3::new(x, y, 0.0), Vec3::new(u, v, 40.0).normalize())
+}
+
+fn program(ops: impl IntoIterator<Item = Op>) -> Program {
+    let mut program = Program::new("part");
+    for (line, op) in (1..).zip(ops) {
+        program.push(line, op);
+    }
+    program
+}
+
+/// From `start` through `ways` in one opening.
+fn opening(start: Pose, ways: impl IntoIterator<Item = Op>) -> Program {
+    let before = [Op::Rapid(start), Op::ThreadWire];
+    program(before.into_iter().chain(ways).chain([Op::CutWire, Op::End]))
+}
+
+/// A square of 10 mm whose upper end is a square of 14 mm about the same centre.
+fn frustum() -> Program {
+    let corners = [(10.0, 0.0, 2.0, -2.0), (10.0, 10.0, 2.0, 2.0), (0.0, 10.0, -2.0, 2.0)];
+    let ways = corners.into_iter().chain([(0.0, 0.0, -2.0, -2.0)]);
+    opening(leaning(0.0, 0.0, -2.0, -2.0), ways.map(|(x, y, u, v)| Op::Line(leaning(x, y, u, v))))
+}
+
+/// A quarter of a circle of 40 mm between two radii, counter-clockwise.
+fn sector() -> Program {
+    let end = upright(0.0, 40.0);
+    let arc = ArcTo { end, center: Vec3::ZERO, normal: Vec3::Z, turns: 0 };
+    let ways = [Op::Line(upright(40.0, 0.0)), Op::Arc(Box::new(arc)), Op::Line(upright(0.0, 0.0))];
+    opening(upright(0.0, 0.0), ways)
+}
+
+fn written(program: &Program, machine: &Machine) -> String {
+    let output = post::write(program, machine).unwrap_or_else(|found| panic!("{}", found[0]));
+    String::from_utf8(output.text).unwrap()
+}
+
+fn refused(program: &Program, machine: &Machine) -> Diagnostic {
+    post::write(program, machine).unwrap_err().remove(0)
+}
+
+fn proof(program: &Program, machine: &Machine, text: &str) -> Report {
+    proof::prove(program, machine, "part.pts", text.as_bytes(), &Tolerances::default())
+}
+
+#[track_caller]
+fn proven(program: &Program, machine: &Machine, text: &str) {
+    let report = proof(program, machine, text);
+    assert!(report.proven, "{:#?}\n{text}", report.mismatches);
+}
+
+#[test]
+fn a_list_has_a_line_a_point_and_says_everywhere_how_the_wire_leans() {
+    let (program, machine) = (frustum(), machine(LIST));
+    let text = written(&program, &machine);
+    let expected = "0.000 0.000 -2.000 -2.000\n10.000 0.000 2.000 -2.000\n10.000 10.000 2.000 2.000\n\
+                    0.000 10.000 -2.000 2.000\n0.000 0.000 -2.000 -2.000\n";
+    assert_eq!(text, expected);
+    proven(&program, &machine, &text);
+}
+
+#[test]
+fn an_upright_wire_has_no_u_and_v_and_arcs_become_points() {
+    let (program, machine) = (sector(), machine("extends = \"bp-95d\""));
+    let text = written(&program, &machine);
+    // Chords of 0.005 mm on R 40 turn by 4·asin(√(0.005/80)): 50 of them make 90°.
+    assert_eq!(text.lines().count(), 3 + 50);
+    assert!(text.lines().all(|line| line.split(' ').count() == 2), "{text}");
+    proven(&program, &machine, &text);
+}
+
+#[test]
+fn a_list_with_any_number_damaged_is_refused() {
+    let (program, machine) = (frustum(), machine(LIST));
+    let lines: Vec<String> = written(&program, &machine).lines().map(str::to_owned).collect();
+    let judge = |lines: &[String], what: &str| {
+        let text = lines.join("\n") + "\n";
+        assert!(!proof(&program, &machine, &text).proven, "{what}:\n{text}");
+    };
+    for (i, line) in lines.iter().enumerate() {
+        let words: Vec<&str> = line.split(' ').collect();
+        for (j, word) in words.iter().enumerate() {
+            let number: f64 = word.parse().unwrap();
+            for other in [number + 0.02, -number] {
+                if other == number {
+                    continue;
+                }
+                let mut changed: Vec<String> = words.iter().map(|w| (*w).to_owned()).collect();
+                changed[j] = format!("{other:.3}");
+                let mut damaged = lines.clone();
+                damaged[i] = changed.join(" ");
+                judge(&damaged, &format!("word {j} of line {}", i + 1));
+            }
+        }
+        let mut dropped = lines.clone();
+        dropped.remove(i);
+        judge(&dropped, &format!("line {} dropped", i + 1));
+        let mut swapped = lines.clone();
+        if i + 1 < lines.len() {
+            swapped.swap(i, i + 1);
+            judge(&swapped, &format!("lines {} and {} swapped", i + 1, i + 2));
+        }
+    }
+    let mut longer = lines.clone();
+    longer.push("5.000 0.000 0.000 -2.000".into());
+    judge(&longer, "one more");
+}
+
+#[test]
+fn a_point_list_that_cuts_an_arc_off_is_refused() {
+    let (program, machine) = (sector(), machine("extends = \"bp-95d\""));
+    let mut lines: Vec<String> = written(&program, &machine).lines().map(str::to_owned).collect();
+    // Without two neighbours of 50 the chord error is nine times as large.
+    lines.drain(20..22);
+    let report = proof(&program, &machine, &(lines.join("\n") + "\n"));
+    assert_eq!(report.mismatches[0].rule, "path", "{:?}", report.mismatches);
+}
+
+#[test]
+fn what_a_wire_cannot_do_is_refused_with_its_line() {
+    let list = machine(LIST);
+    let rule = |ops: Vec<Op>| refused(&program(ops), &list).rule;
+    let (start, end) = (upright(0.0, 0.0), upright(10.0, 0.0));
+    assert_eq!(rule(vec![Op::Rapid(start), Op::Line(end)]), "wire-missing");
+    assert_eq!(rule(vec![Op::Rapid(start), Op::CutWire]), "wire-missing");
+    assert_eq!(rule(vec![Op::Rapid(start), Op::ThreadWire, Op::Rapid(end)]), "wire-threaded");
+    assert_eq!(rule(vec![Op::Rapid(start), Op::ThreadWire, Op::ThreadWire]), "wire-threaded");
+    let ends = vec![Op::Rapid(start), Op::ThreadWire, Op::Line(end), Op::End];
+    assert_eq!(rule(ends), "wire-threaded");
+    let below = Pose::new(Vec3::new(1.0, 0.0, -2.0), Vec3::Z);
+    assert_eq!(rule(vec![Op::Rapid(below)]), "wire-plane");
+    let one = [Op::Rapid(start), Op::ThreadWire, Op::Line(end), Op::CutWire];
+    assert_eq!(rule([one.clone(), one].concat()), "one-opening");
+    assert_eq!(rule(vec![Op::Rapid(leaning(0.0, 0.0, 15.1, 0.0))]), "uv-limit");
+    // 15 mm in 40 mm both ways: atan(√2·15/40) = 27.9°.
+    assert_eq!(rule(vec![Op::Rapid(leaning(0.0, 0.0, 15.0, 15.0))]), "taper-limit");
+    assert_eq!(
+        rule(vec![Op::Tool(Box::new(Tool { number: 1, ..Tool::default() }))]),
+        "missing-block"
+    );
+    let found = refused(&frustum(), &machine("extends = \"bp-95d\""));
+    assert_eq!((found.rule, found.line), ("wire-height", 1));
+    let small = machine("extends = \"bp-95d\"\n[wire]\nmemory = 52\n");
+    assert_eq!(refused(&sector(), &small).rule, "memory");
+}
+
+#[test]
+fn a_mill_threads_no_wire() {
+    let mill = machine("extends = \"generic-3axis-fanuc\"");
+    assert_eq!(refused(&sector(), &mill).rule, "unsupported");
+}

@@ -1,0 +1,186 @@
+//! A chain of lines and arcs, open or closed.
+
+use crate::element::{Element, SAME, Turn, finite};
+use geom::Vec2;
+use program::Diagnostic;
+use std::f64::consts::PI;
+
+/// A chain of elements, each of which starts, bit for bit, where the one before ends. It is closed
+/// where the last ends at the start of the first.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Contour {
+    elements: Vec<Element>,
+}
+
+/// A place on a contour.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Place {
+    /// Index of the element.
+    pub element: usize,
+    /// How far along the element, 0 to 1.
+    pub t: f64,
+    /// The point, mm.
+    pub point: Vec2,
+}
+
+impl Contour {
+    /// Chains `elements` in their order. Gaps up to `gap` mm are closed, also the one between the end
+    /// and the start; elements without length fall away.
+    ///
+    /// # Errors
+    /// `gap` where two neighbours are farther apart, `not-a-place` for coordinates that are no numbers,
+    /// `empty-contour` where nothing has a length.
+    pub fn new(mut elements: Vec<Element>, gap: f64) -> Result<Contour, Box<Diagnostic>> {
+        for element in &elements {
+            let turn = element.turn.unwrap_or(Turn { center: element.start, sweep: 0.0 });
+            finite(&[element.start, element.end, turn.center, Vec2::splat(turn.sweep)])
+                .map_err(|d| d.line(element.line))?;
+        }
+        elements.retain(|element| element.length() >= SAME);
+        Contour::joined(elements, gap.max(SAME))
+    }
+
+    /// The same with finite elements, none of which falls away: where the upper end of a leaning wire
+    /// stands still its element is a point.
+    pub(crate) fn joined(mut chain: Vec<Element>, gap: f64) -> Result<Contour, Box<Diagnostic>> {
+        for i in 1..chain.len() {
+            let (last, next) = (chain[i - 1].end, &mut chain[i]);
+            let apart = last.distance(next.start);
+            if apart > gap {
+                let message = format!(
+                    "a gap of {apart:.4} mm between X{:.4} Y{:.4} and X{:.4} Y{:.4}",
+                    last.x, last.y, next.start.x, next.start.y
+                );
+                return Err(Diagnostic::error("gap", message)
+                    .help(format!("close it, or allow more than {gap} mm"))
+                    .line(next.line)
+                    .into());
+            }
+            *next = next.spanning(last, next.end);
+        }
+        let many = chain.len() > 1;
+        let (Some(start), Some(last)) = (chain.first().map(|e| e.start), chain.last_mut()) else {
+            return Err(Diagnostic::error("empty-contour", "the contour has no length").into());
+        };
+        let whole = last.turn.is_some_and(|turn| turn.sweep.abs() > PI);
+        if last.end.distance(start) <= gap && (many || whole) {
+            *last = last.spanning(last.start, start);
+        }
+        Ok(Contour { elements: chain })
+    }
+
+    /// The elements in their order; never empty.
+    pub fn elements(&self) -> &[Element] {
+        &self.elements
+    }
+
+    /// Where it starts.
+    pub fn start(&self) -> Vec2 {
+        self.elements.first().map_or(Vec2::ZERO, |element| element.start)
+    }
+
+    /// Where it ends.
+    pub fn end(&self) -> Vec2 {
+        self.elements.last().map_or(Vec2::ZERO, |element| element.end)
+    }
+
+    /// Whether it ends where it starts.
+    pub fn is_closed(&self) -> bool {
+        self.start() == self.end()
+    }
+
+    /// Length, mm.
+    pub fn length(&self) -> f64 {
+        self.elements.iter().map(Element::length).sum()
+    }
+
+    /// What a closed contour encloses, mm², positive counter-clockwise; 0 for an open one.
+    pub fn area(&self) -> f64 {
+        // About the start, not the origin: a small contour far out keeps its digits.
+        let start = self.start();
+        let moved = |p: Vec2| p - start;
+        if !self.is_closed() {
+            return 0.0;
+        }
+        let about = |element: &Element| {
+            let mut element = *element;
+            (element.start, element.end) = (moved(element.start), moved(element.end));
+            if let Some(turn) = &mut element.turn {
+                turn.center = moved(turn.center);
+            }
+            element.area()
+        };
+        self.elements.iter().map(about).sum()
+    }
+
+    /// The corners of the smallest box around it whose sides are parallel to the axes.
+    pub fn extents(&self) -> (Vec2, Vec2) {
+        let all = self.elements.iter().map(Element::extents);
+        all.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or_default()
+    }
+
+    /// The same, travelled the other way.
+    pub fn reversed(&self) -> Contour {
+        Contour { elements: self.elements.iter().rev().map(Element::reversed).collect() }
+    }
+
+    /// The place nearest to `point`; of equally near ones the first.
+    pub fn nearest(&self, point: Vec2) -> Place {
+        let mut best = Place { element: 0, t: 0.0, point: self.start() };
+        let mut least = f64::INFINITY;
+        for (i, element) in self.elements.iter().enumerate() {
+            let (t, distance) = element.nearest(point);
+            if distance < least {
+                (least, best) = (distance, Place::on(element, i, t));
+            }
+        }
+        best
+    }
+
+    /// The place `along` mm after the start, at most the end.
+    pub fn place_at(&self, along: f64) -> Place {
+        let mut left = along.max(0.0);
+        for (i, element) in self.elements.iter().enumerate() {
+            let length = element.length();
+            if left < length {
+                return Place::on(element, i, left / length);
+            }
+            left -= length;
+        }
+        Place { element: self.elements.len().saturating_sub(1), t: 1.0, point: self.end() }
+    }
+
+    /// The elements between two places, of which `to` comes later.
+    pub(crate) fn between(&self, from: &Place, to: &Place) -> Vec<Element> {
+        let elements = self.elements.iter().enumerate().take(to.element + 1).skip(from.element);
+        let parts = elements.map(|(i, element)| {
+            let start = if i == from.element { from.t } else { 0.0 };
+            let end = if i == to.element { to.t } else { 1.0 };
+            (start < end).then(|| element.part(start, end))
+        });
+        parts.flatten().collect()
+    }
+
+    /// A closed contour with its start moved to `place`; an open one as it is.
+    pub fn started_at(&self, place: &Place) -> Contour {
+        if !self.is_closed() || place.point == self.start() {
+            return self.clone();
+        }
+        let mut elements = self.between(place, &self.place_at(f64::INFINITY));
+        elements.extend(self.between(&self.place_at(0.0), place));
+        Contour { elements }
+    }
+}
+
+impl Place {
+    /// At `t` of element `index`; what is nearly its end is its end.
+    fn on(element: &Element, index: usize, t: f64) -> Place {
+        let length = element.length();
+        let t = match t {
+            t if t * length < 1e-6 => 0.0,
+            t if (1.0 - t) * length < 1e-6 => 1.0,
+            t => t,
+        };
+        Place { element: index, t, point: element.at(t) }
+    }
+}

@@ -1,0 +1,106 @@
+//! Where the wire goes: its lower end, and its upper end where it leans.
+
+use crate::contour::Contour;
+use crate::element::{Element, SAME};
+use program::Diagnostic;
+
+/// The way of the wire. Where it leans, each element of the lower contour has its element of the
+/// upper one, and both ends run through them evenly at the same time: the cut is the ruled surface
+/// between the two.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Path {
+    lower: Contour,
+    upper: Option<Contour>,
+}
+
+/// What the machine can lean.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Limits {
+    /// The greatest U and V either way, mm.
+    pub uv: f64,
+    /// The greatest angle of the wire from upright, radians.
+    pub angle: f64,
+}
+
+impl Path {
+    /// An upright wire.
+    pub fn upright(contour: Contour) -> Path {
+        Path { lower: contour, upper: None }
+    }
+
+    /// Elements in pairs, as many below as above.
+    pub(crate) fn leaning(lower: Contour, upper: Contour) -> Path {
+        Path { lower, upper: Some(upper) }
+    }
+
+    /// Where the lower end goes.
+    pub fn lower(&self) -> &Contour {
+        &self.lower
+    }
+
+    /// Where the upper end goes, if not above the lower one.
+    pub fn upper(&self) -> Option<&Contour> {
+        self.upper.as_ref()
+    }
+
+    /// The elements in pairs; those of an upright wire beside themselves.
+    pub fn elements(&self) -> impl Iterator<Item = (&Element, &Element)> {
+        let upper = self.upper.as_ref().unwrap_or(&self.lower);
+        self.lower.elements().iter().zip(upper.elements())
+    }
+
+    /// How far the faster end travels, mm: what the cutting time goes by.
+    pub fn length(&self) -> f64 {
+        self.elements().map(|(below, above)| below.length().max(above.length())).sum()
+    }
+
+    /// The same, travelled the other way.
+    pub fn reversed(&self) -> Path {
+        Path { lower: self.lower.reversed(), upper: self.upper.as_ref().map(Contour::reversed) }
+    }
+
+    /// Whether the machine can lean the wire so, over a height of `height` mm.
+    ///
+    /// # Errors
+    /// `taper-limit` at the first element that needs more.
+    pub fn within(&self, limits: &Limits, height: f64) -> Result<(), Box<Diagnostic>> {
+        if self.upper.is_none() {
+            return Ok(());
+        }
+        if height.is_nan() || height <= 0.0 {
+            let message = format!("a leaning wire and a part height of {height} mm");
+            return Err(Diagnostic::error("part-height", message)
+                .help("give the height between the lower and the upper contour")
+                .into());
+        }
+        for (below, above) in self.elements() {
+            // Ends, middle and quarters: between them the lean of lines and arcs changes evenly.
+            for t in [0.0, 0.25, 0.5, 0.75, 1.0] {
+                let lean = above.at(t) - below.at(t);
+                let angle = (lean.length() / height).atan();
+                let place = below.at(t);
+                let message = if lean.abs().max_element() > limits.uv + SAME {
+                    format!(
+                        "U{:.4} V{:.4} at X{:.4} Y{:.4}, and the machine has ±{} mm",
+                        lean.x, lean.y, place.x, place.y, limits.uv
+                    )
+                } else if angle > limits.angle + geom::ANGLE_EPSILON {
+                    format!(
+                        "the wire leans by {:.3}° at X{:.4} Y{:.4}, and the machine by {:.3}°",
+                        angle.to_degrees(),
+                        place.x,
+                        place.y,
+                        limits.angle.to_degrees()
+                    )
+                } else {
+                    continue;
+                };
+                return Err(Diagnostic::error("taper-limit", message)
+                    .help("lean less, or take a machine that leans more")
+                    .line(below.line)
+                    .into());
+            }
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,99 @@
+//! The contours that a neutral program cuts.
+
+use crate::contour::Contour;
+use crate::element::{ARC_TOLERANCE, Direction, Element, SAME};
+use geom::{Vec2, angle_between};
+use program::{ArcTo, Compensation, Diagnostic, Op, Orientation, Pose, Program};
+
+/// What `program` cuts in the plane of X and Y: each contour runs from where a rapid ends to where the
+/// next begins, and its start is where the wire is threaded. `start` is where the wire stands before
+/// the first move, where that is known.
+///
+/// # Errors
+/// Those of [`cuts`] and [`Contour::new`].
+pub fn contours(program: &Program, start: Option<Vec2>) -> Result<Vec<Contour>, Box<Diagnostic>> {
+    cuts(program, start)?.into_iter().map(|cut| Contour::new(cut, 0.0)).collect()
+}
+
+/// The same move by move: also those that only the other end of the wire makes.
+///
+/// # Errors
+/// The first record that is no way of a wire: an arc out of the plane, a leaning or turned tool, a
+/// hole cycle, a compensation that is not resolved, a cut from an unknown place; and what
+/// [`Element::arc_by_center`] refuses. `empty-contour` where nothing is cut.
+pub fn cuts(program: &Program, start: Option<Vec2>) -> Result<Vec<Vec<Element>>, Box<Diagnostic>> {
+    let mut position = start.unwrap_or(Vec2::NAN);
+    let mut cuts = vec![Vec::new()];
+    for record in &program.records {
+        let at = |d: Box<Diagnostic>| Box::new(d.line(record.line));
+        let element = match &record.op {
+            Op::Line(pose) => Element::line(position, upright(pose).map_err(at)?),
+            Op::Arc(arc) => turned(position, arc).map_err(at)?,
+            Op::Rapid(pose) => {
+                position = upright(pose).map_err(at)?;
+                cuts.push(Vec::new());
+                continue;
+            }
+            Op::Home(axes) if axes & 3 != 0 => {
+                position = Vec2::NAN;
+                cuts.push(Vec::new());
+                continue;
+            }
+            Op::Hole(_) => return Err(at(refused("not-a-cut", "a hole cycle", "take it out"))),
+            Op::Compensation(Compensation::Left(_) | Compensation::Right(_)) => {
+                let what = "a wire offset whose amount is not known";
+                let way_out = "give the offset of its register, so that the path is resolved";
+                return Err(at(refused("open-compensation", what, way_out)));
+            }
+            _ => continue,
+        };
+        if element.start.is_nan() || element.end.is_nan() {
+            let what = "a cut, and where it starts or ends is not known in X and Y";
+            let way_out = "begin with a rapid to the start point, or name it";
+            return Err(at(refused("nc-unknown-position", what, way_out)));
+        }
+        position = element.end;
+        if let Some(cut) = cuts.last_mut() {
+            cut.push(element.from_line(record.line));
+        }
+    }
+    cuts.retain(|cut| cut.iter().any(|element| element.length() >= SAME));
+    if cuts.is_empty() {
+        return Err(refused("empty-contour", "the program cuts nothing in X and Y", ""));
+    }
+    Ok(cuts)
+}
+
+/// The place of a pose whose wire stands upright.
+fn upright(pose: &Pose) -> Result<Vec2, Box<Diagnostic>> {
+    let upright = match pose.orientation {
+        Orientation::Axis(axis) => angle_between(axis, geom::Vec3::Z) < geom::ANGLE_EPSILON,
+        Orientation::Rotary { degrees, .. } => degrees.iter().all(|angle| angle.abs() < 1e-9),
+    };
+    if !upright {
+        let way_out = "a wire leans by U and V, or by the taper";
+        return Err(refused("not-upright", "a tool that leans or is turned", way_out));
+    }
+    Ok(pose.point.truncate())
+}
+
+fn turned(start: Vec2, arc: &ArcTo) -> Result<Element, Box<Diagnostic>> {
+    let end = upright(&arc.end)?;
+    let direction = match arc.normal.z {
+        z if z > 1.0 - 1e-9 => Direction::CounterClockwise,
+        z if z < 1e-9 - 1.0 => Direction::Clockwise,
+        _ => return Err(refused("not-a-cut", "an arc out of the plane G17", "cut in X and Y")),
+    };
+    if arc.turns > 0 {
+        return Err(refused("not-a-cut", "an arc of more than one turn", "cut it once"));
+    }
+    // Where the ends are not known, the caller says so of the whole block.
+    if start.is_nan() || end.is_nan() {
+        return Ok(Element::line(start, end));
+    }
+    Element::arc_by_center(start, end, arc.center.truncate(), direction, ARC_TOLERANCE)
+}
+
+fn refused(rule: &'static str, what: &str, way_out: &str) -> Box<Diagnostic> {
+    Diagnostic::error(rule, what).help(way_out).into()
+}
