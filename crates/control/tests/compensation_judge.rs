@@ -358,13 +358,15 @@ fn what_the_judge_refuses_we_refuse() {
 /// A contour of lines and arcs from corner to corner.
 fn contour() -> impl Strategy<Value = String> {
     let side = prop_oneof![Just("G41"), Just("G42")];
-    let step = (-20.0..20.0f64, -20.0..20.0f64, 0..6u8, 0.5..3.0f64, -3.0..3.0f64);
+    let step = (-20.0..20.0f64, -20.0..20.0f64, 0..9u8, 0.5..3.0f64, -3.0..3.0f64);
     (side, prop::collection::vec(step, 2..7), -30.0..30.0f64, -30.0..30.0f64).prop_map(
         |(side, steps, x, y)| {
             let mut program = format!("{side} D1 G1 X{x:.3} Y{y:.3}\n");
             for (dx, dy, kind, bulge, z) in steps {
+                // Some elements are shorter than the tool.
+                let (dx, dy) = if kind > 5 { (dx / 40.0, dy / 40.0) } else { (dx, dy) };
                 let radius = dx.hypot(dy) / 2.0 * (1.0 + bulge);
-                let word = match kind {
+                let word = match kind % 6 {
                     0..=2 => format!("G91 G1 X{dx:.3} Y{dy:.3}"),
                     3 => format!("G91 G2 X{dx:.3} Y{dy:.3} R{radius:.3}"),
                     4 => format!("G91 G3 X{dx:.3} Y{dy:.3} R{radius:.3} Z{z:.3}"),
@@ -379,7 +381,7 @@ fn contour() -> impl Strategy<Value = String> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 250, ..ProptestConfig::default() })]
+    #![proptest_config(ProptestConfig { cases: 150, ..ProptestConfig::default() })]
 
     #[test]
     fn any_contour_makes_the_same_path_or_is_refused_by_both(

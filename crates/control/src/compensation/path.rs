@@ -12,6 +12,9 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 /// Most records between two elements of the contour.
 const LOOK_AHEAD: usize = 10_000;
 
+/// By how much an arc may turn farther for where the element before it has ended, radians (`rs274`).
+const LONGER: f64 = 0.025;
+
 /// Farther than any tool radius can shorten a move, mm.
 const FAR: f64 = 1e6;
 
@@ -43,6 +46,8 @@ enum Stage {
 struct Piece {
     line: u32,
     rapid: bool,
+    /// It is the move that switches compensation on: no contour lies beside it.
+    begins: bool,
     contour: Element,
     /// What runs beside it, of which the part `from..to` (0 to 1) remains ...
     parallel: Element,
@@ -187,7 +192,8 @@ impl Path {
                 .into());
         };
         let end = parallel.end;
-        Ok(Piece { line, rapid: false, contour, parallel, from: 0.0, to: 1.0, end, heights })
+        let (rapid, begins, from, to) = (false, false, 0.0, 1.0);
+        Ok(Piece { line, rapid, begins, contour, parallel, from, to, end, heights })
     }
 
     /// The next element of the contour, which ends the one held back.
@@ -231,10 +237,11 @@ impl Path {
         if length <= self.left.abs() {
             return Err(self.too_short(piece.line, length));
         }
-        // What comes before its end is no contour: an inner corner may cut off all of it.
+        // An inner corner may cut off all of it.
         let end = piece.parallel.end;
         let start = end - piece.parallel.tangent_at_end() * FAR;
-        Ok(Stage::Following(Piece { parallel: Element::line(start, end), ..piece }))
+        let parallel = Element::line(start, end);
+        Ok(Stage::Following(Piece { begins: true, parallel, ..piece }))
     }
 
     /// The move of `length` mm that switches compensation on is too short.
@@ -257,7 +264,9 @@ impl Path {
             self.inner_on_way_back(&last, next)?
         };
         let mut around = Vec::new();
-        if turn.abs() > self.rules.smooth {
+        if turn.abs() <= self.rules.smooth {
+            self.join(&last, next)?;
+        } else {
             self.sees(next.line)?;
             if inner {
                 self.shorten(&mut last, next)?;
@@ -268,6 +277,27 @@ impl Path {
         self.send(last.way(), sink)?;
         self.send_waiting(last.end, sink)?;
         around.into_iter().try_for_each(|way| self.send(way, sink))
+    }
+
+    /// The next element begins where the last one ends, a little before or behind its own start.
+    fn join(&self, last: &Piece, next: &mut Piece) -> Fallible<()> {
+        let Element { start, turn, .. } = next.parallel;
+        let longer = match turn {
+            None => {
+                let ahead = (last.end - start).dot(next.parallel.tangent_at_start());
+                next.from = ahead / next.parallel.length();
+                0.0
+            }
+            Some(Turn { center, sweep }) => {
+                let (from, to) = (start - center, last.end - center);
+                next.from = turn_angle(from.normalize_or_zero(), to.normalize_or_zero()) / sweep;
+                -next.from * sweep.abs()
+            }
+        };
+        match next.from < 1.0 && longer <= LONGER {
+            true => Ok(()),
+            false => Err(self.no_reach(last, next)),
+        }
     }
 
     /// Whether the tool lies between two elements of which the second goes back where the first came
@@ -287,8 +317,11 @@ impl Path {
     /// At an inner corner both elements end where what runs beside them crosses.
     fn shorten(&self, last: &mut Piece, next: &mut Piece) -> Fallible<()> {
         let crossings = last.parallel.crossings(&next.parallel);
-        match crossings.min_by(|a, b| a.cut.total_cmp(&b.cut)) {
-            Some(crossing) if crossing.on_first > last.from => {
+        let mut crossings: Vec<_> = crossings.filter(|c| c.on_first > last.from).collect();
+        crossings.sort_by(|a, b| a.cut.total_cmp(&b.cut));
+        match crossings.as_slice() {
+            // Two elements that cross twice come together again after the corner.
+            [crossing, others @ ..] if others.is_empty() || last.begins => {
                 (last.to, last.end) = (crossing.on_first, crossing.point);
                 next.from = crossing.on_next;
                 Ok(())
