@@ -11,9 +11,7 @@
 
 mod compensation;
 mod decimal;
-#[allow(dead_code, reason = "the dialects take it up one by one")]
 mod flow;
-#[allow(dead_code, reason = "the dialects take it up one by one")]
 mod folders;
 mod iso;
 mod klartext;
@@ -30,10 +28,16 @@ use std::path::PathBuf;
 pub enum Dialect {
     /// FANUC 30i family, milling, G-code system of the mill.
     Fanuc,
+    /// Haas NGC, milling.
+    Haas,
     /// LinuxCNC's RS-274.
     LinuxCnc,
+    /// Mach3 Mill.
+    Mach3,
     /// GRBL 1.1.
     Grbl,
+    /// Marlin 2, on a mill.
+    Marlin,
     /// SINUMERIK 840D sl and 828D.
     Sinumerik,
     /// HEIDENHAIN Klartext (TNC 640, iTNC 530).
@@ -44,10 +48,13 @@ pub enum Dialect {
 
 impl Dialect {
     /// Every dialect with the name that a control file gives as its `reader`.
-    pub const NAMES: [(&'static str, Dialect); 6] = [
+    pub const NAMES: [(&'static str, Dialect); 9] = [
         ("fanuc", Dialect::Fanuc),
+        ("haas", Dialect::Haas),
         ("linuxcnc", Dialect::LinuxCnc),
+        ("mach3", Dialect::Mach3),
         ("grbl", Dialect::Grbl),
+        ("marlin", Dialect::Marlin),
         ("sinumerik", Dialect::Sinumerik),
         ("klartext", Dialect::Klartext),
         ("points", Dialect::Points),
@@ -63,8 +70,8 @@ impl Dialect {
     pub fn work_offset_at_reset(self) -> Option<u32> {
         match self {
             Dialect::Sinumerik => Some(sinumerik::WORK_OFFSET_AT_RESET),
-            Dialect::LinuxCnc | Dialect::Grbl => Some(54),
-            Dialect::Fanuc | Dialect::Klartext | Dialect::Points => None,
+            Dialect::LinuxCnc | Dialect::Grbl | Dialect::Mach3 | Dialect::Haas => Some(54),
+            Dialect::Fanuc | Dialect::Marlin | Dialect::Klartext | Dialect::Points => None,
         }
     }
 }
@@ -167,10 +174,10 @@ pub fn read(
     sink: &mut Sink,
 ) -> Result<(), Box<Diagnostic>> {
     let run = match settings.dialect {
-        Dialect::Fanuc | Dialect::LinuxCnc | Dialect::Grbl => iso::run,
         Dialect::Sinumerik => sinumerik::run,
         Dialect::Klartext => klartext::run,
         Dialect::Points => points::run,
+        _ => iso::run,
     };
     let mut compensator = Compensator::new(settings, sink);
     run(settings, text, &mut compensator)

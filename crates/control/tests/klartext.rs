@@ -1,90 +1,12 @@
 //! The Klartext control against examples of the HEIDENHAIN manuals and calculations by hand.
 
+mod klartext_common;
+
 use geom::Vec3;
+use klartext_common::*;
 use program::{
-    ArcTo, Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, Op, Orientation, Pose,
-    Record, Spindle,
+    Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, Op, Orientation, Pose, Spindle,
 };
-use toolpost_control::{self as control, Dialect, Settings};
-
-const FIVE_AXES: [bool; 3] = [false, true, true];
-
-/// Runs the blocks of a program, which are numbered here; a line that begins with a blank goes on
-/// with the block before it.
-fn run_on(rotary: [bool; 3], unit: &str, blocks: &str) -> Result<Vec<Record>, Box<Diagnostic>> {
-    let mut text = format!("0 BEGIN PGM T {unit}\n");
-    let mut number = 1;
-    for block in blocks.lines().filter(|block| !block.is_empty()) {
-        if block.starts_with(' ') {
-            text += &format!("{block}\n");
-        } else {
-            text += &format!("{number} {block}\n");
-            number += 1;
-        }
-    }
-    text += &format!("{number} END PGM T {unit}\n");
-    read_on(rotary, text.as_bytes())
-}
-
-fn read_on(rotary: [bool; 3], text: &[u8]) -> Result<Vec<Record>, Box<Diagnostic>> {
-    let mut records = Vec::new();
-    let settings = Settings { auxiliary: vec![60], ..Settings::new(Dialect::Klartext, rotary) };
-    control::read(&settings, "t.h", text, &mut |record| {
-        records.push(record);
-        Ok(())
-    })?;
-    Ok(records)
-}
-
-fn run(blocks: &str) -> Vec<Op> {
-    run_on([false; 3], "MM", blocks).unwrap().into_iter().map(|record| record.op).collect()
-}
-
-fn run_five(blocks: &str) -> Vec<Op> {
-    run_on(FIVE_AXES, "MM", blocks).unwrap().into_iter().map(|record| record.op).collect()
-}
-
-fn refused(blocks: &str) -> Box<Diagnostic> {
-    run_on([false; 3], "MM", blocks).unwrap_err()
-}
-
-fn refused_five(blocks: &str) -> Box<Diagnostic> {
-    run_on(FIVE_AXES, "MM", blocks).unwrap_err()
-}
-
-fn upright(x: f64, y: f64, z: f64) -> Pose {
-    let orientation = Orientation::Rotary { degrees: [0.0; 3], tool_center: false };
-    Pose { point: Vec3::new(x, y, z), orientation }
-}
-
-fn poses(ops: &[Op]) -> Vec<Pose> {
-    ops.iter().filter_map(|op| op.pose().copied()).collect()
-}
-
-fn points(ops: &[Op]) -> Vec<[f64; 3]> {
-    poses(ops).iter().map(|pose| pose.point.to_array()).collect()
-}
-
-fn arcs(ops: &[Op]) -> Vec<ArcTo> {
-    ops.iter()
-        .filter_map(|op| match op {
-            Op::Arc(arc) => Some(**arc),
-            _ => None,
-        })
-        .collect()
-}
-
-fn cycles(ops: &[Op]) -> Vec<Cycle> {
-    ops.iter()
-        .filter_map(|op| match op {
-            Op::Cycle(cycle) => Some(**cycle),
-            _ => None,
-        })
-        .collect()
-}
-
-/// To a known place, with the spindle turning.
-const START: &str = "TOOL CALL 5 Z S3000 F500\nL X+0 Y+0 Z+50 R0 FMAX M3\n";
 
 #[test]
 fn an_ordinary_program_runs_block_by_block() {
@@ -608,7 +530,8 @@ fn what_is_not_understood_is_refused_with_its_place() {
     for (blocks, line, column, rule) in [
         ("L X+1 Q5 FMAX", 2, 9, "unknown-word"),
         ("L X+1 X+2 FMAX", 2, 9, "word-twice"),
-        ("L X+1,5 FMAX", 2, 5, "unknown-word"),
+        ("L X+1.5,5 FMAX", 2, 5, "unknown-word"),
+        ("L X+1,5.5 FMAX", 2, 5, "unknown-word"),
         ("L X+1Y+2 FMAX", 2, 5, "unknown-word"),
         ("L X+1e3 FMAX", 2, 5, "unknown-word"),
         ("L X FMAX", 2, 5, "unknown-word"),
@@ -621,9 +544,17 @@ fn what_is_not_understood_is_refused_with_its_place() {
         ("L X+1 FMAX M3", 2, 3, "spindle"),
         ("L X+1 FMAX M8 M9 M5", 2, 20, "m-function"),
         ("l X+1 FMAX", 2, 3, "unknown-block"),
-        ("RND R5", 2, 3, "unsupported"),
-        ("LBL 1", 2, 3, "unsupported"),
-        ("Q5 = 3", 2, 3, "unsupported"),
+        ("RND R5", 2, 3, "contour"),
+        ("LBL", 2, 6, "syntax"),
+        ("LBL 1\nLBL 1", 3, 3, "label"),
+        ("CALL LBL 7", 2, 12, "label"),
+        ("CALL LBL 0", 2, 12, "label"),
+        ("Q5 = 3 +", 2, 11, "syntax"),
+        ("Q5 = Q6", 2, 8, "parameter"),
+        ("Q108 = 6", 2, 3, "parameter"),
+        ("QX5 = 6", 2, 3, "unknown-word"),
+        ("FN 16: F-PRINT A", 2, 6, "unsupported"),
+        ("FL X+1", 2, 3, "unsupported"),
         ("CYCL DEF 7.1 X+1", 2, 12, "cycle-parameter"),
         ("CYCL DEF 19.0 WORKING PLANE", 2, 12, "unsupported"),
         ("CYCL DEF 200 DRILLING", 2, 3, "cycle-parameter"),

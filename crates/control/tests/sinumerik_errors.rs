@@ -17,15 +17,16 @@ fn an_error_names_its_rule_and_place() {
         ("G0 X1 X=3", "repeated-word", 7),
         ("G43 H1", "unknown-word", 1),
         ("H5", "unknown-word", 1),
-        ("GOTOF END", "unsupported", 1),
-        ("DEF REAL A", "unsupported", 1),
-        ("IF R1", "unsupported", 1),
+        ("GOTOF END", "jump", 1),
+        ("LATE: DEF REAL AA", "definition", 1),
+        ("IF R1", "r-parameter", 4),
         ("(comment)", "syntax", 1),
-        ("G1 X=$AA_IW[X]", "unsupported", 6),
-        ("$P_UIFR", "syntax", 1),
-        ("PART_2", "unknown-word", 1),
+        ("G75 X0\nG1 X=$AA_IW[X]", "unknown-position", 6),
+        ("$P_UIFR", "syntax", 8),
+        ("R1=$AN_MAGAZINE", "unsupported", 4),
+        ("PART_2", "unknown-program", 1),
         ("G1X1GO", "unknown-word", 5),
-        ("TRANSX10", "unknown-word", 1),
+        ("TRANSX10", "unknown-program", 1),
         ("MSG(\"open)", "syntax", 5),
         ("G1 X", "number", 5),
         ("G1 X--5", "number", 6),
@@ -33,7 +34,7 @@ fn an_error_names_its_rule_and_place() {
         ("G1 X1e5", "unknown-word", 6),
         ("G1 X1EX", "number", 8),
         ("G1 X999999999", "number", 5),
-        ("G1 X=1EX9*1EX300", "number", 6),
+        ("G1 X=1EX9*1EX300", "arithmetic", 6),
         ("S1.5 M3.5", "number", 6),
         ("T-1", "number", 1),
         ("T=\"\"", "tool", 1),
@@ -171,7 +172,8 @@ fn a_block_is_not_longer_than_512_characters() {
 fn a_header_stands_first_and_names_a_program() {
     assert!(run("%_N_A_MPF\nM30\n").is_ok());
     assert_eq!(run("%\nM30\n").unwrap_err().rule, "header");
-    assert_eq!(run("G0 X1\n%_N_A_MPF\nM30\n").unwrap_err().rule, "syntax");
+    let unended = run("G0 X1\n%_N_A_MPF\nM30\n").unwrap_err();
+    assert_eq!((unended.rule, unended.line), ("program-end", 1));
 }
 
 #[test]

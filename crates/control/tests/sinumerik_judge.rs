@@ -1,34 +1,79 @@
 //! The programs and positions of CEAD's interpreter for SINUMERIK programs, an outside judge.
 //!
-//! Each program runs until it ends or meets a word that this control does not have; what it has moved
-//! by then must be what the judge says. `TOOLPOST_DATA` names the folder with the data.
+//! Each program must move as the judge says, from its first block to its last. Where the judge takes what
+//! a control does not, the program is adapted, and the adaptation says what it is. `TOOLPOST_DATA` names
+//! the folder with the data.
 
 mod sinumerik_common;
 
 use geom::Vec3;
 use program::{Diagnostic, Record};
 use std::path::PathBuf;
-use toolpost_control::read;
+use toolpost_control::{Setup, read};
 
-/// The programs, and the rule of the error where they use what is not supported (the judge knows
-/// loops, variables, axes of any name and arcs without a centre).
-const PROGRAMS: &[(&str, Option<&str>)] = &[
-    ("actual_position", Some("unsupported")),
-    ("arrays", Some("unsupported")),
-    ("basic_math", None),
-    ("case_insensitive_variables", Some("unsupported")),
-    ("def_string", Some("unsupported")),
-    ("edge_cases", Some("unknown-word")),
-    ("function_calls", Some("unknown-word")),
-    ("if_statement", Some("unsupported")),
-    ("logic_operators", Some("unsupported")),
-    ("multiple_m_codes", Some("group-conflict")),
-    ("r_param", Some("unsupported")),
-    ("simple", Some("arc")),
-    ("tool", None),
-    ("trans2", None),
-    ("trans_reset", None),
-    ("variables", Some("unsupported")),
+/// A program of the judge.
+struct Case {
+    name: &'static str,
+    /// Definitions that a control needs and the judge does not.
+    definitions: &'static str,
+    /// What a control does not take, and what it is replaced by.
+    replaced: &'static [(&'static str, &'static str)],
+    /// A program that is called.
+    called: &'static str,
+    /// The rule by which it is refused whatever is replaced.
+    refused: Option<&'static str>,
+}
+
+const fn case(name: &'static str) -> Case {
+    Case { name, definitions: "", replaced: &[], called: "", refused: None }
+}
+
+/// The programs.
+const CASES: &[Case] = &[
+    case("actual_position"),
+    // The judge takes variables that nothing defines, and names of one letter.
+    Case {
+        definitions: "DEF INT NN, MM, OO\n",
+        replaced: &[
+            ("FOR m=", "FOR mm="),
+            ("FOR o=", "FOR oo="),
+            ("[nn,m,o]", "[nn,mm,oo]"),
+            ("nn*100+m*10+o", "nn*100+mm*10+oo"),
+        ],
+        ..case("arrays")
+    },
+    case("basic_math"),
+    case("case_insensitive_variables"),
+    case("def_string"),
+    // Axes that the machine does not have, variables that nothing defines, a definition behind the first
+    // move, and a call of a program that is not there.
+    Case {
+        definitions: "DEF REAL E_MULTIPLIER, F_MULTI, DEPTH = 2.5\n",
+        replaced: &[
+            (" B=-1.5", ""),
+            (" ELX=3087.022334", ""),
+            ("\nE=0\n", "\n"),
+            (" E=IC(E_MULTIPLIER*0.02988)", ""),
+            (" E=IC(0.25*E_MULTIPLIER)", ""),
+            ("\nDEF REAL DEPTH = 2.5\n", "\n"),
+        ],
+        called: "%_N_MATERIAL_UPDATE_SPF\nM17\n",
+        ..case("edge_cases")
+    },
+    // An alarm that only the control sets.
+    Case { replaced: &[("12345", "66000")], ..case("function_calls") },
+    case("if_statement"),
+    case("logic_operators"),
+    // M2 M3 M4 M5 in one block.
+    Case { refused: Some("group-conflict"), ..case("multiple_m_codes") },
+    // R parameters are there and cannot be defined.
+    Case { replaced: &[("DEF REAL R0=0", "R0=0")], ..case("r_param") },
+    // An arc without a centre.
+    Case { refused: Some("arc"), ..case("simple") },
+    case("tool"),
+    case("trans2"),
+    case("trans_reset"),
+    case("variables"),
 ];
 
 fn data() -> Option<PathBuf> {
@@ -39,11 +84,27 @@ fn data() -> Option<PathBuf> {
 }
 
 /// The points that a program moves to, with the error that ends it.
-fn moved(text: &str) -> (Vec<Vec3>, Option<Box<Diagnostic>>) {
+fn moved(case: &Case, text: &str) -> (Vec<Vec3>, Option<Box<Diagnostic>>) {
     let mut settings = sinumerik_common::settings();
     settings.auxiliary.extend([101, 102, 103]);
-    // The judge knows no feed; this control does not cut without one.
-    let program = format!("F1000 T1\n{text}\n{}", if text.contains("M30") { "" } else { "M30\n" });
+    if case.name == "actual_position" {
+        settings.setup = Setup { start: Some(Vec3::ZERO), ..Setup::default() };
+    }
+    let mut text = text.to_owned();
+    for (from, to) in case.replaced {
+        assert!(text.contains(from), "{}: {from}", case.name);
+        text = text.replace(from, to);
+    }
+    // The judge knows no feed; this control does not cut without one. Definitions come first.
+    let head = |line: &&str| {
+        let line = line.trim_start();
+        line.is_empty() || line.starts_with(';') || line.contains("DEF ")
+    };
+    let head: String = text.lines().take_while(head).flat_map(|line| [line, "\n"]).collect();
+    let rest = text.get(head.len()..).unwrap_or("");
+    let end = if rest.contains("M30") { "" } else { "\nM30" };
+    let Case { definitions, called, .. } = case;
+    let program = format!("{definitions}{head}F1000 T1\n{rest}{end}\n{called}");
     let mut points = Vec::new();
     let ran = read(&settings, "judge.mpf", program.as_bytes(), &mut |record: Record| {
         points.extend(record.op.pose().map(|pose| pose.point));
@@ -80,19 +141,25 @@ fn positions_are_those_of_the_judge_in_order() {
         eprintln!("skipped: no data (TOOLPOST_DATA)");
         return;
     };
-    for (name, rule) in PROGRAMS {
+    for case in CASES {
+        let name = case.name;
         let file =
             |ending| std::fs::read_to_string(folder.join(name).with_extension(ending)).unwrap();
-        let (points, error) = moved(&file("mpf"));
-        assert_eq!(error.as_ref().map(|e| e.rule), *rule, "{name}: {error:?}");
-        let judged = judged(&file("csv"));
+        let (points, error) = moved(case, &file("mpf"));
+        assert_eq!(error.as_ref().map(|e| e.rule), case.refused, "{name}: {error:?}");
+        let mut judged = judged(&file("csv"));
         let mut rest = judged.iter();
         for point in &points {
             assert!(rest.any(|j| same(*j, *point)), "{name}: {point} is not among {judged:?}");
         }
-        if rule.is_none() {
-            let last = judged.last().copied().unwrap_or(Vec3::NAN);
-            assert!(points.last().is_none_or(|p| same(*p, last)), "{name}: ends elsewhere");
+        if case.refused.is_some() {
+            continue;
         }
+        // Nothing is left out either: without the blocks that do not move, both are the same.
+        let mut points = points;
+        judged.retain(|point| !point.is_nan_mask().all());
+        judged.dedup_by(|a, b| same(*a, *b));
+        points.dedup_by(|a, b| same(*a, *b));
+        assert_eq!(points.len(), judged.len(), "{name}: {points:?} {judged:?}");
     }
 }

@@ -138,10 +138,13 @@ impl<'a> Lift<'a> {
                 self.arrive(line, Op::Line(pose));
             }
             Op::Arc(mut arc) => {
-                // The centre and the axis turn with the table, as the end does.
-                let of = |point| self.pose(&Pose { point, ..arc.end }).point;
-                let center = of(arc.center);
-                (arc.normal, arc.center) = (of(arc.center + arc.normal) - center, center);
+                if !self.machine.rotary.is_empty() {
+                    // The centre and the axis turn with the table, as the end does.
+                    let of = |point| self.pose(&Pose { point, ..arc.end }).point;
+                    let center = of(arc.center);
+                    arc.normal = (of(arc.center + arc.normal) - center).normalize();
+                    arc.center = center;
+                }
                 arc.end = self.cut(&arc.end)?;
                 self.arrive(line, Op::Arc(arc));
             }

@@ -38,11 +38,11 @@ impl Walk<'_> {
         if wire.threaded {
             return Err(refuse("wire-threaded", "the wire is threaded already"));
         }
-        if wire.openings > 0 && !told {
+        (wire.threaded, wire.openings) = (true, wire.openings + 1);
+        if wire.openings > 1 && !told {
             let message = "a second opening: the control cannot be told to thread the wire again";
             return Err(refuse("one-opening", message).help("a program for each opening").into());
         }
-        (wire.threaded, wire.openings) = (true, wire.openings + 1);
         self.block(BlockName::ThreadWire)
     }
 

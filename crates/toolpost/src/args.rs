@@ -28,6 +28,9 @@ pub struct CommandLine {
 pub enum Command {
     /// Write the program of a toolpath for a machine, prove it, and save both program and report.
     Post(Post),
+    /// Write the program of a wire-EDM machine for a contour, prove it, and save both program and
+    /// report.
+    Wire(Box<Wire>),
     /// Hold any program, also one edited by hand, against the toolpath it should make.
     Prove(Prove),
     /// The library of machines, and machines of your own.
@@ -120,6 +123,168 @@ pub struct Post {
     pub closeness: Closeness,
 }
 
+/// Arguments of `wire`.
+#[derive(Debug, Args)]
+pub struct Wire {
+    #[command(flatten)]
+    pub source: Source,
+    /// Name in the library, or a file ending in .toml.
+    #[arg(long, short, value_name = "NAME|FILE")]
+    pub machine: String,
+    /// Where to save the program; the report goes beside it.
+    #[arg(long, short, value_name = "FILE")]
+    pub output: PathBuf,
+    /// Draw the contour, its points and the ruled surface, as .svg or .png.
+    #[arg(long, value_name = "FILE")]
+    pub picture: Option<PathBuf>,
+    /// Mark what came from this line of the source.
+    #[arg(long, value_name = "LINE")]
+    pub select: Option<u32>,
+    #[command(flatten)]
+    pub drawing: Drawing,
+    #[command(flatten)]
+    pub ends: Ends,
+    #[command(flatten)]
+    pub cutting: Cutting,
+    #[command(flatten)]
+    pub division: Division,
+    #[command(flatten)]
+    pub closeness: Closeness,
+}
+
+/// What is read of a drawing.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Drawing (.dxf) as the source")]
+pub struct Drawing {
+    /// Read this layer only; may be given several times.
+    #[arg(long, value_name = "NAME", conflicts_with = "from")]
+    pub layer: Vec<String>,
+    /// How far ends that belong together may be apart.
+    #[arg(long, value_name = "MM", value_parser = length, conflicts_with = "from", default_value = "0.01")]
+    pub close: f64,
+}
+
+/// How the wire goes along a contour.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "The wire beside the contour")]
+pub struct Cutting {
+    /// On which side of the contours the wire runs [default: along the contours themselves].
+    #[arg(long)]
+    pub side: Option<Side>,
+    /// Diameter of the wire.
+    #[arg(long, value_name = "MM", value_parser = length, requires = "side")]
+    pub wire: Option<f64>,
+    /// Spark gap of the last pass.
+    #[arg(long, value_name = "MM", value_parser = length, requires = "side")]
+    pub gap: Option<f64>,
+    /// What each pass but the last leaves for those after it, such as 0.1,0.02 for three passes.
+    #[arg(long, value_name = "MM,...", value_parser = length, value_delimiter = ',', requires = "side")]
+    pub leave: Vec<f64>,
+    /// Which way round the passes after the first go.
+    #[arg(long, value_name = "HOW", default_value = "alternate", requires = "side")]
+    pub trims: Trims,
+    /// Where the wire is threaded; once for each contour, in their order.
+    #[arg(long, value_name = "X,Y", value_parser = place, requires = "side", allow_hyphen_values = true)]
+    pub thread: Vec<[f64; 2]>,
+    /// How far beside a contour the wire is threaded where --thread does not say where.
+    #[arg(long, value_name = "MM", value_parser = length, requires = "side")]
+    pub lead: Option<f64>,
+    /// Radius of the quarter circle by which the wire comes to the contour [default: straight].
+    #[arg(long, value_name = "MM", value_parser = length, requires = "side")]
+    pub lead_arc: Option<f64>,
+    /// Where the cut of a closed contour begins: the place nearest to this point.
+    #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true)]
+    pub begin: Option<[f64; 2]>,
+    /// How much of each closed contour holds the part until all else is cut.
+    #[arg(long, value_name = "MM", value_parser = length, requires = "side")]
+    pub tab: Option<f64>,
+    /// How far the wire leans: the part larger at the top, or smaller where negative; over --height.
+    #[arg(long, value_name = "DEGREES", requires = "side", allow_hyphen_values = true)]
+    pub taper: Option<f64>,
+    /// What becomes of rounded corners on the way up.
+    #[arg(long, value_name = "HOW", default_value = "conical", requires = "taper")]
+    pub rounding: Rounding,
+    /// Let inner corners that the wire is too thick for become as round as the wire.
+    #[arg(long, requires = "side")]
+    pub round_corners: bool,
+    /// Feed, for the cutting time and the program: one for all passes, or one for each.
+    #[arg(long, value_name = "MM/S,...", value_parser = length, value_delimiter = ',')]
+    pub feed: Vec<f64>,
+}
+
+/// On which side of a contour the wire runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Side {
+    /// Within a closed contour, as for the opening of a die.
+    Inside,
+    /// Round a closed contour, as for a punch.
+    Outside,
+    /// Left of the way.
+    Left,
+    /// Right of the way.
+    Right,
+}
+
+/// Which way round the passes after the first go.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Trims {
+    /// Each the other way than the one before; the wire stays threaded.
+    Alternate,
+    /// Each the way of the first.
+    Repeat,
+}
+
+/// What becomes of rounded corners of a contour along which the wire leans.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Rounding {
+    /// Their radius grows or shrinks with the lean.
+    Conical,
+    /// They keep their radius.
+    Constant,
+}
+
+/// What the two ends of the wire follow.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "The two ends of the wire")]
+pub struct Ends {
+    /// The upper contour, in a file like the source; the source is then the lower one.
+    #[arg(long, value_name = "FILE")]
+    pub upper: Option<PathBuf>,
+    /// Which point above belongs to which below.
+    #[arg(long, value_name = "HOW", default_value = "block", requires = "upper")]
+    pub sync: Sync,
+    /// Height of the upper contour over the lower [default: that of the machine file].
+    #[arg(long, value_name = "MM", value_parser = length)]
+    pub height: Option<f64>,
+}
+
+/// Which point above belongs to which below.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Sync {
+    /// Both programs have the same moves, block for block.
+    Block,
+    /// Both ends have covered the same part of their length.
+    Length,
+}
+
+/// Into how many points arcs are divided, for a control that cuts none.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Points, for a control without arcs")]
+pub struct Division {
+    /// One point every so many mm of arc.
+    #[arg(long, value_name = "MM", group = "how", value_parser = number, allow_hyphen_values = true)]
+    pub step: Option<f64>,
+    /// As many points as keep this chord error [default: lowering_tolerance of the machine file].
+    #[arg(long, value_name = "MM", group = "how", value_parser = number, allow_hyphen_values = true)]
+    pub chord_error: Option<f64>,
+    /// As many points as the memory of the control holds.
+    #[arg(long, group = "how")]
+    pub fit: bool,
+    /// How many points the control holds [default: that of the machine file].
+    #[arg(long, value_name = "POINTS")]
+    pub memory: Option<usize>,
+}
+
 /// Arguments of `prove`.
 #[derive(Debug, Args)]
 pub struct Prove {
@@ -180,14 +345,24 @@ fn length(text: &str) -> Result<f64, String> {
     }
 }
 
+/// A number, whatever it is good for.
+fn number(text: &str) -> Result<f64, String> {
+    text.parse().map_err(|_| String::from("a number is needed, such as 0.1"))
+}
+
 /// Three lengths in mm.
 fn point(text: &str) -> Result<[f64; 3], String> {
-    let parts: Vec<Option<f64>> = text
-        .split(',')
-        .map(|part| part.trim().parse().ok().filter(|v: &f64| v.is_finite()))
-        .collect();
-    match parts[..] {
-        [Some(x), Some(y), Some(z)] => Ok([x, y, z]),
-        _ => Err(String::from("three lengths in mm are needed, such as 0,0,50")),
-    }
+    lengths(text).ok_or_else(|| String::from("three lengths in mm are needed, such as 0,0,50"))
+}
+
+/// Two lengths in mm.
+fn place(text: &str) -> Result<[f64; 2], String> {
+    lengths(text).ok_or_else(|| String::from("two lengths in mm are needed, such as 10,-5"))
+}
+
+/// So many finite numbers, parted by commas.
+fn lengths<const N: usize>(text: &str) -> Option<[f64; N]> {
+    let part = |part: &str| part.trim().parse().ok().filter(|value: &f64| value.is_finite());
+    let parts: Option<Vec<f64>> = text.split(',').map(part).collect();
+    parts?.try_into().ok()
 }

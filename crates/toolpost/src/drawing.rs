@@ -8,8 +8,10 @@ mod paper;
 mod tool_path;
 mod trace;
 mod view;
+mod wire_path;
 
 pub use tool_path::tool_path;
+pub use wire_path::{WireLeg, WirePicture, wire_path};
 
 use crate::answer::Stop;
 use program::Diagnostic;

@@ -17,6 +17,7 @@ mod show;
 mod summary;
 mod toolpath;
 mod walk;
+mod wire;
 
 use answer::Answer;
 use args::{Command, CommandLine};
@@ -29,6 +30,7 @@ fn main() -> ExitCode {
     let silent = quiet || json;
     let answer = match command {
         Command::Post(args) => post::run(&args, silent),
+        Command::Wire(args) => wire::run(&args, silent),
         Command::Prove(args) => prove::run(&args, silent),
         Command::Machines(command) => machines::run(&command),
         Command::Show(args) => show::run(&args, silent),

@@ -14,19 +14,24 @@ use std::path::Path;
 
 /// Rules whose findings say that the machine cannot do what the toolpath asks for. All others of the
 /// writer are mistakes of the input: of the toolpath, or of the machine's file.
-const MACHINE_CANNOT: [&str; 12] = [
+const MACHINE_CANNOT: [&str; 17] = [
     "arc-orientation",
     "axis-limit",
     "cycle-missing",
     "cycle-tap",
     "feed-range",
     "line-length",
+    "memory",
     "number-range",
+    "one-opening",
     "orientation-in-cut",
     "spindle-range",
+    "taper-limit",
     "tool-range",
     "unreachable-orientation",
     "unsupported",
+    "uv-limit",
+    "wire-leans",
 ];
 
 /// Writes the program, proves it, and only then saves it with its report.
@@ -37,6 +42,11 @@ pub fn run(args: &Post, silent: bool) -> Result<Answer, Stop> {
     let target = Target::new(&args.output, &inputs)?;
     let report_target = Target::new(&report_path, &inputs)?;
     let machine = toolpath::machine(&args.machine)?;
+    if machine.wire.is_some() {
+        let message = format!("`{}` cuts by wire: it has no spindle and no tools", machine.name);
+        let help = "`toolpost wire` writes for it";
+        return Err(Diagnostic::error("machine-kind", message).help(help).into());
+    }
 
     let progress = Progress::new(4, silent);
     progress.step("reading");
@@ -89,7 +99,7 @@ pub fn run(args: &Post, silent: bool) -> Result<Answer, Stop> {
 }
 
 /// Whose fault it is that nothing could be written.
-fn verdict(findings: &[Diagnostic]) -> Verdict {
+pub fn verdict(findings: &[Diagnostic]) -> Verdict {
     let mut errors = findings.iter().filter(|finding| finding.is_error());
     match errors.all(|error| MACHINE_CANNOT.contains(&error.rule)) {
         true => Verdict::Failed,

@@ -51,6 +51,7 @@ pub fn rows(proof: &Report, machine: &Machine) -> Vec<(&'static str, String)> {
     let (program, worst, allowed) = (&proof.program, &proof.deviations, &proof.tolerances);
     let mut rows = vec![("program", format!("{} blocks", program.blocks))];
     let linear = ["X", "Y", "Z"].into_iter().zip(program.linear_extents_mm);
+    let linear = linear.take(if machine.wire.is_some() { 2 } else { 3 });
     let rotary = ["A", "B", "C"].into_iter().zip(program.rotary_extents_degrees);
     let rotary =
         rotary.filter(|(letter, _)| machine.rotary.iter().any(|r| letter.starts_with(r.letter)));

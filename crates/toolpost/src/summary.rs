@@ -81,7 +81,7 @@ impl Shape {
 }
 
 /// A length for a person: mm below ten metres, then metres.
-fn length(mm: f64) -> String {
+pub fn length(mm: f64) -> String {
     if mm < 10_000.0 { format!("{mm:.1} mm") } else { format!("{:.2} m", mm / 1000.0) }
 }
 
@@ -92,7 +92,7 @@ pub fn time(times: &Times) -> String {
 }
 
 /// A time for a person.
-fn duration(seconds: f64) -> String {
+pub fn duration(seconds: f64) -> String {
     let seconds = seconds.round() as u64;
     let (hours, minutes, seconds) = (seconds / 3600, seconds / 60 % 60, seconds % 60);
     match (hours, minutes) {

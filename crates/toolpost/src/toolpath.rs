@@ -34,11 +34,38 @@ const NC_ENDINGS: [&str; 13] =
 /// # Errors
 /// What is wrong with the file; with `strict` also what would be a warning.
 pub fn read(path: &Path, strict: bool, origin: &Origin) -> Result<Toolpath, Stop> {
+    read_by(path, strict, origin, |machine| machine)
+}
+
+/// The same for a wire, whose upper contour is `height` mm over the lower where that is given.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_wire(
+    path: &Path,
+    strict: bool,
+    origin: &Origin,
+    height: Option<f64>,
+) -> Result<Toolpath, Stop> {
+    read_by(path, strict, origin, |mut machine| {
+        if let Some(wire) = &mut machine.wire {
+            wire.height = height.or(wire.height);
+        }
+        machine
+    })
+}
+
+fn read_by(
+    path: &Path,
+    strict: bool,
+    origin: &Origin,
+    set_up: impl Fn(Machine) -> Machine,
+) -> Result<Toolpath, Stop> {
     let bytes = files::read(path)?;
     let file = files::name(path);
     let (dialect, program, warnings) = match &origin.from {
         Some(from) => {
-            let machine = machine::load_origin(from)?;
+            let machine = set_up(machine::load_origin(from)?);
             let reading = nc::read(&machine, origin.setup()?, &file, &bytes)?;
             (machine.title, reading.program, reading.warnings)
         }
@@ -51,12 +78,18 @@ pub fn read(path: &Path, strict: bool, origin: &Origin) -> Result<Toolpath, Stop
             (reading.dialect.to_string(), reading.program, reading.warnings)
         }
     };
-    if strict && !warnings.is_empty() {
-        let strictly = |found: Diagnostic| Diagnostic { severity: Severity::Error, ..found };
-        let findings = warnings.into_iter().map(strictly).collect();
-        return Err(Stop { verdict: Verdict::Invalid, findings });
-    }
+    let warnings = held(warnings, strict)?;
     Ok(Toolpath { path: path.to_owned(), file, dialect, program, warnings })
+}
+
+/// The warnings; with `strict` they stop the command.
+fn held(warnings: Vec<Diagnostic>, strict: bool) -> Result<Vec<Diagnostic>, Stop> {
+    if !strict || warnings.is_empty() {
+        return Ok(warnings);
+    }
+    let strictly = |found: Diagnostic| Diagnostic { severity: Severity::Error, ..found };
+    let findings = warnings.into_iter().map(strictly).collect();
+    Err(Stop { verdict: Verdict::Invalid, findings })
 }
 
 /// Whether a file has the name of an NC program.
@@ -93,6 +126,27 @@ impl Origin {
 }
 
 impl Toolpath {
+    /// A drawing, which has contours and no moves.
+    pub fn of_drawing(path: &Path, dialect: &str) -> Toolpath {
+        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+        Toolpath {
+            path: path.to_owned(),
+            file: files::name(path),
+            dialect: dialect.to_owned(),
+            program: Program::new(name),
+            warnings: Vec::new(),
+        }
+    }
+
+    /// With what was not passed on; with `strict` that stops the command.
+    ///
+    /// # Errors
+    /// The warnings, where they do.
+    pub fn warned(mut self, warnings: Vec<Diagnostic>, strict: bool) -> Result<Toolpath, Stop> {
+        self.warnings = held(warnings, strict)?;
+        Ok(self)
+    }
+
     /// Puts the file's name and the text of the line to findings that have nothing but a line of the
     /// source. The file is read again: while all goes well, nobody needs its text.
     pub fn quote(&self, findings: &mut [Diagnostic]) {
@@ -101,6 +155,13 @@ impl Toolpath {
             let text = lines.get_or_insert_with(|| files::read(&self.path).unwrap_or_default());
             *finding = finding.clone().on(finding.line, line(text, finding.line)).file(&self.file);
         }
+    }
+
+    /// What stops the command because of the toolpath, with the text of its line.
+    pub fn refused(&self, found: Diagnostic) -> Stop {
+        let mut findings = vec![found];
+        self.quote(&mut findings);
+        Stop { verdict: Verdict::Invalid, findings }
     }
 
     /// The source and its measures, as JSON.

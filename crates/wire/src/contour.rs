@@ -1,9 +1,9 @@
 //! A chain of lines and arcs, open or closed.
 
-use crate::element::{Element, SAME, Turn, finite};
+use crate::element::{Element, SAME, Turn, angle, finite};
 use geom::Vec2;
 use program::Diagnostic;
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
 /// A chain of elements, each of which starts, bit for bit, where the one before ends. It is closed
 /// where the last ends at the start of the first.
@@ -113,6 +113,23 @@ impl Contour {
         self.elements.iter().map(about).sum()
     }
 
+    /// Whether a closed contour goes round `point`.
+    pub fn encloses(&self, point: Vec2) -> bool {
+        let turns = |element: &Element| {
+            let chord = angle(element.start - point, element.end - point) / TAU;
+            // Between an arc and its chord, which lies to the left of one that turns left.
+            let bulge = element.turn.map_or(0.0, |turn| {
+                let side = turn.sweep.signum();
+                let within = point.distance(turn.center) < element.start.distance(turn.center);
+                let beyond = (element.end - element.start).perp_dot(point - element.start);
+                let whole = element.start == element.end;
+                if within && (whole || beyond * side < 0.0) { side } else { 0.0 }
+            });
+            chord + bulge
+        };
+        self.is_closed() && self.elements.iter().map(turns).sum::<f64>().abs() > 0.5
+    }
+
     /// The corners of the smallest box around it whose sides are parallel to the axes.
     pub fn extents(&self) -> (Vec2, Vec2) {
         let all = self.elements.iter().map(Element::extents);
@@ -150,29 +167,29 @@ impl Contour {
         Place { element: self.elements.len().saturating_sub(1), t: 1.0, point: self.end() }
     }
 
-    /// The elements between two places, of which `to` comes later.
-    pub(crate) fn between(&self, from: &Place, to: &Place) -> Vec<Element> {
-        let elements = self.elements.iter().enumerate().take(to.element + 1).skip(from.element);
-        let parts = elements.map(|(i, element)| {
-            let start = if i == from.element { from.t } else { 0.0 };
-            let end = if i == to.element { to.t } else { 1.0 };
-            (start < end).then(|| element.part(start, end))
-        });
-        parts.flatten().collect()
-    }
-
     /// A closed contour with its start moved to `place`; an open one as it is.
     pub fn started_at(&self, place: &Place) -> Contour {
         if !self.is_closed() || place.point == self.start() {
             return self.clone();
         }
-        let mut elements = self.between(place, &self.place_at(f64::INFINITY));
-        elements.extend(self.between(&self.place_at(0.0), place));
-        Contour { elements }
+        let parts = place.up_to(&self.place_at(f64::INFINITY));
+        let parts = parts.chain(self.place_at(0.0).up_to(place));
+        let part = |(i, from, to): (usize, f64, f64)| Some(self.elements.get(i)?.part(from, to));
+        Contour { elements: parts.filter_map(part).collect() }
     }
 }
 
 impl Place {
+    /// The parts of elements from here to a later place: index, start and end.
+    pub(crate) fn up_to(&self, to: &Place) -> impl Iterator<Item = (usize, f64, f64)> + use<> {
+        let (from, to) = (*self, *to);
+        let parts = (from.element..=to.element).map(move |i| {
+            let start = if i == from.element { from.t } else { 0.0 };
+            (i, start, if i == to.element { to.t } else { 1.0 })
+        });
+        parts.filter(|(_, start, end)| start < end)
+    }
+
     /// At `t` of element `index`; what is nearly its end is its end.
     fn on(element: &Element, index: usize, t: f64) -> Place {
         let length = element.length();

@@ -15,13 +15,20 @@
 //! [`program::Diagnostic`] with the line of the source; the caller, who knows it, adds the file.
 
 mod accuracy;
+mod chain;
 mod contour;
 mod crossing;
+pub mod dxf;
 mod element;
+mod fit;
+mod lead;
 mod near;
 pub mod offset;
+mod order;
 mod path;
+pub mod plan;
 pub mod points;
+mod round;
 mod sync;
 pub mod taper;
 mod trace;
@@ -29,5 +36,6 @@ mod trace;
 pub use accuracy::{Accuracy, ArcChords, Chords};
 pub use contour::{Contour, Place};
 pub use element::{ARC_TOLERANCE, Direction, Element, Turn};
+pub use lead::{Lead, LeadShape};
 pub use path::{Limits, Path};
 pub use trace::{contours, cuts};

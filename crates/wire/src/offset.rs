@@ -16,7 +16,7 @@ use program::Diagnostic;
 use std::f64::consts::{PI, TAU};
 
 /// By how much the wire's centre may be off, mm.
-const EXACT: f64 = 2e-4;
+pub(crate) const EXACT: f64 = 2e-4;
 
 /// How much material may stay in an inner corner before it is one that the wire does not reach, mm.
 const LEFT: f64 = 1e-3;

@@ -1,6 +1,6 @@
 //! Where the wire goes: its lower end, and its upper end where it leans.
 
-use crate::contour::Contour;
+use crate::contour::{Contour, Place};
 use crate::element::{Element, SAME};
 use program::Diagnostic;
 
@@ -28,7 +28,7 @@ impl Path {
         Path { lower: contour, upper: None }
     }
 
-    /// Elements in pairs, as many below as above.
+    /// An upper contour with as many elements as the lower one.
     pub(crate) fn leaning(lower: Contour, upper: Contour) -> Path {
         Path { lower, upper: Some(upper) }
     }
@@ -47,6 +47,16 @@ impl Path {
     pub fn elements(&self) -> impl Iterator<Item = (&Element, &Element)> {
         let upper = self.upper.as_ref().unwrap_or(&self.lower);
         self.lower.elements().iter().zip(upper.elements())
+    }
+
+    /// The elements in pairs from `from` to `to`, places of the lower contour.
+    pub(crate) fn between(&self, from: &Place, to: &Place) -> Vec<(Element, Element)> {
+        let upper = self.upper.as_ref().unwrap_or(&self.lower);
+        let part = |(i, start, end): (usize, f64, f64)| {
+            let (below, above) = (self.lower.elements().get(i)?, upper.elements().get(i)?);
+            Some((below.part(start, end), above.part(start, end)))
+        };
+        from.up_to(to).filter_map(part).collect()
     }
 
     /// How far the faster end travels, mm: what the cutting time goes by.

@@ -27,11 +27,11 @@ const SAME: f64 = 1e-6;
 /// What a control says of compensation beside its side and register.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Terms {
-    /// Unit vector across the plane of compensation: first axis × second axis of the plane as they lie
-    /// in the frame of the poses, so that it points the other way where the plane is mirrored.
+    /// Unit vector across the plane of compensation, from where the side is seen, in the frame of the
+    /// poses.
     pub normal: Vec3,
-    /// Unit vector from the tool's tip to the spindle, in the frame of the poses.
-    pub tool_axis: Vec3,
+    /// Whether it is the plane across the tool (`G17`).
+    pub across_tool: bool,
     /// Radius that the program itself gives, mm.
     pub radius: Option<f64>,
     /// How outer corners are gone around where the program chooses.
@@ -106,7 +106,12 @@ impl<'a> Compensator<'a> {
         };
         let radius = terms.radius.or_else(|| self.radius(register));
         let (Some(radius), true) = (radius, left != 0.0) else {
-            let side = self.unresolved(line, side, &terms)?;
+            if side != Compensation::Off && !terms.across_tool {
+                let message = "compensation in a plane that is not that of the tool";
+                return Err(error("compensation-plane", line, message)
+                    .help("with the tool in the tool table it is resolved into the path")
+                    .into());
+            }
             return (self.sink)(Record { line, op: Op::Compensation(side) });
         };
         let Some(rules) = Rules::of(self.dialect) else {
@@ -214,23 +219,6 @@ impl<'a> Compensator<'a> {
             (_, Some(number)) => self.of_number(number),
         };
         tool.map(|tool| tool.radius)
-    }
-
-    /// The side as a state of a program in the work frame, where a mirrored plane has changed it.
-    fn unresolved(&self, line: u32, side: Compensation, terms: &Terms) -> Fallible<Compensation> {
-        let along = terms.normal.dot(terms.tool_axis);
-        match side {
-            Compensation::Off => Ok(side),
-            _ if along > 0.999_999 => Ok(side),
-            Compensation::Left(register) if along < -0.999_999 => Ok(Compensation::Right(register)),
-            Compensation::Right(register) if along < -0.999_999 => Ok(Compensation::Left(register)),
-            _ => {
-                let message = "compensation in a plane that is not that of the tool";
-                Err(error("compensation-plane", line, message)
-                    .help("with the tool in the tool table it is resolved into the path")
-                    .into())
-            }
-        }
     }
 }
 

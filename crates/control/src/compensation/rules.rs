@@ -70,7 +70,9 @@ impl Rules {
             // NORM, G450; MD20250 CUTCOM_MAXNUM_DUMMY_BLOCKS = 3.
             Dialect::Sinumerik => Some(Rules { blind: 3, ..rules }),
             Dialect::Klartext => Some(rules),
-            Dialect::Grbl | Dialect::Points => None,
+            // Mach3 and Haas have it, and how they go is not documented well enough.
+            Dialect::Haas | Dialect::Mach3 => None,
+            Dialect::Grbl | Dialect::Marlin | Dialect::Points => None,
         }
     }
 }

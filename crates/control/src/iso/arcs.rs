@@ -17,7 +17,7 @@ const CENTER: [u8; 3] = *b"IJK";
 fn radius_slack(flavor: Flavor) -> f64 {
     match flavor {
         Flavor::LinuxCnc => 0.00127,
-        Flavor::Grbl | Flavor::Fanuc => 1e-9,
+        _ => 1e-9,
     }
 }
 
@@ -29,10 +29,8 @@ fn radius_slack(flavor: Flavor) -> f64 {
 fn is_circle(flavor: Flavor, start: f64, end: f64) -> bool {
     let apart = (start - end).abs();
     match flavor {
-        Flavor::Fanuc => apart <= 0.01,
-        Flavor::LinuxCnc | Flavor::Grbl => {
-            apart <= 0.005 || (apart <= 0.5 && apart <= 0.001 * start)
-        }
+        Flavor::Fanuc | Flavor::Haas => apart <= 0.01,
+        _ => apart <= 0.005 || (apart <= 0.5 && apart <= 0.001 * start),
     }
 }
 
@@ -63,8 +61,8 @@ impl Step<'_, '_, '_> {
         axis[third] = if clockwise { -1.0 } else { 1.0 };
         self.ops.push(Op::Arc(Box::new(ArcTo {
             end: self.state.pose(target.point, target.rotary),
-            center: self.state.point(center),
-            normal: self.state.direction(axis),
+            center: self.state.place.point(center),
+            normal: self.state.place.normal(axis),
             turns,
         })));
         self.arrive(target);
@@ -91,6 +89,11 @@ impl Step<'_, '_, '_> {
             return Err(self.block.whole("nc-compensation", message));
         }
         let [first, second, _] = self.state.plane.axes();
+        let transform = &self.state.frames.transform;
+        if transform.factor(first).abs() != transform.factor(second).abs() {
+            let message = "an arc while the axes of the plane have two scales is no arc";
+            return Err(self.block.whole("nc-frame", message));
+        }
         if self.flavor == Flavor::Grbl && target.named & (1 << first | 1 << second) == 0 {
             let message = "an arc needs an axis word of its plane";
             return Err(self.block.whole("nc-arc", message));

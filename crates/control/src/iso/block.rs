@@ -1,8 +1,10 @@
 //! A block (a line of NC) taken apart into words.
 
-use super::words::{Dictionary, Flavor, G, Group, M, why_refused};
+use super::expression::{self, Reader, Target, Value};
+use super::parameters::{Language, Values};
+use super::words::{Dictionary, Flavor, G, Group, LETTERS, M, bit, index};
 use crate::decimal;
-use program::{Diagnostic, Op};
+use program::Diagnostic;
 
 /// A finding about a block.
 pub(super) type Fault = Box<Diagnostic>;
@@ -14,8 +16,17 @@ pub(super) struct Word {
     pub value: f64,
     /// Whether a decimal point was written.
     pub point: bool,
+    /// Whether the program has calculated it.
+    pub computed: bool,
     start: u32,
     end: u32,
+}
+
+impl Word {
+    /// Whether it counts units, and not perhaps increments.
+    pub(super) fn is_in_units(&self) -> bool {
+        self.point || self.computed
+    }
 }
 
 /// What a block says. A word is *taken* by what uses it; a word that nothing took is a mistake.
@@ -34,18 +45,17 @@ pub(super) struct Block<'a> {
     pub m_count: u32,
     /// A word has been read.
     started: bool,
-    words: [Word; 26],
+    words: [Word; LETTERS.len()],
     given: u32,
     pending: u32,
     g: [Option<G>; Group::COUNT],
     m: [Option<M>; Group::COUNT],
     places: [Word; Group::COUNT],
     comments: Vec<(usize, usize)>,
-}
-
-/// The bit of a letter in a set of letters.
-const fn bit(letter: u8) -> u32 {
-    1 << (letter - b'A')
+    /// What the block sets (RS274/NGC), which takes effect when the whole block has been read.
+    pub assignments: Vec<(Target<'a>, Value)>,
+    /// The words behind `G65` or `G66`, in their order.
+    pub arguments: Vec<(u8, Word)>,
 }
 
 impl<'a> Block<'a> {
@@ -60,30 +70,45 @@ impl<'a> Block<'a> {
             is_empty: true,
             m_count: 0,
             started: false,
-            words: [Word::default(); 26],
+            words: [Word::default(); LETTERS.len()],
             given: 0,
             pending: 0,
             g: [None; Group::COUNT],
             m: [None; Group::COUNT],
             places: [Word::default(); Group::COUNT],
             comments: Vec::new(),
+            assignments: Vec::new(),
+            arguments: Vec::new(),
         }
     }
 
-    /// Takes the words of `text` in place of those of the last block.
-    ///
-    /// # Errors
-    /// What is no word of the flavour, a number that is none, a word given twice, two words of a
-    /// modal group, a comment without an end, a block that is too long.
-    pub(super) fn read(&mut self, line: u32, text: &'a [u8]) -> Result<(), Fault> {
-        let dictionary = self.dictionary;
+    /// Forgets the words of the last block; `text` is the new one.
+    pub(super) fn clear(&mut self, line: u32, text: &'a [u8]) {
         (self.text, self.line) = (text, line);
         (self.is_empty, self.started) = (true, false);
         (self.m_count, self.given, self.pending) = (0, 0, 0);
         self.g = [None; Group::COUNT];
         self.m = [None; Group::COUNT];
         self.comments.clear();
-        let (mut at, mut length) = (0, 0);
+        self.assignments.clear();
+        self.arguments.clear();
+    }
+
+    /// Takes the words of `text` from byte `at` on in place of those of the last block.
+    ///
+    /// # Errors
+    /// What is no word of the flavour, a number that is none, a word given twice, two words of a
+    /// modal group, a comment without an end, a block that is too long, a calculation without a result.
+    pub(super) fn read(
+        &mut self,
+        line: u32,
+        text: &'a [u8],
+        mut at: usize,
+        values: &Values,
+    ) -> Result<(), Fault> {
+        let dictionary = self.dictionary;
+        self.clear(line, text);
+        let mut length = 0;
         while let Some(&byte) = text.get(at) {
             let from = at;
             match byte {
@@ -91,20 +116,32 @@ impl<'a> Block<'a> {
                     at += 1;
                     continue;
                 }
-                b'A'..=b'Z' => at = self.word(byte, at)?,
-                b'a'..=b'z' if dictionary.flavor != Flavor::Fanuc => {
-                    at = self.word(byte.to_ascii_uppercase(), at)?;
+                b'A'..=b'Z' => at = self.word(byte, at, values)?,
+                b'@' | b'^' | b'$' if dictionary.letters & bit(byte) != 0 => {
+                    at = self.word(byte, at, values)?
                 }
-                b'(' => {
+                b'a'..=b'z' if dictionary.flavor.has_small_letters() => {
+                    at = self.word(byte.to_ascii_uppercase(), at, values)?;
+                }
+                b'#' if matches!(values.language(), Language::Ngc | Language::Rs274) => {
+                    at = self.assignment(at, values)?
+                }
+                // In ISO code the colon is the O of EIA code.
+                b':' if values.language() == Language::MacroB => {
+                    at = self.word(b'O', at, values)?
+                }
+                b'(' if dictionary.flavor != Flavor::Marlin => {
                     at = self.comment(at)?;
                     continue;
                 }
-                b';' if dictionary.flavor != Flavor::Fanuc => {
+                b';' if !dictionary.flavor.is_fanuc() => {
                     self.comments.push((at + 1, text.len()));
                     break;
                 }
                 // The proof holds for the block-delete switch off: the block is run.
-                b'/' if self.is_empty => at = after_block_delete(dictionary.flavor, text, at),
+                b'/' if self.is_empty && dictionary.flavor != Flavor::Marlin => {
+                    at = after_block_delete(dictionary.flavor, text, at)
+                }
                 _ => return Err(self.stray(dictionary.flavor, byte, at)),
             }
             self.is_empty = false;
@@ -119,22 +156,43 @@ impl<'a> Block<'a> {
     }
 
     /// Reads the word at `at` and gives the place after it.
-    fn word(&mut self, letter: u8, at: usize) -> Result<usize, Fault> {
+    fn word(&mut self, letter: u8, at: usize, values: &Values) -> Result<usize, Fault> {
         let dictionary = self.dictionary;
         let mut from = at + 1;
         while matches!(self.text.get(from), Some(b' ' | b'\t')) {
             from += 1;
         }
-        let Some(number) = self.text.get(from..).and_then(decimal::parse) else {
-            return Err(self.no_number(letter, at, from));
+        let mut word = Word { start: u32::try_from(at).unwrap_or(u32::MAX), ..Word::default() };
+        let end = match self.text.get(from..).and_then(decimal::parse) {
+            Some(number) => {
+                (word.value, word.point) = (number.value, number.point);
+                from + number.len
+            }
+            // Marlin's G28 X: an axis that is named.
+            None if self.g(Group::OneShot) == Some(G::Home)
+                && dictionary.flavor == Flavor::Marlin =>
+            {
+                at + 1
+            }
+            None => {
+                let (value, end) = self.computed(letter, at, from, values)?;
+                self.started = true;
+                // A word whose variable is null is not there (B-63684EN, 16.1).
+                let Some(value) = value else { return Ok(end) };
+                (word.value, word.computed) = (value, true);
+                end
+            }
         };
-        let end = from + number.len;
-        let word = Word {
-            value: number.value,
-            point: number.point,
-            start: u32::try_from(at).unwrap_or(u32::MAX),
-            end: u32::try_from(end).unwrap_or(u32::MAX),
-        };
+        word.end = u32::try_from(end).unwrap_or(u32::MAX);
+        let calls = matches!(self.g(Group::Macro), Some(G::MacroCall { .. }));
+        match letter {
+            b'N' | b'P' | b'L' | b'G' => {}
+            _ if calls => {
+                self.arguments.push((letter, word));
+                return Ok(end);
+            }
+            _ => {}
+        }
         match letter {
             b'G' => match dictionary.g(word.value) {
                 Some((group, meaning)) => {
@@ -175,11 +233,52 @@ impl<'a> Block<'a> {
                 if letter != b'N' {
                     self.pending |= letter_bit;
                 }
-                self.words[usize::from(letter - b'A')] = word;
+                self.words[index(letter)] = word;
             }
         }
         self.started = true;
         Ok(end)
+    }
+
+    /// The number of a word that the program calculates at `from`, and the place after it.
+    fn computed(
+        &self,
+        letter: u8,
+        at: usize,
+        from: usize,
+        values: &Values,
+    ) -> Result<(Value, usize), Fault> {
+        let calculates = match (values.language(), self.text.get(from)) {
+            (Language::Plain, _) => false,
+            (_, Some(b'#' | b'[' | b'+' | b'-')) => true,
+            (language, Some(byte)) => language != Language::MacroB && byte.is_ascii_alphabetic(),
+            _ => false,
+        };
+        if !calculates {
+            return Err(self.no_number(letter, at, from));
+        }
+        let mut reader = Reader::new(values, self.line, self.text, from);
+        let value = reader.value()?.map(|value| match letter {
+            b'G' => {
+                expression::whole(value * 10.0).map_or(value, |tenths| f64::from(tenths) / 10.0)
+            }
+            b'M' | b'N' | b'O' => expression::whole(value).map_or(value, f64::from),
+            _ => value,
+        });
+        Ok((value, reader.at))
+    }
+
+    /// Reads the setting of a parameter at `at` and gives the place after it.
+    fn assignment(&mut self, at: usize, values: &Values) -> Result<usize, Fault> {
+        let mut reader = Reader::new(values, self.line, self.text, at + 1);
+        let target = reader.target()?;
+        if !reader.take(b'=') {
+            return Err(reader.wrong("a parameter stands for itself here: = is missing"));
+        }
+        let value = reader.value()?;
+        self.assignments.push((target, value));
+        self.started = true;
+        Ok(reader.at)
     }
 
     /// Reads the comment at `at` and gives the place after it.
@@ -198,17 +297,38 @@ impl<'a> Block<'a> {
         }
     }
 
-    /// The comments of the block as records.
-    pub(super) fn comments(&self) -> impl Iterator<Item = Op> + '_ {
-        self.comments.iter().map(|&(from, to)| {
-            let text = String::from_utf8_lossy(self.text.get(from..to).unwrap_or_default());
-            match text.split_once(',') {
-                Some((head, message)) if head.trim().eq_ignore_ascii_case("MSG") => {
-                    Op::Message(message.trim().into())
-                }
-                _ => Op::Comment(text.trim().into()),
-            }
-        })
+    /// The comments of the block.
+    pub(super) fn comments(&self) -> impl Iterator<Item = &'a [u8]> + '_ {
+        let text = self.text;
+        self.comments.iter().map(move |&(from, to)| text.get(from..to).unwrap_or_default())
+    }
+
+    /// Whether the block has no word but `letters` and the M word of this group.
+    pub(super) fn has_only(&self, letters: &[u8], group: Group) -> bool {
+        let allowed = letters.iter().fold(bit(b'N'), |bits, &letter| bits | bit(letter));
+        let others =
+            |n: &usize| *n != group as usize && (self.g[*n].is_some() || self.m[*n].is_some());
+        self.given & !allowed == 0 && !(0..Group::COUNT).any(|n| others(&n))
+    }
+
+    /// Puts a G word into the block.
+    pub(super) fn put_g(&mut self, group: Group, word: G) {
+        self.g[group as usize] = Some(word);
+        self.is_empty = false;
+    }
+
+    /// Puts an M word into the block.
+    pub(super) fn put_m(&mut self, group: Group, word: M) {
+        self.m[group as usize] = Some(word);
+        self.is_empty = false;
+    }
+
+    /// Puts a calculated word into the block.
+    pub(super) fn put(&mut self, letter: u8, value: f64) {
+        self.words[index(letter)] = Word { value, computed: true, ..Word::default() };
+        self.given |= bit(letter);
+        self.pending |= bit(letter);
+        self.is_empty = false;
     }
 
     /// The G word of a group.
@@ -219,6 +339,11 @@ impl<'a> Block<'a> {
     /// The M word of a group.
     pub(super) fn m(&self, group: Group) -> Option<M> {
         self.m[group as usize]
+    }
+
+    /// How many G and M words there are, apart from those of the builder.
+    pub(super) fn commands(&self) -> usize {
+        self.g.iter().flatten().count() + self.m.iter().flatten().count()
     }
 
     /// Whether the block has this letter and nothing has taken it yet.
@@ -237,7 +362,21 @@ impl<'a> Block<'a> {
             return None;
         }
         self.pending &= !bit(letter);
-        Some(self.words[usize::from(letter - b'A')])
+        Some(self.words[index(letter)])
+    }
+
+    /// The words of these letters count as used.
+    pub(super) fn pass(&mut self, letters: &[u8]) {
+        for &letter in letters {
+            self.pending &= !bit(letter);
+        }
+    }
+
+    /// The words of these letters can be taken once more.
+    pub(super) fn again(&mut self, letters: &[u8]) {
+        for &letter in letters {
+            self.pending |= self.given & bit(letter);
+        }
     }
 
     /// # Errors
@@ -246,14 +385,14 @@ impl<'a> Block<'a> {
         if self.pending == 0 {
             return Ok(());
         }
-        let letter = b'A' + self.pending.trailing_zeros() as u8;
+        let letter = LETTERS[self.pending.trailing_zeros() as usize % LETTERS.len()];
         let message = format!("nothing in the block uses {}", self.shown(letter));
         Err(self.at_word(letter, "nc-unused-word", message))
     }
 
     /// A word as it is written.
     pub(super) fn shown(&self, letter: u8) -> String {
-        let word = self.words[usize::from(letter - b'A')];
+        let word = self.words[index(letter)];
         let text = self.text.get(word.start as usize..word.end as usize).unwrap_or_default();
         String::from_utf8_lossy(text).into_owned()
     }
@@ -265,7 +404,7 @@ impl<'a> Block<'a> {
         rule: &'static str,
         message: impl Into<String>,
     ) -> Fault {
-        let word = self.words[usize::from(letter - b'A')];
+        let word = self.words[index(letter)];
         self.fault(rule, message, word.start as usize, word.end as usize)
     }
 
@@ -320,10 +459,7 @@ impl<'a> Block<'a> {
             format!("{} is no word of this control", char::from(letter))
         };
         let mut fault = Diagnostic::error("nc-unknown-word", message);
-        if let Some(reason) = Some(letter)
-            .filter(|l| matches!(l, b'G' | b'M'))
-            .and_then(|letter| why_refused(letter, word.value))
-        {
+        if let Some(reason) = self.dictionary.why_refused(letter, word.value) {
             fault = fault.help(reason);
         }
         fault.at(self.line, self.text, start, end).into()
@@ -331,7 +467,7 @@ impl<'a> Block<'a> {
 
     fn no_number(&self, letter: u8, at: usize, from: usize) -> Fault {
         match self.text.get(from) {
-            Some(b'#' | b'[') => self.stray(Flavor::Fanuc, self.text[from], from),
+            Some(&byte @ (b'#' | b'[')) => self.stray(self.dictionary.flavor, byte, from),
             _ => {
                 let message = format!("a number is missing after {}", char::from(letter));
                 self.fault("nc-number", message, at, from)
@@ -341,11 +477,15 @@ impl<'a> Block<'a> {
 
     fn stray(&self, flavor: Flavor, byte: u8, at: usize) -> Fault {
         let message = match byte {
-            b'#' | b'[' | b']' | b'=' => "parameters and expressions are not followed".to_owned(),
+            b'#' | b'[' if flavor.language() == Language::Plain => {
+                "this control has no parameters and does not calculate".to_owned()
+            }
+            b'#' => "a variable is set at the start of a block that has nothing else".to_owned(),
+            b'[' | b']' | b'=' => "an expression without its word".to_owned(),
             b'%' => "% stands alone on its line".to_owned(),
             b';' => "; does not begin a comment here; write ( )".to_owned(),
             b'0'..=b'9' | b'.' | b'+' | b'-' => "a number without its letter".to_owned(),
-            b'a'..=b'z' if flavor == Flavor::Fanuc => "small letters are no words".to_owned(),
+            b'a'..=b'z' if !flavor.has_small_letters() => "small letters are no words".to_owned(),
             b'!'..=b'~' => format!("{} begins no word", char::from(byte)),
             _ => format!("byte {byte:#04x} begins no word"),
         };
@@ -355,6 +495,6 @@ impl<'a> Block<'a> {
 
 /// The place after `/`, or on FANUC `/1` to `/9`.
 fn after_block_delete(flavor: Flavor, text: &[u8], at: usize) -> usize {
-    let numbered = flavor == Flavor::Fanuc && matches!(text.get(at + 1), Some(b'1'..=b'9'));
+    let numbered = flavor.is_fanuc() && matches!(text.get(at + 1), Some(b'1'..=b'9'));
     at + 1 + usize::from(numbered)
 }

@@ -2,6 +2,7 @@
 
 use super::block::Fault;
 use super::execute::Step;
+use super::motion::{LINEAR, Target};
 use super::state::Tilt;
 use super::words::{Canned, Flavor, G, Group};
 use geom::Vec3;
@@ -9,9 +10,6 @@ use program::{Cycle, CycleKind, Feed, Op, Orientation, Spindle};
 
 /// The most often that a block may repeat its hole: FANUC's K has four digits.
 const MOST_REPEATS: u32 = 9999;
-
-/// The letters of the linear axes.
-const LINEAR: [u8; 3] = *b"XYZ";
 
 /// The cycle that runs and what it keeps from block to block.
 #[derive(Clone, Copy, Debug)]
@@ -39,9 +37,9 @@ impl Canned {
 
     fn needs_dwell(self, flavor: Flavor) -> bool {
         match self {
-            Canned::DwellDrill | Canned::DwellReam => true,
-            // LinuxCNC asks for P; FANUC's G86 has none.
-            Canned::Bore => flavor == Flavor::LinuxCnc,
+            Canned::DwellDrill | Canned::DwellReam | Canned::HandBore => true,
+            // RS274 asks for P; FANUC's G86 has none.
+            Canned::Bore => !flavor.is_fanuc(),
             _ => false,
         }
     }
@@ -60,11 +58,11 @@ impl Step<'_, '_, '_> {
             return Err(self.block.whole("nc-cycle", message));
         }
         let axis = self.state.plane.axes()[2];
-        if self.flavor == Flavor::Fanuc && axis != 2 {
+        if self.flavor.is_fanuc() && axis != 2 {
             let message = "a cycle out of the plane G17: the drilling axis is a setting (5101#0)";
             return Err(self.block.whole("nc-cycle", message));
         }
-        if self.flavor != Flavor::Fanuc {
+        if !self.flavor.is_fanuc() {
             self.state.motion = None;
         }
         let fresh = Holding {
@@ -80,7 +78,7 @@ impl Step<'_, '_, '_> {
         self.state.cycle = Some(match self.state.cycle {
             None => fresh,
             // FANUC keeps the data until G80; LinuxCNC while the same word is repeated.
-            Some(held) if self.flavor == Flavor::Fanuc || held.canned == canned => {
+            Some(held) if self.flavor.is_fanuc() || held.canned == canned => {
                 Holding { canned, ..held }
             }
             Some(held) => {
@@ -106,51 +104,56 @@ impl Step<'_, '_, '_> {
     /// Drills what the block says.
     pub(super) fn holes(&mut self) -> Result<(), Fault> {
         let Some(mut held) = self.state.cycle else { return Ok(()) };
-        let [first, second, axis] = self.state.plane.axes();
-        let drills = b"XYZ".iter().any(|&letter| self.block.has(letter))
-            || self.flavor == Flavor::Fanuc && self.block.has(b'R');
+        let drills = b"XYZ@^".iter().any(|&letter| self.block.has(letter))
+            || self.flavor.is_fanuc() && self.block.has(b'R');
         if !drills {
             let asked = matches!(self.block.g(Group::Motion), Some(G::Cycle(_)));
             return if asked { Err(self.wrong("a cycle without an axis word")) } else { Ok(()) };
         }
-        self.may_drill(&held)?;
-        let start = self.state.position;
-        let mut place = start;
-        for axis in [first, second] {
-            let letter = LINEAR[axis];
-            if let Some(value) = self.take_length(letter)? {
-                place[axis] = self.advance(start[axis], value, letter, false)?;
-            }
-        }
-        self.levels(&mut held, axis)?;
-        self.feed_for_cut()?;
-        let cycle = self.cycle(&mut held)?;
-        let r = held.r.unwrap_or(held.initial);
-        place[axis] = r;
-        if place.is_nan() {
-            let message = "a hole, and where the tool stands in the plane is not known";
-            return Err(self.block.whole("nc-unknown-position", message));
-        }
+        let r = self.series(&mut held)?;
         let repeats = self.repeats()?;
-        if repeats > 0 {
-            // A series that starts below the R plane goes up to it first, before the way in the plane.
-            if held.initial < r && start[axis] < r {
-                self.lift(r, axis);
+        let [first, second, axis] = self.state.plane.axes();
+        for nth in 0..repeats.max(1) {
+            if nth > 0 {
+                // In G91 from hole to hole.
+                self.block.again(&[LINEAR[first], LINEAR[second], b'@', b'^']);
             }
-            if held.told.replace(cycle) != Some(cycle) {
-                self.ops.push(Op::Cycle(Box::new(cycle)));
+            let (point, rotary) = (self.state.position, self.state.rotary);
+            let mut place = Target { point, rotary, named: 0 };
+            self.in_plane(&mut place, false)?;
+            if repeats > 0 {
+                self.drill(place.point.with_axis(axis, r), &mut held)?;
             }
-        }
-        let step =
-            if self.state.incremental { place - start.with_axis(axis, r) } else { Vec3::ZERO };
-        for nth in 0..repeats {
-            self.drill(place + step * f64::from(nth), axis, r + cycle.retract);
         }
         self.state.cycle = Some(held);
         Ok(())
     }
 
+    /// One hole of the active cycle at `place`.
+    pub(super) fn hole_at(&mut self, place: Vec3) -> Result<(), Fault> {
+        let Some(mut held) = self.state.cycle else { return Ok(()) };
+        let axis = self.state.plane.axes()[2];
+        let r = self.series(&mut held)?;
+        self.drill(place.with_axis(axis, r), &mut held)?;
+        self.state.cycle = Some(held);
+        Ok(())
+    }
+
+    /// Takes over what the block says of the cycle, and answers the R plane.
+    fn series(&mut self, held: &mut Holding) -> Result<f64, Fault> {
+        self.may_drill(held)?;
+        self.levels(held, self.state.plane.axes()[2])?;
+        self.feed_for_cut()?;
+        Ok(held.r.unwrap_or(held.initial))
+    }
+
     fn may_drill(&self, held: &Holding) -> Result<(), Fault> {
+        let axis = self.state.plane.axes()[2];
+        let transform = &self.state.frames.transform;
+        if transform.factor(axis) != 1.0 || transform.mirror[axis].is_some() {
+            let message = "a cycle while its axis is scaled or mirrored";
+            return Err(self.block.whole("nc-frame", message));
+        }
         if let Tilt::Declared(_) = self.state.tilt {
             let message = "a cycle in a tilted plane before G53.1 has brought the tool along its Z";
             return Err(self.block.whole("nc-tilt", message));
@@ -173,7 +176,7 @@ impl Step<'_, '_, '_> {
         let incremental = self.state.incremental;
         if let Some(value) = self.take_length(b'R')? {
             let level =
-                if self.flavor == Flavor::Fanuc { held.initial } else { self.state.position[axis] };
+                if self.flavor.is_fanuc() { held.initial } else { self.state.position[axis] };
             held.r = Some(if incremental { level + value } else { value });
             if incremental && !self.block.has(LINEAR[axis]) {
                 held.bottom = None;
@@ -192,10 +195,9 @@ impl Step<'_, '_, '_> {
             held.peck = Some(value);
         }
         if held.canned.may_dwell(self.flavor) {
-            let seconds = if self.flavor == Flavor::Fanuc {
-                self.take_whole(b'P')?.map(|ms| f64::from(ms) / 1000.0)
-            } else {
-                self.block.take(b'P').map(|word| word.value)
+            let seconds = match self.flavor {
+                Flavor::Fanuc => self.take_whole(b'P')?.map(|ms| f64::from(ms) / 1000.0),
+                _ => self.dwell_p(),
             };
             if seconds.is_some_and(|s| s < 0.0) {
                 return Err(self.block.at_word(b'P', "nc-cycle", "P is below 0"));
@@ -215,7 +217,7 @@ impl Step<'_, '_, '_> {
         if bottom >= r {
             return Err(self.wrong(format!("the bottom {bottom} is not below the R plane {r}")));
         }
-        if held.initial < r && self.flavor == Flavor::Fanuc {
+        if held.initial < r && self.flavor.is_fanuc() {
             let message = format!("the R plane {r} lies above the initial level {}", held.initial);
             return Err(self.wrong(message));
         }
@@ -240,7 +242,8 @@ impl Step<'_, '_, '_> {
             Canned::Deep => CycleKind::Deep,
             Canned::BreakChip => CycleKind::BreakChip,
             Canned::Ream | Canned::DwellReam => CycleKind::Ream,
-            Canned::Bore => CycleKind::Bore,
+            // What follows the bottom is done by moves: see `by_hand`.
+            Canned::HandBore | Canned::Bore => CycleKind::Bore,
             Canned::Tap => self.tapping(held, false)?,
             Canned::LeftTap => self.tapping(held, true)?,
         };
@@ -268,7 +271,8 @@ impl Step<'_, '_, '_> {
         let speed = speed.ok_or_else(|| self.wrong("tapping needs the spindle speed S"))?;
         let needed =
             if left { Spindle::CounterClockwise(speed) } else { Spindle::Clockwise(speed) };
-        if self.state.rigid {
+        // Haas turns the spindle itself in any case.
+        if self.state.rigid || self.flavor == Flavor::Haas {
             held.rigid = true;
             self.turn(needed);
         } else if self.state.spindle != needed {
@@ -285,7 +289,11 @@ impl Step<'_, '_, '_> {
 
     /// How often the hole is made: FANUC K, LinuxCNC L.
     fn repeats(&mut self) -> Result<u32, Fault> {
-        let (letter, least) = if self.flavor == Flavor::Fanuc { (b'K', 0) } else { (b'L', 1) };
+        let (letter, least) = match self.flavor {
+            Flavor::Fanuc => (b'K', 0),
+            Flavor::Haas => (b'L', 0),
+            _ => (b'L', 1),
+        };
         match self.take_whole(letter)? {
             None => Ok(1),
             Some(repeats) if (least..=MOST_REPEATS).contains(&repeats) => Ok(repeats),
@@ -304,15 +312,55 @@ impl Step<'_, '_, '_> {
         self.ops.push(Op::Rapid(pose));
     }
 
-    /// One hole from its point on the R plane; the tool ends at `level` along the drilling axis.
-    fn drill(&mut self, at: Vec3, axis: usize, level: f64) {
-        let mut pose = self.state.pose(at, self.state.rotary);
-        if axis != 2 {
-            pose.orientation = Orientation::Axis(Vec3::AXES[axis]);
+    /// One hole from its point on the R plane.
+    fn drill(&mut self, at: Vec3, held: &mut Holding) -> Result<(), Fault> {
+        if at.is_nan() {
+            let message = "a hole, and where the tool stands in the plane is not known";
+            return Err(self.block.whole("nc-unknown-position", message));
         }
-        self.ops.push(Op::Hole(pose));
-        self.state.position = at.with_axis(axis, level);
-        self.state.moved = true;
+        let axis = self.state.plane.axes()[2];
+        let cycle = self.cycle(held)?;
+        let r = at[axis];
+        // A series that starts below the R plane goes up to it first, before the way in the plane.
+        if held.initial < r && self.state.position[axis] < r {
+            self.lift(r, axis);
+        }
+        let level = at.with_axis(axis, r + cycle.retract);
+        if held.canned == Canned::HandBore {
+            self.by_hand(at, level, axis, &cycle)?;
+        } else {
+            if held.told.replace(cycle) != Some(cycle) {
+                self.ops.push(Op::Cycle(Box::new(cycle)));
+            }
+            let mut pose = self.state.pose(at, self.state.rotary);
+            if axis != 2 {
+                pose.orientation = Orientation::Axis(self.state.place.direction(Vec3::AXES[axis]));
+            }
+            self.ops.push(Op::Hole(pose));
+        }
+        self.arrive(Target { point: level, rotary: self.state.rotary, named: 7 });
+        Ok(())
+    }
+
+    /// `G88`: at the bottom the spindle stops and the program, too; the operator draws the tool out,
+    /// and the program goes on with the way back.
+    fn by_hand(&mut self, at: Vec3, level: Vec3, axis: usize, cycle: &Cycle) -> Result<(), Fault> {
+        let spindle = self.state.spindle;
+        if spindle == Spindle::Off {
+            return Err(self.wrong("the spindle stands"));
+        }
+        let from = self.state.position[axis].max(at[axis]);
+        let rotary = self.state.rotary;
+        let pose = |state: &super::state::State, point: Vec3| state.pose(point, rotary);
+        self.ops.push(Op::Rapid(pose(self.state, at.with_axis(axis, from))));
+        self.ops.push(Op::Rapid(pose(self.state, at)));
+        self.ops.push(Op::Line(pose(self.state, at.with_axis(axis, at[axis] - cycle.depth))));
+        self.ops.push(Op::Dwell(cycle.dwell));
+        self.turn(Spindle::Off);
+        self.ops.push(Op::Stop);
+        self.ops.push(Op::Rapid(pose(self.state, level)));
+        self.turn(spindle);
+        Ok(())
     }
 
     fn wrong(&self, message: impl Into<String>) -> Fault {

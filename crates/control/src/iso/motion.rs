@@ -1,11 +1,14 @@
-//! Moves: straight ones, those to fixed places of the machine, and the swing to a tilted plane.
+//! Moves: what a block moves, where to, and the straight ones.
 
 use super::block::Fault;
 use super::execute::Step;
-use super::state::{Length, Tilt, UNKNOWN};
+use super::state::{Polar, Tilt};
 use super::words::{FeedMode, Flavor, G, Group, Motion};
 use geom::Vec3;
-use program::{Feed, Op};
+use program::{Compensation, Feed, Op};
+
+/// The letters of the linear axes.
+pub(super) const LINEAR: [u8; 3] = *b"XYZ";
 
 /// Where a block goes.
 #[derive(Clone, Copy, Debug)]
@@ -21,23 +24,75 @@ pub(super) struct Target {
 impl Step<'_, '_, '_> {
     /// What the block moves.
     pub(super) fn motion(&mut self) -> Result<(), Fault> {
-        let one_shot = self.block.g(Group::OneShot);
-        match one_shot {
-            Some(G::Home | G::SecondHome) => {
-                self.interpolation()?;
-                self.home(one_shot == Some(G::SecondHome))
+        let Some(word) = self.block.g(Group::OneShot) else {
+            return self.interpolation().and_then(|()| self.go());
+        };
+        match word {
+            G::LookAhead => return self.look_ahead(),
+            G::Home
+            | G::SecondHome
+            | G::Machine
+            | G::OneSided
+            | G::Skip
+            | G::FromHome
+            | G::WriteData
+            | G::ShiftHere
+            | G::ShiftTo
+            | G::Pocket { .. }
+            | G::Pattern(_) => {
+                self.has_the_axis_words(word)?;
             }
-            Some(G::Machine) => {
-                self.interpolation()?;
-                self.machine_position()
-            }
-            Some(G::SwingToTilt) => {
-                self.interpolation()?;
-                self.swing()
-            }
-            Some(G::LookAhead) => self.look_ahead(),
-            _ => self.interpolation().and_then(|()| self.go()),
+            _ => {}
         }
+        self.interpolation()?;
+        match word {
+            G::Home | G::SecondHome => self.home(word == G::SecondHome),
+            G::StoreHome { second } => self.store_home(second),
+            G::FromHome => self.leave_home(),
+            G::Machine => self.machine_position(),
+            G::SwingToTilt => self.swing(),
+            G::Skip => self.probe(),
+            G::OneSided => self.one_sided(),
+            G::Pocket { clockwise } => self.pocket(clockwise),
+            G::Pattern(pattern) => self.pattern(pattern),
+            G::WriteData | G::ShiftHere | G::ShiftTo => self.coordinates(word),
+            G::CancelShift { .. } | G::RestoreShift => {
+                self.coordinates(word)?;
+                self.go()
+            }
+            _ => self.go(),
+        }
+    }
+
+    /// What a block without an axis word means for a motion that needs one.
+    ///
+    /// # Errors
+    /// The block asks for that motion.
+    pub(super) fn has_no_axis_word(&self) -> Result<(), Fault> {
+        let asks = matches!(self.block.g(Group::Motion), Some(G::Motion(_)))
+            || self.block.g(Group::OneShot) == Some(G::Skip);
+        if !asks {
+            return Ok(());
+        }
+        Err(self.block.whole("nc-no-motion", "no axis word says where the move goes"))
+    }
+
+    /// # Errors
+    /// Another word of the block uses its axis words, too.
+    fn has_the_axis_words(&self, word: G) -> Result<(), Fault> {
+        let motion = self.block.g(Group::Motion);
+        let fanuc = self.flavor.is_fanuc();
+        let beside = match motion {
+            None => return Ok(()),
+            Some(G::Motion(Motion::Rapid)) => fanuc || word == G::Machine,
+            Some(G::Motion(Motion::Line)) => word == G::Machine || fanuc && word == G::Skip,
+            Some(_) => false,
+        };
+        if beside {
+            return Ok(());
+        }
+        let message = "two words of the block use its axis words: which one has them?";
+        Err(self.block.at_group(Group::OneShot, "nc-modal-group", message))
     }
 
     /// The motion word of the block: on LinuxCNC and GRBL also a cycle or `G80`.
@@ -68,7 +123,7 @@ impl Step<'_, '_, '_> {
                 G::CancelCycle => {
                     self.end_cycle();
                     // FANUC goes on with the interpolation of before: a cycle is no part of group 01.
-                    if self.flavor != Flavor::Fanuc {
+                    if !self.flavor.is_fanuc() {
                         self.state.motion = None;
                     }
                 }
@@ -80,13 +135,13 @@ impl Step<'_, '_, '_> {
     }
 
     /// Moves as the modes say.
-    fn go(&mut self) -> Result<(), Fault> {
+    pub(super) fn go(&mut self) -> Result<(), Fault> {
         if self.state.cycle.is_some() {
             return self.holes();
         }
         let arc_words = b"IJKR".iter().any(|&letter| self.block.has(letter));
         let Some(motion) = self.state.motion else {
-            return match b"XYZABC".iter().find(|&&letter| self.block.has(letter)) {
+            return match b"XYZABC@^".iter().find(|&&letter| self.block.has(letter)) {
                 Some(&letter) => {
                     let message = "an axis word, and no G0, G1, G2 or G3 says how to move";
                     Err(self.block.at_word(letter, "nc-no-motion", message))
@@ -95,6 +150,10 @@ impl Step<'_, '_, '_> {
             };
         };
         match motion {
+            Motion::Thread => self.thread(),
+            Motion::RigidTap => self.rigid_tap(),
+            Motion::Probe => self.probe(),
+            Motion::Spline { cubic } => self.spline(cubic),
             Motion::Arc { clockwise } => {
                 let target = self.target(false)?;
                 let asked = matches!(self.block.g(Group::Motion), Some(G::Motion(_)));
@@ -125,21 +184,13 @@ impl Step<'_, '_, '_> {
     /// tilted plane.
     pub(super) fn target(&mut self, unknown_stays: bool) -> Result<Target, Fault> {
         let mut target = Target { point: self.state.position, rotary: self.state.rotary, named: 0 };
-        for (axis, letter) in b"XYZ".iter().copied().enumerate() {
-            if let Some(value) = self.take_length(letter)? {
-                target.named |= 1 << axis;
-                target.point[axis] =
-                    self.advance(target.point[axis], value, letter, unknown_stays)?;
-            }
-        }
+        self.in_plane(&mut target, unknown_stays)?;
+        self.along(self.state.plane.axes()[2], &mut target, unknown_stays)?;
         for (axis, letter) in b"ABC".iter().copied().enumerate() {
             if !self.block.has(letter) {
                 continue;
             }
-            if !self.axes[axis] {
-                let message = format!("the machine has no axis {}", char::from(letter));
-                return Err(self.block.at_word(letter, "nc-axis", message));
-            }
+            self.has_axis(axis, letter)?;
             if self.state.tilt != Tilt::None {
                 let message =
                     "a rotary axis moved by hand in a tilted plane; G53.1 or G69 moves it";
@@ -152,6 +203,130 @@ impl Step<'_, '_, '_> {
             }
         }
         Ok(target)
+    }
+
+    /// The words of the two axes of the plane.
+    pub(super) fn in_plane(
+        &mut self,
+        target: &mut Target,
+        unknown_stays: bool,
+    ) -> Result<(), Fault> {
+        let [first, second, _] = self.state.plane.axes();
+        if let Some(polar) = self.state.polar {
+            self.by_angle(polar, target)?;
+        } else if self.block.has(b'@') || self.block.has(b'^') {
+            self.about_zero(target)?;
+        } else {
+            self.along(first, target, unknown_stays)?;
+            self.along(second, target, unknown_stays)?;
+        }
+        if target.named & self.state.loose != 0 { self.together(target.named) } else { Ok(()) }
+    }
+
+    /// The word of a linear axis.
+    fn along(
+        &mut self,
+        axis: usize,
+        target: &mut Target,
+        unknown_stays: bool,
+    ) -> Result<(), Fault> {
+        let letter = LINEAR[axis];
+        if let Some(value) = self.take_length(letter)? {
+            target.named |= 1 << axis;
+            target.point[axis] = self.advance(target.point[axis], value, letter, unknown_stays)?;
+        }
+        Ok(())
+    }
+
+    /// After the coordinates have been turned, what one axis means alone depends on the other: makers
+    /// ask for absolute words of both. Only increments in turned coordinates are those of the tool
+    /// from where it stands (B-64484EN, "Coordinate system rotation").
+    fn together(&mut self, named: u8) -> Result<(), Fault> {
+        let all = named & self.state.loose == self.state.loose;
+        if self.state.incremental && self.state.frames.transform.turn.is_some() {
+            return Ok(());
+        }
+        if self.state.incremental || !all {
+            let message = "the coordinates have been turned: the first move in the plane names both \
+                           its axes in G90";
+            return Err(self.block.whole("nc-frame", message));
+        }
+        self.state.loose = 0;
+        Ok(())
+    }
+
+    /// Polar words: the first axis of the plane is the radius, the second the angle.
+    fn by_angle(&mut self, mut polar: Polar, target: &mut Target) -> Result<(), Fault> {
+        let [first, second, _] = self.state.plane.axes();
+        let radius = self.take_length(LINEAR[first])?;
+        let angle = self.take_degrees(LINEAR[second])?;
+        if radius.is_none() && angle.is_none() {
+            return Ok(());
+        }
+        if let Some(radius) = radius {
+            if self.state.incremental {
+                let message =
+                    "a polar radius in G91 moves the pole to where the tool stands: write G90";
+                return Err(self.block.at_word(LINEAR[first], "nc-polar", message));
+            }
+            polar.radius = radius;
+        }
+        if let Some(angle) = angle {
+            let from = if self.state.incremental { polar.angle } else { 0.0 };
+            polar.angle = from + angle;
+        }
+        if polar.radius.is_nan() || polar.angle.is_nan() || polar.pole.is_nan() {
+            let message = "polar coordinates, and radius, angle or pole are not known yet";
+            return Err(self.block.whole("nc-polar", message));
+        }
+        let (sin, cos) = polar.angle.to_radians().sin_cos();
+        target.point[first] = polar.pole[first] + polar.radius * cos;
+        target.point[second] = polar.pole[second] + polar.radius * sin;
+        target.named |= 1 << first | 1 << second;
+        self.state.polar = Some(polar);
+        Ok(())
+    }
+
+    /// LinuxCNC's `@` and `^`: radius and angle about the zero, of which the one that is not given
+    /// stays what it is where the tool stands; in G91 both add to that.
+    fn about_zero(&mut self, target: &mut Target) -> Result<(), Fault> {
+        let Vec3 { x, y, .. } = target.point;
+        let cartesian = b"XY".iter().find(|&&letter| self.block.has(letter));
+        if self.state.plane.axes()[2] != 2 || cartesian.is_some() {
+            let message = "@ and ^ are for the plane G17, and not beside X or Y";
+            return Err(self.block.whole("nc-polar", message));
+        }
+        let (mut radius, mut degrees) = (x.hypot(y), y.atan2(x).to_degrees());
+        let from = if self.state.incremental { (radius, degrees) } else { (0.0, 0.0) };
+        if let Some(length) = self.take_length(b'@')? {
+            radius = from.0 + length;
+        }
+        if let Some(angle) = self.take_degrees(b'^')? {
+            degrees = from.1 + angle;
+        }
+        if radius.is_nan() || degrees.is_nan() {
+            let message =
+                "radius or angle stay what they are where the tool stands, which is not known";
+            return Err(self.block.whole("nc-unknown-position", message));
+        }
+        if self.state.incremental && from.0 == 0.0 {
+            let message = "a polar increment from the zero has no direction";
+            return Err(self.block.whole("nc-polar", message));
+        }
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        (target.point.x, target.point.y) = (radius * cos, radius * sin);
+        target.named |= 3;
+        Ok(())
+    }
+
+    /// # Errors
+    /// The machine lacks the rotary axis (0 is A) of this letter.
+    pub(super) fn has_axis(&self, axis: usize, letter: u8) -> Result<(), Fault> {
+        if self.axes.get(axis).is_some_and(|&exists| exists) {
+            return Ok(());
+        }
+        let message = format!("the machine has no axis {}", char::from(letter));
+        Err(self.block.at_word(letter, "nc-axis", message))
     }
 
     /// The coordinate that `value` gives an axis that stands at `from`.
@@ -234,124 +409,24 @@ impl Step<'_, '_, '_> {
         self.state.position = target.point;
         self.state.rotary = target.rotary;
         self.state.moved = true;
+        self.state.frames.used();
     }
 
-    /// Compensation starts and ends with the next linear move in the plane.
-    fn switch_compensation(&mut self) {
+    /// Compensation starts and ends with the next linear move in the plane. In mirrored coordinates
+    /// left is right.
+    pub(super) fn switch_compensation(&mut self) {
         let compensation = &mut self.state.compensation;
-        if compensation.active != compensation.asked {
-            compensation.active = compensation.asked;
-            self.ops.push(Op::Compensation(compensation.asked));
+        if compensation.active == compensation.asked {
+            return;
         }
-    }
-
-    /// `G28`, `G30`: by rapid through the point of the block to the reference position, the named axes
-    /// only; LinuxCNC and GRBL without a word: all axes at once.
-    fn home(&mut self, second: bool) -> Result<(), Fault> {
-        self.before_fixed_position()?;
-        // On LinuxCNC and GRBL two words that use axis words exclude each other.
-        let motion = self.block.g(Group::Motion);
-        if motion.is_some_and(|g| g != G::Motion(Motion::Rapid) || self.flavor != Flavor::Fanuc) {
-            let message = "G28 or G30 beside a motion word: which one has the axis words?";
-            return Err(self.block.at_group(Group::OneShot, "nc-modal-group", message));
-        }
-        if second && self.flavor == Flavor::Fanuc {
-            let message = "P names the reference position 2, 3 or 4";
-            if !matches!(self.take_whole(b'P')?, None | Some(2..=4)) {
-                return Err(self.block.at_word(b'P', "nc-home", message));
-            }
-        }
-        let mut target = self.target(true)?;
-        if target.named == 0 {
-            if self.flavor == Flavor::Fanuc {
-                let message = "name the axes that go to the reference position";
-                return Err(self.block.at_group(Group::OneShot, "nc-home", message));
-            }
-            target.named = self.all_axes();
-        }
-        // An unknown coordinate is unequal to itself: compare what the block changes.
-        let changes = |from: f64, to: f64| from != to && !to.is_nan();
-        let moves = (0..3).any(|i| {
-            changes(self.state.position[i], target.point[i])
-                || changes(self.state.rotary[i], target.rotary[i])
-        });
-        if moves {
-            self.straight(target, true)?;
-        }
-        self.leave_for(target.named);
-        Ok(())
-    }
-
-    /// `G53`: to a position in machine coordinates, by rapid.
-    fn machine_position(&mut self) -> Result<(), Fault> {
-        self.before_fixed_position()?;
-        if self.state.incremental {
-            let message = "G53 takes absolute positions; write G90";
-            return Err(self.block.at_group(Group::OneShot, "nc-machine-position", message));
-        }
-        if self.flavor != Flavor::Fanuc && self.state.motion != Some(Motion::Rapid) {
-            let message = "G53 is followed with G0 only: where a cut in machine coordinates is, only \
-                           the machine knows";
-            return Err(self.block.at_group(Group::OneShot, "nc-machine-position", message));
-        }
-        let named = self.target(false)?.named;
-        if named == 0 {
-            let message = "name the axes that G53 moves";
-            return Err(self.block.at_group(Group::OneShot, "nc-machine-position", message));
-        }
-        self.leave_for(named);
-        Ok(())
-    }
-
-    /// What holds before each move to a fixed place of the machine.
-    fn before_fixed_position(&mut self) -> Result<(), Fault> {
-        self.not_compensated("a move to a fixed position")?;
-        if self.state.cycle.is_some() {
-            let message = "a move to a fixed position in a cycle; cancel it with G80 first";
-            return Err(self.block.at_group(Group::OneShot, "nc-cycle", message));
-        }
-        if self.state.tilt != Tilt::None {
-            let message = "a move to a fixed position in a tilted plane; cancel it with G69 first";
-            return Err(self.block.at_group(Group::OneShot, "nc-tilt", message));
-        }
-        Ok(())
-    }
-
-    /// The named axes go where only the machine knows.
-    fn leave_for(&mut self, named: u8) {
-        self.switch_compensation();
-        for axis in 0..3 {
-            if named & 1 << axis != 0 {
-                self.state.position[axis] = f64::NAN;
-            }
-            if named & 8 << axis != 0 {
-                self.state.rotary[axis] = f64::NAN;
-            }
-        }
-        self.state.moved = true;
-        self.ops.push(Op::Home(named));
-    }
-
-    fn all_axes(&self) -> u8 {
-        (0..3).filter(|&axis| self.axes[axis]).fold(7, |bits, axis| bits | 8 << axis)
-    }
-
-    /// `G53.1`: the rotary axes bring the tool along Z of the tilted plane. Where they then stand and
-    /// where the tip is depends on the machine.
-    fn swing(&mut self) -> Result<(), Fault> {
-        let Tilt::Declared(frame) = self.state.tilt else {
-            let message = "G53.1 and no tilted plane has been declared by G68.2";
-            return Err(self.block.at_group(Group::OneShot, "nc-tilt", message));
-        };
-        self.state.tilt = Tilt::Reached(frame);
-        self.state.position = UNKNOWN;
-        for axis in 0..3 {
-            if self.axes[axis] {
-                self.state.rotary[axis] = f64::NAN;
-            }
-        }
-        self.state.moved = true;
-        Ok(())
+        compensation.active = compensation.asked;
+        let [first, second, _] = self.state.plane.axes();
+        let swaps = self.state.frames.transform.swaps_sides(first, second);
+        self.ops.push(Op::Compensation(match compensation.asked {
+            Compensation::Left(register) if swaps => Compensation::Right(register),
+            Compensation::Right(register) if swaps => Compensation::Left(register),
+            side => side,
+        }));
     }
 
     /// `G5.1 Q1` and `Q0`: look-ahead, which changes how fast the path is run and not where it is.
@@ -368,10 +443,5 @@ impl Step<'_, '_, '_> {
     /// Whether compensation is about to change with the next linear move.
     pub(super) fn compensation_waits(&self) -> bool {
         self.state.compensation.active != self.state.compensation.asked
-    }
-
-    /// Whether the control keeps the tool centre point.
-    pub(super) fn keeps_center(&self) -> bool {
-        matches!(self.state.length, Length::Center(_))
     }
 }

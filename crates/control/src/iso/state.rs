@@ -1,14 +1,16 @@
 //! What the control remembers from block to block.
 
 use super::cycles::Holding;
+use super::frames::{Frames, Place};
+use super::tools::Registers;
 use super::words::{FeedMode, Flavor, Motion, Plane, Side};
+use crate::Settings;
 use crate::compensation::Terms;
 use geom::{Frame, Vec3};
 use program::{Coolant, Feed, Orientation, Pose, Spindle};
 
-/// The modes, the position and what the machine was last told. It is copied before each block, so
-/// that a bad block changes nothing.
-#[derive(Clone, Copy, Debug)]
+/// The modes, the position and what the machine was last told.
+#[derive(Clone, Debug)]
 pub(super) struct State {
     /// Interpolation; none where axis words mean nothing (LinuxCNC and GRBL after `G80`).
     pub motion: Option<Motion>,
@@ -31,20 +33,35 @@ pub(super) struct State {
     pub tool: Option<u32>,
     pub length: Length,
     pub compensation: Compensation,
-    pub work_offset: Option<u16>,
+    /// What [`program::Op::WorkOffset`] has said last.
+    pub work_offset: Option<u32>,
     /// Programmed position in the frame in which words are read, mm; NaN where not known.
     pub position: Vec3,
     /// Positions of A, B, C in degrees; 0 for axes that the machine lacks, NaN where not known.
     pub rotary: [f64; 3],
+    /// What lies between programmed coordinates and the work frame.
+    pub frames: Frames,
+    /// The same as one way: [`Frames::place`], kept.
+    pub place: Place,
     pub tilt: Tilt,
+    /// Axes (bit 0 is X) of which the next absolute words must come together, since the coordinates
+    /// have just been turned.
+    pub loose: u8,
+    /// Polar coordinates are on.
+    pub polar: Option<Polar>,
+    /// Lathe: X is a diameter.
+    pub diameter: bool,
+    pub registers: Registers,
+    /// Stored by `G28.1` and `G30.1`, in machine coordinates, mm; NaN where not known.
+    pub homes: [Vec3; 2],
+    /// The point on the way of the last `G28`, in the work frame.
+    pub via: Option<Vec3>,
     /// `G99`: holes end at the R plane; `G98`: at the initial level. LinuxCNC's manual names no
     /// default, so there it is open until the program says it.
     pub return_to_r: Option<bool>,
     /// The last P of a cycle, s.
     pub cycle_dwell: Option<f64>,
     pub cycle: Option<Holding>,
-    /// A block has been executed.
-    pub begun: bool,
     /// Something has moved.
     pub moved: bool,
     /// Something has moved at feed.
@@ -92,6 +109,17 @@ impl Side {
     }
 }
 
+/// Polar coordinates: X is a radius and Y an angle, or the like in other planes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Polar {
+    /// The pole, in programmed coordinates.
+    pub pole: Vec3,
+    /// mm; NaN where not given yet.
+    pub radius: f64,
+    /// Degrees; NaN where not given yet.
+    pub angle: f64,
+}
+
 /// Tilted working plane (`G68.2`); the frame turns programmed coordinates into the work frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Tilt {
@@ -108,7 +136,12 @@ pub(super) const UNKNOWN: Vec3 = Vec3::NAN;
 impl State {
     /// The state at the start of a program: that of a control after power on. FANUC: parameters 3401
     /// and 3402 as delivered; LinuxCNC: `RS274NGC_STARTUP_CODE` empty; GRBL: its first `$G` report.
-    pub(super) fn new(flavor: Flavor, rotary: [bool; 3]) -> State {
+    pub(super) fn new(flavor: Flavor, axes: [bool; 3], settings: &Settings) -> State {
+        let start = settings.setup.start;
+        let all_zero = start.is_some();
+        // A FANUC goes on in the work offset of the program before.
+        let work_offset = settings.dialect.work_offset_at_reset().unwrap_or(0);
+        let turns_offsets = flavor == Flavor::LinuxCnc;
         State {
             motion: (flavor == Flavor::Grbl).then_some(Motion::Rapid),
             plane: Plane::Xy,
@@ -130,13 +163,20 @@ impl State {
                 radius: None,
             },
             work_offset: None,
-            position: UNKNOWN,
-            rotary: rotary.map(|exists| if exists { f64::NAN } else { 0.0 }),
+            position: start.unwrap_or(UNKNOWN),
+            rotary: axes.map(|exists| if exists { f64::NAN } else { 0.0 }),
+            frames: Frames::new(work_offset, all_zero, turns_offsets),
+            place: Place::SAME,
             tilt: Tilt::None,
-            return_to_r: (flavor == Flavor::Fanuc).then_some(false),
+            loose: 0,
+            polar: None,
+            diameter: false,
+            registers: Registers::new(&settings.setup.tools),
+            homes: [UNKNOWN; 2],
+            via: None,
+            return_to_r: flavor.is_fanuc().then_some(false),
             cycle_dwell: None,
             cycle: None,
-            begun: false,
             moved: false,
             cut: false,
             ended: false,
@@ -144,15 +184,15 @@ impl State {
     }
 
     /// The pose of a programmed point with the rotary axes at `rotary` (degrees).
+    #[inline]
     pub(super) fn pose(&self, point: Vec3, rotary: [f64; 3]) -> Pose {
+        let point = self.place.point(point);
         match self.tilt {
-            Tilt::Reached(frame) => {
-                Pose::new(frame.transform_point3(point), frame.matrix3 * Vec3::Z)
-            }
+            Tilt::Reached(_) => Pose::new(point, self.place.direction(Vec3::Z)),
             Tilt::None | Tilt::Declared(_) => Pose {
                 point,
                 orientation: Orientation::Rotary {
-                    degrees: rotary,
+                    degrees: self.place.rotary(rotary),
                     tool_center: matches!(self.length, Length::Center(_)),
                 },
             },
@@ -161,30 +201,18 @@ impl State {
 
     /// What compensation has to know of the block that switches it.
     pub(super) fn compensation_terms(&self) -> Terms {
+        let [first, second, third] = self.plane.axes();
         let mut normal = Vec3::ZERO;
-        normal[self.plane.axes()[2]] = 1.0;
+        normal[third] = 1.0;
+        // The side that is told is that after a mirror, which has turned the sense of the plane round.
+        let swaps = self.frames.transform.swaps_sides(first, second);
+        let sense = if swaps { -1.0 } else { 1.0 };
         Terms {
-            normal: self.direction(normal),
-            tool_axis: self.direction(Vec3::Z),
+            normal: self.place.normal(normal) * sense,
+            across_tool: third == 2,
             radius: self.compensation.radius,
             outer: None,
             around: false,
-        }
-    }
-
-    /// A direction of the programmed frame in the frame of the poses.
-    pub(super) fn direction(&self, v: Vec3) -> Vec3 {
-        match self.tilt {
-            Tilt::Reached(frame) => frame.matrix3 * v,
-            Tilt::None | Tilt::Declared(_) => v,
-        }
-    }
-
-    /// A programmed point in the frame of the poses.
-    pub(super) fn point(&self, p: Vec3) -> Vec3 {
-        match self.tilt {
-            Tilt::Reached(frame) => frame.transform_point3(p),
-            Tilt::None | Tilt::Declared(_) => p,
         }
     }
 }

@@ -1,33 +1,46 @@
-//! Cycles: what `CYCL DEF` says, and what the hole cycles do.
+//! Cycles: what `CYCL DEF` says, and how they are called.
 
 use super::functions::When;
+use super::hole::{Hole, RAPID_FEED};
+use super::registers::{Parameter, Registers};
 use super::scan::{Result, Scanner};
-use super::state::Control;
+use super::state::{Control, TENTH_INCH, Tip};
 use super::words::{LINEAR, Words, slot};
 use geom::Vec3;
-use program::{Cycle, CycleKind, Feed, Op};
+use program::{Compensation, CycleKind, Diagnostic, Feed, Op, Spindle};
 
-/// A hole cycle, ready to be called.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Definition {
-    /// What it does, from the surface.
-    pub(super) cycle: Cycle,
-    /// Surface of the part (Q203) in the coordinates of the program, mm.
-    pub(super) surface: f64,
+/// The parts `7` and `1` of `7.1`, or a number alone.
+pub(super) struct Designation {
+    pub(super) cycle: u32,
+    pub(super) part: Option<u32>,
+}
+
+impl Designation {
+    pub(super) fn read(text: &[u8]) -> Option<Designation> {
+        let text = std::str::from_utf8(text).ok()?;
+        if !text.bytes().all(|b| b.is_ascii_digit() || b == b'.') {
+            return None;
+        }
+        let (cycle, part) = match text.split_once('.') {
+            None => (text, None),
+            Some((cycle, part)) => (cycle, Some(part.parse().ok()?)),
+        };
+        Some(Designation { cycle: cycle.parse().ok()?, part })
+    }
 }
 
 /// The unit of a cycle parameter.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Unit {
     Length,
-    /// mm/min; `MAX` for rapid is infinite.
+    /// mm/min; `MAX` is rapid.
     Feed,
     /// Seconds, counts, degrees, switches.
     Plain,
 }
 
 /// The parameters of the cycles and their units.
-const UNITS: [(u16, Unit); 26] = [
+const UNITS: [(u16, Unit); 43] = [
     (200, Unit::Length),
     (201, Unit::Length),
     (202, Unit::Length),
@@ -41,29 +54,47 @@ const UNITS: [(u16, Unit); 26] = [
     (212, Unit::Length),
     (213, Unit::Plain),
     (214, Unit::Plain),
+    (216, Unit::Length),
+    (217, Unit::Length),
+    (224, Unit::Plain),
+    (225, Unit::Length),
+    (226, Unit::Length),
+    (237, Unit::Length),
+    (238, Unit::Length),
     (239, Unit::Length),
+    (241, Unit::Plain),
+    (242, Unit::Plain),
+    (243, Unit::Plain),
+    (244, Unit::Length),
+    (245, Unit::Plain),
+    (246, Unit::Plain),
+    (247, Unit::Plain),
     (253, Unit::Feed),
     (256, Unit::Length),
     (257, Unit::Length),
     (258, Unit::Length),
     (259, Unit::Length),
+    (301, Unit::Plain),
     (336, Unit::Plain),
     (339, Unit::Plain),
+    (343, Unit::Plain),
+    (344, Unit::Length),
+    (365, Unit::Plain),
     (379, Unit::Length),
     (395, Unit::Plain),
     (403, Unit::Plain),
-    (420, Unit::Plain),
     (421, Unit::Plain),
 ];
 
 /// A cycle with Q parameters: its number, those it needs, and those newer software adds.
+#[derive(Debug)]
 struct Layout {
     number: u16,
     needs: &'static [u16],
     takes: &'static [u16],
 }
 
-const LAYOUTS: [Layout; 9] = [
+const LAYOUTS: [Layout; 12] = [
     Layout { number: 200, needs: &[200, 201, 206, 202, 210, 203, 204], takes: &[211, 395] },
     Layout { number: 201, needs: &[200, 201, 206, 211, 208, 203, 204], takes: &[] },
     Layout { number: 202, needs: &[200, 201, 206, 211, 208, 203, 204, 214], takes: &[336] },
@@ -80,91 +111,156 @@ const LAYOUTS: [Layout; 9] = [
     Layout { number: 206, needs: &[200, 201, 206, 211, 203, 204], takes: &[] },
     Layout { number: 207, needs: &[200, 201, 239, 203, 204], takes: &[] },
     Layout { number: 209, needs: &[200, 201, 239, 203, 204, 257, 256, 336], takes: &[403] },
+    Layout {
+        number: 220,
+        needs: &[216, 217, 244, 245, 246, 247, 241, 200, 203, 204, 301],
+        takes: &[365],
+    },
+    Layout {
+        number: 221,
+        needs: &[225, 226, 237, 238, 242, 243, 224, 200, 203, 204, 301],
+        takes: &[],
+    },
+    Layout { number: 240, needs: &[200, 343, 201, 344, 206, 211, 203, 204], takes: &[] },
     Layout { number: 247, needs: &[339], takes: &[] },
 ];
 
-/// Retraction feeds from here on are rapid: the number that the control shows for `MAX`.
-const RAPID_FEED: f64 = 99_999.0;
+/// Why a cycle that is not understood is refused.
+fn refusal(cycle: u32) -> String {
+    let reason = match cycle {
+        3..=6
+        | 14..=16
+        | 20..=25
+        | 27..=29
+        | 39
+        | 210..=215
+        | 225
+        | 230..=239
+        | 251..=259
+        | 267
+        | 270..=276 => "the paths with which it mills are the control's own",
+        204 | 208 | 241 | 262..=265 => {
+            "the paths with which it goes in and out are the control's own"
+        }
+        12 => "it calls a program: use CALL PGM",
+        13 => "it turns the spindle to an angle",
+        18 | 1 | 2 | 17 => "the older drilling cycles start where the tool stands: use 200 to 207",
+        19 => "it means axis or spatial angles as the machine is set: use PLANE SPATIAL",
+        30 => "its points are in a file of the control",
+        31..=99 | 291..=299 | 800..=899 => "it is for another machine",
+        400..=499 | 1400..=1499 | 600..=699 => "it measures what is not in the program",
+        _ => "it is not known",
+    };
+    format!("cycle {cycle} is not supported: {reason}")
+}
 
-/// A `CYCL DEF` with Q parameters that is being read.
-pub(super) struct Open {
+/// A cycle that is defined; its parameters are in the Q parameters of their numbers, where a program
+/// may change them until it calls the cycle.
+#[derive(Debug)]
+pub(super) struct Definition {
     layout: &'static Layout,
-    given: Vec<(u16, f64)>,
+    given: Vec<u16>,
+    /// mm in the unit of length of the program that defines it.
+    unit: f64,
+}
+
+impl Definition {
+    /// The number of the cycle.
+    pub(super) fn number(&self) -> u16 {
+        self.layout.number
+    }
+
+    /// mm or mm/min in the unit of a parameter that the definition gave.
+    pub(super) fn unit_of(&self, q: u16) -> Option<f64> {
+        let (_, unit) = UNITS.iter().find(|(number, _)| *number == q)?;
+        self.given.contains(&q).then_some(match unit {
+            Unit::Length => self.unit,
+            Unit::Feed if self.unit != 1.0 => TENTH_INCH,
+            Unit::Feed | Unit::Plain => 1.0,
+        })
+    }
+
+    /// The cycle with what its parameters hold now.
+    pub(super) fn hole<'a>(&'a self, registers: &'a Registers) -> Hole<'a> {
+        Hole { definition: self, registers }
+    }
 }
 
 impl Control<'_, '_> {
-    /// `CYCL DEF 2xx NAME`, from behind `CYCL DEF`; the parameters are in the lines that follow.
+    /// `CYCL DEF 2xx NAME`, from behind the number up to its parameters.
     pub(super) fn open_cycle(
         &self,
         s: &mut Scanner,
         number: u32,
         span: (usize, usize),
-    ) -> Result<Open> {
-        let layout = LAYOUTS.iter().find(|l| u32::from(l.number) == number).ok_or_else(|| {
-            s.error("unsupported", span, format!("cycle {number} is not supported yet"))
-        })?;
-        Ok(Open { layout, given: Vec::with_capacity(16) })
+    ) -> Result<Definition> {
+        let layout = LAYOUTS
+            .iter()
+            .find(|layout| u32::from(layout.number) == number)
+            .ok_or_else(|| s.error("unsupported", span, refusal(number)))?;
+        while !matches!(s.peek(), [] | [b'Q', b'0'..=b'9', ..]) {
+            s.token();
+        }
+        Ok(Definition { layout, given: Vec::with_capacity(16), unit: self.unit })
     }
 
-    /// One line `Q200=+2 ;SET-UP CLEARANCE` of an open cycle.
-    pub(super) fn cycle_parameter(&self, s: &mut Scanner, open: &mut Open) -> Result<()> {
-        let (token, span) = s.token();
-        let text = std::str::from_utf8(token).unwrap_or_default();
-        let split = text.strip_prefix('Q').and_then(|rest| rest.split_once('='));
-        let Some((number, value)) = split.and_then(|(n, v)| Some((n.parse::<u16>().ok()?, v)))
-        else {
-            let message = "a parameter of the cycle (Q200=...) is expected here";
-            return Err(s.error("syntax", span, message));
-        };
-        let unit = UNITS.iter().find(|(q, _)| *q == number).map(|(_, unit)| *unit);
-        let known = open.layout.needs.contains(&number) || open.layout.takes.contains(&number);
-        let (Some(unit), true) = (unit, known) else {
-            let message = format!("cycle {} has no parameter Q{number}", open.layout.number);
-            return Err(s.error("cycle-parameter", span, message));
-        };
-        let mut value = Scanner::within(*s, span.1 - value.len(), span.1);
-        if value.is_done() {
-            value = *s;
-            let (_, end) = s.token();
-            value = Scanner::within(value, end.0, end.1);
+    /// The parameters `Q200=+2` in one line of a cycle that is being read.
+    pub(super) fn cycle_line(&mut self, s: &mut Scanner, open: &mut Definition) -> Result<()> {
+        while !s.is_done() {
+            let from = *s;
+            let parameter = s.parameter()?;
+            let (Some(Parameter::Global(q)), true) = (parameter, s.take_symbol(b"=")) else {
+                let message = "a parameter of the cycle (Q200=...) is expected here";
+                return Err(from.clone().error_here("syntax", message));
+            };
+            let span = (from.at(), s.at());
+            let known = open.layout.needs.contains(&q) || open.layout.takes.contains(&q);
+            if !known {
+                let message = format!("cycle {} has no parameter Q{q}", open.layout.number);
+                return Err(s.error("cycle-parameter", span, message));
+            }
+            if open.given.contains(&q) {
+                return Err(s.error("word-twice", span, format!("Q{q} is given twice")));
+            }
+            let value = match s.peek() {
+                b"MAX" | b"FMAX" if q == 208 => {
+                    s.token();
+                    RAPID_FEED
+                }
+                _ => s.value(&self.registers)?,
+            };
+            open.given.push(q);
+            let assigned = self.registers.assign(Parameter::Global(q), value);
+            assigned.map_err(|message| s.error("cycle-parameter", span, message))?;
         }
-        let value = match value.peek() {
-            b"MAX" | b"FMAX" if number == 208 => f64::INFINITY,
-            _ => self.in_unit(value.value()?, unit),
-        };
-        s.finish()?;
-        if open.given.iter().any(|(q, _)| *q == number) {
-            return Err(s.error("word-twice", span, format!("Q{number} is given twice")));
-        }
-        open.given.push((number, value));
         Ok(())
     }
 
-    fn in_unit(&self, value: f64, unit: Unit) -> f64 {
-        match unit {
-            Unit::Length => value * self.unit,
-            Unit::Feed if self.unit == 1.0 => value,
-            Unit::Feed => value * super::state::TENTH_INCH,
-            Unit::Plain => value,
-        }
-    }
-
-    /// The last parameter is read: the cycle is checked as a whole.
-    pub(super) fn close_cycle(&mut self, s: &Scanner, open: &Open) -> Result<()> {
+    /// The last parameter is read: the cycle is checked as a whole. 220, 221 and 247 act at once.
+    pub(super) fn close_cycle(&mut self, s: &Scanner, open: Definition) -> Result<()> {
         let number = open.layout.number;
-        if let Some(q) = open.layout.needs.iter().find(|q| open.find(**q).is_none()) {
+        if let Some(q) = open.layout.needs.iter().find(|q| !open.given.contains(q)) {
             let message = format!("cycle {number} lacks its parameter Q{q}");
-            return Err(s.error_block("cycle-parameter", message));
+            let help = "parameters stand in its line and, where that ends in ~, in the next ones";
+            let error: Box<Diagnostic> = s.error_block("cycle-parameter", message);
+            return Err(error.help(help).into());
         }
-        if number == 247 {
-            return self.set_datum(s, open.get(339));
+        match number {
+            247 => {
+                let preset = open.hole(&self.registers).get(339);
+                self.set_datum(s, preset)
+            }
+            220 | 221 => self.point_pattern(s, &open),
+            _ => {
+                let checked = open.hole(&self.registers).cycle();
+                checked.map_err(|message| {
+                    s.error_block("cycle-parameter", format!("cycle {number}: {message}"))
+                })?;
+                self.cycle = Some(open);
+                self.calls_modally = false;
+                Ok(())
+            }
         }
-        let cycle = open.hole().map_err(|message| {
-            s.error_block("cycle-parameter", format!("cycle {number}: {message}"))
-        })?;
-        self.cycle = Some(Definition { cycle, surface: open.get(203) });
-        self.calls_modally = false;
-        Ok(())
     }
 
     /// Cycle 247: a preset becomes the datum, and the datum shift ends.
@@ -175,15 +271,20 @@ impl Control<'_, '_> {
         if self.tilt.is_some() {
             return Err(s.error_block("plane", "the datum is set in the untilted plane"));
         }
-        self.shift = Vec3::ZERO;
+        if self.outside.is_more_than_a_shift() {
+            let message =
+                "what a preset does to mirrored, rotated or scaled coordinates is not known";
+            return Err(s.error_block("transformation", message));
+        }
+        self.outside = super::transform::Transforms::default();
         self.forget_position();
         self.emit(Op::WorkOffset(53 + preset as u32))
     }
 
     /// `CYCL CALL`, from behind it.
     pub(super) fn cycle_call(&mut self, s: &mut Scanner) -> Result<()> {
-        if s.peek() == b"PAT" {
-            return Err(s.error_here("unsupported", "CYCL CALL PAT is not supported yet"));
+        if s.take(b"PAT") {
+            return self.pattern_call(s);
         }
         if s.take(b"POS") {
             return self.cycle_call_at(s);
@@ -203,270 +304,144 @@ impl Control<'_, '_> {
             let message = "CYCL CALL POS needs X, Y and Z, absolute";
             return Err(s.error_block("missing-word", message));
         }
-        let Some(definition) = self.cycle else {
-            return Err(s.error_block("cycle", "no cycle is defined yet"));
-        };
         let at = |slot| words.target(slot, f64::NAN);
-        let surface = definition.surface + at(slot::Z);
         self.functions(s, words.functions, When::Start)?;
         let rapid = self.set_feed(s, words.feed)?;
         if !rapid {
             let message = "CYCL CALL POS is approached with FMAX here";
             return Err(s.error_block("unsupported", message));
         }
+        let Some(definition) = &self.cycle else {
+            return Err(s.error_block("cycle", "no cycle is defined yet"));
+        };
+        let hole = definition.hole(&self.registers);
+        let (surface, clearance) = (hole.surface() + at(slot::Z), hole.get(200));
         if self.here.z < surface {
-            self.here.z = surface + definition.cycle.clearance;
+            self.here.z = surface + clearance;
             self.emit(Op::Rapid(self.pose(self.here)))?;
         }
         self.here = Vec3::new(at(slot::X), at(slot::Y), self.here.z);
         self.emit(Op::Rapid(self.pose(self.here)))?;
-        self.cycle = Some(Definition { surface, ..definition });
-        let called = self.call_cycle(s);
-        self.cycle = Some(definition);
-        called?;
+        self.drill(s, at(slot::Z), None)?;
         self.functions(s, words.functions, When::End)
+    }
+
+    /// Runs the defined cycle where the tool stands.
+    pub(super) fn call_cycle(&mut self, s: &Scanner) -> Result<()> {
+        self.drill(s, 0.0, None)
+    }
+
+    /// Runs the defined cycle where the tool stands, with its surface higher by `rise` mm; `level` is
+    /// the height at which the tool ends where that is not the matter of the cycle.
+    pub(super) fn drill(&mut self, s: &Scanner, rise: f64, level: Option<f64>) -> Result<()> {
+        if self.ended {
+            return Err(s.error_block("cycle", "no cycle is called where the program ends"));
+        }
+        let Some(definition) = &self.cycle else {
+            return Err(s.error_block("cycle", "no cycle is defined yet"));
+        };
+        let hole = definition.hole(&self.registers);
+        let number = definition.number();
+        let mut cycle = hole.cycle().map_err(|message| {
+            s.error_block("cycle-parameter", format!("cycle {number}: {message}"))
+        })?;
+        let surface = hole.surface() + rise;
+        if let Some(level) = level {
+            cycle.retract = level - surface;
+        }
+        if self.compensation != Compensation::Off {
+            return Err(s.error_block("cycle", "a cycle is called with R0"));
+        }
+        if self.per_turn {
+            return Err(s.error_block("cycle", "a cycle is not called while M136 is active"));
+        }
+        self.transforms_are_clear(s)?;
+        if self.transforms().scales() {
+            let message = "scaling changes the dimensions of cycles too, which is not followed";
+            return Err(s.error_block("transformation", message));
+        }
+        let running = match self.spindle {
+            Spindle::Off => None,
+            Spindle::Clockwise(speed) | Spindle::CounterClockwise(speed) => Some(speed),
+        };
+        // Cycle 206 gives the feed: the pitch is what the running spindle makes of it.
+        if let (CycleKind::Tap { .. }, Some(Feed::PerMinute(feed))) = (cycle.kind, cycle.feed) {
+            let Some(speed) = running.filter(|speed| *speed > 0.0) else {
+                return Err(s.error_block("spindle", "cycle 206 needs a turning spindle"));
+            };
+            let left = matches!(self.spindle, Spindle::CounterClockwise(_));
+            cycle.kind = CycleKind::Tap { pitch: feed / speed, left };
+        }
+        // The cycle drills along Z of the coordinates of the program.
+        if self.tip != Tip::Free && self.tilt.is_none() && !self.stands_upright() {
+            let message = "with M128 a cycle does not drill along an inclined tool";
+            return Err(s.error_block("cycle", message).help("use PLANE SPATIAL").into());
+        }
+        let hole = self.cutting_pose(s, self.here.with_z(surface))?;
+        if self.told != Some(cycle) {
+            self.told = Some(cycle);
+            self.emit(Op::Cycle(Box::new(cycle)))?;
+        }
+        self.emit(Op::Hole(hole))?;
+        self.here.z = surface + cycle.retract;
+        self.path = None;
+        Ok(())
+    }
+
+    /// `CYCL DEF 7.0` and the like, from behind it; the name that follows says nothing.
+    pub(super) fn begin_cycle_parts(
+        &self,
+        s: &mut Scanner,
+        cycle: u32,
+        span: (usize, usize),
+    ) -> Result<()> {
+        if matches!(cycle, 7..=11 | 26 | 32) {
+            s.skip();
+            return Ok(());
+        }
+        Err(s.error("unsupported", span, refusal(cycle)))
     }
 
     /// A numbered part of an older cycle: `7.1 X+60`, `9.1 DWELL 1.5`, `32.1 T0.01`.
     pub(super) fn cycle_part(&mut self, s: &mut Scanner, cycle: u32, part: u32) -> Result<()> {
         match (cycle, part) {
             (7, _) => self.datum_shift(s),
-            (9, 1) => {
-                let (_, span) = s.token();
-                let seconds = s.value()?;
-                s.finish()?;
-                if seconds < 0.0 {
-                    return Err(s.error("dwell", span, "a dwell is not negative"));
-                }
-                self.emit(Op::Dwell(seconds))
-            }
+            (8, 1) => self.mirror(s),
+            (9, 1) => self.dwell(s),
+            (10, 1) => self.rotation(s),
+            (11, 1) => self.scale(s),
+            (26, 1) => self.axis_scale(s),
             // A tolerance changes how the control smooths, not where the program goes.
-            (32, 1 | 2) => tolerance(s),
+            (32, 1 | 2) => self.tolerance(s),
             _ => Err(s.error_block("cycle-parameter", "the cycle has no such part")),
         }
     }
 
-    fn datum_shift(&mut self, s: &mut Scanner) -> Result<()> {
-        let words = Words::read(s, LINEAR, self)?;
-        if !words.has(LINEAR)
-            || words.feed.is_some()
-            || words.compensation.is_some()
-            || !words.functions.is_empty()
-        {
-            return Err(s.error_block("cycle-parameter", "cycle 7 takes X, Y or Z here"));
+    /// `DWELL 1.5`, `V.ZEIT 1.5`, `DWELL1.5`: seconds.
+    fn dwell(&mut self, s: &mut Scanner) -> Result<()> {
+        let (_, span) = s.token();
+        let seconds = s.value(&self.registers)?;
+        s.finish()?;
+        if seconds < 0.0 {
+            return Err(s.error("dwell", span, "a dwell is not negative"));
         }
-        if self.tilt.is_some() && self.shift != Vec3::ZERO {
-            let message = "the datum was already shifted before the plane was tilted";
-            let help = "shift the datum before PLANE";
-            return Err(s.error_block("plane", message).help(help).into());
-        }
-        let shift = self.tilt.as_mut().map_or(&mut self.shift, |tilt| &mut tilt.shift);
-        let old = *shift;
-        for i in 0..3 {
-            shift[i] = words.target(i, old[i]);
-        }
-        self.here += old - *shift;
-        Ok(())
-    }
-}
-
-/// `T0.01`, or `HSC-MODE:1 TA0.5`, or nothing, which ends the tolerance.
-fn tolerance(s: &mut Scanner) -> Result<()> {
-    while !s.is_done() {
-        if s.take(b"HSC-MODE:0") || s.take(b"HSC-MODE:1") {
-            continue;
-        }
-        match s.word()? {
-            Some(word) if matches!(word.address, b"T" | b"TA") && word.number.is_some() => {}
-            _ => return Err(s.error_block("cycle-parameter", "cycle 32 takes T, HSC-MODE and TA")),
-        }
-    }
-    Ok(())
-}
-
-impl Open {
-    fn find(&self, q: u16) -> Option<f64> {
-        self.given.iter().find(|(number, _)| *number == q).map(|(_, value)| *value)
+        self.emit(Op::Dwell(seconds))
     }
 
-    /// A parameter that the cycle needs or that is 0 where it is not given.
-    fn get(&self, q: u16) -> f64 {
-        self.find(q).unwrap_or(0.0)
-    }
-
-    /// The cycle in the neutral vocabulary, or why that cannot be.
-    fn hole(&self) -> std::result::Result<Cycle, String> {
-        let depth = -self.get(201);
-        if depth <= 0.0 {
-            return Err("the depth Q201 must be negative".into());
-        }
-        let clearance = self.get(200);
-        if clearance < 0.0 || self.get(204) < 0.0 {
-            return Err("the clearances Q200 and Q204 must not be negative".into());
-        }
-        let dwell = self.get(211);
-        if !(0.0..=3600.0).contains(&dwell) {
-            return Err("the dwell Q211 is 0 to 3600 s".into());
-        }
-        if self.get(395) != 0.0 {
-            return Err("Q395=1 takes the depth from the tool table, which is not at hand".into());
-        }
-        let feed = self.find(206).map(Feed::PerMinute);
-        if feed.is_some() && self.get(206) <= 0.0 {
-            return Err("the feed Q206 must be greater than 0".into());
-        }
-        let mut cycle = Cycle {
-            kind: CycleKind::Drill,
-            depth,
-            clearance,
-            // "The 2nd set-up clearance is only effective if it is greater than the set-up clearance".
-            retract: clearance.max(self.get(204)),
-            feed,
-            dwell,
-            first_peck: None,
-            peck: None,
-        };
-        match self.layout.number {
-            200 => self.peck(&mut cycle, CycleKind::Deep)?,
-            201 => cycle.kind = self.feeding_out(CycleKind::Ream)?,
-            202 if self.get(214) != 0.0 => {
-                return Err("disengaging from the wall (Q214) is not supported yet".into());
+    /// `T0.01`, or `HSC-MODE:1 TA0.5`, or nothing, which ends the tolerance.
+    fn tolerance(&self, s: &mut Scanner) -> Result<()> {
+        while !s.is_done() {
+            if s.take(b"HSC-MODE:0") || s.take(b"HSC-MODE:1") {
+                continue;
             }
-            202 if self.rapid_out() => cycle.kind = CycleKind::Bore,
-            202 => return Err("boring goes out by rapid: Q208=MAX".into()),
-            203 => self.universal_drilling(&mut cycle)?,
-            205 => self.universal_pecking(&mut cycle)?,
-            206 => cycle.kind = CycleKind::Tap { pitch: f64::NAN, left: false },
-            _ => self.rigid_tapping(&mut cycle)?,
-        }
-        Ok(cycle)
-    }
-
-    fn rapid_out(&self) -> bool {
-        self.get(208) >= RAPID_FEED
-    }
-
-    /// Drilling where the tool goes out by rapid, `slow` where it goes out with the feed in (Q208=0).
-    fn feeding_out(&self, slow: CycleKind) -> std::result::Result<CycleKind, String> {
-        let out = self.get(208);
-        if self.rapid_out() {
-            Ok(CycleKind::Drill)
-        } else if out == 0.0 || out == self.get(206) {
-            Ok(slow)
-        } else {
-            Err("a retraction feed Q208 other than 0, Q206 or MAX is not supported yet".into())
-        }
-    }
-
-    /// Pecks of Q202, the later ones less by Q212 down to Q205.
-    fn peck(&self, cycle: &mut Cycle, kind: CycleKind) -> std::result::Result<(), String> {
-        let (first, decrement, least) = (self.get(202), self.get(212), self.get(205));
-        if first <= 0.0 {
-            return Err("the plunging depth Q202 must be greater than 0".into());
-        }
-        if first >= cycle.depth {
-            return Ok(());
-        }
-        if self.get(210) != 0.0 {
-            return Err("a dwell at the top (Q210) between pecks is not supported yet".into());
-        }
-        if decrement < 0.0 || least < 0.0 {
-            return Err("the decrement Q212 and the least depth Q205 must not be negative".into());
-        }
-        // Two depths can be told: the first one, and that of all others.
-        let further = if decrement == 0.0 { first } else { (first - decrement).max(least) };
-        let ends = decrement == 0.0 || further == least || first + further >= cycle.depth;
-        if !ends || further <= 0.0 {
-            return Err("pecks that go on decreasing (Q212) are not supported yet".into());
-        }
-        cycle.kind = kind;
-        cycle.first_peck = Some(first);
-        cycle.peck = Some(further);
-        Ok(())
-    }
-
-    fn universal_drilling(&self, cycle: &mut Cycle) -> std::result::Result<(), String> {
-        let breaks = self.get(213);
-        if breaks < 0.0 || breaks.fract() != 0.0 {
-            return Err("the number of breaks Q213 is a whole number".into());
-        }
-        let kind = if breaks > 0.0 { CycleKind::BreakChip } else { CycleKind::Deep };
-        self.peck(cycle, kind)?;
-        if let (CycleKind::BreakChip, Some(first), Some(further)) =
-            (cycle.kind, cycle.first_peck, cycle.peck)
-        {
-            if self.get(256) <= 0.0 {
-                return Err("the retraction at a chip break Q256 must be greater than 0".into());
-            }
-            let needed = ((cycle.depth - first) / further - 1e-9).ceil();
-            if needed > breaks {
-                return Err(format!(
-                    "chip breaks with retractions between them are not supported yet: Q213 is {breaks}, \
-                     the hole takes {needed}"
-                ));
+            match s.word(&self.registers)? {
+                Some(word) if matches!(word.address, b"T" | b"TA") && word.number.is_some() => {}
+                _ => {
+                    let message = "cycle 32 takes T, HSC-MODE and TA";
+                    return Err(s.error_block("cycle-parameter", message));
+                }
             }
         }
-        match (self.feeding_out(CycleKind::Ream)?, cycle.kind) {
-            (CycleKind::Drill, _) => Ok(()),
-            (slow, CycleKind::Drill) => {
-                cycle.kind = slow;
-                Ok(())
-            }
-            _ => Err("pecking goes out by rapid: Q208=MAX".into()),
-        }
-    }
-
-    fn universal_pecking(&self, cycle: &mut Cycle) -> std::result::Result<(), String> {
-        if self.get(379) != 0.0 {
-            return Err("a deepened starting point (Q379) is not supported yet".into());
-        }
-        if self.find(208).is_some() && !self.rapid_out() {
-            return Err("pecking goes out by rapid: Q208=MAX".into());
-        }
-        let chip = self.get(257);
-        if chip == 0.0 {
-            return self.peck(cycle, CycleKind::Deep);
-        }
-        if chip < 0.0 || self.get(256) <= 0.0 {
-            return Err("chip breaking needs Q257 and Q256 greater than 0".into());
-        }
-        if self.get(202) < cycle.depth {
-            return Err("chip breaks between full retractions are not supported yet".into());
-        }
-        if chip < cycle.depth {
-            cycle.kind = CycleKind::BreakChip;
-            cycle.first_peck = Some(chip);
-            cycle.peck = Some(chip);
-        }
         Ok(())
-    }
-
-    fn rigid_tapping(&self, cycle: &mut Cycle) -> std::result::Result<(), String> {
-        let pitch = self.get(239);
-        if pitch == 0.0 {
-            return Err("the pitch Q239 must not be 0".into());
-        }
-        cycle.kind = CycleKind::Tap { pitch: pitch.abs(), left: pitch < 0.0 };
-        let chip = self.get(257);
-        if chip < 0.0 {
-            return Err("the depth for chip breaking Q257 must not be negative".into());
-        }
-        if chip > 0.0 && chip < cycle.depth {
-            cycle.first_peck = Some(chip);
-            cycle.peck = Some(chip);
-        }
-        Ok(())
-    }
-}
-
-/// The parts `7` and `1` of `7.1`, or the number alone.
-pub(super) fn cycle_number(text: &[u8]) -> Option<(u32, Option<u32>)> {
-    let text = std::str::from_utf8(text).ok()?;
-    if !text.bytes().all(|b| b.is_ascii_digit() || b == b'.') {
-        return None;
-    }
-    match text.split_once('.') {
-        None => Some((text.parse().ok()?, None)),
-        Some((number, part)) => Some((number.parse().ok()?, Some(part.parse().ok()?))),
     }
 }

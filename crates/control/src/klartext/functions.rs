@@ -29,23 +29,21 @@ pub(super) enum Function {
     CallCyclesModally,
     /// Calls the cycle after this block: `M99`.
     CallCycle,
-    /// How a rotary axis takes its way, not where it ends: `M126`, `M127`.
-    RotaryWay,
     /// Keeps the tool tip while rotary axes turn: `M128`.
     KeepTip,
     /// Ends `M128` and `FUNCTION TCPM`: `M129`.
     ReleaseTip,
     /// Feed for each turn of the spindle (`M136`) or for each minute (`M137`).
     FeedPerTurn(bool),
-    /// The builder's own: moves nothing.
-    Auxiliary,
+    /// Moves nothing: the builder's own, and those of the control that change no path.
+    Nothing,
     /// Retracts along the tool axis: by so many mm, infinite for `M140 MB MAX`; at a feed of its own
     /// or by rapid.
     Retract(f64, Option<FeedWord>),
 }
 
 /// The number of an M function, and what it is. M140 takes its distance from the text.
-const FUNCTIONS: [(u16, Function); 22] = [
+const FUNCTIONS: [(u16, Function); 20] = [
     (0, Function::Stop),
     (1, Function::OptionalStop),
     (2, Function::End),
@@ -62,12 +60,39 @@ const FUNCTIONS: [(u16, Function); 22] = [
     (91, Function::MachineCoordinates),
     (92, Function::MachineCoordinates),
     (99, Function::CallCycle),
-    (126, Function::RotaryWay),
-    (127, Function::RotaryWay),
     (128, Function::KeepTip),
     (129, Function::ReleaseTip),
     (136, Function::FeedPerTurn(true)),
     (137, Function::FeedPerTurn(false)),
+];
+
+/// Functions that change neither where the tool goes nor what it does there: the speed in corners
+/// (M90, M134, M135), sister tools (M101, M102, M107, M108), feed in arcs as it is without (M111), the
+/// way of rotary axes (M126, M127), ends of what is refused (M117, M121, M145), probe monitoring
+/// (M141), lift-off at a stop (M148, M149).
+const NEUTRAL: [u16; 16] =
+    [90, 101, 102, 107, 108, 111, 117, 121, 126, 127, 134, 135, 141, 145, 148, 149];
+
+/// Functions that are refused, and why.
+const REFUSED: [(u16, &str); 18] = [
+    (94, "changes the count of a rotary axis"),
+    (97, "changes the compensated path at small steps"),
+    (98, "changes the compensated path at open corners"),
+    (103, "changes the feed of plunging moves"),
+    (104, "activates the preset that was set last by hand"),
+    (109, "changes the feed in arcs"),
+    (110, "changes the feed in arcs"),
+    (114, "compensates the geometry of the machine"),
+    (115, "compensates the geometry of the machine"),
+    (116, "changes the meaning of the feed of rotary axes"),
+    (118, "lets the handwheel move the axes"),
+    (120, "changes the compensated path at small steps"),
+    (124, "leaves points out"),
+    (130, "gives points of the untilted plane"),
+    (138, "chooses the axes that tilt"),
+    (143, "deletes the basic rotation of the preset"),
+    (144, "compensates the geometry of the machine"),
+    (197, "rounds the corners of the compensated path"),
 ];
 
 /// When in its block a function acts.
@@ -86,21 +111,26 @@ impl Function {
             return Err(unknown(s, word));
         };
         if number == 140.0 {
-            return retract(s, control.unit);
+            return retract(s, control);
         }
-        let known = FUNCTIONS.iter().find(|(n, _)| f64::from(*n) == number);
-        let Some((_, function)) = known else {
-            if control.settings.auxiliary.iter().any(|n| f64::from(*n) == number) {
-                return Ok(Function::Auxiliary);
+        let is = |n: &u16| f64::from(*n) == number;
+        if let Some((_, function)) = FUNCTIONS.iter().find(|(n, _)| is(n)) {
+            // The feed behind M128 is that of the compensating motion, not of the path.
+            if *function == Function::KeepTip {
+                own_feed(s, control)?;
             }
-            let message = format!("M{number} is not understood");
-            return Err(s.error("m-function", word.span, message));
-        };
-        // The feed behind M128 is that of the compensating motion, not of the path.
-        if *function == Function::KeepTip {
-            own_feed(s)?;
+            return Ok(*function);
         }
-        Ok(*function)
+        let builders = control.settings.auxiliary.iter().any(|n| f64::from(*n) == number);
+        if builders || NEUTRAL.iter().any(is) {
+            return Ok(Function::Nothing);
+        }
+        let reason = REFUSED.iter().find(|(n, _)| is(n)).map(|(_, reason)| *reason);
+        let message = match reason {
+            Some(reason) => format!("M{number} is not supported: it {reason}"),
+            None => format!("M{number} is not understood"),
+        };
+        Err(s.error("m-function", word.span, message))
     }
 
     /// When it acts (TNC manuals, table of the M functions).
@@ -120,11 +150,11 @@ impl Function {
 }
 
 /// Behind `M140`: `MB MAX` or `MB 50 F750`. The feed is that of the retraction alone.
-fn retract(s: &mut Scanner, unit: f64) -> Result<Function> {
+fn retract(s: &mut Scanner, control: &Control) -> Result<Function> {
     let distance = if s.take(b"MB") {
-        if s.take(b"MAX") { f64::INFINITY } else { s.value()? }
+        if s.take(b"MAX") { f64::INFINITY } else { s.value(&control.registers)? }
     } else {
-        match s.word()? {
+        match s.word(&control.registers)? {
             Some(Word { address: b"MB", number: Some(distance), .. }) => distance,
             _ => return Err(s.error_block("m-function", "M140 needs MB with a distance or MAX")),
         }
@@ -132,16 +162,16 @@ fn retract(s: &mut Scanner, unit: f64) -> Result<Function> {
     if distance <= 0.0 {
         return Err(s.error_block("m-function", "M140 retracts: MB must be greater than 0"));
     }
-    Ok(Function::Retract(distance * unit, own_feed(s)?))
+    Ok(Function::Retract(distance * control.unit, own_feed(s, control)?))
 }
 
 /// The feed that belongs to the function before it, where there is one.
-fn own_feed(s: &mut Scanner) -> Result<Option<FeedWord>> {
+fn own_feed(s: &mut Scanner, control: &Control) -> Result<Option<FeedWord>> {
     if !s.peek().starts_with(b"F") {
         return Ok(None);
     }
-    match s.word()? {
-        Some(word) => feed_word(s, &word).map(Some),
+    match s.word(&control.registers)? {
+        Some(word) => feed_word(s, &word, control.tool_feed).map(Some),
         None => Ok(None),
     }
 }
@@ -151,6 +181,11 @@ fn own_feed(s: &mut Scanner) -> Result<Option<FeedWord>> {
 pub(super) struct Functions([Option<Function>; 2]);
 
 impl Functions {
+    /// One function alone.
+    pub(super) fn of(function: Function) -> Functions {
+        Functions([Some(function), None])
+    }
+
     /// Adds one; answers why it cannot stand there.
     pub(super) fn push(&mut self, function: Function) -> std::result::Result<(), &'static str> {
         let place = self.0.iter_mut().find(|place| place.is_none());

@@ -1,9 +1,10 @@
 //! Path functions: lines, arcs and helices.
 
+use super::contour::{Bend, Element, left_of};
 use super::functions::{Function, When};
 use super::scan::{Result, Scanner};
 use super::state::{AXES, Control, Tip};
-use super::words::{FeedWord, LINEAR, PA, PR, RADIUS, ROTARY, TURN, VECTORS, Words, slot};
+use super::words::{LINEAR, PA, PR, RADIUS, ROTARY, TURN, VECTORS, Words, slot};
 use geom::{Arc, ArcError, Vec3, direction};
 use program::{ArcTo, Compensation, Op, Orientation, Pose};
 
@@ -14,27 +15,21 @@ const ARC_TOLERANCE: f64 = 0.016;
 /// The most turns of one helix; `IPA` is limited to 99 999.9999°.
 const MAX_IPA: f64 = 99_999.999_9;
 
+/// X and Y.
+const PLANE: u32 = 1 << slot::X | 1 << slot::Y;
+
 impl Control<'_, '_> {
-    /// `L`: a straight line, or M functions alone.
-    pub(super) fn line(&mut self, s: &mut Scanner) -> Result<()> {
+    /// `L`: a straight line, or M functions alone. `corner`: RND or CHF follows.
+    pub(super) fn line(&mut self, s: &mut Scanner, corner: bool) -> Result<()> {
         let words = Words::read(s, LINEAR | ROTARY, self)?;
-        self.positioning(s, &words)
+        self.positioning(s, &words, corner)
     }
 
     /// `LP`: a straight line to a point in polar coordinates about the pole.
-    pub(super) fn polar_line(&mut self, s: &mut Scanner) -> Result<()> {
+    pub(super) fn polar_line(&mut self, s: &mut Scanner, corner: bool) -> Result<()> {
         let mut words = Words::read(s, PR | PA | 1 << slot::Z, self)?;
-        let (Some((x, y)), true) = (self.pole, words.has_all(PR | PA)) else {
-            return Err(s.error_block("missing-word", "LP needs a pole (CC), PR and PA"));
-        };
-        if words.is_incremental(PR | PA) {
-            return Err(s.error_block("unsupported", "IPR and IPA of LP are not supported yet"));
-        }
-        let (sin, cos) = words.target(slot::PA, 0.0).to_radians().sin_cos();
-        let radius = words.target(slot::PR, 0.0);
-        words.set(slot::X, x + radius * cos);
-        words.set(slot::Y, y + radius * sin);
-        self.positioning(s, &words)
+        self.polar(s, &mut words)?;
+        self.positioning(s, &words, corner)
     }
 
     /// `LN`: a straight line with the surface normal, and the direction of the tool.
@@ -43,14 +38,49 @@ impl Control<'_, '_> {
         // The normal turns tool oversizes into an offset, and oversizes are refused at TOOL CALL.
         vector(s, &words, slot::NX)?;
         vector(s, &words, slot::TX)?;
-        self.positioning(s, &words)
+        self.positioning(s, &words, false)
+    }
+
+    /// Puts X and Y in the place of a polar radius and angle. What the block does not give stays.
+    pub(super) fn polar(&self, s: &Scanner, words: &mut Words) -> Result<()> {
+        if !words.has(PR | PA) {
+            return Ok(());
+        }
+        let pole = self.center(s)?;
+        let spoke = (self.here - pole).with_z(0.0);
+        let kept = !words.has_all(PR | PA) || words.is_incremental(PR | PA);
+        // At the pole there is no angle to keep.
+        if kept && (spoke.is_nan() || spoke.length() < 1e-9) {
+            let message = "PR and PA count on from a place that is not known, or is the pole";
+            return Err(s.error_block("unknown-position", message).help("give PR and PA").into());
+        }
+        let radius = words.target(slot::PR, spoke.length());
+        let angle = words.target(slot::PA, spoke.y.atan2(spoke.x).to_degrees());
+        let (sin, cos) = angle.to_radians().sin_cos();
+        words.set(slot::X, pole.x + radius * cos);
+        words.set(slot::Y, pole.y + radius * sin);
+        Ok(())
     }
 
     /// Moves as the words say: M functions of the start, the motion, M functions of the end.
-    fn positioning(&mut self, s: &Scanner, words: &Words) -> Result<()> {
+    fn positioning(&mut self, s: &Scanner, words: &Words, corner: bool) -> Result<()> {
         let moves = words.has(LINEAR | ROTARY | VECTORS);
+        // What waits ends elsewhere than at the corner from which the words count.
+        let mut to = None;
+        if self.waiting.is_some() {
+            let (end, degrees) = self.targets(s, words)?;
+            if !moves || words.is_rapid() || words.has(ROTARY | VECTORS) {
+                let message = "a line or an arc at a feed must follow RND, CHF and APPR";
+                return Err(s.error_block("contour", message));
+            }
+            self.meet(s, &Element { start: self.here, end, arc: None })?;
+            to = Some((end, degrees));
+        }
         self.functions(s, words.functions, When::Start)?;
-        let to = self.targets(s, words)?;
+        let to = match to {
+            Some(to) => to,
+            None => self.targets(s, words)?,
+        };
         let rapid = self.set_feed(s, words.feed)?;
         if words.functions.contains(Function::MachineCoordinates) {
             self.machine_position(s, words)?;
@@ -60,8 +90,23 @@ impl Control<'_, '_> {
             }
             if moves {
                 self.needs_feed(s, rapid)?;
-                self.move_to(s, words, to, rapid)?;
+                self.move_to(s, words, to, rapid, corner)?;
             }
+        }
+        self.after_motion(s, words, moves, corner)
+    }
+
+    /// What follows the motion of a block: M functions of the end, the cycle that is called modally.
+    fn after_motion(
+        &mut self,
+        s: &Scanner,
+        words: &Words,
+        moves: bool,
+        corner: bool,
+    ) -> Result<()> {
+        if corner && (self.calls_modally || words.functions.at(When::End).next().is_some()) {
+            let message = "nothing can happen at a corner that RND or CHF cuts off";
+            return Err(s.error_block("contour", message));
         }
         self.functions(s, words.functions, When::End)?;
         if moves && self.calls_modally && !words.functions.contains(Function::CallCyclesModally) {
@@ -71,7 +116,8 @@ impl Control<'_, '_> {
     }
 
     /// Where the axes go: X, Y, Z in mm and A, B, C in degrees.
-    fn targets(&self, s: &Scanner, words: &Words) -> Result<(Vec3, [f64; 3])> {
+    pub(super) fn targets(&self, s: &Scanner, words: &Words) -> Result<(Vec3, [f64; 3])> {
+        self.transforms_are_clear(s)?;
         let here = self.here;
         let to = Vec3::new(
             words.target(slot::X, here.x),
@@ -104,9 +150,14 @@ impl Control<'_, '_> {
         if !self.settings.rotary[axis] && self.tip != Tip::KeptSpatial {
             return Err(s.error_block("unknown-axis", format!("the machine has no axis {letter}")));
         }
-        if self.tilt.is_some_and(|tilt| tilt.turned) {
+        if self.tilt.as_ref().is_some_and(|tilt| tilt.turned) {
             let message = format!("{letter} would turn the tool out of the tilted plane");
             return Err(s.error_block("plane", message).help("PLANE RESET first").into());
+        }
+        if self.mirrors() || (self.tip == Tip::KeptSpatial && self.outside.is_more_than_a_shift()) {
+            let message =
+                format!("what {letter} is in mirrored or rotated coordinates is not known");
+            return Err(s.error_block("transformation", message));
         }
         Ok(())
     }
@@ -117,8 +168,15 @@ impl Control<'_, '_> {
         words: &Words,
         (to, degrees): (Vec3, [f64; 3]),
         rapid: bool,
+        corner: bool,
     ) -> Result<()> {
+        if corner && (rapid || words.has(ROTARY | VECTORS)) {
+            let message = "RND and CHF cut off the corner of a contour, not that of this motion";
+            return Err(s.error_block("contour", message));
+        }
+        let element = Element { start: self.here, end: to, arc: None };
         self.here = to;
+        self.rapid = rapid;
         if let Some(tool) = vector(s, words, slot::TX)? {
             if self.tip == Tip::Free {
                 let message = "TX TY TZ need M128 or FUNCTION TCPM";
@@ -137,19 +195,53 @@ impl Control<'_, '_> {
                     return Err(s.error_block("plane", message));
                 }
                 self.forget_position();
+                return self.emit(match rapid {
+                    true => Op::Rapid(self.pose(self.here)),
+                    false => Op::Line(self.cutting_pose(s, self.here)?),
+                });
             }
         }
         if rapid {
-            let [x, y, z] = self.here.to_array();
-            let known = x.is_finite() && y.is_finite();
-            if self.tilt.is_some_and(|tilt| tilt.turned) && z.is_finite() && !known {
-                let message =
-                    "Z in a tilted plane before X and Y: where the tool goes down is not known";
-                return Err(s.error_block("unknown-position", message));
-            }
+            self.path = Some(element);
+            self.check_descent(s)?;
             return self.emit(Op::Rapid(self.pose(self.here)));
         }
-        self.emit(Op::Line(self.cutting_pose(s, self.here)?))
+        self.contour_element(s, element, corner)
+    }
+
+    /// Tells an element of the contour that is cut.
+    pub(super) fn tell(&mut self, s: &Scanner, element: Element) -> Result<()> {
+        self.here = element.end;
+        self.path = Some(element);
+        let end = self.cutting_pose(s, element.end)?;
+        let Some(Bend { center, sense, turns }) = element.arc else {
+            return self.emit(Op::Line(end));
+        };
+        if !self.transforms().keeps_circles() {
+            let message = "an arc in coordinates that are scaled differently in X and Y";
+            return Err(s.error_block("transformation", message));
+        }
+        // In mirrored coordinates an arc turns the other way round.
+        let sense = if self.mirrors() { -sense } else { sense };
+        let arc = ArcTo {
+            end,
+            center: self.work_point(center),
+            normal: self.work_direction(Vec3::Z * sense),
+            turns,
+        };
+        self.emit(Op::Arc(Box::new(arc)))
+    }
+
+    /// In a turned plane nothing goes down at a place that is not known.
+    pub(super) fn check_descent(&self, s: &Scanner) -> Result<()> {
+        let [x, y, z] = self.here.to_array();
+        let known = x.is_finite() && y.is_finite();
+        if self.tilt.as_ref().is_some_and(|tilt| tilt.turned) && z.is_finite() && !known {
+            let message =
+                "Z in a tilted plane before X and Y: where the tool goes down is not known";
+            return Err(s.error_block("unknown-position", message));
+        }
+        Ok(())
     }
 
     /// The pose at a programmed position where something is cut, which must be known.
@@ -210,12 +302,11 @@ impl Control<'_, '_> {
 
     /// `CC`: the pole; without coordinates where the tool is.
     pub(super) fn circle_center(&mut self, s: &mut Scanner) -> Result<()> {
-        let words = Words::read(s, 1 << slot::X | 1 << slot::Y, self)?;
-        if words.feed.is_some() || words.compensation.is_some() || !words.functions.is_empty() {
+        let words = Words::read(s, PLANE, self)?;
+        if !words.is_plain() {
             return Err(s.error_block("unknown-word", "CC takes coordinates alone"));
         }
-        let plane = 1 << slot::X | 1 << slot::Y;
-        if words.has(plane) && !words.has_all(plane) {
+        if words.has(PLANE) && !words.has_all(PLANE) {
             return Err(s.error_block("missing-word", "CC needs X and Y, or neither"));
         }
         let pole = (words.target(slot::X, self.here.x), words.target(slot::Y, self.here.y));
@@ -227,18 +318,18 @@ impl Control<'_, '_> {
     }
 
     /// `C`: an arc about the pole.
-    pub(super) fn arc(&mut self, s: &mut Scanner) -> Result<()> {
+    pub(super) fn arc(&mut self, s: &mut Scanner, corner: bool) -> Result<()> {
         let words = Words::read(s, LINEAR | TURN, self)?;
         let center = self.center(s)?;
         let (end, _) = self.targets(s, &words)?;
         if words.is_incremental(LINEAR) && end.is_nan() {
             return Err(s.error_block("unknown-position", "the position of the tool is not known"));
         }
-        self.arc_to(s, &words, center, end, 0)
+        self.arc_to(s, &words, Bend { center, sense: words.turn, turns: 0 }, end, corner)
     }
 
     /// `CR`: an arc of given radius; positive for at most a half circle, negative for more.
-    pub(super) fn arc_of_radius(&mut self, s: &mut Scanner) -> Result<()> {
+    pub(super) fn arc_of_radius(&mut self, s: &mut Scanner, corner: bool) -> Result<()> {
         let words = Words::read(s, LINEAR | RADIUS | TURN, self)?;
         let (end, _) = self.targets(s, &words)?;
         let Some(radius) = words.get(slot::R).filter(|r| *r != 0.0) else {
@@ -263,13 +354,13 @@ impl Control<'_, '_> {
         }
         // The center is on the left of the chord for a short arc counter-clockwise.
         let away = (radius * radius - half * half).max(0.0).sqrt();
-        let left = Vec3::new(-chord.y, chord.x, 0.0) / (2.0 * half);
+        let left = left_of(chord) / (2.0 * half);
         let center = self.here + chord / 2.0 + left * (away * words.turn * radius.signum());
-        self.arc_to(s, &words, center, end, 0)
+        self.arc_to(s, &words, Bend { center, sense: words.turn, turns: 0 }, end, corner)
     }
 
     /// `CP`: an arc or a helix about the pole by a polar angle.
-    pub(super) fn polar_arc(&mut self, s: &mut Scanner) -> Result<()> {
+    pub(super) fn polar_arc(&mut self, s: &mut Scanner, corner: bool) -> Result<()> {
         let words = Words::read(s, PA | 1 << slot::Z | TURN, self)?;
         let center = self.center(s)?;
         let Some(angle) = words.get(slot::PA) else {
@@ -300,14 +391,50 @@ impl Control<'_, '_> {
             let (sin, cos) = angle.to_radians().sin_cos();
             (center + Vec3::new(cos, sin, 0.0) * spoke.length(), 0)
         };
-        self.arc_to(s, &words, center, end.with_z(height), turns)
+        let bend = Bend { center, sense: words.turn, turns };
+        self.arc_to(s, &words, bend, end.with_z(height), corner)
     }
 
-    fn center(&self, s: &Scanner) -> Result<Vec3> {
+    pub(super) fn center(&self, s: &Scanner) -> Result<Vec3> {
         let (x, y) = self
             .pole
             .ok_or_else(|| s.error_block("missing-word", "no pole: a CC block must come before"))?;
         Ok(Vec3::new(x, y, 0.0))
+    }
+
+    /// `CT`: an arc that goes on in the direction of the element before it.
+    pub(super) fn tangential_arc(&mut self, s: &mut Scanner, corner: bool) -> Result<()> {
+        let words = Words::read(s, LINEAR, self)?;
+        self.tangential_to(s, &words, corner)
+    }
+
+    /// `CTP`: the same to polar coordinates.
+    pub(super) fn polar_tangential_arc(&mut self, s: &mut Scanner, corner: bool) -> Result<()> {
+        let mut words = Words::read(s, PR | PA | 1 << slot::Z, self)?;
+        self.polar(s, &mut words)?;
+        self.tangential_to(s, &words, corner)
+    }
+
+    fn tangential_to(&mut self, s: &Scanner, words: &Words, corner: bool) -> Result<()> {
+        let (end, _) = self.targets(s, words)?;
+        let before = self.path.filter(|path| path.end == self.here && self.waiting.is_none());
+        let Some(tangent) = before.and_then(|path| path.tangent_at_end()) else {
+            let message = "CT goes on in the direction of the line or arc directly before it, and there \
+                           is none in the plane XY";
+            return Err(s.error_block("arc", message));
+        };
+        if end.z != self.here.z {
+            return Err(s.error_block("arc", "CT stays in the plane XY"));
+        }
+        let chord = (end - self.here).with_z(0.0);
+        let left = left_of(tangent);
+        let sine = chord.dot(left) / chord.length();
+        if sine.is_nan() || sine.abs() < 1e-9 {
+            let message = "CT leads straight on, straight back or nowhere: that is no arc";
+            return Err(s.error_block("arc", message));
+        }
+        let center = self.here + left * (chord.length() / (2.0 * sine));
+        self.arc_to(s, words, Bend { center, sense: sine.signum(), turns: 0 }, end, corner)
     }
 
     /// The arc itself, checked as the control does, in the coordinates of the block.
@@ -315,11 +442,11 @@ impl Control<'_, '_> {
         &mut self,
         s: &Scanner,
         words: &Words,
-        center: Vec3,
+        bend: Bend,
         end: Vec3,
-        turns: u32,
+        corner: bool,
     ) -> Result<()> {
-        if words.turn == 0.0 {
+        if bend.sense == 0.0 {
             return Err(
                 s.error_block("missing-word", "the sense of rotation DR+ or DR- is missing")
             );
@@ -331,9 +458,9 @@ impl Control<'_, '_> {
             let message = "radius compensation begins and ends in a straight line";
             return Err(s.error_block("compensation", message));
         }
-        let center = center.with_z(self.here.z);
-        let normal = Vec3::Z * words.turn;
-        match Arc::new(self.here, end, center, normal, turns, ARC_TOLERANCE) {
+        let bend = Bend { center: bend.center.with_z(self.here.z), ..bend };
+        let normal = Vec3::Z * bend.sense;
+        match Arc::new(self.here, end, bend.center, normal, bend.turns, ARC_TOLERANCE) {
             Ok(_) => {}
             Err(ArcError::OffTheCircle(start, end)) => {
                 let message = format!(
@@ -347,28 +474,18 @@ impl Control<'_, '_> {
             }
             Err(_) => return Err(s.error_block("arc", "the arc begins at its own center")),
         }
-        self.functions(s, words.functions, When::Start)?;
-        if words.feed == Some(FeedWord::Max) {
+        if words.is_rapid() {
             return Err(s.error_block("unsupported", "an arc at rapid is not supported"));
         }
+        self.meet(s, &Element { start: self.here, end, arc: Some(bend) })?;
+        self.functions(s, words.functions, When::Start)?;
         self.set_feed(s, words.feed)?;
         self.needs_feed(s, false)?;
-        let arc = ArcTo {
-            end: self.cutting_pose(s, end)?,
-            center: self.work_point(center),
-            normal: self.work_direction(normal),
-            turns,
-        };
-        self.here = end;
-        self.emit(Op::Arc(Box::new(arc)))?;
-        self.functions(s, words.functions, When::End)?;
-        if self.calls_modally && !words.functions.contains(Function::CallCyclesModally) {
-            self.call_cycle(s)?;
-        }
-        Ok(())
+        self.contour_element(s, Element { start: self.here, end, arc: Some(bend) }, corner)?;
+        self.after_motion(s, words, true, corner)
     }
 
-    fn needs_feed(&self, s: &Scanner, rapid: bool) -> Result<()> {
+    pub(super) fn needs_feed(&self, s: &Scanner, rapid: bool) -> Result<()> {
         if rapid || self.feed.is_some() {
             return Ok(());
         }

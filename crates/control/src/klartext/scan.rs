@@ -1,52 +1,19 @@
 //! Lines and words of the text.
 
+use super::registers::{Parameter, Registers};
 use crate::decimal;
 use program::Diagnostic;
 
 /// What a step of the control answers.
 pub(super) type Result<T> = std::result::Result<T, Box<Diagnostic>>;
 
-/// The lines of a program with their numbers (from 1), ended by LF, CR LF or CR.
-pub(super) struct Lines<'t> {
-    rest: &'t [u8],
-    line: u32,
-}
-
-impl<'t> Lines<'t> {
-    pub(super) fn new(text: &'t [u8]) -> Lines<'t> {
-        Lines { rest: text, line: 0 }
-    }
-}
-
-impl<'t> Iterator for Lines<'t> {
-    type Item = Scanner<'t>;
-
-    fn next(&mut self) -> Option<Scanner<'t>> {
-        if self.rest.is_empty() {
-            return None;
-        }
-        let end = memchr::memchr2(b'\n', b'\r', self.rest).unwrap_or(self.rest.len());
-        let (line, rest) = self.rest.split_at(end);
-        self.rest = match rest {
-            [b'\r', b'\n', rest @ ..] | [_, rest @ ..] => rest,
-            [] => rest,
-        };
-        self.line = self.line.saturating_add(1);
-        Some(Scanner {
-            line: self.line,
-            text: line,
-            start: 0,
-            at: 0,
-            end: line.trim_ascii_end().len(),
-        })
-    }
-}
-
 /// A place in a line.
 #[derive(Clone, Copy)]
 pub(super) struct Scanner<'t> {
     /// Number of the line, from 1.
     pub(super) line: u32,
+    /// Name of a called file; empty in the main program.
+    file: &'t str,
     text: &'t [u8],
     /// Where the block begins, behind its number.
     start: usize,
@@ -68,6 +35,11 @@ pub(super) struct Word<'t> {
 }
 
 impl<'t> Scanner<'t> {
+    /// At the start of a line of `file`.
+    pub(super) fn new(file: &'t str, line: u32, text: &'t [u8]) -> Scanner<'t> {
+        Scanner { line, file, text, start: 0, at: 0, end: text.trim_ascii_end().len() }
+    }
+
     /// The part of a line between two bytes.
     pub(super) fn within(line: Scanner<'t>, at: usize, end: usize) -> Scanner<'t> {
         Scanner { at, end, ..line }
@@ -136,18 +108,22 @@ impl<'t> Scanner<'t> {
         Err(self.error_here("syntax", format!("{expected} is expected here")))
     }
 
-    /// Takes the next word; `None` at the end of the block.
-    pub(super) fn word(&mut self) -> Result<Option<Word<'t>>> {
+    /// Takes the next word, a Q parameter as its value; `None` at the end of the block.
+    pub(super) fn word(&mut self, registers: &Registers) -> Result<Option<Word<'t>>> {
         if self.is_done() {
             return Ok(None);
         }
         let start = self.at;
-        while matches!(self.byte(), Some(b'A'..=b'Z')) {
+        // No address has a Q: there the parameter begins (`FQ5`).
+        while matches!(self.byte(), Some(b'A'..=b'P' | b'R'..=b'Z')) {
             self.at += 1;
         }
         let address = self.text.get(start..self.at).unwrap_or_default();
-        let (sign, number) = self.number();
-        if address.is_empty() || !matches!(self.byte(), None | Some(b' ' | b'\t' | b';')) {
+        if address.is_empty() {
+            return Err(self.unknown());
+        }
+        let (sign, number) = self.number_or_parameter(registers)?;
+        if !matches!(self.byte(), None | Some(b' ' | b'\t' | b';')) {
             self.at = start;
             return Err(self.unknown());
         }
@@ -155,10 +131,10 @@ impl<'t> Scanner<'t> {
     }
 
     /// A number that stands alone (after blanks).
-    pub(super) fn value(&mut self) -> Result<f64> {
+    pub(super) fn value(&mut self, registers: &Registers) -> Result<f64> {
         let done = self.is_done();
         let start = self.at;
-        let (_, number) = self.number();
+        let (_, number) = self.number_or_parameter(registers)?;
         match number {
             Some(number) if !done && matches!(self.byte(), None | Some(b' ' | b'\t' | b';')) => {
                 Ok(number)
@@ -212,7 +188,8 @@ impl<'t> Scanner<'t> {
         span: (usize, usize),
         message: impl Into<String>,
     ) -> Box<Diagnostic> {
-        Diagnostic::error(rule, message).at(self.line, self.text, span.0, span.1).into()
+        let error = Diagnostic::error(rule, message).file(self.file);
+        error.at(self.line, self.text, span.0, span.1).into()
     }
 
     /// An error about the whole block.
@@ -224,24 +201,133 @@ impl<'t> Scanner<'t> {
         self.error(rule, (self.start, self.end), message)
     }
 
-    fn byte(&self) -> Option<u8> {
+    /// The next character.
+    pub(super) fn byte(&self) -> Option<u8> {
         if self.at < self.end { self.text.get(self.at).copied() } else { None }
     }
 
+    /// Takes `expected` where it stands next after blanks, whatever follows it.
+    pub(super) fn take_symbol(&mut self, expected: &[u8]) -> bool {
+        let found = !self.is_done() && self.unread().starts_with(expected);
+        if found {
+            self.at += expected.len();
+        }
+        found
+    }
+
+    /// Takes the letters that stand next after blanks.
+    pub(super) fn letters(&mut self) -> &'t [u8] {
+        self.is_done();
+        let start = self.at;
+        while matches!(self.byte(), Some(b'A'..=b'Z')) {
+            self.at += 1;
+        }
+        self.text.get(start..self.at).unwrap_or_default()
+    }
+
+    /// Takes the digits that stand next, as a number of at most `most`.
+    pub(super) fn digits(&mut self, most: u32) -> Result<u32> {
+        let start = self.at;
+        while matches!(self.byte(), Some(b'0'..=b'9')) {
+            self.at += 1;
+        }
+        let digits = self.text.get(start..self.at).unwrap_or_default();
+        let number = std::str::from_utf8(digits).ok().and_then(|digits| digits.parse().ok());
+        number.filter(|number| *number <= most).ok_or_else(|| {
+            let message = format!("a whole number from 0 to {most} is expected here");
+            self.error("syntax", (start, self.at), message)
+        })
+    }
+
+    /// Takes the name of a Q parameter, if one stands next after blanks.
+    pub(super) fn parameter(&mut self) -> Result<Option<Parameter>> {
+        if self.is_done() || self.byte() != Some(b'Q') {
+            return Ok(None);
+        }
+        let start = self.at;
+        self.at += 1;
+        let kind = self.byte().filter(u8::is_ascii_uppercase);
+        self.at += usize::from(kind.is_some());
+        let Some((make, most)) = Parameter::kind(kind) else {
+            return Err(self.error(
+                "unknown-word",
+                (start, self.at),
+                "there is no such Q parameter",
+            ));
+        };
+        Ok(Some(make(self.digits(most)? as u16)))
+    }
+
+    /// Takes what stands between parentheses; `None` where there are none.
+    pub(super) fn parenthesis(&mut self) -> Option<Scanner<'t>> {
+        if !self.take_symbol(b"(") {
+            return None;
+        }
+        let length = self.unread().iter().position(|b| *b == b')')?;
+        let inside = Scanner { end: self.at + length, ..*self };
+        self.at += length + 1;
+        Some(inside)
+    }
+
+    /// Leaves the rest of the block unread.
+    pub(super) fn skip(&mut self) {
+        self.at = self.end;
+    }
+
+    /// How far the line is read.
+    pub(super) fn at(&self) -> usize {
+        self.at
+    }
+
+    fn unread(&self) -> &'t [u8] {
+        self.text.get(self.at..self.end).unwrap_or_default()
+    }
+
+    /// The sign that is written here, and the number or the parameter with it, as far as there are any.
+    pub(super) fn number_or_parameter(
+        &mut self,
+        registers: &Registers,
+    ) -> Result<(f64, Option<f64>)> {
+        let (sign, number) = self.number();
+        if number.is_some() || self.byte() != Some(b'Q') {
+            return Ok((sign, number));
+        }
+        let start = self.at;
+        let Some(parameter) = self.parameter()? else { return Ok((sign, None)) };
+        let value = registers
+            .number(parameter)
+            .map_err(|message| self.error("parameter", (start, self.at), message))?;
+        Ok((sign, Some(if sign < 0.0 { 0.0 - value } else { value })))
+    }
+
     /// The sign that is written here, and the number with it, as far as there are any.
-    fn number(&mut self) -> (f64, Option<f64>) {
+    pub(super) fn number(&mut self) -> (f64, Option<f64>) {
         let sign = match self.byte() {
             Some(b'+') => 1.0,
             Some(b'-') => -1.0,
             _ => 0.0,
         };
-        let rest = self.text.get(self.at..self.end).unwrap_or_default();
-        let Some(decimal) = decimal::parse(rest) else {
+        let Some((value, length)) = decimal(self.unread()) else {
             self.at += usize::from(sign != 0.0);
             return (sign, None);
         };
-        self.at += decimal.len;
+        self.at += length;
         // The sum takes the sign off a zero: -0 would print and compare oddly.
-        (sign, Some(decimal.value + 0.0).filter(|number| number.is_finite()))
+        (sign, Some(value + 0.0).filter(|number| number.is_finite()))
     }
+}
+
+/// The number that `text` begins with, and its length. The decimal sign is a point, or a comma where
+/// the control was set so when it gave out the program.
+fn decimal(text: &[u8]) -> Option<(f64, usize)> {
+    let whole = decimal::parse(text)?;
+    if whole.point || text.get(whole.len) != Some(&b',') {
+        return Some((whole.value, whole.len));
+    }
+    let mut with_point = [0; 40];
+    let length = text.len().min(with_point.len());
+    with_point[..length].copy_from_slice(&text[..length]);
+    *with_point.get_mut(whole.len)? = b'.';
+    let decimal = decimal::parse(&with_point[..length])?;
+    Some((decimal.value, decimal.len))
 }

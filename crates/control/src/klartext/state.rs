@@ -1,16 +1,18 @@
 //! What the control holds while a program runs, and how that becomes records.
 
+use super::contour::{Element, Waiting};
 use super::cycle::Definition;
 use super::functions::{Function, Functions, When};
 use super::plane::Tilt;
+use super::registers::Registers;
 use super::scan::{Result, Scanner};
+use super::transform::Transforms;
 use super::words::FeedWord;
 use crate::Settings;
 use crate::compensation::{Compensator, Terms};
+use crate::flow::Budget;
 use geom::Vec3;
-use program::{
-    Compensation, Coolant, Cycle, CycleKind, Feed, Op, Orientation, Pose, Record, Spindle,
-};
+use program::{Compensation, Coolant, Cycle, Feed, Op, Orientation, Pose, Record, Spindle};
 
 /// The address letters of the axes, in the order of their coordinates.
 pub(super) const AXES: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
@@ -32,7 +34,7 @@ pub(super) enum Tip {
 /// The state of the control.
 pub(super) struct Control<'a, 's> {
     pub(super) settings: &'a Settings,
-    path: &'a mut Compensator<'s>,
+    compensator: &'a mut Compensator<'s>,
     /// Line of the block that runs.
     line: u32,
     /// mm in the unit of length of the program.
@@ -44,11 +46,17 @@ pub(super) struct Control<'a, 's> {
     pub(super) degrees: [f64; 3],
     /// Tool vector of the last `LN` that gave one, in the coordinates of the block.
     pub(super) vector: Option<Vec3>,
-    /// Datum shift of cycle 7, mm, in the untilted frame.
-    pub(super) shift: Vec3,
+    /// Transformations outside of a tilted plane.
+    pub(super) outside: Transforms,
     pub(super) tilt: Option<Tilt>,
     pub(super) tip: Tip,
     pub(super) feed: Option<Feed>,
+    /// Feed of the last TOOL CALL, for `F AUTO`.
+    pub(super) tool_feed: Option<FeedWord>,
+    /// Number of the tool, where it is known.
+    pub(super) tool_number: Option<u32>,
+    /// Radius of the tool in the tool table, mm.
+    pub(super) tool_radius: Option<f64>,
     pub(super) per_turn: bool,
     pub(super) compensation: Compensation,
     pub(super) speed: Option<f64>,
@@ -56,47 +64,101 @@ pub(super) struct Control<'a, 's> {
     pub(super) coolant: Coolant,
     /// Pole `CC`, mm.
     pub(super) pole: Option<(f64, f64)>,
+    /// The last motion, for those that go on in its direction.
+    pub(super) path: Option<Element>,
+    /// Whether the last positioning was at rapid.
+    pub(super) rapid: bool,
+    /// What is not told before the next element of the contour is known.
+    pub(super) waiting: Option<Waiting>,
     pub(super) cycle: Option<Definition>,
+    /// Points of the last `PATTERN DEF`, mm.
+    pub(super) pattern: Vec<Vec3>,
     /// The cycle as it was told last.
-    told: Option<Cycle>,
+    pub(super) told: Option<Cycle>,
     pub(super) calls_modally: bool,
     pub(super) ended: bool,
+    pub(super) registers: Registers,
+    /// How many called programs run within each other.
+    called: usize,
+    budget: Budget,
 }
 
 impl<'a, 's> Control<'a, 's> {
-    pub(super) fn new(settings: &'a Settings, path: &'a mut Compensator<'s>, unit: f64) -> Self {
+    pub(super) fn new(settings: &'a Settings, compensator: &'a mut Compensator<'s>) -> Self {
         Control {
             settings,
-            path,
+            compensator,
             line: 0,
-            unit,
+            unit: 1.0,
             here: Vec3::NAN,
             degrees: settings.rotary.map(|exists| if exists { f64::NAN } else { 0.0 }),
             vector: None,
-            shift: Vec3::ZERO,
+            outside: Transforms::default(),
             tilt: None,
             tip: Tip::Free,
             feed: None,
+            tool_feed: None,
+            tool_number: None,
+            tool_radius: None,
             per_turn: false,
             compensation: Compensation::Off,
             speed: None,
             spindle: Spindle::Off,
             coolant: Coolant::Off,
             pole: None,
+            path: None,
+            rapid: false,
+            waiting: None,
             cycle: None,
+            pattern: Vec::new(),
             told: None,
             calls_modally: false,
             ended: false,
+            registers: Registers::new(),
+            called: 0,
+            budget: Budget::default(),
         }
     }
 
-    /// The records from here on come from `line`.
+    /// The records from here on come from `line` of the main program.
     pub(super) fn at_line(&mut self, line: u32) {
-        self.line = line;
+        if self.called == 0 {
+            self.line = line;
+        }
     }
 
     pub(super) fn emit(&mut self, op: Op) -> Result<()> {
-        self.path.take(Record { line: self.line, op })
+        self.budget.record();
+        self.compensator.take(Record { line: self.line, op })
+    }
+
+    /// A jump, a call or a return: programs that never end are refused.
+    pub(super) fn count_jump(&mut self, s: &Scanner) -> Result<()> {
+        self.budget.jump().map_err(|message| s.error_block("endless", message))
+    }
+
+    /// A called program begins; answers how many there are within each other.
+    pub(super) fn enter_program(&mut self) -> usize {
+        self.called += 1;
+        self.called
+    }
+
+    /// A called program has ended.
+    pub(super) fn leave_program(&mut self) {
+        self.called -= 1;
+    }
+
+    /// Whether the program that runs is a called one.
+    pub(super) fn is_called(&self) -> bool {
+        self.called > 0
+    }
+
+    /// The unit of length of the program that runs, in mm.
+    pub(super) fn set_unit(&mut self, unit: f64) {
+        self.unit = unit;
+        if self.called == 0 {
+            self.registers.preassign(113, f64::from(unit != 1.0));
+        }
     }
 
     /// The pose of the tool at a programmed position.
@@ -106,15 +168,23 @@ impl<'a, 's> Control<'a, 's> {
 
     /// A programmed position in the work frame.
     pub(super) fn work_point(&self, programmed: Vec3) -> Vec3 {
-        match &self.tilt {
-            None => programmed + self.shift,
-            Some(tilt) => tilt.turn * (programmed + tilt.shift) + self.shift,
-        }
+        self.outside.apply(match &self.tilt {
+            None => programmed,
+            Some(tilt) => tilt.turn * tilt.inside.apply(programmed),
+        })
     }
 
     /// A programmed direction in the work frame.
     pub(super) fn work_direction(&self, programmed: Vec3) -> Vec3 {
-        self.tilt.as_ref().map_or(programmed, |tilt| tilt.turn * programmed)
+        self.outside.direct(match &self.tilt {
+            None => programmed,
+            Some(tilt) => tilt.turn * tilt.inside.direct(programmed),
+        })
+    }
+
+    /// Whether the coordinates of the blocks are mirrored.
+    pub(super) fn mirrors(&self) -> bool {
+        self.outside.mirrors() != self.tilt.as_ref().is_some_and(|tilt| tilt.inside.mirrors())
     }
 
     fn orientation(&self) -> Orientation {
@@ -185,6 +255,16 @@ impl<'a, 's> Control<'a, 's> {
     }
 
     pub(super) fn set_spindle(&mut self, spindle: Spindle) -> Result<()> {
+        let code = match (spindle, self.spindle) {
+            (Spindle::Clockwise(_), _) => Some(0.0),
+            (Spindle::CounterClockwise(_), _) => Some(1.0),
+            (Spindle::Off, Spindle::Clockwise(_)) => Some(2.0),
+            (Spindle::Off, Spindle::CounterClockwise(_)) => Some(3.0),
+            (Spindle::Off, Spindle::Off) => None,
+        };
+        if let Some(code) = code {
+            self.registers.preassign(110, code);
+        }
         if self.spindle != spindle {
             self.spindle = spindle;
             self.emit(Op::Spindle(spindle))?;
@@ -193,6 +273,7 @@ impl<'a, 's> Control<'a, 's> {
     }
 
     pub(super) fn set_coolant(&mut self, coolant: Coolant) -> Result<()> {
+        self.registers.preassign(111, f64::from(coolant != Coolant::Off));
         if self.coolant != coolant {
             self.coolant = coolant;
             self.emit(Op::Coolant(coolant))?;
@@ -201,15 +282,24 @@ impl<'a, 's> Control<'a, 's> {
     }
 
     pub(super) fn set_compensation(&mut self, compensation: Compensation) -> Result<()> {
-        if self.compensation != compensation {
-            self.compensation = compensation;
-            // The plane of work is that of the tool.
-            let normal = self.tilt.map_or(Vec3::Z, |tilt| tilt.turn * Vec3::Z);
-            let (radius, outer) = (None, None);
-            let terms = Terms { normal, tool_axis: normal, radius, outer, around: false };
-            self.path.switch(self.line, compensation, terms)?;
+        if self.compensation == compensation {
+            return Ok(());
         }
-        Ok(())
+        self.compensation = compensation;
+        // What is left in mirrored coordinates is right of the path that is told.
+        let side = match (compensation, self.mirrors()) {
+            (Compensation::Left(_), true) => Compensation::Right(None),
+            (Compensation::Right(_), true) => Compensation::Left(None),
+            _ => compensation,
+        };
+        let terms = Terms {
+            normal: self.work_direction(Vec3::Z).normalize_or(Vec3::Z),
+            across_tool: true,
+            radius: None,
+            outer: None,
+            around: false,
+        };
+        self.compensator.switch(self.line, side, terms)
     }
 
     /// Does the M functions of a block that act at that moment.
@@ -246,6 +336,10 @@ impl<'a, 's> Control<'a, 's> {
                 self.emit(Op::OptionalStop)?;
                 self.stop_all()
             }
+            Function::End if self.is_called() => {
+                let message = "a called program ends with END PGM: M2 and M30 would end all";
+                Err(s.error_block("program-frame", message))
+            }
             Function::End => self.end(),
             Function::KeepTip => self.keep_tip(s, Tip::Kept),
             Function::ReleaseTip => {
@@ -269,7 +363,7 @@ impl<'a, 's> Control<'a, 's> {
                 self.calls_modally = false;
                 self.call_cycle(s)
             }
-            Function::MachineCoordinates | Function::RotaryWay | Function::Auxiliary => Ok(()),
+            Function::MachineCoordinates | Function::Nothing => Ok(()),
         }
     }
 
@@ -315,45 +409,38 @@ impl<'a, 's> Control<'a, 's> {
         path.map_or(Ok(()), |feed| self.emit(Op::Feed(feed)))
     }
 
-    /// Runs the defined cycle where the tool stands.
-    pub(super) fn call_cycle(&mut self, s: &Scanner) -> Result<()> {
-        if self.ended {
-            return Err(s.error_block("cycle", "no cycle is called where the program ends"));
+    /// The end of the program.
+    pub(super) fn end(&mut self) -> Result<()> {
+        self.stop_all()?;
+        self.ended = true;
+        self.emit(Op::End)
+    }
+
+    /// `FN 18: SYSREAD`, from behind its `=`: `ID270 NR1 IDX1`. Lengths are mm in every program.
+    pub(super) fn system_datum(&self, s: &mut Scanner) -> Result<f64> {
+        let from = *s;
+        let [mut id, mut number, mut index] = [None; 3];
+        while let Some(word) = s.word(&self.registers)? {
+            match word.address {
+                b"ID" => id = word.number,
+                b"NR" => number = word.number,
+                b"IDX" => index = word.number,
+                _ => return Err(super::words::unknown(s, &word)),
+            }
         }
-        let Some(definition) = &self.cycle else {
-            return Err(s.error_block("cycle", "no cycle is defined yet"));
+        let axis = index.and_then(|index| (0..3usize).find(|i| *i as f64 + 1.0 == index));
+        let whole = |value: Option<f64>| value.filter(|v| v.fract() == 0.0).map(|v| v as i64);
+        let datum = match (whole(id), whole(number), axis) {
+            (Some(20), Some(1), _) => self.tool_number.map(f64::from),
+            (Some(210), Some(2), _) => Some(self.transforms().rotation()),
+            (Some(220), Some(2), Some(axis)) => Some(self.transforms().shift()[axis]),
+            (Some(270), Some(1), Some(axis)) => Some(self.here[axis]),
+            (Some(280), Some(1), _) => Some(if self.tip == Tip::Free { 0.0 } else { -1.0 }),
+            _ => None,
         };
-        let (mut cycle, surface) = (definition.cycle, definition.surface);
-        if self.compensation != Compensation::Off {
-            return Err(s.error_block("cycle", "a cycle is called with R0"));
-        }
-        if self.per_turn {
-            return Err(s.error_block("cycle", "a cycle is not called while M136 is active"));
-        }
-        let running = match self.spindle {
-            Spindle::Off => None,
-            Spindle::Clockwise(speed) | Spindle::CounterClockwise(speed) => Some(speed),
-        };
-        // Cycle 206 gives the feed: the pitch is what the running spindle makes of it.
-        if let (CycleKind::Tap { .. }, Some(Feed::PerMinute(feed))) = (cycle.kind, cycle.feed) {
-            let Some(speed) = running.filter(|speed| *speed > 0.0) else {
-                return Err(s.error_block("spindle", "cycle 206 needs a turning spindle"));
-            };
-            let left = matches!(self.spindle, Spindle::CounterClockwise(_));
-            cycle.kind = CycleKind::Tap { pitch: feed / speed, left };
-        }
-        // The cycle drills along Z of the coordinates of the program.
-        if self.tip != Tip::Free && self.tilt.is_none() && !self.stands_upright() {
-            let message = "with M128 a cycle does not drill along an inclined tool";
-            return Err(s.error_block("cycle", message).help("use PLANE SPATIAL").into());
-        }
-        let hole = self.cutting_pose(s, self.here.with_z(surface))?;
-        if self.told != Some(cycle) {
-            self.told = Some(cycle);
-            self.emit(Op::Cycle(Box::new(cycle)))?;
-        }
-        self.emit(Op::Hole(hole))?;
-        self.here.z = surface + cycle.retract;
-        Ok(())
+        datum.filter(|value| value.is_finite()).ok_or_else(|| {
+            let message = "this datum of the control is not known here";
+            s.error("parameter", (from.at(), s.at()), message)
+        })
     }
 }

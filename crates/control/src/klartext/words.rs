@@ -25,24 +25,32 @@ pub(super) mod slot {
     pub(crate) const NX: usize = 9;
     /// First of the tool vector TX TY TZ.
     pub(crate) const TX: usize = 12;
+    /// Length of a straight approach or departure.
+    pub(crate) const LEN: usize = 15;
+    /// Angle of an approach or a departure on an arc.
+    pub(crate) const CCA: usize = 16;
     /// How many there are.
-    pub(crate) const COUNT: usize = 15;
+    pub(crate) const COUNT: usize = 17;
 }
 
 /// X, Y and Z.
-pub(super) const LINEAR: u16 = 0b111;
+pub(super) const LINEAR: u32 = 0b111;
 /// A, B and C.
-pub(super) const ROTARY: u16 = 0b111 << slot::A;
+pub(super) const ROTARY: u32 = 0b111 << slot::A;
 /// NX NY NZ and TX TY TZ.
-pub(super) const VECTORS: u16 = 0b11_1111 << slot::NX;
+pub(super) const VECTORS: u32 = 0b11_1111 << slot::NX;
 /// Polar radius.
-pub(super) const PR: u16 = 1 << slot::PR;
+pub(super) const PR: u32 = 1 << slot::PR;
 /// Polar angle.
-pub(super) const PA: u16 = 1 << slot::PA;
+pub(super) const PA: u32 = 1 << slot::PA;
 /// Radius of `CR`.
-pub(super) const RADIUS: u16 = 1 << slot::R;
+pub(super) const RADIUS: u32 = 1 << slot::R;
 /// Sense of rotation `DR+`, `DR-`.
-pub(super) const TURN: u16 = 1 << 15;
+pub(super) const TURN: u32 = 1 << slot::COUNT;
+/// Length of a straight approach or departure.
+pub(super) const LEN: u32 = 1 << slot::LEN;
+/// Angle of an approach or a departure on an arc.
+pub(super) const CCA: u32 = 1 << slot::CCA;
 
 /// What an F word says.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -59,8 +67,8 @@ pub(super) enum FeedWord {
 #[derive(Default)]
 pub(super) struct Words {
     value: [f64; slot::COUNT],
-    given: u16,
-    incremental: u16,
+    given: u32,
+    incremental: u32,
     /// Sense of rotation: 1 counter-clockwise, −1 clockwise; 0 where the block does not say.
     pub(super) turn: f64,
     /// F, FU or FMAX.
@@ -74,9 +82,9 @@ pub(super) struct Words {
 impl Words {
     /// Reads words to the end of the block. Those of `allowed` may stand there, besides feed, radius
     /// compensation and M functions.
-    pub(super) fn read(s: &mut Scanner, allowed: u16, control: &Control) -> Result<Words> {
+    pub(super) fn read(s: &mut Scanner, allowed: u32, control: &Control) -> Result<Words> {
         let mut words = Words::default();
-        while let Some(word) = s.word()? {
+        while let Some(word) = s.word(&control.registers)? {
             words.add(s, &word, allowed, control)?;
         }
         Ok(words)
@@ -94,18 +102,28 @@ impl Words {
     }
 
     /// Whether any of a set of words stands in the block.
-    pub(super) fn has(&self, set: u16) -> bool {
+    pub(super) fn has(&self, set: u32) -> bool {
         self.given & set != 0
     }
 
     /// Whether all of a set of words stand in the block.
-    pub(super) fn has_all(&self, set: u16) -> bool {
+    pub(super) fn has_all(&self, set: u32) -> bool {
         self.given & set == set
     }
 
     /// Whether any of a set of words is incremental.
-    pub(super) fn is_incremental(&self, set: u16) -> bool {
+    pub(super) fn is_incremental(&self, set: u32) -> bool {
         self.incremental & set != 0
+    }
+
+    /// Whether the motion is at rapid.
+    pub(super) fn is_rapid(&self) -> bool {
+        self.feed == Some(FeedWord::Max)
+    }
+
+    /// Whether coordinates stand there alone.
+    pub(super) fn is_plain(&self) -> bool {
+        self.feed.is_none() && self.compensation.is_none() && self.functions.is_empty()
     }
 
     /// Where a coordinate goes that is at `here` now.
@@ -117,7 +135,7 @@ impl Words {
         }
     }
 
-    fn add(&mut self, s: &mut Scanner, word: &Word, allowed: u16, control: &Control) -> Result<()> {
+    fn add(&mut self, s: &mut Scanner, word: &Word, allowed: u32, control: &Control) -> Result<()> {
         let unit = control.unit;
         let (incremental, address) = match word.address {
             [b'I', rest @ ..] if !rest.is_empty() => (true, rest),
@@ -129,12 +147,16 @@ impl Words {
             b"PR" => (slot::PR, unit),
             b"PA" => (slot::PA, 1.0),
             _ if incremental => return Err(unknown(s, word)),
-            b"F" | b"FU" | b"FMAX" | b"FAUTO" => {
-                let feed = feed_word(s, word)?;
+            [b'F', ..] => {
+                let feed = feed_word(s, word, control.tool_feed)?;
                 return once(s, word, &mut self.feed, feed);
             }
             b"M" => return self.add_function(s, word, control),
-            b"R" if allowed & RADIUS != 0 && word.sign != 0.0 => (slot::R, unit),
+            b"R" if allowed & RADIUS != 0 && (word.sign != 0.0 || word.number != Some(0.0)) => {
+                (slot::R, unit)
+            }
+            b"LEN" => (slot::LEN, unit),
+            b"CCA" => (slot::CCA, 1.0),
             b"R" if word.sign == 0.0 && word.number == Some(0.0) => {
                 return once(s, word, &mut self.compensation, Compensation::Off);
             }
@@ -164,7 +186,7 @@ impl Words {
         }
         self.value[slot] = number * scale;
         self.given |= 1 << slot;
-        self.incremental |= u16::from(incremental) << slot;
+        self.incremental |= u32::from(incremental) << slot;
         Ok(())
     }
 
@@ -174,8 +196,13 @@ impl Words {
     }
 }
 
-/// What an F word says; `F MAX` may be written with a blank.
-pub(super) fn feed_word(s: &mut Scanner, word: &Word) -> Result<FeedWord> {
+/// What an F word says; `F MAX` may be written with a blank. `automatic` is the feed of the last TOOL
+/// CALL, which `F AUTO` takes.
+pub(super) fn feed_word(
+    s: &mut Scanner,
+    word: &Word,
+    automatic: Option<FeedWord>,
+) -> Result<FeedWord> {
     match (word.address, word.number) {
         (b"FMAX", None) => Ok(FeedWord::Max),
         (b"F", None) if word.sign == 0.0 && s.take(b"MAX") => Ok(FeedWord::Max),
@@ -189,16 +216,21 @@ pub(super) fn feed_word(s: &mut Scanner, word: &Word) -> Result<FeedWord> {
                 FeedWord::PerTurn(number)
             })
         }
-        (b"FAUTO", None) => Err(automatic(s, word)),
-        (b"F", None) if s.peek() == b"AUTO" => Err(automatic(s, word)),
+        (b"FAUTO", None) | (b"F", None) if word.address == b"FAUTO" || s.take(b"AUTO") => automatic
+            .ok_or_else(|| {
+                s.error("feed", word.span, "F AUTO takes the feed of a TOOL CALL, which gave none")
+                    .help("write the feed as a number")
+                    .into()
+            }),
+        (b"FZ", _) => {
+            let message = "FZ is the feed of a tooth, and how many teeth the tool has is not known";
+            Err(s.error("feed", word.span, message).help("write the feed in mm/min").into())
+        }
+        (b"FT" | b"FMAXT", _) => {
+            Err(s.error("feed", word.span, "FT gives a time, which is not supported"))
+        }
         _ => Err(unknown(s, word)),
     }
-}
-
-fn automatic(s: &Scanner, word: &Word) -> Box<program::Diagnostic> {
-    s.error("feed", word.span, "F AUTO takes the feed from a table that is not at hand")
-        .help("write the feed as a number")
-        .into()
 }
 
 fn once<T>(s: &Scanner, word: &Word, place: &mut Option<T>, value: T) -> Result<()> {

@@ -4,6 +4,7 @@ use super::Fallible;
 use super::cycles::{CYCLES, Form};
 use super::expression::Evaluator;
 use super::scan::{Scanner, Source};
+use super::value::Value;
 use program::Diagnostic;
 
 /// What a call does.
@@ -66,44 +67,110 @@ const PROCEDURES: &[(&str, Procedure)] = &[
     ("RET", Procedure::Return),
 ];
 
-/// Words of the language above blocks and words.
-const HIGHER_LANGUAGE: &[&str] = &[
-    "DEF", "IF", "ELSE", "ENDIF", "FOR", "ENDFOR", "WHILE", "ENDWHILE", "LOOP", "ENDLOOP",
-    "REPEAT", "REPEATB", "UNTIL", "GOTO", "GOTOF", "GOTOB", "GOTOC", "GOTOS", "CASE", "PROC",
-    "EXTERN", "CALL", "PCALL", "EXTCALL", "ISOCALL", "WHEN", "WHENEVER", "EVERY", "DO", "ID",
-    "IDS", "SET", "REP", "DEFINE", "REDEF",
+/// Words of the language that are known and not supported.
+const UNSUPPORTED: &[(&str, &str)] = &[
+    ("WHEN", SYNCHRONISED),
+    ("WHENEVER", SYNCHRONISED),
+    ("EVERY", SYNCHRONISED),
+    ("FROM", SYNCHRONISED),
+    ("DO", SYNCHRONISED),
+    ("ID", SYNCHRONISED),
+    ("IDS", SYNCHRONISED),
+    ("DEFINE", "macros"),
+    ("REDEF", "changes to definitions"),
+    ("ISOCALL", "the language of other makers"),
+    ("CALLPATH", "another search path; give the folders"),
+    ("WRITE", "files written by the program"),
+    ("READ", "files read by the program"),
+    ("DELETE", "files deleted by the program"),
+    ("EXECSTRING", "blocks made from texts"),
+    ("EXECTAB", "blocks made from tables"),
+    ("TRANSMIT", "the transformation of a face"),
+    ("TRACYL", "the transformation of a cylinder"),
+    ("TRAANG", "the transformation of an inclined axis"),
+    ("OFFN", "an allowance on the contour"),
+    ("POSA", "axes that move on over the end of the block"),
+    ("SPOSA", "a spindle that turns on over the end of the block"),
+    ("FL", "a feed for synchronous axes"),
+    ("FA", "a feed for positioning axes"),
+    ("SPCON", "position control of the spindle"),
+    ("SPCOF", "position control of the spindle"),
+    ("SETMS", "another master spindle"),
+    ("LIMS", "a limit of the speed for constant cutting speed"),
+    ("GEOAX", "other geometry axes"),
+    ("DRFOF", "overlaid motions"),
+    ("MEAS", MEASURING),
+    ("MEAW", MEASURING),
+    ("MEASA", MEASURING),
+    ("MEAWA", MEASURING),
+    ("POCKET1", MILLING),
+    ("POCKET2", MILLING),
+    ("POCKET3", MILLING),
+    ("POCKET4", MILLING),
+    ("SLOT1", MILLING),
+    ("SLOT2", MILLING),
+    ("LONGHOLE", MILLING),
+    ("CYCLE60", MILLING),
+    ("CYCLE61", MILLING),
+    ("CYCLE62", MILLING),
+    ("CYCLE63", MILLING),
+    ("CYCLE64", MILLING),
+    ("CYCLE70", MILLING),
+    ("CYCLE71", MILLING),
+    ("CYCLE72", MILLING),
+    ("CYCLE73", MILLING),
+    ("CYCLE74", MILLING),
+    ("CYCLE75", MILLING),
+    ("CYCLE76", MILLING),
+    ("CYCLE77", MILLING),
+    ("CYCLE78", MILLING),
+    ("CYCLE79", MILLING),
+    ("CYCLE90", MILLING),
+    ("CYCLE899", MILLING),
 ];
+
+const SYNCHRONISED: &str = "synchronised actions";
+const MEASURING: &str = "measuring";
+const MILLING: &str = "a milling cycle, whose path the control makes; write the path";
+
+/// Whether `name` is a word that is called.
+pub(super) fn is_known(name: &str) -> bool {
+    name == "MCALL"
+        || PROCEDURES.iter().any(|(n, _)| *n == name)
+        || CYCLES.iter().any(|form| form.name == name)
+        || UNSUPPORTED.iter().any(|(n, _)| *n == name)
+}
 
 /// Most arguments of a call (Programming Manual 06/2019, 3.2.2.2).
 const MOST_ARGUMENTS: usize = 127;
 
 impl Call {
-    /// Takes a call behind its name, which starts at `start`.
+    /// Takes a call behind its name, which starts at `start`; none where that name is not known.
     pub fn read(
         scanner: &mut Scanner,
         start: usize,
         name: &str,
         evaluator: &Evaluator,
-    ) -> Fallible<Call> {
+    ) -> Fallible<Option<Call>> {
         if name == "MCALL" {
-            return Call::read_modal(scanner, start, evaluator);
+            return Call::read_modal(scanner, start, evaluator).map(Some);
         }
         if let Some((name, procedure)) = PROCEDURES.iter().find(|(n, _)| *n == name) {
             let arguments = read_arguments(scanner, evaluator)?;
-            return Ok(Call { procedure: *procedure, name, modal: false, arguments });
+            return Ok(Some(Call { procedure: *procedure, name, modal: false, arguments }));
         }
         if let Some(form) = CYCLES.iter().find(|form| form.name == name) {
             let arguments = read_arguments(scanner, evaluator)?;
             let procedure = Procedure::Drill(form);
-            return Ok(Call { procedure, name: form.name, modal: false, arguments });
+            return Ok(Some(Call { procedure, name: form.name, modal: false, arguments }));
         }
-        let message = if HIGHER_LANGUAGE.contains(&name) {
-            format!("{name} is not supported yet")
-        } else {
-            format!("'{name}' is not known: not a command, a cycle or an address of this control")
-        };
-        let rule = if HIGHER_LANGUAGE.contains(&name) { "unsupported" } else { "unknown-word" };
-        Err(scanner.error_since(start, rule, message))
+        match UNSUPPORTED.iter().find(|(n, _)| *n == name) {
+            None => Ok(None),
+            Some((name, reason)) => {
+                let message = format!("{name} is not supported: {reason}");
+                Err(scanner.error_since(start, "unsupported", message))
+            }
+        }
     }
 
     fn read_modal(scanner: &mut Scanner, start: usize, evaluator: &Evaluator) -> Fallible<Call> {
@@ -116,7 +183,7 @@ impl Call {
         let name = scanner.name()?;
         let call = match name.as_str() {
             "MCALL" => None,
-            name => Some(Call::read(scanner, name_start, name, evaluator)?),
+            name => Call::read(scanner, name_start, name, evaluator)?,
         };
         match call {
             Some(call) if matches!(call.procedure, Procedure::Drill(_)) => {
@@ -164,25 +231,32 @@ fn too_many(scanner: &Scanner) -> Box<Diagnostic> {
     scanner.error_here("syntax", "a call has at most 127 arguments")
 }
 
+/// An argument: left out, a value, or a name that is none (a constant of the cycle).
 fn read_argument(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<Argument> {
     scanner.blanks();
-    match scanner.peek() {
-        b',' | b')' => Ok(Argument::None),
-        b'"' => scanner.quoted().map(Argument::Text),
-        b'_' | b'A'..=b'Z' => {
-            let back = scanner.at;
-            let name = scanner.name()?;
-            scanner.blanks();
-            let alone = matches!(scanner.peek(), b',' | b')');
-            let parameter = name.as_str().starts_with('R')
-                && name.as_str().bytes().skip(1).all(|b| b.is_ascii_digit())
-                && name.as_str().len() > 1;
-            if alone && !parameter {
-                return Ok(Argument::Text(name.as_str().to_owned()));
-            }
-            scanner.at = back;
-            evaluator.expression(scanner).map(Argument::Number)
+    if matches!(scanner.peek(), b',' | b')') {
+        return Ok(Argument::None);
+    }
+    if scanner.peek() == b'_' || scanner.peek().is_ascii_alphabetic() {
+        let back = scanner.at;
+        let name = scanner.name()?;
+        scanner.blanks();
+        let alone = matches!(scanner.peek(), b',' | b')');
+        let parameter = name.as_str().strip_prefix('R').is_some_and(|digits| {
+            !digits.is_empty() && digits.bytes().all(|byte| byte.is_ascii_digit())
+        });
+        let value = matches!(name.as_str(), "TRUE" | "FALSE");
+        if alone && !parameter && !value && !evaluator.is_variable(&name) {
+            return Ok(Argument::Text(name.as_str().to_owned()));
         }
-        _ => evaluator.expression(scanner).map(Argument::Number),
+        scanner.at = back;
+    }
+    let start = scanner.at;
+    match evaluator.value(scanner)? {
+        Value::Text(text) => Ok(Argument::Text(text.to_string())),
+        value => match value.number() {
+            Some(number) => Ok(Argument::Number(number)),
+            None => Err(scanner.error_since(start, "type", "an axis is no argument here")),
+        },
     }
 }

@@ -1,78 +1,48 @@
-//! Arithmetic behind `=`.
+//! Arithmetic, logic and texts: what stands behind `=`, in brackets, and behind `IF`.
 //!
-//! Operators by rank: unary sign; `*` `/` `DIV` `MOD`; `+` `-`; from left to right within a rank.
-//! Angles of the trigonometric functions are degrees (Job Planning, arithmetic functions). `/` gives
-//! a real number also for two whole numbers, `DIV` the whole quotient, `MOD` its remainder.
+//! Operators by rank: `NOT B_NOT` and signs; `*` `/` `DIV` `MOD`; `+` `-`; `B_AND`; `B_XOR`; `B_OR`; `AND`;
+//! `XOR`; `OR`; `<<`; the comparisons; from left to right within a rank (Job Planning 04.00, 1.8). Angles
+//! are degrees. `/` gives a real number also for two whole numbers.
+//!
+//! A comparison ranks below `AND`: `R1==1 AND R2==2` is `R1==(1 AND R2)==2`. Whoever writes that means
+//! something else; where the two readings differ the block is refused.
 
 use super::Fallible;
-use super::scan::Scanner;
+use super::functions::{self, MOST_ARGUMENTS};
+use super::scan::{Name, Scanner};
+use super::state::State;
+use super::system;
+use super::value::{Kind, LONGEST_TEXT, Value};
+use super::variables::{Parameter, Place, R_PARAMETERS, Variable};
 use program::Diagnostic;
 use std::cell::Cell;
-
-/// How many R parameters there are (`R0` to `R999`; the machine's builder says how many, MD28050).
-pub(super) const R_PARAMETERS: usize = 1000;
+use std::rc::Rc;
 
 /// How deep brackets and signs may nest.
 const DEEPEST: usize = 32;
 
-/// What is known of an R parameter.
-#[derive(Clone, Copy)]
-enum Parameter {
-    /// A block has set it.
-    Set(f64),
-    /// The operator sets it at the machine.
-    Operator,
-    /// Nothing: it keeps what another program has left there.
-    Unknown,
-}
-
-/// The R parameters.
-pub(super) struct Parameters {
-    values: Vec<Parameter>,
-}
-
-impl Parameters {
-    /// Before a program: those of the operator, and no other.
-    pub fn new(operator: &[u32]) -> Parameters {
-        let mut values = vec![Parameter::Unknown; R_PARAMETERS];
-        for index in operator {
-            if let Some(place) = values.get_mut(*index as usize) {
-                *place = Parameter::Operator;
-            }
-        }
-        Parameters { values }
-    }
-
-    /// Sets a parameter (an index beyond the last is checked where it is read).
-    pub fn set(&mut self, index: usize, value: f64) {
-        if let Some(place) = self.values.get_mut(index) {
-            *place = Parameter::Set(value);
-        }
-    }
-
-    fn get(&self, index: usize) -> Parameter {
-        self.values.get(index).copied().unwrap_or(Parameter::Unknown)
-    }
-}
+/// How far apart two reals may be, as a part of the larger, and still be equal (Job Planning 12/2019,
+/// 3.1.3.4: relative equality).
+const RELATIVE_EQUALITY: f64 = 1e-12;
 
 /// Evaluates the expressions of one block.
 pub(super) struct Evaluator<'a> {
-    /// Values before the block.
-    pub parameters: &'a Parameters,
+    /// Before the block.
+    state: &'a State,
     /// What the block has assigned so far.
-    pub assigned: &'a [(usize, f64)],
+    assigned: &'a [(Place, Value)],
     /// The operator's parameter that the expression has added; it counts as 0.
     offset: Cell<Option<usize>>,
 }
 
 impl<'a> Evaluator<'a> {
     /// For a block that has assigned `assigned` so far.
-    pub fn new(parameters: &'a Parameters, assigned: &'a [(usize, f64)]) -> Evaluator<'a> {
-        Evaluator { parameters, assigned, offset: Cell::new(None) }
+    pub fn new(state: &'a State, assigned: &'a [(Place, Value)]) -> Evaluator<'a> {
+        Evaluator { state, assigned, offset: Cell::new(None) }
     }
 
-    /// Takes an expression.
-    pub fn expression(&self, scanner: &mut Scanner) -> Fallible<f64> {
+    /// Takes an expression of any type.
+    pub fn value(&self, scanner: &mut Scanner) -> Fallible<Value> {
         let start = scanner.at;
         let value = self.finite(scanner)?;
         match self.offset.get() {
@@ -81,27 +51,144 @@ impl<'a> Evaluator<'a> {
         }
     }
 
+    /// Takes a number.
+    pub fn expression(&self, scanner: &mut Scanner) -> Fallible<f64> {
+        let start = scanner.at;
+        let value = self.value(scanner)?;
+        number(scanner, start, &value)
+    }
+
     /// Takes an expression to which one parameter of the operator may be added: its value without
     /// that, and the parameter.
     pub fn offset_expression(&self, scanner: &mut Scanner) -> Fallible<(f64, Option<usize>)> {
+        let start = scanner.at;
         let value = self.finite(scanner)?;
-        Ok((value, self.offset.take()))
+        Ok((number(scanner, start, &value)?, self.offset.take()))
     }
 
-    fn finite(&self, scanner: &mut Scanner) -> Fallible<f64> {
+    /// Takes a condition.
+    pub fn condition(&self, scanner: &mut Scanner) -> Fallible<bool> {
         let start = scanner.at;
-        let value = self.sum(scanner, 0)?;
-        if value.is_finite() {
+        let value = self.value(scanner)?;
+        value.truth().ok_or_else(|| {
+            let message = format!("a condition is a number or a BOOL, not {}", value.name());
+            scanner.error_since(start, "type", message)
+        })
+    }
+
+    /// Takes a text.
+    pub fn text(&self, scanner: &mut Scanner) -> Fallible<Rc<str>> {
+        let start = scanner.at;
+        match self.value(scanner)? {
+            Value::Text(text) => Ok(text),
+            other => {
+                let message = format!("a text must stand here, not {}", other.name());
+                Err(scanner.error_since(start, "type", message))
+            }
+        }
+    }
+
+    /// Takes a whole number within `range`.
+    pub fn within(
+        &self,
+        scanner: &mut Scanner,
+        range: std::ops::RangeInclusive<u32>,
+    ) -> Fallible<u32> {
+        scanner.blanks();
+        let start = scanner.at;
+        let value = self.expression(scanner)?;
+        let bounds = f64::from(*range.start())..=f64::from(*range.end());
+        if value.fract() == 0.0 && bounds.contains(&value) {
+            return Ok(value as u32);
+        }
+        let message = format!(
+            "a whole number from {} to {} must stand here, not {value}",
+            range.start(),
+            range.end()
+        );
+        Err(scanner.error_since(start, "number", message))
+    }
+
+    fn finite(&self, scanner: &mut Scanner) -> Fallible<Value> {
+        let start = scanner.at;
+        let value = self.chain(scanner, 0)?;
+        if value.number().is_none_or(f64::is_finite) {
             return Ok(value);
         }
         Err(scanner.error_since(start, "arithmetic", "the result is not a finite number"))
+    }
+
+    /// Whether that name is a variable of the program.
+    pub fn is_variable(&self, name: &Name) -> bool {
+        self.state.locals.find(name).is_some()
+    }
+
+    /// Takes what a value is assigned to.
+    pub fn place(&self, scanner: &mut Scanner) -> Fallible<Place> {
+        let start = scanner.at;
+        match (scanner.peek(), scanner.peek_at(1)) {
+            (b'$', _) => system::place(self, scanner),
+            (b'R', next) if !scanner.name_next() && next != b'=' => {
+                scanner.at += 1;
+                self.index(scanner).map(Place::Parameter)
+            }
+            _ => {
+                let name = scanner.name()?;
+                let index = self.state.locals.find(&name);
+                let variable = index.and_then(|i| Some((i, self.state.locals.get(i)?)));
+                let Some((index, variable)) = variable else {
+                    let message = format!("'{}' is not a variable (alarm 12550)", name.as_str());
+                    let mut error = scanner.error_since(start, "unknown-word", message);
+                    error.help = "a variable needs its DEF in the same program".into();
+                    return Err(error);
+                };
+                self.element(scanner, variable).map(|element| Place::Element(index, element))
+            }
+        }
+    }
+
+    /// The type of a place, and how many elements there are from it on.
+    pub fn room(&self, place: Place) -> (Kind, usize) {
+        match place {
+            Place::Element(index, element) => match self.state.locals.get(index) {
+                Some(variable) if variable.sizes.is_empty() => (variable.kind, 1),
+                Some(variable) => (variable.kind, variable.values.len().saturating_sub(element)),
+                None => (Kind::Real, 0),
+            },
+            Place::Parameter(_) | Place::WorkOffset(..) => (Kind::Real, 1),
+        }
+    }
+
+    /// Takes a variable that is the whole argument of a call: its index and element, and its value.
+    #[allow(clippy::type_complexity, reason = "it is taken apart at once")]
+    pub fn variable_alone(
+        &self,
+        scanner: &mut Scanner,
+    ) -> Fallible<Option<((usize, Option<usize>), Option<Value>)>> {
+        let back = scanner.at;
+        if !scanner.name_next() {
+            return Ok(None);
+        }
+        let name = scanner.name()?;
+        let index = self.state.locals.find(&name);
+        if let Some((index, variable)) = index.and_then(|i| Some((i, self.state.locals.get(i)?))) {
+            let array = !variable.sizes.is_empty() && scanner.peek() != b'[';
+            let element = if array { None } else { Some(self.element(scanner, variable)?) };
+            scanner.blanks();
+            if matches!(scanner.peek(), b',' | b')') {
+                let value = element.and_then(|e| variable.values.get(e).cloned().flatten());
+                return Ok(Some(((index, element), value)));
+            }
+        }
+        scanner.at = back;
+        Ok(None)
     }
 
     /// Takes the index of an R parameter behind its `R`.
     pub fn index(&self, scanner: &mut Scanner) -> Fallible<usize> {
         let start = scanner.at;
         let index = if scanner.take(b'[') {
-            let index = self.expression(scanner)?;
+            let index = Evaluator::new(self.state, self.assigned).expression(scanner)?;
             scanner.expect(b']')?;
             if index.fract() == 0.0 && index >= 0.0 { index as usize } else { R_PARAMETERS }
         } else {
@@ -113,25 +200,88 @@ impl<'a> Evaluator<'a> {
         Err(scanner.error_since(start, "r-parameter", "there are R0 to R999"))
     }
 
-    fn sum(&self, scanner: &mut Scanner, depth: usize) -> Fallible<f64> {
+    /// Takes the element in brackets of a variable, where it is an array.
+    pub fn element(&self, scanner: &mut Scanner, variable: &Variable) -> Fallible<usize> {
+        let start = scanner.at;
+        let mut element = 0;
+        for (i, size) in variable.sizes.iter().enumerate() {
+            scanner.expect(if i == 0 { b'[' } else { b',' })?;
+            let at = scanner.at;
+            let index = Evaluator::new(self.state, self.assigned).expression(scanner)?;
+            if index.fract() != 0.0 || !(0.0..*size as f64).contains(&index) {
+                let message = format!("index {index} of an array that goes from 0 to {}", size - 1);
+                return Err(scanner.error_since(at, "array-index", message));
+            }
+            element = element * size + index as usize;
+        }
+        if !variable.sizes.is_empty() {
+            scanner.expect(b']')?;
+        }
+        if element < variable.values.len() {
+            return Ok(element);
+        }
+        Err(scanner.error_since(start, "array-index", "the array has no such element"))
+    }
+
+    /// Sums, joined by comparisons and logic.
+    fn chain(&self, scanner: &mut Scanner, depth: usize) -> Fallible<Value> {
         if depth > DEEPEST {
             return Err(scanner.error_here("syntax", "brackets nest too deep"));
         }
+        scanner.blanks();
+        let start = scanner.at;
+        let first = self.sum(scanner, depth)?;
+        let Some(operator) = Operator::take(scanner) else { return Ok(first) };
+        if let Some(index) = self.offset.get() {
+            return Err(only_added(scanner, start, index));
+        }
+        let (mut operands, mut operators) = (vec![first], vec![operator]);
+        loop {
+            operands.push(self.sum(scanner, depth)?);
+            match Operator::take(scanner) {
+                Some(operator) => operators.push(operator),
+                None => break,
+            }
+        }
+        if let Some(index) = self.offset.get() {
+            return Err(only_added(scanner, start, index));
+        }
+        let doubtful = operators.len() > 1 && operators.iter().any(|o| o.compares());
+        let usual = doubtful.then(|| reduce(operands.clone(), &operators, Operator::usual_rank));
+        let value = reduce(operands, &operators, Operator::rank)
+            .map_err(|message| scanner.error_since(start, "type", message))?;
+        if usual.is_none_or(|usual| usual.as_ref() == Ok(&value)) {
+            return Ok(value);
+        }
+        Err(rank_in_doubt(scanner, start))
+    }
+
+    fn sum(&self, scanner: &mut Scanner, depth: usize) -> Fallible<Value> {
+        let start = scanner.at;
         let mut value = self.term(scanner, depth, true)?;
         loop {
-            if scanner.take(b'+') {
-                value += self.term(scanner, depth, true)?;
-            } else if scanner.take(b'-') {
-                value -= self.term(scanner, depth, false)?;
-            } else {
+            let added = scanner.take(b'+');
+            if !added && !scanner.take(b'-') {
                 return Ok(value);
             }
+            let term = self.term(scanner, depth, added)?;
+            value = match (value.whole(), term.whole()) {
+                (Some(a), Some(b)) => {
+                    let sum = if added { a.checked_add(b) } else { a.checked_sub(b) };
+                    Value::Int(sum.ok_or_else(|| too_large(scanner, start))?)
+                }
+                _ => {
+                    let a = number(scanner, start, &value)?;
+                    let b = number(scanner, start, &term)?;
+                    Value::Real(if added { a + b } else { a - b })
+                }
+            };
         }
     }
 
     /// A product, which is added or taken off. A parameter of the operator is one by itself, outside
     /// of brackets and added: anything else would not be an offset.
-    fn term(&self, scanner: &mut Scanner, depth: usize, added: bool) -> Fallible<f64> {
+    fn term(&self, scanner: &mut Scanner, depth: usize, added: bool) -> Fallible<Value> {
         scanner.blanks();
         let start = scanner.at;
         let before = self.offset.take();
@@ -141,69 +291,110 @@ impl<'a> Evaluator<'a> {
             return Ok(value);
         };
         let text = scanner.source.text.get(start..scanner.at).unwrap_or_default().trim_ascii();
-        let alone = text[1..].iter().all(u8::is_ascii_digit);
+        let alone = text.iter().skip(1).all(u8::is_ascii_digit);
         if alone && added && depth == 0 && before.is_none() {
             return Ok(value);
         }
         Err(only_added(scanner, start, index))
     }
 
-    fn product(&self, scanner: &mut Scanner, depth: usize) -> Fallible<f64> {
+    fn product(&self, scanner: &mut Scanner, depth: usize) -> Fallible<Value> {
+        let start = scanner.at;
         let mut value = self.signed(scanner, depth)?;
         loop {
-            let start = scanner.at;
-            let by_zero =
-                |scanner: &Scanner| scanner.error_since(start, "arithmetic", "division by zero");
+            let at = scanner.at;
             if scanner.take(b'*') {
-                value *= self.signed(scanner, depth)?;
-            } else if scanner.take(b'/') {
-                let divisor = self.signed(scanner, depth)?;
-                if divisor == 0.0 {
-                    return Err(by_zero(scanner));
-                }
-                value /= divisor;
-            } else if let Some(whole) = word_operator(scanner) {
-                let divisor = self.signed(scanner, depth)?;
-                if divisor == 0.0 {
-                    return Err(by_zero(scanner));
-                }
-                value = if whole { (value / divisor).trunc() } else { value % divisor };
+                let factor = self.signed(scanner, depth)?;
+                value = match (value.whole(), factor.whole()) {
+                    (Some(a), Some(b)) => {
+                        Value::Int(a.checked_mul(b).ok_or_else(|| too_large(scanner, start))?)
+                    }
+                    _ => Value::Real(
+                        number(scanner, start, &value)? * number(scanner, start, &factor)?,
+                    ),
+                };
+                continue;
+            }
+            let division = if scanner.take(b'/') {
+                Division::Exact
+            } else if scanner.take_word("DIV") {
+                Division::Whole
+            } else if scanner.take_word("MOD") {
+                Division::Rest
             } else {
                 return Ok(value);
+            };
+            let divisor = self.signed(scanner, depth)?;
+            let (a, b) = (number(scanner, start, &value)?, number(scanner, start, &divisor)?);
+            if b == 0.0 {
+                return Err(scanner.error_since(at, "arithmetic", "division by zero"));
             }
+            let whole = value.whole().is_some() && divisor.whole().is_some();
+            value = match division {
+                Division::Exact => Value::Real(a / b),
+                // Whole numbers that doubles do not hold do not come out of INT variables.
+                Division::Whole if whole => Value::Int((a / b).trunc() as i64),
+                Division::Rest if whole => Value::Int((a % b) as i64),
+                Division::Whole => Value::Real((a / b).trunc()),
+                Division::Rest => Value::Real(a % b),
+            };
         }
     }
 
-    fn signed(&self, scanner: &mut Scanner, depth: usize) -> Fallible<f64> {
-        let mut negative = false;
-        for _ in 0..DEEPEST {
-            if scanner.take(b'-') {
-                negative = !negative;
-            } else if !scanner.take(b'+') {
-                let value = self.operand(scanner, depth)?;
-                return Ok(if negative { -value } else { value });
-            }
+    /// An operand behind signs, `NOT` and `B_NOT`.
+    fn signed(&self, scanner: &mut Scanner, depth: usize) -> Fallible<Value> {
+        if depth > DEEPEST {
+            return Err(scanner.error_here("syntax", "signs nest too deep"));
         }
-        Err(scanner.error_here("syntax", "too many signs"))
-    }
-
-    fn operand(&self, scanner: &mut Scanner, depth: usize) -> Fallible<f64> {
         scanner.blanks();
+        let start = scanner.at;
+        match scanner.peek() {
+            b'-' => {
+                scanner.at += 1;
+                match self.signed(scanner, depth + 1)? {
+                    Value::Int(value) => Ok(Value::Int(value.saturating_neg())),
+                    other => Ok(Value::Real(-number(scanner, start, &other)?)),
+                }
+            }
+            b'+' => {
+                scanner.at += 1;
+                self.signed(scanner, depth + 1)
+            }
+            b'N' if scanner.take_word("NOT") => {
+                let value = self.signed(scanner, depth + 1)?;
+                let back = scanner.at;
+                if Operator::take(scanner).is_some_and(Operator::compares) {
+                    return Err(rank_in_doubt(scanner, start));
+                }
+                scanner.at = back;
+                let truth = value.truth().ok_or_else(|| no_number(scanner, start, &value))?;
+                Ok(Value::Bool(!truth))
+            }
+            b'B' if scanner.take_word("B_NOT") => {
+                let value = self.signed(scanner, depth + 1)?;
+                let bits = bits(&value).ok_or_else(|| no_number(scanner, start, &value))?;
+                Ok(Value::Int(!bits))
+            }
+            _ => self.operand(scanner, depth),
+        }
+    }
+
+    fn operand(&self, scanner: &mut Scanner, depth: usize) -> Fallible<Value> {
         match scanner.peek() {
             b'(' => {
                 scanner.at += 1;
-                let value = self.sum(scanner, depth + 1)?;
+                let value = self.chain(scanner, depth + 1)?;
                 scanner.expect(b')')?;
                 Ok(value)
             }
-            b'0'..=b'9' | b'.' => scanner.number(),
+            b'0'..=b'9' | b'.' => constant(scanner),
+            b'"' => scanner.quoted().map(Value::text),
+            b'\'' => based_constant(scanner),
             b'R' if scanner.peek_at(1).is_ascii_digit() || scanner.peek_at(1) == b'[' => {
-                self.parameter(scanner)
+                self.parameter(scanner).map(Value::Real)
             }
-            b'$' => {
-                Err(scanner.error_here("unsupported", "system variables are not supported yet"))
-            }
-            b'A'..=b'Z' | b'_' => self.function(scanner, depth),
+            b'$' => system::read(self, self.state, scanner),
+            b'A'..=b'Z' | b'_' => self.named(scanner, depth),
             _ => Err(scanner.error_here("syntax", "a value is missing here")),
         }
     }
@@ -212,20 +403,28 @@ impl<'a> Evaluator<'a> {
         let start = scanner.at;
         scanner.at += 1;
         let index = self.index(scanner)?;
-        if scanner.name_goes_on() {
+        let operator = ["AND", "OR", "XOR", "DIV", "MOD", "B_AND", "B_OR", "B_XOR"];
+        let back = scanner.at;
+        if scanner.name_goes_on() && !operator.iter().any(|word| scanner.take_word(word)) {
             return Err(scanner.error_here(
                 "syntax",
                 "a blank is missing: letters behind an R parameter would read as its name",
             ));
         }
-        if self.assigned.iter().any(|(i, _)| *i == index) {
+        scanner.at = back;
+        self.parameter_value(scanner, start, index)
+    }
+
+    /// The value of an R parameter, whose name stands from `start`.
+    pub fn parameter_value(&self, scanner: &Scanner, start: usize, index: usize) -> Fallible<f64> {
+        if self.assigned.iter().any(|(place, _)| *place == Place::Parameter(index)) {
             return Err(scanner.error_since(
                 start,
                 "r-parameter",
                 format!("R{index} is set and read in one block"),
             ));
         }
-        match self.parameters.get(index) {
+        match self.state.parameters.get(index) {
             Parameter::Set(value) => Ok(value),
             Parameter::Operator => {
                 self.offset.set(Some(index));
@@ -243,28 +442,330 @@ impl<'a> Evaluator<'a> {
         }
     }
 
-    fn function(&self, scanner: &mut Scanner, depth: usize) -> Fallible<f64> {
+    /// A variable, a function, a constant or an axis.
+    fn named(&self, scanner: &mut Scanner, depth: usize) -> Fallible<Value> {
         let start = scanner.at;
         let name = scanner.name()?;
-        let Some((_, count, function)) = FUNCTIONS.iter().find(|f| f.0 == name.as_str()) else {
-            let message = format!("'{}' is not a value that is known here", name.as_str());
-            return Err(scanner.error_since(start, "unknown-word", message));
+        if let Some(index) = self.state.locals.find(&name) {
+            return self.variable(scanner, start, index);
+        }
+        match name.as_str() {
+            "TRUE" => return Ok(Value::Bool(true)),
+            "FALSE" => return Ok(Value::Bool(false)),
+            name => {
+                if let Some(axis) = system::axis(name) {
+                    return Ok(Value::Axis(axis));
+                }
+            }
+        }
+        let name = name.as_str();
+        let Some(function) = functions::named(name) else {
+            let message = format!("'{name}' is not a value that is known here (alarm 12550)");
+            let mut error = scanner.error_since(start, "unknown-word", message);
+            error.help = "a variable needs its DEF in the same program".into();
+            return Err(error);
         };
         scanner.expect(b'(')?;
-        let mut arguments = [0.0; 2];
-        for (i, argument) in arguments.iter_mut().take(*count).enumerate() {
-            if i > 0 {
-                scanner.expect(b',')?;
+        let mut arguments = [const { Value::Int(0) }; MOST_ARGUMENTS];
+        let mut count = 0;
+        for argument in &mut arguments {
+            *argument = self.chain(scanner, depth + 1)?;
+            count += 1;
+            if !scanner.take(b',') {
+                break;
             }
-            *argument = self.sum(scanner, depth + 1)?;
         }
         scanner.expect(b')')?;
-        let value = function(arguments[0], arguments[1]);
-        if value.is_finite() {
-            return Ok(value);
+        let arguments = arguments.get(..count).unwrap_or(&[]);
+        let value = function(arguments).and_then(|value| match value.number() {
+            Some(number) if !number.is_finite() => Err(String::from("it has no value here")),
+            _ => Ok(value),
+        });
+        value.map_err(|message| {
+            scanner.error_since(start, "arithmetic", format!("{name}: {message}"))
+        })
+    }
+
+    fn variable(&self, scanner: &mut Scanner, start: usize, index: usize) -> Fallible<Value> {
+        let Some(variable) = self.state.locals.get(index) else {
+            return Err(scanner.error_since(start, "unknown-word", "there is no such variable"));
+        };
+        let element = self.element(scanner, variable)?;
+        if self.assigned.iter().any(|(place, _)| *place == Place::Element(index, element)) {
+            let message = "the variable is set and read in one block";
+            return Err(scanner.error_since(start, "variable", message));
         }
-        let message = format!("{} has no value here", name.as_str());
-        Err(scanner.error_since(start, "arithmetic", message))
+        match variable.values.get(element) {
+            Some(Some(Value::Text(text))) if scanner.peek() == b'[' => {
+                scanner.at += 1;
+                let at = Evaluator::new(self.state, self.assigned)
+                    .within(scanner, 0..=LONGEST_TEXT as u32)?;
+                scanner.expect(b']')?;
+                let byte = text.as_bytes().get(at as usize).copied();
+                byte.map(Value::Char).ok_or_else(|| {
+                    let message = format!("character {at} of a text of {}", text.len());
+                    scanner.error_since(start, "array-index", message)
+                })
+            }
+            Some(Some(value)) => Ok(value.clone()),
+            _ => {
+                let message = "the variable is read, and no block before has set it";
+                Err(scanner.error_since(start, "variable", message))
+            }
+        }
+    }
+}
+
+/// How a division is made.
+#[derive(Clone, Copy)]
+enum Division {
+    /// `/`.
+    Exact,
+    /// `DIV`: the whole quotient.
+    Whole,
+    /// `MOD`: what remains.
+    Rest,
+}
+
+/// An operator that ranks below the sums.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Operator {
+    BitAnd,
+    BitXor,
+    BitOr,
+    And,
+    Xor,
+    Or,
+    Chain,
+    Equal,
+    Unequal,
+    Greater,
+    Less,
+    GreaterOrEqual,
+    LessOrEqual,
+}
+
+/// The operators that are words.
+const WORDS: [(&str, Operator); 6] = [
+    ("AND", Operator::And),
+    ("OR", Operator::Or),
+    ("XOR", Operator::Xor),
+    ("B_AND", Operator::BitAnd),
+    ("B_OR", Operator::BitOr),
+    ("B_XOR", Operator::BitXor),
+];
+
+impl Operator {
+    /// Takes an operator where one comes next.
+    #[inline]
+    fn take(scanner: &mut Scanner) -> Option<Operator> {
+        let back = scanner.at;
+        scanner.blanks();
+        let (operator, length) = match (scanner.peek(), scanner.peek_at(1)) {
+            (b'=', b'=') => (Operator::Equal, 2),
+            (b'<', b'>') => (Operator::Unequal, 2),
+            (b'<', b'<') => (Operator::Chain, 2),
+            (b'<', b'=') => (Operator::LessOrEqual, 2),
+            (b'>', b'=') => (Operator::GreaterOrEqual, 2),
+            (b'<', _) => (Operator::Less, 1),
+            (b'>', _) => (Operator::Greater, 1),
+            (b'A' | b'O' | b'X' | b'B', next) if next == b'_' || next.is_ascii_alphabetic() => {
+                let found = WORDS.iter().find(|(word, _)| scanner.take_word(word));
+                if found.is_none() {
+                    scanner.at = back;
+                }
+                return found.map(|(_, operator)| *operator);
+            }
+            _ => {
+                scanner.at = back;
+                return None;
+            }
+        };
+        scanner.at += length;
+        Some(operator)
+    }
+
+    fn compares(self) -> bool {
+        self.rank() == 11
+    }
+
+    /// The rank of the control, the first binds closest.
+    fn rank(self) -> u8 {
+        match self {
+            Operator::BitAnd => 4,
+            Operator::BitXor => 5,
+            Operator::BitOr => 6,
+            Operator::And => 7,
+            Operator::Xor => 8,
+            Operator::Or => 9,
+            Operator::Chain => 10,
+            _ => 11,
+        }
+    }
+
+    /// The rank of the usual languages, where comparisons come before logic.
+    fn usual_rank(self) -> u8 {
+        match self {
+            Operator::Chain => 6,
+            Operator::And | Operator::Xor | Operator::Or => self.rank() + 10,
+            other => other.rank(),
+        }
+    }
+
+    fn apply(self, a: Value, b: Value) -> Result<Value, String> {
+        let truth = |value: &Value| {
+            value.truth().ok_or_else(|| format!("{} is no operand of AND, OR, XOR", value.name()))
+        };
+        let whole = |value: &Value| {
+            bits(value).ok_or_else(|| {
+                format!("{} is no operand of B_AND, B_OR, B_XOR but whole", value.name())
+            })
+        };
+        Ok(match self {
+            Operator::And => Value::Bool(truth(&a)? & truth(&b)?),
+            Operator::Or => Value::Bool(truth(&a)? | truth(&b)?),
+            Operator::Xor => Value::Bool(truth(&a)? ^ truth(&b)?),
+            Operator::BitAnd => Value::Int(whole(&a)? & whole(&b)?),
+            Operator::BitOr => Value::Int(whole(&a)? | whole(&b)?),
+            Operator::BitXor => Value::Int(whole(&a)? ^ whole(&b)?),
+            Operator::Chain => {
+                let text = format!("{}{}", written(&a), written(&b));
+                if text.len() > LONGEST_TEXT {
+                    return Err(format!("a text of more than {LONGEST_TEXT} characters"));
+                }
+                Value::text(text)
+            }
+            _ => Value::Bool(self.compare(&a, &b)?),
+        })
+    }
+
+    fn compare(self, a: &Value, b: &Value) -> Result<bool, String> {
+        use std::cmp::Ordering::{Equal, Greater, Less};
+        let order = match (a, b) {
+            (Value::Text(a), Value::Text(b)) => a.cmp(b),
+            (Value::Axis(a), Value::Axis(b)) => a.cmp(b),
+            _ => match (a.number(), b.number()) {
+                (Some(a), Some(b)) if (a - b).abs() <= RELATIVE_EQUALITY * a.abs().max(b.abs()) => {
+                    Equal
+                }
+                (Some(a), Some(b)) => a.total_cmp(&b),
+                _ => return Err(format!("{} is compared with {}", a.name(), b.name())),
+            },
+        };
+        Ok(match self {
+            Operator::Equal => order == Equal,
+            Operator::Unequal => order != Equal,
+            Operator::Greater => order == Greater,
+            Operator::Less => order == Less,
+            Operator::GreaterOrEqual => order != Less,
+            _ => order != Greater,
+        })
+    }
+}
+
+/// Applies the operators between the operands, those of the first rank first.
+fn reduce(
+    operands: Vec<Value>,
+    operators: &[Operator],
+    rank: fn(Operator) -> u8,
+) -> Result<Value, String> {
+    let mut values: Vec<Value> = Vec::with_capacity(operands.len());
+    let mut pending: Vec<Operator> = Vec::new();
+    let fold = |values: &mut Vec<Value>, operator: Operator| -> Result<(), String> {
+        if let (Some(b), Some(a)) = (values.pop(), values.pop()) {
+            values.push(operator.apply(a, b)?);
+        }
+        Ok(())
+    };
+    let mut operands = operands.into_iter();
+    values.extend(operands.next());
+    for (operator, operand) in operators.iter().zip(operands) {
+        while let Some(before) = pending.pop_if(|before| rank(*before) <= rank(*operator)) {
+            fold(&mut values, before)?;
+        }
+        pending.push(*operator);
+        values.push(operand);
+    }
+    while let Some(operator) = pending.pop() {
+        fold(&mut values, operator)?;
+    }
+    values.pop().ok_or_else(|| String::from("there is no value"))
+}
+
+/// A value as `<<` writes it.
+fn written(value: &Value) -> String {
+    match value {
+        Value::Real(value) => value.to_string(),
+        Value::Int(value) => value.to_string(),
+        Value::Bool(value) => u8::from(*value).to_string(),
+        Value::Char(value) => char::from(*value).to_string(),
+        Value::Text(text) => text.to_string(),
+        Value::Axis(axis) => system::axis_name(*axis).to_owned(),
+    }
+}
+
+/// The bits of a whole number.
+fn bits(value: &Value) -> Option<i64> {
+    let whole = |real: f64| real.fract() == 0.0 && real.abs() <= f64::from(u32::MAX);
+    value.whole().or_else(|| value.number().filter(|real| whole(*real)).map(|real| real as i64))
+}
+
+fn number(scanner: &Scanner, start: usize, value: &Value) -> Fallible<f64> {
+    value.number().ok_or_else(|| no_number(scanner, start, value))
+}
+
+#[cold]
+fn no_number(scanner: &Scanner, start: usize, value: &Value) -> Box<Diagnostic> {
+    let message = format!("a number must stand here, not {}", value.name());
+    scanner.error_since(start, "type", message)
+}
+
+#[cold]
+fn too_large(scanner: &Scanner, start: usize) -> Box<Diagnostic> {
+    scanner.error_since(start, "arithmetic", "the result is beyond the whole numbers")
+}
+
+#[cold]
+fn rank_in_doubt(scanner: &Scanner, start: usize) -> Box<Diagnostic> {
+    let message = "comparisons rank below AND, OR, XOR and NOT on this control, and here that gives \
+                   another result than reading them first";
+    let mut error = scanner.error_since(start, "operator-rank", message);
+    error.help = "put every comparison in brackets: (R1==1) AND (R2==2)".into();
+    error
+}
+
+/// A number; one without a point is whole.
+fn constant(scanner: &mut Scanner) -> Fallible<Value> {
+    let start = scanner.at;
+    let value = scanner.constant()?;
+    let text = scanner.source.text.get(start..scanner.at).unwrap_or(&[]);
+    if text.len() <= 10 && text.iter().all(u8::is_ascii_digit) {
+        return Ok(Value::Int(value as i64));
+    }
+    Ok(Value::Real(value))
+}
+
+/// `'HFF'`, `'B101'`.
+fn based_constant(scanner: &mut Scanner) -> Fallible<Value> {
+    let start = scanner.at;
+    let rest = scanner.source.text.get(start + 1..).unwrap_or(&[]);
+    let end = rest.iter().position(|byte| *byte == b'\'').unwrap_or(0);
+    let text = rest.get(..end).and_then(|text| str::from_utf8(text).ok()).unwrap_or("");
+    let base = match text.as_bytes().first() {
+        Some(b'H' | b'h') => 16,
+        Some(b'B' | b'b') => 2,
+        _ => 0,
+    };
+    let digits = text.get(1..).unwrap_or("");
+    scanner.at = start + end + 2;
+    let plain = digits.bytes().all(|byte| byte.is_ascii_alphanumeric());
+    match u32::from_str_radix(digits, base.max(2)) {
+        Ok(value) if base > 0 && plain => Ok(Value::Int(i64::from(value))),
+        _ => {
+            let message =
+                "a number in quotes is 'H' with hexadecimal digits or 'B' with binary ones";
+            Err(scanner.error_since(start, "number", message))
+        }
     }
 }
 
@@ -275,39 +776,3 @@ fn only_added(scanner: &Scanner, start: usize, index: usize) -> Box<Diagnostic> 
     );
     scanner.error_since(start, "operator-offset", message)
 }
-
-/// Takes `DIV` (true) or `MOD` (false).
-fn word_operator(scanner: &mut Scanner) -> Option<bool> {
-    let back = scanner.at;
-    scanner.blanks();
-    let word = [scanner.peek(), scanner.peek_at(1), scanner.peek_at(2)];
-    scanner.at += 3;
-    match &word {
-        b"DIV" if !scanner.name_goes_on() => Some(true),
-        b"MOD" if !scanner.name_goes_on() => Some(false),
-        _ => {
-            scanner.at = back;
-            None
-        }
-    }
-}
-
-/// Name, number of arguments, value.
-type Function = (&'static str, usize, fn(f64, f64) -> f64);
-
-/// The arithmetic functions.
-const FUNCTIONS: &[Function] = &[
-    ("SIN", 1, |x, _| x.to_radians().sin()),
-    ("COS", 1, |x, _| x.to_radians().cos()),
-    ("TAN", 1, |x, _| x.to_radians().tan()),
-    ("ASIN", 1, |x, _| x.asin().to_degrees()),
-    ("ACOS", 1, |x, _| x.acos().to_degrees()),
-    ("ATAN2", 2, |y, x| y.atan2(x).to_degrees()),
-    ("SQRT", 1, |x, _| x.sqrt()),
-    ("ABS", 1, |x, _| x.abs()),
-    ("POT", 1, |x, _| x * x),
-    ("TRUNC", 1, |x, _| x.trunc()),
-    ("ROUND", 1, |x, _| x.round()),
-    ("LN", 1, |x, _| x.ln()),
-    ("EXP", 1, |x, _| x.exp()),
-];

@@ -1,12 +1,14 @@
 //! The frames between the program's coordinates and the work frame.
 //!
-//! Base frame (the work frame, that of the settable offset) ← swivelled plane (`CYCLE800`) ←
+//! Base frame (the work frame, that of the settable offset at the first move in it) ← change of that
+//! offset since ← swivelled plane (`CYCLE800`) ←
 //! programmable frame (`TRANS`, `ROT`) ← the program.
 
 use geom::{Frame, Mat3, Vec3};
 
 /// The chain of frames.
 pub(super) struct Frames {
+    offset_change: Vec3,
     swivel: Option<Frame>,
     programmable: Frame,
     total: Frame,
@@ -17,6 +19,7 @@ impl Frames {
     /// None but the work frame.
     pub fn new() -> Frames {
         Frames {
+            offset_change: Vec3::ZERO,
             swivel: None,
             programmable: Frame::IDENTITY,
             total: Frame::IDENTITY,
@@ -46,8 +49,16 @@ impl Frames {
         self.combine();
     }
 
+    /// Sets by how much the settable offset has changed since the first move in it.
+    pub fn set_offset_change(&mut self, change: Vec3) {
+        self.offset_change = change;
+        self.combine();
+    }
+
     fn combine(&mut self) {
-        self.total = self.swivel.unwrap_or(Frame::IDENTITY) * self.programmable;
+        self.total = Frame::from_translation(self.offset_change)
+            * self.swivel.unwrap_or(Frame::IDENTITY)
+            * self.programmable;
         self.turned = self.total.matrix3 != Mat3::IDENTITY;
     }
 

@@ -11,9 +11,11 @@ use super::commands::{Code, FeedType, Motion};
 use super::cycles::{Drilling, Pause};
 use super::motion::AXIS_NAMES;
 use super::scan::Source;
-use super::state::State;
+use super::state::{Modes, State};
 use crate::Settings;
-use crate::compensation::Compensator;
+use crate::compensation::{Compensator, Terms};
+use crate::flow::Budget;
+use geom::Vec3;
 use program::{Compensation, Coolant, Cycle, Feed, Op, Record, Spindle, Tool};
 
 /// Runs blocks.
@@ -23,7 +25,15 @@ pub(super) struct Interpreter<'a, 's> {
     /// The machine.
     pub settings: &'a Settings,
     /// Where the records go.
-    pub path: &'a mut Compensator<'s>,
+    compensator: &'a mut Compensator<'s>,
+    /// Jumps and calls.
+    pub budget: Budget,
+    /// The line of the main program that records carry, where another file runs.
+    pub line: Option<u32>,
+    /// Whether a called program runs.
+    pub called: bool,
+    /// Whether the sink has stopped the run.
+    pub stopped: bool,
     reported_cycle: Option<Cycle>,
 }
 
@@ -36,15 +46,34 @@ const GEARS: std::ops::RangeInclusive<u32> = 40..=45;
 
 impl<'a, 's> Interpreter<'a, 's> {
     /// At the start of a program.
-    pub fn new(settings: &'a Settings, path: &'a mut Compensator<'s>) -> Interpreter<'a, 's> {
-        let state = State::new(settings);
-        Interpreter { state, settings, path, reported_cycle: None }
+    pub fn new(
+        settings: &'a Settings,
+        compensator: &'a mut Compensator<'s>,
+    ) -> Interpreter<'a, 's> {
+        Interpreter {
+            state: State::new(settings),
+            settings,
+            compensator,
+            budget: Budget::default(),
+            line: None,
+            called: false,
+            stopped: false,
+            reported_cycle: None,
+        }
     }
 
     /// Reports what happens.
     #[inline]
     pub fn emit(&mut self, source: &Source, op: Op) -> Fallible<()> {
-        self.path.take(Record { line: source.line, op })
+        self.budget.record();
+        let line = self.line.unwrap_or(source.line);
+        self.compensator.take(Record { line, op }).inspect_err(|_| self.stopped = true)
+    }
+
+    /// Reports that compensation changes with the move that follows.
+    pub fn switch(&mut self, source: &Source, side: Compensation, terms: Terms) -> Fallible<()> {
+        let line = self.line.unwrap_or(source.line);
+        self.compensator.switch(line, side, terms).inspect_err(|_| self.stopped = true)
     }
 
     /// Carries out a block.
@@ -55,8 +84,8 @@ impl<'a, 's> Interpreter<'a, 's> {
         if !block.any {
             return Ok(());
         }
-        for (index, value) in &block.assigned {
-            self.state.parameters.set(*index, *value);
+        for (place, value) in block.assigned.drain(..) {
+            self.state.assign(place, value);
         }
         if let Some(message) = block.message.take() {
             self.emit(source, Op::Message(message.into()))?;
@@ -154,14 +183,79 @@ impl<'a, 's> Interpreter<'a, 's> {
         if let Some(Code::Compensation(compensation)) = block.code(7) {
             self.select_compensation(source, compensation)?;
         }
-        if let Some(Code::WorkOffset(number)) = block.code(8)
-            && number != self.state.work_offset
-        {
-            self.state.work_offset = number;
-            self.state.lose_position();
-            self.emit(source, Op::WorkOffset(number))?;
+        match block.code(8) {
+            Some(Code::WorkOffset(number)) => self.work_offset(source, number),
+            _ => Ok(()),
         }
-        Ok(())
+    }
+
+    /// Activates a settable work offset. Where the values of the old and the new one are known, so is
+    /// where the tool is in the new one.
+    fn work_offset(&mut self, source: &Source, number: u32) -> Fallible<()> {
+        let state = &mut self.state;
+        let value = state.work_offsets.get(number);
+        let changed = (0..3).any(|i| !(value[i] == state.active_offset[i] || value[i].is_nan()));
+        let other = number != state.work_offset;
+        if !other && !changed {
+            return Ok(());
+        }
+        let before = state.work_offsets.first(state.work_offset).unwrap_or(state.active_offset);
+        let machine = state.frames.in_work_frame(state.position) + before;
+        let first = state.work_offsets.first(number).unwrap_or(value);
+        if (0..3).any(|i| first[i].is_nan() && !value[i].is_nan()) {
+            let message = format!(
+                "work offset {number} has been moved in with a value that is not known, and is now \
+                 changed"
+            );
+            let mut error = source.block_error("work-offset", message);
+            error.help = "write its value before the first move in it".into();
+            return Err(error);
+        }
+        let change = Vec3::from_array(std::array::from_fn(|i| {
+            if first[i].is_nan() { 0.0 } else { value[i] - first[i] }
+        }));
+        state.work_offset = number;
+        state.active_offset = value;
+        state.moved = false;
+        state.frames.set_offset_change(change);
+        state.position = state.frames.in_program(machine - first);
+        for i in 0..3 {
+            if state.position[i].is_nan() {
+                state.programmed[i] = f64::NAN;
+            }
+        }
+        if other { self.emit(source, Op::WorkOffset(number)) } else { Ok(()) }
+    }
+
+    /// Back to the modal commands and the frame of the caller of a program with `SAVE`.
+    pub fn restore(&mut self, source: &Source, modes: Modes) -> Fallible<()> {
+        let state = &mut self.state;
+        let frame = state.frames.programmable() != modes.programmable;
+        if state.compensation_in_effect != Compensation::Off
+            && (frame || modes.plane_normal != state.plane_normal)
+        {
+            let message = "the return of a program with SAVE changes frame or plane while cutter \
+                           radius compensation is active";
+            return Err(source.block_error("compensation", message));
+        }
+        if modes.feed_type != state.feed_type || modes.units.1 != state.feed_unit {
+            state.feed = None;
+        }
+        state.motion = modes.motion;
+        state.plane_normal = modes.plane_normal;
+        (state.unit, state.feed_unit) = modes.units;
+        state.absolute = modes.absolute;
+        state.feed_type = modes.feed_type;
+        state.vectors_in_work_frame = modes.vectors_in_work_frame;
+        state.compensation = modes.compensation;
+        if frame {
+            state.change_frames(|frames| frames.set_programmable(modes.programmable));
+        }
+        // With the same G command the offset stays as it is now.
+        if modes.work_offset == state.work_offset {
+            return Ok(());
+        }
+        self.work_offset(source, modes.work_offset)
     }
 
     fn select_compensation(&mut self, source: &Source, compensation: Compensation) -> Fallible<()> {
@@ -210,6 +304,7 @@ impl<'a, 's> Interpreter<'a, 's> {
                     source.block_error("tool", "M6 changes the tool, but no T has chosen one")
                 );
             };
+            self.state.tool = Some(tool.clone());
             self.emit(source, Op::Tool(tool))?;
             // The change activates edge 1 unless the block says another (MD20270 = 1).
             edge = edge.or(Some(1));
@@ -313,7 +408,7 @@ impl<'a, 's> Interpreter<'a, 's> {
 
     fn end(&mut self, source: &Source) -> Fallible<()> {
         self.state.ended = true;
-        self.emit(source, Op::End)
+        if self.called { Ok(()) } else { self.emit(source, Op::End) }
     }
 
     /// `G4`: in a block of its own; its `F` (seconds) and `S` (turns) change neither feed nor speed.

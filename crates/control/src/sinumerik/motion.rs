@@ -35,6 +35,9 @@ impl Interpreter<'_, '_> {
         if !(block.has_position() || round && block.has_arc_word()) {
             return self.no_motion(source, block);
         }
+        if !self.state.moved {
+            self.state.move_first();
+        }
         if round {
             self.settle_compensation(source, block, true)?;
             self.use_feed(source)?;
@@ -253,19 +256,19 @@ impl Interpreter<'_, '_> {
             Compensation::Right(_) => Compensation::Right(state.edge),
             Compensation::Off => Compensation::Off,
         };
-        let axis = |index| {
+        let axis = |index: usize| {
             let mut axis = Vec3::ZERO;
-            axis[index] = 1.0;
+            axis[index % 3] = 1.0;
             self.state.frames.direction(axis)
         };
         let terms = Terms {
-            normal: axis((normal + 1) % 3).cross(axis((normal + 2) % 3)),
-            tool_axis: axis(2),
+            normal: axis(normal + 1).cross(axis(normal + 2)).normalize_or(Vec3::Z),
+            across_tool: normal == 2,
             radius: None,
             outer: self.state.corner,
             around: self.state.goes_around,
         };
-        self.path.switch(source.line, compensation, terms)
+        self.switch(source, compensation, terms)
     }
 
     /// `G53`, `G153`, `SUPA`: a position of the machine, not of the work frame.

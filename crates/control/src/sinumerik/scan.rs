@@ -45,17 +45,35 @@ impl Source<'_> {
 }
 
 /// A name in capitals.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, PartialEq, Eq, Hash)]
 pub(super) struct Name {
     bytes: [u8; LONGEST_NAME],
     length: usize,
 }
 
 impl Name {
+    /// The name that `text` is, where it is one: letters, digits and underscores, in capitals.
+    pub fn of(text: &str) -> Option<Name> {
+        let mut scanner = Scanner::new(Source { line: 0, text: text.as_bytes() });
+        let name = scanner.name().ok()?;
+        (name.length > 0 && scanner.at == text.len()).then_some(name)
+    }
+
     /// The name as text.
     pub fn as_str(&self) -> &str {
         self.bytes.get(..self.length).and_then(|b| str::from_utf8(b).ok()).unwrap_or("")
     }
+}
+
+/// What stands before the words of a block.
+#[derive(Clone, Copy, Default)]
+pub(super) struct Head {
+    /// Whether the operator may skip the block (`/`).
+    pub skip: bool,
+    /// Block number.
+    pub number: Option<u32>,
+    /// Label.
+    pub label: Option<Name>,
 }
 
 /// Reads a block from left to right.
@@ -155,6 +173,67 @@ impl<'a> Scanner<'a> {
         Ok(name)
     }
 
+    /// Whether a name of several letters comes next, and not an address.
+    #[inline]
+    pub fn name_next(&self) -> bool {
+        let letter = |byte: u8| byte == b'_' || byte.is_ascii_alphabetic();
+        letter(self.peek()) && letter(self.peek_at(1))
+    }
+
+    /// Takes `word`, after blanks, where it comes next as a whole name.
+    pub fn take_word(&mut self, word: &str) -> bool {
+        let back = self.at;
+        self.blanks();
+        let end = self.at + word.len();
+        let piece = self.source.text.get(self.at..end).unwrap_or(&[]);
+        self.at = end;
+        if piece.eq_ignore_ascii_case(word.as_bytes()) && !self.name_goes_on() {
+            return true;
+        }
+        self.at = back;
+        false
+    }
+
+    /// Whether nothing but blanks and a comment is left of the block.
+    pub fn rests(&mut self) -> bool {
+        self.blanks();
+        self.at >= self.source.text.len() || self.peek() == b';'
+    }
+
+    /// Takes skip mark, block number and label. A label is a name of which the first two characters
+    /// are letters or underscores, and a colon.
+    #[inline]
+    pub fn head(&mut self) -> Fallible<Head> {
+        let mut head = Head::default();
+        self.blanks();
+        if self.peek() == b'/' {
+            head.skip = true;
+            self.at += 1;
+            if self.digit_next() {
+                self.at += 1;
+            }
+            self.blanks();
+        }
+        if self.peek() == b':' || self.peek() == b'N' && self.peek_at(1).is_ascii_digit() {
+            self.at += 1;
+            head.number = Some(self.integer()?);
+            self.blanks();
+        }
+        if self.name_next() {
+            let back = self.at;
+            while self.name_goes_on() {
+                self.at += 1;
+            }
+            let label = self.peek() == b':';
+            self.at = back;
+            if label {
+                head.label = Some(self.name()?);
+                self.at += 1;
+            }
+        }
+        Ok(head)
+    }
+
     /// Takes a whole number without a sign.
     #[inline]
     pub fn integer(&mut self) -> Fallible<u32> {
@@ -174,9 +253,20 @@ impl<'a> Scanner<'a> {
         Ok(value)
     }
 
-    /// Takes a number: sign, digits, point, digits, exponent (`EX`).
+    /// Takes the number of an address.
     #[inline]
     pub fn number(&mut self) -> Fallible<f64> {
+        let start = self.at;
+        let value = self.constant()?;
+        if value.abs() <= LARGEST {
+            return Ok(value);
+        }
+        Err(self.error_since(start, "number", "the number is beyond 99999999.9999"))
+    }
+
+    /// Takes a number: sign, digits, point, digits, exponent (`EX`).
+    #[inline]
+    pub fn constant(&mut self) -> Fallible<f64> {
         let start = self.at;
         let negative = self.peek() == b'-';
         if negative || self.peek() == b'+' {
@@ -203,17 +293,13 @@ impl<'a> Scanner<'a> {
         }
         let exponent = self.peek() == b'E' && self.peek_at(1) == b'X';
         // Below 2^53 and 10^22 both are exact, so that the quotient is rounded correctly.
-        let value = match POWERS.get(decimals) {
+        match POWERS.get(decimals) {
             Some(power) if digits <= 15 && !exponent => {
                 let size = mantissa as f64 / power;
-                if negative { -size } else { size }
+                Ok(if negative { -size } else { size })
             }
-            _ => self.slow_number(start, exponent)?,
-        };
-        if value.abs() <= LARGEST {
-            return Ok(value);
+            _ => self.slow_number(start, exponent),
         }
-        Err(self.error_since(start, "number", "the number is beyond 99999999.9999"))
     }
 
     /// The number from `start` with many digits or an exponent.

@@ -2,11 +2,13 @@
 
 use super::commands::{FeedType, Motion};
 use super::cycles::Drilling;
-use super::expression::Parameters;
 use super::frames::Frames;
+use super::offsets::WorkOffsets;
+use super::value::Value;
+use super::variables::{Locals, Parameters, Place};
 use crate::Settings;
 use crate::compensation::Outer;
-use geom::Vec3;
+use geom::{Frame, Vec3};
 use program::{Compensation, Coolant, Feed, Orientation, Pose, Spindle, Tool};
 
 /// `G500`: none, in the reset state that the maker delivers.
@@ -59,6 +61,8 @@ pub(super) struct State {
     pub coolant: Coolant,
     /// The tool that the next `M6` changes to.
     pub selected: Option<Box<Tool>>,
+    /// The tool in the spindle, where the program has changed to one.
+    pub tool: Option<Box<Tool>>,
     /// `D`; none for `D0`, and before the first tool.
     pub edge: Option<u32>,
     /// Whether positions are those of the tool tip (`TRAORI`).
@@ -77,11 +81,34 @@ pub(super) struct State {
     pub modal_cycle: Option<Drilling>,
     /// R parameters.
     pub parameters: Parameters,
+    /// The variables of the program that runs.
+    pub locals: Locals,
+    /// What is known of the settable work offsets.
+    pub work_offsets: WorkOffsets,
+    /// The value of the active one, as it was when it was activated, mm.
+    pub active_offset: Vec3,
+    /// Whether the program has moved in the active one.
+    pub moved: bool,
+    /// Whether machine coordinates are known: where the tool starts, and so all offsets.
+    pub machine_known: bool,
     /// The operator's parameter that the positions of A, B, C are written with, and the line that
     /// wrote one first.
     pub offsets: [Option<(Option<usize>, u32)>; 3],
     /// Whether the program has ended.
     pub ended: bool,
+}
+
+/// Modal commands and frame, as a program with `SAVE` finds them (Function Manual K2, 2.4.10).
+pub(super) struct Modes {
+    pub motion: Motion,
+    pub plane_normal: usize,
+    pub units: (f64, f64),
+    pub absolute: bool,
+    pub feed_type: FeedType,
+    pub vectors_in_work_frame: bool,
+    pub work_offset: u32,
+    pub compensation: Compensation,
+    pub programmable: Frame,
 }
 
 impl State {
@@ -107,15 +134,21 @@ impl State {
             spindle: Spindle::Off,
             coolant: Coolant::Off,
             selected: None,
+            tool: None,
             edge: None,
             tool_center: false,
             frames: Frames::new(),
-            position: Vec3::NAN,
-            programmed: Vec3::NAN,
+            position: settings.setup.start.unwrap_or(Vec3::NAN),
+            programmed: settings.setup.start.unwrap_or(Vec3::NAN),
             rotary: settings.rotary.map(|exists| if exists { f64::NAN } else { 0.0 }),
             tool_axis: ToolAxis::Rotary,
             modal_cycle: None,
             parameters: Parameters::new(&settings.operator_parameters),
+            locals: Locals::default(),
+            work_offsets: WorkOffsets::new(settings.setup.start.is_some()),
+            active_offset: Vec3::ZERO,
+            moved: false,
+            machine_known: settings.setup.start.is_some(),
             offsets: [None; 3],
             ended: false,
         }
@@ -133,6 +166,74 @@ impl State {
         Pose { point: self.frames.in_work_frame(point), orientation }
     }
 
+    /// Sets an R parameter, a variable or a work offset.
+    pub fn assign(&mut self, place: Place, value: Value) {
+        match (place, value.number()) {
+            (Place::Element(index, element), _) => self.locals.set(index, element, value),
+            (Place::Parameter(index), Some(number)) => self.parameters.set(index, number),
+            (Place::WorkOffset(number, axis), Some(length)) => {
+                self.work_offsets.set(number, axis, length);
+            }
+            (Place::Parameter(_) | Place::WorkOffset(..), None) => {}
+        }
+    }
+
+    /// The number at a place.
+    pub fn value_of(&self, place: Place) -> Option<f64> {
+        match place {
+            Place::Parameter(index) => match self.parameters.get(index) {
+                super::variables::Parameter::Set(value) => Some(value),
+                _ => None,
+            },
+            Place::Element(index, element) => {
+                self.locals.get(index)?.values.get(element)?.as_ref()?.number()
+            }
+            Place::WorkOffset(number, axis) => {
+                Some(self.work_offsets.get(number)[axis]).filter(|value| !value.is_nan())
+            }
+        }
+    }
+
+    /// Where axis 0 to 5 (X to C) is in the coordinates of the program, mm or degrees; NaN where that
+    /// is not known.
+    pub fn position_of(&self, axis: usize) -> f64 {
+        match axis {
+            0..=2 => self.position[axis],
+            _ => self.rotary.get(axis - 3).copied().unwrap_or(f64::NAN),
+        }
+    }
+
+    /// Where an axis is in the coordinates of the machine: with all offsets, without the tool's length.
+    pub fn machine_position_of(&self, axis: usize) -> f64 {
+        if axis > 2 {
+            return self.position_of(axis);
+        }
+        let plain = self.machine_known
+            && self.edge.is_none()
+            && !self.tool_center
+            && self.frames.swivel().is_none();
+        if !plain {
+            return f64::NAN;
+        }
+        let first = self.work_offsets.first(self.work_offset).unwrap_or(self.active_offset);
+        self.frames.in_work_frame(self.position)[axis] + first[axis]
+    }
+
+    /// What a program with `SAVE` gives back.
+    pub fn modes(&self) -> Modes {
+        Modes {
+            motion: self.motion,
+            plane_normal: self.plane_normal,
+            units: (self.unit, self.feed_unit),
+            absolute: self.absolute,
+            feed_type: self.feed_type,
+            vectors_in_work_frame: self.vectors_in_work_frame,
+            work_offset: self.work_offset,
+            compensation: self.compensation,
+            programmable: self.frames.programmable(),
+        }
+    }
+
     /// The active feed, where `F` has been given.
     pub fn active_feed(&self) -> Option<Feed> {
         self.feed.map(|value| match self.feed_type {
@@ -140,6 +241,14 @@ impl State {
             FeedType::PerTurn => Feed::PerTurn(value),
             FeedType::InverseTime => Feed::InverseTime(value),
         })
+    }
+
+    /// The first move in the active work offset: poses count in the offset as it is now, whatever it
+    /// becomes.
+    #[cold]
+    pub fn move_first(&mut self) {
+        self.moved = true;
+        self.work_offsets.use_first(self.work_offset, self.active_offset);
     }
 
     /// Nobody knows any more where the linear axes are.

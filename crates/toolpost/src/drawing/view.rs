@@ -26,6 +26,11 @@ impl View {
         View::along(right, up, corners, field)
     }
 
+    /// From straight above.
+    pub fn plan(corners: [Vec3; 2], field: [DVec2; 2]) -> View {
+        View::along(Vec3::X, Vec3::Y, corners, field)
+    }
+
     fn along(right: Vec3, up: Vec3, [low, high]: [Vec3; 2], field: [DVec2; 2]) -> View {
         let mut view = View { right, up, scale: 1.0, origin: DVec2::ZERO, low, high };
         let corners = (0..8).map(|i| {

@@ -1,0 +1,582 @@
+//! Numbers that a program calculates: `#1`, `[#<depth> + 2 * SIN[30]]`. They are evaluated as they are read.
+//!
+//! By rank, from left to right within one:
+//!
+//! | RS274/NGC (LinuxCNC manual, "Binary Operators") | custom macro B (B-63684EN, 16.3) |
+//! | --- | --- |
+//! | `**` | |
+//! | `*` `/` `MOD` | `*` `/` `AND` `MOD` |
+//! | `+` `-` | `+` `-` `OR` `XOR` |
+//! | `EQ` `NE` `GT` `GE` `LT` `LE` | `EQ` `NE` `GT` `GE` `LT` `LE` |
+//! | `AND` `OR` `XOR` of truths | |
+
+use super::block::Fault;
+use super::parameters::{Language, Values};
+use crate::decimal;
+use program::Diagnostic;
+
+/// A calculated number; `None` is the null of a macro variable that holds nothing.
+pub(super) type Value = Option<f64>;
+
+/// How deep brackets, signs and `##` may nest.
+const DEEPEST: u32 = 100;
+
+/// How deep brackets may nest in macro B (B-63684EN, 16.3: alarm 118).
+const DEEPEST_MACRO: u32 = 5;
+
+/// How near two numbers are taken as equal in RS274/NGC, and a number as a whole one.
+const NEAR: f64 = 1e-4;
+
+/// The largest number that macro B takes as bits.
+const MOST_BITS: f64 = 2_147_483_647.0;
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Binary {
+    Power,
+    Times,
+    Divide,
+    Modulo,
+    Plus,
+    Minus,
+    And,
+    Or,
+    Xor,
+    Equal,
+    Unequal,
+    Greater,
+    GreaterOrEqual,
+    Less,
+    LessOrEqual,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Function {
+    Sin,
+    Cos,
+    Tan,
+    Asin,
+    Acos,
+    Atan,
+    Sqrt,
+    Abs,
+    Round,
+    Fix,
+    Fup,
+    Ln,
+    Exp,
+    Exists,
+    Pow,
+    Bin,
+    Bcd,
+    Adp,
+}
+
+/// Words between two numbers.
+const BINARY: [(&[u8], Binary); 10] = [
+    (b"EQ", Binary::Equal),
+    (b"NE", Binary::Unequal),
+    (b"GT", Binary::Greater),
+    (b"GE", Binary::GreaterOrEqual),
+    (b"LT", Binary::Less),
+    (b"LE", Binary::LessOrEqual),
+    (b"AND", Binary::And),
+    (b"OR", Binary::Or),
+    (b"XOR", Binary::Xor),
+    (b"MOD", Binary::Modulo),
+];
+
+/// Functions of both languages.
+const FUNCTIONS: [(&[u8], Function); 13] = [
+    (b"SIN", Function::Sin),
+    (b"COS", Function::Cos),
+    (b"TAN", Function::Tan),
+    (b"ASIN", Function::Asin),
+    (b"ACOS", Function::Acos),
+    (b"ATAN", Function::Atan),
+    (b"SQRT", Function::Sqrt),
+    (b"ABS", Function::Abs),
+    (b"ROUND", Function::Round),
+    (b"FIX", Function::Fix),
+    (b"FUP", Function::Fup),
+    (b"LN", Function::Ln),
+    (b"EXP", Function::Exp),
+];
+
+/// Functions of RS274/NGC alone.
+const NGC_FUNCTIONS: [(&[u8], Function); 1] = [(b"EXISTS", Function::Exists)];
+
+/// Functions of macro B alone; `SQR` and `RND` are short forms (after the long ones).
+const MACRO_FUNCTIONS: [(&[u8], Function); 6] = [
+    (b"POW", Function::Pow),
+    (b"BIN", Function::Bin),
+    (b"BCD", Function::Bcd),
+    (b"ADP", Function::Adp),
+    (b"SQR", Function::Sqrt),
+    (b"RND", Function::Round),
+];
+
+impl Binary {
+    /// The higher goes first.
+    fn rank(self, language: Language) -> u8 {
+        let macro_b = language == Language::MacroB;
+        match self {
+            Binary::And if macro_b => 4,
+            Binary::Or | Binary::Xor if macro_b => 3,
+            Binary::And | Binary::Or | Binary::Xor => 1,
+            Binary::Equal
+            | Binary::Unequal
+            | Binary::Greater
+            | Binary::GreaterOrEqual
+            | Binary::Less
+            | Binary::LessOrEqual => 2,
+            Binary::Plus | Binary::Minus => 3,
+            Binary::Times | Binary::Divide | Binary::Modulo => 4,
+            Binary::Power => 5,
+        }
+    }
+}
+
+/// Reads numbers from a line.
+pub(super) struct Reader<'t, 'v> {
+    values: &'v Values<'v>,
+    line: u32,
+    text: &'t [u8],
+    /// The next byte.
+    pub at: usize,
+    depth: u32,
+    brackets: u32,
+}
+
+impl<'t, 'v> Reader<'t, 'v> {
+    /// For the number at `at` of `text`, which is line `line`.
+    pub(super) fn new(
+        values: &'v Values<'v>,
+        line: u32,
+        text: &'t [u8],
+        at: usize,
+    ) -> Reader<'t, 'v> {
+        Reader { values, line, text, at, depth: 0, brackets: 0 }
+    }
+
+    /// The byte here, behind blanks.
+    pub(super) fn peek(&mut self) -> Option<u8> {
+        while let Some(b' ' | b'\t') = self.text.get(self.at) {
+            self.at += 1;
+        }
+        self.text.get(self.at).copied()
+    }
+
+    /// Takes `byte` where it is here.
+    pub(super) fn take(&mut self, byte: u8) -> bool {
+        let here = self.peek() == Some(byte);
+        self.at += usize::from(here);
+        here
+    }
+
+    /// A number: written, of a parameter, of a function, or in brackets; with signs.
+    pub(super) fn value(&mut self) -> Result<Value, Fault> {
+        if self.depth >= DEEPEST {
+            return Err(self.wrong("the expression nests too deep"));
+        }
+        self.depth += 1;
+        let value = match self.peek() {
+            Some(b'[') => self.expression(),
+            Some(b'#') => self.parameter(),
+            Some(b'+') => {
+                self.at += 1;
+                self.value()
+            }
+            Some(b'-') => {
+                self.at += 1;
+                self.value().map(|value| value.map(|value| -value))
+            }
+            Some(b'0'..=b'9' | b'.') => self.number(),
+            Some(b'A'..=b'Z' | b'a'..=b'z') => self.function(),
+            _ => Err(self.wrong("a number is missing")),
+        }?;
+        self.depth -= 1;
+        Ok(value)
+    }
+
+    fn number(&mut self) -> Result<Value, Fault> {
+        let rest = self.text.get(self.at..).unwrap_or_default();
+        let number = decimal::parse(rest).ok_or_else(|| self.wrong("a number is missing"))?;
+        self.at += number.len;
+        Ok(Some(number.value))
+    }
+
+    /// An expression in brackets.
+    pub(super) fn expression(&mut self) -> Result<Value, Fault> {
+        self.open()?;
+        let value = self.chain(0)?;
+        self.close()?;
+        Ok(value)
+    }
+
+    fn open(&mut self) -> Result<(), Fault> {
+        if !self.take(b'[') {
+            return Err(self.wrong("[ is missing"));
+        }
+        self.brackets += 1;
+        if self.values.language() == Language::MacroB && self.brackets > DEEPEST_MACRO {
+            return Err(self.wrong(format!("brackets nest deeper than {DEEPEST_MACRO}")));
+        }
+        Ok(())
+    }
+
+    fn close(&mut self) -> Result<(), Fault> {
+        if !self.take(b']') {
+            return Err(self.wrong("an operator or ] is missing"));
+        }
+        self.brackets -= 1;
+        Ok(())
+    }
+
+    /// A number in the place of a whole one: near to it, not null, not below 0.
+    pub(super) fn whole(&mut self, what: &str) -> Result<u32, Fault> {
+        let start = self.at;
+        let value = self.value()?.unwrap_or(f64::NAN);
+        whole(value).ok_or_else(|| {
+            let message = format!("{what} must be a whole number, and it is {value}");
+            self.fault("nc-number", message, start)
+        })
+    }
+
+    /// Takes what follows a `#` as the parameter that is meant: its number, or its name in `< >`.
+    pub(super) fn target(&mut self) -> Result<Target<'t>, Fault> {
+        match self.peek() {
+            Some(b'<') if self.values.language() == Language::Ngc => {
+                let from = self.at + 1;
+                let rest = self.text.get(from..).unwrap_or_default();
+                let Some(length) = memchr::memchr(b'>', rest) else {
+                    return Err(self.wrong("the name of the parameter has no end; write >"));
+                };
+                self.at = from + length + 1;
+                Ok(Target::Name(rest.get(..length).unwrap_or_default()))
+            }
+            Some(b'#') if self.values.language() == Language::MacroB => {
+                Err(self.wrong("a variable that names another stands in brackets: #[#1]"))
+            }
+            _ => self.whole("the number of a parameter").map(Target::Number),
+        }
+    }
+
+    fn parameter(&mut self) -> Result<Value, Fault> {
+        let start = self.at;
+        self.at += 1;
+        let target = self.target()?;
+        self.values.get(target).map_err(|message| self.fault("nc-parameter", message, start))
+    }
+
+    /// Numbers and operators of rank `least` and above.
+    fn chain(&mut self, least: u8) -> Result<Value, Fault> {
+        let start = self.at;
+        let mut left = self.value()?;
+        while let Some((operator, length)) = self.operator() {
+            let rank = operator.rank(self.values.language());
+            if rank < least {
+                break;
+            }
+            self.at += length;
+            let right = self.chain(rank + 1)?;
+            let result = match self.values.language() {
+                Language::MacroB => macro_binary(operator, left, right),
+                _ => ngc_binary(operator, left.unwrap_or(0.0), right.unwrap_or(0.0)).map(Some),
+            };
+            left = self.checked(result, start)?;
+        }
+        Ok(left)
+    }
+
+    /// The operator here and its length.
+    fn operator(&mut self) -> Option<(Binary, usize)> {
+        let symbol = match self.peek()? {
+            b'+' => Binary::Plus,
+            b'-' => Binary::Minus,
+            b'/' => Binary::Divide,
+            b'*' if self.text.get(self.at + 1) == Some(&b'*')
+                && self.values.language() != Language::MacroB =>
+            {
+                return Some((Binary::Power, 2));
+            }
+            b'*' => Binary::Times,
+            // The first RS274/NGC does not compare.
+            _ if self.values.language() == Language::Rs274 => return self.word(&BINARY[6..]),
+            _ => return self.word(&BINARY),
+        };
+        Some((symbol, 1))
+    }
+
+    /// The word of `table` that stands here and its length. Macro B has no small letters.
+    fn word<T: Copy>(&self, table: &[(&[u8], T)]) -> Option<(T, usize)> {
+        let rest = self.text.get(self.at..)?;
+        let small = self.values.language() != Language::MacroB;
+        table.iter().find_map(|(word, meaning)| {
+            let here = rest.get(..word.len())?;
+            let same = here == *word || small && here.eq_ignore_ascii_case(word);
+            same.then_some((*meaning, word.len()))
+        })
+    }
+
+    fn function(&mut self) -> Result<Value, Fault> {
+        let start = self.at;
+        let own: &[(&[u8], Function)] = match self.values.language() {
+            Language::MacroB => &MACRO_FUNCTIONS,
+            Language::Ngc => &NGC_FUNCTIONS,
+            _ => &[],
+        };
+        let Some((function, length)) = self.word(&FUNCTIONS).or_else(|| self.word(own)) else {
+            let message = "no function of this control begins here";
+            return Err(self.fault("nc-expression", message, start));
+        };
+        self.at += length;
+        self.open()?;
+        if function == Function::Exists {
+            return self.exists();
+        }
+        let first = self.chain(0)?;
+        let second = self.second_argument(function)?;
+        let result = match (self.values.language(), second) {
+            (Language::MacroB, second) => macro_function(function, first, second),
+            (_, Some(second)) => Ok(first.unwrap_or(0.0).atan2(second).to_degrees()),
+            (_, None) => ngc_function(function, first.unwrap_or(0.0)),
+        };
+        self.checked(result.map(Some), start)
+    }
+
+    /// The second argument of `ATAN[ ]/[ ]`, `ATAN[ , ]` and `POW[ , ]`, behind the first one.
+    fn second_argument(&mut self, function: Function) -> Result<Option<f64>, Fault> {
+        let macro_b = self.values.language() == Language::MacroB;
+        let pair = macro_b && matches!(function, Function::Atan | Function::Pow);
+        if pair && self.take(b',') {
+            let second = self.chain(0)?;
+            self.close()?;
+            return Ok(Some(second.unwrap_or(0.0)));
+        }
+        self.close()?;
+        if function == Function::Atan && self.take(b'/') {
+            return Ok(Some(self.expression()?.unwrap_or(0.0)));
+        }
+        match function {
+            Function::Pow => Err(self.wrong("POW needs two arguments: POW[base, exponent]")),
+            Function::Atan if !macro_b => Err(self.wrong("ATAN needs two arguments: ATAN[y]/[x]")),
+            _ => Ok(None),
+        }
+    }
+
+    /// The rest of `EXISTS[#<name>]`.
+    fn exists(&mut self) -> Result<Value, Fault> {
+        let start = self.at;
+        if !self.take(b'#') {
+            return Err(self.wrong("EXISTS needs a parameter: EXISTS[#<name>]"));
+        }
+        let target = self.target()?;
+        self.close()?;
+        let exists = self.values.exists(target);
+        exists
+            .map(|exists| Some(truth(exists)))
+            .map_err(|message| self.fault("nc-parameter", message, start))
+    }
+
+    /// # Errors
+    /// There is no result, or none that is a number.
+    fn checked(&self, result: Result<Value, &'static str>, start: usize) -> Result<Value, Fault> {
+        match result {
+            Ok(value) if value.is_none_or(f64::is_finite) => Ok(value),
+            Ok(_) => Err(self.fault("nc-arithmetic", "the result is beyond all numbers", start)),
+            Err(message) => Err(self.fault("nc-arithmetic", message, start)),
+        }
+    }
+
+    /// A finding at what stands here.
+    pub(super) fn wrong(&self, message: impl Into<String>) -> Fault {
+        self.fault_between("nc-expression", message, self.at, self.at + 1)
+    }
+
+    /// A finding about what has been read from `start` on.
+    pub(super) fn fault(
+        &self,
+        rule: &'static str,
+        message: impl Into<String>,
+        start: usize,
+    ) -> Fault {
+        self.fault_between(rule, message, start, self.at.max(start + 1))
+    }
+
+    fn fault_between(
+        &self,
+        rule: &'static str,
+        message: impl Into<String>,
+        start: usize,
+        end: usize,
+    ) -> Fault {
+        Diagnostic::error(rule, message).at(self.line, self.text, start, end).into()
+    }
+}
+
+/// Which parameter is meant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Target<'t> {
+    Number(u32),
+    /// As it is written.
+    Name(&'t [u8]),
+}
+
+/// The whole number that a calculated one stands for.
+pub(super) fn whole(value: f64) -> Option<u32> {
+    let nearest = value.round();
+    let near = (value - nearest).abs() <= NEAR && (0.0..=f64::from(u32::MAX)).contains(&nearest);
+    near.then_some(nearest as u32)
+}
+
+fn truth(holds: bool) -> f64 {
+    f64::from(u8::from(holds))
+}
+
+/// RS274/NGC.
+fn ngc_binary(operator: Binary, left: f64, right: f64) -> Result<f64, &'static str> {
+    let near = (left - right).abs() < NEAR;
+    let (a, b) = (left != 0.0, right != 0.0);
+    Ok(match operator {
+        Binary::Plus => left + right,
+        Binary::Minus => left - right,
+        Binary::Times => left * right,
+        Binary::Divide if right == 0.0 => return Err("a division by 0"),
+        Binary::Divide => left / right,
+        Binary::Modulo if right == 0.0 => return Err("MOD by 0"),
+        Binary::Modulo => left.rem_euclid(right),
+        Binary::Power if left < 0.0 && right.fract() != 0.0 => {
+            return Err("a number below 0 to a power that is not whole");
+        }
+        Binary::Power => left.powf(right),
+        Binary::And => truth(a && b),
+        Binary::Or => truth(a || b),
+        Binary::Xor => truth(a != b),
+        Binary::Equal => truth(near),
+        Binary::Unequal => truth(!near),
+        Binary::Greater => truth(left > right),
+        Binary::GreaterOrEqual => truth(near || left >= right),
+        Binary::Less => truth(left < right),
+        Binary::LessOrEqual => truth(near || left <= right),
+    })
+}
+
+/// What both languages calculate alike; angles in degrees.
+fn function_of_both(function: Function, x: f64) -> Result<f64, &'static str> {
+    Ok(match function {
+        Function::Sin => x.to_radians().sin(),
+        Function::Cos => x.to_radians().cos(),
+        Function::Tan => x.to_radians().tan(),
+        Function::Asin | Function::Acos if !(-1.0..=1.0).contains(&x) => {
+            return Err("the arc sine or arc cosine of a number beyond -1 to 1");
+        }
+        Function::Asin => x.asin().to_degrees(),
+        Function::Acos => x.acos().to_degrees(),
+        Function::Sqrt if x < 0.0 => return Err("the square root of a number below 0"),
+        Function::Sqrt => x.sqrt(),
+        Function::Abs => x.abs(),
+        Function::Round => x.round(),
+        Function::Ln if x <= 0.0 => return Err("the logarithm of a number that is not above 0"),
+        Function::Ln => x.ln(),
+        Function::Exp => x.exp(),
+        _ => return Err("not a function of one number"),
+    })
+}
+
+fn ngc_function(function: Function, x: f64) -> Result<f64, &'static str> {
+    match function {
+        Function::Fix => Ok(x.floor()),
+        Function::Fup => Ok(x.ceil()),
+        _ => function_of_both(function, x),
+    }
+}
+
+/// Macro B: null counts as 0, but for `EQ` and `NE` (B-63684EN, 16.1 and 16.5).
+fn macro_binary(operator: Binary, left: Value, right: Value) -> Result<Value, &'static str> {
+    match operator {
+        Binary::Equal => return Ok(Some(truth(left == right))),
+        Binary::Unequal => return Ok(Some(truth(left != right))),
+        _ => {}
+    }
+    let (a, b) = (left.unwrap_or(0.0), right.unwrap_or(0.0));
+    Ok(Some(match operator {
+        Binary::Plus => a + b,
+        Binary::Minus => a - b,
+        Binary::Times => a * b,
+        Binary::Divide if b == 0.0 => return Err("a division by 0"),
+        Binary::Divide => a / b,
+        Binary::Modulo if b.round() == 0.0 => return Err("MOD by 0"),
+        // Of both rounded to whole numbers, with the sign of the first.
+        Binary::Modulo => a.round() % b.round(),
+        Binary::And => f64::from(bits(a)? & bits(b)?),
+        Binary::Or => f64::from(bits(a)? | bits(b)?),
+        Binary::Xor => f64::from(bits(a)? ^ bits(b)?),
+        Binary::Greater => truth(a > b),
+        Binary::GreaterOrEqual => truth(a >= b),
+        Binary::Less => truth(a < b),
+        _ => truth(a <= b),
+    }))
+}
+
+/// The 32 bits of a whole number.
+fn bits(value: f64) -> Result<i32, &'static str> {
+    let whole = value.round();
+    if whole.abs() <= MOST_BITS {
+        return Ok(whole as i32);
+    }
+    Err("AND, OR and XOR take numbers of 32 bits")
+}
+
+fn macro_function(
+    function: Function,
+    first: Value,
+    second: Option<f64>,
+) -> Result<f64, &'static str> {
+    let x = first.unwrap_or(0.0);
+    // Angles begin at 0 (parameter 6004#0 as delivered).
+    let positive = |degrees: f64| if degrees < 0.0 { degrees + 360.0 } else { degrees };
+    Ok(match (function, second) {
+        (Function::Atan, Some(y)) => positive(x.atan2(y).to_degrees()),
+        (Function::Atan, None) => x.atan().to_degrees(),
+        (Function::Pow, Some(exponent)) => x.powf(exponent),
+        (Function::Asin, None) => positive(function_of_both(function, x)?),
+        (Function::Fix, None) => x.trunc(),
+        (Function::Fup, None) => x.trunc() + if x.fract() == 0.0 { 0.0 } else { x.signum() },
+        (Function::Bin, None) => from_bcd(x)?,
+        (Function::Bcd, None) => to_bcd(x)?,
+        (Function::Adp, None) => {
+            return Err("ADP reads how an argument was written; write its point");
+        }
+        _ => function_of_both(function, x)?,
+    })
+}
+
+/// The number whose decimal digits are the groups of four bits of `value`.
+fn from_bcd(value: f64) -> Result<f64, &'static str> {
+    let wrong = "BIN takes a whole number whose groups of four bits are digits";
+    if value.fract() != 0.0 || !(0.0..=MOST_BITS).contains(&value) {
+        return Err(wrong);
+    }
+    let (mut rest, mut result, mut place) = (value as u32, 0.0, 1.0);
+    while rest > 0 {
+        if rest % 16 > 9 {
+            return Err(wrong);
+        }
+        result += f64::from(rest % 16) * place;
+        (rest, place) = (rest / 16, place * 10.0);
+    }
+    Ok(result)
+}
+
+/// Each decimal digit in a group of four bits.
+fn to_bcd(value: f64) -> Result<f64, &'static str> {
+    if value.fract() != 0.0 || !(0.0..=99_999_999.0).contains(&value) {
+        return Err("BCD takes a whole number of up to 8 digits");
+    }
+    let (mut rest, mut result, mut place) = (value as u32, 0.0, 1.0);
+    while rest > 0 {
+        result += f64::from(rest % 10) * place;
+        (rest, place) = (rest / 10, place * 16.0);
+    }
+    Ok(result)
+}

@@ -1,0 +1,41 @@
+//! GRBL 1.1, wiki page "Grbl v1.1 Commands" and the supported codes in its `gcode.h`.
+
+use super::super::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Motion, Refused};
+use super::{BASIC_G, BASIC_M, MILL_G, MILL_M};
+
+const G_WORDS: &[GRow] = &[
+    (100, Group::OneShot, G::WriteData),
+    (281, Group::OneShot, G::StoreHome { second: false }),
+    (301, Group::OneShot, G::StoreHome { second: true }),
+    (382, Group::Motion, G::Motion(Motion::Probe)),
+    (383, Group::Motion, G::Motion(Motion::Probe)),
+    (384, Group::Motion, G::Motion(Motion::Probe)),
+    (385, Group::Motion, G::Motion(Motion::Probe)),
+    (431, Group::Length, G::DynamicLength),
+    (800, Group::Motion, G::CancelCycle),
+    (911, Group::ArcDistance, G::CentersAbsolute(false)),
+    (921, Group::OneShot, G::CancelShift { keep: false }),
+];
+
+const M_WORDS: &[MRow] = &[(7, Group::Coolant, M::Mist)];
+
+const REFUSED_G: &[Refused] = &[
+    (410, "this control has no radius compensation; write the compensated path"),
+    (420, "this control has no radius compensation; write the compensated path"),
+    (430, "this control has no tool table; write G43.1 Z"),
+    (810, "this control has no cycles; write their moves"),
+    (820, "this control has no cycles; write their moves"),
+    (830, "this control has no cycles; write their moves"),
+];
+
+const REFUSED_M: &[Refused] = &[
+    (6, "this control has no tool change; stop with M0 instead"),
+    (98, "this control has no subprograms"),
+    (99, "this control has no subprograms"),
+];
+
+pub(super) static WORDS: Dictionary = Dictionary::new(Flavor::Grbl, b"FGIJKLMNPRSTXYZ", 79)
+    .with(BASIC_G, BASIC_M)
+    .with(MILL_G, MILL_M)
+    .with(G_WORDS, M_WORDS)
+    .refusing(REFUSED_G, REFUSED_M);

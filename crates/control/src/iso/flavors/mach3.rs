@@ -1,0 +1,47 @@
+//! Mach3, "Mach3 G and M-code Reference", table of G codes. The modal groups are those of RS274/NGC,
+//! on which it is built; `G80` may stand beside `G0` to `G3`.
+
+use super::super::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Refused};
+use super::{
+    BASIC_G, BASIC_M, FRAME_G, MILL_G, MILL_M, POLAR_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles,
+};
+
+const G_WORDS: &[GRow] = &[
+    (100, Group::OneShot, G::WriteData),
+    (120, Group::OneShot, G::Pocket { clockwise: true }),
+    (130, Group::OneShot, G::Pocket { clockwise: false }),
+    (310, Group::OneShot, G::Skip),
+    (640, Group::Path, G::Neutral(b"")),
+    (700, Group::Units, G::Inches(true)),
+    (710, Group::Units, G::Inches(false)),
+    (800, Group::Cycle, G::CancelCycle),
+    (901, Group::ArcDistance, G::CentersAbsolute(true)),
+    (911, Group::ArcDistance, G::CentersAbsolute(false)),
+    (921, Group::OneShot, G::CancelShift { keep: false }),
+    (922, Group::OneShot, G::CancelShift { keep: true }),
+    (923, Group::OneShot, G::RestoreShift),
+];
+
+const M_WORDS: &[MRow] = &[(7, Group::Coolant, M::Mist)];
+
+const REFUSED_G: &[Refused] = &[
+    (281, "a stored home position is known only at the machine"),
+    (301, "a stored home position is known only at the machine"),
+    (320, "threading is for Mach3 Turn"),
+    (760, "fine boring is not in Mach3 Mill"),
+    (870, "back boring is not followed; write its moves"),
+    (960, "constant surface speed is for turning"),
+];
+
+const REFUSED_M: &[Refused] = &[(47, "a program that begins again from its first line never ends")];
+
+pub(super) static WORDS: Dictionary =
+    Dictionary::new(Flavor::Mach3, b"ABCDFGHIJKLMNOPQRSTXYZ", usize::MAX)
+        .with(BASIC_G, BASIC_M)
+        .with(MILL_G, MILL_M)
+        .with(TOOL_G, TOOL_M)
+        .with(FRAME_G, SUBPROGRAM_M)
+        .with(POLAR_G, &[])
+        .with(&cycles(Group::Motion), &[])
+        .with(G_WORDS, M_WORDS)
+        .refusing(REFUSED_G, REFUSED_M);

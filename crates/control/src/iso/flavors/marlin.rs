@@ -1,0 +1,54 @@
+//! Marlin 2 with the options for mills (`CNC_COORDINATE_SYSTEMS`, `CNC_WORKSPACE_PLANES`,
+//! `SPINDLE_FEATURE` in revolutions, `COOLANT_CONTROL`), from its G-code index.
+
+use super::super::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Refused};
+use super::{BASIC_G, BASIC_M};
+
+const G_WORDS: &[GRow] = &[
+    (591, Group::WorkOffset, G::WorkOffset(591)),
+    (592, Group::WorkOffset, G::WorkOffset(592)),
+    (593, Group::WorkOffset, G::WorkOffset(593)),
+    (800, Group::Motion, G::CancelCycle),
+];
+
+const M_WORDS: &[MRow] = &[
+    (7, Group::Coolant, M::Mist),
+    (17, Group::Output, M::Neutral(b"")),
+    (82, Group::Output, M::Neutral(b"")),
+    (83, Group::Output, M::Neutral(b"")),
+    (400, Group::Output, M::Neutral(b"")),
+];
+
+const REFUSED_G: &[Refused] = &[
+    (50, "splines of this control are not followed; write plain moves"),
+    (290, "a probed bed is known only at the machine"),
+    (300, "a probed position is known only at the machine"),
+    (382, "a probed position is known only at the machine"),
+    (410, "this control has no radius compensation; write the compensated path"),
+    (420, "this control has no radius compensation; write the compensated path"),
+    (430, "this control has no tool table"),
+    (810, "this control has no cycles; write their moves"),
+];
+
+const REFUSED_M: &[Refused] = &[
+    (2, "this control has no program end: the program ends with its last line"),
+    (6, "tool changes are T alone; stop with M0 to change by hand"),
+    (18, "the axes are let go: where the tool stands afterwards is not known"),
+    (30, "on this control M30 deletes a file; the program ends with its last line"),
+    (84, "the axes are let go: where the tool stands afterwards is not known"),
+    (104, "a hot end is no tool of a mill"),
+    (
+        106,
+        "what hangs at the fan output is the builder's; list M106 among the machine's own functions",
+    ),
+    (
+        107,
+        "what hangs at the fan output is the builder's; list M107 among the machine's own functions",
+    ),
+    (220, "it changes every feed that follows"),
+];
+
+pub(super) static WORDS: Dictionary = Dictionary::new(Flavor::Marlin, b"ABCFGIJKMNPRSTXYZ", 95)
+    .with(BASIC_G, BASIC_M)
+    .with(G_WORDS, M_WORDS)
+    .refusing(REFUSED_G, REFUSED_M);

@@ -1,0 +1,79 @@
+//! All NC programs that LinuxCNC's Debian package brings along, run through its own interpreter
+//! (`rs274 -g`) and through ours: the same moves, program by program.
+
+mod linuxcnc_common;
+
+use linuxcnc_common::difference;
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// Where the programs are.
+const PLACES: [&str; 3] =
+    ["/usr/share/linuxcnc/ncfiles", "/usr/share/doc/linuxcnc/examples", "/usr/share/axis"];
+
+/// Where called programs are looked for beside the folder of the program.
+const LIBRARIES: [&str; 5] = [
+    "ngcgui_lib",
+    "ngcgui_lib/utilitysubs",
+    "macros/mill",
+    "remap-subroutines",
+    "remap_lib/common_nc_subs",
+];
+
+/// What both controls have been told: a unit, and to which level cycles return.
+const BEFORE: &str = "G21 G98\n";
+
+/// The programs, sorted.
+fn programs() -> Vec<PathBuf> {
+    fn walk(folder: &Path, found: &mut Vec<PathBuf>) {
+        let Ok(entries) = fs::read_dir(folder) else { return };
+        for path in entries.flatten().map(|entry| entry.path()) {
+            // Links lead to programs that are found where they are.
+            if path.is_symlink() {
+                continue;
+            }
+            if path.is_dir() {
+                walk(&path, found);
+            } else if path.extension().is_some_and(|extension| extension == "ngc") {
+                found.push(path);
+            }
+        }
+    }
+    let mut found = Vec::new();
+    PLACES.iter().for_each(|place| walk(Path::new(place), &mut found));
+    found.sort();
+    found
+}
+
+fn folders(program: &Path) -> Vec<PathBuf> {
+    let own = program.parent().unwrap();
+    let near = ["", "../nc_subroutines", "../remap_subs"].map(|name| own.join(name));
+    let libraries = LIBRARIES.iter().map(|name| Path::new(PLACES[0]).join(name));
+    near.into_iter().chain(libraries).filter(|folder| folder.is_dir()).collect()
+}
+
+/// How a program differs; none where it does not.
+fn difference_of(path: &Path) -> Option<Option<String>> {
+    let text = fs::read(path).unwrap();
+    // The set-up stands behind a leading `%`.
+    let behind = match text.first() {
+        Some(b'%') => text.iter().position(|&b| b == b'\n').map_or(text.len(), |n| n + 1),
+        _ => 0,
+    };
+    let text = [&text[..behind], BEFORE.as_bytes(), &text[behind..]].concat();
+    difference(&text, &folders(path))
+}
+
+#[test]
+fn every_program_of_linuxcnc_makes_the_same_moves() {
+    let programs = programs();
+    let mut differ = 0;
+    for path in &programs {
+        let Some(difference) = difference_of(path) else { return };
+        if let Some(difference) = difference {
+            differ += 1;
+            println!("### {}\n{difference}", path.display());
+        }
+    }
+    println!("=== {} of {} programs agree", programs.len() - differ, programs.len());
+}

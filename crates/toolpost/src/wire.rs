@@ -1,0 +1,163 @@
+//! `toolpost wire`: a contour in, the proven program of a wire-EDM machine and its report out.
+
+mod cutting;
+mod leg;
+mod proof;
+mod report;
+mod source;
+
+use crate::answer::{Answer, Stop, Verdict};
+use crate::args::{self, Division};
+use crate::drawing::{self, Format};
+use crate::files::{self, Target};
+use crate::post::verdict;
+use crate::progress::Progress;
+use crate::summary::rows;
+use crate::{prove, toolpath};
+use ::wire::Contour;
+use ::wire::points::{Refusal, Step, points};
+use leg::Leg;
+use machine::{Machine, Wire};
+use program::Diagnostic;
+use report::Cut;
+use serde_json::json;
+use source::Source;
+
+/// Writes the program, proves it, and only then saves it with its report and its picture.
+pub fn run(args: &args::Wire, silent: bool) -> Result<Answer, Stop> {
+    let path = &args.source.path;
+    let mut inputs = vec![path.as_path(), std::path::Path::new(&args.machine)];
+    inputs.extend(args.ends.upper.as_deref());
+    let report_path = args.output.with_extension("report.json");
+    let target = Target::new(&args.output, &inputs)?;
+    let report_target = Target::new(&report_path, &inputs)?;
+    let picture = match &args.picture {
+        Some(file) => Some((Target::new(file, &inputs)?, Format::of(file)?)),
+        None => None,
+    };
+    let mut machine = toolpath::machine(&args.machine)?;
+    set_up(&mut machine, args)?;
+
+    let progress = Progress::new(if picture.is_some() { 5 } else { 4 }, silent);
+    progress.step("reading");
+    let Source { mut toolpath, paths } = Source::read(args, &machine)?;
+    let mut warnings = std::mem::take(&mut toolpath.warnings);
+    progress.step("writing");
+    let height = machine.wire.and_then(|wire| wire.height);
+    let planned = cutting::legs(paths, &args.cutting, height);
+    let (mut legs, rounded) = planned.map_err(|found| toolpath.refused(*found))?;
+    warnings.extend(rounded);
+    divide(&mut legs, &args.division, &machine)?;
+    let cut = Cut::of(legs, &machine);
+    // What the proof lets chords leave their arcs by is what the conversion has made of them.
+    machine.capabilities.lowering_tolerance = cut.chord_error().max(f64::MIN_POSITIVE);
+    let program = cut.program(&toolpath.program.name);
+    let output = ::post::write(&program, &machine).map_err(|mut findings| {
+        toolpath.quote(&mut findings);
+        let verdict = verdict(&findings);
+        findings.splice(0..0, std::mem::take(&mut warnings));
+        Stop { verdict, findings }
+    })?;
+    warnings.extend(output.warnings);
+    toolpath.quote(&mut warnings);
+    progress.step("proving");
+    let file = files::name(&args.output);
+    let tolerances = args.closeness.tolerances();
+    let proof = proof::of(&cut, &machine, &toolpath.program.name, &file, &output.text, &tolerances);
+    if !proof.proven {
+        let failed = prove::failed(&proof, &toolpath, &file, "not saved: nothing was changed");
+        return Ok(failed.findings(warnings));
+    }
+
+    warnings.extend(proof.warnings.iter().cloned());
+    let data = json!({
+        "toolpost": env!("CARGO_PKG_VERSION"),
+        "source": { "file": toolpath.file, "dialect": toolpath.dialect },
+        "machine": toolpath::describe(&machine),
+        "program": { "file": file, "blocks": output.blocks, "bytes": output.text.len() },
+        "wire": cut.summary(args.select),
+        "proof": proof,
+    });
+    let mut report = data.clone();
+    report["instructions"] = cut.instructions();
+    report["warnings"] = json!(warnings);
+    let report = format!("{report:#}\n");
+    let drawn = match &picture {
+        Some((_, format)) => {
+            progress.step("drawing");
+            Some(format.bytes(drawing::wire_path(&toolpath.file, &cut.picture(args.select)))?)
+        }
+        None => None,
+    };
+    progress.step("saving");
+    let mut saved = vec![(&report_target, report.as_bytes())];
+    if let (Some((target, _)), Some(bytes)) = (&picture, &drawn) {
+        saved.push((target, bytes));
+    }
+    saved.push((&target, &output.text));
+    files::save(&saved)?;
+
+    let mut lines = toolpath.rows(&machine);
+    lines.extend(cut.rows(args.select));
+    lines.extend(prove::rows(&proof, &machine));
+    lines.push(("saved", args.output.display().to_string()));
+    lines.push(("", report_path.display().to_string()));
+    lines.extend(args.picture.as_ref().map(|file| ("", file.display().to_string())));
+    Ok(Answer::summary(Verdict::Done, rows(&lines), data).findings(warnings))
+}
+
+/// The machine with what the call says of it.
+fn set_up(machine: &mut Machine, args: &args::Wire) -> Result<(), Stop> {
+    let Some(wire) = machine.wire else {
+        let message = format!("`{}` is a mill: its file has no [wire] table", machine.name);
+        let help = "`toolpost post` writes for mills; `toolpost machines list` names the machines";
+        return Err(Diagnostic::error("machine-kind", message).help(help).into());
+    };
+    machine.wire = Some(Wire {
+        height: args.ends.height.or(wire.height),
+        memory: args.division.memory.or(wire.memory),
+        ..wire
+    });
+    Ok(())
+}
+
+/// Makes points of the ways, where the control cannot cut all of them as they are, and where a step is
+/// asked for.
+fn divide(legs: &mut [Leg], how: &Division, machine: &Machine) -> Result<(), Stop> {
+    let asked = match (how.step, how.chord_error, how.fit) {
+        (Some(step), ..) => Some(Step::Length(step)),
+        (_, Some(error), _) => Some(Step::ChordError(error)),
+        (.., true) => Some(Step::Fit),
+        _ => None,
+    };
+    let arcs = |contour: &Contour| contour.elements().iter().any(|e| e.turn.is_some());
+    let no_arcs = machine.capabilities.arcs.is_empty();
+    let cannot = |leg: &Leg| leg.leans() || (no_arcs && arcs(leg.path.lower()));
+    if asked.is_none() && !legs.iter().any(cannot) {
+        return Ok(());
+    }
+    let step = asked.unwrap_or(Step::ChordError(machine.capabilities.lowering_tolerance));
+    let memory = machine.wire.and_then(|wire| wire.memory);
+    let paths: Vec<_> = legs.iter().map(|leg| &leg.path).collect();
+    let all = points(&paths, step, memory).map_err(refused)?;
+    for (leg, points) in legs.iter_mut().zip(all) {
+        leg.points = Some(points);
+    }
+    Ok(())
+}
+
+/// Why there are no points, with the step that would do where one would.
+fn refused(Refusal { diagnostic, offer }: Refusal) -> Stop {
+    let finest = |mm: f64| (mm * 1e6).ceil() / 1e6;
+    let way_out = match offer {
+        Some(Step::Length(mm)) => {
+            format!("--step {} is the finest that fits, or --fit", finest(mm))
+        }
+        Some(Step::ChordError(mm)) => {
+            format!("--chord-error {} is the smallest that fits, or --fit", finest(mm))
+        }
+        _ => diagnostic.help.clone(),
+    };
+    let verdict = if diagnostic.rule == "memory" { Verdict::Failed } else { Verdict::Invalid };
+    Stop { verdict, findings: vec![diagnostic.help(way_out)] }
+}

@@ -1,0 +1,136 @@
+//! How the contours are cut: along them, or beside them in passes with leads and tabs.
+
+use super::leg::Leg;
+use crate::args::{Cutting, Rounding, Side, Trims};
+use ::wire::offset::Corners;
+use ::wire::plan::{self, Opening, Settings, Taper, plan};
+use ::wire::{Contour, Lead, LeadShape, Path, taper};
+use geom::Vec2;
+use program::Diagnostic;
+
+/// The ways of the wire along `paths`, and what is worth knowing of them; `height` is that of the upper
+/// contour, mm.
+///
+/// # Errors
+/// What the call asks for and the contours do not allow.
+pub fn legs(
+    paths: Vec<Path>,
+    how: &Cutting,
+    height: Option<f64>,
+) -> Result<(Vec<Leg>, Vec<Diagnostic>), Box<Diagnostic>> {
+    let passes = how.leave.len() + 1;
+    if !matches!(how.feed.len(), 0 | 1) && how.feed.len() != passes {
+        let message = format!("{} feeds for {passes} passes", how.feed.len());
+        return Err(Diagnostic::error("feed", message).help("one feed, or one for each").into());
+    }
+    let feed = |pass: usize| how.feed.get(pass).or(how.feed.first()).map(|feed| feed * 60.0);
+    let begin = how.begin.map(Vec2::from_array);
+    let Some(side) = how.side else {
+        let legs = paths.into_iter().enumerate().map(|(opening, path)| Leg {
+            feed: feed(0),
+            opening,
+            ..Leg::of(begun(path, begin))
+        });
+        return Ok((legs.collect(), Vec::new()));
+    };
+    let openings = openings(&paths, side, how)?;
+    let plan = plan(&openings, &settings(how, height, feed)?)?;
+    let corner = |(_, corner): &(usize, ::wire::offset::Corner)| {
+        let (place, left) = (corner.place, corner.left);
+        let message = format!(
+            "the inner corner at X{:.4} Y{:.4} becomes as round as the wire: {left:.4} mm stay",
+            place.x, place.y
+        );
+        Diagnostic::warning("corner-rounded", message).line(corner.line)
+    };
+    let warnings = plan.rounded.iter().map(corner).collect();
+    let legs = plan.passes.into_iter().map(|pass| Leg {
+        feed: feed(pass.number),
+        opening: pass.opening,
+        pass: pass.number,
+        tab: pass.tab,
+        thread: pass.thread,
+        cut: pass.cut,
+        stop: pass.stop,
+        ..Leg::of(pass.path)
+    });
+    Ok((legs.collect(), warnings))
+}
+
+/// The path with its start moved to the place nearest to `begin`.
+fn begun(path: Path, begin: Option<Vec2>) -> Path {
+    match begin {
+        Some(begin) if path.upper().is_none() => {
+            let contour = path.lower();
+            Path::upright(contour.started_at(&contour.nearest(begin)))
+        }
+        _ => path,
+    }
+}
+
+fn openings(paths: &[Path], side: Side, how: &Cutting) -> Result<Vec<Opening>, Box<Diagnostic>> {
+    if paths.iter().any(|path| path.upper().is_some()) {
+        let message = "the wire leans between two contours, and its offset is asked for";
+        let help = "leave --side out: two contours are the way of the wire itself";
+        return Err(Diagnostic::error("side", message).help(help).into());
+    }
+    if how.thread.len() > paths.len() {
+        let message = format!("{} places to thread for {} contours", how.thread.len(), paths.len());
+        return Err(Diagnostic::error("thread", message).help("one for each contour").into());
+    }
+    let side = match side {
+        Side::Inside => plan::Side::Inside,
+        Side::Outside => plan::Side::Outside,
+        Side::Left => plan::Side::Left,
+        Side::Right => plan::Side::Right,
+    };
+    let opening = |(i, contour): (usize, &Contour)| Opening {
+        contour: contour.clone(),
+        side,
+        thread: how.thread.get(i).copied().map(Vec2::from_array),
+        start: how.begin.map(Vec2::from_array),
+    };
+    Ok(paths.iter().map(Path::lower).enumerate().map(opening).collect())
+}
+
+fn settings(
+    how: &Cutting,
+    height: Option<f64>,
+    feed: impl Fn(usize) -> Option<f64>,
+) -> Result<Settings, Box<Diagnostic>> {
+    let offset = how.wire.unwrap_or(0.0) / 2.0 + how.gap.unwrap_or(0.0);
+    let leave = how.leave.iter().copied().chain([0.0]).enumerate();
+    // The plan wants a feed for its own estimate, which is not used.
+    let pass = |(i, leave)| plan::Cut { offset: offset + leave, feed: feed(i).unwrap_or(1.0) };
+    let taper = how.taper.map(|degrees| {
+        let missing = || {
+            let message = "a taper, and the height of the upper contour is not known";
+            Box::new(Diagnostic::error("wire-height", message).help("give it with --height"))
+        };
+        let rounding = match how.rounding {
+            Rounding::Conical => taper::Rounding::Conical,
+            Rounding::Constant => taper::Rounding::Constant,
+        };
+        Ok::<_, Box<Diagnostic>>(Taper {
+            angle: degrees.to_radians(),
+            height: height.ok_or_else(missing)?,
+            rounding,
+        })
+    });
+    let taper = taper.transpose()?;
+    Ok(Settings {
+        passes: leave.map(pass).collect(),
+        trims: match how.trims {
+            Trims::Alternate => plan::Trims::Alternate,
+            Trims::Repeat => plan::Trims::Repeat,
+        },
+        lead: Lead {
+            length: how.lead.unwrap_or(0.0),
+            shape: how.lead_arc.map_or(LeadShape::Straight, LeadShape::Arc),
+        },
+        tab: how.tab.unwrap_or(0.0),
+        corners: if how.round_corners { Corners::Round } else { Corners::Refuse },
+        taper,
+        by_control: false,
+    })
+}

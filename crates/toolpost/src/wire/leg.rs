@@ -1,0 +1,150 @@
+//! The ways of the wire as a neutral program: as they are, or as points.
+
+use geom::{Vec2, Vec3};
+use program::{ArcTo, Feed, Op, Pose, Program};
+use wire::points::Points;
+use wire::{Contour, Element, Path};
+
+/// A way of the wire without a break.
+pub struct Leg {
+    /// Where the wire goes.
+    pub path: Path,
+    /// The same as points, where the control takes those.
+    pub points: Option<Points>,
+    /// mm/min.
+    pub feed: Option<f64>,
+    /// Index of the contour that it cuts.
+    pub opening: usize,
+    /// 0 for the first pass there.
+    pub pass: usize,
+    /// Whether it cuts the tab that has held the part.
+    pub tab: bool,
+    /// Whether the wire is threaded at its start; otherwise it stands there already.
+    pub thread: bool,
+    /// Whether the wire is cut at its end.
+    pub cut: bool,
+    /// Whether the machine stops before it, for the operator to hold the part.
+    pub stop: bool,
+}
+
+/// Which end of the wire.
+#[derive(Clone, Copy, Debug)]
+pub enum End {
+    Lower,
+    Upper,
+}
+
+impl Leg {
+    /// A whole opening along `path`.
+    pub fn of(path: Path) -> Leg {
+        Leg {
+            path,
+            points: None,
+            feed: None,
+            opening: 0,
+            pass: 0,
+            tab: false,
+            thread: true,
+            cut: true,
+            stop: false,
+        }
+    }
+
+    /// The line of the source where it begins.
+    pub fn line(&self) -> u32 {
+        self.path.lower().elements().first().map_or(0, |element| element.line)
+    }
+
+    /// Whether the wire leans anywhere.
+    pub fn leans(&self) -> bool {
+        self.path.upper().is_some()
+    }
+
+    /// The contour that one end follows.
+    pub fn contour(&self, end: End) -> &Contour {
+        match end {
+            End::Lower => self.path.lower(),
+            End::Upper => self.path.upper().unwrap_or(self.path.lower()),
+        }
+    }
+}
+
+/// The program of `legs`: as points where they have them, else with their arcs. Leaning wires reach
+/// the upper contour at `height` mm. With `feeds` it says how fast.
+pub fn program(name: &str, legs: &[Leg], height: f64, feeds: bool) -> Program {
+    assemble(name, legs, feeds, |leg| match &leg.points {
+        Some(points) => divided(points, leg.line(), height),
+        None => exact(leg.path.lower()),
+    })
+}
+
+/// The same with every arc, as one end of the wire goes.
+pub fn end(name: &str, legs: &[Leg], end: End, feeds: bool) -> Program {
+    assemble(name, legs, feeds, |leg| exact(leg.contour(end)))
+}
+
+/// Where a leg starts, and its moves with their lines of the source.
+type Moves = (Pose, Vec<(u32, Op)>);
+
+fn assemble(name: &str, legs: &[Leg], feeds: bool, moves: impl Fn(&Leg) -> Moves) -> Program {
+    let mut program = Program::new(name);
+    let mut feed = None;
+    let mut line = 0;
+    for leg in legs {
+        let (start, moves) = moves(leg);
+        line = leg.line();
+        if leg.stop {
+            program.push(line, Op::Stop);
+        }
+        if leg.thread {
+            program.push(line, Op::Rapid(start));
+            program.push(line, Op::ThreadWire);
+        }
+        if let Some(new) = leg.feed.filter(|new| feeds && feed.replace(*new) != Some(*new)) {
+            program.push(line, Op::Feed(Feed::PerMinute(new)));
+        }
+        for (from, op) in moves {
+            line = from;
+            program.push(line, op);
+        }
+        if leg.cut {
+            program.push(line, Op::CutWire);
+        }
+    }
+    program.push(line, Op::End);
+    program
+}
+
+fn exact(contour: &Contour) -> Moves {
+    let moves = contour.elements().iter().map(|element| (element.line, op(element)));
+    (upright(contour.start()), moves.collect())
+}
+
+fn op(element: &Element) -> Op {
+    let end = upright(element.end);
+    match element.turn {
+        None => Op::Line(end),
+        Some(turn) => {
+            let normal = Vec3::Z * turn.sweep.signum();
+            Op::Arc(Box::new(ArcTo { end, center: turn.center.extend(0.0), normal, turns: 0 }))
+        }
+    }
+}
+
+fn divided(points: &Points, first: u32, height: f64) -> Moves {
+    let pose = |(i, lower): (usize, &Vec2)| {
+        let lean = points.upper.get(i).map_or(Vec2::ZERO, |upper| *upper - *lower);
+        match lean == Vec2::ZERO {
+            true => upright(*lower),
+            false => Pose::new(lower.extend(0.0), lean.extend(height).normalize()),
+        }
+    };
+    let mut poses = points.lower.iter().enumerate().map(pose);
+    let start = poses.next().unwrap_or(upright(Vec2::ZERO));
+    let line = |i| points.line_of(i).unwrap_or(first);
+    (start, (1..).zip(poses).map(|(i, pose)| (line(i), Op::Line(pose))).collect())
+}
+
+fn upright(point: Vec2) -> Pose {
+    Pose::new(point.extend(0.0), Vec3::Z)
+}

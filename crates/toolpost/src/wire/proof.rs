@@ -1,0 +1,120 @@
+//! The proof of a wire's program: against the contour with its arcs where the wire stands upright;
+//! where it leans against its points, and each end of the wire against its own contour besides.
+
+use super::leg::{End, Leg};
+use super::report::Cut;
+use control::Setup;
+use geom::Vec3;
+use machine::Machine;
+use program::{Op, Pose, Program};
+use proof::{Prover, Report, Tolerances};
+
+/// Runs `text` on the control of `machine` and holds it against what `cut` wants.
+pub fn of(
+    cut: &Cut,
+    machine: &Machine,
+    name: &str,
+    file: &str,
+    text: &[u8],
+    tolerances: &Tolerances,
+) -> Report {
+    if !cut.legs.iter().any(Leg::leans) {
+        let contour = cut.end(name, End::Lower);
+        return proof::prove(&contour, machine, file, text, tolerances);
+    }
+    let mut report = proof::prove(&cut.program(name), machine, file, text, tolerances);
+    for end in [End::Lower, End::Upper] {
+        if report.proven {
+            let contour = cut.end(name, end);
+            let found = one_end(&contour, end, machine, file, text, tolerances);
+            report.proven = found.proven;
+            report.mismatches.extend(found.mismatches);
+            report.first_mismatch = found.first_mismatch;
+            report.deviations.path_mm = match end {
+                End::Lower => found.deviations.path_mm,
+                End::Upper if found.deviations.path_mm.value > report.deviations.path_mm.value => {
+                    found.deviations.path_mm
+                }
+                End::Upper => report.deviations.path_mm,
+            };
+        }
+    }
+    report
+}
+
+/// Holds the way of one end of the wire against the contour that it follows.
+fn one_end(
+    contour: &Program,
+    end: End,
+    machine: &Machine,
+    file: &str,
+    text: &[u8],
+    tolerances: &Tolerances,
+) -> Report {
+    // The upper end is X + U, Y + V: two words are rounded.
+    let rounded = match end {
+        End::Lower => 1.0,
+        End::Upper => 2.0,
+    };
+    let position = tolerances.position.unwrap_or(rounded * machine.resolution() / 2f64.sqrt());
+    let tolerances = Tolerances { position: Some(position), ..*tolerances };
+    let mut prover = Prover::new(contour, machine, &tolerances);
+    let wire = machine.wire;
+    let stand = |pose: &mut Pose| {
+        let lean = pose.axis().and_then(|axis| wire?.lean(axis)).unwrap_or_default();
+        let by = match end {
+            End::Lower => Vec3::ZERO,
+            End::Upper => lean.extend(0.0),
+        };
+        *pose = Pose::new(pose.point + by, Vec3::Z);
+        by
+    };
+    let run = nc::settings(machine, Setup::default()).and_then(|settings| {
+        control::read(&settings, file, text, &mut |mut record| {
+            match &mut record.op {
+                Op::Rapid(pose) | Op::Line(pose) => drop(stand(pose)),
+                Op::Arc(arc) => arc.center += stand(&mut arc.end),
+                _ => {}
+            }
+            prover.record(&record)
+        })
+    });
+    // What the control refuses it has refused before, for the program as a whole.
+    drop(run);
+    prover.finish()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use geom::Vec2;
+    use wire::points::{Step, points};
+    use wire::{Element, Path};
+
+    /// A cone of 5 mm below and 10 mm above, as points; `upper` moved by so many mm in one of them.
+    fn cone(moved: f64) -> Report {
+        let circle = |radius: f64| {
+            let start = Vec2::new(radius, 0.0);
+            vec![Element::arc(start, start, Vec2::ZERO, std::f64::consts::TAU).from_line(1)]
+        };
+        let path = Path::by_block(circle(5.0), circle(10.0)).unwrap();
+        let mut all = points(&[&path], Step::ChordError(0.01), None).unwrap();
+        all[0].upper[9].y += moved;
+        let leg = Leg { points: all.pop(), ..Leg::of(path) };
+        let text = "extends = \"bp-95d\"\n[wire]\nheight = 30\n";
+        let mut machine = machine::load_text("shop.toml", text).unwrap();
+        let cut = Cut::of(vec![leg], &machine);
+        machine.capabilities.lowering_tolerance = 0.01;
+        let written = post::write(&cut.program("cone"), &machine).unwrap().text;
+        of(&cut, &machine, "cone", "cone.pts", &written, &Tolerances::default())
+    }
+
+    #[test]
+    fn an_upper_end_off_its_contour_is_found_though_the_points_are_written_as_they_are() {
+        let report = cone(0.0);
+        assert!(report.proven, "{:?}", report.mismatches);
+        let report = cone(0.05);
+        assert!(!report.proven);
+        assert_eq!((report.mismatches[0].rule, report.mismatches[0].line), ("path", 10));
+    }
+}

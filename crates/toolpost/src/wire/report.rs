@@ -1,0 +1,285 @@
+//! What a wire cuts, in numbers: points, chord errors, areas, time, and what came from which line.
+
+use super::leg::{self, End, Leg};
+use crate::drawing::{WireLeg, WirePicture};
+use crate::summary::{duration, length, number};
+use ::wire::points::Step;
+use ::wire::{Accuracy, Chords};
+use machine::Machine;
+use program::Program;
+use serde_json::{Value, json};
+
+/// The most ways that a summary lists.
+const MOST_ROWS: usize = 12;
+
+/// What is cut.
+pub struct Cut {
+    /// The ways of the wire, in their order.
+    pub legs: Vec<Leg>,
+    /// How well the points of each follow the lower and the upper contour.
+    accuracy: Vec<(Accuracy, Option<Accuracy>)>,
+    /// Height of the upper contour, mm.
+    height: Option<f64>,
+    memory: Option<usize>,
+    /// Whether the program says how fast.
+    says_feed: bool,
+}
+
+impl Cut {
+    /// `legs` as `machine` cuts them.
+    pub fn of(legs: Vec<Leg>, machine: &Machine) -> Cut {
+        let measured = |leg: &Leg| match &leg.points {
+            Some(points) => Accuracy::of(&leg.path, points),
+            None => (Accuracy::default(), None),
+        };
+        Cut {
+            accuracy: legs.iter().map(measured).collect(),
+            height: machine.wire.and_then(|wire| wire.height),
+            memory: machine.wire.and_then(|wire| wire.memory),
+            says_feed: machine.words.contains_key("F"),
+            legs,
+        }
+    }
+
+    /// The program to write.
+    pub fn program(&self, name: &str) -> Program {
+        leg::program(name, &self.legs, self.height.unwrap_or(f64::INFINITY), self.says_feed)
+    }
+
+    /// The same as one end of the wire goes, arcs and all.
+    pub fn end(&self, name: &str, end: End) -> Program {
+        leg::end(name, &self.legs, end, self.says_feed)
+    }
+
+    /// The chord errors of both ends together.
+    fn chords(&self) -> Chords {
+        let ends = self.accuracy.iter().flat_map(|(lower, upper)| [Some(lower), upper.as_ref()]);
+        let mut all = Chords::default();
+        for chords in ends.flatten().map(|end| end.all).filter(|chords| chords.count > 0) {
+            let (a, b) = (all.count as f64, chords.count as f64);
+            let mean = |x: f64, y: f64| (x * a + y * b) / (a + b);
+            all = Chords {
+                count: all.count + chords.count,
+                largest: all.largest.max(chords.largest),
+                mean: mean(all.mean, chords.mean),
+                mean_relative: mean(all.mean_relative, chords.mean_relative),
+            };
+        }
+        all
+    }
+
+    /// The largest chord error, mm.
+    pub fn chord_error(&self) -> f64 {
+        self.chords().largest
+    }
+
+    /// Points of the program: a leg that goes on from where the last one ended begins with its last.
+    fn points(&self) -> Option<usize> {
+        let points = |leg: &Leg| Some(leg.points.as_ref()?.lower.len() - usize::from(!leg.thread));
+        self.legs.iter().map(points).sum()
+    }
+
+    /// The legs with the number of points before each, which its own are counted on from.
+    fn counted(&self) -> impl Iterator<Item = (usize, &Leg)> {
+        let mut all = 0;
+        self.legs.iter().map(move |leg| {
+            let before = all - usize::from(!leg.thread);
+            all = before + leg.points.as_ref().map_or(1, |points| points.lower.len());
+            (before, leg)
+        })
+    }
+
+    fn length(&self) -> f64 {
+        self.legs.iter().map(|leg| leg.path.length()).sum()
+    }
+
+    /// Cutting time, s.
+    fn time(&self) -> Option<f64> {
+        self.legs.iter().map(|leg| leg.feed.map(|feed| leg.path.length() / feed * 60.0)).sum()
+    }
+
+    /// By how much the area within the points differs from that within the contour, mm².
+    fn area_error(&self, end: End) -> Option<f64> {
+        let of = |(lower, upper): &(Accuracy, Option<Accuracy>)| match end {
+            End::Lower => lower.area_error,
+            End::Upper => upper.as_ref()?.area_error,
+        };
+        self.accuracy.iter().map(of).sum()
+    }
+
+    /// The points that came from a line, first and last, as the program counts them from 1.
+    fn of_line(&self, line: u32) -> impl Iterator<Item = (usize, usize)> {
+        self.counted().flat_map(move |(before, leg)| {
+            let ranges = leg.points.iter().flat_map(move |points| points.of_line(line));
+            ranges.map(move |range| (before + range.start + 1, before + range.end))
+        })
+    }
+
+    /// The numbers, as JSON.
+    pub fn summary(&self, selected: Option<u32>) -> Value {
+        let legs = self.legs.iter().zip(&self.accuracy);
+        let ways: Vec<Value> = legs.map(|(leg, accuracy)| way(leg, accuracy)).collect();
+        let ranges = |line| -> Vec<Value> {
+            let found = self.of_line(line);
+            found.map(|(first, last)| json!({ "first": first, "last": last })).collect()
+        };
+        let selected = selected.map(|line| json!({ "line": line, "points": ranges(line) }));
+        json!({
+            "ways": ways,
+            "height_mm": self.height,
+            "memory": self.memory,
+            "points": self.points(),
+            "chord_error": chords(&self.chords()),
+            "area_error_mm2": self.area_error(End::Lower),
+            "upper_area_error_mm2": self.area_error(End::Upper),
+            "length_mm": self.length(),
+            "cutting_time_s": self.time(),
+            "selected": selected,
+        })
+    }
+
+    /// Which points came from which line of the source, as JSON; points count from 1.
+    pub fn instructions(&self) -> Value {
+        let mut all = Vec::new();
+        for (before, leg) in self.counted() {
+            let Some(points) = &leg.points else { continue };
+            for (element, found) in leg.path.lower().elements().iter().enumerate() {
+                let range = points.of_element(element);
+                all.push(json!({
+                    "line": found.line,
+                    "first_point": before + range.start + 1,
+                    "last_point": before + range.end,
+                }));
+            }
+        }
+        json!(all)
+    }
+
+    /// The lines of a summary.
+    pub fn rows(&self, selected: Option<u32>) -> Vec<(&'static str, String)> {
+        let mut rows = Vec::new();
+        for (i, leg) in self.legs.iter().enumerate().take(MOST_ROWS) {
+            rows.push((if i == 0 { "ways" } else { "" }, told(leg)));
+        }
+        if self.legs.len() > MOST_ROWS {
+            rows.push(("", format!("and {} more", self.legs.len() - MOST_ROWS)));
+        }
+        rows.push(("length", length(self.length())));
+        if let Some(points) = self.points() {
+            let step = self.legs.iter().find_map(|leg| Some(leg.points.as_ref()?.step));
+            rows.push(("points", format!("{points}, {}", step.map_or(String::new(), shown))));
+            let chords = self.chords();
+            if chords.count > 0 {
+                let (largest, mean) = (small(chords.largest), small(chords.mean));
+                let of_radius = small(chords.mean_relative);
+                let text =
+                    format!("{largest} mm at most, mean {mean} mm, {of_radius} of the radius");
+                rows.push(("chord error", text));
+            }
+            if let Some(area) = self.area_error(End::Lower) {
+                let upper = self.area_error(End::Upper);
+                let upper = upper.map(|area| format!(" below, {} mm² above", number(area, 6)));
+                let text = format!("{} mm²{}", number(area, 6), upper.unwrap_or_default());
+                rows.push(("area error", text));
+            }
+            rows.push((
+                "memory",
+                match self.memory {
+                    Some(most) => format!("holds {most} points"),
+                    None => {
+                        String::from("not checked: neither the machine file nor --memory gives it")
+                    }
+                },
+            ));
+        }
+        let time = self.time().map_or(String::from("not known: --feed gives the feed"), duration);
+        rows.push(("time", time));
+        if let Some(line) = selected {
+            let found = self.of_line(line).map(|(first, last)| format!("points {first} to {last}"));
+            let found: Vec<String> = found.collect();
+            let found = if found.is_empty() { String::from("no points") } else { found.join(", ") };
+            rows.push(("selected", format!("line {line}: {found}")));
+        }
+        rows
+    }
+
+    /// What is drawn.
+    pub fn picture(&self, selected: Option<u32>) -> WirePicture<'_> {
+        let legs =
+            self.legs.iter().map(|leg| WireLeg { path: &leg.path, points: leg.points.as_ref() });
+        WirePicture { legs: legs.collect(), height: self.height, selected }
+    }
+}
+
+fn way(leg: &Leg, (lower, upper): &(Accuracy, Option<Accuracy>)) -> Value {
+    let contour = leg.path.lower();
+    let arcs = |accuracy: &Accuracy| -> Vec<Value> {
+        let arcs = accuracy.arcs.iter();
+        arcs.map(|arc| json!({ "line": arc.line, "radius_mm": arc.radius, "chord_error": chords(&arc.chords) }))
+            .collect()
+    };
+    let step = leg.points.as_ref().map(|points| match points.step {
+        Step::Length(mm) => json!({ "arc_length_mm": mm }),
+        Step::ChordError(mm) => json!({ "chord_error_mm": mm }),
+        Step::Fit => json!("fit"),
+    });
+    json!({
+        "contour": leg.opening + 1,
+        "pass": leg.pass + 1,
+        "tab": leg.tab,
+        "line": leg.line(),
+        "feed_mm_per_s": leg.feed.map(|feed| feed / 60.0),
+        "closed": contour.is_closed(),
+        "start_mm": contour.start().to_array(),
+        "area_mm2": contour.is_closed().then(|| contour.area().abs()),
+        "length_mm": leg.path.length(),
+        "leans": leg.leans(),
+        "points": leg.points.as_ref().map(|points| points.lower.len()),
+        "step": step,
+        "arcs": arcs(lower),
+        "upper_arcs": upper.as_ref().map(arcs),
+        "area_error_mm2": lower.area_error,
+        "upper_area_error_mm2": upper.as_ref().and_then(|upper| upper.area_error),
+    })
+}
+
+fn chords(chords: &Chords) -> Value {
+    json!({
+        "points": chords.count,
+        "largest_mm": chords.largest,
+        "mean_mm": chords.mean,
+        "mean_relative": chords.mean_relative,
+    })
+}
+
+/// A way of the wire, for a person.
+fn told(leg: &Leg) -> String {
+    let contour = leg.path.lower();
+    let area = match contour.is_closed() {
+        true => format!("closed, {} mm²", number(contour.area().abs(), 3)),
+        false => String::from("open"),
+    };
+    let pass = match (leg.tab, leg.pass) {
+        (true, _) => String::from("the tab"),
+        (false, pass) => format!("pass {}", pass + 1),
+    };
+    let leans = if leg.leans() { ", the wire leans" } else { "" };
+    format!("contour {}, {pass}: {}, {area}{leans}", leg.opening + 1, length(leg.path.length()))
+}
+
+fn shown(step: Step) -> String {
+    match step {
+        Step::Length(mm) => format!("a step of {} mm on arcs", number(mm, 6)),
+        Step::ChordError(mm) => format!("a chord error of {} mm", small(mm)),
+        Step::Fit => String::new(),
+    }
+}
+
+/// A small number to four digits.
+fn small(value: f64) -> String {
+    if value == 0.0 || (1e-3..1e3).contains(&value) {
+        number(value, 6)
+    } else {
+        format!("{value:.3e}")
+    }
+}

@@ -1,0 +1,195 @@
+//! What is to be cut: the contours of the source, for both ends of the wire.
+
+use crate::answer::Stop;
+use crate::args::{self, Sync};
+use crate::files;
+use crate::toolpath::{self, Toolpath};
+use geom::{Vec2, Vec3};
+use machine::Machine;
+use program::{Diagnostic, Op, Pose, Program};
+use wire::{Contour, Element, Path, contours, cuts, dxf};
+
+/// A source with the ways that it gives the wire.
+pub struct Source {
+    /// The source; the lower contour where there are two.
+    pub toolpath: Toolpath,
+    /// One way for each opening.
+    pub paths: Vec<Path>,
+}
+
+/// One file of the source.
+enum File {
+    /// A drawing with its contours.
+    Drawing(Toolpath, Vec<Contour>),
+    /// A program with its moves.
+    Program(Toolpath),
+}
+
+impl Source {
+    /// Reads what `args` names, for `machine`.
+    ///
+    /// # Errors
+    /// What is wrong with a file, or cannot be cut.
+    pub fn read(args: &args::Wire, machine: &Machine) -> Result<Source, Stop> {
+        let start = args.source.origin.start.map(|[x, y, _]| Vec2::new(x, y));
+        let lower = File::read(&args.source.path, args)?;
+        let upper = match &args.ends.upper {
+            Some(path) => Some(File::read(path, args)?),
+            None => None,
+        };
+        let paths = match (&lower, &upper) {
+            (File::Program(below), None) => match leaning(&below.program, machine) {
+                Some(ends) => ends.and_then(|(below, above)| {
+                    by_block(cuts(&below, start)?, cuts(&above, start)?)
+                }),
+                None => lower.contours(start).map(upright),
+            },
+            (_, None) => lower.contours(start).map(upright),
+            (_, Some(upper)) => {
+                let above = |found: Box<Diagnostic>| upper.toolpath().refused(*found);
+                match args.ends.sync {
+                    Sync::Block => {
+                        let above = upper.cuts(start).map_err(above)?;
+                        lower.cuts(start).and_then(|below| by_block(below, above))
+                    }
+                    Sync::Length => {
+                        let above = upper.contours(start).map_err(above)?;
+                        lower.contours(start).and_then(|below| by_length(&below, &above))
+                    }
+                }
+            }
+        };
+        let paths = paths.map_err(|found| lower.toolpath().refused(*found))?;
+        let leans = |path: &Path| path.upper().is_some();
+        if paths.iter().any(leans) && machine.wire.is_none_or(|wire| wire.height.is_none()) {
+            return Err(without_upper_plane().into());
+        }
+        let (File::Drawing(mut toolpath, _) | File::Program(mut toolpath)) = lower;
+        if let Some(File::Drawing(above, _) | File::Program(above)) = upper {
+            toolpath.warnings.extend(above.warnings);
+        }
+        Ok(Source { toolpath, paths })
+    }
+}
+
+impl File {
+    fn read(path: &std::path::Path, args: &args::Wire) -> Result<File, Stop> {
+        let ending = path.extension().unwrap_or_default();
+        if !ending.eq_ignore_ascii_case("dxf") {
+            let (strict, origin) = (args.source.strict, &args.source.origin);
+            let toolpath = toolpath::read_wire(path, strict, origin, args.ends.height);
+            return toolpath.map(File::Program).map_err(without_height);
+        }
+        let text = files::read(path)?;
+        let options = dxf::Options {
+            layers: args.drawing.layer.clone(),
+            gap: args.drawing.close,
+            ..dxf::Options::default()
+        };
+        let toolpath = Toolpath::of_drawing(path, "DXF");
+        let drawing = dxf::read(&text, &options).map_err(|found| toolpath.refused(*found))?;
+        let toolpath = toolpath.warned(drawing.warnings, args.source.strict)?;
+        Ok(File::Drawing(toolpath, drawing.contours))
+    }
+
+    fn toolpath(&self) -> &Toolpath {
+        match self {
+            File::Drawing(toolpath, _) | File::Program(toolpath) => toolpath,
+        }
+    }
+
+    fn contours(&self, start: Option<Vec2>) -> Result<Vec<Contour>, Box<Diagnostic>> {
+        match self {
+            File::Drawing(_, contours) => Ok(contours.clone()),
+            File::Program(toolpath) => contours(&toolpath.program, start),
+        }
+    }
+
+    /// Move by move.
+    fn cuts(&self, start: Option<Vec2>) -> Result<Vec<Vec<Element>>, Box<Diagnostic>> {
+        match self {
+            File::Drawing(_, contours) => {
+                Ok(contours.iter().map(|contour| contour.elements().to_vec()).collect())
+            }
+            File::Program(toolpath) => cuts(&toolpath.program, start),
+        }
+    }
+}
+
+fn upright(contours: Vec<Contour>) -> Vec<Path> {
+    contours.into_iter().map(Path::upright).collect()
+}
+
+/// Says how a program that never names Z is read.
+fn without_height(mut stop: Stop) -> Stop {
+    for found in stop.findings.iter_mut().filter(|f| f.rule.ends_with("unknown-position")) {
+        found.help =
+            "--from with a wire machine, which has no Z; or --start with where it starts".into();
+    }
+    stop
+}
+
+fn by_block(
+    below: Vec<Vec<Element>>,
+    above: Vec<Vec<Element>>,
+) -> Result<Vec<Path>, Box<Diagnostic>> {
+    as_many(below.len(), above.len())?;
+    below.into_iter().zip(above).map(|(below, above)| Path::by_block(below, above)).collect()
+}
+
+fn by_length(below: &[Contour], above: &[Contour]) -> Result<Vec<Path>, Box<Diagnostic>> {
+    as_many(below.len(), above.len())?;
+    below.iter().zip(above).map(|(below, above)| Path::by_length(below, above)).collect()
+}
+
+/// Both ends go through the same openings.
+fn as_many(below: usize, above: usize) -> Result<(), Box<Diagnostic>> {
+    if below == above {
+        return Ok(());
+    }
+    let message = format!("the lower end cuts {below} contours and the upper {above}");
+    let help = "a rapid parts two contours: both sources need the same ones in the same order";
+    Err(Diagnostic::error("sync-openings", message).help(help).into())
+}
+
+/// Where the upper contour is, nobody has said.
+fn without_upper_plane() -> Diagnostic {
+    let message = "the wire leans, and the height of the upper contour is not known";
+    Diagnostic::error("wire-height", message)
+        .help("give it with --height, or as `height` in the [wire] table of the machine")
+}
+
+/// The ways of both ends of a wire that leans by itself, such as by U and V.
+fn leaning(
+    program: &Program,
+    machine: &Machine,
+) -> Option<Result<(Program, Program), Box<Diagnostic>>> {
+    let leans = |pose: &Pose| pose.axis().is_some_and(|axis| axis.truncate() != Vec2::ZERO);
+    let mut poses = program.records.iter().filter_map(|record| record.op.pose());
+    if !poses.any(leans) {
+        return None;
+    }
+    let (mut lower, mut upper) = (program.clone(), program.clone());
+    for (below, above) in lower.records.iter_mut().zip(&mut upper.records) {
+        let Some(axis) = below.op.pose().and_then(Pose::axis) else { continue };
+        let Some(lean) = machine.wire.and_then(|wire| wire.lean(axis)) else {
+            return Some(Err(without_upper_plane().line(below.line).into()));
+        };
+        stand(&mut below.op, Vec2::ZERO);
+        stand(&mut above.op, lean);
+    }
+    Some(Ok((lower, upper)))
+}
+
+/// The same move of an upright wire, moved by `by`.
+fn stand(op: &mut Op, by: Vec2) {
+    let upright = |pose: &mut Pose| *pose = Pose::new(pose.point + by.extend(0.0), Vec3::Z);
+    match op {
+        Op::Rapid(pose) | Op::Line(pose) => upright(pose),
+        Op::Arc(arc) => {
+            upright(&mut arc.end);
+            arc.center += by.extend(0.0);
+        }
+        _ => {}
+    }
+}

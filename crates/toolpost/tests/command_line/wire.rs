@@ -1,0 +1,204 @@
+//! `toolpost wire`: contours to points, what it says of them, and what it refuses.
+
+use crate::folder::{Folder, Said};
+use serde_json::Value;
+
+/// The sector of the examples, which is that of the specification.
+const SECTOR: &str = include_str!("../../../../examples/sector.nc");
+
+const CALL: [&str; 8] =
+    ["wire", "sector.nc", "--from", "fanuc-31i", "-m", "bp-95d", "-o", "part.pts"];
+
+fn sector() -> Folder {
+    let folder = Folder::new();
+    folder.write("sector.nc", SECTOR);
+    folder
+}
+
+fn wire(folder: &Folder, more: &[&str]) -> Said {
+    folder.run(&[&CALL, more].concat())
+}
+
+fn report(folder: &Folder) -> Value {
+    serde_json::from_str(&folder.read("part.report.json")).unwrap()
+}
+
+/// Refused with this code and in these words, and nothing is written.
+#[track_caller]
+fn refused(folder: &Folder, more: &[&str], code: i32, words: &[&str]) {
+    let before = folder.names();
+    let said = wire(folder, more);
+    assert_eq!(said.code, code, "{said:?}");
+    for word in words {
+        assert!(said.err.contains(word), "`{word}` is missing in\n{}", said.err);
+    }
+    assert_eq!(folder.names(), before);
+}
+
+/// The table of the specification: points on the arc with its end, chord error, e/R; and the cutting
+/// time at 0.11 mm/s.
+#[test]
+fn the_sector_has_the_points_errors_and_time_of_the_specification() {
+    let folder = sector();
+    for (step, points, error, relative) in [
+        ("0.1", 629, 3.125e-5, 7.8e-7),
+        ("0.5", 126, 7.812e-4, 1.95e-5),
+        ("1", 63, 3.125e-3, 7.8e-5),
+    ] {
+        let said = wire(&folder, &["--step", step, "--feed", "0.11", "--select", "6"]);
+        assert_eq!((said.code, said.err.as_str()), (0, ""), "{said:?}");
+        // The start, the end of each radius, and the arc.
+        assert_eq!(folder.read("part.pts").lines().count(), points + 3);
+        let report = report(&folder);
+        let wire = &report["wire"];
+        let arc = &wire["ways"][0]["arcs"][0];
+        assert_eq!((&arc["line"], &arc["chord_error"]["points"]), (&6.into(), &points.into()));
+        let largest = arc["chord_error"]["largest_mm"].as_f64().unwrap();
+        assert!((largest / error - 1.0).abs() < 2e-4, "{largest}");
+        assert!((largest / 40.0 / relative - 1.0).abs() < 4e-3, "{largest}");
+        let minutes = wire["cutting_time_s"].as_f64().unwrap() / 60.0;
+        assert!((minutes - 21.6).abs() < 0.05, "{minutes}");
+        let selected = &wire["selected"]["points"][0];
+        assert_eq!((&selected["first"], &selected["last"]), (&3.into(), &(points + 2).into()));
+        let last = report["instructions"].as_array().unwrap().last().unwrap();
+        assert_eq!((&last["line"], &last["first_point"]), (&7.into(), &(points + 3).into()));
+        assert_eq!(report["proof"]["proven"], true);
+        assert!(said.out.contains("time         21 min 38 s"), "{}", said.out);
+    }
+    assert!(folder.read("part.pts").starts_with("0.000 0.000\n40.000 0.000\n39.988 1.000\n"));
+}
+
+#[test]
+fn a_step_that_does_not_fit_is_refused_with_the_one_that_does() {
+    let folder = sector();
+    let said = wire(&folder, &["--step", "0.1", "--memory", "500"]);
+    assert_eq!(said.code, 1);
+    let offer = said.err.split("--step ").nth(1).and_then(|rest| rest.split(' ').next()).unwrap();
+    // 497 points remain for the arc: 20π/497 mm.
+    assert_eq!(offer, "0.126423", "{}", said.err);
+    assert_eq!(folder.names(), ["part.cls", "sector.nc"]);
+    assert_eq!(wire(&folder, &["--step", offer, "--memory", "500"]).code, 0);
+    assert_eq!(folder.read("part.pts").lines().count(), 500);
+    assert_eq!(wire(&folder, &["--fit", "--memory", "500"]).code, 0);
+    assert_eq!(folder.read("part.pts").lines().count(), 500);
+    refused(&folder, &["--step", "1", "--memory", "4"], 1, &["error[memory]"]);
+    refused(&folder, &["--fit"], 2, &["error[fit-without-memory]"]);
+}
+
+#[test]
+fn steps_that_are_none_are_refused() {
+    let folder = sector();
+    for step in ["0", "-1", "nan", "inf", "143"] {
+        refused(&folder, &["--step", step], 2, &["error[step]"]);
+        refused(&folder, &["--chord-error", step], 2, &["error[step]"]);
+    }
+}
+
+#[test]
+fn mills_and_wires_have_their_own_commands() {
+    let folder = sector();
+    let mill =
+        ["wire", "sector.nc", "--from", "fanuc-31i", "-m", "generic-3axis-fanuc", "-o", "x.nc"];
+    let said = folder.run(&mill);
+    assert_eq!(said.code, 2);
+    assert!(
+        said.err.contains("error[machine-kind]") && said.err.contains("toolpost post"),
+        "{said:?}"
+    );
+    let said = folder.run(&["post", "part.cls", "-m", "bp-95d", "-o", "x.pts"]);
+    assert_eq!(said.code, 2);
+    assert!(
+        said.err.contains("error[machine-kind]") && said.err.contains("toolpost wire"),
+        "{said:?}"
+    );
+    assert_eq!(folder.names(), ["part.cls", "sector.nc"]);
+}
+
+#[test]
+fn a_bad_source_is_told_with_its_line_and_writes_nothing() {
+    let folder = sector();
+    let bad = |from: &str, to: &str, words: &[&str]| {
+        folder.write("sector.nc", SECTOR.replace(from, to));
+        refused(&folder, &[], 2, words);
+    };
+    // Half the chord is 20·√2 = 28.2843 mm.
+    bad("R40.", "R28.27", &["sector.nc:6:"]);
+    bad("X0. Y40. R40.", "X40. Y0. R40.", &["sector.nc:6:"]);
+    bad("R40.", "I-40.1 J0.", &["sector.nc:6:"]);
+    bad("N30 G1 X40. Y0. F6.6", "N30 G1 X40. Y0. Q6.6", &["sector.nc:5:"]);
+    bad(" Z0.", "", &["sector.nc:5:", "--start"]);
+    bad("N30 G1 X40. Y0. F6.6\nN40 G3 X0. Y40. R40.\nN50 G1 X0. Y0.\n", "", &["empty-contour"]);
+}
+
+/// A square of 10 mm, and one of 14 mm about the same centre, each as a program.
+fn frustum() -> Folder {
+    let folder = Folder::new();
+    let square = |low: f64, high: f64| {
+        format!(
+            "G21 G17 G90\nG0 X{low:.1} Y{low:.1} Z0.\nG1 X{high:.1} F5.\nY{high:.1}\nX{low:.1}\nY{low:.1}\nM30\n"
+        )
+    };
+    folder.write("sector.nc", square(0.0, 10.0));
+    folder.write("upper.nc", square(-2.0, 12.0));
+    folder
+}
+
+#[test]
+fn two_contours_make_a_wire_that_leans() {
+    let folder = frustum();
+    let call = ["--upper", "upper.nc", "--height", "40", "--picture", "part.svg"];
+    let said = wire(&folder, &call);
+    assert_eq!((said.code, said.err.as_str()), (0, ""), "{said:?}");
+    let expected = "0.000 0.000 -2.000 -2.000\n10.000 0.000 2.000 -2.000\n10.000 10.000 2.000 2.000\n\
+                    0.000 10.000 -2.000 2.000\n0.000 0.000 -2.000 -2.000\n";
+    assert_eq!(folder.read("part.pts"), expected);
+    assert!(folder.read("part.svg").contains("LOWER AND UPPER CONTOUR, 5 POINTS"));
+    refused(&folder, &["--upper", "upper.nc"], 2, &["error[wire-height]", "--height"]);
+
+    let upper = folder.read("upper.nc").replace("Y12.0\n", "Y5.0\nY12.0\n");
+    folder.write("upper.nc", upper);
+    refused(&folder, &call, 2, &["error[sync-blocks]"]);
+    let said = wire(&folder, &[&call[..], &["--sync", "length"]].concat());
+    assert_eq!(said.code, 0, "{said:?}");
+    assert_eq!(folder.read("part.pts").lines().count(), 6);
+}
+
+#[test]
+fn a_wire_that_leans_too_far_is_the_machines_affair() {
+    let folder = frustum();
+    folder.write("shop.toml", "extends = \"bp-95d\"\n[wire]\nheight = 40\ntaper_max = 3\n");
+    let mut call = CALL;
+    call[5] = "shop.toml";
+    let said = folder.run(&[&call[..], &["--upper", "upper.nc"]].concat());
+    // atan(√8/40) = 4.04°.
+    assert_eq!(said.code, 1, "{said:?}");
+    assert!(said.err.contains("error[taper-limit]") && said.err.contains("4.0447°"), "{said:?}");
+}
+
+#[test]
+fn a_list_says_one_opening_only() {
+    let folder = sector();
+    let second = "G0 X100. Y0.\nG1 X110.\nY10.\nX100. Y0.\nN60 M30";
+    folder.write("sector.nc", SECTOR.replace("N60 M30", second));
+    refused(&folder, &[], 1, &["error[one-opening]", "sector.nc:9:"]);
+}
+
+#[test]
+fn the_picture_is_the_same_each_time_and_in_both_formats() {
+    let folder = sector();
+    let picture = |name: &str| {
+        let said = wire(&folder, &["--step", "1", "--picture", name, "--select", "6"]);
+        assert_eq!(said.code, 0, "{said:?}");
+        std::fs::read(folder.path().join(name)).unwrap()
+    };
+    let svg = picture("a.svg");
+    assert_eq!(svg, picture("b.svg"));
+    let text = String::from_utf8(svg).unwrap();
+    for word in ["CONTOUR, 66 POINTS", "START", "LINE 6", "3.125e-3 MM AT MOST", "HEIGHT NOT GIVEN"]
+    {
+        assert!(text.contains(word), "{word}");
+    }
+    assert!(picture("a.png").starts_with(b"\x89PNG"));
+    refused(&folder, &["--picture", "a.pdf"], 2, &["error[drawing]"]);
+    refused(&folder, &["--picture", "sector.nc"], 2, &["error[output]"]);
+}

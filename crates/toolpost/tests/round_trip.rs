@@ -1,0 +1,249 @@
+//! Random programs through every mill of the library: written, read back, and the same again.
+
+use control::Setup;
+use geom::Vec3;
+use machine::Machine;
+use machine::library::{MACHINES, names};
+use program::{ArcTo, Coolant, Cycle, CycleKind, Feed, Op, Pose, Program, Spindle, Tool};
+use proptest::prelude::*;
+
+/// A piece of a program.
+#[derive(Clone, Debug)]
+enum Piece {
+    Rapid(Vec3),
+    Line(Vec3),
+    /// Centre and start angle are taken from where the tool is: sweep in degrees, rise in mm.
+    Arc {
+        radius: f64,
+        toward: f64,
+        sweep: f64,
+        rise: f64,
+        clockwise: bool,
+    },
+    Holes(CycleKind, f64, Vec<(f64, f64)>),
+    Feed(f64),
+    Speed(f64, bool),
+    Coolant(bool),
+    Tool(u32),
+    Dwell(f64),
+    WorkOffset(u32),
+    Home,
+    Stop,
+}
+
+/// A coordinate in whole hundredths, so that every control writes it exactly.
+fn coordinate(most: i32) -> impl Strategy<Value = f64> {
+    (-most * 100..most * 100).prop_map(|n| f64::from(n) / 100.0)
+}
+
+fn point() -> impl Strategy<Value = Vec3> {
+    (coordinate(60), coordinate(60), -1000..1000i32)
+        .prop_map(|(x, y, z)| Vec3::new(x, y, f64::from(z) / 100.0))
+}
+
+fn piece() -> impl Strategy<Value = Piece> {
+    let kind = prop_oneof![
+        Just(CycleKind::Drill),
+        Just(CycleKind::Deep),
+        Just(CycleKind::BreakChip),
+        Just(CycleKind::Ream),
+    ];
+    let holes = prop::collection::vec((coordinate(60), coordinate(60)), 1..4);
+    prop_oneof![
+        2 => point().prop_map(Piece::Rapid),
+        6 => point().prop_map(Piece::Line),
+        4 => (2.0..30.0f64, 0.0..360.0f64, 5.0..355.0f64, prop_oneof![Just(0.0), -3.0..3.0f64], any::<bool>())
+            .prop_map(|(radius, toward, sweep, rise, clockwise)| Piece::Arc { radius, toward, sweep, rise, clockwise }),
+        1 => (kind, 1..1000u32, holes).prop_map(|(k, d, h)| Piece::Holes(k, f64::from(d) / 100.0, h)),
+        1 => (20..3000u32).prop_map(|f| Piece::Feed(f64::from(f))),
+        1 => (200..4000u32, any::<bool>()).prop_map(|(s, cw)| Piece::Speed(f64::from(s), cw)),
+        1 => any::<bool>().prop_map(Piece::Coolant),
+        1 => (1..10u32).prop_map(Piece::Tool),
+        1 => (1..50u32).prop_map(|d| Piece::Dwell(f64::from(d) / 10.0)),
+        1 => (54..58u32).prop_map(Piece::WorkOffset),
+        1 => Just(Piece::Home),
+        1 => Just(Piece::Stop),
+    ]
+}
+
+/// The program of the pieces: legal wherever they meet.
+fn assemble(pieces: &[Piece]) -> Program {
+    let mut program = Program::new("random");
+    let mut line = 0;
+    let mut push = |op: Op| {
+        line += 1;
+        program.push(line, op);
+    };
+    let pose = |p: Vec3| Pose::new(p, Vec3::Z);
+    let tool = |number| Op::Tool(Box::new(Tool { number, ..Tool::default() }));
+    let top = |p: Vec3| Vec3::new(p.x, p.y, 20.0);
+    let mut here = Vec3::new(0.0, 0.0, 20.0);
+    push(tool(1));
+    push(Op::Spindle(Spindle::Clockwise(1000.0)));
+    push(Op::Feed(Feed::PerMinute(300.0)));
+    push(Op::Rapid(pose(here)));
+    for piece in pieces {
+        match piece {
+            Piece::Rapid(to) => {
+                here = *to;
+                push(Op::Rapid(pose(here)));
+            }
+            Piece::Line(to) => {
+                here = *to;
+                push(Op::Line(pose(here)));
+            }
+            Piece::Arc { radius, toward, sweep, rise, clockwise } => {
+                let sense = if *clockwise { -1.0 } else { 1.0 };
+                let toward = toward.to_radians();
+                let center = here + Vec3::new(toward.cos(), toward.sin(), 0.0) * *radius;
+                let end = center
+                    + geom::rotate(here - center, Vec3::Z, sense * sweep.to_radians())
+                    + Vec3::Z * *rise;
+                here = end;
+                let normal = Vec3::Z * sense;
+                push(Op::Arc(Box::new(ArcTo { end: pose(end), center, normal, turns: 0 })));
+            }
+            Piece::Holes(kind, depth, holes) => {
+                push(Op::Rapid(pose(top(here))));
+                let peck = matches!(kind, CycleKind::Deep | CycleKind::BreakChip)
+                    .then_some((depth / 3.0 * 1000.0).round() / 1000.0 + 0.001);
+                push(Op::Cycle(Box::new(Cycle {
+                    kind: *kind,
+                    depth: *depth,
+                    clearance: 2.0,
+                    retract: 20.0,
+                    feed: Some(Feed::PerMinute(120.0)),
+                    dwell: 0.0,
+                    first_peck: peck,
+                    peck,
+                })));
+                for (x, y) in holes {
+                    here = Vec3::new(*x, *y, 20.0);
+                    push(Op::Hole(pose(here.with_z(0.0))));
+                }
+                push(Op::CycleOff);
+            }
+            Piece::Feed(feed) => push(Op::Feed(Feed::PerMinute(*feed))),
+            Piece::Speed(speed, true) => push(Op::Spindle(Spindle::Clockwise(*speed))),
+            Piece::Speed(speed, false) => push(Op::Spindle(Spindle::CounterClockwise(*speed))),
+            Piece::Coolant(on) => {
+                push(Op::Coolant(if *on { Coolant::Flood } else { Coolant::Off }))
+            }
+            Piece::Tool(number) => {
+                push(Op::Rapid(pose(top(here))));
+                push(tool(*number));
+                push(Op::Spindle(Spindle::Clockwise(1200.0)));
+                here = top(here);
+                push(Op::Rapid(pose(here)));
+            }
+            Piece::Dwell(seconds) => push(Op::Dwell(*seconds)),
+            Piece::WorkOffset(number) => {
+                push(Op::WorkOffset(*number));
+                here = top(here);
+                push(Op::Rapid(pose(here)));
+            }
+            Piece::Home => {
+                push(Op::Home(4));
+                here = top(here);
+                push(Op::Rapid(pose(here)));
+            }
+            Piece::Stop => push(Op::Stop),
+        }
+    }
+    push(Op::Rapid(pose(top(here))));
+    push(Op::End);
+    program
+}
+
+/// What a program does where it cuts, in the order in which it happens.
+#[derive(Clone, Debug, PartialEq)]
+struct Cut {
+    bottom: Vec3,
+    arc: Option<(Vec3, f64)>,
+    feed: Option<Feed>,
+    spindle: Spindle,
+    coolant: Coolant,
+    tool: u32,
+    work_offset: u32,
+}
+
+fn cuts(program: &Program) -> Vec<Cut> {
+    let mut now = Cut {
+        bottom: Vec3::NAN,
+        arc: None,
+        feed: None,
+        spindle: Spindle::Off,
+        coolant: Coolant::Off,
+        tool: 0,
+        work_offset: 54,
+    };
+    let (mut cycle, mut all) = (None, Vec::new());
+    for record in &program.records {
+        match &record.op {
+            Op::Line(pose) => all.push(Cut { bottom: pose.point, ..now.clone() }),
+            Op::Arc(to) => {
+                let arc = Some((to.center, to.normal.z));
+                all.push(Cut { bottom: to.end.point, arc, ..now.clone() });
+            }
+            Op::Cycle(with) => cycle = Some(**with),
+            Op::Hole(pose) => {
+                let cycle: Cycle = cycle.unwrap();
+                let feed = cycle.feed.or(now.feed);
+                let bottom = pose.point - Vec3::Z * cycle.depth;
+                all.push(Cut { bottom, feed, ..now.clone() });
+            }
+            Op::Feed(feed) => now.feed = Some(*feed),
+            Op::Spindle(spindle) => now.spindle = *spindle,
+            Op::Coolant(coolant) => now.coolant = *coolant,
+            Op::Tool(tool) => now.tool = tool.number,
+            Op::WorkOffset(number) => now.work_offset = *number,
+            _ => {}
+        }
+    }
+    all
+}
+
+/// The mills without limits of their own, which are no matter of reading. What a control has no cycle
+/// for is written as the moves of one: their ends are there too.
+fn mills() -> Vec<Machine> {
+    let generic = names(MACHINES).filter(|name| name.starts_with("generic"));
+    generic.map(|name| machine::load(name).unwrap()).collect()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { cases: 48, ..ProptestConfig::default() })]
+
+    #[test]
+    fn what_is_written_is_read_as_the_same(pieces in prop::collection::vec(piece(), 1..24)) {
+        let source = assemble(&pieces);
+        let expected = cuts(&source);
+        for machine in mills() {
+            let output = post::write(&source, &machine)
+                .map_err(|found| TestCaseError::fail(format!("{}: {found:?}", machine.name)))?;
+            let report = proof::prove(&source, &machine, "p", &output.text, &Default::default());
+            prop_assert!(report.proven, "{}: {:?}", machine.name, report.mismatches);
+            let read = nc::read(&machine, Setup::default(), "p", &output.text)
+                .map_err(|found| TestCaseError::fail(format!("{}: {found}", machine.name)))?;
+            let read = cuts(&read.program);
+            // Moves shorter than a step are left out, arcs may be cut in two: the ends that remain
+            // are the same, in their order, under the same conditions.
+            let mut rest = read.iter();
+            for cut in &expected {
+                let same = |other: &&Cut| {
+                    other.bottom.distance(cut.bottom) < 0.002
+                        && other.feed == cut.feed
+                        && other.spindle == cut.spindle
+                        && other.coolant == cut.coolant
+                        && other.tool == cut.tool
+                        && other.work_offset == cut.work_offset
+                        && match (other.arc, cut.arc) {
+                            (Some((a, m)), Some((b, n))) => a.distance(b) < 0.01 && m == n,
+                            (None, None) => true,
+                            _ => false,
+                        }
+                };
+                prop_assert!(rest.any(|c| same(&c)), "{}: {cut:?} is missing in {read:?}", machine.name);
+            }
+        }
+    }
+}

@@ -1,0 +1,246 @@
+//! The passes round one opening.
+
+use crate::contour::{Contour, Place};
+use crate::element::{Element, SAME};
+use crate::lead::{Pairs, reversed};
+use crate::offset::{Corner, offset};
+use crate::path::Path;
+use crate::plan::{Cut, Opening, Pass, Settings, Side, Trims};
+use crate::taper::lean;
+use geom::Vec2;
+use program::Diagnostic;
+
+/// An opening with the ways of its passes.
+pub(crate) struct Round {
+    /// Where the wire is threaded; `None`: at the start of an open contour.
+    thread: Option<Vec2>,
+    /// Where the cut starts, on the contour.
+    start: Place,
+    /// Whether the wire runs on the left of the contour.
+    left: bool,
+    /// For each pass its way along the contour, from its start.
+    ways: Vec<Path>,
+}
+
+impl Round {
+    /// The ways of the wire's centre, and the corners that became round.
+    pub fn new(
+        opening: &Opening,
+        settings: &Settings,
+    ) -> Result<(Round, Vec<Corner>), Box<Diagnostic>> {
+        let contour = &opening.contour;
+        let line = contour.elements().first().map_or(0, |element| element.line);
+        let closed = contour.is_closed();
+        let refused = |rule, message: String, way_out: &str| -> Box<Diagnostic> {
+            Diagnostic::error(rule, message).help(way_out).line(line).into()
+        };
+        if !closed && (matches!(opening.side, Side::Inside | Side::Outside) || settings.tab > 0.0) {
+            let (from, to) = (contour.start(), contour.end());
+            let message = format!(
+                "the contour is open: from X{:.4} Y{:.4} to X{:.4} Y{:.4}",
+                from.x, from.y, to.x, to.y
+            );
+            let way_out = "close it, or cut it without tab with the wire on its left or right";
+            return Err(refused("open-contour", message, way_out));
+        }
+        let left = match opening.side {
+            Side::Left => true,
+            Side::Right => false,
+            Side::Inside => contour.area() > 0.0,
+            Side::Outside => contour.area() < 0.0,
+        };
+        let start = match opening.start.or(opening.thread) {
+            Some(point) if closed => contour.nearest(point),
+            _ => contour.place_at(0.0),
+        };
+        let thread = match opening.thread {
+            None if closed => {
+                if settings.lead.length <= 0.0 {
+                    let message = "nobody says where the wire is threaded".into();
+                    let way_out = "give the place, or the length of the lead-in";
+                    return Err(refused("no-thread", message, way_out));
+                }
+                let travel =
+                    contour.elements().get(start.element).map(|element| element.tangent(start.t));
+                let beside = settings.lead.length * if left { 1.0 } else { -1.0 };
+                Some(start.point + travel.unwrap_or_default().perp() * beside)
+            }
+            given => given,
+        };
+        let mut round = Round { thread, start, left, ways: Vec::new() };
+        let mut corners = Vec::new();
+        for cut in &settings.passes {
+            let (way, rounded) = round.way(opening, settings, cut)?;
+            if settings.tab > 0.0 && settings.tab >= way.lower().length() {
+                let message = format!(
+                    "a tab of {} mm on a way of {:.4} mm",
+                    settings.tab,
+                    way.lower().length()
+                );
+                return Err(refused("tab", message, "a tab is shorter than the contour"));
+            }
+            // Those of the last pass are what stays.
+            corners = rounded;
+            round.ways.push(way);
+        }
+        Ok((round, corners))
+    }
+
+    /// The way of one pass: beside the contour, and leaning.
+    fn way(
+        &self,
+        opening: &Opening,
+        settings: &Settings,
+        cut: &Cut,
+    ) -> Result<(Path, Vec<Corner>), Box<Diagnostic>> {
+        let side = if self.left { 1.0 } else { -1.0 };
+        let beside = offset(&opening.contour, side * settings.beside(cut), settings.corners)?;
+        let lower = beside.contour.started_at(&beside.contour.nearest(self.start.point));
+        let Some(taper) = settings.taper else { return Ok((Path::upright(lower), beside.rounded)) };
+        // Larger at the top is to the right of what goes round counter-clockwise.
+        let out = if opening.contour.area() > 0.0 { -1.0 } else { 1.0 };
+        let upper = lean(&lower, out * taper.height * taper.angle.tan(), taper.rounding)?;
+        upper.simple()?;
+        let path = Path::by_block(lower.elements().to_vec(), upper.elements().to_vec())?;
+        Ok((path, beside.rounded))
+    }
+
+    /// The same round along the contour itself, where the control offsets and leans.
+    pub fn at_contour(&self, opening: &Opening) -> Round {
+        let way = Path::upright(opening.contour.started_at(&self.start));
+        Round { ways: self.ways.iter().map(|_| way.clone()).collect(), ..*self }
+    }
+
+    /// Where the wire is threaded.
+    pub fn thread(&self) -> Vec2 {
+        let start = || self.ways.first().map(|way| way.lower().start());
+        self.thread.or_else(start).unwrap_or_default()
+    }
+
+    /// The passes in their order.
+    pub fn passes(&self, index: usize, settings: &Settings) -> Result<Vec<Pass>, Box<Diagnostic>> {
+        let mut strands = Strands { index, settings, passes: Vec::new() };
+        if settings.tab > 0.0 {
+            self.with_tab(&mut strands)?;
+        } else {
+            self.whole(&mut strands)?;
+        }
+        if let Some(last) = strands.passes.last_mut() {
+            last.cut = true;
+        }
+        Ok(strands.passes)
+    }
+
+    /// Each pass along the whole contour.
+    fn whole(&self, strands: &mut Strands) -> Result<(), Box<Diagnostic>> {
+        let repeat = strands.settings.trims == Trims::Repeat;
+        for (number, way) in self.ways.iter().enumerate() {
+            let back = !repeat && number % 2 == 1;
+            let reversed = way.reversed();
+            let (way, left) = if back { (&reversed, !self.left) } else { (way, self.left) };
+            let closed = way.lower().is_closed();
+            let mut pairs = Pairs::new();
+            // An open contour has its lead at its start only.
+            if closed || !back {
+                pairs.extend(self.lead_in(strands.settings, way, left));
+            }
+            pairs.extend(way.elements().map(|(below, above)| (*below, *above)));
+            if closed || back {
+                pairs.extend(self.lead_out(strands.settings, way, left));
+            }
+            let thread = number == 0 || (repeat && !closed);
+            strands.add(Strand { number, tab: false, left, thread, pairs })?;
+        }
+        Ok(())
+    }
+
+    /// Each pass up to the tab, and then each pass through the tab.
+    fn with_tab(&self, strands: &mut Strands) -> Result<(), Box<Diagnostic>> {
+        let settings = strands.settings;
+        let repeat = settings.trims == Trims::Repeat;
+        let tab = |way: &Path| way.lower().place_at(way.lower().length() - settings.tab);
+        let end = |way: &Path| way.lower().place_at(f64::INFINITY);
+        let mut at_tab = false;
+        for (number, way) in self.ways.iter().enumerate() {
+            let mut pairs = self.lead_in(settings, way, self.left);
+            pairs.extend(way.between(&way.lower().place_at(0.0), &tab(way)));
+            let back = at_tab && !repeat;
+            let pairs = if back { reversed(&pairs) } else { pairs };
+            let (left, thread) = (self.left != back, number == 0 || repeat);
+            strands.add(Strand { number, tab: false, left, thread, pairs })?;
+            at_tab = !back;
+        }
+        for (number, way) in self.ways.iter().enumerate() {
+            let mut pairs = way.between(&tab(way), &end(way));
+            pairs.extend(self.lead_out(settings, way, self.left));
+            let pairs = if at_tab { pairs } else { reversed(&pairs) };
+            let left = self.left == at_tab;
+            strands.add(Strand { number, tab: true, left, thread: false, pairs })?;
+            at_tab = !at_tab;
+        }
+        Ok(())
+    }
+
+    fn lead_in(&self, settings: &Settings, way: &Path, left: bool) -> Pairs {
+        self.thread.map_or_else(Pairs::new, |thread| settings.lead.shape.into(thread, way, left))
+    }
+
+    fn lead_out(&self, settings: &Settings, way: &Path, left: bool) -> Pairs {
+        self.thread.map_or_else(Pairs::new, |thread| settings.lead.shape.out(thread, way, left))
+    }
+}
+
+/// One pass to be.
+struct Strand {
+    number: usize,
+    tab: bool,
+    left: bool,
+    thread: bool,
+    pairs: Pairs,
+}
+
+/// The passes so far.
+struct Strands<'a> {
+    index: usize,
+    settings: &'a Settings,
+    passes: Vec<Pass>,
+}
+
+impl Strands<'_> {
+    /// Adds a pass. Where the wire stays threaded, straight from where it stands.
+    fn add(&mut self, strand: Strand) -> Result<(), Box<Diagnostic>> {
+        let Strand { number, tab, left, thread, mut pairs } = strand;
+        if let (Some(before), Some(&(below, above))) = (self.passes.last_mut(), pairs.first()) {
+            if thread {
+                before.cut = true;
+            } else {
+                let upper = before.path.upper().unwrap_or(before.path.lower());
+                let from = (before.path.lower().end(), upper.end());
+                let joint = (
+                    Element::line(from.0, below.start).from_line(below.line),
+                    Element::line(from.1, above.start).from_line(above.line),
+                );
+                pairs.insert(0, joint);
+            }
+        }
+        let (lower, upper) = pairs.into_iter().unzip();
+        let path = match self.settings.taper {
+            Some(_) if !self.settings.by_control => Path::by_block(lower, upper)?,
+            _ => Path::upright(Contour::new(lower, 10.0 * SAME)?),
+        };
+        let Some(settings) = self.settings.passes.get(number).copied() else { return Ok(()) };
+        let (opening, stop) = (self.index, tab && number == 0);
+        self.passes.push(Pass {
+            opening,
+            number,
+            tab,
+            thread,
+            cut: false,
+            stop,
+            path,
+            left,
+            settings,
+        });
+        Ok(())
+    }
+}

@@ -1,0 +1,131 @@
+//! NC programs as contours: through a virtual control, and record by record.
+
+use geom::Vec2;
+use program::{ArcTo, Compensation, Cycle, CycleKind, Op, Orientation, Pose, Program};
+use std::f64::consts::PI;
+use toolpost_wire::points::{Step, points};
+use toolpost_wire::{Path, contours, cuts};
+
+type Vec3 = geom::Vec3;
+
+fn program(text: &str) -> Program {
+    let settings = control::Settings::new(control::Dialect::Fanuc, [false; 3]);
+    let mut program = Program::new("test");
+    control::read(&settings, "test.nc", text.as_bytes(), &mut |record| {
+        program.records.push(record);
+        Ok(())
+    })
+    .unwrap();
+    program
+}
+
+fn pose(x: f64, y: f64) -> Pose {
+    Pose::new(Vec3::new(x, y, f64::NAN), Vec3::Z)
+}
+
+fn of(ops: Vec<Op>) -> Program {
+    let mut program = Program::new("test");
+    for (op, line) in ops.into_iter().zip(1..) {
+        program.push(line, op);
+    }
+    program
+}
+
+fn rule(ops: Vec<Op>) -> (&'static str, u32) {
+    let refused = contours(&of(ops), None).unwrap_err();
+    (refused.rule, refused.line)
+}
+
+/// The sector of the source, then an opening: rapids part them, the lines are those of the program.
+#[test]
+fn rapids_part_the_contours_of_a_program() {
+    let text = "O1 G21 G90 G17 G94\nG0 X0. Y0. Z0.\nG1 X40. F6.6\nG3 X0. Y40. R40.\nG1 Y0.\n\
+                G0 X100. Y5.\nG2 I-5. J0.\nM30\n";
+    let found = contours(&program(text), None).unwrap();
+    let [sector, hole] = found.as_slice() else { panic!("{found:?}") };
+    assert!(sector.is_closed() && hole.is_closed());
+    assert!((sector.area() - PI * 400.0).abs() < 1e-9);
+    assert!((hole.area() + PI * 25.0).abs() < 1e-9);
+    let lines: Vec<u32> = sector.elements().iter().map(|e| e.line).collect();
+    assert_eq!((lines, hole.elements()[0].line), (vec![3, 4, 5], 7));
+    assert_eq!(hole.start(), Vec2::new(100.0, 5.0));
+    let found = points(&[&Path::upright(sector.clone())], Step::Length(0.1), None).unwrap();
+    assert_eq!(found[0].of_line(4).next().unwrap().len(), 629);
+}
+
+/// A square below and a smaller one above: two programs, move by move.
+#[test]
+fn two_programs_are_the_two_ends_of_the_wire() {
+    let square = |half: f64| {
+        let text = format!(
+            "O1 G21 G90 G94\nG0 X{half:.1} Y-{half:.1}\nG1 Y{half:.1} F5.\nX-{half:.1}\n\
+             Y-{half:.1}\nX{half:.1}\nM30\n"
+        );
+        cuts(&program(&text), None).unwrap().remove(0)
+    };
+    let path = Path::by_block(square(10.0), square(9.0)).unwrap();
+    let found = points(&[&path], Step::Length(1.0), None).unwrap().remove(0);
+    assert_eq!(found.lower.len(), 5);
+    let lean: Vec<Vec2> = found.upper.iter().zip(&found.lower).map(|(u, l)| *u - *l).collect();
+    assert_eq!(lean[0], Vec2::new(-1.0, 1.0));
+    assert_eq!(lean[2], Vec2::new(1.0, -1.0));
+}
+
+#[test]
+fn what_is_no_way_of_a_wire_is_refused_with_its_line() {
+    let start = Op::Rapid(pose(0.0, 0.0));
+    assert_eq!(rule(vec![]), ("empty-contour", 0));
+    assert_eq!(rule(vec![start.clone(), Op::Line(pose(0.0, 0.0))]), ("empty-contour", 0));
+    assert_eq!(rule(vec![Op::Line(pose(1.0, 0.0))]), ("nc-unknown-position", 1));
+    let gone = vec![start.clone(), Op::Home(1), Op::Line(pose(1.0, 0.0))];
+    assert_eq!(rule(gone), ("nc-unknown-position", 3));
+    let open = vec![start.clone(), Op::Compensation(Compensation::Left(Some(1)))];
+    assert_eq!(rule(open), ("open-compensation", 2));
+    assert_eq!(rule(vec![start.clone(), Op::Hole(pose(1.0, 0.0))]), ("not-a-cut", 2));
+    let leaning = Pose::new(Vec3::ZERO, Vec3::new(0.1, 0.0, 0.995).normalize());
+    assert_eq!(rule(vec![start.clone(), Op::Line(leaning)]), ("not-upright", 2));
+    let orientation = Orientation::Rotary { degrees: [0.0, 5.0, 0.0], tool_center: false };
+    let turned = Pose { orientation, ..pose(1.0, 0.0) };
+    assert_eq!(rule(vec![start.clone(), Op::Line(turned)]), ("not-upright", 2));
+    let arc = |end: Pose, center: Vec3, normal: Vec3, turns: u32| {
+        Op::Arc(Box::new(ArcTo { end, center, normal, turns }))
+    };
+    let (end, center) = (pose(2.0, 0.0), Vec3::X);
+    let upright = arc(end, center, Vec3::X, 0);
+    assert_eq!(rule(vec![start.clone(), upright]), ("not-a-cut", 2));
+    assert_eq!(rule(vec![start.clone(), arc(end, center, Vec3::Z, 1)]), ("not-a-cut", 2));
+    assert_eq!(rule(vec![start.clone(), arc(end, Vec3::X * 0.9, Vec3::Z, 0)]), ("arc-center", 2));
+    // A cycle that makes no hole cuts nothing.
+    let cycle = Cycle {
+        kind: CycleKind::Drill,
+        depth: 1.0,
+        clearance: 1.0,
+        retract: 1.0,
+        feed: None,
+        dwell: 0.0,
+        first_peck: None,
+        peck: None,
+    };
+    let ops = vec![start, Op::Cycle(Box::new(cycle)), Op::CycleOff, Op::Line(pose(1.0, 0.0))];
+    assert_eq!(contours(&of(ops), None).unwrap().len(), 1);
+}
+
+#[test]
+fn where_the_start_is_known_a_program_may_begin_with_a_cut() {
+    let cut = of(vec![Op::Line(pose(10.0, 0.0))]);
+    let found = contours(&cut, Some(Vec2::new(4.0, 0.0))).unwrap();
+    assert_eq!(found[0].length(), 6.0);
+}
+
+/// A million moves of 0.02 µm are a million points, and too many for a small memory.
+#[test]
+fn a_million_tiny_moves() {
+    let moves =
+        (0..1_000_000).map(|i| Op::Line(pose(f64::from(i) * 2e-5, f64::from(i % 2) * 1e-5)));
+    let ops = std::iter::once(Op::Rapid(pose(0.0, 0.0))).chain(moves).collect();
+    let found = contours(&of(ops), None).unwrap();
+    let path = Path::upright(found[0].clone());
+    assert_eq!(points(&[&path], Step::ChordError(0.001), None).unwrap()[0].lower.len(), 1_000_000);
+    let refused = points(&[&path], Step::Fit, Some(1000)).unwrap_err();
+    assert_eq!((refused.diagnostic.rule, refused.offer), ("memory", None));
+}
