@@ -41,6 +41,8 @@ pub(super) enum G {
     FeedMode(FeedMode),
     Inches(bool),
     Compensation(Side),
+    /// With the diameter in the block (`G41.1`).
+    DynamicCompensation(Side),
     Length,
     ToolCenter,
     DynamicLength,

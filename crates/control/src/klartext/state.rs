@@ -8,8 +8,10 @@ use super::registers::Registers;
 use super::scan::{Result, Scanner};
 use super::transform::Transforms;
 use super::words::FeedWord;
+use crate::Settings;
+use crate::ToolData;
+use crate::compensation::{Compensator, Terms};
 use crate::flow::Budget;
-use crate::{Settings, Sink, ToolData};
 use geom::Vec3;
 use program::{Compensation, Coolant, Cycle, Feed, Op, Orientation, Pose, Record, Spindle};
 
@@ -35,7 +37,7 @@ pub(super) enum Tip {
 /// The state of the control.
 pub(super) struct Control<'a, 's> {
     pub(super) settings: &'a Settings,
-    sink: &'a mut Sink<'s>,
+    compensator: &'a mut Compensator<'s>,
     /// Line of the block that runs.
     line: u32,
     /// mm in the unit of length of the program.
@@ -87,10 +89,10 @@ pub(super) struct Control<'a, 's> {
 }
 
 impl<'a, 's> Control<'a, 's> {
-    pub(super) fn new(settings: &'a Settings, sink: &'a mut Sink<'s>) -> Self {
+    pub(super) fn new(settings: &'a Settings, compensator: &'a mut Compensator<'s>) -> Self {
         Control {
             settings,
-            sink,
+            compensator,
             line: 0,
             unit: 1.0,
             here: Vec3::NAN,
@@ -133,7 +135,7 @@ impl<'a, 's> Control<'a, 's> {
 
     pub(super) fn emit(&mut self, op: Op) -> Result<()> {
         self.budget.record();
-        (self.sink)(Record { line: self.line, op })
+        self.compensator.take(Record { line: self.line, op })
     }
 
     /// A jump, a call or a return: programs that never end are refused.
@@ -291,11 +293,19 @@ impl<'a, 's> Control<'a, 's> {
         }
         self.compensation = compensation;
         // What is left in mirrored coordinates is right of the path that is told.
-        self.emit(Op::Compensation(match (compensation, self.mirrors()) {
+        let side = match (compensation, self.mirrors()) {
             (Compensation::Left(_), true) => Compensation::Right(None),
             (Compensation::Right(_), true) => Compensation::Left(None),
             _ => compensation,
-        }))
+        };
+        let terms = Terms {
+            normal: self.work_direction(Vec3::Z).normalize_or(Vec3::Z),
+            across_tool: true,
+            radius: None,
+            outer: None,
+            around: false,
+        };
+        self.compensator.switch(self.line, side, terms)
     }
 
     /// Does the M functions of a block that act at that moment.

@@ -37,7 +37,7 @@ struct Ends {
     normal: Vec3,
 }
 
-impl Interpreter<'_> {
+impl Interpreter<'_, '_> {
     /// An arc from where the tool is.
     pub fn arc(&mut self, source: &Source, block: &Block) -> Fallible<()> {
         let error = |message: &str| Err(source.block_error("arc", message));

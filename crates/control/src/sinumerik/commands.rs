@@ -3,6 +3,7 @@
 //! A block has at most one command of a group (Programming Manual 06/2019, 4.3.1); one of each
 //! modal group holds. The table is the only place that knows a command: what it does is a [`Code`].
 
+use crate::compensation::Outer;
 use program::Compensation;
 
 /// What a G command does.
@@ -26,6 +27,10 @@ pub(super) enum Code {
     Plane(usize),
     /// Cutter radius compensation.
     Compensation(Compensation),
+    /// How compensation goes around outer corners.
+    Corner(Outer),
+    /// How compensation begins and ends: straight, or where need be around the first point (`KONT`).
+    Approach { around: bool },
     /// Settable work offset, 500 for none.
     WorkOffset(u32),
     /// Every offset is off for this block.
@@ -276,12 +281,12 @@ pub(super) static COMMANDS: &[Command] = &[
     same("CFC", 16),
     same("CFTCP", 16),
     same("CFIN", 16),
-    same("NORM", 17),
-    same("KONT", 17),
-    same("KONTC", 17),
-    same("KONTT", 17),
-    same("G450", 18),
-    same("G451", 18),
+    g("NORM", 17, Code::Approach { around: false }),
+    g("KONT", 17, Code::Approach { around: true }),
+    g("KONTC", 17, Code::Approach { around: true }),
+    g("KONTT", 17, Code::Approach { around: true }),
+    g("G450", 18, Code::Corner(Outer::Arc)),
+    g("G451", 18, Code::Corner(Outer::Intersection)),
     // 21 to 24: jerk, kind of compensation, collision look-ahead, feed-forward
     same("BRISK", 21),
     same("SOFT", 21),

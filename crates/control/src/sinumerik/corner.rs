@@ -145,7 +145,7 @@ impl Locus {
     }
 }
 
-impl Interpreter<'_> {
+impl Interpreter<'_, '_> {
     /// Whether a block has to do with a corner.
     #[inline]
     pub fn cornered(&self, block: &Block) -> bool {

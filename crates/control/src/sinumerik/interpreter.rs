@@ -14,18 +14,20 @@ use super::motion::AXIS_NAMES;
 use super::programmable::plain_values;
 use super::scan::Source;
 use super::state::{self, Modes, State};
+use crate::Settings;
+use crate::compensation::{Compensator, Terms};
 use crate::flow::Budget;
-use crate::{Settings, Sink};
 use geom::Vec3;
 use program::{Compensation, Coolant, Cycle, Feed, Op, Record, Spindle, Tool};
 
 /// Runs blocks.
-pub(super) struct Interpreter<'a> {
+pub(super) struct Interpreter<'a, 's> {
     /// What is remembered.
     pub state: State,
     /// The machine.
     pub settings: &'a Settings,
-    sink: &'a mut Sink<'a>,
+    /// Where the records go.
+    compensator: &'a mut Compensator<'s>,
     /// Jumps and calls.
     pub budget: Budget,
     /// The line of the main program that records carry, where another file runs.
@@ -46,13 +48,16 @@ const COOLANT: &[u32] = &[7, 8, 9];
 /// Automatic gear stage, gear stages 1 to 5.
 const GEARS: std::ops::RangeInclusive<u32> = 40..=45;
 
-impl<'a> Interpreter<'a> {
+impl<'a, 's> Interpreter<'a, 's> {
     /// At the start of a program.
-    pub fn new(settings: &'a Settings, sink: &'a mut Sink<'a>) -> Interpreter<'a> {
+    pub fn new(
+        settings: &'a Settings,
+        compensator: &'a mut Compensator<'s>,
+    ) -> Interpreter<'a, 's> {
         Interpreter {
             state: State::new(settings),
             settings,
-            sink,
+            compensator,
             budget: Budget::default(),
             line: None,
             called: false,
@@ -72,7 +77,16 @@ impl<'a> Interpreter<'a> {
     #[inline]
     pub fn send(&mut self, record: Record) -> Fallible<()> {
         self.budget.record();
-        (self.sink)(record).inspect_err(|_| self.stopped = true)
+        self.compensator.take(record).inspect_err(|_| self.stopped = true)
+    }
+
+    /// Reports that compensation changes with the move that follows.
+    pub fn switch(&mut self, source: &Source, side: Compensation, terms: Terms) -> Fallible<()> {
+        let line = self.line.unwrap_or(source.line);
+        if self.held.is_some() {
+            return self.keep(source, Record { line, op: Op::Compensation(side) });
+        }
+        self.compensator.switch(line, side, terms).inspect_err(|_| self.stopped = true)
     }
 
     /// Carries out a block.
@@ -171,6 +185,12 @@ impl<'a> Interpreter<'a> {
                 return Err(source.block_error("corner", message));
             }
             self.state.select_plane(normal);
+        }
+        if let Some(Code::Corner(outer)) = block.code(18) {
+            self.state.corner = Some(outer);
+        }
+        if let Some(Code::Approach { around }) = block.code(17) {
+            self.state.goes_around = around;
         }
         let state = &mut self.state;
         if let Some(Code::Units(unit, of_feed)) = block.code(13) {

@@ -36,13 +36,14 @@ mod value;
 mod variables;
 mod words;
 
-use crate::{Settings, Sink};
+use crate::Settings;
+use crate::compensation::Compensator;
 use program::Diagnostic;
 
 /// What may go wrong.
 type Fallible<T> = Result<T, Box<Diagnostic>>;
 
 /// Runs a program.
-pub(crate) fn run(settings: &Settings, text: &[u8], sink: &mut Sink) -> Fallible<()> {
-    run::Run::main(settings, text, sink)
+pub(crate) fn run(settings: &Settings, text: &[u8], compensator: &mut Compensator) -> Fallible<()> {
+    run::Run::main(settings, text, compensator)
 }

@@ -8,12 +8,13 @@ use super::interpreter::Interpreter;
 use super::polar::axes_of_plane;
 use super::scan::Source;
 use super::state::ToolAxis;
+use crate::compensation::Terms;
 use geom::{Vec3, direction};
 use program::{Compensation, Op};
 
 pub(super) const AXIS_NAMES: [&str; 6] = ["X", "Y", "Z", "A", "B", "C"];
 
-impl Interpreter<'_> {
+impl Interpreter<'_, '_> {
     /// The motion of a block, if it has one.
     #[inline]
     pub fn motion(&mut self, source: &Source, block: &Block) -> Fallible<()> {
@@ -346,7 +347,19 @@ impl Interpreter<'_> {
             }
             (Compensation::Off, _) => Compensation::Off,
         };
-        self.emit(source, Op::Compensation(compensation))
+        let axis = |index: usize| {
+            let mut axis = Vec3::ZERO;
+            axis[index % 3] = 1.0;
+            self.state.frames.direction(axis)
+        };
+        let terms = Terms {
+            normal: axis(normal + 1).cross(axis(normal + 2)).normalize_or(Vec3::Z),
+            across_tool: normal == 2,
+            radius: None,
+            outer: self.state.corner,
+            around: self.state.goes_around,
+        };
+        self.switch(source, compensation, terms)
     }
 
     /// `POS[X]=`: axes that each go to a place by themselves, and the block with them.

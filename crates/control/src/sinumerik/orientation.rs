@@ -21,7 +21,7 @@ const AFTER: usize = 10;
 const DIRECTION: usize = 13;
 const PARAMETERS: usize = 16;
 
-impl Interpreter<'_> {
+impl Interpreter<'_, '_> {
     /// `TRAORI`, `TRAORI(1)`: the linear axes now give the tool tip, which was elsewhere before.
     pub fn traori(&mut self, source: &Source, call: &Call) -> Fallible<()> {
         let plain = match call.arguments.as_slice() {

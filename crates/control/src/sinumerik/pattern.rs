@@ -27,7 +27,7 @@ fn under(degrees: f64) -> Vec3 {
     Vec3::new(cos, sin, 0.0)
 }
 
-impl Interpreter<'_> {
+impl Interpreter<'_, '_> {
     /// Goes to each place of a pattern in rapid and drills there.
     pub fn pattern(&mut self, source: &Source, call: &Call, pattern: Pattern) -> Fallible<()> {
         let error = |rule, message: String| {

@@ -18,7 +18,7 @@ pub(super) fn axes_of_plane(normal: usize) -> (usize, usize) {
     }
 }
 
-impl Interpreter<'_> {
+impl Interpreter<'_, '_> {
     /// `G110`, `G111`, `G112` with X, Y, Z, in a block of its own. The polar angle is forgotten.
     pub fn pole(&mut self, source: &Source, block: &Block, origin: Origin) -> Fallible<()> {
         let name = block.command(3);

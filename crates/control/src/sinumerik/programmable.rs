@@ -9,7 +9,7 @@ use super::scan::Source;
 use geom::{Frame, Vec3};
 use program::Compensation;
 
-impl Interpreter<'_> {
+impl Interpreter<'_, '_> {
     /// A command of the programmable frame, in a block of its own. The absolute ones delete what is
     /// there, with or without values; the additive ones go on top of it.
     pub fn frame_command(

@@ -7,6 +7,7 @@ use super::offsets::WorkOffsets;
 use super::value::Value;
 use super::variables::{Locals, Parameters, Place};
 use crate::Settings;
+use crate::compensation::Outer;
 use geom::{Frame, Vec3};
 use program::{Compensation, Coolant, Feed, Orientation, Pose, Spindle, Tool};
 
@@ -56,6 +57,10 @@ pub(super) struct State {
     pub compensation: Compensation,
     /// G group 7 as the axes move.
     pub compensation_in_effect: Compensation,
+    /// How outer corners are gone around, where a block has said so.
+    pub corner: Option<Outer>,
+    /// `KONT`: from behind the contour the tool goes around its first point.
+    pub goes_around: bool,
     /// `F` in the active type, mm/min or mm.
     pub feed: Option<f64>,
     /// The feed that was reported last.
@@ -149,6 +154,8 @@ impl State {
             work_offset: WORK_OFFSET_AT_RESET,
             compensation: Compensation::Off,
             compensation_in_effect: Compensation::Off,
+            corner: None,
+            goes_around: false,
             feed: None,
             reported_feed: None,
             speed: 0.0,

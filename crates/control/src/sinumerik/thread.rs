@@ -7,7 +7,7 @@ use super::interpreter::Interpreter;
 use super::scan::Source;
 use program::{Op, Spindle, Thread};
 
-impl Interpreter<'_> {
+impl Interpreter<'_, '_> {
     /// `G33`, `G331`, `G332`: a straight way along one axis in step with the spindle; `I J K` is the pitch
     /// along X, Y, Z.
     #[cold]
