@@ -4,8 +4,8 @@ use geom::Vec2;
 use program::Diagnostic;
 use std::f64::consts::TAU;
 
-/// By how much an arc's radius may fall short of half its chord, or its two radii differ, mm. FANUC's
-/// parameter 3410 and LinuxCNC's manual ("G2, G3") use limits of this size.
+/// By how much an arc's radius may fall short of half its chord, or its two radii differ, mm: what
+/// LinuxCNC allows for the radii (manual, "G2, G3", centre format).
 pub const ARC_TOLERANCE: f64 = 0.005;
 
 /// Ends closer than this are one point, mm: far below what any wire machine resolves.
