@@ -59,6 +59,7 @@ impl Step<'_, '_, '_> {
     /// machine: what could matter there is refused.
     fn run(&mut self) -> Result<(), Fault> {
         self.one_command()?;
+        self.wire()?;
         self.m_functions_beside_motion()?;
         self.feed()?;
         self.speed()?;
@@ -335,10 +336,11 @@ impl Step<'_, '_, '_> {
     fn compensation(&mut self, side: Side) -> Result<(), Fault> {
         let mut register = None;
         if side != Side::Off {
-            register = self.take_whole(b'D')?;
+            register = self.take_whole(self.flavor.radius_letter())?;
             self.radius_is_set_up(register)?;
             if register.is_none() && self.flavor.is_fanuc() {
-                let message = "G41 and G42 need their register D";
+                let letter = char::from(self.flavor.radius_letter());
+                let message = format!("G41 and G42 need their register {letter}");
                 return Err(self.block.at_group(Group::Compensation, "nc-compensation", message));
             }
             if self.state.plane.axes()[2] != 2 {
