@@ -1,7 +1,7 @@
 //! One block, in the order in which a control executes it.
 
+use super::arithmetic;
 use super::block::{Block, Fault};
-use super::expression;
 use super::state::State;
 use super::words::{FeedMode, Flavor, G, Group, M, Motion, Side};
 use crate::{Settings, WholeNumbers};
@@ -462,7 +462,7 @@ impl Step<'_, '_, '_> {
     pub(super) fn take_whole(&mut self, letter: u8) -> Result<Option<u32>, Fault> {
         let Some(word) = self.block.take(letter) else { return Ok(None) };
         let pointed = word.point && self.flavor.is_fanuc();
-        let value = if word.computed { expression::whole(word.value) } else { exact(word.value) };
+        let value = if word.computed { arithmetic::whole(word.value) } else { exact(word.value) };
         match value.filter(|&value| !pointed && value <= 99_999_999) {
             Some(value) => Ok(Some(value)),
             None => {

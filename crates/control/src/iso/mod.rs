@@ -9,7 +9,9 @@
 //! [`motion`], [`arcs`], [`cycles`], [`coordinates`], [`tools`]): a block with a mistake leaves none.
 
 mod arcs;
+mod arithmetic;
 mod block;
+mod branches;
 mod calls;
 mod coordinates;
 mod cycles;
