@@ -115,6 +115,11 @@ fn set_up(machine: &mut Machine, args: &args::Wire) -> Result<(), Stop> {
         let help = "`toolpost post` writes for mills; `toolpost machines list` names the machines";
         return Err(Diagnostic::error("machine-kind", message).help(help).into());
     };
+    if args.cutting.by_control && !machine.capabilities.compensation {
+        let message = format!("the control of `{}` offsets no wire", machine.name);
+        let help = "leave --by-control out: the way of the wire's centre is then worked out here";
+        return Err(Diagnostic::error("by-control", message).help(help).into());
+    }
     machine.wire = Some(Wire {
         height: args.ends.height.or(wire.height),
         memory: args.division.memory.or(wire.memory),
