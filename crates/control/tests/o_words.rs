@@ -88,7 +88,6 @@ fn parameters_are_numbered_named_indirect_and_set_together() {
             X[#<_feed>] Y[#<_coord_system>] Z[#<_call_level>]\nG55 X[#5220] Y[#<_coord_system>]",
     );
     agrees("G98\nG0 X[1+#<_retract_r_plane>] Y[1+#<_retract_old_z>]\nG99 X[3+#<_retract_r_plane>]");
-    agrees("#1=1 #2=0 F100\nG#2 X1\nG#1 X2\nG[90 + #1] X1\nN1 G#2 Y1 M[3+#2] S#1");
     agrees("T3 M6\nG0 X#5400 Y#<_current_tool> Z#5403\nX#5410");
     agrees("S500 M3\nG0 X#<_rpm> Y#<_spindle_on> Z#<_spindle_cw>\nX[5*#<_ccomp>] Y#<_tool_offset>");
     agrees(
@@ -197,7 +196,6 @@ fn what_does_not_hold_together_is_refused() {
         "G0 X#1.5",
         "G0 XATAN[1]",
         "G0 XSIN 30",
-        "G[1.55] X1",
         "M[1.5]",
     ] {
         refused(text);

@@ -34,8 +34,6 @@ mod words;
 use crate::{Settings, Sink};
 use program::Diagnostic;
 
-pub(crate) use state::WORK_OFFSET_AT_RESET;
-
 /// What may go wrong.
 type Fallible<T> = Result<T, Box<Diagnostic>>;
 
