@@ -126,6 +126,9 @@ fn a_bad_source_is_told_with_its_line_and_writes_nothing() {
     bad("X0. Y40. R40.", "X40. Y0. R40.", &["sector.nc:6:"]);
     bad("R40.", "I-40.1 J0.", &["sector.nc:6:"]);
     bad("N30 G1 X40. Y0. F6.6", "N30 G1 X40. Y0. Q6.6", &["sector.nc:5:"]);
+    let offsets = "N45 G55 G0 X0. Y90. Z0.\nN50 G1 X0.";
+    let two = SECTOR.replace("N20 G0", "N20 G54 G0");
+    bad(SECTOR, &two.replace("N50 G1 X0.", offsets), &["error[work-offset]", "sector.nc:7:"]);
     bad(" Z0.", "", &["sector.nc:5:", "--start"]);
     bad("N30 G1 X40. Y0. F6.6\nN40 G3 X0. Y40. R40.\nN50 G1 X0. Y0.\n", "", &["empty-contour"]);
 }
