@@ -29,7 +29,7 @@ pub(crate) fn run(settings: &Settings, text: &[u8], path: &mut Compensator) -> R
             return Err(line.error("nc-syntax", (0, bytes.len()), message).into());
         }
         (width, last) = (count, line.number);
-        let pose = line.pose(values, count, settings.upper_plane)?;
+        let pose = line.pose(values, count, settings.wire.height)?;
         let mut tell = |op| path.take(Record { line: line.number, op });
         if index == 0 {
             tell(Op::Rapid(pose))?;

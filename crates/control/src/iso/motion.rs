@@ -17,7 +17,7 @@ pub(super) struct Target {
     pub point: Vec3,
     /// Degrees of A, B, C.
     pub rotary: [f64; 3],
-    /// The axes that the block names: bit 0 is X, 3 is A.
+    /// The axes that the block names: bit 0 is X, 3 is A; [`super::wire::LEANS`].
     pub named: u8,
 }
 
@@ -186,6 +186,7 @@ impl Step<'_, '_, '_> {
         let mut target = Target { point: self.state.position, rotary: self.state.rotary, named: 0 };
         self.in_plane(&mut target, unknown_stays)?;
         self.along(self.state.plane.axes()[2], &mut target, unknown_stays)?;
+        target.named |= self.lean()?;
         for (axis, letter) in b"ABC".iter().copied().enumerate() {
             if !self.block.has(letter) {
                 continue;
@@ -360,6 +361,8 @@ impl Step<'_, '_, '_> {
     /// No feed is active, or in `G93` the block has none of its own, or the tool is not in.
     pub(super) fn feed_for_cut(&mut self) -> Result<(), Fault> {
         let message = match self.state.feed {
+            // A wire goes as fast as its generator lets it.
+            None if self.state.wire.is_some() => return Ok(()),
             None => "a move at feed, and no feed has been given by F",
             Some(Feed::InverseTime(_)) if !self.block.gives(b'F') => {
                 "in G93 each move needs its own F"
