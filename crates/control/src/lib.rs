@@ -9,6 +9,7 @@
 //! as [`program::Orientation::Rotary`]; vectors and tilted planes resolved into the work frame as
 //! [`program::Orientation::Axis`]. Kinematics are not this crate's business.
 
+mod compensation;
 mod decimal;
 mod flow;
 mod folders;
@@ -17,6 +18,7 @@ mod klartext;
 mod points;
 mod sinumerik;
 
+use compensation::Compensator;
 use geom::Vec3;
 use program::{Diagnostic, Record};
 use std::path::PathBuf;
@@ -40,13 +42,19 @@ pub enum Dialect {
     Sinumerik,
     /// HEIDENHAIN Klartext (TNC 640, iTNC 530).
     Klartext,
+    /// ISO code of wire-EDM machines: FANUC ROBOCUT.
+    FanucWire,
+    /// Sodick.
+    Sodick,
+    /// Agie.
+    Agie,
     /// Lists of coordinates for wire EDM.
     Points,
 }
 
 impl Dialect {
     /// Every dialect with the name that a control file gives as its `reader`.
-    pub const NAMES: [(&'static str, Dialect); 9] = [
+    pub const NAMES: [(&'static str, Dialect); 12] = [
         ("fanuc", Dialect::Fanuc),
         ("haas", Dialect::Haas),
         ("linuxcnc", Dialect::LinuxCnc),
@@ -55,6 +63,9 @@ impl Dialect {
         ("marlin", Dialect::Marlin),
         ("sinumerik", Dialect::Sinumerik),
         ("klartext", Dialect::Klartext),
+        ("fanuc-wire", Dialect::FanucWire),
+        ("sodick", Dialect::Sodick),
+        ("agie", Dialect::Agie),
         ("points", Dialect::Points),
     ];
 
@@ -70,7 +81,7 @@ impl Dialect {
         match self {
             Dialect::Sinumerik => Some(53),
             Dialect::LinuxCnc | Dialect::Grbl | Dialect::Mach3 | Dialect::Haas => Some(54),
-            Dialect::Fanuc | Dialect::Marlin | Dialect::Klartext | Dialect::Points => None,
+            _ => None,
         }
     }
 }
@@ -89,13 +100,23 @@ pub struct Settings {
     /// R parameters that the operator sets at the machine to shift the zero of a rotary axis
     /// (SINUMERIK). They count as 0; any other that no block has set is an error.
     pub operator_parameters: Vec<u32>,
-    /// Height over the lower plane at which U and V of a wire are counted, mm; `None` where it is not
-    /// known, or there is no wire.
-    pub upper_plane: Option<f64>,
+    /// The wire, where the machine has one.
+    pub wire: Wire,
     /// How far the control may be allowed to leave the path while it smooths it, mm.
     pub path_tolerance: f64,
     /// What the operator has set up.
     pub setup: Setup,
+}
+
+/// What a virtual control has to know of a wire.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Wire {
+    /// Height over the lower plane at which U and V are counted, mm; `None` where it is not known.
+    pub height: Option<f64>,
+    /// Number of the M function that threads it.
+    pub thread: Option<u32>,
+    /// Number of the M function that cuts it.
+    pub cut: Option<u32>,
 }
 
 /// What a program leans on that stands in the control and not in its text. Nothing of it is known by
@@ -109,6 +130,9 @@ pub struct Setup {
     pub folders: Vec<PathBuf>,
     /// What a length or an angle without a decimal point counts.
     pub whole_numbers: WholeNumbers,
+    /// What lengths count before the program says it (`G20`, `G21`): what the last program has left.
+    /// Not known, a length without it is an error.
+    pub units: Option<Units>,
     /// Whether the operator has switched block delete on: blocks that begin with `/` are skipped.
     pub block_delete: bool,
     /// Where the tool stands in the work frame when the program starts, mm, with all offsets of the
@@ -127,6 +151,15 @@ pub struct ToolData {
     pub radius: f64,
     /// Length from the gauge line, mm.
     pub length: f64,
+}
+
+/// What lengths count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Units {
+    /// mm.
+    Millimeters,
+    /// Inches.
+    Inches,
 }
 
 /// What a length or an angle without a decimal point counts (FANUC, parameter 3401#0).
@@ -149,7 +182,7 @@ impl Settings {
             rotary,
             auxiliary: Vec::new(),
             operator_parameters: Vec::new(),
-            upper_plane: None,
+            wire: Wire::default(),
             path_tolerance: 0.0,
             setup: Setup::default(),
         }
@@ -178,6 +211,20 @@ pub fn read(
         Dialect::Points => points::run,
         _ => iso::run,
     };
-    run(settings, text, sink)
-        .map_err(|d| if d.file.is_empty() { d.file(file_name).into() } else { d })
+    let mut compensator = Compensator::new(settings, sink);
+    run(settings, text, &mut compensator)
+        .and_then(|()| compensator.finish())
+        .map_err(|d| if d.file.is_empty() { shown(*d, text).file(file_name).into() } else { d })
+}
+
+/// With the block that it is about, where only its line is known.
+fn shown(found: Diagnostic, text: &[u8]) -> Diagnostic {
+    let line = found.line;
+    if line == 0 || found.column > 0 || !found.excerpt.is_empty() {
+        return found;
+    }
+    match text.split(|&byte| byte == b'\n').nth(line as usize - 1) {
+        Some(block) => found.at(line, block, 0, block.trim_ascii_end().len()),
+        None => found,
+    }
 }

@@ -2,10 +2,11 @@
 
 use geom::Vec3;
 use program::{Diagnostic, Op, Pose};
-use toolpost_control::{Dialect, Settings, read};
+use toolpost_control::{Dialect, Settings, Wire, read};
 
 fn run(text: &str, upper_plane: Option<f64>) -> Result<Vec<(u32, Op)>, Box<Diagnostic>> {
-    let settings = Settings { upper_plane, ..Settings::new(Dialect::Points, [false; 3]) };
+    let wire = Wire { height: upper_plane, ..Wire::default() };
+    let settings = Settings { wire, ..Settings::new(Dialect::Points, [false; 3]) };
     let mut records = Vec::new();
     read(&settings, "part.pts", text.as_bytes(), &mut |record| {
         records.push((record.line, record.op));

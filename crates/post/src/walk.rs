@@ -368,7 +368,9 @@ impl<'a> Walk<'a> {
     /// (HEIDENHAIN's `M0`), and so may the operator.
     fn stop(&mut self, name: BlockName) -> Done {
         self.end_cycle()?;
-        (self.active_spindle, self.active_coolant) = (None, None);
+        if self.wire.is_none() {
+            (self.active_spindle, self.active_coolant) = (None, None);
+        }
         self.required(name)
     }
 

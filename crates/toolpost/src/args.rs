@@ -82,12 +82,24 @@ pub struct Origin {
     /// What a length without a decimal point counts on a control that can be set either way.
     #[arg(long, value_name = "WHAT", requires = "from")]
     pub whole_numbers: Option<WholeNumbers>,
+    /// What lengths count before the program says it by G20 or G21.
+    #[arg(long, value_name = "UNIT", requires = "from")]
+    pub units: Option<Units>,
     /// Skip the blocks that begin with `/`.
     #[arg(long, requires = "from")]
     pub block_delete: bool,
     /// Where the tool stands when the program starts, mm.
     #[arg(long, value_name = "X,Y,Z", requires = "from", value_parser = point, allow_hyphen_values = true)]
     pub start: Option<[f64; 3]>,
+}
+
+/// What lengths count.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum Units {
+    /// Millimetres.
+    Mm,
+    /// Inches.
+    Inch,
 }
 
 /// What a length without a decimal point counts.
@@ -204,6 +216,10 @@ pub struct Cutting {
     /// What becomes of rounded corners on the way up.
     #[arg(long, value_name = "HOW", default_value = "conical", requires = "taper")]
     pub rounding: Rounding,
+    /// Let the control offset the wire, each pass by the register of its number: the program is then
+    /// that of the contour itself.
+    #[arg(long, requires = "side", conflicts_with_all = ["taper", "tab"])]
+    pub by_control: bool,
     /// Let inner corners that the wire is too thick for become as round as the wire.
     #[arg(long, requires = "side")]
     pub round_corners: bool,

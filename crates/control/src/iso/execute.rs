@@ -1,9 +1,9 @@
 //! One block, in the order in which a control executes it.
 
+use super::arithmetic;
 use super::block::{Block, Fault};
-use super::expression;
 use super::state::State;
-use super::words::{FeedMode, Flavor, G, Group, M, Motion, Side};
+use super::words::{FeedMode, Flavor, G, Group, M, Motion, Plane, Side};
 use crate::{Settings, WholeNumbers};
 use program::{Coolant, Feed, Op, Spindle};
 
@@ -59,6 +59,7 @@ impl Step<'_, '_, '_> {
     /// machine: what could matter there is refused.
     fn run(&mut self) -> Result<(), Fault> {
         self.one_command()?;
+        self.wire()?;
         self.m_functions_beside_motion()?;
         self.feed()?;
         self.speed()?;
@@ -129,6 +130,7 @@ impl Step<'_, '_, '_> {
         let Some(word) = self.block.take(b'F') else { return Ok(()) };
         if let Some(G::Inches(inches)) = self.block.g(Group::Units)
             && self.state.inches != Some(inches)
+            && (self.flavor != Flavor::LinuxCnc || self.state.inches.is_none())
         {
             let message = "F in the block that changes the units: controls differ in which it is";
             return Err(self.block.at_word(b'F', "nc-feed", message));
@@ -136,6 +138,7 @@ impl Step<'_, '_, '_> {
         if word.value <= 0.0 {
             return Err(self.block.at_word(b'F', "nc-feed", "the feed must be greater than 0"));
         }
+        self.state.f = Some(word.value);
         let feed = match self.state.feed_mode {
             FeedMode::PerMinute => Feed::PerMinute(word.value * self.unit(b'F')?),
             FeedMode::PerTurn => Feed::PerTurn(word.value * self.unit(b'F')?),
@@ -311,8 +314,8 @@ impl Step<'_, '_, '_> {
             }
             self.state.inches = Some(inches);
         }
-        if let Some(G::Compensation(side)) = self.block.g(Group::Compensation) {
-            self.compensation(side)?;
+        if let Some(g) = self.block.g(Group::Compensation) {
+            self.compensation(g)?;
         }
         self.length()?;
         self.work_offset()?;
@@ -335,21 +338,37 @@ impl Step<'_, '_, '_> {
         self.transforms()
     }
 
-    fn compensation(&mut self, side: Side) -> Result<(), Fault> {
-        let mut register = None;
-        if side != Side::Off {
-            register = self.take_whole(b'D')?;
+    /// `G40` to `G42` with the register D; LinuxCNC's `G41.1`, `G42.1` with D as the diameter.
+    fn compensation(&mut self, g: G) -> Result<(), Fault> {
+        let refused = |step: &Self, message: String| {
+            Err(step.block.at_group(Group::Compensation, "nc-compensation", message))
+        };
+        let (side, mut register, radius) = match g {
+            G::Compensation(side) => (side, None, None),
+            G::DynamicCompensation(side) => match self.take_length(b'D')? {
+                Some(diameter) => (side, None, Some(diameter / 2.0)),
+                None => return refused(self, "G41.1 and G42.1 need the diameter D".into()),
+            },
+            _ => return Ok(()),
+        };
+        if self.flavor == Flavor::LinuxCnc && side != Side::Off {
+            if self.state.compensation.is_on() {
+                return refused(self, "compensation is on already: G40 first".into());
+            }
+            if self.state.plane == Plane::Yz {
+                return refused(self, "LinuxCNC compensates in the planes G17 and G18 only".into());
+            }
+        }
+        if side != Side::Off && radius.is_none() {
+            register = self.take_whole(self.flavor.radius_letter())?;
             self.radius_is_set_up(register)?;
             if register.is_none() && self.flavor.is_fanuc() {
-                let message = "G41 and G42 need their register D";
-                return Err(self.block.at_group(Group::Compensation, "nc-compensation", message));
-            }
-            if self.state.plane.axes()[2] != 2 {
-                let message = "the tool radius lies in the plane G17 only";
-                return Err(self.block.at_group(Group::Compensation, "nc-compensation", message));
+                let letter = char::from(self.flavor.radius_letter());
+                return refused(self, format!("G41 and G42 need their register {letter}"));
             }
         }
         self.state.compensation.asked = side.with(register);
+        self.state.compensation.radius = radius;
         Ok(())
     }
 
@@ -463,7 +482,7 @@ impl Step<'_, '_, '_> {
     pub(super) fn take_whole(&mut self, letter: u8) -> Result<Option<u32>, Fault> {
         let Some(word) = self.block.take(letter) else { return Ok(None) };
         let pointed = word.point && self.flavor.is_fanuc();
-        let value = if word.computed { expression::whole(word.value) } else { exact(word.value) };
+        let value = if word.computed { arithmetic::whole(word.value) } else { exact(word.value) };
         match value.filter(|&value| !pointed && value <= 99_999_999) {
             Some(value) => Ok(Some(value)),
             None => {

@@ -3,7 +3,7 @@
 use super::block::Fault;
 use super::execute::Step;
 use super::state::{Polar, Tilt};
-use super::words::{FeedMode, G, Group, Motion};
+use super::words::{FeedMode, Flavor, G, Group, Motion};
 use geom::Vec3;
 use program::{Compensation, Feed, Op};
 
@@ -17,7 +17,7 @@ pub(super) struct Target {
     pub point: Vec3,
     /// Degrees of A, B, C.
     pub rotary: [f64; 3],
-    /// The axes that the block names: bit 0 is X, 3 is A.
+    /// The axes that the block names: bit 0 is X, 3 is A; [`super::wire::LEANS`].
     pub named: u8,
 }
 
@@ -187,6 +187,7 @@ impl Step<'_, '_, '_> {
         self.in_plane(&mut target, unknown_stays)?;
         self.along(self.state.plane.axes()[2], &mut target, unknown_stays)?;
         self.together(target.named)?;
+        target.named |= self.lean()?;
         for (axis, letter) in b"ABC".iter().copied().enumerate() {
             if !self.block.has(letter) {
                 continue;
@@ -364,6 +365,8 @@ impl Step<'_, '_, '_> {
     /// No feed is active, or in `G93` the block has none of its own, or the tool is not in.
     pub(super) fn feed_for_cut(&mut self) -> Result<(), Fault> {
         let message = match self.state.feed {
+            // A wire goes as fast as its generator lets it.
+            None if self.state.wire.is_some() => return Ok(()),
             None => "a move at feed, and no feed has been given by F",
             Some(Feed::InverseTime(_)) if !self.block.gives(b'F') => {
                 "in G93 each move needs its own F"
@@ -401,7 +404,10 @@ impl Step<'_, '_, '_> {
                 "Z in a tilted plane before X and Y: where the tool goes down is not known";
             return Err(self.block.whole("nc-unknown-position", message));
         }
-        if from.x != to.x || from.y != to.y {
+        // On LinuxCNC with any straight move (`rs274`).
+        let [first, second, _] = self.state.plane.axes();
+        if from[first] != to[first] || from[second] != to[second] || self.flavor == Flavor::LinuxCnc
+        {
             self.switch_compensation();
         }
         let pose = self.state.pose(to, target.rotary);
@@ -449,10 +455,5 @@ impl Step<'_, '_, '_> {
     /// Whether compensation is about to change with the next linear move.
     pub(super) fn compensation_waits(&self) -> bool {
         self.state.compensation.active != self.state.compensation.asked
-    }
-
-    /// Whether the path is offset by the tool radius.
-    pub(super) fn is_compensated(&self) -> bool {
-        self.state.compensation.active != Compensation::Off || self.compensation_waits()
     }
 }

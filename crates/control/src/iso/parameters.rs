@@ -4,7 +4,6 @@ use super::expression::{Target, Value};
 use super::state::State;
 use super::system;
 use super::words::Flavor;
-use crate::ToolData;
 use std::collections::HashMap;
 
 /// How a program calculates.
@@ -27,7 +26,9 @@ impl Flavor {
             Flavor::LinuxCnc => Language::Ngc,
             Flavor::Mach3 => Language::Rs274,
             Flavor::Fanuc | Flavor::Haas => Language::MacroB,
-            Flavor::Grbl | Flavor::Marlin => Language::Plain,
+            Flavor::Grbl | Flavor::Marlin | Flavor::FanucWire | Flavor::Sodick | Flavor::Agie => {
+                Language::Plain
+            }
         }
     }
 }
@@ -55,7 +56,6 @@ pub(super) struct Parameters {
 pub(super) struct Values<'v> {
     pub parameters: &'v Parameters,
     pub state: &'v State,
-    pub tools: &'v [ToolData],
     /// The control has just been switched on and everything in it is 0.
     pub fresh: bool,
     pub line: u32,

@@ -3,8 +3,10 @@
 use super::cycles::Holding;
 use super::frames::{Frames, Place};
 use super::tools::Registers;
+use super::wire::Wire;
 use super::words::{FeedMode, Flavor, Motion, Plane, Side};
-use crate::Settings;
+use crate::compensation::Terms;
+use crate::{Settings, Units};
 use geom::{Frame, Vec3};
 use program::{Coolant, Feed, Orientation, Pose, Spindle};
 
@@ -20,6 +22,8 @@ pub(super) struct State {
     pub inches: Option<bool>,
     pub feed_mode: FeedMode,
     pub feed: Option<Feed>,
+    /// F as it was written last.
+    pub f: Option<f64>,
     pub spindle: Spindle,
     /// Last S, 1/min.
     pub speed: Option<f64>,
@@ -43,6 +47,8 @@ pub(super) struct State {
     /// The same as one way: [`Frames::place`], kept.
     pub place: Place,
     pub tilt: Tilt,
+    /// The wire of a wire-EDM machine.
+    pub wire: Option<Wire>,
     /// Axes (bit 0 is X) of which the next absolute words must come together, since the coordinates
     /// have just been turned.
     pub loose: u8,
@@ -86,6 +92,8 @@ pub(super) enum Length {
 pub(super) struct Compensation {
     pub active: program::Compensation,
     pub asked: program::Compensation,
+    /// Radius that the block itself gives (`G41.1`), mm.
+    pub radius: Option<f64>,
 }
 
 impl Compensation {
@@ -144,9 +152,10 @@ impl State {
             plane: Plane::Xy,
             incremental: false,
             centers_absolute: false,
-            inches: None,
+            inches: settings.setup.units.map(|units| units == Units::Inches),
             feed_mode: FeedMode::PerMinute,
             feed: None,
+            f: None,
             spindle: Spindle::Off,
             speed: None,
             rigid: false,
@@ -157,6 +166,7 @@ impl State {
             compensation: Compensation {
                 active: program::Compensation::Off,
                 asked: program::Compensation::Off,
+                radius: None,
             },
             work_offset: None,
             position: start.unwrap_or(UNKNOWN),
@@ -164,6 +174,7 @@ impl State {
             frames: Frames::new(work_offset, all_zero, turns_offsets),
             place: Place::SAME,
             tilt: Tilt::None,
+            wire: flavor.is_wire().then(|| Wire::new(settings)),
             loose: 0,
             polar: None,
             diameter: false,
@@ -183,6 +194,9 @@ impl State {
     #[inline]
     pub(super) fn pose(&self, point: Vec3, rotary: [f64; 3]) -> Pose {
         let point = self.place.point(point);
+        if let Some(wire) = &self.wire {
+            return Pose { point, orientation: wire.orientation() };
+        }
         match self.tilt {
             Tilt::Reached(_) => Pose::new(point, self.place.direction(Vec3::Z)),
             Tilt::None | Tilt::Declared(_) => Pose {
@@ -192,6 +206,23 @@ impl State {
                     tool_center: matches!(self.length, Length::Center(_)),
                 },
             },
+        }
+    }
+
+    /// What compensation has to know of the block that switches it.
+    pub(super) fn compensation_terms(&self) -> Terms {
+        let [first, second, third] = self.plane.axes();
+        let mut normal = Vec3::ZERO;
+        normal[third] = 1.0;
+        // The side that is told is that after a mirror, which has turned the sense of the plane round.
+        let swaps = self.frames.transform.swaps_sides(first, second);
+        let sense = if swaps { -1.0 } else { 1.0 };
+        Terms {
+            normal: self.place.normal(normal) * sense,
+            across_tool: third == 2,
+            radius: self.compensation.radius,
+            outer: None,
+            around: false,
         }
     }
 }

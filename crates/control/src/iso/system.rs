@@ -6,7 +6,7 @@ use super::execute::INCH;
 use super::parameters::Values;
 use super::state::Length;
 use super::words::{FeedMode, Motion, Plane};
-use program::{Compensation, Coolant, Feed, Spindle};
+use program::{Compensation, Coolant, Spindle};
 
 /// LinuxCNC's parameters from 5001 on ("Numbered Parameters").
 pub(super) fn ngc_parameter(values: &Values, number: u32) -> Result<f64, String> {
@@ -26,9 +26,7 @@ pub(super) fn ngc_parameter(values: &Values, number: u32) -> Result<f64, String>
             Err("what the program has written there is kept in the machine's unit".into())
         }
         5400 => tool_number(values),
-        5401..=5402 | 5404..=5409 => tool(values, |_| 0.0),
-        5403 => tool(values, |tool| tool.length / unit(values).unwrap_or(1.0)),
-        5410 => tool(values, |tool| 2.0 * tool.radius / unit(values).unwrap_or(1.0)),
+        5401..=5413 => Err("the tool table counts in the units of the machine".into()),
         5599 => Ok(1.0),
         5061..=5070 => Err("the result of probing is known only at the machine".into()),
         5399 => Err("what M66 has read is known only at the machine".into()),
@@ -269,10 +267,10 @@ fn unit(values: &Values) -> Result<f64, String> {
     }
 }
 
+/// F as it was written last: another unit does not change the number (`rs274`).
 fn feed(values: &Values) -> Result<f64, String> {
-    match values.state.feed {
-        Some(Feed::PerMinute(feed) | Feed::PerTurn(feed)) => Ok(feed / unit(values)?),
-        Some(Feed::InverseTime(feed)) => Ok(feed),
+    match values.state.f {
+        Some(f) => Ok(f),
         None => fresh(values, 0.0, "the feed"),
     }
 }
@@ -281,17 +279,6 @@ fn tool_number(values: &Values) -> Result<f64, String> {
     match values.state.tool {
         Some(tool) => Ok(f64::from(tool)),
         None => fresh(values, 0.0, "which tool is in the spindle"),
-    }
-}
-
-/// Something of the tool in the spindle from the tool table.
-fn tool(values: &Values, what: impl Fn(&crate::ToolData) -> f64) -> Result<f64, String> {
-    match values.state.tool {
-        None => fresh(values, 0.0, "which tool is in the spindle"),
-        Some(number) => match values.tools.iter().find(|tool| tool.number == number) {
-            Some(tool) => Ok(what(tool)),
-            None => Err(format!("tool {number} is not in the tool table")),
-        },
     }
 }
 

@@ -6,7 +6,7 @@ use ::wire::offset::Corners;
 use ::wire::plan::{self, Opening, Settings, Taper, plan};
 use ::wire::{Contour, Lead, LeadShape, Path, taper};
 use geom::Vec2;
-use program::Diagnostic;
+use program::{Compensation, Diagnostic};
 
 /// The ways of the wire along `paths`, and what is worth knowing of them; `height` is that of the upper
 /// contour, mm.
@@ -48,6 +48,13 @@ pub fn legs(
         feed: feed(pass.number),
         opening: pass.opening,
         pass: pass.number,
+        offset: how.by_control.then(|| {
+            let register = Some(pass.number as u32 + 1);
+            match pass.left {
+                true => Compensation::Left(register),
+                false => Compensation::Right(register),
+            }
+        }),
         tab: pass.tab,
         thread: pass.thread,
         cut: pass.cut,
@@ -73,6 +80,12 @@ fn openings(paths: &[Path], side: Side, how: &Cutting) -> Result<Vec<Opening>, B
         let message = "the wire leans between two contours, and its offset is asked for";
         let help = "leave --side out: two contours are the way of the wire itself";
         return Err(Diagnostic::error("side", message).help(help).into());
+    }
+    if how.by_control && paths.iter().any(|path| !path.lower().is_closed()) {
+        // The offset ends with the straight way out, which only a closed contour is sure to have.
+        let message = "an open contour, and the control is to offset the wire";
+        let help = "leave --by-control out: the way of the wire's centre is then worked out here";
+        return Err(Diagnostic::error("by-control", message).help(help).into());
     }
     if how.thread.len() > paths.len() {
         let message = format!("{} places to thread for {} contours", how.thread.len(), paths.len());
@@ -131,6 +144,6 @@ fn settings(
         tab: how.tab.unwrap_or(0.0),
         corners: if how.round_corners { Corners::Round } else { Corners::Refuse },
         taper,
-        by_control: false,
+        by_control: how.by_control,
     })
 }

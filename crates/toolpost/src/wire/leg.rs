@@ -1,7 +1,7 @@
 //! The ways of the wire as a neutral program: as they are, or as points.
 
 use geom::{Vec2, Vec3};
-use program::{ArcTo, Feed, Op, Pose, Program};
+use program::{ArcTo, Compensation, Feed, Op, Pose, Program};
 use wire::points::Points;
 use wire::{Contour, Element, Path};
 
@@ -17,6 +17,8 @@ pub struct Leg {
     pub opening: usize,
     /// 0 for the first pass there.
     pub pass: usize,
+    /// On which side and by which register the control offsets it, where it does.
+    pub offset: Option<Compensation>,
     /// Whether it cuts the tab that has held the part.
     pub tab: bool,
     /// Whether the wire is threaded at its start; otherwise it stands there already.
@@ -43,6 +45,7 @@ impl Leg {
             feed: None,
             opening: 0,
             pass: 0,
+            offset: None,
             tab: false,
             thread: true,
             cut: true,
@@ -103,8 +106,15 @@ fn assemble(name: &str, legs: &[Leg], feeds: bool, moves: impl Fn(&Leg) -> Moves
         if let Some(new) = leg.feed.filter(|new| feeds && feed.replace(*new) != Some(*new)) {
             program.push(line, Op::Feed(Feed::PerMinute(new)));
         }
-        for (from, op) in moves {
+        // The control offsets the wire from the first move on, and back with the last.
+        let last = moves.len().saturating_sub(1);
+        for (i, (from, op)) in moves.into_iter().enumerate() {
             line = from;
+            match leg.offset {
+                Some(side) if i == 0 => program.push(line, Op::Compensation(side)),
+                Some(_) if i == last => program.push(line, Op::Compensation(Compensation::Off)),
+                _ => {}
+            }
             program.push(line, op);
         }
         if leg.cut {

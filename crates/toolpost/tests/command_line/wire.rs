@@ -126,6 +126,9 @@ fn a_bad_source_is_told_with_its_line_and_writes_nothing() {
     bad("X0. Y40. R40.", "X40. Y0. R40.", &["sector.nc:6:"]);
     bad("R40.", "I-40.1 J0.", &["sector.nc:6:"]);
     bad("N30 G1 X40. Y0. F6.6", "N30 G1 X40. Y0. Q6.6", &["sector.nc:5:"]);
+    let offsets = "N45 G55 G0 X0. Y90. Z0.\nN50 G1 X0.";
+    let two = SECTOR.replace("N20 G0", "N20 G54 G0");
+    bad(SECTOR, &two.replace("N50 G1 X0.", offsets), &["error[work-offset]", "sector.nc:7:"]);
     bad(" Z0.", "", &["sector.nc:5:", "--start"]);
     bad("N30 G1 X40. Y0. F6.6\nN40 G3 X0. Y40. R40.\nN50 G1 X0. Y0.\n", "", &["empty-contour"]);
 }
@@ -201,4 +204,91 @@ fn the_picture_is_the_same_each_time_and_in_both_formats() {
     assert!(picture("a.png").starts_with(b"\x89PNG"));
     refused(&folder, &["--picture", "a.pdf"], 2, &["error[drawing]"]);
     refused(&folder, &["--picture", "sector.nc"], 2, &["error[output]"]);
+}
+
+/// The opening of a die in two passes, as everyone may read it beside its machine.
+const DIE: [&str; 15] = [
+    "--from",
+    "fanuc-31i",
+    "--side",
+    "inside",
+    "--wire",
+    "0.25",
+    "--gap",
+    "0.02",
+    "--leave",
+    "0.03",
+    "--thread",
+    "15,15",
+    "--round-corners",
+    "--feed",
+    "0.1,0.2",
+];
+
+/// The samples were read by a person, as those of the mills: `make samples` writes them anew.
+#[test]
+fn the_sample_program_of_each_wire_machine_is_as_it_was_read() {
+    let folder = sector();
+    let samples = concat!(env!("CARGO_MANIFEST_DIR"), "/../../machines/samples");
+    let machines = machine::library::names(machine::library::MACHINES);
+    for machine in machines.map(|name| machine::load(name).unwrap()).filter(|m| m.wire.is_some()) {
+        let file = format!("{}.{}", machine.name, machine.extension);
+        let call = ["wire", "sector.nc", "-m", &machine.name, "-o", &file];
+        let said = folder.run(&[&call[..], &DIE].concat());
+        assert_eq!(said.code, 0, "{said:?}");
+        let expected = std::fs::read_to_string(format!("{samples}/{file}")).unwrap_or_default();
+        assert_eq!(folder.read(&file), expected, "{file}");
+        // Read back as a source, it is the same way of the wire again.
+        let again = ["wire", &file, "--from", &machine.name, "-m", &machine.name, "-o", "again"];
+        if machine.name != "bp-95d" {
+            assert_eq!(folder.run(&[&again[..], &["--feed", "0.1"]].concat()).code, 0);
+            let moves = |text: &str| text.lines().filter(|line| line.contains(" G1 ")).count();
+            assert_eq!(moves(&folder.read("again")), moves(&expected), "{file}");
+        }
+    }
+}
+
+#[test]
+fn the_control_offsets_the_wire_where_it_can() {
+    let folder = sector();
+    let call = |machine: &'static str| {
+        let call = ["wire", "sector.nc", "--by-control", "-m", machine, "-o", "die.nc"];
+        folder.run(&[&call[..], &DIE].concat())
+    };
+    assert_eq!(call("fanuc-wire").code, 0);
+    let text = folder.read("die.nc");
+    // Counter-clockwise inside: the wire on the left; back the other way on the right.
+    for block in [
+        "G1 G41 D1 Y0. F6.",
+        "X40.",
+        "G3 X0. Y40. I-40. J0.",
+        "G40 Y15.",
+        "G42 D2 Y0. F12.",
+        "G2 X40. Y0.",
+    ] {
+        assert!(text.contains(block), "{block} is missing in\n{text}");
+    }
+    let said = call("bp-95d");
+    assert_eq!(said.code, 2);
+    assert!(said.err.contains("error[by-control]"), "{said:?}");
+}
+
+#[test]
+fn drawings_are_read_by_layer() {
+    let folder = Folder::new();
+    let circle =
+        |layer: &str, x: f64| format!("0\nCIRCLE\n8\n{layer}\n10\n{x}\n20\n0.0\n40\n5.0\n");
+    let text = format!(
+        "0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n4\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n{}{}0\nENDSEC\n0\nEOF\n",
+        circle("CUT", 0.0),
+        circle("NOTE", 50.0)
+    );
+    folder.write("plate.dxf", &text);
+    let call = ["wire", "plate.dxf", "-m", "bp-95d", "-o", "part.pts", "--layer"];
+    let said = folder.run(&[&call[..], &["CUT", "--chord-error", "0.01"]].concat());
+    assert_eq!(said.code, 0, "{said:?}");
+    // Chords of 0.01 mm on R 5 turn by 4·asin(√0.001) = 7.25°: 50 of them make a circle.
+    assert_eq!(folder.read("part.pts").lines().count(), 51);
+    let said = folder.run(&[&call[..], &["NONE"]].concat());
+    assert_eq!((said.code, folder.names().len()), (2, 4), "{said:?}");
 }

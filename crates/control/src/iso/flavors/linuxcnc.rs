@@ -1,7 +1,7 @@
 //! LinuxCNC, "G-Code Overview", table of modal groups. `G80` may stand beside `G0` to `G3`, so it has
 //! a group of its own.
 
-use super::super::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Motion, Refused};
+use super::super::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Motion, Refused, Side};
 use super::{BASIC_G, BASIC_M, MILL_G, MILL_M, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles};
 
 const G_WORDS: &[GRow] = &[
@@ -30,6 +30,8 @@ const G_WORDS: &[GRow] = &[
     (921, Group::OneShot, G::CancelShift { keep: false }),
     (922, Group::OneShot, G::CancelShift { keep: true }),
     (923, Group::OneShot, G::RestoreShift),
+    (411, Group::Compensation, G::DynamicCompensation(Side::Left)),
+    (421, Group::Compensation, G::DynamicCompensation(Side::Right)),
 ];
 
 const M_WORDS: &[MRow] = &[
@@ -56,8 +58,6 @@ const M_WORDS: &[MRow] = &[
 const REFUSED_G: &[Refused] = &[
     (52, "NURBS are not followed; write G5 or plain moves"),
     (53, "NURBS are not followed; write G5 or plain moves"),
-    (411, "a tool radius in the block is not followed; use G41 D"),
-    (421, "a tool radius in the block is not followed; use G42 D"),
     (432, "a second length added to the first is not followed; write their sum in the tool table"),
     (700, "lathe cycles are not followed; write their moves"),
     (710, "lathe cycles are not followed; write their moves"),
