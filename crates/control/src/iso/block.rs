@@ -495,6 +495,7 @@ impl<'a> Block<'a> {
             }
             b'#' => "a variable is set at the start of a block that has nothing else".to_owned(),
             b'[' | b']' | b'=' => "an expression without its word".to_owned(),
+            b'$' => "commands of the console ($) are no part of a program".to_owned(),
             b'%' => "% stands alone on its line".to_owned(),
             b';' => "; does not begin a comment here; write ( )".to_owned(),
             b'0'..=b'9' | b'.' | b'+' | b'-' => "a number without its letter".to_owned(),

@@ -187,6 +187,7 @@ impl Step<'_, '_, '_> {
         self.in_plane(&mut target, unknown_stays)?;
         self.along(self.state.plane.axes()[2], &mut target, unknown_stays)?;
         target.named |= self.lean()?;
+        self.together(target.named)?;
         for (axis, letter) in b"ABC".iter().copied().enumerate() {
             if !self.block.has(letter) {
                 continue;
@@ -226,7 +227,7 @@ impl Step<'_, '_, '_> {
             self.along(first, target, unknown_stays)?;
             self.along(second, target, unknown_stays)?;
         }
-        if target.named & self.state.loose != 0 { self.together(target.named) } else { Ok(()) }
+        Ok(())
     }
 
     /// The word of a linear axis.
@@ -247,7 +248,10 @@ impl Step<'_, '_, '_> {
     /// After the coordinates have been turned, what one axis means alone depends on the other: makers
     /// ask for absolute words of both. Only increments in turned coordinates are those of the tool
     /// from where it stands (B-64484EN, "Coordinate system rotation").
-    fn together(&mut self, named: u8) -> Result<(), Fault> {
+    pub(super) fn together(&mut self, named: u8) -> Result<(), Fault> {
+        if named & self.state.loose == 0 {
+            return Ok(());
+        }
         let all = named & self.state.loose == self.state.loose;
         if self.state.incremental && self.state.frames.transform.turn.is_some() {
             return Ok(());

@@ -384,6 +384,10 @@ impl Dictionary {
         let (table, number) = match letter {
             b'G' => (self.refused_g, tenths(number)?),
             b'M' => (self.refused_m, tenths(number)? / 10),
+            b'E' if self.flavor == Flavor::Marlin => {
+                return Some("an extruder is no tool of a mill");
+            }
+            b'U' | b'V' | b'W' => return Some("the axes followed are X Y Z and A B C"),
             _ => return None,
         };
         table.iter().find(|(n, _)| usize::from(*n) == number).map(|(_, reason)| *reason)
