@@ -48,9 +48,14 @@ const START: &str = "G90 G0 X0 Y0 Z0\n";
 #[test]
 fn g52_moves_the_zero_and_is_not_added_up() {
     for dialect in [Dialect::Fanuc, Dialect::Haas, Dialect::Mach3] {
+        // Mach3 keeps G52 where G92 is, which may hold something: it is cleared first.
+        let clear = if dialect == Dialect::Mach3 { "G92.1\n" } else { "" };
         goes_to(
             dialect,
-            "G90 G0 X0 Y0 Z0\nG52 X10. Y5.\nX1. Y1.\nG52 X20.\nX1.\nG91 X1.\nG90 G52 X0 Y0\nX1. Y1.\n",
+            &format!(
+                "{clear}G90 G0 X0 Y0 Z0\nG52 X10. Y5.\nX1. Y1.\nG52 X20.\nX1.\nG91 X1.\n\
+                 G90 G52 X0 Y0\nX1. Y1.\n"
+            ),
             &[[0.0; 3], [11.0, 6.0, 0.0], [21.0, 6.0, 0.0], [22.0, 6.0, 0.0], [1.0, 1.0, 0.0]],
         );
     }
@@ -72,6 +77,21 @@ fn g92_says_where_the_tool_stands() {
     }
     let marlin = ["G90", "G0 X30 Y20 Z5", "G92 X0", "G0 X1"].join("\n");
     goes_to(Dialect::Marlin, &marlin, &[[30.0, 20.0, 5.0], [31.0, 20.0, 5.0]]);
+}
+
+#[test]
+fn what_g92_held_before_the_program_is_not_known() {
+    for dialect in [Dialect::LinuxCnc, Dialect::Mach3, Dialect::Grbl] {
+        // LinuxCNC keeps G92 from one program to the next ("G92 Persistence Cautions").
+        let cleared = "G90 G0 X1 Y1 Z1\nG92.1\n";
+        assert_eq!(ops(dialect, cleared).len(), 1);
+        assert_eq!(rule(dialect, &format!("{cleared}X1\n")), "nc-unknown-shift");
+        goes_to(
+            dialect,
+            "G92.1\nG90 G0 X1 Y1 Z1\nG92 X0\nG92.1\nX2\n",
+            &[[1.0; 3], [2.0, 1.0, 1.0]],
+        );
+    }
 }
 
 #[test]
@@ -118,19 +138,16 @@ fn two_offsets_that_the_program_writes_lie_as_it_says() {
 }
 
 #[test]
-fn the_additional_work_offsets_have_numbers_of_their_own() {
+fn the_additional_work_offsets_come_behind_the_first_six() {
     let offsets = |dialect, text: &str| -> Vec<u32> {
         let number = |op| if let Op::WorkOffset(number) = op { Some(number) } else { None };
         ops(dialect, text).into_iter().filter_map(number).collect()
     };
-    assert_eq!(offsets(Dialect::Fanuc, "G54.1 P7\nG54\nG54.1 P300\n"), [54_107, 54, 54_400]);
+    assert_eq!(offsets(Dialect::Fanuc, "G54.1 P7\nG54\nG54.1 P300\n"), [66, 54, 359]);
     // G110 to G129 are G154 P1 to P20.
-    assert_eq!(
-        offsets(Dialect::Haas, "G110\nG154 P1\nG129\nG154 P99\n"),
-        [154_001, 154_020, 154_099]
-    );
+    assert_eq!(offsets(Dialect::Haas, "G110\nG154 P1\nG129\nG154 P99\n"), [60, 79, 158]);
     // G59 P6 is G59.
-    assert_eq!(offsets(Dialect::Mach3, "G59 P6\nG59 P7\nG54\n"), [59, 59_007, 54]);
+    assert_eq!(offsets(Dialect::Mach3, "G59 P6\nG59 P7\nG54\n"), [59, 60, 54]);
     assert_eq!(rule(Dialect::Fanuc, "G54.1 P301\n"), "nc-work-offset");
     assert_eq!(rule(Dialect::Haas, "G154\n"), "nc-work-offset");
 }

@@ -3,7 +3,7 @@
 use super::block::Fault;
 use super::execute::Step;
 use super::state::{Polar, Tilt};
-use super::words::{FeedMode, G, Group, Motion};
+use super::words::{FeedMode, Flavor, G, Group, Motion};
 use geom::Vec3;
 use program::{Compensation, Feed, Op};
 
@@ -202,6 +202,11 @@ impl Step<'_, '_, '_> {
                     self.advance(target.rotary[axis], value, letter, unknown_stays)?;
             }
         }
+        if self.state.frames.lost && target.named != 0 {
+            let message = "G92.1 has moved the zero by what the control held before the program";
+            let fault = self.block.whole("nc-unknown-shift", message);
+            return Err(fault.help("write G92.1 before the first move").into());
+        }
         Ok(target)
     }
 
@@ -392,7 +397,10 @@ impl Step<'_, '_, '_> {
                 "Z in a tilted plane before X and Y: where the tool goes down is not known";
             return Err(self.block.whole("nc-unknown-position", message));
         }
-        if from.x != to.x || from.y != to.y {
+        // On LinuxCNC with any straight move (`rs274`).
+        let [first, second, _] = self.state.plane.axes();
+        if from[first] != to[first] || from[second] != to[second] || self.flavor == Flavor::LinuxCnc
+        {
             self.switch_compensation();
         }
         let pose = self.state.pose(to, target.rotary);
@@ -440,10 +448,5 @@ impl Step<'_, '_, '_> {
     /// Whether compensation is about to change with the next linear move.
     pub(super) fn compensation_waits(&self) -> bool {
         self.state.compensation.active != self.state.compensation.asked
-    }
-
-    /// Whether the path is offset by the tool radius.
-    pub(super) fn is_compensated(&self) -> bool {
-        self.state.compensation.active != Compensation::Off || self.compensation_waits()
     }
 }

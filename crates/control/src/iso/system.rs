@@ -13,8 +13,7 @@ pub(super) fn ngc_parameter(values: &Values, number: u32) -> Result<f64, String>
     match number {
         5420..=5428 => position(values, number - 5420),
         5220 => match values.state.work_offset {
-            Some(offset @ 54..=59) => Ok(f64::from(offset - 53)),
-            Some(offset) => Ok(f64::from(offset) - 584.0),
+            Some(offset) => Ok(f64::from(offset) - 53.0),
             None => fresh(values, 1.0, "which work offset is active"),
         },
         5161..=5169 | 5181..=5189 if values.state.homes.iter().all(|home| home.is_nan()) => {
@@ -74,7 +73,8 @@ pub(super) fn ngc_named(values: &Values, name: &[u8]) -> Option<Result<f64, Stri
         b"_units_per_rev" => yes(state.feed_mode == FeedMode::PerTurn),
         b"_coord_system" => match state.work_offset {
             Some(offset @ 54..=59) => f64::from(offset) * 10.0,
-            Some(offset) => f64::from(offset),
+            // G59.1 to G59.3.
+            Some(offset) => f64::from(offset) + 531.0,
             None => return Some(fresh(values, 540.0, "which work offset is active")),
         },
         b"_ccomp" => match state.compensation.asked {
@@ -208,7 +208,8 @@ pub(super) fn macro_variable(values: &Values, number: u32) -> Result<f64, String
             None => return Err("neither G98 nor G99 has been given".into()),
         },
         4014 => match state.work_offset {
-            Some(offset) => f64::from(offset),
+            Some(offset @ 54..=59) => f64::from(offset),
+            Some(_) => return Err("a further work offset has no G word of its own".into()),
             None => return Err("no block has named a work offset".into()),
         },
         4109 => return feed(values),

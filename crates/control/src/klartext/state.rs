@@ -8,10 +8,14 @@ use super::registers::Registers;
 use super::scan::{Result, Scanner};
 use super::transform::Transforms;
 use super::words::FeedWord;
+use crate::Settings;
+use crate::ToolData;
+use crate::compensation::{Compensator, Terms};
 use crate::flow::Budget;
-use crate::{Settings, Sink};
 use geom::Vec3;
 use program::{Compensation, Coolant, Cycle, Feed, Op, Orientation, Pose, Record, Spindle};
+
+use std::collections::HashMap;
 
 /// The address letters of the axes, in the order of their coordinates.
 pub(super) const AXES: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
@@ -33,7 +37,7 @@ pub(super) enum Tip {
 /// The state of the control.
 pub(super) struct Control<'a, 's> {
     pub(super) settings: &'a Settings,
-    sink: &'a mut Sink<'s>,
+    compensator: &'a mut Compensator<'s>,
     /// Line of the block that runs.
     line: u32,
     /// mm in the unit of length of the program.
@@ -52,6 +56,8 @@ pub(super) struct Control<'a, 's> {
     pub(super) feed: Option<Feed>,
     /// Feed of the last TOOL CALL, for `F AUTO`.
     pub(super) tool_feed: Option<FeedWord>,
+    /// Tools that the program itself defines, by number.
+    pub(super) defined_tools: HashMap<u32, ToolData>,
     /// Number of the tool, where it is known.
     pub(super) tool_number: Option<u32>,
     /// Radius of the tool in the tool table, mm.
@@ -83,10 +89,10 @@ pub(super) struct Control<'a, 's> {
 }
 
 impl<'a, 's> Control<'a, 's> {
-    pub(super) fn new(settings: &'a Settings, sink: &'a mut Sink<'s>) -> Self {
+    pub(super) fn new(settings: &'a Settings, compensator: &'a mut Compensator<'s>) -> Self {
         Control {
             settings,
-            sink,
+            compensator,
             line: 0,
             unit: 1.0,
             here: Vec3::NAN,
@@ -97,6 +103,7 @@ impl<'a, 's> Control<'a, 's> {
             tip: Tip::Free,
             feed: None,
             tool_feed: None,
+            defined_tools: HashMap::new(),
             tool_number: None,
             tool_radius: None,
             per_turn: false,
@@ -128,7 +135,7 @@ impl<'a, 's> Control<'a, 's> {
 
     pub(super) fn emit(&mut self, op: Op) -> Result<()> {
         self.budget.record();
-        (self.sink)(Record { line: self.line, op })
+        self.compensator.take(Record { line: self.line, op })
     }
 
     /// A jump, a call or a return: programs that never end are refused.
@@ -286,15 +293,26 @@ impl<'a, 's> Control<'a, 's> {
         }
         self.compensation = compensation;
         // What is left in mirrored coordinates is right of the path that is told.
-        self.emit(Op::Compensation(match (compensation, self.mirrors()) {
+        let side = match (compensation, self.mirrors()) {
             (Compensation::Left(_), true) => Compensation::Right(None),
             (Compensation::Right(_), true) => Compensation::Left(None),
             _ => compensation,
-        }))
+        };
+        let terms = Terms {
+            normal: self.work_direction(Vec3::Z).normalize_or(Vec3::Z),
+            across_tool: true,
+            radius: None,
+            outer: None,
+            around: false,
+        };
+        self.compensator.switch(self.line, side, terms)
     }
 
     /// Does the M functions of a block that act at that moment.
     pub(super) fn functions(&mut self, s: &Scanner, all: Functions, when: When) -> Result<()> {
+        if all.is_empty() {
+            return Ok(());
+        }
         for function in all.at(when) {
             self.function(s, function)?;
         }
