@@ -93,7 +93,7 @@ impl<'a, 's> Control<'a, 's> {
             sink,
             line: 0,
             unit: 1.0,
-            here: Vec3::NAN,
+            here: settings.setup.start.unwrap_or(Vec3::NAN),
             degrees: settings.rotary.map(|exists| if exists { f64::NAN } else { 0.0 }),
             vector: None,
             outside: Transforms::default(),
