@@ -129,10 +129,7 @@ impl Control<'_, '_> {
             let message = "CYCL CALL PAT goes between the points with FMAX here";
             return Err(s.error_block("unsupported", message));
         }
-        let Some(definition) = &self.cycle else {
-            return Err(s.error_block("cycle", "no cycle is defined yet"));
-        };
-        let hole = definition.hole(&self.registers);
+        let hole = self.definition(s)?.hole(&self.registers);
         let (surface, second) = (hole.surface(), hole.get(204).max(hole.get(200)));
         let height = self.here.z;
         if height.is_nan() {
