@@ -146,6 +146,7 @@ fn peer(text: &str) -> Option<Duration> {
     let status = Command::new("rs274")
         .args(["-t", "tool.tbl", "-v", "rs274.var", "-g", "program.ngc"])
         .current_dir(&folder)
+        .env("HOME", &folder)
         .stdout(File::create(path("out.txt")).ok()?)
         .stderr(Stdio::null())
         .status();

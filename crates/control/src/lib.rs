@@ -65,11 +65,12 @@ impl Dialect {
         Dialect::NAMES.iter().find(|(n, _)| *n == name).map(|(_, dialect)| *dialect)
     }
 
-    /// The work offset that is active before a program names one: on a SINUMERIK `G500`, which is none.
+    /// The work offset that is active before a program names one, as [`program::Op::WorkOffset`] counts
+    /// them: on a SINUMERIK `G500`, which is none.
     /// A FANUC may keep that of the last program, and Klartext takes the operator's preset.
     pub fn work_offset_at_reset(self) -> Option<u32> {
         match self {
-            Dialect::Sinumerik => Some(sinumerik::WORK_OFFSET_AT_RESET),
+            Dialect::Sinumerik => Some(53),
             Dialect::LinuxCnc | Dialect::Grbl | Dialect::Mach3 | Dialect::Haas => Some(54),
             Dialect::Fanuc | Dialect::Marlin | Dialect::Klartext | Dialect::Points => None,
         }
@@ -110,6 +111,9 @@ pub struct Setup {
     pub folders: Vec<PathBuf>,
     /// What a length or an angle without a decimal point counts.
     pub whole_numbers: WholeNumbers,
+    /// What lengths count before the program says it (`G20`, `G21`): what the last program has left.
+    /// Not known, a length without it is an error.
+    pub units: Option<Units>,
     /// Whether the operator has switched block delete on: blocks that begin with `/` are skipped.
     pub block_delete: bool,
     /// Where the tool stands in the work frame when the program starts, mm, with all offsets of the
@@ -128,6 +132,15 @@ pub struct ToolData {
     pub radius: f64,
     /// Length from the gauge line, mm.
     pub length: f64,
+}
+
+/// What lengths count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Units {
+    /// mm.
+    Millimeters,
+    /// Inches.
+    Inches,
 }
 
 /// What a length or an angle without a decimal point counts (FANUC, parameter 3401#0).

@@ -118,19 +118,16 @@ fn two_offsets_that_the_program_writes_lie_as_it_says() {
 }
 
 #[test]
-fn the_additional_work_offsets_have_numbers_of_their_own() {
+fn the_additional_work_offsets_come_behind_the_first_six() {
     let offsets = |dialect, text: &str| -> Vec<u32> {
         let number = |op| if let Op::WorkOffset(number) = op { Some(number) } else { None };
         ops(dialect, text).into_iter().filter_map(number).collect()
     };
-    assert_eq!(offsets(Dialect::Fanuc, "G54.1 P7\nG54\nG54.1 P300\n"), [54_107, 54, 54_400]);
+    assert_eq!(offsets(Dialect::Fanuc, "G54.1 P7\nG54\nG54.1 P300\n"), [66, 54, 359]);
     // G110 to G129 are G154 P1 to P20.
-    assert_eq!(
-        offsets(Dialect::Haas, "G110\nG154 P1\nG129\nG154 P99\n"),
-        [154_001, 154_020, 154_099]
-    );
+    assert_eq!(offsets(Dialect::Haas, "G110\nG154 P1\nG129\nG154 P99\n"), [60, 79, 158]);
     // G59 P6 is G59.
-    assert_eq!(offsets(Dialect::Mach3, "G59 P6\nG59 P7\nG54\n"), [59, 59_007, 54]);
+    assert_eq!(offsets(Dialect::Mach3, "G59 P6\nG59 P7\nG54\n"), [59, 60, 54]);
     assert_eq!(rule(Dialect::Fanuc, "G54.1 P301\n"), "nc-work-offset");
     assert_eq!(rule(Dialect::Haas, "G154\n"), "nc-work-offset");
 }

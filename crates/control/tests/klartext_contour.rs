@@ -243,7 +243,7 @@ fn a_line_and_an_arc_lead_to_the_contour() {
 
 #[test]
 fn departures_go_on_from_the_last_element() {
-    let contour = "L X+0 Y-5 RR F100\nL Y+20\n";
+    let contour = "L X+0 Y+5 RR F100\nL Y+20\n";
     // Straight on by 12.5, the tool of radius 5 on the right.
     let ops = path(&format!("{contour}DEP LT LEN12.5 F90\nL Z+100 FMAX"));
     assert_near(&points(&ops)[2..], &[[5.0, 32.5, -5.0], [5.0, 32.5, 100.0]]);

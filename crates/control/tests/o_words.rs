@@ -196,7 +196,6 @@ fn what_does_not_hold_together_is_refused() {
         "G0 X#1.5",
         "G0 XATAN[1]",
         "G0 XSIN 30",
-        "G#1 X1",
         "M[1.5]",
     ] {
         refused(text);

@@ -303,7 +303,7 @@ fn moves_in_machine_coordinates_leave_their_axes_unknown() {
 fn another_work_offset_makes_the_position_unknown() {
     let ops = blocks("G54 G0 X1 Y1 Z1\nG54 X2\nG505 X3\nG500 X4");
     let offsets: Vec<_> = ops.iter().filter(|op| matches!(op, Op::WorkOffset(_))).collect();
-    assert_eq!(offsets, [&Op::WorkOffset(54), &Op::WorkOffset(505), &Op::WorkOffset(500)]);
+    assert_eq!(offsets, [&Op::WorkOffset(54), &Op::WorkOffset(58), &Op::WorkOffset(53)]);
     let poses = poses(&ops);
     assert_eq!(poses[1].point, v(2.0, 1.0, 1.0));
     assert!(poses[2].point.y.is_nan());

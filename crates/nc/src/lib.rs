@@ -75,15 +75,33 @@ pub fn read(
     let settings = settings(machine, setup)?;
     let name = file_name.rsplit_once('.').map_or(file_name, |(stem, _)| stem);
     let mut lift = Lift::new(machine, &settings.setup, name);
-    control::read(&settings, file_name, text, &mut |record| {
+    let run = control::read(&settings, file_name, text, &mut |record| {
         let line = record.line;
         lift.record(record).map_err(|found| {
             let text = text.split(|b| *b == b'\n').nth(line.saturating_sub(1) as usize);
             let text = text.unwrap_or_default();
             found.on(line, text.strip_suffix(b"\r").unwrap_or(text)).file(file_name).into()
         })
-    })?;
+    });
+    run.map_err(|found| way_out(machine, found))?;
     Ok(lift.finish())
+}
+
+/// Adds to what a control refuses what the user of a source can do about it.
+fn way_out(machine: &Machine, mut found: Box<Diagnostic>) -> Box<Diagnostic> {
+    let way_out = match found.rule {
+        "nc-axis" | "unknown-axis" if machine.rotary.is_empty() => {
+            "name the machine that the program was written for, not the control alone: its file says \
+             what its rotary axes do"
+        }
+        "nc-unknown-position" | "unknown-position" => "or say where the tool stands at the start",
+        _ => return found,
+    };
+    if !found.help.is_empty() {
+        found.help.push_str("; ");
+    }
+    found.help.push_str(way_out);
+    found
 }
 
 /// The records of a control on their way into a neutral program.
@@ -336,8 +354,9 @@ fn unknown(what: &str, pose: &Pose) -> Box<Diagnostic> {
         true => format!("{what} is at the machine's home, which the program does not know"),
         false => format!("{what} is not known in {}", missing.join(", ")),
     };
-    let help = "go there by rapid with every axis named, before; where a head is turned and the control does \
-                not keep the tool's tip, its length has to be in the tool table";
+    let help = "go there by rapid with every axis named, before; \
+                where a head is turned and the control does not keep the tool's tip, its length has to be in \
+                the tool table";
     refuse("unknown-position", message, help)
 }
 

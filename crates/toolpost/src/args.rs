@@ -82,12 +82,24 @@ pub struct Origin {
     /// What a length without a decimal point counts on a control that can be set either way.
     #[arg(long, value_name = "WHAT", requires = "from")]
     pub whole_numbers: Option<WholeNumbers>,
+    /// What lengths count before the program says it by G20 or G21.
+    #[arg(long, value_name = "UNIT", requires = "from")]
+    pub units: Option<Units>,
     /// Skip the blocks that begin with `/`.
     #[arg(long, requires = "from")]
     pub block_delete: bool,
     /// Where the tool stands when the program starts, mm.
     #[arg(long, value_name = "X,Y,Z", requires = "from", value_parser = point, allow_hyphen_values = true)]
     pub start: Option<[f64; 3]>,
+}
+
+/// What lengths count.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum Units {
+    /// Millimetres.
+    Mm,
+    /// Inches.
+    Inch,
 }
 
 /// What a length without a decimal point counts.

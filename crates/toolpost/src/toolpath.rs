@@ -1,7 +1,7 @@
 //! Getting the toolpath and the machine that a command names.
 
 use crate::answer::{Stop, Verdict};
-use crate::args::{Origin, WholeNumbers};
+use crate::args::{Origin, Units, WholeNumbers};
 use crate::files;
 use crate::summary::Shape;
 use control::Setup;
@@ -119,6 +119,10 @@ impl Origin {
                 Some(WholeNumbers::Units) => control::WholeNumbers::Units,
                 Some(WholeNumbers::Increments) => control::WholeNumbers::Increments,
             },
+            units: self.units.map(|units| match units {
+                Units::Mm => control::Units::Millimeters,
+                Units::Inch => control::Units::Inches,
+            }),
             block_delete: self.block_delete,
             start: self.start.map(Vec3::from_array),
         })

@@ -134,9 +134,11 @@ fn rs274(folder: &Path, text: &[u8]) -> Result<Vec<Cut>, String> {
     // Every tool is there, without length and without wear.
     let table: String = (1..100).map(|tool| format!("T{tool} P{tool} D0 Z0\n")).collect();
     std::fs::write(folder.join("tools.tbl"), table).unwrap();
+    // It keeps its tool table in a file in HOME: with one of its own, two at once do not meet there.
     let run = Command::new("rs274")
         .args(["-t", "tools.tbl", "-g", "program.ngc"])
         .current_dir(folder)
+        .env("HOME", folder)
         .stdin(Stdio::null())
         .output()
         .unwrap();

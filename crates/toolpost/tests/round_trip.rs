@@ -60,7 +60,7 @@ fn piece() -> impl Strategy<Value = Piece> {
         1 => any::<bool>().prop_map(Piece::Coolant),
         1 => (1..10u32).prop_map(Piece::Tool),
         1 => (1..50u32).prop_map(|d| Piece::Dwell(f64::from(d) / 10.0)),
-        1 => (54..58u32).prop_map(Piece::WorkOffset),
+        1 => (54..60u32).prop_map(Piece::WorkOffset),
         1 => Just(Piece::Home),
         1 => Just(Piece::Stop),
     ]

@@ -144,12 +144,12 @@ impl Step<'_, '_, '_> {
             self.state.position = self.state.place.programmed(frames.of_machine(machine));
         }
         self.state.work_offset = Some(number);
-        self.ops.push(program::Op::WorkOffset(number));
+        self.ops.push(program::Op::WorkOffset(place(number)));
         Ok(())
     }
 
-    /// The number under which the neutral program knows an offset: `G54` is 54, `G59.1` 591,
-    /// `G54.1 P7` 54 107, Haas `G154 P7` 154 007.
+    /// The number by which an offset is kept here: `G54` is 54, `G59.1` 591, `G54.1 P7` 54 107, Haas
+    /// `G154 P7` 154 007.
     fn offset_number(&mut self, base: u32) -> Result<u32, Fault> {
         let (least, most, from) = match (base, self.flavor) {
             (541, _) => (1, 300, 54_100),
@@ -474,5 +474,17 @@ impl Step<'_, '_, '_> {
     /// `G43.4` keeps the tool centre point.
     pub(super) fn keeps_center(&self) -> bool {
         matches!(self.state.length, Length::Center(_))
+    }
+}
+
+/// The place of an offset among those that the control can set, as the neutral program counts them:
+/// 54 is `G54`, 59 `G59`; behind it come `G59.1`, `G54.1 P1`, `G154 P1`.
+fn place(number: u32) -> u32 {
+    match number {
+        591..=593 => number - 531,
+        54_101..=54_400 => number - 54_041,
+        154_001..=154_099 => number - 153_941,
+        59_007..=59_254 => number - 58_947,
+        _ => number,
     }
 }

@@ -4,8 +4,8 @@ use super::cycles::Holding;
 use super::frames::{Frames, Place};
 use super::tools::Registers;
 use super::words::{FeedMode, Flavor, Motion, Plane, Side};
-use crate::Settings;
 use crate::compensation::Terms;
+use crate::{Settings, Units};
 use geom::{Frame, Vec3};
 use program::{Coolant, Feed, Orientation, Pose, Spindle};
 
@@ -147,7 +147,7 @@ impl State {
             plane: Plane::Xy,
             incremental: false,
             centers_absolute: false,
-            inches: None,
+            inches: settings.setup.units.map(|units| units == Units::Inches),
             feed_mode: FeedMode::PerMinute,
             feed: None,
             spindle: Spindle::Off,

@@ -11,7 +11,7 @@ use super::commands::{Code, FeedType, Motion};
 use super::cycles::{Drilling, Pause};
 use super::motion::AXIS_NAMES;
 use super::scan::Source;
-use super::state::{Modes, State};
+use super::state::{self, Modes, State};
 use crate::Settings;
 use crate::compensation::{Compensator, Terms};
 use crate::flow::Budget;
@@ -224,7 +224,7 @@ impl<'a, 's> Interpreter<'a, 's> {
                 state.programmed[i] = f64::NAN;
             }
         }
-        if other { self.emit(source, Op::WorkOffset(number)) } else { Ok(()) }
+        if other { self.emit(source, Op::WorkOffset(state::place(number))) } else { Ok(()) }
     }
 
     /// Back to the modal commands and the frame of the caller of a program with `SAVE`.

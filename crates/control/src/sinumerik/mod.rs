@@ -35,8 +35,6 @@ use crate::Settings;
 use crate::compensation::Compensator;
 use program::Diagnostic;
 
-pub(crate) use state::WORK_OFFSET_AT_RESET;
-
 /// What may go wrong.
 type Fallible<T> = Result<T, Box<Diagnostic>>;
 

@@ -24,7 +24,8 @@ impl WorkOffsets {
 
     /// The value of an offset.
     pub fn get(&self, number: u32) -> Vec3 {
-        let unwritten = if number == super::WORK_OFFSET_AT_RESET { 0.0 } else { self.unwritten };
+        let unwritten =
+            if number == super::state::WORK_OFFSET_AT_RESET { 0.0 } else { self.unwritten };
         self.written.get(&number).copied().unwrap_or(Vec3::splat(unwritten))
     }
 

@@ -14,6 +14,16 @@ use program::{Compensation, Coolant, Feed, Orientation, Pose, Spindle, Tool};
 /// `G500`: none, in the reset state that the maker delivers.
 pub const WORK_OFFSET_AT_RESET: u32 = 500;
 
+/// The place of a settable offset as the neutral program counts them: 53 for none (`G500`), 54 to 57,
+/// then `G505` and so on.
+pub fn place(number: u32) -> u32 {
+    match number {
+        500 => 53,
+        505..=599 => number - 447,
+        _ => number,
+    }
+}
+
 /// Where the tool axis comes from.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum ToolAxis {
