@@ -240,6 +240,10 @@ fn the_control_knows_its_own_parameters() {
 L X+Q108 Y+Q109 Z+Q110 FMAX\nM5\nM9\nL X+Q110 Y+Q111 Z+Q113 FMAX\nL X+Q114 FMAX",
     );
     assert_near(&points(&ops), &[[4.0, 2.0, 1.0], [3.0, 0.0, 0.0], [100.0, 0.0, 0.0]]);
+    // A tool that the program defines itself has its data.
+    let defined = "TOOL DEF 7 L+90 R+6\nTOOL CALL 7 Z\nL X+Q108 Y+Q114 Z+0 FMAX";
+    assert_near(&points(&run(defined)), &[[6.0, 90.0, 0.0]]);
+    assert_eq!(refused("TOOL DEF 7 R+6").rule, "missing-word");
     let system = "FN 18: SYSREAD Q1 = ID20 NR1\nFN 18: SYSREAD Q2 = ID270 NR1 IDX3
 FN 18: SYSREAD Q3 = ID210 NR2\nL X+Q1 Y+Q2 Z+Q3 FMAX";
     assert_near(&points(&run(&format!("{START}{system}")))[1..], &[[5.0, 50.0, 0.0]]);

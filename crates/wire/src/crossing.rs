@@ -15,13 +15,12 @@ const PAIRS: (usize, usize) = (256, 10_000_000);
 
 impl Element {
     /// The places where `other` meets this element; where they run along each other, the ends of that.
-    pub(crate) fn meets(&self, other: &Element) -> Vec<Vec2> {
-        let mut places = vec![self.start, self.end, other.start, other.end];
-        places.extend(crossings(self, other));
-        places.retain(|p| {
+    pub(crate) fn meets(&self, other: &Element) -> impl Iterator<Item = Vec2> {
+        let [p, q] = crossings(self, other);
+        let places = [self.start, self.end, other.start, other.end, p, q].into_iter();
+        places.filter(|p| {
             p.is_finite() && self.nearest(*p).1 <= TOUCH && other.nearest(*p).1 <= TOUCH
-        });
-        places
+        })
     }
 
     /// The least distance from `other`, mm.
@@ -33,7 +32,7 @@ impl Element {
             other.nearest(self.end).1,
         ];
         let mut least = ends.into_iter().fold(f64::INFINITY, f64::min);
-        if !self.meets(other).is_empty() {
+        if self.meets(other).next().is_some() {
             return 0.0;
         }
         // Else the shortest way between two inner points is at right angles to both: on an arc it
@@ -142,20 +141,13 @@ impl Contour {
     fn crossing(&self, i: usize, j: usize) -> Option<Vec2> {
         let elements = self.elements();
         let (a, b) = (elements.get(i)?, elements.get(j)?);
-        let places = a.meets(b);
-        if places.is_empty() {
-            return None;
-        }
-        let mut shared = Vec::new();
-        if j == i + 1 {
-            shared.push(b.start);
-        }
-        if self.is_closed() && i == 0 && j + 1 == elements.len() {
-            shared.push(a.start);
-        }
+        let shared = [
+            (j == i + 1).then_some(b.start),
+            (self.is_closed() && i == 0 && j + 1 == elements.len()).then_some(a.start),
+        ];
         // Smooth neighbours part slowly: rounding lets them meet again within √(8 R · touch).
         let radius = |element: &Element| element.radius().unwrap_or(0.0);
         let near = 2.0 * TOUCH + (8.0 * radius(a).max(radius(b)) * TOUCH).sqrt();
-        places.into_iter().find(|place| shared.iter().all(|end| end.distance(*place) > near))
+        a.meets(b).find(|place| shared.iter().flatten().all(|end| end.distance(*place) > near))
     }
 }

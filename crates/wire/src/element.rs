@@ -2,10 +2,10 @@
 
 use geom::Vec2;
 use program::Diagnostic;
-use std::f64::consts::TAU;
+use std::f64::consts::{PI, TAU};
 
-/// By how much an arc's radius may fall short of half its chord, or its two radii differ, mm. FANUC's
-/// parameter 3410 and LinuxCNC's manual ("G2, G3") use limits of this size.
+/// By how much an arc's radius may fall short of half its chord, or its two radii differ, mm: what
+/// LinuxCNC allows for the radii (manual, "G2, G3", centre format).
 pub const ARC_TOLERANCE: f64 = 0.005;
 
 /// Ends closer than this are one point, mm: far below what any wire machine resolves.
@@ -210,20 +210,24 @@ impl Element {
         Element { start, end, turn, ..*self }
     }
 
-    /// The same shape between other ends: an arc keeps its sweep, a full circle its radius.
+    /// The same shape between other ends, which are near the old ones. An arc up to half a circle keeps
+    /// its sweep, a longer one its centre between both shifts.
     pub(crate) fn spanning(&self, start: Vec2, end: Vec2) -> Element {
         if start == self.start && end == self.end {
             return *self;
         }
-        let turn = self.turn.map(|turn| {
-            let chord = end - start;
-            let half = turn.sweep / 2.0;
-            let center = if half.sin().abs() < 1e-6 {
-                turn.center + start - self.start
-            } else {
-                start + chord / 2.0 + chord.perp() / (2.0 * half.tan())
-            };
-            Turn { center, ..turn }
+        let chord = end - start;
+        let turn = self.turn.and_then(|turn| {
+            if turn.sweep.abs() <= PI {
+                let middle = start + chord / 2.0;
+                let center = middle + chord.perp() / (2.0 * (turn.sweep / 2.0).tan());
+                return (chord.length() >= SAME).then_some(Turn { center, ..turn });
+            }
+            let center = turn.center + (start - self.start + end - self.end) / 2.0;
+            let turned = |from: Vec2, to: Vec2| angle(from - turn.center, to - center);
+            let sweep = turn.sweep - turned(self.start, start) + turned(self.end, end);
+            let whole = TAU.copysign(turn.sweep);
+            Some(Turn { center, sweep: if start == end { whole } else { sweep } })
         });
         Element { start, end, turn, ..*self }
     }

@@ -11,6 +11,8 @@ pub(crate) struct Near<'a> {
     elements: &'a [Element],
     tree: Option<StaticAABB2DIndex<f64>>,
     queue: NeighborPriorityQueue<f64>,
+    /// The element that was found last: those that ask follow a contour too.
+    last: usize,
 }
 
 /// What is nearest to a point.
@@ -24,6 +26,13 @@ pub(crate) struct Nearest {
     pub distance: f64,
 }
 
+impl Nearest {
+    fn of(index: usize, element: &Element, point: Vec2) -> Option<Nearest> {
+        let (t, distance) = element.nearest(point);
+        distance.is_finite().then_some(Nearest { element: index, t, distance })
+    }
+}
+
 impl<'a> Near<'a> {
     pub fn new(elements: &'a [Element]) -> Near<'a> {
         let mut builder = StaticAABB2DIndexBuilder::new(elements.len());
@@ -31,7 +40,7 @@ impl<'a> Near<'a> {
             let (low, high) = element.extents();
             builder.add(low.x, low.y, high.x, high.y);
         }
-        Near { elements, tree: builder.build().ok(), queue: NeighborPriorityQueue::new() }
+        Near { elements, tree: builder.build().ok(), queue: NeighborPriorityQueue::new(), last: 0 }
     }
 
     /// Every element whose box comes within `margin` mm of the box of `element`, until `visit` says
@@ -49,16 +58,26 @@ impl<'a> Near<'a> {
         }
     }
 
-    /// The element nearest to `point`.
-    pub fn nearest(&mut self, point: Vec2) -> Option<Nearest> {
+    /// An element within `enough` mm of `point`, or else the nearest.
+    pub fn nearest(&mut self, point: Vec2, enough: f64) -> Option<Nearest> {
+        let around = (self.last.saturating_sub(1)..).take(4);
+        let found = around.filter_map(|i| Nearest::of(i, self.elements.get(i)?, point));
+        let found = found.min_by(|a, b| a.distance.total_cmp(&b.distance));
+        let found = found.filter(|found| found.distance <= enough);
+        let found = found.or_else(|| self.nearest_of_all(point))?;
+        self.last = found.element;
+        Some(found)
+    }
+
+    fn nearest_of_all(&mut self, point: Vec2) -> Option<Nearest> {
         let mut best: Option<Nearest> = None;
         self.by_distance(point, |i, element, box_distance| {
             if best.is_some_and(|best| box_distance > best.distance) {
                 return false;
             }
-            let (t, distance) = element.nearest(point);
-            if best.is_none_or(|best| distance < best.distance) {
-                best = Some(Nearest { element: i, t, distance });
+            let found = Nearest::of(i, element, point);
+            if found.is_some_and(|found| best.is_none_or(|best| found.distance < best.distance)) {
+                best = found;
             }
             true
         });
@@ -67,10 +86,14 @@ impl<'a> Near<'a> {
 
     /// The least distance of any element from `other`, where it is less than `least`.
     pub fn clearance(&self, other: &Element, least: f64) -> Option<f64> {
-        let mut found = least;
+        let (mut found, middle, length) = (least, other.at(0.5), other.length());
         self.around(other, least, &mut |i| {
             if let Some(element) = self.elements.get(i) {
-                found = found.min(element.distance(other));
+                // Both reach half their lengths from their middles, at most.
+                let reach = (element.length() + length) / 2.0;
+                if element.at(0.5).distance(middle) - reach < found {
+                    found = found.min(element.distance(other));
+                }
             }
             Control::Continue
         });

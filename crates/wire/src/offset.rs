@@ -159,7 +159,7 @@ fn verified(
             continue;
         }
         let middle = element.at(0.5);
-        let Some(beside) = near.nearest(middle) else { continue };
+        let Some(beside) = near.nearest(middle, distance.abs() + EXACT) else { continue };
         let source = &contour.elements()[beside.element];
         let element = element.from_line(source.line);
         if let Some(least) = near.clearance(&element, distance.abs() - EXACT) {
@@ -212,7 +212,9 @@ fn unreached(contour: &Contour, found: &Contour, distance: f64) -> Vec<Corner> {
     for element in contour.elements() {
         for t in [0.0, 0.25, 0.5, 0.75] {
             let place = element.at(t);
-            let left = near.nearest(place).map_or(f64::INFINITY, |n| n.distance - distance);
+            let left = near
+                .nearest(place, distance + LEFT)
+                .map_or(f64::INFINITY, |n| n.distance - distance);
             let corner = Corner { line: element.line, place, left };
             match corners.last_mut() {
                 _ if left <= LEFT => {}

@@ -51,7 +51,7 @@ pub struct Settings {
     pub lead: Lead,
     /// How much of a closed contour holds the part until everything else of it is cut, mm.
     pub tab: f64,
-    /// What becomes of inner corners that the wire is too thick for.
+    /// What becomes of inner corners that the wire of the last pass is too thick for.
     pub corners: Corners,
     /// How the wire leans, if it does.
     pub taper: Option<Taper>,

@@ -3,7 +3,7 @@
 use crate::contour::{Contour, Place};
 use crate::element::{Element, SAME};
 use crate::lead::{Pairs, reversed};
-use crate::offset::{Corner, offset};
+use crate::offset::{Corner, Corners, offset};
 use crate::path::Path;
 use crate::plan::{Cut, Opening, Pass, Settings, Side, Trims};
 use crate::taper::lean;
@@ -69,8 +69,11 @@ impl Round {
         };
         let mut round = Round { thread, start, left, ways: Vec::new() };
         let mut corners = Vec::new();
-        for cut in &settings.passes {
-            let (way, rounded) = round.way(opening, settings, cut)?;
+        for (number, cut) in settings.passes.iter().enumerate() {
+            // What a pass leaves in a corner the next may take: only the last has to reach it.
+            let last = number + 1 == settings.passes.len();
+            let strict = if last { settings.corners } else { Corners::Round };
+            let (way, rounded) = round.way(opening, settings, cut, strict)?;
             if settings.tab > 0.0 && settings.tab >= way.lower().length() {
                 let message = format!(
                     "a tab of {} mm on a way of {:.4} mm",
@@ -79,7 +82,6 @@ impl Round {
                 );
                 return Err(refused("tab", message, "a tab is shorter than the contour"));
             }
-            // Those of the last pass are what stays.
             corners = rounded;
             round.ways.push(way);
         }
@@ -92,10 +94,12 @@ impl Round {
         opening: &Opening,
         settings: &Settings,
         cut: &Cut,
+        corners: Corners,
     ) -> Result<(Path, Vec<Corner>), Box<Diagnostic>> {
-        let side = if self.left { 1.0 } else { -1.0 };
-        let beside = offset(&opening.contour, side * settings.beside(cut), settings.corners)?;
-        let lower = beside.contour.started_at(&beside.contour.nearest(self.start.point));
+        let distance = settings.beside(cut) * if self.left { 1.0 } else { -1.0 };
+        let beside = offset(&opening.contour, distance, corners)?;
+        let start = self.start.point + self.out(&opening.contour) * distance.abs();
+        let lower = beside.contour.started_at(&beside.contour.nearest(start));
         let Some(taper) = settings.taper else { return Ok((Path::upright(lower), beside.rounded)) };
         // Larger at the top is to the right of what goes round counter-clockwise.
         let out = if opening.contour.area() > 0.0 { -1.0 } else { 1.0 };
@@ -103,6 +107,16 @@ impl Round {
         upper.simple()?;
         let path = Path::by_block(lower.elements().to_vec(), upper.elements().to_vec())?;
         Ok((path, beside.rounded))
+    }
+
+    /// From the start to the wire: across the contour, and from a corner towards the thread.
+    fn out(&self, contour: &Contour) -> Vec2 {
+        let travel = contour.elements().get(self.start.element);
+        let travel = travel.map_or(Vec2::X, |element| element.tangent(self.start.t));
+        let across = if self.left { travel.perp() } else { -travel.perp() };
+        let corner = self.start.t == 0.0 || self.start.t == 1.0;
+        let thread = self.thread.map(|thread| (thread - self.start.point).normalize_or(across));
+        thread.filter(|_| corner).unwrap_or(across)
     }
 
     /// The same round along the contour itself, where the control offsets and leans.

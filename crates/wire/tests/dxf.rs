@@ -4,6 +4,7 @@ use geom::Vec2;
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
 use toolpost_wire::dxf::{Drawing, Options, read};
+use toolpost_wire::{Contour, Element};
 
 /// A file with these entities, in mm: codes and values parted by blanks.
 fn file(entities: &str) -> Vec<u8> {
@@ -166,6 +167,26 @@ fn small_gaps_are_closed_and_wide_ones_stay_open() {
     let open = drawing(&square(0.011));
     assert!(!open.contours[0].is_closed());
     assert_eq!(open.contours.len(), 1);
+}
+
+/// An arc of nearly a full circle closes to a full one; a small one does not shrink to nothing.
+#[test]
+fn arcs_keep_their_shape_where_gaps_are_closed() {
+    let circle = drawing("0 ARC 10 5 20 1 40 1 50 0.5 51 0");
+    let [arc] = circle.contours[0].elements() else { panic!("{circle:?}") };
+    assert!(circle.contours[0].is_closed());
+    assert!((arc.turn.unwrap().sweep - TAU).abs() < 1e-12);
+    assert!(
+        (arc.radius().unwrap() - 1.0).abs() < 0.005 && arc.at(0.5).distance(p(4.0, 1.0)) < 0.01
+    );
+    let far = p(10.004, 0.004);
+    let fillet = vec![
+        Element::line(p(0.0, 0.0), far),
+        Element::arc(p(10.0, 0.0), far, p(10.0, 0.004), PI / 2.0),
+        Element::line(far, p(20.0, 10.0)),
+    ];
+    let contour = Contour::new(fillet, 0.01).unwrap();
+    assert!(contour.elements().iter().all(|e| e.at(0.5).is_finite()));
 }
 
 #[test]

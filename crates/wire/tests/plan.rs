@@ -225,6 +225,32 @@ fn what_cannot_be_is_refused() {
     assert_eq!(rule(opening(plate(), Side::Inside), &settings(&[0.1])), "inner-corner");
 }
 
+/// What the rough pass leaves in a corner of 0.18 mm the trim pass takes.
+#[test]
+fn only_the_last_pass_has_to_reach_the_corners() {
+    let r = 0.18;
+    let elements = vec![
+        Element::line(p(0.0, 10.0), p(0.0, r)),
+        Element::arc(p(0.0, r), p(r, 0.0), p(r, r), PI / 2.0),
+        Element::line(p(r, 0.0), p(10.0, 0.0)),
+    ];
+    let corner = opening(Contour::new(elements, 0.0).unwrap(), Side::Left);
+    assert!(plan(std::slice::from_ref(&corner), &settings(&[0.25, 0.15])).is_ok());
+    assert_eq!(rule(corner, &settings(&[0.25, 0.2])), "inner-corner");
+}
+
+/// Threaded straight out from a corner, the wire comes to it the shortest way.
+#[test]
+fn a_cut_may_start_at_a_corner() {
+    let corner = Opening { thread: Some(p(-3.0, -4.0)), ..opening(plate(), Side::Outside) };
+    let plan = planned(corner, &settings(&[0.15]));
+    let entry = plan.passes[0].path.lower().elements()[0].end;
+    assert!(entry.distance(p(-0.09, -0.12)) < 1e-9, "{entry}");
+    let default = planned(opening(plate(), Side::Outside), &settings(&[0.15]));
+    assert_eq!(default.passes[0].path.lower().start(), p(0.0, -5.0));
+    assert!(default.passes[0].path.lower().elements()[0].end.distance(p(0.0, -0.15)) < 1e-9);
+}
+
 /// Along an open contour: there, back, there.
 #[test]
 fn an_open_contour_is_cut_there_and_back() {

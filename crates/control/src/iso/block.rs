@@ -1,6 +1,7 @@
 //! A block (a line of NC) taken apart into words.
 
-use super::expression::{self, Reader, Target, Value};
+use super::arithmetic;
+use super::expression::{Reader, Target, Value};
 use super::parameters::{Language, Values};
 use super::words::{Dictionary, Flavor, G, Group, LETTERS, M, bit, index};
 use crate::decimal;
@@ -260,9 +261,9 @@ impl<'a> Block<'a> {
         let mut reader = Reader::new(values, self.line, self.text, from);
         let value = reader.value()?.map(|value| match letter {
             b'G' => {
-                expression::whole(value * 10.0).map_or(value, |tenths| f64::from(tenths) / 10.0)
+                arithmetic::whole(value * 10.0).map_or(value, |tenths| f64::from(tenths) / 10.0)
             }
-            b'M' | b'N' | b'O' => expression::whole(value).map_or(value, f64::from),
+            b'M' | b'N' | b'O' => arithmetic::whole(value).map_or(value, f64::from),
             _ => value,
         });
         Ok((value, reader.at))

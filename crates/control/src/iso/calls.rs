@@ -1,7 +1,7 @@
 //! Calls: subroutines, `M98` and `M99`, and the macros of `G65` and `G66`.
 
+use super::arithmetic;
 use super::block::{Block, Fault};
-use super::expression;
 use super::macros;
 use super::modes::Modes;
 use super::parameters::{Language, Locals};
@@ -123,7 +123,7 @@ impl<'a> Run<'a, '_> {
     /// The whole number of this letter of the block.
     pub(super) fn whole_word(&mut self, letter: u8) -> Result<Option<u32>, Fault> {
         let Some(word) = self.block.take(letter) else { return Ok(None) };
-        match expression::whole(word.value).filter(|_| !word.point) {
+        match arithmetic::whole(word.value).filter(|_| !word.point) {
             Some(value) => Ok(Some(value)),
             None => {
                 let message = format!("{} must be a whole number", char::from(letter));

@@ -1,7 +1,7 @@
 //! One block, in the order in which a control executes it.
 
+use super::arithmetic;
 use super::block::{Block, Fault};
-use super::expression;
 use super::state::State;
 use super::words::{FeedMode, Flavor, G, Group, M, Motion, Plane, Side};
 use crate::{Settings, WholeNumbers};
@@ -79,7 +79,10 @@ impl Step<'_, '_, '_> {
             return Ok(());
         }
         self.state.motion = None;
-        if self.block.commands() + usize::from(self.block.has(b'T')) > 1 {
+        // G53 stands before the move that it is for.
+        let others = self.block.g(Group::OneShot) == Some(G::Machine);
+        let commands = self.block.commands() + usize::from(self.block.has(b'T'));
+        if commands > 1 + usize::from(others) {
             let message = "this control takes one command a line";
             return Err(self.block.whole("nc-many-commands", message));
         }
@@ -126,6 +129,7 @@ impl Step<'_, '_, '_> {
         let Some(word) = self.block.take(b'F') else { return Ok(()) };
         if let Some(G::Inches(inches)) = self.block.g(Group::Units)
             && self.state.inches != Some(inches)
+            && (self.flavor != Flavor::LinuxCnc || self.state.inches.is_none())
         {
             let message = "F in the block that changes the units: controls differ in which it is";
             return Err(self.block.at_word(b'F', "nc-feed", message));
@@ -133,6 +137,7 @@ impl Step<'_, '_, '_> {
         if word.value <= 0.0 {
             return Err(self.block.at_word(b'F', "nc-feed", "the feed must be greater than 0"));
         }
+        self.state.f = Some(word.value);
         let feed = match self.state.feed_mode {
             FeedMode::PerMinute => Feed::PerMinute(word.value * self.unit(b'F')?),
             FeedMode::PerTurn => Feed::PerTurn(word.value * self.unit(b'F')?),
@@ -475,7 +480,7 @@ impl Step<'_, '_, '_> {
     pub(super) fn take_whole(&mut self, letter: u8) -> Result<Option<u32>, Fault> {
         let Some(word) = self.block.take(letter) else { return Ok(None) };
         let pointed = word.point && self.flavor.is_fanuc();
-        let value = if word.computed { expression::whole(word.value) } else { exact(word.value) };
+        let value = if word.computed { arithmetic::whole(word.value) } else { exact(word.value) };
         match value.filter(|&value| !pointed && value <= 99_999_999) {
             Some(value) => Ok(Some(value)),
             None => {

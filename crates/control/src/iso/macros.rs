@@ -2,8 +2,9 @@
 //!
 //! Numbers of blocks and programs are looked up in the file when the first jump or call needs them.
 
+use super::arithmetic;
 use super::block::{Fault, Word};
-use super::expression::{self, Reader, Target};
+use super::expression::{Reader, Target};
 use super::run::Run;
 use super::source::{self, Place, Source};
 use crate::{WholeNumbers, decimal};
@@ -138,7 +139,7 @@ impl Labels {
             if let Some(b'O' | b':') = content.get(start) {
                 let rest = content.get(start + 1..).unwrap_or_default();
                 let number = decimal::parse(rest.trim_ascii_start());
-                let Some(number) = number.and_then(|n| expression::whole(n.value)) else {
+                let Some(number) = number.and_then(|n| arithmetic::whole(n.value)) else {
                     return Err(fault("O needs the number of the program"));
                 };
                 let index = found.programs.len();
@@ -333,7 +334,7 @@ impl<'a> Run<'a, '_> {
             if !reader.take(b'=') {
                 return Err(reader.wrong("= is missing"));
             }
-            (target, reader.value()?, reader.at)
+            (target, reader.formula()?, reader.at)
         };
         self.rest(text, behind)?;
         let Target::Number(number) = target else { return Ok(()) };

@@ -8,7 +8,9 @@
 //! [`motion`], [`arcs`], [`cycles`], [`coordinates`], [`tools`]): a block with a mistake leaves none.
 
 mod arcs;
+mod arithmetic;
 mod block;
+mod branches;
 mod calls;
 mod coordinates;
 mod cycles;
@@ -32,9 +34,10 @@ mod threads;
 mod tools;
 mod words;
 
-use crate::Settings;
 use crate::compensation::Compensator;
+use crate::{Dialect, Settings};
 use block::Fault;
+use program::{Op, Record};
 use run::Run;
 use source::Source;
 
@@ -45,5 +48,11 @@ pub(crate) fn run(
     compensator: &mut Compensator,
 ) -> Result<(), Fault> {
     let main = Source::program(text);
-    Run::new(settings, &main, compensator).run()
+    Run::new(settings, &main, compensator).run()?;
+    // Marlin has no word for the end: the program ends with its last line.
+    if settings.dialect == Dialect::Marlin {
+        let lines = text.split(|&b| b == b'\n').count();
+        compensator.take(Record { line: u32::try_from(lines).unwrap_or(u32::MAX), op: Op::End })?;
+    }
+    Ok(())
 }

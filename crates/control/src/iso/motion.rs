@@ -202,6 +202,11 @@ impl Step<'_, '_, '_> {
                     self.advance(target.rotary[axis], value, letter, unknown_stays)?;
             }
         }
+        if self.state.frames.lost && target.named != 0 {
+            let message = "G92.1 has moved the zero by what the control held before the program";
+            let fault = self.block.whole("nc-unknown-shift", message);
+            return Err(fault.help("write G92.1 before the first move").into());
+        }
         Ok(target)
     }
 

@@ -1,9 +1,10 @@
 //! The run of a program: line after line, and the calls and jumps from one to another.
 
+use super::arithmetic;
 use super::block::{Block, Fault};
 use super::calls::{Frame, Kind};
 use super::execute::Control;
-use super::expression::{self, Reader};
+use super::expression::Reader;
 use super::flavors;
 use super::macros;
 use super::owords;
@@ -224,7 +225,7 @@ impl<'a, 's> Run<'a, 's> {
             return Err(self.block.at_word(b'O', "nc-program-number", message));
         }
         match self.block.take(b'O') {
-            Some(word) if expression::whole(word.value).is_none() || word.point => {
+            Some(word) if arithmetic::whole(word.value).is_none() || word.point => {
                 let message = "O must be a whole number";
                 Err(self.block.at_word(b'O', "nc-number", message))
             }
@@ -343,6 +344,5 @@ fn values<'v>(
     parameters: &'v Parameters,
     line: u32,
 ) -> Values<'v> {
-    let setup = &settings.setup;
-    Values { parameters, state, tools: &setup.tools, fresh: setup.start.is_some(), line }
+    Values { parameters, state, fresh: settings.setup.start.is_some(), line }
 }

@@ -21,6 +21,8 @@ pub(super) struct State {
     pub inches: Option<bool>,
     pub feed_mode: FeedMode,
     pub feed: Option<Feed>,
+    /// F as it was written last.
+    pub f: Option<f64>,
     pub spindle: Spindle,
     /// Last S, 1/min.
     pub speed: Option<f64>,
@@ -150,6 +152,7 @@ impl State {
             inches: settings.setup.units.map(|units| units == Units::Inches),
             feed_mode: FeedMode::PerMinute,
             feed: None,
+            f: None,
             spindle: Spindle::Off,
             speed: None,
             rigid: false,

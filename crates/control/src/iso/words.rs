@@ -48,7 +48,12 @@ pub(super) enum G {
     DynamicLength,
     CancelLength,
     ReturnToR(bool),
+    /// By its number in the neutral program: `G54` is 54.
     WorkOffset(u32),
+    /// `G54.1 P`, `G154 P`: those after `G59`.
+    FurtherOffset {
+        most: u32,
+    },
     /// How the path is smoothed, or a mode that is off anyway: nothing moves elsewhere for it. The
     /// letters may stand beside it.
     Neutral(&'static [u8]),

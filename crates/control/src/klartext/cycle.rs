@@ -417,7 +417,7 @@ impl Control<'_, '_> {
         }
     }
 
-    /// `DWELL 1.5`, `V.ZEIT 1.5`, `DWELL1.5`: seconds.
+    /// `DWELL 1.5`, in whatever language: seconds.
     fn dwell(&mut self, s: &mut Scanner) -> Result<()> {
         let (_, span) = s.token();
         let seconds = s.value(&self.registers)?;
@@ -426,6 +426,16 @@ impl Control<'_, '_> {
             return Err(s.error("dwell", span, "a dwell is not negative"));
         }
         self.emit(Op::Dwell(seconds))
+    }
+
+    /// `FUNCTION DWELL TIME10`, from behind `DWELL`.
+    pub(super) fn function_dwell(&mut self, s: &mut Scanner) -> Result<()> {
+        let seconds = s.take_symbol(b"TIME").then(|| s.value(&self.registers)).transpose()?;
+        s.finish()?;
+        match seconds.filter(|seconds| *seconds >= 0.0) {
+            Some(seconds) => self.emit(Op::Dwell(seconds)),
+            None => Err(s.error_block("dwell", "FUNCTION DWELL takes TIME with seconds")),
+        }
     }
 
     /// `T0.01`, or `HSC-MODE:1 TA0.5`, or nothing, which ends the tolerance.

@@ -103,12 +103,11 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
         let s = &mut scanner;
         let part = self.part.take();
         self.control.at_line(s.line);
-        if s.is_done() || s.peek() == b"*" {
+        let (keyword, span) = s.token();
+        if matches!(keyword, b"" | b"*") {
             self.part = part;
             return self.comment(line);
         }
-        let start = *s;
-        let (keyword, span) = s.token();
         if keyword == b"CYCL" && s.take(b"DEF") {
             return self.cycle_definition(s, part, continued);
         }
@@ -138,7 +137,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
             b"CHF" => control.chamfer(s),
             _ => {
                 control.contour_is_closed(s)?;
-                self.other(s, start, keyword, span, place)
+                self.other(s, line.scanner, keyword, span, place)
             }
         }
     }

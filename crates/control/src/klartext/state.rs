@@ -9,10 +9,13 @@ use super::scan::{Result, Scanner};
 use super::transform::Transforms;
 use super::words::FeedWord;
 use crate::Settings;
+use crate::ToolData;
 use crate::compensation::{Compensator, Terms};
 use crate::flow::Budget;
 use geom::Vec3;
 use program::{Compensation, Coolant, Cycle, Feed, Op, Orientation, Pose, Record, Spindle};
+
+use std::collections::HashMap;
 
 /// The address letters of the axes, in the order of their coordinates.
 pub(super) const AXES: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
@@ -53,6 +56,8 @@ pub(super) struct Control<'a, 's> {
     pub(super) feed: Option<Feed>,
     /// Feed of the last TOOL CALL, for `F AUTO`.
     pub(super) tool_feed: Option<FeedWord>,
+    /// Tools that the program itself defines, by number.
+    pub(super) defined_tools: HashMap<u32, ToolData>,
     /// Number of the tool, where it is known.
     pub(super) tool_number: Option<u32>,
     /// Radius of the tool in the tool table, mm.
@@ -98,6 +103,7 @@ impl<'a, 's> Control<'a, 's> {
             tip: Tip::Free,
             feed: None,
             tool_feed: None,
+            defined_tools: HashMap::new(),
             tool_number: None,
             tool_radius: None,
             per_turn: false,
@@ -304,6 +310,9 @@ impl<'a, 's> Control<'a, 's> {
 
     /// Does the M functions of a block that act at that moment.
     pub(super) fn functions(&mut self, s: &Scanner, all: Functions, when: When) -> Result<()> {
+        if all.is_empty() {
+            return Ok(());
+        }
         for function in all.at(when) {
             self.function(s, function)?;
         }

@@ -141,7 +141,7 @@ impl<'a, 's> Run<'a, 's> {
                 continue;
             }
             block.read(source, &self.interpreter.state)?;
-            match block.statement.take() {
+            match block.statement.take().map(|statement| *statement) {
                 None => {
                     self.level.working |= block.any;
                     self.interpreter.run(&source, block)?;
@@ -275,7 +275,9 @@ impl<'a, 's> Run<'a, 's> {
         let Some((source, _)) = program.block(first.at, first.line) else { return Ok(behind) };
         let mut block = Block::empty();
         block.read(source, &self.interpreter.state)?;
-        let Some(Statement::For(count)) = block.statement.take() else { return Ok(behind) };
+        let Some(Statement::For(count)) = block.statement.take().map(|s| *s) else {
+            return Ok(behind);
+        };
         let end = self.level.counts.iter().find(|(at, _)| *at == first.at).map(|(_, end)| *end);
         if end != Some(count.end) {
             let message = format!(
