@@ -4,6 +4,7 @@ use geom::Vec3;
 use machine::Machine;
 use program::{ArcTo, Compensation, Diagnostic, Feed, Op, Pose, Program, Tool};
 use proof::{Report, Tolerances};
+use proptest::prelude::*;
 
 /// The list of coordinates with its upper plane 40 mm over the lower.
 const LIST: &str = "extends = \"bp-95d\"\n[wire]\nheight = 40\nuv_travel = 15\ntaper_max = 20\n";
@@ -235,4 +236,30 @@ fn any_damage_to_a_program_of_iso_code_is_refused() {
 fn a_mill_threads_no_wire() {
     let mill = machine("extends = \"generic-3axis-fanuc\"");
     assert_eq!(refused(&sector(), &mill).rule, "unsupported");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Any way of the wire, leaning as it likes within the machine.
+    #[test]
+    fn any_way_of_a_wire_is_proven_on_every_wire_machine(
+        points in prop::collection::vec((-90.0..90.0f64, -90.0..90.0f64, -9.0..9.0f64, -9.0..9.0f64), 2..30),
+        leans in any::<bool>(),
+        feed in prop::option::of(1.0..20.0f64),
+    ) {
+        let pose = |&(x, y, u, v): &(f64, f64, f64, f64)| {
+            if leans { leaning(x, y, u, v) } else { upright(x, y) }
+        };
+        for control in ["bp-95d", "fanuc-wire", "sodick-iso", "agie-iso"] {
+            let machine = machine(&format!("extends = \"{control}\"\n[wire]\nheight = 40\n"));
+            let says_feed = feed.filter(|_| machine.words.contains_key("F"));
+            let feed = says_feed.map(|feed| Op::Feed(Feed::PerMinute(feed)));
+            let ways = points.iter().skip(1).map(|point| Op::Line(pose(point)));
+            let program = opening(pose(&points[0]), feed.into_iter().chain(ways));
+            let text = written(&program, &machine);
+            let report = proof(&program, &machine, &text);
+            prop_assert!(report.proven, "{control}: {:?}\n{text}", report.mismatches);
+        }
+    }
 }
