@@ -48,6 +48,10 @@ judges:
 ## The pictures of the documentation, drawn anew.
 images: rust
 	$(TOOLPOST) show examples/dome.cls --output docs/images/dome.png > /dev/null
+	@mkdir -p out
+	$(TOOLPOST) --quiet wire examples/sector.nc --from fanuc-31i --machine bp-95d --side inside --wire 0.25 \
+		--gap 0.02 --thread 12,12 --round-corners --taper 10 --height 30 --chord-error 0.02 --select 6 \
+		--output out/sector.pts --picture docs/images/wire.png
 
 ## The sample programs beside the machines, written anew: to be read before they are committed.
 samples: rust

@@ -1,15 +1,25 @@
 //! Any bytes as ISO code, the flavour by the first byte: no panic, and what runs makes sense.
 #![no_main]
 
-use control::{Dialect, Settings, read};
+use control::{Dialect, Settings, Wire, read};
 use libfuzzer_sys::fuzz_target;
 use program::{Op, Orientation};
 
 fuzz_target!(|data: &[u8]| {
     let Some((&first, text)) = data.split_first() else { return };
-    let dialect = [Dialect::Fanuc, Dialect::LinuxCnc, Dialect::Grbl][usize::from(first) % 3];
+    let dialects = [
+        Dialect::Fanuc,
+        Dialect::LinuxCnc,
+        Dialect::Grbl,
+        Dialect::FanucWire,
+        Dialect::Sodick,
+        Dialect::Agie,
+        Dialect::Points,
+    ];
+    let dialect = dialects[usize::from(first) % dialects.len()];
+    let wire = Wire { height: (first > 127).then_some(40.0), thread: Some(60), cut: Some(50) };
     for rotary in [[false; 3], [true, false, true]] {
-        let settings = Settings { auxiliary: vec![26], ..Settings::new(dialect, rotary) };
+        let settings = Settings { auxiliary: vec![26], wire, ..Settings::new(dialect, rotary) };
         let lines = text.split(|&byte| byte == b'\n').count();
         let mut line = 0;
         let mut ended = false;

@@ -352,3 +352,26 @@ fn functions_of_the_control_are_neutral_or_refused_with_a_reason() {
     assert_eq!(ops.iter().filter(|op| **op == Op::Feed(Feed::PerMinute(700.0))).count(), 2);
     assert_eq!(refused("L X+1 FZ0.1").rule, "feed");
 }
+
+#[test]
+fn texts_end_at_their_longest() {
+    let long = "Q".repeat(200);
+    assert!(
+        run_on([false; 3], "MM", &format!("QS1 = \"{long}\"\nQS2 = QS1 || \"{}\"", "Q".repeat(55)))
+            .is_ok()
+    );
+    let error = refused(&format!("QS1 = \"{long}\"\nQS2 = QS1 || QS1"));
+    assert_eq!(error.rule, "parameter");
+    refused(&format!("QS1 = \"{long}\"\nQS2 = QS1{}", " || QS1".repeat(100_000)));
+}
+
+#[test]
+fn a_program_may_begin_at_a_place_that_is_known() {
+    let setup = toolpost_control::Setup {
+        start: Some(geom::Vec3::new(1.0, 2.0, 3.0)),
+        ..toolpost_control::Setup::default()
+    };
+    let text = program("T", "MM", "L IX+1 IZ-1 F100");
+    let records = read_with(setup, [false; 3], text.as_bytes()).unwrap();
+    assert_eq!(records[1].op.pose().unwrap().point.to_array(), [2.0, 2.0, 2.0]);
+}

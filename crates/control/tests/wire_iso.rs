@@ -41,20 +41,31 @@ fn a_die_with_the_controls_offset() {
 #[test]
 fn u_and_v_count_at_the_upper_plane_and_stay() {
     let text = "G21 G90 G0 X1. Y2. U3.\nM60\nG1 X5. F6.\nU0. V-4.\nG91 V4. X1.\nM50\nM30\n";
-    let lean = |x: f64, y: f64, u: f64, v: f64| {
-        Pose::new(Vec3::new(x, y, 0.0), Vec3::new(u, v, 4.0).normalize())
-    };
+    // 3-4-5, and 45 degrees.
+    let (half, point) = (0.5f64.sqrt(), |x: f64, y: f64| Vec3::new(x, y, 0.0));
+    let over = |x: f64, y: f64| Pose::new(point(x, y), Vec3::new(0.6, 0.0, 0.8));
+    let back = |x: f64, y: f64| Pose::new(point(x, y), Vec3::new(0.0, -half, half));
     let expected = [
-        Op::Rapid(lean(1.0, 2.0, 3.0, 0.0)),
+        Op::Rapid(over(1.0, 2.0)),
         Op::ThreadWire,
         Op::Feed(Feed::PerMinute(6.0)),
-        Op::Line(lean(5.0, 2.0, 3.0, 0.0)),
-        Op::Line(lean(5.0, 2.0, 0.0, -4.0)),
+        Op::Line(over(5.0, 2.0)),
+        Op::Line(back(5.0, 2.0)),
         Op::Line(at(6.0, 2.0)),
         Op::CutWire,
         Op::End,
     ];
-    assert_eq!(run(Dialect::FanucWire, text, Some(4.0)).unwrap(), expected);
+    let ops = run(Dialect::FanucWire, text, Some(4.0)).unwrap();
+    assert_eq!(ops.len(), expected.len());
+    for (op, expected) in ops.iter().zip(&expected) {
+        match (op.pose(), expected.pose()) {
+            (Some(pose), Some(wanted)) => {
+                assert_eq!(pose.point, wanted.point);
+                assert!(pose.axis().unwrap().distance(wanted.axis().unwrap()) < 1e-15);
+            }
+            _ => assert_eq!(op, expected),
+        }
+    }
 }
 
 #[test]

@@ -186,8 +186,8 @@ impl Step<'_, '_, '_> {
         let mut target = Target { point: self.state.position, rotary: self.state.rotary, named: 0 };
         self.in_plane(&mut target, unknown_stays)?;
         self.along(self.state.plane.axes()[2], &mut target, unknown_stays)?;
-        self.together(target.named)?;
         target.named |= self.lean()?;
+        self.together(target.named)?;
         for (axis, letter) in b"ABC".iter().copied().enumerate() {
             if !self.block.has(letter) {
                 continue;

@@ -4,7 +4,7 @@ use super::block::Fault;
 use super::execute::Step;
 use super::words::{Group, M, Motion};
 use crate::Settings;
-use geom::Vec3;
+use geom::{Vec3, direction};
 use program::{Op, Orientation};
 
 /// The wire as the control knows it.
@@ -12,9 +12,11 @@ use program::{Op, Orientation};
 pub(super) struct Wire {
     /// Height at which U and V are counted, mm.
     upper_plane: Option<f64>,
-    /// How far the wire is beside X and Y there, mm. It is set up upright.
+    /// How far the wire is beside X and Y there, mm.
     u: f64,
     v: f64,
+    /// Where that points it: it is set up upright.
+    axis: Vec3,
 }
 
 /// What [`super::motion::Target::named`] says of a block with U or V.
@@ -23,17 +25,12 @@ pub(super) const LEANS: u8 = 1 << 6;
 impl Wire {
     /// Upright.
     pub(super) fn new(settings: &Settings) -> Wire {
-        Wire { upper_plane: settings.wire.height, u: 0.0, v: 0.0 }
+        Wire { upper_plane: settings.wire.height, u: 0.0, v: 0.0, axis: Vec3::Z }
     }
 
     /// Where it points.
     pub(super) fn orientation(&self) -> Orientation {
-        Orientation::Axis(match self.upper_plane {
-            Some(height) if self.u != 0.0 || self.v != 0.0 => {
-                Vec3::new(self.u, self.v, height).normalize()
-            }
-            _ => Vec3::Z,
-        })
+        Orientation::Axis(self.axis)
     }
 }
 
@@ -76,13 +73,16 @@ impl Step<'_, '_, '_> {
             return Ok(0);
         }
         let refused = |message| Err(self.block.whole("nc-wire", message));
-        if wire.upper_plane.is_none() {
+        let Some(height) = wire.upper_plane else {
             return refused("U and V, and the height of the upper plane is not known");
-        }
+        };
+        let Some(axis) = direction(Vec3::new(wire.u, wire.v, height)) else {
+            return refused("U and V lie so far out that the wire has no direction");
+        };
         if matches!(self.state.motion, Some(Motion::Arc { .. })) {
             return refused("U or V beside an arc: the upper end would not go along an arc");
         }
-        self.state.wire = Some(wire);
+        self.state.wire = Some(Wire { axis, ..wire });
         Ok(named)
     }
 }
