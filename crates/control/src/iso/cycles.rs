@@ -175,9 +175,7 @@ impl Step<'_, '_, '_> {
     fn levels(&mut self, held: &mut Holding, axis: usize) -> Result<(), Fault> {
         let incremental = self.state.incremental;
         if let Some(value) = self.take_length(b'R')? {
-            let level =
-                if self.flavor.is_fanuc() { held.initial } else { self.state.position[axis] };
-            held.r = Some(if incremental { level + value } else { value });
+            held.r = Some(if incremental { held.initial + value } else { value });
             if incremental && !self.block.has(LINEAR[axis]) {
                 held.bottom = None;
             }
