@@ -375,3 +375,10 @@ fn a_program_may_begin_at_a_place_that_is_known() {
     let records = read_with(setup, [false; 3], text.as_bytes()).unwrap();
     assert_eq!(records[1].op.pose().unwrap().point.to_array(), [2.0, 2.0, 2.0]);
 }
+
+#[test]
+fn a_program_may_end_within_a_subprogram() {
+    assert_eq!(xs("CALL LBL 1\nM30\nLBL 1\nL X+3 FMAX M30\nLBL 0"), [3.0]);
+    let ops = run("CALL LBL 1\nM30\nLBL 1\nL X+3 FMAX M30\nLBL 0");
+    assert_eq!(ops.iter().filter(|op| **op == Op::End).count(), 1);
+}

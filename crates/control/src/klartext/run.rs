@@ -125,15 +125,15 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
             return Err(s.error_block("unsupported", "this block cannot go on in the next line"));
         }
         let control = &mut *self.control;
-        let corner = |source: &Source| source.corner_follows();
+        let source = &self.source;
         match keyword {
-            b"L" => control.line(s, corner(&self.source)),
-            b"C" => control.arc(s, corner(&self.source)),
-            b"CR" => control.arc_of_radius(s, corner(&self.source)),
-            b"CT" => control.tangential_arc(s, corner(&self.source)),
-            b"CP" => control.polar_arc(s, corner(&self.source)),
-            b"CTP" => control.polar_tangential_arc(s, corner(&self.source)),
-            b"LP" => control.polar_line(s, corner(&self.source)),
+            b"L" => control.line(s, source.corner_follows()),
+            b"C" => control.arc(s, source.corner_follows()),
+            b"CR" => control.arc_of_radius(s, source.corner_follows()),
+            b"CT" => control.tangential_arc(s, source.corner_follows()),
+            b"CP" => control.polar_arc(s, source.corner_follows()),
+            b"CTP" => control.polar_tangential_arc(s, source.corner_follows()),
+            b"LP" => control.polar_line(s, source.corner_follows()),
             b"CC" => control.circle_center(s),
             b"RND" => control.rounding(s),
             b"CHF" => control.chamfer(s),
@@ -218,7 +218,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
         }
         s.expect(if self.control.unit == 1.0 { b"MM" } else { b"INCH" })?;
         s.finish()?;
-        if self.calls.is_open() {
+        if self.calls.is_open() && !self.control.ended {
             return Err(
                 s.error_block("label", "the subprogram that runs has no end: LBL 0 is missing")
             );
