@@ -90,6 +90,7 @@ fn labels_have_one_place_and_names_may_come_from_a_text() {
         ("CALL LBL 1\nLBL 1", "LBL 0 is missing"),
         ("CALL LBL 1 REP 3\nLBL 1", "before its call"),
         ("LBL 1\nCALL LBL 1 REP 2.5", "whole number"),
+        ("LBL 1\nCALL LBL 1 REP 0", "whole number"),
         ("LBL 1\nCALL LBL 1", "nested more than 19"),
         ("FN 9: IF +1 EQU +1 GOTO LBL 3", "no label 3"),
         ("M30\nL X+1 FMAX\nLBL 1", "never runs"),

@@ -56,16 +56,16 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
 
     /// Runs the program up to its `END PGM`.
     pub(super) fn finish(mut self) -> Result<()> {
-        let mut last = None;
+        let mut last = self.source.place();
         // Behind M30 there are subprograms, which begin with a label.
         let mut subprograms = false;
         while !self.closed {
             let place = self.source.place();
             let Some(line) = self.source.next()? else {
-                let last: Scanner = last.unwrap_or(Scanner::new("", 1, b""));
-                return Err(last.error_block("program-frame", "the program ends without END PGM"));
+                let message = "the program ends without END PGM";
+                return Err(self.source.line_at(last).error_block("program-frame", message));
             };
-            last = Some(line.scanner);
+            last = place;
             if self.control.ended {
                 self.unreached(line, &mut subprograms)?;
             } else {

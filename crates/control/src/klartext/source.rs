@@ -138,6 +138,12 @@ impl<'t> Source<'t> {
         self.at
     }
 
+    /// The line at a place; an empty one behind the last.
+    pub(super) fn line_at(&self, place: Place) -> Scanner<'t> {
+        let line = self.text.line(&mut place.clone());
+        line.unwrap_or(Scanner::new(self.text.file, place.line, b""))
+    }
+
     /// Goes on from a place.
     pub(super) fn jump(&mut self, to: Place) {
         self.at = to;
