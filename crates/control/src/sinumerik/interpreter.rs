@@ -14,6 +14,7 @@ use super::motion::AXIS_NAMES;
 use super::programmable::plain_values;
 use super::scan::Source;
 use super::state::{Modes, State};
+use super::variables::ELEMENTS_IN_A_TURN;
 use crate::flow::Budget;
 use crate::{Settings, Sink};
 use geom::Vec3;
@@ -75,6 +76,14 @@ impl<'a> Interpreter<'a> {
         (self.sink)(record).inspect_err(|_| self.stopped = true)
     }
 
+    /// Turns of loops, jumps and calls, of which there may not be too many between two records.
+    pub fn spend(&mut self, source: &Source, turns: usize) -> Fallible<()> {
+        for _ in 0..turns {
+            self.budget.jump().map_err(|message| source.block_error("endless", message))?;
+        }
+        Ok(())
+    }
+
     /// Carries out a block.
     pub fn run(&mut self, source: &Source, block: &mut Block) -> Fallible<()> {
         if let Some(comment) = block.comment.take() {
@@ -82,6 +91,9 @@ impl<'a> Interpreter<'a> {
         }
         if !block.any {
             return Ok(());
+        }
+        if block.assigned.len() >= ELEMENTS_IN_A_TURN {
+            self.spend(source, block.assigned.len() / ELEMENTS_IN_A_TURN)?;
         }
         for (place, value) in block.assigned.drain(..) {
             self.state.assign(place, value);

@@ -11,7 +11,7 @@ use super::scan::{Name, Scanner, Source};
 use super::state::Modes;
 use super::statement::{Count, Jump, ProgramCall, Search, Section, Statement, Target};
 use super::value::Value;
-use super::variables::{Locals, Variable};
+use super::variables::{ELEMENTS_IN_A_TURN, Locals, Variable};
 use crate::flow::DEEPEST;
 use crate::{Settings, Sink};
 use program::Diagnostic;
@@ -168,7 +168,7 @@ impl<'a> Run<'a> {
 
     /// Another turn of a loop, a jump or a call.
     fn turn(&mut self, source: &Source) -> Fallible<()> {
-        self.interpreter.budget.jump().map_err(|message| source.block_error("endless", message))
+        self.interpreter.spend(source, 1)
     }
 
     /// Carries out a statement of the block at `here`: the block that comes next.
@@ -197,6 +197,7 @@ impl<'a> Run<'a> {
         match statement {
             Statement::Define(variables) => {
                 for (name, variable) in variables {
+                    self.interpreter.spend(source, variable.values.len() / ELEMENTS_IN_A_TURN)?;
                     let locals = &mut self.interpreter.state.locals;
                     locals
                         .define(name, variable)

@@ -68,8 +68,6 @@ impl Name {
 /// What stands before the words of a block.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Head {
-    /// Whether the operator may skip the block (`/`).
-    pub skip: bool,
     /// Block number.
     pub number: Option<u32>,
     /// Label.
@@ -206,15 +204,16 @@ impl<'a> Scanner<'a> {
     pub fn head(&mut self) -> Fallible<Head> {
         let mut head = Head::default();
         self.blanks();
-        if self.peek() == b'/' {
-            head.skip = true;
+        let mut next = self.peek();
+        if next == b'/' {
             self.at += 1;
             if self.digit_next() {
                 self.at += 1;
             }
             self.blanks();
+            next = self.peek();
         }
-        if self.peek() == b':' || self.peek() == b'N' && self.peek_at(1).is_ascii_digit() {
+        if next == b':' || next == b'N' && self.peek_at(1).is_ascii_digit() {
             self.at += 1;
             head.number = Some(self.integer()?);
             self.blanks();
@@ -276,7 +275,7 @@ impl<'a> Scanner<'a> {
         let mut digits = 0;
         let mut decimals = 0;
         let mut point = false;
-        while let Some(&byte) = self.source.text.get(self.at) {
+        for &byte in self.source.text.get(self.at..).unwrap_or(&[]) {
             match byte {
                 b'0'..=b'9' => {
                     mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(byte - b'0'));
@@ -286,8 +285,8 @@ impl<'a> Scanner<'a> {
                 b'.' if !point => point = true,
                 _ => break,
             }
-            self.at += 1;
         }
+        self.at += digits + usize::from(point);
         if digits == 0 {
             return Err(self.error_here("number", "a number is missing here"));
         }
