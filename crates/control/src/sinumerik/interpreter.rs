@@ -92,11 +92,11 @@ impl<'a> Interpreter<'a> {
         if !block.any {
             return Ok(());
         }
-        if block.assigned.len() >= ELEMENTS_IN_A_TURN {
+        if !block.assigned.is_empty() {
             self.spend(source, block.assigned.len() / ELEMENTS_IN_A_TURN)?;
-        }
-        for (place, value) in block.assigned.drain(..) {
-            self.state.assign(place, value);
+            for (place, value) in block.assigned.drain(..) {
+                self.state.assign(place, value);
+            }
         }
         if let Some(message) = block.message.take() {
             self.emit(source, Op::Message(message.into()))?;
@@ -107,7 +107,9 @@ impl<'a> Interpreter<'a> {
         if let Some(call) = block.call.take() {
             return self.call(source, block, &call);
         }
-        self.check_m(source, block)?;
+        if block.m[0].is_some() {
+            self.check_m(source, block)?;
+        }
         self.modes(source, block)?;
         if let Some((name, tolerance)) = block.path_tolerance {
             self.path_tolerance(source, name, tolerance * self.state.unit)?;
@@ -455,6 +457,9 @@ impl<'a> Interpreter<'a> {
     }
 
     fn stops(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+        if block.m[0].is_none() {
+            return Ok(());
+        }
         match block.m.iter().flatten().find(|m| STOPS.contains(m)) {
             Some(0) => self.emit(source, Op::Stop),
             Some(1) => self.emit(source, Op::OptionalStop),

@@ -103,17 +103,17 @@ impl<'a> Scanner<'a> {
     /// Takes blanks. `&` is a formatting character that reads like one.
     #[inline]
     pub fn blanks(&mut self) {
-        while matches!(self.peek(), b' ' | b'\t' | b'&') {
+        while let Some(b' ' | b'\t' | b'&') = self.source.text.get(self.at) {
             self.at += 1;
         }
     }
 
-    /// Takes `byte`, after blanks, where it comes next.
+    /// Takes `byte`, which is no letter, after blanks, where it comes next.
     #[inline]
     pub fn take(&mut self, byte: u8) -> bool {
         let back = self.at;
         self.blanks();
-        let found = self.peek() == byte;
+        let found = self.source.text.get(self.at) == Some(&byte);
         self.at = if found { self.at + 1 } else { back };
         found
     }
@@ -264,7 +264,7 @@ impl<'a> Scanner<'a> {
     }
 
     /// Takes a number: sign, digits, point, digits, exponent (`EX`).
-    #[inline]
+    #[inline(always)]
     pub fn constant(&mut self) -> Fallible<f64> {
         let start = self.at;
         let negative = self.peek() == b'-';
@@ -275,7 +275,7 @@ impl<'a> Scanner<'a> {
         let mut digits = 0;
         let mut decimals = 0;
         let mut point = false;
-        for &byte in self.source.text.get(self.at..).unwrap_or(&[]) {
+        while let Some(&byte) = self.source.text.get(self.at) {
             match byte {
                 b'0'..=b'9' => {
                     mantissa = mantissa.wrapping_mul(10).wrapping_add(u64::from(byte - b'0'));
@@ -285,8 +285,8 @@ impl<'a> Scanner<'a> {
                 b'.' if !point => point = true,
                 _ => break,
             }
+            self.at += 1;
         }
-        self.at += digits + usize::from(point);
         if digits == 0 {
             return Err(self.error_here("number", "a number is missing here"));
         }
