@@ -9,6 +9,7 @@
 //! as [`program::Orientation::Rotary`]; vectors and tilted planes resolved into the work frame as
 //! [`program::Orientation::Axis`]. Kinematics are not this crate's business.
 
+mod compensation;
 mod decimal;
 mod flow;
 mod folders;
@@ -17,6 +18,7 @@ mod klartext;
 mod points;
 mod sinumerik;
 
+use compensation::Compensator;
 use geom::Vec3;
 use program::{Diagnostic, Record};
 use std::path::PathBuf;
@@ -209,6 +211,20 @@ pub fn read(
         Dialect::Points => points::run,
         _ => iso::run,
     };
-    run(settings, text, sink)
-        .map_err(|d| if d.file.is_empty() { d.file(file_name).into() } else { d })
+    let mut compensator = Compensator::new(settings, sink);
+    run(settings, text, &mut compensator)
+        .and_then(|()| compensator.finish())
+        .map_err(|d| if d.file.is_empty() { shown(*d, text).file(file_name).into() } else { d })
+}
+
+/// With the block that it is about, where only its line is known.
+fn shown(found: Diagnostic, text: &[u8]) -> Diagnostic {
+    let line = found.line;
+    if line == 0 || found.column > 0 || !found.excerpt.is_empty() {
+        return found;
+    }
+    match text.split(|&byte| byte == b'\n').nth(line as usize - 1) {
+        Some(block) => found.at(line, block, 0, block.trim_ascii_end().len()),
+        None => found,
+    }
 }

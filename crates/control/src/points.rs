@@ -4,7 +4,8 @@
 //! The first point is where the wire is threaded; it cuts to each that follows, and is cut at the last.
 //! Nothing else can be said: `docs/controls/points.md`.
 
-use crate::{Settings, Sink, decimal};
+use crate::compensation::Compensator;
+use crate::{Settings, decimal};
 use geom::{Vec3, direction};
 use program::{Diagnostic, Op, Pose, Record};
 
@@ -14,7 +15,7 @@ type Result<T> = std::result::Result<T, Box<Diagnostic>>;
 const MOST: usize = 4;
 
 /// Runs a list.
-pub(crate) fn run(settings: &Settings, text: &[u8], sink: &mut Sink) -> Result<()> {
+pub(crate) fn run(settings: &Settings, text: &[u8], path: &mut Compensator) -> Result<()> {
     let text = text.strip_suffix(b"\n").unwrap_or(text);
     let mut width = 0;
     let mut last = 0;
@@ -29,7 +30,7 @@ pub(crate) fn run(settings: &Settings, text: &[u8], sink: &mut Sink) -> Result<(
         }
         (width, last) = (count, line.number);
         let pose = line.pose(values, count, settings.wire.height)?;
-        let mut tell = |op| sink(Record { line: line.number, op });
+        let mut tell = |op| path.take(Record { line: line.number, op });
         if index == 0 {
             tell(Op::Rapid(pose))?;
             tell(Op::ThreadWire)?;
@@ -37,8 +38,8 @@ pub(crate) fn run(settings: &Settings, text: &[u8], sink: &mut Sink) -> Result<(
             tell(Op::Line(pose))?;
         }
     }
-    sink(Record { line: last, op: Op::CutWire })?;
-    sink(Record { line: last, op: Op::End })
+    path.take(Record { line: last, op: Op::CutWire })?;
+    path.take(Record { line: last, op: Op::End })
 }
 
 /// A line of a list.

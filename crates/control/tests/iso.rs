@@ -453,22 +453,26 @@ fn inches_are_25_4_mm() {
 }
 
 #[test]
-fn compensation_starts_with_a_linear_move_in_the_plane() {
+fn compensation_starts_with_a_linear_move() {
     for (dialect, words) in [(FANUC, "G41 D7"), (LINUXCNC, "G41 D7")] {
         let program =
             format!("G0 X0 Y0 Z0\nG1 F9\n{words}\nZ-1.\nX5.\nG2 X15. Y0 I5.\nG40\nG1 Z5.\nX20.\n");
         let got = ops_3(dialect, &program);
         let start = got.iter().position(|op| *op == Op::Compensation(Compensation::Left(Some(7))));
         let end = got.iter().position(|op| *op == Op::Compensation(Compensation::Off));
-        assert_eq!(got[start.unwrap() + 1], Op::Line(at(5.0, 0.0, -1.0)));
-        assert_eq!(got[end.unwrap() + 1], Op::Line(at(20.0, 0.0, 5.0)));
+        // LinuxCNC switches with any straight move, FANUC with one in the plane.
+        let (first, last) = match dialect {
+            LINUXCNC => (at(0.0, 0.0, -1.0), at(15.0, 0.0, 5.0)),
+            _ => (at(5.0, 0.0, -1.0), at(20.0, 0.0, 5.0)),
+        };
+        assert_eq!(got[start.unwrap() + 1], Op::Line(first));
+        assert_eq!(got[end.unwrap() + 1], Op::Line(last));
         for wrong in [
             "G41 D1 G2 X10. I5.",
             "G1 G41 D1 X5.\nG40 G2 X15. I5.",
             "G1 G41 D1 X5.\nG28 Z9.",
             "G1 G41 D1 X5.\nG18",
             "G1 G41 D1 X5.\nG98 G81 Z-5. R-2.",
-            "G18 G41 D1",
             "G1 G41 D1 X5.\nT1 M6",
         ] {
             let program = format!("G0 X0 Y0 Z0\nF9 {wrong}\n");
@@ -476,6 +480,8 @@ fn compensation_starts_with_a_linear_move_in_the_plane() {
         }
     }
     assert_eq!(rule(FANUC, "G41 X1.\n"), "nc-compensation");
+    // In another plane than the tool's it must be resolved, and the tool is not known here.
+    assert_eq!(rule(FANUC, "G18 G0 X0 Y0 Z0\nG41 D1 X9.\n"), "compensation-plane");
 }
 
 #[test]

@@ -143,6 +143,7 @@ fn marlin_dwells_homes_and_ends_in_its_own_way() {
         Op::Home(7),
         Op::Spindle(Spindle::Clockwise(1000.0)),
         Op::Spindle(Spindle::Off),
+        Op::End,
     ];
     assert_eq!(got, expected);
     for word in ["M2", "M30", "M6", "M106", "G81", "G43", "G41", "G10", "G5", "G93"] {
@@ -156,7 +157,7 @@ fn marlin_dwells_homes_and_ends_in_its_own_way() {
 fn grbl_writes_offsets_homes_and_probes() {
     let got = ops(
         Dialect::Grbl,
-        "G21 G90\nG10 L2 P1 X1 Y1 Z1\nG0 X1 Y1 Z1\nG10 L2 P1 X3\nX1\nG10 L20 P0 X0\nX1\nG92 Z0\nZ1\nG92.1\nZ1\n",
+        "G21 G90\nG92.1\nG10 L2 P1 X1 Y1 Z1\nG0 X1 Y1 Z1\nG10 L2 P1 X3\nX1\nG10 L20 P0 X0\nX1\nG92 Z0\nZ1\nG92.1\nZ1\n",
     );
     are(
         &points(&got),

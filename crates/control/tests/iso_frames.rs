@@ -48,9 +48,14 @@ const START: &str = "G90 G0 X0 Y0 Z0\n";
 #[test]
 fn g52_moves_the_zero_and_is_not_added_up() {
     for dialect in [Dialect::Fanuc, Dialect::Haas, Dialect::Mach3] {
+        // Mach3 keeps G52 where G92 is, which may hold something: it is cleared first.
+        let clear = if dialect == Dialect::Mach3 { "G92.1\n" } else { "" };
         goes_to(
             dialect,
-            "G90 G0 X0 Y0 Z0\nG52 X10. Y5.\nX1. Y1.\nG52 X20.\nX1.\nG91 X1.\nG90 G52 X0 Y0\nX1. Y1.\n",
+            &format!(
+                "{clear}G90 G0 X0 Y0 Z0\nG52 X10. Y5.\nX1. Y1.\nG52 X20.\nX1.\nG91 X1.\n\
+                 G90 G52 X0 Y0\nX1. Y1.\n"
+            ),
             &[[0.0; 3], [11.0, 6.0, 0.0], [21.0, 6.0, 0.0], [22.0, 6.0, 0.0], [1.0, 1.0, 0.0]],
         );
     }
@@ -72,6 +77,21 @@ fn g92_says_where_the_tool_stands() {
     }
     let marlin = ["G90", "G0 X30 Y20 Z5", "G92 X0", "G0 X1"].join("\n");
     goes_to(Dialect::Marlin, &marlin, &[[30.0, 20.0, 5.0], [31.0, 20.0, 5.0]]);
+}
+
+#[test]
+fn what_g92_held_before_the_program_is_not_known() {
+    for dialect in [Dialect::LinuxCnc, Dialect::Mach3, Dialect::Grbl] {
+        // LinuxCNC keeps G92 from one program to the next ("G92 Persistence Cautions").
+        let cleared = "G90 G0 X1 Y1 Z1\nG92.1\n";
+        assert_eq!(ops(dialect, cleared).len(), 1);
+        assert_eq!(rule(dialect, &format!("{cleared}X1\n")), "nc-unknown-shift");
+        goes_to(
+            dialect,
+            "G92.1\nG90 G0 X1 Y1 Z1\nG92 X0\nG92.1\nX2\n",
+            &[[1.0; 3], [2.0, 1.0, 1.0]],
+        );
+    }
 }
 
 #[test]
@@ -159,6 +179,8 @@ fn g68_turns_about_its_centre() {
             rule(dialect, "G0 X0 Y0 Z0\nG68 X0 Y0 R45.\nX5. Y5.\nG69\nG91 X1.\n"),
             "nc-frame"
         );
+        // Also where the plane is another one by then.
+        assert_eq!(rule(dialect, "G0 X0 Y0 Z0\nG18 G68 X0 Z0 R45.\nG17 Z5.\n"), "nc-frame");
         // Z moves on as it is.
         goes_to(
             dialect,

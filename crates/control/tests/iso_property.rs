@@ -1,12 +1,13 @@
-//! Random legal ISO programs in all three flavours, written by the small writer of this file, and
-//! random words.
+//! Random legal ISO programs in the flavours that write them alike, written by the small writer of this
+//! file, and random words in all flavours.
 
 use geom::Vec3;
 use program::{Op, Record};
 use proptest::prelude::*;
-use toolpost_control::{Dialect, Settings, read};
+use toolpost_control::{Dialect, Settings, Setup, read};
 
-const FLAVORS: [Dialect; 3] = [Dialect::Fanuc, Dialect::LinuxCnc, Dialect::Grbl];
+const FLAVORS: [Dialect; 5] =
+    [Dialect::Fanuc, Dialect::Haas, Dialect::LinuxCnc, Dialect::Mach3, Dialect::Grbl];
 
 fn run(dialect: Dialect, text: &str) -> Result<Vec<Record>, Box<program::Diagnostic>> {
     let settings = Settings::new(dialect, [true, false, true]);
@@ -190,10 +191,12 @@ proptest! {
 
     #[test]
     fn any_words_are_refused_or_run_but_never_panic(
+        known in any::<bool>(),
         blocks in prop::collection::vec(
-            prop::collection::vec((prop::sample::select(&b"ABCDFGHIJKLMNOPQRSTXYZ/(;%#"[..]), prop_oneof![
+            prop::collection::vec((prop::sample::select(LETTERS), prop_oneof![
                 Just(String::new()),
-                (0..100u32).prop_map(|n| n.to_string()),
+                (0..200u32).prop_map(|n| n.to_string()),
+                (0..2000u32).prop_map(|n| format!("{}.{}", n / 10, n % 10)),
                 (-99_999..99_999i64).prop_map(written),
             ]), 0..6),
             0..20,
@@ -203,10 +206,125 @@ proptest! {
             words.iter().map(|(letter, number)| format!("{}{number}", char::from(*letter))).collect()
         };
         let text: String = blocks.iter().map(|words| line(words) + "\n").collect();
-        for dialect in FLAVORS {
-            if let Err(error) = run(dialect, &text) {
+        let setup = Setup { start: known.then_some(Vec3::ZERO), ..Setup::default() };
+        for dialect in FLAVORS.into_iter().chain([Dialect::Marlin]) {
+            let settings = Settings { setup: setup.clone(), ..Settings::new(dialect, [true; 3]) };
+            if let Err(error) = read(&settings, "t.nc", text.as_bytes(), &mut |_| Ok(())) {
                 prop_assert!(error.line > 0 && !error.message.is_empty());
             }
         }
     }
+
+    /// Legal blocks one after the other get farther than random words.
+    #[test]
+    fn any_blocks_are_refused_or_run_but_never_panic(
+        blocks in prop::collection::vec(prop::sample::select(BLOCKS), 1..12)
+    ) {
+        let text = format!("G21\nG90\nS100 M3\nF100\nG0 X1. Y2. Z30.\n{}\n", blocks.join("\n"));
+        let setup = Setup { start: Some(Vec3::ZERO), ..Setup::default() };
+        for dialect in FLAVORS.into_iter().chain([Dialect::Marlin]) {
+            let settings = Settings { setup: setup.clone(), ..Settings::new(dialect, [true; 3]) };
+            // What a flavour does not know is left out, so that the rest is tried.
+            let mut kept: Vec<&str> = text.lines().collect();
+            while let Err(error) = read(&settings, "t.nc", kept.join("\n").as_bytes(), &mut |_| Ok(())) {
+                let line = error.line as usize;
+                prop_assert!((1..=kept.len()).contains(&line), "{error}");
+                kept.remove(line - 1);
+            }
+        }
+    }
 }
+
+/// What a word may begin with.
+const LETTERS: &[u8] = b"ABCDEFGHIJKLMNOPQRSTUVWXYZ/(;%#@^$[";
+
+/// Blocks that mean something to one flavour or another.
+const BLOCKS: &[&str] = &[
+    "G1 X5. Y6.",
+    "G0 Z-3.",
+    "G2 X10. Y2. R20.",
+    "G3 I5. J0.",
+    "G91",
+    "G90",
+    "G17",
+    "G18",
+    "G19",
+    "G7",
+    "G8",
+    "G10 L2 P1 X5. Y5.",
+    "G10 L2 P2 X5. R30.",
+    "G10 L20 P1 X0 Z1.",
+    "G10 L20 P2 X0",
+    "G10 L1 P1 Z20.",
+    "G10 L10 P1 R20.",
+    "G92 X0 Y0",
+    "G92.1",
+    "G92.2",
+    "G92.3",
+    "G52 X5. Y5.",
+    "G54",
+    "G55",
+    "G59.3",
+    "G54.1 P5",
+    "G154 P5",
+    "G68 X1. Y1. R30.",
+    "G68 A1 B1 R30",
+    "G69",
+    "G51 X0 Y0 Z0 P2.",
+    "G51 X2 Y2",
+    "G50",
+    "G51.1 X5.",
+    "G50.1 X0",
+    "G101 X0",
+    "G100 X0",
+    "G16",
+    "G15",
+    "X10. Y30.",
+    "@10 ^30",
+    "^60",
+    "G98",
+    "G99",
+    "G81 X1. Y1. Z-5. R2.",
+    "G83 X2. Z-5. R2. Q1.",
+    "G84 X3. Z-5. R2.",
+    "G88 X3. Z-5. R2. P1",
+    "X5. L3",
+    "X5. K3",
+    "G70 I5. J0 L6",
+    "G72 I5. J30. L6",
+    "G80",
+    "G12 I5",
+    "G28 X0",
+    "G28.1",
+    "G29 X1. Z1.",
+    "G30 Z0",
+    "G31 Z-5.",
+    "G33 Z-9. K1.",
+    "G33 Z-9. F1.",
+    "G33.1 Z-9. K1.",
+    "G38.2 Z-9.",
+    "G5 X9. Y9. I1. J2. P-3. Q0",
+    "G5.1 X9. Y9. I1. J2.",
+    "G41 D1",
+    "G40",
+    "G43 H1",
+    "G43.1 Z5.",
+    "G43.4 H1",
+    "G49",
+    "G53 G0 X0",
+    "G60 X5.",
+    "G68.2 X0 Y0 Z0 I0 J45. K0",
+    "G53.1",
+    "G93 F2.",
+    "G94 F100.",
+    "A30. C20.",
+    "T1 M6",
+    "M61 Q2",
+    "M7",
+    "M8",
+    "M9",
+    "M19",
+    "M5",
+    "M3",
+    "M0",
+];

@@ -380,9 +380,14 @@ L X+1 Y+2 Z+3",
 #[test]
 fn the_seeds_of_the_fuzz_target_are_legal_programs() {
     let seeds = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds/klartext");
-    for (name, rotary) in
-        [("milling.h", [false; 3]), ("drilling.h", [false; 3]), ("tilted.h", FIVE_AXES)]
-    {
+    for (name, rotary) in [
+        ("milling.h", [false; 3]),
+        ("drilling.h", [false; 3]),
+        ("flow.h", [false; 3]),
+        ("contour.h", [false; 3]),
+        ("frames.h", [false; 3]),
+        ("tilted.h", FIVE_AXES),
+    ] {
         let text = std::fs::read(seeds.join(name)).unwrap();
         let records = read_on(rotary, &text).unwrap_or_else(|error| panic!("{name}: {error}"));
         assert_eq!(records.last().unwrap().op, Op::End);

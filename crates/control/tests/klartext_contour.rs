@@ -175,25 +175,37 @@ fn right() -> Vec3 {
 fn a_line_in_the_direction_of_the_contour_leads_to_it() {
     // Manual, APPR LT: LEN 15 back along (1, 1) from (20, 20).
     let ops = path("L X+40 Y+10 FMAX\nAPPR LT X+20 Y+20 Z-10 LEN15 RR F100\nL X+35 Y+35");
+    // The tool of radius 5 is to the right of it from the auxiliary point on.
     let back = 20.0 - 15.0 * 0.5f64.sqrt();
+    let right = |at: f64, z| [at + 12.5f64.sqrt(), at - 12.5f64.sqrt(), z];
     assert_near(
         &points(&ops)[1..],
-        &[[back, back, -5.0], [back, back, -10.0], [20.0, 20.0, -10.0], [35.0, 35.0, -10.0]],
+        &[right(back, -5.0), right(back, -10.0), right(20.0, -10.0), right(35.0, -10.0)],
     );
-    // Rapid to the auxiliary point, as the positioning before; compensated from there on.
-    assert_eq!(ops[1], Op::Compensation(Compensation::Right(None)));
-    assert!(matches!(ops[2], Op::Rapid(_)));
-    assert_eq!(ops[3], Op::Feed(Feed::PerMinute(100.0)));
+    // Rapid to the auxiliary point, as the positioning before.
+    assert!(matches!(ops[1], Op::Rapid(_)));
+    assert_eq!(ops[2], Op::Feed(Feed::PerMinute(100.0)));
+    // With a tool that is not in the table the contour is told, and that it is compensated.
+    let ops = run("TOOL CALL 5 Z S3000 F500\nL X+40 Y+10 Z-5 R0 FMAX\n\
+                   APPR LT X+20 Y+20 Z-10 LEN15 RR F100\nL X+35 Y+35");
+    let side = ops.iter().position(|op| *op == Op::Compensation(Compensation::Right(None)));
+    assert_near(&points(&ops[side.unwrap()..])[..1], &[[back, back, -5.0]]);
 }
 
 #[test]
 fn a_line_at_right_angles_leads_to_the_contour() {
-    // Manual, APPR LN: LEN 15 and the radius of the tool to the side of RR; compensated from PH on.
+    // Manual, APPR LN: LEN 15 and the radius of the tool, 5, to the side of RR; compensated from PH on.
     let ops = path("L X+40 Y+10 FMAX\nAPPR LN X+10 Y+20 Z-10 LEN15 RR F100\nL X+20 Y+35");
-    let away = v(10.0, 20.0, -5.0) + right() * 20.0;
-    assert_near(&points(&ops)[1..2], &[away.to_array()]);
-    let compensated = ops.iter().position(|op| matches!(op, Op::Compensation(_))).unwrap();
-    assert_near(&points(&ops[compensated..]), &[[10.0, 20.0, -10.0], [20.0, 35.0, -10.0]]);
+    let beside = |x: f64, y: f64, z: f64, by: f64| (v(x, y, z) + right() * by).to_array();
+    assert_near(
+        &points(&ops)[1..],
+        &[
+            beside(10.0, 20.0, -5.0, 20.0),
+            beside(10.0, 20.0, -10.0, 20.0),
+            beside(10.0, 20.0, -10.0, 5.0),
+            beside(20.0, 35.0, -10.0, 5.0),
+        ],
+    );
 }
 
 #[test]
@@ -204,9 +216,11 @@ fn an_arc_leads_to_the_contour() {
         let ops = path(&format!(
             "L X+40 Y+10 FMAX\nAPPR CT X+10 Y+20 Z-10 CCA180 R{sign}10 RR F100\nL X+20 Y+35"
         ));
+        // The tool of radius 5 runs inside the one and outside the other.
         let contour = v(10.0, 20.0, -10.0);
-        let before = contour + right() * (20.0 * side);
-        assert_near(&points(&ops)[2..4], &[before.to_array(), contour.to_array()]);
+        let before = contour + right() * (20.0 * side - 5.0);
+        let beside = contour + right() * 5.0;
+        assert_near(&points(&ops)[2..4], &[before.to_array(), beside.to_array()]);
         let arc = arcs(&ops)[0];
         assert!(arc.center.distance(contour + right() * (10.0 * side)) < 1e-9);
         assert_eq!(arc.normal, normal);
@@ -218,37 +232,35 @@ fn a_line_and_an_arc_lead_to_the_contour() {
     // The contour goes along X from the datum, the tool of radius 5 on its left; its center comes
     // straight down at X-5, which is where the circle of radius 10 - 5 about (0, 10) is touched.
     let ops = path("L X-5 Y+40 FMAX\nAPPR LCT X+0 Y+0 R10 RL F100\nL X+50");
-    assert_near(&points(&ops)[1..], &[[-10.0, 10.0, -5.0], [0.0, 0.0, -5.0], [50.0, 0.0, -5.0]]);
+    assert_near(&points(&ops)[1..], &[[-5.0, 10.0, -5.0], [0.0, 5.0, -5.0], [50.0, 5.0, -5.0]]);
     let arc = arcs(&ops)[0];
     assert!(arc.center.distance(v(0.0, 10.0, -5.0)) < 1e-9 && arc.normal == Vec3::Z);
-    assert_eq!(
-        ops[1..3],
-        [Op::Feed(Feed::PerMinute(100.0)), Op::Compensation(Compensation::Left(None))]
-    );
+    assert_eq!(ops[1], Op::Feed(Feed::PerMinute(100.0)));
     // Polar, and on the right: the mirror image.
     let ops = path("L X-5 Y-40 FMAX\nCC X-3 Y+0\nAPPR PLCT PR+3 PA+0 R10 RR F100\nL X+50");
-    assert_near(&points(&ops)[1..3], &[[-10.0, -10.0, -5.0], [0.0, 0.0, -5.0]]);
+    assert_near(&points(&ops)[1..3], &[[-5.0, -10.0, -5.0], [0.0, -5.0, -5.0]]);
 }
 
 #[test]
 fn departures_go_on_from_the_last_element() {
-    let contour = "L X+0 Y+0 RR F100\nL Y+20\n";
-    // Straight on by 12.5; the tool of radius 5 is then 5 to the right.
+    // To the contour from the side of the tool.
+    let contour = "L X+15 Y-20 R0 FMAX\nL X+0 Y-5 RR F100\nL Y+20\n";
+    // Straight on by 12.5, the tool of radius 5 on the right.
     let ops = path(&format!("{contour}DEP LT LEN12.5 F90\nL Z+100 FMAX"));
-    assert_near(&points(&ops)[2..], &[[0.0, 32.5, -5.0], [5.0, 32.5, 100.0]]);
+    assert_near(&points(&ops)[3..], &[[5.0, 32.5, -5.0], [5.0, 32.5, 100.0]]);
     let ops = path(&format!("{contour}DEP LN LEN20 F90\nL Z+100 FMAX"));
-    assert_near(&points(&ops)[2..], &[[25.0, 20.0, -5.0], [25.0, 20.0, 100.0]]);
+    assert_near(&points(&ops)[3..], &[[25.0, 20.0, -5.0], [25.0, 20.0, 100.0]]);
     // A half circle of radius 8 to the right: the tool's center ends 8 - 5 beyond its middle.
     let ops =
         path(&format!("{contour}DEP CT CCA 180 R+8 F90\nL Z+100 FMAX").replace("CCA ", "CCA"));
-    assert_near(&points(&ops)[2..], &[[16.0, 20.0, -5.0], [11.0, 20.0, 100.0]]);
+    assert_near(&points(&ops)[3..], &[[11.0, 20.0, -5.0], [11.0, 20.0, 100.0]]);
     assert_eq!(arcs(&ops)[0].normal, Vec3::NEG_Z);
     // An arc about (8, 20), then a line to the right at the height at which the center's circle of
     // radius 3 has its top.
     let ops = path(&format!("{contour}DEP LCT X+40 Y+23 R+8 F90"));
-    assert_near(&points(&ops)[2..], &[[8.0, 28.0, -5.0], [40.0, 23.0, -5.0]]);
-    let off = ops.iter().position(|op| *op == Op::Compensation(Compensation::Off)).unwrap();
-    assert!(matches!(ops[off - 1], Op::Arc(_)) && matches!(ops[off + 1], Op::Line(_)));
+    assert_near(&points(&ops)[3..], &[[8.0, 23.0, -5.0], [40.0, 23.0, -5.0]]);
+    let arc = ops.iter().position(|op| matches!(op, Op::Arc(_))).unwrap();
+    assert!(matches!(ops[arc + 1], Op::Line(_)));
 }
 
 #[test]

@@ -240,6 +240,10 @@ fn the_control_knows_its_own_parameters() {
 L X+Q108 Y+Q109 Z+Q110 FMAX\nM5\nM9\nL X+Q110 Y+Q111 Z+Q113 FMAX\nL X+Q114 FMAX",
     );
     assert_near(&points(&ops), &[[4.0, 2.0, 1.0], [3.0, 0.0, 0.0], [100.0, 0.0, 0.0]]);
+    // A tool that the program defines itself has its data.
+    let defined = "TOOL DEF 7 L+90 R+6\nTOOL CALL 7 Z\nL X+Q108 Y+Q114 Z+0 FMAX";
+    assert_near(&points(&run(defined)), &[[6.0, 90.0, 0.0]]);
+    assert_eq!(refused("TOOL DEF 7 R+6").rule, "missing-word");
     let system = "FN 18: SYSREAD Q1 = ID20 NR1\nFN 18: SYSREAD Q2 = ID270 NR1 IDX3
 FN 18: SYSREAD Q3 = ID210 NR2\nL X+Q1 Y+Q2 Z+Q3 FMAX";
     assert_near(&points(&run(&format!("{START}{system}")))[1..], &[[5.0, 50.0, 0.0]]);
@@ -347,4 +351,27 @@ fn functions_of_the_control_are_neutral_or_refused_with_a_reason() {
     let ops = run("TOOL CALL 5 Z S3000 F700\nL X+0 Y+0 Z+0 FMAX\nL X+1 F100\nL X+2 FAUTO");
     assert_eq!(ops.iter().filter(|op| **op == Op::Feed(Feed::PerMinute(700.0))).count(), 2);
     assert_eq!(refused("L X+1 FZ0.1").rule, "feed");
+}
+
+#[test]
+fn texts_end_at_their_longest() {
+    let long = "Q".repeat(200);
+    assert!(
+        run_on([false; 3], "MM", &format!("QS1 = \"{long}\"\nQS2 = QS1 || \"{}\"", "Q".repeat(55)))
+            .is_ok()
+    );
+    let error = refused(&format!("QS1 = \"{long}\"\nQS2 = QS1 || QS1"));
+    assert_eq!(error.rule, "parameter");
+    refused(&format!("QS1 = \"{long}\"\nQS2 = QS1{}", " || QS1".repeat(100_000)));
+}
+
+#[test]
+fn a_program_may_begin_at_a_place_that_is_known() {
+    let setup = toolpost_control::Setup {
+        start: Some(geom::Vec3::new(1.0, 2.0, 3.0)),
+        ..toolpost_control::Setup::default()
+    };
+    let text = program("T", "MM", "L IX+1 IZ-1 F100");
+    let records = read_with(setup, [false; 3], text.as_bytes()).unwrap();
+    assert_eq!(records[1].op.pose().unwrap().point.to_array(), [2.0, 2.0, 2.0]);
 }

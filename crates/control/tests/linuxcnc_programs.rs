@@ -64,16 +64,35 @@ fn difference_of(path: &Path) -> Option<Option<String>> {
     difference(&text, &folders(path))
 }
 
+/// The programs that differ, by the end of their path, and why (`docs/controls/linuxcnc.md`).
+const DIFFER: &[(&str, &str)] = &[
+    ("craftsman/macros/m106.ngc", "an endsub of another name, in a subroutine that is not called"),
+    ("ncfiles/lathe_g70_71_demo.ngc", "lathe cycles are refused"),
+    ("ncfiles/lathe_g7x_face_boring.ngc", "lathe cycles are refused"),
+    ("ncfiles/lathe_g7x_quadrants.ngc", "lathe cycles are refused"),
+    ("ncfiles/plasmatest.ngc", "an arc after M6, which may move the machine"),
+    ("ncfiles/smartprobe.ngc", "it steers by what the probe finds"),
+    ("ncfiles/x-trim.ngc", "it counts from where the probe stops"),
+    ("ncfiles/systems.ngc", "splines: other points of the same curve"),
+    ("switch/nc_files/tcdemo.ngc", "splines: other points of the same curve"),
+];
+
 #[test]
-fn every_program_of_linuxcnc_makes_the_same_moves() {
+fn every_program_of_linuxcnc_makes_the_same_moves_or_stands_in_the_list() {
     let programs = programs();
-    let mut differ = 0;
+    let reason = |path: &Path| DIFFER.iter().find(|(end, _)| path.ends_with(end));
+    let (mut differ, mut unexpected) = (0, String::new());
     for path in &programs {
         let Some(difference) = difference_of(path) else { return };
-        if let Some(difference) = difference {
-            differ += 1;
-            println!("### {}\n{difference}", path.display());
+        match (difference, reason(path)) {
+            (Some(_), Some(_)) => differ += 1,
+            (None, None) => {}
+            (Some(difference), None) => {
+                unexpected += &format!("### {}\n{difference}\n", path.display());
+            }
+            (None, Some((end, _))) => unexpected += &format!("### {end} agrees now\n"),
         }
     }
     println!("=== {} of {} programs agree", programs.len() - differ, programs.len());
+    assert!(unexpected.is_empty(), "{unexpected}");
 }

@@ -60,6 +60,9 @@ fn operators_functions_and_numbers() {
         "X[1+2*3-4/5] Y[2**3**2/10] Z[-7 MOD 3]",
         "X[1 EQ 1.00001] Y[1 NE 2] Z[2 GT 1]",
         "X[1 GE 2] Y[1 LT 2] Z[3 LE 2]",
+        // EQ and NE have a tolerance of 0.0001, GE and LE have none.
+        "X[1 EQ 1.00009] Y[1 EQ 1.00011] Z[1 NE 1.00009]",
+        "X[1 LE 0.99999] Y[1 GE 1.00001] Z[1 LE 1]",
         "X[2 AND 0 OR 1] Y[1 XOR 1] Z[1 OR 0 AND 0]",
         "X[1 + 2 EQ 3 AND 4 * 2 GT 7] Y[10 - 4 - 3] Z[8 / 4 / 2]",
         "X ABS[-3] Y ACOS[0.5] Z ASIN[0.5]",
@@ -88,7 +91,8 @@ fn parameters_are_numbered_named_indirect_and_set_together() {
             X[#<_feed>] Y[#<_coord_system>] Z[#<_call_level>]\nG55 X[#5220] Y[#<_coord_system>]",
     );
     agrees("G98\nG0 X[1+#<_retract_r_plane>] Y[1+#<_retract_old_z>]\nG99 X[3+#<_retract_r_plane>]");
-    agrees("T3 M6\nG0 X#5400 Y#<_current_tool> Z#5403\nX#5410");
+    agrees("#1=1 #2=0 F100\nG#2 X1\nG#1 X2\nG[90 + #1] X1\nN1 G#2 Y1 M[3+#2] S#1");
+    agrees("T3 M6\nG0 X#5400 Y#<_current_tool>");
     agrees("S500 M3\nG0 X#<_rpm> Y#<_spindle_on> Z#<_spindle_cw>\nX[5*#<_ccomp>] Y#<_tool_offset>");
     agrees(
         "G1 F10 X1\nG0 X[#<_motion_mode>]\nX[1+#<_motion_mode>]\nG80\nG0 Y1\n#1=#<_motion_mode>\nX#1",
@@ -165,6 +169,11 @@ fn modes_are_kept_and_brought_back() {
 }
 
 #[test]
+fn a_feed_beside_another_unit_is_in_the_old_one() {
+    agrees("G1 X1 F254\nX[#<_feed>]\nG20 F25.4 X1\nX[#<_feed>]\nG21 X1\nX[#<_feed>]");
+}
+
+#[test]
 fn what_does_not_hold_together_is_refused() {
     for text in [
         "o1 endif",
@@ -196,6 +205,7 @@ fn what_does_not_hold_together_is_refused() {
         "G0 X#1.5",
         "G0 XATAN[1]",
         "G0 XSIN 30",
+        "G[1.55] X1",
         "M[1.5]",
     ] {
         refused(text);
@@ -223,6 +233,7 @@ fn a_control_that_is_not_fresh_does_not_know_what_no_block_has_set() {
         ("G0 X#100\n", "no block has set #100"),
         ("G0 X1\n#1=#5421\n", "where Y stands is not known"),
         ("#1=#5221\n", "set up at the machine"),
+        ("#1=#5403\n", "the units of the machine"),
         ("#1=#5070\n", "known only at the machine"),
         ("#1=#<_hal[a.b]>\n", "known only at the machine"),
     ] {

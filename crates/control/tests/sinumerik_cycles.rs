@@ -192,3 +192,37 @@ fn a_cycle_that_cannot_be_right_is_refused() {
         assert_eq!(error(text).rule, rule, "{text}");
     }
 }
+
+#[test]
+fn patterns_are_drilled_by_the_modal_cycle() {
+    let places = |pattern: &str| -> Vec<(f64, f64)> {
+        let text = format!("MCALL CYCLE81(10,0,2,-15)\n{pattern}\nMCALL");
+        let holes = holes(&blocks(&text));
+        holes.iter().map(|(pose, _)| (pose.point.x, pose.point.y)).collect()
+    };
+    let near = |found: Vec<(f64, f64)>, expected: &[(f64, f64)]| {
+        assert_eq!(found.len(), expected.len());
+        for (a, b) in found.iter().zip(expected) {
+            assert!((a.0 - b.0).hypot(a.1 - b.1) < 1e-9, "{found:?} is not {expected:?}");
+        }
+    };
+    // From (0, 0) the first hole of the row is nearer, from (100, 0) the last.
+    near(places("HOLES1(10,5,90,5,20,3)"), &[(10.0, 10.0), (10.0, 30.0), (10.0, 50.0)]);
+    near(places("HOLES1(-50,0,180,0,-20,3)"), &[(-10.0, 0.0), (-30.0, 0.0), (-50.0, 0.0)]);
+    let quarter = [(20.0, 0.0), (10.0, 10.0), (0.0, 0.0), (10.0, -10.0)];
+    near(places("HOLES2(10,0,10,0,0,4)"), &quarter);
+    near(places("HOLES2(10,0,10,0,90,2)"), &quarter[..2]);
+    near(
+        places("CYCLE801(10,10,0,5,7,3,2)"),
+        &[(10.0, 10.0), (15.0, 10.0), (20.0, 10.0), (20.0, 17.0), (15.0, 17.0), (10.0, 17.0)],
+    );
+    for (text, rule) in [
+        ("HOLES1(10,5,90,5,20,3)", "cycle"),
+        ("MCALL CYCLE81(10,0,2,-15)\nHOLES1(10,5,90,5,20,0)", "cycle-parameter"),
+        ("MCALL CYCLE81(10,0,2,-15)\nHOLES2(0,0,0,0,0,4)", "cycle-parameter"),
+        ("MCALL CYCLE81(10,0,2,-15)\nCYCLE801(0,0,0,5,5,999,999)", "cycle-parameter"),
+        ("MCALL CYCLE81(10,0,2,-15)\nHOLES1(10,5,90,5,20,3,1)", "unsupported"),
+    ] {
+        assert_eq!(error(text).rule, rule, "{text}");
+    }
+}

@@ -170,6 +170,15 @@ impl<'a> Lift<'a> {
                 arc.end = self.cut(&arc.end)?;
                 self.arrive(line, Op::Arc(arc));
             }
+            Op::Thread(mut thread) => {
+                thread.end = self.cut(&thread.end)?;
+                self.arrive(line, Op::Thread(thread));
+            }
+            Op::Probe(pose) => {
+                let pose = self.cut(&pose)?;
+                self.here = None;
+                self.arrive(line, Op::Probe(pose));
+            }
             Op::Hole(pose) => {
                 let pose = self.pose(&pose);
                 if !known(&pose) {

@@ -48,6 +48,19 @@ fn the_sample_program_of_each_machine_is_as_it_was_read() {
     }
 }
 
+/// The files with cutter compensation.
+const COMPENSATED: &[&str] = &[
+    "plate.cls",
+    "Dem-target2.apt",
+    "Interface-glue.apt",
+    "Sacrifice-Board.apt",
+    "SupPetriLED.apt",
+    "Teflon-gasket.apt",
+    "Teste-Metrologia.apt",
+    "Top-light-cover.apt",
+    "basemach.apt",
+];
+
 /// What a machine cannot make, and why: the rule by which it refuses. Everything else is proven.
 const REFUSED: &[(&str, &[&str], &str)] = &[
     // The tool axis of these turns, or points elsewhere than up.
@@ -60,21 +73,8 @@ const REFUSED: &[(&str, &[&str], &str)] = &[
     ("sinumerik-840d-table-ac", &["Sacrifice-Board.apt"], "axis-limit"),
     ("dmu50-heidenhain", &["Sacrifice-Board.apt"], "unreachable-orientation"),
     // No compensation, no tapping.
-    (
-        "generic-3axis-grbl",
-        &[
-            "plate.cls",
-            "Dem-target2.apt",
-            "Interface-glue.apt",
-            "Sacrifice-Board.apt",
-            "SupPetriLED.apt",
-            "Teflon-gasket.apt",
-            "Teste-Metrologia.apt",
-            "Top-light-cover.apt",
-            "basemach.apt",
-        ],
-        "compensation",
-    ),
+    ("generic-3axis-grbl", COMPENSATED, "compensation"),
+    ("generic-3axis-marlin", COMPENSATED, "compensation"),
     // A small mill: 5000 1/min, ten tools, 150 mm in Y.
     ("emco-", &["dome.cls", "plate.cls", "Teste-Metrologia.apt"], "spindle-range"),
     ("emco-", &["coremill.cls"], "axis-limit"),

@@ -88,10 +88,6 @@ impl Step<'_, '_, '_> {
             let message = "radius compensation starts and ends on a straight move, not on an arc";
             return Err(self.block.whole("nc-compensation", message));
         }
-        if self.is_compensated() && self.state.plane.axes()[2] != 2 {
-            let message = "radius compensation with an arc out of the plane G17";
-            return Err(self.block.whole("nc-compensation", message));
-        }
         let [first, second, _] = self.state.plane.axes();
         let transform = &self.state.frames.transform;
         if transform.factor(first).abs() != transform.factor(second).abs() {

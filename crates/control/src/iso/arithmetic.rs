@@ -148,9 +148,9 @@ pub(super) fn ngc_binary(operator: Binary, left: f64, right: f64) -> Result<f64,
         Binary::Equal => truth(near),
         Binary::Unequal => truth(!near),
         Binary::Greater => truth(left > right),
-        Binary::GreaterOrEqual => truth(near || left >= right),
+        Binary::GreaterOrEqual => truth(left >= right),
         Binary::Less => truth(left < right),
-        Binary::LessOrEqual => truth(near || left <= right),
+        Binary::LessOrEqual => truth(left <= right),
     })
 }
 

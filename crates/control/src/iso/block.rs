@@ -46,6 +46,8 @@ pub(super) struct Block<'a> {
     pub m_count: u32,
     /// A word has been read.
     started: bool,
+    /// A macro is called: the words that follow are its arguments.
+    calls: bool,
     words: [Word; LETTERS.len()],
     given: u32,
     pending: u32,
@@ -72,6 +74,7 @@ impl<'a> Block<'a> {
             is_empty: true,
             m_count: 0,
             started: false,
+            calls: false,
             words: [Word::default(); LETTERS.len()],
             given: 0,
             pending: 0,
@@ -87,7 +90,7 @@ impl<'a> Block<'a> {
     /// Forgets the words of the last block; `text` is the new one.
     pub(super) fn clear(&mut self, line: u32, text: &'a [u8]) {
         (self.text, self.line) = (text, line);
-        (self.is_empty, self.started) = (true, false);
+        (self.is_empty, self.started, self.calls) = (true, false, false);
         (self.m_count, self.given, self.pending) = (0, 0, 0);
         self.g = [None; Group::COUNT];
         self.m = [None; Group::COUNT];
@@ -186,14 +189,9 @@ impl<'a> Block<'a> {
             }
         };
         word.end = u32::try_from(end).unwrap_or(u32::MAX);
-        let calls = matches!(self.g(Group::Macro), Some(G::MacroCall { .. }));
-        match letter {
-            b'N' | b'P' | b'L' | b'G' => {}
-            _ if calls => {
-                self.arguments.push((letter, word));
-                return Ok(end);
-            }
-            _ => {}
+        if self.calls && !matches!(letter, b'N' | b'P' | b'L' | b'G') {
+            self.arguments.push((letter, word));
+            return Ok(end);
         }
         match letter {
             b'G' => match dictionary.g(word.value) {
@@ -202,6 +200,7 @@ impl<'a> Block<'a> {
                         return Err(self.same_group(group, at, end));
                     }
                     self.places[group as usize] = word;
+                    self.calls |= matches!(meaning, G::MacroCall { .. });
                 }
                 None => return Err(self.unknown(letter, word)),
             },
@@ -495,6 +494,7 @@ impl<'a> Block<'a> {
             }
             b'#' => "a variable is set at the start of a block that has nothing else".to_owned(),
             b'[' | b']' | b'=' => "an expression without its word".to_owned(),
+            b'$' => "commands of the console ($) are no part of a program".to_owned(),
             b'%' => "% stands alone on its line".to_owned(),
             b';' => "; does not begin a comment here; write ( )".to_owned(),
             b'0'..=b'9' | b'.' | b'+' | b'-' => "a number without its letter".to_owned(),

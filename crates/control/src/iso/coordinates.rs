@@ -11,6 +11,9 @@ use geom::{Frame, Mat3, Vec3};
 /// The letters of the axes, in the order of [`Six`].
 const AXES: [u8; 6] = *b"XYZABC";
 
+/// How many work offsets Mach3 has.
+const MACH3_OFFSETS: u32 = 254;
+
 impl Step<'_, '_, '_> {
     /// `G92` and its kin, `G52`, `G10`.
     pub(super) fn coordinates(&mut self, word: G) -> Result<(), Fault> {
@@ -44,9 +47,11 @@ impl Step<'_, '_, '_> {
                 self.reframe();
             }
             G::CancelShift { keep } => {
-                let shifted = self.state.frames.unshift(keep);
-                self.known(shifted)?;
+                let known = self.state.frames.unshift(keep);
                 self.reframe();
+                if !known {
+                    self.state.position = UNKNOWN;
+                }
             }
             _ => {
                 let shifted = self.state.frames.restore();
@@ -72,7 +77,7 @@ impl Step<'_, '_, '_> {
             let message = "by how much this moves the zero depends on what stands in the control";
             self.block
                 .at_group(Group::OneShot, "nc-unknown-shift", message)
-                .help("give the position in G90 first, or write the offset before the first move")
+                .help("write the offset, or clear G92, before the first move")
                 .into()
         })
     }
@@ -130,8 +135,15 @@ impl Step<'_, '_, '_> {
 
     /// `G54` and the others.
     pub(super) fn work_offset(&mut self) -> Result<(), Fault> {
-        let Some(G::WorkOffset(base)) = self.block.g(Group::WorkOffset) else { return Ok(()) };
-        let number = self.offset_number(base)?;
+        let number = match self.block.g(Group::WorkOffset) {
+            Some(G::FurtherOffset { most }) => 59 + self.further_offset(most)?,
+            // The first six of Mach3 are G54 to G59.
+            Some(G::WorkOffset(59)) if self.flavor == Flavor::Mach3 && self.block.has(b'P') => {
+                53 + self.further_offset(MACH3_OFFSETS)?
+            }
+            Some(G::WorkOffset(number)) => number,
+            _ => return Ok(()),
+        };
         if self.state.work_offset == Some(number) {
             return Ok(());
         }
@@ -144,27 +156,16 @@ impl Step<'_, '_, '_> {
             self.state.position = self.state.place.programmed(frames.of_machine(machine));
         }
         self.state.work_offset = Some(number);
-        self.ops.push(program::Op::WorkOffset(place(number)));
+        self.ops.push(program::Op::WorkOffset(number));
         Ok(())
     }
 
-    /// The number by which an offset is kept here: `G54` is 54, `G59.1` 591, `G54.1 P7` 54 107, Haas
-    /// `G154 P7` 154 007.
-    fn offset_number(&mut self, base: u32) -> Result<u32, Fault> {
-        let (least, most, from) = match (base, self.flavor) {
-            (541, _) => (1, 300, 54_100),
-            (154, _) => (1, 99, 154_000),
-            (59, Flavor::Mach3) if self.block.has(b'P') => (1, 254, 59_000),
-            (110..=129, _) => return Ok(154_000 + base - 109),
-            _ => return Ok(base),
-        };
-        let number = self.take_whole(b'P')?;
-        match number {
-            // The first six of Mach3 are G54 to G59.
-            Some(number @ 1..=6) if from == 59_000 => Ok(53 + number),
-            Some(number) if (least..=most).contains(&number) => Ok(from + number),
+    /// The P that names one of `most` work offsets.
+    fn further_offset(&mut self, most: u32) -> Result<u32, Fault> {
+        match self.take_whole(b'P')? {
+            Some(number) if (1..=most).contains(&number) => Ok(number),
             _ => {
-                let message = format!("the additional work offset is named by P{least} to P{most}");
+                let message = format!("the work offset is named by P1 to P{most}");
                 Err(self.block.at_group(Group::WorkOffset, "nc-work-offset", message))
             }
         }
@@ -196,10 +197,11 @@ impl Step<'_, '_, '_> {
         let active = self.state.frames.active();
         let number = match (self.flavor, kind, which) {
             (Flavor::LinuxCnc | Flavor::Grbl, _, Some(0)) => Some(active),
-            (Flavor::LinuxCnc, _, Some(p @ 7..=9)) => Some(584 + p),
-            (Flavor::Fanuc, 20, Some(p @ 1..=300)) => Some(54_100 + p),
-            (Flavor::Haas, 20, Some(p @ 1..=99)) => Some(154_000 + p),
-            (Flavor::Mach3, 2, Some(p @ 7..=254)) => Some(59_000 + p),
+            (Flavor::LinuxCnc, _, Some(p @ 7..=9)) => Some(53 + p),
+            (Flavor::Fanuc, 20, Some(p @ 1..=300)) | (Flavor::Haas, 20, Some(p @ 1..=99)) => {
+                Some(59 + p)
+            }
+            (Flavor::Mach3, 2, Some(p @ 7..=MACH3_OFFSETS)) => Some(53 + p),
             (Flavor::Fanuc | Flavor::Haas | Flavor::Mach3, 20, _) => None,
             (_, _, Some(p @ 1..=6)) => Some(53 + p),
             _ => None,
@@ -474,17 +476,5 @@ impl Step<'_, '_, '_> {
     /// `G43.4` keeps the tool centre point.
     pub(super) fn keeps_center(&self) -> bool {
         matches!(self.state.length, Length::Center(_))
-    }
-}
-
-/// The place of an offset among those that the control can set, as the neutral program counts them:
-/// 54 is `G54`, 59 `G59`; behind it come `G59.1`, `G54.1 P1`, `G154 P1`.
-fn place(number: u32) -> u32 {
-    match number {
-        591..=593 => number - 531,
-        54_101..=54_400 => number - 54_041,
-        154_001..=154_099 => number - 153_941,
-        59_007..=59_254 => number - 58_947,
-        _ => number,
     }
 }

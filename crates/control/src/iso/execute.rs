@@ -3,7 +3,7 @@
 use super::arithmetic;
 use super::block::{Block, Fault};
 use super::state::State;
-use super::words::{FeedMode, Flavor, G, Group, M, Motion, Side};
+use super::words::{FeedMode, Flavor, G, Group, M, Motion, Plane, Side};
 use crate::{Settings, WholeNumbers};
 use program::{Coolant, Feed, Op, Spindle};
 
@@ -80,7 +80,10 @@ impl Step<'_, '_, '_> {
             return Ok(());
         }
         self.state.motion = None;
-        if self.block.commands() + usize::from(self.block.has(b'T')) > 1 {
+        // G53 stands before the move that it is for.
+        let others = self.block.g(Group::OneShot) == Some(G::Machine);
+        let commands = self.block.commands() + usize::from(self.block.has(b'T'));
+        if commands > 1 + usize::from(others) {
             let message = "this control takes one command a line";
             return Err(self.block.whole("nc-many-commands", message));
         }
@@ -127,6 +130,7 @@ impl Step<'_, '_, '_> {
         let Some(word) = self.block.take(b'F') else { return Ok(()) };
         if let Some(G::Inches(inches)) = self.block.g(Group::Units)
             && self.state.inches != Some(inches)
+            && (self.flavor != Flavor::LinuxCnc || self.state.inches.is_none())
         {
             let message = "F in the block that changes the units: controls differ in which it is";
             return Err(self.block.at_word(b'F', "nc-feed", message));
@@ -134,6 +138,7 @@ impl Step<'_, '_, '_> {
         if word.value <= 0.0 {
             return Err(self.block.at_word(b'F', "nc-feed", "the feed must be greater than 0"));
         }
+        self.state.f = Some(word.value);
         let feed = match self.state.feed_mode {
             FeedMode::PerMinute => Feed::PerMinute(word.value * self.unit(b'F')?),
             FeedMode::PerTurn => Feed::PerTurn(word.value * self.unit(b'F')?),
@@ -309,8 +314,8 @@ impl Step<'_, '_, '_> {
             }
             self.state.inches = Some(inches);
         }
-        if let Some(G::Compensation(side)) = self.block.g(Group::Compensation) {
-            self.compensation(side)?;
+        if let Some(g) = self.block.g(Group::Compensation) {
+            self.compensation(g)?;
         }
         self.length()?;
         self.work_offset()?;
@@ -333,22 +338,37 @@ impl Step<'_, '_, '_> {
         self.transforms()
     }
 
-    fn compensation(&mut self, side: Side) -> Result<(), Fault> {
-        let mut register = None;
-        if side != Side::Off {
+    /// `G40` to `G42` with the register D; LinuxCNC's `G41.1`, `G42.1` with D as the diameter.
+    fn compensation(&mut self, g: G) -> Result<(), Fault> {
+        let refused = |step: &Self, message: String| {
+            Err(step.block.at_group(Group::Compensation, "nc-compensation", message))
+        };
+        let (side, mut register, radius) = match g {
+            G::Compensation(side) => (side, None, None),
+            G::DynamicCompensation(side) => match self.take_length(b'D')? {
+                Some(diameter) => (side, None, Some(diameter / 2.0)),
+                None => return refused(self, "G41.1 and G42.1 need the diameter D".into()),
+            },
+            _ => return Ok(()),
+        };
+        if self.flavor == Flavor::LinuxCnc && side != Side::Off {
+            if self.state.compensation.is_on() {
+                return refused(self, "compensation is on already: G40 first".into());
+            }
+            if self.state.plane == Plane::Yz {
+                return refused(self, "LinuxCNC compensates in the planes G17 and G18 only".into());
+            }
+        }
+        if side != Side::Off && radius.is_none() {
             register = self.take_whole(self.flavor.radius_letter())?;
             self.radius_is_set_up(register)?;
             if register.is_none() && self.flavor.is_fanuc() {
                 let letter = char::from(self.flavor.radius_letter());
-                let message = format!("G41 and G42 need their register {letter}");
-                return Err(self.block.at_group(Group::Compensation, "nc-compensation", message));
-            }
-            if self.state.plane.axes()[2] != 2 {
-                let message = "the tool radius lies in the plane G17 only";
-                return Err(self.block.at_group(Group::Compensation, "nc-compensation", message));
+                return refused(self, format!("G41 and G42 need their register {letter}"));
             }
         }
         self.state.compensation.asked = side.with(register);
+        self.state.compensation.radius = radius;
         Ok(())
     }
 

@@ -177,9 +177,11 @@ pub(super) struct Frames {
     turns_offsets: bool,
     /// `G92`.
     pub shift: Six,
-    /// What `G92.1` takes away beyond `shift`: NaN where `G92` has set the zero before any position
-    /// was known.
+    /// What `G92.1` takes away beyond `shift`: NaN where a shift of the program before may stand in the
+    /// control, or where `G92` has set the zero before any position was known.
     beyond: Six,
+    /// `G92.1` has taken away what is not known.
+    pub lost: bool,
     /// What `G92.3` brings back.
     stored: Option<Six>,
     /// `G52`.
@@ -199,7 +201,8 @@ impl Frames {
             untouched,
             turns_offsets,
             shift: [0.0; 6],
-            beyond: [0.0; 6],
+            beyond: [untouched; 6],
+            lost: false,
             stored: all_zero.then_some([0.0; 6]),
             local: [0.0; 6],
             transform: Transform::NONE,
@@ -291,8 +294,7 @@ impl Frames {
             let kept = |value: &f64| value.to_bits() == self.untouched.to_bits();
             !offset.origin.iter().all(kept) || offset.slide != [0.0; 6] || offset.turned != 0.0
         };
-        let shifted = self.shift != [0.0; 6] || self.beyond != [0.0; 6];
-        !shifted && !self.offsets.iter().any(written)
+        self.shift == [0.0; 6] && !self.offsets.iter().any(written)
     }
 
     /// The number of the active work offset.
@@ -426,28 +428,28 @@ impl Frames {
     /// `G52` on controls where it is kept where `G92` is.
     ///
     /// # Errors
-    /// The zero was set where the operator has brought the tool.
+    /// The program has moved, and what `G92` had set before is not known.
     pub(super) fn shift_to(&mut self, values: [Option<f64>; 6]) -> Result<(), Unknown> {
-        for ((shift, beyond), value) in self.shift.iter_mut().zip(self.beyond).zip(values) {
-            if let Some(value) = value {
-                *shift = value - beyond;
+        let used = self.is_used();
+        for ((shift, beyond), value) in self.shift.iter_mut().zip(&mut self.beyond).zip(values) {
+            let Some(value) = value else { continue };
+            if !used {
+                *beyond = 0.0;
             }
+            *shift = value - *beyond;
         }
         self.stored = Some(self.shift);
         if self.shift.iter().any(|v| v.is_nan()) { Err(Unknown) } else { Ok(()) }
     }
 
-    /// `G92.1` and, with `keep`, `G92.2`.
-    ///
-    /// # Errors
-    /// The program has moved, and `G92` had set the zero where the operator has brought the tool.
-    pub(super) fn unshift(&mut self, keep: bool) -> Result<(), Unknown> {
-        if self.beyond.iter().any(|v| v.is_nan()) {
-            return Err(Unknown);
-        }
-        self.stored = if keep { self.stored } else { Some([0.0; 6]) };
-        self.shift = [0.0; 6];
-        Ok(())
+    /// `G92.1` and, with `keep`, `G92.2`. Answers whether it is known what goes away.
+    pub(super) fn unshift(&mut self, keep: bool) -> bool {
+        let known = !self.beyond.iter().any(|v| v.is_nan());
+        self.lost |= !known && self.is_used();
+        let kept = if known { self.stored } else { None };
+        self.stored = if keep { kept } else { Some([0.0; 6]) };
+        (self.shift, self.beyond) = ([0.0; 6], [0.0; 6]);
+        known
     }
 
     /// `G92.3`.

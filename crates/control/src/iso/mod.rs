@@ -36,13 +36,25 @@ mod tools;
 mod wire;
 mod words;
 
-use crate::{Settings, Sink};
+use crate::compensation::Compensator;
+use crate::{Dialect, Settings};
 use block::Fault;
+use program::{Op, Record};
 use run::Run;
 use source::Source;
 
 /// Runs a program.
-pub(crate) fn run(settings: &Settings, text: &[u8], sink: &mut Sink) -> Result<(), Fault> {
+pub(crate) fn run(
+    settings: &Settings,
+    text: &[u8],
+    compensator: &mut Compensator,
+) -> Result<(), Fault> {
     let main = Source::program(text);
-    Run::new(settings, &main, sink).run()
+    Run::new(settings, &main, compensator).run()?;
+    // Marlin has no word for the end: the program ends with its last line.
+    if settings.dialect == Dialect::Marlin {
+        let lines = text.split(|&b| b == b'\n').count();
+        compensator.take(Record { line: u32::try_from(lines).unwrap_or(u32::MAX), op: Op::End })?;
+    }
+    Ok(())
 }

@@ -1,11 +1,10 @@
 //! The modes that LinuxCNC keeps and brings back: `M70` to `M73`.
 
 use super::block::Fault;
-use super::execute::INCH;
 use super::run::Run;
 use super::state::{Length, State};
 use super::words::{FeedMode, G, Group, M, Plane, Side};
-use program::{Compensation, Coolant, Feed, Spindle};
+use program::{Compensation, Coolant, Spindle};
 
 /// What is kept (LinuxCNC manual, "M70 Save Modal State"): the motion word is not.
 #[derive(Clone, Copy, Debug)]
@@ -21,7 +20,7 @@ pub(super) struct Modes {
     work_offset: u32,
     compensation: Compensation,
     length: Length,
-    feed: Option<Feed>,
+    f: Option<f64>,
     speed: Option<f64>,
     spindle: Spindle,
     coolant: Coolant,
@@ -40,7 +39,7 @@ impl Modes {
             work_offset: state.frames.active(),
             compensation: state.compensation.asked,
             length: state.length,
-            feed: state.feed,
+            f: state.f,
             speed: state.speed,
             spindle: state.spindle,
             coolant: state.coolant,
@@ -112,11 +111,8 @@ impl Run<'_, '_> {
         self.control.execute(&mut self.block, &mut self.ops)?;
         self.block.clear(line, text);
         let block = &mut self.block;
-        let unit = if kept.inches == Some(true) { INCH } else { 1.0 };
-        match kept.feed {
-            Some(Feed::PerMinute(feed) | Feed::PerTurn(feed)) => block.put(b'F', feed / unit),
-            Some(Feed::InverseTime(feed)) => block.put(b'F', feed),
-            None => {}
+        if let Some(f) = kept.f {
+            block.put(b'F', f);
         }
         if let Some(speed) = kept.speed {
             block.put(b'S', speed);

@@ -3,7 +3,7 @@
 use super::block::Fault;
 use super::execute::Step;
 use super::state::{Polar, Tilt};
-use super::words::{FeedMode, G, Group, Motion};
+use super::words::{FeedMode, Flavor, G, Group, Motion};
 use geom::Vec3;
 use program::{Compensation, Feed, Op};
 
@@ -187,6 +187,7 @@ impl Step<'_, '_, '_> {
         self.in_plane(&mut target, unknown_stays)?;
         self.along(self.state.plane.axes()[2], &mut target, unknown_stays)?;
         target.named |= self.lean()?;
+        self.together(target.named)?;
         for (axis, letter) in b"ABC".iter().copied().enumerate() {
             if !self.block.has(letter) {
                 continue;
@@ -202,6 +203,11 @@ impl Step<'_, '_, '_> {
                 target.rotary[axis] =
                     self.advance(target.rotary[axis], value, letter, unknown_stays)?;
             }
+        }
+        if self.state.frames.lost && target.named != 0 {
+            let message = "G92.1 has moved the zero by what the control held before the program";
+            let fault = self.block.whole("nc-unknown-shift", message);
+            return Err(fault.help("write G92.1 before the first move").into());
         }
         Ok(target)
     }
@@ -221,7 +227,7 @@ impl Step<'_, '_, '_> {
             self.along(first, target, unknown_stays)?;
             self.along(second, target, unknown_stays)?;
         }
-        if target.named & self.state.loose != 0 { self.together(target.named) } else { Ok(()) }
+        Ok(())
     }
 
     /// The word of a linear axis.
@@ -242,7 +248,10 @@ impl Step<'_, '_, '_> {
     /// After the coordinates have been turned, what one axis means alone depends on the other: makers
     /// ask for absolute words of both. Only increments in turned coordinates are those of the tool
     /// from where it stands (B-64484EN, "Coordinate system rotation").
-    fn together(&mut self, named: u8) -> Result<(), Fault> {
+    pub(super) fn together(&mut self, named: u8) -> Result<(), Fault> {
+        if named & self.state.loose == 0 {
+            return Ok(());
+        }
         let all = named & self.state.loose == self.state.loose;
         if self.state.incremental && self.state.frames.transform.turn.is_some() {
             return Ok(());
@@ -395,7 +404,10 @@ impl Step<'_, '_, '_> {
                 "Z in a tilted plane before X and Y: where the tool goes down is not known";
             return Err(self.block.whole("nc-unknown-position", message));
         }
-        if from.x != to.x || from.y != to.y {
+        // On LinuxCNC with any straight move (`rs274`).
+        let [first, second, _] = self.state.plane.axes();
+        if from[first] != to[first] || from[second] != to[second] || self.flavor == Flavor::LinuxCnc
+        {
             self.switch_compensation();
         }
         let pose = self.state.pose(to, target.rotary);
@@ -443,10 +455,5 @@ impl Step<'_, '_, '_> {
     /// Whether compensation is about to change with the next linear move.
     pub(super) fn compensation_waits(&self) -> bool {
         self.state.compensation.active != self.state.compensation.asked
-    }
-
-    /// Whether the path is offset by the tool radius.
-    pub(super) fn is_compensated(&self) -> bool {
-        self.state.compensation.active != Compensation::Off || self.compensation_waits()
     }
 }

@@ -4,7 +4,6 @@ use super::expression::{Target, Value};
 use super::state::State;
 use super::system;
 use super::words::Flavor;
-use crate::ToolData;
 use std::collections::HashMap;
 
 /// How a program calculates.
@@ -57,7 +56,6 @@ pub(super) struct Parameters {
 pub(super) struct Values<'v> {
     pub parameters: &'v Parameters,
     pub state: &'v State,
-    pub tools: &'v [ToolData],
     /// The control has just been switched on and everything in it is 0.
     pub fresh: bool,
     pub line: u32,

@@ -12,8 +12,9 @@ use super::parameters::{Language, Parameters, Values};
 use super::source::{self, Place, Source};
 use super::state::State;
 use super::words::{Dictionary, G, Group, M};
+use crate::Settings;
+use crate::compensation::Compensator;
 use crate::flow::Budget;
-use crate::{Settings, Sink};
 use program::{Diagnostic, Op, Record};
 use std::collections::HashMap;
 
@@ -41,7 +42,8 @@ pub(super) struct Run<'a, 's> {
     pub flows: bool,
     /// The program has ended, and what follows is no part of it.
     over: bool,
-    sink: &'s mut Sink<'s>,
+    /// Where the records go.
+    compensator: &'a mut Compensator<'s>,
 }
 
 impl<'a, 's> Run<'a, 's> {
@@ -49,7 +51,7 @@ impl<'a, 's> Run<'a, 's> {
     pub(super) fn new(
         settings: &'a Settings,
         main: &'a Source<'a>,
-        sink: &'s mut Sink<'s>,
+        compensator: &'a mut Compensator<'s>,
     ) -> Run<'a, 's> {
         let dictionary = flavors::dictionary(settings.dialect);
         let language = dictionary.flavor.language();
@@ -71,7 +73,7 @@ impl<'a, 's> Run<'a, 's> {
             twins: HashMap::new(),
             flows: false,
             over: false,
-            sink,
+            compensator,
         }
     }
 
@@ -86,7 +88,13 @@ impl<'a, 's> Run<'a, 's> {
             let line = self.caller.unwrap_or(line);
             for op in self.ops.drain(..) {
                 self.budget.record();
-                (self.sink)(Record { line, op })?;
+                match op {
+                    Op::Compensation(side) => {
+                        let terms = self.control.state.compensation_terms();
+                        self.compensator.switch(line, side, terms)?;
+                    }
+                    op => self.compensator.take(Record { line, op })?,
+                }
             }
         }
         Ok(())
@@ -336,6 +344,5 @@ fn values<'v>(
     parameters: &'v Parameters,
     line: u32,
 ) -> Values<'v> {
-    let setup = &settings.setup;
-    Values { parameters, state, tools: &setup.tools, fresh: setup.start.is_some(), line }
+    Values { parameters, state, fresh: settings.setup.start.is_some(), line }
 }

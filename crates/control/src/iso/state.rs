@@ -5,6 +5,7 @@ use super::frames::{Frames, Place};
 use super::tools::Registers;
 use super::wire::Wire;
 use super::words::{FeedMode, Flavor, Motion, Plane, Side};
+use crate::compensation::Terms;
 use crate::{Settings, Units};
 use geom::{Frame, Vec3};
 use program::{Coolant, Feed, Orientation, Pose, Spindle};
@@ -21,6 +22,8 @@ pub(super) struct State {
     pub inches: Option<bool>,
     pub feed_mode: FeedMode,
     pub feed: Option<Feed>,
+    /// F as it was written last.
+    pub f: Option<f64>,
     pub spindle: Spindle,
     /// Last S, 1/min.
     pub speed: Option<f64>,
@@ -89,6 +92,8 @@ pub(super) enum Length {
 pub(super) struct Compensation {
     pub active: program::Compensation,
     pub asked: program::Compensation,
+    /// Radius that the block itself gives (`G41.1`), mm.
+    pub radius: Option<f64>,
 }
 
 impl Compensation {
@@ -150,6 +155,7 @@ impl State {
             inches: settings.setup.units.map(|units| units == Units::Inches),
             feed_mode: FeedMode::PerMinute,
             feed: None,
+            f: None,
             spindle: Spindle::Off,
             speed: None,
             rigid: false,
@@ -160,6 +166,7 @@ impl State {
             compensation: Compensation {
                 active: program::Compensation::Off,
                 asked: program::Compensation::Off,
+                radius: None,
             },
             work_offset: None,
             position: start.unwrap_or(UNKNOWN),
@@ -199,6 +206,23 @@ impl State {
                     tool_center: matches!(self.length, Length::Center(_)),
                 },
             },
+        }
+    }
+
+    /// What compensation has to know of the block that switches it.
+    pub(super) fn compensation_terms(&self) -> Terms {
+        let [first, second, third] = self.plane.axes();
+        let mut normal = Vec3::ZERO;
+        normal[third] = 1.0;
+        // The side that is told is that after a mirror, which has turned the sense of the plane round.
+        let swaps = self.frames.transform.swaps_sides(first, second);
+        let sense = if swaps { -1.0 } else { 1.0 };
+        Terms {
+            normal: self.place.normal(normal) * sense,
+            across_tool: third == 2,
+            radius: self.compensation.radius,
+            outer: None,
+            around: false,
         }
     }
 }

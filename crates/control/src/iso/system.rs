@@ -6,15 +6,14 @@ use super::execute::INCH;
 use super::parameters::Values;
 use super::state::Length;
 use super::words::{FeedMode, Motion, Plane};
-use program::{Compensation, Coolant, Feed, Spindle};
+use program::{Compensation, Coolant, Spindle};
 
 /// LinuxCNC's parameters from 5001 on ("Numbered Parameters").
 pub(super) fn ngc_parameter(values: &Values, number: u32) -> Result<f64, String> {
     match number {
         5420..=5428 => position(values, number - 5420),
         5220 => match values.state.work_offset {
-            Some(offset @ 54..=59) => Ok(f64::from(offset - 53)),
-            Some(offset) => Ok(f64::from(offset) - 584.0),
+            Some(offset) => Ok(f64::from(offset) - 53.0),
             None => fresh(values, 1.0, "which work offset is active"),
         },
         5161..=5169 | 5181..=5189 if values.state.homes.iter().all(|home| home.is_nan()) => {
@@ -27,9 +26,7 @@ pub(super) fn ngc_parameter(values: &Values, number: u32) -> Result<f64, String>
             Err("what the program has written there is kept in the machine's unit".into())
         }
         5400 => tool_number(values),
-        5401..=5402 | 5404..=5409 => tool(values, |_| 0.0),
-        5403 => tool(values, |tool| tool.length / unit(values).unwrap_or(1.0)),
-        5410 => tool(values, |tool| 2.0 * tool.radius / unit(values).unwrap_or(1.0)),
+        5401..=5413 => Err("the tool table counts in the units of the machine".into()),
         5599 => Ok(1.0),
         5061..=5070 => Err("the result of probing is known only at the machine".into()),
         5399 => Err("what M66 has read is known only at the machine".into()),
@@ -76,7 +73,8 @@ pub(super) fn ngc_named(values: &Values, name: &[u8]) -> Option<Result<f64, Stri
         b"_units_per_rev" => yes(state.feed_mode == FeedMode::PerTurn),
         b"_coord_system" => match state.work_offset {
             Some(offset @ 54..=59) => f64::from(offset) * 10.0,
-            Some(offset) => f64::from(offset),
+            // G59.1 to G59.3.
+            Some(offset) => f64::from(offset) + 531.0,
             None => return Some(fresh(values, 540.0, "which work offset is active")),
         },
         b"_ccomp" => match state.compensation.asked {
@@ -210,7 +208,8 @@ pub(super) fn macro_variable(values: &Values, number: u32) -> Result<f64, String
             None => return Err("neither G98 nor G99 has been given".into()),
         },
         4014 => match state.work_offset {
-            Some(offset) => f64::from(offset),
+            Some(offset @ 54..=59) => f64::from(offset),
+            Some(_) => return Err("a further work offset has no G word of its own".into()),
             None => return Err("no block has named a work offset".into()),
         },
         4109 => return feed(values),
@@ -268,10 +267,10 @@ fn unit(values: &Values) -> Result<f64, String> {
     }
 }
 
+/// F as it was written last: another unit does not change the number (`rs274`).
 fn feed(values: &Values) -> Result<f64, String> {
-    match values.state.feed {
-        Some(Feed::PerMinute(feed) | Feed::PerTurn(feed)) => Ok(feed / unit(values)?),
-        Some(Feed::InverseTime(feed)) => Ok(feed),
+    match values.state.f {
+        Some(f) => Ok(f),
         None => fresh(values, 0.0, "the feed"),
     }
 }
@@ -280,17 +279,6 @@ fn tool_number(values: &Values) -> Result<f64, String> {
     match values.state.tool {
         Some(tool) => Ok(f64::from(tool)),
         None => fresh(values, 0.0, "which tool is in the spindle"),
-    }
-}
-
-/// Something of the tool in the spindle from the tool table.
-fn tool(values: &Values, what: impl Fn(&crate::ToolData) -> f64) -> Result<f64, String> {
-    match values.state.tool {
-        None => fresh(values, 0.0, "which tool is in the spindle"),
-        Some(number) => match values.tools.iter().find(|tool| tool.number == number) {
-            Some(tool) => Ok(what(tool)),
-            None => Err(format!("tool {number} is not in the tool table")),
-        },
     }
 }
 

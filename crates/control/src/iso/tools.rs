@@ -106,6 +106,9 @@ impl Step<'_, '_, '_> {
 
     /// `G43` and its kin, `G49`.
     pub(super) fn length(&mut self) -> Result<(), Fault> {
+        if self.flavor == Flavor::LinuxCnc && self.block.g(Group::Length).is_some() {
+            self.not_compensated("another length offset")?;
+        }
         let length = match self.block.g(Group::Length) {
             Some(G::Length) => match self.take_whole(b'H')? {
                 Some(0) if self.flavor.is_fanuc() => Length::None,

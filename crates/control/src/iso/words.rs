@@ -64,12 +64,19 @@ pub(super) enum G {
     FeedMode(FeedMode),
     Inches(bool),
     Compensation(Side),
+    /// With the diameter in the block (`G41.1`).
+    DynamicCompensation(Side),
     Length,
     ToolCenter,
     DynamicLength,
     CancelLength,
     ReturnToR(bool),
+    /// By its number in the neutral program: `G54` is 54.
     WorkOffset(u32),
+    /// `G54.1 P`, `G154 P`: those after `G59`.
+    FurtherOffset {
+        most: u32,
+    },
     /// How the path is smoothed, or a mode that is off anyway: nothing moves elsewhere for it. The
     /// letters may stand beside it.
     Neutral(&'static [u8]),
@@ -377,6 +384,10 @@ impl Dictionary {
         let (table, number) = match letter {
             b'G' => (self.refused_g, tenths(number)?),
             b'M' => (self.refused_m, tenths(number)? / 10),
+            b'E' if self.flavor == Flavor::Marlin => {
+                return Some("an extruder is no tool of a mill");
+            }
+            b'U' | b'V' | b'W' => return Some("the axes followed are X Y Z and A B C"),
             _ => return None,
         };
         table.iter().find(|(n, _)| usize::from(*n) == number).map(|(_, reason)| *reason)

@@ -200,7 +200,7 @@ impl Functions {
 
     /// Whether there is none.
     pub(super) fn is_empty(self) -> bool {
-        self.0 == [None; 2]
+        self.0[0].is_none()
     }
 
     /// Whether one of them is `function`.

@@ -12,6 +12,7 @@ mod formula;
 mod functions;
 mod hole;
 mod motion;
+mod older;
 mod pattern;
 mod plane;
 mod registers;
@@ -23,13 +24,14 @@ mod tool;
 mod transform;
 mod words;
 
-use crate::{Settings, Sink};
+use crate::Settings;
+use crate::compensation::Compensator;
 use run::Run;
 use scan::Result;
 use state::Control;
 
 /// Runs a program.
-pub(crate) fn run(settings: &Settings, text: &[u8], sink: &mut Sink) -> Result<()> {
-    let mut control = Control::new(settings, sink);
+pub(crate) fn run(settings: &Settings, text: &[u8], compensator: &mut Compensator) -> Result<()> {
+    let mut control = Control::new(settings, compensator);
     Run::begin(&mut control, "", text)?.finish()
 }

@@ -183,6 +183,9 @@ impl Control<'_, '_> {
             if s.peek().starts_with(b"F") && rapid.is_none() {
                 let Some(word) = s.word(&self.registers)? else { break };
                 rapid = Some(feed_word(s, &word, self.tool_feed)? == super::words::FeedWord::Max);
+            } else if s.take_symbol(b"DIST") {
+                // About which point MOVE turns; where the tool is then is not known anyway.
+                s.value(&self.registers)?;
             } else if s.peek() == b"MB" && !retract {
                 s.expect(b"MB")?;
                 s.expect(b"MAX")?;
@@ -205,7 +208,17 @@ impl Control<'_, '_> {
             self.release_tip();
             return Ok(());
         }
-        s.expect(b"TCPM")?;
+        if s.take(b"MODE") {
+            s.expect(b"MILL")?;
+            return s.finish();
+        }
+        if s.take(b"DWELL") {
+            return self.function_dwell(s);
+        }
+        if !s.take(b"TCPM") {
+            let message = "of FUNCTION blocks only TCPM, DWELL TIME and MODE MILL are supported";
+            return Err(s.error_here("unsupported", message));
+        }
         s.expect(b"F")?;
         if s.take(b"CONT") {
             let message = "F CONT (feed of the axes as programmed) is not supported yet";

@@ -4,6 +4,7 @@ use super::calls::Calls;
 use super::cycle::Designation;
 use super::formula;
 use super::functions::{Function, Functions, When};
+use super::older::parts_needed;
 use super::registers::Parameter;
 use super::scan::{Result, Scanner};
 use super::source::{Line, Place, Source};
@@ -103,17 +104,17 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
         let s = &mut scanner;
         let part = self.part.take();
         self.control.at_line(s.line);
-        if s.is_done() || s.peek() == b"*" {
+        let (keyword, span) = s.token();
+        if matches!(keyword, b"" | b"*") {
             self.part = part;
             return self.comment(line);
         }
-        let start = *s;
-        let (keyword, span) = s.token();
         if keyword == b"CYCL" && s.take(b"DEF") {
             return self.cycle_definition(s, part, continued);
         }
-        if let Some((cycle, 1)) = part {
-            let message = format!("cycle {cycle} is not complete: CYCL DEF {cycle}.1 is expected");
+        if let Some((cycle, next)) = part.filter(|(cycle, next)| *next <= parts_needed(*cycle)) {
+            let message =
+                format!("cycle {cycle} is not complete: CYCL DEF {cycle}.{next} is expected");
             return Err(s.error_block("cycle-parameter", message));
         }
         if keyword == b"PATTERN" {
@@ -138,7 +139,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
             b"CHF" => control.chamfer(s),
             _ => {
                 control.contour_is_closed(s)?;
-                self.other(s, start, keyword, span, place)
+                self.other(s, line.scanner, keyword, span, place)
             }
         }
     }

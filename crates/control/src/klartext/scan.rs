@@ -53,6 +53,11 @@ impl<'t> Scanner<'t> {
         true
     }
 
+    /// Whether there is nothing in the line.
+    pub(super) fn is_blank(&self) -> bool {
+        self.end == 0
+    }
+
     /// What is not read yet, blanks at both ends taken off.
     pub(super) fn rest(&self) -> &'t [u8] {
         self.text.get(self.at..self.end).unwrap_or_default().trim_ascii()
@@ -122,7 +127,10 @@ impl<'t> Scanner<'t> {
         if address.is_empty() {
             return Err(self.unknown());
         }
-        let (sign, number) = self.number_or_parameter(registers)?;
+        let (sign, mut number) = self.number();
+        if number.is_none() && self.byte() == Some(b'Q') {
+            number = Some(self.parameter_value(sign, registers)?);
+        }
         if !matches!(self.byte(), None | Some(b' ' | b'\t' | b';')) {
             self.at = start;
             return Err(self.unknown());
@@ -239,6 +247,25 @@ impl<'t> Scanner<'t> {
         })
     }
 
+    /// Takes a whole number that stands alone after blanks; `None` where there is none.
+    pub(super) fn whole_number(&mut self) -> Option<u32> {
+        self.is_done();
+        let mut number = 0u32;
+        for (length, byte) in self.unread().iter().enumerate() {
+            match byte {
+                b'0'..=b'9' => {
+                    number = number.checked_mul(10)?.checked_add(u32::from(byte - b'0'))?;
+                }
+                b' ' | b'\t' if length > 0 => {
+                    self.at += length;
+                    return Some(number);
+                }
+                _ => return None,
+            }
+        }
+        None
+    }
+
     /// Takes the name of a Q parameter, if one stands next after blanks.
     pub(super) fn parameter(&mut self) -> Result<Option<Parameter>> {
         if self.is_done() || self.byte() != Some(b'Q') {
@@ -288,19 +315,26 @@ impl<'t> Scanner<'t> {
         &mut self,
         registers: &Registers,
     ) -> Result<(f64, Option<f64>)> {
-        let (sign, number) = self.number();
-        if number.is_some() || self.byte() != Some(b'Q') {
-            return Ok((sign, number));
+        let (sign, mut number) = self.number();
+        if number.is_none() && self.byte() == Some(b'Q') {
+            number = Some(self.parameter_value(sign, registers)?);
         }
+        Ok((sign, number))
+    }
+
+    /// What the parameter holds that stands next, with the sign before it.
+    #[cold]
+    fn parameter_value(&mut self, sign: f64, registers: &Registers) -> Result<f64> {
         let start = self.at;
-        let Some(parameter) = self.parameter()? else { return Ok((sign, None)) };
+        let Some(parameter) = self.parameter()? else { return Err(self.unknown()) };
         let value = registers
             .number(parameter)
             .map_err(|message| self.error("parameter", (start, self.at), message))?;
-        Ok((sign, Some(if sign < 0.0 { 0.0 - value } else { value })))
+        Ok(if sign < 0.0 { 0.0 - value } else { value })
     }
 
     /// The sign that is written here, and the number with it, as far as there are any.
+    #[inline(always)]
     pub(super) fn number(&mut self) -> (f64, Option<f64>) {
         let sign = match self.byte() {
             Some(b'+') => 1.0,
@@ -319,15 +353,22 @@ impl<'t> Scanner<'t> {
 
 /// The number that `text` begins with, and its length. The decimal sign is a point, or a comma where
 /// the control was set so when it gave out the program.
+#[inline]
 fn decimal(text: &[u8]) -> Option<(f64, usize)> {
-    let whole = decimal::parse(text)?;
-    if whole.point || text.get(whole.len) != Some(&b',') {
-        return Some((whole.value, whole.len));
+    let number = decimal::parse(text)?;
+    if text.get(number.len) == Some(&b',') && !number.point {
+        return with_comma(text, number.len);
     }
+    Some((number.value, number.len))
+}
+
+/// The number whose decimal sign is a comma after so many characters.
+#[cold]
+fn with_comma(text: &[u8], whole: usize) -> Option<(f64, usize)> {
     let mut with_point = [0; 40];
     let length = text.len().min(with_point.len());
     with_point[..length].copy_from_slice(&text[..length]);
-    *with_point.get_mut(whole.len)? = b'.';
-    let decimal = decimal::parse(&with_point[..length])?;
-    Some((decimal.value, decimal.len))
+    *with_point.get_mut(whole)? = b'.';
+    let number = decimal::parse(&with_point[..length])?;
+    Some((number.value, number.len))
 }

@@ -80,7 +80,7 @@ impl<'t> Text<'t> {
     /// The block at a place, which goes on behind its first line. `None` at the end.
     fn block(&self, at: &mut Place) -> Result<Option<Line<'t>>> {
         let Some(mut s) = self.line(at) else { return Ok(None) };
-        if s.rest().is_empty() {
+        if s.is_blank() {
             if self.bytes.get(at.offset..).unwrap_or_default().trim_ascii().is_empty() {
                 return Ok(None);
             }
@@ -174,7 +174,8 @@ impl<'t> Source<'t> {
     pub(super) fn corner_follows(&self) -> bool {
         // Told from its first letter for nearly every block.
         let rest = self.text.bytes.get(self.at.offset..).unwrap_or_default();
-        let first = rest.iter().find(|b| !matches!(b, b'0'..=b'9' | b' ' | b'\t'));
+        let is_blank = |b: u8| b == b' ' || b == b'\t';
+        let first = rest.iter().find(|&&b| b > b'9' || (b < b'0' && !is_blank(b)));
         matches!(first, Some(b'R' | b'C' | b';' | b'*'))
             && matches!(self.upcoming(), b"RND" | b"CHF")
     }
@@ -196,12 +197,18 @@ impl<'t> Source<'t> {
     }
 
     /// Notes the label of a block, if it has one.
+    #[inline]
     fn note(&mut self, place: Place, block: Line<'t>) -> Result<()> {
         let mut s = block.scanner;
-        if !s.take(b"LBL") {
-            return Ok(());
+        if s.byte() == Some(b'L') && s.take_symbol(b"LBL") {
+            self.note_label(place, &mut s)
+        } else {
+            Ok(())
         }
-        let label = written_label(&mut s)?;
+    }
+
+    fn note_label(&mut self, place: Place, s: &mut Scanner<'t>) -> Result<()> {
+        let label = written_label(s)?;
         if label != Label::Number(0) && self.labels.contains_key(&label) {
             let message = format!("label {label} is set twice in this program");
             return Err(s.error_block("label", message));
@@ -221,11 +228,12 @@ pub(super) fn written_label<'t>(s: &mut Scanner<'t>) -> Result<Label<'t>> {
 
 /// The number at the start of a block, which counts the blocks.
 fn block_number(s: &mut Scanner, expected: u32) -> Result<()> {
-    let (token, span) = s.token();
-    let number = std::str::from_utf8(token).ok().and_then(|text| text.parse::<u32>().ok());
-    if number == Some(expected) && token.first() != Some(&b'+') {
+    let before = *s;
+    if s.whole_number() == Some(expected) {
         return Ok(());
     }
+    *s = before;
+    let (_, span) = s.token();
     let message = format!("block number {expected} is expected here");
     let help = "number the blocks from 0 by 1, as the control does, or leave all numbers out";
     let error: Box<Diagnostic> = s.error("block-number", span, message);

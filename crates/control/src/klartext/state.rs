@@ -1,17 +1,22 @@
 //! What the control holds while a program runs, and how that becomes records.
 
 use super::contour::{Element, Waiting};
-use super::cycle::Definition;
+use super::cycle::Defined;
 use super::functions::{Function, Functions, When};
+use super::older::Older;
 use super::plane::Tilt;
 use super::registers::Registers;
 use super::scan::{Result, Scanner};
 use super::transform::Transforms;
 use super::words::FeedWord;
+use crate::Settings;
+use crate::ToolData;
+use crate::compensation::{Compensator, Terms};
 use crate::flow::Budget;
-use crate::{Settings, Sink};
 use geom::Vec3;
 use program::{Compensation, Coolant, Cycle, Feed, Op, Orientation, Pose, Record, Spindle};
+
+use std::collections::HashMap;
 
 /// The address letters of the axes, in the order of their coordinates.
 pub(super) const AXES: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
@@ -33,7 +38,7 @@ pub(super) enum Tip {
 /// The state of the control.
 pub(super) struct Control<'a, 's> {
     pub(super) settings: &'a Settings,
-    sink: &'a mut Sink<'s>,
+    compensator: &'a mut Compensator<'s>,
     /// Line of the block that runs.
     line: u32,
     /// mm in the unit of length of the program.
@@ -52,6 +57,8 @@ pub(super) struct Control<'a, 's> {
     pub(super) feed: Option<Feed>,
     /// Feed of the last TOOL CALL, for `F AUTO`.
     pub(super) tool_feed: Option<FeedWord>,
+    /// Tools that the program itself defines, by number.
+    pub(super) defined_tools: HashMap<u32, ToolData>,
     /// Number of the tool, where it is known.
     pub(super) tool_number: Option<u32>,
     /// Radius of the tool in the tool table, mm.
@@ -69,7 +76,9 @@ pub(super) struct Control<'a, 's> {
     pub(super) rapid: bool,
     /// What is not told before the next element of the contour is known.
     pub(super) waiting: Option<Waiting>,
-    pub(super) cycle: Option<Definition>,
+    pub(super) cycle: Option<Defined>,
+    /// An older hole cycle that is being defined.
+    pub(super) older: Older,
     /// Points of the last `PATTERN DEF`, mm.
     pub(super) pattern: Vec<Vec3>,
     /// The cycle as it was told last.
@@ -83,13 +92,13 @@ pub(super) struct Control<'a, 's> {
 }
 
 impl<'a, 's> Control<'a, 's> {
-    pub(super) fn new(settings: &'a Settings, sink: &'a mut Sink<'s>) -> Self {
+    pub(super) fn new(settings: &'a Settings, compensator: &'a mut Compensator<'s>) -> Self {
         Control {
             settings,
-            sink,
+            compensator,
             line: 0,
             unit: 1.0,
-            here: Vec3::NAN,
+            here: settings.setup.start.unwrap_or(Vec3::NAN),
             degrees: settings.rotary.map(|exists| if exists { f64::NAN } else { 0.0 }),
             vector: None,
             outside: Transforms::default(),
@@ -97,6 +106,7 @@ impl<'a, 's> Control<'a, 's> {
             tip: Tip::Free,
             feed: None,
             tool_feed: None,
+            defined_tools: HashMap::new(),
             tool_number: None,
             tool_radius: None,
             per_turn: false,
@@ -109,6 +119,7 @@ impl<'a, 's> Control<'a, 's> {
             rapid: false,
             waiting: None,
             cycle: None,
+            older: Older::default(),
             pattern: Vec::new(),
             told: None,
             calls_modally: false,
@@ -128,7 +139,7 @@ impl<'a, 's> Control<'a, 's> {
 
     pub(super) fn emit(&mut self, op: Op) -> Result<()> {
         self.budget.record();
-        (self.sink)(Record { line: self.line, op })
+        self.compensator.take(Record { line: self.line, op })
     }
 
     /// A jump, a call or a return: programs that never end are refused.
@@ -286,15 +297,26 @@ impl<'a, 's> Control<'a, 's> {
         }
         self.compensation = compensation;
         // What is left in mirrored coordinates is right of the path that is told.
-        self.emit(Op::Compensation(match (compensation, self.mirrors()) {
+        let side = match (compensation, self.mirrors()) {
             (Compensation::Left(_), true) => Compensation::Right(None),
             (Compensation::Right(_), true) => Compensation::Left(None),
             _ => compensation,
-        }))
+        };
+        let terms = Terms {
+            normal: self.work_direction(Vec3::Z).normalize_or(Vec3::Z),
+            across_tool: true,
+            radius: None,
+            outer: None,
+            around: false,
+        };
+        self.compensator.switch(self.line, side, terms)
     }
 
     /// Does the M functions of a block that act at that moment.
     pub(super) fn functions(&mut self, s: &Scanner, all: Functions, when: When) -> Result<()> {
+        if all.is_empty() {
+            return Ok(());
+        }
         for function in all.at(when) {
             self.function(s, function)?;
         }

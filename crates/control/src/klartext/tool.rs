@@ -4,6 +4,7 @@ use super::registers::Parameter;
 use super::scan::{Result, Scanner};
 use super::state::{Control, Tip};
 use super::words::{self, LINEAR, Words, feed_word};
+use crate::ToolData;
 use geom::Vec3;
 use program::{Compensation, Diagnostic, Op, Spindle, Tool};
 
@@ -11,13 +12,7 @@ impl Control<'_, '_> {
     /// `TOOL CALL` and `TOOL DEF`, from behind `TOOL`.
     pub(super) fn tool(&mut self, s: &mut Scanner) -> Result<()> {
         if s.take(b"DEF") {
-            let number = self.tool_number(s)?;
-            if !s.is_done() {
-                let message = "tool data in the program are not supported";
-                let help = "put length and radius into the tool table";
-                return Err(s.error_here("unsupported", message).help(help).into());
-            }
-            return self.emit(Op::Preselect(number));
+            return self.define_tool(s);
         }
         s.expect(b"CALL")?;
         let called = match s.peek() {
@@ -78,6 +73,37 @@ impl Control<'_, '_> {
         }
     }
 
+    /// `TOOL DEF 5` makes a tool ready; `TOOL DEF 5 L+0 R+4` says what it is, in place of the table.
+    fn define_tool(&mut self, s: &mut Scanner) -> Result<()> {
+        let number = self.tool_number(s)?;
+        if s.is_done() {
+            return self.emit(Op::Preselect(number));
+        }
+        let (mut length, mut radius) = (None, None);
+        while let Some(word) = s.word(&self.registers)? {
+            match (word.address, word.number) {
+                (b"L", Some(value)) if length.is_none() => length = Some(value * self.unit),
+                (b"R", Some(value)) if radius.is_none() => radius = Some(value * self.unit),
+                _ => return Err(words::unknown(s, &word)),
+            }
+        }
+        let (Some(length), Some(radius)) = (length, radius) else {
+            return Err(s.error_block("missing-word", "TOOL DEF with data takes L and R"));
+        };
+        if self
+            .settings
+            .setup
+            .tools
+            .iter()
+            .any(|tool| tool.number == number && (tool.radius != radius || tool.length != length))
+        {
+            let message = format!("tool {number} is another one in the tool table");
+            return Err(s.error_block("tool", message));
+        }
+        self.defined_tools.insert(number, ToolData { number, name: String::new(), radius, length });
+        Ok(())
+    }
+
     /// A number that is written, or in a Q parameter.
     fn tool_number(&self, s: &mut Scanner) -> Result<u32> {
         let from = *s;
@@ -116,11 +142,13 @@ impl Control<'_, '_> {
             return Err(error.help("program M129 first").into());
         }
         self.stop_all()?;
-        let table = self.settings.setup.tools.iter();
-        let data = table.clone().find(|data| match tool.name.is_empty() {
-            true => data.number == tool.number,
-            false => data.name == tool.name,
-        });
+        let mut table = self.settings.setup.tools.iter();
+        let data = match tool.name.is_empty() {
+            true => table
+                .find(|data| data.number == tool.number)
+                .or_else(|| self.defined_tools.get(&tool.number)),
+            false => table.find(|data| data.name == tool.name),
+        };
         self.tool_radius = data.map(|data| data.radius);
         let number = if tool.name.is_empty() { Some(tool.number) } else { data.map(|d| d.number) };
         self.tool_number = number;

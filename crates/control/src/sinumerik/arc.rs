@@ -2,11 +2,12 @@
 
 use super::Fallible;
 use super::block::{Block, Coordinate, Count};
-use super::commands::Motion;
+use super::commands::{Diameter, Motion};
+use super::corner::Element;
 use super::interpreter::Interpreter;
 use super::scan::Source;
-use geom::{Arc, ArcError, Vec3, rotate};
-use program::{ArcTo, Op};
+use geom::{Arc, ArcError, Vec3, direction, rotate};
+use program::Op;
 
 /// How far the radii at the ends of an arc may be apart: mm for small arcs, part of the radius for
 /// large ones (MD21000, MD21010 as delivered; alarm 14040).
@@ -36,7 +37,7 @@ struct Ends {
     normal: Vec3,
 }
 
-impl Interpreter<'_> {
+impl Interpreter<'_, '_> {
     /// An arc from where the tool is.
     pub fn arc(&mut self, source: &Source, block: &Block) -> Fallible<()> {
         let error = |message: &str| Err(source.block_error("arc", message));
@@ -51,8 +52,16 @@ impl Interpreter<'_> {
         let across = self.state.plane_normal;
         let sign = if self.state.motion == Motion::Clockwise { -1.0 } else { 1.0 };
         let ends = Ends { start, end, across, normal: Vec3::AXES[across] * sign };
+        if self.state.diameter != Diameter::Off
+            && (self.state.motion == Motion::ThroughPoint
+                || block.center[0].is_some_and(|i| i.count == Count::Absolute))
+        {
+            return error("an absolute centre or a point of the arc while X is a diameter");
+        }
         let circle = if self.state.motion == Motion::ThroughPoint {
             self.through_point(source, block, &ends)?
+        } else if self.state.motion == Motion::Tangential {
+            self.tangential(source, block, &ends)?
         } else {
             check_helix(source, block, &ends)?;
             let ways = usize::from(block.radius.is_some()) + usize::from(block.opening.is_some());
@@ -72,6 +81,12 @@ impl Interpreter<'_> {
                 }
                 (None, Some(opening)) => by_opening(source, &ends, opening)?,
                 (None, None) if centered => self.by_center(source, block, &ends)?,
+                // In polar coordinates the pole is the centre.
+                (None, None) if block.has_polar() => {
+                    let mut center = self.state.pole;
+                    center[across] = start[across];
+                    Circle { center, normal: ends.normal }
+                }
                 _ if ways + usize::from(centered) > 1 => {
                     return error("the arc is given in two ways: I J K, CR= or AR=");
                 }
@@ -94,13 +109,17 @@ impl Interpreter<'_> {
         }
         self.state.position = end;
         self.state.programmed = programmed;
-        let arc = ArcTo {
-            end: self.state.pose(end),
-            center: self.state.frames.in_work_frame(circle.center),
-            normal: self.state.frames.direction(circle.normal),
-            turns,
-        };
-        self.emit(source, Op::Arc(arc.into()))
+        self.state.heading = circle.normal.cross(end - circle.center);
+        let circle = Some((circle.center, circle.normal));
+        let element = Element { start, end, circle, cut: turns == 0 };
+        let mut op = self.piece(source, &element)?;
+        if let Op::Arc(arc) = &mut op {
+            arc.turns = turns;
+        }
+        if self.cornered(block) {
+            return self.go_round(source, block, element, op);
+        }
+        self.emit(source, op)
     }
 
     /// `I J K`: from the start, whatever `G90` and `G91` say, unless `AC()` says otherwise.
@@ -120,6 +139,27 @@ impl Interpreter<'_> {
             center[i] = self.linear(source, coordinate, ends.start[i], CENTER_NAMES[i])?;
         }
         Ok(Circle { center, normal: ends.normal })
+    }
+
+    /// `CT`: goes on in the direction of the last move in the plane.
+    fn tangential(&self, source: &Source, block: &Block, ends: &Ends) -> Fallible<Circle> {
+        let error = |message: &str| Err(source.block_error("arc", message));
+        if block.has_arc_word() {
+            return error("CT takes the end of the arc only");
+        }
+        let up = Vec3::AXES[ends.across];
+        let heading = self.state.heading.reject_from_normalized(up);
+        let Some(left) = direction(up.cross(heading)) else {
+            return error("CT, and no move in the plane before it whose direction is known");
+        };
+        let chord = (ends.end - ends.start).reject_from_normalized(up);
+        let aside = left.dot(chord);
+        // Farther than any machine the arc is a line.
+        if aside.abs() <= 1e-9 * chord.length() || chord == Vec3::ZERO {
+            return error("the end of CT lies in the direction of the last move: there is no arc");
+        }
+        let height = chord.length_squared() / (2.0 * aside);
+        Ok(Circle { center: ends.start + left * height, normal: up * height.signum() })
     }
 
     /// `CIP`: through `I1= J1= K1=`, which count like the end (`G90`, `G91`), in any plane.
@@ -158,7 +198,10 @@ impl Interpreter<'_> {
 /// An arc that also moves across its plane must name both axes of the plane: the 828D takes a missing
 /// one for a wrong centre (seen on the machine).
 fn check_helix(source: &Source, block: &Block, ends: &Ends) -> Fallible<()> {
-    if ends.end[ends.across] == ends.start[ends.across] || block.opening.is_some() {
+    if ends.end[ends.across] == ends.start[ends.across]
+        || block.opening.is_some()
+        || block.has_polar()
+    {
         return Ok(());
     }
     for i in (0..3).filter(|i| *i != ends.across) {

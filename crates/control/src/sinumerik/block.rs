@@ -121,7 +121,7 @@ pub(super) struct Block {
     /// A call; it stands alone.
     pub call: Option<Call>,
     /// A statement; it stands alone.
-    pub statement: Option<Statement>,
+    pub statement: Option<Box<Statement>>,
     /// `MSG`.
     pub message: Option<String>,
     /// Comment.
@@ -186,6 +186,15 @@ impl Block {
             || self.radius.is_some()
             || self.opening.is_some()
             || self.turns.is_some()
+    }
+
+    /// Whether the blocks behind it may count in another frame, or with another tool axis.
+    pub fn changes_frame(&self) -> bool {
+        self.call.is_some()
+            || self.has_rotary()
+            || self.has_vector()
+            || self.code(2) == Some(Code::Home)
+            || [3, 8, 9].into_iter().any(|group| self.code(group).is_some())
     }
 
     /// Whether it has nothing but a command of `group` and perhaps a block number.

@@ -3,6 +3,7 @@
 use super::Fallible;
 use super::cycles::{CYCLES, Form};
 use super::expression::Evaluator;
+use super::pattern::Pattern;
 use super::scan::{Scanner, Source};
 use super::value::Value;
 use program::Diagnostic;
@@ -26,6 +27,8 @@ pub(super) enum Procedure {
     EndOfModalCall,
     /// A drilling cycle.
     Drill(&'static Form),
+    /// A pattern of holes.
+    Pattern(Pattern),
     /// `RET`.
     Return,
 }
@@ -60,6 +63,9 @@ const PROCEDURES: &[(&str, Procedure)] = &[
     ("CYCLE800", Procedure::Swivel),
     ("CYCLE832", Procedure::HighSpeed),
     ("FGROUP", Procedure::FeedGroup),
+    ("HOLES1", Procedure::Pattern(Pattern::Row)),
+    ("HOLES2", Procedure::Pattern(Pattern::Circle)),
+    ("CYCLE801", Procedure::Pattern(Pattern::Grid)),
     // Look-ahead stops.
     ("STOPRE", Procedure::NoMotion),
     // The raw part, for the control's picture.
@@ -127,10 +133,18 @@ const UNSUPPORTED: &[(&str, &str)] = &[
     ("CYCLE79", MILLING),
     ("CYCLE90", MILLING),
     ("CYCLE899", MILLING),
+    ("CYCLE802", "places by the machine's own pattern"),
+    ("CYCLE97", TURNING),
+    ("CYCLE98", TURNING),
+    ("CYCLE99", TURNING),
+    ("CYCLE93", TURNING),
+    ("CYCLE94", TURNING),
+    ("CYCLE95", TURNING),
 ];
 
 const SYNCHRONISED: &str = "synchronised actions";
 const MEASURING: &str = "measuring";
+const TURNING: &str = "a turning cycle, whose path the control makes; write the path";
 const MILLING: &str = "a milling cycle, whose path the control makes; write the path";
 
 /// Whether `name` is a word that is called.

@@ -3,6 +3,7 @@
 //! A block has at most one command of a group (Programming Manual 06/2019, 4.3.1); one of each
 //! modal group holds. The table is the only place that knows a command: what it does is a [`Code`].
 
+use crate::compensation::Outer;
 use program::Compensation;
 
 /// What a G command does.
@@ -16,10 +17,20 @@ pub(super) enum Code {
     Home,
     /// `TRANS` and its kin.
     Frame(FrameCommand),
+    /// The pole of polar coordinates.
+    Pole(Origin),
+    /// `G25` (false), `G26` (true): lower and upper limits.
+    Limit(bool),
+    /// `G63`: a straight cut in one block, with a tap in a compensating chuck.
+    FloatingTap,
     /// Working plane, by the index of the axis perpendicular to it.
     Plane(usize),
     /// Cutter radius compensation.
     Compensation(Compensation),
+    /// How compensation goes around outer corners.
+    Corner(Outer),
+    /// How compensation begins and ends: straight, or where need be around the first point (`KONT`).
+    Approach { around: bool },
     /// Settable work offset, 500 for none.
     WorkOffset(u32),
     /// Every offset is off for this block.
@@ -30,6 +41,8 @@ pub(super) enum Code {
     Absolute(bool),
     /// What `F` means.
     Feed(FeedType),
+    /// What a value of X means.
+    Diameter(Diameter),
     /// Vectors of the tool axis count in the work frame or in the machine's.
     VectorsInWorkFrame(bool),
     /// How the control drives along the path, not where: dynamics, rounding and compression within
@@ -52,6 +65,36 @@ pub(super) enum Motion {
     CounterClockwise,
     /// `CIP`.
     ThroughPoint,
+    /// `CT`.
+    Tangential,
+    /// `G33`.
+    Thread,
+    /// `G331`: a tap goes in with the spindle.
+    TapIn,
+    /// `G332`: it comes out again.
+    TapOut,
+}
+
+/// What a pole counts from.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Origin {
+    /// `G110`: the last programmed position.
+    Position,
+    /// `G111`: the zero point of the program.
+    Zero,
+    /// `G112`: the last pole.
+    Pole,
+}
+
+/// What a value of X means on a lathe.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Diameter {
+    /// `DIAMOF`: a radius.
+    Off,
+    /// `DIAMON`: a diameter.
+    On,
+    /// `DIAM90`: a diameter where it is absolute.
+    Absolute,
 }
 
 /// What `F` means.
@@ -72,8 +115,14 @@ pub(super) enum FrameCommand {
     Translate(bool),
     /// `ROT`, `AROT`.
     Rotate(bool),
-    /// `SCALE`, `MIRROR`: only bare, where they delete the frame.
-    Delete,
+    /// `SCALE`, `ASCALE`.
+    Scale(bool),
+    /// `MIRROR`, `AMIRROR`: the axes that are named.
+    Mirror(bool),
+    /// `G58`: the absolute translation of the axes that are named.
+    Coarse,
+    /// `G59`: their additive translation.
+    Fine,
 }
 
 /// A G command.
@@ -124,11 +173,9 @@ const fn not(name: &'static str, group: u8, reason: &'static str) -> Command {
 }
 
 const SPLINE: &str = "splines and polynomials";
-const THREAD: &str = "thread cutting and tapping by G command; use CYCLE84 or CYCLE840";
+const THREAD: &str = "threads whose pitch changes";
 const APPROACH: &str = "smooth approach and retraction";
-const TURNING: &str = "turning";
 const SPEED: &str = "constant cutting speed";
-const SCALING: &str = "it makes the path larger, smaller or mirrored";
 const TOOL_FRAME: &str = "frames from the tool's direction";
 const COMPENSATION_3D: &str = "compensation in space";
 
@@ -141,23 +188,23 @@ pub(super) static COMMANDS: &[Command] = &[
     g("G2", 1, Code::Motion(Motion::Clockwise)),
     g("G3", 1, Code::Motion(Motion::CounterClockwise)),
     g("CIP", 1, Code::Motion(Motion::ThroughPoint)),
-    not("CT", 1, "arcs by tangent; give the centre"),
+    g("CT", 1, Code::Motion(Motion::Tangential)),
     not("ASPLINE", 1, SPLINE),
     not("BSPLINE", 1, SPLINE),
     not("CSPLINE", 1, SPLINE),
     not("POLY", 1, SPLINE),
     not("INVCW", 1, SPLINE),
     not("INVCCW", 1, SPLINE),
-    not("G33", 1, THREAD),
+    g("G33", 1, Code::Motion(Motion::Thread)),
     not("G34", 1, THREAD),
     not("G35", 1, THREAD),
-    not("G331", 1, THREAD),
-    not("G332", 1, THREAD),
+    g("G331", 1, Code::Motion(Motion::TapIn)),
+    g("G332", 1, Code::Motion(Motion::TapOut)),
     // 2: for one block
     g("G4", 2, Code::Dwell),
     g("G74", 2, Code::Home),
     g("G75", 2, Code::Home),
-    not("G63", 2, THREAD),
+    g("G63", 2, Code::FloatingTap),
     not("G147", 2, APPROACH),
     not("G148", 2, APPROACH),
     not("G247", 2, APPROACH),
@@ -169,19 +216,19 @@ pub(super) static COMMANDS: &[Command] = &[
     g("ATRANS", 3, Code::Frame(FrameCommand::Translate(true))),
     g("ROT", 3, Code::Frame(FrameCommand::Rotate(false))),
     g("AROT", 3, Code::Frame(FrameCommand::Rotate(true))),
-    g("SCALE", 3, Code::Frame(FrameCommand::Delete)),
-    g("MIRROR", 3, Code::Frame(FrameCommand::Delete)),
-    not("ASCALE", 3, SCALING),
-    not("AMIRROR", 3, SCALING),
+    g("SCALE", 3, Code::Frame(FrameCommand::Scale(false))),
+    g("ASCALE", 3, Code::Frame(FrameCommand::Scale(true))),
+    g("MIRROR", 3, Code::Frame(FrameCommand::Mirror(false))),
+    g("AMIRROR", 3, Code::Frame(FrameCommand::Mirror(true))),
+    g("G58", 3, Code::Frame(FrameCommand::Coarse)),
+    g("G59", 3, Code::Frame(FrameCommand::Fine)),
     not("ROTS", 3, "rotation by solid angles"),
     not("AROTS", 3, "rotation by solid angles"),
-    not("G58", 3, "axial offsets"),
-    not("G59", 3, "axial offsets"),
-    not("G25", 3, "limits"),
-    not("G26", 3, "limits"),
-    not("G110", 3, "polar coordinates"),
-    not("G111", 3, "polar coordinates"),
-    not("G112", 3, "polar coordinates"),
+    g("G25", 3, Code::Limit(false)),
+    g("G26", 3, Code::Limit(true)),
+    g("G110", 3, Code::Pole(Origin::Position)),
+    g("G111", 3, Code::Pole(Origin::Zero)),
+    g("G112", 3, Code::Pole(Origin::Pole)),
     // 6: plane
     g("G17", 6, Code::Plane(2)),
     g("G18", 6, Code::Plane(1)),
@@ -234,12 +281,12 @@ pub(super) static COMMANDS: &[Command] = &[
     same("CFC", 16),
     same("CFTCP", 16),
     same("CFIN", 16),
-    same("NORM", 17),
-    same("KONT", 17),
-    same("KONTC", 17),
-    same("KONTT", 17),
-    same("G450", 18),
-    same("G451", 18),
+    g("NORM", 17, Code::Approach { around: false }),
+    g("KONT", 17, Code::Approach { around: true }),
+    g("KONTC", 17, Code::Approach { around: true }),
+    g("KONTT", 17, Code::Approach { around: true }),
+    g("G450", 18, Code::Corner(Outer::Arc)),
+    g("G451", 18, Code::Corner(Outer::Intersection)),
     // 21 to 24: jerk, kind of compensation, collision look-ahead, feed-forward
     same("BRISK", 21),
     same("SOFT", 21),
@@ -260,9 +307,9 @@ pub(super) static COMMANDS: &[Command] = &[
     // 28 to 30: work area limits, diameters, compression
     same("WALIMOF", 28),
     same("WALIMON", 28),
-    same("DIAMOF", 29),
-    not("DIAMON", 29, TURNING),
-    not("DIAM90", 29, TURNING),
+    g("DIAMOF", 29, Code::Diameter(Diameter::Off)),
+    g("DIAMON", 29, Code::Diameter(Diameter::On)),
+    g("DIAM90", 29, Code::Diameter(Diameter::Absolute)),
     same("COMPOF", 30),
     same("COMPON", 30),
     same("COMPCURV", 30),

@@ -11,7 +11,11 @@ pub(super) struct Frames {
     offset_change: Vec3,
     swivel: Option<Frame>,
     programmable: Frame,
+    /// The part of the programmable translation that `ATRANS` and `G59` have added.
+    fine: Vec3,
     total: Frame,
+    /// The lengths of the axes of the program where they are parallel to those of the work frame.
+    scale: Vec3,
     turned: bool,
 }
 
@@ -22,7 +26,9 @@ impl Frames {
             offset_change: Vec3::ZERO,
             swivel: None,
             programmable: Frame::IDENTITY,
+            fine: Vec3::ZERO,
             total: Frame::IDENTITY,
+            scale: Vec3::ONE,
             turned: false,
         }
     }
@@ -32,9 +38,15 @@ impl Frames {
         self.programmable
     }
 
-    /// Sets the programmable frame.
-    pub fn set_programmable(&mut self, frame: Frame) {
+    /// The part of its translation that has been added.
+    pub fn fine(&self) -> Vec3 {
+        self.fine
+    }
+
+    /// Sets the programmable frame, and the part of its translation that has been added.
+    pub fn set_programmable(&mut self, frame: Frame, fine: Vec3) {
         self.programmable = frame;
+        self.fine = fine;
         self.combine();
     }
 
@@ -59,7 +71,9 @@ impl Frames {
         self.total = Frame::from_translation(self.offset_change)
             * self.swivel.unwrap_or(Frame::IDENTITY)
             * self.programmable;
-        self.turned = self.total.matrix3 != Mat3::IDENTITY;
+        let matrix = self.total.matrix3;
+        self.scale = Vec3::new(matrix.x_axis.x, matrix.y_axis.y, matrix.z_axis.z);
+        self.turned = matrix != Mat3::from_diagonal(self.scale);
     }
 
     /// Whether the program's axes are not parallel to those of the work frame.
@@ -67,14 +81,30 @@ impl Frames {
         self.turned
     }
 
+    /// Whether the program's axes are those of the work frame, moved at most.
+    pub fn moved_only(&self) -> bool {
+        !self.turned && self.scale == Vec3::ONE
+    }
+
+    /// Whether lengths along axis `axis` of the program are as long in the work frame and the other two
+    /// turn about it the same way or mirrored (-1); nothing where neither is so.
+    pub fn sense_about(&self, axis: usize) -> Option<f64> {
+        let matrix = self.total.matrix3;
+        let determinant = matrix.determinant();
+        let rigid = (determinant.abs() - 1.0).abs() < 1e-9
+            && (0..3).all(|i| (matrix.col(i).length() - 1.0).abs() < 1e-9);
+        let kept = determinant > 0.0 || matrix.col(axis.min(2)) == Vec3::AXES[axis.min(2)];
+        (rigid && kept).then_some(determinant.signum())
+    }
+
     /// A point of the program in the work frame. Without a rotation each coordinate, known or not
     /// (NaN), stays for itself.
-    #[inline]
+    #[inline(always)]
     pub fn in_work_frame(&self, point: Vec3) -> Vec3 {
         if self.turned {
             self.total.transform_point3(point)
         } else {
-            point + self.total.translation
+            point * self.scale + self.total.translation
         }
     }
 
@@ -83,13 +113,26 @@ impl Frames {
         if self.turned {
             self.total.inverse().transform_point3(point)
         } else {
-            point - self.total.translation
+            (point - self.total.translation) / self.scale
         }
     }
 
-    /// A direction of the program in the work frame.
+    /// A direction of the program in the work frame; its length means nothing.
     pub fn direction(&self, vector: Vec3) -> Vec3 {
-        if self.turned { self.total.transform_vector3(vector) } else { vector }
+        self.total.transform_vector3(vector)
+    }
+
+    /// The unit vector about which a circle turns in the work frame that turns about `normal` (a unit
+    /// vector) in the program; nothing where it is no circle there.
+    pub fn circle_normal(&self, normal: Vec3) -> Option<Vec3> {
+        if self.moved_only() {
+            return Some(normal);
+        }
+        let (across, along) = normal.any_orthonormal_pair();
+        let (across, along) = (self.direction(across), self.direction(along));
+        let (a, b) = (across.length(), along.length());
+        let round = (a - b).abs() <= 1e-9 * a && across.dot(along).abs() <= 1e-9 * a * b;
+        round.then(|| across.cross(along).normalize())
     }
 }
 

@@ -8,22 +8,26 @@ use super::Fallible;
 use super::block::{Block, ToolCall};
 use super::call::{Argument, Call, Procedure};
 use super::commands::{Code, FeedType, Motion};
+use super::corner::Held;
 use super::cycles::{Drilling, Pause};
 use super::motion::AXIS_NAMES;
+use super::programmable::plain_values;
 use super::scan::Source;
 use super::state::{self, Modes, State};
+use crate::Settings;
+use crate::compensation::{Compensator, Terms};
 use crate::flow::Budget;
-use crate::{Settings, Sink};
 use geom::Vec3;
 use program::{Compensation, Coolant, Cycle, Feed, Op, Record, Spindle, Tool};
 
 /// Runs blocks.
-pub(super) struct Interpreter<'a> {
+pub(super) struct Interpreter<'a, 's> {
     /// What is remembered.
     pub state: State,
     /// The machine.
     pub settings: &'a Settings,
-    sink: &'a mut Sink<'a>,
+    /// Where the records go.
+    compensator: &'a mut Compensator<'s>,
     /// Jumps and calls.
     pub budget: Budget,
     /// The line of the main program that records carry, where another file runs.
@@ -32,6 +36,8 @@ pub(super) struct Interpreter<'a> {
     pub called: bool,
     /// Whether the sink has stopped the run.
     pub stopped: bool,
+    /// The block whose corner waits for the next one.
+    pub held: Option<Box<Held>>,
     reported_cycle: Option<Cycle>,
 }
 
@@ -42,17 +48,21 @@ const COOLANT: &[u32] = &[7, 8, 9];
 /// Automatic gear stage, gear stages 1 to 5.
 const GEARS: std::ops::RangeInclusive<u32> = 40..=45;
 
-impl<'a> Interpreter<'a> {
+impl<'a, 's> Interpreter<'a, 's> {
     /// At the start of a program.
-    pub fn new(settings: &'a Settings, sink: &'a mut Sink<'a>) -> Interpreter<'a> {
+    pub fn new(
+        settings: &'a Settings,
+        compensator: &'a mut Compensator<'s>,
+    ) -> Interpreter<'a, 's> {
         Interpreter {
             state: State::new(settings),
             settings,
-            sink,
+            compensator,
             budget: Budget::default(),
             line: None,
             called: false,
             stopped: false,
+            held: None,
             reported_cycle: None,
         }
     }
@@ -60,9 +70,23 @@ impl<'a> Interpreter<'a> {
     /// Reports what happens.
     #[inline]
     pub fn emit(&mut self, source: &Source, op: Op) -> Fallible<()> {
+        let record = Record { line: self.line.unwrap_or(source.line), op };
+        if self.held.is_some() { self.keep(source, record) } else { self.send(record) }
+    }
+
+    #[inline]
+    pub fn send(&mut self, record: Record) -> Fallible<()> {
         self.budget.record();
+        self.compensator.take(record).inspect_err(|_| self.stopped = true)
+    }
+
+    /// Reports that compensation changes with the move that follows.
+    pub fn switch(&mut self, source: &Source, side: Compensation, terms: Terms) -> Fallible<()> {
         let line = self.line.unwrap_or(source.line);
-        (self.sink)(Record { line, op }).inspect_err(|_| self.stopped = true)
+        if self.held.is_some() {
+            return self.keep(source, Record { line, op: Op::Compensation(side) });
+        }
+        self.compensator.switch(line, side, terms).inspect_err(|_| self.stopped = true)
     }
 
     /// Carries out a block.
@@ -79,6 +103,9 @@ impl<'a> Interpreter<'a> {
         if let Some(message) = block.message.take() {
             self.emit(source, Op::Message(message.into()))?;
         }
+        if self.held.is_some() && block.changes_frame() {
+            self.release(source)?;
+        }
         if let Some(call) = block.call.take() {
             return self.call(source, block, &call);
         }
@@ -87,11 +114,24 @@ impl<'a> Interpreter<'a> {
         if let Some((name, tolerance)) = block.path_tolerance {
             self.path_tolerance(source, name, tolerance * self.state.unit)?;
         }
-        if let Some(Code::Frame(command)) = block.code(3) {
-            return self.frame_command(source, block, command);
+        if let Some(rare) = &block.rare {
+            if let Some(radius) = rare.modal_round {
+                self.state.modal_round = radius.max(0.0) * self.state.unit;
+            }
+            self.state.corner_feed = rare.modal_corner_feed.or(self.state.corner_feed);
+        }
+        match block.code(3) {
+            Some(Code::Frame(command)) => return self.frame_command(source, block, command),
+            Some(Code::Pole(origin)) => return self.pole(source, block, origin),
+            Some(Code::Limit(upper)) => return self.limit(source, block, upper),
+            _ => {}
         }
         match block.code(2) {
             Some(Code::Dwell) => return self.dwell(source, block),
+            Some(Code::FloatingTap) => {
+                self.technology(source, block)?;
+                self.floating_tap(source, block)?;
+            }
             Some(Code::Home) => {
                 self.technology(source, block)?;
                 self.approach_fixed_point(source, block)?;
@@ -112,7 +152,7 @@ impl<'a> Interpreter<'a> {
             }
         }
         for m in block.m.iter().flatten() {
-            let known = *m == 6
+            let known = matches!(*m, 6 | 19)
                 || [STOPS, SPINDLE, COOLANT].iter().any(|group| group.contains(m))
                 || GEARS.contains(m)
                 || self.settings.auxiliary.contains(m);
@@ -131,17 +171,28 @@ impl<'a> Interpreter<'a> {
 
     /// The modal G commands.
     fn modes(&mut self, source: &Source, block: &Block) -> Fallible<()> {
-        let state = &mut self.state;
         if let Some(Code::Motion(motion)) = block.code(1) {
-            state.motion = motion;
+            self.state.motion = motion;
         }
         if let Some(Code::Plane(normal)) = block.code(6) {
+            let state = &self.state;
             if normal != state.plane_normal && state.compensation != Compensation::Off {
                 let message = "the plane changes while cutter radius compensation is active";
                 return Err(source.block_error("compensation", message));
             }
-            state.plane_normal = normal;
+            if normal != state.plane_normal && self.held.is_some() {
+                let message = "the plane changes between the two sides of a corner";
+                return Err(source.block_error("corner", message));
+            }
+            self.state.select_plane(normal);
         }
+        if let Some(Code::Corner(outer)) = block.code(18) {
+            self.state.corner = Some(outer);
+        }
+        if let Some(Code::Approach { around }) = block.code(17) {
+            self.state.goes_around = around;
+        }
+        let state = &mut self.state;
         if let Some(Code::Units(unit, of_feed)) = block.code(13) {
             state.unit = unit;
             // G70 and G71 leave feeds in the basic system, which is metric.
@@ -159,6 +210,9 @@ impl<'a> Interpreter<'a> {
         {
             state.feed_type = feed_type;
             state.feed = None;
+        }
+        if let Some(Code::Diameter(diameter)) = block.code(29) {
+            state.diameter = diameter;
         }
         if let Some(Code::VectorsInWorkFrame(in_work_frame)) = block.code(25) {
             state.vectors_in_work_frame = in_work_frame;
@@ -212,8 +266,9 @@ impl<'a> Interpreter<'a> {
 
     /// Back to the modal commands and the frame of the caller of a program with `SAVE`.
     pub fn restore(&mut self, source: &Source, modes: Modes) -> Fallible<()> {
+        self.release(source)?;
         let state = &mut self.state;
-        let frame = state.frames.programmable() != modes.programmable;
+        let frame = (state.frames.programmable(), state.frames.fine()) != modes.programmable;
         if state.compensation_in_effect != Compensation::Off
             && (frame || modes.plane_normal != state.plane_normal)
         {
@@ -225,14 +280,16 @@ impl<'a> Interpreter<'a> {
             state.feed = None;
         }
         state.motion = modes.motion;
-        state.plane_normal = modes.plane_normal;
+        state.select_plane(modes.plane_normal);
         (state.unit, state.feed_unit) = modes.units;
         state.absolute = modes.absolute;
+        state.diameter = modes.diameter;
         state.feed_type = modes.feed_type;
         state.vectors_in_work_frame = modes.vectors_in_work_frame;
         state.compensation = modes.compensation;
         if frame {
-            state.change_frames(|frames| frames.set_programmable(modes.programmable));
+            let (frame, fine) = modes.programmable;
+            state.change_frames(|frames| frames.set_programmable(frame, fine));
         }
         // With the same G command the offset stays as it is now.
         if modes.work_offset == state.work_offset {
@@ -262,7 +319,7 @@ impl<'a> Interpreter<'a> {
         if let Some(feed) = block.feed {
             self.feed(source, feed)?;
         }
-        if block.speed.is_some() || block.m[0].is_some() {
+        if block.speed.is_some() || block.m[0].is_some() || block.rare.is_some() {
             self.spindle_and_coolant(source, block)?;
         }
         Ok(())
@@ -358,6 +415,8 @@ impl<'a> Interpreter<'a> {
                 Spindle::CounterClockwise(_) => Spindle::CounterClockwise(speed),
             },
         };
+        let positioned = block.rare.as_ref().is_some_and(|rare| rare.spindle_position.is_some());
+        let spindle = if positioned || block.has_m(19) { Spindle::Off } else { spindle };
         self.report_spindle(source, spindle)?;
         let coolant = match block.m.iter().flatten().find(|m| COOLANT.contains(m)) {
             Some(7) => Coolant::Mist,
@@ -372,12 +431,35 @@ impl<'a> Interpreter<'a> {
         Ok(())
     }
 
-    fn report_spindle(&mut self, source: &Source, spindle: Spindle) -> Fallible<()> {
+    /// The spindle does this from here on.
+    pub fn report_spindle(&mut self, source: &Source, spindle: Spindle) -> Fallible<()> {
         if spindle == self.state.spindle {
             return Ok(());
         }
+        if let Spindle::Clockwise(speed) | Spindle::CounterClockwise(speed) = spindle {
+            let [low, high] = self.state.speed_limits;
+            if !(low..=high).contains(&speed) {
+                let message =
+                    format!("the speed of {speed} 1/min is not within G25 S{low} and G26 S{high}");
+                return Err(source.block_error("spindle", message));
+            }
+        }
         self.state.spindle = spindle;
         self.emit(source, Op::Spindle(spindle))
+    }
+
+    /// `G25`, `G26`: limits of the speed of the spindle, and of the work area. Where the tool would leave
+    /// that, the control stops; it goes nowhere else.
+    fn limit(&mut self, source: &Source, block: &Block, upper: bool) -> Fallible<()> {
+        plain_values(source, block)?;
+        if !block.only_group(3) || block.feed.is_some() || block.has_rotary() {
+            let message = format!("{} stands in a block of its own", block.command(3));
+            return Err(source.block_error("syntax", message));
+        }
+        if let Some(speed) = block.speed {
+            self.state.speed_limits[usize::from(upper)] = speed;
+        }
+        Ok(())
     }
 
     fn stops(&mut self, source: &Source, block: &Block) -> Fallible<()> {
@@ -433,6 +515,7 @@ impl<'a> Interpreter<'a> {
                 self.state.modal_cycle = None;
                 self.cycle_off(source)
             }
+            Procedure::Pattern(pattern) => self.pattern(source, call, pattern),
             Procedure::Drill(form) => {
                 let drilling = Drilling::read(source, call, form, &self.state)?;
                 if call.modal {
@@ -520,6 +603,10 @@ impl<'a> Interpreter<'a> {
         let state = &self.state;
         if state.plane_normal != 2 {
             let message = "drilling along X or Y (G18, G19) is not supported";
+            return Err(source.block_error("unsupported", message));
+        }
+        if !state.frames.moved_only() && state.frames.sense_about(2).is_none() {
+            let message = "drilling in a frame that is scaled, or mirrored along the hole";
             return Err(source.block_error("unsupported", message));
         }
         if state.position.x.is_nan() || state.position.y.is_nan() {

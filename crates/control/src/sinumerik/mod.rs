@@ -11,6 +11,7 @@ mod arc;
 mod block;
 mod call;
 mod commands;
+mod corner;
 mod cycles;
 mod definition;
 mod expression;
@@ -22,22 +23,27 @@ mod motion;
 mod offsets;
 mod orientation;
 mod outline;
+mod pattern;
+mod polar;
+mod programmable;
 mod run;
 mod scan;
 mod state;
 mod statement;
 mod system;
+mod thread;
 mod value;
 mod variables;
 mod words;
 
-use crate::{Settings, Sink};
+use crate::Settings;
+use crate::compensation::Compensator;
 use program::Diagnostic;
 
 /// What may go wrong.
 type Fallible<T> = Result<T, Box<Diagnostic>>;
 
 /// Runs a program.
-pub(crate) fn run(settings: &Settings, text: &[u8], sink: &mut Sink) -> Fallible<()> {
-    run::Run::main(settings, text, sink)
+pub(crate) fn run(settings: &Settings, text: &[u8], compensator: &mut Compensator) -> Fallible<()> {
+    run::Run::main(settings, text, compensator)
 }

@@ -1,17 +1,20 @@
 //! Where a block sends the axes.
 
 use super::Fallible;
-use super::block::{Block, Coordinate, Count};
-use super::commands::{Code, Motion};
+use super::block::{Block, Coordinate, Count, Rare};
+use super::commands::{Code, Diameter, Motion};
+use super::corner::Element;
 use super::interpreter::Interpreter;
+use super::polar::axes_of_plane;
 use super::scan::Source;
 use super::state::ToolAxis;
+use crate::compensation::Terms;
 use geom::{Vec3, direction};
 use program::{Compensation, Op};
 
 pub(super) const AXIS_NAMES: [&str; 6] = ["X", "Y", "Z", "A", "B", "C"];
 
-impl Interpreter<'_> {
+impl Interpreter<'_, '_> {
     /// The motion of a block, if it has one.
     #[inline]
     pub fn motion(&mut self, source: &Source, block: &Block) -> Fallible<()> {
@@ -25,19 +28,31 @@ impl Interpreter<'_> {
         if block.code(9) == Some(Code::MachineCoordinates) {
             return self.machine_position(source, block);
         }
+        if block.rare.as_ref().is_some_and(|rare| rare.positioned.iter().any(Option::is_some)) {
+            return self.position_axes(source, block);
+        }
         let motion = self.state.motion;
-        let round = !matches!(motion, Motion::Rapid | Motion::Line);
-        if !round && block.has_arc_word() {
+        let straight = matches!(motion, Motion::Rapid | Motion::Line);
+        let thread = matches!(motion, Motion::Thread | Motion::TapIn | Motion::TapOut);
+        let round = !straight && !thread;
+        if straight && block.has_arc_word() {
             let message = "words of an arc without G2, G3 or CIP";
             return Err(source.block_error("arc", message));
         }
         if !(block.has_position() || round && block.has_arc_word()) {
+            let path_word = |rare: &Rare| rare.angle.is_some() || rare.corner.is_some();
+            if block.rare.as_deref().is_some_and(path_word) {
+                let message = "ANG=, CHF=, CHR= and RND= belong to a block that moves";
+                return Err(source.block_error("syntax", message));
+            }
             return self.no_motion(source, block);
         }
         if !self.state.moved {
             self.state.move_first();
         }
-        if round {
+        if thread {
+            self.thread(source, block)?;
+        } else if round {
             self.settle_compensation(source, block, true)?;
             self.use_feed(source)?;
             self.arc(source, block)?;
@@ -54,13 +69,18 @@ impl Interpreter<'_> {
                     "Z in a turned frame before X and Y: where the tool goes down is not known";
                 return Err(source.block_error("unknown-position", message));
             }
-            self.state.position = position;
+            self.state.head_for(position);
+            let start = std::mem::replace(&mut self.state.position, position);
             self.state.programmed = programmed;
             let pose = self.state.pose(position);
-            self.emit(
-                source,
-                if motion == Motion::Rapid { Op::Rapid(pose) } else { Op::Line(pose) },
-            )?;
+            let cut = motion == Motion::Line;
+            let op = if cut { Op::Line(pose) } else { Op::Rapid(pose) };
+            if self.cornered(block) {
+                let element = Element { start, end: position, circle: None, cut };
+                self.go_round(source, block, element, op)?;
+            } else {
+                self.emit(source, op)?;
+            }
         }
         self.drill_modally(source)
     }
@@ -80,18 +100,76 @@ impl Interpreter<'_> {
     /// The linear axes' end of a block: where they are in the coordinates of the program, and what
     /// incremental words count from afterwards; mm.
     #[inline]
-    pub fn target(&self, source: &Source, block: &Block) -> Fallible<(Vec3, Vec3)> {
+    pub fn target(&mut self, source: &Source, block: &Block) -> Fallible<(Vec3, Vec3)> {
         let mut position = self.state.position;
         let mut programmed = self.state.programmed;
         for i in 0..3 {
-            if let Some(coordinate) = block.axes[i] {
+            if let Some(mut coordinate) = block.axes[i] {
+                if i == 0 && self.state.diameter != Diameter::Off {
+                    coordinate.value *= self.radius_of_diameter(coordinate.count);
+                }
                 let base = self.state.programmed[i];
                 let value = self.linear(source, coordinate, base, AXIS_NAMES[i])?;
                 position[i] = value;
                 programmed[i] = value;
             }
         }
+        if block.has_polar() {
+            self.polar_target(source, block, &mut position)?;
+            for i in (0..3).filter(|i| *i != self.state.plane_normal) {
+                programmed[i] = position[i];
+            }
+        }
+        if let Some(angle) = block.rare.as_ref().and_then(|rare| rare.angle) {
+            self.angle_target(source, block, angle, &mut position)?;
+            programmed = position;
+        }
         Ok((position, programmed))
+    }
+
+    /// What a value of X is multiplied by where it is a diameter (`DIAMON`, `DIAM90`).
+    fn radius_of_diameter(&self, count: Count) -> f64 {
+        let incremental =
+            count == Count::Incremental || count == Count::Modal && !self.state.absolute;
+        if self.state.diameter == Diameter::On || !incremental { 0.5 } else { 1.0 }
+    }
+
+    /// `ANG=`: the coordinate of the plane that is not named, on the line under that angle to the first
+    /// axis of the plane.
+    #[cold]
+    fn angle_target(
+        &self,
+        source: &Source,
+        block: &Block,
+        angle: f64,
+        position: &mut Vec3,
+    ) -> Fallible<()> {
+        let error = |message: &str| Err(source.block_error("angle", message));
+        let (first, second) = axes_of_plane(self.state.plane_normal);
+        let start = self.state.position;
+        if !matches!(self.state.motion, Motion::Rapid | Motion::Line) || block.has_polar() {
+            return error("ANG= belongs to a straight line");
+        }
+        if start[first].is_nan() || start[second].is_nan() {
+            return error("ANG= from a point that is not known");
+        }
+        let (sin, cos) = angle.to_radians().sin_cos();
+        let (named, other, slope) = match (block.axes[first], block.axes[second]) {
+            (Some(_), None) => (first, second, (sin, cos)),
+            (None, Some(_)) => (second, first, (cos, sin)),
+            _ => {
+                return error(
+                    "ANG= takes one coordinate of the plane; two lines by their angles are \
+                               not supported",
+                );
+            }
+        };
+        let way = position[named] - start[named];
+        if slope.1.abs() < 1e-9 || way * slope.1 <= 0.0 {
+            return error("the line under ANG= does not reach that coordinate");
+        }
+        position[other] = start[other] + way * slope.0 / slope.1;
+        Ok(())
     }
 
     /// A linear coordinate, mm, that counts from `base` where it is incremental.
@@ -249,19 +327,65 @@ impl Interpreter<'_> {
             let message = "cutter radius compensation without a tool edge D (alarm 10750)";
             return Err(source.block_error("compensation", message));
         }
-        state.compensation_in_effect = state.compensation;
-        let compensation = match state.compensation {
-            Compensation::Left(_) => Compensation::Left(state.edge),
-            Compensation::Right(_) => Compensation::Right(state.edge),
-            Compensation::Off => Compensation::Off,
+        // A mirrored contour has the tool on its other side.
+        let mirrored = match state.frames.sense_about(normal) {
+            _ if state.compensation == Compensation::Off || state.frames.moved_only() => false,
+            Some(sense) => sense < 0.0,
+            None => {
+                let message = "cutter radius compensation in a frame that is scaled, or mirrored \
+                               across its plane";
+                return Err(source.block_error("unsupported", message));
+            }
         };
-        self.emit(source, Op::Compensation(compensation))
+        state.compensation_in_effect = state.compensation;
+        let compensation = match (state.compensation, mirrored) {
+            (Compensation::Left(_), false) | (Compensation::Right(_), true) => {
+                Compensation::Left(state.edge)
+            }
+            (Compensation::Right(_), false) | (Compensation::Left(_), true) => {
+                Compensation::Right(state.edge)
+            }
+            (Compensation::Off, _) => Compensation::Off,
+        };
+        let axis = |index: usize| {
+            let mut axis = Vec3::ZERO;
+            axis[index % 3] = 1.0;
+            self.state.frames.direction(axis)
+        };
+        let terms = Terms {
+            normal: axis(normal + 1).cross(axis(normal + 2)).normalize_or(Vec3::Z),
+            across_tool: normal == 2,
+            radius: None,
+            outer: self.state.corner,
+            around: self.state.goes_around,
+        };
+        self.switch(source, compensation, terms)
+    }
+
+    /// `POS[X]=`: axes that each go to a place by themselves, and the block with them.
+    #[cold]
+    fn position_axes(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+        if block.has_position() || block.has_arc_word() {
+            let message = "POS and a way of the tool in one block";
+            return Err(source.block_error("syntax", message));
+        }
+        self.check_free(source, "POS")?;
+        let mut alone = Block::empty();
+        alone.axes = block.rare.as_ref().map_or([None; 6], |rare| rare.positioned);
+        let modal = std::mem::replace(&mut self.state.motion, Motion::Rapid);
+        self.motion(source, &alone)?;
+        self.state.motion = modal;
+        Ok(())
     }
 
     /// `G53`, `G153`, `SUPA`: a position of the machine, not of the work frame.
     fn machine_position(&mut self, source: &Source, block: &Block) -> Fallible<()> {
         if !block.has_position() {
             return self.no_motion(source, block);
+        }
+        if block.has_polar() {
+            let message = format!("{} with polar coordinates", block.command(9));
+            return Err(source.block_error("machine-position", message));
         }
         if !matches!(self.state.motion, Motion::Rapid | Motion::Line)
             || block.has_arc_word()
@@ -298,7 +422,7 @@ impl Interpreter<'_> {
 
     /// Moves in machine coordinates are made neither with compensation nor between modal holes, nor
     /// with `TRAORI`: what they switch off are offsets, so positions would still be the tool tip's.
-    fn check_free(&self, source: &Source, name: &str) -> Fallible<()> {
+    pub fn check_free(&self, source: &Source, name: &str) -> Fallible<()> {
         if self.state.compensation != Compensation::Off
             || self.state.compensation_in_effect != Compensation::Off
         {

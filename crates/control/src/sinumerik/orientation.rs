@@ -1,10 +1,8 @@
-//! Frames, the swivelled plane and the transformation for five axes.
+//! The swivelled plane and the transformation for five axes.
 
 use super::Fallible;
-use super::block::{Block, Coordinate, Count};
 use super::call::{Argument, Call};
-use super::commands::FrameCommand;
-use super::frames::{about, roll_pitch_yaw, swivel_order, swivelled};
+use super::frames::{swivel_order, swivelled};
 use super::interpreter::Interpreter;
 use super::scan::Source;
 use super::state::ToolAxis;
@@ -23,69 +21,7 @@ const AFTER: usize = 10;
 const DIRECTION: usize = 13;
 const PARAMETERS: usize = 16;
 
-impl Interpreter<'_> {
-    /// `TRANS`, `ROT` and their kin, in a block of their own.
-    pub fn frame_command(
-        &mut self,
-        source: &Source,
-        block: &Block,
-        command: FrameCommand,
-    ) -> Fallible<()> {
-        let name = block.command(3);
-        if !block.only_group(3)
-            || block.feed.is_some()
-            || block.speed.is_some()
-            || block.has_rotary()
-        {
-            let message = format!("{name} stands in a block of its own with X, Y, Z");
-            return Err(source.block_error("frame", message));
-        }
-        if self.state.compensation_in_effect != Compensation::Off {
-            let message = format!("{name} while cutter radius compensation is active");
-            return Err(source.block_error("compensation", message));
-        }
-        if block.rotation.is_some() && !matches!(command, FrameCommand::Rotate(_)) {
-            return Err(source.block_error("frame", "RPL= belongs to ROT and AROT"));
-        }
-        let values = |unit: f64| -> Fallible<Vec3> {
-            let mut vector = Vec3::ZERO;
-            for i in 0..3 {
-                match block.axes[i] {
-                    Some(Coordinate { count: Count::Modal, value, .. }) => vector[i] = value * unit,
-                    Some(_) => {
-                        return Err(source.block_error("frame", "a frame takes plain values"));
-                    }
-                    None => {}
-                }
-            }
-            Ok(vector)
-        };
-        let (change, on_top) = match command {
-            FrameCommand::Translate(on_top) => {
-                (Frame::from_translation(values(self.state.unit)?), on_top)
-            }
-            FrameCommand::Rotate(on_top) => {
-                let turned = match block.rotation {
-                    Some(_) if block.has_linear() => {
-                        let message = "RPL= and X, Y, Z in one rotation";
-                        return Err(source.block_error("frame", message));
-                    }
-                    Some(degrees) => about(self.state.plane_normal, degrees),
-                    None => roll_pitch_yaw(values(1.0)?),
-                };
-                (Frame::from_mat3(turned), on_top)
-            }
-            FrameCommand::Delete if block.has_linear() => {
-                let message = format!("{name} is not supported but for deleting the frame");
-                return Err(source.block_error("unsupported", message));
-            }
-            FrameCommand::Delete => (Frame::IDENTITY, false),
-        };
-        let base = if on_top { self.state.frames.programmable() } else { Frame::IDENTITY };
-        self.state.change_frames(|frames| frames.set_programmable(base * change));
-        Ok(())
-    }
-
+impl Interpreter<'_, '_> {
     /// `TRAORI`, `TRAORI(1)`: the linear axes now give the tool tip, which was elsewhere before.
     pub fn traori(&mut self, source: &Source, call: &Call) -> Fallible<()> {
         let plain = match call.arguments.as_slice() {

@@ -12,8 +12,9 @@ use super::state::Modes;
 use super::statement::{Count, Jump, ProgramCall, Search, Section, Statement, Target};
 use super::value::Value;
 use super::variables::{Locals, Variable};
+use crate::Settings;
+use crate::compensation::Compensator;
 use crate::flow::DEEPEST;
-use crate::{Settings, Sink};
 use program::Diagnostic;
 use std::rc::Rc;
 
@@ -71,9 +72,9 @@ struct Reference {
 }
 
 /// A run of a main program.
-pub(super) struct Run<'a> {
+pub(super) struct Run<'a, 's> {
     library: Library<'a>,
-    interpreter: Interpreter<'a>,
+    interpreter: Interpreter<'a, 's>,
     level: Level<'a>,
     callers: Vec<Level<'a>>,
 }
@@ -86,12 +87,16 @@ impl<'a> Level<'a> {
     }
 }
 
-impl<'a> Run<'a> {
+impl<'a, 's> Run<'a, 's> {
     /// Runs the main program of `text`.
-    pub fn main(settings: &'a Settings, text: &'a [u8], sink: &'a mut Sink<'a>) -> Fallible<()> {
+    pub fn main(
+        settings: &'a Settings,
+        text: &'a [u8],
+        compensator: &'a mut Compensator<'s>,
+    ) -> Fallible<()> {
         let library = Library::new(&settings.setup.folders, text)?;
         let Some(program) = library.main() else { return Ok(()) };
-        let interpreter = Interpreter::new(settings, sink);
+        let interpreter = Interpreter::new(settings, compensator);
         let level = Level::new(program, None);
         let mut run = Run { library, interpreter, level, callers: Vec::new() };
         let mut block = Block::empty();
@@ -136,7 +141,7 @@ impl<'a> Run<'a> {
                 continue;
             }
             block.read(source, &self.interpreter.state)?;
-            match block.statement.take() {
+            match block.statement.take().map(|statement| *statement) {
                 None => {
                     self.level.working |= block.any;
                     self.interpreter.run(&source, block)?;
@@ -270,7 +275,9 @@ impl<'a> Run<'a> {
         let Some((source, _)) = program.block(first.at, first.line) else { return Ok(behind) };
         let mut block = Block::empty();
         block.read(source, &self.interpreter.state)?;
-        let Some(Statement::For(count)) = block.statement.take() else { return Ok(behind) };
+        let Some(Statement::For(count)) = block.statement.take().map(|s| *s) else {
+            return Ok(behind);
+        };
         let end = self.level.counts.iter().find(|(at, _)| *at == first.at).map(|(_, end)| *end);
         if end != Some(count.end) {
             let message = format!(

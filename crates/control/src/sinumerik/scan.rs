@@ -202,7 +202,7 @@ impl<'a> Scanner<'a> {
 
     /// Takes skip mark, block number and label. A label is a name of which the first two characters
     /// are letters or underscores, and a colon.
-    #[inline]
+    #[inline(always)]
     pub fn head(&mut self) -> Fallible<Head> {
         let mut head = Head::default();
         self.blanks();

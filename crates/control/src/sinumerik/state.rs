@@ -1,12 +1,13 @@
 //! What the control remembers from block to block.
 
-use super::commands::{FeedType, Motion};
+use super::commands::{Diameter, FeedType, Motion};
 use super::cycles::Drilling;
 use super::frames::Frames;
 use super::offsets::WorkOffsets;
 use super::value::Value;
 use super::variables::{Locals, Parameters, Place};
 use crate::Settings;
+use crate::compensation::Outer;
 use geom::{Frame, Vec3};
 use program::{Compensation, Coolant, Feed, Orientation, Pose, Spindle, Tool};
 
@@ -46,6 +47,8 @@ pub(super) struct State {
     pub absolute: bool,
     /// G group 15.
     pub feed_type: FeedType,
+    /// G group 29.
+    pub diameter: Diameter,
     /// G group 25.
     pub vectors_in_work_frame: bool,
     /// G group 8: 500 for none.
@@ -54,6 +57,10 @@ pub(super) struct State {
     pub compensation: Compensation,
     /// G group 7 as the axes move.
     pub compensation_in_effect: Compensation,
+    /// How outer corners are gone around, where a block has said so.
+    pub corner: Option<Outer>,
+    /// `KONT`: from behind the contour the tool goes around its first point.
+    pub goes_around: bool,
     /// `F` in the active type, mm/min or mm.
     pub feed: Option<f64>,
     /// The feed that was reported last.
@@ -78,6 +85,20 @@ pub(super) struct State {
     pub position: Vec3,
     /// The coordinates that were programmed last, mm: what incremental ones count from.
     pub programmed: Vec3,
+    /// The way of the last move in the plane, where it ended; of any length.
+    pub heading: Vec3,
+    /// The pole of polar coordinates, mm.
+    pub pole: Vec3,
+    /// The last polar radius, mm, and the last polar angle, degrees.
+    pub polar: (Option<f64>, Option<f64>),
+    /// `RNDM`: the radius between all blocks, mm; 0 for none.
+    pub modal_round: f64,
+    /// `FRCM`: the feed of corners, in units of the program.
+    pub corner_feed: Option<f64>,
+    /// The last pitch of a thread, mm, with its sign.
+    pub pitch: Option<f64>,
+    /// The limits of the spindle's speed (`G25`, `G26`), 1/min.
+    pub speed_limits: [f64; 2],
     /// Positions of A, B, C, degrees.
     pub rotary: [f64; 3],
     /// Where the tool axis comes from.
@@ -113,7 +134,8 @@ pub(super) struct Modes {
     pub vectors_in_work_frame: bool,
     pub work_offset: u32,
     pub compensation: Compensation,
-    pub programmable: Frame,
+    pub programmable: (Frame, Vec3),
+    pub diameter: Diameter,
 }
 
 impl State {
@@ -127,10 +149,13 @@ impl State {
             feed_unit: 1.0,
             absolute: true,
             feed_type: FeedType::PerMinute,
+            diameter: Diameter::Off,
             vectors_in_work_frame: true,
             work_offset: WORK_OFFSET_AT_RESET,
             compensation: Compensation::Off,
             compensation_in_effect: Compensation::Off,
+            corner: None,
+            goes_around: false,
             feed: None,
             reported_feed: None,
             speed: 0.0,
@@ -143,6 +168,13 @@ impl State {
             frames: Frames::new(),
             position: settings.setup.start.unwrap_or(Vec3::NAN),
             programmed: settings.setup.start.unwrap_or(Vec3::NAN),
+            heading: Vec3::NAN,
+            pole: Vec3::ZERO,
+            polar: (None, None),
+            modal_round: 0.0,
+            corner_feed: None,
+            pitch: None,
+            speed_limits: [0.0, f64::INFINITY],
             rotary: settings.rotary.map(|exists| if exists { f64::NAN } else { 0.0 }),
             tool_axis: ToolAxis::Rotary,
             modal_cycle: None,
@@ -158,7 +190,7 @@ impl State {
     }
 
     /// The pose at `point` of the program.
-    #[inline]
+    #[inline(always)]
     pub fn pose(&self, point: Vec3) -> Pose {
         let orientation = match self.tool_axis {
             ToolAxis::Rotary => {
@@ -233,7 +265,8 @@ impl State {
             vectors_in_work_frame: self.vectors_in_work_frame,
             work_offset: self.work_offset,
             compensation: self.compensation,
-            programmable: self.frames.programmable(),
+            programmable: (self.frames.programmable(), self.frames.fine()),
+            diameter: self.diameter,
         }
     }
 
@@ -246,6 +279,16 @@ impl State {
         })
     }
 
+    /// A straight way to `point` gives the direction of what follows, where it goes along the plane.
+    #[inline(always)]
+    pub fn head_for(&mut self, point: Vec3) {
+        let mut way = point - self.position;
+        way[self.plane_normal] = 0.0;
+        if way != Vec3::ZERO {
+            self.heading = way;
+        }
+    }
+
     /// The first move in the active work offset: poses count in the offset as it is now, whatever it
     /// becomes.
     #[cold]
@@ -254,10 +297,24 @@ impl State {
         self.work_offsets.use_first(self.work_offset, self.active_offset);
     }
 
+    /// `G17`, `G18`, `G19`. A pole belongs to the plane that it was given in.
+    pub fn select_plane(&mut self, normal: usize) {
+        if normal == self.plane_normal {
+            return;
+        }
+        self.plane_normal = normal;
+        self.heading = Vec3::NAN;
+        self.polar = (None, None);
+        if self.pole != Vec3::ZERO {
+            self.pole = Vec3::NAN;
+        }
+    }
+
     /// Nobody knows any more where the linear axes are.
     pub fn lose_position(&mut self) {
         self.position = Vec3::NAN;
         self.programmed = Vec3::NAN;
+        self.heading = Vec3::NAN;
     }
 
     /// Nobody knows any more where the existing rotary axes are.
@@ -268,13 +325,14 @@ impl State {
 
     /// Changes the frames; the axes stay where they are. A translation alone leaves the programmed
     /// values, so that the next incremental word travels the offset as well (SD42440 = 1, the
-    /// delivery state); after a rotation they mean nothing.
+    /// delivery state); after a rotation, a scale or a mirror they mean nothing.
     pub fn change_frames(&mut self, change: impl FnOnce(&mut Frames)) {
         let base = self.frames.in_work_frame(self.position);
-        let turned = self.frames.turned();
+        let moved_only = self.frames.moved_only();
         change(&mut self.frames);
         self.position = self.frames.in_program(base);
-        if turned || self.frames.turned() {
+        self.heading = Vec3::NAN;
+        if !(moved_only && self.frames.moved_only()) {
             self.programmed = Vec3::NAN;
         }
     }

@@ -1,6 +1,7 @@
 //! System variables (`$...`): those whose value the program itself gives or the operator has said.
 
 use super::Fallible;
+use super::commands::Diameter;
 use super::expression::Evaluator;
 use super::motion::AXIS_NAMES;
 use super::scan::Scanner;
@@ -25,8 +26,10 @@ pub(super) fn read(evaluator: &Evaluator, state: &State, scanner: &mut Scanner) 
     scanner.at += 1;
     let name = scanner.name()?;
     let lengths = ["AA_IW", "AA_IM", "P_EP", "P_PFRAME", "P_UIFR", "P_F"];
-    if state.unit != 1.0 && lengths.contains(&name.as_str()) {
-        let message = format!("${} while inches are programmed is not supported", name.as_str());
+    let plain = state.unit == 1.0 && state.diameter == Diameter::Off;
+    if !plain && lengths.contains(&name.as_str()) {
+        let message =
+            format!("${} while inches or diameters are programmed is not supported", name.as_str());
         return Err(scanner.error_since(start, "unsupported", message));
     }
     let unknown = |scanner: &Scanner, what: &str| {

@@ -229,7 +229,7 @@ impl Reader<'_, '_> {
     fn program_call(&mut self, start: usize) -> Fallible<()> {
         let evaluator = Evaluator::new(self.state, &self.block.assigned);
         let call = statement::program_call(&mut self.scanner, &evaluator, start)?;
-        self.block.statement = Some(call);
+        self.block.statement = Some(call.into());
         Ok(())
     }
 
@@ -398,7 +398,7 @@ impl Reader<'_, '_> {
             && let Some(statement) =
                 statement::read(&mut self.scanner, &evaluator, start, &whole_name)?
         {
-            self.block.statement = Some(statement);
+            self.block.statement = Some(statement.into());
             return Ok(());
         }
         if let Some(call) = Call::read(&mut self.scanner, start, name, &evaluator)? {

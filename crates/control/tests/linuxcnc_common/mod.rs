@@ -64,7 +64,9 @@ fn theirs(text: &[u8], folders: &[PathBuf]) -> Option<Result<Vec<Motion>, String
     let subroutines: Vec<String> = folders.iter().map(|f| f.display().to_string()).collect();
     let ini = format!("[RS274NGC]\nSUBROUTINE_PATH = {}\n", subroutines.join(":"));
     fs::write(path("judge.ini"), ini).unwrap();
-    let table = TOOLS.map(|n| format!("T{n} P{n} Z{n} D6\n"));
+    // By itself the interpreter counts inches.
+    let line = |n| format!("T{n} P{n} Z{:.9} D{:.9}\n", f64::from(n) / 25.4, 6.0 / 25.4);
+    let table = TOOLS.map(line);
     fs::write(path("tool.tbl"), table.collect::<String>()).unwrap();
     fs::write(path("rs274.var"), "").unwrap();
     fs::write(path("program.ngc"), text).unwrap();
@@ -140,7 +142,7 @@ fn canonical(printed: &str) -> Vec<Motion> {
             "STRAIGHT_TRAVERSE" => {
                 moves.push(Motion::Rapid(six(place(vector(0) * unit), &numbers[3..])));
             }
-            "STRAIGHT_FEED" => {
+            "STRAIGHT_FEED" | "STRAIGHT_PROBE" => {
                 moves.push(Motion::Feed(six(place(vector(0) * unit), &numbers[3..])));
             }
             "DWELL" => moves.push(Motion::Dwell(numbers[0])),
@@ -203,8 +205,12 @@ fn ours(text: &[u8], folders: &[PathBuf]) -> Result<Vec<Motion>, String> {
                 at = to(&pose, at);
                 moves.push(Motion::Rapid(at));
             }
-            Op::Line(pose) => {
+            Op::Line(pose) | Op::Probe(pose) => {
                 at = to(&pose, at);
+                moves.push(Motion::Feed(at));
+            }
+            Op::Thread(thread) => {
+                at = to(&thread.end, at);
                 moves.push(Motion::Feed(at));
             }
             Op::Arc(arc) => {

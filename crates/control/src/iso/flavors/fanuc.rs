@@ -19,7 +19,7 @@ const G_WORDS: &[GRow] = &[
     (501, Group::Mirror, G::Mirror(false)),
     (511, Group::Mirror, G::Mirror(true)),
     (531, Group::OneShot, G::SwingToTilt),
-    (541, Group::WorkOffset, G::WorkOffset(541)),
+    (541, Group::WorkOffset, G::FurtherOffset { most: 300 }),
     (600, Group::OneShot, G::OneSided),
     (620, Group::Path, G::Neutral(b"")),
     (630, Group::Path, G::Neutral(b"")),

@@ -1,7 +1,7 @@
 //! LinuxCNC, "G-Code Overview", table of modal groups. `G80` may stand beside `G0` to `G3`, so it has
 //! a group of its own.
 
-use super::super::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Motion, Refused};
+use super::super::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Motion, Refused, Side};
 use super::{BASIC_G, BASIC_M, MILL_G, MILL_M, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles};
 
 const G_WORDS: &[GRow] = &[
@@ -19,9 +19,9 @@ const G_WORDS: &[GRow] = &[
     (384, Group::Motion, G::Motion(Motion::Probe)),
     (385, Group::Motion, G::Motion(Motion::Probe)),
     (431, Group::Length, G::DynamicLength),
-    (591, Group::WorkOffset, G::WorkOffset(591)),
-    (592, Group::WorkOffset, G::WorkOffset(592)),
-    (593, Group::WorkOffset, G::WorkOffset(593)),
+    (591, Group::WorkOffset, G::WorkOffset(60)),
+    (592, Group::WorkOffset, G::WorkOffset(61)),
+    (593, Group::WorkOffset, G::WorkOffset(62)),
     (611, Group::Path, G::Neutral(b"")),
     (640, Group::Path, G::Neutral(b"PQ")),
     (800, Group::Cycle, G::CancelCycle),
@@ -30,6 +30,8 @@ const G_WORDS: &[GRow] = &[
     (921, Group::OneShot, G::CancelShift { keep: false }),
     (922, Group::OneShot, G::CancelShift { keep: true }),
     (923, Group::OneShot, G::RestoreShift),
+    (411, Group::Compensation, G::DynamicCompensation(Side::Left)),
+    (421, Group::Compensation, G::DynamicCompensation(Side::Right)),
 ];
 
 const M_WORDS: &[MRow] = &[
@@ -56,8 +58,6 @@ const M_WORDS: &[MRow] = &[
 const REFUSED_G: &[Refused] = &[
     (52, "NURBS are not followed; write G5 or plain moves"),
     (53, "NURBS are not followed; write G5 or plain moves"),
-    (411, "a tool radius in the block is not followed; use G41 D"),
-    (421, "a tool radius in the block is not followed; use G42 D"),
     (432, "a second length added to the first is not followed; write their sum in the tool table"),
     (700, "lathe cycles are not followed; write their moves"),
     (710, "lathe cycles are not followed; write their moves"),

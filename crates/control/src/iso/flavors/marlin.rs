@@ -5,9 +5,9 @@ use super::super::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Refused};
 use super::{BASIC_G, BASIC_M};
 
 const G_WORDS: &[GRow] = &[
-    (591, Group::WorkOffset, G::WorkOffset(591)),
-    (592, Group::WorkOffset, G::WorkOffset(592)),
-    (593, Group::WorkOffset, G::WorkOffset(593)),
+    (591, Group::WorkOffset, G::WorkOffset(60)),
+    (592, Group::WorkOffset, G::WorkOffset(61)),
+    (593, Group::WorkOffset, G::WorkOffset(62)),
     (800, Group::Motion, G::CancelCycle),
 ];
 

@@ -1,0 +1,235 @@
+//! Cutter radius compensation: the path of the tool's centre from the programmed contour.
+//!
+//! It stands between a control and the caller's sink. While compensation is on with a tool whose
+//! radius is known, contour goes in and the centre's path comes out: arcs stay arcs, corners are
+//! treated as the control treats them ([`rules`]), one element of the contour is held back until the
+//! next one says where it ends ([`path`]). With any other tool compensation stays a state and nothing
+//! is changed. What each control does is in `docs/controls/compensation.md`, with sources.
+
+mod leaving;
+mod path;
+mod plane;
+mod rules;
+
+use crate::{Dialect, Settings, Sink, ToolData};
+use geom::Vec3;
+use leaving::Leaving;
+use path::Path;
+use program::{Compensation, Diagnostic, Feed, Op, Orientation, Pose, Record};
+pub(crate) use rules::Outer;
+use rules::Rules;
+
+type Fallible<T> = Result<T, Box<Diagnostic>>;
+
+/// Points closer than this are one, mm: rounding of what is computed from four decimals.
+const SAME: f64 = 1e-6;
+
+/// What a control says of compensation beside its side and register.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Terms {
+    /// Unit vector across the plane of compensation, from where the side is seen, in the frame of the
+    /// poses.
+    pub normal: Vec3,
+    /// Whether it is the plane across the tool (`G17`).
+    pub across_tool: bool,
+    /// Radius that the program itself gives, mm.
+    pub radius: Option<f64>,
+    /// How outer corners are gone around where the program chooses.
+    pub outer: Option<Outer>,
+    /// The tool goes around the first and the last point where the way leads that way (`KONT`).
+    pub around: bool,
+}
+
+/// Where the records of a control go: on to the sink, compensated.
+pub(crate) struct Compensator<'a> {
+    sink: &'a mut Sink<'a>,
+    dialect: Dialect,
+    tools: &'a [ToolData],
+    /// The tool in the spindle, where the table has it.
+    tool: Option<&'a ToolData>,
+    /// Where the tool was sent last; NaN where that is not known.
+    at: Pose,
+    inverse_time: bool,
+    /// The contour, while compensation is on and resolved.
+    path: Option<Box<Path>>,
+    /// The end of the contour, until the tool has left it.
+    leaving: Option<Box<Leaving>>,
+}
+
+impl<'a> Compensator<'a> {
+    pub(crate) fn new(settings: &'a Settings, sink: &'a mut Sink<'a>) -> Compensator<'a> {
+        let nowhere = Orientation::Rotary { degrees: [f64::NAN; 3], tool_center: false };
+        Compensator {
+            sink,
+            dialect: settings.dialect,
+            tools: &settings.setup.tools,
+            tool: None,
+            at: Pose { point: Vec3::NAN, orientation: nowhere },
+            inverse_time: false,
+            path: None,
+            leaving: None,
+        }
+    }
+
+    /// Takes any record but a change of compensation.
+    #[inline]
+    pub(crate) fn take(&mut self, record: Record) -> Fallible<()> {
+        match self.path {
+            Some(_) => self.follow(record),
+            None => {
+                match &record.op {
+                    Op::Rapid(pose) | Op::Line(pose) => self.arrive(record.line, *pose)?,
+                    _ => self.note(&record)?,
+                }
+                (self.sink)(record)
+            }
+        }
+    }
+
+    /// Compensation changes to `side` in `line`, with the next move.
+    pub(crate) fn switch(&mut self, line: u32, side: Compensation, terms: Terms) -> Fallible<()> {
+        if let Some(mut path) = self.path.take() {
+            if side != Compensation::Off {
+                let message = "compensation changes its side or its register while it is on";
+                return Err(error("compensation-change", line, message)
+                    .help("switch it off (G40, R0) with a straight move first")
+                    .into());
+            }
+            self.leaving = path.finish(self.sink)?.map(Box::new);
+            self.at = path.programmed();
+            return Ok(());
+        }
+        let (register, left) = match side {
+            Compensation::Off => (None, 0.0),
+            Compensation::Left(register) => (register, 1.0),
+            Compensation::Right(register) => (register, -1.0),
+        };
+        let radius = terms.radius.or_else(|| self.radius(register));
+        let (Some(radius), true) = (radius, left != 0.0) else {
+            if side != Compensation::Off && !terms.across_tool {
+                let message = "compensation in a plane that is not that of the tool";
+                return Err(error("compensation-plane", line, message)
+                    .help("with the tool in the tool table it is resolved into the path")
+                    .into());
+            }
+            return (self.sink)(Record { line, op: Op::Compensation(side) });
+        };
+        let Some(rules) = Rules::of(self.dialect) else {
+            let message = "how this control leads the tool with compensation is not known";
+            return Err(error("compensation-unsupported", line, message)
+                .help("leave the tool out of the tool table: compensation then stays a state")
+                .into());
+        };
+        if terms.around {
+            let message = "KONT with compensation that is resolved into the path";
+            return Err(error("compensation-unsupported", line, message)
+                .help("write NORM: the tool then goes straight to the contour")
+                .into());
+        }
+        if !radius.is_finite() {
+            let message = format!("the radius of the tool is {radius} mm");
+            return Err(error("compensation-radius", line, message).into());
+        }
+        if self.inverse_time {
+            return Err(inverse_time(line));
+        }
+        if self.leaving.is_some() {
+            let message = "compensation is switched on again before the tool has left the contour";
+            return Err(error("compensation-change", line, message)
+                .help("a straight move in the plane must come between")
+                .into());
+        }
+        let rules = Rules { outer: terms.outer.unwrap_or(rules.outer), ..rules };
+        self.path = Some(Box::new(Path::new(rules, terms.normal, left * radius, self.at)));
+        Ok(())
+    }
+
+    /// The program has ended.
+    pub(crate) fn finish(&mut self) -> Fallible<()> {
+        match self.path.take() {
+            Some(mut path) => path.finish(self.sink).map(|_| ()),
+            None => Ok(()),
+        }
+    }
+
+    fn follow(&mut self, record: Record) -> Fallible<()> {
+        if record.op == Op::End {
+            self.finish()?;
+            return (self.sink)(record);
+        }
+        match &mut self.path {
+            Some(path) => path.take(record, self.sink),
+            None => (self.sink)(record),
+        }
+    }
+
+    /// Keeps in mind what compensation will need.
+    fn note(&mut self, record: &Record) -> Fallible<()> {
+        match &record.op {
+            Op::Feed(feed) => self.inverse_time = matches!(feed, Feed::InverseTime(_)),
+            Op::Tool(tool) => {
+                let named = |t: &&ToolData| !tool.name.is_empty() && t.name == tool.name;
+                self.tool = match self.tools.iter().find(named) {
+                    None if tool.name.is_empty() => self.of_number(tool.number),
+                    found => found,
+                };
+                self.at.point = Vec3::NAN;
+            }
+            Op::WorkOffset(_) | Op::Probe(_) => self.at.point = Vec3::NAN,
+            Op::Home(axes) => {
+                self.leaving = None;
+                for axis in (0..3).filter(|axis| axes & 1 << axis != 0) {
+                    self.at.point[axis] = f64::NAN;
+                }
+            }
+            op => {
+                if let Some(pose) = op.pose() {
+                    self.arrive(record.line, *pose)?;
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The tool moves to `pose`, without compensation.
+    #[inline]
+    fn arrive(&mut self, line: u32, pose: Pose) -> Fallible<()> {
+        if let Some(leaving) = self.leaving.take() {
+            leaving.check(line, &pose)?;
+        }
+        self.at = pose;
+        Ok(())
+    }
+
+    /// The tool of that number in the table.
+    fn of_number(&self, number: u32) -> Option<&'a ToolData> {
+        self.tools.iter().find(|tool| tool.number == number)
+    }
+
+    /// The radius that `register` stands for, where the table has it. On a FANUC it is that of the
+    /// tool's number and register 0 is none; on LinuxCNC no register and register 0 mean the tool in
+    /// the spindle; on a SINUMERIK it counts the edges of the tool, of which the table knows the first.
+    fn radius(&self, register: Option<u32>) -> Option<f64> {
+        let tool = match (self.dialect, register) {
+            (Dialect::Sinumerik, Some(1))
+            | (Dialect::LinuxCnc, None | Some(0))
+            | (Dialect::Klartext, None) => self.tool,
+            (Dialect::Sinumerik, _) | (_, None) => None,
+            (_, Some(0)) => return (!self.tools.is_empty()).then_some(0.0),
+            (_, Some(number)) => self.of_number(number),
+        };
+        tool.map(|tool| tool.radius)
+    }
+}
+
+/// An error of `rule` in `line`.
+fn error(rule: &'static str, line: u32, message: impl Into<String>) -> Diagnostic {
+    Diagnostic::error(rule, message).line(line)
+}
+
+/// Elements that corners add would take the time of a move once more.
+fn inverse_time(line: u32) -> Box<Diagnostic> {
+    error("compensation-feed", line, "compensation with the feed as inverse time (G93)")
+        .help("corners add moves, whose time is then not known: use G94")
+        .into()
+}

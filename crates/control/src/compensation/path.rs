@@ -1,0 +1,475 @@
+//! The path of the centre along one contour, from switching on to switching off.
+
+use super::leaving::{self, Leaving};
+use super::plane::Plane;
+use super::rules::{Entry, Outer, Rules};
+use super::{Fallible, SAME, error, inverse_time};
+use crate::Sink;
+use geom::{Arc, Element, Turn, Vec2, Vec3, turn_angle};
+use program::{ArcTo, Diagnostic, Feed, Op, Orientation, Pose, Record};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+
+/// Most records between two elements of the contour.
+const LOOK_AHEAD: usize = 10_000;
+
+/// By how much an arc may turn farther for where the element before it has ended, radians (`rs274`).
+const LONGER: f64 = 0.025;
+
+/// Farther than any tool radius can shorten a move, mm.
+const FAR: f64 = 1e6;
+
+/// A contour in the making.
+pub(super) struct Path {
+    rules: Rules,
+    plane: Plane,
+    /// How far the centre is on the left of the contour, mm; on its right where negative.
+    left: f64,
+    /// Where the program, which knows of no radius, has brought the tool.
+    at: Pose,
+    stage: Stage,
+    /// What happens between the element that is held back and the next one.
+    waiting: Vec<Record>,
+}
+
+/// How far the contour has come.
+enum Stage {
+    /// Nothing has moved in the plane.
+    On,
+    /// The move that switches compensation on, held back: its end depends on the next element.
+    Entering(Piece),
+    /// An element, held back: its end depends on the next one.
+    Following(Piece),
+}
+
+/// An element of the contour on its way out.
+#[derive(Clone, Copy)]
+struct Piece {
+    line: u32,
+    rapid: bool,
+    /// It is the move that switches compensation on: no contour lies beside it.
+    begins: bool,
+    contour: Element,
+    /// What runs beside it, of which the part `from..to` (0 to 1) remains ...
+    parallel: Element,
+    from: f64,
+    to: f64,
+    /// ... with this as its end.
+    end: Vec2,
+    /// Heights above the plane, mm: start, end, and centre of an arc.
+    heights: [f64; 3],
+}
+
+/// A move of the centre.
+struct Way {
+    line: u32,
+    rapid: bool,
+    end: Vec2,
+    height: f64,
+    /// What makes it an arc: the turn that remains, and the height of its centre.
+    turn: Option<(Turn, f64)>,
+}
+
+impl Path {
+    /// Compensation by `left` mm across `normal` for a tool that stands at `at`.
+    pub(super) fn new(rules: Rules, normal: Vec3, left: f64, at: Pose) -> Path {
+        let plane = Plane::new(normal);
+        Path { rules, plane, left, at, stage: Stage::On, waiting: Vec::new() }
+    }
+
+    /// Where the program has brought the tool.
+    pub(super) fn programmed(&self) -> Pose {
+        self.at
+    }
+
+    /// Takes a record while compensation is on.
+    pub(super) fn take(&mut self, record: Record, sink: &mut Sink) -> Fallible<()> {
+        let line = record.line;
+        match &record.op {
+            Op::Rapid(pose) | Op::Line(pose) => {
+                let ((from, start), (to, end)) = self.arrive(line, pose)?;
+                if from.distance(to) < SAME {
+                    if matches!(self.stage, Stage::On) && self.rules.entry == Entry::OfItself {
+                        return Err(self.too_short(line, 0.0));
+                    }
+                    return self.pass(record, sink);
+                }
+                let rapid = matches!(record.op, Op::Rapid(_));
+                let piece = self.piece(line, Element::line(from, to), [start, end, end])?;
+                self.element(Piece { rapid, ..piece }, sink)
+            }
+            Op::Arc(arc) => {
+                let sweep = self.sweep(line, arc)?;
+                let ((from, start), (to, end)) = self.arrive(line, &arc.end)?;
+                let (center, height) = self.plane.flat(arc.center);
+                let contour = Element::arc(from, to, center, sweep);
+                let piece = self.piece(line, contour, [start, end, height])?;
+                self.element(piece, sink)
+            }
+            Op::Feed(Feed::InverseTime(_)) => Err(inverse_time(line)),
+            Op::Home(_) | Op::WorkOffset(_) | Op::Tool(_) | Op::Cycle(_) | Op::Frame(_) => {
+                let message = "a tool change, a cycle, another frame or a move to a fixed position \
+                               while compensation is on";
+                Err(error("compensation-on", line, message)
+                    .help("switch it off (G40, R0) with a straight move first")
+                    .into())
+            }
+            op if op.pose().is_some() || matches!(op, Op::Probe(_)) => {
+                let message = "only straight moves and arcs lead the tool while compensation is on";
+                Err(error("compensation-on", line, message).into())
+            }
+            _ => self.pass(record, sink),
+        }
+    }
+
+    /// Ends the contour: the tool then stands across the end of its last element.
+    pub(super) fn finish(&mut self, sink: &mut Sink) -> Fallible<Option<Leaving>> {
+        match std::mem::replace(&mut self.stage, Stage::On) {
+            Stage::On => Ok(None),
+            Stage::Entering(Piece { line, .. }) => {
+                let message = "compensation ends before a contour has begun: where this move ends \
+                               depends on the next element";
+                Err(error("compensation-entry", line, message).into())
+            }
+            Stage::Following(piece) => {
+                self.send(piece.way(), sink)?;
+                self.send_waiting(piece.end, sink)?;
+                let Piece { contour, parallel, .. } = piece;
+                let guarded = self.rules.guarded;
+                Ok(Some(Leaving { plane: self.plane, guarded, contour, parallel }))
+            }
+        }
+    }
+
+    /// The program goes to `pose`: place in the plane and height before, and there.
+    fn arrive(&mut self, line: u32, pose: &Pose) -> Fallible<((Vec2, f64), (Vec2, f64))> {
+        if pose.point.is_nan() || self.at.point.is_nan() {
+            let message = "compensation, and where the tool stands is not known";
+            return Err(error("compensation-unknown-position", line, message)
+                .help("move X, Y and Z to a known position before it is switched on")
+                .into());
+        }
+        if matches!(self.stage, Stage::On) {
+            self.at.orientation = pose.orientation;
+        }
+        if !same(&self.at.orientation, &pose.orientation) {
+            let message = "the tool is turned while compensation is on";
+            return Err(error("compensation-orientation", line, message)
+                .help("switch compensation off before a rotary axis moves")
+                .into());
+        }
+        let from = std::mem::replace(&mut self.at.point, pose.point);
+        Ok((self.plane.flat(from), self.plane.flat(pose.point)))
+    }
+
+    /// The angle through which an arc turns in the plane, positive counter-clockwise.
+    fn sweep(&self, line: u32, arc: &ArcTo) -> Fallible<f64> {
+        let side = arc.normal.dot(self.plane.normal);
+        if side.abs() < 1.0 - 1e-9 {
+            let message = "an arc out of the plane of compensation";
+            return Err(error("compensation-plane", line, message).into());
+        }
+        // How far the radii may differ is the control's affair, and it has looked.
+        let (start, end) = (self.at.point, arc.end.point);
+        match Arc::new(start, end, arc.center, arc.normal, arc.turns, f64::INFINITY) {
+            Ok(arc) => Ok(arc.sweep * side.signum()),
+            Err(_) => {
+                let message = "an arc without a radius, or from where the tool is not known to be";
+                Err(error("compensation-arc", line, message).into())
+            }
+        }
+    }
+
+    /// What runs beside an element of the contour, whole.
+    fn piece(&self, line: u32, contour: Element, heights: [f64; 3]) -> Fallible<Piece> {
+        let Some(parallel) = contour.parallel(self.left) else {
+            let radius = contour.turn.map_or(0.0, |turn| contour.start.distance(turn.center));
+            let message = format!(
+                "the tool's radius of {:.4} mm does not fit into an arc of radius {radius:.4} mm",
+                self.left.abs()
+            );
+            return Err(error("compensation-arc-radius", line, message)
+                .help("take a smaller tool")
+                .into());
+        };
+        let end = parallel.end;
+        let (rapid, begins, from, to) = (false, false, 0.0, 1.0);
+        Ok(Piece { line, rapid, begins, contour, parallel, from, to, end, heights })
+    }
+
+    /// The next element of the contour, which ends the one held back.
+    fn element(&mut self, mut piece: Piece, sink: &mut Sink) -> Fallible<()> {
+        match std::mem::replace(&mut self.stage, Stage::On) {
+            Stage::On => {
+                self.stage = self.enter(piece)?;
+                return Ok(());
+            }
+            Stage::Entering(entry) => {
+                let Piece { contour, parallel, .. } = &piece;
+                if self.rules.guarded && leaving::cuts(entry.contour.start, contour, parallel) {
+                    let message = "the way to the contour cuts into it";
+                    return Err(error("compensation-gouge", entry.line, message)
+                        .help("begin on the tool's side of the contour, or behind its start")
+                        .into());
+                }
+                let way = Way { end: piece.parallel.start, ..entry.way() };
+                let end = way.end;
+                self.send(way, sink)?;
+                self.send_waiting(end, sink)?;
+            }
+            Stage::Following(last) => self.corner(last, &mut piece, sink)?,
+        }
+        self.stage = Stage::Following(piece);
+        Ok(())
+    }
+
+    /// The first move in the plane.
+    fn enter(&self, piece: Piece) -> Fallible<Stage> {
+        if piece.contour.turn.is_some() {
+            let message = "compensation is switched on in an arc";
+            return Err(error("compensation-entry", piece.line, message)
+                .help("switch it on in a straight move before the arc")
+                .into());
+        }
+        if self.rules.entry == Entry::OfNext {
+            return Ok(Stage::Entering(piece));
+        }
+        let length = piece.contour.length();
+        if length <= self.left.abs() {
+            return Err(self.too_short(piece.line, length));
+        }
+        // An inner corner may cut off all of it.
+        let end = piece.parallel.end;
+        let start = end - piece.parallel.tangent_at_end() * FAR;
+        let parallel = Element::line(start, end);
+        Ok(Stage::Following(Piece { begins: true, parallel, ..piece }))
+    }
+
+    /// The move of `length` mm that switches compensation on is too short.
+    fn too_short(&self, line: u32, length: f64) -> Box<Diagnostic> {
+        let message = format!(
+            "the move that switches compensation on is {length:.4} mm long in the plane: it must be \
+             longer than the tool's radius of {:.4} mm",
+            self.left.abs()
+        );
+        error("compensation-entry", line, message).into()
+    }
+
+    /// Brings `last` to its end and the tool around the corner to the start of `next`.
+    fn corner(&mut self, mut last: Piece, next: &mut Piece, sink: &mut Sink) -> Fallible<()> {
+        let arriving = last.contour.tangent_at_end();
+        let turn = turn_angle(arriving, next.contour.tangent_at_start());
+        let inner = if PI - turn.abs() > self.rules.smooth {
+            turn * self.left > 0.0
+        } else {
+            self.inner_on_way_back(&last, next)?
+        };
+        let mut around = Vec::new();
+        if turn.abs() <= self.rules.smooth {
+            self.join(&last, next)?;
+        } else {
+            self.sees(next.line)?;
+            if inner {
+                self.shorten(&mut last, next)?;
+            } else if last.end.distance(next.parallel.start) > SAME {
+                around = self.around(&mut last, next, turn.abs())?;
+            }
+        }
+        self.send(last.way(), sink)?;
+        self.send_waiting(last.end, sink)?;
+        around.into_iter().try_for_each(|way| self.send(way, sink))
+    }
+
+    /// The next element begins where the last one ends, a little before or behind its own start.
+    fn join(&self, last: &Piece, next: &mut Piece) -> Fallible<()> {
+        let Element { start, turn, .. } = next.parallel;
+        let longer = match turn {
+            None => {
+                let ahead = (last.end - start).dot(next.parallel.tangent_at_start());
+                next.from = ahead / next.parallel.length();
+                0.0
+            }
+            Some(Turn { center, sweep }) => {
+                let (from, to) = (start - center, last.end - center);
+                next.from = turn_angle(from.normalize_or_zero(), to.normalize_or_zero()) / sweep;
+                -next.from * sweep.abs()
+            }
+        };
+        match next.from < 1.0 && longer <= LONGER {
+            true => Ok(()),
+            false => Err(self.no_reach(last, next)),
+        }
+    }
+
+    /// Whether the tool lies between two elements of which the second goes back where the first came
+    /// from. Between lines it never does.
+    ///
+    /// # Errors
+    /// Two arcs that turn different ways, of which the second is the flatter: LinuxCNC looks at the
+    /// second alone and takes the wrong side (`rs274`).
+    fn inner_on_way_back(&self, last: &Piece, next: &Piece) -> Fallible<bool> {
+        let (first, second) = (last.contour.curvature(), next.contour.curvature());
+        if second * (first + second) < 0.0 {
+            return Err(self.no_reach(last, next));
+        }
+        Ok((first + second) * self.left < 0.0)
+    }
+
+    /// At an inner corner both elements end where what runs beside them crosses.
+    fn shorten(&self, last: &mut Piece, next: &mut Piece) -> Fallible<()> {
+        let crossings = last.parallel.crossings(&next.parallel);
+        let mut crossings: Vec<_> = crossings.filter(|c| c.on_first > last.from).collect();
+        crossings.sort_by(|a, b| a.cut.total_cmp(&b.cut));
+        match crossings.as_slice() {
+            // Two elements that cross twice come together again after the corner.
+            [crossing, others @ ..] if others.is_empty() || last.begins => {
+                (last.to, last.end) = (crossing.on_first, crossing.point);
+                next.from = crossing.on_next;
+                Ok(())
+            }
+            _ => Err(self.no_reach(last, next)),
+        }
+    }
+
+    fn no_reach(&self, last: &Piece, next: &Piece) -> Box<Diagnostic> {
+        let message = format!(
+            "a tool of radius {:.4} mm does not reach the inner corner between line {} and line {} \
+             without cutting into the contour",
+            self.left.abs(),
+            last.line,
+            next.line
+        );
+        error("compensation-inner-corner", next.line, message)
+            .help("take a smaller tool, or leave out what is shorter than it")
+            .into()
+    }
+
+    /// The moves around an outer corner at which the way turns by `turn`.
+    fn around(&self, last: &mut Piece, next: &Piece, turn: f64) -> Fallible<Vec<Way>> {
+        let Piece { line, rapid, heights: [height, ..], .. } = *next;
+        let corner = next.contour.start;
+        let start = next.parallel.start;
+        let straight = |end| Way { line, rapid, end, height, turn: None };
+        let lines = last.contour.turn.is_none() && next.contour.turn.is_none();
+        let mut points = match self.rules.outer {
+            Outer::Intersection if turn <= Outer::SHARPEST && !lines => {
+                let message = "an outer corner of an arc that is left by the intersection (G451)";
+                return Err(error("compensation-unsupported", line, message)
+                    .help("write G450: the tool then goes around the corner")
+                    .into());
+            }
+            Outer::Polygon if turn > FRAC_PI_2 => {
+                let on = last.contour.tangent_at_end() * self.left.abs();
+                let back = next.contour.tangent_at_start() * self.left.abs();
+                vec![last.end + on, start - back]
+            }
+            Outer::Polygon | Outer::Intersection if turn <= Outer::SHARPEST => {
+                vec![corner + (last.end + start - 2.0 * corner) / (1.0 + turn.cos())]
+            }
+            _ if rapid && !self.rules.rounds_rapids => return Ok(vec![straight(start)]),
+            _ => {
+                let turn = Turn { center: corner, sweep: -turn * self.left.signum() };
+                return Ok(vec![Way { turn: Some((turn, height)), ..straight(start) }]);
+            }
+        };
+        // A line is longer by that; an arc ends, and begins, where it would.
+        if last.contour.turn.is_none() {
+            last.end = points.remove(0);
+        }
+        if next.contour.turn.is_some() {
+            points.push(start);
+        }
+        Ok(points.into_iter().map(straight).collect())
+    }
+
+    /// # Errors
+    /// The control does not see as far as the element in `line`.
+    fn sees(&self, line: u32) -> Fallible<()> {
+        let silent = |op: &Op| matches!(op, Op::Comment(_) | Op::Operation(_) | Op::EndOfOperation);
+        let mut blocks = 0;
+        let mut last = line;
+        for record in self.waiting.iter().filter(|record| !silent(&record.op)) {
+            blocks += usize::from(record.line != last);
+            last = record.line;
+        }
+        if blocks <= self.rules.blind {
+            return Ok(());
+        }
+        let message = format!(
+            "{blocks} blocks without a move in the plane before this one: the control sees past {} \
+             and would cut the corner",
+            self.rules.blind
+        );
+        Err(error("compensation-look-ahead", line, message)
+            .help("put them before or after the contour, or into one block")
+            .into())
+    }
+
+    /// A record that moves nothing in the plane.
+    fn pass(&mut self, record: Record, sink: &mut Sink) -> Fallible<()> {
+        if matches!(self.stage, Stage::On) {
+            return sink(record);
+        }
+        if self.waiting.len() >= LOOK_AHEAD {
+            let message =
+                format!("{LOOK_AHEAD} records without a move in the plane of compensation");
+            return Err(error("compensation-look-ahead", record.line, message).into());
+        }
+        self.waiting.push(record);
+        Ok(())
+    }
+
+    /// What has waited happens at `point` of the plane.
+    fn send_waiting(&mut self, point: Vec2, sink: &mut Sink) -> Fallible<()> {
+        for mut record in self.waiting.drain(..) {
+            if let Op::Rapid(pose) | Op::Line(pose) = &mut record.op {
+                pose.point = self.plane.lift(point, self.plane.flat(pose.point).1);
+            }
+            sink(record)?;
+        }
+        Ok(())
+    }
+
+    fn send(&self, way: Way, sink: &mut Sink) -> Fallible<()> {
+        let Way { line, rapid, end, height, turn } = way;
+        let end = Pose { point: self.plane.lift(end, height), ..self.at };
+        // An arc of no length would be read as a full circle.
+        let arc = turn.filter(|(turn, _)| {
+            turn.sweep.abs() * self.plane.flat(end.point).0.distance(turn.center) > SAME
+        });
+        let op = match arc {
+            Some((Turn { center, sweep }, height)) => Op::Arc(Box::new(ArcTo {
+                end,
+                center: self.plane.lift(center, height),
+                normal: self.plane.normal * sweep.signum(),
+                turns: ((sweep.abs() / TAU - 1e-9).ceil() - 1.0).max(0.0) as u32,
+            })),
+            None if rapid => Op::Rapid(end),
+            None => Op::Line(end),
+        };
+        sink(Record { line, op })
+    }
+}
+
+impl Piece {
+    /// What remains of it.
+    fn way(&self) -> Way {
+        let Piece { line, rapid, end, heights: [_, height, center], .. } = *self;
+        let part = self.to - self.from;
+        let turn = self.parallel.turn;
+        let turn = turn.map(|turn| (Turn { sweep: turn.sweep * part, ..turn }, center));
+        Way { line, rapid, end, height, turn }
+    }
+}
+
+/// Whether the tool points the same way; where a rotary axis stands may be unknown throughout.
+fn same(a: &Orientation, b: &Orientation) -> bool {
+    let equal = |a: f64, b: f64| a == b || a.is_nan() && b.is_nan();
+    match (a, b) {
+        (Orientation::Axis(a), Orientation::Axis(b)) => a == b,
+        (
+            Orientation::Rotary { degrees: a, tool_center: first },
+            Orientation::Rotary { degrees: b, tool_center: second },
+        ) => first == second && a.iter().zip(b).all(|(a, b)| equal(*a, *b)),
+        _ => false,
+    }
+}
