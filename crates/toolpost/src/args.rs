@@ -216,9 +216,9 @@ pub struct Cutting {
     /// What becomes of rounded corners on the way up.
     #[arg(long, value_name = "HOW", default_value = "conical", requires = "taper")]
     pub rounding: Rounding,
-    /// Let the control offset the wire, each pass by the register of its number: the program is then
-    /// that of the contour itself.
-    #[arg(long, requires = "side", conflicts_with_all = ["taper", "tab"])]
+    /// Let the control offset and lean the wire, each pass by the register of its number: the program is
+    /// then that of the contour itself.
+    #[arg(long, requires = "side", conflicts_with = "tab")]
     pub by_control: bool,
     /// Let inner corners that the wire is too thick for become as round as the wire.
     #[arg(long, requires = "side")]
