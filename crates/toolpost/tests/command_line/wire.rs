@@ -137,7 +137,7 @@ fn a_bad_source_is_told_with_its_line_and_writes_nothing() {
 fn contours_that_cannot_be_offset_are_refused_with_their_line() {
     let folder = sector();
     let inside = ["--side", "inside", "--wire", "0.2", "--thread", "10,10", "--round-corners"];
-    let mut bad = |from: &str, to: &str, more: &[&str], words: &[&str]| {
+    let bad = |from: &str, to: &str, more: &[&str], words: &[&str]| {
         folder.write("sector.nc", SECTOR.replace(from, to));
         refused(&folder, &[&inside, more].concat(), 2, words);
     };
@@ -152,7 +152,7 @@ fn contours_that_cannot_be_offset_are_refused_with_their_line() {
     bad("", "", &["--thread", "1,1"], &["error[thread]"]);
     bad("", "", &["--taper", "5"], &["error[wire-height]"]);
     bad("", "", &["--taper", "70", "--height", "10"], &["error[taper-angle]"]);
-    bad("", "", &["--wire", "80"], &["error[offset-vanishes]"]);
+    bad("", "", &["--gap", "40"], &["error[offset-vanishes]"]);
 }
 
 /// A square of 10 mm, and one of 14 mm about the same centre, each as a program.
