@@ -198,7 +198,7 @@ impl Stretch {
             (None, None) => {
                 let way = |s: &Stretch| [s.ends[1][0] - s.ends[0][0], s.ends[1][1] - s.ends[0][1]];
                 let ([a, b], [c, d]) = (way(self), way(element));
-                (a * c + b * d) / (a.hypot(b) * c.hypot(d)) < -0.999_999
+                (a * c + b * d) / (a.hypot(b) * c.hypot(d)) < -0.99
             }
             (Some((a, first)), Some((b, second))) => {
                 near(&a, &b) && first.abs() > second.abs() + 1e-3

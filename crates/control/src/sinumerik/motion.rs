@@ -352,8 +352,11 @@ impl Interpreter<'_, '_> {
             axis[index % 3] = 1.0;
             self.state.frames.direction(axis)
         };
+        // A mirror turns the plane's own sense round, against which the side has been swapped.
+        let sense = if mirrored { -1.0 } else { 1.0 };
+        let across = axis(normal + 1).cross(axis(normal + 2)) * sense;
         let terms = Terms {
-            normal: axis(normal + 1).cross(axis(normal + 2)).normalize_or(Vec3::Z),
+            normal: across.normalize_or(Vec3::Z),
             across_tool: normal == 2,
             radius: None,
             outer: self.state.corner,
