@@ -73,7 +73,6 @@ const DIFFER: &[(&str, &str)] = &[
     ("ncfiles/plasmatest.ngc", "an arc after M6, which may move the machine"),
     ("ncfiles/smartprobe.ngc", "it steers by what the probe finds"),
     ("ncfiles/x-trim.ngc", "it counts from where the probe stops"),
-    ("ncfiles/comp311_2.ngc", "compensation that begins on an arc is refused"),
     (
         "ncfiles/gmoccapy_2_tools_with_cutter_radius_compensation.ngc",
         "compensation that begins on an arc is refused",

@@ -75,7 +75,7 @@ fn the_sample_of_each_machine_is_proven_on_every_other_that_can_make_it() {
 }
 
 /// A program for LinuxCNC, written for Mach3.
-fn rewritten(blocks: &str) -> Result<String, program::Diagnostic> {
+fn rewritten(blocks: &str) -> Result<String, Box<program::Diagnostic>> {
     let load = |name| machine::load(name).unwrap();
     let text = format!("G21 G90 G54\nT1 M6\nS500 M3\nG43 H1\nG0 X0 Y0\nZ9\n{blocks}\nG0 Z9\nM2\n");
     let from = load("generic-3axis-linuxcnc");
