@@ -25,12 +25,12 @@ const MOST_RECORDS: u32 = 10_000;
 
 fuzz_target!(|data: &[u8]| {
     let Some((&first, text)) = data.split_first() else { return };
-    let dialect = DIALECTS[usize::from(first.wrapping_sub(b'0')) % DIALECTS.len()];
+    let dialect = DIALECTS[usize::from(first) % DIALECTS.len()];
     let wire = Wire { height: (first > 127).then_some(40.0), thread: Some(60), cut: Some(50) };
     for (rotary, start) in [([false; 3], None), ([true, false, true], Some(Vec3::ZERO))] {
         let setup = Setup { start, ..Setup::default() };
-        let settings =
-            Settings { auxiliary: vec![26], setup, wire, ..Settings::new(dialect, rotary) };
+        let auxiliary = vec![26];
+        let settings = Settings { auxiliary, wire, setup, ..Settings::new(dialect, rotary) };
         let lines = text.split(|&byte| byte == b'\n').count();
         let mut records = 0;
         let mut ended = false;

@@ -17,6 +17,7 @@ mod iso;
 mod klartext;
 mod points;
 mod sinumerik;
+pub mod tools;
 
 use compensation::Compensator;
 use geom::Vec3;
@@ -223,8 +224,6 @@ fn shown(found: Diagnostic, text: &[u8]) -> Diagnostic {
     if line == 0 || found.column > 0 || !found.excerpt.is_empty() {
         return found;
     }
-    match text.split(|&byte| byte == b'\n').nth(line as usize - 1) {
-        Some(block) => found.at(line, block, 0, block.trim_ascii_end().len()),
-        None => found,
-    }
+    let block = text.split(|&byte| byte == b'\n').nth(line as usize - 1).unwrap_or_default();
+    found.at(line, block, 0, block.trim_ascii_end().len())
 }

@@ -300,6 +300,20 @@ fn arcs_stay_arcs_about_their_centre() {
 }
 
 #[test]
+fn it_may_begin_on_an_arc() {
+    for side in ["G41", "G42"] {
+        makes_the_same_path(&format!("{side} D1\nG2 X10 Y0 I5\nG1 X20"));
+        makes_the_same_path(&format!("{side} D1\nG3 X10 Y10 J10 Z-1\nG1 Y20\nX0"));
+        makes_the_same_path(&format!("{side} D1\nG2 X10 Y10 I10\nG1 X20"));
+        makes_the_same_path(&format!("{side} D1\nG3 X10 Y10 J10 Z-1 P2\nG1 X20 Y0"));
+        makes_the_same_path(&format!("{side} D1\nG2 X10 Y10 R-15\nG3 X20 R9"));
+    }
+    is_refused_by_both("G41 D1\nG3 X1 Y1 J1\nG1 X20");
+    is_refused_by_both("G41 D1\nG3 X3 Y3 J3\nG1 Y20");
+    is_refused_by_both("G41 D1\nG3 X0 Y0 J10 P2\nG1 X20");
+}
+
+#[test]
 fn back_on_the_same_way() {
     for x in ["-1", "-.3", "0", ".3", "1"] {
         for side in ["G41.1", "G42.1"] {
