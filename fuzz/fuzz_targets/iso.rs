@@ -25,7 +25,7 @@ const MOST_RECORDS: u32 = 10_000;
 
 fuzz_target!(|data: &[u8]| {
     let Some((&first, text)) = data.split_first() else { return };
-    let dialect = DIALECTS[usize::from(first) % DIALECTS.len()];
+    let dialect = DIALECTS[usize::from(first.wrapping_sub(b'0')) % DIALECTS.len()];
     let wire = Wire { height: (first > 127).then_some(40.0), thread: Some(60), cut: Some(50) };
     for (rotary, start) in [([false; 3], None), ([true, false, true], Some(Vec3::ZERO))] {
         let setup = Setup { start, ..Setup::default() };

@@ -226,13 +226,27 @@ proptest! {
             let settings = Settings { setup: setup.clone(), ..Settings::new(dialect, [true; 3]) };
             // What a flavour does not know is left out, so that the rest is tried.
             let mut kept: Vec<&str> = text.lines().collect();
-            while let Err(error) = read(&settings, "t.nc", kept.join("\n").as_bytes(), &mut |_| Ok(())) {
+            while let Err(error) = read(&settings, "t.nc", kept.join("\n").as_bytes(), &mut sound) {
                 let line = error.line as usize;
                 prop_assert!((1..=kept.len()).contains(&line), "{error}");
                 kept.remove(line - 1);
             }
         }
     }
+}
+
+/// What holds for every record.
+fn sound(record: Record) -> Result<(), Box<program::Diagnostic>> {
+    match &record.op {
+        Op::Arc(arc) => {
+            assert!(arc.end.point.is_finite() && arc.center.is_finite(), "{arc:?}");
+            assert!((arc.normal.length() - 1.0).abs() < 1e-9, "{arc:?}");
+        }
+        Op::Hole(pose) => assert!(pose.point.is_finite(), "{pose:?}"),
+        Op::Cycle(cycle) => assert!(cycle.depth > 0.0 && cycle.retract >= 0.0, "{cycle:?}"),
+        _ => {}
+    }
+    Ok(())
 }
 
 /// What a word may begin with.
