@@ -21,6 +21,7 @@ mod interpreter;
 mod library;
 mod motion;
 mod offsets;
+mod operators;
 mod orientation;
 mod outline;
 mod pattern;
