@@ -81,7 +81,7 @@ fn rewritten(blocks: &str) -> Result<String, Box<program::Diagnostic>> {
     let from = load("generic-3axis-linuxcnc");
     let reading = nc::read(&from, Setup::default(), "old.ngc", text.as_bytes()).unwrap();
     let output = post::write(&reading.program, &load("generic-3axis-mach3"));
-    output.map_err(|errors| errors[0].clone()).map(|o| String::from_utf8(o.text).unwrap())
+    output.map_err(|errors| errors[0].clone().into()).map(|o| String::from_utf8(o.text).unwrap())
 }
 
 #[test]

@@ -13,12 +13,11 @@ use super::cycles::{Drilling, Pause};
 use super::motion::AXIS_NAMES;
 use super::programmable::plain_values;
 use super::scan::Source;
-use super::state::{self, Modes, State};
+use super::state::State;
 use super::variables::ELEMENTS_IN_A_TURN;
 use crate::Settings;
 use crate::compensation::{Compensator, Terms};
 use crate::flow::Budget;
-use geom::Vec3;
 use program::{Compensation, Coolant, Cycle, Feed, Op, Record, Spindle, Tool};
 
 /// Runs blocks.
@@ -238,78 +237,6 @@ impl<'a, 's> Interpreter<'a, 's> {
             Some(Code::WorkOffset(number)) => self.work_offset(source, number),
             _ => Ok(()),
         }
-    }
-
-    /// Activates a settable work offset. Where the values of the old and the new one are known, so is
-    /// where the tool is in the new one.
-    fn work_offset(&mut self, source: &Source, number: u32) -> Fallible<()> {
-        let state = &mut self.state;
-        let value = state.work_offsets.get(number);
-        let changed = (0..3).any(|i| !(value[i] == state.active_offset[i] || value[i].is_nan()));
-        let other = number != state.work_offset;
-        if !other && !changed {
-            return Ok(());
-        }
-        let before = state.work_offsets.first(state.work_offset).unwrap_or(state.active_offset);
-        let machine = state.frames.in_work_frame(state.position) + before;
-        let first = state.work_offsets.first(number).unwrap_or(value);
-        if (0..3).any(|i| first[i].is_nan() && !value[i].is_nan()) {
-            let message = format!(
-                "work offset {number} has been moved in with a value that is not known, and is now \
-                 changed"
-            );
-            let mut error = source.block_error("work-offset", message);
-            error.help = "write its value before the first move in it".into();
-            return Err(error);
-        }
-        let change = Vec3::from_array(std::array::from_fn(|i| {
-            if first[i].is_nan() { 0.0 } else { value[i] - first[i] }
-        }));
-        state.work_offset = number;
-        state.active_offset = value;
-        state.moved = false;
-        state.frames.set_offset_change(change);
-        state.position = state.frames.in_program(machine - first);
-        for i in 0..3 {
-            if state.position[i].is_nan() {
-                state.programmed[i] = f64::NAN;
-            }
-        }
-        if other { self.emit(source, Op::WorkOffset(state::place(number))) } else { Ok(()) }
-    }
-
-    /// Back to the modal commands and the frame of the caller of a program with `SAVE`.
-    pub fn restore(&mut self, source: &Source, modes: Modes) -> Fallible<()> {
-        self.release(source)?;
-        let state = &mut self.state;
-        let frame = (state.frames.programmable(), state.frames.fine()) != modes.programmable;
-        if state.compensation_in_effect != Compensation::Off
-            && (frame || modes.plane_normal != state.plane_normal)
-        {
-            let message = "the return of a program with SAVE changes frame or plane while cutter \
-                           radius compensation is active";
-            return Err(source.block_error("compensation", message));
-        }
-        if modes.feed_type != state.feed_type || modes.units.1 != state.feed_unit {
-            state.feed = None;
-        }
-        state.motion = modes.motion;
-        state.select_plane(modes.plane_normal);
-        (state.unit, state.feed_unit) = modes.units;
-        state.absolute = modes.absolute;
-        state.diameter = modes.diameter;
-        state.feed_type = modes.feed_type;
-        state.vectors_in_work_frame = modes.vectors_in_work_frame;
-        state.compensation = modes.compensation;
-        if frame {
-            let (frame, fine) = modes.programmable;
-            state.change_frames(|frames| frames.set_programmable(frame, fine));
-        }
-        // With the same G command the offset stays as it is now.
-        if modes.work_offset == state.work_offset {
-            return Ok(());
-        }
-        self.work_offset(source, modes.work_offset)
     }
 
     fn select_compensation(&mut self, source: &Source, compensation: Compensation) -> Fallible<()> {
