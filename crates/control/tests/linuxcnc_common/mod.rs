@@ -95,6 +95,8 @@ fn run(folder: &Path) -> std::io::Result<Option<ExitStatus>> {
     let mut run = Command::new("rs274")
         .args(["-i", "judge.ini", "-t", "tool.tbl", "-v", "rs274.var", "-g", "program.ngc", "out"])
         .current_dir(folder)
+        // Its tool table is a file in the home folder, which all interpreters share.
+        .env("HOME", folder)
         .stdin(Stdio::null())
         .stdout(Stdio::null())
         .stderr(fs::File::create(folder.join("errors"))?)
