@@ -48,12 +48,22 @@ judges:
 ## The pictures of the documentation, drawn anew.
 images: rust
 	$(TOOLPOST) show examples/dome.cls --output docs/images/dome.png > /dev/null
+	@mkdir -p out
+	$(TOOLPOST) --quiet wire examples/sector.nc --from fanuc-31i --machine bp-95d --side inside --wire 0.25 \
+		--gap 0.02 --thread 12,12 --round-corners --taper 10 --height 30 --chord-error 0.02 --select 6 \
+		--output out/sector.pts --picture docs/images/wire.png
 
 ## The sample programs beside the machines, written anew: to be read before they are committed.
 samples: rust
 	@mkdir -p out/samples
 	@for sample in $(filter-out %.cls,$(wildcard machines/samples/*.*)); do \
 		name=$$(basename $${sample%.*}); axes=three-axes; \
+		if grep -Eq '^extends = "(points|wire-iso)"' machines/$$name.toml; then \
+			$(TOOLPOST) --quiet wire examples/sector.nc --from fanuc-31i -m $$name --side inside \
+				--wire 0.25 --gap 0.02 --leave 0.03 --thread 15,15 --round-corners --feed 0.1,0.2 \
+				-o out/samples/$$(basename $$sample) || exit; \
+			continue; \
+		fi; \
 		grep -q '^\[\[rotary\]\]' machines/$$name.toml && axes=five-axes; \
 		$(TOOLPOST) --quiet post machines/samples/$$axes.cls -m $$name \
 			-o out/samples/$$(basename $$sample) || exit; \

@@ -1,19 +1,23 @@
 //! Any bytes as ISO code, the flavour by the first byte: no panic, and what runs makes sense.
 #![no_main]
 
-use control::{Dialect, Settings, Setup, read};
+use control::{Dialect, Settings, Setup, Wire, read};
 use geom::Vec3;
 use libfuzzer_sys::fuzz_target;
 use program::{Diagnostic, Op, Orientation};
 
 /// By the first byte: `0` is FANUC, `1` LinuxCNC and so on.
-const DIALECTS: [Dialect; 6] = [
+const DIALECTS: [Dialect; 10] = [
     Dialect::Fanuc,
     Dialect::LinuxCnc,
     Dialect::Grbl,
     Dialect::Haas,
     Dialect::Mach3,
     Dialect::Marlin,
+    Dialect::FanucWire,
+    Dialect::Sodick,
+    Dialect::Agie,
+    Dialect::Points,
 ];
 
 /// After so many records a program is left: loops may go round for long.
@@ -22,9 +26,11 @@ const MOST_RECORDS: u32 = 10_000;
 fuzz_target!(|data: &[u8]| {
     let Some((&first, text)) = data.split_first() else { return };
     let dialect = DIALECTS[usize::from(first) % DIALECTS.len()];
+    let wire = Wire { height: (first > 127).then_some(40.0), thread: Some(60), cut: Some(50) };
     for (rotary, start) in [([false; 3], None), ([true, false, true], Some(Vec3::ZERO))] {
         let setup = Setup { start, ..Setup::default() };
-        let settings = Settings { auxiliary: vec![26], setup, ..Settings::new(dialect, rotary) };
+        let auxiliary = vec![26];
+        let settings = Settings { auxiliary, wire, setup, ..Settings::new(dialect, rotary) };
         let lines = text.split(|&byte| byte == b'\n').count();
         let mut records = 0;
         let mut ended = false;

@@ -17,6 +17,7 @@ mod iso;
 mod klartext;
 mod points;
 mod sinumerik;
+pub mod tools;
 
 use compensation::Compensator;
 use geom::Vec3;
@@ -42,13 +43,19 @@ pub enum Dialect {
     Sinumerik,
     /// HEIDENHAIN Klartext (TNC 640, iTNC 530).
     Klartext,
+    /// ISO code of wire-EDM machines: FANUC ROBOCUT.
+    FanucWire,
+    /// Sodick.
+    Sodick,
+    /// Agie.
+    Agie,
     /// Lists of coordinates for wire EDM.
     Points,
 }
 
 impl Dialect {
     /// Every dialect with the name that a control file gives as its `reader`.
-    pub const NAMES: [(&'static str, Dialect); 9] = [
+    pub const NAMES: [(&'static str, Dialect); 12] = [
         ("fanuc", Dialect::Fanuc),
         ("haas", Dialect::Haas),
         ("linuxcnc", Dialect::LinuxCnc),
@@ -57,6 +64,9 @@ impl Dialect {
         ("marlin", Dialect::Marlin),
         ("sinumerik", Dialect::Sinumerik),
         ("klartext", Dialect::Klartext),
+        ("fanuc-wire", Dialect::FanucWire),
+        ("sodick", Dialect::Sodick),
+        ("agie", Dialect::Agie),
         ("points", Dialect::Points),
     ];
 
@@ -72,7 +82,7 @@ impl Dialect {
         match self {
             Dialect::Sinumerik => Some(53),
             Dialect::LinuxCnc | Dialect::Grbl | Dialect::Mach3 | Dialect::Haas => Some(54),
-            Dialect::Fanuc | Dialect::Marlin | Dialect::Klartext | Dialect::Points => None,
+            _ => None,
         }
     }
 }
@@ -91,13 +101,23 @@ pub struct Settings {
     /// R parameters that the operator sets at the machine to shift the zero of a rotary axis
     /// (SINUMERIK). They count as 0; any other that no block has set is an error.
     pub operator_parameters: Vec<u32>,
-    /// Height over the lower plane at which U and V of a wire are counted, mm; `None` where it is not
-    /// known, or there is no wire.
-    pub upper_plane: Option<f64>,
+    /// The wire, where the machine has one.
+    pub wire: Wire,
     /// How far the control may be allowed to leave the path while it smooths it, mm.
     pub path_tolerance: f64,
     /// What the operator has set up.
     pub setup: Setup,
+}
+
+/// What a virtual control has to know of a wire.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Wire {
+    /// Height over the lower plane at which U and V are counted, mm; `None` where it is not known.
+    pub height: Option<f64>,
+    /// Number of the M function that threads it.
+    pub thread: Option<u32>,
+    /// Number of the M function that cuts it.
+    pub cut: Option<u32>,
 }
 
 /// What a program leans on that stands in the control and not in its text. Nothing of it is known by
@@ -163,7 +183,7 @@ impl Settings {
             rotary,
             auxiliary: Vec::new(),
             operator_parameters: Vec::new(),
-            upper_plane: None,
+            wire: Wire::default(),
             path_tolerance: 0.0,
             setup: Setup::default(),
         }
@@ -204,8 +224,6 @@ fn shown(found: Diagnostic, text: &[u8]) -> Diagnostic {
     if line == 0 || found.column > 0 || !found.excerpt.is_empty() {
         return found;
     }
-    match text.split(|&byte| byte == b'\n').nth(line as usize - 1) {
-        Some(block) => found.at(line, block, 0, block.trim_ascii_end().len()),
-        None => found,
-    }
+    let block = text.split(|&byte| byte == b'\n').nth(line as usize - 1).unwrap_or_default();
+    found.at(line, block, 0, block.trim_ascii_end().len())
 }

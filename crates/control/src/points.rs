@@ -6,7 +6,7 @@
 
 use crate::compensation::Compensator;
 use crate::{Settings, decimal};
-use geom::Vec3;
+use geom::{Vec3, direction};
 use program::{Diagnostic, Op, Pose, Record};
 
 type Result<T> = std::result::Result<T, Box<Diagnostic>>;
@@ -29,7 +29,7 @@ pub(crate) fn run(settings: &Settings, text: &[u8], path: &mut Compensator) -> R
             return Err(line.error("nc-syntax", (0, bytes.len()), message).into());
         }
         (width, last) = (count, line.number);
-        let pose = line.pose(values, count, settings.upper_plane)?;
+        let pose = line.pose(values, count, settings.wire.height)?;
         let mut tell = |op| path.take(Record { line: line.number, op });
         if index == 0 {
             tell(Op::Rapid(pose))?;
@@ -85,15 +85,19 @@ impl Line<'_> {
 
     fn pose(&self, [x, y, u, v]: [f64; MOST], count: usize, height: Option<f64>) -> Result<Pose> {
         let lower = Vec3::new(x, y, 0.0);
-        match height {
-            _ if count == 2 => Ok(Pose::new(lower, Vec3::Z)),
-            Some(height) => Ok(Pose::new(lower, Vec3::new(u, v, height).normalize())),
-            None => {
-                let message = "U and V, and the height of the upper plane is not known";
-                let found = self.error("upper-plane", (0, self.bytes.len()), message);
-                Err(found.help("`height` in the [wire] table of the machine").into())
-            }
+        if count == 2 {
+            return Ok(Pose::new(lower, Vec3::Z));
         }
+        let Some(height) = height else {
+            let message = "U and V, and the height of the upper plane is not known";
+            let found = self.error("upper-plane", (0, self.bytes.len()), message);
+            return Err(found.help("`height` in the [wire] table of the machine").into());
+        };
+        let Some(axis) = direction(Vec3::new(u, v, height)) else {
+            let message = "U and V lie so far out that the wire has no direction";
+            return Err(self.error("nc-number", (0, self.bytes.len()), message).into());
+        };
+        Ok(Pose::new(lower, axis))
     }
 
     fn error(

@@ -238,6 +238,24 @@ fn the_plane_may_be_another_one() {
 }
 
 #[test]
+fn in_a_mirror_the_tool_is_on_the_other_side() {
+    let path = "rapid 20 0 0\nline 5 0 0\nline 5 50 0\nccw 0 55 0 about 0 50 0\nline -50 55 0\n\
+                line -50 60 0";
+    same(sinumerik("MIRROR X0\nG0 X-20 Y0\nG1 G41 X0\nY50\nX50\nG40 Y60"), path);
+    same(
+        klartext(
+            "CYCL DEF 8.0 MIRROR IMAGE\nCYCL DEF 8.1 X\nL X-20 Y+0 R0 FMAX\nL X+0 RL F100\n\
+             L Y+50\nL X+50\nL Y+60 R0",
+        ),
+        path,
+    );
+    same(
+        fanuc("G51.1 X0\nG0 X-20.\nG1 G41 D1 X0\nY50.\nX50.\nG40 Y60."),
+        "rapid 20 0 0\nline 5 0 0\nline 5 55 0\nline -50 55 0\nline -50 60 0",
+    );
+}
+
+#[test]
 fn what_would_spoil_the_part_is_refused() {
     for (blocks, rule, line) in [
         // The tool does not fit into the arc, nor between two walls.

@@ -198,7 +198,7 @@ impl Stretch {
             (None, None) => {
                 let way = |s: &Stretch| [s.ends[1][0] - s.ends[0][0], s.ends[1][1] - s.ends[0][1]];
                 let ([a, b], [c, d]) = (way(self), way(element));
-                (a * c + b * d) / (a.hypot(b) * c.hypot(d)) < -0.999_999
+                (a * c + b * d) / (a.hypot(b) * c.hypot(d)) < -0.99
             }
             (Some((a, first)), Some((b, second))) => {
                 near(&a, &b) && first.abs() > second.abs() + 1e-3
@@ -297,6 +297,20 @@ fn arcs_stay_arcs_about_their_centre() {
     makes_the_same_path("G41 D1 G1 X10 Y0\nX30\nG2 X30 Y20 R20\nG2 X10 R20\nG1 Y0\nG40 Y-10");
     makes_the_same_path("G41 D1 G1 X10 Y0\nX20\nG3 X30 Y10.2 R10.11");
     is_refused_by_both("G41 D1 G1 X10 Y0\nG3 X12 Y2 J2\nG1 Y20");
+}
+
+#[test]
+fn it_may_begin_on_an_arc() {
+    for side in ["G41", "G42"] {
+        makes_the_same_path(&format!("{side} D1\nG2 X10 Y0 I5\nG1 X20"));
+        makes_the_same_path(&format!("{side} D1\nG3 X10 Y10 J10 Z-1\nG1 Y20\nX0"));
+        makes_the_same_path(&format!("{side} D1\nG2 X10 Y10 I10\nG1 X20"));
+        makes_the_same_path(&format!("{side} D1\nG3 X10 Y10 J10 Z-1 P2\nG1 X20 Y0"));
+        makes_the_same_path(&format!("{side} D1\nG2 X10 Y10 R-15\nG3 X20 R9"));
+    }
+    is_refused_by_both("G41 D1\nG3 X1 Y1 J1\nG1 X20");
+    is_refused_by_both("G41 D1\nG3 X3 Y3 J3\nG1 Y20");
+    is_refused_by_both("G41 D1\nG3 X0 Y0 J10 P2\nG1 X20");
 }
 
 #[test]

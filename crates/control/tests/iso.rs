@@ -468,7 +468,6 @@ fn compensation_starts_with_a_linear_move() {
         assert_eq!(got[start.unwrap() + 1], Op::Line(first));
         assert_eq!(got[end.unwrap() + 1], Op::Line(last));
         for wrong in [
-            "G41 D1 G2 X10. I5.",
             "G1 G41 D1 X5.\nG40 G2 X15. I5.",
             "G1 G41 D1 X5.\nG28 Z9.",
             "G1 G41 D1 X5.\nG18",
@@ -479,6 +478,9 @@ fn compensation_starts_with_a_linear_move() {
             assert_eq!(rule(dialect, &program), "nc-compensation", "{program}");
         }
     }
+    let on_an_arc = "G0 X0 Y0 Z0\nF9 G41 D1 G2 X10. I5.\n";
+    assert_eq!(rule(FANUC, on_an_arc), "nc-compensation");
+    assert_eq!(rule(LINUXCNC, on_an_arc), "compensation-entry");
     assert_eq!(rule(FANUC, "G41 X1.\n"), "nc-compensation");
     // In another plane than the tool's it must be resolved, and the tool is not known here.
     assert_eq!(rule(FANUC, "G18 G0 X0 Y0 Z0\nG41 D1 X9.\n"), "compensation-plane");

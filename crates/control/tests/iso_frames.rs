@@ -179,6 +179,8 @@ fn g68_turns_about_its_centre() {
             rule(dialect, "G0 X0 Y0 Z0\nG68 X0 Y0 R45.\nX5. Y5.\nG69\nG91 X1.\n"),
             "nc-frame"
         );
+        // Also where the plane is another one by then.
+        assert_eq!(rule(dialect, "G0 X0 Y0 Z0\nG18 G68 X0 Z0 R45.\nG17 Z5.\n"), "nc-frame");
         // Z moves on as it is.
         goes_to(
             dialect,

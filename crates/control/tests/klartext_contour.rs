@@ -243,21 +243,22 @@ fn a_line_and_an_arc_lead_to_the_contour() {
 
 #[test]
 fn departures_go_on_from_the_last_element() {
-    let contour = "L X+0 Y-5 RR F100\nL Y+20\n";
+    // To the contour from the side of the tool.
+    let contour = "L X+15 Y-20 R0 FMAX\nL X+0 Y-5 RR F100\nL Y+20\n";
     // Straight on by 12.5, the tool of radius 5 on the right.
     let ops = path(&format!("{contour}DEP LT LEN12.5 F90\nL Z+100 FMAX"));
-    assert_near(&points(&ops)[2..], &[[5.0, 32.5, -5.0], [5.0, 32.5, 100.0]]);
+    assert_near(&points(&ops)[3..], &[[5.0, 32.5, -5.0], [5.0, 32.5, 100.0]]);
     let ops = path(&format!("{contour}DEP LN LEN20 F90\nL Z+100 FMAX"));
-    assert_near(&points(&ops)[2..], &[[25.0, 20.0, -5.0], [25.0, 20.0, 100.0]]);
+    assert_near(&points(&ops)[3..], &[[25.0, 20.0, -5.0], [25.0, 20.0, 100.0]]);
     // A half circle of radius 8 to the right: the tool's center ends 8 - 5 beyond its middle.
     let ops =
         path(&format!("{contour}DEP CT CCA 180 R+8 F90\nL Z+100 FMAX").replace("CCA ", "CCA"));
-    assert_near(&points(&ops)[2..], &[[11.0, 20.0, -5.0], [11.0, 20.0, 100.0]]);
+    assert_near(&points(&ops)[3..], &[[11.0, 20.0, -5.0], [11.0, 20.0, 100.0]]);
     assert_eq!(arcs(&ops)[0].normal, Vec3::NEG_Z);
     // An arc about (8, 20), then a line to the right at the height at which the center's circle of
     // radius 3 has its top.
     let ops = path(&format!("{contour}DEP LCT X+40 Y+23 R+8 F90"));
-    assert_near(&points(&ops)[2..], &[[8.0, 23.0, -5.0], [40.0, 23.0, -5.0]]);
+    assert_near(&points(&ops)[3..], &[[8.0, 23.0, -5.0], [40.0, 23.0, -5.0]]);
     let arc = ops.iter().position(|op| matches!(op, Op::Arc(_))).unwrap();
     assert!(matches!(ops[arc + 1], Op::Line(_)));
 }

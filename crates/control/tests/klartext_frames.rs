@@ -281,7 +281,7 @@ fn a_defined_pattern_is_drilled_where_it_is_called() {
 
 #[test]
 fn cycles_that_mill_by_themselves_are_refused_with_a_reason() {
-    for cycle in [4, 14, 204, 208, 210, 241, 251, 262, 1, 13, 19, 30, 400] {
+    for cycle in [4, 14, 204, 208, 210, 241, 251, 262, 13, 18, 19, 30, 400] {
         for form in [format!("CYCL DEF {cycle} NAME"), format!("CYCL DEF {cycle}.0 NAME")] {
             let error = refused(&format!("{START}{form}"));
             assert_eq!(error.rule, "unsupported", "{form}: {error}");
@@ -297,4 +297,62 @@ fn cycles_that_mill_by_themselves_are_refused_with_a_reason() {
         refused(&format!("{START}{}", center.replace("Q343=0", "Q343=1"))).rule,
         "cycle-parameter"
     );
+}
+
+#[test]
+fn the_older_hole_cycles_start_and_end_where_the_tool_stands() {
+    use program::{Cycle, CycleKind, Feed};
+    let at = "L X+5 Y+6 Z+2 FMAX\n";
+    // TNC 407 p. 8-4: from the starting position, 2 above the surface, 15 deep by pecks of 5.
+    let pecking = "CYCL DEF 1.0 PECKING\nCYCL DEF 1.1 SET UP 2\nCYCL DEF 1.2 DEPTH -15
+CYCL DEF 1.3 PECKG 5\nCYCL DEF 1.4 DWELL 0.5\nCYCL DEF 1.5 F100\n";
+    let ops = run(&format!("{START}{pecking}{at}CYCL CALL\nL IX+1 FMAX"));
+    let expected = Cycle {
+        kind: CycleKind::Deep,
+        depth: 15.0,
+        clearance: 2.0,
+        retract: 2.0,
+        feed: Some(Feed::PerMinute(100.0)),
+        dwell: 0.5,
+        first_peck: Some(5.0),
+        peck: Some(5.0),
+    };
+    assert_eq!(cycles(&ops)[0], expected);
+    assert_near(&points(&ops)[1..], &[[5.0, 6.0, 2.0], [5.0, 6.0, 0.0], [6.0, 6.0, 2.0]]);
+    // As still older controls write it, all signs the same; and in German.
+    let minus = "CYCL DEF 1.0 TIEFBOHREN\nCYCL DEF 1.1 ABST -2\nCYCL DEF 1.2 TIEFE-15
+CYCL DEF 1.3 ZUSTLG-15\nCYCL DEF 1.4 V.ZEIT 0,5\nCYCL DEF 1.5 F100\n";
+    let ops = run(&format!("{START}{minus}{at}L IX+0 FMAX M99"));
+    let one_go = Cycle { kind: CycleKind::Drill, first_peck: None, peck: None, ..expected };
+    assert_eq!(cycles(&ops)[0], one_go);
+    // 1500 mm/min at 3000 1/min; the pitch of a rigid tap is given.
+    for (definition, pitch, left) in [
+        (
+            "CYCL DEF 2.0 TAPPING\nCYCL DEF 2.1 SET UP 3\nCYCL DEF 2.2 DEPTH -20\nCYCL DEF 2.3 DWELL 0\n\
+          CYCL DEF 2.4 F1500",
+            0.5,
+            false,
+        ),
+        (
+            "CYCL DEF 17.0 RIGID TAPPING\nCYCL DEF 17.1 SET UP 3\nCYCL DEF 17.2 DEPTH -20\n\
+          CYCL DEF 17.3 PITCH -1.25",
+            1.25,
+            true,
+        ),
+    ] {
+        let cycle = cycles(&run(&format!("{START}{definition}\n{at}CYCL CALL")))[0];
+        assert_eq!(cycle.kind, CycleKind::Tap { pitch, left });
+        assert_eq!((cycle.depth, cycle.clearance, cycle.retract), (20.0, 3.0, 3.0));
+    }
+    for (blocks, rule) in [
+        (pecking.replace("-15", "+15") + "CYCL CALL", "cycle-parameter"),
+        (pecking.replace("F100", "F0"), "cycle-parameter"),
+        (pecking.replace("CYCL DEF 1.5 F100\n", "") + "CYCL CALL", "cycle-parameter"),
+        (pecking.replace("SET UP 2", "SET UP Q5"), "parameter"),
+        (format!("{pecking}CYCL CALL POS X+1 Y+1 Z+1 FMAX"), "cycle"),
+        (format!("{pecking}PATTERN DEF POS1 (X+1 Y+1)\nCYCL CALL PAT FMAX"), "cycle"),
+    ] {
+        let error = refused(&format!("{START}{blocks}"));
+        assert_eq!(error.rule, rule, "{blocks}: {error}");
+    }
 }

@@ -2,10 +2,12 @@
 
 use geom::Vec3;
 use program::{Diagnostic, Op, Pose};
-use toolpost_control::{Dialect, Settings, read};
+use proptest::prelude::*;
+use toolpost_control::{Dialect, Settings, Wire, read};
 
 fn run(text: &str, upper_plane: Option<f64>) -> Result<Vec<(u32, Op)>, Box<Diagnostic>> {
-    let settings = Settings { upper_plane, ..Settings::new(Dialect::Points, [false; 3]) };
+    let wire = Wire { height: upper_plane, ..Wire::default() };
+    let settings = Settings { wire, ..Settings::new(Dialect::Points, [false; 3]) };
     let mut records = Vec::new();
     read(&settings, "part.pts", text.as_bytes(), &mut |record| {
         records.push((record.line, record.op));
@@ -62,6 +64,47 @@ fn whatever_is_no_point_is_refused_where_it_stands() {
     assert_eq!(refused("1 2\n3-4\n"), ("nc-syntax", 2, 2));
     assert_eq!(refused("1 2\n3 1e3\n"), ("nc-syntax", 2, 4));
     assert_eq!(refused("1 2 0 0\n"), ("upper-plane", 1, 1));
+    assert_eq!(run("1 2 1e0 0", Some(1.0)).unwrap_err().column, 6);
+    let far = format!("1 2 {} 0\n", "9".repeat(200));
+    assert_eq!(run(&far, Some(1.0)).unwrap_err().rule, "nc-number");
     let long = format!("1 {}\n", "9".repeat(400));
     assert_eq!(refused(&long), ("nc-number", 1, 3));
+}
+
+proptest! {
+    /// Whole thousandths, written here and read there.
+    #[test]
+    fn every_list_is_read_as_it_was_written(
+        points in prop::collection::vec((-99_999..99_999i32, -99_999..99_999i32, -9999..9999i32, -9999..9999i32), 2..40),
+        leans in any::<bool>(),
+        gap in "[ \t]{1,3}",
+    ) {
+        let mm = |thousandths: i32| f64::from(thousandths) / 1000.0;
+        let mut text = String::new();
+        for (x, y, u, v) in &points {
+            text += &format!("{:.3}{gap}{:.3}", mm(*x), mm(*y));
+            if leans {
+                text += &format!("{gap}{:.3}{gap}{:.3}", mm(*u), mm(*v));
+            }
+            text.push('\n');
+        }
+        let records = run(&text, Some(25.0)).unwrap();
+        let poses: Vec<&Pose> = records.iter().filter_map(|(_, op)| op.pose()).collect();
+        prop_assert_eq!(poses.len(), points.len());
+        for (pose, (x, y, u, v)) in poses.iter().zip(&points) {
+            prop_assert_eq!(pose.point, Vec3::new(mm(*x), mm(*y), 0.0));
+            let axis = pose.axis().unwrap();
+            let upper = axis * (25.0 / axis.z);
+            let (u, v) = if leans { (mm(*u), mm(*v)) } else { (0.0, 0.0) };
+            prop_assert!((upper.x - u).abs() < 1e-9 && (upper.y - v).abs() < 1e-9);
+        }
+    }
+
+    #[test]
+    fn no_bytes_make_it_panic(text in prop::collection::vec(prop::sample::select(b"0123456789.-+ \t\r\nX,e".to_vec()), 0..80)) {
+        let text = String::from_utf8(text).unwrap();
+        if let Err(found) = run(&text, Some(10.0)) {
+            prop_assert!(found.is_error() && found.line > 0 && found.column > 0);
+        }
+    }
 }

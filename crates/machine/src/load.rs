@@ -574,6 +574,8 @@ fn finish_wire(sheet: &WireSheet) -> Wire {
         height: sheet.height.map(|mm| mm.0),
         uv_travel: sheet.uv_travel.map_or(f64::INFINITY, |mm| mm.0),
         taper_max: sheet.taper_max.map_or(90.0, |degrees| degrees.0),
+        thread: sheet.thread,
+        cut: sheet.cut,
         memory: sheet.memory.map(|points| points as usize),
     }
 }
@@ -690,8 +692,14 @@ max = 200.5
     #[test]
     fn a_wire_leans_by_u_and_v_and_by_no_rotary_axis() {
         let wire = load_text("w.toml", "reader = \"g\"\n[wire]\nmemory = 900\n").unwrap().wire;
-        let unlimited =
-            Wire { height: None, uv_travel: f64::INFINITY, taper_max: 90.0, memory: Some(900) };
+        let unlimited = Wire {
+            height: None,
+            uv_travel: f64::INFINITY,
+            taper_max: 90.0,
+            thread: None,
+            cut: None,
+            memory: Some(900),
+        };
         assert_eq!(wire, Some(unlimited));
         let axis = "letter = \"A\"\non = \"head\"\naxis = [1, 0, 0]\nrapid = 1\nacceleration = 1";
         let modes = "[orientation]\nsimultaneous = \"vectors\"";

@@ -132,6 +132,10 @@ pub struct Wire {
     pub uv_travel: f64,
     /// How far the wire may lean from upright, degrees; 90 where nothing is given.
     pub taper_max: f64,
+    /// Number of the M function that threads it, where the control is told so.
+    pub thread: Option<u32>,
+    /// Number of the M function that cuts it.
+    pub cut: Option<u32>,
     /// The most points (lines of the program) that the control holds, where that is known.
     pub memory: Option<usize>,
 }

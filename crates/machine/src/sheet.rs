@@ -65,7 +65,7 @@ macro_rules! sheet {
 sheet!(Sheet "" {
     extends: Spanned<String>, "", "The machine or control that this file changes: a name in the library, or the path of a file.";
     title: String, "", "What a person calls it.";
-    reader: Spanned<String>, "", "The virtual control that proves its programs: sinumerik, fanuc, linuxcnc, grbl, klartext, points.";
+    reader: Spanned<String>, "", "The virtual control that proves its programs: sinumerik, fanuc, linuxcnc, grbl, klartext, fanuc-wire, sodick, agie, points.";
     extension: String, "", "Ending of its programs, without the dot.";
     capabilities: CapabilitiesSheet, "", "Table: what the control can do; what it cannot is lowered.";
     format: FormatSheet, "", "Table: how text is put together.";
@@ -153,6 +153,8 @@ sheet!(merged WireSheet "wire" {
     height: Positive, "mm", "Height of the upper plane over the lower: U and V say how far the wire is beside X and Y there.";
     uv_travel: Positive, "mm", "Farthest U and V either way; without it there is no limit.";
     taper_max: Positive, "degrees", "How far the wire may lean from upright; without it there is no limit.";
+    thread: u32, "", "Number of the M function that threads the wire.";
+    cut: u32, "", "Number of the M function that cuts the wire.";
     memory: u32, "", "The most points that the control holds, one a line.";
 });
 

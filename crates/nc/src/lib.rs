@@ -15,7 +15,7 @@
 //!
 //! What cannot be told truly is refused with its line.
 
-use control::{Dialect, Settings, Setup};
+use control::{Dialect, Settings, Setup, Wire};
 use geom::Vec3;
 use machine::{LengthOffset, Machine, Mount};
 use program::{Diagnostic, FIRST_WORK_OFFSET, Op, Orientation, Pose, Program, Record, Tool};
@@ -54,7 +54,11 @@ pub fn settings(machine: &Machine, setup: Setup) -> Result<Settings, Box<Diagnos
     Ok(Settings {
         auxiliary: machine.auxiliary.clone(),
         operator_parameters: machine.operator_parameters.clone(),
-        upper_plane: machine.wire.and_then(|wire| wire.height),
+        wire: machine.wire.map_or(Wire::default(), |wire| Wire {
+            height: wire.height,
+            thread: wire.thread,
+            cut: wire.cut,
+        }),
         path_tolerance: machine.path_tolerance(),
         setup,
         ..Settings::new(dialect, rotary)
@@ -165,6 +169,15 @@ impl<'a> Lift<'a> {
                 }
                 arc.end = self.cut(&arc.end)?;
                 self.arrive(line, Op::Arc(arc));
+            }
+            Op::Thread(mut thread) => {
+                thread.end = self.cut(&thread.end)?;
+                self.arrive(line, Op::Thread(thread));
+            }
+            Op::Probe(pose) => {
+                let pose = self.cut(&pose)?;
+                self.here = None;
+                self.arrive(line, Op::Probe(pose));
             }
             Op::Hole(pose) => {
                 let pose = self.pose(&pose);

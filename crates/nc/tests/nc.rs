@@ -156,3 +156,18 @@ fn several_work_offsets_stay_and_the_first_alone_is_left_to_the_machine() {
     let found = refused("G21 G90 G54\nG0 X0. Y0. Z5.\nG55\nG1 Z-1. F100.\nM30\n");
     assert_eq!(found.line, 4);
 }
+
+#[test]
+fn threads_and_probes_are_moves_at_feed() {
+    let start = "G21 G90 G54 G0\nS100 M3\nX0 Y0 Z5.\n";
+    let thread = fanuc(&format!("{start}G33 Z-9. F1.5\nG0 Z5.\nM30\n"));
+    let end = thread.records.iter().find_map(|record| match &record.op {
+        Op::Thread(thread) => Some((thread.end, thread.pitch)),
+        _ => None,
+    });
+    assert_eq!(end, Some((at(0.0, 0.0, -9.0), 1.5)));
+    let probe = fanuc(&format!("{start}G31 Z-9. F100.\nG0 Z5.\nM30\n"));
+    assert!(probe.records.iter().any(|record| record.op == Op::Probe(at(0.0, 0.0, -9.0))));
+    // Where the probe has stopped is not known: nothing is cut from there.
+    assert_eq!(refused(&format!("{start}G31 Z-9. F100.\nG1 Z-5.\nM30\n")).rule, "unknown-position");
+}

@@ -98,6 +98,7 @@ impl<'a> Walk<'a> {
         // What the catalogue asks of `program_start`.
         writer.assume(WordName::Plane, PLANE_XY);
         writer.assume(WordName::Compensation, compensation_code(Compensation::Off));
+        writer.assume(WordName::TaperSide, 0);
         writer.assume(WordName::FeedMode, feed_mode::PER_MINUTE);
         Ok(Walk {
             machine,
@@ -252,6 +253,7 @@ impl<'a> Walk<'a> {
             Op::End => self.end(),
             Op::ThreadWire => self.thread_wire(),
             Op::CutWire => self.cut_wire(),
+            Op::Taper(degrees) => self.set_taper(*degrees),
             Op::Home(_) => {
                 self.end_cycle()?;
                 self.leave_part()
@@ -368,7 +370,9 @@ impl<'a> Walk<'a> {
     /// (HEIDENHAIN's `M0`), and so may the operator.
     fn stop(&mut self, name: BlockName) -> Done {
         self.end_cycle()?;
-        (self.active_spindle, self.active_coolant) = (None, None);
+        if self.wire.is_none() {
+            (self.active_spindle, self.active_coolant) = (None, None);
+        }
         self.required(name)
     }
 

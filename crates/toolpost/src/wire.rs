@@ -49,8 +49,6 @@ pub fn run(args: &args::Wire, silent: bool) -> Result<Answer, Stop> {
     warnings.extend(rounded);
     divide(&mut legs, &args.division, &machine)?;
     let cut = Cut::of(legs, &machine);
-    // What the proof lets chords leave their arcs by is what the conversion has made of them.
-    machine.capabilities.lowering_tolerance = cut.chord_error().max(f64::MIN_POSITIVE);
     let program = cut.program(&toolpath.program.name);
     let output = ::post::write(&program, &machine).map_err(|mut findings| {
         toolpath.quote(&mut findings);
@@ -61,6 +59,10 @@ pub fn run(args: &args::Wire, silent: bool) -> Result<Answer, Stop> {
     warnings.extend(output.warnings);
     toolpath.quote(&mut warnings);
     progress.step("proving");
+    if cut.points().is_some() {
+        // Chords may leave their arcs by what the conversion has made of them, and by no more.
+        machine.capabilities.lowering_tolerance = cut.chord_error();
+    }
     let file = files::name(&args.output);
     let tolerances = args.closeness.tolerances();
     let proof = proof::of(&cut, &machine, &toolpath.program.name, &file, &output.text, &tolerances);
@@ -113,6 +115,11 @@ fn set_up(machine: &mut Machine, args: &args::Wire) -> Result<(), Stop> {
         let help = "`toolpost post` writes for mills; `toolpost machines list` names the machines";
         return Err(Diagnostic::error("machine-kind", message).help(help).into());
     };
+    if args.cutting.by_control && !machine.capabilities.compensation {
+        let message = format!("the control of `{}` offsets no wire", machine.name);
+        let help = "leave --by-control out: the way of the wire's centre is then worked out here";
+        return Err(Diagnostic::error("by-control", message).help(help).into());
+    }
     machine.wire = Some(Wire {
         height: args.ends.height.or(wire.height),
         memory: args.division.memory.or(wire.memory),

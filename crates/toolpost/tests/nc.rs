@@ -73,3 +73,23 @@ fn the_sample_of_each_machine_is_proven_on_every_other_that_can_make_it() {
         }
     }
 }
+
+/// A program for LinuxCNC, written for Mach3.
+fn rewritten(blocks: &str) -> Result<String, program::Diagnostic> {
+    let load = |name| machine::load(name).unwrap();
+    let text = format!("G21 G90 G54\nT1 M6\nS500 M3\nG43 H1\nG0 X0 Y0\nZ9\n{blocks}\nG0 Z9\nM2\n");
+    let from = load("generic-3axis-linuxcnc");
+    let reading = nc::read(&from, Setup::default(), "old.ngc", text.as_bytes()).unwrap();
+    let output = post::write(&reading.program, &load("generic-3axis-mach3"));
+    output.map_err(|errors| errors[0].clone()).map(|o| String::from_utf8(o.text).unwrap())
+}
+
+#[test]
+fn both_coolants_are_written_and_threads_and_probes_are_refused() {
+    let text = rewritten("M8\nM7\nG1 Z-1 F100").unwrap();
+    assert!(text.contains(" M7\n") && text.contains(" M8\n"), "{text}");
+    for blocks in ["G33 Z-9 K1.5", "G38.2 Z-9 F100"] {
+        let error = rewritten(blocks).unwrap_err();
+        assert_eq!((error.rule, error.line), ("unsupported", 7), "{error}");
+    }
+}

@@ -2,8 +2,9 @@
 
 use geom::Vec3;
 use machine::Machine;
-use program::{ArcTo, Diagnostic, Op, Pose, Program, Tool};
+use program::{ArcTo, Compensation, Diagnostic, Feed, Op, Pose, Program, Tool};
 use proof::{Report, Tolerances};
+use proptest::prelude::*;
 
 /// The list of coordinates with its upper plane 40 mm over the lower.
 const LIST: &str = "extends = \"bp-95d\"\n[wire]\nheight = 40\nuv_travel = 15\ntaper_max = 20\n";
@@ -164,8 +165,107 @@ fn what_a_wire_cannot_do_is_refused_with_its_line() {
     assert_eq!(refused(&sector(), &small).rule, "memory");
 }
 
+/// A die in ISO code, offset and leant by the control: in from the middle, round three sides and an arc, and back.
+fn die() -> Program {
+    let arc = ArcTo { end: upright(0.0, 40.0), center: Vec3::ZERO, normal: Vec3::Z, turns: 0 };
+    let ways = [
+        Op::Feed(Feed::PerMinute(6.0)),
+        Op::Compensation(Compensation::Left(Some(1))),
+        Op::Taper(-2.5),
+        Op::Line(upright(15.0, 0.0)),
+        Op::Line(upright(40.0, 0.0)),
+        Op::Arc(Box::new(arc)),
+        Op::Line(upright(0.0, 0.0)),
+        Op::Line(upright(15.0, 0.0)),
+        Op::Compensation(Compensation::Off),
+        Op::Taper(0.0),
+        Op::Line(upright(15.0, 15.0)),
+    ];
+    opening(upright(15.0, 15.0), ways)
+}
+
+#[test]
+fn any_damage_to_a_program_of_iso_code_is_refused() {
+    let machine = machine("extends = \"fanuc-wire\"\n[wire]\nheight = 40\n");
+    let leaning = frustum();
+    for program in [&die(), &leaning] {
+        let text = written(program, &machine);
+        proven(program, &machine, &text);
+        let lines: Vec<&str> = text.lines().collect();
+        // Behind the name of the program and the block that sets the control up.
+        for (i, line) in lines.iter().enumerate().skip(3) {
+            let number = line.split(' ').next().unwrap_or_default();
+            if !number.starts_with('N') {
+                continue;
+            }
+            let judge = |other: &str| {
+                let mut damaged = lines.clone();
+                damaged[i] = other;
+                let damaged = damaged.join("\n") + "\n";
+                let same = *line == other;
+                assert!(same || !proof(program, &machine, &damaged).proven, "{line} -> {other}");
+            };
+            judge(number);
+            for (from, to) in [
+                ("M60", "M50"),
+                ("M50", "M60"),
+                ("G41", "G42"),
+                ("G40", "G41 D1"),
+                ("D1", "D2"),
+                ("G52", "G51"),
+                ("T2.5", "T2.6"),
+                ("G50", "G51 T1."),
+                (" G50", ""),
+                ("G3", "G2"),
+                ("G1", "G0"),
+                ("G0", "G1"),
+                ("F6.", "F7."),
+            ] {
+                judge(&line.replace(from, to));
+            }
+            for letter in ["X", "Y", "U", "V", "I"] {
+                let Some(word) = line.split(' ').find(|word| word.starts_with(letter)) else {
+                    continue;
+                };
+                let value: f64 = word[1..].parse().unwrap();
+                for other in [-value, value + 0.01] {
+                    if other != value {
+                        judge(&line.replace(word, &format!("{letter}{other:.3}")));
+                    }
+                }
+            }
+        }
+    }
+}
+
 #[test]
 fn a_mill_threads_no_wire() {
     let mill = machine("extends = \"generic-3axis-fanuc\"");
     assert_eq!(refused(&sector(), &mill).rule, "unsupported");
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(64))]
+
+    /// Any way of the wire, leaning as it likes within the machine.
+    #[test]
+    fn any_way_of_a_wire_is_proven_on_every_wire_machine(
+        points in prop::collection::vec((-90.0..90.0f64, -90.0..90.0f64, -9.0..9.0f64, -9.0..9.0f64), 2..30),
+        leans in any::<bool>(),
+        feed in prop::option::of(1.0..20.0f64),
+    ) {
+        let pose = |&(x, y, u, v): &(f64, f64, f64, f64)| {
+            if leans { leaning(x, y, u, v) } else { upright(x, y) }
+        };
+        for control in ["bp-95d", "fanuc-wire", "sodick-iso", "agie-iso"] {
+            let machine = machine(&format!("extends = \"{control}\"\n[wire]\nheight = 40\n"));
+            let says_feed = feed.filter(|_| machine.words.contains_key("F"));
+            let feed = says_feed.map(|feed| Op::Feed(Feed::PerMinute(feed)));
+            let ways = points.iter().skip(1).map(|point| Op::Line(pose(point)));
+            let program = opening(pose(&points[0]), feed.into_iter().chain(ways));
+            let text = written(&program, &machine);
+            let report = proof(&program, &machine, &text);
+            prop_assert!(report.proven, "{control}: {:?}\n{text}", report.mismatches);
+        }
+    }
 }

@@ -2,7 +2,7 @@
 
 use crate::contour::Contour;
 use crate::element::{Element, FAR};
-use crate::lead::Lead;
+use crate::lead::{Lead, LeadShape};
 use crate::near::Near;
 use crate::offset::{Corner, Corners, EXACT};
 use crate::order::order;
@@ -142,8 +142,8 @@ impl Plan {
 /// of each the rough pass, the trim passes, and last the tab.
 ///
 /// # Errors
-/// `passes` and `taper-angle` for values that cannot be; `open-contour` where a closed one is needed;
-/// `tab` for a tab that is no part of its contour; `no-thread` where nobody says where to thread;
+/// `passes`, `taper-angle`, `lead` and `tab` for values that cannot be; `open-contour` where a closed one is needed;
+/// `tab` as well for one that is no part of its contour; `no-thread` where nobody says where to thread;
 /// `cuts-part` where a lead or a pass would cut into a contour; those of [`offset`](crate::offset),
 /// [`lean`](crate::taper::lean) and [`Path::by_block`].
 pub fn plan(openings: &[Opening], settings: &Settings) -> Result<Plan, Box<Diagnostic>> {
@@ -205,6 +205,12 @@ fn sensible(settings: &Settings) -> Result<(), Box<Diagnostic>> {
     {
         let message = format!("a taper of {}° over {height} mm", angle.to_degrees());
         return Err(refused("taper-angle", message, "at most 60°, and a height above 0"));
+    }
+    let Lead { length, shape } = settings.lead;
+    let radius = if let LeadShape::Arc(radius) = shape { radius } else { 0.0 };
+    if !(0.0..=FAR).contains(&length) || !(0.0..=FAR).contains(&radius) {
+        let message = format!("a lead-in of {length} mm with an arc of {radius} mm");
+        return Err(refused("lead", message, "lengths from 0 mm on"));
     }
     if !(0.0..=FAR).contains(&settings.tab) {
         return Err(refused("tab", format!("a tab of {} mm", settings.tab), "0 mm for none"));

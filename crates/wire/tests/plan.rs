@@ -214,6 +214,12 @@ fn what_cannot_be_is_refused() {
     assert_eq!(rule(opening(open.clone(), Side::Left), &tab), "open-contour");
     assert_eq!(rule(punch(), &Settings { tab: 101.0, ..settings(&[0.1]) }), "tab");
     assert_eq!(rule(punch(), &Settings { tab: -1.0, ..settings(&[0.1]) }), "tab");
+    for bad in [-1.0, f64::NAN, f64::INFINITY] {
+        let lead = Lead { length: 5.0, shape: LeadShape::Arc(bad) };
+        assert_eq!(rule(punch(), &Settings { lead, ..settings(&[0.1]) }), "lead");
+        let lead = Lead { length: bad, shape: LeadShape::Straight };
+        assert_eq!(rule(punch(), &Settings { lead, ..settings(&[0.1]) }), "lead");
+    }
     let lead = Lead { length: 0.0, shape: LeadShape::Straight };
     let nowhere = Opening { thread: None, ..punch() };
     assert_eq!(rule(nowhere, &Settings { lead, ..settings(&[0.1]) }), "no-thread");

@@ -1,6 +1,7 @@
 //! The upper contour of a leaning wire, by hand.
 
 use geom::Vec2;
+use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
 use toolpost_wire::taper::{Rounding, lean};
 use toolpost_wire::{Contour, Element};
@@ -96,4 +97,39 @@ fn a_circle_becomes_a_cone_and_a_side_that_vanishes_is_refused() {
     let lines: Vec<_> = narrow.iter().zip(next).map(|(&p, &q)| Element::line(p, q)).collect();
     let refused = lean(&Contour::new(lines, 0.0).unwrap(), 2.0, Rounding::Conical).unwrap_err();
     assert_eq!(refused.rule, "taper-corner");
+}
+
+proptest! {
+    /// Sides are parallel, arcs concentric, each as far from its partner as the lean.
+    #[test]
+    fn every_element_lies_beside_its_partner(
+        radii in prop::collection::vec(10.0f64..20.0, 3..16),
+        bulges in prop::collection::vec(-0.2f64..0.2, 16),
+        distance in -2.0f64..2.0,
+    ) {
+        let n = radii.len();
+        let corner = |i: usize| Vec2::from_angle(TAU * (i % n) as f64 / n as f64) * radii[i % n];
+        let elements = (0..n).map(|i| {
+            let (a, b, sweep) = (corner(i), corner(i + 1), 4.0 * bulges[i].atan());
+            if sweep.abs() < 0.1 {
+                return Element::line(a, b);
+            }
+            let center = (a + b) / 2.0 + (b - a).perp() / (2.0 * (sweep / 2.0).tan());
+            Element::arc(a, b, center, sweep)
+        });
+        let lower = Contour::new(elements.collect(), 0.0).unwrap();
+        let Ok(upper) = lean(&lower, distance, Rounding::Conical) else { return Ok(()) };
+        prop_assert!(upper.is_closed() && upper.elements().len() == n);
+        for (below, above) in lower.elements().iter().zip(upper.elements()) {
+            let left = match below.turn {
+                None => below.tangent(0.0).perp_dot(above.at(0.3) - below.start),
+                Some(turn) => {
+                    let inwards = below.start.distance(turn.center)
+                        - above.at(0.3).distance(turn.center);
+                    inwards * turn.sweep.signum()
+                }
+            };
+            prop_assert!((left - distance).abs() < 1e-6, "{left} {distance}");
+        }
+    }
 }

@@ -52,6 +52,8 @@ pub(crate) struct Compensator<'a> {
     inverse_time: bool,
     /// The contour, while compensation is on and resolved.
     path: Option<Box<Path>>,
+    /// Compensation has been told as a state, and nothing has moved since.
+    told: bool,
     /// The end of the contour, until the tool has left it.
     leaving: Option<Box<Leaving>>,
 }
@@ -67,6 +69,7 @@ impl<'a> Compensator<'a> {
             at: Pose { point: Vec3::NAN, orientation: nowhere },
             inverse_time: false,
             path: None,
+            told: false,
             leaving: None,
         }
     }
@@ -112,6 +115,7 @@ impl<'a> Compensator<'a> {
                     .help("with the tool in the tool table it is resolved into the path")
                     .into());
             }
+            self.told = side != Compensation::Off;
             return (self.sink)(Record { line, op: Op::Compensation(side) });
         };
         let Some(rules) = Rules::of(self.dialect) else {
@@ -175,6 +179,7 @@ impl<'a> Compensator<'a> {
                 };
                 self.at.point = Vec3::NAN;
             }
+            Op::Arc(_) if self.told => return Err(on_arc(record.line)),
             Op::WorkOffset(_) | Op::Probe(_) => self.at.point = Vec3::NAN,
             Op::Home(axes) => {
                 self.leaving = None;
@@ -198,6 +203,7 @@ impl<'a> Compensator<'a> {
             leaving.check(line, &pose)?;
         }
         self.at = pose;
+        self.told = false;
         Ok(())
     }
 
@@ -225,6 +231,13 @@ impl<'a> Compensator<'a> {
 /// An error of `rule` in `line`.
 fn error(rule: &'static str, line: u32, message: impl Into<String>) -> Diagnostic {
     Diagnostic::error(rule, message).line(line)
+}
+
+/// Only LinuxCNC has a way for that, and it needs the radius.
+fn on_arc(line: u32) -> Box<Diagnostic> {
+    error("compensation-entry", line, "compensation is switched on in an arc")
+        .help("switch it on in a straight move before the arc")
+        .into()
 }
 
 /// Elements that corners add would take the time of a move once more.

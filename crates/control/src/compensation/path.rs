@@ -3,7 +3,7 @@
 use super::leaving::{self, Leaving};
 use super::plane::Plane;
 use super::rules::{Entry, Outer, Rules};
-use super::{Fallible, SAME, error, inverse_time};
+use super::{Fallible, SAME, error, inverse_time, on_arc};
 use crate::Sink;
 use geom::{Arc, Element, Turn, Vec2, Vec3, turn_angle};
 use program::{ArcTo, Diagnostic, Feed, Op, Orientation, Pose, Record};
@@ -225,10 +225,10 @@ impl Path {
     /// The first move in the plane.
     fn enter(&self, piece: Piece) -> Fallible<Stage> {
         if piece.contour.turn.is_some() {
-            let message = "compensation is switched on in an arc";
-            return Err(error("compensation-entry", piece.line, message)
-                .help("switch it on in a straight move before the arc")
-                .into());
+            if self.rules.entry == Entry::OfItself {
+                return self.enter_on_arc(piece);
+            }
+            return Err(on_arc(piece.line));
         }
         if self.rules.entry == Entry::OfNext {
             return Ok(Stage::Entering(piece));
@@ -241,6 +241,31 @@ impl Path {
         let end = piece.parallel.end;
         let start = end - piece.parallel.tangent_at_end() * FAR;
         let parallel = Element::line(start, end);
+        Ok(Stage::Following(Piece { begins: true, parallel, ..piece }))
+    }
+
+    /// The arc from where the tool stands that ends beside the programmed one and in its direction.
+    fn enter_on_arc(&self, piece: Piece) -> Fallible<Stage> {
+        let Piece { contour, parallel, .. } = piece;
+        let (start, end) = (contour.start, parallel.end);
+        let sweep = contour.turn.map_or(0.0, |turn| turn.sweep);
+        // Its centre lies on the line across the end, as far from there as from the start.
+        let inward = contour.tangent_at_end().perp() * sweep.signum();
+        let (chord, along) = (start.distance_squared(end), (start - end).dot(inward));
+        let radius = chord / (2.0 * along);
+        if !(along > 0.0 && radius > self.left.abs()) {
+            let message = format!(
+                "the arc that switches compensation on must be larger than the tool's radius of \
+                 {:.4} mm",
+                self.left.abs()
+            );
+            return Err(error("compensation-entry", piece.line, message).into());
+        }
+        let center = end + inward * radius;
+        let once = turn_angle((start - center) / radius, (end - center) / radius);
+        let turns = ((sweep.abs() / TAU - 1e-9).ceil() - 1.0).max(0.0);
+        let sweep = ((once * sweep.signum()).rem_euclid(TAU) + turns * TAU) * sweep.signum();
+        let parallel = Element::arc(start, end, center, sweep);
         Ok(Stage::Following(Piece { begins: true, parallel, ..piece }))
     }
 

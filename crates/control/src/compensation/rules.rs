@@ -72,6 +72,8 @@ impl Rules {
             Dialect::Klartext => Some(rules),
             // Mach3 and Haas have it, and how they go is not documented well enough.
             Dialect::Haas | Dialect::Mach3 => None,
+            // So with wires, whose offsets are the generator's.
+            Dialect::FanucWire | Dialect::Sodick | Dialect::Agie => None,
             Dialect::Grbl | Dialect::Marlin | Dialect::Points => None,
         }
     }

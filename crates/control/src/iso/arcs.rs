@@ -57,6 +57,7 @@ impl Step<'_, '_, '_> {
             return Err(self.block.whole("nc-arc", message));
         }
         let turns = self.turns()?;
+        self.switch_compensation();
         let mut axis = Vec3::ZERO;
         axis[third] = if clockwise { -1.0 } else { 1.0 };
         self.ops.push(Op::Arc(Box::new(ArcTo {
@@ -84,7 +85,9 @@ impl Step<'_, '_, '_> {
             let message = "a rotary axis in an arc";
             return Err(self.block.whole("nc-arc", message));
         }
-        if self.compensation_waits() {
+        // LinuxCNC may begin it on an arc; where that arc then leads needs the tool's radius.
+        let begins = self.flavor == Flavor::LinuxCnc && self.state.compensation.is_on();
+        if self.compensation_waits() && !begins {
             let message = "radius compensation starts and ends on a straight move, not on an arc";
             return Err(self.block.whole("nc-compensation", message));
         }

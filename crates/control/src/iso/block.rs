@@ -4,7 +4,7 @@ use super::arithmetic;
 use super::expression::{Reader, Target, Value};
 use super::parameters::{Language, Values};
 use super::words::{Dictionary, Flavor, G, Group, LETTERS, M, bit, index};
-use crate::decimal;
+use crate::{Settings, decimal};
 use program::Diagnostic;
 
 /// A finding about a block.
@@ -34,8 +34,8 @@ impl Word {
 #[derive(Debug)]
 pub(super) struct Block<'a> {
     dictionary: &'static Dictionary,
-    /// M functions that the builder of the machine has added.
-    auxiliary: &'a [u32],
+    /// The machine, for the M functions that its builder has added.
+    settings: &'a Settings,
     /// The line as it stands.
     pub text: &'a [u8],
     /// Its number, from 1.
@@ -63,11 +63,12 @@ pub(super) struct Block<'a> {
 
 impl<'a> Block<'a> {
     /// A block without words, for programs in the words of `dictionary` and the M functions that the
-    /// builder of the machine has added (`auxiliary`), which change nothing that is followed here.
-    pub(super) fn new(dictionary: &'static Dictionary, auxiliary: &'a [u32]) -> Block<'a> {
+    /// builder of the machine has added: those of the wire, and others that change nothing that is
+    /// followed here.
+    pub(super) fn new(dictionary: &'static Dictionary, settings: &'a Settings) -> Block<'a> {
         Block {
             dictionary,
-            auxiliary,
+            settings,
             text: b"",
             line: 0,
             is_empty: true,
@@ -203,7 +204,7 @@ impl<'a> Block<'a> {
                 }
                 None => return Err(self.unknown(letter, word)),
             },
-            b'M' => match dictionary.m(word.value) {
+            b'M' => match dictionary.m(word.value).or_else(|| self.of_the_wire(word.value)) {
                 Some((group, meaning)) => {
                     if self.m[group as usize].replace(meaning).is_some() {
                         return Err(self.same_group(group, at, end));
@@ -211,7 +212,7 @@ impl<'a> Block<'a> {
                     self.places[group as usize] = word;
                     self.m_count += 1;
                 }
-                None if self.auxiliary.iter().any(|&m| f64::from(m) == word.value) => {
+                None if self.settings.auxiliary.iter().any(|&m| f64::from(m) == word.value) => {
                     self.m_count += 1;
                 }
                 None => return Err(self.unknown(letter, word)),
@@ -238,6 +239,17 @@ impl<'a> Block<'a> {
         }
         self.started = true;
         Ok(end)
+    }
+
+    /// The M function of this number, where it threads or cuts the wire of the machine.
+    fn of_the_wire(&self, number: f64) -> Option<(Group, M)> {
+        let is = |function: Option<u32>| function.map(f64::from) == Some(number);
+        match self.settings.wire {
+            _ if !self.dictionary.flavor.is_wire() => None,
+            wire if is(wire.thread) => Some((Group::Wire, M::ThreadWire)),
+            wire if is(wire.cut) => Some((Group::Wire, M::CutWire)),
+            _ => None,
+        }
     }
 
     /// The number of a word that the program calculates at `from`, and the place after it.
@@ -482,6 +494,7 @@ impl<'a> Block<'a> {
             }
             b'#' => "a variable is set at the start of a block that has nothing else".to_owned(),
             b'[' | b']' | b'=' => "an expression without its word".to_owned(),
+            b'$' => "commands of the console ($) are no part of a program".to_owned(),
             b'%' => "% stands alone on its line".to_owned(),
             b';' => "; does not begin a comment here; write ( )".to_owned(),
             b'0'..=b'9' | b'.' | b'+' | b'-' => "a number without its letter".to_owned(),

@@ -17,6 +17,8 @@ pub(super) struct Holding {
     canned: Canned,
     /// The level along the drilling axis when the first of the contiguous cycles began, mm.
     initial: f64,
+    /// Last R and bottom as the words give them, mm.
+    words: (Option<f64>, Option<f64>),
     /// R plane and bottom along the drilling axis, mm.
     r: Option<f64>,
     bottom: Option<f64>,
@@ -68,6 +70,7 @@ impl Step<'_, '_, '_> {
         let fresh = Holding {
             canned,
             initial: self.state.position[axis],
+            words: (None, None),
             r: None,
             bottom: None,
             peck: None,
@@ -121,6 +124,7 @@ impl Step<'_, '_, '_> {
             let (point, rotary) = (self.state.position, self.state.rotary);
             let mut place = Target { point, rotary, named: 0 };
             self.in_plane(&mut place, false)?;
+            self.together(place.named)?;
             if repeats > 0 {
                 self.drill(place.point.with_axis(axis, r), &mut held)?;
             }
@@ -174,15 +178,22 @@ impl Step<'_, '_, '_> {
     /// In `G91` R counts from the level where the cycle starts and the bottom from R.
     fn levels(&mut self, held: &mut Holding, axis: usize) -> Result<(), Fault> {
         let incremental = self.state.incremental;
-        if let Some(value) = self.take_length(b'R')? {
-            held.r = Some(if incremental { held.initial + value } else { value });
-            if incremental && !self.block.has(LINEAR[axis]) {
-                held.bottom = None;
+        let level = |from: f64, value: f64| if incremental { from + value } else { value };
+        let (r, z) = (self.take_length(b'R')?, self.take_length(LINEAR[axis])?);
+        (held.words.0, held.words.1) = (r.or(held.words.0), z.or(held.words.1));
+        if self.flavor.is_fanuc() {
+            // The levels stay, whatever becomes of G90 and G91.
+            if let Some(value) = r {
+                held.r = Some(level(held.initial, value));
+                held.bottom = held.bottom.filter(|_| !incremental);
             }
-        }
-        if let Some(value) = self.take_length(LINEAR[axis])? {
-            let r = held.r.unwrap_or(f64::NAN);
-            held.bottom = Some(if incremental { r + value } else { value });
+            if let Some(value) = z {
+                held.bottom = Some(level(held.r.unwrap_or(f64::NAN), value));
+            }
+        } else {
+            // The numbers stay, and mean what G90 or G91 now makes of them (found with `rs274`).
+            held.r = held.words.0.map(|value| level(held.initial, value));
+            held.bottom = held.words.1.map(|value| level(held.r.unwrap_or(f64::NAN), value));
         }
         if held.canned.pecks()
             && let Some(value) = self.take_length(b'Q')?
@@ -319,8 +330,9 @@ impl Step<'_, '_, '_> {
         let axis = self.state.plane.axes()[2];
         let cycle = self.cycle(held)?;
         let r = at[axis];
-        // A series that starts below the R plane goes up to it first, before the way in the plane.
-        if held.initial < r && self.state.position[axis] < r {
+        // A series that starts below the R plane goes to it first, before the way in the plane: up, or
+        // after a higher one down (found with `rs274`).
+        if held.initial < r && self.state.position[axis] != r {
             self.lift(r, axis);
         }
         let level = at.with_axis(axis, r + cycle.retract);

@@ -59,6 +59,7 @@ impl Step<'_, '_, '_> {
     /// machine: what could matter there is refused.
     fn run(&mut self) -> Result<(), Fault> {
         self.one_command()?;
+        self.wire()?;
         self.m_functions_beside_motion()?;
         self.feed()?;
         self.speed()?;
@@ -339,30 +340,31 @@ impl Step<'_, '_, '_> {
 
     /// `G40` to `G42` with the register D; LinuxCNC's `G41.1`, `G42.1` with D as the diameter.
     fn compensation(&mut self, g: G) -> Result<(), Fault> {
-        let refused = |step: &Self, message| {
+        let refused = |step: &Self, message: String| {
             Err(step.block.at_group(Group::Compensation, "nc-compensation", message))
         };
         let (side, mut register, radius) = match g {
             G::Compensation(side) => (side, None, None),
             G::DynamicCompensation(side) => match self.take_length(b'D')? {
                 Some(diameter) => (side, None, Some(diameter / 2.0)),
-                None => return refused(self, "G41.1 and G42.1 need the diameter D"),
+                None => return refused(self, "G41.1 and G42.1 need the diameter D".into()),
             },
             _ => return Ok(()),
         };
         if self.flavor == Flavor::LinuxCnc && side != Side::Off {
             if self.state.compensation.is_on() {
-                return refused(self, "compensation is on already: G40 first");
+                return refused(self, "compensation is on already: G40 first".into());
             }
             if self.state.plane == Plane::Yz {
-                return refused(self, "LinuxCNC compensates in the planes G17 and G18 only");
+                return refused(self, "LinuxCNC compensates in the planes G17 and G18 only".into());
             }
         }
         if side != Side::Off && radius.is_none() {
-            register = self.take_whole(b'D')?;
+            register = self.take_whole(self.flavor.radius_letter())?;
             self.radius_is_set_up(register)?;
             if register.is_none() && self.flavor.is_fanuc() {
-                return refused(self, "G41 and G42 need their register D");
+                let letter = char::from(self.flavor.radius_letter());
+                return refused(self, format!("G41 and G42 need their register {letter}"));
             }
         }
         self.state.compensation.asked = side.with(register);

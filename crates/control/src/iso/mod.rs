@@ -1,4 +1,5 @@
-//! ISO code: FANUC 30i for milling, Haas, LinuxCNC's RS-274, Mach3, GRBL 1.1, Marlin.
+//! ISO code: FANUC 30i for milling, Haas, LinuxCNC's RS-274, Mach3, GRBL 1.1, Marlin; and of
+//! wire-EDM machines.
 //!
 //! They share the words and the order of execution and differ in tables ([`flavors`]) and in the
 //! rules that each maker states; `docs/controls/iso.md` and its neighbours say which, with sources.
@@ -32,6 +33,7 @@ mod state;
 mod system;
 mod threads;
 mod tools;
+mod wire;
 mod words;
 
 use crate::compensation::Compensator;

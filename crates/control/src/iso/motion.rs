@@ -17,7 +17,7 @@ pub(super) struct Target {
     pub point: Vec3,
     /// Degrees of A, B, C.
     pub rotary: [f64; 3],
-    /// The axes that the block names: bit 0 is X, 3 is A.
+    /// The axes that the block names: bit 0 is X, 3 is A; [`super::wire::LEANS`].
     pub named: u8,
 }
 
@@ -186,6 +186,8 @@ impl Step<'_, '_, '_> {
         let mut target = Target { point: self.state.position, rotary: self.state.rotary, named: 0 };
         self.in_plane(&mut target, unknown_stays)?;
         self.along(self.state.plane.axes()[2], &mut target, unknown_stays)?;
+        target.named |= self.lean()?;
+        self.together(target.named)?;
         for (axis, letter) in b"ABC".iter().copied().enumerate() {
             if !self.block.has(letter) {
                 continue;
@@ -225,7 +227,7 @@ impl Step<'_, '_, '_> {
             self.along(first, target, unknown_stays)?;
             self.along(second, target, unknown_stays)?;
         }
-        if target.named & self.state.loose != 0 { self.together(target.named) } else { Ok(()) }
+        Ok(())
     }
 
     /// The word of a linear axis.
@@ -246,7 +248,10 @@ impl Step<'_, '_, '_> {
     /// After the coordinates have been turned, what one axis means alone depends on the other: makers
     /// ask for absolute words of both. Only increments in turned coordinates are those of the tool
     /// from where it stands (B-64484EN, "Coordinate system rotation").
-    fn together(&mut self, named: u8) -> Result<(), Fault> {
+    pub(super) fn together(&mut self, named: u8) -> Result<(), Fault> {
+        if named & self.state.loose == 0 {
+            return Ok(());
+        }
         let all = named & self.state.loose == self.state.loose;
         if self.state.incremental && self.state.frames.transform.turn.is_some() {
             return Ok(());
@@ -360,6 +365,8 @@ impl Step<'_, '_, '_> {
     /// No feed is active, or in `G93` the block has none of its own, or the tool is not in.
     pub(super) fn feed_for_cut(&mut self) -> Result<(), Fault> {
         let message = match self.state.feed {
+            // A wire goes as fast as its generator lets it.
+            None if self.state.wire.is_some() => return Ok(()),
             None => "a move at feed, and no feed has been given by F",
             Some(Feed::InverseTime(_)) if !self.block.gives(b'F') => {
                 "in G93 each move needs its own F"

@@ -26,7 +26,9 @@ impl Flavor {
             Flavor::LinuxCnc => Language::Ngc,
             Flavor::Mach3 => Language::Rs274,
             Flavor::Fanuc | Flavor::Haas => Language::MacroB,
-            Flavor::Grbl | Flavor::Marlin => Language::Plain,
+            Flavor::Grbl | Flavor::Marlin | Flavor::FanucWire | Flavor::Sodick | Flavor::Agie => {
+                Language::Plain
+            }
         }
     }
 }

@@ -62,7 +62,7 @@ impl<'a, 's> Run<'a, 's> {
             language,
             control: Control::new(settings, dictionary.flavor),
             parameters: Parameters::new(language),
-            block: Block::new(dictionary, &settings.auxiliary),
+            block: Block::new(dictionary, settings),
             ops: Vec::new(),
             main,
             here,

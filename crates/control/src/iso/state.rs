@@ -3,6 +3,7 @@
 use super::cycles::Holding;
 use super::frames::{Frames, Place};
 use super::tools::Registers;
+use super::wire::Wire;
 use super::words::{FeedMode, Flavor, Motion, Plane, Side};
 use crate::compensation::Terms;
 use crate::{Settings, Units};
@@ -46,6 +47,8 @@ pub(super) struct State {
     /// The same as one way: [`Frames::place`], kept.
     pub place: Place,
     pub tilt: Tilt,
+    /// The wire of a wire-EDM machine.
+    pub wire: Option<Wire>,
     /// Axes (bit 0 is X) of which the next absolute words must come together, since the coordinates
     /// have just been turned.
     pub loose: u8,
@@ -171,6 +174,7 @@ impl State {
             frames: Frames::new(work_offset, all_zero, turns_offsets),
             place: Place::SAME,
             tilt: Tilt::None,
+            wire: flavor.is_wire().then(|| Wire::new(settings)),
             loose: 0,
             polar: None,
             diameter: false,
@@ -190,6 +194,9 @@ impl State {
     #[inline]
     pub(super) fn pose(&self, point: Vec3, rotary: [f64; 3]) -> Pose {
         let point = self.place.point(point);
+        if let Some(wire) = &self.wire {
+            return Pose { point, orientation: wire.orientation() };
+        }
         match self.tilt {
             Tilt::Reached(_) => Pose::new(point, self.place.direction(Vec3::Z)),
             Tilt::None | Tilt::Declared(_) => Pose {

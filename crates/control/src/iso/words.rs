@@ -10,12 +10,40 @@ pub(super) enum Flavor {
     Mach3,
     Grbl,
     Marlin,
+    FanucWire,
+    Sodick,
+    Agie,
 }
 
 impl Flavor {
-    /// FANUC and Haas, which follows it.
+    /// FANUC, and those that follow it.
     pub(super) fn is_fanuc(self) -> bool {
-        matches!(self, Flavor::Fanuc | Flavor::Haas)
+        matches!(self, Flavor::Fanuc | Flavor::Haas) || self.is_wire()
+    }
+
+    /// Wire-EDM machines.
+    pub(super) fn is_wire(self) -> bool {
+        matches!(self, Flavor::FanucWire | Flavor::Sodick | Flavor::Agie)
+    }
+
+    /// The letters of the generator's conditions on a wire-EDM machine.
+    pub(super) fn conditions(self) -> &'static [u8] {
+        match self {
+            Flavor::FanucWire => b"S",
+            Flavor::Sodick => b"CT",
+            Flavor::Agie => b"PST",
+            _ => b"",
+        }
+    }
+
+    /// The letter of the angle by which the control leans a wire.
+    pub(super) fn taper_letter(self) -> u8 {
+        if self == Flavor::Sodick { b'A' } else { b'T' }
+    }
+
+    /// The letter of the register of the tool's or the wire's radius.
+    pub(super) fn radius_letter(self) -> u8 {
+        if self == Flavor::Sodick { b'H' } else { b'D' }
     }
 
     /// Whether small letters are the same as capital ones.
@@ -43,6 +71,8 @@ pub(super) enum G {
     Compensation(Side),
     /// With the diameter in the block (`G41.1`).
     DynamicCompensation(Side),
+    /// Lean of a wire by the control, `G50` to `G52`.
+    Taper(Side),
     Length,
     ToolCenter,
     DynamicLength,
@@ -211,6 +241,8 @@ pub(super) enum M {
     },
     ForgetModes,
     RestoreModes,
+    ThreadWire,
+    CutWire,
     /// Nothing moves for it; the letters may stand beside it.
     Neutral(&'static [u8]),
     /// An output of the machine; the letters must stand beside it.
@@ -237,6 +269,7 @@ pub(super) enum Group {
     Tilt,
     Scaling,
     Mirror,
+    Taper,
     Macro,
     Polar,
     Diameter,
@@ -248,11 +281,12 @@ pub(super) enum Group {
     Override,
     Output,
     Modes,
+    Wire,
 }
 
 impl Group {
     /// How many groups there are.
-    pub(super) const COUNT: usize = Group::Modes as usize + 1;
+    pub(super) const COUNT: usize = Group::Wire as usize + 1;
 }
 
 /// A G word: ten times its number (`G43.4` is 434), its group, its meaning.
@@ -358,6 +392,10 @@ impl Dictionary {
         let (table, number) = match letter {
             b'G' => (self.refused_g, tenths(number)?),
             b'M' => (self.refused_m, tenths(number)? / 10),
+            b'E' if self.flavor == Flavor::Marlin => {
+                return Some("an extruder is no tool of a mill");
+            }
+            b'U' | b'V' | b'W' => return Some("the axes followed are X Y Z and A B C"),
             _ => return None,
         };
         table.iter().find(|(n, _)| usize::from(*n) == number).map(|(_, reason)| *reason)

@@ -281,6 +281,10 @@ impl Control<'_, '_> {
         if beside == 0.0 {
             return Ok(0.0);
         }
+        if self.transforms().scales() {
+            let message = "the radius of the tool is not scaled, and the contour is";
+            return Err(s.error_block("transformation", message));
+        }
         self.tool_radius.ok_or_else(|| {
             let message =
                 "where the tool is off the contour depends on its radius, which is not known";

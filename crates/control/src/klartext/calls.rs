@@ -4,6 +4,7 @@ use super::registers::{Numbers, Parameter, Registers};
 use super::run::Run;
 use super::scan::{Result, Scanner};
 use super::source::{LAST_LABEL, Label, Place, written_label};
+use crate::flow::DEEPEST;
 use crate::folders;
 use program::Diagnostic;
 use std::borrow::Cow;
@@ -11,6 +12,8 @@ use std::result::Result as StdResult;
 
 /// Deepest nesting of subprograms, and of programs (TNC 640; older controls have fewer).
 const NESTING: usize = 19;
+
+const _: () = assert!(NESTING < DEEPEST);
 
 /// Most repetitions that are under way at the same time.
 const REPETITIONS: usize = 1000;
@@ -158,7 +161,7 @@ impl<'t> Run<'t, '_, '_, '_> {
         let from = *s;
         let (_, number) = s.number_or_parameter(&self.control.registers)?;
         let span = (from.at(), s.at());
-        if let Some(times) = number.filter(|n| n.fract() == 0.0 && (0.0..=65_534.0).contains(n)) {
+        if let Some(times) = number.filter(|n| n.fract() == 0.0 && (1.0..=65_534.0).contains(n)) {
             let times = times as u32;
             if s.take_symbol(b"/") && s.digits(65_534)? != times {
                 let message = "a repetition that has begun already cannot be followed";
@@ -230,7 +233,7 @@ impl<'t> Run<'t, '_, '_, '_> {
         let mut name = String::from_utf8_lossy(&name).replace('\\', "/");
         if name.contains(':') {
             let message = format!("{name} names a drive of the control");
-            let help = "give the folder with --folder and leave drive and path out of the name";
+            let help = "leave the drive out of the name, and give its folder to look in";
             let error: Box<Diagnostic> = s.error("called-program", span, message);
             return Err(error.help(help).into());
         }

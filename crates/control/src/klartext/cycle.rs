@@ -2,6 +2,7 @@
 
 use super::functions::When;
 use super::hole::{Hole, RAPID_FEED};
+use super::older::Older;
 use super::registers::{Parameter, Registers};
 use super::scan::{Result, Scanner};
 use super::state::{Control, TENTH_INCH, Tip};
@@ -144,7 +145,8 @@ fn refusal(cycle: u32) -> String {
         }
         12 => "it calls a program: use CALL PGM",
         13 => "it turns the spindle to an angle",
-        18 | 1 | 2 | 17 => "the older drilling cycles start where the tool stands: use 200 to 207",
+        18 => "it cuts a thread with a tool that turns with the spindle",
+        1 | 2 | 17 => "it is defined in parts, 1.0 and so on",
         19 => "it means axis or spatial angles as the machine is set: use PLANE SPATIAL",
         30 => "its points are in a file of the control",
         31..=99 | 291..=299 | 800..=899 => "it is for another machine",
@@ -186,7 +188,29 @@ impl Definition {
     }
 }
 
+/// A cycle that is ready to be called.
+#[derive(Debug)]
+pub(super) enum Defined {
+    /// With Q parameters: it starts at the surface that they say.
+    Parameters(Definition),
+    /// In parts: it starts where the tool stands.
+    Older(Older),
+}
+
 impl Control<'_, '_> {
+    /// The defined cycle that says by itself where its surface is.
+    pub(super) fn definition(&self, s: &Scanner) -> Result<&Definition> {
+        match &self.cycle {
+            Some(Defined::Parameters(definition)) => Ok(definition),
+            Some(Defined::Older(_)) => {
+                let message =
+                    "the older cycles start where the tool stands: they are not called at points";
+                Err(s.error_block("cycle", message))
+            }
+            None => Err(s.error_block("cycle", "no cycle is defined yet")),
+        }
+    }
+
     /// `CYCL DEF 2xx NAME`, from behind the number up to its parameters.
     pub(super) fn open_cycle(
         &self,
@@ -256,7 +280,7 @@ impl Control<'_, '_> {
                 checked.map_err(|message| {
                     s.error_block("cycle-parameter", format!("cycle {number}: {message}"))
                 })?;
-                self.cycle = Some(open);
+                self.cycle = Some(Defined::Parameters(open));
                 self.calls_modally = false;
                 Ok(())
             }
@@ -311,10 +335,7 @@ impl Control<'_, '_> {
             let message = "CYCL CALL POS is approached with FMAX here";
             return Err(s.error_block("unsupported", message));
         }
-        let Some(definition) = &self.cycle else {
-            return Err(s.error_block("cycle", "no cycle is defined yet"));
-        };
-        let hole = definition.hole(&self.registers);
+        let hole = self.definition(s)?.hole(&self.registers);
         let (surface, clearance) = (hole.surface() + at(slot::Z), hole.get(200));
         if self.here.z < surface {
             self.here.z = surface + clearance;
@@ -337,15 +358,16 @@ impl Control<'_, '_> {
         if self.ended {
             return Err(s.error_block("cycle", "no cycle is called where the program ends"));
         }
-        let Some(definition) = &self.cycle else {
-            return Err(s.error_block("cycle", "no cycle is defined yet"));
+        let (cycle, surface) = match &self.cycle {
+            Some(Defined::Older(older)) if level.is_none() => {
+                (older.cycle(), self.here.z - older.clearance())
+            }
+            _ => {
+                let hole = self.definition(s)?.hole(&self.registers);
+                (hole.cycle(), hole.surface() + rise)
+            }
         };
-        let hole = definition.hole(&self.registers);
-        let number = definition.number();
-        let mut cycle = hole.cycle().map_err(|message| {
-            s.error_block("cycle-parameter", format!("cycle {number}: {message}"))
-        })?;
-        let surface = hole.surface() + rise;
+        let mut cycle = cycle.map_err(|message| s.error_block("cycle-parameter", message))?;
         if let Some(level) = level {
             cycle.retract = level - surface;
         }
@@ -395,7 +417,7 @@ impl Control<'_, '_> {
         cycle: u32,
         span: (usize, usize),
     ) -> Result<()> {
-        if matches!(cycle, 7..=11 | 26 | 32) {
+        if matches!(cycle, 1 | 2 | 7..=11 | 17 | 26 | 32) {
             s.skip();
             return Ok(());
         }
@@ -405,6 +427,13 @@ impl Control<'_, '_> {
     /// A numbered part of an older cycle: `7.1 X+60`, `9.1 DWELL 1.5`, `32.1 T0.01`.
     pub(super) fn cycle_part(&mut self, s: &mut Scanner, cycle: u32, part: u32) -> Result<()> {
         match (cycle, part) {
+            (1 | 2 | 17, _) => {
+                if let Some(older) = self.older_part(s, cycle, part)? {
+                    self.cycle = Some(Defined::Older(older));
+                    self.calls_modally = false;
+                }
+                Ok(())
+            }
             (7, _) => self.datum_shift(s),
             (8, 1) => self.mirror(s),
             (9, 1) => self.dwell(s),

@@ -3,7 +3,7 @@
 //! Order of a formula (TNC7 81762x-17, "Rules for formulas"): parentheses, sign and functions, powers
 //! (from right to left), multiplication and division, addition and subtraction.
 
-use super::registers::{Parameter, Registers};
+use super::registers::{LONGEST, Parameter, Registers};
 use super::scan::{Result, Scanner};
 use std::f64::consts::PI;
 
@@ -43,6 +43,10 @@ pub(super) fn text(s: &mut Scanner, registers: &Registers) -> Result<Vec<u8>> {
                 let help = "the functions of texts (TOCHAR, SUBSTR ...) are not supported";
                 return Err(s.error_here("unsupported", message).help(help).into());
             }
+        }
+        if text.len() > LONGEST {
+            let message = format!("the text is longer than {LONGEST} characters");
+            return Err(s.error_block("parameter", message));
         }
         if !s.take_symbol(b"||") {
             s.finish()?;

@@ -12,6 +12,7 @@ mod formula;
 mod functions;
 mod hole;
 mod motion;
+mod older;
 mod pattern;
 mod plane;
 mod registers;

@@ -129,10 +129,7 @@ impl Control<'_, '_> {
             let message = "CYCL CALL PAT goes between the points with FMAX here";
             return Err(s.error_block("unsupported", message));
         }
-        let Some(definition) = &self.cycle else {
-            return Err(s.error_block("cycle", "no cycle is defined yet"));
-        };
-        let hole = definition.hole(&self.registers);
+        let hole = self.definition(s)?.hole(&self.registers);
         let (surface, second) = (hole.surface(), hole.get(204).max(hole.get(200)));
         let height = self.here.z;
         if height.is_nan() {
@@ -153,6 +150,7 @@ impl Control<'_, '_> {
     /// Drills at points whose Z adds to the surface, and goes from one to the next at a height.
     fn drill_at(&mut self, s: &Scanner, points: &[Vec3], level: f64) -> Result<()> {
         for point in points {
+            self.count_jump(s)?;
             // Upwards before it goes in the plane.
             if self.here.z < level {
                 self.here.z = level;

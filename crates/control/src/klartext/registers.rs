@@ -46,7 +46,7 @@ impl std::fmt::Display for Parameter {
 const PREASSIGNED: std::ops::Range<u16> = 100..200;
 
 /// Longest text, characters.
-const LONGEST: usize = 255;
+pub(super) const LONGEST: usize = 255;
 
 /// Largest number that the control calculates with.
 const LARGEST: f64 = 1e10;
@@ -142,9 +142,6 @@ impl Registers {
     pub(super) fn assign_text(&mut self, index: u16, text: Vec<u8>) -> Result<(), String> {
         if PREASSIGNED.contains(&index) {
             return Err(format!("QS{index} is set by the control and not by a program"));
-        }
-        if text.len() > LONGEST {
-            return Err(format!("QS{index} would be longer than {LONGEST} characters"));
         }
         self.texts.insert(index, text.into());
         Ok(())

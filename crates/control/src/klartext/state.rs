@@ -1,8 +1,9 @@
 //! What the control holds while a program runs, and how that becomes records.
 
 use super::contour::{Element, Waiting};
-use super::cycle::Definition;
+use super::cycle::Defined;
 use super::functions::{Function, Functions, When};
+use super::older::Older;
 use super::plane::Tilt;
 use super::registers::Registers;
 use super::scan::{Result, Scanner};
@@ -75,7 +76,9 @@ pub(super) struct Control<'a, 's> {
     pub(super) rapid: bool,
     /// What is not told before the next element of the contour is known.
     pub(super) waiting: Option<Waiting>,
-    pub(super) cycle: Option<Definition>,
+    pub(super) cycle: Option<Defined>,
+    /// An older hole cycle that is being defined.
+    pub(super) older: Older,
     /// Points of the last `PATTERN DEF`, mm.
     pub(super) pattern: Vec<Vec3>,
     /// The cycle as it was told last.
@@ -95,7 +98,7 @@ impl<'a, 's> Control<'a, 's> {
             compensator,
             line: 0,
             unit: 1.0,
-            here: Vec3::NAN,
+            here: settings.setup.start.unwrap_or(Vec3::NAN),
             degrees: settings.rotary.map(|exists| if exists { f64::NAN } else { 0.0 }),
             vector: None,
             outside: Transforms::default(),
@@ -116,6 +119,7 @@ impl<'a, 's> Control<'a, 's> {
             rapid: false,
             waiting: None,
             cycle: None,
+            older: Older::default(),
             pattern: Vec::new(),
             told: None,
             calls_modally: false,

@@ -114,15 +114,18 @@ impl Interpreter<'_, '_> {
                 programmed[i] = value;
             }
         }
-        if block.has_polar() {
-            self.polar_target(source, block, &mut position)?;
-            for i in (0..3).filter(|i| *i != self.state.plane_normal) {
-                programmed[i] = position[i];
+        if let Some(rare) = &block.rare {
+            if block.has_polar() {
+                self.polar_target(source, block, &mut position)?;
             }
-        }
-        if let Some(angle) = block.rare.as_ref().and_then(|rare| rare.angle) {
-            self.angle_target(source, block, angle, &mut position)?;
-            programmed = position;
+            if let Some(angle) = rare.angle {
+                self.angle_target(source, block, angle, &mut position)?;
+            }
+            if block.has_polar() || rare.angle.is_some() {
+                for i in (0..3).filter(|i| *i != self.state.plane_normal) {
+                    programmed[i] = position[i];
+                }
+            }
         }
         Ok((position, programmed))
     }
@@ -352,8 +355,11 @@ impl Interpreter<'_, '_> {
             axis[index % 3] = 1.0;
             self.state.frames.direction(axis)
         };
+        // A mirror turns the plane's own sense round, against which the side has been swapped.
+        let sense = if mirrored { -1.0 } else { 1.0 };
+        let across = axis(normal + 1).cross(axis(normal + 2)) * sense;
         let terms = Terms {
-            normal: axis(normal + 1).cross(axis(normal + 2)).normalize_or(Vec3::Z),
+            normal: across.normalize_or(Vec3::Z),
             across_tool: normal == 2,
             radius: None,
             outer: self.state.corner,

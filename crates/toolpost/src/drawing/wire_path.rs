@@ -176,7 +176,7 @@ fn dots<'p>(
         (last, count) = (place, count + 1);
     }
     if count > 0 {
-        for (color, width) in [(PAPER, 4.8), (color, 3.4)] {
+        for (color, width) in [(PAPER, 4.4), (color, 3.4)] {
             let _ =
                 writeln!(out, "<path stroke=\"{color}\" stroke-width=\"{width}\" d=\"{data}\"/>");
         }

@@ -1,12 +1,12 @@
 //! How the contours are cut: along them, or beside them in passes with leads and tabs.
 
-use super::leg::Leg;
+use super::leg::{ByControl, Leg};
 use crate::args::{Cutting, Rounding, Side, Trims};
 use ::wire::offset::Corners;
-use ::wire::plan::{self, Opening, Settings, Taper, plan};
+use ::wire::plan::{self, Opening, Pass, Settings, Taper, plan};
 use ::wire::{Contour, Lead, LeadShape, Path, taper};
 use geom::Vec2;
-use program::Diagnostic;
+use program::{Compensation, Diagnostic};
 
 /// The ways of the wire along `paths`, and what is worth knowing of them; `height` is that of the upper
 /// contour, mm.
@@ -48,6 +48,7 @@ pub fn legs(
         feed: feed(pass.number),
         opening: pass.opening,
         pass: pass.number,
+        by_control: how.by_control.then(|| by_control(&pass, &openings, how.taper)),
         tab: pass.tab,
         thread: pass.thread,
         cut: pass.cut,
@@ -55,6 +56,29 @@ pub fn legs(
         ..Leg::of(pass.path)
     });
     Ok((legs.collect(), warnings))
+}
+
+/// What the control does to the wire in a pass.
+fn by_control(pass: &Pass, openings: &[Opening], taper: Option<f64>) -> ByControl {
+    let register = Some(pass.number as u32 + 1);
+    let offset = match pass.left {
+        true => Compensation::Left(register),
+        false => Compensation::Right(register),
+    };
+    // A part that is larger at the top has its upper end outside: that is on the right of who goes round
+    // it counter-clockwise, as the wire inside of it then is on the left.
+    let inside = openings.get(pass.opening).is_some_and(|opening| {
+        let counter_clockwise = opening.contour.area() > 0.0;
+        match opening.side {
+            plan::Side::Inside => true,
+            plan::Side::Outside => false,
+            plan::Side::Left => counter_clockwise,
+            plan::Side::Right => !counter_clockwise,
+        }
+    });
+    let counter_clockwise = pass.left == inside;
+    let taper = taper.unwrap_or(0.0);
+    ByControl { offset, taper: if counter_clockwise { -taper } else { taper } }
 }
 
 /// The path with its start moved to the place nearest to `begin`.
@@ -73,6 +97,12 @@ fn openings(paths: &[Path], side: Side, how: &Cutting) -> Result<Vec<Opening>, B
         let message = "the wire leans between two contours, and its offset is asked for";
         let help = "leave --side out: two contours are the way of the wire itself";
         return Err(Diagnostic::error("side", message).help(help).into());
+    }
+    if how.by_control && paths.iter().any(|path| !path.lower().is_closed()) {
+        // The offset ends with the straight way out, which only a closed contour is sure to have.
+        let message = "an open contour, and the control is to offset the wire";
+        let help = "leave --by-control out: the way of the wire's centre is then worked out here";
+        return Err(Diagnostic::error("by-control", message).help(help).into());
     }
     if how.thread.len() > paths.len() {
         let message = format!("{} places to thread for {} contours", how.thread.len(), paths.len());
@@ -131,6 +161,6 @@ fn settings(
         tab: how.tab.unwrap_or(0.0),
         corners: if how.round_corners { Corners::Round } else { Corners::Refuse },
         taper,
-        by_control: false,
+        by_control: how.by_control,
     })
 }

@@ -74,7 +74,7 @@ impl Cut {
     }
 
     /// Points of the program: a leg that goes on from where the last one ended begins with its last.
-    fn points(&self) -> Option<usize> {
+    pub fn points(&self) -> Option<usize> {
         let points = |leg: &Leg| Some(leg.points.as_ref()?.lower.len() - usize::from(!leg.thread));
         self.legs.iter().map(points).sum()
     }

@@ -40,6 +40,7 @@ impl Source {
         let paths = match (&lower, &upper) {
             (File::Program(below), None) => match leaning(&below.program, machine) {
                 Some(ends) => ends.and_then(|(below, above)| {
+                    lower.in_one_frame()?;
                     by_block(cuts(&below, start)?, cuts(&above, start)?)
                 }),
                 None => lower.contours(start).map(upright),
@@ -98,10 +99,29 @@ impl File {
         }
     }
 
+    /// A program that goes from one work offset to another has contours whose distance is not in it.
+    fn in_one_frame(&self) -> Result<(), Box<Diagnostic>> {
+        let File::Program(toolpath) = self else { return Ok(()) };
+        let records = &toolpath.program.records;
+        match records.iter().rfind(|record| matches!(record.op, Op::WorkOffset(_))) {
+            None => Ok(()),
+            Some(record) => {
+                let message =
+                    "another work offset: how far it is from the first, only the machine knows";
+                let help = "cut what belongs to each work offset by a program of its own";
+                let found = Diagnostic::error("work-offset", message).help(help);
+                Err(found.line(record.line).into())
+            }
+        }
+    }
+
     fn contours(&self, start: Option<Vec2>) -> Result<Vec<Contour>, Box<Diagnostic>> {
         match self {
             File::Drawing(_, contours) => Ok(contours.clone()),
-            File::Program(toolpath) => contours(&toolpath.program, start),
+            File::Program(toolpath) => {
+                self.in_one_frame()?;
+                contours(&toolpath.program, start)
+            }
         }
     }
 
@@ -111,7 +131,10 @@ impl File {
             File::Drawing(_, contours) => {
                 Ok(contours.iter().map(|contour| contour.elements().to_vec()).collect())
             }
-            File::Program(toolpath) => cuts(&toolpath.program, start),
+            File::Program(toolpath) => {
+                self.in_one_frame()?;
+                cuts(&toolpath.program, start)
+            }
         }
     }
 }

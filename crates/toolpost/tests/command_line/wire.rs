@@ -126,8 +126,33 @@ fn a_bad_source_is_told_with_its_line_and_writes_nothing() {
     bad("X0. Y40. R40.", "X40. Y0. R40.", &["sector.nc:6:"]);
     bad("R40.", "I-40.1 J0.", &["sector.nc:6:"]);
     bad("N30 G1 X40. Y0. F6.6", "N30 G1 X40. Y0. Q6.6", &["sector.nc:5:"]);
+    let offsets = "N45 G55 G0 X0. Y90. Z0.\nN50 G1 X0.";
+    let two = SECTOR.replace("N20 G0", "N20 G54 G0");
+    bad(SECTOR, &two.replace("N50 G1 X0.", offsets), &["error[work-offset]", "sector.nc:7:"]);
     bad(" Z0.", "", &["sector.nc:5:", "--start"]);
     bad("N30 G1 X40. Y0. F6.6\nN40 G3 X0. Y40. R40.\nN50 G1 X0. Y0.\n", "", &["empty-contour"]);
+}
+
+#[test]
+fn contours_that_cannot_be_offset_are_refused_with_their_line() {
+    let folder = sector();
+    let inside = ["--side", "inside", "--wire", "0.2", "--thread", "10,10", "--round-corners"];
+    let bad = |from: &str, to: &str, more: &[&str], words: &[&str]| {
+        folder.write("sector.nc", SECTOR.replace(from, to));
+        refused(&folder, &[&inside, more].concat(), 2, words);
+    };
+    bad("N50 G1 X0. Y0.\n", "", &[], &["error[open-contour]"]);
+    bad(
+        "N50 G1 X0. Y0.",
+        "N50 G1 X30. Y-10.\nG1 X0. Y0.",
+        &[],
+        &["error[self-crossing]", "sector.nc:"],
+    );
+    bad("", "", &["--feed", "0.1,0.2"], &["error[feed]"]);
+    bad("", "", &["--thread", "1,1"], &["error[thread]"]);
+    bad("", "", &["--taper", "5"], &["error[wire-height]"]);
+    bad("", "", &["--taper", "70", "--height", "10"], &["error[taper-angle]"]);
+    bad("", "", &["--gap", "40"], &["error[offset-vanishes]"]);
 }
 
 /// A square of 10 mm, and one of 14 mm about the same centre, each as a program.
@@ -201,4 +226,105 @@ fn the_picture_is_the_same_each_time_and_in_both_formats() {
     assert!(picture("a.png").starts_with(b"\x89PNG"));
     refused(&folder, &["--picture", "a.pdf"], 2, &["error[drawing]"]);
     refused(&folder, &["--picture", "sector.nc"], 2, &["error[output]"]);
+}
+
+/// The opening of a die in two passes, as everyone may read it beside its machine.
+const DIE: [&str; 15] = [
+    "--from",
+    "fanuc-31i",
+    "--side",
+    "inside",
+    "--wire",
+    "0.25",
+    "--gap",
+    "0.02",
+    "--leave",
+    "0.03",
+    "--thread",
+    "15,15",
+    "--round-corners",
+    "--feed",
+    "0.1,0.2",
+];
+
+/// The samples were read by a person, as those of the mills: `make samples` writes them anew.
+#[test]
+fn the_sample_program_of_each_wire_machine_is_as_it_was_read() {
+    let folder = sector();
+    let samples = concat!(env!("CARGO_MANIFEST_DIR"), "/../../machines/samples");
+    let machines = machine::library::names(machine::library::MACHINES);
+    for machine in machines.map(|name| machine::load(name).unwrap()).filter(|m| m.wire.is_some()) {
+        let file = format!("{}.{}", machine.name, machine.extension);
+        let call = ["wire", "sector.nc", "-m", &machine.name, "-o", &file];
+        let said = folder.run(&[&call[..], &DIE].concat());
+        assert_eq!(said.code, 0, "{said:?}");
+        let expected = std::fs::read_to_string(format!("{samples}/{file}")).unwrap_or_default();
+        assert_eq!(folder.read(&file), expected, "{file}");
+        // Read back as a source, it is the same way of the wire again.
+        let again = ["wire", &file, "--from", &machine.name, "-m", &machine.name, "-o", "again"];
+        if machine.name != "bp-95d" {
+            assert_eq!(folder.run(&[&again[..], &["--feed", "0.1"]].concat()).code, 0);
+            let moves = |text: &str| text.lines().filter(|line| line.contains(" G1 ")).count();
+            assert_eq!(moves(&folder.read("again")), moves(&expected), "{file}");
+        }
+    }
+}
+
+#[test]
+fn the_control_offsets_and_leans_the_wire_where_it_can() {
+    let folder = sector();
+    let call = |machine: &'static str, more: &[&str]| {
+        let call = ["wire", "sector.nc", "--by-control", "-m", machine, "-o", "die.nc"];
+        folder.run(&[&call[..], &DIE, more].concat())
+    };
+    let says = |blocks: &[&str]| {
+        let text = folder.read("die.nc");
+        let found = blocks.iter().try_fold(text.as_str(), |rest, block| {
+            rest.split_once(&format!(" {block}\n")).map(|(_, rest)| rest)
+        });
+        assert!(found.is_some(), "not in this order: {blocks:?}\n{text}");
+    };
+    assert_eq!(call("fanuc-wire", &[]).code, 0);
+    // Counter-clockwise inside: the wire on the left; back the other way on the right.
+    says(&["G1 G41 D1 Y0. F6.", "X40.", "G3 X0. Y40. I-40. J0.", "G40 Y15."]);
+    says(&["G42 D2 Y0. F12.", "G2 X40. Y0. I0. J-40.", "G40 Y15.", "M50"]);
+    // Larger at the top, so the upper end is outside: on the right of that way, and on the left of the
+    // way back.
+    let taper = ["--taper", "5", "--height", "20"];
+    assert_eq!(call("fanuc-wire", &taper).code, 0);
+    says(&[
+        "G1 G41 D1 G52 T5. Y0. F6.",
+        "X40.",
+        "G40 G50 Y15.",
+        "G42 D2 G51 T5. Y0. F12.",
+        "G40 G50 Y15.",
+    ]);
+    assert_eq!(call("sodick-iso", &["--taper", "-5", "--height", "20"]).code, 0);
+    says(&["G1 G41 H001 G51 A5. Y0. F6.", "G42 H002 G52 A5. Y0. F12."]);
+    let refused = |machine, more: &[&str], code, rule: &str| {
+        let said = call(machine, more);
+        assert!(said.code == code && said.err.contains(rule), "{said:?}");
+    };
+    refused("agie-iso", &taper, 1, "error[taper]");
+    refused("bp-95d", &[], 2, "error[by-control]");
+}
+
+#[test]
+fn drawings_are_read_by_layer() {
+    let folder = Folder::new();
+    let circle =
+        |layer: &str, x: f64| format!("0\nCIRCLE\n8\n{layer}\n10\n{x}\n20\n0.0\n40\n5.0\n");
+    let text = format!(
+        "0\nSECTION\n2\nHEADER\n9\n$INSUNITS\n70\n4\n0\nENDSEC\n0\nSECTION\n2\nENTITIES\n{}{}0\nENDSEC\n0\nEOF\n",
+        circle("CUT", 0.0),
+        circle("NOTE", 50.0)
+    );
+    folder.write("plate.dxf", &text);
+    let call = ["wire", "plate.dxf", "-m", "bp-95d", "-o", "part.pts", "--layer"];
+    let said = folder.run(&[&call[..], &["CUT", "--chord-error", "0.01"]].concat());
+    assert_eq!(said.code, 0, "{said:?}");
+    // Chords of 0.01 mm on R 5 turn by 4·asin(√0.001) = 7.25°: 50 of them make a circle.
+    assert_eq!(folder.read("part.pts").lines().count(), 51);
+    let said = folder.run(&[&call[..], &["NONE"]].concat());
+    assert_eq!((said.code, folder.names().len()), (2, 4), "{said:?}");
 }

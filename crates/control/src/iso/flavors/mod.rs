@@ -6,6 +6,7 @@ mod haas;
 mod linuxcnc;
 mod mach3;
 mod marlin;
+mod wire;
 
 use super::words::{Canned, Dictionary, FeedMode, G, GRow, Group, M, MRow, Motion, Plane, Side};
 use crate::Dialect;
@@ -18,6 +19,9 @@ pub(super) fn dictionary(dialect: Dialect) -> &'static Dictionary {
         Dialect::Mach3 => &mach3::WORDS,
         Dialect::Grbl => &grbl::WORDS,
         Dialect::Marlin => &marlin::WORDS,
+        Dialect::FanucWire => &wire::FANUC,
+        Dialect::Sodick => &wire::SODICK,
+        Dialect::Agie => &wire::AGIE,
         _ => &linuxcnc::WORDS,
     }
 }

@@ -1,0 +1,132 @@
+//! ISO code of wire-EDM machines.
+
+use geom::Vec3;
+use program::{ArcTo, Compensation, Diagnostic, Feed, Op, Pose};
+use toolpost_control::{Dialect, Settings, Wire, read};
+
+fn run(dialect: Dialect, text: &str, height: Option<f64>) -> Result<Vec<Op>, Box<Diagnostic>> {
+    let wire = Wire { height, thread: Some(60), cut: Some(50) };
+    let settings = Settings { wire, ..Settings::new(dialect, [false; 3]) };
+    let mut ops = Vec::new();
+    read(&settings, "part.nc", text.as_bytes(), &mut |record| {
+        ops.push(record.op);
+        Ok(())
+    })?;
+    Ok(ops)
+}
+
+fn at(x: f64, y: f64) -> Pose {
+    Pose::new(Vec3::new(x, y, 0.0), Vec3::Z)
+}
+
+/// Nothing names Z, and no feed: the wire has none.
+#[test]
+fn a_die_with_the_controls_offset() {
+    let text = "%\nO1\nN1 G21 G90 G40 G50 G92 X0 Y0\nN2 M60\nN3 G41 D1 S2 G1 X10.\n\
+                N4 G3 X0. Y10. I-10. J0.\nN5 G1 G40 X0. Y0.\nN6 M50\nN7 M2\n%\n";
+    let arc = ArcTo { end: at(0.0, 10.0), center: Vec3::ZERO, normal: Vec3::Z, turns: 0 };
+    let expected = [
+        Op::ThreadWire,
+        Op::Compensation(Compensation::Left(Some(1))),
+        Op::Line(at(10.0, 0.0)),
+        Op::Arc(Box::new(arc)),
+        Op::Compensation(Compensation::Off),
+        Op::Line(at(0.0, 0.0)),
+        Op::CutWire,
+        Op::End,
+    ];
+    assert_eq!(run(Dialect::FanucWire, text, None).unwrap(), expected);
+}
+
+#[test]
+fn u_and_v_count_at_the_upper_plane_and_stay() {
+    let text = "G21 G90 G0 X1. Y2. U3.\nM60\nG1 X5. F6.\nU0. V-4.\nG91 V4. X1.\nM50\nM30\n";
+    // 3-4-5, and 45 degrees.
+    let (half, point) = (0.5f64.sqrt(), |x: f64, y: f64| Vec3::new(x, y, 0.0));
+    let over = |x: f64, y: f64| Pose::new(point(x, y), Vec3::new(0.6, 0.0, 0.8));
+    let back = |x: f64, y: f64| Pose::new(point(x, y), Vec3::new(0.0, -half, half));
+    let expected = [
+        Op::Rapid(over(1.0, 2.0)),
+        Op::ThreadWire,
+        Op::Feed(Feed::PerMinute(6.0)),
+        Op::Line(over(5.0, 2.0)),
+        Op::Line(back(5.0, 2.0)),
+        Op::Line(at(6.0, 2.0)),
+        Op::CutWire,
+        Op::End,
+    ];
+    let ops = run(Dialect::FanucWire, text, Some(4.0)).unwrap();
+    assert_eq!(ops.len(), expected.len());
+    for (op, expected) in ops.iter().zip(&expected) {
+        match (op.pose(), expected.pose()) {
+            (Some(pose), Some(wanted)) => {
+                assert_eq!(pose.point, wanted.point);
+                assert!(pose.axis().unwrap().distance(wanted.axis().unwrap()) < 1e-15);
+            }
+            _ => assert_eq!(op, expected),
+        }
+    }
+}
+
+#[test]
+fn the_control_leans_the_wire_to_either_side_of_its_way() {
+    let text = |left: &str, right: &str| {
+        format!("G21 G90 G0 X0. Y0.\nM60\nG51 {left} G1 X5.\nG52 {right} Y5.\nG50 X0.\nM50\n")
+    };
+    let tapers = |dialect, text: &str| -> Vec<f64> {
+        let ops = run(dialect, text, None).unwrap();
+        ops.iter().filter_map(|op| if let Op::Taper(a) = op { Some(*a) } else { None }).collect()
+    };
+    assert_eq!(tapers(Dialect::FanucWire, &text("T1.5", "T30.")), [1.5, -30.0, 0.0]);
+    assert_eq!(tapers(Dialect::Sodick, &text("A1.5", "A30.")), [1.5, -30.0, 0.0]);
+    let open = text("T1.5", "T30.").replace("G50 X0.\n", "");
+    assert_eq!(run(Dialect::FanucWire, &open, None).unwrap_err().rule, "nc-taper");
+    let both = text("T1.5", "T30. U1.");
+    assert_eq!(run(Dialect::FanucWire, &both, Some(9.0)).unwrap_err().rule, "nc-wire");
+    let agie = text("T1.5", "T30.").replace("G21", "G71");
+    assert_eq!(run(Dialect::Agie, &agie, None).unwrap_err().rule, "nc-unknown-word");
+}
+
+#[test]
+fn each_maker_has_letters_of_its_own() {
+    let offset = |dialect, text: &str| {
+        let ops = run(dialect, text, None).unwrap();
+        ops.into_iter()
+            .find_map(|op| if let Op::Compensation(side) = op { Some(side) } else { None })
+    };
+    let start = "G90 G0 X0. Y0.\nM60\n";
+    let sodick = format!("G21 {start}C001\nT84\nG42 H003 G1 X5.\n");
+    assert_eq!(offset(Dialect::Sodick, &sodick), Some(Compensation::Right(Some(3))));
+    let agie = format!("G71 {start}S5 T2 P1\nG41 D2 G1 X5.\n");
+    assert_eq!(offset(Dialect::Agie, &agie), Some(Compensation::Left(Some(2))));
+    let unknown = |dialect, text: &str| run(dialect, text, None).unwrap_err().rule;
+    assert_eq!(unknown(Dialect::Sodick, &sodick.replace('H', "D")), "nc-unknown-word");
+    assert_eq!(unknown(Dialect::Agie, &agie.replace("G71", "G21")), "nc-unknown-word");
+    assert_eq!(unknown(Dialect::FanucWire, &agie), "nc-unknown-word");
+}
+
+#[test]
+fn what_a_wire_cannot_do_or_nobody_knows_is_refused() {
+    let refused = |block: &str| {
+        let text = format!("G21 G90 G0 X0. Y0.\nM60\n{block}\n");
+        let found = run(Dialect::FanucWire, &text, None).unwrap_err();
+        assert_eq!(found.line, 3, "{found}");
+        found.rule
+    };
+    assert_eq!(refused("G1 Z1."), "nc-unknown-word");
+    assert_eq!(refused("G51 G1 X1."), "nc-taper");
+    assert_eq!(refused("G52 T0. G1 X1."), "nc-taper");
+    assert_eq!(refused("G52 T90. G1 X1."), "nc-taper");
+    assert_eq!(refused("G18"), "nc-unknown-word");
+    assert_eq!(refused("M6"), "nc-unknown-word");
+    assert_eq!(refused("M3"), "nc-unknown-word");
+    assert_eq!(refused("M50 G1 X1."), "nc-wire");
+    assert_eq!(refused("M60 M50"), "nc-modal-group");
+    assert_eq!(refused("G1 X1. U1."), "nc-wire");
+    assert_eq!(refused("G41 G1 X1."), "nc-compensation");
+    assert_eq!(refused("G1 X1"), "nc-decimal-point");
+    let offset = "G21 G90 G0 X0. Y0.\nM60\nG41 D1 G1 X1.\nM50\n";
+    assert_eq!(run(Dialect::FanucWire, offset, None).unwrap_err().rule, "nc-compensation");
+    let arc = "G21 G90 G0 X0. Y0. U1.\nM60\nG2 X10. I5. U2.\n";
+    assert_eq!(run(Dialect::FanucWire, arc, Some(9.0)).unwrap_err().rule, "nc-wire");
+}
