@@ -233,7 +233,7 @@ fn a_control_that_is_not_fresh_does_not_know_what_no_block_has_set() {
         ("G0 X#100\n", "no block has set #100"),
         ("G0 X1\n#1=#5421\n", "where Y stands is not known"),
         ("#1=#5221\n", "set up at the machine"),
-        ("#1=#5403\n", "the units of the machine"),
+        ("T1 M6\n#1=#5403\n", "the units of the machine"),
         ("#1=#5070\n", "known only at the machine"),
         ("#1=#<_hal[a.b]>\n", "known only at the machine"),
     ] {

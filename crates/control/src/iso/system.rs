@@ -26,7 +26,10 @@ pub(super) fn ngc_parameter(values: &Values, number: u32) -> Result<f64, String>
             Err("what the program has written there is kept in the machine's unit".into())
         }
         5400 => tool_number(values),
-        5401..=5413 => Err("the tool table counts in the units of the machine".into()),
+        5401..=5413 => match values.state.tool {
+            None | Some(0) => fresh(values, 0.0, "which tool is in the spindle"),
+            Some(_) => Err("the tool table counts in the units of the machine".into()),
+        },
         5599 => Ok(1.0),
         5061..=5070 => Err("the result of probing is known only at the machine".into()),
         5399 => Err("what M66 has read is known only at the machine".into()),
