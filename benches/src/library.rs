@@ -21,10 +21,11 @@ pub fn measure(files: &[PathBuf], rounds: usize) -> Result<(), Vec<Diagnostic>> 
         .map(|path| Ok((path.as_path(), std::fs::read(path)?)))
         .collect::<std::io::Result<_>>()
         .map_err(|error| vec![Diagnostic::error("unreadable", error.to_string())])?;
-    let machines: Vec<Machine> = names(MACHINES)
+    let mut machines: Vec<Machine> = names(MACHINES)
         .map(machine::load)
         .collect::<Result<_, _>>()
         .map_err(|finding| vec![*finding])?;
+    machines.retain(|machine| machine.wire.is_none());
     let mut best = (Duration::MAX, 0);
     let mut least = Duration::MAX;
     for _ in 0..rounds.max(1) {

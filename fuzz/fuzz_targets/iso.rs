@@ -1,32 +1,46 @@
 //! Any bytes as ISO code, the flavour by the first byte: no panic, and what runs makes sense.
 #![no_main]
 
-use control::{Dialect, Settings, Wire, read};
+use control::{Dialect, Settings, Setup, Wire, read};
+use geom::Vec3;
 use libfuzzer_sys::fuzz_target;
-use program::{Op, Orientation};
+use program::{Diagnostic, Op, Orientation};
+
+/// By the first byte: `0` is FANUC, `1` LinuxCNC and so on.
+const DIALECTS: [Dialect; 10] = [
+    Dialect::Fanuc,
+    Dialect::LinuxCnc,
+    Dialect::Grbl,
+    Dialect::Haas,
+    Dialect::Mach3,
+    Dialect::Marlin,
+    Dialect::FanucWire,
+    Dialect::Sodick,
+    Dialect::Agie,
+    Dialect::Points,
+];
+
+/// After so many records a program is left: loops may go round for long.
+const MOST_RECORDS: u32 = 10_000;
 
 fuzz_target!(|data: &[u8]| {
     let Some((&first, text)) = data.split_first() else { return };
-    let dialects = [
-        Dialect::Fanuc,
-        Dialect::LinuxCnc,
-        Dialect::Grbl,
-        Dialect::FanucWire,
-        Dialect::Sodick,
-        Dialect::Agie,
-        Dialect::Points,
-    ];
-    let dialect = dialects[usize::from(first) % dialects.len()];
+    let dialect = DIALECTS[usize::from(first) % DIALECTS.len()];
     let wire = Wire { height: (first > 127).then_some(40.0), thread: Some(60), cut: Some(50) };
-    for rotary in [[false; 3], [true, false, true]] {
-        let settings = Settings { auxiliary: vec![26], wire, ..Settings::new(dialect, rotary) };
+    for (rotary, start) in [([false; 3], None), ([true, false, true], Some(Vec3::ZERO))] {
+        let setup = Setup { start, ..Setup::default() };
+        let auxiliary = vec![26];
+        let settings = Settings { auxiliary, wire, setup, ..Settings::new(dialect, rotary) };
         let lines = text.split(|&byte| byte == b'\n').count();
-        let mut line = 0;
+        let mut records = 0;
         let mut ended = false;
         let ran = read(&settings, "fuzz.nc", text, &mut |record| {
             assert!(!ended || matches!(record.op, Op::Comment(_) | Op::Message(_)));
-            assert!(record.line >= line && record.line as usize <= lines);
-            line = record.line;
+            assert!(record.line > 0 && record.line as usize <= lines);
+            records += 1;
+            if records > MOST_RECORDS {
+                return Err(Diagnostic::error("enough", "a loop that moves").at(1, b" ", 0, 1).into());
+            }
             ended |= record.op == Op::End;
             match &record.op {
                 Op::Arc(arc) => {

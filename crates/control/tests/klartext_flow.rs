@@ -90,6 +90,7 @@ fn labels_have_one_place_and_names_may_come_from_a_text() {
         ("CALL LBL 1\nLBL 1", "LBL 0 is missing"),
         ("CALL LBL 1 REP 3\nLBL 1", "before its call"),
         ("LBL 1\nCALL LBL 1 REP 2.5", "whole number"),
+        ("LBL 1\nCALL LBL 1 REP 0", "whole number"),
         ("LBL 1\nCALL LBL 1", "nested more than 19"),
         ("FN 9: IF +1 EQU +1 GOTO LBL 3", "no label 3"),
         ("M30\nL X+1 FMAX\nLBL 1", "never runs"),
@@ -374,4 +375,11 @@ fn a_program_may_begin_at_a_place_that_is_known() {
     let text = program("T", "MM", "L IX+1 IZ-1 F100");
     let records = read_with(setup, [false; 3], text.as_bytes()).unwrap();
     assert_eq!(records[1].op.pose().unwrap().point.to_array(), [2.0, 2.0, 2.0]);
+}
+
+#[test]
+fn a_program_may_end_within_a_subprogram() {
+    assert_eq!(xs("CALL LBL 1\nM30\nLBL 1\nL X+3 FMAX M30\nLBL 0"), [3.0]);
+    let ops = run("CALL LBL 1\nM30\nLBL 1\nL X+3 FMAX M30\nLBL 0");
+    assert_eq!(ops.iter().filter(|op| **op == Op::End).count(), 1);
 }

@@ -345,7 +345,7 @@ fn parts() -> impl Strategy<Value = Vec<Part>> {
     let part = leaf.prop_recursive(3, 30, 4, |inner| {
         let inner = prop::collection::vec(inner, 0..4);
         prop_oneof![
-            (0u32..4, inner.clone()).prop_map(|(n, parts)| Part::Repeat(n, parts)),
+            (1u32..4, inner.clone()).prop_map(|(n, parts)| Part::Repeat(n, parts)),
             (1u32..4, inner).prop_map(|(n, parts)| Part::Count(n, parts)),
         ]
     });

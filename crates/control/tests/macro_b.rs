@@ -423,3 +423,17 @@ proptest! {
         prop_assert_eq!(xs(&format!("{text}M30\n{programs}")), expected);
     }
 }
+
+#[test]
+fn the_seeds_of_the_fuzz_target_with_flow_are_legal_programs() {
+    for (name, dialect) in [
+        ("fanuc-macro.nc", Dialect::Fanuc),
+        ("linuxcnc-flow.nc", Dialect::LinuxCnc),
+        ("haas-subprograms.nc", Dialect::Haas),
+    ] {
+        let seeds = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds/iso");
+        let text = std::fs::read_to_string(seeds.join(name)).unwrap();
+        let got = records(&settings(dialect, &[]), &text[1..]);
+        assert!(got.unwrap_or_else(|e| panic!("{name}: {e}")).len() > 3, "{name}");
+    }
+}

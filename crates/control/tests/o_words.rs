@@ -519,4 +519,37 @@ proptest! {
         let behind = path(&format!("G21\n{}M2\n{}", writer.text, writer.subroutines));
         prop_assert_eq!(&behind, &expected);
     }
+
+    #[test]
+    fn any_flow_is_refused_or_run_but_never_panics(
+        tokens in proptest::collection::vec(
+            proptest::sample::select(vec![
+                "o1", "o<a>", "o#1", "O2 ", "o[1]", " sub", " endsub", " call", " return", " if", " elseif", " else",
+                " endif", " while", " endwhile", " do", " repeat", " endrepeat", " break", " continue", "[", "]", "[1]",
+                "[#1 LT 3]", "#1", "#<a>", "#<_b>", "=", "=[#1+1]", "##2", "1", "-2.5", "SIN[30]", "ATAN", "/", "+",
+                "IF[#1 EQ 2]", "THEN", "GOTO", "GOTO 1", "N1 ", "WHILE", "DO1", "END1", "DO2", "END2", "G65 P2 A1.",
+                "G66 P2 ", "G67", "M98 P2", "M99", "M99 P1", "M30", "G1 X#1 F9", "G0 ", "X", "Y2.", "M70", "M72", "M73",
+                "(debug, #1)", "%", "/", "#3000=1", "#3006=1", "#5041", "EXISTS[", "\n", "\n", "\n", "\n",
+            ]),
+            0..60,
+        ),
+        dialect in proptest::sample::select(vec![
+            Dialect::LinuxCnc, Dialect::Fanuc, Dialect::Haas, Dialect::Mach3, Dialect::Marlin,
+        ]),
+    ) {
+        let text = tokens.concat();
+        let setup = Setup { start: Some(Vec3::ZERO), ..Setup::default() };
+        let settings = Settings { setup, ..Settings::new(dialect, [true; 3]) };
+        let mut records = 0;
+        let ran = read(&settings, "a", format!("G21\n{text}").as_bytes(), &mut |_| {
+            records += 1;
+            match records < 1000 {
+                true => Ok(()),
+                false => Err(Diagnostic::error("enough", "").at(1, b" ", 0, 1).into()),
+            }
+        });
+        if let Err(error) = ran {
+            prop_assert!(error.line > 0 && error.column > 0, "{error}\n{text}");
+        }
+    }
 }

@@ -380,6 +380,17 @@ fn in_a_series_r_counts_from_where_the_series_began() {
 }
 
 #[test]
+fn in_g91_r_counts_from_where_the_first_of_a_row_of_cycles_began() {
+    for start in [
+        "G98 G0 X0 Y0 Z0\nF60\nG81 X1 R1 Z-5\nX2\nG91 X3 R1 Z-5 L2",
+        "G99 G0 X0 Y0 Z10\nF60\nG81 X1 R1 Z-5\nG91 G81 X3 R1 Z-5",
+        "G98 G0 X0 Y0 Z10\nF60\nG81 X1 R1 Z-5\nG91 G81 X3 R-1 Z-5\nG82 X1 R-2 Z-3 P1",
+    ] {
+        makes_the_same_moves(&format!("G90 {start}\nM2\n"));
+    }
+}
+
+#[test]
 fn cycles_that_start_below_the_r_plane_go_up_first() {
     makes_the_same_moves("G90 G0 X0 Y0 Z0\nF100\nG98 G81 X1 Z-1 R2\nX2\nG99 X3 R4 Z-2\nM2\n");
 }

@@ -331,7 +331,7 @@ fn what_is_wrong_with_flow_is_said_where_it_stands() {
         ("DEF REAL AA[2]\nG0 X=AA[2]", "array-index", 2),
         ("DEF REAL AA[2]\nAA[-1]=5", "array-index", 2),
         ("DEF REAL AA[2]\nG0 X=AA", "syntax", 2),
-        ("DEF REAL AA[99999]", "number", 1),
+        ("DEF REAL AA[16385]", "number", 1),
         ("DEF REAL AA[999,999]", "definition", 1),
         ("DEF REAL AA, AA", "definition", 1),
         ("DEF REAL CR", "definition", 1),

@@ -69,6 +69,25 @@ fn u_and_v_count_at_the_upper_plane_and_stay() {
 }
 
 #[test]
+fn the_control_leans_the_wire_to_either_side_of_its_way() {
+    let text = |left: &str, right: &str| {
+        format!("G21 G90 G0 X0. Y0.\nM60\nG51 {left} G1 X5.\nG52 {right} Y5.\nG50 X0.\nM50\n")
+    };
+    let tapers = |dialect, text: &str| -> Vec<f64> {
+        let ops = run(dialect, text, None).unwrap();
+        ops.iter().filter_map(|op| if let Op::Taper(a) = op { Some(*a) } else { None }).collect()
+    };
+    assert_eq!(tapers(Dialect::FanucWire, &text("T1.5", "T30.")), [1.5, -30.0, 0.0]);
+    assert_eq!(tapers(Dialect::Sodick, &text("A1.5", "A30.")), [1.5, -30.0, 0.0]);
+    let open = text("T1.5", "T30.").replace("G50 X0.\n", "");
+    assert_eq!(run(Dialect::FanucWire, &open, None).unwrap_err().rule, "nc-taper");
+    let both = text("T1.5", "T30. U1.");
+    assert_eq!(run(Dialect::FanucWire, &both, Some(9.0)).unwrap_err().rule, "nc-wire");
+    let agie = text("T1.5", "T30.").replace("G21", "G71");
+    assert_eq!(run(Dialect::Agie, &agie, None).unwrap_err().rule, "nc-unknown-word");
+}
+
+#[test]
 fn each_maker_has_letters_of_its_own() {
     let offset = |dialect, text: &str| {
         let ops = run(dialect, text, None).unwrap();
@@ -95,7 +114,9 @@ fn what_a_wire_cannot_do_or_nobody_knows_is_refused() {
         found.rule
     };
     assert_eq!(refused("G1 Z1."), "nc-unknown-word");
-    assert_eq!(refused("G51 G1 X1."), "nc-unknown-word");
+    assert_eq!(refused("G51 G1 X1."), "nc-taper");
+    assert_eq!(refused("G52 T0. G1 X1."), "nc-taper");
+    assert_eq!(refused("G52 T90. G1 X1."), "nc-taper");
     assert_eq!(refused("G18"), "nc-unknown-word");
     assert_eq!(refused("M6"), "nc-unknown-word");
     assert_eq!(refused("M3"), "nc-unknown-word");

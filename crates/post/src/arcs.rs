@@ -54,6 +54,7 @@ impl Walk<'_> {
             let message = "cutter compensation cannot be switched on an arc";
             return Err(refuse("compensation", message).help(help).into());
         }
+        self.same_taper("an arc")?;
         self.end_cycle()?;
         self.before_cut()?;
         self.settle(&to.end, stop, true)?;

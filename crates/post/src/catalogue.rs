@@ -128,6 +128,7 @@ names! {
         C Word "C", "degrees", "Position of the rotary axis C; left out where the machine has none.";
         U Word "U", "mm", "How far the wire is beside X at the upper plane (wire EDM); left out where it stands upright in the whole program.";
         V Word "V", "mm", "How far it is beside Y there.";
+        Taper Word "TAPER", "degrees", "By how much the control leans the wire, in a block that switches that on (wire EDM).";
         VX Word "VX", "", "Tool axis, a unit vector from the tip to the spindle: X.";
         VY Word "VY", "", "Tool axis: Y.";
         VZ Word "VZ", "", "Tool axis: Z.";
@@ -175,6 +176,7 @@ names! {
         Motion Code "motion", "rapid, linear, arc_cw, arc_ccw", "Kind of motion.";
         Plane Code "plane", "xy, xz, yz", "Plane of arcs and of cutter compensation.";
         Compensation Code "compensation", "off, left, right", "Cutter radius compensation; switched with the first move in the plane.";
+        TaperSide Code "taper", "off, left, right", "Lean of the wire by the control; switched with a straight cut (wire EDM).";
         Length Code "length", "on", "Tool length offset, with each straight move that says Z.";
         WorkOffset Code "work_offset", "54, 55, 56, 57, 58, 59, 60, 61, 62", "The active work offset, in every block: 54 is the first that the control can set. Those that it lacks are left out.";
         FeedMode Code "feed_mode", "per_minute, per_turn, inverse_time", "What {{F}} means.";

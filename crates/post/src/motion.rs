@@ -17,6 +17,7 @@ impl Walk<'_> {
     pub(crate) fn rapid(&mut self, pose: &Pose, stop: &Stop) -> Done {
         self.end_cycle()?;
         self.wire_for(false, "a rapid")?;
+        self.same_taper("a rapid")?;
         self.sync_spindle()?;
         self.settle(pose, stop, false)?;
         self.rapid_to(pose, stop)
@@ -144,6 +145,9 @@ impl Walk<'_> {
         self.check_limits()?;
         self.say_feed(length, turning.max(1), turning > 0)?;
         self.compensate();
+        if self.wire.is_some() {
+            self.say_taper();
+        }
         self.writer.code(WordName::Motion, motion::LINEAR);
         self.block(self.straight(BlockName::Linear))
     }

@@ -98,6 +98,7 @@ impl<'a> Walk<'a> {
         // What the catalogue asks of `program_start`.
         writer.assume(WordName::Plane, PLANE_XY);
         writer.assume(WordName::Compensation, compensation_code(Compensation::Off));
+        writer.assume(WordName::TaperSide, 0);
         writer.assume(WordName::FeedMode, feed_mode::PER_MINUTE);
         Ok(Walk {
             machine,
@@ -252,6 +253,7 @@ impl<'a> Walk<'a> {
             Op::End => self.end(),
             Op::ThreadWire => self.thread_wire(),
             Op::CutWire => self.cut_wire(),
+            Op::Taper(degrees) => self.set_taper(*degrees),
             Op::Home(_) => {
                 self.end_cycle()?;
                 self.leave_part()

@@ -15,6 +15,10 @@ pub(crate) struct Wire {
     /// Whether it leans anywhere in the program: every block then says how far.
     leans: bool,
     threaded: bool,
+    /// By how much the control is to lean it, degrees as [`program::Op::Taper`] counts them, and by how
+    /// much it does.
+    taper: f64,
+    active_taper: f64,
     /// Openings that it has been threaded for.
     openings: usize,
 }
@@ -26,7 +30,14 @@ impl Wire {
             let mut poses = program.records.iter().filter_map(|record| record.op.pose());
             poses.any(|pose| pose.axis() != Some(Vec3::Z))
         };
-        machine.wire.map(|machine| Wire { machine, leans: leans(), threaded: false, openings: 0 })
+        machine.wire.map(|machine| Wire {
+            machine,
+            leans: leans(),
+            threaded: false,
+            taper: 0.0,
+            active_taper: 0.0,
+            openings: 0,
+        })
     }
 }
 
@@ -50,10 +61,62 @@ impl Walk<'_> {
     pub(crate) fn cut_wire(&mut self) -> Done {
         self.uncompensated("the end of the opening")?;
         let Some(wire) = &mut self.wire else { return Err(no_wire()) };
+        if wire.active_taper != 0.0 {
+            let message = "the end of the opening while the control leans the wire";
+            return Err(refuse("taper-active", message));
+        }
         if !std::mem::take(&mut wire.threaded) {
             return Err(refuse("wire-missing", "the wire is cut, and none is threaded"));
         }
         self.block(BlockName::CutWire)
+    }
+
+    /// The control is to lean the wire from the next straight cut on.
+    pub(crate) fn set_taper(&mut self, degrees: f64) -> Done {
+        let told = self.templates.places(BlockName::Linear, WordName::Taper);
+        let Some(wire) = &mut self.wire else { return Err(no_wire()) };
+        if degrees != 0.0 && !told {
+            let message = "the control leans no wire by an angle";
+            let help = "a taper that is worked out here, or a machine that leans the wire";
+            return Err(refuse("taper", message).help(help).into());
+        }
+        if degrees.abs() > wire.machine.taper_max {
+            let most = wire.machine.taper_max;
+            let message =
+                format!("a taper of {degrees}°: the machine leans the wire by {most}° at most");
+            return Err(refuse("taper-limit", message));
+        }
+        wire.taper = degrees;
+        Ok(())
+    }
+
+    /// Says in the next block, a straight cut, how the control is to lean the wire.
+    pub(crate) fn say_taper(&mut self) {
+        let Some(wire) = &mut self.wire else { return };
+        if wire.taper != wire.active_taper {
+            wire.active_taper = wire.taper;
+            if wire.taper != 0.0 {
+                self.writer.set(WordName::Taper, wire.taper.abs());
+            }
+        }
+        let side = match wire.active_taper {
+            0.0 => 0,
+            left if left > 0.0 => 1,
+            _ => 2,
+        };
+        self.writer.code(WordName::TaperSide, side);
+    }
+
+    /// # Errors
+    /// The lean by the control is about to change, and `what` cannot do it.
+    pub(crate) fn same_taper(&self, what: &str) -> Done {
+        match &self.wire {
+            Some(wire) if wire.taper != wire.active_taper => Err(refuse(
+                "taper",
+                format!("a taper is switched by a straight cut, not by {what}"),
+            )),
+            _ => Ok(()),
+        }
     }
 
     /// Holds the wire against what comes next: a cut needs it threaded, a rapid or the end needs it cut.

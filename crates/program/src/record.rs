@@ -67,6 +67,9 @@ pub enum Op {
     ThreadWire,
     /// The wire is cut: it is free of the part until it is threaded again.
     CutWire,
+    /// The control leans the wire from here on, degrees: to the left of its way where positive, to the
+    /// right where negative, 0 for not at all. Poses stay those of the lower end, upright.
+    Taper(f64),
     /// Axes sent to a fixed position of the machine; bit 0 is X, 1 Y, 2 Z, 3 A, 4 B, 5 C. Their
     /// positions are not known afterwards. A source has Z alone: the tool leaves the part.
     Home(u8),

@@ -55,6 +55,8 @@ pub(crate) struct Wanted<'a> {
     pub coolant: Coolant,
     pub tool: Option<&'a Tool>,
     pub compensation: Compensation,
+    /// Lean of the wire by the control, degrees.
+    pub taper: f64,
     /// The work offset, where the source names one.
     pub work_offset: Option<u32>,
     cycle: Option<Cycle>,
@@ -85,6 +87,7 @@ impl<'a> Cursor<'a> {
             coolant: Coolant::Off,
             tool: None,
             compensation: Compensation::Off,
+            taper: 0.0,
             work_offset: None,
             cycle: None,
         };
@@ -189,6 +192,7 @@ impl<'a> Cursor<'a> {
             Op::Spindle(spindle) => wanted.spindle = *spindle,
             Op::Coolant(coolant) => wanted.coolant = *coolant,
             Op::Compensation(side) => wanted.compensation = *side,
+            Op::Taper(degrees) => wanted.taper = *degrees,
             Op::Cycle(cycle) => wanted.cycle = Some(**cycle),
             Op::CycleOff => wanted.cycle = None,
             Op::Tool(tool) => {

@@ -18,6 +18,8 @@ pub(crate) struct Running {
     pub coolant_line: u32,
     pub tool: Option<Tool>,
     pub compensation: Compensation,
+    /// Lean of the wire by the control, degrees.
+    pub taper: f64,
     pub length_offset: Option<u32>,
     pub work_offset: Option<u32>,
     pub cycle: Option<Cycle>,
@@ -35,6 +37,7 @@ impl Running {
             coolant_line: 0,
             tool: None,
             compensation: Compensation::Off,
+            taper: 0.0,
             length_offset: None,
             work_offset: dialect.and_then(Dialect::work_offset_at_reset),
             cycle: None,
@@ -133,6 +136,21 @@ pub(crate) fn spindle_and_coolant(
         let (is, should) = (coolant(running.coolant), coolant(wanted.coolant));
         ("coolant", format!("coolant is {is}, but should be {should}"))
     })
+}
+
+/// What leans the wire in the cut.
+pub(crate) fn taper(allowed: &Applied, wanted: &Wanted, running: &Running) -> Option<Difference> {
+    let (is, should) = (running.taper, wanted.taper);
+    // Rounding does not turn a lean round, nor end it.
+    let same = (is - should).abs() <= allowed.taper_degrees && (is == 0.0) == (should == 0.0);
+    let shown = |degrees: f64| match degrees {
+        0.0 => String::from("not at all"),
+        left if left > 0.0 => format!("by {}° to the left", Number(left)),
+        right => format!("by {}° to the right", Number(-right)),
+    };
+    let message =
+        || format!("the control leans the wire {}, but should {}", shown(is), shown(should));
+    (!same).then(|| ("taper", message()))
 }
 
 /// The lengths (mm) that feed in inverse time counts with.

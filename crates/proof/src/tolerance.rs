@@ -36,6 +36,8 @@ pub struct Applied {
     pub feed: f64,
     /// Spindle speed, 1/min.
     pub speed_per_min: f64,
+    /// Lean of a wire by the control, degrees.
+    pub taper_degrees: f64,
     /// Dwell, s.
     pub dwell_s: f64,
 }
@@ -81,6 +83,7 @@ impl Applied {
             chord_mm: machine.capabilities.lowering_tolerance,
             feed: step("F", 3) / 2.0 * (1.0 + 1e-9),
             speed_per_min: step("S", 0) / 2.0 * (1.0 + 1e-9),
+            taper_degrees: step("TAPER", 3) / 2.0 * (1.0 + 1e-9),
             dwell_s: 1e-3,
         }
     }

@@ -28,8 +28,8 @@ pub struct CommandLine {
 pub enum Command {
     /// Write the program of a toolpath for a machine, prove it, and save both program and report.
     Post(Post),
-    /// Write the program of a wire-EDM machine for a contour, prove it, and save both program and
-    /// report.
+    /// Write the program of a wire-EDM machine for a contour (of a program or a drawing), prove it, and
+    /// save both program and report.
     Wire(Box<Wire>),
     /// Hold any program, also one edited by hand, against the toolpath it should make.
     Prove(Prove),
@@ -138,8 +138,6 @@ pub struct Post {
 /// Arguments of `wire`.
 #[derive(Debug, Args)]
 pub struct Wire {
-    #[command(flatten)]
-    pub source: Source,
     /// Name in the library, or a file ending in .toml.
     #[arg(long, short, value_name = "NAME|FILE")]
     pub machine: String,
@@ -153,6 +151,10 @@ pub struct Wire {
     #[arg(long, value_name = "LINE")]
     pub select: Option<u32>,
     #[command(flatten)]
+    pub closeness: Closeness,
+    #[command(flatten)]
+    pub source: Source,
+    #[command(flatten)]
     pub drawing: Drawing,
     #[command(flatten)]
     pub ends: Ends,
@@ -160,8 +162,6 @@ pub struct Wire {
     pub cutting: Cutting,
     #[command(flatten)]
     pub division: Division,
-    #[command(flatten)]
-    pub closeness: Closeness,
 }
 
 /// What is read of a drawing.
@@ -216,9 +216,9 @@ pub struct Cutting {
     /// What becomes of rounded corners on the way up.
     #[arg(long, value_name = "HOW", default_value = "conical", requires = "taper")]
     pub rounding: Rounding,
-    /// Let the control offset the wire, each pass by the register of its number: the program is then
-    /// that of the contour itself.
-    #[arg(long, requires = "side", conflicts_with_all = ["taper", "tab"])]
+    /// Let the control offset and lean the wire, each pass by the register of its number: the program is
+    /// then that of the contour itself.
+    #[arg(long, requires = "side", conflicts_with = "tab")]
     pub by_control: bool,
     /// Let inner corners that the wire is too thick for become as round as the wire.
     #[arg(long, requires = "side")]

@@ -14,7 +14,7 @@ use std::path::Path;
 
 /// Rules whose findings say that the machine cannot do what the toolpath asks for. All others of the
 /// writer are mistakes of the input: of the toolpath, or of the machine's file.
-const MACHINE_CANNOT: [&str; 17] = [
+const MACHINE_CANNOT: [&str; 18] = [
     "arc-orientation",
     "axis-limit",
     "cycle-missing",
@@ -26,6 +26,7 @@ const MACHINE_CANNOT: [&str; 17] = [
     "one-opening",
     "orientation-in-cut",
     "spindle-range",
+    "taper",
     "taper-limit",
     "tool-range",
     "unreachable-orientation",

@@ -165,18 +165,20 @@ fn what_a_wire_cannot_do_is_refused_with_its_line() {
     assert_eq!(refused(&sector(), &small).rule, "memory");
 }
 
-/// A die in ISO code, offset by the control: in from the middle, round three sides and an arc, and back.
+/// A die in ISO code, offset and leant by the control: in from the middle, round three sides and an arc, and back.
 fn die() -> Program {
     let arc = ArcTo { end: upright(0.0, 40.0), center: Vec3::ZERO, normal: Vec3::Z, turns: 0 };
     let ways = [
         Op::Feed(Feed::PerMinute(6.0)),
         Op::Compensation(Compensation::Left(Some(1))),
+        Op::Taper(-2.5),
         Op::Line(upright(15.0, 0.0)),
         Op::Line(upright(40.0, 0.0)),
         Op::Arc(Box::new(arc)),
         Op::Line(upright(0.0, 0.0)),
         Op::Line(upright(15.0, 0.0)),
         Op::Compensation(Compensation::Off),
+        Op::Taper(0.0),
         Op::Line(upright(15.0, 15.0)),
     ];
     opening(upright(15.0, 15.0), ways)
@@ -210,6 +212,10 @@ fn any_damage_to_a_program_of_iso_code_is_refused() {
                 ("G41", "G42"),
                 ("G40", "G41 D1"),
                 ("D1", "D2"),
+                ("G52", "G51"),
+                ("T2.5", "T2.6"),
+                ("G50", "G51 T1."),
+                (" G50", ""),
                 ("G3", "G2"),
                 ("G1", "G0"),
                 ("G0", "G1"),

@@ -40,6 +40,10 @@ pub fn cuts(program: &Program, start: Option<Vec2>) -> Result<Vec<Vec<Element>>,
                 continue;
             }
             Op::Hole(_) => return Err(at(refused("not-a-cut", "a hole cycle", "take it out"))),
+            Op::Taper(degrees) if *degrees != 0.0 => {
+                let way_out = "take the contour without it, and lean the wire with --taper";
+                return Err(at(refused("open-taper", "a wire that the control leans", way_out)));
+            }
             Op::Thread(_) | Op::Probe(_) => {
                 return Err(at(refused("not-a-cut", "a screw thread or a probe", "take it out")));
             }

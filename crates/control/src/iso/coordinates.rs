@@ -232,6 +232,7 @@ impl Step<'_, '_, '_> {
             return Ok(());
         }
         let (machine, used) = (frames.to_machine(point), frames.is_used());
+        let rotary = frames.rotary_origin();
         let add = self.flavor.is_fanuc() && self.state.incremental;
         let written = frames.write(number, values, angle, add);
         if self.known(written)? {
@@ -240,6 +241,10 @@ impl Step<'_, '_, '_> {
             } else {
                 let point = self.state.frames.of_machine(machine);
                 self.state.position = self.state.place.programmed(point);
+                let now = self.state.frames.rotary_origin();
+                for axis in (0..3).filter(|axis| values[axis + 3].is_some()) {
+                    self.state.rotary[axis] -= now[axis] - rotary[axis];
+                }
             }
         }
         Ok(())

@@ -259,6 +259,11 @@ impl Frames {
         times(turn(2, -offset.angle), machine - linear(&offset.origin))
     }
 
+    /// What the active work offset holds for the rotary axes, degrees; NaN where not known.
+    pub(super) fn rotary_origin(&self) -> [f64; 3] {
+        self.offset().map_or([f64::NAN; 3], |o| [o.origin[3], o.origin[4], o.origin[5]])
+    }
+
     /// The work coordinates that are not known any more once the named axes of the machine (bit 0
     /// is X) are where only the machine knows.
     pub(super) fn depend_on(&self, named: u8) -> [bool; 3] {

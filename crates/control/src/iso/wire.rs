@@ -1,8 +1,8 @@
-//! The wire of a wire-EDM machine: where it is threaded and cut, and how U and V lean it.
+//! The wire of a wire-EDM machine: where it is threaded and cut, and what leans it.
 
 use super::block::Fault;
 use super::execute::Step;
-use super::words::{Group, M, Motion};
+use super::words::{G, Group, M, Motion, Side};
 use crate::Settings;
 use geom::{Vec3, direction};
 use program::{Op, Orientation};
@@ -17,6 +17,8 @@ pub(super) struct Wire {
     v: f64,
     /// Where that points it: it is set up upright.
     axis: Vec3,
+    /// By how much the control leans it, as [`Op::Taper`] says it.
+    taper: f64,
 }
 
 /// What [`super::motion::Target::named`] says of a block with U or V.
@@ -25,7 +27,7 @@ pub(super) const LEANS: u8 = 1 << 6;
 impl Wire {
     /// Upright.
     pub(super) fn new(settings: &Settings) -> Wire {
-        Wire { upper_plane: settings.wire.height, u: 0.0, v: 0.0, axis: Vec3::Z }
+        Wire { upper_plane: settings.wire.height, u: 0.0, v: 0.0, axis: Vec3::Z, taper: 0.0 }
     }
 
     /// Where it points.
@@ -42,6 +44,7 @@ impl Step<'_, '_, '_> {
             return Ok(());
         }
         self.state.position.z = 0.0;
+        self.taper()?;
         self.block.pass(self.flavor.conditions());
         let op = match self.block.m(Group::Wire) {
             None => return Ok(()),
@@ -54,8 +57,37 @@ impl Step<'_, '_, '_> {
         }
         if op == Op::CutWire {
             self.not_compensated("the end of the wire")?;
+            if self.state.wire.is_some_and(|wire| wire.taper != 0.0) {
+                let message = "the end of the wire while the control leans it; write G50 first";
+                return Err(self.block.at_group(Group::Wire, "nc-taper", message));
+            }
         }
         self.ops.push(op);
+        Ok(())
+    }
+
+    /// `G50` to `G52`.
+    fn taper(&mut self) -> Result<(), Fault> {
+        let Some(G::Taper(side)) = self.block.g(Group::Taper) else { return Ok(()) };
+        let mut angle = 0.0;
+        if side != Side::Off {
+            let letter = self.flavor.taper_letter();
+            angle = match self.take_degrees(letter)? {
+                Some(angle) if angle > 0.0 && angle < 90.0 => angle,
+                _ => {
+                    let letter = char::from(letter);
+                    let message = format!("G51 and G52 need their angle {letter}, 0 to 90 degrees");
+                    return Err(self.block.at_group(Group::Taper, "nc-taper", message));
+                }
+            };
+        }
+        let angle = if side == Side::Right { -angle } else { angle };
+        if let Some(wire) = &mut self.state.wire
+            && wire.taper != angle
+        {
+            wire.taper = angle;
+            self.ops.push(Op::Taper(angle));
+        }
         Ok(())
     }
 
@@ -79,6 +111,9 @@ impl Step<'_, '_, '_> {
         let Some(axis) = direction(Vec3::new(wire.u, wire.v, height)) else {
             return refused("U and V lie so far out that the wire has no direction");
         };
+        if wire.taper != 0.0 {
+            return refused("U or V while the control leans the wire");
+        }
         if matches!(self.state.motion, Some(Motion::Arc { .. })) {
             return refused("U or V beside an arc: the upper end would not go along an arc");
         }

@@ -36,6 +36,11 @@ impl Flavor {
         }
     }
 
+    /// The letter of the angle by which the control leans a wire.
+    pub(super) fn taper_letter(self) -> u8 {
+        if self == Flavor::Sodick { b'A' } else { b'T' }
+    }
+
     /// The letter of the register of the tool's or the wire's radius.
     pub(super) fn radius_letter(self) -> u8 {
         if self == Flavor::Sodick { b'H' } else { b'D' }
@@ -66,6 +71,8 @@ pub(super) enum G {
     Compensation(Side),
     /// With the diameter in the block (`G41.1`).
     DynamicCompensation(Side),
+    /// Lean of a wire by the control, `G50` to `G52`.
+    Taper(Side),
     Length,
     ToolCenter,
     DynamicLength,
@@ -262,6 +269,7 @@ pub(super) enum Group {
     Tilt,
     Scaling,
     Mirror,
+    Taper,
     Macro,
     Polar,
     Diameter,

@@ -161,7 +161,7 @@ impl<'t> Run<'t, '_, '_, '_> {
         let from = *s;
         let (_, number) = s.number_or_parameter(&self.control.registers)?;
         let span = (from.at(), s.at());
-        if let Some(times) = number.filter(|n| n.fract() == 0.0 && (0.0..=65_534.0).contains(n)) {
+        if let Some(times) = number.filter(|n| n.fract() == 0.0 && (1.0..=65_534.0).contains(n)) {
             let times = times as u32;
             if s.take_symbol(b"/") && s.digits(65_534)? != times {
                 let message = "a repetition that has begun already cannot be followed";

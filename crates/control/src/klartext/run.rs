@@ -56,16 +56,16 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
 
     /// Runs the program up to its `END PGM`.
     pub(super) fn finish(mut self) -> Result<()> {
-        let mut last = None;
+        let mut last = self.source.place();
         // Behind M30 there are subprograms, which begin with a label.
         let mut subprograms = false;
         while !self.closed {
             let place = self.source.place();
             let Some(line) = self.source.next()? else {
-                let last: Scanner = last.unwrap_or(Scanner::new("", 1, b""));
-                return Err(last.error_block("program-frame", "the program ends without END PGM"));
+                let message = "the program ends without END PGM";
+                return Err(self.source.line_at(last).error_block("program-frame", message));
             };
-            last = Some(line.scanner);
+            last = place;
             if self.control.ended {
                 self.unreached(line, &mut subprograms)?;
             } else {
@@ -125,15 +125,15 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
             return Err(s.error_block("unsupported", "this block cannot go on in the next line"));
         }
         let control = &mut *self.control;
-        let corner = |source: &Source| source.corner_follows();
+        let source = &self.source;
         match keyword {
-            b"L" => control.line(s, corner(&self.source)),
-            b"C" => control.arc(s, corner(&self.source)),
-            b"CR" => control.arc_of_radius(s, corner(&self.source)),
-            b"CT" => control.tangential_arc(s, corner(&self.source)),
-            b"CP" => control.polar_arc(s, corner(&self.source)),
-            b"CTP" => control.polar_tangential_arc(s, corner(&self.source)),
-            b"LP" => control.polar_line(s, corner(&self.source)),
+            b"L" => control.line(s, source.corner_follows()),
+            b"C" => control.arc(s, source.corner_follows()),
+            b"CR" => control.arc_of_radius(s, source.corner_follows()),
+            b"CT" => control.tangential_arc(s, source.corner_follows()),
+            b"CP" => control.polar_arc(s, source.corner_follows()),
+            b"CTP" => control.polar_tangential_arc(s, source.corner_follows()),
+            b"LP" => control.polar_line(s, source.corner_follows()),
             b"CC" => control.circle_center(s),
             b"RND" => control.rounding(s),
             b"CHF" => control.chamfer(s),
@@ -218,7 +218,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
         }
         s.expect(if self.control.unit == 1.0 { b"MM" } else { b"INCH" })?;
         s.finish()?;
-        if self.calls.is_open() {
+        if self.calls.is_open() && !self.control.ended {
             return Err(
                 s.error_block("label", "the subprogram that runs has no end: LBL 0 is missing")
             );

@@ -54,6 +54,8 @@ pub(super) struct Source<'t> {
     /// The first block that has not been looked at for a label.
     unseen: Place,
     labels: HashMap<Label<'t>, Place>,
+    /// Whether any corner is cut off: most programs have none to look for.
+    corners: bool,
 }
 
 /// The lines of a text, ended by LF, CR LF or CR.
@@ -109,7 +111,9 @@ impl<'t> Source<'t> {
         let numbered = bytes.trim_ascii_start().first().is_none_or(u8::is_ascii_digit);
         let start = Place { offset: 0, line: 0, number: 0 };
         let text = Text { file, bytes, numbered };
-        Source { text, at: start, unseen: start, labels: HashMap::new() }
+        let has = |word: &[u8]| memchr::memmem::find(bytes, word).is_some();
+        let corners = has(b"RND") || has(b"CHF");
+        Source { text, at: start, unseen: start, labels: HashMap::new(), corners }
     }
 
     /// Takes the next block; `None` where the text ends.
@@ -136,6 +140,12 @@ impl<'t> Source<'t> {
     /// The next block.
     pub(super) fn place(&self) -> Place {
         self.at
+    }
+
+    /// The line at a place; an empty one behind the last.
+    pub(super) fn line_at(&self, place: Place) -> Scanner<'t> {
+        let line = self.text.line(&mut place.clone());
+        line.unwrap_or(Scanner::new(self.text.file, place.line, b""))
     }
 
     /// Goes on from a place.
@@ -172,12 +182,7 @@ impl<'t> Source<'t> {
 
     /// Whether the next block rounds or chamfers the corner at which the tool is.
     pub(super) fn corner_follows(&self) -> bool {
-        // Told from its first letter for nearly every block.
-        let rest = self.text.bytes.get(self.at.offset..).unwrap_or_default();
-        let is_blank = |b: u8| b == b' ' || b == b'\t';
-        let first = rest.iter().find(|&&b| b > b'9' || (b < b'0' && !is_blank(b)));
-        matches!(first, Some(b'R' | b'C' | b';' | b'*'))
-            && matches!(self.upcoming(), b"RND" | b"CHF")
+        self.corners && matches!(self.upcoming(), b"RND" | b"CHF")
     }
 
     /// The program is closed: only blank lines follow.

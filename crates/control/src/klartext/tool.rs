@@ -107,17 +107,13 @@ impl Control<'_, '_> {
     /// A number that is written, or in a Q parameter.
     fn tool_number(&self, s: &mut Scanner) -> Result<u32> {
         let from = *s;
-        let (token, span) = s.token();
-        let written = token.iter().all(u8::is_ascii_digit) || token.starts_with(b"Q");
-        let number = from.clone().value(&self.registers);
-        if token.starts_with(b"Q") {
-            number.as_ref().map_err(Clone::clone)?;
+        let unsigned = matches!(s.peek(), [b'0'..=b'9' | b'Q', ..]);
+        let number = s.value(&self.registers)?;
+        if unsigned && number.fract() == 0.0 && (0.0..=32_767.0).contains(&number) {
+            return Ok(number as u32);
         }
-        number
-            .ok()
-            .filter(|n| written && n.fract() == 0.0 && (0.0..=32_767.0).contains(n))
-            .map(|n| n as u32)
-            .ok_or_else(|| s.error("tool", span, "the number of a tool is a whole number from 0"))
+        let message = "the number of a tool is a whole number from 0";
+        Err(s.error("tool", (from.at(), s.at()), message))
     }
 
     /// A name in a QS parameter.

@@ -206,6 +206,7 @@ impl Control<'_, '_> {
     }
 
     /// Nothing moves while it is not clear in which order transformations act.
+    #[inline]
     pub(super) fn transforms_are_clear(&self, s: &Scanner) -> Result<()> {
         if !self.transforms().0.iter().any(|active| active.unclear) {
             return Ok(());

@@ -14,6 +14,7 @@ use super::motion::AXIS_NAMES;
 use super::programmable::plain_values;
 use super::scan::Source;
 use super::state::{self, Modes, State};
+use super::variables::ELEMENTS_IN_A_TURN;
 use crate::Settings;
 use crate::compensation::{Compensator, Terms};
 use crate::flow::Budget;
@@ -89,6 +90,14 @@ impl<'a, 's> Interpreter<'a, 's> {
         self.compensator.switch(line, side, terms).inspect_err(|_| self.stopped = true)
     }
 
+    /// Turns of loops, jumps and calls, of which there may not be too many between two records.
+    pub fn spend(&mut self, source: &Source, turns: usize) -> Fallible<()> {
+        for _ in 0..turns {
+            self.budget.jump().map_err(|message| source.block_error("endless", message))?;
+        }
+        Ok(())
+    }
+
     /// Carries out a block.
     pub fn run(&mut self, source: &Source, block: &mut Block) -> Fallible<()> {
         if let Some(comment) = block.comment.take() {
@@ -97,8 +106,11 @@ impl<'a, 's> Interpreter<'a, 's> {
         if !block.any {
             return Ok(());
         }
-        for (place, value) in block.assigned.drain(..) {
-            self.state.assign(place, value);
+        if !block.assigned.is_empty() {
+            self.spend(source, block.assigned.len() / ELEMENTS_IN_A_TURN)?;
+            for (place, value) in block.assigned.drain(..) {
+                self.state.assign(place, value);
+            }
         }
         if let Some(message) = block.message.take() {
             self.emit(source, Op::Message(message.into()))?;
@@ -109,7 +121,9 @@ impl<'a, 's> Interpreter<'a, 's> {
         if let Some(call) = block.call.take() {
             return self.call(source, block, &call);
         }
-        self.check_m(source, block)?;
+        if block.m[0].is_some() {
+            self.check_m(source, block)?;
+        }
         self.modes(source, block)?;
         if let Some((name, tolerance)) = block.path_tolerance {
             self.path_tolerance(source, name, tolerance * self.state.unit)?;
@@ -463,6 +477,9 @@ impl<'a, 's> Interpreter<'a, 's> {
     }
 
     fn stops(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+        if block.m[0].is_none() {
+            return Ok(());
+        }
         match block.m.iter().flatten().find(|m| STOPS.contains(m)) {
             Some(0) => self.emit(source, Op::Stop),
             Some(1) => self.emit(source, Op::OptionalStop),

@@ -114,15 +114,18 @@ impl Interpreter<'_, '_> {
                 programmed[i] = value;
             }
         }
-        if block.has_polar() {
-            self.polar_target(source, block, &mut position)?;
-            for i in (0..3).filter(|i| *i != self.state.plane_normal) {
-                programmed[i] = position[i];
+        if let Some(rare) = &block.rare {
+            if block.has_polar() {
+                self.polar_target(source, block, &mut position)?;
             }
-        }
-        if let Some(angle) = block.rare.as_ref().and_then(|rare| rare.angle) {
-            self.angle_target(source, block, angle, &mut position)?;
-            programmed = position;
+            if let Some(angle) = rare.angle {
+                self.angle_target(source, block, angle, &mut position)?;
+            }
+            if block.has_polar() || rare.angle.is_some() {
+                for i in (0..3).filter(|i| *i != self.state.plane_normal) {
+                    programmed[i] = position[i];
+                }
+            }
         }
         Ok((position, programmed))
     }

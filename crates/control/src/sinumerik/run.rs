@@ -11,7 +11,7 @@ use super::scan::{Name, Scanner, Source};
 use super::state::Modes;
 use super::statement::{Count, Jump, ProgramCall, Search, Section, Statement, Target};
 use super::value::Value;
-use super::variables::{Locals, Variable};
+use super::variables::{ELEMENTS_IN_A_TURN, Locals, Variable};
 use crate::Settings;
 use crate::compensation::Compensator;
 use crate::flow::DEEPEST;
@@ -173,7 +173,7 @@ impl<'a, 's> Run<'a, 's> {
 
     /// Another turn of a loop, a jump or a call.
     fn turn(&mut self, source: &Source) -> Fallible<()> {
-        self.interpreter.budget.jump().map_err(|message| source.block_error("endless", message))
+        self.interpreter.spend(source, 1)
     }
 
     /// Carries out a statement of the block at `here`: the block that comes next.
@@ -202,6 +202,7 @@ impl<'a, 's> Run<'a, 's> {
         match statement {
             Statement::Define(variables) => {
                 for (name, variable) in variables {
+                    self.interpreter.spend(source, variable.values.len() / ELEMENTS_IN_A_TURN)?;
                     let locals = &mut self.interpreter.state.locals;
                     locals
                         .define(name, variable)

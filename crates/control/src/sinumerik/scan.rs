@@ -68,8 +68,6 @@ impl Name {
 /// What stands before the words of a block.
 #[derive(Clone, Copy, Default)]
 pub(super) struct Head {
-    /// Whether the operator may skip the block (`/`).
-    pub skip: bool,
     /// Block number.
     pub number: Option<u32>,
     /// Label.
@@ -105,17 +103,17 @@ impl<'a> Scanner<'a> {
     /// Takes blanks. `&` is a formatting character that reads like one.
     #[inline]
     pub fn blanks(&mut self) {
-        while matches!(self.peek(), b' ' | b'\t' | b'&') {
+        while let Some(b' ' | b'\t' | b'&') = self.source.text.get(self.at) {
             self.at += 1;
         }
     }
 
-    /// Takes `byte`, after blanks, where it comes next.
+    /// Takes `byte`, which is no letter, after blanks, where it comes next.
     #[inline]
     pub fn take(&mut self, byte: u8) -> bool {
         let back = self.at;
         self.blanks();
-        let found = self.peek() == byte;
+        let found = self.source.text.get(self.at) == Some(&byte);
         self.at = if found { self.at + 1 } else { back };
         found
     }
@@ -206,15 +204,16 @@ impl<'a> Scanner<'a> {
     pub fn head(&mut self) -> Fallible<Head> {
         let mut head = Head::default();
         self.blanks();
-        if self.peek() == b'/' {
-            head.skip = true;
+        let mut next = self.peek();
+        if next == b'/' {
             self.at += 1;
             if self.digit_next() {
                 self.at += 1;
             }
             self.blanks();
+            next = self.peek();
         }
-        if self.peek() == b':' || self.peek() == b'N' && self.peek_at(1).is_ascii_digit() {
+        if next == b':' || next == b'N' && self.peek_at(1).is_ascii_digit() {
             self.at += 1;
             head.number = Some(self.integer()?);
             self.blanks();
@@ -265,7 +264,7 @@ impl<'a> Scanner<'a> {
     }
 
     /// Takes a number: sign, digits, point, digits, exponent (`EX`).
-    #[inline]
+    #[inline(always)]
     pub fn constant(&mut self) -> Fallible<f64> {
         let start = self.at;
         let negative = self.peek() == b'-';

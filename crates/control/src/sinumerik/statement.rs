@@ -308,9 +308,11 @@ fn label(scanner: &mut Scanner) -> Fallible<Name> {
 
 /// `P3`, `P=n`; once where there is none.
 fn times(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<u32> {
-    if !scanner.take(b'P') {
+    scanner.blanks();
+    if scanner.peek() != b'P' {
         return Ok(1);
     }
+    scanner.at += 1;
     if scanner.take(b'=') {
         return evaluator.within(scanner, 0..=MOST_TIMES);
     }

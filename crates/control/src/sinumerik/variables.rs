@@ -8,7 +8,10 @@ use std::collections::HashMap;
 pub(super) const R_PARAMETERS: usize = 1000;
 
 /// Most elements of the variables of a program; our own limit.
-pub(super) const MOST_ELEMENTS: usize = 1 << 16;
+pub(super) const MOST_ELEMENTS: usize = 1 << 14;
+
+/// So many elements set cost as much as one turn of a loop.
+pub(super) const ELEMENTS_IN_A_TURN: usize = 64;
 
 /// What is known of an R parameter.
 #[derive(Clone, Copy)]

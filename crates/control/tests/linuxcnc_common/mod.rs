@@ -185,7 +185,9 @@ fn ours(text: &[u8], folders: &[PathBuf]) -> Result<Vec<Motion>, String> {
         },
         ..Settings::new(Dialect::LinuxCnc, [true; 3])
     };
-    let (mut moves, mut at, mut active) = (Vec::new(), [0.0; 6], None);
+    // Where the rotary axes stand at the start is not given.
+    let start = [0.0, 0.0, 0.0, f64::NAN, f64::NAN, f64::NAN];
+    let (mut moves, mut at, mut active) = (Vec::new(), start, None);
     let begun = Instant::now();
     read(&settings, "program.ngc", text, &mut |record| {
         if begun.elapsed() > LONGEST {
@@ -294,9 +296,9 @@ fn essential(moves: Vec<Motion>) -> Vec<Motion> {
     kept
 }
 
-/// Equal to the four decimals that `rs274` prints, in inches too.
+/// Equal to the four decimals that `rs274` prints, in inches too, as far as we know it.
 fn near(a: &[f64; 6], b: &[f64; 6]) -> bool {
-    a.iter().zip(b).all(|(a, b)| (a - b).abs() < 5.2e-3)
+    a.iter().zip(b).all(|(a, b)| a.is_nan() || (a - b).abs() < 5.2e-3)
 }
 
 fn same(a: &Motion, b: &Motion) -> bool {

@@ -182,6 +182,7 @@ impl<'a> Prover<'a> {
             Op::Spindle(spindle) => (running.spindle, running.spindle_line) = (*spindle, line),
             Op::Coolant(coolant) => (running.coolant, running.coolant_line) = (*coolant, line),
             Op::Compensation(side) => running.compensation = *side,
+            Op::Taper(degrees) => running.taper = *degrees,
             Op::LengthOffset(register) => running.length_offset = *register,
             Op::WorkOffset(number) => {
                 running.work_offset = Some(*number);

@@ -1,9 +1,9 @@
 //! How the contours are cut: along them, or beside them in passes with leads and tabs.
 
-use super::leg::Leg;
+use super::leg::{ByControl, Leg};
 use crate::args::{Cutting, Rounding, Side, Trims};
 use ::wire::offset::Corners;
-use ::wire::plan::{self, Opening, Settings, Taper, plan};
+use ::wire::plan::{self, Opening, Pass, Settings, Taper, plan};
 use ::wire::{Contour, Lead, LeadShape, Path, taper};
 use geom::Vec2;
 use program::{Compensation, Diagnostic};
@@ -48,13 +48,7 @@ pub fn legs(
         feed: feed(pass.number),
         opening: pass.opening,
         pass: pass.number,
-        offset: how.by_control.then(|| {
-            let register = Some(pass.number as u32 + 1);
-            match pass.left {
-                true => Compensation::Left(register),
-                false => Compensation::Right(register),
-            }
-        }),
+        by_control: how.by_control.then(|| by_control(&pass, &openings, how.taper)),
         tab: pass.tab,
         thread: pass.thread,
         cut: pass.cut,
@@ -62,6 +56,29 @@ pub fn legs(
         ..Leg::of(pass.path)
     });
     Ok((legs.collect(), warnings))
+}
+
+/// What the control does to the wire in a pass.
+fn by_control(pass: &Pass, openings: &[Opening], taper: Option<f64>) -> ByControl {
+    let register = Some(pass.number as u32 + 1);
+    let offset = match pass.left {
+        true => Compensation::Left(register),
+        false => Compensation::Right(register),
+    };
+    // A part that is larger at the top has its upper end outside: that is on the right of who goes round
+    // it counter-clockwise, as the wire inside of it then is on the left.
+    let inside = openings.get(pass.opening).is_some_and(|opening| {
+        let counter_clockwise = opening.contour.area() > 0.0;
+        match opening.side {
+            plan::Side::Inside => true,
+            plan::Side::Outside => false,
+            plan::Side::Left => counter_clockwise,
+            plan::Side::Right => !counter_clockwise,
+        }
+    });
+    let counter_clockwise = pass.left == inside;
+    let taper = taper.unwrap_or(0.0);
+    ByControl { offset, taper: if counter_clockwise { -taper } else { taper } }
 }
 
 /// The path with its start moved to the place nearest to `begin`.

@@ -17,8 +17,8 @@ pub struct Leg {
     pub opening: usize,
     /// 0 for the first pass there.
     pub pass: usize,
-    /// On which side and by which register the control offsets it, where it does.
-    pub offset: Option<Compensation>,
+    /// What the control does to the wire, where it does.
+    pub by_control: Option<ByControl>,
     /// Whether it cuts the tab that has held the part.
     pub tab: bool,
     /// Whether the wire is threaded at its start; otherwise it stands there already.
@@ -27,6 +27,26 @@ pub struct Leg {
     pub cut: bool,
     /// Whether the machine stops before it, for the operator to hold the part.
     pub stop: bool,
+}
+
+/// What the control does to the wire.
+#[derive(Clone, Copy, Debug)]
+pub struct ByControl {
+    /// On which side and by which register it offsets it.
+    pub offset: Compensation,
+    /// By how much it leans it, degrees as [`Op::Taper`] counts them.
+    pub taper: f64,
+}
+
+impl ByControl {
+    const OFF: ByControl = ByControl { offset: Compensation::Off, taper: 0.0 };
+
+    fn say(self, program: &mut Program, line: u32, leans: bool) {
+        program.push(line, Op::Compensation(self.offset));
+        if leans {
+            program.push(line, Op::Taper(self.taper));
+        }
+    }
 }
 
 /// Which end of the wire.
@@ -45,7 +65,7 @@ impl Leg {
             feed: None,
             opening: 0,
             pass: 0,
-            offset: None,
+            by_control: None,
             tab: false,
             thread: true,
             cut: true,
@@ -106,13 +126,13 @@ fn assemble(name: &str, legs: &[Leg], feeds: bool, moves: impl Fn(&Leg) -> Moves
         if let Some(new) = leg.feed.filter(|new| feeds && feed.replace(*new) != Some(*new)) {
             program.push(line, Op::Feed(Feed::PerMinute(new)));
         }
-        // The control offsets the wire from the first move on, and back with the last.
+        // The control offsets and leans the wire from the first move on, and ends that with the last.
         let last = moves.len().saturating_sub(1);
         for (i, (from, op)) in moves.into_iter().enumerate() {
             line = from;
-            match leg.offset {
-                Some(side) if i == 0 => program.push(line, Op::Compensation(side)),
-                Some(_) if i == last => program.push(line, Op::Compensation(Compensation::Off)),
+            match leg.by_control {
+                Some(it) if i == 0 => it.say(&mut program, line, it.taper != 0.0),
+                Some(it) if i == last => ByControl::OFF.say(&mut program, line, it.taper != 0.0),
                 _ => {}
             }
             program.push(line, op);

@@ -133,6 +133,28 @@ fn a_bad_source_is_told_with_its_line_and_writes_nothing() {
     bad("N30 G1 X40. Y0. F6.6\nN40 G3 X0. Y40. R40.\nN50 G1 X0. Y0.\n", "", &["empty-contour"]);
 }
 
+#[test]
+fn contours_that_cannot_be_offset_are_refused_with_their_line() {
+    let folder = sector();
+    let inside = ["--side", "inside", "--wire", "0.2", "--thread", "10,10", "--round-corners"];
+    let bad = |from: &str, to: &str, more: &[&str], words: &[&str]| {
+        folder.write("sector.nc", SECTOR.replace(from, to));
+        refused(&folder, &[&inside, more].concat(), 2, words);
+    };
+    bad("N50 G1 X0. Y0.\n", "", &[], &["error[open-contour]"]);
+    bad(
+        "N50 G1 X0. Y0.",
+        "N50 G1 X30. Y-10.\nG1 X0. Y0.",
+        &[],
+        &["error[self-crossing]", "sector.nc:"],
+    );
+    bad("", "", &["--feed", "0.1,0.2"], &["error[feed]"]);
+    bad("", "", &["--thread", "1,1"], &["error[thread]"]);
+    bad("", "", &["--taper", "5"], &["error[wire-height]"]);
+    bad("", "", &["--taper", "70", "--height", "10"], &["error[taper-angle]"]);
+    bad("", "", &["--gap", "40"], &["error[offset-vanishes]"]);
+}
+
 /// A square of 10 mm, and one of 14 mm about the same centre, each as a program.
 fn frustum() -> Folder {
     let folder = Folder::new();
@@ -249,28 +271,42 @@ fn the_sample_program_of_each_wire_machine_is_as_it_was_read() {
 }
 
 #[test]
-fn the_control_offsets_the_wire_where_it_can() {
+fn the_control_offsets_and_leans_the_wire_where_it_can() {
     let folder = sector();
-    let call = |machine: &'static str| {
+    let call = |machine: &'static str, more: &[&str]| {
         let call = ["wire", "sector.nc", "--by-control", "-m", machine, "-o", "die.nc"];
-        folder.run(&[&call[..], &DIE].concat())
+        folder.run(&[&call[..], &DIE, more].concat())
     };
-    assert_eq!(call("fanuc-wire").code, 0);
-    let text = folder.read("die.nc");
+    let says = |blocks: &[&str]| {
+        let text = folder.read("die.nc");
+        let found = blocks.iter().try_fold(text.as_str(), |rest, block| {
+            rest.split_once(&format!(" {block}\n")).map(|(_, rest)| rest)
+        });
+        assert!(found.is_some(), "not in this order: {blocks:?}\n{text}");
+    };
+    assert_eq!(call("fanuc-wire", &[]).code, 0);
     // Counter-clockwise inside: the wire on the left; back the other way on the right.
-    for block in [
-        "G1 G41 D1 Y0. F6.",
+    says(&["G1 G41 D1 Y0. F6.", "X40.", "G3 X0. Y40. I-40. J0.", "G40 Y15."]);
+    says(&["G42 D2 Y0. F12.", "G2 X40. Y0. I0. J-40.", "G40 Y15.", "M50"]);
+    // Larger at the top, so the upper end is outside: on the right of that way, and on the left of the
+    // way back.
+    let taper = ["--taper", "5", "--height", "20"];
+    assert_eq!(call("fanuc-wire", &taper).code, 0);
+    says(&[
+        "G1 G41 D1 G52 T5. Y0. F6.",
         "X40.",
-        "G3 X0. Y40. I-40. J0.",
-        "G40 Y15.",
-        "G42 D2 Y0. F12.",
-        "G2 X40. Y0.",
-    ] {
-        assert!(text.contains(block), "{block} is missing in\n{text}");
-    }
-    let said = call("bp-95d");
-    assert_eq!(said.code, 2);
-    assert!(said.err.contains("error[by-control]"), "{said:?}");
+        "G40 G50 Y15.",
+        "G42 D2 G51 T5. Y0. F12.",
+        "G40 G50 Y15.",
+    ]);
+    assert_eq!(call("sodick-iso", &["--taper", "-5", "--height", "20"]).code, 0);
+    says(&["G1 G41 H001 G51 A5. Y0. F6.", "G42 H002 G52 A5. Y0. F12."]);
+    let refused = |machine, more: &[&str], code, rule: &str| {
+        let said = call(machine, more);
+        assert!(said.code == code && said.err.contains(rule), "{said:?}");
+    };
+    refused("agie-iso", &taper, 1, "error[taper]");
+    refused("bp-95d", &[], 2, "error[by-control]");
 }
 
 #[test]

@@ -16,7 +16,6 @@ const G_WORDS: &[GRow] = &[
     (400, Group::Compensation, G::Compensation(Side::Off)),
     (410, Group::Compensation, G::Compensation(Side::Left)),
     (420, Group::Compensation, G::Compensation(Side::Right)),
-    (500, Group::Scaling, G::Neutral(b"")),
     (540, Group::WorkOffset, G::WorkOffset(54)),
     (550, Group::WorkOffset, G::WorkOffset(55)),
     (560, Group::WorkOffset, G::WorkOffset(56)),
@@ -26,6 +25,13 @@ const G_WORDS: &[GRow] = &[
     (900, Group::Distance, G::Incremental(false)),
     (910, Group::Distance, G::Incremental(true)),
     (920, Group::OneShot, G::ShiftHere),
+];
+
+/// Taper by the control.
+const TAPER: &[GRow] = &[
+    (500, Group::Taper, G::Taper(Side::Off)),
+    (510, Group::Taper, G::Taper(Side::Left)),
+    (520, Group::Taper, G::Taper(Side::Right)),
 ];
 
 /// Units as FANUC says them.
@@ -43,25 +49,25 @@ const M_WORDS: &[MRow] = &[
     (30, Group::Flow, M::End),
 ];
 
-const REFUSED: &[Refused] = &[
-    (510, "a taper by the control is not followed; give U and V"),
-    (520, "a taper by the control is not followed; give U and V"),
+const REFUSED_BY_AGIE: &[Refused] = &[
+    (510, "how this control says a taper is not known; give U and V"),
+    (520, "how this control says a taper is not known; give U and V"),
 ];
 
 pub(super) static FANUC: Dictionary =
-    Dictionary::new(Flavor::FanucWire, b"DFGIJLMNOPRSUVXY", usize::MAX)
+    Dictionary::new(Flavor::FanucWire, b"DFGIJLMNOPRSTUVXY", usize::MAX)
         .with(G_WORDS, M_WORDS)
         .with(UNITS_20, SUBPROGRAM_M)
-        .refusing(REFUSED, &[]);
+        .with(TAPER, &[]);
 
 pub(super) static SODICK: Dictionary =
-    Dictionary::new(Flavor::Sodick, b"CFGHIJLMNOPRTUVXY", usize::MAX)
+    Dictionary::new(Flavor::Sodick, b"ACFGHIJLMNOPRTUVXY", usize::MAX)
         .with(G_WORDS, M_WORDS)
         .with(UNITS_20, SUBPROGRAM_M)
         .with(UNITS_70, &[])
-        .refusing(REFUSED, &[]);
+        .with(TAPER, &[]);
 
 pub(super) static AGIE: Dictionary = Dictionary::new(Flavor::Agie, b"DFGIJMNPSTUVXY", usize::MAX)
     .with(G_WORDS, M_WORDS)
     .with(UNITS_70, &[])
-    .refusing(REFUSED, &[]);
+    .refusing(REFUSED_BY_AGIE, &[]);
