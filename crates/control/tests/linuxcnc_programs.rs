@@ -73,12 +73,11 @@ const DIFFER: &[(&str, &str)] = &[
     ("ncfiles/plasmatest.ngc", "an arc after M6, which may move the machine"),
     ("ncfiles/smartprobe.ngc", "it steers by what the probe finds"),
     ("ncfiles/x-trim.ngc", "it counts from where the probe stops"),
-    ("ncfiles/comp311_2.ngc", "compensation that begins on an arc is refused"),
     (
         "ncfiles/gmoccapy_2_tools_with_cutter_radius_compensation.ngc",
-        "compensation that begins on an arc is refused",
+        "a move in X and Y after M6 and G43, where Z is not known",
     ),
-    ("ncfiles/mmount.ngc", "compensation that begins on an arc is refused"),
+    ("ncfiles/mmount.ngc", "G33.1 is told as the moves of a thread, by rs274 as one call"),
     ("ncfiles/systems.ngc", "splines: other points of the same curve"),
     (
         "manual-toolchange-with-tool-length-switch/nc_files/tcdemo.ngc",
