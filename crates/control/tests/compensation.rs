@@ -170,6 +170,16 @@ fn what_lies_between_two_elements_happens_at_the_end_of_the_first() {
 }
 
 #[test]
+fn a_tool_change_or_a_cycle_ends_what_g40_has_cancelled() {
+    for next in ["T2 M6", "S9. M3\nG98 G81 X-9. Y60. Z-5. R-1."] {
+        let path = fanuc(&format!("G1 G41 D1 X0 Y0\nY50.\nG40\n{next}\nG80")).unwrap();
+        assert!(path.starts_with("line -5 0 0\nline -5 50 0\n"), "{next}: {path}");
+        let on = fanuc(&format!("G1 G41 D1 X0 Y0\nY50.\n{next}"));
+        assert_eq!(on.unwrap_err().0, "nc-compensation");
+    }
+}
+
+#[test]
 fn a_control_sees_past_so_many_blocks() {
     // FANUC reads three blocks: one of them may move nothing.
     let two = "G1 G41 D1 X0 Y0\nY50.\nM8\nM9\nX50.\nG40 Y60.";

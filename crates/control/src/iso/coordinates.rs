@@ -63,7 +63,7 @@ impl Step<'_, '_, '_> {
     }
 
     /// What holds before the coordinates change.
-    fn may_change_coordinates(&self, group: Group) -> Result<(), Fault> {
+    fn may_change_coordinates(&mut self, group: Group) -> Result<(), Fault> {
         self.not_compensated("a change of the coordinates")?;
         if self.state.cycle.is_some() {
             let message = "the coordinates change within a cycle; cancel it with G80 first";

@@ -492,10 +492,13 @@ impl Step<'_, '_, '_> {
         }
     }
 
+    /// What happens without radius compensation: where `G40` still waits for a move, it ends here.
+    ///
     /// # Errors
-    /// Radius compensation is on while `what` happens.
-    pub(super) fn not_compensated(&self, what: &str) -> Result<(), Fault> {
+    /// It is on while `what` happens.
+    pub(super) fn not_compensated(&mut self, what: &str) -> Result<(), Fault> {
         if !self.state.compensation.is_on() {
+            self.switch_compensation();
             return Ok(());
         }
         let message = format!("{what} while radius compensation is on; cancel it with G40 first");
