@@ -330,7 +330,10 @@ impl<'a> Lift<'a> {
 
     /// Positions are counted from another work offset from here on.
     fn set_work_offset(&mut self, line: u32, number: u32) {
-        if self.work_offset.replace(number) == Some(number) {
+        // Where the start is given, all offsets are 0, and it is one in the first.
+        let known = self.setup.start.map(|_| FIRST_WORK_OFFSET);
+        let before = self.work_offset.replace(number).or(known);
+        if before == Some(number) {
             return;
         }
         self.several |= self.here.is_some() || number != FIRST_WORK_OFFSET;
