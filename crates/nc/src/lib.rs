@@ -116,6 +116,8 @@ struct Lift<'a> {
     warnings: Vec<Diagnostic>,
     /// Where the tool is, as far as the last block says it.
     here: Option<Pose>,
+    /// The start that was given, until something has moved: a cut from there begins with the way to it.
+    start: Option<Pose>,
     /// Z has been sent home since the last move, on this line.
     home: Option<u32>,
     /// Where the program's last tool call is in its records, and whether nothing has moved since.
@@ -136,6 +138,7 @@ impl<'a> Lift<'a> {
             program: Program::new(name),
             warnings: Vec::new(),
             here: setup.start.map(|start| Pose::new(start, Vec3::Z)),
+            start: setup.start.map(|start| Pose::new(start, Vec3::Z)),
             home: None,
             tool: None,
             work_offset: None,
@@ -208,6 +211,11 @@ impl<'a> Lift<'a> {
         }
         if let Some((_, fresh)) = &mut self.tool {
             *fresh = false;
+        }
+        if let Some(start) = self.start.take()
+            && !matches!(op, Op::Rapid(_))
+        {
+            self.program.push(line, Op::Rapid(start));
         }
         self.program.push(line, op);
     }
