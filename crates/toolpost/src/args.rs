@@ -123,8 +123,6 @@ pub struct Closeness {
 /// Arguments of `post`.
 #[derive(Debug, Args)]
 pub struct Post {
-    #[command(flatten)]
-    pub source: Source,
     /// Name in the library, or a file ending in .toml.
     #[arg(long, short, value_name = "NAME|FILE")]
     pub machine: String,
@@ -133,6 +131,8 @@ pub struct Post {
     pub output: PathBuf,
     #[command(flatten)]
     pub closeness: Closeness,
+    #[command(flatten)]
+    pub source: Source,
 }
 
 /// Arguments of `wire`.
@@ -313,19 +313,19 @@ pub struct Prove {
     #[arg(long, value_name = "SOURCE")]
     pub against: PathBuf,
     #[command(flatten)]
-    pub origin: Origin,
-    #[command(flatten)]
     pub closeness: Closeness,
+    #[command(flatten)]
+    pub origin: Origin,
 }
 
 /// Arguments of `show`.
 #[derive(Debug, Args)]
 pub struct Show {
-    #[command(flatten)]
-    pub source: Source,
     /// Where to save a drawing, as .svg or .png.
     #[arg(long, short, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub source: Source,
 }
 
 /// Commands of `machines`.
