@@ -154,6 +154,24 @@ fn marlin_dwells_homes_and_ends_in_its_own_way() {
 }
 
 #[test]
+fn marlin_keeps_its_axes_while_m84_only_says_how_long() {
+    assert_eq!(ops(Dialect::Marlin, "M84 S0\nM18 S1800\n"), [Op::End]);
+    assert_eq!(rule(Dialect::Marlin, "M84\n"), "nc-unknown-position");
+    assert_eq!(rule(Dialect::Marlin, "G21\nG0 X1 S5\n"), "nc-unused-word");
+}
+
+#[test]
+fn grbl_says_what_is_for_its_console_and_its_sender() {
+    let help = |text: &str| run(Dialect::Grbl, text).unwrap_err().help;
+    assert!(help("$H\n").contains("by hand"));
+    assert!(help("%Z = 5\n").contains("take it out"));
+    assert!(help("T1\nM6\n").contains("write M0"));
+    assert!(help("G64\n").contains("take it out"));
+    // protocol_main_loop: what stands in a comment is thrown away up to the first bracket that closes.
+    assert_eq!(ops(Dialect::Grbl, "M8 (a (b) M3 S9\n").len(), 3);
+}
+
+#[test]
 fn grbl_writes_offsets_homes_and_probes() {
     let got = ops(
         Dialect::Grbl,

@@ -139,7 +139,11 @@ impl<'a> Block<'a> {
                     at = self.comment(at)?;
                     continue;
                 }
-                b';' if !dictionary.flavor.is_fanuc() => {
+                b';' if dictionary.flavor.is_fanuc() => {
+                    self.end_of_block(at)?;
+                    break;
+                }
+                b';' => {
                     self.comments.push((at + 1, text.len()));
                     break;
                 }
@@ -270,7 +274,19 @@ impl<'a> Block<'a> {
             return Err(self.no_number(letter, at, from));
         }
         let mut reader = Reader::new(values, self.line, self.text, from);
-        let value = reader.value()?.map(|value| match letter {
+        let value = reader.value()?;
+        let rounds = |name: &&[u8]| {
+            let text = self.text.get(from..reader.at).unwrap_or_default();
+            text.windows(name.len()).any(|part| part == *name)
+        };
+        // There it goes to the least increment (B-63684EN, 16.3), which is the machine's.
+        if values.language() == Language::MacroB && [&b"ROUND"[..], b"RND"].iter().any(rounds) {
+            let message = "ROUND in a word rounds to the least increment of the machine";
+            let fault = self.fault("nc-expression", message, at, reader.at);
+            let help = "round in a block before: in #1=ROUND[..] it gives a whole number";
+            return Err(fault.help(help).into());
+        }
+        let value = value.map(|value| match letter {
             b'G' => {
                 arithmetic::whole(value * 10.0).map_or(value, |tenths| f64::from(tenths) / 10.0)
             }
@@ -293,17 +309,37 @@ impl<'a> Block<'a> {
         Ok(reader.at)
     }
 
-    /// Reads the comment at `at` and gives the place after it.
+    /// `;` at `at` is the end of the block as a FANUC shows it: behind it there are comments at most.
+    fn end_of_block(&mut self, mut at: usize) -> Result<(), Fault> {
+        while let Some(&byte) = self.text.get(at) {
+            at = match byte {
+                b' ' | b'\t' | b';' => at + 1,
+                b'(' => self.comment(at)?,
+                _ => {
+                    let message = "; ends the block, and there is more behind it";
+                    let fault = self.fault("nc-syntax", message, at, self.text.len());
+                    let help = "put a comment into ( ), and another block on a line of its own";
+                    return Err(fault.help(help).into());
+                }
+            };
+        }
+        Ok(())
+    }
+
+    /// Reads the comment at `at` and gives the place after it. On GRBL it ends at the first `)`,
+    /// whatever stands in it (`protocol_main_loop`).
     fn comment(&mut self, at: usize) -> Result<usize, Fault> {
         let rest = self.text.get(at + 1..).unwrap_or_default();
-        match rest.iter().position(|b| matches!(b, b'(' | b')')) {
+        let nests = self.dictionary.flavor != Flavor::Grbl;
+        match rest.iter().position(|&b| b == b')' || nests && b == b'(') {
             Some(n) if rest[n] == b')' => {
                 self.comments.push((at + 1, at + 1 + n));
                 Ok(at + n + 2)
             }
             Some(n) => {
                 let place = at + 1 + n;
-                Err(self.fault("nc-comment", "comments cannot be nested", place, place + 1))
+                let fault = self.fault("nc-comment", "comments cannot be nested", place, place + 1);
+                Err(fault.help("leave the inner brackets out, or write [ ]").into())
             }
             None => Err(self.fault("nc-comment", "the comment has no end", at, self.text.len())),
         }
@@ -326,6 +362,7 @@ impl<'a> Block<'a> {
     /// Puts a G word into the block.
     pub(super) fn put_g(&mut self, group: Group, word: G) {
         self.g[group as usize] = Some(word);
+        self.places[group as usize] = Word::default();
         self.is_empty = false;
     }
 
@@ -366,6 +403,11 @@ impl<'a> Block<'a> {
     /// Whether the block has this letter, taken or not.
     pub(super) fn gives(&self, letter: u8) -> bool {
         self.given & bit(letter) != 0
+    }
+
+    /// Whether the block has one of these letters ([`bit`]) and nothing has taken it yet.
+    pub(super) fn has_any(&self, letters: u32) -> bool {
+        self.pending & letters != 0
     }
 
     /// The word of this letter, which then counts as used.
@@ -488,21 +530,38 @@ impl<'a> Block<'a> {
     }
 
     fn stray(&self, flavor: Flavor, byte: u8, at: usize) -> Fault {
+        let by_hand = flavor.changes_by_hand();
         let message = match byte {
             b'#' | b'[' if flavor.language() == Language::Plain => {
                 "this control has no parameters and does not calculate".to_owned()
             }
             b'#' => "a variable is set at the start of a block that has nothing else".to_owned(),
             b'[' | b']' | b'=' => "an expression without its word".to_owned(),
-            b'$' => "commands of the console ($) are no part of a program".to_owned(),
+            b'$' if flavor == Flavor::Grbl => {
+                "$ begins a command of the console ($H homes, $J jogs, $X unlocks, $n= sets), no block"
+                    .to_owned()
+            }
+            b'%' if by_hand => {
+                "% begins no block; a line with it is for the sender (%name = sets its variables)"
+                    .to_owned()
+            }
             b'%' => "% stands alone on its line".to_owned(),
-            b';' => "; does not begin a comment here; write ( )".to_owned(),
+            b'(' => "( begins no comment on this control".to_owned(),
             b'0'..=b'9' | b'.' | b'+' | b'-' => "a number without its letter".to_owned(),
             b'a'..=b'z' if !flavor.has_small_letters() => "small letters are no words".to_owned(),
             b'!'..=b'~' => format!("{} begins no word", char::from(byte)),
             _ => format!("byte {byte:#04x} begins no word"),
         };
-        self.fault("nc-syntax", message, at, at + 1)
+        let fault = self.fault("nc-syntax", message, at, at + 1);
+        match byte {
+            b'$' if flavor == Flavor::Grbl => {
+                fault.help("take it out, and give it by hand before the start").into()
+            }
+            b'%' if by_hand => fault.help("take it out, with its variables resolved").into(),
+            b'(' => fault.help("write a comment behind ;").into(),
+            b'a'..=b'z' => fault.help("write capital letters").into(),
+            _ => fault,
+        }
     }
 }
 
