@@ -55,6 +55,7 @@ pub(super) struct Block<'a> {
     m: [Option<M>; Group::COUNT],
     places: [Word; Group::COUNT],
     comments: Vec<(usize, usize)>,
+    prompt: Option<(usize, usize)>,
     /// What the block sets (RS274/NGC), which takes effect when the whole block has been read.
     pub assignments: Vec<(Target<'a>, Value)>,
     /// The words behind `G65` or `G66`, in their order.
@@ -82,6 +83,7 @@ impl<'a> Block<'a> {
             m: [None; Group::COUNT],
             places: [Word::default(); Group::COUNT],
             comments: Vec::new(),
+            prompt: None,
             assignments: Vec::new(),
             arguments: Vec::new(),
         }
@@ -95,6 +97,7 @@ impl<'a> Block<'a> {
         self.g = [None; Group::COUNT];
         self.m = [None; Group::COUNT];
         self.comments.clear();
+        self.prompt = None;
         self.assignments.clear();
         self.arguments.clear();
     }
@@ -208,13 +211,17 @@ impl<'a> Block<'a> {
                 }
                 None => return Err(self.unknown(letter, word)),
             },
-            b'M' => match dictionary.m(word.value).or_else(|| self.of_the_wire(word.value)) {
+            b'M' => match dictionary.m(word.value).or_else(|| self.of_the_machine(word.value)) {
                 Some((group, meaning)) => {
                     if self.m[group as usize].replace(meaning).is_some() {
                         return Err(self.same_group(group, at, end));
                     }
                     self.places[group as usize] = word;
                     self.m_count += 1;
+                    if dictionary.flavor == Flavor::Marlin {
+                        self.started = true;
+                        return Ok(self.prompt(meaning, end));
+                    }
                 }
                 None if self.settings.auxiliary.iter().any(|&m| f64::from(m) == word.value) => {
                     self.m_count += 1;
@@ -245,9 +252,38 @@ impl<'a> Block<'a> {
         Ok(end)
     }
 
-    /// The M function of this number, where it threads or cuts the wire of the machine.
-    fn of_the_wire(&self, number: f64) -> Option<(Group, M)> {
+    /// Behind Marlin's `M0`, `M1` and `M117` at `at` stands a text, not words: the place after it.
+    fn prompt(&mut self, meaning: M, at: usize) -> usize {
+        let rest = self.text.get(at..).unwrap_or_default();
+        let text = rest.split(|&b| b == b';').next().unwrap_or_default();
+        // `M0 S5`: how long it waits.
+        let waits = matches!(text.trim_ascii(), [b'P' | b'S', b'0'..=b'9', ..]);
+        let prompts = match meaning {
+            M::Stop | M::OptionalStop => !waits && !text.trim_ascii().is_empty(),
+            M::Message => true,
+            _ => false,
+        };
+        if !prompts {
+            return at;
+        }
+        self.prompt = Some((at, at + text.len()));
+        at + text.len()
+    }
+
+    /// What the block shows to the operator, apart from its comments.
+    pub(super) fn message(&self) -> Option<&'a [u8]> {
+        let (from, to) = self.prompt?;
+        Some(self.text.get(from..to).unwrap_or_default().trim_ascii())
+    }
+
+    /// The M function of this number that is the machine's own: it threads or cuts the wire, or runs a
+    /// program of LinuxCNC's (`M100` to `M199`), to which P and Q belong.
+    fn of_the_machine(&self, number: f64) -> Option<(Group, M)> {
         let is = |function: Option<u32>| function.map(f64::from) == Some(number);
+        let runs = self.dictionary.flavor == Flavor::LinuxCnc && (100.0..200.0).contains(&number);
+        if runs && self.settings.auxiliary.iter().any(|&m| f64::from(m) == number) {
+            return Some((Group::Output, M::Neutral(b"PQ")));
+        }
         match self.settings.wire {
             _ if !self.dictionary.flavor.is_wire() => None,
             wire if is(wire.thread) => Some((Group::Wire, M::ThreadWire)),
@@ -512,10 +548,15 @@ impl<'a> Block<'a> {
         } else {
             format!("{} is no word of this control", char::from(letter))
         };
-        let mut fault = Diagnostic::error("nc-unknown-word", message);
-        if let Some(reason) = self.dictionary.why_refused(letter, word.value) {
-            fault = fault.help(reason);
-        }
+        let fault = Diagnostic::error("nc-unknown-word", message);
+        let fault = match self.dictionary.why_refused(letter, word.value) {
+            Some(reason) => fault.help(reason),
+            None if letter == b'M' => fault.help(
+                "where the builder of the machine has added it and nothing moves for it, list it under \
+                 `auxiliary` in the machine's file",
+            ),
+            None => fault,
+        };
         fault.at(self.line, self.text, start, end).into()
     }
 

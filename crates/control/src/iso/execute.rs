@@ -202,7 +202,8 @@ impl Step<'_, '_, '_> {
         let speed = || {
             self.state.speed.ok_or_else(|| {
                 let message = "the spindle starts and no speed has been given by S";
-                self.block.at_group(Group::Spindle, "nc-spindle", message)
+                let fault = self.block.at_group(Group::Spindle, "nc-spindle", message);
+                Fault::from(fault.help("write S beside M3 or M4, or before"))
             })
         };
         match self.block.m(Group::Spindle) {

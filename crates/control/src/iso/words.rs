@@ -250,6 +250,8 @@ pub(super) enum M {
     CutWire,
     /// Nothing moves for it; the letters may stand beside it.
     Neutral(&'static [u8]),
+    /// `M117`: a text for the operator.
+    Message,
     /// Marlin's `M18`, `M84`: with S after how many idle seconds the axes are let go.
     IdleTime,
     /// An output of the machine; the letters must stand beside it.

@@ -18,6 +18,7 @@ const M_WORDS: &[MRow] = &[
     (82, Group::Output, M::Neutral(b"")),
     (84, Group::Output, M::IdleTime),
     (83, Group::Output, M::Neutral(b"")),
+    (117, Group::Output, M::Message),
     (400, Group::Output, M::Neutral(b"")),
 ];
 
