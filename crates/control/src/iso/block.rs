@@ -93,9 +93,11 @@ impl<'a> Block<'a> {
     pub(super) fn clear(&mut self, line: u32, text: &'a [u8]) {
         (self.text, self.line) = (text, line);
         (self.is_empty, self.started, self.calls) = (true, false, false);
-        (self.m_count, self.given, self.pending) = (0, 0, 0);
+        if self.m_count > 0 {
+            self.m = [None; Group::COUNT];
+        }
         self.g = [None; Group::COUNT];
-        self.m = [None; Group::COUNT];
+        (self.m_count, self.given, self.pending) = (0, 0, 0);
         self.comments.clear();
         self.prompt = None;
         self.assignments.clear();
@@ -405,6 +407,7 @@ impl<'a> Block<'a> {
     /// Puts an M word into the block.
     pub(super) fn put_m(&mut self, group: Group, word: M) {
         self.m[group as usize] = Some(word);
+        self.m_count += 1;
         self.is_empty = false;
     }
 
@@ -488,6 +491,7 @@ impl<'a> Block<'a> {
     }
 
     /// A finding at the word of this letter.
+    #[cold]
     pub(super) fn at_word(
         &self,
         letter: u8,
@@ -499,6 +503,7 @@ impl<'a> Block<'a> {
     }
 
     /// A finding at the G or M word of this group; at the whole block where there is none.
+    #[cold]
     pub(super) fn at_group(
         &self,
         group: Group,
@@ -513,10 +518,12 @@ impl<'a> Block<'a> {
     }
 
     /// A finding about the whole block.
+    #[cold]
     pub(super) fn whole(&self, rule: &'static str, message: impl Into<String>) -> Fault {
         self.fault(rule, message, 0, self.text.len())
     }
 
+    #[cold]
     fn fault(
         &self,
         rule: &'static str,
@@ -527,6 +534,7 @@ impl<'a> Block<'a> {
         Diagnostic::error(rule, message).at(self.line, self.text, start, end).into()
     }
 
+    #[cold]
     fn same_group(&self, group: Group, start: usize, end: usize) -> Fault {
         let first = self.places[group as usize];
         let show = |from: usize, to: usize| {
@@ -540,6 +548,7 @@ impl<'a> Block<'a> {
         self.fault("nc-modal-group", message, start, end)
     }
 
+    #[cold]
     fn unknown(&self, letter: u8, word: Word) -> Fault {
         let (start, end) = (word.start as usize, word.end as usize);
         let shown = String::from_utf8_lossy(self.text.get(start..end).unwrap_or_default());
@@ -560,6 +569,7 @@ impl<'a> Block<'a> {
         fault.at(self.line, self.text, start, end).into()
     }
 
+    #[cold]
     fn no_number(&self, letter: u8, at: usize, from: usize) -> Fault {
         match self.text.get(from) {
             Some(&byte @ (b'#' | b'[')) => self.stray(self.dictionary.flavor, byte, from),
@@ -570,6 +580,7 @@ impl<'a> Block<'a> {
         }
     }
 
+    #[cold]
     fn stray(&self, flavor: Flavor, byte: u8, at: usize) -> Fault {
         let by_hand = flavor.changes_by_hand();
         let message = match byte {

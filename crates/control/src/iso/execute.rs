@@ -93,7 +93,7 @@ impl Step<'_, '_, '_> {
     /// FANUC runs one M function a block (parameter 3404, bit 7, as delivered), and only the builder
     /// says whether it comes before or after the motion beside it.
     fn m_functions_beside_motion(&mut self) -> Result<(), Fault> {
-        if !self.flavor.is_fanuc() {
+        if self.block.m_count == 0 || !self.flavor.is_fanuc() {
             return Ok(());
         }
         if self.block.m_count > 1 {
@@ -447,18 +447,20 @@ impl Step<'_, '_, '_> {
     ///
     /// # Errors
     /// The program has not said which unit it is in.
+    #[inline]
     fn unit(&self, inches: Option<bool>, letter: u8) -> Result<f64, Fault> {
         match inches {
             Some(true) => Ok(INCH),
             Some(false) => Ok(1.0),
-            None => {
-                let message = "a length, and neither G20 nor G21 has been given";
-                let fault = self.block.at_word(letter, "nc-units", message);
-                Err(fault
-                    .help("write G20 or G21: a control keeps the unit of the program before")
-                    .into())
-            }
+            None => Err(self.no_unit(letter)),
         }
+    }
+
+    #[cold]
+    fn no_unit(&self, letter: u8) -> Fault {
+        let message = "a length, and neither G20 nor G21 has been given";
+        let fault = self.block.at_word(letter, "nc-units", message);
+        fault.help("write G20 or G21: a control keeps the unit of the program before").into()
     }
 
     /// The length (mm) of this letter.
@@ -488,6 +490,7 @@ impl Step<'_, '_, '_> {
     }
 
     /// The number of this letter, and whether it counts least increments.
+    #[inline]
     fn take_pointed(&mut self, letter: u8) -> Result<Option<(f64, bool)>, Fault> {
         let Some(word) = self.block.take(letter) else { return Ok(None) };
         if word.is_in_units() || word.value == 0.0 {
@@ -496,15 +499,18 @@ impl Step<'_, '_, '_> {
         match self.whole_numbers {
             WholeNumbers::Units => Ok(Some((word.value, false))),
             WholeNumbers::Increments => Ok(Some((word.value, true))),
-            WholeNumbers::Unknown => {
-                let shown = self.block.shown(letter);
-                let message = format!(
-                    "{shown} has no decimal point: units or least increments, as the machine is set"
-                );
-                let fault = self.block.at_word(letter, "nc-decimal-point", message);
-                Err(fault.help("write the point, or say what whole numbers count").into())
-            }
+            WholeNumbers::Unknown => Err(self.no_point(letter)),
         }
+    }
+
+    #[cold]
+    fn no_point(&self, letter: u8) -> Fault {
+        let shown = self.block.shown(letter);
+        let message = format!(
+            "{shown} has no decimal point: units or least increments, as the machine is set"
+        );
+        let fault = self.block.at_word(letter, "nc-decimal-point", message);
+        fault.help("write the point, or say what whole numbers count").into()
     }
 
     /// The whole number of this letter.
