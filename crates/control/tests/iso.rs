@@ -489,6 +489,14 @@ fn d_and_h_stay_for_the_words_that_use_them() {
 }
 
 #[test]
+fn look_ahead_moves_nothing() {
+    assert_eq!(ops(FANUC, "G5 P10000\nG5.1 Q1 R5\nG5.1 Q0\nG5 P0\n"), []);
+    for other in ["G5.1 Q2", "G5 P10001", "G5.1", "G5 Q1"] {
+        assert_eq!(rule(FANUC, &format!("{other}\n")), "nc-look-ahead", "{other}");
+    }
+}
+
+#[test]
 fn the_semicolon_of_a_fanuc_ends_its_block() {
     for dialect in [FANUC, Dialect::Haas] {
         assert_eq!(ops(dialect, ";\nM8 ;\nM9; (off)\n").len(), 3);

@@ -185,7 +185,7 @@ fn linuxcnc_runs_programs_of_the_machine_with_p_and_q() {
 fn grbl_says_what_is_for_its_console_and_its_sender() {
     let help = |text: &str| run(Dialect::Grbl, text).unwrap_err().help;
     assert!(help("$H\n").contains("by hand"));
-    assert!(help("%Z = 5\n").contains("take it out"));
+    assert!(help("%Z = 5\n").contains("take the line out"));
     assert!(help("T1\nM6\n").contains("write M0"));
     assert!(help("G64\n").contains("take it out"));
     // protocol_main_loop: what stands in a comment is thrown away up to the first bracket that closes.

@@ -609,7 +609,9 @@ impl<'a> Block<'a> {
             b'$' if flavor == Flavor::Grbl => {
                 fault.help("take it out, and give it by hand before the start").into()
             }
-            b'%' if by_hand => fault.help("take it out, with its variables resolved").into(),
+            b'%' if by_hand => {
+                fault.help("take the line out; the variables of a sender are its own").into()
+            }
             b'(' => fault.help("write a comment behind ;").into(),
             b'a'..=b'z' => fault.help("write capital letters").into(),
             _ => fault,

@@ -28,7 +28,7 @@ impl Step<'_, '_, '_> {
             return self.interpolation().and_then(|()| self.go());
         };
         match word {
-            G::LookAhead => return self.look_ahead(),
+            G::LookAhead { letter, on } => return self.look_ahead(letter, on),
             G::Home
             | G::SecondHome
             | G::Machine
@@ -455,12 +455,16 @@ impl Step<'_, '_, '_> {
         }));
     }
 
-    /// `G5.1 Q1` and `Q0`: look-ahead, which changes how fast the path is run and not where it is.
-    fn look_ahead(&mut self) -> Result<(), Fault> {
-        match self.take_whole(b'Q')? {
-            Some(0 | 1) => Ok(()),
+    /// Look-ahead, which changes how fast the path is run and not where it is; R says how exactly (B-64484EN,
+    /// "Machining condition selecting function").
+    fn look_ahead(&mut self, letter: u8, on: u32) -> Result<(), Fault> {
+        self.take_whole(b'R')?;
+        match self.take_whole(letter)? {
+            Some(number) if number == on || number == 0 => Ok(()),
             _ => {
-                let message = "G5.1 needs Q1 or Q0";
+                let letter = char::from(letter);
+                let message =
+                    format!("look-ahead goes on with {letter}{on} and off with {letter}0");
                 Err(self.block.at_group(Group::OneShot, "nc-look-ahead", message))
             }
         }

@@ -116,7 +116,11 @@ pub(super) enum G {
     /// `G29`
     FromHome,
     Machine,
-    LookAhead,
+    /// `G5 P`, `G5.1 Q`: on with this number and off with 0.
+    LookAhead {
+        letter: u8,
+        on: u32,
+    },
     SwingToTilt,
     /// `G65`, `G66`: the macro that P names, once or after each move.
     MacroCall {
