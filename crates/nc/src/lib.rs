@@ -21,6 +21,9 @@ use geom::Vec3;
 use machine::{LengthOffset, Machine, Mount};
 use program::{Diagnostic, FIRST_WORK_OFFSET, Op, Orientation, Pose, Program, Record, Tool};
 
+/// Most records of a reading, which are kept in memory: a program of a few lines can loop to more.
+const MOST_RECORDS: usize = 50_000_000;
+
 /// A step that may be refused.
 type Done = Result<(), Box<Diagnostic>>;
 
@@ -150,6 +153,11 @@ impl<'a> Lift<'a> {
 
     fn record(&mut self, record: Record) -> Done {
         let line = record.line;
+        if self.program.records.len() >= MOST_RECORDS {
+            let message = format!("the program makes more than {MOST_RECORDS} records");
+            let help = "it may loop without end; if not, read it in parts";
+            return Err(refuse("program-length", message, help));
+        }
         match record.op {
             Op::Rapid(pose) => {
                 let pose = self.pose(&pose);
@@ -352,9 +360,17 @@ impl<'a> Lift<'a> {
         if before == Some(number) {
             return;
         }
-        self.several |= self.here.is_some() || number != FIRST_WORK_OFFSET;
-        self.here = None;
+        self.several |= self.moved() || number != FIRST_WORK_OFFSET;
+        // Where the tool stands at the start is said with all offsets at 0.
+        if self.moved() {
+            self.here = None;
+        }
         self.program.push(line, Op::WorkOffset(number));
+    }
+
+    /// Whether the tool stands elsewhere than at the start.
+    fn moved(&self) -> bool {
+        self.here != self.setup.start.map(|start| Pose::new(start, Vec3::Z))
     }
 
     /// The program, after its last record. One that works in the first work offset alone leaves it to

@@ -67,6 +67,15 @@ fn a_cut_from_a_place_that_is_not_known_is_refused_with_its_line() {
 }
 
 #[test]
+fn where_the_tool_stands_at_the_start_stays_known_when_the_first_offset_is_named() {
+    let machine = load_origin("grbl").unwrap();
+    let start = Setup { start: Some(Vec3::new(0.0, 0.0, 50.0)), ..Setup::default() };
+    let read = |text: &str| read_for(&machine, start.clone(), text);
+    assert!(read("G21 G54\nG1 X5 F100\n").is_ok());
+    assert_eq!(read("G21\nG1 X5 F100\nG55\nG1 X6\n").unwrap_err().rule, "unknown-position");
+}
+
+#[test]
 fn the_register_of_a_length_offset_is_that_of_the_tool() {
     let program = fanuc("G21 G90 G54\nT3 M6\nG0 X0. Y0.\nG43 Z5. H13\nM30\n");
     let Op::Tool(tool) = ways(&program)[0].1 else { panic!("no tool") };
