@@ -53,6 +53,13 @@ impl<'t> Scanner<'t> {
         true
     }
 
+    /// Whether the block begins with `/`, which is taken.
+    pub(super) fn take_slash(&mut self) -> bool {
+        let found = self.byte() == Some(b'/');
+        self.at += usize::from(found);
+        found
+    }
+
     /// Whether there is nothing in the line.
     pub(super) fn is_blank(&self) -> bool {
         self.end == 0
@@ -75,6 +82,11 @@ impl<'t> Scanner<'t> {
             self.at += 1;
         }
         matches!(self.byte(), None | Some(b';'))
+    }
+
+    /// Whether no word goes on here.
+    pub(super) fn is_between_words(&self) -> bool {
+        matches!(self.byte(), None | Some(b' ' | b'\t' | b';'))
     }
 
     /// The next characters up to a blank or a comment; empty at the end.
@@ -127,11 +139,16 @@ impl<'t> Scanner<'t> {
         if address.is_empty() {
             return Err(self.unknown());
         }
-        let (sign, mut number) = self.number();
-        if number.is_none() && self.byte() == Some(b'Q') {
-            number = Some(self.parameter_value(sign, registers)?);
+        let (mut sign, mut number) = self.number();
+        if number.is_none() {
+            if sign == 0.0 && matches!(self.byte(), Some(b' ' | b'\t')) {
+                (sign, number) = self.number_apart();
+            }
+            if self.byte() == Some(b'Q') && number.is_none() {
+                number = Some(self.parameter_value(sign, registers)?);
+            }
         }
-        if !matches!(self.byte(), None | Some(b' ' | b'\t' | b';')) {
+        if !self.is_between_words() {
             self.at = start;
             return Err(self.unknown());
         }
@@ -144,9 +161,7 @@ impl<'t> Scanner<'t> {
         let start = self.at;
         let (_, number) = self.number_or_parameter(registers)?;
         match number {
-            Some(number) if !done && matches!(self.byte(), None | Some(b' ' | b'\t' | b';')) => {
-                Ok(number)
-            }
+            Some(number) if !done && self.is_between_words() => Ok(number),
             _ => {
                 self.at = start;
                 Err(self.error_here("syntax", "a number is expected here"))
@@ -231,6 +246,15 @@ impl<'t> Scanner<'t> {
             self.at += 1;
         }
         self.text.get(start..self.at).unwrap_or_default()
+    }
+
+    /// Takes the text before a number, which may stand close to it (`DWELL5`).
+    pub(super) fn take_text(&mut self) {
+        let text = self.peek();
+        let number = |byte: &u8| byte.is_ascii_digit() || b".,+-".contains(byte);
+        let before = text.iter().rposition(|byte| !number(byte)).map_or(0, |last| last + 1);
+        let close = text.last().is_some_and(u8::is_ascii_digit);
+        self.at += if close { before } else { text.len() };
     }
 
     /// Takes the digits that stand next, as a number of at most `most`.
@@ -331,6 +355,30 @@ impl<'t> Scanner<'t> {
             .number(parameter)
             .map_err(|message| self.error("parameter", (start, self.at), message))?;
         Ok(if sign < 0.0 { 0.0 - value } else { value })
+    }
+
+    /// A sign that stands apart from its address (`Z + 5`), and the number with it; nothing is taken
+    /// where none stands next.
+    #[cold]
+    fn number_apart(&mut self) -> (f64, Option<f64>) {
+        let before = *self;
+        self.is_done();
+        let sign = match self.byte() {
+            Some(b'+') => 1.0,
+            Some(b'-') => -1.0,
+            _ => {
+                *self = before;
+                return (0.0, None);
+            }
+        };
+        self.at += 1;
+        self.is_done();
+        let (twice, number) = self.number();
+        if twice != 0.0 {
+            *self = before;
+            return (0.0, None);
+        }
+        (sign, number.map(|number| sign * number + 0.0))
     }
 
     /// The sign that is written here, and the number with it, as far as there are any.

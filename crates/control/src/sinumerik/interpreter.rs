@@ -76,7 +76,7 @@ impl<'a, 's> Interpreter<'a, 's> {
 
     #[inline]
     pub fn send(&mut self, record: Record) -> Fallible<()> {
-        self.budget.record();
+        self.budget.record(&record.op);
         self.compensator.take(record).inspect_err(|_| self.stopped = true)
     }
 
@@ -91,10 +91,7 @@ impl<'a, 's> Interpreter<'a, 's> {
 
     /// Turns of loops, jumps and calls, of which there may not be too many between two records.
     pub fn spend(&mut self, source: &Source, turns: usize) -> Fallible<()> {
-        for _ in 0..turns {
-            self.budget.jump().map_err(|message| source.block_error("endless", message))?;
-        }
-        Ok(())
+        self.budget.spend(turns).map_err(|message| source.block_error("endless", message))
     }
 
     /// Carries out a block.
