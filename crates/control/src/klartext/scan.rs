@@ -85,8 +85,15 @@ impl<'t> Scanner<'t> {
     }
 
     /// Whether no word goes on here.
+    #[inline]
     pub(super) fn is_between_words(&self) -> bool {
         matches!(self.byte(), None | Some(b' ' | b'\t' | b';'))
+    }
+
+    /// Whether `LBL` stands here.
+    #[inline]
+    pub(super) fn is_at_label(&self) -> bool {
+        self.unread().starts_with(b"LBL")
     }
 
     /// The next characters up to a blank or a comment; empty at the end.
@@ -131,15 +138,31 @@ impl<'t> Scanner<'t> {
             return Ok(None);
         }
         let start = self.at;
+        let rest = self.unread();
         // No address has a Q: there the parameter begins (`FQ5`).
-        while matches!(self.byte(), Some(b'A'..=b'P' | b'R'..=b'Z')) {
-            self.at += 1;
-        }
-        let address = self.text.get(start..self.at).unwrap_or_default();
+        let letters = rest.iter().take_while(|b| matches!(b, b'A'..=b'P' | b'R'..=b'Z')).count();
+        let address = &rest[..letters];
         if address.is_empty() {
             return Err(self.unknown());
         }
-        let (mut sign, mut number) = self.number();
+        self.at += letters;
+        let (sign, number) = self.number();
+        let end = self.at - start;
+        if number.is_some() && matches!(rest.get(end), None | Some(b' ' | b'\t' | b';')) {
+            return Ok(Some(Word { address, sign, number, span: (start, self.at) }));
+        }
+        self.other_word(start, address, (sign, number), registers).map(Some)
+    }
+
+    /// A word that is no address with its number close to it.
+    #[inline(never)]
+    fn other_word(
+        &mut self,
+        start: usize,
+        address: &'t [u8],
+        (mut sign, mut number): (f64, Option<f64>),
+        registers: &Registers,
+    ) -> Result<Word<'t>> {
         if number.is_none() {
             if sign == 0.0 && matches!(self.byte(), Some(b' ' | b'\t')) {
                 (sign, number) = self.number_apart();
@@ -152,7 +175,7 @@ impl<'t> Scanner<'t> {
             self.at = start;
             return Err(self.unknown());
         }
-        Ok(Some(Word { address, sign, number, span: (start, self.at) }))
+        Ok(Word { address, sign, number, span: (start, self.at) })
     }
 
     /// A number that stands alone (after blanks).
@@ -384,12 +407,13 @@ impl<'t> Scanner<'t> {
     /// The sign that is written here, and the number with it, as far as there are any.
     #[inline(always)]
     pub(super) fn number(&mut self) -> (f64, Option<f64>) {
-        let sign = match self.byte() {
+        let rest = self.unread();
+        let sign = match rest.first() {
             Some(b'+') => 1.0,
             Some(b'-') => -1.0,
             _ => 0.0,
         };
-        let Some((value, length)) = decimal(self.unread()) else {
+        let Some((value, length)) = decimal(rest) else {
             self.at += usize::from(sign != 0.0);
             return (sign, None);
         };

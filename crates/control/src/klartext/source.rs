@@ -133,13 +133,14 @@ impl<'t> Source<'t> {
     }
 
     /// Takes the next block; `None` where the text ends.
+    #[inline]
     pub(super) fn next(&mut self) -> Result<Option<Line<'t>>> {
         let place = self.at;
         let block = self.text.block(&mut self.at)?;
         if place.offset == self.unseen.offset
-            && let Some(block) = block
+            && let Some(block) = &block
         {
-            self.note(place, block)?;
+            self.note(place, &block.scanner)?;
             // Its further lines are no blocks; most blocks have none.
             let mut end = self.at;
             self.text.pass(&mut end, block.continued);
@@ -175,7 +176,7 @@ impl<'t> Source<'t> {
             let place = self.unseen;
             let mut end = place;
             let Some(block) = self.text.block(&mut end)? else { return Ok(None) };
-            self.note(place, block)?;
+            self.note(place, &block.scanner)?;
             self.text.pass(&mut end, block.continued);
             self.unseen = end;
         }
@@ -212,18 +213,14 @@ impl<'t> Source<'t> {
     }
 
     /// Notes the label of a block, if it has one.
-    #[inline]
-    fn note(&mut self, place: Place, block: Line<'t>) -> Result<()> {
-        let mut s = block.scanner;
-        if s.byte() == Some(b'L') && s.take_symbol(b"LBL") {
-            self.note_label(place, &mut s)
-        } else {
-            Ok(())
-        }
+    #[inline(always)]
+    fn note(&mut self, place: Place, s: &Scanner<'t>) -> Result<()> {
+        if s.is_at_label() { self.note_label(place, *s) } else { Ok(()) }
     }
 
-    fn note_label(&mut self, place: Place, s: &mut Scanner<'t>) -> Result<()> {
-        let label = written_label(s)?;
+    fn note_label(&mut self, place: Place, mut s: Scanner<'t>) -> Result<()> {
+        s.take_symbol(b"LBL");
+        let label = written_label(&mut s)?;
         if label != Label::Number(0) && self.labels.contains_key(&label) {
             let message = format!("label {label} is set twice in this program");
             return Err(s.error_block("label", message));
