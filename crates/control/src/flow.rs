@@ -1,10 +1,13 @@
 //! How far a program may run: loops, calls and jumps end, whatever is written.
 
+use program::Op;
+
 /// Deepest nesting of calls. FANUC has 4 with macros 5 more, SINUMERIK 16, LinuxCNC 10 (`interp_internal.hh`),
 /// HEIDENHAIN 19: each control states its own and none goes beyond this.
 pub(crate) const DEEPEST: usize = 20;
 
-/// Most jumps and calls between two records: a loop that does nothing for so long is taken as endless.
+/// Most jumps and calls between two records that do something: a loop that does nothing for so long is
+/// taken as endless.
 const IDLE: u32 = 1_000_000;
 
 /// Most jumps and calls of a run.
@@ -23,8 +26,17 @@ impl Budget {
     /// # Errors
     /// What to say of a program that jumps without end.
     pub(crate) fn jump(&mut self) -> Result<(), String> {
-        self.idle += 1;
-        self.all += 1;
+        self.spend(1)
+    }
+
+    /// Something that takes as long as so many jumps.
+    ///
+    /// # Errors
+    /// As [`Budget::jump`].
+    pub(crate) fn spend(&mut self, turns: usize) -> Result<(), String> {
+        let turns = u32::try_from(turns).unwrap_or(u32::MAX);
+        self.idle = self.idle.saturating_add(turns);
+        self.all += u64::from(turns);
         if self.idle > IDLE {
             return Err(format!("{IDLE} jumps without a move: the program never ends"));
         }
@@ -34,9 +46,12 @@ impl Budget {
         Ok(())
     }
 
-    /// Something has happened.
-    pub(crate) fn record(&mut self) {
-        self.idle = 0;
+    /// Something has happened; what is only said is nothing.
+    #[inline]
+    pub(crate) fn record(&mut self, op: &Op) {
+        if !matches!(op, Op::Comment(_) | Op::Message(_)) {
+            self.idle = 0;
+        }
     }
 }
 
@@ -48,9 +63,10 @@ mod tests {
     fn a_loop_without_a_record_ends_and_one_with_records_goes_on() {
         let mut budget = Budget::default();
         for _ in 0..3 {
-            assert!((0..IDLE).all(|_| budget.jump().is_ok()));
-            budget.record();
+            assert!(budget.spend(IDLE as usize).is_ok());
+            budget.record(&Op::Stop);
         }
+        budget.record(&Op::Comment("on the way".into()));
         assert!((0..IDLE).all(|_| budget.jump().is_ok()));
         assert!(budget.jump().is_err());
     }

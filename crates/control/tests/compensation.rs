@@ -148,7 +148,20 @@ fn sinumerik_takes_the_intersection_where_the_program_says_so() {
         sinumerik("G451 G1 G41 X0 Y0\nY50\nG2 X10 Y40 I0 J-10\nG40 G1 X30"),
         Err(("compensation-unsupported", 5))
     );
-    assert_eq!(sinumerik("KONT G1 G41 X0 Y0\nY50\nG40 X-30"), Err(("compensation-unsupported", 3)));
+    // What the last block before the contour says is what counts.
+    same(
+        sinumerik("KONT G451 DISC=50\nNORM G450 DISC=0 G1 G41 X0 Y0\nY50\nX50\nG40 Y70"),
+        "line -5 0 0\nline -5 50 0\ncw 0 55 0 about 0 50 0\nline 50 55 0\nline 50 70 0",
+    );
+    let kinds = ["KONT G1 G41 X0 Y0", "DISC=50 G1 G41 X0 Y0", "KONTT G1 G42 X0 Y0"];
+    for first in kinds {
+        let found = sinumerik(&format!("{first}\nY50\nG40 X-30"));
+        assert_eq!(found, Err(("compensation-unsupported", 3)), "{first}");
+    }
+    for change in ["G451", "KONT", "DISC=10"] {
+        let found = sinumerik(&format!("G1 G41 X0 Y0\nY50\n{change} X50\nG40 Y70"));
+        assert_eq!(found, Err(("compensation", 5)), "{change}");
+    }
 }
 
 #[test]

@@ -7,6 +7,7 @@ use klartext_common::*;
 use program::{
     Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, Op, Orientation, Pose, Spindle,
 };
+use toolpost_control::Setup;
 
 #[test]
 fn an_ordinary_program_runs_block_by_block() {
@@ -603,18 +604,18 @@ fn an_arc_must_be_one() {
 }
 
 #[test]
-fn a_program_has_a_beginning_an_end_and_counted_blocks() {
+fn a_program_has_a_beginning_an_end_and_ascending_blocks() {
     for (text, line, rule) in [
         ("", 1, "program-frame"),
-        ("1 BEGIN PGM A MM\n", 1, "block-number"),
+        ("0 BEGIN PGM A MM\n0 L X+1 FMAX\n", 2, "block-number"),
+        ("3 BEGIN PGM A MM\n5 L X+1 FMAX\n4 END PGM A MM\n", 3, "block-number"),
+        ("( SET-UP\n0 BEGIN PGM A MM\n", 1, "program-frame"),
         ("0 BEGIN PGM A CM\n", 1, "program-frame"),
-        ("0 BEGIN PGM A MM\n2 END PGM A MM\n", 2, "block-number"),
         ("0 BEGIN PGM A MM\nL X+1 FMAX\n", 2, "block-number"),
         ("0 BEGIN PGM A MM\n1 END PGM B MM\n", 2, "program-frame"),
         ("0 BEGIN PGM A MM\n1 END PGM A INCH\n", 2, "syntax"),
         ("0 BEGIN PGM A MM\n1 L X+1 FMAX\n", 2, "program-frame"),
         ("0 BEGIN PGM A MM\n1 L X+1 FMAX ~\n", 2, "unsupported"),
-        ("0 BEGIN PGM A MM\n\n1 END PGM A MM\n", 2, "syntax"),
         ("0 BEGIN PGM A MM\n1 END PGM A MM\n2 L X+1 FMAX\n", 3, "program-frame"),
         ("0 BEGIN PGM A MM\n1 M30\n2 L X+1 FMAX\n3 END PGM A MM\n", 3, "program-frame"),
         ("0 BEGIN PGM A MM\n1 CYCL DEF 9.0 DWELL\n2 END PGM A MM\n", 3, "cycle-parameter"),
@@ -622,4 +623,51 @@ fn a_program_has_a_beginning_an_end_and_counted_blocks() {
         let error = read_on([false; 3], text.as_bytes()).unwrap_err();
         assert_eq!((error.line, error.rule), (line, rule), "{text}: {error}");
     }
+}
+
+#[test]
+fn block_numbers_ascend_from_any_on_and_lines_may_be_blank() {
+    let text = b"01 BEGIN PGM A MM\n  \n05 L X+1 Y+0 Z+0 FMAX\n\n007 L X+2 FMAX\n10 END PGM A MM\n";
+    let records = read_on([false; 3], text).unwrap();
+    let lines: Vec<u32> = records.iter().map(|record| record.line).collect();
+    assert_eq!(lines, [3, 5, 6]);
+}
+
+#[test]
+fn a_block_with_a_slash_is_skipped_where_the_operator_says_so() {
+    let text = b"0 BEGIN PGM A MM
+/1 L X+1 FMAX
+/2 CYCL DEF 247 ~
+    Q339=+2
+/3 TOOL DEF 5 L+0 R+4
+4 L X+2 FMAX
+/5 M30
+6 LBL 1
+7 LBL 0
+8 END PGM A MM\n";
+    let ops = |block_delete| {
+        let setup = Setup { block_delete, ..Setup::default() };
+        let records = read_with(setup, [false; 3], text).unwrap();
+        records.into_iter().map(|record| record.op).collect::<Vec<_>>()
+    };
+    let kinds = |ops: &[Op]| {
+        let rapids = ops.iter().filter(|op| matches!(op, Op::Rapid(_))).count();
+        let offsets = ops.iter().filter(|op| matches!(op, Op::WorkOffset(_))).count();
+        (rapids, offsets, ops.iter().filter(|op| **op == Op::End).count())
+    };
+    assert_eq!(kinds(&ops(false)), (2, 1, 1));
+    assert_eq!(kinds(&ops(true)), (1, 0, 1));
+}
+
+#[test]
+fn blanks_stand_where_they_leave_no_doubt() {
+    let compact =
+        "Q5 = 2\nFN 0: Q6 = 7\nL X+1 Y-2 Z+2 FMAX\nCYCL DEF 9.0 DWELL\nCYCL DEF 9.1 DWELL 1.5";
+    let apart =
+        "Q5 = 2\nFN0: Q6 = 7\nL X + 1 Y - Q5 Z +Q5 FMAX\nCYCL DEF9 .0 DWELL\nCYCL DEF9.1 D.WELL1.5";
+    let ops = run(apart);
+    assert_eq!(format!("{:?}", ops), format!("{:?}", run(compact)));
+    assert!(ops.contains(&Op::Dwell(1.5)), "{ops:?}");
+    assert_eq!(refused("L X - -1 FMAX").rule, "unknown-word");
+    assert_eq!(refused("CYCL DEF 9. DWELL").rule, "syntax");
 }

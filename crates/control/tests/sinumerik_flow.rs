@@ -366,3 +366,11 @@ fn what_is_wrong_with_flow_is_said_where_it_stands() {
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
+
+#[test]
+fn the_words_that_frame_a_program_end_it_or_mean_nothing() {
+    let text = "%_N_A_MPF\nGROUP_BEGIN(0,\"A\",0,0)\nBB(3)\nG0 X1\nM30\nGROUP_END(0,0)\n; END\n\
+                %_N_BB_SPF\nPROC BB(REAL AA)\nG0 X=AA\nENDPROC\n";
+    assert_eq!(xs(text), [3.0, 1.0]);
+    assert_eq!(refused("M30\nGROUP_BEGIN(0,\"A\",0,0)").rule, "program-end");
+}

@@ -130,6 +130,12 @@ impl<'a> Compensator<'a> {
                 .help("write NORM: the tool then goes straight to the contour")
                 .into());
         }
+        if terms.outer == Some(Outer::Peak) {
+            let message = "DISC= above 0 with compensation that is resolved into the path";
+            return Err(error("compensation-unsupported", line, message)
+                .help("write DISC=0: the tool then goes around corners on an arc")
+                .into());
+        }
         if !radius.is_finite() {
             let message = format!("the radius of the tool is {radius} mm");
             return Err(error("compensation-radius", line, message).into());

@@ -38,6 +38,8 @@ pub(crate) enum Outer {
     Polygon,
     /// To where two lines cross; on an arc where the way turns by more than 100°.
     Intersection,
+    /// On a curve between the two (`DISC=` of SINUMERIK), which is not followed.
+    Peak,
 }
 
 impl Outer {

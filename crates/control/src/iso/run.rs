@@ -87,7 +87,7 @@ impl<'a, 's> Run<'a, 's> {
             self.line(from, text, line).map_err(|fault| source.located(fault))?;
             let line = self.caller.unwrap_or(line);
             for op in self.ops.drain(..) {
-                self.budget.record();
+                self.budget.record(&op);
                 match op {
                     Op::Compensation(side) => {
                         let terms = self.control.state.compensation_terms();

@@ -6,7 +6,6 @@ use super::scan::{Result, Scanner};
 use super::source::{LAST_LABEL, Label, Place, written_label};
 use crate::flow::DEEPEST;
 use crate::folders;
-use program::Diagnostic;
 use std::borrow::Cow;
 use std::result::Result as StdResult;
 
@@ -14,6 +13,9 @@ use std::result::Result as StdResult;
 const NESTING: usize = 19;
 
 const _: () = assert!(NESTING < DEEPEST);
+
+/// Opening a called program takes as long as reading so many bytes.
+const FILE: usize = 4096;
 
 /// Most repetitions that are under way at the same time.
 const REPETITIONS: usize = 1000;
@@ -125,7 +127,8 @@ impl<'t> Run<'t, '_, '_, '_> {
     }
 
     pub(super) fn jump(&mut self, s: &Scanner, to: Place) -> Result<()> {
-        self.control.count_jump(s)?;
+        let again = self.source.place().offset.saturating_sub(to.offset);
+        self.control.count_jump(s, again)?;
         self.source.jump(to);
         Ok(())
     }
@@ -203,12 +206,18 @@ impl<'t> Run<'t, '_, '_, '_> {
             let message = format!("programs are nested more than {NESTING} deep");
             return Err(s.error("nesting", span, message));
         }
-        self.control.count_jump(s)?;
-        let text = folders::open(&self.control.settings.setup.folders, &name)
+        let folders = &self.control.settings.setup.folders;
+        // The control does not tell capitals from small letters.
+        let names = [name.to_ascii_uppercase(), name.to_ascii_lowercase(), name];
+        let there = |name: &&String| folders.iter().any(|f| f.join(name).is_file());
+        let [_, _, written] = &names;
+        let name = names.iter().rev().find(there).unwrap_or(written);
+        let text = folders::open(folders, name)
             .map_err(|message| s.error("called-program", span, message))?;
+        self.control.count_jump(s, FILE.saturating_add(text.len()))?;
         let unit = self.control.unit;
         let local = self.control.registers.exchange_local(Numbers::default());
-        Run::begin(self.control, &name, &text)?.finish()?;
+        Run::begin(self.control, name, &text)?.finish()?;
         self.control.registers.exchange_local(local);
         self.control.leave_program();
         self.control.set_unit(unit);
@@ -230,13 +239,12 @@ impl<'t> Run<'t, '_, '_, '_> {
             None => Cow::Borrowed(s.token().0),
         };
         let span = (from.at(), s.at());
-        let mut name = String::from_utf8_lossy(&name).replace('\\', "/");
-        if name.contains(':') {
-            let message = format!("{name} names a drive of the control");
-            let help = "leave the drive out of the name, and give its folder to look in";
-            let error: Box<Diagnostic> = s.error("called-program", span, message);
-            return Err(error.help(help).into());
-        }
+        let name = String::from_utf8_lossy(&name).replace('\\', "/");
+        // The folders of the control's drive are not those here: of such a path the file counts.
+        let mut name = match name.split_once(':') {
+            None => name,
+            Some((_, path)) => path.rsplit('/').next().unwrap_or_default().to_owned(),
+        };
         // Without a type the called program has that of the one that calls.
         if !name.rsplit('/').next().is_some_and(|file| file.contains('.')) {
             name.push_str(".H");

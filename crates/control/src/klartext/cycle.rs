@@ -10,6 +10,9 @@ use super::words::{LINEAR, Words, slot};
 use geom::Vec3;
 use program::{Compensation, CycleKind, Diagnostic, Feed, Op, Spindle};
 
+/// Highest number of a cycle and of its parts.
+const MOST: u32 = 999;
+
 /// The parts `7` and `1` of `7.1`, or a number alone.
 pub(super) struct Designation {
     pub(super) cycle: u32,
@@ -17,16 +20,20 @@ pub(super) struct Designation {
 }
 
 impl Designation {
-    pub(super) fn read(text: &[u8]) -> Option<Designation> {
-        let text = std::str::from_utf8(text).ok()?;
-        if !text.bytes().all(|b| b.is_ascii_digit() || b == b'.') {
-            return None;
+    pub(super) fn read(s: &mut Scanner) -> Result<Designation> {
+        s.is_done();
+        let start = s.at();
+        let cycle = s.digits(MOST)?;
+        let mut complete = s.is_between_words();
+        // Some write `9 .0`.
+        let part = s.take_symbol(b".").then(|| s.digits(MOST)).transpose()?;
+        if part.is_some() {
+            complete = s.is_between_words();
         }
-        let (cycle, part) = match text.split_once('.') {
-            None => (text, None),
-            Some((cycle, part)) => (cycle, Some(part.parse().ok()?)),
-        };
-        Some(Designation { cycle: cycle.parse().ok()?, part })
+        if complete {
+            return Ok(Designation { cycle, part });
+        }
+        Err(s.error("syntax", (start, s.at()), "the number of a cycle is expected here"))
     }
 }
 
@@ -151,6 +158,7 @@ fn refusal(cycle: u32) -> String {
         30 => "its points are in a file of the control",
         31..=99 | 291..=299 | 800..=899 => "it is for another machine",
         400..=499 | 1400..=1499 | 600..=699 => "it measures what is not in the program",
+        300..=399 | 500..=599 => "it is one of the machine's builder",
         _ => "it is not known",
     };
     format!("cycle {cycle} is not supported: {reason}")
@@ -448,11 +456,11 @@ impl Control<'_, '_> {
 
     /// `DWELL 1.5`, in whatever language: seconds.
     fn dwell(&mut self, s: &mut Scanner) -> Result<()> {
-        let (_, span) = s.token();
+        s.take_text();
         let seconds = s.value(&self.registers)?;
         s.finish()?;
         if seconds < 0.0 {
-            return Err(s.error("dwell", span, "a dwell is not negative"));
+            return Err(s.error_block("dwell", "a dwell is not negative"));
         }
         self.emit(Op::Dwell(seconds))
     }

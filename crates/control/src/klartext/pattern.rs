@@ -150,7 +150,7 @@ impl Control<'_, '_> {
     /// Drills at points whose Z adds to the surface, and goes from one to the next at a height.
     fn drill_at(&mut self, s: &Scanner, points: &[Vec3], level: f64) -> Result<()> {
         for point in points {
-            self.count_jump(s)?;
+            self.count_jump(s, 0)?;
             // Upwards before it goes in the plane.
             if self.here.z < level {
                 self.here.z = level;

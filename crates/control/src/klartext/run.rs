@@ -33,12 +33,15 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
     ) -> Result<Self> {
         // A text may begin with the mark of its encoding.
         let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
-        let mut source = Source::new(file, text);
+        let mut source = Source::new(file, text, control.settings.setup.block_delete);
         let Some(Line { scanner: mut s, .. }) = source.next()? else {
             let empty = Scanner::new(file, 1, text);
             return Err(empty.error_block("program-frame", "the program is empty"));
         };
-        s.expect(b"BEGIN")?;
+        if !s.take(b"BEGIN") {
+            let error = s.error_here("program-frame", "a program begins with BEGIN PGM");
+            return Err(error.help("take away what stands before it").into());
+        }
         s.expect(b"PGM")?;
         let (name, _) = s.token();
         let unit = match s.token() {
@@ -109,7 +112,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
             self.part = part;
             return self.comment(line);
         }
-        if keyword == b"CYCL" && s.take(b"DEF") {
+        if keyword == b"CYCL" && s.take_symbol(b"DEF") {
             return self.cycle_definition(s, part, continued);
         }
         if let Some((cycle, next)) = part.filter(|(cycle, next)| *next <= parts_needed(*cycle)) {
@@ -122,7 +125,10 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
             return self.pattern_definition(s, continued);
         }
         if continued {
-            return Err(s.error_block("unsupported", "this block cannot go on in the next line"));
+            let message = "this block cannot go on in the next line";
+            return Err(
+                refused(s, keyword, span).unwrap_or_else(|| s.error_block("unsupported", message))
+            );
         }
         let control = &mut *self.control;
         let source = &self.source;
@@ -175,7 +181,11 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
             }
             b"LBL" => self.label(s),
             b"CALL" => self.call(s, place),
-            b"FN" => self.numbered_function(s),
+            [b'F', b'N'] | [b'F', b'N', b'0'..=b'9', ..] => {
+                *s = start;
+                s.take_symbol(b"FN");
+                self.numbered_function(s)
+            }
             b"DECLARE" => {
                 s.expect(b"STRING")?;
                 self.assignment(s)
@@ -189,7 +199,11 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
                 *s = start;
                 self.assignment(s)
             }
-            _ => Err(not_understood(s, keyword, span)),
+            _ => Err(refused(s, keyword, span).unwrap_or_else(|| {
+                let shown: String = String::from_utf8_lossy(keyword).chars().take(40).collect();
+                let message = format!("a block that begins with {shown} is not understood");
+                s.error("unknown-block", span, message)
+            })),
         }
     }
 
@@ -324,10 +338,10 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
         continued: bool,
     ) -> Result<()> {
         self.control.contour_is_closed(s)?;
-        let (token, span) = s.token();
-        let Some(designation) = Designation::read(token) else {
-            return Err(s.error("syntax", span, "the number of a cycle is expected here"));
-        };
+        s.is_done();
+        let from = s.at();
+        let designation = Designation::read(s)?;
+        let span = (from, s.at());
         let Designation { cycle, part: Some(sub) } = designation else {
             return self.cycle_parameters(s, designation.cycle, span, continued);
         };
@@ -386,9 +400,8 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
     }
 }
 
-/// What begins with a keyword that is not understood.
-fn not_understood(s: &Scanner, keyword: &[u8], span: (usize, usize)) -> Box<Diagnostic> {
-    let shown: String = String::from_utf8_lossy(keyword).chars().take(40).collect();
+/// Why a block of the control that begins with a keyword is refused.
+fn refused(s: &Scanner, keyword: &[u8], span: (usize, usize)) -> Option<Box<Diagnostic>> {
     let reason = match keyword {
         b"FL" | b"FLT" | b"FC" | b"FCT" | b"FPOL" | b"FSELECT" | b"FEND" => {
             "free contour programming leaves the choice of a solution to the control"
@@ -400,10 +413,8 @@ fn not_understood(s: &Scanner, keyword: &[u8], span: (usize, usize)) -> Box<Diag
         b"GLOBAL" => "preset values of cycles are not supported",
         b"PGM" | b"PREDEF" | b"OPEN" | b"ERROR" | b"SQL" | b"TABDATA" | b"MONITORING"
         | b"SECTION" | b"PROGRAM" => "is not supported",
-        _ => {
-            let message = format!("a block that begins with {shown} is not understood");
-            return s.error("unknown-block", span, message);
-        }
+        _ => return None,
     };
-    s.error("unsupported", span, format!("{shown}: {reason}"))
+    let shown = String::from_utf8_lossy(keyword);
+    Some(s.error("unsupported", span, format!("{shown}: {reason}")))
 }

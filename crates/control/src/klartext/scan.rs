@@ -53,6 +53,13 @@ impl<'t> Scanner<'t> {
         true
     }
 
+    /// Whether the block begins with `/`, which is taken.
+    pub(super) fn take_slash(&mut self) -> bool {
+        let found = self.byte() == Some(b'/');
+        self.at += usize::from(found);
+        found
+    }
+
     /// Whether there is nothing in the line.
     pub(super) fn is_blank(&self) -> bool {
         self.end == 0
@@ -75,6 +82,18 @@ impl<'t> Scanner<'t> {
             self.at += 1;
         }
         matches!(self.byte(), None | Some(b';'))
+    }
+
+    /// Whether no word goes on here.
+    #[inline]
+    pub(super) fn is_between_words(&self) -> bool {
+        matches!(self.byte(), None | Some(b' ' | b'\t' | b';'))
+    }
+
+    /// Whether `LBL` stands here.
+    #[inline]
+    pub(super) fn is_at_label(&self) -> bool {
+        self.unread().starts_with(b"LBL")
     }
 
     /// The next characters up to a blank or a comment; empty at the end.
@@ -119,23 +138,44 @@ impl<'t> Scanner<'t> {
             return Ok(None);
         }
         let start = self.at;
+        let rest = self.unread();
         // No address has a Q: there the parameter begins (`FQ5`).
-        while matches!(self.byte(), Some(b'A'..=b'P' | b'R'..=b'Z')) {
-            self.at += 1;
-        }
-        let address = self.text.get(start..self.at).unwrap_or_default();
+        let letters = rest.iter().take_while(|b| matches!(b, b'A'..=b'P' | b'R'..=b'Z')).count();
+        let address = &rest[..letters];
         if address.is_empty() {
             return Err(self.unknown());
         }
-        let (sign, mut number) = self.number();
-        if number.is_none() && self.byte() == Some(b'Q') {
-            number = Some(self.parameter_value(sign, registers)?);
+        self.at += letters;
+        let (sign, number) = self.number();
+        let end = self.at - start;
+        if number.is_some() && matches!(rest.get(end), None | Some(b' ' | b'\t' | b';')) {
+            return Ok(Some(Word { address, sign, number, span: (start, self.at) }));
         }
-        if !matches!(self.byte(), None | Some(b' ' | b'\t' | b';')) {
+        self.other_word(start, address, (sign, number), registers).map(Some)
+    }
+
+    /// A word that is no address with its number close to it.
+    #[inline(never)]
+    fn other_word(
+        &mut self,
+        start: usize,
+        address: &'t [u8],
+        (mut sign, mut number): (f64, Option<f64>),
+        registers: &Registers,
+    ) -> Result<Word<'t>> {
+        if number.is_none() {
+            if sign == 0.0 && matches!(self.byte(), Some(b' ' | b'\t')) {
+                (sign, number) = self.number_apart();
+            }
+            if self.byte() == Some(b'Q') && number.is_none() {
+                number = Some(self.parameter_value(sign, registers)?);
+            }
+        }
+        if !self.is_between_words() {
             self.at = start;
             return Err(self.unknown());
         }
-        Ok(Some(Word { address, sign, number, span: (start, self.at) }))
+        Ok(Word { address, sign, number, span: (start, self.at) })
     }
 
     /// A number that stands alone (after blanks).
@@ -144,9 +184,7 @@ impl<'t> Scanner<'t> {
         let start = self.at;
         let (_, number) = self.number_or_parameter(registers)?;
         match number {
-            Some(number) if !done && matches!(self.byte(), None | Some(b' ' | b'\t' | b';')) => {
-                Ok(number)
-            }
+            Some(number) if !done && self.is_between_words() => Ok(number),
             _ => {
                 self.at = start;
                 Err(self.error_here("syntax", "a number is expected here"))
@@ -231,6 +269,15 @@ impl<'t> Scanner<'t> {
             self.at += 1;
         }
         self.text.get(start..self.at).unwrap_or_default()
+    }
+
+    /// Takes the text before a number, which may stand close to it (`DWELL5`).
+    pub(super) fn take_text(&mut self) {
+        let text = self.peek();
+        let number = |byte: &u8| byte.is_ascii_digit() || b".,+-".contains(byte);
+        let before = text.iter().rposition(|byte| !number(byte)).map_or(0, |last| last + 1);
+        let close = text.last().is_some_and(u8::is_ascii_digit);
+        self.at += if close { before } else { text.len() };
     }
 
     /// Takes the digits that stand next, as a number of at most `most`.
@@ -333,15 +380,40 @@ impl<'t> Scanner<'t> {
         Ok(if sign < 0.0 { 0.0 - value } else { value })
     }
 
+    /// A sign that stands apart from its address (`Z + 5`), and the number with it; nothing is taken
+    /// where none stands next.
+    #[cold]
+    fn number_apart(&mut self) -> (f64, Option<f64>) {
+        let before = *self;
+        self.is_done();
+        let sign = match self.byte() {
+            Some(b'+') => 1.0,
+            Some(b'-') => -1.0,
+            _ => {
+                *self = before;
+                return (0.0, None);
+            }
+        };
+        self.at += 1;
+        self.is_done();
+        let (twice, number) = self.number();
+        if twice != 0.0 {
+            *self = before;
+            return (0.0, None);
+        }
+        (sign, number.map(|number| sign * number + 0.0))
+    }
+
     /// The sign that is written here, and the number with it, as far as there are any.
     #[inline(always)]
     pub(super) fn number(&mut self) -> (f64, Option<f64>) {
-        let sign = match self.byte() {
+        let rest = self.unread();
+        let sign = match rest.first() {
             Some(b'+') => 1.0,
             Some(b'-') => -1.0,
             _ => 0.0,
         };
-        let Some((value, length)) = decimal(self.unread()) else {
+        let Some((value, length)) = decimal(rest) else {
             self.at += usize::from(sign != 0.0);
             return (sign, None);
         };

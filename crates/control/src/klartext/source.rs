@@ -12,7 +12,7 @@ pub(super) struct Place {
     pub(super) offset: usize,
     /// Lines before it.
     line: u32,
-    /// Number of the block.
+    /// The least number that the block may have.
     number: u32,
 }
 
@@ -66,6 +66,8 @@ struct Text<'t> {
     bytes: &'t [u8],
     /// Whether the blocks have numbers: all of them, or none.
     numbered: bool,
+    /// Whether blocks that begin with `/` are skipped.
+    block_delete: bool,
 }
 
 impl<'t> Text<'t> {
@@ -81,20 +83,34 @@ impl<'t> Text<'t> {
 
     /// The block at a place, which goes on behind its first line. `None` at the end.
     fn block(&self, at: &mut Place) -> Result<Option<Line<'t>>> {
-        let Some(mut s) = self.line(at) else { return Ok(None) };
-        if s.is_blank() {
-            if self.bytes.get(at.offset..).unwrap_or_default().trim_ascii().is_empty() {
-                return Ok(None);
+        loop {
+            let Some(mut s) = self.line(at) else { return Ok(None) };
+            if s.is_blank() {
+                continue;
             }
-            return Err(s.error_block("syntax", "a line without a block"));
+            let continued = s.take_continuation();
+            let optional = s.take_slash();
+            if self.numbered {
+                block_number(&mut s, &mut at.number)?;
+            }
+            s.begin_block();
+            if !(optional && self.skips(s)) {
+                return Ok(Some(Line { scanner: s, continued }));
+            }
+            self.pass(at, continued);
         }
-        let continued = s.take_continuation();
-        if self.numbered {
-            block_number(&mut s, at.number)?;
+    }
+
+    /// Whether a block that begins with `/` is skipped. The function does not work for TOOL DEF.
+    fn skips(&self, mut block: Scanner) -> bool {
+        self.block_delete && !(block.take(b"TOOL") && block.take(b"DEF"))
+    }
+
+    /// Passes the further lines of a block.
+    fn pass(&self, at: &mut Place, mut continued: bool) {
+        while continued {
+            continued = self.continuation(at).is_some_and(|line| line.continued);
         }
-        s.begin_block();
-        at.number = at.number.saturating_add(1);
-        Ok(Some(Line { scanner: s, continued }))
     }
 
     /// A further line of a block.
@@ -107,26 +123,27 @@ impl<'t> Text<'t> {
 
 impl<'t> Source<'t> {
     /// At the start of a text.
-    pub(super) fn new(file: &'t str, bytes: &'t [u8]) -> Source<'t> {
+    pub(super) fn new(file: &'t str, bytes: &'t [u8], block_delete: bool) -> Source<'t> {
         let numbered = bytes.trim_ascii_start().first().is_none_or(u8::is_ascii_digit);
         let start = Place { offset: 0, line: 0, number: 0 };
-        let text = Text { file, bytes, numbered };
+        let text = Text { file, bytes, numbered, block_delete };
         let has = |word: &[u8]| memchr::memmem::find(bytes, word).is_some();
         let corners = has(b"RND") || has(b"CHF");
         Source { text, at: start, unseen: start, labels: HashMap::new(), corners }
     }
 
     /// Takes the next block; `None` where the text ends.
+    #[inline]
     pub(super) fn next(&mut self) -> Result<Option<Line<'t>>> {
         let place = self.at;
         let block = self.text.block(&mut self.at)?;
         if place.offset == self.unseen.offset
-            && let Some(block) = block
+            && let Some(block) = &block
         {
-            self.note(place, block)?;
+            self.note(place, &block.scanner)?;
             // Its further lines are no blocks; most blocks have none.
             let mut end = self.at;
-            self.pass(&mut end, block.continued);
+            self.text.pass(&mut end, block.continued);
             self.unseen = end;
         }
         Ok(block)
@@ -159,8 +176,8 @@ impl<'t> Source<'t> {
             let place = self.unseen;
             let mut end = place;
             let Some(block) = self.text.block(&mut end)? else { return Ok(None) };
-            self.note(place, block)?;
-            self.pass(&mut end, block.continued);
+            self.note(place, &block.scanner)?;
+            self.text.pass(&mut end, block.continued);
             self.unseen = end;
         }
         Ok(self.labels.get(label).copied())
@@ -172,7 +189,7 @@ impl<'t> Source<'t> {
         loop {
             match self.text.block(&mut at) {
                 Ok(Some(mut block)) => match block.scanner.peek() {
-                    b"" | b"*" => self.pass(&mut at, block.continued),
+                    b"" | b"*" => self.text.pass(&mut at, block.continued),
                     word => return word,
                 },
                 _ => return b"",
@@ -195,25 +212,15 @@ impl<'t> Source<'t> {
         Ok(())
     }
 
-    fn pass(&self, at: &mut Place, mut continued: bool) {
-        while continued {
-            continued = self.text.continuation(at).is_some_and(|line| line.continued);
-        }
-    }
-
     /// Notes the label of a block, if it has one.
-    #[inline]
-    fn note(&mut self, place: Place, block: Line<'t>) -> Result<()> {
-        let mut s = block.scanner;
-        if s.byte() == Some(b'L') && s.take_symbol(b"LBL") {
-            self.note_label(place, &mut s)
-        } else {
-            Ok(())
-        }
+    #[inline(always)]
+    fn note(&mut self, place: Place, s: &Scanner<'t>) -> Result<()> {
+        if s.is_at_label() { self.note_label(place, *s) } else { Ok(()) }
     }
 
-    fn note_label(&mut self, place: Place, s: &mut Scanner<'t>) -> Result<()> {
-        let label = written_label(s)?;
+    fn note_label(&mut self, place: Place, mut s: Scanner<'t>) -> Result<()> {
+        s.take_symbol(b"LBL");
+        let label = written_label(&mut s)?;
         if label != Label::Number(0) && self.labels.contains_key(&label) {
             let message = format!("label {label} is set twice in this program");
             return Err(s.error_block("label", message));
@@ -231,16 +238,25 @@ pub(super) fn written_label<'t>(s: &mut Scanner<'t>) -> Result<Label<'t>> {
     s.digits(LAST_LABEL).map(Label::Number)
 }
 
-/// The number at the start of a block, which counts the blocks.
-fn block_number(s: &mut Scanner, expected: u32) -> Result<()> {
+/// The number at the start of a block. It says nothing to the control, which numbers the blocks anew; but
+/// one that does not ascend tells of blocks that have changed places.
+#[inline]
+fn block_number(s: &mut Scanner, least: &mut u32) -> Result<()> {
     let before = *s;
-    if s.whole_number() == Some(expected) {
-        return Ok(());
+    match s.whole_number() {
+        Some(number) if number >= *least => {
+            *least = number.saturating_add(1);
+            Ok(())
+        }
+        _ => Err(wrong_number(before, *least)),
     }
-    *s = before;
+}
+
+#[cold]
+fn wrong_number(mut s: Scanner, least: u32) -> Box<Diagnostic> {
     let (_, span) = s.token();
-    let message = format!("block number {expected} is expected here");
-    let help = "number the blocks from 0 by 1, as the control does, or leave all numbers out";
+    let message = format!("a block number of at least {least} is expected here");
+    let help = "number the blocks ascending, or leave all numbers out";
     let error: Box<Diagnostic> = s.error("block-number", span, message);
-    Err(error.help(help).into())
+    error.help(help).into()
 }

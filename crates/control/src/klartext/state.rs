@@ -21,6 +21,9 @@ use std::collections::HashMap;
 /// The address letters of the axes, in the order of their coordinates.
 pub(super) const AXES: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
 
+/// So much text is read in the time of a jump.
+const BYTES_IN_A_TURN: usize = 32;
+
 /// mm/min in the unit of F of an inch program, a tenth of an inch each minute.
 pub(super) const TENTH_INCH: f64 = 2.54;
 
@@ -138,13 +141,15 @@ impl<'a, 's> Control<'a, 's> {
     }
 
     pub(super) fn emit(&mut self, op: Op) -> Result<()> {
-        self.budget.record();
+        self.budget.record(&op);
         self.compensator.take(Record { line: self.line, op })
     }
 
-    /// A jump, a call or a return: programs that never end are refused.
-    pub(super) fn count_jump(&mut self, s: &Scanner) -> Result<()> {
-        self.budget.jump().map_err(|message| s.error_block("endless", message))
+    /// A jump, a call or a return, after which so many bytes are read again: programs that never end
+    /// are refused.
+    pub(super) fn count_jump(&mut self, s: &Scanner, bytes: usize) -> Result<()> {
+        let turns = 1 + bytes / BYTES_IN_A_TURN;
+        self.budget.spend(turns).map_err(|message| s.error_block("endless", message))
     }
 
     /// A called program begins; answers how many there are within each other.
@@ -443,17 +448,21 @@ impl<'a, 's> Control<'a, 's> {
         }
         let axis = index.and_then(|index| (0..3usize).find(|i| *i as f64 + 1.0 == index));
         let whole = |value: Option<f64>| value.filter(|v| v.fract() == 0.0).map(|v| v as i64);
-        let datum = match (whole(id), whole(number), axis) {
+        let known = match (whole(id), whole(number), axis) {
             (Some(20), Some(1), _) => self.tool_number.map(f64::from),
             (Some(210), Some(2), _) => Some(self.transforms().rotation()),
             (Some(220), Some(2), Some(axis)) => Some(self.transforms().shift()[axis]),
             (Some(270), Some(1), Some(axis)) => Some(self.here[axis]),
             (Some(280), Some(1), _) => Some(if self.tip == Tip::Free { 0.0 } else { -1.0 }),
-            _ => None,
+            _ => {
+                let message = "this datum of the control is not supported";
+                return Err(s.error("parameter", (from.at(), s.at()), message));
+            }
         };
-        datum.filter(|value| value.is_finite()).ok_or_else(|| {
-            let message = "this datum of the control is not known here";
-            s.error("parameter", (from.at(), s.at()), message)
+        known.filter(|value| value.is_finite()).ok_or_else(|| {
+            let message = "what it is depends on what the operator or the machine has done";
+            let error = s.error("parameter", (from.at(), s.at()), message);
+            error.help("write the value that it had at the machine in its place").into()
         })
     }
 }

@@ -65,6 +65,8 @@ pub(super) struct Rare {
     pub angle: Option<f64>,
     /// CHF, CHR, RND.
     pub corner: Option<Corner>,
+    /// DISC.
+    pub peak: Option<f64>,
     /// RNDM.
     pub modal_round: Option<f64>,
     /// FRC.

@@ -21,6 +21,8 @@ pub(super) enum Procedure {
     HighSpeed,
     /// `FGROUP`: which axes the feed is the speed of.
     FeedGroup,
+    /// `GROUP_BEGIN` and its kin: parts of the program, for the editor.
+    Group,
     /// Nothing that moves an axis or changes where one goes.
     NoMotion,
     /// `MCALL` without a cycle.
@@ -29,7 +31,9 @@ pub(super) enum Procedure {
     Drill(&'static Form),
     /// A pattern of holes.
     Pattern(Pattern),
-    /// `RET`.
+    /// `SETMS`: which spindle the others' words mean.
+    MasterSpindle,
+    /// `RET`, `ENDPROC`.
     Return,
 }
 
@@ -66,11 +70,16 @@ const PROCEDURES: &[(&str, Procedure)] = &[
     ("HOLES1", Procedure::Pattern(Pattern::Row)),
     ("HOLES2", Procedure::Pattern(Pattern::Circle)),
     ("CYCLE801", Procedure::Pattern(Pattern::Grid)),
+    ("GROUP_BEGIN", Procedure::Group),
+    ("GROUP_END", Procedure::Group),
+    ("GROUP_ADDEND", Procedure::Group),
     // Look-ahead stops.
     ("STOPRE", Procedure::NoMotion),
     // The raw part, for the control's picture.
     ("WORKPIECE", Procedure::NoMotion),
+    ("SETMS", Procedure::MasterSpindle),
     ("RET", Procedure::Return),
+    ("ENDPROC", Procedure::Return),
 ];
 
 /// Words of the language that are known and not supported.
@@ -101,7 +110,6 @@ const UNSUPPORTED: &[(&str, &str)] = &[
     ("FA", "a feed for positioning axes"),
     ("SPCON", "position control of the spindle"),
     ("SPCOF", "position control of the spindle"),
-    ("SETMS", "another master spindle"),
     ("LIMS", "a limit of the speed for constant cutting speed"),
     ("GEOAX", "other geometry axes"),
     ("DRFOF", "overlaid motions"),

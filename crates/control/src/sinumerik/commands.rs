@@ -173,6 +173,7 @@ const fn not(name: &'static str, group: u8, reason: &'static str) -> Command {
 }
 
 const SPLINE: &str = "splines and polynomials";
+const FEED_PROFILE: &str = "a feed that changes along the block";
 const THREAD: &str = "threads whose pitch changes";
 const APPROACH: &str = "smooth approach and retraction";
 const SPEED: &str = "constant cutting speed";
@@ -322,6 +323,10 @@ pub(super) static COMMANDS: &[Command] = &[
     same("OSSE", 34),
     same("OSD", 34),
     same("OST", 34),
+    // 37: how the feed changes within a block
+    same("FNORM", 37),
+    not("FLIN", 37, FEED_PROFILE),
+    not("FCUB", 37, FEED_PROFILE),
     // 45 to 51: path reference, language, contour end, point to point, orientation
     same("SPATH", 45),
     same("UPATH", 45),

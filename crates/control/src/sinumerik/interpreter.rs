@@ -76,7 +76,7 @@ impl<'a, 's> Interpreter<'a, 's> {
 
     #[inline]
     pub fn send(&mut self, record: Record) -> Fallible<()> {
-        self.budget.record();
+        self.budget.record(&record.op);
         self.compensator.take(record).inspect_err(|_| self.stopped = true)
     }
 
@@ -91,10 +91,7 @@ impl<'a, 's> Interpreter<'a, 's> {
 
     /// Turns of loops, jumps and calls, of which there may not be too many between two records.
     pub fn spend(&mut self, source: &Source, turns: usize) -> Fallible<()> {
-        for _ in 0..turns {
-            self.budget.jump().map_err(|message| source.block_error("endless", message))?;
-        }
-        Ok(())
+        self.budget.spend(turns).map_err(|message| source.block_error("endless", message))
     }
 
     /// Carries out a block.
@@ -182,6 +179,34 @@ impl<'a, 's> Interpreter<'a, 's> {
         Ok(())
     }
 
+    /// How compensation leads the tool: `NORM KONT`, `G450 G451`, `DISC=`.
+    #[cold]
+    fn compensation_terms(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+        let state = &mut self.state;
+        let before = (state.corner, state.peak, state.goes_around);
+        if let Some(Code::Corner(outer)) = block.code(18) {
+            state.corner = outer;
+        }
+        if let Some(Code::Approach { around }) = block.code(17) {
+            state.goes_around = around;
+        }
+        if let Some(peak) = block.rare.as_ref().and_then(|rare| rare.peak) {
+            if !(0.0..=100.0).contains(&peak) {
+                return Err(source.block_error("compensation", "DISC= takes 0 to 100"));
+            }
+            state.peak = peak > 0.0;
+        }
+        if state.compensation_in_effect != Compensation::Off
+            && before != (state.corner, state.peak, state.goes_around)
+        {
+            let message = "how the tool goes around corners changes while compensation is active";
+            let mut error = source.block_error("compensation", message);
+            error.help = "write NORM, KONT, G450, G451 and DISC= before or with G41, G42".into();
+            return Err(error);
+        }
+        Ok(())
+    }
+
     /// The modal G commands.
     fn modes(&mut self, source: &Source, block: &Block) -> Fallible<()> {
         if let Some(Code::Motion(motion)) = block.code(1) {
@@ -199,11 +224,8 @@ impl<'a, 's> Interpreter<'a, 's> {
             }
             self.state.select_plane(normal);
         }
-        if let Some(Code::Corner(outer)) = block.code(18) {
-            self.state.corner = Some(outer);
-        }
-        if let Some(Code::Approach { around }) = block.code(17) {
-            self.state.goes_around = around;
+        if block.groups[17] != 0 || block.groups[18] != 0 || block.rare.is_some() {
+            self.compensation_terms(source, block)?;
         }
         let state = &mut self.state;
         if let Some(Code::Units(unit, of_feed)) = block.code(13) {
@@ -449,6 +471,14 @@ impl<'a, 's> Interpreter<'a, 's> {
         }
         match call.procedure {
             Procedure::NoMotion => Ok(()),
+            Procedure::Group => group(source, call),
+            Procedure::MasterSpindle => match call.number(source, 0)? {
+                None | Some(1.0) => Ok(()),
+                Some(_) => {
+                    let message = "SETMS is not supported: another master spindle than the first";
+                    Err(source.block_error("unsupported", message))
+                }
+            },
             Procedure::HighSpeed => self.high_speed(source, call),
             Procedure::FeedGroup => self.feed_group(source, call),
             Procedure::Traori => self.traori(source, call),
@@ -582,4 +612,20 @@ impl<'a, 's> Interpreter<'a, 's> {
         }
         Ok(())
     }
+}
+
+/// `GROUP_BEGIN(level, text, spindle, retract)`, `GROUP_END(level, retract)`: nothing, unless the control
+/// is to retract by itself.
+fn group(source: &Source, call: &Call) -> Fallible<()> {
+    let plain = |argument: &Argument| match argument {
+        Argument::Number(value) => *value == 0.0,
+        Argument::None | Argument::Text(_) => true,
+    };
+    if call.arguments.iter().skip(1).all(plain) {
+        return Ok(());
+    }
+    let message = format!("{} with a way or code of the control's own is not supported", call.name);
+    let mut error = source.block_error("unsupported", message);
+    error.help = "set its arguments behind the level to 0 or a text".into();
+    Err(error)
 }

@@ -8,7 +8,7 @@ use super::interpreter::Interpreter;
 use super::polar::axes_of_plane;
 use super::scan::Source;
 use super::state::ToolAxis;
-use crate::compensation::Terms;
+use crate::compensation::{Outer, Terms};
 use geom::{Vec3, direction};
 use program::{Compensation, Op};
 
@@ -362,7 +362,10 @@ impl Interpreter<'_, '_> {
             normal: across.normalize_or(Vec3::Z),
             across_tool: normal == 2,
             radius: None,
-            outer: self.state.corner,
+            outer: Some(match self.state.corner {
+                Outer::Arc if self.state.peak => Outer::Peak,
+                outer => outer,
+            }),
             around: self.state.goes_around,
         };
         self.switch(source, compensation, terms)

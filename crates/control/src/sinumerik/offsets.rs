@@ -97,10 +97,12 @@ impl Interpreter<'_, '_> {
         let state = &mut self.state;
         let frame = (state.frames.programmable(), state.frames.fine()) != modes.programmable;
         if state.compensation_in_effect != Compensation::Off
-            && (frame || modes.plane_normal != state.plane_normal)
+            && (frame
+                || modes.plane_normal != state.plane_normal
+                || (modes.corner, modes.goes_around) != (state.corner, state.goes_around))
         {
-            let message = "the return of a program with SAVE changes frame or plane while cutter \
-                           radius compensation is active";
+            let message = "the return of a program with SAVE changes frame, plane or corners while \
+                           cutter radius compensation is active";
             return Err(source.block_error("compensation", message));
         }
         if modes.feed_type != state.feed_type || modes.units.1 != state.feed_unit {
@@ -113,6 +115,7 @@ impl Interpreter<'_, '_> {
         state.diameter = modes.diameter;
         state.feed_type = modes.feed_type;
         state.vectors_in_work_frame = modes.vectors_in_work_frame;
+        (state.corner, state.goes_around) = (modes.corner, modes.goes_around);
         state.compensation = modes.compensation;
         if frame {
             let (frame, fine) = modes.programmable;

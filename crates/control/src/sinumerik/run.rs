@@ -411,7 +411,9 @@ fn check_length(source: &Source) -> Fallible<()> {
 pub(super) fn check_rest(program: &Program, mut place: Place) -> Fallible<bool> {
     while let Some((source, next)) = program.block(place.at, place.line) {
         check_length(&source)?;
-        if !Scanner::new(source).rests() {
+        // What closes a part of the program for the editor may follow.
+        let mut scanner = Scanner::new(source);
+        if !scanner.take_word("GROUP_END") && !scanner.rests() {
             let message = "there are blocks behind the end of the program";
             return Err(source.block_error("program-end", message));
         }

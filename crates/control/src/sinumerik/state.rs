@@ -57,8 +57,10 @@ pub(super) struct State {
     pub compensation: Compensation,
     /// G group 7 as the axes move.
     pub compensation_in_effect: Compensation,
-    /// How outer corners are gone around, where a block has said so.
-    pub corner: Option<Outer>,
+    /// How outer corners are gone around.
+    pub corner: Outer,
+    /// `DISC=` above 0: with `G450` they are not gone around on an arc.
+    pub peak: bool,
     /// `KONT`: from behind the contour the tool goes around its first point.
     pub goes_around: bool,
     /// `F` in the active type, mm/min or mm.
@@ -136,6 +138,8 @@ pub(super) struct Modes {
     pub compensation: Compensation,
     pub programmable: (Frame, Vec3),
     pub diameter: Diameter,
+    pub corner: Outer,
+    pub goes_around: bool,
 }
 
 impl State {
@@ -154,7 +158,8 @@ impl State {
             work_offset: WORK_OFFSET_AT_RESET,
             compensation: Compensation::Off,
             compensation_in_effect: Compensation::Off,
-            corner: None,
+            corner: Outer::Arc,
+            peak: false,
             goes_around: false,
             feed: None,
             reported_feed: None,
@@ -267,6 +272,8 @@ impl State {
             compensation: self.compensation,
             programmable: (self.frames.programmable(), self.frames.fine()),
             diameter: self.diameter,
+            corner: self.corner,
+            goes_around: self.goes_around,
         }
     }
 

@@ -128,6 +128,10 @@ impl Reader<'_, '_> {
                 }
                 self.program_call(start)
             }
+            b'H' => {
+                let message = "H is not supported: it tells the builder's program a number";
+                Err(self.scanner.error_since(start, "unsupported", message))
+            }
             b'N' => Err(self.scanner.error_since(
                 start,
                 "syntax",
@@ -457,6 +461,7 @@ impl Reader<'_, '_> {
                 let rare = block.rare.get_or_insert_default();
                 rare.corner.replace(corner(value)).is_some()
             }
+            Setting::Peak => rare(block, |r| &mut r.peak),
             Setting::Angle => rare(block, |r| &mut r.angle),
             Setting::ModalRound => rare(block, |r| &mut r.modal_round),
             Setting::CornerFeed => rare(block, |r| &mut r.corner_feed),
@@ -558,6 +563,8 @@ enum Setting {
     ModalCornerFeed,
     SpindlePosition,
     Position,
+    /// How far an outer corner is from an arc.
+    Peak,
     /// How far the control may leave the path of a cut.
     PathTolerance,
     /// How rapids and corrections are rounded, and how far the tool axis may turn.
@@ -586,7 +593,7 @@ const SETTINGS: &[(&str, Setting)] = &[
     ("ADISPOS", Setting::NoMotion),
     ("CTOL", Setting::PathTolerance),
     ("OTOL", Setting::NoMotion),
-    ("DISC", Setting::NoMotion),
+    ("DISC", Setting::Peak),
 ];
 
 /// Whether a name belongs to the language, so that no variable may have it.
