@@ -154,11 +154,12 @@ impl<'a> Ruler<'a> {
                 (along - start) / length
             }
         };
-        if to - from < SAME {
+        let (first, last) = (parameter(from), parameter(to));
+        if to - from < SAME || first >= last {
             let point = element.at(parameter(middle));
             return Element::line(point, point).from_line(element.line);
         }
-        element.part(parameter(from), parameter(to))
+        element.part(first, last)
     }
 }
 

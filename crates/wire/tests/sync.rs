@@ -4,7 +4,7 @@ use geom::Vec2;
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
 use toolpost_wire::points::{Step, points};
-use toolpost_wire::{Contour, Element, Limits, Path};
+use toolpost_wire::{Contour, Direction, Element, Limits, Path};
 
 fn polygon(corners: &[(f64, f64)]) -> Contour {
     let corners: Vec<Vec2> = corners.iter().map(|&(x, y)| Vec2::new(x, y)).collect();
@@ -153,5 +153,24 @@ proptest! {
                 }
             }
         }
+    }
+}
+
+/// The corners below and above fall on the same eighths of the way but for rounding: between them one
+/// end stands still.
+#[test]
+fn corners_that_rounding_parts_leave_no_arc_without_length() {
+    let lower = vec![(0.0, -20.0), (-20.0, -20.0), (-20.0, 20.0), (20.0, 20.0), (20.0, -20.0)];
+    let arcs = [(0.0, -12.0), (-C, -C), (-C, C), (C, C), (C, -C), (0.0, -12.0)];
+    const C: f64 = 8.4853;
+    let arc = |ends: &[(f64, f64)]| {
+        let [start, end] = [ends[0], ends[1]].map(Vec2::from);
+        Element::arc_by_radius(start, end, 12.0, Direction::Clockwise, 0.005).unwrap()
+    };
+    let upper = Contour::new(arcs.windows(2).map(arc).collect(), 0.0).unwrap();
+    let path = Path::by_length(&polygon(&lower), &upper).unwrap();
+    assert!(path.elements().count() >= 6);
+    for (_, above) in path.elements() {
+        assert!(above.turn.is_none() || above.length() > 0.0, "{above:?}");
     }
 }
