@@ -11,7 +11,8 @@
 //! - Z sent home between two moves stays, as [`Op::Home`]. At a tool change and at the end it goes: a
 //!   writer brings the tool home there by itself.
 //! - A change of the work offset stays; the tool comes to the first place in it from above.
-//! - A length offset becomes the register of the tool; a tool that is called by its name gets a number.
+//! - A length offset becomes the register of the tool; a tool that is called by its name gets a number,
+//!   and one of the tool table its diameter and length.
 //!
 //! What cannot be told truly is refused with its line.
 
@@ -193,6 +194,10 @@ impl<'a> Lift<'a> {
             Op::Home(axes) => return self.go_home(line, axes),
             Op::Tool(mut tool) => {
                 self.number(line, &mut tool)?;
+                if let Some(entry) = self.setup.tools.iter().find(|e| e.number == tool.number) {
+                    tool.diameter = Some(2.0 * entry.radius);
+                    tool.length = Some(entry.length);
+                }
                 self.home = None;
                 self.tool = Some((self.program.records.len(), true));
                 self.program.push(line, Op::Tool(tool));
@@ -259,7 +264,9 @@ impl<'a> Lift<'a> {
                 let help = "give the tools that are called by name their numbers in a tool table";
                 return Err(refuse("tool-number", message, help));
             }
-            self.numbers.push((tool.number, String::new()));
+            if self.numbers.iter().all(|(number, _)| *number != tool.number) {
+                self.numbers.push((tool.number, String::new()));
+            }
             return Ok(());
         }
         if let Some(entry) =
@@ -287,9 +294,10 @@ impl<'a> Lift<'a> {
 
     /// Length of the tool in the spindle, where it is known, mm.
     fn tool_length(&self) -> Option<f64> {
-        let Op::Tool(tool) = &self.program.records.get(self.tool?.0)?.op else { return None };
-        let entry = self.setup.tools.iter().find(|entry| entry.number == tool.number);
-        entry.map(|entry| entry.length)
+        match &self.program.records.get(self.tool?.0)?.op {
+            Op::Tool(tool) => tool.length,
+            _ => None,
+        }
     }
 
     /// Axes go to a fixed place of the machine. Only what Z does there matters: the others come back
