@@ -156,21 +156,35 @@ proptest! {
     }
 }
 
-/// The corners below and above fall on the same eighths of the way but for rounding: between them one
-/// end stands still.
+/// Lower and upper corners fall on the same eighths of the way, but for the rounding of the upper ones
+/// to so many mm.
 #[test]
-fn corners_that_rounding_parts_leave_no_arc_without_length() {
-    let lower = vec![(0.0, -20.0), (-20.0, -20.0), (-20.0, 20.0), (20.0, 20.0), (20.0, -20.0)];
-    let arcs = [(0.0, -12.0), (-C, -C), (-C, C), (C, C), (C, -C), (0.0, -12.0)];
-    const C: f64 = 8.4853;
-    let arc = |ends: &[(f64, f64)]| {
-        let [start, end] = [ends[0], ends[1]].map(Vec2::from);
-        Element::arc_by_radius(start, end, 12.0, Direction::Clockwise, 0.005).unwrap()
+fn corners_that_rounding_parts_are_one() {
+    let corners = [(0.0, -20.0), (-20.0, -20.0), (-20.0, 20.0), (20.0, 20.0), (20.0, -20.0)];
+    for c in [8.485281, 8.4853, 8.485] {
+        let ends = [(0.0, -12.0), (-c, -c), (-c, c), (c, c), (c, -c), (0.0, -12.0)];
+        let arc = |ends: &[(f64, f64)]| {
+            let [start, end] = [ends[0], ends[1]].map(Vec2::from);
+            Element::arc_by_radius(start, end, 12.0, Direction::Clockwise, 0.005).unwrap()
+        };
+        let upper = Contour::new(ends.windows(2).map(arc).collect(), 0.0).unwrap();
+        let path = Path::by_length(&polygon(&corners), &upper).unwrap();
+        assert_eq!(path.elements().count(), 5, "{c}");
+    }
+}
+
+/// A corner 1.5 µm after one of the other contour: the end that stands still has no arc there.
+#[test]
+fn an_end_that_stands_still_goes_no_arc() {
+    let arcs = |turn: f64| {
+        let at = |angle: f64| Vec2::from_angle(angle) * 10.0;
+        let arc = |from: f64, to: f64| Element::arc(at(from), at(to), Vec2::ZERO, to - from);
+        Contour::new(vec![arc(0.0, turn), arc(turn, PI)], 0.0).unwrap()
     };
-    let upper = Contour::new(arcs.windows(2).map(arc).collect(), 0.0).unwrap();
-    let path = Path::by_length(&polygon(&lower), &upper).unwrap();
-    assert!(path.elements().count() >= 6);
-    for (_, above) in path.elements() {
-        assert!(above.turn.is_none() || above.length() > 0.0, "{above:?}");
+    let path = Path::by_length(&arcs(1.0), &arcs(1.00015)).unwrap();
+    for (below, above) in path.elements() {
+        for end in [below, above] {
+            assert!(end.turn.is_none() || end.length() > 1e-6, "{end:?}");
+        }
     }
 }

@@ -108,15 +108,20 @@ fn openings(paths: &[Path], side: Side, how: &Cutting) -> Result<Vec<Opening>, B
         let message = format!("{} places to thread for {} contours", how.thread.len(), paths.len());
         return Err(Diagnostic::error("thread", message).help("one for each contour").into());
     }
-    let side = match side {
+    let side_of = |contour: &Contour| match side {
         Side::Inside => plan::Side::Inside,
         Side::Outside => plan::Side::Outside,
         Side::Left => plan::Side::Left,
         Side::Right => plan::Side::Right,
+        Side::Part => {
+            let around = paths.iter().filter(|path| path.lower().encloses(contour.start()));
+            let around = around.filter(|path| path.lower() != contour).count();
+            if around % 2 == 0 { plan::Side::Outside } else { plan::Side::Inside }
+        }
     };
     let opening = |(i, contour): (usize, &Contour)| Opening {
         contour: contour.clone(),
-        side,
+        side: side_of(contour),
         thread: how.thread.get(i).copied().map(Vec2::from_array),
         start: how.begin.map(Vec2::from_array),
     };

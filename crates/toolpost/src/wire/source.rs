@@ -49,13 +49,14 @@ impl Source {
             (_, Some(upper)) => {
                 let above = |found: Box<Diagnostic>| upper.toolpath().refused(*found);
                 match args.ends.sync {
-                    Sync::Block => {
+                    Sync::Block if args.ends.pair.is_empty() => {
                         let above = upper.cuts(start).map_err(above)?;
                         lower.cuts(start).and_then(|below| by_block(below, above))
                     }
-                    Sync::Length => {
+                    Sync::Block | Sync::Length => {
                         let above = upper.contours(start).map_err(above)?;
-                        lower.contours(start).and_then(|below| by_length(&below, &above))
+                        let below = lower.contours(start);
+                        below.and_then(|below| by_points(&below, &above, &args.ends.pair))
                     }
                 }
             }
@@ -160,9 +161,25 @@ fn by_block(
     below.into_iter().zip(above).map(|(below, above)| Path::by_block(below, above)).collect()
 }
 
-fn by_length(below: &[Contour], above: &[Contour]) -> Result<Vec<Path>, Box<Diagnostic>> {
+/// By the points of `pairs`, each of which belongs to the lower contour that is nearest to it; between
+/// them by length.
+fn by_points(
+    below: &[Contour],
+    above: &[Contour],
+    pairs: &[[f64; 4]],
+) -> Result<Vec<Path>, Box<Diagnostic>> {
     as_many(below.len(), above.len())?;
-    below.iter().zip(above).map(|(below, above)| Path::by_length(below, above)).collect()
+    let mut own = vec![Vec::new(); below.len()];
+    for &[x, y, u, v] in pairs {
+        let (point, over) = (Vec2::new(x, y), Vec2::new(u, v));
+        let away = |contour: &Contour| contour.nearest(point).point.distance(point);
+        let contours = below.iter().map(away).zip(&mut own);
+        if let Some((_, own)) = contours.min_by(|a, b| a.0.total_cmp(&b.0)) {
+            own.push((point, over));
+        }
+    }
+    let contours = below.iter().zip(above).zip(&own);
+    contours.map(|((below, above), own)| Path::by_points(below, above, own)).collect()
 }
 
 /// Both ends go through the same openings.
