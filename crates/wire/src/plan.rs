@@ -28,6 +28,18 @@ pub struct Opening {
     pub start: Option<Vec2>,
 }
 
+impl Opening {
+    /// Whether the wire runs on the left of the contour.
+    pub fn left(&self) -> bool {
+        match self.side {
+            Side::Left => true,
+            Side::Right => false,
+            Side::Inside => self.contour.area() > 0.0,
+            Side::Outside => self.contour.area() < 0.0,
+        }
+    }
+}
+
 /// On which side of a contour the wire runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Side {

@@ -46,12 +46,7 @@ impl Round {
             let way_out = "close it, or cut it without tab with the wire on its left or right";
             return Err(refused("open-contour", message, way_out));
         }
-        let left = match opening.side {
-            Side::Left => true,
-            Side::Right => false,
-            Side::Inside => contour.area() > 0.0,
-            Side::Outside => contour.area() < 0.0,
-        };
+        let left = opening.left();
         let start = match opening.start.or(opening.thread) {
             Some(point) if closed => contour.nearest(point),
             None if closed && narrows(contour, left) => middle(contour),

@@ -7,7 +7,7 @@ use crate::toolpath::{self, Toolpath};
 use geom::{Vec2, Vec3};
 use machine::Machine;
 use program::{Diagnostic, Op, Pose, Program};
-use wire::{Contour, Element, Path, contours, cuts, dxf};
+use wire::{Beside, Contour, Element, Path, beside, contours, cuts, dxf};
 
 /// A source with the ways that it gives the wire.
 pub struct Source {
@@ -15,6 +15,8 @@ pub struct Source {
     pub toolpath: Toolpath,
     /// One way for each opening.
     pub paths: Vec<Path>,
+    /// How the program has its control lead the wire beside each; empty where it does not.
+    pub beside: Vec<Beside>,
 }
 
 /// One file of the source.
@@ -37,7 +39,16 @@ impl Source {
             Some(path) => Some(File::read(path, args)?),
             None => None,
         };
+        let beside = match (&lower, &upper) {
+            (File::Program(below), None) if args.cutting.side.is_some() => {
+                let found = lower.in_one_frame().and_then(|()| beside(&below.program, start));
+                found.map_err(|found| below.refused(*found))?.unwrap_or_default()
+            }
+            _ => Vec::new(),
+        };
+        let contours_beside = || beside.iter().map(|found| found.contour.clone()).collect();
         let paths = match (&lower, &upper) {
+            _ if !beside.is_empty() => Ok(upright(contours_beside())),
             (File::Program(below), None) => match leaning(&below.program, machine) {
                 Some(ends) => ends.and_then(|(below, above)| {
                     lower.in_one_frame()?;
@@ -70,7 +81,7 @@ impl Source {
         if let Some(File::Drawing(above, _) | File::Program(above)) = upper {
             toolpath.warnings.extend(above.warnings);
         }
-        Ok(Source { toolpath, paths })
+        Ok(Source { toolpath, paths, beside })
     }
 }
 

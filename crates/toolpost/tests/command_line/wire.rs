@@ -339,6 +339,32 @@ fn a_part_is_cut_round_its_outside_and_within_its_openings() {
     assert_eq!(ways.collect::<Vec<_>>(), ["X2.1", "X3.", "X7.9", "X7.", "X15.1", "X16."]);
 }
 
+/// A bore of 20 mm as a wire's program has it: the contour, and the offset a matter of the control.
+const BORE: &str = "%\nO2\nG21 G90 G40\nG92 X0. Y0.\nM60\nG41 D1 G1 X10. Y0.\nG3 X-10. Y0. I-10. J0.\n\
+                    G3 X10. Y0. I10. J0.\nG40 G1 X0. Y0.\nM50\nM30\n%\n";
+
+#[test]
+fn the_offset_of_a_source_is_worked_out_here_or_left_to_the_new_control() {
+    let folder = Folder::new();
+    folder.write("bore.nc", BORE);
+    let call = |more: &[&str]| {
+        folder.run(&[&["wire", "bore.nc", "--from", "fanuc-wire", "-o", "part.nc"], more].concat())
+    };
+    let said = call(&["-m", "bp-95d"]);
+    assert!(said.code == 2 && said.err.contains("bore.nc:6") && said.err.contains("--side"));
+    let said = call(&["-m", "bp-95d", "--side", "inside", "--wire", "0.25", "--gap", "0.02"]);
+    assert_eq!((said.code, said.err.as_str()), (0, ""), "{said:?}");
+    // 10 − 0.125 − 0.02 mm.
+    let text = folder.read("part.nc");
+    assert!(text.starts_with("0.000 0.000\n9.855 0.000\n") && text.ends_with("\n0.000 0.000\n"));
+    let said = call(&["-m", "sodick-iso", "--side", "left", "--by-control"]);
+    assert_eq!(said.code, 0, "{said:?}");
+    let text = folder.read("part.nc");
+    assert!(text.contains("G1 G41 H001 X10.\n") && text.contains("G1 G40 X0.\n"), "{text}");
+    let said = call(&["-m", "sodick-iso", "--side", "outside", "--by-control"]);
+    assert!(said.code == 2 && said.err.contains("error[side]"), "{said:?}");
+}
+
 #[test]
 fn drawings_are_read_by_layer() {
     let folder = Folder::new();
