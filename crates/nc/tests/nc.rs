@@ -180,3 +180,15 @@ fn threads_and_probes_are_moves_at_feed() {
     // Where the probe has stopped is not known: nothing is cut from there.
     assert_eq!(refused(&format!("{start}G31 Z-9. F100.\nG1 Z-5.\nM30\n")).rule, "unknown-position");
 }
+
+/// Charmilles, FANUC and others begin a wire's program so: the operator has brought it to the place.
+#[test]
+fn a_cut_may_begin_where_g92_says_that_the_tool_stands() {
+    let wire = |text: &str| {
+        read_for(&load_origin("fanuc-wire").unwrap(), Setup::default(), text).map(|r| r.program)
+    };
+    let program = wire("G21 G90\nG92 X5. Y-3.\nG1 X10.\nM2\n").unwrap();
+    let expected = [(3, &Op::Rapid(at(5.0, -3.0, 0.0))), (3, &Op::Line(at(10.0, -3.0, 0.0)))];
+    assert_eq!(ways(&program), expected);
+    assert_eq!(wire("G21 G90\nG92 X5.\nG1 X10. Y0.\nM2\n").unwrap_err().rule, "unknown-position");
+}

@@ -235,6 +235,8 @@ pub enum Side {
     Inside,
     /// Round a closed contour, as for a punch.
     Outside,
+    /// Round the outer contours and within those inside of them, as for a part with openings.
+    Part,
     /// Left of the way.
     Left,
     /// Right of the way.
@@ -269,6 +271,10 @@ pub struct Ends {
     /// Which point above belongs to which below.
     #[arg(long, value_name = "HOW", default_value = "block", requires = "upper")]
     pub sync: Sync,
+    /// A point below and the one above that belongs to it, instead of --sync; several times in the order
+    /// of travel, between which both ends cover the same part of their length.
+    #[arg(long, value_name = "X,Y,X,Y", value_parser = pair, requires = "upper", conflicts_with = "sync", allow_hyphen_values = true)]
+    pub pair: Vec<[f64; 4]>,
     /// Height of the upper contour over the lower [default: that of the machine file].
     #[arg(long, value_name = "MM", value_parser = length)]
     pub height: Option<f64>,
@@ -374,6 +380,11 @@ fn point(text: &str) -> Result<[f64; 3], String> {
 /// Two lengths in mm.
 fn place(text: &str) -> Result<[f64; 2], String> {
     lengths(text).ok_or_else(|| String::from("two lengths in mm are needed, such as 10,-5"))
+}
+
+/// Two places.
+fn pair(text: &str) -> Result<[f64; 4], String> {
+    lengths(text).ok_or_else(|| String::from("four lengths in mm are needed, such as 10,-5,12,-6"))
 }
 
 /// So many finite numbers, parted by commas.

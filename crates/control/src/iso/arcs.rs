@@ -57,6 +57,7 @@ impl Step<'_, '_, '_> {
             return Err(self.block.whole("nc-arc", message));
         }
         let turns = self.turns()?;
+        self.stood();
         self.switch_compensation();
         let mut axis = Vec3::ZERO;
         axis[third] = if clockwise { -1.0 } else { 1.0 };

@@ -418,6 +418,9 @@ impl Step<'_, '_, '_> {
                 "Z in a tilted plane before X and Y: where the tool goes down is not known";
             return Err(self.block.whole("nc-unknown-position", message));
         }
+        if !rapid {
+            self.stood();
+        }
         // On LinuxCNC with any straight move (`rs274`).
         let [first, second, _] = self.state.plane.axes();
         if from[first] != to[first] || from[second] != to[second] || self.flavor == Flavor::LinuxCnc
@@ -428,6 +431,16 @@ impl Step<'_, '_, '_> {
         self.ops.push(if rapid { Op::Rapid(pose) } else { Op::Line(pose) });
         self.arrive(target);
         Ok(())
+    }
+
+    /// Says where the tool stands before anything has moved, where `G92` alone has told so.
+    pub(super) fn stood(&mut self) {
+        if !self.state.moved && !self.state.told && self.state.position.is_finite() {
+            let here = self.state.pose(self.state.position, self.state.rotary);
+            self.ops.push(Op::Rapid(here));
+            self.state.told = true;
+            self.state.frames.used();
+        }
     }
 
     /// The machine stands at `target` from here on.
