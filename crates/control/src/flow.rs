@@ -8,7 +8,7 @@ pub(crate) const DEEPEST: usize = 20;
 
 /// Most jumps and calls between two records that do something: a loop that does nothing for so long is
 /// taken as endless.
-const IDLE: u32 = 1_000_000;
+const IDLE: u32 = 200_000;
 
 /// Most jumps and calls of a run.
 const MOST: u64 = 100_000_000;
