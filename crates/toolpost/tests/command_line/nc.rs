@@ -45,7 +45,7 @@ fn an_old_program_becomes_one_of_another_control_and_is_proven_again_against_it(
     let against = ["--against", "old.nc", "--from", "fanuc-31i"];
     let prove = [&["prove", "new.h", "-m", "generic-3axis-heidenhain"], &against[..]].concat();
     assert_eq!(folder.run(&prove).code, 0);
-    folder.write("new.h", &new.replace("Y+40 RL", "Y+41 RL"));
+    folder.write("new.h", new.replace("Y+40 RL", "Y+41 RL"));
     assert_eq!(folder.run(&prove).code, 1);
 }
 
