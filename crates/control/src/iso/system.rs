@@ -2,7 +2,7 @@
 //!
 //! What only the machine knows is an error that says so.
 
-use super::execute::INCH;
+use super::numbers::INCH;
 use super::parameters::Values;
 use super::state::Length;
 use super::words::{FeedMode, Motion, Plane};
