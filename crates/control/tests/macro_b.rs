@@ -117,6 +117,14 @@ fn a_word_whose_variable_is_null_is_not_there() {
 }
 
 #[test]
+fn the_last_d_and_h_can_be_read() {
+    // B-63684EN, 16.2: modal information.
+    assert_eq!(xs("T1 D14 M6\nG43 H4 Z1.\n#1=#4107+#4111\nG0 X#1 Y0 Z0\n")[1..], [18.0]);
+    refused("#1=#4107");
+    refused("#1=#4111");
+}
+
+#[test]
 fn round_in_a_word_is_that_of_the_machine() {
     // B-63684EN, 16.3: there it rounds to the least input increment of the address.
     refused("#1=1.23456\nG0 X[ROUND[#1]]\n");

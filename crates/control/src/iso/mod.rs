@@ -4,9 +4,10 @@
 //! They share the words and the order of execution and differ in tables ([`flavors`]) and in the
 //! rules that each maker states; `docs/controls/iso.md` and its neighbours say which, with sources.
 //! A line goes by as it stands ([`mod@run`]), or leads elsewhere: O-words ([`owords`]) and statements of
-//! macro B ([`macros`]). A block is taken apart ([`block`]), its numbers calculated where it says so
-//! ([`expression`], [`parameters`], [`system`]), and run with its records held back ([`execute`],
-//! [`motion`], [`arcs`], [`cycles`], [`coordinates`], [`tools`]): a block with a mistake leaves none.
+//! macro B ([`macros`]). A block is taken apart ([`block`], and where it is wrong [`faults`]), its
+//! numbers calculated where it says so ([`expression`], [`parameters`], [`system`]), and run with its
+//! records held back ([`execute`], [`numbers`], [`motion`], [`arcs`], [`cycles`], [`coordinates`],
+//! [`tools`]): a block with a mistake leaves none.
 
 mod arcs;
 mod arithmetic;
@@ -17,11 +18,13 @@ mod coordinates;
 mod cycles;
 mod execute;
 mod expression;
+mod faults;
 mod flavors;
 mod frames;
 mod macros;
 mod modes;
 mod motion;
+mod numbers;
 mod owords;
 mod parameters;
 mod patterns;

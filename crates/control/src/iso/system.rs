@@ -2,7 +2,7 @@
 //!
 //! What only the machine knows is an error that says so.
 
-use super::execute::INCH;
+use super::numbers::INCH;
 use super::parameters::Values;
 use super::state::Length;
 use super::words::{FeedMode, Motion, Plane};
@@ -215,7 +215,15 @@ pub(super) fn macro_variable(values: &Values, number: u32) -> Result<f64, String
             Some(_) => return Err("a further work offset has no G word of its own".into()),
             None => return Err("no block has named a work offset".into()),
         },
+        4107 => match state.registers.d {
+            Some(register) => f64::from(register),
+            None => return Err("no block has given D".into()),
+        },
         4109 => return feed(values),
+        4111 => match state.registers.h {
+            Some(register) => f64::from(register),
+            None => return Err("no block has given H".into()),
+        },
         4119 => match state.speed {
             Some(speed) => speed,
             None => return Err("no block has given S".into()),

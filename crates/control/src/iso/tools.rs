@@ -16,7 +16,7 @@ pub(super) struct Registers {
     radii: Vec<u32>,
     /// The last D and the last H, where the flavour remembers them.
     pub d: Option<u32>,
-    h: Option<u32>,
+    pub h: Option<u32>,
 }
 
 impl Registers {
