@@ -11,6 +11,7 @@ mod library;
 mod memory;
 mod path;
 mod programs;
+mod wire;
 
 use clap::Parser;
 use machine::Machine;
@@ -37,6 +38,9 @@ struct Arguments {
     /// Blocks of the NC programs; 0 leaves them out.
     #[arg(long, default_value_t = 200_000)]
     blocks: usize,
+    /// Arcs of the contour of a wire; 0 leaves it out.
+    #[arg(long, default_value_t = 100_000)]
+    arcs: usize,
     /// Real files of cutter-location data, to be proven on every machine of the library.
     files: Vec<PathBuf>,
 }
@@ -62,6 +66,9 @@ fn main() -> ExitCode {
 fn run(arguments: &Arguments) -> Result<(), Vec<Diagnostic>> {
     if arguments.blocks > 0 {
         programs::measure(arguments.blocks, arguments.rounds)?;
+    }
+    if arguments.arcs > 0 {
+        wire::measure(arguments.arcs, arguments.rounds)?;
     }
     if arguments.records > 0 {
         five_axes(arguments)?;

@@ -8,13 +8,13 @@ pub(crate) const DEEPEST: usize = 20;
 
 /// Most jumps and calls between two records that do something: a loop that does nothing for so long is
 /// taken as endless.
-const IDLE: u32 = 1_000_000;
+const IDLE: u32 = 200_000;
 
 /// Most jumps and calls of a run.
 const MOST: u64 = 100_000_000;
 
 /// So much text is read in the time of a jump.
-const BYTES_IN_A_TURN: usize = 8;
+const BYTES_IN_A_TURN: usize = 16;
 
 /// Counts the jumps of a run.
 #[derive(Debug, Default)]

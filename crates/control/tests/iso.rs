@@ -391,7 +391,7 @@ fn a_word_that_nothing_uses_is_refused() {
             assert_eq!(rule(dialect, &format!("{block}\n")), "nc-unused-word", "{block}");
         }
     }
-    assert_eq!(rule(FANUC, "G43 H1 D2\n"), "nc-unused-word");
+    assert_eq!(rule(LINUXCNC, "G43 H1 D2\n"), "nc-unused-word");
 }
 
 #[test]
@@ -422,7 +422,6 @@ fn a_feed_must_be_given_and_belongs_to_its_mode() {
         assert_eq!(rule(dialect, "G1 X1. F0\n"), "nc-feed");
         assert_eq!(rule(dialect, "G1 X1. F9\nG93 X2.\n"), "nc-feed");
         assert_eq!(rule(dialect, "G93 G1 X1. F9\nX2.\n"), "nc-feed");
-        assert_eq!(rule(dialect, "G20 F10\n"), "nc-feed");
         let got = ops(dialect, "G20\nG93 G1 X1. F9\nG94 X2. F9\n");
         let feeds: Vec<Op> = got.into_iter().filter(|op| matches!(op, Op::Feed(_))).collect();
         assert_eq!(
@@ -448,8 +447,75 @@ fn inches_are_25_4_mm() {
     for dialect in [FANUC, LINUXCNC] {
         assert_eq!(rule(dialect, "%\nG90 G0 X1.\n"), "nc-units");
         assert_eq!(rule(dialect, "%\nF100\n"), "nc-units");
-        assert_eq!(rule(dialect, "%\nG91 G28 Z0\nG21 F100\n"), "nc-feed");
     }
+    assert_eq!(rule(FANUC, "%\nG91 G28 Z0\nG21 F100\n"), "nc-units");
+}
+
+#[test]
+fn a_feed_beside_the_units_is_in_those_that_the_control_takes_first() {
+    let feed = |per_minute| [Op::Feed(Feed::PerMinute(per_minute))];
+    for dialect in [FANUC, Dialect::Haas, GRBL] {
+        assert_eq!(ops(dialect, "G20 G90 F10.\n"), feed(254.0));
+    }
+    // `rs274`: SET_FEED_RATE(20) comes before USE_LENGTH_UNITS(CANON_UNITS_MM).
+    assert_eq!(ops(LINUXCNC, "G20\nG21 F20\n"), feed(508.0));
+    assert_eq!(ops(GRBL, "G20\nG21 F20\n"), feed(20.0));
+    assert_eq!(rule(FANUC, "G20\nG21 F20\n"), "nc-feed");
+    for dialect in [LINUXCNC, Dialect::Mach3] {
+        assert_eq!(rule(dialect, "%\nG20 F10\n"), "nc-feed");
+    }
+    assert_eq!(rule(Dialect::Mach3, "G20\nG21 F20\n"), "nc-feed");
+}
+
+#[test]
+fn d_and_h_stay_for_the_words_that_use_them() {
+    for dialect in [FANUC, Dialect::Haas] {
+        let got = ops_3(dialect, "T4 D14 M6\nG0 X0. Y0.\nH4\nG43 Z9.\nG1 G41 X5. F9\n");
+        let expected = [
+            Op::LengthOffset(Some(4)),
+            Op::Rapid(at(0.0, 0.0, 9.0)),
+            Op::Feed(Feed::PerMinute(9.0)),
+            Op::Compensation(Compensation::Left(Some(14))),
+            Op::Line(at(5.0, 0.0, 9.0)),
+        ];
+        assert_eq!(got[got.len() - 5..], expected);
+        // While G43 is on, another H is another length, and H0 none.
+        let got = ops(dialect, "G43 H4\nH5\nH0\n");
+        assert_eq!(got, [Some(4), Some(5), None].map(Op::LengthOffset));
+        assert_eq!(rule(dialect, "G0 X0. Y0.\nG1 G41 D1 X5. F9\nX6. D2\n"), "nc-compensation");
+        assert_eq!(rule(dialect, "G43 Z9.\n"), "nc-length");
+    }
+    assert_eq!(rule(LINUXCNC, "T4 D14 M6\n"), "nc-unused-word");
+}
+
+#[test]
+fn look_ahead_moves_nothing() {
+    assert_eq!(ops(FANUC, "G5 P10000\nG5.1 Q1 R5\nG5.1 Q0\nG5 P0\n"), []);
+    for other in ["G5.1 Q2", "G5 P10001", "G5.1", "G5 Q1"] {
+        assert_eq!(rule(FANUC, &format!("{other}\n")), "nc-look-ahead", "{other}");
+    }
+}
+
+#[test]
+fn the_semicolon_of_a_fanuc_ends_its_block() {
+    for dialect in [FANUC, Dialect::Haas] {
+        assert_eq!(ops(dialect, ";\nM8 ;\nM9; (off)\n").len(), 3);
+        assert_eq!(rule(dialect, "M8; on\n"), "nc-syntax");
+        assert_eq!(rule(dialect, "G43; H01\n"), "nc-syntax");
+    }
+}
+
+#[test]
+fn the_centre_along_the_axis_of_an_arc_is_nothing() {
+    let arc = |k: &str| format!("G0 X0. Y0. Z0.\nG1 G17 F9\nG2 X10. I5. J0. {k}\n");
+    for dialect in [FANUC, Dialect::Haas, Dialect::Mach3, GRBL] {
+        assert_eq!(ops_3(dialect, &arc("K0.")), ops_3(dialect, &arc("")));
+    }
+    // gcode.c, step 20, clears all three.
+    assert_eq!(ops_3(GRBL, &arc("K1.")), ops_3(GRBL, &arc("")));
+    assert_eq!(rule(FANUC, &arc("K1.")), "nc-arc");
+    // `rs274`: "K word given for arc in xy plane".
+    assert_eq!(rule(LINUXCNC, &arc("K0.")), "nc-arc");
 }
 
 #[test]
@@ -582,6 +648,15 @@ fn a_spindle_needs_a_speed_and_coolants_add_up_where_the_manual_says_so() {
         assert_eq!(ops(dialect, "M8\nM7\n"), both);
     }
     assert_eq!(rule(FANUC, "S1 M3\nG1 X1. F9 M5\n"), "nc-m-beside-cut");
+    // The cycle ends in the block, which then goes by rapid.
+    let drilled = "G0 X0. Y0. Z9.\nM8\nG98 G81 Z-1. R1. F9\n";
+    for end in ["G80 G0 Z20. M9", "G0 Z20. M9", "G80 M9"] {
+        let got = ops_3(FANUC, &format!("{drilled}{end}\n"));
+        assert_eq!(got.last(), Some(&Op::Coolant(Coolant::Off)), "{end}");
+    }
+    for end in ["G80 G1 Z20. M9", "X5. M9", "G81 X5. M9"] {
+        assert_eq!(rule(FANUC, &format!("{drilled}{end}\n")), "nc-m-beside-cut", "{end}");
+    }
 }
 
 #[test]

@@ -154,6 +154,45 @@ fn marlin_dwells_homes_and_ends_in_its_own_way() {
 }
 
 #[test]
+fn marlin_keeps_its_axes_while_m84_only_says_how_long() {
+    assert_eq!(ops(Dialect::Marlin, "M84 S0\nM18 S1800\n"), [Op::End]);
+    assert_eq!(rule(Dialect::Marlin, "M84\n"), "nc-unknown-position");
+    assert_eq!(rule(Dialect::Marlin, "G21\nG0 X1 S5\n"), "nc-unused-word");
+}
+
+#[test]
+fn marlin_shows_texts() {
+    let message = |text: &str| Op::Message(text.into());
+    assert_eq!(
+        ops(Dialect::Marlin, "M0 Attach ZProbe\nM117 2D Profile1 ; shown\nM0\n")[..4],
+        [message("Attach ZProbe"), Op::Stop, Op::Comment("shown".into()), message("2D Profile1")]
+    );
+    // How long it waits, which no record says.
+    assert_eq!(rule(Dialect::Marlin, "M0 S5\n"), "nc-unused-word");
+}
+
+#[test]
+fn linuxcnc_runs_programs_of_the_machine_with_p_and_q() {
+    assert!(run(Dialect::LinuxCnc, "M190 P1\n").unwrap_err().help.contains("auxiliary"));
+    let settings =
+        Settings { auxiliary: vec![190], ..Settings::new(Dialect::LinuxCnc, [false; 3]) };
+    let read = |text: &str| read(&settings, "p", text.as_bytes(), &mut |_| Ok(()));
+    assert!(read("M190 P1 Q2\n").is_ok());
+    assert!(read("M190 R1\n").is_err());
+}
+
+#[test]
+fn grbl_says_what_is_for_its_console_and_its_sender() {
+    let help = |text: &str| run(Dialect::Grbl, text).unwrap_err().help;
+    assert!(help("$H\n").contains("by hand"));
+    assert!(help("%Z = 5\n").contains("take the line out"));
+    assert!(help("T1\nM6\n").contains("write M0"));
+    assert!(help("G64\n").contains("take it out"));
+    // protocol_main_loop: what stands in a comment is thrown away up to the first bracket that closes.
+    assert_eq!(ops(Dialect::Grbl, "M8 (a (b) M3 S9\n").len(), 3);
+}
+
+#[test]
 fn grbl_writes_offsets_homes_and_probes() {
     let got = ops(
         Dialect::Grbl,

@@ -117,6 +117,14 @@ fn a_word_whose_variable_is_null_is_not_there() {
 }
 
 #[test]
+fn round_in_a_word_is_that_of_the_machine() {
+    // B-63684EN, 16.3: there it rounds to the least input increment of the address.
+    refused("#1=1.23456\nG0 X[ROUND[#1]]\n");
+    refused("#1=1.23456\nG0 X-RND[#1]\n");
+    assert_eq!(xs("#1=1.23456\n#2=ROUND[#1*1000]/1000\nG0 X#2\n"), [1.235]);
+}
+
+#[test]
 fn null_is_0_but_for_eq_and_ne() {
     // B-63684EN, 16.1: the table of conditional expressions.
     for (condition, null, zero) in [

@@ -155,6 +155,12 @@ fn subroutines_take_arguments_and_give_values_back() {
 }
 
 #[test]
+fn a_program_that_asks_is_followed_as_at_the_machine() {
+    // LinuxCNC manual, "System parameters": 1 where the interpreter is that of the machine.
+    assert_eq!(path("G21\no1 if [#<_task>]\nG0 X5\no1 else\nG0 X7\no1 endif\n"), [5.0]);
+}
+
+#[test]
 fn fanuc_subprograms_see_the_numbers_of_their_caller() {
     agrees("#1=5 #100=2\nM98 P50 L2\nG0 X#1\nM2\nO50\nG91 G0 X#1\n#1=[#1+1]\nG90\nM99");
     agrees("M98 P50 L0\nG0 X1\nM2\nO50\nG0 X9\nM99");

@@ -26,6 +26,7 @@ fn a_die_with_the_controls_offset() {
                 N4 G3 X0. Y10. I-10. J0.\nN5 G1 G40 X0. Y0.\nN6 M50\nN7 M2\n%\n";
     let arc = ArcTo { end: at(0.0, 10.0), center: Vec3::ZERO, normal: Vec3::Z, turns: 0 };
     let expected = [
+        Op::Rapid(at(0.0, 0.0)),
         Op::ThreadWire,
         Op::Compensation(Compensation::Left(Some(1))),
         Op::Line(at(10.0, 0.0)),

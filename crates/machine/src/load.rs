@@ -46,9 +46,9 @@ pub fn load_control(name: &str) -> Result<Machine> {
 /// # Errors
 /// As [`load`].
 pub fn load_origin(name_or_path: &str) -> Result<Machine> {
-    match library::find(name_or_path, library::CONTROLS) {
-        Some(_) => load_control(name_or_path),
-        None => load(name_or_path),
+    match is_path(name_or_path) {
+        true => load(name_or_path),
+        false => build(SheetFile::of_library(name_or_path, library::EVERYTHING)?),
     }
 }
 

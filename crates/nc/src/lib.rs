@@ -11,7 +11,8 @@
 //! - Z sent home between two moves stays, as [`Op::Home`]. At a tool change and at the end it goes: a
 //!   writer brings the tool home there by itself.
 //! - A change of the work offset stays; the tool comes to the first place in it from above.
-//! - A length offset becomes the register of the tool; a tool that is called by its name gets a number.
+//! - A length offset becomes the register of the tool; a tool that is called by its name gets a number,
+//!   and one of the tool table its diameter and length.
 //!
 //! What cannot be told truly is refused with its line.
 
@@ -19,6 +20,9 @@ use control::{Dialect, Settings, Setup, Wire};
 use geom::Vec3;
 use machine::{LengthOffset, Machine, Mount};
 use program::{Diagnostic, FIRST_WORK_OFFSET, Op, Orientation, Pose, Program, Record, Tool};
+
+/// Most records of a reading, which are kept in memory: a program of a few lines can loop to more.
+const MOST_RECORDS: usize = 50_000_000;
 
 /// A step that may be refused.
 type Done = Result<(), Box<Diagnostic>>;
@@ -116,6 +120,8 @@ struct Lift<'a> {
     warnings: Vec<Diagnostic>,
     /// Where the tool is, as far as the last block says it.
     here: Option<Pose>,
+    /// The start that was given, until something has moved: a cut from there begins with the way to it.
+    start: Option<Pose>,
     /// Z has been sent home since the last move, on this line.
     home: Option<u32>,
     /// Where the program's last tool call is in its records, and whether nothing has moved since.
@@ -136,6 +142,7 @@ impl<'a> Lift<'a> {
             program: Program::new(name),
             warnings: Vec::new(),
             here: setup.start.map(|start| Pose::new(start, Vec3::Z)),
+            start: setup.start.map(|start| Pose::new(start, Vec3::Z)),
             home: None,
             tool: None,
             work_offset: None,
@@ -146,6 +153,11 @@ impl<'a> Lift<'a> {
 
     fn record(&mut self, record: Record) -> Done {
         let line = record.line;
+        if self.program.records.len() >= MOST_RECORDS {
+            let message = format!("the program makes more than {MOST_RECORDS} records");
+            let help = "it may loop without end; if not, read it in parts";
+            return Err(refuse("program-length", message, help));
+        }
         match record.op {
             Op::Rapid(pose) => {
                 let pose = self.pose(&pose);
@@ -190,6 +202,10 @@ impl<'a> Lift<'a> {
             Op::Home(axes) => return self.go_home(line, axes),
             Op::Tool(mut tool) => {
                 self.number(line, &mut tool)?;
+                if let Some(entry) = self.setup.tools.iter().find(|e| e.number == tool.number) {
+                    tool.diameter = Some(2.0 * entry.radius);
+                    tool.length = Some(entry.length);
+                }
                 self.home = None;
                 self.tool = Some((self.program.records.len(), true));
                 self.program.push(line, Op::Tool(tool));
@@ -208,6 +224,11 @@ impl<'a> Lift<'a> {
         }
         if let Some((_, fresh)) = &mut self.tool {
             *fresh = false;
+        }
+        if let Some(start) = self.start.take()
+            && !matches!(op, Op::Rapid(_))
+        {
+            self.program.push(line, Op::Rapid(start));
         }
         self.program.push(line, op);
     }
@@ -251,7 +272,9 @@ impl<'a> Lift<'a> {
                 let help = "give the tools that are called by name their numbers in a tool table";
                 return Err(refuse("tool-number", message, help));
             }
-            self.numbers.push((tool.number, String::new()));
+            if self.numbers.iter().all(|(number, _)| *number != tool.number) {
+                self.numbers.push((tool.number, String::new()));
+            }
             return Ok(());
         }
         if let Some(entry) =
@@ -279,9 +302,10 @@ impl<'a> Lift<'a> {
 
     /// Length of the tool in the spindle, where it is known, mm.
     fn tool_length(&self) -> Option<f64> {
-        let Op::Tool(tool) = &self.program.records.get(self.tool?.0)?.op else { return None };
-        let entry = self.setup.tools.iter().find(|entry| entry.number == tool.number);
-        entry.map(|entry| entry.length)
+        match &self.program.records.get(self.tool?.0)?.op {
+            Op::Tool(tool) => tool.length,
+            _ => None,
+        }
     }
 
     /// Axes go to a fixed place of the machine. Only what Z does there matters: the others come back
@@ -330,12 +354,23 @@ impl<'a> Lift<'a> {
 
     /// Positions are counted from another work offset from here on.
     fn set_work_offset(&mut self, line: u32, number: u32) {
-        if self.work_offset.replace(number) == Some(number) {
+        // Where the start is given, all offsets are 0, and it is one in the first.
+        let known = self.setup.start.map(|_| FIRST_WORK_OFFSET);
+        let before = self.work_offset.replace(number).or(known);
+        if before == Some(number) {
             return;
         }
-        self.several |= self.here.is_some() || number != FIRST_WORK_OFFSET;
-        self.here = None;
+        self.several |= self.moved() || number != FIRST_WORK_OFFSET;
+        // Where the tool stands at the start is said with all offsets at 0.
+        if self.moved() {
+            self.here = None;
+        }
         self.program.push(line, Op::WorkOffset(number));
+    }
+
+    /// Whether the tool stands elsewhere than at the start.
+    fn moved(&self) -> bool {
+        self.here != self.setup.start.map(|start| Pose::new(start, Vec3::Z))
     }
 
     /// The program, after its last record. One that works in the first work offset alone leaves it to

@@ -67,6 +67,15 @@ fn a_cut_from_a_place_that_is_not_known_is_refused_with_its_line() {
 }
 
 #[test]
+fn where_the_tool_stands_at_the_start_stays_known_when_the_first_offset_is_named() {
+    let machine = load_origin("grbl").unwrap();
+    let start = Setup { start: Some(Vec3::new(0.0, 0.0, 50.0)), ..Setup::default() };
+    let read = |text: &str| read_for(&machine, start.clone(), text);
+    assert!(read("G21 G54\nG1 X5 F100\n").is_ok());
+    assert_eq!(read("G21\nG1 X5 F100\nG55\nG1 X6\n").unwrap_err().rule, "unknown-position");
+}
+
+#[test]
 fn the_register_of_a_length_offset_is_that_of_the_tool() {
     let program = fanuc("G21 G90 G54\nT3 M6\nG0 X0. Y0.\nG43 Z5. H13\nM30\n");
     let Op::Tool(tool) = ways(&program)[0].1 else { panic!("no tool") };
@@ -170,4 +179,16 @@ fn threads_and_probes_are_moves_at_feed() {
     assert!(probe.records.iter().any(|record| record.op == Op::Probe(at(0.0, 0.0, -9.0))));
     // Where the probe has stopped is not known: nothing is cut from there.
     assert_eq!(refused(&format!("{start}G31 Z-9. F100.\nG1 Z-5.\nM30\n")).rule, "unknown-position");
+}
+
+/// Charmilles, FANUC and others begin a wire's program so: the operator has brought it to the place.
+#[test]
+fn a_cut_may_begin_where_g92_says_that_the_tool_stands() {
+    let wire = |text: &str| {
+        read_for(&load_origin("fanuc-wire").unwrap(), Setup::default(), text).map(|r| r.program)
+    };
+    let program = wire("G21 G90\nG92 X5. Y-3.\nG1 X10.\nM2\n").unwrap();
+    let expected = [(3, &Op::Rapid(at(5.0, -3.0, 0.0))), (3, &Op::Line(at(10.0, -3.0, 0.0)))];
+    assert_eq!(ways(&program), expected);
+    assert_eq!(wire("G21 G90\nG92 X5.\nG1 X10. Y0.\nM2\n").unwrap_err().rule, "unknown-position");
 }

@@ -520,7 +520,7 @@ impl<'a> Walk<'a> {
     fn set_compensation(&mut self, compensation: Compensation) -> Done {
         if compensation != Compensation::Off && !self.machine.capabilities.compensation {
             // Whether the path is that of the tool's centre or the contour, only its author knows.
-            let help = "post the operation as the path of the tool's centre, without CUTCOM";
+            let help = "give the path of the tool's centre: without CUTCOM, or of an NC program with its tool table (--tools)";
             return Err(Box::new(
                 refuse("compensation", "the control has no cutter compensation").help(help),
             ));

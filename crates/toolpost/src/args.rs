@@ -123,8 +123,6 @@ pub struct Closeness {
 /// Arguments of `post`.
 #[derive(Debug, Args)]
 pub struct Post {
-    #[command(flatten)]
-    pub source: Source,
     /// Name in the library, or a file ending in .toml.
     #[arg(long, short, value_name = "NAME|FILE")]
     pub machine: String,
@@ -133,6 +131,8 @@ pub struct Post {
     pub output: PathBuf,
     #[command(flatten)]
     pub closeness: Closeness,
+    #[command(flatten)]
+    pub source: Source,
 }
 
 /// Arguments of `wire`.
@@ -235,6 +235,8 @@ pub enum Side {
     Inside,
     /// Round a closed contour, as for a punch.
     Outside,
+    /// Round the outer contours and within those inside of them, as for a part with openings.
+    Part,
     /// Left of the way.
     Left,
     /// Right of the way.
@@ -269,6 +271,10 @@ pub struct Ends {
     /// Which point above belongs to which below.
     #[arg(long, value_name = "HOW", default_value = "block", requires = "upper")]
     pub sync: Sync,
+    /// A point below and the one above that belongs to it, instead of --sync; several times in the order
+    /// of travel, between which both ends cover the same part of their length.
+    #[arg(long, value_name = "X,Y,X,Y", value_parser = pair, requires = "upper", conflicts_with = "sync", allow_hyphen_values = true)]
+    pub pair: Vec<[f64; 4]>,
     /// Height of the upper contour over the lower [default: that of the machine file].
     #[arg(long, value_name = "MM", value_parser = length)]
     pub height: Option<f64>,
@@ -313,19 +319,19 @@ pub struct Prove {
     #[arg(long, value_name = "SOURCE")]
     pub against: PathBuf,
     #[command(flatten)]
-    pub origin: Origin,
-    #[command(flatten)]
     pub closeness: Closeness,
+    #[command(flatten)]
+    pub origin: Origin,
 }
 
 /// Arguments of `show`.
 #[derive(Debug, Args)]
 pub struct Show {
-    #[command(flatten)]
-    pub source: Source,
     /// Where to save a drawing, as .svg or .png.
     #[arg(long, short, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    #[command(flatten)]
+    pub source: Source,
 }
 
 /// Commands of `machines`.
@@ -374,6 +380,11 @@ fn point(text: &str) -> Result<[f64; 3], String> {
 /// Two lengths in mm.
 fn place(text: &str) -> Result<[f64; 2], String> {
     lengths(text).ok_or_else(|| String::from("two lengths in mm are needed, such as 10,-5"))
+}
+
+/// Two places.
+fn pair(text: &str) -> Result<[f64; 4], String> {
+    lengths(text).ok_or_else(|| String::from("four lengths in mm are needed, such as 10,-5,12,-6"))
 }
 
 /// So many finite numbers, parted by commas.

@@ -111,8 +111,15 @@ fn without_origin(file: &str) -> Stop {
 impl Origin {
     /// What the operator has set up at the control.
     fn setup(&self) -> Result<Setup, Stop> {
+        let tools = match &self.tools {
+            None => Vec::new(),
+            Some(path) => {
+                let found = control::tools::read(&files::read(path)?);
+                found.map_err(|found| found.file(files::name(path)))?
+            }
+        };
         Ok(Setup {
-            tools: Vec::new(),
+            tools,
             folders: self.folder.clone(),
             whole_numbers: match self.whole_numbers {
                 None => control::WholeNumbers::Unknown,

@@ -48,6 +48,7 @@ pub fn walk(program: &Program, tolerance: f64, draw: &mut dyn FnMut(Segment)) ->
     let mut cycle: Option<Cycle> = None;
     let mut tool = 0;
     for record in &program.records {
+        let before = here;
         let mut step = |cuts: bool, hole: bool, pose: &Pose| {
             let to = pose.point;
             let axis = pose.axis().unwrap_or(Vec3::Z);
@@ -67,6 +68,11 @@ pub fn walk(program: &Program, tolerance: f64, draw: &mut dyn FnMut(Segment)) ->
             Op::Hole(pose) => {
                 if let (Some(cycle), Some(axis)) = (cycle, pose.axis()) {
                     let at = |height: f64| Pose::new(pose.point + axis * height, axis);
+                    // Across at the height of the tool, then down.
+                    let height = before.map_or(f64::NAN, |here| (here - pose.point).dot(axis));
+                    if height > cycle.clearance {
+                        step(false, false, &at(height));
+                    }
                     step(false, false, &at(cycle.clearance));
                     step(true, true, &at(-cycle.depth));
                     step(false, false, &at(cycle.retract));

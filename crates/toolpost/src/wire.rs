@@ -40,11 +40,11 @@ pub fn run(args: &args::Wire, silent: bool) -> Result<Answer, Stop> {
 
     let progress = Progress::new(if picture.is_some() { 5 } else { 4 }, silent);
     progress.step("reading");
-    let Source { mut toolpath, paths } = Source::read(args, &machine)?;
+    let Source { mut toolpath, paths, beside } = Source::read(args, &machine)?;
     let mut warnings = std::mem::take(&mut toolpath.warnings);
     progress.step("writing");
     let height = machine.wire.and_then(|wire| wire.height);
-    let planned = cutting::legs(paths, &args.cutting, height);
+    let planned = cutting::legs(paths, &beside, &args.cutting, height);
     let (mut legs, rounded) = planned.map_err(|found| toolpath.refused(*found))?;
     warnings.extend(rounded);
     divide(&mut legs, &args.division, &machine)?;

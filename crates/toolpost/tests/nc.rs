@@ -93,3 +93,44 @@ fn both_coolants_are_written_and_threads_and_probes_are_refused() {
         assert_eq!((error.rule, error.line), ("unsupported", 7), "{error}");
     }
 }
+
+/// The example goes round a flange of R 42 by `G41`, in two depths by a loop and a subprogram, and drills
+/// six holes on R 30 by a loop.
+#[test]
+fn the_example_is_made_by_every_mill_and_is_what_it_says() {
+    let text = std::fs::read(root().join("examples/flange.nc")).unwrap();
+    let tool = |number, diameter: f64| control::ToolData {
+        number,
+        name: String::new(),
+        radius: diameter / 2.0,
+        length: 45.0,
+    };
+    let setup = Setup { tools: vec![tool(1, 12.0), tool(2, 6.6)], ..Setup::default() };
+    let from = machine::load_origin("fanuc-31i").unwrap();
+    let program = nc::read(&from, setup, "flange.nc", &text).unwrap().program;
+    let (mut circles, mut holes) = (Vec::new(), Vec::new());
+    for record in &program.records {
+        match &record.op {
+            Op::Arc(arc) => circles.push((arc.center, arc.end.point)),
+            Op::Hole(pose) => holes.push(pose.point),
+            _ => {}
+        }
+    }
+    // The centre of the tool is 6 mm outside.
+    assert_eq!(circles.len(), 2);
+    for ((center, end), depth) in circles.iter().zip([-4.0, -8.0]) {
+        assert!(center.with_z(0.0).length() < 1e-9 && end.z == depth);
+        assert!((end.with_z(0.0).length() - 48.0).abs() < 1e-9, "{end}");
+    }
+    assert_eq!(holes.len(), 6);
+    for (hole, degrees) in holes.iter().zip([0.0f64, 60.0, 120.0, 180.0, 240.0, 300.0]) {
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        assert!((hole.x - 30.0 * cos).hypot(hole.y - 30.0 * sin) < 1e-9, "{hole}");
+    }
+    for machine in mills() {
+        let output =
+            post::write(&program, &machine).unwrap_or_else(|e| panic!("{}: {e:?}", machine.name));
+        let report = proof::prove(&program, &machine, "new", &output.text, &Default::default());
+        assert!(report.proven, "{}: {:?}", machine.name, report.mismatches);
+    }
+}

@@ -38,4 +38,4 @@ pub use contour::{Contour, Place};
 pub use element::{ARC_TOLERANCE, Direction, Element, Turn};
 pub use lead::{Lead, LeadShape};
 pub use path::{Limits, Path};
-pub use trace::{contours, cuts};
+pub use trace::{Beside, beside, contours, cuts};

@@ -23,8 +23,21 @@ pub struct Opening {
     /// Where the wire is threaded. `None`: [`Lead::length`] beside the start, on the wire's side.
     pub thread: Option<Vec2>,
     /// Where the cut of a closed contour starts: the place nearest to this point. `None`: nearest to
-    /// where the wire is threaded, or else where the contour starts.
+    /// where the wire is threaded, or else where the contour starts, and where that is an inner corner
+    /// for the wire, in the middle of its longest element.
     pub start: Option<Vec2>,
+}
+
+impl Opening {
+    /// Whether the wire runs on the left of the contour.
+    pub fn left(&self) -> bool {
+        match self.side {
+            Side::Left => true,
+            Side::Right => false,
+            Side::Inside => self.contour.area() > 0.0,
+            Side::Outside => self.contour.area() < 0.0,
+        }
+    }
 }
 
 /// On which side of a contour the wire runs.
@@ -224,6 +237,7 @@ fn unhurt(near: &Near, pass: &Pass, settings: &Settings) -> Result<(), Box<Diagn
     let least = last - EXACT;
     for element in pass.path.lower().elements() {
         if let Some(distance) = near.clearance(element, least) {
+            let line = pass.path.lower().elements().iter().map(|e| e.line).find(|line| *line > 0);
             let message = format!(
                 "pass {} of opening {} comes as near as {distance:.4} mm to a contour on its way \
                  from X{:.4} Y{:.4} to X{:.4} Y{:.4}, and the last offset is {last:.4} mm",
@@ -236,7 +250,7 @@ fn unhurt(near: &Near, pass: &Pass, settings: &Settings) -> Result<(), Box<Diagn
             );
             return Err(Diagnostic::error("cuts-part", message)
                 .help("thread elsewhere, start elsewhere, or take a smaller lead-in")
-                .line(element.line)
+                .line(line.unwrap_or_default())
                 .into());
         }
     }

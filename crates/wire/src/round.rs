@@ -1,7 +1,7 @@
 //! The passes round one opening.
 
 use crate::contour::{Contour, Place};
-use crate::element::{Element, SAME};
+use crate::element::{Element, SAME, angle};
 use crate::lead::{Pairs, reversed};
 use crate::offset::{Corner, Corners, offset};
 use crate::path::Path;
@@ -9,6 +9,9 @@ use crate::plan::{Cut, Opening, Pass, Settings, Side, Trims};
 use crate::taper::lean;
 use geom::Vec2;
 use program::Diagnostic;
+
+/// From which turn on, radians, a contour has a corner.
+const CORNER: f64 = 0.02;
 
 /// An opening with the ways of its passes.
 pub(crate) struct Round {
@@ -43,14 +46,10 @@ impl Round {
             let way_out = "close it, or cut it without tab with the wire on its left or right";
             return Err(refused("open-contour", message, way_out));
         }
-        let left = match opening.side {
-            Side::Left => true,
-            Side::Right => false,
-            Side::Inside => contour.area() > 0.0,
-            Side::Outside => contour.area() < 0.0,
-        };
+        let left = opening.left();
         let start = match opening.start.or(opening.thread) {
             Some(point) if closed => contour.nearest(point),
+            None if closed && narrows(contour, left) => middle(contour),
             _ => contour.place_at(0.0),
         };
         let thread = match opening.thread {
@@ -202,6 +201,27 @@ impl Round {
     fn lead_out(&self, settings: &Settings, way: &Path, left: bool) -> Pairs {
         self.thread.map_or_else(Pairs::new, |thread| settings.lead.shape.out(thread, way, left))
     }
+}
+
+/// Whether a closed contour starts in an inner corner of the wire's side: what stands across its first
+/// element there comes near the last.
+fn narrows(contour: &Contour, left: bool) -> bool {
+    let elements = contour.elements();
+    let (Some(first), Some(last)) = (elements.first(), elements.last()) else { return false };
+    let turn = angle(last.tangent(1.0), first.tangent(0.0));
+    (if left { turn } else { -turn }) > CORNER
+}
+
+/// The middle of the longest element.
+fn middle(contour: &Contour) -> Place {
+    let (mut along, mut longest, mut place) = (0.0, 0.0, 0.0);
+    for length in contour.elements().iter().map(Element::length) {
+        if length > longest {
+            (longest, place) = (length, along + length / 2.0);
+        }
+        along += length;
+    }
+    contour.place_at(place)
 }
 
 /// One pass to be.

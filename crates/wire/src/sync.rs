@@ -10,8 +10,9 @@ use std::f64::consts::PI;
 /// How far a given point may lie off its contour, mm.
 const ON: f64 = 0.01;
 
-/// Stations closer than this are one, mm: a corner that both contours have is not cut twice.
-const STATION: f64 = 1e-5;
+/// Stations closer than this are one, mm: a corner that both contours have is not cut twice, though each
+/// is rounded in its own way.
+const STATION: f64 = 1e-3;
 
 impl Path {
     /// Move by move, as blocks with `X Y U V` and pairs of programs written block for block are. A
@@ -154,11 +155,12 @@ impl<'a> Ruler<'a> {
                 (along - start) / length
             }
         };
-        if to - from < SAME {
+        let (first, last) = (parameter(from), parameter(to));
+        if to - from < SAME || first >= last {
             let point = element.at(parameter(middle));
             return Element::line(point, point).from_line(element.line);
         }
-        element.part(parameter(from), parameter(to))
+        element.part(first, last)
     }
 }
 

@@ -49,7 +49,7 @@ pub fn cuts(program: &Program, start: Option<Vec2>) -> Result<Vec<Vec<Element>>,
             }
             Op::Compensation(Compensation::Left(_) | Compensation::Right(_)) => {
                 let what = "a wire offset whose amount is not known";
-                let way_out = "give the offset of its register, so that the path is resolved";
+                let way_out = "--side with --wire and --gap: the way beside the contour is then worked out here";
                 return Err(at(refused("open-compensation", what, way_out)));
             }
             _ => continue,
@@ -69,6 +69,94 @@ pub fn cuts(program: &Program, start: Option<Vec2>) -> Result<Vec<Vec<Element>>,
         return Err(refused("empty-contour", "the program cuts nothing in X and Y", ""));
     }
     Ok(cuts)
+}
+
+/// A contour beside which the control of the source leads the wire.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Beside {
+    /// The moves between the lead-in and the lead-out.
+    pub contour: Contour,
+    /// Whether the wire runs on its left (`G41`).
+    pub left: bool,
+    /// Where the lead-in begins, mm.
+    pub thread: Vec2,
+}
+
+/// The contours of a program that leaves the wire's offset to the control: the straight move that comes
+/// with `G41` or `G42` is the lead-in, the one with `G40` the lead-out. `None` where it offsets nothing.
+///
+/// # Errors
+/// `open-compensation` where a cut goes without the offset, or a rapid with it; `source-passes` where a
+/// contour is cut more than once; and those of [`contours`].
+pub fn beside(
+    program: &Program,
+    start: Option<Vec2>,
+) -> Result<Option<Vec<Beside>>, Box<Diagnostic>> {
+    let on = |op: &Op| matches!(op, Op::Compensation(side) if *side != Compensation::Off);
+    if !program.records.iter().any(|record| on(&record.op)) {
+        return Ok(None);
+    }
+    let mut plain = Program::new(&*program.name);
+    let (mut position, mut sides) = (start.unwrap_or(Vec2::NAN), Vec::new());
+    // What holds, and whether it comes with the next move.
+    let (mut side, mut switched, mut fresh) = (None, false, true);
+    for record in &program.records {
+        let line = record.line;
+        let at = |d: Box<Diagnostic>| Box::new(d.line(line));
+        match &record.op {
+            Op::Compensation(asked) => {
+                side = match asked {
+                    Compensation::Left(_) => Some(true),
+                    Compensation::Right(_) => Some(false),
+                    Compensation::Off => None,
+                };
+                switched = true;
+                continue;
+            }
+            Op::Line(pose) if switched => {
+                if let Some(left) = side {
+                    if !std::mem::take(&mut fresh) {
+                        let what = "a second pass from the same thread point";
+                        let way_out =
+                            "leave the first pass in the program: --leave makes the others";
+                        return Err(at(refused("source-passes", what, way_out)));
+                    }
+                    if position.is_nan() {
+                        let what = "a lead-in, and where it starts is not known in X and Y";
+                        let way_out = "begin with a rapid to the start point, or name it";
+                        return Err(at(refused("nc-unknown-position", what, way_out)));
+                    }
+                    sides.push((left, position));
+                }
+                switched = false;
+                plain.push(line, Op::Rapid(*pose));
+            }
+            Op::Line(_) | Op::Arc(_) if side.is_none() => {
+                let what = "a cut without the wire's offset, in a program that has it elsewhere";
+                let way_out = "only the lead-in and the lead-out stand outside of G41 and G40";
+                return Err(at(refused("open-compensation", what, way_out)));
+            }
+            Op::Rapid(_) if side.is_some() => {
+                let way_out = "end the offset by G40 and a straight move before";
+                let what = "a rapid while the wire is offset";
+                return Err(at(refused("open-compensation", what, way_out)));
+            }
+            op => {
+                fresh |= matches!(op, Op::Rapid(_) | Op::ThreadWire);
+                plain.push(line, op.clone());
+            }
+        }
+        if let Some(pose) = record.op.pose() {
+            position = upright(pose).map_err(at)?;
+        }
+    }
+    let contours = contours(&plain, start)?;
+    if contours.len() != sides.len() {
+        let what = "an offset is switched on, and nothing is cut with it";
+        return Err(refused("open-compensation", what, "take G41 and G42 out there"));
+    }
+    let found = contours.into_iter().zip(sides);
+    Ok(Some(found.map(|(contour, (left, thread))| Beside { contour, left, thread }).collect()))
 }
 
 /// The place of a pose whose wire stands upright.

@@ -206,6 +206,26 @@ fn where_the_control_offsets_the_path_is_the_contour() {
     assert_eq!(rule(inside, &Settings { by_control: true, ..settings(&[0.15]) }), "cuts-part");
 }
 
+/// Across the first side stands the last one, when the start is its corner.
+#[test]
+fn a_die_that_starts_in_its_corner_is_cut_from_the_middle_of_a_long_side() {
+    let round = Settings { corners: Corners::Round, ..settings(&[0.15]) };
+    let plan = planned(opening(plate(), Side::Inside), &round);
+    let way = plan.passes[0].path.lower();
+    assert_eq!(way.start(), p(15.0, 5.0));
+    assert!(way.elements()[0].end.distance(p(15.0, 0.15)) < 1e-9);
+    // Outside nothing is in the way.
+    let plan = planned(opening(plate(), Side::Outside), &round);
+    assert_eq!(plan.passes[0].path.lower().start(), p(0.0, -5.0));
+}
+
+#[test]
+fn a_lead_that_cuts_the_part_is_told_with_the_line_of_its_contour() {
+    let inside = Opening { thread: Some(p(15.0, 10.0)), ..punch() };
+    let found = plan(&[inside], &settings(&[0.15])).unwrap_err();
+    assert_eq!((found.rule, found.line), ("cuts-part", 1));
+}
+
 #[test]
 fn what_cannot_be_is_refused() {
     let open = Contour::new(plate().elements()[..3].to_vec(), 0.0).unwrap();

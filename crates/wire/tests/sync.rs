@@ -4,7 +4,7 @@ use geom::Vec2;
 use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
 use toolpost_wire::points::{Step, points};
-use toolpost_wire::{Contour, Element, Limits, Path};
+use toolpost_wire::{Contour, Direction, Element, Limits, Path};
 
 fn polygon(corners: &[(f64, f64)]) -> Contour {
     let corners: Vec<Vec2> = corners.iter().map(|&(x, y)| Vec2::new(x, y)).collect();
@@ -152,6 +152,39 @@ proptest! {
                     prop_assert!(ends.iter().any(|p| p.distance(element.end) < 1e-4));
                 }
             }
+        }
+    }
+}
+
+/// Lower and upper corners fall on the same eighths of the way, but for the rounding of the upper ones
+/// to so many mm.
+#[test]
+fn corners_that_rounding_parts_are_one() {
+    let corners = [(0.0, -20.0), (-20.0, -20.0), (-20.0, 20.0), (20.0, 20.0), (20.0, -20.0)];
+    for c in [8.485281, 8.4853, 8.485] {
+        let ends = [(0.0, -12.0), (-c, -c), (-c, c), (c, c), (c, -c), (0.0, -12.0)];
+        let arc = |ends: &[(f64, f64)]| {
+            let [start, end] = [ends[0], ends[1]].map(Vec2::from);
+            Element::arc_by_radius(start, end, 12.0, Direction::Clockwise, 0.005).unwrap()
+        };
+        let upper = Contour::new(ends.windows(2).map(arc).collect(), 0.0).unwrap();
+        let path = Path::by_length(&polygon(&corners), &upper).unwrap();
+        assert_eq!(path.elements().count(), 5, "{c}");
+    }
+}
+
+/// A corner 1.5 µm after one of the other contour: the end that stands still has no arc there.
+#[test]
+fn an_end_that_stands_still_goes_no_arc() {
+    let arcs = |turn: f64| {
+        let at = |angle: f64| Vec2::from_angle(angle) * 10.0;
+        let arc = |from: f64, to: f64| Element::arc(at(from), at(to), Vec2::ZERO, to - from);
+        Contour::new(vec![arc(0.0, turn), arc(turn, PI)], 0.0).unwrap()
+    };
+    let path = Path::by_length(&arcs(1.0), &arcs(1.00015)).unwrap();
+    for (below, above) in path.elements() {
+        for end in [below, above] {
+            assert!(end.turn.is_none() || end.length() > 1e-6, "{end:?}");
         }
     }
 }

@@ -4,7 +4,7 @@ use geom::Vec2;
 use program::{ArcTo, Compensation, Cycle, CycleKind, Op, Orientation, Pose, Program};
 use std::f64::consts::PI;
 use toolpost_wire::points::{Step, points};
-use toolpost_wire::{Path, contours, cuts};
+use toolpost_wire::{Path, beside, contours, cuts};
 
 type Vec3 = geom::Vec3;
 
@@ -128,4 +128,39 @@ fn a_million_tiny_moves() {
     assert_eq!(points(&[&path], Step::ChordError(0.001), None).unwrap()[0].lower.len(), 1_000_000);
     let refused = points(&[&path], Step::Fit, Some(1000)).unwrap_err();
     assert_eq!((refused.diagnostic.rule, refused.offer), ("memory", None));
+}
+
+/// A square of 20 mm with the wire in it, and one beside it with the wire outside.
+const TWO: &str = "O1 G21 G90 G17 G94\nG0 X10. Y10. Z0.\nG1 G41 D1 X0. F6.\nY0.\nX20.\nY20.\nX0.\nY10.\n\
+                   G1 G40 X10.\nG0 X50. Y-5.\nG1 G42 D1 Y0.\nX60.\nY20.\nX40.\nY0.\nX50.\nG1 G40 Y-5.\nM30\n";
+
+#[test]
+fn what_the_control_would_offset_is_a_contour_with_its_side_and_thread_point() {
+    let found = beside(&program(TWO), None).unwrap().unwrap();
+    let [inner, outer] = found.as_slice() else { panic!("{found:?}") };
+    assert_eq!((inner.left, inner.thread), (true, Vec2::new(10.0, 10.0)));
+    assert_eq!((outer.left, outer.thread), (false, Vec2::new(50.0, -5.0)));
+    // The leads are no part of it.
+    assert!(inner.contour.is_closed() && outer.contour.is_closed());
+    assert_eq!((inner.contour.area(), outer.contour.area()), (400.0, 400.0));
+    assert_eq!(inner.contour.elements()[0].line, 4);
+    assert_eq!(beside(&program("G21 G90\nG0 X0. Y0. Z0.\nG1 X1. F1.\nM30\n"), None), Ok(None));
+}
+
+#[test]
+fn an_offset_that_is_no_lead_contour_and_lead_is_refused_with_its_line() {
+    let rule = |from: &str, to: &str| {
+        let found = beside(&program(&TWO.replace(from, to)), None).unwrap_err();
+        (found.rule, found.line)
+    };
+    assert_eq!(rule("G0 X50. Y-5.\n", "G1 X50. Y-5.\n"), ("open-compensation", 10));
+    assert_eq!(rule("X20.\nY20.\nX0.\n", "X20.\nG0 Y20.\nG1 X0.\n"), ("open-compensation", 6));
+    let again = "G1 G42 D2 X0.\nY20.\nX20.\nY0.\nX0.\nY10.\nG40 X10.\nG0 X50. Y-5.\n";
+    assert_eq!(rule("G0 X50. Y-5.\n", again), ("source-passes", 10));
+    let nowhere = of(vec![
+        Op::Compensation(Compensation::Left(Some(1))),
+        Op::Line(pose(1.0, 1.0)),
+        Op::Line(pose(2.0, 1.0)),
+    ]);
+    assert_eq!(beside(&nowhere, None).unwrap_err().rule, "nc-unknown-position");
 }

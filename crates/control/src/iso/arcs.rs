@@ -57,6 +57,7 @@ impl Step<'_, '_, '_> {
             return Err(self.block.whole("nc-arc", message));
         }
         let turns = self.turns()?;
+        self.stood();
         self.switch_compensation();
         let mut axis = Vec3::ZERO;
         axis[third] = if clockwise { -1.0 } else { 1.0 };
@@ -139,12 +140,7 @@ impl Step<'_, '_, '_> {
     fn center_by_words(&mut self) -> Result<Vec3, Fault> {
         let start = self.state.position;
         let [first, second, third] = self.state.plane.axes();
-        if self.block.has(CENTER[third]) {
-            let plane = self.state.plane.name();
-            let message =
-                format!("{} has no meaning in an arc in {plane}", char::from(CENTER[third]));
-            return Err(self.block.at_word(CENTER[third], "nc-arc", message));
-        }
+        self.pass_outer_center(CENTER[third])?;
         let mut center = start;
         let mut given = 0;
         for axis in [first, second] {
@@ -161,6 +157,19 @@ impl Step<'_, '_, '_> {
             return Err(self.block.whole("nc-arc", message));
         }
         Ok(center)
+    }
+
+    /// The word of the centre along the axis of the arc. GRBL drops it (`gcode.c`, step 20), LinuxCNC
+    /// refuses it (found with `rs274`); that it is 0 says nothing anywhere.
+    fn pass_outer_center(&mut self, letter: u8) -> Result<(), Fault> {
+        let Some(word) = self.block.take(letter) else { return Ok(()) };
+        let is_nothing = word.value == 0.0 && self.flavor != Flavor::LinuxCnc;
+        if is_nothing || self.flavor == Flavor::Grbl {
+            return Ok(());
+        }
+        let plane = self.state.plane.name();
+        let message = format!("{} has no meaning in an arc in {plane}", char::from(letter));
+        Err(self.block.at_word(letter, "nc-arc", message))
     }
 
     /// LinuxCNC: `P` counts the turns begun, 1 where it is not given.

@@ -55,6 +55,7 @@ pub(super) struct Block<'a> {
     m: [Option<M>; Group::COUNT],
     places: [Word; Group::COUNT],
     comments: Vec<(usize, usize)>,
+    prompt: Option<(usize, usize)>,
     /// What the block sets (RS274/NGC), which takes effect when the whole block has been read.
     pub assignments: Vec<(Target<'a>, Value)>,
     /// The words behind `G65` or `G66`, in their order.
@@ -82,6 +83,7 @@ impl<'a> Block<'a> {
             m: [None; Group::COUNT],
             places: [Word::default(); Group::COUNT],
             comments: Vec::new(),
+            prompt: None,
             assignments: Vec::new(),
             arguments: Vec::new(),
         }
@@ -91,10 +93,13 @@ impl<'a> Block<'a> {
     pub(super) fn clear(&mut self, line: u32, text: &'a [u8]) {
         (self.text, self.line) = (text, line);
         (self.is_empty, self.started, self.calls) = (true, false, false);
-        (self.m_count, self.given, self.pending) = (0, 0, 0);
+        if self.m_count > 0 {
+            self.m = [None; Group::COUNT];
+        }
         self.g = [None; Group::COUNT];
-        self.m = [None; Group::COUNT];
+        (self.m_count, self.given, self.pending) = (0, 0, 0);
         self.comments.clear();
+        self.prompt = None;
         self.assignments.clear();
         self.arguments.clear();
     }
@@ -139,7 +144,11 @@ impl<'a> Block<'a> {
                     at = self.comment(at)?;
                     continue;
                 }
-                b';' if !dictionary.flavor.is_fanuc() => {
+                b';' if dictionary.flavor.is_fanuc() => {
+                    self.end_of_block(at)?;
+                    break;
+                }
+                b';' => {
                     self.comments.push((at + 1, text.len()));
                     break;
                 }
@@ -204,13 +213,17 @@ impl<'a> Block<'a> {
                 }
                 None => return Err(self.unknown(letter, word)),
             },
-            b'M' => match dictionary.m(word.value).or_else(|| self.of_the_wire(word.value)) {
+            b'M' => match dictionary.m(word.value).or_else(|| self.of_the_machine(word.value)) {
                 Some((group, meaning)) => {
                     if self.m[group as usize].replace(meaning).is_some() {
                         return Err(self.same_group(group, at, end));
                     }
                     self.places[group as usize] = word;
                     self.m_count += 1;
+                    if dictionary.flavor == Flavor::Marlin {
+                        self.started = true;
+                        return Ok(self.prompt(meaning, end));
+                    }
                 }
                 None if self.settings.auxiliary.iter().any(|&m| f64::from(m) == word.value) => {
                     self.m_count += 1;
@@ -241,9 +254,38 @@ impl<'a> Block<'a> {
         Ok(end)
     }
 
-    /// The M function of this number, where it threads or cuts the wire of the machine.
-    fn of_the_wire(&self, number: f64) -> Option<(Group, M)> {
+    /// Behind Marlin's `M0`, `M1` and `M117` at `at` stands a text, not words: the place after it.
+    fn prompt(&mut self, meaning: M, at: usize) -> usize {
+        let rest = self.text.get(at..).unwrap_or_default();
+        let text = rest.split(|&b| b == b';').next().unwrap_or_default();
+        // `M0 S5`: how long it waits.
+        let waits = matches!(text.trim_ascii(), [b'P' | b'S', b'0'..=b'9', ..]);
+        let prompts = match meaning {
+            M::Stop | M::OptionalStop => !waits && !text.trim_ascii().is_empty(),
+            M::Message => true,
+            _ => false,
+        };
+        if !prompts {
+            return at;
+        }
+        self.prompt = Some((at, at + text.len()));
+        at + text.len()
+    }
+
+    /// What the block shows to the operator, apart from its comments.
+    pub(super) fn message(&self) -> Option<&'a [u8]> {
+        let (from, to) = self.prompt?;
+        Some(self.text.get(from..to).unwrap_or_default().trim_ascii())
+    }
+
+    /// The M function of this number that is the machine's own: it threads or cuts the wire, or runs a
+    /// program of LinuxCNC's (`M100` to `M199`), to which P and Q belong.
+    fn of_the_machine(&self, number: f64) -> Option<(Group, M)> {
         let is = |function: Option<u32>| function.map(f64::from) == Some(number);
+        let runs = self.dictionary.flavor == Flavor::LinuxCnc && (100.0..200.0).contains(&number);
+        if runs && self.settings.auxiliary.iter().any(|&m| f64::from(m) == number) {
+            return Some((Group::Output, M::Neutral(b"PQ")));
+        }
         match self.settings.wire {
             _ if !self.dictionary.flavor.is_wire() => None,
             wire if is(wire.thread) => Some((Group::Wire, M::ThreadWire)),
@@ -270,7 +312,19 @@ impl<'a> Block<'a> {
             return Err(self.no_number(letter, at, from));
         }
         let mut reader = Reader::new(values, self.line, self.text, from);
-        let value = reader.value()?.map(|value| match letter {
+        let value = reader.value()?;
+        let rounds = |name: &&[u8]| {
+            let text = self.text.get(from..reader.at).unwrap_or_default();
+            text.windows(name.len()).any(|part| part == *name)
+        };
+        // There it goes to the least increment (B-63684EN, 16.3), which is the machine's.
+        if values.language() == Language::MacroB && [&b"ROUND"[..], b"RND"].iter().any(rounds) {
+            let message = "ROUND in a word rounds to the least increment of the machine";
+            let fault = self.fault("nc-expression", message, at, reader.at);
+            let help = "round in a block before: in #1=ROUND[..] it gives a whole number";
+            return Err(fault.help(help).into());
+        }
+        let value = value.map(|value| match letter {
             b'G' => {
                 arithmetic::whole(value * 10.0).map_or(value, |tenths| f64::from(tenths) / 10.0)
             }
@@ -293,17 +347,37 @@ impl<'a> Block<'a> {
         Ok(reader.at)
     }
 
-    /// Reads the comment at `at` and gives the place after it.
+    /// `;` at `at` is the end of the block as a FANUC shows it: behind it there are comments at most.
+    fn end_of_block(&mut self, mut at: usize) -> Result<(), Fault> {
+        while let Some(&byte) = self.text.get(at) {
+            at = match byte {
+                b' ' | b'\t' | b';' => at + 1,
+                b'(' => self.comment(at)?,
+                _ => {
+                    let message = "; ends the block, and there is more behind it";
+                    let fault = self.fault("nc-syntax", message, at, self.text.len());
+                    let help = "put a comment into ( ), and another block on a line of its own";
+                    return Err(fault.help(help).into());
+                }
+            };
+        }
+        Ok(())
+    }
+
+    /// Reads the comment at `at` and gives the place after it. On GRBL it ends at the first `)`,
+    /// whatever stands in it (`protocol_main_loop`).
     fn comment(&mut self, at: usize) -> Result<usize, Fault> {
         let rest = self.text.get(at + 1..).unwrap_or_default();
-        match rest.iter().position(|b| matches!(b, b'(' | b')')) {
+        let nests = self.dictionary.flavor != Flavor::Grbl;
+        match rest.iter().position(|&b| b == b')' || nests && b == b'(') {
             Some(n) if rest[n] == b')' => {
                 self.comments.push((at + 1, at + 1 + n));
                 Ok(at + n + 2)
             }
             Some(n) => {
                 let place = at + 1 + n;
-                Err(self.fault("nc-comment", "comments cannot be nested", place, place + 1))
+                let fault = self.fault("nc-comment", "comments cannot be nested", place, place + 1);
+                Err(fault.help("leave the inner brackets out, or write [ ]").into())
             }
             None => Err(self.fault("nc-comment", "the comment has no end", at, self.text.len())),
         }
@@ -326,12 +400,14 @@ impl<'a> Block<'a> {
     /// Puts a G word into the block.
     pub(super) fn put_g(&mut self, group: Group, word: G) {
         self.g[group as usize] = Some(word);
+        self.places[group as usize] = Word::default();
         self.is_empty = false;
     }
 
     /// Puts an M word into the block.
     pub(super) fn put_m(&mut self, group: Group, word: M) {
         self.m[group as usize] = Some(word);
+        self.m_count += 1;
         self.is_empty = false;
     }
 
@@ -366,6 +442,11 @@ impl<'a> Block<'a> {
     /// Whether the block has this letter, taken or not.
     pub(super) fn gives(&self, letter: u8) -> bool {
         self.given & bit(letter) != 0
+    }
+
+    /// Whether the block has one of these letters ([`bit`]) and nothing has taken it yet.
+    pub(super) fn has_any(&self, letters: u32) -> bool {
+        self.pending & letters != 0
     }
 
     /// The word of this letter, which then counts as used.
@@ -410,6 +491,7 @@ impl<'a> Block<'a> {
     }
 
     /// A finding at the word of this letter.
+    #[cold]
     pub(super) fn at_word(
         &self,
         letter: u8,
@@ -421,6 +503,7 @@ impl<'a> Block<'a> {
     }
 
     /// A finding at the G or M word of this group; at the whole block where there is none.
+    #[cold]
     pub(super) fn at_group(
         &self,
         group: Group,
@@ -435,10 +518,12 @@ impl<'a> Block<'a> {
     }
 
     /// A finding about the whole block.
+    #[cold]
     pub(super) fn whole(&self, rule: &'static str, message: impl Into<String>) -> Fault {
         self.fault(rule, message, 0, self.text.len())
     }
 
+    #[cold]
     fn fault(
         &self,
         rule: &'static str,
@@ -449,6 +534,7 @@ impl<'a> Block<'a> {
         Diagnostic::error(rule, message).at(self.line, self.text, start, end).into()
     }
 
+    #[cold]
     fn same_group(&self, group: Group, start: usize, end: usize) -> Fault {
         let first = self.places[group as usize];
         let show = |from: usize, to: usize| {
@@ -462,6 +548,7 @@ impl<'a> Block<'a> {
         self.fault("nc-modal-group", message, start, end)
     }
 
+    #[cold]
     fn unknown(&self, letter: u8, word: Word) -> Fault {
         let (start, end) = (word.start as usize, word.end as usize);
         let shown = String::from_utf8_lossy(self.text.get(start..end).unwrap_or_default());
@@ -470,13 +557,19 @@ impl<'a> Block<'a> {
         } else {
             format!("{} is no word of this control", char::from(letter))
         };
-        let mut fault = Diagnostic::error("nc-unknown-word", message);
-        if let Some(reason) = self.dictionary.why_refused(letter, word.value) {
-            fault = fault.help(reason);
-        }
+        let fault = Diagnostic::error("nc-unknown-word", message);
+        let fault = match self.dictionary.why_refused(letter, word.value) {
+            Some(reason) => fault.help(reason),
+            None if letter == b'M' => fault.help(
+                "where the builder of the machine has added it and nothing moves for it, list it under \
+                 `auxiliary` in the machine's file",
+            ),
+            None => fault,
+        };
         fault.at(self.line, self.text, start, end).into()
     }
 
+    #[cold]
     fn no_number(&self, letter: u8, at: usize, from: usize) -> Fault {
         match self.text.get(from) {
             Some(&byte @ (b'#' | b'[')) => self.stray(self.dictionary.flavor, byte, from),
@@ -487,22 +580,42 @@ impl<'a> Block<'a> {
         }
     }
 
+    #[cold]
     fn stray(&self, flavor: Flavor, byte: u8, at: usize) -> Fault {
+        let by_hand = flavor.changes_by_hand();
         let message = match byte {
             b'#' | b'[' if flavor.language() == Language::Plain => {
                 "this control has no parameters and does not calculate".to_owned()
             }
             b'#' => "a variable is set at the start of a block that has nothing else".to_owned(),
             b'[' | b']' | b'=' => "an expression without its word".to_owned(),
-            b'$' => "commands of the console ($) are no part of a program".to_owned(),
+            b'$' if flavor == Flavor::Grbl => {
+                "$ begins a command of the console ($H homes, $J jogs, $X unlocks, $n= sets), no block"
+                    .to_owned()
+            }
+            b'%' if by_hand => {
+                "% begins no block; a line with it is for the sender (%name = sets its variables)"
+                    .to_owned()
+            }
             b'%' => "% stands alone on its line".to_owned(),
-            b';' => "; does not begin a comment here; write ( )".to_owned(),
+            b'(' => "( begins no comment on this control".to_owned(),
             b'0'..=b'9' | b'.' | b'+' | b'-' => "a number without its letter".to_owned(),
             b'a'..=b'z' if !flavor.has_small_letters() => "small letters are no words".to_owned(),
             b'!'..=b'~' => format!("{} begins no word", char::from(byte)),
             _ => format!("byte {byte:#04x} begins no word"),
         };
-        self.fault("nc-syntax", message, at, at + 1)
+        let fault = self.fault("nc-syntax", message, at, at + 1);
+        match byte {
+            b'$' if flavor == Flavor::Grbl => {
+                fault.help("take it out, and give it by hand before the start").into()
+            }
+            b'%' if by_hand => {
+                fault.help("take the line out; the variables of a sender are its own").into()
+            }
+            b'(' => fault.help("write a comment behind ;").into(),
+            b'a'..=b'z' => fault.help("write capital letters").into(),
+            _ => fault,
+        }
     }
 }
 

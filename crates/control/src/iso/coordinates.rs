@@ -207,7 +207,7 @@ impl Step<'_, '_, '_> {
             _ => None,
         };
         let Some(number) = number else {
-            let message = "P names no work offset that can be written here";
+            let message = "P names no work offset that can be written here (P0 shifts all of them)";
             return Err(self.block.at_group(Group::OneShot, "nc-data", message));
         };
         let sets_here = kind == 20 && !self.flavor.is_fanuc();

@@ -259,7 +259,11 @@ impl Step<'_, '_, '_> {
         let retract = match self.state.return_to_r {
             Some(true) => 0.0,
             Some(false) => (held.initial - r).max(0.0),
-            None => return Err(self.wrong("a cycle, and neither G98 nor G99 has been given")),
+            None => {
+                let fault = self.wrong("a cycle, and neither G98 nor G99 has been given");
+                let help = "write G98 or G99: a control keeps that of the program before";
+                return Err(fault.help(help).into());
+            }
         };
         Ok(Cycle {
             kind,

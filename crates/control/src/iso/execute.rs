@@ -93,14 +93,19 @@ impl Step<'_, '_, '_> {
     /// FANUC runs one M function a block (parameter 3404, bit 7, as delivered), and only the builder
     /// says whether it comes before or after the motion beside it.
     fn m_functions_beside_motion(&mut self) -> Result<(), Fault> {
-        if !self.flavor.is_fanuc() {
+        if self.block.m_count == 0 || !self.flavor.is_fanuc() {
             return Ok(());
         }
         if self.block.m_count > 1 {
             let message = "this control runs one M function a block (FANUC: parameter 3404#7)";
-            return Err(self.block.whole("nc-many-m", message));
+            let fault = self.block.whole("nc-many-m", message);
+            return Err(fault.help("write each in a block of its own").into());
         }
-        let drills = self.state.cycle.is_some() || self.block.g(Group::Cycle).is_some();
+        let drills = match self.block.g(Group::Cycle) {
+            Some(word) => word != G::CancelCycle,
+            // A word of group 01 ends the cycle.
+            None => self.state.cycle.is_some() && self.block.g(Group::Motion).is_none(),
+        };
         let cuts = !matches!(self.motion_of_block(), Some(Motion::Rapid) | None) || drills;
         let moves = b"XYZABC".iter().any(|&letter| self.block.has(letter))
             && self.block.g(Group::OneShot).is_none();
@@ -109,7 +114,8 @@ impl Step<'_, '_, '_> {
                 matches!(self.block.m(group), Some(M::SpindleOff | M::CoolantOff | M::Orient));
             if off && cuts && moves {
                 let message = "whether this acts before or after the cut is up to the machine";
-                return Err(self.block.at_group(group, "nc-m-beside-cut", message));
+                let fault = self.block.at_group(group, "nc-m-beside-cut", message);
+                return Err(fault.help("write it in a block of its own").into());
             }
         }
         Ok(())
@@ -128,20 +134,14 @@ impl Step<'_, '_, '_> {
             return Ok(());
         }
         let Some(word) = self.block.take(b'F') else { return Ok(()) };
-        if let Some(G::Inches(inches)) = self.block.g(Group::Units)
-            && self.state.inches != Some(inches)
-            && (self.flavor != Flavor::LinuxCnc || self.state.inches.is_none())
-        {
-            let message = "F in the block that changes the units: controls differ in which it is";
-            return Err(self.block.at_word(b'F', "nc-feed", message));
-        }
+        let inches = self.inches_of_feed()?;
         if word.value <= 0.0 {
             return Err(self.block.at_word(b'F', "nc-feed", "the feed must be greater than 0"));
         }
         self.state.f = Some(word.value);
         let feed = match self.state.feed_mode {
-            FeedMode::PerMinute => Feed::PerMinute(word.value * self.unit(b'F')?),
-            FeedMode::PerTurn => Feed::PerTurn(word.value * self.unit(b'F')?),
+            FeedMode::PerMinute => Feed::PerMinute(word.value * self.unit(inches, b'F')?),
+            FeedMode::PerTurn => Feed::PerTurn(word.value * self.unit(inches, b'F')?),
             FeedMode::InverseTime => Feed::InverseTime(word.value),
         };
         if self.state.feed.replace(feed) != Some(feed) {
@@ -150,9 +150,28 @@ impl Step<'_, '_, '_> {
         Ok(())
     }
 
+    /// The unit that F is in, where the block itself changes units, too. GRBL takes that of the block
+    /// (`gcode.c`, step 3), FANUC that of all its modal words; LinuxCNC takes F first (found with
+    /// `rs274`), and so does Mach3 by its order of execution.
+    fn inches_of_feed(&self) -> Result<Option<bool>, Fault> {
+        let before = self.state.inches;
+        let Some(G::Inches(inches)) = self.block.g(Group::Units) else { return Ok(before) };
+        match self.flavor {
+            Flavor::Grbl => Ok(Some(inches)),
+            _ if before == Some(inches) => Ok(before),
+            Flavor::LinuxCnc if before.is_some() => Ok(before),
+            _ if before.is_none() && self.flavor.is_fanuc() => Ok(Some(inches)),
+            _ => {
+                let message = "F in the block that changes the units counts in those of before";
+                let fault = self.block.at_word(b'F', "nc-feed", message);
+                Err(fault.help("write G20 or G21 in a block before").into())
+            }
+        }
+    }
+
     fn speed(&mut self) -> Result<(), Fault> {
-        // Marlin's G4 has its seconds there.
-        if self.flavor == Flavor::Marlin && self.block.g(Group::OneShot) == Some(G::Dwell) {
+        // On Marlin S belongs to the command of its line: the seconds of G4, and the like.
+        if self.flavor == Flavor::Marlin && self.block.m(Group::Spindle).is_none() {
             return Ok(());
         }
         let Some(word) = self.block.take(b'S') else { return Ok(()) };
@@ -183,7 +202,8 @@ impl Step<'_, '_, '_> {
         let speed = || {
             self.state.speed.ok_or_else(|| {
                 let message = "the spindle starts and no speed has been given by S";
-                self.block.at_group(Group::Spindle, "nc-spindle", message)
+                let fault = self.block.at_group(Group::Spindle, "nc-spindle", message);
+                Fault::from(fault.help("write S beside M3 or M4, or before"))
             })
         };
         match self.block.m(Group::Spindle) {
@@ -230,6 +250,11 @@ impl Step<'_, '_, '_> {
                         return Err(self.block.at_group(group, "nc-output", message));
                     }
                     self.block.pass(letters);
+                }
+                Some(M::IdleTime) if self.block.take(b'S').is_none() => {
+                    let message =
+                        "the axes are let go: where the tool stands afterwards is not known";
+                    return Err(self.block.at_group(group, "nc-unknown-position", message));
                 }
                 _ => {}
             }
@@ -314,6 +339,7 @@ impl Step<'_, '_, '_> {
             }
             self.state.inches = Some(inches);
         }
+        self.remember_registers()?;
         if let Some(g) = self.block.g(Group::Compensation) {
             self.compensation(g)?;
         }
@@ -360,7 +386,10 @@ impl Step<'_, '_, '_> {
             }
         }
         if side != Side::Off && radius.is_none() {
-            register = self.take_whole(self.flavor.radius_letter())?;
+            register = match self.flavor.remembers_registers() {
+                true => self.state.registers.d,
+                false => self.take_whole(self.flavor.radius_letter())?,
+            };
             self.radius_is_set_up(register)?;
             if register.is_none() && self.flavor.is_fanuc() {
                 let letter = char::from(self.flavor.radius_letter());
@@ -418,18 +447,20 @@ impl Step<'_, '_, '_> {
     ///
     /// # Errors
     /// The program has not said which unit it is in.
-    fn unit(&self, letter: u8) -> Result<f64, Fault> {
-        match self.state.inches {
+    #[inline]
+    fn unit(&self, inches: Option<bool>, letter: u8) -> Result<f64, Fault> {
+        match inches {
             Some(true) => Ok(INCH),
             Some(false) => Ok(1.0),
-            None => {
-                let message = "a length, and neither G20 nor G21 has been given";
-                let fault = self.block.at_word(letter, "nc-units", message);
-                Err(fault
-                    .help("write G20 or G21: a control keeps the unit of the program before")
-                    .into())
-            }
+            None => Err(self.no_unit(letter)),
         }
+    }
+
+    #[cold]
+    fn no_unit(&self, letter: u8) -> Fault {
+        let message = "a length, and neither G20 nor G21 has been given";
+        let fault = self.block.at_word(letter, "nc-units", message);
+        fault.help("write G20 or G21: a control keeps the unit of the program before").into()
     }
 
     /// The length (mm) of this letter.
@@ -443,7 +474,7 @@ impl Step<'_, '_, '_> {
         if value == 0.0 {
             return Ok(Some(0.0));
         }
-        let unit = self.unit(letter)?;
+        let unit = self.unit(self.state.inches, letter)?;
         let length = match (increments, self.state.inches) {
             (false, _) => value * unit,
             (true, Some(true)) => value / 10_000.0 * unit,
@@ -459,6 +490,7 @@ impl Step<'_, '_, '_> {
     }
 
     /// The number of this letter, and whether it counts least increments.
+    #[inline]
     fn take_pointed(&mut self, letter: u8) -> Result<Option<(f64, bool)>, Fault> {
         let Some(word) = self.block.take(letter) else { return Ok(None) };
         if word.is_in_units() || word.value == 0.0 {
@@ -467,15 +499,18 @@ impl Step<'_, '_, '_> {
         match self.whole_numbers {
             WholeNumbers::Units => Ok(Some((word.value, false))),
             WholeNumbers::Increments => Ok(Some((word.value, true))),
-            WholeNumbers::Unknown => {
-                let shown = self.block.shown(letter);
-                let message = format!(
-                    "{shown} has no decimal point: units or least increments, as the machine is set"
-                );
-                let fault = self.block.at_word(letter, "nc-decimal-point", message);
-                Err(fault.help("write the point, or say what whole numbers count").into())
-            }
+            WholeNumbers::Unknown => Err(self.no_point(letter)),
         }
+    }
+
+    #[cold]
+    fn no_point(&self, letter: u8) -> Fault {
+        let shown = self.block.shown(letter);
+        let message = format!(
+            "{shown} has no decimal point: units or least increments, as the machine is set"
+        );
+        let fault = self.block.at_word(letter, "nc-decimal-point", message);
+        fault.help("write the point, or say what whole numbers count").into()
     }
 
     /// The whole number of this letter.

@@ -3,7 +3,7 @@
 //!
 //! They share the words and the order of execution and differ in tables ([`flavors`]) and in the
 //! rules that each maker states; `docs/controls/iso.md` and its neighbours say which, with sources.
-//! A line goes by as it stands ([`run`]), or leads elsewhere: O-words ([`owords`]) and statements of
+//! A line goes by as it stands ([`mod@run`]), or leads elsewhere: O-words ([`owords`]) and statements of
 //! macro B ([`macros`]). A block is taken apart ([`block`]), its numbers calculated where it says so
 //! ([`expression`], [`parameters`], [`system`]), and run with its records held back ([`execute`],
 //! [`motion`], [`arcs`], [`cycles`], [`coordinates`], [`tools`]): a block with a mistake leaves none.

@@ -3,7 +3,7 @@
 use super::block::Fault;
 use super::execute::Step;
 use super::state::{Polar, Tilt};
-use super::words::{FeedMode, Flavor, G, Group, Motion};
+use super::words::{FeedMode, Flavor, G, Group, Motion, bit};
 use geom::Vec3;
 use program::{Compensation, Feed, Op};
 
@@ -28,7 +28,7 @@ impl Step<'_, '_, '_> {
             return self.interpolation().and_then(|()| self.go());
         };
         match word {
-            G::LookAhead => return self.look_ahead(),
+            G::LookAhead { letter, on } => return self.look_ahead(letter, on),
             G::Home
             | G::SecondHome
             | G::Machine
@@ -139,7 +139,6 @@ impl Step<'_, '_, '_> {
         if self.state.cycle.is_some() {
             return self.holes();
         }
-        let arc_words = b"IJKR".iter().any(|&letter| self.block.has(letter));
         let Some(motion) = self.state.motion else {
             return match b"XYZABC@^".iter().find(|&&letter| self.block.has(letter)) {
                 Some(&letter) => {
@@ -157,6 +156,7 @@ impl Step<'_, '_, '_> {
             Motion::Arc { clockwise } => {
                 let target = self.target(false)?;
                 let asked = matches!(self.block.g(Group::Motion), Some(G::Motion(_)));
+                let arc_words = b"IJKR".iter().any(|&letter| self.block.has(letter));
                 if target.named == 0 && !arc_words && !asked {
                     return Ok(());
                 }
@@ -188,6 +188,19 @@ impl Step<'_, '_, '_> {
         self.along(self.state.plane.axes()[2], &mut target, unknown_stays)?;
         target.named |= self.lean()?;
         self.together(target.named)?;
+        if self.block.has_any(bit(b'A') | bit(b'B') | bit(b'C')) {
+            self.turned(&mut target, unknown_stays)?;
+        }
+        if self.state.frames.lost && target.named != 0 {
+            let message = "G92.1 has moved the zero by what the control held before the program";
+            let fault = self.block.whole("nc-unknown-shift", message);
+            return Err(fault.help("write G92.1 before the first move").into());
+        }
+        Ok(target)
+    }
+
+    /// The words of the rotary axes.
+    fn turned(&mut self, target: &mut Target, unknown_stays: bool) -> Result<(), Fault> {
         for (axis, letter) in b"ABC".iter().copied().enumerate() {
             if !self.block.has(letter) {
                 continue;
@@ -204,12 +217,7 @@ impl Step<'_, '_, '_> {
                     self.advance(target.rotary[axis], value, letter, unknown_stays)?;
             }
         }
-        if self.state.frames.lost && target.named != 0 {
-            let message = "G92.1 has moved the zero by what the control held before the program";
-            let fault = self.block.whole("nc-unknown-shift", message);
-            return Err(fault.help("write G92.1 before the first move").into());
-        }
-        Ok(target)
+        Ok(())
     }
 
     /// The words of the two axes of the plane.
@@ -340,6 +348,7 @@ impl Step<'_, '_, '_> {
     }
 
     /// The coordinate that `value` gives an axis that stands at `from`.
+    #[inline]
     pub(super) fn advance(
         &self,
         from: f64,
@@ -351,12 +360,17 @@ impl Step<'_, '_, '_> {
             return Ok(value);
         }
         if from.is_nan() && !(unknown_stays && value == 0.0) {
-            let message =
-                format!("an increment, and where {} stands is not known", char::from(letter));
-            let fault = self.block.at_word(letter, "nc-unknown-position", message);
-            return Err(fault.help("give the position in G90 first").into());
+            return Err(self.nowhere(letter));
         }
         Ok(from + value)
+    }
+
+    /// An increment of an axis of which nobody knows where it stands.
+    #[cold]
+    fn nowhere(&self, letter: u8) -> Fault {
+        let message = format!("an increment, and where {} stands is not known", char::from(letter));
+        let fault = self.block.at_word(letter, "nc-unknown-position", message);
+        fault.help("give the position in G90 first").into()
     }
 
     /// Whether the block may move at feed.
@@ -404,6 +418,9 @@ impl Step<'_, '_, '_> {
                 "Z in a tilted plane before X and Y: where the tool goes down is not known";
             return Err(self.block.whole("nc-unknown-position", message));
         }
+        if !rapid {
+            self.stood();
+        }
         // On LinuxCNC with any straight move (`rs274`).
         let [first, second, _] = self.state.plane.axes();
         if from[first] != to[first] || from[second] != to[second] || self.flavor == Flavor::LinuxCnc
@@ -414,6 +431,16 @@ impl Step<'_, '_, '_> {
         self.ops.push(if rapid { Op::Rapid(pose) } else { Op::Line(pose) });
         self.arrive(target);
         Ok(())
+    }
+
+    /// Says where the tool stands before anything has moved, where `G92` alone has told so.
+    pub(super) fn stood(&mut self) {
+        if !self.state.moved && !self.state.told && self.state.position.is_finite() {
+            let here = self.state.pose(self.state.position, self.state.rotary);
+            self.ops.push(Op::Rapid(here));
+            self.state.told = true;
+            self.state.frames.used();
+        }
     }
 
     /// The machine stands at `target` from here on.
@@ -441,12 +468,16 @@ impl Step<'_, '_, '_> {
         }));
     }
 
-    /// `G5.1 Q1` and `Q0`: look-ahead, which changes how fast the path is run and not where it is.
-    fn look_ahead(&mut self) -> Result<(), Fault> {
-        match self.take_whole(b'Q')? {
-            Some(0 | 1) => Ok(()),
+    /// Look-ahead, which changes how fast the path is run and not where it is; R says how exactly (B-64484EN,
+    /// "Machining condition selecting function").
+    fn look_ahead(&mut self, letter: u8, on: u32) -> Result<(), Fault> {
+        self.take_whole(b'R')?;
+        match self.take_whole(letter)? {
+            Some(number) if number == on || number == 0 => Ok(()),
             _ => {
-                let message = "G5.1 needs Q1 or Q0";
+                let letter = char::from(letter);
+                let message =
+                    format!("look-ahead goes on with {letter}{on} and off with {letter}0");
                 Err(self.block.at_group(Group::OneShot, "nc-look-ahead", message))
             }
         }

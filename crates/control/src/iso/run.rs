@@ -270,6 +270,9 @@ impl<'a, 's> Run<'a, 's> {
             };
             self.ops.push(op);
         }
+        if let Some(message) = self.block.message() {
+            self.ops.push(Op::Message(String::from_utf8_lossy(message).into()));
+        }
     }
 
     /// A message with the values of its parameters.

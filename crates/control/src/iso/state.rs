@@ -67,6 +67,8 @@ pub(super) struct State {
     /// The last P of a cycle, s.
     pub cycle_dwell: Option<f64>,
     pub cycle: Option<Holding>,
+    /// It is told where the tool stands before anything moves.
+    pub told: bool,
     /// Something has moved.
     pub moved: bool,
     /// Something has moved at feed.
@@ -184,6 +186,7 @@ impl State {
             return_to_r: flavor.is_fanuc().then_some(false),
             cycle_dwell: None,
             cycle: None,
+            told: all_zero,
             moved: false,
             cut: false,
             ended: false,

@@ -103,8 +103,8 @@ pub(super) fn ngc_named(values: &Values, name: &[u8]) -> Option<Result<f64, Stri
         b"_value_returned" => yes(values.parameters.returned.is_some()),
         b"_call_level" => values.parameters.level() as f64,
         b"_remap_level" => 0.0,
-        // Not the machine's own interpreter: this is a look ahead of time, as a preview is.
-        b"_task" => 0.0,
+        // What is followed is what the machine does, not what its preview shows.
+        b"_task" => 1.0,
         b"_line" => f64::from(values.line),
         b"_vmajor" => 2.9,
         b"_vminor" => 0.0,

@@ -3,7 +3,7 @@
 use super::block::Fault;
 use super::execute::Step;
 use super::state::{Length, Tilt, UNKNOWN};
-use super::words::{Flavor, G, Group, M};
+use super::words::{Flavor, G, Group, M, bit};
 use crate::ToolData;
 use program::{Op, Spindle, Tool};
 
@@ -14,12 +14,15 @@ pub(super) struct Registers {
     lengths: Vec<(u32, f64)>,
     /// Registers whose radius the program has written.
     radii: Vec<u32>,
+    /// The last D and the last H, where the flavour remembers them.
+    pub d: Option<u32>,
+    h: Option<u32>,
 }
 
 impl Registers {
     pub(super) fn new(tools: &[ToolData]) -> Registers {
         let lengths = tools.iter().map(|tool| (tool.number, tool.length)).collect();
-        Registers { lengths, radii: Vec::new() }
+        Registers { lengths, ..Registers::default() }
     }
 
     /// The length in a register, NaN where it is not known.
@@ -104,13 +107,51 @@ impl Step<'_, '_, '_> {
         self.flavor.changes_by_hand() && self.state.selected != self.state.tool
     }
 
+    /// D and H are modal by themselves (B-64484EN-2, "Tool length compensation", "Cutter compensation"):
+    /// while `G43` is on, another H is another length at once.
+    pub(super) fn remember_registers(&mut self) -> Result<(), Fault> {
+        if !self.block.has_any(bit(b'D') | bit(b'H')) || !self.flavor.remembers_registers() {
+            return Ok(());
+        }
+        if let Some(register) = self.take_whole(b'D')? {
+            let compensates = self.state.compensation.is_on();
+            let stays = self.block.g(Group::Compensation).is_none();
+            if compensates && stays && self.state.registers.d != Some(register) {
+                let message = "another radius while radius compensation is on";
+                let fault = self.block.at_word(b'D', "nc-compensation", message);
+                return Err(fault.help("write it beside G41 or G42, after G40").into());
+            }
+            self.state.registers.d = Some(register);
+        }
+        if let Some(register) = self.take_whole(b'H')? {
+            self.state.registers.h = Some(register);
+            let kept = match self.state.length {
+                Length::Register(_) => G::Length,
+                Length::Center(_) => G::ToolCenter,
+                Length::None | Length::Value(_) => return Ok(()),
+            };
+            if self.block.g(Group::Length).is_none() {
+                self.block.put_g(Group::Length, kept);
+            }
+        }
+        Ok(())
+    }
+
+    /// The register that H names: in the block, or before where the flavour remembers it.
+    fn length_register(&mut self) -> Result<Option<u32>, Fault> {
+        if self.flavor.remembers_registers() {
+            return Ok(self.state.registers.h);
+        }
+        self.take_whole(b'H')
+    }
+
     /// `G43` and its kin, `G49`.
     pub(super) fn length(&mut self) -> Result<(), Fault> {
         if self.flavor == Flavor::LinuxCnc && self.block.g(Group::Length).is_some() {
             self.not_compensated("another length offset")?;
         }
         let length = match self.block.g(Group::Length) {
-            Some(G::Length) => match self.take_whole(b'H')? {
+            Some(G::Length) => match self.length_register()? {
                 Some(0) if self.flavor.is_fanuc() => Length::None,
                 Some(register) => Length::Register(register),
                 // LinuxCNC: without H the tool in the spindle.
@@ -125,7 +166,7 @@ impl Step<'_, '_, '_> {
                     let message = "cancel the turned, scaled or tilted coordinates first";
                     return Err(self.block.at_group(Group::Length, "nc-tilt", message));
                 }
-                Length::Center(self.take_whole(b'H')?.ok_or_else(|| self.no_register())?)
+                Length::Center(self.length_register()?.ok_or_else(|| self.no_register())?)
             }
             Some(G::DynamicLength) => {
                 if self.block.g(Group::Motion).is_some() || !self.block.has(b'Z') {

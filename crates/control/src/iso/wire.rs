@@ -62,6 +62,7 @@ impl Step<'_, '_, '_> {
                 return Err(self.block.at_group(Group::Wire, "nc-taper", message));
             }
         }
+        self.stood();
         self.ops.push(op);
         Ok(())
     }

@@ -41,6 +41,11 @@ impl Flavor {
         if self == Flavor::Sodick { b'A' } else { b'T' }
     }
 
+    /// Whether D and H stay when they stand alone, for the `G41` and `G43` to come.
+    pub(super) fn remembers_registers(self) -> bool {
+        matches!(self, Flavor::Fanuc | Flavor::Haas)
+    }
+
     /// The letter of the register of the tool's or the wire's radius.
     pub(super) fn radius_letter(self) -> u8 {
         if self == Flavor::Sodick { b'H' } else { b'D' }
@@ -111,7 +116,11 @@ pub(super) enum G {
     /// `G29`
     FromHome,
     Machine,
-    LookAhead,
+    /// `G5 P`, `G5.1 Q`: on with this number and off with 0.
+    LookAhead {
+        letter: u8,
+        on: u32,
+    },
     SwingToTilt,
     /// `G65`, `G66`: the macro that P names, once or after each move.
     MacroCall {
@@ -245,6 +254,10 @@ pub(super) enum M {
     CutWire,
     /// Nothing moves for it; the letters may stand beside it.
     Neutral(&'static [u8]),
+    /// `M117`: a text for the operator.
+    Message,
+    /// Marlin's `M18`, `M84`: with S after how many idle seconds the axes are let go.
+    IdleTime,
     /// An output of the machine; the letters must stand beside it.
     Output(&'static [u8]),
 }

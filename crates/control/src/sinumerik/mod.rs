@@ -1,7 +1,7 @@
 //! SINUMERIK 840D sl and 828D, milling.
 //!
 //! What the language means, with the manual that says so: `docs/controls/sinumerik.md`. A program comes
-//! from a [`library`] and is followed from block to block ([`run`]) and through its calls ([`levels`]). A
+//! from a [`library`] and is followed from block to block ([`mod@run`]) and through its calls ([`levels`]). A
 //! block is read whole ([`words`]), with every word looked up in a table ([`commands`], [`call`],
 //! [`cycles`]) and every expression evaluated ([`expression`]). What it says of the order of blocks is a
 //! [`statement`], for which the program's labels and control structures are found once ([`outline`]); the

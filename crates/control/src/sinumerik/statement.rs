@@ -1,5 +1,5 @@
 //! Statements: what a block says of the order of blocks. They are read with their conditions evaluated
-//! and carried out by [`super::run`].
+//! and carried out by [`mod@super::run`].
 
 use super::Fallible;
 use super::definition;

@@ -56,6 +56,8 @@ pub struct WirePicture<'a> {
 pub struct WireLeg<'a> {
     pub path: &'a Path,
     pub points: Option<&'a Points>,
+    /// Whether the wire is threaded at its start; otherwise it goes on from the leg before.
+    pub threaded: bool,
 }
 
 /// Draws the way of a wire as SVG under a title.
@@ -97,9 +99,13 @@ fn plan(out: &mut String, picture: &WirePicture) {
     drawn(out, &view, 0.0, chosen, (SELECTED, 4.0));
     let points = || picture.legs.iter().filter_map(|leg| leg.points);
     dots(out, &view, points().map(|points| &points.upper[..]), UPPER);
-    let all: usize = points().map(|points| points.lower.len()).sum();
+    let all = picture
+        .legs
+        .iter()
+        .filter_map(|leg| Some(leg.points?.lower.len() - usize::from(!leg.threaded)));
+    let all: usize = all.sum();
     let shown = dots(out, &view, points().map(|points| &points.lower[..]), LOWER);
-    picture.legs.iter().for_each(|leg| start(out, leg, &view));
+    picture.legs.iter().filter(|leg| leg.threaded).for_each(|leg| start(out, leg, &view));
     let points = match all {
         0 => String::new(),
         _ if all == shown => format!(", {all} POINTS"),
@@ -237,17 +243,17 @@ fn chord_error(out: &mut String, picture: &WirePicture) {
     let way = chords.last().map_or(0.0, |chord| chord.to);
     let most = chords.iter().flat_map(|chord| chord.errors).fold(0.0, f64::max);
     let [low, high] = ERROR;
-    let _ = writeln!(
-        out,
-        "<path stroke=\"{QUIET}\" d=\"M{} {}V{}H{}\"/>",
-        low.x, low.y, high.y, high.x
-    );
     if most == 0.0 {
         let text = if chords.is_empty() { "ARCS ARE CUT AS ARCS" } else { "NO ARCS" };
         caption(out, &format!("CHORD ERROR: {text}"), ERROR);
         return;
     }
     caption(out, &format!("CHORD ERROR ALONG THE WAY, {most:.3e} MM AT MOST"), ERROR);
+    let _ = writeln!(
+        out,
+        "<path stroke=\"{QUIET}\" d=\"M{} {}V{}H{}\"/>",
+        low.x, low.y, high.y, high.x
+    );
     let room = high - low;
     let at = |along: f64, error: f64| {
         DVec2::new(low.x + room.x * along / way, high.y - room.y * error / most)
@@ -282,12 +288,12 @@ fn sagitta(element: &Element, chord: f64) -> f64 {
     })
 }
 
-/// The surface that the wire cuts, from the front left and above.
+/// The surface that the wire cuts, isometric.
 fn surface(out: &mut String, picture: &WirePicture) {
     let flat = picture.corners(0.0);
     let size = (flat[1] - flat[0]).max_element();
     let height = picture.height.unwrap_or(0.3 * size);
-    let view = View::from_above(picture.corners(height), SURFACE);
+    let view = View::isometric(picture.corners(height), SURFACE);
     let text = match picture.height {
         Some(height) => format!("CUT SURFACE, HEIGHT {height} MM"),
         None => String::from("CUT SURFACE, HEIGHT NOT GIVEN"),
@@ -334,10 +340,12 @@ fn surface(out: &mut String, picture: &WirePicture) {
             drawn(out, &view, 0.0, std::iter::once(below), (SELECTED, 3.0));
             drawn(out, &view, height, std::iter::once(above), (SELECTED, 3.0));
         }
-        let threaded = [view.at(lower.start().extend(0.0)), view.at(upper.start().extend(height))];
-        let mut wire = Trace::new(TOLERANCE);
-        wire.segment(threaded[0], threaded[1]);
-        lines(out, wire, START, 2.2, "");
+        if leg.threaded {
+            let mut wire = Trace::new(TOLERANCE);
+            let (below, above) = (lower.start().extend(0.0), upper.start().extend(height));
+            wire.segment(view.at(below), view.at(above));
+            lines(out, wire, START, 2.2, "");
+        }
     }
     triad(out, &view, DVec2::new(SURFACE[0].x + 10.0, SIZE.y - 40.0));
     scale_bar(out, &view, DVec2::new(SURFACE[1].x, SIZE.y - 30.0));

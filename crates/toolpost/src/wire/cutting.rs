@@ -4,17 +4,18 @@ use super::leg::{ByControl, Leg};
 use crate::args::{Cutting, Rounding, Side, Trims};
 use ::wire::offset::Corners;
 use ::wire::plan::{self, Opening, Pass, Settings, Taper, plan};
-use ::wire::{Contour, Lead, LeadShape, Path, taper};
+use ::wire::{Beside, Contour, Lead, LeadShape, Path, taper};
 use geom::Vec2;
 use program::{Compensation, Diagnostic};
 
-/// The ways of the wire along `paths`, and what is worth knowing of them; `height` is that of the upper
-/// contour, mm.
+/// The ways of the wire along `paths`, and what is worth knowing of them; `beside` is what the source says
+/// of each, and `height` that of the upper contour, mm.
 ///
 /// # Errors
 /// What the call asks for and the contours do not allow.
 pub fn legs(
     paths: Vec<Path>,
+    beside: &[Beside],
     how: &Cutting,
     height: Option<f64>,
 ) -> Result<(Vec<Leg>, Vec<Diagnostic>), Box<Diagnostic>> {
@@ -33,7 +34,7 @@ pub fn legs(
         });
         return Ok((legs.collect(), Vec::new()));
     };
-    let openings = openings(&paths, side, how)?;
+    let openings = openings(&paths, beside, side, how)?;
     let plan = plan(&openings, &settings(how, height, feed)?)?;
     let corner = |(_, corner): &(usize, ::wire::offset::Corner)| {
         let (place, left) = (corner.place, corner.left);
@@ -67,15 +68,9 @@ fn by_control(pass: &Pass, openings: &[Opening], taper: Option<f64>) -> ByContro
     };
     // A part that is larger at the top has its upper end outside: that is on the right of who goes round
     // it counter-clockwise, as the wire inside of it then is on the left.
-    let inside = openings.get(pass.opening).is_some_and(|opening| {
-        let counter_clockwise = opening.contour.area() > 0.0;
-        match opening.side {
-            plan::Side::Inside => true,
-            plan::Side::Outside => false,
-            plan::Side::Left => counter_clockwise,
-            plan::Side::Right => !counter_clockwise,
-        }
-    });
+    let inside = openings
+        .get(pass.opening)
+        .is_some_and(|opening| opening.left() == (opening.contour.area() > 0.0));
     let counter_clockwise = pass.left == inside;
     let taper = taper.unwrap_or(0.0);
     ByControl { offset, taper: if counter_clockwise { -taper } else { taper } }
@@ -92,7 +87,12 @@ fn begun(path: Path, begin: Option<Vec2>) -> Path {
     }
 }
 
-fn openings(paths: &[Path], side: Side, how: &Cutting) -> Result<Vec<Opening>, Box<Diagnostic>> {
+fn openings(
+    paths: &[Path],
+    beside: &[Beside],
+    side: Side,
+    how: &Cutting,
+) -> Result<Vec<Opening>, Box<Diagnostic>> {
     if paths.iter().any(|path| path.upper().is_some()) {
         let message = "the wire leans between two contours, and its offset is asked for";
         let help = "leave --side out: two contours are the way of the wire itself";
@@ -108,19 +108,38 @@ fn openings(paths: &[Path], side: Side, how: &Cutting) -> Result<Vec<Opening>, B
         let message = format!("{} places to thread for {} contours", how.thread.len(), paths.len());
         return Err(Diagnostic::error("thread", message).help("one for each contour").into());
     }
-    let side = match side {
+    let side_of = |contour: &Contour| match side {
         Side::Inside => plan::Side::Inside,
         Side::Outside => plan::Side::Outside,
         Side::Left => plan::Side::Left,
         Side::Right => plan::Side::Right,
+        Side::Part => {
+            let around = paths.iter().filter(|path| path.lower().encloses(contour.start()));
+            let around = around.filter(|path| path.lower() != contour).count();
+            if around % 2 == 0 { plan::Side::Outside } else { plan::Side::Inside }
+        }
     };
     let opening = |(i, contour): (usize, &Contour)| Opening {
         contour: contour.clone(),
-        side,
-        thread: how.thread.get(i).copied().map(Vec2::from_array),
+        side: side_of(contour),
+        thread: match how.thread.get(i) {
+            Some(place) => Some(Vec2::from_array(*place)),
+            None => beside.get(i).map(|source| source.thread),
+        },
         start: how.begin.map(Vec2::from_array),
     };
-    Ok(paths.iter().map(Path::lower).enumerate().map(opening).collect())
+    let openings: Vec<Opening> = paths.iter().map(Path::lower).enumerate().map(opening).collect();
+    for (opening, source) in openings.iter().zip(beside) {
+        if opening.left() != source.left {
+            let (word, side) = if source.left { ("G41", "left") } else { ("G42", "right") };
+            let message =
+                format!("the program has the wire on the {side} ({word}), and --side has not");
+            let line = opening.contour.elements().first().map_or(0, |element| element.line);
+            let help = "take the side of the program, or take G41 and G42 out of it";
+            return Err(Diagnostic::error("side", message).help(help).line(line).into());
+        }
+    }
+    Ok(openings)
 }
 
 fn settings(

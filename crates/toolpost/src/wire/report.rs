@@ -205,8 +205,11 @@ impl Cut {
 
     /// What is drawn.
     pub fn picture(&self, selected: Option<u32>) -> WirePicture<'_> {
-        let legs =
-            self.legs.iter().map(|leg| WireLeg { path: &leg.path, points: leg.points.as_ref() });
+        let legs = self.legs.iter().map(|leg| WireLeg {
+            path: &leg.path,
+            points: leg.points.as_ref(),
+            threaded: leg.thread,
+        });
         WirePicture { legs: legs.collect(), height: self.height, selected }
     }
 }

@@ -7,7 +7,7 @@ use crate::toolpath::{self, Toolpath};
 use geom::{Vec2, Vec3};
 use machine::Machine;
 use program::{Diagnostic, Op, Pose, Program};
-use wire::{Contour, Element, Path, contours, cuts, dxf};
+use wire::{Beside, Contour, Element, Path, beside, contours, cuts, dxf};
 
 /// A source with the ways that it gives the wire.
 pub struct Source {
@@ -15,6 +15,8 @@ pub struct Source {
     pub toolpath: Toolpath,
     /// One way for each opening.
     pub paths: Vec<Path>,
+    /// How the program has its control lead the wire beside each; empty where it does not.
+    pub beside: Vec<Beside>,
 }
 
 /// One file of the source.
@@ -37,7 +39,16 @@ impl Source {
             Some(path) => Some(File::read(path, args)?),
             None => None,
         };
+        let beside = match (&lower, &upper) {
+            (File::Program(below), None) if args.cutting.side.is_some() => {
+                let found = lower.in_one_frame().and_then(|()| beside(&below.program, start));
+                found.map_err(|found| below.refused(*found))?.unwrap_or_default()
+            }
+            _ => Vec::new(),
+        };
+        let contours_beside = || beside.iter().map(|found| found.contour.clone()).collect();
         let paths = match (&lower, &upper) {
+            _ if !beside.is_empty() => Ok(upright(contours_beside())),
             (File::Program(below), None) => match leaning(&below.program, machine) {
                 Some(ends) => ends.and_then(|(below, above)| {
                     lower.in_one_frame()?;
@@ -49,13 +60,14 @@ impl Source {
             (_, Some(upper)) => {
                 let above = |found: Box<Diagnostic>| upper.toolpath().refused(*found);
                 match args.ends.sync {
-                    Sync::Block => {
+                    Sync::Block if args.ends.pair.is_empty() => {
                         let above = upper.cuts(start).map_err(above)?;
                         lower.cuts(start).and_then(|below| by_block(below, above))
                     }
-                    Sync::Length => {
+                    Sync::Block | Sync::Length => {
                         let above = upper.contours(start).map_err(above)?;
-                        lower.contours(start).and_then(|below| by_length(&below, &above))
+                        let below = lower.contours(start);
+                        below.and_then(|below| by_points(&below, &above, &args.ends.pair))
                     }
                 }
             }
@@ -69,7 +81,7 @@ impl Source {
         if let Some(File::Drawing(above, _) | File::Program(above)) = upper {
             toolpath.warnings.extend(above.warnings);
         }
-        Ok(Source { toolpath, paths })
+        Ok(Source { toolpath, paths, beside })
     }
 }
 
@@ -160,9 +172,25 @@ fn by_block(
     below.into_iter().zip(above).map(|(below, above)| Path::by_block(below, above)).collect()
 }
 
-fn by_length(below: &[Contour], above: &[Contour]) -> Result<Vec<Path>, Box<Diagnostic>> {
+/// By the points of `pairs`, each of which belongs to the lower contour that is nearest to it; between
+/// them by length.
+fn by_points(
+    below: &[Contour],
+    above: &[Contour],
+    pairs: &[[f64; 4]],
+) -> Result<Vec<Path>, Box<Diagnostic>> {
     as_many(below.len(), above.len())?;
-    below.iter().zip(above).map(|(below, above)| Path::by_length(below, above)).collect()
+    let mut own = vec![Vec::new(); below.len()];
+    for &[x, y, u, v] in pairs {
+        let (point, over) = (Vec2::new(x, y), Vec2::new(u, v));
+        let away = |contour: &Contour| contour.nearest(point).point.distance(point);
+        let contours = below.iter().map(away).zip(&mut own);
+        if let Some((_, own)) = contours.min_by(|a, b| a.0.total_cmp(&b.0)) {
+            own.push((point, over));
+        }
+    }
+    let contours = below.iter().zip(above).zip(&own);
+    contours.map(|((below, above), own)| Path::by_points(below, above, own)).collect()
 }
 
 /// Both ends go through the same openings.

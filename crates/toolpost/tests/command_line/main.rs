@@ -3,5 +3,6 @@
 mod bad_input;
 mod commands;
 mod folder;
+mod nc;
 mod saving;
 mod wire;

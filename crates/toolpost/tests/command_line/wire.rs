@@ -189,6 +189,20 @@ fn two_contours_make_a_wire_that_leans() {
 }
 
 #[test]
+fn given_points_say_what_belongs_together() {
+    let folder = frustum();
+    let upper = folder.read("upper.nc").replace("Y12.0\n", "Y5.0\nY12.0\n");
+    folder.write("upper.nc", upper);
+    let call = ["--upper", "upper.nc", "--height", "40", "--pair", "10,10,12,5"];
+    let said = wire(&folder, &call);
+    assert_eq!((said.code, said.err.as_str()), (0, ""), "{said:?}");
+    assert!(folder.read("part.pts").contains("\n10.000 10.000 2.000 -5.000\n"));
+    let off = ["--pair", "10,9,12,5", "--pair", "10,8,12,6"];
+    refused(&folder, &[&call[..4], &off].concat(), 2, &["error[sync-point]", "Y8.0000"]);
+    refused(&folder, &[&call[..], &["--sync", "length"]].concat(), 2, &["--pair", "--sync"]);
+}
+
+#[test]
 fn a_wire_that_leans_too_far_is_the_machines_affair() {
     let folder = frustum();
     folder.write("shop.toml", "extends = \"bp-95d\"\n[wire]\nheight = 40\ntaper_max = 3\n");
@@ -307,6 +321,48 @@ fn the_control_offsets_and_leans_the_wire_where_it_can() {
     };
     refused("agie-iso", &taper, 1, "error[taper]");
     refused("bp-95d", &[], 2, "error[by-control]");
+}
+
+/// A plate of 30 mm with a hole, in which a slug of 2 mm stays.
+#[test]
+fn a_part_is_cut_round_its_outside_and_within_its_openings() {
+    let folder = Folder::new();
+    let circle = |radius: f64| format!("0\nCIRCLE\n8\n0\n10\n0.0\n20\n0.0\n40\n{radius}\n");
+    let circles = [15.0, 8.0, 2.0].map(circle).concat();
+    folder.write("plate.dxf", format!("0\nSECTION\n2\nENTITIES\n{circles}0\nENDSEC\n0\nEOF\n"));
+    let call = ["wire", "plate.dxf", "-m", "fanuc-wire", "-o", "part.nc", "--side", "part"];
+    let said = folder.run(&[&call[..], &["--wire", "0.2", "--lead", "1"]].concat());
+    assert_eq!(said.code, 0, "{said:?}");
+    // Inner ones first; the wire goes 0.1 mm outside, inside, outside.
+    let text = folder.read("part.nc");
+    let ways = text.lines().filter_map(|line| line.split_once("G1 ").map(|(_, words)| words));
+    assert_eq!(ways.collect::<Vec<_>>(), ["X2.1", "X3.", "X7.9", "X7.", "X15.1", "X16."]);
+}
+
+/// A bore of 20 mm as a wire's program has it: the contour, and the offset a matter of the control.
+const BORE: &str = "%\nO2\nG21 G90 G40\nG92 X0. Y0.\nM60\nG41 D1 G1 X10. Y0.\nG3 X-10. Y0. I-10. J0.\n\
+                    G3 X10. Y0. I10. J0.\nG40 G1 X0. Y0.\nM50\nM30\n%\n";
+
+#[test]
+fn the_offset_of_a_source_is_worked_out_here_or_left_to_the_new_control() {
+    let folder = Folder::new();
+    folder.write("bore.nc", BORE);
+    let call = |more: &[&str]| {
+        folder.run(&[&["wire", "bore.nc", "--from", "fanuc-wire", "-o", "part.nc"], more].concat())
+    };
+    let said = call(&["-m", "bp-95d"]);
+    assert!(said.code == 2 && said.err.contains("bore.nc:6") && said.err.contains("--side"));
+    let said = call(&["-m", "bp-95d", "--side", "inside", "--wire", "0.25", "--gap", "0.02"]);
+    assert_eq!((said.code, said.err.as_str()), (0, ""), "{said:?}");
+    // 10 − 0.125 − 0.02 mm.
+    let text = folder.read("part.nc");
+    assert!(text.starts_with("0.000 0.000\n9.855 0.000\n") && text.ends_with("\n0.000 0.000\n"));
+    let said = call(&["-m", "sodick-iso", "--side", "left", "--by-control"]);
+    assert_eq!(said.code, 0, "{said:?}");
+    let text = folder.read("part.nc");
+    assert!(text.contains("G1 G41 H001 X10.\n") && text.contains("G1 G40 X0.\n"), "{text}");
+    let said = call(&["-m", "sodick-iso", "--side", "outside", "--by-control"]);
+    assert!(said.code == 2 && said.err.contains("error[side]"), "{said:?}");
 }
 
 #[test]

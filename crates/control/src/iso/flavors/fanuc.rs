@@ -8,7 +8,8 @@ use super::{
 };
 
 const G_WORDS: &[GRow] = &[
-    (51, Group::OneShot, G::LookAhead),
+    (50, Group::OneShot, G::LookAhead { letter: b'P', on: 10_000 }),
+    (51, Group::OneShot, G::LookAhead { letter: b'Q', on: 1 }),
     (80, Group::OneShot, G::Neutral(b"P")),
     (90, Group::OneShot, G::Neutral(b"")),
     (100, Group::OneShot, G::WriteData),
@@ -31,7 +32,6 @@ const G_WORDS: &[GRow] = &[
 const M_WORDS: &[MRow] = &[(7, Group::Coolant, M::Mist), (29, Group::Spindle, M::RigidTap)];
 
 const REFUSED_G: &[Refused] = &[
-    (50, "high-speed and spline modes are not followed; write plain moves"),
     (71, "cylindrical interpolation depends on the machine's axes; write plain moves"),
     (121, "polar interpolation depends on the machine's axes; write plain moves"),
     (131, "polar interpolation depends on the machine's axes; write plain moves"),

@@ -23,13 +23,14 @@ const REFUSED_G: &[Refused] = &[
     (410, "this control has no radius compensation; write the compensated path"),
     (420, "this control has no radius compensation; write the compensated path"),
     (430, "this control has no tool table; write G43.1 Z"),
+    (640, "this control has no modes of the path: take it out"),
     (810, "this control has no cycles; write their moves"),
     (820, "this control has no cycles; write their moves"),
     (830, "this control has no cycles; write their moves"),
 ];
 
 const REFUSED_M: &[Refused] = &[
-    (6, "this control has no tool change; stop with M0 instead"),
+    (6, "this control has no tool change: where its sender stops for it, write M0"),
     (98, "this control has no subprograms"),
     (99, "this control has no subprograms"),
 ];

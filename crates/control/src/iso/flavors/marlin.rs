@@ -14,8 +14,11 @@ const G_WORDS: &[GRow] = &[
 const M_WORDS: &[MRow] = &[
     (7, Group::Coolant, M::Mist),
     (17, Group::Output, M::Neutral(b"")),
+    (18, Group::Output, M::IdleTime),
     (82, Group::Output, M::Neutral(b"")),
+    (84, Group::Output, M::IdleTime),
     (83, Group::Output, M::Neutral(b"")),
+    (117, Group::Output, M::Message),
     (400, Group::Output, M::Neutral(b"")),
 ];
 
@@ -33,9 +36,7 @@ const REFUSED_G: &[Refused] = &[
 const REFUSED_M: &[Refused] = &[
     (2, "this control has no program end: the program ends with its last line"),
     (6, "tool changes are T alone; stop with M0 to change by hand"),
-    (18, "the axes are let go: where the tool stands afterwards is not known"),
     (30, "on this control M30 deletes a file; the program ends with its last line"),
-    (84, "the axes are let go: where the tool stands afterwards is not known"),
     (104, "a hot end is no tool of a mill"),
     (
         106,
