@@ -13,6 +13,9 @@ const IDLE: u32 = 200_000;
 /// Most jumps and calls of a run.
 const MOST: u64 = 100_000_000;
 
+/// So much text is read in the time of a jump.
+const BYTES_IN_A_TURN: usize = 16;
+
 /// Counts the jumps of a run.
 #[derive(Debug, Default)]
 pub(crate) struct Budget {
@@ -27,6 +30,14 @@ impl Budget {
     /// What to say of a program that jumps without end.
     pub(crate) fn jump(&mut self) -> Result<(), String> {
         self.spend(1)
+    }
+
+    /// So many bytes are read, again or behind a call. Once alone that is never endless, however long.
+    ///
+    /// # Errors
+    /// As [`Budget::jump`].
+    pub(crate) fn read(&mut self, bytes: usize) -> Result<(), String> {
+        self.spend((bytes / BYTES_IN_A_TURN).min(IDLE as usize / 10))
     }
 
     /// Something that takes as long as so many jumps.

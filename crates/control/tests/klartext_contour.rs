@@ -286,3 +286,12 @@ fn an_approach_or_a_departure_that_is_not_clear_is_refused() {
         assert_eq!(error.rule, rule, "{blocks}: {error}");
     }
 }
+
+#[test]
+fn jumps_and_calculations_do_not_part_a_corner() {
+    let direct = path("L X+40 F300\nRND R5\nL Y+40");
+    let flow = "L X+40 F300\nRND R5\nFN 9: IF +1 EQU +1 GOTO LBL 7\nL X+0\nLBL 7\nQ1 = 40\nL Y+Q1";
+    assert_eq!(format!("{:?}", path(flow)), format!("{direct:?}"));
+    let asked = format!("{START}L X+40 F300\nRND R5\nFN 18: SYSREAD Q1 = ID270 NR1 IDX1\nL Y+40");
+    assert_eq!(refused(&asked).rule, "contour");
+}

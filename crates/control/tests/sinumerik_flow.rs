@@ -291,8 +291,12 @@ fn work_offsets_that_the_program_writes_are_known() {
 
 #[test]
 fn what_never_ends_is_refused() {
-    for text in ["LOOP\nENDLOOP", "GOTOS"] {
-        assert_eq!(refused(text).rule, "endless", "{text}");
+    // A long way round takes as long as many turns, and what is only said is nothing.
+    let way = format!("R1={}1\n", " ".repeat(400)).repeat(1000);
+    let long = format!("LOOP\n{way}ENDLOOP");
+    let called = format!("%_N_A_MPF\nLOOP\nBB\nENDLOOP\nM30\n%_N_BB_SPF\n{way}M17");
+    for text in ["LOOP\nENDLOOP", "GOTOS", "LOOP\n; ROUND\nMSG(\"A\")\nENDLOOP", &long, &called] {
+        assert_eq!(refused(text).rule, "endless", "{:.40}", text);
     }
     assert_eq!(refused("%_N_A_MPF\nG0 X1\nBB\nM30\n%_N_BB_SPF\nBB\nM17").rule, "call-depth");
 }

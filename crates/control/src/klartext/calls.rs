@@ -136,6 +136,7 @@ impl<'t> Run<'t, '_, '_, '_> {
     /// `CALL LBL`, `CALL PGM`.
     pub(super) fn call(&mut self, s: &mut Scanner, place: Place) -> Result<()> {
         if s.take(b"PGM") {
+            self.control.contour_is_closed(s)?;
             return self.call_program(s);
         }
         s.expect(b"LBL")?;

@@ -100,7 +100,9 @@ impl Registers {
         }
         Err(match parameter {
             Parameter::Global(index) if PREASSIGNED.contains(&index) => {
-                format!("{parameter} is set by the control to what is not known here")
+                format!(
+                    "{parameter} is set by the control to what is not known here, as to the tool without a tool table"
+                )
             }
             _ => format!("{parameter} has no value: no block before has set it"),
         })

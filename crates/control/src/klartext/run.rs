@@ -144,7 +144,11 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
             b"RND" => control.rounding(s),
             b"CHF" => control.chamfer(s),
             _ => {
-                control.contour_is_closed(s)?;
+                // Jumps and calculations change nothing at a corner that waits for its second side.
+                let flow = matches!(keyword, b"LBL" | b"CALL" | [b'F', b'N', ..] | [b'Q', ..]);
+                if !flow {
+                    control.contour_is_closed(s)?;
+                }
                 self.other(s, line.scanner, keyword, span, place)
             }
         }
@@ -290,7 +294,10 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
                     return Err(s.error_here("syntax", "= is expected here"));
                 }
                 let value = match number {
-                    18 => self.control.system_datum(s)?,
+                    18 => {
+                        self.control.contour_is_closed(s)?;
+                        self.control.system_datum(s)?
+                    }
                     _ => formula::calculated(s, number, &self.control.registers)?,
                 };
                 let assigned = self.control.registers.assign(parameter, value);

@@ -21,9 +21,6 @@ use std::collections::HashMap;
 /// The address letters of the axes, in the order of their coordinates.
 pub(super) const AXES: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
 
-/// So much text is read in the time of a jump.
-const BYTES_IN_A_TURN: usize = 32;
-
 /// mm/min in the unit of F of an inch program, a tenth of an inch each minute.
 pub(super) const TENTH_INCH: f64 = 2.54;
 
@@ -148,8 +145,8 @@ impl<'a, 's> Control<'a, 's> {
     /// A jump, a call or a return, after which so many bytes are read again: programs that never end
     /// are refused.
     pub(super) fn count_jump(&mut self, s: &Scanner, bytes: usize) -> Result<()> {
-        let turns = 1 + bytes / BYTES_IN_A_TURN;
-        self.budget.spend(turns).map_err(|message| s.error_block("endless", message))
+        let counted = self.budget.jump().and_then(|()| self.budget.read(bytes));
+        counted.map_err(|message| s.error_block("endless", message))
     }
 
     /// A called program begins; answers how many there are within each other.

@@ -211,7 +211,12 @@ impl Call {
             Some(call) if matches!(call.procedure, Procedure::Drill(_)) => {
                 Ok(Call { modal: true, ..call })
             }
-            _ => Err(scanner.error_since(start, "unsupported", "MCALL needs a drilling cycle")),
+            _ => {
+                let message = "MCALL of anything but a drilling cycle is not supported";
+                let mut error = scanner.error_since(start, "unsupported", message);
+                error.help = "call the program behind each block instead".into();
+                Err(error)
+            }
         }
     }
 

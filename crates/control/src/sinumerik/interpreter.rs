@@ -94,6 +94,11 @@ impl<'a, 's> Interpreter<'a, 's> {
         self.budget.spend(turns).map_err(|message| source.block_error("endless", message))
     }
 
+    /// So many bytes are read, again or in a called program.
+    pub fn reads(&mut self, source: &Source, bytes: usize) -> Fallible<()> {
+        self.budget.read(bytes).map_err(|message| source.block_error("endless", message))
+    }
+
     /// Carries out a block.
     pub fn run(&mut self, source: &Source, block: &mut Block) -> Fallible<()> {
         if let Some(comment) = block.comment.take() {

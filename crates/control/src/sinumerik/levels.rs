@@ -51,6 +51,7 @@ impl Run<'_, '_> {
                 format!("'{}' is no word of this control, and {}", call.program, error.message);
             error
         })?;
+        self.interpreter.reads(source, program.text.len())?;
         let signature = self.signature(&program)?;
         let (bound, references) = self
             .bind(&signature, &call)
@@ -168,7 +169,9 @@ impl Run<'_, '_> {
             if after.at > program.text.len() {
                 let message = "the last block has no line end, without which the control (828D) does \
                                not take the program as ended";
-                return Err(source.block_error("program-end", message));
+                let mut error = source.block_error("program-end", message);
+                error.help = "end the last line of the file".into();
+                return Err(error);
             }
             // What stands behind the end is only reached by jumps.
             return if program.has_jumped() { Ok(true) } else { check_rest(program, after) };

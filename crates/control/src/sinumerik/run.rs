@@ -140,6 +140,9 @@ impl<'a, 's> Run<'a, 's> {
             if !self.level.sections.is_empty() {
                 here = self.repeat(&source, here)?;
             }
+            if here.at < after.at {
+                self.interpreter.reads(&source, after.at - here.at)?;
+            }
         }
         let message = "the program has no end: M30, M2, M17 or RET is missing";
         let line = here.line.saturating_sub(1).max(program.first_line - 1);
