@@ -73,9 +73,10 @@ impl Leg {
         }
     }
 
-    /// The line of the source where it begins.
+    /// The line of the source where it begins; a lead has none.
     pub fn line(&self) -> u32 {
-        self.path.lower().elements().first().map_or(0, |element| element.line)
+        let mut lines = self.path.lower().elements().iter().map(|element| element.line);
+        lines.find(|line| *line > 0).unwrap_or_default()
     }
 
     /// Whether the wire leans anywhere.
