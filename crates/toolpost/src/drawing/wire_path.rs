@@ -35,6 +35,9 @@ const STRIPS: usize = 1500;
 /// How far an arc turns in one strip, radians.
 const STRIP: f64 = 0.1;
 
+/// Where the light comes from: nearer to X, so that walls across X and across Y differ.
+const LIGHT: Vec3 = Vec3::new(0.866, 0.5, 0.0);
+
 const LOWER: &str = "#2678be";
 const UPPER: &str = "#de7a18";
 const START: &str = "#c43e5c";
@@ -314,7 +317,7 @@ fn surface(out: &mut String, picture: &WirePicture) {
     strips.sort_by(|a, b| near(a).total_cmp(&near(b)));
     for strip in strips {
         let normal = (strip[1] - strip[0]).cross(strip[3] - strip[0]).normalize_or_zero();
-        let bright = 0.45 + 0.5 * normal.dot(view.right).abs();
+        let bright = 0.45 + 0.5 * normal.dot(LIGHT).abs();
         let shade = |c: f64| (255.0 - (255.0 - c) * (1.15 - bright)) as u8;
         let (r, g, b) = (shade(60.0), shade(120.0), shade(180.0));
         let corners = strip.map(|p| {
