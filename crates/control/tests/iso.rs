@@ -686,3 +686,38 @@ fn blanks_within_a_number_are_refused_though_linuxcnc_would_close_them_up() {
     assert_eq!(rule(FANUC, "g0 x1.\n"), "nc-syntax");
     assert_eq!(ops_3(LINUXCNC, "g0 x 1 y2z3\n"), [Op::Rapid(at(1.0, 2.0, 3.0))]);
 }
+
+/// The points of a spline, and how far the lines between them leave it. `at` gives the curve.
+fn along_a_spline(blocks: &str, at: impl Fn(f64) -> [f64; 2]) {
+    let text = format!("G21 G90\nF100 G0 X0 Y0 Z0\n{blocks}\nM2\n");
+    let curve: Vec<[f64; 2]> = (0..=20_000).map(|i| at(f64::from(i) / 20_000.0)).collect();
+    let mut here = [0.0; 2];
+    let mut count = 0;
+    for op in ops_3(LINUXCNC, &text) {
+        let Op::Line(pose) = op else { continue };
+        let to = [pose.point.x, pose.point.y];
+        let near = |p: [f64; 2]| {
+            let far = |q: &[f64; 2]| (p[0] - q[0]).hypot(p[1] - q[1]);
+            curve.iter().map(far).fold(f64::INFINITY, f64::min)
+        };
+        let middle = [(here[0] + to[0]) / 2.0, (here[1] + to[1]) / 2.0];
+        // The curve is known in steps of about 0.0003 mm.
+        assert!(near(to) < 2e-4 && near(middle) < 7e-4, "{blocks}: {to:?}");
+        (here, count) = (to, count + 1);
+    }
+    assert!(count > 5 && here == at(1.0), "{blocks}: {count} lines to {here:?}");
+}
+
+#[test]
+fn splines_are_the_curves_of_bezier_that_their_words_give() {
+    // LinuxCNC's manual: I J from the start, P Q from the end, are the two points between.
+    along_a_spline("G5 I0 J3 P0 Q-3 X1 Y1", |t| {
+        let (a, b, c) = (3.0 * t * (1.0 - t) * (1.0 - t), 3.0 * t * t * (1.0 - t), t * t * t);
+        [b + c, 3.0 * a - 2.0 * b + c]
+    });
+    // A quadratic one has one point between: G5.1 I J.
+    along_a_spline("G5.1 X-2 Y0 I-1 J2", |t| {
+        let (a, b) = (2.0 * t * (1.0 - t), t * t);
+        [-a - 2.0 * b, 2.0 * a]
+    });
+}
