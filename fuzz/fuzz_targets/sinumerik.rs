@@ -3,7 +3,10 @@
 
 use control::{Dialect, Settings, read};
 use libfuzzer_sys::fuzz_target;
-use program::{Op, Orientation};
+use program::{Diagnostic, Op, Orientation};
+
+/// After so many records a program is left: loops may go round for long.
+const MOST_RECORDS: u32 = 10_000;
 
 fuzz_target!(|data: &[u8]| {
     for rotary in [[false; 3], [true, false, true]] {
@@ -14,10 +17,14 @@ fuzz_target!(|data: &[u8]| {
             ..Settings::new(Dialect::Sinumerik, rotary)
         };
         let lines = data.split(|byte| *byte == b'\n').count();
-        let mut ended = false;
+        let (mut ended, mut records) = (false, 0);
         let ran = read(&settings, "fuzz.mpf", data, &mut |record| {
             assert!(!ended && record.line as usize <= lines);
             ended = record.op == Op::End;
+            records += 1;
+            if records > MOST_RECORDS {
+                return Err(Diagnostic::error("enough", "a loop that moves").line(record.line).into());
+            }
             if let Op::Arc(arc) = &record.op {
                 assert!(arc.end.point.is_finite() && arc.center.is_finite());
                 assert!((arc.normal.length() - 1.0).abs() < 1e-9);

@@ -6,12 +6,12 @@ use program::Op;
 /// HEIDENHAIN 19: each control states its own and none goes beyond this.
 pub(crate) const DEEPEST: usize = 20;
 
-/// Most jumps and calls between two records that do something: a loop that does nothing for so long is
-/// taken as endless.
+/// Most jumps and calls between two places that the tool goes to: a loop that goes nowhere for so long
+/// is taken as endless.
 const IDLE: u32 = 200_000;
 
 /// Most jumps and calls of a run.
-const MOST: u64 = 100_000_000;
+const MOST: u64 = 20_000_000;
 
 /// So much text is read in the time of a jump.
 const BYTES_IN_A_TURN: usize = 16;
@@ -21,6 +21,8 @@ const BYTES_IN_A_TURN: usize = 16;
 pub(crate) struct Budget {
     idle: u32,
     all: u64,
+    /// Bits of the last place that was gone to after a jump.
+    place: Option<[u64; 3]>,
 }
 
 impl Budget {
@@ -57,11 +59,18 @@ impl Budget {
         Ok(())
     }
 
-    /// Something has happened; what is only said is nothing.
+    /// Something has happened. What does not lead the tool elsewhere is nothing.
     #[inline]
     pub(crate) fn record(&mut self, op: &Op) {
-        if !matches!(op, Op::Comment(_) | Op::Message(_)) {
-            self.idle = 0;
+        if self.idle > 0 {
+            self.after_a_jump(op);
+        }
+    }
+
+    fn after_a_jump(&mut self, op: &Op) {
+        let place = op.pose().map(|pose| pose.point.to_array().map(f64::to_bits));
+        if place.is_some() && place != self.place {
+            (self.idle, self.place) = (0, place);
         }
     }
 }
@@ -69,16 +78,22 @@ impl Budget {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use geom::Vec3;
+    use program::Pose;
 
     #[test]
-    fn a_loop_without_a_record_ends_and_one_with_records_goes_on() {
+    fn a_loop_that_goes_nowhere_ends_and_one_that_moves_goes_on() {
+        let to = |x: f64| Op::Rapid(Pose::new(Vec3::new(x, 0.0, f64::NAN), Vec3::Z));
         let mut budget = Budget::default();
-        for _ in 0..3 {
+        for x in [1.0, 2.0, 1.0] {
             assert!(budget.spend(IDLE as usize).is_ok());
-            budget.record(&Op::Stop);
+            budget.record(&to(x));
         }
-        budget.record(&Op::Comment("on the way".into()));
+        // What is only said, a stop, and a way to where the tool is already.
         assert!((0..IDLE).all(|_| budget.jump().is_ok()));
+        for op in [Op::Comment("on the way".into()), Op::Stop, to(1.0)] {
+            budget.record(&op);
+        }
         assert!(budget.jump().is_err());
     }
 }

@@ -22,7 +22,7 @@ use machine::{LengthOffset, Machine, Mount};
 use program::{Diagnostic, FIRST_WORK_OFFSET, Op, Orientation, Pose, Program, Record, Tool};
 
 /// Most records of a reading, which are kept in memory: a program of a few lines can loop to more.
-const MOST_RECORDS: usize = 50_000_000;
+const MOST_RECORDS: usize = 20_000_000;
 
 /// A step that may be refused.
 type Done = Result<(), Box<Diagnostic>>;
