@@ -515,6 +515,8 @@ fn boring_by_hand_stops_at_the_bottom() {
 #[test]
 fn what_the_judge_refuses_we_refuse() {
     for block in [
+        "G5",
+        "G21 G90 G5.1",
         "G1 X1",
         "X1",
         "G0 X1 X2",

@@ -17,7 +17,7 @@ impl Step<'_, '_, '_> {
         self.not_compensated("a spline")?;
         let target = self.target(false)?;
         if target.named == 0 && !b"IJPQ".iter().any(|&letter| self.block.has(letter)) {
-            return Ok(());
+            return self.has_no_axis_word();
         }
         let start = self.state.position;
         if self.state.plane.axes()[2] != 2 || target.named & !3 != 0 {
