@@ -2,10 +2,7 @@
 //! 01, the interpolation.
 
 use super::super::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Motion, Refused};
-use super::{
-    BASIC_G, BASIC_M, FRAME_G, MACRO_G, MILL_G, MILL_M, POLAR_G, SUBPROGRAM_M, TOOL_G, TOOL_M,
-    cycles,
-};
+use super::{END_M, FRAME_G, MACRO_G, MILL_G, POLAR_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
 
 const G_WORDS: &[GRow] = &[
     (50, Group::OneShot, G::LookAhead { letter: b'P', on: 10_000 }),
@@ -46,14 +43,12 @@ const REFUSED_G: &[Refused] = &[
     (960, "constant surface speed is for turning"),
 ];
 
-pub(super) static WORDS: Dictionary =
-    Dictionary::new(Flavor::Fanuc, b"ABCDFGHIJKLMNOPQRSTXYZ", usize::MAX)
-        .with(BASIC_G, BASIC_M)
-        .with(MILL_G, MILL_M)
-        .with(TOOL_G, TOOL_M)
-        .with(FRAME_G, SUBPROGRAM_M)
-        .with(POLAR_G, &[])
-        .with(MACRO_G, &[])
-        .with(&cycles(Group::Cycle), &[])
-        .with(G_WORDS, M_WORDS)
-        .refusing(REFUSED_G, &[]);
+pub(super) static WORDS: Dictionary = mill(Flavor::Fanuc, b"ABCDFGHIJKLMNOPQRSTXYZ", usize::MAX)
+    .with(MILL_G, END_M)
+    .with(TOOL_G, TOOL_M)
+    .with(FRAME_G, SUBPROGRAM_M)
+    .with(POLAR_G, &[])
+    .with(MACRO_G, &[])
+    .with(&cycles(Group::Cycle), &[])
+    .with(G_WORDS, M_WORDS)
+    .refusing(REFUSED_G, &[]);

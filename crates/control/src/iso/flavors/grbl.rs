@@ -1,7 +1,7 @@
 //! GRBL 1.1, wiki page "Grbl v1.1 Commands" and the supported codes in its `gcode.h`.
 
 use super::super::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Motion, Refused};
-use super::{BASIC_G, BASIC_M, MILL_G, MILL_M};
+use super::{END_M, MILL_G, mill};
 
 const G_WORDS: &[GRow] = &[
     (100, Group::OneShot, G::WriteData),
@@ -35,8 +35,7 @@ const REFUSED_M: &[Refused] = &[
     (99, "this control has no subprograms"),
 ];
 
-pub(super) static WORDS: Dictionary = Dictionary::new(Flavor::Grbl, b"FGIJKLMNPRSTXYZ", 79)
-    .with(BASIC_G, BASIC_M)
-    .with(MILL_G, MILL_M)
+pub(super) static WORDS: Dictionary = mill(Flavor::Grbl, b"FGIJKLMNPRSTXYZ", 79)
+    .with(MILL_G, END_M)
     .with(G_WORDS, M_WORDS)
     .refusing(REFUSED_G, REFUSED_M);

@@ -1,9 +1,7 @@
 //! Haas NGC mills, "Mill Operator's Manual", chapters G codes and M codes.
 
 use super::super::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Pattern, Refused};
-use super::{
-    BASIC_G, BASIC_M, FRAME_G, MACRO_G, MILL_G, MILL_M, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles,
-};
+use super::{END_M, FRAME_G, MACRO_G, MILL_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
 
 const G_WORDS: &[GRow] = &[
     (90, Group::OneShot, G::Neutral(b"")),
@@ -70,13 +68,11 @@ const REFUSED_G: &[Refused] = &[
     (1740, "tapping out of the vertical is not followed"),
 ];
 
-pub(super) static WORDS: Dictionary =
-    Dictionary::new(Flavor::Haas, b"ABCDEFGHIJKLMNOPQRSTXYZ", usize::MAX)
-        .with(BASIC_G, BASIC_M)
-        .with(MILL_G, MILL_M)
-        .with(TOOL_G, TOOL_M)
-        .with(FRAME_G, SUBPROGRAM_M)
-        .with(MACRO_G, &[])
-        .with(&cycles(Group::Cycle), &[])
-        .with(G_WORDS, M_WORDS)
-        .refusing(REFUSED_G, &[]);
+pub(super) static WORDS: Dictionary = mill(Flavor::Haas, b"ABCDEFGHIJKLMNOPQRSTXYZ", usize::MAX)
+    .with(MILL_G, END_M)
+    .with(TOOL_G, TOOL_M)
+    .with(FRAME_G, SUBPROGRAM_M)
+    .with(MACRO_G, &[])
+    .with(&cycles(Group::Cycle), &[])
+    .with(G_WORDS, M_WORDS)
+    .refusing(REFUSED_G, &[]);

@@ -2,7 +2,7 @@
 //! a group of its own.
 
 use super::super::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Motion, Refused, Side};
-use super::{BASIC_G, BASIC_M, MILL_G, MILL_M, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles};
+use super::{END_M, MILL_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
 
 const G_WORDS: &[GRow] = &[
     (50, Group::Motion, G::Motion(Motion::Spline { cubic: true })),
@@ -69,12 +69,10 @@ const REFUSED_G: &[Refused] = &[
     (960, "constant surface speed is for turning"),
 ];
 
-pub(super) static WORDS: Dictionary =
-    Dictionary::new(Flavor::LinuxCnc, b"ABCDEFGHIJKLMNPQRSTXYZ@^$", 254)
-        .with(BASIC_G, BASIC_M)
-        .with(MILL_G, MILL_M)
-        .with(TOOL_G, TOOL_M)
-        .with(&[], SUBPROGRAM_M)
-        .with(&cycles(Group::Motion), &[])
-        .with(G_WORDS, M_WORDS)
-        .refusing(REFUSED_G, &[]);
+pub(super) static WORDS: Dictionary = mill(Flavor::LinuxCnc, b"ABCDEFGHIJKLMNPQRSTXYZ@^$", 254)
+    .with(MILL_G, END_M)
+    .with(TOOL_G, TOOL_M)
+    .with(&[], SUBPROGRAM_M)
+    .with(&cycles(Group::Motion), &[])
+    .with(G_WORDS, M_WORDS)
+    .refusing(REFUSED_G, &[]);

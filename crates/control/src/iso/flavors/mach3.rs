@@ -2,9 +2,7 @@
 //! on which it is built; `G80` may stand beside `G0` to `G3`.
 
 use super::super::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Refused};
-use super::{
-    BASIC_G, BASIC_M, FRAME_G, MILL_G, MILL_M, POLAR_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles,
-};
+use super::{END_M, FRAME_G, MILL_G, POLAR_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
 
 const G_WORDS: &[GRow] = &[
     (100, Group::OneShot, G::WriteData),
@@ -35,13 +33,11 @@ const REFUSED_G: &[Refused] = &[
 
 const REFUSED_M: &[Refused] = &[(47, "a program that begins again from its first line never ends")];
 
-pub(super) static WORDS: Dictionary =
-    Dictionary::new(Flavor::Mach3, b"ABCDFGHIJKLMNOPQRSTXYZ", usize::MAX)
-        .with(BASIC_G, BASIC_M)
-        .with(MILL_G, MILL_M)
-        .with(TOOL_G, TOOL_M)
-        .with(FRAME_G, SUBPROGRAM_M)
-        .with(POLAR_G, &[])
-        .with(&cycles(Group::Motion), &[])
-        .with(G_WORDS, M_WORDS)
-        .refusing(REFUSED_G, REFUSED_M);
+pub(super) static WORDS: Dictionary = mill(Flavor::Mach3, b"ABCDFGHIJKLMNOPQRSTXYZ", usize::MAX)
+    .with(MILL_G, END_M)
+    .with(TOOL_G, TOOL_M)
+    .with(FRAME_G, SUBPROGRAM_M)
+    .with(POLAR_G, &[])
+    .with(&cycles(Group::Motion), &[])
+    .with(G_WORDS, M_WORDS)
+    .refusing(REFUSED_G, REFUSED_M);

@@ -2,7 +2,7 @@
 //! `SPINDLE_FEATURE` in revolutions, `COOLANT_CONTROL`), from its G-code index.
 
 use super::super::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Refused};
-use super::{BASIC_G, BASIC_M};
+use super::mill;
 
 const G_WORDS: &[GRow] = &[
     (591, Group::WorkOffset, G::WorkOffset(60)),
@@ -49,7 +49,6 @@ const REFUSED_M: &[Refused] = &[
     (220, "it changes every feed that follows"),
 ];
 
-pub(super) static WORDS: Dictionary = Dictionary::new(Flavor::Marlin, b"ABCFGIJKMNPRSTXYZ", 95)
-    .with(BASIC_G, BASIC_M)
+pub(super) static WORDS: Dictionary = mill(Flavor::Marlin, b"ABCFGIJKMNPRSTXYZ", 95)
     .with(G_WORDS, M_WORDS)
     .refusing(REFUSED_G, REFUSED_M);

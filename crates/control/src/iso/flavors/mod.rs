@@ -8,7 +8,9 @@ mod mach3;
 mod marlin;
 mod wire;
 
-use super::words::{Canned, Dictionary, FeedMode, G, GRow, Group, M, MRow, Motion, Plane, Side};
+use super::words::{
+    Canned, Dictionary, FeedMode, Flavor, G, GRow, Group, M, MRow, Motion, Plane, Side,
+};
 use crate::Dialect;
 
 /// The words of `dialect` (those of LinuxCNC where it is not one of ISO code).
@@ -32,14 +34,7 @@ const BASIC_G: &[GRow] = &[
     (10, Group::Motion, G::Motion(Motion::Line)),
     (20, Group::Motion, G::Motion(Motion::Arc { clockwise: true })),
     (30, Group::Motion, G::Motion(Motion::Arc { clockwise: false })),
-    (40, Group::OneShot, G::Dwell),
     (170, Group::Plane, G::Plane(Plane::Xy)),
-    (180, Group::Plane, G::Plane(Plane::Zx)),
-    (190, Group::Plane, G::Plane(Plane::Yz)),
-    (200, Group::Units, G::Inches(true)),
-    (210, Group::Units, G::Inches(false)),
-    (280, Group::OneShot, G::Home),
-    (530, Group::OneShot, G::Machine),
     (540, Group::WorkOffset, G::WorkOffset(54)),
     (550, Group::WorkOffset, G::WorkOffset(55)),
     (560, Group::WorkOffset, G::WorkOffset(56)),
@@ -52,9 +47,23 @@ const BASIC_G: &[GRow] = &[
 ];
 
 /// What every flavour has.
-const BASIC_M: &[MRow] = &[
-    (0, Group::Flow, M::Stop),
-    (1, Group::Flow, M::OptionalStop),
+const BASIC_M: &[MRow] = &[(0, Group::Flow, M::Stop), (1, Group::Flow, M::OptionalStop)];
+
+/// Units as FANUC says them.
+const UNITS_20: &[GRow] =
+    &[(200, Group::Units, G::Inches(true)), (210, Group::Units, G::Inches(false))];
+
+/// What every flavour of a mill has besides.
+const SPINDLE_G: &[GRow] = &[
+    (40, Group::OneShot, G::Dwell),
+    (180, Group::Plane, G::Plane(Plane::Zx)),
+    (190, Group::Plane, G::Plane(Plane::Yz)),
+    (280, Group::OneShot, G::Home),
+    (530, Group::OneShot, G::Machine),
+];
+
+/// What every flavour of a mill has besides.
+const SPINDLE_M: &[MRow] = &[
     (3, Group::Spindle, M::Clockwise),
     (4, Group::Spindle, M::CounterClockwise),
     (5, Group::Spindle, M::SpindleOff),
@@ -72,8 +81,8 @@ const MILL_G: &[GRow] = &[
     (940, Group::FeedMode, G::FeedMode(FeedMode::PerMinute)),
 ];
 
-/// What every flavour has that is a control of a mill by itself.
-const MILL_M: &[MRow] = &[(2, Group::Flow, M::End), (30, Group::Flow, M::End)];
+/// Ends of a program.
+const END_M: &[MRow] = &[(2, Group::Flow, M::End), (30, Group::Flow, M::End)];
 
 /// Compensation, tool length, feed per turn.
 const TOOL_G: &[GRow] = &[
@@ -116,6 +125,14 @@ const FRAME_G: &[GRow] = &[
     (680, Group::Tilt, G::Turn),
     (690, Group::Tilt, G::Upright),
 ];
+
+/// The words of a mill, as far as every flavour has them.
+const fn mill(flavor: Flavor, letters: &[u8], longest: usize) -> Dictionary {
+    Dictionary::new(flavor, letters, longest)
+        .with(BASIC_G, BASIC_M)
+        .with(UNITS_20, &[])
+        .with(SPINDLE_G, SPINDLE_M)
+}
 
 /// The canned cycles as words of `group`.
 const fn cycles(group: Group) -> [GRow; 10] {
