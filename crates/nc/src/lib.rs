@@ -42,7 +42,7 @@ pub struct Reading {
 /// `reader` where there is no control of the name that the machine file gives.
 pub fn settings(machine: &Machine, setup: Setup) -> Result<Settings, Box<Diagnostic>> {
     let Some(dialect) = Dialect::named(&machine.reader) else {
-        let message = format!("machine \"{}\" has no reader \"{}\"", machine.name, machine.reader);
+        let message = format!("there is no virtual control `{}`", machine.reader);
         let names = Dialect::NAMES.map(|(name, _)| name).join(", ");
         let place = &machine.reader_place;
         return Err(Diagnostic::error("reader", message)

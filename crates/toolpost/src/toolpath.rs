@@ -215,16 +215,7 @@ fn line(text: &[u8], number: u32) -> &[u8] {
 /// Where there is none, or its file has a mistake.
 pub fn machine(name_or_path: &str) -> Result<Machine, Stop> {
     let machine = machine::load(name_or_path)?;
-    if control::Dialect::named(&machine.reader).is_none() {
-        let names = control::Dialect::NAMES.map(|(name, _)| name).join(", ");
-        let message = format!("there is no virtual control `{}`", machine.reader);
-        let place = machine.reader_place;
-        return Err(Diagnostic::error("reader", message)
-            .help(format!("`reader` is one of {names}"))
-            .file(place.file)
-            .line(place.line)
-            .into());
-    }
+    nc::settings(&machine, Setup::default())?;
     Ok(machine)
 }
 
