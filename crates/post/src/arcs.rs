@@ -31,11 +31,10 @@ const ABSOLUTE: [WordName; 3] = [WordName::CX, WordName::CY, WordName::CZ];
 /// How many steps of the last decimal an arc may change in length when its ends are rounded.
 const ROUNDING_STEPS: f64 = 6.0;
 
-/// How many steps a point of an arc may move by that: its two ends and its centre by less than one each.
-const POINT_STEPS: f64 = 2.4;
-
-/// At how many points a part of an arc is looked at.
-const SAMPLES: usize = 8;
+/// How many steps a point of an arc may move by the shift of its centre. Rounding a coordinate of the
+/// centre to the nearest step moves no point of any arc further: √½ steps in the plane, twice that on the
+/// side of a full circle that is opposite to its ends.
+const CENTER_STEPS: f64 = std::f64::consts::SQRT_2;
 
 /// Part of an arc as one block.
 struct Block {
@@ -172,22 +171,14 @@ impl Walk<'_> {
             let near =
                 (sweep - wanted).abs() * radius <= ROUNDING_STEPS * self.machine.resolution();
             let even = (radius - b.length()).abs() <= can.arc_tolerance / 2.0;
-            let moved = flat(written).distance(flat(arc.center)) <= can.lowering_tolerance;
+            let moved = flat(written).distance(flat(arc.center));
             let rise = end[w] - start[w];
-            // A short chord is a long lever: its rounding may swing the whole arc about.
-            let close = (1..SAMPLES).map(|i| i as f64 / SAMPLES as f64).all(|t| {
-                let (sin, cos) = (sign * sweep * t).sin_cos();
-                let point =
-                    flat(written) + Vec3::new(a.x * cos - a.y * sin, a.x * sin + a.y * cos, 0.0);
-                let should = flat(arc.at(from + (until - from) * t));
-                point.distance(should) <= POINT_STEPS * self.machine.resolution()
-            });
-            (near && even && moved && close && radius > 0.0).then_some(Block {
-                end,
-                center: written,
-                sweep: sign * sweep,
-                rise,
-            })
+            // The ends stay where they are; between them a shift of the centre moves the arc by as much
+            // as its turn, and a short chord is a long lever for where the even centre lies.
+            let lever = 1.0 - (wanted.min(TAU) / 2.0).cos();
+            let close = moved * lever <= CENTER_STEPS * self.machine.resolution() * (1.0 + 1e-9);
+            (near && even && moved <= can.lowering_tolerance && close && radius > 0.0)
+                .then_some(Block { end, center: written, sweep: sign * sweep, rise })
         };
         legal(even).or_else(|| legal(c))
     }
