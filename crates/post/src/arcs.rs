@@ -138,9 +138,7 @@ impl Walk<'_> {
         let round = |words: &[WordName; 3], p: Vec3| {
             Vec3::from_array([0, 1, 2].map(|i| self.writer.rounded(words[i], p[i])))
         };
-        let begin = round(&END, arc.at(from));
-        let start =
-            Vec3::from_array([0, 1, 2].map(|i| self.writer.active(END[i]).unwrap_or(begin[i])));
+        let start = self.stands(round(&END, arc.at(from)));
         let end = round(&END, arc.at(until));
         let [u, v, w] = facts.axes;
         let flat = |p: Vec3| Vec3::new(p[u], p[v], 0.0);
@@ -186,9 +184,7 @@ impl Walk<'_> {
     fn arc_block(&mut self, arc: &Arc, facts: &Facts, block: &Block, rises: bool) -> Done {
         let ccw = block.sweep > 0.0;
         let [u, v, w] = facts.axes;
-        let start = Vec3::from_array(
-            [0, 1, 2].map(|i| self.writer.active(END[i]).unwrap_or(self.local(arc.start)[i])),
-        );
+        let start = self.stands(self.local(arc.start));
         let full = [u, v].iter().all(|&i| block.end[i] == start[i]);
         if rises || full {
             // A helix or a circle says where it ends in the plane even where that is where it began:
@@ -213,7 +209,19 @@ impl Walk<'_> {
         self.keep_compensation();
         self.writer.code(WordName::Plane, facts.code);
         self.writer.code(WordName::Motion, if ccw { motion::ARC_CCW } else { motion::ARC_CW });
+        let angle = self.writer.rounded(WordName::Sweep, block.sweep.to_degrees()).to_radians();
+        let rise = self.writer.rounded(WordName::Rise, block.rise);
+        let normal = Vec3::AXES[w];
+        let turned = geom::rotate(start - block.center, normal, angle) + normal * rise;
+        self.turned_to = Some(block.center + turned);
         self.block(self.arc_name(ccw, rises))
+    }
+
+    /// Where the control stands, in the coordinates of its blocks: as the last words say, or as the angle
+    /// of the last arc leads to; `begin` where neither is known.
+    fn stands(&self, begin: Vec3) -> Vec3 {
+        let begin = self.turned_to.unwrap_or(begin);
+        Vec3::from_array([0, 1, 2].map(|i| self.writer.active(END[i]).unwrap_or(begin[i])))
     }
 
     fn arc_name(&self, ccw: bool, rises: bool) -> BlockName {
