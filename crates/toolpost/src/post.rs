@@ -5,10 +5,13 @@ use crate::args::Post;
 use crate::files::{self, Target};
 use crate::progress::Progress;
 use crate::summary::{Shape, rows, time, travel};
+use crate::toolpath::Toolpath;
 use crate::{prove, toolpath};
+use machine::Machine;
 use machine::limits::Travel;
 use machine::time::Times;
-use program::Diagnostic;
+use post::Output;
+use program::{Diagnostic, Program};
 use serde_json::json;
 use std::path::Path;
 
@@ -54,14 +57,7 @@ pub fn run(args: &Post, silent: bool) -> Result<Answer, Stop> {
     let mut toolpath = toolpath::read(source, args.source.strict, &args.source.origin)?;
     let mut warnings = std::mem::take(&mut toolpath.warnings);
     progress.step("writing");
-    let output = post::write(&toolpath.program, &machine).map_err(|mut findings| {
-        toolpath.quote(&mut findings);
-        let verdict = verdict(&findings);
-        findings.splice(0..0, std::mem::take(&mut warnings));
-        Stop { verdict, findings }
-    })?;
-    warnings.extend(output.warnings);
-    toolpath.quote(&mut warnings);
+    let output = write(&toolpath.program, &machine, &toolpath, &mut warnings)?;
     progress.step("proving");
     let file = files::name(&args.output);
     let tolerances = args.closeness.tolerances();
@@ -99,8 +95,34 @@ pub fn run(args: &Post, silent: bool) -> Result<Answer, Stop> {
     Ok(Answer::summary(Verdict::Done, rows(&lines), data).findings(warnings))
 }
 
+/// Writes `program`, which came from `toolpath`. What the writer has to say goes behind the warnings that
+/// there are, with the text of its lines.
+///
+/// # Errors
+/// The same, where nothing could be written.
+pub fn write(
+    program: &Program,
+    machine: &Machine,
+    toolpath: &Toolpath,
+    warnings: &mut Vec<Diagnostic>,
+) -> Result<Output, Stop> {
+    match post::write(program, machine) {
+        Ok(mut output) => {
+            warnings.append(&mut output.warnings);
+            toolpath.quote(warnings);
+            Ok(output)
+        }
+        Err(mut findings) => {
+            let verdict = verdict(&findings);
+            warnings.append(&mut findings);
+            toolpath.quote(warnings);
+            Err(Stop { verdict, findings: std::mem::take(warnings) })
+        }
+    }
+}
+
 /// Whose fault it is that nothing could be written.
-pub fn verdict(findings: &[Diagnostic]) -> Verdict {
+fn verdict(findings: &[Diagnostic]) -> Verdict {
     let mut errors = findings.iter().filter(|finding| finding.is_error());
     match errors.all(|error| MACHINE_CANNOT.contains(&error.rule)) {
         true => Verdict::Failed,

@@ -7,7 +7,7 @@ use crate::summary::Shape;
 use control::Setup;
 use geom::Vec3;
 use machine::Machine;
-use program::{Diagnostic, Program, Severity};
+use program::{Diagnostic, Program, Severity, line_of};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -164,7 +164,8 @@ impl Toolpath {
         let mut lines = None;
         for finding in findings.iter_mut().filter(|f| f.file.is_empty() && f.line > 0) {
             let text = lines.get_or_insert_with(|| files::read(&self.path).unwrap_or_default());
-            *finding = finding.clone().on(finding.line, line(text, finding.line)).file(&self.file);
+            *finding =
+                finding.clone().on(finding.line, line_of(text, finding.line)).file(&self.file);
         }
     }
 
@@ -191,22 +192,8 @@ impl Toolpath {
     /// The text of a line of the source; empty where there is none.
     pub fn line(&self, number: u32) -> String {
         let text = files::read(&self.path).unwrap_or_default();
-        String::from_utf8_lossy(line(&text, number)).into_owned()
+        String::from_utf8_lossy(line_of(&text, number)).into_owned()
     }
-}
-
-/// Line `number` (from 1) of `text`, whose lines end with LF, CR LF or CR.
-fn line(text: &[u8], number: u32) -> &[u8] {
-    let mut rest = text;
-    for _ in 1..number {
-        let Some(end) = rest.iter().position(|byte| matches!(byte, b'\n' | b'\r')) else {
-            return b"";
-        };
-        let length = if rest[end..].starts_with(b"\r\n") { 2 } else { 1 };
-        rest = &rest[end + length..];
-    }
-    let end = rest.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
-    &rest[..end.unwrap_or(rest.len())]
 }
 
 /// The machine of a name in the library or of a file.
@@ -229,16 +216,4 @@ pub fn describe(machine: &Machine) -> Value {
         "extension": machine.extension,
         "path_tolerance_mm": machine.path_tolerance(),
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::line;
-
-    #[test]
-    fn lines_end_with_lf_cr_lf_or_cr() {
-        let text = b"one\ntwo\r\nthree\rfour";
-        let lines: Vec<&[u8]> = (1..=5).map(|number| line(text, number)).collect();
-        assert_eq!(lines, [&b"one"[..], b"two", b"three", b"four", b""]);
-    }
 }
