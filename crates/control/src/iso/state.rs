@@ -57,6 +57,8 @@ pub(super) struct State {
     /// Lathe: X is a diameter.
     pub diameter: bool,
     pub registers: Registers,
+    /// Where to a boring bar leaves the wall; none where nobody has said it.
+    pub aside: Option<Vec3>,
     /// Stored by `G28.1` and `G30.1`, in machine coordinates, mm; NaN where not known.
     pub homes: [Vec3; 2],
     /// The point on the way of the last `G28`, in the work frame.
@@ -181,6 +183,7 @@ impl State {
             polar: None,
             diameter: false,
             registers: Registers::new(&settings.setup.tools),
+            aside: settings.setup.aside,
             homes: [UNKNOWN; 2],
             via: None,
             return_to_r: flavor.is_fanuc().then_some(false),

@@ -194,6 +194,8 @@ pub(super) enum Canned {
     DwellReam,
     /// `G88`: out of the hole by hand.
     HandBore,
+    FineBore,
+    BackBore,
 }
 
 /// The working plane.
