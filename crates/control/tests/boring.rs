@@ -1,7 +1,7 @@
 //! Boring bars that stop in position and go aside from the wall, on every control that has them.
 
 use geom::Vec3;
-use program::{Cycle, CycleKind, Op, Withdrawal};
+use program::{Cycle, CycleKind, Feed, Op, Withdrawal};
 use toolpost_control::{Dialect, Settings, read};
 
 /// The holes of a program with their cycles and the heights of their points, on a machine whose setting
@@ -86,4 +86,71 @@ fn back_boring_feeds_up_from_r_to_z() {
         let text = format!("{START}{block}\n");
         assert_eq!(holes(Dialect::Fanuc, right, &text), Err("nc-cycle"), "{block}");
     }
+}
+
+/// Cycles Programming Manual 11/2006, CYCLE86: at the depth the spindle stops at POSS, the tool goes by RPA,
+/// RPO and RPAP along the three axes and out by rapid; the spindle stands afterwards.
+#[test]
+fn cycle86_goes_aside_as_it_says() {
+    let start = "G90 G54 G0 X70 Y50 Z120 F200 S300 M3\n";
+    let run = |frame: &str, call: &str| {
+        holes(Dialect::Sinumerik, None, &format!("{start}{frame}{call}\nM30\n"))
+    };
+    // The manual's example, but for its plane.
+    let call = "CYCLE86(112,110,,77,0,2,3,-1,-1,1,45)";
+    let kind = |x, y| fine(Vec3::new(x, y, 1.0), Some(45.0));
+    let bored = Cycle { dwell: 2.0, ..cycle(kind(-1.0, -1.0), 33.0, 0.0, 2.0) };
+    assert_eq!(run("", call), Ok(vec![(bored, 110.0)]));
+    // The way aside is one of the coordinates of the program.
+    let Ok(turned) = run("ROT RPL=90\n", call) else { panic!() };
+    let CycleKind::FineBore(withdrawal) = turned[0].0.kind else { panic!() };
+    assert!(withdrawal.aside.distance(Vec3::new(1.0, -1.0, 1.0)) < 1e-12);
+}
+
+const KLARTEXT: &str = "TOOL CALL 5 Z S1000 F500\nM3\nL X+0 Y+0 Z+50 R0 FMAX\n";
+
+fn klartext(blocks: &str) -> Result<Vec<(Cycle, f64)>, &'static str> {
+    let text = format!("BEGIN PGM B MM\n{KLARTEXT}{blocks}\nCYCL CALL\nEND PGM B MM\n");
+    holes(Dialect::Klartext, None, &text)
+}
+
+/// Cycle 202: Q214 1 to 4 is the way -X, -Y, +X, +Y, by 0.2 mm; Q336 is the position of the spindle.
+#[test]
+fn cycle_202_disengages_the_way_that_it_says() {
+    let call = "CYCL DEF 202 BORING Q200=2 Q201=-15 Q206=100 Q211=0.5 Q208=MAX Q203=20 Q204=100";
+    for (way, aside) in [Vec3::NEG_X, Vec3::NEG_Y, Vec3::X, Vec3::Y]
+        .into_iter()
+        .enumerate()
+        .map(|(i, v)| (i + 1, v))
+    {
+        let feed = Some(Feed::PerMinute(100.0));
+        let kind = fine(aside * 0.2, Some(30.0));
+        let bored = Cycle { feed, dwell: 0.5, ..cycle(kind, 15.0, 2.0, 100.0) };
+        assert_eq!(klartext(&format!("{call} Q214={way} Q336=30")), Ok(vec![(bored, 20.0)]));
+    }
+    let turned = format!("CYCL DEF 10.0 ROTATION\nCYCL DEF 10.1 ROT+30\n{call} Q214=1 Q336=0");
+    assert_eq!(klartext(&turned), Err("transformation"));
+}
+
+/// Cycle 204, the manual's example: the part is 20 thick with its surface at 20, the edge stands 15 above
+/// the end of the bar. By hand: the edge begins 2 below the part, at -2, and ends at 5; the tool, 15 below
+/// it, goes from -17 to -10.
+#[test]
+fn cycle_204_bores_from_below() {
+    let call = "CYCL DEF 204 BACK BORING Q200=2 Q249=+5 Q250=20 Q251=3.5 Q252=15 Q254=200 Q255=0.5 \
+                Q203=+20 Q204=50";
+    let bored = |through| {
+        let withdrawal = Withdrawal { aside: Vec3::new(-3.5, 0.0, 0.0), angle: Some(0.0) };
+        let kind = CycleKind::BackBore { withdrawal, through };
+        Cycle { feed: Some(Feed::PerMinute(200.0)), dwell: 0.5, ..cycle(kind, 7.0, 32.0, 80.0) }
+    };
+    let slow = bored(Some(Feed::PerMinute(750.0)));
+    assert_eq!(klartext(&format!("{call} Q253=750 Q214=1 Q336=0")), Ok(vec![(slow, -10.0)]));
+    let rapid = bored(None);
+    assert_eq!(klartext(&format!("{call} Q253=MAX Q214=1 Q336=0")), Ok(vec![(rapid, -10.0)]));
+    for wrong in ["Q253=750 Q214=0", "Q253=0 Q214=1"] {
+        assert_eq!(klartext(&format!("{call} {wrong} Q336=0")), Err("cycle-parameter"), "{wrong}");
+    }
+    let negative = call.replace("Q249=+5", "Q249=-5");
+    assert_eq!(klartext(&format!("{negative} Q253=750 Q214=1")), Err("cycle-parameter"));
 }
