@@ -46,6 +46,10 @@ pub enum Op {
     Feed(Feed),
     /// Spindle from here on.
     Spindle(Spindle),
+    /// Constant surface speed from here on, m/min: the spindle turns as fast as the distance of the tool
+    /// from X 0 asks for, and its own speed is the most. `None` is its own speed again. It is for turning,
+    /// and no mill's writer makes it.
+    SurfaceSpeed(Option<f64>),
     /// Coolant from here on.
     Coolant(Coolant),
     /// Change to this tool.

@@ -337,7 +337,8 @@ impl Step<'_, '_, '_> {
     /// Tapping: the pitch is what the tool advances in a turn. The spindle turns the right way
     /// already, or rigid tapping (`M29`) turns it.
     fn tapping(&mut self, held: &mut Holding, left: bool) -> Result<CycleKind, Fault> {
-        let speed = self.state.speed.filter(|&speed| speed > 0.0);
+        let own = self.state.surface.is_none();
+        let speed = self.state.speed.filter(|&speed| own && speed > 0.0);
         let speed = speed.ok_or_else(|| self.wrong("tapping needs the spindle speed S"))?;
         let needed =
             if left { Spindle::CounterClockwise(speed) } else { Spindle::Clockwise(speed) };

@@ -25,8 +25,10 @@ pub(super) struct State {
     /// F as it was written last.
     pub f: Option<f64>,
     pub spindle: Spindle,
-    /// Last S, 1/min.
+    /// Last S: 1/min, or with constant surface speed m/min or feet/min.
     pub speed: Option<f64>,
+    /// While the surface speed is constant (`G96`): the most that the spindle turns, 1/min.
+    pub surface: Option<f64>,
     /// `M29` has been given: the next tapping cycle turns the spindle itself.
     pub rigid: bool,
     pub coolant: Coolant,
@@ -162,6 +164,7 @@ impl State {
             f: None,
             spindle: Spindle::Off,
             speed: None,
+            surface: None,
             rigid: false,
             coolant: Coolant::Off,
             selected: None,

@@ -106,6 +106,8 @@ pub(super) enum G {
     Polar(bool),
     /// Lathe: X is a diameter, `G7`.
     Diameter(bool),
+    /// `G96`; `G97`, where there is such a thing.
+    SurfaceSpeed(bool),
     Dwell,
     Home,
     SecondHome,
