@@ -9,9 +9,9 @@
 //! as [`program::Orientation::Rotary`]; vectors and tilted planes resolved into the work frame as
 //! [`program::Orientation::Axis`]. Kinematics are not this crate's business.
 
+mod budget;
 mod compensation;
 mod decimal;
-mod flow;
 mod folders;
 mod iso;
 mod klartext;

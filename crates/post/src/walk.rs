@@ -82,6 +82,8 @@ pub(crate) struct Walk<'a> {
     pub(crate) tip: Vec3,
     /// The same in the coordinates of the block, mm.
     pub(crate) said: Vec3,
+    /// Where the last arc leads, in the coordinates of the block, where it is told by its angle.
+    pub(crate) turned_to: Option<Vec3>,
     pub(crate) limits: Limits<'a>,
     /// Entry of the code word `work_offset` that is active.
     work_offset: usize,
@@ -129,6 +131,7 @@ impl<'a> Walk<'a> {
             wire: Wire::of(machine, program),
             tip: Vec3::ZERO,
             said: Vec3::ZERO,
+            turned_to: None,
             limits: Limits::new(machine),
             work_offset: 0,
             ended: false,
