@@ -7,6 +7,7 @@ use crate::kinematics;
 use ::machine::library::{MACHINES, names};
 use numpy::{AllowTypeChange, PyArray2, PyArrayLike2};
 use pyo3::prelude::*;
+use pyo3::types::PyTuple;
 use std::path::PathBuf;
 use toolpost::answer::Stop;
 use toolpost::toolpath;
@@ -54,8 +55,8 @@ impl Machine {
 
     /// Letters of its rotary axes, from the machine's frame outwards.
     #[getter]
-    fn rotary(&self) -> Vec<char> {
-        self.described.rotary.iter().map(|axis| axis.letter).collect()
+    fn rotary<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyTuple>> {
+        PyTuple::new(py, self.described.rotary.iter().map(|axis| axis.letter))
     }
 
     /// Whether it is a machine for wire EDM, for which the command ``toolpost wire`` writes.

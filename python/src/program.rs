@@ -10,8 +10,9 @@ use program::statistics::Statistics;
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
-use pyo3::types::{PyDict, PyTuple};
+use pyo3::types::{PyDict, PyList, PySlice, PyTuple};
 use std::path::PathBuf;
+use std::sync::atomic::{AtomicUsize, Ordering};
 use toolpost::answer::Stop;
 use toolpost::toolpath::{self, Toolpath};
 use toolpost::{Origin, Units, WholeNumbers};
@@ -24,7 +25,7 @@ use toolpost::{Origin, Units, WholeNumbers};
 /// The arrays have one row for each move (see :attr:`kinds`). They are made at the first use of any of
 /// them; from then on every access gives the same memory, without copying. They are read-only, and outlive
 /// the program.
-#[pyclass(frozen, sequence, module = "toolpost")]
+#[pyclass(frozen, module = "toolpost")]
 pub struct Program {
     pub toolpath: Toolpath,
     columns: PyOnceLock<Columns>,
@@ -154,24 +155,67 @@ impl Program {
         self.toolpath.program.records.len()
     }
 
-    fn __getitem__(&self, py: Python<'_>, index: isize) -> PyResult<Record> {
+    /// A record, counted from 0 or, where negative, from the end; or the records of a slice.
+    fn __getitem__<'py>(&self, py: Python<'py>, index: Index<'py>) -> PyResult<Bound<'py, PyAny>> {
         let records = &self.toolpath.program.records;
-        let place = match usize::try_from(index) {
-            Ok(place) => Some(place),
-            Err(_) => records.len().checked_sub(index.unsigned_abs()),
+        let record = |place: isize| {
+            let place = usize::try_from(place).ok();
+            let found = place.and_then(|place| records.get(place));
+            let beyond =
+                || PyIndexError::new_err(format!("the program has {} records", records.len()));
+            Bound::new(py, Record::new(py, found.ok_or_else(beyond)?)?)
         };
-        match place.and_then(|place| records.get(place)) {
-            Some(record) => Record::new(py, record),
-            None => Err(PyIndexError::new_err(format!(
-                "record {index} of a program of {} records",
-                records.len()
-            ))),
+        let count = isize::try_from(records.len())?;
+        match index {
+            Index::One(index) if index < 0 => Ok(record(index + count)?.into_any()),
+            Index::One(index) => Ok(record(index)?.into_any()),
+            Index::Slice(slice) => {
+                let slice = slice.indices(count)?;
+                let places = (0..slice.slicelength).scan(slice.start, |next, _| {
+                    let place = *next;
+                    *next += slice.step;
+                    Some(place)
+                });
+                let found: PyResult<Vec<_>> = places.map(record).collect();
+                Ok(PyList::new(py, found?)?.into_any())
+            }
         }
+    }
+
+    fn __iter__(slf: Py<Self>) -> Records {
+        Records { program: slf, next: AtomicUsize::new(0) }
     }
 
     fn __repr__(&self) -> String {
         let Toolpath { file, dialect, program, .. } = &self.toolpath;
         format!("<Program {file} ({dialect}): {} records>", program.records.len())
+    }
+}
+
+/// What stands between the brackets of `program[...]`.
+#[derive(FromPyObject)]
+enum Index<'py> {
+    One(isize),
+    Slice(Bound<'py, PySlice>),
+}
+
+/// The records of a program, one after the other.
+#[pyclass(frozen)]
+struct Records {
+    program: Py<Program>,
+    next: AtomicUsize,
+}
+
+#[pymethods]
+impl Records {
+    fn __iter__(slf: Py<Self>) -> Py<Self> {
+        slf
+    }
+
+    fn __next__(&self, py: Python<'_>) -> PyResult<Option<Record>> {
+        let next = self.next.fetch_add(1, Ordering::Relaxed);
+        let records = &self.program.get().toolpath.program.records;
+        records.get(next).map(|record| Record::new(py, record)).transpose()
     }
 }
 

@@ -1,5 +1,6 @@
 //! One record of a program.
 
+use geom::Vec3;
 use program::{Compensation, Coolant, CycleKind, Feed, Op, Pose, Spindle};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
@@ -25,8 +26,8 @@ use pyo3::types::PyDict;
 pub struct Record {
     kind: &'static str,
     line: u32,
-    point: Option<[f64; 3]>,
-    axis: Option<[f64; 3]>,
+    point: Option<(f64, f64, f64)>,
+    axis: Option<(f64, f64, f64)>,
     words: Py<PyDict>,
 }
 
@@ -34,10 +35,10 @@ pub struct Record {
 impl Record {
     fn __repr__(&self, py: Python<'_>) -> PyResult<String> {
         let mut shown = format!("Record(line={}, {}", self.line, self.kind);
-        if let Some([x, y, z]) = self.point {
+        if let Some((x, y, z)) = self.point {
             shown += &format!(", point=({x}, {y}, {z})");
         }
-        if let Some([i, j, k]) = self.axis.filter(|axis| *axis != [0.0, 0.0, 1.0]) {
+        if let Some((i, j, k)) = self.axis.filter(|axis| *axis != (0.0, 0.0, 1.0)) {
             shown += &format!(", axis=({i}, {j}, {k})");
         }
         for (name, value) in self.words.bind(py) {
@@ -56,8 +57,8 @@ impl Record {
         Ok(Record {
             kind,
             line: record.line,
-            point: pose.map(|pose| pose.point.to_array()),
-            axis: pose.and_then(Pose::axis).map(|axis| axis.to_array()),
+            point: pose.map(|pose| pose.point.into()),
+            axis: pose.and_then(Pose::axis).map(Vec3::into),
             words: words.unbind(),
         })
     }
@@ -77,8 +78,8 @@ fn kind(op: &Op, words: &Bound<'_, PyDict>) -> PyResult<&'static str> {
         Op::Rapid(_) => "rapid",
         Op::Line(_) => "line",
         Op::Arc(arc) => {
-            words.set_item("center", arc.center.to_array())?;
-            words.set_item("normal", arc.normal.to_array())?;
+            words.set_item("center", triple(arc.center))?;
+            words.set_item("normal", triple(arc.normal))?;
             words.set_item("turns", arc.turns)?;
             "arc"
         }
@@ -153,10 +154,10 @@ fn kind(op: &Op, words: &Bound<'_, PyDict>) -> PyResult<&'static str> {
             "compensation"
         }
         Op::Frame(frame) => {
-            words.set_item("origin", frame.translation.to_array())?;
+            words.set_item("origin", triple(frame.translation))?;
             let turned = frame.matrix3;
-            let axes = [turned.x_axis, turned.y_axis, turned.z_axis].map(|axis| axis.to_array());
-            words.set_item("axes", axes)?;
+            let axes = [turned.x_axis, turned.y_axis, turned.z_axis];
+            words.set_item("axes", <(_, _, _)>::from(axes.map(triple)))?;
             "frame"
         }
         Op::WorkOffset(number) => {
@@ -195,6 +196,10 @@ fn kind(op: &Op, words: &Bound<'_, PyDict>) -> PyResult<&'static str> {
         }
         Op::End => "end",
     })
+}
+
+fn triple(v: Vec3) -> (f64, f64, f64) {
+    v.into()
 }
 
 /// What coolants are called.

@@ -5,9 +5,9 @@
 >>> result = toolpost.post(program, toolpost.machine("sinumerik-840d-table-ac"))  # doctest: +SKIP
 >>> result.save("part.mpf")                                      # doctest: +SKIP
 
-Lengths are mm, feeds mm/min, times s, spindle speeds 1/min, angles degrees. Whatever goes wrong is a
-:class:`toolpost.Error`. Threads may share every object but a :class:`Builder`; what takes long lets them
-run.
+Lengths are mm, feeds mm/min, times s, spindle speeds 1/min, angles degrees. Whatever goes wrong is
+a :class:`toolpost.Error`. Threads may share every object but a :class:`Builder`; what takes long
+lets the others run.
 """
 
 from ._answers import Error, Finding, Kind, Report, Result

@@ -30,7 +30,7 @@ class Finding(NamedTuple):
     severity : str
         ``error`` or ``warning``.
     rule : str
-        Short name of the rule that is broken, which does not change: ``axis-limit``, ``zero-vector``.
+        Short name of the rule, which does not change: ``axis-limit``, ``zero-vector``.
     message : str
         What is wrong, with values and units.
     help : str
@@ -41,7 +41,7 @@ class Finding(NamedTuple):
         Where it is, from 1; 0 where it is about the whole of the file, or of the line.
     excerpt : str
         The line, with a mark under the place.
-    count : int
+    times : int
         How often it was found.
     text : str
         All of that, as the command line prints it.
@@ -55,7 +55,7 @@ class Finding(NamedTuple):
     line: int
     column: int
     excerpt: str
-    count: int
+    times: int
     text: str
 
     def __str__(self) -> str:
