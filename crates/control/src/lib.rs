@@ -136,6 +136,9 @@ pub struct Setup {
     pub units: Option<Units>,
     /// Whether the operator has switched block delete on: blocks that begin with `/` are skipped.
     pub block_delete: bool,
+    /// Where to a boring bar leaves the wall of a hole once the spindle stands in position, as a unit
+    /// vector along X or Y (FANUC, parameter 5148; Haas, setting 27); `None` where that is not known.
+    pub aside: Option<Vec3>,
     /// Where the tool stands in the work frame when the program starts, mm, with all offsets of the
     /// control at 0; `None` where that is not known, and no offset is.
     pub start: Option<Vec3>,

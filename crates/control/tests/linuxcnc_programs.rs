@@ -107,21 +107,10 @@ fn every_program_of_linuxcnc_makes_the_same_moves_or_stands_in_the_list() {
 /// Folders of subroutines for `ngcgui`, which names the arguments in comments: `#<depth> = #4 (=0.5 depth)`.
 const SUBROUTINES: [&str; 3] = ["ngcgui_lib", "ngcgui_lib/lathe", "ngcgui_lib/utilitysubs"];
 
-/// Those that differ: constant surface speed (`G96`) is refused, and so is the diameter of the tool
-/// (`#5410`), which counts in the unit of the machine.
-const SUBROUTINES_DIFFER: [&str; 11] = [
-    "id",
-    "od",
-    "arc1",
-    "arc2",
-    "db25",
-    "helix",
-    "helix_rtheta",
-    "ihex",
-    "ohex",
-    "qpex_mm",
-    "slot",
-];
+/// Those that differ: the diameter of the tool (`#5410`), which counts in the unit of the machine, is
+/// refused.
+const SUBROUTINES_DIFFER: [&str; 9] =
+    ["arc1", "arc2", "db25", "helix", "helix_rtheta", "ihex", "ohex", "qpex_mm", "slot"];
 
 /// The arguments that a subroutine suggests, 1 where it suggests none.
 fn arguments(text: &str) -> Vec<String> {

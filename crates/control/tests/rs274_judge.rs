@@ -195,6 +195,13 @@ fn threads_and_probes() {
 }
 
 #[test]
+fn constant_surface_speed_moves_nothing_elsewhere() {
+    makes_the_same_moves(
+        "G0 X1 Y2 Z3\nG96 D2500 S100\nM3\nG1 X5 F100\nS70\nG95 F0.1\nX1\nG97 S500\nG94 F9\nX3\nG96 S0\nM2\n",
+    );
+}
+
+#[test]
 fn lengths_come_from_the_tool_table() {
     makes_the_same_moves(
         "T1 M6\nG0 X0 Y0 Z0\nG43\nG91 G0 Z1\nG43 H2\nZ1\nG90 G10 L1 P1 Z40\nG49\nG91 Z1\nG43 H1\nZ1\n\
@@ -269,6 +276,9 @@ fn what_the_judge_refuses_we_refuse() {
         "S9 M3\nG33 Z-5",
         "S9 M3\nG33 K1",
         "G33.1 Z-5 K1",
+        "G96",
+        "S100\nG96 D500",
+        "G97 D500 S100",
         "G38.2 Z-5",
         "F9 G38.2",
         "F9 G93 G38.2 Z-5 F1",

@@ -19,7 +19,7 @@
 use control::{Dialect, Settings, Setup, Wire};
 use geom::Vec3;
 use machine::{LengthOffset, Machine, Mount};
-use program::{Diagnostic, FIRST_WORK_OFFSET, Op, Orientation, Pose, Program, Record, Tool};
+use program::{Cycle, Diagnostic, FIRST_WORK_OFFSET, Op, Orientation, Pose, Program, Record, Tool};
 
 /// Most records of a reading, which are kept in memory: a program of a few lines can loop to more.
 const MOST_RECORDS: usize = 20_000_000;
@@ -119,6 +119,8 @@ struct Lift<'a> {
     home: Option<u32>,
     /// Where the program's last tool call is in its records, and whether nothing has moved since.
     tool: Option<(usize, bool)>,
+    /// The cycle that goes aside from the wall, as the control says it, and the way aside of the last hole.
+    boring: Option<(Cycle, Option<Vec3>)>,
     /// The work offset that the program names.
     work_offset: Option<u32>,
     /// Whether it works in more than the first.
@@ -158,6 +160,7 @@ impl<'a> Lift<'a> {
                 .map_or(Place::Nowhere, |start| Place::Start(Pose::new(start, Vec3::Z))),
             home: None,
             tool: None,
+            boring: None,
             work_offset: None,
             several: false,
             numbers: Vec::new(),
@@ -203,12 +206,24 @@ impl<'a> Lift<'a> {
                 self.arrive(line, Op::Probe(pose));
                 self.place = Place::Nowhere;
             }
-            Op::Hole(pose) => {
-                let pose = self.pose(&pose);
+            Op::Hole(own) => {
+                let pose = self.pose(&own);
+                let aside =
+                    |by: Vec3| self.pose(&Pose { point: own.point + by, ..own }).point - pose.point;
+                let aside = self
+                    .boring
+                    .and_then(|(cycle, _)| cycle.kind.withdrawal().map(|way| aside(way.aside)));
                 if !known(&pose) {
                     return Err(unknown("a hole", &pose));
                 }
+                self.bore(line, aside);
                 self.arrive(line, Op::Hole(pose));
+            }
+            Op::Cycle(cycle) => {
+                self.boring = cycle.kind.withdrawal().is_some().then_some((*cycle, None));
+                if self.boring.is_none() {
+                    self.program.push(line, Op::Cycle(cycle));
+                }
             }
             Op::Home(axes) => return self.go_home(line, axes),
             Op::Tool(mut tool) => {
@@ -242,6 +257,16 @@ impl<'a> Lift<'a> {
         }
         self.place = op.pose().map_or(Place::Nowhere, |pose| Place::At(*pose));
         self.program.push(line, op);
+    }
+
+    /// Says the boring cycle anew where its way aside, which turns with the table, is another one.
+    fn bore(&mut self, line: u32, aside: Option<Vec3>) {
+        if let (Some((cycle, told)), Some(aside)) = (&mut self.boring, aside)
+            && told.replace(aside) != Some(aside)
+        {
+            let cycle = Cycle { kind: cycle.kind.with_aside(aside), ..*cycle };
+            self.program.push(line, Op::Cycle(Box::new(cycle)));
+        }
     }
 
     /// Where a cut ends; it must begin somewhere.

@@ -1,7 +1,7 @@
 //! Getting the toolpath and the machine that a command names.
 
 use crate::answer::{Stop, Verdict};
-use crate::args::{Origin, Units, WholeNumbers};
+use crate::args::{Origin, Units, Way, WholeNumbers};
 use crate::files;
 use crate::summary::Shape;
 use control::Setup;
@@ -129,6 +129,12 @@ impl Origin {
             units: self.units.map(|units| match units {
                 Units::Mm => control::Units::Millimeters,
                 Units::Inch => control::Units::Inches,
+            }),
+            aside: self.aside.map(|way| match way {
+                Way::PlusX => Vec3::X,
+                Way::MinusX => Vec3::NEG_X,
+                Way::PlusY => Vec3::Y,
+                Way::MinusY => Vec3::NEG_Y,
             }),
             block_delete: self.block_delete,
             start: self.start.map(Vec3::from_array),

@@ -206,8 +206,9 @@ impl Step<'_, '_, '_> {
             (_, _, Some(p @ 1..=6)) => Some(53 + p),
             _ => None,
         };
-        let Some(number) = number else {
-            let message = "P names no work offset that can be written here (P0 shifts all of them)";
+        let external = (self.flavor, kind, which) == (Flavor::Fanuc, 2, Some(0));
+        let Some(number) = number.or(external.then_some(active)) else {
+            let message = "P names no work offset that can be written here";
             return Err(self.block.at_group(Group::OneShot, "nc-data", message));
         };
         let sets_here = kind == 20 && !self.flavor.is_fanuc();
@@ -234,7 +235,10 @@ impl Step<'_, '_, '_> {
         let (machine, used) = (frames.to_machine(point), frames.is_used());
         let rotary = frames.rotary_origin();
         let add = self.flavor.is_fanuc() && self.state.incremental;
-        let written = frames.write(number, values, angle, add);
+        let written = match external {
+            true => frames.write_external(values, add),
+            false => frames.write(number, values, angle, add),
+        };
         if self.known(written)? {
             if used {
                 self.reframe();

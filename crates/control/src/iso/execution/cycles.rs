@@ -1,4 +1,4 @@
-//! Canned cycles: `G73`, `G74`, `G80` to `G86`, `G89`.
+//! Canned cycles: `G73`, `G74`, `G76`, `G80` to `G89`.
 
 use super::motion::{LINEAR, Target};
 use super::state::Tilt;
@@ -6,7 +6,7 @@ use super::step::Step;
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::{Canned, Flavor, G, Group};
 use geom::Vec3;
-use program::{Cycle, CycleKind, Feed, Op, Orientation, Spindle};
+use program::{Cycle, CycleKind, Feed, Op, Orientation, Spindle, Withdrawal};
 
 /// The most often that a block may repeat its hole: FANUC's K has four digits.
 const MOST_REPEATS: u32 = 9999;
@@ -22,8 +22,8 @@ pub(crate) struct Holding {
     /// R plane and bottom along the drilling axis, mm.
     r: Option<f64>,
     bottom: Option<f64>,
-    /// Q, mm.
-    peck: Option<f64>,
+    /// Q, mm: a peck, or how far the tool goes aside.
+    q: Option<f64>,
     /// P, s.
     dwell: Option<f64>,
     /// What the records said last.
@@ -37,6 +37,10 @@ impl Canned {
         matches!(self, Canned::Deep | Canned::BreakChip)
     }
 
+    fn goes_aside(self) -> bool {
+        matches!(self, Canned::FineBore | Canned::BackBore)
+    }
+
     fn needs_dwell(self, flavor: Flavor) -> bool {
         match self {
             Canned::DwellDrill | Canned::DwellReam | Canned::HandBore => true,
@@ -47,7 +51,19 @@ impl Canned {
     }
 
     fn may_dwell(self, flavor: Flavor) -> bool {
-        self.needs_dwell(flavor) || matches!(self, Canned::Tap | Canned::LeftTap)
+        self.needs_dwell(flavor)
+            || self.goes_aside()
+            || matches!(self, Canned::Tap | Canned::LeftTap)
+    }
+}
+
+impl Holding {
+    /// The upper and the lower end of the feed, mm: back boring goes down to R and feeds up to Z.
+    fn ends(&self) -> (Option<f64>, Option<f64>) {
+        match self.canned {
+            Canned::BackBore => (self.bottom, self.r),
+            _ => (self.r, self.bottom),
+        }
     }
 }
 
@@ -73,7 +89,7 @@ impl Step<'_, '_, '_> {
             words: (None, None),
             r: None,
             bottom: None,
-            peck: None,
+            q: None,
             dwell: None,
             told: None,
             rigid: false,
@@ -113,7 +129,7 @@ impl Step<'_, '_, '_> {
             let asked = matches!(self.block.g(Group::Motion), Some(G::Cycle(_)));
             return if asked { Err(self.wrong("a cycle without an axis word")) } else { Ok(()) };
         }
-        let r = self.series(&mut held)?;
+        let level = self.series(&mut held)?;
         let repeats = self.repeats()?;
         let [first, second, axis] = self.state.plane.axes();
         for nth in 0..repeats.max(1) {
@@ -126,7 +142,7 @@ impl Step<'_, '_, '_> {
             self.in_plane(&mut place, false)?;
             self.together(place.named)?;
             if repeats > 0 {
-                self.drill(place.point.with_axis(axis, r), &mut held)?;
+                self.drill(place.point.with_axis(axis, level), &mut held)?;
             }
         }
         self.state.cycle = Some(held);
@@ -137,18 +153,18 @@ impl Step<'_, '_, '_> {
     pub(super) fn hole_at(&mut self, place: Vec3) -> Result<(), Fault> {
         let Some(mut held) = self.state.cycle else { return Ok(()) };
         let axis = self.state.plane.axes()[2];
-        let r = self.series(&mut held)?;
-        self.drill(place.with_axis(axis, r), &mut held)?;
+        let level = self.series(&mut held)?;
+        self.drill(place.with_axis(axis, level), &mut held)?;
         self.state.cycle = Some(held);
         Ok(())
     }
 
-    /// Takes over what the block says of the cycle, and answers the R plane.
+    /// Takes over what the block says of the cycle, and answers the level of its point.
     fn series(&mut self, held: &mut Holding) -> Result<f64, Fault> {
         self.may_drill(held)?;
         self.levels(held, self.state.plane.axes()[2])?;
         self.feed_for_cut()?;
-        Ok(held.r.unwrap_or(held.initial))
+        Ok(held.ends().0.unwrap_or(held.initial))
     }
 
     fn may_drill(&self, held: &Holding) -> Result<(), Fault> {
@@ -195,13 +211,13 @@ impl Step<'_, '_, '_> {
             held.r = held.words.0.map(|value| level(held.initial, value));
             held.bottom = held.words.1.map(|value| level(held.r.unwrap_or(f64::NAN), value));
         }
-        if held.canned.pecks()
+        if (held.canned.pecks() || held.canned.goes_aside())
             && let Some(value) = self.take_length(b'Q')?
         {
             if value <= 0.0 {
                 return Err(self.block.at_word(b'Q', "nc-cycle", "Q must be greater than 0"));
             }
-            held.peck = Some(value);
+            held.q = Some(value);
         }
         if held.canned.may_dwell(self.flavor) {
             let seconds = match self.flavor {
@@ -217,21 +233,27 @@ impl Step<'_, '_, '_> {
         Ok(())
     }
 
-    /// The active cycle for the neutral program: its point lies on the R plane.
+    /// The active cycle for the neutral program: its point is the upper end of its feed.
     fn cycle(&mut self, held: &mut Holding) -> Result<Cycle, Fault> {
-        let (Some(r), Some(bottom)) = (held.r, held.bottom) else {
+        let (Some(top), Some(bottom)) = held.ends() else {
             let missing = if held.r.is_none() { "R" } else { "its bottom" };
             return Err(self.wrong(format!("the cycle has not been given {missing}")));
         };
-        if bottom >= r {
-            return Err(self.wrong(format!("the bottom {bottom} is not below the R plane {r}")));
+        let (upper, lower) = match held.canned {
+            Canned::BackBore => ("end of the feed", "R plane"),
+            _ => ("R plane", "bottom"),
+        };
+        if bottom >= top {
+            let message = format!("the {lower} {bottom} is not below the {upper} {top}");
+            return Err(self.wrong(message));
         }
-        if held.initial < r && self.flavor.is_fanuc() {
-            let message = format!("the R plane {r} lies above the initial level {}", held.initial);
+        if held.initial < top && self.flavor.is_fanuc() {
+            let message =
+                format!("the {upper} {top} lies above the initial level {}", held.initial);
             return Err(self.wrong(message));
         }
         let peck = if held.canned.pecks() {
-            Some(held.peck.ok_or_else(|| self.wrong("a peck cycle needs Q"))?)
+            Some(held.q.ok_or_else(|| self.wrong("a peck cycle needs Q"))?)
         } else {
             None
         };
@@ -255,10 +277,19 @@ impl Step<'_, '_, '_> {
             Canned::HandBore | Canned::Bore => CycleKind::Bore,
             Canned::Tap => self.tapping(held, false)?,
             Canned::LeftTap => self.tapping(held, true)?,
+            Canned::FineBore => CycleKind::FineBore(self.withdrawal(held)?),
+            Canned::BackBore => {
+                CycleKind::BackBore { withdrawal: self.withdrawal(held)?, through: None }
+            }
         };
+        let initial = (held.initial - top).max(0.0);
         let retract = match self.state.return_to_r {
+            Some(true) if held.canned == Canned::BackBore => {
+                let message = "back boring goes back to the initial level: it needs G98";
+                return Err(self.wrong(message));
+            }
             Some(true) => 0.0,
-            Some(false) => (held.initial - r).max(0.0),
+            Some(false) => initial,
             None => {
                 let fault = self.wrong("a cycle, and neither G98 nor G99 has been given");
                 let help = "write G98 or G99: a control keeps that of the program before";
@@ -267,8 +298,8 @@ impl Step<'_, '_, '_> {
         };
         Ok(Cycle {
             kind,
-            depth: r - bottom,
-            clearance: 0.0,
+            depth: top - bottom,
+            clearance: if held.canned == Canned::BackBore { initial } else { 0.0 },
             retract,
             feed: None,
             dwell: dwell.unwrap_or(0.0),
@@ -277,10 +308,37 @@ impl Step<'_, '_, '_> {
         })
     }
 
+    /// How a boring bar leaves the wall: by Q, the way that the machine is set to. That way is of the
+    /// axes: no mirror and no turn of the coordinates changes it (B-64484EN-2, notes of `G76`, `G87`,
+    /// `G51.1`), so it is not followed through these.
+    fn withdrawal(&self, held: &Holding) -> Result<Withdrawal, Fault> {
+        if self.state.frames.is_transformed() {
+            let message = "the tool goes aside while the coordinates are turned, scaled or tilted";
+            return Err(self.block.whole("nc-frame", message));
+        }
+        let turns = match held.canned {
+            // It starts the spindle so by itself at R.
+            Canned::BackBore => matches!(self.state.spindle, Spindle::Clockwise(_)),
+            _ => self.state.spindle != Spindle::Off,
+        };
+        if !turns {
+            return Err(self.wrong("the spindle does not turn as this cycle needs"));
+        }
+        let q = held.q.ok_or_else(|| self.wrong("Q says how far the tool goes aside"))?;
+        let Some(direction) = self.state.aside else {
+            let message = "which way the tool goes aside is a setting of the machine (FANUC: \
+                           parameter 5148; Haas: setting 27)";
+            let help = "say it: the way that the tool goes, not that of its tip";
+            return Err(self.wrong(message).help(help).into());
+        };
+        Ok(Withdrawal { aside: direction * q, angle: None })
+    }
+
     /// Tapping: the pitch is what the tool advances in a turn. The spindle turns the right way
     /// already, or rigid tapping (`M29`) turns it.
     fn tapping(&mut self, held: &mut Holding, left: bool) -> Result<CycleKind, Fault> {
-        let speed = self.state.speed.filter(|&speed| speed > 0.0);
+        let own = self.state.surface.is_none();
+        let speed = self.state.speed.filter(|&speed| own && speed > 0.0);
         let speed = speed.ok_or_else(|| self.wrong("tapping needs the spindle speed S"))?;
         let needed =
             if left { Spindle::CounterClockwise(speed) } else { Spindle::Clockwise(speed) };

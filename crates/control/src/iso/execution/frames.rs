@@ -115,6 +115,54 @@ impl Offset {
     fn frame(&self) -> Frame {
         Frame::from_mat3_translation(turn(2, self.turned), linear(&self.slide))
     }
+
+    /// Writes it: the given values replace those of before, or with `add` are added to them.
+    ///
+    /// # Errors
+    /// The program has moved in it, and what it held before is not known.
+    fn write(
+        &mut self,
+        values: [Option<f64>; 6],
+        angle: Option<f64>,
+        add: bool,
+    ) -> Result<(), Unknown> {
+        if !self.used {
+            for (held, value) in self.origin.iter_mut().zip(values) {
+                if let Some(value) = value {
+                    *held = if add { *held + value } else { value };
+                }
+            }
+            self.angle = angle.unwrap_or(self.angle);
+            return Ok(());
+        }
+        // In machine axes: what it held, what it holds now.
+        let back = turn(2, self.angle);
+        let held = linear(&self.origin) + times(back, linear(&self.slide));
+        let mut change = Vec3::ZERO;
+        for axis in 0..3 {
+            change[axis] = match values[axis] {
+                Some(value) if add => value,
+                Some(value) => value - held[axis],
+                None => 0.0,
+            };
+        }
+        let slide = if change == Vec3::ZERO { change } else { times(turn(2, -self.angle), change) };
+        for axis in 0..6 {
+            self.slide[axis] += match (values[axis], axis) {
+                (_, 0..3) => slide[axis],
+                (Some(value), _) if add => value,
+                (Some(value), _) => value - self.origin[axis] - self.slide[axis],
+                (None, _) => 0.0,
+            };
+        }
+        if let Some(angle) = angle {
+            self.turned = angle - self.angle;
+        }
+        if self.slide.iter().any(|v| v.is_nan()) || self.turned.is_nan() {
+            return Err(Unknown);
+        }
+        Ok(())
+    }
 }
 
 fn linear(six: &Six) -> Vec3 {
@@ -171,6 +219,8 @@ pub(crate) struct Frames {
     offsets: Vec<Offset>,
     /// The index of the active one.
     active: usize,
+    /// FANUC's external offset, which adds to each of them.
+    external: Six,
     /// What an offset holds that the program has not written: 0 or, where that is not known, NaN.
     untouched: f64,
     /// Whether the control can turn a work offset.
@@ -198,6 +248,7 @@ impl Frames {
         let mut frames = Frames {
             offsets: Vec::with_capacity(2),
             active: 0,
+            external: [untouched; 6],
             untouched,
             turns_offsets,
             shift: [0.0; 6],
@@ -325,44 +376,37 @@ impl Frames {
         add: bool,
     ) -> Result<bool, Unknown> {
         let index = self.index(number);
+        // What is not known of the external one has moved all of them alike.
+        let external = self.external.map(|value| if add || value.is_nan() { 0.0 } else { value });
+        let values: [Option<f64>; 6] =
+            std::array::from_fn(|axis| values[axis].map(|value| value + external[axis]));
         let Some(offset) = self.offsets.get_mut(index) else { return Err(Unknown) };
-        if !offset.used {
-            for (held, value) in offset.origin.iter_mut().zip(values) {
-                if let Some(value) = value {
-                    *held = if add { *held + value } else { value };
-                }
-            }
-            offset.angle = angle.unwrap_or(offset.angle);
-            return Ok(index == self.active);
-        }
-        // In machine axes: what it held, what it holds now.
-        let back = turn(2, offset.angle);
-        let held = linear(&offset.origin) + times(back, linear(&offset.slide));
-        let mut change = Vec3::ZERO;
-        for axis in 0..3 {
-            change[axis] = match values[axis] {
-                Some(value) if add => value,
-                Some(value) => value - held[axis],
-                None => 0.0,
-            };
-        }
-        let slide =
-            if change == Vec3::ZERO { change } else { times(turn(2, -offset.angle), change) };
-        for axis in 0..6 {
-            offset.slide[axis] += match (values[axis], axis) {
-                (_, 0..3) => slide[axis],
-                (Some(value), _) if add => value,
-                (Some(value), _) => value - offset.origin[axis] - offset.slide[axis],
-                (None, _) => 0.0,
-            };
-        }
-        if let Some(angle) = angle {
-            offset.turned = angle - offset.angle;
-        }
-        if offset.slide.iter().any(|v| v.is_nan()) || offset.turned.is_nan() {
-            return Err(Unknown);
-        }
+        offset.write(values, angle, add)?;
         Ok(index == self.active)
+    }
+
+    /// Writes the external work offset (FANUC, `G10 L2 P0`), with `add` by a step: all offsets move.
+    ///
+    /// # Errors
+    /// The program has moved, and what it held before is not known.
+    pub(super) fn write_external(
+        &mut self,
+        values: [Option<f64>; 6],
+        add: bool,
+    ) -> Result<bool, Unknown> {
+        // Before the first move it does not matter what was there.
+        let used = self.offsets.iter().any(|offset| offset.used);
+        let mut steps = values;
+        for (step, held) in steps.iter_mut().zip(&mut self.external) {
+            let Some(value) = step else { continue };
+            let before = if held.is_nan() && !used { 0.0 } else { *held };
+            *held = if add { *held + *value } else { *value };
+            if !add {
+                *value -= before;
+            }
+        }
+        self.offsets.iter_mut().try_for_each(|offset| offset.write(steps, None, true))?;
+        Ok(true)
     }
 
     /// Moves a work offset so that the tool at `here` (programmed) has the coordinates `values`

@@ -25,8 +25,10 @@ pub(crate) struct State {
     /// F as it was written last.
     pub f: Option<f64>,
     pub spindle: Spindle,
-    /// Last S, 1/min.
+    /// Last S: 1/min, or with constant surface speed m/min or feet/min.
     pub speed: Option<f64>,
+    /// While the surface speed is constant (`G96`): the most that the spindle turns, 1/min.
+    pub surface: Option<f64>,
     /// `M29` has been given: the next tapping cycle turns the spindle itself.
     pub rigid: bool,
     pub coolant: Coolant,
@@ -57,6 +59,8 @@ pub(crate) struct State {
     /// Lathe: X is a diameter.
     pub diameter: bool,
     pub registers: Registers,
+    /// Where to a boring bar leaves the wall; none where nobody has said it.
+    pub aside: Option<Vec3>,
     /// Stored by `G28.1` and `G30.1`, in machine coordinates, mm; NaN where not known.
     pub homes: [Vec3; 2],
     /// The point on the way of the last `G28`, in the work frame.
@@ -160,6 +164,7 @@ impl State {
             f: None,
             spindle: Spindle::Off,
             speed: None,
+            surface: None,
             rigid: false,
             coolant: Coolant::Off,
             selected: None,
@@ -181,6 +186,7 @@ impl State {
             polar: None,
             diameter: false,
             registers: Registers::new(&settings.setup.tools),
+            aside: settings.setup.aside,
             homes: [UNKNOWN; 2],
             via: None,
             return_to_r: flavor.is_fanuc().then_some(false),

@@ -170,16 +170,55 @@ impl Step<'_, '_, '_> {
         if self.flavor == Flavor::Marlin && self.block.m(Group::Spindle).is_none() {
             return Ok(());
         }
+        self.surface_speed()?;
         let Some(word) = self.block.take(b'S') else { return Ok(()) };
         if word.value < 0.0 {
             return Err(self.block.at_word(b'S', "nc-spindle", "the speed is below 0"));
         }
         self.state.speed = Some(word.value);
+        if self.state.surface.is_some() {
+            // Metres, or feet where lengths are inches.
+            let meters = if self.unit(self.state.inches, b'S')? == 1.0 { 1.0 } else { 0.3048 };
+            self.ops.push(Op::SurfaceSpeed(Some(word.value * meters)));
+        }
+        let most = self.state.surface.unwrap_or(word.value);
         match self.state.spindle {
             Spindle::Off => {}
-            Spindle::Clockwise(_) => self.turn(Spindle::Clockwise(word.value)),
-            Spindle::CounterClockwise(_) => self.turn(Spindle::CounterClockwise(word.value)),
+            Spindle::Clockwise(_) => self.turn(Spindle::Clockwise(most)),
+            Spindle::CounterClockwise(_) => self.turn(Spindle::CounterClockwise(most)),
         }
+        Ok(())
+    }
+
+    /// `G96 D S`, `G97`: S is the surface speed, or the speed of the spindle.
+    fn surface_speed(&mut self) -> Result<(), Fault> {
+        let Some(G::SurfaceSpeed(constant)) = self.block.g(Group::SpindleMode) else {
+            return Ok(());
+        };
+        let wrong = |step: &Self, message| {
+            Err(step.block.at_group(Group::SpindleMode, "nc-spindle", message))
+        };
+        // `rs274` takes G97 without S, and does not say how fast the spindle then turns.
+        if !self.block.has(b'S') && (constant || self.state.surface.is_some()) {
+            return wrong(self, "the block needs S, which is another thing from here on");
+        }
+        if !constant {
+            if self.state.surface.take().is_some() {
+                self.ops.push(Op::SurfaceSpeed(None));
+            }
+            return Ok(());
+        }
+        if self.block.g(Group::Units).is_some() {
+            return wrong(
+                self,
+                "in which unit S counts in the block that says the unit is not clear",
+            );
+        }
+        let most = self.block.take(b'D').map_or(f64::INFINITY, |word| word.value);
+        if most <= 0.0 {
+            return Err(self.block.at_word(b'D', "nc-spindle", "the most speed D is above 0"));
+        }
+        self.state.surface = Some(most);
         Ok(())
     }
 
@@ -196,7 +235,7 @@ impl Step<'_, '_, '_> {
             return Err(self.block.at_word(b'$', "nc-spindle", "there is one spindle, $0"));
         }
         let speed = || {
-            self.state.speed.ok_or_else(|| {
+            self.state.surface.or(self.state.speed).ok_or_else(|| {
                 let message = "the spindle starts and no speed has been given by S";
                 let fault = self.block.at_group(Group::Spindle, "nc-spindle", message);
                 Fault::from(fault.help("write S beside M3 or M4, or before"))

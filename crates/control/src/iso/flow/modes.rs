@@ -22,6 +22,7 @@ pub(crate) struct Modes {
     length: Length,
     f: Option<f64>,
     speed: Option<f64>,
+    surface: Option<f64>,
     spindle: Spindle,
     coolant: Coolant,
 }
@@ -41,6 +42,7 @@ impl Modes {
             length: state.length,
             f: state.f,
             speed: state.speed,
+            surface: state.surface,
             spindle: state.spindle,
             coolant: state.coolant,
         }
@@ -81,6 +83,7 @@ impl Run<'_, '_> {
             _ if now.length != kept.length && kept.length != Length::None => {
                 Some("the length offset")
             }
+            _ if now.surface != kept.surface => Some("the spindle mode (G96, G97)"),
             _ => None,
         };
         if let Some(lost) = lost {

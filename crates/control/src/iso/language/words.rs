@@ -106,6 +106,8 @@ pub(crate) enum G {
     Polar(bool),
     /// Lathe: X is a diameter, `G7`.
     Diameter(bool),
+    /// `G96`; `G97`, where there is such a thing.
+    SurfaceSpeed(bool),
     Dwell,
     Home,
     SecondHome,
@@ -194,6 +196,8 @@ pub(crate) enum Canned {
     DwellReam,
     /// `G88`: out of the hole by hand.
     HandBore,
+    FineBore,
+    BackBore,
 }
 
 /// The working plane.

@@ -281,14 +281,23 @@ impl Control<'_, '_> {
         self.restore_feed(feed)
     }
 
+    /// Another feed from here on.
+    pub(super) fn take_feed(&mut self, feed: Feed) -> Result<()> {
+        if self.feed == Some(feed) {
+            return Ok(());
+        }
+        self.feed = Some(feed);
+        self.emit(program::Op::Feed(feed))
+    }
+
     /// Goes back to the feed from before a block with a feed of its own.
     pub(super) fn restore_feed(&mut self, feed: Option<Feed>) -> Result<()> {
         match feed {
-            Some(feed) if self.feed != Some(feed) => {
-                self.feed = Some(feed);
-                self.emit(program::Op::Feed(feed))
+            Some(feed) => self.take_feed(feed),
+            None => {
+                self.feed = None;
+                Ok(())
             }
-            _ => Ok(()),
         }
     }
 

@@ -1,6 +1,7 @@
 //! Cycles: what `CYCL DEF` says, and how they are called.
 
 use super::hole::{Hole, RAPID_FEED};
+use super::layout::{self, Layout, Unit};
 use super::older::Older;
 use super::state::{Control, TENTH_INCH, Tip};
 use crate::klartext::language::functions::When;
@@ -37,133 +38,6 @@ impl Designation {
     }
 }
 
-/// The unit of a cycle parameter.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-enum Unit {
-    Length,
-    /// mm/min; `MAX` is rapid.
-    Feed,
-    /// Seconds, counts, degrees, switches.
-    Plain,
-}
-
-/// The parameters of the cycles and their units.
-const UNITS: [(u16, Unit); 43] = [
-    (200, Unit::Length),
-    (201, Unit::Length),
-    (202, Unit::Length),
-    (203, Unit::Length),
-    (204, Unit::Length),
-    (205, Unit::Length),
-    (206, Unit::Feed),
-    (208, Unit::Feed),
-    (210, Unit::Plain),
-    (211, Unit::Plain),
-    (212, Unit::Length),
-    (213, Unit::Plain),
-    (214, Unit::Plain),
-    (216, Unit::Length),
-    (217, Unit::Length),
-    (224, Unit::Plain),
-    (225, Unit::Length),
-    (226, Unit::Length),
-    (237, Unit::Length),
-    (238, Unit::Length),
-    (239, Unit::Length),
-    (241, Unit::Plain),
-    (242, Unit::Plain),
-    (243, Unit::Plain),
-    (244, Unit::Length),
-    (245, Unit::Plain),
-    (246, Unit::Plain),
-    (247, Unit::Plain),
-    (253, Unit::Feed),
-    (256, Unit::Length),
-    (257, Unit::Length),
-    (258, Unit::Length),
-    (259, Unit::Length),
-    (301, Unit::Plain),
-    (336, Unit::Plain),
-    (339, Unit::Plain),
-    (343, Unit::Plain),
-    (344, Unit::Length),
-    (365, Unit::Plain),
-    (379, Unit::Length),
-    (395, Unit::Plain),
-    (403, Unit::Plain),
-    (421, Unit::Plain),
-];
-
-/// A cycle with Q parameters: its number, those it needs, and those newer software adds.
-#[derive(Debug)]
-struct Layout {
-    number: u16,
-    needs: &'static [u16],
-    takes: &'static [u16],
-}
-
-const LAYOUTS: [Layout; 12] = [
-    Layout { number: 200, needs: &[200, 201, 206, 202, 210, 203, 204], takes: &[211, 395] },
-    Layout { number: 201, needs: &[200, 201, 206, 211, 208, 203, 204], takes: &[] },
-    Layout { number: 202, needs: &[200, 201, 206, 211, 208, 203, 204, 214], takes: &[336] },
-    Layout {
-        number: 203,
-        needs: &[200, 201, 206, 202, 210, 203, 204, 212, 213, 205, 211, 208, 256],
-        takes: &[395],
-    },
-    Layout {
-        number: 205,
-        needs: &[200, 201, 206, 202, 203, 204, 212, 205, 258, 259, 257, 256, 211, 379, 253],
-        takes: &[208, 395],
-    },
-    Layout { number: 206, needs: &[200, 201, 206, 211, 203, 204], takes: &[] },
-    Layout { number: 207, needs: &[200, 201, 239, 203, 204], takes: &[] },
-    Layout { number: 209, needs: &[200, 201, 239, 203, 204, 257, 256, 336], takes: &[403] },
-    Layout {
-        number: 220,
-        needs: &[216, 217, 244, 245, 246, 247, 241, 200, 203, 204, 301],
-        takes: &[365],
-    },
-    Layout {
-        number: 221,
-        needs: &[225, 226, 237, 238, 242, 243, 224, 200, 203, 204, 301],
-        takes: &[],
-    },
-    Layout { number: 240, needs: &[200, 343, 201, 344, 206, 211, 203, 204], takes: &[] },
-    Layout { number: 247, needs: &[339], takes: &[] },
-];
-
-/// Why a cycle that is not understood is refused.
-fn refusal(cycle: u32) -> String {
-    let reason = match cycle {
-        3..=6
-        | 14..=16
-        | 20..=25
-        | 27..=29
-        | 39
-        | 210..=215
-        | 225
-        | 230..=239
-        | 251..=259
-        | 267
-        | 270..=276 => "the paths with which it mills are the control's own",
-        204 | 208 | 241 | 262..=265 => {
-            "the paths with which it goes in and out are the control's own"
-        }
-        12 => "it calls a program: use CALL PGM",
-        13 => "it turns the spindle to an angle",
-        18 => "it cuts a thread with a tool that turns with the spindle",
-        1 | 2 | 17 => "it is defined in parts, 1.0 and so on",
-        19 => "it means axis or spatial angles as the machine is set: use PLANE SPATIAL",
-        30 => "its points are in a file of the control",
-        31..=99 | 291..=299 | 800..=899 => "it is for another machine",
-        400..=499 | 1400..=1499 | 600..=699 => "it measures what is not in the program",
-        300..=399 | 500..=599 => "it is one of the machine's builder",
-        _ => "it is not known",
-    };
-    format!("cycle {cycle} is not supported: {reason}")
-}
-
 /// A cycle that is defined; its parameters are in the Q parameters of their numbers, where a program
 /// may change them until it calls the cycle.
 #[derive(Debug)]
@@ -182,7 +56,7 @@ impl Definition {
 
     /// mm or mm/min in the unit of a parameter that the definition gave.
     pub(super) fn unit_of(&self, q: u16) -> Option<f64> {
-        let (_, unit) = UNITS.iter().find(|(number, _)| *number == q)?;
+        let unit = layout::unit(q)?;
         self.given.contains(&q).then_some(match unit {
             Unit::Length => self.unit,
             Unit::Feed if self.unit != 1.0 => TENTH_INCH,
@@ -226,10 +100,8 @@ impl Control<'_, '_> {
         number: u32,
         span: (usize, usize),
     ) -> Result<Definition> {
-        let layout = LAYOUTS
-            .iter()
-            .find(|layout| u32::from(layout.number) == number)
-            .ok_or_else(|| s.error("unsupported", span, refusal(number)))?;
+        let layout = layout::layout(number)
+            .ok_or_else(|| s.error("unsupported", span, layout::refusal(number)))?;
         while !matches!(s.peek(), [] | [b'Q', b'0'..=b'9', ..]) {
             s.token();
         }
@@ -255,7 +127,7 @@ impl Control<'_, '_> {
                 return Err(s.error("word-twice", span, format!("Q{q} is given twice")));
             }
             let value = match s.peek() {
-                b"MAX" | b"FMAX" if q == 208 => {
+                b"MAX" | b"FMAX" if matches!(q, 208 | 253) => {
                     s.token();
                     RAPID_FEED
                 }
@@ -283,16 +155,30 @@ impl Control<'_, '_> {
                 self.set_datum(s, preset)
             }
             220 | 221 => self.point_pattern(s, &open),
+            208 => {
+                let checked = open.hole(&self.registers).helix(None);
+                self.keep(s, open, checked.map(|_| ()))
+            }
             _ => {
                 let checked = open.hole(&self.registers).cycle();
-                checked.map_err(|message| {
-                    s.error_block("cycle-parameter", format!("cycle {number}: {message}"))
-                })?;
-                self.cycle = Some(Defined::Parameters(open));
-                self.calls_modally = false;
-                Ok(())
+                self.keep(s, open, checked.map(|_| ()))
             }
         }
+    }
+
+    /// A cycle that is ready to be called, if it was `checked` well.
+    fn keep(
+        &mut self,
+        s: &Scanner,
+        open: Definition,
+        checked: std::result::Result<(), String>,
+    ) -> Result<()> {
+        checked.map_err(|message| {
+            s.error_block("cycle-parameter", format!("cycle {}: {message}", open.number()))
+        })?;
+        self.cycle = Some(Defined::Parameters(open));
+        self.calls_modally = false;
+        Ok(())
     }
 
     /// Cycle 247: a preset becomes the datum, and the datum shift ends.
@@ -366,29 +252,32 @@ impl Control<'_, '_> {
         if self.ended {
             return Err(s.error_block("cycle", "no cycle is called where the program ends"));
         }
-        let (cycle, surface) = match &self.cycle {
+        self.may_call(s)?;
+        if let Some(Defined::Parameters(definition)) = &self.cycle
+            && definition.number() == 208
+        {
+            return self.mill_bore(s, rise, level);
+        }
+        let (cycle, point) = match &self.cycle {
             Some(Defined::Older(older)) if level.is_none() => {
                 (older.cycle(), self.here.z - older.clearance())
             }
             _ => {
                 let hole = self.definition(s)?.hole(&self.registers);
-                (hole.cycle(), hole.surface() + rise)
+                (hole.cycle(), hole.point() + rise)
             }
         };
         let mut cycle = cycle.map_err(|message| s.error_block("cycle-parameter", message))?;
         if let Some(level) = level {
-            cycle.retract = level - surface;
+            cycle.retract = level - point;
         }
-        if self.compensation != Compensation::Off {
-            return Err(s.error_block("cycle", "a cycle is called with R0"));
-        }
-        if self.per_turn {
-            return Err(s.error_block("cycle", "a cycle is not called while M136 is active"));
-        }
-        self.transforms_are_clear(s)?;
-        if self.transforms().scales() {
-            let message = "scaling changes the dimensions of cycles too, which is not followed";
-            return Err(s.error_block("transformation", message));
+        if let Some(withdrawal) = cycle.kind.withdrawal() {
+            if self.transforms().is_more_than_a_shift() {
+                let message = "which way the tool goes aside is not known in mirrored, rotated or \
+                               scaled coordinates";
+                return Err(s.error_block("transformation", message));
+            }
+            cycle.kind = cycle.kind.with_aside(self.work_direction(withdrawal.aside));
         }
         let running = match self.spindle {
             Spindle::Off => None,
@@ -402,19 +291,35 @@ impl Control<'_, '_> {
             let left = matches!(self.spindle, Spindle::CounterClockwise(_));
             cycle.kind = CycleKind::Tap { pitch: feed / speed, left };
         }
-        // The cycle drills along Z of the coordinates of the program.
-        if self.tip != Tip::Free && self.tilt.is_none() && !self.stands_upright() {
-            let message = "with M128 a cycle does not drill along an inclined tool";
-            return Err(s.error_block("cycle", message).help("use PLANE SPATIAL").into());
-        }
-        let hole = self.cutting_pose(s, self.here.with_z(surface))?;
+        let hole = self.cutting_pose(s, self.here.with_z(point))?;
         if self.told != Some(cycle) {
             self.told = Some(cycle);
             self.emit(Op::Cycle(Box::new(cycle)))?;
         }
         self.emit(Op::Hole(hole))?;
-        self.here.z = surface + cycle.retract;
+        self.here.z = point + cycle.retract;
         self.path = None;
+        Ok(())
+    }
+
+    /// Whether a cycle can be called as things stand.
+    fn may_call(&self, s: &Scanner) -> Result<()> {
+        if self.compensation != Compensation::Off {
+            return Err(s.error_block("cycle", "a cycle is called with R0"));
+        }
+        if self.per_turn {
+            return Err(s.error_block("cycle", "a cycle is not called while M136 is active"));
+        }
+        self.transforms_are_clear(s)?;
+        if self.transforms().scales() {
+            let message = "scaling changes the dimensions of cycles too, which is not followed";
+            return Err(s.error_block("transformation", message));
+        }
+        // The cycle drills along Z of the coordinates of the program.
+        if self.tip != Tip::Free && self.tilt.is_none() && !self.stands_upright() {
+            let message = "with M128 a cycle does not drill along an inclined tool";
+            return Err(s.error_block("cycle", message).help("use PLANE SPATIAL").into());
+        }
         Ok(())
     }
 
@@ -425,11 +330,11 @@ impl Control<'_, '_> {
         cycle: u32,
         span: (usize, usize),
     ) -> Result<()> {
-        if matches!(cycle, 1 | 2 | 7..=11 | 17 | 26 | 32) {
+        if matches!(cycle, 1 | 2 | 7..=11 | 17 | 19 | 26 | 32) {
             s.skip();
             return Ok(());
         }
-        Err(s.error("unsupported", span, refusal(cycle)))
+        Err(s.error("unsupported", span, layout::refusal(cycle)))
     }
 
     /// A numbered part of an older cycle: `7.1 X+60`, `9.1 DWELL 1.5`, `32.1 T0.01`.
@@ -447,6 +352,7 @@ impl Control<'_, '_> {
             (9, 1) => self.dwell(s),
             (10, 1) => self.rotation(s),
             (11, 1) => self.scale(s),
+            (19, 1) => self.working_plane(s),
             (26, 1) => self.axis_scale(s),
             // A tolerance changes how the control smooths, not where the program goes.
             (32, 1 | 2) => self.tolerance(s),

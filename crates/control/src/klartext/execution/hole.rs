@@ -2,10 +2,14 @@
 
 use super::cycle::Definition;
 use crate::klartext::language::registers::{Parameter, Registers};
-use program::{Cycle, CycleKind, Feed};
+use geom::Vec3;
+use program::{Cycle, CycleKind, Feed, Withdrawal};
 
 /// Retraction feeds from here on are rapid: the number that the control shows for `MAX`.
 pub(super) const RAPID_FEED: f64 = 99_999.0;
+
+/// How far cycle 202 goes from the wall, mm: a fixed value of the control.
+const DISENGAGING: f64 = 0.2;
 
 /// A hole cycle with what its parameters hold when it is called.
 pub(super) struct Hole<'a> {
@@ -15,7 +19,7 @@ pub(super) struct Hole<'a> {
 
 impl Hole<'_> {
     /// The value of a parameter in mm, mm/min or its own unit, where the definition gave it.
-    fn find(&self, q: u16) -> Option<f64> {
+    pub(super) fn find(&self, q: u16) -> Option<f64> {
         let unit = self.definition.unit_of(q)?;
         self.registers.number(Parameter::Global(q)).ok().map(|value| value * unit)
     }
@@ -30,8 +34,19 @@ impl Hole<'_> {
         self.get(203)
     }
 
+    /// Height of the cycle's point: the surface, or where back boring ends.
+    pub(super) fn point(&self) -> f64 {
+        match self.definition.number() {
+            204 => self.surface() + self.get(249) - self.get(250) - self.get(252),
+            _ => self.surface(),
+        }
+    }
+
     /// The cycle in the neutral vocabulary, or why that cannot be.
     pub(super) fn cycle(&self) -> Result<Cycle, String> {
+        if self.definition.number() == 204 {
+            return self.back_boring();
+        }
         let depth = -self.get(201);
         if depth <= 0.0 {
             return Err("the depth Q201 must be negative".into());
@@ -65,11 +80,9 @@ impl Hole<'_> {
         match self.definition.number() {
             200 => self.peck(&mut cycle, CycleKind::Deep)?,
             201 => cycle.kind = self.feeding_out(CycleKind::Ream)?,
-            202 if self.get(214) != 0.0 => {
-                return Err("disengaging from the wall (Q214) is not supported yet".into());
-            }
-            202 if self.rapid_out() => cycle.kind = CycleKind::Bore,
-            202 => return Err("boring goes out by rapid: Q208=MAX".into()),
+            202 if !self.rapid_out() => return Err("boring goes out by rapid: Q208=MAX".into()),
+            202 if self.get(214) == 0.0 => cycle.kind = CycleKind::Bore,
+            202 => cycle.kind = CycleKind::FineBore(self.withdrawal(DISENGAGING)?),
             203 => self.universal_drilling(&mut cycle)?,
             205 => self.universal_pecking(&mut cycle)?,
             240 if self.get(343) != 0.0 => {
@@ -83,6 +96,49 @@ impl Hole<'_> {
             _ => self.rigid_tapping(&mut cycle)?,
         }
         Ok(cycle)
+    }
+
+    /// How the tool leaves the wall, by `distance`: Q214 says which way, Q336 how the spindle stands.
+    fn withdrawal(&self, distance: f64) -> Result<Withdrawal, String> {
+        let way = match self.get(214) {
+            1.0 => Vec3::NEG_X,
+            2.0 => Vec3::NEG_Y,
+            3.0 => Vec3::X,
+            4.0 => Vec3::Y,
+            _ => return Err("the disengaging direction Q214 is 1 to 4".into()),
+        };
+        Ok(Withdrawal { aside: way * distance, angle: Some(self.get(336)) })
+    }
+
+    /// Cycle 204. The length of the tool is that of its lower end, and the edge stands Q252 above it; from
+    /// the set-up clearance below the part, which is Q250 thick, it bores Q249 into it.
+    fn back_boring(&self) -> Result<Cycle, String> {
+        let (clearance, bored, thickness) = (self.get(200), self.get(249), self.get(250));
+        if !(bored > 0.0 && thickness > 0.0 && self.get(251) > 0.0) {
+            return Err("Q249, Q250 and Q251 must be greater than 0".into());
+        }
+        if clearance < 0.0 || self.get(204) < 0.0 || self.get(252) < 0.0 {
+            return Err("Q200, Q204 and Q252 must not be negative".into());
+        }
+        if self.get(253) <= 0.0 || self.get(254) <= 0.0 {
+            return Err("the feeds Q253 and Q254 must be greater than 0".into());
+        }
+        let dwell = self.get(255);
+        if !(0.0..=3600.0).contains(&dwell) {
+            return Err("the dwell Q255 is 0 to 3600 s".into());
+        }
+        let through = Some(self.get(253)).filter(|feed| *feed < RAPID_FEED).map(Feed::PerMinute);
+        let above = self.surface() - self.point();
+        Ok(Cycle {
+            kind: CycleKind::BackBore { withdrawal: self.withdrawal(self.get(251))?, through },
+            depth: bored + clearance,
+            clearance: above + clearance,
+            retract: above + clearance.max(self.get(204)),
+            feed: Some(Feed::PerMinute(self.get(254))),
+            dwell,
+            first_peck: None,
+            peck: None,
+        })
     }
 
     fn rapid_out(&self) -> bool {

@@ -3,7 +3,7 @@
 use super::state::{Control, Tip};
 use super::transform::Transforms;
 use crate::klartext::language::scan::{Result, Scanner};
-use crate::klartext::language::words::feed_word;
+use crate::klartext::language::words::{ROTARY, Words, feed_word, slot};
 use geom::{Mat3, Vec3, direction};
 use program::Op;
 
@@ -38,9 +38,6 @@ pub(super) fn spatial([a, b, c]: [f64; 3]) -> Mat3 {
 impl Control<'_, '_> {
     /// A `PLANE` block, from behind the keyword.
     pub(crate) fn plane(&mut self, s: &mut Scanner) -> Result<()> {
-        if self.compensation != program::Compensation::Off {
-            return Err(s.error_block("plane", "a plane is tilted with R0"));
-        }
         let (kind, span) = s.token();
         let turn = match kind {
             b"SPATIAL" => Some(spatial(self.numbers(s, [b"SPA", b"SPB", b"SPC"])?)),
@@ -81,6 +78,15 @@ impl Control<'_, '_> {
             _ => return Err(s.error("unknown-word", span, "this kind of PLANE is not known")),
         };
         let positioning = self.positioning_of_plane(s)?;
+        self.may_tilt(s)?;
+        self.tilt_to(turn, positioning)
+    }
+
+    /// Whether a plane can be tilted as things stand.
+    fn may_tilt(&self, s: &Scanner) -> Result<()> {
+        if self.compensation != program::Compensation::Off {
+            return Err(s.error_block("plane", "a plane is tilted with R0"));
+        }
         if !self.settings.rotary.contains(&true) {
             return Err(s.error_block("plane", "the machine has no rotary axes"));
         }
@@ -94,7 +100,31 @@ impl Control<'_, '_> {
             let help = "set the datum shift and cycles 8, 10, 11 and 26 back first";
             return Err(s.error_block("plane", message).help(help).into());
         }
-        self.tilt_to(turn, positioning)
+        Ok(())
+    }
+
+    /// `CYCL DEF 19.1 A B C`: the plane of one spatial angle, or without an angle the plane of the machine.
+    /// Whether the rotary axes turn at once is up to the machine, so where they are is not known.
+    pub(super) fn working_plane(&mut self, s: &mut Scanner) -> Result<()> {
+        let words = Words::read(s, ROTARY, self)?;
+        let bad = |message| Err(s.error_block("plane", message));
+        if !words.is_plain() || words.is_incremental(ROTARY) {
+            return bad("cycle 19 takes A, B and C here, absolute");
+        }
+        let angles = [0, 1, 2].map(|axis| words.get(slot::A + axis).unwrap_or(0.0));
+        let tilted = angles.iter().filter(|angle| **angle != 0.0).count();
+        if tilted > 1 {
+            let message = "whether several angles are spatial angles or positions of the rotary axes is \
+                           up to the machine";
+            return Err(s.error_block("unsupported", message).help("use PLANE SPATIAL").into());
+        }
+        self.may_tilt(s)?;
+        // The positions that give the plane: that of the axis that it is tilted about.
+        let reached = (0..3).all(|axis| angles[axis] == 0.0 || self.settings.rotary[axis]);
+        for (q, angle) in (120..).zip(angles) {
+            self.registers.preassign(q, if reached { angle } else { f64::NAN });
+        }
+        self.tilt_to((tilted > 0).then(|| spatial(angles)), Positioning::Stay)
     }
 
     /// Three words that must stand in this order, each with a number.

@@ -259,10 +259,7 @@ impl<'a, 's> Control<'a, 's> {
             }
             Some(FeedWord::PerTurn(number)) => Feed::PerTurn(number * self.unit),
         };
-        if self.feed != Some(feed) {
-            self.feed = Some(feed);
-            self.emit(Op::Feed(feed))?;
-        }
+        self.take_feed(feed)?;
         Ok(false)
     }
 

@@ -8,7 +8,8 @@ use crate::sinumerik::Fallible;
 use crate::sinumerik::language::call::Call;
 use crate::sinumerik::language::commands::FeedType;
 use crate::sinumerik::language::scan::Source;
-use program::{Cycle, CycleKind, Diagnostic, Feed, Spindle};
+use geom::Vec3;
+use program::{Cycle, CycleKind, Diagnostic, Feed, Spindle, Withdrawal};
 
 /// A cycle and its parameters.
 pub(crate) struct Form {
@@ -132,9 +133,6 @@ const FIXED: &[(&str, &[f64])] = &[
     ("S_ZD", &[0.0]),
     ("S_FD", &[0.0]),
     ("FRF", &[1.0]),
-    ("RPA", &[0.0]),
-    ("RPO", &[0.0]),
-    ("RPAP", &[0.0]),
 ];
 
 /// Coarse pitch of metric threads, mm, by nominal diameter (ISO 261).
@@ -191,7 +189,7 @@ impl Pause {
     }
 }
 
-/// A cycle that is ready to drill. Heights in mm in the program's coordinates.
+/// A cycle that is ready to drill. Heights and ways in mm in the program's coordinates.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Drilling {
     /// What happens, but for the dwell.
@@ -487,7 +485,16 @@ impl Drilling {
     }
 
     fn bore(&mut self, arguments: &Arguments, state: &State) -> Fallible<()> {
-        self.cycle.kind = CycleKind::Bore;
+        let mut aside = Vec3::ZERO;
+        for (axis, name) in ["RPA", "RPO", "RPAP"].into_iter().enumerate() {
+            aside[axis] = arguments.length(name)?.unwrap_or(0.0);
+        }
+        self.cycle.kind = match aside == Vec3::ZERO {
+            true => CycleKind::Bore,
+            false => {
+                CycleKind::FineBore(Withdrawal { aside, angle: Some(arguments.or_zero("POSS")?) })
+            }
+        };
         self.spindle_before = Some(Drilling::direction(arguments, "SDIR", state.speed)?);
         // The spindle stands in position at the end; nothing starts it again.
         self.spindle_after = Some(Spindle::Off);

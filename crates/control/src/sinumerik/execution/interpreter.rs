@@ -18,6 +18,7 @@ use crate::sinumerik::language::call::{Argument, Call, Procedure};
 use crate::sinumerik::language::commands::{Code, FeedType, Motion};
 use crate::sinumerik::language::scan::Source;
 use crate::sinumerik::language::variables::ELEMENTS_IN_A_TURN;
+use geom::Vec3;
 use program::{Compensation, Coolant, Cycle, Feed, Op, Record, Spindle, Tool};
 
 /// Runs blocks.
@@ -602,7 +603,12 @@ impl<'a, 's> Interpreter<'a, 's> {
             let message = "the dwell counts turns of a spindle that stands";
             return Err(source.block_error("dwell", message));
         };
-        let cycle = Cycle { dwell, ..drilling.cycle };
+        let mut cycle = Cycle { dwell, ..drilling.cycle };
+        if let Some(withdrawal) = cycle.kind.withdrawal() {
+            let frames = &self.state.frames;
+            let aside = frames.in_work_frame(withdrawal.aside) - frames.in_work_frame(Vec3::ZERO);
+            cycle.kind = cycle.kind.with_aside(aside);
+        }
         if self.reported_cycle != Some(cycle) {
             self.reported_cycle = Some(cycle);
             self.emit(source, Op::Cycle(cycle.into()))?;

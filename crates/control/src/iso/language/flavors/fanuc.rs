@@ -1,7 +1,7 @@
 //! FANUC 30i, milling, G code list of B-64484EN-2. Group 09, the canned cycles, is apart from group
 //! 01, the interpolation.
 
-use super::super::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Motion, Refused};
+use super::super::words::{Canned, Dictionary, Flavor, G, GRow, Group, M, MRow, Motion, Refused};
 use super::{END_M, FRAME_G, MACRO_G, MILL_G, POLAR_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
 
 const G_WORDS: &[GRow] = &[
@@ -23,7 +23,9 @@ const G_WORDS: &[GRow] = &[
     (630, Group::Path, G::Neutral(b"")),
     (640, Group::Path, G::Neutral(b"")),
     (682, Group::Tilt, G::Tilt),
+    (760, Group::Cycle, G::Cycle(Canned::FineBore)),
     (800, Group::Cycle, G::CancelCycle),
+    (870, Group::Cycle, G::Cycle(Canned::BackBore)),
 ];
 
 const M_WORDS: &[MRow] = &[(7, Group::Coolant, M::Mist), (29, Group::Spindle, M::RigidTap)];
@@ -37,8 +39,6 @@ const REFUSED_G: &[Refused] = &[
     (411, "a tool radius in the block is not followed; use G41 D"),
     (421, "a tool radius in the block is not followed; use G42 D"),
     (661, "a macro called for every block is not followed; use G66"),
-    (760, "the way out of fine boring is set by parameters 5101 and 5148; write its moves, or G86"),
-    (870, "the way out of back boring is set by parameters 5101 and 5148; write its moves"),
     (921, "it goes back to an offset that stands in the control"),
     (960, "constant surface speed is for turning"),
 ];

@@ -1,6 +1,6 @@
 //! Haas NGC mills, "Mill Operator's Manual", chapters G codes and M codes.
 
-use super::super::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Pattern, Refused};
+use super::super::words::{Canned, Dictionary, Flavor, G, GRow, Group, M, MRow, Pattern, Refused};
 use super::{END_M, FRAME_G, MACRO_G, MILL_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
 
 const G_WORDS: &[GRow] = &[
@@ -13,6 +13,7 @@ const G_WORDS: &[GRow] = &[
     (700, Group::OneShot, G::Pattern(Pattern::Circle)),
     (710, Group::OneShot, G::Pattern(Pattern::Arc)),
     (720, Group::OneShot, G::Pattern(Pattern::Line)),
+    (760, Group::Cycle, G::Cycle(Canned::FineBore)),
     (800, Group::Cycle, G::CancelCycle),
     (1000, Group::Mirror, G::Mirror(false)),
     (1010, Group::Mirror, G::Mirror(true)),
@@ -56,8 +57,7 @@ const REFUSED_G: &[Refused] = &[
     (370, "a measured tool is known only at the machine"),
     (440, "it subtracts the register of the tool length; write G43 with the sign in the register"),
     (470, "engraving is not followed; write its moves"),
-    (760, "the way out of fine boring is setting 27; write its moves, or G86"),
-    (770, "the way out of back boring is setting 27; write its moves"),
+    (770, "which of R and Z back boring begins at is not known; write its moves"),
     (870, "a cycle that ends by hand is followed as G88 only"),
     (1070, "cylindrical mapping depends on the machine's axes; write plain moves"),
     (1360, "a measured position is known only at the machine"),

@@ -30,6 +30,8 @@ const G_WORDS: &[GRow] = &[
     (921, Group::OneShot, G::CancelShift { keep: false }),
     (922, Group::OneShot, G::CancelShift { keep: true }),
     (923, Group::OneShot, G::RestoreShift),
+    (960, Group::SpindleMode, G::SurfaceSpeed(true)),
+    (970, Group::SpindleMode, G::SurfaceSpeed(false)),
     (411, Group::Compensation, G::DynamicCompensation(Side::Left)),
     (421, Group::Compensation, G::DynamicCompensation(Side::Right)),
 ];
@@ -66,7 +68,6 @@ const REFUSED_G: &[Refused] = &[
     (720, "lathe cycles are not followed; write their moves"),
     (760, "the lathe's threading cycle is not followed; write its passes with G33"),
     (870, "LinuxCNC's back boring is not followed; write its moves"),
-    (960, "constant surface speed is for turning"),
 ];
 
 pub(super) static WORDS: Dictionary = mill(Flavor::LinuxCnc, b"ABCDEFGHIJKLMNPQRSTXYZ@^$", 254)
