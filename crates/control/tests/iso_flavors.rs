@@ -1,16 +1,13 @@
 //! Haas, Mach3, Marlin and GRBL: what each has of its own, and what it does not know.
 
+mod common;
+
 use geom::Vec3;
 use program::{Coolant, Cycle, CycleKind, Diagnostic, Op, Spindle};
 use toolpost_control::{Dialect, Settings, read};
 
 fn run(dialect: Dialect, text: &str) -> Result<Vec<Op>, Box<Diagnostic>> {
-    let mut ops = Vec::new();
-    read(&Settings::new(dialect, [false; 3]), "p.nc", text.as_bytes(), &mut |record| {
-        ops.push(record.op);
-        Ok(())
-    })?;
-    Ok(ops)
+    common::ops(&Settings::new(dialect, [false; 3]), "p.nc", text)
 }
 
 fn ops(dialect: Dialect, text: &str) -> Vec<Op> {

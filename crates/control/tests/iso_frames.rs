@@ -1,18 +1,15 @@
 //! Moved, turned, scaled and mirrored coordinates of FANUC, Haas and Mach3, tool registers, numbers
 //! without a point: programs and the points that their manuals and a pocket calculator give.
 
+mod common;
+
 use geom::Vec3;
 use program::{Compensation, Cycle, CycleKind, Diagnostic, Op, Spindle};
-use toolpost_control::{Dialect, Settings, Setup, ToolData, WholeNumbers, read};
+use toolpost_control::{Dialect, Settings, Setup, ToolData, WholeNumbers};
 
 fn run_with(setup: Setup, dialect: Dialect, text: &str) -> Result<Vec<Op>, Box<Diagnostic>> {
     let settings = Settings { setup, ..Settings::new(dialect, [false; 3]) };
-    let mut ops = Vec::new();
-    read(&settings, "p.nc", text.as_bytes(), &mut |record| {
-        ops.push(record.op);
-        Ok(())
-    })?;
-    Ok(ops)
+    common::ops(&settings, "p.nc", text)
 }
 
 fn ops(dialect: Dialect, text: &str) -> Vec<Op> {

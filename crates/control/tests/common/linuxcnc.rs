@@ -1,6 +1,5 @@
 //! LinuxCNC's own interpreter beside ours: what `rs274 -g` makes of a program, what we make of it, and
 //! where the two differ.
-#![allow(dead_code, reason = "each test uses a part of it")]
 
 use geom::{Frame, Mat3, Vec3};
 use program::{Cycle, CycleKind, Op, Orientation, Pose};
