@@ -39,7 +39,7 @@ pub(crate) struct Interpreter<'a, 's> {
     pub stopped: bool,
     /// The block whose corner waits for the next one.
     pub held: Option<Box<Held>>,
-    reported_cycle: Option<Cycle>,
+    pub(super) reported_cycle: Option<Cycle>,
 }
 
 /// M functions of which a block has at most one, and those that stand for no motion at all.
