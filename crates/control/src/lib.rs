@@ -227,6 +227,6 @@ fn shown(found: Diagnostic, text: &[u8]) -> Diagnostic {
     if line == 0 || found.column > 0 || !found.excerpt.is_empty() {
         return found;
     }
-    let block = text.split(|&byte| byte == b'\n').nth(line as usize - 1).unwrap_or_default();
+    let block = program::line_of(text, line);
     found.at(line, block, 0, block.trim_ascii_end().len())
 }

@@ -83,17 +83,25 @@ impl Walk<'_> {
             return self.lower(&arc, 0.0, 1.0, to, stop, "helices");
         }
         let pieces = self.pieces(&local, rises);
-        for piece in 0..pieces {
-            let [from, until] = [piece, piece + 1].map(|i| i as f64 / pieces as f64);
-            match self.rounded_arc(&local, facts, from, until) {
+        let mut ends: Vec<f64> = (1..=pieces).rev().map(|i| i as f64 / pieces as f64).collect();
+        let mut from = 0.0;
+        while let Some(&until) = ends.last() {
+            match self.rounded_arc(&local, facts, from, until, rises) {
                 Some(block) => {
                     self.arc_block(&arc, facts, &block, rises)?;
                     self.here = Some(Pose { point: arc.at(until), ..to.end });
+                }
+                // Its ends are too near each other to say where its centre is: two halves are better.
+                None if local.sweep * (until - from) > PI => {
+                    ends.push((from + until) / 2.0);
+                    continue;
                 }
                 None => {
                     self.lower(&arc, from, until, to, stop, "arcs too short for the decimals")?
                 }
             }
+            from = until;
+            ends.pop();
         }
         self.here = Some(to.end);
         Ok(())
@@ -134,12 +142,24 @@ impl Walk<'_> {
 
     /// The part of the arc between two parameters as the control will read it; `None` where rounding
     /// leaves no legal arc.
-    fn rounded_arc(&self, arc: &Arc, facts: &Facts, from: f64, until: f64) -> Option<Block> {
+    fn rounded_arc(
+        &self,
+        arc: &Arc,
+        facts: &Facts,
+        from: f64,
+        until: f64,
+        rises: bool,
+    ) -> Option<Block> {
         let round = |words: &[WordName; 3], p: Vec3| {
             Vec3::from_array([0, 1, 2].map(|i| self.writer.rounded(words[i], p[i])))
         };
         let start = self.stands(round(&END, arc.at(from)));
-        let end = round(&END, arc.at(until));
+        // An arc that is told by its angle ends as far from its centre as it begins, and not at a
+        // rounded place.
+        let by_angle = self
+            .templates
+            .places(self.arc_name(arc.normal[facts.axes[2]] > 0.0, rises), WordName::Sweep);
+        let end = if by_angle { arc.at(until) } else { round(&END, arc.at(until)) };
         let [u, v, w] = facts.axes;
         let flat = |p: Vec3| Vec3::new(p[u], p[v], 0.0);
         let (s, e, c) = (flat(start), flat(end), flat(arc.center));
@@ -168,7 +188,8 @@ impl Walk<'_> {
             let radius = a.length();
             let near =
                 (sweep - wanted).abs() * radius <= ROUNDING_STEPS * self.machine.resolution();
-            let even = (radius - b.length()).abs() <= can.arc_tolerance / 2.0;
+            let uneven = if by_angle { self.machine.resolution() } else { can.arc_tolerance };
+            let even = (radius - b.length()).abs() <= uneven / 2.0;
             let moved = flat(written).distance(flat(arc.center));
             let rise = end[w] - start[w];
             // The ends stay where they are; between them a shift of the centre moves the arc by as much

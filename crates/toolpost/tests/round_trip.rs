@@ -52,7 +52,7 @@ fn piece() -> impl Strategy<Value = Piece> {
     prop_oneof![
         2 => point().prop_map(Piece::Rapid),
         6 => point().prop_map(Piece::Line),
-        4 => (2.0..30.0f64, 0.0..360.0f64, 0.5..359.5f64, prop_oneof![Just(0.0), -3.0..3.0f64], any::<bool>())
+        4 => (2.0..30.0f64, 0.0..360.0f64, 5.0..359.5f64, prop_oneof![Just(0.0), -3.0..3.0f64], any::<bool>())
             .prop_map(|(radius, toward, sweep, rise, clockwise)| Piece::Arc { radius, toward, sweep, rise, clockwise }),
         1 => (kind, 1..1000u32, holes).prop_map(|(k, d, h)| Piece::Holes(k, f64::from(d) / 100.0, h)),
         1 => (20..3000u32).prop_map(|f| Piece::Feed(f64::from(f))),
