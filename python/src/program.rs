@@ -25,7 +25,7 @@ use toolpost::{Origin, Units, WholeNumbers};
 /// The arrays have one row for each move (see :attr:`kinds`). They are made at the first use of any of
 /// them; from then on every access gives the same memory, without copying. They are read-only, and outlive
 /// the program.
-#[pyclass(frozen, module = "toolpost")]
+#[pyclass(frozen, sequence, module = "toolpost")]
 pub struct Program {
     pub toolpath: Toolpath,
     columns: PyOnceLock<Columns>,
