@@ -15,7 +15,7 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use toolpost::answer::Stop;
 use toolpost::toolpath::{self, Toolpath};
-use toolpost::{Origin, Units, WholeNumbers};
+use toolpost::{Origin, Units, Way, WholeNumbers};
 
 /// A program in the neutral vocabulary: a sequence of records, and its moves as NumPy arrays.
 ///
@@ -241,6 +241,8 @@ impl Records {
 ///     Skip the blocks that begin with ``/``.
 /// start : tuple of 3 floats, optional
 ///     Where the tool stands when the program starts, mm.
+/// aside : {"+X", "-X", "+Y", "-Y"}, optional
+///     Which way a boring bar goes from the wall of a hole, where the machine is set to it.
 /// strict : bool
 ///     Take every warning as an error.
 ///
@@ -259,7 +261,7 @@ impl Records {
 /// What each format means, with sources: ``docs/sources/apt.md``, ``docs/controls``.
 #[pyfunction]
 #[pyo3(signature = (path, control=None, *, tools=None, folders=Vec::new(), whole_numbers=None, units=None,
-                    block_delete=false, start=None, strict=false))]
+                    block_delete=false, start=None, aside=None, strict=false))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub fn read(
     py: Python<'_>,
@@ -271,9 +273,11 @@ pub fn read(
     units: Option<&str>,
     block_delete: bool,
     start: Option<[f64; 3]>,
+    aside: Option<&str>,
     strict: bool,
 ) -> PyResult<Program> {
     let counts = [("units", WholeNumbers::Units), ("increments", WholeNumbers::Increments)];
+    let ways = [("+X", Way::PlusX), ("-X", Way::MinusX), ("+Y", Way::PlusY), ("-Y", Way::MinusY)];
     let lengths = [("mm", Units::Mm), ("inch", Units::Inch)];
     for coordinate in start.into_iter().flatten() {
         number(py, "a coordinate of the start", coordinate)?;
@@ -288,6 +292,7 @@ pub fn read(
         units: units.map(|given| word(py, "units", given, &lengths)).transpose()?,
         block_delete,
         start,
+        aside: aside.map(|given| word(py, "aside", given, &ways)).transpose()?,
     };
     released(py, || toolpath::read(&path, strict, &origin)).map(Program::from)
 }

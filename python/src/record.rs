@@ -11,7 +11,7 @@ use pyo3::types::PyDict;
 /// ----------
 /// kind : str
 ///     What it is: ``rapid``, ``line``, ``arc``, ``thread``, ``probe``, ``hole``, ``cycle``, ``cycle-off``,
-///     ``feed``, ``spindle``, ``coolant``, ``tool``, ``preselect``, ``length-offset``, ``compensation``,
+///     ``feed``, ``spindle``, ``surface-speed``, ``coolant``, ``tool``, ``preselect``, ``length-offset``, ``compensation``,
 ///     ``frame``, ``work-offset``, ``thread-wire``, ``cut-wire``, ``taper``, ``home``, ``dwell``, ``stop``,
 ///     ``optional-stop``, ``operation``, ``end-of-operation``, ``comment``, ``message``, ``end``.
 /// line : int
@@ -101,6 +101,10 @@ fn kind(op: &Op, words: &Bound<'_, PyDict>) -> PyResult<&'static str> {
                 words.set_item("pitch", pitch)?;
                 words.set_item("left", left)?;
             }
+            if let Some(withdrawal) = cycle.kind.withdrawal() {
+                words.set_item("aside", triple(withdrawal.aside))?;
+                words.set_item("angle", withdrawal.angle)?;
+            }
             if let Some(feed) = cycle.feed {
                 say_feed(feed, words)?;
             }
@@ -120,6 +124,10 @@ fn kind(op: &Op, words: &Bound<'_, PyDict>) -> PyResult<&'static str> {
             words.set_item("speed", speed)?;
             words.set_item("clockwise", clockwise)?;
             "spindle"
+        }
+        Op::SurfaceSpeed(speed) => {
+            words.set_item("speed", speed)?;
+            "surface-speed"
         }
         Op::Coolant(coolant) => {
             let name = COOLANTS.iter().find(|(_, known)| known == coolant);
@@ -236,5 +244,7 @@ fn cycle_name(kind: CycleKind) -> &'static str {
         CycleKind::Tap { .. } => "tap",
         CycleKind::Ream => "ream",
         CycleKind::Bore => "bore",
+        CycleKind::FineBore(_) => "fine-bore",
+        CycleKind::BackBore { .. } => "back-bore",
     }
 }

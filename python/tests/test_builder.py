@@ -48,6 +48,24 @@ def test_records_are_numbered_as_lines(slot):
     assert [record.line for record in slot] == list(range(1, len(slot) + 1))
 
 
+def test_every_kind_of_hole_can_be_built():
+    more = {
+        "deep": {"peck": 2, "first_peck": 3},
+        "break-chip": {"peck": 2},
+        "tap": {"pitch": 1.5, "left": True},
+        "fine-bore": {"aside": (0.5, 0, 0), "angle": 90},
+        "back-bore": {"aside": (0, 2, 0)},
+    }
+    for kind in ["drill", "ream", "bore", *more]:
+        words = {"depth": 9, "clearance": 2, "retract": 5, "dwell": 0.5, "feed": 80}
+        words |= more.get(kind, {})
+        program = Program.builder().drill([(1, 2, 3)], kind=kind, **words).build()
+        said = program[0].words
+        assert {**words, "cycle": kind, "unit": "mm/min"}.items() <= said.items()
+        assert [record.kind for record in program] == ["cycle", "hole", "cycle-off", "end"]
+        assert program.feeds.tolist() == [80]
+
+
 def test_a_clockwise_arc_turns_about_the_other_side():
     start = Program.builder().rapid((10, 0, 0))
     arc = start.arc((0, 10, 0), (0, 0, 0), clockwise=True).build()[1]
@@ -147,6 +165,8 @@ def test_every_word_of_a_program_can_be_built():
         ("pitch", lambda b: b.drill([(0, 0, 0)], 5, clearance=2, kind="tap")),
         ("pitch", lambda b: b.drill([(0, 0, 0)], 5, clearance=2, pitch=1)),
         ("number", lambda b: b.drill([(0, 0, 0)], 5, clearance=2, kind="tap", pitch=0)),
+        ("aside", lambda b: b.drill([(0, 0, 0)], 5, clearance=2, kind="fine-bore")),
+        ("aside", lambda b: b.drill([(0, 0, 0)], 5, clearance=2, aside=(1, 0, 0))),
         ("argument", lambda b: b.drill([(0, 0, 0)], 5, clearance=2, kind="punch")),
         ("number", lambda b: b.drill([(0, 0, math.nan)], 5, clearance=2)),
     ],

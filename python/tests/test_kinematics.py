@@ -41,6 +41,7 @@ def test_a_table_turns_the_part_by_hand_calculation(tmp_path):
     file.write_text(
         'extends = "generic-3axis-iso"\n'
         "work_zero = [0, 0, 0]\n"
+        '[orientation]\nsimultaneous = "machine-angles"\n'
         "[[rotary]]\n"
         'letter = "A"\non = "table"\naxis = [1, 0, 0]\npoint = [0, 0, -50]\nsign = 1\n'
         "min = -90\nmax = 90\nrapid = 1000\nacceleration = 100\n"

@@ -321,9 +321,35 @@ fn a_cycle_that_lacks_something_is_refused() {
     assert_eq!(rule(FANUC, "G0 X0 Y0\nG81 X1. Z-1. R2. F9\n"), "nc-unknown-position");
     // rs274 returns to R where neither is given, the manual does not say: so it must be said.
     assert_eq!(rule(LINUXCNC, "G0 X0 Y0 Z9\nG81 Z-1 R2 F9\n"), "nc-cycle");
-    for word in ["G76", "G87"] {
-        assert_eq!(rule(FANUC, &format!("{start}{word} X1. Z-1. R2.\n")), "nc-unknown-word");
-    }
+}
+
+/// LinuxCNC, "G96, G97 Spindle Control Mode": S is metres or feet a minute, D the most speed.
+#[test]
+fn constant_surface_speed_is_a_state_beside_the_most_speed() {
+    let spindle = |text: &str| -> Vec<Op> {
+        let told = |op: &Op| matches!(op, Op::Spindle(_) | Op::SurfaceSpeed(_));
+        ops_3(LINUXCNC, text).into_iter().filter(told).collect()
+    };
+    let clockwise = |speed| Op::Spindle(Spindle::Clockwise(speed));
+    let constant = |speed| Op::SurfaceSpeed(Some(speed));
+    assert_eq!(
+        spindle("S500 M3\nG96 D2500 S100\nS70\nG97 S800\nM5\n"),
+        [
+            clockwise(500.0),
+            constant(100.0),
+            clockwise(2500.0),
+            constant(70.0),
+            Op::SurfaceSpeed(None),
+            clockwise(800.0),
+            Op::Spindle(Spindle::Off)
+        ]
+    );
+    assert_eq!(spindle("G20\nG96 S100\n"), [constant(30.48)]);
+    assert_eq!(spindle("G96 S100\nM3\n"), [constant(100.0), clockwise(f64::INFINITY)]);
+    assert_eq!(rule(LINUXCNC, "G96 S100 D0\n"), "nc-spindle");
+    assert_eq!(rule(LINUXCNC, "G96 S100\nG97\n"), "nc-spindle");
+    let tap = "G99 G0 X0 Y0 Z9\nG96 S100 D500 M3\nG84 Z-1 R2 F100\n";
+    assert_eq!(rule(LINUXCNC, tap), "nc-cycle");
 }
 
 #[test]

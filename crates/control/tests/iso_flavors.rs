@@ -84,7 +84,7 @@ fn haas_coolant_through_the_spindle_has_its_own_way_off() {
 
 #[test]
 fn haas_refuses_with_the_reason() {
-    for word in ["G12 I5.", "G13 I5.", "G47", "G76", "G107", "G141", "G143", "G150", "G174"] {
+    for word in ["G12 I5.", "G13 I5.", "G47", "G77", "G107", "G141", "G143", "G150", "G174"] {
         let error = run(Dialect::Haas, &format!("G21\n{word}\n")).unwrap_err();
         assert_eq!(error.rule, "nc-unknown-word", "{word}");
         assert!(!error.help.is_empty(), "{word}");

@@ -30,7 +30,9 @@ fn path(text: &str) -> Vec<f64> {
 
 #[track_caller]
 fn agrees(text: &str) {
-    if let Some(Some(difference)) = difference(format!("G21\n{text}\nM2\n").as_bytes(), &[]) {
+    if let Some(Some(difference)) =
+        difference(format!("G21\n{text}\nM2\n").as_bytes(), [false; 3], &[])
+    {
         panic!("{difference}\n{text}");
     }
 }
@@ -40,7 +42,7 @@ fn refused(text: &str) -> Box<Diagnostic> {
     let text = format!("G21\n{text}\nM2\n");
     let Err(error) = run(&text, &[]) else { panic!("taken:\n{text}") };
     assert!(error.line > 0 && error.column > 0, "{error}");
-    if let Some(Some(difference)) = difference(text.as_bytes(), &[]) {
+    if let Some(Some(difference)) = difference(text.as_bytes(), [false; 3], &[]) {
         panic!("LinuxCNC takes this: {difference}\n{text}");
     }
     error
@@ -269,7 +271,7 @@ fn files_are_called_from_the_given_folders_and_errors_name_them() {
         records.iter().filter_map(|(l, op)| op.pose().map(|p| (*l, p.point.x))).collect();
     // Moves of another file carry the line of the call.
     assert_eq!(moves, [(3, 3.0), (3, 4.0), (4, 9.0), (5, 7.0)]);
-    if let Some(Some(difference)) = difference(text.as_bytes(), &folders) {
+    if let Some(Some(difference)) = difference(text.as_bytes(), [false; 3], &folders) {
         panic!("{difference}");
     }
     let error = |name: &str| run(&format!("G21\no<{name}> call\n"), &folders).unwrap_err();

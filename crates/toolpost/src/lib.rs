@@ -19,7 +19,7 @@ pub mod summary;
 pub mod toolpath;
 mod wire;
 
-pub use args::{Origin, Units, WholeNumbers};
+pub use args::{Origin, Units, Way, WholeNumbers};
 
 use answer::Answer;
 use args::{Command, CommandLine};

@@ -7,10 +7,11 @@ use crate::progress::Progress;
 use crate::prove;
 use crate::summary::{Shape, time, travel};
 use crate::toolpath::{self, Toolpath};
+use ::post::Output;
 use machine::Machine;
 use machine::limits::Travel;
 use machine::time::Times;
-use program::Diagnostic;
+use program::{Diagnostic, Program};
 use proof::Tolerances;
 use serde_json::json;
 use std::path::Path;
@@ -91,21 +92,13 @@ pub fn proven(
     }
     let mut warnings = toolpath.warnings.clone();
     step("writing");
-    let output = ::post::write(&toolpath.program, machine).map_err(|mut findings| {
-        toolpath.quote(&mut findings);
-        let verdict = verdict(&findings);
-        findings.splice(0..0, std::mem::take(&mut warnings));
-        Stop { verdict, findings }
-    })?;
-    warnings.extend(output.warnings);
-    toolpath.quote(&mut warnings);
+    let output = write(&toolpath.program, machine, toolpath, &mut warnings)?;
     step("proving");
-    let text = output.text;
-    let proof = proof::prove(&toolpath.program, machine, file, &text, tolerances);
+    let proof = proof::prove(&toolpath.program, machine, file, &output.text, tolerances);
     if !proof.proven {
         let mut account = prove::failed(&proof, toolpath, file);
         account.findings.extend(warnings);
-        return Ok(Posted { text, account });
+        return Ok(Posted { text: output.text, account });
     }
 
     warnings.extend(proof.warnings.iter().cloned());
@@ -115,7 +108,7 @@ pub fn proven(
         "toolpost": env!("CARGO_PKG_VERSION"),
         "source": toolpath.describe(&shape),
         "machine": toolpath::describe(machine),
-        "program": { "file": file, "blocks": output.blocks, "bytes": text.len() },
+        "program": { "file": file, "blocks": output.blocks, "bytes": output.text.len() },
         "travel": Travel::of(machine),
         "time_s": { "total": times.total(), "cutting": times.cutting, "rapid": times.rapid },
         "proof": proof,
@@ -125,11 +118,38 @@ pub fn proven(
     rows.push(("time", time(&times)));
     rows.push(("travel", travel(Travel::of(machine))));
     rows.extend(prove::rows(&proof, machine));
-    Ok(Posted { text, account: Account { verdict: Verdict::Done, rows, data, findings: warnings } })
+    let account = Account { verdict: Verdict::Done, rows, data, findings: warnings };
+    Ok(Posted { text: output.text, account })
+}
+
+/// Writes `program`, which came from `toolpath`. What the writer has to say goes behind the warnings that
+/// there are, with the text of its lines.
+///
+/// # Errors
+/// The same, where nothing could be written.
+pub fn write(
+    program: &Program,
+    machine: &Machine,
+    toolpath: &Toolpath,
+    warnings: &mut Vec<Diagnostic>,
+) -> Result<Output, Stop> {
+    match ::post::write(program, machine) {
+        Ok(mut output) => {
+            warnings.append(&mut output.warnings);
+            toolpath.quote(warnings);
+            Ok(output)
+        }
+        Err(mut findings) => {
+            let verdict = verdict(&findings);
+            warnings.append(&mut findings);
+            toolpath.quote(warnings);
+            Err(Stop { verdict, findings: std::mem::take(warnings) })
+        }
+    }
 }
 
 /// Whose fault it is that nothing could be written.
-pub fn verdict(findings: &[Diagnostic]) -> Verdict {
+fn verdict(findings: &[Diagnostic]) -> Verdict {
     let mut errors = findings.iter().filter(|finding| finding.is_error());
     match errors.all(|error| MACHINE_CANNOT.contains(&error.rule)) {
         true => Verdict::Failed,

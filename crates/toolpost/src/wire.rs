@@ -9,10 +9,9 @@ mod source;
 use crate::answer::{Answer, Stop, Verdict};
 use crate::args::{self, Division};
 use crate::files::{self, Target};
-use crate::post::verdict;
 use crate::progress::Progress;
 use crate::summary::rows;
-use crate::{prove, toolpath};
+use crate::{post, prove, toolpath};
 use ::wire::Contour;
 use ::wire::points::{Refusal, Step, points};
 use drawing::Format;
@@ -50,14 +49,7 @@ pub fn run(args: &args::Wire, silent: bool) -> Result<Answer, Stop> {
     divide(&mut legs, &args.division, &machine)?;
     let cut = Cut::of(legs, &machine);
     let program = cut.program(&toolpath.program.name);
-    let output = ::post::write(&program, &machine).map_err(|mut findings| {
-        toolpath.quote(&mut findings);
-        let verdict = verdict(&findings);
-        findings.splice(0..0, std::mem::take(&mut warnings));
-        Stop { verdict, findings }
-    })?;
-    warnings.extend(output.warnings);
-    toolpath.quote(&mut warnings);
+    let output = post::write(&program, &machine, &toolpath, &mut warnings)?;
     progress.step("proving");
     if cut.points().is_some() {
         // Chords may leave their arcs by what the conversion has made of them, and by no more.

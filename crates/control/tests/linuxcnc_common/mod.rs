@@ -1,8 +1,9 @@
 //! LinuxCNC's own interpreter beside ours: what `rs274 -g` makes of a program, what we make of it, and
 //! where the two differ.
+#![allow(dead_code, reason = "each test uses a part of it")]
 
 use geom::{Frame, Mat3, Vec3};
-use program::{Op, Orientation, Pose};
+use program::{Cycle, CycleKind, Op, Orientation, Pose};
 use std::collections::HashMap;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -19,28 +20,29 @@ const TOOLS: std::ops::RangeInclusive<u32> = 1..=99;
 /// What `rs274` says of a file without `M2` and `%`.
 const NO_END: &str = "File ended with no percent sign or program end";
 
-/// A move as the machine makes it: its end in mm and degrees in the frame of the first work offset.
+/// A move as the machine makes it: its end in mm and degrees in the frame of the active work offset as it
+/// was at the first move in it.
 #[derive(Clone, Debug)]
-enum Motion {
+pub enum Motion {
     Rapid([f64; 6]),
     Feed([f64; 6]),
-    /// The centre, the axis about which it turns (0 X, 1 Y, 2 Z) and its turns begun.
+    /// A point of the axis, the direction about which it turns counter-clockwise, and its turns begun.
     Arc {
         end: [f64; 6],
         center: Vec3,
-        axis: usize,
+        normal: Vec3,
         turns: i32,
     },
+    /// With its pitch.
+    Thread([f64; 6], f64),
+    Probe([f64; 6]),
     Dwell(f64),
 }
 
-/// How a program differs: `None` where `rs274` is not installed, `Some(None)` where it does not.
-pub fn difference(text: &[u8], folders: &[PathBuf]) -> Option<Option<String>> {
-    let Some(theirs) = theirs(text, folders) else {
-        eprintln!("rs274 (Debian package linuxcnc-uspace) is not installed: LinuxCNC is not asked");
-        return None;
-    };
-    Some(match (ours(text, folders), theirs) {
+/// How a program differs on a machine with these of A, B, C: `None` where `rs274` is not installed, `Some(None)` where it does not.
+pub fn difference(text: &[u8], rotary: [bool; 3], folders: &[PathBuf]) -> Option<Option<String>> {
+    let theirs = theirs(text, folders)?;
+    Some(match (ours(text, rotary, folders), theirs) {
         (Err(_), Err(_)) => None,
         (Err(error), Ok(_)) => Some(format!("we refuse: {error}")),
         (Ok(_), Err(error)) => Some(format!("LinuxCNC refuses: {error}")),
@@ -57,7 +59,7 @@ pub fn difference(text: &[u8], folders: &[PathBuf]) -> Option<Option<String>> {
 /// What `rs274 -g` makes of a program; `None` where it is not installed.
 ///
 /// It reports a file without `M2` and `%` when it has run it to its end, which we take as its end.
-fn theirs(text: &[u8], folders: &[PathBuf]) -> Option<Result<Vec<Motion>, String>> {
+pub fn theirs(text: &[u8], folders: &[PathBuf]) -> Option<Result<Vec<Motion>, String>> {
     let place = tempfile::tempdir().unwrap();
     let path = |name: &str| place.path().join(name);
     let subroutines: Vec<String> = folders.iter().map(|f| f.display().to_string()).collect();
@@ -69,7 +71,10 @@ fn theirs(text: &[u8], folders: &[PathBuf]) -> Option<Result<Vec<Motion>, String
     fs::write(path("tool.tbl"), table.collect::<String>()).unwrap();
     fs::write(path("rs274.var"), "").unwrap();
     fs::write(path("program.ngc"), text).unwrap();
-    let status = run(place.path()).ok()?;
+    let Ok(status) = run(place.path()) else {
+        eprintln!("rs274 (Debian package linuxcnc-uspace) is not installed: LinuxCNC is not asked");
+        return None;
+    };
     let errors = fs::read(path("errors")).unwrap();
     let errors = String::from_utf8_lossy(&errors).into_owned();
     match status {
@@ -106,13 +111,14 @@ fn run(folder: &Path) -> std::io::Result<Option<ExitStatus>> {
     }
 }
 
-/// The moves among the canonical calls that `rs274` prints. They are in coordinates of the program:
-/// what offsets do to them is told beside them.
+/// The moves among the canonical calls that `rs274` prints. They are in coordinates of the program: the
+/// machine goes to the origin plus the turned sum of them and the offset of `G92` (`emccanon.cc`).
 fn canonical(printed: &str) -> Vec<Motion> {
-    let (mut moves, mut plane, mut unit) = (Vec::new(), [0, 1, 2], 1.0);
+    let (mut moves, mut plane, mut unit, mut pitch) = (Vec::new(), [0, 1, 2], 1.0, None);
     let (mut system, mut offset, mut shift, mut turn) = (1, Vec3::ZERO, Vec3::ZERO, 0.0f64);
     // Each work offset as it was when the program first moved in it.
     let mut first: HashMap<i32, Frame> = HashMap::new();
+    let mut at = [0.0; 6];
     for line in printed.lines() {
         let Some((name, arguments)) = line.split_once('(') else { continue };
         let name = name.rsplit(' ').next().unwrap();
@@ -126,17 +132,30 @@ fn canonical(printed: &str) -> Vec<Motion> {
             let turn = Mat3::from_rotation_z(turn.to_radians());
             Frame::from_mat3_translation(turn, offset + turn * shift)
         };
-        let mut place = |point: Vec3| {
+        let mut from_first = || {
             let first = *first.entry(system).or_insert_with(|| frame(Vec3::ZERO));
-            first.inverse().transform_point3(frame(shift).transform_point3(point))
+            first.inverse() * frame(shift)
         };
         let six = |p: Vec3, rest: &[f64]| [p.x, p.y, p.z, rest[0], rest[1], rest[2]];
+        let mut end = || six(from_first().transform_point3(vector(0) * unit), &numbers[3..]);
         match name {
             "STRAIGHT_TRAVERSE" => {
-                moves.push(Motion::Rapid(six(place(vector(0) * unit), &numbers[3..])));
+                at = end();
+                moves.push(Motion::Rapid(at));
             }
-            "STRAIGHT_FEED" | "STRAIGHT_PROBE" => {
-                moves.push(Motion::Feed(six(place(vector(0) * unit), &numbers[3..])));
+            "STRAIGHT_FEED" => {
+                at = end();
+                moves.push(pitch.map_or(Motion::Feed(at), |pitch| Motion::Thread(at, pitch)));
+            }
+            "STRAIGHT_PROBE" => {
+                at = end();
+                moves.push(Motion::Probe(at));
+            }
+            "RIGID_TAP" => {
+                let bottom = from_first().transform_point3(vector(0) * unit);
+                moves.push(Motion::Feed(six(bottom, &at[3..])));
+                moves.push(Motion::Dwell(0.0));
+                moves.push(Motion::Feed(at));
             }
             "DWELL" => moves.push(Motion::Dwell(numbers[0])),
             "ARC_FEED" => {
@@ -144,9 +163,14 @@ fn canonical(printed: &str) -> Vec<Motion> {
                 (end[plane[0]], end[plane[1]]) = (numbers[0] * unit, numbers[1] * unit);
                 (center[plane[0]], center[plane[1]]) = (numbers[2] * unit, numbers[3] * unit);
                 end[plane[2]] = numbers[5] * unit;
-                center[plane[2]] = end[plane[2]];
-                let (end, center) = (six(place(end), &numbers[6..]), place(center));
-                moves.push(Motion::Arc { end, center, axis: plane[2], turns: numbers[4] as i32 });
+                let frame = from_first();
+                at = six(frame.transform_point3(end), &numbers[6..]);
+                moves.push(Motion::Arc {
+                    end: at,
+                    center: frame.transform_point3(center),
+                    normal: frame.transform_vector3(Vec3::AXES[plane[2]] * numbers[4].signum()),
+                    turns: numbers[4].abs() as i32,
+                });
             }
             "SELECT_PLANE" => {
                 plane = match arguments {
@@ -155,6 +179,8 @@ fn canonical(printed: &str) -> Vec<Motion> {
                     _ => [1, 2, 0],
                 }
             }
+            "START_SPEED_FEED_SYNC" => pitch = Some(numbers[0] * unit),
+            "STOP_SPEED_FEED_SYNCH" => pitch = None,
             "USE_LENGTH_UNITS" => unit = if arguments.contains("INCHES") { 25.4 } else { 1.0 },
             "SET_G5X_OFFSET" => (system, offset) = (numbers[0] as i32, vector(1) * unit),
             "SET_G92_OFFSET" => shift = vector(0) * unit,
@@ -165,8 +191,9 @@ fn canonical(printed: &str) -> Vec<Motion> {
     moves
 }
 
-/// What our control makes of it. Homing goes to 0, as with `rs274`'s empty parameter file.
-fn ours(text: &[u8], folders: &[PathBuf]) -> Result<Vec<Motion>, String> {
+/// What our control makes of it. Homing goes to 0, as with `rs274`'s empty parameter file; holes are
+/// expanded as LinuxCNC's manual describes each cycle.
+pub fn ours(text: &[u8], rotary: [bool; 3], folders: &[PathBuf]) -> Result<Vec<Motion>, String> {
     let tool =
         |number| ToolData { number, name: String::new(), radius: 3.0, length: number.into() };
     let settings = Settings {
@@ -176,7 +203,7 @@ fn ours(text: &[u8], folders: &[PathBuf]) -> Result<Vec<Motion>, String> {
             start: Some(Vec3::ZERO),
             ..Setup::default()
         },
-        ..Settings::new(Dialect::LinuxCnc, [true; 3])
+        ..Settings::new(Dialect::LinuxCnc, rotary)
     };
     // Where the rotary axes stand at the start is not given.
     let start = [0.0, 0.0, 0.0, f64::NAN, f64::NAN, f64::NAN];
@@ -200,19 +227,22 @@ fn ours(text: &[u8], folders: &[PathBuf]) -> Result<Vec<Motion>, String> {
                 at = to(&pose, at);
                 moves.push(Motion::Rapid(at));
             }
-            Op::Line(pose) | Op::Probe(pose) => {
+            Op::Line(pose) => {
                 at = to(&pose, at);
                 moves.push(Motion::Feed(at));
             }
+            Op::Probe(pose) => {
+                at = to(&pose, at);
+                moves.push(Motion::Probe(at));
+            }
             Op::Thread(thread) => {
                 at = to(&thread.end, at);
-                moves.push(Motion::Feed(at));
+                moves.push(Motion::Thread(at, thread.pitch));
             }
             Op::Arc(arc) => {
                 at = to(&arc.end, at);
-                let axis = arc.normal.abs().max_position();
-                let turns = (arc.turns as i32 + 1) * arc.normal[axis].signum() as i32;
-                moves.push(Motion::Arc { end: at, center: arc.center, axis, turns });
+                let (center, normal, turns) = (arc.center, arc.normal, arc.turns as i32 + 1);
+                moves.push(Motion::Arc { end: at, center, normal, turns });
             }
             Op::Home(axes) => {
                 at = std::array::from_fn(|i| if axes & 1 << i != 0 { 0.0 } else { at[i] });
@@ -236,17 +266,17 @@ fn ours(text: &[u8], folders: &[PathBuf]) -> Result<Vec<Motion>, String> {
 /// The moves of one hole ("Canned cycles" in LinuxCNC's G-code reference).
 fn hole(
     moves: &mut Vec<Motion>,
-    cycle: &program::Cycle,
+    cycle: &Cycle,
     at: [f64; 6],
     top: [f64; 6],
     axis: usize,
 ) -> [f64; 6] {
-    use program::CycleKind;
     let level = |height: f64| {
         let mut p = top;
         p[axis] += height;
         p
     };
+    // With G98 the way in the plane is at the initial level, also after holes with G99.
     moves.push(Motion::Rapid(level((at[axis] - top[axis]).max(cycle.retract))));
     moves.push(Motion::Rapid(level(0.0)));
     let mut depth = 0.0;
@@ -258,6 +288,7 @@ fn hole(
         if cycle.kind == CycleKind::Deep {
             moves.push(Motion::Rapid(level(0.0)));
         }
+        // 0.010 inch, both for breaking the chip and for going back in.
         moves.push(Motion::Rapid(level(-depth + 0.254)));
     }
     moves.push(Motion::Feed(level(-cycle.depth)));
@@ -265,7 +296,9 @@ fn hole(
         moves.push(Motion::Dwell(cycle.dwell));
     }
     match cycle.kind {
+        // G85: at feed up to R, by rapid from there.
         CycleKind::Ream if cycle.dwell == 0.0 => moves.push(Motion::Feed(level(0.0))),
+        // G89, G84, G74: at feed up to the retract level, also where that is the initial one.
         CycleKind::Ream | CycleKind::Tap { .. } => moves.push(Motion::Feed(level(cycle.retract))),
         _ => {}
     }
@@ -278,12 +311,12 @@ fn essential(moves: Vec<Motion>) -> Vec<Motion> {
     let mut at = [0.0; 6];
     let mut kept = Vec::new();
     for motion in moves {
-        let end = match &motion {
+        match &motion {
             Motion::Rapid(end) | Motion::Feed(end) if near(end, &at) => continue,
-            Motion::Rapid(end) | Motion::Feed(end) | Motion::Arc { end, .. } => *end,
-            Motion::Dwell(_) => at,
-        };
-        at = end;
+            Motion::Rapid(end) | Motion::Feed(end) | Motion::Probe(end) => at = *end,
+            Motion::Thread(end, _) | Motion::Arc { end, .. } => at = *end,
+            Motion::Dwell(_) => {}
+        }
         kept.push(motion);
     }
     kept
@@ -291,20 +324,24 @@ fn essential(moves: Vec<Motion>) -> Vec<Motion> {
 
 /// Equal to the four decimals that `rs274` prints, in inches too, as far as we know it.
 fn near(a: &[f64; 6], b: &[f64; 6]) -> bool {
-    a.iter().zip(b).all(|(a, b)| a.is_nan() || (a - b).abs() < 5.2e-3)
+    a.iter().zip(b).all(|(a, b)| a.is_nan() || (a - b).abs() < 2.6e-3)
 }
 
 fn same(a: &Motion, b: &Motion) -> bool {
     match (a, b) {
-        (Motion::Rapid(a), Motion::Rapid(b)) | (Motion::Feed(a), Motion::Feed(b)) => near(a, b),
-        (Motion::Dwell(a), Motion::Dwell(b)) => (a - b).abs() < 1e-4,
+        (Motion::Rapid(a), Motion::Rapid(b))
+        | (Motion::Feed(a), Motion::Feed(b))
+        | (Motion::Probe(a), Motion::Probe(b)) => near(a, b),
+        (Motion::Thread(a, p), Motion::Thread(b, q)) => near(a, b) && (p - q).abs() < 1e-3,
+        (Motion::Dwell(a), Motion::Dwell(b)) => a == b,
         (
-            Motion::Arc { end, center, axis, turns },
-            Motion::Arc { end: end_b, center: center_b, axis: axis_b, turns: turns_b },
+            Motion::Arc { end, center, normal, turns },
+            Motion::Arc { end: end_b, center: center_b, normal: normal_b, turns: turns_b },
         ) => {
-            let mut apart = *center - *center_b;
-            apart[*axis] = 0.0;
-            near(end, end_b) && apart.length() < 8e-3 && axis == axis_b && turns == turns_b
+            near(end, end_b)
+                && (*center - *center_b).reject_from(*normal).length() < 5e-3
+                && normal.distance(*normal_b) < 1e-3
+                && turns == turns_b
         }
         _ => false,
     }
