@@ -4,9 +4,9 @@ use crate::answer::{Account, Answer, Stop, Verdict};
 use crate::args::Post;
 use crate::files::{self, Target};
 use crate::progress::Progress;
+use crate::prove;
 use crate::summary::{Shape, time, travel};
-use crate::toolpath::Toolpath;
-use crate::{prove, toolpath};
+use crate::toolpath::{self, Toolpath};
 use ::post::Output;
 use machine::Machine;
 use machine::limits::Travel;
@@ -92,13 +92,13 @@ pub fn proven(
     }
     let mut warnings = toolpath.warnings.clone();
     step("writing");
-    let Output { text, blocks, .. } = write(&toolpath.program, machine, toolpath, &mut warnings)?;
+    let output = write(&toolpath.program, machine, toolpath, &mut warnings)?;
     step("proving");
-    let proof = proof::prove(&toolpath.program, machine, file, &text, tolerances);
+    let proof = proof::prove(&toolpath.program, machine, file, &output.text, tolerances);
     if !proof.proven {
         let mut account = prove::failed(&proof, toolpath, file);
         account.findings.extend(warnings);
-        return Ok(Posted { text, account });
+        return Ok(Posted { text: output.text, account });
     }
 
     warnings.extend(proof.warnings.iter().cloned());
@@ -108,7 +108,7 @@ pub fn proven(
         "toolpost": env!("CARGO_PKG_VERSION"),
         "source": toolpath.describe(&shape),
         "machine": toolpath::describe(machine),
-        "program": { "file": file, "blocks": blocks, "bytes": text.len() },
+        "program": { "file": file, "blocks": output.blocks, "bytes": output.text.len() },
         "travel": Travel::of(machine),
         "time_s": { "total": times.total(), "cutting": times.cutting, "rapid": times.rapid },
         "proof": proof,
@@ -118,7 +118,8 @@ pub fn proven(
     rows.push(("time", time(&times)));
     rows.push(("travel", travel(Travel::of(machine))));
     rows.extend(prove::rows(&proof, machine));
-    Ok(Posted { text, account: Account { verdict: Verdict::Done, rows, data, findings: warnings } })
+    let account = Account { verdict: Verdict::Done, rows, data, findings: warnings };
+    Ok(Posted { text: output.text, account })
 }
 
 /// Writes `program`, which came from `toolpath`. What the writer has to say goes behind the warnings that
