@@ -170,7 +170,8 @@ fn ours(program: &str) -> Result<Vec<Motion>, String> {
                 at = to(&thread.end, at);
                 moves.push(Motion::Thread(at, thread.pitch));
             }
-            Op::Probe(pose) => {
+            Op::Probe(probe) => {
+                let pose = probe.end;
                 at = to(&pose, at);
                 moves.push(Motion::Probe(at));
             }

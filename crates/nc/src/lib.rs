@@ -186,10 +186,10 @@ impl<'a> Lift<'a> {
                 thread.end = self.cut(&thread.end)?;
                 self.arrive(line, Op::Thread(thread));
             }
-            Op::Probe(pose) => {
-                let pose = self.cut(&pose)?;
+            Op::Probe(mut probe) => {
+                probe.end = self.cut(&probe.end)?;
                 self.here = None;
-                self.arrive(line, Op::Probe(pose));
+                self.arrive(line, Op::Probe(probe));
             }
             Op::Hole(pose) => {
                 let pose = self.pose(&pose);

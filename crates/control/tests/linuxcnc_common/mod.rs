@@ -200,8 +200,12 @@ fn ours(text: &[u8], folders: &[PathBuf]) -> Result<Vec<Motion>, String> {
                 at = to(&pose, at);
                 moves.push(Motion::Rapid(at));
             }
-            Op::Line(pose) | Op::Probe(pose) => {
+            Op::Line(pose) => {
                 at = to(&pose, at);
+                moves.push(Motion::Feed(at));
+            }
+            Op::Probe(probe) => {
+                at = to(&probe.end, at);
                 moves.push(Motion::Feed(at));
             }
             Op::Thread(thread) => {
