@@ -33,7 +33,7 @@ pub fn read(machine: &Machine, file_name: &str, job: &Job) -> Result<Reading, Bo
         .tell(reading.program.records)
         .map_err(|found| match found.line {
             0 => Box::new(found.file(file_name)),
-            _ => located(found),
+            _ => located(*found),
         })?;
     let warnings = reading.warnings.into_iter().map(|found| listing.located(found)).collect();
     Ok(Reading { program: Program { name: job.name.clone(), records }, listing, warnings })
@@ -82,11 +82,11 @@ impl<'a> Told<'a> {
         Told { job, listing, moves, records, at: None, tool: None, turns: false }
     }
 
-    fn tell(mut self, records: Vec<Record>) -> Result<Vec<Record>, Diagnostic> {
+    fn tell(mut self, records: Vec<Record>) -> Result<Vec<Record>, Box<Diagnostic>> {
         if !self.moves.contains(&true) {
             let message = "no operation of the job moves the tool";
             let help = "give the job operations, make them active, and recompute";
-            return Err(Diagnostic::error("no-motion", message).help(help));
+            return Err(Diagnostic::error("no-motion", message).help(help).into());
         }
         for record in records {
             let at = self.listing.operation(record.line);
@@ -119,7 +119,7 @@ impl<'a> Told<'a> {
         self.records.push(Record { line, op: Op::Operation(label.into()) });
     }
 
-    fn record(&mut self, mut record: Record) -> Result<(), Diagnostic> {
+    fn record(&mut self, mut record: Record) -> Result<(), Box<Diagnostic>> {
         let line = record.line;
         match &mut record.op {
             Op::Comment(text) if self.is_told(text) => return Ok(()),
@@ -127,7 +127,10 @@ impl<'a> Told<'a> {
                 if tool.number == 0 {
                     let message = "the tool has no number";
                     let help = "give its tool controller a number above 0, and recompute";
-                    return Err(Diagnostic::error("tool-number", message).help(help).line(line));
+                    return Err(Diagnostic::error("tool-number", message)
+                        .help(help)
+                        .line(line)
+                        .into());
                 }
                 let described = self.job.tools.iter().find(|entry| entry.number == tool.number);
                 if let Some(Tool { name, diameter, .. }) = described {
@@ -140,7 +143,10 @@ impl<'a> Told<'a> {
                 if *speed <= 0.0 {
                     let message = format!("the spindle turns at {speed} 1/min");
                     let help = "give the tool controller its speed, and recompute";
-                    return Err(Diagnostic::error("spindle-speed", message).help(help).line(line));
+                    return Err(Diagnostic::error("spindle-speed", message)
+                        .help(help)
+                        .line(line)
+                        .into());
                 }
                 self.turns = true;
             }
@@ -161,11 +167,12 @@ impl<'a> Told<'a> {
 
     /// # Errors
     /// The operation has no tool, or not that which the job gives it, or its spindle stands.
-    fn may_move(&self, op: &Op, line: u32) -> Result<(), Diagnostic> {
+    fn may_move(&self, op: &Op, line: u32) -> Result<(), Box<Diagnostic>> {
         let asked = self.at.and_then(|at| self.job.operations.get(at)?.tool);
         let number = self.tool.as_ref().map(|(number, _)| *number);
-        let refused =
-            |rule, message, help: &str| Err(Diagnostic::error(rule, message).help(help).line(line));
+        let refused = |rule, message, help: &str| {
+            Err(Diagnostic::error(rule, message).help(help).line(line).into())
+        };
         match (number, asked) {
             (None, _) => {
                 let message = String::from("the operation moves, and no tool has been called");

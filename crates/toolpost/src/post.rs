@@ -42,7 +42,10 @@ pub fn run(args: &Post, silent: bool) -> Result<Answer, Stop> {
     let report_path = args.output.with_extension("report.json");
     let target = Target::new(&args.output, &inputs)?;
     let report_target = Target::new(&report_path, &inputs)?;
-    let machine = toolpath::machine(&args.machine)?;
+    let mut machine = toolpath::machine(&args.machine)?;
+    for (name, value) in &args.option {
+        machine.set_option(name, value)?;
+    }
     if machine.wire.is_some() {
         let message = format!("`{}` cuts by wire: it has no spindle and no tools", machine.name);
         let help = "`toolpost wire` writes for it";
