@@ -2,6 +2,7 @@
 
 use crate::job::{Job, Tool};
 use crate::listing::Listing;
+use crate::way::Way;
 use control::Setup;
 use machine::Machine;
 use program::{Diagnostic, Op, Program, Record, Spindle};
@@ -25,7 +26,10 @@ pub struct Reading {
 /// operation, the command and the way out.
 pub fn read(machine: &Machine, file_name: &str, job: &Job) -> Result<Reading, Box<Diagnostic>> {
     let listing = Listing::of(file_name, job);
-    let speaks = Machine { reader: String::from("freecad"), ..machine.clone() };
+    let mut speaks = Machine { reader: String::from("freecad"), ..machine.clone() };
+    if !listing.turns() {
+        speaks.rotary.clear();
+    }
     let read = nc::read(&speaks, Setup::default(), "", listing.text());
     let located = |found: Diagnostic| Box::new(listing.located(found));
     let reading = read.map_err(|found| located(way_out(*found)))?;
@@ -62,7 +66,7 @@ struct Told<'a> {
     listing: &'a Listing,
     /// Which of the operations move.
     moves: Vec<bool>,
-    records: Vec<Record>,
+    way: Way,
     /// The operation of the record at hand.
     at: Option<usize>,
     /// Number and name of the tool in the spindle.
@@ -78,8 +82,8 @@ impl<'a> Told<'a> {
                 *moves = true;
             }
         }
-        let records = Vec::with_capacity(records.len() + 2 * moves.len() + 1);
-        Told { job, listing, moves, records, at: None, tool: None, turns: false }
+        let way = Way::with_capacity(records.len() + 2 * moves.len());
+        Told { job, listing, moves, way, at: None, tool: None, turns: false }
     }
 
     fn tell(mut self, records: Vec<Record>) -> Result<Vec<Record>, Box<Diagnostic>> {
@@ -100,7 +104,7 @@ impl<'a> Told<'a> {
             }
             self.record(record)?;
         }
-        Ok(self.records)
+        Ok(self.way.finish())
     }
 
     /// Whether the operation at hand moves.
@@ -110,13 +114,13 @@ impl<'a> Told<'a> {
 
     fn end(&mut self, line: u32) {
         if self.within() {
-            self.records.push(Record { line: line.saturating_sub(1), op: Op::EndOfOperation });
+            self.way.push(Record { line: line.saturating_sub(1), op: Op::EndOfOperation });
         }
     }
 
     fn begin(&mut self, at: usize, line: u32) {
         let label = self.job.operations.get(at).map_or("", |operation| operation.label.as_str());
-        self.records.push(Record { line, op: Op::Operation(label.into()) });
+        self.way.push(Record { line, op: Op::Operation(label.into()) });
     }
 
     fn record(&mut self, mut record: Record) -> Result<(), Box<Diagnostic>> {
@@ -154,7 +158,7 @@ impl<'a> Told<'a> {
             op if is_move(op) => self.may_move(op, line)?,
             _ => {}
         }
-        self.records.push(record);
+        self.way.push(record);
         Ok(())
     }
 
