@@ -50,6 +50,7 @@ fn way_out(mut found: Diagnostic) -> Diagnostic {
             "give the tool controller of the operation its feeds, horizontal and vertical, and recompute"
         }
         "nc-spindle" => "give the tool controller of the operation its speed, and recompute",
+        "nc-tool" => "give the tool controller a number above 0, and recompute",
         "nc-unknown-word" => "change the commands of the operation",
         _ => return found,
     };
@@ -94,8 +95,9 @@ impl<'a> Told<'a> {
         }
         for record in records {
             let at = self.listing.operation(record.line);
-            // The end of the text is that of the last operation.
-            if self.at != Some(at) {
+            if matches!(record.op, Op::End) {
+                self.end(record.line);
+            } else if self.at != Some(at) {
                 self.end(record.line);
                 self.at = Some(at);
                 if self.moves.get(at) == Some(&true) {
@@ -128,14 +130,6 @@ impl<'a> Told<'a> {
         match &mut record.op {
             Op::Comment(text) if self.is_told(text) => return Ok(()),
             Op::Tool(tool) => {
-                if tool.number == 0 {
-                    let message = "the tool has no number";
-                    let help = "give its tool controller a number above 0, and recompute";
-                    return Err(Diagnostic::error("tool-number", message)
-                        .help(help)
-                        .line(line)
-                        .into());
-                }
                 let described = self.job.tools.iter().find(|entry| entry.number == tool.number);
                 if let Some(Tool { name, diameter, .. }) = described {
                     tool.name.clone_from(name);
