@@ -255,10 +255,12 @@ fn commands_that_mean_nothing_are_named() {
     refused(&wrong("M77"), "nc-unknown-word", place, "auxiliary");
     refused(&wrong("G20"), "nc-unknown-word", place, "in mm");
     refused(&wrong("G95"), "nc-unknown-word", place, "mm/s");
-    // A NaN, and an infinite number, as `toGCode` writes them.
-    for letter in ["X", "I", "F"] {
-        let nothing = format!("G2 {letter}-922337203685.477581");
-        refused(&wrong(&nothing), "nc-number", place, "recompute");
+    // A NaN, and an infinite number, as `toGCode` writes them, and by their names.
+    for number in ["-922337203685.477581", "nan", "-inf"] {
+        for letter in ["X", "I", "F"] {
+            let nothing = format!("G2 {letter}{number} Y2.0");
+            refused(&wrong(&nothing), "nc-number", place, "recompute");
+        }
     }
 }
 

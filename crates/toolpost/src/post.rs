@@ -93,7 +93,7 @@ pub fn run(args: &Post, silent: bool) -> Result<Answer, Stop> {
     let report = format!("{report:#}\n");
     files::save(&[(&report_target, report.as_bytes()), (&target, &output.text)])?;
 
-    let mut lines = toolpath.rows(&machine);
+    let mut lines = toolpath.rows(Some(&machine));
     lines.extend(shape.rows());
     lines.push(("time", time(&times)));
     lines.push(("travel", travel(Travel::of(&machine))));
