@@ -62,14 +62,8 @@ pub fn read(
     };
     let freecad::Reading { program, listing, warnings } = freecad::read(&machine, &file, &job)?;
     let (dialect, warnings) = (String::from("FreeCAD job"), held(warnings, strict)?);
-    Ok(Toolpath {
-        path: Some(path.to_owned()),
-        file,
-        dialect,
-        program,
-        warnings,
-        listing: Some(listing),
-    })
+    let (path, listing) = (Some(path.to_owned()), Some(listing));
+    Ok(Toolpath { path, file, dialect, program, warnings, listing })
 }
 
 /// The control on which a job runs of which nobody has said the machine: it has three axes.
@@ -117,7 +111,8 @@ fn read_by(
         }
     };
     let warnings = held(warnings, strict)?;
-    Ok(Toolpath { path: Some(path.to_owned()), file, dialect, program, warnings, listing: None })
+    let path = Some(path.to_owned());
+    Ok(Toolpath { path, file, dialect, program, warnings, listing: None })
 }
 
 /// The warnings; with `strict` they stop the command.

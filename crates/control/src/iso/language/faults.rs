@@ -122,6 +122,16 @@ impl Block<'_> {
         }
     }
 
+    /// The word of FreeCAD's from `start` to `end` has a number that is none.
+    #[cold]
+    pub(super) fn nothing(&self, start: usize, end: usize) -> Fault {
+        let word = String::from_utf8_lossy(self.text.get(start..end).unwrap_or_default());
+        let message = format!("{word} is no number: FreeCAD writes what it could not work out so");
+        let help = "recompute the operation in FreeCAD, and look at what it is made from";
+        let found = Diagnostic::error("nc-number", message).help(help);
+        found.at(self.line, self.text, start, end).into()
+    }
+
     #[cold]
     pub(super) fn stray(&self, flavor: Flavor, byte: u8, at: usize) -> Fault {
         let by_hand = flavor.changes_by_hand();
