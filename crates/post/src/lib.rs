@@ -16,6 +16,7 @@ mod catalogue;
 mod cycles;
 mod findings;
 mod guard;
+mod letters;
 mod motion;
 mod number;
 mod place;
