@@ -177,7 +177,7 @@ names! {
         Plunge Word "PLUNGE", "mm/min", "Cycle: feed into the hole, where it is a parameter; in the unit of {{F}}.";
         Speed Word "SPEED", "1/min", "Cycle: speed of the spindle, where it is a parameter.";
         Lead Word "LEAD", "mm", "Way of a thread in a turn of the spindle.";
-        ProbeKind Code "probe", "toward_or_error, toward, away_or_error, away", "Kind of probing move: until the probe touches the part or lets go of it, with an error where it does not or without. Those that the control lacks are left out.";
+        ProbeMode Code "probe_mode", "toward_or_error, toward, away_or_error, away", "Kind of probing move: until the probe touches the part or lets go of it, with an error where it does not or without. Those that the control lacks are left out.";
         Motion Code "motion", "rapid, linear, arc_cw, arc_ccw", "Kind of motion.";
         Plane Code "plane", "xy, xz, yz", "Plane of arcs and of cutter compensation.";
         Compensation Code "compensation", "off, left, right", "Cutter radius compensation; switched with the first move in the plane.";

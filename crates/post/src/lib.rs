@@ -23,6 +23,7 @@ mod promises;
 mod single;
 mod sweep;
 mod template;
+mod text;
 mod walk;
 mod wire;
 mod writer;

@@ -33,6 +33,8 @@ pub fn machine(rotary: Vec<RotaryAxis>) -> Machine {
             line_end: "\n".into(),
             comment_start: "(".into(),
             comment_end: ")".into(),
+            comment_signs: " ".into(),
+            comment_length: 96,
         },
         words: BTreeMap::new(),
         blocks: BTreeMap::new(),
