@@ -51,6 +51,12 @@ impl Walk<'_> {
                     "the control has no tapping cycle for this hole, and moves cannot tap";
                 Err(refuse("cycle-tap", message))
             }
+            None if cycle.kind.withdrawal().is_some() => {
+                let message = "no cycle of this machine's file goes aside from the wall of a hole, and moves \
+                               cannot stop the spindle in position";
+                let help = "bore without going aside (G86), or post the hole for another machine";
+                Err(refuse("cycle-bore", message).help(help).into())
+            }
             None => self.expand(cycle, pose, stop),
         }
     }
@@ -72,8 +78,10 @@ impl Walk<'_> {
             }
             CycleKind::Ream => BlockName::CycleReam,
             CycleKind::Bore => BlockName::CycleBore,
+            CycleKind::FineBore(_) | CycleKind::BackBore { .. } => return None,
         };
-        let known = self.machine.capabilities.cycles.contains(&CycleName::from(cycle.kind));
+        let cycles = &self.machine.capabilities.cycles;
+        let known = CycleName::of(cycle.kind).is_some_and(|name| cycles.contains(&name));
         let says_dwell = !dwells || self.templates.places(name, WordName::Dwell);
         // A safety distance has no sign.
         let says_clearance =

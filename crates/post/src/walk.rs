@@ -216,6 +216,11 @@ impl<'a> Walk<'a> {
                 self.end_cycle()?;
                 self.set_spindle(*spindle)
             }
+            Op::SurfaceSpeed(None) => Ok(()),
+            Op::SurfaceSpeed(Some(_)) => {
+                let message = "the speed of the spindle follows X (G96), which is for turning";
+                Err(refuse("surface-speed", message).help("give it speeds of its own (G97)").into())
+            }
             Op::Coolant(coolant) => {
                 self.end_cycle()?;
                 self.coolant = *coolant;

@@ -1,19 +1,21 @@
 //! Getting the toolpath and the machine that a command names.
 
 use crate::answer::{Stop, Verdict};
-use crate::args::{Origin, Units, WholeNumbers};
+use crate::args::{Origin, Units, Way, WholeNumbers};
 use crate::files;
 use crate::summary::Shape;
 use control::Setup;
 use geom::Vec3;
 use machine::Machine;
-use program::{Diagnostic, Program, Severity};
+use program::{Diagnostic, Program, Severity, line_of};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 /// A toolpath as it was read.
+#[derive(Debug)]
 pub struct Toolpath {
-    path: PathBuf,
+    /// Where it was read from; nowhere where it was put together in memory.
+    path: Option<PathBuf>,
     /// Name of its file.
     pub file: String,
     /// The CAM system whose habits the file has, or the control that it was written for.
@@ -79,7 +81,7 @@ fn read_by(
         }
     };
     let warnings = held(warnings, strict)?;
-    Ok(Toolpath { path: path.to_owned(), file, dialect, program, warnings })
+    Ok(Toolpath { path: Some(path.to_owned()), file, dialect, program, warnings })
 }
 
 /// The warnings; with `strict` they stop the command.
@@ -130,6 +132,12 @@ impl Origin {
                 Units::Mm => control::Units::Millimeters,
                 Units::Inch => control::Units::Inches,
             }),
+            aside: self.aside.map(|way| match way {
+                Way::PlusX => Vec3::X,
+                Way::MinusX => Vec3::NEG_X,
+                Way::PlusY => Vec3::Y,
+                Way::MinusY => Vec3::NEG_Y,
+            }),
             block_delete: self.block_delete,
             start: self.start.map(Vec3::from_array),
         })
@@ -141,10 +149,19 @@ impl Toolpath {
     pub fn of_drawing(path: &Path, dialect: &str) -> Toolpath {
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         Toolpath {
-            path: path.to_owned(),
+            path: Some(path.to_owned()),
             file: files::name(path),
+            ..Toolpath::of_program(Program::new(name), dialect)
+        }
+    }
+
+    /// A program that no file says: its lines are what who put it together counts.
+    pub fn of_program(program: Program, dialect: &str) -> Toolpath {
+        Toolpath {
+            path: None,
+            file: program.name.clone(),
             dialect: dialect.to_owned(),
-            program: Program::new(name),
+            program,
             warnings: Vec::new(),
         }
     }
@@ -163,8 +180,9 @@ impl Toolpath {
     pub fn quote(&self, findings: &mut [Diagnostic]) {
         let mut lines = None;
         for finding in findings.iter_mut().filter(|f| f.file.is_empty() && f.line > 0) {
-            let text = lines.get_or_insert_with(|| files::read(&self.path).unwrap_or_default());
-            *finding = finding.clone().on(finding.line, line(text, finding.line)).file(&self.file);
+            let text = lines.get_or_insert_with(|| self.text());
+            *finding =
+                finding.clone().on(finding.line, line_of(text, finding.line)).file(&self.file);
         }
     }
 
@@ -190,23 +208,13 @@ impl Toolpath {
 
     /// The text of a line of the source; empty where there is none.
     pub fn line(&self, number: u32) -> String {
-        let text = files::read(&self.path).unwrap_or_default();
-        String::from_utf8_lossy(line(&text, number)).into_owned()
+        String::from_utf8_lossy(line_of(&self.text(), number)).into_owned()
     }
-}
 
-/// Line `number` (from 1) of `text`, whose lines end with LF, CR LF or CR.
-fn line(text: &[u8], number: u32) -> &[u8] {
-    let mut rest = text;
-    for _ in 1..number {
-        let Some(end) = rest.iter().position(|byte| matches!(byte, b'\n' | b'\r')) else {
-            return b"";
-        };
-        let length = if rest[end..].starts_with(b"\r\n") { 2 } else { 1 };
-        rest = &rest[end + length..];
+    /// The text of the source, as far as there is one still.
+    fn text(&self) -> Vec<u8> {
+        self.path.as_deref().and_then(|path| files::read(path).ok()).unwrap_or_default()
     }
-    let end = rest.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
-    &rest[..end.unwrap_or(rest.len())]
 }
 
 /// The machine of a name in the library or of a file.
@@ -229,16 +237,4 @@ pub fn describe(machine: &Machine) -> Value {
         "extension": machine.extension,
         "path_tolerance_mm": machine.path_tolerance(),
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::line;
-
-    #[test]
-    fn lines_end_with_lf_cr_lf_or_cr() {
-        let text = b"one\ntwo\r\nthree\rfour";
-        let lines: Vec<&[u8]> = (1..=5).map(|number| line(text, number)).collect();
-        assert_eq!(lines, [&b"one"[..], b"two", b"three", b"four", b""]);
-    }
 }
