@@ -110,9 +110,9 @@ names! {
         CycleTapLeft Block "cycle_tap_left", "", "Definition of tapping, left-hand.";
         CycleReam Block "cycle_ream", "", "Definition of reaming: feed in, feed out.";
         CycleReamDwell Block "cycle_ream_dwell", "", "The same with a dwell at the bottom; `cycle_ream` where it is missing and places {{DWELL}}.";
-        CycleBore Block "cycle_bore", "", "Definition of boring: feed in, spindle stop, rapid out. The spindle is told anew behind the cycle, for controls differ in whether they start it.";
+        CycleBore Block "cycle_bore", "", "Definition of boring: feed in, spindle stop, rapid out.";
         CycleHole Block "cycle_hole", "", "Each hole of the cycle that its definition has not drilled.";
-        CycleOff Block "cycle_off", "", "End of the cycle.";
+        CycleOff Block "cycle_off", "", "End of the cycle. After tapping and boring the spindle is told anew, for controls differ in whether it turns then.";
         Dwell Block "dwell", "", "A dwell.";
         Stop Block "stop", "", "An unconditional stop.";
         OptionalStop Block "optional_stop", "", "A stop that the operator can switch off.";
