@@ -493,6 +493,7 @@ impl CheckedSheet {
         let positioned = orientation.positioned.unwrap_or(simultaneous);
         let capabilities = self.capabilities;
         let format = self.format;
+        let line_length = capabilities.line_length.unwrap_or(256);
         let (reader, reader_place) =
             self.reader.ok_or_else(|| missing("`reader`, the virtual control,"))?;
         Ok(Machine {
@@ -513,7 +514,7 @@ impl CheckedSheet {
                 feed_per_turn: capabilities.feed_per_turn.unwrap_or(false),
                 inverse_time: capabilities.inverse_time.unwrap_or(false),
                 length_offset: capabilities.length_offset.unwrap_or(LengthOffset::Implicit),
-                line_length: capabilities.line_length.unwrap_or(256),
+                line_length,
                 lowering_tolerance: capabilities.lowering_tolerance.map_or(0.005, |mm| mm.0),
             },
             format: Format {
@@ -522,6 +523,10 @@ impl CheckedSheet {
                 comment_start: format.comment_start.unwrap_or_else(|| "(".into()),
                 comment_end: format.comment_end.unwrap_or_else(|| ")".into()),
                 fresh_operations: format.fresh_operations.unwrap_or(false),
+                comment_signs: format.comment_signs.unwrap_or_else(|| HARMLESS_SIGNS.into()),
+                comment_length: format
+                    .comment_length
+                    .unwrap_or(line_length.saturating_sub(24).max(8)),
             },
             words: self.words.into_iter().map(|(name, word)| finish_word(name, word)).collect(),
             blocks: self.blocks,
