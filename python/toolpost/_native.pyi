@@ -98,13 +98,17 @@ class Builder:
         *,
         clearance: float,
         retract: float | None = None,
-        kind: Literal["drill", "deep", "break-chip", "tap", "ream", "bore"] = "drill",
+        kind: Literal[
+            "drill", "deep", "break-chip", "tap", "ream", "bore", "fine-bore", "back-bore"
+        ] = "drill",
         feed: float | None = None,
         dwell: float = 0.0,
         peck: float | None = None,
         first_peck: float | None = None,
         pitch: float | None = None,
         left: bool = False,
+        aside: _Point | None = None,
+        angle: float | None = None,
         axis: _Point | None = None,
     ) -> Builder: ...
     def tool(
@@ -170,6 +174,7 @@ def read(
     aside: Literal["+X", "-X", "+Y", "-Y"] | None = None,
     block_delete: bool = False,
     start: _Point | None = None,
+    aside: Literal["+X", "-X", "+Y", "-Y"] | None = None,
     strict: bool = False,
 ) -> Program: ...
 def machine(name_or_path: _Path) -> Machine: ...

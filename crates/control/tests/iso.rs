@@ -1,12 +1,14 @@
 //! What the makers' manuals say of ISO code, as programs and the records they must give. Sources are
 //! in `docs/controls/`.
 
+mod common;
+
 use geom::Vec3;
 use program::{
     ArcTo, Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, Op, Orientation, Pose,
     Spindle,
 };
-use toolpost_control::{Dialect, Settings, read};
+use toolpost_control::{Dialect, Settings};
 
 const FANUC: Dialect = Dialect::Fanuc;
 const LINUXCNC: Dialect = Dialect::LinuxCnc;
@@ -14,15 +16,10 @@ const GRBL: Dialect = Dialect::Grbl;
 
 fn run(dialect: Dialect, rotary: [bool; 3], text: &str) -> Result<Vec<Op>, Box<Diagnostic>> {
     let settings = Settings { auxiliary: vec![26], ..Settings::new(dialect, rotary) };
-    let mut ops = Vec::new();
     // Most of these programs are in mm and do not say so.
     let says_unit = ["%", "G20", "G21"].iter().any(|word| text.contains(word));
     let text = if says_unit { text.to_owned() } else { format!("G21\n{text}") };
-    read(&settings, "p.nc", text.as_bytes(), &mut |record| {
-        ops.push(record.op);
-        Ok(())
-    })?;
-    Ok(ops)
+    common::ops(&settings, "p.nc", text)
 }
 
 /// The records of a program on a machine with A and C.

@@ -1,18 +1,15 @@
 //! Moved, turned, scaled and mirrored coordinates of FANUC, Haas and Mach3, tool registers, numbers
 //! without a point: programs and the points that their manuals and a pocket calculator give.
 
+mod common;
+
 use geom::Vec3;
 use program::{Compensation, Cycle, CycleKind, Diagnostic, Op, Spindle};
-use toolpost_control::{Dialect, Settings, Setup, ToolData, WholeNumbers, read};
+use toolpost_control::{Dialect, Settings, Setup, ToolData, WholeNumbers};
 
 fn run_with(setup: Setup, dialect: Dialect, text: &str) -> Result<Vec<Op>, Box<Diagnostic>> {
     let settings = Settings { setup, ..Settings::new(dialect, [false; 3]) };
-    let mut ops = Vec::new();
-    read(&settings, "p.nc", text.as_bytes(), &mut |record| {
-        ops.push(record.op);
-        Ok(())
-    })?;
-    Ok(ops)
+    common::ops(&settings, "p.nc", text)
 }
 
 fn ops(dialect: Dialect, text: &str) -> Vec<Op> {
@@ -444,7 +441,10 @@ fn a_thread_and_a_skip() {
     for dialect in [Dialect::Fanuc, Dialect::Haas, Dialect::Mach3] {
         let skip = "G90 G0 X0 Y0 Z5.\nG31 Z-20. F100\n";
         let got = ops(dialect, skip);
-        assert!(matches!(got.last(), Some(Op::Probe(pose)) if pose.point.z == -20.0), "{got:?}");
+        assert!(
+            matches!(got.last(), Some(Op::Probe(probe)) if probe.end.point.z == -20.0),
+            "{got:?}"
+        );
         assert_eq!(rule(dialect, &format!("{skip}G91 G0 Z1.\n")), "nc-unknown-position");
     }
 }

@@ -1,9 +1,9 @@
 //! The Klartext control against examples of the HEIDENHAIN manuals and calculations by hand.
 
-mod klartext_common;
+mod common;
 
+use common::klartext::*;
 use geom::Vec3;
-use klartext_common::*;
 use program::{
     Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, Op, Orientation, Pose, Spindle,
 };

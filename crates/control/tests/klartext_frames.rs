@@ -1,10 +1,10 @@
 //! Transformations, tilted planes and patterns of the Klartext control, against the manuals' examples
 //! and calculations by hand.
 
-mod klartext_common;
+mod common;
 
+use common::klartext::*;
 use geom::Vec3;
-use klartext_common::*;
 use program::{Compensation, Op, Orientation};
 
 /// The points of these blocks behind a start at 0, 0, 50.

@@ -1,9 +1,9 @@
 //! All NC programs that LinuxCNC's Debian package brings along, run through its own interpreter
 //! (`rs274 -g`) and through ours: the same moves, program by program.
 
-mod linuxcnc_common;
+mod common;
 
-use linuxcnc_common::difference;
+use common::linuxcnc::difference;
 use std::fs;
 use std::path::{Path, PathBuf};
 

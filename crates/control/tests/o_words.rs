@@ -1,9 +1,9 @@
 //! O-words, parameters and expressions of LinuxCNC, with its own interpreter as the judge.
 
-mod linuxcnc_common;
+mod common;
 
+use common::linuxcnc::difference;
 use geom::Vec3;
-use linuxcnc_common::difference;
 use program::{Diagnostic, Op};
 use proptest::prelude::*;
 use std::path::{Path, PathBuf};
@@ -13,12 +13,8 @@ use toolpost_control::{Dialect, Settings, Setup, read};
 fn run(text: &str, folders: &[PathBuf]) -> Result<Vec<(u32, Op)>, Box<Diagnostic>> {
     let setup = Setup { folders: folders.to_vec(), start: Some(Vec3::ZERO), ..Setup::default() };
     let settings = Settings { setup, ..Settings::new(Dialect::LinuxCnc, [true; 3]) };
-    let mut records = Vec::new();
-    read(&settings, "main.ngc", text.as_bytes(), &mut |record| {
-        records.push((record.line, record.op));
-        Ok(())
-    })?;
-    Ok(records)
+    let records = common::records(&settings, "main.ngc", text)?;
+    Ok(records.into_iter().map(|record| (record.line, record.op)).collect())
 }
 
 /// X of each move.
@@ -290,12 +286,7 @@ fn messages_show_values_and_block_delete_skips() {
     let on = |block_delete: bool| {
         let setup = Setup { start: Some(Vec3::ZERO), block_delete, ..Setup::default() };
         let settings = Settings { setup, ..Settings::new(Dialect::LinuxCnc, [false; 3]) };
-        let mut ops = Vec::new();
-        read(&settings, "a", text.as_bytes(), &mut |record| {
-            ops.push(record.op);
-            Ok(())
-        })
-        .map(|()| ops)
+        common::ops(&settings, "a", text)
     };
     let ops = on(true).unwrap();
     assert_eq!(ops[0], op("depth 2.500000 of 3.000000 and ######"));

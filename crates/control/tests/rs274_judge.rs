@@ -1,9 +1,9 @@
 //! LinuxCNC's own interpreter as the judge: programs run through `rs274` and through our control must
 //! make the same moves, and what it refuses we refuse.
 
-mod linuxcnc_common;
+mod common;
 
-use linuxcnc_common::{difference, ours, theirs};
+use common::linuxcnc::{difference, ours, theirs};
 
 /// No rotary axes: LinuxCNC has them at 0 at the start, and ours does not know.
 const MILL: [bool; 3] = [false; 3];

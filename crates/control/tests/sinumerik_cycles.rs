@@ -1,9 +1,9 @@
 //! The drilling cycles of the SINUMERIK virtual control, against the manuals' description of each.
 
-mod sinumerik_common;
+mod common;
 
+use common::sinumerik::{blocks, error, holes, near, poses, v};
 use program::{Cycle, CycleKind, Feed, Op, Orientation, Spindle};
-use sinumerik_common::{blocks, error, holes, near, poses, v};
 
 /// The hole that one call makes at X5 Y6.
 fn hole(call: &str) -> Cycle {

@@ -1,19 +1,20 @@
 //! Variables, loops, jumps and calls of the SINUMERIK virtual control, against hand calculation.
 
-mod sinumerik_common;
+mod common;
 
-use program::{Diagnostic, Op};
-use sinumerik_common::{poses, settings};
-use toolpost_control::{Setup, read};
+use common::sinumerik::{poses, settings};
+use program::{Diagnostic, Op, Record};
+use toolpost_control::{Settings, Setup, read};
 
 /// The X positions that a program moves to, with the line of each.
+fn moves_with(settings: &Settings, text: &str) -> Result<Vec<(u32, f64)>, Box<Diagnostic>> {
+    let x = |record: &Record| Some((record.line, record.op.pose()?.point.x));
+    Ok(common::records(settings, "p.mpf", text)?.iter().filter_map(x).collect())
+}
+
+/// The same at the machine of [`settings`].
 fn moves(text: &str) -> Result<Vec<(u32, f64)>, Box<Diagnostic>> {
-    let mut moves = Vec::new();
-    read(&settings(), "p.mpf", text.as_bytes(), &mut |record| {
-        moves.extend(record.op.pose().map(|pose| (record.line, pose.point.x)));
-        Ok(())
-    })?;
-    Ok(moves)
+    moves_with(&settings(), text)
 }
 
 /// The X positions of blocks that an end follows.
@@ -243,14 +244,7 @@ fn programs_of_the_folders_carry_the_line_of_their_call() {
     std::fs::write(folder.path().join("BAD.SPF"), "G0 X1\nX=1/0\nM17\n").unwrap();
     let mut settings = settings();
     settings.setup = Setup { folders: vec![folder.path().to_owned()], ..Setup::default() };
-    let run = |text: &str| {
-        let mut moves = Vec::new();
-        read(&settings, "p.mpf", text.as_bytes(), &mut |record| {
-            moves.extend(record.op.pose().map(|pose| (record.line, pose.point.x)));
-            Ok(())
-        })
-        .map(|()| moves)
-    };
+    let run = |text: &str| moves_with(&settings, text);
     assert_eq!(run("X0 F100\nOUTER\nG0 X5\nM30\n").unwrap()[1..], [(2, 1.0), (2, 20.0), (3, 5.0)]);
     let error = run("G0 X0\nBAD\nM30\n").unwrap_err();
     assert_eq!((error.file.as_str(), error.line, error.rule), ("BAD.SPF", 2, "arithmetic"));
@@ -267,13 +261,8 @@ fn programs_of_the_folders_carry_the_line_of_their_call() {
 #[test]
 fn block_delete_skips_what_the_operator_says() {
     let mut settings = settings();
-    let count = |settings: &toolpost_control::Settings| {
-        let mut count = 0;
-        read(settings, "p.mpf", b"G0 X1\n/X2\n /3 N5 X3\nM30\n", &mut |record| {
-            count += usize::from(record.op.pose().is_some());
-            Ok(())
-        })
-        .map(|()| count)
+    let count = |settings: &Settings| {
+        moves_with(settings, "G0 X1\n/X2\n /3 N5 X3\nM30\n").map(|moves| moves.len())
     };
     assert_eq!(count(&settings).unwrap(), 3);
     settings.setup.block_delete = true;
@@ -283,14 +272,9 @@ fn block_delete_skips_what_the_operator_says() {
 #[test]
 fn texts_are_shown() {
     let text = "R1=5\nMSG(\"PART \"<<R1<<\" OF \"<<2.5)\nSETAL(66001,\"CHECK\")\nM30\n";
-    let mut messages = Vec::new();
-    read(&settings(), "p.mpf", text.as_bytes(), &mut |record| {
-        if let Op::Message(text) = record.op {
-            messages.push(text.to_string());
-        }
-        Ok(())
-    })
-    .unwrap();
+    let message = |op| if let Op::Message(text) = op { Some(text.to_string()) } else { None };
+    let ops = common::ops(&settings(), "p.mpf", text).unwrap();
+    let messages: Vec<String> = ops.into_iter().filter_map(message).collect();
     assert_eq!(messages, ["PART 5 OF 2.5", "alarm 66001: CHECK"]);
 }
 
@@ -309,12 +293,8 @@ fn work_offsets_that_the_program_writes_are_known() {
     let mut settings = settings();
     settings.setup.start = Some(start);
     let run = |text: &str| {
-        let mut ops = Vec::new();
-        read(&settings, "p.mpf", text.as_bytes(), &mut |record| {
-            ops.push(record.op);
-            Ok(())
-        })
-        .map(|()| poses(&ops).iter().map(|pose| pose.point.x).collect::<Vec<_>>())
+        let ops = common::ops(&settings, "p.mpf", text)?;
+        Ok::<_, Box<Diagnostic>>(poses(&ops).iter().map(|pose| pose.point.x).collect::<Vec<_>>())
     };
     // G54 lies at 30: what stands at 100 is at 70 in it.
     assert_eq!(run("$P_UIFR[1,X,TR]=30\nG54\nG0 X=$AA_IW[X]\nM30\n").unwrap(), [70.0]);

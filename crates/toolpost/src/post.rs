@@ -4,9 +4,9 @@ use crate::answer::{Account, Answer, Stop, Verdict};
 use crate::args::Post;
 use crate::files::{self, Target};
 use crate::progress::Progress;
+use crate::prove;
 use crate::summary::{Shape, time, travel};
-use crate::toolpath::Toolpath;
-use crate::{prove, toolpath};
+use crate::toolpath::{self, Toolpath};
 use ::post::Output;
 use machine::Machine;
 use machine::limits::Travel;
@@ -55,10 +55,13 @@ pub fn run(args: &Post, silent: bool) -> Result<Answer, Stop> {
     let report_path = args.output.with_extension("report.json");
     let target = Target::new(&args.output, &inputs)?;
     let report_target = Target::new(&report_path, &inputs)?;
-    let machine = toolpath::machine(&args.machine)?;
+    let mut machine = toolpath::machine(&args.machine)?;
+    for (name, value) in &args.option {
+        machine.set_option(name, value)?;
+    }
     let progress = Progress::new(4, silent);
     progress.step("reading");
-    let toolpath = toolpath::read(source, args.source.strict, &args.source.origin)?;
+    let toolpath = toolpath::read(source, args.source.strict, &args.source.origin, Some(&machine))?;
     let file = files::name(&args.output);
     let tolerances = args.closeness.tolerances();
     let posted = proven(&toolpath, &machine, &file, &tolerances, &|what| progress.step(what))?;
@@ -92,13 +95,13 @@ pub fn proven(
     }
     let mut warnings = toolpath.warnings.clone();
     step("writing");
-    let Output { text, blocks, .. } = write(&toolpath.program, machine, toolpath, &mut warnings)?;
+    let output = write(&toolpath.program, machine, toolpath, &mut warnings)?;
     step("proving");
-    let proof = proof::prove(&toolpath.program, machine, file, &text, tolerances);
+    let proof = proof::prove(&toolpath.program, machine, file, &output.text, tolerances);
     if !proof.proven {
         let mut account = prove::failed(&proof, toolpath, file);
         account.findings.extend(warnings);
-        return Ok(Posted { text, account });
+        return Ok(Posted { text: output.text, account });
     }
 
     warnings.extend(proof.warnings.iter().cloned());
@@ -108,17 +111,18 @@ pub fn proven(
         "toolpost": env!("CARGO_PKG_VERSION"),
         "source": toolpath.describe(&shape),
         "machine": toolpath::describe(machine),
-        "program": { "file": file, "blocks": blocks, "bytes": text.len() },
+        "program": { "file": file, "blocks": output.blocks, "bytes": output.text.len() },
         "travel": Travel::of(machine),
         "time_s": { "total": times.total(), "cutting": times.cutting, "rapid": times.rapid },
         "proof": proof,
     });
-    let mut rows = toolpath.rows(machine);
+    let mut rows = toolpath.rows(Some(machine));
     rows.extend(shape.rows());
     rows.push(("time", time(&times)));
     rows.push(("travel", travel(Travel::of(machine))));
     rows.extend(prove::rows(&proof, machine));
-    Ok(Posted { text, account: Account { verdict: Verdict::Done, rows, data, findings: warnings } })
+    let account = Account { verdict: Verdict::Done, rows, data, findings: warnings };
+    Ok(Posted { text: output.text, account })
 }
 
 /// Writes `program`, which came from `toolpath`. What the writer has to say goes behind the warnings that

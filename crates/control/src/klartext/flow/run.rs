@@ -247,15 +247,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
 
     /// `Q5 = 3 * Q2`, `QS1 = "A" || QS2`, from its first parameter.
     fn assignment(&mut self, s: &mut Scanner) -> Result<()> {
-        s.is_done();
-        let from = *s;
-        let Some(parameter) = s.parameter()? else {
-            return Err(s.error_here("syntax", "a Q parameter is expected here"));
-        };
-        let span = (from.at(), s.at());
-        if !s.take_symbol(b"=") {
-            return Err(s.error_here("syntax", "= is expected here"));
-        }
+        let (parameter, span) = target(s)?;
         let registers = &mut self.control.registers;
         let assigned = match parameter {
             Parameter::Text(index) => {
@@ -284,15 +276,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
                 if number == 18 {
                     s.expect(b"SYSREAD")?;
                 }
-                s.is_done();
-                let from = *s;
-                let Some(parameter) = s.parameter()? else {
-                    return Err(s.error_here("syntax", "a Q parameter is expected here"));
-                };
-                let span = (from.at(), s.at());
-                if !s.take_symbol(b"=") {
-                    return Err(s.error_here("syntax", "= is expected here"));
-                }
+                let (parameter, span) = target(s)?;
                 let value = match number {
                     18 => {
                         self.control.contour_is_closed(s)?;
@@ -405,6 +389,20 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
             (line, continued) = (next.scanner, next.continued);
         }
     }
+}
+
+/// The parameter that a block assigns to, up to behind its `=`, and where it stands.
+fn target(s: &mut Scanner) -> Result<(Parameter, (usize, usize))> {
+    s.is_done();
+    let from = s.at();
+    let Some(parameter) = s.parameter()? else {
+        return Err(s.error_here("syntax", "a Q parameter is expected here"));
+    };
+    let span = (from, s.at());
+    if !s.take_symbol(b"=") {
+        return Err(s.error_here("syntax", "= is expected here"));
+    }
+    Ok((parameter, span))
 }
 
 /// Why a block of the control that begins with a keyword is refused.

@@ -1,10 +1,10 @@
 //! Runs Klartext programs for the tests.
-#![allow(dead_code, reason = "each test uses a part of it")]
 
+use super::records;
 use geom::Vec3;
 use program::{ArcTo, Cycle, Diagnostic, Op, Orientation, Pose, Record};
 use std::path::Path;
-use toolpost_control::{self as control, Dialect, Settings, Setup, ToolData};
+use toolpost_control::{Dialect, Settings, Setup, ToolData};
 
 pub const FIVE_AXES: [bool; 3] = [false, true, true];
 
@@ -59,14 +59,9 @@ pub fn read_with(
     rotary: [bool; 3],
     text: &[u8],
 ) -> Result<Vec<Record>, Box<Diagnostic>> {
-    let mut records = Vec::new();
     let auxiliary = vec![60];
     let settings = Settings { auxiliary, setup, ..Settings::new(Dialect::Klartext, rotary) };
-    control::read(&settings, "t.h", text, &mut |record| {
-        records.push(record);
-        Ok(())
-    })?;
-    Ok(records)
+    records(&settings, "t.h", text)
 }
 
 pub fn run(blocks: &str) -> Vec<Op> {

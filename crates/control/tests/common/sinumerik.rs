@@ -1,9 +1,9 @@
 //! Runs SINUMERIK programs for the tests.
-#![allow(dead_code, reason = "each test uses a part of it")]
 
+use super::records;
 use geom::Vec3;
 use program::{ArcTo, Cycle, Diagnostic, Op, Orientation, Pose, Record};
-use toolpost_control::{Dialect, Settings, read};
+use toolpost_control::{Dialect, Settings};
 
 /// A machine with A and C and clamps.
 pub fn settings() -> Settings {
@@ -19,12 +19,7 @@ pub fn settings() -> Settings {
 
 /// What a program does.
 pub fn run(text: &str) -> Result<Vec<Record>, Box<Diagnostic>> {
-    let mut records = Vec::new();
-    read(&settings(), "p.mpf", text.as_bytes(), &mut |record| {
-        records.push(record);
-        Ok(())
-    })?;
-    Ok(records)
+    records(&settings(), "p.mpf", text)
 }
 
 /// What these blocks do, with a start that gives feed, tool and place, and an end.

@@ -1,6 +1,5 @@
 //! LinuxCNC's own interpreter beside ours: what `rs274 -g` makes of a program, what we make of it, and
 //! where the two differ.
-#![allow(dead_code, reason = "each test uses a part of it")]
 
 use geom::{Frame, Mat3, Vec3};
 use program::{Cycle, CycleKind, Op, Orientation, Pose};
@@ -231,8 +230,8 @@ pub fn ours(text: &[u8], rotary: [bool; 3], folders: &[PathBuf]) -> Result<Vec<M
                 at = to(&pose, at);
                 moves.push(Motion::Feed(at));
             }
-            Op::Probe(pose) => {
-                at = to(&pose, at);
+            Op::Probe(probe) => {
+                at = to(&probe.end, at);
                 moves.push(Motion::Probe(at));
             }
             Op::Thread(thread) => {
