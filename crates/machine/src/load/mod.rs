@@ -1,6 +1,6 @@
 //! From files to a [`Machine`]: reading, merging along `extends`, checking.
 //!
-//! A [`crate::sheet::Sheet`] is one [`file`] as it stands; every key may be missing, no other key may be
+//! A [`crate::sheet::Sheet`] is one [`mod@file`] as it stands; every key may be missing, no other key may be
 //! there. The sheets of a chain are [`checked`] and merged, the nearer one winning field by field, and the
 //! result must be whole.
 
