@@ -196,6 +196,46 @@ fn a_called_main_program_returns_at_its_end_and_variables_are_its_own() {
     assert_eq!((error.rule, error.line), ("unknown-word", 6));
 }
 
+/// Job Planning, "Modal subprogram call (MCALL)": the program runs after each block with a motion, wherever
+/// that stands; its parameters are passed once.
+#[test]
+fn a_modal_call_runs_after_every_motion() {
+    let xs = |text: &str| -> Result<Vec<f64>, &'static str> {
+        let moves = moves(&format!("%_N_A_MPF\n{text}")).map_err(|found| found.rule)?;
+        Ok(moves.into_iter().map(|(_, x)| x).collect())
+    };
+    let l70 = "\nM30\n%_N_L70_SPF\nG91 G0 X1\nX-1\nG90\nM17\n";
+    let manual = format!("G0 X0 Y0\nMCALL L70\nX10 Y10\nR1=1\nM8\nX50 Y50\nMCALL\nX60{l70}");
+    assert_eq!(xs(&manual), Ok(vec![0.0, 10.0, 11.0, 10.0, 50.0, 51.0, 50.0, 60.0]));
+    // The second example: the motion is in a program that is called.
+    let called = format!("G0 X0 Y0\nMCALL L70\nL80\nMCALL{l70}%_N_L80_SPF\nX5\nX6\nM17\n");
+    assert_eq!(xs(&called), Ok(vec![0.0, 5.0, 6.0, 5.0, 6.0, 7.0, 6.0]));
+    // The value is that at MCALL.
+    let hole = "\nM30\n%_N_HOLE_SPF\nPROC HOLE(REAL AA, REAL BB=3)\nG91 G0 X=AA\nX=BB\nG90\nM17\n";
+    let passed = format!("R1=2\nG0 X0\nMCALL HOLE(R1)\nR1=7\nX10\nX20\nMCALL{hole}");
+    assert_eq!(xs(&passed), Ok(vec![0.0, 10.0, 12.0, 15.0, 20.0, 22.0, 25.0]));
+    // Another MCALL takes its place, a cycle too.
+    let another = format!("G0 X0 Y0\nMCALL HOLE(1)\nMCALL L70\nX10{}{}", l70, &hole[5..]);
+    assert_eq!(xs(&another), Ok(vec![0.0, 10.0, 11.0, 10.0]));
+    let repeated = format!(
+        "G0 X0\nMCALL L70\nFROM_HERE:\nX10\nTO_HERE:\nREPEAT FROM_HERE TO_HERE P=1\nMCALL{l70}"
+    );
+    assert_eq!(xs(&repeated), Ok(vec![0.0, 10.0, 11.0, 10.0, 10.0, 11.0, 10.0]));
+    for (text, rule) in [
+        (format!("G0 X0\nMCALL L71\nX1{l70}"), "unknown-program"),
+        (format!("G0 X0\nMCALL HOLE(1,2,3)\nX1{hole}"), "call"),
+        (format!("G0 X0\nMCALL L70\nG1 F100{l70}"), "cycle"),
+        (format!("G0 X0\nMCALL L70\nX1 M30{l70}"), "call"),
+        (format!("G0 X0\nMCALL L70 P3\nX1{l70}"), "call"),
+        (format!("G0 X0\nMCALL L70\nHOLES1(0,0,0,0,5,3){l70}"), "cycle"),
+        (format!("G0 X0\nMCALL L70\nX1{}", l70.replace("G90", "MCALL")), "call"),
+        ("G0 X0\nMCALL BB\nX1\nM30\n%_N_BB_SPF\nPROC BB(VAR REAL AA)\nM17\n".into(), "call"),
+        ("DEF REAL AA[2]\nMCALL BB(AA)\nM30\n".into(), "unsupported"),
+    ] {
+        assert_eq!(xs(&text), Err(rule), "{text}");
+    }
+}
+
 #[test]
 fn programs_of_the_folders_carry_the_line_of_their_call() {
     let folder = tempfile::tempdir().unwrap();

@@ -261,12 +261,13 @@ impl<'a> Lift<'a> {
 
     /// Says the boring cycle anew where its way aside, which turns with the table, is another one.
     fn bore(&mut self, line: u32, aside: Option<Vec3>) {
-        if let (Some((cycle, told)), Some(aside)) = (&mut self.boring, aside)
-            && told.replace(aside) != Some(aside)
-        {
-            let cycle = Cycle { kind: cycle.kind.with_aside(aside), ..*cycle };
-            self.program.push(line, Op::Cycle(Box::new(cycle)));
+        let (Some((cycle, told)), Some(aside)) = (&mut self.boring, aside) else { return };
+        if told.is_some_and(|told| told.distance(aside) < ROUNDING) {
+            return;
         }
+        *told = Some(aside);
+        let cycle = Cycle { kind: cycle.kind.with_aside(aside), ..*cycle };
+        self.program.push(line, Op::Cycle(Box::new(cycle)));
     }
 
     /// Where a cut ends; it must begin somewhere.
@@ -412,6 +413,9 @@ impl<'a> Lift<'a> {
         Reading { program: self.program, warnings: self.warnings }
     }
 }
+
+/// What two places that are the same may be apart after a turn of the table, mm.
+const ROUNDING: f64 = 1e-9;
 
 /// The bit of Z in [`Op::Home`].
 const Z: u8 = 4;

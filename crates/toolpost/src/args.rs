@@ -64,8 +64,8 @@ pub struct Source {
     pub origin: Origin,
 }
 
-/// What an NC program was written for.
-#[derive(Debug, Args)]
+/// What an NC program was written for, and what the operator has set up.
+#[derive(Debug, Default, Args)]
 #[command(next_help_heading = "NC program as the source")]
 pub struct Origin {
     /// The source is an NC program of this control or machine: a name in the library, or a file

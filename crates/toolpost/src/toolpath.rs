@@ -12,8 +12,10 @@ use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 /// A toolpath as it was read.
+#[derive(Debug)]
 pub struct Toolpath {
-    path: PathBuf,
+    /// Where it was read from; nowhere where it was put together in memory.
+    path: Option<PathBuf>,
     /// Name of its file.
     pub file: String,
     /// The CAM system whose habits the file has, or the control that it was written for.
@@ -79,7 +81,7 @@ fn read_by(
         }
     };
     let warnings = held(warnings, strict)?;
-    Ok(Toolpath { path: path.to_owned(), file, dialect, program, warnings })
+    Ok(Toolpath { path: Some(path.to_owned()), file, dialect, program, warnings })
 }
 
 /// The warnings; with `strict` they stop the command.
@@ -147,10 +149,19 @@ impl Toolpath {
     pub fn of_drawing(path: &Path, dialect: &str) -> Toolpath {
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         Toolpath {
-            path: path.to_owned(),
+            path: Some(path.to_owned()),
             file: files::name(path),
+            ..Toolpath::of_program(Program::new(name), dialect)
+        }
+    }
+
+    /// A program that no file says: its lines are what who put it together counts.
+    pub fn of_program(program: Program, dialect: &str) -> Toolpath {
+        Toolpath {
+            path: None,
+            file: program.name.clone(),
             dialect: dialect.to_owned(),
-            program: Program::new(name),
+            program,
             warnings: Vec::new(),
         }
     }
@@ -169,7 +180,7 @@ impl Toolpath {
     pub fn quote(&self, findings: &mut [Diagnostic]) {
         let mut lines = None;
         for finding in findings.iter_mut().filter(|f| f.file.is_empty() && f.line > 0) {
-            let text = lines.get_or_insert_with(|| files::read(&self.path).unwrap_or_default());
+            let text = lines.get_or_insert_with(|| self.text());
             *finding =
                 finding.clone().on(finding.line, line_of(text, finding.line)).file(&self.file);
         }
@@ -197,8 +208,12 @@ impl Toolpath {
 
     /// The text of a line of the source; empty where there is none.
     pub fn line(&self, number: u32) -> String {
-        let text = files::read(&self.path).unwrap_or_default();
-        String::from_utf8_lossy(line_of(&text, number)).into_owned()
+        String::from_utf8_lossy(line_of(&self.text(), number)).into_owned()
+    }
+
+    /// The text of the source, as far as there is one still.
+    fn text(&self) -> Vec<u8> {
+        self.path.as_deref().and_then(|path| files::read(path).ok()).unwrap_or_default()
     }
 }
 

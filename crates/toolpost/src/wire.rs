@@ -8,13 +8,13 @@ mod source;
 
 use crate::answer::{Answer, Stop, Verdict};
 use crate::args::{self, Division};
-use crate::drawing::{self, Format};
 use crate::files::{self, Target};
 use crate::progress::Progress;
 use crate::summary::rows;
 use crate::{post, prove, toolpath};
 use ::wire::Contour;
 use ::wire::points::{Refusal, Step, points};
+use drawing::Format;
 use leg::Leg;
 use machine::{Machine, Wire};
 use program::Diagnostic;
@@ -59,8 +59,9 @@ pub fn run(args: &args::Wire, silent: bool) -> Result<Answer, Stop> {
     let tolerances = args.closeness.tolerances();
     let proof = proof::of(&cut, &machine, &toolpath.program.name, &file, &output.text, &tolerances);
     if !proof.proven {
-        let failed = prove::failed(&proof, &toolpath, &file, "not saved: nothing was changed");
-        return Ok(failed.findings(warnings));
+        let mut failed = prove::failed(&proof, &toolpath, &file);
+        failed.findings.extend(warnings);
+        return Ok(failed.not_saved());
     }
 
     warnings.extend(proof.warnings.iter().cloned());

@@ -433,9 +433,9 @@ impl Step<'_, '_, '_> {
         Ok(())
     }
 
-    /// Says where the tool stands before anything has moved, where `G92` alone has told so.
+    /// Says where the tool stands, where `G92` alone has told so.
     pub(super) fn stood(&mut self) {
-        if !self.state.moved && !self.state.told && self.state.position.is_finite() {
+        if !self.state.told && self.state.position.is_finite() {
             let here = self.state.pose(self.state.position, self.state.rotary);
             self.ops.push(Op::Rapid(here));
             self.state.told = true;
@@ -447,7 +447,7 @@ impl Step<'_, '_, '_> {
     pub(super) fn arrive(&mut self, target: Target) {
         self.state.position = target.point;
         self.state.rotary = target.rotary;
-        self.state.moved = true;
+        (self.state.moved, self.state.told) = (true, true);
         self.state.frames.used();
     }
 

@@ -71,7 +71,7 @@ pub(crate) struct State {
     /// The last P of a cycle, s.
     pub cycle_dwell: Option<f64>,
     pub cycle: Option<Holding>,
-    /// It is told where the tool stands before anything moves.
+    /// The records say where the tool stands, as far as it is known.
     pub told: bool,
     /// Something has moved.
     pub moved: bool,

@@ -6,6 +6,7 @@
 
 use super::corner::Held;
 use super::cycles::{Drilling, Pause};
+use super::modal::Modal;
 use super::motion::AXIS_NAMES;
 use super::programmable::plain_values;
 use super::state::State;
@@ -18,7 +19,6 @@ use crate::sinumerik::language::call::{Argument, Call, Procedure};
 use crate::sinumerik::language::commands::{Code, FeedType, Motion};
 use crate::sinumerik::language::scan::Source;
 use crate::sinumerik::language::variables::ELEMENTS_IN_A_TURN;
-use geom::Vec3;
 use program::{Compensation, Coolant, Cycle, Feed, Op, Record, Spindle, Tool};
 
 /// Runs blocks.
@@ -39,7 +39,7 @@ pub(crate) struct Interpreter<'a, 's> {
     pub stopped: bool,
     /// The block whose corner waits for the next one.
     pub held: Option<Box<Held>>,
-    reported_cycle: Option<Cycle>,
+    pub(super) reported_cycle: Option<Cycle>,
 }
 
 /// M functions of which a block has at most one, and those that stand for no motion at all.
@@ -492,17 +492,19 @@ impl<'a, 's> Interpreter<'a, 's> {
             Procedure::Swivel => self.swivel(source, call),
             Procedure::Return => self.end(source),
             Procedure::EndOfModalCall => {
-                self.state.modal_cycle = None;
+                self.may_change_modal(source)?;
+                self.state.modal = Modal::None;
                 self.cycle_off(source)
             }
             Procedure::Pattern(pattern) => self.pattern(source, call, pattern),
             Procedure::Drill(form) => {
                 let drilling = Drilling::read(source, call, form, &self.state)?;
                 if call.modal {
-                    self.state.modal_cycle = Some(drilling);
+                    self.may_change_modal(source)?;
+                    self.state.modal = Modal::Cycle(drilling);
                     return Ok(());
                 }
-                if self.state.modal_cycle.is_some() {
+                if self.state.modal.waits() {
                     let message = "a cycle is called while MCALL is active";
                     return Err(source.block_error("cycle", message));
                 }
@@ -562,66 +564,6 @@ impl<'a, 's> Interpreter<'a, 's> {
             AXIS_NAMES[missing]
         );
         Err(source.block_error("feed-group", message))
-    }
-
-    fn cycle_off(&mut self, source: &Source) -> Fallible<()> {
-        if self.reported_cycle.take().is_some() {
-            self.emit(source, Op::CycleOff)?;
-        }
-        Ok(())
-    }
-
-    /// The hole of the modal cycle after a block with a position.
-    pub fn drill_modally(&mut self, source: &Source) -> Fallible<()> {
-        match self.state.modal_cycle.clone() {
-            Some(drilling) => self.drill(source, &drilling),
-            None => Ok(()),
-        }
-    }
-
-    fn drill(&mut self, source: &Source, drilling: &Drilling) -> Fallible<()> {
-        let state = &self.state;
-        if state.plane_normal != 2 {
-            let message = "drilling along X or Y (G18, G19) is not supported";
-            return Err(source.block_error("unsupported", message));
-        }
-        if !state.frames.moved_only() && state.frames.sense_about(2).is_none() {
-            let message = "drilling in a frame that is scaled, or mirrored along the hole";
-            return Err(source.block_error("unsupported", message));
-        }
-        if state.position.x.is_nan() || state.position.y.is_nan() {
-            let message = "the place of the hole is not known: no block has said X and Y";
-            return Err(source.block_error("unknown-position", message));
-        }
-        if drilling.needs_feed {
-            self.use_feed(source)?;
-        }
-        if let Some(spindle) = drilling.spindle_before {
-            self.report_spindle(source, spindle)?;
-        }
-        let Some(dwell) = drilling.dwell.seconds(self.state.spindle) else {
-            let message = "the dwell counts turns of a spindle that stands";
-            return Err(source.block_error("dwell", message));
-        };
-        let mut cycle = Cycle { dwell, ..drilling.cycle };
-        if let Some(withdrawal) = cycle.kind.withdrawal() {
-            let frames = &self.state.frames;
-            let aside = frames.in_work_frame(withdrawal.aside) - frames.in_work_frame(Vec3::ZERO);
-            cycle.kind = cycle.kind.with_aside(aside);
-        }
-        if self.reported_cycle != Some(cycle) {
-            self.reported_cycle = Some(cycle);
-            self.emit(source, Op::Cycle(cycle.into()))?;
-        }
-        self.state.position.z = drilling.surface;
-        let pose = self.state.pose(self.state.position);
-        self.state.position.z = drilling.surface + cycle.retract;
-        self.state.programmed.z = self.state.position.z;
-        self.emit(source, Op::Hole(pose))?;
-        if let Some(spindle) = drilling.spindle_after {
-            self.report_spindle(source, spindle)?;
-        }
-        Ok(())
     }
 }
 

@@ -2,7 +2,7 @@
 //!
 //! The [`interpreter`] goes through the block in the order of the control. It sends the axes where the
 //! block says ([`motion`], [`polar`], [`arc`], [`thread`]), with a [`corner`] between two moves, drills
-//! ([`cycles`], [`pattern`]), and changes the [`frames`] ([`programmable`], [`offsets`],
+//! ([`cycles`], [`pattern`]) or calls again behind it ([`modal`]), and changes the [`frames`] ([`programmable`], [`offsets`],
 //! [`orientation`]). What holds is the [`state`].
 
 mod arc;
@@ -10,6 +10,7 @@ mod corner;
 pub(super) mod cycles;
 mod frames;
 pub(super) mod interpreter;
+pub(super) mod modal;
 pub(super) mod motion;
 mod offsets;
 mod orientation;

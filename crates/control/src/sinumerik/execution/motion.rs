@@ -82,15 +82,15 @@ impl Interpreter<'_, '_> {
                 self.emit(source, op)?;
             }
         }
-        self.drill_modally(source)
+        self.call_modal(source)
     }
 
-    /// A block without a motion. While a cycle is modal, `F`, `S` or `G0` alone would drill once more
+    /// A block without a motion. While a call is modal, `F`, `S` or `G0` alone would do it once more
     /// (Programming Manual 06/2019, 3.2.3.4): nobody means that.
     fn no_motion(&self, source: &Source, block: &Block) -> Fallible<()> {
         let drills = block.feed.is_some() || block.speed.is_some() || block.code(1).is_some();
-        if drills && self.state.modal_cycle.is_some() {
-            let message = "F, S or a motion command without a position drills the last hole again \
+        if drills && self.state.modal.waits() {
+            let message = "F, S or a motion command without a position drills or calls once more \
                            while MCALL is active";
             return Err(source.block_error("cycle", message));
         }
@@ -438,8 +438,8 @@ impl Interpreter<'_, '_> {
             let message = format!("{name} while cutter radius compensation is active");
             return Err(source.block_error("compensation", message));
         }
-        if self.state.modal_cycle.is_some() {
-            let message = format!("{name} while MCALL is active: it would drill");
+        if self.state.modal.waits() {
+            let message = format!("{name} while MCALL is active, which would drill or call");
             return Err(source.block_error("cycle", message));
         }
         if self.state.tool_center {

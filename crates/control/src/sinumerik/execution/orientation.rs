@@ -73,7 +73,7 @@ impl Interpreter<'_, '_> {
     pub fn swivel(&mut self, source: &Source, call: &Call) -> Fallible<()> {
         let error = |rule, message: &str| Err(source.block_error(rule, message));
         self.check_compensation_off(source, call.name)?;
-        if self.state.modal_cycle.is_some() {
+        if self.state.modal.waits() {
             return error("cycle", "CYCLE800 while MCALL is active");
         }
         if call.arguments.is_empty() {

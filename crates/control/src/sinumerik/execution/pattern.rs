@@ -1,6 +1,7 @@
 //! Patterns of holes, which the modal cycle drills: `HOLES1`, `HOLES2`, `CYCLE801`.
 
 use super::interpreter::Interpreter;
+use super::modal::Modal;
 use crate::sinumerik::Fallible;
 use crate::sinumerik::language::call::{Argument, Call};
 use crate::sinumerik::language::scan::Source;
@@ -33,7 +34,7 @@ impl Interpreter<'_, '_> {
         let error = |rule, message: String| {
             Err(source.block_error(rule, format!("{}: {message}", call.name)))
         };
-        if self.state.modal_cycle.is_none() {
+        if !matches!(self.state.modal, Modal::Cycle(_)) {
             return error(
                 "cycle",
                 "there is no modal cycle (MCALL) that it could drill with".into(),
@@ -119,7 +120,7 @@ impl Interpreter<'_, '_> {
             }
             let pose = self.state.pose(self.state.position);
             self.emit(source, Op::Rapid(pose))?;
-            self.drill_modally(source)?;
+            self.call_modal(source)?;
         }
         Ok(())
     }

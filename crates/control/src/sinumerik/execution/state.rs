@@ -1,7 +1,7 @@
 //! What the control remembers from block to block.
 
-use super::cycles::Drilling;
 use super::frames::Frames;
+use super::modal::Modal;
 use super::offsets::WorkOffsets;
 use crate::Settings;
 use crate::compensation::Outer;
@@ -106,7 +106,7 @@ pub(crate) struct State {
     /// Where the tool axis comes from.
     pub tool_axis: ToolAxis,
     /// `MCALL`.
-    pub modal_cycle: Option<Drilling>,
+    pub modal: Modal,
     /// R parameters.
     pub parameters: Parameters,
     /// The variables of the program that runs.
@@ -182,7 +182,7 @@ impl State {
             speed_limits: [0.0, f64::INFINITY],
             rotary: settings.rotary.map(|exists| if exists { f64::NAN } else { 0.0 }),
             tool_axis: ToolAxis::Rotary,
-            modal_cycle: None,
+            modal: Modal::None,
             parameters: Parameters::new(&settings.operator_parameters),
             locals: Locals::default(),
             work_offsets: WorkOffsets::new(settings.setup.start.is_some()),

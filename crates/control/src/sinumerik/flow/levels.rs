@@ -5,6 +5,7 @@ use super::outline::Place;
 use super::run::{Level, Run, check_rest};
 use crate::budget::DEEPEST;
 use crate::sinumerik::Fallible;
+use crate::sinumerik::execution::modal::Modal;
 use crate::sinumerik::execution::state::Modes;
 use crate::sinumerik::language::definition::Signature;
 use crate::sinumerik::language::expression::Evaluator;
@@ -25,6 +26,8 @@ pub(crate) struct Caller {
     modes: Option<Box<Modes>>,
     /// The line that records of the caller carry.
     line: Option<u32>,
+    /// What `MCALL` calls after the next motion, where it has called this program.
+    modal: Option<ProgramCall>,
     /// The values of the parameters, and how often the program runs again with them.
     again: (u32, Vec<(Name, Variable)>),
 }
@@ -67,10 +70,27 @@ impl Run<'_, '_> {
         let line = self.interpreter.line;
         self.interpreter.line =
             if program.file.is_some() { line.or(Some(source.line)) } else { None };
-        let caller = Caller { locals, references, modes, line, again };
+        let caller = Caller { locals, references, modes, line, modal: None, again };
         let level = Level::new(program, Some(caller));
         self.callers.push(std::mem::replace(&mut self.level, level));
         self.interpreter.called = true;
+        Ok(())
+    }
+
+    /// Goes into the program that `MCALL` names, behind the block that has moved.
+    pub fn call_due(&mut self, source: &Source) -> Fallible<()> {
+        let state = &mut self.interpreter.state;
+        let Modal::Due(call) = std::mem::replace(&mut state.modal, Modal::Running) else {
+            return Ok(());
+        };
+        if state.ended {
+            let message = "the program ends in a block with a motion while MCALL is active";
+            return Err(source.block_error("call", message));
+        }
+        self.call(source, call.clone())?;
+        if let Some(caller) = &mut self.level.caller {
+            caller.modal = Some(call);
+        }
         Ok(())
     }
 
@@ -196,6 +216,9 @@ impl Run<'_, '_> {
                 }
                 (Some(_), _) => {}
             }
+        }
+        if let Some(call) = caller.modal {
+            state.modal = Modal::Program(call);
         }
         if let Some(modes) = caller.modes {
             self.interpreter.restore(source, *modes)?;

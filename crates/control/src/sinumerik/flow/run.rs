@@ -7,6 +7,7 @@ use crate::Settings;
 use crate::compensation::Compensator;
 use crate::sinumerik::Fallible;
 use crate::sinumerik::execution::interpreter::Interpreter;
+use crate::sinumerik::execution::modal::Modal;
 use crate::sinumerik::language::block::Block;
 use crate::sinumerik::language::expression::Evaluator;
 use crate::sinumerik::language::scan::{Name, Scanner, Source};
@@ -120,6 +121,15 @@ impl<'a, 's> Run<'a, 's> {
                 None => {
                     self.level.working |= block.any;
                     self.interpreter.run(&source, block)?;
+                    if let Modal::Due(_) = self.interpreter.state.modal {
+                        self.level.next = after;
+                        return self.call_due(&source).map(|()| false);
+                    }
+                    here = after;
+                }
+                Some(Statement::ModalCall(call)) => {
+                    self.level.working = true;
+                    self.interpreter.set_modal_program(&source, call)?;
                     here = after;
                 }
                 Some(Statement::Call(call)) => {
@@ -229,7 +239,7 @@ impl<'a, 's> Run<'a, 's> {
                 self.section(program, source, here, after, &section)
             }
             // Calls go to another program, and a declaration has no effect of its own.
-            Statement::Call(_) | Statement::Declaration => Ok(after),
+            Statement::Call(_) | Statement::ModalCall(_) | Statement::Declaration => Ok(after),
         }
     }
 

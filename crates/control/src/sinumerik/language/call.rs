@@ -212,10 +212,8 @@ impl Call {
                 Ok(Call { modal: true, ..call })
             }
             _ => {
-                let message = "MCALL of anything but a drilling cycle is not supported";
-                let mut error = scanner.error_since(start, "unsupported", message);
-                error.help = "call the program behind each block instead".into();
-                Err(error)
+                let message = "MCALL takes a drilling cycle or a program";
+                Err(scanner.error_since(start, "unsupported", message))
             }
         }
     }

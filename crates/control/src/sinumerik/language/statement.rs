@@ -1,6 +1,7 @@
 //! Statements: what a block says of the order of blocks. They are read with their conditions evaluated
 //! and carried out by [`mod@crate::sinumerik::flow::run`].
 
+use super::call;
 use super::definition;
 use super::expression::Evaluator;
 use super::scan::{Name, Scanner};
@@ -34,6 +35,8 @@ pub(crate) enum Statement {
     Section(Section),
     /// A call of a program.
     Call(ProgramCall),
+    /// `MCALL`: a call of a program after each block with a motion.
+    ModalCall(ProgramCall),
     /// `DEF`.
     Define(Vec<(Name, Variable)>),
     /// `PROC`, `EXTERN`: they matter where the program is called.
@@ -98,6 +101,7 @@ pub(crate) struct Section {
 }
 
 /// A call of a program.
+#[derive(Clone)]
 pub(crate) struct ProgramCall {
     /// The program as it is written.
     pub program: Rc<str>,
@@ -108,6 +112,7 @@ pub(crate) struct ProgramCall {
 }
 
 /// An argument of a call.
+#[derive(Clone)]
 pub(crate) struct Actual {
     /// Its value, where it is not left out or a whole array.
     pub value: Option<Value>,
@@ -132,6 +137,10 @@ pub(super) fn read(
             Statement::Section(section(scanner, evaluator, name.as_str() == "REPEATB")?)
         }
         "CASE" => case(scanner, evaluator)?,
+        "MCALL" => match modal_call(scanner, evaluator)? {
+            Some(call) => Statement::ModalCall(call),
+            None => return Ok(None),
+        },
         "CALL" | "EXTCALL" => {
             let brackets = scanner.take(b'(');
             let program = evaluator.text(scanner)?;
@@ -346,6 +355,34 @@ pub(super) fn program_call(
     evaluator: &Evaluator,
     start: usize,
 ) -> Fallible<Statement> {
+    named_call(scanner, evaluator, start).map(Statement::Call)
+}
+
+/// Takes what `MCALL` calls, where that is a program and not a cycle. Its arguments are passed once, here
+/// (Job Planning, "Modal subprogram call").
+fn modal_call(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<Option<ProgramCall>> {
+    let before = scanner.at;
+    scanner.blanks();
+    let start = scanner.at;
+    if !scanner.name_goes_on() || call::is_known(scanner.name()?.as_str()) {
+        scanner.at = before;
+        return Ok(None);
+    }
+    let mut call = named_call(scanner, evaluator, start)?;
+    if call.times != 1 {
+        return Err(scanner.error_since(start, "call", "MCALL calls the program once each time"));
+    }
+    for actual in &mut call.arguments {
+        if actual.variable.take().is_some() && actual.value.is_none() {
+            let message = "MCALL with a whole array is not supported";
+            return Err(scanner.error_since(start, "unsupported", message));
+        }
+    }
+    Ok(Some(call))
+}
+
+/// A program's name up to here, its arguments, and how often.
+fn named_call(scanner: &mut Scanner, evaluator: &Evaluator, start: usize) -> Fallible<ProgramCall> {
     let name = scanner.source.text.get(start..scanner.at).unwrap_or(&[]);
     let program = String::from_utf8_lossy(name).into();
     let arguments = arguments(scanner, evaluator)?;
@@ -354,7 +391,7 @@ pub(super) fn program_call(
         let message = "a call of a program stands in a block of its own";
         return Err(scanner.error_here("syntax", message));
     }
-    Ok(Statement::Call(ProgramCall { program, arguments, times }))
+    Ok(ProgramCall { program, arguments, times })
 }
 
 /// Takes arguments in brackets; none where no bracket comes.

@@ -1,6 +1,6 @@
 //! Pictures, as SVG or PNG: of a tool path, of the way of a wire.
 //!
-//! The same input gives the same bytes on every machine: there are no fonts in them. Their size is
+//! Both are drawn from straight pieces ([`walk()`] makes them of a program); letters are strokes of our own. The same input gives the same bytes on every machine: there are no fonts in them. Their size is
 //! bounded, however long the program.
 
 mod lettering;
@@ -8,19 +8,22 @@ mod paper;
 mod tool_path;
 mod trace;
 mod view;
+mod walk;
 mod wire_path;
 
 pub use tool_path::tool_path;
+pub use walk::{Segment, walk};
 pub use wire_path::{WireLeg, WirePicture, wire_path};
 
-use crate::answer::Stop;
 use program::Diagnostic;
 use std::path::Path;
 
 /// How a picture is saved.
 #[derive(Clone, Copy, Debug)]
 pub enum Format {
+    /// As it was drawn.
     Svg,
+    /// Painted, at twice its size.
     Png,
 }
 
@@ -29,7 +32,7 @@ impl Format {
     ///
     /// # Errors
     /// Where it asks for another.
-    pub fn of(file: &Path) -> Result<Format, Stop> {
+    pub fn of(file: &Path) -> Result<Format, Box<Diagnostic>> {
         let ending = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
         match ending.as_str() {
             "png" => Ok(Format::Png),

@@ -1,10 +1,10 @@
 //! The way of a wire: the contour from above with its points, the chord error along it, and the
 //! surface between the two ends of the wire.
 
-use super::lettering;
-use super::paper::{INK, PAPER, SIZE, begin, lines, scale_bar, shorten, triad, write_text};
-use super::trace::Trace;
-use super::view::View;
+use crate::lettering;
+use crate::paper::{INK, PAPER, SIZE, begin, lines, scale_bar, shorten, triad, write_text};
+use crate::trace::Trace;
+use crate::view::View;
 use geom::{Vec2, Vec3};
 use glam::DVec2;
 use std::fmt::Write as _;
@@ -57,7 +57,9 @@ pub struct WirePicture<'a> {
 /// A way of the wire without a break.
 #[derive(Clone, Copy)]
 pub struct WireLeg<'a> {
+    /// The contours that its two ends follow.
     pub path: &'a Path,
+    /// Its points, where it is written as such.
     pub points: Option<&'a Points>,
     /// Whether the wire is threaded at its start; otherwise it goes on from the leg before.
     pub threaded: bool,

@@ -1,8 +1,8 @@
 //! The paper: its size and colours, words, lines and axes on it, and SVG as PNG.
 
-use super::lettering;
-use super::trace::Trace;
-use super::view::View;
+use crate::lettering;
+use crate::trace::Trace;
+use crate::view::View;
 use geom::Vec3;
 use glam::DVec2;
 use program::Diagnostic;

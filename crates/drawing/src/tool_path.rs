@@ -3,9 +3,9 @@
 //! Cutting moves have one colour a tool, darker where they are deeper; rapids are thin and dashed;
 //! holes have a ring; where the tool tilts, hair lines show its axis.
 
-use super::paper::{INK, SIZE, begin, lines, scale_bar, shorten, triad, write_text};
-use super::trace::Trace;
-use super::view::View;
+use crate::paper::{INK, SIZE, begin, lines, scale_bar, shorten, triad, write_text};
+use crate::trace::Trace;
+use crate::view::View;
 use crate::walk::{Segment, walk};
 use geom::Vec3;
 use glam::DVec2;
