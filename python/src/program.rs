@@ -294,5 +294,5 @@ pub fn read(
         start,
         aside: aside.map(|given| word(py, "aside", given, &ways)).transpose()?,
     };
-    released(py, || toolpath::read(&path, strict, &origin)).map(Program::from)
+    released(py, || toolpath::read(&path, strict, &origin, None)).map(Program::from)
 }

@@ -67,7 +67,7 @@ impl Record {
 /// Where the tool is after a motion, or at the latest.
 pub fn pose(op: &Op) -> Option<&Pose> {
     match op {
-        Op::Probe(pose) => Some(pose),
+        Op::Probe(probe) => Some(&probe.end),
         op => op.pose(),
     }
 }
@@ -87,7 +87,11 @@ fn kind(op: &Op, words: &Bound<'_, PyDict>) -> PyResult<&'static str> {
             words.set_item("pitch", thread.pitch)?;
             "thread"
         }
-        Op::Probe(_) => "probe",
+        Op::Probe(probe) => {
+            words.set_item("away", probe.away)?;
+            words.set_item("must_answer", probe.must_answer)?;
+            "probe"
+        }
         Op::Hole(_) => "hole",
         Op::Cycle(cycle) => {
             words.set_item("cycle", cycle_name(cycle.kind))?;

@@ -36,8 +36,14 @@ const ROUNDING_STEPS: f64 = 6.0;
 /// side of a full circle that is opposite to its ends.
 const CENTER_STEPS: f64 = std::f64::consts::SQRT_2;
 
+/// How many steps the end of an arc that is told by its angle may be off: its start is rounded by up to
+/// √½ steps in the plane, and its centre by less.
+const ANGLE_STEPS: f64 = 0.85;
+
 /// Part of an arc as one block.
 struct Block {
+    /// Where it ends, and where that is after rounding.
+    to: Vec3,
     end: Vec3,
     center: Vec3,
     /// Signed angle about the plane's normal, radians.
@@ -154,23 +160,30 @@ impl Walk<'_> {
             Vec3::from_array([0, 1, 2].map(|i| self.writer.rounded(words[i], p[i])))
         };
         let start = self.stands(round(&END, arc.at(from)));
+        let to = arc.at(until);
         // An arc that is told by its angle ends as far from its centre as it begins, and not at a
         // rounded place.
         let by_angle = self
             .templates
             .places(self.arc_name(arc.normal[facts.axes[2]] > 0.0, rises), WordName::Sweep);
-        let end = if by_angle { arc.at(until) } else { round(&END, arc.at(until)) };
+        let end = if by_angle { to } else { round(&END, to) };
         let [u, v, w] = facts.axes;
         let flat = |p: Vec3| Vec3::new(p[u], p[v], 0.0);
         let (s, e, c) = (flat(start), flat(end), flat(arc.center));
         let sign = arc.normal[w].signum();
         let wanted = arc.sweep * (until - from);
         let chord = e - s;
-        // The same radius at both ends: the nearest centre on the perpendicular bisector.
+        // Where the centre of the source is none of the rounded ends, the nearest one that has the same
+        // radius at both, on the perpendicular bisector.
         let along = chord.normalize_or_zero();
         let even = c + along * ((s + e) * 0.5 - c).dot(along);
         let can = &self.machine.capabilities;
         let absolute = self.templates.places(self.arc_name(sign > 0.0, false), WordName::CX);
+        // By as much an arc by its angle misses its end; any other is a spiral.
+        let uneven = match by_angle {
+            true => ANGLE_STEPS * self.machine.resolution(),
+            false => can.arc_tolerance / 2.0,
+        };
         let legal = |c: Vec3| {
             let mut center = arc.center;
             (center[u], center[v]) = (c.x, c.y);
@@ -188,8 +201,7 @@ impl Walk<'_> {
             let radius = a.length();
             let near =
                 (sweep - wanted).abs() * radius <= ROUNDING_STEPS * self.machine.resolution();
-            let uneven = if by_angle { self.machine.resolution() } else { can.arc_tolerance };
-            let even = (radius - b.length()).abs() <= uneven / 2.0;
+            let even = (radius - b.length()).abs() <= uneven;
             let moved = flat(written).distance(flat(arc.center));
             let rise = end[w] - start[w];
             // The ends stay where they are; between them a shift of the centre moves the arc by as much
@@ -197,9 +209,9 @@ impl Walk<'_> {
             let lever = 1.0 - (wanted.min(TAU) / 2.0).cos();
             let close = moved * lever <= CENTER_STEPS * self.machine.resolution() * (1.0 + 1e-9);
             (near && even && moved <= can.lowering_tolerance && close && radius > 0.0)
-                .then_some(Block { end, center: written, sweep: sign * sweep, rise })
+                .then_some(Block { to, end, center: written, sweep: sign * sweep, rise })
         };
-        legal(even).or_else(|| legal(c))
+        legal(c).or_else(|| legal(even))
     }
 
     fn arc_block(&mut self, arc: &Arc, facts: &Facts, block: &Block, rises: bool) -> Done {
@@ -217,7 +229,7 @@ impl Walk<'_> {
             self.writer.set(ABSOLUTE[i], block.center[i]);
         }
         for i in [u, v, w] {
-            self.writer.set(END[i], block.end[i]);
+            self.writer.set(END[i], block.to[i]);
         }
         let turns = (block.sweep.abs() / TAU - 1e-9).floor();
         if turns > 0.0 {

@@ -4,8 +4,8 @@ use crate::catalogue::{BlockName, WordName};
 use crate::findings::Findings;
 use crate::place::{Place, Route};
 use crate::template::{
-    LENGTH_OFFSET, ORIENTATION, POSITION, Scope, Templates, bit, map, printed, program_value,
-    spindle_value, tool_value,
+    LENGTH_OFFSET, ORIENTATION, POSITION, Scope, Templates, Words, bit, map, printed,
+    program_value, spindle_value, tool_value,
 };
 use crate::wire::Wire;
 use crate::writer::Writer;
@@ -36,6 +36,9 @@ mod feed_mode {
     pub(super) const PER_TURN: usize = 1;
     pub(super) const INVERSE_TIME: usize = 2;
 }
+
+/// The words that say how the tool goes.
+const MOTION: Words = bit(WordName::F) | bit(WordName::Motion);
 
 /// The entry of the code word `plane` for the plane XY.
 pub(crate) const PLANE_XY: usize = 0;
@@ -194,7 +197,7 @@ impl<'a> Walk<'a> {
         }
         match &record.op {
             Op::Rapid(_) | Op::Line(_) | Op::Arc(_) | Op::Thread(_) | Op::Hole(_) => Ok(()),
-            Op::Probe(_) => Err(refuse("unsupported", "a probing move is not written")),
+            Op::Probe(probe) => self.probe(probe),
             Op::Cycle(cycle) => {
                 self.end_cycle()?;
                 self.cycle = Some(cycle);
@@ -246,6 +249,13 @@ impl<'a> Walk<'a> {
             }
             Op::OptionalStop => self.stop(BlockName::OptionalStop),
             Op::Operation(name) => {
+                // What was switched on before it does not belong to it.
+                if self.tool.is_some() {
+                    self.sync_spindle()?;
+                }
+                if self.machine.format.fresh_operations {
+                    self.writer.forget(POSITION | ORIENTATION | MOTION);
+                }
                 self.scope.operation = map([("name", Value::from(printed(self.machine, name)))]);
                 self.block(BlockName::OperationStart)
             }
@@ -283,10 +293,7 @@ impl<'a> Walk<'a> {
             Op::Line(pose) => self.line(pose, &stop),
             Op::Arc(to) => self.arc(to, &stop),
             Op::Hole(pose) => self.hole(pose, &stop),
-            Op::Thread(_) => Err(refuse(
-                "unsupported",
-                "a thread in step with the spindle is not written; tap it",
-            )),
+            Op::Thread(thread) => self.thread(thread, &stop),
             _ => Ok(()),
         }
     }
@@ -410,9 +417,7 @@ impl<'a> Walk<'a> {
         self.scope.tool = tool_value(self.machine, tool, self.tool.is_none());
         self.required(BlockName::ToolChange)?;
         self.tool = Some(tool.clone());
-        self.writer.forget(
-            POSITION | ORIENTATION | bit(WordName::F) | bit(WordName::D) | bit(WordName::Motion),
-        );
+        self.writer.forget(POSITION | ORIENTATION | MOTION | bit(WordName::D));
         self.located = false;
         (self.active_spindle, self.active_coolant) = (Some(Spindle::Off), Some(Coolant::Off));
         Ok(())
@@ -429,8 +434,8 @@ impl<'a> Walk<'a> {
     /// The speed at which the tool that is called now will cut first.
     fn coming_speed(&self) -> Option<f64> {
         let coming = self.source.records[self.index..].iter().map(|record| &record.op);
-        let mut until_cut =
-            coming.take_while(|op| !matches!(op, Op::Line(_) | Op::Arc(_) | Op::Hole(_)));
+        let mut until_cut = coming
+            .take_while(|op| !matches!(op, Op::Line(_) | Op::Arc(_) | Op::Thread(_) | Op::Hole(_)));
         let next = until_cut.find_map(|op| match op {
             Op::Spindle(spindle) => speed(*spindle),
             _ => None,
@@ -491,7 +496,7 @@ impl<'a> Walk<'a> {
         })
     }
 
-    fn sync_coolant(&mut self) -> Done {
+    pub(crate) fn sync_coolant(&mut self) -> Done {
         if self.active_coolant == Some(self.coolant) {
             return Ok(());
         }

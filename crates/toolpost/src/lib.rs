@@ -9,6 +9,7 @@
 pub mod answer;
 mod args;
 mod explain;
+mod fcstd;
 pub mod files;
 mod machines;
 pub mod post;

@@ -55,10 +55,13 @@ pub fn run(args: &Post, silent: bool) -> Result<Answer, Stop> {
     let report_path = args.output.with_extension("report.json");
     let target = Target::new(&args.output, &inputs)?;
     let report_target = Target::new(&report_path, &inputs)?;
-    let machine = toolpath::machine(&args.machine)?;
+    let mut machine = toolpath::machine(&args.machine)?;
+    for (name, value) in &args.option {
+        machine.set_option(name, value)?;
+    }
     let progress = Progress::new(4, silent);
     progress.step("reading");
-    let toolpath = toolpath::read(source, args.source.strict, &args.source.origin)?;
+    let toolpath = toolpath::read(source, args.source.strict, &args.source.origin, Some(&machine))?;
     let file = files::name(&args.output);
     let tolerances = args.closeness.tolerances();
     let posted = proven(&toolpath, &machine, &file, &tolerances, &|what| progress.step(what))?;
@@ -113,7 +116,7 @@ pub fn proven(
         "time_s": { "total": times.total(), "cutting": times.cutting, "rapid": times.rapid },
         "proof": proof,
     });
-    let mut rows = toolpath.rows(machine);
+    let mut rows = toolpath.rows(Some(machine));
     rows.extend(shape.rows());
     rows.push(("time", time(&times)));
     rows.push(("travel", travel(Travel::of(machine))));

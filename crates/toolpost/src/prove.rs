@@ -15,7 +15,7 @@ pub fn run(args: &Prove, silent: bool) -> Result<Answer, Stop> {
     let machine = toolpath::machine(&args.machine)?;
     let progress = Progress::new(2, silent);
     progress.step("reading");
-    let toolpath = toolpath::read(&args.against, false, &args.origin)?;
+    let toolpath = toolpath::read(&args.against, false, &args.origin, Some(&machine))?;
     let text = files::read(&args.program)?;
     progress.step("proving");
     let file = files::name(&args.program);
@@ -45,7 +45,7 @@ pub fn compare(
         "program": { "file": file, "blocks": proof.program.blocks, "bytes": text.len() },
         "proof": proof,
     });
-    let mut rows = toolpath.rows(machine);
+    let mut rows = toolpath.rows(Some(machine));
     rows.extend(shape.rows());
     rows.extend(self::rows(&proof, machine));
     Account { verdict: Verdict::Done, rows, data, findings }
@@ -105,10 +105,10 @@ pub fn failed(proof: &Report, source: &Toolpath, program: &str) -> Account {
         ("program", String::from("it makes another motion")),
     ];
     if let Some(first) = &proof.first_mismatch {
-        let source_line = source.line(first.source_line);
-        let beside = |file: &str, line: u32, text: &str| format!("{file}:{line}  {}", text.trim());
-        rows.push(("source says", beside(&source.file, first.source_line, &source_line)));
-        rows.push(("program says", beside(program, first.program_line, &first.block)));
+        let (place, text) = source.place(first.source_line);
+        rows.push(("source says", format!("{place}  {}", text.trim())));
+        let block = first.block.trim();
+        rows.push(("program says", format!("{program}:{}  {block}", first.program_line)));
     }
     let (data, findings) = (json!({ "proof": proof }), proof.mismatches.clone());
     Account { verdict: Verdict::Failed, rows, data, findings }

@@ -2,12 +2,14 @@
 
 use crate::answer::{Stop, Verdict};
 use crate::args::{Origin, Units, Way, WholeNumbers};
+use crate::fcstd;
 use crate::files;
 use crate::summary::Shape;
 use control::Setup;
+use freecad::{Job, Listing};
 use geom::Vec3;
-use machine::Machine;
-use program::{Diagnostic, Program, Severity, line_of};
+use machine::{Machine, library};
+use program::{Diagnostic, Op, Program, Severity, line_of};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -24,20 +26,48 @@ pub struct Toolpath {
     pub program: Program,
     /// What was not passed on.
     pub warnings: Vec<Diagnostic>,
+    /// Of a job of FreeCAD's, the commands that the lines of the program stand for.
+    listing: Option<Listing>,
 }
 
 /// Endings that NC programs have.
 const NC_ENDINGS: [&str; 13] =
     ["nc", "ngc", "mpf", "spf", "h", "gcode", "tap", "cnc", "eia", "min", "din", "gc", "g"];
 
-/// Reads a toolpath: an NC program where `origin` says what it was written for, else cutter-location
-/// data.
+/// Reads a toolpath: a job of FreeCAD's, an NC program where `origin` says what it was written for, or
+/// cutter-location data. Words for rotary axes in a job are those of the machine of `origin`, and where it
+/// names none, of `machine`.
 ///
 /// # Errors
 /// What is wrong with the file; with `strict` also what would be a warning.
-pub fn read(path: &Path, strict: bool, origin: &Origin) -> Result<Toolpath, Stop> {
-    read_by(path, strict, origin, |machine| machine)
+pub fn read(
+    path: &Path,
+    strict: bool,
+    origin: &Origin,
+    machine: Option<&Machine>,
+) -> Result<Toolpath, Stop> {
+    let bytes = match fcstd::is(path) {
+        true => fcstd::job(path)?,
+        false => files::read(path)?,
+    };
+    if !Job::begins(&bytes) {
+        return read_by(path, &bytes, strict, origin, |machine| machine);
+    }
+    let file = files::name(path);
+    let job = Job::of(&file, &bytes)?;
+    let machine = match (&origin.from, machine) {
+        (Some(from), _) => machine::load_origin(from)?,
+        (None, Some(machine)) => machine.clone(),
+        (None, None) => machine::load_control(THREE_AXES)?,
+    };
+    let freecad::Reading { program, listing, warnings } = freecad::read(&machine, &file, &job)?;
+    let (dialect, warnings) = (String::from("FreeCAD job"), held(warnings, strict)?);
+    let (path, listing) = (Some(path.to_owned()), Some(listing));
+    Ok(Toolpath { path, file, dialect, program, warnings, listing })
 }
+
+/// The control on which a job runs of which nobody has said the machine: it has three axes.
+const THREE_AXES: &str = "iso";
 
 /// The same for a wire, whose upper contour is `height` mm over the lower where that is given.
 ///
@@ -49,7 +79,7 @@ pub fn read_wire(
     origin: &Origin,
     height: Option<f64>,
 ) -> Result<Toolpath, Stop> {
-    read_by(path, strict, origin, |mut machine| {
+    read_by(path, &files::read(path)?, strict, origin, |mut machine| {
         if let Some(wire) = &mut machine.wire {
             wire.height = height.or(wire.height);
         }
@@ -59,20 +89,20 @@ pub fn read_wire(
 
 fn read_by(
     path: &Path,
+    bytes: &[u8],
     strict: bool,
     origin: &Origin,
     set_up: impl Fn(Machine) -> Machine,
 ) -> Result<Toolpath, Stop> {
-    let bytes = files::read(path)?;
     let file = files::name(path);
     let (dialect, program, warnings) = match &origin.from {
         Some(from) => {
             let machine = set_up(machine::load_origin(from)?);
-            let reading = nc::read(&machine, origin.setup()?, &file, &bytes)?;
+            let reading = nc::read(&machine, origin.setup()?, &file, bytes)?;
             (machine.title, reading.program, reading.warnings)
         }
         None => {
-            let reading = source::apt::read(&file, &bytes, &source::apt::Options { strict });
+            let reading = source::apt::read(&file, bytes, &source::apt::Options { strict });
             let reading = reading.map_err(|findings| match is_nc(path) {
                 true => without_origin(&file),
                 false => Stop { verdict: Verdict::Invalid, findings },
@@ -81,7 +111,8 @@ fn read_by(
         }
     };
     let warnings = held(warnings, strict)?;
-    Ok(Toolpath { path: Some(path.to_owned()), file, dialect, program, warnings })
+    let path = Some(path.to_owned());
+    Ok(Toolpath { path, file, dialect, program, warnings, listing: None })
 }
 
 /// The warnings; with `strict` they stop the command.
@@ -102,7 +133,7 @@ fn is_nc(path: &Path) -> bool {
 
 /// What stops an NC program of which nobody has said what it was written for.
 fn without_origin(file: &str) -> Stop {
-    let controls = machine::library::names(machine::library::CONTROLS).collect::<Vec<_>>();
+    let controls = library::names(library::CONTROLS).collect::<Vec<_>>();
     let message = "this is no cutter-location data, and as an NC program it has no control named";
     Diagnostic::error("source", message)
         .help(format!("--from with a machine or one of {}", controls.join(", ")))
@@ -163,6 +194,7 @@ impl Toolpath {
             dialect: dialect.to_owned(),
             program,
             warnings: Vec::new(),
+            listing: None,
         }
     }
 
@@ -180,6 +212,10 @@ impl Toolpath {
     pub fn quote(&self, findings: &mut [Diagnostic]) {
         let mut lines = None;
         for finding in findings.iter_mut().filter(|f| f.file.is_empty() && f.line > 0) {
+            if let Some(listing) = &self.listing {
+                *finding = listing.located(finding.clone());
+                continue;
+            }
             let text = lines.get_or_insert_with(|| self.text());
             *finding =
                 finding.clone().on(finding.line, line_of(text, finding.line)).file(&self.file);
@@ -195,20 +231,38 @@ impl Toolpath {
 
     /// The source and its measures, as JSON.
     pub fn describe(&self, shape: &Shape) -> Value {
-        json!({ "file": self.file, "dialect": self.dialect, "measures": shape })
+        let mut source = json!({ "file": self.file, "dialect": self.dialect, "measures": shape });
+        if let Some(listing) = &self.listing {
+            let operation = |(label, before)| json!({ "label": label, "before": before });
+            source["operations"] = listing.operations().map(operation).collect();
+        }
+        source
     }
 
-    /// The first lines of a summary: what was done, for which machine.
-    pub fn rows(&self, machine: &Machine) -> Vec<(&'static str, String)> {
-        vec![
-            ("toolpath", format!("{} ({})", self.file, self.dialect)),
-            ("machine", format!("{} ({})", machine.title, machine.name)),
-        ]
+    /// The first lines of a summary: what was read, and for which machine it was done.
+    pub fn rows(&self, machine: Option<&Machine>) -> Vec<(&'static str, String)> {
+        let mut rows = vec![("toolpath", format!("{} ({})", self.file, self.dialect))];
+        rows.extend(
+            machine.map(|machine| ("machine", format!("{} ({})", machine.title, machine.name))),
+        );
+        if self.listing.is_some() {
+            let operations = self.program.records.iter().filter_map(|record| match &record.op {
+                Op::Operation(name) => Some(name.as_ref()),
+                _ => None,
+            });
+            rows.push(("operations", operations.collect::<Vec<_>>().join(", ")));
+        }
+        rows
     }
 
-    /// The text of a line of the source; empty where there is none.
-    pub fn line(&self, number: u32) -> String {
-        String::from_utf8_lossy(line_of(&self.text(), number)).into_owned()
+    /// Where a line of the source is, and its text; empty where there is none.
+    pub fn place(&self, number: u32) -> (String, String) {
+        if let Some(place) = self.listing.as_ref().map(|listing| listing.place(number)) {
+            let text = String::from_utf8_lossy(place.text).into_owned();
+            return (format!("{}:{}", place.file, place.command), text);
+        }
+        let text = String::from_utf8_lossy(line_of(&self.text(), number)).into_owned();
+        (format!("{}:{number}", self.file), text)
     }
 
     /// The text of the source, as far as there is one still.

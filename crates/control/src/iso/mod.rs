@@ -1,5 +1,5 @@
-//! ISO code: FANUC 30i for milling, Haas, LinuxCNC's RS-274, Mach3, GRBL 1.1, Marlin; and of
-//! wire-EDM machines.
+//! ISO code: FANUC 30i for milling, Haas, LinuxCNC's RS-274, Mach3, GRBL 1.1, Marlin; of wire-EDM
+//! machines; and what FreeCAD's CAM workbench keeps.
 //!
 //! They share the words and the order of execution and differ in tables ([`language::flavors`]) and in
 //! the rules that each maker states; `docs/controls/iso.md` and its neighbours say which, with sources.
@@ -11,12 +11,11 @@ mod execution;
 mod flow;
 mod language;
 
+use crate::Settings;
 use crate::compensation::Compensator;
-use crate::{Dialect, Settings};
 use flow::run::Run;
 use flow::source::Source;
 use language::block::Fault;
-use program::{Op, Record};
 
 /// Runs a program.
 pub(crate) fn run(
@@ -25,11 +24,5 @@ pub(crate) fn run(
     compensator: &mut Compensator,
 ) -> Result<(), Fault> {
     let main = Source::program(text);
-    Run::new(settings, &main, compensator).run()?;
-    // Marlin has no word for the end: the program ends with its last line.
-    if settings.dialect == Dialect::Marlin {
-        let lines = text.split(|&b| b == b'\n').count();
-        compensator.take(Record { line: u32::try_from(lines).unwrap_or(u32::MAX), op: Op::End })?;
-    }
-    Ok(())
+    Run::new(settings, &main, compensator).run()
 }

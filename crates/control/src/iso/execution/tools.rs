@@ -82,9 +82,13 @@ impl Step<'_, '_, '_> {
             let message = "M6 and no tool has been named by T";
             return Err(self.block.at_group(Group::ToolChange, "nc-tool", message));
         };
+        if number == 0 && self.flavor == Flavor::FreeCad {
+            let message = "the tool has no number";
+            return Err(self.block.at_group(Group::ToolChange, "nc-tool", message));
+        }
         self.not_compensated("a tool change")?;
-        self.turn(Spindle::Off);
         self.put_in(number);
+        self.turn(Spindle::Off);
         // The machine may go to a place of its own for the change.
         self.state.position = UNKNOWN;
         Ok(())

@@ -7,6 +7,10 @@ use super::words::{Dictionary, Flavor, G, Group, LETTERS, M, bit, index};
 use crate::{Settings, decimal};
 use program::Diagnostic;
 
+/// From here on a number of FreeCAD's is none: it writes a NaN as -922337203685.477581, and nothing is a
+/// kilometre long.
+const NOTHING: f64 = 1e6;
+
 /// A finding about a block.
 pub(crate) type Fault = Box<Diagnostic>;
 
@@ -180,6 +184,9 @@ impl<'a> Block<'a> {
         let end = match self.text.get(from..).and_then(decimal::parse) {
             Some(number) => {
                 (word.value, word.point) = (number.value, number.point);
+                if dictionary.flavor == Flavor::FreeCad && number.value.abs() >= NOTHING {
+                    return Err(self.nothing(at, from + number.len));
+                }
                 from + number.len
             }
             // Marlin's G28 X: an axis that is named.
@@ -366,8 +373,14 @@ impl<'a> Block<'a> {
 
     /// Reads the comment at `at` and gives the place after it. On GRBL it ends at the first `)`,
     /// whatever stands in it (`protocol_main_loop`).
+    /// One of FreeCAD is a command of its own, and may hold the brackets of a label.
     fn comment(&mut self, at: usize) -> Result<usize, Fault> {
         let rest = self.text.get(at + 1..).unwrap_or_default();
+        if self.dictionary.flavor == Flavor::FreeCad {
+            let text = rest.strip_suffix(b")").unwrap_or(rest);
+            self.comments.push((at + 1, at + 1 + text.len()));
+            return Ok(self.text.len());
+        }
         let nests = self.dictionary.flavor != Flavor::Grbl;
         match rest.iter().position(|&b| b == b')' || nests && b == b'(') {
             Some(n) if rest[n] == b')' => {

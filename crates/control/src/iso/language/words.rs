@@ -13,6 +13,7 @@ pub(crate) enum Flavor {
     FanucWire,
     Sodick,
     Agie,
+    FreeCad,
 }
 
 impl Flavor {
@@ -54,6 +55,11 @@ impl Flavor {
     /// Whether small letters are the same as capital ones.
     pub(super) fn has_small_letters(self) -> bool {
         !self.is_fanuc() && self != Flavor::Marlin
+    }
+
+    /// Whether a program ends with its last line, without a word for it.
+    pub(crate) fn ends_with_text(self) -> bool {
+        matches!(self, Flavor::Marlin | Flavor::FreeCad)
     }
 
     /// GRBL and Marlin have no tool changer: T says which tool the operator puts in.
@@ -178,8 +184,11 @@ pub(crate) enum Motion {
     Thread,
     /// `G33.1`
     RigidTap,
-    /// `G38.2` to `G38.5`
-    Probe,
+    /// `G38.2` to `G38.5`: until the probe lets go or touches, with or without an error where it does not.
+    Probe {
+        away: bool,
+        must_answer: bool,
+    },
 }
 
 /// The canned cycles that can be told in the neutral program.
