@@ -174,7 +174,6 @@ def read(
     aside: Literal["+X", "-X", "+Y", "-Y"] | None = None,
     block_delete: bool = False,
     start: _Point | None = None,
-    aside: Literal["+X", "-X", "+Y", "-Y"] | None = None,
     strict: bool = False,
 ) -> Program: ...
 def machine(name_or_path: _Path) -> Machine: ...
