@@ -1,22 +1,32 @@
-"""A FreeCAD job as one JSON document: what Toolpost reads.
+"""A FreeCAD job as one JSON document, which is what Toolpost reads (docs/sources/freecad.md).
 
-`job(objectslist)` takes the objects that FreeCAD hands to a post-processor, in their order, and gives
-the interchange form that docs/sources/freecad.md describes. As a program it takes a document:
-
-    TOOLPOST_FCSTD=part.FCStd TOOLPOST_JSON=part.json freecadcmd toolpost_job.py
-
-Nothing is judged here: what a command means, and whether it can be done, is Toolpost's to say.
+`job` takes the objects that FreeCAD hands to a post-processor; `document` does the same for a file,
+within `freecadcmd`. What a command means, and whether it can be done, is not judged here.
 """
+
+import json
+import re
 
 COOLANT = {"Flood": "flood", "Mist": "mist"}
 
+# What `toGCode` writes for a number that does not fit into 64 bits of millionths: not a number at all,
+# infinite, or beyond 9.2e12.
+OVERFLOW = "-922337203685.477"
 
-def job(objectslist, name=""):
+
+OFFSET = re.compile(r"^G5[4-9](?:\.[1-9])?$", re.MULTILINE)
+
+
+class JobError(Exception):
+    """What cannot be told of a job, with the way out."""
+
+
+def job(objects, name):
     """The job that these objects make, as a dictionary that JSON can hold."""
-    sections = [section for obj in objectslist for section in _paths(obj)]
+    parts = [part for obj in objects for part in _parts(obj)]
     controllers = {}
-    for obj in sections:
-        controller = obj if hasattr(obj, "ToolNumber") else _property(obj, "ToolController")
+    for part in parts:
+        controller = part if hasattr(part, "ToolNumber") else _property(part, "ToolController")
         if controller is not None:
             controllers.setdefault(controller.Name, controller)
     return {
@@ -24,46 +34,154 @@ def job(objectslist, name=""):
         "version": 1,
         "name": name,
         "tools": [_tool(controller) for controller in controllers.values()],
-        "operations": [_operation(obj) for obj in sections],
+        "operations": [_operation(part) for part in parts],
     }
 
 
-def _paths(obj):
-    """The objects with commands of their own: groups opened, in their order."""
-    if not hasattr(obj, "Path") or hasattr(obj, "Group"):
-        for child in getattr(obj, "Group", []):
-            yield from _paths(child)
+def move(job, offset):
+    """Puts a job at another work offset than the one that it has."""
+    if not OFFSET.fullmatch(offset):
+        raise JobError("%s is no work offset: one of G54 to G59, G59.1 to G59.9" % offset)
+    offsets = {found for operation in job["operations"] for found in OFFSET.findall(operation["commands"])}
+    if len(offsets) > 1:
+        named = ", ".join(sorted(offsets))
+        raise JobError("another work offset is for a job with one, and this has %s: choose in the job" % named)
+    for operation in job["operations"]:
+        operation["commands"] = OFFSET.sub(offset, operation["commands"])
+
+
+def document(path, target, label=None):
+    """Writes the job of the document at `path` to the file `target`; of several jobs the one with this label."""
+    import FreeCAD
+
+    jobs = [obj for obj in FreeCAD.open(path).Objects if hasattr(obj, "PostProcessorOutputFile")]
+    labels = [found.Label for found in jobs]
+    if label is None and len(jobs) > 1:
+        raise JobError("the document holds %d jobs, and one has to be named: %s" % (len(jobs), ", ".join(labels)))
+    jobs = [found for found in jobs if label in (None, found.Label)]
+    if not jobs:
+        raise JobError("the document holds no job%s" % (label and " %s, but %s" % (label, ", ".join(labels)) or ""))
+    posted = [obj for objects in lists(jobs[0]) for obj in objects]
+    with open(target, "w", encoding="utf-8") as file:
+        json.dump(job(posted, jobs[0].Label), file, ensure_ascii=False)
+
+
+def lists(job):
+    """What FreeCAD hands to a post-processor for this job: one list of objects for each part of the output."""
+    operations = [found for found in job.Operations.Group if _property(found, "Active") is not False]
+    fixtures = [Fixture(name, job) for name in job.Fixtures]
+    if job.OrderOutputBy == "Fixture":
+        parts = [([fixture], operations) for fixture in fixtures]
+    elif job.OrderOutputBy == "Tool":
+        parts = [(fixtures, run) for run in _runs(operations)]
     else:
+        parts = [(fixtures, [operation]) for operation in operations]
+    return [_with_tools(*part) for part in parts]
+
+
+class Fixture:
+    """A work offset as an object with commands: the offset, and up to the clearance height."""
+
+    def __init__(self, name, job):
+        import Path
+
+        clearance = job.Stock.Shape.BoundBox.ZMax + job.SetupSheet.ClearanceHeightOffset.Value
+        self.Name = self.Label = name
+        self.Path = Path.Path([Path.Command(name), Path.Command("G0", {"Z": clearance})])
+
+
+def _runs(operations):
+    """Operations that follow one another with the same tool."""
+    runs, number = [], None
+    for operation in operations:
+        controller = _property(operation, "ToolController")
+        if not runs or controller is not None and number not in (None, controller.ToolNumber):
+            runs.append([])
+        if controller is not None:
+            number = controller.ToolNumber
+        runs[-1].append(operation)
+    return runs
+
+
+def _with_tools(fixtures, operations):
+    """The operations at each fixture, with a tool controller wherever it changes."""
+    objects, at_work = [], None
+    for fixture in fixtures:
+        objects.append(fixture)
+        for operation in operations:
+            controller = _property(operation, "ToolController")
+            if controller not in (None, at_work):
+                objects.append(controller)
+                at_work = controller
+            objects.append(operation)
+    return objects
+
+
+def _parts(obj):
+    """The objects with commands of their own: groups opened, in their order."""
+    if hasattr(obj, "Group"):
+        for child in obj.Group:
+            yield from _parts(child)
+    elif hasattr(obj, "Path"):
         yield obj
 
 
-def _operation(obj):
-    operation = {"label": obj.Label, "commands": obj.Path.toGCode()}
-    controller = _property(obj, "ToolController")
+def _operation(part):
+    operation = {"label": part.Label, "commands": _commands(part)}
+    controller = _property(part, "ToolController")
     if controller is not None:
         operation["tool"] = controller.ToolNumber
-    coolant = COOLANT.get(_property(obj, "CoolantMode"))
+    coolant = COOLANT.get(_property(part, "CoolantMode"))
     if coolant:
         operation["coolant"] = coolant
-    if _property(obj, "Active") is False:
+    if _property(part, "Active") is False:
         operation["active"] = False
     return operation
+
+
+def _commands(part):
+    """The commands of an object, one a line."""
+    path = _placed(part)
+    text = path.toGCode()
+    if text.count("\n") == path.Size and OVERFLOW not in text:
+        return text
+    return "".join(_command(command) + "\n" for command in path.Commands)
+
+
+def _command(command):
+    """A command on one line, with what is no number told as what it is."""
+    text = command.toGCode()
+    if OVERFLOW in text:
+        words = ["%s%r" % word for word in sorted(command.Parameters.items())]
+        text = " ".join([command.Name] + words)
+    return " ".join(text.split("\n"))
+
+
+def _placed(part):
+    """The path where the object's placement puts it."""
+    placement = getattr(part, "Placement", None)
+    if placement is None or placement.isIdentity():
+        return part.Path
+    try:
+        from PathScripts.PathUtils import getPathWithPlacement
+    except ImportError:
+        message = "%s is moved by its Placement, which FreeCAD 0.20 shows and does not post"
+        raise JobError((message + ": set it to zero and move the model, or the work offset") % part.Label) from None
+    return getPathWithPlacement(part)
 
 
 def _tool(controller):
     tool = {"number": controller.ToolNumber, "name": controller.Label}
     bit = getattr(controller, "Tool", None)
-    for key, name in (("diameter", "Diameter"), ("length", "Length")):
+    for name in ("Diameter", "Length"):
         value = getattr(bit, name, None)
         if value is not None:
-            tool[key] = float(getattr(value, "Value", value))
+            tool[name.lower()] = float(getattr(value, "Value", value))
     return tool
 
 
 def _property(obj, name):
-    """A property of the operation, or of the one that a dressup stands on."""
+    """A property of an operation, or of the one that a dressup stands on."""
     while obj is not None and not hasattr(obj, name):
         obj = getattr(obj, "Base", None)
-        if isinstance(obj, (list, tuple)):
-            return None
     return getattr(obj, name, None)

@@ -1,0 +1,119 @@
+"""The post-processor `toolpost` of FreeCAD's CAM workbench: a job in, a proven program out.
+
+FreeCAD calls `export` once for each file of a job. Up to 0.21 it names the file, and the post writes it;
+later it gives "-" and writes what `export` answers, or nothing where that is None.
+"""
+
+import argparse
+import json
+import os
+import shlex
+
+import FreeCAD
+
+import toolpost_editor
+import toolpost_job
+from toolpost_core import Refusal, core, spoken
+
+TOOLTIP = """Writes the program of a job for a machine of Toolpost's library, or one of your own, and proves it:
+a virtual control reads the program back, and one that does not do what the job says is not saved.
+The machine is named in the arguments, such as --machine emco-concept-mill-105"""
+
+
+class _Parser(argparse.ArgumentParser):
+    def error(self, message):
+        raise Refusal("the arguments of the post: " + message, "it knows these:\n" + self.format_help())
+
+
+parser = _Parser(prog="toolpost", usage=argparse.SUPPRESS, add_help=False, allow_abbrev=False)
+parser.add_argument("--machine", metavar="NAME|FILE", required=True, help="name in the library, or a file ending in .toml")
+parser.add_argument("--no-show-editor", action="store_true", help="save without showing the program first")
+parser.add_argument("--report", metavar="FILE", help="save the report of the proof here, as JSON")
+parser.add_argument("--work-offset", metavar="G54", help="work offset in place of the one that the job has")
+parser.add_argument("--tolerance", metavar="MM", type=float, help="largest distance of the tool tip from the path")
+
+TOOLTIP_ARGS = parser.format_help()
+
+
+def export(objectslist, filename, argstring):
+    """Posts these objects to a file, or only answers the program where the file is "-".
+
+    The answer is None where there is no proven program, or the user did not want it; no file is touched
+    then, and the report view says why.
+    """
+    try:
+        return _export(objectslist, filename, argstring)
+    except (Refusal, toolpost_job.JobError, OSError) as refusal:
+        _say(FreeCAD.Console.PrintError, str(refusal))
+    except Exception as mistake:
+        message = "a mistake in the post, please report it: %s: %s" % (type(mistake).__name__, mistake)
+        _say(FreeCAD.Console.PrintError, message)
+    _say(FreeCAD.Console.PrintError, "nothing was saved")
+    return None
+
+
+def _export(objectslist, filename, argstring):
+    try:
+        options = parser.parse_args(shlex.split(argstring or ""))
+    except ValueError as error:
+        raise Refusal("the arguments of the post: %s" % error) from None
+    job = toolpost_job.job(objectslist, _name(objectslist, filename))
+    if options.work_offset:
+        toolpost_job.move(job, options.work_offset)
+    toolpost = core()
+    text, report = toolpost.post(job, options)
+    _tell(job, options, report)
+    if FreeCAD.GuiUp and not options.no_show_editor:
+        edited = toolpost_editor.edit(text, lambda text: toolpost.prove(text, job, options))
+        if edited is None:
+            _say(FreeCAD.Console.PrintMessage, "cancelled, nothing was saved")
+            return None
+        text, report = edited if edited[1] else (text, report)
+    files = {}
+    if options.report:
+        files[options.report] = json.dumps(report, indent=2, ensure_ascii=False) + "\n"
+    if filename != "-":
+        files[filename] = text
+    _save(files)
+    return text
+
+
+def _name(objectslist, filename):
+    """What the program is called: as its file is, or as the job."""
+    if filename != "-":
+        return os.path.splitext(os.path.basename(filename))[0]
+    for obj in objectslist:
+        for group in getattr(obj, "InList", []):
+            for job in [group] + group.InList:
+                if hasattr(job, "PostProcessorOutputFile"):
+                    return job.Label
+    return "job"
+
+
+def _tell(job, options, report):
+    proof = report["proof"]
+    for warning in report["warnings"]:
+        _say(FreeCAD.Console.PrintWarning, spoken(warning))
+    told = (job["name"], options.machine, report["program"]["blocks"], proof["deviations"]["tip_mm"]["value"])
+    _say(FreeCAD.Console.PrintMessage, "%s for %s: %d blocks, proven; the tool tip is off by at most %.5f mm" % told)
+
+
+def _say(say, message):
+    say("toolpost: %s\n" % message)
+
+
+def _save(files):
+    """Writes each file beside its place and then moves all of them there: none is ever half there."""
+    beside = {path: "%s.%d.part" % (path, os.getpid()) for path in files}
+    try:
+        for path, text in files.items():
+            with open(beside[path], "x", encoding="utf-8", newline="") as file:
+                file.write(text)
+                file.flush()
+                os.fsync(file.fileno())
+        for path in files:
+            os.replace(beside[path], path)
+    except OSError as error:
+        for path in filter(os.path.exists, beside.values()):
+            os.remove(path)
+        raise Refusal("%s cannot be saved: %s" % (path, error.strerror)) from None
