@@ -1,10 +1,14 @@
 """A FreeCAD job as one JSON document, which is what Toolpost reads (docs/sources/freecad.md).
 
-`job` takes the objects that FreeCAD hands to a post-processor; `document` does the same for a file,
-within `freecadcmd`. What a command means, and whether it can be done, is not judged here.
+`job` takes the objects that FreeCAD hands to a post-processor. As a program it takes a document:
+
+    TOOLPOST_FCSTD=part.FCStd TOOLPOST_JSON=part.json freecadcmd toolpost_job.py
+
+What a command means, and whether it can be done, is not judged here.
 """
 
 import json
+import os
 import re
 
 COOLANT = {"Flood": "flood", "Mist": "mist"}
@@ -50,20 +54,16 @@ def move(job, offset):
         operation["commands"] = OFFSET.sub(offset, operation["commands"])
 
 
-def document(path, target, label=None):
-    """Writes the job of the document at `path` to the file `target`; of several jobs the one with this label."""
+def document(path):
+    """The job of the document at `path`."""
     import FreeCAD
 
     jobs = [obj for obj in FreeCAD.open(path).Objects if hasattr(obj, "PostProcessorOutputFile")]
-    labels = [found.Label for found in jobs]
-    if label is None and len(jobs) > 1:
-        raise JobError("the document holds %d jobs, and one has to be named: %s" % (len(jobs), ", ".join(labels)))
-    jobs = [found for found in jobs if label in (None, found.Label)]
-    if not jobs:
-        raise JobError("the document holds no job%s" % (label and " %s, but %s" % (label, ", ".join(labels)) or ""))
+    if len(jobs) != 1:
+        labels = ", ".join(found.Label for found in jobs)
+        raise JobError("the document has %s; there must be one" % (jobs and "the jobs %s" % labels or "no job"))
     posted = [obj for objects in lists(jobs[0]) for obj in objects]
-    with open(target, "w", encoding="utf-8") as file:
-        json.dump(job(posted, jobs[0].Label), file, ensure_ascii=False)
+    return job(posted, jobs[0].Label)
 
 
 def lists(job):
@@ -185,3 +185,21 @@ def _property(obj, name):
     while obj is not None and not hasattr(obj, name):
         obj = getattr(obj, "Base", None)
     return getattr(obj, name, None)
+
+
+def main(path, target):
+    """Writes the job of a document to a file; what is wrong is the last line that is printed."""
+    code = 1
+    try:
+        text = json.dumps(document(path), ensure_ascii=False)
+        with open(target, "w", encoding="utf-8") as file:
+            file.write(text)
+        code = 0
+    except (JobError, OSError) as error:
+        print(error, flush=True)
+    # FreeCAD would go on to its console.
+    os._exit(code)
+
+
+if "TOOLPOST_FCSTD" in os.environ:
+    main(os.environ["TOOLPOST_FCSTD"], os.environ["TOOLPOST_JSON"])

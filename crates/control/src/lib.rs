@@ -51,11 +51,13 @@ pub enum Dialect {
     Agie,
     /// Lists of coordinates for wire EDM.
     Points,
+    /// The commands in which FreeCAD keeps a toolpath: a source, which no machine reads.
+    FreeCad,
 }
 
 impl Dialect {
     /// Every dialect with the name that a control file gives as its `reader`.
-    pub const NAMES: [(&'static str, Dialect); 12] = [
+    pub const NAMES: [(&'static str, Dialect); 13] = [
         ("fanuc", Dialect::Fanuc),
         ("haas", Dialect::Haas),
         ("linuxcnc", Dialect::LinuxCnc),
@@ -68,6 +70,7 @@ impl Dialect {
         ("sodick", Dialect::Sodick),
         ("agie", Dialect::Agie),
         ("points", Dialect::Points),
+        ("freecad", Dialect::FreeCad),
     ];
 
     /// The dialect of that name.
@@ -81,7 +84,11 @@ impl Dialect {
     pub fn work_offset_at_reset(self) -> Option<u32> {
         match self {
             Dialect::Sinumerik => Some(53),
-            Dialect::LinuxCnc | Dialect::Grbl | Dialect::Mach3 | Dialect::Haas => Some(54),
+            Dialect::LinuxCnc
+            | Dialect::Grbl
+            | Dialect::Mach3
+            | Dialect::Haas
+            | Dialect::FreeCad => Some(54),
             _ => None,
         }
     }

@@ -8,6 +8,7 @@ mod answer;
 mod args;
 mod drawing;
 mod explain;
+mod fcstd;
 mod files;
 mod machines;
 mod post;

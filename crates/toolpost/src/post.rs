@@ -51,7 +51,8 @@ pub fn run(args: &Post, silent: bool) -> Result<Answer, Stop> {
 
     let progress = Progress::new(4, silent);
     progress.step("reading");
-    let mut toolpath = toolpath::read(source, args.source.strict, &args.source.origin)?;
+    let mut toolpath =
+        toolpath::read(source, args.source.strict, &args.source.origin, Some(&machine))?;
     let mut warnings = std::mem::take(&mut toolpath.warnings);
     progress.step("writing");
     let output = post::write(&toolpath.program, &machine).map_err(|mut findings| {

@@ -15,7 +15,7 @@ pub fn run(args: &Prove, silent: bool) -> Result<Answer, Stop> {
     let machine = toolpath::machine(&args.machine)?;
     let progress = Progress::new(2, silent);
     progress.step("reading");
-    let mut toolpath = toolpath::read(&args.against, false, &args.origin)?;
+    let mut toolpath = toolpath::read(&args.against, false, &args.origin, Some(&machine))?;
     let mut warnings = std::mem::take(&mut toolpath.warnings);
     let text = files::read(&args.program)?;
     progress.step("proving");
@@ -89,10 +89,10 @@ pub fn rows(proof: &Report, machine: &Machine) -> Vec<(&'static str, String)> {
 pub fn failed(proof: &Report, source: &Toolpath, program: &str, consequence: &str) -> Answer {
     let mut lines = vec![("proof", String::from("FAILED")), ("program", consequence.to_owned())];
     if let Some(first) = &proof.first_mismatch {
-        let source_line = source.line(first.source_line);
-        let beside = |file: &str, line: u32, text: &str| format!("{file}:{line}  {}", text.trim());
-        lines.push(("source says", beside(&source.file, first.source_line, &source_line)));
-        lines.push(("program says", beside(program, first.program_line, &first.block)));
+        let (place, text) = source.place(first.source_line);
+        lines.push(("source says", format!("{place}  {}", text.trim())));
+        let block = first.block.trim();
+        lines.push(("program says", format!("{program}:{}  {block}", first.program_line)));
     }
     let data = json!({ "proof": proof });
     Answer::summary(Verdict::Failed, summary::rows(&lines), data).findings(proof.mismatches.clone())

@@ -19,7 +19,7 @@ pub fn run(args: &Show, silent: bool) -> Result<Answer, Stop> {
     };
     let progress = Progress::new(if target.is_some() { 2 } else { 1 }, silent);
     progress.step("reading");
-    let toolpath = toolpath::read(path, args.source.strict, &args.source.origin)?;
+    let toolpath = toolpath::read(path, args.source.strict, &args.source.origin, None)?;
     let shape = Shape::of(&toolpath.program);
     if let Some((target, format)) = target {
         progress.step("drawing");

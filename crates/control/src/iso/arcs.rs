@@ -159,12 +159,12 @@ impl Step<'_, '_, '_> {
         Ok(center)
     }
 
-    /// The word of the centre along the axis of the arc. GRBL drops it (`gcode.c`, step 20), LinuxCNC
-    /// refuses it (found with `rs274`); that it is 0 says nothing anywhere.
+    /// The word of the centre along the axis of the arc. GRBL drops it (`gcode.c`, step 20), as FreeCAD's
+    /// own posts do; LinuxCNC refuses it (found with `rs274`); that it is 0 says nothing anywhere.
     fn pass_outer_center(&mut self, letter: u8) -> Result<(), Fault> {
         let Some(word) = self.block.take(letter) else { return Ok(()) };
         let is_nothing = word.value == 0.0 && self.flavor != Flavor::LinuxCnc;
-        if is_nothing || self.flavor == Flavor::Grbl {
+        if is_nothing || matches!(self.flavor, Flavor::Grbl | Flavor::FreeCad) {
             return Ok(());
         }
         let plane = self.state.plane.name();

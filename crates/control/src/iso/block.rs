@@ -2,6 +2,7 @@
 
 use super::arithmetic;
 use super::expression::{Reader, Target, Value};
+use super::freecad;
 use super::parameters::{Language, Values};
 use super::words::{Dictionary, Flavor, G, Group, LETTERS, M, bit, index};
 use crate::{Settings, decimal};
@@ -180,6 +181,9 @@ impl<'a> Block<'a> {
         let end = match self.text.get(from..).and_then(decimal::parse) {
             Some(number) => {
                 (word.value, word.point) = (number.value, number.point);
+                if dictionary.flavor == Flavor::FreeCad && freecad::is_nothing(number.value) {
+                    return Err(self.nothing(at, from + number.len));
+                }
                 from + number.len
             }
             // Marlin's G28 X: an axis that is named.
@@ -366,8 +370,14 @@ impl<'a> Block<'a> {
 
     /// Reads the comment at `at` and gives the place after it. On GRBL it ends at the first `)`,
     /// whatever stands in it (`protocol_main_loop`).
+    /// One of FreeCAD is a command of its own, and may hold the brackets of a label.
     fn comment(&mut self, at: usize) -> Result<usize, Fault> {
         let rest = self.text.get(at + 1..).unwrap_or_default();
+        if self.dictionary.flavor == Flavor::FreeCad {
+            let text = rest.strip_suffix(b")").unwrap_or(rest);
+            self.comments.push((at + 1, at + 1 + text.len()));
+            return Ok(self.text.len());
+        }
         let nests = self.dictionary.flavor != Flavor::Grbl;
         match rest.iter().position(|&b| b == b')' || nests && b == b'(') {
             Some(n) if rest[n] == b')' => {

@@ -129,6 +129,9 @@ impl Step<'_, '_, '_> {
         if self.flavor.is_fanuc() && self.motion_of_block() == Some(Motion::Thread) {
             return Ok(());
         }
+        if self.flavor == Flavor::FreeCad {
+            return self.feed_of_command();
+        }
         let Some(word) = self.block.take(b'F') else { return Ok(()) };
         let inches = self.inches_of_feed()?;
         if word.value <= 0.0 {

@@ -1,5 +1,5 @@
-//! ISO code: FANUC 30i for milling, Haas, LinuxCNC's RS-274, Mach3, GRBL 1.1, Marlin; and of
-//! wire-EDM machines.
+//! ISO code: FANUC 30i for milling, Haas, LinuxCNC's RS-274, Mach3, GRBL 1.1, Marlin; of wire-EDM
+//! machines; and what FreeCAD's CAM workbench keeps.
 //!
 //! They share the words and the order of execution and differ in tables ([`flavors`]) and in the
 //! rules that each maker states; `docs/controls/iso.md` and its neighbours say which, with sources.
@@ -21,6 +21,7 @@ mod expression;
 mod faults;
 mod flavors;
 mod frames;
+mod freecad;
 mod macros;
 mod modes;
 mod motion;
@@ -39,10 +40,9 @@ mod tools;
 mod wire;
 mod words;
 
+use crate::Settings;
 use crate::compensation::Compensator;
-use crate::{Dialect, Settings};
 use block::Fault;
-use program::{Op, Record};
 use run::Run;
 use source::Source;
 
@@ -53,11 +53,5 @@ pub(crate) fn run(
     compensator: &mut Compensator,
 ) -> Result<(), Fault> {
     let main = Source::program(text);
-    Run::new(settings, &main, compensator).run()?;
-    // Marlin has no word for the end: the program ends with its last line.
-    if settings.dialect == Dialect::Marlin {
-        let lines = text.split(|&b| b == b'\n').count();
-        compensator.take(Record { line: u32::try_from(lines).unwrap_or(u32::MAX), op: Op::End })?;
-    }
-    Ok(())
+    Run::new(settings, &main, compensator).run()
 }

@@ -26,9 +26,12 @@ impl Flavor {
             Flavor::LinuxCnc => Language::Ngc,
             Flavor::Mach3 => Language::Rs274,
             Flavor::Fanuc | Flavor::Haas => Language::MacroB,
-            Flavor::Grbl | Flavor::Marlin | Flavor::FanucWire | Flavor::Sodick | Flavor::Agie => {
-                Language::Plain
-            }
+            Flavor::Grbl
+            | Flavor::Marlin
+            | Flavor::FanucWire
+            | Flavor::Sodick
+            | Flavor::Agie
+            | Flavor::FreeCad => Language::Plain,
         }
     }
 }

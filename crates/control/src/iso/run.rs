@@ -101,8 +101,12 @@ impl<'a, 's> Run<'a, 's> {
     }
 
     /// The text has ended: so has the program, but not one that it has called.
-    fn end_of_text(&self) -> Result<(), Fault> {
+    fn end_of_text(&mut self) -> Result<(), Fault> {
         if self.frames.len() == 1 {
+            if self.dictionary.flavor.ends_with_text() && !self.control.state.ended {
+                let line = self.here.line.max(1);
+                self.compensator.take(Record { line, op: Op::End })?;
+            }
             return Ok(());
         }
         let end = match self.kind() {

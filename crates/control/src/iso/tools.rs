@@ -83,8 +83,8 @@ impl Step<'_, '_, '_> {
             return Err(self.block.at_group(Group::ToolChange, "nc-tool", message));
         };
         self.not_compensated("a tool change")?;
-        self.turn(Spindle::Off);
         self.put_in(number);
+        self.turn(Spindle::Off);
         // The machine may go to a place of its own for the change.
         self.state.position = UNKNOWN;
         Ok(())

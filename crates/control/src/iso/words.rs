@@ -13,6 +13,7 @@ pub(super) enum Flavor {
     FanucWire,
     Sodick,
     Agie,
+    FreeCad,
 }
 
 impl Flavor {
@@ -54,6 +55,11 @@ impl Flavor {
     /// Whether small letters are the same as capital ones.
     pub(super) fn has_small_letters(self) -> bool {
         !self.is_fanuc() && self != Flavor::Marlin
+    }
+
+    /// Whether a program ends with its last line, without a word for it.
+    pub(super) fn ends_with_text(self) -> bool {
+        matches!(self, Flavor::Marlin | Flavor::FreeCad)
     }
 
     /// GRBL and Marlin have no tool changer: T says which tool the operator puts in.

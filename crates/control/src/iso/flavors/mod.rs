@@ -1,6 +1,7 @@
 //! The words of each flavour: which it has, in which modal group, and why it refuses others.
 
 mod fanuc;
+mod freecad;
 mod grbl;
 mod haas;
 mod linuxcnc;
@@ -24,6 +25,7 @@ pub(super) fn dictionary(dialect: Dialect) -> &'static Dictionary {
         Dialect::FanucWire => &wire::FANUC,
         Dialect::Sodick => &wire::SODICK,
         Dialect::Agie => &wire::AGIE,
+        Dialect::FreeCad => &freecad::WORDS,
         _ => &linuxcnc::WORDS,
     }
 }
