@@ -50,7 +50,9 @@ class Command:
         """The program of a job, and its report."""
         with tempfile.TemporaryDirectory(prefix="toolpost-") as folder:
             program = os.path.join(folder, "program.nc")
-            report = self._run("post", _written(folder, job), "--output", program, *_words(options))
+            changed = [word for option in options.option for word in ("--option", option)]
+            words = [_written(folder, job), "--output", program, *changed, *_words(options)]
+            report = self._run("post", *words)
             with open(program, encoding="utf-8", newline="") as file:
                 return file.read(), report
 
@@ -60,13 +62,20 @@ class Command:
             program = os.path.join(folder, "program.nc")
             with open(program, "w", encoding="utf-8", newline="") as file:
                 file.write(text)
-            return self._run("prove", program, "--against", _written(folder, job), *_words(options))
+            words = [program, "--against", _written(folder, job), *_words(options)]
+            return self._run("prove", *words)
 
     def _run(self, *words):
         # Windows would open a console for it.
         flags = getattr(subprocess, "CREATE_NO_WINDOW", 0)
         words = [self.path, "--json", *words]
-        done = subprocess.run(words, capture_output=True, stdin=subprocess.DEVNULL, encoding="utf-8", creationflags=flags)
+        done = subprocess.run(
+            words,
+            capture_output=True,
+            stdin=subprocess.DEVNULL,
+            encoding="utf-8",
+            creationflags=flags,
+        )
         try:
             report = json.loads(done.stdout)
         except ValueError:

@@ -17,7 +17,9 @@ def edit(text, prove):
     What is not proven goes back to the editor, or is given up.
     """
     if len(text) > LARGEST:
-        FreeCAD.Console.PrintMessage("toolpost: the program is too long for the editor, %d characters\n" % len(text))
+        FreeCAD.Console.PrintMessage(
+            "toolpost: the program is too long for the editor, %d characters\n" % len(text)
+        )
         return text, None
     ending = "\r\n" if "\r\n" in text else "\n"
     original = shown = text.replace("\r\n", "\n")
@@ -73,7 +75,10 @@ def _difference(before, after, most=20):
         tail += 1
     old, new = before[same : len(before) - tail], after[same : len(after) - tail]
     if max(len(old), len(new)) > 2000:
-        return ["edited: lines %d to %d, %d in place of %d" % (same + 1, same + len(new), len(new), len(old))]
+        return [
+            "edited: lines %d to %d, %d in place of %d"
+            % (same + 1, same + len(new), len(new), len(old))
+        ]
     changes = [line for line in difflib.ndiff(old, new) if line[0] in "+-"]
     more = ["... and %d lines more" % (len(changes) - most)] if len(changes) > most else []
     return ["edited: " + line for line in changes[:most]] + more

@@ -46,10 +46,14 @@ def move(job, offset):
     """Puts a job at another work offset than the one that it has."""
     if not OFFSET.fullmatch(offset):
         raise JobError("%s is no work offset: one of G54 to G59, G59.1 to G59.9" % offset)
-    offsets = {found for operation in job["operations"] for found in OFFSET.findall(operation["commands"])}
+    offsets = {
+        found for operation in job["operations"] for found in OFFSET.findall(operation["commands"])
+    }
     if len(offsets) > 1:
         named = ", ".join(sorted(offsets))
-        raise JobError("another work offset is for a job with one, and this has %s: choose in the job" % named)
+        raise JobError(
+            "another work offset is for a job with one, and this has %s: choose in the job" % named
+        )
     for operation in job["operations"]:
         operation["commands"] = OFFSET.sub(offset, operation["commands"])
 
@@ -61,14 +65,18 @@ def document(path):
     jobs = [obj for obj in FreeCAD.open(path).Objects if hasattr(obj, "PostProcessorOutputFile")]
     if len(jobs) != 1:
         labels = ", ".join(found.Label for found in jobs)
-        raise JobError("the document has %s; there must be one" % (jobs and "the jobs %s" % labels or "no job"))
+        raise JobError(
+            "the document has %s; there must be one" % (jobs and "the jobs %s" % labels or "no job")
+        )
     posted = [obj for objects in lists(jobs[0]) for obj in objects]
     return job(posted, jobs[0].Label)
 
 
 def lists(job):
     """What FreeCAD hands to a post-processor for this job: one list of objects for each part of the output."""
-    operations = [found for found in job.Operations.Group if _property(found, "Active") is not False]
+    operations = [
+        found for found in job.Operations.Group if _property(found, "Active") is not False
+    ]
     fixtures = [Fixture(name, job) for name in job.Fixtures]
     if job.OrderOutputBy == "Fixture":
         parts = [([fixture], operations) for fixture in fixtures]
@@ -152,7 +160,7 @@ def _command(command):
     """A command on one line, with what is no number told as what it is."""
     text = command.toGCode()
     if OVERFLOW in text:
-        words = ["%s%r" % word for word in sorted(command.Parameters.items())]
+        words = ["%s%.6f" % word for word in sorted(command.Parameters.items())]
         text = " ".join([command.Name] + words)
     return " ".join(text.split("\n"))
 
@@ -166,7 +174,9 @@ def _placed(part):
         from PathScripts.PathUtils import getPathWithPlacement
     except ImportError:
         message = "%s is moved by its Placement, which FreeCAD 0.20 shows and does not post"
-        raise JobError((message + ": set it to zero and move the model, or the work offset") % part.Label) from None
+        raise JobError(
+            (message + ": set it to zero and move the model, or the work offset") % part.Label
+        ) from None
     return getPathWithPlacement(part)
 
 
@@ -196,7 +206,8 @@ def main(path, target):
             file.write(text)
         code = 0
     except (JobError, OSError) as error:
-        print(error, flush=True)
+        # FreeCAD has not ended the line of its progress.
+        print("\n%s" % error, flush=True)
     # FreeCAD would go on to its console.
     os._exit(code)
 

@@ -22,15 +22,43 @@ The machine is named in the arguments, such as --machine emco-concept-mill-105""
 
 class _Parser(argparse.ArgumentParser):
     def error(self, message):
-        raise Refusal("the arguments of the post: " + message, "it knows these:\n" + self.format_help())
+        raise Refusal(
+            "the arguments of the post: " + message, "it knows these:\n" + self.format_help()
+        )
 
 
 parser = _Parser(prog="toolpost", usage=argparse.SUPPRESS, add_help=False, allow_abbrev=False)
-parser.add_argument("--machine", metavar="NAME|FILE", required=True, help="name in the library, or a file ending in .toml")
-parser.add_argument("--no-show-editor", action="store_true", help="save without showing the program first")
-parser.add_argument("--report", metavar="FILE", help="save the report of the proof here, as JSON")
-parser.add_argument("--work-offset", metavar="G54", help="work offset in place of the one that the job has")
-parser.add_argument("--tolerance", metavar="MM", type=float, help="largest distance of the tool tip from the path")
+for flag, settings in {
+    "--machine": {
+        "metavar": "NAME|FILE",
+        "required": True,
+        "help": "name in the library, or a file ending in .toml",
+    },
+    "--option": {
+        "metavar": "NAME=VALUE",
+        "action": "append",
+        "default": [],
+        "help": "another value for an option of the machine; may be given several times",
+    },
+    "--work-offset": {
+        "metavar": "G54",
+        "help": "work offset in place of the one that the job has",
+    },
+    "--tolerance": {
+        "metavar": "MM",
+        "type": float,
+        "help": "largest distance of the tool tip from the path",
+    },
+    "--report": {
+        "metavar": "FILE",
+        "help": "save the report of the proof here, as JSON",
+    },
+    "--no-show-editor": {
+        "action": "store_true",
+        "help": "save without showing the program first",
+    },
+}.items():
+    parser.add_argument(flag, **settings)
 
 TOOLTIP_ARGS = parser.format_help()
 
@@ -46,7 +74,10 @@ def export(objectslist, filename, argstring):
     except (Refusal, toolpost_job.JobError, OSError) as refusal:
         _say(FreeCAD.Console.PrintError, str(refusal))
     except Exception as mistake:
-        message = "a mistake in the post, please report it: %s: %s" % (type(mistake).__name__, mistake)
+        message = "a mistake in the post, please report it: %s: %s" % (
+            type(mistake).__name__,
+            mistake,
+        )
         _say(FreeCAD.Console.PrintError, message)
     _say(FreeCAD.Console.PrintError, "nothing was saved")
     return None
@@ -94,8 +125,16 @@ def _tell(job, options, report):
     proof = report["proof"]
     for warning in report["warnings"]:
         _say(FreeCAD.Console.PrintWarning, spoken(warning))
-    told = (job["name"], options.machine, report["program"]["blocks"], proof["deviations"]["tip_mm"]["value"])
-    _say(FreeCAD.Console.PrintMessage, "%s for %s: %d blocks, proven; the tool tip is off by at most %.5f mm" % told)
+    told = (
+        job["name"],
+        options.machine,
+        report["program"]["blocks"],
+        proof["deviations"]["tip_mm"]["value"],
+    )
+    _say(
+        FreeCAD.Console.PrintMessage,
+        "%s for %s: %d blocks, proven; the tool tip is off by at most %.5f mm" % told,
+    )
 
 
 def _say(say, message):

@@ -11,16 +11,7 @@ import sys
 
 import FreeCAD
 import Part
-import Path
-from FreeCAD import Vector
-
-HERE = os.path.dirname(os.path.abspath(__file__))
-sys.path.insert(0, os.path.dirname(HERE))
-
-import toolpost_job
-
 import PathScripts.PathAdaptive as PathAdaptive
-import PathScripts.PathCustom as PathCustom
 import PathScripts.PathDressupHoldingTags as PathDressupHoldingTags
 import PathScripts.PathDressupRampEntry as PathDressupRampEntry
 import PathScripts.PathDrilling as PathDrilling
@@ -31,87 +22,22 @@ import PathScripts.PathMillFace as PathMillFace
 import PathScripts.PathPocketShape as PathPocketShape
 import PathScripts.PathPost as PathPost
 import PathScripts.PathProfile as PathProfile
-import PathScripts.PathToolBit as PathToolBit
-import PathScripts.PathToolController as PathToolController
+from FreeCAD import Vector
 from PathScripts.post import linuxcnc_post
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+sys.path.insert(0, os.path.dirname(sys.path[0]))
+
+import toolpost_job
+from work import LARGE_HOLE, POCKET_FLOOR, SMALL_HOLES, TOP, Work, run
 
 FOLDER = os.environ["TOOLPOST_JOBS"]
 
-# Faces of `block`, in the order in which FreeCAD numbers them.
-SMALL_HOLES = ["Face11", "Face12", "Face13", "Face14"]
-LARGE_HOLE = ["Face15"]
-POCKET_FLOOR = ["Face16"]
-TOP = ["Face3"]
 
-
-def block(document):
-    """100 x 80 x 20 mm with a pocket 40 x 30 x 8, four holes of 5 mm and one of 20 mm through."""
-    solid = Part.makeBox(100, 80, 20)
-    solid = solid.cut(Part.makeBox(40, 30, 8, Vector(10, 10, 12)))
-    for x in (70, 90):
-        for y in (15, 35):
-            solid = solid.cut(Part.makeCylinder(2.5, 20, Vector(x, y, 0)))
-    solid = solid.cut(Part.makeCylinder(10, 20, Vector(75, 60, 0)))
-    part = document.addObject("Part::Feature", "Block")
-    part.Shape = solid
-    document.recompute()
-    return part
-
-
-class Bench:
-    """One document with the block on it, a job, and its tools."""
-
-    def __init__(self, name):
-        self.name = name
-        self.document = FreeCAD.newDocument(name)
-        self.job = PathJob.Create("Job", [block(self.document)])
-        self.model = self.job.Model.Group[0]
-        self.mill = self.job.Tools.Group[0]
-        self.mill.Label = "Mill 5"
-        self.settle(self.mill, 2000, 1, 200, 100)
-
-    @staticmethod
-    def settle(controller, speed, number, horizontal, vertical):
-        """Spindle speed in rpm, feeds in mm/min."""
-        controller.ToolNumber = number
-        controller.SpindleSpeed = speed
-        controller.HorizFeed = "%s mm/min" % horizontal
-        controller.VertFeed = "%s mm/min" % vertical
-
-    def tool(self, label, shape, diameter, number, speed=3000, horizontal=300, vertical=90):
-        bit = PathToolBit.Factory.Create(label, os.path.join(FreeCAD.getHomePath(), "Mod/Path/Tools/Shape", shape))
-        bit.Diameter = diameter
-        controller = PathToolController.Create(label, bit, number)
-        self.settle(controller, speed, number, horizontal, vertical)
-        self.job.Proxy.addToolController(controller)
-        return controller
-
-    def operation(self, module, label, faces=None, tool=None, **properties):
-        # Without a window FreeCAD cannot ask which tool is meant, and fails where there are several.
-        tools = self.job.Tools.Group
-        self.job.Tools.Group = [tool or self.mill]
-        operation = module.Create(label)
-        self.job.Tools.Group = tools
-        operation.Label = label
-        operation.ToolController = tool or self.mill
-        if faces is not None:
-            operation.Base = [(self.model, faces)]
-        for name, value in properties.items():
-            operation.setExpression(name, None)
-            setattr(operation, name, value)
-        self.document.recompute()
-        return operation
-
-    def objects(self):
-        """What FreeCAD hands to a post-processor, one list for each file."""
-        self.document.recompute()
-        return PathPost.CommandPathPost.buildPostList(None, self.job)
-
-    def write(self):
-        for index, objects in enumerate(self.objects()):
-            name = self.name + ("-%d" % (index + 1) if self.job.SplitOutput else "")
-            save(name, objects)
-        FreeCAD.closeDocument(self.document.Name)
+def write(work):
+    for index, objects in enumerate(work.objects(), 1):
+        save(work.name + ("-%d" % index if work.job.SplitOutput else ""), objects)
+    work.close()
 
 
 def save(name, objects):
@@ -119,89 +45,103 @@ def save(name, objects):
     job = toolpost_job.job(objects, name)
     with open(path + ".json", "w", encoding="utf-8") as file:
         json.dump(job, file, ensure_ascii=False, indent=1)
-    linuxcnc_post.export(objects, path + ".ngc", "--no-show-editor --no-header --precision 5")
+    linuxcnc_post.export(objects, path + ".ngc", "--no-show-editor --no-header")
     moves = sum(operation["commands"].count("\n") for operation in job["operations"])
     print("%s: %d operations, %d commands" % (name, len(job["operations"]), moves))
 
 
 def single(name, module, **properties):
-    bench = Bench(name)
-    bench.operation(module, name, **properties)
-    bench.write()
+    work = Work(name)
+    work.operation(module, name, **properties)
+    write(work)
 
 
 def drilling(name, **properties):
-    bench = Bench(name)
-    drill = bench.tool("Drill 5", "drill.fcstd", 5, 2)
-    bench.operation(PathDrilling, name, SMALL_HOLES, drill, **properties)
-    bench.write()
+    work = Work(name)
+    drill = work.tool("Drill 5", "drill.fcstd", 5, 2)
+    work.operation(PathDrilling, name, SMALL_HOLES, drill, **properties)
+    write(work)
 
 
 def engraving():
-    bench = Bench("engrave")
-    wire = bench.document.addObject("Part::Feature", "Wire")
+    work = Work("engrave")
+    wire = work.document.addObject("Part::Feature", "Wire")
     line = Part.makePolygon([Vector(20, 50, 20), Vector(40, 50, 20), Vector(40, 70, 20)])
     arc = Part.Arc(Vector(40, 70, 20), Vector(30, 75, 20), Vector(20, 70, 20)).toShape()
     wire.Shape = Part.Wire(line.Edges + [arc])
-    bench.job.Model.addObject(wire)
-    bench.operation(PathEngrave, "engrave", BaseShapes=[wire], StartDepth=20, FinalDepth=19.5)
-    bench.write()
+    work.job.Model.addObject(wire)
+    work.operation(PathEngrave, "engrave", BaseShapes=[wire], StartDepth=20, FinalDepth=19.5)
+    write(work)
 
 
 def tags():
-    bench = Bench("tags")
-    profile = bench.operation(PathProfile, "profile")
+    work = Work("tags")
+    profile = work.operation(PathProfile, "profile")
     dressup = PathDressupHoldingTags.Create(profile, "tags")
     # In the window the dressup takes the place of its base.
-    bench.job.Operations.Group = [dressup]
-    bench.write()
+    work.job.Operations.Group = [dressup]
+    write(work)
 
 
 def ramps():
-    bench = Bench("ramps")
-    profile = bench.operation(PathProfile, "profile")
-    ramp = bench.document.addObject("Path::FeaturePython", "RampEntryDressup")
+    work = Work("ramps")
+    profile = work.operation(PathProfile, "profile")
+    ramp = work.document.addObject("Path::FeaturePython", "RampEntryDressup")
     PathDressupRampEntry.ObjectDressup(ramp)
     ramp.Base = profile
-    bench.job.Proxy.addOperation(ramp, profile, True)
+    work.job.Proxy.addOperation(ramp, profile, True)
     ramp.Proxy.setup(ramp)
-    bench.write()
+    write(work)
 
 
 def several(name, order, split):
     """Two fixtures, three tools, coolant, an inactive operation and labels beyond ASCII."""
-    bench = Bench(name)
-    bench.job.Fixtures = ["G54", "G55"]
-    bench.job.OrderOutputBy = order
-    bench.job.SplitOutput = split
-    drill = bench.tool("Bohrer ø5", "drill.fcstd", 5, 2)
-    large = bench.tool("Mill 8", "endmill.fcstd", 8, 3)
-    bench.operation(PathMillFace, "Plan", TOP, large, CoolantMode="Flood")
-    bench.operation(PathPocketShape, "Tasche größer", POCKET_FLOOR, CoolantMode="Mist")
-    bench.operation(PathDrilling, "Bohren", SMALL_HOLES, drill, PeckEnabled=True)
-    bench.operation(PathProfile, "not wanted", Active=False)
-    bench.operation(PathHelix, "Helix", LARGE_HOLE, large)
-    bench.write()
+    work = Work(name)
+    work.job.Fixtures = ["G54", "G55"]
+    work.job.OrderOutputBy = order
+    work.job.SplitOutput = split
+    drill = work.tool("Bohrer ø5", "drill.fcstd", 5, 2)
+    large = work.tool("Mill 8", "endmill.fcstd", 8, 3)
+    work.operation(PathMillFace, "Plan", TOP, large, CoolantMode="Flood")
+    work.operation(PathPocketShape, "Tasche größer", POCKET_FLOOR, CoolantMode="Flood")
+    work.operation(PathDrilling, "Bohren", SMALL_HOLES, drill, PeckEnabled=True)
+    work.operation(PathProfile, "not wanted", Active=False)
+    work.operation(PathHelix, "Helix", LARGE_HOLE, large)
+    write(work)
+
+
+def patterns():
+    """The ways in which this FreeCAD clears a pocket."""
+    work = Work("patterns")
+    found = work.operation(PathPocketShape, "pocket", POCKET_FLOOR)
+    found = found.getEnumerationsOfProperty("OffsetPattern")
+    work.close()
+    return found
 
 
 def shipped():
-    """The jobs of FreeCAD's own package; where a document holds no job, one is made on its solid."""
+    """The jobs of FreeCAD's own package; a document that holds only a solid gets one."""
     tests = os.path.join(FreeCAD.getHomePath(), "Mod/Path/PathTests")
     for file in ("boxtest.fcstd", "Drilling_1.FCStd", "test_holes00.fcstd"):
         document = FreeCAD.open(os.path.join(tests, file))
         name = os.path.splitext(file)[0]
         jobs = [obj for obj in document.Objects if hasattr(obj, "PostProcessorOutputFile")]
         if not jobs:
-            solid = [obj for obj in document.Objects if getattr(obj, "Shape", None) and obj.Shape.Solids][-1]
-            job = PathJob.Create("Job", [solid])
-            Bench.settle(job.Tools.Group[0], 1500, 1, 150, 60)
+            shapes = [obj for obj in document.Objects if getattr(obj, "Shape", None)]
+            job = PathJob.Create("Job", [[obj for obj in shapes if obj.Shape.Solids][-1]])
+            Work.settle(job.Tools.Group[0], 1500, 1, 150, 60)
             PathDrilling.Create("Drilling")
             PathProfile.Create("Profile")
+            document.recompute()
             jobs = [job]
-        document.recompute()
-        for number, job in enumerate(jobs, 1):
-            for objects in PathPost.CommandPathPost.buildPostList(None, job):
-                save(name if len(jobs) == 1 else "%s-%d" % (name, number), objects)
+        for job in jobs:
+            called = name if len(jobs) == 1 else "%s-%s" % (name, job.Name)
+            save(called, PathPost.CommandPathPost.buildPostList(None, job)[0])
+            if not job.Tools.Group[0].HorizFeed:
+                # This one comes without feeds and speeds.
+                Work.settle(job.Tools.Group[0], 1500, 1, 150, 60)
+                document.recompute()
+                save(called + "-fed", PathPost.CommandPathPost.buildPostList(None, job)[0])
         FreeCAD.closeDocument(document.Name)
 
 
@@ -211,12 +151,23 @@ def main():
     single("profile-inside", PathProfile, faces=POCKET_FLOOR, Side="Inside", Direction="CCW")
     single("face", PathMillFace, faces=TOP)
     single("helix", PathHelix, faces=LARGE_HOLE, StepDown=3)
-    single("adaptive", PathAdaptive, faces=POCKET_FLOOR, FinalDepth=12, StartDepth=20, UseHelixArcs=True)
-    probe = Bench("patterns")
-    patterns = probe.operation(PathPocketShape, "p", POCKET_FLOOR).getEnumerationsOfProperty("OffsetPattern")
-    FreeCAD.closeDocument(probe.document.Name)
-    for pattern in patterns:
-        single("pocket-" + pattern, PathPocketShape, faces=POCKET_FLOOR, OffsetPattern=pattern, StepOver=50)
+    single(
+        "adaptive",
+        PathAdaptive,
+        faces=POCKET_FLOOR,
+        FinalDepth=12,
+        StartDepth=20,
+        UseHelixArcs=True,
+    )
+    single("mist", PathProfile, CoolantMode="Mist")
+    for pattern in patterns():
+        single(
+            "pocket-" + pattern,
+            PathPocketShape,
+            faces=POCKET_FLOOR,
+            OffsetPattern=pattern,
+            StepOver=50,
+        )
     drilling("drill")
     drilling("drill-dwell", DwellEnabled=True, DwellTime=0.5)
     drilling("drill-peck", PeckEnabled=True, PeckDepth=3)
@@ -230,10 +181,5 @@ def main():
     shipped()
 
 
-try:
-    main()
-except Exception:
-    import traceback
-
-    traceback.print_exc()
-    os._exit(1)
+if __name__ == "build_jobs":
+    run(main)

@@ -1,0 +1,60 @@
+"""FreeCAD without a window, run once for all tests that need what it makes."""
+
+import json
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+HERE = Path(__file__).parent
+
+
+def freecad(script, home, **environment):
+    """Run a script inside FreeCAD and answer what it printed; its settings are in a folder of their own."""
+    if shutil.which("freecadcmd") is None:
+        pytest.skip("FreeCAD (Debian package freecad) is not installed")
+    environment = {name: str(value) for name, value in environment.items()}
+    done = subprocess.run(
+        ["freecadcmd", str(HERE / script)],
+        env={**os.environ, "FREECAD_USER_HOME": str(home), **environment},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        encoding="utf-8",
+        errors="replace",
+        timeout=300,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout
+    return done.stdout
+
+
+def toolpost(*words):
+    """Run the command and answer what it says."""
+    words = ["toolpost", "--json", *map(str, words)]
+    done = subprocess.run(words, capture_output=True, encoding="utf-8", check=False)
+    return json.loads(done.stdout)
+
+
+@pytest.fixture(scope="session")
+def jobs(tmp_path_factory):
+    """The folder with the jobs, and with FreeCAD's own programs beside them."""
+    folder = tmp_path_factory.mktemp("jobs")
+    freecad("build_jobs.py", tmp_path_factory.mktemp("home"), TOOLPOST_JOBS=folder)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def cases(tmp_path_factory):
+    """What the post does with jobs right and wrong: for each case its answer, file, and what is said."""
+    folder = tmp_path_factory.mktemp("cases")
+    freecad("posting.py", tmp_path_factory.mktemp("home"), TOOLPOST_CASES=folder)
+    found = json.loads((folder / "cases.json").read_text())
+    for name, case in found["cases"].items():
+        case["said"] = (folder / f"{name}.said").read_text()
+        case["saved"] = Path(case["file"]).read_text() if Path(case["file"]).is_file() else None
+    left = [path.name for path in folder.iterdir() if ".part" in path.name]
+    assert not left, "half-written files"
+    return found
