@@ -3,7 +3,7 @@
 def register():
     import os
 
-    import toolpost_post
+    import toolpost_job
 
     try:
         import Path.Preferences as preferences
@@ -11,7 +11,7 @@ def register():
         import PathScripts.PathPreferences as preferences
     if hasattr(preferences, "addAddonPostPath"):
         return
-    folder = os.path.dirname(toolpost_post.__file__)
+    folder = os.path.dirname(toolpost_job.__file__)
     searched = preferences.searchPathsPost
     preferences.searchPathsPost = lambda: searched() + [folder]
 

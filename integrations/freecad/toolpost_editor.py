@@ -3,82 +3,77 @@
 import difflib
 
 import FreeCAD
-
 from toolpost_core import Refusal
 
-# Beyond it Qt's editor takes minutes to open.
+# Characters: beyond it Qt's editor takes minutes to open.
 LARGEST = 2_000_000
 
 
-def edit(text, prove):
-    """Shows the program. Answers it as edited with the report of `prove`, which is none where nothing
-    was changed; or None where the user does not want it.
+def edit(text, report, prove):
+    """Show a program; answer it as it is to be saved, with its report, or None where it is not.
 
-    What is not proven goes back to the editor, or is given up.
+    What was changed goes through `prove`, which answers a report. What is not proven goes back to the
+    editor, or is given up.
     """
     if len(text) > LARGEST:
-        FreeCAD.Console.PrintMessage(
-            "toolpost: the program is too long for the editor, %d characters\n" % len(text)
-        )
-        return text, None
+        _say(f"the program is too long for the editor, {len(text)} characters")
+        return text, report
     ending = "\r\n" if "\r\n" in text else "\n"
-    original = shown = text.replace("\r\n", "\n")
+    original = edited = text.replace("\r\n", "\n")
     while True:
-        shown = _shown(shown)
-        if shown is None:
+        edited = _shown(edited)
+        if edited is None:
             return None
-        if shown == original:
-            return text, None
-        edited = shown.replace("\n", ending)
-        for line in _difference(original, shown):
-            FreeCAD.Console.PrintMessage("toolpost: %s\n" % line)
+        if edited == original:
+            return text, report
+        for line in _difference(original.splitlines(), edited.splitlines()):
+            _say(line)
+        changed = edited.replace("\n", ending)
         try:
-            report = prove(edited)
+            return changed, prove(changed)
         except Refusal as refusal:
-            FreeCAD.Console.PrintError("toolpost: %s\n" % refusal)
-            if not _again(str(refusal)):
+            FreeCAD.Console.PrintError(f"toolpost: {refusal}\n")
+            if not _again(refusal):
                 return None
-            continue
-        FreeCAD.Console.PrintMessage("toolpost: the edited program is proven\n")
-        return edited, report
 
 
 def _shown(text):
-    """The text as the user leaves it, or None."""
+    """Answer the text as the user leaves it, or None."""
     try:
         from Path.Post.Utils import GCodeEditorDialog
     except ImportError:
         from PathScripts.PostUtils import GCodeEditorDialog
     dialog = GCodeEditorDialog()
+    dialog.setWindowTitle("Toolpost")
     dialog.editor.setPlainText(text)
     return dialog.editor.toPlainText() if dialog.exec_() else None
 
 
-def _again(message):
-    """Whether the user wants to go on editing."""
+def _again(refusal):
+    """Answer whether the user wants to go on editing."""
     from PySide import QtGui
 
     box = QtGui.QMessageBox
-    text = "The edited program is not proven, and is not saved as it is.\n\n" + message
-    asked = box.warning(None, "Toolpost", text, box.Retry | box.Cancel, box.Retry)
-    return asked == box.Retry
+    text = f"The edited program is not proven, and is not saved as it is.\n\n{refusal}"
+    return box.warning(None, "Toolpost", text, box.Retry | box.Cancel, box.Retry) == box.Retry
 
 
 def _difference(before, after, most=20):
-    """What was changed, in lines for the report view."""
-    before, after = before.splitlines(), after.splitlines()
+    """Answer what was changed between two lists of lines, as lines for the report view."""
     same = 0
     while same < min(len(before), len(after)) and before[same] == after[same]:
         same += 1
+    rest = min(len(before), len(after)) - same
     tail = 0
-    while tail < min(len(before), len(after)) - same and before[-1 - tail] == after[-1 - tail]:
+    while tail < rest and before[-1 - tail] == after[-1 - tail]:
         tail += 1
-    old, new = before[same : len(before) - tail], after[same : len(after) - tail]
-    if max(len(old), len(new)) > 2000:
-        return [
-            "edited: lines %d to %d, %d in place of %d"
-            % (same + 1, same + len(new), len(new), len(old))
-        ]
-    changes = [line for line in difflib.ndiff(old, new) if line[0] in "+-"]
-    more = ["... and %d lines more" % (len(changes) - most)] if len(changes) > most else []
-    return ["edited: " + line for line in changes[:most]] + more
+    before, after = before[same : len(before) - tail], after[same : len(after) - tail]
+    if len(before) * len(after) > 1_000_000:
+        return [f"edited: {len(after)} lines from line {same + 1} on, in place of {len(before)}"]
+    changes = [f"edited: {line}" for line in difflib.ndiff(before, after) if line[0] in "+-"]
+    more = [f"edited: and {len(changes) - most} lines more"] if len(changes) > most else []
+    return changes[:most] + more
+
+
+def _say(text):
+    FreeCAD.Console.PrintMessage(f"toolpost: {text}\n")

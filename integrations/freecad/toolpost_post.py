@@ -1,7 +1,7 @@
 """The post-processor `toolpost` of FreeCAD's CAM workbench: a job in, a proven program out.
 
 FreeCAD calls `export` once for each file of a job. Up to 0.21 it names the file, and the post writes it;
-later it gives "-" and writes what `export` answers, or nothing where that is None.
+later it gives "-", and writes what `export` answers, or nothing where that is None.
 """
 
 import argparse
@@ -10,7 +10,6 @@ import os
 import shlex
 
 import FreeCAD
-
 import toolpost_editor
 import toolpost_job
 from toolpost_core import Refusal, core, spoken
@@ -22,64 +21,34 @@ The machine is named in the arguments, such as --machine emco-concept-mill-105""
 
 class _Parser(argparse.ArgumentParser):
     def error(self, message):
-        raise Refusal(
-            "the arguments of the post: " + message, "it knows these:\n" + self.format_help()
-        )
+        raise Refusal(f"the arguments of the post: {message}; it knows these\n{self.format_help()}")
 
 
 parser = _Parser(prog="toolpost", usage=argparse.SUPPRESS, add_help=False, allow_abbrev=False)
-for flag, settings in {
-    "--machine": {
-        "metavar": "NAME|FILE",
-        "required": True,
-        "help": "name in the library, or a file ending in .toml",
-    },
-    "--option": {
-        "metavar": "NAME=VALUE",
-        "action": "append",
-        "default": [],
-        "help": "another value for an option of the machine; may be given several times",
-    },
-    "--work-offset": {
-        "metavar": "G54",
-        "help": "work offset in place of the one that the job has",
-    },
-    "--tolerance": {
-        "metavar": "MM",
-        "type": float,
-        "help": "largest distance of the tool tip from the path",
-    },
-    "--report": {
-        "metavar": "FILE",
-        "help": "save the report of the proof here, as JSON",
-    },
-    "--no-show-editor": {
-        "action": "store_true",
-        "help": "save without showing the program first",
-    },
-}.items():
-    parser.add_argument(flag, **settings)
+argument = parser.add_argument
+argument("--machine", metavar="NAME|FILE", required=True, help="name in the library, or a .toml file")
+argument("--option", metavar="NAME=VALUE", action="append", default=[], help="another value for one of the options of the machine; may be given several times")
+argument("--work-offset", metavar="G54", help="work offset in place of the one that the job has")
+argument("--tolerance", metavar="MM", type=float, help="largest distance of the tool tip from the path")
+argument("--report", metavar="FILE", help="save the report of the proof here, as JSON")
+argument("--no-show-editor", action="store_true", help="save without showing the program first")
 
 TOOLTIP_ARGS = parser.format_help()
 
 
 def export(objectslist, filename, argstring):
-    """Posts these objects to a file, or only answers the program where the file is "-".
+    """Post these objects to a file; where that is "-", only answer the program.
 
-    The answer is None where there is no proven program, or the user did not want it; no file is touched
-    then, and the report view says why.
+    The answer is None where there is no proven program, or where the user did not want it: no file is
+    touched then, and the report view says why.
     """
     try:
         return _export(objectslist, filename, argstring)
-    except (Refusal, toolpost_job.JobError, OSError) as refusal:
-        _say(FreeCAD.Console.PrintError, str(refusal))
+    except (Refusal, toolpost_job.JobError) as refusal:
+        _error(refusal)
     except Exception as mistake:
-        message = "a mistake in the post, please report it: %s: %s" % (
-            type(mistake).__name__,
-            mistake,
-        )
-        _say(FreeCAD.Console.PrintError, message)
-    _say(FreeCAD.Console.PrintError, "nothing was saved")
+        _error(f"a mistake in the post, please report it: {type(mistake).__name__}: {mistake}")
+    _error("nothing was saved")
     return None
 
 
@@ -87,7 +56,7 @@ def _export(objectslist, filename, argstring):
     try:
         options = parser.parse_args(shlex.split(argstring or ""))
     except ValueError as error:
-        raise Refusal("the arguments of the post: %s" % error) from None
+        raise Refusal(f"the arguments of the post: {error}") from None
     job = toolpost_job.job(objectslist, _name(objectslist, filename))
     if options.work_offset:
         toolpost_job.move(job, options.work_offset)
@@ -95,11 +64,13 @@ def _export(objectslist, filename, argstring):
     text, report = toolpost.post(job, options)
     _tell(job, options, report)
     if FreeCAD.GuiUp and not options.no_show_editor:
-        edited = toolpost_editor.edit(text, lambda text: toolpost.prove(text, job, options))
+        edited = toolpost_editor.edit(
+            text, report, lambda text: {**report, **toolpost.prove(text, job, options)}
+        )
         if edited is None:
-            _say(FreeCAD.Console.PrintMessage, "cancelled, nothing was saved")
+            _message("cancelled, nothing was saved")
             return None
-        text, report = edited if edited[1] else (text, report)
+        text, report = edited
     files = {}
     if options.report:
         files[options.report] = json.dumps(report, indent=2, ensure_ascii=False) + "\n"
@@ -110,40 +81,36 @@ def _export(objectslist, filename, argstring):
 
 
 def _name(objectslist, filename):
-    """What the program is called: as its file is, or as the job."""
+    """Answer what the program is called: as its file is, or as the job."""
     if filename != "-":
         return os.path.splitext(os.path.basename(filename))[0]
     for obj in objectslist:
         for group in getattr(obj, "InList", []):
-            for job in [group] + group.InList:
+            for job in [group, *group.InList]:
                 if hasattr(job, "PostProcessorOutputFile"):
                     return job.Label
     return "job"
 
 
 def _tell(job, options, report):
-    proof = report["proof"]
     for warning in report["warnings"]:
-        _say(FreeCAD.Console.PrintWarning, spoken(warning))
-    told = (
-        job["name"],
-        options.machine,
-        report["program"]["blocks"],
-        proof["deviations"]["tip_mm"]["value"],
-    )
-    _say(
-        FreeCAD.Console.PrintMessage,
-        "%s for %s: %d blocks, proven; the tool tip is off by at most %.5f mm" % told,
-    )
+        FreeCAD.Console.PrintWarning(f"toolpost: {spoken(warning)}\n")
+    blocks = report["program"]["blocks"]
+    off = report["proof"]["deviations"]["tip_mm"]["value"]
+    _message(f"{job['name']} for {options.machine}: {blocks} blocks, proven; the tool tip is off by at most {off:.5f} mm")
 
 
-def _say(say, message):
-    say("toolpost: %s\n" % message)
+def _message(text):
+    FreeCAD.Console.PrintMessage(f"toolpost: {text}\n")
+
+
+def _error(text):
+    FreeCAD.Console.PrintError(f"toolpost: {text}\n")
 
 
 def _save(files):
-    """Writes each file beside its place and then moves all of them there: none is ever half there."""
-    beside = {path: "%s.%d.part" % (path, os.getpid()) for path in files}
+    """Write each file beside its place, then move all of them there: none is ever half there."""
+    beside = {path: f"{path}.{os.getpid()}.part" for path in files}
     try:
         for path, text in files.items():
             with open(beside[path], "x", encoding="utf-8", newline="") as file:
@@ -153,6 +120,7 @@ def _save(files):
         for path in files:
             os.replace(beside[path], path)
     except OSError as error:
-        for path in filter(os.path.exists, beside.values()):
-            os.remove(path)
-        raise Refusal("%s cannot be saved: %s" % (path, error.strerror)) from None
+        raise Refusal(f"{path} cannot be saved: {error.strerror}") from None
+    finally:
+        for written in filter(os.path.exists, beside.values()):
+            os.remove(written)
