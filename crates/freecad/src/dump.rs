@@ -17,7 +17,7 @@ pub(crate) fn begins(text: &[u8]) -> bool {
 
 /// Reads a dump. An object that changes the tool is a tool controller, and its label the name of the
 /// tool.
-pub(crate) fn read(text: &[u8]) -> Result<Job, Diagnostic> {
+pub(crate) fn read(text: &[u8]) -> Result<Job, Box<Diagnostic>> {
     let text = String::from_utf8_lossy(text);
     let mut job = Job::default();
     let mut lines = text.lines().zip(1u32..).map(|(line, number)| (line.trim(), number));
@@ -36,7 +36,7 @@ pub(crate) fn read(text: &[u8]) -> Result<Job, Diagnostic> {
             }
             let message = "this is no line of a dump";
             let help = "a line is `(Path: label)` or `Command NAME [ LETTER:NUMBER ... ]`";
-            return Err(wrong(message, line, number).help(help));
+            return Err(wrong(message, line, number).help(help).into());
         };
         joined.clear();
         joined.push_str(rest);
@@ -46,12 +46,12 @@ pub(crate) fn read(text: &[u8]) -> Result<Job, Diagnostic> {
                     joined.push(' ');
                     joined.push_str(more);
                 }
-                _ => return Err(wrong("the command has no end: ] is missing", line, number)),
+                _ => return Err(wrong("the command has no end: ] is missing", line, number).into()),
             }
         }
         let Some(operation) = job.operations.last_mut() else {
             let help = "`(Path: label)` stands before the commands of an object";
-            return Err(wrong("a command of no object", line, number).help(help));
+            return Err(wrong("a command of no object", line, number).help(help).into());
         };
         let tool = command(&joined, &mut operation.commands)
             .map_err(|message| wrong(&message, line, number))?;

@@ -91,11 +91,8 @@ impl Job {
     /// # Errors
     /// What is no job, with `file_name`, line and column.
     pub fn of(file_name: &str, text: &[u8]) -> Result<Job, Box<Diagnostic>> {
-        let mut job = match dump::begins(text) {
-            true => dump::read(text),
-            false => from_json(text),
-        }
-        .map_err(|found| found.file(file_name))?;
+        let read = if dump::begins(text) { dump::read(text) } else { from_json(text) };
+        let mut job = read.map_err(|found| found.file(file_name))?;
         if job.name.is_empty() {
             let stem = file_name.rsplit_once('.').map_or(file_name, |(stem, _)| stem);
             job.name = stem.to_owned();
@@ -104,7 +101,7 @@ impl Job {
     }
 }
 
-fn from_json(text: &[u8]) -> Result<Job, Diagnostic> {
+fn from_json(text: &[u8]) -> Result<Job, Box<Diagnostic>> {
     let sheet: Sheet = serde_json::from_slice(text).map_err(|error| {
         let line = u32::try_from(error.line()).unwrap_or(u32::MAX);
         let shown = text.split(|&byte| byte == b'\n').nth(error.line().saturating_sub(1));
@@ -120,7 +117,7 @@ fn from_json(text: &[u8]) -> Result<Job, Diagnostic> {
         let (head, version) = (sheet.toolpost, sheet.version);
         let message = format!("`{head}`, version {version}: `{HEAD}`, version {VERSION} is read");
         let help = "the part of Toolpost in FreeCAD and this one have to be of one version";
-        return Err(Diagnostic::error("freecad-job", message).help(help));
+        return Err(Diagnostic::error("freecad-job", message).help(help).into());
     }
     let active = sheet.operations.into_iter().filter(|operation| operation.active);
     let operations = active.map(|operation| Operation {

@@ -12,6 +12,7 @@ mod dump;
 mod job;
 mod lift;
 mod listing;
+mod way;
 
 pub use job::{Job, Operation};
 pub use lift::{Reading, read};

@@ -2,6 +2,7 @@
 
 use crate::job::{Job, Tool};
 use crate::listing::Listing;
+use crate::way::Way;
 use control::Setup;
 use machine::Machine;
 use program::{Diagnostic, Op, Program, Record, Spindle};
@@ -25,7 +26,10 @@ pub struct Reading {
 /// operation, the command and the way out.
 pub fn read(machine: &Machine, file_name: &str, job: &Job) -> Result<Reading, Box<Diagnostic>> {
     let listing = Listing::of(file_name, job);
-    let speaks = Machine { reader: String::from("freecad"), ..machine.clone() };
+    let mut speaks = Machine { reader: String::from("freecad"), ..machine.clone() };
+    if !listing.turns() {
+        speaks.rotary.clear();
+    }
     let read = nc::read(&speaks, Setup::default(), "", listing.text());
     let located = |found: Diagnostic| Box::new(listing.located(found));
     let reading = read.map_err(|found| located(way_out(*found)))?;
@@ -33,7 +37,7 @@ pub fn read(machine: &Machine, file_name: &str, job: &Job) -> Result<Reading, Bo
         .tell(reading.program.records)
         .map_err(|found| match found.line {
             0 => Box::new(found.file(file_name)),
-            _ => located(found),
+            _ => located(*found),
         })?;
     let warnings = reading.warnings.into_iter().map(|found| listing.located(found)).collect();
     Ok(Reading { program: Program { name: job.name.clone(), records }, listing, warnings })
@@ -46,6 +50,7 @@ fn way_out(mut found: Diagnostic) -> Diagnostic {
             "give the tool controller of the operation its feeds, horizontal and vertical, and recompute"
         }
         "nc-spindle" => "give the tool controller of the operation its speed, and recompute",
+        "nc-tool" => "give the tool controller a number above 0, and recompute",
         "nc-unknown-word" => "change the commands of the operation",
         _ => return found,
     };
@@ -62,7 +67,7 @@ struct Told<'a> {
     listing: &'a Listing,
     /// Which of the operations move.
     moves: Vec<bool>,
-    records: Vec<Record>,
+    way: Way,
     /// The operation of the record at hand.
     at: Option<usize>,
     /// Number and name of the tool in the spindle.
@@ -78,20 +83,21 @@ impl<'a> Told<'a> {
                 *moves = true;
             }
         }
-        let records = Vec::with_capacity(records.len() + 2 * moves.len() + 1);
-        Told { job, listing, moves, records, at: None, tool: None, turns: false }
+        let way = Way::with_capacity(records.len() + 2 * moves.len());
+        Told { job, listing, moves, way, at: None, tool: None, turns: false }
     }
 
-    fn tell(mut self, records: Vec<Record>) -> Result<Vec<Record>, Diagnostic> {
+    fn tell(mut self, records: Vec<Record>) -> Result<Vec<Record>, Box<Diagnostic>> {
         if !self.moves.contains(&true) {
             let message = "no operation of the job moves the tool";
             let help = "give the job operations, make them active, and recompute";
-            return Err(Diagnostic::error("no-motion", message).help(help));
+            return Err(Diagnostic::error("no-motion", message).help(help).into());
         }
         for record in records {
             let at = self.listing.operation(record.line);
-            // The end of the text is that of the last operation.
-            if self.at != Some(at) {
+            if matches!(record.op, Op::End) {
+                self.end(record.line);
+            } else if self.at != Some(at) {
                 self.end(record.line);
                 self.at = Some(at);
                 if self.moves.get(at) == Some(&true) {
@@ -100,7 +106,7 @@ impl<'a> Told<'a> {
             }
             self.record(record)?;
         }
-        Ok(self.records)
+        Ok(self.way.finish())
     }
 
     /// Whether the operation at hand moves.
@@ -110,25 +116,20 @@ impl<'a> Told<'a> {
 
     fn end(&mut self, line: u32) {
         if self.within() {
-            self.records.push(Record { line: line.saturating_sub(1), op: Op::EndOfOperation });
+            self.way.push(Record { line: line.saturating_sub(1), op: Op::EndOfOperation });
         }
     }
 
     fn begin(&mut self, at: usize, line: u32) {
         let label = self.job.operations.get(at).map_or("", |operation| operation.label.as_str());
-        self.records.push(Record { line, op: Op::Operation(label.into()) });
+        self.way.push(Record { line, op: Op::Operation(label.into()) });
     }
 
-    fn record(&mut self, mut record: Record) -> Result<(), Diagnostic> {
+    fn record(&mut self, mut record: Record) -> Result<(), Box<Diagnostic>> {
         let line = record.line;
         match &mut record.op {
             Op::Comment(text) if self.is_told(text) => return Ok(()),
             Op::Tool(tool) => {
-                if tool.number == 0 {
-                    let message = "the tool has no number";
-                    let help = "give its tool controller a number above 0, and recompute";
-                    return Err(Diagnostic::error("tool-number", message).help(help).line(line));
-                }
                 let described = self.job.tools.iter().find(|entry| entry.number == tool.number);
                 if let Some(Tool { name, diameter, .. }) = described {
                     tool.name.clone_from(name);
@@ -140,7 +141,10 @@ impl<'a> Told<'a> {
                 if *speed <= 0.0 {
                     let message = format!("the spindle turns at {speed} 1/min");
                     let help = "give the tool controller its speed, and recompute";
-                    return Err(Diagnostic::error("spindle-speed", message).help(help).line(line));
+                    return Err(Diagnostic::error("spindle-speed", message)
+                        .help(help)
+                        .line(line)
+                        .into());
                 }
                 self.turns = true;
             }
@@ -148,7 +152,7 @@ impl<'a> Told<'a> {
             op if is_move(op) => self.may_move(op, line)?,
             _ => {}
         }
-        self.records.push(record);
+        self.way.push(record);
         Ok(())
     }
 
@@ -161,11 +165,12 @@ impl<'a> Told<'a> {
 
     /// # Errors
     /// The operation has no tool, or not that which the job gives it, or its spindle stands.
-    fn may_move(&self, op: &Op, line: u32) -> Result<(), Diagnostic> {
+    fn may_move(&self, op: &Op, line: u32) -> Result<(), Box<Diagnostic>> {
         let asked = self.at.and_then(|at| self.job.operations.get(at)?.tool);
         let number = self.tool.as_ref().map(|(number, _)| *number);
-        let refused =
-            |rule, message, help: &str| Err(Diagnostic::error(rule, message).help(help).line(line));
+        let refused = |rule, message, help: &str| {
+            Err(Diagnostic::error(rule, message).help(help).line(line).into())
+        };
         match (number, asked) {
             (None, _) => {
                 let message = String::from("the operation moves, and no tool has been called");

@@ -11,6 +11,8 @@ pub struct Listing {
     text: Vec<u8>,
     /// How many lines it has.
     lines: u32,
+    /// Whether a command has a word for a rotary axis.
+    turns: bool,
     sections: Vec<Section>,
 }
 
@@ -43,6 +45,7 @@ impl Listing {
             file: file.to_owned(),
             text: Vec::with_capacity(room),
             lines: 0,
+            turns: false,
             sections: Vec::with_capacity(job.operations.len()),
         };
         let mut coolant = None;
@@ -68,6 +71,8 @@ impl Listing {
     }
 
     fn push(&mut self, line: &[u8]) {
+        let rotary = |byte: &u8| matches!(byte.to_ascii_uppercase(), b'A'..=b'C');
+        self.turns |= !line.starts_with(b"(") && line.iter().any(rotary);
         self.text.extend_from_slice(line);
         self.text.push(b'\n');
         self.lines = self.lines.saturating_add(1);
@@ -76,6 +81,11 @@ impl Listing {
     /// The text.
     pub(crate) fn text(&self) -> &[u8] {
         &self.text
+    }
+
+    /// Whether the job turns rotary axes; where it does not, the tool stands upright in it.
+    pub(crate) fn turns(&self) -> bool {
+        self.turns
     }
 
     /// The operation, counted from 0, to which a line (from 1) belongs.

@@ -39,6 +39,8 @@ const SAMPLES: usize = 8;
 
 /// Part of an arc as one block.
 struct Block {
+    /// Where it ends, and where that is after rounding.
+    to: Vec3,
     end: Vec3,
     center: Vec3,
     /// Signed angle about the plane's normal, radians.
@@ -142,7 +144,8 @@ impl Walk<'_> {
         let begin = round(&END, arc.at(from));
         let start =
             Vec3::from_array([0, 1, 2].map(|i| self.writer.active(END[i]).unwrap_or(begin[i])));
-        let end = round(&END, arc.at(until));
+        let to = arc.at(until);
+        let end = round(&END, to);
         let [u, v, w] = facts.axes;
         let flat = |p: Vec3| Vec3::new(p[u], p[v], 0.0);
         let (s, e, c) = (flat(start), flat(end), flat(arc.center));
@@ -183,13 +186,14 @@ impl Walk<'_> {
                 point.distance(should) <= POINT_STEPS * self.machine.resolution()
             });
             (near && even && moved && close && radius > 0.0).then_some(Block {
+                to,
                 end,
                 center: written,
                 sweep: sign * sweep,
                 rise,
             })
         };
-        legal(even).or_else(|| legal(c))
+        legal(c).or_else(|| legal(even))
     }
 
     fn arc_block(&mut self, arc: &Arc, facts: &Facts, block: &Block, rises: bool) -> Done {
@@ -209,7 +213,7 @@ impl Walk<'_> {
             self.writer.set(ABSOLUTE[i], block.center[i]);
         }
         for i in [u, v, w] {
-            self.writer.set(END[i], block.end[i]);
+            self.writer.set(END[i], block.to[i]);
         }
         let turns = (block.sweep.abs() / TAU - 1e-9).floor();
         if turns > 0.0 {

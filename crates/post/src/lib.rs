@@ -15,6 +15,7 @@ mod catalogue;
 mod cycles;
 mod findings;
 mod guard;
+mod letters;
 mod motion;
 mod number;
 mod place;

@@ -7,6 +7,7 @@
 
 use crate::catalogue::{BlockName, VARIABLES, WordName, nearest};
 use crate::guard::{self, Fault};
+use crate::letters::in_ascii;
 use machine::{Block, Format, Machine, OptionValue};
 use minijinja::value::{Object, Value};
 use minijinja::{AutoEscape, Environment, ErrorKind, UndefinedBehavior};
@@ -306,10 +307,19 @@ fn identifies(name: &str) -> bool {
 
 /// Text from outside, as no control and no template can misread it: letters, digits, blanks and a few
 /// signs. Whatever ends a comment or a string, starts an expression, or is a command even inside a
-/// comment (`!`, `?`, `~`, `%` of GRBL and tapes, `MSG,` and `LOGOPEN,` of LinuxCNC) becomes a blank.
+/// comment (`!`, `?`, `~`, `%` of GRBL and tapes, `MSG,` and `LOGOPEN,` of LinuxCNC) becomes a blank; a
+/// letter that not every control prints becomes one that it does.
 pub(crate) fn clean(text: &str) -> String {
     let harmless = |c: char| c.is_ascii_alphanumeric() || " .:+-*/=_<>&@#".contains(c);
-    text.chars().map(|c| if harmless(c) { c } else { ' ' }).collect()
+    let mut clean = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            c if harmless(c) => clean.push(c),
+            c if c.is_ascii() => clean.push(' '),
+            c => clean.push_str(in_ascii(c)),
+        }
+    }
+    clean
 }
 
 /// Text from outside for a comment, as far as a line of the control has room for it.

@@ -4,8 +4,8 @@ use crate::catalogue::{BlockName, WordName};
 use crate::findings::Findings;
 use crate::place::{Place, Route};
 use crate::template::{
-    LENGTH_OFFSET, ORIENTATION, POSITION, Scope, Templates, bit, map, printed, program_value,
-    tool_value,
+    LENGTH_OFFSET, ORIENTATION, POSITION, Scope, Templates, Words, bit, map, printed,
+    program_value, tool_value,
 };
 use crate::wire::Wire;
 use crate::writer::Writer;
@@ -36,6 +36,9 @@ mod feed_mode {
     pub(super) const PER_TURN: usize = 1;
     pub(super) const INVERSE_TIME: usize = 2;
 }
+
+/// The words that say how the tool goes.
+const MOTION: Words = bit(WordName::F) | bit(WordName::Motion);
 
 /// The entry of the code word `plane` for the plane XY.
 pub(crate) const PLANE_XY: usize = 0;
@@ -238,6 +241,13 @@ impl<'a> Walk<'a> {
             }
             Op::OptionalStop => self.stop(BlockName::OptionalStop),
             Op::Operation(name) => {
+                // What was switched on before it does not belong to it.
+                if self.tool.is_some() {
+                    self.sync_spindle()?;
+                }
+                if self.machine.format.fresh_operations {
+                    self.writer.forget(POSITION | ORIENTATION | MOTION);
+                }
                 self.scope.operation = map([("name", Value::from(printed(self.machine, name)))]);
                 self.block(BlockName::OperationStart)
             }
@@ -402,9 +412,7 @@ impl<'a> Walk<'a> {
         self.scope.tool = tool_value(self.machine, tool, self.tool.is_none());
         self.required(BlockName::ToolChange)?;
         self.tool = Some(tool.clone());
-        self.writer.forget(
-            POSITION | ORIENTATION | bit(WordName::F) | bit(WordName::D) | bit(WordName::Motion),
-        );
+        self.writer.forget(POSITION | ORIENTATION | MOTION | bit(WordName::D));
         self.located = false;
         (self.active_spindle, self.active_coolant) = (Some(Spindle::Off), Some(Coolant::Off));
         Ok(())

@@ -77,7 +77,7 @@ pub fn job(path: &Path) -> Result<Vec<u8>, Box<Diagnostic>> {
             let said = fs::read(&said).unwrap_or_default();
             let said = String::from_utf8_lossy(&said);
             let last = said.lines().map(str::trim).rfind(|line| !line.is_empty());
-            let message = format!("FreeCAD finds no job in it: {}", last.unwrap_or("no word"));
+            let message = format!("FreeCAD tells no job of it: {}", last.unwrap_or("no word"));
             let help = "open it in FreeCAD, and look at its job";
             Err(about(message).help(help).into())
         }

@@ -42,7 +42,10 @@ pub fn run(args: &Post, silent: bool) -> Result<Answer, Stop> {
     let report_path = args.output.with_extension("report.json");
     let target = Target::new(&args.output, &inputs)?;
     let report_target = Target::new(&report_path, &inputs)?;
-    let machine = toolpath::machine(&args.machine)?;
+    let mut machine = toolpath::machine(&args.machine)?;
+    for (name, value) in &args.option {
+        machine.set_option(name, value)?;
+    }
     if machine.wire.is_some() {
         let message = format!("`{}` cuts by wire: it has no spindle and no tools", machine.name);
         let help = "`toolpost wire` writes for it";
@@ -90,7 +93,7 @@ pub fn run(args: &Post, silent: bool) -> Result<Answer, Stop> {
     let report = format!("{report:#}\n");
     files::save(&[(&report_target, report.as_bytes()), (&target, &output.text)])?;
 
-    let mut lines = toolpath.rows(&machine);
+    let mut lines = toolpath.rows(Some(&machine));
     lines.extend(shape.rows());
     lines.push(("time", time(&times)));
     lines.push(("travel", travel(Travel::of(&machine))));

@@ -33,7 +33,7 @@ pub fn run(args: &Prove, silent: bool) -> Result<Answer, Stop> {
         "program": { "file": file, "blocks": proof.program.blocks, "bytes": text.len() },
         "proof": proof,
     });
-    let mut lines = toolpath.rows(&machine);
+    let mut lines = toolpath.rows(Some(&machine));
     lines.extend(shape.rows());
     lines.extend(rows(&proof, &machine));
     Ok(Answer::summary(Verdict::Done, summary::rows(&lines), data).findings(warnings))

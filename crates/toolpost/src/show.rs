@@ -26,7 +26,7 @@ pub fn run(args: &Show, silent: bool) -> Result<Answer, Stop> {
         let picture = format.bytes(drawing::tool_path(&toolpath.file, &toolpath.program))?;
         files::save(&[(&target, &picture)])?;
     }
-    let mut lines = vec![("toolpath", format!("{} ({})", toolpath.file, toolpath.dialect))];
+    let mut lines = toolpath.rows(None);
     lines.extend(shape.rows());
     lines.extend(shape.extents());
     lines.extend(output.map(|output| ("drawing", output.display().to_string())));

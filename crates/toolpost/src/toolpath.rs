@@ -9,7 +9,7 @@ use control::Setup;
 use freecad::{Job, Listing};
 use geom::Vec3;
 use machine::{Machine, library};
-use program::{Diagnostic, Program, Severity};
+use program::{Diagnostic, Op, Program, Severity};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
@@ -219,12 +219,20 @@ impl Toolpath {
         source
     }
 
-    /// The first lines of a summary: what was done, for which machine.
-    pub fn rows(&self, machine: &Machine) -> Vec<(&'static str, String)> {
-        vec![
-            ("toolpath", format!("{} ({})", self.file, self.dialect)),
-            ("machine", format!("{} ({})", machine.title, machine.name)),
-        ]
+    /// The first lines of a summary: what was read, and for which machine it was done.
+    pub fn rows(&self, machine: Option<&Machine>) -> Vec<(&'static str, String)> {
+        let mut rows = vec![("toolpath", format!("{} ({})", self.file, self.dialect))];
+        rows.extend(
+            machine.map(|machine| ("machine", format!("{} ({})", machine.title, machine.name))),
+        );
+        if self.listing.is_some() {
+            let operations = self.program.records.iter().filter_map(|record| match &record.op {
+                Op::Operation(name) => Some(name.as_ref()),
+                _ => None,
+            });
+            rows.push(("operations", operations.collect::<Vec<_>>().join(", ")));
+        }
+        rows
     }
 
     /// Where a line of the source is, and its text; empty where there is none.

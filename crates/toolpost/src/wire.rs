@@ -99,7 +99,7 @@ pub fn run(args: &args::Wire, silent: bool) -> Result<Answer, Stop> {
     saved.push((&target, &output.text));
     files::save(&saved)?;
 
-    let mut lines = toolpath.rows(&machine);
+    let mut lines = toolpath.rows(Some(&machine));
     lines.extend(cut.rows(args.select));
     lines.extend(prove::rows(&proof, &machine));
     lines.push(("saved", args.output.display().to_string()));

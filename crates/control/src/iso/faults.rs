@@ -96,6 +96,13 @@ impl Block<'_> {
     pub(super) fn no_number(&self, letter: u8, at: usize, from: usize) -> Fault {
         match self.text.get(from) {
             Some(&byte @ (b'#' | b'[')) => self.stray(self.dictionary.flavor, byte, from),
+            Some(byte)
+                if self.dictionary.flavor == Flavor::FreeCad && !byte.is_ascii_whitespace() =>
+            {
+                let rest = self.text.get(from..).unwrap_or_default();
+                let length = rest.iter().take_while(|byte| !byte.is_ascii_whitespace()).count();
+                self.nothing(at, from + length)
+            }
             _ => {
                 let message = format!("a number is missing after {}", char::from(letter));
                 self.fault("nc-number", message, at, from)

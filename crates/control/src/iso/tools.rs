@@ -82,6 +82,10 @@ impl Step<'_, '_, '_> {
             let message = "M6 and no tool has been named by T";
             return Err(self.block.at_group(Group::ToolChange, "nc-tool", message));
         };
+        if number == 0 && self.flavor == Flavor::FreeCad {
+            let message = "the tool has no number";
+            return Err(self.block.at_group(Group::ToolChange, "nc-tool", message));
+        }
         self.not_compensated("a tool change")?;
         self.put_in(number);
         self.turn(Spindle::Off);

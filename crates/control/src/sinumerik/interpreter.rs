@@ -314,6 +314,8 @@ impl<'a, 's> Interpreter<'a, 's> {
             };
             self.state.tool = Some(tool.clone());
             self.emit(source, Op::Tool(tool))?;
+            self.report_spindle(source, Spindle::Off)?;
+            self.report_coolant(source, Coolant::Off)?;
             // The change activates edge 1 unless the block says another (MD20270 = 1).
             edge = edge.or(Some(1));
             self.state.edge = None;
@@ -392,11 +394,16 @@ impl<'a, 's> Interpreter<'a, 's> {
             Some(_) => Coolant::Off,
             None => self.state.coolant,
         };
-        if coolant != self.state.coolant {
-            self.state.coolant = coolant;
-            self.emit(source, Op::Coolant(coolant))?;
+        self.report_coolant(source, coolant)
+    }
+
+    /// The coolant is this from here on.
+    fn report_coolant(&mut self, source: &Source, coolant: Coolant) -> Fallible<()> {
+        if coolant == self.state.coolant {
+            return Ok(());
         }
-        Ok(())
+        self.state.coolant = coolant;
+        self.emit(source, Op::Coolant(coolant))
     }
 
     /// The spindle does this from here on.
