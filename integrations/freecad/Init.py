@@ -1,6 +1,8 @@
-# Runs when FreeCAD starts, and puts this folder among those in which FreeCAD looks for posts. FreeCAD 1.2
-# finds it by package.xml.
+"""Runs when FreeCAD starts: puts this folder among those in which FreeCAD looks for posts."""
+
+
 def register():
+    """Add the folder, unless FreeCAD finds it by `package.xml`, as from 1.2 on."""
     import os
 
     import toolpost_job
@@ -13,7 +15,7 @@ def register():
         return
     folder = os.path.dirname(toolpost_job.__file__)
     searched = preferences.searchPathsPost
-    preferences.searchPathsPost = lambda: searched() + [folder]
+    preferences.searchPathsPost = lambda: [*searched(), folder]
 
 
 register()

@@ -20,7 +20,7 @@ def core():
     if command is None:
         raise Refusal(
             "Toolpost is not installed where FreeCAD finds it\n"
-            "    help: `pip install toolpost` with FreeCAD's Python, or put the command `toolpost` on the PATH"
+            "    help: install it, so that the command `toolpost` is on the PATH of FreeCAD"
         )
     return Command(command)
 

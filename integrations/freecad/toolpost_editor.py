@@ -12,8 +12,8 @@ LARGEST = 2_000_000
 def edit(text, report, prove):
     """Show a program; answer it as it is to be saved, with its report, or None where it is not.
 
-    What was changed goes through `prove`, which answers a report. What is not proven goes back to the
-    editor, or is given up.
+    What was changed goes through `prove`, which answers a report. What is not proven goes back to
+    the editor, or is given up.
     """
     if len(text) > LARGEST:
         _say(f"the program is too long for the editor, {len(text)} characters")

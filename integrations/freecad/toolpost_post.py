@@ -1,7 +1,7 @@
 """The post-processor `toolpost` of FreeCAD's CAM workbench: a job in, a proven program out.
 
-FreeCAD calls `export` once for each file of a job. Up to 0.21 it names the file, and the post writes it;
-later it gives "-", and writes what `export` answers, or nothing where that is None.
+FreeCAD calls `export` once for each file of a job. Up to 0.21 it names the file, and the post writes
+it; later it gives "-", and writes what `export` answers, or nothing where that is None.
 """
 
 import argparse
@@ -14,9 +14,9 @@ import toolpost_editor
 import toolpost_job
 from toolpost_core import Refusal, core, spoken
 
-TOOLTIP = """Writes the program of a job for a machine of Toolpost's library, or one of your own, and proves it:
-a virtual control reads the program back, and one that does not do what the job says is not saved.
-The machine is named in the arguments, such as --machine emco-concept-mill-105"""
+TOOLTIP = """Writes the program of a job for a machine of Toolpost's library, or one of your own,
+and proves it: a virtual control reads the program back, and one that does not do what the job says
+is not saved. The machine is named in the arguments, such as --machine emco-concept-mill-105"""
 
 
 class _Parser(argparse.ArgumentParser):
@@ -26,10 +26,20 @@ class _Parser(argparse.ArgumentParser):
 
 parser = _Parser(prog="toolpost", usage=argparse.SUPPRESS, add_help=False, allow_abbrev=False)
 argument = parser.add_argument
-argument("--machine", metavar="NAME|FILE", required=True, help="name in the library, or a .toml file")
-argument("--option", metavar="NAME=VALUE", action="append", default=[], help="another value for one of the options of the machine; may be given several times")
+argument(
+    "--machine", metavar="NAME|FILE", required=True, help="name in the library, or a .toml file"
+)
+argument(
+    "--option",
+    metavar="NAME=VALUE",
+    action="append",
+    default=[],
+    help="another value for one of the options of the machine; may be given several times",
+)
 argument("--work-offset", metavar="G54", help="work offset in place of the one that the job has")
-argument("--tolerance", metavar="MM", type=float, help="largest distance of the tool tip from the path")
+argument(
+    "--tolerance", metavar="MM", type=float, help="largest distance of the tool tip from the path"
+)
 argument("--report", metavar="FILE", help="save the report of the proof here, as JSON")
 argument("--no-show-editor", action="store_true", help="save without showing the program first")
 
@@ -39,8 +49,8 @@ TOOLTIP_ARGS = parser.format_help()
 def export(objectslist, filename, argstring):
     """Post these objects to a file; where that is "-", only answer the program.
 
-    The answer is None where there is no proven program, or where the user did not want it: no file is
-    touched then, and the report view says why.
+    The answer is None where there is no proven program, or where the user did not want it: no file
+    is touched then, and the report view says why.
     """
     try:
         return _export(objectslist, filename, argstring)
@@ -97,7 +107,10 @@ def _tell(job, options, report):
         FreeCAD.Console.PrintWarning(f"toolpost: {spoken(warning)}\n")
     blocks = report["program"]["blocks"]
     off = report["proof"]["deviations"]["tip_mm"]["value"]
-    _message(f"{job['name']} for {options.machine}: {blocks} blocks, proven; the tool tip is off by at most {off:.5f} mm")
+    _message(
+        f"{job['name']} for {options.machine}: {blocks} blocks, proven; "
+        f"the tool tip is off by at most {off:.5f} mm"
+    )
 
 
 def _message(text):

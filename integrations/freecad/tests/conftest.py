@@ -9,15 +9,14 @@ from pathlib import Path
 import pytest
 
 HERE = Path(__file__).parent
+ADDON = HERE.parent
 
 
-def freecad(script, home, **environment):
-    """Run a script inside FreeCAD and answer what it printed; its settings are in a folder of their own."""
-    if shutil.which("freecadcmd") is None:
-        pytest.skip("FreeCAD (Debian package freecad) is not installed")
+def run(command, home, **environment):
+    """Run FreeCAD, whose settings are in a folder of their own, and answer what it printed."""
     environment = {name: str(value) for name, value in environment.items()}
     done = subprocess.run(
-        ["freecadcmd", str(HERE / script)],
+        list(map(str, command)),
         env={**os.environ, "FREECAD_USER_HOME": str(home), **environment},
         stdin=subprocess.DEVNULL,
         stdout=subprocess.PIPE,
@@ -31,6 +30,13 @@ def freecad(script, home, **environment):
     return done.stdout
 
 
+def freecad(script, home, **environment):
+    """Run a script inside FreeCAD without its window."""
+    if shutil.which("freecadcmd") is None:
+        pytest.skip("FreeCAD (Debian package freecad) is not installed")
+    return run(["freecadcmd", HERE / script], home, **environment)
+
+
 def toolpost(*words):
     """Run the command and answer what it says."""
     words = ["toolpost", "--json", *map(str, words)]
@@ -40,7 +46,7 @@ def toolpost(*words):
 
 @pytest.fixture(scope="session")
 def jobs(tmp_path_factory):
-    """The folder with the jobs, and with FreeCAD's own programs beside them."""
+    """Make the folder with the jobs, and with FreeCAD's own programs beside them."""
     folder = tmp_path_factory.mktemp("jobs")
     freecad("build_jobs.py", tmp_path_factory.mktemp("home"), TOOLPOST_JOBS=folder)
     return folder
@@ -48,7 +54,7 @@ def jobs(tmp_path_factory):
 
 @pytest.fixture(scope="session")
 def cases(tmp_path_factory):
-    """What the post does with jobs right and wrong: for each case its answer, file, and what is said."""
+    """Post jobs right and wrong: for each case what is answered, saved and said."""
     folder = tmp_path_factory.mktemp("cases")
     freecad("posting.py", tmp_path_factory.mktemp("home"), TOOLPOST_CASES=folder)
     found = json.loads((folder / "cases.json").read_text())

@@ -12,18 +12,23 @@ MILLS = [
     if machine["control"] not in ("wire-iso", "points")
 ]
 
-# What a machine cannot do, or FreeCAD does not say: the rule by which it is refused.
+# What FreeCAD does not say, or a machine cannot do: the rule by which it is refused.
 REFUSED = {
     # As FreeCAD ships it, this job has neither feeds nor speeds.
-    ("boxtest-Job", None): "nc-feed",
+    ("boxtest-Job", ""): "nc-feed",
     # The teaching mill: 200 mm of travel in X, tools up to 55 mm.
-    ("Drilling_1", "emco-concept-mill-105"): "axis-limit",
-    ("boxtest-Job001", "emco-concept-mill-105"): "tool-range",
-    # Their controls have no mist.
+    ("Drilling_1", "emco"): "axis-limit",
+    ("boxtest-Job001", "emco"): "tool-range",
+    # Controls without mist.
     ("mist", "dmu50-heidenhain"): "missing-block",
     ("mist", "generic-3axis-heidenhain"): "missing-block",
-    ("mist", "generic-3axis-haas"): "missing-block",
+    ("mist", "generic-3axis-haas"): "coolant",
 }
+
+
+def refusals(name, mill):
+    """Answer the rules by which this job is refused for this mill."""
+    return {rule for (job, of), rule in REFUSED.items() if job == name and mill.startswith(of)}
 
 
 def names(folder):
@@ -48,18 +53,17 @@ def test_a_mill_gets_proven_programs(jobs, mill, tmp_path):
     wrong = {}
     for name in names(jobs):
         report = toolpost("post", jobs / f"{name}.json", "-m", mill, "-o", tmp_path / "part.nc")
+        refused = refusals(name, mill)
         rules = {error["rule"] for error in report["errors"]}
-        expected = REFUSED.get((name, mill)) or REFUSED.get((name, None))
-        if rules != ({expected} if expected else set()):
+        if rules != refused or not (refused or report["proof"]["proven"]):
             wrong[name] = report["errors"][:1]
-        assert expected or report["proof"]["proven"] or rules
     assert not wrong
 
 
 def test_linuxcnc_moves_as_with_the_post_of_freecad(jobs, tmp_path):
     differences = {}
     for name in names(jobs):
-        if (name, None) in REFUSED:
+        if refusals(name, "generic-3axis-linuxcnc"):
             continue
         ours = tmp_path / "ours.ngc"
         report = toolpost("post", jobs / f"{name}.json", "-m", "generic-3axis-linuxcnc", "-o", ours)
