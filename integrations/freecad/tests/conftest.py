@@ -12,6 +12,12 @@ HERE = Path(__file__).parent
 ADDON = HERE.parent
 
 
+def pytest_configure():
+    """See that there is a Toolpost to be tested."""
+    if shutil.which("toolpost") is None:
+        pytest.exit("the command toolpost is not on the PATH: build and install it first", 1)
+
+
 def run(command, home, **environment):
     """Run FreeCAD, whose settings are in a folder of their own, and answer what it printed."""
     environment = {name: str(value) for name, value in environment.items()}
