@@ -5,6 +5,7 @@ Programs are text, reports are dictionaries: what the command answers with `--js
 
 import json
 import os
+import re
 import shutil
 import subprocess
 import tempfile
@@ -34,7 +35,7 @@ class Command:
     def post(self, job, options):
         """Answer the program of a job, and its report."""
         with _Folder(job) as folder:
-            program = folder.path("program.nc")
+            program = folder.path("nc")
             changed = [word for option in options.option for word in ("--option", option)]
             words = [folder.job, "--output", program, *changed, *_words(options)]
             report = self._run("post", words)
@@ -44,7 +45,7 @@ class Command:
     def prove(self, text, job, options):
         """Answer the report of a program that was edited."""
         with _Folder(job) as folder:
-            program = folder.path("program.nc")
+            program = folder.path("nc")
             with open(program, "w", encoding="utf-8", newline="") as file:
                 file.write(text)
             return self._run("prove", [program, "--against", folder.job, *_words(options)])
@@ -83,15 +84,18 @@ class _Folder(tempfile.TemporaryDirectory):
 
     def __init__(self, job):
         super().__init__(prefix="toolpost-")
-        self.job = self.path("job.json")
+        # What is said of a file names it.
+        self.stem = re.sub(r"[^\w.-]", "_", job["name"])
+        self.job = self.path("json")
         with open(self.job, "w", encoding="utf-8") as file:
             json.dump(job, file, ensure_ascii=False)
 
     def __enter__(self):
         return self
 
-    def path(self, name):
-        return os.path.join(self.name, name)
+    def path(self, ending):
+        """Answer where the file with this ending is."""
+        return os.path.join(self.name, f"{self.stem}.{ending}")
 
 
 def _words(options):

@@ -181,5 +181,4 @@ def main():
     shipped()
 
 
-if __name__ == "build_jobs":
-    run(main)
+run(main)

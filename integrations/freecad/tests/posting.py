@@ -20,7 +20,7 @@ import PathScripts.PathCustom as PathCustom
 import PathScripts.PathProfile as PathProfile
 import toolpost_job
 import toolpost_post
-from work import Work
+from work import Piece, Work, run
 
 FOLDER = os.environ["TOOLPOST_CASES"]
 LINUXCNC = "--machine generic-3axis-linuxcnc"
@@ -43,14 +43,6 @@ def case(name, objects, arguments=LINUXCNC, filename=None):
         os.dup2(kept[0], 1)
         os.dup2(kept[1], 2)
     cases[name] = {"answer": answer, "file": filename, "seconds": took}
-
-
-class Piece:
-    """An object with commands, as FreeCAD's own for fixtures is."""
-
-    def __init__(self, label, commands):
-        self.Name = self.Label = label
-        self.Path = Path.Path(commands)
 
 
 def custom(work, *lines):
@@ -181,7 +173,4 @@ def main():
         json.dump({"cases": cases, "order": order()}, file)
 
 
-if __name__ == "posting":
-    from work import run
-
-    run(main)
+run(main)

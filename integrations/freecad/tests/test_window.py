@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from conftest import ADDON, HERE, run
 
-PICTURES = ["freecad-editor", "freecad-job", "freecad-not-proven", "freecad-report"]
+PICTURES = ["freecad-job", "freecad-editor", "freecad-not-proven"]
 
 
 @pytest.fixture(scope="module")

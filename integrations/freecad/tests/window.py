@@ -127,7 +127,6 @@ def main():
         ),
         "cancelled": post(job, cancel),
     }
-    picture("freecad-report")
     with open(os.path.join(FOLDER, "window.json"), "w", encoding="utf-8") as file:
         json.dump(found, file)
 

@@ -5,6 +5,7 @@ import traceback
 
 import FreeCAD
 import Part
+import Path
 import PathScripts.PathJob as PathJob
 import PathScripts.PathPost as PathPost
 import PathScripts.PathToolBit as PathToolBit
@@ -85,6 +86,14 @@ class Work:
 
     def close(self):
         FreeCAD.closeDocument(self.document.Name)
+
+
+class Piece:
+    """An object with commands, as FreeCAD's own for fixtures is."""
+
+    def __init__(self, label, commands):
+        self.Name = self.Label = label
+        self.Path = Path.Path(commands)
 
 
 def run(main):
