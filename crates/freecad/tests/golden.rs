@@ -140,3 +140,32 @@ fn broken_lines_are_joined() {
     let broken = DUMP.replace(" Z:12.5 ]", "\n  Z:12.5 ]");
     assert_eq!(read(&broken).program, read(DUMP).program);
 }
+
+/// The rules that the thesis found on the control (3.6.1, 5): a program that breaks one is not proven.
+#[test]
+fn what_the_control_does_not_take_is_not_proven() {
+    let (reading, machine) = (read(&nudged()), emco_post());
+    let text = proven(&reading, &machine);
+    let broken = |from: &str, to: &str| {
+        assert!(text.contains(from), "{from}");
+        let text = text.replacen(from, to, 1);
+        let report =
+            proof::prove(&reading.program, &machine, "p", text.as_bytes(), &Default::default());
+        assert!(!report.proven, "{to}");
+        report.mismatches[0].rule
+    };
+    // A comment begins with ; behind the block number.
+    assert_eq!(broken(" ;T1: D16", " (T1: D16)"), "syntax");
+    assert_eq!(broken(" ;T1: D16", " T1: D16;"), "syntax");
+    // An arc that changes Z says both of its end points in the plane, changed or not.
+    assert_eq!(broken(" X41.000 Y30.000 Z13.750", " X41.000 Z13.750"), "helix-end-point");
+    assert_eq!(broken(" X41.000 Y30.000 Z13.750", " Y30.000 Z13.750"), "helix-end-point");
+    // M30 ends the program, and a line end M30.
+    assert_eq!(broken(" M30\n", " M30"), "program-end");
+    assert_eq!(broken(" M30\n", " M5\n"), "program-end");
+    // One G function of a group in a block.
+    assert_eq!(broken(" G17 G40", " G17 G18"), "group-conflict");
+    assert_eq!(broken(" G0 Z20.000", " G0 G1 Z20.000"), "group-conflict");
+    // An arc in the plane may leave Z out: most of those printed do.
+    assert!(text.contains(" G2 X46.211 Y66.477 I26.149 J25.461\n"));
+}

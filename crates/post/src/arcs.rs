@@ -152,7 +152,8 @@ impl Walk<'_> {
         let sign = arc.normal[w].signum();
         let wanted = arc.sweep * (until - from);
         let chord = e - s;
-        // The same radius at both ends: the nearest centre on the perpendicular bisector.
+        // Where the centre of the source is none of the rounded ends, the nearest one that has the same
+        // radius at both, on the perpendicular bisector.
         let along = chord.normalize_or_zero();
         let even = c + along * ((s + e) * 0.5 - c).dot(along);
         let can = &self.machine.capabilities;
