@@ -45,6 +45,18 @@ def case(name, objects, arguments=LINUXCNC, filename=None):
     cases[name] = {"answer": answer, "file": filename, "seconds": took}
 
 
+class Wrapped:
+    """An object as FreeCAD 1.2 hands it to a post: a copy of the path, the rest from the original."""
+
+    def __init__(self, source):
+        self.source = source
+        self.Label = source.Label
+        self.Path = Path.Path(source.Path.Commands)
+
+    def __getattr__(self, name):
+        return getattr(self.source, name)
+
+
 def custom(work, *lines):
     operation = PathCustom.Create("Custom")
     operation.Label = "Custom"
@@ -80,7 +92,9 @@ def right():
     case("argument-unknown", objects, LINUXCNC + " --modal")
     case("argument-open", objects, LINUXCNC + " --report 'here")
     case("no-folder", objects, filename=os.path.join(FOLDER, "missing", "part.ngc"))
-    case("no-place", objects, filename="/proc/part.ngc")
+    # Not even root writes there.
+    case("read-only", objects, filename="/sys/part.ngc")
+    case("wrapped", [Wrapped(obj) for obj in objects])
     operation.Active = False
     case("inactive", objects)
     work.close()
