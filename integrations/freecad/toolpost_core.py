@@ -11,7 +11,7 @@ import subprocess
 import tempfile
 
 
-class Refusal(Exception):
+class PostError(Exception):
     """Why there is no proven program, as a message for the report view."""
 
 
@@ -19,7 +19,7 @@ def core():
     """Find what posts and proves here."""
     command = shutil.which("toolpost")
     if command is None:
-        raise Refusal(
+        raise PostError(
             "Toolpost is not installed where FreeCAD finds it\n"
             "    help: install it, so that the command `toolpost` is on the PATH of FreeCAD"
         )
@@ -63,9 +63,9 @@ class Command:
         try:
             report = json.loads(done.stdout)
         except ValueError:
-            raise Refusal(f"{self.path}: {done.stderr.strip() or 'no answer'}") from None
+            raise PostError(f"{self.path}: {done.stderr.strip() or 'no answer'}") from None
         if report["status"] != "done":
-            raise Refusal("\n".join(map(spoken, report["errors"])))
+            raise PostError("\n".join(map(spoken, report["errors"])))
         return report
 
 

@@ -3,7 +3,7 @@
 import difflib
 
 import FreeCAD
-from toolpost_core import Refusal
+from toolpost_core import PostError
 
 # Characters: beyond it Qt's editor takes minutes to open.
 LARGEST = 2_000_000
@@ -31,7 +31,7 @@ def edit(text, report, prove):
         changed = edited.replace("\n", ending)
         try:
             return changed, prove(changed)
-        except Refusal as refusal:
+        except PostError as refusal:
             FreeCAD.Console.PrintError(f"toolpost: {refusal}\n")
             if not _again(refusal):
                 return None

@@ -1,7 +1,7 @@
 """The post-processor `toolpost` of FreeCAD's CAM workbench: a job in, a proven program out.
 
-FreeCAD calls `export` once for each file of a job. Up to 0.21 it names the file, and the post writes
-it; later it gives "-", and writes what `export` answers, or nothing where that is None.
+FreeCAD calls `export` once for each file of a job. Up to 0.21 it names the file, and the post
+writes it; later it gives "-", and writes what `export` answers, or nothing where that is None.
 """
 
 import argparse
@@ -12,7 +12,7 @@ import shlex
 import FreeCAD
 import toolpost_editor
 import toolpost_job
-from toolpost_core import Refusal, core, spoken
+from toolpost_core import PostError, core, spoken
 
 TOOLTIP = """Writes the program of a job for a machine of Toolpost's library, or one of your own,
 and proves it: a virtual control reads the program back, and one that does not do what the job says
@@ -21,7 +21,9 @@ is not saved. The machine is named in the arguments, such as --machine emco-conc
 
 class _Parser(argparse.ArgumentParser):
     def error(self, message):
-        raise Refusal(f"the arguments of the post: {message}; it knows these\n{self.format_help()}")
+        raise PostError(
+            f"the arguments of the post: {message}; it knows these\n{self.format_help()}"
+        )
 
 
 parser = _Parser(prog="toolpost", usage=argparse.SUPPRESS, add_help=False, allow_abbrev=False)
@@ -54,7 +56,7 @@ def export(objectslist, filename, argstring):
     """
     try:
         return _export(objectslist, filename, argstring)
-    except (Refusal, toolpost_job.JobError) as refusal:
+    except (PostError, toolpost_job.JobError) as refusal:
         _error(refusal)
     except Exception as mistake:
         _error(f"a mistake in the post, please report it: {type(mistake).__name__}: {mistake}")
@@ -66,7 +68,7 @@ def _export(objectslist, filename, argstring):
     try:
         options = parser.parse_args(shlex.split(argstring or ""))
     except ValueError as error:
-        raise Refusal(f"the arguments of the post: {error}") from None
+        raise PostError(f"the arguments of the post: {error}") from None
     job = toolpost_job.job(objectslist, _name(objectslist, filename))
     if options.work_offset:
         toolpost_job.move(job, options.work_offset)
@@ -133,7 +135,7 @@ def _save(files):
         for path in files:
             os.replace(beside[path], path)
     except OSError as error:
-        raise Refusal(f"{path} cannot be saved: {error.strerror}") from None
+        raise PostError(f"{path} cannot be saved: {error.strerror}") from None
     finally:
         for written in filter(os.path.exists, beside.values()):
             os.remove(written)

@@ -2,7 +2,7 @@
 
     freecadcmd integrations/freecad/bench/speed.py
 
-One operation of 200,000 moves, as an adaptive operation makes them: lines at feed, some of them arcs.
+One operation of 200,000 moves at feed, every tenth of them an arc.
 """
 
 import contextlib
@@ -71,13 +71,16 @@ def main():
     with tempfile.TemporaryDirectory() as folder:
         file = os.path.join(folder, "part.ngc")
         _, theirs = timed(
-            "FreeCAD's linuxcnc_post", lambda: linuxcnc_post.export(objects, file, "--no-show-editor")
+            "FreeCAD's linuxcnc_post",
+            lambda: linuxcnc_post.export(objects, file, "--no-show-editor"),
         )
         answer, ours = timed(
             "toolpost, with its proof", lambda: toolpost_post.export(objects, file, MACHINE)
         )
         assert answer, "nothing was posted"
-    job, took = timed("  of it: the job from FreeCAD's objects", lambda: toolpost_job.job(objects, "part"))
+    job, _ = timed(
+        "  of it: the job from FreeCAD's objects", lambda: toolpost_job.job(objects, "part")
+    )
     options = toolpost_post.parser.parse_args(MACHINE.split())
     timed("  of it: writing and proving", lambda: toolpost_core.core().post(job, options))
     print(f"FreeCAD's own takes {theirs / ours:.1f} times as long")

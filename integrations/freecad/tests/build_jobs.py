@@ -1,8 +1,8 @@
-"""Runs inside `freecadcmd`: builds solids and jobs with FreeCAD's own operations, and writes each job as JSON.
+"""Runs inside `freecadcmd`: makes jobs with FreeCAD's own operations, and writes each as JSON.
 
     TOOLPOST_JOBS=folder freecadcmd build_jobs.py
 
-Beside each job `NAME.json` lies `NAME.ngc`, what FreeCAD's own `linuxcnc_post` makes of the same objects.
+Beside each job `NAME.json` lies `NAME.ngc`, what FreeCAD's own `linuxcnc_post` makes of it.
 """
 
 import json
@@ -36,7 +36,7 @@ FOLDER = os.environ["TOOLPOST_JOBS"]
 
 def write(work):
     for index, objects in enumerate(work.objects(), 1):
-        save(work.name + ("-%d" % index if work.job.SplitOutput else ""), objects)
+        save(f"{work.name}-{index}" if work.job.SplitOutput else work.name, objects)
     work.close()
 
 
@@ -47,7 +47,7 @@ def save(name, objects):
         json.dump(job, file, ensure_ascii=False, indent=1)
     linuxcnc_post.export(objects, path + ".ngc", "--no-show-editor --no-header")
     moves = sum(operation["commands"].count("\n") for operation in job["operations"])
-    print("%s: %d operations, %d commands" % (name, len(job["operations"]), moves))
+    print(f"{name}: {len(job['operations'])} operations, {moves} commands")
 
 
 def single(name, module, **properties):
@@ -68,7 +68,7 @@ def engraving():
     wire = work.document.addObject("Part::Feature", "Wire")
     line = Part.makePolygon([Vector(20, 50, 20), Vector(40, 50, 20), Vector(40, 70, 20)])
     arc = Part.Arc(Vector(40, 70, 20), Vector(30, 75, 20), Vector(20, 70, 20)).toShape()
-    wire.Shape = Part.Wire(line.Edges + [arc])
+    wire.Shape = Part.Wire([*line.Edges, arc])
     work.job.Model.addObject(wire)
     work.operation(PathEngrave, "engrave", BaseShapes=[wire], StartDepth=20, FinalDepth=19.5)
     write(work)
@@ -111,7 +111,7 @@ def several(name, order, split):
 
 
 def patterns():
-    """The ways in which this FreeCAD clears a pocket."""
+    """Answer the ways in which this FreeCAD clears a pocket."""
     work = Work("patterns")
     found = work.operation(PathPocketShape, "pocket", POCKET_FLOOR)
     found = found.getEnumerationsOfProperty("OffsetPattern")
@@ -120,7 +120,7 @@ def patterns():
 
 
 def shipped():
-    """The jobs of FreeCAD's own package; a document that holds only a solid gets one."""
+    """Write the jobs of FreeCAD's own package; a document that holds only a solid gets one."""
     tests = os.path.join(FreeCAD.getHomePath(), "Mod/Path/PathTests")
     for file in ("boxtest.fcstd", "Drilling_1.FCStd", "test_holes00.fcstd"):
         document = FreeCAD.open(os.path.join(tests, file))
@@ -135,7 +135,7 @@ def shipped():
             document.recompute()
             jobs = [job]
         for job in jobs:
-            called = name if len(jobs) == 1 else "%s-%s" % (name, job.Name)
+            called = name if len(jobs) == 1 else f"{name}-{job.Name}"
             save(called, PathPost.CommandPathPost.buildPostList(None, job)[0])
             if not job.Tools.Group[0].HorizFeed:
                 # This one comes without feeds and speeds.

@@ -1,150 +1,121 @@
-"""What LinuxCNC's own interpreter, `rs274`, makes of a program: its cuts and the rapids between them."""
+"""What LinuxCNC's own interpreter, `rs274`, makes of a program: cuts and the rapids between."""
 
 from __future__ import annotations
 
+import itertools
 import re
 import subprocess
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 
 @dataclass(frozen=True)
 class Move:
-    """A move with the state in which the machine makes it; lengths in mm, mm/min, rpm."""
+    """A move with the state in which the machine makes it; mm, mm/min, 1/min."""
 
-    start: tuple
-    # None for a rapid.
-    feed: float | None
-    # End point; for an arc also its centre in the plane and its turns.
-    shape: tuple
-    tool: int
+    start: tuple = (0.0, 0.0, 0.0)
+    # The end; of an arc also its centre in the plane, and its turns.
+    shape: tuple = ()
+    rapid: bool = True
+    feed: float = 0.0
+    tool: int = 0
     # How many tool changes have been.
-    changes: int
-    spindle: tuple
-    coolant: frozenset
-    work_offset: int
+    changes: int = 0
+    turns: str = ""
+    speed: float = 0.0
+    mist: bool = False
+    flood: bool = False
+    work_offset: int = 1
 
     def same(self, other, tolerance):
-        numbers = (self.start + self.shape, other.start + other.shape)
-        near = len(numbers[0]) == len(numbers[1]) and all(
-            abs(a - b) <= tolerance for a, b in zip(*numbers)
+        """Answer whether it is the same move, its numbers within the tolerance."""
+        ours, theirs = (move.start + move.shape for move in (self, other))
+        near = len(ours) == len(theirs) and all(
+            abs(a - b) <= tolerance for a, b in zip(ours, theirs)
         )
-        feeds = (self.feed, other.feed)
-        alike = feeds[0] == feeds[1] if None in feeds else abs(feeds[0] - feeds[1]) <= 0.1
-        state = (self.tool, self.spindle, self.coolant, self.work_offset)
-        return (
-            near
-            and alike
-            and state == (other.tool, other.spindle, other.coolant, other.work_offset)
-        )
+        return near and self.state() == other.state()
+
+    def state(self):
+        """Answer all but the places; a feed counts in tenths, and not in a rapid."""
+        feed = None if self.rapid else round(self.feed, 1)
+        return replace(self, start=(), shape=(), feed=feed, changes=0)
 
 
-class Refused(Exception):
+class JudgeError(Exception):
     """Why `rs274` does not run a program."""
 
 
 def moves(program, folder):
-    """The moves of a file, without those from one tool to the next, which posts are free to choose."""
-    table = "".join("T%d P%d Z0 D%f\n" % (n, n, 5 / 25.4) for n in range(1, 20))
+    """Answer the moves of a file, without those from tool to tool, which posts choose freely."""
+    # By itself the interpreter counts inches.
+    table = "".join(f"T{n} P{n} Z0 D{5 / 25.4:f}\n" for n in range(1, 20))
     (folder / "tool.tbl").write_text(table)
     (folder / "rs274.var").write_text("")
-    # Its tool table is a file in the home folder, which all interpreters share.
-    words = ["rs274", "-t", "tool.tbl", "-v", "rs274.var", "-g", str(program)]
     done = subprocess.run(
-        words,
+        ["rs274", "-t", "tool.tbl", "-v", "rs274.var", "-g", str(program)],
         cwd=folder,
+        # Its tool table is a file in the home folder, which all interpreters share.
         env={"HOME": str(folder), "PATH": "/usr/bin:/bin"},
+        check=False,
         capture_output=True,
         text=True,
         stdin=subprocess.DEVNULL,
         timeout=60,
     )
     if done.returncode:
-        raise Refused(done.stderr.strip())
-    return _between_tools(_canonical(done.stdout))
+        raise JudgeError(done.stderr.strip())
+    return [move for run in _runs(_canonical(done.stdout)) for move in run]
+
+
+# What a canonical call changes, of the state and its numbers.
+SETTINGS = {
+    "SET_FEED_RATE": lambda _, numbers: {"feed": numbers[0]},
+    "CHANGE_TOOL": lambda now, numbers: {"tool": numbers[0], "changes": now.changes + 1},
+    "SET_SPINDLE_SPEED": lambda _, numbers: {"speed": numbers[1]},
+    "START_SPINDLE_CLOCKWISE": lambda *_: {"turns": "clockwise"},
+    "START_SPINDLE_COUNTERCLOCKWISE": lambda *_: {"turns": "counter-clockwise"},
+    "STOP_SPINDLE_TURNING": lambda *_: {"turns": ""},
+    "MIST_ON": lambda *_: {"mist": True},
+    "MIST_OFF": lambda *_: {"mist": False},
+    "FLOOD_ON": lambda *_: {"flood": True},
+    "FLOOD_OFF": lambda *_: {"flood": False},
+    "SET_G5X_OFFSET": lambda _, numbers: {"work_offset": numbers[0]},
+    "STRAIGHT_TRAVERSE": lambda _, numbers: {"rapid": True, "shape": tuple(numbers[:3])},
+    "STRAIGHT_FEED": lambda _, numbers: {"rapid": False, "shape": tuple(numbers[:3])},
+    # X, Y, centre, turns, Z.
+    "ARC_FEED": lambda _, numbers: {
+        "rapid": False,
+        "shape": (*numbers[:2], numbers[5], *numbers[2:5]),
+    },
+}
 
 
 def _canonical(printed):
-    """The moves among the canonical calls."""
-    found, at, feed, unit = [], (0.0, 0.0, 0.0), 0.0, 1.0
-    tool, changes, speed, turns, coolant, offset = 0, 0, 0.0, "", frozenset(), 1
-    for line in printed.splitlines():
-        call = re.match(r"\s*\d+ N\S*\s+(\w+)\((.*)\)", line)
-        if not call:
-            continue
-        name, arguments = call.groups()
-        numbers = [float(number) for number in re.findall(r"-?\d+\.?\d*", arguments)]
-        shape = None
-        if name == "USE_LENGTH_UNITS":
-            unit = 1.0 if arguments == "CANON_UNITS_MM" else 25.4
-        elif name in ("STRAIGHT_TRAVERSE", "STRAIGHT_FEED"):
-            end = shape = tuple(number * unit for number in numbers[:3])
-        elif name == "ARC_FEED":
-            x, y, center_x, center_y, turns_of_arc, z = numbers[:6]
-            end = tuple(number * unit for number in (x, y, z))
-            shape = (*end, center_x * unit, center_y * unit, turns_of_arc)
-        elif name == "SET_FEED_RATE":
-            feed = numbers[0] * unit
-        elif name == "CHANGE_TOOL":
-            tool = int(numbers[0])
-            changes += 1
-        elif name == "SET_SPINDLE_SPEED":
-            speed = numbers[1]
-        elif name.endswith(("_SPINDLE_CLOCKWISE", "_SPINDLE_COUNTERCLOCKWISE", "_SPINDLE_TURNING")):
-            turns = name
-        elif name in ("MIST_ON", "FLOOD_ON"):
-            coolant |= {name.split("_")[0]}
-        elif name in ("MIST_OFF", "FLOOD_OFF"):
-            coolant -= {name.split("_")[0]}
-        elif name == "SET_G5X_OFFSET":
-            offset = int(numbers[0])
-        if shape:
-            # A line to where the tool stands is no move.
-            if len(shape) > 3 or end != at:
-                rapid = name == "STRAIGHT_TRAVERSE"
-                found.append(
-                    Move(
-                        at,
-                        None if rapid else feed,
-                        shape,
-                        tool,
-                        changes,
-                        (turns, speed),
-                        coolant,
-                        offset,
-                    )
-                )
-            at = end
-    return found
+    """Give the moves among the canonical calls; a line to where the tool stands is none."""
+    assert "CANON_UNITS_INCHES" not in printed
+    now = Move()
+    for name, arguments in re.findall(r"^ *\d+ N\S* +(\w+)\((.*)\)$", printed, re.MULTILINE):
+        if name in SETTINGS:
+            numbers = [float(number) for number in re.findall(r"-?\d+\.?\d*", arguments)]
+            now = replace(now, **SETTINGS[name](now, numbers))
+        if now.shape:
+            end = now.shape[:3]
+            if now.shape != now.start:
+                yield now
+            now = replace(now, start=end, shape=())
 
 
-def _between_tools(moves):
-    """The moves from the first cut after each tool change, at each work offset, to the last."""
-    runs = []
-    for move in moves:
-        if not runs or (runs[-1][-1].changes, runs[-1][-1].work_offset) != (
-            move.changes,
-            move.work_offset,
-        ):
-            runs.append([])
-        runs[-1].append(move)
-    kept = []
-    for run in runs:
-        cuts = [index for index, move in enumerate(run) if move.feed is not None]
+def _runs(moves):
+    """Give the moves from first to last cut after each tool change, at each work offset."""
+    for _, group in itertools.groupby(moves, lambda move: (move.changes, move.work_offset)):
+        run = list(group)
+        cuts = [index for index, move in enumerate(run) if not move.rapid]
         if cuts:
-            kept += run[cuts[0] : cuts[-1] + 1]
-    return kept
+            yield run[cuts[0] : cuts[-1] + 1]
 
 
 def difference(ours, theirs, tolerance=0.0011):
-    """The first move that is not the same, or None. Each program rounds to a thousandth by itself."""
-    for index in range(max(len(ours), len(theirs))):
-        pair = ours[index : index + 1] + theirs[index : index + 1]
-        if len(pair) < 2 or not pair[0].same(pair[1], tolerance):
-            return "move %d of %d and %d\nours   %s\ntheirs %s" % (
-                index,
-                len(ours),
-                len(theirs),
-                ours[index : index + 1],
-                theirs[index : index + 1],
-            )
+    """Answer the first move that is not the same; each program rounds to a thousandth by itself."""
+    for index, (one, other) in enumerate(itertools.zip_longest(ours, theirs)):
+        if one is None or other is None or not one.same(other, tolerance):
+            return f"move {index} of {len(ours)} and {len(theirs)}\nours   {one}\ntheirs {other}"
     return None

@@ -1,8 +1,9 @@
-"""Runs inside `freecadcmd`: posts jobs that are right and jobs that are not, and writes down what happens.
+"""Runs inside `freecadcmd`: posts jobs that are right and jobs that are not.
 
     TOOLPOST_CASES=folder freecadcmd posting.py
 
-For each case the folder gets `NAME.said` with all that FreeCAD printed, and `cases.json` what `export` gave.
+For each case the folder gets `NAME.said` with all that FreeCAD printed, and `cases.json` has what
+`export` answered.
 """
 
 import json
@@ -10,7 +11,6 @@ import os
 import sys
 import time
 
-import FreeCAD
 import Path
 
 sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
@@ -29,7 +29,7 @@ cases = {}
 
 
 def case(name, objects, arguments=LINUXCNC, filename=None):
-    """Posts, with what is printed going to a file of its own."""
+    """Post, with what is printed going to a file of its own."""
     filename = os.path.join(FOLDER, name + ".ngc") if filename is None else filename
     sys.stdout.flush()
     kept = os.dup(1), os.dup(2)
@@ -46,7 +46,7 @@ def case(name, objects, arguments=LINUXCNC, filename=None):
 
 
 class Wrapped:
-    """An object as FreeCAD 1.2 hands it to a post: a copy of the path, the rest from the original."""
+    """An object as FreeCAD 1.2 hands it to a post: a copy of its path, the rest its own."""
 
     def __init__(self, source):
         self.source = source
@@ -141,7 +141,7 @@ def two_fixtures():
     case("offset-of-two", work.objects()[0], LINUXCNC + " --work-offset G56")
     work.job.SplitOutput = True
     for number, objects in enumerate(work.objects(), 1):
-        case("split-%d" % number, objects)
+        case(f"split-{number}", objects)
     work.close()
 
 
@@ -169,7 +169,8 @@ def order():
 
 def million():
     """As long as the largest jobs: the commands as FreeCAD's reader of G-code makes them."""
-    lines = ["G1 X%.3f Y%.3f Z1 F3" % (n % 100 * 0.5, n // 100 * 0.001) for n in range(1_000_000)]
+    steps = ((n % 100 * 0.5, n // 100 * 0.001) for n in range(1_000_000))
+    lines = [f"G1 X{x:.3f} Y{y:.3f} Z1 F3" for x, y in steps]
     work = Work("million")
     start = work.objects()[0][0]
     piece = Piece("Long", [])

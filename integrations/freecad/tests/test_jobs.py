@@ -1,4 +1,4 @@
-"""Jobs of FreeCAD's own operations: every mill gets a proven program, and LinuxCNC moves as FreeCAD means it."""
+"""Jobs of FreeCAD's own operations: proven for every mill, and as LinuxCNC understands them."""
 
 import re
 
@@ -78,14 +78,14 @@ def test_linuxcnc_moves_as_with_the_post_of_freecad(jobs, tmp_path):
 
 
 def test_the_post_of_freecad_writes_labels_that_linuxcnc_refuses(jobs, tmp_path):
-    """FreeCAD puts the label `FirstOp-(T1)` into a comment as it is; LinuxCNC knows no nested ones."""
-    with pytest.raises(judge.Refused, match="Nested comment"):
+    """FreeCAD puts the label `FirstOp-(T1)` into a comment as it is; LinuxCNC nests none."""
+    with pytest.raises(judge.JudgeError, match="Nested comment"):
         judge.moves(jobs / "boxtest-Job001.ngc", tmp_path)
 
 
 def test_the_post_of_freecad_writes_a_cut_without_feed(jobs, tmp_path):
     """FreeCAD leaves F out where it is 0; we refuse the job, LinuxCNC the program."""
-    with pytest.raises(judge.Refused, match="zero feed rate"):
+    with pytest.raises(judge.JudgeError, match="zero feed rate"):
         judge.moves(jobs / "boxtest-Job.ngc", tmp_path)
 
 

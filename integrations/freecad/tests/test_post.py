@@ -55,7 +55,7 @@ def test_without_a_file_the_program_is_only_answered(cases):
     assert "G1 X" in case["answer"]
 
 
-def test_the_report_is_saved_where_it_is_asked_for(cases, tmp_path):
+def test_the_report_is_saved_where_it_is_asked_for(cases):
     case = cases["cases"]["report"]
     folder = case["file"].rsplit("/", 1)[0]
     with open(f"{folder}/report.json", encoding="utf-8") as file:

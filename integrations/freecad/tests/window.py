@@ -9,7 +9,6 @@ import json
 import os
 import sys
 
-import FreeCAD
 import FreeCADGui
 from PathScripts import PathDrilling, PathJobGui, PathPocketShape, PathPreferences, PathProfile
 from PySide import QtCore, QtGui

@@ -1,4 +1,4 @@
-"""What the scripts inside FreeCAD work with: a document with a block on it, a job, tools, operations."""
+"""What the scripts inside FreeCAD work with: a block, a job, tools, operations."""
 
 import os
 import traceback
@@ -50,8 +50,8 @@ class Work:
         """Spindle speed in rpm, feeds in mm/min."""
         controller.ToolNumber = number
         controller.SpindleSpeed = speed
-        controller.HorizFeed = "%s mm/min" % horizontal
-        controller.VertFeed = "%s mm/min" % vertical
+        controller.HorizFeed = f"{horizontal} mm/min"
+        controller.VertFeed = f"{vertical} mm/min"
 
     def tool(self, label, shape, diameter, number, speed=3000, horizontal=300, vertical=90):
         bit = PathToolBit.Factory.Create(
@@ -64,7 +64,7 @@ class Work:
         return controller
 
     def operation(self, module, label, faces=None, tool=None, **properties):
-        # Without a window FreeCAD cannot ask which tool is meant, and fails where there are several.
+        # Without a window FreeCAD cannot ask which tool is meant, and fails with several.
         tools = self.job.Tools.Group
         self.job.Tools.Group = [tool or self.mill]
         operation = module.Create(label)
@@ -80,7 +80,7 @@ class Work:
         return operation
 
     def objects(self):
-        """What FreeCAD hands to a post-processor, one list for each file."""
+        """Answer what FreeCAD hands to a post-processor, one list for each file."""
         self.document.recompute()
         return PathPost.CommandPathPost.buildPostList(None, self.job)
 
@@ -97,7 +97,7 @@ class Piece:
 
 
 def run(main):
-    """Runs a script and leaves FreeCAD, which would go on to its console."""
+    """Run a script and leave FreeCAD, which would go on to its console."""
     try:
         main()
     except BaseException:
