@@ -9,9 +9,9 @@
 //! as [`program::Orientation::Rotary`]; vectors and tilted planes resolved into the work frame as
 //! [`program::Orientation::Axis`]. Kinematics are not this crate's business.
 
+mod budget;
 mod compensation;
 mod decimal;
-mod flow;
 mod folders;
 mod iso;
 mod klartext;
@@ -143,6 +143,9 @@ pub struct Setup {
     pub units: Option<Units>,
     /// Whether the operator has switched block delete on: blocks that begin with `/` are skipped.
     pub block_delete: bool,
+    /// Where to a boring bar leaves the wall of a hole once the spindle stands in position, as a unit
+    /// vector along X or Y (FANUC, parameter 5148; Haas, setting 27); `None` where that is not known.
+    pub aside: Option<Vec3>,
     /// Where the tool stands in the work frame when the program starts, mm, with all offsets of the
     /// control at 0; `None` where that is not known, and no offset is.
     pub start: Option<Vec3>,
@@ -231,6 +234,6 @@ fn shown(found: Diagnostic, text: &[u8]) -> Diagnostic {
     if line == 0 || found.column > 0 || !found.excerpt.is_empty() {
         return found;
     }
-    let block = text.split(|&byte| byte == b'\n').nth(line as usize - 1).unwrap_or_default();
+    let block = program::line_of(text, line);
     found.at(line, block, 0, block.trim_ascii_end().len())
 }

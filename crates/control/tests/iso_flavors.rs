@@ -1,16 +1,13 @@
 //! Haas, Mach3, Marlin and GRBL: what each has of its own, and what it does not know.
 
+mod common;
+
 use geom::Vec3;
 use program::{Coolant, Cycle, CycleKind, Diagnostic, Op, Spindle};
 use toolpost_control::{Dialect, Settings, read};
 
 fn run(dialect: Dialect, text: &str) -> Result<Vec<Op>, Box<Diagnostic>> {
-    let mut ops = Vec::new();
-    read(&Settings::new(dialect, [false; 3]), "p.nc", text.as_bytes(), &mut |record| {
-        ops.push(record.op);
-        Ok(())
-    })?;
-    Ok(ops)
+    common::ops(&Settings::new(dialect, [false; 3]), "p.nc", text)
 }
 
 fn ops(dialect: Dialect, text: &str) -> Vec<Op> {
@@ -84,7 +81,7 @@ fn haas_coolant_through_the_spindle_has_its_own_way_off() {
 
 #[test]
 fn haas_refuses_with_the_reason() {
-    for word in ["G12 I5.", "G13 I5.", "G47", "G76", "G107", "G141", "G143", "G150", "G174"] {
+    for word in ["G12 I5.", "G13 I5.", "G47", "G77", "G107", "G141", "G143", "G150", "G174"] {
         let error = run(Dialect::Haas, &format!("G21\n{word}\n")).unwrap_err();
         assert_eq!(error.rule, "nc-unknown-word", "{word}");
         assert!(!error.help.is_empty(), "{word}");

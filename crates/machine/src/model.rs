@@ -212,16 +212,18 @@ pub enum CycleName {
     Bore,
 }
 
-impl From<CycleKind> for CycleName {
-    fn from(kind: CycleKind) -> CycleName {
-        match kind {
+impl CycleName {
+    /// The name of a cycle; none for those that no writer makes.
+    pub fn of(kind: CycleKind) -> Option<CycleName> {
+        Some(match kind {
             CycleKind::Drill => CycleName::Drill,
             CycleKind::Deep => CycleName::Deep,
             CycleKind::BreakChip => CycleName::BreakChip,
             CycleKind::Tap { .. } => CycleName::Tap,
             CycleKind::Ream => CycleName::Ream,
             CycleKind::Bore => CycleName::Bore,
-        }
+            CycleKind::FineBore(_) | CycleKind::BackBore { .. } => return None,
+        })
     }
 }
 

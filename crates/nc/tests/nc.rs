@@ -37,6 +37,50 @@ fn a_rapid_waits_until_every_coordinate_is_known() {
 }
 
 #[test]
+fn where_z_is_at_its_switch_g92_says() {
+    let machine = load_origin("marlin").unwrap();
+    let known = Setup { start: Some(Vec3::new(0.0, 0.0, 50.0)), ..Setup::default() };
+    let text = "G21\nG90\nG28 Z\nG92 Z0.8\nG1 Z-1 F100\nG1 X5\n";
+    let program = read_for(&machine, known, text).unwrap().program;
+    let expected = [
+        &Op::Home(4),
+        &Op::Rapid(at(0.0, 0.0, 0.8)),
+        &Op::Line(at(0.0, 0.0, -1.0)),
+        &Op::Line(at(5.0, 0.0, -1.0)),
+    ];
+    let ways: Vec<_> = ways(&program).into_iter().map(|(_, op)| op).collect();
+    assert_eq!(ways, expected);
+    // Where X and Y are nobody has said.
+    let error = read_for(&machine, Setup::default(), text).unwrap_err();
+    assert_eq!(error.rule, "unknown-position");
+}
+
+/// The boring bar goes aside along X of the machine: on a table that has turned by 90 degrees that is
+/// another way in the work.
+#[test]
+fn a_boring_bar_goes_aside_as_the_table_stands() {
+    let machine = load("fanuc-table-bc").unwrap();
+    let aside = |c: &str| {
+        let setup = Setup { aside: Some(Vec3::X), ..Setup::default() };
+        let text = format!(
+            "G21 G90 G54\nT1 M6\nS500 M3\nG0 B0 C0\nX0 Y0 Z50.\nG0 C{c}\nG98 G76 X1. Y0 Z-20. R2. Q0.5 F50\n\
+             X5.\nG80\nM30\n"
+        );
+        let program = read_for(&machine, setup, &text).unwrap().program;
+        let aside = |op: &Op| match op {
+            Op::Cycle(cycle) => cycle.kind.withdrawal().map(|way| way.aside),
+            _ => None,
+        };
+        program.records.iter().filter_map(|record| aside(&record.op)).collect::<Vec<_>>()
+    };
+    assert_eq!(aside("0"), [Vec3::new(0.5, 0.0, 0.0)]);
+    let turned = aside("90.");
+    assert!(
+        turned.len() == 1 && turned[0].x.abs() < 1e-12 && (turned[0].y.abs() - 0.5).abs() < 1e-12
+    );
+}
+
+#[test]
 fn z_home_stays_between_two_moves_and_goes_where_the_tool_is_changed() {
     let text = "G21 G90 G54 G0\nT1 M6\nX0. Y0.\nG43 Z5. H1\nG91 G28 Z0\nG90 X9. Y9.\nZ5.\n\
                 G91 G28 Z0\nG90 T2 M6\nX1. Y1.\nG43 Z5. H2\nG91 G28 Z0\nM30\n";

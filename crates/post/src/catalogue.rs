@@ -107,7 +107,8 @@ names! {
         CycleTap Block "cycle_tap", "", "Definition of tapping, right-hand.";
         CycleTapLeft Block "cycle_tap_left", "", "Definition of tapping, left-hand.";
         CycleReam Block "cycle_ream", "", "Definition of reaming: feed in, feed out.";
-        CycleBore Block "cycle_bore", "", "Definition of boring: feed in, spindle stop, rapid out.";
+        CycleReamDwell Block "cycle_ream_dwell", "", "The same with a dwell at the bottom; `cycle_ream` where it is missing and places {{DWELL}}.";
+        CycleBore Block "cycle_bore", "", "Definition of boring: feed in, spindle stop, rapid out. The spindle is told anew behind the cycle, for controls differ in whether they start it.";
         CycleHole Block "cycle_hole", "", "Each hole of the cycle that its definition has not drilled.";
         CycleOff Block "cycle_off", "", "End of the cycle.";
         Dwell Block "dwell", "", "A dwell.";
@@ -168,10 +169,10 @@ names! {
         Depth Word "DEPTH", "mm", "Cycle: depth from the point of the hole, positive.";
         Safety Word "SAFETY", "mm", "Cycle: height of the R plane above the point of the hole.";
         Lift Word "LIFT", "mm", "Cycle: height of the retract level above the point of the hole.";
-        Peck Word "PECK", "mm", "Cycle: depth of a peck; the whole depth where the cycle does not peck.";
+        Peck Word "PECK", "mm", "Cycle: depth of a peck, where it pecks.";
         Dwell Word "DWELL", "s", "Cycle: dwell at the bottom.";
         Pitch Word "PITCH", "mm", "Cycle: pitch of the thread, negative for left-hand.";
-        Plunge Word "PLUNGE", "mm/min", "Cycle: feed into the hole, where it is a parameter.";
+        Plunge Word "PLUNGE", "mm/min", "Cycle: feed into the hole, where it is a parameter; in the unit of {{F}}.";
         Speed Word "SPEED", "1/min", "Cycle: speed of the spindle, where it is a parameter.";
         Motion Code "motion", "rapid, linear, arc_cw, arc_ccw", "Kind of motion.";
         Plane Code "plane", "xy, xz, yz", "Plane of arcs and of cutter compensation.";
@@ -201,6 +202,7 @@ pub(crate) const VARIABLES: &[Parameter] = &[
     variable("tool.diameter", "mm", "Cutting diameter; undefined where the source is silent."),
     variable("tool.corner_radius", "mm", "Corner radius; undefined where the source is silent."),
     variable("tool.length", "mm", "Length of the tool; undefined where the source is silent."),
+    variable("spindle.clockwise", "", "Whether the spindle turns clockwise, while it turns."),
     variable("spindle.changed", "", "Whether the speed is another than the one last written."),
     variable("text", "", "The text of a comment or a message."),
     variable("options", "", "The values of `[options]` of the machine: `{{ options.NAME }}`."),

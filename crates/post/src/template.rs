@@ -241,7 +241,7 @@ impl Scope {
             program: program_value(machine, &program),
             operation: map([("name", Value::from(operation))]),
             tool: tool_value(machine, &tool, first),
-            spindle: map([("changed", Value::from(first))]),
+            spindle: spindle_value(first, first),
             text: Value::from(text),
             ..Scope::new(machine)
         }
@@ -264,7 +264,7 @@ impl Scope {
             options: Value::from(options.collect::<BTreeMap<String, Value>>()),
             operation: map([("name", Value::from(""))]),
             tool: tool_value(machine, &Tool::default(), true),
-            spindle: map([("changed", Value::from(true))]),
+            spindle: spindle_value(true, true),
             text: Value::from(""),
         }
     }
@@ -279,6 +279,11 @@ fn number_value(number: f64) -> Value {
 /// A value with members.
 pub(crate) fn map(members: impl IntoIterator<Item = (&'static str, Value)>) -> Value {
     Value::from(members.into_iter().collect::<BTreeMap<&'static str, Value>>())
+}
+
+/// The spindle as templates see it.
+pub(crate) fn spindle_value(changed: bool, clockwise: bool) -> Value {
+    map([("changed", Value::from(changed)), ("clockwise", Value::from(clockwise))])
 }
 
 /// A tool as templates see it; `first` where none has been called before.

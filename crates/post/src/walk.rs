@@ -5,7 +5,7 @@ use crate::findings::Findings;
 use crate::place::{Place, Route};
 use crate::template::{
     LENGTH_OFFSET, ORIENTATION, POSITION, Scope, Templates, Words, bit, map, printed,
-    program_value, tool_value,
+    program_value, spindle_value, tool_value,
 };
 use crate::wire::Wire;
 use crate::writer::Writer;
@@ -62,7 +62,7 @@ pub(crate) struct Walk<'a> {
     pub(crate) length_offset: Option<f64>,
     /// What the source wants, and what the control has been told.
     pub(crate) spindle: Spindle,
-    active_spindle: Option<Spindle>,
+    pub(crate) active_spindle: Option<Spindle>,
     coolant: Coolant,
     active_coolant: Option<Coolant>,
     pub(crate) feed: Option<Feed>,
@@ -85,6 +85,8 @@ pub(crate) struct Walk<'a> {
     pub(crate) tip: Vec3,
     /// The same in the coordinates of the block, mm.
     pub(crate) said: Vec3,
+    /// Where the last arc leads, in the coordinates of the block, where it is told by its angle.
+    pub(crate) turned_to: Option<Vec3>,
     pub(crate) limits: Limits<'a>,
     /// Entry of the code word `work_offset` that is active.
     work_offset: usize,
@@ -132,6 +134,7 @@ impl<'a> Walk<'a> {
             wire: Wire::of(machine, program),
             tip: Vec3::ZERO,
             said: Vec3::ZERO,
+            turned_to: None,
             limits: Limits::new(machine),
             work_offset: 0,
             ended: false,
@@ -214,6 +217,11 @@ impl<'a> Walk<'a> {
             Op::Spindle(spindle) => {
                 self.end_cycle()?;
                 self.set_spindle(*spindle)
+            }
+            Op::SurfaceSpeed(None) => Ok(()),
+            Op::SurfaceSpeed(Some(_)) => {
+                let message = "the speed of the spindle follows X (G96), which is for turning";
+                Err(refuse("surface-speed", message).help("give it speeds of its own (G97)").into())
             }
             Op::Coolant(coolant) => {
                 self.end_cycle()?;
@@ -482,7 +490,8 @@ impl<'a> Walk<'a> {
             self.writer.set(WordName::S, speed);
         }
         let changed = speed(self.spindle) != self.writer.active(WordName::S);
-        self.scope.spindle = map([("changed", Value::from(changed))]);
+        let counter = matches!(self.spindle, Spindle::CounterClockwise(_));
+        self.scope.spindle = spindle_value(changed, !counter);
         self.required(match self.spindle {
             Spindle::Off => BlockName::SpindleOff,
             Spindle::Clockwise(_) => BlockName::SpindleCw,
@@ -586,13 +595,18 @@ impl<'a> Walk<'a> {
 
     /// Says the feed of a cut of `length` mm in the next block, one of `pieces` of the source's. With
     /// `turning` the control, which knows nothing of the tool tip, is told the time instead, where it
-    /// can be.
+    /// can be. Answers the feed as it is said.
     #[inline]
-    pub(crate) fn say_feed(&mut self, length: f64, pieces: usize, turning: bool) -> Done {
+    pub(crate) fn say_feed(
+        &mut self,
+        length: f64,
+        pieces: usize,
+        turning: bool,
+    ) -> Result<f64, Box<Diagnostic>> {
         let Some(mut feed) = self.feed else {
             // The generator of a wire machine holds the gap, and finds the feed by it.
             if self.wire.is_some() {
-                return Ok(());
+                return Ok(0.0);
             }
             return Err(refuse("feed-missing", "a cut before the first feed"));
         };
@@ -640,7 +654,7 @@ impl<'a> Walk<'a> {
         }
         self.writer.set(WordName::F, value);
         self.writer.code(WordName::FeedMode, mode);
-        Ok(())
+        Ok(value)
     }
 }
 

@@ -46,6 +46,10 @@ pub enum Op {
     Feed(Feed),
     /// Spindle from here on.
     Spindle(Spindle),
+    /// Constant surface speed from here on, m/min: the spindle turns as fast as the distance of the tool
+    /// from X 0 asks for, and its own speed is the most. `None` is its own speed again. It is for turning,
+    /// and no mill's writer makes it.
+    SurfaceSpeed(Option<f64>),
     /// Coolant from here on.
     Coolant(Coolant),
     /// Change to this tool.
@@ -269,6 +273,47 @@ pub enum CycleKind {
     Ream,
     /// Feed in, spindle stop, rapid out (`G86`).
     Bore,
+    /// Feed in, aside from the wall, rapid out, back over the hole, where the spindle turns again (`G76`).
+    FineBore(Withdrawal),
+    /// Aside above the hole, down through it to the bottom, back to the axis, feed **up** to the point
+    /// with the spindle turning, aside again and out (`G87`). The clearance is the height at which the
+    /// tool goes aside.
+    BackBore {
+        /// How it passes through the hole.
+        withdrawal: Withdrawal,
+        /// Feed of the way through the hole, in and out; `None` is by rapid.
+        through: Option<Feed>,
+    },
+}
+
+/// How a boring bar leaves the wall: the spindle stops in position, and the tool goes aside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Withdrawal {
+    /// How far and where to, mm, in the frame of the pose's point.
+    pub aside: Vec3,
+    /// Position of the spindle, degrees; `None` is the one that the machine is set to (`M19`).
+    pub angle: Option<f64>,
+}
+
+impl CycleKind {
+    /// How the tool leaves the wall, where it does.
+    pub fn withdrawal(&self) -> Option<&Withdrawal> {
+        match self {
+            CycleKind::FineBore(withdrawal) | CycleKind::BackBore { withdrawal, .. } => {
+                Some(withdrawal)
+            }
+            _ => None,
+        }
+    }
+
+    /// The same, where the tool leaves the wall by `aside`.
+    pub fn with_aside(mut self, aside: Vec3) -> CycleKind {
+        if let CycleKind::FineBore(withdrawal) | CycleKind::BackBore { withdrawal, .. } = &mut self
+        {
+            withdrawal.aside = aside;
+        }
+        self
+    }
 }
 
 impl Op {

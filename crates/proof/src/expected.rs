@@ -52,6 +52,8 @@ pub(crate) enum Step {
 pub(crate) struct Wanted<'a> {
     pub feed: Option<Feed>,
     pub spindle: Spindle,
+    /// Constant surface speed, m/min.
+    pub surface_speed: Option<f64>,
     pub coolant: Coolant,
     pub tool: Option<&'a Tool>,
     pub compensation: Compensation,
@@ -84,6 +86,7 @@ impl<'a> Cursor<'a> {
         let wanted = Wanted {
             feed: None,
             spindle: Spindle::Off,
+            surface_speed: None,
             coolant: Coolant::Off,
             tool: None,
             compensation: Compensation::Off,
@@ -190,6 +193,7 @@ impl<'a> Cursor<'a> {
         match op {
             Op::Feed(feed) => wanted.feed = Some(*feed),
             Op::Spindle(spindle) => wanted.spindle = *spindle,
+            Op::SurfaceSpeed(speed) => wanted.surface_speed = *speed,
             Op::Coolant(coolant) => wanted.coolant = *coolant,
             Op::Compensation(side) => wanted.compensation = *side,
             Op::Taper(degrees) => wanted.taper = *degrees,

@@ -65,8 +65,8 @@ pub struct Source {
     pub origin: Origin,
 }
 
-/// What an NC program was written for.
-#[derive(Debug, Args)]
+/// What an NC program was written for, and what the operator has set up.
+#[derive(Debug, Default, Args)]
 #[command(next_help_heading = "NC program as the source")]
 pub struct Origin {
     /// The source is an NC program of this control or machine: a name in the library, or a file
@@ -86,6 +86,9 @@ pub struct Origin {
     /// What lengths count before the program says it by G20 or G21.
     #[arg(long, value_name = "UNIT", requires = "from")]
     pub units: Option<Units>,
+    /// Which way a boring bar goes from the wall of a hole, where the machine is set to it (G76, G87).
+    #[arg(long, value_name = "WAY", requires = "from", allow_hyphen_values = true)]
+    pub aside: Option<Way>,
     /// Skip the blocks that begin with `/`.
     #[arg(long, requires = "from")]
     pub block_delete: bool,
@@ -110,6 +113,23 @@ pub enum WholeNumbers {
     Units,
     /// Thousandths of a mm, ten-thousandths of an inch, thousandths of a degree.
     Increments,
+}
+
+/// A way along an axis.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum Way {
+    /// Along X.
+    #[value(name = "+X")]
+    PlusX,
+    /// Against X.
+    #[value(name = "-X")]
+    MinusX,
+    /// Along Y.
+    #[value(name = "+Y")]
+    PlusY,
+    /// Against Y.
+    #[value(name = "-Y")]
+    MinusY,
 }
 
 /// How close the proof must be.

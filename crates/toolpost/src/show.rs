@@ -2,11 +2,11 @@
 
 use crate::answer::{Answer, Stop};
 use crate::args::Show;
-use crate::drawing::Format;
 use crate::files::{self, Target};
 use crate::progress::Progress;
 use crate::summary::{Shape, rows};
-use crate::{drawing, toolpath};
+use crate::toolpath;
+use drawing::Format;
 use serde_json::json;
 
 /// Counts and measures a toolpath and, where a place is given, draws it.

@@ -1,7 +1,7 @@
 //! Getting the toolpath and the machine that a command names.
 
 use crate::answer::{Stop, Verdict};
-use crate::args::{Origin, Units, WholeNumbers};
+use crate::args::{Origin, Units, Way, WholeNumbers};
 use crate::fcstd;
 use crate::files;
 use crate::summary::Shape;
@@ -9,13 +9,15 @@ use control::Setup;
 use freecad::{Job, Listing};
 use geom::Vec3;
 use machine::{Machine, library};
-use program::{Diagnostic, Op, Program, Severity};
+use program::{Diagnostic, Op, Program, Severity, line_of};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 /// A toolpath as it was read.
+#[derive(Debug)]
 pub struct Toolpath {
-    path: PathBuf,
+    /// Where it was read from; nowhere where it was put together in memory.
+    path: Option<PathBuf>,
     /// Name of its file.
     pub file: String,
     /// The CAM system whose habits the file has, or the control that it was written for.
@@ -60,7 +62,8 @@ pub fn read(
     };
     let freecad::Reading { program, listing, warnings } = freecad::read(&machine, &file, &job)?;
     let (dialect, warnings) = (String::from("FreeCAD job"), held(warnings, strict)?);
-    Ok(Toolpath { path: path.to_owned(), file, dialect, program, warnings, listing: Some(listing) })
+    let (path, listing) = (Some(path.to_owned()), Some(listing));
+    Ok(Toolpath { path, file, dialect, program, warnings, listing })
 }
 
 /// The control on which a job runs of which nobody has said the machine: it has three axes.
@@ -108,7 +111,8 @@ fn read_by(
         }
     };
     let warnings = held(warnings, strict)?;
-    Ok(Toolpath { path: path.to_owned(), file, dialect, program, warnings, listing: None })
+    let path = Some(path.to_owned());
+    Ok(Toolpath { path, file, dialect, program, warnings, listing: None })
 }
 
 /// The warnings; with `strict` they stop the command.
@@ -159,6 +163,12 @@ impl Origin {
                 Units::Mm => control::Units::Millimeters,
                 Units::Inch => control::Units::Inches,
             }),
+            aside: self.aside.map(|way| match way {
+                Way::PlusX => Vec3::X,
+                Way::MinusX => Vec3::NEG_X,
+                Way::PlusY => Vec3::Y,
+                Way::MinusY => Vec3::NEG_Y,
+            }),
             block_delete: self.block_delete,
             start: self.start.map(Vec3::from_array),
         })
@@ -170,10 +180,19 @@ impl Toolpath {
     pub fn of_drawing(path: &Path, dialect: &str) -> Toolpath {
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         Toolpath {
-            path: path.to_owned(),
+            path: Some(path.to_owned()),
             file: files::name(path),
+            ..Toolpath::of_program(Program::new(name), dialect)
+        }
+    }
+
+    /// A program that no file says: its lines are what who put it together counts.
+    pub fn of_program(program: Program, dialect: &str) -> Toolpath {
+        Toolpath {
+            path: None,
+            file: program.name.clone(),
             dialect: dialect.to_owned(),
-            program: Program::new(name),
+            program,
             warnings: Vec::new(),
             listing: None,
         }
@@ -197,8 +216,9 @@ impl Toolpath {
                 *finding = listing.located(finding.clone());
                 continue;
             }
-            let text = lines.get_or_insert_with(|| files::read(&self.path).unwrap_or_default());
-            *finding = finding.clone().on(finding.line, line(text, finding.line)).file(&self.file);
+            let text = lines.get_or_insert_with(|| self.text());
+            *finding =
+                finding.clone().on(finding.line, line_of(text, finding.line)).file(&self.file);
         }
     }
 
@@ -241,24 +261,14 @@ impl Toolpath {
             let text = String::from_utf8_lossy(place.text).into_owned();
             return (format!("{}:{}", place.file, place.command), text);
         }
-        let text = files::read(&self.path).unwrap_or_default();
-        let text = String::from_utf8_lossy(line(&text, number)).into_owned();
+        let text = String::from_utf8_lossy(line_of(&self.text(), number)).into_owned();
         (format!("{}:{number}", self.file), text)
     }
-}
 
-/// Line `number` (from 1) of `text`, whose lines end with LF, CR LF or CR.
-fn line(text: &[u8], number: u32) -> &[u8] {
-    let mut rest = text;
-    for _ in 1..number {
-        let Some(end) = rest.iter().position(|byte| matches!(byte, b'\n' | b'\r')) else {
-            return b"";
-        };
-        let length = if rest[end..].starts_with(b"\r\n") { 2 } else { 1 };
-        rest = &rest[end + length..];
+    /// The text of the source, as far as there is one still.
+    fn text(&self) -> Vec<u8> {
+        self.path.as_deref().and_then(|path| files::read(path).ok()).unwrap_or_default()
     }
-    let end = rest.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
-    &rest[..end.unwrap_or(rest.len())]
 }
 
 /// The machine of a name in the library or of a file.
@@ -281,16 +291,4 @@ pub fn describe(machine: &Machine) -> Value {
         "extension": machine.extension,
         "path_tolerance_mm": machine.path_tolerance(),
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::line;
-
-    #[test]
-    fn lines_end_with_lf_cr_lf_or_cr() {
-        let text = b"one\ntwo\r\nthree\rfour";
-        let lines: Vec<&[u8]> = (1..=5).map(|number| line(text, number)).collect();
-        assert_eq!(lines, [&b"one"[..], b"two", b"three", b"four", b""]);
-    }
 }

@@ -180,6 +180,7 @@ impl<'a> Prover<'a> {
         match op {
             Op::Feed(feed) => running.feed = Some(*feed),
             Op::Spindle(spindle) => (running.spindle, running.spindle_line) = (*spindle, line),
+            Op::SurfaceSpeed(speed) => running.surface_speed = *speed,
             Op::Coolant(coolant) => (running.coolant, running.coolant_line) = (*coolant, line),
             Op::Compensation(side) => running.compensation = *side,
             Op::Taper(degrees) => running.taper = *degrees,
