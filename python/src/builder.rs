@@ -5,7 +5,9 @@ use crate::error::refused;
 use crate::program::Program;
 use crate::record::{COOLANTS, FEED_UNITS};
 use geom::{Arc, ArcError, Vec3};
-use program::{ArcTo, Compensation, Cycle, CycleKind, Diagnostic, Feed, Op, Pose, Spindle, Tool};
+use program::{
+    ArcTo, Compensation, Cycle, CycleKind, Diagnostic, Feed, Op, Pose, Spindle, Tool, Withdrawal,
+};
 use pyo3::prelude::*;
 use toolpost::toolpath::Toolpath;
 
@@ -134,7 +136,7 @@ impl Builder {
     ///     Height above the point from which the tool feeds, mm.
     /// retract : float, optional
     ///     Height above the point to which it goes back, mm; by default ``clearance``.
-    /// kind : {"drill", "deep", "break-chip", "tap", "ream", "bore"}
+    /// kind : {"drill", "deep", "break-chip", "tap", "ream", "bore", "fine-bore", "back-bore"}
     ///     What the tool does in the hole.
     /// feed : float, optional
     ///     mm/min; by default the feed that holds.
@@ -146,6 +148,10 @@ impl Builder {
     ///     Of a tap, mm for a turn.
     /// left : bool
     ///     Whether the tap cuts a left-hand thread.
+    /// aside : tuple of 3 floats, optional
+    ///     How far and where to the bar of ``fine-bore`` and ``back-bore`` leaves the wall, mm.
+    /// angle : float, optional
+    ///     Position of the spindle for that, degrees; by default the one that the machine is set to.
     /// axis : tuple of 3 floats, optional
     ///     The tool axis of all of them.
     ///
@@ -153,9 +159,9 @@ impl Builder {
     /// ------
     /// toolpost.Error
     ///     ``no-clear-plane`` where the tool would feed from below the bottom, or go back below
-    ///     ``clearance``; ``peck`` and ``pitch`` where the kind needs or takes none.
+    ///     ``clearance``; ``peck``, ``pitch`` and ``aside`` where the kind needs or takes none.
     #[pyo3(signature = (points, depth, *, clearance, retract = None, kind = "drill", feed = None, dwell = 0.0,
-                        peck = None, first_peck = None, pitch = None, left = false, axis = None))]
+                        peck = None, first_peck = None, pitch = None, left = false, aside = None, angle = None, axis = None))]
     #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
     fn drill<'py>(
         mut slf: PyRefMut<'py, Self>,
@@ -170,10 +176,16 @@ impl Builder {
         first_peck: Option<f64>,
         pitch: Option<f64>,
         left: bool,
+        aside: Option<[f64; 3]>,
+        angle: Option<f64>,
         axis: Option<[f64; 3]>,
     ) -> Built<'py> {
         let py = slf.py();
         let no = |rule, message: &str| Err(refused(py, Diagnostic::error(rule, message)));
+        let withdrawal = Withdrawal {
+            aside: point(py, "aside", aside.unwrap_or_default())?,
+            angle: angle.map(|degrees| number(py, "angle", degrees)).transpose()?,
+        };
         let kinds = [
             ("drill", CycleKind::Drill),
             ("deep", CycleKind::Deep),
@@ -181,6 +193,8 @@ impl Builder {
             ("tap", CycleKind::Tap { pitch: pitch.unwrap_or(0.0), left }),
             ("ream", CycleKind::Ream),
             ("bore", CycleKind::Bore),
+            ("fine-bore", CycleKind::FineBore(withdrawal)),
+            ("back-bore", CycleKind::BackBore { withdrawal, through: None }),
         ];
         let kind = word(py, "kind", kind, &kinds)?;
         let retract = number(py, "retract", retract.unwrap_or(clearance))?;
@@ -206,6 +220,9 @@ impl Builder {
         }
         if matches!(kind, CycleKind::Tap { .. }) != pitch.is_some() {
             return no("pitch", "`tap`, and no other, takes a pitch");
+        }
+        if kind.withdrawal().is_some() != aside.is_some_and(|aside| aside != [0.0; 3]) {
+            return no("aside", "`fine-bore` and `back-bore`, and no other, go aside");
         }
         if let Some(pitch) = pitch {
             positive(py, "pitch", pitch)?;

@@ -25,7 +25,7 @@ use toolpost::{Origin, Units, Way, WholeNumbers};
 /// The arrays have one row for each move (see :attr:`kinds`). They are made at the first use of any of
 /// them; from then on every access gives the same memory, without copying. They are read-only, and outlive
 /// the program.
-#[pyclass(frozen, module = "toolpost")]
+#[pyclass(frozen, sequence, module = "toolpost")]
 pub struct Program {
     pub toolpath: Toolpath,
     columns: PyOnceLock<Columns>,
@@ -237,12 +237,12 @@ impl Records {
 ///     What a length without a decimal point counts on a control that can be set either way.
 /// units : {"mm", "inch"}, optional
 ///     What lengths count before the program says it.
-/// aside : {"+X", "-X", "+Y", "-Y"}, optional
-///     Which way a boring bar goes from the wall of a hole, where the machine is set to it.
 /// block_delete : bool
 ///     Skip the blocks that begin with ``/``.
 /// start : tuple of 3 floats, optional
 ///     Where the tool stands when the program starts, mm.
+/// aside : {"+X", "-X", "+Y", "-Y"}, optional
+///     Which way a boring bar goes from the wall of a hole, where the machine is set to it.
 /// strict : bool
 ///     Take every warning as an error.
 ///
@@ -261,7 +261,7 @@ impl Records {
 /// What each format means, with sources: ``docs/sources/apt.md``, ``docs/controls``.
 #[pyfunction]
 #[pyo3(signature = (path, control=None, *, tools=None, folders=Vec::new(), whole_numbers=None, units=None,
-                    aside=None, block_delete=false, start=None, strict=false))]
+                    block_delete=false, start=None, aside=None, strict=false))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub fn read(
     py: Python<'_>,
@@ -271,9 +271,9 @@ pub fn read(
     folders: Vec<PathBuf>,
     whole_numbers: Option<&str>,
     units: Option<&str>,
-    aside: Option<&str>,
     block_delete: bool,
     start: Option<[f64; 3]>,
+    aside: Option<&str>,
     strict: bool,
 ) -> PyResult<Program> {
     let counts = [("units", WholeNumbers::Units), ("increments", WholeNumbers::Increments)];
@@ -290,9 +290,9 @@ pub fn read(
             .map(|given| word(py, "whole_numbers", given, &counts))
             .transpose()?,
         units: units.map(|given| word(py, "units", given, &lengths)).transpose()?,
-        aside: aside.map(|given| word(py, "aside", given, &ways)).transpose()?,
         block_delete,
         start,
+        aside: aside.map(|given| word(py, "aside", given, &ways)).transpose()?,
     };
     released(py, || toolpath::read(&path, strict, &origin, None)).map(Program::from)
 }

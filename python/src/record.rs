@@ -11,7 +11,7 @@ use pyo3::types::PyDict;
 /// ----------
 /// kind : str
 ///     What it is: ``rapid``, ``line``, ``arc``, ``thread``, ``probe``, ``hole``, ``cycle``, ``cycle-off``,
-///     ``feed``, ``spindle``, ``coolant``, ``tool``, ``preselect``, ``length-offset``, ``compensation``,
+///     ``feed``, ``spindle``, ``surface-speed``, ``coolant``, ``tool``, ``preselect``, ``length-offset``, ``compensation``,
 ///     ``frame``, ``work-offset``, ``thread-wire``, ``cut-wire``, ``taper``, ``home``, ``dwell``, ``stop``,
 ///     ``optional-stop``, ``operation``, ``end-of-operation``, ``comment``, ``message``, ``end``.
 /// line : int
@@ -67,7 +67,7 @@ impl Record {
 /// Where the tool is after a motion, or at the latest.
 pub fn pose(op: &Op) -> Option<&Pose> {
     match op {
-        Op::Probe(pose) => Some(pose),
+        Op::Probe(probe) => Some(&probe.end),
         op => op.pose(),
     }
 }
@@ -87,7 +87,11 @@ fn kind(op: &Op, words: &Bound<'_, PyDict>) -> PyResult<&'static str> {
             words.set_item("pitch", thread.pitch)?;
             "thread"
         }
-        Op::Probe(_) => "probe",
+        Op::Probe(probe) => {
+            words.set_item("away", probe.away)?;
+            words.set_item("must_answer", probe.must_answer)?;
+            "probe"
+        }
         Op::Hole(_) => "hole",
         Op::Cycle(cycle) => {
             words.set_item("cycle", cycle_name(cycle.kind))?;
@@ -104,9 +108,6 @@ fn kind(op: &Op, words: &Bound<'_, PyDict>) -> PyResult<&'static str> {
             if let Some(withdrawal) = cycle.kind.withdrawal() {
                 words.set_item("aside", triple(withdrawal.aside))?;
                 words.set_item("angle", withdrawal.angle)?;
-            }
-            if let CycleKind::BackBore { through: Some(Feed::PerMinute(feed)), .. } = cycle.kind {
-                words.set_item("through", feed)?;
             }
             if let Some(feed) = cycle.feed {
                 say_feed(feed, words)?;
@@ -129,7 +130,7 @@ fn kind(op: &Op, words: &Bound<'_, PyDict>) -> PyResult<&'static str> {
             "spindle"
         }
         Op::SurfaceSpeed(speed) => {
-            words.set_item("surface_speed", speed)?;
+            words.set_item("speed", speed)?;
             "surface-speed"
         }
         Op::Coolant(coolant) => {

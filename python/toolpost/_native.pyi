@@ -98,13 +98,17 @@ class Builder:
         *,
         clearance: float,
         retract: float | None = None,
-        kind: Literal["drill", "deep", "break-chip", "tap", "ream", "bore"] = "drill",
+        kind: Literal[
+            "drill", "deep", "break-chip", "tap", "ream", "bore", "fine-bore", "back-bore"
+        ] = "drill",
         feed: float | None = None,
         dwell: float = 0.0,
         peck: float | None = None,
         first_peck: float | None = None,
         pitch: float | None = None,
         left: bool = False,
+        aside: _Point | None = None,
+        angle: float | None = None,
         axis: _Point | None = None,
     ) -> Builder: ...
     def tool(

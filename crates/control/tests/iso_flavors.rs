@@ -200,8 +200,16 @@ fn grbl_writes_offsets_homes_and_probes() {
         // The zero moves by 2, then to where the tool is, then up by 1, then back.
         &[[1.0, 1.0, 1.0], [3.0, 1.0, 1.0], [4.0, 1.0, 1.0], [4.0, 1.0, 2.0], [4.0, 1.0, 1.0]],
     );
-    let got = ops(Dialect::Grbl, "G21\nG0 X0 Y0 Z0\nF9\nG38.2 Z-5\n");
-    assert!(matches!(got.last(), Some(Op::Probe(_))), "{got:?}");
+    for (word, kind) in [
+        ("G38.2", (false, true)),
+        ("G38.3", (false, false)),
+        ("G38.4", (true, true)),
+        ("G38.5", (true, false)),
+    ] {
+        let got = ops(Dialect::Grbl, &format!("G21\nG0 X0 Y0 Z0\nF9\n{word} Z-5\n"));
+        let Some(Op::Probe(probe)) = got.last() else { panic!("{got:?}") };
+        assert_eq!((probe.away, probe.must_answer), kind, "{word}");
+    }
     for words in ["$H", "$J=G91X1", "G43 H1", "G10 L1 P1 Z1", "G92.2", "G52 X1", "M6"] {
         assert!(run(Dialect::Grbl, &format!("G21\n{words}\n")).is_err(), "{words}");
     }

@@ -441,7 +441,10 @@ fn a_thread_and_a_skip() {
     for dialect in [Dialect::Fanuc, Dialect::Haas, Dialect::Mach3] {
         let skip = "G90 G0 X0 Y0 Z5.\nG31 Z-20. F100\n";
         let got = ops(dialect, skip);
-        assert!(matches!(got.last(), Some(Op::Probe(pose)) if pose.point.z == -20.0), "{got:?}");
+        assert!(
+            matches!(got.last(), Some(Op::Probe(probe)) if probe.end.point.z == -20.0),
+            "{got:?}"
+        );
         assert_eq!(rule(dialect, &format!("{skip}G91 G0 Z1.\n")), "nc-unknown-position");
     }
 }

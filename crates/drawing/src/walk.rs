@@ -61,8 +61,8 @@ pub fn walk(program: &Program, tolerance: f64, draw: &mut dyn FnMut(Segment)) ->
             Op::Rapid(pose) => step(false, false, pose),
             Op::Line(pose) => step(true, false, pose),
             Op::Thread(thread) => step(true, false, &thread.end),
-            Op::Probe(pose) => {
-                step(false, false, pose);
+            Op::Probe(probe) => {
+                step(false, false, &probe.end);
                 here = None;
             }
             Op::Hole(pose) => {

@@ -201,9 +201,9 @@ impl<'a> Lift<'a> {
                 thread.end = self.cut(&thread.end)?;
                 self.arrive(line, Op::Thread(thread));
             }
-            Op::Probe(pose) => {
-                let pose = self.cut(&pose)?;
-                self.arrive(line, Op::Probe(pose));
+            Op::Probe(mut probe) => {
+                probe.end = self.cut(&probe.end)?;
+                self.arrive(line, Op::Probe(probe));
                 self.place = Place::Nowhere;
             }
             Op::Hole(own) => {

@@ -36,6 +36,10 @@ const ROUNDING_STEPS: f64 = 6.0;
 /// side of a full circle that is opposite to its ends.
 const CENTER_STEPS: f64 = std::f64::consts::SQRT_2;
 
+/// How many steps the end of an arc that is told by its angle may be off: its start is rounded by up to
+/// √½ steps in the plane, and its centre by less.
+const ANGLE_STEPS: f64 = 0.85;
+
 /// Part of an arc as one block.
 struct Block {
     /// Where it ends, and where that is after rounding.
@@ -175,6 +179,11 @@ impl Walk<'_> {
         let even = c + along * ((s + e) * 0.5 - c).dot(along);
         let can = &self.machine.capabilities;
         let absolute = self.templates.places(self.arc_name(sign > 0.0, false), WordName::CX);
+        // By as much an arc by its angle misses its end; any other is a spiral.
+        let uneven = match by_angle {
+            true => ANGLE_STEPS * self.machine.resolution(),
+            false => can.arc_tolerance / 2.0,
+        };
         let legal = |c: Vec3| {
             let mut center = arc.center;
             (center[u], center[v]) = (c.x, c.y);
@@ -192,8 +201,7 @@ impl Walk<'_> {
             let radius = a.length();
             let near =
                 (sweep - wanted).abs() * radius <= ROUNDING_STEPS * self.machine.resolution();
-            let uneven = if by_angle { self.machine.resolution() } else { can.arc_tolerance };
-            let even = (radius - b.length()).abs() <= uneven / 2.0;
+            let even = (radius - b.length()).abs() <= uneven;
             let moved = flat(written).distance(flat(arc.center));
             let rise = end[w] - start[w];
             // The ends stay where they are; between them a shift of the centre moves the arc by as much

@@ -31,6 +31,7 @@ impl Walk<'_> {
             return Err(refuse("cycle-missing", "a hole without a cycle"));
         };
         check(cycle)?;
+        self.not_from_probe("a hole")?;
         self.uncompensated("a hole")?;
         if self.compensation_pending() {
             return Err(refuse("compensation", "cutter compensation cannot be switched at a hole"));

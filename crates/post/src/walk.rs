@@ -197,7 +197,7 @@ impl<'a> Walk<'a> {
         }
         match &record.op {
             Op::Rapid(_) | Op::Line(_) | Op::Arc(_) | Op::Thread(_) | Op::Hole(_) => Ok(()),
-            Op::Probe(_) => Err(refuse("unsupported", "a probing move is not written")),
+            Op::Probe(probe) => self.probe(probe),
             Op::Cycle(cycle) => {
                 self.end_cycle()?;
                 self.cycle = Some(cycle);
@@ -293,10 +293,7 @@ impl<'a> Walk<'a> {
             Op::Line(pose) => self.line(pose, &stop),
             Op::Arc(to) => self.arc(to, &stop),
             Op::Hole(pose) => self.hole(pose, &stop),
-            Op::Thread(_) => Err(refuse(
-                "unsupported",
-                "a thread in step with the spindle is not written; tap it",
-            )),
+            Op::Thread(thread) => self.thread(thread, &stop),
             _ => Ok(()),
         }
     }
@@ -437,8 +434,8 @@ impl<'a> Walk<'a> {
     /// The speed at which the tool that is called now will cut first.
     fn coming_speed(&self) -> Option<f64> {
         let coming = self.source.records[self.index..].iter().map(|record| &record.op);
-        let mut until_cut =
-            coming.take_while(|op| !matches!(op, Op::Line(_) | Op::Arc(_) | Op::Hole(_)));
+        let mut until_cut = coming
+            .take_while(|op| !matches!(op, Op::Line(_) | Op::Arc(_) | Op::Thread(_) | Op::Hole(_)));
         let next = until_cut.find_map(|op| match op {
             Op::Spindle(spindle) => speed(*spindle),
             _ => None,
@@ -499,7 +496,7 @@ impl<'a> Walk<'a> {
         })
     }
 
-    fn sync_coolant(&mut self) -> Done {
+    pub(crate) fn sync_coolant(&mut self) -> Done {
         if self.active_coolant == Some(self.coolant) {
             return Ok(());
         }

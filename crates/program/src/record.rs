@@ -32,9 +32,9 @@ pub enum Op {
     Arc(Box<ArcTo>),
     /// Straight line whose feed is tied to the turn of the spindle, as a thread needs it (`G33`).
     Thread(Box<Thread>),
-    /// Straight line at the active feed that ends where the probe answers, at the pose at the latest.
-    /// Where the tool stands afterwards only the machine knows.
-    Probe(Pose),
+    /// Straight line at the active feed that ends where the probe answers. Where the tool stands
+    /// afterwards only the machine knows.
+    Probe(Box<Probe>),
     /// One hole of the active [`Cycle`]; the pose is the point of the cycle on the surface and the
     /// tool axis there. The tool ends at the cycle's retract level.
     Hole(Pose),
@@ -164,6 +164,18 @@ pub struct Thread {
     pub end: Pose,
     /// mm along the way for each turn of the spindle.
     pub pitch: f64,
+}
+
+/// A probing move from where the tool is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Probe {
+    /// Where it ends at the latest.
+    pub end: Pose,
+    /// Whether it ends where the probe lets go of the part (`G38.4`, `G38.5`), and not where it touches
+    /// it.
+    pub away: bool,
+    /// Whether a probe that has not answered on the way stops the program (`G38.2`, `G38.4`).
+    pub must_answer: bool,
 }
 
 /// How fast the tool moves.

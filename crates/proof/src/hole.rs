@@ -365,7 +365,7 @@ impl Drilled {
 }
 
 /// Half a step of a pitch of three decimals, mm.
-const PITCH: f64 = 5.1e-4;
+pub(crate) const PITCH: f64 = 5.1e-4;
 
 fn name(kind: CycleKind) -> String {
     match kind {

@@ -230,8 +230,8 @@ pub fn ours(text: &[u8], rotary: [bool; 3], folders: &[PathBuf]) -> Result<Vec<M
                 at = to(&pose, at);
                 moves.push(Motion::Feed(at));
             }
-            Op::Probe(pose) => {
-                at = to(&pose, at);
+            Op::Probe(probe) => {
+                at = to(&probe.end, at);
                 moves.push(Motion::Probe(at));
             }
             Op::Thread(thread) => {

@@ -51,7 +51,8 @@ impl Step<'_, '_, '_> {
             G::FromHome => self.leave_home(),
             G::Machine => self.machine_position(),
             G::SwingToTilt => self.swing(),
-            G::Skip => self.probe(),
+            // A skip that does not come is no error.
+            G::Skip => self.probe(false, false),
             G::OneSided => self.one_sided(),
             G::Pocket { clockwise } => self.pocket(clockwise),
             G::Pattern(pattern) => self.pattern(pattern),
@@ -151,7 +152,7 @@ impl Step<'_, '_, '_> {
         match motion {
             Motion::Thread => self.thread(),
             Motion::RigidTap => self.rigid_tap(),
-            Motion::Probe => self.probe(),
+            Motion::Probe { away, must_answer } => self.probe(away, must_answer),
             Motion::Spline { cubic } => self.spline(cubic),
             Motion::Arc { clockwise } => {
                 let target = self.target(false)?;

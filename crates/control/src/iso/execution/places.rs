@@ -7,7 +7,7 @@ use super::step::Step;
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::{Flavor, Group, Motion};
 use geom::Vec3;
-use program::Op;
+use program::{Op, Probe};
 
 impl Step<'_, '_, '_> {
     /// `G28`, `G30`: by rapid through the point of the block to the reference position, the named axes
@@ -128,7 +128,7 @@ impl Step<'_, '_, '_> {
     }
 
     /// `G38.2` to `G38.5`, `G31`: towards a point until the probe answers.
-    pub(super) fn probe(&mut self) -> Result<(), Fault> {
+    pub(super) fn probe(&mut self, away: bool, must_answer: bool) -> Result<(), Fault> {
         self.not_compensated("probing")?;
         let target = self.target(false)?;
         if target.named == 0 {
@@ -138,7 +138,8 @@ impl Step<'_, '_, '_> {
             return Err(self.block.whole("nc-probe", "a rotary axis in a probing move"));
         }
         self.feed_for_cut()?;
-        self.ops.push(Op::Probe(self.state.pose(target.point, target.rotary)));
+        let end = self.state.pose(target.point, target.rotary);
+        self.ops.push(Op::Probe(Box::new(Probe { end, away, must_answer })));
         self.arrive(target);
         for axis in 0..3 {
             if target.named & 1 << axis != 0 {

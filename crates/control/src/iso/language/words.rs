@@ -184,8 +184,11 @@ pub(crate) enum Motion {
     Thread,
     /// `G33.1`
     RigidTap,
-    /// `G38.2` to `G38.5`
-    Probe,
+    /// `G38.2` to `G38.5`: until the probe lets go or touches, with or without an error where it does not.
+    Probe {
+        away: bool,
+        must_answer: bool,
+    },
 }
 
 /// The canned cycles that can be told in the neutral program.
