@@ -160,12 +160,12 @@ impl Walk<'_> {
             Vec3::from_array([0, 1, 2].map(|i| self.writer.rounded(words[i], p[i])))
         };
         let start = self.stands(round(&END, arc.at(from)));
+        let to = arc.at(until);
         // An arc that is told by its angle ends as far from its centre as it begins, and not at a
         // rounded place.
         let by_angle = self
             .templates
             .places(self.arc_name(arc.normal[facts.axes[2]] > 0.0, rises), WordName::Sweep);
-        let to = arc.at(until);
         let end = if by_angle { to } else { round(&END, to) };
         let [u, v, w] = facts.axes;
         let flat = |p: Vec3| Vec3::new(p[u], p[v], 0.0);

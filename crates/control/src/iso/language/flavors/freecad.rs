@@ -6,10 +6,10 @@ use super::{BASIC_G, BASIC_M, END_M, SPINDLE_G, SPINDLE_M, cycles};
 
 const G_WORDS: &[GRow] = &[
     (210, Group::Units, G::Inches(false)),
-    (382, Group::Motion, G::Motion(Motion::Probe)),
-    (383, Group::Motion, G::Motion(Motion::Probe)),
-    (384, Group::Motion, G::Motion(Motion::Probe)),
-    (385, Group::Motion, G::Motion(Motion::Probe)),
+    (382, Group::Motion, G::Motion(Motion::Probe { away: false, must_answer: true })),
+    (383, Group::Motion, G::Motion(Motion::Probe { away: false, must_answer: false })),
+    (384, Group::Motion, G::Motion(Motion::Probe { away: true, must_answer: true })),
+    (385, Group::Motion, G::Motion(Motion::Probe { away: true, must_answer: false })),
     (400, Group::Compensation, G::Compensation(Side::Off)),
     (410, Group::Compensation, G::Compensation(Side::Left)),
     (420, Group::Compensation, G::Compensation(Side::Right)),
