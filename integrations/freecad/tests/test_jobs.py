@@ -60,6 +60,18 @@ def test_a_mill_gets_proven_programs(jobs, mill, tmp_path):
     assert not wrong
 
 
+@pytest.mark.parametrize("name", ["several-Fixture", "several-Tool", "several-Operation"])
+def test_a_document_is_posted_as_in_the_window(jobs, tmp_path, name):
+    programs = []
+    for source in (jobs / f"{name}.json", jobs / f"{name}.FCStd"):
+        program = tmp_path / "part.ngc"
+        report = toolpost("post", source, "-m", "generic-3axis-linuxcnc", "-o", program)
+        assert report["status"] == "done", report["errors"]
+        # The first line is the name: that of the job, or of its document.
+        programs.append(program.read_text().splitlines()[1:])
+    assert programs[0] == programs[1]
+
+
 def test_linuxcnc_moves_as_with_the_post_of_freecad(jobs, tmp_path):
     differences = {}
     for name in names(jobs):

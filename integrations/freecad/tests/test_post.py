@@ -22,7 +22,10 @@ REFUSALS = {
     "huge": ["operation `Broken`:3", "Y10000000000000000905969664"],
     "moved": ["Profile is moved by its Placement", "set it to zero"],
     "machine-missing": ["--machine", "name in the library"],
-    "machine-unknown": ["`generic-3axis-linuxcmc` is not in the library", "generic-3axis-linuxcnc"],
+    "machine-unknown": [
+        "`generic-3axis-linuxcmc` is not in the library",
+        "did you mean `generic-3axis-linuxcnc`",
+    ],
     "argument-unknown": ["--modal", "--machine NAME|FILE"],
     "argument-open": ["No closing quotation"],
     "option-unknown": ["no option `colour`"],

@@ -4,7 +4,7 @@ use super::{Result, is_path};
 use crate::library;
 use crate::model::{Block, Place};
 use crate::sheet::Sheet;
-use program::Diagnostic;
+use program::{Diagnostic, nearest};
 use std::path::{Path, PathBuf};
 use toml::Spanned;
 
@@ -49,11 +49,12 @@ impl SheetFile {
                 Err(Diagnostic::error("machine-is-control", message).help(help).into())
             }
             None => {
+                let near = nearest(name, library::names(kinds));
+                let near = if near.is_empty() { near } else { format!("did you mean {near}? ") };
                 let known = library::names(kinds).collect::<Vec<_>>().join(", ");
                 let message = format!("`{name}` is not in the library");
-                Err(Diagnostic::error("machine-unknown", message)
-                    .help(format!("one of {known}, or the path of a file"))
-                    .into())
+                let help = format!("{near}one of {known}, or the path of a file");
+                Err(Diagnostic::error("machine-unknown", message).help(help).into())
             }
         }
     }
