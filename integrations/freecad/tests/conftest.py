@@ -72,6 +72,7 @@ def cases(request, tmp_path_factory):
     for name, case in found["cases"].items():
         case["said"] = (folder / f"{name}.said").read_text()
         case["saved"] = Path(case["file"]).read_text() if Path(case["file"]).is_file() else None
+    assert found["core"] == request.param.title()
     found["long"] = way["TOOLPOST_LONG"]
     left = [path.name for path in folder.iterdir() if ".part" in path.name]
     assert not left, "half-written files"

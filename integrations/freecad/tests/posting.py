@@ -18,6 +18,7 @@ sys.path.insert(0, os.path.dirname(sys.path[0]))
 
 import PathScripts.PathCustom as PathCustom
 import PathScripts.PathProfile as PathProfile
+import toolpost_core
 import toolpost_job
 import toolpost_post
 from work import Piece, Work, run
@@ -188,7 +189,8 @@ def main():
     two_fixtures()
     long()
     with open(os.path.join(FOLDER, "cases.json"), "w", encoding="utf-8") as file:
-        json.dump({"cases": cases, "order": order()}, file)
+        core = type(toolpost_core.core()).__name__
+        json.dump({"core": core, "cases": cases, "order": order()}, file)
 
 
 run(main)
