@@ -10,10 +10,8 @@
 
 pub mod diagnostic;
 pub mod lowering;
-mod nearest;
 mod record;
 pub mod statistics;
 
-pub use diagnostic::{Diagnostic, Severity, line_of};
-pub use nearest::nearest;
+pub use diagnostic::{Diagnostic, Severity, line_of, nearest};
 pub use record::*;

@@ -49,11 +49,13 @@ impl SheetFile {
                 Err(Diagnostic::error("machine-is-control", message).help(help).into())
             }
             None => {
-                let near = nearest(name, library::names(kinds));
-                let near = if near.is_empty() { near } else { format!("did you mean {near}? ") };
                 let known = library::names(kinds).collect::<Vec<_>>().join(", ");
                 let message = format!("`{name}` is not in the library");
-                let help = format!("{near}one of {known}, or the path of a file");
+                let meant = match nearest(name, library::names(kinds)).as_str() {
+                    "" => String::new(),
+                    meant => format!("did you mean {meant}? "),
+                };
+                let help = format!("{meant}There are {known}; or give the path of a file");
                 Err(Diagnostic::error("machine-unknown", message).help(help).into())
             }
         }
