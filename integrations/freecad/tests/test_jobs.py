@@ -22,7 +22,7 @@ REFUSED = {
     # Controls without mist.
     ("mist", "dmu50-heidenhain"): "missing-block",
     ("mist", "generic-3axis-heidenhain"): "missing-block",
-    ("mist", "generic-3axis-haas"): "coolant",
+    ("mist", "generic-3axis-haas"): "missing-block",
 }
 
 
