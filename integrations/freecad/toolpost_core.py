@@ -135,7 +135,7 @@ class _Folder(tempfile.TemporaryDirectory):
         self.stem = _stem(job)
         self.job = self.path("json")
         with open(self.job, "w", encoding="utf-8") as file:
-            json.dump(job, file, ensure_ascii=False)
+            file.write(json.dumps(job, ensure_ascii=False))
 
     def __enter__(self):
         return self
