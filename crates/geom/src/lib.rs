@@ -6,6 +6,7 @@
 
 mod arc;
 mod element;
+pub mod region;
 mod rotation;
 
 pub use arc::{Arc, ArcError};
