@@ -2,8 +2,8 @@
 
 use super::kernel::{Keep, Kernel, Operand, Place};
 use super::{Fill, Region, RegionError, refit};
-use crate::element::{Carrier, Turn};
-use crate::{Element, Vec2};
+use crate::crossing::Carrier;
+use crate::{Element, Turn, Vec2};
 use std::f64::consts::TAU;
 
 /// How far the middle of a chord is from its arc at most, mm: below this, arcs meet or miss each

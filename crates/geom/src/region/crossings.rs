@@ -1,5 +1,6 @@
 //! Where elements of rings cross each other.
 
+use crate::crossing::Carrier;
 use crate::{Element, Vec2};
 use static_aabb2d_index::{Control, StaticAABB2DIndexBuilder};
 
@@ -57,7 +58,8 @@ fn crossing(first: &Element, second: &Element) -> Option<Vec2> {
     let (one, other) = (crossings.next(), crossings.next());
     let ends = [first.start, first.end, second.start, second.end];
     let is_deep = |point: Vec2, other: Option<Vec2>| {
-        let across = first.direction_at(point).perp_dot(second.direction_at(point)).abs();
+        let direction = |of: &Element| Carrier::of(of, of.start).direction_at(point);
+        let across = direction(first).perp_dot(direction(second)).abs();
         // On the way to an end, or to the other crossing, the one gets beside the other by no more
         // than the way times the angle of the two.
         let mut beside = ends.iter().copied().chain(other).map(|end| end.distance(point) * across);

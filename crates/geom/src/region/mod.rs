@@ -34,7 +34,6 @@
 mod chords;
 mod crossings;
 mod kernel;
-mod measure;
 mod offset;
 mod refit;
 mod ring;

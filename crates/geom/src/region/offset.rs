@@ -11,8 +11,7 @@
 use super::chords::boolean;
 use super::kernel::Keep;
 use super::{FAR, Fill, Region, RegionError};
-use crate::element::turn_angle;
-use crate::{Element, Vec2};
+use crate::{Element, Vec2, turn_angle};
 use std::f64::consts::PI;
 use std::iter;
 
@@ -80,7 +79,7 @@ fn beside(ring: &[Element], distance: f64) -> Vec<Element> {
 
 /// The angle by which a ring turns between two elements, radians, positive to the left.
 fn turn_at(element: &Element, next: &Element) -> f64 {
-    let turn = turn_angle(element.tangent_at_end(), next.tangent_at_start());
+    let turn = turn_angle(element.tangent(1.0), next.tangent(0.0));
     // The two run back on each other, as where circles touch: they bend apart, and to which side, their
     // curvatures tell.
     let apart = element.curvature() + next.curvature();
@@ -112,8 +111,8 @@ impl Side {
         let beside = |at: Vec2, along: Vec2| at - along.perp() * distance;
         Side {
             way,
-            start: beside(element.start, element.tangent_at_start()),
-            end: beside(element.end, element.tangent_at_end()),
+            start: beside(element.start, element.tangent(0.0)),
+            end: beside(element.end, element.tangent(1.0)),
         }
     }
 }

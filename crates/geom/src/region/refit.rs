@@ -11,8 +11,8 @@
 use super::crossings::crossings;
 use super::kernel::Edge;
 use super::{Island, Region, Ring};
-use crate::element::Carrier;
-use crate::{Element, Vec2};
+use crate::crossing::Carrier;
+use crate::{Element, Vec2, turn_angle};
 use std::f64::consts::TAU;
 use std::ops::Range;
 
@@ -263,7 +263,7 @@ impl Outline {
         if is_on(first, place) && is_on(next, place) {
             return Some(place);
         }
-        let crossings = first.meets(next).into_iter().flatten();
+        let crossings = first.meets(next, 0.0).into_iter().flatten();
         let crossing = crossings
             .min_by(|a, b| a.distance_squared(place).total_cmp(&b.distance_squared(place)))?;
         let way = crossing.distance(place);
@@ -333,7 +333,7 @@ fn fitted_to(on: &Carrier, edges: &[Edge], from: Corner, to: Corner) -> Option<E
                 false => *center + (point - *center).normalize_or_zero() * *radius,
             };
             let chords = sweep(edges, *center);
-            let moved = |corner: Corner| angle(corner.chords - *center, corner.at - *center);
+            let moved = |corner: Corner| turn_angle(corner.chords - *center, corner.at - *center);
             let whole = from.at == to.at && chords.abs() > 1.0;
             let sweep = match whole {
                 true => TAU.copysign(chords),
@@ -347,11 +347,10 @@ fn fitted_to(on: &Carrier, edges: &[Edge], from: Corner, to: Corner) -> Option<E
 
 /// The angle that `edges` turn about `center` together, radians.
 fn sweep(edges: &[Edge], center: Vec2) -> f64 {
-    edges.iter().map(|edge| angle(edge.start.point() - center, edge.end.point() - center)).sum()
-}
-
-fn angle(from: Vec2, to: Vec2) -> f64 {
-    from.perp_dot(to).atan2(from.dot(to))
+    edges
+        .iter()
+        .map(|edge| turn_angle(edge.start.point() - center, edge.end.point() - center))
+        .sum()
 }
 
 fn line(edge: &Edge) -> Element {

@@ -4,8 +4,7 @@ use super::chords::boolean;
 use super::kernel::Keep;
 use super::ring::place;
 use super::{FAR, Fill, Island, Region, RegionError, Ring};
-use crate::element::Turn;
-use crate::{Element, Vec2};
+use crate::{Element, Turn, Vec2};
 use std::f64::consts::{PI, TAU};
 use std::iter;
 
@@ -80,9 +79,9 @@ fn along(middle: &Element, half: f64, cap: Cap) -> Region {
         return Region::default();
     };
     let mut elements = vec![right];
-    ending(&mut elements, middle.end, middle.tangent_at_end(), half, cap);
+    ending(&mut elements, middle.end, middle.tangent(1.0), half, cap);
     elements.push(left.reversed());
-    ending(&mut elements, middle.start, -middle.tangent_at_start(), half, cap);
+    ending(&mut elements, middle.start, -middle.tangent(0.0), half, cap);
     region(Ring { elements }, Vec::new())
 }
 
@@ -111,9 +110,7 @@ fn around_center(middle: &Element, turn: Turn, half: f64, cap: Cap) -> Result<Re
         Element::line(turn.center, outside.start),
     ];
     let mut pieces = vec![region(Ring { elements: sector }, Vec::new())];
-    for (end, along) in
-        [(middle.start, -middle.tangent_at_start()), (middle.end, middle.tangent_at_end())]
-    {
+    for (end, along) in [(middle.start, -middle.tangent(0.0)), (middle.end, middle.tangent(1.0))] {
         pieces.push(match cap {
             Cap::Round => Region::disc(end, half)?,
             Cap::Square => {
