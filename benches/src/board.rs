@@ -32,9 +32,9 @@ pub fn measure(shapes: usize, rounds: usize) -> Result<(), Vec<Diagnostic>> {
             united.islands().len(),
             united.rings().map(|ring| ring.elements().len()).sum::<usize>(),
         );
-        let polygons: PathsD = copper.iter().flat_map(polygons).collect();
+        let copper_polygons: PathsD = copper.iter().flat_map(polygons).collect();
         let theirs = fastest(rounds, &mut || {
-            std::hint::black_box(union_subjects_d(&polygons, FillRule::Positive, PLACES));
+            std::hint::black_box(union_subjects_d(&copper_polygons, FillRule::Positive, PLACES));
             Ok(())
         })?;
         let ours = fastest(rounds, &mut || {
@@ -42,11 +42,11 @@ pub fn measure(shapes: usize, rounds: usize) -> Result<(), Vec<Diagnostic>> {
             Ok(())
         })?;
         row("united", &ours, &theirs);
-        let polygons: PathsD = polygons(&united);
+        let united_polygons: PathsD = polygons(&united);
         let theirs = fastest(rounds, &mut || {
             let (join, end) = (JoinType::Round, EndType::Polygon);
             std::hint::black_box(inflate_paths_d(
-                &polygons,
+                &united_polygons,
                 TOOL,
                 join,
                 end,
