@@ -19,17 +19,19 @@
 //! # What is promised
 //!
 //! - Ends of lines and arcs are kept to 0.1 nm, a step of the kernel's grid. Where a line or arc crosses
-//!   another, the corner is where they cross, to rounding.
-//! - No point of a boundary is more than 1 µm from where it ought to be. What is thinner than 1 µm may
-//!   be dropped, and what comes nearer than 1 µm may be joined, or not. For that the arcs of a region
-//!   that come so near to each other that they would cross are left as chords there, 0.9 µm beside the arc
-//!   at most.
-//! - The rings of a region cross neither themselves nor each other, but by rounding (2 nm); they may
-//!   touch in points.
+//!   another, the corner is where they cross, to rounding, however flat.
+//! - Each operation adds less than 1 µm to what a boundary is off. What is thinner than 1 µm may vanish,
+//!   and arcs that come nearer to something than 1 µm may be joined with it, or not. Where they would
+//!   cross it, they are left as chords, up to 0.9 µm beside the arc; nothing else is.
+//! - The rings of a region cross neither themselves nor each other, but by rounding (2 nm). They may
+//!   touch in points; what is connected by a point alone is not connected.
 //! - Outer rings run counter-clockwise, holes clockwise: the region is on the left of its boundary.
-//! - The same regions give the same result, bit for bit.
-//! - Time grows with n·log n of the elements and of the places where they cross. Beyond
-//!   33 million chords a boolean is refused ([`RegionError::TooLarge`]).
+//! - The same regions in the same order give the same result, bit for bit.
+//! - Time grows as n·log n of the elements, and with the number of places where they cross. An operation
+//!   of more than 33 million chords is refused ([`RegionError::TooLarge`]).
+//!
+//! The numbers behind this are constants: the chord's error in `chords`, the unit in `kernel`, what
+//! counts as one place, line, circle or crossing in `refit` and `crossings`.
 
 mod chords;
 mod crossings;
