@@ -7,7 +7,7 @@ use static_aabb2d_index::{Control, StaticAABB2DIndexBuilder};
 /// How deep two elements may cross and count as touching, mm: rounding of the kernel.
 const TOUCH: f64 = 2e-6;
 
-/// Where an element crosses another.
+/// Where an element of a ring crosses another.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Place {
     pub ring: usize,
@@ -15,7 +15,7 @@ pub(super) struct Place {
     pub point: Vec2,
 }
 
-/// The places where the elements of `rings` cross, two for each crossing, in the order of the rings and of their elements; one for each element.
+/// For each element of `rings` that crosses others one place where it does, in their order.
 pub(super) fn crossings(rings: &[&[Element]]) -> Vec<Place> {
     let elements: Vec<(usize, usize, &Element)> = rings
         .iter()

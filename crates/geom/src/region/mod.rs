@@ -22,7 +22,8 @@
 //!   another, the corner is where they cross, to rounding, however flat.
 //! - Each operation adds less than 1 µm to what a boundary is off. What is thinner than 1 µm may vanish,
 //!   and arcs that come nearer to something than 1 µm may be joined with it, or not. Where they would
-//!   cross it, they are left as chords, up to 0.9 µm beside the arc; nothing else is.
+//!   cross it, they are left as chords, up to 0.9 µm beside the arc; nothing else is. Where an arc does
+//!   not reach the place that it must end in, a line of less than 1 µm leads there.
 //! - The rings of a region cross neither themselves nor each other, but by rounding (2 nm). They may
 //!   touch in points; what is connected by a point alone is not connected.
 //! - Outer rings run counter-clockwise, holes clockwise: the region is on the left of its boundary.

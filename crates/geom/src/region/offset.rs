@@ -58,21 +58,16 @@ fn beside(ring: &[Element], distance: f64) -> Vec<Element> {
             Way::Parallel(parallel) => parallel.start,
             Way::Around(_) => corner,
         };
+        let line = |from, to| (from != to).then(|| Element::line(from, to));
         let turn = turn_at(element, next);
-        let outwards = turn * distance > 0.0 && side.end.distance(after.start) > SAME;
-        let by = if outwards {
-            [Some((from, side.end)), Some((after.start, to))]
-        } else if from.distance(to) > SAME {
-            [Some((from, corner)), Some((corner, to))]
-        } else {
-            [None, None]
-        };
-        let mut lines = by.into_iter().map(|ends| ends.filter(|(from, to)| from != to));
-        chain.extend(lines.next().flatten().map(|(from, to)| Element::line(from, to)));
-        if outwards {
+        if turn * distance > 0.0 && side.end.distance(after.start) > SAME {
+            chain.extend(line(from, side.end));
             chain.push(Element::arc(side.end, after.start, corner, turn));
+            chain.extend(line(after.start, to));
+        } else if from.distance(to) > SAME {
+            chain.extend(line(from, corner));
+            chain.extend(line(corner, to));
         }
-        chain.extend(lines.next().flatten().map(|(from, to)| Element::line(from, to)));
     }
     chain
 }
