@@ -48,9 +48,9 @@ impl<'a> Report<'a> {
 
     /// Adds an error at `place`.
     #[cold]
-    pub(crate) fn error(&mut self, place: Place, error: Fault) {
+    pub(crate) fn error(&mut self, place: Place, error: Diagnostic) {
         if !self.is_full() {
-            self.errors.push(self.locate(place, *error));
+            self.errors.push(self.locate(place, error));
         }
     }
 

@@ -120,7 +120,7 @@ pub(super) fn read(file_name: &str, text: &[u8]) -> Result<Reading, Vec<Diagnost
         };
         if let Err(fault) = obeyed {
             let hopeless = fault.rule == "too-large";
-            reader.report.error(reader.place, fault);
+            reader.report.error(reader.place, *fault);
             if hopeless || reader.report.is_full() {
                 return Err(reader.report.errors);
             }
@@ -435,7 +435,7 @@ impl<'a> Reader<'a> {
             }
         };
         for fault in [last, region, end].into_iter().filter_map(Result::err) {
-            self.report.error(self.place, fault);
+            self.report.error(self.place, *fault);
         }
         if !self.report.errors.is_empty() {
             return Err(self.report.errors);
