@@ -226,7 +226,7 @@ impl<'a> Reader<'a> {
                 Ok(())
             }
             // Old files put these between % too.
-            [b'G' | b'D' | b'M' | b'X' | b'Y', _] => {
+            [b'G' | b'D' | b'M' | b'X' | b'Y', b'0'..=b'9'] => {
                 self.deprecated("G, D and M codes between %");
                 self.command(text)
             }
