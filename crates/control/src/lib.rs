@@ -9,9 +9,9 @@
 //! as [`program::Orientation::Rotary`]; vectors and tilted planes resolved into the work frame as
 //! [`program::Orientation::Axis`]. Kinematics are not this crate's business.
 
+mod budget;
 mod compensation;
 mod decimal;
-mod flow;
 mod folders;
 mod iso;
 mod klartext;
@@ -51,11 +51,13 @@ pub enum Dialect {
     Agie,
     /// Lists of coordinates for wire EDM.
     Points,
+    /// The commands in which FreeCAD keeps a toolpath: a source, which no machine reads.
+    FreeCad,
 }
 
 impl Dialect {
     /// Every dialect with the name that a control file gives as its `reader`.
-    pub const NAMES: [(&'static str, Dialect); 12] = [
+    pub const NAMES: [(&'static str, Dialect); 13] = [
         ("fanuc", Dialect::Fanuc),
         ("haas", Dialect::Haas),
         ("linuxcnc", Dialect::LinuxCnc),
@@ -68,6 +70,7 @@ impl Dialect {
         ("sodick", Dialect::Sodick),
         ("agie", Dialect::Agie),
         ("points", Dialect::Points),
+        ("freecad", Dialect::FreeCad),
     ];
 
     /// The dialect of that name.
@@ -81,7 +84,11 @@ impl Dialect {
     pub fn work_offset_at_reset(self) -> Option<u32> {
         match self {
             Dialect::Sinumerik => Some(53),
-            Dialect::LinuxCnc | Dialect::Grbl | Dialect::Mach3 | Dialect::Haas => Some(54),
+            Dialect::LinuxCnc
+            | Dialect::Grbl
+            | Dialect::Mach3
+            | Dialect::Haas
+            | Dialect::FreeCad => Some(54),
             _ => None,
         }
     }
@@ -136,6 +143,9 @@ pub struct Setup {
     pub units: Option<Units>,
     /// Whether the operator has switched block delete on: blocks that begin with `/` are skipped.
     pub block_delete: bool,
+    /// Where to a boring bar leaves the wall of a hole once the spindle stands in position, as a unit
+    /// vector along X or Y (FANUC, parameter 5148; Haas, setting 27); `None` where that is not known.
+    pub aside: Option<Vec3>,
     /// Where the tool stands in the work frame when the program starts, mm, with all offsets of the
     /// control at 0; `None` where that is not known, and no offset is.
     pub start: Option<Vec3>,
@@ -224,6 +234,6 @@ fn shown(found: Diagnostic, text: &[u8]) -> Diagnostic {
     if line == 0 || found.column > 0 || !found.excerpt.is_empty() {
         return found;
     }
-    let block = text.split(|&byte| byte == b'\n').nth(line as usize - 1).unwrap_or_default();
+    let block = program::line_of(text, line);
     found.at(line, block, 0, block.trim_ascii_end().len())
 }

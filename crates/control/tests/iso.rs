@@ -1,12 +1,14 @@
 //! What the makers' manuals say of ISO code, as programs and the records they must give. Sources are
 //! in `docs/controls/`.
 
+mod common;
+
 use geom::Vec3;
 use program::{
     ArcTo, Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, Op, Orientation, Pose,
     Spindle,
 };
-use toolpost_control::{Dialect, Settings, read};
+use toolpost_control::{Dialect, Settings};
 
 const FANUC: Dialect = Dialect::Fanuc;
 const LINUXCNC: Dialect = Dialect::LinuxCnc;
@@ -14,15 +16,10 @@ const GRBL: Dialect = Dialect::Grbl;
 
 fn run(dialect: Dialect, rotary: [bool; 3], text: &str) -> Result<Vec<Op>, Box<Diagnostic>> {
     let settings = Settings { auxiliary: vec![26], ..Settings::new(dialect, rotary) };
-    let mut ops = Vec::new();
     // Most of these programs are in mm and do not say so.
     let says_unit = ["%", "G20", "G21"].iter().any(|word| text.contains(word));
     let text = if says_unit { text.to_owned() } else { format!("G21\n{text}") };
-    read(&settings, "p.nc", text.as_bytes(), &mut |record| {
-        ops.push(record.op);
-        Ok(())
-    })?;
-    Ok(ops)
+    common::ops(&settings, "p.nc", text)
 }
 
 /// The records of a program on a machine with A and C.
@@ -321,9 +318,35 @@ fn a_cycle_that_lacks_something_is_refused() {
     assert_eq!(rule(FANUC, "G0 X0 Y0\nG81 X1. Z-1. R2. F9\n"), "nc-unknown-position");
     // rs274 returns to R where neither is given, the manual does not say: so it must be said.
     assert_eq!(rule(LINUXCNC, "G0 X0 Y0 Z9\nG81 Z-1 R2 F9\n"), "nc-cycle");
-    for word in ["G76", "G87"] {
-        assert_eq!(rule(FANUC, &format!("{start}{word} X1. Z-1. R2.\n")), "nc-unknown-word");
-    }
+}
+
+/// LinuxCNC, "G96, G97 Spindle Control Mode": S is metres or feet a minute, D the most speed.
+#[test]
+fn constant_surface_speed_is_a_state_beside_the_most_speed() {
+    let spindle = |text: &str| -> Vec<Op> {
+        let told = |op: &Op| matches!(op, Op::Spindle(_) | Op::SurfaceSpeed(_));
+        ops_3(LINUXCNC, text).into_iter().filter(told).collect()
+    };
+    let clockwise = |speed| Op::Spindle(Spindle::Clockwise(speed));
+    let constant = |speed| Op::SurfaceSpeed(Some(speed));
+    assert_eq!(
+        spindle("S500 M3\nG96 D2500 S100\nS70\nG97 S800\nM5\n"),
+        [
+            clockwise(500.0),
+            constant(100.0),
+            clockwise(2500.0),
+            constant(70.0),
+            Op::SurfaceSpeed(None),
+            clockwise(800.0),
+            Op::Spindle(Spindle::Off)
+        ]
+    );
+    assert_eq!(spindle("G20\nG96 S100\n"), [constant(30.48)]);
+    assert_eq!(spindle("G96 S100\nM3\n"), [constant(100.0), clockwise(f64::INFINITY)]);
+    assert_eq!(rule(LINUXCNC, "G96 S100 D0\n"), "nc-spindle");
+    assert_eq!(rule(LINUXCNC, "G96 S100\nG97\n"), "nc-spindle");
+    let tap = "G99 G0 X0 Y0 Z9\nG96 S100 D500 M3\nG84 Z-1 R2 F100\n";
+    assert_eq!(rule(LINUXCNC, tap), "nc-cycle");
 }
 
 #[test]

@@ -1,16 +1,13 @@
 //! Haas, Mach3, Marlin and GRBL: what each has of its own, and what it does not know.
 
+mod common;
+
 use geom::Vec3;
 use program::{Coolant, Cycle, CycleKind, Diagnostic, Op, Spindle};
 use toolpost_control::{Dialect, Settings, read};
 
 fn run(dialect: Dialect, text: &str) -> Result<Vec<Op>, Box<Diagnostic>> {
-    let mut ops = Vec::new();
-    read(&Settings::new(dialect, [false; 3]), "p.nc", text.as_bytes(), &mut |record| {
-        ops.push(record.op);
-        Ok(())
-    })?;
-    Ok(ops)
+    common::ops(&Settings::new(dialect, [false; 3]), "p.nc", text)
 }
 
 fn ops(dialect: Dialect, text: &str) -> Vec<Op> {
@@ -84,7 +81,7 @@ fn haas_coolant_through_the_spindle_has_its_own_way_off() {
 
 #[test]
 fn haas_refuses_with_the_reason() {
-    for word in ["G12 I5.", "G13 I5.", "G47", "G76", "G107", "G141", "G143", "G150", "G174"] {
+    for word in ["G12 I5.", "G13 I5.", "G47", "G77", "G107", "G141", "G143", "G150", "G174"] {
         let error = run(Dialect::Haas, &format!("G21\n{word}\n")).unwrap_err();
         assert_eq!(error.rule, "nc-unknown-word", "{word}");
         assert!(!error.help.is_empty(), "{word}");
@@ -203,8 +200,16 @@ fn grbl_writes_offsets_homes_and_probes() {
         // The zero moves by 2, then to where the tool is, then up by 1, then back.
         &[[1.0, 1.0, 1.0], [3.0, 1.0, 1.0], [4.0, 1.0, 1.0], [4.0, 1.0, 2.0], [4.0, 1.0, 1.0]],
     );
-    let got = ops(Dialect::Grbl, "G21\nG0 X0 Y0 Z0\nF9\nG38.2 Z-5\n");
-    assert!(matches!(got.last(), Some(Op::Probe(_))), "{got:?}");
+    for (word, kind) in [
+        ("G38.2", (false, true)),
+        ("G38.3", (false, false)),
+        ("G38.4", (true, true)),
+        ("G38.5", (true, false)),
+    ] {
+        let got = ops(Dialect::Grbl, &format!("G21\nG0 X0 Y0 Z0\nF9\n{word} Z-5\n"));
+        let Some(Op::Probe(probe)) = got.last() else { panic!("{got:?}") };
+        assert_eq!((probe.away, probe.must_answer), kind, "{word}");
+    }
     for words in ["$H", "$J=G91X1", "G43 H1", "G10 L1 P1 Z1", "G92.2", "G52 X1", "M6"] {
         assert!(run(Dialect::Grbl, &format!("G21\n{words}\n")).is_err(), "{words}");
     }

@@ -1,18 +1,15 @@
 //! Moved, turned, scaled and mirrored coordinates of FANUC, Haas and Mach3, tool registers, numbers
 //! without a point: programs and the points that their manuals and a pocket calculator give.
 
+mod common;
+
 use geom::Vec3;
 use program::{Compensation, Cycle, CycleKind, Diagnostic, Op, Spindle};
-use toolpost_control::{Dialect, Settings, Setup, ToolData, WholeNumbers, read};
+use toolpost_control::{Dialect, Settings, Setup, ToolData, WholeNumbers};
 
 fn run_with(setup: Setup, dialect: Dialect, text: &str) -> Result<Vec<Op>, Box<Diagnostic>> {
     let settings = Settings { setup, ..Settings::new(dialect, [false; 3]) };
-    let mut ops = Vec::new();
-    read(&settings, "p.nc", text.as_bytes(), &mut |record| {
-        ops.push(record.op);
-        Ok(())
-    })?;
-    Ok(ops)
+    common::ops(&settings, "p.nc", text)
 }
 
 fn ops(dialect: Dialect, text: &str) -> Vec<Op> {
@@ -123,6 +120,36 @@ fn a_written_work_offset_sets_up_before_the_first_move_and_is_a_difference_after
             &[[1.0, 1.0, 1.0], [6.0, 1.0, 1.0]],
         );
     }
+}
+
+/// B-64484EN-2, "Changing workpiece coordinate system": P0 is the external offset, which adds to those of
+/// all work offsets.
+#[test]
+fn the_external_offset_moves_all_work_offsets() {
+    goes_to(
+        Dialect::Fanuc,
+        "G90 G10 L2 P0 X5. Y0 Z0\nG10 L2 P1 X100. Y100. Z0\nG54 G0 X1. Y1. Z1.\n\
+         G10 L2 P0 X8.\nX1. Y1.\nG91 G10 L2 P0 Y2.\nG90 X1. Y1.\nG10 L2 P1 X101.\nX1.\n",
+        &[[1.0, 1.0, 1.0], [4.0, 1.0, 1.0], [4.0, 3.0, 1.0], [5.0, 3.0, 1.0]],
+    );
+    // In another offset, too: 60 in G54 is 10 in G55 whatever lies outside of both.
+    let got = ops(
+        Dialect::Fanuc,
+        "G90 G10 L2 P1 X0 Y0 Z0\nG10 L2 P2 X50. Y0 Z0\nG10 L2 P0 X7. Y7. Z7.\nG54 G0 X60. Y1. Z1.\n\
+         G55\nG91 X1.\n",
+    );
+    let Some(Op::Rapid(pose)) = got.last() else { panic!("{got:?}") };
+    assert_eq!(pose.point, Vec3::new(11.0, 1.0, 1.0));
+    // What stood there before is not known; an increment is all the same.
+    let unknown = "G90 G54 G0 X1. Y1. Z1.\nG10 L2 P0 X5.\n";
+    assert_eq!(rule(Dialect::Fanuc, unknown), "nc-unknown-shift");
+    goes_to(
+        Dialect::Fanuc,
+        "G90 G54 G0 X1. Y1. Z1.\nG91 G10 L2 P0 X5.\nG90 X1.\n",
+        &[[1.0, 1.0, 1.0], [6.0, 1.0, 1.0]],
+    );
+    // On a Haas P0 is G52.
+    assert_eq!(rule(Dialect::Haas, "G90 G10 L2 P0 X5.\n"), "nc-data");
 }
 
 #[test]
@@ -414,7 +441,10 @@ fn a_thread_and_a_skip() {
     for dialect in [Dialect::Fanuc, Dialect::Haas, Dialect::Mach3] {
         let skip = "G90 G0 X0 Y0 Z5.\nG31 Z-20. F100\n";
         let got = ops(dialect, skip);
-        assert!(matches!(got.last(), Some(Op::Probe(pose)) if pose.point.z == -20.0), "{got:?}");
+        assert!(
+            matches!(got.last(), Some(Op::Probe(probe)) if probe.end.point.z == -20.0),
+            "{got:?}"
+        );
         assert_eq!(rule(dialect, &format!("{skip}G91 G0 Z1.\n")), "nc-unknown-position");
     }
 }

@@ -1,10 +1,12 @@
 //! Random programs that move, turn and mirror their coordinates, beside a model of a few lines in
 //! complex numbers that goes forwards only: from what a block says to where the tool is.
 
+mod common;
+
 use geom::Vec3;
 use program::Op;
 use proptest::prelude::*;
-use toolpost_control::{Dialect, Settings, Setup, read};
+use toolpost_control::{Dialect, Settings, Setup};
 
 /// A block of a random program; lengths are thousandths of a millimetre.
 #[derive(Clone, Debug)]
@@ -236,15 +238,10 @@ fn check(dialect: Dialect, blocks: &[Block]) {
     }
     let setup = Setup { start: Some(Vec3::ZERO), ..Setup::default() };
     let settings = Settings { setup, ..Settings::new(dialect, [false; 3]) };
-    let mut points = Vec::new();
     let text = &writer.text;
-    read(&settings, "t.nc", text.as_bytes(), &mut |record| {
-        if let Op::Rapid(pose) = record.op {
-            points.push(pose.point);
-        }
-        Ok(())
-    })
-    .unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let ops = common::ops(&settings, "t.nc", text).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    let rapid = |op: &Op| if let Op::Rapid(pose) = op { Some(pose.point) } else { None };
+    let points: Vec<Vec3> = ops.iter().filter_map(rapid).collect();
     assert_eq!(points.len(), writer.expected.len(), "{text}");
     for (n, (got, expected)) in points.iter().zip(&writer.expected).enumerate() {
         assert!(got.distance(*expected) < 1e-6, "move {n}: {got} {expected}\n{text}");

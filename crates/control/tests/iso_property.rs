@@ -1,6 +1,8 @@
 //! Random legal ISO programs in the flavours that write them alike, written by the small writer of this
 //! file, and random words in all flavours.
 
+mod common;
+
 use geom::Vec3;
 use program::{Op, Record};
 use proptest::prelude::*;
@@ -10,13 +12,7 @@ const FLAVORS: [Dialect; 5] =
     [Dialect::Fanuc, Dialect::Haas, Dialect::LinuxCnc, Dialect::Mach3, Dialect::Grbl];
 
 fn run(dialect: Dialect, text: &str) -> Result<Vec<Record>, Box<program::Diagnostic>> {
-    let settings = Settings::new(dialect, [true, false, true]);
-    let mut records = Vec::new();
-    read(&settings, "t.nc", text.as_bytes(), &mut |record| {
-        records.push(record);
-        Ok(())
-    })?;
-    Ok(records)
+    common::records(&Settings::new(dialect, [true, false, true]), "t.nc", text)
 }
 
 /// A number of thousandths as a program writes it, with its point.

@@ -1,9 +1,9 @@
 //! The Klartext control against examples of the HEIDENHAIN manuals and calculations by hand.
 
-mod klartext_common;
+mod common;
 
+use common::klartext::*;
 use geom::Vec3;
-use klartext_common::*;
 use program::{
     Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, Op, Orientation, Pose, Spindle,
 };
@@ -279,7 +279,7 @@ fn what_a_cycle_cannot_say_in_the_neutral_vocabulary_is_refused() {
         (200, "Q201=-10 Q206=100 Q202=5 Q210=0 Q395=1", "Q395"),
         (200, "Q201=-10 Q206=100 Q206=100 Q202=5 Q210=0", "twice"),
         (201, "Q201=-10 Q206=100 Q211=0 Q208=500", "Q208"),
-        (202, "Q201=-10 Q206=100 Q211=0 Q208=MAX Q214=1 Q336=0", "Q214"),
+        (202, "Q201=-10 Q206=100 Q211=0 Q208=MAX Q214=5 Q336=0", "Q214"),
         (
             203,
             "Q201=-10 Q206=100 Q202=2 Q210=0 Q212=0 Q213=2 Q205=0 Q211=0 Q208=MAX Q256=0.2",
@@ -562,7 +562,7 @@ fn what_is_not_understood_is_refused_with_its_place() {
         ("FN 16: F-PRINT A", 2, 6, "unsupported"),
         ("FL X+1", 2, 3, "unsupported"),
         ("CYCL DEF 7.1 X+1", 2, 12, "cycle-parameter"),
-        ("CYCL DEF 19.0 WORKING PLANE", 2, 12, "unsupported"),
+        ("CYCL DEF 18.0 THREAD CUTTING", 2, 12, "unsupported"),
         ("CYCL DEF 200 DRILLING", 2, 3, "cycle-parameter"),
         ("CYCL CALL", 2, 3, "cycle"),
         ("TOOL CALL 1 S100", 2, 3, "missing-word"),

@@ -1,10 +1,10 @@
 //! Corners, tangential arcs, approaches and departures of the Klartext control: the manuals' examples,
 //! with the points calculated in another way than the control does.
 
-mod klartext_common;
+mod common;
 
+use common::klartext::*;
 use geom::Vec3;
-use klartext_common::*;
 use program::{Compensation, Feed, Op};
 
 fn v(x: f64, y: f64, z: f64) -> Vec3 {

@@ -1,9 +1,9 @@
 //! Labels, calls and Q parameters of the Klartext control, against the manuals' rules and sums done by
 //! hand.
 
-mod klartext_common;
+mod common;
 
-use klartext_common::*;
+use common::klartext::*;
 use program::{Diagnostic, Feed, Op};
 
 /// Where the rapids of these blocks go in X.

@@ -1,11 +1,11 @@
 //! Transformations, tilted planes and patterns of the Klartext control, against the manuals' examples
 //! and calculations by hand.
 
-mod klartext_common;
+mod common;
 
+use common::klartext::*;
 use geom::Vec3;
-use klartext_common::*;
-use program::{Compensation, Op};
+use program::{Compensation, Op, Orientation};
 
 /// The points of these blocks behind a start at 0, 0, 50.
 fn moves(blocks: &str) -> Vec<[f64; 3]> {
@@ -169,6 +169,77 @@ fn three_points_give_a_plane_with_x_from_the_first_to_the_second() {
     assert_eq!(refused_five(line).rule, "plane");
 }
 
+/// Cycle 19 is PLANE SPATIAL where its entries are spatial angles (iTNC 530 340 422 p. 460), and of one
+/// angle where they are positions of the axes, too. Where the axes stand then is told by Q120 to Q122.
+#[test]
+fn cycle_19_tilts_the_plane_about_one_axis() {
+    let tilt = "CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1 A+0 B+30 C+0\n";
+    let turn = "L B+Q121 C+Q122 R0 FMAX\n";
+    let at = "L X+0 Y+0 Z+10 R0 FMAX";
+    let ops = run_five(&format!("{START}{tilt}{turn}{at}"));
+    let pose = *poses(&ops).last().unwrap();
+    // Z of the plane goes to (sin B, 0, cos B).
+    let (sin, cos) = 30f64.to_radians().sin_cos();
+    assert!(pose.point.distance(Vec3::new(10.0 * sin, 0.0, 10.0 * cos)) < 1e-12);
+    let stands = Orientation::Rotary { degrees: [0.0, 30.0, 0.0], tool_center: true };
+    assert_eq!(pose.orientation, stands);
+    // The same as by PLANE, block for block.
+    let plane = "PLANE SPATIAL SPA+0 SPB+30 SPC+0 STAY\nL B+30 C+0 R0 FMAX\n";
+    assert_eq!(format!("{ops:?}"), format!("{:?}", run_five(&format!("{START}{plane}{at}"))));
+    // Without an angle it ends.
+    let ended = format!("{tilt}{turn}CYCL DEF 19.0 WORKING PLANE\nCYCL DEF 19.1\n{turn}{at}");
+    let pose = *poses(&run_five(&format!("{START}{ended}"))).last().unwrap();
+    assert_eq!(pose.point, Vec3::new(0.0, 0.0, 10.0));
+    // Whether the axes have turned is not known, nor which plane two angles mean.
+    assert_eq!(refused_five(&format!("{tilt}{at}\nL X+5 F100")).rule, "unknown-position");
+    let two = tilt.replace("C+0", "C+90");
+    assert_eq!(refused_five(&two).rule, "unsupported");
+    assert_eq!(refused_five(&tilt.replace("C+0", "F1000")).rule, "plane");
+    // About an axis that the machine does not have other axes turn.
+    let other = tilt.replace("A+0 B+30", "A+30");
+    assert_eq!(refused_five(&format!("{other}{turn}")).rule, "parameter");
+}
+
+/// Cycle 208 by hand: a bore of 25 with a tool of 20 is a helix of 2.5; from 2 above to 8 below with 4 a turn
+/// it makes two turns and a half.
+#[test]
+fn cycle_208_mills_a_bore_on_a_helix() {
+    let cycle =
+        "CYCL DEF 208 BORE MILLING Q200=2 Q201=-8 Q206=150 Q334=4 Q203=0 Q204=50 Q335=25 Q342=0";
+    let ops = run_with_radius(10.0, &format!("{START}M3\n{cycle} Q351=1\nL X+1 Y+2 FMAX M99"));
+    let ends: Vec<_> = poses(&ops).iter().map(|pose| pose.point.to_array()).collect();
+    let expected = [
+        [1.0, 2.0, 2.0],
+        [3.5, 2.0, 2.0],
+        [-1.5, 2.0, -8.0],
+        [-1.5, 2.0, -8.0],
+        [1.0, 2.0, -8.0],
+        [1.0, 2.0, 50.0],
+    ];
+    assert_near(&ends[ends.len() - 6..], &expected);
+    let ways: Vec<_> = arcs(&ops).iter().map(|arc| (arc.center.x, arc.normal, arc.turns)).collect();
+    let ccw = Vec3::Z;
+    assert_eq!(ways, [(2.25, ccw, 0), (1.0, ccw, 2), (1.0, ccw, 0), (-0.25, ccw, 0)]);
+    assert!(ops.contains(&Op::Feed(program::Feed::PerMinute(150.0))));
+    let up_cut = run_with_radius(10.0, &format!("{START}M3\n{cycle} Q351=-1\nCYCL CALL"));
+    assert!(arcs(&up_cut).iter().all(|arc| arc.normal == Vec3::NEG_Z));
+    // A tool as wide as the bore goes straight down.
+    let straight = run_with_radius(12.5, &format!("{START}M3\n{cycle}\nCYCL CALL"));
+    assert!(arcs(&straight).is_empty());
+    assert_eq!(poses(&straight).iter().rev().nth(1).unwrap().point.z, -8.0);
+    // Wider than the bore, or less than half as wide, the control takes none.
+    for (radius, roughed) in [(13.0, "Q342=0"), (6.0, "Q342=0"), (6.0, "Q342=30")] {
+        let cycle = cycle.replace("Q342=0", roughed);
+        let text = format!("{START}M3\n{cycle}\nCYCL CALL");
+        let tool =
+            toolpost_control::ToolData { number: 5, name: String::new(), radius, length: 9.0 };
+        let setup = toolpost_control::Setup { tools: vec![tool], ..Default::default() };
+        let error = read_with(setup, [false; 3], program("T", "MM", &text).as_bytes()).unwrap_err();
+        assert_eq!(error.rule, "cycle-parameter", "{radius} {roughed}");
+    }
+    assert_eq!(refused(&format!("{START}M3\n{cycle}\nCYCL CALL")).rule, "cycle-parameter");
+}
+
 #[test]
 fn a_relative_angle_turns_the_active_plane() {
     // About the tilted X by 45 after 45 about X: Z lies down to -Y.
@@ -281,7 +352,7 @@ fn a_defined_pattern_is_drilled_where_it_is_called() {
 
 #[test]
 fn cycles_that_mill_by_themselves_are_refused_with_a_reason() {
-    for cycle in [4, 14, 204, 208, 210, 241, 251, 262, 13, 18, 19, 30, 400] {
+    for cycle in [4, 14, 210, 241, 251, 262, 13, 18, 30, 400] {
         for form in [format!("CYCL DEF {cycle} NAME"), format!("CYCL DEF {cycle}.0 NAME")] {
             let error = refused(&format!("{START}{form}"));
             assert_eq!(error.rule, "unsupported", "{form}: {error}");

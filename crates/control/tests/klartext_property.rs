@@ -1,19 +1,15 @@
 //! Random legal Klartext programs, written by the small writer of this file, and random bytes.
 
+mod common;
+
 use geom::Vec3;
 use program::{Feed, Op, Record};
 use proptest::prelude::*;
 use toolpost_control::{Dialect, Settings, read};
 
 fn run(text: &str) -> Vec<Record> {
-    let settings = Settings::new(Dialect::Klartext, [false; 3]);
-    let mut records = Vec::new();
-    let sink = &mut |record| {
-        records.push(record);
-        Ok(())
-    };
-    read(&settings, "t.h", text.as_bytes(), sink).unwrap_or_else(|error| panic!("{error}\n{text}"));
-    records
+    let records = common::klartext::read_on([false; 3], text.as_bytes());
+    records.unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
 /// A number of ten-thousandths, and how a program writes it.

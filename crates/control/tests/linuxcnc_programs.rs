@@ -1,9 +1,9 @@
 //! All NC programs that LinuxCNC's Debian package brings along, run through its own interpreter
 //! (`rs274 -g`) and through ours: the same moves, program by program.
 
-mod linuxcnc_common;
+mod common;
 
-use linuxcnc_common::difference;
+use common::linuxcnc::difference;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -61,7 +61,7 @@ fn difference_of(path: &Path) -> Option<Option<String>> {
         _ => 0,
     };
     let text = [&text[..behind], BEFORE.as_bytes(), &text[behind..]].concat();
-    difference(&text, &folders(path))
+    difference(&text, [true; 3], &folders(path))
 }
 
 /// The programs that differ, by the end of their path, and why (`docs/controls/linuxcnc.md`).
@@ -78,7 +78,6 @@ const DIFFER: &[(&str, &str)] = &[
         "ncfiles/gmoccapy_2_tools_with_cutter_radius_compensation.ngc",
         "a move in X and Y after M6 and G43, where Z is not known",
     ),
-    ("ncfiles/mmount.ngc", "G33.1 is told as the moves of a thread, by rs274 as one call"),
     ("ncfiles/systems.ngc", "splines: other points of the same curve"),
     (
         "manual-toolchange-with-tool-length-switch/nc_files/tcdemo.ngc",
@@ -108,21 +107,10 @@ fn every_program_of_linuxcnc_makes_the_same_moves_or_stands_in_the_list() {
 /// Folders of subroutines for `ngcgui`, which names the arguments in comments: `#<depth> = #4 (=0.5 depth)`.
 const SUBROUTINES: [&str; 3] = ["ngcgui_lib", "ngcgui_lib/lathe", "ngcgui_lib/utilitysubs"];
 
-/// Those that differ: constant surface speed (`G96`) is refused, and so is the diameter of the tool
-/// (`#5410`), which counts in the unit of the machine.
-const SUBROUTINES_DIFFER: [&str; 11] = [
-    "id",
-    "od",
-    "arc1",
-    "arc2",
-    "db25",
-    "helix",
-    "helix_rtheta",
-    "ihex",
-    "ohex",
-    "qpex_mm",
-    "slot",
-];
+/// Those that differ: the diameter of the tool (`#5410`), which counts in the unit of the machine, is
+/// refused.
+const SUBROUTINES_DIFFER: [&str; 9] =
+    ["arc1", "arc2", "db25", "helix", "helix_rtheta", "ihex", "ohex", "qpex_mm", "slot"];
 
 /// The arguments that a subroutine suggests, 1 where it suggests none.
 fn arguments(text: &str) -> Vec<String> {
@@ -160,7 +148,7 @@ fn every_subroutine_of_ngcgui_makes_the_same_moves_with_the_arguments_it_suggest
                     arguments.join("] [")
                 );
                 let text = text.replace("call []", "call");
-                match difference(text.as_bytes(), &folders(path)) {
+                match difference(text.as_bytes(), [true; 3], &folders(path)) {
                     None => return,
                     Some(None) => {}
                     Some(Some(difference)) => unexpected += &format!("### {text}{difference}\n"),

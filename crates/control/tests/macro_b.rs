@@ -1,10 +1,12 @@
 //! FANUC's custom macro B as its manuals tell it (B-63684EN, 13.3 and 16; `docs/controls/fanuc.md`).
 
+mod common;
+
 use geom::Vec3;
 use program::{Diagnostic, Op};
 use proptest::prelude::*;
 use std::path::PathBuf;
-use toolpost_control::{Dialect, Settings, Setup, WholeNumbers, read};
+use toolpost_control::{Dialect, Settings, Setup, WholeNumbers};
 
 fn settings(dialect: Dialect, folders: &[PathBuf]) -> Settings {
     let setup = Setup { folders: folders.to_vec(), start: Some(Vec3::ZERO), ..Setup::default() };
@@ -12,12 +14,8 @@ fn settings(dialect: Dialect, folders: &[PathBuf]) -> Settings {
 }
 
 fn records(settings: &Settings, text: &str) -> Result<Vec<(u32, Op)>, Box<Diagnostic>> {
-    let mut records = Vec::new();
-    read(settings, "main.nc", text.as_bytes(), &mut |record| {
-        records.push((record.line, record.op));
-        Ok(())
-    })?;
-    Ok(records)
+    let records = common::records(settings, "main.nc", text)?;
+    Ok(records.into_iter().map(|record| (record.line, record.op)).collect())
 }
 
 /// The ends of the moves of a program in mm, which begins with `G21` and `G0`.
@@ -427,17 +425,30 @@ fn pieces() -> impl Strategy<Value = Vec<Piece>> {
     proptest::collection::vec(piece, 1..6)
 }
 
+fn make_their_steps(pieces: &[Piece]) {
+    let (mut text, mut programs) = (String::new(), String::new());
+    write(pieces, 0, &mut 0, &mut text, &mut programs);
+    let mut made = Vec::new();
+    steps(pieces, 0, &mut made);
+    let mut at = 0.0;
+    let step = |step: &f64| {
+        at += step;
+        at
+    };
+    let expected: Vec<f64> = made.iter().map(step).collect();
+    assert_eq!(xs(&format!("{text}M30\n{programs}")), expected);
+}
+
 proptest! {
     #[test]
     fn random_programs_make_their_steps(pieces in pieces()) {
-        let (mut text, mut programs) = (String::new(), String::new());
-        write(&pieces, 0, &mut 0, &mut text, &mut programs);
-        let mut made = Vec::new();
-        steps(&pieces, 0, &mut made);
-        let mut at = 0.0;
-        let expected: Vec<f64> = made.iter().map(|step| { at += step; at }).collect();
-        prop_assert_eq!(xs(&format!("{text}M30\n{programs}")), expected);
+        make_their_steps(&pieces);
     }
+}
+
+#[test]
+fn a_loop_around_nothing_makes_no_steps() {
+    make_their_steps(&[Piece::Loop(1, Vec::new())]);
 }
 
 #[test]

@@ -1,9 +1,9 @@
 //! O-words, parameters and expressions of LinuxCNC, with its own interpreter as the judge.
 
-mod linuxcnc_common;
+mod common;
 
+use common::linuxcnc::difference;
 use geom::Vec3;
-use linuxcnc_common::difference;
 use program::{Diagnostic, Op};
 use proptest::prelude::*;
 use std::path::{Path, PathBuf};
@@ -13,12 +13,8 @@ use toolpost_control::{Dialect, Settings, Setup, read};
 fn run(text: &str, folders: &[PathBuf]) -> Result<Vec<(u32, Op)>, Box<Diagnostic>> {
     let setup = Setup { folders: folders.to_vec(), start: Some(Vec3::ZERO), ..Setup::default() };
     let settings = Settings { setup, ..Settings::new(Dialect::LinuxCnc, [true; 3]) };
-    let mut records = Vec::new();
-    read(&settings, "main.ngc", text.as_bytes(), &mut |record| {
-        records.push((record.line, record.op));
-        Ok(())
-    })?;
-    Ok(records)
+    let records = common::records(&settings, "main.ngc", text)?;
+    Ok(records.into_iter().map(|record| (record.line, record.op)).collect())
 }
 
 /// X of each move.
@@ -30,7 +26,9 @@ fn path(text: &str) -> Vec<f64> {
 
 #[track_caller]
 fn agrees(text: &str) {
-    if let Some(Some(difference)) = difference(format!("G21\n{text}\nM2\n").as_bytes(), &[]) {
+    if let Some(Some(difference)) =
+        difference(format!("G21\n{text}\nM2\n").as_bytes(), [false; 3], &[])
+    {
         panic!("{difference}\n{text}");
     }
 }
@@ -40,7 +38,7 @@ fn refused(text: &str) -> Box<Diagnostic> {
     let text = format!("G21\n{text}\nM2\n");
     let Err(error) = run(&text, &[]) else { panic!("taken:\n{text}") };
     assert!(error.line > 0 && error.column > 0, "{error}");
-    if let Some(Some(difference)) = difference(text.as_bytes(), &[]) {
+    if let Some(Some(difference)) = difference(text.as_bytes(), [false; 3], &[]) {
         panic!("LinuxCNC takes this: {difference}\n{text}");
     }
     error
@@ -269,7 +267,7 @@ fn files_are_called_from_the_given_folders_and_errors_name_them() {
         records.iter().filter_map(|(l, op)| op.pose().map(|p| (*l, p.point.x))).collect();
     // Moves of another file carry the line of the call.
     assert_eq!(moves, [(3, 3.0), (3, 4.0), (4, 9.0), (5, 7.0)]);
-    if let Some(Some(difference)) = difference(text.as_bytes(), &folders) {
+    if let Some(Some(difference)) = difference(text.as_bytes(), [false; 3], &folders) {
         panic!("{difference}");
     }
     let error = |name: &str| run(&format!("G21\no<{name}> call\n"), &folders).unwrap_err();
@@ -288,12 +286,7 @@ fn messages_show_values_and_block_delete_skips() {
     let on = |block_delete: bool| {
         let setup = Setup { start: Some(Vec3::ZERO), block_delete, ..Setup::default() };
         let settings = Settings { setup, ..Settings::new(Dialect::LinuxCnc, [false; 3]) };
-        let mut ops = Vec::new();
-        read(&settings, "a", text.as_bytes(), &mut |record| {
-            ops.push(record.op);
-            Ok(())
-        })
-        .map(|()| ops)
+        common::ops(&settings, "a", text)
     };
     let ops = on(true).unwrap();
     assert_eq!(ops[0], op("depth 2.500000 of 3.000000 and ######"));

@@ -1,19 +1,17 @@
 //! Lists of coordinates, and what is none.
 
+mod common;
+
 use geom::Vec3;
 use program::{Diagnostic, Op, Pose};
 use proptest::prelude::*;
-use toolpost_control::{Dialect, Settings, Wire, read};
+use toolpost_control::{Dialect, Settings, Wire};
 
 fn run(text: &str, upper_plane: Option<f64>) -> Result<Vec<(u32, Op)>, Box<Diagnostic>> {
     let wire = Wire { height: upper_plane, ..Wire::default() };
     let settings = Settings { wire, ..Settings::new(Dialect::Points, [false; 3]) };
-    let mut records = Vec::new();
-    read(&settings, "part.pts", text.as_bytes(), &mut |record| {
-        records.push((record.line, record.op));
-        Ok(())
-    })?;
-    Ok(records)
+    let records = common::records(&settings, "part.pts", text)?;
+    Ok(records.into_iter().map(|record| (record.line, record.op)).collect())
 }
 
 fn at(x: f64, y: f64) -> Pose {

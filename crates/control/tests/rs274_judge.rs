@@ -1,307 +1,27 @@
 //! LinuxCNC's own interpreter as the judge: programs run through `rs274` and through our control must
 //! make the same moves, and what it refuses we refuse.
 
-use geom::{Mat3, Vec3};
-use program::{Cycle, CycleKind, Op, Pose};
-use std::collections::HashMap;
-use std::process::Command;
-use toolpost_control::{Dialect, Settings, Setup, ToolData, read};
+mod common;
 
-/// A move as the machine makes it: end point in mm in the work frame; for an arc a point of its axis,
-/// the direction about which it turns counter-clockwise, and its turns begun; for a thread its pitch.
-#[derive(Clone, Debug, PartialEq)]
-enum Motion {
-    Rapid([f64; 3]),
-    Feed([f64; 3]),
-    Arc { end: [f64; 3], center: [f64; 3], normal: [f64; 3], turns: i32 },
-    Thread([f64; 3], f64),
-    Probe([f64; 3]),
-    Dwell(f64),
-}
+use common::linuxcnc::{difference, ours, theirs};
 
-/// What `rs274 -g` makes of a program: its moves, or its error. `None` where it is not installed.
-fn judged(program: &str) -> Option<Result<Vec<Motion>, String>> {
-    let folder = tempfile::tempdir().unwrap();
-    let path = |name: &str| folder.path().join(name);
-    std::fs::write(path("tool.tbl"), "T1 P1 Z25 D6\nT2 P2 Z50 D10\n").unwrap();
-    std::fs::write(path("rs274.var"), "").unwrap();
-    std::fs::write(path("program.ngc"), program).unwrap();
-    let output = Command::new("rs274")
-        .args(["-t", "tool.tbl", "-v", "rs274.var", "-g", "program.ngc"])
-        .current_dir(folder.path())
-        // It keeps its tool table there: two at once must not meet.
-        .env("HOME", folder.path())
-        .output();
-    let Ok(output) = output else {
-        eprintln!("rs274 (Debian package linuxcnc-uspace) is not installed: LinuxCNC is not asked");
-        return None;
-    };
-    if !output.status.success() {
-        return Some(Err(String::from_utf8_lossy(&output.stderr).into_owned()
-            + &String::from_utf8_lossy(&output.stdout)));
-    }
-    Some(Ok(canonical(&String::from_utf8_lossy(&output.stdout))))
-}
-
-/// A coordinate system of LinuxCNC: where its zero is, and its turn about Z in degrees.
-#[derive(Clone, Copy, Default)]
-struct System {
-    origin: Vec3,
-    degrees: f64,
-}
-
-/// The moves among the canonical calls that `rs274` prints, in the frame of the active coordinate
-/// system as it was at the first move in it. The calls give programmed coordinates: the machine goes to
-/// the origin plus the turned sum of them and the offset of `G92` (`emccanon.cc`).
-fn canonical(printed: &str) -> Vec<Motion> {
-    let (mut moves, mut plane, mut unit, mut pitch) = (Vec::new(), [0, 1, 2], 1.0, None);
-    let (mut number, mut system, mut shift) = (1, System::default(), Vec3::ZERO);
-    let mut first: HashMap<i32, System> = HashMap::new();
-    let mut at = [0.0; 3];
-    for line in printed.lines() {
-        let Some((name, arguments)) = line.split_once('(') else { continue };
-        let name = name.rsplit(' ').next().unwrap();
-        let numbers: Vec<f64> = arguments
-            .trim_end_matches(')')
-            .split(',')
-            .filter_map(|number| number.trim().parse().ok())
-            .collect();
-        let about_z = |degrees: f64| Mat3::from_rotation_z(degrees.to_radians());
-        let place = |first: &mut HashMap<i32, System>, programmed: [f64; 3]| {
-            let anchor = first.entry(number).or_insert(system);
-            let machine =
-                system.origin + about_z(system.degrees) * (Vec3::from(programmed) + shift);
-            (about_z(-anchor.degrees) * (machine - anchor.origin)).to_array()
-        };
-        let point = || [numbers[0] * unit, numbers[1] * unit, numbers[2] * unit];
-        match name {
-            "SET_G5X_OFFSET" => {
-                number = numbers[0] as i32;
-                system.origin = Vec3::new(numbers[1], numbers[2], numbers[3]) * unit;
-            }
-            "SET_XY_ROTATION" => system.degrees = numbers[0],
-            "SET_G92_OFFSET" => shift = Vec3::new(numbers[0], numbers[1], numbers[2]) * unit,
-            "START_SPEED_FEED_SYNC" => pitch = Some(numbers[0] * unit),
-            "STOP_SPEED_FEED_SYNCH" => pitch = None,
-            "STRAIGHT_TRAVERSE" => {
-                at = place(&mut first, point());
-                moves.push(Motion::Rapid(at));
-            }
-            "STRAIGHT_FEED" => {
-                at = place(&mut first, point());
-                moves.push(pitch.map_or(Motion::Feed(at), |pitch| Motion::Thread(at, pitch)));
-            }
-            "STRAIGHT_PROBE" => {
-                at = place(&mut first, point());
-                moves.push(Motion::Probe(at));
-            }
-            "RIGID_TAP" => {
-                moves.push(Motion::Feed(place(&mut first, point())));
-                moves.push(Motion::Dwell(0.0));
-                moves.push(Motion::Feed(at));
-            }
-            "DWELL" => moves.push(Motion::Dwell(numbers[0])),
-            "ARC_FEED" => {
-                let (mut end, mut center) = ([0.0; 3], [0.0; 3]);
-                (end[plane[0]], end[plane[1]]) = (numbers[0] * unit, numbers[1] * unit);
-                (center[plane[0]], center[plane[1]]) = (numbers[2] * unit, numbers[3] * unit);
-                end[plane[2]] = numbers[5] * unit;
-                at = place(&mut first, end);
-                let center = place(&mut first, center);
-                let anchor = first[&number];
-                let axis = Vec3::AXES[plane[2]] * numbers[4].signum();
-                let normal = (about_z(system.degrees - anchor.degrees) * axis).to_array();
-                let turns = numbers[4].abs() as i32;
-                moves.push(Motion::Arc { end: at, center, normal, turns });
-            }
-            "SELECT_PLANE" => {
-                plane = match arguments {
-                    "CANON_PLANE_XY)" => [0, 1, 2],
-                    "CANON_PLANE_XZ)" => [2, 0, 1],
-                    _ => [1, 2, 0],
-                }
-            }
-            "USE_LENGTH_UNITS" => unit = if arguments.contains("INCHES") { 25.4 } else { 1.0 },
-            _ => {}
-        }
-    }
-    moves
-}
-
-/// What our control makes of it. Homing goes to 0, as with `rs274`'s empty parameter file; holes are
-/// expanded as LinuxCNC's manual describes each cycle.
-fn ours(program: &str) -> Result<Vec<Motion>, String> {
-    // What `rs274` begins with; it takes its tool table to be in inches.
-    let tool = |number, length, radius| ToolData {
-        number,
-        name: String::new(),
-        radius: radius * 25.4,
-        length: length * 25.4,
-    };
-    let settings = Settings {
-        setup: Setup {
-            tools: vec![tool(1, 25.0, 3.0), tool(2, 50.0, 5.0)],
-            start: Some(Vec3::ZERO),
-            ..Setup::default()
-        },
-        ..Settings::new(Dialect::LinuxCnc, [false; 3])
-    };
-    let (mut moves, mut at, mut active) = (Vec::new(), [0.0; 3], None);
-    read(&settings, "program.ngc", program.as_bytes(), &mut |record| {
-        let to = |pose: &Pose, at: [f64; 3]| {
-            let p = pose.point.to_array();
-            [0, 1, 2].map(|i| if p[i].is_nan() { at[i] } else { p[i] })
-        };
-        match record.op {
-            Op::Rapid(pose) => {
-                at = to(&pose, at);
-                moves.push(Motion::Rapid(at));
-            }
-            Op::Line(pose) => {
-                at = to(&pose, at);
-                moves.push(Motion::Feed(at));
-            }
-            Op::Arc(arc) => {
-                at = to(&arc.end, at);
-                let (center, normal) = (arc.center.to_array(), arc.normal.to_array());
-                moves.push(Motion::Arc { end: at, center, normal, turns: arc.turns as i32 + 1 });
-            }
-            Op::Thread(thread) => {
-                at = to(&thread.end, at);
-                moves.push(Motion::Thread(at, thread.pitch));
-            }
-            Op::Probe(pose) => {
-                at = to(&pose, at);
-                moves.push(Motion::Probe(at));
-            }
-            Op::Home(axes) => {
-                at = [0, 1, 2].map(|i| if axes & 1 << i != 0 { 0.0 } else { at[i] });
-                moves.push(Motion::Rapid(at));
-            }
-            Op::Dwell(seconds) => moves.push(Motion::Dwell(seconds)),
-            Op::Cycle(cycle) => active = Some(*cycle),
-            Op::Hole(pose) => {
-                let axis = pose.axis().map_or(2, |a| a.abs().max_position());
-                at = hole(&mut moves, active.as_ref().unwrap(), at, pose.point.to_array(), axis);
-            }
-            _ => {}
-        }
-        Ok(())
-    })
-    .map_err(|diagnostic| diagnostic.to_string())?;
-    Ok(moves)
-}
-
-/// The moves of one hole ("Canned cycles" in LinuxCNC's G-code reference).
-fn hole(
-    moves: &mut Vec<Motion>,
-    cycle: &Cycle,
-    at: [f64; 3],
-    top: [f64; 3],
-    axis: usize,
-) -> [f64; 3] {
-    let level = |height: f64| {
-        let mut p = top;
-        p[axis] += height;
-        p
-    };
-    // With G98 the way in the plane is at the initial level, also after holes with G99.
-    moves.push(Motion::Rapid(level((at[axis] - top[axis]).max(cycle.retract))));
-    moves.push(Motion::Rapid(level(0.0)));
-    let mut depth = 0.0;
-    while let Some(peck) = cycle.peck
-        && depth + peck < cycle.depth
-    {
-        depth += peck;
-        moves.push(Motion::Feed(level(-depth)));
-        if cycle.kind == CycleKind::Deep {
-            moves.push(Motion::Rapid(level(0.0)));
-        }
-        // 0.010 inch, both for breaking the chip and for going back in.
-        moves.push(Motion::Rapid(level(-depth + 0.254)));
-    }
-    moves.push(Motion::Feed(level(-cycle.depth)));
-    if cycle.dwell > 0.0 || matches!(cycle.kind, CycleKind::Tap { .. }) {
-        moves.push(Motion::Dwell(cycle.dwell));
-    }
-    match cycle.kind {
-        // G85: at feed up to R, by rapid from there.
-        CycleKind::Ream if cycle.dwell == 0.0 => moves.push(Motion::Feed(level(0.0))),
-        // G89, G84, G74: at feed up to the retract level, also where that is the initial one.
-        CycleKind::Ream | CycleKind::Tap { .. } => moves.push(Motion::Feed(level(cycle.retract))),
-        _ => {}
-    }
-    moves.push(Motion::Rapid(level(cycle.retract)));
-    level(cycle.retract)
-}
-
-/// Without the moves that go nowhere, of which both sides have some.
-fn essential(moves: Vec<Motion>) -> Vec<Motion> {
-    let mut at = [0.0; 3];
-    let mut kept = Vec::new();
-    for motion in moves {
-        let end = match &motion {
-            Motion::Probe(end) | Motion::Thread(end, _) => *end,
-            Motion::Rapid(end) | Motion::Feed(end) => {
-                if near(end, &at) {
-                    continue;
-                }
-                *end
-            }
-            Motion::Arc { end, .. } => *end,
-            Motion::Dwell(_) => at,
-        };
-        at = end;
-        kept.push(motion);
-    }
-    kept
-}
-
-/// Equal to the four decimals that `rs274` prints, in inches too.
-fn near(a: &[f64; 3], b: &[f64; 3]) -> bool {
-    a.iter().zip(b).all(|(a, b)| (a - b).abs() < 2.6e-3 || (a.is_nan() && b.is_nan()))
-}
-
-fn same(a: &Motion, b: &Motion) -> bool {
-    match (a, b) {
-        (Motion::Rapid(a), Motion::Rapid(b))
-        | (Motion::Feed(a), Motion::Feed(b))
-        | (Motion::Probe(a), Motion::Probe(b)) => near(a, b),
-        (Motion::Thread(a, p), Motion::Thread(b, q)) => near(a, b) && (p - q).abs() < 1e-3,
-        (Motion::Dwell(a), Motion::Dwell(b)) => a == b,
-        (
-            Motion::Arc { end, center, normal, turns },
-            Motion::Arc { end: end_b, center: center_b, normal: normal_b, turns: turns_b },
-        ) => {
-            let along = Vec3::from(*normal);
-            let apart = Vec3::from(*center) - Vec3::from(*center_b);
-            near(end, end_b)
-                && apart.reject_from(along).length() < 5e-3
-                && along.distance(Vec3::from(*normal_b)) < 1e-3
-                && turns == turns_b
-        }
-        _ => false,
-    }
-}
+/// No rotary axes: LinuxCNC has them at 0 at the start, and ours does not know.
+const MILL: [bool; 3] = [false; 3];
 
 fn makes_the_same_moves(program: &str) {
     let program = &format!("G21\n{program}");
-    let ours = ours(program).unwrap_or_else(|error| panic!("we refuse\n{program}\n{error}"));
-    let Some(theirs) = judged(program) else { return };
-    let theirs = theirs.unwrap_or_else(|error| panic!("LinuxCNC refuses\n{program}\n{error}"));
-    let (ours, theirs) = (essential(ours), essential(theirs));
-    for n in 0..ours.len().max(theirs.len()) {
-        match (ours.get(n), theirs.get(n)) {
-            (Some(a), Some(b)) if same(a, b) => {}
-            (a, b) => panic!("move {n} of\n{program}\nours   {a:?}\ntheirs {b:?}"),
-        }
+    if let Err(error) = ours(program.as_bytes(), MILL, &[]) {
+        panic!("we refuse\n{program}\n{error}");
+    }
+    if let Some(Some(difference)) = difference(program.as_bytes(), MILL, &[]) {
+        panic!("{difference}\n{program}");
     }
 }
 
 fn is_refused_by_both(program: &str) {
     let program = &format!("G21\n{program}");
-    assert!(ours(program).is_err(), "we take\n{program}");
-    if let Some(theirs) = judged(program) {
+    assert!(ours(program.as_bytes(), MILL, &[]).is_err(), "we take\n{program}");
+    if let Some(theirs) = theirs(program.as_bytes(), &[]) {
         assert!(theirs.is_err(), "LinuxCNC takes\n{program}");
     }
 }
@@ -475,6 +195,13 @@ fn threads_and_probes() {
 }
 
 #[test]
+fn constant_surface_speed_moves_nothing_elsewhere() {
+    makes_the_same_moves(
+        "G0 X1 Y2 Z3\nG96 D2500 S100\nM3\nG1 X5 F100\nS70\nG95 F0.1\nX1\nG97 S500\nG94 F9\nX3\nG96 S0\nM2\n",
+    );
+}
+
+#[test]
 fn lengths_come_from_the_tool_table() {
     makes_the_same_moves(
         "T1 M6\nG0 X0 Y0 Z0\nG43\nG91 G0 Z1\nG43 H2\nZ1\nG90 G10 L1 P1 Z40\nG49\nG91 Z1\nG43 H1\nZ1\n\
@@ -549,6 +276,9 @@ fn what_the_judge_refuses_we_refuse() {
         "S9 M3\nG33 Z-5",
         "S9 M3\nG33 K1",
         "G33.1 Z-5 K1",
+        "G96",
+        "S100\nG96 D500",
+        "G97 D500 S100",
         "G38.2 Z-5",
         "F9 G38.2",
         "F9 G93 G38.2 Z-5 F1",

@@ -1,9 +1,9 @@
 //! Blocks, words, modes and arcs of the SINUMERIK virtual control, against hand calculation.
 
-mod sinumerik_common;
+mod common;
 
+use common::sinumerik::{arcs, blocks, degrees, near, points, poses, run, v};
 use program::{Compensation, Coolant, Feed, Op, Orientation, Pose, Spindle};
-use sinumerik_common::{arcs, blocks, degrees, near, points, poses, run, v};
 use std::f64::consts::FRAC_1_SQRT_2;
 
 #[test]

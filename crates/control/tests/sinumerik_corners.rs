@@ -1,11 +1,11 @@
 //! Chamfers and arcs between two blocks on the SINUMERIK virtual control, against hand calculation.
 
-mod sinumerik_common;
+mod common;
 
+use common::sinumerik::{blocks, error, near, v};
 use geom::{Arc, Vec3};
 use program::{Feed, Op};
 use proptest::prelude::*;
-use sinumerik_common::{blocks, error, near, v};
 
 /// The ways of the cuts: where each ends, and for arcs their centre and direction.
 fn ways(text: &str) -> Vec<(Vec3, Option<(Vec3, Vec3)>)> {

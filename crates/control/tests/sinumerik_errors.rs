@@ -1,9 +1,9 @@
 //! Programs that the SINUMERIK virtual control refuses, and where it says so.
 
-mod sinumerik_common;
+mod common;
 
+use common::sinumerik::{blocks, error, run, settings};
 use program::{Diagnostic, Op};
-use sinumerik_common::{blocks, error, run, settings};
 use toolpost_control::read;
 
 #[test]

@@ -1,19 +1,20 @@
 //! Variables, loops, jumps and calls of the SINUMERIK virtual control, against hand calculation.
 
-mod sinumerik_common;
+mod common;
 
-use program::{Diagnostic, Op};
-use sinumerik_common::{poses, settings};
-use toolpost_control::{Setup, read};
+use common::sinumerik::{poses, settings};
+use program::{Diagnostic, Op, Record};
+use toolpost_control::{Settings, Setup, read};
 
 /// The X positions that a program moves to, with the line of each.
+fn moves_with(settings: &Settings, text: &str) -> Result<Vec<(u32, f64)>, Box<Diagnostic>> {
+    let x = |record: &Record| Some((record.line, record.op.pose()?.point.x));
+    Ok(common::records(settings, "p.mpf", text)?.iter().filter_map(x).collect())
+}
+
+/// The same at the machine of [`settings`].
 fn moves(text: &str) -> Result<Vec<(u32, f64)>, Box<Diagnostic>> {
-    let mut moves = Vec::new();
-    read(&settings(), "p.mpf", text.as_bytes(), &mut |record| {
-        moves.extend(record.op.pose().map(|pose| (record.line, pose.point.x)));
-        Ok(())
-    })?;
-    Ok(moves)
+    moves_with(&settings(), text)
 }
 
 /// The X positions of blocks that an end follows.
@@ -195,6 +196,46 @@ fn a_called_main_program_returns_at_its_end_and_variables_are_its_own() {
     assert_eq!((error.rule, error.line), ("unknown-word", 6));
 }
 
+/// Job Planning, "Modal subprogram call (MCALL)": the program runs after each block with a motion, wherever
+/// that stands; its parameters are passed once.
+#[test]
+fn a_modal_call_runs_after_every_motion() {
+    let xs = |text: &str| -> Result<Vec<f64>, &'static str> {
+        let moves = moves(&format!("%_N_A_MPF\n{text}")).map_err(|found| found.rule)?;
+        Ok(moves.into_iter().map(|(_, x)| x).collect())
+    };
+    let l70 = "\nM30\n%_N_L70_SPF\nG91 G0 X1\nX-1\nG90\nM17\n";
+    let manual = format!("G0 X0 Y0\nMCALL L70\nX10 Y10\nR1=1\nM8\nX50 Y50\nMCALL\nX60{l70}");
+    assert_eq!(xs(&manual), Ok(vec![0.0, 10.0, 11.0, 10.0, 50.0, 51.0, 50.0, 60.0]));
+    // The second example: the motion is in a program that is called.
+    let called = format!("G0 X0 Y0\nMCALL L70\nL80\nMCALL{l70}%_N_L80_SPF\nX5\nX6\nM17\n");
+    assert_eq!(xs(&called), Ok(vec![0.0, 5.0, 6.0, 5.0, 6.0, 7.0, 6.0]));
+    // The value is that at MCALL.
+    let hole = "\nM30\n%_N_HOLE_SPF\nPROC HOLE(REAL AA, REAL BB=3)\nG91 G0 X=AA\nX=BB\nG90\nM17\n";
+    let passed = format!("R1=2\nG0 X0\nMCALL HOLE(R1)\nR1=7\nX10\nX20\nMCALL{hole}");
+    assert_eq!(xs(&passed), Ok(vec![0.0, 10.0, 12.0, 15.0, 20.0, 22.0, 25.0]));
+    // Another MCALL takes its place, a cycle too.
+    let another = format!("G0 X0 Y0\nMCALL HOLE(1)\nMCALL L70\nX10{}{}", l70, &hole[5..]);
+    assert_eq!(xs(&another), Ok(vec![0.0, 10.0, 11.0, 10.0]));
+    let repeated = format!(
+        "G0 X0\nMCALL L70\nFROM_HERE:\nX10\nTO_HERE:\nREPEAT FROM_HERE TO_HERE P=1\nMCALL{l70}"
+    );
+    assert_eq!(xs(&repeated), Ok(vec![0.0, 10.0, 11.0, 10.0, 10.0, 11.0, 10.0]));
+    for (text, rule) in [
+        (format!("G0 X0\nMCALL L71\nX1{l70}"), "unknown-program"),
+        (format!("G0 X0\nMCALL HOLE(1,2,3)\nX1{hole}"), "call"),
+        (format!("G0 X0\nMCALL L70\nG1 F100{l70}"), "cycle"),
+        (format!("G0 X0\nMCALL L70\nX1 M30{l70}"), "call"),
+        (format!("G0 X0\nMCALL L70 P3\nX1{l70}"), "call"),
+        (format!("G0 X0\nMCALL L70\nHOLES1(0,0,0,0,5,3){l70}"), "cycle"),
+        (format!("G0 X0\nMCALL L70\nX1{}", l70.replace("G90", "MCALL")), "call"),
+        ("G0 X0\nMCALL BB\nX1\nM30\n%_N_BB_SPF\nPROC BB(VAR REAL AA)\nM17\n".into(), "call"),
+        ("DEF REAL AA[2]\nMCALL BB(AA)\nM30\n".into(), "unsupported"),
+    ] {
+        assert_eq!(xs(&text), Err(rule), "{text}");
+    }
+}
+
 #[test]
 fn programs_of_the_folders_carry_the_line_of_their_call() {
     let folder = tempfile::tempdir().unwrap();
@@ -203,14 +244,7 @@ fn programs_of_the_folders_carry_the_line_of_their_call() {
     std::fs::write(folder.path().join("BAD.SPF"), "G0 X1\nX=1/0\nM17\n").unwrap();
     let mut settings = settings();
     settings.setup = Setup { folders: vec![folder.path().to_owned()], ..Setup::default() };
-    let run = |text: &str| {
-        let mut moves = Vec::new();
-        read(&settings, "p.mpf", text.as_bytes(), &mut |record| {
-            moves.extend(record.op.pose().map(|pose| (record.line, pose.point.x)));
-            Ok(())
-        })
-        .map(|()| moves)
-    };
+    let run = |text: &str| moves_with(&settings, text);
     assert_eq!(run("X0 F100\nOUTER\nG0 X5\nM30\n").unwrap()[1..], [(2, 1.0), (2, 20.0), (3, 5.0)]);
     let error = run("G0 X0\nBAD\nM30\n").unwrap_err();
     assert_eq!((error.file.as_str(), error.line, error.rule), ("BAD.SPF", 2, "arithmetic"));
@@ -227,13 +261,8 @@ fn programs_of_the_folders_carry_the_line_of_their_call() {
 #[test]
 fn block_delete_skips_what_the_operator_says() {
     let mut settings = settings();
-    let count = |settings: &toolpost_control::Settings| {
-        let mut count = 0;
-        read(settings, "p.mpf", b"G0 X1\n/X2\n /3 N5 X3\nM30\n", &mut |record| {
-            count += usize::from(record.op.pose().is_some());
-            Ok(())
-        })
-        .map(|()| count)
+    let count = |settings: &Settings| {
+        moves_with(settings, "G0 X1\n/X2\n /3 N5 X3\nM30\n").map(|moves| moves.len())
     };
     assert_eq!(count(&settings).unwrap(), 3);
     settings.setup.block_delete = true;
@@ -243,14 +272,9 @@ fn block_delete_skips_what_the_operator_says() {
 #[test]
 fn texts_are_shown() {
     let text = "R1=5\nMSG(\"PART \"<<R1<<\" OF \"<<2.5)\nSETAL(66001,\"CHECK\")\nM30\n";
-    let mut messages = Vec::new();
-    read(&settings(), "p.mpf", text.as_bytes(), &mut |record| {
-        if let Op::Message(text) = record.op {
-            messages.push(text.to_string());
-        }
-        Ok(())
-    })
-    .unwrap();
+    let message = |op| if let Op::Message(text) = op { Some(text.to_string()) } else { None };
+    let ops = common::ops(&settings(), "p.mpf", text).unwrap();
+    let messages: Vec<String> = ops.into_iter().filter_map(message).collect();
     assert_eq!(messages, ["PART 5 OF 2.5", "alarm 66001: CHECK"]);
 }
 
@@ -269,12 +293,8 @@ fn work_offsets_that_the_program_writes_are_known() {
     let mut settings = settings();
     settings.setup.start = Some(start);
     let run = |text: &str| {
-        let mut ops = Vec::new();
-        read(&settings, "p.mpf", text.as_bytes(), &mut |record| {
-            ops.push(record.op);
-            Ok(())
-        })
-        .map(|()| poses(&ops).iter().map(|pose| pose.point.x).collect::<Vec<_>>())
+        let ops = common::ops(&settings, "p.mpf", text)?;
+        Ok::<_, Box<Diagnostic>>(poses(&ops).iter().map(|pose| pose.point.x).collect::<Vec<_>>())
     };
     // G54 lies at 30: what stands at 100 is at 70 in it.
     assert_eq!(run("$P_UIFR[1,X,TR]=30\nG54\nG0 X=$AA_IW[X]\nM30\n").unwrap(), [70.0]);

@@ -1,12 +1,12 @@
 //! Random structured programs: what they move to is what this file works out by itself, and what CEAD's
 //! `nc-gcode-interpreter` says where it is installed (PyPI).
 
-mod sinumerik_common;
+mod common;
 
+use common::sinumerik::settings;
 use proptest::prelude::*;
 use proptest::strategy::ValueTree;
 use proptest::test_runner::TestRunner;
-use sinumerik_common::settings;
 use std::fmt::Write;
 use std::io::Write as _;
 use std::process::{Command, Stdio};
@@ -271,13 +271,8 @@ fn program(parts: &[Part]) -> String {
 }
 
 fn run(text: &str) -> Vec<f64> {
-    let mut xs = Vec::new();
-    let result = read(&settings(), "p.mpf", text.as_bytes(), &mut |record| {
-        xs.extend(record.op.pose().map(|pose| pose.point.x));
-        Ok(())
-    });
-    result.unwrap_or_else(|error| panic!("{error}\n{text}"));
-    xs
+    let records = common::sinumerik::run(text).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    records.iter().filter_map(|record| Some(record.op.pose()?.point.x)).collect()
 }
 
 proptest! {

@@ -1,9 +1,9 @@
 //! Frames and swivelled planes of the SINUMERIK virtual control, against hand calculation.
 
-mod sinumerik_common;
+mod common;
 
+use common::sinumerik::{blocks, degrees, near, points, poses, v};
 use program::{Op, Orientation};
-use sinumerik_common::{blocks, degrees, near, points, poses, v};
 use std::f64::consts::FRAC_1_SQRT_2;
 
 /// The tool axis and the point X1 Y2 Z3 in the plane of a `CYCLE800` with these arguments.

@@ -1,10 +1,10 @@
 //! Scaled and mirrored frames, polar coordinates, tangential arcs, diameters and threads of the SINUMERIK
 //! virtual control, against hand calculation.
 
-mod sinumerik_common;
+mod common;
 
+use common::sinumerik::{arcs, blocks, holes, near, points, poses, v};
 use program::{Compensation, Op, Spindle};
-use sinumerik_common::{arcs, blocks, holes, near, points, poses, v};
 
 #[test]
 fn a_scale_multiplies_from_the_zero_point_and_is_deleted_by_the_next_frame() {

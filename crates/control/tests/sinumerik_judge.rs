@@ -4,7 +4,7 @@
 //! a control does not, the program is adapted, and the adaptation says what it is. `TOOLPOST_DATA` names
 //! the folder with the data.
 
-mod sinumerik_common;
+mod common;
 
 use geom::Vec3;
 use program::{Diagnostic, Record};
@@ -85,7 +85,7 @@ fn data() -> Option<PathBuf> {
 
 /// The points that a program moves to, with the error that ends it.
 fn moved(case: &Case, text: &str) -> (Vec<Vec3>, Option<Box<Diagnostic>>) {
-    let mut settings = sinumerik_common::settings();
+    let mut settings = common::sinumerik::settings();
     settings.auxiliary.extend([101, 102, 103]);
     if case.name == "actual_position" {
         settings.setup = Setup { start: Some(Vec3::ZERO), ..Setup::default() };

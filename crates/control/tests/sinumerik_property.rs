@@ -1,11 +1,11 @@
 //! Random legal SINUMERIK programs, written by the small writer of this file, and random bytes.
 
-mod sinumerik_common;
+mod common;
 
+use common::sinumerik::{run, settings};
 use geom::Vec3;
 use program::{Op, Orientation};
 use proptest::prelude::*;
-use sinumerik_common::{run, settings};
 use std::fmt::Write;
 use toolpost_control::read;
 

@@ -1,6 +1,6 @@
 //! The seeds of the fuzz target are programs that run to their end.
 
-mod sinumerik_common;
+mod common;
 
 #[test]
 fn every_seed_of_the_fuzz_target_runs() {
@@ -9,7 +9,7 @@ fn every_seed_of_the_fuzz_target_runs() {
     for entry in std::fs::read_dir(folder).unwrap() {
         let path = entry.unwrap().path();
         let text = std::fs::read_to_string(&path).unwrap();
-        let records = sinumerik_common::run(&text).unwrap_or_else(|e| panic!("{path:?}: {e}"));
+        let records = common::sinumerik::run(&text).unwrap_or_else(|e| panic!("{path:?}: {e}"));
         assert_eq!(records.last().unwrap().op, program::Op::End);
         count += 1;
     }

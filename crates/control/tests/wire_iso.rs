@@ -1,18 +1,15 @@
 //! ISO code of wire-EDM machines.
 
+mod common;
+
 use geom::Vec3;
 use program::{ArcTo, Compensation, Diagnostic, Feed, Op, Pose};
-use toolpost_control::{Dialect, Settings, Wire, read};
+use toolpost_control::{Dialect, Settings, Wire};
 
 fn run(dialect: Dialect, text: &str, height: Option<f64>) -> Result<Vec<Op>, Box<Diagnostic>> {
     let wire = Wire { height, thread: Some(60), cut: Some(50) };
     let settings = Settings { wire, ..Settings::new(dialect, [false; 3]) };
-    let mut ops = Vec::new();
-    read(&settings, "part.nc", text.as_bytes(), &mut |record| {
-        ops.push(record.op);
-        Ok(())
-    })?;
-    Ok(ops)
+    common::ops(&settings, "part.nc", text)
 }
 
 fn at(x: f64, y: f64) -> Pose {

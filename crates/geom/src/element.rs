@@ -1,10 +1,10 @@
-//! Lines and arcs of a contour in its plane, what runs parallel to them, and where those cross.
+//! Lines and arcs of a contour in its plane: their course, their parts, and what runs parallel to them.
 
 use crate::Vec2;
 use std::f64::consts::{PI, TAU};
 
 /// Points closer than this are one, mm: rounding, far below what any machine resolves.
-const SAME: f64 = 1e-9;
+pub(crate) const SAME: f64 = 1e-9;
 
 /// A line or an arc from `start` to `end`.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -25,19 +25,6 @@ pub struct Turn {
     pub center: Vec2,
     /// Angle turned through, radians, positive counter-clockwise; beyond ±2π for several turns.
     pub sweep: f64,
-}
-
-/// Where the end of one element crosses the start of the next.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Crossing {
-    /// The point, mm.
-    pub point: Vec2,
-    /// Its place on the first element: 0 at the start, 1 at the end.
-    pub on_first: f64,
-    /// Its place on the next element.
-    pub on_next: f64,
-    /// How much of the two it cuts off at their common corner, mm.
-    pub cut: f64,
 }
 
 impl Element {
@@ -67,22 +54,106 @@ impl Element {
         }
     }
 
-    /// Unit vector of travel at the start; zero where the element has no length.
-    pub fn tangent_at_start(&self) -> Vec2 {
-        self.tangent(self.start)
+    /// Radius at the start, mm; `None` for a line.
+    pub fn radius(&self) -> Option<f64> {
+        self.turn.map(|turn| self.start.distance(turn.center))
     }
 
-    /// Unit vector of travel at the end; zero where the element has no length.
-    pub fn tangent_at_end(&self) -> Vec2 {
-        self.tangent(self.end)
+    /// The point at `t`: 0 is the start, 1 the end, both exact.
+    pub fn at(&self, t: f64) -> Vec2 {
+        if t <= 0.0 {
+            return self.start;
+        }
+        if t >= 1.0 {
+            return self.end;
+        }
+        match self.turn {
+            None => self.start.lerp(self.end, t),
+            Some(Turn { center, sweep }) => {
+                let (from, to) = (self.start - center, self.end - center);
+                let grown = 1.0 + t * (to.length() / from.length() - 1.0);
+                center + Vec2::from_angle(sweep * t).rotate(from) * grown
+            }
+        }
     }
 
-    fn tangent(&self, at: Vec2) -> Vec2 {
+    /// Unit vector of travel at `t`; zero where the element has no length.
+    pub fn tangent(&self, t: f64) -> Vec2 {
         match self.turn {
             None => self.end - self.start,
-            Some(Turn { center, sweep }) => (at - center).perp() * sweep.signum(),
+            Some(Turn { center, sweep }) => {
+                let spoke = match t {
+                    t if t <= 0.0 => self.start - center,
+                    t if t >= 1.0 => self.end - center,
+                    t => Vec2::from_angle(sweep * t).rotate(self.start - center),
+                };
+                spoke.perp() * sweep.signum()
+            }
         }
         .normalize_or_zero()
+    }
+
+    /// The part from `from` to `to` (0 to 1, in this order).
+    pub fn part(&self, from: f64, to: f64) -> Element {
+        let turn = self.turn.map(|turn| Turn { sweep: turn.sweep * (to - from), ..turn });
+        Element { start: self.at(from), end: self.at(to), turn }
+    }
+
+    /// The parameter of the nearest point and its distance, mm.
+    pub fn nearest(&self, point: Vec2) -> (f64, f64) {
+        let Some(turn) = self.turn else {
+            let along = self.end - self.start;
+            let squared = along.length_squared();
+            let t = if squared > 0.0 {
+                ((point - self.start).dot(along) / squared).clamp(0.0, 1.0)
+            } else {
+                0.0
+            };
+            return (t, point.distance(self.start + along * t));
+        };
+        let (from, to) = (point.distance(self.start), point.distance(self.end));
+        let ends = if to < from { (1.0, to) } else { (0.0, from) };
+        match self.parameter(turn, point) {
+            Some(t) => {
+                let on = point.distance(self.at(t));
+                if on < ends.1 { (t, on) } else { ends }
+            }
+            None => ends,
+        }
+    }
+
+    /// Where on the arc the direction from the centre to `point` falls.
+    pub(crate) fn parameter(&self, turn: Turn, point: Vec2) -> Option<f64> {
+        let angle = turn_angle(self.start - turn.center, point - turn.center) * turn.sweep.signum();
+        let angle = if angle < 0.0 { angle + TAU } else { angle };
+        let t = angle / turn.sweep.abs();
+        (t <= 1.0).then_some(t)
+    }
+
+    /// The corners of the smallest box around it whose sides are parallel to the axes.
+    pub fn extents(&self) -> (Vec2, Vec2) {
+        let (mut low, mut high) = (self.start.min(self.end), self.start.max(self.end));
+        if let Some(turn) = self.turn {
+            let radius = self.start.distance(turn.center);
+            for out in [Vec2::X, Vec2::Y, Vec2::NEG_X, Vec2::NEG_Y] {
+                let point = turn.center + out * radius;
+                if self.parameter(turn, point).is_some() {
+                    (low, high) = (low.min(point), high.max(point));
+                }
+            }
+        }
+        (low, high)
+    }
+
+    /// Area between the element and `about`, mm², positive counter-clockwise: the areas of a closed
+    /// chain add up to what it encloses.
+    pub fn area(&self, about: Vec2) -> f64 {
+        let triangle = (self.start - about).perp_dot(self.end - about) / 2.0;
+        let segment = self.turn.map_or(0.0, |Turn { center, sweep }| {
+            let radius = self.start.distance(center);
+            radius * radius * (sweep - sweep.sin()) / 2.0
+        });
+        triangle + segment
     }
 
     /// By how much the way turns to the left, radians for each mm; 0 for a line.
@@ -95,7 +166,7 @@ impl Element {
     /// nothing is left of the radius of an arc.
     pub fn parallel(&self, distance: f64) -> Option<Element> {
         let beside = |p: Vec2, tangent: Vec2| p + tangent.perp() * distance;
-        let (first, last) = (self.tangent_at_start(), self.tangent_at_end());
+        let (first, last) = (self.tangent(0.0), self.tangent(1.0));
         if first == Vec2::ZERO || last == Vec2::ZERO {
             return None;
         }
@@ -107,104 +178,10 @@ impl Element {
         }
         Some(Element { start: beside(self.start, first), end: beside(self.end, last), ..*self })
     }
-
-    /// Where this element crosses `next`, nearest to the end of this one and the start of `next`: an
-    /// arc of several turns counts with its last or its first. An arc counts with its radius at that
-    /// corner.
-    pub fn crossings(&self, next: &Element) -> impl Iterator<Item = Crossing> {
-        let first = Carrier::of(self, self.end);
-        let second = Carrier::of(next, next.start);
-        let (first_length, next_length) = (self.length(), next.length());
-        let back = self.reversed();
-        first.meets(&second).into_iter().flatten().filter_map(move |point| {
-            let (from_end, from_start) = (back.way_to(point)?, next.way_to(point)?);
-            Some(Crossing {
-                point,
-                on_first: 1.0 - from_end / first_length,
-                on_next: from_start / next_length,
-                cut: from_end + from_start,
-            })
-        })
-    }
-
-    /// How far along this element `point` lies, mm, which is on its line or circle; `None` beyond its
-    /// ends.
-    fn way_to(&self, point: Vec2) -> Option<f64> {
-        let length = self.length();
-        let way = match self.turn {
-            None => (point - self.start).dot(self.tangent_at_start()),
-            Some(Turn { center, sweep }) => {
-                let (from, to) = (self.start - center, point - center);
-                let angle =
-                    (from.perp_dot(to).atan2(from.dot(to)) * sweep.signum()).rem_euclid(TAU);
-                // Just before the start is the start.
-                let angle = if (TAU - angle) * from.length() < SAME { 0.0 } else { angle };
-                angle / sweep.abs() * length
-            }
-        };
-        (way > -SAME && way < length + SAME).then(|| way.clamp(0.0, length))
-    }
 }
 
-/// The endless line or the whole circle that an element is a piece of.
-enum Carrier {
-    Line { point: Vec2, along: Vec2 },
-    Circle { center: Vec2, radius: f64 },
-}
-
-impl Carrier {
-    /// That of `element` through its end `at`.
-    fn of(element: &Element, at: Vec2) -> Carrier {
-        match element.turn {
-            None => Carrier::Line { point: at, along: element.tangent_at_start() },
-            Some(Turn { center, .. }) => Carrier::Circle { center, radius: at.distance(center) },
-        }
-    }
-
-    /// Their common points; one that touches by rounding counts.
-    fn meets(&self, other: &Carrier) -> [Option<Vec2>; 2] {
-        match (self, other) {
-            (Carrier::Line { point, along }, Carrier::Line { point: q, along: other }) => {
-                let across = along.perp_dot(*other);
-                // Below an arc second two lines are parallel.
-                let far = across.abs() < 1e-6;
-                [(!far).then(|| *point + *along * ((*q - *point).perp_dot(*other) / across)), None]
-            }
-            (Carrier::Line { point, along }, Carrier::Circle { center, radius })
-            | (Carrier::Circle { center, radius }, Carrier::Line { point, along }) => {
-                let foot = *point + *along * (*center - *point).dot(*along);
-                let away = foot.distance(*center);
-                two(foot, *along, *radius, away)
-            }
-            (
-                Carrier::Circle { center, radius },
-                Carrier::Circle { center: other, radius: second },
-            ) => {
-                let between = *other - *center;
-                let distance = between.length();
-                if distance < SAME {
-                    return [None, None];
-                }
-                let along = between / distance;
-                let away =
-                    (distance * distance + radius * radius - second * second) / (2.0 * distance);
-                two(*center + along * away, along.perp(), *radius, away.abs())
-            }
-        }
-    }
-}
-
-/// The two points of a circle of `radius` on the line through `foot`, which is `away` from its centre.
-fn two(foot: Vec2, along: Vec2, radius: f64, away: f64) -> [Option<Vec2>; 2] {
-    if away.is_nan() || away > radius + SAME {
-        return [None, None];
-    }
-    let half = ((radius - away).max(0.0) * (radius + away)).sqrt();
-    [Some(foot + along * half), Some(foot - along * half)]
-}
-
-/// The angle by which the way turns from the unit vector `first` to `next`, radians in (−π, π], positive
-/// to the left.
+/// The angle by which the way turns from the direction `first` to `next`, radians in (−π, π], positive
+/// to the left; 0 where one has no direction.
 pub fn turn_angle(first: Vec2, next: Vec2) -> f64 {
     let angle = first.perp_dot(next).atan2(first.dot(next));
     if angle <= -PI { PI } else { angle }
@@ -233,53 +210,6 @@ mod tests {
         assert_eq!(quarter(3.0).parallel(3.0), None);
         assert_eq!((line.curvature(), outside.curvature()), (0.0, -1.0 / 13.0));
         assert_eq!(Element::line(Vec2::X, Vec2::X).parallel(3.0), None);
-    }
-
-    #[test]
-    fn two_lines_cross_at_their_corner() {
-        // A corner of 90° to the left; 3 mm inside of it both lose 3 mm.
-        let first = Element::line(Vec2::new(0.0, 3.0), Vec2::new(20.0, 3.0));
-        let next = Element::line(Vec2::new(17.0, 0.0), Vec2::new(17.0, 20.0));
-        let crossing = first.crossings(&next).next().unwrap();
-        assert_eq!(crossing.point, Vec2::new(17.0, 3.0));
-        assert!((crossing.on_first - 0.85).abs() < 1e-12 && (crossing.cut - 6.0).abs() < 1e-12);
-        assert_eq!(first.crossings(&first.reversed()).count(), 0);
-    }
-
-    #[test]
-    fn a_line_meets_a_circle_twice_and_beyond_the_arc_not_at_all() {
-        let line = Element::line(Vec2::new(-20.0, 6.0), Vec2::new(20.0, 6.0));
-        let circle = Element::arc(Vec2::X * 10.0, Vec2::X * 10.0, Vec2::ZERO, TAU);
-        let points: Vec<Vec2> = line.crossings(&circle).map(|c| c.point).collect();
-        assert_eq!(points, [Vec2::new(8.0, 6.0), Vec2::new(-8.0, 6.0)]);
-        let right: Vec<Vec2> = line.crossings(&quarter(10.0)).map(|c| c.point).collect();
-        assert_eq!(right, [Vec2::new(8.0, 6.0)]);
-        let above = Element::line(Vec2::new(-20.0, 10.1), Vec2::new(20.0, 10.1));
-        assert_eq!(above.crossings(&circle).count(), 0);
-    }
-
-    #[test]
-    fn an_arc_of_several_turns_counts_with_its_last_before_and_its_first_after_a_corner() {
-        let turns = Element::arc(Vec2::X * 10.0, Vec2::X * 10.0, Vec2::ZERO, 3.0 * TAU);
-        let up = Element::line(Vec2::new(0.0, 0.0), Vec2::new(0.0, 20.0));
-        let last = turns.crossings(&up).next().unwrap();
-        assert!((last.on_first - 2.25 / 3.0).abs() < 1e-12);
-        let first = up.crossings(&turns).next().unwrap();
-        assert!((first.on_next - 0.25 / 3.0).abs() < 1e-12);
-    }
-
-    #[test]
-    fn two_circles_cross_or_touch() {
-        let left = Element::arc(Vec2::X * -10.0, Vec2::X * -10.0, Vec2::X * -5.0, TAU);
-        let right = Element::arc(Vec2::X * 10.0, Vec2::X * 10.0, Vec2::X * 5.0, -TAU);
-        assert!(left.crossings(&right).all(|c| c.point.length() < 1e-7));
-        let wide = Element::arc(Vec2::X * 10.0, Vec2::X * 10.0, Vec2::X * 2.0, TAU);
-        for crossing in left.crossings(&wide) {
-            assert!((crossing.point.distance(Vec2::X * -5.0) - 5.0).abs() < 1e-12);
-            assert!((crossing.point.distance(Vec2::X * 2.0) - 8.0).abs() < 1e-12);
-        }
-        assert_eq!(left.crossings(&wide).count(), 2);
-        assert_eq!(left.crossings(&left).count(), 0);
     }
 
     #[test]

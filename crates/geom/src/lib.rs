@@ -5,11 +5,13 @@
 //! There is no input or output here and nothing knows of a machine.
 
 mod arc;
+mod crossing;
 mod element;
 mod rotation;
 
 pub use arc::{Arc, ArcError};
-pub use element::{Crossing, Element, Turn, turn_angle};
+pub use crossing::Crossing;
+pub use element::{Element, Turn, turn_angle};
 pub use glam::{DAffine3 as Frame, DMat3 as Mat3, DVec2 as Vec2, DVec3 as Vec3};
 pub use rotation::Euler;
 

@@ -1,7 +1,7 @@
 //! What a machine is, after its files are merged.
 
 use geom::Vec3;
-use program::CycleKind;
+use program::{CycleKind, Diagnostic};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -212,16 +212,18 @@ pub enum CycleName {
     Bore,
 }
 
-impl From<CycleKind> for CycleName {
-    fn from(kind: CycleKind) -> CycleName {
-        match kind {
+impl CycleName {
+    /// The name of a cycle; none for those that no writer makes.
+    pub fn of(kind: CycleKind) -> Option<CycleName> {
+        Some(match kind {
             CycleKind::Drill => CycleName::Drill,
             CycleKind::Deep => CycleName::Deep,
             CycleKind::BreakChip => CycleName::BreakChip,
             CycleKind::Tap { .. } => CycleName::Tap,
             CycleKind::Ream => CycleName::Ream,
             CycleKind::Bore => CycleName::Bore,
-        }
+            CycleKind::FineBore(_) | CycleKind::BackBore { .. } => return None,
+        })
     }
 }
 
@@ -259,6 +261,9 @@ pub struct Format {
     pub comment_start: String,
     /// What closes a comment.
     pub comment_end: String,
+    /// Whether each operation says anew what the one before has left active: where the tool is, the kind
+    /// of motion, the feed.
+    pub fresh_operations: bool,
 }
 
 /// How a number is written behind its address.
@@ -280,6 +285,8 @@ pub struct Word {
     pub digits: u8,
     /// Whether the word is left out while it repeats the active value.
     pub modal: bool,
+    /// Whether two values that are written alike are still two, so that the second is written again.
+    pub exact: bool,
     /// For the block number: what it grows by.
     pub step: u32,
     /// For the block number: the first one.
@@ -350,6 +357,34 @@ pub enum OptionValue {
 }
 
 impl Machine {
+    /// Gives a value of `[options]` another one, in its own kind.
+    ///
+    /// # Errors
+    /// The machine has no option of that name, or it is of another kind.
+    pub fn set_option(&mut self, name: &str, value: &str) -> Result<(), Box<Diagnostic>> {
+        let file = self.file.clone();
+        let refused = |message: String, help: String| {
+            Box::new(Diagnostic::error("option", message).help(help).file(file))
+        };
+        let names = self.options.keys().map(String::as_str).collect::<Vec<_>>().join(", ");
+        let Some(option) = self.options.get_mut(name) else {
+            let message = format!("the machine has no option `{name}`");
+            return Err(refused(message, format!("its options are {names}")));
+        };
+        let (given, kind) = match option {
+            OptionValue::Flag(_) => (value.parse().ok().map(OptionValue::Flag), "true or false"),
+            OptionValue::Number(_) => {
+                let number = value.parse().ok().filter(|number: &f64| number.is_finite());
+                (number.map(OptionValue::Number), "a number")
+            }
+            OptionValue::Text(_) => (Some(OptionValue::Text(value.to_owned())), "text"),
+        };
+        *option = given.ok_or_else(|| {
+            refused(format!("option `{name}` is {kind}, not `{value}`"), String::new())
+        })?;
+        Ok(())
+    }
+
     /// Whether its file says, by an empty block of that name, that the control does nothing for it.
     pub fn leaves_out(&self, block: &str) -> bool {
         self.blocks.get(block).is_some_and(|block| block.text.trim().is_empty())

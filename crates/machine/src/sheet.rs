@@ -65,7 +65,7 @@ macro_rules! sheet {
 sheet!(Sheet "" {
     extends: Spanned<String>, "", "The machine or control that this file changes: a name in the library, or the path of a file.";
     title: String, "", "What a person calls it.";
-    reader: Spanned<String>, "", "The virtual control that proves its programs: sinumerik, klartext, fanuc, haas, linuxcnc, mach3, grbl, marlin, fanuc-wire, sodick, agie, points.";
+    reader: Spanned<String>, "", "The virtual control that proves its programs: sinumerik, klartext, fanuc, haas, linuxcnc, mach3, grbl, marlin, fanuc-wire, sodick, agie, points, freecad.";
     extension: String, "", "Ending of its programs, without the dot.";
     capabilities: CapabilitiesSheet, "", "Table: what the control can do; what it cannot is lowered.";
     format: FormatSheet, "", "Table: how text is put together.";
@@ -104,6 +104,7 @@ sheet!(merged FormatSheet "format" {
     line_end: String, "", "What ends a line.";
     comment_start: String, "", "What opens a comment.";
     comment_end: String, "", "What closes a comment; empty where the end of the line does.";
+    fresh_operations: bool, "", "Whether each operation says position, kind of motion and feed anew, as if the control had forgotten them.";
 });
 
 sheet!(merged WordSheet "words.NAME" {
@@ -115,6 +116,7 @@ sheet!(merged WordSheet "words.NAME" {
     plus: bool, "", "Whether a positive number has its sign.";
     digits: u8, "", "Fewest digits before the point, filled with zeros.";
     modal: bool, "", "Whether the word is left out while it repeats the active value.";
+    exact: bool, "", "Whether values that differ by less than the decimals show are different, so that a modal word is written again.";
     step: u32, "", "Block number: what it grows by; 0 for none.";
     first: u32, "", "Block number: the first one.";
     scale: Positive, "", "What the value is multiplied with before it is written: 1000 for a dwell in milliseconds.";

@@ -150,6 +150,26 @@ impl<'a> Clock<'a> {
             }
             self.times.dwell += cycle.dwell;
             self.rapid(&at(cycle.retract));
+        } else if let Some(way) = cycle.kind.withdrawal() {
+            let beside = |height: f64| Pose { point: at(height).point + way.aside, ..*pose };
+            if let CycleKind::BackBore { through, .. } = cycle.kind {
+                let bored = self.feed;
+                self.rapid(&beside(cycle.clearance));
+                self.feed = through.unwrap_or(bored);
+                match through {
+                    Some(_) => self.run(&Op::Line(beside(-cycle.depth))),
+                    None => self.rapid(&beside(-cycle.depth)),
+                }
+                self.rapid(&at(-cycle.depth));
+                self.feed = bored;
+                self.run(&Op::Line(at(0.0)));
+            } else {
+                self.run(&Op::Line(at(-cycle.depth)));
+                self.rapid(&beside(-cycle.depth));
+            }
+            self.times.dwell += cycle.dwell;
+            self.rapid(&beside(cycle.retract));
+            self.rapid(&at(cycle.retract));
         } else {
             let pose = Pose::new(pose.point, axis);
             let moves = lowering::hole(&cycle, &pose, self.spindle).unwrap_or_default();

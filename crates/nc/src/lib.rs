@@ -19,7 +19,7 @@
 use control::{Dialect, Settings, Setup, Wire};
 use geom::Vec3;
 use machine::{LengthOffset, Machine, Mount};
-use program::{Diagnostic, FIRST_WORK_OFFSET, Op, Orientation, Pose, Program, Record, Tool};
+use program::{Cycle, Diagnostic, FIRST_WORK_OFFSET, Op, Orientation, Pose, Program, Record, Tool};
 
 /// Most records of a reading, which are kept in memory: a program of a few lines can loop to more.
 const MOST_RECORDS: usize = 20_000_000;
@@ -85,11 +85,7 @@ pub fn read(
     let mut lift = Lift::new(machine, &settings.setup, name);
     let run = control::read(&settings, file_name, text, &mut |record| {
         let line = record.line;
-        lift.record(record).map_err(|found| {
-            let text = text.split(|b| *b == b'\n').nth(line.saturating_sub(1) as usize);
-            let text = text.unwrap_or_default();
-            found.on(line, text.strip_suffix(b"\r").unwrap_or(text)).file(file_name).into()
-        })
+        lift.record(record).map_err(|found| found.line(line).into())
     });
     run.map_err(|found| way_out(machine, found))?;
     Ok(lift.finish())
@@ -118,20 +114,38 @@ struct Lift<'a> {
     setup: &'a Setup,
     program: Program,
     warnings: Vec<Diagnostic>,
-    /// Where the tool is, as far as the last block says it.
-    here: Option<Pose>,
-    /// The start that was given, until something has moved: a cut from there begins with the way to it.
-    start: Option<Pose>,
+    place: Place,
     /// Z has been sent home since the last move, on this line.
     home: Option<u32>,
     /// Where the program's last tool call is in its records, and whether nothing has moved since.
     tool: Option<(usize, bool)>,
+    /// The cycle that goes aside from the wall, as the control says it, and the way aside of the last hole.
+    boring: Option<(Cycle, Option<Vec3>)>,
     /// The work offset that the program names.
     work_offset: Option<u32>,
     /// Whether it works in more than the first.
     several: bool,
     /// Numbers of the tools that the program calls, with the names of those that it calls by name.
     numbers: Vec<(u32, String)>,
+}
+
+/// Where the tool is, as far as the program says it.
+#[derive(Clone, Copy, Debug)]
+enum Place {
+    /// Where it was said to stand at the start: a cut from there begins with the way to it.
+    Start(Pose),
+    /// Where the last block has sent it.
+    At(Pose),
+    Nowhere,
+}
+
+impl Place {
+    fn pose(&self) -> Option<&Pose> {
+        match self {
+            Place::Start(pose) | Place::At(pose) => Some(pose),
+            Place::Nowhere => None,
+        }
+    }
 }
 
 impl<'a> Lift<'a> {
@@ -141,10 +155,12 @@ impl<'a> Lift<'a> {
             setup,
             program: Program::new(name),
             warnings: Vec::new(),
-            here: setup.start.map(|start| Pose::new(start, Vec3::Z)),
-            start: setup.start.map(|start| Pose::new(start, Vec3::Z)),
+            place: setup
+                .start
+                .map_or(Place::Nowhere, |start| Place::Start(Pose::new(start, Vec3::Z))),
             home: None,
             tool: None,
+            boring: None,
             work_offset: None,
             several: false,
             numbers: Vec::new(),
@@ -161,11 +177,10 @@ impl<'a> Lift<'a> {
         match record.op {
             Op::Rapid(pose) => {
                 let pose = self.pose(&pose);
-                self.here = Some(pose);
-                if known(&pose) {
-                    self.arrive(line, Op::Rapid(pose));
+                match known(&pose) {
+                    true => self.arrive(line, Op::Rapid(pose)),
+                    false => self.place = Place::At(pose),
                 }
-                return Ok(());
             }
             Op::Line(pose) => {
                 let pose = self.cut(&pose)?;
@@ -186,18 +201,29 @@ impl<'a> Lift<'a> {
                 thread.end = self.cut(&thread.end)?;
                 self.arrive(line, Op::Thread(thread));
             }
-            Op::Probe(pose) => {
-                let pose = self.cut(&pose)?;
-                self.here = None;
-                self.arrive(line, Op::Probe(pose));
+            Op::Probe(mut probe) => {
+                probe.end = self.cut(&probe.end)?;
+                self.arrive(line, Op::Probe(probe));
+                self.place = Place::Nowhere;
             }
-            Op::Hole(pose) => {
-                let pose = self.pose(&pose);
+            Op::Hole(own) => {
+                let pose = self.pose(&own);
+                let aside =
+                    |by: Vec3| self.pose(&Pose { point: own.point + by, ..own }).point - pose.point;
+                let aside = self
+                    .boring
+                    .and_then(|(cycle, _)| cycle.kind.withdrawal().map(|way| aside(way.aside)));
                 if !known(&pose) {
                     return Err(unknown("a hole", &pose));
                 }
-                self.here = Some(pose);
+                self.bore(line, aside);
                 self.arrive(line, Op::Hole(pose));
+            }
+            Op::Cycle(cycle) => {
+                self.boring = cycle.kind.withdrawal().is_some().then_some((*cycle, None));
+                if self.boring.is_none() {
+                    self.program.push(line, Op::Cycle(cycle));
+                }
             }
             Op::Home(axes) => return self.go_home(line, axes),
             Op::Tool(mut tool) => {
@@ -217,34 +243,43 @@ impl<'a> Lift<'a> {
         Ok(())
     }
 
-    /// The tool moves, after it has been home where it was sent there.
+    /// The tool moves, from home where it was sent there.
     fn arrive(&mut self, line: u32, op: Op) {
-        if let Some(line) = self.home.take() {
-            self.program.push(line, Op::Home(Z));
+        match (self.home.take(), self.place) {
+            (Some(line), _) => self.program.push(line, Op::Home(Z)),
+            (None, Place::Start(start)) if !matches!(op, Op::Rapid(_)) => {
+                self.program.push(line, Op::Rapid(start));
+            }
+            _ => {}
         }
         if let Some((_, fresh)) = &mut self.tool {
             *fresh = false;
         }
-        if let Some(start) = self.start.take()
-            && !matches!(op, Op::Rapid(_))
-        {
-            self.program.push(line, Op::Rapid(start));
-        }
+        self.place = op.pose().map_or(Place::Nowhere, |pose| Place::At(*pose));
         self.program.push(line, op);
     }
 
-    /// Where a cut ends; it must begin somewhere.
-    fn cut(&mut self, end: &Pose) -> Result<Pose, Box<Diagnostic>> {
-        let end = self.pose(end);
-        match self.here.replace(end) {
-            Some(start) if known(&start) && self.home.is_none() => {}
-            start => {
-                let start = start.filter(|_| self.home.is_none());
-                let nowhere = Pose::new(Vec3::NAN, Vec3::Z);
-                return Err(unknown("the start of a cut", &start.unwrap_or(nowhere)));
-            }
+    /// Says the boring cycle anew where its way aside, which turns with the table, is another one.
+    fn bore(&mut self, line: u32, aside: Option<Vec3>) {
+        let (Some((cycle, told)), Some(aside)) = (&mut self.boring, aside) else { return };
+        if told.is_some_and(|told| told.distance(aside) < ROUNDING) {
+            return;
         }
-        if known(&end) { Ok(end) } else { Err(unknown("the end of a cut", &end)) }
+        *told = Some(aside);
+        let cycle = Cycle { kind: cycle.kind.with_aside(aside), ..*cycle };
+        self.program.push(line, Op::Cycle(Box::new(cycle)));
+    }
+
+    /// Where a cut ends; it must begin somewhere.
+    fn cut(&self, end: &Pose) -> Result<Pose, Box<Diagnostic>> {
+        let end = self.pose(end);
+        let start = self.place.pose().filter(|_| self.home.is_none());
+        let start = start.copied().unwrap_or(Pose::new(Vec3::NAN, Vec3::Z));
+        match (known(&start), known(&end)) {
+            (false, _) => Err(unknown("the start of a cut", &start)),
+            (_, false) => Err(unknown("the end of a cut", &end)),
+            _ => Ok(end),
+        }
     }
 
     /// A pose as a block gives it, in the work frame. Where the tip of a tool of unknown length is that
@@ -311,13 +346,13 @@ impl<'a> Lift<'a> {
     /// Axes go to a fixed place of the machine. Only what Z does there matters: the others come back
     /// by words of their own, and their way is the machine's.
     fn go_home(&mut self, line: u32, axes: u8) -> Done {
-        if axes & Z == 0 && self.home.is_none() && self.here.is_some_and(|here| known(&here)) {
+        if axes & Z == 0 && self.home.is_none() && self.place.pose().is_some_and(known) {
             let message =
                 "axes are sent home while Z is not: the way there beside the part is the machine's";
             let help = "send Z home before";
             return Err(refuse("home", message, help));
         }
-        if axes & Z != 0 && self.here.is_some() {
+        if axes & Z != 0 && self.place.pose().is_some() {
             self.home.get_or_insert(line);
         }
         Ok(())
@@ -360,17 +395,13 @@ impl<'a> Lift<'a> {
         if before == Some(number) {
             return;
         }
-        self.several |= self.moved() || number != FIRST_WORK_OFFSET;
+        self.several |= number != FIRST_WORK_OFFSET;
         // Where the tool stands at the start is said with all offsets at 0.
-        if self.moved() {
-            self.here = None;
+        if let Place::At(_) = self.place {
+            self.several = true;
+            self.place = Place::Nowhere;
         }
         self.program.push(line, Op::WorkOffset(number));
-    }
-
-    /// Whether the tool stands elsewhere than at the start.
-    fn moved(&self) -> bool {
-        self.here != self.setup.start.map(|start| Pose::new(start, Vec3::Z))
     }
 
     /// The program, after its last record. One that works in the first work offset alone leaves it to
@@ -382,6 +413,9 @@ impl<'a> Lift<'a> {
         Reading { program: self.program, warnings: self.warnings }
     }
 }
+
+/// What two places that are the same may be apart after a turn of the table, mm.
+const ROUNDING: f64 = 1e-9;
 
 /// The bit of Z in [`Op::Home`].
 const Z: u8 = 4;

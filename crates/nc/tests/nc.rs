@@ -3,7 +3,7 @@
 use control::{Setup, ToolData};
 use geom::Vec3;
 use machine::{Machine, load, load_origin};
-use program::{Diagnostic, Op, Pose, Program};
+use program::{Diagnostic, Op, Pose, Probe, Program};
 use toolpost_nc as nc;
 
 fn read_for(machine: &Machine, setup: Setup, text: &str) -> Result<nc::Reading, Box<Diagnostic>> {
@@ -34,6 +34,50 @@ fn a_rapid_waits_until_every_coordinate_is_known() {
     let program = fanuc("G21 G90 G54 G0\nX10. Y20.\nZ5.\nG1 Z-1. F100.\nM30\n");
     let expected = [(3, &Op::Rapid(at(10.0, 20.0, 5.0))), (4, &Op::Line(at(10.0, 20.0, -1.0)))];
     assert_eq!(ways(&program), expected);
+}
+
+#[test]
+fn where_z_is_at_its_switch_g92_says() {
+    let machine = load_origin("marlin").unwrap();
+    let known = Setup { start: Some(Vec3::new(0.0, 0.0, 50.0)), ..Setup::default() };
+    let text = "G21\nG90\nG28 Z\nG92 Z0.8\nG1 Z-1 F100\nG1 X5\n";
+    let program = read_for(&machine, known, text).unwrap().program;
+    let expected = [
+        &Op::Home(4),
+        &Op::Rapid(at(0.0, 0.0, 0.8)),
+        &Op::Line(at(0.0, 0.0, -1.0)),
+        &Op::Line(at(5.0, 0.0, -1.0)),
+    ];
+    let ways: Vec<_> = ways(&program).into_iter().map(|(_, op)| op).collect();
+    assert_eq!(ways, expected);
+    // Where X and Y are nobody has said.
+    let error = read_for(&machine, Setup::default(), text).unwrap_err();
+    assert_eq!(error.rule, "unknown-position");
+}
+
+/// The boring bar goes aside along X of the machine: on a table that has turned by 90 degrees that is
+/// another way in the work.
+#[test]
+fn a_boring_bar_goes_aside_as_the_table_stands() {
+    let machine = load("fanuc-table-bc").unwrap();
+    let aside = |c: &str| {
+        let setup = Setup { aside: Some(Vec3::X), ..Setup::default() };
+        let text = format!(
+            "G21 G90 G54\nT1 M6\nS500 M3\nG0 B0 C0\nX0 Y0 Z50.\nG0 C{c}\nG98 G76 X1. Y0 Z-20. R2. Q0.5 F50\n\
+             X5.\nG80\nM30\n"
+        );
+        let program = read_for(&machine, setup, &text).unwrap().program;
+        let aside = |op: &Op| match op {
+            Op::Cycle(cycle) => cycle.kind.withdrawal().map(|way| way.aside),
+            _ => None,
+        };
+        program.records.iter().filter_map(|record| aside(&record.op)).collect::<Vec<_>>()
+    };
+    assert_eq!(aside("0"), [Vec3::new(0.5, 0.0, 0.0)]);
+    let turned = aside("90.");
+    assert!(
+        turned.len() == 1 && turned[0].x.abs() < 1e-12 && (turned[0].y.abs() - 0.5).abs() < 1e-12
+    );
 }
 
 #[test]
@@ -176,7 +220,9 @@ fn threads_and_probes_are_moves_at_feed() {
     });
     assert_eq!(end, Some((at(0.0, 0.0, -9.0), 1.5)));
     let probe = fanuc(&format!("{start}G31 Z-9. F100.\nG0 Z5.\nM30\n"));
-    assert!(probe.records.iter().any(|record| record.op == Op::Probe(at(0.0, 0.0, -9.0))));
+    let end = at(0.0, 0.0, -9.0);
+    let skip = Op::Probe(Box::new(Probe { end, away: false, must_answer: false }));
+    assert!(probe.records.iter().any(|record| record.op == skip));
     // Where the probe has stopped is not known: nothing is cut from there.
     assert_eq!(refused(&format!("{start}G31 Z-9. F100.\nG1 Z-5.\nM30\n")).rule, "unknown-position");
 }

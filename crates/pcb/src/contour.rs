@@ -1,7 +1,7 @@
 //! Closed contours of lines and arcs, and the pieces that shapes are made of.
 
 use crate::{SAME, Transform};
-use geom::{Element, Turn, Vec2};
+use geom::{Element, Vec2};
 use std::f64::consts::{PI, TAU};
 
 /// A closed chain of lines and arcs, each of which starts, bit for bit, where the one before ends, and the
@@ -76,19 +76,12 @@ impl Contour {
     pub fn area(&self) -> f64 {
         // About a point of the contour, not the origin: a small one far out keeps its digits.
         let about = self.elements.first().map_or(Vec2::ZERO, |element| element.start);
-        let area = |element: &Element| {
-            let triangle = (element.start - about).perp_dot(element.end - about) / 2.0;
-            let segment = element.turn.map_or(0.0, |Turn { center, sweep }| {
-                element.start.distance_squared(center) * (sweep - sweep.sin()) / 2.0
-            });
-            triangle + segment
-        };
-        self.elements.iter().map(area).sum()
+        self.elements.iter().map(|element| element.area(about)).sum()
     }
 
     /// The corners of the smallest box around it whose sides are parallel to the axes.
     pub fn extents(&self) -> (Vec2, Vec2) {
-        let all = self.elements.iter().map(extents);
+        let all = self.elements.iter().map(Element::extents);
         all.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or_default()
     }
 
@@ -121,22 +114,6 @@ impl Piece {
         let contours = self.contours.iter().map(|contour| contour.placed(transform, at)).collect();
         Piece { solid: self.solid, contours }
     }
-}
-
-/// The box around an element.
-fn extents(element: &Element) -> (Vec2, Vec2) {
-    let (mut low, mut high) = (element.start.min(element.end), element.start.max(element.end));
-    if let Some(Turn { center, sweep }) = element.turn {
-        let from = element.start - center;
-        for out in [Vec2::X, Vec2::Y, Vec2::NEG_X, Vec2::NEG_Y] {
-            let angle = (from.perp_dot(out).atan2(from.dot(out)) * sweep.signum()).rem_euclid(TAU);
-            if angle <= sweep.abs() {
-                let point = center + out * from.length();
-                (low, high) = (low.min(point), high.max(point));
-            }
-        }
-    }
-    (low, high)
 }
 
 /// The convex hull of `points`, counter-clockwise; fewer than three corners where they are in one line.

@@ -31,14 +31,19 @@ const ABSOLUTE: [WordName; 3] = [WordName::CX, WordName::CY, WordName::CZ];
 /// How many steps of the last decimal an arc may change in length when its ends are rounded.
 const ROUNDING_STEPS: f64 = 6.0;
 
-/// How many steps a point of an arc may move by that: its two ends and its centre by less than one each.
-const POINT_STEPS: f64 = 2.4;
+/// How many steps a point of an arc may move by the shift of its centre. Rounding a coordinate of the
+/// centre to the nearest step moves no point of any arc further: √½ steps in the plane, twice that on the
+/// side of a full circle that is opposite to its ends.
+const CENTER_STEPS: f64 = std::f64::consts::SQRT_2;
 
-/// At how many points a part of an arc is looked at.
-const SAMPLES: usize = 8;
+/// How many steps the end of an arc that is told by its angle may be off: its start is rounded by up to
+/// √½ steps in the plane, and its centre by less.
+const ANGLE_STEPS: f64 = 0.85;
 
 /// Part of an arc as one block.
 struct Block {
+    /// Where it ends, and where that is after rounding.
+    to: Vec3,
     end: Vec3,
     center: Vec3,
     /// Signed angle about the plane's normal, radians.
@@ -84,17 +89,25 @@ impl Walk<'_> {
             return self.lower(&arc, 0.0, 1.0, to, stop, "helices");
         }
         let pieces = self.pieces(&local, rises);
-        for piece in 0..pieces {
-            let [from, until] = [piece, piece + 1].map(|i| i as f64 / pieces as f64);
-            match self.rounded_arc(&local, facts, from, until) {
+        let mut ends: Vec<f64> = (1..=pieces).rev().map(|i| i as f64 / pieces as f64).collect();
+        let mut from = 0.0;
+        while let Some(&until) = ends.last() {
+            match self.rounded_arc(&local, facts, from, until, rises) {
                 Some(block) => {
                     self.arc_block(&arc, facts, &block, rises)?;
                     self.here = Some(Pose { point: arc.at(until), ..to.end });
+                }
+                // Its ends are too near each other to say where its centre is: two halves are better.
+                None if local.sweep * (until - from) > PI => {
+                    ends.push((from + until) / 2.0);
+                    continue;
                 }
                 None => {
                     self.lower(&arc, from, until, to, stop, "arcs too short for the decimals")?
                 }
             }
+            from = until;
+            ends.pop();
         }
         self.here = Some(to.end);
         Ok(())
@@ -135,25 +148,42 @@ impl Walk<'_> {
 
     /// The part of the arc between two parameters as the control will read it; `None` where rounding
     /// leaves no legal arc.
-    fn rounded_arc(&self, arc: &Arc, facts: &Facts, from: f64, until: f64) -> Option<Block> {
+    fn rounded_arc(
+        &self,
+        arc: &Arc,
+        facts: &Facts,
+        from: f64,
+        until: f64,
+        rises: bool,
+    ) -> Option<Block> {
         let round = |words: &[WordName; 3], p: Vec3| {
             Vec3::from_array([0, 1, 2].map(|i| self.writer.rounded(words[i], p[i])))
         };
-        let begin = round(&END, arc.at(from));
-        let start =
-            Vec3::from_array([0, 1, 2].map(|i| self.writer.active(END[i]).unwrap_or(begin[i])));
-        let end = round(&END, arc.at(until));
+        let start = self.stands(round(&END, arc.at(from)));
+        let to = arc.at(until);
+        // An arc that is told by its angle ends as far from its centre as it begins, and not at a
+        // rounded place.
+        let by_angle = self
+            .templates
+            .places(self.arc_name(arc.normal[facts.axes[2]] > 0.0, rises), WordName::Sweep);
+        let end = if by_angle { to } else { round(&END, to) };
         let [u, v, w] = facts.axes;
         let flat = |p: Vec3| Vec3::new(p[u], p[v], 0.0);
         let (s, e, c) = (flat(start), flat(end), flat(arc.center));
         let sign = arc.normal[w].signum();
         let wanted = arc.sweep * (until - from);
         let chord = e - s;
-        // The same radius at both ends: the nearest centre on the perpendicular bisector.
+        // Where the centre of the source is none of the rounded ends, the nearest one that has the same
+        // radius at both, on the perpendicular bisector.
         let along = chord.normalize_or_zero();
         let even = c + along * ((s + e) * 0.5 - c).dot(along);
         let can = &self.machine.capabilities;
         let absolute = self.templates.places(self.arc_name(sign > 0.0, false), WordName::CX);
+        // By as much an arc by its angle misses its end; any other is a spiral.
+        let uneven = match by_angle {
+            true => ANGLE_STEPS * self.machine.resolution(),
+            false => can.arc_tolerance / 2.0,
+        };
         let legal = |c: Vec3| {
             let mut center = arc.center;
             (center[u], center[v]) = (c.x, c.y);
@@ -171,33 +201,23 @@ impl Walk<'_> {
             let radius = a.length();
             let near =
                 (sweep - wanted).abs() * radius <= ROUNDING_STEPS * self.machine.resolution();
-            let even = (radius - b.length()).abs() <= can.arc_tolerance / 2.0;
-            let moved = flat(written).distance(flat(arc.center)) <= can.lowering_tolerance;
+            let even = (radius - b.length()).abs() <= uneven;
+            let moved = flat(written).distance(flat(arc.center));
             let rise = end[w] - start[w];
-            // A short chord is a long lever: its rounding may swing the whole arc about.
-            let close = (1..SAMPLES).map(|i| i as f64 / SAMPLES as f64).all(|t| {
-                let (sin, cos) = (sign * sweep * t).sin_cos();
-                let point =
-                    flat(written) + Vec3::new(a.x * cos - a.y * sin, a.x * sin + a.y * cos, 0.0);
-                let should = flat(arc.at(from + (until - from) * t));
-                point.distance(should) <= POINT_STEPS * self.machine.resolution()
-            });
-            (near && even && moved && close && radius > 0.0).then_some(Block {
-                end,
-                center: written,
-                sweep: sign * sweep,
-                rise,
-            })
+            // The ends stay where they are; between them a shift of the centre moves the arc by as much
+            // as its turn, and a short chord is a long lever for where the even centre lies.
+            let lever = 1.0 - (wanted.min(TAU) / 2.0).cos();
+            let close = moved * lever <= CENTER_STEPS * self.machine.resolution() * (1.0 + 1e-9);
+            (near && even && moved <= can.lowering_tolerance && close && radius > 0.0)
+                .then_some(Block { to, end, center: written, sweep: sign * sweep, rise })
         };
-        legal(even).or_else(|| legal(c))
+        legal(c).or_else(|| legal(even))
     }
 
     fn arc_block(&mut self, arc: &Arc, facts: &Facts, block: &Block, rises: bool) -> Done {
         let ccw = block.sweep > 0.0;
         let [u, v, w] = facts.axes;
-        let start = Vec3::from_array(
-            [0, 1, 2].map(|i| self.writer.active(END[i]).unwrap_or(self.local(arc.start)[i])),
-        );
+        let start = self.stands(self.local(arc.start));
         let full = [u, v].iter().all(|&i| block.end[i] == start[i]);
         if rises || full {
             // A helix or a circle says where it ends in the plane even where that is where it began:
@@ -209,7 +229,7 @@ impl Walk<'_> {
             self.writer.set(ABSOLUTE[i], block.center[i]);
         }
         for i in [u, v, w] {
-            self.writer.set(END[i], block.end[i]);
+            self.writer.set(END[i], block.to[i]);
         }
         let turns = (block.sweep.abs() / TAU - 1e-9).floor();
         if turns > 0.0 {
@@ -222,7 +242,19 @@ impl Walk<'_> {
         self.keep_compensation();
         self.writer.code(WordName::Plane, facts.code);
         self.writer.code(WordName::Motion, if ccw { motion::ARC_CCW } else { motion::ARC_CW });
+        let angle = self.writer.rounded(WordName::Sweep, block.sweep.to_degrees()).to_radians();
+        let rise = self.writer.rounded(WordName::Rise, block.rise);
+        let normal = Vec3::AXES[w];
+        let turned = geom::rotate(start - block.center, normal, angle) + normal * rise;
+        self.turned_to = Some(block.center + turned);
         self.block(self.arc_name(ccw, rises))
+    }
+
+    /// Where the control stands, in the coordinates of its blocks: as the last words say, or as the angle
+    /// of the last arc leads to; `begin` where neither is known.
+    fn stands(&self, begin: Vec3) -> Vec3 {
+        let begin = self.turned_to.unwrap_or(begin);
+        Vec3::from_array([0, 1, 2].map(|i| self.writer.active(END[i]).unwrap_or(begin[i])))
     }
 
     fn arc_name(&self, ccw: bool, rises: bool) -> BlockName {

@@ -90,6 +90,8 @@ names! {
         ArcCcw Block "arc_ccw", "", "Each counter-clockwise arc.";
         HelixCw Block "helix_cw", "", "Each clockwise arc that rises; `arc_cw` where it is missing.";
         HelixCcw Block "helix_ccw", "", "Each counter-clockwise arc that rises; `arc_ccw` where it is missing.";
+        Thread Block "thread", "", "Each straight move in step with the spindle, {{LEAD}} mm a turn. It runs along the axes whose words it places.";
+        Probe Block "probe", "", "Each probing move: straight at the feed, until the probe answers.";
         PlaneSelect Block "plane_select", "", "Where the plane must change before a block that does not say it.";
         Retract Block "retract", "", "Before the rotary axes turn away from a known position, or the work offset changes: the tool leaves the part in machine coordinates.";
         WorkOffsetSelect Block "work_offset_select", "", "Where the source names a work offset: `{{work_offset}}` is active from here on.";
@@ -107,7 +109,8 @@ names! {
         CycleTap Block "cycle_tap", "", "Definition of tapping, right-hand.";
         CycleTapLeft Block "cycle_tap_left", "", "Definition of tapping, left-hand.";
         CycleReam Block "cycle_ream", "", "Definition of reaming: feed in, feed out.";
-        CycleBore Block "cycle_bore", "", "Definition of boring: feed in, spindle stop, rapid out.";
+        CycleReamDwell Block "cycle_ream_dwell", "", "The same with a dwell at the bottom; `cycle_ream` where it is missing and places {{DWELL}}.";
+        CycleBore Block "cycle_bore", "", "Definition of boring: feed in, spindle stop, rapid out. The spindle is told anew behind the cycle, for controls differ in whether they start it.";
         CycleHole Block "cycle_hole", "", "Each hole of the cycle that its definition has not drilled.";
         CycleOff Block "cycle_off", "", "End of the cycle.";
         Dwell Block "dwell", "", "A dwell.";
@@ -168,11 +171,13 @@ names! {
         Depth Word "DEPTH", "mm", "Cycle: depth from the point of the hole, positive.";
         Safety Word "SAFETY", "mm", "Cycle: height of the R plane above the point of the hole.";
         Lift Word "LIFT", "mm", "Cycle: height of the retract level above the point of the hole.";
-        Peck Word "PECK", "mm", "Cycle: depth of a peck; the whole depth where the cycle does not peck.";
+        Peck Word "PECK", "mm", "Cycle: depth of a peck, where it pecks.";
         Dwell Word "DWELL", "s", "Cycle: dwell at the bottom.";
         Pitch Word "PITCH", "mm", "Cycle: pitch of the thread, negative for left-hand.";
-        Plunge Word "PLUNGE", "mm/min", "Cycle: feed into the hole, where it is a parameter.";
+        Plunge Word "PLUNGE", "mm/min", "Cycle: feed into the hole, where it is a parameter; in the unit of {{F}}.";
         Speed Word "SPEED", "1/min", "Cycle: speed of the spindle, where it is a parameter.";
+        Lead Word "LEAD", "mm", "Way of a thread in a turn of the spindle.";
+        ProbeKind Code "probe", "toward_or_error, toward, away_or_error, away", "Kind of probing move: until the probe touches the part or lets go of it, with an error where it does not or without. Those that the control lacks are left out.";
         Motion Code "motion", "rapid, linear, arc_cw, arc_ccw", "Kind of motion.";
         Plane Code "plane", "xy, xz, yz", "Plane of arcs and of cutter compensation.";
         Compensation Code "compensation", "off, left, right", "Cutter radius compensation; switched with the first move in the plane.";
@@ -201,6 +206,7 @@ pub(crate) const VARIABLES: &[Parameter] = &[
     variable("tool.diameter", "mm", "Cutting diameter; undefined where the source is silent."),
     variable("tool.corner_radius", "mm", "Corner radius; undefined where the source is silent."),
     variable("tool.length", "mm", "Length of the tool; undefined where the source is silent."),
+    variable("spindle.clockwise", "", "Whether the spindle turns clockwise, while it turns."),
     variable("spindle.changed", "", "Whether the speed is another than the one last written."),
     variable("text", "", "The text of a comment or a message."),
     variable("options", "", "The values of `[options]` of the machine: `{{ options.NAME }}`."),

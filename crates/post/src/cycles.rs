@@ -11,6 +11,7 @@ use program::{Cycle, CycleKind, Diagnostic, Feed, Op, Pose, Spindle, lowering};
 /// The cycle that the control has on: its definition and the levels it was given, mm along Z.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Open {
+    block: BlockName,
     levels: Levels,
 }
 
@@ -30,6 +31,7 @@ impl Walk<'_> {
             return Err(refuse("cycle-missing", "a hole without a cycle"));
         };
         check(cycle)?;
+        self.not_from_probe("a hole")?;
         self.uncompensated("a hole")?;
         if self.compensation_pending() {
             return Err(refuse("compensation", "cutter compensation cannot be switched at a hole"));
@@ -49,6 +51,12 @@ impl Walk<'_> {
                     "the control has no tapping cycle for this hole, and moves cannot tap";
                 Err(refuse("cycle-tap", message))
             }
+            None if cycle.kind.withdrawal().is_some() => {
+                let message = "no cycle of this machine's file goes aside from the wall of a hole, and moves \
+                               cannot stop the spindle in position";
+                let help = "bore without going aside (G86), or post the hole for another machine";
+                Err(refuse("cycle-bore", message).help(help).into())
+            }
             None => self.expand(cycle, pose, stop),
         }
     }
@@ -65,11 +73,19 @@ impl Walk<'_> {
             CycleKind::BreakChip => BlockName::CycleBreakChip,
             CycleKind::Tap { left: true, .. } => BlockName::CycleTapLeft,
             CycleKind::Tap { .. } => BlockName::CycleTap,
+            CycleKind::Ream if dwells && self.templates.has(BlockName::CycleReamDwell) => {
+                BlockName::CycleReamDwell
+            }
             CycleKind::Ream => BlockName::CycleReam,
             CycleKind::Bore => BlockName::CycleBore,
+            CycleKind::FineBore(_) | CycleKind::BackBore { .. } => return None,
         };
-        let known = self.machine.capabilities.cycles.contains(&CycleName::from(cycle.kind));
+        let cycles = &self.machine.capabilities.cycles;
+        let known = CycleName::of(cycle.kind).is_some_and(|name| cycles.contains(&name));
         let says_dwell = !dwells || self.templates.places(name, WordName::Dwell);
+        // A safety distance has no sign.
+        let says_clearance =
+            cycle.clearance >= 0.0 || !self.templates.places(name, WordName::Safety);
         let per_minute = !matches!(cycle.feed.or(self.feed), Some(Feed::InverseTime(_)));
         let along_z = match self.place.kind {
             Kind::Plain | Kind::Tilted(..) => true,
@@ -80,7 +96,8 @@ impl Walk<'_> {
             }
             _ => false,
         };
-        (known && self.templates.has(name) && says_dwell && per_minute && along_z).then_some(name)
+        let says_all = says_dwell && says_clearance && per_minute && along_z;
+        (known && self.templates.has(name) && says_all).then_some(name)
     }
 
     fn native(&mut self, name: BlockName, cycle: &Cycle, pose: &Pose, stop: &Stop) -> Done {
@@ -93,7 +110,8 @@ impl Walk<'_> {
             retract: level(WordName::Retract, cycle.retract),
         };
         let over = lifted(pose, cycle.retract);
-        if self.open_cycle == Some(Open { levels }) {
+        let open = Open { block: name, levels };
+        if self.open_cycle == Some(open) {
             self.say_hole(at, &levels);
             self.block(BlockName::CycleHole)?;
         } else {
@@ -108,7 +126,7 @@ impl Walk<'_> {
                 self.say_hole(at, &levels);
                 self.block(BlockName::CycleHole)?;
             }
-            self.open_cycle = Some(Open { levels });
+            self.open_cycle = Some(open);
         }
         self.here = Some(over);
         Ok(())
@@ -146,7 +164,6 @@ impl Walk<'_> {
         w.set(WordName::Safety, levels.clear - levels.surface);
         w.set(WordName::Lift, levels.retract - levels.surface);
         w.set(WordName::Dwell, cycle.dwell);
-        w.set(WordName::Peck, levels.surface - levels.bottom);
         if let (CycleKind::Deep | CycleKind::BreakChip, Some(pecks)) =
             (cycle.kind, lowering::pecks(cycle))
         {
@@ -174,20 +191,18 @@ impl Walk<'_> {
         let before = std::mem::replace(&mut self.feed, feed);
         let said = self.say_feed(0.0, 1, false);
         self.feed = before;
-        said?;
-        if let Some(feed) = feed {
-            self.writer.set(WordName::Plunge, lowering::feed_per_minute(feed, 0.0, speed));
-        }
+        self.writer.set(WordName::Plunge, said?);
         Ok(())
     }
 
     /// The control's cycle goes off.
     #[inline]
     pub(crate) fn end_cycle(&mut self) -> Done {
-        if self.open_cycle.take().is_none() {
-            return Ok(());
-        }
+        let Some(open) = self.open_cycle.take() else { return Ok(()) };
         self.block(BlockName::CycleOff)?;
+        if open.block == BlockName::CycleBore {
+            self.active_spindle = None;
+        }
         self.writer.forget(bit(WordName::Motion) | bit(WordName::Dwell));
         Ok(())
     }

@@ -7,18 +7,21 @@
 //!
 //! [`catalogue()`] names every block, word and variable that a control file may use. One record at a time
 //! goes through `walk`, which knows what the control has been told; `place` brings the tool into its
-//! orientation, `motion`, `arcs` and `cycles` say where it goes, `wire` says how a wire stands, and `writer`
-//! leaves out what repeats. Before that, `sweep` splits cuts that would swing the tool out of its way.
+//! orientation, `motion`, `arcs`, `single` and `cycles` say where it goes, `wire` says how a wire stands,
+//! and `writer` leaves out what repeats. Before that, `sweep` splits cuts that would swing the tool out of
+//! its way.
 
 mod arcs;
 mod catalogue;
 mod cycles;
 mod findings;
 mod guard;
+mod letters;
 mod motion;
 mod number;
 mod place;
 mod promises;
+mod single;
 mod sweep;
 mod template;
 mod walk;

@@ -67,6 +67,7 @@ impl Walk<'_> {
 
     /// A straight cut of the source.
     pub(crate) fn line(&mut self, pose: &Pose, stop: &Stop) -> Done {
+        self.not_from_probe("a cut")?;
         self.end_cycle()?;
         self.before_cut()?;
         self.settle(pose, stop, true)?;
@@ -171,7 +172,7 @@ impl Walk<'_> {
     }
 
     #[inline]
-    fn aim_at(&mut self, point: Vec3, axis: Vec3, degrees: Option<[f64; 3]>) {
+    pub(crate) fn aim_at(&mut self, point: Vec3, axis: Vec3, degrees: Option<[f64; 3]>) {
         self.tip = point;
         if let Some(degrees) = degrees {
             if matches!(self.place.kind, Kind::ToolCenter | Kind::Machine) {
@@ -212,7 +213,7 @@ impl Walk<'_> {
     /// Holds the position that has been aimed against the limits of the axes. Where the control finds
     /// the rotary positions of a tilted plane by itself, they are not known here.
     #[inline]
-    fn check_limits(&mut self) -> Done {
+    pub(crate) fn check_limits(&mut self) -> Done {
         let degrees = self.place.degrees().unwrap_or_default();
         let length = self.tool_length();
         let linear = match self.place.kind {

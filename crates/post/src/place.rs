@@ -274,6 +274,7 @@ impl Walk<'_> {
         let vector = bit(WordName::VX) | bit(WordName::VY) | bit(WordName::VZ);
         self.writer.forget(POSITION | LENGTH_OFFSET | vector | bit(WordName::Motion));
         self.located = false;
+        self.turned_to = None;
     }
 
     /// Away from the part in machine coordinates, before a rotary axis turns. These are positions of

@@ -91,6 +91,7 @@ fn needs(machine: &Machine, code: &str) -> bool {
         "left" | "right" => can.compensation,
         "per_turn" => can.feed_per_turn,
         "inverse_time" => can.inverse_time,
+        "toward_or_error" | "toward" | "away_or_error" | "away" => false,
         // A control has as many work offsets as it has; the first is the one that it works in.
         number if number.starts_with(|c: char| c.is_ascii_digit()) => number == "54",
         _ => true,

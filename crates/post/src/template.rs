@@ -7,6 +7,7 @@
 
 use crate::catalogue::{BlockName, VARIABLES, WordName, nearest};
 use crate::guard::{self, Fault};
+use crate::letters::in_ascii;
 use machine::{Block, Format, Machine, OptionValue};
 use minijinja::value::{Object, Value};
 use minijinja::{AutoEscape, Environment, ErrorKind, UndefinedBehavior};
@@ -240,7 +241,7 @@ impl Scope {
             program: program_value(machine, &program),
             operation: map([("name", Value::from(operation))]),
             tool: tool_value(machine, &tool, first),
-            spindle: map([("changed", Value::from(first))]),
+            spindle: spindle_value(first, first),
             text: Value::from(text),
             ..Scope::new(machine)
         }
@@ -263,7 +264,7 @@ impl Scope {
             options: Value::from(options.collect::<BTreeMap<String, Value>>()),
             operation: map([("name", Value::from(""))]),
             tool: tool_value(machine, &Tool::default(), true),
-            spindle: map([("changed", Value::from(true))]),
+            spindle: spindle_value(true, true),
             text: Value::from(""),
         }
     }
@@ -278,6 +279,11 @@ fn number_value(number: f64) -> Value {
 /// A value with members.
 pub(crate) fn map(members: impl IntoIterator<Item = (&'static str, Value)>) -> Value {
     Value::from(members.into_iter().collect::<BTreeMap<&'static str, Value>>())
+}
+
+/// The spindle as templates see it.
+pub(crate) fn spindle_value(changed: bool, clockwise: bool) -> Value {
+    map([("changed", Value::from(changed)), ("clockwise", Value::from(clockwise))])
 }
 
 /// A tool as templates see it; `first` where none has been called before.
@@ -306,10 +312,19 @@ fn identifies(name: &str) -> bool {
 
 /// Text from outside, as no control and no template can misread it: letters, digits, blanks and a few
 /// signs. Whatever ends a comment or a string, starts an expression, or is a command even inside a
-/// comment (`!`, `?`, `~`, `%` of GRBL and tapes, `MSG,` and `LOGOPEN,` of LinuxCNC) becomes a blank.
+/// comment (`!`, `?`, `~`, `%` of GRBL and tapes, `MSG,` and `LOGOPEN,` of LinuxCNC) becomes a blank; a
+/// letter that not every control prints becomes one that it does.
 pub(crate) fn clean(text: &str) -> String {
     let harmless = |c: char| c.is_ascii_alphanumeric() || " .:+-*/=_<>&@#".contains(c);
-    text.chars().map(|c| if harmless(c) { c } else { ' ' }).collect()
+    let mut clean = String::with_capacity(text.len());
+    for c in text.chars() {
+        match c {
+            c if harmless(c) => clean.push(c),
+            c if c.is_ascii() => clean.push(' '),
+            c => clean.push_str(in_ascii(c)),
+        }
+    }
+    clean
 }
 
 /// Text from outside for a comment, as far as a line of the control has room for it.

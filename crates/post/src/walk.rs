@@ -4,8 +4,8 @@ use crate::catalogue::{BlockName, WordName};
 use crate::findings::Findings;
 use crate::place::{Place, Route};
 use crate::template::{
-    LENGTH_OFFSET, ORIENTATION, POSITION, Scope, Templates, bit, map, printed, program_value,
-    tool_value,
+    LENGTH_OFFSET, ORIENTATION, POSITION, Scope, Templates, Words, bit, map, printed,
+    program_value, spindle_value, tool_value,
 };
 use crate::wire::Wire;
 use crate::writer::Writer;
@@ -37,6 +37,9 @@ mod feed_mode {
     pub(super) const INVERSE_TIME: usize = 2;
 }
 
+/// The words that say how the tool goes.
+const MOTION: Words = bit(WordName::F) | bit(WordName::Motion);
+
 /// The entry of the code word `plane` for the plane XY.
 pub(crate) const PLANE_XY: usize = 0;
 
@@ -59,7 +62,7 @@ pub(crate) struct Walk<'a> {
     pub(crate) length_offset: Option<f64>,
     /// What the source wants, and what the control has been told.
     pub(crate) spindle: Spindle,
-    active_spindle: Option<Spindle>,
+    pub(crate) active_spindle: Option<Spindle>,
     coolant: Coolant,
     active_coolant: Option<Coolant>,
     pub(crate) feed: Option<Feed>,
@@ -82,6 +85,8 @@ pub(crate) struct Walk<'a> {
     pub(crate) tip: Vec3,
     /// The same in the coordinates of the block, mm.
     pub(crate) said: Vec3,
+    /// Where the last arc leads, in the coordinates of the block, where it is told by its angle.
+    pub(crate) turned_to: Option<Vec3>,
     pub(crate) limits: Limits<'a>,
     /// Entry of the code word `work_offset` that is active.
     work_offset: usize,
@@ -129,6 +134,7 @@ impl<'a> Walk<'a> {
             wire: Wire::of(machine, program),
             tip: Vec3::ZERO,
             said: Vec3::ZERO,
+            turned_to: None,
             limits: Limits::new(machine),
             work_offset: 0,
             ended: false,
@@ -191,7 +197,7 @@ impl<'a> Walk<'a> {
         }
         match &record.op {
             Op::Rapid(_) | Op::Line(_) | Op::Arc(_) | Op::Thread(_) | Op::Hole(_) => Ok(()),
-            Op::Probe(_) => Err(refuse("unsupported", "a probing move is not written")),
+            Op::Probe(probe) => self.probe(probe),
             Op::Cycle(cycle) => {
                 self.end_cycle()?;
                 self.cycle = Some(cycle);
@@ -211,6 +217,11 @@ impl<'a> Walk<'a> {
             Op::Spindle(spindle) => {
                 self.end_cycle()?;
                 self.set_spindle(*spindle)
+            }
+            Op::SurfaceSpeed(None) => Ok(()),
+            Op::SurfaceSpeed(Some(_)) => {
+                let message = "the speed of the spindle follows X (G96), which is for turning";
+                Err(refuse("surface-speed", message).help("give it speeds of its own (G97)").into())
             }
             Op::Coolant(coolant) => {
                 self.end_cycle()?;
@@ -238,6 +249,13 @@ impl<'a> Walk<'a> {
             }
             Op::OptionalStop => self.stop(BlockName::OptionalStop),
             Op::Operation(name) => {
+                // What was switched on before it does not belong to it.
+                if self.tool.is_some() {
+                    self.sync_spindle()?;
+                }
+                if self.machine.format.fresh_operations {
+                    self.writer.forget(POSITION | ORIENTATION | MOTION);
+                }
                 self.scope.operation = map([("name", Value::from(printed(self.machine, name)))]);
                 self.block(BlockName::OperationStart)
             }
@@ -275,10 +293,7 @@ impl<'a> Walk<'a> {
             Op::Line(pose) => self.line(pose, &stop),
             Op::Arc(to) => self.arc(to, &stop),
             Op::Hole(pose) => self.hole(pose, &stop),
-            Op::Thread(_) => Err(refuse(
-                "unsupported",
-                "a thread in step with the spindle is not written; tap it",
-            )),
+            Op::Thread(thread) => self.thread(thread, &stop),
             _ => Ok(()),
         }
     }
@@ -402,9 +417,7 @@ impl<'a> Walk<'a> {
         self.scope.tool = tool_value(self.machine, tool, self.tool.is_none());
         self.required(BlockName::ToolChange)?;
         self.tool = Some(tool.clone());
-        self.writer.forget(
-            POSITION | ORIENTATION | bit(WordName::F) | bit(WordName::D) | bit(WordName::Motion),
-        );
+        self.writer.forget(POSITION | ORIENTATION | MOTION | bit(WordName::D));
         self.located = false;
         (self.active_spindle, self.active_coolant) = (Some(Spindle::Off), Some(Coolant::Off));
         Ok(())
@@ -421,8 +434,8 @@ impl<'a> Walk<'a> {
     /// The speed at which the tool that is called now will cut first.
     fn coming_speed(&self) -> Option<f64> {
         let coming = self.source.records[self.index..].iter().map(|record| &record.op);
-        let mut until_cut =
-            coming.take_while(|op| !matches!(op, Op::Line(_) | Op::Arc(_) | Op::Hole(_)));
+        let mut until_cut = coming
+            .take_while(|op| !matches!(op, Op::Line(_) | Op::Arc(_) | Op::Thread(_) | Op::Hole(_)));
         let next = until_cut.find_map(|op| match op {
             Op::Spindle(spindle) => speed(*spindle),
             _ => None,
@@ -474,7 +487,8 @@ impl<'a> Walk<'a> {
             self.writer.set(WordName::S, speed);
         }
         let changed = speed(self.spindle) != self.writer.active(WordName::S);
-        self.scope.spindle = map([("changed", Value::from(changed))]);
+        let counter = matches!(self.spindle, Spindle::CounterClockwise(_));
+        self.scope.spindle = spindle_value(changed, !counter);
         self.required(match self.spindle {
             Spindle::Off => BlockName::SpindleOff,
             Spindle::Clockwise(_) => BlockName::SpindleCw,
@@ -482,7 +496,7 @@ impl<'a> Walk<'a> {
         })
     }
 
-    fn sync_coolant(&mut self) -> Done {
+    pub(crate) fn sync_coolant(&mut self) -> Done {
         if self.active_coolant == Some(self.coolant) {
             return Ok(());
         }
@@ -578,13 +592,18 @@ impl<'a> Walk<'a> {
 
     /// Says the feed of a cut of `length` mm in the next block, one of `pieces` of the source's. With
     /// `turning` the control, which knows nothing of the tool tip, is told the time instead, where it
-    /// can be.
+    /// can be. Answers the feed as it is said.
     #[inline]
-    pub(crate) fn say_feed(&mut self, length: f64, pieces: usize, turning: bool) -> Done {
+    pub(crate) fn say_feed(
+        &mut self,
+        length: f64,
+        pieces: usize,
+        turning: bool,
+    ) -> Result<f64, Box<Diagnostic>> {
         let Some(mut feed) = self.feed else {
             // The generator of a wire machine holds the gap, and finds the feed by it.
             if self.wire.is_some() {
-                return Ok(());
+                return Ok(0.0);
             }
             return Err(refuse("feed-missing", "a cut before the first feed"));
         };
@@ -632,7 +651,7 @@ impl<'a> Walk<'a> {
         }
         self.writer.set(WordName::F, value);
         self.writer.code(WordName::FeedMode, mode);
-        Ok(())
+        Ok(value)
     }
 }
 

@@ -15,6 +15,15 @@ enum Form {
     Code(Vec<Option<String>>, bool),
 }
 
+/// A value as it is compared: what repeats is left out.
+#[derive(Clone, Copy, Default, PartialEq)]
+struct Value {
+    /// Steps of a number, the entry of a code.
+    steps: i64,
+    /// Of a number that is compared before it is rounded its bits, else 0.
+    exact: u64,
+}
+
 /// The program text and what the control remembers of it.
 pub(crate) struct Writer {
     forms: Vec<Form>,
@@ -23,12 +32,12 @@ pub(crate) struct Writer {
     line_length: usize,
     first: u32,
     step: u32,
-    /// The words of the block that comes next, and their values in steps (codes: their index).
+    /// The words of the block that comes next, and their values.
     set: Words,
-    values: [i64; WordName::COUNT],
+    values: [Value; WordName::COUNT],
     /// The words whose active value is known, and those values.
     known: Words,
-    active: [i64; WordName::COUNT],
+    active: [Value; WordName::COUNT],
     /// The word whose form [`WordName::F`] has.
     feed_form: WordName,
     /// A value that its word cannot take.
@@ -59,9 +68,9 @@ impl Writer {
             first,
             step: number.map_or(1, |word| word.step),
             set: 0,
-            values: [0; WordName::COUNT],
+            values: [Value::default(); WordName::COUNT],
             known: 0,
-            active: [0; WordName::COUNT],
+            active: [Value::default(); WordName::COUNT],
             feed_form: WordName::F,
             refused: None,
             next_number: first.into(),
@@ -76,7 +85,9 @@ impl Writer {
         let Form::Number(number) = &self.forms[self.form(word) as usize] else { return };
         match number.round(value) {
             Some(steps) => {
-                self.values[word as usize] = steps;
+                // Both zeros are one.
+                let exact = if number.exact { (value + 0.0).to_bits() } else { 0 };
+                self.values[word as usize] = Value { steps, exact };
                 self.set |= bit(word);
             }
             None => self.refused = Some((word, value)),
@@ -86,7 +97,7 @@ impl Writer {
     /// The next block may write the code `word` with its entry `index`.
     #[inline]
     pub(crate) fn code(&mut self, word: WordName, index: usize) {
-        self.values[word as usize] = index as i64;
+        self.values[word as usize] = Value { steps: index as i64, exact: 0 };
         self.set |= bit(word);
     }
 
@@ -105,7 +116,7 @@ impl Writer {
     pub(crate) fn active(&self, word: WordName) -> Option<f64> {
         match &self.forms[self.form(word) as usize] {
             Form::Number(number) if self.known & bit(word) != 0 => {
-                Some(number.value(self.active[word as usize]))
+                Some(number.value(self.active[word as usize].steps))
             }
             _ => None,
         }
@@ -138,7 +149,7 @@ impl Writer {
 
     /// The control is at this entry of a code without being told.
     pub(crate) fn assume(&mut self, word: WordName, index: usize) {
-        self.active[word as usize] = index as i64;
+        self.active[word as usize] = Value { steps: index as i64, exact: 0 };
         self.known |= bit(word);
     }
 
@@ -236,7 +247,7 @@ impl Writer {
             Form::Absent => return false,
             Form::Number(number) => number.modal,
             Form::Code(texts, modal) => {
-                if texts.get(value as usize).is_none_or(|text| text.as_deref() == Some("")) {
+                if texts.get(value.steps as usize).is_none_or(|text| text.as_deref() == Some("")) {
                     return false;
                 }
                 *modal
@@ -248,17 +259,17 @@ impl Writer {
         self.known |= bit;
         self.active[index] = value;
         let separated = self.separated(gap, start);
-        self.write(word, separated, value);
+        self.write(word, separated, value.steps);
         true
     }
 
     #[inline]
-    fn write(&mut self, word: WordName, separated: bool, value: i64) {
+    fn write(&mut self, word: WordName, separated: bool, steps: i64) {
         match &self.forms[self.form(word) as usize] {
             Form::Absent => {}
-            Form::Number(number) => number.write(separated, value, &mut self.text),
+            Form::Number(number) => number.write(separated, steps, &mut self.text),
             Form::Code(texts, _) => {
-                if let Some(Some(text)) = texts.get(value as usize) {
+                if let Some(Some(text)) = texts.get(steps as usize) {
                     if separated {
                         self.text.extend_from_slice(&self.separator);
                     }

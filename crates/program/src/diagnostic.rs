@@ -126,6 +126,20 @@ impl Diagnostic {
     }
 }
 
+/// Line `number` (from 1) of `text`, whose lines end with LF, CR LF or CR; empty where there is none.
+pub fn line_of(text: &[u8], number: u32) -> &[u8] {
+    let mut rest = text;
+    for _ in 1..number {
+        let Some(end) = rest.iter().position(|byte| matches!(byte, b'\n' | b'\r')) else {
+            return b"";
+        };
+        let length = if rest[end..].starts_with(b"\r\n") { 2 } else { 1 };
+        rest = &rest[end + length..];
+    }
+    let end = rest.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
+    &rest[..end.unwrap_or(rest.len())]
+}
+
 /// `file:line:column: error[rule]: message`, then the line with a caret and the way out.
 impl fmt::Display for Diagnostic {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
@@ -192,5 +206,12 @@ mod tests {
         let mut lines = d.excerpt.lines();
         let caret = lines.next().unwrap().chars().position(|c| c == '!').unwrap();
         assert_eq!(lines.next().unwrap().chars().position(|c| c == '^').unwrap(), caret);
+    }
+
+    #[test]
+    fn lines_end_with_lf_cr_lf_or_cr() {
+        let text = b"one\ntwo\r\nthree\rfour";
+        let lines: Vec<&[u8]> = (1..=5).map(|number| line_of(text, number)).collect();
+        assert_eq!(lines, [&b"one"[..], b"two", b"three", b"four", b""]);
     }
 }

@@ -14,14 +14,14 @@ pub const MAX_PECKS: usize = 10_000;
 /// The moves of one hole, from the R plane on: the tool is at `hole` + clearance, and ends at
 /// `hole` + retract. `spindle` is what runs, so that a boring cycle can start it again.
 ///
-/// Returns `None` where moves cannot do it: tapping needs the control to couple feed and spindle, and
-/// a peck that is not positive, or would take more than [`MAX_PECKS`], has no end.
+/// Returns `None` where moves cannot do it: tapping needs the control to couple feed and spindle, a
+/// withdrawal has to stop the spindle in position, and a peck that is not positive, or would take more than [`MAX_PECKS`], has no end.
 pub fn hole(cycle: &Cycle, hole: &Pose, spindle: Spindle) -> Option<Vec<Op>> {
     let axis = hole.axis()?;
     let at = |height: f64| Pose { point: hole.point + axis * height, ..*hole };
     let mut ops = Vec::with_capacity(4);
     match cycle.kind {
-        CycleKind::Tap { .. } => return None,
+        CycleKind::Tap { .. } | CycleKind::FineBore(_) | CycleKind::BackBore { .. } => return None,
         CycleKind::Drill | CycleKind::Bore | CycleKind::Ream => {
             ops.push(Op::Line(at(-cycle.depth)))
         }
@@ -89,6 +89,7 @@ pub fn feed_per_minute(feed: Feed, length: f64, speed: f64) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::Withdrawal;
     use geom::Vec3;
 
     fn cycle(kind: CycleKind) -> Cycle {
@@ -147,8 +148,14 @@ mod tests {
 
     #[test]
     fn what_has_no_end_or_needs_the_control_is_refused() {
-        let tap = CycleKind::Tap { pitch: 1.0, left: false };
-        assert_eq!(hole(&cycle(tap), &POSE(), Spindle::Off), None);
+        let withdrawal = Withdrawal { aside: Vec3::X, angle: None };
+        for kind in [
+            CycleKind::Tap { pitch: 1.0, left: false },
+            CycleKind::FineBore(withdrawal),
+            CycleKind::BackBore { withdrawal, through: None },
+        ] {
+            assert_eq!(hole(&cycle(kind), &POSE(), Spindle::Off), None);
+        }
         for peck in [0.0, -1.0, f64::NAN, 1e-6] {
             let c = Cycle { peck: Some(peck), first_peck: None, ..cycle(CycleKind::Deep) };
             assert_eq!(hole(&c, &POSE(), Spindle::Off), None);

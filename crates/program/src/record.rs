@@ -32,9 +32,9 @@ pub enum Op {
     Arc(Box<ArcTo>),
     /// Straight line whose feed is tied to the turn of the spindle, as a thread needs it (`G33`).
     Thread(Box<Thread>),
-    /// Straight line at the active feed that ends where the probe answers, at the pose at the latest.
-    /// Where the tool stands afterwards only the machine knows.
-    Probe(Pose),
+    /// Straight line at the active feed that ends where the probe answers. Where the tool stands
+    /// afterwards only the machine knows.
+    Probe(Box<Probe>),
     /// One hole of the active [`Cycle`]; the pose is the point of the cycle on the surface and the
     /// tool axis there. The tool ends at the cycle's retract level.
     Hole(Pose),
@@ -46,6 +46,10 @@ pub enum Op {
     Feed(Feed),
     /// Spindle from here on.
     Spindle(Spindle),
+    /// Constant surface speed from here on, m/min: the spindle turns as fast as the distance of the tool
+    /// from X 0 asks for, and its own speed is the most. `None` is its own speed again. It is for turning,
+    /// and no mill's writer makes it.
+    SurfaceSpeed(Option<f64>),
     /// Coolant from here on.
     Coolant(Coolant),
     /// Change to this tool.
@@ -162,6 +166,18 @@ pub struct Thread {
     pub pitch: f64,
 }
 
+/// A probing move from where the tool is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Probe {
+    /// Where it ends at the latest.
+    pub end: Pose,
+    /// Whether it ends where the probe lets go of the part (`G38.4`, `G38.5`), and not where it touches
+    /// it.
+    pub away: bool,
+    /// Whether a probe that has not answered on the way stops the program (`G38.2`, `G38.4`).
+    pub must_answer: bool,
+}
+
 /// How fast the tool moves.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Feed {
@@ -269,6 +285,47 @@ pub enum CycleKind {
     Ream,
     /// Feed in, spindle stop, rapid out (`G86`).
     Bore,
+    /// Feed in, aside from the wall, rapid out, back over the hole, where the spindle turns again (`G76`).
+    FineBore(Withdrawal),
+    /// Aside above the hole, down through it to the bottom, back to the axis, feed **up** to the point
+    /// with the spindle turning, aside again and out (`G87`). The clearance is the height at which the
+    /// tool goes aside.
+    BackBore {
+        /// How it passes through the hole.
+        withdrawal: Withdrawal,
+        /// Feed of the way through the hole, in and out; `None` is by rapid.
+        through: Option<Feed>,
+    },
+}
+
+/// How a boring bar leaves the wall: the spindle stops in position, and the tool goes aside.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Withdrawal {
+    /// How far and where to, mm, in the frame of the pose's point.
+    pub aside: Vec3,
+    /// Position of the spindle, degrees; `None` is the one that the machine is set to (`M19`).
+    pub angle: Option<f64>,
+}
+
+impl CycleKind {
+    /// How the tool leaves the wall, where it does.
+    pub fn withdrawal(&self) -> Option<&Withdrawal> {
+        match self {
+            CycleKind::FineBore(withdrawal) | CycleKind::BackBore { withdrawal, .. } => {
+                Some(withdrawal)
+            }
+            _ => None,
+        }
+    }
+
+    /// The same, where the tool leaves the wall by `aside`.
+    pub fn with_aside(mut self, aside: Vec3) -> CycleKind {
+        if let CycleKind::FineBore(withdrawal) | CycleKind::BackBore { withdrawal, .. } = &mut self
+        {
+            withdrawal.aside = aside;
+        }
+        self
+    }
 }
 
 impl Op {

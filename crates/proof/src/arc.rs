@@ -6,9 +6,11 @@ use crate::line::{Followed, turn, within};
 use crate::place::{Place, Station};
 use geom::{Arc, Vec3};
 use program::{ArcTo, Pose};
-use std::f64::consts::PI;
+use std::f64::consts::{PI, TAU};
 
-/// Rounding of both ends and of the centre add up on the way of an arc: so many tip tolerances.
+/// How far rounding moves a point of an arc, in tip tolerances: an end by 0.82 of one (√½ steps in the
+/// plane), and the centre by as much, which moves the far side of a full circle by twice that while its
+/// ends stay.
 const ROUNDINGS: f64 = 3.0;
 
 /// How far an arc may turn past its end by rounding: so many tip tolerances.
@@ -43,7 +45,7 @@ pub(crate) fn follow(
     if aligned.is_nan() || aligned <= 0.0 {
         return Err("turns the other way round, or in another plane".into());
     }
-    let reached = t + block.sweep / arc.sweep;
+    let reached = parameter(arc, to.place.tip, t + block.sweep / arc.sweep);
     let left_mm = left(arc, reached);
     within("turns past the end of the arc", -left_mm, PAST * slack, "mm")?;
     let allowed = ROUNDINGS * slack;
@@ -88,6 +90,15 @@ pub(crate) fn follow_chord(
     within("cuts the arc off", middle, ROUNDINGS * slack + gauge.allowed.chord_mm, "mm")?;
     axis(gauge, goal, here, to)?;
     Ok(Followed { t: reached, path_mm: end.max(middle), left_mm })
+}
+
+/// The parameter at which the angle of `point` about the axis of `arc` is, in the turn of `near`.
+fn parameter(arc: &Arc, point: Vec3, near: f64) -> f64 {
+    let spoke = |p: Vec3| (p - arc.center).reject_from_normalized(arc.normal);
+    let (a, b) = (spoke(arc.start), spoke(point));
+    let angle = arc.normal.dot(a.cross(b)).atan2(a.dot(b));
+    let turns = ((near * arc.sweep - angle) / TAU).round();
+    (angle + turns * TAU) / arc.sweep
 }
 
 /// How far `point` is beside `arc` at `t`, and along it, mm. Along a steep helix counts as its turn

@@ -1,9 +1,9 @@
 //! What the source says comes next.
 
 use crate::place::Place;
-use geom::Arc;
+use geom::{Arc, Vec3};
 use machine::Machine;
-use program::{Compensation, Coolant, Cycle, Feed, Op, Record, Spindle, Tool};
+use program::{Compensation, Coolant, Cycle, Feed, Op, Probe, Record, Spindle, Tool};
 
 /// A motion of the source, from where the one before it ends.
 #[derive(Clone, Debug)]
@@ -23,12 +23,18 @@ pub(crate) struct Goal {
     pub homed: bool,
 }
 
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, PartialEq)]
 pub(crate) enum Kind {
     Rapid,
     Line,
     Arc(Arc),
     Hole(Cycle),
+    /// In step with the spindle, mm a turn.
+    Thread(f64),
+    Probe {
+        away: bool,
+        must_answer: bool,
+    },
     /// A record that makes no motion, and why.
     Broken(&'static str),
 }
@@ -52,6 +58,8 @@ pub(crate) enum Step {
 pub(crate) struct Wanted<'a> {
     pub feed: Option<Feed>,
     pub spindle: Spindle,
+    /// Constant surface speed, m/min.
+    pub surface_speed: Option<f64>,
     pub coolant: Coolant,
     pub tool: Option<&'a Tool>,
     pub compensation: Compensation,
@@ -84,6 +92,7 @@ impl<'a> Cursor<'a> {
         let wanted = Wanted {
             feed: None,
             spindle: Spindle::Off,
+            surface_speed: None,
             coolant: Coolant::Off,
             tool: None,
             compensation: Compensation::Off,
@@ -136,11 +145,10 @@ impl<'a> Cursor<'a> {
                     let cycle = self.wanted.cycle.map(Kind::Hole);
                     self.motion(cycle.unwrap_or(Kind::Broken("no cycle is active")), pose)
                 }
-                Op::Thread(thread) => {
-                    self.motion(Kind::Broken("a thread is not compared"), &thread.end)
-                }
-                Op::Probe(pose) => {
-                    self.motion(Kind::Broken("a probing move is not compared"), pose)
+                Op::Thread(thread) => self.motion(Kind::Thread(thread.pitch), &thread.end),
+                Op::Probe(probe) => {
+                    let Probe { away, must_answer, .. } = **probe;
+                    self.motion(Kind::Probe { away, must_answer }, &probe.end)
                 }
                 Op::Dwell(seconds) if *seconds > 0.0 => Step::Dwell(*seconds),
                 Op::Stop => Step::Stop,
@@ -190,6 +198,7 @@ impl<'a> Cursor<'a> {
         match op {
             Op::Feed(feed) => wanted.feed = Some(*feed),
             Op::Spindle(spindle) => wanted.spindle = *spindle,
+            Op::SurfaceSpeed(speed) => wanted.surface_speed = *speed,
             Op::Coolant(coolant) => wanted.coolant = *coolant,
             Op::Compensation(side) => wanted.compensation = *side,
             Op::Taper(degrees) => wanted.taper = *degrees,
@@ -216,8 +225,17 @@ impl Goal {
     pub fn end(&self) -> Place {
         match &self.kind {
             Kind::Hole(cycle) => self.to.lifted(cycle.retract),
+            Kind::Probe { .. } => self.answered(),
             _ => self.to,
         }
+    }
+
+    /// Where a probe stands after it has answered: only what it has not moved along is known.
+    fn answered(&self) -> Place {
+        let unknown = Vec3::splat(f64::NAN);
+        let moved = self.from.map_or(unknown, |from| self.to.tip - from.tip);
+        let tip = Vec3::select(moved.cmpeq(Vec3::ZERO), self.to.tip, unknown);
+        Place { tip, ..self.to }
     }
 
     /// Length of the way of the tip, mm; 0 from an unknown start.

@@ -7,7 +7,7 @@ use crate::line::within;
 use crate::place::{Number, Place, Station};
 use crate::state::Difference;
 use geom::Vec3;
-use program::{Cycle, CycleKind, Orientation, Pose};
+use program::{Cycle, CycleKind, Orientation, Pose, Withdrawal};
 
 /// A hole of the source.
 pub(crate) struct Hole<'a> {
@@ -243,6 +243,8 @@ pub(crate) struct Drilled {
     pub bottom: Station,
     pub r_plane: Station,
     pub retracted: Station,
+    /// By how much the tool goes aside, in the work frame, mm.
+    aside: Option<Vec3>,
     pub cycle: Cycle,
 }
 
@@ -255,12 +257,14 @@ impl Drilled {
             Orientation::Rotary { degrees, tool_center: true } => gauge.machine.axis_at(degrees),
             Orientation::Rotary { .. } => Vec3::Z,
         };
-        let at =
-            |height: f64| gauge.station(line, Pose { point: pose.point + along * height, ..*pose });
+        let moved = |by: Vec3| gauge.station(line, Pose { point: pose.point + by, ..*pose });
+        let at = |height: f64| moved(along * height);
+        let tip = |by: Vec3| moved(by).place.tip;
         Drilled {
             bottom: at(-cycle.depth),
             r_plane: at(cycle.clearance),
             retracted: at(cycle.retract),
+            aside: cycle.kind.withdrawal().map(|way| tip(way.aside) - tip(Vec3::ZERO)),
             cycle,
         }
     }
@@ -298,7 +302,13 @@ impl Drilled {
             (CycleKind::Tap { pitch: a, left: l }, CycleKind::Tap { pitch: b, left: m }) => {
                 l == m && (a - b).abs() <= PITCH
             }
-            (a, b) => a == b,
+            (should, is) => match (should.withdrawal(), self.aside) {
+                (Some(way), Some(aside)) => {
+                    let slack = 2.0 * hole.gauge.slack(&self.bottom);
+                    way.aside.distance(aside) <= slack && should == is.with_aside(way.aside)
+                }
+                _ => should == is,
+            },
         };
         if !same {
             let message =
@@ -355,7 +365,7 @@ impl Drilled {
 }
 
 /// Half a step of a pitch of three decimals, mm.
-const PITCH: f64 = 5.1e-4;
+pub(crate) const PITCH: f64 = 5.1e-4;
 
 fn name(kind: CycleKind) -> String {
     match kind {
@@ -371,5 +381,14 @@ fn name(kind: CycleKind) -> String {
         }
         CycleKind::Ream => "reaming".into(),
         CycleKind::Bore => "boring".into(),
+        CycleKind::FineBore(way) => format!("boring {}", withdrawn(&way)),
+        CycleKind::BackBore { withdrawal, .. } => format!("back boring {}", withdrawn(&withdrawal)),
     }
+}
+
+/// How a boring bar leaves the wall, with the spindle's position where it is not the machine's own.
+fn withdrawn(way: &Withdrawal) -> String {
+    let [x, y, z] = way.aside.to_array().map(Number);
+    let angle = way.angle.map_or(String::new(), |angle| format!(" at {}°", Number(angle)));
+    format!("aside by X{x} Y{y} Z{z}{angle}")
 }

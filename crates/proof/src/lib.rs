@@ -21,7 +21,8 @@
 //!    axis where it must, and back along the tool axis to the same point. Each is reported. Otherwise
 //!    home positions are for the start, tool changes, new set-ups by rapid, and the end, Z first.
 //! 6. **A hole** by a canned cycle (bottom, R plane, retract level, kind, pecks, dwell, pitch), or by
-//!    the moves that make it. The tool goes down only over it. A thread only by a cycle.
+//!    the moves that make it. The tool goes down only over it. A thread only by a cycle. A thread in step
+//!    with the spindle, or a probing move, by one block that makes the same.
 //! 7. **In every cut**: feed, spindle, coolant, tool, length offset, work offset, compensation.
 //!    Compensation switches with the first straight cut in the plane at the latest, off with the first
 //!    straight move there, and never on an arc. A tool change stops spindle and coolant.

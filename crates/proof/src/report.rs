@@ -51,7 +51,7 @@ pub struct SideBySide {
 pub struct Compared {
     /// Rapid moves of the source.
     pub rapids: usize,
-    /// Straight cutting moves of the source.
+    /// Straight cutting moves of the source, threads and probing moves among them.
     pub lines: usize,
     /// Arcs and helices of the source.
     pub arcs: usize,

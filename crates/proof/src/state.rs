@@ -12,6 +12,8 @@ use program::{Compensation, Coolant, Cycle, FIRST_WORK_OFFSET, Feed, Spindle, To
 pub(crate) struct Running {
     pub feed: Option<Feed>,
     pub spindle: Spindle,
+    /// Constant surface speed, m/min.
+    pub surface_speed: Option<f64>,
     pub coolant: Coolant,
     /// Line on which the spindle and the coolant were set last.
     pub spindle_line: u32,
@@ -32,6 +34,7 @@ impl Running {
         Running {
             feed: None,
             spindle: Spindle::Off,
+            surface_speed: None,
             coolant: Coolant::Off,
             spindle_line: 0,
             coolant_line: 0,
@@ -131,6 +134,13 @@ pub(crate) fn spindle_and_coolant(
     if !same_spindle(allowed, wanted.spindle, running.spindle) {
         let (is, should) = (spindle(running.spindle), spindle(wanted.spindle));
         return Some(("spindle", format!("the spindle is {is}, but should be {should}")));
+    }
+    if wanted.surface_speed != running.surface_speed {
+        let shown = |speed: Option<f64>| {
+            speed.map_or("its own".into(), |speed| format!("that of {} m/min at X", Number(speed)))
+        };
+        let (is, should) = (shown(running.surface_speed), shown(wanted.surface_speed));
+        return Some(("spindle", format!("the spindle's speed is {is}, but should be {should}")));
     }
     (wanted.coolant != running.coolant).then(|| {
         let (is, should) = (coolant(running.coolant), coolant(wanted.coolant));

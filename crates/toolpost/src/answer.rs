@@ -1,10 +1,10 @@
 //! What a command has to say, and where it is said: findings to the error stream, the rest to the
 //! output, or everything as one JSON object.
 
+use crate::summary;
 use program::Diagnostic;
 use serde_json::{Map, Value, json};
 use std::io::{self, Write};
-use std::process::ExitCode;
 
 /// How a command ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -45,6 +45,34 @@ pub struct Answer {
     /// The same as the text, for machines: an object.
     data: Value,
     findings: Vec<Diagnostic>,
+}
+
+/// What is told of a program: in rows for a person, in JSON for a machine.
+#[derive(Debug)]
+pub struct Account {
+    /// Whether it is proven.
+    pub verdict: Verdict,
+    /// What is told of it, and under which head.
+    pub rows: Vec<(&'static str, String)>,
+    /// The same, and more: an object.
+    pub data: Value,
+    /// What is wrong with it, or worth knowing.
+    pub findings: Vec<Diagnostic>,
+}
+
+impl Account {
+    /// The answer where the program is therefore not saved.
+    pub fn not_saved(mut self) -> Answer {
+        self.rows.push(("saved", String::from("nothing: what was there before is as it was")));
+        self.into()
+    }
+
+    /// The report that is saved beside a program.
+    pub fn report(&self) -> String {
+        let mut report = self.data.clone();
+        report["warnings"] = json!(self.findings);
+        format!("{report:#}\n")
+    }
 }
 
 /// What stops a command: how it ended, and why.
@@ -88,15 +116,15 @@ impl Answer {
     }
 
     /// Says it, and answers the exit code.
-    pub fn say(self, quiet: bool, json: bool) -> ExitCode {
+    pub fn say(self, quiet: bool, json: bool) -> u8 {
         let code = self.verdict.code();
         let said = if json { self.say_json() } else { self.say_text(quiet) };
         match said {
             Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
                 let _ = writeln!(io::stderr(), "error: the answer cannot be printed: {error}");
-                ExitCode::from(Verdict::Invalid.code().max(code))
+                Verdict::Invalid.code().max(code)
             }
-            _ => ExitCode::from(code),
+            _ => code,
         }
     }
 
@@ -126,6 +154,13 @@ impl Answer {
         serde_json::to_writer_pretty(&mut out, &object)?;
         writeln!(out)?;
         out.flush()
+    }
+}
+
+impl From<Account> for Answer {
+    fn from(account: Account) -> Answer {
+        let Account { verdict, rows, data, findings } = account;
+        Answer::summary(verdict, summary::rows(&rows), data).findings(findings)
     }
 }
 

@@ -54,7 +54,8 @@ pub enum Command {
 /// The toolpath.
 #[derive(Debug, Args)]
 pub struct Source {
-    /// File with the toolpath: cutter-location data, or with --from an NC program.
+    /// File with the toolpath: cutter-location data; a job of FreeCAD (.json, .FCStd, dump); or with
+    /// --from an NC program.
     #[arg(value_name = "SOURCE")]
     pub path: PathBuf,
     /// Take every warning about the toolpath as an error.
@@ -64,8 +65,8 @@ pub struct Source {
     pub origin: Origin,
 }
 
-/// What an NC program was written for.
-#[derive(Debug, Args)]
+/// What an NC program was written for, and what the operator has set up.
+#[derive(Debug, Default, Args)]
 #[command(next_help_heading = "NC program as the source")]
 pub struct Origin {
     /// The source is an NC program of this control or machine: a name in the library, or a file
@@ -85,6 +86,9 @@ pub struct Origin {
     /// What lengths count before the program says it by G20 or G21.
     #[arg(long, value_name = "UNIT", requires = "from")]
     pub units: Option<Units>,
+    /// Which way a boring bar goes from the wall of a hole, where the machine is set to it (G76, G87).
+    #[arg(long, value_name = "WAY", requires = "from", allow_hyphen_values = true)]
+    pub aside: Option<Way>,
     /// Skip the blocks that begin with `/`.
     #[arg(long, requires = "from")]
     pub block_delete: bool,
@@ -111,6 +115,23 @@ pub enum WholeNumbers {
     Increments,
 }
 
+/// A way along an axis.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum Way {
+    /// Along X.
+    #[value(name = "+X")]
+    PlusX,
+    /// Against X.
+    #[value(name = "-X")]
+    MinusX,
+    /// Along Y.
+    #[value(name = "+Y")]
+    PlusY,
+    /// Against Y.
+    #[value(name = "-Y")]
+    MinusY,
+}
+
 /// How close the proof must be.
 #[derive(Debug, Args)]
 pub struct Closeness {
@@ -129,6 +150,9 @@ pub struct Post {
     /// Where to save the program; the report goes beside it.
     #[arg(long, short, value_name = "FILE")]
     pub output: PathBuf,
+    /// Another value for one of the [options] of the machine file; may be given several times.
+    #[arg(long, value_name = "NAME=VALUE", value_parser = option)]
+    pub option: Vec<(String, String)>,
     #[command(flatten)]
     pub closeness: Closeness,
     #[command(flatten)]
@@ -315,7 +339,7 @@ pub struct Prove {
     /// Name in the library, or a file ending in .toml.
     #[arg(long, short, value_name = "NAME|FILE")]
     pub machine: String,
-    /// File with the toolpath: cutter-location data, or with --from an NC program.
+    /// File with the toolpath, as `post` takes it.
     #[arg(long, value_name = "SOURCE")]
     pub against: PathBuf,
     #[command(flatten)]
@@ -365,6 +389,12 @@ fn length(text: &str) -> Result<f64, String> {
         Ok(mm) if mm > 0.0 && mm.is_finite() => Ok(mm),
         _ => Err(String::from("a length in mm greater than 0 is needed, such as 0.01")),
     }
+}
+
+/// A name and its value.
+fn option(text: &str) -> Result<(String, String), String> {
+    let (name, value) = text.split_once('=').ok_or("a name and a value are needed: NAME=VALUE")?;
+    Ok((name.trim().to_owned(), value.to_owned()))
 }
 
 /// A number, whatever it is good for.

@@ -1,14 +1,18 @@
 //! `toolpost post`: toolpath in, proven program and its report out.
 
-use crate::answer::{Answer, Stop, Verdict};
+use crate::answer::{Account, Answer, Stop, Verdict};
 use crate::args::Post;
 use crate::files::{self, Target};
 use crate::progress::Progress;
-use crate::summary::{Shape, rows, time, travel};
-use crate::{prove, toolpath};
+use crate::prove;
+use crate::summary::{Shape, time, travel};
+use crate::toolpath::{self, Toolpath};
+use ::post::Output;
+use machine::Machine;
 use machine::limits::Travel;
 use machine::time::Times;
-use program::Diagnostic;
+use program::{Diagnostic, Program};
+use proof::Tolerances;
 use serde_json::json;
 use std::path::Path;
 
@@ -35,6 +39,15 @@ const MACHINE_CANNOT: [&str; 18] = [
     "wire-leans",
 ];
 
+/// A program that is proven, or is not, and what is told of it.
+#[derive(Debug)]
+pub struct Posted {
+    /// The program. Nobody should have it whose account does not say that it is proven.
+    pub text: Vec<u8>,
+    /// What is told of it.
+    pub account: Account,
+}
+
 /// Writes the program, proves it, and only then saves it with its report.
 pub fn run(args: &Post, silent: bool) -> Result<Answer, Stop> {
     let source = &args.source.path;
@@ -42,65 +55,104 @@ pub fn run(args: &Post, silent: bool) -> Result<Answer, Stop> {
     let report_path = args.output.with_extension("report.json");
     let target = Target::new(&args.output, &inputs)?;
     let report_target = Target::new(&report_path, &inputs)?;
-    let machine = toolpath::machine(&args.machine)?;
+    let mut machine = toolpath::machine(&args.machine)?;
+    for (name, value) in &args.option {
+        machine.set_option(name, value)?;
+    }
+    let progress = Progress::new(4, silent);
+    progress.step("reading");
+    let toolpath = toolpath::read(source, args.source.strict, &args.source.origin, Some(&machine))?;
+    let file = files::name(&args.output);
+    let tolerances = args.closeness.tolerances();
+    let posted = proven(&toolpath, &machine, &file, &tolerances, &|what| progress.step(what))?;
+    let Posted { text, mut account } = posted;
+    if account.verdict != Verdict::Done {
+        return Ok(account.not_saved());
+    }
+    progress.step("saving");
+    files::save(&[(&report_target, account.report().as_bytes()), (&target, &text)])?;
+    account.rows.push(("saved", args.output.display().to_string()));
+    account.rows.push(("", report_path.display().to_string()));
+    Ok(account.into())
+}
+
+/// Writes the program of `toolpath`, which is called `file`, and proves it; `step` is told what is
+/// being done.
+///
+/// # Errors
+/// Why there is no program.
+pub fn proven(
+    toolpath: &Toolpath,
+    machine: &Machine,
+    file: &str,
+    tolerances: &Tolerances,
+    step: &dyn Fn(&'static str),
+) -> Result<Posted, Stop> {
     if machine.wire.is_some() {
         let message = format!("`{}` cuts by wire: it has no spindle and no tools", machine.name);
         let help = "`toolpost wire` writes for it";
         return Err(Diagnostic::error("machine-kind", message).help(help).into());
     }
-
-    let progress = Progress::new(4, silent);
-    progress.step("reading");
-    let mut toolpath = toolpath::read(source, args.source.strict, &args.source.origin)?;
-    let mut warnings = std::mem::take(&mut toolpath.warnings);
-    progress.step("writing");
-    let output = post::write(&toolpath.program, &machine).map_err(|mut findings| {
-        toolpath.quote(&mut findings);
-        let verdict = verdict(&findings);
-        findings.splice(0..0, std::mem::take(&mut warnings));
-        Stop { verdict, findings }
-    })?;
-    warnings.extend(output.warnings);
-    toolpath.quote(&mut warnings);
-    progress.step("proving");
-    let file = files::name(&args.output);
-    let tolerances = args.closeness.tolerances();
-    let proof = proof::prove(&toolpath.program, &machine, &file, &output.text, &tolerances);
+    let mut warnings = toolpath.warnings.clone();
+    step("writing");
+    let output = write(&toolpath.program, machine, toolpath, &mut warnings)?;
+    step("proving");
+    let proof = proof::prove(&toolpath.program, machine, file, &output.text, tolerances);
     if !proof.proven {
-        let failed = prove::failed(&proof, &toolpath, &file, "not saved: nothing was changed");
-        return Ok(failed.findings(warnings));
+        let mut account = prove::failed(&proof, toolpath, file);
+        account.findings.extend(warnings);
+        return Ok(Posted { text: output.text, account });
     }
 
-    progress.step("saving");
     warnings.extend(proof.warnings.iter().cloned());
     let shape = Shape::of(&toolpath.program);
-    let times = Times::of(&toolpath.program, &machine);
+    let times = Times::of(&toolpath.program, machine);
     let data = json!({
         "toolpost": env!("CARGO_PKG_VERSION"),
         "source": toolpath.describe(&shape),
-        "machine": toolpath::describe(&machine),
+        "machine": toolpath::describe(machine),
         "program": { "file": file, "blocks": output.blocks, "bytes": output.text.len() },
-        "travel": Travel::of(&machine),
+        "travel": Travel::of(machine),
         "time_s": { "total": times.total(), "cutting": times.cutting, "rapid": times.rapid },
         "proof": proof,
     });
-    let mut report = data.clone();
-    report["warnings"] = json!(warnings);
-    let report = format!("{report:#}\n");
-    files::save(&[(&report_target, report.as_bytes()), (&target, &output.text)])?;
+    let mut rows = toolpath.rows(Some(machine));
+    rows.extend(shape.rows());
+    rows.push(("time", time(&times)));
+    rows.push(("travel", travel(Travel::of(machine))));
+    rows.extend(prove::rows(&proof, machine));
+    let account = Account { verdict: Verdict::Done, rows, data, findings: warnings };
+    Ok(Posted { text: output.text, account })
+}
 
-    let mut lines = toolpath.rows(&machine);
-    lines.extend(shape.rows());
-    lines.push(("time", time(&times)));
-    lines.push(("travel", travel(Travel::of(&machine))));
-    lines.extend(prove::rows(&proof, &machine));
-    lines.push(("saved", args.output.display().to_string()));
-    lines.push(("", report_path.display().to_string()));
-    Ok(Answer::summary(Verdict::Done, rows(&lines), data).findings(warnings))
+/// Writes `program`, which came from `toolpath`. What the writer has to say goes behind the warnings that
+/// there are, with the text of its lines.
+///
+/// # Errors
+/// The same, where nothing could be written.
+pub fn write(
+    program: &Program,
+    machine: &Machine,
+    toolpath: &Toolpath,
+    warnings: &mut Vec<Diagnostic>,
+) -> Result<Output, Stop> {
+    match ::post::write(program, machine) {
+        Ok(mut output) => {
+            warnings.append(&mut output.warnings);
+            toolpath.quote(warnings);
+            Ok(output)
+        }
+        Err(mut findings) => {
+            let verdict = verdict(&findings);
+            warnings.append(&mut findings);
+            toolpath.quote(warnings);
+            Err(Stop { verdict, findings: std::mem::take(warnings) })
+        }
+    }
 }
 
 /// Whose fault it is that nothing could be written.
-pub fn verdict(findings: &[Diagnostic]) -> Verdict {
+fn verdict(findings: &[Diagnostic]) -> Verdict {
     let mut errors = findings.iter().filter(|finding| finding.is_error());
     match errors.all(|error| MACHINE_CANNOT.contains(&error.rule)) {
         true => Verdict::Failed,

@@ -1,6 +1,6 @@
 //! `toolpost prove`: any program, also one edited by hand, held against the toolpath it should make.
 
-use crate::answer::{Answer, Stop, Verdict};
+use crate::answer::{Account, Answer, Stop, Verdict};
 use crate::args::{Closeness, Prove};
 use crate::files;
 use crate::progress::Progress;
@@ -15,28 +15,40 @@ pub fn run(args: &Prove, silent: bool) -> Result<Answer, Stop> {
     let machine = toolpath::machine(&args.machine)?;
     let progress = Progress::new(2, silent);
     progress.step("reading");
-    let mut toolpath = toolpath::read(&args.against, false, &args.origin)?;
-    let mut warnings = std::mem::take(&mut toolpath.warnings);
+    let toolpath = toolpath::read(&args.against, false, &args.origin, Some(&machine))?;
     let text = files::read(&args.program)?;
     progress.step("proving");
     let file = files::name(&args.program);
-    let tolerances = args.closeness.tolerances();
-    let proof = proof::prove(&toolpath.program, &machine, &file, &text, &tolerances);
+    Ok(compare(&toolpath, &machine, &file, &text, &args.closeness.tolerances()).into())
+}
+
+/// Holds the program `text`, which is called `file`, against `toolpath`.
+pub fn compare(
+    toolpath: &Toolpath,
+    machine: &Machine,
+    file: &str,
+    text: &[u8],
+    tolerances: &Tolerances,
+) -> Account {
+    let proof = proof::prove(&toolpath.program, machine, file, text, tolerances);
+    let warnings = toolpath.warnings.iter().cloned();
     if !proof.proven {
-        return Ok(failed(&proof, &toolpath, &file, "it makes another motion").findings(warnings));
+        let mut account = failed(&proof, toolpath, file);
+        account.findings.extend(warnings);
+        return account;
     }
-    warnings.extend(proof.warnings.iter().cloned());
+    let findings = warnings.chain(proof.warnings.iter().cloned()).collect();
     let shape = Shape::of(&toolpath.program);
     let data = json!({
         "source": toolpath.describe(&shape),
-        "machine": toolpath::describe(&machine),
+        "machine": toolpath::describe(machine),
         "program": { "file": file, "blocks": proof.program.blocks, "bytes": text.len() },
         "proof": proof,
     });
-    let mut lines = toolpath.rows(&machine);
-    lines.extend(shape.rows());
-    lines.extend(rows(&proof, &machine));
-    Ok(Answer::summary(Verdict::Done, summary::rows(&lines), data).findings(warnings))
+    let mut rows = toolpath.rows(Some(machine));
+    rows.extend(shape.rows());
+    rows.extend(self::rows(&proof, machine));
+    Account { verdict: Verdict::Done, rows, data, findings }
 }
 
 impl Closeness {
@@ -85,15 +97,19 @@ pub fn rows(proof: &Report, machine: &Machine) -> Vec<(&'static str, String)> {
     rows
 }
 
-/// The answer of a proof that failed: the first mismatch side by side, and all of them as findings.
-pub fn failed(proof: &Report, source: &Toolpath, program: &str, consequence: &str) -> Answer {
-    let mut lines = vec![("proof", String::from("FAILED")), ("program", consequence.to_owned())];
+/// What is told of a program whose proof failed: the first mismatch side by side, and all of them as
+/// findings.
+pub fn failed(proof: &Report, source: &Toolpath, program: &str) -> Account {
+    let mut rows = vec![
+        ("proof", String::from("FAILED")),
+        ("program", String::from("it makes another motion")),
+    ];
     if let Some(first) = &proof.first_mismatch {
-        let source_line = source.line(first.source_line);
-        let beside = |file: &str, line: u32, text: &str| format!("{file}:{line}  {}", text.trim());
-        lines.push(("source says", beside(&source.file, first.source_line, &source_line)));
-        lines.push(("program says", beside(program, first.program_line, &first.block)));
+        let (place, text) = source.place(first.source_line);
+        rows.push(("source says", format!("{place}  {}", text.trim())));
+        let block = first.block.trim();
+        rows.push(("program says", format!("{program}:{}  {block}", first.program_line)));
     }
-    let data = json!({ "proof": proof });
-    Answer::summary(Verdict::Failed, summary::rows(&lines), data).findings(proof.mismatches.clone())
+    let (data, findings) = (json!({ "proof": proof }), proof.mismatches.clone());
+    Account { verdict: Verdict::Failed, rows, data, findings }
 }

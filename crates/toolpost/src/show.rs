@@ -2,11 +2,11 @@
 
 use crate::answer::{Answer, Stop};
 use crate::args::Show;
-use crate::drawing::Format;
 use crate::files::{self, Target};
 use crate::progress::Progress;
 use crate::summary::{Shape, rows};
-use crate::{drawing, toolpath};
+use crate::toolpath;
+use drawing::Format;
 use serde_json::json;
 
 /// Counts and measures a toolpath and, where a place is given, draws it.
@@ -19,14 +19,14 @@ pub fn run(args: &Show, silent: bool) -> Result<Answer, Stop> {
     };
     let progress = Progress::new(if target.is_some() { 2 } else { 1 }, silent);
     progress.step("reading");
-    let toolpath = toolpath::read(path, args.source.strict, &args.source.origin)?;
+    let toolpath = toolpath::read(path, args.source.strict, &args.source.origin, None)?;
     let shape = Shape::of(&toolpath.program);
     if let Some((target, format)) = target {
         progress.step("drawing");
         let picture = format.bytes(drawing::tool_path(&toolpath.file, &toolpath.program))?;
         files::save(&[(&target, &picture)])?;
     }
-    let mut lines = vec![("toolpath", format!("{} ({})", toolpath.file, toolpath.dialect))];
+    let mut lines = toolpath.rows(None);
     lines.extend(shape.rows());
     lines.extend(shape.extents());
     lines.extend(output.map(|output| ("drawing", output.display().to_string())));

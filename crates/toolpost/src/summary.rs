@@ -1,6 +1,6 @@
 //! What a program amounts to, as a machinist reads it and as JSON.
 
-use crate::walk::walk;
+use drawing::walk;
 use machine::limits::Travel;
 use machine::time::Times;
 use program::Program;

@@ -1,19 +1,23 @@
 //! Getting the toolpath and the machine that a command names.
 
 use crate::answer::{Stop, Verdict};
-use crate::args::{Origin, Units, WholeNumbers};
+use crate::args::{Origin, Units, Way, WholeNumbers};
+use crate::fcstd;
 use crate::files;
 use crate::summary::Shape;
 use control::Setup;
+use freecad::{Job, Listing};
 use geom::Vec3;
-use machine::Machine;
-use program::{Diagnostic, Program, Severity};
+use machine::{Machine, library};
+use program::{Diagnostic, Op, Program, Severity, line_of};
 use serde_json::{Value, json};
 use std::path::{Path, PathBuf};
 
 /// A toolpath as it was read.
+#[derive(Debug)]
 pub struct Toolpath {
-    path: PathBuf,
+    /// Where it was read from; nowhere where it was put together in memory.
+    path: Option<PathBuf>,
     /// Name of its file.
     pub file: String,
     /// The CAM system whose habits the file has, or the control that it was written for.
@@ -22,20 +26,54 @@ pub struct Toolpath {
     pub program: Program,
     /// What was not passed on.
     pub warnings: Vec<Diagnostic>,
+    /// Of a job of FreeCAD's, the commands that the lines of the program stand for.
+    listing: Option<Listing>,
 }
 
 /// Endings that NC programs have.
 const NC_ENDINGS: [&str; 13] =
     ["nc", "ngc", "mpf", "spf", "h", "gcode", "tap", "cnc", "eia", "min", "din", "gc", "g"];
 
-/// Reads a toolpath: an NC program where `origin` says what it was written for, else cutter-location
-/// data.
+/// Reads a toolpath: a job of FreeCAD's, an NC program where `origin` says what it was written for, or
+/// cutter-location data. Words for rotary axes in a job are those of the machine of `origin`, and where it
+/// names none, of `machine`.
 ///
 /// # Errors
 /// What is wrong with the file; with `strict` also what would be a warning.
-pub fn read(path: &Path, strict: bool, origin: &Origin) -> Result<Toolpath, Stop> {
-    read_by(path, strict, origin, |machine| machine)
+pub fn read(
+    path: &Path,
+    strict: bool,
+    origin: &Origin,
+    machine: Option<&Machine>,
+) -> Result<Toolpath, Stop> {
+    let bytes = match fcstd::is(path) {
+        true => fcstd::job(path)?,
+        false => files::read(path)?,
+    };
+    if !Job::begins(&bytes) {
+        return read_by(path, &bytes, strict, origin, |machine| machine);
+    }
+    let file = files::name(path);
+    let job = Job::of(&file, &bytes)?;
+    let machine = match (&origin.from, machine) {
+        (Some(from), _) => machine::load_origin(from)?,
+        (None, Some(machine)) => machine.clone(),
+        (None, None) => machine::load_control(THREE_AXES)?,
+    };
+    let freecad::Reading { program, listing, warnings } = freecad::read(&machine, &file, &job)?;
+    let (dialect, warnings) = (String::from("FreeCAD job"), held(warnings, strict)?);
+    Ok(Toolpath {
+        path: Some(path.to_owned()),
+        file,
+        dialect,
+        program,
+        warnings,
+        listing: Some(listing),
+    })
 }
+
+/// The control on which a job runs of which nobody has said the machine: it has three axes.
+const THREE_AXES: &str = "iso";
 
 /// The same for a wire, whose upper contour is `height` mm over the lower where that is given.
 ///
@@ -47,7 +85,7 @@ pub fn read_wire(
     origin: &Origin,
     height: Option<f64>,
 ) -> Result<Toolpath, Stop> {
-    read_by(path, strict, origin, |mut machine| {
+    read_by(path, &files::read(path)?, strict, origin, |mut machine| {
         if let Some(wire) = &mut machine.wire {
             wire.height = height.or(wire.height);
         }
@@ -57,20 +95,20 @@ pub fn read_wire(
 
 fn read_by(
     path: &Path,
+    bytes: &[u8],
     strict: bool,
     origin: &Origin,
     set_up: impl Fn(Machine) -> Machine,
 ) -> Result<Toolpath, Stop> {
-    let bytes = files::read(path)?;
     let file = files::name(path);
     let (dialect, program, warnings) = match &origin.from {
         Some(from) => {
             let machine = set_up(machine::load_origin(from)?);
-            let reading = nc::read(&machine, origin.setup()?, &file, &bytes)?;
+            let reading = nc::read(&machine, origin.setup()?, &file, bytes)?;
             (machine.title, reading.program, reading.warnings)
         }
         None => {
-            let reading = source::apt::read(&file, &bytes, &source::apt::Options { strict });
+            let reading = source::apt::read(&file, bytes, &source::apt::Options { strict });
             let reading = reading.map_err(|findings| match is_nc(path) {
                 true => without_origin(&file),
                 false => Stop { verdict: Verdict::Invalid, findings },
@@ -79,7 +117,7 @@ fn read_by(
         }
     };
     let warnings = held(warnings, strict)?;
-    Ok(Toolpath { path: path.to_owned(), file, dialect, program, warnings })
+    Ok(Toolpath { path: Some(path.to_owned()), file, dialect, program, warnings, listing: None })
 }
 
 /// The warnings; with `strict` they stop the command.
@@ -100,7 +138,7 @@ fn is_nc(path: &Path) -> bool {
 
 /// What stops an NC program of which nobody has said what it was written for.
 fn without_origin(file: &str) -> Stop {
-    let controls = machine::library::names(machine::library::CONTROLS).collect::<Vec<_>>();
+    let controls = library::names(library::CONTROLS).collect::<Vec<_>>();
     let message = "this is no cutter-location data, and as an NC program it has no control named";
     Diagnostic::error("source", message)
         .help(format!("--from with a machine or one of {}", controls.join(", ")))
@@ -130,6 +168,12 @@ impl Origin {
                 Units::Mm => control::Units::Millimeters,
                 Units::Inch => control::Units::Inches,
             }),
+            aside: self.aside.map(|way| match way {
+                Way::PlusX => Vec3::X,
+                Way::MinusX => Vec3::NEG_X,
+                Way::PlusY => Vec3::Y,
+                Way::MinusY => Vec3::NEG_Y,
+            }),
             block_delete: self.block_delete,
             start: self.start.map(Vec3::from_array),
         })
@@ -141,11 +185,21 @@ impl Toolpath {
     pub fn of_drawing(path: &Path, dialect: &str) -> Toolpath {
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         Toolpath {
-            path: path.to_owned(),
+            path: Some(path.to_owned()),
             file: files::name(path),
+            ..Toolpath::of_program(Program::new(name), dialect)
+        }
+    }
+
+    /// A program that no file says: its lines are what who put it together counts.
+    pub fn of_program(program: Program, dialect: &str) -> Toolpath {
+        Toolpath {
+            path: None,
+            file: program.name.clone(),
             dialect: dialect.to_owned(),
-            program: Program::new(name),
+            program,
             warnings: Vec::new(),
+            listing: None,
         }
     }
 
@@ -163,8 +217,13 @@ impl Toolpath {
     pub fn quote(&self, findings: &mut [Diagnostic]) {
         let mut lines = None;
         for finding in findings.iter_mut().filter(|f| f.file.is_empty() && f.line > 0) {
-            let text = lines.get_or_insert_with(|| files::read(&self.path).unwrap_or_default());
-            *finding = finding.clone().on(finding.line, line(text, finding.line)).file(&self.file);
+            if let Some(listing) = &self.listing {
+                *finding = listing.located(finding.clone());
+                continue;
+            }
+            let text = lines.get_or_insert_with(|| self.text());
+            *finding =
+                finding.clone().on(finding.line, line_of(text, finding.line)).file(&self.file);
         }
     }
 
@@ -177,36 +236,44 @@ impl Toolpath {
 
     /// The source and its measures, as JSON.
     pub fn describe(&self, shape: &Shape) -> Value {
-        json!({ "file": self.file, "dialect": self.dialect, "measures": shape })
+        let mut source = json!({ "file": self.file, "dialect": self.dialect, "measures": shape });
+        if let Some(listing) = &self.listing {
+            let operation = |(label, before)| json!({ "label": label, "before": before });
+            source["operations"] = listing.operations().map(operation).collect();
+        }
+        source
     }
 
-    /// The first lines of a summary: what was done, for which machine.
-    pub fn rows(&self, machine: &Machine) -> Vec<(&'static str, String)> {
-        vec![
-            ("toolpath", format!("{} ({})", self.file, self.dialect)),
-            ("machine", format!("{} ({})", machine.title, machine.name)),
-        ]
+    /// The first lines of a summary: what was read, and for which machine it was done.
+    pub fn rows(&self, machine: Option<&Machine>) -> Vec<(&'static str, String)> {
+        let mut rows = vec![("toolpath", format!("{} ({})", self.file, self.dialect))];
+        rows.extend(
+            machine.map(|machine| ("machine", format!("{} ({})", machine.title, machine.name))),
+        );
+        if self.listing.is_some() {
+            let operations = self.program.records.iter().filter_map(|record| match &record.op {
+                Op::Operation(name) => Some(name.as_ref()),
+                _ => None,
+            });
+            rows.push(("operations", operations.collect::<Vec<_>>().join(", ")));
+        }
+        rows
     }
 
-    /// The text of a line of the source; empty where there is none.
-    pub fn line(&self, number: u32) -> String {
-        let text = files::read(&self.path).unwrap_or_default();
-        String::from_utf8_lossy(line(&text, number)).into_owned()
+    /// Where a line of the source is, and its text; empty where there is none.
+    pub fn place(&self, number: u32) -> (String, String) {
+        if let Some(place) = self.listing.as_ref().map(|listing| listing.place(number)) {
+            let text = String::from_utf8_lossy(place.text).into_owned();
+            return (format!("{}:{}", place.file, place.command), text);
+        }
+        let text = String::from_utf8_lossy(line_of(&self.text(), number)).into_owned();
+        (format!("{}:{number}", self.file), text)
     }
-}
 
-/// Line `number` (from 1) of `text`, whose lines end with LF, CR LF or CR.
-fn line(text: &[u8], number: u32) -> &[u8] {
-    let mut rest = text;
-    for _ in 1..number {
-        let Some(end) = rest.iter().position(|byte| matches!(byte, b'\n' | b'\r')) else {
-            return b"";
-        };
-        let length = if rest[end..].starts_with(b"\r\n") { 2 } else { 1 };
-        rest = &rest[end + length..];
+    /// The text of the source, as far as there is one still.
+    fn text(&self) -> Vec<u8> {
+        self.path.as_deref().and_then(|path| files::read(path).ok()).unwrap_or_default()
     }
-    let end = rest.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
-    &rest[..end.unwrap_or(rest.len())]
 }
 
 /// The machine of a name in the library or of a file.
@@ -229,16 +296,4 @@ pub fn describe(machine: &Machine) -> Value {
         "extension": machine.extension,
         "path_tolerance_mm": machine.path_tolerance(),
     })
-}
-
-#[cfg(test)]
-mod tests {
-    use super::line;
-
-    #[test]
-    fn lines_end_with_lf_cr_lf_or_cr() {
-        let text = b"one\ntwo\r\nthree\rfour";
-        let lines: Vec<&[u8]> = (1..=5).map(|number| line(text, number)).collect();
-        assert_eq!(lines, [&b"one"[..], b"two", b"three", b"four", b""]);
-    }
 }

@@ -8,14 +8,13 @@ mod source;
 
 use crate::answer::{Answer, Stop, Verdict};
 use crate::args::{self, Division};
-use crate::drawing::{self, Format};
 use crate::files::{self, Target};
-use crate::post::verdict;
 use crate::progress::Progress;
 use crate::summary::rows;
-use crate::{prove, toolpath};
+use crate::{post, prove, toolpath};
 use ::wire::Contour;
 use ::wire::points::{Refusal, Step, points};
+use drawing::Format;
 use leg::Leg;
 use machine::{Machine, Wire};
 use program::Diagnostic;
@@ -50,14 +49,7 @@ pub fn run(args: &args::Wire, silent: bool) -> Result<Answer, Stop> {
     divide(&mut legs, &args.division, &machine)?;
     let cut = Cut::of(legs, &machine);
     let program = cut.program(&toolpath.program.name);
-    let output = ::post::write(&program, &machine).map_err(|mut findings| {
-        toolpath.quote(&mut findings);
-        let verdict = verdict(&findings);
-        findings.splice(0..0, std::mem::take(&mut warnings));
-        Stop { verdict, findings }
-    })?;
-    warnings.extend(output.warnings);
-    toolpath.quote(&mut warnings);
+    let output = post::write(&program, &machine, &toolpath, &mut warnings)?;
     progress.step("proving");
     if cut.points().is_some() {
         // Chords may leave their arcs by what the conversion has made of them, and by no more.
@@ -67,8 +59,9 @@ pub fn run(args: &args::Wire, silent: bool) -> Result<Answer, Stop> {
     let tolerances = args.closeness.tolerances();
     let proof = proof::of(&cut, &machine, &toolpath.program.name, &file, &output.text, &tolerances);
     if !proof.proven {
-        let failed = prove::failed(&proof, &toolpath, &file, "not saved: nothing was changed");
-        return Ok(failed.findings(warnings));
+        let mut failed = prove::failed(&proof, &toolpath, &file);
+        failed.findings.extend(warnings);
+        return Ok(failed.not_saved());
     }
 
     warnings.extend(proof.warnings.iter().cloned());
@@ -99,7 +92,7 @@ pub fn run(args: &args::Wire, silent: bool) -> Result<Answer, Stop> {
     saved.push((&target, &output.text));
     files::save(&saved)?;
 
-    let mut lines = toolpath.rows(&machine);
+    let mut lines = toolpath.rows(Some(&machine));
     lines.extend(cut.rows(args.select));
     lines.extend(prove::rows(&proof, &machine));
     lines.push(("saved", args.output.display().to_string()));

@@ -1,10 +1,10 @@
 //! How well points follow their contour, measured on the points.
 
 use crate::contour::Contour;
-use crate::element::{Element, angle};
+use crate::element::Element;
 use crate::path::Path;
 use crate::points::Points;
-use geom::Vec2;
+use geom::{Vec2, turn_angle};
 
 /// The chord errors of some chords of arcs.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -87,7 +87,7 @@ impl Accuracy {
 /// The greatest distance between an arc and its chord from `from` to `to`, mm.
 fn chord_error(arc: &Element, from: Vec2, to: Vec2) -> f64 {
     arc.turn.map_or(0.0, |turn| {
-        let sweep = angle(from - turn.center, to - turn.center);
+        let sweep = turn_angle(from - turn.center, to - turn.center);
         2.0 * from.distance(turn.center) * (sweep / 4.0).sin().powi(2)
     })
 }

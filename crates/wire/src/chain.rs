@@ -84,7 +84,7 @@ fn likeness(piece: &[Element]) -> [(i64, i64); 4] {
         0 => element.start,
         _ => element.at(0.5),
     });
-    let length = piece.iter().map(Element::length).sum::<f64>();
+    let length = piece.iter().map(|element| element.length()).sum::<f64>();
     let size = ((length * 1e3).round() as i64, piece.len() as i64);
     [start.min(end), start.max(end), cell(middle), size]
 }
@@ -103,7 +103,7 @@ fn mated(
     let closes = |i: usize| {
         let piece = &pieces[i / 2];
         let arc = |element: &Element| element.turn.is_some_and(|turn| turn.sweep.abs() > PI);
-        piece.len() > 1 && piece.iter().map(Element::length).sum::<f64>() > 4.0 * gap
+        piece.len() > 1 && piece.iter().map(|element| element.length()).sum::<f64>() > 4.0 * gap
             || piece.iter().any(arc)
     };
     // What is closed by itself joins nothing, whatever touches it.

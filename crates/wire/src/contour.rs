@@ -1,7 +1,7 @@
 //! A chain of lines and arcs, open or closed.
 
-use crate::element::{Element, SAME, Turn, angle, finite};
-use geom::Vec2;
+use crate::element::{Element, SAME, finite};
+use geom::{Turn, Vec2, turn_angle};
 use program::Diagnostic;
 use std::f64::consts::{PI, TAU};
 
@@ -91,32 +91,22 @@ impl Contour {
 
     /// Length, mm.
     pub fn length(&self) -> f64 {
-        self.elements.iter().map(Element::length).sum()
+        self.elements.iter().map(|element| element.length()).sum()
     }
 
     /// What a closed contour encloses, mm², positive counter-clockwise; 0 for an open one.
     pub fn area(&self) -> f64 {
-        // About the start, not the origin: a small contour far out keeps its digits.
-        let start = self.start();
-        let moved = |p: Vec2| p - start;
         if !self.is_closed() {
             return 0.0;
         }
-        let about = |element: &Element| {
-            let mut element = *element;
-            (element.start, element.end) = (moved(element.start), moved(element.end));
-            if let Some(turn) = &mut element.turn {
-                turn.center = moved(turn.center);
-            }
-            element.area()
-        };
-        self.elements.iter().map(about).sum()
+        // About the start, not the origin: a small contour far out keeps its digits.
+        self.elements.iter().map(|element| element.area(self.start())).sum()
     }
 
     /// Whether a closed contour goes round `point`.
     pub fn encloses(&self, point: Vec2) -> bool {
         let turns = |element: &Element| {
-            let chord = angle(element.start - point, element.end - point) / TAU;
+            let chord = turn_angle(element.start - point, element.end - point) / TAU;
             // Between an arc and its chord, which lies to the left of one that turns left.
             let bulge = element.turn.map_or(0.0, |turn| {
                 let side = turn.sweep.signum();
@@ -132,7 +122,7 @@ impl Contour {
 
     /// The corners of the smallest box around it whose sides are parallel to the axes.
     pub fn extents(&self) -> (Vec2, Vec2) {
-        let all = self.elements.iter().map(Element::extents);
+        let all = self.elements.iter().map(|element| element.extents());
         all.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or_default()
     }
 

@@ -1,96 +1,17 @@
-//! Where elements meet, how far apart they are, and contours that cross themselves.
+//! Contours that cross themselves.
 
 use crate::contour::Contour;
-use crate::element::{Element, Turn};
+use crate::element::Element;
 use crate::near::Near;
 use cavalier_contours::static_aabb2d_index::Control;
 use geom::Vec2;
 use program::Diagnostic;
 
 /// Elements this near to each other touch, mm: half of what counts as one point.
-const TOUCH: f64 = 5e-8;
+pub(crate) const TOUCH: f64 = 5e-8;
 
 /// The most pairs of elements that are looked at, for each element and in all.
 const PAIRS: (usize, usize) = (256, 10_000_000);
-
-impl Element {
-    /// The places where `other` meets this element; where they run along each other, the ends of that.
-    pub(crate) fn meets(&self, other: &Element) -> impl Iterator<Item = Vec2> {
-        let [p, q] = crossings(self, other);
-        let places = [self.start, self.end, other.start, other.end, p, q].into_iter();
-        places.filter(|p| {
-            p.is_finite() && self.nearest(*p).1 <= TOUCH && other.nearest(*p).1 <= TOUCH
-        })
-    }
-
-    /// The least distance from `other`, mm.
-    pub(crate) fn distance(&self, other: &Element) -> f64 {
-        let ends = [
-            self.nearest(other.start).1,
-            self.nearest(other.end).1,
-            other.nearest(self.start).1,
-            other.nearest(self.end).1,
-        ];
-        let mut least = ends.into_iter().fold(f64::INFINITY, f64::min);
-        if self.meets(other).next().is_some() {
-            return 0.0;
-        }
-        // Else the shortest way between two inner points is at right angles to both: on an arc it
-        // points at the centre.
-        for (arc, rest) in [(self, other), (other, self)] {
-            let Some(turn) = arc.turn else { continue };
-            let toward = match rest.turn {
-                None => {
-                    let along = rest.end - rest.start;
-                    let foot = (turn.center - rest.start).dot(along) / along.length_squared();
-                    rest.start + along * foot - turn.center
-                }
-                Some(second) => second.center - turn.center,
-            };
-            let radius = arc.start.distance(turn.center);
-            let out = toward.normalize_or_zero() * radius;
-            // About a point of the other element, or its centre, the ends are as near as the rest.
-            for point in [turn.center + out, turn.center - out] {
-                if out != Vec2::ZERO && arc.parameter(turn, point).is_some() {
-                    least = least.min(rest.nearest(point).1);
-                }
-            }
-        }
-        least
-    }
-}
-
-/// Where the whole line or circle of `a` crosses that of `b`: two places, equal ones where they only
-/// touch, not finite ones for parallels. Where they miss each other it is between them.
-pub(crate) fn crossings(a: &Element, b: &Element) -> [Vec2; 2] {
-    let (foot, square, along) = match (a.turn, b.turn) {
-        (None, None) => {
-            let (p, q) = (a.end - a.start, b.end - b.start);
-            let t = (b.start - a.start).perp_dot(q) / p.perp_dot(q);
-            (a.start + p * t, 0.0, Vec2::ZERO)
-        }
-        (None, Some(turn)) => line_and_circle(a, turn, b),
-        (Some(turn), None) => line_and_circle(b, turn, a),
-        (Some(p), Some(q)) => {
-            let (r, s) = (a.start.distance(p.center), b.start.distance(q.center));
-            let between = q.center - p.center;
-            let apart = between.length();
-            let foot = (apart * apart + r * r - s * s) / (2.0 * apart);
-            let axis = between / apart;
-            (p.center + axis * foot, r * r - foot * foot, axis.perp())
-        }
-    };
-    let half = along * square.max(0.0).sqrt();
-    [foot + half, foot - half]
-}
-
-/// The point of a line nearest to a circle's centre, the square of half the chord, its direction.
-fn line_and_circle(line: &Element, turn: Turn, arc: &Element) -> (Vec2, f64, Vec2) {
-    let radius = arc.start.distance(turn.center);
-    let along = (line.end - line.start).normalize_or_zero();
-    let foot = line.start + along * (turn.center - line.start).dot(along);
-    (foot, radius * radius - foot.distance_squared(turn.center), along)
-}
 
 impl Contour {
     /// Refuses a contour that crosses or touches itself.
@@ -148,6 +69,7 @@ impl Contour {
         // Smooth neighbours part slowly: rounding lets them meet again within √(8 R · touch).
         let radius = |element: &Element| element.radius().unwrap_or(0.0);
         let near = 2.0 * TOUCH + (8.0 * radius(a).max(radius(b)) * TOUCH).sqrt();
-        a.meets(b).find(|place| shared.iter().flatten().all(|end| end.distance(*place) > near))
+        a.meets(b, TOUCH)
+            .find(|place| shared.iter().flatten().all(|end| end.distance(*place) > near))
     }
 }

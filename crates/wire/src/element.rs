@@ -1,8 +1,9 @@
-//! Lines and arcs in the plane: what contours are made of.
+//! Lines and arcs of a source, each with its line: what contours are made of.
 
-use geom::Vec2;
+use geom::{Turn, Vec2, turn_angle};
 use program::Diagnostic;
 use std::f64::consts::{PI, TAU};
+use std::ops::Deref;
 
 /// By how much an arc's radius may fall short of half its chord, or its two radii differ, mm: what
 /// LinuxCNC allows for the radii (manual, "G2, G3", centre format).
@@ -14,26 +15,21 @@ pub(crate) const SAME: f64 = 1e-7;
 /// The greatest coordinate that is taken, mm.
 pub(crate) const FAR: f64 = 1e6;
 
-/// A line or an arc from `start` to `end`.
+/// A line or an arc of a source. Its geometry is that of its shape.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Element {
     /// Line of the source (from 1) that says so; 0 where there is none.
     pub line: u32,
-    /// First point, mm.
-    pub start: Vec2,
-    /// Last point, mm.
-    pub end: Vec2,
-    /// How an arc turns; `None` for a line.
-    pub turn: Option<Turn>,
+    /// Where it goes.
+    pub shape: geom::Element,
 }
 
-/// How an arc turns.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Turn {
-    /// Its centre, mm.
-    pub center: Vec2,
-    /// Angle turned through, radians, positive counter-clockwise; 2π for a full circle.
-    pub sweep: f64,
+impl Deref for Element {
+    type Target = geom::Element;
+
+    fn deref(&self) -> &geom::Element {
+        &self.shape
+    }
 }
 
 /// Which way an arc turns.
@@ -57,17 +53,32 @@ impl Direction {
 impl Element {
     /// A straight line.
     pub fn line(start: Vec2, end: Vec2) -> Element {
-        Element { line: 0, start, end, turn: None }
+        Element { line: 0, shape: geom::Element::line(start, end) }
     }
 
     /// An arc about `center` through `sweep` radians, positive counter-clockwise.
     pub fn arc(start: Vec2, end: Vec2, center: Vec2, sweep: f64) -> Element {
-        Element { line: 0, start, end, turn: Some(Turn { center, sweep }) }
+        Element { line: 0, shape: geom::Element::arc(start, end, center, sweep) }
     }
 
     /// The same, from this line of the source.
     pub fn from_line(self, line: u32) -> Element {
         Element { line, ..self }
+    }
+
+    /// What has become of it, from the same line.
+    pub(crate) fn shaped(&self, shape: geom::Element) -> Element {
+        Element { line: self.line, shape }
+    }
+
+    /// The same, travelled from its end to its start.
+    pub fn reversed(&self) -> Element {
+        self.shaped(self.shape.reversed())
+    }
+
+    /// The part from `from` to `to` (0 to 1, in this order).
+    pub fn part(&self, from: f64, to: f64) -> Element {
+        self.shaped(self.shape.part(from, to))
     }
 
     /// The arc of a signed radius: positive up to half a circle, negative beyond.
@@ -145,69 +156,13 @@ impl Element {
                 .into());
         }
         let sign = direction.sign();
-        let mut sweep = sign * angle(from, to);
+        let mut sweep = sign * turn_angle(from, to);
         if start.distance(end) < SAME {
             sweep = TAU;
         } else if sweep <= 0.0 {
             sweep += TAU;
         }
         Ok(Element::arc(start, end, center, sign * sweep))
-    }
-
-    /// Radius at the start, mm; `None` for a line.
-    pub fn radius(&self) -> Option<f64> {
-        self.turn.map(|turn| self.start.distance(turn.center))
-    }
-
-    /// Length, mm.
-    pub fn length(&self) -> f64 {
-        match self.turn {
-            None => self.start.distance(self.end),
-            Some(turn) => self.start.distance(turn.center) * turn.sweep.abs(),
-        }
-    }
-
-    /// The point at `t`: 0 is the start, 1 the end, both exact.
-    pub fn at(&self, t: f64) -> Vec2 {
-        if t <= 0.0 {
-            return self.start;
-        }
-        if t >= 1.0 {
-            return self.end;
-        }
-        match self.turn {
-            None => self.start.lerp(self.end, t),
-            Some(turn) => {
-                let (from, to) = (self.start - turn.center, self.end - turn.center);
-                // The two radii differ by rounding of the source: from one to the other evenly.
-                let grown = 1.0 + t * (to.length() / from.length() - 1.0);
-                turn.center + Vec2::from_angle(turn.sweep * t).rotate(from) * grown
-            }
-        }
-    }
-
-    /// Unit vector of travel at `t`.
-    pub fn tangent(&self, t: f64) -> Vec2 {
-        match self.turn {
-            None => (self.end - self.start).normalize_or_zero(),
-            Some(turn) => {
-                let spoke = Vec2::from_angle(turn.sweep * t).rotate(self.start - turn.center);
-                (spoke.perp() * turn.sweep.signum()).normalize_or_zero()
-            }
-        }
-    }
-
-    /// The same, travelled from its end to its start.
-    pub fn reversed(&self) -> Element {
-        let turn = self.turn.map(|turn| Turn { sweep: -turn.sweep, ..turn });
-        Element { start: self.end, end: self.start, turn, ..*self }
-    }
-
-    /// The part from `from` to `to` (0 to 1, in this order).
-    pub fn part(&self, from: f64, to: f64) -> Element {
-        let (start, end) = (self.at(from), self.at(to));
-        let turn = self.turn.map(|turn| Turn { sweep: turn.sweep * (to - from), ..turn });
-        Element { start, end, turn, ..*self }
     }
 
     /// The same shape between other ends, which are near the old ones. An arc up to half a circle keeps
@@ -224,75 +179,13 @@ impl Element {
                 return (chord.length() >= SAME).then_some(Turn { center, ..turn });
             }
             let center = turn.center + (start - self.start + end - self.end) / 2.0;
-            let turned = |from: Vec2, to: Vec2| angle(from - turn.center, to - center);
+            let turned = |from: Vec2, to: Vec2| turn_angle(from - turn.center, to - center);
             let sweep = turn.sweep - turned(self.start, start) + turned(self.end, end);
             let whole = TAU.copysign(turn.sweep);
             Some(Turn { center, sweep: if start == end { whole } else { sweep } })
         });
-        Element { start, end, turn, ..*self }
+        self.shaped(geom::Element { start, end, turn })
     }
-
-    /// The parameter of the nearest point and its distance, mm.
-    pub fn nearest(&self, point: Vec2) -> (f64, f64) {
-        let Some(turn) = self.turn else {
-            let along = self.end - self.start;
-            let squared = along.length_squared();
-            let t = if squared > 0.0 {
-                ((point - self.start).dot(along) / squared).clamp(0.0, 1.0)
-            } else {
-                0.0
-            };
-            return (t, point.distance(self.start + along * t));
-        };
-        let (from, to) = (point.distance(self.start), point.distance(self.end));
-        let ends = if to < from { (1.0, to) } else { (0.0, from) };
-        match self.parameter(turn, point) {
-            Some(t) => {
-                let on = point.distance(self.at(t));
-                if on < ends.1 { (t, on) } else { ends }
-            }
-            None => ends,
-        }
-    }
-
-    /// Where on the arc the direction from the centre to `point` falls.
-    pub(crate) fn parameter(&self, turn: Turn, point: Vec2) -> Option<f64> {
-        let angle = angle(self.start - turn.center, point - turn.center) * turn.sweep.signum();
-        let angle = if angle < 0.0 { angle + TAU } else { angle };
-        let t = angle / turn.sweep.abs();
-        (t <= 1.0).then_some(t)
-    }
-
-    /// The corners of the smallest box around it whose sides are parallel to the axes.
-    pub fn extents(&self) -> (Vec2, Vec2) {
-        let (mut low, mut high) = (self.start.min(self.end), self.start.max(self.end));
-        if let Some(turn) = self.turn {
-            let radius = self.start.distance(turn.center);
-            for out in [Vec2::X, Vec2::Y, Vec2::NEG_X, Vec2::NEG_Y] {
-                let point = turn.center + out * radius;
-                if self.parameter(turn, point).is_some() {
-                    (low, high) = (low.min(point), high.max(point));
-                }
-            }
-        }
-        (low, high)
-    }
-
-    /// Area between the element and the origin, mm², positive counter-clockwise: the areas of a
-    /// closed chain add up to what it encloses.
-    pub(crate) fn area(&self) -> f64 {
-        let triangle = self.start.perp_dot(self.end) / 2.0;
-        let segment = self.turn.map_or(0.0, |turn| {
-            let radius = self.start.distance(turn.center);
-            radius * radius * (turn.sweep - turn.sweep.sin()) / 2.0
-        });
-        triangle + segment
-    }
-}
-
-/// The angle from `a` to `b`, radians, positive counter-clockwise; 0 where one has no direction.
-pub(crate) fn angle(a: Vec2, b: Vec2) -> f64 {
-    a.perp_dot(b).atan2(a.dot(b))
 }
 
 /// Refuses what is no number, and what is out of this world.

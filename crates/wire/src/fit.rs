@@ -1,7 +1,7 @@
 //! Curves as arcs: pairs of arcs that keep the direction of the curve where they join.
 
-use crate::element::{Element, angle};
-use geom::Vec2;
+use crate::element::Element;
+use geom::{Vec2, turn_angle};
 use std::f64::consts::PI;
 
 /// How often a piece of a curve is halved at most.
@@ -70,7 +70,7 @@ fn biarc(curve: &impl Curve, from: f64, to: f64, tolerance: f64) -> Option<[Elem
 /// The arc from `start` in the direction `travel` to `end`.
 fn tangent_arc(start: Vec2, travel: Vec2, end: Vec2) -> Option<Element> {
     let chord = end - start;
-    let sweep = 2.0 * angle(travel, chord);
+    let sweep = 2.0 * turn_angle(travel, chord);
     if sweep.abs() > PI {
         return None;
     }
@@ -232,7 +232,7 @@ mod tests {
         let elements = checked(&ellipse, 0.0, TAU, 1e-3);
         assert!(elements.len() <= 128, "{}", elements.len());
         for pair in elements.windows(2) {
-            assert!(angle(pair[0].tangent(1.0), pair[1].tangent(0.0)).abs() < 1e-6);
+            assert!(turn_angle(pair[0].tangent(1.0), pair[1].tangent(0.0)).abs() < 1e-6);
         }
     }
 

@@ -35,7 +35,7 @@ mod trace;
 
 pub use accuracy::{Accuracy, ArcChords, Chords};
 pub use contour::{Contour, Place};
-pub use element::{ARC_TOLERANCE, Direction, Element, Turn};
+pub use element::{ARC_TOLERANCE, Direction, Element};
 pub use lead::{Lead, LeadShape};
 pub use path::{Limits, Path};
 pub use trace::{Beside, beside, contours, cuts};

@@ -1,5 +1,6 @@
 //! Which elements of a chain are near a place, without looking at all of them.
 
+use crate::crossing::TOUCH;
 use crate::element::Element;
 use cavalier_contours::static_aabb2d_index::{
     Control, NeighborPriorityQueue, StaticAABB2DIndex, StaticAABB2DIndexBuilder,
@@ -92,7 +93,7 @@ impl<'a> Near<'a> {
                 // Both reach half their lengths from their middles, at most.
                 let reach = (element.length() + length) / 2.0;
                 if element.at(0.5).distance(middle) - reach < found {
-                    found = found.min(element.distance(other));
+                    found = found.min(element.distance(other, TOUCH));
                 }
             }
             Control::Continue

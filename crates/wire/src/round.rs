@@ -1,13 +1,13 @@
 //! The passes round one opening.
 
 use crate::contour::{Contour, Place};
-use crate::element::{Element, SAME, angle};
+use crate::element::{Element, SAME};
 use crate::lead::{Pairs, reversed};
 use crate::offset::{Corner, Corners, offset};
 use crate::path::Path;
 use crate::plan::{Cut, Opening, Pass, Settings, Side, Trims};
 use crate::taper::lean;
-use geom::Vec2;
+use geom::{Vec2, turn_angle};
 use program::Diagnostic;
 
 /// From which turn on, radians, a contour has a corner.
@@ -208,14 +208,14 @@ impl Round {
 fn narrows(contour: &Contour, left: bool) -> bool {
     let elements = contour.elements();
     let (Some(first), Some(last)) = (elements.first(), elements.last()) else { return false };
-    let turn = angle(last.tangent(1.0), first.tangent(0.0));
+    let turn = turn_angle(last.tangent(1.0), first.tangent(0.0));
     (if left { turn } else { -turn }) > CORNER
 }
 
 /// The middle of the longest element.
 fn middle(contour: &Contour) -> Place {
     let (mut along, mut longest, mut place) = (0.0, 0.0, 0.0);
-    for length in contour.elements().iter().map(Element::length) {
+    for length in contour.elements().iter().map(|element| element.length()) {
         if length > longest {
             (longest, place) = (length, along + length / 2.0);
         }

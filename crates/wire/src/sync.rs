@@ -1,9 +1,9 @@
 //! Which point of the upper contour belongs to which of the lower one.
 
 use crate::contour::Contour;
-use crate::element::{Element, SAME, angle, finite};
+use crate::element::{Element, SAME, finite};
 use crate::path::Path;
-use geom::Vec2;
+use geom::{Vec2, turn_angle};
 use program::Diagnostic;
 use std::f64::consts::PI;
 
@@ -201,8 +201,8 @@ fn uncrossed(path: &Path) -> Result<(), Box<Diagnostic>> {
         let [start, end] = ways.map(|(p, q)| (known(p, travel.0), known(q, travel.1)));
         // Both ends go round a corner at the same time, each the short way.
         apart += match travel {
-            (Vec2::ZERO, _) | (_, Vec2::ZERO) => angle(start.0, start.1),
-            (p, q) => angle(q, start.1) - angle(p, start.0),
+            (Vec2::ZERO, _) | (_, Vec2::ZERO) => turn_angle(start.0, start.1),
+            (p, q) => turn_angle(q, start.1) - turn_angle(p, start.0),
         };
         let sweep = |element: &Element| element.turn.map_or(0.0, |turn| turn.sweep);
         for (turned, t) in [(0.0, 0.0), (sweep(above) - sweep(below), 1.0)] {

@@ -1,9 +1,8 @@
 //! The upper contour of a wire that leans by an angle.
 
 use crate::contour::Contour;
-use crate::crossing::crossings;
-use crate::element::{Element, SAME, Turn, angle};
-use geom::Vec2;
+use crate::element::{Element, SAME};
+use geom::{Turn, Vec2, turn_angle};
 use program::Diagnostic;
 use std::f64::consts::{PI, TAU};
 
@@ -69,7 +68,7 @@ pub fn lean(
         let element = match shifts[i] {
             Some(shift) => {
                 let turn = below.turn.map(|turn| Turn { center: turn.center + shift, ..turn });
-                Element { start: ends[0], end: ends[1], turn, ..*below }
+                below.shaped(geom::Element { start: ends[0], end: ends[1], turn })
             }
             None => trimmed(below, beside, ends[0], ends[1])?,
         };
@@ -80,28 +79,26 @@ pub fn lean(
 
 /// A whole element `distance` to its left.
 fn aside(element: &Element, distance: f64) -> Result<Element, Box<Diagnostic>> {
-    let left = |t: f64| element.tangent(t).perp() * distance;
-    let (start, end) = (element.start + left(0.0), element.end + left(1.0));
-    let radius = element.radius().unwrap_or(f64::INFINITY);
-    let turns_left = element.turn.is_some_and(|turn| turn.sweep > 0.0);
-    let rest = if turns_left { radius - distance } else { radius + distance };
-    if rest < -SAME {
-        let what = format!("the radius {radius:.4} mm would become {rest:.4} mm");
-        return Err(refused(element, &what, "let corners keep their radius, or lean less"));
+    if let Some(Turn { center, sweep }) = element.turn {
+        let radius = element.start.distance(center);
+        let rest = radius - distance * sweep.signum();
+        if rest < -SAME {
+            let what = format!("the radius {radius:.4} mm would become {rest:.4} mm");
+            return Err(refused(element, &what, "let corners keep their radius, or lean less"));
+        }
+        if rest <= SAME {
+            return Ok(element.shaped(geom::Element::line(center, center)));
+        }
     }
-    if rest <= SAME
-        && let Some(turn) = element.turn
-    {
-        return Ok(Element { start: turn.center, end: turn.center, turn: None, ..*element });
-    }
-    Ok(Element { start, end, ..*element })
+    // Without length it stays where it is: its neighbours say whether they still meet.
+    Ok(element.shaped(element.parallel(distance).unwrap_or(element.shape)))
 }
 
 /// By how much a corner between two lines moves, where the arc is one: tangent to both.
 fn shift(before: &Element, arc: &Element, after: &Element, distance: f64) -> Option<Vec2> {
     let turn = arc.turn?;
     let lines = before.turn.is_none() && after.turn.is_none();
-    let smooth = |a: &Element, b: &Element| angle(a.tangent(1.0), b.tangent(0.0)).abs() < 1e-4;
+    let smooth = |a: &Element, b: &Element| turn_angle(a.tangent(1.0), b.tangent(0.0)).abs() < 1e-4;
     if !lines || turn.sweep.abs() > WIDEST || !smooth(before, arc) || !smooth(arc, after) {
         return None;
     }
@@ -116,20 +113,11 @@ fn meeting(before: &Element, after: &Element) -> Option<Vec2> {
     if apart < 10.0 * SAME {
         return Some(middle);
     }
-    let places = crossings(before, after).into_iter();
-    let nearest = places.filter(|p| off(before, *p) < 1e-6 && off(after, *p) < 1e-6);
+    let places = before.whole_crossings(after, 1e-6).into_iter().flatten();
     let nearest =
-        nearest.min_by(|p, q| p.distance_squared(middle).total_cmp(&q.distance_squared(middle)));
+        places.min_by(|p, q| p.distance_squared(middle).total_cmp(&q.distance_squared(middle)));
     // Circles that hardly part are joined in the middle: the source is no more exact.
     nearest.or_else(|| (apart < 1e-3).then_some(middle))
-}
-
-/// How far `point` is from the whole line or circle of `element`, mm.
-fn off(element: &Element, point: Vec2) -> f64 {
-    match element.turn {
-        None => (point - element.start).perp_dot(element.tangent(0.0)).abs(),
-        Some(turn) => (point.distance(turn.center) - element.start.distance(turn.center)).abs(),
-    }
 }
 
 /// The moved element between new ends; it must still go the way of the one below.
@@ -144,14 +132,14 @@ fn trimmed(
         if (end - start).dot(below.tangent(0.0)) < -SAME && below.turn.is_none() {
             return Err(vanishes());
         }
-        return Ok(Element { start, end, ..*beside });
+        return Ok(beside.shaped(geom::Element { start, end, turn: None }));
     };
-    let turned = |from: Vec2, to: Vec2| angle(from - turn.center, to - turn.center);
+    let turned = |from: Vec2, to: Vec2| turn_angle(from - turn.center, to - turn.center);
     let sweep = turn.sweep - turned(beside.start, start) + turned(beside.end, end);
     if sweep * turn.sweep.signum() < 0.0 || sweep.abs() > TAU + 1e-9 {
         return Err(vanishes());
     }
-    Ok(Element { start, end, turn: Some(Turn { sweep, ..turn }), ..*beside })
+    Ok(beside.shaped(geom::Element { start, end, turn: Some(Turn { sweep, ..turn }) }))
 }
 
 fn refused(element: &Element, what: &str, way_out: &str) -> Box<Diagnostic> {

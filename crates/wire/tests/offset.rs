@@ -64,7 +64,7 @@ fn arcs_stay_arcs_and_keep_their_lines() {
     let mut lines: Vec<u32> = way.contour.elements().iter().map(|e| e.line).collect();
     lines.sort_unstable();
     assert_eq!(lines, [1, 2, 3, 4]);
-    let radii = way.contour.elements().iter().filter_map(Element::radius);
+    let radii = way.contour.elements().iter().filter_map(|e| e.radius());
     assert!(radii.clone().all(|radius| (radius - 2.5).abs() < 1e-9) && radii.count() == 2);
 }
 

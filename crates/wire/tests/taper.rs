@@ -37,7 +37,7 @@ fn conical_corners_grow_and_constant_ones_stay() {
     for (rounding, radius) in [(Rounding::Conical, 4.0), (Rounding::Constant, 3.0)] {
         let upper = lean(&rounded(3.0), -1.0, rounding).unwrap();
         assert_eq!(upper.elements().len(), 8);
-        let radii = upper.elements().iter().filter_map(Element::radius);
+        let radii = upper.elements().iter().filter_map(|e| e.radius());
         assert!(radii.clone().all(|r| (r - radius).abs() < 1e-12) && radii.count() == 4);
         assert!((upper.area() - area(32.0, 22.0, radius)).abs() < 1e-9);
         assert!(upper.is_closed());

@@ -46,7 +46,7 @@ pub(super) fn cuts(from: Vec2, contour: &Element, parallel: &Element) -> bool {
     if back.length() < SAME || outward.length() < SAME {
         return false;
     }
-    let ahead = back.dot(contour.tangent_at_start()) > SAME;
+    let ahead = back.dot(contour.tangent(0.0)) > SAME;
     let inward = back.dot(outward.normalize()) < -SAME;
     let way = Element::line(from, parallel.start);
     ahead && inward || way.crossings(parallel).any(|crossing| crossing.cut > SAME)

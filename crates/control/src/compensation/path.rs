@@ -239,7 +239,7 @@ impl Path {
         }
         // An inner corner may cut off all of it.
         let end = piece.parallel.end;
-        let start = end - piece.parallel.tangent_at_end() * FAR;
+        let start = end - piece.parallel.tangent(1.0) * FAR;
         let parallel = Element::line(start, end);
         Ok(Stage::Following(Piece { begins: true, parallel, ..piece }))
     }
@@ -250,7 +250,7 @@ impl Path {
         let (start, end) = (contour.start, parallel.end);
         let sweep = contour.turn.map_or(0.0, |turn| turn.sweep);
         // Its centre lies on the line across the end, as far from there as from the start.
-        let inward = contour.tangent_at_end().perp() * sweep.signum();
+        let inward = contour.tangent(1.0).perp() * sweep.signum();
         let (chord, along) = (start.distance_squared(end), (start - end).dot(inward));
         let radius = chord / (2.0 * along);
         if !(along > 0.0 && radius > self.left.abs()) {
@@ -281,8 +281,8 @@ impl Path {
 
     /// Brings `last` to its end and the tool around the corner to the start of `next`.
     fn corner(&mut self, mut last: Piece, next: &mut Piece, sink: &mut Sink) -> Fallible<()> {
-        let arriving = last.contour.tangent_at_end();
-        let turn = turn_angle(arriving, next.contour.tangent_at_start());
+        let arriving = last.contour.tangent(1.0);
+        let turn = turn_angle(arriving, next.contour.tangent(0.0));
         let inner = if PI - turn.abs() > self.rules.smooth {
             turn * self.left > 0.0
         } else {
@@ -309,7 +309,7 @@ impl Path {
         let Element { start, turn, .. } = next.parallel;
         let longer = match turn {
             None => {
-                let ahead = (last.end - start).dot(next.parallel.tangent_at_start());
+                let ahead = (last.end - start).dot(next.parallel.tangent(0.0));
                 next.from = ahead / next.parallel.length();
                 0.0
             }
@@ -383,8 +383,8 @@ impl Path {
                     .into());
             }
             Outer::Polygon if turn > FRAC_PI_2 => {
-                let on = last.contour.tangent_at_end() * self.left.abs();
-                let back = next.contour.tangent_at_start() * self.left.abs();
+                let on = last.contour.tangent(1.0) * self.left.abs();
+                let back = next.contour.tangent(0.0) * self.left.abs();
                 vec![last.end + on, start - back]
             }
             Outer::Polygon | Outer::Intersection if turn <= Outer::SHARPEST => {

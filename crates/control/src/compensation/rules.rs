@@ -76,7 +76,8 @@ impl Rules {
             Dialect::Haas | Dialect::Mach3 => None,
             // So with wires, whose offsets are the generator's.
             Dialect::FanucWire | Dialect::Sodick | Dialect::Agie => None,
-            Dialect::Grbl | Dialect::Marlin | Dialect::Points => None,
+            // FreeCAD has worked its paths out already; what it has not, is the new control's.
+            Dialect::Grbl | Dialect::Marlin | Dialect::Points | Dialect::FreeCad => None,
         }
     }
 }

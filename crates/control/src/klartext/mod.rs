@@ -2,33 +2,18 @@
 //!
 //! A program is a list of numbered blocks between `BEGIN PGM` and `END PGM`; a line that ends in `~`
 //! goes on in the next one. What a block means, in which order its parts act, and where that is
-//! written is told in `docs/controls/klartext.md`.
+//! written is told in `docs/controls/klartext.md`. The [`flow`] of the program takes one block after the
+//! other, its [`language`] gives the words, and its [`execution`] the records.
 
-mod approach;
-mod calls;
-mod contour;
-mod cycle;
-mod formula;
-mod functions;
-mod hole;
-mod motion;
-mod older;
-mod pattern;
-mod plane;
-mod registers;
-mod run;
-mod scan;
-mod source;
-mod state;
-mod tool;
-mod transform;
-mod words;
+mod execution;
+mod flow;
+mod language;
 
 use crate::Settings;
 use crate::compensation::Compensator;
-use run::Run;
-use scan::Result;
-use state::Control;
+use execution::state::Control;
+use flow::run::Run;
+use language::scan::Result;
 
 /// Runs a program.
 pub(crate) fn run(settings: &Settings, text: &[u8], compensator: &mut Compensator) -> Result<()> {

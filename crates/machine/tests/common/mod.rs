@@ -33,6 +33,7 @@ pub fn machine(rotary: Vec<RotaryAxis>) -> Machine {
             line_end: "\n".into(),
             comment_start: "(".into(),
             comment_end: ")".into(),
+            fresh_operations: false,
         },
         words: BTreeMap::new(),
         blocks: BTreeMap::new(),

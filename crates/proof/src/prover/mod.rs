@@ -4,6 +4,7 @@ mod cut;
 mod drilling;
 mod events;
 mod rapid;
+mod single;
 
 use crate::expected::{Cursor, Goal, Kind, Step};
 use crate::gauge::Gauge;
@@ -18,7 +19,7 @@ use geom::{Arc, Vec3};
 use machine::{Machine, Mount};
 use program::statistics::Statistics;
 use program::{
-    ArcTo, Compensation, Diagnostic, Op, Orientation, Pose, Program, Record, Spindle, Tool,
+    ArcTo, Compensation, Diagnostic, Op, Orientation, Pose, Probe, Program, Record, Spindle, Tool,
 };
 
 /// Compares a program with its source, record by record, as a control runs it.
@@ -152,11 +153,11 @@ impl<'a> Prover<'a> {
             Op::Line(pose) => self.motion(line, Gait::Feed, pose, None),
             Op::Arc(to) => self.motion(line, Gait::Feed, &to.end, Some(to)),
             Op::Hole(pose) => self.drilled(line, pose),
-            Op::Thread(_) | Op::Probe(_) => Err(self.lost_at(
-                line,
-                "unsupported",
-                "probes or cuts a thread, which is not compared",
-            )),
+            Op::Thread(thread) => self.single(line, &thread.end, Kind::Thread(thread.pitch)),
+            Op::Probe(probe) => {
+                let Probe { end, away, must_answer } = **probe;
+                self.single(line, &end, Kind::Probe { away, must_answer })
+            }
             Op::Home(axes) => self.home(line, *axes),
             Op::Tool(tool) => self.change_tool(line, tool),
             op => {
@@ -180,6 +181,7 @@ impl<'a> Prover<'a> {
         match op {
             Op::Feed(feed) => running.feed = Some(*feed),
             Op::Spindle(spindle) => (running.spindle, running.spindle_line) = (*spindle, line),
+            Op::SurfaceSpeed(speed) => running.surface_speed = *speed,
             Op::Coolant(coolant) => (running.coolant, running.coolant_line) = (*coolant, line),
             Op::Compensation(side) => running.compensation = *side,
             Op::Taper(degrees) => running.taper = *degrees,
@@ -215,7 +217,7 @@ impl<'a> Prover<'a> {
                     Kind::Rapid => gait == Gait::Rapid,
                     Kind::Line => gait == Gait::Feed && block.is_none(),
                     Kind::Arc(_) => gait == Gait::Feed,
-                    Kind::Hole(_) | Kind::Broken(_) => false,
+                    Kind::Hole(_) | Kind::Thread(_) | Kind::Probe { .. } | Kind::Broken(_) => false,
                 };
                 alike && gauge.at(&to, &goal.to)
             });
@@ -232,6 +234,10 @@ impl<'a> Prover<'a> {
                     Err(self.lost_at(line, "hole", "makes an arc where the source has a hole"))
                 }
                 Kind::Hole(_) => self.hole_move(gait, &to),
+                kind @ (Kind::Thread(_) | Kind::Probe { .. }) => {
+                    let message = format!("moves where the source {}", single::does(kind));
+                    Err(self.lost_at(line, "single-block", &message))
+                }
                 Kind::Broken(why) => {
                     let message = format!("has no motion to hold against: {why}");
                     Err(self.lost_at(line, "source", &message))
@@ -253,7 +259,7 @@ impl<'a> Prover<'a> {
                 Kind::Rapid => true,
                 Kind::Line => goal.from.is_some(),
                 Kind::Arc(arc) => arc.length() <= 2.0 * slack,
-                Kind::Hole(_) | Kind::Broken(_) => false,
+                Kind::Hole(_) | Kind::Thread(_) | Kind::Probe { .. } | Kind::Broken(_) => false,
             };
             if !short || goal.homed || !self.gauge.at(&self.here, &goal.to) || wanted(goal) {
                 return;
@@ -269,7 +275,7 @@ impl<'a> Prover<'a> {
             let compared = &mut self.report.compared;
             match goal.kind {
                 Kind::Rapid => compared.rapids += 1,
-                Kind::Line => compared.lines += 1,
+                Kind::Line | Kind::Thread(_) | Kind::Probe { .. } => compared.lines += 1,
                 Kind::Arc(_) => compared.arcs += 1,
                 Kind::Hole(_) => compared.holes += 1,
                 Kind::Broken(_) => {}

@@ -1,10 +1,10 @@
 //! What a wire cuts, in numbers: points, chord errors, areas, time, and what came from which line.
 
 use super::leg::{self, End, Leg};
-use crate::drawing::{WireLeg, WirePicture};
 use crate::summary::{duration, length, number};
 use ::wire::points::Step;
 use ::wire::{Accuracy, Chords};
+use drawing::{WireLeg, WirePicture};
 use machine::Machine;
 use program::Program;
 use serde_json::{Value, json};

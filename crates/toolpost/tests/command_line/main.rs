@@ -3,6 +3,7 @@
 mod bad_input;
 mod commands;
 mod folder;
+mod freecad;
 mod nc;
 mod saving;
 mod wire;

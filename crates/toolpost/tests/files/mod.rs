@@ -30,8 +30,8 @@ pub fn sources() -> Vec<PathBuf> {
         };
         files.extend(entries.map(|entry| entry.unwrap().path()).filter(|path| path.is_file()));
     }
-    // Our examples have an NC program among them.
-    files.retain(|file| file.extension().is_none_or(|ending| ending != "nc"));
+    // Our examples have NC programs and a job of FreeCAD's among them.
+    files.retain(|file| file.extension().is_none_or(|ending| ending != "nc" && ending != "json"));
     files.sort();
     files
 }

@@ -1,7 +1,7 @@
 //! Where a block, or an entity that is seen from behind, lies in the drawing.
 
-use crate::element::{Element, Turn};
-use geom::Vec2;
+use crate::element::Element;
+use geom::{Turn, Vec2};
 
 /// Turned, scaled evenly, mirrored and shifted.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -43,7 +43,7 @@ impl Placement {
             sweep: if self.mirrored { -turn.sweep } else { turn.sweep },
         });
         let (start, end) = (self.point(element.start), self.point(element.end));
-        Element { start, end, turn, ..*element }
+        element.shaped(geom::Element { start, end, turn })
     }
 
     /// This placement of what `inner` has placed.

@@ -1,0 +1,516 @@
+//! Where the programmed zero lies: work offsets as the program writes them, shifts (`G92`, `G52`),
+//! turned, scaled and mirrored coordinates, and the tilted plane, as one way into the work frame.
+//!
+//! The work frame is that of the active work offset as it was when the program first moved in it.
+
+use geom::{Frame, Mat3, Vec3};
+
+/// X, Y, Z in mm and A, B, C in degrees.
+pub(super) type Six = [f64; 6];
+
+/// Programmed coordinates in the work frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Place {
+    frame: Frame,
+    /// Degrees by which the rotary axes are shifted.
+    rotary: [f64; 3],
+    /// Programmed coordinates are those of the work frame.
+    same: bool,
+}
+
+impl Place {
+    /// Programmed coordinates that are those of the work frame.
+    pub(super) const SAME: Place = Place { frame: Frame::IDENTITY, rotary: [0.0; 3], same: true };
+
+    /// A programmed point in the work frame.
+    pub(super) fn point(&self, p: Vec3) -> Vec3 {
+        if self.same { p } else { times(self.frame.matrix3, p) + self.frame.translation }
+    }
+
+    /// A point of the work frame in programmed coordinates.
+    pub(super) fn programmed(&self, p: Vec3) -> Vec3 {
+        if self.same {
+            return p;
+        }
+        times(self.frame.matrix3.inverse(), p - self.frame.translation)
+    }
+
+    /// Programmed positions of the rotary axes as those of the work offset.
+    pub(super) fn rotary(&self, degrees: [f64; 3]) -> [f64; 3] {
+        if self.same { degrees } else { [0, 1, 2].map(|i| degrees[i] + self.rotary[i]) }
+    }
+
+    /// A programmed direction in the work frame, its length scaled with the coordinates.
+    pub(super) fn direction(&self, v: Vec3) -> Vec3 {
+        if self.same { v } else { self.frame.matrix3 * v }
+    }
+
+    /// The unit vector about which a programmed turn about the unit vector `axis` turns: a mirror
+    /// reverses it.
+    pub(super) fn normal(&self, axis: Vec3) -> Vec3 {
+        if self.same {
+            return axis;
+        }
+        let sense = self.frame.matrix3.determinant().signum();
+        clean(self.direction(axis).normalize() * sense)
+    }
+}
+
+/// `m` times `v`, where a coordinate that is not known (NaN) spoils only those that depend on it.
+fn times(m: Mat3, v: Vec3) -> Vec3 {
+    let mut sum = Vec3::ZERO;
+    for axis in 0..3 {
+        let column = m.col(axis);
+        for row in 0..3 {
+            if column[row] != 0.0 {
+                sum[row] += column[row] * v[axis];
+            }
+        }
+    }
+    sum
+}
+
+/// Without negative zeros.
+fn clean(v: Vec3) -> Vec3 {
+    v + Vec3::ZERO
+}
+
+/// A turn about an axis (0 X, 1 Y, 2 Z), exact for quarters.
+fn turn(axis: usize, degrees: f64) -> Mat3 {
+    let quarter = degrees.rem_euclid(360.0) / 90.0;
+    let (sin, cos) = match quarter {
+        0.0 => (0.0, 1.0),
+        1.0 => (1.0, 0.0),
+        2.0 => (0.0, -1.0),
+        3.0 => (-1.0, 0.0),
+        _ => degrees.to_radians().sin_cos(),
+    };
+    let (second, third) = ((axis + 1) % 3, (axis + 2) % 3);
+    let mut columns = [Vec3::ZERO; 3];
+    columns[axis][axis] = 1.0;
+    columns[second][second] = cos;
+    columns[second][third] = sin;
+    columns[third][second] = -sin;
+    columns[third][third] = cos;
+    Mat3::from_cols(columns[0], columns[1], columns[2])
+}
+
+/// A work offset as far as the program shows it.
+#[derive(Clone, Copy, Debug)]
+struct Offset {
+    number: u32,
+    /// Its value when the program first moved in it, in machine coordinates; NaN where not known.
+    origin: Six,
+    /// Its turn about Z then, degrees; NaN where not known.
+    angle: f64,
+    /// By how much it has changed since, in the work frame.
+    slide: Six,
+    turned: f64,
+    /// The program has moved in it.
+    used: bool,
+}
+
+impl Offset {
+    /// Where its zero lies in the work frame.
+    fn frame(&self) -> Frame {
+        Frame::from_mat3_translation(turn(2, self.turned), linear(&self.slide))
+    }
+
+    /// Writes it: the given values replace those of before, or with `add` are added to them.
+    ///
+    /// # Errors
+    /// The program has moved in it, and what it held before is not known.
+    fn write(
+        &mut self,
+        values: [Option<f64>; 6],
+        angle: Option<f64>,
+        add: bool,
+    ) -> Result<(), Unknown> {
+        if !self.used {
+            for (held, value) in self.origin.iter_mut().zip(values) {
+                if let Some(value) = value {
+                    *held = if add { *held + value } else { value };
+                }
+            }
+            self.angle = angle.unwrap_or(self.angle);
+            return Ok(());
+        }
+        // In machine axes: what it held, what it holds now.
+        let back = turn(2, self.angle);
+        let held = linear(&self.origin) + times(back, linear(&self.slide));
+        let mut change = Vec3::ZERO;
+        for axis in 0..3 {
+            change[axis] = match values[axis] {
+                Some(value) if add => value,
+                Some(value) => value - held[axis],
+                None => 0.0,
+            };
+        }
+        let slide = if change == Vec3::ZERO { change } else { times(turn(2, -self.angle), change) };
+        for axis in 0..6 {
+            self.slide[axis] += match (values[axis], axis) {
+                (_, 0..3) => slide[axis],
+                (Some(value), _) if add => value,
+                (Some(value), _) => value - self.origin[axis] - self.slide[axis],
+                (None, _) => 0.0,
+            };
+        }
+        if let Some(angle) = angle {
+            self.turned = angle - self.angle;
+        }
+        if self.slide.iter().any(|v| v.is_nan()) || self.turned.is_nan() {
+            return Err(Unknown);
+        }
+        Ok(())
+    }
+}
+
+fn linear(six: &Six) -> Vec3 {
+    Vec3::new(six[0], six[1], six[2])
+}
+
+/// Mirrored, scaled and turned coordinates, in the order in which FANUC takes them: the turn within
+/// the scale within the mirror.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Transform {
+    /// The coordinate about which each axis is mirrored.
+    pub mirror: [Option<f64>; 3],
+    /// Factors and their centre.
+    pub scale: Option<(Vec3, Vec3)>,
+    /// Axis about which the turn goes, centre, degrees.
+    pub turn: Option<(usize, Vec3, f64)>,
+}
+
+impl Transform {
+    pub(super) const NONE: Transform = Transform { mirror: [None; 3], scale: None, turn: None };
+
+    fn frame(&self) -> Frame {
+        let about = |center: Vec3, m: Mat3| {
+            Frame::from_translation(center) * Frame::from_mat3(m) * Frame::from_translation(-center)
+        };
+        let sides = self.mirror.map(|at| if at.is_some() { -1.0 } else { 1.0 });
+        let center = Vec3::from_array(self.mirror.map(|at| at.unwrap_or(0.0)));
+        let mut frame = about(center, Mat3::from_diagonal(sides.into()));
+        if let Some((factors, center)) = self.scale {
+            frame *= about(center, Mat3::from_diagonal(factors));
+        }
+        if let Some((axis, center, degrees)) = self.turn {
+            frame *= about(center, turn(axis, degrees));
+        }
+        frame
+    }
+
+    /// The factor of an axis.
+    pub(super) fn factor(&self, axis: usize) -> f64 {
+        self.scale.map_or(1.0, |(factors, _)| factors[axis])
+    }
+
+    /// Whether left and right change sides in the plane of these axes.
+    pub(super) fn swaps_sides(&self, first: usize, second: usize) -> bool {
+        let negative = |axis: usize| self.mirror[axis].is_some() != (self.factor(axis) < 0.0);
+        negative(first) != negative(second)
+    }
+}
+
+/// All that lies between programmed coordinates and the work frame.
+#[derive(Clone, Debug)]
+pub(crate) struct Frames {
+    /// The offsets that the program has written or moved in.
+    offsets: Vec<Offset>,
+    /// The index of the active one.
+    active: usize,
+    /// FANUC's external offset, which adds to each of them.
+    external: Six,
+    /// What an offset holds that the program has not written: 0 or, where that is not known, NaN.
+    untouched: f64,
+    /// Whether the control can turn a work offset.
+    turns_offsets: bool,
+    /// `G92`.
+    pub shift: Six,
+    /// What `G92.1` takes away beyond `shift`: NaN where a shift of the program before may stand in the
+    /// control, or where `G92` has set the zero before any position was known.
+    beyond: Six,
+    /// `G92.1` has taken away what is not known.
+    pub lost: bool,
+    /// What `G92.3` brings back.
+    stored: Option<Six>,
+    /// `G52`.
+    pub local: Six,
+    pub transform: Transform,
+    /// The tilted plane, once it is reached.
+    pub tilt: Option<Frame>,
+}
+
+impl Frames {
+    /// Nothing shifted, in the work offset `number`.
+    pub(super) fn new(number: u32, all_zero: bool, turns_offsets: bool) -> Frames {
+        let untouched = if all_zero { 0.0 } else { f64::NAN };
+        let mut frames = Frames {
+            offsets: Vec::with_capacity(2),
+            active: 0,
+            external: [untouched; 6],
+            untouched,
+            turns_offsets,
+            shift: [0.0; 6],
+            beyond: [untouched; 6],
+            lost: false,
+            stored: all_zero.then_some([0.0; 6]),
+            local: [0.0; 6],
+            transform: Transform::NONE,
+            tilt: None,
+        };
+        frames.index(number);
+        frames
+    }
+
+    fn index(&mut self, number: u32) -> usize {
+        if let Some(index) = self.offsets.iter().position(|o| o.number == number) {
+            return index;
+        }
+        let untouched = self.untouched;
+        self.offsets.push(Offset {
+            number,
+            origin: [untouched; 6],
+            angle: if self.turns_offsets { untouched } else { 0.0 },
+            slide: [0.0; 6],
+            turned: 0.0,
+            used: false,
+        });
+        self.offsets.len() - 1
+    }
+
+    fn offset(&self) -> Option<&Offset> {
+        self.offsets.get(self.active)
+    }
+
+    /// The way into the work frame.
+    pub(super) fn place(&self) -> Place {
+        let Some(offset) = self.offset() else { return Place::SAME };
+        let shift: Six = std::array::from_fn(|i| self.shift[i] + self.local[i]);
+        let mut frame = offset.frame() * Frame::from_translation(linear(&shift));
+        if self.transform != Transform::NONE {
+            frame *= self.transform.frame();
+        }
+        if let Some(tilt) = self.tilt {
+            frame *= tilt;
+        }
+        let rotary = [3, 4, 5].map(|i| offset.slide[i] + shift[i]);
+        Place { frame, rotary, same: frame == Frame::IDENTITY && rotary == [0.0; 3] }
+    }
+
+    /// A point of the work frame in machine coordinates, NaN where it is not known.
+    pub(super) fn to_machine(&self, work: Vec3) -> Vec3 {
+        let Some(offset) = self.offset() else { return Vec3::NAN };
+        times(turn(2, offset.angle), work) + linear(&offset.origin)
+    }
+
+    /// A point in machine coordinates in the work frame, NaN where it is not known.
+    pub(super) fn of_machine(&self, machine: Vec3) -> Vec3 {
+        let Some(offset) = self.offset() else { return Vec3::NAN };
+        times(turn(2, -offset.angle), machine - linear(&offset.origin))
+    }
+
+    /// What the active work offset holds for the rotary axes, degrees; NaN where not known.
+    pub(super) fn rotary_origin(&self) -> [f64; 3] {
+        self.offset().map_or([f64::NAN; 3], |o| [o.origin[3], o.origin[4], o.origin[5]])
+    }
+
+    /// The work coordinates that are not known any more once the named axes of the machine (bit 0
+    /// is X) are where only the machine knows.
+    pub(super) fn depend_on(&self, named: u8) -> [bool; 3] {
+        let axes = [0, 1, 2].map(|axis| named & 1 << axis != 0);
+        let straight = |angle: f64| angle.is_nan() || angle % 180.0 == 0.0;
+        if self.offset().is_none_or(|offset| straight(offset.angle)) {
+            return axes;
+        }
+        let plane = axes[0] || axes[1];
+        [plane, plane, axes[2]]
+    }
+
+    /// Another work offset is active.
+    pub(super) fn select(&mut self, number: u32) {
+        self.active = self.index(number);
+    }
+
+    /// The program has moved in the active work offset.
+    pub(super) fn used(&mut self) {
+        if let Some(offset) = self.offsets.get_mut(self.active) {
+            offset.used = true;
+        }
+    }
+
+    /// Whether the program has moved in the active work offset.
+    pub(super) fn is_used(&self) -> bool {
+        self.offset().is_some_and(|offset| offset.used)
+    }
+
+    /// Whether the program has written no offset and shifted nothing.
+    pub(crate) fn is_fresh(&self) -> bool {
+        let written = |offset: &Offset| {
+            let kept = |value: &f64| value.to_bits() == self.untouched.to_bits();
+            !offset.origin.iter().all(kept) || offset.slide != [0.0; 6] || offset.turned != 0.0
+        };
+        self.shift == [0.0; 6] && !self.offsets.iter().any(written)
+    }
+
+    /// The number of the active work offset.
+    pub(crate) fn active(&self) -> u32 {
+        self.offset().map_or(0, |offset| offset.number)
+    }
+
+    /// Whether coordinates are mirrored, scaled, turned or tilted.
+    pub(super) fn is_transformed(&self) -> bool {
+        self.transform != Transform::NONE || self.tilt.is_some()
+    }
+
+    /// Writes a work offset (`G10 L2`): the given values replace those of before, or with `add` are
+    /// added to them. Answers whether that one is active.
+    ///
+    /// # Errors
+    /// The program has moved in it, and what it held before is not known.
+    pub(super) fn write(
+        &mut self,
+        number: u32,
+        values: [Option<f64>; 6],
+        angle: Option<f64>,
+        add: bool,
+    ) -> Result<bool, Unknown> {
+        let index = self.index(number);
+        // What is not known of the external one has moved all of them alike.
+        let external = self.external.map(|value| if add || value.is_nan() { 0.0 } else { value });
+        let values: [Option<f64>; 6] =
+            std::array::from_fn(|axis| values[axis].map(|value| value + external[axis]));
+        let Some(offset) = self.offsets.get_mut(index) else { return Err(Unknown) };
+        offset.write(values, angle, add)?;
+        Ok(index == self.active)
+    }
+
+    /// Writes the external work offset (FANUC, `G10 L2 P0`), with `add` by a step: all offsets move.
+    ///
+    /// # Errors
+    /// The program has moved, and what it held before is not known.
+    pub(super) fn write_external(
+        &mut self,
+        values: [Option<f64>; 6],
+        add: bool,
+    ) -> Result<bool, Unknown> {
+        // Before the first move it does not matter what was there.
+        let used = self.offsets.iter().any(|offset| offset.used);
+        let mut steps = values;
+        for (step, held) in steps.iter_mut().zip(&mut self.external) {
+            let Some(value) = step else { continue };
+            let before = if held.is_nan() && !used { 0.0 } else { *held };
+            *held = if add { *held + *value } else { *value };
+            if !add {
+                *value -= before;
+            }
+        }
+        self.offsets.iter_mut().try_for_each(|offset| offset.write(steps, None, true))?;
+        Ok(true)
+    }
+
+    /// Moves a work offset so that the tool at `here` (programmed) has the coordinates `values`
+    /// (`G10 L20`).
+    ///
+    /// # Errors
+    /// The program has moved in that offset, and where the tool stands in it is not known.
+    pub(super) fn write_here(
+        &mut self,
+        number: u32,
+        here: Six,
+        values: [Option<f64>; 6],
+    ) -> Result<bool, Unknown> {
+        let way: Six = std::array::from_fn(|i| values[i].map_or(0.0, |value| here[i] - value));
+        let index = self.index(number);
+        if index != self.active {
+            let target = self.offsets.get_mut(index).filter(|offset| !offset.used);
+            let Some(offset) = target else { return Err(Unknown) };
+            // Where the machine stands is known to the program only in the active one.
+            for (held, value) in offset.origin.iter_mut().zip(values) {
+                if value.is_some() {
+                    *held = f64::NAN;
+                }
+            }
+            return Ok(false);
+        }
+        let Some(offset) = self.offsets.get_mut(index) else { return Err(Unknown) };
+        let turned = if offset.used { offset.turned } else { offset.angle };
+        let flat = linear(&way);
+        let moved = if flat == Vec3::ZERO { flat } else { times(turn(2, turned), flat) };
+        let target = if offset.used { &mut offset.slide } else { &mut offset.origin };
+        for axis in 0..6 {
+            target[axis] += if axis < 3 { moved[axis] } else { way[axis] };
+        }
+        if offset.used && offset.slide.iter().any(|v| v.is_nan()) {
+            return Err(Unknown);
+        }
+        Ok(true)
+    }
+
+    /// `G92`: the tool at `here` (programmed) has the coordinates `values`. Before anything has moved
+    /// that may set the zero where the operator has brought the tool.
+    ///
+    /// # Errors
+    /// The program has moved, and where the tool stands is not known.
+    pub(super) fn shift_here(
+        &mut self,
+        here: Six,
+        values: [Option<f64>; 6],
+    ) -> Result<(), Unknown> {
+        let used = self.is_used();
+        for axis in 0..6 {
+            let Some(value) = values[axis] else { continue };
+            let shift = here[axis] + self.shift[axis] + self.local[axis] - value;
+            if !shift.is_nan() {
+                self.shift[axis] = shift;
+            } else if used {
+                return Err(Unknown);
+            } else {
+                (self.shift[axis], self.beyond[axis]) = (0.0, f64::NAN);
+            }
+            self.local[axis] = 0.0;
+        }
+        self.stored = Some(self.shift);
+        Ok(())
+    }
+
+    /// `G52` on controls where it is kept where `G92` is.
+    ///
+    /// # Errors
+    /// The program has moved, and what `G92` had set before is not known.
+    pub(super) fn shift_to(&mut self, values: [Option<f64>; 6]) -> Result<(), Unknown> {
+        let used = self.is_used();
+        for ((shift, beyond), value) in self.shift.iter_mut().zip(&mut self.beyond).zip(values) {
+            let Some(value) = value else { continue };
+            if !used {
+                *beyond = 0.0;
+            }
+            *shift = value - *beyond;
+        }
+        self.stored = Some(self.shift);
+        if self.shift.iter().any(|v| v.is_nan()) { Err(Unknown) } else { Ok(()) }
+    }
+
+    /// `G92.1` and, with `keep`, `G92.2`. Answers whether it is known what goes away.
+    pub(super) fn unshift(&mut self, keep: bool) -> bool {
+        let known = !self.beyond.iter().any(|v| v.is_nan());
+        self.lost |= !known && self.is_used();
+        let kept = if known { self.stored } else { None };
+        self.stored = if keep { kept } else { Some([0.0; 6]) };
+        (self.shift, self.beyond) = ([0.0; 6], [0.0; 6]);
+        known
+    }
+
+    /// `G92.3`.
+    ///
+    /// # Errors
+    /// The program has stored nothing.
+    pub(super) fn restore(&mut self) -> Result<(), Unknown> {
+        self.shift = self.stored.ok_or(Unknown)?;
+        Ok(())
+    }
+}
+
+/// What is asked for depends on what stands in the machine and not in the program.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Unknown;

@@ -1,0 +1,88 @@
+//! FreeCAD's F: feeds in mm/s, and pitches.
+
+use super::step::Step;
+use crate::iso::language::block::Fault;
+use crate::iso::language::words::{Canned, G, Group, Motion};
+use program::{Feed, Op};
+
+/// How many digits FreeCAD's shorter form of a number has (`Command G1 [ F:3.3333 ]`). It leaves zeros
+/// at the end out, so that a number with fewer digits is as good as one with so many.
+const DIGITS: usize = 5;
+
+/// The most decimals of a feed in mm/min that somebody has typed.
+const TYPED: i32 = 3;
+
+/// The feed in mm/min that `text` gives in mm/s: where a number with few decimals lies within what the
+/// text leaves open, that number, since it is what was typed (3.333333 is 200, not 199.99998).
+fn per_minute(value: f64, text: &[u8]) -> f64 {
+    let digits = |part: &[u8]| part.iter().filter(|byte| byte.is_ascii_digit()).count();
+    let number = text.get(1..).unwrap_or_default();
+    let point = number.iter().position(|&byte| byte == b'.').unwrap_or(number.len());
+    let (whole, decimals) = number.split_at(point);
+    let places = digits(decimals).max(DIGITS.saturating_sub(digits(whole))).min(15);
+    let open = 60.0 * 0.5 * 10f64.powi(-(places as i32));
+    let exact = value * 60.0;
+    let typed = (0..=TYPED).map(|places| {
+        let scale = 10f64.powi(places);
+        (exact * scale).round() / scale
+    });
+    // Half of the last place, and what the doubles add to it.
+    typed.into_iter().find(|typed| (typed - exact).abs() <= open * 1.000_001).unwrap_or(exact)
+}
+
+impl Step<'_, '_, '_> {
+    /// F in mm/s. Beside a rapid it says how fast that is, or 0, and beside a tap it is the pitch.
+    pub(super) fn feed_of_command(&mut self) -> Result<(), Fault> {
+        let motion = self.block.g(Group::Motion);
+        let taps = matches!(motion, Some(G::Cycle(Canned::Tap | Canned::LeftTap)));
+        if !taps && matches!(self.state.feed, Some(Feed::PerTurn(_))) {
+            self.state.feed = None;
+        }
+        let Some(word) = self.block.take(b'F') else { return Ok(()) };
+        if motion == Some(G::Motion(Motion::Rapid)) {
+            return Ok(());
+        }
+        if word.value <= 0.0 {
+            return Err(self.block.at_word(b'F', "nc-feed", "the feed must be greater than 0"));
+        }
+        let text = self.block.text.get(word.start as usize..word.end as usize);
+        let feed = match taps {
+            true => Feed::PerTurn(word.value),
+            false => Feed::PerMinute(per_minute(word.value, text.unwrap_or_default())),
+        };
+        if self.state.feed.replace(feed) != Some(feed) {
+            self.ops.push(Op::Feed(feed));
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::per_minute;
+
+    fn read(text: &str) -> f64 {
+        per_minute(text[1..].parse().unwrap(), text.as_bytes())
+    }
+
+    #[test]
+    fn a_feed_is_what_was_typed_in_mm_per_minute() {
+        // Six decimals: 200/60, 254/60, 0.05/60.
+        assert_eq!(read("F3.333333"), 200.0);
+        assert_eq!(read("F4.233333"), 254.0);
+        assert_eq!(read("F0.000833"), 0.05);
+        // Five digits: 200/60, 1000/60, 10000/60, 73.8/60.
+        assert_eq!(read("F3.3333"), 200.0);
+        assert_eq!(read("F16.667"), 1000.0);
+        assert_eq!(read("F166.67"), 10000.0);
+        assert_eq!(read("F1.23"), 73.8);
+        assert_eq!(read("F1.5"), 90.0);
+        assert_eq!(read("F3"), 180.0);
+    }
+
+    #[test]
+    fn a_feed_that_nobody_has_typed_stays_what_it_is() {
+        // No number with three decimals is as near as the text says.
+        assert_eq!(read("F5.123457"), 5.123457 * 60.0);
+    }
+}

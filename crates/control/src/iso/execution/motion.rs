@@ -1,0 +1,491 @@
+//! Moves: what a block moves, where to, and the straight ones.
+
+use super::state::{Polar, Tilt};
+use super::step::Step;
+use crate::iso::language::block::Fault;
+use crate::iso::language::words::{FeedMode, Flavor, G, Group, Motion, bit};
+use geom::Vec3;
+use program::{Compensation, Feed, Op};
+
+/// The letters of the linear axes.
+pub(super) const LINEAR: [u8; 3] = *b"XYZ";
+
+/// Where a block goes.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Target {
+    /// In the programmed frame, mm.
+    pub point: Vec3,
+    /// Degrees of A, B, C.
+    pub rotary: [f64; 3],
+    /// The axes that the block names: bit 0 is X, 3 is A; [`super::wire::LEANS`].
+    pub named: u8,
+}
+
+impl Step<'_, '_, '_> {
+    /// What the block moves.
+    pub(super) fn motion(&mut self) -> Result<(), Fault> {
+        let Some(word) = self.block.g(Group::OneShot) else {
+            return self.interpolation().and_then(|()| self.go());
+        };
+        match word {
+            G::LookAhead { letter, on } => return self.look_ahead(letter, on),
+            G::Home
+            | G::SecondHome
+            | G::Machine
+            | G::OneSided
+            | G::Skip
+            | G::FromHome
+            | G::WriteData
+            | G::ShiftHere
+            | G::ShiftTo
+            | G::Pocket { .. }
+            | G::Pattern(_) => {
+                self.has_the_axis_words(word)?;
+            }
+            _ => {}
+        }
+        self.interpolation()?;
+        match word {
+            G::Home | G::SecondHome => self.home(word == G::SecondHome),
+            G::StoreHome { second } => self.store_home(second),
+            G::FromHome => self.leave_home(),
+            G::Machine => self.machine_position(),
+            G::SwingToTilt => self.swing(),
+            // A skip that does not come is no error.
+            G::Skip => self.probe(false, false),
+            G::OneSided => self.one_sided(),
+            G::Pocket { clockwise } => self.pocket(clockwise),
+            G::Pattern(pattern) => self.pattern(pattern),
+            G::WriteData | G::ShiftHere | G::ShiftTo => self.coordinates(word),
+            G::CancelShift { .. } | G::RestoreShift => {
+                self.coordinates(word)?;
+                self.go()
+            }
+            _ => self.go(),
+        }
+    }
+
+    /// What a block without an axis word means for a motion that needs one.
+    ///
+    /// # Errors
+    /// The block asks for that motion.
+    pub(super) fn has_no_axis_word(&self) -> Result<(), Fault> {
+        let asks = matches!(self.block.g(Group::Motion), Some(G::Motion(_)))
+            || self.block.g(Group::OneShot) == Some(G::Skip);
+        if !asks {
+            return Ok(());
+        }
+        Err(self.block.whole("nc-no-motion", "no axis word says where the move goes"))
+    }
+
+    /// # Errors
+    /// Another word of the block uses its axis words, too.
+    fn has_the_axis_words(&self, word: G) -> Result<(), Fault> {
+        let motion = self.block.g(Group::Motion);
+        let fanuc = self.flavor.is_fanuc();
+        let beside = match motion {
+            None => return Ok(()),
+            Some(G::Motion(Motion::Rapid)) => fanuc || word == G::Machine,
+            Some(G::Motion(Motion::Line)) => word == G::Machine || fanuc && word == G::Skip,
+            Some(_) => false,
+        };
+        if beside {
+            return Ok(());
+        }
+        let message = "two words of the block use its axis words: which one has them?";
+        Err(self.block.at_group(Group::OneShot, "nc-modal-group", message))
+    }
+
+    /// The motion word of the block: on LinuxCNC and GRBL also a cycle or `G80`.
+    pub(super) fn motion_of_block(&self) -> Option<Motion> {
+        match self.block.g(Group::Motion) {
+            Some(G::Motion(motion)) => Some(motion),
+            Some(_) => None,
+            None => self.state.motion,
+        }
+    }
+
+    /// Takes over the words for interpolation and cycles.
+    fn interpolation(&mut self) -> Result<(), Fault> {
+        let motion = self.block.g(Group::Motion);
+        let cycle = self.block.g(Group::Cycle);
+        if cycle.is_some() && matches!(motion, Some(G::Cycle(_)))
+            || motion.is_some() && matches!(cycle, Some(G::Cycle(_)))
+        {
+            let message = "a cycle and another motion word in a block";
+            return Err(self.block.at_group(Group::Cycle, "nc-modal-group", message));
+        }
+        for word in [cycle, motion].into_iter().flatten() {
+            match word {
+                G::Motion(motion) => {
+                    self.end_cycle();
+                    self.state.motion = Some(motion);
+                }
+                G::CancelCycle => {
+                    self.end_cycle();
+                    // FANUC goes on with the interpolation of before: a cycle is no part of group 01.
+                    if !self.flavor.is_fanuc() {
+                        self.state.motion = None;
+                    }
+                }
+                G::Cycle(canned) => self.begin_cycle(canned)?,
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    /// Moves as the modes say.
+    pub(super) fn go(&mut self) -> Result<(), Fault> {
+        if self.state.cycle.is_some() {
+            return self.holes();
+        }
+        let Some(motion) = self.state.motion else {
+            return match b"XYZABC@^".iter().find(|&&letter| self.block.has(letter)) {
+                Some(&letter) => {
+                    let message = "an axis word, and no G0, G1, G2 or G3 says how to move";
+                    Err(self.block.at_word(letter, "nc-no-motion", message))
+                }
+                None => Ok(()),
+            };
+        };
+        match motion {
+            Motion::Thread => self.thread(),
+            Motion::RigidTap => self.rigid_tap(),
+            Motion::Probe { away, must_answer } => self.probe(away, must_answer),
+            Motion::Spline { cubic } => self.spline(cubic),
+            Motion::Arc { clockwise } => {
+                let target = self.target(false)?;
+                let asked = matches!(self.block.g(Group::Motion), Some(G::Motion(_)));
+                let arc_words = b"IJKR".iter().any(|&letter| self.block.has(letter));
+                if target.named == 0 && !arc_words && !asked {
+                    return Ok(());
+                }
+                self.feed_for_cut()?;
+                self.arc(target, clockwise)
+            }
+            Motion::Rapid | Motion::Line => {
+                let target = self.target(false)?;
+                if target.named == 0 {
+                    return Ok(());
+                }
+                if motion == Motion::Line {
+                    self.feed_for_cut()?;
+                }
+                self.straight(target, motion == Motion::Rapid)
+            }
+        }
+    }
+
+    /// The axis words of the block. With `unknown_stays` an increment of 0 from an unknown position
+    /// is legal and leaves it unknown.
+    ///
+    /// # Errors
+    /// An increment from an unknown position; an axis that the machine lacks; a rotary axis in a
+    /// tilted plane.
+    pub(super) fn target(&mut self, unknown_stays: bool) -> Result<Target, Fault> {
+        let mut target = Target { point: self.state.position, rotary: self.state.rotary, named: 0 };
+        self.in_plane(&mut target, unknown_stays)?;
+        self.along(self.state.plane.axes()[2], &mut target, unknown_stays)?;
+        target.named |= self.lean()?;
+        self.together(target.named)?;
+        if self.block.has_any(bit(b'A') | bit(b'B') | bit(b'C')) {
+            self.turned(&mut target, unknown_stays)?;
+        }
+        if self.state.frames.lost && target.named != 0 {
+            let message = "G92.1 has moved the zero by what the control held before the program";
+            let fault = self.block.whole("nc-unknown-shift", message);
+            return Err(fault.help("write G92.1 before the first move").into());
+        }
+        Ok(target)
+    }
+
+    /// The words of the rotary axes.
+    fn turned(&mut self, target: &mut Target, unknown_stays: bool) -> Result<(), Fault> {
+        for (axis, letter) in b"ABC".iter().copied().enumerate() {
+            if !self.block.has(letter) {
+                continue;
+            }
+            self.has_axis(axis, letter)?;
+            if self.state.tilt != Tilt::None {
+                let message =
+                    "a rotary axis moved by hand in a tilted plane; G53.1 or G69 moves it";
+                return Err(self.block.at_word(letter, "nc-tilt", message));
+            }
+            if let Some(value) = self.take_degrees(letter)? {
+                target.named |= 1 << (axis + 3);
+                target.rotary[axis] =
+                    self.advance(target.rotary[axis], value, letter, unknown_stays)?;
+            }
+        }
+        Ok(())
+    }
+
+    /// The words of the two axes of the plane.
+    pub(super) fn in_plane(
+        &mut self,
+        target: &mut Target,
+        unknown_stays: bool,
+    ) -> Result<(), Fault> {
+        let [first, second, _] = self.state.plane.axes();
+        if let Some(polar) = self.state.polar {
+            self.by_angle(polar, target)?;
+        } else if self.block.has(b'@') || self.block.has(b'^') {
+            self.about_zero(target)?;
+        } else {
+            self.along(first, target, unknown_stays)?;
+            self.along(second, target, unknown_stays)?;
+        }
+        Ok(())
+    }
+
+    /// The word of a linear axis.
+    fn along(
+        &mut self,
+        axis: usize,
+        target: &mut Target,
+        unknown_stays: bool,
+    ) -> Result<(), Fault> {
+        let letter = LINEAR[axis];
+        if let Some(value) = self.take_length(letter)? {
+            target.named |= 1 << axis;
+            target.point[axis] = self.advance(target.point[axis], value, letter, unknown_stays)?;
+        }
+        Ok(())
+    }
+
+    /// After the coordinates have been turned, what one axis means alone depends on the other: makers
+    /// ask for absolute words of both. Only increments in turned coordinates are those of the tool
+    /// from where it stands (B-64484EN, "Coordinate system rotation").
+    pub(super) fn together(&mut self, named: u8) -> Result<(), Fault> {
+        if named & self.state.loose == 0 {
+            return Ok(());
+        }
+        let all = named & self.state.loose == self.state.loose;
+        if self.state.incremental && self.state.frames.transform.turn.is_some() {
+            return Ok(());
+        }
+        if self.state.incremental || !all {
+            let message = "the coordinates have been turned: the first move in the plane names both \
+                           its axes in G90";
+            return Err(self.block.whole("nc-frame", message));
+        }
+        self.state.loose = 0;
+        Ok(())
+    }
+
+    /// Polar words: the first axis of the plane is the radius, the second the angle.
+    fn by_angle(&mut self, mut polar: Polar, target: &mut Target) -> Result<(), Fault> {
+        let [first, second, _] = self.state.plane.axes();
+        let radius = self.take_length(LINEAR[first])?;
+        let angle = self.take_degrees(LINEAR[second])?;
+        if radius.is_none() && angle.is_none() {
+            return Ok(());
+        }
+        if let Some(radius) = radius {
+            if self.state.incremental {
+                let message =
+                    "a polar radius in G91 moves the pole to where the tool stands: write G90";
+                return Err(self.block.at_word(LINEAR[first], "nc-polar", message));
+            }
+            polar.radius = radius;
+        }
+        if let Some(angle) = angle {
+            let from = if self.state.incremental { polar.angle } else { 0.0 };
+            polar.angle = from + angle;
+        }
+        if polar.radius.is_nan() || polar.angle.is_nan() || polar.pole.is_nan() {
+            let message = "polar coordinates, and radius, angle or pole are not known yet";
+            return Err(self.block.whole("nc-polar", message));
+        }
+        let (sin, cos) = polar.angle.to_radians().sin_cos();
+        target.point[first] = polar.pole[first] + polar.radius * cos;
+        target.point[second] = polar.pole[second] + polar.radius * sin;
+        target.named |= 1 << first | 1 << second;
+        self.state.polar = Some(polar);
+        Ok(())
+    }
+
+    /// LinuxCNC's `@` and `^`: radius and angle about the zero, of which the one that is not given
+    /// stays what it is where the tool stands; in G91 both add to that.
+    fn about_zero(&mut self, target: &mut Target) -> Result<(), Fault> {
+        let Vec3 { x, y, .. } = target.point;
+        let cartesian = b"XY".iter().find(|&&letter| self.block.has(letter));
+        if self.state.plane.axes()[2] != 2 || cartesian.is_some() {
+            let message = "@ and ^ are for the plane G17, and not beside X or Y";
+            return Err(self.block.whole("nc-polar", message));
+        }
+        let (mut radius, mut degrees) = (x.hypot(y), y.atan2(x).to_degrees());
+        let from = if self.state.incremental { (radius, degrees) } else { (0.0, 0.0) };
+        if let Some(length) = self.take_length(b'@')? {
+            radius = from.0 + length;
+        }
+        if let Some(angle) = self.take_degrees(b'^')? {
+            degrees = from.1 + angle;
+        }
+        if radius.is_nan() || degrees.is_nan() {
+            let message =
+                "radius or angle stay what they are where the tool stands, which is not known";
+            return Err(self.block.whole("nc-unknown-position", message));
+        }
+        if self.state.incremental && from.0 == 0.0 {
+            let message = "a polar increment from the zero has no direction";
+            return Err(self.block.whole("nc-polar", message));
+        }
+        let (sin, cos) = degrees.to_radians().sin_cos();
+        (target.point.x, target.point.y) = (radius * cos, radius * sin);
+        target.named |= 3;
+        Ok(())
+    }
+
+    /// # Errors
+    /// The machine lacks the rotary axis (0 is A) of this letter.
+    pub(super) fn has_axis(&self, axis: usize, letter: u8) -> Result<(), Fault> {
+        if self.axes.get(axis).is_some_and(|&exists| exists) {
+            return Ok(());
+        }
+        let message = format!("the machine has no axis {}", char::from(letter));
+        Err(self.block.at_word(letter, "nc-axis", message))
+    }
+
+    /// The coordinate that `value` gives an axis that stands at `from`.
+    #[inline]
+    pub(super) fn advance(
+        &self,
+        from: f64,
+        value: f64,
+        letter: u8,
+        unknown_stays: bool,
+    ) -> Result<f64, Fault> {
+        if !self.state.incremental {
+            return Ok(value);
+        }
+        if from.is_nan() && !(unknown_stays && value == 0.0) {
+            return Err(self.nowhere(letter));
+        }
+        Ok(from + value)
+    }
+
+    /// An increment of an axis of which nobody knows where it stands.
+    #[cold]
+    fn nowhere(&self, letter: u8) -> Fault {
+        let message = format!("an increment, and where {} stands is not known", char::from(letter));
+        let fault = self.block.at_word(letter, "nc-unknown-position", message);
+        fault.help("give the position in G90 first").into()
+    }
+
+    /// Whether the block may move at feed.
+    ///
+    /// # Errors
+    /// No feed is active, or in `G93` the block has none of its own, or the tool is not in.
+    pub(super) fn feed_for_cut(&mut self) -> Result<(), Fault> {
+        let message = match self.state.feed {
+            // A wire goes as fast as its generator lets it.
+            None if self.state.wire.is_some() => return Ok(()),
+            None => "a move at feed, and no feed has been given by F",
+            Some(Feed::InverseTime(_)) if !self.block.gives(b'F') => {
+                "in G93 each move needs its own F"
+            }
+            Some(_) if self.state.feed_mode == FeedMode::PerTurn && self.spindle_stands() => {
+                "a feed per turn while the spindle stands"
+            }
+            Some(_) if self.awaits_tool() => {
+                let message = "T has named a tool, and no M0 has stopped the program to put it in";
+                return Err(self.block.whole("nc-tool", message));
+            }
+            Some(_) => {
+                self.state.cut = true;
+                return Ok(());
+            }
+        };
+        Err(self.block.whole("nc-feed", message))
+    }
+
+    fn spindle_stands(&self) -> bool {
+        self.state.spindle == program::Spindle::Off && !self.state.rigid
+    }
+
+    /// A straight move to `target`.
+    pub(super) fn straight(&mut self, target: Target, rapid: bool) -> Result<(), Fault> {
+        if let Tilt::Declared(_) = self.state.tilt {
+            let message =
+                "a move in a tilted plane before G53.1 has brought the tool upright to it";
+            return Err(self.block.whole("nc-tilt", message));
+        }
+        let (from, to) = (self.state.position, target.point);
+        let aside = !(to.x.is_finite() && to.y.is_finite());
+        if matches!(self.state.tilt, Tilt::Reached(_)) && to.z.is_finite() && aside {
+            let message =
+                "Z in a tilted plane before X and Y: where the tool goes down is not known";
+            return Err(self.block.whole("nc-unknown-position", message));
+        }
+        if !rapid {
+            self.stood();
+        }
+        // On LinuxCNC with any straight move (`rs274`).
+        let [first, second, _] = self.state.plane.axes();
+        if from[first] != to[first] || from[second] != to[second] || self.flavor == Flavor::LinuxCnc
+        {
+            self.switch_compensation();
+        }
+        let pose = self.state.pose(to, target.rotary);
+        self.ops.push(if rapid { Op::Rapid(pose) } else { Op::Line(pose) });
+        self.arrive(target);
+        Ok(())
+    }
+
+    /// Says where the tool stands, where `G92` alone has told so.
+    pub(super) fn stood(&mut self) {
+        if !self.state.told && self.state.position.is_finite() {
+            let here = self.state.pose(self.state.position, self.state.rotary);
+            self.ops.push(Op::Rapid(here));
+            self.state.told = true;
+            self.state.frames.used();
+        }
+    }
+
+    /// The machine stands at `target` from here on.
+    pub(super) fn arrive(&mut self, target: Target) {
+        self.state.position = target.point;
+        self.state.rotary = target.rotary;
+        (self.state.moved, self.state.told) = (true, true);
+        self.state.frames.used();
+    }
+
+    /// Compensation starts and ends with the next linear move in the plane. In mirrored coordinates
+    /// left is right.
+    pub(super) fn switch_compensation(&mut self) {
+        let compensation = &mut self.state.compensation;
+        if compensation.active == compensation.asked {
+            return;
+        }
+        compensation.active = compensation.asked;
+        let [first, second, _] = self.state.plane.axes();
+        let swaps = self.state.frames.transform.swaps_sides(first, second);
+        self.ops.push(Op::Compensation(match compensation.asked {
+            Compensation::Left(register) if swaps => Compensation::Right(register),
+            Compensation::Right(register) if swaps => Compensation::Left(register),
+            side => side,
+        }));
+    }
+
+    /// Look-ahead, which changes how fast the path is run and not where it is; R says how exactly (B-64484EN,
+    /// "Machining condition selecting function").
+    fn look_ahead(&mut self, letter: u8, on: u32) -> Result<(), Fault> {
+        self.take_whole(b'R')?;
+        match self.take_whole(letter)? {
+            Some(number) if number == on || number == 0 => Ok(()),
+            _ => {
+                let letter = char::from(letter);
+                let message =
+                    format!("look-ahead goes on with {letter}{on} and off with {letter}0");
+                Err(self.block.at_group(Group::OneShot, "nc-look-ahead", message))
+            }
+        }
+    }
+
+    /// Whether compensation is about to change with the next linear move.
+    pub(super) fn compensation_waits(&self) -> bool {
+        self.state.compensation.active != self.state.compensation.asked
+    }
+}

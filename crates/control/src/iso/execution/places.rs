@@ -1,0 +1,250 @@
+//! Fixed places of the machine: reference positions, machine coordinates, the swing to a tilted plane;
+//! and where a probe stops.
+
+use super::motion::{LINEAR, Target};
+use super::state::{Tilt, UNKNOWN};
+use super::step::Step;
+use crate::iso::language::block::Fault;
+use crate::iso::language::words::{Flavor, Group, Motion};
+use geom::Vec3;
+use program::{Op, Probe};
+
+impl Step<'_, '_, '_> {
+    /// `G28`, `G30`: by rapid through the point of the block to the reference position, the named axes
+    /// only; LinuxCNC and GRBL without a word: all axes at once.
+    pub(super) fn home(&mut self, second: bool) -> Result<(), Fault> {
+        self.before_fixed_position()?;
+        if self.flavor == Flavor::Marlin {
+            return self.home_switches();
+        }
+        if second && self.flavor.is_fanuc() {
+            let message = "P names the reference position 2, 3 or 4";
+            if !matches!(self.take_whole(b'P')?, None | Some(2..=4)) {
+                return Err(self.block.at_word(b'P', "nc-home", message));
+            }
+        }
+        let mut target = self.target(true)?;
+        if target.named == 0 {
+            if self.flavor == Flavor::Fanuc {
+                let message = "name the axes that go to the reference position";
+                return Err(self.block.at_group(Group::OneShot, "nc-home", message));
+            }
+            target.named = self.all_axes();
+        }
+        // An unknown coordinate is unequal to itself: compare what the block changes.
+        let changes = |from: f64, to: f64| from != to && !to.is_nan();
+        let moves = (0..3).any(|i| {
+            changes(self.state.position[i], target.point[i])
+                || changes(self.state.rotary[i], target.rotary[i])
+        });
+        if moves {
+            self.straight(target, true)?;
+        }
+        self.state.via = Some(self.state.place.point(target.point));
+        let home = self.state.homes[usize::from(second)];
+        if !home.is_nan() && target.named < 8 {
+            return self.go_to_machine(home, target.named, true);
+        }
+        self.leave_for(target.named);
+        Ok(())
+    }
+
+    /// Marlin: to the switches of the axes that are named, with or without a number; all without one.
+    fn home_switches(&mut self) -> Result<(), Fault> {
+        let mut named = 0;
+        for (axis, letter) in b"XYZABC".iter().copied().enumerate() {
+            if self.block.take(letter).is_some() {
+                if axis >= 3 {
+                    self.has_axis(axis - 3, letter)?;
+                }
+                named |= 1 << axis;
+            }
+        }
+        self.leave_for(if named == 0 { self.all_axes() } else { named });
+        Ok(())
+    }
+
+    /// `G28.1`, `G30.1`: the reference position is where the machine stands.
+    pub(super) fn store_home(&mut self, second: bool) -> Result<(), Fault> {
+        self.state.homes[usize::from(second)] = self.machine();
+        self.go()
+    }
+
+    /// `G29`: by rapid through the point on the way of the last `G28`.
+    pub(super) fn leave_home(&mut self) -> Result<(), Fault> {
+        self.before_fixed_position()?;
+        let Some(via) = self.state.via else {
+            let message = "G29 goes through the point of the last G28, and there was none";
+            return Err(self.block.at_group(Group::OneShot, "nc-home", message));
+        };
+        let via = self.state.place.programmed(via);
+        let mut first = self.place_of_tool();
+        for axis in 0..3 {
+            if self.block.has(LINEAR[axis]) {
+                first.point[axis] = via[axis];
+            }
+        }
+        self.straight(first, true)?;
+        // In G91 the words count from the point on the way.
+        let target = self.target(false)?;
+        self.straight(target, true)
+    }
+
+    fn place_of_tool(&self) -> Target {
+        Target { point: self.state.position, rotary: self.state.rotary, named: 0 }
+    }
+
+    /// Where the gauge line stands in machine coordinates, NaN where not known.
+    fn machine(&self) -> Vec3 {
+        let tip = self.state.place.point(self.state.position);
+        self.state.frames.to_machine(tip) + Vec3::Z * self.length_in_use()
+    }
+
+    /// The named axes go to `place`, given for the gauge line in machine coordinates.
+    fn go_to_machine(&mut self, place: Vec3, named: u8, rapid: bool) -> Result<(), Fault> {
+        let mut machine = self.machine();
+        for axis in 0..3 {
+            if named & 1 << axis != 0 {
+                machine[axis] = place[axis];
+            }
+        }
+        let tip = machine - Vec3::Z * self.length_in_use();
+        let point = self.state.place.programmed(self.state.frames.of_machine(tip));
+        if (0..3).any(|axis| named & 1 << axis != 0 && point[axis].is_nan()) {
+            self.leave_for(named);
+            return Ok(());
+        }
+        let point = Vec3::select(point.is_nan_mask(), self.state.position, point);
+        self.straight(Target { point, named, ..self.place_of_tool() }, rapid)
+    }
+
+    /// `G60`: by rapid, from one side whichever way it comes: past the end where it must.
+    pub(super) fn one_sided(&mut self) -> Result<(), Fault> {
+        let target = self.target(false)?;
+        if target.named == 0 {
+            return Ok(());
+        }
+        self.straight(target, true)
+    }
+
+    /// `G38.2` to `G38.5`, `G31`: towards a point until the probe answers.
+    pub(super) fn probe(&mut self, away: bool, must_answer: bool) -> Result<(), Fault> {
+        self.not_compensated("probing")?;
+        let target = self.target(false)?;
+        if target.named == 0 {
+            return self.has_no_axis_word();
+        }
+        if target.named >= 8 {
+            return Err(self.block.whole("nc-probe", "a rotary axis in a probing move"));
+        }
+        self.feed_for_cut()?;
+        let end = self.state.pose(target.point, target.rotary);
+        self.ops.push(Op::Probe(Box::new(Probe { end, away, must_answer })));
+        self.arrive(target);
+        for axis in 0..3 {
+            if target.named & 1 << axis != 0 {
+                self.state.position[axis] = f64::NAN;
+            }
+        }
+        Ok(())
+    }
+
+    /// `G53`: to a position in machine coordinates, by rapid.
+    pub(super) fn machine_position(&mut self) -> Result<(), Fault> {
+        self.before_fixed_position()?;
+        if self.state.incremental {
+            let message = "G53 takes absolute positions; write G90";
+            return Err(self.block.at_group(Group::OneShot, "nc-machine-position", message));
+        }
+        let rapid = self.flavor.is_fanuc() || self.state.motion == Some(Motion::Rapid);
+        if !rapid && self.state.motion != Some(Motion::Line) {
+            let message = "G53 needs G0 or G1";
+            return Err(self.block.at_group(Group::OneShot, "nc-machine-position", message));
+        }
+        let mut place = UNKNOWN;
+        let mut named = 0;
+        let diameter = std::mem::replace(&mut self.state.diameter, false);
+        for axis in 0..3 {
+            if let Some(value) = self.take_length(LINEAR[axis])? {
+                place[axis] = value;
+                named |= 1 << axis;
+            }
+        }
+        self.state.diameter = diameter;
+        let linear = named;
+        named |= self.target(false)?.named;
+        if named == 0 {
+            let message = "name the axes that G53 moves";
+            return Err(self.block.at_group(Group::OneShot, "nc-machine-position", message));
+        }
+        if rapid && named != linear {
+            self.leave_for(named);
+            return Ok(());
+        }
+        if !rapid {
+            self.feed_for_cut()?;
+            let known = !self.machine().is_nan();
+            if !known || named != linear {
+                let message = "G53 is followed with G0 only: where a cut in machine coordinates is, \
+                               only the machine knows";
+                return Err(self.block.at_group(Group::OneShot, "nc-machine-position", message));
+            }
+        }
+        self.go_to_machine(place, named, rapid)
+    }
+
+    /// What holds before each move to a fixed place of the machine.
+    fn before_fixed_position(&mut self) -> Result<(), Fault> {
+        self.not_compensated("a move to a fixed position")?;
+        if self.state.cycle.is_some() {
+            let message = "a move to a fixed position in a cycle; cancel it with G80 first";
+            return Err(self.block.at_group(Group::OneShot, "nc-cycle", message));
+        }
+        if self.state.tilt != Tilt::None {
+            let message = "a move to a fixed position in a tilted plane; cancel it with G69 first";
+            return Err(self.block.at_group(Group::OneShot, "nc-tilt", message));
+        }
+        Ok(())
+    }
+
+    /// The named axes go where only the machine knows.
+    fn leave_for(&mut self, named: u8) {
+        self.switch_compensation();
+        let mut point = self.state.place.point(self.state.position);
+        for (axis, gone) in self.state.frames.depend_on(named).into_iter().enumerate() {
+            if gone {
+                point[axis] = f64::NAN;
+            }
+            if named & 8 << axis != 0 {
+                self.state.rotary[axis] = f64::NAN;
+            }
+        }
+        self.state.position = self.state.place.programmed(point);
+        self.state.moved = true;
+        self.ops.push(Op::Home(named));
+    }
+
+    fn all_axes(&self) -> u8 {
+        (0..3).filter(|&axis| self.axes[axis]).fold(7, |bits, axis| bits | 8 << axis)
+    }
+
+    /// `G53.1`: the rotary axes bring the tool along Z of the tilted plane. Where they then stand and
+    /// where the tip is depends on the machine.
+    pub(super) fn swing(&mut self) -> Result<(), Fault> {
+        let Tilt::Declared(frame) = self.state.tilt else {
+            let message = "G53.1 and no tilted plane has been declared by G68.2";
+            return Err(self.block.at_group(Group::OneShot, "nc-tilt", message));
+        };
+        self.state.tilt = Tilt::Reached(frame);
+        self.state.frames.tilt = Some(frame);
+        self.state.place = self.state.frames.place();
+        self.state.position = UNKNOWN;
+        for axis in 0..3 {
+            if self.axes[axis] {
+                self.state.rotary[axis] = f64::NAN;
+            }
+        }
+        self.state.moved = true;
+        Ok(())
+    }
+}

@@ -1,0 +1,260 @@
+//! What the control remembers from block to block.
+
+use super::cycles::Holding;
+use super::frames::{Frames, Place};
+use super::tools::Registers;
+use super::wire::Wire;
+use crate::compensation::Terms;
+use crate::iso::language::words::{FeedMode, Flavor, Motion, Plane, Side};
+use crate::{Settings, Units};
+use geom::{Frame, Vec3};
+use program::{Coolant, Feed, Orientation, Pose, Spindle};
+
+/// The modes, the position and what the machine was last told.
+#[derive(Clone, Debug)]
+pub(crate) struct State {
+    /// Interpolation; none where axis words mean nothing (LinuxCNC and GRBL after `G80`).
+    pub motion: Option<Motion>,
+    pub plane: Plane,
+    pub incremental: bool,
+    pub centers_absolute: bool,
+    /// `G20` or `G21`; none before the program has said it: controls keep the unit of the program before.
+    pub inches: Option<bool>,
+    pub feed_mode: FeedMode,
+    pub feed: Option<Feed>,
+    /// F as it was written last.
+    pub f: Option<f64>,
+    pub spindle: Spindle,
+    /// Last S: 1/min, or with constant surface speed m/min or feet/min.
+    pub speed: Option<f64>,
+    /// While the surface speed is constant (`G96`): the most that the spindle turns, 1/min.
+    pub surface: Option<f64>,
+    /// `M29` has been given: the next tapping cycle turns the spindle itself.
+    pub rigid: bool,
+    pub coolant: Coolant,
+    /// Last T.
+    pub selected: Option<u32>,
+    /// Tool in the spindle.
+    pub tool: Option<u32>,
+    pub length: Length,
+    pub compensation: Compensation,
+    /// What [`program::Op::WorkOffset`] has said last.
+    pub work_offset: Option<u32>,
+    /// Programmed position in the frame in which words are read, mm; NaN where not known.
+    pub position: Vec3,
+    /// Positions of A, B, C in degrees; 0 for axes that the machine lacks, NaN where not known.
+    pub rotary: [f64; 3],
+    /// What lies between programmed coordinates and the work frame.
+    pub frames: Frames,
+    /// The same as one way: [`Frames::place`], kept.
+    pub place: Place,
+    pub tilt: Tilt,
+    /// The wire of a wire-EDM machine.
+    pub wire: Option<Wire>,
+    /// Axes (bit 0 is X) of which the next absolute words must come together, since the coordinates
+    /// have just been turned.
+    pub loose: u8,
+    /// Polar coordinates are on.
+    pub polar: Option<Polar>,
+    /// Lathe: X is a diameter.
+    pub diameter: bool,
+    pub registers: Registers,
+    /// Where to a boring bar leaves the wall; none where nobody has said it.
+    pub aside: Option<Vec3>,
+    /// Stored by `G28.1` and `G30.1`, in machine coordinates, mm; NaN where not known.
+    pub homes: [Vec3; 2],
+    /// The point on the way of the last `G28`, in the work frame.
+    pub via: Option<Vec3>,
+    /// `G99`: holes end at the R plane; `G98`: at the initial level. LinuxCNC's manual names no
+    /// default, so there it is open until the program says it.
+    pub return_to_r: Option<bool>,
+    /// The last P of a cycle, s.
+    pub cycle_dwell: Option<f64>,
+    pub cycle: Option<Holding>,
+    /// The records say where the tool stands, as far as it is known.
+    pub told: bool,
+    /// Something has moved.
+    pub moved: bool,
+    /// Something has moved at feed.
+    pub cut: bool,
+    /// `M2` or `M30` has been executed.
+    pub ended: bool,
+}
+
+/// Tool length offset.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Length {
+    None,
+    /// `G43 H`: the register.
+    Register(u32),
+    /// `G43.4 H`: the register; the control keeps the tool centre point.
+    Center(u32),
+    /// `G43.1 Z`: the length itself, mm.
+    Value(f64),
+}
+
+/// Cutter radius compensation: what runs, and what the next linear move in the plane switches to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Compensation {
+    pub active: program::Compensation,
+    pub asked: program::Compensation,
+    /// Radius that the block itself gives (`G41.1`), mm.
+    pub radius: Option<f64>,
+}
+
+impl Compensation {
+    /// Whether the program wants the path offset.
+    pub(super) fn is_on(&self) -> bool {
+        self.asked != program::Compensation::Off
+    }
+}
+
+impl Side {
+    /// The side with its register, for the neutral program.
+    pub(super) fn with(self, register: Option<u32>) -> program::Compensation {
+        match self {
+            Side::Off => program::Compensation::Off,
+            Side::Left => program::Compensation::Left(register),
+            Side::Right => program::Compensation::Right(register),
+        }
+    }
+}
+
+/// Polar coordinates: X is a radius and Y an angle, or the like in other planes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Polar {
+    /// The pole, in programmed coordinates.
+    pub pole: Vec3,
+    /// mm; NaN where not given yet.
+    pub radius: f64,
+    /// Degrees; NaN where not given yet.
+    pub angle: f64,
+}
+
+/// Tilted working plane (`G68.2`); the frame turns programmed coordinates into the work frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Tilt {
+    None,
+    /// Declared; the tool does not stand along its Z yet.
+    Declared(Frame),
+    /// `G53.1` has brought the tool along its Z.
+    Reached(Frame),
+}
+
+/// The unknown position.
+pub(super) const UNKNOWN: Vec3 = Vec3::NAN;
+
+impl State {
+    /// The state at the start of a program: that of a control after power on. FANUC: parameters 3401
+    /// and 3402 as delivered; LinuxCNC: `RS274NGC_STARTUP_CODE` empty; GRBL: its first `$G` report.
+    pub(super) fn new(flavor: Flavor, axes: [bool; 3], settings: &Settings) -> State {
+        let start = settings.setup.start;
+        let all_zero = start.is_some();
+        // A FANUC goes on in the work offset of the program before.
+        let work_offset = settings.dialect.work_offset_at_reset().unwrap_or(0);
+        let turns_offsets = flavor == Flavor::LinuxCnc;
+        State {
+            motion: (flavor == Flavor::Grbl).then_some(Motion::Rapid),
+            plane: Plane::Xy,
+            incremental: false,
+            centers_absolute: false,
+            inches: match flavor {
+                Flavor::FreeCad => Some(false),
+                _ => settings.setup.units.map(|units| units == Units::Inches),
+            },
+            feed_mode: FeedMode::PerMinute,
+            feed: None,
+            f: None,
+            spindle: Spindle::Off,
+            speed: None,
+            surface: None,
+            rigid: false,
+            coolant: Coolant::Off,
+            selected: None,
+            tool: None,
+            length: Length::None,
+            compensation: Compensation {
+                active: program::Compensation::Off,
+                asked: program::Compensation::Off,
+                radius: None,
+            },
+            work_offset: None,
+            position: start.unwrap_or(UNKNOWN),
+            rotary: axes.map(|exists| if exists { f64::NAN } else { 0.0 }),
+            frames: Frames::new(work_offset, all_zero, turns_offsets),
+            place: Place::SAME,
+            tilt: Tilt::None,
+            wire: flavor.is_wire().then(|| Wire::new(settings)),
+            loose: 0,
+            polar: None,
+            diameter: false,
+            registers: Registers::new(&settings.setup.tools),
+            aside: settings.setup.aside,
+            homes: [UNKNOWN; 2],
+            via: None,
+            return_to_r: (flavor.is_fanuc() || flavor == Flavor::FreeCad).then_some(false),
+            cycle_dwell: None,
+            cycle: None,
+            told: all_zero,
+            moved: false,
+            cut: false,
+            ended: false,
+        }
+    }
+
+    /// The pose of a programmed point with the rotary axes at `rotary` (degrees).
+    #[inline]
+    pub(super) fn pose(&self, point: Vec3, rotary: [f64; 3]) -> Pose {
+        let point = self.place.point(point);
+        if let Some(wire) = &self.wire {
+            return Pose { point, orientation: wire.orientation() };
+        }
+        match self.tilt {
+            Tilt::Reached(_) => Pose::new(point, self.place.direction(Vec3::Z)),
+            Tilt::None | Tilt::Declared(_) => Pose {
+                point,
+                orientation: Orientation::Rotary {
+                    degrees: self.place.rotary(rotary),
+                    tool_center: matches!(self.length, Length::Center(_)),
+                },
+            },
+        }
+    }
+
+    /// What compensation has to know of the block that switches it.
+    pub(crate) fn compensation_terms(&self) -> Terms {
+        let [first, second, third] = self.plane.axes();
+        let mut normal = Vec3::ZERO;
+        normal[third] = 1.0;
+        // The side that is told is that after a mirror, which has turned the sense of the plane round.
+        let swaps = self.frames.transform.swaps_sides(first, second);
+        let sense = if swaps { -1.0 } else { 1.0 };
+        Terms {
+            normal: self.place.normal(normal) * sense,
+            across_tool: third == 2,
+            radius: self.compensation.radius,
+            outer: None,
+            around: false,
+        }
+    }
+}
+
+impl Plane {
+    /// Index of the first, the second and the perpendicular axis, right-handed: `G18` is Z, X, Y.
+    pub(super) fn axes(self) -> [usize; 3] {
+        match self {
+            Plane::Xy => [0, 1, 2],
+            Plane::Zx => [2, 0, 1],
+            Plane::Yz => [1, 2, 0],
+        }
+    }
+
+    /// As the word says it.
+    pub(super) fn name(self) -> &'static str {
+        match self {
+            Plane::Xy => "G17",
+            Plane::Zx => "G18",
+            Plane::Yz => "G19",
+        }
+    }
+}

@@ -1,0 +1,494 @@
+//! One block, in the order in which a control executes it.
+
+use super::state::State;
+use crate::iso::language::block::{Block, Fault};
+use crate::iso::language::words::{FeedMode, Flavor, G, Group, M, Motion, Plane, Side};
+use crate::{Settings, WholeNumbers};
+use program::{Coolant, Feed, Op, Spindle};
+
+/// A virtual control: its flavour, its axes and its state.
+#[derive(Debug)]
+pub(crate) struct Control {
+    pub flavor: Flavor,
+    /// Which of A, B, C exist.
+    pub axes: [bool; 3],
+    whole_numbers: WholeNumbers,
+    pub state: State,
+}
+
+/// A block in the making: the control's rules, the state as it changes, the records so far.
+pub(super) struct Step<'s, 'b, 't> {
+    pub flavor: Flavor,
+    pub axes: [bool; 3],
+    pub whole_numbers: WholeNumbers,
+    pub state: &'s mut State,
+    pub block: &'b mut Block<'t>,
+    pub ops: &'s mut Vec<Op>,
+}
+
+impl Control {
+    /// The control of `settings` at the start of a program.
+    pub(crate) fn new(settings: &Settings, flavor: Flavor) -> Control {
+        // GRBL drives three axes only.
+        let axes = if flavor == Flavor::Grbl { [false; 3] } else { settings.rotary };
+        let whole_numbers = match flavor.is_fanuc() {
+            true => settings.setup.whole_numbers,
+            false => WholeNumbers::Units,
+        };
+        Control { flavor, axes, whole_numbers, state: State::new(flavor, axes, settings) }
+    }
+
+    /// Executes `block` and puts its records into `ops`.
+    ///
+    /// # Errors
+    /// The block means nothing, or is not legal here: the run ends with it.
+    pub(crate) fn execute(&mut self, block: &mut Block, ops: &mut Vec<Op>) -> Result<(), Fault> {
+        let Control { flavor, axes, whole_numbers, state } = self;
+        let (flavor, axes, whole_numbers) = (*flavor, *axes, *whole_numbers);
+        Step { flavor, axes, whole_numbers, state, block, ops }.run()
+    }
+}
+
+impl Step<'_, '_, '_> {
+    /// The order is that of LinuxCNC ("Order of Execution") and GRBL (`gcode.c`, steps 1 to 21), which
+    /// is that of RS274/NGC 3.8. FANUC leaves the moment of an M function to the builder of the
+    /// machine: what could matter there is refused.
+    fn run(&mut self) -> Result<(), Fault> {
+        self.one_command()?;
+        self.wire()?;
+        self.m_functions_beside_motion()?;
+        self.feed()?;
+        self.speed()?;
+        self.tool()?;
+        self.spindle_and_coolant()?;
+        self.neutral_m()?;
+        self.dwell()?;
+        self.modes()?;
+        self.motion()?;
+        self.flow()?;
+        self.block.all_taken()
+    }
+
+    /// Marlin takes the first command of a line and what follows as its parameters; a line without one
+    /// means nothing to it (`GCODE_MOTION_MODES` as delivered).
+    fn one_command(&mut self) -> Result<(), Fault> {
+        if self.flavor != Flavor::Marlin {
+            return Ok(());
+        }
+        self.state.motion = None;
+        // G53 stands before the move that it is for.
+        let others = self.block.g(Group::OneShot) == Some(G::Machine);
+        let commands = self.block.commands() + usize::from(self.block.has(b'T'));
+        if commands > 1 + usize::from(others) {
+            let message = "this control takes one command a line";
+            return Err(self.block.whole("nc-many-commands", message));
+        }
+        Ok(())
+    }
+
+    /// FANUC runs one M function a block (parameter 3404, bit 7, as delivered), and only the builder
+    /// says whether it comes before or after the motion beside it.
+    fn m_functions_beside_motion(&mut self) -> Result<(), Fault> {
+        if self.block.m_count == 0 || !self.flavor.is_fanuc() {
+            return Ok(());
+        }
+        if self.block.m_count > 1 {
+            let message = "this control runs one M function a block (FANUC: parameter 3404#7)";
+            let fault = self.block.whole("nc-many-m", message);
+            return Err(fault.help("write each in a block of its own").into());
+        }
+        let drills = match self.block.g(Group::Cycle) {
+            Some(word) => word != G::CancelCycle,
+            // A word of group 01 ends the cycle.
+            None => self.state.cycle.is_some() && self.block.g(Group::Motion).is_none(),
+        };
+        let cuts = !matches!(self.motion_of_block(), Some(Motion::Rapid) | None) || drills;
+        let moves = b"XYZABC".iter().any(|&letter| self.block.has(letter))
+            && self.block.g(Group::OneShot).is_none();
+        for group in [Group::Spindle, Group::Coolant] {
+            let off =
+                matches!(self.block.m(group), Some(M::SpindleOff | M::CoolantOff | M::Orient));
+            if off && cuts && moves {
+                let message = "whether this acts before or after the cut is up to the machine";
+                let fault = self.block.at_group(group, "nc-m-beside-cut", message);
+                return Err(fault.help("write it in a block of its own").into());
+            }
+        }
+        Ok(())
+    }
+
+    fn feed(&mut self) -> Result<(), Fault> {
+        if let Some(G::FeedMode(mode)) = self.block.g(Group::FeedMode)
+            && mode != self.state.feed_mode
+        {
+            // The old number means nothing in the new mode.
+            self.state.feed_mode = mode;
+            self.state.feed = None;
+        }
+        // FANUC's G33 has its pitch there.
+        if self.flavor.is_fanuc() && self.motion_of_block() == Some(Motion::Thread) {
+            return Ok(());
+        }
+        if self.flavor == Flavor::FreeCad {
+            return self.feed_of_command();
+        }
+        let Some(word) = self.block.take(b'F') else { return Ok(()) };
+        let inches = self.inches_of_feed()?;
+        if word.value <= 0.0 {
+            return Err(self.block.at_word(b'F', "nc-feed", "the feed must be greater than 0"));
+        }
+        self.state.f = Some(word.value);
+        let feed = match self.state.feed_mode {
+            FeedMode::PerMinute => Feed::PerMinute(word.value * self.unit(inches, b'F')?),
+            FeedMode::PerTurn => Feed::PerTurn(word.value * self.unit(inches, b'F')?),
+            FeedMode::InverseTime => Feed::InverseTime(word.value),
+        };
+        if self.state.feed.replace(feed) != Some(feed) {
+            self.ops.push(Op::Feed(feed));
+        }
+        Ok(())
+    }
+
+    /// The unit that F is in, where the block itself changes units, too. GRBL takes that of the block
+    /// (`gcode.c`, step 3), FANUC that of all its modal words; LinuxCNC takes F first (found with
+    /// `rs274`), and so does Mach3 by its order of execution.
+    fn inches_of_feed(&self) -> Result<Option<bool>, Fault> {
+        let before = self.state.inches;
+        let Some(G::Inches(inches)) = self.block.g(Group::Units) else { return Ok(before) };
+        match self.flavor {
+            Flavor::Grbl => Ok(Some(inches)),
+            _ if before == Some(inches) => Ok(before),
+            Flavor::LinuxCnc if before.is_some() => Ok(before),
+            _ if before.is_none() && self.flavor.is_fanuc() => Ok(Some(inches)),
+            _ => {
+                let message = "F in the block that changes the units counts in those of before";
+                let fault = self.block.at_word(b'F', "nc-feed", message);
+                Err(fault.help("write G20 or G21 in a block before").into())
+            }
+        }
+    }
+
+    fn speed(&mut self) -> Result<(), Fault> {
+        // On Marlin S belongs to the command of its line: the seconds of G4, and the like.
+        if self.flavor == Flavor::Marlin && self.block.m(Group::Spindle).is_none() {
+            return Ok(());
+        }
+        self.surface_speed()?;
+        let Some(word) = self.block.take(b'S') else { return Ok(()) };
+        if word.value < 0.0 {
+            return Err(self.block.at_word(b'S', "nc-spindle", "the speed is below 0"));
+        }
+        self.state.speed = Some(word.value);
+        if self.state.surface.is_some() {
+            // Metres, or feet where lengths are inches.
+            let meters = if self.unit(self.state.inches, b'S')? == 1.0 { 1.0 } else { 0.3048 };
+            self.ops.push(Op::SurfaceSpeed(Some(word.value * meters)));
+        }
+        let most = self.state.surface.unwrap_or(word.value);
+        match self.state.spindle {
+            Spindle::Off => {}
+            Spindle::Clockwise(_) => self.turn(Spindle::Clockwise(most)),
+            Spindle::CounterClockwise(_) => self.turn(Spindle::CounterClockwise(most)),
+        }
+        Ok(())
+    }
+
+    /// `G96 D S`, `G97`: S is the surface speed, or the speed of the spindle.
+    fn surface_speed(&mut self) -> Result<(), Fault> {
+        let Some(G::SurfaceSpeed(constant)) = self.block.g(Group::SpindleMode) else {
+            return Ok(());
+        };
+        let wrong = |step: &Self, message| {
+            Err(step.block.at_group(Group::SpindleMode, "nc-spindle", message))
+        };
+        // `rs274` takes G97 without S, and does not say how fast the spindle then turns.
+        if !self.block.has(b'S') && (constant || self.state.surface.is_some()) {
+            return wrong(self, "the block needs S, which is another thing from here on");
+        }
+        if !constant {
+            if self.state.surface.take().is_some() {
+                self.ops.push(Op::SurfaceSpeed(None));
+            }
+            return Ok(());
+        }
+        if self.block.g(Group::Units).is_some() {
+            return wrong(
+                self,
+                "in which unit S counts in the block that says the unit is not clear",
+            );
+        }
+        let most = self.block.take(b'D').map_or(f64::INFINITY, |word| word.value);
+        if most <= 0.0 {
+            return Err(self.block.at_word(b'D', "nc-spindle", "the most speed D is above 0"));
+        }
+        self.state.surface = Some(most);
+        Ok(())
+    }
+
+    /// Brings the spindle into a state and says so where that is news.
+    pub(super) fn turn(&mut self, spindle: Spindle) {
+        if self.state.spindle != spindle {
+            self.state.spindle = spindle;
+            self.ops.push(Op::Spindle(spindle));
+        }
+    }
+
+    fn spindle_and_coolant(&mut self) -> Result<(), Fault> {
+        if self.block.take(b'$').is_some_and(|word| word.value != 0.0) {
+            return Err(self.block.at_word(b'$', "nc-spindle", "there is one spindle, $0"));
+        }
+        let speed = || {
+            self.state.surface.or(self.state.speed).ok_or_else(|| {
+                let message = "the spindle starts and no speed has been given by S";
+                let fault = self.block.at_group(Group::Spindle, "nc-spindle", message);
+                Fault::from(fault.help("write S beside M3 or M4, or before"))
+            })
+        };
+        match self.block.m(Group::Spindle) {
+            Some(M::Clockwise) => {
+                let spindle = Spindle::Clockwise(speed()?);
+                self.turn(spindle);
+            }
+            Some(M::CounterClockwise) => {
+                let spindle = Spindle::CounterClockwise(speed()?);
+                self.turn(spindle);
+            }
+            Some(M::RigidTap) => {
+                speed()?;
+                self.state.rigid = true;
+            }
+            Some(M::Orient) => {
+                self.block.take(b'R');
+                if self.flavor == Flavor::LinuxCnc {
+                    self.block.pass(b"PQ");
+                }
+                self.turn(Spindle::Off);
+            }
+            Some(_) if !self.flavor.is_fanuc() => self.turn(Spindle::Off),
+            _ => {}
+        }
+        match self.block.m(Group::Coolant) {
+            Some(M::Mist) => self.cool(Coolant::Mist)?,
+            Some(M::Flood) => self.cool(Coolant::Flood)?,
+            Some(M::Through) => self.cool(Coolant::Through)?,
+            Some(_) if !self.flavor.is_fanuc() => self.cool(Coolant::Off)?,
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// M functions for which nothing moves: their letters are taken.
+    fn neutral_m(&mut self) -> Result<(), Fault> {
+        for group in [Group::Override, Group::Output] {
+            match self.block.m(group) {
+                Some(M::Neutral(letters)) => self.block.pass(letters),
+                Some(M::Output(letters)) => {
+                    if let Some(&letter) = letters.iter().find(|&&letter| !self.block.has(letter)) {
+                        let message = format!("{} is missing", char::from(letter));
+                        return Err(self.block.at_group(group, "nc-output", message));
+                    }
+                    self.block.pass(letters);
+                }
+                Some(M::IdleTime) if self.block.take(b'S').is_none() => {
+                    let message =
+                        "the axes are let go: where the tool stands afterwards is not known";
+                    return Err(self.block.at_group(group, "nc-unknown-position", message));
+                }
+                _ => {}
+            }
+        }
+        Ok(())
+    }
+
+    fn cool(&mut self, coolant: Coolant) -> Result<(), Fault> {
+        let running = self.state.coolant;
+        let coolant = match (running, coolant) {
+            (Coolant::Flood | Coolant::FloodAndMist, Coolant::Mist)
+            | (Coolant::Mist | Coolant::FloodAndMist, Coolant::Flood)
+                if !self.flavor.is_fanuc() =>
+            {
+                Coolant::FloodAndMist
+            }
+            (_, coolant) => coolant,
+        };
+        if coolant == running {
+            return Ok(());
+        }
+        let adds = coolant == Coolant::FloodAndMist || running == Coolant::Off;
+        if coolant != Coolant::Off && !adds {
+            let message = "one coolant runs already: whether both then run is up to the machine";
+            let fault = self.block.at_group(Group::Coolant, "nc-coolant", message);
+            return Err(fault.help("write M9 first").into());
+        }
+        self.state.coolant = coolant;
+        self.ops.push(Op::Coolant(coolant));
+        Ok(())
+    }
+
+    fn dwell(&mut self) -> Result<(), Fault> {
+        if self.block.g(Group::OneShot) != Some(G::Dwell) {
+            return Ok(());
+        }
+        let seconds = match self.flavor {
+            Flavor::Fanuc if self.block.has(b'X') => {
+                self.take_pointed(b'X')?.map(|(value, increments)| match increments {
+                    true => value / 1000.0,
+                    false => value,
+                })
+            }
+            Flavor::Fanuc => self.take_whole(b'P')?.map(|ms| f64::from(ms) / 1000.0),
+            Flavor::Marlin if self.block.has(b'S') => self.block.take(b'S').map(|word| word.value),
+            _ => self.dwell_p(),
+        };
+        match seconds {
+            Some(seconds) if seconds >= 0.0 => {
+                self.ops.push(Op::Dwell(seconds));
+                Ok(())
+            }
+            Some(_) => Err(self.block.whole("nc-dwell", "the dwell is below 0")),
+            None => Err(self.block.at_group(Group::OneShot, "nc-dwell", "G4 and no time")),
+        }
+    }
+
+    /// Plane, units, compensation, length, work offset, path, distance, return, tilt.
+    fn modes(&mut self) -> Result<(), Fault> {
+        if let Some(G::Plane(plane)) = self.block.g(Group::Plane)
+            && plane != self.state.plane
+        {
+            self.not_compensated("a change of plane")?;
+            self.state.plane = plane;
+        }
+        if let Some(G::Inches(inches)) = self.block.g(Group::Units)
+            && self.state.inches != Some(inches)
+        {
+            self.not_compensated("a change of units")?;
+            if self.flavor.is_fanuc() && self.state.moved {
+                let message = "this control takes G20 or G21 before the first move only";
+                return Err(self.block.at_group(Group::Units, "nc-units", message));
+            }
+            self.state.inches = Some(inches);
+        }
+        self.remember_registers()?;
+        if let Some(g) = self.block.g(Group::Compensation) {
+            self.compensation(g)?;
+        }
+        self.length()?;
+        self.work_offset()?;
+        for group in [Group::Path, Group::OneShot] {
+            let Some(G::Neutral(letters)) = self.block.g(group) else { continue };
+            self.block.pass(letters);
+        }
+        if let Some(G::Diameter(diameter)) = self.block.g(Group::Diameter) {
+            self.state.diameter = diameter;
+        }
+        if let Some(G::Incremental(incremental)) = self.block.g(Group::Distance) {
+            self.state.incremental = incremental;
+        }
+        if let Some(G::CentersAbsolute(absolute)) = self.block.g(Group::ArcDistance) {
+            self.state.centers_absolute = absolute;
+        }
+        if let Some(G::ReturnToR(to_r)) = self.block.g(Group::Return) {
+            self.state.return_to_r = Some(to_r);
+        }
+        self.transforms()
+    }
+
+    /// `G40` to `G42` with the register D; LinuxCNC's `G41.1`, `G42.1` with D as the diameter.
+    fn compensation(&mut self, g: G) -> Result<(), Fault> {
+        let refused = |step: &Self, message: String| {
+            Err(step.block.at_group(Group::Compensation, "nc-compensation", message))
+        };
+        let (side, mut register, radius) = match g {
+            G::Compensation(side) => (side, None, None),
+            G::DynamicCompensation(side) => match self.take_length(b'D')? {
+                Some(diameter) => (side, None, Some(diameter / 2.0)),
+                None => return refused(self, "G41.1 and G42.1 need the diameter D".into()),
+            },
+            _ => return Ok(()),
+        };
+        if self.flavor == Flavor::LinuxCnc && side != Side::Off {
+            if self.state.compensation.is_on() {
+                return refused(self, "compensation is on already: G40 first".into());
+            }
+            if self.state.plane == Plane::Yz {
+                return refused(self, "LinuxCNC compensates in the planes G17 and G18 only".into());
+            }
+        }
+        if side != Side::Off && radius.is_none() {
+            register = match self.flavor.remembers_registers() {
+                true => self.state.registers.d,
+                false => self.take_whole(self.flavor.radius_letter())?,
+            };
+            self.radius_is_set_up(register)?;
+            if register.is_none() && self.flavor.is_fanuc() {
+                let letter = char::from(self.flavor.radius_letter());
+                return refused(self, format!("G41 and G42 need their register {letter}"));
+            }
+        }
+        self.state.compensation.asked = side.with(register);
+        self.state.compensation.radius = radius;
+        Ok(())
+    }
+
+    /// Stops and the end; on FANUC what switches off, too, since it comes with the end of a move.
+    fn flow(&mut self) -> Result<(), Fault> {
+        if self.flavor.is_fanuc() {
+            if self.block.m(Group::Spindle) == Some(M::SpindleOff) {
+                self.turn(Spindle::Off);
+            }
+            match (self.block.m(Group::Coolant), self.state.coolant) {
+                (Some(M::CoolantOff), Coolant::Flood | Coolant::Mist)
+                | (Some(M::ThroughOff), Coolant::Through) => self.cool(Coolant::Off)?,
+                (Some(M::CoolantOff), Coolant::Through) => {
+                    let message = "M9 leaves the coolant through the tool on; write M89";
+                    return Err(self.block.at_group(Group::Coolant, "nc-coolant", message));
+                }
+                _ => {}
+            }
+        }
+        match self.block.m(Group::Flow) {
+            Some(M::Stop) if self.awaits_tool() => {
+                if self.state.spindle != Spindle::Off {
+                    let message =
+                        "a tool is changed by hand while the spindle turns; write M5 first";
+                    return Err(self.block.at_group(Group::Flow, "nc-tool", message));
+                }
+                self.change_by_hand();
+            }
+            Some(M::Stop) => self.ops.push(Op::Stop),
+            // GRBL reads M1 and does nothing.
+            Some(M::OptionalStop) if self.flavor != Flavor::Grbl => self.ops.push(Op::OptionalStop),
+            Some(M::End) => {
+                // The others switch off by themselves; on FANUC it is the builder's choice.
+                if self.flavor != Flavor::Fanuc {
+                    self.turn(Spindle::Off);
+                    self.cool(Coolant::Off)?;
+                }
+                self.state.ended = true;
+                self.ops.push(Op::End);
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// What happens without radius compensation: where `G40` still waits for a move, it ends here.
+    ///
+    /// # Errors
+    /// It is on while `what` happens.
+    pub(super) fn not_compensated(&mut self, what: &str) -> Result<(), Fault> {
+        if !self.state.compensation.is_on() {
+            self.switch_compensation();
+            return Ok(());
+        }
+        let message = format!("{what} while radius compensation is on; cancel it with G40 first");
+        Err(self.block.whole("nc-compensation", message))
+    }
+
+    pub(super) fn has_rotary_axes(&self, group: Group) -> Result<(), Fault> {
+        if self.axes.contains(&true) {
+            return Ok(());
+        }
+        Err(self.block.at_group(group, "nc-axis", "the machine has no rotary axis"))
+    }
+}

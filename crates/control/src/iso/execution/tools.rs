@@ -1,0 +1,269 @@
+//! Tools: their change, their lengths, and the registers that hold these.
+
+use super::state::{Length, Tilt, UNKNOWN};
+use super::step::Step;
+use crate::ToolData;
+use crate::iso::language::block::Fault;
+use crate::iso::language::words::{Flavor, G, Group, M, bit};
+use program::{Op, Spindle, Tool};
+
+/// What the program can know of the tool registers.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Registers {
+    /// Lengths by register, mm; NaN where the program has changed one that is not known.
+    lengths: Vec<(u32, f64)>,
+    /// Registers whose radius the program has written.
+    radii: Vec<u32>,
+    /// The last D and the last H, where the flavour remembers them.
+    pub d: Option<u32>,
+    pub h: Option<u32>,
+}
+
+impl Registers {
+    pub(super) fn new(tools: &[ToolData]) -> Registers {
+        let lengths = tools.iter().map(|tool| (tool.number, tool.length)).collect();
+        Registers { lengths, ..Registers::default() }
+    }
+
+    /// The length in a register, NaN where it is not known.
+    fn length(&self, register: u32) -> f64 {
+        let found = self.lengths.iter().rev().find(|(number, _)| *number == register);
+        found.map_or(f64::NAN, |(_, length)| *length)
+    }
+
+    fn write_length(&mut self, register: u32, length: f64) {
+        self.lengths.retain(|(number, _)| *number != register);
+        self.lengths.push((register, length));
+    }
+}
+
+impl Length {
+    /// By how much the tip is nearer to the part than the gauge line, mm; NaN where not known.
+    fn value(self, registers: &Registers) -> f64 {
+        match self {
+            Length::None => 0.0,
+            Length::Register(register) | Length::Center(register) => registers.length(register),
+            Length::Value(length) => length,
+        }
+    }
+}
+
+impl Step<'_, '_, '_> {
+    /// `T`, `M6`, `M61`.
+    pub(super) fn tool(&mut self) -> Result<(), Fault> {
+        let number = self.take_whole(b'T')?;
+        self.state.selected = number.or(self.state.selected);
+        if self.flavor.changes_by_hand() {
+            // There is no tool change: the first T names the tool that is set up.
+            if self.state.tool.is_none() && !self.state.cut {
+                self.change_by_hand();
+            }
+            return Ok(());
+        }
+        match self.block.m(Group::ToolChange) {
+            Some(M::ChangeTool) => self.change_tool(),
+            Some(_) => {
+                let Some(number) = self.take_whole(b'Q')? else {
+                    let message = "M61 needs Q, the number of the tool that is in";
+                    return Err(self.block.at_group(Group::ToolChange, "nc-tool", message));
+                };
+                self.put_in(number);
+                Ok(())
+            }
+            None => {
+                self.ops.extend(number.map(Op::Preselect));
+                Ok(())
+            }
+        }
+    }
+
+    fn change_tool(&mut self) -> Result<(), Fault> {
+        let Some(number) = self.state.selected else {
+            let message = "M6 and no tool has been named by T";
+            return Err(self.block.at_group(Group::ToolChange, "nc-tool", message));
+        };
+        if number == 0 && self.flavor == Flavor::FreeCad {
+            let message = "the tool has no number";
+            return Err(self.block.at_group(Group::ToolChange, "nc-tool", message));
+        }
+        self.not_compensated("a tool change")?;
+        self.put_in(number);
+        self.turn(Spindle::Off);
+        // The machine may go to a place of its own for the change.
+        self.state.position = UNKNOWN;
+        Ok(())
+    }
+
+    /// The operator puts in the tool that T has named; its length is another one.
+    pub(super) fn change_by_hand(&mut self) {
+        let Some(number) = self.state.selected else { return };
+        self.put_in(number);
+        self.state.position.z = f64::NAN;
+    }
+
+    fn put_in(&mut self, number: u32) {
+        self.state.tool = Some(number);
+        self.ops.push(Op::Tool(Box::new(Tool { number, ..Tool::default() })));
+    }
+
+    /// T has named another tool, which the operator puts in at the next `M0`.
+    pub(super) fn awaits_tool(&self) -> bool {
+        self.flavor.changes_by_hand() && self.state.selected != self.state.tool
+    }
+
+    /// D and H are modal by themselves (B-64484EN-2, "Tool length compensation", "Cutter compensation"):
+    /// while `G43` is on, another H is another length at once.
+    pub(super) fn remember_registers(&mut self) -> Result<(), Fault> {
+        if !self.block.has_any(bit(b'D') | bit(b'H')) || !self.flavor.remembers_registers() {
+            return Ok(());
+        }
+        if let Some(register) = self.take_whole(b'D')? {
+            let compensates = self.state.compensation.is_on();
+            let stays = self.block.g(Group::Compensation).is_none();
+            if compensates && stays && self.state.registers.d != Some(register) {
+                let message = "another radius while radius compensation is on";
+                let fault = self.block.at_word(b'D', "nc-compensation", message);
+                return Err(fault.help("write it beside G41 or G42, after G40").into());
+            }
+            self.state.registers.d = Some(register);
+        }
+        if let Some(register) = self.take_whole(b'H')? {
+            self.state.registers.h = Some(register);
+            let kept = match self.state.length {
+                Length::Register(_) => G::Length,
+                Length::Center(_) => G::ToolCenter,
+                Length::None | Length::Value(_) => return Ok(()),
+            };
+            if self.block.g(Group::Length).is_none() {
+                self.block.put_g(Group::Length, kept);
+            }
+        }
+        Ok(())
+    }
+
+    /// The register that H names: in the block, or before where the flavour remembers it.
+    fn length_register(&mut self) -> Result<Option<u32>, Fault> {
+        if self.flavor.remembers_registers() {
+            return Ok(self.state.registers.h);
+        }
+        self.take_whole(b'H')
+    }
+
+    /// `G43` and its kin, `G49`.
+    pub(super) fn length(&mut self) -> Result<(), Fault> {
+        if self.flavor == Flavor::LinuxCnc && self.block.g(Group::Length).is_some() {
+            self.not_compensated("another length offset")?;
+        }
+        let length = match self.block.g(Group::Length) {
+            Some(G::Length) => match self.length_register()? {
+                Some(0) if self.flavor.is_fanuc() => Length::None,
+                Some(register) => Length::Register(register),
+                // LinuxCNC: without H the tool in the spindle.
+                None if self.flavor == Flavor::LinuxCnc => {
+                    Length::Register(self.state.tool.ok_or_else(|| self.no_register())?)
+                }
+                None => return Err(self.no_register()),
+            },
+            Some(G::ToolCenter) => {
+                self.has_rotary_axes(Group::Length)?;
+                if self.state.tilt != Tilt::None || self.state.frames.is_transformed() {
+                    let message = "cancel the turned, scaled or tilted coordinates first";
+                    return Err(self.block.at_group(Group::Length, "nc-tilt", message));
+                }
+                Length::Center(self.length_register()?.ok_or_else(|| self.no_register())?)
+            }
+            Some(G::DynamicLength) => {
+                if self.block.g(Group::Motion).is_some() || !self.block.has(b'Z') {
+                    let message = "G43.1 takes Z alone, and no motion beside it";
+                    return Err(self.block.at_group(Group::Length, "nc-length", message));
+                }
+                Length::Value(self.take_length(b'Z')?.unwrap_or(0.0))
+            }
+            Some(_) => Length::None,
+            None => return Ok(()),
+        };
+        if length == self.state.length {
+            return Ok(());
+        }
+        let center = |l: Length| matches!(l, Length::Center(_));
+        // The tip's coordinates change by a length that may be known only to the machine; with the
+        // tool centre point in play and the axes turned, in all directions.
+        let turned = self.state.rotary != [0.0; 3];
+        if turned && (center(length) || center(self.state.length)) {
+            self.state.position = UNKNOWN;
+        }
+        let registers = &self.state.registers;
+        self.state.position.z += self.state.length.value(registers) - length.value(registers);
+        self.state.length = length;
+        self.ops.push(Op::LengthOffset(match length {
+            Length::None => None,
+            Length::Register(register) | Length::Center(register) => Some(register),
+            Length::Value(_) => Some(0),
+        }));
+        Ok(())
+    }
+
+    /// The length that is in use, mm; NaN where not known.
+    pub(super) fn length_in_use(&self) -> f64 {
+        self.state.length.value(&self.state.registers)
+    }
+
+    fn no_register(&self) -> Fault {
+        self.block.at_group(Group::Length, "nc-length", "the length offset needs its register H")
+    }
+
+    /// `G10 L1` and `L10` to `L13`: a length or a radius into the register P.
+    pub(super) fn write_tool(&mut self, kind: u32) -> Result<(), Fault> {
+        let Some(register) = self.take_whole(b'P')? else {
+            let message = "P names the tool whose data is written";
+            return Err(self.block.at_group(Group::OneShot, "nc-data", message));
+        };
+        let in_use = match self.state.length {
+            Length::Register(active) | Length::Center(active) => active == register,
+            Length::None | Length::Value(_) => false,
+        };
+        let ngc = matches!(self.flavor, Flavor::LinuxCnc | Flavor::Mach3);
+        let (length, radius) = match kind {
+            1 if ngc => (self.take_length(b'Z')?, self.take_length(b'R')?),
+            // Measured at the machine: the length follows from where the tool stands.
+            10 | 11 if ngc => (self.take_length(b'Z')?.map(|_| f64::NAN), self.take_length(b'R')?),
+            10 if !ngc => (self.take_length(b'R')?, None),
+            // Wear adds to what is in the register.
+            11 if !ngc => (self.take_length(b'R')?.map(|_| f64::NAN), None),
+            12 | 13 if !ngc => (None, self.take_length(b'R')?),
+            _ => {
+                let message = format!("G10 L{kind} is not known to this control");
+                return Err(self.block.at_word(b'L', "nc-data", message));
+            }
+        };
+        if length.is_none() && radius.is_none() {
+            let message = "no word says what is written";
+            return Err(self.block.at_group(Group::OneShot, "nc-data", message));
+        }
+        if let Some(length) = length {
+            if in_use {
+                let message = format!("the register {register} is written while it is in use");
+                let fault = self.block.at_group(Group::OneShot, "nc-data", message);
+                return Err(fault.help("write it before G43, or cancel with G49 first").into());
+            }
+            self.state.registers.write_length(register, length);
+        }
+        if radius.is_some() && !self.state.registers.radii.contains(&register) {
+            self.not_compensated("a radius that is written")?;
+            self.state.registers.radii.push(register);
+        }
+        Ok(())
+    }
+
+    /// # Errors
+    /// The program has written the radius itself, which is not followed.
+    pub(super) fn radius_is_set_up(&self, register: Option<u32>) -> Result<(), Fault> {
+        let register = register.or(self.state.tool);
+        if !register.is_some_and(|register| self.state.registers.radii.contains(&register)) {
+            return Ok(());
+        }
+        let message = "compensation with a radius that the program has written by G10";
+        let fault = self.block.at_group(Group::Compensation, "nc-compensation", message);
+        Err(fault.help("put the radius into the tool table").into())
+    }
+}

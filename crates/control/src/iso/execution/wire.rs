@@ -1,0 +1,124 @@
+//! The wire of a wire-EDM machine: where it is threaded and cut, and what leans it.
+
+use super::step::Step;
+use crate::Settings;
+use crate::iso::language::block::Fault;
+use crate::iso::language::words::{G, Group, M, Motion, Side};
+use geom::{Vec3, direction};
+use program::{Op, Orientation};
+
+/// The wire as the control knows it.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Wire {
+    /// Height at which U and V are counted, mm.
+    upper_plane: Option<f64>,
+    /// How far the wire is beside X and Y there, mm.
+    u: f64,
+    v: f64,
+    /// Where that points it: it is set up upright.
+    axis: Vec3,
+    /// By how much the control leans it, as [`Op::Taper`] says it.
+    taper: f64,
+}
+
+/// What [`super::motion::Target::named`] says of a block with U or V.
+pub(super) const LEANS: u8 = 1 << 6;
+
+impl Wire {
+    /// Upright.
+    pub(super) fn new(settings: &Settings) -> Wire {
+        Wire { upper_plane: settings.wire.height, u: 0.0, v: 0.0, axis: Vec3::Z, taper: 0.0 }
+    }
+
+    /// Where it points.
+    pub(super) fn orientation(&self) -> Orientation {
+        Orientation::Axis(self.axis)
+    }
+}
+
+impl Step<'_, '_, '_> {
+    /// What a wire machine does before it moves. It has no Z, and its generator's conditions move
+    /// nothing.
+    pub(super) fn wire(&mut self) -> Result<(), Fault> {
+        if self.state.wire.is_none() {
+            return Ok(());
+        }
+        self.state.position.z = 0.0;
+        self.taper()?;
+        self.block.pass(self.flavor.conditions());
+        let op = match self.block.m(Group::Wire) {
+            None => return Ok(()),
+            Some(M::ThreadWire) => Op::ThreadWire,
+            Some(_) => Op::CutWire,
+        };
+        if b"XYUV".iter().any(|&letter| self.block.has(letter)) {
+            let message = "the wire is threaded or cut in a block that moves: before or after it?";
+            return Err(self.block.at_group(Group::Wire, "nc-wire", message));
+        }
+        if op == Op::CutWire {
+            self.not_compensated("the end of the wire")?;
+            if self.state.wire.is_some_and(|wire| wire.taper != 0.0) {
+                let message = "the end of the wire while the control leans it; write G50 first";
+                return Err(self.block.at_group(Group::Wire, "nc-taper", message));
+            }
+        }
+        self.stood();
+        self.ops.push(op);
+        Ok(())
+    }
+
+    /// `G50` to `G52`.
+    fn taper(&mut self) -> Result<(), Fault> {
+        let Some(G::Taper(side)) = self.block.g(Group::Taper) else { return Ok(()) };
+        let mut angle = 0.0;
+        if side != Side::Off {
+            let letter = self.flavor.taper_letter();
+            angle = match self.take_degrees(letter)? {
+                Some(angle) if angle > 0.0 && angle < 90.0 => angle,
+                _ => {
+                    let letter = char::from(letter);
+                    let message = format!("G51 and G52 need their angle {letter}, 0 to 90 degrees");
+                    return Err(self.block.at_group(Group::Taper, "nc-taper", message));
+                }
+            };
+        }
+        let angle = if side == Side::Right { -angle } else { angle };
+        if let Some(wire) = &mut self.state.wire
+            && wire.taper != angle
+        {
+            wire.taper = angle;
+            self.ops.push(Op::Taper(angle));
+        }
+        Ok(())
+    }
+
+    /// The words U and V; what the block then names.
+    pub(super) fn lean(&mut self) -> Result<u8, Fault> {
+        let Some(mut wire) = self.state.wire else { return Ok(0) };
+        let mut named = 0;
+        for (letter, place) in [(b'U', &mut wire.u), (b'V', &mut wire.v)] {
+            if let Some(value) = self.take_length(letter)? {
+                *place = self.advance(*place, value, letter, false)?;
+                named = LEANS;
+            }
+        }
+        if named == 0 {
+            return Ok(0);
+        }
+        let refused = |message| Err(self.block.whole("nc-wire", message));
+        let Some(height) = wire.upper_plane else {
+            return refused("U and V, and the height of the upper plane is not known");
+        };
+        let Some(axis) = direction(Vec3::new(wire.u, wire.v, height)) else {
+            return refused("U and V lie so far out that the wire has no direction");
+        };
+        if wire.taper != 0.0 {
+            return refused("U or V while the control leans the wire");
+        }
+        if matches!(self.state.motion, Some(Motion::Arc { .. })) {
+            return refused("U or V beside an arc: the upper end would not go along an arc");
+        }
+        self.state.wire = Some(Wire { axis, ..wire });
+        Ok(named)
+    }
+}

@@ -1,0 +1,453 @@
+//! Statements of custom macro B: `#1 = ..`, `IF`, `GOTO`, `WHILE`, `DO`, `END` (B-63684EN, 16.3 and 16.5).
+//!
+//! Numbers of blocks and programs are looked up in the file when the first jump or call needs them.
+
+use super::run::Run;
+use super::source::{self, Place, Source};
+use crate::iso::language::arithmetic;
+use crate::iso::language::block::{Fault, Word};
+use crate::iso::language::expression::{Reader, Target};
+use crate::{WholeNumbers, decimal};
+use program::{Diagnostic, Op};
+use std::collections::HashMap;
+
+/// What begins a statement.
+const KEYWORDS: [(&[u8], Keyword); 10] = [
+    (b"IF", Keyword::If),
+    (b"WHILE", Keyword::While),
+    (b"DO", Keyword::Do),
+    (b"END", Keyword::End),
+    (b"GOTO", Keyword::GoTo),
+    (b"POPEN", Keyword::Print),
+    (b"PCLOS", Keyword::Print),
+    (b"DPRNT", Keyword::Print),
+    (b"BPRNT", Keyword::Print),
+    (b"SETVN", Keyword::Print),
+];
+
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Keyword {
+    If,
+    While,
+    Do,
+    End,
+    GoTo,
+    /// Goes to a printer or gives a name to a variable, and moves nothing.
+    Print,
+}
+
+/// A loop: from `WHILE [..] DO1` to `END1`.
+#[derive(Debug)]
+struct Loop {
+    /// Where its first line begins and its number, and the same of the line behind `END`.
+    from: usize,
+    line: u32,
+    behind: usize,
+    end_line: u32,
+    /// Where the line with `END` begins.
+    end: usize,
+    /// The loop around it.
+    around: Option<usize>,
+}
+
+/// A program in a file.
+#[derive(Debug)]
+struct Program {
+    from: usize,
+    line: u32,
+}
+
+/// The numbers of programs and blocks and the loops of a file.
+#[derive(Debug, Default)]
+pub(super) struct Labels {
+    programs: Vec<Program>,
+    by_number: HashMap<u32, usize>,
+    /// Number of the block, where its line begins, the number of the line; in this order.
+    blocks: Vec<(u32, usize, u32)>,
+    loops: Vec<Loop>,
+}
+
+/// Where the statement of a line stands, if the line is one.
+pub(super) fn at(line: &[u8]) -> Option<usize> {
+    let at = match line.first()? {
+        b'#' => return Some(0),
+        b' ' | b'\t' | b'/' | b'N' => source::start(line).0,
+        b'A'..=b'Z' => 0,
+        _ => return None,
+    };
+    match line.get(at)? {
+        b'#' => Some(at),
+        b'A'..=b'Z' if line.get(at + 1).is_some_and(u8::is_ascii_uppercase) => Some(at),
+        _ => None,
+    }
+}
+
+/// The keyword at `at` and its length.
+fn keyword(line: &[u8], at: usize) -> Option<(Keyword, usize)> {
+    let rest = line.get(at..)?;
+    let found = KEYWORDS.iter().find(|(word, _)| rest.starts_with(word));
+    found.map(|(word, keyword)| (*keyword, word.len()))
+}
+
+/// The number of a `DO` or `END` behind the keyword: 1, 2 or 3.
+fn loop_number(line: &[u8], at: usize) -> Option<usize> {
+    let rest = line.get(at..)?.trim_ascii_start();
+    let number = decimal::parse(rest).filter(|n| matches!(n.value, 1.0 | 2.0 | 3.0) && !n.point)?;
+    Some(number.value as usize)
+}
+
+/// The `DO` of a line that loops, the place behind it.
+fn do_of(line: &[u8], at: usize) -> Option<usize> {
+    match keyword(line, at)? {
+        (Keyword::Do, length) => Some(at + length),
+        (Keyword::While, _) => {
+            // It stands behind the last bracket.
+            let bracket = line.iter().rposition(|&b| b == b']')?;
+            let rest = &line[bracket + 1..];
+            let blanks = rest.iter().take_while(|b| matches!(b, b' ' | b'\t')).count();
+            rest.get(blanks..)?.starts_with(b"DO").then_some(bracket + 1 + blanks + 2)
+        }
+        _ => None,
+    }
+}
+
+impl Labels {
+    /// Finds the numbers and loops of `text`; those in blocks with `/` are none where block delete is on
+    /// (`deletes`).
+    pub(super) fn of(text: &[u8], deletes: bool) -> Result<Labels, Fault> {
+        let mut found = Labels::default();
+        found.programs.push(Program { from: 0, line: 0 });
+        let mut open: Vec<(usize, usize)> = Vec::new();
+        let mut percent_signs = 0;
+        for (from, next, line, content) in source::lines(text) {
+            percent_signs += u8::from(content.first() == Some(&b'%'));
+            if percent_signs == 2 {
+                break;
+            }
+            let deleted = deletes && content.trim_ascii_start().first() == Some(&b'/');
+            let (start, number) = source::start(content);
+            if deleted {
+                continue;
+            }
+            if let Some(number) = number {
+                found.blocks.push((number, from, line));
+            }
+            let fault = |message: &str| -> Fault {
+                let fault = Diagnostic::error("nc-macro", message);
+                fault.at(line, content, start, content.len()).into()
+            };
+            if let Some(b'O' | b':') = content.get(start) {
+                let rest = content.get(start + 1..).unwrap_or_default();
+                let number = decimal::parse(rest.trim_ascii_start());
+                let Some(number) = number.and_then(|n| arithmetic::whole(n.value)) else {
+                    return Err(fault("O needs the number of the program"));
+                };
+                let index = found.programs.len();
+                found.programs.push(Program { from, line: line - 1 });
+                if found.by_number.insert(number, index).is_some() {
+                    return Err(fault("two programs of this number are in the file"));
+                }
+                if let Some((first, _)) = open.first() {
+                    return Err(unended(text, &found.loops[*first]));
+                }
+                continue;
+            }
+            let Some(statement) = at(content) else { continue };
+            if let Some(behind) = do_of(content, statement) {
+                let Some(number) = loop_number(content, behind) else {
+                    return Err(fault("DO needs its number 1, 2 or 3"));
+                };
+                if open.iter().any(|(_, other)| *other == number) {
+                    return Err(fault("a loop of this number is around this one"));
+                }
+                let around = open.last().map(|(index, _)| *index);
+                open.push((found.loops.len(), number));
+                let unknown = usize::MAX;
+                let fresh = Loop {
+                    from,
+                    line: line - 1,
+                    behind: next,
+                    end_line: line,
+                    end: unknown,
+                    around,
+                };
+                found.loops.push(fresh);
+            } else if let Some((Keyword::End, length)) = keyword(content, statement) {
+                let number = loop_number(content, statement + length);
+                match open.pop() {
+                    Some((index, begun)) if Some(begun) == number => {
+                        let ended = &mut found.loops[index];
+                        (ended.end, ended.behind, ended.end_line) = (from, next, line);
+                    }
+                    _ => return Err(fault("END without its DO, or across another loop")),
+                }
+            }
+        }
+        if let Some((index, _)) = open.first() {
+            return Err(unended(text, &found.loops[*index]));
+        }
+        found.blocks.sort_unstable();
+        Ok(found)
+    }
+
+    /// The innermost loop around the line that begins at `from`, its own lines included.
+    fn innermost(&self, from: usize) -> Option<usize> {
+        let mut index = self.loops.partition_point(|l| l.from <= from).checked_sub(1);
+        while let Some(i) = index
+            && self.loops[i].end < from
+        {
+            index = self.loops[i].around;
+        }
+        index
+    }
+
+    /// Whether the loop `outer` is `inner` or around it.
+    fn is_around(&self, outer: usize, mut inner: Option<usize>) -> bool {
+        while let Some(index) = inner {
+            if index == outer {
+                return true;
+            }
+            inner = self.loops[index].around;
+        }
+        false
+    }
+
+    /// The block of this number that a jump from byte `from` finds: downwards to the end of the program,
+    /// then from its start.
+    fn block(&self, number: u32, from: usize) -> Option<(usize, u32)> {
+        let program = self.programs.partition_point(|p| p.from <= from).saturating_sub(1);
+        let start = self.programs.get(program)?.from;
+        let end = self.programs.get(program + 1).map_or(usize::MAX, |p| p.from);
+        let first = self.blocks.partition_point(|&(n, at, _)| (n, at) < (number, from));
+        let below = self.blocks.get(first).filter(|&&(n, at, _)| n == number && at < end);
+        let above = || {
+            let first = self.blocks.partition_point(|&(n, at, _)| (n, at) < (number, start));
+            self.blocks.get(first).filter(|&&(n, at, _)| n == number && at < end)
+        };
+        below.or_else(above).map(|&(_, at, line)| (at, line - 1))
+    }
+}
+
+/// What is wrong with a loop that has no end.
+fn unended(text: &[u8], begun: &Loop) -> Fault {
+    let rest = text.get(begun.from..).unwrap_or_default();
+    let content = rest.split(|&b| b == b'\n').next().unwrap_or_default();
+    let fault = Diagnostic::error("nc-macro", "the DO has no END");
+    fault.at(begun.line + 1, content, 0, content.len()).into()
+}
+
+/// The local variable of an argument's letter (argument specification I; B-63684EN, 16.6).
+pub(super) fn variable_of(letter: u8) -> Option<usize> {
+    Some(match letter {
+        b'A'..=b'C' => usize::from(letter - b'A') + 1,
+        b'D'..=b'F' => usize::from(letter - b'D') + 7,
+        b'H' => 11,
+        b'M' => 13,
+        b'Q'..=b'Z' => usize::from(letter - b'Q') + 17,
+        _ => return None,
+    })
+}
+
+impl<'a> Run<'a, '_> {
+    /// Runs the line `text`, whose statement stands at `at`; the line began at byte `from`.
+    pub(super) fn statement(
+        &mut self,
+        from: usize,
+        text: &'a [u8],
+        at: usize,
+    ) -> Result<(), Fault> {
+        self.flows = true;
+        let deletes = self.settings.setup.block_delete;
+        if text.get(at) == Some(&b'#') {
+            return self.set_variable(text, at);
+        }
+        let Some((keyword, length)) = keyword(text, at) else {
+            return Err(self.wrong(text, at, "no statement of a macro begins so"));
+        };
+        let behind = at + length;
+        match keyword {
+            Keyword::If => {
+                let (holds, at) = self.condition(text, behind)?;
+                if text.get(at..).is_some_and(|rest| rest.starts_with(b"GOTO")) {
+                    let (label, behind) = self.label(text, at + 4)?;
+                    self.rest(text, behind)?;
+                    return if holds { self.go_to_from(from, label) } else { Ok(()) };
+                }
+                if !text.get(at..).is_some_and(|rest| rest.starts_with(b"THEN")) {
+                    return Err(self.wrong(text, at, "IF [..] needs GOTO or THEN"));
+                }
+                let values = self.values();
+                let reader = &mut Reader::new(&values, self.here.line, text, at + 4);
+                match (reader.peek(), holds) {
+                    (_, false) => Ok(()),
+                    (Some(b'#'), true) => {
+                        let at = reader.at;
+                        self.set_variable(text, at)
+                    }
+                    _ => Err(reader.wrong("THEN sets a variable: THEN #1 = 2")),
+                }
+            }
+            Keyword::GoTo => {
+                let (label, behind) = self.label(text, behind)?;
+                self.rest(text, behind)?;
+                self.go_to_from(from, label)
+            }
+            Keyword::While | Keyword::Do => {
+                let labels = self.here.source.labels(deletes)?;
+                let holds = keyword == Keyword::Do || self.condition(text, behind)?.0;
+                if let Some(behind) = do_of(text, at) {
+                    let number = text.get(behind..).unwrap_or_default();
+                    let blanks = number.len() - number.trim_ascii_start().len();
+                    self.rest(text, behind + blanks + 1)?;
+                } else {
+                    return Err(self.wrong(text, at, "WHILE [..] needs DO"));
+                }
+                match labels.innermost(from).map(|index| &labels.loops[index]) {
+                    Some(around) if around.from == from && !holds => {
+                        self.jump(around.behind, around.end_line)
+                    }
+                    _ => Ok(()),
+                }
+            }
+            Keyword::End => {
+                let labels = self.here.source.labels(deletes)?;
+                match labels.innermost(from).map(|index| &labels.loops[index]) {
+                    Some(around) if around.end == from => self.jump(around.from, around.line),
+                    _ => Err(self.wrong(text, at, "END without its DO")),
+                }
+            }
+            Keyword::Print => {
+                let shown = String::from_utf8_lossy(text.get(at..).unwrap_or_default());
+                self.tell(Op::Comment(shown.trim().into()));
+                Ok(())
+            }
+        }
+    }
+
+    /// `#1 = 2`, also where a system variable does something.
+    fn set_variable(&mut self, text: &'a [u8], at: usize) -> Result<(), Fault> {
+        let line = self.here.line;
+        let (target, value, behind) = {
+            let values = self.values();
+            let mut reader = Reader::new(&values, line, text, at + 1);
+            let target = reader.target()?;
+            if !reader.take(b'=') {
+                return Err(reader.wrong("= is missing"));
+            }
+            (target, reader.formula()?, reader.at)
+        };
+        self.rest(text, behind)?;
+        let Target::Number(number) = target else { return Ok(()) };
+        let code = value.unwrap_or(0.0);
+        match number {
+            // The comment is the message (B-63684EN, 16.2).
+            3000 => {
+                let message =
+                    format!("the program raises alarm {}: {}", 3000.0 + code, self.comment());
+                Err(Diagnostic::error("nc-alarm", message).at(line, text, at, text.len()).into())
+            }
+            3006 => {
+                self.tell(Op::Stop);
+                Ok(())
+            }
+            // Clocks, and what the operator's keys may do meanwhile.
+            3001..=3004 | 3011 | 3012 => Ok(()),
+            0 => Err(self.wrong(text, at, "#0 is null and cannot be set")),
+            _ => {
+                self.parameters.set(target, value).map_err(|message| self.wrong(text, at, message))
+            }
+        }
+    }
+
+    /// The condition in brackets at `at` and the place behind it.
+    fn condition(&mut self, text: &'a [u8], at: usize) -> Result<(bool, usize), Fault> {
+        let values = self.values();
+        let mut reader = Reader::new(&values, self.here.line, text, at);
+        let value = reader.expression()?;
+        reader.peek();
+        Ok((value.unwrap_or(0.0) != 0.0, reader.at))
+    }
+
+    /// The number of a block at `at` and the place behind it.
+    fn label(&mut self, text: &'a [u8], at: usize) -> Result<(u32, usize), Fault> {
+        let values = self.values();
+        let mut reader = Reader::new(&values, self.here.line, text, at);
+        let label = reader.whole("the number of a block")?;
+        Ok((label, reader.at))
+    }
+
+    /// Goes on at the block N of this number, looked for from here.
+    pub(super) fn go_to(&mut self, label: u32) -> Result<(), Fault> {
+        self.go_to_from(self.here.at, label)
+    }
+
+    /// Goes on at the block N of this number, looked for from byte `from` on.
+    fn go_to_from(&mut self, from: usize, label: u32) -> Result<(), Fault> {
+        let labels = self.here.source.labels(self.settings.setup.block_delete)?;
+        let Some((at, line)) = labels.block(label, from) else {
+            let message = format!("there is no block N{label} in this program");
+            return Err(self.at_line("nc-macro", message));
+        };
+        if let Some(target) = labels.innermost(at)
+            && labels.loops[target].from != at
+            && !labels.is_around(target, labels.innermost(from))
+        {
+            let message = format!("N{label} is inside of a loop: a jump into it is not allowed");
+            return Err(self.at_line("nc-macro", message));
+        }
+        self.jump(at, line)
+    }
+
+    /// Where the block N of this number is (Haas `M97`).
+    pub(super) fn block_of_program(&self, label: u32) -> Result<Result<Place<'a>, String>, Fault> {
+        let source = self.here.source;
+        let labels = source.labels(self.settings.setup.block_delete)?;
+        Ok(match labels.block(label, self.here.at) {
+            Some((at, line)) => Ok(Place { source, at, line, percent_signs: 1 }),
+            None => Err(format!("there is no block N{label} in this program")),
+        })
+    }
+
+    /// Where the program of this number begins: in this file, in the program's own, or in one of its
+    /// name.
+    pub(super) fn macro_program(&self, number: u32) -> Result<Result<Place<'a>, String>, Fault> {
+        let deletes = self.settings.setup.block_delete;
+        let find = |source: &'a Source<'a>| -> Result<Option<Place<'a>>, Fault> {
+            let labels = source.labels(deletes)?;
+            Ok(labels.by_number.get(&number).map(|&index| {
+                let program = &labels.programs[index];
+                Place { source, at: program.from, line: program.line, percent_signs: 1 }
+            }))
+        };
+        for source in [self.here.source, self.main] {
+            if let Some(place) = find(source)? {
+                return Ok(Ok(place));
+            }
+        }
+        let names = ["", ".nc", ".NC"].map(|ending| format!("O{number:04}{ending}"));
+        match self.main.open(&self.settings.setup.folders, &names) {
+            Ok(source) => Ok(match find(source)? {
+                Some(place) => Ok(place),
+                None => Err(format!("{} does not hold the program O{number}", source.name)),
+            }),
+            Err(missing) => Ok(Err(format!("no program O{number} in this file, and {missing}"))),
+        }
+    }
+
+    /// The value of an argument. Without a point it counts as a length does; letters of numbers count
+    /// as they are.
+    pub(super) fn argument(&self, letter: u8, word: Word) -> Result<f64, Fault> {
+        let counts = matches!(letter, b'D' | b'H' | b'M' | b'S' | b'T');
+        if counts || word.is_in_units() || word.value == 0.0 {
+            return Ok(word.value);
+        }
+        if self.settings.setup.whole_numbers == WholeNumbers::Units {
+            return Ok(word.value);
+        }
+        let message = format!(
+            "argument {} has no decimal point: units or increments, as the machine is set",
+            char::from(letter)
+        );
+        Err(self.at_line("nc-decimal-point", message))
+    }
+}

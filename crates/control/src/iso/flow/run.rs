@@ -1,0 +1,355 @@
+//! The run of a program: line after line, and the calls and jumps from one to another.
+
+use super::calls::{Frame, Kind};
+use super::macros;
+use super::owords;
+use super::source::{self, Place, Source};
+use crate::Settings;
+use crate::budget::Budget;
+use crate::compensation::Compensator;
+use crate::iso::execution::state::State;
+use crate::iso::execution::step::Control;
+use crate::iso::language::arithmetic;
+use crate::iso::language::block::{Block, Fault};
+use crate::iso::language::expression::Reader;
+use crate::iso::language::flavors;
+use crate::iso::language::parameters::{Language, Parameters, Values};
+use crate::iso::language::words::{Dictionary, G, Group, M};
+use program::{Diagnostic, Op, Record};
+use std::collections::HashMap;
+
+/// A program on its way through a control.
+pub(crate) struct Run<'a, 's> {
+    pub settings: &'a Settings,
+    pub dictionary: &'static Dictionary,
+    pub language: Language,
+    pub control: Control,
+    pub parameters: Parameters,
+    pub block: Block<'a>,
+    pub ops: Vec<Op>,
+    /// The program itself.
+    pub main: &'a Source<'a>,
+    pub here: Place<'a>,
+    /// The line that is run, and its number.
+    text: (&'a [u8], u32),
+    /// The line of the program itself in which a call into another file is under way.
+    pub caller: Option<u32>,
+    pub frames: Vec<Frame<'a>>,
+    pub budget: Budget,
+    /// Which of several O-words of a name (of a file, the first) has been run.
+    pub twins: HashMap<(*const u8, usize), usize>,
+    /// The program has jumped, called or calculated: what stands behind its end may belong to it.
+    pub flows: bool,
+    /// The program has ended, and what follows is no part of it.
+    over: bool,
+    /// Where the records go.
+    compensator: &'a mut Compensator<'s>,
+}
+
+impl<'a, 's> Run<'a, 's> {
+    /// At the start of `main`.
+    pub(crate) fn new(
+        settings: &'a Settings,
+        main: &'a Source<'a>,
+        compensator: &'a mut Compensator<'s>,
+    ) -> Run<'a, 's> {
+        let dictionary = flavors::dictionary(settings.dialect);
+        let language = dictionary.flavor.language();
+        let here = Place { source: main, at: 0, line: 0, percent_signs: 0 };
+        Run {
+            settings,
+            dictionary,
+            language,
+            control: Control::new(settings, dictionary.flavor),
+            parameters: Parameters::new(language),
+            block: Block::new(dictionary, settings),
+            ops: Vec::new(),
+            main,
+            here,
+            text: (b"", 0),
+            caller: None,
+            frames: vec![Frame::new(Kind::Main, here, here)],
+            budget: Budget::default(),
+            twins: HashMap::new(),
+            flows: false,
+            over: false,
+            compensator,
+        }
+    }
+
+    /// Runs the program to its end.
+    pub(crate) fn run(&mut self) -> Result<(), Fault> {
+        while !self.over {
+            let source = self.here.source;
+            let from = self.here.at;
+            let Some((text, line)) = self.here.next() else { return self.end_of_text() };
+            self.text = (text, line);
+            self.line(from, text, line).map_err(|fault| source.located(fault))?;
+            let line = self.caller.unwrap_or(line);
+            for op in self.ops.drain(..) {
+                self.budget.record(&op);
+                match op {
+                    Op::Compensation(side) => {
+                        let terms = self.control.state.compensation_terms();
+                        self.compensator.switch(line, side, terms)?;
+                    }
+                    op => self.compensator.take(Record { line, op })?,
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// The text has ended: so has the program, but not one that it has called.
+    fn end_of_text(&mut self) -> Result<(), Fault> {
+        if self.frames.len() == 1 {
+            if self.dictionary.flavor.ends_with_text() && !self.control.state.ended {
+                let line = self.here.line.max(1);
+                self.compensator.take(Record { line, op: Op::End })?;
+            }
+            return Ok(());
+        }
+        let end = match self.kind() {
+            Kind::Subroutine => "endsub",
+            _ => "M99",
+        };
+        let message = format!("the called program ends without {end}");
+        Err(self.here.source.located(self.at_line("nc-call", message)))
+    }
+
+    fn line(&mut self, from: usize, text: &'a [u8], line: u32) -> Result<(), Fault> {
+        if text.first() == Some(&b'%') && !self.dictionary.flavor.changes_by_hand() {
+            return self.percent(text, line);
+        }
+        if self.settings.setup.block_delete && text.trim_ascii_start().first() == Some(&b'/') {
+            return Ok(());
+        }
+        if self.control.state.ended && self.ends_here(text) {
+            self.over = true;
+            return Ok(());
+        }
+        match self.language {
+            Language::Ngc => {
+                if let Some(o) = owords::at(text) {
+                    return self.o_word(from, text, o);
+                }
+            }
+            Language::MacroB => {
+                if let Some(at) = macros::at(text) {
+                    return self.statement(from, text, at);
+                }
+            }
+            Language::Rs274 | Language::Plain => {}
+        }
+        let values = values(self.settings, &self.control.state, &self.parameters, line);
+        self.block.read(line, text, 0, &values)?;
+        self.assign()?;
+        self.comments();
+        if self.block.is_empty {
+            return Ok(());
+        }
+        self.execute()
+    }
+
+    /// `%` stands alone on its line; a program ends at the second.
+    fn percent(&mut self, text: &[u8], line: u32) -> Result<(), Fault> {
+        self.here.percent_signs += 1;
+        let alone = text[1..].iter().all(|b| matches!(b, b' ' | b'\t'));
+        if !alone || self.here.percent_signs > 2 {
+            let message = "a line with % holds nothing else, and a program has two at most";
+            let fault = Diagnostic::error("nc-syntax", message);
+            return Err(fault.at(line, text, 0, text.len()).into());
+        }
+        if self.here.percent_signs == 2 && self.frames.len() > 1 {
+            return self.end_of_text();
+        }
+        Ok(())
+    }
+
+    /// Whether what follows the end of the program is not its own: other programs, or what it has
+    /// jumped over.
+    fn ends_here(&self, text: &[u8]) -> bool {
+        let (at, _) = source::start(text);
+        let begins = matches!(text.get(at), Some(b'O' | b'o' | b':'));
+        self.flows || begins && self.here.percent_signs < 2
+    }
+
+    /// What the block sets takes effect.
+    fn assign(&mut self) -> Result<(), Fault> {
+        for &(target, value) in &self.block.assignments {
+            self.flows = true;
+            let set = self.parameters.set(target, value);
+            set.map_err(|message| self.block.whole("nc-parameter", message))?;
+        }
+        Ok(())
+    }
+
+    /// The block that has been read: its motion, and then where it leads.
+    fn execute(&mut self) -> Result<(), Fault> {
+        if self.control.state.ended || self.here.percent_signs == 2 {
+            let message = "the program has ended before this block";
+            return Err(self.block.whole("nc-after-end", message));
+        }
+        self.begin_program()?;
+        if matches!(self.block.g(Group::Macro), Some(G::MacroCall { .. })) {
+            return self.macro_call();
+        }
+        let flow = self.block.m(Group::Flow);
+        let calls = matches!(flow, Some(M::Call | M::CallBlock));
+        let call = if calls { Some(self.called_program()?) } else { None };
+        let back = if flow == Some(M::Return) { self.whole_word(b'P')? } else { None };
+        self.control.execute(&mut self.block, &mut self.ops)?;
+        if self.block.g(Group::Macro) == Some(G::CancelMacroCall) {
+            self.frame().modal = None;
+        }
+        if self.block.m(Group::Modes).is_some() {
+            self.modes()?;
+        }
+        if let Some((place, turns)) = call {
+            self.flows = true;
+            let locals = None;
+            return self
+                .call(Kind::Subprogram, place, turns, locals)
+                .map_err(|message| self.block.at_group(Group::Flow, "nc-call", message));
+        }
+        if flow == Some(M::Return) {
+            return self.back(back);
+        }
+        self.after_move()
+    }
+
+    /// `O` names the program and stands at its start: another one is another program.
+    fn begin_program(&mut self) -> Result<(), Fault> {
+        let begun = std::mem::replace(&mut self.frame().begun, true);
+        if self.block.has(b'O') && begun {
+            let message = match self.kind() {
+                Kind::Main => "another program begins here, and this one has no M30 before",
+                _ => "another program begins here, and the called one has no M99 before",
+            };
+            return Err(self.block.at_word(b'O', "nc-program-number", message));
+        }
+        match self.block.take(b'O') {
+            Some(word) if arithmetic::whole(word.value).is_none() || word.point => {
+                let message = "O must be a whole number";
+                Err(self.block.at_word(b'O', "nc-number", message))
+            }
+            _ => Ok(()),
+        }
+    }
+
+    /// Goes on at byte `at`, behind line `line`.
+    pub(super) fn jump(&mut self, at: usize, line: u32) -> Result<(), Fault> {
+        (self.here.at, self.here.line) = (at, line);
+        self.budget.jump().map_err(|message| self.at_line("nc-endless", message))
+    }
+
+    /// What stands behind a statement: nothing but comments.
+    pub(super) fn rest(&mut self, text: &'a [u8], at: usize) -> Result<(), Fault> {
+        let line = self.here.line;
+        let values = values(self.settings, &self.control.state, &self.parameters, line);
+        self.block.read(line, text, at, &values)?;
+        if !self.block.is_empty {
+            return Err(self.wrong(text, at, "nothing but a comment may follow here"));
+        }
+        self.comments();
+        Ok(())
+    }
+
+    /// The comments of the block as records.
+    fn comments(&mut self) {
+        for comment in self.block.comments() {
+            let text = String::from_utf8_lossy(comment);
+            let op = match text.split_once(',') {
+                Some((head, message)) if head.trim().eq_ignore_ascii_case("MSG") => {
+                    Op::Message(message.trim().into())
+                }
+                Some((head, message)) if self.language == Language::Ngc => {
+                    match head.trim().to_ascii_lowercase().as_str() {
+                        "debug" => Op::Message(self.shown(message).trim().into()),
+                        "print" | "log" => Op::Comment(self.shown(message).trim().into()),
+                        _ => Op::Comment(text.trim().into()),
+                    }
+                }
+                _ => Op::Comment(text.trim().into()),
+            };
+            self.ops.push(op);
+        }
+        if let Some(message) = self.block.message() {
+            self.ops.push(Op::Message(String::from_utf8_lossy(message).into()));
+        }
+    }
+
+    /// A message with the values of its parameters.
+    fn shown(&self, message: &str) -> String {
+        let values = self.values();
+        let (mut shown, mut at) = (String::new(), 0);
+        while let Some(next) = message.get(at..).and_then(|rest| rest.find('#')) {
+            shown.push_str(&message[at..at + next]);
+            let from = at + next;
+            let mut reader = Reader::new(&values, self.here.line, message.as_bytes(), from);
+            match reader.value() {
+                Ok(value) => shown.push_str(&format!("{:.6}", value.unwrap_or(0.0))),
+                Err(_) => shown.push_str("######"),
+            }
+            at = reader.at.max(from + 1);
+        }
+        shown.push_str(message.get(at..).unwrap_or_default());
+        shown
+    }
+
+    /// What expressions can read now.
+    pub(super) fn values(&self) -> Values<'_> {
+        values(self.settings, &self.control.state, &self.parameters, self.here.line)
+    }
+
+    /// The program that is under way.
+    pub(super) fn frame(&mut self) -> &mut Frame<'a> {
+        if self.frames.is_empty() {
+            self.frames.push(Frame::new(Kind::Main, self.here, self.here));
+        }
+        let last = self.frames.len() - 1;
+        &mut self.frames[last]
+    }
+
+    pub(super) fn kind(&self) -> Kind {
+        self.frames.last().map_or(Kind::Main, |frame| frame.kind)
+    }
+
+    /// Whether what is under way has been called so.
+    pub(super) fn is_within(&self, kind: Kind) -> bool {
+        self.kind() == kind
+    }
+
+    /// Adds a record.
+    pub(super) fn tell(&mut self, op: Op) {
+        self.ops.push(op);
+    }
+
+    /// What the comments of the block say.
+    pub(super) fn comment(&self) -> String {
+        let comments = self.block.comments().map(String::from_utf8_lossy);
+        comments.collect::<Vec<_>>().join(" ")
+    }
+
+    /// A finding about the line that is run.
+    pub(super) fn at_line(&self, rule: &'static str, message: impl Into<String>) -> Fault {
+        let (text, line) = self.text;
+        Diagnostic::error(rule, message).at(line, text, 0, text.len()).into()
+    }
+
+    /// A finding in the line `text` from byte `at` on.
+    pub(super) fn wrong(&self, text: &[u8], at: usize, message: impl Into<String>) -> Fault {
+        let rule = if self.language == Language::Ngc { "nc-o-word" } else { "nc-macro" };
+        Diagnostic::error(rule, message).at(self.here.line, text, at, text.len()).into()
+    }
+}
+
+/// What expressions can read.
+fn values<'v>(
+    settings: &'v Settings,
+    state: &'v State,
+    parameters: &'v Parameters,
+    line: u32,
+) -> Values<'v> {
+    Values { parameters, state, fresh: settings.setup.start.is_some(), line }
+}

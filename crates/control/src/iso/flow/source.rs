@@ -1,0 +1,173 @@
+//! The files of a run: the program and those it calls, each read once, with the places to jump to.
+
+use super::macros::Labels;
+use super::owords::OWords;
+use crate::folders;
+use crate::iso::language::block::Fault;
+use program::Diagnostic;
+use std::borrow::Cow;
+use std::cell::OnceCell;
+use std::path::PathBuf;
+
+/// The most files of a run.
+const MOST_FILES: usize = 200;
+
+/// A file. The files that are opened after it hang on it, so that they stay where they are while a
+/// block points into them.
+pub(crate) struct Source<'t> {
+    /// Its name; empty for the program itself, whose name the caller knows.
+    pub name: String,
+    pub text: Cow<'t, [u8]>,
+    labels: OnceCell<Labels>,
+    o_words: OnceCell<OWords>,
+    next: OnceCell<Box<Source<'t>>>,
+}
+
+/// Where a run is in a file: the next line.
+#[derive(Clone, Copy)]
+pub(crate) struct Place<'a> {
+    pub source: &'a Source<'a>,
+    /// Byte where the line begins.
+    pub at: usize,
+    /// Its number less 1: that of the line before.
+    pub line: u32,
+    /// How many lines with `%` have gone by.
+    pub percent_signs: u8,
+}
+
+impl<'t> Source<'t> {
+    /// The program itself.
+    pub(crate) fn program(text: &'t [u8]) -> Source<'t> {
+        Source::new(String::new(), text.into())
+    }
+
+    fn new(name: String, text: Cow<'t, [u8]>) -> Source<'t> {
+        let (labels, o_words, next) = (OnceCell::new(), OnceCell::new(), OnceCell::new());
+        Source { name, text, labels, o_words, next }
+    }
+
+    /// The first of the files `names` that the folders have; read where it has not been before.
+    ///
+    /// # Errors
+    /// There is none, or there are too many files already.
+    pub(super) fn open(
+        &self,
+        folders: &[PathBuf],
+        names: &[String],
+    ) -> Result<&Source<'t>, String> {
+        let (mut last, mut count) = (self, 1);
+        loop {
+            if names.contains(&last.name) {
+                return Ok(last);
+            }
+            match last.next.get() {
+                Some(next) => (last, count) = (next, count + 1),
+                None => break,
+            }
+        }
+        if count >= MOST_FILES {
+            return Err(format!("more than {MOST_FILES} files are called"));
+        }
+        let mut missing = String::new();
+        for name in names {
+            match folders::open(folders, name) {
+                Ok(text) => {
+                    let fresh = || Box::new(Source::new(name.clone(), text.into()));
+                    return Ok(last.next.get_or_init(fresh));
+                }
+                Err(error) if missing.is_empty() => missing = error,
+                Err(_) => {}
+            }
+        }
+        Err(missing)
+    }
+
+    /// The O-words of the file; with `deletes` those in blocks with `/` are none.
+    ///
+    /// # Errors
+    /// They do not fit together.
+    pub(super) fn o_words(&self, deletes: bool) -> Result<&OWords, Fault> {
+        if let Some(words) = self.o_words.get() {
+            return Ok(words);
+        }
+        let words = OWords::of(&self.text, deletes).map_err(|fault| self.located(fault))?;
+        Ok(self.o_words.get_or_init(|| words))
+    }
+
+    /// The numbers of programs and blocks and the loops of macro B in the file; with `deletes` but for
+    /// those in blocks with `/`.
+    ///
+    /// # Errors
+    /// They do not fit together.
+    pub(super) fn labels(&self, deletes: bool) -> Result<&Labels, Fault> {
+        if let Some(labels) = self.labels.get() {
+            return Ok(labels);
+        }
+        let labels = Labels::of(&self.text, deletes).map_err(|fault| self.located(fault))?;
+        Ok(self.labels.get_or_init(|| labels))
+    }
+
+    /// The finding with the name of this file.
+    pub(super) fn located(&self, fault: Fault) -> Fault {
+        if self.name.is_empty() || !fault.file.is_empty() {
+            return fault;
+        }
+        let fault: Diagnostic = *fault;
+        fault.file(self.name.clone()).into()
+    }
+}
+
+impl<'a> Place<'a> {
+    /// The next line and its number.
+    pub(super) fn next(&mut self) -> Option<(&'a [u8], u32)> {
+        let text = self.source.text.get(self.at..).filter(|text| !text.is_empty())?;
+        let line = match memchr::memchr(b'\n', text) {
+            Some(end) => {
+                self.at += end + 1;
+                &text[..end]
+            }
+            None => {
+                self.at += text.len();
+                text
+            }
+        };
+        self.line = self.line.saturating_add(1);
+        Some((line.strip_suffix(b"\r").unwrap_or(line), self.line))
+    }
+}
+
+/// The lines of a text: where each begins, where the next one does, its number, what it says.
+pub(super) fn lines(text: &[u8]) -> impl Iterator<Item = (usize, usize, u32, &[u8])> {
+    let (mut at, mut number) = (0, 0u32);
+    std::iter::from_fn(move || {
+        let rest = text.get(at..).filter(|rest| !rest.is_empty())?;
+        let (from, length) = (at, memchr::memchr(b'\n', rest).unwrap_or(rest.len()));
+        at = (from + length + 1).min(text.len());
+        number = number.saturating_add(1);
+        let line = &rest[..length];
+        Some((from, at, number, line.strip_suffix(b"\r").unwrap_or(line)))
+    })
+}
+
+/// Where the words of a line begin, behind blanks, `/` and `N`; and the number of that N.
+pub(super) fn start(line: &[u8]) -> (usize, Option<u32>) {
+    let blanks = |at: usize| {
+        let rest = line.get(at..).unwrap_or_default();
+        at + rest.iter().take_while(|b| matches!(b, b' ' | b'\t')).count()
+    };
+    let digits = |at: usize| {
+        let rest = line.get(at..).unwrap_or_default();
+        at + rest.iter().take_while(|b| b.is_ascii_digit()).count()
+    };
+    let mut at = blanks(0);
+    if line.get(at) == Some(&b'/') {
+        at = blanks(digits(at + 1));
+    }
+    if !matches!(line.get(at), Some(b'N' | b'n')) {
+        return (at, None);
+    }
+    let from = blanks(at + 1);
+    let to = digits(from);
+    let number = std::str::from_utf8(&line[from..to]).ok().and_then(|n| n.parse().ok());
+    (blanks(to), number)
+}

@@ -1,0 +1,504 @@
+//! A block (a line of NC) taken apart into words.
+
+use super::arithmetic;
+use super::expression::{Reader, Target, Value};
+use super::parameters::{Language, Values};
+use super::words::{Dictionary, Flavor, G, Group, LETTERS, M, bit, index};
+use crate::{Settings, decimal};
+use program::Diagnostic;
+
+/// From here on a number of FreeCAD is none, and nothing is a kilometre long: it writes a NaN as
+/// -922337203685.477581.
+const NOTHING: f64 = 1e6;
+
+/// A finding about a block.
+pub(crate) type Fault = Box<Diagnostic>;
+
+/// A letter with its number.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Word {
+    /// The number.
+    pub value: f64,
+    /// Whether a decimal point was written.
+    pub point: bool,
+    /// Whether the program has calculated it.
+    pub computed: bool,
+    pub start: u32,
+    pub end: u32,
+}
+
+impl Word {
+    /// Whether it counts units, and not perhaps increments.
+    pub(crate) fn is_in_units(&self) -> bool {
+        self.point || self.computed
+    }
+}
+
+/// What a block says. A word is *taken* by what uses it; a word that nothing took is a mistake.
+#[derive(Debug)]
+pub(crate) struct Block<'a> {
+    pub dictionary: &'static Dictionary,
+    /// The machine, for the M functions that its builder has added.
+    settings: &'a Settings,
+    /// The line as it stands.
+    pub text: &'a [u8],
+    /// Its number, from 1.
+    pub line: u32,
+    /// Whether there is anything but blanks and comments.
+    pub is_empty: bool,
+    /// How many M words there are.
+    pub m_count: u32,
+    /// A word has been read.
+    started: bool,
+    /// A macro is called: the words that follow are its arguments.
+    calls: bool,
+    pub words: [Word; LETTERS.len()],
+    given: u32,
+    pending: u32,
+    g: [Option<G>; Group::COUNT],
+    m: [Option<M>; Group::COUNT],
+    pub places: [Word; Group::COUNT],
+    comments: Vec<(usize, usize)>,
+    prompt: Option<(usize, usize)>,
+    /// What the block sets (RS274/NGC), which takes effect when the whole block has been read.
+    pub assignments: Vec<(Target<'a>, Value)>,
+    /// The words behind `G65` or `G66`, in their order.
+    pub arguments: Vec<(u8, Word)>,
+}
+
+impl<'a> Block<'a> {
+    /// A block without words, for programs in the words of `dictionary` and the M functions that the
+    /// builder of the machine has added: those of the wire, and others that change nothing that is
+    /// followed here.
+    pub(crate) fn new(dictionary: &'static Dictionary, settings: &'a Settings) -> Block<'a> {
+        Block {
+            dictionary,
+            settings,
+            text: b"",
+            line: 0,
+            is_empty: true,
+            m_count: 0,
+            started: false,
+            calls: false,
+            words: [Word::default(); LETTERS.len()],
+            given: 0,
+            pending: 0,
+            g: [None; Group::COUNT],
+            m: [None; Group::COUNT],
+            places: [Word::default(); Group::COUNT],
+            comments: Vec::new(),
+            prompt: None,
+            assignments: Vec::new(),
+            arguments: Vec::new(),
+        }
+    }
+
+    /// Forgets the words of the last block; `text` is the new one.
+    pub(crate) fn clear(&mut self, line: u32, text: &'a [u8]) {
+        (self.text, self.line) = (text, line);
+        (self.is_empty, self.started, self.calls) = (true, false, false);
+        if self.m_count > 0 {
+            self.m = [None; Group::COUNT];
+        }
+        self.g = [None; Group::COUNT];
+        (self.m_count, self.given, self.pending) = (0, 0, 0);
+        self.comments.clear();
+        self.prompt = None;
+        self.assignments.clear();
+        self.arguments.clear();
+    }
+
+    /// Takes the words of `text` from byte `at` on in place of those of the last block.
+    ///
+    /// # Errors
+    /// What is no word of the flavour, a number that is none, a word given twice, two words of a
+    /// modal group, a comment without an end, a block that is too long, a calculation without a result.
+    pub(crate) fn read(
+        &mut self,
+        line: u32,
+        text: &'a [u8],
+        mut at: usize,
+        values: &Values,
+    ) -> Result<(), Fault> {
+        let dictionary = self.dictionary;
+        self.clear(line, text);
+        let mut length = 0;
+        while let Some(&byte) = text.get(at) {
+            let from = at;
+            match byte {
+                b' ' | b'\t' => {
+                    at += 1;
+                    continue;
+                }
+                b'A'..=b'Z' => at = self.word(byte, at, values)?,
+                b'@' | b'^' | b'$' if dictionary.letters & bit(byte) != 0 => {
+                    at = self.word(byte, at, values)?
+                }
+                b'a'..=b'z' if dictionary.flavor.has_small_letters() => {
+                    at = self.word(byte.to_ascii_uppercase(), at, values)?;
+                }
+                b'#' if matches!(values.language(), Language::Ngc | Language::Rs274) => {
+                    at = self.assignment(at, values)?
+                }
+                // In ISO code the colon is the O of EIA code.
+                b':' if values.language() == Language::MacroB => {
+                    at = self.word(b'O', at, values)?
+                }
+                b'(' if dictionary.flavor != Flavor::Marlin => {
+                    at = self.comment(at)?;
+                    continue;
+                }
+                b';' if dictionary.flavor.is_fanuc() => {
+                    self.end_of_block(at)?;
+                    break;
+                }
+                b';' => {
+                    self.comments.push((at + 1, text.len()));
+                    break;
+                }
+                // The proof holds for the block-delete switch off: the block is run.
+                b'/' if self.is_empty && dictionary.flavor != Flavor::Marlin => {
+                    at = after_block_delete(dictionary.flavor, text, at)
+                }
+                _ => return Err(self.stray(dictionary.flavor, byte, at)),
+            }
+            self.is_empty = false;
+            length += at - from;
+        }
+        if length > dictionary.longest {
+            let message =
+                format!("the block has {length} characters, at most {}", dictionary.longest);
+            return Err(self.fault("nc-long-block", message, 0, text.len()));
+        }
+        Ok(())
+    }
+
+    /// Reads the word at `at` and gives the place after it.
+    fn word(&mut self, letter: u8, at: usize, values: &Values) -> Result<usize, Fault> {
+        let dictionary = self.dictionary;
+        let mut from = at + 1;
+        while matches!(self.text.get(from), Some(b' ' | b'\t')) {
+            from += 1;
+        }
+        let mut word = Word { start: u32::try_from(at).unwrap_or(u32::MAX), ..Word::default() };
+        let end = match self.text.get(from..).and_then(decimal::parse) {
+            Some(number) => {
+                (word.value, word.point) = (number.value, number.point);
+                if dictionary.flavor == Flavor::FreeCad && number.value.abs() >= NOTHING {
+                    return Err(self.nothing(at, from + number.len));
+                }
+                from + number.len
+            }
+            // Marlin's G28 X: an axis that is named.
+            None if self.g(Group::OneShot) == Some(G::Home)
+                && dictionary.flavor == Flavor::Marlin =>
+            {
+                at + 1
+            }
+            None => {
+                let (value, end) = self.computed(letter, at, from, values)?;
+                self.started = true;
+                // A word whose variable is null is not there (B-63684EN, 16.1).
+                let Some(value) = value else { return Ok(end) };
+                (word.value, word.computed) = (value, true);
+                end
+            }
+        };
+        word.end = u32::try_from(end).unwrap_or(u32::MAX);
+        if self.calls && !matches!(letter, b'N' | b'P' | b'L' | b'G') {
+            self.arguments.push((letter, word));
+            return Ok(end);
+        }
+        match letter {
+            b'G' => match dictionary.g(word.value) {
+                Some((group, meaning)) => {
+                    if self.g[group as usize].replace(meaning).is_some() {
+                        return Err(self.same_group(group, at, end));
+                    }
+                    self.places[group as usize] = word;
+                    self.calls |= matches!(meaning, G::MacroCall { .. });
+                }
+                None => return Err(self.unknown(letter, word)),
+            },
+            b'M' => match dictionary.m(word.value).or_else(|| self.of_the_machine(word.value)) {
+                Some((group, meaning)) => {
+                    if self.m[group as usize].replace(meaning).is_some() {
+                        return Err(self.same_group(group, at, end));
+                    }
+                    self.places[group as usize] = word;
+                    self.m_count += 1;
+                    if dictionary.flavor == Flavor::Marlin {
+                        self.started = true;
+                        return Ok(self.prompt(meaning, end));
+                    }
+                }
+                None if self.settings.auxiliary.iter().any(|&m| f64::from(m) == word.value) => {
+                    self.m_count += 1;
+                }
+                None => return Err(self.unknown(letter, word)),
+            },
+            _ => {
+                let letter_bit = bit(letter);
+                if dictionary.letters & letter_bit == 0 {
+                    return Err(self.unknown(letter, word));
+                }
+                if self.given & letter_bit != 0 {
+                    let message = format!("{} is given twice in the block", char::from(letter));
+                    return Err(self.fault("nc-repeated-word", message, at, end));
+                }
+                if letter == b'N' && (self.started || word.point || word.value < 0.0) {
+                    let message = "N is a whole number and stands first in its block";
+                    return Err(self.fault("nc-block-number", message, at, end));
+                }
+                self.given |= letter_bit;
+                if letter != b'N' {
+                    self.pending |= letter_bit;
+                }
+                self.words[index(letter)] = word;
+            }
+        }
+        self.started = true;
+        Ok(end)
+    }
+
+    /// Behind Marlin's `M0`, `M1` and `M117` at `at` stands a text, not words: the place after it.
+    fn prompt(&mut self, meaning: M, at: usize) -> usize {
+        let rest = self.text.get(at..).unwrap_or_default();
+        let text = rest.split(|&b| b == b';').next().unwrap_or_default();
+        // `M0 S5`: how long it waits.
+        let waits = matches!(text.trim_ascii(), [b'P' | b'S', b'0'..=b'9', ..]);
+        let prompts = match meaning {
+            M::Stop | M::OptionalStop => !waits && !text.trim_ascii().is_empty(),
+            M::Message => true,
+            _ => false,
+        };
+        if !prompts {
+            return at;
+        }
+        self.prompt = Some((at, at + text.len()));
+        at + text.len()
+    }
+
+    /// What the block shows to the operator, apart from its comments.
+    pub(crate) fn message(&self) -> Option<&'a [u8]> {
+        let (from, to) = self.prompt?;
+        Some(self.text.get(from..to).unwrap_or_default().trim_ascii())
+    }
+
+    /// The M function of this number that is the machine's own: it threads or cuts the wire, or runs a
+    /// program of LinuxCNC's (`M100` to `M199`), to which P and Q belong.
+    fn of_the_machine(&self, number: f64) -> Option<(Group, M)> {
+        let is = |function: Option<u32>| function.map(f64::from) == Some(number);
+        let runs = self.dictionary.flavor == Flavor::LinuxCnc && (100.0..200.0).contains(&number);
+        if runs && self.settings.auxiliary.iter().any(|&m| f64::from(m) == number) {
+            return Some((Group::Output, M::Neutral(b"PQ")));
+        }
+        match self.settings.wire {
+            _ if !self.dictionary.flavor.is_wire() => None,
+            wire if is(wire.thread) => Some((Group::Wire, M::ThreadWire)),
+            wire if is(wire.cut) => Some((Group::Wire, M::CutWire)),
+            _ => None,
+        }
+    }
+
+    /// The number of a word that the program calculates at `from`, and the place after it.
+    fn computed(
+        &self,
+        letter: u8,
+        at: usize,
+        from: usize,
+        values: &Values,
+    ) -> Result<(Value, usize), Fault> {
+        let calculates = match (values.language(), self.text.get(from)) {
+            (Language::Plain, _) => false,
+            (_, Some(b'#' | b'[' | b'+' | b'-')) => true,
+            (language, Some(byte)) => language != Language::MacroB && byte.is_ascii_alphabetic(),
+            _ => false,
+        };
+        if !calculates {
+            return Err(self.no_number(letter, at, from));
+        }
+        let mut reader = Reader::new(values, self.line, self.text, from);
+        let value = reader.value()?;
+        let rounds = |name: &&[u8]| {
+            let text = self.text.get(from..reader.at).unwrap_or_default();
+            text.windows(name.len()).any(|part| part == *name)
+        };
+        // There it goes to the least increment (B-63684EN, 16.3), which is the machine's.
+        if values.language() == Language::MacroB && [&b"ROUND"[..], b"RND"].iter().any(rounds) {
+            let message = "ROUND in a word rounds to the least increment of the machine";
+            let fault = self.fault("nc-expression", message, at, reader.at);
+            let help = "round in a block before: in #1=ROUND[..] it gives a whole number";
+            return Err(fault.help(help).into());
+        }
+        let value = value.map(|value| match letter {
+            b'G' => {
+                arithmetic::whole(value * 10.0).map_or(value, |tenths| f64::from(tenths) / 10.0)
+            }
+            b'M' | b'N' | b'O' => arithmetic::whole(value).map_or(value, f64::from),
+            _ => value,
+        });
+        Ok((value, reader.at))
+    }
+
+    /// Reads the setting of a parameter at `at` and gives the place after it.
+    fn assignment(&mut self, at: usize, values: &Values) -> Result<usize, Fault> {
+        let mut reader = Reader::new(values, self.line, self.text, at + 1);
+        let target = reader.target()?;
+        if !reader.take(b'=') {
+            return Err(reader.wrong("a parameter stands for itself here: = is missing"));
+        }
+        let value = reader.value()?;
+        self.assignments.push((target, value));
+        self.started = true;
+        Ok(reader.at)
+    }
+
+    /// `;` at `at` is the end of the block as a FANUC shows it: behind it there are comments at most.
+    fn end_of_block(&mut self, mut at: usize) -> Result<(), Fault> {
+        while let Some(&byte) = self.text.get(at) {
+            at = match byte {
+                b' ' | b'\t' | b';' => at + 1,
+                b'(' => self.comment(at)?,
+                _ => {
+                    let message = "; ends the block, and there is more behind it";
+                    let fault = self.fault("nc-syntax", message, at, self.text.len());
+                    let help = "put a comment into ( ), and another block on a line of its own";
+                    return Err(fault.help(help).into());
+                }
+            };
+        }
+        Ok(())
+    }
+
+    /// Reads the comment at `at` and gives the place after it. On GRBL it ends at the first `)`,
+    /// whatever stands in it (`protocol_main_loop`).
+    /// One of FreeCAD is a command of its own, and may hold the brackets of a label.
+    fn comment(&mut self, at: usize) -> Result<usize, Fault> {
+        let rest = self.text.get(at + 1..).unwrap_or_default();
+        if self.dictionary.flavor == Flavor::FreeCad {
+            let text = rest.strip_suffix(b")").unwrap_or(rest);
+            self.comments.push((at + 1, at + 1 + text.len()));
+            return Ok(self.text.len());
+        }
+        let nests = self.dictionary.flavor != Flavor::Grbl;
+        match rest.iter().position(|&b| b == b')' || nests && b == b'(') {
+            Some(n) if rest[n] == b')' => {
+                self.comments.push((at + 1, at + 1 + n));
+                Ok(at + n + 2)
+            }
+            Some(n) => {
+                let place = at + 1 + n;
+                let fault = self.fault("nc-comment", "comments cannot be nested", place, place + 1);
+                Err(fault.help("leave the inner brackets out, or write [ ]").into())
+            }
+            None => Err(self.fault("nc-comment", "the comment has no end", at, self.text.len())),
+        }
+    }
+
+    /// The comments of the block.
+    pub(crate) fn comments(&self) -> impl Iterator<Item = &'a [u8]> + '_ {
+        let text = self.text;
+        self.comments.iter().map(move |&(from, to)| text.get(from..to).unwrap_or_default())
+    }
+
+    /// Whether the block has no word but `letters` and the M word of this group.
+    pub(crate) fn has_only(&self, letters: &[u8], group: Group) -> bool {
+        let allowed = letters.iter().fold(bit(b'N'), |bits, &letter| bits | bit(letter));
+        let others =
+            |n: &usize| *n != group as usize && (self.g[*n].is_some() || self.m[*n].is_some());
+        self.given & !allowed == 0 && !(0..Group::COUNT).any(|n| others(&n))
+    }
+
+    /// Puts a G word into the block.
+    pub(crate) fn put_g(&mut self, group: Group, word: G) {
+        self.g[group as usize] = Some(word);
+        self.places[group as usize] = Word::default();
+        self.is_empty = false;
+    }
+
+    /// Puts an M word into the block.
+    pub(crate) fn put_m(&mut self, group: Group, word: M) {
+        self.m[group as usize] = Some(word);
+        self.m_count += 1;
+        self.is_empty = false;
+    }
+
+    /// Puts a calculated word into the block.
+    pub(crate) fn put(&mut self, letter: u8, value: f64) {
+        self.words[index(letter)] = Word { value, computed: true, ..Word::default() };
+        self.given |= bit(letter);
+        self.pending |= bit(letter);
+        self.is_empty = false;
+    }
+
+    /// The G word of a group.
+    pub(crate) fn g(&self, group: Group) -> Option<G> {
+        self.g[group as usize]
+    }
+
+    /// The M word of a group.
+    pub(crate) fn m(&self, group: Group) -> Option<M> {
+        self.m[group as usize]
+    }
+
+    /// How many G and M words there are, apart from those of the builder.
+    pub(crate) fn commands(&self) -> usize {
+        self.g.iter().flatten().count() + self.m.iter().flatten().count()
+    }
+
+    /// Whether the block has this letter and nothing has taken it yet.
+    pub(crate) fn has(&self, letter: u8) -> bool {
+        self.pending & bit(letter) != 0
+    }
+
+    /// Whether the block has this letter, taken or not.
+    pub(crate) fn gives(&self, letter: u8) -> bool {
+        self.given & bit(letter) != 0
+    }
+
+    /// Whether the block has one of these letters ([`bit`]) and nothing has taken it yet.
+    pub(crate) fn has_any(&self, letters: u32) -> bool {
+        self.pending & letters != 0
+    }
+
+    /// The word of this letter, which then counts as used.
+    pub(crate) fn take(&mut self, letter: u8) -> Option<Word> {
+        if self.pending & bit(letter) == 0 {
+            return None;
+        }
+        self.pending &= !bit(letter);
+        Some(self.words[index(letter)])
+    }
+
+    /// The words of these letters count as used.
+    pub(crate) fn pass(&mut self, letters: &[u8]) {
+        for &letter in letters {
+            self.pending &= !bit(letter);
+        }
+    }
+
+    /// The words of these letters can be taken once more.
+    pub(crate) fn again(&mut self, letters: &[u8]) {
+        for &letter in letters {
+            self.pending |= self.given & bit(letter);
+        }
+    }
+
+    /// # Errors
+    /// A word that nothing in the block uses.
+    pub(crate) fn all_taken(&self) -> Result<(), Fault> {
+        if self.pending == 0 {
+            return Ok(());
+        }
+        let letter = LETTERS[self.pending.trailing_zeros() as usize % LETTERS.len()];
+        let message = format!("nothing in the block uses {}", self.shown(letter));
+        Err(self.at_word(letter, "nc-unused-word", message))
+    }
+}
+
+/// The place after `/`, or on FANUC `/1` to `/9`.
+fn after_block_delete(flavor: Flavor, text: &[u8], at: usize) -> usize {
+    let numbered = flavor.is_fanuc() && matches!(text.get(at + 1), Some(b'1'..=b'9'));
+    at + 1 + usize::from(numbered)
+}

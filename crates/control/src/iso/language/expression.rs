@@ -1,0 +1,320 @@
+//! Numbers that a program calculates: `#1`, `[#<depth> + 2 * SIN[30]]`. They are evaluated as they are read.
+//!
+//! By rank, from left to right within one:
+//!
+//! | RS274/NGC (LinuxCNC manual, "Binary Operators") | custom macro B (B-63684EN, 16.3) |
+//! | --- | --- |
+//! | `**` | |
+//! | `*` `/` `MOD` | `*` `/` `AND` `MOD` |
+//! | `+` `-` | `+` `-` `OR` `XOR` |
+//! | `EQ` `NE` `GT` `GE` `LT` `LE` | `EQ` `NE` `GT` `GE` `LT` `LE` |
+//! | `AND` `OR` `XOR` of truths | |
+
+use super::arithmetic::{
+    BINARY, Binary, FUNCTIONS, Function, MACRO_FUNCTIONS, NGC_FUNCTIONS, macro_binary,
+    macro_function, ngc_binary, ngc_function, truth, whole,
+};
+use super::block::Fault;
+use super::parameters::{Language, Values};
+use crate::decimal;
+use program::Diagnostic;
+
+/// A calculated number; `None` is the null of a macro variable that holds nothing.
+pub(super) type Value = Option<f64>;
+
+/// How deep brackets, signs and `##` may nest.
+const DEEPEST: u32 = 100;
+
+/// How deep brackets may nest in macro B (B-63684EN, 16.3: alarm 118).
+const DEEPEST_MACRO: u32 = 5;
+
+/// Reads numbers from a line.
+pub(crate) struct Reader<'t, 'v> {
+    values: &'v Values<'v>,
+    line: u32,
+    text: &'t [u8],
+    /// The next byte.
+    pub at: usize,
+    depth: u32,
+    brackets: u32,
+}
+
+impl<'t, 'v> Reader<'t, 'v> {
+    /// For the number at `at` of `text`, which is line `line`.
+    pub(crate) fn new(
+        values: &'v Values<'v>,
+        line: u32,
+        text: &'t [u8],
+        at: usize,
+    ) -> Reader<'t, 'v> {
+        Reader { values, line, text, at, depth: 0, brackets: 0 }
+    }
+
+    /// The byte here, behind blanks.
+    pub(crate) fn peek(&mut self) -> Option<u8> {
+        while let Some(b' ' | b'\t') = self.text.get(self.at) {
+            self.at += 1;
+        }
+        self.text.get(self.at).copied()
+    }
+
+    /// Takes `byte` where it is here.
+    pub(crate) fn take(&mut self, byte: u8) -> bool {
+        let here = self.peek() == Some(byte);
+        self.at += usize::from(here);
+        here
+    }
+
+    /// A number: written, of a parameter, of a function, or in brackets; with signs.
+    pub(crate) fn value(&mut self) -> Result<Value, Fault> {
+        if self.depth >= DEEPEST {
+            return Err(self.wrong("the expression nests too deep"));
+        }
+        self.depth += 1;
+        let value = match self.peek() {
+            Some(b'[') => self.expression(),
+            Some(b'#') => self.parameter(),
+            Some(b'+') => {
+                self.at += 1;
+                self.value()
+            }
+            Some(b'-') => {
+                self.at += 1;
+                self.value().map(|value| value.map(|value| -value))
+            }
+            Some(b'0'..=b'9' | b'.') => self.number(),
+            Some(b'A'..=b'Z' | b'a'..=b'z') => self.function(),
+            _ => Err(self.wrong("a number is missing")),
+        }?;
+        self.depth -= 1;
+        Ok(value)
+    }
+
+    fn number(&mut self) -> Result<Value, Fault> {
+        let rest = self.text.get(self.at..).unwrap_or_default();
+        let number = decimal::parse(rest).ok_or_else(|| self.wrong("a number is missing"))?;
+        self.at += number.len;
+        Ok(Some(number.value))
+    }
+
+    /// Numbers and operators, as they stand behind the `=` of macro B.
+    pub(crate) fn formula(&mut self) -> Result<Value, Fault> {
+        self.chain(0)
+    }
+
+    /// An expression in brackets.
+    pub(crate) fn expression(&mut self) -> Result<Value, Fault> {
+        self.open()?;
+        let value = self.chain(0)?;
+        self.close()?;
+        Ok(value)
+    }
+
+    fn open(&mut self) -> Result<(), Fault> {
+        if !self.take(b'[') {
+            return Err(self.wrong("[ is missing"));
+        }
+        self.brackets += 1;
+        if self.values.language() == Language::MacroB && self.brackets > DEEPEST_MACRO {
+            return Err(self.wrong(format!("brackets nest deeper than {DEEPEST_MACRO}")));
+        }
+        Ok(())
+    }
+
+    fn close(&mut self) -> Result<(), Fault> {
+        if !self.take(b']') {
+            return Err(self.wrong("an operator or ] is missing"));
+        }
+        self.brackets -= 1;
+        Ok(())
+    }
+
+    /// A number in the place of a whole one: near to it, not null, not below 0.
+    pub(crate) fn whole(&mut self, what: &str) -> Result<u32, Fault> {
+        let start = self.at;
+        let value = self.value()?.unwrap_or(f64::NAN);
+        whole(value).ok_or_else(|| {
+            let message = format!("{what} must be a whole number, and it is {value}");
+            self.fault("nc-number", message, start)
+        })
+    }
+
+    /// Takes what follows a `#` as the parameter that is meant: its number, or its name in `< >`.
+    pub(crate) fn target(&mut self) -> Result<Target<'t>, Fault> {
+        match self.peek() {
+            Some(b'<') if self.values.language() == Language::Ngc => {
+                let from = self.at + 1;
+                let rest = self.text.get(from..).unwrap_or_default();
+                let Some(length) = memchr::memchr(b'>', rest) else {
+                    return Err(self.wrong("the name of the parameter has no end; write >"));
+                };
+                self.at = from + length + 1;
+                Ok(Target::Name(rest.get(..length).unwrap_or_default()))
+            }
+            Some(b'#') if self.values.language() == Language::MacroB => {
+                Err(self.wrong("a variable that names another stands in brackets: #[#1]"))
+            }
+            _ => self.whole("the number of a parameter").map(Target::Number),
+        }
+    }
+
+    fn parameter(&mut self) -> Result<Value, Fault> {
+        let start = self.at;
+        self.at += 1;
+        let target = self.target()?;
+        self.values.get(target).map_err(|message| self.fault("nc-parameter", message, start))
+    }
+
+    /// Numbers and operators of rank `least` and above.
+    fn chain(&mut self, least: u8) -> Result<Value, Fault> {
+        let start = self.at;
+        let mut left = self.value()?;
+        while let Some((operator, length)) = self.operator() {
+            let rank = operator.rank(self.values.language());
+            if rank < least {
+                break;
+            }
+            self.at += length;
+            let right = self.chain(rank + 1)?;
+            let result = match self.values.language() {
+                Language::MacroB => macro_binary(operator, left, right),
+                _ => ngc_binary(operator, left.unwrap_or(0.0), right.unwrap_or(0.0)).map(Some),
+            };
+            left = self.checked(result, start)?;
+        }
+        Ok(left)
+    }
+
+    /// The operator here and its length.
+    fn operator(&mut self) -> Option<(Binary, usize)> {
+        let symbol = match self.peek()? {
+            b'+' => Binary::Plus,
+            b'-' => Binary::Minus,
+            b'/' => Binary::Divide,
+            b'*' if self.text.get(self.at + 1) == Some(&b'*')
+                && self.values.language() != Language::MacroB =>
+            {
+                return Some((Binary::Power, 2));
+            }
+            b'*' => Binary::Times,
+            // The first RS274/NGC does not compare.
+            _ if self.values.language() == Language::Rs274 => return self.word(&BINARY[6..]),
+            _ => return self.word(&BINARY),
+        };
+        Some((symbol, 1))
+    }
+
+    /// The word of `table` that stands here and its length. Macro B has no small letters.
+    fn word<T: Copy>(&self, table: &[(&[u8], T)]) -> Option<(T, usize)> {
+        let rest = self.text.get(self.at..)?;
+        let small = self.values.language() != Language::MacroB;
+        table.iter().find_map(|(word, meaning)| {
+            let here = rest.get(..word.len())?;
+            let same = here == *word || small && here.eq_ignore_ascii_case(word);
+            same.then_some((*meaning, word.len()))
+        })
+    }
+
+    fn function(&mut self) -> Result<Value, Fault> {
+        let start = self.at;
+        let own: &[(&[u8], Function)] = match self.values.language() {
+            Language::MacroB => &MACRO_FUNCTIONS,
+            Language::Ngc => &NGC_FUNCTIONS,
+            _ => &[],
+        };
+        let Some((function, length)) = self.word(&FUNCTIONS).or_else(|| self.word(own)) else {
+            let message = "no function of this control begins here";
+            return Err(self.fault("nc-expression", message, start));
+        };
+        self.at += length;
+        self.open()?;
+        if function == Function::Exists {
+            return self.exists();
+        }
+        let first = self.chain(0)?;
+        let second = self.second_argument(function)?;
+        let result = match (self.values.language(), second) {
+            (Language::MacroB, second) => macro_function(function, first, second),
+            (_, Some(second)) => Ok(first.unwrap_or(0.0).atan2(second).to_degrees()),
+            (_, None) => ngc_function(function, first.unwrap_or(0.0)),
+        };
+        self.checked(result.map(Some), start)
+    }
+
+    /// The second argument of `ATAN[ ]/[ ]`, `ATAN[ , ]` and `POW[ , ]`, behind the first one.
+    fn second_argument(&mut self, function: Function) -> Result<Option<f64>, Fault> {
+        let macro_b = self.values.language() == Language::MacroB;
+        let pair = macro_b && matches!(function, Function::Atan | Function::Pow);
+        if pair && self.take(b',') {
+            let second = self.chain(0)?;
+            self.close()?;
+            return Ok(Some(second.unwrap_or(0.0)));
+        }
+        self.close()?;
+        if function == Function::Atan && self.take(b'/') {
+            return Ok(Some(self.expression()?.unwrap_or(0.0)));
+        }
+        match function {
+            Function::Pow => Err(self.wrong("POW needs two arguments: POW[base, exponent]")),
+            Function::Atan if !macro_b => Err(self.wrong("ATAN needs two arguments: ATAN[y]/[x]")),
+            _ => Ok(None),
+        }
+    }
+
+    /// The rest of `EXISTS[#<name>]`.
+    fn exists(&mut self) -> Result<Value, Fault> {
+        let start = self.at;
+        if !self.take(b'#') {
+            return Err(self.wrong("EXISTS needs a parameter: EXISTS[#<name>]"));
+        }
+        let target = self.target()?;
+        self.close()?;
+        let exists = self.values.exists(target);
+        exists
+            .map(|exists| Some(truth(exists)))
+            .map_err(|message| self.fault("nc-parameter", message, start))
+    }
+
+    /// # Errors
+    /// There is no result, or none that is a number.
+    fn checked(&self, result: Result<Value, &'static str>, start: usize) -> Result<Value, Fault> {
+        match result {
+            Ok(value) if value.is_none_or(f64::is_finite) => Ok(value),
+            Ok(_) => Err(self.fault("nc-arithmetic", "the result is beyond all numbers", start)),
+            Err(message) => Err(self.fault("nc-arithmetic", message, start)),
+        }
+    }
+
+    /// A finding at what stands here.
+    pub(crate) fn wrong(&self, message: impl Into<String>) -> Fault {
+        self.fault_between("nc-expression", message, self.at, self.at + 1)
+    }
+
+    /// A finding about what has been read from `start` on.
+    pub(super) fn fault(
+        &self,
+        rule: &'static str,
+        message: impl Into<String>,
+        start: usize,
+    ) -> Fault {
+        self.fault_between(rule, message, start, self.at.max(start + 1))
+    }
+
+    fn fault_between(
+        &self,
+        rule: &'static str,
+        message: impl Into<String>,
+        start: usize,
+        end: usize,
+    ) -> Fault {
+        Diagnostic::error(rule, message).at(self.line, self.text, start, end).into()
+    }
+}
+
+/// Which parameter is meant.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Target<'t> {
+    Number(u32),
+    /// As it is written.
+    Name(&'t [u8]),
+}

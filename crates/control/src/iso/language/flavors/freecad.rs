@@ -1,0 +1,48 @@
+//! FreeCAD's own commands, in which its CAM workbench keeps toolpaths (`docs/sources/freecad.md`): lengths
+//! are mm and feeds mm/s, whatever the job shows.
+
+use super::super::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Motion, Refused, Side};
+use super::{BASIC_G, BASIC_M, END_M, SPINDLE_G, SPINDLE_M, cycles};
+
+const G_WORDS: &[GRow] = &[
+    (210, Group::Units, G::Inches(false)),
+    (382, Group::Motion, G::Motion(Motion::Probe { away: false, must_answer: true })),
+    (383, Group::Motion, G::Motion(Motion::Probe { away: false, must_answer: false })),
+    (384, Group::Motion, G::Motion(Motion::Probe { away: true, must_answer: true })),
+    (385, Group::Motion, G::Motion(Motion::Probe { away: true, must_answer: false })),
+    (400, Group::Compensation, G::Compensation(Side::Off)),
+    (410, Group::Compensation, G::Compensation(Side::Left)),
+    (420, Group::Compensation, G::Compensation(Side::Right)),
+    (591, Group::WorkOffset, G::WorkOffset(60)),
+    (592, Group::WorkOffset, G::WorkOffset(61)),
+    (593, Group::WorkOffset, G::WorkOffset(62)),
+    (594, Group::WorkOffset, G::WorkOffset(63)),
+    (595, Group::WorkOffset, G::WorkOffset(64)),
+    (596, Group::WorkOffset, G::WorkOffset(65)),
+    (597, Group::WorkOffset, G::WorkOffset(66)),
+    (598, Group::WorkOffset, G::WorkOffset(67)),
+    (599, Group::WorkOffset, G::WorkOffset(68)),
+    (800, Group::Cycle, G::CancelCycle),
+    (911, Group::ArcDistance, G::CentersAbsolute(false)),
+    (980, Group::Return, G::ReturnToR(false)),
+    (990, Group::Return, G::ReturnToR(true)),
+];
+
+const M_WORDS: &[MRow] = &[(6, Group::ToolChange, M::ChangeTool), (7, Group::Coolant, M::Mist)];
+
+const REFUSED_G: &[Refused] = &[
+    (200, "FreeCAD keeps its toolpaths in mm, also where the job shows inches"),
+    (430, "the post calls the length of the tool with the tool"),
+    (490, "the post calls the length of the tool with the tool"),
+    (930, "FreeCAD keeps its feeds in mm/s, which its own posts write as mm/min in any mode"),
+    (940, "FreeCAD keeps its feeds in mm/s; the post says what its control needs: take it out"),
+    (950, "FreeCAD keeps its feeds in mm/s, which its own posts write as mm/min in any mode"),
+];
+
+pub(super) static WORDS: Dictionary =
+    Dictionary::new(Flavor::FreeCad, b"ABCDFGIJKLMNPQRSTXYZ", usize::MAX)
+        .with(BASIC_G, BASIC_M)
+        .with(SPINDLE_G, SPINDLE_M)
+        .with(&cycles(Group::Motion), END_M)
+        .with(G_WORDS, M_WORDS)
+        .refusing(REFUSED_G, &[]);

@@ -1,0 +1,41 @@
+//! GRBL 1.1, wiki page "Grbl v1.1 Commands" and the supported codes in its `gcode.h`.
+
+use super::super::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Motion, Refused};
+use super::{END_M, MILL_G, mill};
+
+const G_WORDS: &[GRow] = &[
+    (100, Group::OneShot, G::WriteData),
+    (281, Group::OneShot, G::StoreHome { second: false }),
+    (301, Group::OneShot, G::StoreHome { second: true }),
+    (382, Group::Motion, G::Motion(Motion::Probe { away: false, must_answer: true })),
+    (383, Group::Motion, G::Motion(Motion::Probe { away: false, must_answer: false })),
+    (384, Group::Motion, G::Motion(Motion::Probe { away: true, must_answer: true })),
+    (385, Group::Motion, G::Motion(Motion::Probe { away: true, must_answer: false })),
+    (431, Group::Length, G::DynamicLength),
+    (800, Group::Motion, G::CancelCycle),
+    (911, Group::ArcDistance, G::CentersAbsolute(false)),
+    (921, Group::OneShot, G::CancelShift { keep: false }),
+];
+
+const M_WORDS: &[MRow] = &[(7, Group::Coolant, M::Mist)];
+
+const REFUSED_G: &[Refused] = &[
+    (410, "this control has no radius compensation; write the compensated path"),
+    (420, "this control has no radius compensation; write the compensated path"),
+    (430, "this control has no tool table; write G43.1 Z"),
+    (640, "this control has no modes of the path: take it out"),
+    (810, "this control has no cycles; write their moves"),
+    (820, "this control has no cycles; write their moves"),
+    (830, "this control has no cycles; write their moves"),
+];
+
+const REFUSED_M: &[Refused] = &[
+    (6, "this control has no tool change: where its sender stops for it, write M0"),
+    (98, "this control has no subprograms"),
+    (99, "this control has no subprograms"),
+];
+
+pub(super) static WORDS: Dictionary = mill(Flavor::Grbl, b"FGIJKLMNPRSTXYZ", 79)
+    .with(MILL_G, END_M)
+    .with(G_WORDS, M_WORDS)
+    .refusing(REFUSED_G, REFUSED_M);

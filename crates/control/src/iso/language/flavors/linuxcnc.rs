@@ -1,0 +1,79 @@
+//! LinuxCNC, "G-Code Overview", table of modal groups. `G80` may stand beside `G0` to `G3`, so it has
+//! a group of its own.
+
+use super::super::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Motion, Refused, Side};
+use super::{END_M, MILL_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
+
+const G_WORDS: &[GRow] = &[
+    (50, Group::Motion, G::Motion(Motion::Spline { cubic: true })),
+    (51, Group::Motion, G::Motion(Motion::Spline { cubic: false })),
+    (70, Group::Diameter, G::Diameter(true)),
+    (80, Group::Diameter, G::Diameter(false)),
+    (100, Group::OneShot, G::WriteData),
+    (281, Group::OneShot, G::StoreHome { second: false }),
+    (301, Group::OneShot, G::StoreHome { second: true }),
+    (330, Group::Motion, G::Motion(Motion::Thread)),
+    (331, Group::Motion, G::Motion(Motion::RigidTap)),
+    (382, Group::Motion, G::Motion(Motion::Probe { away: false, must_answer: true })),
+    (383, Group::Motion, G::Motion(Motion::Probe { away: false, must_answer: false })),
+    (384, Group::Motion, G::Motion(Motion::Probe { away: true, must_answer: true })),
+    (385, Group::Motion, G::Motion(Motion::Probe { away: true, must_answer: false })),
+    (431, Group::Length, G::DynamicLength),
+    (591, Group::WorkOffset, G::WorkOffset(60)),
+    (592, Group::WorkOffset, G::WorkOffset(61)),
+    (593, Group::WorkOffset, G::WorkOffset(62)),
+    (611, Group::Path, G::Neutral(b"")),
+    (640, Group::Path, G::Neutral(b"PQ")),
+    (800, Group::Cycle, G::CancelCycle),
+    (901, Group::ArcDistance, G::CentersAbsolute(true)),
+    (911, Group::ArcDistance, G::CentersAbsolute(false)),
+    (921, Group::OneShot, G::CancelShift { keep: false }),
+    (922, Group::OneShot, G::CancelShift { keep: true }),
+    (923, Group::OneShot, G::RestoreShift),
+    (960, Group::SpindleMode, G::SurfaceSpeed(true)),
+    (970, Group::SpindleMode, G::SurfaceSpeed(false)),
+    (411, Group::Compensation, G::DynamicCompensation(Side::Left)),
+    (421, Group::Compensation, G::DynamicCompensation(Side::Right)),
+];
+
+const M_WORDS: &[MRow] = &[
+    (7, Group::Coolant, M::Mist),
+    (50, Group::Override, M::Neutral(b"P")),
+    (51, Group::Override, M::Neutral(b"P")),
+    (52, Group::Override, M::Neutral(b"P")),
+    (53, Group::Override, M::Neutral(b"P")),
+    (60, Group::Flow, M::Stop),
+    (61, Group::ToolChange, M::ToolIsIn),
+    (62, Group::Output, M::Output(b"P")),
+    (63, Group::Output, M::Output(b"P")),
+    (64, Group::Output, M::Output(b"P")),
+    (65, Group::Output, M::Output(b"P")),
+    (66, Group::Output, M::Neutral(b"PELQ")),
+    (67, Group::Output, M::Output(b"EQ")),
+    (68, Group::Output, M::Output(b"EQ")),
+    (70, Group::Modes, M::SaveModes { until_return: false }),
+    (71, Group::Modes, M::ForgetModes),
+    (72, Group::Modes, M::RestoreModes),
+    (73, Group::Modes, M::SaveModes { until_return: true }),
+];
+
+const REFUSED_G: &[Refused] = &[
+    (52, "NURBS are not followed; write G5 or plain moves"),
+    (53, "NURBS are not followed; write G5 or plain moves"),
+    (432, "a second length added to the first is not followed; write their sum in the tool table"),
+    (700, "lathe cycles are not followed; write their moves"),
+    (710, "lathe cycles are not followed; write their moves"),
+    (711, "lathe cycles are not followed; write their moves"),
+    (712, "lathe cycles are not followed; write their moves"),
+    (720, "lathe cycles are not followed; write their moves"),
+    (760, "the lathe's threading cycle is not followed; write its passes with G33"),
+    (870, "LinuxCNC's back boring is not followed; write its moves"),
+];
+
+pub(super) static WORDS: Dictionary = mill(Flavor::LinuxCnc, b"ABCDEFGHIJKLMNPQRSTXYZ@^$", 254)
+    .with(MILL_G, END_M)
+    .with(TOOL_G, TOOL_M)
+    .with(&[], SUBPROGRAM_M)
+    .with(&cycles(Group::Motion), &[])
+    .with(G_WORDS, M_WORDS)
+    .refusing(REFUSED_G, &[]);

@@ -1,0 +1,15 @@
+//! The language: a line becomes a block of words, and what is wrong with it is said at its place.
+//!
+//! What a word means stands in one list ([`words`]), which of them a flavour has in its table
+//! ([`flavors`]). A line is taken apart by that ([`block`], [`faults`]); its numbers are calculated
+//! where it says so ([`expression`], [`arithmetic`]) from what the program has set ([`parameters`]) and
+//! what the control says of itself ([`system`]).
+
+pub(super) mod arithmetic;
+pub(super) mod block;
+pub(super) mod expression;
+mod faults;
+pub(super) mod flavors;
+pub(super) mod parameters;
+mod system;
+pub(super) mod words;

@@ -1,0 +1,261 @@
+//! The parameters of RS274/NGC and the variables of macro B: what a program has set.
+
+use super::expression::{Target, Value};
+use super::system;
+use super::words::Flavor;
+use crate::iso::execution::state::State;
+use std::collections::HashMap;
+
+/// How a program calculates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Language {
+    /// Not at all.
+    Plain,
+    /// RS274/NGC as it was first written down: numbered parameters, no comparisons.
+    Rs274,
+    /// RS274/NGC as LinuxCNC has it: named parameters and O-words, too.
+    Ngc,
+    /// Custom macro B.
+    MacroB,
+}
+
+impl Flavor {
+    /// How its programs calculate.
+    pub(crate) fn language(self) -> Language {
+        match self {
+            Flavor::LinuxCnc => Language::Ngc,
+            Flavor::Mach3 => Language::Rs274,
+            Flavor::Fanuc | Flavor::Haas => Language::MacroB,
+            Flavor::Grbl
+            | Flavor::Marlin
+            | Flavor::FanucWire
+            | Flavor::Sodick
+            | Flavor::Agie
+            | Flavor::FreeCad => Language::Plain,
+        }
+    }
+}
+
+/// Arguments of a call and what a subprogram keeps for itself: `#1` to `#30`, in macro B to `#33`.
+pub(crate) type Locals = [Value; 34];
+
+/// Values by name, lower case and without blanks.
+type Names = HashMap<Box<[u8]>, f64>;
+
+/// What has been set. A call adds a level of local values.
+#[derive(Debug)]
+pub(crate) struct Parameters {
+    pub language: Language,
+    /// Global ones by number; the outer `None` is what no block has set.
+    common: Vec<Option<Value>>,
+    names: Names,
+    levels: Vec<(Locals, Names)>,
+    /// What the last `return` or `endsub` has given back.
+    pub returned: Option<f64>,
+}
+
+/// What an expression can read.
+#[derive(Clone, Copy)]
+pub(crate) struct Values<'v> {
+    pub parameters: &'v Parameters,
+    pub state: &'v State,
+    /// The control has just been switched on and everything in it is 0.
+    pub fresh: bool,
+    pub line: u32,
+}
+
+impl Parameters {
+    /// Before a program.
+    pub(crate) fn new(language: Language) -> Parameters {
+        let (common, names) = (Vec::new(), Names::new());
+        let levels = vec![([None; 34], Names::new())];
+        Parameters { language, common, names, levels, returned: None }
+    }
+
+    /// How many calls with values of their own are under way.
+    pub(super) fn level(&self) -> usize {
+        self.levels.len().saturating_sub(1)
+    }
+
+    /// A call begins; without `locals` it goes on with those of the caller.
+    pub(crate) fn enter(&mut self, locals: Option<Locals>) {
+        let locals = locals.unwrap_or_else(|| *self.locals());
+        self.levels.push((locals, Names::new()));
+    }
+
+    /// A call has ended: the values it leaves, which the caller takes over where they were its own
+    /// (`shared`).
+    pub(crate) fn leave(&mut self, shared: bool) -> Locals {
+        let left = self.levels.pop().map_or([None; 34], |(locals, _)| locals);
+        if shared {
+            *self.locals_mut() = left;
+        }
+        left
+    }
+
+    fn locals(&self) -> &Locals {
+        const NONE: Locals = [None; 34];
+        self.levels.last().map_or(&NONE, |(locals, _)| locals)
+    }
+
+    fn locals_mut(&mut self) -> &mut Locals {
+        if self.levels.is_empty() {
+            self.levels.push(([None; 34], Names::new()));
+        }
+        let last = self.levels.len() - 1;
+        &mut self.levels[last].0
+    }
+
+    fn is_local(&self, number: u32) -> bool {
+        match self.language {
+            Language::Ngc => (1..=30).contains(&number),
+            Language::MacroB => (1..=33).contains(&number),
+            Language::Rs274 | Language::Plain => false,
+        }
+    }
+
+    fn is_common(&self, number: u32) -> bool {
+        match self.language {
+            Language::Ngc => (31..=5000).contains(&number) || number == 5599,
+            Language::Rs274 => (1..=5000).contains(&number),
+            _ => (100..=199).contains(&number) || (500..=999).contains(&number),
+        }
+    }
+
+    /// What a parameter holds; none where no block has set it.
+    fn own(&self, number: u32) -> Option<Value> {
+        if self.is_local(number) {
+            let value = self.locals().get(number as usize).copied().flatten();
+            // An unset local variable of macro B is null (B-63684EN, 16.1).
+            return (value.is_some() || self.language == Language::MacroB).then_some(value);
+        }
+        self.common.get(number as usize).copied().flatten()
+    }
+
+    /// Sets a parameter.
+    ///
+    /// # Errors
+    /// A program cannot set it, and why.
+    pub(crate) fn set(&mut self, target: Target, value: Value) -> Result<(), String> {
+        match target {
+            Target::Number(number) if self.is_local(number) => {
+                if let Some(place) = self.locals_mut().get_mut(number as usize) {
+                    *place = value;
+                }
+            }
+            Target::Number(number) if self.is_common(number) => {
+                let place = number as usize;
+                if self.common.len() <= place {
+                    self.common.resize(place + 1, None);
+                }
+                self.common[place] = Some(value);
+            }
+            Target::Number(number) => {
+                return Err(format!("#{number} is not for programs to set"));
+            }
+            Target::Name(name) => {
+                let name = plain(name);
+                if system::is_ngc_name(&name) {
+                    return Err(format!("#<{}> can only be read", String::from_utf8_lossy(&name)));
+                }
+                let names = match name.first() {
+                    Some(b'_') => &mut self.names,
+                    _ => match self.levels.last_mut() {
+                        Some((_, names)) => names,
+                        None => &mut self.names,
+                    },
+                };
+                let value = value.unwrap_or(0.0);
+                match names.get_mut(&*name) {
+                    Some(place) => *place = value,
+                    None => {
+                        names.insert(name.into(), value);
+                    }
+                }
+            }
+        }
+        Ok(())
+    }
+
+    fn named(&self, name: &[u8]) -> Option<f64> {
+        let names = match name.first() {
+            Some(b'_') => &self.names,
+            _ => self.levels.last().map_or(&self.names, |(_, names)| names),
+        };
+        names.get(name).copied()
+    }
+}
+
+impl Values<'_> {
+    /// How the program calculates.
+    pub(super) fn language(&self) -> Language {
+        self.parameters.language
+    }
+
+    /// The value of a parameter.
+    ///
+    /// # Errors
+    /// It is not known, or there is no such one.
+    pub(super) fn get(&self, target: Target) -> Result<Value, String> {
+        match (target, self.parameters.language) {
+            (Target::Number(0), Language::MacroB) => Ok(None),
+            (Target::Number(number), _) => {
+                if let Some(value) = self.parameters.own(number) {
+                    return Ok(value);
+                }
+                if !self.parameters.is_local(number) && !self.parameters.is_common(number) {
+                    return match self.parameters.language {
+                        Language::MacroB => system::macro_variable(self, number).map(Some),
+                        Language::Ngc => system::ngc_parameter(self, number).map(Some),
+                        _ => Err(format!("what #{number} holds is known only at the machine")),
+                    };
+                }
+                match self.parameters.language {
+                    Language::Ngc | Language::Rs274 if self.fresh => Ok(Some(0.0)),
+                    Language::MacroB if self.fresh && number < 200 => Ok(None),
+                    _ => Err(format!(
+                        "no block has set #{number}: it holds what another program or the operator \
+                         has left there"
+                    )),
+                }
+            }
+            (Target::Name(name), _) => {
+                let name = plain(name);
+                if let Some(value) = self.parameters.named(&name) {
+                    return Ok(Some(value));
+                }
+                let value = system::ngc_named(self, &name).unwrap_or_else(|| {
+                    Err(format!("no block has set #<{}>", String::from_utf8_lossy(&name)))
+                });
+                value.map(Some)
+            }
+        }
+    }
+
+    /// Whether there is such a parameter.
+    ///
+    /// # Errors
+    /// Only the machine knows.
+    pub(super) fn exists(&self, target: Target) -> Result<bool, String> {
+        match target {
+            Target::Number(number) => Ok((1..=5601).contains(&number)),
+            Target::Name(name) => {
+                let name = plain(name);
+                if let Some(b"_hal[" | b"_ini[") = name.get(..5) {
+                    return Err("only the machine knows which pins and settings it has".into());
+                }
+                Ok(self.parameters.named(&name).is_some() || system::is_ngc_name(&name))
+            }
+        }
+    }
+}
+
+/// A name in lower case and without blanks.
+fn plain(name: &[u8]) -> std::borrow::Cow<'_, [u8]> {
+    let as_it_is = |b: &u8| !b.is_ascii_uppercase() && !matches!(b, b' ' | b'\t');
+    if name.iter().all(as_it_is) {
+        return name.into();
+    }
+    let kept = name.iter().filter(|b| !matches!(b, b' ' | b'\t'));
+    kept.map(u8::to_ascii_lowercase).collect::<Vec<u8>>().into()
+}

@@ -1,0 +1,436 @@
+//! What G and M words mean, and which exclude each other in a block. Which of them a flavour has
+//! stands in its table ([`super::flavors`]); what is not in a table is not understood.
+
+/// Which ISO code is read.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Flavor {
+    Fanuc,
+    Haas,
+    LinuxCnc,
+    Mach3,
+    Grbl,
+    Marlin,
+    FanucWire,
+    Sodick,
+    Agie,
+    FreeCad,
+}
+
+impl Flavor {
+    /// FANUC, and those that follow it.
+    pub(crate) fn is_fanuc(self) -> bool {
+        matches!(self, Flavor::Fanuc | Flavor::Haas) || self.is_wire()
+    }
+
+    /// Wire-EDM machines.
+    pub(crate) fn is_wire(self) -> bool {
+        matches!(self, Flavor::FanucWire | Flavor::Sodick | Flavor::Agie)
+    }
+
+    /// The letters of the generator's conditions on a wire-EDM machine.
+    pub(crate) fn conditions(self) -> &'static [u8] {
+        match self {
+            Flavor::FanucWire => b"S",
+            Flavor::Sodick => b"CT",
+            Flavor::Agie => b"PST",
+            _ => b"",
+        }
+    }
+
+    /// The letter of the angle by which the control leans a wire.
+    pub(crate) fn taper_letter(self) -> u8 {
+        if self == Flavor::Sodick { b'A' } else { b'T' }
+    }
+
+    /// Whether D and H stay when they stand alone, for the `G41` and `G43` to come.
+    pub(crate) fn remembers_registers(self) -> bool {
+        matches!(self, Flavor::Fanuc | Flavor::Haas)
+    }
+
+    /// The letter of the register of the tool's or the wire's radius.
+    pub(crate) fn radius_letter(self) -> u8 {
+        if self == Flavor::Sodick { b'H' } else { b'D' }
+    }
+
+    /// Whether small letters are the same as capital ones.
+    pub(super) fn has_small_letters(self) -> bool {
+        !self.is_fanuc() && self != Flavor::Marlin
+    }
+
+    /// Whether a program ends with its last line, without a word for it.
+    pub(crate) fn ends_with_text(self) -> bool {
+        matches!(self, Flavor::Marlin | Flavor::FreeCad)
+    }
+
+    /// GRBL and Marlin have no tool changer: T says which tool the operator puts in.
+    pub(crate) fn changes_by_hand(self) -> bool {
+        matches!(self, Flavor::Grbl | Flavor::Marlin)
+    }
+}
+
+/// The meaning of a G word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum G {
+    Motion(Motion),
+    Cycle(Canned),
+    CancelCycle,
+    Plane(Plane),
+    Incremental(bool),
+    CentersAbsolute(bool),
+    FeedMode(FeedMode),
+    Inches(bool),
+    Compensation(Side),
+    /// With the diameter in the block (`G41.1`).
+    DynamicCompensation(Side),
+    /// Lean of a wire by the control, `G50` to `G52`.
+    Taper(Side),
+    Length,
+    ToolCenter,
+    DynamicLength,
+    CancelLength,
+    ReturnToR(bool),
+    /// By its number in the neutral program: `G54` is 54.
+    WorkOffset(u32),
+    /// `G54.1 P`, `G154 P`: those after `G59`.
+    FurtherOffset {
+        most: u32,
+    },
+    /// How the path is smoothed, or a mode that is off anyway: nothing moves elsewhere for it. The
+    /// letters may stand beside it.
+    Neutral(&'static [u8]),
+    /// `G68`
+    Turn,
+    /// `G68.2`
+    Tilt,
+    /// `G69`
+    Upright,
+    /// `G51`
+    Scale(bool),
+    /// `G51.1`
+    Mirror(bool),
+    /// `G16`
+    Polar(bool),
+    /// Lathe: X is a diameter, `G7`.
+    Diameter(bool),
+    /// `G96`; `G97`, where there is such a thing.
+    SurfaceSpeed(bool),
+    Dwell,
+    Home,
+    SecondHome,
+    /// `G28.1`, `G30.1`
+    StoreHome {
+        second: bool,
+    },
+    /// `G29`
+    FromHome,
+    Machine,
+    /// `G5 P`, `G5.1 Q`: on with this number and off with 0.
+    LookAhead {
+        letter: u8,
+        on: u32,
+    },
+    SwingToTilt,
+    /// `G65`, `G66`: the macro that P names, once or after each move.
+    MacroCall {
+        modal: bool,
+    },
+    /// `G67`.
+    CancelMacroCall,
+    /// `G31`
+    Skip,
+    /// `G60`
+    OneSided,
+    /// `G10`
+    WriteData,
+    /// `G92`
+    ShiftHere,
+    /// `G52`
+    ShiftTo,
+    /// `G92.1`; with `keep` `G92.2`
+    CancelShift {
+        keep: bool,
+    },
+    /// `G92.3`
+    RestoreShift,
+    /// `G12`, `G13`
+    Pocket {
+        clockwise: bool,
+    },
+    /// Haas `G70`, `G71`, `G72`
+    Pattern(Pattern),
+}
+
+/// Holes in a pattern, each made by the active cycle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Pattern {
+    Circle,
+    Arc,
+    Line,
+}
+
+/// Interpolation (`G0` to `G3` and the like).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Motion {
+    Rapid,
+    Line,
+    Arc {
+        clockwise: bool,
+    },
+    /// Cubic or, `G5.1`, quadratic spline.
+    Spline {
+        cubic: bool,
+    },
+    /// `G33`
+    Thread,
+    /// `G33.1`
+    RigidTap,
+    /// `G38.2` to `G38.5`: until the probe lets go or touches, with or without an error where it does not.
+    Probe {
+        away: bool,
+        must_answer: bool,
+    },
+}
+
+/// The canned cycles that can be told in the neutral program.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Canned {
+    BreakChip,
+    LeftTap,
+    Drill,
+    DwellDrill,
+    Deep,
+    Tap,
+    Ream,
+    Bore,
+    DwellReam,
+    /// `G88`: out of the hole by hand.
+    HandBore,
+    FineBore,
+    BackBore,
+}
+
+/// The working plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Plane {
+    Xy,
+    Zx,
+    Yz,
+}
+
+/// What F means.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum FeedMode {
+    PerMinute,
+    PerTurn,
+    InverseTime,
+}
+
+/// On which side of the path the tool is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Side {
+    Off,
+    Left,
+    Right,
+}
+
+/// The meaning of an M word.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum M {
+    Stop,
+    OptionalStop,
+    End,
+    Clockwise,
+    CounterClockwise,
+    SpindleOff,
+    Orient,
+    ChangeTool,
+    /// `M61`: which tool is in.
+    ToolIsIn,
+    Mist,
+    Flood,
+    Through,
+    ThroughOff,
+    CoolantOff,
+    RigidTap,
+    /// `M98`, Haas `M97`, `M99`: the subprogram that P names, the one that begins at a block of this
+    /// program, and the way back.
+    Call,
+    CallBlock,
+    Return,
+    /// `M70` to `M73`: the modes kept for `M72`, and for the end of the subroutine too.
+    SaveModes {
+        until_return: bool,
+    },
+    ForgetModes,
+    RestoreModes,
+    ThreadWire,
+    CutWire,
+    /// Nothing moves for it; the letters may stand beside it.
+    Neutral(&'static [u8]),
+    /// `M117`: a text for the operator.
+    Message,
+    /// Marlin's `M18`, `M84`: with S after how many idle seconds the axes are let go.
+    IdleTime,
+    /// An output of the machine; the letters must stand beside it.
+    Output(&'static [u8]),
+}
+
+/// Words of one group exclude each other in a block.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Group {
+    OneShot,
+    Motion,
+    Cycle,
+    Plane,
+    Distance,
+    ArcDistance,
+    FeedMode,
+    Units,
+    Compensation,
+    Length,
+    Return,
+    WorkOffset,
+    Path,
+    SpindleMode,
+    Tilt,
+    Scaling,
+    Mirror,
+    Taper,
+    Macro,
+    Polar,
+    Diameter,
+    // M words
+    Flow,
+    ToolChange,
+    Spindle,
+    Coolant,
+    Override,
+    Output,
+    Modes,
+    Wire,
+}
+
+impl Group {
+    /// How many groups there are.
+    pub(super) const COUNT: usize = Group::Wire as usize + 1;
+}
+
+/// A G word: ten times its number (`G43.4` is 434), its group, its meaning.
+pub(super) type GRow = (u16, Group, G);
+
+/// An M word: its number, its group, its meaning.
+pub(super) type MRow = (u16, Group, M);
+
+/// A word that exists and is refused on purpose, with the reason.
+pub(super) type Refused = (u16, &'static str);
+
+/// What a word may begin with, beside the letters: LinuxCNC's polar words and the number of a spindle.
+pub(super) const LETTERS: [u8; 30] = *b"ABCDEFGHIJKLMNOPQRSTUVWXYZ@$ ^";
+
+/// Where a letter stands in [`LETTERS`].
+pub(super) const fn index(letter: u8) -> usize {
+    match letter {
+        b'@' => 26,
+        b'$' => 27,
+        _ => (letter - b'A') as usize,
+    }
+}
+
+/// The bit of a letter in a set of letters.
+pub(crate) const fn bit(letter: u8) -> u32 {
+    1 << index(letter)
+}
+
+/// The words of one flavour, found by number.
+#[derive(Debug)]
+pub(crate) struct Dictionary {
+    /// Which flavour this is.
+    pub flavor: Flavor,
+    /// By ten times the number.
+    g: [Option<(Group, G)>; 2000],
+    /// By the number.
+    m: [Option<(Group, M)>; 500],
+    refused_g: &'static [Refused],
+    refused_m: &'static [Refused],
+    /// The letters that the flavour has, by [`bit`].
+    pub letters: u32,
+    /// The longest block in bytes, blanks and comments apart.
+    pub longest: usize,
+}
+
+impl Dictionary {
+    pub(super) const fn new(flavor: Flavor, letters: &[u8], longest: usize) -> Dictionary {
+        let mut bits = 0;
+        let mut at = 0;
+        while at < letters.len() {
+            bits |= bit(letters[at]);
+            at += 1;
+        }
+        Dictionary {
+            flavor,
+            g: [None; 2000],
+            m: [None; 500],
+            refused_g: &[],
+            refused_m: &[],
+            letters: bits,
+            longest,
+        }
+    }
+
+    /// With these words, too.
+    pub(super) const fn with(mut self, g: &[GRow], m: &[MRow]) -> Dictionary {
+        let mut row = 0;
+        while row < g.len() {
+            self.g[g[row].0 as usize] = Some((g[row].1, g[row].2));
+            row += 1;
+        }
+        row = 0;
+        while row < m.len() {
+            self.m[m[row].0 as usize] = Some((m[row].1, m[row].2));
+            row += 1;
+        }
+        self
+    }
+
+    /// With reasons for what it refuses.
+    pub(super) const fn refusing(
+        mut self,
+        g: &'static [Refused],
+        m: &'static [Refused],
+    ) -> Dictionary {
+        (self.refused_g, self.refused_m) = (g, m);
+        self
+    }
+
+    /// Group and meaning of the G word with this number.
+    pub(super) fn g(&self, number: f64) -> Option<(Group, G)> {
+        *self.g.get(tenths(number)?)?
+    }
+
+    /// Group and meaning of the M word with this number.
+    pub(super) fn m(&self, number: f64) -> Option<(Group, M)> {
+        *self.m.get(tenths(number).filter(|t| t % 10 == 0)? / 10)?
+    }
+
+    /// Why a word that the flavour does not take is refused, where there is more to say than that it
+    /// is not known.
+    pub(super) fn why_refused(&self, letter: u8, number: f64) -> Option<&'static str> {
+        let (table, number) = match letter {
+            b'G' => (self.refused_g, tenths(number)?),
+            b'M' => (self.refused_m, tenths(number)? / 10),
+            b'E' if self.flavor == Flavor::Marlin => {
+                return Some("an extruder is no tool of a mill");
+            }
+            b'U' | b'V' | b'W' => return Some("the axes followed are X Y Z and A B C"),
+            _ => return None,
+        };
+        table.iter().find(|(n, _)| usize::from(*n) == number).map(|(_, reason)| *reason)
+    }
+}
+
+/// Ten times a number that has at most one decimal and is below 1000.
+fn tenths(number: f64) -> Option<usize> {
+    let tenths = (number * 10.0).round();
+    ((0.0..10_000.0).contains(&tenths) && (number * 10.0 - tenths).abs() < 1e-9)
+        .then_some(tenths as usize)
+}

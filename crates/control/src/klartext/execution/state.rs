@@ -1,0 +1,462 @@
+//! What the control holds while a program runs, and how that becomes records.
+
+use super::contour::{Element, Waiting};
+use super::cycle::Defined;
+use super::older::Older;
+use super::plane::Tilt;
+use super::transform::Transforms;
+use crate::Settings;
+use crate::ToolData;
+use crate::budget::Budget;
+use crate::compensation::{Compensator, Terms};
+use crate::klartext::language::functions::{Function, Functions, When};
+use crate::klartext::language::registers::Registers;
+use crate::klartext::language::scan::{Result, Scanner};
+use crate::klartext::language::words::FeedWord;
+use geom::Vec3;
+use program::{Compensation, Coolant, Cycle, Feed, Op, Orientation, Pose, Record, Spindle};
+
+use std::collections::HashMap;
+
+/// The address letters of the axes, in the order of their coordinates.
+pub(super) const AXES: [char; 6] = ['X', 'Y', 'Z', 'A', 'B', 'C'];
+
+/// mm/min in the unit of F of an inch program, a tenth of an inch each minute.
+pub(super) const TENTH_INCH: f64 = 2.54;
+
+/// Whether the control keeps the tool tip, and what the rotary words then mean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Tip {
+    /// The words are positions of the axes, the tip goes where the kinematics take it.
+    Free,
+    /// `M128`, `FUNCTION TCPM ... AXIS POS`: rotary words are positions of the axes.
+    Kept,
+    /// `FUNCTION TCPM ... AXIS SPAT`: rotary words are spatial angles.
+    KeptSpatial,
+}
+
+/// The state of the control.
+pub(crate) struct Control<'a, 's> {
+    pub(crate) settings: &'a Settings,
+    compensator: &'a mut Compensator<'s>,
+    /// Line of the block that runs.
+    line: u32,
+    /// mm in the unit of length of the program.
+    pub(crate) unit: f64,
+    /// Programmed position, mm: after datum shift and tilting, as the blocks count it. NaN where it
+    /// is not known.
+    pub(super) here: Vec3,
+    /// Rotary positions (or spatial angles), degrees; NaN where they are not known.
+    pub(super) degrees: [f64; 3],
+    /// Tool vector of the last `LN` that gave one, in the coordinates of the block.
+    pub(super) vector: Option<Vec3>,
+    /// Transformations outside of a tilted plane.
+    pub(super) outside: Transforms,
+    pub(super) tilt: Option<Tilt>,
+    pub(super) tip: Tip,
+    pub(super) feed: Option<Feed>,
+    /// Feed of the last TOOL CALL, for `F AUTO`.
+    pub(crate) tool_feed: Option<FeedWord>,
+    /// Tools that the program itself defines, by number.
+    pub(super) defined_tools: HashMap<u32, ToolData>,
+    /// Number of the tool, where it is known.
+    pub(super) tool_number: Option<u32>,
+    /// Radius of the tool in the tool table, mm.
+    pub(super) tool_radius: Option<f64>,
+    pub(super) per_turn: bool,
+    pub(super) compensation: Compensation,
+    pub(super) speed: Option<f64>,
+    pub(super) spindle: Spindle,
+    pub(super) coolant: Coolant,
+    /// Pole `CC`, mm.
+    pub(super) pole: Option<(f64, f64)>,
+    /// The last motion, for those that go on in its direction.
+    pub(super) path: Option<Element>,
+    /// Whether the last positioning was at rapid.
+    pub(super) rapid: bool,
+    /// What is not told before the next element of the contour is known.
+    pub(super) waiting: Option<Waiting>,
+    pub(super) cycle: Option<Defined>,
+    /// An older hole cycle that is being defined.
+    pub(super) older: Older,
+    /// Points of the last `PATTERN DEF`, mm.
+    pub(super) pattern: Vec<Vec3>,
+    /// The cycle as it was told last.
+    pub(super) told: Option<Cycle>,
+    pub(super) calls_modally: bool,
+    pub(crate) ended: bool,
+    pub(crate) registers: Registers,
+    /// How many called programs run within each other.
+    called: usize,
+    budget: Budget,
+}
+
+impl<'a, 's> Control<'a, 's> {
+    pub(crate) fn new(settings: &'a Settings, compensator: &'a mut Compensator<'s>) -> Self {
+        Control {
+            settings,
+            compensator,
+            line: 0,
+            unit: 1.0,
+            here: settings.setup.start.unwrap_or(Vec3::NAN),
+            degrees: settings.rotary.map(|exists| if exists { f64::NAN } else { 0.0 }),
+            vector: None,
+            outside: Transforms::default(),
+            tilt: None,
+            tip: Tip::Free,
+            feed: None,
+            tool_feed: None,
+            defined_tools: HashMap::new(),
+            tool_number: None,
+            tool_radius: None,
+            per_turn: false,
+            compensation: Compensation::Off,
+            speed: None,
+            spindle: Spindle::Off,
+            coolant: Coolant::Off,
+            pole: None,
+            path: None,
+            rapid: false,
+            waiting: None,
+            cycle: None,
+            older: Older::default(),
+            pattern: Vec::new(),
+            told: None,
+            calls_modally: false,
+            ended: false,
+            registers: Registers::new(),
+            called: 0,
+            budget: Budget::default(),
+        }
+    }
+
+    /// The records from here on come from `line` of the main program.
+    pub(crate) fn at_line(&mut self, line: u32) {
+        if self.called == 0 {
+            self.line = line;
+        }
+    }
+
+    pub(crate) fn emit(&mut self, op: Op) -> Result<()> {
+        self.budget.record(&op);
+        self.compensator.take(Record { line: self.line, op })
+    }
+
+    /// A jump, a call or a return, after which so many bytes are read again: programs that never end
+    /// are refused.
+    pub(crate) fn count_jump(&mut self, s: &Scanner, bytes: usize) -> Result<()> {
+        let counted = self.budget.jump().and_then(|()| self.budget.read(bytes));
+        counted.map_err(|message| s.error_block("endless", message))
+    }
+
+    /// A called program begins; answers how many there are within each other.
+    pub(crate) fn enter_program(&mut self) -> usize {
+        self.called += 1;
+        self.called
+    }
+
+    /// A called program has ended.
+    pub(crate) fn leave_program(&mut self) {
+        self.called -= 1;
+    }
+
+    /// Whether the program that runs is a called one.
+    pub(crate) fn is_called(&self) -> bool {
+        self.called > 0
+    }
+
+    /// The unit of length of the program that runs, in mm.
+    pub(crate) fn set_unit(&mut self, unit: f64) {
+        self.unit = unit;
+        if self.called == 0 {
+            self.registers.preassign(113, f64::from(unit != 1.0));
+        }
+    }
+
+    /// The pose of the tool at a programmed position.
+    pub(super) fn pose(&self, programmed: Vec3) -> Pose {
+        Pose { point: self.work_point(programmed), orientation: self.orientation() }
+    }
+
+    /// A programmed position in the work frame.
+    pub(super) fn work_point(&self, programmed: Vec3) -> Vec3 {
+        self.outside.apply(match &self.tilt {
+            None => programmed,
+            Some(tilt) => tilt.turn * tilt.inside.apply(programmed),
+        })
+    }
+
+    /// A programmed direction in the work frame.
+    pub(super) fn work_direction(&self, programmed: Vec3) -> Vec3 {
+        self.outside.direct(match &self.tilt {
+            None => programmed,
+            Some(tilt) => tilt.turn * tilt.inside.direct(programmed),
+        })
+    }
+
+    /// Whether the coordinates of the blocks are mirrored.
+    pub(super) fn mirrors(&self) -> bool {
+        self.outside.mirrors() != self.tilt.as_ref().is_some_and(|tilt| tilt.inside.mirrors())
+    }
+
+    fn orientation(&self) -> Orientation {
+        if let Some(vector) = self.vector {
+            return Orientation::Axis(self.work_direction(vector));
+        }
+        match &self.tilt {
+            Some(tilt) if tilt.turned => Orientation::Axis(tilt.turn.z_axis),
+            // The rotary axes were put by words into a plane that is only declared: the control
+            // reckons with where they stand.
+            Some(_) => Orientation::Rotary { degrees: self.degrees, tool_center: true },
+            None if self.tip == Tip::KeptSpatial => {
+                Orientation::Axis(super::plane::spatial(self.degrees).z_axis)
+            }
+            None => {
+                Orientation::Rotary { degrees: self.degrees, tool_center: self.tip == Tip::Kept }
+            }
+        }
+    }
+
+    /// Whether the tool stands along Z of the coordinates that the blocks give.
+    pub(super) fn stands_upright(&self) -> bool {
+        match &self.tilt {
+            Some(tilt) => tilt.turned,
+            None => self.vector.is_none() && self.degrees == [0.0; 3],
+        }
+    }
+
+    /// The position of the linear axes is not known any more.
+    pub(super) fn forget_position(&mut self) {
+        self.here = Vec3::NAN;
+    }
+
+    /// The positions of the rotary axes are not known any more.
+    pub(super) fn forget_rotary(&mut self) {
+        self.vector = None;
+        self.degrees = self.settings.rotary.map(|exists| if exists { f64::NAN } else { 0.0 });
+    }
+
+    /// mm/min (or mm a turn) of a number behind F.
+    pub(super) fn feed_value(&self, number: f64) -> f64 {
+        match (self.unit == 1.0, self.per_turn) {
+            (true, _) => number,
+            (false, true) => number * self.unit,
+            (false, false) => number * TENTH_INCH,
+        }
+    }
+
+    /// Takes over the F word of a block; answers whether the block is a rapid.
+    pub(super) fn set_feed(&mut self, s: &Scanner, word: Option<FeedWord>) -> Result<bool> {
+        let feed = match word {
+            None => return Ok(false),
+            Some(FeedWord::Max) => return Ok(true),
+            Some(FeedWord::Value(number)) if self.per_turn => {
+                Feed::PerTurn(self.feed_value(number))
+            }
+            Some(FeedWord::Value(number)) => Feed::PerMinute(self.feed_value(number)),
+            Some(FeedWord::PerTurn(_)) if self.per_turn => {
+                return Err(s.error_block("feed", "FU is not permitted while M136 is active"));
+            }
+            Some(FeedWord::PerTurn(number)) => Feed::PerTurn(number * self.unit),
+        };
+        self.take_feed(feed)?;
+        Ok(false)
+    }
+
+    pub(super) fn set_spindle(&mut self, spindle: Spindle) -> Result<()> {
+        let code = match (spindle, self.spindle) {
+            (Spindle::Clockwise(_), _) => Some(0.0),
+            (Spindle::CounterClockwise(_), _) => Some(1.0),
+            (Spindle::Off, Spindle::Clockwise(_)) => Some(2.0),
+            (Spindle::Off, Spindle::CounterClockwise(_)) => Some(3.0),
+            (Spindle::Off, Spindle::Off) => None,
+        };
+        if let Some(code) = code {
+            self.registers.preassign(110, code);
+        }
+        if self.spindle != spindle {
+            self.spindle = spindle;
+            self.emit(Op::Spindle(spindle))?;
+        }
+        Ok(())
+    }
+
+    pub(super) fn set_coolant(&mut self, coolant: Coolant) -> Result<()> {
+        self.registers.preassign(111, f64::from(coolant != Coolant::Off));
+        if self.coolant != coolant {
+            self.coolant = coolant;
+            self.emit(Op::Coolant(coolant))?;
+        }
+        Ok(())
+    }
+
+    pub(super) fn set_compensation(&mut self, compensation: Compensation) -> Result<()> {
+        if self.compensation == compensation {
+            return Ok(());
+        }
+        self.compensation = compensation;
+        // What is left in mirrored coordinates is right of the path that is told.
+        let side = match (compensation, self.mirrors()) {
+            (Compensation::Left(_), true) => Compensation::Right(None),
+            (Compensation::Right(_), true) => Compensation::Left(None),
+            _ => compensation,
+        };
+        let terms = Terms {
+            normal: self.work_direction(Vec3::Z).normalize_or(Vec3::Z),
+            across_tool: true,
+            radius: None,
+            outer: None,
+            around: false,
+        };
+        self.compensator.switch(self.line, side, terms)
+    }
+
+    /// Does the M functions of a block that act at that moment.
+    pub(crate) fn functions(&mut self, s: &Scanner, all: Functions, when: When) -> Result<()> {
+        if all.is_empty() {
+            return Ok(());
+        }
+        for function in all.at(when) {
+            self.function(s, function)?;
+        }
+        Ok(())
+    }
+
+    fn function(&mut self, s: &Scanner, function: Function) -> Result<()> {
+        if self.ended {
+            return Err(s.error_block("program-frame", "nothing may follow M2 or M30 in its block"));
+        }
+        match function {
+            Function::Clockwise { coolant } => {
+                let speed = self.needs_speed(s)?;
+                self.set_spindle(Spindle::Clockwise(speed))?;
+                if coolant { self.set_coolant(Coolant::Flood) } else { Ok(()) }
+            }
+            Function::CounterClockwise { coolant } => {
+                let speed = self.needs_speed(s)?;
+                self.set_spindle(Spindle::CounterClockwise(speed))?;
+                if coolant { self.set_coolant(Coolant::Flood) } else { Ok(()) }
+            }
+            Function::SpindleStop => self.set_spindle(Spindle::Off),
+            Function::Coolant => self.set_coolant(Coolant::Flood),
+            Function::CoolantOff => self.set_coolant(Coolant::Off),
+            Function::Stop => {
+                self.emit(Op::Stop)?;
+                self.stop_all()
+            }
+            Function::OptionalStop => {
+                self.emit(Op::OptionalStop)?;
+                self.stop_all()
+            }
+            Function::End if self.is_called() => {
+                let message = "a called program ends with END PGM: M2 and M30 would end all";
+                Err(s.error_block("program-frame", message))
+            }
+            Function::End => self.end(),
+            Function::KeepTip => self.keep_tip(s, Tip::Kept),
+            Function::ReleaseTip => {
+                self.release_tip();
+                Ok(())
+            }
+            Function::FeedPerTurn(per_turn) => {
+                // F keeps its number but not its meaning: it has to be given anew.
+                if self.per_turn != per_turn {
+                    self.per_turn = per_turn;
+                    self.feed = None;
+                }
+                Ok(())
+            }
+            Function::Retract(distance, feed) => self.retract(s, distance, feed),
+            Function::CallCyclesModally => {
+                self.calls_modally = true;
+                self.call_cycle(s)
+            }
+            Function::CallCycle => {
+                self.calls_modally = false;
+                self.call_cycle(s)
+            }
+            Function::MachineCoordinates | Function::Nothing => Ok(()),
+        }
+    }
+
+    /// Spindle and coolant off: what a stop of the program, its end and a tool change bring.
+    pub(super) fn stop_all(&mut self) -> Result<()> {
+        self.set_spindle(Spindle::Off)?;
+        self.set_coolant(Coolant::Off)
+    }
+
+    fn needs_speed(&self, s: &Scanner) -> Result<f64> {
+        self.speed
+            .ok_or_else(|| s.error_block("spindle", "the spindle has no speed yet: no S before"))
+    }
+
+    /// Back along the tool axis by `distance` mm; infinite is to the end of the travel.
+    fn retract(&mut self, s: &Scanner, distance: f64, feed: Option<FeedWord>) -> Result<()> {
+        if distance.is_infinite() {
+            self.emit(Op::Home(0b100))?;
+            if self.tilt.is_none() && self.stands_upright() {
+                self.here.z = f64::NAN;
+            } else {
+                self.forget_position();
+            }
+            return Ok(());
+        }
+        let axis = match self.vector {
+            Some(vector) => vector,
+            None if self.stands_upright() => Vec3::Z,
+            None => {
+                let message = "the direction of the tool axis is not known";
+                return Err(s.error_block("m-function", message).help("use M140 MB MAX").into());
+            }
+        };
+        self.here += axis * distance;
+        let pose = self.pose(self.here);
+        if matches!(feed, None | Some(FeedWord::Max)) {
+            return self.emit(Op::Rapid(pose));
+        }
+        let path = self.feed;
+        self.set_feed(s, feed)?;
+        self.emit(Op::Line(pose))?;
+        self.feed = path;
+        path.map_or(Ok(()), |feed| self.emit(Op::Feed(feed)))
+    }
+
+    /// The end of the program.
+    pub(crate) fn end(&mut self) -> Result<()> {
+        self.stop_all()?;
+        self.ended = true;
+        self.emit(Op::End)
+    }
+
+    /// `FN 18: SYSREAD`, from behind its `=`: `ID270 NR1 IDX1`. Lengths are mm in every program.
+    pub(crate) fn system_datum(&self, s: &mut Scanner) -> Result<f64> {
+        let from = *s;
+        let [mut id, mut number, mut index] = [None; 3];
+        while let Some(word) = s.word(&self.registers)? {
+            match word.address {
+                b"ID" => id = word.number,
+                b"NR" => number = word.number,
+                b"IDX" => index = word.number,
+                _ => return Err(crate::klartext::language::words::unknown(s, &word)),
+            }
+        }
+        let axis = index.and_then(|index| (0..3usize).find(|i| *i as f64 + 1.0 == index));
+        let whole = |value: Option<f64>| value.filter(|v| v.fract() == 0.0).map(|v| v as i64);
+        let known = match (whole(id), whole(number), axis) {
+            (Some(20), Some(1), _) => self.tool_number.map(f64::from),
+            (Some(210), Some(2), _) => Some(self.transforms().rotation()),
+            (Some(220), Some(2), Some(axis)) => Some(self.transforms().shift()[axis]),
+            (Some(270), Some(1), Some(axis)) => Some(self.here[axis]),
+            (Some(280), Some(1), _) => Some(if self.tip == Tip::Free { 0.0 } else { -1.0 }),
+            _ => {
+                let message = "this datum of the control is not supported";
+                return Err(s.error("parameter", (from.at(), s.at()), message));
+            }
+        };
+        known.filter(|value| value.is_finite()).ok_or_else(|| {
+            let message = "what it is depends on what the operator or the machine has done";
+            let error = s.error("parameter", (from.at(), s.at()), message);
+            error.help("write the value that it had at the machine in its place").into()
+        })
+    }
+}

@@ -1,0 +1,187 @@
+//! Tools and the blank.
+
+use super::state::{Control, Tip};
+use crate::ToolData;
+use crate::klartext::language::registers::Parameter;
+use crate::klartext::language::scan::{Result, Scanner};
+use crate::klartext::language::words::{self, LINEAR, Words, feed_word};
+use geom::Vec3;
+use program::{Compensation, Diagnostic, Op, Spindle, Tool};
+
+impl Control<'_, '_> {
+    /// `TOOL CALL` and `TOOL DEF`, from behind `TOOL`.
+    pub(crate) fn tool(&mut self, s: &mut Scanner) -> Result<()> {
+        if s.take(b"DEF") {
+            return self.define_tool(s);
+        }
+        s.expect(b"CALL")?;
+        let called = match s.peek() {
+            [b'"', ..] => {
+                let name = String::from_utf8_lossy(s.quoted()?).into_owned();
+                Some(Tool { name, ..Tool::default() })
+            }
+            [b'Q', b'S', ..] => Some(Tool { name: self.tool_name(s)?, ..Tool::default() }),
+            [b'0'..=b'9' | b'Q', ..] => {
+                Some(Tool { number: self.tool_number(s)?, ..Tool::default() })
+            }
+            _ => None,
+        };
+        let (mut axis, mut speed, mut feed) = (false, None, None);
+        loop {
+            // The digit belongs to the address: `DR2+0.1`.
+            let before = *s;
+            if let Some(value) = s.peek().strip_prefix(b"DR2") {
+                let (_, span) = s.token();
+                let mut value = Scanner::within(before, span.1 - value.len(), span.1);
+                if value.value(&self.registers)? != 0.0 {
+                    return Err(oversize(s, span));
+                }
+                continue;
+            }
+            let Some(word) = s.word(&self.registers)? else { break };
+            match (word.address, word.number) {
+                (b"Z", None) if !axis && word.sign == 0.0 => axis = true,
+                (b"X" | b"Y" | b"U" | b"V" | b"W", None) => {
+                    return Err(s.error("unsupported", word.span, "the tool axis must be Z"));
+                }
+                (b"S", Some(rpm)) if speed.is_none() && rpm >= 0.0 => speed = Some(rpm),
+                (b"F" | b"FU", Some(_)) if feed.is_none() => {
+                    feed = Some(feed_word(s, &word, None)?);
+                }
+                (b"DL" | b"DR", Some(0.0)) => {}
+                (b"DL" | b"DR", Some(_)) => return Err(oversize(s, word.span)),
+                _ => return Err(words::unknown(s, &word)),
+            }
+        }
+        if called.is_some() && !axis {
+            return Err(s.error_block("missing-word", "TOOL CALL needs the tool axis Z"));
+        }
+        if called.is_none() && speed.is_none() && feed.is_none() {
+            return Err(s.error_block("missing-word", "TOOL CALL needs a tool, S or F"));
+        }
+        if let Some(tool) = called {
+            self.change_tool(s, tool)?;
+        }
+        self.tool_feed = feed;
+        self.set_feed(s, feed)?;
+        let Some(speed) = speed else { return Ok(()) };
+        self.speed = Some(speed);
+        match self.spindle {
+            Spindle::Off => Ok(()),
+            Spindle::Clockwise(_) => self.set_spindle(Spindle::Clockwise(speed)),
+            Spindle::CounterClockwise(_) => self.set_spindle(Spindle::CounterClockwise(speed)),
+        }
+    }
+
+    /// `TOOL DEF 5` makes a tool ready; `TOOL DEF 5 L+0 R+4` says what it is, in place of the table.
+    fn define_tool(&mut self, s: &mut Scanner) -> Result<()> {
+        let number = self.tool_number(s)?;
+        if s.is_done() {
+            return self.emit(Op::Preselect(number));
+        }
+        let (mut length, mut radius) = (None, None);
+        while let Some(word) = s.word(&self.registers)? {
+            match (word.address, word.number) {
+                (b"L", Some(value)) if length.is_none() => length = Some(value * self.unit),
+                (b"R", Some(value)) if radius.is_none() => radius = Some(value * self.unit),
+                _ => return Err(words::unknown(s, &word)),
+            }
+        }
+        let (Some(length), Some(radius)) = (length, radius) else {
+            return Err(s.error_block("missing-word", "TOOL DEF with data takes L and R"));
+        };
+        if self
+            .settings
+            .setup
+            .tools
+            .iter()
+            .any(|tool| tool.number == number && (tool.radius != radius || tool.length != length))
+        {
+            let message = format!("tool {number} is another one in the tool table");
+            return Err(s.error_block("tool", message));
+        }
+        self.defined_tools.insert(number, ToolData { number, name: String::new(), radius, length });
+        Ok(())
+    }
+
+    /// A number that is written, or in a Q parameter.
+    fn tool_number(&self, s: &mut Scanner) -> Result<u32> {
+        let from = *s;
+        let unsigned = matches!(s.peek(), [b'0'..=b'9' | b'Q', ..]);
+        let number = s.value(&self.registers)?;
+        if unsigned && number.fract() == 0.0 && (0.0..=32_767.0).contains(&number) {
+            return Ok(number as u32);
+        }
+        let message = "the number of a tool is a whole number from 0";
+        Err(s.error("tool", (from.at(), s.at()), message))
+    }
+
+    /// A name in a QS parameter.
+    fn tool_name(&self, s: &mut Scanner) -> Result<String> {
+        let from = *s;
+        let text = match s.parameter()? {
+            Some(Parameter::Text(index)) => self.registers.text(index),
+            _ => Err("a QS parameter is expected here".into()),
+        };
+        text.map(|name| String::from_utf8_lossy(name).into_owned())
+            .map_err(|message| s.error("parameter", (from.at(), s.at()), message))
+    }
+
+    /// The change stops spindle and coolant, goes to a place of its own, and brings another length.
+    fn change_tool(&mut self, s: &Scanner, tool: Tool) -> Result<()> {
+        if self.compensation != Compensation::Off {
+            return Err(s.error_block("compensation", "a tool is called with R0"));
+        }
+        if self.tip != Tip::Free {
+            let message = "M128 is reset before a tool call";
+            let error: Box<Diagnostic> = s.error_block("tool-center", message);
+            return Err(error.help("program M129 first").into());
+        }
+        self.stop_all()?;
+        let mut table = self.settings.setup.tools.iter();
+        let data = match tool.name.is_empty() {
+            true => table
+                .find(|data| data.number == tool.number)
+                .or_else(|| self.defined_tools.get(&tool.number)),
+            false => table.find(|data| data.name == tool.name),
+        };
+        self.tool_radius = data.map(|data| data.radius);
+        let number = if tool.name.is_empty() { Some(tool.number) } else { data.map(|d| d.number) };
+        self.tool_number = number;
+        // In which unit an inch program finds them the manuals do not say.
+        let metric = if self.unit == 1.0 { data } else { None };
+        self.registers.preassign(108, metric.map_or(f64::NAN, |data| data.radius));
+        self.registers.preassign(109, 2.0);
+        self.registers.preassign(114, metric.map_or(f64::NAN, |data| data.length));
+        self.emit(Op::Tool(Box::new(tool)))?;
+        self.here = Vec3::NAN;
+        Ok(())
+    }
+
+    /// `BLK FORM`, from behind `BLK`: the blank, for the screen alone.
+    pub(crate) fn blank_form(&mut self, s: &mut Scanner) -> Result<()> {
+        s.expect(b"FORM")?;
+        match s.token() {
+            (b"0.1", _) => s.expect(b"Z")?,
+            (b"0.2", _) => {}
+            (b"CYLINDER" | b"ROTATION" | b"FILE", _) => {
+                s.skip();
+                return Ok(());
+            }
+            (_, span) => {
+                return Err(s.error("unsupported", span, "this kind of BLK FORM is not known"));
+            }
+        }
+        let words = Words::read(s, LINEAR, self)?;
+        if words.has_all(LINEAR) && words.is_plain() {
+            return Ok(());
+        }
+        Err(s.error_block("missing-word", "BLK FORM takes X, Y and Z"))
+    }
+}
+
+fn oversize(s: &Scanner, span: (usize, usize)) -> Box<Diagnostic> {
+    s.error("unsupported", span, "an oversize moves the tool off the programmed path")
+        .help("put the wear into the tool table")
+        .into()
+}

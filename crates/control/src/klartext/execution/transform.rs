@@ -1,0 +1,332 @@
+//! Shifts, mirrors, rotations and scales of the coordinates.
+
+use super::state::Control;
+use crate::klartext::language::scan::{Result, Scanner};
+use crate::klartext::language::words::{LINEAR, Words};
+use geom::Vec3;
+use program::Compensation;
+
+/// One transformation, from the coordinates behind it to those before it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Step {
+    /// Cycle 7, mm.
+    Shift(Vec3),
+    /// Cycle 8: 1 or −1 for each axis.
+    Mirror(Vec3),
+    /// Cycle 10: about Z through the datum, degrees counter-clockwise.
+    Rotation(f64),
+    /// Cycle 11: from the datum.
+    Scale(f64),
+    /// Cycle 26: from a center.
+    AxisScale { factor: Vec3, center: Vec3 },
+}
+
+impl Step {
+    fn is_same_kind(&self, other: &Step) -> bool {
+        std::mem::discriminant(self) == std::mem::discriminant(other)
+    }
+
+    /// Whether it changes nothing.
+    fn is_neutral(&self) -> bool {
+        match self {
+            Step::Shift(shift) => *shift == Vec3::ZERO,
+            Step::Mirror(signs) => *signs == Vec3::ONE,
+            Step::Rotation(degrees) => *degrees == 0.0,
+            Step::Scale(factor) => *factor == 1.0,
+            Step::AxisScale { factor, .. } => *factor == Vec3::ONE,
+        }
+    }
+
+    // Axis by axis: an axis whose position is not known (NaN) leaves the others known.
+    fn apply(&self, p: Vec3) -> Vec3 {
+        match *self {
+            Step::Shift(shift) => p + shift,
+            Step::Mirror(signs) => p * signs,
+            Step::Rotation(degrees) => turned(p, degrees),
+            Step::Scale(factor) => p * factor,
+            Step::AxisScale { factor, center } => center + (p - center) * factor,
+        }
+    }
+
+    fn undo(&self, p: Vec3) -> Vec3 {
+        match *self {
+            Step::Shift(shift) => p - shift,
+            Step::Mirror(signs) => p * signs,
+            Step::Rotation(degrees) => turned(p, -degrees),
+            Step::Scale(factor) => p / factor,
+            Step::AxisScale { factor, center } => center + (p - center) / factor,
+        }
+    }
+
+    /// What becomes of a direction; scales are none of it.
+    fn direct(&self, v: Vec3) -> Vec3 {
+        match *self {
+            Step::Mirror(signs) => v * signs,
+            Step::Rotation(degrees) => turned(v, degrees),
+            _ => v,
+        }
+    }
+}
+
+fn turned(p: Vec3, degrees: f64) -> Vec3 {
+    let (sin, cos) = degrees.to_radians().sin_cos();
+    Vec3::new(p.x * cos - p.y * sin, p.x * sin + p.y * cos, p.z)
+}
+
+/// The active transformations, the outermost first: in the order in which they were switched on.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub(super) struct Transforms(Vec<Active>);
+
+#[derive(Clone, Debug, PartialEq)]
+struct Active {
+    step: Step,
+    /// Whether it was changed while a later one was active: whether it then acts before or behind the
+    /// later one the manuals do not say.
+    unclear: bool,
+}
+
+impl Transforms {
+    fn steps(&self) -> impl DoubleEndedIterator<Item = &Step> {
+        self.0.iter().map(|active| &active.step)
+    }
+
+    /// A point of the coordinates of the program, outside.
+    pub(super) fn apply(&self, p: Vec3) -> Vec3 {
+        self.steps().rev().fold(p, |p, step| step.apply(p))
+    }
+
+    /// A point outside, in the coordinates of the program.
+    pub(super) fn undo(&self, p: Vec3) -> Vec3 {
+        self.steps().fold(p, |p, step| step.undo(p))
+    }
+
+    /// A direction in the coordinates of the program, outside.
+    pub(super) fn direct(&self, v: Vec3) -> Vec3 {
+        self.steps().rev().fold(v, |v, step| step.direct(v))
+    }
+
+    /// Puts a transformation in the place of that of its kind.
+    fn set(&mut self, step: Step) {
+        let place = self.0.iter().position(|active| active.step.is_same_kind(&step));
+        match place {
+            Some(i) if step.is_neutral() => {
+                self.0.remove(i);
+            }
+            Some(i) => {
+                if let Some(active) = self.0.get_mut(i).filter(|active| active.step != step) {
+                    *active = Active { step, unclear: true };
+                }
+            }
+            None if step.is_neutral() => {}
+            None => self.0.push(Active { step, unclear: false }),
+        }
+        if let Some(last) = self.0.last_mut() {
+            last.unclear = false;
+        }
+    }
+
+    fn find<T>(&self, pick: impl Fn(&Step) -> Option<T>) -> Option<T> {
+        self.steps().find_map(pick)
+    }
+
+    /// The shift of cycle 7.
+    pub(super) fn shift(&self) -> Vec3 {
+        let shift = |step: &Step| if let Step::Shift(v) = step { Some(*v) } else { None };
+        self.find(shift).unwrap_or(Vec3::ZERO)
+    }
+
+    /// The angle of cycle 10, degrees.
+    pub(super) fn rotation(&self) -> f64 {
+        let angle = |step: &Step| if let Step::Rotation(a) = step { Some(*a) } else { None };
+        self.find(angle).unwrap_or(0.0)
+    }
+
+    /// Whether left and right are exchanged.
+    pub(super) fn mirrors(&self) -> bool {
+        let signs = |step: &Step| if let Step::Mirror(v) = step { Some(*v) } else { None };
+        self.find(signs).is_some_and(|signs| signs.x * signs.y < 0.0)
+    }
+
+    /// Whether there is anything but a shift.
+    pub(super) fn is_more_than_a_shift(&self) -> bool {
+        self.steps().any(|step| !matches!(step, Step::Shift(_)))
+    }
+
+    /// Whether there is none.
+    pub(super) fn is_empty(&self) -> bool {
+        self.0.is_empty()
+    }
+
+    /// Whether lengths change.
+    pub(super) fn scales(&self) -> bool {
+        self.steps().any(|step| matches!(step, Step::Scale(_) | Step::AxisScale { .. }))
+    }
+
+    /// Whether circles in the plane stay circles.
+    pub(super) fn keeps_circles(&self) -> bool {
+        let uneven = |step: &Step| match step {
+            Step::AxisScale { factor, .. } => factor.x != factor.y,
+            _ => false,
+        };
+        !self.steps().any(uneven)
+    }
+}
+
+impl Control<'_, '_> {
+    /// The transformations that blocks change: those within a tilted plane where there is one.
+    pub(super) fn transforms(&self) -> &Transforms {
+        self.tilt.as_ref().map_or(&self.outside, |tilt| &tilt.inside)
+    }
+
+    fn transform(&mut self, s: &Scanner, step: Step) -> Result<()> {
+        if self.compensation != Compensation::Off {
+            let message = "coordinates are transformed with R0";
+            return Err(s.error_block("compensation", message));
+        }
+        if self.tilt.is_some() && !self.outside.is_empty() && matches!(step, Step::Shift(_)) {
+            let message = "the datum was already shifted before the plane was tilted";
+            let help = "shift the datum before PLANE";
+            return Err(s.error_block("plane", message).help(help).into());
+        }
+        let transforms = self.tilt.as_mut().map_or(&mut self.outside, |tilt| &mut tilt.inside);
+        let place = transforms.apply(self.here);
+        let before = transforms.clone();
+        transforms.set(step);
+        if *transforms != before {
+            // A shift alone counts on exactly, without the rounding of there and back.
+            self.here = match (before.is_more_than_a_shift(), step) {
+                (false, Step::Shift(_)) => self.here + before.shift() - transforms.shift(),
+                _ => transforms.undo(place),
+            };
+            // Whether the pole stays where it was or goes with the coordinates is not said.
+            self.pole = None;
+            self.path = None;
+        }
+        Ok(())
+    }
+
+    /// Nothing moves while it is not clear in which order transformations act.
+    #[inline]
+    pub(super) fn transforms_are_clear(&self, s: &Scanner) -> Result<()> {
+        if !self.transforms().0.iter().any(|active| active.unclear) {
+            return Ok(());
+        }
+        let message = "a transformation was changed while a later one is active: in which order they \
+                       act is not known";
+        let help = "set the later ones (mirror, rotation, scale) back before, and anew afterwards";
+        Err(s.error_block("transformation", message).help(help).into())
+    }
+
+    /// `CYCL DEF 7.n`: `X+60`, `IY-5`.
+    pub(super) fn datum_shift(&mut self, s: &mut Scanner) -> Result<()> {
+        if s.peek().starts_with(b"#") {
+            let message = "the datum is in a table of the control, which is not at hand";
+            return Err(s.error_here("unsupported", message));
+        }
+        let words = Words::read(s, LINEAR, self)?;
+        if !words.has(LINEAR) || !words.is_plain() {
+            return Err(s.error_block("cycle-parameter", "cycle 7 takes X, Y or Z here"));
+        }
+        self.shift_datum(s, &words)
+    }
+
+    fn shift_datum(&mut self, s: &Scanner, words: &Words) -> Result<()> {
+        let old = self.transforms().shift();
+        let shift = Vec3::from([0, 1, 2].map(|i| words.target(i, old[i])));
+        self.transform(s, Step::Shift(shift))
+    }
+
+    /// `CYCL DEF 8.1`: the axes that are mirrored; none ends it.
+    pub(super) fn mirror(&mut self, s: &mut Scanner) -> Result<()> {
+        let mut signs = Vec3::ONE;
+        while !s.is_done() {
+            match s.token() {
+                (b"X", _) if signs.x > 0.0 => signs.x = -1.0,
+                (b"Y", _) if signs.y > 0.0 => signs.y = -1.0,
+                (_, span) => {
+                    return Err(s.error("unsupported", span, "only X and Y are mirrored here"));
+                }
+            }
+        }
+        self.transform(s, Step::Mirror(signs))
+    }
+
+    /// `CYCL DEF 10.1 ROT+35`.
+    pub(super) fn rotation(&mut self, s: &mut Scanner) -> Result<()> {
+        let degrees = match s.word(&self.registers)? {
+            Some(word) if word.address == b"ROT" => word.number,
+            Some(word) if word.address == b"IROT" => {
+                word.number.map(|step| self.transforms().rotation() + step)
+            }
+            _ => None,
+        };
+        s.finish()?;
+        let degrees = degrees
+            .ok_or_else(|| s.error_block("cycle-parameter", "cycle 10 takes ROT with an angle"))?;
+        self.transform(s, Step::Rotation(degrees % 360.0))
+    }
+
+    /// `CYCL DEF 11.1 SCL0.99`.
+    pub(super) fn scale(&mut self, s: &mut Scanner) -> Result<()> {
+        let factor = match s.word(&self.registers)? {
+            Some(word) if word.address == b"SCL" && word.number.is_none() => {
+                Some(s.value(&self.registers)?)
+            }
+            Some(word) if word.address == b"SCL" => word.number,
+            _ => None,
+        };
+        s.finish()?;
+        let factor = factor.filter(|factor| FACTORS.contains(factor));
+        let factor = factor
+            .ok_or_else(|| s.error_block("cycle-parameter", "cycle 11 takes SCL with a factor"))?;
+        self.transform(s, Step::Scale(factor))
+    }
+
+    /// `CYCL DEF 26.1 X1.4 Y0.6 CCX+15 CCY+20`.
+    pub(super) fn axis_scale(&mut self, s: &mut Scanner) -> Result<()> {
+        let (mut factor, mut center) = (Vec3::ONE, Vec3::ZERO);
+        while let Some(word) = s.word(&self.registers)? {
+            let (address, place) = match word.address {
+                [b'C', b'C', axis @ b'X'..=b'Z'] => (axis, Some(&mut center)),
+                [axis @ b'X'..=b'Z'] => (axis, None),
+                _ => return Err(crate::klartext::language::words::unknown(s, &word)),
+            };
+            let axis = usize::from(address - b'X');
+            match (place, word.number) {
+                (Some(center), Some(number)) => center[axis] = number * self.unit,
+                (None, Some(number)) if FACTORS.contains(&number) => factor[axis] = number,
+                _ => {
+                    return Err(s.error("cycle-parameter", word.span, "a factor is expected here"));
+                }
+            }
+        }
+        self.transform(s, Step::AxisScale { factor, center })
+    }
+
+    /// `TRANS DATUM`, from behind `TRANS`.
+    pub(crate) fn transformation(&mut self, s: &mut Scanner) -> Result<()> {
+        let (kind, span) = s.token();
+        if kind != b"DATUM" {
+            return Err(s.error("unsupported", span, "only TRANS DATUM is supported"));
+        }
+        if s.take(b"RESET") {
+            s.finish()?;
+            return self.transform(s, Step::Shift(Vec3::ZERO));
+        }
+        if !s.take(b"AXIS") {
+            let message = "the datum is in a table of the control, which is not at hand";
+            return Err(s.error_here("unsupported", message).help("use TRANS DATUM AXIS").into());
+        }
+        let words = Words::read(s, LINEAR, self)?;
+        let old = self.transforms().shift();
+        let kept = (0..3).any(|i| old[i] != 0.0 && !words.has(1 << i));
+        if !words.has(LINEAR) || !words.is_plain() || kept {
+            let message = "TRANS DATUM AXIS must say every axis that is shifted";
+            return Err(s.error_block("missing-word", message).help("give X, Y and Z").into());
+        }
+        self.shift_datum(s, &words)
+    }
+}
+
+/// The factors of cycles 11 and 26.
+const FACTORS: std::ops::RangeInclusive<f64> = 0.000_001..=99.999_999;

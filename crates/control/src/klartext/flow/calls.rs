@@ -1,0 +1,275 @@
+//! Labels: subprograms, repetitions, jumps; and calls of other programs.
+
+use super::run::Run;
+use super::source::{LAST_LABEL, Label, Place, written_label};
+use crate::budget::DEEPEST;
+use crate::folders;
+use crate::klartext::language::registers::{Numbers, Parameter, Registers};
+use crate::klartext::language::scan::{Result, Scanner};
+use std::borrow::Cow;
+use std::result::Result as StdResult;
+
+/// Deepest nesting of subprograms, and of programs (TNC 640; older controls have fewer).
+const NESTING: usize = 19;
+
+const _: () = assert!(NESTING < DEEPEST);
+
+/// Opening a called program takes as long as reading so many bytes.
+const FILE: usize = 4096;
+
+/// Most repetitions that are under way at the same time.
+const REPETITIONS: usize = 1000;
+
+/// Where subprograms return to and what is left of repetitions.
+#[derive(Default)]
+pub(super) struct Calls {
+    returns: Vec<Return>,
+    repetitions: Vec<Repetition>,
+}
+
+struct Return {
+    to: Place,
+    /// How many repetitions were under way where the call stands.
+    repetitions: usize,
+}
+
+/// A `CALL LBL REP` that has been reached.
+struct Repetition {
+    /// Bytes of the text that are repeated: from the label to the call.
+    from: usize,
+    call: usize,
+    left: u32,
+    /// Whether a jump has led out of the part that is repeated.
+    abandoned: bool,
+}
+
+impl Calls {
+    /// A subprogram is called and will return to a place; answers why it cannot be.
+    pub(super) fn call(&mut self, to: Place) -> StdResult<(), String> {
+        if self.returns.len() >= NESTING {
+            return Err(format!("subprograms are nested more than {NESTING} deep"));
+        }
+        self.returns.push(Return { to, repetitions: self.repetitions.len() });
+        Ok(())
+    }
+
+    /// The end of a subprogram: where it returns to, if it was called.
+    pub(super) fn end(&mut self) -> Option<Place> {
+        let back = self.returns.pop()?;
+        self.repetitions.truncate(back.repetitions);
+        Some(back.to)
+    }
+
+    /// Whether a subprogram has not returned yet.
+    pub(super) fn is_open(&self) -> bool {
+        !self.returns.is_empty()
+    }
+
+    /// A `CALL LBL REP` is reached: whether the part from the label to it runs once more. Answers why
+    /// that cannot be said.
+    pub(super) fn repeat(
+        &mut self,
+        from: Place,
+        call: Place,
+        times: u32,
+    ) -> StdResult<bool, String> {
+        let own = self.returns.last().map_or(0, |back| back.repetitions);
+        let active = self.repetitions.iter().skip(own).position(|r| r.call == call.offset);
+        let index = match active {
+            Some(index) => own + index,
+            None if self.repetitions.len() >= REPETITIONS => {
+                return Err(format!("more than {REPETITIONS} repetitions are under way"));
+            }
+            None => {
+                let (from, call) = (from.offset, call.offset);
+                self.repetitions.push(Repetition { from, call, left: times, abandoned: false });
+                self.repetitions.len() - 1
+            }
+        };
+        let Some(repetition) = self.repetitions.get_mut(index) else { return Ok(false) };
+        if repetition.abandoned {
+            let left = repetition.left;
+            return Err(format!(
+                "a jump has led out of this repetition with {left} still to go: how many there are now is \
+                 not known"
+            ));
+        }
+        if repetition.left == 0 {
+            self.repetitions.remove(index);
+            return Ok(false);
+        }
+        repetition.left -= 1;
+        Ok(true)
+    }
+
+    /// A jump leads to a place.
+    pub(super) fn jump(&mut self, to: Place) {
+        let own = self.returns.last().map_or(0, |back| back.repetitions);
+        for repetition in self.repetitions.iter_mut().skip(own) {
+            if !(repetition.from..=repetition.call).contains(&to.offset) {
+                repetition.abandoned = true;
+            }
+        }
+    }
+}
+
+impl<'t> Run<'t, '_, '_, '_> {
+    /// `LBL`: a place, which does nothing where the program passes it, or the end of a subprogram.
+    pub(super) fn label(&mut self, s: &mut Scanner) -> Result<()> {
+        let label = written_label(s)?;
+        s.finish()?;
+        if label == Label::Number(0)
+            && let Some(back) = self.calls.end()
+        {
+            self.jump(s, back)?;
+        }
+        Ok(())
+    }
+
+    pub(super) fn jump(&mut self, s: &Scanner, to: Place) -> Result<()> {
+        let again = self.source.place().offset.saturating_sub(to.offset);
+        self.control.count_jump(s, again)?;
+        self.source.jump(to);
+        Ok(())
+    }
+
+    /// `CALL LBL`, `CALL PGM`.
+    pub(super) fn call(&mut self, s: &mut Scanner, place: Place) -> Result<()> {
+        if s.take(b"PGM") {
+            self.control.contour_is_closed(s)?;
+            return self.call_program(s);
+        }
+        s.expect(b"LBL")?;
+        let to = self.labelled(s)?;
+        if !s.take(b"REP") {
+            s.finish()?;
+            let back = self.source.place();
+            self.calls.call(back).map_err(|message| s.error_block("nesting", message))?;
+            return self.jump(s, to);
+        }
+        let times = self.repetitions(s)?;
+        if to.offset > place.offset {
+            let message = "the label of a repetition stands before its call";
+            return Err(s.error_block("label", message));
+        }
+        let again = self.calls.repeat(to, place, times);
+        if again.map_err(|message| s.error_block("label", message))? {
+            self.jump(s, to)?;
+        }
+        Ok(())
+    }
+
+    /// How often a part is repeated: `5`, `Q5`, and `5/5` as older controls show it.
+    fn repetitions(&mut self, s: &mut Scanner) -> Result<u32> {
+        s.is_done();
+        let from = *s;
+        let (_, number) = s.number_or_parameter(&self.control.registers)?;
+        let span = (from.at(), s.at());
+        if let Some(times) = number.filter(|n| n.fract() == 0.0 && (1.0..=65_534.0).contains(n)) {
+            let times = times as u32;
+            if s.take_symbol(b"/") && s.digits(65_534)? != times {
+                let message = "a repetition that has begun already cannot be followed";
+                return Err(s.error("label", span, message));
+            }
+            s.finish()?;
+            return Ok(times);
+        }
+        Err(s.error("label", span, "the number of repetitions is a whole number from 1 to 65534"))
+    }
+
+    /// The place of a label that is called: `5`, `"NAME"`, or a Q parameter.
+    pub(super) fn labelled(&mut self, s: &mut Scanner) -> Result<Place> {
+        s.is_done();
+        let from = *s;
+        let label = match s.parameter()? {
+            None => written_label(s)?,
+            Some(parameter) => {
+                let span = (from.at(), s.at());
+                label_in(&self.control.registers, parameter)
+                    .map_err(|message| s.error("parameter", span, message))?
+            }
+        };
+        let span = (from.at(), s.at());
+        if label == Label::Number(0) {
+            return Err(s.error("label", span, "LBL 0 ends subprograms and cannot be called"));
+        }
+        self.source.label(&label)?.ok_or_else(|| {
+            s.error("label", span, format!("there is no label {label} in this program"))
+        })
+    }
+
+    /// `CALL PGM NAME`: a program of the folders, in which labels and QL parameters are its own.
+    fn call_program(&mut self, s: &mut Scanner) -> Result<()> {
+        let (name, span) = self.program_name(s)?;
+        s.finish()?;
+        let depth = self.control.enter_program();
+        if depth > NESTING {
+            let message = format!("programs are nested more than {NESTING} deep");
+            return Err(s.error("nesting", span, message));
+        }
+        let folders = &self.control.settings.setup.folders;
+        // The control does not tell capitals from small letters.
+        let names = [name.to_ascii_uppercase(), name.to_ascii_lowercase(), name];
+        let there = |name: &&String| folders.iter().any(|f| f.join(name).is_file());
+        let [_, _, written] = &names;
+        let name = names.iter().rev().find(there).unwrap_or(written);
+        let text = folders::open(folders, name)
+            .map_err(|message| s.error("called-program", span, message))?;
+        self.control.count_jump(s, FILE.saturating_add(text.len()))?;
+        let unit = self.control.unit;
+        let local = self.control.registers.exchange_local(Numbers::default());
+        Run::begin(self.control, name, &text)?.finish()?;
+        self.control.registers.exchange_local(local);
+        self.control.leave_program();
+        self.control.set_unit(unit);
+        Ok(())
+    }
+
+    /// The name of a called program as a file below the folders.
+    fn program_name(&mut self, s: &mut Scanner) -> Result<(String, (usize, usize))> {
+        s.is_done();
+        let from = *s;
+        let name = match s.parameter()? {
+            Some(Parameter::Text(index)) => {
+                let text = self.control.registers.text(index);
+                let text = text.map(|text| Cow::Owned(text.to_vec()));
+                text.map_err(|message| s.error("parameter", (from.at(), s.at()), message))?
+            }
+            Some(_) => return Err(s.error_here("syntax", "the name of a program is expected here")),
+            None if s.peek().starts_with(b"\"") => Cow::Borrowed(s.quoted()?),
+            None => Cow::Borrowed(s.token().0),
+        };
+        let span = (from.at(), s.at());
+        let name = String::from_utf8_lossy(&name).replace('\\', "/");
+        // The folders of the control's drive are not those here: of such a path the file counts.
+        let mut name = match name.split_once(':') {
+            None => name,
+            Some((_, path)) => path.rsplit('/').next().unwrap_or_default().to_owned(),
+        };
+        // Without a type the called program has that of the one that calls.
+        if !name.rsplit('/').next().is_some_and(|file| file.contains('.')) {
+            name.push_str(".H");
+        }
+        if !name.to_ascii_uppercase().ends_with(".H") {
+            return Err(s.error(
+                "called-program",
+                span,
+                "only Klartext programs (.H) can be called",
+            ));
+        }
+        Ok((name, span))
+    }
+}
+
+/// The label that a Q parameter holds.
+fn label_in<'r>(registers: &Registers, parameter: Parameter) -> StdResult<Label<'r>, String> {
+    if let Parameter::Text(index) = parameter {
+        let name = registers.text(index)?;
+        return Ok(Label::Name(Cow::Owned(name.to_vec())));
+    }
+    let number = registers.number(parameter)?;
+    if number.fract() != 0.0 || !(0.0..=f64::from(LAST_LABEL)).contains(&number) {
+        return Err(format!("{parameter} is {number}, which is no label"));
+    }
+    Ok(Label::Number(number as u32))
+}

@@ -1,0 +1,8 @@
+//! The flow of a program: which block is next.
+//!
+//! Block follows block ([`mod@run`]) in the text of the program ([`source`]), unless it jumps or calls a
+//! label or another program ([`calls`]).
+
+mod calls;
+pub(super) mod run;
+mod source;

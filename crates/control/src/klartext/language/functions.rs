@@ -1,0 +1,210 @@
+//! M functions: what they are and when in a block they act.
+
+use super::scan::{Result, Scanner, Word};
+use super::words::{FeedWord, feed_word, unknown};
+use crate::klartext::execution::state::Control;
+
+/// An M function with what belongs to it.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Function {
+    /// Stop of the program, the spindle and the coolant: `M0`, `STOP`.
+    Stop,
+    /// The same where the operator has asked for it: `M1`.
+    OptionalStop,
+    /// End of the program: `M2`, `M30`.
+    End,
+    /// Spindle clockwise, and coolant where `M13` says so.
+    Clockwise { coolant: bool },
+    /// Spindle counter-clockwise, and coolant where `M14` says so.
+    CounterClockwise { coolant: bool },
+    /// Spindle stop: `M5`, and `M6`, which the tool call before it has made a tool change.
+    SpindleStop,
+    /// `M8`.
+    Coolant,
+    /// `M9`.
+    CoolantOff,
+    /// The block gives machine coordinates: `M91`, `M92`.
+    MachineCoordinates,
+    /// Calls the cycle after every positioning block: `M89`.
+    CallCyclesModally,
+    /// Calls the cycle after this block: `M99`.
+    CallCycle,
+    /// Keeps the tool tip while rotary axes turn: `M128`.
+    KeepTip,
+    /// Ends `M128` and `FUNCTION TCPM`: `M129`.
+    ReleaseTip,
+    /// Feed for each turn of the spindle (`M136`) or for each minute (`M137`).
+    FeedPerTurn(bool),
+    /// Moves nothing: the builder's own, and those of the control that change no path.
+    Nothing,
+    /// Retracts along the tool axis: by so many mm, infinite for `M140 MB MAX`; at a feed of its own
+    /// or by rapid.
+    Retract(f64, Option<FeedWord>),
+}
+
+/// The number of an M function, and what it is. M140 takes its distance from the text.
+const FUNCTIONS: [(u16, Function); 20] = [
+    (0, Function::Stop),
+    (1, Function::OptionalStop),
+    (2, Function::End),
+    (3, Function::Clockwise { coolant: false }),
+    (4, Function::CounterClockwise { coolant: false }),
+    (5, Function::SpindleStop),
+    (6, Function::SpindleStop),
+    (8, Function::Coolant),
+    (9, Function::CoolantOff),
+    (13, Function::Clockwise { coolant: true }),
+    (14, Function::CounterClockwise { coolant: true }),
+    (30, Function::End),
+    (89, Function::CallCyclesModally),
+    (91, Function::MachineCoordinates),
+    (92, Function::MachineCoordinates),
+    (99, Function::CallCycle),
+    (128, Function::KeepTip),
+    (129, Function::ReleaseTip),
+    (136, Function::FeedPerTurn(true)),
+    (137, Function::FeedPerTurn(false)),
+];
+
+/// Functions that change neither where the tool goes nor what it does there: the speed in corners
+/// (M90, M134, M135), sister tools (M101, M102, M107, M108), feed in arcs as it is without (M111), the
+/// way of rotary axes (M126, M127), ends of what is refused (M117, M121, M145), probe monitoring
+/// (M141), lift-off at a stop (M148, M149).
+const NEUTRAL: [u16; 16] =
+    [90, 101, 102, 107, 108, 111, 117, 121, 126, 127, 134, 135, 141, 145, 148, 149];
+
+/// Functions that are refused, and why.
+const REFUSED: [(u16, &str); 18] = [
+    (94, "changes the count of a rotary axis"),
+    (97, "changes the compensated path at small steps"),
+    (98, "changes the compensated path at open corners"),
+    (103, "changes the feed of plunging moves"),
+    (104, "activates the preset that was set last by hand"),
+    (109, "changes the feed in arcs"),
+    (110, "changes the feed in arcs"),
+    (114, "compensates the geometry of the machine"),
+    (115, "compensates the geometry of the machine"),
+    (116, "changes the meaning of the feed of rotary axes"),
+    (118, "lets the handwheel move the axes"),
+    (120, "changes the compensated path at small steps"),
+    (124, "leaves points out"),
+    (130, "gives points of the untilted plane"),
+    (138, "chooses the axes that tilt"),
+    (143, "deletes the basic rotation of the preset"),
+    (144, "compensates the geometry of the machine"),
+    (197, "rounds the corners of the compensated path"),
+];
+
+/// When in its block a function acts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum When {
+    /// Before the motion.
+    Start,
+    /// After the motion.
+    End,
+}
+
+impl Function {
+    /// What the word `M..` says, with the words that belong to it.
+    pub(super) fn read(s: &mut Scanner, word: &Word, control: &Control) -> Result<Function> {
+        let Some(number) = word.number.filter(|_| word.sign == 0.0) else {
+            return Err(unknown(s, word));
+        };
+        if number == 140.0 {
+            return retract(s, control);
+        }
+        let is = |n: &u16| f64::from(*n) == number;
+        if let Some((_, function)) = FUNCTIONS.iter().find(|(n, _)| is(n)) {
+            // The feed behind M128 is that of the compensating motion, not of the path.
+            if *function == Function::KeepTip {
+                own_feed(s, control)?;
+            }
+            return Ok(*function);
+        }
+        let builders = control.settings.auxiliary.iter().any(|n| f64::from(*n) == number);
+        if builders || NEUTRAL.iter().any(is) {
+            return Ok(Function::Nothing);
+        }
+        let reason = REFUSED.iter().find(|(n, _)| is(n)).map(|(_, reason)| *reason);
+        let message = match reason {
+            Some(reason) => format!("M{number} is not supported: it {reason}"),
+            None => format!("M{number} is not understood"),
+        };
+        Err(s.error("m-function", word.span, message))
+    }
+
+    /// When it acts (TNC manuals, table of the M functions).
+    pub(super) fn when(self) -> When {
+        match self {
+            Function::Stop
+            | Function::OptionalStop
+            | Function::End
+            | Function::SpindleStop
+            | Function::CoolantOff
+            | Function::CallCyclesModally
+            | Function::CallCycle
+            | Function::ReleaseTip => When::End,
+            _ => When::Start,
+        }
+    }
+}
+
+/// Behind `M140`: `MB MAX` or `MB 50 F750`. The feed is that of the retraction alone.
+fn retract(s: &mut Scanner, control: &Control) -> Result<Function> {
+    let distance = if s.take(b"MB") {
+        if s.take(b"MAX") { f64::INFINITY } else { s.value(&control.registers)? }
+    } else {
+        match s.word(&control.registers)? {
+            Some(Word { address: b"MB", number: Some(distance), .. }) => distance,
+            _ => return Err(s.error_block("m-function", "M140 needs MB with a distance or MAX")),
+        }
+    };
+    if distance <= 0.0 {
+        return Err(s.error_block("m-function", "M140 retracts: MB must be greater than 0"));
+    }
+    Ok(Function::Retract(distance * control.unit, own_feed(s, control)?))
+}
+
+/// The feed that belongs to the function before it, where there is one.
+fn own_feed(s: &mut Scanner, control: &Control) -> Result<Option<FeedWord>> {
+    if !s.peek().starts_with(b"F") {
+        return Ok(None);
+    }
+    match s.word(&control.registers)? {
+        Some(word) => feed_word(s, &word, control.tool_feed).map(Some),
+        None => Ok(None),
+    }
+}
+
+/// The M functions of a block, at most two.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct Functions([Option<Function>; 2]);
+
+impl Functions {
+    /// One function alone.
+    pub(crate) fn of(function: Function) -> Functions {
+        Functions([Some(function), None])
+    }
+
+    /// Adds one; answers why it cannot stand there.
+    pub(super) fn push(&mut self, function: Function) -> std::result::Result<(), &'static str> {
+        let place = self.0.iter_mut().find(|place| place.is_none());
+        *place.ok_or("a block takes two M functions")? = Some(function);
+        Ok(())
+    }
+
+    /// Those that act at that moment, in their order.
+    pub(crate) fn at(self, when: When) -> impl Iterator<Item = Function> {
+        self.0.into_iter().flatten().filter(move |f| f.when() == when)
+    }
+
+    /// Whether there is none.
+    pub(crate) fn is_empty(self) -> bool {
+        self.0[0].is_none()
+    }
+
+    /// Whether one of them is `function`.
+    pub(crate) fn contains(self, function: Function) -> bool {
+        self.0.contains(&Some(function))
+    }
+}

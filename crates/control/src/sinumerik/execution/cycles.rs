@@ -1,0 +1,503 @@
+//! The drilling cycles: from the arguments of a call to what it does in a hole.
+//!
+//! Parameters in order, their meaning and the motion: `docs/controls/sinumerik.md`, which names the
+//! manuals. What a call asks for and [`Cycle`] cannot say is refused.
+
+use super::state::State;
+use crate::sinumerik::Fallible;
+use crate::sinumerik::language::call::Call;
+use crate::sinumerik::language::commands::FeedType;
+use crate::sinumerik::language::scan::Source;
+use geom::Vec3;
+use program::{Cycle, CycleKind, Diagnostic, Feed, Spindle, Withdrawal};
+
+/// A cycle and its parameters.
+pub(crate) struct Form {
+    /// Its name.
+    pub name: &'static str,
+    /// What it does in the hole.
+    pub action: Action,
+    /// Its parameters in the order of the call.
+    pub parameters: &'static [&'static str],
+}
+
+/// What a cycle does in the hole.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(crate) enum Action {
+    /// Feed in, rapid out.
+    Drill,
+    /// Feed in by pecks.
+    Peck,
+    /// Tap with the spindle in step.
+    RigidTap,
+    /// Tap with a compensating chuck.
+    Tap,
+    /// Feed in, feed out.
+    Ream,
+    /// Feed in, spindle stop in position, rapid out.
+    Bore,
+    /// Known and not supported, as the operator has to act in the hole.
+    StopInHole,
+}
+
+/// The drilling cycles (Programming Manual 06/2019, 3.25.1; `CYCLE87` to `89`: Programming Guide
+/// Cycles 11.02).
+pub(crate) const CYCLES: &[Form] = &[
+    Form {
+        name: "CYCLE81",
+        action: Action::Drill,
+        parameters: &["RTP", "RFP", "SDIS", "DP", "DPR", "DTB", "_GMODE", "_DMODE", "_AMODE"],
+    },
+    Form {
+        name: "CYCLE82",
+        action: Action::Drill,
+        parameters: &[
+            "RTP", "RFP", "SDIS", "DP", "DPR", "DTB", "_GMODE", "_DMODE", "_AMODE", "_VARI",
+            "S_ZA", "S_FA", "S_ZD", "S_FD",
+        ],
+    },
+    Form {
+        name: "CYCLE83",
+        action: Action::Peck,
+        parameters: &[
+            "RTP", "RFP", "SDIS", "DP", "DPR", "FDEP", "FDPR", "DAM", "DTB", "DTS", "FRF", "VARI",
+            "_AXN", "_MDEP", "_VRT", "_DTD", "_DIS1", "_GMODE", "_DMODE", "_AMODE",
+        ],
+    },
+    Form {
+        name: "CYCLE84",
+        action: Action::RigidTap,
+        parameters: &[
+            "RTP", "RFP", "SDIS", "DP", "DPR", "DTB", "SDAC", "MPIT", "PIT", "POSS", "SST", "SST1",
+            "_AXN", "_PITA", "_TECHNO", "_VARI", "_DAM", "_VRT", "_PITM", "_PTAB", "_PTABA",
+            "_GMODE", "_DMODE", "_AMODE",
+        ],
+    },
+    Form {
+        name: "CYCLE840",
+        action: Action::Tap,
+        parameters: &[
+            "RTP", "RFP", "SDIS", "DP", "DPR", "DTB", "SDR", "SDAC", "ENC", "MPIT", "PIT", "_AXN",
+            "_PITA", "_TECHNO", "_PITM", "_PTAB", "_PTABA", "_GMODE", "_DMODE", "_AMODE",
+        ],
+    },
+    Form {
+        name: "CYCLE85",
+        action: Action::Ream,
+        parameters: &[
+            "RTP", "RFP", "SDIS", "DP", "DPR", "DTB", "FFR", "RFF", "_GMODE", "_DMODE", "_AMODE",
+        ],
+    },
+    Form {
+        name: "CYCLE86",
+        action: Action::Bore,
+        parameters: &[
+            "RTP", "RFP", "SDIS", "DP", "DPR", "DTB", "SDIR", "RPA", "RPO", "RPAP", "POSS",
+            "_GMODE", "_DMODE", "_AMODE",
+        ],
+    },
+    Form {
+        name: "CYCLE87",
+        action: Action::StopInHole,
+        parameters: &["RTP", "RFP", "SDIS", "DP", "DPR", "SDIR"],
+    },
+    Form {
+        name: "CYCLE88",
+        action: Action::StopInHole,
+        parameters: &["RTP", "RFP", "SDIS", "DP", "DPR", "DTB", "SDIR"],
+    },
+    Form {
+        name: "CYCLE89",
+        action: Action::Ream,
+        parameters: &["RTP", "RFP", "SDIS", "DP", "DPR", "DTB"],
+    },
+];
+
+/// Parameters that may only be left out or have one of these values: others change what the cycle
+/// does in a way that is not modelled. `_AXN` 0 and 3 are the axis perpendicular to the plane, 0 in
+/// the modes is the meaning of the older cycles, `_PITA` 1 is a pitch in mm.
+const FIXED: &[(&str, &[f64])] = &[
+    ("_AXN", &[0.0, 3.0]),
+    ("_PITA", &[0.0, 1.0]),
+    ("_TECHNO", &[0.0]),
+    ("_VARI", &[0.0]),
+    ("_DAM", &[0.0]),
+    ("_PITM", &[0.0]),
+    ("_PTAB", &[]),
+    ("_PTABA", &[]),
+    ("_GMODE", &[0.0]),
+    ("_DMODE", &[0.0]),
+    ("_AMODE", &[0.0]),
+    ("S_ZA", &[0.0]),
+    ("S_FA", &[0.0]),
+    ("S_ZD", &[0.0]),
+    ("S_FD", &[0.0]),
+    ("FRF", &[1.0]),
+];
+
+/// Coarse pitch of metric threads, mm, by nominal diameter (ISO 261).
+const COARSE_PITCH: &[(f64, f64)] = &[
+    (3.0, 0.5),
+    (4.0, 0.7),
+    (5.0, 0.8),
+    (6.0, 1.0),
+    (8.0, 1.25),
+    (10.0, 1.5),
+    (12.0, 1.75),
+    (14.0, 2.0),
+    (16.0, 2.0),
+    (18.0, 2.5),
+    (20.0, 2.5),
+    (22.0, 2.5),
+    (24.0, 3.0),
+    (27.0, 3.0),
+    (30.0, 3.5),
+    (33.0, 3.5),
+    (36.0, 4.0),
+    (39.0, 4.0),
+    (42.0, 4.5),
+    (45.0, 4.5),
+    (48.0, 5.0),
+];
+
+/// How long a pause lasts.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) enum Pause {
+    /// Seconds.
+    Seconds(f64),
+    /// Turns of the spindle.
+    Turns(f64),
+}
+
+impl Pause {
+    /// `DTB` and its kin: positive seconds, negative turns.
+    fn signed(value: f64) -> Pause {
+        if value < 0.0 { Pause::Turns(-value) } else { Pause::Seconds(value) }
+    }
+
+    /// Seconds at a spindle speed (1/min); nothing where turns are asked of a spindle that stands.
+    pub fn seconds(self, spindle: Spindle) -> Option<f64> {
+        match (self, spindle) {
+            (Pause::Seconds(seconds), _) => Some(seconds),
+            (Pause::Turns(turns), Spindle::Clockwise(speed) | Spindle::CounterClockwise(speed))
+                if speed > 0.0 =>
+            {
+                Some(turns / speed * 60.0)
+            }
+            _ => None,
+        }
+    }
+}
+
+/// A cycle that is ready to drill. Heights and ways in mm in the program's coordinates.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Drilling {
+    /// What happens, but for the dwell.
+    pub cycle: Cycle,
+    /// Dwell at the bottom.
+    pub dwell: Pause,
+    /// Height of the reference plane.
+    pub surface: f64,
+    /// What the cycle makes of the spindle before it drills.
+    pub spindle_before: Option<Spindle>,
+    /// What the cycle makes of the spindle afterwards.
+    pub spindle_after: Option<Spindle>,
+    /// Whether it drills at the active feed.
+    pub needs_feed: bool,
+}
+
+/// The arguments of a call, by name.
+struct Arguments<'a> {
+    source: &'a Source<'a>,
+    call: &'a Call,
+    form: &'static Form,
+    /// mm in a unit of length.
+    unit: f64,
+}
+
+impl Arguments<'_> {
+    fn error(&self, rule: &'static str, message: impl AsRef<str>) -> Box<Diagnostic> {
+        let message = format!("{}: {}", self.form.name, message.as_ref());
+        self.source.block_error(rule, message)
+    }
+
+    fn get(&self, name: &str) -> Fallible<Option<f64>> {
+        match self.form.parameters.iter().position(|n| *n == name) {
+            Some(index) => self.call.number(self.source, index),
+            None => Ok(None),
+        }
+    }
+
+    fn required(&self, name: &str) -> Fallible<f64> {
+        self.get(name)?.ok_or_else(|| self.error("cycle-parameter", format!("{name} is missing")))
+    }
+
+    fn or_zero(&self, name: &str) -> Fallible<f64> {
+        Ok(self.get(name)?.unwrap_or(0.0))
+    }
+
+    fn length(&self, name: &str) -> Fallible<Option<f64>> {
+        Ok(self.get(name)?.map(|value| value * self.unit))
+    }
+
+    /// A length that is written without a sign.
+    fn unsigned(&self, name: &str) -> Fallible<Option<f64>> {
+        let value = self.length(name)?;
+        if value.is_some_and(|v| v < 0.0) {
+            return Err(self.error("cycle-parameter", format!("{name} has no sign")));
+        }
+        Ok(value)
+    }
+
+    fn check(&self) -> Fallible<()> {
+        if self.call.arguments.len() > self.form.parameters.len() {
+            let most = self.form.parameters.len();
+            return Err(self.error("cycle-parameter", format!("it has at most {most} parameters")));
+        }
+        for (name, allowed) in FIXED {
+            if let Some(value) = self.get(name)?
+                && !allowed.contains(&value)
+            {
+                let message = format!("{name} = {value} is not supported");
+                return Err(self.error("unsupported", message));
+            }
+        }
+        Ok(())
+    }
+
+    /// A depth that is given absolute or relative to the reference plane; the depth below it, mm.
+    /// A relative depth of 0 is none, as in the calls of older posts. Where both are given they must
+    /// agree (the control would take the relative one).
+    fn depth(&self, absolute: &str, relative: &str, surface: f64) -> Fallible<Option<f64>> {
+        let from_absolute = self.length(absolute)?.map(|level| surface - level);
+        let from_relative = self.unsigned(relative)?.filter(|depth| *depth > 0.0);
+        match (from_absolute, from_relative) {
+            (Some(a), Some(r)) if (a - r).abs() > 1e-6 => Err(self.error(
+                "cycle-depth",
+                format!("{absolute} says a depth of {a} mm and {relative} one of {r} mm"),
+            )),
+            (a, r) => Ok(r.or(a)),
+        }
+    }
+}
+
+impl Drilling {
+    /// Reads a call.
+    ///
+    /// # Errors
+    /// A parameter is missing, out of its range, or asks for what [`Cycle`] cannot say.
+    pub fn read(
+        source: &Source,
+        call: &Call,
+        form: &'static Form,
+        state: &State,
+    ) -> Fallible<Drilling> {
+        let arguments = Arguments { source, call, form, unit: state.unit };
+        arguments.check()?;
+        let surface = arguments.required("RFP")? * state.unit;
+        let retract = arguments.required("RTP")? * state.unit - surface;
+        let depth = arguments.depth("DP", "DPR", surface)?;
+        let relative = arguments.length("DP")?.is_none();
+        if retract < 0.0 || retract == 0.0 && relative {
+            return Err(arguments.error(
+                "reference-plane",
+                "the retraction plane RTP must lie above the reference plane RFP (alarm 61101)",
+            ));
+        }
+        let Some(depth) = depth else {
+            return Err(arguments.error("cycle-depth", "there is neither DP nor DPR"));
+        };
+        if depth <= 0.0 {
+            return Err(
+                arguments.error("cycle-depth", "the depth is not below the reference plane")
+            );
+        }
+        let mut drilling = Drilling {
+            cycle: Cycle {
+                kind: CycleKind::Drill,
+                depth,
+                clearance: arguments.unsigned("SDIS")?.unwrap_or(0.0),
+                retract,
+                feed: None,
+                dwell: 0.0,
+                first_peck: None,
+                peck: None,
+            },
+            dwell: Pause::signed(arguments.or_zero("DTB")?),
+            surface,
+            spindle_before: None,
+            spindle_after: None,
+            needs_feed: true,
+        };
+        match form.action {
+            Action::Drill => {}
+            Action::Peck => drilling.peck(&arguments)?,
+            Action::RigidTap => drilling.rigid_tap(&arguments, state)?,
+            Action::Tap => drilling.tap(&arguments, state)?,
+            Action::Ream => drilling.ream(&arguments, state)?,
+            Action::Bore => drilling.bore(&arguments, state)?,
+            Action::StopInHole => {
+                let message = "it stops the program in the hole; use CYCLE86";
+                return Err(arguments.error("unsupported", message));
+            }
+        }
+        Ok(drilling)
+    }
+
+    fn peck(&mut self, arguments: &Arguments) -> Fallible<()> {
+        let Some(first) = arguments.depth("FDEP", "FDPR", self.surface)? else {
+            let message = "there is neither FDEP nor FDPR (alarm 61107)";
+            return Err(arguments.error("cycle-depth", message));
+        };
+        if first <= 0.0 || first > self.cycle.depth + 1e-9 {
+            let message = format!(
+                "the first depth of {first} mm is not between 0 and {} mm (alarm 61107)",
+                self.cycle.depth
+            );
+            return Err(arguments.error("cycle-depth", message));
+        }
+        let single = first >= self.cycle.depth - 1e-9;
+        if !single && arguments.or_zero("DAM")? != 0.0 {
+            let message = "pecks that grow less (DAM) are not supported; leave DAM at 0";
+            return Err(arguments.error("unsupported", message));
+        }
+        self.cycle.kind = match arguments.or_zero("VARI")? {
+            0.0 => CycleKind::BreakChip,
+            1.0 => CycleKind::Deep,
+            other => {
+                let message = format!("VARI is 0 or 1, not {other}");
+                return Err(arguments.error("cycle-parameter", message));
+            }
+        };
+        // The dwell at the final depth is DTB unless _DTD says another.
+        let final_dwell = arguments.or_zero("_DTD")?;
+        if final_dwell != 0.0 {
+            self.dwell = Pause::signed(final_dwell);
+        }
+        self.cycle.first_peck = Some(first);
+        self.cycle.peck = Some(first);
+        Ok(())
+    }
+
+    /// The pitch in mm and whether the thread is left-handed.
+    fn pitch(arguments: &Arguments) -> Fallible<(f64, bool)> {
+        if arguments.unit != 1.0 {
+            return Err(arguments.error("unsupported", "tapping in inches is not supported"));
+        }
+        let size = arguments.get("MPIT")?.filter(|size| *size != 0.0);
+        let pitch = arguments.get("PIT")?.filter(|pitch| *pitch != 0.0);
+        let signed = match (size, pitch) {
+            (Some(size), None) => {
+                let entry = COARSE_PITCH.iter().find(|(diameter, _)| *diameter == size.abs());
+                let Some((_, pitch)) = entry else {
+                    let message = format!("MPIT {size} is no thread from M3 to M48");
+                    return Err(arguments.error("cycle-parameter", message));
+                };
+                pitch * size.signum()
+            }
+            (None, Some(pitch)) => pitch,
+            (None, None) => {
+                let message = "there is neither MPIT nor PIT";
+                return Err(arguments.error("cycle-parameter", message));
+            }
+            (Some(_), Some(_)) => {
+                let message = "MPIT and PIT contradict each other; give one";
+                return Err(arguments.error("cycle-parameter", message));
+            }
+        };
+        Ok((signed.abs(), signed < 0.0))
+    }
+
+    /// `SDAC`: what the spindle does after the cycle.
+    fn direction(arguments: &Arguments, name: &str, speed: f64) -> Fallible<Spindle> {
+        match arguments.or_zero(name)? {
+            3.0 => Ok(Spindle::Clockwise(speed)),
+            4.0 => Ok(Spindle::CounterClockwise(speed)),
+            5.0 if name == "SDAC" => Ok(Spindle::Off),
+            other => Err(arguments.error(
+                "cycle-parameter",
+                format!("{name} = {other} is no direction of the spindle (alarm 61102)"),
+            )),
+        }
+    }
+
+    fn rigid_tap(&mut self, arguments: &Arguments, state: &State) -> Fallible<()> {
+        let (pitch, left) = Drilling::pitch(arguments)?;
+        let speed = arguments.required("SST")?;
+        if speed <= 0.0 {
+            return Err(arguments.error("cycle-parameter", "the tapping speed SST must be above 0"));
+        }
+        if arguments.or_zero("SST1")? < 0.0 {
+            return Err(arguments.error("cycle-parameter", "SST1 has no sign"));
+        }
+        self.cycle.kind = CycleKind::Tap { pitch, left };
+        self.needs_feed = false;
+        self.spindle_before =
+            Some(if left { Spindle::CounterClockwise(speed) } else { Spindle::Clockwise(speed) });
+        self.spindle_after = Some(Drilling::direction(arguments, "SDAC", state.speed)?);
+        Ok(())
+    }
+
+    fn tap(&mut self, arguments: &Arguments, state: &State) -> Fallible<()> {
+        let encoder = arguments.or_zero("ENC")?;
+        if ![0.0, 11.0, 20.0].contains(&encoder) {
+            let message = format!("ENC = {encoder}, a pitch from the feed, is not supported");
+            return Err(arguments.error("unsupported", message));
+        }
+        if arguments.or_zero("SDR")? != 0.0 {
+            let message = "SDR must be 0: the cycle turns the spindle round by itself";
+            return Err(arguments.error("unsupported", message));
+        }
+        let (pitch, negative) = Drilling::pitch(arguments)?;
+        let left = matches!(state.spindle, Spindle::CounterClockwise(_));
+        if negative || state.spindle == Spindle::Off {
+            let message = "the running spindle (M3, M4) gives the hand of the thread, not a sign";
+            return Err(arguments.error("cycle-parameter", message));
+        }
+        self.cycle.kind = CycleKind::Tap { pitch, left };
+        self.needs_feed = false;
+        Ok(())
+    }
+
+    fn ream(&mut self, arguments: &Arguments, state: &State) -> Fallible<()> {
+        self.cycle.kind = CycleKind::Ream;
+        let feed = arguments.get("FFR")?;
+        let back = arguments.get("RFF")?;
+        if feed.is_some_and(|f| f <= 0.0) || back.is_some_and(|f| f <= 0.0) {
+            return Err(arguments.error("cycle-parameter", "FFR and RFF must be above 0"));
+        }
+        if back != feed {
+            let message = "feeds in (FFR) and out (RFF) that differ are not supported";
+            return Err(arguments.error("unsupported", message));
+        }
+        if let Some(feed) = feed {
+            self.needs_feed = false;
+            self.cycle.feed = match state.feed_type {
+                FeedType::PerMinute => Some(Feed::PerMinute(feed * state.feed_unit)),
+                FeedType::PerTurn => Some(Feed::PerTurn(feed * state.feed_unit)),
+                FeedType::InverseTime => {
+                    let message = "a feed in a cycle needs G94 or G95";
+                    return Err(arguments.error("cycle-parameter", message));
+                }
+            };
+        }
+        Ok(())
+    }
+
+    fn bore(&mut self, arguments: &Arguments, state: &State) -> Fallible<()> {
+        let mut aside = Vec3::ZERO;
+        for (axis, name) in ["RPA", "RPO", "RPAP"].into_iter().enumerate() {
+            aside[axis] = arguments.length(name)?.unwrap_or(0.0);
+        }
+        self.cycle.kind = match aside == Vec3::ZERO {
+            true => CycleKind::Bore,
+            false => {
+                CycleKind::FineBore(Withdrawal { aside, angle: Some(arguments.or_zero("POSS")?) })
+            }
+        };
+        self.spindle_before = Some(Drilling::direction(arguments, "SDIR", state.speed)?);
+        // The spindle stands in position at the end; nothing starts it again.
+        self.spindle_after = Some(Spindle::Off);
+        Ok(())
+    }
+}

@@ -1,0 +1,591 @@
+//! A block is carried out.
+//!
+//! Order within a block: assignments and G commands; then tool, offset, feed, spindle and coolant
+//! (auxiliary functions come before the motion, Function Manual H2); then the motion; then the hole of
+//! a modal cycle; then stops and the end of the program (`M0 M1 M2 M17 M30` come after the motion).
+
+use super::corner::Held;
+use super::cycles::{Drilling, Pause};
+use super::modal::Modal;
+use super::motion::AXIS_NAMES;
+use super::programmable::plain_values;
+use super::state::State;
+use crate::Settings;
+use crate::budget::Budget;
+use crate::compensation::{Compensator, Terms};
+use crate::sinumerik::Fallible;
+use crate::sinumerik::language::block::{Block, ToolCall};
+use crate::sinumerik::language::call::{Argument, Call, Procedure};
+use crate::sinumerik::language::commands::{Code, FeedType, Motion};
+use crate::sinumerik::language::scan::Source;
+use crate::sinumerik::language::variables::ELEMENTS_IN_A_TURN;
+use program::{Compensation, Coolant, Cycle, Feed, Op, Record, Spindle, Tool};
+
+/// Runs blocks.
+pub(crate) struct Interpreter<'a, 's> {
+    /// What is remembered.
+    pub state: State,
+    /// The machine.
+    pub settings: &'a Settings,
+    /// Where the records go.
+    compensator: &'a mut Compensator<'s>,
+    /// Jumps and calls.
+    pub budget: Budget,
+    /// The line of the main program that records carry, where another file runs.
+    pub line: Option<u32>,
+    /// Whether a called program runs.
+    pub called: bool,
+    /// Whether the sink has stopped the run.
+    pub stopped: bool,
+    /// The block whose corner waits for the next one.
+    pub held: Option<Box<Held>>,
+    pub(super) reported_cycle: Option<Cycle>,
+}
+
+/// M functions of which a block has at most one, and those that stand for no motion at all.
+const STOPS: &[u32] = &[0, 1, 2, 17, 30];
+const SPINDLE: &[u32] = &[3, 4, 5];
+const COOLANT: &[u32] = &[7, 8, 9];
+/// Automatic gear stage, gear stages 1 to 5.
+const GEARS: std::ops::RangeInclusive<u32> = 40..=45;
+
+impl<'a, 's> Interpreter<'a, 's> {
+    /// At the start of a program.
+    pub fn new(
+        settings: &'a Settings,
+        compensator: &'a mut Compensator<'s>,
+    ) -> Interpreter<'a, 's> {
+        Interpreter {
+            state: State::new(settings),
+            settings,
+            compensator,
+            budget: Budget::default(),
+            line: None,
+            called: false,
+            stopped: false,
+            held: None,
+            reported_cycle: None,
+        }
+    }
+
+    /// Reports what happens.
+    #[inline]
+    pub fn emit(&mut self, source: &Source, op: Op) -> Fallible<()> {
+        let record = Record { line: self.line.unwrap_or(source.line), op };
+        if self.held.is_some() { self.keep(source, record) } else { self.send(record) }
+    }
+
+    #[inline]
+    pub fn send(&mut self, record: Record) -> Fallible<()> {
+        self.budget.record(&record.op);
+        self.compensator.take(record).inspect_err(|_| self.stopped = true)
+    }
+
+    /// Reports that compensation changes with the move that follows.
+    pub fn switch(&mut self, source: &Source, side: Compensation, terms: Terms) -> Fallible<()> {
+        let line = self.line.unwrap_or(source.line);
+        if self.held.is_some() {
+            return self.keep(source, Record { line, op: Op::Compensation(side) });
+        }
+        self.compensator.switch(line, side, terms).inspect_err(|_| self.stopped = true)
+    }
+
+    /// Turns of loops, jumps and calls, of which there may not be too many between two records.
+    pub fn spend(&mut self, source: &Source, turns: usize) -> Fallible<()> {
+        self.budget.spend(turns).map_err(|message| source.block_error("endless", message))
+    }
+
+    /// So many bytes are read, again or in a called program.
+    pub fn reads(&mut self, source: &Source, bytes: usize) -> Fallible<()> {
+        self.budget.read(bytes).map_err(|message| source.block_error("endless", message))
+    }
+
+    /// Carries out a block.
+    pub fn run(&mut self, source: &Source, block: &mut Block) -> Fallible<()> {
+        if let Some(comment) = block.comment.take() {
+            self.emit(source, Op::Comment(comment.into()))?;
+        }
+        if !block.any {
+            return Ok(());
+        }
+        if !block.assigned.is_empty() {
+            self.spend(source, block.assigned.len() / ELEMENTS_IN_A_TURN)?;
+            for (place, value) in block.assigned.drain(..) {
+                self.state.assign(place, value);
+            }
+        }
+        if let Some(message) = block.message.take() {
+            self.emit(source, Op::Message(message.into()))?;
+        }
+        if self.held.is_some() && block.changes_frame() {
+            self.release(source)?;
+        }
+        if let Some(call) = block.call.take() {
+            return self.call(source, block, &call);
+        }
+        if block.m[0].is_some() {
+            self.check_m(source, block)?;
+        }
+        self.modes(source, block)?;
+        if let Some((name, tolerance)) = block.path_tolerance {
+            self.path_tolerance(source, name, tolerance * self.state.unit)?;
+        }
+        if let Some(rare) = &block.rare {
+            if let Some(radius) = rare.modal_round {
+                self.state.modal_round = radius.max(0.0) * self.state.unit;
+            }
+            self.state.corner_feed = rare.modal_corner_feed.or(self.state.corner_feed);
+        }
+        match block.code(3) {
+            Some(Code::Frame(command)) => return self.frame_command(source, block, command),
+            Some(Code::Pole(origin)) => return self.pole(source, block, origin),
+            Some(Code::Limit(upper)) => return self.limit(source, block, upper),
+            _ => {}
+        }
+        match block.code(2) {
+            Some(Code::Dwell) => return self.dwell(source, block),
+            Some(Code::FloatingTap) => {
+                self.technology(source, block)?;
+                self.floating_tap(source, block)?;
+            }
+            Some(Code::Home) => {
+                self.technology(source, block)?;
+                self.approach_fixed_point(source, block)?;
+            }
+            _ => {
+                self.technology(source, block)?;
+                self.motion(source, block)?;
+            }
+        }
+        self.stops(source, block)
+    }
+
+    fn check_m(&self, source: &Source, block: &Block) -> Fallible<()> {
+        for group in [STOPS, SPINDLE, COOLANT] {
+            if block.m.iter().flatten().filter(|m| group.contains(m)).count() > 1 {
+                let message = "two M functions of one kind in a block contradict each other";
+                return Err(source.block_error("group-conflict", message));
+            }
+        }
+        for m in block.m.iter().flatten() {
+            let known = matches!(*m, 6 | 19)
+                || [STOPS, SPINDLE, COOLANT].iter().any(|group| group.contains(m))
+                || GEARS.contains(m)
+                || self.settings.auxiliary.contains(m);
+            if !known {
+                let message = format!("M{m} is not an M function of the control");
+                let mut error = source.block_error("unknown-m", message);
+                error.help =
+                    "a function of the machine's builder that moves no axis belongs in the \
+                              list of auxiliary functions of the machine"
+                        .into();
+                return Err(error);
+            }
+        }
+        Ok(())
+    }
+
+    /// How compensation leads the tool: `NORM KONT`, `G450 G451`, `DISC=`.
+    #[cold]
+    fn compensation_terms(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+        let state = &mut self.state;
+        let before = (state.corner, state.peak, state.goes_around);
+        if let Some(Code::Corner(outer)) = block.code(18) {
+            state.corner = outer;
+        }
+        if let Some(Code::Approach { around }) = block.code(17) {
+            state.goes_around = around;
+        }
+        if let Some(peak) = block.rare.as_ref().and_then(|rare| rare.peak) {
+            if !(0.0..=100.0).contains(&peak) {
+                return Err(source.block_error("compensation", "DISC= takes 0 to 100"));
+            }
+            state.peak = peak > 0.0;
+        }
+        if state.compensation_in_effect != Compensation::Off
+            && before != (state.corner, state.peak, state.goes_around)
+        {
+            let message = "how the tool goes around corners changes while compensation is active";
+            let mut error = source.block_error("compensation", message);
+            error.help = "write NORM, KONT, G450, G451 and DISC= before or with G41, G42".into();
+            return Err(error);
+        }
+        Ok(())
+    }
+
+    /// The modal G commands.
+    fn modes(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+        if let Some(Code::Motion(motion)) = block.code(1) {
+            self.state.motion = motion;
+        }
+        if let Some(Code::Plane(normal)) = block.code(6) {
+            let state = &self.state;
+            if normal != state.plane_normal && state.compensation != Compensation::Off {
+                let message = "the plane changes while cutter radius compensation is active";
+                return Err(source.block_error("compensation", message));
+            }
+            if normal != state.plane_normal && self.held.is_some() {
+                let message = "the plane changes between the two sides of a corner";
+                return Err(source.block_error("corner", message));
+            }
+            self.state.select_plane(normal);
+        }
+        if block.groups[17] != 0 || block.groups[18] != 0 || block.rare.is_some() {
+            self.compensation_terms(source, block)?;
+        }
+        let state = &mut self.state;
+        if let Some(Code::Units(unit, of_feed)) = block.code(13) {
+            state.unit = unit;
+            // G70 and G71 leave feeds in the basic system, which is metric.
+            let feed_unit = if of_feed { unit } else { 1.0 };
+            if feed_unit != state.feed_unit {
+                state.feed_unit = feed_unit;
+                state.feed = None;
+            }
+        }
+        if let Some(Code::Absolute(absolute)) = block.code(14) {
+            state.absolute = absolute;
+        }
+        if let Some(Code::Feed(feed_type)) = block.code(15)
+            && feed_type != state.feed_type
+        {
+            state.feed_type = feed_type;
+            state.feed = None;
+        }
+        if let Some(Code::Diameter(diameter)) = block.code(29) {
+            state.diameter = diameter;
+        }
+        if let Some(Code::VectorsInWorkFrame(in_work_frame)) = block.code(25) {
+            state.vectors_in_work_frame = in_work_frame;
+        }
+        if let Some(Code::Compensation(compensation)) = block.code(7) {
+            self.select_compensation(source, compensation)?;
+        }
+        match block.code(8) {
+            Some(Code::WorkOffset(number)) => self.work_offset(source, number),
+            _ => Ok(()),
+        }
+    }
+
+    fn select_compensation(&mut self, source: &Source, compensation: Compensation) -> Fallible<()> {
+        if compensation == self.state.compensation {
+            return Ok(());
+        }
+        if !matches!(self.state.motion, Motion::Rapid | Motion::Line) {
+            let message = "cutter radius compensation is switched in a block with G0 or G1 \
+                           (alarms 10753, 10754)";
+            return Err(source.block_error("compensation", message));
+        }
+        self.state.compensation = compensation;
+        Ok(())
+    }
+
+    /// Tool, offset, feed, spindle, coolant.
+    fn technology(&mut self, source: &Source, block: &mut Block) -> Fallible<()> {
+        if block.tool.is_some() || block.edge.is_some() || block.has_m(6) {
+            self.tool(source, block)?;
+        }
+        if let Some(feed) = block.feed {
+            self.feed(source, feed)?;
+        }
+        if block.speed.is_some() || block.m[0].is_some() || block.rare.is_some() {
+            self.spindle_and_coolant(source, block)?;
+        }
+        Ok(())
+    }
+
+    fn tool(&mut self, source: &Source, block: &mut Block) -> Fallible<()> {
+        if let Some(call) = block.tool.take() {
+            let tool = match call {
+                ToolCall::Number(number) => Tool { number, ..Tool::default() },
+                ToolCall::Name(name) => Tool { name, ..Tool::default() },
+            };
+            // A name has no number to report before the change.
+            if !block.has_m(6) && tool.name.is_empty() {
+                self.emit(source, Op::Preselect(tool.number))?;
+            }
+            self.state.selected = Some(Box::new(tool));
+        }
+        let mut edge = block.edge;
+        if block.has_m(6) {
+            let Some(tool) = self.state.selected.clone() else {
+                return Err(
+                    source.block_error("tool", "M6 changes the tool, but no T has chosen one")
+                );
+            };
+            self.state.tool = Some(tool.clone());
+            self.emit(source, Op::Tool(tool))?;
+            self.report_spindle(source, Spindle::Off)?;
+            self.report_coolant(source, Coolant::Off)?;
+            // The change activates edge 1 unless the block says another (MD20270 = 1).
+            edge = edge.or(Some(1));
+            self.state.edge = None;
+        }
+        if let Some(number) = edge {
+            let active = (number > 0).then_some(number);
+            if active != self.state.edge || block.has_m(6) {
+                self.state.edge = active;
+                self.emit(source, Op::LengthOffset(active))?;
+            }
+        }
+        Ok(())
+    }
+
+    fn feed(&mut self, source: &Source, value: f64) -> Fallible<()> {
+        if value <= 0.0 {
+            let message = "the feed must be above 0 (alarm 14800)";
+            return Err(source.block_error("feed", message));
+        }
+        let state = &mut self.state;
+        let unit = if state.feed_type == FeedType::InverseTime { 1.0 } else { state.feed_unit };
+        state.feed = Some(value * unit);
+        if state.active_feed() != state.reported_feed {
+            self.report_feed(source)?;
+        }
+        Ok(())
+    }
+
+    fn report_feed(&mut self, source: &Source) -> Fallible<()> {
+        self.state.reported_feed = self.state.active_feed();
+        match self.state.reported_feed {
+            Some(feed) => self.emit(source, Op::Feed(feed)),
+            None => Ok(()),
+        }
+    }
+
+    /// Says that the feed has been used by a motion; in inverse time it holds for one block only.
+    pub fn use_feed(&mut self, source: &Source) -> Fallible<()> {
+        if self.state.feed.is_none() {
+            let mut error = source.block_error("missing-feed", "there is no feed (alarm 10860)");
+            error.help = "give F: once after G94 or G95, in every block under G93".into();
+            return Err(error);
+        }
+        if let Some(Feed::InverseTime(_)) = self.state.reported_feed {
+            self.state.feed = None;
+            self.state.reported_feed = None;
+        }
+        Ok(())
+    }
+
+    fn spindle_and_coolant(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+        if let Some(speed) = block.speed {
+            if speed < 0.0 {
+                return Err(source.block_error("spindle", "the speed of the spindle has no sign"));
+            }
+            self.state.speed = speed;
+        }
+        let speed = self.state.speed;
+        let running = self.state.spindle;
+        let spindle = match block.m.iter().flatten().find(|m| SPINDLE.contains(m)) {
+            Some(3) => Spindle::Clockwise(speed),
+            Some(4) => Spindle::CounterClockwise(speed),
+            Some(_) => Spindle::Off,
+            None => match running {
+                Spindle::Off => Spindle::Off,
+                Spindle::Clockwise(_) => Spindle::Clockwise(speed),
+                Spindle::CounterClockwise(_) => Spindle::CounterClockwise(speed),
+            },
+        };
+        let positioned = block.rare.as_ref().is_some_and(|rare| rare.spindle_position.is_some());
+        let spindle = if positioned || block.has_m(19) { Spindle::Off } else { spindle };
+        self.report_spindle(source, spindle)?;
+        let coolant = match block.m.iter().flatten().find(|m| COOLANT.contains(m)) {
+            Some(7) => Coolant::Mist,
+            Some(8) => Coolant::Flood,
+            Some(_) => Coolant::Off,
+            None => self.state.coolant,
+        };
+        self.report_coolant(source, coolant)
+    }
+
+    /// The coolant is this from here on.
+    fn report_coolant(&mut self, source: &Source, coolant: Coolant) -> Fallible<()> {
+        if coolant == self.state.coolant {
+            return Ok(());
+        }
+        self.state.coolant = coolant;
+        self.emit(source, Op::Coolant(coolant))
+    }
+
+    /// The spindle does this from here on.
+    pub fn report_spindle(&mut self, source: &Source, spindle: Spindle) -> Fallible<()> {
+        if spindle == self.state.spindle {
+            return Ok(());
+        }
+        if let Spindle::Clockwise(speed) | Spindle::CounterClockwise(speed) = spindle {
+            let [low, high] = self.state.speed_limits;
+            if !(low..=high).contains(&speed) {
+                let message =
+                    format!("the speed of {speed} 1/min is not within G25 S{low} and G26 S{high}");
+                return Err(source.block_error("spindle", message));
+            }
+        }
+        self.state.spindle = spindle;
+        self.emit(source, Op::Spindle(spindle))
+    }
+
+    /// `G25`, `G26`: limits of the speed of the spindle, and of the work area. Where the tool would leave
+    /// that, the control stops; it goes nowhere else.
+    fn limit(&mut self, source: &Source, block: &Block, upper: bool) -> Fallible<()> {
+        plain_values(source, block)?;
+        if !block.only_group(3) || block.feed.is_some() || block.has_rotary() {
+            let message = format!("{} stands in a block of its own", block.command(3));
+            return Err(source.block_error("syntax", message));
+        }
+        if let Some(speed) = block.speed {
+            self.state.speed_limits[usize::from(upper)] = speed;
+        }
+        Ok(())
+    }
+
+    fn stops(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+        if block.m[0].is_none() {
+            return Ok(());
+        }
+        match block.m.iter().flatten().find(|m| STOPS.contains(m)) {
+            Some(0) => self.emit(source, Op::Stop),
+            Some(1) => self.emit(source, Op::OptionalStop),
+            Some(_) => self.end(source),
+            None => Ok(()),
+        }
+    }
+
+    fn end(&mut self, source: &Source) -> Fallible<()> {
+        self.state.ended = true;
+        if self.called { Ok(()) } else { self.emit(source, Op::End) }
+    }
+
+    /// `G4`: in a block of its own; its `F` (seconds) and `S` (turns) change neither feed nor speed.
+    fn dwell(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+        let pause = match (block.feed, block.speed) {
+            (Some(seconds), None) => Pause::Seconds(seconds),
+            (None, Some(turns)) => Pause::Turns(turns),
+            _ => return Err(source.block_error("dwell", "G4 needs F (seconds) or S (turns)")),
+        };
+        if !block.only_group(2) || block.has_position() {
+            return Err(source.block_error("dwell", "G4 stands in a block of its own"));
+        }
+        match pause.seconds(self.state.spindle) {
+            Some(seconds) if seconds >= 0.0 => self.emit(source, Op::Dwell(seconds)),
+            Some(_) => Err(source.block_error("dwell", "a dwell has no sign")),
+            None => Err(source.block_error("dwell", "turns of a spindle that stands")),
+        }
+    }
+
+    /// A call stands in a block of its own.
+    fn call(&mut self, source: &Source, block: &Block, call: &Call) -> Fallible<()> {
+        let alone = block.only_group(0)
+            && !block.has_position()
+            && block.feed.is_none()
+            && block.speed.is_none();
+        if !alone {
+            let message = format!("{} stands in a block of its own", call.name);
+            return Err(source.block_error("syntax", message));
+        }
+        match call.procedure {
+            Procedure::NoMotion => Ok(()),
+            Procedure::Group => group(source, call),
+            Procedure::MasterSpindle => match call.number(source, 0)? {
+                None | Some(1.0) => Ok(()),
+                Some(_) => {
+                    let message = "SETMS is not supported: another master spindle than the first";
+                    Err(source.block_error("unsupported", message))
+                }
+            },
+            Procedure::HighSpeed => self.high_speed(source, call),
+            Procedure::FeedGroup => self.feed_group(source, call),
+            Procedure::Traori => self.traori(source, call),
+            Procedure::Trafoof => self.trafoof(source),
+            Procedure::Swivel => self.swivel(source, call),
+            Procedure::Return => self.end(source),
+            Procedure::EndOfModalCall => {
+                self.may_change_modal(source)?;
+                self.state.modal = Modal::None;
+                self.cycle_off(source)
+            }
+            Procedure::Pattern(pattern) => self.pattern(source, call, pattern),
+            Procedure::Drill(form) => {
+                let drilling = Drilling::read(source, call, form, &self.state)?;
+                if call.modal {
+                    self.may_change_modal(source)?;
+                    self.state.modal = Modal::Cycle(drilling);
+                    return Ok(());
+                }
+                if self.state.modal.waits() {
+                    let message = "a cycle is called while MCALL is active";
+                    return Err(source.block_error("cycle", message));
+                }
+                self.drill(source, &drilling)?;
+                self.cycle_off(source)
+            }
+        }
+    }
+
+    /// `CYCLE832(tolerance, mode, version)`. The older form has a packed second argument that can
+    /// switch the transformation too.
+    fn high_speed(&self, source: &Source, call: &Call) -> Fallible<()> {
+        if matches!(call.arguments.get(1), Some(Argument::Number(n)) if *n > 9999.0) {
+            let message = "the older form of CYCLE832, which can switch TRAORI, is not supported";
+            return Err(source.block_error("unsupported", message));
+        }
+        let tolerance = call.number(source, 0)?.unwrap_or(0.0);
+        self.path_tolerance(source, call.name, tolerance * self.state.unit)
+    }
+
+    /// How far the control may leave the path, mm: what it then does is not seen here.
+    fn path_tolerance(&self, source: &Source, name: &str, tolerance: f64) -> Fallible<()> {
+        let most = self.settings.path_tolerance;
+        if tolerance <= most {
+            return Ok(());
+        }
+        let message = format!(
+            "{name} lets the control leave the path by {tolerance} mm, the machine file allows {most} \
+             mm"
+        );
+        let mut error = source.block_error("path-tolerance", message);
+        error.help = "path_tolerance in [options] of the machine file says how far".into();
+        Err(error)
+    }
+
+    /// `FGROUP(...)`: the axes that F is the speed of. Without one of X, Y, Z the tool would move at
+    /// another feed than F wherever that axis takes part.
+    fn feed_group(&self, source: &Source, call: &Call) -> Fallible<()> {
+        let mut named = [false; 6];
+        for argument in &call.arguments {
+            let name = if let Argument::Text(name) = argument { name.as_str() } else { "" };
+            let Some(index) = AXIS_NAMES.iter().position(|axis| *axis == name) else {
+                let message = "FGROUP takes the names of axes: FGROUP(X,Y,Z)";
+                return Err(source.block_error("feed-group", message));
+            };
+            if index >= 3 && !self.settings.rotary[index - 3] {
+                let message = format!("the machine has no axis {name}");
+                return Err(source.block_error("unknown-axis", message));
+            }
+            named[index] = true;
+        }
+        // FGROUP() goes back to the basic setting: the geometry axes.
+        let missing = (0..3).find(|i| !call.arguments.is_empty() && !named[*i]);
+        let Some(missing) = missing else { return Ok(()) };
+        let message = format!(
+            "FGROUP without {}: F would not be the speed of the tool where that axis moves",
+            AXIS_NAMES[missing]
+        );
+        Err(source.block_error("feed-group", message))
+    }
+}
+
+/// `GROUP_BEGIN(level, text, spindle, retract)`, `GROUP_END(level, retract)`: nothing, unless the control
+/// is to retract by itself.
+fn group(source: &Source, call: &Call) -> Fallible<()> {
+    let plain = |argument: &Argument| match argument {
+        Argument::Number(value) => *value == 0.0,
+        Argument::None | Argument::Text(_) => true,
+    };
+    if call.arguments.iter().skip(1).all(plain) {
+        return Ok(());
+    }
+    let message = format!("{} with a way or code of the control's own is not supported", call.name);
+    let mut error = source.block_error("unsupported", message);
+    error.help = "set its arguments behind the level to 0 or a text".into();
+    Err(error)
+}

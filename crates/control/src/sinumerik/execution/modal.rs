@@ -1,0 +1,111 @@
+//! Holes, and what `MCALL` has after each block with a motion.
+
+use super::cycles::Drilling;
+use super::interpreter::Interpreter;
+use crate::sinumerik::Fallible;
+use crate::sinumerik::language::scan::Source;
+use crate::sinumerik::language::statement::ProgramCall;
+use geom::Vec3;
+use program::{Cycle, Op};
+
+/// What `MCALL` has after each block with a motion.
+pub(crate) enum Modal {
+    None,
+    /// A cycle.
+    Cycle(Drilling),
+    /// A program.
+    Program(ProgramCall),
+    /// A program; the block that moved has just been.
+    Due(ProgramCall),
+    /// A program that runs; its own blocks do not call it.
+    Running,
+}
+
+impl Modal {
+    /// Whether the next motion has something behind it.
+    pub(crate) fn waits(&self) -> bool {
+        matches!(self, Modal::Cycle(_) | Modal::Program(_))
+    }
+}
+
+impl Interpreter<'_, '_> {
+    pub fn cycle_off(&mut self, source: &Source) -> Fallible<()> {
+        if self.reported_cycle.take().is_some() {
+            self.emit(source, Op::CycleOff)?;
+        }
+        Ok(())
+    }
+
+    /// What `MCALL` has after a block with a motion: a hole is drilled, a program is due.
+    pub fn call_modal(&mut self, source: &Source) -> Fallible<()> {
+        match std::mem::replace(&mut self.state.modal, Modal::None) {
+            Modal::Cycle(drilling) => {
+                self.drill(source, &drilling)?;
+                self.state.modal = Modal::Cycle(drilling);
+            }
+            Modal::Program(call) => self.state.modal = Modal::Due(call),
+            other => self.state.modal = other,
+        }
+        Ok(())
+    }
+
+    /// `MCALL` of a program.
+    pub fn set_modal_program(&mut self, source: &Source, call: ProgramCall) -> Fallible<()> {
+        self.may_change_modal(source)?;
+        self.state.modal = Modal::Program(call);
+        self.cycle_off(source)
+    }
+
+    pub fn may_change_modal(&self, source: &Source) -> Fallible<()> {
+        if let Modal::Running = self.state.modal {
+            let message = "MCALL in a program that MCALL calls";
+            return Err(source.block_error("call", message));
+        }
+        Ok(())
+    }
+
+    pub fn drill(&mut self, source: &Source, drilling: &Drilling) -> Fallible<()> {
+        let state = &self.state;
+        if state.plane_normal != 2 {
+            let message = "drilling along X or Y (G18, G19) is not supported";
+            return Err(source.block_error("unsupported", message));
+        }
+        if !state.frames.moved_only() && state.frames.sense_about(2).is_none() {
+            let message = "drilling in a frame that is scaled, or mirrored along the hole";
+            return Err(source.block_error("unsupported", message));
+        }
+        if state.position.x.is_nan() || state.position.y.is_nan() {
+            let message = "the place of the hole is not known: no block has said X and Y";
+            return Err(source.block_error("unknown-position", message));
+        }
+        if drilling.needs_feed {
+            self.use_feed(source)?;
+        }
+        if let Some(spindle) = drilling.spindle_before {
+            self.report_spindle(source, spindle)?;
+        }
+        let Some(dwell) = drilling.dwell.seconds(self.state.spindle) else {
+            let message = "the dwell counts turns of a spindle that stands";
+            return Err(source.block_error("dwell", message));
+        };
+        let mut cycle = Cycle { dwell, ..drilling.cycle };
+        if let Some(withdrawal) = cycle.kind.withdrawal() {
+            let frames = &self.state.frames;
+            let aside = frames.in_work_frame(withdrawal.aside) - frames.in_work_frame(Vec3::ZERO);
+            cycle.kind = cycle.kind.with_aside(aside);
+        }
+        if self.reported_cycle != Some(cycle) {
+            self.reported_cycle = Some(cycle);
+            self.emit(source, Op::Cycle(cycle.into()))?;
+        }
+        self.state.position.z = drilling.surface;
+        let pose = self.state.pose(self.state.position);
+        self.state.position.z = drilling.surface + cycle.retract;
+        self.state.programmed.z = self.state.position.z;
+        self.emit(source, Op::Hole(pose))?;
+        if let Some(spindle) = drilling.spindle_after {
+            self.report_spindle(source, spindle)?;
+        }
+        Ok(())
+    }
+}

@@ -1,0 +1,130 @@
+//! The settable work offsets (`G54` and on): what is known of their values.
+
+use super::interpreter::Interpreter;
+use super::state::{Modes, place};
+use crate::sinumerik::Fallible;
+use crate::sinumerik::language::scan::Source;
+use geom::Vec3;
+use program::{Compensation, Op};
+use std::collections::HashMap;
+
+/// Values of the settable work offsets, mm; NaN where a component is not known.
+pub(crate) struct WorkOffsets {
+    /// What a component counts that the program has not written.
+    unwritten: f64,
+    written: HashMap<u32, Vec3>,
+    /// Values at the first move in each.
+    first: HashMap<u32, Vec3>,
+}
+
+impl WorkOffsets {
+    /// All 0 where `known`; else only `G500` is, which is none.
+    pub fn new(known: bool) -> WorkOffsets {
+        WorkOffsets {
+            unwritten: if known { 0.0 } else { f64::NAN },
+            written: HashMap::new(),
+            first: HashMap::new(),
+        }
+    }
+
+    /// The value of an offset.
+    pub fn get(&self, number: u32) -> Vec3 {
+        let unwritten =
+            if number == super::state::WORK_OFFSET_AT_RESET { 0.0 } else { self.unwritten };
+        self.written.get(&number).copied().unwrap_or(Vec3::splat(unwritten))
+    }
+
+    /// Writes a component. It counts when the offset is activated the next time.
+    pub fn set(&mut self, number: u32, axis: usize, value: f64) {
+        let mut offset = self.get(number);
+        offset[axis.min(2)] = value;
+        self.written.insert(number, offset);
+    }
+
+    /// The program moves in an offset of that value.
+    pub fn use_first(&mut self, number: u32, value: Vec3) {
+        self.first.entry(number).or_insert(value);
+    }
+
+    /// The value of an offset when the program first moved in it, where it has.
+    pub fn first(&self, number: u32) -> Option<Vec3> {
+        self.first.get(&number).copied()
+    }
+}
+
+impl Interpreter<'_, '_> {
+    /// Activates a settable work offset. Where the values of the old and the new one are known, so is
+    /// where the tool is in the new one.
+    pub fn work_offset(&mut self, source: &Source, number: u32) -> Fallible<()> {
+        let state = &mut self.state;
+        let value = state.work_offsets.get(number);
+        let changed = (0..3).any(|i| !(value[i] == state.active_offset[i] || value[i].is_nan()));
+        let other = number != state.work_offset;
+        if !other && !changed {
+            return Ok(());
+        }
+        let before = state.work_offsets.first(state.work_offset).unwrap_or(state.active_offset);
+        let machine = state.frames.in_work_frame(state.position) + before;
+        let first = state.work_offsets.first(number).unwrap_or(value);
+        if (0..3).any(|i| first[i].is_nan() && !value[i].is_nan()) {
+            let message = format!(
+                "work offset {number} has been moved in with a value that is not known, and is now \
+                 changed"
+            );
+            let mut error = source.block_error("work-offset", message);
+            error.help = "write its value before the first move in it".into();
+            return Err(error);
+        }
+        let change = Vec3::from_array(std::array::from_fn(|i| {
+            if first[i].is_nan() { 0.0 } else { value[i] - first[i] }
+        }));
+        state.work_offset = number;
+        state.active_offset = value;
+        state.moved = false;
+        state.frames.set_offset_change(change);
+        state.position = state.frames.in_program(machine - first);
+        for i in 0..3 {
+            if state.position[i].is_nan() {
+                state.programmed[i] = f64::NAN;
+            }
+        }
+        if other { self.emit(source, Op::WorkOffset(place(number))) } else { Ok(()) }
+    }
+
+    /// Back to the modal commands and the frame of the caller of a program with `SAVE`.
+    pub fn restore(&mut self, source: &Source, modes: Modes) -> Fallible<()> {
+        self.release(source)?;
+        let state = &mut self.state;
+        let frame = (state.frames.programmable(), state.frames.fine()) != modes.programmable;
+        if state.compensation_in_effect != Compensation::Off
+            && (frame
+                || modes.plane_normal != state.plane_normal
+                || (modes.corner, modes.goes_around) != (state.corner, state.goes_around))
+        {
+            let message = "the return of a program with SAVE changes frame, plane or corners while \
+                           cutter radius compensation is active";
+            return Err(source.block_error("compensation", message));
+        }
+        if modes.feed_type != state.feed_type || modes.units.1 != state.feed_unit {
+            state.feed = None;
+        }
+        state.motion = modes.motion;
+        state.select_plane(modes.plane_normal);
+        (state.unit, state.feed_unit) = modes.units;
+        state.absolute = modes.absolute;
+        state.diameter = modes.diameter;
+        state.feed_type = modes.feed_type;
+        state.vectors_in_work_frame = modes.vectors_in_work_frame;
+        (state.corner, state.goes_around) = (modes.corner, modes.goes_around);
+        state.compensation = modes.compensation;
+        if frame {
+            let (frame, fine) = modes.programmable;
+            state.change_frames(|frames| frames.set_programmable(frame, fine));
+        }
+        // With the same G command the offset stays as it is now.
+        if modes.work_offset == state.work_offset {
+            return Ok(());
+        }
+        self.work_offset(source, modes.work_offset)
+    }
+}

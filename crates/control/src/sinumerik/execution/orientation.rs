@@ -1,0 +1,156 @@
+//! The swivelled plane and the transformation for five axes.
+
+use super::frames::{swivel_order, swivelled};
+use super::interpreter::Interpreter;
+use super::state::ToolAxis;
+use crate::sinumerik::Fallible;
+use crate::sinumerik::language::call::{Argument, Call};
+use crate::sinumerik::language::scan::Source;
+use geom::{Frame, Vec3};
+use program::{Compensation, Op};
+
+/// Places of the parameters of `CYCLE800`: `_FR _TC _ST _MODE _X0 _Y0 _Z0 _A _B _C _X1 _Y1 _Z1 _DIR
+/// _FR_I _DMODE`.
+const RETRACT: usize = 0;
+const DATA_SET: usize = 1;
+const STATE: usize = 2;
+const MODE: usize = 3;
+const BEFORE: usize = 4;
+const ANGLES: usize = 7;
+const AFTER: usize = 10;
+const DIRECTION: usize = 13;
+const PARAMETERS: usize = 16;
+
+impl Interpreter<'_, '_> {
+    /// `TRAORI`, `TRAORI(1)`: the linear axes now give the tool tip, which was elsewhere before.
+    pub fn traori(&mut self, source: &Source, call: &Call) -> Fallible<()> {
+        let plain = match call.arguments.as_slice() {
+            [] => true,
+            [Argument::Number(number)] => *number == 1.0,
+            _ => false,
+        };
+        if !plain {
+            let message = "TRAORI is supported without arguments and as TRAORI(1)";
+            return Err(source.block_error("unsupported", message));
+        }
+        if !self.settings.rotary.contains(&true) {
+            let message = "TRAORI on a machine without rotary axes";
+            return Err(source.block_error("orientation", message));
+        }
+        self.check_compensation_off(source, call.name)?;
+        if !self.state.tool_center {
+            self.state.tool_center = true;
+            self.state.lose_position();
+        }
+        Ok(())
+    }
+
+    /// `TRAFOOF`: positions are those of the axes again; where those stand is not known.
+    pub fn trafoof(&mut self, source: &Source) -> Fallible<()> {
+        self.check_compensation_off(source, "TRAFOOF")?;
+        if self.state.tool_center {
+            self.state.tool_center = false;
+            self.state.lose_position();
+            if self.state.frames.swivel().is_none() {
+                self.state.tool_axis = ToolAxis::Rotary;
+            }
+        }
+        Ok(())
+    }
+
+    fn check_compensation_off(&self, source: &Source, name: &str) -> Fallible<()> {
+        if self.state.compensation == Compensation::Off
+            && self.state.compensation_in_effect == Compensation::Off
+        {
+            return Ok(());
+        }
+        let message = format!("{name} while cutter radius compensation is active");
+        Err(source.block_error("compensation", message))
+    }
+
+    /// `CYCLE800`: turns the plane and the machine's rotary axes with it. Where the axes are then is
+    /// the machine's kinematics, so that the position is not known until blocks say it.
+    pub fn swivel(&mut self, source: &Source, call: &Call) -> Fallible<()> {
+        let error = |rule, message: &str| Err(source.block_error(rule, message));
+        self.check_compensation_off(source, call.name)?;
+        if self.state.modal.waits() {
+            return error("cycle", "CYCLE800 while MCALL is active");
+        }
+        if call.arguments.is_empty() {
+            return self.end_swivel();
+        }
+        if call.arguments.len() > PARAMETERS {
+            return error("cycle-parameter", "CYCLE800 has at most 16 parameters");
+        }
+        let number =
+            |index: usize| -> Fallible<f64> { Ok(call.number(source, index)?.unwrap_or(0.0)) };
+        let vector = |index: usize, unit: f64| -> Fallible<Vec3> {
+            Ok(Vec3::new(number(index)?, number(index + 1)?, number(index + 2)?) * unit)
+        };
+        match call.arguments.get(DATA_SET) {
+            Some(Argument::Text(name)) if name == "0" => return self.end_swivel(),
+            None | Some(Argument::None | Argument::Text(_)) => {}
+            Some(Argument::Number(_)) => {
+                return error("cycle-parameter", "_TC is a name in quotes");
+            }
+        }
+        let whole = |index: usize, name: &str| -> Fallible<u32> {
+            let value = number(index)?;
+            if value.fract() == 0.0 && (0.0..1e9).contains(&value) {
+                return Ok(value as u32);
+            }
+            let message = format!("{name} = {value} is not a whole number from 0");
+            Err(source.block_error("cycle-parameter", message))
+        };
+        let Some(order) = swivel_order(whole(MODE, "_MODE")?) else {
+            return error(
+                "unsupported",
+                "_MODE of CYCLE800 must swivel axis by axis (57 is X Y Z, 27 is Z Y X)",
+            );
+        };
+        let on_top = match whole(STATE, "_ST")? % 1000 {
+            0 | 10 => false,
+            1 | 11 => true,
+            other => {
+                let message =
+                    format!("_ST = {other} of CYCLE800 (tool alignment) is not supported");
+                return Err(source.block_error("unsupported", message));
+            }
+        };
+        let home = match whole(RETRACT, "_FR")? {
+            0 => 0,
+            // Z of the machine; Z, then X and Y; along the tool to the end of travel or by _FR_I.
+            1 => 0b100,
+            2 | 4 | 5 => 0b111,
+            other => {
+                let message = format!("_FR = {other} of CYCLE800 is not supported");
+                return Err(source.block_error("unsupported", message));
+            }
+        };
+        if !matches!(number(DIRECTION)?, -1.0 | 1.0) {
+            let message = "_DIR of CYCLE800 must be -1 or 1: without it only the frame turns, not the \
+                           machine";
+            return error("unsupported", message);
+        }
+        let unit = self.state.unit;
+        let angles = vector(ANGLES, 1.0)?.to_array();
+        let plane = swivelled(vector(BEFORE, unit)?, order, angles, vector(AFTER, unit)?);
+        let base = self.state.frames.swivel().filter(|_| on_top).unwrap_or(Frame::IDENTITY);
+        self.state.lose_position();
+        self.state.lose_rotary(self.settings.rotary);
+        let plane = base * plane;
+        self.state.frames.set_swivel(Some(plane));
+        self.state.tool_axis = ToolAxis::Vector(plane.matrix3.z_axis);
+        if home == 0 { Ok(()) } else { self.emit(source, Op::Home(home)) }
+    }
+
+    /// `CYCLE800()`: no plane; where the rotary axes are left is the machine's business.
+    fn end_swivel(&mut self) -> Fallible<()> {
+        if self.state.frames.swivel().is_some() {
+            self.state.lose_position();
+            self.state.lose_rotary(self.settings.rotary);
+            self.state.frames.set_swivel(None);
+        }
+        Ok(())
+    }
+}

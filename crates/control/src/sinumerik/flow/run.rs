@@ -1,0 +1,436 @@
+//! The course of a program: from block to block, over jumps, loops and calls.
+
+use super::levels::{Caller, LEVELS};
+use super::library::{Library, Program};
+use super::outline::{Place, Word};
+use crate::Settings;
+use crate::compensation::Compensator;
+use crate::sinumerik::Fallible;
+use crate::sinumerik::execution::interpreter::Interpreter;
+use crate::sinumerik::execution::modal::Modal;
+use crate::sinumerik::language::block::Block;
+use crate::sinumerik::language::expression::Evaluator;
+use crate::sinumerik::language::scan::{Name, Scanner, Source};
+use crate::sinumerik::language::statement::{Count, Jump, Search, Section, Statement, Target};
+use crate::sinumerik::language::value::Value;
+use crate::sinumerik::language::variables::ELEMENTS_IN_A_TURN;
+use program::Diagnostic;
+use std::rc::Rc;
+
+/// Most characters of a block, its end included (Programming Manual 06/2019, 2.2.2.2).
+const LONGEST_BLOCK: usize = 512;
+
+/// A program that runs.
+pub(crate) struct Level<'a> {
+    pub program: Rc<Program<'a>>,
+    /// The block that comes next.
+    pub next: Place,
+    /// Whether a block has done something, behind which no variable is defined any more.
+    pub working: bool,
+    /// The sections that are being repeated, the inmost last.
+    pub sections: Vec<Repetition>,
+    /// The last values of the `FOR` loops that run, each with the byte of its first block.
+    pub counts: Vec<(usize, f64)>,
+    /// What the caller gets back; none for the main program.
+    pub caller: Option<Caller>,
+}
+
+/// A section that is being repeated.
+pub(crate) struct Repetition {
+    from: Place,
+    /// The byte behind its last block.
+    end: usize,
+    /// How often it still starts again.
+    left: u32,
+    /// Where it goes on afterwards.
+    back: Place,
+}
+
+/// A run of a main program.
+pub(crate) struct Run<'a, 's> {
+    pub library: Library<'a>,
+    pub interpreter: Interpreter<'a, 's>,
+    pub level: Level<'a>,
+    pub callers: Vec<Level<'a>>,
+}
+
+impl<'a> Level<'a> {
+    /// At the start of a program.
+    pub fn new(program: Rc<Program<'a>>, caller: Option<Caller>) -> Level<'a> {
+        let next = Place { at: 0, line: program.first_line };
+        let (sections, counts) = (Vec::new(), Vec::new());
+        Level { program, next, working: false, sections, counts, caller }
+    }
+}
+
+impl<'a, 's> Run<'a, 's> {
+    /// Runs the main program of `text`.
+    pub fn main(
+        settings: &'a Settings,
+        text: &'a [u8],
+        compensator: &'a mut Compensator<'s>,
+    ) -> Fallible<()> {
+        let library = Library::new(&settings.setup.folders, text)?;
+        let Some(program) = library.main() else { return Ok(()) };
+        let interpreter = Interpreter::new(settings, compensator);
+        let level = Level::new(program, None);
+        let mut run = Run { library, interpreter, level, callers: Vec::new() };
+        let mut block = Block::empty();
+        loop {
+            let program = Rc::clone(&run.level.program);
+            let ended = run.blocks(&program, &mut block);
+            if ended.map_err(|error| run.in_file(&program, error))? {
+                return Ok(());
+            }
+        }
+    }
+
+    /// An error of a called file names that file.
+    pub fn in_file(&self, program: &Program, mut error: Box<Diagnostic>) -> Box<Diagnostic> {
+        if let Some(file) = &program.file
+            && error.file.is_empty()
+            && !self.interpreter.stopped
+        {
+            error.file.clone_from(file);
+            if let Some(line) = self.interpreter.line
+                && error.help.is_empty()
+            {
+                error.help = format!("it was called from line {line} of the main program");
+            }
+        }
+        error
+    }
+
+    /// Runs blocks of `program` until another one goes on; whether the main program has ended.
+    fn blocks(&mut self, program: &Program, block: &mut Block) -> Fallible<bool> {
+        let mut here = self.level.next;
+        let skips = self.interpreter.settings.setup.block_delete;
+        while let Some((source, next)) = program.block(here.at, here.line) {
+            let after = Place { at: next, line: here.line.saturating_add(1) };
+            if source.text.iter().all(u8::is_ascii_whitespace) {
+                here = after;
+                continue;
+            }
+            check_length(&source)?;
+            if skips && source.text.trim_ascii_start().first() == Some(&b'/') {
+                here = after;
+                continue;
+            }
+            block.read(source, &self.interpreter.state)?;
+            match block.statement.take().map(|statement| *statement) {
+                None => {
+                    self.level.working |= block.any;
+                    self.interpreter.run(&source, block)?;
+                    if let Modal::Due(_) = self.interpreter.state.modal {
+                        self.level.next = after;
+                        return self.call_due(&source).map(|()| false);
+                    }
+                    here = after;
+                }
+                Some(Statement::ModalCall(call)) => {
+                    self.level.working = true;
+                    self.interpreter.set_modal_program(&source, call)?;
+                    here = after;
+                }
+                Some(Statement::Call(call)) => {
+                    self.level.working = true;
+                    self.level.next = after;
+                    if call.times > 0 {
+                        return self.call(&source, call).map(|()| false);
+                    }
+                    here = after;
+                }
+                Some(statement) => {
+                    here = self.statement(program, &source, here, after, statement)?;
+                }
+            }
+            if self.interpreter.state.ended {
+                return self.end(program, &source, after);
+            }
+            if !self.level.sections.is_empty() {
+                here = self.repeat(&source, here)?;
+            }
+            if here.at < after.at {
+                self.interpreter.reads(&source, after.at - here.at)?;
+            }
+        }
+        let message = "the program has no end: M30, M2, M17 or RET is missing";
+        let line = here.line.saturating_sub(1).max(program.first_line - 1);
+        Err(Diagnostic::error("program-end", message).line(line).into())
+    }
+
+    /// Another turn of a loop, a jump or a call.
+    pub fn turn(&mut self, source: &Source) -> Fallible<()> {
+        self.interpreter.spend(source, 1)
+    }
+
+    /// Carries out a statement of the block at `here`: the block that comes next.
+    fn statement(
+        &mut self,
+        program: &Program,
+        source: &Source,
+        here: Place,
+        after: Place,
+        statement: Statement,
+    ) -> Fallible<Place> {
+        let partner = || -> Fallible<(Place, Place)> {
+            program.outline()?.partner(here.at).ok_or_else(|| {
+                source.block_error("control-structure", "the control structure is not complete")
+            })
+        };
+        if let Statement::Define(_) | Statement::Declaration = statement {
+            if self.level.working {
+                let message = "definitions stand before the first block that does something (alarm \
+                               14500)";
+                return Err(source.block_error("definition", message));
+            }
+        } else {
+            self.level.working = true;
+        }
+        match statement {
+            Statement::Define(variables) => {
+                for (name, variable) in variables {
+                    self.interpreter.spend(source, variable.values.len() / ELEMENTS_IN_A_TURN)?;
+                    let locals = &mut self.interpreter.state.locals;
+                    locals
+                        .define(name, variable)
+                        .map_err(|message| source.block_error("definition", message))?;
+                }
+                Ok(after)
+            }
+            Statement::If(true) | Statement::While(true) => {
+                program.outline()?;
+                Ok(after)
+            }
+            Statement::If(false) | Statement::While(false) => Ok(partner()?.1),
+            Statement::Until(true) | Statement::Jump(None) => Ok(after),
+            Statement::Plain(Word::EndIf | Word::Loop | Word::Repeat) => {
+                program.outline()?;
+                Ok(after)
+            }
+            Statement::Plain(Word::Else) => Ok(partner()?.1),
+            Statement::Plain(Word::EndLoop) | Statement::Until(false) => {
+                self.turn(source)?;
+                Ok(partner()?.1)
+            }
+            Statement::Plain(Word::EndFor) => {
+                self.turn(source)?;
+                let (first, body) = partner()?;
+                self.count_on(program, first, body, after)
+            }
+            // ENDWHILE; the others are read with their conditions.
+            Statement::Plain(_) => {
+                self.turn(source)?;
+                Ok(partner()?.0)
+            }
+            Statement::For(count) => {
+                let behind = partner()?.1;
+                self.set(source, &count, count.start)?;
+                self.level.counts.retain(|(at, _)| *at != here.at);
+                self.level.counts.push((here.at, count.end));
+                Ok(if reaches(count.start, count.end) { after } else { behind })
+            }
+            Statement::Jump(Some(jump)) => {
+                self.turn(source)?;
+                self.jump(program, source, here, after, &jump)
+            }
+            Statement::Section(section) => {
+                self.turn(source)?;
+                self.section(program, source, here, after, &section)
+            }
+            // Calls go to another program, and a declaration has no effect of its own.
+            Statement::Call(_) | Statement::ModalCall(_) | Statement::Declaration => Ok(after),
+        }
+    }
+
+    fn set(&mut self, source: &Source, count: &Count, value: f64) -> Fallible<()> {
+        let state = &mut self.interpreter.state;
+        let (kind, _) = Evaluator::new(state, &[]).room(count.place);
+        let value =
+            kind.keep(Value::Real(value)).map_err(|message| source.block_error("type", message))?;
+        state.assign(count.place, value);
+        Ok(())
+    }
+
+    /// `ENDFOR`: adds 1 and goes on with the loop or behind it. When the control reads the last value
+    /// is not documented, so it may not change.
+    fn count_on(
+        &mut self,
+        program: &Program,
+        first: Place,
+        body: Place,
+        behind: Place,
+    ) -> Fallible<Place> {
+        let Some((source, _)) = program.block(first.at, first.line) else { return Ok(behind) };
+        let mut block = Block::empty();
+        block.read(source, &self.interpreter.state)?;
+        let Some(Statement::For(count)) = block.statement.take().map(|s| *s) else {
+            return Ok(behind);
+        };
+        let end = self.level.counts.iter().find(|(at, _)| *at == first.at).map(|(_, end)| *end);
+        if end != Some(count.end) {
+            let message = format!(
+                "the last value of the loop changes from {} to {} while it runs",
+                end.unwrap_or(f64::NAN),
+                count.end
+            );
+            return Err(source.block_error("control-structure", message));
+        }
+        let value = self.interpreter.state.value_of(count.place).unwrap_or(f64::NAN) + 1.0;
+        self.set(&source, &count, value)?;
+        Ok(if reaches(value, count.end) { body } else { behind })
+    }
+
+    fn jump(
+        &mut self,
+        program: &Program,
+        source: &Source,
+        here: Place,
+        after: Place,
+        jump: &Jump,
+    ) -> Fallible<Place> {
+        let outline = program.outline()?;
+        let error = |message: String| Err(source.block_error("jump", message));
+        let (name, places) = match &jump.target {
+            Target::Label(name) => (name.as_str().to_owned(), outline.labelled(name)),
+            Target::Number(number) => (format!("N{number}"), outline.numbered(*number)),
+            Target::Start => {
+                let start = Place { at: 0, line: program.first_line };
+                return self.land(program, source, here, start);
+            }
+        };
+        let behind = places.partition_point(|place| place.at <= here.at);
+        let forward = places.get(behind);
+        let backward = behind.checked_sub(1).and_then(|index| places.get(index));
+        let found = match jump.search {
+            Search::Forward => forward,
+            Search::Backward => backward,
+            Search::Both | Search::Optional | Search::Start => forward.or(backward),
+        };
+        match (found, jump.search) {
+            (Some(target), _) => self.land(program, source, here, *target),
+            (None, Search::Optional) => Ok(after),
+            (None, Search::Forward) if backward.is_some() => {
+                error(format!("{name} stands before the jump, not behind it (alarm 14080)"))
+            }
+            (None, Search::Backward) if forward.is_some() => {
+                error(format!("{name} stands behind the jump, not before it (alarm 14080)"))
+            }
+            (None, _) => error(format!("the target {name} is not there (alarm 14080)")),
+        }
+    }
+
+    /// Whether a jump may go where it goes.
+    fn land(
+        &self,
+        program: &Program,
+        source: &Source,
+        here: Place,
+        target: Place,
+    ) -> Fallible<Place> {
+        if !program.outline()?.may_jump(here.at, target.at) {
+            let message = format!("the jump to line {} enters a control structure", target.line);
+            return Err(source.block_error("jump", message));
+        }
+        let inside = |section: &Repetition| (section.from.at..section.end).contains(&target.at);
+        if self.level.sections.last().is_some_and(|section| !inside(section)) {
+            let message = format!("the jump to line {} leaves a repeated section", target.line);
+            return Err(source.block_error("jump", message));
+        }
+        Ok(target)
+    }
+
+    /// `REPEAT`, `REPEATB` with labels.
+    fn section(
+        &mut self,
+        program: &Program,
+        source: &Source,
+        here: Place,
+        after: Place,
+        section: &Section,
+    ) -> Fallible<Place> {
+        let outline = program.outline()?;
+        // A label is looked for towards the start of the program, then towards its end.
+        let find = |name: &Name| {
+            let places = outline.labelled(name);
+            let behind = places.partition_point(|place| place.at <= here.at);
+            behind.checked_sub(1).and_then(|i| places.get(i)).or(places.get(behind)).copied()
+        };
+        let missing = |name: &Name| {
+            let message = format!("the label {} is not there (alarm 14080)", name.as_str());
+            source.block_error("jump", message)
+        };
+        let behind = |place: Place| program.block(place.at, place.line).map_or(place.at, |b| b.1);
+        let from = find(&section.from).ok_or_else(|| missing(&section.from))?;
+        let end_label = || {
+            let ends = outline.labelled(&Name::of("ENDLABEL")?);
+            ends.iter().find(|place| place.at >= from.at).copied()
+        };
+        let last = match &section.to {
+            _ if section.one_block => Some(from),
+            Some(to) => Some(find(to).ok_or_else(|| missing(to))?),
+            None => end_label(),
+        };
+        let end = last.map(behind).unwrap_or(usize::MAX);
+        // What the REPEAT stands in goes as far as to it.
+        let end = if from.at <= here.at && end > here.at { here.at } else { end };
+        if end <= from.at || end == usize::MAX {
+            let message = "the section to be repeated has no end: a second label or ENDLABEL";
+            return Err(source.block_error("jump", message));
+        }
+        if section.times == 0 {
+            return Ok(after);
+        }
+        self.land(program, source, here, from)?;
+        if self.level.sections.len() >= LEVELS {
+            let message = format!("repeated sections nest deeper than {LEVELS}");
+            return Err(source.block_error("jump", message));
+        }
+        let left = section.times - 1;
+        self.level.sections.push(Repetition { from, end, left, back: after });
+        Ok(from)
+    }
+
+    /// Starts a section again, or goes on behind it, where its end is reached.
+    pub fn repeat(&mut self, source: &Source, mut here: Place) -> Fallible<Place> {
+        while let Some(section) = self.level.sections.last_mut().filter(|s| s.end == here.at) {
+            if section.left > 0 {
+                section.left -= 1;
+                here = section.from;
+                self.turn(source)?;
+                return Ok(here);
+            }
+            here = section.back;
+            self.level.sections.pop();
+        }
+        Ok(here)
+    }
+}
+
+/// Whether a loop that counts to `end` is run with `value`.
+fn reaches(value: f64, end: f64) -> bool {
+    value <= end + end.abs() * 1e-12
+}
+
+fn check_length(source: &Source) -> Fallible<()> {
+    if source.text.len() < LONGEST_BLOCK {
+        return Ok(());
+    }
+    let message = format!("a block has at most {LONGEST_BLOCK} characters with its end");
+    Err(source.error("block-length", LONGEST_BLOCK - 1..source.text.len(), message))
+}
+
+/// Only comments follow the end of a program without jumps.
+pub(super) fn check_rest(program: &Program, mut place: Place) -> Fallible<bool> {
+    while let Some((source, next)) = program.block(place.at, place.line) {
+        check_length(&source)?;
+        // What closes a part of the program for the editor may follow.
+        let mut scanner = Scanner::new(source);
+        if !scanner.take_word("GROUP_END") && !scanner.rests() {
+            let message = "there are blocks behind the end of the program";
+            return Err(source.block_error("program-end", message));
+        }
+        place = Place { at: next, line: place.line.saturating_add(1) };
+    }
+    Ok(true)
+}

@@ -1,0 +1,56 @@
+//! Pictures, as SVG or PNG: of a tool path, of the way of a wire.
+//!
+//! Both are drawn from straight pieces ([`walk()`] makes them of a program); letters are strokes of our own. The same input gives the same bytes on every machine: there are no fonts in them. Their size is
+//! bounded, however long the program.
+
+mod lettering;
+mod paper;
+mod tool_path;
+mod trace;
+mod view;
+mod walk;
+mod wire_path;
+
+pub use tool_path::tool_path;
+pub use walk::{Segment, walk};
+pub use wire_path::{WireLeg, WirePicture, wire_path};
+
+use program::Diagnostic;
+use std::path::Path;
+
+/// How a picture is saved.
+#[derive(Clone, Copy, Debug)]
+pub enum Format {
+    /// As it was drawn.
+    Svg,
+    /// Painted, at twice its size.
+    Png,
+}
+
+impl Format {
+    /// The format that the name of a file asks for.
+    ///
+    /// # Errors
+    /// Where it asks for another.
+    pub fn of(file: &Path) -> Result<Format, Box<Diagnostic>> {
+        let ending = file.extension().unwrap_or_default().to_string_lossy().to_lowercase();
+        match ending.as_str() {
+            "png" => Ok(Format::Png),
+            "svg" => Ok(Format::Svg),
+            _ => Err(Diagnostic::error("drawing", format!("cannot draw {}", file.display()))
+                .help("a drawing is a .svg or a .png")
+                .into()),
+        }
+    }
+
+    /// The bytes of a picture that was drawn as SVG.
+    ///
+    /// # Errors
+    /// Where it is too large for the memory.
+    pub fn bytes(self, svg: String) -> Result<Vec<u8>, Box<Diagnostic>> {
+        match self {
+            Format::Svg => Ok(svg.into_bytes()),
+            Format::Png => paper::png(&svg),
+        }
+    }
+}

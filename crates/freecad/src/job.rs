@@ -1,0 +1,133 @@
+//! A job: its tools, and its operations with their commands as text.
+
+use crate::dump;
+use program::{Coolant, Diagnostic};
+use serde::Deserialize;
+
+/// A job of FreeCAD's.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Job {
+    /// What it is called.
+    pub name: String,
+    /// Its tools. A tool that it does not describe has a number only.
+    pub tools: Vec<Tool>,
+    /// What it does, in this order: operations, and what stands between them, tool controllers and work
+    /// offsets.
+    pub operations: Vec<Operation>,
+}
+
+/// A tool of a job.
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
+pub struct Tool {
+    /// Its number.
+    pub number: u32,
+    /// What it is called.
+    #[serde(default)]
+    pub name: String,
+    /// Cutting diameter, mm.
+    pub diameter: Option<f64>,
+}
+
+/// An object of a job with commands.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Operation {
+    /// Its label.
+    pub label: String,
+    /// Number of the tool that it is made for, where the job says it.
+    pub tool: Option<u32>,
+    /// The coolant with which it cuts; none where the job does not say it.
+    pub coolant: Option<Coolant>,
+    /// Its commands, one a line.
+    pub commands: String,
+}
+
+/// The file as it stands.
+#[derive(Deserialize)]
+struct Sheet {
+    toolpost: String,
+    version: u32,
+    #[serde(default)]
+    name: String,
+    #[serde(default)]
+    tools: Vec<Tool>,
+    operations: Vec<OperationSheet>,
+}
+
+#[derive(Deserialize)]
+struct OperationSheet {
+    label: String,
+    tool: Option<u32>,
+    coolant: Option<CoolantSheet>,
+    #[serde(default = "yes")]
+    active: bool,
+    commands: String,
+}
+
+#[derive(Clone, Copy, Deserialize)]
+#[serde(rename_all = "lowercase")]
+enum CoolantSheet {
+    Flood,
+    Mist,
+}
+
+fn yes() -> bool {
+    true
+}
+
+/// What `toolpost` says in the head of a job.
+const HEAD: &str = "freecad-job";
+
+/// The form of the file that is read.
+const VERSION: u32 = 1;
+
+impl Job {
+    /// Whether `text` begins as a job does: as JSON, or as FreeCAD's dump of one.
+    pub fn begins(text: &[u8]) -> bool {
+        text.trim_ascii_start().starts_with(b"{") || dump::begins(text)
+    }
+
+    /// Reads a job; one that has no name is called as its file is.
+    ///
+    /// # Errors
+    /// What is no job, with `file_name`, line and column.
+    pub fn of(file_name: &str, text: &[u8]) -> Result<Job, Box<Diagnostic>> {
+        let read = if dump::begins(text) { dump::read(text) } else { from_json(text) };
+        let mut job = read.map_err(|found| found.file(file_name))?;
+        if job.name.is_empty() {
+            let stem = file_name.rsplit_once('.').map_or(file_name, |(stem, _)| stem);
+            job.name = stem.to_owned();
+        }
+        Ok(job)
+    }
+}
+
+fn from_json(text: &[u8]) -> Result<Job, Box<Diagnostic>> {
+    let sheet: Sheet = serde_json::from_slice(text).map_err(|error| {
+        let line = u32::try_from(error.line()).unwrap_or(u32::MAX);
+        let shown = text.split(|&byte| byte == b'\n').nth(error.line().saturating_sub(1));
+        let column = error.column().saturating_sub(1);
+        // serde_json ends its message with the place.
+        let message = error.to_string();
+        let message = message.rsplit_once(" at line ").map_or(message.as_str(), |(said, _)| said);
+        Diagnostic::error("freecad-job", format!("this is no job of FreeCAD: {message}"))
+            .help("post from FreeCAD, or let FreeCAD write the job anew")
+            .at(line, shown.unwrap_or_default(), column, column + 1)
+    })?;
+    if sheet.toolpost != HEAD || sheet.version != VERSION {
+        let (head, version) = (sheet.toolpost, sheet.version);
+        let message = format!("`{head}`, version {version}: `{HEAD}`, version {VERSION} is read");
+        let help = "the part of Toolpost in FreeCAD and this one have to be of one version";
+        return Err(Diagnostic::error("freecad-job", message).help(help).into());
+    }
+    let active = sheet.operations.into_iter().filter(|operation| operation.active);
+    let operations = active.map(|operation| Operation {
+        label: operation.label,
+        tool: operation.tool,
+        coolant: operation.coolant.map(|coolant| match coolant {
+            CoolantSheet::Flood => Coolant::Flood,
+            CoolantSheet::Mist => Coolant::Mist,
+        }),
+        commands: operation.commands,
+    });
+    Ok(Job { name: sheet.name, tools: sheet.tools, operations: operations.collect() })
+}

@@ -1,0 +1,121 @@
+//! The commands of a job as one text, and the way back from its lines to the operations.
+
+use crate::job::Job;
+use program::{Coolant, Diagnostic};
+
+/// All commands of a job, one a line.
+#[derive(Clone, Debug, Default)]
+pub struct Listing {
+    /// Name of the job's file.
+    file: String,
+    text: Vec<u8>,
+    /// How many lines it has.
+    lines: u32,
+    /// Whether a command has a word for a rotary axis.
+    turns: bool,
+    sections: Vec<Section>,
+}
+
+/// The lines of an operation.
+#[derive(Clone, Debug)]
+struct Section {
+    label: String,
+    /// The line before its first command, counted from 1.
+    before: u32,
+    /// The line before what the job says of it.
+    from: u32,
+}
+
+/// Where a command stands.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Place<'a> {
+    /// The file and the operation.
+    pub file: String,
+    /// Number of the command in its operation, from 1; 0 where the job itself has said it.
+    pub command: u32,
+    /// The command.
+    pub text: &'a [u8],
+}
+
+impl Listing {
+    /// The commands of `job`, which stands in `file`.
+    pub(crate) fn of(file: &str, job: &Job) -> Listing {
+        let room = job.operations.iter().map(|operation| operation.commands.len() + 8).sum();
+        let mut listing = Listing {
+            file: file.to_owned(),
+            text: Vec::with_capacity(room),
+            lines: 0,
+            turns: false,
+            sections: Vec::with_capacity(job.operations.len()),
+        };
+        let mut coolant = None;
+        for operation in &job.operations {
+            let from = listing.lines;
+            if operation.coolant != coolant {
+                // As FreeCAD's own posts do it: on before the operation, off behind it.
+                if coolant.is_some() {
+                    listing.push(b"M9");
+                }
+                match operation.coolant {
+                    Some(Coolant::Flood) => listing.push(b"M8"),
+                    Some(Coolant::Mist) => listing.push(b"M7"),
+                    _ => {}
+                }
+                coolant = operation.coolant;
+            }
+            let before = listing.lines;
+            listing.sections.push(Section { label: operation.label.clone(), before, from });
+            operation.commands.lines().for_each(|line| listing.push(line.as_bytes()));
+        }
+        listing
+    }
+
+    fn push(&mut self, line: &[u8]) {
+        let rotary = |byte: &u8| matches!(byte.to_ascii_uppercase(), b'A'..=b'C');
+        self.turns |= !line.starts_with(b"(") && line.iter().any(rotary);
+        self.text.extend_from_slice(line);
+        self.text.push(b'\n');
+        self.lines = self.lines.saturating_add(1);
+    }
+
+    /// The text.
+    pub(crate) fn text(&self) -> &[u8] {
+        &self.text
+    }
+
+    /// Whether the job turns rotary axes; where it does not, the tool stands upright in it.
+    pub(crate) fn turns(&self) -> bool {
+        self.turns
+    }
+
+    /// The operation, counted from 0, to which a line (from 1) belongs.
+    pub(crate) fn operation(&self, line: u32) -> usize {
+        self.sections.partition_point(|section| section.from < line).saturating_sub(1)
+    }
+
+    /// Where line `line` (from 1) of the listing comes from.
+    pub fn place(&self, line: u32) -> Place<'_> {
+        let mut lines = self.text.split(|&byte| byte == b'\n');
+        let text = lines.nth(line.saturating_sub(1) as usize).unwrap_or_default();
+        let section = self.sections.get(self.operation(line));
+        let label = section.map_or("", |section| section.label.as_str());
+        let before = section.map_or(0, |section| section.before);
+        let file = format!("{}: operation `{label}`", self.file);
+        Place { file, command: line.saturating_sub(before), text }
+    }
+
+    /// The finding, which has a line of the listing, with its operation and command.
+    pub fn located(&self, mut found: Diagnostic) -> Diagnostic {
+        let place = self.place(found.line);
+        if found.excerpt.is_empty() {
+            found = found.on(place.command, place.text);
+        }
+        found.line = place.command;
+        found.file(place.file)
+    }
+
+    /// The operations: label, and the line of the listing before their first command.
+    pub fn operations(&self) -> impl Iterator<Item = (&str, u32)> {
+        self.sections.iter().map(|section| (section.label.as_str(), section.before))
+    }
+}

@@ -1,0 +1,79 @@
+//! Threads and probing moves: each is one block for one move of the source.
+
+use super::*;
+use crate::hole::PITCH;
+
+impl Prover<'_> {
+    /// A thread or a probing move of the program.
+    pub(super) fn single(&mut self, line: u32, pose: &Pose, is: Kind) -> Outcome {
+        let to = self.gauge.station(line, *pose);
+        self.count(Gait::Feed, &to, None, None);
+        self.pass_left_out(|_| false);
+        self.miss_events(line);
+        let goal = match &self.cursor.step {
+            Step::Move(goal) if same(&goal.kind, &is) => goal,
+            Step::Move(Goal { kind: kind @ (Kind::Thread(_) | Kind::Probe { .. }), .. }) => {
+                let message = format!("{}, but the source {}", does(&is), does(kind));
+                return Err(self.lost_at(line, "single-block", &message));
+            }
+            _ => {
+                let message = format!("{} where the source does not", does(&is));
+                return Err(self.lost_at(line, "single-block", &message));
+            }
+        };
+        let (here, goes_to) = (self.here, goal.to);
+        if !here.place.known() || !self.leg.stops.is_empty() {
+            let message = format!("{} from a place where the source does not", does(&is));
+            return Err(self.lost_at(line, "single-block", &message));
+        }
+        if !self.gauge.at(&to, &goes_to) {
+            let message = format!("goes to {}; the source goes to {goes_to}", to.place);
+            return Err(self.lost_at(line, "path", &message));
+        }
+        let (source, block) = (goal.length(), here.place.tip.distance(to.place.tip));
+        let lengths = Lengths { source, block, rounding: self.gauge.slack(&to) };
+        let (allowed, wanted, running) = (&self.gauge.allowed, &self.cursor.wanted, &self.running);
+        let machine = self.gauge.machine;
+        let feed =
+            || state::feed(machine, allowed, wanted.feed, running.feed, wanted.spindle, &lengths);
+        let found = [
+            state::set_up(machine, wanted, running),
+            state::spindle_and_coolant(allowed, wanted, running),
+            // The pitch is the feed of a thread.
+            if matches!(is, Kind::Thread(_)) { None } else { feed() },
+        ];
+        for difference in found {
+            self.check(line, difference);
+        }
+        self.check_compensation(line, true, false);
+        self.report.deviations.tip_mm.note(to.place.apart(&goes_to).0, self.cursor.line, line);
+        let mut end = to;
+        if matches!(is, Kind::Probe { .. }) {
+            let (from, moved) = (here.pose.point, &mut end.pose.point);
+            *moved = Vec3::select(moved.cmpeq(from), *moved, Vec3::splat(f64::NAN));
+            end = self.gauge.station(line, end.pose);
+        }
+        self.arrive(&end);
+        Ok(())
+    }
+}
+
+fn same(source: &Kind, block: &Kind) -> bool {
+    match (source, block) {
+        (Kind::Thread(a), Kind::Thread(b)) => (a - b).abs() <= PITCH,
+        (source, block) => source == block,
+    }
+}
+
+/// What a thread or a probing move does, for a person.
+pub(super) fn does(kind: &Kind) -> String {
+    match kind {
+        Kind::Thread(pitch) => format!("cuts a thread of {} mm", Number(*pitch)),
+        Kind::Probe { away, must_answer } => format!(
+            "probes {} the part, {}",
+            if *away { "away from" } else { "towards" },
+            if *must_answer { "or stops with an error" } else { "or goes on" }
+        ),
+        _ => String::from("moves"),
+    }
+}

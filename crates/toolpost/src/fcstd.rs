@@ -1,0 +1,108 @@
+//! FreeCAD's documents as a source: the FreeCAD that is installed tells what their job is.
+
+use crate::files;
+use program::Diagnostic;
+use std::fs::{self, File};
+use std::io;
+use std::path::Path;
+use std::process::{Child, Command, ExitStatus, Stdio};
+use std::thread;
+use std::time::{Duration, Instant};
+
+/// Our part of FreeCAD, which writes the job of the document in `TOOLPOST_FCSTD` to `TOOLPOST_JSON`.
+const SCRIPT: &str = include_str!("../../../integrations/freecad/toolpost_job.py");
+
+/// What FreeCAD without a window is called: Debian's name, and that of FreeCAD's own builds.
+const PROGRAMS: [&str; 2] = ["freecadcmd", "FreeCADCmd"];
+
+/// How long FreeCAD may take.
+const LONGEST: Duration = Duration::from_secs(300);
+
+/// How often it is looked at.
+const PAUSE: Duration = Duration::from_millis(20);
+
+/// Whether a file is called as a document of FreeCAD's.
+pub fn is(path: &Path) -> bool {
+    path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("fcstd"))
+}
+
+/// The job of the document `path`, as JSON.
+///
+/// # Errors
+/// There is no FreeCAD, it takes too long, or the document has no job.
+pub fn job(path: &Path) -> Result<Vec<u8>, Box<Diagnostic>> {
+    let about = |message: String| Diagnostic::error("freecad", message).file(files::name(path));
+    let document = fs::canonicalize(path)
+        .map_err(|error| about(format!("cannot be read: {error}")).help("look at its name"))?;
+    let folder = tempfile::tempdir()
+        .map_err(|error| about(format!("there is no room to work in: {error}")))?;
+    let [script, json, said] =
+        ["toolpost_job.py", "job.json", "said"].map(|name| folder.path().join(name));
+    let run = || -> io::Result<Option<ExitStatus>> {
+        fs::write(&script, SCRIPT)?;
+        let mut child = start(|program| {
+            let output = File::create(&said)?;
+            Command::new(program)
+                .arg(&script)
+                .current_dir(folder.path())
+                .env("TOOLPOST_FCSTD", &document)
+                .env("TOOLPOST_JSON", &json)
+                .stdin(Stdio::null())
+                .stderr(output.try_clone()?)
+                .stdout(output)
+                .spawn()
+        })?;
+        wait(&mut child)
+    };
+    match run() {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => {
+            let names = PROGRAMS.join(" or ");
+            let help = "install FreeCAD, or post from FreeCAD's window to a .json file";
+            return Err(about(format!("FreeCAD is needed to read this, and there is no {names}"))
+                .help(help)
+                .into());
+        }
+        Err(error) => return Err(about(format!("FreeCAD cannot be run: {error}")).into()),
+        Ok(None) => {
+            let seconds = LONGEST.as_secs();
+            let help = "post from FreeCAD's window to a .json file";
+            let message = format!("FreeCAD has not read it within {seconds} s");
+            return Err(about(message).help(help).into());
+        }
+        Ok(Some(_)) => {}
+    }
+    match files::read(&json) {
+        Ok(job) => Ok(job),
+        Err(_) => {
+            let said = fs::read(&said).unwrap_or_default();
+            let said = String::from_utf8_lossy(&said);
+            let last = said.lines().map(str::trim).rfind(|line| !line.is_empty());
+            let message = format!("FreeCAD tells no job of it: {}", last.unwrap_or("no word"));
+            let help = "open it in FreeCAD, and look at its job";
+            Err(about(message).help(help).into())
+        }
+    }
+}
+
+/// Starts the first of the programs that is there.
+fn start(spawn: impl Fn(&str) -> io::Result<Child>) -> io::Result<Child> {
+    let [first, second] = PROGRAMS;
+    match spawn(first) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => spawn(second),
+        started => started,
+    }
+}
+
+/// Waits for the end of a program, which is ended where it takes too long.
+fn wait(child: &mut Child) -> io::Result<Option<ExitStatus>> {
+    let began = Instant::now();
+    while began.elapsed() < LONGEST {
+        if let Some(status) = child.try_wait()? {
+            return Ok(Some(status));
+        }
+        thread::sleep(PAUSE);
+    }
+    child.kill()?;
+    child.wait()?;
+    Ok(None)
+}

@@ -1,0 +1,60 @@
+//! The command line of Toolpost, and what it shares with the Python package.
+//!
+//! Each command is a function from its arguments to an [`answer::Answer`]; printing and exit codes are
+//! the answer's business, files are [`files`]'. Nothing is decided here about toolpaths, machines or
+//! proofs: that is what the crates below are for. Getting a toolpath ([`toolpath`]), writing its proven
+//! program ([`post::proven`]) and holding any program against it ([`prove::compare`]) are functions of
+//! their own, for who has no command line.
+
+pub mod answer;
+mod args;
+mod explain;
+mod fcstd;
+pub mod files;
+mod machines;
+pub mod post;
+mod progress;
+pub mod prove;
+mod show;
+pub mod summary;
+pub mod toolpath;
+mod wire;
+
+pub use args::{Origin, Units, Way, WholeNumbers};
+
+use answer::Answer;
+use args::{Command, CommandLine};
+use clap::{CommandFactory, Parser};
+use serde_json::json;
+use std::ffi::OsString;
+
+/// Obeys a command line, whose first word is the name of the command, and answers the exit code.
+pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
+    let CommandLine { command, quiet, json } = match CommandLine::try_parse_from(words) {
+        Ok(line) => line,
+        Err(usage) => {
+            // Nobody is left to be told where this cannot be printed.
+            let _ = usage.print();
+            return u8::try_from(usage.exit_code()).unwrap_or(u8::MAX);
+        }
+    };
+    let silent = quiet || json;
+    let answer = match command {
+        Command::Post(args) => post::run(&args, silent),
+        Command::Wire(args) => wire::run(&args, silent),
+        Command::Prove(args) => prove::run(&args, silent),
+        Command::Machines(command) => machines::run(&command),
+        Command::Show(args) => show::run(&args, silent),
+        Command::Explain { topic } => explain::run(topic.as_deref()),
+        Command::Completions { shell } => Ok(completions(shell)),
+    };
+    answer.unwrap_or_else(Answer::from).say(quiet, json)
+}
+
+fn completions(shell: clap_complete::Shell) -> Answer {
+    let mut script = Vec::new();
+    clap_complete::generate(shell, &mut CommandLine::command(), "toolpost", &mut script);
+    let script = String::from_utf8_lossy(&script).into_owned();
+    let data = json!({ "shell": shell.to_string(), "script": &script });
+    Answer::product(script, data)
+}

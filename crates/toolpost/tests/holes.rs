@@ -1,0 +1,401 @@
+//! Every hole cycle on every control: the blocks that its manual asks for, worked out by hand, and the
+//! motion that they make.
+//!
+//! One hole at X10 Y5, drilled from Z3 to Z-12 with 120 mm/min; before it and behind it the tool is at
+//! Z20. So the reference plane is 3, the depth 15, and 17 mm are left to the retract level. Pecks are 4 mm.
+
+use control::Setup;
+use geom::Vec3;
+use program::{Cycle, CycleKind, Feed, Op, Pose, Program, Spindle, Tool};
+use std::process::{Command, Stdio};
+
+const DRILL: CycleKind = CycleKind::Drill;
+const DEEP: CycleKind = CycleKind::Deep;
+const BREAK_CHIP: CycleKind = CycleKind::BreakChip;
+const TAP: CycleKind = CycleKind::Tap { pitch: 1.25, left: false };
+const LEFT_TAP: CycleKind = CycleKind::Tap { pitch: 1.25, left: true };
+const REAM: CycleKind = CycleKind::Ream;
+const BORE: CycleKind = CycleKind::Bore;
+
+fn cycle(kind: CycleKind, dwell: f64) -> Cycle {
+    let peck = matches!(kind, DEEP | BREAK_CHIP).then_some(4.0);
+    Cycle {
+        kind,
+        depth: 15.0,
+        clearance: 0.0,
+        retract: 17.0,
+        feed: Some(Feed::PerMinute(120.0)),
+        dwell,
+        first_peck: peck,
+        peck,
+    }
+}
+
+fn source(cycle: Cycle) -> Program {
+    let at = |z| Pose::new(Vec3::new(10.0, 5.0, z), Vec3::Z);
+    let left = matches!(cycle.kind, CycleKind::Tap { left: true, .. });
+    let turn = if left { Spindle::CounterClockwise } else { Spindle::Clockwise };
+    let mut program = Program::new("holes");
+    let ops = [
+        Op::Tool(Box::new(Tool { number: 1, ..Tool::default() })),
+        Op::Spindle(turn(1000.0)),
+        Op::Feed(Feed::PerMinute(300.0)),
+        Op::Rapid(at(20.0)),
+        Op::Cycle(Box::new(cycle)),
+        Op::Hole(at(3.0)),
+        Op::CycleOff,
+        Op::Rapid(at(50.0)),
+        Op::End,
+    ];
+    for (line, op) in (1..).zip(ops) {
+        program.push(line, op);
+    }
+    program
+}
+
+/// The proven program of one hole, without its block numbers.
+fn posted(machine: &str, cycle: Cycle) -> Result<Vec<String>, &'static str> {
+    let machine = machine::load(machine).unwrap();
+    let source = source(cycle);
+    let output = post::write(&source, &machine).map_err(|found| found[0].rule)?;
+    let report = proof::prove(&source, &machine, "p", &output.text, &Default::default());
+    assert!(report.proven, "{}: {:?}", machine.name, report.mismatches);
+    let numbered = |line: &str| match line.split_once(' ') {
+        Some((number, rest)) if number.trim_start_matches('N').parse::<u32>().is_ok() => {
+            rest.to_string()
+        }
+        _ => line.trim_start().to_string(),
+    };
+    Ok(String::from_utf8(output.text).unwrap().lines().map(numbered).collect())
+}
+
+#[track_caller]
+fn stands(machine: &str, kind: CycleKind, dwell: f64, row: &[&str]) {
+    let blocks = posted(machine, cycle(kind, dwell)).unwrap();
+    let found = blocks.windows(row.len()).any(|blocks| blocks == row);
+    assert!(found, "{kind:?}: {row:#?} is not in\n{}", blocks.join("\n"));
+}
+
+/// LinuxCNC's manual, "Canned Cycles": P in seconds, the pitch of a tap is F / S.
+const LINUXCNC: [(CycleKind, f64, &str); 10] = [
+    (DRILL, 0.0, "G98 G81 X10 Y5 Z-12 R3 F120"),
+    (DRILL, 0.5, "G98 G82 X10 Y5 Z-12 R3 P0.5 F120"),
+    (DEEP, 0.0, "G98 G83 X10 Y5 Z-12 R3 Q4 F120"),
+    (BREAK_CHIP, 0.0, "G98 G73 X10 Y5 Z-12 R3 Q4 F120"),
+    (TAP, 0.0, "G98 G84 X10 Y5 Z-12 R3 P0 F1250"),
+    (LEFT_TAP, 0.5, "G98 G74 X10 Y5 Z-12 R3 P0.5 F1250"),
+    (REAM, 0.0, "G98 G85 X10 Y5 Z-12 R3 F120"),
+    (REAM, 0.5, "G98 G89 X10 Y5 Z-12 R3 P0.5 F120"),
+    (BORE, 0.0, "G98 G86 X10 Y5 Z-12 R3 P0 F120"),
+    (BORE, 0.5, "G98 G86 X10 Y5 Z-12 R3 P0.5 F120"),
+];
+
+#[test]
+fn linuxcnc_and_mach3() {
+    for (kind, dwell, block) in LINUXCNC {
+        stands("generic-3axis-linuxcnc", kind, dwell, &[block, "G80"]);
+        // Mach3 is told P of a tap by nothing.
+        if !matches!(kind, CycleKind::Tap { .. }) {
+            stands("generic-3axis-mach3", kind, dwell, &[block, "G80"]);
+        }
+    }
+    stands("generic-3axis-mach3", TAP, 0.0, &["G98 G84 X10 Y5 Z-12 R3 F1250"]);
+}
+
+/// B-64484EN-2, "Canned cycle for drilling": P in milliseconds; M29 announces rigid tapping.
+#[test]
+fn fanuc() {
+    let fanuc = |kind, dwell, row: &[&str]| stands("generic-3axis-fanuc", kind, dwell, row);
+    fanuc(DRILL, 0.0, &["G98 G81 X10. Y5. Z-12. R3. F120."]);
+    fanuc(DRILL, 0.5, &["G98 G82 X10. Y5. Z-12. R3. P500 F120."]);
+    fanuc(DEEP, 0.0, &["G98 G83 X10. Y5. Z-12. R3. Q4. F120."]);
+    fanuc(BREAK_CHIP, 0.0, &["G98 G73 X10. Y5. Z-12. R3. Q4. F120."]);
+    fanuc(TAP, 0.5, &["M29 S1000", "G98 G84 X10. Y5. Z-12. R3. P500 F1250."]);
+    fanuc(LEFT_TAP, 0.0, &["M29 S1000", "G98 G74 X10. Y5. Z-12. R3. P0 F1250."]);
+    fanuc(REAM, 0.0, &["G98 G85 X10. Y5. Z-12. R3. F120."]);
+    fanuc(REAM, 0.5, &["G98 G89 X10. Y5. Z-12. R3. P500 F120."]);
+    fanuc(BORE, 0.0, &["G98 G86 X10. Y5. Z-12. R3. F120."]);
+    // G86 has no dwell: the hole is made by moves.
+    fanuc(BORE, 0.5, &["G1 Z-12. F120.", "G4 P500", "M5", "G0 Z20."]);
+}
+
+/// Haas Mill Operator's Manual: P in milliseconds without a point; G84 and G74 turn the spindle, and have
+/// no P.
+#[test]
+fn haas() {
+    let haas = |kind, dwell, row: &[&str]| stands("generic-3axis-haas", kind, dwell, row);
+    haas(DRILL, 0.5, &["G98 G82 X10. Y5. Z-12. R3. P500 F120."]);
+    haas(REAM, 0.5, &["G98 G89 X10. Y5. Z-12. R3. P500 F120."]);
+    haas(TAP, 0.0, &["S1000", "G98 G84 X10. Y5. Z-12. R3. F1250."]);
+    assert_eq!(posted("generic-3axis-haas", cycle(TAP, 0.5)), Err("cycle-tap"));
+}
+
+/// NC programming manual 06/2019, 3.25.1: RTP 20, RFP 3, SDIS 0, DP -12, then what is the cycle's own.
+#[test]
+fn sinumerik() {
+    let sinumerik = |kind, dwell, call: &str| {
+        for machine in ["generic-3axis-sinumerik", "generic-3axis-sinumerik-828d"] {
+            stands(machine, kind, dwell, &[call, "G0 X10 Y5", "MCALL"]);
+        }
+    };
+    sinumerik(DRILL, 0.0, "MCALL CYCLE81(20,3,0,-12)");
+    // DTB in seconds, behind an empty DPR.
+    sinumerik(DRILL, 0.5, "MCALL CYCLE82(20,3,0,-12,,0.5)");
+    // FDPR 4, DAM 0, DTB 0, DTS 0, FRF 1, VARI 1: out of the hole after each peck.
+    sinumerik(DEEP, 0.0, "MCALL CYCLE83(20,3,0,-12,,,4,0,0,0,1,1)");
+    // VARI 0: breaks the chip.
+    sinumerik(BREAK_CHIP, 0.0, "MCALL CYCLE83(20,3,0,-12,,,4,0,0,0,1,0)");
+    // DTB, SDAC 3 (goes on clockwise), no MPIT, PIT, POSS 0, SST and SST1.
+    sinumerik(TAP, 0.5, "MCALL CYCLE84(20,3,0,-12,,0.5,3,,1.25,0,1000,1000)");
+    // A left-hand thread has a pitch below 0.
+    sinumerik(LEFT_TAP, 0.0, "MCALL CYCLE84(20,3,0,-12,,0,4,,-1.25,0,1000,1000)");
+    // DTB, FFR, RFF.
+    sinumerik(REAM, 0.0, "MCALL CYCLE85(20,3,0,-12,,0,120,120)");
+    sinumerik(REAM, 0.5, "MCALL CYCLE85(20,3,0,-12,,0.5,120,120)");
+    // DTB, SDIR 3, RPA RPO RPAP 0 (not aside), POSS 0.
+    sinumerik(BORE, 0.5, "MCALL CYCLE86(20,3,0,-12,,0.5,3,0,0,0,0)");
+}
+
+#[test]
+fn the_feeds_of_cycle85_count_as_the_feed_does() {
+    let feed = Some(Feed::PerTurn(0.12));
+    let blocks =
+        posted("generic-3axis-sinumerik", Cycle { feed, ..cycle(REAM, 0.0) }).unwrap().join("\n");
+    assert!(blocks.contains("G95 F0.12\nMCALL CYCLE85(20,3,0,-12,,0,0.12,0.12)"), "{blocks}");
+}
+
+/// The spindle stands after CYCLE86 until it is started; before each hole the cycle starts it.
+#[test]
+fn the_spindle_is_told_anew_after_boring() {
+    let machine = machine::load("generic-3axis-sinumerik").unwrap();
+    let mut source = source(cycle(BORE, 0.0));
+    let at = |z| Pose::new(Vec3::new(30.0, 5.0, z), Vec3::Z);
+    source.records.truncate(7);
+    let ops = [Op::Rapid(at(20.0)), Op::Line(at(3.0)), Op::Rapid(at(50.0)), Op::End];
+    for (line, op) in (8..).zip(ops) {
+        source.push(line, op);
+    }
+    let output = post::write(&source, &machine).unwrap();
+    let report = proof::prove(&source, &machine, "p", &output.text, &Default::default());
+    assert!(report.proven, "{:?}", report.mismatches);
+    let text = String::from_utf8(output.text).unwrap();
+    let after = text.split("MCALL\n").nth(1).unwrap();
+    assert!(after.contains("S1000 M3"), "{after}");
+}
+
+/// The parameters of a Klartext cycle, without their names: `Q200=+0 Q201=-15 ...`.
+fn klartext(kind: CycleKind, dwell: f64) -> String {
+    let blocks = posted("generic-3axis-heidenhain", cycle(kind, dwell)).unwrap();
+    let start = blocks.iter().position(|block| block.starts_with("CYCL DEF")).unwrap();
+    let number = blocks[start].split(' ').nth(2).unwrap().to_string();
+    let parameters = blocks[start + 1..].iter().take_while(|block| block.starts_with('Q'));
+    let parameters = parameters.map(|block| block.split(' ').next().unwrap().to_string());
+    [number].into_iter().chain(parameters).collect::<Vec<_>>().join(" ")
+}
+
+/// Set-up clearance Q200 0 above the surface Q203 3, depth Q201 -15, second clearance Q204 17.
+#[test]
+fn heidenhain() {
+    assert_eq!(
+        klartext(DRILL, 0.5),
+        "200 Q200=+0 Q201=-15 Q206=+120 Q202=+15 Q210=+0 Q203=+3 Q204=+17 Q211=+0.5"
+    );
+    let pecks = "Q203=+3 Q204=+17 Q212=+0 Q205=+0 Q258=+0.5 Q259=+0.5";
+    assert_eq!(
+        klartext(DEEP, 0.0),
+        format!(
+            "205 Q200=+0 Q201=-15 Q206=+120 Q202=+4 {pecks} Q257=+0 Q256=+0.5 Q211=+0 Q379=+0 Q253=+750"
+        )
+    );
+    // Q202 is the whole depth: chips are broken, and the tool stays in the hole.
+    assert_eq!(
+        klartext(BREAK_CHIP, 0.5),
+        format!(
+            "205 Q200=+0 Q201=-15 Q206=+120 Q202=+15 {pecks} Q257=+4 Q256=+0.5 Q211=+0.5 Q379=+0 Q253=+750"
+        )
+    );
+    assert_eq!(klartext(TAP, 0.0), "207 Q200=+0 Q201=-15 Q239=+1.25 Q203=+3 Q204=+17");
+    assert_eq!(klartext(LEFT_TAP, 0.0), "207 Q200=+0 Q201=-15 Q239=-1.25 Q203=+3 Q204=+17");
+    // Q208 0: out with the feed in.
+    assert_eq!(
+        klartext(REAM, 0.5),
+        "201 Q200=+0 Q201=-15 Q206=+120 Q211=+0.5 Q208=+0 Q203=+3 Q204=+17"
+    );
+    assert_eq!(
+        klartext(BORE, 0.0),
+        "202 Q200=+0 Q201=-15 Q206=+120 Q211=+0 Q208=+99999 Q203=+3 Q204=+17 Q214=+0 Q336=+0"
+    );
+    assert_eq!(posted("generic-3axis-heidenhain", cycle(TAP, 0.5)), Err("cycle-tap"));
+}
+
+/// GRBL and Marlin have no cycles: the moves, with rapids back to half a millimetre above the last depth.
+#[test]
+fn grbl_and_marlin() {
+    let in_and_out = |kind, dwell, row: &[&str]| {
+        stands("generic-3axis-grbl", kind, dwell, row);
+        let blocks = posted("generic-3axis-marlin", cycle(kind, dwell)).unwrap();
+        // Every block of Marlin says its G word.
+        let heights = |blocks: &[String]| -> Vec<String> {
+            let z = |block: &String| {
+                block.split(' ').find(|word| word.starts_with('Z')).map(String::from)
+            };
+            blocks.iter().filter_map(z).collect()
+        };
+        let row: Vec<String> = row.iter().map(|block| block.to_string()).collect();
+        let (all, some) = (heights(&blocks), heights(&row));
+        assert!(all.windows(some.len()).any(|part| part == some), "{all:?}, {some:?}");
+    };
+    in_and_out(DRILL, 0.5, &["Z3", "G1 Z-12 F120", "G4 P0.5", "G0 Z20"]);
+    in_and_out(
+        DEEP,
+        0.0,
+        &[
+            "Z3",
+            "G1 Z-1 F120",
+            "G0 Z3",
+            "Z-0.5",
+            "G1 Z-5",
+            "G0 Z3",
+            "Z-4.5",
+            "G1 Z-9",
+            "G0 Z3",
+            "Z-8.5",
+            "G1 Z-12",
+            "G0 Z20",
+        ],
+    );
+    in_and_out(
+        BREAK_CHIP,
+        0.0,
+        &[
+            "G1 Z-1 F120",
+            "G0 Z-0.5",
+            "G1 Z-5",
+            "G0 Z-4.5",
+            "G1 Z-9",
+            "G0 Z-8.5",
+            "G1 Z-12",
+            "G0 Z20",
+        ],
+    );
+    in_and_out(REAM, 0.5, &["G1 Z-12 F120", "G4 P0.5", "Z3", "G0 Z20"]);
+    in_and_out(BORE, 0.0, &["G1 Z-12 F120", "M5", "G0 Z20", "S1000 M3"]);
+    for machine in ["generic-3axis-grbl", "generic-3axis-marlin"] {
+        assert_eq!(posted(machine, cycle(TAP, 0.0)), Err("cycle-tap"));
+    }
+}
+
+/// What is read back of a cycle is what was asked for.
+#[test]
+fn every_cycle_is_read_as_it_was_meant() {
+    let machines = [
+        "generic-3axis-iso",
+        "generic-3axis-fanuc",
+        "generic-3axis-haas",
+        "generic-3axis-linuxcnc",
+        "generic-3axis-mach3",
+        "generic-3axis-sinumerik",
+        "generic-3axis-heidenhain",
+    ];
+    for machine in machines.map(|name| machine::load(name).unwrap()) {
+        for kind in [DRILL, DEEP, BREAK_CHIP, TAP, LEFT_TAP, REAM, BORE] {
+            let asked = cycle(kind, 0.0);
+            let output = post::write(&source(asked), &machine).unwrap();
+            let read = nc::read(&machine, Setup::default(), "p", &output.text).unwrap();
+            let mut records = read.program.records.iter();
+            let read = records.find_map(|record| match &record.op {
+                Op::Cycle(cycle) => Some(**cycle),
+                _ => None,
+            });
+            let read = read.unwrap_or_else(|| panic!("{}: {kind:?} by moves", machine.name));
+            // The feed may be that of a block, and is the pitch's in a tap.
+            assert_eq!(
+                Cycle { feed: None, ..read },
+                Cycle { feed: None, ..asked },
+                "{}",
+                machine.name
+            );
+        }
+    }
+}
+
+/// What `rs274` does in the hole: `rapid 3`, `feed -12`, `dwell`, `stop`, `start`.
+fn rs274(program: &str) -> Vec<String> {
+    let folder = tempfile::tempdir().unwrap();
+    std::fs::write(folder.path().join("p.ngc"), program).unwrap();
+    std::fs::write(folder.path().join("t.tbl"), "T1 P1 D0 Z0\n").unwrap();
+    let run = Command::new("rs274")
+        .args(["-t", "t.tbl", "-g", "p.ngc"])
+        .current_dir(folder.path())
+        .env("HOME", folder.path())
+        .stdin(Stdio::null())
+        .output()
+        .unwrap();
+    assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
+    let said = String::from_utf8_lossy(&run.stdout).into_owned();
+    let mut heights = String::new();
+    let does = |line: &str| {
+        let (head, rest) = line.split_once('(')?;
+        let z = rest.split(',').nth(2).and_then(|z| z.trim().parse::<f64>().ok());
+        let step = match (head.rsplit(' ').next()?, z) {
+            ("STRAIGHT_TRAVERSE", Some(z)) => format!("rapid {z}"),
+            ("STRAIGHT_FEED", Some(z)) => format!("feed {z}"),
+            ("DWELL", _) => "dwell".into(),
+            ("STOP_SPINDLE_TURNING", _) => "stop".into(),
+            ("START_SPINDLE_CLOCKWISE", _) => "clockwise".into(),
+            ("START_SPINDLE_COUNTERCLOCKWISE", _) => "counter-clockwise".into(),
+            _ => return None,
+        };
+        // Moves across only.
+        (std::mem::replace(&mut heights, step.clone()) != step).then_some(step)
+    };
+    said.lines().filter_map(does).collect()
+}
+
+#[test]
+fn linuxcnc_itself_moves_as_the_manual_says() {
+    if Command::new("rs274").arg("-h").stdin(Stdio::null()).output().is_err() {
+        return eprintln!("note: rs274 (Debian package linuxcnc-uspace) is not installed");
+    }
+    // It draws back and comes back by a hundredth of an inch.
+    let motions: [&[&str]; 10] = [
+        &["feed -12", "rapid 20"],
+        &["feed -12", "dwell", "rapid 20"],
+        &[
+            "feed -1",
+            "rapid 3",
+            "rapid -0.746",
+            "feed -5",
+            "rapid 3",
+            "rapid -4.746",
+            "feed -9",
+            "rapid 3",
+            "rapid -8.746",
+            "feed -12",
+            "rapid 20",
+        ],
+        &[
+            "feed -1",
+            "rapid -0.746",
+            "feed -5",
+            "rapid -4.746",
+            "feed -9",
+            "rapid -8.746",
+            "feed -12",
+            "rapid 20",
+        ],
+        &["feed -12", "stop", "counter-clockwise", "dwell", "feed 20", "stop", "clockwise"],
+        &["feed -12", "stop", "clockwise", "dwell", "feed 20", "stop", "counter-clockwise"],
+        &["feed -12", "feed 3", "rapid 20"],
+        &["feed -12", "dwell", "feed 20"],
+        &["feed -12", "dwell", "stop", "rapid 20", "clockwise"],
+        &["feed -12", "dwell", "stop", "rapid 20", "clockwise"],
+    ];
+    for ((kind, dwell, _), motion) in LINUXCNC.into_iter().zip(motions) {
+        let program = posted("generic-3axis-linuxcnc", cycle(kind, dwell)).unwrap().join("\n");
+        let steps = rs274(&program);
+        let row = [&["rapid 3"], motion].concat();
+        let found = steps.windows(row.len()).any(|steps| steps == row);
+        assert!(found, "{kind:?}: {row:?} is not in {steps:?}");
+    }
+}

@@ -1,0 +1,206 @@
+"""A FreeCAD job as one JSON document, which is what Toolpost reads (docs/sources/freecad.md).
+
+`job` takes the objects that FreeCAD hands to a post-processor. As a program it takes a document:
+
+    TOOLPOST_FCSTD=part.FCStd TOOLPOST_JSON=part.json freecadcmd toolpost_job.py
+
+What a command means, and whether it can be done, is not judged here.
+"""
+
+import json
+import os
+import re
+
+COOLANT = {"Flood": "flood", "Mist": "mist"}
+
+# What `toGCode` writes for a number that does not fit into 64 bits of millionths: not a number at all,
+# infinite, or beyond 9.2e12.
+OVERFLOW = "-922337203685.477"
+
+
+OFFSET = re.compile(r"^G5[4-9](?:\.[1-9])?$", re.MULTILINE)
+
+
+class JobError(Exception):
+    """What cannot be told of a job, with the way out."""
+
+
+def job(objects, name):
+    """The job that these objects make, as a dictionary that JSON can hold."""
+    parts = [part for obj in objects for part in _parts(obj)]
+    controllers = {}
+    for part in parts:
+        controller = part if hasattr(part, "ToolNumber") else _property(part, "ToolController")
+        if controller is not None:
+            controllers.setdefault(controller.Name, controller)
+    return {
+        "toolpost": "freecad-job",
+        "version": 1,
+        "name": name,
+        "tools": [_tool(controller) for controller in controllers.values()],
+        "operations": [_operation(part) for part in parts],
+    }
+
+
+def move(job, offset):
+    """Puts a job at another work offset than the one that it has."""
+    if not OFFSET.fullmatch(offset):
+        raise JobError("%s is no work offset: one of G54 to G59, G59.1 to G59.9" % offset)
+    offsets = {found for operation in job["operations"] for found in OFFSET.findall(operation["commands"])}
+    if len(offsets) > 1:
+        named = ", ".join(sorted(offsets))
+        raise JobError("another work offset is for a job with one, and this has %s: choose in the job" % named)
+    for operation in job["operations"]:
+        operation["commands"] = OFFSET.sub(offset, operation["commands"])
+
+
+def document(path):
+    """The job of the document at `path`."""
+    import FreeCAD
+
+    jobs = [obj for obj in FreeCAD.open(path).Objects if hasattr(obj, "PostProcessorOutputFile")]
+    if len(jobs) != 1:
+        labels = ", ".join(found.Label for found in jobs)
+        raise JobError("the document has %s; there must be one" % (jobs and "the jobs %s" % labels or "no job"))
+    posted = [obj for objects in lists(jobs[0]) for obj in objects]
+    return job(posted, jobs[0].Label)
+
+
+def lists(job):
+    """What FreeCAD hands to a post-processor for this job: one list of objects for each part of the output."""
+    operations = [found for found in job.Operations.Group if _property(found, "Active") is not False]
+    fixtures = [Fixture(name, job) for name in job.Fixtures]
+    if job.OrderOutputBy == "Fixture":
+        parts = [([fixture], operations) for fixture in fixtures]
+    elif job.OrderOutputBy == "Tool":
+        parts = [(fixtures, run) for run in _runs(operations)]
+    else:
+        parts = [(fixtures, [operation]) for operation in operations]
+    return [_with_tools(*part) for part in parts]
+
+
+class Fixture:
+    """A work offset as an object with commands: the offset, and up to the clearance height."""
+
+    def __init__(self, name, job):
+        import Path
+
+        clearance = job.Stock.Shape.BoundBox.ZMax + job.SetupSheet.ClearanceHeightOffset.Value
+        self.Name = self.Label = name
+        self.Path = Path.Path([Path.Command(name), Path.Command("G0", {"Z": clearance})])
+
+
+def _runs(operations):
+    """Operations that follow one another with the same tool."""
+    runs, number = [], None
+    for operation in operations:
+        controller = _property(operation, "ToolController")
+        if not runs or controller is not None and number not in (None, controller.ToolNumber):
+            runs.append([])
+        if controller is not None:
+            number = controller.ToolNumber
+        runs[-1].append(operation)
+    return runs
+
+
+def _with_tools(fixtures, operations):
+    """The operations at each fixture, with a tool controller wherever it changes."""
+    objects, at_work = [], None
+    for fixture in fixtures:
+        objects.append(fixture)
+        for operation in operations:
+            controller = _property(operation, "ToolController")
+            if controller not in (None, at_work):
+                objects.append(controller)
+                at_work = controller
+            objects.append(operation)
+    return objects
+
+
+def _parts(obj):
+    """The objects with commands of their own: groups opened, in their order."""
+    if hasattr(obj, "Group"):
+        for child in obj.Group:
+            yield from _parts(child)
+    elif hasattr(obj, "Path"):
+        yield obj
+
+
+def _operation(part):
+    operation = {"label": part.Label, "commands": _commands(part)}
+    controller = _property(part, "ToolController")
+    if controller is not None:
+        operation["tool"] = controller.ToolNumber
+    coolant = COOLANT.get(_property(part, "CoolantMode"))
+    if coolant:
+        operation["coolant"] = coolant
+    if _property(part, "Active") is False:
+        operation["active"] = False
+    return operation
+
+
+def _commands(part):
+    """The commands of an object, one a line."""
+    path = _placed(part)
+    text = path.toGCode()
+    if text.count("\n") == path.Size and OVERFLOW not in text:
+        return text
+    return "".join(_command(command) + "\n" for command in path.Commands)
+
+
+def _command(command):
+    """A command on one line, with what is no number told as what it is."""
+    text = command.toGCode()
+    if OVERFLOW in text:
+        words = ["%s%.6f" % word for word in sorted(command.Parameters.items())]
+        text = " ".join([command.Name] + words)
+    return " ".join(text.split("\n"))
+
+
+def _placed(part):
+    """The path where the object's placement puts it."""
+    placement = getattr(part, "Placement", None)
+    if placement is None or placement.isIdentity():
+        return part.Path
+    try:
+        from PathScripts.PathUtils import getPathWithPlacement
+    except ImportError:
+        message = "%s is moved by its Placement, which FreeCAD 0.20 shows and does not post"
+        raise JobError((message + ": set it to zero and move the model, or the work offset") % part.Label) from None
+    return getPathWithPlacement(part)
+
+
+def _tool(controller):
+    tool = {"number": controller.ToolNumber, "name": controller.Label}
+    bit = getattr(controller, "Tool", None)
+    for name in ("Diameter", "Length"):
+        value = getattr(bit, name, None)
+        if value is not None:
+            tool[name.lower()] = float(getattr(value, "Value", value))
+    return tool
+
+
+def _property(obj, name):
+    """A property of an operation, or of the one that a dressup stands on."""
+    while obj is not None and not hasattr(obj, name):
+        obj = getattr(obj, "Base", None)
+    return getattr(obj, name, None)
+
+
+def main(path, target):
+    """Writes the job of a document to a file; what is wrong is the last line that is printed."""
+    code = 1
+    try:
+        text = json.dumps(document(path), ensure_ascii=False)
+        with open(target, "w", encoding="utf-8") as file:
+            file.write(text)
+        code = 0
+    except (JobError, OSError) as error:
+        # FreeCAD has not ended the line of its progress.
+        print("\n%s" % error, flush=True)
+    # FreeCAD would go on to its console.
+    os._exit(code)
+
+
+if "TOOLPOST_FCSTD" in os.environ:
+    main(os.environ["TOOLPOST_FCSTD"], os.environ["TOOLPOST_JSON"])

@@ -1,0 +1,80 @@
+//! What Python gives: points, directions, arrays, words that stand for something.
+
+use crate::error::refused;
+use geom::Vec3;
+use numpy::{AllowTypeChange, PyArrayLike2};
+use program::Diagnostic;
+use pyo3::prelude::*;
+use std::path::PathBuf;
+
+/// A path as text: what names a file, or something of the library.
+pub fn text(path: PathBuf) -> String {
+    path.to_string_lossy().into_owned()
+}
+
+/// A finite number.
+pub fn number(py: Python<'_>, what: &str, value: f64) -> PyResult<f64> {
+    match value.is_finite() {
+        true => Ok(value),
+        false => Err(refused(py, Diagnostic::error("number", format!("{what} is {value}")))),
+    }
+}
+
+/// A finite number greater than 0.
+pub fn positive(py: Python<'_>, what: &str, value: f64) -> PyResult<f64> {
+    match number(py, what, value)? > 0.0 {
+        true => Ok(value),
+        false => {
+            let found = Diagnostic::error("number", format!("{what} is {value}"));
+            Err(refused(py, found.help("it must be greater than 0")))
+        }
+    }
+}
+
+/// A point of finite coordinates, mm.
+pub fn point(py: Python<'_>, what: &str, value: [f64; 3]) -> PyResult<Vec3> {
+    let [x, y, z] = value;
+    match Vec3::from_array(value) {
+        point if point.is_finite() => Ok(point),
+        _ => Err(refused(py, Diagnostic::error("number", format!("{what} is ({x}, {y}, {z})")))),
+    }
+}
+
+/// A direction of any length, as a unit vector.
+pub fn direction(py: Python<'_>, what: &str, value: [f64; 3]) -> PyResult<Vec3> {
+    let [x, y, z] = value;
+    geom::direction(Vec3::from_array(value)).ok_or_else(|| {
+        let message = format!("{what} is ({x}, {y}, {z}), which has no direction");
+        refused(py, Diagnostic::error("zero-vector", message))
+    })
+}
+
+/// What a word stands for, among those that there are.
+pub fn word<T: Copy>(py: Python<'_>, what: &str, given: &str, all: &[(&str, T)]) -> PyResult<T> {
+    let found = all.iter().find(|(word, _)| *word == given);
+    found.map(|(_, meaning)| *meaning).ok_or_else(|| {
+        let words: Vec<&str> = all.iter().map(|(word, _)| *word).collect();
+        let found = Diagnostic::error("argument", format!("{what} is `{given}`"));
+        refused(py, found.help(format!("it is one of {}", words.join(", "))))
+    })
+}
+
+/// The rows of an array of so many columns, copied, so that nobody can change them meanwhile.
+pub fn rows(
+    py: Python<'_>,
+    what: &str,
+    array: &PyArrayLike2<'_, f64, AllowTypeChange>,
+    columns: usize,
+) -> PyResult<Vec<[f64; 3]>> {
+    let array = array.as_array();
+    if array.ncols() != columns {
+        let message = format!("{what} has {} columns where {columns} are needed", array.ncols());
+        return Err(refused(py, Diagnostic::error("array-shape", message)));
+    }
+    let rows = array.rows().into_iter().map(|row| {
+        let mut all = [0.0; 3];
+        all.iter_mut().zip(row).for_each(|(to, from)| *to = *from);
+        all
+    });
+    Ok(rows.collect())
+}

@@ -1,0 +1,156 @@
+//! Writing and proving.
+
+use crate::arguments::positive;
+use crate::error::{class, findings, raised, released};
+use crate::machine::Machine;
+use crate::program::Program;
+use proof::Tolerances;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyTuple};
+use std::ffi::OsString;
+use std::path::PathBuf;
+use toolpost::answer::{Account, Stop, Verdict};
+use toolpost::files::{self, Target};
+use toolpost::post::{Posted, proven};
+use toolpost::prove::compare;
+
+/// Write the program of a machine, and prove it: what is not proven is not given out.
+///
+/// The program is read back by a virtual control of its own, and its motion held against ``program``.
+///
+/// Parameters
+/// ----------
+/// program : Program
+///     What the machine shall do.
+/// machine : Machine
+///     Which machine; not one for wire EDM.
+/// file : str, optional
+///     Name of the program's file, for the report and its findings; by default that of ``program`` with the
+///     ending of the machine.
+/// tolerance : float, optional
+///     Largest distance of the tool tip from the toolpath, mm; by default what the resolution of the
+///     program's words explains.
+///
+/// Returns
+/// -------
+/// Result
+///     The program and its report.
+///
+/// Raises
+/// ------
+/// toolpost.Error
+///     Where the program cannot be written; or is not proven, with its :attr:`~toolpost.Error.report`.
+///
+/// Notes
+/// -----
+/// What a proof accepts: ``docs/proof.md``. What the controls are believed to do, with sources:
+/// ``docs/controls``.
+#[pyfunction]
+#[pyo3(signature = (program, machine, *, file=None, tolerance=None))]
+pub fn post<'py>(
+    py: Python<'py>,
+    program: &Program,
+    machine: &Machine,
+    file: Option<String>,
+    tolerance: Option<f64>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let (toolpath, machine) = (&program.toolpath, &machine.described);
+    let file = file.unwrap_or_else(|| {
+        let name = toolpath.file.rsplit_once('.').map_or(&*toolpath.file, |(stem, _)| stem);
+        format!("{name}.{}", machine.extension)
+    });
+    let tolerances = tolerances(py, tolerance)?;
+    let Posted { text, account } =
+        released(py, || proven(toolpath, machine, &file, &tolerances, &|_| ()))?;
+    let report = report(py, &account)?;
+    if account.verdict != Verdict::Done {
+        let error = raised(py, &account.findings);
+        error.value(py).setattr("report", report)?;
+        return Err(error);
+    }
+    class(py, "Result")?.call1((PyBytes::new(py, &text), report))
+}
+
+/// Hold a program, also one edited by hand, against the toolpath that it should make.
+///
+/// Parameters
+/// ----------
+/// text : str or bytes
+///     The program.
+/// machine : Machine
+///     The machine whose virtual control reads it.
+/// program : Program
+///     What the machine shall do.
+/// file : str, optional
+///     Name of the program's file, for the report and its findings.
+/// tolerance : float, optional
+///     Largest distance of the tool tip from the toolpath, mm; by default what the resolution of the
+///     program's words explains.
+///
+/// Returns
+/// -------
+/// Report
+///     Its :attr:`~toolpost.Report.proven` says whether the program makes that motion, and its findings
+///     where it does not.
+#[pyfunction]
+#[pyo3(signature = (text, machine, program, *, file="program", tolerance=None))]
+pub fn prove<'py>(
+    py: Python<'py>,
+    text: NcText,
+    machine: &Machine,
+    program: &Program,
+    file: &str,
+    tolerance: Option<f64>,
+) -> PyResult<Bound<'py, PyAny>> {
+    let tolerances = tolerances(py, tolerance)?;
+    let (toolpath, machine) = (&program.toolpath, &machine.described);
+    let account = released(py, || {
+        Ok::<_, Stop>(compare(toolpath, machine, file, text.bytes(), &tolerances))
+    })?;
+    report(py, &account)
+}
+
+/// The text of a program.
+#[derive(FromPyObject)]
+pub enum NcText {
+    Text(String),
+    Bytes(Vec<u8>),
+}
+
+impl NcText {
+    fn bytes(&self) -> &[u8] {
+        match self {
+            NcText::Text(text) => text.as_bytes(),
+            NcText::Bytes(bytes) => bytes,
+        }
+    }
+}
+
+fn tolerances(py: Python<'_>, position: Option<f64>) -> PyResult<Tolerances> {
+    let position = position.map(|mm| positive(py, "tolerance", mm)).transpose()?;
+    Ok(Tolerances { position, angle: None })
+}
+
+fn report<'py>(py: Python<'py>, account: &Account) -> PyResult<Bound<'py, PyAny>> {
+    let rows = PyTuple::new(py, &account.rows)?;
+    let proven = account.verdict == Verdict::Done;
+    class(py, "Report")?.call1((proven, rows, findings(py, &account.findings)?, account.report()))
+}
+
+/// Save a program and its report, both or neither: files as they were before stay where one cannot be
+/// saved.
+#[pyfunction]
+pub fn save(py: Python<'_>, path: PathBuf, text: &[u8], report: Option<&str>) -> PyResult<()> {
+    released(py, || {
+        let target = Target::new(&path, &[])?;
+        let Some(report) = report else { return files::save(&[(&target, text)]) };
+        let report_target = Target::new(&path.with_extension("report.json"), &[])?;
+        files::save(&[(&report_target, report.as_bytes()), (&target, text)])
+    })
+}
+
+/// Obey the words of a command line, the name of the command first, and answer its exit code.
+#[pyfunction]
+pub fn run_command(py: Python<'_>, words: Vec<OsString>) -> PyResult<u8> {
+    released(py, || Ok::<_, Stop>(toolpost::run(words)))
+}

@@ -1,0 +1,194 @@
+# The compiled part. What each does is told by its own docstring: help(toolpost.post).
+
+import os
+from collections.abc import Iterator, Sequence
+from typing import Any, Literal, SupportsIndex, TypeAlias, final, overload
+
+import numpy as np
+from numpy.typing import ArrayLike, NDArray
+
+from ._answers import Finding, Report, Result
+
+__all__ = [
+    "Builder",
+    "Machine",
+    "Program",
+    "Record",
+    "__version__",
+    "library",
+    "machine",
+    "post",
+    "prove",
+    "read",
+    "run_command",
+    "save",
+]
+
+__version__: str
+
+_Path: TypeAlias = str | os.PathLike[str]
+_Point: TypeAlias = Sequence[float] | NDArray[np.float64]
+_Floats: TypeAlias = NDArray[np.float64]
+_Tuple3: TypeAlias = tuple[float, float, float]
+
+@final
+class Record:
+    @property
+    def kind(self) -> str: ...
+    @property
+    def line(self) -> int: ...
+    @property
+    def point(self) -> _Tuple3 | None: ...
+    @property
+    def axis(self) -> _Tuple3 | None: ...
+    @property
+    def words(self) -> dict[str, Any]: ...
+
+@final
+class Program:
+    @staticmethod
+    def builder(name: str = "part") -> Builder: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def file(self) -> str: ...
+    @property
+    def dialect(self) -> str: ...
+    @property
+    def warnings(self) -> tuple[Finding, ...]: ...
+    @property
+    def positions(self) -> _Floats: ...
+    @property
+    def axes(self) -> _Floats: ...
+    @property
+    def feeds(self) -> _Floats: ...
+    @property
+    def lines(self) -> NDArray[np.uint32]: ...
+    @property
+    def kinds(self) -> NDArray[np.uint8]: ...
+    @property
+    def records(self) -> NDArray[np.uint64]: ...
+    def statistics(self) -> dict[str, Any]: ...
+    def svg(self) -> str: ...
+    def _repr_svg_(self) -> str: ...
+    def __len__(self) -> int: ...
+    @overload
+    def __getitem__(self, index: SupportsIndex, /) -> Record: ...
+    @overload
+    def __getitem__(self, index: slice, /) -> list[Record]: ...
+    def __iter__(self) -> Iterator[Record]: ...
+
+@final
+class Builder:
+    def rapid(self, point: _Point, axis: _Point | None = None) -> Builder: ...
+    def line(self, point: _Point, axis: _Point | None = None) -> Builder: ...
+    def arc(
+        self,
+        end: _Point,
+        center: _Point,
+        *,
+        clockwise: bool = False,
+        normal: _Point = ...,
+        turns: int = 0,
+    ) -> Builder: ...
+    def drill(
+        self,
+        points: Sequence[_Point] | _Floats,
+        depth: float,
+        *,
+        clearance: float,
+        retract: float | None = None,
+        kind: Literal[
+            "drill", "deep", "break-chip", "tap", "ream", "bore", "fine-bore", "back-bore"
+        ] = "drill",
+        feed: float | None = None,
+        dwell: float = 0.0,
+        peck: float | None = None,
+        first_peck: float | None = None,
+        pitch: float | None = None,
+        left: bool = False,
+        aside: _Point | None = None,
+        angle: float | None = None,
+        axis: _Point | None = None,
+    ) -> Builder: ...
+    def tool(
+        self,
+        number: int,
+        name: str = "",
+        *,
+        diameter: float | None = None,
+        corner_radius: float | None = None,
+        length: float | None = None,
+        offset: int | None = None,
+    ) -> Builder: ...
+    def feed(
+        self, feed: float, unit: Literal["mm/min", "mm/rev", "1/min"] = "mm/min"
+    ) -> Builder: ...
+    def spindle(self, speed: float, *, clockwise: bool = True) -> Builder: ...
+    def coolant(
+        self, coolant: Literal["off", "flood", "mist", "flood-and-mist", "through"]
+    ) -> Builder: ...
+    def compensation(
+        self, side: Literal["off", "left", "right"], register: int | None = None
+    ) -> Builder: ...
+    def work_offset(self, number: int) -> Builder: ...
+    def home(self) -> Builder: ...
+    def dwell(self, seconds: float) -> Builder: ...
+    def stop(self, *, optional: bool = False) -> Builder: ...
+    def operation(self, name: str) -> Builder: ...
+    def comment(self, text: str) -> Builder: ...
+    def message(self, text: str) -> Builder: ...
+    def build(self) -> Program: ...
+
+@final
+class Machine:
+    @property
+    def name(self) -> str: ...
+    @property
+    def title(self) -> str: ...
+    @property
+    def control(self) -> str: ...
+    @property
+    def reader(self) -> str: ...
+    @property
+    def extension(self) -> str: ...
+    @property
+    def rotary(self) -> tuple[str, ...]: ...
+    @property
+    def wire(self) -> bool: ...
+    def inverse(
+        self, points: ArrayLike, axes: ArrayLike, tool_length: float = 0.0
+    ) -> tuple[_Floats, _Floats]: ...
+    def forward(
+        self, linear: ArrayLike, rotary: ArrayLike, tool_length: float = 0.0
+    ) -> tuple[_Floats, _Floats]: ...
+
+def read(
+    path: _Path,
+    control: _Path | None = None,
+    *,
+    tools: _Path | None = None,
+    folders: Sequence[_Path] = ...,
+    whole_numbers: Literal["units", "increments"] | None = None,
+    units: Literal["mm", "inch"] | None = None,
+    aside: Literal["+X", "-X", "+Y", "-Y"] | None = None,
+    block_delete: bool = False,
+    start: _Point | None = None,
+    aside: Literal["+X", "-X", "+Y", "-Y"] | None = None,
+    strict: bool = False,
+) -> Program: ...
+def machine(name_or_path: _Path) -> Machine: ...
+def library() -> list[Machine]: ...
+def post(
+    program: Program, machine: Machine, *, file: str | None = None, tolerance: float | None = None
+) -> Result: ...
+def prove(
+    text: str | bytes,
+    machine: Machine,
+    program: Program,
+    *,
+    file: str = "program",
+    tolerance: float | None = None,
+) -> Report: ...
+def save(path: _Path, text: bytes, report: str | None) -> None: ...
+def run_command(words: Sequence[str]) -> int: ...
