@@ -5,6 +5,7 @@
 //! round counts ([`clock`]). NC programs are run on the virtual controls ([`programs`]). Memory is what the program asks the allocator for ([`memory`]). A path ten
 //! times as long shows that time and memory grow no faster. Then come real files ([`library`]).
 
+mod board;
 mod clock;
 mod floor;
 mod library;
@@ -41,6 +42,9 @@ struct Arguments {
     /// Arcs of the contour of a wire; 0 leaves it out.
     #[arg(long, default_value_t = 100_000)]
     arcs: usize,
+    /// Strokes of a copper layer; 0 leaves it out.
+    #[arg(long, default_value_t = 16_000)]
+    strokes: usize,
     /// Real files of cutter-location data, to be proven on every machine of the library.
     files: Vec<PathBuf>,
 }
@@ -69,6 +73,9 @@ fn run(arguments: &Arguments) -> Result<(), Vec<Diagnostic>> {
     }
     if arguments.arcs > 0 {
         wire::measure(arguments.arcs, arguments.rounds)?;
+    }
+    if arguments.strokes > 0 {
+        board::measure(arguments.strokes, arguments.rounds)?;
     }
     if arguments.records > 0 {
         five_axes(arguments)?;
