@@ -12,7 +12,7 @@ SEED ?= 1
 
 TOOLPOST := cargo run --quiet --release --bin toolpost --
 
-.PHONY: demo test bench lint judges images samples rust
+.PHONY: demo test bench lint judges images samples rust python
 
 ## Post a part, prove it, draw it.
 demo: rust
@@ -27,9 +27,10 @@ demo: rust
 
 ## Every test; those that need an outside judge or real input say so where it is missing. Property tests
 ## draw the same cases in every run; `make test SEED=2`, or any other whole number, draws others.
-test: rust
+test: rust python
 	PROPTEST_RNG_SEED=$(SEED) PROPTEST_DISABLE_FAILURE_PERSISTENCE=1 \
 		cargo test --workspace --no-fail-fast
+	pytest --quiet --hypothesis-seed $(SEED)
 
 ## Speed and memory, each beside a floor in the same run.
 bench: rust
@@ -39,10 +40,14 @@ bench: rust
 		$(wildcard $(addprefix $(DATA)/cldata/,makino/* nx/* solidworks/*))
 
 ## Format, lints, documentation.
-lint: rust
+lint: rust python
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets -- -D warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --quiet --workspace --no-deps --document-private-items
+	ruff check python
+	ruff format --check python
+	mypy
+	stubtest toolpost
 
 ## The tests with the outside judges, which are installed first.
 judges:
@@ -77,3 +82,8 @@ samples: rust
 
 rust:
 	@scripts/setup rust
+
+# The Python package in the environment of the tests, as a link to its folder here.
+python: rust
+	@scripts/setup python
+	maturin develop --quiet

@@ -13,10 +13,9 @@ import re
 
 COOLANT = {"Flood": "flood", "Mist": "mist"}
 
-# What `toGCode` writes for a number that does not fit into 64 bits of millionths: not a number at all,
-# infinite, or beyond 9.2e12.
+# What `toGCode` writes for a number that does not fit into 64 bits of millionths: not a number at
+# all, infinite, or beyond 9.2e12.
 OVERFLOW = "-922337203685.477"
-
 
 OFFSET = re.compile(r"^G5[4-9](?:\.[1-9])?$", re.MULTILINE)
 
@@ -26,7 +25,7 @@ class JobError(Exception):
 
 
 def job(objects, name):
-    """The job that these objects make, as a dictionary that JSON can hold."""
+    """Answer the job that these objects make, as a dictionary that JSON can hold."""
     parts = [part for obj in objects for part in _parts(obj)]
     controllers = {}
     for part in parts:
@@ -43,32 +42,34 @@ def job(objects, name):
 
 
 def move(job, offset):
-    """Puts a job at another work offset than the one that it has."""
+    """Put a job at another work offset than the one that it has."""
     if not OFFSET.fullmatch(offset):
-        raise JobError("%s is no work offset: one of G54 to G59, G59.1 to G59.9" % offset)
-    offsets = {found for operation in job["operations"] for found in OFFSET.findall(operation["commands"])}
-    if len(offsets) > 1:
-        named = ", ".join(sorted(offsets))
-        raise JobError("another work offset is for a job with one, and this has %s: choose in the job" % named)
+        raise JobError(f"{offset} is no work offset: one of G54 to G59, G59.1 to G59.9")
+    texts = [operation["commands"] for operation in job["operations"]]
+    offsets = ", ".join(sorted({offset for text in texts for offset in OFFSET.findall(text)}))
+    if "," in offsets:
+        raise JobError(f"another work offset is for a job with one, and this has {offsets}")
     for operation in job["operations"]:
         operation["commands"] = OFFSET.sub(offset, operation["commands"])
 
 
 def document(path):
-    """The job of the document at `path`."""
+    """Answer the job of the document at `path`."""
     import FreeCAD
 
     jobs = [obj for obj in FreeCAD.open(path).Objects if hasattr(obj, "PostProcessorOutputFile")]
     if len(jobs) != 1:
         labels = ", ".join(found.Label for found in jobs)
-        raise JobError("the document has %s; there must be one" % (jobs and "the jobs %s" % labels or "no job"))
+        raise JobError(f"the document has {len(jobs)} jobs, and one is needed: {labels}")
     posted = [obj for objects in lists(jobs[0]) for obj in objects]
     return job(posted, jobs[0].Label)
 
 
 def lists(job):
-    """What FreeCAD hands to a post-processor for this job: one list of objects for each part of the output."""
-    operations = [found for found in job.Operations.Group if _property(found, "Active") is not False]
+    """Answer the lists of objects that FreeCAD hands to a post-processor, one for each file."""
+    operations = [
+        found for found in job.Operations.Group if _property(found, "Active") is not False
+    ]
     fixtures = [Fixture(name, job) for name in job.Fixtures]
     if job.OrderOutputBy == "Fixture":
         parts = [([fixture], operations) for fixture in fixtures]
@@ -91,11 +92,11 @@ class Fixture:
 
 
 def _runs(operations):
-    """Operations that follow one another with the same tool."""
+    """Answer the operations in runs with the same tool."""
     runs, number = [], None
     for operation in operations:
         controller = _property(operation, "ToolController")
-        if not runs or controller is not None and number not in (None, controller.ToolNumber):
+        if not runs or (controller is not None and number not in (None, controller.ToolNumber)):
             runs.append([])
         if controller is not None:
             number = controller.ToolNumber
@@ -104,7 +105,7 @@ def _runs(operations):
 
 
 def _with_tools(fixtures, operations):
-    """The operations at each fixture, with a tool controller wherever it changes."""
+    """Answer the operations at each fixture, with a tool controller wherever it changes."""
     objects, at_work = [], None
     for fixture in fixtures:
         objects.append(fixture)
@@ -118,7 +119,7 @@ def _with_tools(fixtures, operations):
 
 
 def _parts(obj):
-    """The objects with commands of their own: groups opened, in their order."""
+    """Answer the objects with commands of their own: groups opened, in their order."""
     if hasattr(obj, "Group"):
         for child in obj.Group:
             yield from _parts(child)
@@ -140,7 +141,7 @@ def _operation(part):
 
 
 def _commands(part):
-    """The commands of an object, one a line."""
+    """Answer the commands of an object, one a line."""
     path = _placed(part)
     text = path.toGCode()
     if text.count("\n") == path.Size and OVERFLOW not in text:
@@ -149,24 +150,26 @@ def _commands(part):
 
 
 def _command(command):
-    """A command on one line, with what is no number told as what it is."""
+    """Answer a command on one line, with what is no number told as what it is."""
     text = command.toGCode()
     if OVERFLOW in text:
-        words = ["%s%.6f" % word for word in sorted(command.Parameters.items())]
-        text = " ".join([command.Name] + words)
+        words = [f"{letter}{value:.6f}" for letter, value in sorted(command.Parameters.items())]
+        text = " ".join([command.Name, *words])
     return " ".join(text.split("\n"))
 
 
 def _placed(part):
-    """The path where the object's placement puts it."""
+    """Answer the path where the object's placement puts it."""
     placement = getattr(part, "Placement", None)
     if placement is None or placement.isIdentity():
         return part.Path
     try:
         from PathScripts.PathUtils import getPathWithPlacement
     except ImportError:
-        message = "%s is moved by its Placement, which FreeCAD 0.20 shows and does not post"
-        raise JobError((message + ": set it to zero and move the model, or the work offset") % part.Label) from None
+        raise JobError(
+            f"{part.Label} is moved by its Placement, which FreeCAD 0.20 shows and does not post: "
+            "set it to zero, and move the model or the work offset"
+        ) from None
     return getPathWithPlacement(part)
 
 
@@ -181,14 +184,14 @@ def _tool(controller):
 
 
 def _property(obj, name):
-    """A property of an operation, or of the one that a dressup stands on."""
+    """Answer a property of an operation, or of the one that a dressup stands on."""
     while obj is not None and not hasattr(obj, name):
         obj = getattr(obj, "Base", None)
     return getattr(obj, name, None)
 
 
 def main(path, target):
-    """Writes the job of a document to a file; what is wrong is the last line that is printed."""
+    """Write the job of a document to a file; what is wrong is the last line that is printed."""
     code = 1
     try:
         text = json.dumps(document(path), ensure_ascii=False)
@@ -197,7 +200,7 @@ def main(path, target):
         code = 0
     except (JobError, OSError) as error:
         # FreeCAD has not ended the line of its progress.
-        print("\n%s" % error, flush=True)
+        print(f"\n{error}", flush=True)
     # FreeCAD would go on to its console.
     os._exit(code)
 

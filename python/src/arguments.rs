@@ -12,6 +12,23 @@ pub fn text(path: PathBuf) -> String {
     path.to_string_lossy().into_owned()
 }
 
+/// What a file says, of which nobody has to know how it is encoded.
+#[derive(FromPyObject)]
+pub enum Text {
+    Str(String),
+    Bytes(Vec<u8>),
+}
+
+impl Text {
+    /// As it stands in the file.
+    pub fn bytes(&self) -> &[u8] {
+        match self {
+            Text::Str(text) => text.as_bytes(),
+            Text::Bytes(bytes) => bytes,
+        }
+    }
+}
+
 /// A finite number.
 pub fn number(py: Python<'_>, what: &str, value: f64) -> PyResult<f64> {
     match value.is_finite() {

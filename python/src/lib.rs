@@ -24,7 +24,7 @@ mod _native {
         builder::Builder,
         machine::{Machine, library, machine},
         posting::{post, prove, run_command, save},
-        program::{Program, read},
+        program::{Program, read, read_job},
         record::Record,
     };
 

@@ -2,12 +2,12 @@
 
 use crate::arguments::{number, rows, text};
 use crate::columns::array;
-use crate::error::released;
+use crate::error::{refused, released};
 use crate::kinematics;
 use ::machine::library::{MACHINES, names};
 use numpy::{AllowTypeChange, PyArray2, PyArrayLike2};
 use pyo3::prelude::*;
-use pyo3::types::PyTuple;
+use pyo3::types::{PyDict, PyTuple};
 use std::path::PathBuf;
 use toolpost::answer::Stop;
 use toolpost::toolpath;
@@ -165,6 +165,8 @@ impl Machine {
 /// ----------
 /// name_or_path : str or os.PathLike
 ///     Its name in the library, or a file ending in .toml.
+/// **options
+///     Other values for what stands in ``[options]`` of its file.
 ///
 /// Returns
 /// -------
@@ -173,11 +175,25 @@ impl Machine {
 /// Raises
 /// ------
 /// toolpost.Error
-///     Where there is none (with the nearest names), or its file has a mistake, with line and column.
+///     Where there is none (with the names that there are), its file has a mistake (with line and column), or
+///     it has no such option.
 #[pyfunction]
-pub fn machine(py: Python<'_>, name_or_path: PathBuf) -> PyResult<Machine> {
+#[pyo3(signature = (name_or_path, **options))]
+pub fn machine(
+    py: Python<'_>,
+    name_or_path: PathBuf,
+    options: Option<&Bound<'_, PyDict>>,
+) -> PyResult<Machine> {
     let name = text(name_or_path);
-    released(py, || toolpath::machine(&name)).map(|described| Machine { described })
+    let mut described = released(py, || toolpath::machine(&name))?;
+    for (name, value) in options.into_iter().flatten() {
+        let value = match value.extract::<bool>() {
+            Ok(flag) => flag.to_string(),
+            Err(_) => value.str()?.to_string(),
+        };
+        described.set_option(name.extract()?, &value).map_err(|found| refused(py, *found))?;
+    }
+    Ok(Machine { described })
 }
 
 /// The machines of the library, in the order of their names.

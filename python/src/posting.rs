@@ -1,6 +1,6 @@
 //! Writing and proving.
 
-use crate::arguments::positive;
+use crate::arguments::{Text, positive};
 use crate::error::{class, findings, raised, released};
 use crate::machine::Machine;
 use crate::program::Program;
@@ -96,7 +96,7 @@ pub fn post<'py>(
 #[pyo3(signature = (text, machine, program, *, file="program", tolerance=None))]
 pub fn prove<'py>(
     py: Python<'py>,
-    text: NcText,
+    text: Text,
     machine: &Machine,
     program: &Program,
     file: &str,
@@ -108,22 +108,6 @@ pub fn prove<'py>(
         Ok::<_, Stop>(compare(toolpath, machine, file, text.bytes(), &tolerances))
     })?;
     report(py, &account)
-}
-
-/// The text of a program.
-#[derive(FromPyObject)]
-pub enum NcText {
-    Text(String),
-    Bytes(Vec<u8>),
-}
-
-impl NcText {
-    fn bytes(&self) -> &[u8] {
-        match self {
-            NcText::Text(text) => text.as_bytes(),
-            NcText::Bytes(bytes) => bytes,
-        }
-    }
 }
 
 fn tolerances(py: Python<'_>, position: Option<f64>) -> PyResult<Tolerances> {

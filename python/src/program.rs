@@ -1,9 +1,10 @@
 //! A program: read from a file, or built.
 
-use crate::arguments::{number, text, word};
+use crate::arguments::{Text, number, text, word};
 use crate::builder::Builder;
 use crate::columns::{Columns, Filled};
 use crate::error::{findings, released};
+use crate::machine::Machine;
 use crate::record::Record;
 use numpy::{PyArray1, PyArray2};
 use program::statistics::Statistics;
@@ -219,7 +220,8 @@ impl Records {
     }
 }
 
-/// Read a toolpath from a file: cutter-location data (APT), or with ``control`` an NC program.
+/// Read a toolpath from a file: cutter-location data (APT), a job of FreeCAD, or with ``control`` an NC
+/// program.
 ///
 /// Parameters
 /// ----------
@@ -227,7 +229,7 @@ impl Records {
 ///     The file.
 /// control : str or os.PathLike, optional
 ///     What an NC program was written for: a control or a machine of the library by its name, or a file
-///     ending in .toml. A program with rotary axes needs its machine.
+///     ending in .toml. A program with rotary axes needs its machine; so does a job with words for them.
 /// tools : str or os.PathLike, optional
 ///     Tool table in LinuxCNC's format: with it cutter radius compensation becomes the path of the tool's
 ///     centre.
@@ -295,4 +297,38 @@ pub fn read(
         aside: aside.map(|given| word(py, "aside", given, &ways)).transpose()?,
     };
     released(py, || toolpath::read(&path, strict, &origin, None)).map(Program::from)
+}
+
+/// Read a job of FreeCAD from its text.
+///
+/// Parameters
+/// ----------
+/// text : str or bytes
+///     The job as JSON (``docs/sources/freecad.md``), or FreeCAD's own dump of its commands.
+/// machine : Machine, optional
+///     Whose rotary axes the words A, B and C are; without one there are three axes.
+/// file : str
+///     What the text is called in findings.
+/// strict : bool
+///     Take every warning as an error.
+///
+/// Returns
+/// -------
+/// Program
+///
+/// Raises
+/// ------
+/// toolpost.Error
+///     What is wrong with the job, with the operation and the number of its command.
+#[pyfunction]
+#[pyo3(signature = (text, machine=None, *, file="job.json", strict=false))]
+pub fn read_job(
+    py: Python<'_>,
+    text: Text,
+    machine: Option<&Machine>,
+    file: &str,
+    strict: bool,
+) -> PyResult<Program> {
+    let machine = machine.map(|machine| &machine.described);
+    released(py, || toolpath::read_job(file, text.bytes(), strict, machine)).map(Program::from)
 }

@@ -10,11 +10,16 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 import pytest
+from hypothesis import settings
 
 import toolpost
 
 if TYPE_CHECKING:
     from collections.abc import Callable
+
+# The seed (Makefile) decides what is drawn, not what has failed before; a machine may be slow.
+settings.register_profile("toolpost", database=None, deadline=None)
+settings.load_profile("toolpost")
 
 ROOT = Path(__file__).resolve().parents[2]
 EXAMPLES = ROOT / "examples"

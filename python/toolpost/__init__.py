@@ -22,6 +22,7 @@ from ._native import (
     post,
     prove,
     read,
+    read_job,
 )
 
 __all__ = [
@@ -40,4 +41,5 @@ __all__ = [
     "post",
     "prove",
     "read",
+    "read_job",
 ]

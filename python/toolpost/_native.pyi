@@ -20,6 +20,7 @@ __all__ = [
     "post",
     "prove",
     "read",
+    "read_job",
     "run_command",
     "save",
 ]
@@ -174,10 +175,16 @@ def read(
     aside: Literal["+X", "-X", "+Y", "-Y"] | None = None,
     block_delete: bool = False,
     start: _Point | None = None,
-    aside: Literal["+X", "-X", "+Y", "-Y"] | None = None,
     strict: bool = False,
 ) -> Program: ...
-def machine(name_or_path: _Path) -> Machine: ...
+def read_job(
+    text: str | bytes,
+    machine: Machine | None = None,
+    *,
+    file: str = "job.json",
+    strict: bool = False,
+) -> Program: ...
+def machine(name_or_path: _Path, **options: str | float | bool) -> Machine: ...
 def library() -> list[Machine]: ...
 def post(
     program: Program, machine: Machine, *, file: str | None = None, tolerance: float | None = None

@@ -96,7 +96,7 @@ fn cycle86_goes_aside_as_it_says() {
     let run = |frame: &str, call: &str| {
         holes(Dialect::Sinumerik, None, &format!("{start}{frame}{call}\nM30\n"))
     };
-    // The manual's example, but for its plane.
+    // The manual's example.
     let call = "CYCLE86(112,110,,77,0,2,3,-1,-1,1,45)";
     let kind = |x, y| fine(Vec3::new(x, y, 1.0), Some(45.0));
     let bored = Cycle { dwell: 2.0, ..cycle(kind(-1.0, -1.0), 33.0, 0.0, 2.0) };

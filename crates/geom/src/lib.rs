@@ -19,6 +19,9 @@ pub use rotation::Euler;
 /// rotary axis resolves.
 pub const ANGLE_EPSILON: f64 = 1e-6;
 
+/// mm in an inch.
+pub const INCH: f64 = 25.4;
+
 /// The unit vector of `v`, or `None` where `v` is zero, not finite, or so short or long that its
 /// direction is lost in rounding.
 pub fn direction(v: Vec3) -> Option<Vec3> {

@@ -250,6 +250,11 @@ pub enum Plane {
     YZ,
 }
 
+/// The signs that are harmless in a comment on every control. Whatever ends a comment or a string, starts
+/// an expression, or is a command even inside a comment (`!`, `?`, `~`, `%` of GRBL and tapes, `MSG,` and
+/// `LOGOPEN,` of LinuxCNC) is not among them.
+pub const HARMLESS_SIGNS: &str = " .:+-*/=_<>&@#";
+
 /// How text is put together.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Format {
@@ -264,6 +269,10 @@ pub struct Format {
     /// Whether each operation says anew what the one before has left active: where the tool is, the kind
     /// of motion, the feed.
     pub fresh_operations: bool,
+    /// The signs that a comment may hold, beside letters and digits.
+    pub comment_signs: String,
+    /// Most characters of a comment.
+    pub comment_length: usize,
 }
 
 /// How a number is written behind its address.

@@ -110,9 +110,9 @@ names! {
         CycleTapLeft Block "cycle_tap_left", "", "Definition of tapping, left-hand.";
         CycleReam Block "cycle_ream", "", "Definition of reaming: feed in, feed out.";
         CycleReamDwell Block "cycle_ream_dwell", "", "The same with a dwell at the bottom; `cycle_ream` where it is missing and places {{DWELL}}.";
-        CycleBore Block "cycle_bore", "", "Definition of boring: feed in, spindle stop, rapid out. The spindle is told anew behind the cycle, for controls differ in whether they start it.";
+        CycleBore Block "cycle_bore", "", "Definition of boring: feed in, spindle stop, rapid out.";
         CycleHole Block "cycle_hole", "", "Each hole of the cycle that its definition has not drilled.";
-        CycleOff Block "cycle_off", "", "End of the cycle.";
+        CycleOff Block "cycle_off", "", "End of the cycle. After tapping and boring the spindle is told anew, for controls differ in whether it turns then.";
         Dwell Block "dwell", "", "A dwell.";
         Stop Block "stop", "", "An unconditional stop.";
         OptionalStop Block "optional_stop", "", "A stop that the operator can switch off.";
@@ -177,7 +177,7 @@ names! {
         Plunge Word "PLUNGE", "mm/min", "Cycle: feed into the hole, where it is a parameter; in the unit of {{F}}.";
         Speed Word "SPEED", "1/min", "Cycle: speed of the spindle, where it is a parameter.";
         Lead Word "LEAD", "mm", "Way of a thread in a turn of the spindle.";
-        ProbeKind Code "probe", "toward_or_error, toward, away_or_error, away", "Kind of probing move: until the probe touches the part or lets go of it, with an error where it does not or without. Those that the control lacks are left out.";
+        ProbeMode Code "probe_mode", "toward_or_error, toward, away_or_error, away", "Kind of probing move: until the probe touches the part or lets go of it, with an error where it does not or without. Those that the control lacks are left out.";
         Motion Code "motion", "rapid, linear, arc_cw, arc_ccw", "Kind of motion.";
         Plane Code "plane", "xy, xz, yz", "Plane of arcs and of cutter compensation.";
         Compensation Code "compensation", "off, left, right", "Cutter radius compensation; switched with the first move in the plane.";

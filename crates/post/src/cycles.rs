@@ -200,7 +200,11 @@ impl Walk<'_> {
     pub(crate) fn end_cycle(&mut self) -> Done {
         let Some(open) = self.open_cycle.take() else { return Ok(()) };
         self.block(BlockName::CycleOff)?;
-        if open.block == BlockName::CycleBore {
+        // Controls differ in whether the spindle turns after these.
+        if matches!(
+            open.block,
+            BlockName::CycleBore | BlockName::CycleTap | BlockName::CycleTapLeft
+        ) {
             self.active_spindle = None;
         }
         self.writer.forget(bit(WordName::Motion) | bit(WordName::Dwell));

@@ -3,7 +3,7 @@
 
 use crate::catalogue::{BlockName, WordName, nearest};
 use crate::template::Templates;
-use machine::{CycleName, Machine, OrientationMode, Place};
+use machine::{CycleName, HARMLESS_SIGNS, Machine, OrientationMode, Place};
 use program::Diagnostic;
 
 /// Checks words against the catalogue, words that blocks place against the words that there are, and
@@ -49,6 +49,13 @@ pub(crate) fn check(machine: &Machine, templates: &Templates) -> Result<(), Vec<
             let message = format!("[words.{}] is missing", word.name());
             errors.push(file(Diagnostic::error("word", message)));
         }
+    }
+    if let Some(sign) = machine.format.comment_signs.chars().find(|c| !HARMLESS_SIGNS.contains(*c))
+    {
+        let message =
+            format!("`{sign}` in `comment_signs` may end a comment or be a command in it");
+        let help = format!("signs that no control misreads are `{HARMLESS_SIGNS}`");
+        errors.push(file(Diagnostic::error("comment-signs", message).help(help)));
     }
     for (block, why) in promised(machine) {
         if !templates.has(block) {

@@ -46,8 +46,8 @@ impl Walk<'_> {
     pub(crate) fn probe(&mut self, probe: &Probe) -> Done {
         self.single(BlockName::Probe, "a probing move")?;
         let kind = 2 * usize::from(probe.away) + usize::from(!probe.must_answer);
-        let texts = self.machine.words.get(WordName::ProbeKind.name()).map(|word| &word.codes);
-        let name = WordName::ProbeKind.codes().nth(kind).unwrap_or_default();
+        let texts = self.machine.words.get(WordName::ProbeMode.name()).map(|word| &word.codes);
+        let name = WordName::ProbeMode.codes().nth(kind).unwrap_or_default();
         if texts.is_none_or(|texts| !texts.contains_key(name)) {
             let message = match (probe.away, probe.must_answer) {
                 (true, _) => "the control has no probing move away from the part",
@@ -75,7 +75,7 @@ impl Walk<'_> {
         }
         self.check_limits()?;
         self.say_feed(length, 1, false)?;
-        self.writer.code(WordName::ProbeKind, kind);
+        self.writer.code(WordName::ProbeMode, kind);
         self.block(BlockName::Probe)?;
         self.writer.forget(moved | bit(WordName::Motion));
         self.here = None;

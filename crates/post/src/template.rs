@@ -7,7 +7,8 @@
 
 use crate::catalogue::{BlockName, VARIABLES, WordName, nearest};
 use crate::guard::{self, Fault};
-use crate::letters::in_ascii;
+use crate::text::{clean, printed};
+use deunicode::deunicode;
 use machine::{Block, Format, Machine, OptionValue};
 use minijinja::value::{Object, Value};
 use minijinja::{AutoEscape, Environment, ErrorKind, UndefinedBehavior};
@@ -310,36 +311,13 @@ fn identifies(name: &str) -> bool {
     (1..=32).contains(&name.len()) && name.chars().all(plain)
 }
 
-/// Text from outside, as no control and no template can misread it: letters, digits, blanks and a few
-/// signs. Whatever ends a comment or a string, starts an expression, or is a command even inside a
-/// comment (`!`, `?`, `~`, `%` of GRBL and tapes, `MSG,` and `LOGOPEN,` of LinuxCNC) becomes a blank; a
-/// letter that not every control prints becomes one that it does.
-pub(crate) fn clean(text: &str) -> String {
-    let harmless = |c: char| c.is_ascii_alphanumeric() || " .:+-*/=_<>&@#".contains(c);
-    let mut clean = String::with_capacity(text.len());
-    for c in text.chars() {
-        match c {
-            c if harmless(c) => clean.push(c),
-            c if c.is_ascii() => clean.push(' '),
-            c => clean.push_str(in_ascii(c)),
-        }
-    }
-    clean
-}
-
-/// Text from outside for a comment, as far as a line of the control has room for it.
-pub(crate) fn printed(machine: &Machine, text: &str) -> String {
-    let room = machine.capabilities.line_length.saturating_sub(24).max(8);
-    clean(text).trim().chars().take(room).collect()
-}
-
 /// A program as templates see it. Its name becomes a file name on the control: the last part of a
 /// path, letters, digits, `_` and `-`, at most 24 of them (SINUMERIK), never empty.
 pub(crate) fn program_value(machine: &Machine, program: &Program) -> Value {
     let name = program.name.rsplit(['/', '\\']).next().unwrap_or_default();
     let name = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
     let kept = |c: &char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
-    let mut name: String = name.chars().filter(kept).take(24).collect();
+    let mut name: String = deunicode(name).chars().filter(kept).take(24).collect();
     if name.is_empty() {
         name = "PROGRAM".into();
     }

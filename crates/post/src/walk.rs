@@ -4,9 +4,10 @@ use crate::catalogue::{BlockName, WordName};
 use crate::findings::Findings;
 use crate::place::{Place, Route};
 use crate::template::{
-    LENGTH_OFFSET, ORIENTATION, POSITION, Scope, Templates, Words, bit, map, printed,
-    program_value, spindle_value, tool_value,
+    LENGTH_OFFSET, ORIENTATION, POSITION, Scope, Templates, Words, bit, map, program_value,
+    spindle_value, tool_value,
 };
+use crate::text::printed;
 use crate::wire::Wire;
 use crate::writer::Writer;
 use geom::Vec3;

@@ -176,6 +176,20 @@ fn between_set_ups_the_machine_may_go_home_and_turn_then_approach() {
     let astray =
         |machine: &Machine| vec![stop(90.0, 6.0, 1.0, 0.0, 0.0), Op::Rapid(axes(machine, b))];
     assert_eq!(rules(&set_up(astray)), ["rapid-stop"]);
+    // Up first, and over there; but a way that begins at home comes down by
+    // the coordinates of its end only.
+    let over = |machine: &Machine| {
+        let to = end(machine);
+        vec![
+            stop(5.0, 6.0, 100.0, 0.0, 0.0),
+            stop(5.0, 6.0, 100.0, 90.0, 45.0),
+            stop(to.x, to.y, 90.0, 90.0, 45.0),
+            Op::Rapid(axes(machine, b)),
+        ]
+    };
+    proven(&set_up(over));
+    let down_again = set_up(|machine| [vec![Op::Home(4)], over(machine)].concat());
+    assert_eq!(rules(&down_again), ["rapid-stop"]);
     let half_turned =
         |machine: &Machine| vec![stop(5.0, 6.0, 1.0, 45.0, 0.0), Op::Rapid(axes(machine, b))];
     assert_eq!(rules(&set_up(half_turned)), ["rapid-stop"]);

@@ -53,22 +53,32 @@ pub fn read(
     if !Job::begins(&bytes) {
         return read_by(path, &bytes, strict, origin, |machine| machine);
     }
-    let file = files::name(path);
-    let job = Job::of(&file, &bytes)?;
-    let machine = match (&origin.from, machine) {
-        (Some(from), _) => machine::load_origin(from)?,
-        (None, Some(machine)) => machine.clone(),
-        (None, None) => machine::load_control(THREE_AXES)?,
+    let named = origin.from.as_deref().map(machine::load_origin).transpose()?;
+    read_job(&files::name(path), &bytes, strict, named.as_ref().or(machine))
+}
+
+/// Reads the text of a job of FreeCAD's, which is called `file`. Words for rotary axes are those of
+/// `machine`.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_job(
+    file: &str,
+    text: &[u8],
+    strict: bool,
+    machine: Option<&Machine>,
+) -> Result<Toolpath, Stop> {
+    let job = Job::of(file, text)?;
+    let machine = match machine {
+        Some(machine) => machine,
+        None => &machine::load_control(THREE_AXES)?,
     };
-    let freecad::Reading { program, listing, warnings } = freecad::read(&machine, &file, &job)?;
-    let (dialect, warnings) = (String::from("FreeCAD job"), held(warnings, strict)?);
+    let freecad::Reading { program, listing, warnings } = freecad::read(machine, file, &job)?;
     Ok(Toolpath {
-        path: Some(path.to_owned()),
-        file,
-        dialect,
-        program,
-        warnings,
+        file: file.to_owned(),
+        warnings: held(warnings, strict)?,
         listing: Some(listing),
+        ..Toolpath::of_program(program, "FreeCAD job")
     })
 }
 
@@ -117,7 +127,8 @@ fn read_by(
         }
     };
     let warnings = held(warnings, strict)?;
-    Ok(Toolpath { path: Some(path.to_owned()), file, dialect, program, warnings, listing: None })
+    let path = Some(path.to_owned());
+    Ok(Toolpath { path, file, dialect, program, warnings, listing: None })
 }
 
 /// The warnings; with `strict` they stop the command.

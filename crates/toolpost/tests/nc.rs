@@ -85,12 +85,15 @@ fn rewritten(blocks: &str) -> Result<String, Box<program::Diagnostic>> {
 }
 
 #[test]
-fn both_coolants_are_written_and_threads_and_probes_are_refused() {
+fn both_coolants_and_a_probe_are_written_and_what_mach3_does_not_do_is_refused() {
     let text = rewritten("M8\nM7\nG1 Z-1 F100").unwrap();
     assert!(text.contains(" M7\n") && text.contains(" M8\n"), "{text}");
-    for blocks in ["G33 Z-9 K1.5", "G38.2 Z-9 F100"] {
+    let text = rewritten("G38.3 Z-9 F100").unwrap();
+    assert!(text.contains(" G31 Z-9 F100\n"), "{text}");
+    // Mach3 cuts no thread, and goes on where its probe has touched nothing.
+    for (blocks, rule) in [("G33 Z-9 K1.5", "missing-block"), ("G38.2 Z-9 F100", "probe")] {
         let error = rewritten(blocks).unwrap_err();
-        assert_eq!((error.rule, error.line), ("unsupported", 7), "{error}");
+        assert_eq!((error.rule, error.line), (rule, 7), "{error}");
     }
 }
 

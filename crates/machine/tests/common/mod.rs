@@ -34,6 +34,8 @@ pub fn machine(rotary: Vec<RotaryAxis>) -> Machine {
             comment_start: "(".into(),
             comment_end: ")".into(),
             fresh_operations: false,
+            comment_signs: " ".into(),
+            comment_length: 96,
         },
         words: BTreeMap::new(),
         blocks: BTreeMap::new(),

@@ -192,6 +192,9 @@ impl Prover<'_> {
         let to = self.gauge.station(line, pose);
         if self.leg.left.is_some() {
             self.stop_at(&to)?;
+        } else if self.leg.stops.is_empty() {
+            // The way begins at home: the height where it left is none of its own any more.
+            self.leg.start = Some(to);
         }
         self.here = to;
         Ok(())

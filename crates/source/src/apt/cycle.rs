@@ -398,7 +398,7 @@ impl Reader {
     fn tap(&self, active: &ActiveCycle) -> Result<CycleKind, Box<Fault>> {
         let rpm = speed_of(self.spindle);
         let pitch = match (active.threads, active.cycle.feed.or(self.feed)) {
-            (Some(threads), _) => super::frame::INCH / threads,
+            (Some(threads), _) => geom::INCH / threads,
             (None, Some(Feed::PerTurn(pitch))) => pitch,
             (None, Some(Feed::PerMinute(feed))) if rpm > 0.0 => feed / rpm,
             _ => f64::NAN,

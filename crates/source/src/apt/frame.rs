@@ -6,11 +6,8 @@
 use super::record::Record;
 use super::report::{Fault, Outcome};
 use super::{Dialect, Reader};
-use geom::{Frame, Mat3, Vec3, direction};
+use geom::{Frame, INCH, Mat3, Vec3, direction};
 use program::Op;
-
-/// mm in an inch.
-pub(super) const INCH: f64 = 25.4;
 
 /// Coordinates beyond this are a fault of the file, mm: no machine is a kilometre long.
 pub(super) const FARTHEST: f64 = 1e6;

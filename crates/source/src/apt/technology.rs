@@ -1,10 +1,10 @@
 //! What the tool is and does besides moving: tool, feed, spindle, coolant, compensation, dwell, stop.
 
-use super::frame::INCH;
 use super::record::{Field, Record};
 use super::report::{Fault, Outcome};
 use super::text::decode;
 use super::{Reader, Ready};
+use geom::INCH;
 use program::{Compensation, Coolant, Feed, Op, Record as Step, Spindle, Tool};
 use std::f64::consts::PI;
 

@@ -6,9 +6,6 @@ use crate::iso::language::arithmetic;
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::Flavor;
 
-/// mm in an inch.
-pub(crate) const INCH: f64 = 25.4;
-
 impl Step<'_, '_, '_> {
     /// mm in the unit of length, for the word of this letter.
     ///
@@ -17,7 +14,7 @@ impl Step<'_, '_, '_> {
     #[inline]
     pub(super) fn unit(&self, inches: Option<bool>, letter: u8) -> Result<f64, Fault> {
         match inches {
-            Some(true) => Ok(INCH),
+            Some(true) => Ok(geom::INCH),
             Some(false) => Ok(1.0),
             None => Err(self.no_unit(letter)),
         }

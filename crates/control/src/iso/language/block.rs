@@ -7,8 +7,8 @@ use super::words::{Dictionary, Flavor, G, Group, LETTERS, M, bit, index};
 use crate::{Settings, decimal};
 use program::Diagnostic;
 
-/// From here on a number of FreeCAD is none, and nothing is a kilometre long: it writes a NaN as
-/// -922337203685.477581.
+/// From here on a number of FreeCAD's is none: it writes a NaN as -922337203685.477581, and nothing is a
+/// kilometre long.
 const NOTHING: f64 = 1e6;
 
 /// A finding about a block.

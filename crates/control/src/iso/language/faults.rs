@@ -25,18 +25,6 @@ impl Block<'_> {
         self.fault(rule, message, word.start as usize, word.end as usize)
     }
 
-    /// The word from `start` to `end` has a number that is none.
-    #[cold]
-    pub(super) fn nothing(&self, start: usize, end: usize) -> Fault {
-        let word = String::from_utf8_lossy(self.text.get(start..end).unwrap_or_default());
-        let message = format!("{word} is no number: FreeCAD writes what it could not work out so");
-        let help = "recompute the operation in FreeCAD, and look at what it is made from";
-        Diagnostic::error("nc-number", message)
-            .help(help)
-            .at(self.line, self.text, start, end)
-            .into()
-    }
-
     /// A finding at the G or M word of this group; at the whole block where there is none.
     #[cold]
     pub(crate) fn at_group(
@@ -120,6 +108,16 @@ impl Block<'_> {
                 self.fault("nc-number", message, at, from)
             }
         }
+    }
+
+    /// The word of FreeCAD's from `start` to `end` has a number that is none.
+    #[cold]
+    pub(super) fn nothing(&self, start: usize, end: usize) -> Fault {
+        let word = String::from_utf8_lossy(self.text.get(start..end).unwrap_or_default());
+        let message = format!("{word} is no number: FreeCAD writes what it could not work out so");
+        let help = "recompute the operation in FreeCAD, and look at what it is made from";
+        let found = Diagnostic::error("nc-number", message).help(help);
+        found.at(self.line, self.text, start, end).into()
     }
 
     #[cold]

@@ -4,7 +4,6 @@
 
 use super::parameters::Values;
 use super::words::{FeedMode, Motion, Plane};
-use crate::iso::execution::numbers::INCH;
 use crate::iso::execution::state::Length;
 use program::{Compensation, Coolant, Spindle};
 
@@ -274,7 +273,7 @@ fn position(values: &Values, axis: u32) -> Result<f64, String> {
 /// mm in the unit of the program.
 fn unit(values: &Values) -> Result<f64, String> {
     match values.state.inches {
-        Some(true) => Ok(INCH),
+        Some(true) => Ok(geom::INCH),
         Some(false) => Ok(1.0),
         None => Err("a length, and neither G20 nor G21 has been given".into()),
     }

@@ -46,7 +46,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
         let (name, _) = s.token();
         let unit = match s.token() {
             (b"MM", _) => 1.0,
-            (b"INCH", _) => 25.4,
+            (b"INCH", _) => geom::INCH,
             (_, span) => {
                 let message = "BEGIN PGM needs a name, then MM or INCH";
                 return Err(s.error("program-frame", span, message));

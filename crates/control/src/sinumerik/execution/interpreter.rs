@@ -7,7 +7,6 @@
 use super::corner::Held;
 use super::cycles::{Drilling, Pause};
 use super::modal::Modal;
-use super::motion::AXIS_NAMES;
 use super::programmable::plain_values;
 use super::state::State;
 use crate::Settings;
@@ -18,6 +17,7 @@ use crate::sinumerik::language::block::{Block, ToolCall};
 use crate::sinumerik::language::call::{Argument, Call, Procedure};
 use crate::sinumerik::language::commands::{Code, FeedType, Motion};
 use crate::sinumerik::language::scan::Source;
+use crate::sinumerik::language::system::AXIS_NAMES;
 use crate::sinumerik::language::variables::ELEMENTS_IN_A_TURN;
 use program::{Compensation, Coolant, Cycle, Feed, Op, Record, Spindle, Tool};
 

@@ -2,19 +2,19 @@
 //!
 //! The [`interpreter`] goes through the block in the order of the control. It sends the axes where the
 //! block says ([`motion`], [`polar`], [`arc`], [`thread`]), with a [`corner`] between two moves, drills
-//! ([`cycles`], [`pattern`]) or calls again behind it ([`modal`]), and changes the [`frames`] ([`programmable`], [`offsets`],
-//! [`orientation`]). What holds is the [`state`].
+//! ([`cycles`], [`pattern`]) or calls again behind it ([`modal`]), and changes the [`frames`]
+//! ([`programmable`], [`offsets`], [`orientation`]). What holds is the [`state`].
 
 mod arc;
 mod corner;
-pub(super) mod cycles;
+mod cycles;
 mod frames;
 pub(super) mod interpreter;
 pub(super) mod modal;
-pub(super) mod motion;
+mod motion;
 mod offsets;
 mod orientation;
-pub(super) mod pattern;
+mod pattern;
 mod polar;
 mod programmable;
 pub(super) mod state;

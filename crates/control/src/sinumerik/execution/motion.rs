@@ -9,10 +9,9 @@ use crate::sinumerik::Fallible;
 use crate::sinumerik::language::block::{Block, Coordinate, Count, Rare};
 use crate::sinumerik::language::commands::{Code, Diameter, Motion};
 use crate::sinumerik::language::scan::Source;
+use crate::sinumerik::language::system::AXIS_NAMES;
 use geom::{Vec3, direction};
 use program::{Compensation, Op};
-
-pub(crate) const AXIS_NAMES: [&str; 6] = ["X", "Y", "Z", "A", "B", "C"];
 
 impl Interpreter<'_, '_> {
     /// The motion of a block, if it has one.

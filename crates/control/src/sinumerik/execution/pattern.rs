@@ -4,23 +4,13 @@ use super::interpreter::Interpreter;
 use super::modal::Modal;
 use crate::sinumerik::Fallible;
 use crate::sinumerik::language::call::{Argument, Call};
+use crate::sinumerik::language::forms::Pattern;
 use crate::sinumerik::language::scan::Source;
 use geom::Vec3;
 use program::Op;
 
 /// Most holes of a pattern; our own limit.
 const MOST_HOLES: f64 = 10_000.0;
-
-/// A pattern.
-#[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Pattern {
-    /// `HOLES1(SPCA, SPCO, STA1, FDIS, DBH, NUM)`.
-    Row,
-    /// `HOLES2(CPA, CPO, RAD, STA1, INDA, NUM)`.
-    Circle,
-    /// `CYCLE801(SPCA, SPCO, STA, DIS1, DIS2, NUM1, NUM2)`.
-    Grid,
-}
 
 /// The direction under an angle in the plane.
 fn under(degrees: f64) -> Vec3 {

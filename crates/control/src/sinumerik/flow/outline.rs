@@ -3,6 +3,7 @@
 use super::library::Program;
 use crate::sinumerik::Fallible;
 use crate::sinumerik::language::scan::{Name, Scanner, Source};
+use crate::sinumerik::language::structure::Word;
 use std::collections::HashMap;
 
 /// How deep control structures nest on each level (Job Planning 04.00, 1.13).
@@ -15,60 +16,6 @@ pub(crate) struct Place {
     pub at: usize,
     /// Line within the file.
     pub line: u32,
-}
-
-/// The words of the control structures.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Word {
-    If,
-    Else,
-    EndIf,
-    Loop,
-    EndLoop,
-    For,
-    EndFor,
-    While,
-    EndWhile,
-    Repeat,
-    Until,
-}
-
-/// The words, and the name of each.
-const WORDS: [(&str, Word); 11] = [
-    ("IF", Word::If),
-    ("ELSE", Word::Else),
-    ("ENDIF", Word::EndIf),
-    ("LOOP", Word::Loop),
-    ("ENDLOOP", Word::EndLoop),
-    ("FOR", Word::For),
-    ("ENDFOR", Word::EndFor),
-    ("WHILE", Word::While),
-    ("ENDWHILE", Word::EndWhile),
-    ("REPEAT", Word::Repeat),
-    ("UNTIL", Word::Until),
-];
-
-impl Word {
-    /// The word of that name.
-    pub fn named(name: &str) -> Option<Word> {
-        WORDS.iter().find(|(n, _)| *n == name).map(|(_, word)| *word)
-    }
-
-    fn name(self) -> &'static str {
-        WORDS.iter().find(|(_, word)| *word == self).map_or("", |(name, _)| name)
-    }
-
-    /// The word that opened what this one ends.
-    fn opener(self) -> Option<Word> {
-        Some(match self {
-            Word::EndIf | Word::Else => Word::If,
-            Word::EndLoop => Word::Loop,
-            Word::EndFor => Word::For,
-            Word::EndWhile => Word::While,
-            Word::Until => Word::Repeat,
-            Word::If | Word::Loop | Word::For | Word::While | Word::Repeat => return None,
-        })
-    }
 }
 
 /// A block that is part of a control structure.

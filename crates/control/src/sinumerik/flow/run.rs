@@ -2,7 +2,7 @@
 
 use super::levels::{Caller, LEVELS};
 use super::library::{Library, Program};
-use super::outline::{Place, Word};
+use super::outline::Place;
 use crate::Settings;
 use crate::compensation::Compensator;
 use crate::sinumerik::Fallible;
@@ -12,6 +12,7 @@ use crate::sinumerik::language::block::Block;
 use crate::sinumerik::language::expression::Evaluator;
 use crate::sinumerik::language::scan::{Name, Scanner, Source};
 use crate::sinumerik::language::statement::{Count, Jump, Search, Section, Statement, Target};
+use crate::sinumerik::language::structure::Word;
 use crate::sinumerik::language::value::Value;
 use crate::sinumerik::language::variables::ELEMENTS_IN_A_TURN;
 use program::Diagnostic;

@@ -1,11 +1,10 @@
 //! Calls: words of the language that take arguments in brackets, and the cycles.
 
 use super::expression::Evaluator;
+use super::forms::{CYCLES, Form, Pattern};
 use super::scan::{Scanner, Source};
 use super::value::Value;
 use crate::sinumerik::Fallible;
-use crate::sinumerik::execution::cycles::{CYCLES, Form};
-use crate::sinumerik::execution::pattern::Pattern;
 use program::Diagnostic;
 
 /// What a call does.

@@ -4,6 +4,7 @@
 //! modal group holds. The table is the only place that knows a command: what it does is a [`Code`].
 
 use crate::compensation::Outer;
+use geom::INCH;
 use program::Compensation;
 
 /// What a G command does.
@@ -261,9 +262,9 @@ pub(super) static COMMANDS: &[Command] = &[
     same("G602", 12),
     same("G603", 12),
     // 13: units
-    g("G70", 13, Code::Units(25.4, false)),
+    g("G70", 13, Code::Units(INCH, false)),
     g("G71", 13, Code::Units(1.0, false)),
-    g("G700", 13, Code::Units(25.4, true)),
+    g("G700", 13, Code::Units(INCH, true)),
     g("G710", 13, Code::Units(1.0, true)),
     // 14: absolute, incremental
     g("G90", 14, Code::Absolute(true)),

@@ -1,8 +1,9 @@
 //! The language: a text becomes a block, with every word looked up and every expression evaluated.
 //!
 //! Characters become names, numbers and texts ([`scan`]), and these the [`words`] of a [`block`]: G
-//! [`commands`], [`call`]s with arguments, [`definition`]s, or a [`statement`] on the order of blocks.
-//! Behind `=` stands an [`expression`] of [`operators`] and [`functions`] over [`value`]s,
+//! [`commands`], addresses with an `=` ([`settings`]), [`call`]s with arguments ([`forms`]),
+//! [`definition`]s, or a [`statement`] on the order of blocks, perhaps of a control [`structure`]. Behind
+//! `=` stands an [`expression`] of [`operators`] and [`functions`] over [`value`]s and what is [`named`]:
 //! [`variables`] and what the control says of itself ([`system`]).
 
 pub(super) mod block;
@@ -10,11 +11,15 @@ pub(super) mod call;
 pub(super) mod commands;
 pub(super) mod definition;
 pub(super) mod expression;
+pub(super) mod forms;
 mod functions;
+mod named;
 mod operators;
 pub(super) mod scan;
+mod settings;
 pub(super) mod statement;
-mod system;
+pub(super) mod structure;
+pub(super) mod system;
 pub(super) mod value;
 pub(super) mod variables;
 mod words;

@@ -5,10 +5,10 @@ use super::call;
 use super::definition;
 use super::expression::Evaluator;
 use super::scan::{Name, Scanner};
+use super::structure::Word;
 use super::value::Value;
 use super::variables::{Place, Variable};
 use crate::sinumerik::Fallible;
-use crate::sinumerik::flow::outline::Word;
 use std::rc::Rc;
 
 /// Most repetitions of a call or a section (`P`; Job Planning 04.00, 1.15 and 2.5).

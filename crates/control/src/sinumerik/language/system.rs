@@ -6,9 +6,11 @@ use super::scan::Scanner;
 use super::value::Value;
 use super::variables::Place;
 use crate::sinumerik::Fallible;
-use crate::sinumerik::execution::motion::AXIS_NAMES;
 use crate::sinumerik::execution::state::State;
 use program::{Diagnostic, Feed};
+
+/// The names of the axes, in the order of their numbers.
+pub(crate) const AXIS_NAMES: [&str; 6] = ["X", "Y", "Z", "A", "B", "C"];
 
 /// The index of the axis of that name (in capitals).
 pub(super) fn axis(name: &str) -> Option<usize> {

@@ -1,18 +1,18 @@
 //! The words of a block, read from left to right, each once.
 
-use super::block::{Block, Coordinate, Corner, Count, Rare, ToolCall};
+use super::block::{Block, Coordinate, Count, ToolCall};
 use super::call::{self, Call};
 use super::commands::{self, Code, GROUPS};
 use super::definition::Filling;
 use super::expression::Evaluator;
 use super::functions;
 use super::scan::{Scanner, Source};
+use super::settings;
 use super::statement;
-use super::value::Value;
+use super::structure::Word;
 use super::variables::Place;
 use crate::sinumerik::Fallible;
 use crate::sinumerik::execution::state::State;
-use crate::sinumerik::flow::outline::Word;
 
 impl Block {
     /// Reads a block. Expressions have the values before it.
@@ -40,10 +40,10 @@ impl Block {
     }
 }
 
-struct Reader<'a, 'b> {
-    scanner: Scanner<'a>,
-    state: &'a State,
-    block: &'b mut Block,
+pub(super) struct Reader<'a, 'b> {
+    pub(super) scanner: Scanner<'a>,
+    pub(super) state: &'a State,
+    pub(super) block: &'b mut Block,
 }
 
 impl Reader<'_, '_> {
@@ -263,7 +263,7 @@ impl Reader<'_, '_> {
     }
 
     /// The same behind its `=`.
-    fn counted(&mut self, may: bool) -> Fallible<Coordinate> {
+    pub(super) fn counted(&mut self, may: bool) -> Fallible<Coordinate> {
         self.scanner.blanks();
         let back = self.scanner.at;
         if self.scanner.peek().is_ascii_alphabetic()
@@ -291,7 +291,7 @@ impl Reader<'_, '_> {
         evaluator.offset_expression(&mut self.scanner)
     }
 
-    fn expression(&mut self) -> Fallible<f64> {
+    pub(super) fn expression(&mut self) -> Fallible<f64> {
         Evaluator::new(self.state, &self.block.assigned).expression(&mut self.scanner)
     }
 
@@ -389,8 +389,8 @@ impl Reader<'_, '_> {
         if let Some(index) = commands::named(name) {
             return self.command(start, index);
         }
-        if let Some((said, setting)) = SETTINGS.iter().find(|(n, _)| *n == name) {
-            return self.setting(start, said, *setting);
+        if let Some((said, setting)) = settings::named(name) {
+            return self.setting(start, said, setting);
         }
         match name {
             "MSG" => return self.message(start),
@@ -427,68 +427,6 @@ impl Reader<'_, '_> {
             error.help = "a variable needs its DEF in the same program (alarm 12550)".into();
         }
         Err(error)
-    }
-
-    /// `CR=...` and its kin.
-    fn setting(&mut self, start: usize, said: &'static str, setting: Setting) -> Fallible<()> {
-        if let Setting::Position = setting {
-            return self.positioning(start);
-        }
-        self.scanner.expect(b'=')?;
-        if let Setting::PolarAngle | Setting::PolarRadius = setting {
-            let coordinate = self.counted(false)?;
-            let rare = self.block.rare.get_or_insert_default();
-            let place = match setting {
-                Setting::PolarAngle => &mut rare.polar_angle,
-                _ => &mut rare.polar_radius,
-            };
-            let repeated = place.replace(coordinate).is_some();
-            return self.once(start, repeated);
-        }
-        let value = self.expression()?;
-        let block = &mut *self.block;
-        let rare = |block: &mut Block, place: fn(&mut Rare) -> &mut Option<f64>| {
-            place(block.rare.get_or_insert_default()).replace(value).is_some()
-        };
-        let repeated = match setting {
-            Setting::Radius => block.radius.replace(value).is_some(),
-            Setting::Opening => block.opening.replace(value).is_some(),
-            Setting::Turns => block.turns.replace(value).is_some(),
-            Setting::Rotation => block.rotation.replace(value).is_some(),
-            Setting::FixedPoint => block.fixed_point.replace(value).is_some(),
-            Setting::PathTolerance => block.path_tolerance.replace((said, value)).is_some(),
-            Setting::Corner(corner) => {
-                let rare = block.rare.get_or_insert_default();
-                rare.corner.replace(corner(value)).is_some()
-            }
-            Setting::Peak => rare(block, |r| &mut r.peak),
-            Setting::Angle => rare(block, |r| &mut r.angle),
-            Setting::ModalRound => rare(block, |r| &mut r.modal_round),
-            Setting::CornerFeed => rare(block, |r| &mut r.corner_feed),
-            Setting::ModalCornerFeed => rare(block, |r| &mut r.modal_corner_feed),
-            Setting::SpindlePosition => rare(block, |r| &mut r.spindle_position),
-            Setting::Position | Setting::PolarAngle | Setting::PolarRadius | Setting::NoMotion => {
-                false
-            }
-        };
-        self.once(start, repeated)
-    }
-
-    /// `POS[X]=...`.
-    fn positioning(&mut self, start: usize) -> Fallible<()> {
-        self.scanner.expect(b'[')?;
-        self.scanner.blanks();
-        let at = self.scanner.at;
-        let evaluator = Evaluator::new(self.state, &self.block.assigned);
-        let Value::Axis(axis) = evaluator.value(&mut self.scanner)? else {
-            return Err(self.scanner.error_since(at, "type", "an axis must stand here"));
-        };
-        self.scanner.expect(b']')?;
-        self.scanner.expect(b'=')?;
-        let coordinate = self.counted(axis >= 3)?;
-        let place = self.block.rare.get_or_insert_default().positioned.get_mut(axis);
-        let repeated = place.is_some_and(|place| place.replace(coordinate).is_some());
-        self.once(start, repeated)
     }
 
     /// `SETAL(number)`, `SETAL(number, text)`.
@@ -529,7 +467,7 @@ impl Reader<'_, '_> {
 
     /// An error where the word was there before.
     #[inline]
-    fn once(&self, start: usize, repeated: bool) -> Fallible<()> {
+    pub(super) fn once(&self, start: usize, repeated: bool) -> Fallible<()> {
         if !repeated {
             return Ok(());
         }
@@ -546,60 +484,10 @@ const COUNTS: &[(&str, Count)] = &[
     ("ACN", Count::Negative),
 ];
 
-/// An address of several letters.
-#[derive(Clone, Copy)]
-enum Setting {
-    Radius,
-    Opening,
-    Turns,
-    Rotation,
-    FixedPoint,
-    PolarAngle,
-    PolarRadius,
-    Angle,
-    Corner(fn(f64) -> Corner),
-    ModalRound,
-    CornerFeed,
-    ModalCornerFeed,
-    SpindlePosition,
-    Position,
-    /// How far an outer corner is from an arc.
-    Peak,
-    /// How far the control may leave the path of a cut.
-    PathTolerance,
-    /// How rapids and corrections are rounded, and how far the tool axis may turn.
-    NoMotion,
-}
-
-/// The addresses of several letters.
-const SETTINGS: &[(&str, Setting)] = &[
-    ("CR", Setting::Radius),
-    ("AR", Setting::Opening),
-    ("TURN", Setting::Turns),
-    ("RPL", Setting::Rotation),
-    ("FP", Setting::FixedPoint),
-    ("AP", Setting::PolarAngle),
-    ("RP", Setting::PolarRadius),
-    ("ANG", Setting::Angle),
-    ("CHF", Setting::Corner(Corner::Chamfer)),
-    ("CHR", Setting::Corner(Corner::ChamferSide)),
-    ("RND", Setting::Corner(Corner::Round)),
-    ("RNDM", Setting::ModalRound),
-    ("FRC", Setting::CornerFeed),
-    ("FRCM", Setting::ModalCornerFeed),
-    ("SPOS", Setting::SpindlePosition),
-    ("POS", Setting::Position),
-    ("ADIS", Setting::PathTolerance),
-    ("ADISPOS", Setting::NoMotion),
-    ("CTOL", Setting::PathTolerance),
-    ("OTOL", Setting::NoMotion),
-    ("DISC", Setting::Peak),
-];
-
 /// Whether a name belongs to the language, so that no variable may have it.
 pub(super) fn reserved(name: &str) -> bool {
     commands::named(name).is_some()
-        || SETTINGS.iter().any(|(n, _)| *n == name)
+        || settings::named(name).is_some()
         || COUNTS.iter().any(|(n, _)| *n == name)
         || Word::named(name).is_some()
         || functions::named(name).is_some()

@@ -1,4 +1,4 @@
-//! FreeCAD's F: feeds in mm/s, and pitches.
+//! FreeCAD's feeds: mm/s, and beside a tap the pitch.
 
 use super::step::Step;
 use crate::iso::language::block::Fault;

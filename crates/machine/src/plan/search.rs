@@ -1,98 +1,20 @@
-//! The rotary positions of a whole operation.
-//!
-//! Every tool axis has up to two solutions, and on a limited axis each of them may stand in several
-//! turns: those are the states of a target. The way through the states is chosen for the whole
-//! operation at once (dynamic programming), in this order:
-//!
-//! 1. no rotary axis leaves its travel;
-//! 2. in a cut the tool never swings out of the plane of its turn, and no axis turns by more than
-//!    half a turn: where the travel leaves no such way on, the tool must leave the part, turn back
-//!    and come in again, as late and therefore as seldom as possible;
-//! 3. the rotary travel within the operation is the shortest;
-//! 4. the preferred solution at its start; 5. the shortest way from where the axes stand to it.
-//!
-//! Unlimited axes wind on and never jump by a turn. In a singular pose, where one axis may stand
-//! anywhere, it holds its position, and turns to where it is needed next in the last rapid before that,
-//! else in the last move from one singular pose to another, else in the move that leaves the pose.
-//!
-//! A target takes 16 bytes until its operation is written, and no more is kept.
+//! The search for the best way through the states of an operation.
 
+use super::axis::{Axis, SLACK};
+use super::{Cell, Plan, Rewind, TURN, TURNS, Target, TargetKind};
 use crate::Machine;
-use crate::inverse::{Bearings, Chain, REACH_EPSILON, Unreachable};
+use crate::inverse::{Bearings, Chain, Unreachable};
 use geom::{ANGLE_EPSILON, Vec3, angle_between};
 use program::Diagnostic;
 use std::f64::consts::PI;
 
-/// A pose to be reached, as far as the rotary axes are concerned.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Target {
-    /// Unit vector from the tool tip towards the spindle, work frame.
-    pub axis: Vec3,
-    /// Line of the source, from 1.
-    pub line: u32,
-    /// How it is reached.
-    pub kind: TargetKind,
-}
-
-/// How a pose is reached.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum TargetKind {
-    /// By rapid: the rotary axes may turn as they like.
-    Rapid,
-    /// In the cut.
-    Feed,
-    /// In the cut along an arc, during which the orientation holds.
-    Arc,
-}
-
-/// The rotary positions for the targets of one operation.
-#[derive(Clone, Debug)]
-pub struct Plan {
-    chain: Chain,
-    axes: [Axis; 2],
-    /// For each of the `in_turns` states of a solution the turn of the outer and of the inner axis.
-    turns: [[f64; 2]; TURNS],
-    in_turns: usize,
-    start: [f64; 2],
-    cells: Vec<Cell>,
-    /// Where the travel leaves no way on, in order.
-    pub rewinds: Vec<Rewind>,
-}
-
-/// A place in a cut at which the tool must be drawn back, turned and brought in again.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Rewind {
-    /// The target before which that happens, at the tip of the one before it.
-    pub index: usize,
-    /// Line of the source of that target.
-    pub line: u32,
-    /// Positions in which the tool comes in again.
-    pair: [f64; 2],
-}
-
-/// What the rotary axes do for one target.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Step {
-    /// Degrees of A, B, C at the target.
-    pub degrees: [f64; 3],
-    /// Where the travel leaves no way on: the degrees of A, B, C to which the axes turn first, at the
-    /// tip of the target before, with the tool drawn back along its axis and brought in again.
-    pub rewind: Option<[f64; 3]>,
-}
-
-/// The most turns in which a solution may stand, those of the two axes multiplied.
-const TURNS: usize = 4;
 /// The most states of a target: two solutions.
 const STATES: usize = 2 * TURNS;
 /// Bits that name a state.
 const BITS: u32 = 3;
 /// Every state follows from the state of the same number.
 const SAME: u32 = 0o76_543_210;
-/// Of a singular target: here the free axis turns to where it is needed next.
-const TURN: u32 = 1 << 31;
 
-/// Travel is compared to within this, degrees: what the tool axis may be out of reach by rounding.
-const SLACK: f64 = REACH_EPSILON * 180.0 / PI;
 /// The farthest that the tool may swing out of its way in a cut, radians (1°).
 const SWING: f64 = PI / 180.0;
 /// Within one solution, turns of less than this in all (degrees) do not swing the tool out of its way.
@@ -102,22 +24,6 @@ const NEAR: f64 = 90.0;
 const PREFERENCE: f64 = 0.05;
 /// What a degree of the way to the operation costs, in degrees of travel within: less than preference.
 const APPROACH: f64 = 1e-5;
-
-/// A target while its operation is planned: its bearings, and for each state the state of the target
-/// before from which it is reached best; once that is settled, its own state.
-#[derive(Clone, Copy, Debug)]
-struct Cell {
-    bearings: Bearings,
-    link: u32,
-}
-
-/// The travel of a rotary axis; an axis that the machine lacks never moves.
-#[derive(Clone, Copy, Debug)]
-struct Axis {
-    min: f64,
-    max: f64,
-    unlimited: bool,
-}
 
 /// What a target can be in: positions of the outer and the inner axis by the number of the state, the
 /// first solution from 0 on, the second from [`TURNS`] on; infinite where there is no such state.
@@ -147,27 +53,8 @@ enum Freedom {
     All,
 }
 
-/// Chooses the rotary positions for `targets`, from where the axes stand at `start` (degrees of A, B,
-/// C; `None` where that is not known).
-///
-/// # Errors
-/// `unreachable-orientation` where no position gives a tool axis, `axis-limit` where the travel has
-/// none that does, or none that the move can end in; `arc-orientation` where the tool axis turns during
-/// an arc. Each with the line of the source.
-pub fn plan(
-    machine: &Machine,
-    start: Option<[f64; 3]>,
-    targets: impl IntoIterator<Item = Target>,
-) -> Result<Plan, Box<Diagnostic>> {
-    let targets = targets.into_iter();
-    let mut search = Search::new(machine, start, targets.size_hint().0);
-    for target in targets {
-        search.add(&target)?;
-    }
-    Ok(search.finish())
-}
-
-struct Search<'a> {
+/// A search on its way through the targets.
+pub(super) struct Search<'a> {
     machine: &'a Machine,
     known: bool,
     plan: Plan,
@@ -187,7 +74,11 @@ struct Search<'a> {
 }
 
 impl<'a> Search<'a> {
-    fn new(machine: &'a Machine, start: Option<[f64; 3]>, expected: usize) -> Search<'a> {
+    pub(super) fn new(
+        machine: &'a Machine,
+        start: Option<[f64; 3]>,
+        expected: usize,
+    ) -> Search<'a> {
         let degrees = start.unwrap_or_default();
         let chain = Chain::new(machine, degrees);
         let axes = Axis::of(machine, &chain, degrees);
@@ -230,7 +121,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    fn add(&mut self, target: &Target) -> Result<(), Box<Diagnostic>> {
+    pub(super) fn add(&mut self, target: &Target) -> Result<(), Box<Diagnostic>> {
         let index = self.plan.cells.len();
         if let (Some(last), Some(cell)) = (self.last, self.plan.cells.last().copied()) {
             let arc = target.kind == TargetKind::Arc;
@@ -379,7 +270,7 @@ impl<'a> Search<'a> {
     }
 
     /// Follows the links back from the best end.
-    fn finish(mut self) -> Plan {
+    pub(super) fn finish(mut self) -> Plan {
         let mut state = self.front.best() as u32;
         let mut rewinds = self.plan.rewinds.iter_mut().zip(&self.turns_back).rev().peekable();
         for (index, cell) in self.plan.cells.iter_mut().enumerate().rev() {
@@ -442,96 +333,9 @@ fn unreachable(target: &Target, error: &Unreachable) -> Box<Diagnostic> {
         .into()
 }
 
-/// The least whole number that is not below `x`: `ceil` for numbers of turns, without its call.
-fn up(x: f64) -> f64 {
-    let whole = x as i64 as f64;
-    if whole < x { whole + 1.0 } else { whole }
-}
-
 /// Whether there is such a state.
 fn exists(state: &[f64; 2]) -> bool {
     state[0] + state[1] < f64::INFINITY
-}
-
-impl Axis {
-    /// The travel in which the operation is planned. Where an axis turns so often that its states
-    /// would be too many, it is planned in the turns around where it stands.
-    fn of(machine: &Machine, chain: &Chain, start: [f64; 3]) -> [Axis; 2] {
-        let mut axes = [Axis { min: 0.0, max: 0.0, unlimited: false }; 2];
-        for (axis, &place) in axes.iter_mut().zip(&chain.places).take(chain.links) {
-            if let Some(rotary) = machine.rotary.iter().find(|r| r.index() == place) {
-                let unlimited = rotary.unlimited();
-                *axis = Axis { min: rotary.min, max: rotary.max, unlimited };
-            }
-        }
-        let start = chain.gather(start);
-        let most = TURNS as f64;
-        if axes[0].turns() * axes[1].turns() > most {
-            let other = if axes[1].turns() < most { axes[1].turns() } else { 2.0 };
-            axes[0] = axes[0].around(start[0], (most / other).floor());
-            axes[1] = axes[1].around(start[1], (most / axes[0].turns()).floor());
-        }
-        axes
-    }
-
-    /// In how many turns a position may stand, at the most.
-    fn turns(&self) -> f64 {
-        if self.unlimited { 1.0 } else { ((self.max - self.min + SLACK) / 360.0).floor() + 1.0 }
-    }
-
-    fn around(self, position: f64, turns: f64) -> Axis {
-        if self.turns() <= turns {
-            return self;
-        }
-        let width = 360.0 * turns - 1e-3;
-        let min = (position - width / 2.0).min(self.max - width).max(self.min);
-        Axis { min, max: min + width, ..self }
-    }
-
-    /// The first position from the lower end of the travel on that is `base` but for whole turns.
-    fn first(&self, base: f64) -> f64 {
-        if self.unlimited {
-            return base;
-        }
-        base + 360.0 * up((self.min - base - SLACK) * (1.0 / 360.0))
-    }
-
-    /// The position `turn` turns behind the first; infinite where the travel ends before.
-    fn position(&self, first: f64, turn: f64) -> f64 {
-        if self.unlimited {
-            return first;
-        }
-        let position = first + 360.0 * turn;
-        if position > self.max + SLACK { f64::INFINITY } else { self.nearest(position) }
-    }
-
-    /// The position within the travel nearest to `position`.
-    fn nearest(&self, position: f64) -> f64 {
-        position.max(self.min).min(self.max)
-    }
-
-    /// The way from one position to the other, degrees: the short way round where the axis turns for
-    /// ever.
-    fn way(&self, from: f64, to: f64) -> f64 {
-        let way = to - from;
-        // Half a turn is taken upwards, also where rounding makes it a little more.
-        if self.unlimited { way - 360.0 * up(way / 360.0 - 0.5 - 1e-9) } else { way }
-    }
-
-    /// How far it is from one state to the other, degrees.
-    fn travel(&self, from: f64, to: f64) -> f64 {
-        let travel = (to - from).abs();
-        if self.unlimited { travel.min((360.0 - travel).abs()) } else { travel }
-    }
-
-    /// `position` as a state has it: without its whole turns where the axis turns for ever.
-    fn base(&self, position: f64) -> f64 {
-        if self.unlimited { self.way(0.0, position) } else { position }
-    }
-
-    fn off_center(&self, position: f64) -> f64 {
-        if self.unlimited { 0.0 } else { (position - (self.min + self.max) / 2.0).abs() }
-    }
 }
 
 impl Front {
@@ -549,31 +353,7 @@ impl Front {
     }
 }
 
-impl Rewind {
-    /// What the report says about it.
-    pub fn warning(&self) -> Diagnostic {
-        let message = "the travel of the rotary axes ends in this cut: the tool is drawn back, \
-                       turned and brought in again";
-        Diagnostic::warning("rewind", message).line(self.line)
-    }
-}
-
 impl Plan {
-    /// How many targets there are.
-    pub fn len(&self) -> usize {
-        self.cells.len()
-    }
-
-    /// Whether there are no targets.
-    pub fn is_empty(&self) -> bool {
-        self.cells.is_empty()
-    }
-
-    /// The positions for each target, in order.
-    pub fn iter(&self) -> Steps<'_> {
-        Steps { plan: self, index: 0, rewinds: &self.rewinds, last: self.start }
-    }
-
     /// Writes the states that the travel leaves into `states`.
     fn states(&self, bearings: &Bearings, states: &mut States) {
         for (family, states) in
@@ -585,16 +365,6 @@ impl Plan {
                 *state = [0, 1].map(|k| self.axes[k].position(first[k], turns[k]));
             }
         }
-    }
-
-    /// The positions settled for a target that is not singular.
-    fn settled(&self, cell: &Cell) -> [f64; 2] {
-        let (family, turn) = (cell.link as usize / TURNS, cell.link as usize % TURNS);
-        let base = self.chain.solution(&cell.bearings, family);
-        [0, 1].map(|k| {
-            let first = self.axes[k].first(base[k].degrees());
-            self.axes[k].position(first, self.turns[turn][k])
-        })
     }
 
     /// Goes on in every state of `front` where the way to `next` is so short that no change can be
@@ -700,81 +470,8 @@ impl Plan {
         swing <= turn + SWING
     }
 
-    /// The position of the inner axis in a singular pose, where both solutions have the same, in the
-    /// turn nearest to `from`; `None` where its travel has none.
-    fn inner(&self, bearings: &Bearings, from: f64) -> Option<f64> {
-        let first = self.axes[1].first(self.chain.solution(bearings, 0)[1].degrees());
-        let far = |position: f64| self.axes[1].way(from, position).abs();
-        let positions = (0..TURNS).map(|turn| self.axes[1].position(first, turn as f64));
-        let within = positions.filter(|position| position.is_finite());
-        within.min_by(|a, b| far(*a).total_cmp(&far(*b)))
-    }
-
     /// The rotary travel between two states, degrees.
     fn travel(&self, from: &[f64; 2], to: &[f64; 2]) -> f64 {
         self.axes[0].travel(from[0], to[0]) + self.axes[1].travel(from[1], to[1])
-    }
-}
-
-/// The positions for the targets of a [`Plan`], in order.
-#[derive(Clone, Debug)]
-pub struct Steps<'a> {
-    plan: &'a Plan,
-    index: usize,
-    rewinds: &'a [Rewind],
-    last: [f64; 2],
-}
-
-impl Steps<'_> {
-    /// `pair` in the turns of unlimited axes that are nearest to where they stand.
-    fn wound(&self, pair: [f64; 2]) -> [f64; 2] {
-        [0, 1].map(|k| self.last[k] + self.plan.axes[k].way(self.last[k], pair[k]))
-    }
-
-    /// What a singular pose takes: the free axis where it stands, or where it is needed next.
-    fn singular(&self, cell: &Cell) -> [f64; 2] {
-        let mut outer = self.last[0];
-        if cell.link & TURN != 0 {
-            let next = self.plan.cells[self.index..].iter().find(|cell| !cell.bearings.free());
-            outer = next.map_or(outer, |cell| self.plan.settled(cell)[0]);
-        }
-        [outer, self.plan.inner(&cell.bearings, self.last[1]).unwrap_or(self.last[1])]
-    }
-}
-
-impl Iterator for Steps<'_> {
-    type Item = Step;
-
-    fn next(&mut self) -> Option<Step> {
-        let cell = self.plan.cells.get(self.index)?;
-        let mut rewind = None;
-        if let [first, rest @ ..] = self.rewinds
-            && first.index == self.index
-        {
-            self.rewinds = rest;
-            self.last = self.wound(first.pair);
-            rewind = Some(self.plan.chain.spread(self.last));
-        }
-        let pair = if cell.bearings.free() { self.singular(cell) } else { self.plan.settled(cell) };
-        self.last = self.wound(pair);
-        self.index += 1;
-        Some(Step { degrees: self.plan.chain.spread(self.last), rewind })
-    }
-
-    fn size_hint(&self) -> (usize, Option<usize>) {
-        let left = self.plan.cells.len() - self.index;
-        (left, Some(left))
-    }
-}
-
-impl ExactSizeIterator for Steps<'_> {}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn a_target_takes_16_bytes() {
-        assert_eq!(size_of::<Cell>(), 16);
     }
 }

@@ -1,0 +1,189 @@
+//! What a name in an expression stands for: R parameters, variables and their elements.
+
+use super::expression::Evaluator;
+use super::scan::{Name, Scanner};
+use super::system;
+use super::value::{Kind, LONGEST_TEXT, Value};
+use super::variables::{Parameter, Place, R_PARAMETERS, Variable};
+use crate::sinumerik::Fallible;
+
+impl Evaluator<'_> {
+    /// Whether that name is a variable of the program.
+    pub fn is_variable(&self, name: &Name) -> bool {
+        self.state.locals.find(name).is_some()
+    }
+
+    /// Takes what a value is assigned to.
+    pub fn place(&self, scanner: &mut Scanner) -> Fallible<Place> {
+        let start = scanner.at;
+        match (scanner.peek(), scanner.peek_at(1)) {
+            (b'$', _) => system::place(self, scanner),
+            (b'R', next) if !scanner.name_next() && next != b'=' => {
+                scanner.at += 1;
+                self.index(scanner).map(Place::Parameter)
+            }
+            _ => {
+                let name = scanner.name()?;
+                let index = self.state.locals.find(&name);
+                let variable = index.and_then(|i| Some((i, self.state.locals.get(i)?)));
+                let Some((index, variable)) = variable else {
+                    let message = format!("'{}' is not a variable (alarm 12550)", name.as_str());
+                    let mut error = scanner.error_since(start, "unknown-word", message);
+                    error.help = "a variable needs its DEF in the same program".into();
+                    return Err(error);
+                };
+                self.element(scanner, variable).map(|element| Place::Element(index, element))
+            }
+        }
+    }
+
+    /// The type of a place, and how many elements there are from it on.
+    pub fn room(&self, place: Place) -> (Kind, usize) {
+        match place {
+            Place::Element(index, element) => match self.state.locals.get(index) {
+                Some(variable) if variable.sizes.is_empty() => (variable.kind, 1),
+                Some(variable) => (variable.kind, variable.values.len().saturating_sub(element)),
+                None => (Kind::Real, 0),
+            },
+            Place::Parameter(_) | Place::WorkOffset(..) => (Kind::Real, 1),
+        }
+    }
+
+    /// Takes a variable that is the whole argument of a call: its index and element, and its value.
+    #[allow(clippy::type_complexity, reason = "it is taken apart at once")]
+    pub fn variable_alone(
+        &self,
+        scanner: &mut Scanner,
+    ) -> Fallible<Option<((usize, Option<usize>), Option<Value>)>> {
+        let back = scanner.at;
+        if !scanner.name_next() {
+            return Ok(None);
+        }
+        let name = scanner.name()?;
+        let index = self.state.locals.find(&name);
+        if let Some((index, variable)) = index.and_then(|i| Some((i, self.state.locals.get(i)?))) {
+            let array = !variable.sizes.is_empty() && scanner.peek() != b'[';
+            let element = if array { None } else { Some(self.element(scanner, variable)?) };
+            scanner.blanks();
+            if matches!(scanner.peek(), b',' | b')') {
+                let value = element.and_then(|e| variable.values.get(e).cloned().flatten());
+                return Ok(Some(((index, element), value)));
+            }
+        }
+        scanner.at = back;
+        Ok(None)
+    }
+
+    /// Takes the index of an R parameter behind its `R`.
+    pub fn index(&self, scanner: &mut Scanner) -> Fallible<usize> {
+        let start = scanner.at;
+        let index = if scanner.take(b'[') {
+            let index = Evaluator::new(self.state, self.assigned).expression(scanner)?;
+            scanner.expect(b']')?;
+            if index.fract() == 0.0 && index >= 0.0 { index as usize } else { R_PARAMETERS }
+        } else {
+            scanner.integer()? as usize
+        };
+        if index < R_PARAMETERS {
+            return Ok(index);
+        }
+        Err(scanner.error_since(start, "r-parameter", "there are R0 to R999"))
+    }
+
+    /// Takes the element in brackets of a variable, where it is an array.
+    pub fn element(&self, scanner: &mut Scanner, variable: &Variable) -> Fallible<usize> {
+        let start = scanner.at;
+        let mut element = 0;
+        for (i, size) in variable.sizes.iter().enumerate() {
+            scanner.expect(if i == 0 { b'[' } else { b',' })?;
+            let at = scanner.at;
+            let index = Evaluator::new(self.state, self.assigned).expression(scanner)?;
+            if index.fract() != 0.0 || !(0.0..*size as f64).contains(&index) {
+                let message = format!("index {index} of an array that goes from 0 to {}", size - 1);
+                return Err(scanner.error_since(at, "array-index", message));
+            }
+            element = element * size + index as usize;
+        }
+        if !variable.sizes.is_empty() {
+            scanner.expect(b']')?;
+        }
+        if element < variable.values.len() {
+            return Ok(element);
+        }
+        Err(scanner.error_since(start, "array-index", "the array has no such element"))
+    }
+
+    /// Takes an R parameter: its value.
+    pub fn parameter(&self, scanner: &mut Scanner) -> Fallible<f64> {
+        let start = scanner.at;
+        scanner.at += 1;
+        let index = self.index(scanner)?;
+        let operator = ["AND", "OR", "XOR", "DIV", "MOD", "B_AND", "B_OR", "B_XOR"];
+        let back = scanner.at;
+        if scanner.name_goes_on() && !operator.iter().any(|word| scanner.take_word(word)) {
+            return Err(scanner.error_here(
+                "syntax",
+                "a blank is missing: letters behind an R parameter would read as its name",
+            ));
+        }
+        scanner.at = back;
+        self.parameter_value(scanner, start, index)
+    }
+
+    /// The value of an R parameter, whose name stands from `start`.
+    pub fn parameter_value(&self, scanner: &Scanner, start: usize, index: usize) -> Fallible<f64> {
+        if self.assigned.iter().any(|(place, _)| *place == Place::Parameter(index)) {
+            return Err(scanner.error_since(
+                start,
+                "r-parameter",
+                format!("R{index} is set and read in one block"),
+            ));
+        }
+        match self.state.parameters.get(index) {
+            Parameter::Set(value) => Ok(value),
+            Parameter::Operator => {
+                self.offset.set(Some(index));
+                Ok(0.0)
+            }
+            Parameter::Unknown => {
+                let message = format!("R{index} is read, and no block before has set it");
+                let mut error = scanner.error_since(start, "r-parameter", message);
+                error.help = format!(
+                    "set it in the program; or, where the operator sets it, write \
+                     operator_parameters = [\"R{index}\"] into the machine file"
+                );
+                Err(error)
+            }
+        }
+    }
+
+    /// The value of the variable `index`, whose name stands from `start`, or of one of its elements.
+    pub fn variable(&self, scanner: &mut Scanner, start: usize, index: usize) -> Fallible<Value> {
+        let Some(variable) = self.state.locals.get(index) else {
+            return Err(scanner.error_since(start, "unknown-word", "there is no such variable"));
+        };
+        let element = self.element(scanner, variable)?;
+        if self.assigned.iter().any(|(place, _)| *place == Place::Element(index, element)) {
+            let message = "the variable is set and read in one block";
+            return Err(scanner.error_since(start, "variable", message));
+        }
+        match variable.values.get(element) {
+            Some(Some(Value::Text(text))) if scanner.peek() == b'[' => {
+                scanner.at += 1;
+                let at = Evaluator::new(self.state, self.assigned)
+                    .within(scanner, 0..=LONGEST_TEXT as u32)?;
+                scanner.expect(b']')?;
+                let byte = text.as_bytes().get(at as usize).copied();
+                byte.map(Value::Char).ok_or_else(|| {
+                    let message = format!("character {at} of a text of {}", text.len());
+                    scanner.error_since(start, "array-index", message)
+                })
+            }
+            Some(Some(value)) => Ok(value.clone()),
+            _ => {
+                let message = "the variable is read, and no block before has set it";
+                Err(scanner.error_since(start, "variable", message))
+            }
+        }
+    }
+}

@@ -1,0 +1,131 @@
+//! Addresses of several letters: `CR=`, `RND=`, `POS[X]=` and their kin.
+
+use super::block::{Block, Corner, Rare};
+use super::expression::Evaluator;
+use super::value::Value;
+use super::words::Reader;
+use crate::sinumerik::Fallible;
+
+/// An address of several letters.
+#[derive(Clone, Copy)]
+pub(super) enum Setting {
+    Radius,
+    Opening,
+    Turns,
+    Rotation,
+    FixedPoint,
+    PolarAngle,
+    PolarRadius,
+    Angle,
+    Corner(fn(f64) -> Corner),
+    ModalRound,
+    CornerFeed,
+    ModalCornerFeed,
+    SpindlePosition,
+    Position,
+    /// How far an outer corner is from an arc.
+    Peak,
+    /// How far the control may leave the path of a cut.
+    PathTolerance,
+    /// How rapids and corrections are rounded, and how far the tool axis may turn.
+    NoMotion,
+}
+
+/// The addresses of several letters.
+const SETTINGS: &[(&str, Setting)] = &[
+    ("CR", Setting::Radius),
+    ("AR", Setting::Opening),
+    ("TURN", Setting::Turns),
+    ("RPL", Setting::Rotation),
+    ("FP", Setting::FixedPoint),
+    ("AP", Setting::PolarAngle),
+    ("RP", Setting::PolarRadius),
+    ("ANG", Setting::Angle),
+    ("CHF", Setting::Corner(Corner::Chamfer)),
+    ("CHR", Setting::Corner(Corner::ChamferSide)),
+    ("RND", Setting::Corner(Corner::Round)),
+    ("RNDM", Setting::ModalRound),
+    ("FRC", Setting::CornerFeed),
+    ("FRCM", Setting::ModalCornerFeed),
+    ("SPOS", Setting::SpindlePosition),
+    ("POS", Setting::Position),
+    ("ADIS", Setting::PathTolerance),
+    ("ADISPOS", Setting::NoMotion),
+    ("CTOL", Setting::PathTolerance),
+    ("OTOL", Setting::NoMotion),
+    ("DISC", Setting::Peak),
+];
+
+/// The address of that name, as the language has it.
+pub(super) fn named(name: &str) -> Option<(&'static str, Setting)> {
+    SETTINGS.iter().find(|(n, _)| *n == name).copied()
+}
+
+impl Reader<'_, '_> {
+    /// `CR=...` and its kin.
+    pub(super) fn setting(
+        &mut self,
+        start: usize,
+        said: &'static str,
+        setting: Setting,
+    ) -> Fallible<()> {
+        if let Setting::Position = setting {
+            return self.positioning(start);
+        }
+        self.scanner.expect(b'=')?;
+        if let Setting::PolarAngle | Setting::PolarRadius = setting {
+            let coordinate = self.counted(false)?;
+            let rare = self.block.rare.get_or_insert_default();
+            let place = match setting {
+                Setting::PolarAngle => &mut rare.polar_angle,
+                _ => &mut rare.polar_radius,
+            };
+            let repeated = place.replace(coordinate).is_some();
+            return self.once(start, repeated);
+        }
+        let value = self.expression()?;
+        let block = &mut *self.block;
+        let rare = |block: &mut Block, place: fn(&mut Rare) -> &mut Option<f64>| {
+            place(block.rare.get_or_insert_default()).replace(value).is_some()
+        };
+        let repeated = match setting {
+            Setting::Radius => block.radius.replace(value).is_some(),
+            Setting::Opening => block.opening.replace(value).is_some(),
+            Setting::Turns => block.turns.replace(value).is_some(),
+            Setting::Rotation => block.rotation.replace(value).is_some(),
+            Setting::FixedPoint => block.fixed_point.replace(value).is_some(),
+            Setting::PathTolerance => block.path_tolerance.replace((said, value)).is_some(),
+            Setting::Corner(corner) => {
+                let rare = block.rare.get_or_insert_default();
+                rare.corner.replace(corner(value)).is_some()
+            }
+            Setting::Peak => rare(block, |r| &mut r.peak),
+            Setting::Angle => rare(block, |r| &mut r.angle),
+            Setting::ModalRound => rare(block, |r| &mut r.modal_round),
+            Setting::CornerFeed => rare(block, |r| &mut r.corner_feed),
+            Setting::ModalCornerFeed => rare(block, |r| &mut r.modal_corner_feed),
+            Setting::SpindlePosition => rare(block, |r| &mut r.spindle_position),
+            Setting::Position | Setting::PolarAngle | Setting::PolarRadius | Setting::NoMotion => {
+                false
+            }
+        };
+        self.once(start, repeated)
+    }
+
+    /// `POS[X]=...`.
+    fn positioning(&mut self, start: usize) -> Fallible<()> {
+        self.scanner.expect(b'[')?;
+        self.scanner.blanks();
+        let at = self.scanner.at;
+        let evaluator = Evaluator::new(self.state, &self.block.assigned);
+        let Value::Axis(axis) = evaluator.value(&mut self.scanner)? else {
+            return Err(self.scanner.error_since(at, "type", "an axis must stand here"));
+        };
+        self.scanner.expect(b']')?;
+        self.scanner.expect(b'=')?;
+        let coordinate = self.counted(axis >= 3)?;
+        let place = self.block.rare.get_or_insert_default().positioned.get_mut(axis);
+        let repeated = place.is_some_and(|place| place.replace(coordinate).is_some());
+        self.once(start, repeated)
+    }
+}

@@ -1,0 +1,248 @@
+//! From files to a [`Machine`]: reading, merging along `extends`, checking.
+//!
+//! A [`crate::sheet::Sheet`] is one [`mod@file`] as it stands; every key may be missing, no other key may be
+//! there. The sheets of a chain are [`checked`] and merged, the nearer one winning field by field, and the
+//! result must be whole.
+
+mod checked;
+mod file;
+
+use crate::library;
+use crate::model::Machine;
+use checked::CheckedSheet;
+use file::SheetFile;
+use program::Diagnostic;
+use std::path::{Path, PathBuf};
+
+/// How many files a chain of `extends` may have.
+const LONGEST_CHAIN: usize = 16;
+
+type Result<T> = std::result::Result<T, Box<Diagnostic>>;
+
+/// Loads a machine: a name of the library, or the path of a file (with a `/` or ending in `.toml`).
+///
+/// # Errors
+/// The first mistake in the chain of files, with file, line, column and the way out.
+pub fn load(name_or_path: &str) -> Result<Machine> {
+    let file = if is_path(name_or_path) {
+        SheetFile::read(Path::new(name_or_path))?
+    } else {
+        SheetFile::of_library(name_or_path, library::MACHINES)?
+    };
+    build(file)
+}
+
+/// Loads a control of the library by its name, as the machine that says nothing beyond it.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_control(name: &str) -> Result<Machine> {
+    build(SheetFile::of_library(name, library::CONTROLS)?)
+}
+
+/// Loads what a program was written for: a machine as [`load`] does, or a control of the library.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_origin(name_or_path: &str) -> Result<Machine> {
+    match is_path(name_or_path) {
+        true => load(name_or_path),
+        false => build(SheetFile::of_library(name_or_path, library::EVERYTHING)?),
+    }
+}
+
+/// Loads a machine from TOML text, as if it stood in `file_name`. What it extends by path is looked up
+/// from the folder of that name.
+///
+/// # Errors
+/// As [`load`].
+pub fn load_text(file_name: &str, text: &str) -> Result<Machine> {
+    build(SheetFile { path: PathBuf::from(file_name), text: text.to_string(), own: true })
+}
+
+fn build(file: SheetFile) -> Result<Machine> {
+    let name = file.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let shown = file.name();
+    let mut control = None;
+    let mut merged = CheckedSheet::new(file.parse()?, &file)?;
+    let mut here = file;
+    for depth in 0.. {
+        let Some(parent) = merged.extends.take() else { break };
+        if depth == LONGEST_CHAIN {
+            return Err(here
+                .at("extends", &parent, "the chain of `extends` has no end")
+                .help("no file may extend itself, not even by way of others")
+                .into());
+        }
+        let next = here.parent(&parent)?;
+        control.get_or_insert_with(|| parent.get_ref().clone());
+        merged = CheckedSheet::new(next.parse()?, &next)?.under(merged);
+        here = next;
+    }
+    let missing = |what: &str| {
+        let message = format!("{what} is missing, here and in everything that this file extends");
+        Box::new(Diagnostic::error("machine-incomplete", message).file(shown.clone()))
+    };
+    let control = control.unwrap_or_else(|| name.clone());
+    merged.finish(name.clone(), shown.clone(), control, &missing)
+}
+
+fn is_path(name: &str) -> bool {
+    name.contains(['/', '\\']) || name.ends_with(".toml")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::*;
+
+    const MILL: &str = r#"
+title = "A mill"
+reader = "linuxcnc"
+[words.X]
+decimals = 4
+[blocks]
+rapid = "G0 {{X}}"
+tool_change = """
+T{{T}}
+M6
+"""
+[axes.X]
+min = 0
+max = 200.5
+"#;
+
+    fn refusal(text: &str) -> String {
+        load_text("mill.toml", text).unwrap_err().to_string()
+    }
+
+    #[test]
+    fn what_is_written_is_what_is_loaded_and_the_rest_has_defaults() {
+        let mill = load_text("shop/mill.toml", MILL).unwrap();
+        assert_eq!((mill.name.as_str(), mill.title.as_str()), ("mill", "A mill"));
+        assert_eq!(mill.words["X"].decimals, 4);
+        assert_eq!(mill.linear[0].max, 200.5);
+        assert_eq!(mill.linear[1].max, f64::INFINITY);
+        assert_eq!(mill.orientation.simultaneous, OrientationMode::Fixed);
+        assert_eq!(mill.resolution(), 1e-4);
+    }
+
+    #[test]
+    fn a_block_knows_where_its_text_begins() {
+        let mill = load_text("mill.toml", MILL).unwrap();
+        assert_eq!((mill.blocks["rapid"].line, mill.blocks["rapid"].column), (7, 10));
+        assert_eq!((mill.blocks["tool_change"].line, mill.blocks["tool_change"].column), (9, 1));
+        assert!(mill.blocks["tool_change"].text.starts_with("T{{T}}\n"));
+    }
+
+    #[test]
+    fn an_unknown_key_is_named_with_line_and_column() {
+        let shown = refusal("reader = \"grbl\"\n[spindle]\nmaxx = 5\n");
+        assert!(shown.starts_with("mill.toml:3:1: error[machine-file]: unknown field `maxx`"));
+        assert!(shown.contains("`max`"));
+    }
+
+    #[test]
+    fn mistakes_that_only_a_machinist_sees_are_told_at_their_place() {
+        let rotary = |fields: &str| {
+            refusal(&format!(
+                "reader = \"grbl\"\n[orientation]\nsimultaneous = \"vectors\"\n[[rotary]]\nletter = \
+                 \"A\"\non = \"table\"\nrapid = 1\nacceleration = 1\n{fields}\n"
+            ))
+        };
+        assert!(rotary("axis = [0, 0, 0]").contains("rotary A: `axis` has no direction"));
+        assert!(rotary("axis = [1, 0, 0]\nsign = 2").contains("`sign` is 1 or -1"));
+        assert!(rotary("axis = [1, 0, 0]\nmin = 5\nmax = 5").contains("`min` is less than `max`"));
+        assert!(refusal("reader = \"g\"\n[words.X]\ndecimals = 12").contains(":3:12:"));
+        let travel = refusal("reader = \"g\"\n[axes.X]\nmin = 3\nmax = 3");
+        assert!(travel.starts_with("mill.toml:2:1: "), "{travel}");
+        assert!(travel.contains("axes.X: `min` is less than `max`, not 3 mm and 3 mm"), "{travel}");
+        let refused = |text, place, what| {
+            let shown = refusal(text);
+            assert!(shown.starts_with(&format!("mill.toml:{place}: ")), "{shown}");
+            assert!(shown.contains(what), "{shown}");
+        };
+        refused("[axes]\nX = { min = 100, max = -100 }", "2:5", "axes.X: `min` is less than `max`");
+        refused("[axes]\nY = { rapid = 0 }", "2:15", "a number above 0 is needed");
+        refused("[spindle]\nmin = 9\nmax = 1", "1:1", "spindle: `min`");
+        refused("approach = [\"XY\"]", "1:12", "approach: X, Y and Z come once each");
+        refused("[tools]\nmax_length = -1", "2:14", "a number above 0 is needed");
+        refused("work_zero = [0, nan, 0]", "1:13", "three finite numbers");
+        assert!(refusal("title = \"no reader\"").contains("`reader`"));
+    }
+
+    #[test]
+    fn orientation_needs_rotary_axes_and_the_other_way_round() {
+        let shown = refusal("reader = \"g\"\n[orientation]\nsimultaneous = \"vectors\"");
+        assert!(shown.starts_with("mill.toml:2:1: ") && shown.contains("[[rotary]]"), "{shown}");
+        let axis = "letter = \"A\"\non = \"head\"\naxis = [1, 0, 0]\nrapid = 1\nacceleration = 1";
+        let shown = refusal(&format!("reader = \"g\"\n[[rotary]]\n{axis}"));
+        assert!(shown.starts_with("mill.toml:2:"), "{shown}");
+        assert!(shown.contains("`orientation.simultaneous`"), "{shown}");
+    }
+
+    #[test]
+    fn a_wire_leans_by_u_and_v_and_by_no_rotary_axis() {
+        let wire = load_text("w.toml", "reader = \"g\"\n[wire]\nmemory = 900\n").unwrap().wire;
+        let unlimited = Wire {
+            height: None,
+            uv_travel: f64::INFINITY,
+            taper_max: 90.0,
+            thread: None,
+            cut: None,
+            memory: Some(900),
+        };
+        assert_eq!(wire, Some(unlimited));
+        let axis = "letter = \"A\"\non = \"head\"\naxis = [1, 0, 0]\nrapid = 1\nacceleration = 1";
+        let modes = "[orientation]\nsimultaneous = \"vectors\"";
+        let shown = refusal(&format!("reader = \"g\"\n[wire]\n{modes}\n[[rotary]]\n{axis}"));
+        assert!(shown.starts_with("mill.toml:2:1: ") && shown.contains("U and V"), "{shown}");
+    }
+
+    #[test]
+    fn what_two_files_make_wrong_together_is_told_in_the_nearer_one() {
+        let folder = std::env::temp_dir().join(format!("toolpost-both-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        std::fs::write(folder.join("base.toml"), MILL).unwrap();
+        let file = folder.join("mine.toml");
+        std::fs::write(&file, "extends = \"base.toml\"\n\n[axes.X]\nmax = -1\n").unwrap();
+        let shown = load(file.to_str().unwrap()).unwrap_err().to_string();
+        assert!(
+            shown.contains("mine.toml:3:1: ") && shown.contains("not 0 mm and -1 mm"),
+            "{shown}"
+        );
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[test]
+    fn a_missing_or_endless_ancestor_is_told_where_it_is_named() {
+        let shown = refusal("extends = \"nowhere\"");
+        assert!(
+            shown.starts_with("mill.toml:1:11: error[machine-file]: extends: `nowhere`"),
+            "{shown}"
+        );
+        let folder = std::env::temp_dir().join(format!("toolpost-load-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        let file = folder.join("round.toml");
+        std::fs::write(&file, "extends = \"round.toml\"").unwrap();
+        let shown = load(file.to_str().unwrap()).unwrap_err().to_string();
+        assert!(shown.contains("the chain of `extends` has no end"), "{shown}");
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[test]
+    fn a_nearer_file_changes_single_values_and_keeps_the_rest() {
+        let folder = std::env::temp_dir().join(format!("toolpost-merge-{}", std::process::id()));
+        std::fs::create_dir_all(&folder).unwrap();
+        std::fs::write(folder.join("base.toml"), MILL).unwrap();
+        let file = folder.join("mine.toml");
+        let text = "extends = \"base.toml\"\n[words.X]\nmodal = true\n[blocks]\nrapid = \"G0\"\n";
+        std::fs::write(&file, text).unwrap();
+        let mine = load(file.to_str().unwrap()).unwrap();
+        assert_eq!((mine.words["X"].decimals, mine.words["X"].modal), (4, true));
+        assert_eq!(mine.blocks["rapid"].text, "G0");
+        assert!(mine.blocks.contains_key("tool_change"));
+        assert_eq!((mine.control.as_str(), mine.title.as_str()), ("base.toml", "A mill"));
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+}

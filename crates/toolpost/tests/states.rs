@@ -1,0 +1,118 @@
+//! What a source may say besides points, on every mill of the library: it is written and proven, or
+//! refused for the reason that stands here. Nothing is left out in silence.
+
+use geom::Vec3;
+use machine::library::{MACHINES, names};
+use machine::{Machine, load};
+use program::{ArcTo, Compensation, Feed, Op, Pose, Program, Spindle, Tool};
+
+fn mills() -> impl Iterator<Item = Machine> {
+    names(MACHINES).map(|name| load(name).unwrap()).filter(|machine| machine.wire.is_none())
+}
+
+fn at(x: f64, y: f64, z: f64) -> Pose {
+    Pose::new(Vec3::new(x, y, z), Vec3::Z)
+}
+
+/// The program of `ops` between a start above the part and its end.
+fn program(ops: Vec<Op>) -> Program {
+    let start = [
+        Op::Tool(Box::new(Tool { number: 1, ..Tool::default() })),
+        Op::Spindle(Spindle::Clockwise(1000.0)),
+        Op::Feed(Feed::PerMinute(200.0)),
+        Op::Rapid(at(10.0, 0.0, 20.0)),
+    ];
+    let mut program = Program::new("states");
+    for (line, op) in (1..).zip(start.into_iter().chain(ops)) {
+        program.push(line, op);
+    }
+    let line = program.records.len() as u32;
+    program.push(line + 1, Op::End);
+    program
+}
+
+/// The program that a machine makes of `ops`, proven, or the rule of its refusal.
+fn written(machine: &Machine, ops: &[Op]) -> Result<String, &'static str> {
+    let source = program(ops.to_vec());
+    let output = post::write(&source, machine).map_err(|found| found[0].rule)?;
+    let report = proof::prove(&source, machine, "p", &output.text, &Default::default());
+    assert!(report.proven, "{}: {:?}", machine.name, report.mismatches);
+    Ok(String::from_utf8(output.text).unwrap())
+}
+
+/// A helix about the zero from `from`, so many turns, to the height `z`.
+fn helix(end: Pose, turns: u32) -> Op {
+    Op::Arc(Box::new(ArcTo { end, center: Vec3::ZERO, normal: Vec3::Z, turns }))
+}
+
+#[test]
+fn a_thread_is_milled_by_helices() {
+    // Five turns of 1.5 mm up from the bottom, in one record, and in one record each.
+    let whole = vec![Op::Line(at(10.0, 0.0, -7.5)), helix(at(10.0, 0.0, 0.0), 4)];
+    let mut single = vec![Op::Line(at(10.0, 0.0, -7.5))];
+    single.extend((1..=5).map(|turn| helix(at(10.0, 0.0, -7.5 + 1.5 * f64::from(turn)), 0)));
+    for machine in mills() {
+        for ops in [&whole, &single] {
+            written(&machine, ops).unwrap();
+        }
+    }
+}
+
+#[test]
+fn compensation_is_written_with_its_register_or_refused() {
+    let ops = [
+        Op::Line(at(10.0, 0.0, -2.0)),
+        Op::Compensation(Compensation::Left(Some(7))),
+        Op::Line(at(20.0, 10.0, -2.0)),
+        Op::Line(at(40.0, 10.0, -2.0)),
+        Op::Compensation(Compensation::Off),
+        Op::Line(at(50.0, 0.0, -2.0)),
+        Op::Rapid(at(50.0, 0.0, 20.0)),
+    ];
+    for machine in mills() {
+        let text = written(&machine, &ops);
+        match machine.control.as_str() {
+            "grbl" | "marlin" => assert_eq!(text, Err("compensation"), "{}", machine.name),
+            // The edge, or the tool in the table, holds the radius.
+            control if control.starts_with("sinumerik") => assert!(text.unwrap().contains("G41")),
+            "heidenhain-tnc640" => assert!(text.unwrap().contains(" RL")),
+            _ => assert!(text.unwrap().contains("G41 D7"), "{}", machine.name),
+        }
+    }
+}
+
+#[test]
+fn feeds_a_turn_and_feeds_in_inverse_time_are_written_or_counted_in_mm_per_minute() {
+    // 0.1 mm at 1000 1/min; 20 mm in a tenth of a minute: 100 and 200 mm/min.
+    let a_turn = [Op::Feed(Feed::PerTurn(0.1)), Op::Line(at(30.0, 0.0, 20.0))];
+    let inverse = [Op::Feed(Feed::InverseTime(10.0)), Op::Line(at(30.0, 0.0, 20.0))];
+    for machine in mills() {
+        for (ops, own, feed) in [
+            (&a_turn, machine.capabilities.feed_per_turn, ["G95", "F100"]),
+            (&inverse, machine.capabilities.inverse_time, ["G93", "F200"]),
+        ] {
+            let text = written(&machine, ops).unwrap();
+            assert!(text.contains(feed[usize::from(!own)]), "{}: {text}", machine.name);
+        }
+    }
+}
+
+#[test]
+fn a_tool_axis_is_written_by_machines_that_turn_it() {
+    let lean = Vec3::new(0.0, -0.5, 0.75f64.sqrt());
+    let pose = |x: f64| Pose::new(Vec3::new(x, 0.0, 20.0), lean);
+    let ops = [Op::Rapid(pose(0.0)), Op::Line(pose(30.0))];
+    for machine in mills() {
+        match machine.rotary.is_empty() {
+            true => {
+                assert_eq!(
+                    written(&machine, &ops),
+                    Err("unreachable-orientation"),
+                    "{}",
+                    machine.name
+                )
+            }
+            false => drop(written(&machine, &ops).unwrap()),
+        }
+    }
+}

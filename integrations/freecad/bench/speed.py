@@ -1,0 +1,89 @@
+"""Runs inside `freecadcmd`: how long posting takes beside FreeCAD's own `linuxcnc_post`.
+
+    freecadcmd integrations/freecad/bench/speed.py
+
+One operation of 200,000 moves at feed, every tenth of them an arc.
+"""
+
+import contextlib
+import io
+import math
+import os
+import sys
+import tempfile
+import time
+
+import Path
+from PathScripts.post import linuxcnc_post
+
+HERE = os.path.dirname(os.path.abspath(__file__))
+sys.path[:0] = [os.path.dirname(HERE), os.path.join(os.path.dirname(HERE), "tests")]
+
+import toolpost_core
+import toolpost_job
+import toolpost_post
+from work import Piece, Work, run
+
+MOVES = 200_000
+MACHINE = "--machine generic-3axis-linuxcnc"
+
+
+def commands():
+    """Answer the moves: turns of a spiral in ten levels, every tenth move an arc."""
+    yield Path.Command("G0", {"X": 1.0, "Y": 0.0, "Z": 30.0})
+    x, y = 1.0, 0.0
+    for number in range(1, MOVES):
+        angle = number * 0.05
+        radius = 1.0 + number % 20_000 * 0.001
+        start = (x, y)
+        x, y = radius * math.cos(angle), radius * math.sin(angle)
+        words = {"X": x, "Y": y, "Z": 20.0 - number // 20_000, "F": 10 / 3}
+        if number % 10:
+            yield Path.Command("G1", words)
+        else:
+            yield Path.Command("G3", {**words, **centre(start, (x, y)), "K": 0.0})
+
+
+def centre(start, end):
+    """Answer I and J of the arc of 60 degrees, counter-clockwise, between two points."""
+    along = (end[0] - start[0], end[1] - start[1])
+    aside = math.sqrt(0.75)
+    return {"I": along[0] / 2 - along[1] * aside, "J": along[1] / 2 + along[0] * aside}
+
+
+def timed(what, work):
+    """Run it three times and tell the best; answer its result and seconds."""
+    took = []
+    for _ in range(3):
+        begun = time.monotonic()
+        with contextlib.redirect_stdout(io.StringIO()):
+            result = work()
+        took.append(time.monotonic() - begun)
+    print(f"{what:44} {min(took):8.3f} s", flush=True)
+    return result, min(took)
+
+
+def main():
+    """Measure, and hold the figures against each other."""
+    work = Work("speed")
+    piece = Piece("Adaptive", list(commands()))
+    objects = [work.objects()[0][0], work.mill, piece]
+    with tempfile.TemporaryDirectory() as folder:
+        file = os.path.join(folder, "part.ngc")
+        _, theirs = timed(
+            "FreeCAD's linuxcnc_post",
+            lambda: linuxcnc_post.export(objects, file, "--no-show-editor"),
+        )
+        answer, ours = timed(
+            "toolpost, with its proof", lambda: toolpost_post.export(objects, file, MACHINE)
+        )
+        assert answer, "nothing was posted"
+    job, _ = timed(
+        "  of it: the job from FreeCAD's objects", lambda: toolpost_job.job(objects, "part")
+    )
+    options = toolpost_post.parser.parse_args(MACHINE.split())
+    timed("  of it: writing and proving", lambda: toolpost_core.core().post(job, options))
+    print(f"FreeCAD's own takes {theirs / ours:.1f} times as long")
+
+
+run(main)

@@ -1,0 +1,72 @@
+"""FreeCAD without a window, run once for all tests that need what it makes."""
+
+import json
+import os
+import shutil
+import subprocess
+from pathlib import Path
+
+import pytest
+
+HERE = Path(__file__).parent
+ADDON = HERE.parent
+
+
+def pytest_configure():
+    """See that there is a Toolpost to be tested."""
+    if shutil.which("toolpost") is None:
+        pytest.exit("the command toolpost is not on the PATH: build and install it first", 1)
+
+
+def run(command, home, **environment):
+    """Run FreeCAD, whose settings are in a folder of their own, and answer what it printed."""
+    environment = {name: str(value) for name, value in environment.items()}
+    done = subprocess.run(
+        list(map(str, command)),
+        env={**os.environ, "FREECAD_USER_HOME": str(home), **environment},
+        stdin=subprocess.DEVNULL,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.STDOUT,
+        encoding="utf-8",
+        errors="replace",
+        timeout=300,
+        check=False,
+    )
+    assert done.returncode == 0, done.stdout
+    return done.stdout
+
+
+def freecad(script, home, **environment):
+    """Run a script inside FreeCAD without its window."""
+    if shutil.which("freecadcmd") is None:
+        pytest.skip("FreeCAD (Debian package freecad) is not installed")
+    return run(["freecadcmd", HERE / script], home, **environment)
+
+
+def toolpost(*words):
+    """Run the command and answer what it says."""
+    words = ["toolpost", "--json", *map(str, words)]
+    done = subprocess.run(words, capture_output=True, encoding="utf-8", check=False)
+    return json.loads(done.stdout)
+
+
+@pytest.fixture(scope="session")
+def jobs(tmp_path_factory):
+    """Make the folder with the jobs, and with FreeCAD's own programs beside them."""
+    folder = tmp_path_factory.mktemp("jobs")
+    freecad("build_jobs.py", tmp_path_factory.mktemp("home"), TOOLPOST_JOBS=folder)
+    return folder
+
+
+@pytest.fixture(scope="session")
+def cases(tmp_path_factory):
+    """Post jobs right and wrong: for each case what is answered, saved and said."""
+    folder = tmp_path_factory.mktemp("cases")
+    freecad("posting.py", tmp_path_factory.mktemp("home"), TOOLPOST_CASES=folder)
+    found = json.loads((folder / "cases.json").read_text())
+    for name, case in found["cases"].items():
+        case["said"] = (folder / f"{name}.said").read_text()
+        case["saved"] = Path(case["file"]).read_text() if Path(case["file"]).is_file() else None
+    left = [path.name for path in folder.iterdir() if ".part" in path.name]
+    assert not left, "half-written files"
+    return found

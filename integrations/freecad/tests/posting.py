@@ -1,0 +1,191 @@
+"""Runs inside `freecadcmd`: posts jobs that are right and jobs that are not.
+
+    TOOLPOST_CASES=folder freecadcmd posting.py
+
+For each case the folder gets `NAME.said` with all that FreeCAD printed, and `cases.json` has what
+`export` answered.
+"""
+
+import json
+import os
+import sys
+import time
+
+import Path
+
+sys.path.insert(0, os.path.dirname(os.path.abspath(__file__)))
+sys.path.insert(0, os.path.dirname(sys.path[0]))
+
+import PathScripts.PathCustom as PathCustom
+import PathScripts.PathProfile as PathProfile
+import toolpost_job
+import toolpost_post
+from work import Piece, Work, run
+
+FOLDER = os.environ["TOOLPOST_CASES"]
+LINUXCNC = "--machine generic-3axis-linuxcnc"
+
+cases = {}
+
+
+def case(name, objects, arguments=LINUXCNC, filename=None):
+    """Post, with what is printed going to a file of its own."""
+    filename = os.path.join(FOLDER, name + ".ngc") if filename is None else filename
+    sys.stdout.flush()
+    kept = os.dup(1), os.dup(2)
+    with open(os.path.join(FOLDER, name + ".said"), "wb") as said:
+        os.dup2(said.fileno(), 1)
+        os.dup2(said.fileno(), 2)
+        begun = time.monotonic()
+        answer = toolpost_post.export(objects, filename, arguments)
+        took = time.monotonic() - begun
+        sys.stdout.flush()
+        os.dup2(kept[0], 1)
+        os.dup2(kept[1], 2)
+    cases[name] = {"answer": answer, "file": filename, "seconds": took}
+
+
+class Wrapped:
+    """An object as FreeCAD 1.2 hands it to a post: a copy of its path, the rest its own."""
+
+    def __init__(self, source):
+        self.source = source
+        self.Label = source.Label
+        self.Path = Path.Path(source.Path.Commands)
+
+    def __getattr__(self, name):
+        return getattr(self.source, name)
+
+
+def custom(work, *lines):
+    operation = PathCustom.Create("Custom")
+    operation.Label = "Custom"
+    operation.ToolController = work.mill
+    operation.Gcode = list(lines)
+    work.document.recompute()
+    return operation
+
+
+def profile(work, label="Profile", **properties):
+    return work.operation(PathProfile, label, **properties)
+
+
+def right():
+    work = Work("right")
+    profile(work, "Außenkontur ∅5 – „fertig“")
+    objects = work.objects()[0]
+    case("file", objects)
+    case("answer", objects, filename="-")
+    case("report", objects, LINUXCNC + " --report " + os.path.join(FOLDER, "report.json"))
+    case("offset", objects, LINUXCNC + " --work-offset G56")
+    case("offset-unknown", objects, LINUXCNC + " --work-offset G53")
+    case("sinumerik", objects, "--machine generic-3axis-sinumerik")
+    operation = work.job.Operations.Group[0]
+    group = work.document.addObject("App::DocumentObjectGroup", "Outer")
+    compound = work.document.addObject("Path::FeatureCompound", "Compound")
+    compound.Group = [operation]
+    group.Group = [compound]
+    work.document.recompute()
+    case("groups", [*objects[:-1], group])
+    case("machine-missing", objects, "")
+    case("machine-unknown", objects, "--machine generic-3axis-linuxcmc")
+    case("argument-unknown", objects, LINUXCNC + " --modal")
+    case("argument-open", objects, LINUXCNC + " --report 'here")
+    case("no-folder", objects, filename=os.path.join(FOLDER, "missing", "part.ngc"))
+    # Not even root writes there.
+    case("read-only", objects, filename="/sys/part.ngc")
+    case("wrapped", [Wrapped(obj) for obj in objects])
+    operation.Active = False
+    case("inactive", objects)
+    work.close()
+
+
+def wrong():
+    work = Work("wrong")
+    case("empty", work.objects()[0])
+    operation = profile(work)
+    objects = work.objects()[0]
+    case("tool-not-called", [objects[0], operation])
+    work.mill.ToolNumber = 0
+    work.document.recompute()
+    case("tool-without-number", objects)
+    work.settle(work.mill, 0, 1, 200, 100)
+    work.document.recompute()
+    case("spindle-0", objects)
+    work.settle(work.mill, 2000, 1, 0, 0)
+    work.document.recompute()
+    case("feed-0", objects)
+    work.settle(work.mill, 2000, 1, 200, 100)
+    work.document.recompute()
+    operation.Active = False
+    start, tool = objects[0], work.mill
+    lines = ["G0 X0 Y0 Z30", "G1 X5 Y5 Z25 F3", "G999 X1"]
+    case("code-unknown", [start, tool, custom(work, *lines)])
+    whole = [Path.Command("G0", {"X": 0, "Y": 0, "Z": 30}), Path.Command("G1", {"X": 1, "F": 3})]
+    for name, value in (("nan", float("nan")), ("infinite", float("inf")), ("huge", 1e25)):
+        case(name, [start, tool, Piece("Broken", [*whole, Path.Command("G1", {"Y": value})])])
+    broken = Path.Command("(one\nG1 X99)")
+    case("comment-of-two-lines", [start, tool, Piece("Broken", [*whole, broken])])
+    operation.Active = True
+    operation.Placement.Base.z = 5
+    case("moved", [start, tool, operation])
+    work.close()
+
+
+def two_fixtures():
+    work = Work("fixtures")
+    work.job.Fixtures = ["G54", "G55"]
+    work.job.OrderOutputBy = "Fixture"
+    profile(work)
+    case("fixtures", work.objects()[0])
+    case("offset-of-two", work.objects()[0], LINUXCNC + " --work-offset G56")
+    work.job.SplitOutput = True
+    for number, objects in enumerate(work.objects(), 1):
+        case(f"split-{number}", objects)
+    work.close()
+
+
+def order():
+    """Our lists of a job beside those of FreeCAD."""
+    work = Work("order")
+    other = work.tool("Mill 8", "endmill.fcstd", 8, 3)
+    work.job.Fixtures = ["G54", "G55"]
+    profile(work, "one")
+    profile(work, "two", tool=other)
+    profile(work, "off", Active=False)
+    profile(work, "three", tool=other)
+    profile(work, "four")
+    found = {}
+    for by in ("Fixture", "Tool", "Operation"):
+        work.job.OrderOutputBy = by
+        work.job.SplitOutput = True
+        found[by] = [
+            [[(obj.Label, obj.Path.toGCode()) for obj in objects] for objects in lists]
+            for lists in (toolpost_job.lists(work.job), work.objects())
+        ]
+    work.close()
+    return found
+
+
+def million():
+    """As long as the largest jobs: the commands as FreeCAD's reader of G-code makes them."""
+    steps = ((n % 100 * 0.5, n // 100 * 0.001) for n in range(1_000_000))
+    lines = [f"G1 X{x:.3f} Y{y:.3f} Z1 F3" for x, y in steps]
+    work = Work("million")
+    start = work.objects()[0][0]
+    piece = Piece("Long", [])
+    piece.Path = Path.Path("G0 X0 Y0 Z30\n" + "\n".join(lines))
+    case("million", [start, work.mill, piece])
+    work.close()
+
+
+def main():
+    right()
+    wrong()
+    two_fixtures()
+    million()
+    with open(os.path.join(FOLDER, "cases.json"), "w", encoding="utf-8") as file:
+        json.dump({"cases": cases, "order": order()}, file)
+
+
+run(main)

@@ -1,0 +1,24 @@
+"""What it takes to import the package."""
+
+from __future__ import annotations
+
+import subprocess
+import sys
+
+WATCH = """
+import sys, time
+begin = time.perf_counter()
+import toolpost
+print(time.perf_counter() - begin, "numpy" in sys.modules)
+"""
+
+
+def test_the_import_takes_less_than_50_ms_and_no_numpy():
+    seconds = []
+    for _ in range(10):
+        done = subprocess.run([sys.executable, "-c", WATCH], capture_output=True, check=True)
+        took, numpy = done.stdout.split()
+        seconds.append(float(took))
+        assert numpy == b"False"
+    # The best of them: whatever else runs here is not the package's doing.
+    assert min(seconds) < 0.05

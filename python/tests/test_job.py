@@ -1,0 +1,46 @@
+"""Jobs of FreeCAD, as text."""
+
+from __future__ import annotations
+
+import json
+
+import numpy as np
+import pytest
+
+import toolpost
+from conftest import EXAMPLES
+
+JOB = EXAMPLES / "bracket.json"
+
+
+def test_a_job_is_the_same_from_its_file_and_from_its_text():
+    read = toolpost.read(JOB)
+    for text in [JOB.read_text(), JOB.read_bytes()]:
+        job = toolpost.read_job(text, toolpost.machine("emco-concept-mill-105"), file=JOB.name)
+        np.testing.assert_array_equal(job.positions, read.positions)
+        assert [repr(record) for record in job] == [repr(record) for record in read]
+        assert (job.file, job.dialect) == (read.file, read.dialect)
+
+
+def test_a_job_is_posted_and_proven():
+    job = toolpost.read_job(JOB.read_text())
+    result = toolpost.post(job, toolpost.machine("emco-concept-mill-105"))
+    labels = [operation["label"] for operation in json.loads(JOB.read_text())["operations"]]
+    assert set(labels) <= {op["label"] for op in result.report.data()["source"]["operations"]}
+
+
+def test_what_is_wrong_with_a_job_names_its_operation():
+    job = json.loads(JOB.read_text())
+    label = job["operations"][0]["label"]
+    job["operations"][0]["commands"] += "G99999\n"
+    with pytest.raises(toolpost.Error, match=label) as caught:
+        toolpost.read_job(json.dumps(job), file="bracket.json")
+    assert caught.value.line > 0
+
+
+def test_options_of_a_machine_are_set_by_keywords(slot):
+    machine = toolpost.machine("emco-concept-mill-105-emco-post", time="noon")
+    assert "noon" in toolpost.post(slot, machine).text
+    with pytest.raises(toolpost.Error, match="colour") as caught:
+        toolpost.machine("emco-concept-mill-105-emco-post", colour="red")
+    assert caught.value.rule == "option"

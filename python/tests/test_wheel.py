@@ -1,0 +1,47 @@
+"""The wheel, in an environment that has nothing else."""
+
+from __future__ import annotations
+
+import json
+import subprocess
+import sys
+import venv
+import zipfile
+
+from conftest import EXAMPLES, ROOT
+
+USE = """
+import sys, toolpost
+program = toolpost.read(sys.argv[1])
+result = toolpost.post(program, toolpost.machine("dmu50-heidenhain"))
+result.save(sys.argv[2])
+print(len(program.positions), toolpost.__version__)
+"""
+
+
+def test_the_wheel_works_in_a_clean_environment(tmp_path, run):
+    # The profile in which the package is built for the other tests, so that nothing is built twice.
+    maturin = ["maturin", "build", "--quiet", "--profile", "dev", "--out", tmp_path / "wheels"]
+    subprocess.run([sys.executable, "-m", *maturin], cwd=ROOT, check=True)
+    (wheel,) = (tmp_path / "wheels").glob("*.whl")
+    assert "-cp39-abi3-" in wheel.name
+    names = zipfile.ZipFile(wheel).namelist()
+    for needed in ["toolpost/py.typed", "toolpost/_native.pyi", "toolpost/__init__.py"]:
+        assert needed in names
+
+    clean = tmp_path / "clean"
+    venv.create(clean, with_pip=True)
+    binaries = next(path for path in [clean / "bin", clean / "Scripts"] if path.is_dir())
+    pip = [binaries / "python", "-m", "pip", "install", "--quiet", wheel]
+    subprocess.run(pip, check=True)
+    program = tmp_path / "dome.h"
+    used = run(binaries / "python", "-I", "-c", USE, EXAMPLES / "dome.cls", program)
+    assert (used.returncode, used.stderr) == (0, "")
+    moves, version = used.stdout.split()
+    assert moves == "1773"
+    assert json.loads(program.with_suffix(".report.json").read_text())["toolpost"] == version
+
+    again = tmp_path / "again.h"
+    post = ["post", EXAMPLES / "dome.cls", "-m", "dmu50-heidenhain", "-o", again]
+    assert run(binaries / "toolpost", *post).returncode == 0
+    assert again.read_bytes() == program.read_bytes()
