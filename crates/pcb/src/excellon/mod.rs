@@ -4,11 +4,14 @@
 //! in, or which zeros were left out, `evidence` looks for what says so; the reader warns of what it
 //! concludes and refuses what it cannot.
 //!
-//! `words` finds what is in a line, `reader` obeys it, `coordinate` knows how numbers are written.
+//! `words` finds what is in a line, `reader` obeys it; `coordinate` knows how numbers are written, `route` which arc
+//! is meant, `tools` their diameters and platings.
 
 mod coordinate;
 mod evidence;
 mod reader;
+mod route;
+mod tools;
 mod words;
 
 use crate::Transform;
@@ -31,7 +34,7 @@ pub struct Drill {
 pub struct Tool {
     /// Its number: 1 for `T1`.
     pub number: u32,
-    /// Diameter, mm; that of the hole after plating, as far as files say.
+    /// Diameter, mm; 0 where the file does not say and no hole needs it.
     pub diameter: f64,
     /// Whether its holes are plated; `None` where the file does not say.
     pub plated: Option<bool>,

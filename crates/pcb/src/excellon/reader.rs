@@ -2,14 +2,15 @@
 
 use super::coordinate::{Notation, Unit, Zeros};
 use super::evidence::Evidence;
+use super::route::{by_center, by_radius};
+use super::tools::Tools;
 use super::words::{Word, lines, words};
-use super::{Cut, Drill, Path, Reading, Tool};
+use super::{Cut, Drill, Path, Reading};
+use crate::FAR;
 use crate::decimal::whole;
 use crate::report::{Outcome, Place, Report, fault};
-use crate::{FAR, SAME, arc};
 use geom::{Element, Vec2};
 use program::Diagnostic;
-use std::collections::HashMap;
 
 /// So many holes are more than any board has.
 const MOST_CUTS: usize = 1_000_000;
@@ -25,34 +26,22 @@ enum Mode {
     CounterClockwise,
 }
 
-/// What a tool is, as far as it is known.
-struct Definition {
-    /// Index in the drill's tools.
-    index: u32,
-    diameter: Option<f64>,
-}
-
 /// What has been read, and what holds.
 struct Reader<'a> {
     report: Report<'a>,
     place: Place,
-    drill: Drill,
+    cuts: Vec<Cut>,
+    tools: Tools,
     evidence: Evidence,
     notation: Notation,
     header: bool,
     incremental: bool,
-    tools: HashMap<u32, Definition>,
-    /// Number of the tool in the spindle; 0 for none.
-    tool: u32,
     mode: Mode,
     /// Whether the tool is in the board.
     down: bool,
     point: Option<Vec2>,
     /// The route at work.
     route: Vec<Element>,
-    /// Whether the tools that come next make plated holes, and what for.
-    plated: Option<bool>,
-    function: Option<String>,
     ended: bool,
 }
 
@@ -63,19 +52,16 @@ pub(super) fn read(file_name: &str, text: &[u8]) -> Result<Reading, Vec<Diagnost
     let mut reader = Reader {
         report: Report::new(file_name, text),
         place: Place::default(),
-        drill: Drill::default(),
+        cuts: Vec::new(),
+        tools: Tools::of_file(file_name),
         notation: evidence.comments,
         evidence,
         header: false,
         incremental: false,
-        tools: HashMap::new(),
-        tool: 0,
         mode: Mode::Drill,
         down: false,
         point: Some(Vec2::ZERO),
         route: Vec::new(),
-        plated: plated_by_name(file_name),
-        function: None,
         ended: false,
     };
     for (line, start, text) in lines(text) {
@@ -94,20 +80,10 @@ pub(super) fn read(file_name: &str, text: &[u8]) -> Result<Reading, Vec<Diagnost
     reader.finish()
 }
 
-/// The habit of KiCad and others: `board-PTH.drl`, `board-NPTH.drl`.
-fn plated_by_name(file_name: &str) -> Option<bool> {
-    let name = file_name.rsplit(['/', '\\']).next().unwrap_or_default().to_ascii_uppercase();
-    match (name.contains("NPTH"), name.contains("PTH")) {
-        (true, _) => Some(false),
-        (false, true) => Some(true),
-        (false, false) => None,
-    }
-}
-
 impl Reader<'_> {
     fn obey(&mut self, text: &[u8]) -> Outcome {
         if let Some(comment) = text.strip_prefix(b";") {
-            self.comment(comment.trim_ascii());
+            self.tools.comment(comment.trim_ascii());
             return Ok(());
         }
         if self.ended {
@@ -152,26 +128,6 @@ impl Reader<'_> {
             _ => self.line(&words(text)?)?,
         }
         Ok(())
-    }
-
-    /// Attributes of X2, the habits of Altium, and nothing else.
-    fn comment(&mut self, comment: &[u8]) {
-        let comment = String::from_utf8_lossy(comment);
-        if let Some(attribute) = comment.strip_prefix("#@!") {
-            let attribute = attribute.trim();
-            if let Some(function) = attribute.strip_prefix("TF.FileFunction,") {
-                self.plated = plated_by_function(function).or(self.plated);
-            } else if let Some(function) = attribute.strip_prefix("TA.AperFunction,") {
-                self.plated = plated_by_function(function).or(self.plated);
-                self.function = Some(function.into());
-            }
-        } else if let Some(kind) = comment.strip_prefix("TYPE=") {
-            self.plated = match kind {
-                "PLATED" => Some(true),
-                "NON_PLATED" => Some(false),
-                _ => self.plated,
-            };
-        }
     }
 
     /// `INCH` or `METRIC`, with `LZ` or `TZ`, and the format by zeros: `000.000`.
@@ -267,54 +223,20 @@ impl Reader<'_> {
         let number = whole(number).ok_or_else(|| {
             fault("word", "no number of a tool", "a tool is such as T1, or T1C0.5 in the header")
         })?;
-        let diameter = parameters.iter().find(|word| word.letter == b'C');
         if !self.header {
             self.lift();
         }
-        if let Some(diameter) = diameter {
-            self.conclude_unit();
-            let diameter = self.notation.length(diameter.number)?;
-            if diameter <= 0.0 || diameter > FAR {
-                let message = format!("T{number} has a diameter of {diameter} mm");
-                return Err(fault("diameter", message, "give it the diameter of the hole"));
+        let diameter = match parameters.iter().find(|word| word.letter == b'C') {
+            None => None,
+            Some(word) => {
+                self.conclude_unit();
+                Some(self.notation.length(word.number)?)
             }
-            self.define(number, Some(diameter))?;
-        } else if self.header {
-            self.define(number, None)?;
-        }
-        if !self.header {
-            if number != 0 && !self.tools.contains_key(&number) {
-                self.tool = 0;
-                let help = "define it in the header, such as T1C0.8";
-                return Err(fault("missing-tool", format!("T{number} is not defined"), help));
-            }
-            self.tool = number;
-        }
-        Ok(())
-    }
-
-    fn define(&mut self, number: u32, diameter: Option<f64>) -> Outcome {
-        let known = self.tools.get(&number).map(|tool| (tool.index, tool.diameter));
-        if let Some((_, Some(known))) = known
-            && diameter.is_some_and(|diameter| (diameter - known).abs() > SAME)
-        {
-            let message = format!("T{number} has a diameter of {known} mm already");
-            return Err(fault("diameter", message, "give every diameter a number of its own"));
-        }
-        let index = match known {
-            Some((index, _)) => index,
-            None => u32::try_from(self.drill.tools.len()).unwrap_or(u32::MAX),
         };
-        if known.is_none() {
-            let (plated, function) = (self.plated, self.function.clone());
-            self.drill.tools.push(Tool { number, diameter: 0.0, plated, function });
+        if diameter.is_some() || self.header {
+            self.tools.define(number, diameter)?;
         }
-        if let (Some(diameter), Some(tool)) = (diameter, self.drill.tools.get_mut(index as usize)) {
-            tool.diameter = diameter;
-        }
-        let diameter = diameter.or(known.and_then(|(_, diameter)| diameter));
-        self.tools.insert(number, Definition { index, diameter });
-        Ok(())
+        if self.header { Ok(()) } else { self.tools.select(number) }
     }
 
     fn general(&mut self, code: &[u8]) -> Outcome {
@@ -386,14 +308,10 @@ impl Reader<'_> {
     fn lift(&mut self) {
         self.down = false;
         let route = std::mem::take(&mut self.route);
-        if !route.is_empty() {
-            let (line, tool) = (self.place.line, self.index());
-            self.drill.cuts.push(Cut { line, tool, path: Path::Route(route) });
+        // What was cut had a tool.
+        if let (false, Ok(tool)) = (route.is_empty(), self.tools.selected()) {
+            self.cuts.push(Cut { line: self.place.line, tool, path: Path::Route(route) });
         }
-    }
-
-    fn index(&self) -> u32 {
-        self.tools.get(&self.tool).map_or(0, |tool| tool.index)
     }
 
     fn travel(
@@ -412,7 +330,7 @@ impl Reader<'_> {
             _ if !self.down && self.evidence.plunges => return Ok(()),
             _ => {}
         }
-        self.check_tool()?;
+        self.tools.selected()?;
         if !self.down {
             let help = "the route is cut: say M15 where it begins and M16 where it ends";
             self.report.warn(self.place, "no-plunge", "a route without M15", help);
@@ -441,7 +359,7 @@ impl Reader<'_> {
             },
             _ => Element::line(start, end),
         };
-        if self.route.len() + self.drill.cuts.len() >= 2 * MOST_CUTS {
+        if self.route.len() + self.cuts.len() >= 2 * MOST_CUTS {
             return Err(too_large());
         }
         self.route.push(element);
@@ -449,27 +367,12 @@ impl Reader<'_> {
     }
 
     fn cut(&mut self, path: Path) -> Outcome {
-        self.check_tool()?;
-        if self.drill.cuts.len() >= MOST_CUTS {
+        let tool = self.tools.selected()?;
+        if self.cuts.len() >= MOST_CUTS {
             return Err(too_large());
         }
-        let (line, tool) = (self.place.line, self.index());
-        self.drill.cuts.push(Cut { line, tool, path });
+        self.cuts.push(Cut { line: self.place.line, tool, path });
         Ok(())
-    }
-
-    fn check_tool(&self) -> Outcome {
-        match self.tools.get(&self.tool) {
-            Some(Definition { diameter: Some(_), .. }) => Ok(()),
-            Some(_) => {
-                let message = format!("T{} has no diameter", self.tool);
-                Err(fault("no-diameter", message, "define it in the header, such as T1C0.8"))
-            }
-            None => {
-                let help = "select one before the first hole, such as T1";
-                Err(fault("no-tool", "a hole without a tool", help))
-            }
-        }
     }
 
     /// So many more holes, each as far from the one before.
@@ -478,7 +381,7 @@ impl Reader<'_> {
             .point
             .filter(|_| self.mode == Mode::Drill)
             .ok_or_else(|| fault("repeat", "a repeat of what is no hole", "repeat holes only"))?;
-        if self.drill.cuts.len().saturating_add(count as usize) > MOST_CUTS {
+        if self.cuts.len().saturating_add(count as usize) > MOST_CUTS {
             return Err(too_large());
         }
         self.conclude();
@@ -560,7 +463,10 @@ impl Reader<'_> {
             self.report.error(self.place, *error);
         }
         match self.report.errors.is_empty() {
-            true => Ok(Reading { drill: self.drill, warnings: self.report.warnings }),
+            true => {
+                let drill = Drill { tools: self.tools.all, cuts: self.cuts };
+                Ok(Reading { drill, warnings: self.report.warnings })
+            }
             false => Err(self.report.errors),
         }
     }
@@ -575,46 +481,6 @@ const HEADER: [&str; 32] = [
     "OM48", "OSTOP", "OTCLMP", "PCKPARAM", "PF", "PPR", "PVS", "R,C", "R,CP", "R,CR", "R,D", "R,H",
     "R,T", "SBK", "SG", "SIXM", "TCST", "UP", "N", "S",
 ];
-
-/// `Plated,1,2,PTH`, `NonPlated,...`; `MixedPlating` says neither.
-fn plated_by_function(function: &str) -> Option<bool> {
-    match function.split(',').next() {
-        Some("Plated") => Some(true),
-        Some("NonPlated") => Some(false),
-        _ => None,
-    }
-}
-
-/// The arc of a radius, which is at most half a circle.
-fn by_radius(start: Vec2, end: Vec2, radius: f64, clockwise: bool) -> Outcome<Element> {
-    let chord = end - start;
-    let half = chord.length() / 2.0;
-    if half <= SAME || radius <= 0.0 || half > radius + TOLERANCE {
-        let message = format!("a radius of {radius:.4} mm over {:.4} mm", 2.0 * half);
-        return Err(fault("arc", message, "correct A or the end of the arc"));
-    }
-    let height = (radius * radius - half * half).max(0.0).sqrt();
-    let left = if clockwise { -height } else { height };
-    let center = start.midpoint(end) + chord.perp().normalize_or_zero() * left;
-    Ok(arc::about(start, end, center, clockwise))
-}
-
-/// The arc about a centre, which is given from the start; equal ends are a full circle.
-fn by_center(start: Vec2, end: Vec2, offset: Vec2, clockwise: bool) -> Outcome<Element> {
-    let center = start + offset;
-    if offset.length() <= SAME || arc::deviation(start, end, center) > TOLERANCE {
-        let message = format!(
-            "the start is {:.4} mm from the centre and the end {:.4} mm",
-            offset.length(),
-            end.distance(center)
-        );
-        return Err(fault("arc", message, "correct I and J, or the end of the arc"));
-    }
-    Ok(arc::about(start, end, center, clockwise))
-}
-
-/// How far ends and centre may be off one circle, mm: four steps of the coarsest format, 0.01 mm.
-const TOLERANCE: f64 = 0.04;
 
 #[cold]
 fn no_point() -> crate::report::Fault {

@@ -4,9 +4,11 @@
 //! which they are painted, dark or clear, in mm, with net, pad and aperture function. Step and repeat and block
 //! apertures are carried out; aperture macros are evaluated; arcs stay arcs.
 //!
-//! From bytes to image: `block` finds commands, `words` the words in them, and `reader` obeys: `plot` the operations, `region`
-//! contours, `repeat` step and repeat and block apertures, `aperture`, `expression` and `primitive` the shapes
-//! that are flashed, `attribute` what they are for, `header` what holds for the whole file.
+//! From bytes to image: `block` finds commands, `words` the words in them, and `reader` obeys. `header` has what
+//! holds for the whole file, `load` what holds for the next objects, `attribute` what they are for; `plot` has the
+//! operations, `region` the contours and `crossing` what is wrong with them, `repeat` step and repeat and
+//! block apertures; `aperture`, and of macros `template`, `expression` and `primitive`, the shapes that
+//! are flashed.
 
 mod aperture;
 mod attribute;
@@ -15,6 +17,7 @@ mod crossing;
 mod expression;
 mod header;
 mod image;
+mod load;
 mod plot;
 mod primitive;
 mod reader;

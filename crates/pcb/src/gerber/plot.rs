@@ -299,12 +299,12 @@ impl Reader<'_> {
             }
             self.deprecated("lines drawn with a rectangle");
         }
-        let transform = self.transform();
+        let transform = self.loaded.transform();
         self.paint(Shape::Stroke { aperture, transform, path })
     }
 
     fn flash(&mut self, at: Vec2) -> Outcome {
-        let transform = self.transform();
+        let transform = self.loaded.transform();
         let objects = match self.entry()? {
             Entry::Plain(aperture) => {
                 let aperture = *aperture;
@@ -313,7 +313,7 @@ impl Reader<'_> {
             Entry::Block(objects) => objects.clone(),
         };
         self.budget.spend(objects.len())?;
-        let dark = self.dark;
+        let dark = self.loaded.dark;
         for object in objects.iter() {
             let copy = object.placed(&transform, at, dark)?;
             self.objects().push(copy);

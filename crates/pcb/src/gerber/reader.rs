@@ -6,13 +6,14 @@ use super::attribute::Dictionary;
 use super::block::{Blocks, Token};
 use super::header::{self, Format};
 use super::image::{Image, Object, Region, Shape};
+use super::load::Loaded;
 use super::plot::{Mode, Operation, Quadrant};
 use super::region;
 use super::repeat::{Collector, Purpose, Steps};
 use super::template::Template;
 use crate::Transform;
 use crate::contour::Contour;
-use crate::decimal::{decimal, whole};
+use crate::decimal::whole;
 use crate::report::{Outcome, Place, Report, fault};
 use geom::Vec2;
 use program::Diagnostic;
@@ -72,11 +73,7 @@ pub(super) struct Reader<'a> {
     pub(super) mode: Mode,
     pub(super) quadrant: Option<Quadrant>,
     pub(super) point: Option<Vec2>,
-    pub(super) dark: bool,
-    mirroring: (bool, bool),
-    /// Degrees.
-    rotation: f64,
-    scaling: f64,
+    pub(super) loaded: Loaded,
     pub(super) region: Option<region::Statement>,
     collectors: Vec<Collector>,
     pub(super) last: Option<Operation>,
@@ -100,10 +97,7 @@ pub(super) fn read(file_name: &str, text: &[u8]) -> Result<Reading, Vec<Diagnost
         mode: Mode::Linear,
         quadrant: None,
         point: Some(Vec2::ZERO),
-        dark: true,
-        mirroring: (false, false),
-        rotation: 0.0,
-        scaling: 1.0,
+        loaded: Loaded::default(),
         region: None,
         collectors: Vec::new(),
         last: None,
@@ -191,29 +185,7 @@ impl<'a> Reader<'a> {
             }
             b"AB" => self.block(rest.trim_ascii()),
             b"SR" => self.repeat(rest),
-            b"LP" => match rest.trim_ascii() {
-                b"D" => self.set(|reader| reader.dark = true),
-                b"C" => self.set(|reader| reader.dark = false),
-                _ => Err(fault("load", "polarity is neither D nor C", "say %LPD*% or %LPC*%")),
-            },
-            b"LM" => {
-                let axes = match rest.trim_ascii() {
-                    b"N" => (false, false),
-                    b"X" => (true, false),
-                    b"Y" => (false, true),
-                    b"XY" => (true, true),
-                    _ => return Err(fault("load", "not a mirroring", "it is N, X, Y or XY")),
-                };
-                self.set(|reader| reader.mirroring = axes)
-            }
-            b"LR" => match decimal(rest.trim_ascii()) {
-                Some(angle) => self.set(|reader| reader.rotation = angle),
-                None => Err(fault("load", "not a rotation", "it is in degrees: %LR45.0*%")),
-            },
-            b"LS" => match decimal(rest.trim_ascii()).filter(|s| *s >= 1e-6 && *s <= 1e6) {
-                Some(scale) => self.set(|reader| reader.scaling = scale),
-                None => Err(fault("load", "not a scale", "it is a number above 0: %LS0.8*%")),
-            },
+            [b'L', b'P' | b'M' | b'R' | b'S'] => self.loaded.load(name[1], rest),
             b"TF" | b"TA" | b"TO" | b"TD" => {
                 self.attributes.obey(text.trim_ascii(), &mut self.image)
             }
@@ -232,11 +204,6 @@ impl<'a> Reader<'a> {
             }
             _ => Err(unknown(text)),
         }
-    }
-
-    fn set(&mut self, load: impl FnOnce(&mut Self)) -> Outcome {
-        load(self);
-        Ok(())
     }
 
     fn define(&mut self, text: &[u8]) -> Outcome {
@@ -354,7 +321,7 @@ impl<'a> Reader<'a> {
     pub(super) fn paint(&mut self, shape: Shape) -> Outcome {
         self.budget.spend(1)?;
         let attributes = self.attributes.index(&mut self.image);
-        let (line, dark) = (self.place.line, self.dark);
+        let (line, dark) = (self.place.line, self.loaded.dark);
         self.objects().push(Object { line, dark, attributes, shape });
         Ok(())
     }
@@ -376,14 +343,6 @@ impl<'a> Reader<'a> {
             let help = "select one before it, such as D10";
             fault("missing-aperture", "no aperture is selected", help)
         })
-    }
-
-    /// How apertures are transformed: mirrored, then turned and scaled.
-    pub(super) fn transform(&self) -> Transform {
-        let (x, y) = self.mirroring;
-        // Top to bottom is left to right, turned by half a turn.
-        let turned = if y { self.rotation + 180.0 } else { self.rotation };
-        Transform::new(x != y, turned, self.scaling)
     }
 
     pub(super) fn unit(&self) -> Outcome<f64> {
