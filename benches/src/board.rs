@@ -53,7 +53,8 @@ fn layer(strokes: usize) -> String {
     }
     let corner = |i: usize| {
         let angle = i as f64 / strokes.max(3) as f64 * std::f64::consts::TAU;
-        Vec2::new(127.0, -200.0) + Vec2::from_angle(angle) * if i % 2 == 0 { 150.0 } else { 150.4 }
+        Vec2::new(127.0, -200.0)
+            + Vec2::from_angle(angle) * if i.is_multiple_of(2) { 150.0 } else { 150.4 }
     };
     let _ = writeln!(text, "%TD*%\nG36*\n{}D02*", at(corner(0)));
     for i in 1..strokes.max(3) {

@@ -2,7 +2,7 @@
 //!
 //! Nothing is decided here: each class holds a value of the crates, each function hands its arguments
 //! to the one of the same name there. What takes long runs without the interpreter's lock, and what
-//! goes wrong becomes a `toolpost.Error` ([`error`]).
+//! goes wrong becomes a `toolpost.Error`.
 
 mod arguments;
 mod builder;

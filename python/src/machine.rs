@@ -191,7 +191,9 @@ pub fn machine(
             Ok(flag) => flag.to_string(),
             Err(_) => value.str()?.to_string(),
         };
-        described.set_option(name.extract()?, &value).map_err(|found| refused(py, *found))?;
+        described
+            .set_option(&name.extract::<String>()?, &value)
+            .map_err(|found| refused(py, *found))?;
     }
     Ok(Machine { described })
 }

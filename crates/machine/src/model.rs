@@ -14,7 +14,7 @@ pub struct Machine {
     pub file: String,
     /// What a person calls it.
     pub title: String,
-    /// The control it extends.
+    /// The control it extends, itself or by another machine.
     pub control: String,
     /// The dialect whose virtual control proves its programs (`sinumerik`, `fanuc`, `linuxcnc`,
     /// `grbl`, `klartext`).

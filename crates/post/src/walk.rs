@@ -507,12 +507,23 @@ impl<'a> Walk<'a> {
             Coolant::Flood => BlockName::CoolantFlood,
             Coolant::Mist => BlockName::CoolantMist,
             Coolant::FloodAndMist => {
-                self.required(BlockName::CoolantMist)?;
+                self.coolant_block(BlockName::CoolantMist)?;
                 BlockName::CoolantFlood
             }
             Coolant::Through => BlockName::CoolantThrough,
         };
-        self.required(block)
+        self.coolant_block(block)
+    }
+
+    /// Coolant that the control does nothing for is none.
+    fn coolant_block(&mut self, name: BlockName) -> Done {
+        if self.coolant != Coolant::Off && self.machine.leaves_out(name.name()) {
+            let message =
+                format!("the control has no coolant of this kind: `{}` is empty", name.name());
+            let help = "another coolant in the toolpath, or the block in a file of your own";
+            return Err(refuse("missing-block", message).help(help).into());
+        }
+        self.required(name)
     }
 
     /// Before the tool touches the part: it turns, and coolant runs.

@@ -150,7 +150,7 @@ pub struct Post {
     /// Where to save the program; the report goes beside it.
     #[arg(long, short, value_name = "FILE")]
     pub output: PathBuf,
-    /// Another value for one of the [options] of the machine file; may be given several times.
+    /// Another value for one of the options of the machine file; may be given several times.
     #[arg(long, value_name = "NAME=VALUE", value_parser = option)]
     pub option: Vec<(String, String)>,
     #[command(flatten)]

@@ -4,7 +4,7 @@
 use geom::Vec3;
 use machine::library::{MACHINES, names};
 use machine::{Machine, load};
-use program::{ArcTo, Compensation, Feed, Op, Pose, Program, Spindle, Tool};
+use program::{ArcTo, Compensation, Coolant, Feed, Op, Pose, Program, Spindle, Tool};
 
 fn mills() -> impl Iterator<Item = Machine> {
     names(MACHINES).map(|name| load(name).unwrap()).filter(|machine| machine.wire.is_none())
@@ -77,6 +77,21 @@ fn compensation_is_written_with_its_register_or_refused() {
             control if control.starts_with("sinumerik") => assert!(text.unwrap().contains("G41")),
             "heidenhain-tnc640" => assert!(text.unwrap().contains(" RL")),
             _ => assert!(text.unwrap().contains("G41 D7"), "{}", machine.name),
+        }
+    }
+}
+
+#[test]
+fn a_coolant_that_the_control_does_not_have_is_refused() {
+    let ops = [Op::Coolant(Coolant::Mist), Op::Line(at(30.0, 0.0, 20.0))];
+    for machine in mills() {
+        let text = written(&machine, &ops);
+        match machine.control.as_str() {
+            // Haas has M8 and, through the spindle, M88 (Haas, *Mill Operator's Manual*, M codes).
+            "haas" | "heidenhain-tnc640" => {
+                assert_eq!(text, Err("missing-block"), "{}", machine.name)
+            }
+            _ => assert!(text.unwrap().contains("M7"), "{}", machine.name),
         }
     }
 }

@@ -75,7 +75,10 @@ fn build(file: SheetFile) -> Result<Machine> {
                 .into());
         }
         let next = here.parent(&parent)?;
-        control.get_or_insert_with(|| parent.get_ref().clone());
+        // Of a machine that extends another one, the control is what that one extends.
+        if control.as_deref().is_none_or(|name| library::find(name, library::MACHINES).is_some()) {
+            control = Some(parent.get_ref().clone());
+        }
         merged = CheckedSheet::new(next.parse()?, &next)?.under(merged);
         here = next;
     }
@@ -243,6 +246,8 @@ max = 200.5
         assert_eq!(mine.blocks["rapid"].text, "G0");
         assert!(mine.blocks.contains_key("tool_change"));
         assert_eq!((mine.control.as_str(), mine.title.as_str()), ("base.toml", "A mill"));
+        let mine = load_text("mine.toml", "extends = \"emco-concept-mill-105\"").unwrap();
+        assert_eq!(mine.control, "sinumerik-828d");
         std::fs::remove_dir_all(&folder).unwrap();
     }
 }

@@ -3,6 +3,7 @@
 use crate::FAR;
 use crate::decimal::decimal;
 use crate::report::{Outcome, fault};
+use geom::INCH;
 
 /// Which zeros of a coordinate without a point are written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -23,7 +24,7 @@ pub(super) enum Unit {
 impl Unit {
     pub(super) fn millimetres(self) -> f64 {
         match self {
-            Unit::Inch => 25.4,
+            Unit::Inch => INCH,
             Unit::Metric => 1.0,
         }
     }

@@ -9,6 +9,9 @@ use geom::{Element, Vec2};
 /// How far a chord may leave its arc, mm.
 const CHORD: f64 = 0.0005;
 
+/// So many chords are more than those of any layer, beside four for each element.
+const CHORDS: usize = 2_000_000;
+
 /// So many pairs of chords are looked at for each chord before the contour is given up.
 const PAIRS: usize = 200;
 
@@ -34,6 +37,9 @@ pub(super) fn self_crossing(elements: &[Element], tolerance: f64) -> Outcome<Opt
                 for next in inner.chain([element.end]) {
                     chords.push((last, next));
                     last = next;
+                }
+                if chords.len() > CHORDS + 4 * elements.len() {
+                    return Err(too_complex());
                 }
             }
         }

@@ -3,6 +3,7 @@
 use crate::decimal::{decimal, whole};
 use crate::gerber::words::Word;
 use crate::report::{Outcome, fault};
+use geom::INCH;
 
 /// How coordinates are written (section 4.2.2).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -79,7 +80,7 @@ impl Format {
 pub(super) fn unit(text: &[u8]) -> Outcome<f64> {
     match text.trim_ascii() {
         b"MM" => Ok(1.0),
-        b"IN" => Ok(25.4),
+        b"IN" => Ok(INCH),
         _ => Err(fault("unit", "neither MM nor IN", "say %MOMM*% or %MOIN*%")),
     }
 }

@@ -6,7 +6,7 @@ use super::words::{Word, Words};
 use crate::report::{Outcome, fault};
 use crate::stroke::Pen;
 use crate::{FAR, SAME, arc};
-use geom::{Element, Vec2};
+use geom::{Element, INCH, Vec2};
 use std::f64::consts::FRAC_PI_2;
 
 /// How the way from point to point runs.
@@ -129,7 +129,7 @@ impl Reader<'_> {
             55 => self.deprecated("G55"),
             70 | 71 => {
                 self.deprecated("G70 and G71 for the unit");
-                self.set_unit(if code == 70 { 25.4 } else { 1.0 })?;
+                self.set_unit(if code == 70 { INCH } else { 1.0 })?;
             }
             74 => {
                 self.deprecated("G74, arcs of one quadrant");
