@@ -10,7 +10,7 @@ pub(crate) fn about(start: Vec2, end: Vec2, center: Vec2, clockwise: bool) -> El
     let sign = if clockwise { -1.0 } else { 1.0 };
     let chord = end - start;
     if chord.length() <= SAME {
-        return Element::arc(start, start, center, sign * TAU);
+        return Element::arc(start, end, center, sign * TAU);
     }
     let middle = start.midpoint(end);
     let across = chord.perp().normalize_or_zero();

@@ -253,9 +253,6 @@ impl<'a> Reader<'a> {
                 let help = "a block aperture begins with %ABD12*% and ends with %AB*%";
                 fault("block", "not the number of an aperture", help)
             })?;
-            if matches!(self.collectors.last().map(|c| c.purpose), Some(Purpose::Repeat(_))) {
-                self.deprecated("a block aperture within a step and repeat");
-            }
             self.collect(Purpose::Block(number));
             return Ok(());
         }
