@@ -5,9 +5,10 @@
 //! round counts ([`clock`]). NC programs are run on the virtual controls ([`programs`]). Memory is what the program asks the allocator for ([`memory`]). A path ten
 //! times as long shows that time and memory grow no faster. Then come real files ([`library`]).
 
-mod board;
 mod clock;
+mod copper;
 mod floor;
+mod layer;
 mod library;
 mod memory;
 mod path;
@@ -45,6 +46,9 @@ struct Arguments {
     /// Pads and tracks of a circuit board, and sixteen times as many; 0 leaves it out.
     #[arg(long, default_value_t = 2000)]
     shapes: usize,
+    /// Strokes of a copper layer; 0 leaves it out.
+    #[arg(long, default_value_t = 16_000)]
+    strokes: usize,
     /// Real files of cutter-location data, to be proven on every machine of the library.
     files: Vec<PathBuf>,
 }
@@ -75,7 +79,10 @@ fn run(arguments: &Arguments) -> Result<(), Vec<Diagnostic>> {
         wire::measure(arguments.arcs, arguments.rounds)?;
     }
     if arguments.shapes > 0 {
-        board::measure(arguments.shapes, arguments.rounds)?;
+        copper::measure(arguments.shapes, arguments.rounds)?;
+    }
+    if arguments.strokes > 0 {
+        layer::measure(arguments.strokes, arguments.rounds)?;
     }
     if arguments.records > 0 {
         five_axes(arguments)?;

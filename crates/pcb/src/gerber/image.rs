@@ -1,0 +1,166 @@
+//! The image that a file describes.
+
+use super::{Aperture, Attributes};
+use crate::report::{Outcome, fault};
+use crate::{Contour, FAR, Piece, Transform};
+use geom::{Element, Vec2};
+
+/// What a Gerber file describes: objects that are painted one over the other.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Image {
+    /// In the order in which they are painted.
+    pub objects: Vec<Object>,
+    /// What objects are flashed and drawn with.
+    pub apertures: Vec<Aperture>,
+    /// The regions.
+    pub regions: Vec<Region>,
+    /// The attributes of the file (`TF`): name, values.
+    pub file_attributes: Vec<(String, Vec<String>)>,
+    /// What objects are part of; many share one.
+    pub(super) attributes: Vec<Attributes>,
+}
+
+/// Something that is painted.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Object {
+    /// Line of the file (from 1) with its last command.
+    pub line: u32,
+    /// Whether it adds to the image; otherwise it erases what is under it.
+    pub dark: bool,
+    /// Index of its attributes.
+    pub(super) attributes: u32,
+    /// What it is.
+    pub shape: Shape,
+}
+
+/// The shape of an object.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Shape {
+    /// An aperture at a point.
+    Flash {
+        /// Index of the aperture.
+        aperture: u32,
+        /// How it is transformed about its origin.
+        transform: Transform,
+        /// Where its origin is, mm.
+        at: Vec2,
+    },
+    /// An aperture drawn along a line or an arc.
+    Stroke {
+        /// Index of the aperture.
+        aperture: u32,
+        /// How it is transformed about its origin.
+        transform: Transform,
+        /// The way of its origin, mm.
+        path: Element,
+    },
+    /// A region.
+    Region {
+        /// Index of the region.
+        region: u32,
+        /// How it is transformed about the origin.
+        transform: Transform,
+        /// Where the origin goes, mm.
+        at: Vec2,
+    },
+}
+
+/// An area given by its contours: the union of what each of them goes round.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Region {
+    /// Counter-clockwise, mm.
+    pub contours: Vec<Contour>,
+    /// What it is for (`.AperFunction`), such as `Conductor`.
+    pub function: Option<String>,
+}
+
+impl Image {
+    /// The exact shape of an object: its pieces in order. Empty for an aperture without size.
+    pub fn pieces(&self, object: &Object) -> Vec<Piece> {
+        match &object.shape {
+            Shape::Flash { aperture, transform, at } => {
+                let pieces = self.aperture(*aperture).map_or(&[][..], |aperture| &aperture.pieces);
+                pieces.iter().map(|piece| piece.placed(transform, *at)).collect()
+            }
+            Shape::Stroke { aperture, transform, path } => {
+                let pen = self.aperture(*aperture).and_then(|aperture| aperture.pen);
+                pen.map(|pen| pen.sweep(transform, path)).unwrap_or_default()
+            }
+            Shape::Region { region, transform, at } => {
+                let contours = self.regions.get(*region as usize).map_or(&[][..], |r| &r.contours);
+                let place = |contour: &Contour| Piece::new(true, contour.placed(transform, *at));
+                contours.iter().map(place).collect()
+            }
+        }
+    }
+
+    /// What an object is part of.
+    pub fn attributes(&self, object: &Object) -> &Attributes {
+        const NONE: &Attributes = &Attributes::NONE;
+        self.attributes.get(object.attributes as usize).unwrap_or(NONE)
+    }
+
+    /// What an object is for (`.AperFunction`), such as `SMDPad,CuDef`.
+    pub fn function(&self, object: &Object) -> Option<&str> {
+        match &object.shape {
+            Shape::Flash { aperture, .. } | Shape::Stroke { aperture, .. } => {
+                self.aperture(*aperture)?.function.as_deref()
+            }
+            Shape::Region { region, .. } => self.regions.get(*region as usize)?.function.as_deref(),
+        }
+    }
+
+    /// The values of an attribute of the file, such as `.FileFunction`.
+    pub fn file_attribute(&self, name: &str) -> Option<&[String]> {
+        let found = self.file_attributes.iter().find(|(known, _)| known == name);
+        found.map(|(_, values)| &values[..])
+    }
+
+    /// The corners of the smallest box around everything that is dark; `None` where nothing is.
+    pub fn extents(&self) -> Option<(Vec2, Vec2)> {
+        let dark = self.objects.iter().filter(|object| object.dark);
+        let pieces = dark.flat_map(|object| self.pieces(object));
+        let outlines = pieces.filter(|piece| piece.solid).flat_map(|piece| piece.contours);
+        outlines.map(|contour| contour.extents()).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+    }
+
+    fn aperture(&self, index: u32) -> Option<&Aperture> {
+        self.apertures.get(index as usize)
+    }
+}
+
+impl Object {
+    /// The same within a block that is flashed: transformed about the origin, which goes to `to`; where
+    /// the block is not `dark`, dark is clear and clear is dark.
+    ///
+    /// # Errors
+    /// `not-a-place` where that leads out of this world.
+    pub(super) fn placed(&self, outer: &Transform, to: Vec2, dark: bool) -> Outcome<Object> {
+        let shape = match self.shape {
+            Shape::Flash { aperture, transform, at } => {
+                let at = to + outer.apply(at);
+                Shape::Flash { aperture, transform: outer.after(&transform), at }
+            }
+            Shape::Stroke { aperture, transform, path } => {
+                let path = outer.element(&path, to);
+                Shape::Stroke { aperture, transform: outer.after(&transform), path }
+            }
+            Shape::Region { region, transform, at } => {
+                let at = to + outer.apply(at);
+                Shape::Region { region, transform: outer.after(&transform), at }
+            }
+        };
+        let (place, transform) = match &shape {
+            Shape::Flash { transform, at, .. } | Shape::Region { transform, at, .. } => {
+                (at, transform)
+            }
+            Shape::Stroke { transform, path, .. } => (&path.end, transform),
+        };
+        let far = place.abs().max_element().max(transform.scale());
+        if far.is_nan() || far > FAR {
+            let message = format!("a copy of the object of line {} beyond {FAR} mm", self.line);
+            return Err(fault("not-a-place", message, "look at distances, scales and the unit"));
+        }
+        Ok(Object { dark: self.dark == dark, shape, ..*self })
+    }
+}

@@ -1,0 +1,9 @@
+//! Gerber and Excellon files against facts that they state, hand calculation and outside judges.
+
+mod data;
+mod drill_input;
+mod drills;
+mod gerber_input;
+mod judges;
+mod layers;
+mod raster;
