@@ -12,7 +12,7 @@ SEED ?= 1
 
 TOOLPOST := cargo run --quiet --release --bin toolpost --
 
-.PHONY: demo test bench lint judges images samples rust python
+.PHONY: demo test freecad bench lint judges images samples rust python
 
 ## Post a part, prove it, draw it.
 demo: rust
@@ -31,6 +31,12 @@ test: rust python
 	PROPTEST_RNG_SEED=$(SEED) PROPTEST_DISABLE_FAILURE_PERSISTENCE=1 \
 		cargo test --workspace --no-fail-fast
 	pytest --quiet --hypothesis-seed $(SEED)
+	$(MAKE) freecad
+
+## The tests within FreeCAD (`scripts/setup freecad`), with the command as cargo has built it.
+freecad: python
+	cargo build --quiet --package toolpost
+	PATH="$(or $(CARGO_TARGET_DIR),$(CURDIR)/target)/debug:$$PATH" pytest --quiet integrations/freecad/tests
 
 ## Speed and memory, each beside a floor in the same run.
 bench: rust
@@ -44,8 +50,8 @@ lint: rust python
 	cargo fmt --all --check
 	cargo clippy --workspace --all-targets -- -D warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --quiet --workspace --no-deps --document-private-items
-	ruff check python
-	ruff format --check python
+	ruff check
+	ruff format --check
 	mypy
 	stubtest toolpost
 

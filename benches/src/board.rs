@@ -1,65 +1,138 @@
-//! A copper layer of many strokes, flashes and a large region, read beside the floor of reading its numbers
-//! and printing them back.
+//! A circuit board: its copper united, and grown by the radius of a tool, beside another library's union
+//! and growth of the same copper as polygons.
 
-use crate::{fastest, floor};
-use geom::Vec2;
+use crate::{Measured, fastest};
+use clipper2_rust::core::{FillRule, PathsD, PointD};
+use clipper2_rust::offset::{EndType, JoinType};
+use clipper2_rust::{inflate_paths_d, union_subjects_d};
+use geom::region::{Cap, Region, RegionError};
+use geom::{Element, Vec2};
 use program::Diagnostic;
-use std::fmt::Write;
 
-/// Prints what reading a layer of `strokes` strokes takes.
+/// How far the middle of a chord of the other library's polygons is from its arc, mm: as far as in `region`.
+const CHORD_ERROR: f64 = 0.0009;
+
+/// Decimal places of a millimetre that the other library keeps.
+const PLACES: i32 = 6;
+
+/// The radius of the tool, mm.
+const TOOL: f64 = 0.1;
+
+/// Prints what boards of `shapes` pads and tracks, and of sixteen times as many, take.
 ///
 /// # Errors
-/// What the layer is refused for.
-pub fn measure(strokes: usize, rounds: usize) -> Result<(), Vec<Diagnostic>> {
-    let text = layer(strokes);
-    let by_hand = fastest(rounds, &mut || {
-        std::hint::black_box(floor::by_hand(text.as_bytes()));
-        Ok(())
-    })?;
-    let mut objects = 0;
-    let read = fastest(rounds, &mut || {
-        objects = pcb::gerber::read("layer.gbr", text.as_bytes())?.image.objects.len();
-        Ok(())
-    })?;
-    let (floor, seconds) = (by_hand.time.as_secs_f64(), read.time.as_secs_f64());
-    println!(
-        "a copper layer of {objects} objects, {} kB; the floor by hand {floor:.4} s\n  \
-         read{seconds:29.4} s{:9.1} times the floor; {} bytes an object",
-        text.len() / 1000,
-        seconds / floor,
-        read.peak / objects.max(1)
-    );
+/// Where a board is refused.
+pub fn measure(shapes: usize, rounds: usize) -> Result<(), Vec<Diagnostic>> {
+    let mut before: Option<f64> = None;
+    for shapes in [shapes, 16 * shapes] {
+        let copper = board(shapes).map_err(refused)?;
+        let united = Region::union_of(&copper).map_err(refused)?;
+        println!(
+            "a board of {shapes} pads and tracks: {} islands, {} lines and arcs",
+            united.islands().len(),
+            united.rings().map(|ring| ring.elements().len()).sum::<usize>(),
+        );
+        let copper_polygons: PathsD = copper.iter().flat_map(polygons).collect();
+        let theirs = fastest(rounds, &mut || {
+            std::hint::black_box(union_subjects_d(&copper_polygons, FillRule::Positive, PLACES));
+            Ok(())
+        })?;
+        let ours = fastest(rounds, &mut || {
+            std::hint::black_box(Region::union_of(&copper).map_err(refused)?);
+            Ok(())
+        })?;
+        row("united", &ours, &theirs);
+        let united_polygons: PathsD = polygons(&united);
+        let theirs = fastest(rounds, &mut || {
+            let (join, end) = (JoinType::Round, EndType::Polygon);
+            std::hint::black_box(inflate_paths_d(
+                &united_polygons,
+                TOOL,
+                join,
+                end,
+                2.0,
+                PLACES,
+                CHORD_ERROR,
+            ));
+            Ok(())
+        })?;
+        let grown = fastest(rounds, &mut || {
+            std::hint::black_box(united.offset(TOOL).map_err(refused)?);
+            Ok(())
+        })?;
+        row("grown", &grown, &theirs);
+        let seconds = ours.time.as_secs_f64();
+        if let Some(before) = before.replace(seconds) {
+            println!("  sixteen times the board takes {:.1} times as long", seconds / before);
+        }
+    }
     Ok(())
 }
 
-/// Tracks of four strokes that end in pads, as KiCad writes them, and a pour of as many corners as there
-/// are strokes.
-fn layer(strokes: usize) -> String {
-    let mut text = String::from(
-        "%TF.FileFunction,Copper,L1,Top*%\n%FSLAX46Y46*%\n%MOMM*%\n%LPD*%\nG01*\n\
-         %ADD10C,0.254000*%\n%ADD11R,1.000000X1.500000*%\n",
+/// A row: what it takes, and what it takes the other library.
+fn row(what: &str, ours: &Measured, theirs: &Measured) {
+    let (ours_s, theirs_s) = (ours.time.as_secs_f64(), theirs.time.as_secs_f64());
+    println!(
+        "  {what:24}{ours_s:9.3} s; the other library {theirs_s:.3} s; {} MB, {} MB",
+        ours.peak / 1_000_000,
+        theirs.peak / 1_000_000,
     );
-    let at = |point: Vec2| {
-        let step = |mm: f64| (mm * 1e6).round();
-        format!("X{}Y{}", step(point.x), step(point.y))
+}
+
+fn refused(error: RegionError) -> Vec<Diagnostic> {
+    vec![Diagnostic::error("board", error.to_string())]
+}
+
+/// Eight directions.
+const WAYS: [(f64, f64); 8] = [
+    (1.0, 0.0),
+    (1.0, 1.0),
+    (0.0, 1.0),
+    (-1.0, 1.0),
+    (-1.0, 0.0),
+    (-1.0, -1.0),
+    (0.0, -1.0),
+    (1.0, -1.0),
+];
+
+const GRID: f64 = 0.25;
+
+/// Pads on a grid of 0.25 mm, and tracks between its places with bends of 45°, as dense as on a board.
+fn board(shapes: usize) -> Result<Vec<Region>, RegionError> {
+    let mut random = 1u64;
+    let mut below = |end: usize| {
+        random = random.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
+        (random >> 33) as usize % end
     };
-    for i in 0..strokes / 4 {
-        let start = Vec2::new((i % 100) as f64, (i / 100) as f64) * 2.54;
-        let _ =
-            writeln!(text, "%TO.N,Net-({i})*%\nD11*\n{}D03*\nD10*\n{}D02*", at(start), at(start));
-        for along in [Vec2::X, Vec2::ONE, Vec2::new(1.5, 1.0), Vec2::new(2.0, 0.5)] {
-            let _ = writeln!(text, "{}D01*", at(start + along));
+    let side = (shapes as f64).sqrt() as usize * 4;
+    let mut copper = Vec::with_capacity(shapes);
+    while copper.len() < shapes {
+        let mut at = Vec2::new(below(side) as f64, below(side) as f64) * GRID;
+        copper.push(Region::disc(at, [0.25, 0.375, 0.5][below(3)])?);
+        let (width, mut way) = ([0.2, 0.25, 0.4][below(3)], below(8));
+        for _ in 0..below(4) {
+            let to = at + Vec2::from(WAYS[way % 8]) * GRID * (1 + below(8)) as f64;
+            copper.push(Region::stroke(&Element::line(at, to), width, Cap::Round)?);
+            way += [7, 0, 1][below(3)];
+            at = to;
         }
     }
-    let corner = |i: usize| {
-        let angle = i as f64 / strokes.max(3) as f64 * std::f64::consts::TAU;
-        Vec2::new(127.0, -200.0)
-            + Vec2::from_angle(angle) * if i.is_multiple_of(2) { 150.0 } else { 150.4 }
-    };
-    let _ = writeln!(text, "%TD*%\nG36*\n{}D02*", at(corner(0)));
-    for i in 1..strokes.max(3) {
-        let _ = writeln!(text, "{}D01*", at(corner(i)));
-    }
-    let _ = writeln!(text, "{}D01*\nG37*\nM02*", at(corner(0)));
-    text
+    copper.truncate(shapes);
+    Ok(copper)
+}
+
+/// The rings of a region as polygons.
+fn polygons(region: &Region) -> Vec<Vec<PointD>> {
+    region.rings().map(|ring| ring.elements().iter().flat_map(chords).collect()).collect()
+}
+
+/// The starts of the chords of an element.
+fn chords(element: &Element) -> impl Iterator<Item = PointD> {
+    let steps = element.turn.zip(element.radius()).map_or(1.0, |(turn, radius)| {
+        (turn.sweep.abs() / (8.0 * CHORD_ERROR / radius).sqrt()).ceil()
+    });
+    (0..steps as usize).map(move |i| {
+        let point = element.at(i as f64 / steps);
+        PointD { x: point.x, y: point.y }
+    })
 }

@@ -8,6 +8,7 @@
 mod board;
 mod clock;
 mod floor;
+mod layer;
 mod library;
 mod memory;
 mod path;
@@ -42,6 +43,9 @@ struct Arguments {
     /// Arcs of the contour of a wire; 0 leaves it out.
     #[arg(long, default_value_t = 100_000)]
     arcs: usize,
+    /// Pads and tracks of a circuit board, and sixteen times as many; 0 leaves it out.
+    #[arg(long, default_value_t = 2000)]
+    shapes: usize,
     /// Strokes of a copper layer; 0 leaves it out.
     #[arg(long, default_value_t = 16_000)]
     strokes: usize,
@@ -74,8 +78,11 @@ fn run(arguments: &Arguments) -> Result<(), Vec<Diagnostic>> {
     if arguments.arcs > 0 {
         wire::measure(arguments.arcs, arguments.rounds)?;
     }
+    if arguments.shapes > 0 {
+        board::measure(arguments.shapes, arguments.rounds)?;
+    }
     if arguments.strokes > 0 {
-        board::measure(arguments.strokes, arguments.rounds)?;
+        layer::measure(arguments.strokes, arguments.rounds)?;
     }
     if arguments.records > 0 {
         five_axes(arguments)?;

@@ -1,4 +1,4 @@
-"""Toolpost itself, as FreeCAD reaches it: the command `toolpost`.
+"""Toolpost itself, as FreeCAD reaches it: its Python package, or else its command.
 
 Programs are text, reports are dictionaries: what the command answers with `--json`.
 """
@@ -17,13 +17,55 @@ class PostError(Exception):
 
 def core():
     """Find what posts and proves here."""
-    command = shutil.which("toolpost")
+    try:
+        import toolpost
+
+        return Package(toolpost, toolpost.read_job)
+    # A folder of that name imports too, and has nothing in it.
+    except (ImportError, AttributeError):
+        command = shutil.which("toolpost")
     if command is None:
         raise PostError(
             "Toolpost is not installed where FreeCAD finds it\n"
-            "    help: install it, so that the command `toolpost` is on the PATH of FreeCAD"
+            "    help: install it for the Python of FreeCAD, or so that its command is on the PATH"
         )
     return Command(command)
+
+
+class Package:
+    """The Python package `toolpost`."""
+
+    def __init__(self, package, read_job):
+        self.package = package
+        self.read_job = read_job
+
+    def post(self, job, options):
+        """Answer the program of a job, and its report."""
+        try:
+            program, machine = self._read(job, options)
+            result = self.package.post(program, machine, tolerance=options.tolerance)
+        except self.package.Error as error:
+            raise _refusal(error.findings) from None
+        return result.text, result.report.data()
+
+    def prove(self, text, job, options):
+        """Answer the report of a program that was edited."""
+        file = f"{_stem(job)}.nc"
+        try:
+            program, machine = self._read(job, options)
+            report = self.package.prove(
+                text, machine, program, file=file, tolerance=options.tolerance
+            )
+        except self.package.Error as error:
+            raise _refusal(error.findings) from None
+        if not report.proven:
+            raise _refusal(report.findings)
+        return report.data()
+
+    def _read(self, job, options):
+        machine = self.package.machine(options.machine, **dict(options.option))
+        text = json.dumps(job, ensure_ascii=False)
+        return self.read_job(text, machine, file=f"{_stem(job)}.json"), machine
 
 
 class Command:
@@ -36,7 +78,7 @@ class Command:
         """Answer the program of a job, and its report."""
         with _Folder(job) as folder:
             program = folder.path("nc")
-            changed = [word for option in options.option for word in ("--option", option)]
+            changed = [f"--option={name}={value}" for name, value in options.option]
             words = [folder.job, "--output", program, *changed, *_words(options)]
             report = self._run("post", words)
             with open(program, encoding="utf-8", newline="") as file:
@@ -69,6 +111,12 @@ class Command:
         return report
 
 
+def _refusal(findings):
+    findings = [finding._asdict() for finding in findings]
+    errors = [finding for finding in findings if finding["severity"] == "error"]
+    return PostError("\n".join(map(spoken, errors)))
+
+
 def spoken(finding):
     """Answer a finding of a report as a message."""
     place = finding["file"] + (f":{finding['line']}" if finding["line"] else "")
@@ -84,11 +132,10 @@ class _Folder(tempfile.TemporaryDirectory):
 
     def __init__(self, job):
         super().__init__(prefix="toolpost-")
-        # What is said of a file names it.
-        self.stem = re.sub(r"[^\w.-]", "_", job["name"])
+        self.stem = _stem(job)
         self.job = self.path("json")
         with open(self.job, "w", encoding="utf-8") as file:
-            json.dump(job, file, ensure_ascii=False)
+            file.write(json.dumps(job, ensure_ascii=False))
 
     def __enter__(self):
         return self
@@ -96,6 +143,11 @@ class _Folder(tempfile.TemporaryDirectory):
     def path(self, ending):
         """Answer where the file with this ending is."""
         return os.path.join(self.name, f"{self.stem}.{ending}")
+
+
+def _stem(job):
+    """Answer what the files of a job are called: what is said of them names them so."""
+    return re.sub(r"[^\w.-]", "_", job["name"])
 
 
 def _words(options):

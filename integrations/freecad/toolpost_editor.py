@@ -5,7 +5,7 @@ import difflib
 import FreeCAD
 from toolpost_core import PostError
 
-# Characters: beyond it Qt's editor takes minutes to open.
+# Characters of a program, or pairs of lines to compare: beyond it the user would wait for minutes.
 LARGEST = 2_000_000
 
 
@@ -68,7 +68,7 @@ def _difference(before, after, most=20):
     while tail < rest and before[-1 - tail] == after[-1 - tail]:
         tail += 1
     before, after = before[same : len(before) - tail], after[same : len(after) - tail]
-    if len(before) * len(after) > 1_000_000:
+    if len(before) * len(after) > LARGEST:
         return [f"edited: {len(after)} lines from line {same + 1} on, in place of {len(before)}"]
     changes = [f"edited: {line}" for line in difflib.ndiff(before, after) if line[0] in "+-"]
     more = [f"edited: and {len(changes) - most} lines more"] if len(changes) > most else []

@@ -26,6 +26,13 @@ class _Parser(argparse.ArgumentParser):
         )
 
 
+def _option(text):
+    name, equals, value = text.partition("=")
+    if not equals:
+        raise argparse.ArgumentTypeError(f"{text} is no NAME=VALUE")
+    return name, value
+
+
 parser = _Parser(prog="toolpost", usage=argparse.SUPPRESS, add_help=False, allow_abbrev=False)
 argument = parser.add_argument
 argument(
@@ -34,6 +41,7 @@ argument(
 argument(
     "--option",
     metavar="NAME=VALUE",
+    type=_option,
     action="append",
     default=[],
     help="another value for one of the options of the machine; may be given several times",

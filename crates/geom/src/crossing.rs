@@ -117,23 +117,39 @@ impl Element {
 }
 
 /// The endless line or the whole circle that an element is a piece of.
-enum Carrier {
+pub(crate) enum Carrier {
     Line { point: Vec2, along: Vec2 },
     Circle { center: Vec2, radius: f64 },
 }
 
 impl Carrier {
     /// That of `element` through its end `at`.
-    fn of(element: &Element, at: Vec2) -> Carrier {
+    pub(crate) fn of(element: &Element, at: Vec2) -> Carrier {
         match element.turn {
             None => Carrier::Line { point: at, along: element.tangent(0.0) },
             Some(Turn { center, .. }) => Carrier::Circle { center, radius: at.distance(center) },
         }
     }
 
+    /// How far `at` is from it, mm.
+    pub(crate) fn distance(&self, at: Vec2) -> f64 {
+        match self {
+            Carrier::Line { point, along } => along.perp_dot(at - *point).abs(),
+            Carrier::Circle { center, radius } => (at.distance(*center) - radius).abs(),
+        }
+    }
+
+    /// Its direction, one way or the other, where it passes `at`.
+    pub(crate) fn direction_at(&self, at: Vec2) -> Vec2 {
+        match self {
+            Carrier::Line { along, .. } => *along,
+            Carrier::Circle { center, .. } => (at - *center).perp().normalize_or_zero(),
+        }
+    }
+
     /// Their common points, and the place between them where they miss each other by no more than
     /// `reach` mm.
-    fn meets(&self, other: &Carrier, reach: f64) -> [Option<Vec2>; 2] {
+    pub(crate) fn meets(&self, other: &Carrier, reach: f64) -> [Option<Vec2>; 2] {
         match (self, other) {
             (Carrier::Line { point, along }, Carrier::Line { point: q, along: other }) => {
                 let way = (*q - *point).perp_dot(*other) / along.perp_dot(*other);

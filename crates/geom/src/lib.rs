@@ -7,6 +7,7 @@
 mod arc;
 mod crossing;
 mod element;
+pub mod region;
 mod rotation;
 
 pub use arc::{Arc, ArcError};

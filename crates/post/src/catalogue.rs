@@ -224,33 +224,6 @@ impl WordName {
     }
 }
 
-/// The names of `known` that `name` was most likely meant to be, for an error: at most three.
-pub(crate) fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
-    let mut ranked: Vec<(usize, &str)> = known
-        .map(|k| (distance(&name.to_lowercase(), &k.to_lowercase()), k))
-        .filter(|&(d, k)| d <= 1 + k.len().max(name.len()) / 3)
-        .collect();
-    ranked.sort();
-    ranked.truncate(3);
-    ranked.iter().map(|(_, k)| format!("`{k}`")).collect::<Vec<_>>().join(", ")
-}
-
-/// Edit distance (Levenshtein), by one row.
-fn distance(a: &str, b: &str) -> usize {
-    let b: Vec<char> = b.chars().collect();
-    let mut row: Vec<usize> = (0..=b.len()).collect();
-    for (i, x) in a.chars().take(64).enumerate() {
-        let mut corner = i;
-        row[0] = i + 1;
-        for (j, &y) in b.iter().enumerate() {
-            let replaced = corner + usize::from(x != y);
-            corner = row[j + 1];
-            row[j + 1] = replaced.min(row[j] + 1).min(corner + 1);
-        }
-    }
-    row[b.len()]
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -264,14 +237,6 @@ mod tests {
         names.dedup();
         assert_eq!(names.len(), all);
         const { assert!(WordName::COUNT <= 64, "sets of words are bits of a u64") };
-    }
-
-    #[test]
-    fn a_slip_of_the_keyboard_finds_the_name_that_was_meant() {
-        let blocks = || BlockName::TABLE.iter().map(|p| p.name);
-        assert_eq!(nearest("liner", blocks()), "`linear`");
-        assert!(nearest("tool_chnge", blocks()).starts_with("`tool_change`"));
-        assert_eq!(nearest("qqqqqqqqqqq", blocks()), "");
     }
 
     #[test]

@@ -5,7 +5,7 @@
 //! against a part of Jinja in which no value can be longer than [`MOST_PARTS`] values of the program
 //! end to end, and every filter is one of a short list.
 
-use crate::catalogue::{WordName, nearest};
+use crate::catalogue::WordName;
 use machine::{Machine, OptionValue};
 use minijinja::machinery::ast::{BinOpKind, CallArg, CompareOpKind, Expr, Filter, ForLoop, Stmt};
 use minijinja::machinery::ast::{Test, UnaryOpKind};
@@ -13,6 +13,7 @@ use minijinja::machinery::{Span, parse};
 use minijinja::syntax::SyntaxConfig;
 use minijinja::value::{Rest, Value, ValueOrKwargs};
 use minijinja::{Environment, Error, ErrorKind, State, filters, functions, tests};
+use program::nearest;
 use std::collections::BTreeMap;
 use std::ops::Range;
 

@@ -1,10 +1,10 @@
 //! What a machine's files must hold so that nothing is missing when it is needed: checked before
 //! anything is written.
 
-use crate::catalogue::{BlockName, WordName, nearest};
+use crate::catalogue::{BlockName, WordName};
 use crate::template::Templates;
 use machine::{CycleName, HARMLESS_SIGNS, Machine, OrientationMode, Place};
-use program::Diagnostic;
+use program::{Diagnostic, nearest};
 
 /// Checks words against the catalogue, words that blocks place against the words that there are, and
 /// blocks against the capabilities.

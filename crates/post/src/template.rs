@@ -5,14 +5,14 @@
 //! the words standing, so that both end as the same steps and follow the same rules of modality and
 //! spacing.
 
-use crate::catalogue::{BlockName, VARIABLES, WordName, nearest};
+use crate::catalogue::{BlockName, VARIABLES, WordName};
 use crate::guard::{self, Fault};
 use crate::text::{clean, printed};
 use deunicode::deunicode;
 use machine::{Block, Format, Machine, OptionValue};
 use minijinja::value::{Object, Value};
 use minijinja::{AutoEscape, Environment, ErrorKind, UndefinedBehavior};
-use program::{Diagnostic, Op, Program, Tool};
+use program::{Diagnostic, Op, Program, Tool, nearest};
 use std::collections::BTreeMap;
 use std::io;
 use std::sync::Arc;

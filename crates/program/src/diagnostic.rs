@@ -172,9 +172,31 @@ impl fmt::Display for Diagnostic {
 
 impl std::error::Error for Diagnostic {}
 
+/// The names of `known` that `name` was most likely meant to be, for an error: at most three, the nearest
+/// first; empty where none is near.
+pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
+    let name: String = name.to_lowercase().chars().take(64).collect();
+    let mut ranked: Vec<(usize, &str)> = known
+        .map(|k| (strsim::levenshtein(&name, &k.to_lowercase()), k))
+        .filter(|&(d, k)| d <= 1 + k.len().max(name.len()) / 3)
+        .collect();
+    ranked.sort();
+    ranked.truncate(3);
+    ranked.iter().map(|(_, k)| format!("`{k}`")).collect::<Vec<_>>().join(", ")
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_slip_of_the_keyboard_finds_the_name_that_was_meant() {
+        let blocks = || ["arc_cw", "helix_cw", "linear", "tool_change"].into_iter();
+        assert_eq!(nearest("liner", blocks()), "`linear`");
+        assert_eq!(nearest("Tool_chnge", blocks()), "`tool_change`");
+        assert_eq!(nearest("qqqqqqqqqqq", blocks()), "");
+        assert_eq!(nearest(&"x".repeat(100_000), blocks()), "");
+    }
 
     #[test]
     fn an_error_names_file_line_column_rule_and_way_out() {

@@ -13,5 +13,5 @@ pub mod lowering;
 mod record;
 pub mod statistics;
 
-pub use diagnostic::{Diagnostic, Severity, line_of};
+pub use diagnostic::{Diagnostic, Severity, line_of, nearest};
 pub use record::*;

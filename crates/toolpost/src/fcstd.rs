@@ -57,7 +57,7 @@ pub fn job(path: &Path) -> Result<Vec<u8>, Box<Diagnostic>> {
     match run() {
         Err(error) if error.kind() == io::ErrorKind::NotFound => {
             let names = PROGRAMS.join(" or ");
-            let help = "install FreeCAD, or post from FreeCAD's window to a .json file";
+            let help = "install FreeCAD, or post from its window, with the post `toolpost`";
             return Err(about(format!("FreeCAD is needed to read this, and there is no {names}"))
                 .help(help)
                 .into());
@@ -65,7 +65,7 @@ pub fn job(path: &Path) -> Result<Vec<u8>, Box<Diagnostic>> {
         Err(error) => return Err(about(format!("FreeCAD cannot be run: {error}")).into()),
         Ok(None) => {
             let seconds = LONGEST.as_secs();
-            let help = "post from FreeCAD's window to a .json file";
+            let help = "post from FreeCAD's window, with the post `toolpost`";
             let message = format!("FreeCAD has not read it within {seconds} s");
             return Err(about(message).help(help).into());
         }

@@ -107,6 +107,7 @@ def several(name, order, split):
     work.operation(PathDrilling, "Bohren", SMALL_HOLES, drill, PeckEnabled=True)
     work.operation(PathProfile, "not wanted", Active=False)
     work.operation(PathHelix, "Helix", LARGE_HOLE, large)
+    work.document.saveAs(os.path.join(FOLDER, name + ".FCStd"))
     write(work)
 
 

@@ -10,6 +10,8 @@ import pytest
 
 HERE = Path(__file__).parent
 ADDON = HERE.parent
+# Where `make python` puts the package.
+PACKAGE = HERE.parents[2] / "python"
 
 
 def pytest_configure():
@@ -58,15 +60,20 @@ def jobs(tmp_path_factory):
     return folder
 
 
-@pytest.fixture(scope="session")
-def cases(tmp_path_factory):
+@pytest.fixture(scope="session", params=["command", "package"])
+def cases(request, tmp_path_factory):
     """Post jobs right and wrong: for each case what is answered, saved and said."""
     folder = tmp_path_factory.mktemp("cases")
-    freecad("posting.py", tmp_path_factory.mktemp("home"), TOOLPOST_CASES=folder)
+    way = {"TOOLPOST_CASES": folder, "TOOLPOST_LONG": 1_000_000}
+    if request.param == "package":
+        way = {**way, "TOOLPOST_LONG": 10_000, "PYTHONPATH": PACKAGE}
+    freecad("posting.py", tmp_path_factory.mktemp("home"), **way)
     found = json.loads((folder / "cases.json").read_text())
     for name, case in found["cases"].items():
         case["said"] = (folder / f"{name}.said").read_text()
         case["saved"] = Path(case["file"]).read_text() if Path(case["file"]).is_file() else None
+    assert found["core"] == request.param.title()
+    found["long"] = way["TOOLPOST_LONG"]
     left = [path.name for path in folder.iterdir() if ".part" in path.name]
     assert not left, "half-written files"
     return found

@@ -1,9 +1,9 @@
 """Runs inside `freecadcmd`: posts jobs that are right and jobs that are not.
 
-    TOOLPOST_CASES=folder freecadcmd posting.py
+    TOOLPOST_CASES=folder TOOLPOST_LONG=1000000 freecadcmd posting.py
 
 For each case the folder gets `NAME.said` with all that FreeCAD printed, and `cases.json` has what
-`export` answered.
+`export` answered. The longest job has as many commands as is said.
 """
 
 import json
@@ -18,11 +18,13 @@ sys.path.insert(0, os.path.dirname(sys.path[0]))
 
 import PathScripts.PathCustom as PathCustom
 import PathScripts.PathProfile as PathProfile
+import toolpost_core
 import toolpost_job
 import toolpost_post
 from work import Piece, Work, run
 
 FOLDER = os.environ["TOOLPOST_CASES"]
+LONG = int(os.environ["TOOLPOST_LONG"])
 LINUXCNC = "--machine generic-3axis-linuxcnc"
 
 cases = {}
@@ -91,6 +93,8 @@ def right():
     case("machine-unknown", objects, "--machine generic-3axis-linuxcmc")
     case("argument-unknown", objects, LINUXCNC + " --modal")
     case("argument-open", objects, LINUXCNC + " --report 'here")
+    case("option-unknown", objects, LINUXCNC + " --option colour=red")
+    case("option-bare", objects, LINUXCNC + " --option colour")
     case("no-folder", objects, filename=os.path.join(FOLDER, "missing", "part.ngc"))
     # Not even root writes there.
     case("read-only", objects, filename="/sys/part.ngc")
@@ -167,15 +171,15 @@ def order():
     return found
 
 
-def million():
-    """As long as the largest jobs: the commands as FreeCAD's reader of G-code makes them."""
-    steps = ((n % 100 * 0.5, n // 100 * 0.001) for n in range(1_000_000))
+def long():
+    """Post a long job: the commands as FreeCAD's reader of G-code makes them."""
+    steps = ((n % 100 * 0.5, n // 100 * 0.001) for n in range(LONG))
     lines = [f"G1 X{x:.3f} Y{y:.3f} Z1 F3" for x, y in steps]
-    work = Work("million")
+    work = Work("long")
     start = work.objects()[0][0]
     piece = Piece("Long", [])
     piece.Path = Path.Path("G0 X0 Y0 Z30\n" + "\n".join(lines))
-    case("million", [start, work.mill, piece])
+    case("long", [start, work.mill, piece])
     work.close()
 
 
@@ -183,9 +187,10 @@ def main():
     right()
     wrong()
     two_fixtures()
-    million()
+    long()
     with open(os.path.join(FOLDER, "cases.json"), "w", encoding="utf-8") as file:
-        json.dump({"cases": cases, "order": order()}, file)
+        core = type(toolpost_core.core()).__name__
+        json.dump({"core": core, "cases": cases, "order": order()}, file)
 
 
 run(main)

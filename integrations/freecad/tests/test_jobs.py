@@ -22,7 +22,7 @@ REFUSED = {
     # Controls without mist.
     ("mist", "dmu50-heidenhain"): "missing-block",
     ("mist", "generic-3axis-heidenhain"): "missing-block",
-    ("mist", "generic-3axis-haas"): "coolant",
+    ("mist", "generic-3axis-haas"): "missing-block",
 }
 
 
@@ -58,6 +58,18 @@ def test_a_mill_gets_proven_programs(jobs, mill, tmp_path):
         if rules != refused or not (refused or report["proof"]["proven"]):
             wrong[name] = report["errors"][:1]
     assert not wrong
+
+
+@pytest.mark.parametrize("name", ["several-Fixture", "several-Tool", "several-Operation"])
+def test_a_document_is_posted_as_in_the_window(jobs, tmp_path, name):
+    programs = []
+    for source in (jobs / f"{name}.json", jobs / f"{name}.FCStd"):
+        program = tmp_path / "part.ngc"
+        report = toolpost("post", source, "-m", "generic-3axis-linuxcnc", "-o", program)
+        assert report["status"] == "done", report["errors"]
+        # The first line is the name: that of the job, or of its document.
+        programs.append(program.read_text().splitlines()[1:])
+    assert programs[0] == programs[1]
 
 
 def test_linuxcnc_moves_as_with_the_post_of_freecad(jobs, tmp_path):

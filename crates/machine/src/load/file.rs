@@ -4,7 +4,7 @@ use super::{Result, is_path};
 use crate::library;
 use crate::model::{Block, Place};
 use crate::sheet::Sheet;
-use program::Diagnostic;
+use program::{Diagnostic, nearest};
 use std::path::{Path, PathBuf};
 use toml::Spanned;
 
@@ -51,9 +51,12 @@ impl SheetFile {
             None => {
                 let known = library::names(kinds).collect::<Vec<_>>().join(", ");
                 let message = format!("`{name}` is not in the library");
-                Err(Diagnostic::error("machine-unknown", message)
-                    .help(format!("one of {known}, or the path of a file"))
-                    .into())
+                let meant = match nearest(name, library::names(kinds)).as_str() {
+                    "" => String::new(),
+                    meant => format!("did you mean {meant}? "),
+                };
+                let help = format!("{meant}There are {known}; or give the path of a file");
+                Err(Diagnostic::error("machine-unknown", message).help(help).into())
             }
         }
     }

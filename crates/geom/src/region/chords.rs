@@ -1,0 +1,121 @@
+//! Elements as chords: what the kernel is given.
+
+use super::kernel::{Keep, Kernel, Operand, Place};
+use super::{Fill, Region, RegionError, refit};
+use crate::crossing::Carrier;
+use crate::{Element, Turn, Vec2};
+use std::f64::consts::TAU;
+
+/// How far the middle of a chord is from its arc at most, mm: below this, arcs meet or miss each
+/// other as their chords do.
+const CHORD_ERROR: f64 = 0.0009;
+
+/// The most edges of one boolean: some 5 GB.
+const MOST_EDGES: usize = 1 << 25;
+
+/// An end of an arc stands for the place of the grid of angles that is this near, mm.
+const SAME: f64 = 1e-6;
+
+/// The boolean of what two sets of closed chains enclose, which may cross themselves and each other.
+pub(super) fn boolean<'a>(
+    first: impl Iterator<Item = &'a [Element]> + Clone,
+    second: impl Iterator<Item = &'a [Element]> + Clone,
+    keep: Keep,
+    fill: Fill,
+) -> Result<Region, RegionError> {
+    let edges = count(first.clone()).saturating_add(count(second.clone()));
+    if edges > MOST_EDGES {
+        return Err(RegionError::TooLarge);
+    }
+    let mut chords = Chords { kernel: Kernel::new(edges), carriers: Vec::new() };
+    first.for_each(|chain| chords.add(chain, Operand::First));
+    second.for_each(|chain| chords.add(chain, Operand::Second));
+    Ok(refit::region(chords.kernel.islands(keep, fill), &chords.carriers))
+}
+
+/// How many edges the chains become.
+fn count<'a>(chains: impl Iterator<Item = &'a [Element]>) -> usize {
+    let inner = |element: &Element| element.turn.map_or(0, |turn| Inner::of(element, turn).count());
+    let edges = chains.flatten().map(|element| inner(element) + 1);
+    edges.fold(0, usize::saturating_add)
+}
+
+/// The operands of a boolean, as chords.
+struct Chords {
+    kernel: Kernel,
+    carriers: Vec<Carrier>,
+}
+
+impl Chords {
+    fn add(&mut self, chain: &[Element], operand: Operand) {
+        let starts = chain.iter().map(|element| Place::of(element.start));
+        let ends = starts.clone().cycle().skip(1);
+        for (element, (mut from, end)) in chain.iter().zip(starts.zip(ends)) {
+            // There are no more carriers than edges.
+            let carrier = self.carriers.len() as u32;
+            if let Some(turn) = element.turn {
+                let inner = Inner::of(element, turn);
+                for place in inner.places() {
+                    self.kernel.add(from, place, carrier, operand);
+                    from = place;
+                }
+                self.carriers.push(Carrier::Circle { center: turn.center, radius: inner.radius });
+            } else {
+                self.carriers.push(Carrier::of(element, element.start));
+            }
+            self.kernel.add(from, end, carrier, operand);
+        }
+    }
+}
+
+/// The inner ends of the chords of an arc.
+///
+/// They lie where its circle meets a grid of angles that depends on the radius alone, so that arcs on
+/// top of each other have the same chords. The grid has the axes and the diagonals, where the circles
+/// of a board touch.
+struct Inner {
+    center: Vec2,
+    radius: f64,
+    /// Steps of the grid in a turn.
+    steps: i64,
+    /// The first and the last step, in the order of the grid.
+    first: i64,
+    last: i64,
+    backwards: bool,
+}
+
+impl Inner {
+    fn of(element: &Element, turn: Turn) -> Inner {
+        let spoke = element.start - turn.center;
+        let radius = (spoke.length() + element.end.distance(turn.center)) / 2.0;
+        // The middle of a chord over the angle a is r·(1 − cos(a/2)) ≤ r·a²/8 from its arc.
+        let eighth = (TAU / (8.0 * CHORD_ERROR / radius).sqrt() / 8.0).ceil().max(1.0);
+        let step = TAU / (8.0 * eighth);
+        let from = spoke.to_angle();
+        let (low, high) = (from.min(from + turn.sweep), from.max(from + turn.sweep));
+        let margin = SAME / radius;
+        Inner {
+            center: turn.center,
+            radius,
+            steps: 8 * eighth as i64,
+            first: ((low + margin) / step).floor() as i64 + 1,
+            last: ((high - margin) / step).ceil() as i64 - 1,
+            backwards: turn.sweep < 0.0,
+        }
+    }
+
+    fn count(&self) -> usize {
+        usize::try_from(self.last - self.first + 1).unwrap_or(0)
+    }
+
+    fn places(&self) -> impl Iterator<Item = Place> {
+        // Circles that are one but for rounding get the same places.
+        let center = Place::of(self.center).point();
+        let radius = Place::of(Vec2::splat(self.radius)).point().x;
+        (0..=self.last - self.first).map(move |i| {
+            let step = if self.backwards { self.last - i } else { self.first + i };
+            let angle = step.rem_euclid(self.steps) as f64 / self.steps as f64 * TAU;
+            Place::of(center + Vec2::from_angle(angle) * radius)
+        })
+    }
+}

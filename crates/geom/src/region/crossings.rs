@@ -1,0 +1,69 @@
+//! Where elements of rings cross each other.
+
+use crate::crossing::Carrier;
+use crate::{Element, Vec2};
+use static_aabb2d_index::{Control, StaticAABB2DIndexBuilder};
+
+/// How deep two elements may cross and count as touching, mm: rounding of the kernel.
+const TOUCH: f64 = 2e-6;
+
+/// Where an element of a ring crosses another.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    pub ring: usize,
+    pub element: usize,
+    pub point: Vec2,
+}
+
+/// For each element of `rings` that crosses others one place where it does, in their order.
+pub(super) fn crossings(rings: &[&[Element]]) -> Vec<Place> {
+    let elements: Vec<(usize, usize, &Element)> = rings
+        .iter()
+        .enumerate()
+        .flat_map(|(r, ring)| ring.iter().enumerate().map(move |(e, element)| (r, e, element)))
+        .collect();
+    let boxes: Vec<(Vec2, Vec2)> =
+        elements.iter().map(|(_, _, element)| element.extents()).collect();
+    let mut builder = StaticAABB2DIndexBuilder::new(elements.len());
+    for (low, high) in &boxes {
+        builder.add(low.x, low.y, high.x, high.y);
+    }
+    let Ok(index) = builder.build() else { return Vec::new() };
+    let mut places: Vec<Option<Vec2>> = vec![None; elements.len()];
+    for (i, ((_, _, element), (low, high))) in elements.iter().zip(&boxes).enumerate() {
+        index.visit_query(low.x, low.y, high.x, high.y, &mut |other: usize| {
+            if let (true, Some((_, _, second))) = (other > i, elements.get(other))
+                && let Some(point) = crossing(element, second)
+            {
+                for k in [i, other] {
+                    if let Some(place) = places.get_mut(k) {
+                        *place = Some(point);
+                    }
+                }
+            }
+            Control::<()>::Continue
+        });
+    }
+    let found = elements.iter().zip(places);
+    found
+        .filter_map(|((ring, element, _), point)| {
+            Some(Place { ring: *ring, element: *element, point: point? })
+        })
+        .collect()
+}
+
+/// Where two elements cross deeper than by rounding.
+fn crossing(first: &Element, second: &Element) -> Option<Vec2> {
+    let mut crossings = first.crossings(second).map(|crossing| crossing.point);
+    let (one, other) = (crossings.next(), crossings.next());
+    let ends = [first.start, first.end, second.start, second.end];
+    let is_deep = |point: Vec2, other: Option<Vec2>| {
+        let direction = |of: &Element| Carrier::of(of, of.start).direction_at(point);
+        let across = direction(first).perp_dot(direction(second)).abs();
+        // On the way to an end, or to the other crossing, the one gets beside the other by no more
+        // than the way times the angle of the two.
+        let mut beside = ends.iter().copied().chain(other).map(|end| end.distance(point) * across);
+        beside.all(|beside| beside > TOUCH)
+    };
+    one.filter(|point| is_deep(*point, other)).or(other.filter(|point| is_deep(*point, one)))
+}

@@ -1,0 +1,126 @@
+//! The boolean kernel: closed chains of short straight edges on a grid of whole units, each edge with
+//! the number of the line or circle that it is a piece of.
+//!
+//! Whole numbers make the topology right whatever the input; the half unit that rounding to them
+//! costs stays. This module alone knows of `i_overlay`.
+
+use super::Fill;
+use crate::Vec2;
+use i_overlay::core::edge_data::{EdgeDataMerge, OverlayEdgeData};
+use i_overlay::core::edge_overlay::{EdgeOverlay, InputEdge};
+use i_overlay::core::fill_rule::FillRule;
+use i_overlay::core::overlay::ShapeType;
+use i_overlay::core::overlay_rule::OverlayRule;
+use i_overlay::i_float::int::point::IntPoint;
+use i_overlay::segm::boolean::ShapeCountBoolean;
+use i_overlay::vector::edge::DataVectorEdge;
+
+/// Units in a millimetre. A unit is 0.1 nm, so that every coordinate of a KiCad or Gerber file is a
+/// whole number of them, in inches (10⁻⁶ in = 254 units) as in millimetres.
+const UNITS: f64 = 1e7;
+
+/// The kernel takes up to 2⁶² units; half of that is 200 000 km.
+const FARTHEST: f64 = (1u64 << 61) as f64;
+
+/// A place on the grid of units.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) struct Place(IntPoint<i64>);
+
+impl Place {
+    /// The nearest to `point`, mm.
+    pub fn of(point: Vec2) -> Place {
+        let units = |mm: f64| (mm * UNITS).round().clamp(-FARTHEST, FARTHEST) as i64;
+        Place(IntPoint::new(units(point.x), units(point.y)))
+    }
+
+    /// In mm.
+    pub fn point(self) -> Vec2 {
+        // A quotient is the double next to the decimal number; a product would not be.
+        Vec2::new(self.0.x as f64 / UNITS, self.0.y as f64 / UNITS)
+    }
+}
+
+/// A straight piece of the boundary of a result.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Edge {
+    pub start: Place,
+    pub end: Place,
+    /// The line or circle that it is a piece of.
+    pub carrier: usize,
+}
+
+/// The two operands of a boolean.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Operand {
+    First,
+    Second,
+}
+
+/// What a boolean keeps.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Keep {
+    /// What is in one operand or the other.
+    Union,
+    /// What is in both.
+    Intersection,
+    /// What is in the first and not in the second.
+    Difference,
+    /// What is in one of the two alone.
+    Xor,
+}
+
+/// The number of a carrier, as the kernel takes it along.
+#[derive(Clone, Copy, PartialEq, Eq)]
+struct Carried(u32);
+
+impl OverlayEdgeData for Carried {
+    type Store = ();
+
+    /// Of two pieces on top of each other the earlier one is seen.
+    fn merge(of: EdgeDataMerge<ShapeCountBoolean, Carried>, (): &mut ()) -> Carried {
+        Carried(of.lhs_data.0.min(of.rhs_data.0))
+    }
+}
+
+/// A boolean that is being put together.
+pub(super) struct Kernel(EdgeOverlay<i64, Carried>);
+
+impl Kernel {
+    /// With room for so many edges.
+    pub fn new(edges: usize) -> Kernel {
+        Kernel(EdgeOverlay::new(edges))
+    }
+
+    /// Adds an edge of a closed chain. One without length adds nothing.
+    pub fn add(&mut self, start: Place, end: Place, carrier: u32, operand: Operand) {
+        let shape = match operand {
+            Operand::First => ShapeType::Subject,
+            Operand::Second => ShapeType::Clip,
+        };
+        self.0.add_edge(InputEdge { a: start.0, b: end.0, data: Carried(carrier) }, shape);
+    }
+
+    /// The islands of the result; of each first its outer ring, counter-clockwise, then its holes,
+    /// clockwise.
+    pub fn islands(mut self, keep: Keep, fill: Fill) -> Vec<Vec<Vec<Edge>>> {
+        let keep = match keep {
+            Keep::Union => OverlayRule::Union,
+            Keep::Intersection => OverlayRule::Intersect,
+            Keep::Difference => OverlayRule::Difference,
+            Keep::Xor => OverlayRule::Xor,
+        };
+        let fill = match fill {
+            Fill::EvenOdd => FillRule::EvenOdd,
+            Fill::NonZero => FillRule::NonZero,
+            Fill::Positive => FillRule::Positive,
+        };
+        let edge = |edge: DataVectorEdge<i64, Carried>| Edge {
+            start: Place(edge.a),
+            end: Place(edge.b),
+            carrier: edge.data.0 as usize,
+        };
+        let ring = |ring: Vec<_>| ring.into_iter().map(edge).collect();
+        let islands = self.0.build_vector_shapes(keep, fill);
+        islands.into_iter().map(|rings| rings.into_iter().map(ring).collect()).collect()
+    }
+}
