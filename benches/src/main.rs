@@ -2,8 +2,10 @@
 //! floor in the same run.
 //!
 //! The toolpath is generated ([`path`]); every stage runs `--rounds` times on one core, and its fastest
-//! round counts ([`clock`]). NC programs are run on the virtual controls ([`programs`]). Circuit boards: copper united and grown ([`copper`]), a Gerber layer read ([`layer`]). Memory is what the program asks the allocator for ([`memory`]). A path ten
-//! times as long shows that time and memory grow no faster. Then come real files ([`library`]).
+//! round counts ([`clock`]). NC programs are run on the virtual controls ([`programs`]), the contour of a
+//! wire becomes points ([`wire`]). Circuit boards: copper united and grown ([`copper`]), a Gerber layer read
+//! ([`layer`]). Memory is what the program asks the allocator for ([`memory`]). A path ten times as long
+//! shows that time and memory grow no faster. Then come real files ([`library`]).
 
 mod clock;
 mod copper;
