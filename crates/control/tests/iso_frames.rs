@@ -148,6 +148,11 @@ fn the_external_offset_moves_all_work_offsets() {
         "G90 G54 G0 X1. Y1. Z1.\nG91 G10 L2 P0 X5.\nG90 X1.\n",
         &[[1.0, 1.0, 1.0], [6.0, 1.0, 1.0]],
     );
+    // Whatever is written over what lies on such a step.
+    for rest in ["G90 G10 L2 P1 X100.\n", "G90 G10 L2 P0 X5.\n"] {
+        let lost = format!("G90 G10 L2 P1 X100.\nG91 G10 L2 P0 X1.\n{rest}");
+        assert_eq!(rule(Dialect::Fanuc, &lost), "nc-unknown-shift", "{rest}");
+    }
     // On a Haas P0 is G52.
     assert_eq!(rule(Dialect::Haas, "G90 G10 L2 P0 X5.\n"), "nc-data");
 }

@@ -221,6 +221,11 @@ fn cycle_208_mills_a_bore_on_a_helix() {
     let ccw = Vec3::Z;
     assert_eq!(ways, [(2.25, ccw, 0), (1.0, ccw, 2), (1.0, ccw, 0), (-0.25, ccw, 0)]);
     assert!(ops.contains(&Op::Feed(program::Feed::PerMinute(150.0))));
+    // 4.2 / 0.7 is six turns: five, what is left of the sixth, and the flat one.
+    let six = cycle.replace("Q201=-8", "Q201=-2.2").replace("Q334=4", "Q334=0.7");
+    let ops = run_with_radius(10.0, &format!("{START}M3\n{six}\nCYCL CALL"));
+    let turns: Vec<_> = arcs(&ops).iter().map(|arc| arc.turns).collect();
+    assert_eq!(turns, [0, 5, 0, 0]);
     let up_cut = run_with_radius(10.0, &format!("{START}M3\n{cycle} Q351=-1\nCYCL CALL"));
     assert!(arcs(&up_cut).iter().all(|arc| arc.normal == Vec3::NEG_Z));
     // A tool as wide as the bore goes straight down.

@@ -6,19 +6,21 @@ use std::fmt::Write;
 
 /// How the lines of a dump begin.
 const HEADING: &[u8] = b"(This output produced with the dump post processor)";
+/// What editors on Windows put before a text.
+const BOM: &[u8] = b"\xEF\xBB\xBF";
 const PATH: &str = "(Path: ";
 const COMMAND: &str = "Command ";
 
 /// Whether `text` begins as a dump does.
 pub(crate) fn begins(text: &[u8]) -> bool {
-    let text = text.strip_prefix(b"\xEF\xBB\xBF").unwrap_or(text).trim_ascii_start();
+    let text = text.strip_prefix(BOM).unwrap_or(text).trim_ascii_start();
     [HEADING, PATH.as_bytes(), COMMAND.as_bytes()].iter().any(|start| text.starts_with(start))
 }
 
 /// Reads a dump. An object that changes the tool is a tool controller, and its label the name of the
 /// tool.
 pub(crate) fn read(text: &[u8]) -> Result<Job, Box<Diagnostic>> {
-    let text = String::from_utf8_lossy(text);
+    let text = String::from_utf8_lossy(text.strip_prefix(BOM).unwrap_or(text));
     let mut job = Job::default();
     let mut lines = text.lines().zip(1u32..).map(|(line, number)| (line.trim(), number));
     // A command whose line is broken in print ends with the bracket.
@@ -75,7 +77,8 @@ fn command(text: &str, commands: &mut String) -> Result<Option<u32>, String> {
     commands.push_str(name);
     let mut tool = None;
     for parameter in parameters.split_whitespace() {
-        let pair = parameter.split_once(':').filter(|(letter, _)| letter.len() == 1);
+        let is_letter = |text: &str| text.len() == 1 && text.as_bytes()[0].is_ascii_alphabetic();
+        let pair = parameter.split_once(':').filter(|(letter, _)| is_letter(letter));
         let (letter, number) = pair.ok_or_else(|| format!("`{parameter}` is no LETTER:NUMBER"))?;
         let value: f64 = number.parse().map_err(|_| format!("{parameter}: this is no number"))?;
         if !value.is_finite() {

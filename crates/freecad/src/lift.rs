@@ -25,6 +25,11 @@ pub struct Reading {
 /// The first command that means nothing or cannot be told, and what an operation lacks, with the
 /// operation, the command and the way out.
 pub fn read(machine: &Machine, file_name: &str, job: &Job) -> Result<Reading, Box<Diagnostic>> {
+    if let Some(number) = two_diameters(job) {
+        let message = format!("two tools of different diameters have the number {number}");
+        let help = "give one of the tool controllers another number";
+        return Err(Diagnostic::error("two-tools", message).help(help).file(file_name).into());
+    }
     let listing = Listing::of(file_name, job);
     let mut speaks = Machine { reader: String::from("freecad"), ..machine.clone() };
     if !listing.turns() {
@@ -41,6 +46,15 @@ pub fn read(machine: &Machine, file_name: &str, job: &Job) -> Result<Reading, Bo
         })?;
     let warnings = reading.warnings.into_iter().map(|found| listing.located(found)).collect();
     Ok(Reading { program: Program { name: job.name.clone(), records }, listing, warnings })
+}
+
+/// The number of two tools that differ in their diameter.
+fn two_diameters(job: &Job) -> Option<u32> {
+    let mut known = std::collections::HashMap::new();
+    let mut tools = job.tools.iter().filter_map(|tool| Some((tool.number, tool.diameter?)));
+    tools
+        .find(|&(number, diameter)| *known.entry(number).or_insert(diameter) != diameter)
+        .map(|(number, _)| number)
 }
 
 /// Adds to what the control refuses where in FreeCAD it is set right.

@@ -386,7 +386,12 @@ impl Machine {
                 let number = value.parse().ok().filter(|number: &f64| number.is_finite());
                 (number.map(OptionValue::Number), "a number")
             }
-            OptionValue::Text(_) => (Some(OptionValue::Text(value.to_owned())), "text"),
+            // It reaches the program as it is: it must not make a block of its own.
+            OptionValue::Text(_) => {
+                let text =
+                    Some(value).filter(|text| text.chars().all(|c| (' '..='~').contains(&c)));
+                (text.map(|text| OptionValue::Text(text.to_owned())), "text of one line, in ASCII")
+            }
         };
         *option = given.ok_or_else(|| {
             refused(format!("option `{name}` is {kind}, not `{value}`"), String::new())

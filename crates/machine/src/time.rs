@@ -92,6 +92,8 @@ impl<'a> Clock<'a> {
                 self.run(&Op::Line(thread.end));
                 self.feed = feed;
             }
+            // At the latest it ends there.
+            Op::Probe(probe) => self.run(&Op::Line(probe.end)),
             Op::Hole(pose) => self.hole(pose),
             Op::Cycle(cycle) => self.cycle = Some(**cycle),
             Op::CycleOff => self.cycle = None,

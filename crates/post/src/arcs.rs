@@ -246,8 +246,10 @@ impl Walk<'_> {
         let rise = self.writer.rounded(WordName::Rise, block.rise);
         let normal = Vec3::AXES[w];
         let turned = geom::rotate(start - block.center, normal, angle) + normal * rise;
-        self.turned_to = Some(block.center + turned);
-        self.block(self.arc_name(ccw, rises))
+        let name = self.arc_name(ccw, rises);
+        self.turned_to =
+            self.templates.places(name, WordName::Sweep).then_some(block.center + turned);
+        self.block(name)
     }
 
     /// Where the control stands, in the coordinates of its blocks: as the last words say, or as the angle

@@ -256,6 +256,7 @@ impl<'a> Walk<'a> {
                 }
                 if self.machine.format.fresh_operations {
                     self.writer.forget(POSITION | ORIENTATION | MOTION);
+                    self.turned_to = None;
                 }
                 self.scope.operation = map([("name", Value::from(printed(self.machine, name)))]);
                 self.block(BlockName::OperationStart)
@@ -419,6 +420,7 @@ impl<'a> Walk<'a> {
         self.required(BlockName::ToolChange)?;
         self.tool = Some(tool.clone());
         self.writer.forget(POSITION | ORIENTATION | MOTION | bit(WordName::D));
+        self.turned_to = None;
         self.located = false;
         (self.active_spindle, self.active_coolant) = (Some(Spindle::Off), Some(Coolant::Off));
         Ok(())

@@ -339,6 +339,9 @@ pub struct Prove {
     /// Name in the library, or a file ending in .toml.
     #[arg(long, short, value_name = "NAME|FILE")]
     pub machine: String,
+    /// Another value for one of the options of the machine file; may be given several times.
+    #[arg(long, value_name = "NAME=VALUE", value_parser = option)]
+    pub option: Vec<(String, String)>,
     /// File with the toolpath, as `post` takes it.
     #[arg(long, value_name = "SOURCE")]
     pub against: PathBuf,

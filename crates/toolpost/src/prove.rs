@@ -12,7 +12,10 @@ use serde_json::json;
 
 /// Runs the program on the virtual control of the machine and compares.
 pub fn run(args: &Prove, silent: bool) -> Result<Answer, Stop> {
-    let machine = toolpath::machine(&args.machine)?;
+    let mut machine = toolpath::machine(&args.machine)?;
+    for (name, value) in &args.option {
+        machine.set_option(name, value)?;
+    }
     let progress = Progress::new(2, silent);
     progress.step("reading");
     let toolpath = toolpath::read(&args.against, false, &args.origin, Some(&machine))?;

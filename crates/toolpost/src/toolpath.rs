@@ -5,7 +5,7 @@ use crate::args::{Origin, Units, Way, WholeNumbers};
 use crate::fcstd;
 use crate::files;
 use crate::summary::Shape;
-use control::Setup;
+use control::{Dialect, Setup};
 use freecad::{Job, Listing};
 use geom::Vec3;
 use machine::{Machine, library};
@@ -52,6 +52,12 @@ pub fn read(
     };
     if !Job::begins(&bytes) {
         return read_by(path, &bytes, strict, origin, |machine| machine);
+    }
+    if origin.has_set_up() {
+        let message = "a job of FreeCAD's runs on no control that somebody has set up";
+        let help = "leave out the tool table, units and the like: the job says them itself";
+        let file = files::name(path);
+        return Err(Diagnostic::error("origin", message).help(help).file(file).into());
     }
     let named = origin.from.as_deref().map(machine::load_origin).transpose()?;
     read_job(&files::name(path), &bytes, strict, named.as_ref().or(machine))
@@ -158,6 +164,19 @@ fn without_origin(file: &str) -> Stop {
 }
 
 impl Origin {
+    /// Whether it says more than what the source was written for.
+    fn has_set_up(&self) -> bool {
+        let Origin { from: _, tools, folder, whole_numbers, units, aside, block_delete, start } =
+            self;
+        *block_delete
+            || !folder.is_empty()
+            || tools.is_some()
+            || whole_numbers.is_some()
+            || units.is_some()
+            || aside.is_some()
+            || start.is_some()
+    }
+
     /// What the operator has set up at the control.
     fn setup(&self) -> Result<Setup, Stop> {
         let tools = match &self.tools {
@@ -293,7 +312,12 @@ impl Toolpath {
 /// Where there is none, or its file has a mistake.
 pub fn machine(name_or_path: &str) -> Result<Machine, Stop> {
     let machine = machine::load(name_or_path)?;
-    nc::settings(&machine, Setup::default())?;
+    let settings = nc::settings(&machine, Setup::default())?;
+    if settings.dialect == Dialect::FreeCad {
+        let message = "no machine reads FreeCAD's commands: they are a source alone";
+        let place = &machine.reader_place;
+        return Err(Diagnostic::error("reader", message).file(&place.file).line(place.line).into());
+    }
     Ok(machine)
 }
 

@@ -221,6 +221,8 @@ pub(crate) struct Frames {
     active: usize,
     /// FANUC's external offset, which adds to each of them.
     external: Six,
+    /// Where a step was added to it while it was not known.
+    stepped: [bool; 6],
     /// What an offset holds that the program has not written: 0 or, where that is not known, NaN.
     untouched: f64,
     /// Whether the control can turn a work offset.
@@ -249,6 +251,7 @@ impl Frames {
             offsets: Vec::with_capacity(2),
             active: 0,
             external: [untouched; 6],
+            stepped: [false; 6],
             untouched,
             turns_offsets,
             shift: [0.0; 6],
@@ -270,7 +273,7 @@ impl Frames {
         let untouched = self.untouched;
         self.offsets.push(Offset {
             number,
-            origin: [untouched; 6],
+            origin: self.external.map(|external| untouched + external),
             angle: if self.turns_offsets { untouched } else { 0.0 },
             slide: [0.0; 6],
             turned: 0.0,
@@ -367,7 +370,8 @@ impl Frames {
     /// added to them. Answers whether that one is active.
     ///
     /// # Errors
-    /// The program has moved in it, and what it held before is not known.
+    /// The program has moved in it, and what it held before is not known; or a step was added to an
+    /// external offset that is not.
     pub(super) fn write(
         &mut self,
         number: u32,
@@ -376,6 +380,10 @@ impl Frames {
         add: bool,
     ) -> Result<bool, Unknown> {
         let index = self.index(number);
+        let lost = |axis: usize| values[axis].is_some() && self.stepped[axis];
+        if !add && (0..6).any(lost) {
+            return Err(Unknown);
+        }
         // What is not known of the external one has moved all of them alike.
         let external = self.external.map(|value| if add || value.is_nan() { 0.0 } else { value });
         let values: [Option<f64>; 6] =
@@ -397,8 +405,14 @@ impl Frames {
         // Before the first move it does not matter what was there.
         let used = self.offsets.iter().any(|offset| offset.used);
         let mut steps = values;
-        for (step, held) in steps.iter_mut().zip(&mut self.external) {
+        for ((step, held), stepped) in
+            steps.iter_mut().zip(&mut self.external).zip(&mut self.stepped)
+        {
             let Some(value) = step else { continue };
+            if held.is_nan() && !add && *stepped {
+                return Err(Unknown);
+            }
+            *stepped |= held.is_nan() && add;
             let before = if held.is_nan() && !used { 0.0 } else { *held };
             *held = if add { *held + *value } else { *value };
             if !add {

@@ -36,7 +36,10 @@ impl Hole<'_> {
         if !(pitch > 0.0 && self.get(206) > 0.0 && self.get(335) > 0.0) {
             return Err("Q334, Q206 and Q335 must be greater than 0".into());
         }
+        // 4.2 / 0.7 is a hair above 6 in doubles: that is no turn of its own.
         let turns = (depth + clearance) / pitch;
+        let whole = turns.round().max(1.0);
+        let turns = if (turns - whole).abs() < 1e-9 { whole } else { turns };
         if turns > MOST_TURNS {
             return Err(format!("a helix of {turns:.0} turns, at most {MOST_TURNS} are supported"));
         }
