@@ -178,7 +178,7 @@ impl Machine {
 ///     Where there is none (with the names that there are), its file has a mistake (with line and column), or
 ///     it has no such option.
 #[pyfunction]
-#[pyo3(signature = (name_or_path, **options))]
+#[pyo3(signature = (name_or_path, /, **options))]
 pub fn machine(
     py: Python<'_>,
     name_or_path: PathBuf,

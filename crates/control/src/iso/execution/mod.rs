@@ -3,14 +3,14 @@
 //! One [`step`] goes through the block in the order of the control and asks each of the others for its
 //! part: the words that move ([`motion`], [`arcs`], [`splines`], [`threads`], [`places`]), what is made
 //! of many moves ([`cycles`], [`patterns`]), the coordinates ([`coordinates`] say how [`frames`]
-//! change), [`tools`], the [`wire`], and FreeCAD's [`feeds`]. How a number counts is asked of [`numbers`], what holds of the
-//! [`state`].
+//! change), [`tools`], the [`wire`], and FreeCAD's feeds ([`freecad`]). How a number counts is asked of
+//! [`numbers`], what holds of the [`state`].
 
 mod arcs;
 mod coordinates;
 mod cycles;
-mod feeds;
 mod frames;
+mod freecad;
 mod motion;
 pub(super) mod numbers;
 mod patterns;
