@@ -81,6 +81,8 @@ def right():
     case("report", objects, LINUXCNC + " --report " + os.path.join(FOLDER, "report.json"))
     case("offset", objects, LINUXCNC + " --work-offset G56")
     case("offset-unknown", objects, LINUXCNC + " --work-offset G53")
+    case("offset-twice-dotted", objects, LINUXCNC + " --work-offset G54.7")
+    case("offset-of-none", objects[1:], LINUXCNC + " --work-offset G56")
     case("sinumerik", objects, "--machine generic-3axis-sinumerik")
     operation = work.job.Operations.Group[0]
     group = work.document.addObject("App::DocumentObjectGroup", "Outer")

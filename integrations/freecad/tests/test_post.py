@@ -31,6 +31,8 @@ REFUSALS = {
     "option-unknown": ["no option `colour`"],
     "option-bare": ["--option", "colour is no NAME=VALUE"],
     "offset-unknown": ["G53 is no work offset"],
+    "offset-twice-dotted": ["G54.7 is no work offset"],
+    "offset-of-none": ["no operation calls the work offset of the job", "choose it in the job"],
     "offset-of-two": ["this has G54, G55"],
     "no-folder": ["missing/part.ngc cannot be saved: No such file or directory"],
     "read-only": ["/sys/part.ngc cannot be saved: "],
@@ -104,6 +106,8 @@ def test_each_fixture_gets_its_program(cases):
 def test_a_long_job_is_posted(cases):
     """As many as a million commands, of which nothing is lost."""
     assert cases["cases"]["long"]["answer"].count("\nX") > 0.9 * cases["long"]
+    # Seconds, on a slow machine with a command that was built for debugging.
+    assert cases["cases"]["long"]["seconds"] < 120
 
 
 def test_the_lists_of_a_job_are_those_of_freecad(cases):
