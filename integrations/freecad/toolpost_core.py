@@ -3,6 +3,8 @@
 Programs are text, reports are dictionaries: what the command answers with `--json`.
 """
 
+import contextlib
+import inspect
 import json
 import os
 import re
@@ -63,9 +65,17 @@ class Package:
         return report.data()
 
     def _read(self, job, options):
-        machine = self.package.machine(options.machine, **dict(options.option))
+        machine = self._machine(options.machine, dict(options.option))
         text = json.dumps(job, ensure_ascii=False)
         return self.read_job(text, machine, file=f"{_stem(job)}.json"), machine
+
+    def _machine(self, name, changed):
+        try:
+            inspect.signature(self.package.machine).bind(name, **changed)
+        except TypeError as error:
+            # The function has a parameter of that name already.
+            raise PostError(f"--option: the machine has no option of that name: {error}") from None
+        return self.package.machine(name, **changed)
 
 
 class Command:
@@ -76,21 +86,19 @@ class Command:
 
     def post(self, job, options):
         """Answer the program of a job, and its report."""
-        with _Folder(job) as folder:
-            program = folder.path("nc")
+        with _folder(job) as file:
             changed = [f"--option={name}={value}" for name, value in options.option]
-            words = [folder.job, "--output", program, *changed, *_words(options)]
+            words = [file("json"), "--output", file("nc"), *changed, *_words(options)]
             report = self._run("post", words)
-            with open(program, encoding="utf-8", newline="") as file:
-                return file.read(), report
+            with open(file("nc"), encoding="utf-8", newline="") as program:
+                return program.read(), report
 
     def prove(self, text, job, options):
         """Answer the report of a program that was edited."""
-        with _Folder(job) as folder:
-            program = folder.path("nc")
-            with open(program, "w", encoding="utf-8", newline="") as file:
-                file.write(text)
-            return self._run("prove", [program, "--against", folder.job, *_words(options)])
+        with _folder(job) as file:
+            with open(file("nc"), "w", encoding="utf-8", newline="") as program:
+                program.write(text)
+            return self._run("prove", [file("nc"), "--against", file("json"), *_words(options)])
 
     def _run(self, what, words):
         done = subprocess.run(
@@ -127,22 +135,20 @@ def spoken(finding):
     return "\n    ".join(lines)
 
 
-class _Folder(tempfile.TemporaryDirectory):
-    """A folder with a job in it, for as long as it is needed."""
+@contextlib.contextmanager
+def _folder(job):
+    """Make a folder with a job in it; answer what tells where the file with an ending is there."""
+    try:
+        with tempfile.TemporaryDirectory(prefix="toolpost-") as folder:
 
-    def __init__(self, job):
-        super().__init__(prefix="toolpost-")
-        self.stem = _stem(job)
-        self.job = self.path("json")
-        with open(self.job, "w", encoding="utf-8") as file:
-            file.write(json.dumps(job, ensure_ascii=False))
+            def file(ending):
+                return os.path.join(folder, f"{_stem(job)}.{ending}")
 
-    def __enter__(self):
-        return self
-
-    def path(self, ending):
-        """Answer where the file with this ending is."""
-        return os.path.join(self.name, f"{self.stem}.{ending}")
+            with open(file("json"), "w", encoding="utf-8") as written:
+                written.write(json.dumps(job, ensure_ascii=False))
+            yield file
+    except OSError as error:
+        raise PostError(f"the folder for temporary files, or the command: {error}") from None
 
 
 def _stem(job):

@@ -10,6 +10,10 @@ What a command means, and whether it can be done, is not judged here.
 import json
 import os
 import re
+import struct
+import zipfile
+import zlib
+from xml.etree import ElementTree
 
 COOLANT = {"Flood": "flood", "Mist": "mist"}
 
@@ -17,7 +21,7 @@ COOLANT = {"Flood": "flood", "Mist": "mist"}
 # all, infinite, or beyond 9.2e12.
 OVERFLOW = "-922337203685.477"
 
-OFFSET = re.compile(r"^G5[4-9](?:\.[1-9])?$", re.MULTILINE)
+OFFSET = re.compile(r"^G5(?:[4-8]|9(?:\.[1-9])?)$", re.MULTILINE)
 
 
 class JobError(Exception):
@@ -35,10 +39,15 @@ def job(objects, name):
     return {
         "toolpost": "freecad-job",
         "version": 1,
-        "name": name,
+        "name": storable(name),
         "tools": [_tool(controller) for controller in controllers.values()],
         "operations": [_operation(part) for part in parts],
     }
+
+
+def storable(label):
+    """Answer a label with a question mark for each surrogate, which no file can hold."""
+    return label.encode("utf-8", "replace").decode("utf-8")
 
 
 def move(job, offset):
@@ -47,6 +56,11 @@ def move(job, offset):
         raise JobError(f"{offset} is no work offset: one of G54 to G59, G59.1 to G59.9")
     texts = [operation["commands"] for operation in job["operations"]]
     offsets = ", ".join(sorted({offset for text in texts for offset in OFFSET.findall(text)}))
+    if not offsets:
+        raise JobError(
+            f"no operation calls the work offset of the job, and {offset} cannot take its place: "
+            "choose it in the job, under Output"
+        )
     if "," in offsets:
         raise JobError(f"another work offset is for a job with one, and this has {offsets}")
     for operation in job["operations"]:
@@ -57,12 +71,73 @@ def document(path):
     """Answer the job of the document at `path`."""
     import FreeCAD
 
-    jobs = [obj for obj in FreeCAD.open(path).Objects if hasattr(obj, "PostProcessorOutputFile")]
+    paths = _saved(path)
+    opened = FreeCAD.open(path)
+    _see_that_all_is_restored(opened, paths)
+    jobs = [obj for obj in opened.Objects if hasattr(obj, "PostProcessorOutputFile")]
     if len(jobs) != 1:
         labels = ", ".join(found.Label for found in jobs)
         raise JobError(f"the document has {len(jobs)} jobs, and one is needed: {labels}")
     posted = [obj for objects in lists(jobs[0]) for obj in objects]
     return job(posted, jobs[0].Label)
+
+
+# What Python's readers of archives raise where one is damaged.
+DAMAGE = (
+    zipfile.BadZipFile,
+    zlib.error,
+    struct.error,
+    EOFError,
+    RuntimeError,
+    ValueError,
+    KeyError,
+    ElementTree.ParseError,
+)
+
+
+def _saved(path):
+    """Answer the text of each path in a document, by object and property.
+
+    FreeCAD restores what it can of a damaged document, and says nothing of the rest.
+    """
+    try:
+        with zipfile.ZipFile(path) as archive:
+            damaged = archive.testzip()
+            if damaged is not None:
+                raise _damaged(damaged)
+            root = ElementTree.fromstring(archive.read("Document.xml"))
+            # An `XLink` names another document.
+            named = {found.get("file") for found in root.iter() if found.tag != "XLink"}
+            missing = named - {None, "", *archive.namelist()}
+            if missing:
+                raise _damaged(f"{min(missing)} is missing")
+            return {
+                (found.get("name"), kept.get("name")): archive.read(file.get("file")).decode()
+                for found in root.iterfind("ObjectData/Object")
+                for kept in found.iterfind("Properties/Property")
+                for file in kept.iterfind("Path[@file]")
+            }
+    except DAMAGE as error:
+        raise _damaged(error) from None
+
+
+def _see_that_all_is_restored(opened, paths):
+    """Refuse a document of whose paths FreeCAD has not restored every command."""
+    import Path
+
+    for (name, kept), text in paths.items():
+        restored, path = getattr(opened.getObject(name), kept, None), Path.Path()
+        try:
+            path.setFromGCode(text)
+        except RuntimeError:
+            restored = None
+        # A text that ends within a line has lost its rest.
+        if restored is None or restored.Size != path.Size or text[-1:] not in ("", "\n"):
+            raise _damaged(f"the path of {name} is not whole")
+
+
+def _damaged(what):
+    return JobError(f"the document is damaged ({what}): save it again in FreeCAD")
 
 
 def lists(job):
@@ -128,7 +203,7 @@ def _parts(obj):
 
 
 def _operation(part):
-    operation = {"label": part.Label, "commands": _commands(part)}
+    operation = {"label": storable(part.Label), "commands": storable(_commands(part))}
     controller = _property(part, "ToolController")
     if controller is not None:
         operation["tool"] = controller.ToolNumber
@@ -174,7 +249,7 @@ def _placed(part):
 
 
 def _tool(controller):
-    tool = {"number": controller.ToolNumber, "name": controller.Label}
+    tool = {"number": controller.ToolNumber, "name": storable(controller.Label)}
     bit = getattr(controller, "Tool", None)
     for name in ("Diameter", "Length"):
         value = getattr(bit, name, None)

@@ -5,9 +5,12 @@ writes it; later it gives "-", and writes what `export` answers, or nothing wher
 """
 
 import argparse
+import contextlib
 import json
 import os
 import shlex
+import shutil
+import tempfile
 
 import FreeCAD
 import toolpost_editor
@@ -77,6 +80,7 @@ def _export(objectslist, filename, argstring):
         options = parser.parse_args(shlex.split(argstring or ""))
     except ValueError as error:
         raise PostError(f"the arguments of the post: {error}") from None
+    targets = _targets(filename, options.report)
     job = toolpost_job.job(objectslist, _name(objectslist, filename))
     if options.work_offset:
         toolpost_job.move(job, options.work_offset)
@@ -91,13 +95,27 @@ def _export(objectslist, filename, argstring):
             _message("cancelled, nothing was saved")
             return None
         text, report = edited
-    files = {}
-    if options.report:
-        files[options.report] = json.dumps(report, indent=2, ensure_ascii=False) + "\n"
-    if filename != "-":
-        files[filename] = text
-    _save(files)
+    texts = {
+        "report": json.dumps(report, indent=2, ensure_ascii=False) + "\n",
+        "program": text,
+    }
+    _save({path: texts[what] for what, path in targets.items()})
     return text
+
+
+def _targets(filename, report):
+    """Answer where the report and the program are to be saved, as far as they are."""
+    named = {"report": report, "program": None if filename == "-" else filename}
+    # A file that a link leads to is written where it is.
+    targets = {what: os.path.realpath(path) for what, path in named.items() if path}
+    for path in targets.values():
+        if os.path.exists(path) and not os.path.isfile(path):
+            raise PostError(f"{path} is no ordinary file: choose another name")
+    if len(set(map(os.path.normcase, targets.values()))) < len(targets):
+        raise PostError(
+            f"{report} would be both report and program: choose another name after --report"
+        )
+    return targets
 
 
 def _name(objectslist, filename):
@@ -124,26 +142,56 @@ def _tell(job, options, report):
 
 
 def _message(text):
-    FreeCAD.Console.PrintMessage(f"toolpost: {text}\n")
+    FreeCAD.Console.PrintMessage(f"toolpost: {toolpost_job.storable(str(text))}\n")
 
 
 def _error(text):
-    FreeCAD.Console.PrintError(f"toolpost: {text}\n")
+    FreeCAD.Console.PrintError(f"toolpost: {toolpost_job.storable(str(text))}\n")
 
 
 def _save(files):
-    """Write each file beside its place, then move all of them there: none is ever half there."""
-    beside = {path: f"{path}.{os.getpid()}.part" for path in files}
+    """Write each file beside its place, then move them there: all of them, or none at all."""
     try:
-        for path, text in files.items():
-            with open(beside[path], "x", encoding="utf-8", newline="") as file:
-                file.write(text)
-                file.flush()
-                os.fsync(file.fileno())
-        for path in files:
-            os.replace(beside[path], path)
+        with contextlib.ExitStack() as made, contextlib.ExitStack() as undo:
+            ready = {}
+            for path, text in files.items():
+                ready[path] = _beside(path, made)
+                with open(ready[path], "w", encoding="utf-8", newline="") as file:
+                    file.write(text)
+                    file.flush()
+                    os.fsync(file.fileno())
+            # When the last one is in place, nothing is left that could fail.
+            for path in list(files)[:-1]:
+                if os.path.exists(path):
+                    earlier = _beside(path, made)
+                    shutil.copy2(path, earlier)
+                    undo.callback(os.replace, earlier, path)
+                else:
+                    undo.callback(_remove, path)
+                os.replace(ready[path], path)
+            for path in list(files)[-1:]:
+                os.replace(ready[path], path)
+            undo.pop_all()
     except OSError as error:
         raise PostError(f"{path} cannot be saved: {error.strerror}") from None
-    finally:
-        for written in filter(os.path.exists, beside.values()):
-            os.remove(written)
+
+
+def _beside(path, made):
+    """Make an empty file in the folder of another and with its rights, and note it as made."""
+    handle, name = tempfile.mkstemp(".part", ".toolpost-", os.path.dirname(path))
+    made.callback(_remove, name)
+    os.close(handle)
+    # Some disks know no rights.
+    with contextlib.suppress(OSError):
+        if os.path.exists(path):
+            shutil.copymode(path, name)
+        else:
+            mask = os.umask(0)
+            os.umask(mask)
+            os.chmod(name, 0o666 & ~mask)
+    return name
+
+
+def _remove(name):
+    with contextlib.suppress(FileNotFoundError):
+        os.remove(name)

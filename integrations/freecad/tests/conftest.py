@@ -3,6 +3,7 @@
 import json
 import os
 import shutil
+import signal
 import subprocess
 from pathlib import Path
 
@@ -12,6 +13,8 @@ HERE = Path(__file__).parent
 ADDON = HERE.parent
 # Where `make python` puts the package.
 PACKAGE = HERE.parents[2] / "python"
+# Seconds after which FreeCAD is ended.
+LONGEST = 300
 
 
 def pytest_configure():
@@ -20,10 +23,13 @@ def pytest_configure():
         pytest.exit("the command toolpost is not on the PATH: build and install it first", 1)
 
 
-def run(command, home, **environment):
-    """Run FreeCAD, whose settings are in a folder of their own, and answer what it printed."""
+def run(command, home, code=0, **environment):
+    """Run FreeCAD, whose settings are in a folder of their own, and answer what it printed.
+
+    Whatever ends the wait ends all that was started: `xvfb-run` leaves its screen and FreeCAD.
+    """
     environment = {name: str(value) for name, value in environment.items()}
-    done = subprocess.run(
+    process = subprocess.Popen(
         list(map(str, command)),
         env={**os.environ, "FREECAD_USER_HOME": str(home), **environment},
         stdin=subprocess.DEVNULL,
@@ -31,18 +37,23 @@ def run(command, home, **environment):
         stderr=subprocess.STDOUT,
         encoding="utf-8",
         errors="replace",
-        timeout=300,
-        check=False,
+        start_new_session=True,
     )
-    assert done.returncode == 0, done.stdout
-    return done.stdout
+    try:
+        said, _ = process.communicate(timeout=LONGEST)
+    except BaseException:
+        os.killpg(process.pid, signal.SIGKILL)
+        process.wait()
+        raise
+    assert process.returncode == code, said
+    return said
 
 
-def freecad(script, home, **environment):
+def freecad(script, home, code=0, **environment):
     """Run a script inside FreeCAD without its window."""
     if shutil.which("freecadcmd") is None:
         pytest.skip("FreeCAD (Debian package freecad) is not installed")
-    return run(["freecadcmd", HERE / script], home, **environment)
+    return run(["freecadcmd", HERE / script], home, code, **environment)
 
 
 def toolpost(*words):

@@ -6,10 +6,12 @@ For each case the folder gets `NAME.said` with all that FreeCAD printed, and `ca
 `export` answered. The longest job has as many commands as is said.
 """
 
+import functools
 import json
 import os
 import sys
 import time
+from unittest import mock
 
 import Path
 
@@ -81,6 +83,8 @@ def right():
     case("report", objects, LINUXCNC + " --report " + os.path.join(FOLDER, "report.json"))
     case("offset", objects, LINUXCNC + " --work-offset G56")
     case("offset-unknown", objects, LINUXCNC + " --work-offset G53")
+    case("offset-twice-dotted", objects, LINUXCNC + " --work-offset G54.7")
+    case("offset-of-none", objects[1:], LINUXCNC + " --work-offset G56")
     case("sinumerik", objects, "--machine generic-3axis-sinumerik")
     operation = work.job.Operations.Group[0]
     group = work.document.addObject("App::DocumentObjectGroup", "Outer")
@@ -95,6 +99,8 @@ def right():
     case("argument-open", objects, LINUXCNC + " --report 'here")
     case("option-unknown", objects, LINUXCNC + " --option colour=red")
     case("option-bare", objects, LINUXCNC + " --option colour")
+    case("option-of-the-function", objects, LINUXCNC + " --option name_or_path=3")
+    targets(objects)
     case("no-folder", objects, filename=os.path.join(FOLDER, "missing", "part.ngc"))
     # Not even root writes there.
     case("read-only", objects, filename="/sys/part.ngc")
@@ -102,6 +108,32 @@ def right():
     operation.Active = False
     case("inactive", objects)
     work.close()
+
+
+def targets(objects):
+    """Save where two files cannot be, or one, or only the first of two."""
+    inside = functools.partial(os.path.join, FOLDER)
+    case("same", objects, LINUXCNC + " --report " + inside(".", "same.ngc"))
+    case("folder", objects, filename=FOLDER)
+    case("device", objects, LINUXCNC + " --report /dev/null")
+    with open(inside("linked.ngc"), "w") as file:
+        file.write("earlier")
+    os.symlink("linked.ngc", inside("link.ngc"))
+    case("link", objects)
+    replace = os.replace
+
+    def refuse(source, target):
+        if target == inside("second.ngc"):
+            raise PermissionError(13, "Permission denied")
+        replace(source, target)
+
+    with mock.patch.object(os, "replace", refuse):
+        for first in ("new", "kept"):
+            if first == "kept":
+                with open(inside("kept.json"), "w") as file:
+                    file.write("earlier")
+            report = inside(first + ".json")
+            case(first, objects, f"{LINUXCNC} --report {report}", inside("second.ngc"))
 
 
 def wrong():
@@ -128,6 +160,11 @@ def wrong():
     whole = [Path.Command("G0", {"X": 0, "Y": 0, "Z": 30}), Path.Command("G1", {"X": 1, "F": 3})]
     for name, value in (("nan", float("nan")), ("infinite", float("inf")), ("huge", 1e25)):
         case(name, [start, tool, Piece("Broken", [*whole, Path.Command("G1", {"Y": value})])])
+    case(
+        "surrogate",
+        [start, tool, Piece("Half \udc80", whole)],
+        filename=os.path.join(FOLDER, "half-\udcff.ngc"),
+    )
     broken = Path.Command("(one\nG1 X99)")
     case("comment-of-two-lines", [start, tool, Piece("Broken", [*whole, broken])])
     operation.Active = True

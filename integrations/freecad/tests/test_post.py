@@ -1,6 +1,7 @@
 """The post inside FreeCAD: what it answers, saves and says."""
 
 import json
+import pathlib
 
 import pytest
 
@@ -30,7 +31,15 @@ REFUSALS = {
     "argument-open": ["No closing quotation"],
     "option-unknown": ["no option `colour`"],
     "option-bare": ["--option", "colour is no NAME=VALUE"],
+    "option-of-the-function": ["name_or_path"],
+    "same": ["would be both report and program", "choose another name"],
+    "folder": ["is no ordinary file", "choose another name"],
+    "device": ["/dev/null is no ordinary file"],
+    "new": ["second.ngc cannot be saved: Permission denied"],
+    "kept": ["second.ngc cannot be saved: Permission denied"],
     "offset-unknown": ["G53 is no work offset"],
+    "offset-twice-dotted": ["G54.7 is no work offset"],
+    "offset-of-none": ["no operation calls the work offset of the job", "choose it in the job"],
     "offset-of-two": ["this has G54, G55"],
     "no-folder": ["missing/part.ngc cannot be saved: No such file or directory"],
     "read-only": ["/sys/part.ngc cannot be saved: "],
@@ -66,6 +75,23 @@ def test_the_report_is_saved_where_it_is_asked_for(cases):
     with open(f"{folder}/report.json", encoding="utf-8") as file:
         assert json.load(file)["proof"]["proven"] is True
     assert case["saved"] == case["answer"]
+
+
+def test_of_two_files_both_are_saved_or_none(cases):
+    folder = pathlib.Path(cases["cases"]["file"]["file"]).parent
+    assert not (folder / "new.json").exists()
+    assert (folder / "kept.json").read_text() == "earlier"
+
+
+def test_a_link_stays_one(cases):
+    link = pathlib.Path(cases["cases"]["link"]["file"])
+    assert link.is_symlink()
+    assert link.read_text() == cases["cases"]["link"]["answer"]
+
+
+def test_a_label_that_no_file_can_hold_is_posted(cases):
+    assert cases["cases"]["surrogate"]["saved"] == cases["cases"]["surrogate"]["answer"]
+    assert "a mistake in the post" not in cases["cases"]["surrogate"]["said"]
 
 
 def test_a_work_offset_takes_the_place_of_that_of_the_job(cases):
@@ -104,6 +130,8 @@ def test_each_fixture_gets_its_program(cases):
 def test_a_long_job_is_posted(cases):
     """As many as a million commands, of which nothing is lost."""
     assert cases["cases"]["long"]["answer"].count("\nX") > 0.9 * cases["long"]
+    # Seconds, on a slow machine with a command that was built for debugging.
+    assert cases["cases"]["long"]["seconds"] < 120
 
 
 def test_the_lists_of_a_job_are_those_of_freecad(cases):

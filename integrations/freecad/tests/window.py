@@ -41,9 +41,10 @@ def arrange():
 
 
 def post(job, *answers):
-    """Post the job; each dialog on the way gets one of the answers."""
+    """Post the job; each dialog on the way gets one of the answers, and one too many is left."""
     answers = list(answers)
     shown = []
+    unexpected = []
 
     def answer():
         dialog = QtGui.QApplication.activeModalWidget()
@@ -51,6 +52,9 @@ def post(job, *answers):
             editor = dialog.findChild(QtGui.QTextEdit)
             shown.append(editor.toPlainText() if editor else dialog.text())
             answers.pop(0)(dialog)
+        elif dialog is not None:
+            unexpected.append(dialog.windowTitle())
+            dialog.reject()
 
     timer = QtCore.QTimer()
     timer.timeout.connect(answer)
@@ -65,7 +69,7 @@ def post(job, *answers):
     if os.path.exists(PROGRAM):
         with open(PROGRAM, encoding="utf-8") as file:
             saved = file.read()
-    return {"shown": shown, "saved": saved, "left": len(answers)}
+    return {"shown": shown, "saved": saved, "left": len(answers), "unexpected": unexpected}
 
 
 def accept(dialog):
