@@ -68,10 +68,7 @@ fn way_out(mut found: Diagnostic) -> Diagnostic {
         "nc-unknown-word" => "change the commands of the operation",
         _ => return found,
     };
-    if !found.help.is_empty() {
-        found.help.push_str("; ");
-    }
-    found.help.push_str(way_out);
+    found.help_too(way_out);
     found
 }
 

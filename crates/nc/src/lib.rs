@@ -101,10 +101,7 @@ fn way_out(machine: &Machine, mut found: Box<Diagnostic>) -> Box<Diagnostic> {
         "nc-unknown-position" | "unknown-position" => "or say where the tool stands at the start",
         _ => return found,
     };
-    if !found.help.is_empty() {
-        found.help.push_str("; ");
-    }
-    found.help.push_str(way_out);
+    found.help_too(way_out);
     found
 }
 
@@ -208,11 +205,11 @@ impl<'a> Lift<'a> {
             }
             Op::Hole(own) => {
                 let pose = self.pose(&own);
-                let aside =
-                    |by: Vec3| self.pose(&Pose { point: own.point + by, ..own }).point - pose.point;
-                let aside = self
-                    .boring
-                    .and_then(|(cycle, _)| cycle.kind.withdrawal().map(|way| aside(way.aside)));
+                let way = self.boring.as_ref().and_then(|(cycle, _)| cycle.kind.withdrawal());
+                let aside = way.map(|way| {
+                    let beside = Pose { point: own.point + way.aside, ..own };
+                    self.pose(&beside).point - pose.point
+                });
                 if !known(&pose) {
                     return Err(unknown("a hole", &pose));
                 }

@@ -73,6 +73,14 @@ impl Diagnostic {
         self
     }
 
+    /// Adds another way out to those that there are.
+    pub fn help_too(&mut self, help: &str) {
+        if !self.help.is_empty() {
+            self.help.push_str("; ");
+        }
+        self.help.push_str(help);
+    }
+
     /// In this file.
     pub fn file(mut self, file: impl Into<String>) -> Diagnostic {
         self.file = file.into();

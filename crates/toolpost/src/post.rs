@@ -55,10 +55,7 @@ pub fn run(args: &Post, silent: bool) -> Result<Answer, Stop> {
     let report_path = args.output.with_extension("report.json");
     let target = Target::new(&args.output, &inputs)?;
     let report_target = Target::new(&report_path, &inputs)?;
-    let mut machine = toolpath::machine(&args.machine)?;
-    for (name, value) in &args.option {
-        machine.set_option(name, value)?;
-    }
+    let machine = toolpath::machine_with(&args.machine, &args.option)?;
     let progress = Progress::new(4, silent);
     progress.step("reading");
     let toolpath = toolpath::read(source, args.source.strict, &args.source.origin, Some(&machine))?;

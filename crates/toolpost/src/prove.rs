@@ -12,10 +12,7 @@ use serde_json::json;
 
 /// Runs the program on the virtual control of the machine and compares.
 pub fn run(args: &Prove, silent: bool) -> Result<Answer, Stop> {
-    let mut machine = toolpath::machine(&args.machine)?;
-    for (name, value) in &args.option {
-        machine.set_option(name, value)?;
-    }
+    let machine = toolpath::machine_with(&args.machine, &args.option)?;
     let progress = Progress::new(2, silent);
     progress.step("reading");
     let toolpath = toolpath::read(&args.against, false, &args.origin, Some(&machine))?;

@@ -321,6 +321,18 @@ pub fn machine(name_or_path: &str) -> Result<Machine, Stop> {
     Ok(machine)
 }
 
+/// The same with other values for some of its options.
+///
+/// # Errors
+/// As [`machine`], or where it has no such option.
+pub fn machine_with(name_or_path: &str, options: &[(String, String)]) -> Result<Machine, Stop> {
+    let mut machine = machine(name_or_path)?;
+    for (name, value) in options {
+        machine.set_option(name, value)?;
+    }
+    Ok(machine)
+}
+
 /// What a machine is called, as JSON.
 pub fn describe(machine: &Machine) -> Value {
     json!({
