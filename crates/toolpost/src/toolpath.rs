@@ -324,7 +324,7 @@ pub fn machine(name_or_path: &str) -> Result<Machine, Stop> {
 /// The same with other values for some of its options.
 ///
 /// # Errors
-/// As [`machine`], or where it has no such option.
+/// As [`machine()`], or where it has no such option.
 pub fn machine_with(name_or_path: &str, options: &[(String, String)]) -> Result<Machine, Stop> {
     let mut machine = machine(name_or_path)?;
     for (name, value) in options {
