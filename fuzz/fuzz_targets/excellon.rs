@@ -2,7 +2,8 @@
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
-use pcb::excellon::{Path, read};
+use pcb::HoleShape;
+use pcb::excellon::read;
 
 fuzz_target!(|data: &[u8]| {
     match read("fuzz.drl", data) {
@@ -11,9 +12,9 @@ fuzz_target!(|data: &[u8]| {
             for cut in drill.cuts.iter().take(10_000) {
                 assert!(drill.tools[cut.tool as usize].diameter > 0.0);
                 let whole = match &cut.path {
-                    Path::Hole(at) => at.is_finite(),
-                    Path::Slot(from, to) => from.is_finite() && to.is_finite(),
-                    Path::Route(elements) => {
+                    HoleShape::Round(at) => at.is_finite(),
+                    HoleShape::Slot(from, to) => from.is_finite() && to.is_finite(),
+                    HoleShape::Route(elements) => {
                         elements.windows(2).all(|pair| pair[0].end == pair[1].start)
                     }
                 };

@@ -13,15 +13,23 @@
 //! `docs/sources/excellon.md`.
 
 mod arc;
+pub mod board;
 mod contour;
 mod decimal;
 pub mod excellon;
 pub mod gerber;
+mod hole;
+mod operation;
+mod path;
 mod report;
 mod stroke;
 mod transform;
 
+pub use board::{Board, Copper, Side};
 pub use contour::{Contour, Piece};
+pub use hole::{Hole, HoleShape};
+pub use operation::{Cut, Cutter, Operation, Stretch, Tool};
+pub use path::Path;
 pub use transform::Transform;
 
 /// The farthest coordinate that is taken, mm.

@@ -14,9 +14,9 @@ mod route;
 mod tools;
 mod words;
 
-use crate::Transform;
 use crate::contour::{Contour, Piece};
 use crate::stroke::Pen;
+use crate::{HoleShape, Transform};
 use geom::{Element, Vec2};
 use program::Diagnostic;
 
@@ -50,18 +50,7 @@ pub struct Cut {
     /// Index of its tool.
     pub tool: u32,
     /// Where.
-    pub path: Path,
-}
-
-/// Where a tool cuts.
-#[derive(Clone, Debug, PartialEq)]
-pub enum Path {
-    /// A hole.
-    Hole(Vec2),
-    /// A slot (`G85`), from hole to hole.
-    Slot(Vec2, Vec2),
-    /// A route, each element of which starts where the one before ends.
-    Route(Vec<Element>),
+    pub path: HoleShape,
 }
 
 impl Drill {
@@ -69,11 +58,11 @@ impl Drill {
     pub fn pieces(&self, cut: &Cut) -> Vec<Piece> {
         let diameter = self.tools.get(cut.tool as usize).map_or(0.0, |tool| tool.diameter);
         match &cut.path {
-            Path::Hole(at) => vec![Piece::new(true, Contour::circle(*at, diameter / 2.0))],
-            Path::Slot(from, to) => {
+            HoleShape::Round(at) => vec![Piece::new(true, Contour::circle(*at, diameter / 2.0))],
+            HoleShape::Slot(from, to) => {
                 vec![Piece::new(true, Contour::stadium(*from, *to, diameter / 2.0))]
             }
-            Path::Route(elements) => {
+            HoleShape::Route(elements) => {
                 let pen = Pen::Round(diameter);
                 let sweep = |element: &Element| pen.sweep(&Transform::NONE, element);
                 elements.iter().flat_map(sweep).collect()

@@ -5,8 +5,9 @@ use super::evidence::Evidence;
 use super::route::{by_center, by_radius};
 use super::tools::Tools;
 use super::words::{Word, lines, words};
-use super::{Cut, Drill, Path, Reading};
+use super::{Cut, Drill, Reading};
 use crate::FAR;
+use crate::HoleShape;
 use crate::decimal::whole;
 use crate::report::{Outcome, Place, Report, fault};
 use geom::{Element, Vec2};
@@ -211,7 +212,7 @@ impl Reader<'_> {
             None if slot => {
                 let from = self.to(first)?;
                 let to = self.to(second)?;
-                self.cut(Path::Slot(from, to))
+                self.cut(HoleShape::Slot(from, to))
             }
             None if first != [None; 2] => self.travel(first, center, radius),
             None => Ok(()),
@@ -310,7 +311,7 @@ impl Reader<'_> {
         let route = std::mem::take(&mut self.route);
         // What was cut had a tool.
         if let (false, Ok(tool)) = (route.is_empty(), self.tools.selected()) {
-            self.cuts.push(Cut { line: self.place.line, tool, path: Path::Route(route) });
+            self.cuts.push(Cut { line: self.place.line, tool, path: HoleShape::Route(route) });
         }
     }
 
@@ -324,7 +325,7 @@ impl Reader<'_> {
         let end = self.to(end)?;
         let clockwise = self.mode == Mode::Clockwise;
         match self.mode {
-            Mode::Drill => return self.cut(Path::Hole(end)),
+            Mode::Drill => return self.cut(HoleShape::Round(end)),
             Mode::Position => return Ok(()),
             // The tool is over the board.
             _ if !self.down && self.evidence.plunges => return Ok(()),
@@ -366,7 +367,7 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn cut(&mut self, path: Path) -> Outcome {
+    fn cut(&mut self, path: HoleShape) -> Outcome {
         let tool = self.tools.selected()?;
         if self.cuts.len() >= MOST_CUTS {
             return Err(too_large());
@@ -396,7 +397,7 @@ impl Reader<'_> {
                 let message = format!("hole {i} of {count} is at X {} Y {} mm", at.x, at.y);
                 return Err(fault("not-a-place", message, "look at the count and the distance"));
             }
-            self.cut(Path::Hole(at))?;
+            self.cut(HoleShape::Round(at))?;
         }
         Ok(())
     }

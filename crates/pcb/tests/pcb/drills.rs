@@ -3,7 +3,8 @@
 use crate::data;
 use geom::Vec2;
 use std::f64::consts::PI;
-use toolpost_pcb::excellon::{Drill, Path, Reading, read};
+use toolpost_pcb::HoleShape;
+use toolpost_pcb::excellon::{Drill, Reading, read};
 
 fn reading(text: &str) -> Reading {
     read("board.drl", text.as_bytes()).unwrap_or_else(|errors| panic!("{errors:#?}"))
@@ -15,8 +16,8 @@ fn drill(text: &str) -> Drill {
 
 /// The holes, in mm.
 fn holes(drill: &Drill) -> Vec<Vec2> {
-    let hole = |path: &Path| match path {
-        Path::Hole(at) => Some(*at),
+    let hole = |path: &HoleShape| match path {
+        HoleShape::Round(at) => Some(*at),
         _ => None,
     };
     drill.cuts.iter().filter_map(|cut| hole(&cut.path)).collect()
@@ -102,12 +103,12 @@ fn repeats_slots_and_routes() {
     let expected = [(1.0, 2.0), (3.0, 1.5), (5.0, 1.0), (7.0, 0.5), (14.0, 4.0), (5.0, 5.0)];
     assert_near(&holes(&drill), &expected);
     let slot = drill.cuts.iter().find_map(|cut| match cut.path {
-        Path::Slot(from, to) => Some([from, to]),
+        HoleShape::Slot(from, to) => Some([from, to]),
         _ => None,
     });
     assert_near(&slot.unwrap(), &[(10.0, 0.0), (14.0, 3.0)]);
     let route = drill.cuts.iter().find_map(|cut| match &cut.path {
-        Path::Route(elements) => Some(elements),
+        HoleShape::Route(elements) => Some(elements),
         _ => None,
     });
     let route = route.unwrap();
@@ -150,8 +151,8 @@ fn the_fixtures_are_what_their_names_say() {
         drill(std::str::from_utf8(&data::bytes(&file)).unwrap())
     };
     assert_near(&holes(&fixture("hit.drl")), &[(0.0, 0.0)]);
-    assert_eq!(fixture("slot.drl").cuts[0].path, Path::Slot(Vec2::ZERO, Vec2::new(12.7, 0.0)));
-    let Path::Route(lines) = &fixture("linear-route.drl").cuts[0].path.clone() else {
+    assert_eq!(fixture("slot.drl").cuts[0].path, HoleShape::Slot(Vec2::ZERO, Vec2::new(12.7, 0.0)));
+    let HoleShape::Route(lines) = &fixture("linear-route.drl").cuts[0].path.clone() else {
         panic!("no route")
     };
     let ends: Vec<Vec2> = lines.iter().map(|line| line.end / 25.4).collect();
@@ -161,7 +162,7 @@ fn the_fixtures_are_what_their_names_say() {
     for (cut, centers) in
         arcs.cuts.iter().zip([[(0.25, 0.0), (0.25, 0.5)], [(1.0, 0.0), (1.0, 0.5)]])
     {
-        let Path::Route(route) = &cut.path else { panic!("no route") };
+        let HoleShape::Route(route) = &cut.path else { panic!("no route") };
         let found: Vec<Vec2> = route.iter().map(|arc| arc.turn.unwrap().center / 25.4).collect();
         assert_near(&found, &centers);
     }

@@ -105,7 +105,7 @@ fn every_drill_file_looks_as_gerbv_draws_it() {
         let reading = excellon::read(&file.to_string_lossy(), &data::bytes(&file)).unwrap();
         // gerbv 2.9.6 does not read routes.
         let drill = reading.drill;
-        if drill.cuts.iter().any(|cut| matches!(cut.path, excellon::Path::Route(_))) {
+        if drill.cuts.iter().any(|cut| matches!(cut.path, toolpost_pcb::HoleShape::Route(_))) {
             continue;
         }
         if let Some(raster) = Raster::of_drill(&drill, PIXEL, PART) {
@@ -225,11 +225,11 @@ fn every_hole_and_route_is_where_gerbonara_sees_it() {
         for cut in &drill.cuts {
             let diameter = drill.tools[cut.tool as usize].diameter;
             match &cut.path {
-                excellon::Path::Hole(at) => ours.push(("flash".into(), vec![at.x, at.y])),
-                excellon::Path::Slot(from, to) => {
+                toolpost_pcb::HoleShape::Round(at) => ours.push(("flash".into(), vec![at.x, at.y])),
+                toolpost_pcb::HoleShape::Slot(from, to) => {
                     ours.push(path(&geom::Element::line(*from, *to), diameter));
                 }
-                excellon::Path::Route(elements) => {
+                toolpost_pcb::HoleShape::Route(elements) => {
                     ours.extend(elements.iter().map(|element| path(element, diameter)));
                 }
             }
