@@ -41,9 +41,11 @@ mod offset;
 mod refit;
 mod ring;
 mod shape;
+mod sweep;
 
 pub use ring::Ring;
 pub use shape::Cap;
+pub use sweep::strokes;
 
 use crate::{Element, Vec2};
 use chords::boolean;

@@ -2,7 +2,8 @@
 
 use crate::contour::Piece;
 use crate::gerber::{Image, Object};
-use geom::region::{Fill, Region, RegionError, Ring};
+use geom::Element;
+use geom::region::{Fill, Region, RegionError, Ring, strokes};
 use std::sync::Arc;
 
 /// The copper of a side of a board.
@@ -21,34 +22,52 @@ pub struct Copper {
 pub fn covered(image: &Image) -> Result<Region, RegionError> {
     let runs: Vec<&[Object]> = image.objects.chunk_by(|a, b| a.dark == b.dark).collect();
     let paint = Paint::of(&runs, &|run: &&[Object]| {
-        let pieces: Vec<Vec<Piece>> = run.iter().map(|object| image.pieces(object)).collect();
-        let shape = united(&pieces)?;
-        Ok(Paint::new(run.first().is_some_and(|object| object.dark), shape))
+        let mut shapes = Shapes::default();
+        for object in *run {
+            match image.stroke(object) {
+                Some(stroke) => shapes.strokes.push(stroke),
+                None => shapes.add(&image.pieces(object))?,
+            }
+        }
+        Ok(Paint::new(run.first().is_some_and(|object| object.dark), shapes.united()?))
     })?;
     Ok(paint.dark)
 }
 
-/// What is in any of some shapes, each of which is given by its pieces.
-pub(crate) fn united(shapes: &[Vec<Piece>]) -> Result<Region, RegionError> {
-    let mut rings = Vec::new();
-    for pieces in shapes {
-        if pieces.iter().all(|piece| piece.solid) {
-            for contour in pieces.iter().flat_map(|piece| &piece.contours) {
-                rings.push(Ring::new(contour.elements().to_vec())?);
-            }
-        } else {
-            let paint = Paint::of(pieces, &|piece: &Piece| {
-                Ok(Paint::new(piece.solid, united(&[vec![solid(piece)]])?))
-            })?;
-            rings.extend(paint.dark.rings().cloned());
-        }
-    }
-    Region::inside(&rings, Fill::Positive)
+/// Shapes that are to be united.
+#[derive(Default)]
+pub(crate) struct Shapes {
+    /// The ways of round pens, with their width, mm.
+    pub(crate) strokes: Vec<(Element, f64)>,
+    /// What others are inside of.
+    rings: Vec<Ring>,
 }
 
-/// The area of a piece, whether it adds or takes.
-fn solid(piece: &Piece) -> Piece {
-    Piece { solid: true, ..piece.clone() }
+impl Shapes {
+    /// Adds the shape that is given by its pieces.
+    pub(crate) fn add(&mut self, pieces: &[Piece]) -> Result<(), RegionError> {
+        if pieces.iter().all(|piece| piece.solid) {
+            for contour in pieces.iter().flat_map(|piece| &piece.contours) {
+                self.rings.push(Ring::new(contour.elements().to_vec())?);
+            }
+            return Ok(());
+        }
+        let paint = Paint::of(pieces, &|piece: &Piece| {
+            let mut area = Shapes::default();
+            area.add(&[Piece { solid: true, ..piece.clone() }])?;
+            Ok(Paint::new(piece.solid, area.united()?))
+        })?;
+        self.rings.extend(paint.dark.rings().cloned());
+        Ok(())
+    }
+
+    /// What is in any of them.
+    pub(crate) fn united(mut self) -> Result<Region, RegionError> {
+        // An aperture without size draws nothing.
+        self.strokes.retain(|(_, width)| *width > 0.0);
+        self.rings.extend(strokes(&self.strokes)?);
+        Region::inside(&self.rings, Fill::Positive)
+    }
 }
 
 /// What painting does to the image under it: it takes `clear` away, and then adds `dark`.
