@@ -36,12 +36,14 @@
 
 mod chords;
 mod crossings;
+mod index;
 mod kernel;
 mod offset;
 mod refit;
 mod ring;
 mod shape;
 
+pub use index::{Index, Nearest, Piece};
 pub use ring::Ring;
 pub use shape::Cap;
 
