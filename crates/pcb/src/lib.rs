@@ -14,6 +14,8 @@
 
 mod arc;
 pub mod board;
+mod clearing;
+mod clip;
 mod contour;
 mod decimal;
 pub mod excellon;
@@ -27,6 +29,7 @@ mod stroke;
 mod transform;
 
 pub use board::{Board, Copper, Side};
+pub use clearing::{Clearing, cleared};
 pub use contour::{Contour, Piece};
 pub use hole::{Hole, HoleShape};
 pub use operation::{Cut, Cutter, Operation, Stretch, Tool};
