@@ -14,12 +14,6 @@ impl<'a> Clip<'a> {
         Clip { index: Index::new(region) }
     }
 
-    /// Whether any of `path` is in the region. On its boundary either may be told.
-    pub(crate) fn meets(&self, path: &Path) -> bool {
-        let mut parts = self.parts(path);
-        parts.any(|(_, inside)| inside)
-    }
-
     /// The parts of `path` that are in the region, in their order; of a closed path the first may be
     /// one over its start.
     pub(crate) fn within(&self, path: &Path) -> Vec<Path> {
