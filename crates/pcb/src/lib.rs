@@ -27,6 +27,7 @@ mod path;
 mod report;
 mod stroke;
 mod transform;
+mod voronoi;
 
 pub use board::{Board, Copper, Side};
 pub use clearing::{Clearing, cleared};
@@ -35,6 +36,7 @@ pub use hole::{Hole, HoleShape};
 pub use operation::{Cut, Cutter, Operation, Stretch, Tool};
 pub use path::Path;
 pub use transform::Transform;
+pub use voronoi::{Division, Strait, divided};
 
 /// The farthest coordinate that is taken, mm.
 const FAR: f64 = 1e6;

@@ -8,3 +8,4 @@ mod gerber_input;
 mod judges;
 mod layers;
 mod raster;
+mod voronoi;
