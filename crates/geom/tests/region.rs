@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
-use toolpost_geom::region::{Cap, Fill, Region, RegionError, Ring, strokes};
+use toolpost_geom::region::{Cap, Fill, Index, Region, RegionError, Ring, strokes};
 use toolpost_geom::{Element, Vec2};
 
 /// How far a boundary may be from where it ought to be, mm.
@@ -196,6 +196,10 @@ fn nothing_stays_nothing() {
     assert_eq!((nothing.area(), nothing.extents()), (0.0, None));
     assert_eq!(nothing.distance(Vec2::ZERO), f64::INFINITY);
     assert!(!nothing.contains(Vec2::ZERO));
+    let index = Index::new(&nothing);
+    assert_eq!(index.island_at(Vec2::ZERO), None);
+    assert!(index.nearest(Vec2::ZERO, f64::INFINITY).is_none());
+    assert_eq!(index.within(Vec2::splat(-1e9), Vec2::splat(1e9)).count(), 0);
 }
 
 #[test]
@@ -326,6 +330,34 @@ proptest! {
                 let away = a.distance(element.at(t));
                 prop_assert!((away - by).abs() < NEAR, "{element:?} {away} {by}");
             }
+        }
+    }
+
+    #[test]
+    fn an_index_finds_what_looking_at_everything_finds(
+        a in some(), points in proptest::collection::vec((-600..600i32, -600..600i32), 20)
+    ) {
+        let index = Index::new(&a);
+        for (x, y) in points {
+            // Half of the points are on the grid of the shapes, at the height of corners.
+            let point = Vec2::new(x.into(), y.into()) * 0.0125;
+            let away = a.rings().map(|ring| ring.distance(point)).fold(f64::INFINITY, f64::min);
+            if away > NEAR {
+                let inside = a.islands().iter().position(|island| island.contains(point));
+                prop_assert_eq!(index.island_at(point), inside);
+            }
+            let nearest = index.nearest(point, f64::INFINITY).unwrap();
+            prop_assert!((nearest.distance - away).abs() < 1e-12);
+            let (piece, on) = (nearest.piece, nearest.piece.element.at(nearest.t));
+            prop_assert!((on.distance(point) - away).abs() < 1e-9);
+            let ring = a.rings().nth(piece.ring).unwrap();
+            prop_assert!(ring.elements().contains(piece.element));
+            prop_assert!(a.islands()[piece.island].distance(on) < 1e-9);
+            prop_assert!(index.nearest(point, away + 1e-9).is_some());
+            prop_assert!(index.nearest(point, away - 1e-9).is_none_or(|_| away == 0.0));
+            let box_of = |half: f64| index.within(point - half, point + half).count();
+            prop_assert!(box_of(away + 1e-9) > 0);
+            prop_assert_eq!(box_of(100.0), index.pieces().len());
         }
     }
 

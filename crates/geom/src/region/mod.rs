@@ -36,6 +36,7 @@
 
 mod chords;
 mod crossings;
+mod index;
 mod kernel;
 mod offset;
 mod refit;
@@ -43,6 +44,7 @@ mod ring;
 mod shape;
 mod sweep;
 
+pub use index::{Index, Nearest, Piece};
 pub use ring::Ring;
 pub use shape::Cap;
 pub use sweep::strokes;
