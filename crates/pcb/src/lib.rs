@@ -19,6 +19,7 @@ mod decimal;
 pub mod excellon;
 pub mod gerber;
 mod hole;
+pub mod isolation;
 pub mod job;
 mod operation;
 mod path;
@@ -29,7 +30,7 @@ mod transform;
 pub use board::{Board, Copper, Side};
 pub use contour::{Contour, Piece};
 pub use hole::{Hole, HoleShape};
-pub use operation::{Cut, Cutter, Operation, Stretch, Tool};
+pub use operation::{Cut, Cutter, Operation, Stretch, Tool, depths};
 pub use path::Path;
 pub use transform::Transform;
 
