@@ -15,12 +15,13 @@
 mod arc;
 pub mod board;
 mod clearing;
-mod clip;
 mod contour;
 mod decimal;
+mod engraving;
 pub mod excellon;
 pub mod gerber;
 mod hole;
+pub mod isolation;
 pub mod job;
 mod operation;
 mod path;
@@ -30,10 +31,11 @@ mod transform;
 mod voronoi;
 
 pub use board::{Board, Copper, Side};
-pub use clearing::{Clearing, cleared};
+pub use clearing::{Cleared, Clearing};
 pub use contour::{Contour, Piece};
+pub use engraving::{Engraving, engraved, outlined};
 pub use hole::{Hole, HoleShape};
-pub use operation::{Cut, Cutter, Operation, Stretch, Tool};
+pub use operation::{Cut, Cutter, Operation, Stretch, Tool, depths};
 pub use path::Path;
 pub use transform::Transform;
 pub use voronoi::{Division, Strait, divided};

@@ -2,7 +2,7 @@
 
 mod copper;
 
-pub use copper::{Copper, covered};
+pub use copper::{Copper, Named, Shape, covered};
 
 use crate::Hole;
 use geom::region::Region;
