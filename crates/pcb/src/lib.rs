@@ -15,6 +15,7 @@
 mod arc;
 pub mod board;
 mod contour;
+mod crossing;
 mod decimal;
 pub mod excellon;
 pub mod gerber;
@@ -24,14 +25,13 @@ mod operation;
 mod path;
 mod report;
 mod stroke;
-mod transform;
 
 pub use board::{Board, Copper, Side};
 pub use contour::{Contour, Piece};
+pub use geom::Transform;
 pub use hole::{Hole, HoleShape};
 pub use operation::{Cut, Cutter, Operation, Stretch, Tool};
 pub use path::Path;
-pub use transform::Transform;
 
 /// The farthest coordinate that is taken, mm.
 const FAR: f64 = 1e6;
