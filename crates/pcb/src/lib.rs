@@ -14,6 +14,8 @@
 
 mod arc;
 pub mod board;
+mod clearing;
+mod clip;
 mod contour;
 mod crossing;
 mod decimal;
@@ -27,6 +29,7 @@ mod report;
 mod stroke;
 
 pub use board::{Board, Copper, Side};
+pub use clearing::{Clearing, cleared};
 pub use contour::{Contour, Piece};
 pub use geom::Transform;
 pub use hole::{Hole, HoleShape};

@@ -1,5 +1,6 @@
 //! Ways of a tool over the board.
 
+use geom::region::Ring;
 use geom::{Element, Vec2};
 
 /// A chain of lines and arcs, each of which starts where the one before ends, bit for bit; at least one.
@@ -18,6 +19,14 @@ impl Path {
             end = element.end;
         }
         Some(Path { elements })
+    }
+
+    /// Once around `ring`; `None` where that has no elements.
+    pub fn around(ring: &Ring) -> Option<Path> {
+        let mut elements = ring.elements().to_vec();
+        let start = elements.first()?.start;
+        elements.last_mut()?.end = start;
+        Path::new(elements)
     }
 
     /// Its elements, in the order of travel.

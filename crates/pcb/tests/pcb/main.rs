@@ -1,6 +1,7 @@
 //! Gerber and Excellon files against facts that they state, hand calculation and outside judges.
 
 mod boards;
+mod clearing;
 mod data;
 mod drill_input;
 mod drills;
