@@ -22,6 +22,7 @@ mod decimal;
 pub mod excellon;
 pub mod gerber;
 mod hole;
+pub mod isolation;
 pub mod job;
 mod operation;
 mod path;
@@ -33,7 +34,7 @@ pub use clearing::{Clearing, cleared};
 pub use contour::{Contour, Piece};
 pub use geom::Transform;
 pub use hole::{Hole, HoleShape};
-pub use operation::{Cut, Cutter, Operation, Stretch, Tool};
+pub use operation::{Cut, Cutter, Operation, Stretch, Tool, depths};
 pub use path::Path;
 
 /// The farthest coordinate that is taken, mm.

@@ -6,6 +6,7 @@ mod data;
 mod drill_input;
 mod drills;
 mod gerber_input;
+mod isolation;
 mod judges;
 mod layers;
 mod raster;
