@@ -20,6 +20,7 @@ mod decimal;
 pub mod excellon;
 pub mod gerber;
 mod hole;
+pub mod job;
 mod operation;
 mod path;
 mod report;

@@ -36,14 +36,18 @@
 
 mod chords;
 mod crossings;
+mod index;
 mod kernel;
 mod offset;
 mod refit;
 mod ring;
 mod shape;
+mod sweep;
 
+pub use index::{Index, Nearest, Piece};
 pub use ring::Ring;
 pub use shape::Cap;
+pub use sweep::strokes;
 
 use crate::{Element, Transform, Vec2};
 use chords::boolean;

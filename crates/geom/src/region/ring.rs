@@ -108,7 +108,7 @@ pub(super) fn place(point: Vec2) -> Result<(), RegionError> {
 
 /// How often `element` runs upwards past `point` on its right, less how often downwards. The sum over a
 /// closed chain is how often that runs around the point, counter-clockwise.
-fn winding(element: &Element, point: Vec2) -> i32 {
+pub(super) fn winding(element: &Element, point: Vec2) -> i32 {
     let (start, end) = (element.start - point, element.end - point);
     // A point at the height of an end counts as a little above it, and so one on a chord that is level.
     let across = start.perp_dot(end);

@@ -6,6 +6,7 @@
 use super::layer::{Format, Layer};
 use super::{Board, Copper, check, covered, holes, outline};
 use crate::{excellon, gerber};
+use geom::region::RegionError;
 use program::Diagnostic;
 
 /// A file of a board.
@@ -134,13 +135,12 @@ impl Known<'_> {
             warnings.push(placed(Diagnostic::warning("layer-empty", message)));
             return Ok(warnings);
         }
-        let whole = || {
-            covered(&image).map_err(|error| {
-                let message = format!("this layer cannot be taken: {error}");
-                let help = "look at the unit, and at the sizes of apertures";
-                vec![Diagnostic::error("layer", message).help(help).file(name)]
-            })
+        let no_region = |error: RegionError| {
+            let message = format!("this layer cannot be taken: {error}");
+            let help = "look at the unit, and at the sizes of apertures";
+            vec![placed(Diagnostic::error("layer", message).help(help))]
         };
+        let whole = || covered(&image).map_err(no_region);
         let negative =
             image.file_attribute(".FilePolarity").is_some_and(|value| value == ["Negative"]);
         match self.layer {
@@ -151,9 +151,9 @@ impl Known<'_> {
                 return Err(vec![placed(found)]);
             }
             Layer::Copper(face) => {
-                let region = whole()?;
-                let nets = vec![None; region.islands().len()];
-                board.side_mut(face).copper = Some(Copper { region, nets });
+                let (copper, found) = Copper::of_image(&image).map_err(no_region)?;
+                board.side_mut(face).copper = Some(copper);
+                warnings.extend(found.into_iter().map(placed));
             }
             Layer::Mask(face) => board.side_mut(face).mask = Some(whole()?),
             Layer::Legend(face) => board.side_mut(face).legend = Some(whole()?),

@@ -15,7 +15,7 @@ mod layer;
 pub mod outline;
 
 pub use check::checked;
-pub use copper::{Copper, covered};
+pub use copper::{Copper, Named, Shape, covered};
 pub use files::{File, Reading, read};
 pub use layer::{Face, Layer};
 
