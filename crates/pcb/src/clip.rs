@@ -14,6 +14,11 @@ impl<'a> Clip<'a> {
         Clip { index: Index::new(region) }
     }
 
+    /// Whether `point` is in the region. On its boundary either may be told.
+    pub(crate) fn contains(&self, point: Vec2) -> bool {
+        self.index.island_at(point).is_some()
+    }
+
     /// The parts of `path` that are in the region, in their order; of a closed path the first may be
     /// one over its start.
     pub(crate) fn within(&self, path: &Path) -> Vec<Path> {
@@ -56,7 +61,7 @@ impl<'a> Clip<'a> {
                     continue;
                 }
                 let part = element.part(from, to);
-                let inside = known.unwrap_or_else(|| self.index.island_at(part.at(0.5)).is_some());
+                let inside = known.unwrap_or_else(|| self.contains(part.at(0.5)));
                 parts.push((part, inside));
                 from = to;
                 known = meetings.is_empty().then_some(inside);

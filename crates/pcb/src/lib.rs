@@ -28,6 +28,8 @@ mod operation;
 mod path;
 mod report;
 mod stroke;
+mod transform;
+mod voronoi;
 
 pub use board::{Board, Copper, Side};
 pub use clearing::{Clearing, cleared};
@@ -36,6 +38,8 @@ pub use geom::Transform;
 pub use hole::{Hole, HoleShape};
 pub use operation::{Cut, Cutter, Operation, Stretch, Tool, depths};
 pub use path::Path;
+pub use transform::Transform;
+pub use voronoi::{Division, Strait, divided};
 
 /// The farthest coordinate that is taken, mm.
 const FAR: f64 = 1e6;

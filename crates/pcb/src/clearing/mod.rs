@@ -49,7 +49,8 @@ pub fn cleared(area: &Region, widths: &[f64], overlap: f64) -> Outcome<Clearing>
             return Err(fault("tool-width", message, &help));
         }
         if let Some(wider) = i.checked_sub(1).and_then(|i| widths.get(i)).filter(|w| *w <= width) {
-            let message = format!("a tool {width} mm wide has nothing to do after one of {wider} mm");
+            let message =
+                format!("a tool {width} mm wide has nothing to do after one of {wider} mm");
             return Err(fault("tool-width", message, "give the widest tool first, and each once"));
         }
     }

@@ -123,9 +123,20 @@ fn real_boards_are_rubbed_out() {
         for overlap in [0.5, 0.2] {
             let start = std::time::Instant::now();
             let clearing = cleared(&area, &[1.5, 0.4], overlap).unwrap();
-            eprintln!("{name} {overlap} {:?}, rest {} of {}", start.elapsed(), clearing.rest.area(), area.area());
+            eprintln!(
+                "{name} {overlap} {:?}, rest {} of {}",
+                start.elapsed(),
+                clearing.rest.area(),
+                area.area()
+            );
             for paths in &clearing.passes {
-                eprintln!("  {} paths, {} closed, {} mm, {} elements", paths.len(), paths.iter().filter(|p| p.is_closed()).count(), paths.iter().map(Path::length).sum::<f64>(), paths.iter().map(|p| p.elements().len()).sum::<usize>());
+                eprintln!(
+                    "  {} paths, {} closed, {} mm, {} elements",
+                    paths.len(),
+                    paths.iter().filter(|p| p.is_closed()).count(),
+                    paths.iter().map(Path::length).sum::<f64>(),
+                    paths.iter().map(|p| p.elements().len()).sum::<usize>()
+                );
             }
             let start = std::time::Instant::now();
             check(&area, &[1.5, 0.4], overlap);

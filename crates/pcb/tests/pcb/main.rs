@@ -10,3 +10,4 @@ mod isolation;
 mod judges;
 mod layers;
 mod raster;
+mod voronoi;
