@@ -28,7 +28,6 @@ mod operation;
 mod path;
 mod report;
 mod stroke;
-mod transform;
 mod voronoi;
 
 pub use board::{Board, Copper, Side};
@@ -38,7 +37,6 @@ pub use geom::Transform;
 pub use hole::{Hole, HoleShape};
 pub use operation::{Cut, Cutter, Operation, Stretch, Tool, depths};
 pub use path::Path;
-pub use transform::Transform;
 pub use voronoi::{Division, Strait, divided};
 
 /// The farthest coordinate that is taken, mm.

@@ -34,8 +34,9 @@ pub fn run(args: &args::pcb::Pcb, silent: bool) -> Result<Answer, Stop> {
     let source = source::read(&args.board)?;
     let mut warnings = toolpath::held(source.warnings, args.strict)?;
     progress.step("planning");
-    let planned = plan::of(source.board, args, &machine)?;
-    warnings.extend(toolpath::held(planned.warnings, args.strict)?);
+    let mut planned = plan::of(source.board, args, &machine)?;
+    let found = std::mem::take(&mut planned.warnings);
+    warnings.extend(toolpath::held(found, args.strict)?);
     progress.step("writing and proving");
     let made = each(&planned.jobs, |job| make(job, &planned, &machine, args));
     let mut programs = Vec::with_capacity(made.len());
@@ -84,14 +85,14 @@ fn make<'a>(
         Picture::Png => Some(Format::Png),
         Picture::None => None,
     };
-    let board = planned.seen_from(job);
+    let board = planned.seen(job);
     let picture = format.map(|format| {
         let widths: Vec<f64> = job.operations.iter().map(plan::width).collect();
         format.bytes(drawing::board(
             &name,
             &BoardPicture {
                 outline: board.outline.as_ref(),
-                copper: job.face.and_then(|face| board.side(face).copper.as_ref()),
+                copper: board.front.copper.as_ref(),
                 holes: &board.holes,
                 program: &toolpath.program,
                 widths: &widths,

@@ -31,7 +31,15 @@ pub fn of(
     let size = high - low;
     let mut rows = vec![
         ("board", plan.name.clone()),
-        ("size", format!("{} x {} mm, {} holes", number(size.x, 3), number(size.y, 3), board.holes.len())),
+        (
+            "size",
+            format!(
+                "{} x {} mm, {} holes",
+                number(size.x, 3),
+                number(size.y, 3),
+                board.holes.len()
+            ),
+        ),
     ];
     rows.extend(layers.iter().map(|(file, layer)| ("read", format!("{file}: {layer}"))));
     rows.push(("machine", format!("{} ({})", machine.title, machine.name)));
@@ -71,7 +79,8 @@ impl Made<'_> {
         let shape = Shape::of(&self.program);
         let times = Times::of(&self.program, machine);
         let data = &self.posted.account.data;
-        let (blocks, off) = (&data["program"]["blocks"], &data["proof"]["deviations"]["tip_mm"]["value"]);
+        let (blocks, off) =
+            (&data["program"]["blocks"], &data["proof"]["deviations"]["tip_mm"]["value"]);
         let operations: Vec<&str> =
             self.job.operations.iter().map(|operation| operation.name.as_str()).collect();
         let (cutting, rapid) = shape.lengths();
@@ -99,7 +108,8 @@ impl Made<'_> {
             data.retain(|key, _| key != "toolpost" && key != "machine");
         }
         data["name"] = json!(self.job.name);
-        data["operations"] = json!(self.job.operations.iter().map(|operation| &operation.name).collect::<Vec<_>>());
+        data["operations"] =
+            json!(self.job.operations.iter().map(|operation| &operation.name).collect::<Vec<_>>());
         data["places"] = self.job.problems.iter().map(place).collect();
         data["warnings"] = json!(account.findings);
         data
