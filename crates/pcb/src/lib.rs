@@ -16,6 +16,7 @@ mod arc;
 pub mod board;
 mod clearing;
 mod contour;
+mod crossing;
 mod decimal;
 mod engraving;
 pub mod excellon;
@@ -27,17 +28,16 @@ mod operation;
 mod path;
 mod report;
 mod stroke;
-mod transform;
 mod voronoi;
 
 pub use board::{Board, Copper, Side};
 pub use clearing::{Cleared, Clearing};
 pub use contour::{Contour, Piece};
 pub use engraving::{Engraving, engraved, outlined};
+pub use geom::Transform;
 pub use hole::{Hole, HoleShape};
 pub use operation::{Cut, Cutter, Operation, Stretch, Tool, depths};
 pub use path::Path;
-pub use transform::Transform;
 pub use voronoi::{Division, Strait, divided};
 
 /// The farthest coordinate that is taken, mm.

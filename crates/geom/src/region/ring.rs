@@ -1,7 +1,7 @@
 //! A closed boundary of lines and arcs.
 
 use super::{FAR, RegionError};
-use crate::{Element, Vec2};
+use crate::{Element, Transform, Vec2};
 use std::f64::consts::TAU;
 
 /// Ends nearer to each other than this meet, mm; the start of the next element counts. An arc may
@@ -49,6 +49,18 @@ impl Ring {
     pub fn polygon(points: &[Vec2]) -> Result<Ring, RegionError> {
         let nexts = points.iter().cycle().skip(1);
         Ring::new(points.iter().zip(nexts).map(|(a, b)| Element::line(*a, *b)).collect())
+    }
+
+    /// The same elsewhere, and travelled the same way round: transformed about the origin, which goes to
+    /// `at`.
+    pub(super) fn placed(&self, transform: &Transform, at: Vec2) -> Ring {
+        let place = |element: &Element| transform.element(element, at);
+        let elements = self.elements.iter();
+        let elements = match transform.mirrors() {
+            true => elements.rev().map(|element| place(&element.reversed())).collect(),
+            false => elements.map(place).collect(),
+        };
+        Ring { elements }
     }
 
     /// Its lines and arcs, in order.

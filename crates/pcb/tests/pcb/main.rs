@@ -1,5 +1,6 @@
 //! Gerber and Excellon files against facts that they state, hand calculation and outside judges.
 
+mod boards;
 mod clearing;
 mod data;
 mod drill_input;
