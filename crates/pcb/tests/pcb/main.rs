@@ -7,4 +7,5 @@ mod drills;
 mod gerber_input;
 mod judges;
 mod layers;
+mod placed;
 mod raster;
