@@ -21,6 +21,7 @@ pub mod excellon;
 pub mod gerber;
 mod hole;
 pub mod job;
+pub mod model;
 mod operation;
 mod path;
 mod report;

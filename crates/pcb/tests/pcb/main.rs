@@ -7,5 +7,6 @@ mod drills;
 mod gerber_input;
 mod judges;
 mod layers;
+mod model;
 mod placed;
 mod raster;
