@@ -24,6 +24,7 @@ pub mod gerber;
 mod hole;
 pub mod isolation;
 pub mod job;
+pub mod model;
 mod operation;
 mod path;
 mod report;

@@ -9,5 +9,7 @@ mod gerber_input;
 mod isolation;
 mod judges;
 mod layers;
+mod model;
+mod placed;
 mod raster;
 mod voronoi;
