@@ -23,13 +23,15 @@ mod operation;
 mod path;
 mod report;
 mod stroke;
+mod tour;
 mod transform;
 
 pub use board::{Board, Copper, Side};
 pub use contour::{Contour, Piece};
 pub use hole::{Hole, HoleShape};
 pub use operation::{Cut, Cutter, Operation, Stretch, Tool};
-pub use path::Path;
+pub use path::{Path, Site};
+pub use tour::Tour;
 pub use transform::Transform;
 
 /// The farthest coordinate that is taken, mm.

@@ -7,3 +7,4 @@ mod gerber_input;
 mod judges;
 mod layers;
 mod raster;
+mod tour;
