@@ -14,25 +14,36 @@
 
 mod arc;
 pub mod board;
+mod clearing;
+mod clip;
 mod contour;
+mod crossing;
 mod decimal;
 pub mod excellon;
 pub mod gerber;
 mod hole;
+pub mod isolation;
+pub mod job;
 mod operation;
 mod path;
 mod report;
 mod stroke;
 mod tour;
 mod transform;
+mod voronoi;
 
 pub use board::{Board, Copper, Side};
+pub use clearing::{Clearing, cleared};
 pub use contour::{Contour, Piece};
+pub use geom::Transform;
 pub use hole::{Hole, HoleShape};
 pub use operation::{Cut, Cutter, Operation, Stretch, Tool};
 pub use path::{Path, Site};
 pub use tour::Tour;
+pub use operation::{Cut, Cutter, Operation, Stretch, Tool, depths};
+pub use path::Path;
 pub use transform::Transform;
+pub use voronoi::{Division, Strait, divided};
 
 /// The farthest coordinate that is taken, mm.
 const FAR: f64 = 1e6;
