@@ -28,8 +28,7 @@ mod operation;
 mod path;
 mod report;
 mod stroke;
-mod tour;
-mod transform;
+pub mod tour;
 mod voronoi;
 
 pub use board::{Board, Copper, Side};
@@ -37,12 +36,8 @@ pub use clearing::{Clearing, cleared};
 pub use contour::{Contour, Piece};
 pub use geom::Transform;
 pub use hole::{Hole, HoleShape};
-pub use operation::{Cut, Cutter, Operation, Stretch, Tool};
-pub use path::{Path, Site};
-pub use tour::Tour;
 pub use operation::{Cut, Cutter, Operation, Stretch, Tool, depths};
-pub use path::Path;
-pub use transform::Transform;
+pub use path::{Path, Site};
 pub use voronoi::{Division, Strait, divided};
 
 /// The farthest coordinate that is taken, mm.

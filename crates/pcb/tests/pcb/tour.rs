@@ -2,7 +2,8 @@
 
 use geom::{Element, Vec2};
 use proptest::prelude::*;
-use toolpost_pcb::{Path, Tour};
+use toolpost_pcb::Path;
+use toolpost_pcb::tour::Tour;
 
 fn tour(from: Vec2, to: Option<Vec2>) -> Tour {
     Tour { from, to, either_way: true }
