@@ -29,6 +29,7 @@ mod operation;
 mod path;
 mod report;
 mod stroke;
+pub mod tour;
 mod voronoi;
 
 pub use board::{Board, Copper, Side};
@@ -38,6 +39,7 @@ pub use geom::Transform;
 pub use hole::{Hole, HoleShape};
 pub use operation::{Cut, Cutter, Operation, Stretch, Tool, depths};
 pub use path::Path;
+pub use path::{Path, Site};
 pub use voronoi::{Division, Strait, divided};
 
 /// The farthest coordinate that is taken, mm.

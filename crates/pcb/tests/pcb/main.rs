@@ -12,4 +12,5 @@ mod layers;
 mod model;
 mod placed;
 mod raster;
+mod tour;
 mod voronoi;
