@@ -187,7 +187,7 @@ mod tests {
         assert!(parts[1].start().distance(Vec2::new(10.0, 8.0)) < 1e-9);
         let within = square(10.0).offset(-3.0).unwrap();
         let whole = Path::around(within.rings().next().unwrap()).unwrap();
-        assert_eq!(whole.within(&Index::new(&square(10.0))), [whole.clone()]);
+        assert_eq!(whole.within(&Index::new(&square(10.0))), std::slice::from_ref(&whole));
         assert!(whole.within(&Index::new(&Region::default())).is_empty());
     }
 }
