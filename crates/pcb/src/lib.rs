@@ -19,6 +19,7 @@ mod decimal;
 pub mod excellon;
 pub mod gerber;
 mod hole;
+pub mod kicad;
 mod operation;
 mod path;
 mod report;

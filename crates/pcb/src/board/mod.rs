@@ -2,6 +2,7 @@
 
 mod copper;
 
+pub(crate) use copper::united;
 pub use copper::{Copper, covered};
 
 use crate::Hole;

@@ -5,5 +5,6 @@ mod drill_input;
 mod drills;
 mod gerber_input;
 mod judges;
+mod kicad_plots;
 mod layers;
 mod raster;

@@ -1,0 +1,41 @@
+//! Boards of KiCad 6 to 9 (`.kicad_pcb`).
+//!
+//! [`read`] takes the bytes of a file and gives a [`Board`]: the copper of both sides by net, with its
+//! arcs, the holes, and the lines of the edge. Y is turned over: KiCad's points down.
+//!
+//! `tree` finds lists and words, `reader` obeys the items; `layer` knows where they are, `frame` how they are placed,
+//! `graphic` what is drawn and `curve` its Béziers, `pad` and `zone` what these are made of.
+
+mod curve;
+mod frame;
+mod graphic;
+mod layer;
+mod pad;
+mod reader;
+mod tree;
+mod zone;
+
+use crate::Board;
+use geom::Element;
+use program::Diagnostic;
+
+/// What a board file says.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reading {
+    /// The board; it has no outline yet, which is what `edges` enclose.
+    pub board: Board,
+    /// The lines and arcs on `Edge.Cuts`, in the order of the file, mm, Y up.
+    pub edges: Vec<Element>,
+    /// What is left out or looks wrong, one for each cause.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// Reads a board of KiCad 6 to 9. `file_name` is for the messages, and names the board.
+///
+/// Time and memory are linear in `text`, but for the union of the copper (see [`geom::region`]).
+///
+/// # Errors
+/// Every error found, at most twenty, in the order of their lines. There is no partial result.
+pub fn read(file_name: &str, text: &[u8]) -> Result<Reading, Vec<Diagnostic>> {
+    reader::read(file_name, text)
+}
