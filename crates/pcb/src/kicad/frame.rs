@@ -1,7 +1,8 @@
 //! Where footprints, and pads in them, are placed.
 
 use super::tree::{Node, Outcome};
-use crate::{Piece, Transform};
+use crate::Transform;
+use crate::board::Shape;
 use geom::{Element, Vec2};
 
 /// A place on the board, and how what stands there is turned. What is on the back is written as it is seen
@@ -15,6 +16,11 @@ pub(super) struct Frame {
 impl Frame {
     /// That of the board.
     pub(super) const BOARD: Frame = Frame { turned: Transform::NONE, at: Vec2::ZERO };
+
+    /// The frame that is moved and not turned.
+    pub(super) fn moved(at: Vec2) -> Frame {
+        Frame { turned: Transform::NONE, at }
+    }
 
     /// The frame of an item of this one: its `(at X Y ANGLE)`. The place is relative to this frame, the
     /// angle is not.
@@ -40,7 +46,13 @@ impl Frame {
     }
 
     /// Where a shape of the item goes.
-    pub(super) fn pieces(&self, pieces: &[Piece]) -> Vec<Piece> {
-        pieces.iter().map(|piece| piece.placed(&self.turned, self.at)).collect()
+    pub(super) fn shape(&self, shape: &Shape) -> Shape {
+        match shape {
+            Shape::Stroke(way, width) => Shape::Stroke(self.element(way), *width),
+            Shape::Pieces(pieces) => {
+                let placed = pieces.iter().map(|piece| piece.placed(&self.turned, self.at));
+                Shape::Pieces(placed.collect())
+            }
+        }
     }
 }

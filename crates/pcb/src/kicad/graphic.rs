@@ -4,8 +4,8 @@ use super::curve;
 use super::tree::{Node, Outcome};
 use crate::Transform;
 use crate::arc;
+use crate::board::Shape;
 use crate::contour::{Contour, Piece};
-use crate::stroke::Pen;
 use geom::region::{Fill, Island, Region, Ring};
 use geom::{Element, Vec2};
 use std::f64::consts::TAU;
@@ -76,18 +76,20 @@ impl Graphic {
     }
 
     /// What it covers.
-    pub(super) fn pieces(&self, item: Node) -> Outcome<Vec<Piece>> {
-        let pen = Pen::Round(self.width);
-        let mut pieces: Vec<Piece> =
-            self.elements.iter().flat_map(|e| pen.sweep(&Transform::NONE, e)).collect();
+    pub(super) fn shapes(&self, item: Node) -> Outcome<Vec<Shape>> {
+        let mut shapes: Vec<Shape> = match self.width > 0.0 {
+            true => self.elements.iter().map(|way| Shape::Stroke(*way, self.width)).collect(),
+            false => Vec::new(),
+        };
         if self.filled && !self.elements.is_empty() {
             // Polygons may cross themselves.
             let within = Ring::new(self.elements.clone())
                 .and_then(|ring| Region::inside([&ring], Fill::NonZero))
                 .map_err(|e| item.fault("shape", e.to_string(), "draw it again in KiCad"))?;
-            pieces.extend(within.islands().iter().map(piece));
+            // One shape for each piece: a shape is named by one place in it.
+            shapes.extend(within.islands().iter().map(|island| Shape::Pieces(vec![piece(island)])));
         }
-        Ok(pieces)
+        Ok(shapes)
     }
 }
 
@@ -155,6 +157,7 @@ pub(super) fn joined(parts: &[Element]) -> Vec<Element> {
 mod tests {
     use super::super::tree::Tree;
     use super::*;
+    use crate::Copper;
     use std::f64::consts::PI;
 
     fn graphic(text: &str) -> Graphic {
@@ -164,8 +167,9 @@ mod tests {
 
     fn area(text: &str) -> f64 {
         let tree = Tree::new(text.as_bytes()).ok().unwrap();
-        let pieces = graphic(text).pieces(tree.root()).ok().unwrap();
-        crate::board::united(&[pieces]).unwrap().area()
+        let shapes = graphic(text).shapes(tree.root()).ok().unwrap();
+        let shapes: Vec<_> = shapes.into_iter().map(|shape| (shape, None)).collect();
+        Copper::of_shapes(&shapes).unwrap().0.region.area()
     }
 
     #[test]

@@ -1,10 +1,11 @@
 //! Boards of KiCad 6 to 9 (`.kicad_pcb`).
 //!
 //! [`read`] takes the bytes of a file and gives a [`Board`]: the copper of both sides by net, with its
-//! arcs, the holes, and the lines of the edge. Y is turned over: KiCad's points down.
+//! arcs, the holes, and the outline. Y is turned over: KiCad's points down. What is believed of the format, with
+//! its sources, is in `docs/sources/kicad.md`.
 //!
 //! `tree` finds lists and words, `reader` obeys the items; `layer` knows where they are, `frame` how they are placed,
-//! `graphic` what is drawn and `curve` its Béziers, `pad` and `zone` what these are made of.
+//! `graphic` what is drawn and `curve` its Béziers, `pad`, `zone` and `text` what these are made of.
 
 mod curve;
 mod frame;
@@ -12,20 +13,18 @@ mod graphic;
 mod layer;
 mod pad;
 mod reader;
+mod text;
 mod tree;
 mod zone;
 
 use crate::Board;
-use geom::Element;
 use program::Diagnostic;
 
 /// What a board file says.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading {
-    /// The board; it has no outline yet, which is what `edges` enclose.
+    /// The board.
     pub board: Board,
-    /// The lines and arcs on `Edge.Cuts`, in the order of the file, mm, Y up.
-    pub edges: Vec<Element>,
     /// What is left out or looks wrong, one for each cause.
     pub warnings: Vec<Diagnostic>,
 }

@@ -1,8 +1,10 @@
 //! Pads: the shapes of their copper, their drills, and which layers they are on.
 
+use super::frame::Frame;
 use super::graphic::{Graphic, joined};
 use super::layer::Layers;
 use super::tree::{Node, Outcome};
+use crate::board::Shape;
 use crate::contour::{Contour, Piece};
 use crate::{Hole, HoleShape};
 use geom::{Element, Vec2};
@@ -11,9 +13,9 @@ use std::f64::consts::FRAC_PI_2;
 /// A pad in its own frame.
 pub(super) struct Pad {
     /// Its copper on the front; empty where it has none there.
-    pub(super) front: Vec<Piece>,
+    pub(super) front: Vec<Shape>,
     /// The same on the back.
-    pub(super) back: Vec<Piece>,
+    pub(super) back: Vec<Shape>,
     /// Its hole.
     pub(super) hole: Option<Hole>,
 }
@@ -130,13 +132,13 @@ fn is_hole_only(shape: &[u8], size: Vec2, drill: Option<Node>) -> Outcome<bool> 
 }
 
 /// The outline of a pad, or of one layer of it, about its hole.
-fn outline(item: Node, shape: &[u8], size: Vec2, offset: Vec2) -> Outcome<Vec<Piece>> {
+fn outline(item: Node, shape: &[u8], size: Vec2, offset: Vec2) -> Outcome<Vec<Shape>> {
     if size.min_element() <= 0.0 {
         let message = format!("a pad of {} by {} mm", size.x, size.y);
         return Err(item.fault("pad", message, "pads have a width and a height above 0"));
     }
     let half = size / 2.0;
-    let one = |contour| vec![Piece::new(true, contour)];
+    let one = |contour| vec![solid(contour)];
     Ok(match shape {
         b"circle" => one(Contour::circle(offset, half.x)),
         b"rect" => one(Contour::rectangle(offset - half, offset + half)),
@@ -208,7 +210,7 @@ fn rounded(item: Node, half: Vec2, offset: Vec2) -> Outcome<Contour> {
 }
 
 /// The anchor, and what is drawn to it.
-fn custom(item: Node, half: Vec2, offset: Vec2) -> Outcome<Vec<Piece>> {
+fn custom(item: Node, half: Vec2, offset: Vec2) -> Outcome<Vec<Shape>> {
     let anchor = item.find("options").and_then(|options| options.find("anchor"));
     let anchor = match anchor.and_then(|anchor| anchor.item(0)).map(|word| word.word()) {
         Some(b"rect") => Contour::rectangle(offset - half, offset + half),
@@ -218,23 +220,26 @@ fn custom(item: Node, half: Vec2, offset: Vec2) -> Outcome<Vec<Piece>> {
             return Err(item.fault("pad", message, "the anchors are circle and rect"));
         }
     };
-    let mut pieces = vec![Piece::new(true, anchor)];
+    let frame = Frame::moved(offset);
+    let mut shapes = vec![solid(anchor)];
     for primitive in item.find("primitives").into_iter().flat_map(Node::items) {
-        match (primitive.name(), Graphic::of(primitive)?) {
-            // Where the number is shown, and where spokes go: no copper.
-            (b"gr_bbox" | b"gr_vector", _) => {}
-            (_, Some(graphic)) => {
-                let moved = graphic.pieces(primitive)?;
-                let moved = moved.iter().map(|p| p.placed(&crate::Transform::NONE, offset));
-                pieces.extend(moved);
+        match Graphic::of(primitive)? {
+            Some(graphic) => {
+                shapes.extend(graphic.shapes(primitive)?.iter().map(|shape| frame.shape(shape)));
             }
-            (other, None) => {
-                let message = format!("\"{}\" in a pad", String::from_utf8_lossy(other));
+            // Where the number is shown, and where spokes go: no copper.
+            None if matches!(primitive.name(), b"gr_bbox" | b"gr_vector") => {}
+            None => {
+                let name = String::from_utf8_lossy(primitive.name()).into_owned();
                 let help =
                     "pads are drawn with lines, arcs, circles, rectangles, polygons and curves";
-                return Err(primitive.fault("pad", message, help));
+                return Err(primitive.fault("pad", format!("\"{name}\" in a pad"), help));
             }
         }
     }
-    Ok(pieces)
+    Ok(shapes)
+}
+
+fn solid(contour: Contour) -> Shape {
+    Shape::Pieces(vec![Piece::new(true, contour)])
 }

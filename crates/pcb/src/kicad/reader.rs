@@ -5,13 +5,13 @@ use super::frame::Frame;
 use super::graphic::{Graphic, arc};
 use super::layer::Layers;
 use super::pad::{self, Pad};
+use super::text::Text;
 use super::tree::{Node, Outcome, Tree};
 use super::zone::Zone;
-use crate::board::united;
+use crate::board::{Shape, checked, holes, outline};
 use crate::contour::{Contour, Piece};
-use crate::report::{Place, Report};
-use crate::stroke::Pen;
-use crate::{Board, Copper, Hole, HoleShape, Side, Transform};
+use crate::report::Report;
+use crate::{Board, Copper, Hole, HoleShape, Side};
 use geom::Element;
 use program::Diagnostic;
 use std::collections::BTreeMap;
@@ -23,8 +23,8 @@ const FIRST_VERSION: u32 = 20201115;
 /// The last version that is read: that of KiCad 9.
 const LAST_VERSION: u32 = 20241229;
 
-/// A shape on copper, and its net.
-type Shape = (Vec<Piece>, Option<Arc<str>>);
+/// The net of an item.
+type Net = Option<Arc<str>>;
 
 /// A board that is read.
 struct Reader<'a> {
@@ -32,10 +32,11 @@ struct Reader<'a> {
     version: u32,
     /// The names of the nets by their numbers.
     nets: BTreeMap<u32, Arc<str>>,
-    front: Vec<Shape>,
-    back: Vec<Shape>,
+    front: Vec<(Shape, Net)>,
+    back: Vec<(Shape, Net)>,
     holes: Vec<Hole>,
-    edges: Vec<Element>,
+    /// The lines and arcs of the edge, each with its line in the file.
+    edges: Vec<(Element, u32)>,
 }
 
 /// What is known to have no copper, though it may name a layer of copper.
@@ -148,7 +149,7 @@ impl Reader<'_> {
             // Zones in footprints are where they are on the board.
             name if NO_COPPER.contains(&name) => Ok(()),
             _ if layers == Layers::default() => Ok(()),
-            b"gr_text" | b"fp_text" | b"property" => self.text(item, layers),
+            b"gr_text" | b"fp_text" | b"property" => self.text(item, layers, &frame),
             b"target" => {
                 let message = "a target for the alignment of layers is left out";
                 self.report.warn(item.place(), "target", message, "it is neither edge nor copper");
@@ -171,7 +172,9 @@ impl Reader<'_> {
 
     fn graphic(&mut self, item: Node, graphic: &Graphic, layers: Layers, frame: &Frame) -> Outcome {
         if layers.edge {
-            self.edges.extend(graphic.elements.iter().map(|element| frame.element(element)));
+            let line = item.place().line;
+            let placed = graphic.elements.iter().map(|element| (frame.element(element), line));
+            self.edges.extend(placed);
         }
         let style = item.find("stroke").and_then(|stroke| stroke.find("type"));
         let style = style.and_then(|style| style.item(0)).map_or(&b"solid"[..], |word| word.word());
@@ -184,9 +187,10 @@ impl Reader<'_> {
             self.report.warn(item.place(), "line-style", &message, help);
         }
         if layers.outer() || layers.inner {
-            let pieces = frame.pieces(&graphic.pieces(item)?);
             let net = self.net(item)?;
-            self.add(item, layers, &pieces, net);
+            for shape in graphic.shapes(item)? {
+                self.add(item, layers, frame.shape(&shape), &net);
+            }
         }
         Ok(())
     }
@@ -196,9 +200,9 @@ impl Reader<'_> {
             b"arc" => arc(item)?,
             _ => Element::line(item.need("start")?.point()?, item.need("end")?.point()?),
         };
-        let pen = Pen::Round(item.need("width")?.length(0)?);
+        let shape = Shape::Stroke(path, item.need("width")?.length(0)?);
         let net = self.net(item)?;
-        self.add(item, Layers::of(item), &pen.sweep(&Transform::NONE, &path), net);
+        self.add(item, Layers::of(item), shape, &net);
         Ok(())
     }
 
@@ -219,12 +223,14 @@ impl Reader<'_> {
         }
         let back = pad::back_of_stack(item).map_or(Ok(size), |layer| layer.need("size"))?;
         let net = self.net(item)?;
-        let disc = |size: f64| match size > 0.0 {
-            true => vec![Piece::new(true, Contour::circle(at, size / 2.0))],
-            false => Vec::new(),
-        };
-        self.front.push((disc(size.length(0)?), net.clone()));
-        self.back.push((disc(back.length(0)?), net));
+        for (size, side) in [(size, &mut self.front), (back, &mut self.back)] {
+            let diameter = size.length(0)?;
+            if diameter <= 0.0 {
+                return Err(size.fault("via", "a via without copper", "vias have a size above 0"));
+            }
+            let disc = Piece::new(true, Contour::circle(at, diameter / 2.0));
+            side.push((Shape::Pieces(vec![disc]), net.clone()));
+        }
         self.holes.push(Hole { shape: HoleShape::Round(at), diameter, plated: Some(true) });
         Ok(())
     }
@@ -233,10 +239,8 @@ impl Reader<'_> {
         let frame = footprint.of(item)?;
         let pad = Pad::of(item)?;
         let net = self.net(item)?;
-        for (pieces, side) in [(pad.front, &mut self.front), (pad.back, &mut self.back)] {
-            if !pieces.is_empty() {
-                side.push((frame.pieces(&pieces), net.clone()));
-            }
+        for (shapes, side) in [(pad.front, &mut self.front), (pad.back, &mut self.back)] {
+            side.extend(shapes.iter().map(|shape| (frame.shape(shape), net.clone())));
         }
         self.holes.extend(pad.hole.map(|hole| {
             let shape = match hole.shape {
@@ -254,8 +258,8 @@ impl Reader<'_> {
     fn zone(&mut self, item: Node) -> Outcome {
         let zone = Zone::of(item, self.version)?;
         let net = self.net(item)?;
-        for (layers, pieces) in &zone.fills {
-            self.add(item, *layers, pieces, net.clone());
+        for (layers, shape) in zone.fills {
+            self.add(item, layers, shape, &net);
         }
         if zone.hollow {
             let message = "a zone has no fill on a side of the board: there it is no copper";
@@ -265,25 +269,38 @@ impl Reader<'_> {
         Ok(())
     }
 
-    fn text(&mut self, item: Node, _layers: Layers) -> Outcome {
-        if !item.says("hide") && !item.find("effects").is_some_and(|effects| effects.says("hide")) {
-            let message = "texts on copper are left out";
-            let help = "they are no part of a net";
-            self.report.warn(item.place(), "text", message, help);
+    fn text(&mut self, item: Node, layers: Layers, footprint: &Frame) -> Outcome {
+        let shapes = match Text::of(item)? {
+            Text::Hidden => Vec::new(),
+            Text::Stored(shapes) => shapes,
+            Text::Lettered(shapes) => {
+                let message = "a text on copper is drawn with other letters than KiCad's, which are \
+                    narrower or wider";
+                let help = "look at the picture where it stands close to other copper";
+                self.report.warn(item.place(), "text-letters", message, help);
+                let frame = footprint.of(item)?;
+                shapes.iter().map(|shape| frame.shape(shape)).collect()
+            }
+            Text::Variable => {
+                let message = "a text on copper with variables (${…}) is left out";
+                let help = "write out in KiCad what is to be there";
+                self.report.warn(item.place(), "text-variable", message, help);
+                Vec::new()
+            }
+        };
+        for shape in shapes {
+            self.add(item, layers, shape, &None);
         }
         Ok(())
     }
 
     /// Adds copper where the layers are.
-    fn add(&mut self, item: Node, layers: Layers, pieces: &[Piece], net: Option<Arc<str>>) {
-        if pieces.is_empty() {
-            return;
-        }
+    fn add(&mut self, item: Node, layers: Layers, shape: Shape, net: &Net) {
         if layers.front {
-            self.front.push((pieces.to_vec(), net.clone()));
+            self.front.push((shape.clone(), net.clone()));
         }
         if layers.back {
-            self.back.push((pieces.to_vec(), net));
+            self.back.push((shape, net.clone()));
         }
         if layers.inner && !layers.outer() {
             let message = "copper within the board is left out";
@@ -293,7 +310,7 @@ impl Reader<'_> {
     }
 
     /// The net of an item; `None` where it has none.
-    fn net(&self, item: Node) -> Outcome<Option<Arc<str>>> {
+    fn net(&self, item: Node) -> Outcome<Net> {
         let Some(list) = item.find("net") else { return Ok(None) };
         let net = list.whole(0).filter(|number| *number > 0).map(|number| {
             let known = self.nets.get(&number);
@@ -305,28 +322,38 @@ impl Reader<'_> {
         net.transpose()
     }
 
+    /// The board, when all of it is read.
     fn finish(mut self, file_name: &str) -> Result<Reading, Vec<Diagnostic>> {
-        let mut side = |shapes: &[Shape]| {
-            let pieces: Vec<Vec<Piece>> = shapes.iter().map(|(pieces, _)| pieces.clone()).collect();
-            match united(&pieces) {
-                Ok(region) => {
-                    let nets = vec![None; region.islands().len()];
-                    Side { copper: Some(Copper { region, nets }), ..Side::default() }
-                }
-                Err(error) => {
-                    let what = Diagnostic::error("shape", error.to_string());
-                    self.report.error(Place::default(), what);
-                    Side::default()
-                }
-            }
-        };
-        let (front, back) = (side(&self.front), side(&self.back));
         if !self.report.errors.is_empty() {
             return Err(self.report.errors);
         }
+        let placed = |found: Diagnostic| found.file(file_name);
+        let all = |found: Vec<Diagnostic>| found.into_iter().map(placed).collect::<Vec<_>>();
+        let mut warnings = self.report.warnings;
+        let mut side = |shapes: &[(Shape, Net)]| -> Result<Side, Vec<Diagnostic>> {
+            if shapes.is_empty() {
+                return Ok(Side::default());
+            }
+            let (copper, found) = Copper::of_shapes(shapes).map_err(|error| {
+                let message = format!("the copper cannot be taken: {error}");
+                let help = "look for items that are far away or very many";
+                vec![placed(Diagnostic::error("layer", message).help(help))]
+            })?;
+            warnings.extend(all(found));
+            Ok(Side { copper: Some(copper), ..Side::default() })
+        };
+        let (front, back) = (side(&self.front)?, side(&self.back)?);
+        let mut outlined = None;
+        if !self.edges.is_empty() {
+            let (region, found) = outline::of_lines(&self.edges).map_err(all)?;
+            warnings.extend(all(found));
+            outlined = Some(region);
+        }
+        warnings.extend(holes::once(&mut self.holes).map(placed));
         let name = file_name.rsplit(['/', '\\']).next().unwrap_or(file_name);
         let name = name.strip_suffix(".kicad_pcb").unwrap_or(name).to_owned();
-        let board = Board { name, front, back, outline: None, holes: self.holes };
-        Ok(Reading { board, edges: self.edges, warnings: self.report.warnings })
+        let board = Board { name, front, back, outline: outlined, holes: self.holes };
+        warnings.extend(all(checked(&board).map_err(all)?));
+        Ok(Reading { board, warnings })
     }
 }

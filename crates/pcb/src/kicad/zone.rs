@@ -3,9 +3,8 @@
 use super::graphic::chain;
 use super::layer::Layers;
 use super::tree::{Node, Outcome};
-use crate::Transform;
+use crate::board::Shape;
 use crate::contour::{Contour, Piece};
-use crate::stroke::Pen;
 
 /// Up to this version a fill is the way of a pen of the least thickness, and what is within, unless the zone
 /// says otherwise.
@@ -13,8 +12,8 @@ const LAST_STROKED: u32 = 20250209;
 
 /// A zone.
 pub(super) struct Zone {
-    /// What its fill covers, polygon by polygon, and on which layers.
-    pub(super) fills: Vec<(Layers, Vec<Piece>)>,
+    /// What its fill covers, and on which layers.
+    pub(super) fills: Vec<(Layers, Shape)>,
     /// Whether it is to be filled on a layer that is used here, and is not.
     pub(super) hollow: bool,
 }
@@ -48,11 +47,12 @@ impl Zone {
             if outline.is_empty() {
                 continue;
             }
-            let pen = Pen::Round(width);
-            let edge = outline.iter().flat_map(|element| pen.sweep(&Transform::NONE, element));
-            let mut pieces: Vec<Piece> = edge.collect();
-            pieces.push(Piece::new(true, Contour::new(outline).counter_clockwise()));
-            zone.fills.push((on, pieces));
+            if width > 0.0 {
+                let edge = outline.iter().map(|way| (on, Shape::Stroke(*way, width)));
+                zone.fills.extend(edge);
+            }
+            let area = Piece::new(true, Contour::new(outline).counter_clockwise());
+            zone.fills.push((on, Shape::Pieces(vec![area])));
         }
         let filled = |on: fn(&Layers) -> bool| zone.fills.iter().any(|(layers, _)| on(layers));
         zone.hollow =

@@ -1,9 +1,12 @@
 //! Gerber and Excellon files against facts that they state, hand calculation and outside judges.
 
+mod boards;
+mod clearing;
 mod data;
 mod drill_input;
 mod drills;
 mod gerber_input;
+mod isolation;
 mod judges;
 mod kicad_plots;
 mod layers;
