@@ -25,6 +25,7 @@ mod hole;
 pub mod isolation;
 pub mod job;
 pub mod model;
+pub mod kicad;
 mod operation;
 mod path;
 mod report;

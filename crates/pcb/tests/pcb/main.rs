@@ -8,6 +8,8 @@ mod drills;
 mod gerber_input;
 mod isolation;
 mod judges;
+mod kicad_boards;
+mod kicad_plots;
 mod layers;
 mod model;
 mod placed;
