@@ -13,9 +13,8 @@ T1
 ; MILL_6
 M3 S3000
 G0 X10 Y10
-G0 Z50
+G0 Z20
 G0 Z2
-M8
 G1 Z-2 F200
 G1 X40 F600
 G3 Y30 I0 J10
@@ -27,19 +26,18 @@ G0 X32.5 Y20
 G0 Z1
 G2 X32.5 Y20 Z-1 I-2.5 J0 F300
 G2 X32.5 Y20 I-2.5 J0
-G0 Z50
+G0 Z20
 ; HOLES
 M5
 M9
 G53 G0 Z0
 T2
 ; DRILL_3.3
-; change the tool by hand; its tip must stand where the last one stood
-M0
+; its tip must stand where the last one stood
+M0 Change the tool by hand
 M3 S2500
 G0 X15 Y20
-G0 Z50
-M8
+G0 Z20
 G0 Z5
 G0 Z2
 G1 Z-6 F150
@@ -54,7 +52,7 @@ G0 Z2
 G0 Z-9.5
 G1 Z-12
 G0 Z5
-G0 Z50
+G0 Z20
 M5
 M5
 M9

@@ -14,23 +14,32 @@
 
 mod arc;
 pub mod board;
+mod clearing;
+mod clip;
 mod contour;
+mod crossing;
 mod decimal;
 pub mod excellon;
 pub mod gerber;
 mod hole;
+pub mod isolation;
+pub mod job;
 mod operation;
 mod path;
 mod report;
 mod stroke;
 mod transform;
+mod voronoi;
 
 pub use board::{Board, Copper, Side};
+pub use clearing::{Clearing, cleared};
 pub use contour::{Contour, Piece};
+pub use geom::Transform;
 pub use hole::{Hole, HoleShape};
-pub use operation::{Cut, Cutter, Operation, Stretch, Tool};
+pub use operation::{Cut, Cutter, Operation, Stretch, Tool, depths};
 pub use path::Path;
 pub use transform::Transform;
+pub use voronoi::{Division, Strait, divided};
 
 /// The farthest coordinate that is taken, mm.
 const FAR: f64 = 1e6;

@@ -138,7 +138,7 @@ fn read_by(
 }
 
 /// The warnings; with `strict` they stop the command.
-fn held(warnings: Vec<Diagnostic>, strict: bool) -> Result<Vec<Diagnostic>, Stop> {
+pub(crate) fn held(warnings: Vec<Diagnostic>, strict: bool) -> Result<Vec<Diagnostic>, Stop> {
     if !strict || warnings.is_empty() {
         return Ok(warnings);
     }

@@ -61,20 +61,51 @@ const COMPENSATED: &[&str] = &[
     "basemach.apt",
 ];
 
+/// The files whose tool axis turns, or points elsewhere than up.
+const TILTED: &[&str] =
+    &["dome.cls", "Sacrifice-Board.apt", "Teste-Metrologia.apt", "shimemcunha.apt"];
+
 /// What a machine cannot make, and why: the rule by which it refuses. Everything else is proven.
 const REFUSED: &[(&str, &[&str], &str)] = &[
-    // The tool axis of these turns, or points elsewhere than up.
-    (
-        "generic-3axis-",
-        &["dome.cls", "Sacrifice-Board.apt", "Teste-Metrologia.apt", "shimemcunha.apt"],
-        "unreachable-orientation",
-    ),
+    ("generic-3axis-", TILTED, "unreachable-orientation"),
+    ("linuxcnc-mill", TILTED, "unreachable-orientation"),
+    ("mach3-mill", TILTED, "unreachable-orientation"),
+    ("marlin-cnc", TILTED, "unreachable-orientation"),
     // From below: no table of these turns that far.
     ("sinumerik-840d-table-ac", &["Sacrifice-Board.apt"], "axis-limit"),
     ("dmu50-heidenhain", &["Sacrifice-Board.apt"], "unreachable-orientation"),
     // No compensation, no tapping.
     ("generic-3axis-grbl", COMPENSATED, "compensation"),
     ("generic-3axis-marlin", COMPENSATED, "compensation"),
+    ("marlin-cnc", COMPENSATED, "compensation"),
+    // Too high, too long, too fast for the machines of a desk.
+    ("marlin-cnc", &["coremill.cls"], "axis-limit"),
+    (
+        "linuxcnc-mill",
+        &["Sacrifice-Board.apt", "Top-light-cover.apt", "basemach.apt", "coremill.cls"],
+        "axis-limit",
+    ),
+    ("linuxcnc-mill", &["Dem-target1.apt", "Dem-target2.apt"], "spindle-range"),
+    ("mach3-mill", &["SupPetriLED.apt", "coremill.cls"], "axis-limit"),
+    ("mach3-mill", &["Sacrifice-Board.apt"], "feed-range"),
+    // No coolant, 45 mm in Z, 10,000 1/min.
+    ("grbl-3018", &["coremill.cls", "plate.cls"], "axis-limit"),
+    ("grbl-3018", &["Dem-target1.apt", "Dem-target2.apt"], "spindle-range"),
+    ("grbl-3018", &["shimemcunha.apt"], "unreachable-orientation"),
+    (
+        "grbl-3018",
+        &[
+            "dome.cls",
+            "Interface-glue.apt",
+            "Sacrifice-Board.apt",
+            "SupPetriLED.apt",
+            "Teflon-gasket.apt",
+            "Teste-Metrologia.apt",
+            "Top-light-cover.apt",
+            "basemach.apt",
+        ],
+        "missing-block",
+    ),
     // A small mill: 5000 1/min, ten tools, 150 mm in Y.
     ("emco-", &["dome.cls", "plate.cls", "Teste-Metrologia.apt"], "spindle-range"),
     ("emco-", &["coremill.cls"], "axis-limit"),

@@ -7,6 +7,9 @@ use files::{mills, root};
 use machine::Machine;
 use program::{Op, Pose, Program};
 
+/// The mill whose Z travels 45 mm.
+const SMALL: &str = "grbl-3018";
+
 /// The sample of a machine as its control reads it.
 fn sample(machine: &Machine) -> Program {
     let file = format!("{}.{}", machine.name, machine.extension);
@@ -64,10 +67,12 @@ fn the_sample_of_each_machine_is_proven_on_every_other_that_can_make_it() {
                     let report = proof::prove(&program, &machine, "new", &output.text, &tolerances);
                     assert!(report.proven, "{from} on {to}: {:?}", report.mismatches);
                 }
-                // Nothing else is refused than a tilted tool where no axis tilts it.
+                // Nothing else is refused than a tilted tool where no axis tilts it, and at that the way up
+                // to it on a machine of 45 mm.
                 Err(found) => {
                     assert!(tilts && machine.rotary.is_empty(), "{from} on {to}: {found:?}");
-                    assert_eq!(found[0].rule, "unreachable-orientation", "{from} on {to}");
+                    let rule = if to == SMALL { "axis-limit" } else { "unreachable-orientation" };
+                    assert_eq!(found[0].rule, rule, "{from} on {to}");
                 }
             }
         }
@@ -100,7 +105,7 @@ fn both_coolants_and_a_probe_are_written_and_what_mach3_does_not_do_is_refused()
 /// The example goes round a flange of R 42 by `G41`, in two depths by a loop and a subprogram, and drills
 /// six holes on R 30 by a loop.
 #[test]
-fn the_example_is_made_by_every_mill_and_is_what_it_says() {
+fn the_example_is_made_by_every_mill_that_is_high_enough_and_is_what_it_says() {
     let text = std::fs::read(root().join("examples/flange.nc")).unwrap();
     let tool = |number, diameter: f64| control::ToolData {
         number,
@@ -130,7 +135,7 @@ fn the_example_is_made_by_every_mill_and_is_what_it_says() {
         let (sin, cos) = degrees.to_radians().sin_cos();
         assert!((hole.x - 30.0 * cos).hypot(hole.y - 30.0 * sin) < 1e-9, "{hole}");
     }
-    for machine in mills() {
+    for machine in mills().filter(|machine| machine.name != SMALL) {
         let output =
             post::write(&program, &machine).unwrap_or_else(|e| panic!("{}: {e:?}", machine.name));
         let report = proof::prove(&program, &machine, "new", &output.text, &Default::default());

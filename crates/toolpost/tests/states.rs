@@ -82,16 +82,21 @@ fn compensation_is_written_with_its_register_or_refused() {
 }
 
 #[test]
-fn a_coolant_that_the_control_does_not_have_is_refused() {
-    let ops = [Op::Coolant(Coolant::Mist), Op::Line(at(30.0, 0.0, 20.0))];
+fn a_coolant_that_the_machine_does_not_have_is_refused() {
+    // Haas has M8 and, through the spindle, M88 (Haas, *Mill Operator's Manual*, M codes). The small
+    // router has nothing that could be switched.
+    const NO_MIST: &[&str] = &["haas", "heidenhain-tnc640"];
     for machine in mills() {
-        let text = written(&machine, &ops);
-        match machine.control.as_str() {
-            // Haas has M8 and, through the spindle, M88 (Haas, *Mill Operator's Manual*, M codes).
-            "haas" | "heidenhain-tnc640" => {
-                assert_eq!(text, Err("missing-block"), "{}", machine.name)
+        let name = machine.name.as_str();
+        for (coolant, code, lacks) in [
+            (Coolant::Flood, "M8", false),
+            (Coolant::Mist, "M7", NO_MIST.contains(&machine.control.as_str())),
+        ] {
+            let text = written(&machine, &[Op::Coolant(coolant), Op::Line(at(30.0, 0.0, 20.0))]);
+            match lacks || name == "grbl-3018" {
+                true => assert_eq!(text, Err("missing-block"), "{name}"),
+                false => assert!(text.unwrap().contains(code), "{name}"),
             }
-            _ => assert!(text.unwrap().contains("M7"), "{}", machine.name),
         }
     }
 }

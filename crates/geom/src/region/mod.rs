@@ -36,16 +36,20 @@
 
 mod chords;
 mod crossings;
+mod index;
 mod kernel;
 mod offset;
 mod refit;
 mod ring;
 mod shape;
+mod sweep;
 
+pub use index::{Index, Nearest, Piece};
 pub use ring::Ring;
 pub use shape::Cap;
+pub use sweep::strokes;
 
-use crate::{Element, Vec2};
+use crate::{Element, Transform, Vec2};
 use chords::boolean;
 use kernel::Keep;
 use std::{fmt, iter};
@@ -178,6 +182,21 @@ impl Region {
     /// The elements of each ring.
     fn chains(&self) -> impl Iterator<Item = &[Element]> + Clone {
         self.rings().map(Ring::elements)
+    }
+
+    /// The same elsewhere: transformed about the origin, which goes to `at`.
+    pub fn placed(&self, transform: &Transform, at: Vec2) -> Region {
+        let place = |island: &Island| Island {
+            outer: island.outer.placed(transform, at),
+            holes: island.holes.iter().map(|hole| hole.placed(transform, at)).collect(),
+        };
+        Region { islands: self.islands.iter().map(place).collect() }
+    }
+
+    /// What is in any of `regions`, no two of which come within 1 µm of each other; their islands follow
+    /// each other as the regions do. Nothing is worked out for that.
+    pub fn apart(regions: impl IntoIterator<Item = Region>) -> Region {
+        Region { islands: regions.into_iter().flat_map(|region| region.islands).collect() }
     }
 
     /// Its connected pieces.

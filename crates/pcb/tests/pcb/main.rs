@@ -1,9 +1,13 @@
 //! Gerber and Excellon files against facts that they state, hand calculation and outside judges.
 
+mod boards;
+mod clearing;
 mod data;
 mod drill_input;
 mod drills;
 mod gerber_input;
+mod isolation;
 mod judges;
 mod layers;
 mod raster;
+mod voronoi;
