@@ -39,7 +39,6 @@ pub use contour::{Contour, Piece};
 pub use geom::Transform;
 pub use hole::{Hole, HoleShape};
 pub use operation::{Cut, Cutter, Operation, Stretch, Tool, depths};
-pub use path::Path;
 pub use path::{Path, Site};
 pub use voronoi::{Division, Strait, divided};
 
