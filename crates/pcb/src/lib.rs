@@ -15,10 +15,10 @@
 mod arc;
 pub mod board;
 mod clearing;
-mod clip;
 mod contour;
 mod crossing;
 mod decimal;
+mod engraving;
 pub mod excellon;
 pub mod gerber;
 mod hole;
@@ -34,8 +34,9 @@ pub mod tour;
 mod voronoi;
 
 pub use board::{Board, Copper, Side};
-pub use clearing::{Clearing, cleared};
+pub use clearing::{Cleared, Clearing};
 pub use contour::{Contour, Piece};
+pub use engraving::{Engraving, engraved, outlined};
 pub use geom::Transform;
 pub use hole::{Hole, HoleShape};
 pub use operation::{Cut, Cutter, Operation, Stretch, Tool, depths};

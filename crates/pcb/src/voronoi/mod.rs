@@ -12,11 +12,10 @@ mod samples;
 mod straight;
 mod web;
 
-use crate::clip::Clip;
 use crate::report::{Outcome, fault};
 use crate::{Copper, Path};
 use geom::Vec2;
-use geom::region::Region;
+use geom::region::{Index, Region};
 use samples::{Boundary, frame};
 use std::collections::HashMap;
 use web::Place;
@@ -78,13 +77,13 @@ pub fn divided(copper: &Copper, area: &Region, width: f64) -> Outcome<Division> 
     let threads = web::threads(&boundary, samples, &conductors(copper))
         .map_err(|error| fault("not-a-place", error.to_string(), "look at the copper's places"))?;
     let mut division = Division::default();
-    let clip = Clip::to(area);
+    let index = Index::new(area);
     let fits = |ends: &[Place]| ends.iter().all(|end| 2.0 * end.clearance >= width - FITS);
     for thread in &threads {
         for run in runs(thread, fits) {
             let path = straight::path(run.iter().map(|place| place.at));
-            let paths = path.map(|path| clip.within(&path)).unwrap_or_default();
-            let inside = run.iter().filter(|place| clip.contains(place.at));
+            let paths = path.map(|path| path.within(&index)).unwrap_or_default();
+            let inside = run.iter().filter(|place| index.island_at(place.at).is_some());
             let narrowest = inside.min_by(|a, b| a.clearance.total_cmp(&b.clearance));
             match narrowest.filter(|_| !fits(run)) {
                 _ if paths.is_empty() => {}

@@ -105,29 +105,41 @@ fn place<'a>(
 
 /// The place near `at` that is equally far from what is about all of some samples.
 fn settled(at: Vec2, samples: &[Sample], boundary: &Boundary) -> Place {
-    let feet = |at: Vec2| samples.iter().map(move |sample| boundary.foot(sample, at));
-    let far = |at: Vec2| feet(at).map(|foot| foot.distance(at)).fold(f64::INFINITY, f64::min);
-    let apart = |at: Vec2| feet(at).map(|foot| foot.distance(at)).fold(0.0, f64::max) - far(at);
-    let mut best = at;
-    let mut next = at;
+    let mut best = Stand::at(at, samples, boundary);
     for _ in 0..TRIES {
-        let feet: Vec<Vec2> = feet(next).collect();
-        let Some(moved) = (match feet[..] {
-            [a, b] => between(next, a, b),
+        let better = match best.feet[..] {
+            [a, b] => between(best.at, a, b),
             [a, b, c] => amid(a, b, c),
             _ => None,
-        }) else {
-            break;
         };
-        next = moved;
-        if apart(next) >= apart(best) {
+        let Some(next) = better.map(|at| Stand::at(at, samples, boundary)) else { break };
+        if next.farthest - next.nearest >= best.farthest - best.nearest {
             break;
         }
         best = next;
     }
     let mut islands = samples.iter().filter_map(|sample| boundary.island(sample));
     let first = islands.next().unwrap_or_default();
-    Place { at: best, clearance: far(best), islands: [first, islands.next().unwrap_or(first)] }
+    let islands = [first, islands.next().unwrap_or(first)];
+    Place { at: best.at, clearance: best.nearest, islands }
+}
+
+/// A place, and the nearest of each conductor about it.
+struct Stand {
+    at: Vec2,
+    feet: Vec<Vec2>,
+    nearest: f64,
+    farthest: f64,
+}
+
+impl Stand {
+    fn at(at: Vec2, samples: &[Sample], boundary: &Boundary) -> Stand {
+        let feet: Vec<Vec2> = samples.iter().map(|sample| boundary.foot(sample, at)).collect();
+        let away = || feet.iter().map(|foot| foot.distance(at));
+        let (nearest, farthest) =
+            (away().fold(f64::INFINITY, f64::min), away().fold(0.0, f64::max));
+        Stand { at, feet, nearest, farthest }
+    }
 }
 
 /// The point nearest to `at` that is as far from `a` as from `b`; `None` where these are one.

@@ -5,6 +5,7 @@ mod clearing;
 mod data;
 mod drill_input;
 mod drills;
+mod engraving;
 mod gerber_input;
 mod isolation;
 mod judges;
