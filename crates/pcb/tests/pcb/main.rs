@@ -9,6 +9,7 @@ mod gerber_input;
 mod isolation;
 mod judges;
 mod layers;
+mod merge;
 mod raster;
 mod tour;
 mod voronoi;
