@@ -14,6 +14,7 @@ mod kicad_plots;
 mod layers;
 mod model;
 mod placed;
+mod merge;
 mod raster;
 mod tour;
 mod voronoi;
