@@ -24,10 +24,14 @@ pub mod gerber;
 mod hole;
 pub mod isolation;
 pub mod job;
+pub mod model;
+pub mod kicad;
+mod merge;
 mod operation;
 mod path;
 mod report;
 mod stroke;
+pub mod tour;
 mod voronoi;
 
 pub use board::{Board, Copper, Side};
@@ -36,8 +40,9 @@ pub use contour::{Contour, Piece};
 pub use engraving::{Engraving, engraved, outlined};
 pub use geom::Transform;
 pub use hole::{Hole, HoleShape};
+pub use merge::joined;
 pub use operation::{Cut, Cutter, Operation, Stretch, Tool, depths};
-pub use path::Path;
+pub use path::{Path, Site};
 pub use voronoi::{Division, Strait, divided};
 
 /// The farthest coordinate that is taken, mm.

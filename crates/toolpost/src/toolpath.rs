@@ -233,6 +233,11 @@ impl Toolpath {
         }
     }
 
+    /// The file that it was read from, where there is one.
+    pub fn path(&self) -> Option<&Path> {
+        self.path.as_deref()
+    }
+
     /// With what was not passed on; with `strict` that stops the command.
     ///
     /// # Errors

@@ -115,7 +115,7 @@ fn outside(copper: &Copper, outline: &Region) -> Result<Region, RegionError> {
                 edges.iter().any(|edge| near(edge, &around))
             })
     });
-    Region::apart(suspect.cloned().map(Region::from)).difference(outline)
+    suspect.cloned().collect::<Region>().difference(outline)
 }
 
 /// A place in the middle of a hole.

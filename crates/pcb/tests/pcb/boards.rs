@@ -8,7 +8,7 @@ use std::path::Path;
 use toolpost_pcb::board::{self, Face, File, Layer, Reading};
 
 /// What the files of a folder give.
-fn folder(folder: &Path) -> Result<Reading, Vec<Diagnostic>> {
+pub fn folder(folder: &Path) -> Result<Reading, Vec<Diagnostic>> {
     let paths = data::files(folder, "");
     let texts: Vec<Vec<u8>> = paths.iter().map(|path| data::bytes(path)).collect();
     let names: Vec<String> = paths.iter().map(|path| path.to_string_lossy().into()).collect();
@@ -17,7 +17,7 @@ fn folder(folder: &Path) -> Result<Reading, Vec<Diagnostic>> {
     read(&files)
 }
 
-fn read(files: &[(&str, &[u8])]) -> Result<Reading, Vec<Diagnostic>> {
+pub fn read(files: &[(&str, &[u8])]) -> Result<Reading, Vec<Diagnostic>> {
     let files: Vec<File> =
         files.iter().map(|(name, text)| File { name, layer: None, text }).collect();
     board::read("board", &files)

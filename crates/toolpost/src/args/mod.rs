@@ -384,6 +384,18 @@ pub enum Machines {
         #[arg(long, value_name = "NAME|FILE")]
         from: String,
     },
+    /// Make a machine file of a post of VCarve or Aspire (.pp), or of templates with @parameter@.
+    Import {
+        /// The post, or the templates.
+        file: PathBuf,
+        /// Where to save the machine file.
+        #[arg(long, short, value_name = "FILE")]
+        output: PathBuf,
+        /// The control or machine that it extends: a name in the library, or a file ending in .toml
+        /// [default: the control that the post names].
+        #[arg(long, value_name = "NAME|FILE")]
+        extends: Option<String>,
+    },
     /// Look for mistakes in a machine file.
     Check {
         /// The file, ending in .toml; or a name in the library.

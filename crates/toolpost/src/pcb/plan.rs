@@ -1,156 +1,117 @@
-//! What is cut of a board, in which program and from which side.
+//! Which programs a board becomes, and how the board lies on the machine for each.
 
 use crate::answer::Stop;
-use crate::args::pcb as args;
+use crate::args::pcb::{Part, Pcb, Turn};
 use geom::Vec2;
-use geom::region::RegionError;
-use machine::Machine;
-use pcb::board::Face;
-use pcb::isolation::{Direction, Isolation};
-use pcb::{Board, Copper, Cut, Cutter, Operation, Path, Tool, depths};
+use pcb::board::{Axis, Face};
+use pcb::{Board, Hole};
 use program::Diagnostic;
 
-/// What is cut, in programs.
+/// How far the pins that align a board are from it, mm.
+const PINS_BESIDE: f64 = 2.0;
+
+/// The programs of a board.
 pub struct Plan {
     /// What the board is called.
     pub name: String,
-    /// The board as the machine sees it.
+    /// The board as it lies on the machine.
     front: Board,
     /// The same, turned over: its front is the back.
     back: Board,
+    /// Holes beside the board by which it is aligned when it is turned over.
+    pins: Vec<Hole>,
     /// The programs, in the order in which they are run.
-    pub jobs: Vec<Job>,
-    /// What is odd about it.
-    pub warnings: Vec<Diagnostic>,
-}
-
-/// What one program does.
-pub struct Job {
-    /// What the program and its picture are called.
-    pub name: &'static str,
-    /// From which side it is cut.
-    pub from: Face,
-    /// What is done, tool by tool.
-    pub operations: Vec<Operation>,
-    /// Places to look at, and why.
-    pub problems: Vec<(Vec2, String)>,
+    pub parts: Vec<Part>,
 }
 
 impl Plan {
+    /// The programs that `args` ask for of a board.
+    ///
+    /// # Errors
+    /// Where the board cannot be put there, or has nothing of what is asked for.
+    pub fn of(board: Board, args: &Pcb) -> Result<Plan, Stop> {
+        let placing = &args.placing;
+        let board = match placing.panel {
+            Some([columns, rows]) => {
+                board.panel(columns as usize, rows as usize, Vec2::splat(placing.spacing))?
+            }
+            None => board,
+        };
+        let (low, _) = board.extents().ok_or_else(empty)?;
+        let corner = placing.corner.map_or(Vec2::ZERO, Vec2::from);
+        let front = if placing.as_drawn { board } else { board.moved(corner - low)? };
+        let axis = match placing.turn {
+            Turn::Y => Axis::X(front.middle().x),
+            Turn::X => Axis::Y(front.middle().y),
+        };
+        let pins = match placing.alignment {
+            Some(diameter) => front.pins(axis, diameter, PINS_BESIDE)?.to_vec(),
+            None => Vec::new(),
+        };
+        let back = front.turned_over(axis);
+        let mut plan = Plan { name: front.name.clone(), front, back, pins, parts: Vec::new() };
+        plan.parts = match &args.only[..] {
+            [] => Part::ALL.into_iter().filter(|part| plan.is_usual(*part, args)).collect(),
+            only => Part::ALL.into_iter().filter(|part| only.contains(part)).collect(),
+        };
+        if let Some(part) = plan.parts.iter().find(|part| !plan.has(**part)) {
+            let message = format!("there is no {} on {}", part.what(), plan.name);
+            let help = "look which files of the board were read, and as what";
+            return Err(Diagnostic::error("no-such-part", message).help(help).into());
+        }
+        if plan.parts.is_empty() {
+            return Err(empty().into());
+        }
+        Ok(plan)
+    }
+
+    /// Whether a program is made where nobody says which.
+    fn is_usual(&self, part: Part, args: &Pcb) -> bool {
+        let asked = match part {
+            Part::Front | Part::Back | Part::Drill | Part::Outline => true,
+            Part::FrontMask | Part::BackMask => args.clearing.mask_tool.is_some(),
+            Part::FrontLegend | Part::BackLegend => args.clearing.legend_tool.is_some(),
+        };
+        asked && self.has(part)
+    }
+
+    /// Whether the board has what a program is about.
+    fn has(&self, part: Part) -> bool {
+        let Board { front, back, outline, holes, .. } = &self.front;
+        match part {
+            Part::Front => front.copper.is_some(),
+            Part::Back => back.copper.is_some(),
+            Part::Drill => !holes.is_empty() || !self.pins.is_empty(),
+            Part::Outline => outline.is_some(),
+            Part::FrontMask => front.mask.is_some(),
+            Part::BackMask => back.mask.is_some(),
+            Part::FrontLegend => front.legend.is_some(),
+            Part::BackLegend => back.legend.is_some(),
+        }
+    }
+
     /// The board as it lies on the machine when its front is up.
     pub fn front(&self) -> &Board {
         &self.front
     }
 
-    /// The board as it lies on the machine for a job: its front is up.
-    pub fn seen(&self, job: &Job) -> &Board {
-        match job.from {
+    /// The board as it lies on the machine for a program: its front is up, whichever side that is.
+    pub fn seen(&self, part: Part, args: &Pcb) -> &Board {
+        match part.face().unwrap_or(args.drilling.from.into()) {
             Face::Front => &self.front,
             Face::Back => &self.back,
         }
     }
-}
 
-/// How wide the tool of an operation cuts at its deepest, mm.
-pub fn width(operation: &Operation) -> f64 {
-    let deepest = |cut: &Cut| match cut {
-        Cut::Hole { depth, .. } => *depth,
-        Cut::Way(stretches) => stretches.iter().map(|stretch| stretch.depth).fold(0.0, f64::max),
-    };
-    let depth = operation.cuts.iter().map(deepest).fold(0.0, f64::max);
-    operation.tool.cutter.width(depth)
-}
-
-/// Plans what `args` ask for.
-pub fn of(board: Board, args: &args::Pcb, machine: &Machine) -> Result<Plan, Stop> {
-    let speed = args.running.speed.unwrap_or(USUAL_SPEED.min(machine.spindle.max));
-    let planner = Planner { args, speed };
-    let mut plan = Plan {
-        name: board.name.clone(),
-        back: board.clone(),
-        front: board,
-        jobs: Vec::new(),
-        warnings: Vec::new(),
-    };
-    for (name, part, face) in
-        [("front", args::Part::Front, Face::Front), ("back", args::Part::Back, Face::Back)]
-    {
-        let board = if face == Face::Front { &plan.front } else { &plan.back };
-        if let Some(copper) = &board.front.copper
-            && planner.wants(part)
-        {
-            let operations = vec![planner.isolation(copper)?];
-            plan.jobs.push(Job { name, from: face, operations, problems: Vec::new() });
-        }
-    }
-    Ok(plan)
-}
-
-/// The speed of a spindle that has no limit in its machine file, 1/min.
-const USUAL_SPEED: f64 = 10_000.0;
-
-/// What makes operations.
-struct Planner<'a> {
-    args: &'a args::Pcb,
-    speed: f64,
-}
-
-impl Planner<'_> {
-    /// Whether a program is asked for.
-    fn wants(&self, part: args::Part) -> bool {
-        self.args.only.is_empty() || self.args.only.contains(&part)
-    }
-
-    /// The tool that isolates.
-    fn bit(&self) -> Result<(String, Cutter), Stop> {
-        let settings = &self.args.isolation;
-        match (settings.tool, settings.vee) {
-            (Some(diameter), _) => {
-                Ok((format!("end mill {diameter} mm"), Cutter::Cylinder { diameter }))
-            }
-            (None, Some(degrees)) => {
-                let cutter = Cutter::Vee { tip: settings.tip, angle: degrees.to_radians() };
-                Ok((format!("V-bit {degrees} degrees"), cutter))
-            }
-            (None, None) => {
-                let message = "no tool is given that cuts around copper";
-                let help =
-                    "give --tool with the width of an end mill, or --vee with the angle of a V-bit";
-                Err(Diagnostic::error("no-tool", message).help(help).into())
-            }
-        }
-    }
-
-    fn isolation(&self, copper: &Copper) -> Result<Operation, Stop> {
-        let settings = &self.args.isolation;
-        let (name, cutter) = self.bit()?;
-        let isolation = Isolation {
-            cutter,
-            depth: settings.depth,
-            passes: settings.passes as usize,
-            overlap: settings.overlap,
-            direction: match settings.direction {
-                args::Direction::Climb => Direction::Climb,
-                args::Direction::Conventional => Direction::Conventional,
-            },
-        };
-        let paths = isolation.passes(copper, None).map_err(too_much)?;
-        let tool = self.mill(name, cutter);
-        let depths = depths(settings.depth, settings.step.unwrap_or(settings.depth));
-        Ok(Operation { name: "isolation".into(), tool, cuts: self.along(&paths, &depths) })
-    }
-
-    fn mill(&self, name: String, cutter: Cutter) -> Tool {
-        let running = &self.args.running;
-        Tool { name, cutter, feed: running.feed, plunge: running.plunge, speed: self.speed }
-    }
-
-    fn along(&self, paths: &[Path], depths: &[f64]) -> Vec<Cut> {
-        paths.iter().map(|path| Cut::along(path, depths)).collect()
+    /// The holes that are drilled: those of the board, and those of the pins. The line about which a
+    /// board is turned over is in the middle between these, so that they stay where they are.
+    pub fn drilled(&self, args: &Pcb) -> Vec<Hole> {
+        let board = self.seen(Part::Drill, args);
+        board.holes.iter().chain(&self.pins).cloned().collect()
     }
 }
 
-fn too_much(error: RegionError) -> Stop {
-    let message = format!("the board cannot be worked out: {error}");
-    Diagnostic::error("too-much", message).help("look at the unit of its files").into()
+fn empty() -> Diagnostic {
+    Diagnostic::error("board-empty", "there is nothing to make of this board")
+        .help("look which files of the board were read, and as what")
 }
