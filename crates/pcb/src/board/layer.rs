@@ -135,7 +135,7 @@ fn numbered(extension: &str) -> Option<Layer> {
     (drawn && stem != extension).then_some(Layer::Other)
 }
 
-/// By the extension: Protel and Altium, EAGLE, OrCAD. `docs/sources/boards.md` has the sources.
+/// By the extension: Protel and Altium, EAGLE, OrCAD. `docs/sources/gerber.md` has the sources.
 const EXTENSIONS: [(&[&str], Layer); 10] = [
     (&["gtl", "cmp", "top"], Layer::Copper(Face::Front)),
     (&["gbl", "sol", "bot"], Layer::Copper(Face::Back)),

@@ -222,7 +222,7 @@ fn errors_of_json_have_their_places() {
     refused(
         "{\n  \"holes\": [{\"node\": [0, 0], \"diameter\": -1}]\n}",
         "length",
-        (2, 44),
+        (2, 42),
         "-1 mm",
     );
     refused("{\n \"pads\": [{\"node\": \"x\",\n", "board-file", (3, 1), "JSON");
