@@ -1,4 +1,4 @@
-//! Points, lines and arcs in space.
+//! Points, lines and arcs in space, and letters made of lines.
 //!
 //! Coordinates are millimetres in a right-handed frame, angles are radians, and every function is a
 //! pure function of its arguments: the same input gives the same bits on every machine and thread.
@@ -8,6 +8,7 @@ mod arc;
 mod chain;
 mod crossing;
 mod element;
+pub mod lettering;
 pub mod region;
 mod rotation;
 mod transform;

@@ -27,6 +27,19 @@ const PLANES: [Facts; 3] = [
 const END: [WordName; 3] = [WordName::X, WordName::Y, WordName::Z];
 const FROM_START: [WordName; 3] = [WordName::I, WordName::J, WordName::K];
 const ABSOLUTE: [WordName; 3] = [WordName::CX, WordName::CY, WordName::CZ];
+const MIDDLE: [WordName; 3] = [WordName::MX, WordName::MY, WordName::MZ];
+const START: [WordName; 3] = [WordName::SX, WordName::SY, WordName::SZ];
+
+/// By what a block says its circle, beside the ends of the arc.
+#[derive(Clone, Copy, PartialEq)]
+enum Notation {
+    /// The centre from the start, or absolute.
+    Center([WordName; 3]),
+    /// The radius, negative over a half circle.
+    Radius,
+    /// The point half way.
+    Middle,
+}
 
 /// How many steps of the last decimal an arc may change in length when its ends are rounded.
 const ROUNDING_STEPS: f64 = 6.0;
@@ -46,6 +59,10 @@ struct Block {
     to: Vec3,
     end: Vec3,
     center: Vec3,
+    /// Half way along it.
+    middle: Vec3,
+    /// As the word says it: negative over a half circle.
+    radius: f64,
     /// Signed angle about the plane's normal, radians.
     sweep: f64,
     rise: f64,
@@ -97,8 +114,9 @@ impl Walk<'_> {
                     self.arc_block(&arc, facts, &block, rises)?;
                     self.here = Some(Pose { point: arc.at(until), ..to.end });
                 }
-                // Its ends are too near each other to say where its centre is: two halves are better.
-                None if local.sweep * (until - from) > PI => {
+                // Its ends are too near each other to say where its centre is, or too near the ends of a
+                // diameter for its radius to say that: two halves are better.
+                None if local.sweep * (until - from) > self.longest(&local, facts, rises) => {
                     ends.push((from + until) / 2.0);
                     continue;
                 }
@@ -146,6 +164,28 @@ impl Walk<'_> {
         (turns / each - 1e-9).ceil() as usize
     }
 
+    /// By what the block of the arc says its circle.
+    fn notation(&self, arc: &Arc, facts: &Facts, rises: bool) -> Notation {
+        let name = self.arc_name(arc.normal[facts.axes[2]] > 0.0, rises);
+        let takes = |word| self.templates.places(name, word);
+        let [first, second, _] = facts.axes;
+        let centers = [FROM_START, ABSOLUTE];
+        match centers.into_iter().find(|words| takes(words[first]) || takes(words[second])) {
+            Some(words) => Notation::Center(words),
+            None if takes(WordName::Radius) => Notation::Radius,
+            None if takes(MIDDLE[first]) || takes(MIDDLE[second]) => Notation::Middle,
+            None => Notation::Center(FROM_START),
+        }
+    }
+
+    /// The angle up to which an arc that rounding spoils is not cut in two, radians.
+    fn longest(&self, arc: &Arc, facts: &Facts, rises: bool) -> f64 {
+        match self.notation(arc, facts, rises) {
+            Notation::Radius => PI / 2.0,
+            Notation::Center(_) | Notation::Middle => PI,
+        }
+    }
+
     /// The part of the arc between two parameters as the control will read it; `None` where rounding
     /// leaves no legal arc.
     fn rounded_arc(
@@ -178,7 +218,10 @@ impl Walk<'_> {
         let along = chord.normalize_or_zero();
         let even = c + along * ((s + e) * 0.5 - c).dot(along);
         let can = &self.machine.capabilities;
-        let absolute = self.templates.places(self.arc_name(sign > 0.0, false), WordName::CX);
+        let notation = self.notation(arc, facts, rises);
+        let middle = round(&MIDDLE, arc.at((from + until) / 2.0));
+        let radius = if wanted > PI { -arc.radius() } else { arc.radius() };
+        let said = self.writer.rounded(WordName::Radius, radius);
         // By as much an arc by its angle misses its end; any other is a spiral.
         let uneven = match by_angle {
             true => ANGLE_STEPS * self.machine.resolution(),
@@ -187,10 +230,17 @@ impl Walk<'_> {
         let legal = |c: Vec3| {
             let mut center = arc.center;
             (center[u], center[v]) = (c.x, c.y);
-            let written = if absolute {
-                round(&ABSOLUTE, center)
-            } else {
-                start + round(&FROM_START, center - start)
+            let written = match notation {
+                Notation::Center(FROM_START) => start + round(&FROM_START, center - start),
+                Notation::Center(words) => round(&words, center),
+                Notation::Radius => {
+                    (center[u], center[v]) = by_radius(s, e, said * sign)?.into();
+                    center
+                }
+                Notation::Middle => {
+                    (center[u], center[v]) = through(s, flat(middle), e)?.into();
+                    center
+                }
             };
             let (a, b) = (s - flat(written), e - flat(written));
             let mut sweep = sign * a.x.mul_add(b.y, -(a.y * b.x)).atan2(a.dot(b));
@@ -208,8 +258,9 @@ impl Walk<'_> {
             // as its turn, and a short chord is a long lever for where the even centre lies.
             let lever = 1.0 - (wanted.min(TAU) / 2.0).cos();
             let close = moved * lever <= CENTER_STEPS * self.machine.resolution() * (1.0 + 1e-9);
-            (near && even && moved <= can.lowering_tolerance && close && radius > 0.0)
-                .then_some(Block { to, end, center: written, sweep: sign * sweep, rise })
+            (near && even && moved <= can.lowering_tolerance && close && radius > 0.0).then_some(
+                Block { to, end, center: written, middle, radius: said, sweep: sign * sweep, rise },
+            )
         };
         legal(c).or_else(|| legal(even))
     }
@@ -230,7 +281,15 @@ impl Walk<'_> {
         }
         for i in [u, v, w] {
             self.writer.set(END[i], block.to[i]);
+            self.writer.set(MIDDLE[i], block.middle[i]);
+            self.writer.set(START[i], start[i]);
         }
+        let spoke = start - block.center;
+        let begins = spoke[v].atan2(spoke[u]).rem_euclid(TAU);
+        self.writer.set(WordName::StartAngle, begins.to_degrees());
+        self.writer.set(WordName::EndAngle, (begins + block.sweep).to_degrees());
+        self.writer.set(WordName::Radius, block.radius);
+        self.writer.set(WordName::PlainRadius, block.radius.abs());
         let turns = (block.sweep.abs() / TAU - 1e-9).floor();
         if turns > 0.0 {
             self.writer.set(WordName::Turn, turns);
@@ -298,6 +357,31 @@ impl Walk<'_> {
         self.writer.unset(bit(WordName::Plane));
         Ok(())
     }
+}
+
+/// How near the centre of an arc that is told by its radius may lie to the way between its ends, as part of
+/// the radius. There the control finds it by the root of a difference of almost equal numbers: GRBL 1.1
+/// (`gcode.c`, step 20) refuses a half circle where single precision makes that difference negative.
+const NEAREST_CENTER: f64 = 0.1;
+
+/// The centre of the arc in a plane from `start` to `end`, on the left of the way between them where the
+/// radius is positive.
+fn by_radius(start: Vec3, end: Vec3, radius: f64) -> Option<[f64; 2]> {
+    let half = (end - start) * 0.5;
+    let height = (radius * radius - half.length_squared()).sqrt();
+    let left = half.normalize_or_zero().cross(Vec3::NEG_Z);
+    let center = start + half + left * height.copysign(radius);
+    let found = half != Vec3::ZERO && height >= NEAREST_CENTER * radius.abs();
+    found.then_some([center.x, center.y])
+}
+
+/// The centre of the circle through three points of a plane.
+fn through(start: Vec3, middle: Vec3, end: Vec3) -> Option<[f64; 2]> {
+    let (a, b) = (middle - start, end - start);
+    let area = 2.0 * a.x.mul_add(b.y, -(a.y * b.x));
+    let off = (b * a.length_squared() - a * b.length_squared()).cross(Vec3::Z) / area;
+    let center = start + off;
+    center.is_finite().then_some([center.x, center.y])
 }
 
 fn no_arc(error: ArcError) -> Box<Diagnostic> {

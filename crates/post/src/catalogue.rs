@@ -141,6 +141,16 @@ names! {
         CX Word "CX", "mm", "Centre of the arc, absolute, X.";
         CY Word "CY", "mm", "Centre of the arc, absolute, Y.";
         CZ Word "CZ", "mm", "Centre of the arc, absolute, Z.";
+        Radius Word "R", "mm", "Radius of the arc, negative where it turns by more than a half circle. A block that has it in place of the centre is cut into arcs of which it says enough.";
+        PlainRadius Word "RADIUS", "mm", "Radius of the arc without that sign.";
+        MX Word "MX", "mm", "Point half way along the arc, X. A block that has it in place of the centre is cut into arcs of less than a circle.";
+        MY Word "MY", "mm", "Point half way along the arc, Y.";
+        MZ Word "MZ", "mm", "Point half way along the arc, Z.";
+        SX Word "SX", "mm", "Start of the arc, X.";
+        SY Word "SY", "mm", "Start of the arc, Y.";
+        SZ Word "SZ", "mm", "Start of the arc, Z.";
+        StartAngle Word "START_ANGLE", "degrees", "Direction from the centre to the start of the arc, counter-clockwise from the first axis of the plane, 0 to 360.";
+        EndAngle Word "END_ANGLE", "degrees", "The same to its end: START_ANGLE and SWEEP together, so greater where the arc is counter-clockwise, else less.";
         Sweep Word "SWEEP", "degrees", "Angle of the arc, counter-clockwise positive, several turns over 360.";
         Rise Word "RISE", "mm", "Travel of a helix along the normal of the plane.";
         Turn Word "TURN", "turns", "Full turns of an arc before the one that ends it. An arc whose block lacks the word is cut into single turns.";
@@ -236,7 +246,7 @@ mod tests {
         let all = names.len();
         names.dedup();
         assert_eq!(names.len(), all);
-        const { assert!(WordName::COUNT <= 64, "sets of words are bits of a u64") };
+        const { assert!(WordName::COUNT <= 128, "sets of words are bits of a u128") };
     }
 
     #[test]

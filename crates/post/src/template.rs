@@ -27,11 +27,11 @@ const MOST_BYTES: usize = 1 << 20;
 const FIRST_WORD: u32 = 0xE000;
 
 /// A set of words, one bit each.
-pub(crate) type Words = u64;
+pub(crate) type Words = u128;
 
 /// The bit of a word.
 pub(crate) const fn bit(word: WordName) -> Words {
-    1 << word as u64
+    1 << word as u32
 }
 
 /// The words that say where the tool is.

@@ -50,12 +50,7 @@ pub fn read(name: &str, files: &[File]) -> Result<Reading, Vec<Diagnostic>> {
     if !errors.is_empty() {
         return Err(errors);
     }
-    let again = holes::once(&mut board.holes);
-    if again > 0 {
-        let message = format!("{again} holes come twice, at the same place and equally wide");
-        let help = "they are made once; two files may hold the same holes";
-        warnings.push(Diagnostic::warning("hole-twice", message).help(help));
-    }
+    warnings.extend(holes::once(&mut board.holes));
     warnings.extend(check::checked(&board)?);
     let layers = known.iter().map(|layer| (layer.file.name.to_owned(), layer.layer)).collect();
     Ok(Reading { board, layers, warnings })

@@ -5,6 +5,7 @@ use crate::gerber::{Image, Object, Pen, Shape};
 use crate::report::{Outcome, fault};
 use crate::{Hole, HoleShape};
 use geom::{Element, Vec2};
+use program::Diagnostic;
 use std::collections::HashSet;
 
 /// The holes of an Excellon file. What it does not say about their walls is `plated`.
@@ -55,8 +56,8 @@ fn drawn(path: Element) -> HoleShape {
     }
 }
 
-/// Leaves out holes that come again; how many these were.
-pub(super) fn once(holes: &mut Vec<Hole>) -> u32 {
+/// Leaves out holes that come again, which is a warning.
+pub(crate) fn once(holes: &mut Vec<Hole>) -> Option<Diagnostic> {
     let mut seen = HashSet::with_capacity(holes.len());
     let all = holes.len();
     holes.retain(|hole| {
@@ -76,5 +77,8 @@ pub(super) fn once(holes: &mut Vec<Hole>) -> u32 {
         }
         seen.insert(key)
     });
-    u32::try_from(all - holes.len()).unwrap_or(u32::MAX)
+    let again = all - holes.len();
+    let message = format!("{again} holes come twice, at the same place and equally wide");
+    let help = "they are made once; two files may hold the same holes";
+    (again > 0).then(|| Diagnostic::warning("hole-twice", message).help(help))
 }

@@ -11,7 +11,7 @@
 mod check;
 mod copper;
 mod files;
-mod holes;
+pub(crate) mod holes;
 mod layer;
 pub mod outline;
 mod placed;
