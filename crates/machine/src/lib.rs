@@ -8,6 +8,7 @@
 //! Lengths are mm, feeds mm/min, angles of rotary axes degrees where they are axis positions
 //! (`degrees` in the name) and radians elsewhere.
 
+pub mod import;
 pub mod inverse;
 pub mod kinematics;
 pub mod library;

@@ -10,6 +10,18 @@ pub struct Path {
     elements: Vec<Element>,
 }
 
+/// A place on a path.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Site {
+    /// Index of its element.
+    pub element: usize,
+    /// How far along the element, from 0 at its start to below 1.
+    pub t: f64,
+}
+
+/// How many places of one element are looked at, at most.
+const MOST_SITES: f64 = 1000.0;
+
 impl Path {
     /// The way along `elements`; `None` where there are none. Where one does not start where the one
     /// before ends, its start is put there: ends apart by more than rounding are the caller's mistake.
@@ -57,6 +69,35 @@ impl Path {
     /// Length, mm.
     pub fn length(&self) -> f64 {
         self.elements.iter().map(Element::length).sum()
+    }
+
+    /// The same closed way, begun elsewhere on it; the same where it is not closed.
+    pub fn starting_at(&self, site: Site) -> Path {
+        let (Some(cut), true) = (self.elements.get(site.element), self.is_closed()) else {
+            return self.clone();
+        };
+        let (before, after) = (&self.elements[..site.element], &self.elements[site.element + 1..]);
+        let mut elements = Vec::with_capacity(self.elements.len() + 1);
+        elements.push(cut.part(site.t, 1.0));
+        elements.extend(after);
+        elements.extend(before);
+        if site.t > 0.0 {
+            elements.push(cut.part(0.0, site.t));
+        }
+        Path { elements }
+    }
+
+    /// Where it may begin: at its corners, and on elements longer than `stride` mm as often as that, evenly.
+    pub(crate) fn sites(&self, stride: f64) -> impl Iterator<Item = Site> {
+        self.elements.iter().enumerate().flat_map(move |(element, long)| {
+            let parts = (long.length() / stride).ceil().clamp(1.0, MOST_SITES);
+            (0..parts as usize).map(move |part| Site { element, t: part as f64 / parts })
+        })
+    }
+
+    /// The point of a place on it, mm; its start where there is no such place.
+    pub fn at(&self, site: Site) -> Vec2 {
+        self.elements.get(site.element).map_or(self.start(), |element| element.at(site.t))
     }
 
     /// The same way back.
@@ -146,7 +187,7 @@ mod tests {
         assert!(parts[1].start().distance(Vec2::new(10.0, 8.0)) < 1e-9);
         let within = square(10.0).offset(-3.0).unwrap();
         let whole = Path::around(within.rings().next().unwrap()).unwrap();
-        assert_eq!(whole.within(&Index::new(&square(10.0))), [whole.clone()]);
+        assert_eq!(whole.within(&Index::new(&square(10.0))), std::slice::from_ref(&whole));
         assert!(whole.within(&Index::new(&Region::default())).is_empty());
     }
 }

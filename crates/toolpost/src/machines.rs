@@ -16,6 +16,7 @@ pub fn run(command: &Machines) -> Result<Answer, Stop> {
         Machines::List => list(),
         Machines::Show { name } => show(name),
         Machines::New { name, from } => new(name, from),
+        Machines::Import { file, output, extends } => import(file, output, extends.as_deref()),
         Machines::Check { file } => check(file),
     }
 }
@@ -79,6 +80,55 @@ fn new(name: &str, from: &str) -> Result<Answer, Stop> {
         [("saved", file.clone()), ("use it", format!("toolpost post ... --machine {file}"))];
     let data = json!({ "file": file, "machine": describe(&machine) });
     Ok(Answer::summary(Verdict::Done, summary::rows(&lines), data))
+}
+
+/// The toolpath that an imported machine is tried with.
+const SAMPLE: &str = include_str!("../../../machines/samples/three-axes.cls");
+
+/// Makes a machine file of a post, says what it could not carry over, and proves a sample program.
+fn import(file: &Path, output: &Path, extends: Option<&str>) -> Result<Answer, Stop> {
+    let invalid = |findings| Stop { verdict: Verdict::Invalid, findings };
+    let target = Target::new(output, &[file])?;
+    let bytes = files::read(file)?;
+    let import = machine::import::import(&files::name(file), &bytes, extends).map_err(invalid)?;
+    let saved = output.display().to_string();
+    let machine = machine::load_text(&saved, &import.text)?;
+    post::check(&machine).map_err(invalid)?;
+    let proven = sample(&machine);
+    files::save(&[(&target, import.text.as_bytes())])?;
+    let (verdict, sample) = match &proven {
+        Ok(()) => (Verdict::Done, "proven"),
+        Err(_) => {
+            (Verdict::Failed, "not proven: change the file until it is (`machines check` reads it)")
+        }
+    };
+    let carried = match import.findings.len() {
+        0 => String::from("all of it"),
+        some => format!("all but what {some} findings say"),
+    };
+    let lines = [
+        ("saved", saved.clone()),
+        ("extends", import.extends.clone()),
+        ("carried", carried),
+        ("sample", String::from(sample)),
+    ];
+    let data = json!({
+        "file": saved,
+        "extends": import.extends,
+        "machine": describe(&machine),
+        "sample": if proven.is_ok() { "proven" } else { "failed" },
+    });
+    let findings = [import.findings, proven.err().unwrap_or_default()].concat();
+    Ok(Answer::summary(verdict, summary::rows(&lines), data).findings(findings))
+}
+
+/// Writes the sample for a machine and proves it.
+fn sample(machine: &Machine) -> Result<(), Vec<Diagnostic>> {
+    let sample = source::apt::read("three-axes.cls", SAMPLE.as_bytes(), &Default::default())?;
+    let output = post::write(&sample.program, machine)?;
+    let report =
+        proof::prove(&sample.program, machine, "sample", &output.text, &Default::default());
+    if report.proven { Ok(()) } else { Err(report.mismatches) }
 }
 
 /// Loads a file and compiles its templates.

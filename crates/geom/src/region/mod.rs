@@ -193,12 +193,6 @@ impl Region {
         Region { islands: self.islands.iter().map(place).collect() }
     }
 
-    /// What is in any of `regions`, no two of which come within 1 µm of each other; their islands follow
-    /// each other as the regions do. Nothing is worked out for that.
-    pub fn apart(regions: impl IntoIterator<Item = Region>) -> Region {
-        Region { islands: regions.into_iter().flat_map(|region| region.islands).collect() }
-    }
-
     /// Its connected pieces.
     pub fn islands(&self) -> &[Island] {
         &self.islands
@@ -267,6 +261,29 @@ impl Island {
         }
         let rings = iter::once(&self.outer).chain(&self.holes);
         rings.map(|ring| ring.distance(point)).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// The islands of a region, or of several, which must not come within 1 µm of each other.
+impl FromIterator<Island> for Region {
+    fn from_iter<Islands: IntoIterator<Item = Island>>(islands: Islands) -> Region {
+        Region { islands: islands.into_iter().collect() }
+    }
+}
+
+/// More islands, which must not come within 1 µm of each other or of those that there are.
+impl Extend<Island> for Region {
+    fn extend<Islands: IntoIterator<Item = Island>>(&mut self, islands: Islands) {
+        self.islands.extend(islands);
+    }
+}
+
+impl IntoIterator for Region {
+    type Item = Island;
+    type IntoIter = std::vec::IntoIter<Island>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.islands.into_iter()
     }
 }
 

@@ -30,12 +30,14 @@ pub fn checked(board: &Board) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
         if let Some(island) = outside.islands().first()
             && area > SLIVER
         {
-            let (low, high) = island.outer().extents();
+            let places = match outside.islands().len() {
+                1 => String::from("1 place"),
+                places => format!("{places} places"),
+            };
+            let first = shown(island.outer().extents());
             let message = format!(
-                "{area:.3} mm² of the {face} copper is outside the outline, in {} places, first \
-                 within {}",
-                outside.islands().len(),
-                shown((low, high))
+                "{area:.3} mm² of the {face} copper is outside the outline, in {places}, the first \
+                 within {first}"
             );
             let help =
                 "it is cut through with the outline; look whether the outline is the right one";
@@ -113,7 +115,7 @@ fn outside(copper: &Copper, outline: &Region) -> Result<Region, RegionError> {
                 edges.iter().any(|edge| near(edge, &around))
             })
     });
-    Region::apart(suspect.cloned().map(Region::from)).difference(outline)
+    suspect.cloned().collect::<Region>().difference(outline)
 }
 
 /// A place in the middle of a hole.

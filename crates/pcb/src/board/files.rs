@@ -130,12 +130,12 @@ impl Known<'_> {
             warnings.push(placed(Diagnostic::warning("layer-empty", message)));
             return Ok(warnings);
         }
-        let refused = |error: RegionError| {
+        let no_region = |error: RegionError| {
             let message = format!("this layer cannot be taken: {error}");
             let help = "look at the unit, and at the sizes of apertures";
-            vec![Diagnostic::error("layer", message).help(help).file(name)]
+            vec![placed(Diagnostic::error("layer", message).help(help))]
         };
-        let whole = || covered(&image).map_err(refused);
+        let whole = || covered(&image).map_err(no_region);
         let negative =
             image.file_attribute(".FilePolarity").is_some_and(|value| value == ["Negative"]);
         match self.layer {
@@ -146,7 +146,7 @@ impl Known<'_> {
                 return Err(vec![placed(found)]);
             }
             Layer::Copper(face) => {
-                let (copper, found) = Copper::of_image(&image).map_err(refused)?;
+                let (copper, found) = Copper::of_image(&image).map_err(no_region)?;
                 board.side_mut(face).copper = Some(copper);
                 warnings.extend(found.into_iter().map(placed));
             }

@@ -5,7 +5,8 @@
 //!                 edge ──outline──▶
 //! ```
 //!
-//! `layer` tells which file is which, `holes` what is drilled, `copper` what is copper.
+//! `layer` tells which file is which, `holes` what is drilled, `copper` what is copper. What is done to a
+//! board as a whole is in `placed`: moved, turned over, on a panel.
 
 mod check;
 mod copper;
@@ -13,11 +14,13 @@ mod files;
 pub(crate) mod holes;
 mod layer;
 pub mod outline;
+mod placed;
 
 pub use check::checked;
 pub use copper::{Copper, Named, Shape, covered};
 pub use files::{File, Reading, read};
 pub use layer::{Face, Layer};
+pub use placed::Axis;
 
 use crate::Hole;
 use geom::Vec2;

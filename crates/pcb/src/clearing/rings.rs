@@ -8,8 +8,7 @@
 
 use super::SLIVER;
 use crate::Path;
-use crate::clip::Clip;
-use geom::region::{Region, RegionError};
+use geom::region::{Index, Region, RegionError};
 
 /// The rings of a tool of `width` mm, a `step` mm (up to the width) apart, in the region that its middle
 /// may be in; from the outside inwards.
@@ -24,9 +23,9 @@ pub(super) fn of(mut middles: Region, width: f64, step: f64) -> Result<Vec<Path>
             let ridges = halfway.difference(&next.offset(half + SLIVER)?)?;
             if !ridges.is_empty() {
                 let near = ridges.offset(half)?;
-                let near = Clip::to(&near);
+                let near = Index::new(&near);
                 let rings = halfway.rings().filter_map(Path::around);
-                paths.extend(rings.flat_map(|ring| near.within(&ring)));
+                paths.extend(rings.flat_map(|ring| ring.within(&near)));
             }
         }
         middles = next;

@@ -5,7 +5,16 @@ use geom::Vec2;
 use geom::region::{Cap, Fill, Region, Ring};
 use std::f64::consts::PI;
 use toolpost_pcb::board::covered;
-use toolpost_pcb::{Path, cleared, gerber};
+use toolpost_pcb::isolation::Direction;
+use toolpost_pcb::{Cleared, Clearing, Path, gerber};
+
+fn clearing(widths: &[f64], overlap: f64) -> Clearing {
+    Clearing { widths: widths.to_vec(), overlap, direction: Direction::Climb }
+}
+
+fn cleared(area: &Region, widths: &[f64], overlap: f64) -> Cleared {
+    clearing(widths, overlap).clear(area).unwrap()
+}
 
 /// A rectangle between two corners.
 fn rectangle(low: (f64, f64), high: (f64, f64)) -> Region {
@@ -24,7 +33,7 @@ fn swept(paths: &[Path], width: f64) -> Region {
 
 /// Asserts that the tools sweep nothing but `area`, and all of it but the rest.
 fn check(area: &Region, widths: &[f64], overlap: f64) -> Vec<Vec<Path>> {
-    let clearing = cleared(area, widths, overlap).unwrap();
+    let clearing = cleared(area, widths, overlap);
     let each: Vec<Region> = clearing
         .passes
         .iter()
@@ -61,13 +70,13 @@ fn a_rectangle_is_cleared_by_rings_within_each_other() {
 fn what_a_wide_tool_leaves_in_corners_a_narrow_one_takes() {
     let area = rectangle((0.0, 0.0), (10.0, 5.0));
     // (4 − π) r² stays in the corners, less slivers of 5 µm.
-    let rest = |widths: &[f64]| cleared(&area, widths, 0.5).unwrap().rest.area();
+    let rest = |widths: &[f64]| cleared(&area, widths, 0.5).rest.area();
     let corners = |width: f64| (4.0 - PI) * width * width / 4.0;
     assert!(rest(&[2.0]) < corners(2.0) && rest(&[2.0]) > 0.8 * corners(2.0));
     assert!(rest(&[2.0, 0.5]) < corners(0.5) && rest(&[2.0, 0.5]) > 0.5 * corners(0.5));
     check(&area, &[2.0, 0.5], 0.5);
     // Only there.
-    let narrow = &cleared(&area, &[2.0, 0.5], 0.5).unwrap().passes[1];
+    let narrow = &cleared(&area, &[2.0, 0.5], 0.5).passes[1];
     assert!(narrow.iter().map(Path::length).sum::<f64>() < 4.0 * 4.0, "{narrow:?}");
 }
 
@@ -86,7 +95,7 @@ fn wide_steps_leave_no_ridges() {
 #[test]
 fn what_is_too_narrow_is_told() {
     let area = rectangle((0.0, 0.0), (10.0, 0.9));
-    let clearing = cleared(&area, &[1.0], 0.4).unwrap();
+    let clearing = cleared(&area, &[1.0], 0.4);
     assert!(clearing.passes[0].is_empty());
     assert!((clearing.rest.area() - 9.0).abs() < 1e-6);
 }
@@ -104,10 +113,36 @@ fn tools_that_cannot_clear_are_refused() {
         (1.0, f64::NAN, "overlap"),
         (1.0, 0.9999, "tool-width"),
     ] {
-        assert_eq!(cleared(&area, &[width], overlap).unwrap_err().rule, rule, "{width} {overlap}");
+        assert_eq!(
+            clearing(&[width], overlap).clear(&area).unwrap_err().rule,
+            rule,
+            "{width} {overlap}"
+        );
+    }
+    for widths in [[1.0, 1.0], [0.5, 1.0]] {
+        assert_eq!(clearing(&widths, 0.5).clear(&area).unwrap_err().rule, "tool-width");
     }
     let field = rectangle((0.0, 0.0), (50_000.0, 50_000.0));
-    assert_eq!(cleared(&field, &[0.1], 0.5).unwrap_err().rule, "too-much");
+    assert_eq!(clearing(&[0.1], 0.5).clear(&field).unwrap_err().rule, "too-much");
+}
+
+#[test]
+fn the_kept_copper_is_on_the_right_when_climbing() {
+    // A pad in the middle of a square board: one ring around the pad, one along the edge.
+    let pad = Region::disc(Vec2::ZERO, 2.0).unwrap();
+    let board = rectangle((-4.5, -4.5), (4.5, 4.5));
+    let ways = |direction| {
+        let clearing = Clearing { widths: vec![2.0], overlap: 0.0, direction };
+        let passes = clearing.rub_out(&pad, 0.3, &board).unwrap().passes;
+        passes[0].iter().filter(|way| way.is_closed()).cloned().collect::<Vec<Path>>()
+    };
+    let area = |way: &Path| way.elements().iter().map(|e| e.area(Vec2::ZERO)).sum::<f64>();
+    // Where 0.2 mm are between the two rings: 3.5² · 4 and −3.3² · π.
+    let climbing: Vec<f64> = ways(Direction::Climb).iter().map(area).collect();
+    assert_eq!(climbing.len(), 2);
+    assert!((climbing[0] - 49.0).abs() < 1e-6 && (climbing[1] + 10.89 * PI).abs() < 1e-2);
+    let other: Vec<f64> = ways(Direction::Conventional).iter().map(area).collect();
+    assert!(other.iter().zip(&climbing).all(|(a, b)| (a + b).abs() < 1e-9));
 }
 
 #[test]
@@ -115,32 +150,11 @@ fn real_boards_are_rubbed_out() {
     let Some(folder) = data::folder() else { return };
     for name in ["ecc83-pp/ecc83-pp-B_Cu.gbr", "pic_programmer/pic_programmer-B_Cu.gbr"] {
         let file = folder.join("kicad").join(name);
-        let image = gerber::read(name, &data::bytes(&file)).unwrap().image;
-        let copper = covered(&image).unwrap();
+        let copper = covered(&gerber::read(name, &data::bytes(&file)).unwrap().image).unwrap();
         let (low, high) = copper.extents().unwrap();
         let board = rectangle((low.x - 2.0, low.y - 2.0), (high.x + 2.0, high.y + 2.0));
         let area = board.difference(&copper.offset(0.1).unwrap()).unwrap();
-        for overlap in [0.5, 0.2] {
-            let start = std::time::Instant::now();
-            let clearing = cleared(&area, &[1.5, 0.4], overlap).unwrap();
-            eprintln!(
-                "{name} {overlap} {:?}, rest {} of {}",
-                start.elapsed(),
-                clearing.rest.area(),
-                area.area()
-            );
-            for paths in &clearing.passes {
-                eprintln!(
-                    "  {} paths, {} closed, {} mm, {} elements",
-                    paths.len(),
-                    paths.iter().filter(|p| p.is_closed()).count(),
-                    paths.iter().map(Path::length).sum::<f64>(),
-                    paths.iter().map(|p| p.elements().len()).sum::<usize>()
-                );
-            }
-            let start = std::time::Instant::now();
-            check(&area, &[1.5, 0.4], overlap);
-            eprintln!("check {:?}", start.elapsed());
-        }
+        let passes = check(&area, &[1.5, 0.4], 0.3);
+        assert!(passes.iter().all(|paths| !paths.is_empty()), "{name}");
     }
 }

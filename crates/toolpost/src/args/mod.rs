@@ -1,5 +1,7 @@
 //! What can be typed.
 
+pub mod pcb;
+
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use clap_complete::Shell;
 use std::path::PathBuf;
@@ -31,6 +33,9 @@ pub enum Command {
     /// Write the program of a wire-EDM machine for a contour (of a program or a drawing), prove it, and
     /// save both program and report.
     Wire(Box<Wire>),
+    /// Write the programs that isolate, drill and cut out a printed circuit board, prove them, and save them
+    /// with a picture of each and a report.
+    Pcb(Box<pcb::Pcb>),
     /// Hold any program, also one edited by hand, against the toolpath it should make.
     Prove(Prove),
     /// The library of machines, and machines of your own.
@@ -378,6 +383,18 @@ pub enum Machines {
         /// The machine it starts as: a name in the library, or a file ending in .toml.
         #[arg(long, value_name = "NAME|FILE")]
         from: String,
+    },
+    /// Make a machine file of a post of VCarve or Aspire (.pp), or of templates with @parameter@.
+    Import {
+        /// The post, or the templates.
+        file: PathBuf,
+        /// Where to save the machine file.
+        #[arg(long, short, value_name = "FILE")]
+        output: PathBuf,
+        /// The control or machine that it extends: a name in the library, or a file ending in .toml
+        /// [default: the control that the post names].
+        #[arg(long, value_name = "NAME|FILE")]
+        extends: Option<String>,
     },
     /// Look for mistakes in a machine file.
     Check {

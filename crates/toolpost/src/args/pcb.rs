@@ -1,6 +1,7 @@
 //! What can be typed after `toolpost pcb`.
 
 use super::{Closeness, length, lengths, option, place};
+use ::pcb::board::Face;
 use clap::{Args, ValueEnum};
 use std::path::PathBuf;
 
@@ -64,6 +65,57 @@ pub enum Part {
     FrontLegend,
     /// The legend of the back, from the back.
     BackLegend,
+}
+
+impl Part {
+    /// All, in the order in which they are run.
+    pub const ALL: [Part; 8] = [
+        Part::Front,
+        Part::Back,
+        Part::Drill,
+        Part::Outline,
+        Part::FrontMask,
+        Part::BackMask,
+        Part::FrontLegend,
+        Part::BackLegend,
+    ];
+
+    /// What its program and picture are called.
+    pub fn name(self) -> &'static str {
+        match self {
+            Part::Front => "front",
+            Part::Back => "back",
+            Part::Drill => "drill",
+            Part::Outline => "outline",
+            Part::FrontMask => "front-mask",
+            Part::BackMask => "back-mask",
+            Part::FrontLegend => "front-legend",
+            Part::BackLegend => "back-legend",
+        }
+    }
+
+    /// What of the board it is about.
+    pub fn what(self) -> &'static str {
+        match self {
+            Part::Front => "copper of the front",
+            Part::Back => "copper of the back",
+            Part::Drill => "hole",
+            Part::Outline => "outline",
+            Part::FrontMask => "solder mask of the front",
+            Part::BackMask => "solder mask of the back",
+            Part::FrontLegend => "legend of the front",
+            Part::BackLegend => "legend of the back",
+        }
+    }
+
+    /// The side that it is about; `None` for what goes through the board.
+    pub fn face(self) -> Option<Face> {
+        match self {
+            Part::Front | Part::FrontMask | Part::FrontLegend => Some(Face::Front),
+            Part::Back | Part::BackMask | Part::BackLegend => Some(Face::Back),
+            Part::Drill | Part::Outline => None,
+        }
+    }
 }
 
 /// How pictures are saved.
@@ -179,16 +231,25 @@ pub struct Drilling {
     pub peck: Option<f64>,
     /// From which side holes and edges are cut.
     #[arg(long, value_name = "SIDE", default_value = "front")]
-    pub from: From,
+    pub from: CutFrom,
 }
 
 /// A side of a board.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum From {
+pub enum CutFrom {
     /// The front.
     Front,
     /// The back.
     Back,
+}
+
+impl From<CutFrom> for Face {
+    fn from(side: CutFrom) -> Face {
+        match side {
+            CutFrom::Front => Face::Front,
+            CutFrom::Back => Face::Back,
+        }
+    }
 }
 
 /// How the board is cut out.

@@ -92,9 +92,8 @@ fn name(paths: &[PathBuf]) -> String {
 
 /// The files of a folder, in the order of their names.
 fn within(folder: &Path) -> Result<Vec<PathBuf>, Stop> {
-    let about = |message: String| {
-        Diagnostic::error("folder", message).file(folder.display().to_string())
-    };
+    let about =
+        |message: String| Diagnostic::error("folder", message).file(folder.display().to_string());
     let entries = std::fs::read_dir(folder)
         .map_err(|error| about(format!("the folder cannot be read: {error}")))?;
     let paths = entries.flatten().map(|entry| entry.path());

@@ -1,0 +1,148 @@
+//! Posts and templates of other systems as machine files: what fits becomes blocks and words of ours, and
+//! what does not is told line by line, never dropped in silence.
+//!
+//! Two readers, [`vectric`] for the posts of VCarve and Aspire and [`parameters`] for templates with
+//! `@parameter@`, make one [`foreign::Post`]; [`write`](mod@write) makes a file of it that extends a control of the
+//! library, which stands in for what the post does not say. Nothing is evaluated: a template of another
+//! system is text.
+
+mod foreign;
+mod items;
+mod parameters;
+mod text;
+mod vectric;
+mod write;
+
+use crate::load::load_origin;
+use program::Diagnostic;
+
+/// The largest file that is taken for a post, bytes.
+const LARGEST: usize = 1 << 20;
+
+/// The most findings that are told.
+const MOST_FINDINGS: usize = 200;
+
+/// A machine file made of a post.
+#[derive(Clone, Debug)]
+pub struct Import {
+    /// The file, in TOML.
+    pub text: String,
+    /// The control or machine that it extends.
+    pub extends: String,
+    /// What could not be carried over, or stands otherwise than in the post, each with its line.
+    pub findings: Vec<Diagnostic>,
+}
+
+/// Makes a machine file of a post of VCarve or Aspire (a name that ends in `.pp`) or of templates with
+/// parameters. It extends `extends`, a control or machine of the library or a file, or the control that the
+/// post names.
+///
+/// # Errors
+/// What cannot be read, each with its line; a post that names no control where `extends` does not.
+pub fn import(file: &str, bytes: &[u8], extends: Option<&str>) -> Result<Import, Vec<Diagnostic>> {
+    let refused = |rule, message: String| Diagnostic::error(rule, message).file(file);
+    if bytes.len() > LARGEST {
+        let message = format!("{} bytes are more than any post has: {LARGEST}", bytes.len());
+        return Err(vec![refused("import", message)]);
+    }
+    let source = String::from_utf8_lossy(bytes);
+    let source = source.trim_start_matches('\u{feff}');
+    let mut findings = Findings { file: file.to_owned(), list: Vec::new(), more: 0 };
+    let read =
+        if file.to_ascii_lowercase().ends_with(".pp") { vectric::read } else { parameters::read };
+    let post = read(source, &mut findings);
+    if post.parts.is_empty() && !findings.failed() {
+        let help = "a post of VCarve or Aspire (.pp), or templates with fields such as `[engraving: linear move]`";
+        findings
+            .list
+            .push(refused("import", "no block of a program is in it".to_owned()).help(help));
+    }
+    if findings.failed() {
+        return Err(findings.told());
+    }
+    let name = match extends.or_else(|| named(&[&post.title, file])) {
+        Some(name) => name.to_owned(),
+        None => {
+            let help = "say which with --extends, such as grbl, linuxcnc, mach3, marlin, fanuc-31i";
+            let message = "it does not say for which control it is".to_owned();
+            return Err(vec![refused("import-control", message).help(help)]);
+        }
+    };
+    let base = load_origin(&name).map_err(|why| vec![*why])?;
+    let text = write::file(&post, &base, &name, file, &mut findings);
+    Ok(Import { text, extends: name, findings: findings.told() })
+}
+
+/// What the names of posts call the controls of the library.
+const CONTROLS: &[(&str, &str)] = &[
+    ("grbl", "grbl"),
+    ("mach2", "mach3"),
+    ("mach3", "mach3"),
+    ("linuxcnc", "linuxcnc"),
+    ("emc2", "linuxcnc"),
+    ("marlin", "marlin"),
+    ("fanuc", "fanuc-31i"),
+    ("haas", "haas"),
+    ("sinumerik", "sinumerik-828d"),
+    ("siemens", "sinumerik-828d"),
+    ("heidenhain", "heidenhain-tnc640"),
+];
+
+/// The control that one of `names` speaks of; none where they speak of two.
+fn named(names: &[&str]) -> Option<&'static str> {
+    names.iter().find_map(|name| {
+        let name = name.to_ascii_lowercase();
+        let mut found: Vec<&str> = (CONTROLS.iter())
+            .filter(|(word, _)| name.contains(word))
+            .map(|(_, control)| *control)
+            .collect();
+        found.dedup();
+        <[&str; 1]>::try_from(found).ok().map(|[control]| control)
+    })
+}
+
+/// What is told of a post.
+struct Findings {
+    file: String,
+    list: Vec<Diagnostic>,
+    /// How many are not told.
+    more: u32,
+}
+
+impl Findings {
+    /// What makes the file unreadable.
+    fn error(&mut self, line: u32, message: impl Into<String>) {
+        self.add(Diagnostic::error("import", message), line);
+    }
+
+    /// What is not carried over.
+    fn lost(&mut self, line: u32, message: impl Into<String>) {
+        self.add(Diagnostic::warning("not-carried-over", message), line);
+    }
+
+    /// What stands otherwise than in the post.
+    fn otherwise(&mut self, line: u32, message: impl Into<String>) {
+        self.add(Diagnostic::warning("carried-otherwise", message), line);
+    }
+
+    fn add(&mut self, found: Diagnostic, line: u32) {
+        if self.list.len() < MOST_FINDINGS {
+            self.list.push(found.file(self.file.clone()).line(line));
+        } else {
+            self.more += 1;
+        }
+    }
+
+    fn failed(&self) -> bool {
+        self.list.iter().any(Diagnostic::is_error)
+    }
+
+    fn told(mut self) -> Vec<Diagnostic> {
+        self.list.sort_by_key(|found| found.line);
+        if self.more > 0 {
+            let message = format!("{} more findings are not told", self.more);
+            self.list.push(Diagnostic::warning("not-carried-over", message).file(self.file));
+        }
+        self.list
+    }
+}
