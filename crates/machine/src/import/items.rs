@@ -62,7 +62,7 @@ pub(super) fn items(line: &Line, part: Part, post: &Post) -> Vec<Item> {
             Piece::Value(name) => cut.value(name, part),
             Piece::Home { z } if cut.comment.is_none() => {
                 // An address before it is its own.
-                cut.word.clear();
+                cut.address();
                 cut.push(String::new(), Role::Place { z: *z });
             }
             Piece::Home { .. } => cut.push(String::new(), Role::Unknown(PLACE)),
@@ -126,6 +126,14 @@ impl Cutter {
         }
     }
 
+    /// The letters that stand right before a variable; a word that has its number is one of its own.
+    fn address(&mut self) -> String {
+        if self.word.contains(|c: char| c.is_ascii_digit()) {
+            self.end_word();
+        }
+        take(&mut self.word)
+    }
+
     /// A word of ours.
     fn placed(&mut self, word: &'static str, post: &Post) {
         let own = post.words.contains_key(word);
@@ -144,7 +152,7 @@ impl Cutter {
             "T" => Role::Tool,
             _ => return self.push(placed, Role::Unknown(NOT_HERE)),
         };
-        match (word, take(&mut self.word).as_str()) {
+        match (word, self.address().as_str()) {
             ("T", "H") => self.push("H".to_owned(), Role::Length),
             // The address of the word stands in the line where the post has none for it.
             ("T", "T") => self.push(placed, role),
@@ -161,7 +169,7 @@ impl Cutter {
     fn value(&mut self, name: &'static str, part: Part) {
         let known = match name {
             "operation.name" => part == Part::Segment,
-            "tool.name" | "tool.diameter" => part == Part::ToolChange,
+            "tool.name" | "tool.diameter" => matches!(part, Part::Start | Part::ToolChange),
             _ => true,
         };
         match (self.comment.is_some(), name) {
@@ -212,4 +220,16 @@ fn role(word: &str) -> Role {
         ('T', _) => Role::Unknown("calls a tool of its own"),
         _ => Role::Other,
     }
+}
+
+/// The codes of a text: letters with a number.
+pub(super) fn codes(text: &str) -> impl Iterator<Item = (char, f64)> + use<> {
+    let mut words: Vec<String> = Vec::new();
+    for c in text.chars() {
+        match words.last_mut() {
+            Some(word) if c.is_ascii_digit() || matches!(c, '.' | '-' | '+') => word.push(c),
+            _ => words.push(c.to_string()),
+        }
+    }
+    words.into_iter().filter_map(|word| code(&word))
 }

@@ -2,6 +2,7 @@
 //! each. What is believed of the format, with its sources, is in `docs/controls/importing.md`.
 
 use super::foreign::{Form, Line, Part, Piece, Post};
+use super::items::codes;
 use super::{Findings, text};
 use std::collections::BTreeMap;
 
@@ -196,7 +197,7 @@ fn setting(key: &str, value: &str, number: u32, post: &mut Post, findings: &mut 
         "LINE_NUMBER_INCREMENT" => &mut post.numbers[1],
         "LINE_NUMBER_MAXIMUM" => &mut post.numbers[2],
         _ => {
-            let message = format!("`{}` says nothing that a program holds", text::short(key));
+            let message = format!("no key of ours is `{}`", text::short(key));
             return findings.lost(number, message);
         }
     };
@@ -243,15 +244,25 @@ fn parts(
     }
 }
 
-/// Whether two blocks of moves differ by the feed and a word of motion at most.
-fn same_move(a: &[Line], b: &[Line]) -> bool {
-    let bare = |lines: &[Line]| {
+/// Whether `other` says no more than `first` but the feed: the first of several moves says the kind of
+/// motion, and the others may leave it out.
+fn same_move(first: &[Line], other: &[Line]) -> bool {
+    let words = |lines: &[Line]| {
         let mut words: Vec<&str> =
             lines.iter().flat_map(Line::words).filter(|w| *w != "F").collect();
         words.sort_unstable();
         words
     };
-    bare(a) == bare(b)
+    let codes = |lines: &[Line]| -> Vec<(char, f64)> {
+        let pieces = lines.iter().flat_map(|line| &line.pieces);
+        let texts = pieces.filter_map(|piece| match piece {
+            Piece::Text(text) => Some(codes(text)),
+            _ => None,
+        });
+        texts.flatten().collect()
+    };
+    let said = codes(first);
+    words(first) == words(other) && codes(other).iter().all(|code| said.contains(code))
 }
 
 /// A line of the program: text, variables in brackets, and characters by their number, of which 10 begins
