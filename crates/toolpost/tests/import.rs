@@ -252,13 +252,20 @@ begin TOOLCHANGE
 "T[T]"
 "M0 Load the tool"
 begin RAPID_MOVE
-"G0 [X] [Y] [Z]"
+"G0 [X] [Y] [Z] [F]"
 begin FEED_MOVE
-"G1 [X] [Y] [Z] [F]"
+"G1 [X] [Y] [Z] [FC]"
+begin PLUNGE_MOVE
+"G1 [X] [Y] [Z] [FP]"
+begin DWELL_MOVE
+"G4 [DWELL]"
 begin FOOTER
 "M5"
 "#;
-    let text = [head, WORDS, places, &arcs(" [X] [Y] [I] [J] ")].concat();
+    // By S a dwell is in seconds, by the P of the control in milliseconds.
+    let words = WORDS.replace("[DWELL|A|P|1.2]", "[DWELL|A|S|1.2]")
+        + "VAR CUT_RATE = [FC|C|F|1.1]\nVAR PLUNGE_RATE = [FP|C|F|1.1]\n";
+    let text = [head, &words, places, &arcs(" [X] [Y] [I] [J] ")].concat();
     let (import, machine) = imported("m.pp", &text, None);
     assert_eq!(import.extends, "marlin");
     blocks(
@@ -275,7 +282,7 @@ begin FOOTER
     let line = 1 + text.lines().position(|line| line.contains("M117")).unwrap() as u32;
     assert!(told(&import).contains(&(line, LOST)), "{:?}", import.findings);
     let program = sample(&machine).unwrap();
-    assert!(program.contains("M0 Load the tool"), "{program}");
+    assert!(program.contains("M0 Load the tool") && program.contains("G4 S0.50"), "{program}");
 }
 
 #[test]
@@ -362,6 +369,9 @@ begin HEADER
 "S12000 M3"
 "M8"
 "G0 X0 Y0"
+"G4 P2"
+"G92.1"
+"G10 L2 P1 X0 Y0"
 begin PLUNGE_MOVE
 "G1[X][Y][Z][F]"
 begin RETRACT_MOVE
@@ -381,12 +391,16 @@ begin CCW_ARC_MOVE
         (line("S12000"), LOST),
         (line("\"M8"), LOST),
         (line("G0 X0"), OTHERWISE),
+        (line("G4 P2"), LOST),
         (retract, LOST),
         (line("ArcMidXI"), LOST),
     ];
     assert_eq!(told(&import), expected, "{:?}", import.findings);
     assert!(machine.capabilities.arcs.is_empty());
-    sample(&machine).unwrap();
+    // What a command says stays with it, and what it does is the proof's to say.
+    let start = machine.blocks["program_start"].text.trim_end();
+    assert!(start.ends_with("G92.1\nG10 L2 P1 X0 Y0"), "{start}");
+    assert_eq!(sample(&machine).map(drop), Ok(()));
 }
 
 /// What is refused, and at which line.

@@ -46,6 +46,10 @@ pub(super) enum Role {
     End,
     /// `%`.
     Tape,
+    /// A function of the machine, which may have words of its own.
+    Function,
+    /// A code that says what the other words of its line mean: `G10`, `G92`.
+    Command,
     /// Any other word.
     Other,
     /// What cannot be written, and why.
@@ -70,7 +74,30 @@ pub(super) fn items(line: &Line, part: Part, post: &Post) -> Vec<Item> {
         }
     }
     cut.end_word();
+    bind(&mut cut.items);
     cut.items
+}
+
+/// Leaves the words of a command with it: `M84 S0` is no speed, `G92 X0` no way.
+fn bind(items: &mut [Item]) {
+    let any = |role: fn(&Item) -> bool| items.iter().any(role);
+    let moves = any(|item| {
+        item.role == Role::Motion
+            || matches!(code(&item.text), Some(('M', m)) if m == 3.0 || m == 4.0)
+    });
+    if !any(|item| item.role == Role::Command)
+        && (moves || !any(|item| item.role == Role::Function))
+    {
+        return;
+    }
+    for item in items {
+        item.role = match item.role {
+            Role::Place { .. } if item.text.is_empty() => Role::Unknown(PLACE),
+            Role::Spindle | Role::Feed if item.text.contains('{') => Role::Unknown(NOT_HERE),
+            Role::Place { .. } | Role::Spindle | Role::Feed | Role::Length => Role::Other,
+            ref role => role.clone(),
+        };
+    }
 }
 
 const PLACE: &str = "a home or a safe height is not known where a program of ours is written";
@@ -199,6 +226,10 @@ pub(super) fn code(word: &str) -> Option<(char, f64)> {
     Some((letter.to_ascii_uppercase(), number))
 }
 
+/// The modes, which need no other word.
+const SIMPLE: &[u32] =
+    &[17, 18, 19, 40, 49, 54, 55, 56, 57, 58, 59, 61, 64, 80, 90, 91, 94, 97, 98, 99];
+
 fn role(word: &str) -> Role {
     let Some((letter, number)) = code(word) else {
         return if word == "%" { Role::Tape } else { Role::Other };
@@ -218,6 +249,11 @@ fn role(word: &str) -> Role {
         ('Z', _) => Role::Place { z: true },
         ('F', _) => Role::Feed,
         ('T', _) => Role::Unknown("calls a tool of its own"),
+        ('G', 4) => Role::Unknown("is a dwell, and the toolpath says where the tool dwells"),
+        ('G', _) if SIMPLE.contains(&(number.trunc() as u32)) => Role::Other,
+        ('G', _) => Role::Command,
+        ('M', 5 | 9) => Role::Other,
+        ('M', _) => Role::Function,
         _ => Role::Other,
     }
 }

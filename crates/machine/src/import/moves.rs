@@ -46,6 +46,9 @@ impl Writing<'_> {
         for (part, name, needs) in MOVES {
             let Some(lines) = self.post.parts.get(part) else { continue };
             let number = lines.first().map_or(0, |line| line.number);
+            if *part == Part::Rapid && lines.iter().flat_map(Line::words).any(|word| word == "F") {
+                self.findings.lost(number, "a rapid has no feed");
+            }
             match self.block(lines, *part, needs) {
                 Ok(text) => drop(self.blocks.insert(name, text)),
                 Err((line, why)) => {
@@ -112,10 +115,11 @@ impl Writing<'_> {
                         short(text)
                     ));
                 }
+                Piece::Word("F") if part == Part::Rapid => {}
                 Piece::Word(word) => {
                     let has = match *word {
                         "N" | "X" | "Y" | "Z" => true,
-                        "F" => part != Part::Rapid && part != Part::Dwell,
+                        "F" => part != Part::Dwell,
                         "P" => part == Part::Dwell,
                         "BOTTOM" | "CLEAR" => part == Part::Hole,
                         word => arc && OF_ARCS.contains(&word),

@@ -11,6 +11,8 @@ const VARIABLES: &[(&str, Piece)] = &[
     ("LINE_NUMBER", Piece::Word("N")),
     ("SPINDLE_SPEED", Piece::Word("S")),
     ("FEED_RATE", Piece::Word("F")),
+    ("CUT_RATE", Piece::Word("F")),
+    ("PLUNGE_RATE", Piece::Word("F")),
     ("TOOL_NUMBER", Piece::Word("T")),
     ("DWELL_TIME", Piece::Word("P")),
     ("X_POSITION", Piece::Word("X")),
@@ -156,7 +158,12 @@ fn variable(
         Some(factor) if factor == 1.0 || (factor > 0.0 && matches!(*word, "F" | "S")) => {
             let (decimals, modal) = (Some(decimals), Some(modal));
             let address = address.to_string();
-            post.words.insert(word, Form { address, decimals, modal, scale: factor });
+            let form = Form { address, decimals, modal, scale: factor };
+            // Of the feeds of a post that is written which the toolpath says, in one form.
+            if *post.words.entry(*word).or_insert_with(|| form.clone()) != form {
+                let message = format!("`{name}` is written like the {word} before it");
+                findings.otherwise(number, message);
+            }
         }
         Some(factor) => {
             let message = format!(

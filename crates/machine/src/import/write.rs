@@ -125,7 +125,9 @@ impl Writing<'_> {
             }
             fields
                 .extend(modal.map(|modal| format!("modal = {}", modal && !(fed && *word == "F"))));
-            if *scale != 1.0 {
+            // A dwell by another address is in seconds, whatever that of the control counts.
+            let control = self.base.words.get(*word).map(|word| word.address.as_str());
+            if *scale != 1.0 || (*word == "P" && control != Some(address.trim())) {
                 fields.push(format!("scale = {scale}"));
             }
             let _ = writeln!(out, "{word} = {{ {} }}", fields.join(", "));
