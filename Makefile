@@ -26,12 +26,15 @@ demo: rust
 	@echo "the program is $(DEMO).mpf, its report $(DEMO).report.json, its picture $(DEMO).png"
 
 ## Every test; those that need an outside judge or real input say so where it is missing. Property tests
-## draw the same cases in every run; `make test SEED=2`, or any other whole number, draws others.
+## draw the same cases in every run; `make test SEED=2`, or any other whole number, draws others. What
+## fails does not stop the rest.
 test: rust python
+	@failed=; \
 	PROPTEST_RNG_SEED=$(SEED) PROPTEST_DISABLE_FAILURE_PERSISTENCE=1 \
-		cargo test --workspace --no-fail-fast
-	pytest --quiet --hypothesis-seed $(SEED)
-	$(MAKE) freecad
+		cargo test --workspace --no-fail-fast || failed=yes; \
+	pytest --quiet --hypothesis-seed $(SEED) || failed=yes; \
+	$(MAKE) freecad || failed=yes; \
+	test -z "$$failed"
 
 ## The tests within FreeCAD (`scripts/setup freecad`), with the command as cargo has built it.
 freecad: python

@@ -66,7 +66,8 @@ class Package:
 
     def _read(self, job, options):
         machine = self._machine(options.machine, dict(options.option))
-        text = json.dumps(job, ensure_ascii=False)
+        # With `ensure_ascii`, which is twice as fast.
+        text = json.dumps(job)
         return self.read_job(text, machine, file=f"{_stem(job)}.json"), machine
 
     def _machine(self, name, changed):
@@ -145,7 +146,7 @@ def _folder(job):
                 return os.path.join(folder, f"{_stem(job)}.{ending}")
 
             with open(file("json"), "w", encoding="utf-8") as written:
-                written.write(json.dumps(job, ensure_ascii=False))
+                written.write(json.dumps(job))
             yield file
     except OSError as error:
         raise PostError(f"the folder for temporary files, or the command: {error}") from None

@@ -19,6 +19,8 @@ type Pair<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>);
 #[pyclass(frozen, module = "toolpost")]
 pub struct Machine {
     pub described: ::machine::Machine,
+    /// The name or the file that it was loaded by.
+    pub loaded_by: PathBuf,
 }
 
 #[pymethods]
@@ -184,7 +186,7 @@ pub fn machine(
     name_or_path: PathBuf,
     options: Option<&Bound<'_, PyDict>>,
 ) -> PyResult<Machine> {
-    let name = text(name_or_path);
+    let name = text(name_or_path.clone());
     let mut described = released(py, || toolpath::machine(&name))?;
     for (name, value) in options.into_iter().flatten() {
         let value = match value.extract::<bool>() {
@@ -195,7 +197,7 @@ pub fn machine(
             .set_option(&name.extract::<String>()?, &value)
             .map_err(|found| refused(py, *found))?;
     }
-    Ok(Machine { described })
+    Ok(Machine { described, loaded_by: name_or_path })
 }
 
 /// The machines of the library, in the order of their names.
@@ -207,5 +209,7 @@ pub fn machine(
 pub fn library(py: Python<'_>) -> PyResult<Vec<Machine>> {
     let machines =
         released(py, || names(MACHINES).map(toolpath::machine).collect::<Result<Vec<_>, Stop>>())?;
-    Ok(machines.into_iter().map(|described| Machine { described }).collect())
+    let loaded_by = |machine: &::machine::Machine| PathBuf::from(&machine.name);
+    let wrap = |described| Machine { loaded_by: loaded_by(&described), described };
+    Ok(machines.into_iter().map(wrap).collect())
 }

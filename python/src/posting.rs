@@ -8,7 +8,7 @@ use proof::Tolerances;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
 use std::ffi::OsString;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use toolpost::answer::{Account, Stop, Verdict};
 use toolpost::files::{self, Target};
 use toolpost::post::{Posted, proven};
@@ -54,6 +54,13 @@ pub fn post<'py>(
     file: Option<String>,
     tolerance: Option<f64>,
 ) -> PyResult<Bound<'py, PyAny>> {
+    let inputs: Vec<PathBuf> = program
+        .toolpath
+        .path()
+        .into_iter()
+        .chain([machine.loaded_by.as_path()])
+        .map(Path::to_owned)
+        .collect();
     let (toolpath, machine) = (&program.toolpath, &machine.described);
     let file = file.unwrap_or_else(|| {
         let name = toolpath.file.rsplit_once('.').map_or(&*toolpath.file, |(stem, _)| stem);
@@ -68,7 +75,7 @@ pub fn post<'py>(
         error.value(py).setattr("report", report)?;
         return Err(error);
     }
-    class(py, "Result")?.call1((PyBytes::new(py, &text), report))
+    class(py, "Result")?.call1((PyBytes::new(py, &text), report, inputs))
 }
 
 /// Hold a program, also one edited by hand, against the toolpath that it should make.
@@ -121,14 +128,21 @@ fn report<'py>(py: Python<'py>, account: &Account) -> PyResult<Bound<'py, PyAny>
     class(py, "Report")?.call1((proven, rows, findings(py, &account.findings)?, account.report()))
 }
 
-/// Save a program and its report, both or neither: files as they were before stay where one cannot be
-/// saved.
+/// Save a program and its report, both or neither, and over none of the files that it was made of: files
+/// as they were before stay where one cannot be saved.
 #[pyfunction]
-pub fn save(py: Python<'_>, path: PathBuf, text: &[u8], report: Option<&str>) -> PyResult<()> {
+pub fn save(
+    py: Python<'_>,
+    path: PathBuf,
+    text: &[u8],
+    report: Option<&str>,
+    inputs: Vec<PathBuf>,
+) -> PyResult<()> {
     released(py, || {
-        let target = Target::new(&path, &[])?;
+        let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
+        let target = Target::new(&path, &inputs)?;
         let Some(report) = report else { return files::save(&[(&target, text)]) };
-        let report_target = Target::new(&path.with_extension("report.json"), &[])?;
+        let report_target = Target::new(&path.with_extension("report.json"), &inputs)?;
         files::save(&[(&report_target, report.as_bytes()), (&target, text)])
     })
 }

@@ -39,6 +39,22 @@ def test_a_program_is_saved_with_its_report(tmp_path, slot):
     ]
 
 
+def test_a_program_is_not_saved_over_what_it_was_made_of(tmp_path, slot):
+    result = toolpost.post(slot, toolpost.machine("generic-3axis-linuxcnc"))
+    result.save(tmp_path / "part.ngc", report=False)
+    own = tmp_path / "own.toml"
+    own.write_text('extends = "generic-3axis-linuxcnc"\n')
+    (tmp_path / "link.ngc").symlink_to("part.ngc")
+    source, machine = toolpost.read(tmp_path / "part.ngc", "linuxcnc"), toolpost.machine(own)
+    result = toolpost.post(source, machine)
+    for name in ("part.ngc", "link.ngc", "own.toml"):
+        before = (tmp_path / name).read_bytes()
+        with pytest.raises(toolpost.Error, match="the input itself"):
+            result.save(tmp_path / name)
+        assert (tmp_path / name).read_bytes() == before
+    assert not list(tmp_path.glob("*.report.json"))
+
+
 def test_where_it_cannot_be_saved_nothing_is(tmp_path, slot):
     result = toolpost.post(slot, toolpost.machine("emco-concept-mill-105"))
     with pytest.raises(toolpost.Error) as caught:

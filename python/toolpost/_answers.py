@@ -152,9 +152,13 @@ class Result:
         What is told of it.
     """
 
-    def __init__(self, data: bytes, report: Report) -> None:
+    def __init__(
+        self, data: bytes, report: Report, inputs: Sequence[str | os.PathLike[str]] = ()
+    ) -> None:
         self.data = data
         self.report = report
+        # The files that it was made of, which stay.
+        self._inputs = tuple(inputs)
 
     @property
     def text(self) -> str:
@@ -167,7 +171,8 @@ class Result:
         Parameters
         ----------
         path : str or os.PathLike
-            Where; the report is there under the ending ``.report.json``.
+            Where; the report is there under the ending ``.report.json``. Neither can be a file that
+            the program was made of.
         report : bool
             Whether the report is saved too.
 
@@ -178,7 +183,7 @@ class Result:
         """
         from ._native import save  # noqa: PLC0415 - which imports this module
 
-        save(path, self.data, self.report.json if report else None)
+        save(path, self.data, self.report.json if report else None, self._inputs)
 
     def __repr__(self) -> str:
         return f"<Result: {len(self.data)} bytes, {self.report!r}>"

@@ -27,29 +27,35 @@ pub(crate) fn parse(text: &[u8]) -> Option<Decimal> {
         Some(b'+') => (false, 1),
         _ => (false, 0),
     };
-    let (mut digits, mut places, mut count) = (0u64, 0usize, 0usize);
-    let (mut point, mut len) = (false, sign);
-    for &byte in text.get(sign..)? {
-        match byte {
-            b'0'..=b'9' => {
-                digits = digits.wrapping_mul(10).wrapping_add(u64::from(byte - b'0'));
-                count += 1;
-                places += usize::from(point);
-            }
-            b'.' if !point => point = true,
-            _ => break,
-        }
-        len += 1;
-    }
+    let (whole, integer) = digits(text.get(sign..)?, 0);
+    let after = sign + integer;
+    let point = text.get(after) == Some(&b'.');
+    let decimals = if point { text.get(after + 1..)? } else { &[] };
+    let (number, places) = digits(decimals, whole);
+    let (count, len) = (integer + places, after + usize::from(point) + places);
     if count == 0 {
         return None;
     }
     let magnitude = if count <= 15 {
-        digits as f64 / POWERS[places]
+        number as f64 / POWERS[places]
     } else {
         std::str::from_utf8(&text[sign..len]).ok()?.parse().ok()?
     };
     Some(Decimal { value: if negative { -magnitude } else { magnitude }, len, point })
+}
+
+/// The digits at the start of `text` behind those of `number`, and how many they are.
+fn digits(text: &[u8], mut number: u64) -> (u64, usize) {
+    let mut count = 0;
+    for &byte in text {
+        let digit = byte.wrapping_sub(b'0');
+        if digit > 9 {
+            break;
+        }
+        number = number.wrapping_mul(10).wrapping_add(u64::from(digit));
+        count += 1;
+    }
+    (number, count)
 }
 
 #[cfg(test)]

@@ -1,8 +1,9 @@
-//! Pictures, as SVG or PNG: of a tool path, of the way of a wire.
+//! Pictures, as SVG or PNG: of a tool path, of the way of a wire, of a board.
 //!
-//! Both are drawn from straight pieces ([`walk()`] makes them of a program); letters are strokes of our own. The same input gives the same bytes on every machine: there are no fonts in them. Their size is
+//! All are drawn from straight pieces ([`walk()`] makes them of a program); letters are strokes of our own. The same input gives the same bytes on every machine: there are no fonts in them. Their size is
 //! bounded, however long the program.
 
+mod board;
 mod lettering;
 mod paper;
 mod tool_path;
@@ -11,6 +12,7 @@ mod view;
 mod walk;
 mod wire_path;
 
+pub use board::{BoardPicture, board};
 pub use tool_path::tool_path;
 pub use walk::{Segment, walk};
 pub use wire_path::{WireLeg, WirePicture, wire_path};

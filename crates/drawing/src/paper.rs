@@ -14,6 +14,21 @@ pub const SIZE: DVec2 = DVec2::new(1200.0, 760.0);
 pub const PAPER: &str = "#fdfdfb";
 pub const INK: &str = "#3a3f45";
 
+/// Colour of rapid moves.
+pub const RAPID: &str = "#a4abb3";
+
+/// Colours of the tools (red, green, blue), told apart with any colour sight.
+pub const COLORS: [[f64; 3]; 8] = [
+    [38.0, 120.0, 190.0],
+    [222.0, 122.0, 24.0],
+    [34.0, 150.0, 96.0],
+    [196.0, 62.0, 92.0],
+    [124.0, 92.0, 196.0],
+    [20.0, 160.0, 176.0],
+    [150.0, 108.0, 52.0],
+    [110.0, 118.0, 128.0],
+];
+
 /// The head of a drawing: what it is for who cannot see it, and the paper.
 pub fn begin(what: &str) -> String {
     let (w, h) = (SIZE.x, SIZE.y);

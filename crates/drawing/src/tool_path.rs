@@ -3,7 +3,7 @@
 //! Cutting moves have one colour a tool, darker where they are deeper; rapids are thin and dashed;
 //! holes have a ring; where the tool tilts, hair lines show its axis.
 
-use crate::paper::{INK, SIZE, begin, lines, scale_bar, shorten, triad, write_text};
+use crate::paper::{COLORS, INK, RAPID, SIZE, begin, lines, scale_bar, shorten, triad, write_text};
 use crate::trace::Trace;
 use crate::view::View;
 use crate::walk::{Segment, walk};
@@ -34,20 +34,6 @@ const HAIRS: (f64, f64) = (300.0, 30.0);
 
 /// The most rings that mark holes.
 const MAX_RINGS: usize = 20_000;
-
-/// Colours of the tools (red, green, blue), told apart with any colour sight.
-const COLORS: [[f64; 3]; 8] = [
-    [38.0, 120.0, 190.0],
-    [222.0, 122.0, 24.0],
-    [34.0, 150.0, 96.0],
-    [196.0, 62.0, 92.0],
-    [124.0, 92.0, 196.0],
-    [20.0, 160.0, 176.0],
-    [150.0, 108.0, 52.0],
-    [110.0, 118.0, 128.0],
-];
-
-const RAPID: &str = "#a4abb3";
 
 /// Draws `program` as SVG under a title.
 pub fn tool_path(title: &str, program: &Program) -> String {

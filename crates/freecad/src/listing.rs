@@ -54,28 +54,35 @@ impl Listing {
             if operation.coolant != coolant {
                 // As FreeCAD's own posts do it: on before the operation, off behind it.
                 if coolant.is_some() {
-                    listing.push(b"M9");
+                    listing.push("M9");
                 }
                 match operation.coolant {
-                    Some(Coolant::Flood) => listing.push(b"M8"),
-                    Some(Coolant::Mist) => listing.push(b"M7"),
+                    Some(Coolant::Flood) => listing.push("M8"),
+                    Some(Coolant::Mist) => listing.push("M7"),
                     _ => {}
                 }
                 coolant = operation.coolant;
             }
             let before = listing.lines;
             listing.sections.push(Section { label: operation.label.clone(), before, from });
-            operation.commands.lines().for_each(|line| listing.push(line.as_bytes()));
+            listing.push(&operation.commands);
         }
         listing
     }
 
-    fn push(&mut self, line: &[u8]) {
-        let rotary = |byte: &u8| matches!(byte.to_ascii_uppercase(), b'A'..=b'C');
-        self.turns |= !line.starts_with(b"(") && line.iter().any(rotary);
-        self.text.extend_from_slice(line);
-        self.text.push(b'\n');
-        self.lines = self.lines.saturating_add(1);
+    /// Adds commands, one a line.
+    fn push(&mut self, commands: &str) {
+        let is_command = |line: &str| !line.starts_with('(');
+        self.turns |= names_rotary_axis(commands)
+            && commands.lines().any(|line| is_command(line) && names_rotary_axis(line));
+        let before = self.text.len();
+        self.text.extend_from_slice(commands.as_bytes());
+        if !commands.is_empty() && !commands.ends_with('\n') {
+            self.text.push(b'\n');
+        }
+        let added = self.text.get(before..).unwrap_or_default();
+        let lines = u32::try_from(memchr::memchr_iter(b'\n', added).count()).unwrap_or(u32::MAX);
+        self.lines = self.lines.saturating_add(lines);
     }
 
     /// The text.
@@ -118,4 +125,11 @@ impl Listing {
     pub fn operations(&self) -> impl Iterator<Item = (&str, u32)> {
         self.sections.iter().map(|section| (section.label.as_str(), section.before))
     }
+}
+
+/// Whether one of the letters A, B, C is in a text.
+fn names_rotary_axis(text: &str) -> bool {
+    // Without a way out of the loop, which the compiler then does for many bytes at once.
+    let is = |byte: u8| byte.to_ascii_uppercase().wrapping_sub(b'A') < 3;
+    text.bytes().fold(false, |found, byte| found | is(byte))
 }

@@ -169,6 +169,36 @@ fn beside_a_tap_f_is_the_pitch() {
     refused(&operation(&cut), "nc-feed", "part.json: operation `Profile`:7", "tool controller");
 }
 
+/// FreeCAD's posts write 60 F in every mode, so that F counts a second: `G93` F0.5 is 30 moves a minute.
+#[test]
+fn feeds_are_a_second_in_every_mode() {
+    let text = format!(
+        "{START}G1 F2.0 Z5.0\nG93\nG1 F0.500000 X5.0\nG1 F0.205761 X9.0\nG95\nG1 F0.001667 X12.0\nG1 X13.0\n\
+         G94\nG1 F3.333333 X20.0\n"
+    );
+    let ops = ops(&operation(&text));
+    let feeds = ops.iter().filter_map(|op| match op {
+        Op::Feed(feed) => Some(*feed),
+        _ => None,
+    });
+    assert_eq!(
+        feeds.collect::<Vec<_>>(),
+        [
+            Feed::PerMinute(120.0),
+            Feed::InverseTime(30.0),
+            Feed::InverseTime(0.205761 * 60.0),
+            Feed::PerTurn(0.1),
+            Feed::PerMinute(200.0),
+        ]
+    );
+    let place = "part.json: operation `Profile`:6";
+    // Each move of its own time has an F, and the number of one mode means nothing in another.
+    let alone = format!("{START}G1 F2.0 Z5.0\nG93\nG1 F0.5 X5.0\nG1 X9.0\n");
+    refused(&operation(&alone), "nc-feed", place, "tool controller");
+    let back = format!("{START}G93\nG1 F0.5 X5.0\nG94\nG1 X9.0\n");
+    refused(&operation(&back), "nc-feed", place, "tool controller");
+}
+
 #[test]
 fn an_arc_has_its_centre_from_its_start_and_its_k_means_nothing() {
     let text = format!("{START}G1 F2.0 Z0.0\nG3 F2.0 I0.0 J5.0 K3.0 X1.0 Y12.0 Z-1.0\n");
@@ -254,7 +284,8 @@ fn commands_that_mean_nothing_are_named() {
     refused(&wrong("G123 X1.0"), "nc-unknown-word", place, "commands of the operation");
     refused(&wrong("M77"), "nc-unknown-word", place, "auxiliary");
     refused(&wrong("G20"), "nc-unknown-word", place, "in mm");
-    refused(&wrong("G95"), "nc-unknown-word", place, "mm/s");
+    // FreeCAD itself takes the words behind it.
+    refused(&wrong("G1 X7.000000 ;Y9.000000"), "nc-syntax", place, "a command of its own");
     // A NaN, and an infinite number, as `toGCode` writes them, and by their names.
     for number in ["-922337203685.477581", "nan", "-inf"] {
         for letter in ["X", "I", "F"] {
@@ -262,6 +293,19 @@ fn commands_that_mean_nothing_are_named() {
             refused(&wrong(&nothing), "nc-number", place, "recompute");
         }
     }
+}
+
+#[test]
+fn a_million_commands_are_read() {
+    let mut text = String::from(START) + "G1 F2.0 Z0.0\n";
+    let moves = 1_000_000;
+    for n in 0..moves {
+        // No two neighbours are the same place.
+        text += if n % 2 == 0 { "G1 X5.000000\n" } else { "G1 X1.000000\n" };
+    }
+    let records = read(&operation(&text)).unwrap().records;
+    let lines = records.iter().filter(|record| matches!(record.op, Op::Line(_))).count();
+    assert_eq!(lines, moves + 1);
 }
 
 #[test]

@@ -66,16 +66,27 @@ impl Element {
         if self.meets(other, reach).next().is_some() {
             return 0.0;
         }
-        let ends = [
-            self.nearest(other.start).1,
-            self.nearest(other.end).1,
-            other.nearest(self.start).1,
-            other.nearest(self.end).1,
-        ];
-        let mut least = ends.into_iter().fold(f64::INFINITY, f64::min);
+        let (on_this, on_other) = self.closest(other);
+        on_this.distance(on_other)
+    }
+
+    /// Where this element and `other`, which do not cross, are nearest to each other: a point of each.
+    pub fn closest(&self, other: &Element) -> (Vec2, Vec2) {
+        let foot = |point: Vec2, on: &Element| on.at(on.nearest(point).0);
+        let mut best = (self.start, foot(self.start, other));
+        let mut least = best.0.distance(best.1);
+        let mut consider = |one: Vec2, two: Vec2| {
+            let distance = one.distance(two);
+            if distance < least {
+                (best, least) = ((one, two), distance);
+            }
+        };
+        consider(self.end, foot(self.end, other));
+        consider(foot(other.start, self), other.start);
+        consider(foot(other.end, self), other.end);
         // Else the shortest way between two inner points is at right angles to both: on an arc it
         // points at the centre.
-        for (arc, rest) in [(self, other), (other, self)] {
+        for (arc, rest, is_this) in [(self, other, true), (other, self, false)] {
             let Some(turn) = arc.turn else { continue };
             let toward = match rest.turn {
                 None => {
@@ -90,11 +101,13 @@ impl Element {
             // About a point of the other element, or its centre, the ends are as near as the rest.
             for point in [turn.center + out, turn.center - out] {
                 if out != Vec2::ZERO && arc.parameter(turn, point).is_some() {
-                    least = least.min(rest.nearest(point).1);
+                    let across = foot(point, rest);
+                    let (one, two) = if is_this { (point, across) } else { (across, point) };
+                    consider(one, two);
                 }
             }
         }
-        least
+        best
     }
 
     /// How far along this element `point` lies, mm, which is on its line or circle; `None` beyond its

@@ -134,7 +134,7 @@ impl Element {
     pub fn extents(&self) -> (Vec2, Vec2) {
         let (mut low, mut high) = (self.start.min(self.end), self.start.max(self.end));
         if let Some(turn) = self.turn {
-            let radius = self.start.distance(turn.center);
+            let radius = self.start.distance(turn.center).max(self.end.distance(turn.center));
             for out in [Vec2::X, Vec2::Y, Vec2::NEG_X, Vec2::NEG_Y] {
                 let point = turn.center + out * radius;
                 if self.parameter(turn, point).is_some() {

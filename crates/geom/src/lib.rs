@@ -1,20 +1,25 @@
-//! Points, lines and arcs in space.
+//! Points, lines and arcs in space, and letters made of lines.
 //!
 //! Coordinates are millimetres in a right-handed frame, angles are radians, and every function is a
 //! pure function of its arguments: the same input gives the same bits on every machine and thread.
 //! There is no input or output here and nothing knows of a machine.
 
 mod arc;
+mod chain;
 mod crossing;
 mod element;
+pub mod lettering;
 pub mod region;
 mod rotation;
+mod transform;
 
 pub use arc::{Arc, ArcError};
+pub use chain::{Chain, ChainError, Chains, chain};
 pub use crossing::Crossing;
 pub use element::{Element, Turn, turn_angle};
 pub use glam::{DAffine3 as Frame, DMat3 as Mat3, DVec2 as Vec2, DVec3 as Vec3};
 pub use rotation::Euler;
+pub use transform::Transform;
 
 /// Two directions count as the same below this angle (radians): 0.2 arc seconds, far below what any
 /// rotary axis resolves.

@@ -2,7 +2,7 @@
 
 use proptest::prelude::*;
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
-use toolpost_geom::region::{Cap, Fill, Region, RegionError, Ring};
+use toolpost_geom::region::{Cap, Fill, Index, Region, RegionError, Ring, strokes};
 use toolpost_geom::{Element, Vec2};
 
 /// How far a boundary may be from where it ought to be, mm.
@@ -196,6 +196,10 @@ fn nothing_stays_nothing() {
     assert_eq!((nothing.area(), nothing.extents()), (0.0, None));
     assert_eq!(nothing.distance(Vec2::ZERO), f64::INFINITY);
     assert!(!nothing.contains(Vec2::ZERO));
+    let index = Index::new(&nothing);
+    assert_eq!(index.island_at(Vec2::ZERO), None);
+    assert!(index.nearest(Vec2::ZERO, f64::INFINITY).is_none());
+    assert_eq!(index.within(Vec2::splat(-1e9), Vec2::splat(1e9)).count(), 0);
 }
 
 #[test]
@@ -330,6 +334,34 @@ proptest! {
     }
 
     #[test]
+    fn an_index_finds_what_looking_at_everything_finds(
+        a in some(), points in proptest::collection::vec((-600..600i32, -600..600i32), 20)
+    ) {
+        let index = Index::new(&a);
+        for (x, y) in points {
+            // Half of the points are on the grid of the shapes, at the height of corners.
+            let point = Vec2::new(x.into(), y.into()) * 0.0125;
+            let away = a.rings().map(|ring| ring.distance(point)).fold(f64::INFINITY, f64::min);
+            if away > NEAR {
+                let inside = a.islands().iter().position(|island| island.contains(point));
+                prop_assert_eq!(index.island_at(point), inside);
+            }
+            let nearest = index.nearest(point, f64::INFINITY).unwrap();
+            prop_assert!((nearest.distance - away).abs() < 1e-12);
+            let (piece, on) = (nearest.piece, nearest.piece.element.at(nearest.t));
+            prop_assert!((on.distance(point) - away).abs() < 1e-9);
+            let ring = a.rings().nth(piece.ring).unwrap();
+            prop_assert!(ring.elements().contains(piece.element));
+            prop_assert!(a.islands()[piece.island].distance(on) < 1e-9);
+            prop_assert!(index.nearest(point, away + 1e-9).is_some());
+            prop_assert!(index.nearest(point, away - 1e-9).is_none_or(|_| away == 0.0));
+            let box_of = |half: f64| index.within(point - half, point + half).count();
+            prop_assert!(box_of(away + 1e-9) > 0);
+            prop_assert_eq!(box_of(100.0), index.pieces().len());
+        }
+    }
+
+    #[test]
     fn the_same_again_is_the_same(shapes in proptest::collection::vec(shape(), 1..12)) {
         let once = Region::union_of(&shapes).unwrap();
         prop_assert_eq!(&once, &Region::union_of(&shapes).unwrap());
@@ -339,4 +371,53 @@ proptest! {
         prop_assert!((again.area() - once.area()).abs() < 1e-6);
         prop_assert_eq!(elements(&again).len(), elements(&once).len());
     }
+}
+
+/// Ways on a grid, where many meet, go straight on or back on each other, with dots and arcs.
+fn network() -> impl Strategy<Value = Vec<(Element, f64)>> {
+    let spot = (0..4i32, 0..4i32).prop_map(|(x, y)| Vec2::new(f64::from(x), f64::from(y)));
+    let way = (spot.clone(), spot, 0..4u32, 0..2u32).prop_map(|(from, to, form, wide)| {
+        let width = [0.4, 2.6][wide as usize];
+        let (middle, half) = ((from + to) / 2.0, (to - from) / 2.0);
+        let element = match form {
+            0 if from != to => Element::arc(from, to, middle, PI),
+            // A quarter clockwise.
+            1 if from != to => Element::arc(from, to, middle - half.perp(), -FRAC_PI_2),
+            _ => Element::line(from, to),
+        };
+        (element, width)
+    });
+    proptest::collection::vec(way, 1..12)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(512))]
+
+    #[test]
+    fn a_network_of_strokes_covers_what_its_strokes_cover(ways in network()) {
+        let together = Region::inside(&strokes(&ways).unwrap(), Fill::Positive).unwrap();
+        let each: Vec<Region> = ways
+            .iter()
+            .map(|(way, width)| match way.length() > 0.0 {
+                true => Region::stroke(way, *width, Cap::Round).unwrap(),
+                false => Region::disc(way.start, width / 2.0).unwrap(),
+            })
+            .collect();
+        let united = Region::union_of(&each).unwrap();
+        let apart = together.xor(&united).unwrap().area();
+        prop_assert!(apart < slack(&[&together, &united]), "{apart} mm² for {}", united.area());
+        prop_assert_eq!(together.islands().len(), united.islands().len());
+    }
+}
+
+#[test]
+fn strokes_that_go_straight_on_need_no_arcs_between_them() {
+    let line = |from: f64, to: f64| (Element::line(Vec2::X * from, Vec2::X * to), 1.0);
+    let rings = strokes(&[line(0.0, 2.0), line(2.0, 3.0), line(5.0, 3.0)]).unwrap();
+    let arcs = rings.iter().flat_map(Ring::elements).filter(|element| element.turn.is_some());
+    assert_eq!((rings.len(), arcs.count()), (5, 2), "three rectangles and two half discs");
+    assert!(matches!(
+        strokes(&[(Element::line(Vec2::X, Vec2::Y), 0.0)]),
+        Err(RegionError::NotALength(_))
+    ));
 }

@@ -23,3 +23,19 @@ pub enum HoleShape {
     /// Along lines and arcs, each of which starts where the one before ends; at least one.
     Route(Vec<Element>),
 }
+
+impl Hole {
+    /// The corners of the smallest box around it whose sides are parallel to the axes, mm.
+    pub fn extents(&self) -> (Vec2, Vec2) {
+        let (low, high) = match &self.shape {
+            HoleShape::Round(at) => (*at, *at),
+            HoleShape::Slot(from, to) => (from.min(*to), from.max(*to)),
+            HoleShape::Route(elements) => {
+                let each = elements.iter().map(Element::extents);
+                each.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or_default()
+            }
+        };
+        let radius = Vec2::splat(self.diameter / 2.0);
+        (low - radius, high + radius)
+    }
+}

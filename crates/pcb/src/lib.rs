@@ -14,23 +14,36 @@
 
 mod arc;
 pub mod board;
+mod clearing;
 mod contour;
+mod crossing;
 mod decimal;
+mod engraving;
 pub mod excellon;
 pub mod gerber;
 mod hole;
+pub mod isolation;
+pub mod job;
+pub mod kicad;
+mod merge;
+pub mod model;
 mod operation;
 mod path;
 mod report;
 mod stroke;
-mod transform;
+pub mod tour;
+mod voronoi;
 
 pub use board::{Board, Copper, Side};
+pub use clearing::{Cleared, Clearing};
 pub use contour::{Contour, Piece};
+pub use engraving::{Engraving, engraved, outlined};
+pub use geom::Transform;
 pub use hole::{Hole, HoleShape};
-pub use operation::{Cut, Cutter, Operation, Stretch, Tool};
-pub use path::Path;
-pub use transform::Transform;
+pub use merge::joined;
+pub use operation::{Cut, Cutter, Operation, Stretch, Tool, depths};
+pub use path::{Path, Site};
+pub use voronoi::{Division, Strait, divided};
 
 /// The farthest coordinate that is taken, mm.
 const FAR: f64 = 1e6;

@@ -1,5 +1,6 @@
 //! What a machine does to a board: tools and their cuts, in order.
 
+use crate::Path;
 use geom::{Element, Vec2};
 
 /// What one tool does, in the order in which it does it.
@@ -11,6 +12,19 @@ pub struct Operation {
     pub tool: Tool,
     /// The cuts, in order.
     pub cuts: Vec<Cut>,
+}
+
+impl Operation {
+    /// How wide its tool cuts where it goes deepest, mm.
+    pub fn width(&self) -> f64 {
+        let depths = self.cuts.iter().map(|cut| match cut {
+            Cut::Hole { depth, .. } => *depth,
+            Cut::Way(stretches) => {
+                stretches.iter().map(|stretch| stretch.depth).fold(0.0, f64::max)
+            }
+        });
+        self.tool.cutter.width(depths.fold(0.0, f64::max))
+    }
 }
 
 /// One stay of the tool in the board. Depths are mm below the surface, greater than 0.
@@ -26,6 +40,29 @@ pub enum Cut {
     /// Down where the first stretch starts, along all of them, and out at the end. Each starts where the
     /// one before ends; where their depths differ, the tool goes straight down or up between them.
     Way(Vec<Stretch>),
+}
+
+impl Cut {
+    /// Along `path` at each of `depths` in turn, without leaving the board: around and around where it is
+    /// closed, else there and back.
+    pub fn along(path: &Path, depths: &[f64]) -> Cut {
+        let back = if path.is_closed() { path.clone() } else { path.reversed() };
+        let ways = [path, &back].into_iter().cycle().zip(depths);
+        let stretches = ways.flat_map(|(way, &depth)| {
+            way.elements().iter().map(move |&element| Stretch { element, depth })
+        });
+        Cut::Way(stretches.collect())
+    }
+}
+
+/// The depths at which to cut down to `depth` mm: equally far apart, and by no more than `step` mm. Both
+/// are greater than 0. A step that is a tenth of a micrometre too small for a whole number of them is
+/// taken as meant.
+pub fn depths(depth: f64, step: f64) -> Vec<f64> {
+    /// No machine makes a smaller step, mm.
+    const LEAST: f64 = 1e-4;
+    let levels = ((depth - LEAST) / step.max(LEAST)).ceil().max(1.0) as usize;
+    (1..=levels).map(|level| depth * level as f64 / levels as f64).collect()
 }
 
 /// A line or arc at one depth.
@@ -90,5 +127,28 @@ mod tests {
         // Edges at 45° each: as far out as down.
         assert!((vee.width(0.2) - 0.5).abs() < 1e-12);
         assert_eq!(Cutter::Cylinder { diameter: 0.8 }.width(3.0), 0.8);
+    }
+
+    #[test]
+    fn levels_are_equally_deep_and_none_deeper_than_the_step() {
+        assert_eq!(depths(1.5, 0.5), [0.5, 1.0, 1.5]);
+        assert_eq!(depths(1.0, 0.6), [0.5, 1.0]);
+        assert_eq!(depths(0.1, 0.6), [0.1]);
+        // 0.3 / 0.1 is a little less than 3, 0.9 / 0.3 a little more.
+        assert_eq!((depths(0.3, 0.1).len(), depths(0.9, 0.3).len()), (3, 3));
+        assert_eq!(depths(0.01, 1e-300).len(), 99);
+    }
+
+    #[test]
+    fn a_ring_is_gone_around_again_and_a_line_there_and_back() {
+        let (a, b) = (Vec2::ZERO, Vec2::X);
+        let line = Path::new(vec![Element::line(a, b)]).unwrap();
+        let Cut::Way(way) = Cut::along(&line, &[1.0, 2.0, 3.0]) else { panic!("a hole") };
+        let there = |depth| Stretch { element: Element::line(a, b), depth };
+        let back = |depth| Stretch { element: Element::line(b, a), depth };
+        assert_eq!(way, [there(1.0), back(2.0), there(3.0)]);
+        let ring = Path::new(vec![Element::line(a, b), Element::line(b, a)]).unwrap();
+        let Cut::Way(way) = Cut::along(&ring, &[1.0, 2.0]) else { panic!("a hole") };
+        assert_eq!(way, [there(1.0), back(1.0), there(2.0), back(2.0)]);
     }
 }

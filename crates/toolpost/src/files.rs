@@ -107,6 +107,68 @@ impl Target {
     }
 }
 
+/// Whether a folder is there or can be made.
+///
+/// # Errors
+/// Where something else has its name, or the folder that it would be in is missing.
+pub fn check_folder(path: &Path) -> Result<(), Box<Diagnostic>> {
+    let refused = |why: String, help: &str| {
+        let message = format!("cannot be the folder of the output: {why}");
+        Err(about(path, "output-folder", message).help(help).into())
+    };
+    if path.is_dir() {
+        return Ok(());
+    }
+    if fs::symlink_metadata(path).is_ok() {
+        return refused(String::from("it is not a folder"), "give another name");
+    }
+    match path.parent() {
+        Some(parent) if !parent.as_os_str().is_empty() && !parent.is_dir() => {
+            refused(format!("there is no folder {}", parent.display()), "make that folder first")
+        }
+        _ => Ok(()),
+    }
+}
+
+/// A folder for output. One that was made for it goes again, unless it is kept.
+#[derive(Debug)]
+pub struct Folder {
+    /// The folder, where it was made.
+    new: Option<PathBuf>,
+}
+
+/// The folder `path`, made where it is missing.
+///
+/// # Errors
+/// As [`check_folder`], and where it cannot be made.
+pub fn folder(path: &Path) -> Result<Folder, Box<Diagnostic>> {
+    check_folder(path)?;
+    if path.is_dir() {
+        return Ok(Folder { new: None });
+    }
+    fs::create_dir(path).map_err(|error| {
+        let message = format!("the folder cannot be made: {error}");
+        about(path, "output-folder", message).help("give another folder")
+    })?;
+    Ok(Folder { new: Some(path.to_owned()) })
+}
+
+impl Folder {
+    /// It stays.
+    pub fn keep(mut self) {
+        self.new = None;
+    }
+}
+
+impl Drop for Folder {
+    fn drop(&mut self) {
+        if let Some(folder) = &self.new {
+            // Only when it is empty; what else is in it is not ours.
+            let _ = fs::remove_dir(folder);
+        }
+    }
+}
+
 /// Saves all of the files or, where one cannot be saved, none: what was there before stays. A copy of
 /// what is there is kept of all but the last, so the largest should be the last.
 ///

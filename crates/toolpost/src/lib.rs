@@ -12,6 +12,7 @@ mod explain;
 mod fcstd;
 pub mod files;
 mod machines;
+mod pcb;
 pub mod post;
 mod progress;
 pub mod prove;
@@ -42,6 +43,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
     let answer = match command {
         Command::Post(args) => post::run(&args, silent),
         Command::Wire(args) => wire::run(&args, silent),
+        Command::Pcb(args) => pcb::run(&args, silent),
         Command::Prove(args) => prove::run(&args, silent),
         Command::Machines(command) => machines::run(&command),
         Command::Show(args) => show::run(&args, silent),

@@ -138,7 +138,7 @@ fn read_by(
 }
 
 /// The warnings; with `strict` they stop the command.
-fn held(warnings: Vec<Diagnostic>, strict: bool) -> Result<Vec<Diagnostic>, Stop> {
+pub(crate) fn held(warnings: Vec<Diagnostic>, strict: bool) -> Result<Vec<Diagnostic>, Stop> {
     if !strict || warnings.is_empty() {
         return Ok(warnings);
     }
@@ -231,6 +231,11 @@ impl Toolpath {
             warnings: Vec::new(),
             listing: None,
         }
+    }
+
+    /// The file that it was read from, where there is one.
+    pub fn path(&self) -> Option<&Path> {
+        self.path.as_deref()
     }
 
     /// With what was not passed on; with `strict` that stops the command.

@@ -6,7 +6,7 @@ import shutil
 from pathlib import Path
 
 import pytest
-from conftest import ADDON, HERE, run
+from conftest import ADDON, HERE, missing, run
 
 PICTURES = ["freecad-job", "freecad-editor", "freecad-not-proven"]
 
@@ -14,8 +14,10 @@ PICTURES = ["freecad-job", "freecad-editor", "freecad-not-proven"]
 @pytest.fixture(scope="module")
 def window(tmp_path_factory):
     """Post in the window; with TOOLPOST_IMAGES the pictures of it go to that folder."""
-    if shutil.which("freecad") is None or shutil.which("xvfb-run") is None:
-        pytest.skip("FreeCAD's window (Debian packages freecad, xvfb, xauth) is not installed")
+    if missing():
+        pytest.skip(missing())
+    if shutil.which("xvfb-run") is None:
+        pytest.skip("a screen for FreeCAD's window (Debian packages xvfb, xauth) is not installed")
     home = tmp_path_factory.mktemp("home")
     (home / "Mod").mkdir()
     (home / "Mod" / "toolpost").symlink_to(ADDON, target_is_directory=True)

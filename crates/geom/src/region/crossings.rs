@@ -1,8 +1,9 @@
 //! Where elements of rings cross each other.
 
+use super::index::tree;
 use crate::crossing::Carrier;
 use crate::{Element, Vec2};
-use static_aabb2d_index::{Control, StaticAABB2DIndexBuilder};
+use static_aabb2d_index::Control;
 
 /// How deep two elements may cross and count as touching, mm: rounding of the kernel.
 const TOUCH: f64 = 2e-6;
@@ -24,11 +25,7 @@ pub(super) fn crossings(rings: &[&[Element]]) -> Vec<Place> {
         .collect();
     let boxes: Vec<(Vec2, Vec2)> =
         elements.iter().map(|(_, _, element)| element.extents()).collect();
-    let mut builder = StaticAABB2DIndexBuilder::new(elements.len());
-    for (low, high) in &boxes {
-        builder.add(low.x, low.y, high.x, high.y);
-    }
-    let Ok(index) = builder.build() else { return Vec::new() };
+    let Some(index) = tree(boxes.iter().copied()) else { return Vec::new() };
     let mut places: Vec<Option<Vec2>> = vec![None; elements.len()];
     for (i, ((_, _, element), (low, high))) in elements.iter().zip(&boxes).enumerate() {
         index.visit_query(low.x, low.y, high.x, high.y, &mut |other: usize| {

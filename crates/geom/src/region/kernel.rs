@@ -23,7 +23,7 @@ const UNITS: f64 = 1e7;
 const FARTHEST: f64 = (1u64 << 61) as f64;
 
 /// A place on the grid of units.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
 pub(super) struct Place(IntPoint<i64>);
 
 impl Place {

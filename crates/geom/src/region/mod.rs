@@ -36,16 +36,20 @@
 
 mod chords;
 mod crossings;
+mod index;
 mod kernel;
 mod offset;
 mod refit;
 mod ring;
 mod shape;
+mod sweep;
 
+pub use index::{Index, Nearest, Piece};
 pub use ring::Ring;
 pub use shape::Cap;
+pub use sweep::strokes;
 
-use crate::{Element, Vec2};
+use crate::{Element, Transform, Vec2};
 use chords::boolean;
 use kernel::Keep;
 use std::{fmt, iter};
@@ -180,6 +184,15 @@ impl Region {
         self.rings().map(Ring::elements)
     }
 
+    /// The same elsewhere: transformed about the origin, which goes to `at`.
+    pub fn placed(&self, transform: &Transform, at: Vec2) -> Region {
+        let place = |island: &Island| Island {
+            outer: island.outer.placed(transform, at),
+            holes: island.holes.iter().map(|hole| hole.placed(transform, at)).collect(),
+        };
+        Region { islands: self.islands.iter().map(place).collect() }
+    }
+
     /// Its connected pieces.
     pub fn islands(&self) -> &[Island] {
         &self.islands
@@ -248,6 +261,29 @@ impl Island {
         }
         let rings = iter::once(&self.outer).chain(&self.holes);
         rings.map(|ring| ring.distance(point)).fold(f64::INFINITY, f64::min)
+    }
+}
+
+/// The islands of a region, or of several, which must not come within 1 µm of each other.
+impl FromIterator<Island> for Region {
+    fn from_iter<Islands: IntoIterator<Item = Island>>(islands: Islands) -> Region {
+        Region { islands: islands.into_iter().collect() }
+    }
+}
+
+/// More islands, which must not come within 1 µm of each other or of those that there are.
+impl Extend<Island> for Region {
+    fn extend<Islands: IntoIterator<Item = Island>>(&mut self, islands: Islands) {
+        self.islands.extend(islands);
+    }
+}
+
+impl IntoIterator for Region {
+    type Item = Island;
+    type IntoIter = std::vec::IntoIter<Island>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.islands.into_iter()
     }
 }
 

@@ -1,7 +1,7 @@
 //! A closed boundary of lines and arcs.
 
 use super::{FAR, RegionError};
-use crate::{Element, Vec2};
+use crate::{Element, Transform, Vec2};
 use std::f64::consts::TAU;
 
 /// Ends nearer to each other than this meet, mm; the start of the next element counts. An arc may
@@ -51,6 +51,18 @@ impl Ring {
         Ring::new(points.iter().zip(nexts).map(|(a, b)| Element::line(*a, *b)).collect())
     }
 
+    /// The same elsewhere, and travelled the same way round: transformed about the origin, which goes to
+    /// `at`.
+    pub(super) fn placed(&self, transform: &Transform, at: Vec2) -> Ring {
+        let place = |element: &Element| transform.element(element, at);
+        let elements = self.elements.iter();
+        let elements = match transform.mirrors() {
+            true => elements.rev().map(|element| place(&element.reversed())).collect(),
+            false => elements.map(place).collect(),
+        };
+        Ring { elements }
+    }
+
     /// Its lines and arcs, in order.
     pub fn elements(&self) -> &[Element] {
         &self.elements
@@ -96,7 +108,7 @@ pub(super) fn place(point: Vec2) -> Result<(), RegionError> {
 
 /// How often `element` runs upwards past `point` on its right, less how often downwards. The sum over a
 /// closed chain is how often that runs around the point, counter-clockwise.
-fn winding(element: &Element, point: Vec2) -> i32 {
+pub(super) fn winding(element: &Element, point: Vec2) -> i32 {
     let (start, end) = (element.start - point, element.end - point);
     // A point at the height of an end counts as a little above it, and so one on a chord that is level.
     let across = start.perp_dot(end);

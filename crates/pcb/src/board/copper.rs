@@ -2,7 +2,10 @@
 
 use crate::contour::Piece;
 use crate::gerber::{Image, Object};
-use geom::region::{Fill, Region, RegionError, Ring};
+use geom::region::{Fill, Index, Region, RegionError, Ring, strokes};
+use geom::{Element, Vec2};
+use program::Diagnostic;
+use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// The copper of a side of a board.
@@ -14,6 +17,105 @@ pub struct Copper {
     pub nets: Vec<Option<Arc<str>>>,
 }
 
+/// A shape of copper.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Shape {
+    /// What a round pen of this width, mm, covers on its way.
+    Stroke(Element, f64),
+    /// What remains of pieces that are added and taken away in their order.
+    Pieces(Vec<Piece>),
+}
+
+/// What a layer gives: its copper, and islands to which objects of several nets belong.
+pub type Named = (Copper, Vec<Diagnostic>);
+
+impl Copper {
+    /// What an image of copper covers, its islands with the nets that its objects have.
+    ///
+    /// # Errors
+    /// As [`covered`].
+    pub fn of_image(image: &Image) -> Result<Named, RegionError> {
+        let region = covered(image)?;
+        let named = image.objects.iter().filter(|object| object.dark).filter_map(|object| {
+            let net = image.attributes(object).nets.as_ref()?.first()?;
+            let spot = match image.stroke(object) {
+                Some((way, _)) => way.start,
+                None => spot(&image.pieces(object))?,
+            };
+            Some((spot, net.as_str()))
+        });
+        Ok(Copper::named(region, named))
+    }
+
+    /// What shapes cover together, each of which may be part of a net.
+    ///
+    /// # Errors
+    /// As [`covered`].
+    pub fn of_shapes(shapes: &[(Shape, Option<Arc<str>>)]) -> Result<Named, RegionError> {
+        let mut all = Shapes::default();
+        for (shape, _) in shapes {
+            match shape {
+                Shape::Stroke(way, width) => all.strokes.push((*way, *width)),
+                Shape::Pieces(pieces) => all.add(pieces)?,
+            }
+        }
+        let named = shapes.iter().filter_map(|(shape, net)| {
+            let spot = match shape {
+                Shape::Stroke(way, _) => way.start,
+                Shape::Pieces(pieces) => spot(pieces)?,
+            };
+            Some((spot, net.as_deref()?))
+        });
+        Ok(Copper::named(all.united()?, named))
+    }
+
+    /// Names the islands of `region` after the nets of places in them.
+    fn named<'a>(region: Region, named: impl Iterator<Item = (Vec2, &'a str)>) -> Named {
+        let mut nets: Vec<Option<Arc<str>>> = vec![None; region.islands().len()];
+        let mut joined = BTreeMap::new();
+        let index = Index::new(&region);
+        // Names are shared: a net has thousands of objects.
+        let mut known: BTreeMap<&str, Arc<str>> = BTreeMap::new();
+        for (spot, name) in named.filter(|(_, name)| *name != NOT_CONNECTED) {
+            let Some(island) = index.island_at(spot) else { continue };
+            match nets.get_mut(island) {
+                Some(Some(net)) if **net != *name => {
+                    joined.entry((island, name)).or_insert(spot);
+                }
+                Some(net @ None) => {
+                    *net = Some(known.entry(name).or_insert_with(|| name.into()).clone());
+                }
+                _ => {}
+            }
+        }
+        let finding = |((island, name), spot): ((usize, &str), Vec2)| {
+            let first = nets.get(island).and_then(|net| net.as_deref()).unwrap_or_default();
+            let message = format!(
+                "at X{:.3} Y{:.3} copper of net {name} is one piece with that of {first}",
+                spot.x, spot.y
+            );
+            Diagnostic::warning("nets-joined", message)
+                .help("right where the nets are tied there; otherwise mend the board")
+        };
+        let findings = joined.into_iter().map(finding).collect();
+        (Copper { region, nets }, findings)
+    }
+}
+
+/// The net of pads that are connected to nothing (Gerber format specification, 5.6.15 `.N`).
+const NOT_CONNECTED: &str = "N/C";
+
+/// How far within the edge of a shape a place of it is looked for, mm.
+const INSIDE: f64 = 0.002;
+
+/// A place in a shape.
+fn spot(pieces: &[Piece]) -> Option<Vec2> {
+    let outline = pieces.iter().find(|piece| piece.solid)?.contours.first()?;
+    // A long element bends away from another as late as any.
+    let longest = outline.elements().iter().max_by(|a, b| a.length().total_cmp(&b.length()))?;
+    Some(longest.at(0.5) + longest.tangent(0.5).perp() * INSIDE)
+}
+
 /// What an image covers when all its objects are painted in their order.
 ///
 /// # Errors
@@ -21,34 +123,52 @@ pub struct Copper {
 pub fn covered(image: &Image) -> Result<Region, RegionError> {
     let runs: Vec<&[Object]> = image.objects.chunk_by(|a, b| a.dark == b.dark).collect();
     let paint = Paint::of(&runs, &|run: &&[Object]| {
-        let pieces: Vec<Vec<Piece>> = run.iter().map(|object| image.pieces(object)).collect();
-        let shape = united(&pieces)?;
-        Ok(Paint::new(run.first().is_some_and(|object| object.dark), shape))
+        let mut shapes = Shapes::default();
+        for object in *run {
+            match image.stroke(object) {
+                Some(stroke) => shapes.strokes.push(stroke),
+                None => shapes.add(&image.pieces(object))?,
+            }
+        }
+        Ok(Paint::new(run.first().is_some_and(|object| object.dark), shapes.united()?))
     })?;
     Ok(paint.dark)
 }
 
-/// What is in any of some shapes, each of which is given by its pieces.
-pub(crate) fn united(shapes: &[Vec<Piece>]) -> Result<Region, RegionError> {
-    let mut rings = Vec::new();
-    for pieces in shapes {
-        if pieces.iter().all(|piece| piece.solid) {
-            for contour in pieces.iter().flat_map(|piece| &piece.contours) {
-                rings.push(Ring::new(contour.elements().to_vec())?);
-            }
-        } else {
-            let paint = Paint::of(pieces, &|piece: &Piece| {
-                Ok(Paint::new(piece.solid, united(&[vec![solid(piece)]])?))
-            })?;
-            rings.extend(paint.dark.rings().cloned());
-        }
-    }
-    Region::inside(&rings, Fill::Positive)
+/// Shapes that are to be united.
+#[derive(Default)]
+pub(crate) struct Shapes {
+    /// The ways of round pens, with their width, mm.
+    pub(crate) strokes: Vec<(Element, f64)>,
+    /// What others are inside of.
+    rings: Vec<Ring>,
 }
 
-/// The area of a piece, whether it adds or takes.
-fn solid(piece: &Piece) -> Piece {
-    Piece { solid: true, ..piece.clone() }
+impl Shapes {
+    /// Adds the shape that is given by its pieces.
+    pub(crate) fn add(&mut self, pieces: &[Piece]) -> Result<(), RegionError> {
+        if pieces.iter().all(|piece| piece.solid) {
+            for contour in pieces.iter().flat_map(|piece| &piece.contours) {
+                self.rings.push(Ring::new(contour.elements().to_vec())?);
+            }
+            return Ok(());
+        }
+        let paint = Paint::of(pieces, &|piece: &Piece| {
+            let mut area = Shapes::default();
+            area.add(&[Piece { solid: true, ..piece.clone() }])?;
+            Ok(Paint::new(piece.solid, area.united()?))
+        })?;
+        self.rings.extend(paint.dark.rings().cloned());
+        Ok(())
+    }
+
+    /// What is in any of them.
+    pub(crate) fn united(mut self) -> Result<Region, RegionError> {
+        // An aperture without size draws nothing.
+        self.strokes.retain(|(_, width)| *width > 0.0);
+        self.rings.extend(strokes(&self.strokes)?);
+        Region::inside(&self.rings, Fill::Positive)
+    }
 }
 
 /// What painting does to the image under it: it takes `clear` away, and then adds `dark`.
@@ -83,5 +203,53 @@ impl Paint {
                 })
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::gerber::read;
+
+    /// Net A: two discs of 1 mm and a stroke between them; net B: a square 3 mm further up. A clear disc
+    /// cuts the stroke in two.
+    const NAMED: &str = "%FSLAX46Y46*%%MOMM*%%ADD10C,1*%%ADD11R,2X2*%%ADD12C,0.5*%%ADD13C,2*%
+%TO.N,A*%D10*X0Y0D03*X10000000Y0D03*D12*X0Y0D02*X10000000Y0D01*
+%TO.N,B*%D11*X0Y3000000D03*
+%TD*%%LPC*%D13*X5000000Y0D03*
+%LPD*%%TO.N,N/C*%D10*X20000000Y0D03*M02*";
+
+    #[test]
+    fn islands_have_the_nets_of_their_objects() {
+        let reading = read("named.gbr", NAMED.as_bytes()).unwrap();
+        let (copper, joined) = Copper::of_image(&reading.image).unwrap();
+        let mut found: Vec<(i32, Option<&str>)> = Vec::new();
+        for (island, net) in copper.region.islands().iter().zip(&copper.nets) {
+            found.push(((island.outer().extents().0.x * 2.0).round() as i32, net.as_deref()));
+        }
+        found.sort_unstable();
+        // From -1 the square, from -0.5 and from 6 the two halves of A, from 19.5 the pad of no net.
+        assert_eq!(found, [(-2, Some("B")), (-1, Some("A")), (12, Some("A")), (39, None)]);
+        assert!(joined.is_empty());
+    }
+
+    #[test]
+    fn nets_that_touch_are_told() {
+        let touching = NAMED.replace("Y3000000D03", "Y1000000D03");
+        let reading = read("named.gbr", touching.as_bytes()).unwrap();
+        let (_, joined) = Copper::of_image(&reading.image).unwrap();
+        assert_eq!(joined.len(), 1);
+        assert!(joined[0].message.contains("copper of net B is one piece with that of A"));
+    }
+
+    #[test]
+    fn what_is_dark_clear_and_dark_again_is_painted_in_order() {
+        // A square of 10 mm, a hole of 6 mm in it, a disc of 2 mm in the hole, a hole of 1 mm in that.
+        let text = "%FSLAX46Y46*%%MOMM*%%ADD10R,10X10*%%ADD11C,6*%%ADD12C,2*%%ADD13C,1*%
+D10*X0Y0D03*%LPC*%D11*X0Y0D03*%LPD*%D12*X0Y0D03*%LPC*%D13*X0Y0D03*M02*";
+        let region = covered(&read("rings.gbr", text.as_bytes()).unwrap().image).unwrap();
+        let right = 100.0 - std::f64::consts::PI * (9.0 - 1.0 + 0.25);
+        assert!((region.area() - right).abs() < 1e-6 * right, "{}", region.area());
+        assert_eq!(region.islands().len(), 2);
     }
 }

@@ -1,10 +1,29 @@
 //! A board, whatever files it comes from.
+//!
+//! ```text
+//!   Gerber and Excellon ──files──▶ Board ──check──▶ what is odd about it
+//!                 edge ──outline──▶
+//! ```
+//!
+//! `layer` tells which file is which, `holes` what is drilled, `copper` what is copper. What is done to a
+//! board as a whole is in `placed`: moved, turned over, on a panel.
 
+mod check;
 mod copper;
+mod files;
+pub(crate) mod holes;
+mod layer;
+pub mod outline;
+mod placed;
 
-pub use copper::{Copper, covered};
+pub use check::checked;
+pub use copper::{Copper, Named, Shape, covered};
+pub use files::{File, Reading, read};
+pub use layer::{Face, Layer};
+pub use placed::Axis;
 
 use crate::Hole;
+use geom::Vec2;
 use geom::region::Region;
 
 /// A board, seen from the front: X to the right, Y up, mm.
@@ -31,4 +50,36 @@ pub struct Side {
     pub mask: Option<Region>,
     /// What is printed on it.
     pub legend: Option<Region>,
+}
+
+impl Board {
+    /// A side of it.
+    pub fn side(&self, face: Face) -> &Side {
+        match face {
+            Face::Front => &self.front,
+            Face::Back => &self.back,
+        }
+    }
+
+    /// A side of it.
+    pub(crate) fn side_mut(&mut self, face: Face) -> &mut Side {
+        match face {
+            Face::Front => &mut self.front,
+            Face::Back => &mut self.back,
+        }
+    }
+
+    /// The corners of the smallest box around all of it but what is printed, with sides parallel to the
+    /// axes, mm; `None` where there is nothing.
+    pub fn extents(&self) -> Option<(Vec2, Vec2)> {
+        let copper = [&self.front, &self.back].into_iter().filter_map(|side| side.copper.as_ref());
+        let regions = copper.map(|copper| &copper.region).chain(&self.outline);
+        let holes = self.holes.iter().map(Hole::extents);
+        regions.filter_map(Region::extents).chain(holes).reduce(around)
+    }
+}
+
+/// The box around two boxes.
+fn around(a: (Vec2, Vec2), b: (Vec2, Vec2)) -> (Vec2, Vec2) {
+    (a.0.min(b.0), a.1.max(b.1))
 }

@@ -2,6 +2,7 @@
 
 use super::{Aperture, Attributes};
 use crate::report::{Outcome, fault};
+use crate::stroke::Pen;
 use crate::{Contour, FAR, Piece, Transform};
 use geom::{Element, Vec2};
 
@@ -91,6 +92,15 @@ impl Image {
                 let place = |contour: &Contour| Piece::new(true, contour.placed(transform, *at));
                 contours.iter().map(place).collect()
             }
+        }
+    }
+
+    /// The way of a round pen and its diameter, mm, where that is what an object is.
+    pub fn stroke(&self, object: &Object) -> Option<(Element, f64)> {
+        let Shape::Stroke { aperture, transform, path } = &object.shape else { return None };
+        match self.aperture(*aperture)?.pen? {
+            Pen::Round(diameter) => Some((*path, diameter * transform.scale())),
+            Pen::Rectangle(_) => None,
         }
     }
 

@@ -6,14 +6,12 @@
 //!
 //! From bytes to image: `block` finds commands, `words` the words in them, and `reader` obeys. `header` has what
 //! holds for the whole file, `load` what holds for the next objects, `attribute` what they are for; `plot` has the
-//! operations, `region` the contours and `crossing` what is wrong with them, `repeat` step and repeat and
-//! block apertures; `aperture`, and of macros `template`, `expression` and `primitive`, the shapes that
-//! are flashed.
+//! operations, `region` the contours, `repeat` step and repeat and block apertures; `aperture`, and of
+//! macros `template`, `expression` and `primitive`, the shapes that are flashed.
 
 mod aperture;
 mod attribute;
 mod block;
-mod crossing;
 mod expression;
 mod header;
 mod image;

@@ -1,8 +1,8 @@
 //! The primitives of aperture macros (section 4.5.1), in the unit of the file.
 
-use super::crossing::self_crossing;
 use super::region::MARGIN;
 use crate::contour::{Contour, Piece};
+use crate::crossing::self_crossing;
 use crate::report::{Outcome, fault};
 use crate::{SAME, Transform};
 use geom::{Element, Vec2};

@@ -1,7 +1,7 @@
 //! The contours of a region statement (section 4.10).
 
-use super::crossing::self_crossing;
 use crate::contour::Contour;
+use crate::crossing::self_crossing;
 use crate::report::{Outcome, fault};
 use geom::Element;
 

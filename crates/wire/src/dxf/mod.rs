@@ -62,7 +62,7 @@ pub fn read(text: &[u8], options: &Options) -> Result<Drawing, Box<Diagnostic>> 
     let mut reader = Reader::new(&groups, options);
     reader.read()?;
     let (pieces, mut warnings) = reader.finish()?;
-    let chained = chain(pieces, options.gap)?;
+    let chained = chain(&pieces, options.gap)?;
     if chained.contours.is_empty() {
         let refused = Diagnostic::error("empty-contour", "the drawing holds no contour");
         return Err(refused.help("LINE, ARC, CIRCLE, polylines, ELLIPSE, SPLINE are read").into());

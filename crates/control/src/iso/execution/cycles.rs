@@ -32,6 +32,13 @@ pub(crate) struct Holding {
     rigid: bool,
 }
 
+impl Holding {
+    /// Whether it cuts a thread with a tap.
+    pub(super) fn taps(&self) -> bool {
+        matches!(self.canned, Canned::Tap | Canned::LeftTap)
+    }
+}
+
 impl Canned {
     fn pecks(self) -> bool {
         matches!(self, Canned::Deep | Canned::BreakChip)

@@ -1,18 +1,19 @@
-//! FreeCAD's feeds: mm/s, and beside a tap the pitch.
+//! FreeCAD's feeds: mm/s, with `G93` moves a second, and beside a tap the pitch.
 
+use super::cycles::Holding;
 use super::step::Step;
 use crate::iso::language::block::Fault;
-use crate::iso::language::words::{Canned, G, Group, Motion};
+use crate::iso::language::words::{Canned, FeedMode, G, Group, Motion};
 use program::{Feed, Op};
 
 /// How many digits FreeCAD's shorter form of a number has (`Command G1 [ F:3.3333 ]`). It leaves zeros
 /// at the end out, so that a number with fewer digits is as good as one with so many.
 const DIGITS: usize = 5;
 
-/// The most decimals of a feed in mm/min that somebody has typed.
-const TYPED: i32 = 3;
+/// No decimals to the most of a feed in mm/min that somebody has typed, as powers of ten.
+const TYPED: [f64; 4] = [1.0, 10.0, 100.0, 1000.0];
 
-/// The feed in mm/min that `text` gives in mm/s: where a number with few decimals lies within what the
+/// The feed a minute that `text` gives a second: where a number with few decimals lies within what the
 /// text leaves open, that number, since it is what was typed (3.333333 is 200, not 199.99998).
 fn per_minute(value: f64, text: &[u8]) -> f64 {
     let digits = |part: &[u8]| part.iter().filter(|byte| byte.is_ascii_digit()).count();
@@ -22,20 +23,18 @@ fn per_minute(value: f64, text: &[u8]) -> f64 {
     let places = digits(decimals).max(DIGITS.saturating_sub(digits(whole))).min(15);
     let open = 60.0 * 0.5 * 10f64.powi(-(places as i32));
     let exact = value * 60.0;
-    let typed = (0..=TYPED).map(|places| {
-        let scale = 10f64.powi(places);
-        (exact * scale).round() / scale
-    });
+    let mut typed = TYPED.iter().map(|scale| (exact * scale).round() / scale);
     // Half of the last place, and what the doubles add to it.
-    typed.into_iter().find(|typed| (typed - exact).abs() <= open * 1.000_001).unwrap_or(exact)
+    typed.find(|typed| (typed - exact).abs() <= open * 1.000_001).unwrap_or(exact)
 }
 
 impl Step<'_, '_, '_> {
-    /// F in mm/s. Beside a rapid it says how fast that is, or 0, and beside a tap it is the pitch.
+    /// F, in every mode a second: FreeCAD's posts write 60 F, whatever has been said before. Beside a rapid
+    /// it says how fast that is, or 0, and beside a tap it is the pitch.
     pub(super) fn feed_of_command(&mut self) -> Result<(), Fault> {
         let motion = self.block.g(Group::Motion);
         let taps = matches!(motion, Some(G::Cycle(Canned::Tap | Canned::LeftTap)));
-        if !taps && matches!(self.state.feed, Some(Feed::PerTurn(_))) {
+        if !taps && self.state.cycle.as_ref().is_some_and(Holding::taps) {
             self.state.feed = None;
         }
         let Some(word) = self.block.take(b'F') else { return Ok(()) };
@@ -46,9 +45,12 @@ impl Step<'_, '_, '_> {
             return Err(self.block.at_word(b'F', "nc-feed", "the feed must be greater than 0"));
         }
         let text = self.block.text.get(word.start as usize..word.end as usize);
-        let feed = match taps {
-            true => Feed::PerTurn(word.value),
-            false => Feed::PerMinute(per_minute(word.value, text.unwrap_or_default())),
+        let sixty = || per_minute(word.value, text.unwrap_or_default());
+        let feed = match self.state.feed_mode {
+            _ if taps => Feed::PerTurn(word.value),
+            FeedMode::PerMinute => Feed::PerMinute(sixty()),
+            FeedMode::PerTurn => Feed::PerTurn(sixty()),
+            FeedMode::InverseTime => Feed::InverseTime(sixty()),
         };
         if self.state.feed.replace(feed) != Some(feed) {
             self.ops.push(Op::Feed(feed));

@@ -152,6 +152,12 @@ impl<'a> Block<'a> {
                     self.end_of_block(at)?;
                     break;
                 }
+                // FreeCAD itself passes over it and takes the words behind it.
+                b';' if dictionary.flavor == Flavor::FreeCad => {
+                    let message = "FreeCAD knows no comment behind ;";
+                    let fault = self.fault("nc-syntax", message, at, text.len());
+                    return Err(fault.help("put it into ( ) as a command of its own").into());
+                }
                 b';' => {
                     self.comments.push((at + 1, text.len()));
                     break;

@@ -1,7 +1,9 @@
 //! FreeCAD's own commands, in which its CAM workbench keeps toolpaths (`docs/sources/freecad.md`): lengths
-//! are mm and feeds mm/s, whatever the job shows.
+//! are mm and times s, whatever the job shows: a feed is mm/s.
 
-use super::super::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Motion, Refused, Side};
+use super::super::words::{
+    Dictionary, FeedMode, Flavor, G, GRow, Group, M, MRow, Motion, Refused, Side,
+};
 use super::{BASIC_G, BASIC_M, END_M, SPINDLE_G, SPINDLE_M, cycles};
 
 const G_WORDS: &[GRow] = &[
@@ -24,6 +26,9 @@ const G_WORDS: &[GRow] = &[
     (599, Group::WorkOffset, G::WorkOffset(68)),
     (800, Group::Cycle, G::CancelCycle),
     (911, Group::ArcDistance, G::CentersAbsolute(false)),
+    (930, Group::FeedMode, G::FeedMode(FeedMode::InverseTime)),
+    (940, Group::FeedMode, G::FeedMode(FeedMode::PerMinute)),
+    (950, Group::FeedMode, G::FeedMode(FeedMode::PerTurn)),
     (980, Group::Return, G::ReturnToR(false)),
     (990, Group::Return, G::ReturnToR(true)),
 ];
@@ -34,9 +39,6 @@ const REFUSED_G: &[Refused] = &[
     (200, "FreeCAD keeps its toolpaths in mm, also where the job shows inches"),
     (430, "the post calls the length of the tool with the tool"),
     (490, "the post calls the length of the tool with the tool"),
-    (930, "FreeCAD keeps its feeds in mm/s, which its own posts write as mm/min in any mode"),
-    (940, "FreeCAD keeps its feeds in mm/s; the post says what its control needs: take it out"),
-    (950, "FreeCAD keeps its feeds in mm/s, which its own posts write as mm/min in any mode"),
 ];
 
 pub(super) static WORDS: Dictionary =

@@ -1,5 +1,7 @@
 //! What can be typed.
 
+pub mod pcb;
+
 use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
 use clap_complete::Shell;
 use std::path::PathBuf;
@@ -31,6 +33,9 @@ pub enum Command {
     /// Write the program of a wire-EDM machine for a contour (of a program or a drawing), prove it, and
     /// save both program and report.
     Wire(Box<Wire>),
+    /// Write the programs that isolate, drill and cut out a printed circuit board, prove them, and save them
+    /// with a picture of each and a report.
+    Pcb(Box<pcb::Pcb>),
     /// Hold any program, also one edited by hand, against the toolpath it should make.
     Prove(Prove),
     /// The library of machines, and machines of your own.

@@ -1,7 +1,7 @@
-//! Contours that cross themselves, which the format gives no meaning (section 4.10.3).
+//! Where contours cross themselves, or each other.
 //!
-//! Found is where two pieces of the contour cross in their middle. Contours that touch themselves, as
-//! cut-ins do, are none of these, and neither are those that pass through one of their own corners.
+//! Found is where two pieces cross in their middle. Contours that touch, as cut-ins do, are none of
+//! these, and neither are those that pass through a corner.
 
 use crate::report::{Outcome, fault};
 use geom::{Element, Vec2};
@@ -15,11 +15,11 @@ const CHORDS: usize = 2_000_000;
 /// So many pairs of chords are looked at for each chord before the contour is given up.
 const PAIRS: usize = 200;
 
-/// Where the contour crosses itself by more than `tolerance`, if it does.
+/// Where two of `elements` cross each other by more than `tolerance`, if they do.
 ///
 /// # Errors
 /// `region-too-complex` where so much lies above each other that this takes too long to say.
-pub(super) fn self_crossing(elements: &[Element], tolerance: f64) -> Outcome<Option<Vec2>> {
+pub(crate) fn self_crossing(elements: &[Element], tolerance: f64) -> Outcome<Option<Vec2>> {
     let mut chords: Vec<(Vec2, Vec2)> = Vec::with_capacity(elements.len());
     for element in elements {
         match element.turn {

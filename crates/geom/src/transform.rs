@@ -1,6 +1,6 @@
 //! Mirroring, rotation and scaling about a point: lines stay lines and arcs stay arcs.
 
-use geom::{Element, Turn, Vec2};
+use crate::{Element, Turn, Vec2};
 
 /// Mirrors left to right or not, then turns and scales.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -15,12 +15,12 @@ impl Transform {
     pub const NONE: Transform = Transform { mirrored: false, along: Vec2::X };
 
     /// Mirrors left to right (`mirrored`), then turns by `degrees` counter-clockwise and scales.
-    pub(crate) fn new(mirrored: bool, degrees: f64, scale: f64) -> Transform {
+    pub fn new(mirrored: bool, degrees: f64, scale: f64) -> Transform {
         Transform { mirrored, along: direction(degrees) * scale }
     }
 
     /// What `inner` and then this one do.
-    pub(crate) fn after(&self, inner: &Transform) -> Transform {
+    pub fn after(&self, inner: &Transform) -> Transform {
         let turned = if self.mirrored { inner.along * Vec2::new(1.0, -1.0) } else { inner.along };
         let mirrored = self.mirrored != inner.mirrored;
         Transform { mirrored, along: self.along.rotate(turned) }
@@ -43,7 +43,7 @@ impl Transform {
     }
 
     /// `element` transformed about the origin, which goes to `at`.
-    pub(crate) fn element(&self, element: &Element, at: Vec2) -> Element {
+    pub fn element(&self, element: &Element, at: Vec2) -> Element {
         let place = |point: Vec2| at + self.apply(point);
         let turn = element.turn.map(|turn| Turn {
             center: place(turn.center),

@@ -1,0 +1,177 @@
+//! What round pens cover on their ways.
+//!
+//! A place that a pen covers has a nearest point on the pen's ways. Where that is within a line or an arc, the
+//! place is straight beside it: in a rectangle, or in a sector of a ring. Where it is an end, the place is
+//! not in front of any way that leaves this end: in what remains of a disc. So a network of thousands of ways
+//! needs whole discs nowhere, and mostly no part of them; their arcs are what a union takes its time for.
+
+use super::kernel::Place;
+use super::ring::place;
+use super::{FAR, RegionError, Ring};
+use crate::{Element, Turn, Vec2};
+use std::collections::HashMap;
+use std::f64::consts::{PI, TAU};
+
+/// Tips of an arc this near to each other need nothing between them, mm.
+const SAME: f64 = 1e-6;
+
+/// The rings, all counter-clockwise, that together enclose what round pens cover on `ways`, each with the
+/// width of its pen, mm; a way without length is a dot. Rings overlap: see [`super::Fill::Positive`].
+///
+/// # Errors
+/// Where a value is no number, too large, or a width not above zero; where an arc misses its ends.
+pub fn strokes(ways: &[(Element, f64)]) -> Result<Vec<Ring>, RegionError> {
+    let mut rings = Vec::with_capacity(2 * ways.len());
+    let mut ends = Ends::default();
+    for (way, width) in ways {
+        place(way.start)?;
+        place(way.end)?;
+        if !(*width > 0.0 && *width <= FAR) {
+            return Err(RegionError::NotALength(*width));
+        }
+        let radius = width / 2.0;
+        if way.turn.is_some() {
+            // Checks the arc: there and back it is closed.
+            Ring::new(vec![*way, way.reversed()])?;
+        }
+        match way.turn {
+            Some(turn) if turn.sweep.abs() >= TAU * (1.0 - 1e-9) => {
+                around(&mut rings, way, turn, radius)
+            }
+            _ if way.length() <= SAME => ends.add(way.start, radius, None),
+            turn => {
+                beside(&mut rings, way, turn, radius);
+                ends.add(way.start, radius, Some(way.tangent(0.0)));
+                ends.add(way.end, radius, Some(-way.tangent(1.0)));
+            }
+        }
+    }
+    rings.extend(ends.all.iter().filter_map(End::ring));
+    Ok(rings)
+}
+
+/// What is straight beside a line or an arc.
+fn beside(rings: &mut Vec<Ring>, way: &Element, turn: Option<Turn>, radius: f64) {
+    // Counter-clockwise, so that the outer side of an arc is on its right.
+    let way = if turn.is_some_and(|turn| turn.sweep < 0.0) { way.reversed() } else { *way };
+    let Some(right) = way.parallel(-radius) else { return };
+    let elements = match (way.parallel(radius), turn) {
+        (Some(left), _) => vec![
+            right,
+            Element::line(right.end, left.end),
+            left.reversed(),
+            Element::line(left.start, right.start),
+        ],
+        (None, Some(turn)) => vec![
+            right,
+            Element::line(right.end, turn.center),
+            Element::line(turn.center, right.start),
+        ],
+        (None, None) => return,
+    };
+    rings.push(Ring { elements });
+}
+
+/// What is covered on a whole turn. The ring runs once around the outside and back around the inside.
+fn around(rings: &mut Vec<Ring>, way: &Element, turn: Turn, radius: f64) {
+    let middle = way.start.distance(turn.center);
+    let mut elements = circle(turn.center, middle + radius).elements;
+    if middle - radius > SAME {
+        let inner = circle(turn.center, middle - radius).elements;
+        let (outside, inside) =
+            (turn.center + Vec2::X * (middle + radius), turn.center + Vec2::X * (middle - radius));
+        elements.push(Element::line(outside, inside));
+        elements.extend(inner.iter().map(Element::reversed));
+        elements.push(Element::line(inside, outside));
+    }
+    rings.push(Ring { elements });
+}
+
+fn circle(center: Vec2, radius: f64) -> Ring {
+    let start = center + Vec2::X * radius;
+    Ring { elements: vec![Element::arc(start, start, center, TAU)] }
+}
+
+/// Where ways begin and end, and meet: once for each place and width.
+#[derive(Default)]
+struct Ends {
+    all: Vec<End>,
+    /// Index of the end at a place with a radius.
+    known: HashMap<(Place, u64), usize>,
+}
+
+/// A place where ways of one width end.
+struct End {
+    at: Vec2,
+    radius: f64,
+    cone: Cone,
+}
+
+/// The directions that are not in front of any way.
+#[derive(Clone, Copy)]
+enum Cone {
+    /// All: no way leaves.
+    All,
+    /// From the first to the second, unit vectors, counter-clockwise, by up to half a turn.
+    Between(Vec2, Vec2),
+    /// None.
+    Nothing,
+}
+
+impl Ends {
+    /// A way leaves `at` in the direction `ahead`; a dot leaves in none.
+    fn add(&mut self, at: Vec2, radius: f64, ahead: Option<Vec2>) {
+        let new = self.all.len();
+        let index = *self.known.entry((Place::of(at), radius.to_bits())).or_insert(new);
+        if index == new {
+            self.all.push(End { at, radius, cone: Cone::All });
+        }
+        if let (Some(end), Some(ahead)) = (self.all.get_mut(index), ahead) {
+            end.cone = end.cone.behind(ahead);
+        }
+    }
+}
+
+impl Cone {
+    /// What of it is not in front of a way in the direction `ahead`.
+    fn behind(self, ahead: Vec2) -> Cone {
+        let (first, last) = (ahead.perp(), -ahead.perp());
+        let (from, to) = match self {
+            Cone::All => return Cone::Between(first, last),
+            Cone::Between(from, to) => (from, to),
+            Cone::Nothing => return Cone::Nothing,
+        };
+        // What is as good as straight beside counts as behind: the ways may go straight on.
+        let behind = |direction: Vec2| direction.dot(ahead) <= 1e-12;
+        match (behind(from), behind(to)) {
+            // Both at the sides of a way that goes straight on: half a turn, in front of it or behind it.
+            (true, true) if from.dot(to) < -0.5 && from.perp().dot(ahead) > 0.5 => Cone::Nothing,
+            (true, true) => Cone::Between(from, to),
+            (true, false) => Cone::Between(from, last),
+            (false, true) => Cone::Between(first, to),
+            (false, false) => Cone::Nothing,
+        }
+    }
+}
+
+impl End {
+    fn ring(&self) -> Option<Ring> {
+        let (from, to) = match self.cone {
+            Cone::All => return Some(circle(self.at, self.radius)),
+            Cone::Between(from, to) => (self.at + from * self.radius, self.at + to * self.radius),
+            Cone::Nothing => return None,
+        };
+        if from.distance(to) <= SAME {
+            return None;
+        }
+        let sweep = crate::turn_angle(from - self.at, to - self.at);
+        let sweep = if sweep <= 0.0 { sweep.abs().min(PI) } else { sweep };
+        Some(Ring {
+            elements: vec![
+                Element::line(self.at, from),
+                Element::arc(from, to, self.at, sweep),
+                Element::line(to, self.at),
+            ],
+        })
+    }
+}

@@ -1,0 +1,132 @@
+//! What is odd about a board: layers that do not fit together, copper and holes outside of it.
+
+use super::{Board, Copper, Face, around};
+use crate::{Hole, HoleShape};
+use geom::Vec2;
+use geom::region::{Region, RegionError};
+use program::Diagnostic;
+
+/// Copper outside that covers less is rounding, mm²: 10 mm of an edge by a tenth of a micrometre.
+const SLIVER: f64 = 1e-3;
+
+/// A box whose sides are parallel to the axes: two opposite corners, mm.
+type Extents = (Vec2, Vec2);
+
+/// Looks whether the layers of a board fit together, and whether copper and holes are within its
+/// outline.
+///
+/// # Errors
+/// `layers-apart` where a layer lies beside the board as a whole: its origin is another one.
+pub fn checked(board: &Board) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
+    let mut warnings = layers(board)?;
+    let Some(outline) = &board.outline else { return Ok(warnings) };
+    for face in [Face::Front, Face::Back] {
+        let Some(copper) = &board.side(face).copper else { continue };
+        let outside = outside(copper, outline).map_err(|error| {
+            let message = format!("copper and outline cannot be compared: {error}");
+            vec![Diagnostic::error("copper-outside", message)]
+        })?;
+        let area = outside.area();
+        if let Some(island) = outside.islands().first()
+            && area > SLIVER
+        {
+            let places = match outside.islands().len() {
+                1 => String::from("1 place"),
+                places => format!("{places} places"),
+            };
+            let first = shown(island.outer().extents());
+            let message = format!(
+                "{area:.3} mm² of the {face} copper is outside the outline, in {places}, the first \
+                 within {first}"
+            );
+            let help =
+                "it is cut through with the outline; look whether the outline is the right one";
+            warnings.push(Diagnostic::warning("copper-outside", message).help(help));
+        }
+    }
+    let beyond: Vec<&Hole> =
+        board.holes.iter().filter(|hole| !outline.contains(middle(hole))).collect();
+    if let Some(first) = beyond.first() {
+        let at = middle(first);
+        let message = format!(
+            "{} of {} holes are outside the outline, first one of {:.3} mm at X {:.4} Y {:.4}",
+            beyond.len(),
+            board.holes.len(),
+            first.diameter,
+            at.x,
+            at.y
+        );
+        let help = "look whether outline and holes are of one board";
+        warnings.push(Diagnostic::warning("hole-outside", message).help(help));
+    }
+    Ok(warnings)
+}
+
+/// Each layer against the outline, or else the first layer that there is.
+fn layers(board: &Board) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
+    let of = |region: Option<&Region>| region.and_then(Region::extents);
+    let copper = |copper: &Option<Copper>| of(copper.as_ref().map(|copper| &copper.region));
+    let layers = [
+        ("outline", of(board.outline.as_ref())),
+        ("front copper", copper(&board.front.copper)),
+        ("back copper", copper(&board.back.copper)),
+        ("front solder mask", of(board.front.mask.as_ref())),
+        ("back solder mask", of(board.back.mask.as_ref())),
+        ("front legend", of(board.front.legend.as_ref())),
+        ("back legend", of(board.back.legend.as_ref())),
+        ("holes", board.holes.iter().map(Hole::extents).reduce(around)),
+    ];
+    let mut there = layers.into_iter().filter_map(|(name, extents)| Some((name, extents?)));
+    let Some((first, board)) = there.next() else { return Ok(Vec::new()) };
+    let (mut errors, mut warnings) = (Vec::new(), Vec::new());
+    for (name, extents) in there {
+        let message = |what: &str| {
+            let (layer, board) = (shown(extents), shown(board));
+            format!("{what}: {name} within {layer}, {first} within {board}")
+        };
+        let help = "plot all layers with the same origin and unit";
+        // What is thinner than 1 µm counts as that: all holes may be in one line.
+        let size = |low: Vec2, high: Vec2| (high - low).max(Vec2::splat(1e-3)).element_product();
+        let (low, high) = (extents.0.max(board.0), extents.1.min(board.1));
+        if low.x > high.x || low.y > high.y {
+            let found = Diagnostic::error("layers-apart", message("a layer lies beside the board"));
+            errors.push(found.help(help));
+        } else if size(low, high) < 0.5 * size(extents.0, extents.1) && !name.ends_with("legend") {
+            let message = message("more than half of a layer lies beside the board");
+            warnings.push(Diagnostic::warning("layers-shifted", message).help(help));
+        }
+    }
+    if errors.is_empty() { Ok(warnings) } else { Err(errors) }
+}
+
+/// The copper that is not within the outline. Only islands that come near an edge are worked on.
+fn outside(copper: &Copper, outline: &Region) -> Result<Region, RegionError> {
+    let edges: Vec<Extents> =
+        outline.rings().flat_map(|ring| ring.elements()).map(|element| element.extents()).collect();
+    let near = |a: &Extents, b: &Extents| a.0.cmple(b.1).all() && b.0.cmple(a.1).all();
+    let suspect = copper.region.islands().iter().filter(|island| {
+        let around = island.outer().extents();
+        let edges: Vec<&Extents> = edges.iter().filter(|edge| near(edge, &around)).collect();
+        let mut elements = island.outer().elements().iter();
+        let start = elements.clone().next().is_none_or(|element| !outline.contains(element.start));
+        start
+            || elements.any(|element| {
+                let around = element.extents();
+                edges.iter().any(|edge| near(edge, &around))
+            })
+    });
+    suspect.cloned().collect::<Region>().difference(outline)
+}
+
+/// A place in the middle of a hole.
+fn middle(hole: &Hole) -> Vec2 {
+    match &hole.shape {
+        HoleShape::Round(at) => *at,
+        HoleShape::Slot(from, to) => from.midpoint(*to),
+        HoleShape::Route(elements) => elements.first().map_or(Vec2::ZERO, |element| element.start),
+    }
+}
+
+fn shown((low, high): Extents) -> String {
+    format!("X {:.3} to {:.3}, Y {:.3} to {:.3} mm", low.x, high.x, low.y, high.y)
+}

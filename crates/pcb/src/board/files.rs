@@ -1,0 +1,194 @@
+//! A board from its Gerber and Excellon files.
+//!
+//! Which file is which says the file itself (`.FileFunction`), or else its name; what is taken by its
+//! name, is left out or had to be mended is a warning. Two files of one layer are refused.
+
+use super::layer::{Format, Layer};
+use super::{Board, Copper, check, covered, holes, outline};
+use crate::{excellon, gerber};
+use geom::region::RegionError;
+use program::Diagnostic;
+
+/// A file of a board.
+#[derive(Clone, Copy, Debug)]
+pub struct File<'a> {
+    /// Its name, with or without folders: for the messages, and to see what it holds.
+    pub name: &'a str,
+    /// What it holds, where somebody has said so; otherwise that is found out.
+    pub layer: Option<Layer>,
+    /// Its bytes.
+    pub text: &'a [u8],
+}
+
+/// What the files of a board give.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Reading {
+    /// The board.
+    pub board: Board,
+    /// The name of each file that is part of it, and what it holds, in the order of the files.
+    pub layers: Vec<(String, Layer)>,
+    /// What had to be assumed or is not used, and what is odd about the board.
+    pub warnings: Vec<Diagnostic>,
+}
+
+/// Reads the files of a board of this name. Files that hold no layer are left out, with one warning.
+///
+/// # Errors
+/// `layer-twice` where two files hold the same layer, `layer-negative`, `no-board` where no file has
+/// anything of a board, and all that the readers, [`outline::of_image`] and [`check::checked`] refuse.
+pub fn read(name: &str, files: &[File]) -> Result<Reading, Vec<Diagnostic>> {
+    let mut warnings = Vec::new();
+    let known = told_apart(files, &mut warnings)?;
+    let mut board = Board { name: name.into(), ..Board::default() };
+    let mut errors = Vec::new();
+    for layer in &known {
+        match layer.read(&mut board) {
+            Ok(found) => warnings.extend(found),
+            Err(found) => errors.extend(found),
+        }
+    }
+    if !errors.is_empty() {
+        return Err(errors);
+    }
+    warnings.extend(holes::once(&mut board.holes));
+    warnings.extend(check::checked(&board)?);
+    let layers = known.iter().map(|layer| (layer.file.name.to_owned(), layer.layer)).collect();
+    Ok(Reading { board, layers, warnings })
+}
+
+/// A file of which is known what it holds.
+struct Known<'a> {
+    file: &'a File<'a>,
+    layer: Layer,
+    format: Format,
+}
+
+/// Which file is which: those that have something of a board.
+fn told_apart<'a>(
+    files: &'a [File<'a>],
+    warnings: &mut Vec<Diagnostic>,
+) -> Result<Vec<Known<'a>>, Vec<Diagnostic>> {
+    let (mut known, mut others): (Vec<Known>, Vec<&str>) = (Vec::new(), Vec::new());
+    for file in files {
+        let format = Format::of(file.text);
+        let named = || match (format, Layer::named(file.name)) {
+            // A drawing of the holes is named like them.
+            (Some(Format::Gerber), Some(Layer::Holes(_))) => None,
+            (Some(Format::Excellon), _) => Some(Layer::Holes(None)),
+            (_, named) => named,
+        };
+        let stated = file.layer.or_else(|| Layer::stated(file.text));
+        let layer = stated.or_else(named);
+        match layer {
+            None if format == Some(Format::Gerber) => warnings.push(unknown(file.name)),
+            None | Some(Layer::Other) => others.push(file.name),
+            Some(layer) => {
+                if stated.is_none() && format == Some(Format::Gerber) {
+                    let message = format!("taken as {layer}, by its name");
+                    let help = "say which layer it is where it is another one";
+                    let found = Diagnostic::warning("layer-by-name", message).help(help);
+                    warnings.push(found.file(file.name));
+                }
+                let holes = matches!(layer, Layer::Holes(_));
+                let usual = if holes { Format::Excellon } else { Format::Gerber };
+                known.push(Known { file, layer, format: format.unwrap_or(usual) });
+            }
+        }
+    }
+    if !others.is_empty() {
+        let message = format!("left out, as they hold no layer that is cut: {}", listed(&others));
+        warnings.push(Diagnostic::warning("file-unused", message));
+    }
+    if known.is_empty() {
+        let message = format!("none of {} files is a layer of a board", files.len());
+        let help = "give the Gerber and Excellon files of a board; copper files end in .gtl and .gbl, \
+                    or -F_Cu.gbr and -B_Cu.gbr, or say what they are (X2)";
+        return Err(vec![Diagnostic::error("no-board", message).help(help)]);
+    }
+    let twice = known.iter().enumerate().filter_map(|(i, one)| {
+        let same = |earlier: &&Known| earlier.layer == one.layer;
+        let earlier = known.iter().take(i).find(same)?;
+        (!matches!(one.layer, Layer::Holes(_))).then(|| twice(one, earlier))
+    });
+    let twice: Vec<Diagnostic> = twice.collect();
+    if twice.is_empty() { Ok(known) } else { Err(twice) }
+}
+
+impl Known<'_> {
+    /// Reads the file into `board`; gives the warnings.
+    fn read(&self, board: &mut Board) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
+        let File { name, text, .. } = *self.file;
+        if let (Layer::Holes(plated), Format::Excellon) = (self.layer, self.format) {
+            let reading = excellon::read(name, text)?;
+            board.holes.extend(holes::of_drill(reading.drill, plated));
+            return Ok(reading.warnings);
+        }
+        let gerber::Reading { image, mut warnings } = gerber::read(name, text)?;
+        let placed = |found: Diagnostic| found.file(name);
+        if image.objects.is_empty() {
+            let message = format!("nothing is on this layer: there is no {}", self.layer);
+            warnings.push(placed(Diagnostic::warning("layer-empty", message)));
+            return Ok(warnings);
+        }
+        let no_region = |error: RegionError| {
+            let message = format!("this layer cannot be taken: {error}");
+            let help = "look at the unit, and at the sizes of apertures";
+            vec![placed(Diagnostic::error("layer", message).help(help))]
+        };
+        let whole = || covered(&image).map_err(no_region);
+        let negative =
+            image.file_attribute(".FilePolarity").is_some_and(|value| value == ["Negative"]);
+        match self.layer {
+            Layer::Copper(_) if negative => {
+                let message = "this layer of copper is drawn as a negative";
+                let help = "plot it as a positive: what is painted is copper";
+                let found = Diagnostic::error("layer-negative", message).help(help);
+                return Err(vec![placed(found)]);
+            }
+            Layer::Copper(face) => {
+                let (copper, found) = Copper::of_image(&image).map_err(no_region)?;
+                board.side_mut(face).copper = Some(copper);
+                warnings.extend(found.into_iter().map(placed));
+            }
+            Layer::Mask(face) => board.side_mut(face).mask = Some(whole()?),
+            Layer::Legend(face) => board.side_mut(face).legend = Some(whole()?),
+            Layer::Outline => {
+                let outlined = outline::of_image(&image);
+                let (region, found) = outlined.map_err(|errors| {
+                    errors.into_iter().map(placed).collect::<Vec<Diagnostic>>()
+                })?;
+                board.outline = Some(region);
+                warnings.extend(found.into_iter().map(placed));
+            }
+            Layer::Holes(plated) => {
+                let found =
+                    holes::of_image(&image, plated).map_err(|error| vec![placed(*error)])?;
+                board.holes.extend(found);
+            }
+            Layer::Other => {}
+        }
+        Ok(warnings)
+    }
+}
+
+fn unknown(name: &str) -> Diagnostic {
+    let message = "a Gerber file, but neither it nor its name says which layer it is: left out";
+    let help = "name it as CAD systems do (-F_Cu.gbr, .gtl), or say which layer it is";
+    Diagnostic::warning("layer-unknown", message).help(help).file(name)
+}
+
+fn twice(one: &Known, earlier: &Known) -> Diagnostic {
+    let message = format!("the {}, as is {}", one.layer, earlier.file.name);
+    let help = "give the files of one board, and of two outlines the one that holds";
+    Diagnostic::error("layer-twice", message).help(help).file(one.file.name)
+}
+
+/// At most a dozen names.
+fn listed(names: &[&str]) -> String {
+    const MOST: usize = 12;
+    let shown: Vec<&str> = names.iter().take(MOST).copied().collect();
+    match names.len().saturating_sub(MOST) {
+        0 => shown.join(", "),
+        more => format!("{} and {more} more", shown.join(", ")),
+    }
+}

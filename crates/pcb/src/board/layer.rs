@@ -1,0 +1,222 @@
+//! Which file of a board is which: by what it says of itself, or else by its name.
+
+use memchr::memmem;
+use std::fmt;
+
+/// What a file holds.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Layer {
+    /// Copper of a side.
+    Copper(Face),
+    /// Openings of the solder mask of a side.
+    Mask(Face),
+    /// What is printed on a side.
+    Legend(Face),
+    /// The edge of the board.
+    Outline,
+    /// Holes, and whether their walls are plated, where the file or its name says so.
+    Holes(Option<bool>),
+    /// Something else: inner copper, paste, drawings.
+    Other,
+}
+
+/// A side of a board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub enum Face {
+    /// The side that is looked at.
+    Front,
+    /// The other side.
+    Back,
+}
+
+impl fmt::Display for Face {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        f.write_str(if *self == Face::Front { "front" } else { "back" })
+    }
+}
+
+impl fmt::Display for Layer {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Layer::Copper(face) => write!(f, "{face} copper"),
+            Layer::Mask(face) => write!(f, "{face} solder mask"),
+            Layer::Legend(face) => write!(f, "{face} legend"),
+            Layer::Outline => f.write_str("outline"),
+            Layer::Holes(None) => f.write_str("holes"),
+            Layer::Holes(Some(true)) => f.write_str("plated holes"),
+            Layer::Holes(Some(false)) => f.write_str("holes that are not plated"),
+            Layer::Other => f.write_str("nothing that is cut"),
+        }
+    }
+}
+
+/// How a file is written.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Format {
+    Gerber,
+    Excellon,
+}
+
+impl Format {
+    /// The one that `text` is in; `None` where it is in neither.
+    pub(super) fn of(text: &[u8]) -> Option<Format> {
+        let head = text.get(..1 << 16).unwrap_or(text);
+        let has = |word: &str| memmem::find(head, word.as_bytes()).is_some();
+        let mut lines = head.split(|byte| matches!(byte, b'\n' | b'\r')).map(<[u8]>::trim_ascii);
+        if ["%FS", "%MO", "%ADD"].into_iter().any(has) {
+            return Some(Format::Gerber);
+        }
+        // The header begins with M48; without one, what comes first is a `%` of its own.
+        let first = |line: &&[u8]| !line.is_empty() && !line.starts_with(b";");
+        let excellon = head.starts_with(b"M48")
+            || lines.clone().any(|line| line == b"M48")
+            || lines.find(first).is_some_and(|line| line == b"%");
+        excellon.then_some(Format::Excellon)
+    }
+}
+
+impl Layer {
+    /// What the file says of itself (`.FileFunction`); `None` where it says nothing.
+    pub(super) fn stated(text: &[u8]) -> Option<Layer> {
+        let attribute = b"TF.FileFunction,";
+        let value = text.get(memmem::find(text, attribute)? + attribute.len()..)?;
+        let end = value.iter().position(|byte| matches!(byte, b'*' | b'\n' | b'\r'));
+        let value = std::str::from_utf8(value.get(..end?)?).ok()?;
+        let mut fields = value.split(',').map(str::trim);
+        let function = fields.next()?;
+        let rest: Vec<&str> = fields.collect();
+        let face = || match () {
+            () if rest.contains(&"Top") => Some(Face::Front),
+            () if rest.contains(&"Bot") => Some(Face::Back),
+            () => None,
+        };
+        let through = !rest.iter().any(|field| matches!(*field, "Blind" | "Buried"));
+        let layer = match function {
+            "Copper" => face().map(Layer::Copper),
+            "Soldermask" => face().map(Layer::Mask),
+            "Legend" => face().map(Layer::Legend),
+            "Profile" => Some(Layer::Outline),
+            "Plated" if through => Some(Layer::Holes(Some(true))),
+            "NonPlated" if through => Some(Layer::Holes(Some(false))),
+            "MixedPlating" if through => Some(Layer::Holes(None)),
+            _ => None,
+        };
+        Some(layer.unwrap_or(Layer::Other))
+    }
+
+    /// What a file of this name holds, as the CAD systems name them; `None` where they have no such name.
+    pub(super) fn named(name: &str) -> Option<Layer> {
+        let name = name.to_ascii_lowercase();
+        let name = name.rsplit(['/', '\\']).next().unwrap_or(&name);
+        let (stem, extension) = name.rsplit_once('.').unwrap_or((name, ""));
+        let known = EXTENSIONS.iter().find(|(extensions, _)| extensions.contains(&extension));
+        let by_extension = known.map(|(_, layer)| *layer).or_else(|| numbered(extension));
+        by_extension.or_else(|| {
+            let known = WORDS.iter().find(|(words, _)| words.iter().any(|word| within(stem, word)));
+            known.map(|(_, layer)| *layer)
+        })
+    }
+}
+
+/// Whether `word` stands in `stem`, and not within another one.
+fn within(stem: &str, word: &str) -> bool {
+    let letter = |c: Option<char>| c.is_some_and(|c| c.is_ascii_alphanumeric());
+    stem.match_indices(word).any(|(at, _)| {
+        let (before, after) = (stem.get(..at), stem.get(at + word.len()..));
+        !letter(before.and_then(|text| text.chars().next_back()))
+            && !letter(after.and_then(|text| text.chars().next()))
+    })
+}
+
+/// Extensions with a number: inner and mechanical layers, planes, drawings.
+fn numbered(extension: &str) -> Option<Layer> {
+    let stem = extension.trim_end_matches(|c: char| c.is_ascii_digit());
+    let drawn = matches!(stem, "g" | "gp" | "gm" | "gd" | "gg" | "in" | "ly");
+    (drawn && stem != extension).then_some(Layer::Other)
+}
+
+/// By the extension: Protel and Altium, EAGLE, OrCAD. `docs/sources/boards.md` has the sources.
+const EXTENSIONS: [(&[&str], Layer); 10] = [
+    (&["gtl", "cmp", "top"], Layer::Copper(Face::Front)),
+    (&["gbl", "sol", "bot"], Layer::Copper(Face::Back)),
+    (&["gts", "stc", "tsm", "smt"], Layer::Mask(Face::Front)),
+    (&["gbs", "sts", "bsm", "smb"], Layer::Mask(Face::Back)),
+    (&["gto", "plc", "tsk", "sst"], Layer::Legend(Face::Front)),
+    (&["gbo", "pls", "bsk", "ssb"], Layer::Legend(Face::Back)),
+    (&["gko", "gm1", "gml", "dim", "mil"], Layer::Outline),
+    (&["drl", "xln", "exc", "drd", "tap", "ncd"], Layer::Holes(None)),
+    (&["gtp", "crc", "tsp", "spt", "gpt"], Layer::Other),
+    (&["gbp", "crs", "bsp", "spb", "gpb"], Layer::Other),
+];
+
+/// By words in the rest of the name: KiCad, Fusion and EAGLE 9, others.
+const WORDS: [(&[&str], Layer); 8] = [
+    (&["f_cu", "f.cu", "copper_top", "top_copper"], Layer::Copper(Face::Front)),
+    (&["b_cu", "b.cu", "copper_bottom", "bottom_copper"], Layer::Copper(Face::Back)),
+    (&["f_mask", "f.mask", "soldermask_top"], Layer::Mask(Face::Front)),
+    (&["b_mask", "b.mask", "soldermask_bottom"], Layer::Mask(Face::Back)),
+    (
+        &["f_silks", "f.silks", "f_silkscreen", "f.silkscreen", "silkscreen_top"],
+        Layer::Legend(Face::Front),
+    ),
+    (
+        &["b_silks", "b.silks", "b_silkscreen", "b.silkscreen", "silkscreen_bottom"],
+        Layer::Legend(Face::Back),
+    ),
+    (&["edge_cuts", "edge.cuts", "profile", "outline", "boardoutline"], Layer::Outline),
+    (
+        &["f_paste", "f.paste", "b_paste", "b.paste", "solderpaste_top", "solderpaste_bottom"],
+        Layer::Other,
+    ),
+];
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use Face::{Back, Front};
+
+    #[test]
+    fn what_files_say_of_themselves() {
+        let stated =
+            |value: &str| Layer::stated(format!("G04 x*\n%TF.FileFunction,{value}*%\n").as_bytes());
+        for (value, layer) in [
+            ("Copper,L1,Top", Layer::Copper(Front)),
+            ("Copper,L6,Bot,Mixed", Layer::Copper(Back)),
+            ("Copper,L2,Inr", Layer::Other),
+            ("Soldermask,Bot", Layer::Mask(Back)),
+            ("Legend,Top,1", Layer::Legend(Front)),
+            ("Profile,NP", Layer::Outline),
+            ("Plated,1,2,PTH,Drill", Layer::Holes(Some(true))),
+            ("NonPlated,1,2,NPTH", Layer::Holes(Some(false))),
+            ("Plated,1,2,Blind", Layer::Other),
+            ("Paste,Top", Layer::Other),
+        ] {
+            assert_eq!(stated(value), Some(layer), "{value}");
+        }
+        assert_eq!(Layer::stated(b"M48\n; #@! TF.FileFunction,Plated,1,2,PTH\n"), stated("Plated"));
+        assert_eq!(Layer::stated(b"%MOMM*%"), None);
+        assert_eq!(Layer::stated(b"%TF.FileFunction,"), None);
+    }
+
+    #[test]
+    fn what_their_names_say() {
+        for (name, layer) in [
+            ("board-F_Cu.gbr", Layer::Copper(Front)),
+            ("A64-OlinuXino_Rev_D-B.Cu.gbr", Layer::Copper(Back)),
+            ("out/Board.GTL", Layer::Copper(Front)),
+            ("b.sol", Layer::Copper(Back)),
+            ("board-B_Silkscreen.gbr", Layer::Legend(Back)),
+            ("soldermask_top.gbr", Layer::Mask(Front)),
+            ("profile.gbr", Layer::Outline),
+            ("x.GM1", Layer::Outline),
+            ("x.GM16", Layer::Other),
+            ("x.G2", Layer::Other),
+            ("drill_1_16.xln", Layer::Holes(None)),
+        ] {
+            assert_eq!(Layer::named(name), Some(layer), "{name}");
+        }
+        for name in ["README", "profiles.gbr", "board.gbr", "stuff_cut.gbr", "F_Custom.gbr", ""] {
+            assert_eq!(Layer::named(name), None, "{name}");
+        }
+    }
+}

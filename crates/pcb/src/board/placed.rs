@@ -1,0 +1,221 @@
+//! A board elsewhere: moved, turned over, many of it on a panel, and the pins that keep its place.
+
+use super::{Board, Copper, Side};
+use crate::{Hole, HoleShape};
+use geom::region::Region;
+use geom::{Transform, Vec2};
+use program::Diagnostic;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// The farthest that anything is moved, mm: regions reach no farther.
+const FAR: f64 = 1e5;
+
+/// The most boards of a panel.
+const MOST_BOARDS: usize = 10_000;
+
+/// The most lines, arcs and holes of a panel, as many as a boolean of regions takes.
+const MOST_ELEMENTS: usize = 1 << 25;
+
+/// Copies are at least this far apart, mm: what is nearer may become one.
+const APART: f64 = 1e-3;
+
+/// A line about which a board is turned over.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Axis {
+    /// Parallel to Y, at this X, mm: left and right change places.
+    X(f64),
+    /// Parallel to X, at this Y, mm: top and bottom change places.
+    Y(f64),
+}
+
+impl Axis {
+    /// How this reflects: mirrored or turned about the origin, which goes there.
+    fn reflection(self) -> (Transform, Vec2) {
+        match self {
+            Axis::X(x) => (Transform::new(true, 0.0, 1.0), Vec2::new(2.0 * x, 0.0)),
+            Axis::Y(y) => (Transform::new(true, 180.0, 1.0), Vec2::new(0.0, 2.0 * y)),
+        }
+    }
+}
+
+impl Board {
+    /// The board moved by so much, mm.
+    ///
+    /// # Errors
+    /// `not-a-place` where that is no number or leads farther than 100 m.
+    pub fn moved(&self, by: Vec2) -> Result<Board, Box<Diagnostic>> {
+        let (low, high) = self.extents().unwrap_or_default();
+        let far = (low + by).abs().max((high + by).abs()).max_element();
+        if far.is_nan() || far > FAR {
+            let message = format!("the board cannot be moved by X {} Y {} mm", by.x, by.y);
+            let help = format!("no place is farther than {FAR} mm from the zero");
+            return Err(Diagnostic::error("not-a-place", message).help(help).into());
+        }
+        Ok(self.placed(&Transform::NONE, by))
+    }
+
+    /// The board turned over about `axis`: the back is looked at, and so is the front.
+    pub fn turned_over(&self, axis: Axis) -> Board {
+        let (mirror, at) = axis.reflection();
+        let Board { name, front, back, outline, holes } = self.placed(&mirror, at);
+        Board { name, front: back, back: front, outline, holes }
+    }
+
+    /// The place in the middle between its ends, mm; the origin where there is nothing.
+    pub fn middle(&self) -> Vec2 {
+        self.extents().map_or(Vec2::ZERO, |(low, high)| low.midpoint(high))
+    }
+
+    /// Two holes of `diameter` mm for pins that hold the board in place while it is turned over about
+    /// `axis`: the axis is in the middle between them, and they are halfway along it beside the
+    /// board, their edges `distance` mm from it or more.
+    ///
+    /// # Errors
+    /// `pins` where the diameter is not above 0, the distance is below 0, or there is no board.
+    pub fn pins(
+        &self,
+        axis: Axis,
+        diameter: f64,
+        distance: f64,
+    ) -> Result<[Hole; 2], Box<Diagnostic>> {
+        let good = diameter > 0.0 && distance >= 0.0 && diameter.max(distance) <= FAR;
+        let (Some((low, high)), true) = (self.extents(), good) else {
+            let message =
+                format!("no pins of {diameter} mm can be put {distance} mm from the board");
+            let help = "give a diameter above 0, and a distance of 0 or more";
+            return Err(Diagnostic::error("pins", message).help(help).into());
+        };
+        let beside = distance + diameter / 2.0;
+        let middle = low.midpoint(high);
+        let place = |side: f64| match axis {
+            Axis::X(x) => Vec2::new(x + side * ((high.x - x).max(x - low.x) + beside), middle.y),
+            Axis::Y(y) => Vec2::new(middle.x, y + side * ((high.y - y).max(y - low.y) + beside)),
+        };
+        let pin = |side| Hole { shape: HoleShape::Round(place(side)), diameter, plated: None };
+        Ok([pin(-1.0), pin(1.0)])
+    }
+
+    /// A panel of the board: so many beside and above each other, `spacing` mm between what is
+    /// outermost of each. The first keeps its place. Each has nets of its own: `GND` of the second from
+    /// the left in the lowest row is `GND (2,1)`.
+    ///
+    /// # Errors
+    /// `panel` where there is no board, or more than fit into memory, or the spacing is not above 1 µm.
+    pub fn panel(
+        &self,
+        columns: usize,
+        rows: usize,
+        spacing: Vec2,
+    ) -> Result<Board, Box<Diagnostic>> {
+        let refused = |message: String, help: &str| {
+            Err(Box::new(Diagnostic::error("panel", message).help(help)))
+        };
+        let boards = columns.saturating_mul(rows);
+        let Some((low, high)) = self.extents().filter(|_| boards > 0) else {
+            let message = format!("{columns} by {rows} of {} are no panel", self.name);
+            return refused(message, "a panel has one board or more");
+        };
+        let near = columns > 1 && spacing.x <= APART || rows > 1 && spacing.y <= APART;
+        if near || !spacing.is_finite() {
+            let message = format!("boards {} and {} mm apart would touch", spacing.x, spacing.y);
+            return refused(message, "leave room for the cutter that parts them");
+        }
+        if boards > MOST_BOARDS || boards.saturating_mul(self.elements()) > MOST_ELEMENTS {
+            let message = format!("{columns} by {rows} boards are more than are worked on at once");
+            return refused(message, "make several panels");
+        }
+        let step = high - low + spacing;
+        let mut panel: Option<Board> = None;
+        for row in 0..rows {
+            for column in 0..columns {
+                let mut copy = self.moved(Vec2::new(column as f64, row as f64) * step)?;
+                let place = format!(" ({},{})", column + 1, row + 1);
+                for side in [&mut copy.front, &mut copy.back] {
+                    if let Some(copper) = &mut side.copper {
+                        rename(&mut copper.nets, &place);
+                    }
+                }
+                match &mut panel {
+                    None => panel = Some(copy),
+                    Some(panel) => panel.take(copy),
+                }
+            }
+        }
+        Ok(panel.unwrap_or_default())
+    }
+
+    /// Takes in another copy of itself, which does not come near.
+    fn take(&mut self, copy: Board) {
+        self.holes.extend(copy.holes);
+        take(&mut self.outline, copy.outline);
+        for (side, more) in [(&mut self.front, copy.front), (&mut self.back, copy.back)] {
+            take(&mut side.mask, more.mask);
+            take(&mut side.legend, more.legend);
+            if let (Some(copper), Some(more)) = (&mut side.copper, more.copper) {
+                copper.region.extend(more.region);
+                copper.nets.extend(more.nets);
+            }
+        }
+    }
+
+    /// All of it elsewhere: transformed about the origin, which goes to `at`.
+    fn placed(&self, transform: &Transform, at: Vec2) -> Board {
+        let place = |region: &Region| region.placed(transform, at);
+        let point = |point: Vec2| at + transform.apply(point);
+        let side = |side: &Side| Side {
+            copper: side
+                .copper
+                .as_ref()
+                .map(|copper| Copper { region: place(&copper.region), nets: copper.nets.clone() }),
+            mask: side.mask.as_ref().map(place),
+            legend: side.legend.as_ref().map(place),
+        };
+        let hole = |hole: &Hole| Hole {
+            shape: match &hole.shape {
+                HoleShape::Round(at) => HoleShape::Round(point(*at)),
+                HoleShape::Slot(from, to) => HoleShape::Slot(point(*from), point(*to)),
+                HoleShape::Route(elements) => {
+                    let elements = elements.iter();
+                    HoleShape::Route(elements.map(|e| transform.element(e, at)).collect())
+                }
+            },
+            diameter: hole.diameter * transform.scale(),
+            plated: hole.plated,
+        };
+        Board {
+            name: self.name.clone(),
+            front: side(&self.front),
+            back: side(&self.back),
+            outline: self.outline.as_ref().map(place),
+            holes: self.holes.iter().map(hole).collect(),
+        }
+    }
+
+    /// How many lines, arcs and holes it has.
+    fn elements(&self) -> usize {
+        let sides = [&self.front, &self.back];
+        let copper = sides.iter().filter_map(|side| side.copper.as_ref()).map(|c| &c.region);
+        let others = sides.iter().flat_map(|side| [side.mask.as_ref(), side.legend.as_ref()]);
+        let regions = copper.chain(others.flatten()).chain(&self.outline);
+        let rings = regions.flat_map(|region| region.rings());
+        rings.map(|ring| ring.elements().len()).sum::<usize>() + self.holes.len()
+    }
+}
+
+/// Puts `place` behind the name of each net.
+fn rename(nets: &mut [Option<Arc<str>>], place: &str) {
+    // Names are shared.
+    let mut known: BTreeMap<Arc<str>, Arc<str>> = BTreeMap::new();
+    for net in nets.iter_mut().flatten() {
+        let renamed = known.entry(net.clone()).or_insert_with(|| format!("{net}{place}").into());
+        *net = renamed.clone();
+    }
+}
+
+/// Puts more of a layer to what there is.
+fn take(layer: &mut Option<Region>, more: Option<Region>) {
+    if let (Some(layer), Some(more)) = (layer, more) {
+        layer.extend(more);
+    }
+}

@@ -1,0 +1,156 @@
+//! How far it is from a place to the conductors around it.
+
+use crate::Copper;
+use geom::region::Index;
+use geom::{Element, Vec2};
+use std::collections::BTreeMap;
+
+/// Copper as conductors: islands of one net are one, an island without a net is one of its own.
+pub(super) struct Field<'a> {
+    index: Index<'a>,
+    /// The conductor of each island.
+    conductors: Vec<usize>,
+}
+
+/// A piece of the boundary of a conductor.
+#[derive(Clone, Copy)]
+pub(super) struct Edge<'a> {
+    pub conductor: usize,
+    pub island: usize,
+    pub element: &'a Element,
+}
+
+/// The edges in a box.
+pub(super) struct Window<'a> {
+    center: Vec2,
+    half: f64,
+    edges: Vec<Edge<'a>>,
+}
+
+/// What is nearest of a conductor.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Foot {
+    pub conductor: usize,
+    pub island: usize,
+    pub at: Vec2,
+    /// How far away, mm.
+    pub away: f64,
+}
+
+impl<'a> Field<'a> {
+    pub fn new(copper: &'a Copper) -> Field<'a> {
+        let mut named = BTreeMap::new();
+        let mut conductors = Vec::new();
+        for island in 0..copper.region.islands().len() {
+            conductors.push(match copper.nets.get(island) {
+                Some(Some(net)) => *named.entry(net).or_insert(island),
+                _ => island,
+            });
+        }
+        Field { index: Index::new(&copper.region), conductors }
+    }
+
+    /// All edges.
+    pub fn edges(&self) -> impl Iterator<Item = Edge<'a>> {
+        self.index.pieces().iter().filter_map(|piece| {
+            let conductor = *self.conductors.get(piece.island)?;
+            Some(Edge { conductor, island: piece.island, element: piece.element })
+        })
+    }
+
+    /// The edges that may be in the box between two corners.
+    pub fn within(&self, low: Vec2, high: Vec2) -> impl Iterator<Item = Edge<'a>> {
+        self.index.within(low, high).filter_map(|piece| {
+            let conductor = *self.conductors.get(piece.island)?;
+            Some(Edge { conductor, island: piece.island, element: piece.element })
+        })
+    }
+
+    /// Whether nothing is nearer to `point` than `distance` mm.
+    pub fn is_free(&self, point: Vec2, distance: f64) -> bool {
+        let (low, high) = (point - distance, point + distance);
+        self.index.within(low, high).all(|piece| piece.element.nearest(point).1 >= distance)
+    }
+
+    /// Two islands of two conductors that are nearest to `point`, `away` mm or a little more.
+    pub fn islands(&self, point: Vec2, away: f64) -> Option<[usize; 2]> {
+        let mut feet = self.window(point, 2.0 * away + 1e-3).nearest(point, 1e-3);
+        feet.sort_by(|a, b| a.away.total_cmp(&b.away));
+        let first = feet.first()?;
+        let second = feet.iter().find(|foot| foot.conductor != first.conductor)?;
+        Some([first.island, second.island])
+    }
+
+    /// The edges up to `half` mm left, right, above and below of `center`.
+    pub fn window(&self, center: Vec2, half: f64) -> Window<'a> {
+        Window { center, half, edges: self.within(center - half, center + half).collect() }
+    }
+}
+
+/// What is near a place, of two conductors and the rest.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Near {
+    /// Of each of the two.
+    pub feet: [Foot; 2],
+    /// How far the rest is at least, mm.
+    pub other: f64,
+}
+
+impl Near {
+    /// How far the two are, mm, where they are as far.
+    pub fn away(&self) -> f64 {
+        self.feet[0].away.min(self.feet[1].away)
+    }
+
+    /// How much farther the rest is, mm.
+    pub fn margin(&self) -> f64 {
+        self.other - self.away()
+    }
+}
+
+impl Window<'_> {
+    /// What is near `point`; `None` where the window does not reach twice as far as the two are.
+    pub fn near(&self, point: Vec2, pair: [usize; 2]) -> Option<Near> {
+        let mut best: [Option<(f64, f64, &Edge)>; 2] = [None; 2];
+        let reach = self.reach(point);
+        let mut other = reach;
+        for edge in &self.edges {
+            let (t, away) = edge.element.nearest(point);
+            match pair.iter().position(|conductor| *conductor == edge.conductor) {
+                Some(i) => {
+                    if best[i].is_none_or(|(_, least, _)| away < least) {
+                        best[i] = Some((t, away, edge));
+                    }
+                }
+                None => other = other.min(away),
+            }
+        }
+        let foot = |(t, away, edge): (f64, f64, &Edge)| Foot {
+            conductor: edge.conductor,
+            island: edge.island,
+            at: edge.element.at(t),
+            away,
+        };
+        let [first, second] = best;
+        let feet = [foot(first?), foot(second?)];
+        feet.iter().all(|foot| 2.0 * foot.away <= reach).then_some(Near { feet, other })
+    }
+
+    /// How far around `point` everything is in the window, mm.
+    fn reach(&self, point: Vec2) -> f64 {
+        self.half - (point - self.center).abs().max_element()
+    }
+
+    /// The edges that are no farther than the nearest and `tie` mm more.
+    pub fn nearest(&self, point: Vec2, tie: f64) -> Vec<Foot> {
+        let feet = self.edges.iter().map(|edge| {
+            let (t, away) = edge.element.nearest(point);
+            let at = edge.element.at(t);
+            Foot { conductor: edge.conductor, island: edge.island, at, away }
+        });
+        let mut feet: Vec<Foot> = feet.collect();
+        let least = feet.iter().map(|foot| foot.away).fold(f64::INFINITY, f64::min);
+        feet.retain(|foot| foot.away <= least + tie);
+        feet
+    }
+}

@@ -1,0 +1,127 @@
+//! Isolation: the ways of a tool around the copper, and the places where it does not fit.
+//!
+//! A pass is the boundary of the copper grown by half the width of the cut, and more for each pass after
+//! the first. The grown copper is a region, so no way crosses another, and none comes nearer to copper
+//! than half its width. Where two passes would meet there is nothing left to cut, and they end.
+//!
+//! Where two conductors are nearer to each other than the cut is wide, the passes run around both, and what
+//! is between them stays. Such a gap is found by the line in its middle: a [`NarrowGap`], which is left
+//! out or cut along that line, as the user says.
+
+mod field;
+mod gap;
+mod lines;
+mod middle;
+
+pub use gap::{FITS, NarrowGap};
+
+use crate::{Copper, Cutter, Path};
+use field::Field;
+use geom::region::{Index, Region, RegionError};
+use program::Diagnostic;
+
+/// How copper is isolated.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Isolation {
+    /// With what.
+    pub cutter: Cutter,
+    /// How deep its tip goes, mm below the surface, greater than 0.
+    pub depth: f64,
+    /// How often around, at least once.
+    pub passes: usize,
+    /// By which part of its width a pass overlaps the one before: 0 or more, less than 1.
+    pub overlap: f64,
+    /// Which way around.
+    pub direction: Direction,
+    /// What is done where the cut is too wide.
+    pub narrow: Narrow,
+}
+
+/// How a tool goes along what stays, as the machine sees it and with a spindle that turns clockwise (M3).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Direction {
+    /// What stays is on the right: there the teeth move against the tool's way, and so with the feed of
+    /// the work.
+    Climb,
+    /// What stays is on the left.
+    Conventional,
+    /// As it comes.
+    Either,
+}
+
+/// What is done in gaps that are narrower than the cut.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Narrow {
+    /// Nothing: the conductors stay joined there.
+    LeaveOut,
+    /// A cut down the middle, which takes as much from the one as from the other.
+    Middle,
+}
+
+/// Copper that is isolated.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Isolated {
+    /// The ways of the middle of the tool, pass by pass, and then down the middle of gaps; closed but for
+    /// those in gaps, and where they leave the area.
+    pub paths: Vec<Path>,
+    /// Where the cut is too wide, whether it is made or not; the narrowest first.
+    pub narrow: Vec<NarrowGap>,
+}
+
+impl Isolation {
+    /// How wide it cuts at the surface, mm.
+    pub fn width(&self) -> f64 {
+        self.cutter.width(self.depth)
+    }
+
+    /// The ways around `copper`, within `area` where one is given.
+    ///
+    /// # Errors
+    /// Where there is more than can be computed: `board-too-large`, and `cut-too-wide` where the cut is
+    /// so wide that too much is within its reach everywhere.
+    pub fn isolate(
+        &self,
+        copper: &Copper,
+        area: Option<&Region>,
+    ) -> Result<Isolated, Box<Diagnostic>> {
+        let mut paths = self.passes(copper).map_err(too_large)?;
+        let gaps = gap::gaps(&Field::new(copper), self.width());
+        let mut gaps = gaps.map_err(|_| too_wide(self.width()))?;
+        paths.append(&mut gaps.fitting);
+        if self.narrow == Narrow::Middle {
+            paths.extend(gaps.narrow.iter().filter_map(|gap| gap.middle.clone()));
+        }
+        if let Some(area) = area.map(Index::new) {
+            paths = paths.iter().flat_map(|path| path.within(&area)).collect();
+            gaps.narrow.retain(|gap| area.island_at(gap.at).is_some());
+        }
+        Ok(Isolated { paths, narrow: gaps.narrow })
+    }
+
+    /// All passes around the copper.
+    fn passes(&self, copper: &Copper) -> Result<Vec<Path>, RegionError> {
+        let mut paths = Vec::new();
+        for pass in 0..self.passes {
+            let apart = self.width() * (0.5 + pass as f64 * (1.0 - self.overlap));
+            let around = copper.region.offset(apart)?;
+            // The rings of a region have it on their left.
+            paths.extend(around.rings().filter_map(Path::around).map(
+                |path| match self.direction {
+                    Direction::Climb => path.reversed(),
+                    Direction::Conventional | Direction::Either => path,
+                },
+            ));
+        }
+        Ok(paths)
+    }
+}
+
+fn too_large(error: RegionError) -> Box<Diagnostic> {
+    let finding = Diagnostic::error("board-too-large", error.to_string());
+    Box::new(finding.help("take a part of the board"))
+}
+
+fn too_wide(width: f64) -> Box<Diagnostic> {
+    let what = format!("a cut {width:.3} mm wide is near too much of the copper everywhere");
+    Box::new(Diagnostic::error("cut-too-wide", what).help("take a narrower tool"))
+}

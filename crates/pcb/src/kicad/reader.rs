@@ -1,0 +1,359 @@
+//! The items of a board, and what becomes of them.
+
+use super::Reading;
+use super::frame::Frame;
+use super::graphic::{Graphic, arc};
+use super::layer::Layers;
+use super::pad::{self, Pad};
+use super::text::Text;
+use super::tree::{Node, Outcome, Tree};
+use super::zone::Zone;
+use crate::board::{Shape, checked, holes, outline};
+use crate::contour::{Contour, Piece};
+use crate::report::Report;
+use crate::{Board, Copper, Hole, HoleShape, Side};
+use geom::Element;
+use program::Diagnostic;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+
+/// The first version that is read: `module` became `footprint`, on the way to KiCad 6.
+const FIRST_VERSION: u32 = 20201115;
+
+/// The last version that is read: that of KiCad 9.
+const LAST_VERSION: u32 = 20241229;
+
+/// The net of an item.
+type Net = Option<Arc<str>>;
+
+/// A board that is read.
+struct Reader<'a> {
+    report: Report<'a>,
+    version: u32,
+    /// The names of the nets by their numbers.
+    nets: BTreeMap<u32, Arc<str>>,
+    front: Vec<(Shape, Net)>,
+    back: Vec<(Shape, Net)>,
+    holes: Vec<Hole>,
+    /// The lines and arcs of the edge, each with its line in the file.
+    edges: Vec<(Element, u32)>,
+}
+
+/// What is known to have no copper, though it may name a layer of copper.
+const NO_COPPER: &[&[u8]] = &[
+    b"layer",
+    b"layers",
+    b"general",
+    b"setup",
+    b"group",
+    b"generated",
+    b"private_layers",
+    b"model",
+];
+
+pub(super) fn read(file_name: &str, text: &[u8]) -> Result<Reading, Vec<Diagnostic>> {
+    let mut reader = Reader {
+        report: Report::new(file_name, text),
+        version: 0,
+        nets: BTreeMap::new(),
+        front: Vec::new(),
+        back: Vec::new(),
+        holes: Vec::new(),
+        edges: Vec::new(),
+    };
+    let tree = Tree::new(text);
+    let board = tree.and_then(|tree| {
+        reader.header(tree.root())?;
+        reader.items(tree.root());
+        Ok(())
+    });
+    if let Err(fault) = board {
+        reader.report.error(fault.place, *fault.what);
+    }
+    reader.finish(file_name)
+}
+
+impl Reader<'_> {
+    /// Refuses what is no board, or is of a version that is not known.
+    fn header(&mut self, root: Node) -> Outcome {
+        if root.name() != b"kicad_pcb" {
+            let message =
+                format!("this is no board but \"{}\"", String::from_utf8_lossy(root.name()));
+            return Err(root.fault("not-kicad", message, "a board begins with \"(kicad_pcb\""));
+        }
+        let list = root.need("version")?;
+        let Some(version) = list.whole(0) else {
+            return Err(list.fault("version", "the version is no number", "see another file"));
+        };
+        if version < FIRST_VERSION {
+            let message = format!("version {version} is older than KiCad 6");
+            return Err(list.fault(
+                "version",
+                message,
+                "open the board in KiCad 6 to 9, and save it",
+            ));
+        }
+        if version > LAST_VERSION {
+            let message = format!(
+                "version {version} is newer than KiCad 9, whose version is {LAST_VERSION}: it is not known"
+            );
+            let help = "plot Gerber and Excellon files in KiCad, and read those";
+            return Err(list.fault("version", message, help));
+        }
+        self.version = version;
+        for net in root.all("net") {
+            if let (Some(number), Some(name)) = (net.whole(0), net.item(1)) {
+                self.nets.insert(number, name.text().into());
+            }
+        }
+        Ok(())
+    }
+
+    /// Reads the items of the board.
+    fn items(&mut self, root: Node) {
+        for item in root.items().filter(|item| item.is_list()) {
+            let done = match item.name() {
+                b"footprint" => self.footprint(item),
+                b"segment" | b"arc" => self.track(item),
+                b"via" => self.via(item),
+                _ => self.item(item, Frame::BOARD),
+            };
+            if let Err(fault) = done {
+                self.report.error(fault.place, *fault.what);
+            }
+            if self.report.is_full() {
+                return;
+            }
+        }
+    }
+
+    fn footprint(&mut self, footprint: Node) -> Outcome {
+        let frame = Frame::BOARD.of(footprint)?;
+        for item in footprint.items().filter(|item| item.is_list()) {
+            let done = match item.name() {
+                b"pad" => self.pad(item, &frame),
+                _ => self.item(item, frame),
+            };
+            if let Err(fault) = done {
+                self.report.error(fault.place, *fault.what);
+            }
+        }
+        Ok(())
+    }
+
+    /// An item that boards and footprints may have.
+    fn item(&mut self, item: Node, frame: Frame) -> Outcome {
+        let layers = Layers::of(item);
+        match item.name() {
+            b"zone" => self.zone(item),
+            // Zones in footprints are where they are on the board.
+            name if NO_COPPER.contains(&name) => Ok(()),
+            _ if layers == Layers::default() => Ok(()),
+            b"gr_text" | b"fp_text" | b"property" => self.text(item, layers, &frame),
+            b"target" => {
+                let message = "a target for the alignment of layers is left out";
+                self.report.warn(item.place(), "target", message, "it is neither edge nor copper");
+                Ok(())
+            }
+            name => {
+                let Some(graphic) = Graphic::of(item)? else {
+                    let message = format!(
+                        "\"{}\" on copper or on the edge is not read",
+                        String::from_utf8_lossy(name)
+                    );
+                    let help =
+                        "move it to another layer in KiCad, or plot Gerber files and read those";
+                    return Err(item.fault("item", message, help));
+                };
+                self.graphic(item, &graphic, layers, &frame)
+            }
+        }
+    }
+
+    fn graphic(&mut self, item: Node, graphic: &Graphic, layers: Layers, frame: &Frame) -> Outcome {
+        if layers.edge {
+            let line = item.place().line;
+            let placed = graphic.elements.iter().map(|element| (frame.element(element), line));
+            self.edges.extend(placed);
+        }
+        let style = item.find("stroke").and_then(|stroke| stroke.find("type"));
+        let style = style.and_then(|style| style.item(0)).map_or(&b"solid"[..], |word| word.word());
+        if layers.outer() && !matches!(style, b"solid" | b"default") {
+            let message = format!(
+                "a line of the style \"{}\" is taken as a whole one",
+                String::from_utf8_lossy(style)
+            );
+            let help = "on copper draw the dashes one by one";
+            self.report.warn(item.place(), "line-style", &message, help);
+        }
+        if layers.outer() || layers.inner {
+            let net = self.net(item)?;
+            for shape in graphic.shapes(item)? {
+                self.add(item, layers, frame.shape(&shape), &net);
+            }
+        }
+        Ok(())
+    }
+
+    fn track(&mut self, item: Node) -> Outcome {
+        let path = match item.name() {
+            b"arc" => arc(item)?,
+            _ => Element::line(item.need("start")?.point()?, item.need("end")?.point()?),
+        };
+        let shape = Shape::Stroke(path, item.need("width")?.length(0)?);
+        let net = self.net(item)?;
+        self.add(item, Layers::of(item), shape, &net);
+        Ok(())
+    }
+
+    fn via(&mut self, item: Node) -> Outcome {
+        let at = item.need("at")?.point()?;
+        let size = item.need("size")?;
+        let drill = item.need("drill")?;
+        let diameter = drill.length(0)?;
+        let layers = pad::copper(item, true)?;
+        if !(layers.front && layers.back) {
+            let message = "a via that does not go through the board from F.Cu to B.Cu";
+            let help = "a drill goes through: only vias through the whole board can be made";
+            return Err(item.fault("blind-via", message, help));
+        }
+        if diameter <= 0.0 {
+            let message = format!("a drill of {diameter} mm");
+            return Err(drill.fault("drill", message, "drills have a diameter above 0"));
+        }
+        let back = pad::back_of_stack(item).map_or(Ok(size), |layer| layer.need("size"))?;
+        let net = self.net(item)?;
+        for (size, side) in [(size, &mut self.front), (back, &mut self.back)] {
+            let diameter = size.length(0)?;
+            if diameter <= 0.0 {
+                return Err(size.fault("via", "a via without copper", "vias have a size above 0"));
+            }
+            let disc = Piece::new(true, Contour::circle(at, diameter / 2.0));
+            side.push((Shape::Pieces(vec![disc]), net.clone()));
+        }
+        self.holes.push(Hole { shape: HoleShape::Round(at), diameter, plated: Some(true) });
+        Ok(())
+    }
+
+    fn pad(&mut self, item: Node, footprint: &Frame) -> Outcome {
+        let frame = footprint.of(item)?;
+        let pad = Pad::of(item)?;
+        let net = self.net(item)?;
+        for (shapes, side) in [(pad.front, &mut self.front), (pad.back, &mut self.back)] {
+            side.extend(shapes.iter().map(|shape| (frame.shape(shape), net.clone())));
+        }
+        self.holes.extend(pad.hole.map(|hole| {
+            let shape = match hole.shape {
+                HoleShape::Round(at) => HoleShape::Round(frame.point(at)),
+                HoleShape::Slot(a, b) => HoleShape::Slot(frame.point(a), frame.point(b)),
+                HoleShape::Route(way) => {
+                    HoleShape::Route(way.iter().map(|element| frame.element(element)).collect())
+                }
+            };
+            Hole { shape, ..hole }
+        }));
+        Ok(())
+    }
+
+    fn zone(&mut self, item: Node) -> Outcome {
+        let zone = Zone::of(item, self.version)?;
+        let net = self.net(item)?;
+        for (layers, shape) in zone.fills {
+            self.add(item, layers, shape, &net);
+        }
+        if zone.hollow {
+            let message = "a zone has no fill on a side of the board: there it is no copper";
+            let help = "fill all zones (key B) in KiCad, and save; if it stays so, the zone has no room there";
+            self.report.warn(item.place(), "zone-fill", message, help);
+        }
+        Ok(())
+    }
+
+    fn text(&mut self, item: Node, layers: Layers, footprint: &Frame) -> Outcome {
+        let shapes = match Text::of(item)? {
+            Text::Hidden => Vec::new(),
+            Text::Stored(shapes) => shapes,
+            Text::Lettered(shapes) => {
+                let message = "a text on copper is drawn with other letters than KiCad's, which are \
+                    narrower or wider";
+                let help = "look at the picture where it stands close to other copper";
+                self.report.warn(item.place(), "text-letters", message, help);
+                let frame = footprint.of(item)?;
+                shapes.iter().map(|shape| frame.shape(shape)).collect()
+            }
+            Text::Variable => {
+                let message = "a text on copper with variables (${…}) is left out";
+                let help = "write out in KiCad what is to be there";
+                self.report.warn(item.place(), "text-variable", message, help);
+                Vec::new()
+            }
+        };
+        for shape in shapes {
+            self.add(item, layers, shape, &None);
+        }
+        Ok(())
+    }
+
+    /// Adds copper where the layers are.
+    fn add(&mut self, item: Node, layers: Layers, shape: Shape, net: &Net) {
+        if layers.front {
+            self.front.push((shape.clone(), net.clone()));
+        }
+        if layers.back {
+            self.back.push((shape, net.clone()));
+        }
+        if layers.inner && !layers.outer() {
+            let message = "copper within the board is left out";
+            let help = "only the two sides can be milled";
+            self.report.warn(item.place(), "inner-layer", message, help);
+        }
+    }
+
+    /// The net of an item; `None` where it has none.
+    fn net(&self, item: Node) -> Outcome<Net> {
+        let Some(list) = item.find("net") else { return Ok(None) };
+        let net = list.whole(0).filter(|number| *number > 0).map(|number| {
+            let known = self.nets.get(&number);
+            known.cloned().ok_or_else(|| {
+                let message = format!("there is no net {number}");
+                list.fault("net", message, "the file is damaged: save it again in KiCad")
+            })
+        });
+        net.transpose()
+    }
+
+    /// The board, when all of it is read.
+    fn finish(mut self, file_name: &str) -> Result<Reading, Vec<Diagnostic>> {
+        if !self.report.errors.is_empty() {
+            return Err(self.report.errors);
+        }
+        let placed = |found: Diagnostic| found.file(file_name);
+        let all = |found: Vec<Diagnostic>| found.into_iter().map(placed).collect::<Vec<_>>();
+        let mut warnings = self.report.warnings;
+        let mut side = |shapes: &[(Shape, Net)]| -> Result<Side, Vec<Diagnostic>> {
+            if shapes.is_empty() {
+                return Ok(Side::default());
+            }
+            let (copper, found) = Copper::of_shapes(shapes).map_err(|error| {
+                let message = format!("the copper cannot be taken: {error}");
+                let help = "look for items that are far away or very many";
+                vec![placed(Diagnostic::error("layer", message).help(help))]
+            })?;
+            warnings.extend(all(found));
+            Ok(Side { copper: Some(copper), ..Side::default() })
+        };
+        let (front, back) = (side(&self.front)?, side(&self.back)?);
+        let mut outlined = None;
+        if !self.edges.is_empty() {
+            let (region, found) = outline::of_lines(&self.edges).map_err(all)?;
+            warnings.extend(all(found));
+            outlined = Some(region);
+        }
+        warnings.extend(holes::once(&mut self.holes).map(placed));
+        let name = file_name.rsplit(['/', '\\']).next().unwrap_or(file_name);
+        let name = name.strip_suffix(".kicad_pcb").unwrap_or(name).to_owned();
+        let board = Board { name, front, back, outline: outlined, holes: self.holes };
+        warnings.extend(all(checked(&board).map_err(all)?));
+        Ok(Reading { board, warnings })
+    }
+}

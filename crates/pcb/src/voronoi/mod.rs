@@ -1,0 +1,124 @@
+//! Boards divided among their conductors: each keeps all copper that is nearer to it than to another.
+//!
+//! ```text
+//!  boundaries ──samples──▶ points ──web──▶ places as near to one conductor as to another, in threads
+//!     ──straight──▶ lines, cut off at the edge of the board
+//! ```
+//!
+//! One way between two conductors is all that it takes, in the middle of the gap, where it is farthest
+//! from both; what is left between is a wide conductor. Ways are within 5 µm of that middle.
+
+mod samples;
+mod straight;
+mod web;
+
+use crate::report::{Outcome, fault};
+use crate::{Copper, Path};
+use geom::Vec2;
+use geom::region::{Index, Region};
+use samples::{Boundary, frame};
+use std::collections::HashMap;
+use web::Place;
+
+/// The most points on the boundaries: some 500 MB.
+const MOST_SAMPLES: f64 = 2e6;
+
+/// The farthest that points on a boundary are apart, mm.
+const WIDEST: f64 = 0.1;
+
+/// What is wider than a gap by no more than this fits into it, mm: rounding.
+const FITS: f64 = 1e-3;
+
+/// How a board is divided among its conductors.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Division {
+    /// The ways of the middle of the tool.
+    pub paths: Vec<Path>,
+    /// The ways where it would cut into copper.
+    pub straits: Vec<Strait>,
+}
+
+/// A way between two conductors that the tool is too wide for.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Strait {
+    /// The way in the middle, in parts where it leaves the area.
+    pub paths: Vec<Path>,
+    /// Where it is narrowest, mm.
+    pub at: Vec2,
+    /// How wide it is there, mm.
+    pub width: f64,
+    /// The islands of copper on both sides there.
+    pub islands: [usize; 2],
+}
+
+/// The ways of a tool of `width` mm that divide `area` among the conductors of `copper`. Islands of the same
+/// net are one conductor, an island of no known net is one of its own.
+///
+/// # Errors
+/// `tool-width` where the width makes no sense; `too-much` where the boundaries are too long for it.
+pub fn divided(copper: &Copper, area: &Region, width: f64) -> Outcome<Division> {
+    if !(width > 0.0 && width.is_finite()) {
+        let message = format!("a tool {width} mm wide cannot divide copper");
+        return Err(fault("tool-width", message, "give the width of the cut in mm, above 0"));
+    }
+    let (Some(board), Some(around)) = (copper.region.extents(), area.extents()) else {
+        return Ok(Division::default());
+    };
+    let boundary = Boundary::of(&copper.region);
+    // Where the tool fits, points so near to each other are nearer than any of another conductor.
+    let spacing = (width / 4.0).min(WIDEST);
+    let count = boundary.count(spacing);
+    if count > MOST_SAMPLES {
+        let message = format!("dividing by a tool {width} mm wide takes {count} points");
+        return Err(fault("too-much", message, "use a wider tool, or divide the board in parts"));
+    }
+    let mut samples = boundary.samples(spacing);
+    samples.extend(frame(board.0.min(around.0), board.1.max(around.1)));
+    let threads = web::threads(&boundary, samples, &conductors(copper))
+        .map_err(|error| fault("not-a-place", error.to_string(), "look at the copper's places"))?;
+    let mut division = Division::default();
+    let index = Index::new(area);
+    let fits = |ends: &[Place]| ends.iter().all(|end| 2.0 * end.clearance >= width - FITS);
+    for thread in &threads {
+        for run in runs(thread, fits) {
+            let path = straight::path(run.iter().map(|place| place.at));
+            let paths = path.map(|path| path.within(&index)).unwrap_or_default();
+            let inside = run.iter().filter(|place| index.island_at(place.at).is_some());
+            let narrowest = inside.min_by(|a, b| a.clearance.total_cmp(&b.clearance));
+            match narrowest.filter(|_| !fits(run)) {
+                _ if paths.is_empty() => {}
+                None => division.paths.extend(paths),
+                Some(place) => division.straits.push(Strait {
+                    paths,
+                    at: place.at,
+                    width: 2.0 * place.clearance,
+                    islands: place.islands,
+                }),
+            }
+        }
+    }
+    Ok(division)
+}
+
+/// The conductor that each island is part of, by the number of its first island.
+fn conductors(copper: &Copper) -> Vec<usize> {
+    let mut first: HashMap<&str, usize> = HashMap::new();
+    let islands = 0..copper.region.islands().len();
+    let net = |island: usize| copper.nets.get(island)?.as_deref();
+    islands
+        .map(|island| net(island).map_or(island, |net| *first.entry(net).or_insert(island)))
+        .collect()
+}
+
+/// The runs of a thread along which the tool fits everywhere, or nowhere; each ends where the next begins.
+fn runs(thread: &[Place], fits: impl Fn(&[Place]) -> bool) -> Vec<&[Place]> {
+    let pieces: Vec<bool> = thread.windows(2).map(fits).collect();
+    let mut from = 0;
+    let run = |alike: &[bool]| {
+        let to = from + alike.len();
+        let run = thread.get(from..=to);
+        from = to;
+        run
+    };
+    pieces.chunk_by(|a, b| a == b).filter_map(run).collect()
+}

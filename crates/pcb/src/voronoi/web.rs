@@ -1,0 +1,195 @@
+//! The web of all places that are as near to one conductor as to another.
+//!
+//! The Voronoi diagram of points on the boundaries has the right threads, in the right order round each
+//! conductor, and nearly in the right place: each of its corners is then moved to where it is equally far
+//! from the boundaries themselves.
+
+use super::samples::{Boundary, Sample};
+use geom::Vec2;
+use spade::handles::{FaceHandle, InnerTag};
+use spade::{DelaunayTriangulation, InsertionError, Triangulation};
+
+/// How often a place is moved towards where it is equally far from everything.
+const TRIES: usize = 8;
+
+/// A place of the web.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Place {
+    pub(super) at: Vec2,
+    /// How far it is from the nearest conductor, mm.
+    pub(super) clearance: f64,
+    /// Two islands that are this near.
+    pub(super) islands: [usize; 2],
+}
+
+/// A place and the neighbours that threads lead to.
+struct Knot {
+    place: Place,
+    links: [Option<u32>; 3],
+}
+
+type Triangle<'a> = FaceHandle<'a, InnerTag, Sample, (), (), ()>;
+
+/// The threads of the web between `samples` of different conductors, each from where three or more meet to
+/// the next such place, or closed. `conductors` tells of each island which conductor it is part of.
+///
+/// # Errors
+/// Where a sample is no place.
+pub(super) fn threads(
+    boundary: &Boundary,
+    samples: Vec<Sample>,
+    conductors: &[usize],
+) -> Result<Vec<Vec<Place>>, InsertionError> {
+    let triangles = DelaunayTriangulation::<Sample>::bulk_load(samples)?;
+    let conductor = |sample: &Sample| conductors.get(boundary.island(sample)?);
+    // The middles of the circles about the triangles, where these have several conductors.
+    let mut knots: Vec<Knot> = Vec::new();
+    let mut of_triangle = vec![None; triangles.num_all_faces()];
+    for edge in triangles.undirected_edges() {
+        let [one, other] = edge.vertices().map(|vertex| conductor(vertex.data()));
+        if one.is_none() || other.is_none() || one == other {
+            continue;
+        }
+        let edge = edge.as_directed();
+        let sides = [edge.face().as_inner(), edge.rev().face().as_inner()];
+        // Around everything is the frame, so that both are triangles.
+        let [Some(left), Some(right)] = sides.map(|side| {
+            let side = side?;
+            let known = of_triangle.get_mut(side.index())?;
+            *known.get_or_insert_with(|| {
+                let corners = side.vertices().map(|vertex| *vertex.data());
+                knots.push(Knot {
+                    place: place(side, corners, boundary, conductor),
+                    links: [None; 3],
+                });
+                u32::try_from(knots.len() - 1).ok()
+            })
+        }) else {
+            continue;
+        };
+        for (from, to) in [(left, right), (right, left)] {
+            let links = knots.get_mut(from as usize).map(|knot| &mut knot.links);
+            if let Some(free) = links.into_iter().flatten().find(|link| link.is_none()) {
+                *free = Some(to);
+            }
+        }
+    }
+    Ok(unravelled(&mut knots))
+}
+
+/// The place in the middle of a triangle.
+fn place<'a>(
+    triangle: Triangle,
+    corners: [Sample; 3],
+    boundary: &Boundary,
+    conductor: impl Fn(&Sample) -> Option<&'a usize>,
+) -> Place {
+    let center = triangle.circumcenter();
+    let mut at = Vec2::new(center.x, center.y);
+    if !at.is_finite() {
+        at = corners.iter().map(|corner| corner.at).sum::<Vec2>() / 3.0;
+    }
+    // One for each conductor.
+    let mut nearest: Vec<Sample> = Vec::with_capacity(3);
+    for corner in corners {
+        let Some(own) = conductor(&corner) else { continue };
+        let away = |sample: &Sample| boundary.foot(sample, at).distance(at);
+        match nearest.iter_mut().find(|sample| conductor(sample) == Some(own)) {
+            Some(known) if away(&corner) < away(known) => *known = corner,
+            Some(_) => {}
+            None => nearest.push(corner),
+        }
+    }
+    settled(at, &nearest, boundary)
+}
+
+/// The place near `at` that is equally far from what is about all of some samples.
+fn settled(at: Vec2, samples: &[Sample], boundary: &Boundary) -> Place {
+    let mut best = Stand::at(at, samples, boundary);
+    for _ in 0..TRIES {
+        let better = match best.feet[..] {
+            [a, b] => between(best.at, a, b),
+            [a, b, c] => amid(a, b, c),
+            _ => None,
+        };
+        let Some(next) = better.map(|at| Stand::at(at, samples, boundary)) else { break };
+        if next.farthest - next.nearest >= best.farthest - best.nearest {
+            break;
+        }
+        best = next;
+    }
+    let mut islands = samples.iter().filter_map(|sample| boundary.island(sample));
+    let first = islands.next().unwrap_or_default();
+    let islands = [first, islands.next().unwrap_or(first)];
+    Place { at: best.at, clearance: best.nearest, islands }
+}
+
+/// A place, and the nearest of each conductor about it.
+struct Stand {
+    at: Vec2,
+    feet: Vec<Vec2>,
+    nearest: f64,
+    farthest: f64,
+}
+
+impl Stand {
+    fn at(at: Vec2, samples: &[Sample], boundary: &Boundary) -> Stand {
+        let feet: Vec<Vec2> = samples.iter().map(|sample| boundary.foot(sample, at)).collect();
+        let away = || feet.iter().map(|foot| foot.distance(at));
+        let (nearest, farthest) =
+            (away().fold(f64::INFINITY, f64::min), away().fold(0.0, f64::max));
+        Stand { at, feet, nearest, farthest }
+    }
+}
+
+/// The point nearest to `at` that is as far from `a` as from `b`; `None` where these are one.
+fn between(at: Vec2, a: Vec2, b: Vec2) -> Option<Vec2> {
+    let across = (b - a).try_normalize()?;
+    Some(at + across * ((a + b) / 2.0 - at).dot(across))
+}
+
+/// The point that is equally far from three; `None` where these are in a line.
+fn amid(a: Vec2, b: Vec2, c: Vec2) -> Option<Vec2> {
+    let (b, c) = (b - a, c - a);
+    let middle = (b * c.length_squared() - c * b.length_squared()).perp() / (2.0 * c.perp_dot(b));
+    middle.is_finite().then_some(a + middle)
+}
+
+/// The threads between knots, which lose their links.
+fn unravelled(knots: &mut [Knot]) -> Vec<Vec<Place>> {
+    let links = |knot: &Knot| knot.links.iter().flatten().count();
+    let ends: Vec<u32> =
+        (0..).zip(&*knots).filter(|(_, k)| links(k) != 2).map(|(i, _)| i).collect();
+    let all = 0..knots.len() as u32;
+    let is_end: Vec<bool> = knots.iter().map(|knot| links(knot) != 2).collect();
+    let mut threads = Vec::new();
+    // What is closed has no end to begin with.
+    for from in ends.into_iter().chain(all) {
+        while let Some(thread) = thread(knots, from, &is_end) {
+            threads.push(thread);
+        }
+    }
+    threads
+}
+
+/// The thread that begins at a knot, to the next end or back; `None` where none is left.
+fn thread(knots: &mut [Knot], from: u32, is_end: &[bool]) -> Option<Vec<Place>> {
+    let mut thread = vec![knots.get(from as usize)?.place];
+    let mut at = from;
+    while let Some(next) = untie(knots, at) {
+        thread.push(knots.get(next as usize)?.place);
+        at = next;
+        if at == from || is_end.get(at as usize) == Some(&true) {
+            break;
+        }
+    }
+    (thread.len() > 1).then_some(thread)
+}
+
+/// Takes one link of a knot away, and tells where it led to.
+fn untie(knots: &mut [Knot], at: u32) -> Option<u32> {
+    let to = knots.get_mut(at as usize)?.links.iter_mut().find_map(Option::take)?;
+    let mut back = knots.get_mut(to as usize)?.links.iter_mut();
+    *back.find(|link| **link == Some(at))? = None;
+    Some(to)
+}

@@ -1,0 +1,300 @@
+//! Boards from folders of files: the real ones, and layers by hand.
+
+use crate::data;
+use geom::Vec2;
+use program::Diagnostic;
+use std::f64::consts::PI;
+use std::path::Path;
+use toolpost_pcb::board::{self, Face, File, Layer, Reading};
+
+/// What the files of a folder give.
+pub fn folder(folder: &Path) -> Result<Reading, Vec<Diagnostic>> {
+    let paths = data::files(folder, "");
+    let texts: Vec<Vec<u8>> = paths.iter().map(|path| data::bytes(path)).collect();
+    let names: Vec<String> = paths.iter().map(|path| path.to_string_lossy().into()).collect();
+    let files: Vec<(&str, &[u8])> =
+        names.iter().zip(&texts).map(|(name, text)| (name.as_str(), text.as_slice())).collect();
+    read(&files)
+}
+
+pub fn read(files: &[(&str, &[u8])]) -> Result<Reading, Vec<Diagnostic>> {
+    let files: Vec<File> =
+        files.iter().map(|(name, text)| File { name, layer: None, text }).collect();
+    board::read("board", &files)
+}
+
+/// A layer in mm with three decimals: a pen of 0.2 mm, D10, and a pad of 1 mm, D11.
+fn layer(function: &str, commands: &str) -> Vec<u8> {
+    let says =
+        if function.is_empty() { String::new() } else { format!("%TF.FileFunction,{function}*%") };
+    format!("{says}%FSLAX33Y33*%%MOMM*%%ADD10C,0.2*%%ADD11C,1*%G75*\n{commands}M02*").into_bytes()
+}
+
+/// Lines through these places, mm, drawn with D10.
+fn lines(places: &[(f64, f64)]) -> String {
+    let units = |mm: f64| (mm * 1000.0).round() as i64;
+    let mut text = String::from("D10*\n");
+    for (i, (x, y)) in places.iter().enumerate() {
+        text += &format!("G01X{}Y{}D0{}*\n", units(*x), units(*y), if i == 0 { 2 } else { 1 });
+    }
+    text
+}
+
+/// The square of 20 mm with its corner in the origin.
+fn square() -> String {
+    lines(&[(0.0, 0.0), (20.0, 0.0), (20.0, 20.0), (0.0, 20.0), (0.0, 0.0)])
+}
+
+/// The outline that these commands draw.
+fn outline(commands: &str) -> Result<Reading, Vec<Diagnostic>> {
+    read(&[("edge.gko", &layer("", commands))])
+}
+
+#[track_caller]
+fn assert_area(reading: &Reading, expected: f64) {
+    let area = reading.board.outline.as_ref().expect("there is an outline").area();
+    assert!((area - expected).abs() < 1e-6 * expected, "{area} is not {expected}");
+}
+
+#[track_caller]
+fn refused(reading: Result<Reading, Vec<Diagnostic>>, rule: &str, says: &str) -> Diagnostic {
+    let errors = reading.expect_err("this is refused");
+    assert_eq!(errors[0].rule, rule, "{errors:#?}");
+    assert!(errors[0].message.contains(says), "{errors:#?}");
+    assert!(!errors[0].help.is_empty());
+    errors[0].clone()
+}
+
+/// The rules of the warnings, but of that about the short coordinates of these tests.
+fn rules(reading: &Reading) -> Vec<&str> {
+    let rules = reading.warnings.iter().map(|found| found.rule);
+    rules.filter(|rule| *rule != "deprecated").collect()
+}
+
+#[test]
+fn the_folders_of_the_real_boards() {
+    let Some(data) = data::folder() else { return };
+    // Counted and read off in the files themselves: hits and routes; least and greatest X and Y.
+    for (name, holes, low, high) in [
+        ("StickHub", 88, (141.75, -120.0), (158.25, -80.0)),
+        ("carte_test", 278, (94.615, -135.89), (196.215, -36.195)),
+        ("ecc83-pp", 33, (121.285, -136.525), (173.355, -90.17)),
+        ("interf_u", 401, (79.375, -142.494), (194.945, -34.29)),
+        ("kit-dev-coldfire-xilinx_5213", 526, (71.12, -147.32), (228.6, -55.88)),
+        ("microwave", 0, (59.69, -201.93), (351.79, -81.28)),
+        ("pic_programmer", 251, (73.66, -139.7), (233.68, -40.64)),
+    ] {
+        let reading = folder(&data.join("kicad").join(name)).unwrap();
+        let board = &reading.board;
+        assert_eq!(board.holes.len(), holes, "{name}");
+        let (a, b) = board.outline.as_ref().unwrap().extents().unwrap();
+        let near = |p: Vec2, q: (f64, f64)| p.distance(Vec2::new(q.0, q.1)) < 1e-6;
+        assert!(near(a, low) && near(b, high), "{name}: {a} {b}");
+        assert!(board.front.copper.is_some(), "{name}");
+        // This one has tracks on one side alone.
+        let expected: &[&str] = if name == "microwave" { &["layer-empty"] } else { &[] };
+        assert_eq!(rules(&reading), expected, "{name}");
+        assert_eq!(board.back.copper.is_none(), name == "microwave");
+        let npth = board.holes.iter().filter(|hole| hole.plated == Some(false)).count();
+        assert!(board.holes.iter().all(|hole| hole.plated.is_some()) && npth <= holes, "{name}");
+    }
+}
+
+#[test]
+fn all_real_boards_in_one_folder_are_refused() {
+    let Some(data) = data::folder() else { return };
+    let errors = folder(&data.join("kicad")).unwrap_err();
+    assert!(errors.iter().all(|error| error.rule == "layer-twice"), "{errors:#?}");
+    let names = |error: &Diagnostic| {
+        error.file.contains("carte_test-F_Cu") && error.message.contains("StickHub-F_Cu")
+    };
+    assert!(errors.iter().any(names), "{errors:#?}");
+}
+
+#[test]
+fn a_file_is_what_it_says_or_what_its_name_says() {
+    let pad = "D11*\nX10000Y10000D03*\n";
+    let drill = b"M48\nMETRIC\nT1C0.8\n%\nT1\nX10.0Y10.0\nM30\n";
+    let reading = read(&[
+        ("one.gbr", &layer("Copper,L1,Top", pad)),
+        // What it says comes before what its name says.
+        ("two.gtl", &layer("Copper,L2,Bot", pad)),
+        ("three.gko", &layer("", &square())),
+        ("holes.txt", drill),
+        ("stuff.gbr", &layer("", pad)),
+        ("paste.gtp", &layer("", pad)),
+        ("readme.txt", b"Hello"),
+    ])
+    .unwrap();
+    let names: Vec<(&str, Layer)> =
+        reading.layers.iter().map(|(name, layer)| (name.as_str(), *layer)).collect();
+    let expected = [
+        ("one.gbr", Layer::Copper(Face::Front)),
+        ("two.gtl", Layer::Copper(Face::Back)),
+        ("three.gko", Layer::Outline),
+        ("holes.txt", Layer::Holes(None)),
+    ];
+    assert_eq!(names, expected);
+    assert_eq!(rules(&reading), ["layer-by-name", "layer-unknown", "file-unused"]);
+    let of = |rule: &str| reading.warnings.iter().find(|found| found.rule == rule).unwrap();
+    assert!(of("layer-by-name").message.contains("outline"));
+    assert_eq!(of("layer-unknown").file, "stuff.gbr");
+    assert!(of("file-unused").message.contains("paste.gtp, readme.txt"));
+    assert_area(&reading, 400.0);
+    for face in [Face::Front, Face::Back] {
+        let copper = reading.board.side(face).copper.as_ref().unwrap();
+        assert!((copper.region.area() - PI / 4.0).abs() < 1e-6);
+    }
+}
+
+#[test]
+fn somebody_may_say_which_layer_it_is() {
+    let (edge, copper) = (layer("", &square()), layer("", "D11*\nX10000Y10000D03*\n"));
+    let files = [
+        File { name: "a.gbr", layer: Some(Layer::Outline), text: &edge },
+        File { name: "b.gbl", layer: Some(Layer::Copper(Face::Front)), text: &copper },
+    ];
+    let reading = board::read("x", &files).unwrap();
+    assert!(rules(&reading).is_empty() && reading.board.front.copper.is_some());
+    assert_area(&reading, 400.0);
+}
+
+#[test]
+fn holes_that_gerber_paints() {
+    let commands = "D11*\nX5000Y5000D03*\nD10*\nX1000Y1000D02*\nX4000Y5000D01*\n";
+    let reading = read(&[("a.gbr", &layer("Plated,1,2,PTH", commands))]).unwrap();
+    let widths: Vec<f64> = reading.board.holes.iter().map(|hole| hole.diameter).collect();
+    assert_eq!(widths, [1.0, 0.2]);
+    assert!(reading.board.holes.iter().all(|hole| hole.plated == Some(true)));
+    // A slot of 3 by 4 from end to end.
+    let (low, high) = reading.board.holes[1].extents();
+    assert!(low.distance(Vec2::splat(0.9)) < 1e-9 && high.distance(Vec2::new(4.1, 5.1)) < 1e-9);
+    let square = "%ADD12R,1X1*%D12*\nX5000Y5000D03*\n";
+    refused(read(&[("a.gbr", &layer("Plated,1,2,PTH", square))]), "hole-form", "else");
+}
+
+#[test]
+fn files_that_are_no_board() {
+    refused(read(&[]), "no-board", "none of 0 files");
+    refused(read(&[("a.step", b"ISO-10303-21;")]), "no-board", "none of 1 files");
+    refused(read(&[("a.gtl", b"")]), "no-end", "");
+    let twice = [("a.gtl", layer("", "")), ("b.cmp", layer("", ""))];
+    let twice = [("a.gtl", &twice[0].1[..]), ("b.cmp", &twice[1].1[..])];
+    assert_eq!(refused(read(&twice), "layer-twice", "a.gtl").file, "b.cmp");
+    let negative = "%TF.FilePolarity,Negative*%D11*\nX0Y0D03*\n";
+    refused(read(&[("a", &layer("Copper,L1,Top", negative))]), "layer-negative", "negative");
+}
+
+#[test]
+fn the_middle_of_what_is_drawn_is_the_edge() {
+    let reading = outline(&square()).unwrap();
+    assert_area(&reading, 400.0);
+    // In any order and direction, and one line twice.
+    let loose = [
+        [(0.0, 0.0), (20.0, 0.0)],
+        [(20.0, 20.0), (0.0, 20.0)],
+        [(20.0, 0.0), (20.0, 20.0)],
+        [(0.0, 0.0), (0.0, 20.0)],
+        [(20.0, 0.0), (0.0, 0.0)],
+    ];
+    let loose: String = loose.iter().map(|ends| lines(ends)).collect();
+    assert_area(&outline(&loose).unwrap(), 400.0);
+    // A cut-out of 4 by 4, and a round one, as a full circle.
+    let cut = lines(&[(2.0, 2.0), (2.0, 6.0), (6.0, 6.0), (6.0, 2.0), (2.0, 2.0)]);
+    let round = "G01X17000Y15000D02*\nG03X17000Y15000I-2000J0D01*\n";
+    let reading = outline(&(square() + &cut + round)).unwrap();
+    assert_area(&reading, 400.0 - 16.0 - 4.0 * PI);
+    let outline = reading.board.outline.unwrap();
+    assert_eq!((outline.islands().len(), outline.rings().count()), (1, 3));
+}
+
+#[test]
+fn rounded_corners_stay_arcs() {
+    // A slot: two straight sides, two half circles of radius 5.
+    let sides = lines(&[(0.0, 0.0), (10.0, 0.0)]) + &lines(&[(10.0, 10.0), (0.0, 10.0)]);
+    let ends = "G01X10000Y0D02*\nG03X10000Y10000I0J5000D01*\nG01X0Y0D02*\nG02X0Y10000I0J5000D01*\n";
+    let reading = outline(&(sides + ends)).unwrap();
+    assert_area(&reading, 100.0 + 25.0 * PI);
+    let outline = reading.board.outline.unwrap();
+    let arcs = outline.rings().flat_map(|ring| ring.elements()).filter(|e| e.turn.is_some());
+    assert!(arcs.clone().count() >= 2 && arcs.clone().all(|arc| arc.radius() == Some(5.0)));
+}
+
+#[test]
+fn several_boards_beside_each_other() {
+    let other = lines(&[(30.0, 0.0), (40.0, 0.0), (40.0, 10.0), (30.0, 10.0), (30.0, 0.0)]);
+    let reading = outline(&(square() + &other)).unwrap();
+    assert_area(&reading, 500.0);
+    assert_eq!(reading.board.outline.unwrap().islands().len(), 2);
+}
+
+#[test]
+fn gaps_are_closed_or_named() {
+    let ring = |gap: f64| lines(&[(gap, 0.0), (20.0, 0.0), (20.0, 20.0), (0.0, 20.0), (0.0, 0.0)]);
+    // 1 µm is rounding, 20 µm is worth a word.
+    assert!(!rules(&outline(&ring(0.001)).unwrap()).contains(&"outline-gap"));
+    let closed = outline(&ring(0.02)).unwrap();
+    let gap = closed.warnings.iter().find(|found| found.rule == "outline-gap").unwrap();
+    assert!(gap.message.contains("0.0200 mm at X 0.0") && gap.file == "edge.gko", "{gap}");
+    assert_area(&closed, 400.0);
+    let open = refused(outline(&ring(0.3)), "outline-open", "a gap of 0.3000 mm");
+    assert!(open.message.contains("X 0.3000 Y 0.0000") && open.line > 0, "{open}");
+    assert_eq!(open.file, "edge.gko");
+}
+
+#[test]
+fn what_is_no_outline() {
+    let corner = square() + &lines(&[(0.0, 0.0), (5.0, 5.0)]);
+    refused(outline(&corner), "outline-branch", "meet at X 0.0000 Y 0.0000");
+    let middle = square() + &lines(&[(10.0, 0.0), (10.0, 5.0)]);
+    refused(outline(&middle), "outline-branch", "at X 10.0000 Y 0.0000");
+    let across =
+        square() + &lines(&[(10.0, 5.0), (30.0, 5.0), (30.0, 9.0), (10.0, 9.0), (10.0, 5.0)]);
+    refused(outline(&across), "outline-crosses", "X 20.0000");
+    refused(outline(&(square() + "%LPC*%D11*\nX5000Y5000D03*\n")), "outline-mixed", "erased");
+    let area = "G36*\nX0Y0D02*\nG01X5000Y0D01*\nX5000Y5000D01*\nX0Y0D01*\nG37*\n";
+    refused(outline(&(square() + area)), "outline-mixed", "filled");
+    assert_area(&outline(area).unwrap(), 12.5);
+    // There and back encloses nothing.
+    let flat = lines(&[(0.0, 0.0), (5.0, 0.0)])
+        + "G02X0Y0I-2500J0D01*\n"
+        + &lines(&[(0.0, 0.0), (5.0, 0.0)]);
+    assert!(outline(&flat).is_ok());
+    refused(outline(&lines(&[(0.0, 0.0), (5.0, 0.0)])), "outline-open", "a gap of 5.0000 mm");
+}
+
+#[test]
+fn layers_that_do_not_fit() {
+    let board = |pad: &str, hole: &str| {
+        let drill = format!("M48\nMETRIC\nT1C0.8\n%\nT1\n{hole}\nM30\n");
+        let copper = layer("Copper,L1,Top", &format!("D11*\n{pad}D03*\n"));
+        let edge = layer("Profile,NP", &square());
+        read(&[("a", &copper), ("b", &edge), ("c.drl", drill.as_bytes())])
+    };
+    assert_eq!(rules(&board("X10000Y10000", "X10.0Y10.0").unwrap()), [""; 0]);
+    // Half of the pad, π/8 mm², is over the edge.
+    let over = board("X20000Y10000", "X10.0Y10.0").unwrap();
+    let found = over.warnings.iter().find(|found| found.rule == "copper-outside").unwrap();
+    assert!(
+        found.message.starts_with("0.393 mm²") && found.message.contains("in 1 place,"),
+        "{found}"
+    );
+    let beyond = board("X10000Y10000", "X10.0Y10.0\nX20.2Y5.0").unwrap();
+    let found = beyond.warnings.iter().find(|found| found.rule == "hole-outside").unwrap();
+    assert!(found.message.contains("1 of 2 holes") && found.message.contains("X 20.2000 Y 5.0000"));
+    let apart = board("X10000Y10000", "X110.0Y10.0");
+    refused(apart, "layers-apart", "holes within X 109.600 to 110.400");
+    // A pad of three quarters outside.
+    let shifted = board("X20250Y10000", "X10.0Y10.0").unwrap();
+    assert!(rules(&shifted).contains(&"layers-shifted"), "{:?}", rules(&shifted));
+}
+
+#[test]
+fn empty_layers_and_holes_that_come_twice() {
+    let drill = b"M48\nMETRIC\nT1C0.8\n%\nT1\nX10.0Y10.0\nX12.0Y10.0\nM30\n";
+    let empty = layer("Copper,L1,Top", "");
+    let reading = read(&[("a", &empty), ("b.drl", drill), ("c.drl", drill)]).unwrap();
+    assert_eq!(rules(&reading), ["layer-empty", "hole-twice"]);
+    assert!(reading.board.front.copper.is_none());
+    assert_eq!(reading.board.holes.len(), 2);
+}

@@ -1,0 +1,174 @@
+//! The ways around copper: hand calculation, and the distances of points to the copper.
+
+use geom::region::{Cap, Region};
+use geom::{Element, Vec2};
+use std::f64::consts::{FRAC_PI_4, PI, TAU};
+use toolpost_pcb::isolation::{Direction, Isolated, Isolation, Narrow, NarrowGap};
+use toolpost_pcb::{Copper, Cutter, Path};
+
+/// A cut 0.2 mm wide.
+const ISOLATION: Isolation = Isolation {
+    cutter: Cutter::Cylinder { diameter: 0.2 },
+    depth: 0.05,
+    passes: 1,
+    overlap: 0.0,
+    direction: Direction::Climb,
+    narrow: Narrow::LeaveOut,
+};
+
+/// Copper of unnamed islands.
+fn copper(shapes: &[Region]) -> Copper {
+    let region = Region::union_of(shapes).unwrap();
+    Copper { nets: vec![None; region.islands().len()], region }
+}
+
+fn disc(x: f64, y: f64, radius: f64) -> Region {
+    Region::disc(Vec2::new(x, y), radius).unwrap()
+}
+
+#[test]
+fn around_a_pad_passes_are_circles_each_farther_out() {
+    let two = Isolation { passes: 2, overlap: 0.25, ..ISOLATION };
+    let paths = two.isolate(&copper(&[disc(3.0, 4.0, 1.0)]), None).unwrap().paths;
+    // 0.1 mm from the copper, and three quarters of 0.2 mm farther.
+    for (path, radius) in paths.iter().zip([1.1, 1.25]) {
+        assert!(path.is_closed());
+        assert!((path.length() - TAU * radius).abs() < 1e-6, "{}", path.length());
+    }
+    assert_eq!(paths.len(), 2);
+}
+
+#[test]
+fn climbing_has_the_copper_on_its_right() {
+    let ring = disc(0.0, 0.0, 3.0).difference(&disc(0.0, 0.0, 2.0)).unwrap();
+    for (direction, side) in [(Direction::Climb, -1.0), (Direction::Conventional, 1.0)] {
+        let paths = Isolation { direction, ..ISOLATION }
+            .isolate(&copper(std::slice::from_ref(&ring)), None)
+            .unwrap()
+            .paths;
+        assert_eq!(paths.len(), 2);
+        for path in paths {
+            let element = path.elements()[0];
+            let outside = element.start.length() > 2.5;
+            let inwards = if outside { -element.start } else { element.start };
+            assert!(element.tangent(0.0).perp().dot(inwards) * side > 0.0, "{direction:?}");
+        }
+    }
+}
+
+#[test]
+fn a_way_ends_where_the_board_ends() {
+    let area = disc(0.0, 0.0, 2.0);
+    let paths = ISOLATION.isolate(&copper(&[disc(2.0, 0.0, 0.9)]), Some(&area)).unwrap().paths;
+    let [path] = &*paths else { panic!("{paths:?}") };
+    assert!(!path.is_closed());
+    // Circles of radius 2 and 1, 2 apart: the part within is 2·acos(1/4) of the smaller.
+    assert!((path.length() - 2.0 * 0.25f64.acos()).abs() < 1e-6);
+    assert!((path.start().length() - 2.0).abs() < 1e-6 && (path.end().length() - 2.0).abs() < 1e-6);
+    let inside = ISOLATION.isolate(&copper(&[disc(0.0, 0.0, 0.9)]), Some(&area)).unwrap().paths;
+    assert!(inside[0].is_closed() && (inside[0].length() - 2.0 * PI).abs() < 1e-6);
+}
+
+fn track(from: (f64, f64), to: (f64, f64), width: f64) -> Region {
+    Region::stroke(&Element::line(from.into(), to.into()), width, Cap::Round).unwrap()
+}
+
+#[track_caller]
+fn near(ours: f64, right: f64, tolerance: f64) {
+    assert!((ours - right).abs() < tolerance, "{ours} for {right}");
+}
+
+/// The gaps that are too narrow for a cut of `width`.
+fn narrow(copper: &Copper, width: f64) -> Vec<NarrowGap> {
+    let cutter = Cutter::Cylinder { diameter: width };
+    Isolation { cutter, ..ISOLATION }.isolate(copper, None).unwrap().narrow
+}
+
+#[test]
+fn two_pads_too_near_are_one_gap() {
+    // A gap of 0.1 mm. It is narrower than 0.2 mm as far as places in its middle are nearer to the pads
+    // than 0.1 mm less half of what fits: on circles of 1.099 mm.
+    let pads = copper(&[disc(0.0, 0.0, 1.0), disc(2.1, 0.0, 1.0)]);
+    let [gap] = &*narrow(&pads, 0.2) else { panic!() };
+    assert!(gap.at.distance(Vec2::new(1.05, 0.0)) < 1e-6, "{}", gap.at);
+    near(gap.width, 0.1, 1e-6);
+    near(gap.widest_cut(), 0.098, 1e-6);
+    near(gap.thinned(0.2), 0.05, 1e-6);
+    near(gap.length, 2.0 * (1.099f64.powi(2) - 1.05f64.powi(2)).sqrt(), 1e-3);
+    assert_eq!(gap.islands, [0, 1]);
+    // All of it is straight.
+    assert_eq!(gap.middle.as_ref().unwrap().elements().len(), 1);
+    assert!(narrow(&pads, 0.1).is_empty());
+}
+
+#[test]
+fn two_tracks_side_by_side_are_one_gap() {
+    for turned in [0.0, FRAC_PI_4, 1.0] {
+        let at = |x: f64, y: f64| Vec2::from_angle(turned).rotate(Vec2::new(x, y)).into();
+        let tracks = [0.0, 0.4].map(|y| track(at(0.0, y), at(10.0, y), 0.3));
+        let [gap] = &*narrow(&copper(&tracks), 0.2) else { panic!("{turned}") };
+        near(gap.width, 0.1, 1e-6);
+        near(gap.length, 10.0 + 2.0 * (0.249f64.powi(2) - 0.04).sqrt(), 2e-3);
+        // Apart by just as much as the cut is wide: one way between them, and no finding.
+        let fits = [0.0, 0.5].map(|y| track(at(0.0, y), at(10.0, y), 0.3));
+        let Isolated { paths, narrow } = ISOLATION.isolate(&copper(&fits), None).unwrap();
+        assert!(narrow.is_empty(), "{narrow:?}");
+        let between: Vec<f64> =
+            paths.iter().filter(|path| !path.is_closed()).map(Path::length).collect();
+        assert_eq!(between.len(), 1);
+        near(between[0], 10.0, 0.1);
+    }
+}
+
+#[test]
+fn tracks_of_one_net_are_not_to_be_isolated_from_each_other() {
+    let tracks = [0.0, 0.4].map(|y| track((0.0, y), (10.0, y), 0.3));
+    let mut named = copper(&tracks);
+    named.nets = ["GND", "GND"].map(|net| Some(net.into())).to_vec();
+    assert!(narrow(&named, 0.2).is_empty());
+    named.nets = vec![Some("GND".into()), Some("VCC".into())];
+    assert_eq!(narrow(&named, 0.2).len(), 1);
+    named.nets = vec![Some("GND".into()), None];
+    assert_eq!(narrow(&named, 0.2).len(), 1);
+}
+
+#[test]
+fn around_a_pad_in_a_ring_the_gap_is_closed() {
+    let ring = disc(3.0, 3.0, 2.0).difference(&disc(3.0, 3.0, 1.0)).unwrap();
+    let [gap] = &*narrow(&copper(&[ring, disc(3.0, 3.0, 0.9)]), 0.2) else { panic!() };
+    let middle = gap.middle.as_ref().unwrap();
+    assert!(middle.is_closed());
+    near(middle.length(), TAU * 0.95, 0.01);
+    for element in middle.elements() {
+        near(element.at(0.5).distance(Vec2::splat(3.0)), 0.95, 0.005);
+    }
+}
+
+#[test]
+fn between_three_pads_three_gaps_meet_and_between_four_four() {
+    for count in [3, 4, 5, 6] {
+        // Pads of 1 mm around the origin, 0.1 mm from each other.
+        let radius = 0.55 / (PI / f64::from(count)).sin();
+        let at = |i: i32| Vec2::from_angle(TAU * f64::from(i) / f64::from(count)) * radius;
+        let pads: Vec<Region> = (0..count).map(|i| disc(at(i).x, at(i).y, 0.5)).collect();
+        // Wide enough for the place in the middle of all.
+        let gaps = narrow(&copper(&pads), 2.0 * (radius - 0.5) + 0.2);
+        assert_eq!(gaps.len(), count as usize);
+        for gap in gaps {
+            near(gap.width, 0.1, 1e-6);
+            let middle = gap.middle.unwrap();
+            let inner = middle.start().length().min(middle.end().length());
+            near(inner, 0.0, 1e-4);
+        }
+    }
+}
+
+#[test]
+fn pads_that_touch_have_a_gap_of_nothing() {
+    let [gap] = &*narrow(&copper(&[disc(0.0, 0.0, 1.0), disc(2.0, 0.0, 1.0)]), 0.2) else {
+        panic!()
+    };
+    near(gap.width, 0.0, 1e-5);
+    assert!(gap.at.distance(Vec2::X) < 1e-5);
+    assert_eq!((gap.length, gap.middle.is_none(), gap.widest_cut()), (0.0, true, 0.0));
+}

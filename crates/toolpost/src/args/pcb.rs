@@ -1,0 +1,381 @@
+//! What can be typed after `toolpost pcb`.
+
+use super::{Closeness, length, lengths, option, place};
+use ::pcb::board::Face;
+use clap::{Args, ValueEnum};
+use std::path::PathBuf;
+
+/// Arguments of `pcb`.
+#[derive(Debug, Args)]
+pub struct Pcb {
+    /// The board: a folder of Gerber and Excellon files, or such files; a board of KiCad (.kicad_pcb); or a
+    /// board of nodes, tracks and pads (.toml, .json).
+    #[arg(value_name = "BOARD", required = true)]
+    pub board: Vec<PathBuf>,
+    /// Name in the library, or a file ending in .toml.
+    #[arg(long, short, value_name = "NAME|FILE")]
+    pub machine: String,
+    /// Folder for the programs, their pictures and the report; made where it is missing.
+    #[arg(long, short, value_name = "FOLDER")]
+    pub output: PathBuf,
+    /// Another value for one of the options of the machine file; may be given several times.
+    #[arg(long, value_name = "NAME=VALUE", value_parser = option)]
+    pub option: Vec<(String, String)>,
+    /// What to make [default: all that the board has and that tools are given for].
+    #[arg(long, value_name = "WHAT,...", value_delimiter = ',')]
+    pub only: Vec<Part>,
+    /// Take every warning about the board as an error.
+    #[arg(long)]
+    pub strict: bool,
+    /// How pictures are saved.
+    #[arg(long, value_name = "FORMAT", default_value = "svg")]
+    pub picture: Picture,
+    #[command(flatten)]
+    pub closeness: Closeness,
+    #[command(flatten)]
+    pub isolation: Isolation,
+    #[command(flatten)]
+    pub clearing: Clearing,
+    #[command(flatten)]
+    pub drilling: Drilling,
+    #[command(flatten)]
+    pub outline: Outline,
+    #[command(flatten)]
+    pub placing: Placing,
+    #[command(flatten)]
+    pub running: Running,
+}
+
+/// A program of a board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Part {
+    /// The copper of the front.
+    Front,
+    /// The copper of the back, from the back.
+    Back,
+    /// The holes.
+    Drill,
+    /// The edge of the board and its cut-outs.
+    Outline,
+    /// The solder mask of the front.
+    FrontMask,
+    /// The solder mask of the back, from the back.
+    BackMask,
+    /// The legend of the front.
+    FrontLegend,
+    /// The legend of the back, from the back.
+    BackLegend,
+}
+
+impl Part {
+    /// All, in the order in which they are run.
+    pub const ALL: [Part; 8] = [
+        Part::Front,
+        Part::Back,
+        Part::Drill,
+        Part::Outline,
+        Part::FrontMask,
+        Part::BackMask,
+        Part::FrontLegend,
+        Part::BackLegend,
+    ];
+
+    /// What its program and picture are called.
+    pub fn name(self) -> &'static str {
+        match self {
+            Part::Front => "front",
+            Part::Back => "back",
+            Part::Drill => "drill",
+            Part::Outline => "outline",
+            Part::FrontMask => "front-mask",
+            Part::BackMask => "back-mask",
+            Part::FrontLegend => "front-legend",
+            Part::BackLegend => "back-legend",
+        }
+    }
+
+    /// What of the board it is about.
+    pub fn what(self) -> &'static str {
+        match self {
+            Part::Front => "copper of the front",
+            Part::Back => "copper of the back",
+            Part::Drill => "hole",
+            Part::Outline => "outline",
+            Part::FrontMask => "solder mask of the front",
+            Part::BackMask => "solder mask of the back",
+            Part::FrontLegend => "legend of the front",
+            Part::BackLegend => "legend of the back",
+        }
+    }
+
+    /// The side that it is about; `None` for what goes through the board.
+    pub fn face(self) -> Option<Face> {
+        match self {
+            Part::Front | Part::FrontMask | Part::FrontLegend => Some(Face::Front),
+            Part::Back | Part::BackMask | Part::BackLegend => Some(Face::Back),
+            Part::Drill | Part::Outline => None,
+        }
+    }
+}
+
+/// How pictures are saved.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Picture {
+    /// As lines.
+    Svg,
+    /// As pixels.
+    Png,
+    /// Not at all.
+    None,
+}
+
+/// How copper is isolated.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Copper")]
+pub struct Isolation {
+    /// Width of the end mill that cuts around copper.
+    #[arg(long, value_name = "MM", value_parser = length, group = "bit")]
+    pub tool: Option<f64>,
+    /// Angle between the edges of a V-bit that does it; its width follows from --tip and --depth.
+    #[arg(long, value_name = "DEGREES", value_parser = angle, group = "bit")]
+    pub vee: Option<f64>,
+    /// Width of the tip of the V-bit.
+    #[arg(long, value_name = "MM", value_parser = not_negative, default_value = "0.1", requires = "vee")]
+    pub tip: f64,
+    /// How deep below the surface.
+    #[arg(long, value_name = "MM", value_parser = length, default_value = "0.1")]
+    pub depth: f64,
+    /// How deep at once [default: all of --depth].
+    #[arg(long, value_name = "MM", value_parser = length)]
+    pub step: Option<f64>,
+    /// How often around, each time farther out.
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=1000), default_value = "1")]
+    pub passes: u32,
+    /// Which part of the width passes overlap.
+    #[arg(long, value_name = "PART", value_parser = part, default_value = "0.25")]
+    pub overlap: f64,
+    /// Which way around.
+    #[arg(long, value_name = "HOW", default_value = "climb")]
+    pub direction: Direction,
+    /// What is done between nets where the tool is wider than the gap.
+    #[arg(long, value_name = "HOW", default_value = "leave-out")]
+    pub narrow: Narrow,
+    /// Where the cuts are.
+    #[arg(long, value_name = "HOW", default_value = "contours")]
+    pub isolate: Isolate,
+}
+
+/// Which way around.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Direction {
+    /// The edge of the tool leaves the copper that stays: clean edges.
+    Climb,
+    /// The edge of the tool enters at the copper that stays.
+    Conventional,
+}
+
+/// What is done between nets where the tool is wider than the gap.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Narrow {
+    /// Nothing: the nets stay joined there.
+    LeaveOut,
+    /// A cut down the middle, which takes some copper from both.
+    Middle,
+}
+
+/// Where the cuts are that isolate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Isolate {
+    /// Around copper, as near as the tool allows.
+    Contours,
+    /// In the middle between nets: they keep all copper that is nearer to them than to others.
+    Middle,
+}
+
+/// What else is cut of copper, mask and legend.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Areas")]
+pub struct Clearing {
+    /// Widths of end mills that take away all copper that is part of no net, the widest first.
+    #[arg(long, value_name = "MM,...", value_parser = length, value_delimiter = ',')]
+    pub clear: Vec<f64>,
+    /// How far they stay from nets [default: not at all].
+    #[arg(long, value_name = "MM", value_parser = not_negative, default_value = "0", requires = "clear")]
+    pub margin: f64,
+    /// Width of the end mill that opens the solder mask over pads.
+    #[arg(long, value_name = "MM", value_parser = length)]
+    pub mask_tool: Option<f64>,
+    /// Width of the tool that engraves the legend.
+    #[arg(long, value_name = "MM", value_parser = length)]
+    pub legend_tool: Option<f64>,
+    /// How deep masks and legends are cut.
+    #[arg(long, value_name = "MM", value_parser = length, default_value = "0.05")]
+    pub engrave: f64,
+}
+
+/// How holes are made.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Holes")]
+pub struct Drilling {
+    /// The drills that there are [default: one for each width of holes].
+    #[arg(long, value_name = "MM,...", value_parser = length, value_delimiter = ',')]
+    pub drills: Vec<f64>,
+    /// By how much a drill may be wider or narrower than its hole.
+    #[arg(long, value_name = "MM", value_parser = not_negative, default_value = "0.05", requires = "drills")]
+    pub drill_tolerance: f64,
+    /// Width of the end mill for holes without a drill, for slots and routes.
+    #[arg(long, value_name = "MM", value_parser = length)]
+    pub hole_mill: Option<f64>,
+    /// How deep a drill goes at once [default: through].
+    #[arg(long, value_name = "MM", value_parser = length)]
+    pub peck: Option<f64>,
+    /// From which side holes and edges are cut.
+    #[arg(long, value_name = "SIDE", default_value = "front")]
+    pub from: CutFrom,
+}
+
+/// A side of a board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum CutFrom {
+    /// The front.
+    Front,
+    /// The back.
+    Back,
+}
+
+impl From<CutFrom> for Face {
+    fn from(side: CutFrom) -> Face {
+        match side {
+            CutFrom::Front => Face::Front,
+            CutFrom::Back => Face::Back,
+        }
+    }
+}
+
+/// How the board is cut out.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Edge")]
+pub struct Outline {
+    /// Width of the end mill that cuts the board out.
+    #[arg(long, value_name = "MM", value_parser = length, default_value = "2")]
+    pub outline_tool: f64,
+    /// How deep at once.
+    #[arg(long, value_name = "MM", value_parser = length, default_value = "0.5")]
+    pub outline_step: f64,
+    /// How many tabs hold the board.
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(0..=100), default_value = "4")]
+    pub tabs: u32,
+    /// How wide a tab is.
+    #[arg(long, value_name = "MM", value_parser = length, default_value = "2")]
+    pub tab_width: f64,
+    /// How high a tab is.
+    #[arg(long, value_name = "MM", value_parser = length, default_value = "0.6")]
+    pub tab_height: f64,
+}
+
+/// Where the board lies on the machine.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Board")]
+pub struct Placing {
+    /// How thick the board is.
+    #[arg(long, value_name = "MM", value_parser = length, default_value = "1.6")]
+    pub thickness: f64,
+    /// How far drills and mills go through it.
+    #[arg(long, value_name = "MM", value_parser = not_negative, default_value = "0.2")]
+    pub through: f64,
+    /// Where the lower left corner of the board is put [default: 0,0].
+    #[arg(long, value_name = "X,Y", value_parser = place, allow_hyphen_values = true, conflicts_with = "as_drawn")]
+    pub corner: Option<[f64; 2]>,
+    /// Leave the board where its files have it.
+    #[arg(long)]
+    pub as_drawn: bool,
+    /// How the board is turned over for its back: about a line along Y, or along X, through its middle.
+    #[arg(long, value_name = "LINE", default_value = "y")]
+    pub turn: Turn,
+    /// Diameter of holes beside the board, drilled with the others, by which it is aligned when it is turned.
+    #[arg(long, value_name = "MM", value_parser = length)]
+    pub alignment: Option<f64>,
+    /// Make a panel of so many boards.
+    #[arg(long, value_name = "COLUMNSxROWS", value_parser = grid)]
+    pub panel: Option<[u32; 2]>,
+    /// How far the boards of a panel are apart.
+    #[arg(long, value_name = "MM", value_parser = not_negative, default_value = "4", requires = "panel")]
+    pub spacing: f64,
+}
+
+/// The line about which a board is turned over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Turn {
+    /// Along Y: left and right change places.
+    Y,
+    /// Along X: up and down change places.
+    X,
+}
+
+/// How the machine runs.
+#[derive(Debug, Args)]
+#[command(next_help_heading = "Feeds and heights")]
+pub struct Running {
+    /// Feed along copper.
+    #[arg(long, value_name = "MM/MIN", value_parser = length, default_value = "200")]
+    pub feed: f64,
+    /// Feed straight down into copper.
+    #[arg(long, value_name = "MM/MIN", value_parser = length, default_value = "60")]
+    pub plunge: f64,
+    /// Feed of drills.
+    #[arg(long, value_name = "MM/MIN", value_parser = length, default_value = "100")]
+    pub drill_feed: f64,
+    /// Feed of the end mill that cuts the board out.
+    #[arg(long, value_name = "MM/MIN", value_parser = length, default_value = "150")]
+    pub outline_feed: f64,
+    /// Speed of the spindle, 1/min [default: 10000, or what the machine has].
+    #[arg(long, value_name = "1/MIN", value_parser = length)]
+    pub speed: Option<f64>,
+    /// Height of rapid moves over the board.
+    #[arg(long, value_name = "MM", value_parser = length, default_value = "2")]
+    pub travel: f64,
+    /// Height from which tools feed.
+    #[arg(long, value_name = "MM", value_parser = length, default_value = "0.5")]
+    pub approach: f64,
+    /// Write a program too that measures the height of the board at so many places (probe.nc).
+    #[arg(long, value_name = "COLUMNSxROWS", value_parser = grid)]
+    pub probe: Option<[u32; 2]>,
+    /// Measured heights that the programs follow: what a probing program has logged, or X, Y and Z in
+    /// columns.
+    #[arg(long, value_name = "FILE")]
+    pub heights: Option<PathBuf>,
+}
+
+/// A length in mm that may be 0.
+fn not_negative(text: &str) -> Result<f64, String> {
+    match lengths(text) {
+        Some([mm]) if mm >= 0.0 => Ok(mm),
+        _ => Err(String::from("a length in mm is needed, 0 or more, such as 0.1")),
+    }
+}
+
+/// An angle between the edges of a V-bit, degrees.
+fn angle(text: &str) -> Result<f64, String> {
+    match lengths(text) {
+        Some([degrees]) if degrees > 0.0 && degrees < 180.0 => Ok(degrees),
+        _ => Err(String::from("an angle above 0 and below 180 degrees is needed, such as 30")),
+    }
+}
+
+/// A part of a whole.
+fn part(text: &str) -> Result<f64, String> {
+    match lengths(text) {
+        Some([part]) if (0.0..0.95).contains(&part) => Ok(part),
+        _ => Err(String::from("a part from 0 to below 0.95 is needed, such as 0.25")),
+    }
+}
+
+/// Columns and rows.
+fn grid(text: &str) -> Result<[u32; 2], String> {
+    let parts = text.split_once(['x', 'X', '×']);
+    let parsed = parts.and_then(|(a, b)| Some([a.trim().parse().ok()?, b.trim().parse().ok()?]));
+    match parsed {
+        Some(grid) if grid.iter().all(|count| (1..=1000).contains(count)) => Ok(grid),
+        _ => Err(String::from("columns and rows are needed, such as 2x3, up to 1000 each")),
+    }
+}

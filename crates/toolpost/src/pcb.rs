@@ -1,0 +1,139 @@
+//! `toolpost pcb`: a board in; the proven programs that isolate, drill and cut it out, a picture of each
+//! and one report out.
+
+mod plan;
+mod report;
+mod source;
+mod work;
+
+use crate::answer::{Answer, Stop, Verdict};
+use crate::args::pcb::{Part, Pcb, Picture};
+use crate::files::{self, Target};
+use crate::post::{self, Posted};
+use crate::progress::Progress;
+use crate::summary::rows;
+use crate::toolpath::{self, Toolpath};
+use ::pcb::Operation;
+use ::pcb::job::{self, Heights};
+use drawing::{BoardPicture, Format};
+use machine::Machine;
+use plan::Plan;
+use program::{Diagnostic, Program};
+use std::path::Path;
+use std::thread;
+use work::Work;
+
+/// Writes the programs, proves them, and only then saves them with their pictures and the report.
+pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
+    let machine = toolpath::machine_with(&args.machine, &args.option)?;
+    if machine.wire.is_some() {
+        let message = format!("`{}` cuts by wire: it mills and drills nothing", machine.name);
+        return Err(Diagnostic::error("machine-kind", message).into());
+    }
+    files::check_folder(&args.output)?;
+    let progress = Progress::new(5, silent);
+    progress.step("reading");
+    let source = source::read(&args.board)?;
+    let mut warnings = source.warnings;
+    let plan = Plan::of(source.board, args)?;
+    progress.step("writing and proving");
+    let mut programs = Vec::with_capacity(plan.parts.len());
+    for made in each(&plan.parts, |part| make(*part, &plan, &machine, args)) {
+        let made = made?;
+        if made.posted.account.verdict != Verdict::Done {
+            return Ok(made.posted.account.not_saved());
+        }
+        warnings
+            .extend(made.work.warnings.iter().map(|found| found.clone().file(made.part.name())));
+        programs.push(made);
+    }
+    let warnings = toolpath::held(warnings, args.strict)?;
+    progress.step("saving");
+    let report = report::of(&source.layers, &plan, &programs, &machine, &warnings);
+    let saved = save(args, &source.files, &programs, &format!("{:#}\n", report.data))?;
+
+    let mut lines = report.rows;
+    let folder = args.output.display();
+    lines.push(("saved", format!("in {folder}: {}", saved.join(", "))));
+    Ok(Answer::summary(Verdict::Done, rows(&lines), report.data).findings(warnings))
+}
+
+/// A program that was made.
+struct Made {
+    part: Part,
+    work: Work,
+    /// What it does.
+    program: Program,
+    posted: Posted,
+    picture: Option<Vec<u8>>,
+}
+
+/// The program of a part of the board, proven, with its picture.
+fn make(part: Part, plan: &Plan, machine: &Machine, args: &Pcb) -> Result<Made, Stop> {
+    let board = plan.seen(part, args);
+    let work = Work::of(part, plan, args, machine)?;
+    let heights = Heights { travel: args.running.travel, approach: args.running.approach };
+    let name = format!("{} {}", plan.name, part.name());
+    let toolpath = Toolpath::of_program(job::program(&name, &work.operations, &heights), "board");
+    let file = format!("{}.nc", part.name());
+    let posted = post::proven(&toolpath, machine, &file, &args.closeness.tolerances(), &|_| {})?;
+    let format = match args.picture {
+        Picture::Svg => Some(Format::Svg),
+        Picture::Png => Some(Format::Png),
+        Picture::None => None,
+    };
+    let picture = format.map(|format| {
+        let widths: Vec<f64> = work.operations.iter().map(Operation::width).collect();
+        format.bytes(drawing::board(
+            &name,
+            &BoardPicture {
+                outline: board.outline.as_ref(),
+                copper: board.front.copper.as_ref(),
+                holes: &board.holes,
+                program: &toolpath.program,
+                widths: &widths,
+                problems: &work.places,
+            },
+        ))
+    });
+    let picture = picture.transpose()?;
+    Ok(Made { part, work, program: toolpath.program, posted, picture })
+}
+
+/// `work` for each thing, all at the same time, the answers in their order.
+fn each<T: Sync, A: Send>(things: &[T], work: impl Fn(&T) -> A + Sync) -> Vec<A> {
+    let work = &work;
+    thread::scope(|scope| {
+        let threads: Vec<_> = things.iter().map(|thing| scope.spawn(move || work(thing))).collect();
+        let finished = threads.into_iter().map(|thread| thread.join());
+        finished.map(|done| done.unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
+    })
+}
+
+/// Saves everything, or nothing; answers the names of the files.
+fn save(
+    args: &Pcb,
+    inputs: &[std::path::PathBuf],
+    programs: &[Made],
+    report: &str,
+) -> Result<Vec<String>, Stop> {
+    let mut contents: Vec<(String, &[u8])> = vec![("report.json".into(), report.as_bytes())];
+    let ending = if args.picture == Picture::Png { "png" } else { "svg" };
+    for made in programs {
+        let name = made.part.name();
+        contents.extend(made.picture.as_deref().map(|bytes| (format!("{name}.{ending}"), bytes)));
+    }
+    for made in programs {
+        contents.push((format!("{}.nc", made.part.name()), &made.posted.text));
+    }
+    let inputs: Vec<&Path> = inputs.iter().map(|file| file.as_path()).collect();
+    let made = files::folder(&args.output)?;
+    let mut targets = Vec::with_capacity(contents.len());
+    for (name, _) in &contents {
+        targets.push(Target::new(&args.output.join(name), &inputs)?);
+    }
+    let bytes = contents.iter().map(|(_, bytes)| *bytes);
+    files::save(&targets.iter().zip(bytes).collect::<Vec<_>>())?;
+    made.keep();
+    Ok(contents.into_iter().map(|(name, _)| name).collect())
+}

@@ -1,0 +1,117 @@
+//! Which programs a board becomes, and how the board lies on the machine for each.
+
+use crate::answer::Stop;
+use crate::args::pcb::{Part, Pcb, Turn};
+use geom::Vec2;
+use pcb::board::{Axis, Face};
+use pcb::{Board, Hole};
+use program::Diagnostic;
+
+/// How far the pins that align a board are from it, mm.
+const PINS_BESIDE: f64 = 2.0;
+
+/// The programs of a board.
+pub struct Plan {
+    /// What the board is called.
+    pub name: String,
+    /// The board as it lies on the machine.
+    front: Board,
+    /// The same, turned over: its front is the back.
+    back: Board,
+    /// Holes beside the board by which it is aligned when it is turned over.
+    pins: Vec<Hole>,
+    /// The programs, in the order in which they are run.
+    pub parts: Vec<Part>,
+}
+
+impl Plan {
+    /// The programs that `args` ask for of a board.
+    ///
+    /// # Errors
+    /// Where the board cannot be put there, or has nothing of what is asked for.
+    pub fn of(board: Board, args: &Pcb) -> Result<Plan, Stop> {
+        let placing = &args.placing;
+        let board = match placing.panel {
+            Some([columns, rows]) => {
+                board.panel(columns as usize, rows as usize, Vec2::splat(placing.spacing))?
+            }
+            None => board,
+        };
+        let (low, _) = board.extents().ok_or_else(empty)?;
+        let corner = placing.corner.map_or(Vec2::ZERO, Vec2::from);
+        let front = if placing.as_drawn { board } else { board.moved(corner - low)? };
+        let axis = match placing.turn {
+            Turn::Y => Axis::X(front.middle().x),
+            Turn::X => Axis::Y(front.middle().y),
+        };
+        let pins = match placing.alignment {
+            Some(diameter) => front.pins(axis, diameter, PINS_BESIDE)?.to_vec(),
+            None => Vec::new(),
+        };
+        let back = front.turned_over(axis);
+        let mut plan = Plan { name: front.name.clone(), front, back, pins, parts: Vec::new() };
+        plan.parts = match &args.only[..] {
+            [] => Part::ALL.into_iter().filter(|part| plan.is_usual(*part, args)).collect(),
+            only => Part::ALL.into_iter().filter(|part| only.contains(part)).collect(),
+        };
+        if let Some(part) = plan.parts.iter().find(|part| !plan.has(**part)) {
+            let message = format!("there is no {} on {}", part.what(), plan.name);
+            let help = "look which files of the board were read, and as what";
+            return Err(Diagnostic::error("no-such-part", message).help(help).into());
+        }
+        if plan.parts.is_empty() {
+            return Err(empty().into());
+        }
+        Ok(plan)
+    }
+
+    /// Whether a program is made where nobody says which.
+    fn is_usual(&self, part: Part, args: &Pcb) -> bool {
+        let asked = match part {
+            Part::Front | Part::Back | Part::Drill | Part::Outline => true,
+            Part::FrontMask | Part::BackMask => args.clearing.mask_tool.is_some(),
+            Part::FrontLegend | Part::BackLegend => args.clearing.legend_tool.is_some(),
+        };
+        asked && self.has(part)
+    }
+
+    /// Whether the board has what a program is about.
+    fn has(&self, part: Part) -> bool {
+        let Board { front, back, outline, holes, .. } = &self.front;
+        match part {
+            Part::Front => front.copper.is_some(),
+            Part::Back => back.copper.is_some(),
+            Part::Drill => !holes.is_empty() || !self.pins.is_empty(),
+            Part::Outline => outline.is_some(),
+            Part::FrontMask => front.mask.is_some(),
+            Part::BackMask => back.mask.is_some(),
+            Part::FrontLegend => front.legend.is_some(),
+            Part::BackLegend => back.legend.is_some(),
+        }
+    }
+
+    /// The board as it lies on the machine when its front is up.
+    pub fn front(&self) -> &Board {
+        &self.front
+    }
+
+    /// The board as it lies on the machine for a program: its front is up, whichever side that is.
+    pub fn seen(&self, part: Part, args: &Pcb) -> &Board {
+        match part.face().unwrap_or(args.drilling.from.into()) {
+            Face::Front => &self.front,
+            Face::Back => &self.back,
+        }
+    }
+
+    /// The holes that are drilled: those of the board, and those of the pins. The line about which a
+    /// board is turned over is in the middle between these, so that they stay where they are.
+    pub fn drilled(&self, args: &Pcb) -> Vec<Hole> {
+        let board = self.seen(Part::Drill, args);
+        board.holes.iter().chain(&self.pins).cloned().collect()
+    }
+}
+
+fn empty() -> Diagnostic {
+    Diagnostic::error("board-empty", "there is nothing to make of this board")
+        .help("look which files of the board were read, and as what")
+}

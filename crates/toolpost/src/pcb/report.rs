@@ -1,0 +1,117 @@
+//! What is told of the programs of a board.
+
+use super::Made;
+use super::plan::Plan;
+use crate::summary::{Shape, duration, length, number};
+use crate::toolpath;
+use machine::Machine;
+use machine::time::Times;
+use program::Diagnostic;
+use serde_json::{Value, json};
+
+/// The most places that a summary lists.
+const MOST_PLACES: usize = 12;
+
+/// What is told: in rows for a person, in JSON for a machine.
+pub struct Report {
+    pub rows: Vec<(&'static str, String)>,
+    pub data: Value,
+}
+
+/// The report of `programs`, from files that hold these `layers`.
+pub fn of(
+    layers: &[(String, String)],
+    plan: &Plan,
+    programs: &[Made],
+    machine: &Machine,
+    warnings: &[Diagnostic],
+) -> Report {
+    let board = plan.front();
+    let (low, high) = board.extents().unwrap_or_default();
+    let size = high - low;
+    let mut rows = vec![
+        ("board", plan.name.clone()),
+        (
+            "size",
+            format!(
+                "{} x {} mm, {} holes",
+                number(size.x, 3),
+                number(size.y, 3),
+                board.holes.len()
+            ),
+        ),
+    ];
+    rows.extend(layers.iter().map(|(file, layer)| ("read", format!("{file}: {layer}"))));
+    rows.push(("machine", format!("{} ({})", machine.title, machine.name)));
+    for made in programs {
+        rows.extend(made.rows(machine));
+    }
+    let places = programs.iter().flat_map(|made| {
+        made.work.places.iter().map(|(place, what)| (made.part.name(), *place, what))
+    });
+    let shown = |(name, place, what): (&str, geom::Vec2, &String)| {
+        format!("{name}, X{:.3} Y{:.3}: {what}", place.x, place.y)
+    };
+    rows.extend(places.clone().take(MOST_PLACES).map(|place| ("look at", shown(place))));
+    let more = places.clone().count().saturating_sub(MOST_PLACES);
+    if more > 0 {
+        rows.push(("", format!("{more} places more, in the report and the pictures")));
+    }
+    let data = json!({
+        "toolpost": env!("CARGO_PKG_VERSION"),
+        "board": {
+            "name": plan.name,
+            "files": layers.iter().map(|(file, layer)| json!({ "file": file, "layer": layer })).collect::<Vec<_>>(),
+            "low_mm": low.to_array(),
+            "high_mm": high.to_array(),
+            "holes": board.holes.len(),
+        },
+        "machine": toolpath::describe(machine),
+        "programs": programs.iter().map(Made::describe).collect::<Vec<_>>(),
+        "warnings": warnings,
+    });
+    Report { rows, data }
+}
+
+impl Made {
+    /// A line for each tool, and what the program amounts to.
+    fn rows(&self, machine: &Machine) -> Vec<(&'static str, String)> {
+        let shape = Shape::of(&self.program);
+        let times = Times::of(&self.program, machine);
+        let data = &self.posted.account.data;
+        let (blocks, off) =
+            (&data["program"]["blocks"], &data["proof"]["deviations"]["tip_mm"]["value"]);
+        let operations: Vec<&str> =
+            self.work.operations.iter().map(|operation| operation.name.as_str()).collect();
+        let (cutting, rapid) = shape.lengths();
+        vec![
+            (self.part.name(), operations.join(", ")),
+            (
+                "",
+                format!(
+                    "{blocks} blocks, cuts {}, rapid {}, {}; proven, off by {} mm at most",
+                    length(cutting),
+                    length(rapid),
+                    duration(times.total()),
+                    number(off.as_f64().unwrap_or_default(), 5),
+                ),
+            ),
+        ]
+    }
+
+    fn describe(&self) -> Value {
+        let place = |(place, what): &(geom::Vec2, String)| json!({ "x": place.x, "y": place.y, "what": what });
+        let account = &self.posted.account;
+        let mut data = account.data.clone();
+        if let Some(data) = data.as_object_mut() {
+            // Said once for all programs.
+            data.retain(|key, _| key != "toolpost" && key != "machine");
+        }
+        data["name"] = json!(self.part.name());
+        data["operations"] =
+            json!(self.work.operations.iter().map(|operation| &operation.name).collect::<Vec<_>>());
+        data["places"] = self.work.places.iter().map(place).collect();
+        data["warnings"] = json!(account.findings);
+        data
+    }
+}

@@ -1,0 +1,120 @@
+//! Which board is meant: a folder of files, some files, a board of KiCad, or a model.
+
+use crate::answer::{Stop, Verdict};
+use crate::files;
+use pcb::Board;
+use pcb::board::File;
+use program::Diagnostic;
+use std::path::{Path, PathBuf};
+
+/// The most files of a folder that are looked at.
+const MOST_FILES: usize = 1000;
+
+/// A board as it was read.
+pub struct Source {
+    /// The board.
+    pub board: Board,
+    /// Its files, and what each holds.
+    pub layers: Vec<(String, String)>,
+    /// What had to be assumed, and what is odd about it.
+    pub warnings: Vec<Diagnostic>,
+    /// The files that were read.
+    pub files: Vec<PathBuf>,
+}
+
+/// Reads the board that `paths` name.
+pub fn read(paths: &[PathBuf]) -> Result<Source, Stop> {
+    let name = name(paths);
+    let given = match paths {
+        [folder] if folder.is_dir() => within(folder)?,
+        files => files.to_vec(),
+    };
+    let files: Vec<PathBuf> = match whole(&given) {
+        // A project of KiCad has its plots beside it, or nothing of a board but itself.
+        Some(board) if given.len() == 1 || !paths.contains(&board) => vec![board],
+        Some(board) => return Err(not_alone(&board)),
+        None => given,
+    };
+    let mut texts = Vec::with_capacity(files.len());
+    for file in &files {
+        texts.push((file.display().to_string(), files::name(file), files::read(file)?));
+    }
+    let refused = |findings| Stop { verdict: Verdict::Invalid, findings };
+    let (board, layers, warnings) = match (&texts[..], files.first().map(|file| ending(file))) {
+        ([(_, file, text)], Some(kind)) if kind == "kicad_pcb" => {
+            let reading = pcb::kicad::read(file, text).map_err(refused)?;
+            let layers = vec![(file.clone(), String::from("a board of KiCad"))];
+            (reading.board, layers, reading.warnings)
+        }
+        ([(_, file, text)], Some(kind)) if MODEL.contains(&kind.as_str()) => {
+            let reading = pcb::model::read(file, text).map_err(refused)?;
+            (reading.board, vec![(file.clone(), String::from("a model"))], reading.warnings)
+        }
+        _ => {
+            let all = texts.iter().map(|(_, name, text)| File { name, layer: None, text });
+            let all: Vec<File> = all.collect();
+            let reading = pcb::board::read(&name, &all).map_err(refused)?;
+            let told = |(name, layer): (String, pcb::board::Layer)| (name, layer.to_string());
+            (reading.board, reading.layers.into_iter().map(told).collect(), reading.warnings)
+        }
+    };
+    Ok(Source { board, layers, warnings, files })
+}
+
+/// Endings of boards as models.
+const MODEL: [&str; 2] = ["toml", "json"];
+
+fn ending(file: &Path) -> String {
+    file.extension().unwrap_or_default().to_string_lossy().to_lowercase()
+}
+
+/// The file that is a board by itself.
+fn whole(files: &[PathBuf]) -> Option<PathBuf> {
+    let whole = |file: &&PathBuf| {
+        let ending = ending(file);
+        ending == "kicad_pcb" || files.len() == 1 && MODEL.contains(&ending.as_str())
+    };
+    let plotted = |file: &PathBuf| matches!(ending(file).as_str(), "gbr" | "gtl" | "gbl" | "drl");
+    match files.iter().any(plotted) {
+        true => None,
+        false => files.iter().find(whole).cloned(),
+    }
+}
+
+/// What the board is called.
+fn name(paths: &[PathBuf]) -> String {
+    let named = |path: &Path| match path.is_dir() {
+        true => files::name(&std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())),
+        false => path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
+    };
+    paths.first().map_or_else(String::new, |path| named(path))
+}
+
+/// The files of a folder, in the order of their names.
+fn within(folder: &Path) -> Result<Vec<PathBuf>, Stop> {
+    let about =
+        |message: String| Diagnostic::error("folder", message).file(folder.display().to_string());
+    let entries = std::fs::read_dir(folder)
+        .map_err(|error| about(format!("the folder cannot be read: {error}")))?;
+    let paths = entries.flatten().map(|entry| entry.path());
+    let mut files: Vec<PathBuf> =
+        paths.filter(|path| path.is_file()).take(MOST_FILES + 1).collect();
+    if files.is_empty() || files.len() > MOST_FILES {
+        let message = match files.len() {
+            0 => String::from("there is no file in this folder"),
+            _ => format!("there are more than {MOST_FILES} files in this folder"),
+        };
+        let help = "give the folder of the Gerber and Excellon files of one board";
+        return Err(about(message).help(help).into());
+    }
+    files.sort();
+    Ok(files)
+}
+
+fn not_alone(board: &Path) -> Stop {
+    let message = "it is a whole board, and other files are given with it";
+    Diagnostic::error("board", message)
+        .help("give it alone, or the Gerber and Excellon files alone")
+        .file(files::name(board))
+        .into()
+}
