@@ -4,25 +4,27 @@
 mod plan;
 mod report;
 mod source;
+mod work;
 
 use crate::answer::{Answer, Stop, Verdict};
-use crate::args;
-use crate::args::pcb::Picture;
+use crate::args::pcb::{Part, Pcb, Picture};
 use crate::files::{self, Target};
 use crate::post::{self, Posted};
 use crate::progress::Progress;
 use crate::summary::rows;
 use crate::toolpath::{self, Toolpath};
+use ::pcb::Operation;
 use ::pcb::job::{self, Heights};
 use drawing::{BoardPicture, Format};
 use machine::Machine;
-use plan::Job;
+use plan::Plan;
 use program::{Diagnostic, Program};
 use std::path::Path;
 use std::thread;
+use work::Work;
 
 /// Writes the programs, proves them, and only then saves them with their pictures and the report.
-pub fn run(args: &args::pcb::Pcb, silent: bool) -> Result<Answer, Stop> {
+pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
     let machine = toolpath::machine_with(&args.machine, &args.option)?;
     if machine.wire.is_some() {
         let message = format!("`{}` cuts by wire: it mills and drills nothing", machine.name);
@@ -32,23 +34,22 @@ pub fn run(args: &args::pcb::Pcb, silent: bool) -> Result<Answer, Stop> {
     let progress = Progress::new(5, silent);
     progress.step("reading");
     let source = source::read(&args.board)?;
-    let mut warnings = toolpath::held(source.warnings, args.strict)?;
-    progress.step("planning");
-    let mut planned = plan::of(source.board, args, &machine)?;
-    let found = std::mem::take(&mut planned.warnings);
-    warnings.extend(toolpath::held(found, args.strict)?);
+    let mut warnings = source.warnings;
+    let plan = Plan::of(source.board, args)?;
     progress.step("writing and proving");
-    let made = each(&planned.jobs, |job| make(job, &planned, &machine, args));
-    let mut programs = Vec::with_capacity(made.len());
-    for made in made {
+    let mut programs = Vec::with_capacity(plan.parts.len());
+    for made in each(&plan.parts, |part| make(*part, &plan, &machine, args)) {
         let made = made?;
         if made.posted.account.verdict != Verdict::Done {
             return Ok(made.posted.account.not_saved());
         }
+        warnings
+            .extend(made.work.warnings.iter().map(|found| found.clone().file(made.part.name())));
         programs.push(made);
     }
+    let warnings = toolpath::held(warnings, args.strict)?;
     progress.step("saving");
-    let report = report::of(&source.layers, &planned, &programs, &machine, &warnings);
+    let report = report::of(&source.layers, &plan, &programs, &machine, &warnings);
     let saved = save(args, &source.files, &programs, &format!("{:#}\n", report.data))?;
 
     let mut lines = report.rows;
@@ -58,36 +59,31 @@ pub fn run(args: &args::pcb::Pcb, silent: bool) -> Result<Answer, Stop> {
 }
 
 /// A program that was made.
-pub(crate) struct Made<'a> {
-    /// What for.
-    job: &'a Job,
+struct Made {
+    part: Part,
+    work: Work,
     /// What it does.
     program: Program,
     posted: Posted,
     picture: Option<Vec<u8>>,
 }
 
-/// The program of a job, proven, with its picture.
-fn make<'a>(
-    job: &'a Job,
-    planned: &plan::Plan,
-    machine: &Machine,
-    args: &args::pcb::Pcb,
-) -> Result<Made<'a>, Stop> {
+/// The program of a part of the board, proven, with its picture.
+fn make(part: Part, plan: &Plan, machine: &Machine, args: &Pcb) -> Result<Made, Stop> {
+    let board = plan.seen(part, args);
+    let work = Work::of(part, plan, args, machine)?;
     let heights = Heights { travel: args.running.travel, approach: args.running.approach };
-    let name = format!("{} {}", planned.name, job.name);
-    let program = job::program(&name, &job.operations, &heights);
-    let toolpath = Toolpath::of_program(program, "board");
-    let file = format!("{}.nc", job.name);
+    let name = format!("{} {}", plan.name, part.name());
+    let toolpath = Toolpath::of_program(job::program(&name, &work.operations, &heights), "board");
+    let file = format!("{}.nc", part.name());
     let posted = post::proven(&toolpath, machine, &file, &args.closeness.tolerances(), &|_| {})?;
     let format = match args.picture {
         Picture::Svg => Some(Format::Svg),
         Picture::Png => Some(Format::Png),
         Picture::None => None,
     };
-    let board = planned.seen(job);
     let picture = format.map(|format| {
-        let widths: Vec<f64> = job.operations.iter().map(plan::width).collect();
+        let widths: Vec<f64> = work.operations.iter().map(Operation::width).collect();
         format.bytes(drawing::board(
             &name,
             &BoardPicture {
@@ -96,19 +92,19 @@ fn make<'a>(
                 holes: &board.holes,
                 program: &toolpath.program,
                 widths: &widths,
-                problems: &job.problems,
+                problems: &work.places,
             },
         ))
     });
     let picture = picture.transpose()?;
-    Ok(Made { job, program: toolpath.program, posted, picture })
+    Ok(Made { part, work, program: toolpath.program, posted, picture })
 }
 
-/// `work` for each job, all at the same time, the answers in the order of the jobs.
-fn each<'a, T: Send>(jobs: &'a [Job], work: impl Fn(&'a Job) -> T + Sync) -> Vec<T> {
+/// `work` for each thing, all at the same time, the answers in their order.
+fn each<T: Sync, A: Send>(things: &[T], work: impl Fn(&T) -> A + Sync) -> Vec<A> {
     let work = &work;
     thread::scope(|scope| {
-        let threads: Vec<_> = jobs.iter().map(|job| scope.spawn(move || work(job))).collect();
+        let threads: Vec<_> = things.iter().map(|thing| scope.spawn(move || work(thing))).collect();
         let finished = threads.into_iter().map(|thread| thread.join());
         finished.map(|done| done.unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
     })
@@ -116,7 +112,7 @@ fn each<'a, T: Send>(jobs: &'a [Job], work: impl Fn(&'a Job) -> T + Sync) -> Vec
 
 /// Saves everything, or nothing; answers the names of the files.
 fn save(
-    args: &args::pcb::Pcb,
+    args: &Pcb,
     inputs: &[std::path::PathBuf],
     programs: &[Made],
     report: &str,
@@ -124,11 +120,11 @@ fn save(
     let mut contents: Vec<(String, &[u8])> = vec![("report.json".into(), report.as_bytes())];
     let ending = if args.picture == Picture::Png { "png" } else { "svg" };
     for made in programs {
-        let name = made.job.name;
+        let name = made.part.name();
         contents.extend(made.picture.as_deref().map(|bytes| (format!("{name}.{ending}"), bytes)));
     }
     for made in programs {
-        contents.push((format!("{}.nc", made.job.name), &made.posted.text));
+        contents.push((format!("{}.nc", made.part.name()), &made.posted.text));
     }
     let inputs: Vec<&Path> = inputs.iter().map(|file| file.as_path()).collect();
     let made = files::folder(&args.output)?;

@@ -41,6 +41,15 @@ pub fn read(paths: &[PathBuf]) -> Result<Source, Stop> {
     }
     let refused = |findings| Stop { verdict: Verdict::Invalid, findings };
     let (board, layers, warnings) = match (&texts[..], files.first().map(|file| ending(file))) {
+        ([(_, file, text)], Some(kind)) if kind == "kicad_pcb" => {
+            let reading = pcb::kicad::read(file, text).map_err(refused)?;
+            let layers = vec![(file.clone(), String::from("a board of KiCad"))];
+            (reading.board, layers, reading.warnings)
+        }
+        ([(_, file, text)], Some(kind)) if MODEL.contains(&kind.as_str()) => {
+            let reading = pcb::model::read(file, text).map_err(refused)?;
+            (reading.board, vec![(file.clone(), String::from("a model"))], reading.warnings)
+        }
         _ => {
             let all = texts.iter().map(|(_, name, text)| File { name, layer: None, text });
             let all: Vec<File> = all.collect();
