@@ -4,6 +4,7 @@ use super::chords::boolean;
 use super::kernel::Keep;
 use super::ring::place;
 use super::{FAR, Fill, Island, Region, RegionError, Ring};
+use crate::element::SAME;
 use crate::{Element, Turn, Vec2};
 use std::f64::consts::{PI, TAU};
 use std::iter;
@@ -59,7 +60,8 @@ impl Region {
         let Some(turn) = middle.turn else { return Ok(along(middle, half, cap)) };
         let radius = middle.start.distance(turn.center);
         let whole = turn.sweep.abs() >= TAU * (1.0 - 1e-9);
-        match (whole, radius > half) {
+        // By rounding less than nothing may be left on the inner side.
+        match (whole, radius > half + SAME) {
             (true, true) => {
                 let hole = circle(turn.center, radius - half, -TAU);
                 Ok(region(circle(turn.center, radius + half, TAU), vec![hole]))
