@@ -157,6 +157,19 @@ fn a_point_half_way_makes_the_circle() {
     assert_eq!(arcs(&through_a_point()), blocks);
 }
 
+/// Three points of a helix make a circle that is tilted: it goes by lines, within the tolerance.
+#[test]
+fn a_point_half_way_makes_no_helix() {
+    let rising = ArcTo { end: at(0.0, 20.0, -3.0), center: Vec3::ZERO, normal: Vec3::Z, turns: 0 };
+    let ops = vec![
+        Op::Rapid(at(20.0, 0.0, 5.0)),
+        Op::Line(at(20.0, 0.0, -1.0)),
+        Op::Arc(Box::new(rising)),
+        Op::Rapid(at(0.0, 20.0, 5.0)),
+    ];
+    assert!(!proven(&through_a_point(), ops).contains("CIP"));
+}
+
 /// What no control here reads so: for robots, and for those that draw.
 #[test]
 fn start_angles_and_radius_stand_where_a_block_places_them() {

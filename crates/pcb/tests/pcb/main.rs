@@ -4,6 +4,7 @@ mod boards;
 mod clearing;
 mod data;
 mod drill_input;
+mod drilling;
 mod drills;
 mod engraving;
 mod gerber_input;
