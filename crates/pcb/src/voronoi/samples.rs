@@ -75,9 +75,12 @@ impl Boundary {
     pub(super) fn samples(&self, index: &Index, finest: f64) -> Result<Vec<Sample>, TooMany> {
         let alone = |part: &Element, island: usize| {
             let (low, high) = part.extents();
-            let around = Vec2::splat(APART * part.length());
-            let mut near = index.within(low - around, high + around);
-            near.all(|near| self.conductors.get(near.island) == self.conductors.get(island))
+            let (middle, length) = (part.at(0.5), part.length());
+            let around = Vec2::splat(APART * length);
+            index.within(low - around, high + around).all(|near| {
+                self.conductors.get(near.island) == self.conductors.get(island)
+                    || near.element.nearest(middle).1 > (APART + 0.5) * length
+            })
         };
         let mut samples = Vec::new();
         for (piece, i) in self.pieces.iter().zip(0..) {
