@@ -14,6 +14,19 @@ pub struct Operation {
     pub cuts: Vec<Cut>,
 }
 
+impl Operation {
+    /// How wide its tool cuts where it goes deepest, mm.
+    pub fn width(&self) -> f64 {
+        let depths = self.cuts.iter().map(|cut| match cut {
+            Cut::Hole { depth, .. } => *depth,
+            Cut::Way(stretches) => {
+                stretches.iter().map(|stretch| stretch.depth).fold(0.0, f64::max)
+            }
+        });
+        self.tool.cutter.width(depths.fold(0.0, f64::max))
+    }
+}
+
 /// One stay of the tool in the board. Depths are mm below the surface, greater than 0.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cut {

@@ -8,7 +8,9 @@
 
 mod foreign;
 mod items;
+mod moves;
 mod parameters;
+mod places;
 mod text;
 mod vectric;
 mod write;
