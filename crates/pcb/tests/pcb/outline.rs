@@ -114,10 +114,18 @@ fn tabs_are_on_straight_pieces_and_keep_their_width() {
     let left = swept(&cut, 0.5).difference(&swept(&cut, 1.7)).unwrap();
     assert_eq!(left.islands().len(), 4);
     assert!((left.area() - 4.0 * (10.0 - PI)).abs() < 1e-3, "{}", left.area());
-    // Evenly: a quarter of the way apart, give or take what corners take.
-    let mut xs: Vec<Vec2> = over[..4].iter().map(|tab| tab.element.at(0.5)).collect();
-    xs.sort_by(|a, b| a.x.total_cmp(&b.x));
-    println!("{xs:?}");
+    // Evenly: a quarter of the way apart, 120 mm and a circle of 1 mm in all.
+    let mut at = 0.0;
+    let mut middles = Vec::new();
+    for Stretch { element, depth } in way.iter().filter(|stretch| stretch.depth != 0.6) {
+        if *depth == 0.8 && middles.len() < 4 {
+            middles.push(at + element.length() / 2.0);
+        }
+        at += element.length();
+    }
+    for pair in middles.windows(2) {
+        assert!((pair[1] - pair[0] - (120.0 + TAU) / 4.0).abs() < 2.0, "{middles:?}");
+    }
 }
 
 #[test]
