@@ -41,7 +41,7 @@ const QUIET: &str = "#7b828a";
 
 /// Colours of nets, light, so that cuts stand out on them.
 const NETS: [&str; 8] =
-    ["#e2b27a", "#9fc5a8", "#9db8d9", "#dba6ad", "#c3b3dd", "#a5cfd0", "#d3c58f", "#c9b7a6"];
+    ["#e2b27a", "#9fc5a8", "#bcb7a0", "#dba6ad", "#c3b3dd", "#a5cfd0", "#d3c58f", "#c9b7a6"];
 
 /// What is drawn.
 pub struct BoardPicture<'a> {

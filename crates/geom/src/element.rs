@@ -122,6 +122,24 @@ impl Element {
         }
     }
 
+    /// How far `point` is from it, mm: as [`nearest`](Element::nearest) tells, but for rounding, and without
+    /// angles.
+    pub fn away(&self, point: Vec2) -> f64 {
+        let Some(Turn { center, sweep }) = self.turn else { return self.nearest(point).1 };
+        let (from, to, at) = (self.start - center, self.end - center, point - center);
+        let is_after_start = from.perp_dot(at) * sweep >= 0.0;
+        let is_before_end = at.perp_dot(to) * sweep >= 0.0;
+        let is_beside = match sweep.abs() {
+            sweep if sweep >= TAU => true,
+            sweep if sweep > PI => is_after_start || is_before_end,
+            _ => is_after_start && is_before_end,
+        };
+        match is_beside {
+            true => (at.length() - (from.length() + to.length()) / 2.0).abs(),
+            false => point.distance(self.start).min(point.distance(self.end)),
+        }
+    }
+
     /// Where on the arc the direction from the centre to `point` falls.
     pub(crate) fn parameter(&self, turn: Turn, point: Vec2) -> Option<f64> {
         let angle = turn_angle(self.start - turn.center, point - turn.center) * turn.sweep.signum();
@@ -210,6 +228,23 @@ mod tests {
         assert_eq!(quarter(3.0).parallel(3.0), None);
         assert_eq!((line.curvature(), outside.curvature()), (0.0, -1.0 / 13.0));
         assert_eq!(Element::line(Vec2::X, Vec2::X).parallel(3.0), None);
+    }
+
+    #[test]
+    fn how_far_away_a_point_is_is_told_with_angles_and_without() {
+        for sweep in [0.1, 1.5, PI, 3.5, 6.0, TAU, -0.5, -PI, -5.0, -TAU] {
+            let (start, center) = (Vec2::new(3.0, 1.0), Vec2::new(1.0, 2.0));
+            let end = center + Vec2::from_angle(sweep).rotate(start - center);
+            for element in [Element::arc(start, end, center, sweep), Element::line(start, end)] {
+                for x in -50..50 {
+                    for y in -50..50 {
+                        let point = Vec2::new(f64::from(x), f64::from(y)) * 0.093;
+                        let (ours, other) = (element.away(point), element.nearest(point).1);
+                        assert!((ours - other).abs() < 1e-12, "{element:?} {point}");
+                    }
+                }
+            }
+        }
     }
 
     #[test]

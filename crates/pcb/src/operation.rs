@@ -36,6 +36,9 @@ pub enum Cut {
         at: Vec2,
         /// How deep.
         depth: f64,
+        /// How deep until the tool comes up to clear the chips, each time, mm; `None` where it goes down
+        /// at once.
+        peck: Option<f64>,
     },
     /// Down where the first stretch starts, along all of them, and out at the end. Each starts where the
     /// one before ends; where their depths differ, the tool goes straight down or up between them.
@@ -43,6 +46,24 @@ pub enum Cut {
 }
 
 impl Cut {
+    /// Where the tool goes down, mm.
+    pub fn start(&self) -> Vec2 {
+        match self {
+            Cut::Hole { at, .. } => *at,
+            Cut::Way(stretches) => {
+                stretches.first().map_or(Vec2::ZERO, |first| first.element.start)
+            }
+        }
+    }
+
+    /// Where it comes up, mm.
+    pub fn end(&self) -> Vec2 {
+        match self {
+            Cut::Hole { at, .. } => *at,
+            Cut::Way(stretches) => stretches.last().map_or(Vec2::ZERO, |last| last.element.end),
+        }
+    }
+
     /// Along `path` at each of `depths` in turn, without leaving the board: around and around where it is
     /// closed, else there and back.
     pub fn along(path: &Path, depths: &[f64]) -> Cut {

@@ -20,6 +20,15 @@ pub(super) struct Edge<'a> {
     pub element: &'a Element,
 }
 
+impl Edge<'_> {
+    /// What of it is nearest to `point`.
+    fn foot(&self, point: Vec2) -> Foot {
+        let (t, away) = self.element.nearest(point);
+        let at = self.element.at(t);
+        Foot { conductor: self.conductor, island: self.island, at, away }
+    }
+}
+
 /// The edges in a box.
 pub(super) struct Window<'a> {
     center: Vec2,
@@ -69,7 +78,7 @@ impl<'a> Field<'a> {
     /// Whether nothing is nearer to `point` than `distance` mm.
     pub fn is_free(&self, point: Vec2, distance: f64) -> bool {
         let (low, high) = (point - distance, point + distance);
-        self.index.within(low, high).all(|piece| piece.element.nearest(point).1 >= distance)
+        self.index.within(low, high).all(|piece| piece.element.away(point) >= distance)
     }
 
     /// Two islands of two conductors that are nearest to `point`, `away` mm or a little more.
@@ -111,28 +120,21 @@ impl Near {
 impl Window<'_> {
     /// What is near `point`; `None` where the window does not reach twice as far as the two are.
     pub fn near(&self, point: Vec2, pair: [usize; 2]) -> Option<Near> {
-        let mut best: [Option<(f64, f64, &Edge)>; 2] = [None; 2];
+        let mut best: [Option<(f64, &Edge)>; 2] = [None; 2];
         let reach = self.reach(point);
         let mut other = reach;
         for edge in &self.edges {
-            let (t, away) = edge.element.nearest(point);
+            let away = edge.element.away(point);
             match pair.iter().position(|conductor| *conductor == edge.conductor) {
-                Some(i) => {
-                    if best[i].is_none_or(|(_, least, _)| away < least) {
-                        best[i] = Some((t, away, edge));
-                    }
+                Some(i) if best[i].is_none_or(|(least, _)| away < least) => {
+                    best[i] = Some((away, edge));
                 }
+                Some(_) => {}
                 None => other = other.min(away),
             }
         }
-        let foot = |(t, away, edge): (f64, f64, &Edge)| Foot {
-            conductor: edge.conductor,
-            island: edge.island,
-            at: edge.element.at(t),
-            away,
-        };
         let [first, second] = best;
-        let feet = [foot(first?), foot(second?)];
+        let feet = [first?, second?].map(|(_, edge)| edge.foot(point));
         feet.iter().all(|foot| 2.0 * foot.away <= reach).then_some(Near { feet, other })
     }
 
@@ -143,12 +145,7 @@ impl Window<'_> {
 
     /// The edges that are no farther than the nearest and `tie` mm more.
     pub fn nearest(&self, point: Vec2, tie: f64) -> Vec<Foot> {
-        let feet = self.edges.iter().map(|edge| {
-            let (t, away) = edge.element.nearest(point);
-            let at = edge.element.at(t);
-            Foot { conductor: edge.conductor, island: edge.island, at, away }
-        });
-        let mut feet: Vec<Foot> = feet.collect();
+        let mut feet: Vec<Foot> = self.edges.iter().map(|edge| edge.foot(point)).collect();
         let least = feet.iter().map(|foot| foot.away).fold(f64::INFINITY, f64::min);
         feet.retain(|foot| foot.away <= least + tie);
         feet

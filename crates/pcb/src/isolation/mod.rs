@@ -6,14 +6,17 @@
 //!
 //! Where two conductors are nearer to each other than the cut is wide, the passes run around both, and what
 //! is between them stays. Such a gap is found by the line in its middle: a [`NarrowGap`], which is left
-//! out or cut along that line, as the user says.
+//! out or cut along that line, as the user says. What that does to thin copper is told: a conductor that it
+//! leaves in pieces is [`Severed`].
 
 mod field;
 mod gap;
 mod lines;
 mod middle;
+mod severed;
 
 pub use gap::{FITS, NarrowGap};
+pub use severed::Severed;
 
 use crate::{Copper, Cutter, Path};
 use field::Field;
@@ -66,6 +69,8 @@ pub struct Isolated {
     pub paths: Vec<Path>,
     /// Where the cut is too wide, whether it is made or not; the narrowest first.
     pub narrow: Vec<NarrowGap>,
+    /// Which conductors the cuts down the middle of gaps leave in pieces.
+    pub severed: Vec<Severed>,
 }
 
 impl Isolation {
@@ -87,15 +92,22 @@ impl Isolation {
         let mut paths = self.passes(copper).map_err(too_large)?;
         let gaps = gap::gaps(&Field::new(copper), self.width());
         let mut gaps = gaps.map_err(|_| too_wide(self.width()))?;
+        let mut middles = match self.narrow {
+            Narrow::LeaveOut => Vec::new(),
+            Narrow::Middle => gaps.narrow.iter().filter_map(|gap| gap.middle.clone()).collect(),
+        };
         paths.append(&mut gaps.fitting);
-        if self.narrow == Narrow::Middle {
-            paths.extend(gaps.narrow.iter().filter_map(|gap| gap.middle.clone()));
-        }
         if let Some(area) = area.map(Index::new) {
-            paths = paths.iter().flat_map(|path| path.within(&area)).collect();
+            let within = |path: &Path| path.within(&area);
+            (paths, middles) = (
+                paths.iter().flat_map(within).collect(),
+                middles.iter().flat_map(within).collect(),
+            );
             gaps.narrow.retain(|gap| area.island_at(gap.at).is_some());
         }
-        Ok(Isolated { paths, narrow: gaps.narrow })
+        let severed = severed::severed(copper, &middles, self.width()).map_err(too_large)?;
+        paths.append(&mut middles);
+        Ok(Isolated { paths, narrow: gaps.narrow, severed })
     }
 
     /// All passes around the copper.

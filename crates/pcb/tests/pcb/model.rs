@@ -222,7 +222,7 @@ fn errors_of_json_have_their_places() {
     refused(
         "{\n  \"holes\": [{\"node\": [0, 0], \"diameter\": -1}]\n}",
         "length",
-        (2, 44),
+        (2, 42),
         "-1 mm",
     );
     refused("{\n \"pads\": [{\"node\": \"x\",\n", "board-file", (3, 1), "JSON");
@@ -230,7 +230,7 @@ fn errors_of_json_have_their_places() {
     refused("{\"hols\": []}", "board-file", (1, 3), "`holes`");
     refused("{\"name\": \"a\", \"name\": \"b\"}", "board-file", (1, 16), "twice");
     refused("{\"name\": null}", "board-file", (1, 10), "null");
-    refused("{\"holes\": [{\"node\": [1e400, 0], \"diameter\": 1}]}", "board-file", (1, 23), "");
+    refused("{\"holes\": [{\"node\": [1e400, 0], \"diameter\": 1}]}", "board-file", (1, 22), "");
 }
 
 #[test]
