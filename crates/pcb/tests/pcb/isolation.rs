@@ -111,7 +111,7 @@ fn two_tracks_side_by_side_are_one_gap() {
         near(gap.length, 10.0 + 2.0 * (0.249f64.powi(2) - 0.04).sqrt(), 2e-3);
         // Apart by just as much as the cut is wide: one way between them, and no finding.
         let fits = [0.0, 0.5].map(|y| track(at(0.0, y), at(10.0, y), 0.3));
-        let Isolated { paths, narrow } = ISOLATION.isolate(&copper(&fits), None).unwrap();
+        let Isolated { paths, narrow, .. } = ISOLATION.isolate(&copper(&fits), None).unwrap();
         assert!(narrow.is_empty(), "{narrow:?}");
         let between: Vec<f64> =
             paths.iter().filter(|path| !path.is_closed()).map(Path::length).collect();
