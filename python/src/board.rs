@@ -209,7 +209,7 @@ impl BoardBuilder {
     /// Raises
     /// ------
     /// toolpost.Error
-    ///     ``node-unknown``, ``net-twice``, ``length`` and whatever else makes it no board.
+    ///     ``node-unknown``, ``net-twice``, ``width`` and whatever else makes it no board.
     fn build(&self, py: Python<'_>) -> PyResult<Board> {
         let text = format!("{:#}\n", Value::Object(self.sheet.clone()));
         let reading = model::read("built", text.as_bytes()).map_err(|found| raised(py, &found))?;

@@ -45,11 +45,12 @@ pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
     }
     for made in each(&plan.parts, |part| make(*part, &plan, surface.as_ref(), &machine, args)) {
         let made = made?;
-        warnings
-            .extend(made.work.warnings.iter().map(|found| found.clone().file(made.name)));
+        warnings.extend(made.work.warnings.iter().map(|found| found.clone().file(made.name)));
         programs.push(made);
     }
-    if let Some(failed) = programs.iter().position(|made| made.posted.account.verdict != Verdict::Done) {
+    if let Some(failed) =
+        programs.iter().position(|made| made.posted.account.verdict != Verdict::Done)
+    {
         return Ok(programs.swap_remove(failed).posted.account.not_saved());
     }
     let warnings = toolpath::held(warnings, args.strict)?;
@@ -71,7 +72,8 @@ fn surface(plan: &Plan, args: &Pcb) -> Result<Option<HeightMap>, Stop> {
     let Some(file) = &args.running.heights else { return Ok(None) };
     if !plan.parts.iter().all(|part| plan.face(*part, args) == plan.face(plan.parts[0], args)) {
         let message = "the heights are those of one side, and programs of both are asked for";
-        let help = "make the programs of each side with its own heights: --only front,drill,outline";
+        let help =
+            "make the programs of each side with its own heights: --only front,drill,outline";
         return Err(Diagnostic::error("heights", message).help(help).into());
     }
     let text = files::read(file)?;

@@ -46,9 +46,9 @@ pub fn of(
     for made in programs {
         rows.extend(made.rows(machine));
     }
-    let places = programs.iter().flat_map(|made| {
-        made.work.places.iter().map(|(place, what)| (made.name, *place, what))
-    });
+    let places = programs
+        .iter()
+        .flat_map(|made| made.work.places.iter().map(|(place, what)| (made.name, *place, what)));
     let shown = |(name, place, what): (&str, geom::Vec2, &String)| {
         format!("{name}, X{:.3} Y{:.3}: {what}", place.x, place.y)
     };

@@ -6,10 +6,10 @@ use crate::args::pcb::{self as args, Part, Pcb};
 use geom::Vec2;
 use geom::region::Region;
 use machine::Machine;
-use pcb::isolation::{Direction, Isolation, Narrow, NarrowGap, Severed};
-use pcb::tour::Tour;
 use pcb::drilling::{Drilling, Mill, Slots};
+use pcb::isolation::{Direction, Isolation, Narrow, NarrowGap, Severed};
 use pcb::outline::{Outline, Tabs};
+use pcb::tour::Tour;
 use pcb::{Board, Clearing, Copper, Cut, Cutter, Engraving, Hole, Operation, Path, Tool, depths};
 use program::Diagnostic;
 use std::collections::BTreeMap;
@@ -125,7 +125,10 @@ impl Worker<'_> {
         let isolated = isolation.isolate(copper, None)?;
         for Severed { at, island, pieces } in &isolated.severed {
             let net = net(copper, *island);
-            work.places.push((*at, format!("{net} is cut into {pieces} pieces, down the middle of a gap")));
+            work.places.push((
+                *at,
+                format!("{net} is cut into {pieces} pieces, down the middle of a gap"),
+            ));
         }
         if let Some(severed) = isolated.severed.first() {
             let message = format!(
@@ -213,7 +216,8 @@ impl Worker<'_> {
 
     /// Drills, and mills what no drill makes.
     fn drill(&self, work: &mut Work, holes: &[Hole]) -> Result<(), Stop> {
-        let (settings, placing, running) = (&self.args.drilling, &self.args.placing, &self.args.running);
+        let (settings, placing, running) =
+            (&self.args.drilling, &self.args.placing, &self.args.running);
         let mill = settings.hole_mill.map(|diameter| Mill {
             tool: Tool { feed: running.outline_feed, ..self.end_mill(diameter) },
             step: self.args.outline.outline_step,
@@ -242,7 +246,10 @@ impl Worker<'_> {
     fn outline(&self, work: &mut Work, board: &Board) -> Result<(), Stop> {
         let (settings, placing) = (&self.args.outline, &self.args.placing);
         let outline = Outline {
-            tool: Tool { feed: self.args.running.outline_feed, ..self.end_mill(settings.outline_tool) },
+            tool: Tool {
+                feed: self.args.running.outline_feed,
+                ..self.end_mill(settings.outline_tool)
+            },
             thickness: placing.thickness,
             below: placing.through,
             step: settings.outline_step,
