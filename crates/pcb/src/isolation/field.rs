@@ -21,11 +21,20 @@ pub(super) struct Edge<'a> {
 }
 
 impl<'a> Edge<'a> {
+    /// Whether the shortest way to `point` begins outside of the conductor, which is on its left. At a sharp
+    /// corner that may be told of one of its edges only.
+    pub fn is_left_towards(&self, point: Vec2) -> bool {
+        let (t, _) = self.element.nearest(point);
+        self.element.tangent(t).perp_dot(point - self.element.at(t)) <= 0.0
+    }
+
     /// What of it is nearest to `point`.
     fn foot(&self, point: Vec2) -> Foot<'a> {
         let (t, away) = self.element.nearest(point);
         let at = self.element.at(t);
-        Foot { edge: *self, at, away }
+        let is_corner = t <= 0.0 || t >= 1.0;
+        let is_outside = is_corner || self.element.tangent(t).perp_dot(point - at) <= 0.0;
+        Foot { edge: *self, at, away, is_outside }
     }
 }
 
@@ -43,6 +52,8 @@ pub(super) struct Foot<'a> {
     pub at: Vec2,
     /// How far away, mm.
     pub away: f64,
+    /// Whether it is seen from outside of the conductor, as far as that can be told.
+    pub is_outside: bool,
 }
 
 impl<'a> Field<'a> {
@@ -105,6 +116,11 @@ impl Near<'_> {
     /// How far the two are, mm, where they are as far.
     pub fn away(&self) -> f64 {
         self.feet[0].away.min(self.feet[1].away)
+    }
+
+    /// Whether it is outside of the two.
+    pub fn is_outside(&self) -> bool {
+        self.feet.iter().all(|foot| foot.is_outside)
     }
 
     /// How much farther the rest is, mm.

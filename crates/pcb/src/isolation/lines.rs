@@ -264,7 +264,9 @@ fn seeds(field: &Field, limit: f64) -> Result<Vec<Seed>, TooMany> {
             }
             let (a, b) = edge.element.closest(other.element);
             let station = Station { at: a.midpoint(b), away: a.distance(b) / 2.0 };
-            if station.away < limit && field.is_free(station.at, station.away - SAME) {
+            let is_outside = edge.is_left_towards(b) && other.is_left_towards(a);
+            let is_near = station.away < limit && (is_outside || station.away < SAME);
+            if is_near && field.is_free(station.at, station.away - SAME) {
                 let pair = [edge.conductor, other.conductor];
                 seeds.push(Seed { pair, station, is_passed: false });
             }

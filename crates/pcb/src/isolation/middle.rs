@@ -181,6 +181,7 @@ impl<'f, 'a> Middle<'f, 'a> {
         None
     }
 
+    /// What is near a place; `None` in copper, and where the two are far away.
     fn placed(&mut self, at: Vec2) -> Option<Placed<'a>> {
         let mut half = 5.0 * self.away.max(SHORT);
         let near = loop {
@@ -194,6 +195,6 @@ impl<'f, 'a> Middle<'f, 'a> {
             half *= 2.0;
         };
         self.away = near.away();
-        Some(Placed { at, near })
+        near.is_outside().then_some(Placed { at, near })
     }
 }
