@@ -5,6 +5,7 @@
 //! goes wrong becomes a `toolpost.Error`.
 
 mod arguments;
+mod board;
 mod builder;
 mod columns;
 mod error;
@@ -21,6 +22,7 @@ use pyo3::prelude::*;
 mod _native {
     #[pymodule_export]
     use super::{
+        board::{Board, BoardBuilder},
         builder::Builder,
         machine::{Machine, library, machine},
         posting::{post, prove, run_command, save},

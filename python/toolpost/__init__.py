@@ -6,12 +6,14 @@
 >>> result.save("part.mpf")                                      # doctest: +SKIP
 
 Lengths are mm, feeds mm/min, times s, spindle speeds 1/min, angles degrees. Whatever goes wrong is
-a :class:`toolpost.Error`. Threads may share every object but a :class:`Builder`; what takes long
-lets the others run.
+a :class:`toolpost.Error`. Threads may share every object but a builder; what takes long lets the
+others run.
 """
 
 from ._answers import Error, Finding, Kind, Report, Result
 from ._native import (
+    Board,
+    BoardBuilder,
     Builder,
     Machine,
     Program,
@@ -26,6 +28,8 @@ from ._native import (
 )
 
 __all__ = [
+    "Board",
+    "BoardBuilder",
     "Builder",
     "Error",
     "Finding",

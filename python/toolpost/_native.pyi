@@ -10,6 +10,8 @@ from numpy.typing import ArrayLike, NDArray
 from ._answers import Finding, Report, Result
 
 __all__ = [
+    "Board",
+    "BoardBuilder",
     "Builder",
     "Machine",
     "Program",
@@ -31,6 +33,57 @@ _Path: TypeAlias = str | os.PathLike[str]
 _Point: TypeAlias = Sequence[float] | NDArray[np.float64]
 _Floats: TypeAlias = NDArray[np.float64]
 _Tuple3: TypeAlias = tuple[float, float, float]
+
+_Node: TypeAlias = str | Sequence[float] | NDArray[np.float64]
+_Layer: TypeAlias = Literal["front", "back", "both"]
+
+@final
+class Board:
+    @staticmethod
+    def builder(name: str = "board") -> BoardBuilder: ...
+    @property
+    def name(self) -> str: ...
+    @property
+    def text(self) -> str: ...
+    @property
+    def warnings(self) -> tuple[Finding, ...]: ...
+    @property
+    def extents(self) -> tuple[tuple[float, float], tuple[float, float]]: ...
+    def save(self, path: _Path) -> None: ...
+
+@final
+class BoardBuilder:
+    def node(self, name: str, position: _Point) -> BoardBuilder: ...
+    def track(
+        self,
+        nodes: Sequence[_Node],
+        width: float,
+        *,
+        layer: _Layer = "front",
+        net: str | None = None,
+    ) -> BoardBuilder: ...
+    def pad(
+        self,
+        node: _Node,
+        shape: Literal["circle", "square", "octagon"],
+        size: float,
+        *,
+        rotation: float = 0.0,
+        layer: _Layer = "front",
+        net: str | None = None,
+    ) -> BoardBuilder: ...
+    def hole(self, node: _Node, diameter: float, *, plated: bool | None = None) -> BoardBuilder: ...
+    def edge(self, nodes: Sequence[_Node]) -> BoardBuilder: ...
+    def group(
+        self,
+        name: str,
+        group: BoardBuilder,
+        at: _Node,
+        *,
+        rotation: float = 0.0,
+        mirrored: bool = False,
+    ) -> BoardBuilder: ...
+    def build(self) -> Board: ...
 
 @final
 class Record:

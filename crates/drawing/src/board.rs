@@ -41,7 +41,7 @@ const QUIET: &str = "#7b828a";
 
 /// Colours of nets, light, so that cuts stand out on them.
 const NETS: [&str; 8] =
-    ["#e2b27a", "#9fc5a8", "#9db8d9", "#dba6ad", "#c3b3dd", "#a5cfd0", "#d3c58f", "#c9b7a6"];
+    ["#e2b27a", "#9fc5a8", "#bcb7a0", "#dba6ad", "#c3b3dd", "#a5cfd0", "#d3c58f", "#c9b7a6"];
 
 /// What is drawn.
 pub struct BoardPicture<'a> {
@@ -288,7 +288,7 @@ fn legend(out: &mut String, drawn: &Drawn, picture: &BoardPicture, mut at: DVec2
         write_text(out, &shorten(text, 28), at + DVec2::new(36.0, 0.0), 9.0, INK);
         if !more.is_empty() {
             at.y += 17.0;
-            write_text(out, &shorten(more, 34), at + DVec2::new(36.0, 0.0), 8.0, QUIET);
+            write_text(out, &shorten(more, 28), at + DVec2::new(36.0, 0.0), 8.0, QUIET);
         }
         at.y += 25.0;
     };

@@ -5,6 +5,8 @@
 //! mistake told by file, line and column. The kinematic chain, both ways, lives here and nowhere
 //! else: writers use the inverse, the proof uses the forward, and neither shares more than that.
 //!
+//! Posts and templates of other systems become such files by [`import`].
+//!
 //! Lengths are mm, feeds mm/min, angles of rotary axes degrees where they are axis positions
 //! (`degrees` in the name) and radians elsewhere.
 

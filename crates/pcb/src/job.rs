@@ -41,8 +41,8 @@ struct Writer {
     at: Option<Vec3>,
     /// The feed that holds, mm/min.
     feed: Option<f64>,
-    /// Depth of the drilling cycle that holds, mm.
-    cycle: Option<f64>,
+    /// Depth of the drilling cycle that holds, mm, and of its pecks.
+    cycle: Option<(f64, Option<f64>)>,
 }
 
 impl Writer {
@@ -63,7 +63,7 @@ impl Writer {
         self.push(Op::Spindle(Spindle::Clockwise(tool.speed)));
         for cut in cuts {
             match cut {
-                Cut::Hole { at, depth } => self.hole(tool, *at, *depth),
+                Cut::Hole { at, depth, peck } => self.hole(tool, *at, *depth, *peck),
                 Cut::Way(stretches) => self.way(tool, stretches),
             }
         }
@@ -71,21 +71,21 @@ impl Writer {
         self.push(Op::EndOfOperation);
     }
 
-    fn hole(&mut self, tool: &Tool, at: Vec2, depth: f64) {
-        if self.cycle != Some(depth) {
+    fn hole(&mut self, tool: &Tool, at: Vec2, depth: f64, peck: Option<f64>) {
+        if self.cycle != Some((depth, peck)) {
             self.end_of_cycle();
             self.over(at);
             self.push(Op::Cycle(Box::new(Cycle {
-                kind: CycleKind::Drill,
+                kind: if peck.is_some() { CycleKind::Deep } else { CycleKind::Drill },
                 depth,
                 clearance: self.heights.approach,
                 retract: self.heights.travel,
                 feed: Some(Feed::PerMinute(tool.plunge)),
                 dwell: 0.0,
                 first_peck: None,
-                peck: None,
+                peck,
             })));
-            self.cycle = Some(depth);
+            self.cycle = Some((depth, peck));
         }
         self.push(Op::Hole(pose(at.extend(0.0))));
         self.at = Some(at.extend(self.heights.travel));
@@ -215,7 +215,7 @@ mod tests {
 
     #[test]
     fn holes_of_one_depth_are_one_cycle() {
-        let hole = |x: f64, depth: f64| Cut::Hole { at: Vec2::new(x, 0.0), depth };
+        let hole = |x: f64, depth: f64| Cut::Hole { at: Vec2::new(x, 0.0), depth, peck: None };
         let cuts = vec![hole(1.0, 2.0), hole(2.0, 2.0), hole(3.0, 1.0)];
         let operation = Operation { name: "drill".into(), tool: tool(), cuts };
         let program = program("a", &[operation], &Heights { travel: 2.0, approach: 0.5 });

@@ -14,6 +14,19 @@ pub struct Operation {
     pub cuts: Vec<Cut>,
 }
 
+impl Operation {
+    /// How wide its tool cuts where it goes deepest, mm.
+    pub fn width(&self) -> f64 {
+        let depths = self.cuts.iter().map(|cut| match cut {
+            Cut::Hole { depth, .. } => *depth,
+            Cut::Way(stretches) => {
+                stretches.iter().map(|stretch| stretch.depth).fold(0.0, f64::max)
+            }
+        });
+        self.tool.cutter.width(depths.fold(0.0, f64::max))
+    }
+}
+
 /// One stay of the tool in the board. Depths are mm below the surface, greater than 0.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Cut {
@@ -23,6 +36,9 @@ pub enum Cut {
         at: Vec2,
         /// How deep.
         depth: f64,
+        /// How deep until the tool comes up to clear the chips, each time, mm; `None` where it goes down
+        /// at once.
+        peck: Option<f64>,
     },
     /// Down where the first stretch starts, along all of them, and out at the end. Each starts where the
     /// one before ends; where their depths differ, the tool goes straight down or up between them.
@@ -30,6 +46,24 @@ pub enum Cut {
 }
 
 impl Cut {
+    /// Where the tool goes down, mm.
+    pub fn start(&self) -> Vec2 {
+        match self {
+            Cut::Hole { at, .. } => *at,
+            Cut::Way(stretches) => {
+                stretches.first().map_or(Vec2::ZERO, |first| first.element.start)
+            }
+        }
+    }
+
+    /// Where it comes up, mm.
+    pub fn end(&self) -> Vec2 {
+        match self {
+            Cut::Hole { at, .. } => *at,
+            Cut::Way(stretches) => stretches.last().map_or(Vec2::ZERO, |last| last.element.end),
+        }
+    }
+
     /// Along `path` at each of `depths` in turn, without leaving the board: around and around where it is
     /// closed, else there and back.
     pub fn along(path: &Path, depths: &[f64]) -> Cut {

@@ -100,6 +100,19 @@ impl Path {
         self.elements.get(site.element).map_or(self.start(), |element| element.at(site.t))
     }
 
+    /// Its place nearest to `point`; the end of an element is the start of the next.
+    pub fn nearest(&self, point: Vec2) -> Site {
+        let all = self.elements.iter().enumerate().map(|(i, element)| (i, element.nearest(point)));
+        let nearest = all.min_by(|a, b| a.1.1.total_cmp(&b.1.1));
+        let (element, (t, _)) = nearest.unwrap_or_default();
+        let length = self.elements.get(element).map_or(0.0, Element::length);
+        match (t * length <= SAME, (1.0 - t) * length <= SAME) {
+            (true, _) => Site { element, t: 0.0 },
+            (_, true) => Site { element: (element + 1) % self.elements.len(), t: 0.0 },
+            _ => Site { element, t },
+        }
+    }
+
     /// The same way back.
     pub fn reversed(&self) -> Path {
         Path { elements: self.elements.iter().rev().map(Element::reversed).collect() }

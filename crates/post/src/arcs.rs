@@ -102,7 +102,9 @@ impl Walk<'_> {
             return self.lower(&arc, 0.0, 1.0, to, stop, "arcs outside the planes of the control");
         };
         let rises = local.rise().abs() > 0.5 * self.machine.resolution();
-        if rises && !self.machine.capabilities.helix {
+        // A circle through three points of a helix is none.
+        let flat = self.notation(&local, facts, rises) == Notation::Middle;
+        if rises && (flat || !self.machine.capabilities.helix) {
             return self.lower(&arc, 0.0, 1.0, to, stop, "helices");
         }
         let pieces = self.pieces(&local, rises);

@@ -143,7 +143,7 @@ names! {
         CZ Word "CZ", "mm", "Centre of the arc, absolute, Z.";
         Radius Word "R", "mm", "Radius of the arc, negative where it turns by more than a half circle. A block that has it in place of the centre is cut into arcs of which it says enough.";
         PlainRadius Word "RADIUS", "mm", "Radius of the arc without that sign.";
-        MX Word "MX", "mm", "Point half way along the arc, X. A block that has it in place of the centre is cut into arcs of less than a circle.";
+        MX Word "MX", "mm", "Point half way along the arc, X. A block that has it in place of the centre turns less than a circle and does not rise.";
         MY Word "MY", "mm", "Point half way along the arc, Y.";
         MZ Word "MZ", "mm", "Point half way along the arc, Z.";
         SX Word "SX", "mm", "Start of the arc, X.";

@@ -4,25 +4,28 @@
 mod plan;
 mod report;
 mod source;
+mod work;
 
 use crate::answer::{Answer, Stop, Verdict};
-use crate::args;
-use crate::args::pcb::Picture;
+use crate::args::pcb::{Part, Pcb, Picture};
 use crate::files::{self, Target};
 use crate::post::{self, Posted};
 use crate::progress::Progress;
 use crate::summary::rows;
 use crate::toolpath::{self, Toolpath};
+use ::pcb::Operation;
 use ::pcb::job::{self, Heights};
 use drawing::{BoardPicture, Format};
+use levelling::{Allowed, Grid, HeightMap, Probing, level};
 use machine::Machine;
-use plan::Job;
+use plan::Plan;
 use program::{Diagnostic, Program};
 use std::path::Path;
 use std::thread;
+use work::Work;
 
 /// Writes the programs, proves them, and only then saves them with their pictures and the report.
-pub fn run(args: &args::pcb::Pcb, silent: bool) -> Result<Answer, Stop> {
+pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
     let machine = toolpath::machine_with(&args.machine, &args.option)?;
     if machine.wire.is_some() {
         let message = format!("`{}` cuts by wire: it mills and drills nothing", machine.name);
@@ -32,23 +35,27 @@ pub fn run(args: &args::pcb::Pcb, silent: bool) -> Result<Answer, Stop> {
     let progress = Progress::new(5, silent);
     progress.step("reading");
     let source = source::read(&args.board)?;
-    let mut warnings = toolpath::held(source.warnings, args.strict)?;
-    progress.step("planning");
-    let mut planned = plan::of(source.board, args, &machine)?;
-    let found = std::mem::take(&mut planned.warnings);
-    warnings.extend(toolpath::held(found, args.strict)?);
+    let mut warnings = source.warnings;
+    let plan = Plan::of(source.board, args)?;
+    let surface = surface(&plan, args)?;
     progress.step("writing and proving");
-    let made = each(&planned.jobs, |job| make(job, &planned, &machine, args));
-    let mut programs = Vec::with_capacity(made.len());
-    for made in made {
+    let mut programs = Vec::with_capacity(plan.parts.len());
+    if let Some(grid) = args.running.probe {
+        programs.push(probing(&plan, grid, &machine, args)?);
+    }
+    for made in each(&plan.parts, |part| make(*part, &plan, surface.as_ref(), &machine, args)) {
         let made = made?;
-        if made.posted.account.verdict != Verdict::Done {
-            return Ok(made.posted.account.not_saved());
-        }
+        warnings.extend(made.work.warnings.iter().map(|found| found.clone().file(made.name)));
         programs.push(made);
     }
+    if let Some(failed) =
+        programs.iter().position(|made| made.posted.account.verdict != Verdict::Done)
+    {
+        return Ok(programs.swap_remove(failed).posted.account.not_saved());
+    }
+    let warnings = toolpath::held(warnings, args.strict)?;
     progress.step("saving");
-    let report = report::of(&source.layers, &planned, &programs, &machine, &warnings);
+    let report = report::of(&source.layers, &plan, &programs, &machine, &warnings);
     let saved = save(args, &source.files, &programs, &format!("{:#}\n", report.data))?;
 
     let mut lines = report.rows;
@@ -57,37 +64,59 @@ pub fn run(args: &args::pcb::Pcb, silent: bool) -> Result<Answer, Stop> {
     Ok(Answer::summary(Verdict::Done, rows(&lines), report.data).findings(warnings))
 }
 
+/// How closely programs follow the surface that was measured.
+const LEVELLED: Allowed = Allowed { deviation: 0.005, outside: 5.0 };
+
+/// The surface that programs follow, where one was measured.
+fn surface(plan: &Plan, args: &Pcb) -> Result<Option<HeightMap>, Stop> {
+    let Some(file) = &args.running.heights else { return Ok(None) };
+    if !plan.parts.iter().all(|part| plan.face(*part, args) == plan.face(plan.parts[0], args)) {
+        let message = "the heights are those of one side, and programs of both are asked for";
+        let help =
+            "make the programs of each side with its own heights: --only front,drill,outline";
+        return Err(Diagnostic::error("heights", message).help(help).into());
+    }
+    let text = files::read(file)?;
+    Ok(Some(levelling::read(&files::name(file), &text).map_err(Stop::invalid)?))
+}
+
 /// A program that was made.
-pub(crate) struct Made<'a> {
-    /// What for.
-    job: &'a Job,
+struct Made {
+    /// What it and its picture are called.
+    name: &'static str,
+    work: Work,
     /// What it does.
     program: Program,
     posted: Posted,
     picture: Option<Vec<u8>>,
 }
 
-/// The program of a job, proven, with its picture.
-fn make<'a>(
-    job: &'a Job,
-    planned: &plan::Plan,
+/// The program of a part of the board, proven, with its picture.
+fn make(
+    part: Part,
+    plan: &Plan,
+    surface: Option<&HeightMap>,
     machine: &Machine,
-    args: &args::pcb::Pcb,
-) -> Result<Made<'a>, Stop> {
+    args: &Pcb,
+) -> Result<Made, Stop> {
+    let board = plan.seen(part, args);
+    let work = Work::of(part, plan, args, machine)?;
     let heights = Heights { travel: args.running.travel, approach: args.running.approach };
-    let name = format!("{} {}", planned.name, job.name);
-    let program = job::program(&name, &job.operations, &heights);
+    let name = format!("{} {}", plan.name, part.name());
+    let mut program = job::program(&name, &work.operations, &heights);
+    if let Some(surface) = surface {
+        program = level(&program, surface, &LEVELLED)?;
+    }
     let toolpath = Toolpath::of_program(program, "board");
-    let file = format!("{}.nc", job.name);
+    let file = format!("{}.nc", part.name());
     let posted = post::proven(&toolpath, machine, &file, &args.closeness.tolerances(), &|_| {})?;
     let format = match args.picture {
         Picture::Svg => Some(Format::Svg),
         Picture::Png => Some(Format::Png),
         Picture::None => None,
     };
-    let board = planned.seen(job);
     let picture = format.map(|format| {
-        let widths: Vec<f64> = job.operations.iter().map(plan::width).collect();
+        let widths: Vec<f64> = work.operations.iter().map(Operation::width).collect();
         format.bytes(drawing::board(
             &name,
             &BoardPicture {
@@ -96,19 +125,42 @@ fn make<'a>(
                 holes: &board.holes,
                 program: &toolpath.program,
                 widths: &widths,
-                problems: &job.problems,
+                problems: &work.places,
             },
         ))
     });
     let picture = picture.transpose()?;
-    Ok(Made { job, program: toolpath.program, posted, picture })
+    Ok(Made { name: part.name(), work, program: toolpath.program, posted, picture })
 }
 
-/// `work` for each job, all at the same time, the answers in the order of the jobs.
-fn each<'a, T: Send>(jobs: &'a [Job], work: impl Fn(&'a Job) -> T + Sync) -> Vec<T> {
+/// How the height of the board is probed: slowly, from a millimetre above to one below.
+const PROBED: Probing = Probing { travel: 1.0, depth: 1.0, feed: 50.0 };
+
+/// The file in which LinuxCNC keeps what it finds; to other controls it is a comment.
+const HEIGHTS: &str = "heights.txt";
+
+/// The program that measures the height of the board.
+fn probing(
+    plan: &Plan,
+    [columns, rows]: [u32; 2],
+    machine: &Machine,
+    args: &Pcb,
+) -> Result<Made, Stop> {
+    let (low, high) = plan.front().extents().unwrap_or_default();
+    let grid = Grid::new(low, high, columns as usize, rows as usize)?;
+    let name = "probe";
+    let program = PROBED.program(&format!("{} {name}", plan.name), &grid, Some(HEIGHTS))?;
+    let toolpath = Toolpath::of_program(program, "board");
+    let file = format!("{name}.nc");
+    let posted = post::proven(&toolpath, machine, &file, &args.closeness.tolerances(), &|_| {})?;
+    Ok(Made { name, work: Work::default(), program: toolpath.program, posted, picture: None })
+}
+
+/// `work` for each thing, all at the same time, the answers in their order.
+fn each<T: Sync, A: Send>(things: &[T], work: impl Fn(&T) -> A + Sync) -> Vec<A> {
     let work = &work;
     thread::scope(|scope| {
-        let threads: Vec<_> = jobs.iter().map(|job| scope.spawn(move || work(job))).collect();
+        let threads: Vec<_> = things.iter().map(|thing| scope.spawn(move || work(thing))).collect();
         let finished = threads.into_iter().map(|thread| thread.join());
         finished.map(|done| done.unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
     })
@@ -116,7 +168,7 @@ fn each<'a, T: Send>(jobs: &'a [Job], work: impl Fn(&'a Job) -> T + Sync) -> Vec
 
 /// Saves everything, or nothing; answers the names of the files.
 fn save(
-    args: &args::pcb::Pcb,
+    args: &Pcb,
     inputs: &[std::path::PathBuf],
     programs: &[Made],
     report: &str,
@@ -124,11 +176,11 @@ fn save(
     let mut contents: Vec<(String, &[u8])> = vec![("report.json".into(), report.as_bytes())];
     let ending = if args.picture == Picture::Png { "png" } else { "svg" };
     for made in programs {
-        let name = made.job.name;
+        let name = made.name;
         contents.extend(made.picture.as_deref().map(|bytes| (format!("{name}.{ending}"), bytes)));
     }
     for made in programs {
-        contents.push((format!("{}.nc", made.job.name), &made.posted.text));
+        contents.push((format!("{}.nc", made.name), &made.posted.text));
     }
     let inputs: Vec<&Path> = inputs.iter().map(|file| file.as_path()).collect();
     let made = files::folder(&args.output)?;

@@ -46,6 +46,10 @@ pub(super) enum Role {
     End,
     /// `%`.
     Tape,
+    /// A function of the machine, which may have words of its own.
+    Function,
+    /// A code that says what the other words of its line mean: `G10`, `G92`.
+    Command,
     /// Any other word.
     Other,
     /// What cannot be written, and why.
@@ -62,7 +66,7 @@ pub(super) fn items(line: &Line, part: Part, post: &Post) -> Vec<Item> {
             Piece::Value(name) => cut.value(name, part),
             Piece::Home { z } if cut.comment.is_none() => {
                 // An address before it is its own.
-                cut.word.clear();
+                cut.address();
                 cut.push(String::new(), Role::Place { z: *z });
             }
             Piece::Home { .. } => cut.push(String::new(), Role::Unknown(PLACE)),
@@ -70,7 +74,30 @@ pub(super) fn items(line: &Line, part: Part, post: &Post) -> Vec<Item> {
         }
     }
     cut.end_word();
+    bind(&mut cut.items);
     cut.items
+}
+
+/// Leaves the words of a command with it: `M84 S0` is no speed, `G92 X0` no way.
+fn bind(items: &mut [Item]) {
+    let any = |role: fn(&Item) -> bool| items.iter().any(role);
+    let moves = any(|item| {
+        item.role == Role::Motion
+            || matches!(code(&item.text), Some(('M', m)) if m == 3.0 || m == 4.0)
+    });
+    if !any(|item| item.role == Role::Command)
+        && (moves || !any(|item| item.role == Role::Function))
+    {
+        return;
+    }
+    for item in items {
+        item.role = match item.role {
+            Role::Place { .. } if item.text.is_empty() => Role::Unknown(PLACE),
+            Role::Spindle | Role::Feed if item.text.contains('{') => Role::Unknown(NOT_HERE),
+            Role::Place { .. } | Role::Spindle | Role::Feed | Role::Length => Role::Other,
+            ref role => role.clone(),
+        };
+    }
 }
 
 const PLACE: &str = "a home or a safe height is not known where a program of ours is written";
@@ -126,6 +153,14 @@ impl Cutter {
         }
     }
 
+    /// The letters that stand right before a variable; a word that has its number is one of its own.
+    fn address(&mut self) -> String {
+        if self.word.contains(|c: char| c.is_ascii_digit()) {
+            self.end_word();
+        }
+        take(&mut self.word)
+    }
+
     /// A word of ours.
     fn placed(&mut self, word: &'static str, post: &Post) {
         let own = post.words.contains_key(word);
@@ -144,7 +179,7 @@ impl Cutter {
             "T" => Role::Tool,
             _ => return self.push(placed, Role::Unknown(NOT_HERE)),
         };
-        match (word, take(&mut self.word).as_str()) {
+        match (word, self.address().as_str()) {
             ("T", "H") => self.push("H".to_owned(), Role::Length),
             // The address of the word stands in the line where the post has none for it.
             ("T", "T") => self.push(placed, role),
@@ -161,7 +196,7 @@ impl Cutter {
     fn value(&mut self, name: &'static str, part: Part) {
         let known = match name {
             "operation.name" => part == Part::Segment,
-            "tool.name" | "tool.diameter" => part == Part::ToolChange,
+            "tool.name" | "tool.diameter" => matches!(part, Part::Start | Part::ToolChange),
             _ => true,
         };
         match (self.comment.is_some(), name) {
@@ -191,6 +226,10 @@ pub(super) fn code(word: &str) -> Option<(char, f64)> {
     Some((letter.to_ascii_uppercase(), number))
 }
 
+/// The modes, which need no other word.
+const SIMPLE: &[u32] =
+    &[17, 18, 19, 40, 49, 54, 55, 56, 57, 58, 59, 61, 64, 80, 90, 91, 94, 97, 98, 99];
+
 fn role(word: &str) -> Role {
     let Some((letter, number)) = code(word) else {
         return if word == "%" { Role::Tape } else { Role::Other };
@@ -210,6 +249,23 @@ fn role(word: &str) -> Role {
         ('Z', _) => Role::Place { z: true },
         ('F', _) => Role::Feed,
         ('T', _) => Role::Unknown("calls a tool of its own"),
+        ('G', 4) => Role::Unknown("is a dwell, and the toolpath says where the tool dwells"),
+        ('G', _) if SIMPLE.contains(&(number.trunc() as u32)) => Role::Other,
+        ('G', _) => Role::Command,
+        ('M', 5 | 9) => Role::Other,
+        ('M', _) => Role::Function,
         _ => Role::Other,
     }
+}
+
+/// The codes of a text: letters with a number.
+pub(super) fn codes(text: &str) -> impl Iterator<Item = (char, f64)> + use<> {
+    let mut words: Vec<String> = Vec::new();
+    for c in text.chars() {
+        match words.last_mut() {
+            Some(word) if c.is_ascii_digit() || matches!(c, '.' | '-' | '+') => word.push(c),
+            _ => words.push(c.to_string()),
+        }
+    }
+    words.into_iter().filter_map(|word| code(&word))
 }

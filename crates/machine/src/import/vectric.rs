@@ -2,6 +2,7 @@
 //! each. What is believed of the format, with its sources, is in `docs/controls/importing.md`.
 
 use super::foreign::{Form, Line, Part, Piece, Post};
+use super::items::codes;
 use super::{Findings, text};
 use std::collections::BTreeMap;
 
@@ -10,6 +11,8 @@ const VARIABLES: &[(&str, Piece)] = &[
     ("LINE_NUMBER", Piece::Word("N")),
     ("SPINDLE_SPEED", Piece::Word("S")),
     ("FEED_RATE", Piece::Word("F")),
+    ("CUT_RATE", Piece::Word("F")),
+    ("PLUNGE_RATE", Piece::Word("F")),
     ("TOOL_NUMBER", Piece::Word("T")),
     ("DWELL_TIME", Piece::Word("P")),
     ("X_POSITION", Piece::Word("X")),
@@ -155,7 +158,12 @@ fn variable(
         Some(factor) if factor == 1.0 || (factor > 0.0 && matches!(*word, "F" | "S")) => {
             let (decimals, modal) = (Some(decimals), Some(modal));
             let address = address.to_string();
-            post.words.insert(word, Form { address, decimals, modal, scale: factor });
+            let form = Form { address, decimals, modal, scale: factor };
+            // Of the feeds of a post that is written which the toolpath says, in one form.
+            if *post.words.entry(*word).or_insert_with(|| form.clone()) != form {
+                let message = format!("`{name}` is written like the {word} before it");
+                findings.otherwise(number, message);
+            }
         }
         Some(factor) => {
             let message = format!(
@@ -196,7 +204,7 @@ fn setting(key: &str, value: &str, number: u32, post: &mut Post, findings: &mut 
         "LINE_NUMBER_INCREMENT" => &mut post.numbers[1],
         "LINE_NUMBER_MAXIMUM" => &mut post.numbers[2],
         _ => {
-            let message = format!("`{}` says nothing that a program holds", text::short(key));
+            let message = format!("no key of ours is `{}`", text::short(key));
             return findings.lost(number, message);
         }
     };
@@ -243,15 +251,25 @@ fn parts(
     }
 }
 
-/// Whether two blocks of moves differ by the feed and a word of motion at most.
-fn same_move(a: &[Line], b: &[Line]) -> bool {
-    let bare = |lines: &[Line]| {
+/// Whether `other` says no more than `first` but the feed: the first of several moves says the kind of
+/// motion, and the others may leave it out.
+fn same_move(first: &[Line], other: &[Line]) -> bool {
+    let words = |lines: &[Line]| {
         let mut words: Vec<&str> =
             lines.iter().flat_map(Line::words).filter(|w| *w != "F").collect();
         words.sort_unstable();
         words
     };
-    bare(a) == bare(b)
+    let codes = |lines: &[Line]| -> Vec<(char, f64)> {
+        let pieces = lines.iter().flat_map(|line| &line.pieces);
+        let texts = pieces.filter_map(|piece| match piece {
+            Piece::Text(text) => Some(codes(text)),
+            _ => None,
+        });
+        texts.flatten().collect()
+    };
+    let said = codes(first);
+    words(first) == words(other) && codes(other).iter().all(|code| said.contains(code))
 }
 
 /// A line of the program: text, variables in brackets, and characters by their number, of which 10 begins

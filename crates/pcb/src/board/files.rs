@@ -72,9 +72,9 @@ fn told_apart<'a>(
     for file in files {
         let format = Format::of(file.text);
         let named = || match (format, Layer::named(file.name)) {
-            // A drawing of the holes is named like them.
-            (Some(Format::Gerber), Some(Layer::Holes(_))) => None,
             (Some(Format::Excellon), _) => Some(Layer::Holes(None)),
+            // A drawing of the holes, or a list of the drills, is named like them.
+            (_, Some(Layer::Holes(_))) => None,
             (_, named) => named,
         };
         let stated = file.layer.or_else(|| Layer::stated(file.text));

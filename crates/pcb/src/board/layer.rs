@@ -62,17 +62,20 @@ impl Format {
     pub(super) fn of(text: &[u8]) -> Option<Format> {
         let head = text.get(..1 << 16).unwrap_or(text);
         let has = |word: &str| memmem::find(head, word.as_bytes()).is_some();
-        let mut lines = head.split(|byte| matches!(byte, b'\n' | b'\r')).map(<[u8]>::trim_ascii);
         if ["%FS", "%MO", "%ADD"].into_iter().any(has) {
             return Some(Format::Gerber);
         }
-        // The header begins with M48; without one, what comes first is a `%` of its own.
-        let first = |line: &&[u8]| !line.is_empty() && !line.starts_with(b";");
-        let excellon = head.starts_with(b"M48")
-            || lines.clone().any(|line| line == b"M48")
-            || lines.find(first).is_some_and(|line| line == b"%");
+        // The header begins with M48; without one, there are lines of coordinates alone.
+        let mut lines = head.split(|byte| matches!(byte, b'\n' | b'\r')).map(<[u8]>::trim_ascii);
+        let excellon = lines.any(|line| line == b"M48" || coordinates(line));
         excellon.then_some(Format::Excellon)
     }
+}
+
+/// Whether a line has nothing but coordinates: `X0125Y-03`.
+fn coordinates(line: &[u8]) -> bool {
+    let sign = |byte: &u8| matches!(byte, b'0'..=b'9' | b'+' | b'-' | b'.' | b'X' | b'Y');
+    matches!(line, [b'X' | b'Y', _, ..]) && line.iter().all(sign)
 }
 
 impl Layer {
@@ -135,7 +138,7 @@ fn numbered(extension: &str) -> Option<Layer> {
     (drawn && stem != extension).then_some(Layer::Other)
 }
 
-/// By the extension: Protel and Altium, EAGLE, OrCAD. `docs/sources/boards.md` has the sources.
+/// By the extension: Protel and Altium, EAGLE, OrCAD. `docs/sources/gerber.md` has the sources.
 const EXTENSIONS: [(&[&str], Layer); 10] = [
     (&["gtl", "cmp", "top"], Layer::Copper(Face::Front)),
     (&["gbl", "sol", "bot"], Layer::Copper(Face::Back)),
@@ -196,6 +199,22 @@ mod tests {
         assert_eq!(Layer::stated(b"M48\n; #@! TF.FileFunction,Plated,1,2,PTH\n"), stated("Plated"));
         assert_eq!(Layer::stated(b"%MOMM*%"), None);
         assert_eq!(Layer::stated(b"%TF.FileFunction,"), None);
+    }
+
+    #[test]
+    fn how_files_are_written() {
+        for (text, format) in [
+            ("G04 x*\n%FSLAX36Y36*%", Some(Format::Gerber)),
+            ("; made by hand\r\nM48\r\nINCH\r\n", Some(Format::Excellon)),
+            ("%\nT01\nX01Y-02.5\nM30\n", Some(Format::Excellon)),
+            // What EAGLE writes beside the holes: the drills alone.
+            ("T01  0.024in\nT02  0.031in\n", None),
+            ("Ref,Val,X,Y\n", None),
+            ("X marks the spot", None),
+            ("", None),
+        ] {
+            assert_eq!(Format::of(text.as_bytes()), format, "{text}");
+        }
     }
 
     #[test]

@@ -39,6 +39,11 @@ impl Layers {
         }
     }
 
+    /// Whether there is copper among them.
+    pub(super) fn copper(&self) -> bool {
+        self.outer() || self.inner
+    }
+
     /// Whether copper of one of the two sides is among them.
     pub(super) fn outer(&self) -> bool {
         self.front || self.back

@@ -37,35 +37,35 @@ impl Pad {
         };
         let size = item.need("size")?.size()?;
         let drill = item.find("drill");
-        let hole = match (plated, drill) {
-            (Some(_), Some(drill)) => hole(drill, plated)?,
-            _ => None,
+        // The others have none, whatever stands there.
+        let hole = match plated {
+            Some(plated) => Some(hole(item.need("drill")?, plated)?),
+            None => None,
         };
         let layers = copper(item, plated == Some(true))?;
         // The offset is that of the copper, though it stands with the drill.
-        let offset = match drill.and_then(|drill| drill.find("offset")) {
-            Some(offset) => offset.point()?,
-            None => Vec2::ZERO,
-        };
-        if plated == Some(false) && offset == Vec2::ZERO && is_hole_only(shape, size, drill)? {
+        let offset = offset(drill)?;
+        let bare =
+            plated == Some(false) && offset == Vec2::ZERO && is_hole_only(shape, size, drill)?;
+        if bare || !layers.outer() {
             return Ok(Pad { front: Vec::new(), back: Vec::new(), hole });
         }
-        let front = if layers.outer() { outline(item, shape, size, offset)? } else { Vec::new() };
+        let front = outline(item, shape, size, offset)?;
         let back = match back_of_stack(item) {
-            Some(layer) if layers.back => {
+            Some(layer) => {
                 let shape = layer.need("shape")?.item(0).map_or(&b""[..], |shape| shape.word());
-                let offset = match layer.find("offset") {
-                    Some(offset) => offset.point()?,
-                    None => Vec2::ZERO,
-                };
-                outline(layer, shape, layer.need("size")?.size()?, offset)?
+                outline(layer, shape, layer.need("size")?.size()?, self::offset(Some(layer))?)?
             }
-            _ if layers.back => front.clone(),
-            _ => Vec::new(),
+            None => front.clone(),
         };
-        let front = if layers.front { front } else { Vec::new() };
-        Ok(Pad { front, back, hole })
+        let on = |side: bool, shapes| if side { shapes } else { Vec::new() };
+        Ok(Pad { front: on(layers.front, front), back: on(layers.back, back), hole })
     }
+}
+
+/// The `(offset X Y)` of a list, if there is one.
+fn offset(list: Option<Node>) -> Outcome<Vec2> {
+    list.and_then(|list| list.find("offset")).map_or(Ok(Vec2::ZERO), Node::point)
 }
 
 /// What a pad or a via has on the back where that differs from the front (KiCad 9).
@@ -79,7 +79,6 @@ pub(super) fn back_of_stack(item: Node) -> Option<Node> {
 /// # Errors
 /// `unused-layers` where that depends on what is connected to it.
 pub(super) fn copper(item: Node, drilled: bool) -> Outcome<Layers> {
-    let mut layers = Layers::of(item);
     if drilled && item.says("remove_unused_layers") && !item.says("keep_end_layers") {
         let connected = item.find("zone_layer_connections");
         let zones: Vec<&[u8]> =
@@ -92,13 +91,12 @@ pub(super) fn copper(item: Node, drilled: bool) -> Outcome<Layers> {
             return Err(item.fault("unused-layers", message, help));
         }
     }
-    layers.inner &= !item.says("remove_unused_layers");
-    Ok(layers)
+    Ok(Layers::of(item))
 }
 
 /// The hole that `(drill [oval] WIDTH [HEIGHT] [(offset X Y)])` describes.
-fn hole(drill: Node, plated: Option<bool>) -> Outcome<Option<Hole>> {
-    let Some(size) = drill_size(drill)? else { return Ok(None) };
+fn hole(drill: Node, plated: bool) -> Outcome<Hole> {
+    let size = drill_size(drill)?.unwrap_or_default();
     let diameter = size.min_element();
     if diameter <= 0.0 {
         let message = format!("a drill of {} by {} mm", size.x, size.y);
@@ -109,7 +107,7 @@ fn hole(drill: Node, plated: Option<bool>) -> Outcome<Option<Hole>> {
         true => HoleShape::Round(Vec2::ZERO),
         false => HoleShape::Slot(-half, half),
     };
-    Ok(Some(Hole { shape, diameter, plated }))
+    Ok(Hole { shape, diameter, plated: Some(plated) })
 }
 
 /// Width and height of a drill; `None` where it has an offset only.

@@ -149,10 +149,13 @@ impl Reader<'_> {
             // Zones in footprints are where they are on the board.
             name if NO_COPPER.contains(&name) => Ok(()),
             _ if layers == Layers::default() => Ok(()),
-            b"gr_text" | b"fp_text" | b"property" => self.text(item, layers, &frame),
-            b"target" => {
-                let message = "a target for the alignment of layers is left out";
-                self.report.warn(item.place(), "target", message, "it is neither edge nor copper");
+            b"gr_text" | b"fp_text" | b"property" if layers.copper() => {
+                self.text(item, layers, &frame)
+            }
+            b"gr_text" | b"fp_text" | b"property" | b"target" if !layers.copper() => {
+                let message = "texts and targets on Edge.Cuts are left out";
+                let help = "they are no edge: move them to another layer";
+                self.report.warn(item.place(), "not-an-edge", message, help);
                 Ok(())
             }
             name => {
@@ -186,7 +189,7 @@ impl Reader<'_> {
             let help = "on copper draw the dashes one by one";
             self.report.warn(item.place(), "line-style", &message, help);
         }
-        if layers.outer() || layers.inner {
+        if layers.copper() {
             let net = self.net(item)?;
             for shape in graphic.shapes(item)? {
                 self.add(item, layers, frame.shape(&shape), &net);

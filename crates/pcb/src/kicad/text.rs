@@ -43,9 +43,10 @@ impl Text {
                 .collect::<Outcome<_>>()
                 .map(Text::Stored);
         }
-        // (gr_text TEXT …), (fp_text KIND TEXT …), (property NAME TEXT …)
-        let index = usize::from(item.name() != b"gr_text");
-        let text = item.item(index).map(|text| text.text()).unwrap_or_default();
+        // (gr_text TEXT …), (fp_text KIND TEXT …), (property NAME TEXT …): texts are quoted, kinds are not.
+        let before = usize::from(item.name() == b"property");
+        let text = item.items().filter(Node::is_quoted).nth(before);
+        let text = text.map(|text| text.text()).unwrap_or_default();
         if text.contains("${") {
             return Ok(Text::Variable);
         }

@@ -4,7 +4,7 @@ use crate::decimal::{decimal, whole};
 use crate::report::{self, Place};
 use geom::Vec2;
 
-/// How deep lists may stand in each other: KiCad's own go ten deep.
+/// How deep lists may stand in each other: boards go seven deep.
 const MAX_DEPTH: usize = 64;
 
 /// The largest number that is taken: coordinates of KiCad's are 32-bit nanometres.
@@ -194,6 +194,11 @@ impl<'t> Node<'t> {
         self.bytes().starts_with(b"(")
     }
 
+    /// Whether it is a word in quotes.
+    pub(super) fn is_quoted(&self) -> bool {
+        self.bytes().starts_with(b"\"")
+    }
+
     /// Everything in a list, its name included.
     fn children(self) -> impl Iterator<Item = Node<'t>> {
         let end = if self.is_list() { self.entry().next as usize } else { 0 };
@@ -337,5 +342,29 @@ impl<'t> Node<'t> {
     /// As [`Node::number`].
     pub(super) fn point(self) -> Outcome<Vec2> {
         Ok(Vec2::new(self.number(0)?, -self.number(1)?))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn lists_words_and_texts() {
+        let text = b"(a \"b (c) \\\"d\\n\\\\\"(e -1.5 2)f\n(e yes)(g)\n(h no)())";
+        let tree = Tree::new(text).ok().unwrap();
+        let root = tree.root();
+        assert_eq!(root.name(), b"a");
+        let quoted = root.item(0).unwrap();
+        assert!(quoted.is_quoted() && !quoted.is_list());
+        assert_eq!(quoted.text(), "b (c) \"d\n\\");
+        assert_eq!(root.items().count(), 7);
+        assert_eq!(root.need("e").ok().unwrap().point().ok(), Some(Vec2::new(-1.5, -2.0)));
+        assert_eq!(root.all("e").count(), 2);
+        assert!(root.says("f") && root.says("e") && root.says("g"));
+        assert!(!root.says("h") && !root.says("c") && !root.says("yes"));
+        assert_eq!(root.item(5).map(|h| h.place().line), Some(3));
+        assert_eq!(root.item(6).map(|empty| empty.name()), Some(&b""[..]));
+        assert_eq!((root.item(7).is_none(), root.find("c").is_none()), (true, true));
     }
 }

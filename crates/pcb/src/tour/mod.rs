@@ -51,7 +51,13 @@ impl Tour {
 
     /// The indices of `points` in an order of short travel.
     pub fn of_points(&self, points: &[Vec2]) -> Vec<usize> {
-        self.visits(&Stops::of_points(points)).into_iter().map(|visit| visit.stop).collect()
+        let ways: Vec<(Vec2, Vec2)> = points.iter().map(|point| (*point, *point)).collect();
+        self.of_ways(&ways)
+    }
+
+    /// The indices of `ways`, each from its first point to its second, in an order of short travel.
+    pub(crate) fn of_ways(&self, ways: &[(Vec2, Vec2)]) -> Vec<usize> {
+        self.visits(&Stops::of_ways(ways)).into_iter().map(|visit| visit.stop).collect()
     }
 
     /// How far the tool travels between `paths`, cut in this order, mm: from where it comes, and to

@@ -14,6 +14,7 @@ const STRIDE: f64 = 2.0;
 const BETTER: f64 = 0.1;
 
 /// What is visited.
+#[derive(Default)]
 pub(super) struct Stops {
     stops: Vec<Stop>,
     /// The places of all, one stop after the other.
@@ -50,21 +51,24 @@ pub(super) struct Visit {
 }
 
 impl Stops {
-    pub(super) fn of_points(points: &[Vec2]) -> Stops {
-        let stop = |i: usize| Stop { places: i..i + 1, form: Form::Round };
-        Stops {
-            stops: (0..points.len()).map(stop).collect(),
-            places: points.to_vec(),
-            between: vec![false; points.len()],
+    /// Ways from the first point to the second.
+    pub(super) fn of_ways(ways: &[(Vec2, Vec2)]) -> Stops {
+        let mut all = Stops::default();
+        for (start, end) in ways {
+            all.places.push(*start);
+            if start != end {
+                all.places.push(*end);
+            }
+            all.stop(if start == end { Form::Round } else { Form::OneWay });
         }
+        all
     }
 
     /// The stops, and for each place of a closed path where on it that is.
     pub(super) fn of_paths(paths: &[Path], either_way: bool) -> (Stops, Vec<Option<Site>>) {
-        let mut all = Stops { stops: Vec::new(), places: Vec::new(), between: Vec::new() };
+        let mut all = Stops::default();
         let mut sites = Vec::new();
         for path in paths {
-            let first = all.places.len();
             let form = match (path.is_closed(), either_way) {
                 (true, _) => Form::Round,
                 (false, true) => Form::Open,
@@ -78,12 +82,18 @@ impl Stops {
                 }
             } else {
                 all.places.extend([path.start(), path.end()]);
-                all.between.extend([false; 2]);
                 sites.extend([None; 2]);
             }
-            all.stops.push(Stop { places: first..all.places.len(), form });
+            all.stop(form);
         }
         (all, sites)
+    }
+
+    /// A stop of the places that belong to none yet.
+    fn stop(&mut self, form: Form) {
+        let first = self.stops.last().map_or(0, |last| last.places.end);
+        self.between.resize(self.places.len(), false);
+        self.stops.push(Stop { places: first..self.places.len(), form });
     }
 
     /// All stops, always the nearest next.

@@ -6,7 +6,9 @@
 //! ```
 //!
 //! One way between two conductors is all that it takes, in the middle of the gap, where it is farthest
-//! from both; what is left between is a wide conductor. Ways are within 5 µm of that middle.
+//! from both; all copper stays. Ways are in that middle to 5 µm, or a fiftieth of the gap where this is more.
+//!
+//! The triangles between the points are the work of the crate `spade`, whose predicates are exact.
 
 mod samples;
 mod straight;
@@ -17,14 +19,13 @@ use crate::{Copper, Path};
 use geom::Vec2;
 use geom::region::{Index, Region};
 use samples::{Boundary, frame};
-use std::collections::HashMap;
 use web::Place;
 
-/// The most points on the boundaries: some 500 MB.
-const MOST_SAMPLES: f64 = 2e6;
+/// A board takes more points than there may be.
+struct TooMany;
 
-/// The farthest that points on a boundary are apart, mm.
-const WIDEST: f64 = 0.1;
+/// A gap is resolved down to this part of the tool's width.
+const RESOLVED: f64 = 4.0;
 
 /// What is wider than a gap by no more than this fits into it, mm: rounding.
 const FITS: f64 = 1e-3;
@@ -64,17 +65,14 @@ pub fn divided(copper: &Copper, area: &Region, width: f64) -> Outcome<Division> 
     let (Some(board), Some(around)) = (copper.region.extents(), area.extents()) else {
         return Ok(Division::default());
     };
-    let boundary = Boundary::of(&copper.region);
-    // Where the tool fits, points so near to each other are nearer than any of another conductor.
-    let spacing = (width / 4.0).min(WIDEST);
-    let count = boundary.count(spacing);
-    if count > MOST_SAMPLES {
-        let message = format!("dividing by a tool {width} mm wide takes {count} points");
-        return Err(fault("too-much", message, "use a wider tool, or divide the board in parts"));
-    }
-    let mut samples = boundary.samples(spacing);
+    let boundary = Boundary::of(copper);
+    let mut samples =
+        boundary.samples(&Index::new(&copper.region), width / RESOLVED).map_err(|_| {
+            let message = format!("the copper is too much for a tool {width} mm wide");
+            fault("too-much", message, "use a wider tool, or divide the board in parts")
+        })?;
     samples.extend(frame(board.0.min(around.0), board.1.max(around.1)));
-    let threads = web::threads(&boundary, samples, &conductors(copper))
+    let threads = web::threads(&boundary, samples)
         .map_err(|error| fault("not-a-place", error.to_string(), "look at the copper's places"))?;
     let mut division = Division::default();
     let index = Index::new(area);
@@ -98,16 +96,6 @@ pub fn divided(copper: &Copper, area: &Region, width: f64) -> Outcome<Division> 
         }
     }
     Ok(division)
-}
-
-/// The conductor that each island is part of, by the number of its first island.
-fn conductors(copper: &Copper) -> Vec<usize> {
-    let mut first: HashMap<&str, usize> = HashMap::new();
-    let islands = 0..copper.region.islands().len();
-    let net = |island: usize| copper.nets.get(island)?.as_deref();
-    islands
-        .map(|island| net(island).map_or(island, |net| *first.entry(net).or_insert(island)))
-        .collect()
 }
 
 /// The runs of a thread along which the tool fits everywhere, or nowhere; each ends where the next begins.

@@ -1,13 +1,27 @@
 //! The boundaries of conductors as points, each of which knows the element that it is on.
 
-use geom::region::Region;
+use super::TooMany;
+use crate::Copper;
+use geom::region::Index;
 use geom::{Element, Vec2};
 use spade::{HasPosition, Point2};
+use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_4;
+
+/// The most points: some 500 MB.
+const MOST: usize = 2_000_000;
+
+/// The farthest that points are apart, mm.
+const FARTHEST: f64 = 1.0;
+
+/// How many times farther than that another conductor is.
+const APART: f64 = 4.0;
 
 /// The elements of the boundaries of conductors, one after the other.
 pub(super) struct Boundary {
     pieces: Vec<Piece>,
+    /// The conductor that each island is part of: the number of its first island.
+    conductors: Vec<usize>,
 }
 
 struct Piece {
@@ -36,48 +50,76 @@ impl HasPosition for Sample {
 }
 
 impl Boundary {
-    pub(super) fn of(region: &Region) -> Boundary {
-        let mut pieces: Vec<Piece> = Vec::new();
-        for (island, rings) in region.islands().iter().enumerate() {
+    /// Islands of the same net are one conductor, an island of no known net is one of its own.
+    pub(super) fn of(copper: &Copper) -> Boundary {
+        let mut first: HashMap<&str, usize> = HashMap::new();
+        let (mut pieces, mut conductors) = (Vec::new(), Vec::new());
+        for (island, rings) in copper.region.islands().iter().enumerate() {
+            let net = copper.nets.get(island).and_then(Option::as_deref);
+            conductors.push(net.map_or(island, |net| *first.entry(net).or_insert(island)));
             for ring in std::iter::once(rings.outer()).chain(rings.holes()) {
-                let (first, count) = (pieces.len(), ring.elements().len());
+                let (start, count) = (pieces.len(), ring.elements().len());
                 pieces.extend(ring.elements().iter().enumerate().map(|(i, element)| Piece {
                     element: *element,
                     island,
-                    before: first + (i + count - 1) % count,
-                    after: first + (i + 1) % count,
+                    before: start + (i + count - 1) % count,
+                    after: start + (i + 1) % count,
                 }));
             }
         }
-        Boundary { pieces }
+        Boundary { pieces, conductors }
     }
 
-    /// How many points `spacing` mm apart are, at most, on it.
-    pub(super) fn count(&self, spacing: f64) -> f64 {
-        self.pieces.iter().map(|piece| steps(&piece.element, spacing)).sum()
-    }
-
-    /// Points on it up to `spacing` mm apart, among them the ends of all elements.
-    pub(super) fn samples(&self, spacing: f64) -> Vec<Sample> {
+    /// Points on it, among them the ends of all elements: so near to each other that another conductor is
+    /// four times as far, but none nearer than they need be for gaps of `finest` mm.
+    pub(super) fn samples(&self, index: &Index, finest: f64) -> Result<Vec<Sample>, TooMany> {
+        let alone = |part: &Element, island: usize| {
+            let (low, high) = part.extents();
+            let (middle, length) = (part.at(0.5), part.length());
+            let around = Vec2::splat(APART * length);
+            index.within(low - around, high + around).all(|near| {
+                self.conductors.get(near.island) == self.conductors.get(island)
+                    || near.element.nearest(middle).1 > (APART + 0.5) * length
+            })
+        };
         let mut samples = Vec::new();
-        for (i, piece) in self.pieces.iter().enumerate() {
-            let steps = steps(&piece.element, spacing);
-            let at = |step: u32| piece.element.at(f64::from(step) / steps);
-            let piece = u32::try_from(i).ok();
-            samples.extend((0..steps as u32).map(|step| Sample { at: at(step), piece }));
+        for (piece, i) in self.pieces.iter().zip(0..) {
+            let parts = parts(&piece.element);
+            for part in 0..parts as u64 {
+                let mut open = vec![(part as f64 / parts, (part + 1) as f64 / parts)];
+                while let Some((from, to)) = open.pop() {
+                    let part = piece.element.part(from, to);
+                    if part.length() * APART > finest && !alone(&part, piece.island) {
+                        let middle = (from + to) / 2.0;
+                        open.extend([(middle, to), (from, middle)]);
+                    } else if samples.len() < MOST {
+                        samples.push(Sample { at: part.start, piece: Some(i) });
+                    } else {
+                        return Err(TooMany);
+                    }
+                }
+            }
         }
-        samples
+        Ok(samples)
+    }
+
+    fn piece(&self, sample: &Sample) -> Option<&Piece> {
+        self.pieces.get(sample.piece? as usize)
     }
 
     /// The island that a sample is on; `None` for the frame.
     pub(super) fn island(&self, sample: &Sample) -> Option<usize> {
-        Some(self.pieces.get(sample.piece? as usize)?.island)
+        Some(self.piece(sample)?.island)
+    }
+
+    /// The conductor that a sample is on; `None` for the frame.
+    pub(super) fn conductor(&self, sample: &Sample) -> Option<usize> {
+        self.conductors.get(self.island(sample)?).copied()
     }
 
     /// What is nearest to `from` of the boundary about a sample.
     pub(super) fn foot(&self, sample: &Sample, from: Vec2) -> Vec2 {
-        let piece = sample.piece.and_then(|piece| self.pieces.get(piece as usize));
-        let around = piece.map(|piece| {
+        let around = self.piece(sample).map(|piece| {
             let neighbours = [piece.before, piece.after].map(|i| self.pieces.get(i));
             neighbours.into_iter().flatten().chain([piece])
         });
@@ -97,8 +139,8 @@ pub(super) fn frame(low: Vec2, high: Vec2) -> [Sample; 4] {
     corners.map(|corner| Sample { at: middle + corner, piece: None })
 }
 
-/// In how many parts an element is cut so that none is longer than `spacing` mm, nor an eighth of a circle.
-fn steps(element: &Element, spacing: f64) -> f64 {
+/// In how many parts an element is cut so that none is too long, nor more than an eighth of a circle.
+fn parts(element: &Element) -> f64 {
     let eighths = element.turn.map_or(0.0, |turn| turn.sweep.abs() / FRAC_PI_4);
-    (element.length() / spacing).max(eighths).ceil().max(1.0)
+    (element.length() / FARTHEST).max(eighths).ceil().max(1.0)
 }

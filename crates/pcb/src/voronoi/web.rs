@@ -31,22 +31,20 @@ struct Knot {
 type Triangle<'a> = FaceHandle<'a, InnerTag, Sample, (), (), ()>;
 
 /// The threads of the web between `samples` of different conductors, each from where three or more meet to
-/// the next such place, or closed. `conductors` tells of each island which conductor it is part of.
+/// the next such place, or closed.
 ///
 /// # Errors
 /// Where a sample is no place.
 pub(super) fn threads(
     boundary: &Boundary,
     samples: Vec<Sample>,
-    conductors: &[usize],
 ) -> Result<Vec<Vec<Place>>, InsertionError> {
     let triangles = DelaunayTriangulation::<Sample>::bulk_load(samples)?;
-    let conductor = |sample: &Sample| conductors.get(boundary.island(sample)?);
     // The middles of the circles about the triangles, where these have several conductors.
     let mut knots: Vec<Knot> = Vec::new();
     let mut of_triangle = vec![None; triangles.num_all_faces()];
     for edge in triangles.undirected_edges() {
-        let [one, other] = edge.vertices().map(|vertex| conductor(vertex.data()));
+        let [one, other] = edge.vertices().map(|vertex| boundary.conductor(vertex.data()));
         if one.is_none() || other.is_none() || one == other {
             continue;
         }
@@ -58,10 +56,7 @@ pub(super) fn threads(
             let known = of_triangle.get_mut(side.index())?;
             *known.get_or_insert_with(|| {
                 let corners = side.vertices().map(|vertex| *vertex.data());
-                knots.push(Knot {
-                    place: place(side, corners, boundary, conductor),
-                    links: [None; 3],
-                });
+                knots.push(Knot { place: place(side, corners, boundary), links: [None; 3] });
                 u32::try_from(knots.len() - 1).ok()
             })
         }) else {
@@ -78,12 +73,7 @@ pub(super) fn threads(
 }
 
 /// The place in the middle of a triangle.
-fn place<'a>(
-    triangle: Triangle,
-    corners: [Sample; 3],
-    boundary: &Boundary,
-    conductor: impl Fn(&Sample) -> Option<&'a usize>,
-) -> Place {
+fn place(triangle: Triangle, corners: [Sample; 3], boundary: &Boundary) -> Place {
     let center = triangle.circumcenter();
     let mut at = Vec2::new(center.x, center.y);
     if !at.is_finite() {
@@ -92,9 +82,9 @@ fn place<'a>(
     // One for each conductor.
     let mut nearest: Vec<Sample> = Vec::with_capacity(3);
     for corner in corners {
-        let Some(own) = conductor(&corner) else { continue };
+        let Some(own) = boundary.conductor(&corner) else { continue };
         let away = |sample: &Sample| boundary.foot(sample, at).distance(at);
-        match nearest.iter_mut().find(|sample| conductor(sample) == Some(own)) {
+        match nearest.iter_mut().find(|sample| boundary.conductor(sample) == Some(own)) {
             Some(known) if away(&corner) < away(known) => *known = corner,
             Some(_) => {}
             None => nearest.push(corner),
@@ -105,15 +95,18 @@ fn place<'a>(
 
 /// The place near `at` that is equally far from what is about all of some samples.
 fn settled(at: Vec2, samples: &[Sample], boundary: &Boundary) -> Place {
+    // Points are near to each other for the gap, and so the place is near by.
+    let reach = samples.first().map_or(0.0, |sample| sample.at.distance(at) / 2.0);
     let mut best = Stand::at(at, samples, boundary);
     for _ in 0..TRIES {
-        let better = match best.feet[..] {
+        let guess = match best.feet[..] {
             [a, b] => between(best.at, a, b),
             [a, b, c] => amid(a, b, c),
             _ => None,
         };
-        let Some(next) = better.map(|at| Stand::at(at, samples, boundary)) else { break };
-        if next.farthest - next.nearest >= best.farthest - best.nearest {
+        let Some(next) = guess.map(|at| Stand::at(at, samples, boundary)) else { break };
+        let better = next.farthest - next.nearest < best.farthest - best.nearest;
+        if !better || next.at.distance(at) > reach {
             break;
         }
         best = next;
@@ -151,7 +144,7 @@ fn between(at: Vec2, a: Vec2, b: Vec2) -> Option<Vec2> {
 /// The point that is equally far from three; `None` where these are in a line.
 fn amid(a: Vec2, b: Vec2, c: Vec2) -> Option<Vec2> {
     let (b, c) = (b - a, c - a);
-    let middle = (b * c.length_squared() - c * b.length_squared()).perp() / (2.0 * c.perp_dot(b));
+    let middle = (b * c.length_squared() - c * b.length_squared()).perp() / (2.0 * b.perp_dot(c));
     middle.is_finite().then_some(a + middle)
 }
 

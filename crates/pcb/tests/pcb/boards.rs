@@ -3,6 +3,7 @@
 use crate::data;
 use geom::Vec2;
 use program::Diagnostic;
+use proptest::prelude::*;
 use std::f64::consts::PI;
 use std::path::Path;
 use toolpost_pcb::board::{self, Face, File, Layer, Reading};
@@ -297,4 +298,62 @@ fn empty_layers_and_holes_that_come_twice() {
     assert_eq!(rules(&reading), ["layer-empty", "hole-twice"]);
     assert!(reading.board.front.copper.is_none());
     assert_eq!(reading.board.holes.len(), 2);
+}
+
+#[test]
+fn lists_of_drills_are_no_holes() {
+    let copper = layer("Copper,L1,Top", "D11*\nX10000Y10000D03*\n");
+    let reading = read(&[("a", &copper), ("a.drl", b"T01  0.024in\nT02  0.031in\n")]).unwrap();
+    assert_eq!(rules(&reading), ["file-unused"]);
+    // Holes without a header, known by their coordinates.
+    let bare = b"%\nT1C0.8\nT1\nX10.0Y10.0\nM30\n";
+    assert!(read(&[("a.drd", b"M48\nMETRIC\nT1C0.8\n%\nT1\nX1.0Y1.0\nM30\n")]).is_ok());
+    assert_eq!(read(&[("a.txt", bare)]).unwrap().board.holes.len(), 1);
+}
+
+proptest! {
+    /// A rectangle with rounded corners and a hole, in any order and direction, some pieces twice.
+    #[test]
+    fn an_outline_in_any_order(
+        order in prop::collection::vec(any::<prop::sample::Index>(), 12),
+        back in prop::collection::vec(any::<bool>(), 12),
+        radius in 0.5..4.0f64,
+    ) {
+        let radius = (radius * 1000.0).round() / 1000.0;
+        let (w, h, r) = (20.0, 12.0, radius);
+        let sides = [((r, 0.0), (w - r, 0.0)), ((w, r), (w, h - r)), ((w - r, h), (r, h)), ((0.0, h - r), (0.0, r))];
+        let corners = [(w - r, r), (w - r, h - r), (r, h - r), (r, r)];
+        let hole = [((8.0, 5.0), (12.0, 5.0)), ((12.0, 5.0), (10.0, 8.0)), ((10.0, 8.0), (8.0, 5.0))];
+        let units = |mm: f64| (mm * 1000.0).round() as i64;
+        let piece = |i: usize| -> String {
+            // A hole, four sides, and between two sides an arc.
+            let (from, to, center) = match i {
+                0..3 => (hole[i].0, hole[i].1, None),
+                3..7 => (sides[i - 3].0, sides[i - 3].1, None),
+                _ => (sides[(i - 7) % 4].1, sides[(i - 6) % 4].0, Some(corners[(i - 7) % 4])),
+            };
+            let (from, to, code) = if back[i] { (to, from, 2) } else { (from, to, 3) };
+            let start = format!("D10*\nG01X{}Y{}D02*\n", units(from.0), units(from.1));
+            let end = format!("X{}Y{}", units(to.0), units(to.1));
+            let way = match center {
+                None => format!("G01{end}D01*\n"),
+                Some((x, y)) => {
+                    format!("G0{code}{end}I{}J{}D01*\n", units(x - from.0), units(y - from.1))
+                }
+            };
+            start + &way
+        };
+        // All eleven, and one of them again.
+        let mut pieces: Vec<usize> = (0..11).collect();
+        pieces.push(order[0].index(11));
+        for (i, with) in order.iter().enumerate() {
+            pieces.swap(i, with.index(12));
+        }
+        let text: String = pieces.into_iter().map(piece).collect();
+        let reading = outline(&text).unwrap();
+        let area = reading.board.outline.as_ref().unwrap().area();
+        let expected = w * h - (4.0 - PI) * r * r - 6.0;
+        prop_assert!((area - expected).abs() < 1e-5, "{} is not {}", area, expected);
+        prop_assert!(!rules(&reading).contains(&"outline-gap"));
+    }
 }

@@ -448,7 +448,7 @@ fn the_edge_has_lines_arcs_curves_and_cut_outs_also_in_footprints() {
         None
     );
     let target = board("(target plus (at 0 0) (size 5) (width 0.1) (layer \"Edge.Cuts\"))");
-    assert_eq!((rules(&target), &target.board.outline), (vec!["target"], &None));
+    assert_eq!((rules(&target), &target.board.outline), (vec!["not-an-edge"], &None));
 }
 
 #[test]

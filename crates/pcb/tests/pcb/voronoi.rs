@@ -133,7 +133,16 @@ fn widths_that_are_none_are_refused() {
     for width in [0.0, -1.0, f64::NAN, f64::INFINITY] {
         assert_eq!(divided(&copper, &board, width).unwrap_err().rule, "tool-width");
     }
-    assert_eq!(divided(&copper, &board, 1e-6).unwrap_err().rule, "too-much");
+}
+
+#[test]
+fn a_gap_that_takes_too_many_points_is_refused() {
+    // 100 mm, 20 nm wide: a point each 5 nm.
+    let (low, high) =
+        (rectangle((0.0, 0.0), (100.0, 1.0)), rectangle((0.0, 1.00002), (100.0, 2.0)));
+    let board = rectangle((0.0, 0.0), (100.0, 2.0));
+    let error = divided(&copper(&[low, high]), &board, 1e-6).unwrap_err();
+    assert_eq!(error.rule, "too-much");
 }
 
 #[test]

@@ -46,9 +46,9 @@ pub fn of(
     for made in programs {
         rows.extend(made.rows(machine));
     }
-    let places = programs.iter().flat_map(|made| {
-        made.job.problems.iter().map(|(place, what)| (made.job.name, *place, what))
-    });
+    let places = programs
+        .iter()
+        .flat_map(|made| made.work.places.iter().map(|(place, what)| (made.name, *place, what)));
     let shown = |(name, place, what): (&str, geom::Vec2, &String)| {
         format!("{name}, X{:.3} Y{:.3}: {what}", place.x, place.y)
     };
@@ -73,7 +73,7 @@ pub fn of(
     Report { rows, data }
 }
 
-impl Made<'_> {
+impl Made {
     /// A line for each tool, and what the program amounts to.
     fn rows(&self, machine: &Machine) -> Vec<(&'static str, String)> {
         let shape = Shape::of(&self.program);
@@ -82,10 +82,10 @@ impl Made<'_> {
         let (blocks, off) =
             (&data["program"]["blocks"], &data["proof"]["deviations"]["tip_mm"]["value"]);
         let operations: Vec<&str> =
-            self.job.operations.iter().map(|operation| operation.name.as_str()).collect();
+            self.work.operations.iter().map(|operation| operation.name.as_str()).collect();
         let (cutting, rapid) = shape.lengths();
         vec![
-            (self.job.name, operations.join(", ")),
+            (self.name, operations.join(", ")),
             (
                 "",
                 format!(
@@ -107,10 +107,10 @@ impl Made<'_> {
             // Said once for all programs.
             data.retain(|key, _| key != "toolpost" && key != "machine");
         }
-        data["name"] = json!(self.job.name);
+        data["name"] = json!(self.name);
         data["operations"] =
-            json!(self.job.operations.iter().map(|operation| &operation.name).collect::<Vec<_>>());
-        data["places"] = self.job.problems.iter().map(place).collect();
+            json!(self.work.operations.iter().map(|operation| &operation.name).collect::<Vec<_>>());
+        data["places"] = self.work.places.iter().map(place).collect();
         data["warnings"] = json!(account.findings);
         data
     }

@@ -4,6 +4,7 @@ mod bad_input;
 mod commands;
 mod folder;
 mod freecad;
+mod import;
 mod nc;
 mod saving;
 mod wire;

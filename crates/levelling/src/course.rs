@@ -1,0 +1,140 @@
+//! The height of the surface along a way, as few straight pieces as a tolerance allows.
+
+use crate::heights::HeightMap;
+use geom::{Arc, Vec2, Vec3};
+use std::f64::consts::TAU;
+
+/// At how many places of one way the height is looked at, at most.
+const MOST: usize = 100_000;
+
+/// A way over the surface, from 0 at its start to 1 at its end.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Way<'a> {
+    /// Straight.
+    Line(Vec3, Vec3),
+    /// About the vertical.
+    Arc(&'a Arc),
+}
+
+impl Way<'_> {
+    /// The point at `t`.
+    pub(crate) fn at(&self, t: f64) -> Vec3 {
+        match self {
+            Way::Line(from, to) if t < 1.0 => from.lerp(*to, t),
+            Way::Line(_, to) => *to,
+            Way::Arc(arc) => arc.at(t),
+        }
+    }
+
+    /// How often it goes round; as a line, half.
+    fn turns(&self) -> f64 {
+        match self {
+            Way::Line(..) => 0.5,
+            Way::Arc(arc) => arc.sweep / TAU,
+        }
+    }
+
+    /// Where it crosses a line of the grid, in no order. An arc of several turns crosses it in each.
+    fn crossings(&self, axis: usize, line: f64, crossings: &mut Vec<f64>) {
+        match self {
+            Way::Line(from, to) => {
+                let t = (line - from[axis]) / (to[axis] - from[axis]);
+                crossings.extend(Some(t).filter(|t| *t > 0.0 && *t < 1.0));
+            }
+            Way::Arc(arc) => {
+                let from = arc.start - arc.center;
+                let side = arc.normal.cross(from);
+                // from · cos + side · sin reaches the line.
+                let (radius, zero) = (from[axis].hypot(side[axis]), side[axis].atan2(from[axis]));
+                let reach = ((line - arc.center[axis]) / radius).clamp(-2.0, 2.0);
+                if reach.abs() > 1.0 {
+                    return;
+                }
+                for angle in [zero + reach.acos(), zero - reach.acos()] {
+                    let mut angle = angle.rem_euclid(TAU);
+                    while angle < arc.sweep {
+                        crossings.push(angle / arc.sweep);
+                        angle += TAU;
+                    }
+                }
+            }
+        }
+    }
+
+    /// Into how many parts of one patch a part of the way goes, so that in none the surface leaves the chord
+    /// by more than `tolerance`: a part of length d (of 1) whose height has the second derivative f'' bulges by
+    /// at most f'' d² / 8.
+    fn parts(&self, map: &HeightMap, from: f64, to: f64, tolerance: f64) -> usize {
+        let middle = self.at((from + to) / 2.0);
+        let patch = map.patch(Vec2::new(middle.x, middle.y));
+        let second = match self {
+            Way::Line(from, to) => 2.0 * (patch.twist * (to.x - from.x) * (to.y - from.y)).abs(),
+            Way::Arc(arc) => {
+                let radius = arc.radius().max((arc.end - arc.center).truncate().length());
+                let bend = radius * patch.slope + radius * radius * patch.twist.abs();
+                bend * arc.sweep * arc.sweep
+            }
+        };
+        ((to - from) * (second / (8.0 * tolerance)).sqrt()).ceil().max(1.0) as usize
+    }
+}
+
+/// Where a way is cut into pieces, each with the height that the tool has there: between two of them the
+/// height that rises evenly is within `tolerance` mm of that of the way over the surface. The last is the end.
+/// `None` where the height would have to be looked at in too many places.
+pub(crate) fn course(way: Way, map: &HeightMap, tolerance: f64) -> Option<Vec<(f64, f64)>> {
+    let [columns, rows] = map.lines();
+    // A line of the grid is crossed twice in a turn.
+    let crossings = 2.0 * way.turns().ceil() * (columns.len() + rows.len()) as f64;
+    if crossings > MOST as f64 {
+        return None;
+    }
+    let mut seams = vec![0.0, 1.0];
+    for (axis, lines) in [columns, rows].into_iter().enumerate() {
+        lines.iter().for_each(|&line| way.crossings(axis, line, &mut seams));
+    }
+    seams.sort_by(f64::total_cmp);
+    let height = |t: f64| {
+        let point = way.at(t);
+        point.z + map.at(Vec2::new(point.x, point.y))
+    };
+    // Half of the tolerance for what lies between two samples, half for the samples.
+    let half = tolerance / 2.0;
+    let mut samples = vec![(0.0, height(0.0))];
+    for seam in seams.windows(2).filter(|seam| seam[1] > seam[0]) {
+        let parts = way.parts(map, seam[0], seam[1], half);
+        if samples.len().saturating_add(parts) > MOST {
+            return None;
+        }
+        samples.extend((1..=parts).map(|part| {
+            let t = match part == parts {
+                true => seam[1],
+                false => seam[0] + (seam[1] - seam[0]) * part as f64 / parts as f64,
+            };
+            (t, height(t))
+        }));
+    }
+    Some(chords(&samples, half))
+}
+
+/// The ends of chords from sample to sample that leave none of those between by more than `tolerance`: each
+/// goes on for as long as some slope from its start would do for all of them.
+fn chords(samples: &[(f64, f64)], tolerance: f64) -> Vec<(f64, f64)> {
+    let mut ends = Vec::new();
+    let Some(&(mut start)) = samples.first() else { return ends };
+    let (mut least, mut most) = (f64::NEG_INFINITY, f64::INFINITY);
+    let mut last = start;
+    for &(t, height) in &samples[1..] {
+        let slope = |height: f64, start: (f64, f64)| (height - start.1) / (t - start.0);
+        if !(least..=most).contains(&slope(height, start)) {
+            ends.push(last);
+            start = last;
+            (least, most) = (f64::NEG_INFINITY, f64::INFINITY);
+        }
+        least = least.max(slope(height - tolerance, start));
+        most = most.min(slope(height + tolerance, start));
+        last = (t, height);
+    }
+    ends.push(last);
+    ends
+}

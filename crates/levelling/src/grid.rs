@@ -1,0 +1,113 @@
+//! Where a surface is probed, and the program that does it.
+
+use geom::{Vec2, Vec3};
+use program::{Diagnostic, Feed, Op, Pose, Probe, Program};
+
+/// The most places that a grid has: a probe takes seconds for each.
+const MOST_PLACES: usize = 10_000;
+
+/// The names of files that a comment can hold.
+const NAME: &str = "letters, digits and . - _ /";
+
+/// Places at even distances over a rectangle, its corners among them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Grid {
+    from: Vec2,
+    to: Vec2,
+    columns: usize,
+    rows: usize,
+}
+
+impl Grid {
+    /// The grid of `columns` by `rows` places over the rectangle between two corners, mm.
+    ///
+    /// # Errors
+    /// Fewer than two columns or rows, more than 10,000 places, or a rectangle without area.
+    pub fn new(from: Vec2, to: Vec2, columns: usize, rows: usize) -> Result<Grid, Box<Diagnostic>> {
+        let wrong = |message: String, help: &str| {
+            Err(Diagnostic::error("probing-grid", message).help(help).into())
+        };
+        if columns < 2 || rows < 2 || columns.saturating_mul(rows) > MOST_PLACES {
+            let message = format!("a grid of {columns} by {rows} places");
+            return wrong(message, "2 columns and 2 rows at least, and 10000 places at most");
+        }
+        let (from, to) = (from.min(to), from.max(to));
+        if !(from.is_finite() && to.is_finite() && from.x < to.x && from.y < to.y) {
+            let message = format!("a grid from X{} Y{} to X{} Y{} mm", from.x, from.y, to.x, to.y);
+            return wrong(message, "the corners of a rectangle lie apart in X and in Y");
+        }
+        Ok(Grid { from, to, columns, rows })
+    }
+
+    /// Its places in the order in which they are probed, row after row, every second one backwards.
+    pub fn places(&self) -> impl Iterator<Item = Vec2> + '_ {
+        let part = |index: usize, count: usize| index as f64 / (count - 1) as f64;
+        (0..self.rows).flat_map(move |row| {
+            (0..self.columns).map(move |column| {
+                let column = if row % 2 == 0 { column } else { self.columns - 1 - column };
+                let at = Vec2::new(part(column, self.columns), part(row, self.rows));
+                self.from + (self.to - self.from) * at
+            })
+        })
+    }
+}
+
+/// How a surface is probed; its height is expected at Z 0.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Probing {
+    /// Height of the moves from place to place, from which each probe starts, mm above the surface.
+    pub travel: f64,
+    /// How deep below the surface it is looked for, mm, greater than 0.
+    pub depth: f64,
+    /// Feed of the probe, mm/min.
+    pub feed: f64,
+}
+
+impl Probing {
+    /// The program that probes `grid`. With `log` it names the file in which LinuxCNC keeps what it finds;
+    /// a sender of GRBL keeps what the machine answers.
+    ///
+    /// # Errors
+    /// A height, depth or feed that is not greater than 0; a name that a comment cannot hold.
+    pub fn program(
+        &self,
+        name: &str,
+        grid: &Grid,
+        log: Option<&str>,
+    ) -> Result<Program, Box<Diagnostic>> {
+        let wrong = |message: String, help: &str| {
+            Err(Diagnostic::error("probing", message).help(help).into())
+        };
+        for (what, value) in
+            [("travel height", self.travel), ("depth", self.depth), ("feed", self.feed)]
+        {
+            if !(value.is_finite() && value > 0.0) {
+                return wrong(format!("the {what} of the probe is {value}"), "greater than 0");
+            }
+        }
+        let takes = |byte: u8| byte.is_ascii_alphanumeric() || b".-_/".contains(&byte);
+        if let Some(file) = log.filter(|file| file.is_empty() || !file.bytes().all(takes)) {
+            return wrong(format!("the log is called `{file}`"), NAME);
+        }
+        let mut program = Program::new(name);
+        let mut push = |op| program.push(0, op);
+        let pose = |at: Vec2, z: f64| Pose::new(at.extend(z), Vec3::Z);
+        push(Op::Operation("probing".into()));
+        if let Some(file) = log {
+            push(Op::Comment(format!("PROBEOPEN {file}").into()));
+        }
+        push(Op::Feed(Feed::PerMinute(self.feed)));
+        for at in grid.places() {
+            push(Op::Rapid(pose(at, self.travel)));
+            let end = pose(at, -self.depth);
+            push(Op::Probe(Box::new(Probe { end, away: false, must_answer: true })));
+            push(Op::Rapid(pose(at, self.travel)));
+        }
+        if log.is_some() {
+            push(Op::Comment("PROBECLOSE".into()));
+        }
+        push(Op::EndOfOperation);
+        push(Op::End);
+        Ok(program)
+    }
+}

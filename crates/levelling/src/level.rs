@@ -1,0 +1,276 @@
+//! A program that follows a surface.
+
+use crate::course::{Way, course};
+use crate::heights::HeightMap;
+use geom::{Arc, Vec2, Vec3};
+use program::{ArcTo, Compensation, Diagnostic, Feed, Op, Pose, Program, Record};
+use std::f64::consts::TAU;
+
+/// The most records of a levelled program, which are kept in memory.
+const MOST_RECORDS: usize = 20_000_000;
+
+/// Pieces of an arc that are shorter go straight, mm: rounded, they could be taken for full circles.
+const SHORT: f64 = 0.01;
+
+/// A step that may be refused.
+type Done = Result<(), Box<Diagnostic>>;
+
+/// What two radii of an arc may differ by, mm.
+const ROUND: f64 = 0.01;
+
+/// How much a levelled program may leave the surface.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Allowed {
+    /// How far the tool may be from its height over the surface, mm, 0.0001 at least.
+    pub deviation: f64,
+    /// How far outside the places that were probed a cut may go, mm, where the surface is taken to be as high as
+    /// at their edge.
+    pub outside: f64,
+}
+
+/// The program with the surface of `map` where `program` has Z 0: each cut is as far from the surface as it was
+/// from Z 0, its lines and arcs divided so that they follow it; an arc becomes a helix. Holes go down from
+/// the surface where they are. Rapids stay as far above the highest place as they were above Z 0; one that ends
+/// below the surface, in a hole, keeps its distance there.
+///
+/// # Errors
+/// What cannot be levelled, with its line: a cut outside the map, a tilted tool, an arc in another plane than
+/// XY, threads and probing moves, a cycle that retracts to less than the highest place, radius compensation, feeds as inverse time, a rapid along the board below its
+/// surface, several work offsets, a cut from an unknown place.
+pub fn level(
+    program: &Program,
+    map: &HeightMap,
+    allowed: &Allowed,
+) -> Result<Program, Box<Diagnostic>> {
+    if !(allowed.deviation >= 1e-4 && allowed.deviation.is_finite() && allowed.outside >= 0.0) {
+        let message = format!(
+            "a deviation of {} mm, {} mm outside the map",
+            allowed.deviation, allowed.outside
+        );
+        let help = "a deviation of 0.0001 mm at least, and no negative distance";
+        return Err(Diagnostic::error("levelling-tolerance", message).help(help).into());
+    }
+    let mut level = Level {
+        map,
+        allowed,
+        lift: map.highest().max(0.0),
+        place: None,
+        retract: 0.0,
+        work_offset: None,
+        records: Vec::with_capacity(program.records.len()),
+    };
+    for record in &program.records {
+        level.record(record).map_err(|found| Box::new(found.line(record.line)))?;
+    }
+    Ok(Program { name: program.name.clone(), records: level.records })
+}
+
+/// Where the tool is: as the program says it, and how high it really is.
+#[derive(Clone, Copy, Debug)]
+struct Place {
+    said: Vec3,
+    height: f64,
+}
+
+struct Level<'a> {
+    map: &'a HeightMap,
+    allowed: &'a Allowed,
+    /// By how much rapids are higher, mm.
+    lift: f64,
+    place: Option<Place>,
+    /// Retract level of the cycle that holds, mm above the point of a hole.
+    retract: f64,
+    work_offset: Option<u32>,
+    records: Vec<Record>,
+}
+
+impl Level<'_> {
+    fn record(&mut self, record: &Record) -> Done {
+        let line = record.line;
+        match &record.op {
+            Op::Rapid(pose) => {
+                let said = upright(pose)?;
+                self.rapid(line, said)
+            }
+            Op::Line(pose) => {
+                let to = upright(pose)?;
+                let from = self.start(line, to)?;
+                self.inside(from, to)?;
+                for (t, z) in self.course(Way::Line(from, to))? {
+                    let at = Way::Line(from, to).at(t);
+                    self.push(line, Op::Line(Pose::new(at.with_z(z), Vec3::Z)))?;
+                }
+                self.arrive(to);
+                Ok(())
+            }
+            Op::Arc(arc) => self.arc(line, arc),
+            Op::Hole(pose) => {
+                let point = upright(pose)?;
+                self.inside(point, point)?;
+                let height = self.map.at(point.truncate());
+                // From there the tool goes to the next one.
+                if point.z + height + self.retract < self.map.highest() {
+                    let message = format!(
+                        "from a hole the tool goes on at {} mm above it, and the board rises higher",
+                        self.retract
+                    );
+                    return Err(refused(message, "a higher retract level of the cycle"));
+                }
+                self.push(line, Op::Hole(Pose::new(point + Vec3::Z * height, Vec3::Z)))?;
+                self.arrive(point + Vec3::Z * self.retract);
+                Ok(())
+            }
+            op => {
+                self.modal(op)?;
+                self.push(line, op.clone())
+            }
+        }
+    }
+
+    /// What is no move and stays as it is.
+    fn modal(&mut self, op: &Op) -> Done {
+        match op {
+            Op::Cycle(cycle) => self.retract = cycle.retract,
+            Op::Tool(_) | Op::Home(_) => self.place = None,
+            Op::WorkOffset(number) => match self.work_offset.replace(*number) {
+                Some(before) if before != *number => {
+                    let message = "the program works in several work offsets, the map in one";
+                    return Err(refused(message, "post each as a program of its own"));
+                }
+                _ => {}
+            },
+            Op::Thread(_) | Op::Probe(_) => {
+                let message = "a thread or a probing move in a program that is levelled";
+                return Err(refused(message, "post it as a program of its own"));
+            }
+            Op::Compensation(Compensation::Left(_) | Compensation::Right(_)) => {
+                let message = "radius compensation: the way of the tool's middle is the control's";
+                return Err(refused(message, "post the way of the tool's middle"));
+            }
+            Op::Feed(Feed::InverseTime(_)) => {
+                let message = "a feed as inverse time, and moves that are divided";
+                return Err(refused(message, "post with feeds in mm/min"));
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    fn push(&mut self, line: u32, op: Op) -> Done {
+        if self.records.len() >= MOST_RECORDS {
+            let message = format!("the levelled program has more than {MOST_RECORDS} records");
+            return Err(refused(message, "allow a larger deviation, or level it in parts"));
+        }
+        self.records.push(Record { line, op });
+        Ok(())
+    }
+
+    /// The tool stands at the surface's height over `said`.
+    fn arrive(&mut self, said: Vec3) {
+        let height = said.z + self.map.at(said.truncate());
+        self.place = Some(Place { said, height });
+    }
+
+    fn rapid(&mut self, line: u32, said: Vec3) -> Done {
+        let lift = match said.z < 0.0 {
+            true => {
+                let from = self.place.map(|place| place.said.truncate());
+                if from != Some(said.truncate()) {
+                    let message = format!("a rapid along the board to Z{} mm, below it", said.z);
+                    return Err(refused(message, "go there at feed, or above the board"));
+                }
+                self.map.at(said.truncate())
+            }
+            false => self.lift,
+        };
+        let height = said.z + lift;
+        self.place = Some(Place { said, height });
+        self.push(line, Op::Rapid(Pose::new(said.with_z(height), Vec3::Z)))
+    }
+
+    /// Where a cut to `to` starts: the tool goes down to the surface's height there, unless the cut itself goes
+    /// straight down.
+    fn start(&mut self, line: u32, to: Vec3) -> Result<Vec3, Box<Diagnostic>> {
+        let Some(Place { said, height }) = self.place else {
+            let message = "a cut from a place that is not known";
+            return Err(refused(message, "a rapid to its start before it"));
+        };
+        let wanted = said.z + self.map.at(said.truncate());
+        if wanted != height && said.truncate() != to.truncate() {
+            self.push(line, Op::Line(Pose::new(said.with_z(wanted), Vec3::Z)))?;
+        }
+        Ok(said)
+    }
+
+    fn course(&self, way: Way) -> Result<Vec<(f64, f64)>, Box<Diagnostic>> {
+        course(way, self.map, self.allowed.deviation).ok_or_else(|| {
+            let message = "a move over so much of the surface that it has more than 100000 pieces";
+            refused(message, "allow a larger deviation, or divide it")
+        })
+    }
+
+    fn arc(&mut self, line: u32, to: &ArcTo) -> Done {
+        let end = upright(&to.end)?;
+        if to.normal.truncate() != Vec2::ZERO {
+            let message = "an arc that does not turn in the plane XY";
+            return Err(refused(message, "post it as lines"));
+        }
+        // A full circle ends where it starts, and goes down first all the same.
+        let from = self.start(line, Vec3::NAN)?;
+        let arc = Arc::new(from, end, to.center, to.normal, to.turns, ROUND);
+        let arc = arc.map_err(|_| {
+            refused("an arc whose ends are not equally far from its centre", "correct the source")
+        })?;
+        let (low, high) = arc.extents();
+        self.inside(low, high)?;
+        let way = Way::Arc(&arc);
+        let mut before = 0.0;
+        for (t, z) in self.course(way)? {
+            let pose = Pose::new(way.at(t).with_z(z), Vec3::Z);
+            let sweep = (t - before) * arc.sweep;
+            let op = match sweep * arc.radius() < SHORT {
+                true => Op::Line(pose),
+                false => {
+                    // Ends that meet are one turn, not none.
+                    let turns = ((sweep / TAU - 1e-9).ceil() - 1.0).max(0.0) as u32;
+                    Op::Arc(Box::new(ArcTo { end: pose, turns, ..*to }))
+                }
+            };
+            self.push(line, op)?;
+            before = t;
+        }
+        self.arrive(end);
+        Ok(())
+    }
+
+    /// # Errors
+    /// A cut between two corners goes further outside the map than is allowed.
+    fn inside(&self, one: Vec3, other: Vec3) -> Done {
+        let (from, to) = self.map.extents();
+        let (low, high) = (one.min(other).truncate(), one.max(other).truncate());
+        let outside = (from - low).max(high - to).max_element();
+        if outside <= self.allowed.outside {
+            return Ok(());
+        }
+        let message = format!(
+            "a cut goes {outside:.3} mm beyond what was probed, X{} to X{} and Y{} to Y{}",
+            from.x, to.x, from.y, to.y
+        );
+        Err(refused(message, "probe all of the board, or see that both have the same zero"))
+    }
+}
+
+/// The point of a pose whose tool is upright.
+fn upright(pose: &Pose) -> Result<Vec3, Box<Diagnostic>> {
+    if pose.axis() != Some(Vec3::Z) {
+        return Err(refused("the tool is tilted", "level a program whose tool is upright"));
+    }
+    if !pose.point.is_finite() {
+        return Err(refused("a place that is not known", "name every axis"));
+    }
+    Ok(pose.point)
+}
+
+fn refused(message: impl Into<String>, help: &str) -> Box<Diagnostic> {
+    Diagnostic::error("levelling", message).help(help).into()
+}

@@ -1,0 +1,21 @@
+//! Surfaces that are not flat: probed on a grid, and programs that follow them.
+//!
+//! ```text
+//!   Grid ── probing ──▶ Program ─ ─ the machine ─ ─▶ log ── read ──▶ HeightMap
+//!                                                                        │
+//!                       Program ──────────────── level ──────────────────┴──▶ Program
+//! ```
+//!
+//! The surface between the places that were probed is bilinear; Z 0 is where the surface was taken to be. What
+//! is believed of the logs, with its sources, is in `docs/sources/heights.md`.
+
+mod course;
+mod grid;
+mod heights;
+mod level;
+mod log;
+
+pub use grid::{Grid, Probing};
+pub use heights::HeightMap;
+pub use level::{Allowed, level};
+pub use log::read;

@@ -1,0 +1,352 @@
+//! Levelled programs beside the surface that they follow, sample by sample.
+
+use geom::{Arc, Vec2, Vec3};
+use program::{ArcTo, Cycle, CycleKind, Feed, Op, Pose, Program, Spindle};
+use proptest::prelude::*;
+use toolpost_levelling::{Allowed, Grid, HeightMap, Probing, level, read};
+
+const ALLOWED: Allowed = Allowed { deviation: 0.005, outside: 5.0 };
+
+/// A map of 4 by 3 places at uneven distances over 0 to 60 and 0 to 40 mm.
+fn map(heights: &[f64]) -> HeightMap {
+    let (columns, rows) = ([0.0, 13.0, 31.0, 60.0], [0.0, 22.0, 40.0]);
+    let places = rows.iter().flat_map(|&y| columns.map(|x| (x, y)));
+    let points = places.zip(heights).map(|((x, y), &z)| Vec3::new(x, y, z));
+    HeightMap::of(&points.collect::<Vec<_>>()).unwrap()
+}
+
+fn pose(x: f64, y: f64, z: f64) -> Pose {
+    Pose::new(Vec3::new(x, y, z), Vec3::Z)
+}
+
+fn program(ops: Vec<Op>) -> Program {
+    let mut program = Program::new("board");
+    ops.into_iter().zip(1..).for_each(|(op, line)| program.push(line, op));
+    program
+}
+
+/// The moves of a program as ways in space: rapid or not, and the point at any part of each.
+fn ways(program: &Program) -> Vec<(u32, bool, Arc, bool)> {
+    let mut here: Option<Vec3> = None;
+    let mut ways = Vec::new();
+    for record in &program.records {
+        let Some(end) = record.op.pose().map(|pose| pose.point) else { continue };
+        if let Some(start) = here.replace(end) {
+            let line = Arc { start, end, center: start, normal: Vec3::Z, sweep: 0.0 };
+            match &record.op {
+                Op::Arc(arc) => {
+                    let way =
+                        Arc::new(start, end, arc.center, arc.normal, arc.turns, 0.02).unwrap();
+                    ways.push((record.line, false, way, true));
+                }
+                op => ways.push((record.line, matches!(op, Op::Rapid(_)), line, false)),
+            }
+        }
+    }
+    ways
+}
+
+/// Points of a way, its ends among them.
+fn samples(way: &Arc, is_arc: bool, count: usize) -> impl Iterator<Item = Vec3> + '_ {
+    (0..=count).map(move |n| {
+        let t = n as f64 / count as f64;
+        if is_arc { way.at(t) } else { way.start.lerp(way.end, t) }
+    })
+}
+
+/// A cut of the source, from (x, y) at a depth to (x, y) at another, straight or as an arc about a centre.
+#[derive(Clone, Debug)]
+enum Move {
+    Line([f64; 3]),
+    Arc { center: [f64; 2], sweep: f64, turns: u32, rise: f64, clockwise: bool },
+}
+
+fn moves() -> impl Strategy<Value = Move> {
+    let inside = || (5.0..55.0, 5.0..35.0);
+    prop_oneof![
+        (inside(), -1.0..0.0).prop_map(|((x, y), z)| Move::Line([x, y, z])),
+        (inside(), 0.05..6.25, 0u32..3, -0.3..0.3, any::<bool>()).prop_map(
+            |((x, y), sweep, turns, rise, clockwise)| Move::Arc {
+                center: [x, y],
+                sweep,
+                turns,
+                rise,
+                clockwise
+            }
+        ),
+    ]
+}
+
+/// The program of these moves: a rapid, a plunge, the cuts, a rapid.
+fn source(moves: &[Move]) -> Program {
+    let mut ops = vec![Op::Rapid(pose(20.0, 20.0, 2.0)), Op::Feed(Feed::PerMinute(100.0))];
+    let mut here = Vec3::new(20.0, 20.0, -0.1);
+    ops.push(Op::Line(Pose::new(here, Vec3::Z)));
+    for step in moves {
+        match *step {
+            Move::Line(end) => {
+                here = Vec3::from_array(end);
+                ops.push(Op::Line(Pose::new(here, Vec3::Z)));
+            }
+            Move::Arc { center, sweep, turns, rise, clockwise } => {
+                let center = Vec2::from_array(center);
+                let spoke = here.truncate() - center;
+                // Within the map and its rim.
+                if !(0.1..18.0).contains(&spoke.length()) {
+                    continue;
+                }
+                let sense = if clockwise { -1.0 } else { 1.0 };
+                let end = center + Vec2::from_angle(sense * sweep).rotate(spoke);
+                here = end.extend((here.z + rise).min(0.0));
+                ops.push(Op::Arc(Box::new(ArcTo {
+                    end: Pose::new(here, Vec3::Z),
+                    center: center.extend(0.0),
+                    normal: Vec3::Z * sense,
+                    turns,
+                })));
+            }
+        }
+    }
+    ops.push(Op::Rapid(pose(here.x, here.y, 2.0)));
+    program(ops)
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(200))]
+
+    /// Each cut, sampled densely, is where the source has it in X and Y, at the height of the surface above
+    /// it, from its start to its end.
+    #[test]
+    fn every_cut_follows_the_surface(
+        heights in prop::collection::vec(-0.5..0.5, 12),
+        moves in prop::collection::vec(moves(), 1..6),
+    ) {
+        let (map, source) = (map(&heights), source(&moves));
+        let allowed = Allowed { outside: 20.0, ..ALLOWED };
+        let levelled = level(&source, &map, &allowed).unwrap();
+        let cuts = ways(&source).into_iter().filter(|(_, rapid, ..)| !rapid);
+        let levelled = ways(&levelled);
+        for (line, _, way, is_arc) in cuts {
+            let pieces: Vec<_> = levelled.iter().filter(|(of, ..)| *of == line).collect();
+            prop_assert!(!pieces.is_empty());
+            let flat = match is_arc {
+                true => way.radius() * way.sweep,
+                false => way.start.truncate().distance(way.end.truncate()),
+            };
+            if way.start.truncate() == way.end.truncate() && !is_arc {
+                // Straight down from above.
+                prop_assert_eq!(pieces.len(), 1);
+                prop_assert!(
+                    (pieces[0].2.end.z - way.end.z - map.at(way.end.truncate())).abs() < 1e-9
+                );
+                continue;
+            }
+            let mut gone = 0.0;
+            for (_, _, piece, bent) in pieces {
+                let whole = piece.start.truncate().distance(piece.end.truncate());
+                let own = match bent {
+                    true => piece.radius() * piece.sweep,
+                    false => whole,
+                };
+                for (n, point) in samples(piece, *bent, 64).enumerate() {
+                    // Where the source is when it has gone as far in the plane.
+                    let t = ((gone + own * n as f64 / 64.0) / flat).min(1.0);
+                    let said = if is_arc { way.at(t) } else { way.start.lerp(way.end, t) };
+                    prop_assert!(
+                        said.truncate().distance(point.truncate()) < 2e-3,
+                        "{t}: {said} {point}"
+                    );
+                    let wanted = said.z + map.at(said.truncate());
+                    prop_assert!(
+                        (point.z - wanted).abs() <= ALLOWED.deviation + 1e-3 * 0.2,
+                        "{} instead of {wanted}", point.z
+                    );
+                }
+                gone += own;
+            }
+            prop_assert!((gone - flat).abs() < 1e-3 * flat.max(1.0));
+        }
+    }
+}
+
+#[test]
+fn a_flat_surface_shifts_a_program_and_divides_nothing() {
+    let source = source(&[
+        Move::Line([40.0, 30.0, -0.1]),
+        Move::Arc { center: [30.0, 20.0], sweep: 6.0, turns: 2, rise: 0.0, clockwise: true },
+    ]);
+    let levelled = level(&source, &map(&[0.25; 12]), &ALLOWED).unwrap();
+    assert_eq!(levelled.records.len(), source.records.len());
+    for (was, is) in source.records.iter().zip(&levelled.records) {
+        assert_eq!(was.line, is.line);
+        if let (Some(was), Some(is)) = (was.op.pose(), is.op.pose()) {
+            assert!((was.point + Vec3::Z * 0.25).distance(is.point) < 1e-12);
+        }
+    }
+    assert_eq!(level(&source, &map(&[0.0; 12]), &ALLOWED).unwrap(), source);
+}
+
+/// A surface that rises evenly: each line stays one, and an arc is divided as the sine asks for.
+#[test]
+fn a_tilted_plane_divides_arcs_alone() {
+    let tilted: Vec<f64> = [0.0, 22.0, 40.0]
+        .iter()
+        .flat_map(|y| [0.0, 13.0, 31.0, 60.0].map(|x| 0.01 * x + 0.002 * y))
+        .collect();
+    let line = source(&[Move::Line([55.0, 35.0, -0.1])]);
+    assert_eq!(level(&line, &map(&tilted), &ALLOWED).unwrap().records.len(), line.records.len());
+    let arc = source(&[Move::Arc {
+        center: [30.0, 20.0],
+        sweep: std::f64::consts::PI,
+        turns: 0,
+        rise: 0.0,
+        clockwise: false,
+    }]);
+    let levelled = level(&arc, &map(&tilted), &ALLOWED).unwrap();
+    // The height goes as 0.102 sin: chords of 40° bulge by 0.102 · 0.7² / 8 = 0.006 at most.
+    let pieces = levelled.records.iter().filter(|r| matches!(r.op, Op::Arc(_))).count();
+    assert!((4..=9).contains(&pieces), "{pieces}");
+}
+
+#[test]
+fn rapids_are_lifted_and_holes_go_down_from_their_surface() {
+    let cycle = Cycle {
+        kind: CycleKind::Drill,
+        depth: 1.8,
+        clearance: 0.5,
+        retract: 2.0,
+        feed: None,
+        dwell: 0.0,
+        first_peck: None,
+        peck: None,
+    };
+    let source = program(vec![
+        Op::Rapid(pose(0.0, 0.0, 3.0)),
+        Op::Cycle(Box::new(cycle)),
+        Op::Hole(pose(0.0, 0.0, 0.0)),
+        Op::Hole(pose(60.0, 40.0, 0.0)),
+        Op::CycleOff,
+        Op::Rapid(pose(60.0, 40.0, 3.0)),
+    ]);
+    let mut heights = [0.0; 12];
+    (heights[0], heights[11], heights[5]) = (-0.2, 0.3, 0.4);
+    let levelled = level(&source, &map(&heights), &ALLOWED).unwrap();
+    let z: Vec<f64> = levelled.records.iter().filter_map(|r| Some(r.op.pose()?.point.z)).collect();
+    assert_eq!(z, [3.4, -0.2, 0.3, 3.4]);
+}
+
+#[track_caller]
+fn refuses(ops: Vec<Op>, message: &str) {
+    let line = ops.len() as u32;
+    let found = level(&program(ops), &map(&[0.1; 12]), &ALLOWED).unwrap_err();
+    assert_eq!((found.rule, found.line), ("levelling", line), "{found}");
+    assert!(found.message.contains(message), "{found}");
+}
+
+#[test]
+fn what_cannot_be_levelled_is_refused_with_its_line() {
+    let above = Op::Rapid(pose(1.0, 1.0, 2.0));
+    refuses(vec![Op::Line(pose(1.0, 1.0, 0.0))], "a place that is not known");
+    refuses(vec![above.clone(), Op::Line(pose(66.0, 1.0, 0.0))], "6.000 mm beyond");
+    refuses(vec![above.clone(), Op::Rapid(pose(2.0, 1.0, -1.0))], "a rapid along the board");
+    let tilted = Pose::new(Vec3::ZERO, Vec3::X);
+    refuses(vec![above.clone(), Op::Line(tilted)], "tilted");
+    let arc = ArcTo {
+        end: pose(1.0, 1.0, 2.0),
+        center: Vec3::new(1.0, 1.0, 0.0),
+        normal: Vec3::Y,
+        turns: 0,
+    };
+    refuses(vec![above.clone(), Op::Arc(Box::new(arc))], "plane XY");
+    let flat = ArcTo { normal: Vec3::Z, ..arc };
+    refuses(vec![above.clone(), Op::Arc(Box::new(flat))], "not equally far");
+    refuses(vec![Op::Feed(Feed::InverseTime(3.0))], "inverse time");
+    refuses(vec![Op::WorkOffset(54), Op::WorkOffset(55)], "several work offsets");
+    let nowhere = Pose::new(Vec3::new(f64::NAN, 0.0, 0.0), Vec3::Z);
+    refuses(vec![above, Op::Line(nowhere)], "not known");
+    for deviation in [0.0, 1e-5, f64::NAN] {
+        let allowed = Allowed { deviation, ..ALLOWED };
+        let found = level(&Program::new("x"), &map(&[0.0; 12]), &allowed).unwrap_err();
+        assert_eq!(found.rule, "levelling-tolerance");
+    }
+}
+
+/// A helix of four thousand million turns has no end, and is refused in time and memory.
+#[test]
+fn an_arc_without_end_is_refused() {
+    let arc = ArcTo {
+        end: pose(20.0, 20.0, 0.0),
+        center: Vec3::new(25.0, 20.0, 0.0),
+        normal: Vec3::Z,
+        turns: u32::MAX,
+    };
+    let mut heights = [0.0; 12];
+    heights[5] = 0.3;
+    let source = program(vec![Op::Rapid(pose(20.0, 20.0, 2.0)), Op::Arc(Box::new(arc))]);
+    let found = level(&source, &map(&heights), &ALLOWED).unwrap_err();
+    assert!(found.message.contains("100000 pieces"), "{found}");
+}
+
+const GRID: fn() -> Grid = || Grid::new(Vec2::new(2.0, 3.0), Vec2::new(62.0, 43.0), 4, 3).unwrap();
+const PROBING: Probing = Probing { travel: 2.0, depth: 1.5, feed: 40.0 };
+
+#[test]
+fn a_grid_is_probed_row_by_row_there_and_back() {
+    let places: Vec<Vec2> = GRID().places().collect();
+    assert_eq!(places.len(), 12);
+    let expected = [(2.0, 3.0), (22.0, 3.0), (42.0, 3.0), (62.0, 3.0), (62.0, 23.0), (42.0, 23.0)];
+    assert_eq!(places[..6], expected.map(|(x, y)| Vec2::new(x, y)));
+    assert_eq!(places[11], Vec2::new(62.0, 43.0));
+    for (columns, rows) in [(1, 5), (5, 0), (1000, 1000), (usize::MAX, 2)] {
+        let found = Grid::new(Vec2::ZERO, Vec2::ONE, columns, rows).unwrap_err();
+        assert_eq!(found.rule, "probing-grid");
+    }
+    assert!(Grid::new(Vec2::ZERO, Vec2::X, 2, 2).is_err());
+    assert!(Grid::new(Vec2::ZERO, Vec2::new(f64::INFINITY, 1.0), 2, 2).is_err());
+    assert!(Probing { depth: 0.0, ..PROBING }.program("p", &GRID(), None).is_err());
+    assert!(PROBING.program("p", &GRID(), Some("a) G0 Z-9")).is_err());
+}
+
+/// Written, proven, and what a machine would answer read back.
+#[test]
+fn machines_probe_and_follow_what_they_found() {
+    for (name, log) in
+        [("generic-3axis-linuxcnc", Some("heights.txt")), ("generic-3axis-grbl", None)]
+    {
+        let machine = machine::load(name).unwrap();
+        let probing = PROBING.program("probe", &GRID(), log).unwrap();
+        let written = post::write(&probing, &machine).unwrap();
+        let proof = proof::prove(&probing, &machine, "probe", &written.text, &Default::default());
+        assert!(proof.proven, "{:?}", proof);
+        let text = String::from_utf8(written.text).unwrap();
+        assert_eq!(text.matches("G38.2").count(), 12, "{text}");
+        assert_eq!(text.contains("(PROBEOPEN heights.txt)"), log.is_some(), "{text}");
+        assert_eq!(text.contains("(PROBECLOSE)"), log.is_some(), "{text}");
+        let grid = GRID();
+        let answers = grid.places().map(|at| {
+            let z = 0.004 * at.x - 0.0001 * at.x * at.y;
+            match log {
+                Some(_) => format!("{:.6} {:.6} {z:.6} 0.0 0.0 0.0 0.0 0.0 0.0\n", at.x, at.y),
+                None => format!("[PRB:{:.3},{:.3},{:.3}:1]\n", at.x - 90.0, at.y - 50.0, z - 30.0),
+            }
+        });
+        let zero = if log.is_none() { "[G54:-90.000,-50.000,-30.000]\n" } else { "" };
+        let answers = zero.to_owned() + &answers.collect::<String>();
+        let map = read("heights.txt", answers.as_bytes()).unwrap();
+        assert!((map.at(Vec2::new(32.0, 23.0)) - (0.128 - 0.0736)).abs() < 1e-3);
+        let mut board = source(&[
+            Move::Line([50.0, 30.0, -0.1]),
+            Move::Arc { center: [40.0, 25.0], sweep: 6.0, turns: 0, rise: 0.0, clockwise: true },
+        ]);
+        board
+            .records
+            .insert(0, program::Record { line: 0, op: Op::Spindle(Spindle::Clockwise(9000.0)) });
+        let levelled = level(&board, &map, &ALLOWED).unwrap();
+        assert!(levelled.records.len() > board.records.len() + 3);
+        let written = post::write(&levelled, &machine).unwrap();
+        let proof = proof::prove(&levelled, &machine, "board", &written.text, &Default::default());
+        assert!(proof.proven, "{name}: {:?}", proof);
+        let text = String::from_utf8(written.text).unwrap();
+        assert!(text.lines().any(|line| line.starts_with("G2") && line.contains('Z')), "{text}");
+    }
+}

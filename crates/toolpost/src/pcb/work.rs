@@ -1,0 +1,425 @@
+//! What is cut of a board: the operations of each program.
+
+use super::plan::Plan;
+use crate::answer::Stop;
+use crate::args::pcb::{self as args, Part, Pcb};
+use geom::Vec2;
+use geom::region::Region;
+use machine::Machine;
+use pcb::drilling::{Drilling, Mill, Slots};
+use pcb::isolation::{Direction, Isolation, Narrow, NarrowGap, Severed};
+use pcb::outline::{Outline, Tabs};
+use pcb::tour::Tour;
+use pcb::{Board, Clearing, Copper, Cut, Cutter, Engraving, Hole, Operation, Path, Tool, depths};
+use program::Diagnostic;
+use std::collections::BTreeMap;
+
+/// The speed of a spindle that has no limit in its machine file, 1/min.
+const USUAL_SPEED: f64 = 10_000.0;
+
+/// How far ways may be from what they were worked out as, mm: moves shorter than a quarter of it, less than
+/// a step of a machine, are none.
+const MERGED: f64 = 0.004;
+
+/// By how much the cut may be wider where the tool goes on to the next way without leaving the board, mm.
+const JOINED: f64 = 0.002;
+
+/// How high may be what stays between the holes of a slot along its wall, mm.
+const SCALLOP: f64 = 0.02;
+
+/// Which part of their width the rings overlap that clear an area.
+const RINGS_OVERLAP: f64 = 0.4;
+
+/// What one program does.
+#[derive(Default)]
+pub struct Work {
+    /// Tool by tool.
+    pub operations: Vec<Operation>,
+    /// Places to look at, and why.
+    pub places: Vec<(Vec2, String)>,
+    /// What is odd about it.
+    pub warnings: Vec<Diagnostic>,
+}
+
+impl Work {
+    /// What is cut for `part` of the board.
+    ///
+    /// # Errors
+    /// Where a tool is missing, or cannot do it.
+    pub fn of(part: Part, plan: &Plan, args: &Pcb, machine: &Machine) -> Result<Work, Stop> {
+        let board = plan.seen(part, args);
+        let speed = args.running.speed.unwrap_or(USUAL_SPEED.min(machine.spindle.max));
+        let mut work = Work::default();
+        let worker = Worker { args, speed };
+        let side = &board.front;
+        match part {
+            Part::Front | Part::Back => {
+                if let Some(copper) = &side.copper {
+                    worker.copper(&mut work, copper, board)?;
+                }
+            }
+            Part::Drill => worker.drill(&mut work, &plan.drilled(args))?,
+            Part::Outline => worker.outline(&mut work, board)?,
+            Part::FrontMask | Part::BackMask => {
+                if let Some(mask) = &side.mask {
+                    worker.mask(&mut work, mask)?;
+                }
+            }
+            Part::FrontLegend | Part::BackLegend => {
+                if let Some(legend) = &side.legend {
+                    worker.legend(&mut work, legend)?;
+                }
+            }
+        }
+        Ok(work)
+    }
+}
+
+struct Worker<'a> {
+    args: &'a Pcb,
+    speed: f64,
+}
+
+impl Worker<'_> {
+    /// Isolates copper, and takes away what is surplus where that is asked for.
+    fn copper(&self, work: &mut Work, copper: &Copper, board: &Board) -> Result<(), Stop> {
+        let settings = &self.args.isolation;
+        let bit = self.bit()?;
+        let depths = depths(settings.depth, settings.step.unwrap_or(settings.depth));
+        let width = bit.cutter.width(settings.depth);
+        let paths = match settings.isolate {
+            args::Isolate::Contours => self.around(work, copper, bit.cutter)?,
+            args::Isolate::Middle => self.between(work, copper, board, width)?,
+        };
+        work.operations.push(Operation {
+            name: format!("isolation, {}", bit.name),
+            tool: bit,
+            cuts: along(&paths, width, &depths),
+        });
+        if self.args.clearing.clear.is_empty() {
+            return Ok(());
+        }
+        let area = area(board)?;
+        let clearing = self.clearing(self.args.clearing.clear.clone());
+        // No nearer than the isolation, which leaves an edge of its own.
+        let margin = self.args.clearing.margin;
+        let cleared = clearing.rub_out(&copper.region, margin, &area)?;
+        self.cleared(work, "surplus copper", &clearing, &cleared.passes, &depths);
+        Ok(())
+    }
+
+    /// The ways around copper.
+    fn around(&self, work: &mut Work, copper: &Copper, cutter: Cutter) -> Result<Vec<Path>, Stop> {
+        let settings = &self.args.isolation;
+        let isolation = Isolation {
+            cutter,
+            depth: settings.depth,
+            passes: settings.passes as usize,
+            overlap: settings.overlap,
+            direction: self.direction(),
+            narrow: match settings.narrow {
+                args::Narrow::LeaveOut => Narrow::LeaveOut,
+                args::Narrow::Middle => Narrow::Middle,
+            },
+        };
+        let isolated = isolation.isolate(copper, None)?;
+        for Severed { at, island, pieces } in &isolated.severed {
+            let net = net(copper, *island);
+            work.places.push((
+                *at,
+                format!("{net} is cut into {pieces} pieces, down the middle of a gap"),
+            ));
+        }
+        if let Some(severed) = isolated.severed.first() {
+            let message = format!(
+                "{} conductors are cut to pieces by cuts down the middle of gaps, {} among them",
+                isolated.severed.len(),
+                net(copper, severed.island)
+            );
+            let help = "take a narrower tool, or leave narrow gaps out (--narrow leave-out)";
+            work.warnings.push(Diagnostic::warning("conductor-severed", message).help(help));
+        }
+        if let Some(widest) = isolated.narrow.first().map(NarrowGap::widest_cut) {
+            self.narrow(work, copper, &isolated.narrow, isolation.width(), widest)?;
+        }
+        Ok(isolated.paths)
+    }
+
+    /// Tells of gaps that are too narrow; refuses where nothing would be apart.
+    fn narrow(
+        &self,
+        work: &mut Work,
+        copper: &Copper,
+        gaps: &[NarrowGap],
+        width: f64,
+        widest: f64,
+    ) -> Result<(), Stop> {
+        let middle = self.args.isolation.narrow == args::Narrow::Middle;
+        for gap in gaps {
+            let done = match middle {
+                true => format!("cut all the same: {:.3} mm thinner each", gap.thinned(width)),
+                false => String::from("left out: the nets stay joined here"),
+            };
+            let [a, b] = gap.islands.map(|island| net(copper, island));
+            work.places.push((
+                gap.at,
+                format!(
+                    "{a} and {b} are {:.3} mm apart over {:.2} mm, {done}",
+                    gap.width, gap.length
+                ),
+            ));
+        }
+        let help = match widest > 0.0 {
+            true => {
+                format!("a tool of {widest:.3} mm fits everywhere; or cut them by --narrow middle")
+            }
+            false => String::from("where copper touches no tool fits: look at the board"),
+        };
+        if !middle && all_joined(copper, gaps) {
+            let message = format!(
+                "a cut {width:.3} mm wide fits between no two nets that are not joined elsewhere: \
+                 nothing would be isolated"
+            );
+            return Err(Diagnostic::error("tool-too-wide", message).help(help).into());
+        }
+        let (count, done) = (gaps.len(), if middle { "cut down the middle" } else { "left out" });
+        let message =
+            format!("{count} gaps are narrower than the cut of {width:.3} mm: they are {done}");
+        work.warnings.push(Diagnostic::warning("narrow-gap", message).help(help));
+        Ok(())
+    }
+
+    /// The ways in the middle between conductors.
+    fn between(
+        &self,
+        work: &mut Work,
+        copper: &Copper,
+        board: &Board,
+        width: f64,
+    ) -> Result<Vec<Path>, Stop> {
+        let middle = self.args.isolation.narrow == args::Narrow::Middle;
+        let division = pcb::divided(copper, &area(board)?, width)?;
+        let mut paths = division.paths;
+        for strait in &division.straits {
+            let what = format!(
+                "only {:.3} mm between nets, {}",
+                strait.width,
+                if middle { "cut all the same" } else { "left out" }
+            );
+            work.places.push((strait.at, what));
+            if middle {
+                paths.extend(strait.paths.iter().cloned());
+            }
+        }
+        Ok(paths)
+    }
+
+    /// Drills, and mills what no drill makes.
+    fn drill(&self, work: &mut Work, holes: &[Hole]) -> Result<(), Stop> {
+        let (settings, placing, running) =
+            (&self.args.drilling, &self.args.placing, &self.args.running);
+        let mill = settings.hole_mill.map(|diameter| Mill {
+            tool: Tool { feed: running.outline_feed, ..self.end_mill(diameter) },
+            step: self.args.outline.outline_step,
+            direction: self.direction(),
+            instead: f64::INFINITY,
+        });
+        let drilling = Drilling {
+            thickness: placing.thickness,
+            below: placing.through,
+            drills: Some(settings.drills.clone()).filter(|drills| !drills.is_empty()),
+            tolerance: settings.drill_tolerance,
+            peck: settings.peck,
+            plunge: running.drill_feed,
+            speed: self.speed,
+            slots: if mill.is_some() { Slots::Mill } else { Slots::Chain { scallop: SCALLOP } },
+            mill,
+            from: Vec2::ZERO,
+        };
+        let drilled = drilling.drill(holes).map_err(Stop::invalid)?;
+        work.operations.extend(drilled.operations);
+        work.warnings.extend(drilled.warnings);
+        Ok(())
+    }
+
+    /// Cuts the board out.
+    fn outline(&self, work: &mut Work, board: &Board) -> Result<(), Stop> {
+        let (settings, placing) = (&self.args.outline, &self.args.placing);
+        let outline = Outline {
+            tool: Tool {
+                feed: self.args.running.outline_feed,
+                ..self.end_mill(settings.outline_tool)
+            },
+            thickness: placing.thickness,
+            below: placing.through,
+            step: settings.outline_step,
+            direction: self.direction(),
+            tabs: (settings.tabs > 0).then_some(Tabs {
+                count: settings.tabs as usize,
+                width: settings.tab_width,
+                height: settings.tab_height,
+            }),
+            from: Vec2::ZERO,
+        };
+        let cut = outline.cut(&area(board)?).map_err(Stop::invalid)?;
+        work.operations.push(cut.operation);
+        work.warnings.extend(cut.warnings);
+        Ok(())
+    }
+
+    /// Opens solder mask.
+    fn mask(&self, work: &mut Work, mask: &Region) -> Result<(), Stop> {
+        let clearing = self.clearing(self.args.clearing.mask_tool.into_iter().collect());
+        let cleared = clearing.clear(mask)?;
+        self.cleared(
+            work,
+            "solder mask",
+            &clearing,
+            &cleared.passes,
+            &[self.args.clearing.engrave],
+        );
+        self.missing(work, &cleared.rest, "not opened: the tool is too wide");
+        Ok(())
+    }
+
+    /// Engraves what is printed.
+    fn legend(&self, work: &mut Work, legend: &Region) -> Result<(), Stop> {
+        let width = self.args.clearing.legend_tool.unwrap_or(0.0);
+        let Engraving { paths, rest } = pcb::outlined(legend, width)?;
+        let tool = self.end_mill(width);
+        work.operations.push(Operation {
+            name: format!("legend, {}", tool.name),
+            tool,
+            cuts: along(&paths, width, &[self.args.clearing.engrave]),
+        });
+        self.missing(work, &rest, "not engraved: the tool is too wide");
+        Ok(())
+    }
+
+    /// Marks what is not done.
+    fn missing(&self, work: &mut Work, rest: &Region, what: &str) {
+        for island in rest.islands() {
+            let (low, high) = island.outer().extents();
+            work.places.push((low.midpoint(high), what.to_owned()));
+        }
+        if !rest.is_empty() {
+            let message =
+                format!("{} places, {:.3} mm², are {what}", rest.islands().len(), rest.area());
+            let help = "take a narrower tool";
+            work.warnings.push(Diagnostic::warning("not-reached", message).help(help));
+        }
+    }
+
+    fn cleared(
+        &self,
+        work: &mut Work,
+        what: &str,
+        clearing: &Clearing,
+        passes: &[Vec<Path>],
+        depths: &[f64],
+    ) {
+        for (width, paths) in clearing.widths.iter().zip(passes) {
+            if paths.is_empty() {
+                continue;
+            }
+            let tool = self.end_mill(*width);
+            work.operations.push(Operation {
+                name: format!("{what}, {}", tool.name),
+                tool,
+                cuts: along(paths, *width, depths),
+            });
+        }
+    }
+
+    fn clearing(&self, widths: Vec<f64>) -> Clearing {
+        Clearing { widths, overlap: RINGS_OVERLAP, direction: self.direction() }
+    }
+
+    fn direction(&self) -> Direction {
+        match self.args.isolation.direction {
+            args::Direction::Climb => Direction::Climb,
+            args::Direction::Conventional => Direction::Conventional,
+        }
+    }
+
+    /// The tool that isolates.
+    fn bit(&self) -> Result<Tool, Stop> {
+        let settings = &self.args.isolation;
+        match (settings.tool, settings.vee) {
+            (Some(diameter), _) => Ok(self.end_mill(diameter)),
+            (None, Some(degrees)) => {
+                let cutter = Cutter::Vee { tip: settings.tip, angle: degrees.to_radians() };
+                Ok(self.tool(format!("V-bit {degrees} degrees"), cutter))
+            }
+            (None, None) => {
+                let message = "no tool is given that cuts around copper";
+                let help = "give --tool with the width of an end mill, or --vee with the angle of a V-bit; \
+                            or leave copper out with --only";
+                Err(Diagnostic::error("no-tool", message).help(help).into())
+            }
+        }
+    }
+
+    fn end_mill(&self, diameter: f64) -> Tool {
+        self.tool(format!("end mill {diameter} mm"), Cutter::Cylinder { diameter })
+    }
+
+    /// A tool for copper.
+    fn tool(&self, name: String, cutter: Cutter) -> Tool {
+        let running = &self.args.running;
+        Tool { name, cutter, feed: running.feed, plunge: running.plunge, speed: self.speed }
+    }
+}
+
+/// What a conductor is called.
+fn net(copper: &Copper, island: usize) -> String {
+    match copper.nets.get(island) {
+        Some(Some(net)) => net.to_string(),
+        _ => format!("conductor {}", island + 1),
+    }
+}
+
+/// Cuts along `paths` at each depth, in an order of short travel.
+fn along(paths: &[Path], width: f64, depths: &[f64]) -> Vec<Cut> {
+    let merged: Vec<Path> = paths.iter().filter_map(|path| path.merged(MERGED)).collect();
+    let tour = Tour { from: Vec2::ZERO, to: None, either_way: true };
+    let ways = pcb::joined(&tour.of_paths(&merged), width, JOINED);
+    ways.iter().map(|path| Cut::along(path, depths)).collect()
+}
+
+/// Where there is board: its outline, or the box around it where that is not known.
+fn area(board: &Board) -> Result<Region, Stop> {
+    if let Some(outline) = &board.outline {
+        return Ok(outline.clone());
+    }
+    let message = "no file says where the board ends";
+    let help = "give the layer of its outline too";
+    Err(Diagnostic::error("no-outline", message).help(help).into())
+}
+
+/// Whether gaps that are left out join all conductors with each other.
+fn all_joined(copper: &Copper, gaps: &[NarrowGap]) -> bool {
+    let mut group: Vec<usize> = (0..copper.region.islands().len()).collect();
+    fn root(group: &[usize], mut of: usize) -> usize {
+        while let Some(up) = group.get(of).filter(|up| **up != of) {
+            of = *up;
+        }
+        of
+    }
+    let mut join = |a: usize, b: usize| {
+        let (a, b) = (root(&group, a), root(&group, b));
+        if let Some(group) = group.get_mut(a.max(b)) {
+            *group = a.min(b);
+        }
+    };
+    let mut known = BTreeMap::new();
+    for (island, net) in copper.nets.iter().enumerate() {
+        if let Some(net) = net {
+            join(*known.entry(net).or_insert(island), island);
+        }
+    }
+    for gap in gaps {
+        join(gap.islands[0], gap.islands[1]);
+    }
+    (0..group.len()).all(|island| root(&group, island) == 0)
+}

@@ -1,0 +1,14 @@
+//! Any bytes as a post of another system: no panic, and what comes out is a machine.
+#![no_main]
+
+use libfuzzer_sys::fuzz_target;
+use machine::import::import;
+
+fuzz_target!(|data: &[u8]| {
+    for file in ["fuzz.pp", "fuzz.txt"] {
+        match import(file, data, Some("grbl")) {
+            Ok(import) => drop(machine::load_text("fuzz.toml", &import.text).expect("it loads")),
+            Err(errors) => assert!(errors.iter().any(|error| error.is_error())),
+        }
+    }
+});
