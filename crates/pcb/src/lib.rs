@@ -29,6 +29,7 @@ pub mod kicad;
 mod merge;
 pub mod model;
 mod operation;
+pub mod outline;
 mod path;
 mod report;
 mod setting;

@@ -84,6 +84,13 @@ pub struct Stop {
     pub findings: Vec<Diagnostic>,
 }
 
+impl Stop {
+    /// What is wrong with the input.
+    pub fn invalid(findings: Vec<Diagnostic>) -> Stop {
+        Stop { verdict: Verdict::Invalid, findings }
+    }
+}
+
 /// A finding that stops a command is about its input, unless the command says otherwise.
 impl From<Box<Diagnostic>> for Stop {
     fn from(finding: Box<Diagnostic>) -> Stop {

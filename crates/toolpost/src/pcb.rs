@@ -16,6 +16,7 @@ use crate::toolpath::{self, Toolpath};
 use ::pcb::Operation;
 use ::pcb::job::{self, Heights};
 use drawing::{BoardPicture, Format};
+use levelling::{Allowed, Grid, HeightMap, Probing, level};
 use machine::Machine;
 use plan::Plan;
 use program::{Diagnostic, Program};
@@ -36,16 +37,21 @@ pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
     let source = source::read(&args.board)?;
     let mut warnings = source.warnings;
     let plan = Plan::of(source.board, args)?;
+    let surface = surface(&plan, args)?;
     progress.step("writing and proving");
     let mut programs = Vec::with_capacity(plan.parts.len());
-    for made in each(&plan.parts, |part| make(*part, &plan, &machine, args)) {
+    if let Some(grid) = args.running.probe {
+        programs.push(probing(&plan, grid, &machine, args)?);
+    }
+    for made in each(&plan.parts, |part| make(*part, &plan, surface.as_ref(), &machine, args)) {
         let made = made?;
-        if made.posted.account.verdict != Verdict::Done {
-            return Ok(made.posted.account.not_saved());
-        }
-        warnings
-            .extend(made.work.warnings.iter().map(|found| found.clone().file(made.part.name())));
+        warnings.extend(made.work.warnings.iter().map(|found| found.clone().file(made.name)));
         programs.push(made);
+    }
+    if let Some(failed) =
+        programs.iter().position(|made| made.posted.account.verdict != Verdict::Done)
+    {
+        return Ok(programs.swap_remove(failed).posted.account.not_saved());
     }
     let warnings = toolpath::held(warnings, args.strict)?;
     progress.step("saving");
@@ -58,9 +64,26 @@ pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
     Ok(Answer::summary(Verdict::Done, rows(&lines), report.data).findings(warnings))
 }
 
+/// How closely programs follow the surface that was measured.
+const LEVELLED: Allowed = Allowed { deviation: 0.005, outside: 5.0 };
+
+/// The surface that programs follow, where one was measured.
+fn surface(plan: &Plan, args: &Pcb) -> Result<Option<HeightMap>, Stop> {
+    let Some(file) = &args.running.heights else { return Ok(None) };
+    if !plan.parts.iter().all(|part| plan.face(*part, args) == plan.face(plan.parts[0], args)) {
+        let message = "the heights are those of one side, and programs of both are asked for";
+        let help =
+            "make the programs of each side with its own heights: --only front,drill,outline";
+        return Err(Diagnostic::error("heights", message).help(help).into());
+    }
+    let text = files::read(file)?;
+    Ok(Some(levelling::read(&files::name(file), &text).map_err(Stop::invalid)?))
+}
+
 /// A program that was made.
 struct Made {
-    part: Part,
+    /// What it and its picture are called.
+    name: &'static str,
     work: Work,
     /// What it does.
     program: Program,
@@ -69,12 +92,22 @@ struct Made {
 }
 
 /// The program of a part of the board, proven, with its picture.
-fn make(part: Part, plan: &Plan, machine: &Machine, args: &Pcb) -> Result<Made, Stop> {
+fn make(
+    part: Part,
+    plan: &Plan,
+    surface: Option<&HeightMap>,
+    machine: &Machine,
+    args: &Pcb,
+) -> Result<Made, Stop> {
     let board = plan.seen(part, args);
     let work = Work::of(part, plan, args, machine)?;
     let heights = Heights { travel: args.running.travel, approach: args.running.approach };
     let name = format!("{} {}", plan.name, part.name());
-    let toolpath = Toolpath::of_program(job::program(&name, &work.operations, &heights), "board");
+    let mut program = job::program(&name, &work.operations, &heights);
+    if let Some(surface) = surface {
+        program = level(&program, surface, &LEVELLED)?;
+    }
+    let toolpath = Toolpath::of_program(program, "board");
     let file = format!("{}.nc", part.name());
     let posted = post::proven(&toolpath, machine, &file, &args.closeness.tolerances(), &|_| {})?;
     let format = match args.picture {
@@ -97,7 +130,30 @@ fn make(part: Part, plan: &Plan, machine: &Machine, args: &Pcb) -> Result<Made, 
         ))
     });
     let picture = picture.transpose()?;
-    Ok(Made { part, work, program: toolpath.program, posted, picture })
+    Ok(Made { name: part.name(), work, program: toolpath.program, posted, picture })
+}
+
+/// How the height of the board is probed: slowly, from a millimetre above to one below.
+const PROBED: Probing = Probing { travel: 1.0, depth: 1.0, feed: 50.0 };
+
+/// The file in which LinuxCNC keeps what it finds; to other controls it is a comment.
+const HEIGHTS: &str = "heights.txt";
+
+/// The program that measures the height of the board.
+fn probing(
+    plan: &Plan,
+    [columns, rows]: [u32; 2],
+    machine: &Machine,
+    args: &Pcb,
+) -> Result<Made, Stop> {
+    let (low, high) = plan.front().extents().unwrap_or_default();
+    let grid = Grid::new(low, high, columns as usize, rows as usize)?;
+    let name = "probe";
+    let program = PROBED.program(&format!("{} {name}", plan.name), &grid, Some(HEIGHTS))?;
+    let toolpath = Toolpath::of_program(program, "board");
+    let file = format!("{name}.nc");
+    let posted = post::proven(&toolpath, machine, &file, &args.closeness.tolerances(), &|_| {})?;
+    Ok(Made { name, work: Work::default(), program: toolpath.program, posted, picture: None })
 }
 
 /// `work` for each thing, all at the same time, the answers in their order.
@@ -120,11 +176,11 @@ fn save(
     let mut contents: Vec<(String, &[u8])> = vec![("report.json".into(), report.as_bytes())];
     let ending = if args.picture == Picture::Png { "png" } else { "svg" };
     for made in programs {
-        let name = made.part.name();
+        let name = made.name;
         contents.extend(made.picture.as_deref().map(|bytes| (format!("{name}.{ending}"), bytes)));
     }
     for made in programs {
-        contents.push((format!("{}.nc", made.part.name()), &made.posted.text));
+        contents.push((format!("{}.nc", made.name), &made.posted.text));
     }
     let inputs: Vec<&Path> = inputs.iter().map(|file| file.as_path()).collect();
     let made = files::folder(&args.output)?;

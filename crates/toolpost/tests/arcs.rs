@@ -43,9 +43,10 @@ fn program(ops: Vec<Op>) -> Program {
     program
 }
 
-/// The machine `extends`, changed by `text`, with `arc` in both blocks of arcs.
+/// The machine `extends`, changed by `text`, with `arc` in both blocks of arcs, `±` in it the direction.
 fn mill(extends: &str, text: &str, arc: &str) -> Machine {
-    let blocks = format!("[blocks]\narc_cw = \"{arc}\"\narc_ccw = \"{arc}\"\n");
+    let (cw, ccw) = (arc.replace('±', "-"), arc.replace('±', "+"));
+    let blocks = format!("[blocks]\narc_cw = \"{cw}\"\narc_ccw = \"{ccw}\"\n");
     let text = format!("extends = \"{extends}\"\n{}\n", text.replace("[blocks]\n", &blocks));
     machine::load_text("mill.toml", &text).unwrap_or_else(|why| panic!("{why}\n{text}"))
 }
@@ -120,12 +121,29 @@ fn a_radius_is_negative_over_a_half_circle_and_what_it_cannot_say_is_cut() {
         ("generic-3axis-iso", true),
         ("generic-3axis-linuxcnc", false),
         ("generic-3axis-mach3", false),
+        ("generic-3axis-haas", true),
     ] {
         let machine = mill(control, &words(point, &[("R", "R")]), RADIUS);
         assert_eq!(arcs(&machine), blocks, "{control}");
     }
     let machine = mill("generic-3axis-sinumerik", &words(false, &[("R", "CR=")]), RADIUS);
     assert_eq!(arcs(&machine), blocks.map(|block| block.replace(" R", " CR=")));
+    // No G94 beside G3 in Marlin, no plane in Klartext, which names the direction.
+    let plus = "[words]\nR = { decimals = 4, trim = true, plus = true }\n[blocks]\n";
+    let plain = plus.replace("plus = true", "modal = false");
+    for (control, text, block, first) in [
+        ("generic-3axis-grbl", plain.as_str(), RADIUS, "G3 X0 Y20 R20"),
+        ("generic-3axis-marlin", &plain, "{{motion}} {{X}} {{Y}} {{R}} {{F}}", "G3 X0 Y20 R20"),
+        (
+            "generic-3axis-heidenhain",
+            plus,
+            "{{N}} CR {{X}} {{Y}} {{R}} DR± {{F}}",
+            "CR X+0 Y+20 R+20 DR+",
+        ),
+    ] {
+        let program = proven(&mill(control, text, block), ways());
+        assert!(program.contains(first), "{program}");
+    }
 }
 
 #[test]

@@ -2,8 +2,8 @@
 
 use super::{Board, Copper, Face, around};
 use crate::{Hole, HoleShape};
-use geom::Vec2;
-use geom::region::{Region, RegionError};
+use geom::region::{Index, Region, RegionError};
+use geom::{Element, Vec2};
 use program::Diagnostic;
 
 /// Copper outside that covers less is rounding, mm²: 10 mm of an edge by a tenth of a micrometre.
@@ -20,9 +20,10 @@ type Extents = (Vec2, Vec2);
 pub fn checked(board: &Board) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
     let mut warnings = layers(board)?;
     let Some(outline) = &board.outline else { return Ok(warnings) };
+    let index = Index::new(outline);
     for face in [Face::Front, Face::Back] {
         let Some(copper) = &board.side(face).copper else { continue };
-        let outside = outside(copper, outline).map_err(|error| {
+        let outside = outside(copper, outline, &index).map_err(|error| {
             let message = format!("copper and outline cannot be compared: {error}");
             vec![Diagnostic::error("copper-outside", message)]
         })?;
@@ -45,7 +46,7 @@ pub fn checked(board: &Board) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
         }
     }
     let beyond: Vec<&Hole> =
-        board.holes.iter().filter(|hole| !outline.contains(middle(hole))).collect();
+        board.holes.iter().filter(|hole| index.island_at(middle(hole)).is_none()).collect();
     if let Some(first) = beyond.first() {
         let at = middle(first);
         let message = format!(
@@ -100,20 +101,15 @@ fn layers(board: &Board) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
 }
 
 /// The copper that is not within the outline. Only islands that come near an edge are worked on.
-fn outside(copper: &Copper, outline: &Region) -> Result<Region, RegionError> {
-    let edges: Vec<Extents> =
-        outline.rings().flat_map(|ring| ring.elements()).map(|element| element.extents()).collect();
-    let near = |a: &Extents, b: &Extents| a.0.cmple(b.1).all() && b.0.cmple(a.1).all();
+fn outside(copper: &Copper, outline: &Region, index: &Index) -> Result<Region, RegionError> {
+    let near = |element: &Element| {
+        let (low, high) = element.extents();
+        index.within(low, high).next().is_some()
+    };
     let suspect = copper.region.islands().iter().filter(|island| {
-        let around = island.outer().extents();
-        let edges: Vec<&Extents> = edges.iter().filter(|edge| near(edge, &around)).collect();
-        let mut elements = island.outer().elements().iter();
-        let start = elements.clone().next().is_none_or(|element| !outline.contains(element.start));
-        start
-            || elements.any(|element| {
-                let around = element.extents();
-                edges.iter().any(|edge| near(edge, &around))
-            })
+        let elements = island.outer().elements();
+        let beside = |first: &Element| index.island_at(first.start).is_none();
+        elements.first().is_some_and(beside) || elements.iter().any(near)
     });
     suspect.cloned().collect::<Region>().difference(outline)
 }

@@ -15,6 +15,7 @@ mod kicad_plots;
 mod layers;
 mod merge;
 mod model;
+mod outline;
 mod placed;
 mod raster;
 mod tour;

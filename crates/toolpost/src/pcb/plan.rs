@@ -97,10 +97,15 @@ impl Plan {
 
     /// The board as it lies on the machine for a program: its front is up, whichever side that is.
     pub fn seen(&self, part: Part, args: &Pcb) -> &Board {
-        match part.face().unwrap_or(args.drilling.from.into()) {
+        match self.face(part, args) {
             Face::Front => &self.front,
             Face::Back => &self.back,
         }
+    }
+
+    /// The side that is up when a program runs.
+    pub fn face(&self, part: Part, args: &Pcb) -> Face {
+        part.face().unwrap_or(args.drilling.from.into())
     }
 
     /// The holes that are drilled: those of the board, and those of the pins. The line about which a

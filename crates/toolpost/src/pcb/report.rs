@@ -46,9 +46,9 @@ pub fn of(
     for made in programs {
         rows.extend(made.rows(machine));
     }
-    let places = programs.iter().flat_map(|made| {
-        made.work.places.iter().map(|(place, what)| (made.part.name(), *place, what))
-    });
+    let places = programs
+        .iter()
+        .flat_map(|made| made.work.places.iter().map(|(place, what)| (made.name, *place, what)));
     let shown = |(name, place, what): (&str, geom::Vec2, &String)| {
         format!("{name}, X{:.3} Y{:.3}: {what}", place.x, place.y)
     };
@@ -85,7 +85,7 @@ impl Made {
             self.work.operations.iter().map(|operation| operation.name.as_str()).collect();
         let (cutting, rapid) = shape.lengths();
         vec![
-            (self.part.name(), operations.join(", ")),
+            (self.name, operations.join(", ")),
             (
                 "",
                 format!(
@@ -107,7 +107,7 @@ impl Made {
             // Said once for all programs.
             data.retain(|key, _| key != "toolpost" && key != "machine");
         }
-        data["name"] = json!(self.part.name());
+        data["name"] = json!(self.name);
         data["operations"] =
             json!(self.work.operations.iter().map(|operation| &operation.name).collect::<Vec<_>>());
         data["places"] = self.work.places.iter().map(place).collect();

@@ -6,9 +6,11 @@ use crate::args::pcb::{self as args, Part, Pcb};
 use geom::Vec2;
 use geom::region::Region;
 use machine::Machine;
-use pcb::isolation::{Direction, Isolation, Narrow, NarrowGap};
+use pcb::drilling::{Drilling, Mill, Slots};
+use pcb::isolation::{Direction, Isolation, Narrow, NarrowGap, Severed};
+use pcb::outline::{Outline, Tabs};
 use pcb::tour::Tour;
-use pcb::{Board, Clearing, Copper, Cut, Cutter, Engraving, Operation, Path, Tool, depths};
+use pcb::{Board, Clearing, Copper, Cut, Cutter, Engraving, Hole, Operation, Path, Tool, depths};
 use program::Diagnostic;
 use std::collections::BTreeMap;
 
@@ -22,10 +24,14 @@ const MERGED: f64 = 0.004;
 /// By how much the cut may be wider where the tool goes on to the next way without leaving the board, mm.
 const JOINED: f64 = 0.002;
 
+/// How high may be what stays between the holes of a slot along its wall, mm.
+const SCALLOP: f64 = 0.02;
+
 /// Which part of their width the rings overlap that clear an area.
 const RINGS_OVERLAP: f64 = 0.4;
 
 /// What one program does.
+#[derive(Default)]
 pub struct Work {
     /// Tool by tool.
     pub operations: Vec<Operation>,
@@ -43,7 +49,7 @@ impl Work {
     pub fn of(part: Part, plan: &Plan, args: &Pcb, machine: &Machine) -> Result<Work, Stop> {
         let board = plan.seen(part, args);
         let speed = args.running.speed.unwrap_or(USUAL_SPEED.min(machine.spindle.max));
-        let mut work = Work { operations: Vec::new(), places: Vec::new(), warnings: Vec::new() };
+        let mut work = Work::default();
         let worker = Worker { args, speed };
         let side = &board.front;
         match part {
@@ -52,7 +58,8 @@ impl Work {
                     worker.copper(&mut work, copper, board)?;
                 }
             }
-            Part::Drill | Part::Outline => {}
+            Part::Drill => worker.drill(&mut work, &plan.drilled(args))?,
+            Part::Outline => worker.outline(&mut work, board)?,
             Part::FrontMask | Part::BackMask => {
                 if let Some(mask) = &side.mask {
                     worker.mask(&mut work, mask)?;
@@ -77,16 +84,16 @@ impl Worker<'_> {
     /// Isolates copper, and takes away what is surplus where that is asked for.
     fn copper(&self, work: &mut Work, copper: &Copper, board: &Board) -> Result<(), Stop> {
         let settings = &self.args.isolation;
-        let (name, cutter) = self.bit()?;
+        let bit = self.bit()?;
         let depths = depths(settings.depth, settings.step.unwrap_or(settings.depth));
-        let width = cutter.width(settings.depth);
+        let width = bit.cutter.width(settings.depth);
         let paths = match settings.isolate {
-            args::Isolate::Contours => self.around(work, copper, cutter)?,
+            args::Isolate::Contours => self.around(work, copper, bit.cutter)?,
             args::Isolate::Middle => self.between(work, copper, board, width)?,
         };
         work.operations.push(Operation {
-            name: format!("isolation, {name}"),
-            tool: self.tool(name, cutter),
+            name: format!("isolation, {}", bit.name),
+            tool: bit,
             cuts: along(&paths, width, &depths),
         });
         if self.args.clearing.clear.is_empty() {
@@ -116,6 +123,22 @@ impl Worker<'_> {
             },
         };
         let isolated = isolation.isolate(copper, None)?;
+        for Severed { at, island, pieces } in &isolated.severed {
+            let net = net(copper, *island);
+            work.places.push((
+                *at,
+                format!("{net} is cut into {pieces} pieces, down the middle of a gap"),
+            ));
+        }
+        if let Some(severed) = isolated.severed.first() {
+            let message = format!(
+                "{} conductors are cut to pieces by cuts down the middle of gaps, {} among them",
+                isolated.severed.len(),
+                net(copper, severed.island)
+            );
+            let help = "take a narrower tool, or leave narrow gaps out (--narrow leave-out)";
+            work.warnings.push(Diagnostic::warning("conductor-severed", message).help(help));
+        }
         if let Some(widest) = isolated.narrow.first().map(NarrowGap::widest_cut) {
             self.narrow(work, copper, &isolated.narrow, isolation.width(), widest)?;
         }
@@ -132,16 +155,12 @@ impl Worker<'_> {
         widest: f64,
     ) -> Result<(), Stop> {
         let middle = self.args.isolation.narrow == args::Narrow::Middle;
-        let net = |island: usize| match copper.nets.get(island) {
-            Some(Some(net)) => net.to_string(),
-            _ => format!("conductor {}", island + 1),
-        };
         for gap in gaps {
             let done = match middle {
                 true => format!("cut all the same: {:.3} mm thinner each", gap.thinned(width)),
                 false => String::from("left out: the nets stay joined here"),
             };
-            let [a, b] = gap.islands.map(net);
+            let [a, b] = gap.islands.map(|island| net(copper, island));
             work.places.push((
                 gap.at,
                 format!(
@@ -195,6 +214,59 @@ impl Worker<'_> {
         Ok(paths)
     }
 
+    /// Drills, and mills what no drill makes.
+    fn drill(&self, work: &mut Work, holes: &[Hole]) -> Result<(), Stop> {
+        let (settings, placing, running) =
+            (&self.args.drilling, &self.args.placing, &self.args.running);
+        let mill = settings.hole_mill.map(|diameter| Mill {
+            tool: Tool { feed: running.outline_feed, ..self.end_mill(diameter) },
+            step: self.args.outline.outline_step,
+            direction: self.direction(),
+            instead: f64::INFINITY,
+        });
+        let drilling = Drilling {
+            thickness: placing.thickness,
+            below: placing.through,
+            drills: Some(settings.drills.clone()).filter(|drills| !drills.is_empty()),
+            tolerance: settings.drill_tolerance,
+            peck: settings.peck,
+            plunge: running.drill_feed,
+            speed: self.speed,
+            slots: if mill.is_some() { Slots::Mill } else { Slots::Chain { scallop: SCALLOP } },
+            mill,
+            from: Vec2::ZERO,
+        };
+        let drilled = drilling.drill(holes).map_err(Stop::invalid)?;
+        work.operations.extend(drilled.operations);
+        work.warnings.extend(drilled.warnings);
+        Ok(())
+    }
+
+    /// Cuts the board out.
+    fn outline(&self, work: &mut Work, board: &Board) -> Result<(), Stop> {
+        let (settings, placing) = (&self.args.outline, &self.args.placing);
+        let outline = Outline {
+            tool: Tool {
+                feed: self.args.running.outline_feed,
+                ..self.end_mill(settings.outline_tool)
+            },
+            thickness: placing.thickness,
+            below: placing.through,
+            step: settings.outline_step,
+            direction: self.direction(),
+            tabs: (settings.tabs > 0).then_some(Tabs {
+                count: settings.tabs as usize,
+                width: settings.tab_width,
+                height: settings.tab_height,
+            }),
+            from: Vec2::ZERO,
+        };
+        let cut = outline.cut(&area(board)?).map_err(Stop::invalid)?;
+        work.operations.push(cut.operation);
+        work.warnings.extend(cut.warnings);
+        Ok(())
+    }
+
     /// Opens solder mask.
     fn mask(&self, work: &mut Work, mask: &Region) -> Result<(), Stop> {
         let clearing = self.clearing(self.args.clearing.mask_tool.into_iter().collect());
@@ -214,10 +286,10 @@ impl Worker<'_> {
     fn legend(&self, work: &mut Work, legend: &Region) -> Result<(), Stop> {
         let width = self.args.clearing.legend_tool.unwrap_or(0.0);
         let Engraving { paths, rest } = pcb::outlined(legend, width)?;
-        let name = format!("end mill {width} mm");
+        let tool = self.end_mill(width);
         work.operations.push(Operation {
-            name: format!("legend, {name}"),
-            tool: self.tool(name, Cutter::Cylinder { diameter: width }),
+            name: format!("legend, {}", tool.name),
+            tool,
             cuts: along(&paths, width, &[self.args.clearing.engrave]),
         });
         self.missing(work, &rest, "not engraved: the tool is too wide");
@@ -250,10 +322,10 @@ impl Worker<'_> {
             if paths.is_empty() {
                 continue;
             }
-            let name = format!("end mill {width} mm");
+            let tool = self.end_mill(*width);
             work.operations.push(Operation {
-                name: format!("{what}, {name}"),
-                tool: self.tool(name, Cutter::Cylinder { diameter: *width }),
+                name: format!("{what}, {}", tool.name),
+                tool,
                 cuts: along(paths, *width, depths),
             });
         }
@@ -271,15 +343,13 @@ impl Worker<'_> {
     }
 
     /// The tool that isolates.
-    fn bit(&self) -> Result<(String, Cutter), Stop> {
+    fn bit(&self) -> Result<Tool, Stop> {
         let settings = &self.args.isolation;
         match (settings.tool, settings.vee) {
-            (Some(diameter), _) => {
-                Ok((format!("end mill {diameter} mm"), Cutter::Cylinder { diameter }))
-            }
+            (Some(diameter), _) => Ok(self.end_mill(diameter)),
             (None, Some(degrees)) => {
                 let cutter = Cutter::Vee { tip: settings.tip, angle: degrees.to_radians() };
-                Ok((format!("V-bit {degrees} degrees"), cutter))
+                Ok(self.tool(format!("V-bit {degrees} degrees"), cutter))
             }
             (None, None) => {
                 let message = "no tool is given that cuts around copper";
@@ -290,10 +360,22 @@ impl Worker<'_> {
         }
     }
 
+    fn end_mill(&self, diameter: f64) -> Tool {
+        self.tool(format!("end mill {diameter} mm"), Cutter::Cylinder { diameter })
+    }
+
     /// A tool for copper.
     fn tool(&self, name: String, cutter: Cutter) -> Tool {
         let running = &self.args.running;
         Tool { name, cutter, feed: running.feed, plunge: running.plunge, speed: self.speed }
+    }
+}
+
+/// What a conductor is called.
+fn net(copper: &Copper, island: usize) -> String {
+    match copper.nets.get(island) {
+        Some(Some(net)) => net.to_string(),
+        _ => format!("conductor {}", island + 1),
     }
 }
 

@@ -1,0 +1,166 @@
+//! Outline: the board is cut out, along the outside of its edges and the inside of its cut-outs.
+//!
+//! The ways are the boundary of the board grown by half the width of the tool, so they leave all of it.
+//! What lies within another contour is cut before it, and the outer edge at last: until then the
+//! board is held. [`Tabs`] hold it after that. Where the tool is too wide to cut what the outline says,
+//! that is found as [`narrow`].
+
+mod narrow;
+mod tabs;
+
+pub use tabs::Tabs;
+
+use crate::isolation::Direction;
+use crate::report::{Fault, Outcome, fault};
+use crate::setting;
+use crate::tour::Tour;
+use crate::{Cut, Operation, Path, Stretch, Tool, depths};
+use geom::Vec2;
+use geom::region::{Fill, Region, RegionError, Ring};
+use program::Diagnostic;
+
+/// By how much merged ways may differ from the boundary, mm: a step of most machines.
+const MERGED: f64 = 0.001;
+
+/// How a board is cut out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outline {
+    /// With what: an end mill.
+    pub tool: Tool,
+    /// Thickness of the board, mm.
+    pub thickness: f64,
+    /// How far the tool goes below the board, mm, 0 or more.
+    pub below: f64,
+    /// How much deeper it goes each time around, mm.
+    pub step: f64,
+    /// Which way around.
+    pub direction: Direction,
+    /// What holds the pieces; `None` where something else does.
+    pub tabs: Option<Tabs>,
+    /// Where the tool comes from, mm.
+    pub from: Vec2,
+}
+
+/// A board that is cut out, and what is to be known of it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct CutOut {
+    /// What is done.
+    pub operation: Operation,
+    /// Where edges are not as the board has them, and tabs not where they should be.
+    pub warnings: Vec<Diagnostic>,
+}
+
+impl Outline {
+    /// Cuts `board` out.
+    ///
+    /// # Errors
+    /// `length`, `cutter`, `tab-height` and `tab-count` where a setting makes no sense; `no-outline` where
+    /// there is no board; `cutout-too-small` for each cut-out that the tool does not go into; `too-large`
+    /// where the outline is more than can be computed.
+    pub fn cut(&self, board: &Region) -> Result<CutOut, Vec<Diagnostic>> {
+        let width = self.check(board).map_err(|fault| vec![*fault])?;
+        let tight = narrow::cutouts(board, width).map_err(|error| vec![*too_large(error)])?;
+        if !tight.is_empty() {
+            return Err(tight);
+        }
+        self.around(board, width).map_err(|error| vec![*too_large(error)])
+    }
+
+    /// What the settings say about `board` is possible; then the width of the tool, mm.
+    fn check(&self, board: &Region) -> Outcome<f64> {
+        setting::length("the thickness of the board", self.thickness)?;
+        setting::length("the depth of the outline", self.depth())?;
+        setting::length("a step of the outline", self.step)?;
+        if let Some(tabs) = &self.tabs {
+            tabs.check(self.thickness)?;
+        }
+        if board.is_empty() {
+            let help = "give the outline of the board";
+            return Err(fault("no-outline", "there is no board to cut out", help));
+        }
+        setting::diameter(&self.tool)
+    }
+
+    fn depth(&self) -> f64 {
+        self.thickness + self.below.max(0.0)
+    }
+
+    fn around(&self, board: &Region, width: f64) -> Result<CutOut, RegionError> {
+        let mut warnings = narrow::corners(board, width)?;
+        let depths = depths(self.depth(), self.step);
+        let grown = board.offset(width / 2.0)?;
+        let mut cuts = Vec::new();
+        let mut at = self.from;
+        for contours in levels(&grown) {
+            let tour = Tour { from: at, to: None, either_way: false };
+            for path in tour.of_paths(&contours) {
+                let Some(contour) = path.merged(MERGED) else { continue };
+                let mut spans = Vec::new();
+                if let Some(tabs) = self.tabs.filter(|_| leaves_a_piece(&contour, width)) {
+                    spans = tabs.spans(&contour, width, &mut warnings);
+                }
+                let cut = self.contour(&tabs::parted(&contour, &spans, path.start()), &depths);
+                at = cut.end();
+                cuts.push(cut);
+            }
+        }
+        let operation = Operation { name: "outline".to_owned(), tool: self.tool.clone(), cuts };
+        Ok(CutOut { operation, warnings })
+    }
+
+    /// Once around at each depth, over the tabs.
+    fn contour(&self, parts: &[tabs::Part], depths: &[f64]) -> Cut {
+        let top = self.tabs.map_or(f64::INFINITY, |tabs| self.thickness - tabs.height);
+        // The boundary has the board on its left.
+        let reversed: Vec<tabs::Part> = parts.iter().rev().map(tabs::Part::reversed).collect();
+        let parts = match self.direction {
+            Direction::Climb => &reversed,
+            Direction::Conventional | Direction::Either => parts,
+        };
+        let level = |&depth: &f64| {
+            parts.iter().map(move |part| Stretch {
+                element: part.element,
+                depth: if part.tab { depth.min(top) } else { depth },
+            })
+        };
+        Cut::Way(depths.iter().flat_map(level).collect())
+    }
+}
+
+/// Whether something comes loose on the right of a contour of the grown board when it is cut: around the
+/// outside always, of a cut-out what the tool leaves of it.
+fn leaves_a_piece(contour: &Path, width: f64) -> bool {
+    let inside = Ring::new(contour.elements().to_vec())
+        .and_then(|ring| Ok((ring.area(), Region::inside([&ring], Fill::NonZero)?)));
+    match inside {
+        Ok((area, inside)) if area < 0.0 => {
+            inside.offset(-width / 2.0).is_ok_and(|piece| !piece.is_empty())
+        }
+        _ => true,
+    }
+}
+
+/// The contours of a region, level by level, those first that lie deepest within others.
+fn levels(region: &Region) -> Vec<Vec<Path>> {
+    let mut levels: Vec<Vec<Path>> = Vec::new();
+    let boxes: Vec<(Vec2, Vec2)> =
+        region.islands().iter().map(|island| island.outer().extents()).collect();
+    for (island, (low, high)) in region.islands().iter().zip(&boxes) {
+        let Some(outer) = Path::around(island.outer()) else { continue };
+        let around = region.islands().iter().zip(&boxes).filter(|(other, (p, q))| {
+            p.cmplt(*low).all() && q.cmpgt(*high).all() && other.outer().encloses(outer.start())
+        });
+        let level = 2 * around.count();
+        if levels.len() < level + 2 {
+            levels.resize(level + 2, Vec::new());
+        }
+        levels[level].push(outer);
+        levels[level + 1].extend(island.holes().iter().filter_map(Path::around));
+    }
+    levels.reverse();
+    levels
+}
+
+fn too_large(error: RegionError) -> Fault {
+    fault("too-large", format!("the outline of the board: {error}"), "correct the outline")
+}

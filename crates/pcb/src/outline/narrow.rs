@@ -1,0 +1,107 @@
+//! Where a tool is too wide for an outline.
+
+use crate::setting::shown;
+use geom::Vec2;
+use geom::region::{Fill, Island, Region, RegionError, Ring};
+use program::Diagnostic;
+
+/// What is left of a corner is told from this width on, mm.
+const SLIVER: f64 = 0.02;
+
+/// The largest tool that fits is looked for among so many widths up to that of the tool.
+const WIDTHS: usize = 16;
+
+/// More corners than this are counted, not listed.
+const LISTED: usize = 50;
+
+/// An error for each cut-out of `board` that a tool of `width` mm does not go into.
+pub(super) fn cutouts(board: &Region, width: f64) -> Result<Vec<Diagnostic>, RegionError> {
+    let mut errors = Vec::new();
+    for hole in board.islands().iter().flat_map(Island::holes) {
+        let inside = Region::inside([hole], Fill::NonZero)?;
+        if !inside.offset(-width / 2.0)?.is_empty() {
+            continue;
+        }
+        let mut fits = None;
+        for narrower in narrower(width) {
+            if !inside.offset(-narrower / 2.0)?.is_empty() {
+                fits = Some(narrower);
+                break;
+            }
+        }
+        let at = middle(hole);
+        let message = format!(
+            "the cut-out at X {:.3} Y {:.3} is too small for a tool of {} mm",
+            at.x,
+            at.y,
+            shown(width)
+        );
+        errors.push(Diagnostic::error("cutout-too-small", message).help(way_out(fits)));
+    }
+    Ok(errors)
+}
+
+/// A warning for each corner of `board` that a tool of `width` mm does not reach.
+pub(super) fn corners(board: &Region, width: f64) -> Result<Vec<Diagnostic>, RegionError> {
+    let corners = unreached(board, width)?;
+    let mut fits: Vec<Option<f64>> = vec![None; corners.islands().len()];
+    if !corners.is_empty() {
+        // What a narrower tool does not reach is part of what a wider one does not.
+        for narrower in narrower(width) {
+            let left = unreached(board, narrower)?;
+            let starts: Vec<Vec2> = left
+                .islands()
+                .iter()
+                .filter_map(|island| Some(island.outer().elements().first()?.start))
+                .collect();
+            for (corner, fits) in corners.islands().iter().zip(&mut fits) {
+                let (low, high) = corner.outer().extents();
+                let within = |p: &Vec2| low.cmple(*p).all() && high.cmpge(*p).all();
+                if fits.is_none() && !starts.iter().any(within) {
+                    *fits = Some(narrower);
+                }
+            }
+        }
+    }
+    let mut warnings: Vec<Diagnostic> = Vec::new();
+    for (corner, fits) in corners.islands().iter().zip(fits) {
+        let at = middle(corner.outer());
+        let message = format!(
+            "a tool of {} mm does not reach all of the corner at X {:.3} Y {:.3}",
+            shown(width),
+            at.x,
+            at.y
+        );
+        let warning = Diagnostic::warning("narrow-corner", message).help(way_out(fits));
+        let full = warnings.len() >= LISTED;
+        match warnings.last_mut().filter(|_| full) {
+            Some(last) => last.count = last.count.saturating_add(1),
+            None => warnings.push(warning),
+        }
+    }
+    Ok(warnings)
+}
+
+/// What a tool of `width` mm leaves beside the board that is no part of it, but for slivers.
+fn unreached(board: &Region, width: f64) -> Result<Region, RegionError> {
+    let left = board.offset(width / 2.0)?.offset(-width / 2.0)?.difference(board)?;
+    left.offset(-SLIVER / 2.0)
+}
+
+/// Widths below that of the tool, mm, the widest first.
+fn narrower(width: f64) -> impl Iterator<Item = f64> {
+    (1..WIDTHS).rev().map(move |part| width * part as f64 / WIDTHS as f64)
+}
+
+fn way_out(fits: Option<f64>) -> String {
+    match fits {
+        Some(fits) => format!("take a tool of at most {} mm", shown(fits)),
+        None => "no tool that is much narrower does: change the outline".to_owned(),
+    }
+}
+
+/// The middle of what is around a ring, mm.
+fn middle(ring: &Ring) -> Vec2 {
+    let (low, high) = ring.extents();
+    low.midpoint(high)
+}
