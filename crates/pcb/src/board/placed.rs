@@ -219,7 +219,9 @@ fn rename(nets: &mut [Option<Arc<str>>], place: &str) {
 
 /// Puts more of a layer to what there is.
 fn take(layer: &mut Option<Region>, more: Option<Region>) {
-    if let (Some(layer), Some(more)) = (layer, more) {
-        layer.extend(more);
+    match (&mut *layer, more) {
+        (Some(layer), Some(more)) => layer.extend(more),
+        (None, more) => *layer = more,
+        (Some(_), None) => {}
     }
 }
