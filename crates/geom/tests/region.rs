@@ -36,6 +36,19 @@ fn arc(radius: f64, from: f64, sweep: f64) -> Element {
 }
 
 #[test]
+fn a_pen_that_reaches_the_centre_of_its_arc_to_rounding_covers_a_sector_and_its_ends() {
+    // A quarter of radius 0.25, width 0.5: a quarter of a disc of 0.5, and two half discs of 0.25.
+    let center = Vec2::new(1.8, 2.2);
+    let arc = |radius: f64| {
+        let (start, end) = (center - Vec2::Y * radius, center - Vec2::X * radius);
+        Region::stroke(&Element::arc(start, end, center, -FRAC_PI_2), 0.5, Cap::Round).unwrap()
+    };
+    for off in [-2e-9, -1e-12, 0.0, 1e-12, 5e-10, 2e-9] {
+        assert!((arc(0.25 + off).area() - PI / 8.0).abs() < 1e-6, "{off}");
+    }
+}
+
+#[test]
 fn two_discs_that_overlap_share_a_lens() {
     // Two circles of radius 1 through each other's centre: a lens of 2π/3 − √3/2.
     let (a, b) = (disc(0.0, 0.0, 1.0), disc(1.0, 0.0, 1.0));

@@ -7,7 +7,7 @@ use crate::report::{Fault, Outcome, fault};
 use geom::Element;
 use geom::region::{Index, Region, RegionError};
 
-/// What is not wider than twice this is not told to be missing, mm.
+/// What is no farther than this from a place that the tool reaches counts as reached, mm.
 const SLIVER: f64 = 0.005;
 
 /// What is engraved.
@@ -15,7 +15,7 @@ const SLIVER: f64 = 0.005;
 pub struct Engraving {
     /// The ways of the middle of the tool. One without length is a dot.
     pub paths: Vec<Path>,
-    /// What is too narrow for the tool, but for slivers up to 10 µm wide.
+    /// What is too narrow for the tool, but for places up to 5 µm from one that it reaches.
     pub rest: Region,
 }
 

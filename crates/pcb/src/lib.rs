@@ -46,7 +46,7 @@ pub use hole::{Hole, HoleShape};
 pub use merge::joined;
 pub use operation::{Cut, Cutter, Operation, Stretch, Tool, depths};
 pub use path::{Path, Site};
-pub use voronoi::{Division, Strait, divided};
+pub use voronoi::{Division, divided};
 
 /// The farthest coordinate that is taken, mm.
 const FAR: f64 = 1e6;

@@ -145,16 +145,20 @@ impl Board {
         Ok(panel.unwrap_or_default())
     }
 
-    /// Takes in another copy of itself, which does not come near.
-    fn take(&mut self, copy: Board) {
-        self.holes.extend(copy.holes);
-        take(&mut self.outline, copy.outline);
-        for (side, more) in [(&mut self.front, copy.front), (&mut self.back, copy.back)] {
+    /// Takes in other layers of the board, or another board, which does not come near.
+    pub(super) fn take(&mut self, other: Board) {
+        self.holes.extend(other.holes);
+        take(&mut self.outline, other.outline);
+        for (side, more) in [(&mut self.front, other.front), (&mut self.back, other.back)] {
             take(&mut side.mask, more.mask);
             take(&mut side.legend, more.legend);
-            if let (Some(copper), Some(more)) = (&mut side.copper, more.copper) {
-                copper.region.extend(more.region);
-                copper.nets.extend(more.nets);
+            match (&mut side.copper, more.copper) {
+                (Some(copper), Some(more)) => {
+                    copper.region.extend(more.region);
+                    copper.nets.extend(more.nets);
+                }
+                (copper @ None, more) => *copper = more,
+                (Some(_), None) => {}
             }
         }
     }
@@ -215,7 +219,9 @@ fn rename(nets: &mut [Option<Arc<str>>], place: &str) {
 
 /// Puts more of a layer to what there is.
 fn take(layer: &mut Option<Region>, more: Option<Region>) {
-    if let (Some(layer), Some(more)) = (layer, more) {
-        layer.extend(more);
+    match (&mut *layer, more) {
+        (Some(layer), Some(more)) => layer.extend(more),
+        (None, more) => *layer = more,
+        (Some(_), None) => {}
     }
 }

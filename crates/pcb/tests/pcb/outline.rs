@@ -1,5 +1,6 @@
 //! Outlines: what is cut, what stays, and what holds it.
 
+use crate::{boards, data};
 use geom::region::{Cap, Fill, Region, Ring};
 use geom::{Element, Vec2};
 use proptest::prelude::*;
@@ -196,6 +197,22 @@ fn what_lies_within_is_cut_before_what_is_around_it() {
         .map(f64::round)
         .collect();
     assert_eq!(sides, [18.0, 42.0, 48.0, 62.0]);
+}
+
+#[test]
+fn real_boards_are_cut_out_whole() {
+    let Some(folder) = data::folder() else { return };
+    for name in ["StickHub", "ecc83-pp", "interf_u", "pic_programmer", "microwave"] {
+        let board = boards::folder(&folder.join("kicad").join(name)).unwrap().board.outline;
+        let Some(board) = board else { continue };
+        let tabs = Tabs { count: 4, width: 2.0, height: 0.8 };
+        let cut = outline(Some(tabs)).cut(&board).unwrap_or_else(|errors| panic!("{errors:#?}"));
+        let swept = swept(&cut, 1.7);
+        let kept = board.offset(-0.002).unwrap();
+        assert!(swept.intersection(&kept).unwrap().area() < 1e-9, "{name}");
+        let held = self::swept(&cut, 0.1).difference(&swept).unwrap();
+        assert!(held.islands().len() >= 4, "{name}");
+    }
 }
 
 proptest! {

@@ -10,7 +10,9 @@ use pcb::drilling::{Drilling, Mill, Slots};
 use pcb::isolation::{Direction, Isolation, Narrow, NarrowGap, Severed};
 use pcb::outline::{Outline, Tabs};
 use pcb::tour::Tour;
-use pcb::{Board, Clearing, Copper, Cut, Cutter, Engraving, Hole, Operation, Path, Tool, depths};
+use pcb::{
+    Board, Clearing, Copper, Cut, Cutter, Division, Engraving, Hole, Operation, Path, Tool, depths,
+};
 use program::Diagnostic;
 use std::collections::BTreeMap;
 
@@ -139,9 +141,7 @@ impl Worker<'_> {
             let help = "take a narrower tool, or leave narrow gaps out (--narrow leave-out)";
             work.warnings.push(Diagnostic::warning("conductor-severed", message).help(help));
         }
-        if let Some(widest) = isolated.narrow.first().map(NarrowGap::widest_cut) {
-            self.narrow(work, copper, &isolated.narrow, isolation.width(), widest)?;
-        }
+        self.narrow(work, copper, &isolated.narrow, isolation.width())?;
         Ok(isolated.paths)
     }
 
@@ -152,8 +152,8 @@ impl Worker<'_> {
         copper: &Copper,
         gaps: &[NarrowGap],
         width: f64,
-        widest: f64,
     ) -> Result<(), Stop> {
+        let Some(widest) = gaps.first().map(NarrowGap::widest_cut) else { return Ok(()) };
         let middle = self.args.isolation.narrow == args::Narrow::Middle;
         for gap in gaps {
             let done = match middle {
@@ -197,19 +197,10 @@ impl Worker<'_> {
         board: &Board,
         width: f64,
     ) -> Result<Vec<Path>, Stop> {
-        let middle = self.args.isolation.narrow == args::Narrow::Middle;
-        let division = pcb::divided(copper, &area(board)?, width)?;
-        let mut paths = division.paths;
-        for strait in &division.straits {
-            let what = format!(
-                "only {:.3} mm between nets, {}",
-                strait.width,
-                if middle { "cut all the same" } else { "left out" }
-            );
-            work.places.push((strait.at, what));
-            if middle {
-                paths.extend(strait.paths.iter().cloned());
-            }
+        let Division { mut paths, narrow } = pcb::divided(copper, &area(board)?, width)?;
+        self.narrow(work, copper, &narrow, width)?;
+        if self.args.isolation.narrow == args::Narrow::Middle {
+            paths.extend(narrow.into_iter().filter_map(|gap| gap.middle));
         }
         Ok(paths)
     }

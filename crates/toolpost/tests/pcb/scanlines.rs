@@ -189,7 +189,8 @@ impl Lines {
         let mut found = Vec::new();
         for line in self.between(place.y - near, place.y + near) {
             let spans = self.lines[line].iter().enumerate();
-            let touched = spans.filter(|(_, (from, to))| *from < place.x + near && *to > place.x - near);
+            let touched =
+                spans.filter(|(_, (from, to))| *from < place.x + near && *to > place.x - near);
             found.extend(touched.map(|(i, _)| (line, i)));
         }
         found
