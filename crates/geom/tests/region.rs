@@ -269,6 +269,41 @@ fn more_than_fits_into_memory_is_refused() {
     assert_eq!(Region::union_of(std::iter::repeat_n(&large, 2000)), Err(RegionError::TooLarge));
 }
 
+#[test]
+fn what_two_readers_make_of_one_corner_leaves_next_to_nothing() {
+    // Copper of a board (StickHub), as a plotter and a board file have it: a wide arc and a line, between
+    // which one of them has a narrow arc of 1 µm, tangent to both; elsewhere they are 30 nm apart.
+    let v = Vec2::new;
+    let region = |mut elements: Vec<Element>| {
+        let (from, to, corner) =
+            (elements[elements.len() - 1].end, elements[0].start, v(151.5, -94.5));
+        elements.extend([Element::line(from, corner), Element::line(corner, to)]);
+        Region::inside(&[Ring::new(elements).unwrap()], Fill::NonZero).unwrap()
+    };
+    let line = Element::line(v(152.706356, -93.242092), v(152.15, -92.685736));
+    let wide = Element::arc(
+        v(153.38001, -94.868437),
+        line.start,
+        v(151.08001047857445, -94.86843692651406),
+        0.7853980124495832,
+    );
+    let other = Element::arc(
+        v(153.37997558273224, -94.86389286354535),
+        v(152.70705689703348, -93.24279515158915),
+        v(151.0800002971669, -94.86840071745955),
+        0.7829921018112681,
+    );
+    let narrow =
+        Element::arc(other.end, line.start, v(152.494224, -93.454224), 0.0033093803813141753);
+    let (plotted, drawn) = (region(vec![wide, line]), region(vec![other, narrow, line]));
+    let slack = slack(&[&plotted, &drawn]);
+    let missing = plotted.difference(&drawn).unwrap();
+    assert!(drawn.difference(&plotted).unwrap().area() < 1e-9);
+    assert!((plotted.area() - drawn.area() - missing.area()).abs() < slack);
+    let turns = elements(&missing).into_iter().filter_map(|element| element.turn);
+    assert!(turns.into_iter().all(|turn| turn.sweep.abs() < 0.79));
+}
+
 fn shape() -> impl Strategy<Value = Region> {
     let place =
         || (-200..200i32, -200..200i32).prop_map(|(x, y)| Vec2::new(x.into(), y.into()) * 0.025);

@@ -27,10 +27,10 @@ pub(super) fn boolean<'a>(
     if edges > MOST_EDGES {
         return Err(RegionError::TooLarge);
     }
-    let mut chords = Chords { kernel: Kernel::new(edges), carriers: Vec::new() };
+    let mut chords = Chords { kernel: Kernel::new(edges), sources: Vec::new() };
     first.for_each(|chain| chords.add(chain, Operand::First));
     second.for_each(|chain| chords.add(chain, Operand::Second));
-    Ok(refit::region(chords.kernel.islands(keep, fill), &chords.carriers))
+    Ok(refit::region(chords.kernel.islands(keep, fill), &chords.sources))
 }
 
 /// How many edges the chains become.
@@ -40,10 +40,16 @@ fn count<'a>(chains: impl Iterator<Item = &'a [Element]>) -> usize {
     edges.fold(0, usize::saturating_add)
 }
 
+/// What edges are pieces of: an element of an operand, and its whole line or circle.
+pub(super) struct Source {
+    pub element: Element,
+    pub carrier: Carrier,
+}
+
 /// The operands of a boolean, as chords.
 struct Chords {
     kernel: Kernel,
-    carriers: Vec<Carrier>,
+    sources: Vec<Source>,
 }
 
 impl Chords {
@@ -51,19 +57,20 @@ impl Chords {
         let starts = chain.iter().map(|element| Place::of(element.start));
         let ends = starts.clone().cycle().skip(1);
         for (element, (mut from, end)) in chain.iter().zip(starts.zip(ends)) {
-            // There are no more carriers than edges.
-            let carrier = self.carriers.len() as u32;
-            if let Some(turn) = element.turn {
+            // There are no more sources than edges.
+            let source = self.sources.len() as u32;
+            let carrier = if let Some(turn) = element.turn {
                 let inner = Inner::of(element, turn);
                 for place in inner.places() {
-                    self.kernel.add(from, place, carrier, operand);
+                    self.kernel.add(from, place, source, operand);
                     from = place;
                 }
-                self.carriers.push(Carrier::Circle { center: turn.center, radius: inner.radius });
+                Carrier::Circle { center: turn.center, radius: inner.radius }
             } else {
-                self.carriers.push(Carrier::of(element, element.start));
-            }
-            self.kernel.add(from, end, carrier, operand);
+                Carrier::of(element, element.start)
+            };
+            self.sources.push(Source { element: *element, carrier });
+            self.kernel.add(from, end, source, operand);
         }
     }
 }

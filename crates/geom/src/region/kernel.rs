@@ -1,5 +1,5 @@
 //! The boolean kernel: closed chains of short straight edges on a grid of whole units, each edge with
-//! the number of the line or circle that it is a piece of.
+//! the number of the element that it is a piece of.
 //!
 //! Whole numbers make the topology right whatever the input; the half unit that rounding to them
 //! costs stays. This module alone knows of `i_overlay`.
@@ -45,8 +45,8 @@ impl Place {
 pub(super) struct Edge {
     pub start: Place,
     pub end: Place,
-    /// The line or circle that it is a piece of.
-    pub carrier: usize,
+    /// Number of the element that it is a piece of.
+    pub source: usize,
 }
 
 /// The two operands of a boolean.
@@ -69,7 +69,7 @@ pub(super) enum Keep {
     Xor,
 }
 
-/// The number of a carrier, as the kernel takes it along.
+/// The number of an element, as the kernel takes it along.
 #[derive(Clone, Copy, PartialEq, Eq)]
 struct Carried(u32);
 
@@ -92,12 +92,12 @@ impl Kernel {
     }
 
     /// Adds an edge of a closed chain. One without length adds nothing.
-    pub fn add(&mut self, start: Place, end: Place, carrier: u32, operand: Operand) {
+    pub fn add(&mut self, start: Place, end: Place, source: u32, operand: Operand) {
         let shape = match operand {
             Operand::First => ShapeType::Subject,
             Operand::Second => ShapeType::Clip,
         };
-        self.0.add_edge(InputEdge { a: start.0, b: end.0, data: Carried(carrier) }, shape);
+        self.0.add_edge(InputEdge { a: start.0, b: end.0, data: Carried(source) }, shape);
     }
 
     /// The islands of the result; of each first its outer ring, counter-clockwise, then its holes,
@@ -117,7 +117,7 @@ impl Kernel {
         let edge = |edge: DataVectorEdge<i64, Carried>| Edge {
             start: Place(edge.a),
             end: Place(edge.b),
-            carrier: edge.data.0 as usize,
+            source: edge.data.0 as usize,
         };
         let ring = |ring: Vec<_>| ring.into_iter().map(edge).collect();
         let islands = self.0.build_vector_shapes(keep, fill);

@@ -8,8 +8,10 @@
 //! The chords cross nothing, but what is fitted lies up to [a chord's error](super::chords) beside
 //! them. So elements that cross all the same are taken back to chords, where they do.
 
+use super::chords::Source;
 use super::crossings::crossings;
-use super::kernel::Edge;
+use super::index::tree;
+use super::kernel::{Edge, Place};
 use super::{Island, Region, Ring};
 use crate::crossing::Carrier;
 use crate::{Element, Vec2, turn_angle};
@@ -30,11 +32,15 @@ const REACH: f64 = 1.0;
 /// its arc, and twice that where the two bend apart.
 const APART: f64 = 0.004;
 
+/// How far from their own chords and elements corners and runs may be put, mm: what is promised.
+const NEAR: f64 = 0.001;
+
 /// Edges shorter than this are what rounding leaves; they have no direction of their own, mm.
 const TINY: f64 = 5e-7;
 
-/// What has less area for its boundary than a strip of this width is dropped, mm: chords of one circle
-/// that are cut in two ways leave the like, up to two thirds of [a chord's error](super::chords) wide.
+/// What has less area for its boundary than a strip of this width, and is thin everywhere, is dropped, mm:
+/// chords of one circle that are cut in two ways leave the like, up to two thirds of
+/// [a chord's error](super::chords) wide.
 const THIN: f64 = 0.0007;
 
 /// How often corners are looked for until all are where the chords cross.
@@ -43,17 +49,17 @@ const PASSES: usize = 8;
 /// How often crossings are looked for until everything is left as chords.
 const ROUNDS: usize = 8;
 
-/// The region of `islands`, of whose edges `carriers` has the lines and circles.
-pub(super) fn region(islands: Vec<Vec<Vec<Edge>>>, carriers: &[Carrier]) -> Region {
+/// The region of `islands`, whose edges are pieces of `sources`.
+pub(super) fn region(islands: Vec<Vec<Vec<Edge>>>, sources: &[Source]) -> Region {
     let mut outlines = Vec::new();
     for (island, rings) in islands.into_iter().enumerate() {
         for (i, edges) in rings.into_iter().enumerate() {
-            let outline = Outline::of(edges, carriers);
-            if outline.elements.is_empty() {
-                if i == 0 {
-                    break;
-                }
-                continue;
+            let outline = Outline::of(edges, sources);
+            let is_hole = i > 0;
+            match (outline.is_nothing(is_hole), is_hole) {
+                (true, false) => break,
+                (true, true) => continue,
+                _ => {}
             }
             outlines.push((island, outline));
         }
@@ -70,7 +76,7 @@ pub(super) fn region(islands: Vec<Vec<Vec<Edge>>>, carriers: &[Carrier]) -> Regi
         if !found {
             break;
         }
-        outlines.iter_mut().for_each(|(_, outline)| outline.fit(carriers));
+        outlines.iter_mut().for_each(|(_, outline)| outline.fit(sources));
     }
     let mut region = Region::default();
     let mut last = None;
@@ -89,8 +95,8 @@ pub(super) fn region(islands: Vec<Vec<Vec<Edge>>>, carriers: &[Carrier]) -> Regi
 #[derive(Clone)]
 struct Run {
     edges: Range<usize>,
-    /// The line or circle they are on; `None` where they are left as chords.
-    carrier: Option<usize>,
+    /// The number of an element on whose line or circle they are; `None` where they are left as chords.
+    source: Option<usize>,
     /// Whether it starts where the chords cross.
     keeps_corner: bool,
 }
@@ -105,13 +111,12 @@ struct Outline {
 }
 
 impl Outline {
-    /// Without elements where nothing is left of it.
-    fn of(mut edges: Vec<Edge>, carriers: &[Carrier]) -> Outline {
-        let mut before = edges.iter().rfind(|edge| !is_tiny(edge)).map_or(0, |edge| edge.carrier);
+    fn of(mut edges: Vec<Edge>, sources: &[Source]) -> Outline {
+        let mut before = edges.iter().rfind(|edge| !is_tiny(edge)).map_or(0, |edge| edge.source);
         let first = edges.iter().position(|edge| {
-            let breaks = !is_tiny(edge) && !continues(before, edge, carriers);
+            let breaks = !is_tiny(edge) && !continues(before, edge, sources);
             if !is_tiny(edge) {
-                before = edge.carrier;
+                before = edge.source;
             }
             breaks
         });
@@ -119,57 +124,68 @@ impl Outline {
         let mut runs: Vec<Run> = Vec::new();
         for (i, edge) in edges.iter().enumerate() {
             match runs.last_mut() {
-                Some(run) if is_tiny(edge) || run.takes(edge, carriers) => run.edges.end = i + 1,
+                Some(run) if is_tiny(edge) || run.takes(edge, sources) => run.edges.end = i + 1,
                 _ => runs.push(Run {
                     edges: i..i + 1,
-                    carrier: Some(edge.carrier),
+                    source: Some(edge.source),
                     keeps_corner: false,
                 }),
             }
         }
         let mut outline = Outline { edges, runs, elements: Vec::new(), run_of: Vec::new() };
-        outline.leave_chords(carriers);
-        outline.fit(carriers);
-        if outline.is_thin() {
-            outline.elements.clear();
-        }
+        outline.leave_chords(sources);
+        outline.fit(sources);
         outline
     }
 
     /// Leaves as chords what does not go along its circle.
-    fn leave_chords(&mut self, carriers: &[Carrier]) {
+    fn leave_chords(&mut self, sources: &[Source]) {
         for run in &mut self.runs {
             let edges = self.edges.get(run.edges.clone()).unwrap_or_default();
-            if let Some(Carrier::Circle { center, radius }) =
-                run.carrier.and_then(|c| carriers.get(c))
-            {
+            if let Some(Carrier::Circle { center, radius }) = run.carrier(sources) {
                 let length: f64 = edges.iter().map(length).sum();
                 if sweep(edges, *center).abs() * radius < length / 2.0 {
-                    run.carrier = None;
+                    run.source = None;
                 }
             }
         }
     }
 
-    fn is_thin(&self) -> bool {
+    /// Whether nothing is left of it: circles that cross where their chords do not may even turn it inside
+    /// out.
+    fn is_nothing(&self, is_hole: bool) -> bool {
         let Some(first) = self.elements.first() else { return true };
         let area: f64 = self.elements.iter().map(|element| element.area(first.start)).sum();
         let length: f64 = self.elements.iter().map(Element::length).sum();
+        let inside = if is_hole { -area } else { area };
         // A strip of width w and length l has the area w·l and the boundary 2·l.
-        area.abs() * 2.0 < THIN * length
+        inside <= 0.0 || inside * 2.0 < THIN * length && self.is_thin()
+    }
+
+    /// Whether it is so thin everywhere, and not only in the middle.
+    fn is_thin(&self) -> bool {
+        let lines: Vec<Element> = self.edges.iter().map(line).collect();
+        let Some(tree) = tree(lines.iter().map(Element::extents)) else { return true };
+        lines.iter().enumerate().all(|(i, line)| {
+            let middle = line.at(0.5);
+            let (low, high) = (middle - NEAR, middle + NEAR);
+            let opposite =
+                |k: &usize| *k != i && lines.get(*k).is_some_and(|line| line.away(middle) < NEAR);
+            tree.query_iter(low.x, low.y, high.x, high.y).any(|k| opposite(&k))
+        })
     }
 
     /// Makes elements of the runs.
-    fn fit(&mut self, carriers: &[Carrier]) {
+    fn fit(&mut self, sources: &[Source]) {
         for pass in 1..=PASSES {
             let corners: Vec<Corner> =
-                (0..self.runs.len()).map(|i| self.corner(i, carriers)).collect();
-            let turned = self.put_in(&corners, carriers);
+                (0..self.runs.len()).map(|i| self.corner(i, sources)).collect();
+            let turned = self.put_in(&corners, sources);
             if turned.is_empty() {
                 return;
             }
             for i in turned.into_iter().rev() {
-                self.give_way(i, carriers);
+                self.give_way(i, sources);
             }
             if pass + 1 == PASSES {
                 self.runs.iter_mut().for_each(|run| run.keeps_corner = true);
@@ -178,14 +194,14 @@ impl Outline {
     }
 
     /// Puts the elements between the corners. Gives the runs that the corners turn round.
-    fn put_in(&mut self, corners: &[Corner], carriers: &[Carrier]) -> Vec<usize> {
+    fn put_in(&mut self, corners: &[Corner], sources: &[Source]) -> Vec<usize> {
         let mut turned = Vec::new();
         self.elements.clear();
         self.run_of.clear();
         let nexts = corners.iter().cycle().skip(1);
         for (i, ((run, from), to)) in self.runs.iter().zip(corners).zip(nexts).enumerate() {
             let edges = self.edges.get(run.edges.clone()).unwrap_or_default();
-            let on = run.carrier.and_then(|carrier| carriers.get(carrier));
+            let on = run.carrier(sources);
             match on.map(|on| fitted_to(on, edges, *from, *to)) {
                 Some(Some(element)) => {
                     // An arc that does not go through the crossing of the chords is led there.
@@ -203,23 +219,25 @@ impl Outline {
     }
 
     /// Where a run is turned round by its corners, three lines or circles meet nearly in one point, and
-    /// those beside it cross before it: then it goes. Otherwise its corners stay where the chords cross.
-    fn give_way(&mut self, i: usize, carriers: &[Carrier]) {
+    /// those beside it cross before it: then it goes, if its edges are as good as a neighbour's. Otherwise
+    /// its corners stay where the chords cross.
+    fn give_way(&mut self, i: usize, sources: &[Source]) {
         let n = self.runs.len();
-        let next = (i + 1) % n;
-        let (Some(run), Some(after)) = (self.runs.get(i), self.runs.get(next)) else { return };
-        let short =
-            self.edges.get(run.edges.clone()).unwrap_or_default().iter().map(length).sum::<f64>()
-                < REACH;
-        let place = self.vertex(after);
-        let crossing = self.crossing((i + n - 1) % n, next, place, carriers);
-        if n > 2 && short && crossing.is_some() {
-            let gone = self.runs.remove(i).edges;
-            // Its edges turn on with a neighbour.
-            match i.checked_sub(1).and_then(|before| self.runs.get_mut(before)) {
-                Some(before) => before.edges.end = gone.end,
-                None => self.runs.iter_mut().take(1).for_each(|run| run.edges.start = gone.start),
+        let (before, next) = ((i + n - 1) % n, (i + 1) % n);
+        let Some(edges) = self.runs.get(i).map(|run| run.edges.clone()) else { return };
+        // The ring is cut before its first run.
+        let heir = [(before, next, i > 0), (next, i, next > 0)].into_iter().find(
+            |&(heir, corner, joins)| {
+                let place = self.runs.get(corner).map(|run| self.vertex(run));
+                let crosses = |place| self.crossing(before, next, place, sources).is_some();
+                joins && self.is_along(heir, &edges, sources) && place.is_some_and(crosses)
+            },
+        );
+        if let (true, Some((heir, ..))) = (n > 2, heir) {
+            if let Some(heir) = self.runs.get_mut(heir) {
+                heir.edges = heir.edges.start.min(edges.start)..heir.edges.end.max(edges.end);
             }
+            self.runs.remove(i);
             return;
         }
         for k in [i, next] {
@@ -229,17 +247,27 @@ impl Outline {
         }
     }
 
+    /// Whether `edges` are along the line or circle of a run.
+    fn is_along(&self, i: usize, edges: &Range<usize>, sources: &[Source]) -> bool {
+        let edges = self.edges.get(edges.clone()).unwrap_or_default();
+        let carrier = self.runs.get(i).and_then(|run| run.carrier(sources));
+        carrier.is_some_and(|carrier| {
+            let near = |place: Place| carrier.distance(place.point()) < NEAR;
+            edges.iter().all(|edge| near(edge.start) && near(edge.end))
+        })
+    }
+
     /// Where run `i` starts.
-    fn corner(&self, i: usize, carriers: &[Carrier]) -> Corner {
+    fn corner(&self, i: usize, sources: &[Source]) -> Corner {
         let Some(run) = self.runs.get(i) else { return Corner::default() };
         let chords = self.vertex(run);
         let before = (i + self.runs.len() - 1) % self.runs.len();
-        let at = match run.carrier.and_then(|carrier| carriers.get(carrier)) {
+        let at = match run.carrier(sources) {
             // A whole circle starts on its right.
             Some(Carrier::Circle { center, radius }) if before == i => {
                 Some(*center + Vec2::X * *radius)
             }
-            Some(_) if !run.keeps_corner => self.crossing(before, i, chords, carriers),
+            Some(_) if !run.keeps_corner => self.crossing(before, i, chords, sources),
             _ => None,
         };
         Corner { chords, at: at.unwrap_or(chords) }
@@ -251,36 +279,46 @@ impl Outline {
     }
 
     /// Where the lines or circles of two runs cross near `place`.
-    fn crossing(
-        &self,
-        first: usize,
-        next: usize,
-        place: Vec2,
-        carriers: &[Carrier],
-    ) -> Option<Vec2> {
-        let on = |i: usize| carriers.get(self.runs.get(i)?.carrier?);
-        let (first, next) = (on(first)?, on(next)?);
-        if is_on(first, place) && is_on(next, place) {
+    fn crossing(&self, first: usize, next: usize, place: Vec2, sources: &[Source]) -> Option<Vec2> {
+        let on = |i: usize| self.runs.get(i)?.carrier(sources);
+        let (on_first, on_next) = (on(first)?, on(next)?);
+        if is_on(on_first, place) && is_on(on_next, place) {
             return Some(place);
         }
-        let crossings = first.meets(next, 0.0).into_iter().flatten();
-        let crossing = crossings
-            .min_by(|a, b| a.distance_squared(place).total_cmp(&b.distance_squared(place)))?;
-        let way = crossing.distance(place);
-        let across = first.direction_at(crossing).perp_dot(next.direction_at(crossing)).abs();
-        (way < REACH && way * across < APART).then_some(crossing)
+        let near = |crossing: &Vec2| {
+            let way = crossing.distance(place);
+            let across = on_first.direction_at(*crossing).perp_dot(on_next.direction_at(*crossing));
+            way < REACH && way * across.abs() < APART
+        };
+        let reached = |crossing: &Vec2| {
+            [first, next].into_iter().all(|i| self.reaches(i, *crossing, sources))
+        };
+        let crossings = on_first.meets(on_next, 0.0).into_iter().flatten();
+        crossings
+            .filter(|crossing| near(crossing) && reached(crossing))
+            .min_by(|a, b| a.distance_squared(place).total_cmp(&b.distance_squared(place)))
+    }
+
+    /// Whether the elements that a run is made of pass `place`, and not only their lines or circles do.
+    fn reaches(&self, i: usize, place: Vec2, sources: &[Source]) -> bool {
+        let edges = self.runs.get(i).and_then(|run| self.edges.get(run.edges.clone()));
+        let mut pieces = edges.unwrap_or_default().chunk_by(|a, b| a.source == b.source);
+        pieces.any(|piece| {
+            let source = piece.first().and_then(|edge| sources.get(edge.source));
+            source.is_some_and(|source| source.element.away(place) < NEAR)
+        })
     }
 
     /// Leaves the run of an element as chords around `place`, or all runs. Tells whether that changes
     /// anything.
     fn unfit(&mut self, element: usize, place: Vec2, all: bool) -> bool {
         if all {
-            let fitted = self.runs.iter().any(|run| run.carrier.is_some());
-            self.runs.iter_mut().for_each(|run| run.carrier = None);
+            let fitted = self.runs.iter().any(|run| run.source.is_some());
+            self.runs.iter_mut().for_each(|run| run.source = None);
             return fitted;
         }
         let Some(&i) = self.run_of.get(element) else { return false };
-        let Some(Run { edges, carrier: Some(carrier), .. }) = self.runs.get(i).cloned() else {
+        let Some(Run { edges, source: Some(source), .. }) = self.runs.get(i).cloned() else {
             return false;
         };
         let away = |edge: &Edge| line(edge).nearest(place).1;
@@ -289,9 +327,9 @@ impl Outline {
         let nearest = edges.start + nearest.map_or(0, |(i, _)| i);
         let (from, to) = (nearest.saturating_sub(1).max(edges.start), (nearest + 2).min(edges.end));
         let parts =
-            [(edges.start..from, Some(carrier)), (from..to, None), (to..edges.end, Some(carrier))];
+            [(edges.start..from, Some(source)), (from..to, None), (to..edges.end, Some(source))];
         let parts = parts.into_iter().filter(|(edges, _)| !edges.is_empty());
-        let run = |(edges, carrier)| Run { edges, carrier, keeps_corner: false };
+        let run = |(edges, source)| Run { edges, source, keeps_corner: false };
         self.runs.splice(i..=i, parts.map(run));
         true
     }
@@ -299,8 +337,13 @@ impl Outline {
 
 impl Run {
     /// Whether `edge`, which follows, is on the same line or circle.
-    fn takes(&self, edge: &Edge, carriers: &[Carrier]) -> bool {
-        self.carrier.is_some_and(|carrier| continues(carrier, edge, carriers))
+    fn takes(&self, edge: &Edge, sources: &[Source]) -> bool {
+        self.source.is_some_and(|source| continues(source, edge, sources))
+    }
+
+    /// The line or circle that it is fitted to.
+    fn carrier<'a>(&self, sources: &'a [Source]) -> Option<&'a Carrier> {
+        Some(&sources.get(self.source?)?.carrier)
     }
 }
 
@@ -369,12 +412,13 @@ fn is_on(carrier: &Carrier, point: Vec2) -> bool {
     carrier.distance(point) < ON
 }
 
-/// Whether `edge` is on the same line or circle as the edges before it, which are on `carrier`.
-fn continues(carrier: usize, edge: &Edge, carriers: &[Carrier]) -> bool {
-    if carrier == edge.carrier {
+/// Whether `edge` is on the same line or circle as the edges before it, which are pieces of `source`.
+fn continues(source: usize, edge: &Edge, sources: &[Source]) -> bool {
+    if source == edge.source {
         return true;
     }
-    match (carriers.get(carrier), carriers.get(edge.carrier)) {
+    let carrier = |i: usize| sources.get(i).map(|source| &source.carrier);
+    match (carrier(source), carrier(edge.source)) {
         (Some(line @ Carrier::Line { .. }), Some(Carrier::Line { .. })) => {
             line.distance(edge.start.point()) < ALIKE && line.distance(edge.end.point()) < ALIKE
         }

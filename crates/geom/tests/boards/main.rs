@@ -6,6 +6,7 @@
 //! polygons ([`polygons`]).
 
 mod arrangement;
+mod beside;
 mod board;
 mod crossing;
 mod field;
@@ -22,6 +23,9 @@ const UNITED: u64 = 5000;
 /// Boards of each kind that are offset.
 const OFFSET: u64 = 1500;
 
+/// Pairs of regions that are nearly one.
+const BESIDE: u64 = 4000;
+
 /// How far a boundary is off by rounding, mm.
 const ROUNDING: f64 = 1e-6;
 
@@ -29,10 +33,10 @@ const ROUNDING: f64 = 1e-6;
 const NEAR: f64 = 0.001;
 
 /// Judges `boards` of a kind, by two threads, and gives the share of those that agree but nearly.
-fn on_all(
+fn on_all<Kind: RefUnwindSafe>(
     boards: u64,
-    kind: fn(&mut Random) -> Board,
-    judge: impl Fn(&Board, &mut Random) -> Verdict + Copy + Send + RefUnwindSafe,
+    kind: fn(&mut Random) -> Kind,
+    judge: impl Fn(&Kind, &mut Random) -> Verdict + Copy + Send + RefUnwindSafe,
 ) -> f64 {
     let half = move |from: u64| {
         let (mut rejected, mut near) = (Vec::new(), 0);
@@ -158,6 +162,14 @@ fn a_board_that_is_shrunk_is_what_is_far_enough_from_its_boundary() {
                 assert!(inside.abs() < NEAR, "{element:?} is {inside} mm off at {t}");
             }
         }
+        Verdict::Exact
+    });
+}
+
+#[test]
+fn booleans_of_regions_that_are_nearly_one_are_right() {
+    on_all(BESIDE, beside::pair, |pair, random| {
+        beside::judge(pair, random);
         Verdict::Exact
     });
 }
