@@ -48,7 +48,7 @@ pub fn engraved(image: &Image, width: f64) -> Outcome<Engraving> {
 ///
 /// # Errors
 /// `tool-width` where the width makes no sense; `too-much` where the region is too large.
-pub fn outlined(region: &Region, width: f64) -> Outcome<Engraving> {
+fn outlined(region: &Region, width: f64) -> Outcome<Engraving> {
     if !(width > 0.0 && width.is_finite()) {
         let message = format!("a tool {width} mm wide cannot engrave");
         return Err(fault("tool-width", message, "give the width of the cut in mm, above 0"));

@@ -40,7 +40,7 @@ mod voronoi;
 pub use board::{Board, Copper, Side};
 pub use clearing::{Cleared, Clearing};
 pub use contour::{Contour, Piece};
-pub use engraving::{Engraving, engraved, outlined};
+pub use engraving::{Engraving, engraved};
 pub use geom::Transform;
 pub use hole::{Hole, HoleShape};
 pub use merge::joined;

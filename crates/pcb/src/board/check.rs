@@ -1,6 +1,7 @@
 //! What is odd about a board: layers that do not fit together, copper and holes outside of it.
 
-use super::{Board, Copper, Face, around};
+use super::{Board, Copper, Face, Side, around};
+use crate::gerber::Image;
 use crate::{Hole, HoleShape};
 use geom::region::{Index, Region, RegionError};
 use geom::{Element, Vec2};
@@ -67,14 +68,15 @@ pub fn checked(board: &Board) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
 fn layers(board: &Board) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
     let of = |region: Option<&Region>| region.and_then(Region::extents);
     let copper = |copper: &Option<Copper>| of(copper.as_ref().map(|copper| &copper.region));
+    let legend = |side: &Side| side.legend.as_ref().and_then(Image::extents);
     let layers = [
         ("outline", of(board.outline.as_ref())),
         ("front copper", copper(&board.front.copper)),
         ("back copper", copper(&board.back.copper)),
         ("front solder mask", of(board.front.mask.as_ref())),
         ("back solder mask", of(board.back.mask.as_ref())),
-        ("front legend", of(board.front.legend.as_ref())),
-        ("back legend", of(board.back.legend.as_ref())),
+        ("front legend", legend(&board.front)),
+        ("back legend", legend(&board.back)),
         ("holes", board.holes.iter().map(Hole::extents).reduce(around)),
     ];
     let mut there = layers.into_iter().filter_map(|(name, extents)| Some((name, extents?)));

@@ -148,7 +148,6 @@ impl Known<'_> {
             let help = "look at the unit, and at the sizes of apertures";
             vec![placed(Diagnostic::error("layer", message).help(help))]
         };
-        let whole = || covered(&image).map_err(no_region);
         let negative =
             image.file_attribute(".FilePolarity").is_some_and(|value| value == ["Negative"]);
         match self.layer {
@@ -163,8 +162,10 @@ impl Known<'_> {
                 board.side_mut(face).copper = Some(copper);
                 warnings.extend(found.into_iter().map(placed));
             }
-            Layer::Mask(face) => board.side_mut(face).mask = Some(whole()?),
-            Layer::Legend(face) => board.side_mut(face).legend = Some(whole()?),
+            Layer::Mask(face) => {
+                board.side_mut(face).mask = Some(covered(&image).map_err(no_region)?);
+            }
+            Layer::Legend(face) => board.side_mut(face).legend = Some(image),
             Layer::Outline => {
                 let outlined = outline::of_image(&image);
                 let (region, found) = outlined.map_err(|errors| {

@@ -151,7 +151,11 @@ impl Board {
         take(&mut self.outline, other.outline);
         for (side, more) in [(&mut self.front, other.front), (&mut self.back, other.back)] {
             take(&mut side.mask, more.mask);
-            take(&mut side.legend, more.legend);
+            match (&mut side.legend, more.legend) {
+                (Some(legend), Some(more)) => legend.objects.extend(more.objects),
+                (legend @ None, more) => *legend = more,
+                (Some(_), None) => {}
+            }
             match (&mut side.copper, more.copper) {
                 (Some(copper), Some(more)) => {
                     copper.region.extend(more.region);
@@ -173,7 +177,7 @@ impl Board {
                 .as_ref()
                 .map(|copper| Copper { region: place(&copper.region), nets: copper.nets.clone() }),
             mask: side.mask.as_ref().map(place),
-            legend: side.legend.as_ref().map(place),
+            legend: side.legend.as_ref().map(|image| image.placed(transform, at)),
         };
         let hole = |hole: &Hole| Hole {
             shape: match &hole.shape {
@@ -196,14 +200,17 @@ impl Board {
         }
     }
 
-    /// How many lines, arcs and holes it has.
+    /// How many lines, arcs, printed objects and holes it has.
     fn elements(&self) -> usize {
         let sides = [&self.front, &self.back];
         let copper = sides.iter().filter_map(|side| side.copper.as_ref()).map(|c| &c.region);
-        let others = sides.iter().flat_map(|side| [side.mask.as_ref(), side.legend.as_ref()]);
+        let others = sides.iter().map(|side| side.mask.as_ref());
         let regions = copper.chain(others.flatten()).chain(&self.outline);
         let rings = regions.flat_map(|region| region.rings());
-        rings.map(|ring| ring.elements().len()).sum::<usize>() + self.holes.len()
+        let printed = sides.iter().filter_map(|side| side.legend.as_ref());
+        rings.map(|ring| ring.elements().len()).sum::<usize>()
+            + printed.map(|image| image.objects.len()).sum::<usize>()
+            + self.holes.len()
     }
 }
 

@@ -7,6 +7,7 @@ use geom::Vec2;
 use geom::region::Region;
 use machine::Machine;
 use pcb::drilling::{Drilling, Mill, Slots};
+use pcb::gerber::Image;
 use pcb::isolation::{Direction, Isolation, Narrow, NarrowGap, Severed};
 use pcb::outline::{Outline, Tabs};
 use pcb::tour::Tour;
@@ -274,9 +275,9 @@ impl Worker<'_> {
     }
 
     /// Engraves what is printed.
-    fn legend(&self, work: &mut Work, legend: &Region) -> Result<(), Stop> {
+    fn legend(&self, work: &mut Work, legend: &Image) -> Result<(), Stop> {
         let width = self.args.clearing.legend_tool.unwrap_or(0.0);
-        let Engraving { paths, rest } = pcb::outlined(legend, width)?;
+        let Engraving { paths, rest } = pcb::engraved(legend, width)?;
         let tool = self.end_mill(width);
         work.operations.push(Operation {
             name: format!("legend, {}", tool.name),
@@ -370,12 +371,28 @@ fn net(copper: &Copper, island: usize) -> String {
     }
 }
 
-/// Cuts along `paths` at each depth, in an order of short travel.
+/// Cuts along `paths` at each depth, in an order of short travel. A path without length is a dot.
 fn along(paths: &[Path], width: f64, depths: &[f64]) -> Vec<Cut> {
-    let merged: Vec<Path> = paths.iter().filter_map(|path| path.merged(MERGED)).collect();
+    let mut ways = Vec::with_capacity(paths.len());
+    let mut dots = Vec::new();
+    for path in paths {
+        match path.merged(MERGED) {
+            Some(way) => ways.push(way),
+            None => dots.push(path.start()),
+        }
+    }
     let tour = Tour { from: Vec2::ZERO, to: None, either_way: true };
-    let ways = pcb::joined(&tour.of_paths(&merged), width, JOINED);
-    ways.iter().map(|path| Cut::along(path, depths)).collect()
+    let mut ways = tour.of_paths(&ways);
+    if depths.len() == 1 {
+        // Deeper, a way that is not closed any more would be cut the other way round.
+        ways = pcb::joined(&ways, width, JOINED);
+    }
+    let at = ways.last().map_or(Vec2::ZERO, Path::end);
+    let order = Tour { from: at, ..tour }.of_points(&dots);
+    let depth = depths.iter().copied().fold(0.0, f64::max);
+    let dot = |at: &Vec2| Cut::Hole { at: *at, depth, peck: None };
+    let dots = order.into_iter().filter_map(|index| dots.get(index)).map(dot);
+    ways.iter().map(|path| Cut::along(path, depths)).chain(dots).collect()
 }
 
 /// Where there is board: its outline, or the box around it where that is not known.
