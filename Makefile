@@ -46,6 +46,7 @@ bench: rust
 	cargo run --quiet --release --package toolpost-bench -- \
 		--machine sinumerik-840d-table-ac --machine sinumerik-840d-traori \
 		--machine dmu50-heidenhain --machine fanuc-table-bc \
+		$(addprefix --board ,$(wildcard $(addprefix $(DATA)/gerber/,a64 kicad/pic_programmer))) \
 		$(wildcard $(addprefix $(DATA)/cldata/,makino/* nx/* solidworks/*))
 
 ## Format, lints, documentation.

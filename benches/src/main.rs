@@ -4,9 +4,10 @@
 //! The toolpath is generated ([`path`]); every stage runs `--rounds` times on one core, and its fastest
 //! round counts ([`clock`]). NC programs are run on the virtual controls ([`programs`]), the contour of a
 //! wire becomes points ([`wire`]). Circuit boards: copper united and grown ([`copper`]), a Gerber layer read
-//! ([`layer`]). Memory is what the program asks the allocator for ([`memory`]). A path ten times as long
+//! ([`layer`]), real boards made whole ([`board`]). Memory is what the program asks the allocator for ([`memory`]). A path ten times as long
 //! shows that time and memory grow no faster. Then come real files ([`library`]).
 
+mod board;
 mod clock;
 mod copper;
 mod floor;
@@ -51,6 +52,9 @@ struct Arguments {
     /// Strokes of a copper layer; 0 leaves it out.
     #[arg(long, default_value_t = 16_000)]
     strokes: usize,
+    /// Folder of a real circuit board, to be made whole; may be given several times.
+    #[arg(long)]
+    board: Vec<PathBuf>,
     /// Real files of cutter-location data, to be proven on every machine of the library.
     files: Vec<PathBuf>,
 }
@@ -86,6 +90,7 @@ fn run(arguments: &Arguments) -> Result<(), Vec<Diagnostic>> {
     if arguments.strokes > 0 {
         layer::measure(arguments.strokes, arguments.rounds)?;
     }
+    board::measure(&arguments.board, arguments.rounds)?;
     if arguments.records > 0 {
         five_axes(arguments)?;
     }
