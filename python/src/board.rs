@@ -55,7 +55,7 @@ impl Board {
 
     /// Save the board as a JSON file.
     fn save(&self, py: Python<'_>, path: PathBuf) -> PyResult<()> {
-        save(py, path, self.text.as_bytes(), None)
+        save(py, path, self.text.as_bytes(), None, Vec::new())
     }
 
     fn __repr__(&self) -> String {
@@ -209,7 +209,7 @@ impl BoardBuilder {
     /// Raises
     /// ------
     /// toolpost.Error
-    ///     ``node-unknown``, ``net-twice``, ``length`` and whatever else makes it no board.
+    ///     ``node-unknown``, ``net-twice``, ``width`` and whatever else makes it no board.
     fn build(&self, py: Python<'_>) -> PyResult<Board> {
         let text = format!("{:#}\n", Value::Object(self.sheet.clone()));
         let reading = model::read("built", text.as_bytes()).map_err(|found| raised(py, &found))?;

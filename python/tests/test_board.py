@@ -78,7 +78,7 @@ def test_warnings_are_told():
     ("wrong", "rule"),
     [
         (lambda board: board.hole("nowhere", 1), "node-unknown"),
-        (lambda board: board.hole((0, 0), -1), "length"),
+        (lambda board: board.hole((0, 0), -1), "width"),
         (lambda board: board.pad((0, 0), "oval", 1), "board-file"),
         (lambda board: board.track([(0, 0)], 1), "node"),
         (lambda board: board, "no-board"),

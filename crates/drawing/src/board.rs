@@ -288,7 +288,7 @@ fn legend(out: &mut String, drawn: &Drawn, picture: &BoardPicture, mut at: DVec2
         write_text(out, &shorten(text, 28), at + DVec2::new(36.0, 0.0), 9.0, INK);
         if !more.is_empty() {
             at.y += 17.0;
-            write_text(out, &shorten(more, 34), at + DVec2::new(36.0, 0.0), 8.0, QUIET);
+            write_text(out, &shorten(more, 28), at + DVec2::new(36.0, 0.0), 8.0, QUIET);
         }
         at.y += 25.0;
     };

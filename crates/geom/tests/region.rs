@@ -132,6 +132,15 @@ fn a_stroke_covers_what_is_within_half_its_width() {
 }
 
 #[test]
+fn a_stroke_along_an_arc_that_is_wider_than_its_pen_by_rounding_is_whole() {
+    // A sector of 2 mm, and half a disc of 1 mm at each end.
+    for hair in [0.0, 1e-12, 9e-10, 2e-9, 1e-7] {
+        let stroke = Region::stroke(&arc(1.0 + hair, 0.4, 1.0), 2.0, Cap::Round).unwrap();
+        assert!((stroke.area() - 2.0 - PI).abs() < 1e-5, "{hair}: {}", stroke.area());
+    }
+}
+
+#[test]
 fn a_stroke_along_an_arc_is_right_by_distance_however_wide_and_long() {
     for (sweep, width) in [(1.0, 0.5), (6.0, 0.8), (-6.2, 1.9), (5.0, 2.5), (-1.0, 3.0), (4.0, 2.0)]
     {

@@ -7,7 +7,7 @@ use crate::report::{Fault, Outcome, fault};
 use geom::Element;
 use geom::region::{Index, Region, RegionError};
 
-/// What is not wider than twice this is not told to be missing, mm.
+/// What is no farther than this from a place that the tool reaches counts as reached, mm.
 const SLIVER: f64 = 0.005;
 
 /// What is engraved.
@@ -15,7 +15,7 @@ const SLIVER: f64 = 0.005;
 pub struct Engraving {
     /// The ways of the middle of the tool. One without length is a dot.
     pub paths: Vec<Path>,
-    /// What is too narrow for the tool, but for slivers up to 10 µm wide.
+    /// What is too narrow for the tool, but for places up to 5 µm from one that it reaches.
     pub rest: Region,
 }
 
@@ -48,7 +48,7 @@ pub fn engraved(image: &Image, width: f64) -> Outcome<Engraving> {
 ///
 /// # Errors
 /// `tool-width` where the width makes no sense; `too-much` where the region is too large.
-pub fn outlined(region: &Region, width: f64) -> Outcome<Engraving> {
+fn outlined(region: &Region, width: f64) -> Outcome<Engraving> {
     if !(width > 0.0 && width.is_finite()) {
         let message = format!("a tool {width} mm wide cannot engrave");
         return Err(fault("tool-width", message, "give the width of the cut in mm, above 0"));

@@ -40,13 +40,13 @@ mod voronoi;
 pub use board::{Board, Copper, Side};
 pub use clearing::{Cleared, Clearing};
 pub use contour::{Contour, Piece};
-pub use engraving::{Engraving, engraved, outlined};
+pub use engraving::{Engraving, engraved};
 pub use geom::Transform;
 pub use hole::{Hole, HoleShape};
 pub use merge::joined;
 pub use operation::{Cut, Cutter, Operation, Stretch, Tool, depths};
 pub use path::{Path, Site};
-pub use voronoi::{Division, Strait, divided};
+pub use voronoi::{Division, divided};
 
 /// The farthest coordinate that is taken, mm.
 const FAR: f64 = 1e6;

@@ -6,19 +6,17 @@ use std::f64::consts::TAU;
 
 impl Path {
     /// The same way in fewer elements, nowhere farther than `tolerance` mm from this one. Elements shorter
-    /// than a quarter of that are dropped, and lines and arcs that go on in one line or circle are one.
+    /// than a quarter of that are dropped, and what is as good as one line or one arc is one.
     /// What is closed stays closed, though it may begin elsewhere; a way back along itself stays a
     /// way back. `None` where nothing is left.
     pub fn merged(&self, tolerance: f64) -> Option<Path> {
-        // Starts move where something is dropped, centres follow, ends are beside the line or circle that
-        // they are merged into, and its centre follows: each by no more than a quarter.
-        let quarter = tolerance / 4.0;
-        let elements = without_short(self.elements(), quarter);
-        let (merged, last) = merged(&elements, quarter);
+        // Where something is dropped, starts move and centres follow, each by no more than a quarter.
+        let elements = without_short(self.elements(), tolerance / 4.0);
+        let (merged, last) = merged(&elements, tolerance / 2.0);
         if self.is_closed() && last > 0 {
             // What ends at the start may go on there.
             let around = [&elements[last..], &elements[..last]].concat();
-            let (other, _) = self::merged(&around, quarter);
+            let (other, _) = self::merged(&around, tolerance / 2.0);
             if other.len() < merged.len() {
                 return Path::new(other);
             }
@@ -26,6 +24,9 @@ impl Path {
         Path::new(merged)
     }
 }
+
+/// The greatest radius of an arc that is made of others, mm: what is flatter stays as it is.
+const GREATEST: f64 = 1000.0;
 
 /// `paths`, in their order, without lifting the tool where it need not be: it cuts straight to where the next
 /// one starts where that widens a cut of `width` mm by no more than `tolerance` mm.
@@ -81,7 +82,8 @@ fn spanning(element: &Element, start: Vec2, end: Vec2, within: f64) -> Element {
     let across = (end - start).perp().normalize_or_zero();
     let middle = start.midpoint(end);
     let balanced = middle + across * (center - middle).dot(across);
-    let center = if balanced.distance(center) <= within { balanced } else { center };
+    let balances = start != end && balanced.distance(center) <= within;
+    let center = if balances { balanced } else { center };
     let angle = turn_angle(start - center, end - center);
     let sweep_near = angle + TAU * ((sweep - angle) / TAU).round();
     if sweep_near * sweep > 0.0 {
@@ -91,87 +93,105 @@ fn spanning(element: &Element, start: Vec2, end: Vec2, within: f64) -> Element {
     }
 }
 
-/// The chain in runs of one line or circle each, and where in it the last one begins.
+/// The chain in runs that are as good as one line or arc each, and where in it the last one begins.
 fn merged(elements: &[Element], within: f64) -> (Vec<Element>, usize) {
     let mut merged = Vec::new();
-    let mut first = 0;
+    let (mut first, mut last) = (0, 0);
     while let Some(element) = elements.get(first) {
-        let mut run = Run::of(element, within);
-        let rest = &elements[first + 1..];
-        let length = 1 + rest.iter().take_while(|next| run.takes(next)).count();
-        merged.push(if length == 1 { *element } else { run.element() });
+        last = first;
+        // Longer and longer runs, until one is too long; then as long as may be.
+        let rest = &elements[first..];
+        let fit = |length: usize| rest.get(..length).and_then(|run| one(run, within));
+        let (mut length, mut best) = (1, *element);
+        let mut too_long = None;
+        let mut next = 2;
+        while too_long.is_none_or(|too_long| next < too_long) {
+            match fit(next) {
+                Some(found) => (length, best) = (next, found),
+                None => too_long = Some(next),
+            }
+            next = match too_long {
+                None => length + length.div_ceil(2),
+                Some(too_long) => length.midpoint(too_long).max(length + 1),
+            };
+        }
+        merged.push(best);
         first += length;
-        if first >= elements.len() {
-            return (merged, first - length);
-        }
     }
-    (merged, 0)
+    (merged, last)
 }
 
-/// Elements that follow each other on one line or circle.
-struct Run {
-    /// The first one, with the end of the last.
-    whole: Element,
-    within: f64,
-    /// By which angles the line to the next end may turn from the first to pass all ends so far; for arcs
-    /// not of interest.
-    least: f64,
-    most: f64,
+/// The line or arc that is as good as the whole of `run`.
+fn one(run: &[Element], within: f64) -> Option<Element> {
+    let (start, end) = (run.first()?.start, run.last()?.end);
+    let line = Element::line(start, end);
+    if follows(run, within, |point| {
+        let (from, along) = (point - start, (end - start).normalize_or_zero());
+        (from.dot(along), along.perp_dot(from))
+    }) {
+        return Some(line);
+    }
+    let length: f64 = run.iter().map(Element::length).sum();
+    let [p, q] = [length / 3.0, length * 2.0 / 3.0].map(|way| along(run, way));
+    let center = center(start, p, q)?;
+    let sense = (p - start).perp_dot(q - p).signum();
+    // As often around as the points of the run are.
+    let mut before = start;
+    let mut sweep = 0.0;
+    for point in points(run) {
+        sweep += turn_angle(before - center, point - center);
+        before = point;
+    }
+    let arc = spanning(&Element::arc(start, end, center, sweep), start, end, f64::INFINITY);
+    let turn = arc.turn?;
+    let radius = start.distance(turn.center);
+    let (mut before, mut turned) = (start, 0.0);
+    let fits = turn.sweep * sense > 0.0
+        && turn.sweep.abs() <= TAU * (1.0 + 1e-9)
+        && radius < GREATEST
+        && follows(run, within, |point| {
+            turned += turn_angle(before - turn.center, point - turn.center);
+            before = point;
+            (turned * sense, point.distance(turn.center) - radius)
+        });
+    fits.then_some(arc)
 }
 
-impl Run {
-    fn of(first: &Element, within: f64) -> Run {
-        let mut run = Run { whole: *first, within, least: f64::NEG_INFINITY, most: f64::INFINITY };
-        run.pass(0.0, first.length());
-        run
-    }
+/// Whether the points of `run` are within `within` mm of a course, and go on along it: `place` tells how far
+/// along it a point is, and how far beside it, mm.
+fn follows(run: &[Element], within: f64, mut place: impl FnMut(Vec2) -> (f64, f64)) -> bool {
+    let mut before = 0.0;
+    points(run).all(|point| {
+        let (along, beside) = place(point);
+        let onwards = along > before;
+        before = along;
+        onwards && beside.abs() <= within
+    })
+}
 
-    /// The line from the start is to pass an end, which is `away` from the start.
-    fn pass(&mut self, angle: f64, away: f64) {
-        let play = (self.within / away).min(1.0).asin();
-        self.least = self.least.max(angle - play);
-        self.most = self.most.min(angle + play);
-    }
+/// Points of a run, in order, the last of each element among them.
+fn points(run: &[Element]) -> impl Iterator<Item = Vec2> {
+    run.iter().flat_map(|element| [0.25, 0.5, 0.75, 1.0].map(|t| element.at(t)))
+}
 
-    /// Whether `next` goes on in the same line or circle; then it is part of the run.
-    fn takes(&mut self, next: &Element) -> bool {
-        match (self.whole.turn, next.turn) {
-            (None, None) => self.takes_line(next),
-            (Some(turn), Some(other)) => self.takes_arc(turn, next, other),
-            _ => false,
+/// The point of a run `way` mm from its start.
+fn along(run: &[Element], mut way: f64) -> Vec2 {
+    let mut point = Vec2::ZERO;
+    for element in run {
+        let length = element.length();
+        point = element.at(way / length);
+        if way <= length {
+            break;
         }
+        way -= length;
     }
+    point
+}
 
-    fn takes_line(&mut self, next: &Element) -> bool {
-        let (along, to) = (self.whole.end - self.whole.start, next.end - self.whole.start);
-        // Of a line, the angles are those from its direction so far.
-        let angle = turn_angle(along, to);
-        let onwards = (next.end - next.start).dot(to) > 0.0;
-        if !(onwards && self.least <= angle && angle <= self.most) {
-            return false;
-        }
-        (self.least, self.most) = (self.least - angle, self.most - angle);
-        self.whole.end = next.end;
-        self.pass(0.0, to.length());
-        true
-    }
-
-    fn takes_arc(&mut self, turn: Turn, next: &Element, other: Turn) -> bool {
-        let radius = self.whole.start.distance(turn.center);
-        let on = |point: Vec2| (point.distance(turn.center) - radius).abs() <= self.within;
-        let sweep = turn.sweep + other.sweep;
-        let fits = turn.sweep * other.sweep > 0.0
-            && sweep.abs() <= TAU * (1.0 + 1e-9)
-            && [0.25, 0.5, 0.75, 1.0].into_iter().all(|t| on(next.at(t)));
-        if fits {
-            self.whole.turn = Some(Turn { sweep, ..turn });
-            self.whole.end = next.end;
-        }
-        fits
-    }
-
-    /// All of it as one element.
-    fn element(&self) -> Element {
-        spanning(&self.whole, self.whole.start, self.whole.end, self.within)
-    }
+/// The centre of the circle through three points; `None` where they are on a line.
+fn center(a: Vec2, b: Vec2, c: Vec2) -> Option<Vec2> {
+    let (b, c) = (b - a, c - a);
+    let twice = 2.0 * b.perp_dot(c);
+    let center = a + (b * c.length_squared() - c * b.length_squared()).perp() / twice;
+    center.is_finite().then_some(center)
 }

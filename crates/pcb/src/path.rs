@@ -76,6 +76,11 @@ impl Path {
         let (Some(cut), true) = (self.elements.get(site.element), self.is_closed()) else {
             return self.clone();
         };
+        if let ([_], Some(_)) = (&self.elements[..], cut.turn) {
+            // A circle stays one.
+            let start = cut.at(site.t);
+            return Path { elements: vec![Element { start, end: start, ..*cut }] };
+        }
         let (before, after) = (&self.elements[..site.element], &self.elements[site.element + 1..]);
         let mut elements = Vec::with_capacity(self.elements.len() + 1);
         elements.push(cut.part(site.t, 1.0));

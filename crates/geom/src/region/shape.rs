@@ -8,6 +8,9 @@ use crate::{Element, Turn, Vec2};
 use std::f64::consts::{PI, TAU};
 use std::iter;
 
+/// An arc this near to a point has no inner side, mm.
+const POINT: f64 = 1e-6;
+
 /// How a stroke ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Cap {
@@ -59,7 +62,7 @@ impl Region {
         let Some(turn) = middle.turn else { return Ok(along(middle, half, cap)) };
         let radius = middle.start.distance(turn.center);
         let whole = turn.sweep.abs() >= TAU * (1.0 - 1e-9);
-        match (whole, radius > half) {
+        match (whole, radius > half + POINT) {
             (true, true) => {
                 let hole = circle(turn.center, radius - half, -TAU);
                 Ok(region(circle(turn.center, radius + half, TAU), vec![hole]))

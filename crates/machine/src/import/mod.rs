@@ -1,10 +1,10 @@
 //! Posts and templates of other systems as machine files: what fits becomes blocks and words of ours, and
 //! what does not is told line by line, never dropped in silence.
 //!
-//! Two readers, [`vectric`] for the posts of VCarve and Aspire and [`parameters`] for templates with
-//! `@parameter@`, make one [`foreign::Post`]; [`write`](mod@write) makes a file of it that extends a control of the
-//! library, which stands in for what the post does not say. Nothing is evaluated: a template of another
-//! system is text.
+//! Two readers, `vectric` for the posts of VCarve and Aspire and `parameters` for templates with
+//! `@parameter@`, make one `foreign::Post`; `write` makes a file of it that extends a control of the library,
+//! which stands in for what the post does not say. Nothing is evaluated: a template of another system is
+//! text.
 
 mod foreign;
 mod items;

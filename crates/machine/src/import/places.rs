@@ -134,11 +134,19 @@ impl Writing<'_> {
         self.blocks.insert("program_end", text);
     }
 
-    /// What is left of the lines of a part where the start of the control already says the codes `said`.
-    fn rests(&mut self, part: Part, said: &[(char, f64)]) -> Vec<Rest> {
+    /// What is left of the lines of a part where the start of the control already says the codes `said`;
+    /// they are said again behind a line that counts otherwise.
+    fn rests(&mut self, part: Part, mut said: &[(char, f64)]) -> Vec<Rest> {
         let post = self.post;
-        let lines = post.parts.get(&part).map(Vec::as_slice).unwrap_or_default();
-        lines.iter().filter_map(|line| self.rest(line, part, said)).collect()
+        let mut rests = Vec::new();
+        for line in post.parts.get(&part).map(Vec::as_slice).unwrap_or_default() {
+            let Some(rest) = self.rest(line, part, said) else { continue };
+            if rest.reference || codes(&rest.text).any(|code| code == ('G', 91.0)) {
+                said = &[];
+            }
+            rests.push(rest);
+        }
+        rests
     }
 
     fn rest(&mut self, line: &Line, part: Part, said: &[(char, f64)]) -> Option<Rest> {

@@ -1,9 +1,10 @@
 //! What is odd about a board: layers that do not fit together, copper and holes outside of it.
 
-use super::{Board, Copper, Face, around};
+use super::{Board, Copper, Face, Side, around};
+use crate::gerber::Image;
 use crate::{Hole, HoleShape};
-use geom::Vec2;
-use geom::region::{Region, RegionError};
+use geom::region::{Index, Region, RegionError};
+use geom::{Element, Vec2};
 use program::Diagnostic;
 
 /// Copper outside that covers less is rounding, mm²: 10 mm of an edge by a tenth of a micrometre.
@@ -20,9 +21,10 @@ type Extents = (Vec2, Vec2);
 pub fn checked(board: &Board) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
     let mut warnings = layers(board)?;
     let Some(outline) = &board.outline else { return Ok(warnings) };
+    let index = Index::new(outline);
     for face in [Face::Front, Face::Back] {
         let Some(copper) = &board.side(face).copper else { continue };
-        let outside = outside(copper, outline).map_err(|error| {
+        let outside = outside(copper, outline, &index).map_err(|error| {
             let message = format!("copper and outline cannot be compared: {error}");
             vec![Diagnostic::error("copper-outside", message)]
         })?;
@@ -45,7 +47,7 @@ pub fn checked(board: &Board) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
         }
     }
     let beyond: Vec<&Hole> =
-        board.holes.iter().filter(|hole| !outline.contains(middle(hole))).collect();
+        board.holes.iter().filter(|hole| index.island_at(middle(hole)).is_none()).collect();
     if let Some(first) = beyond.first() {
         let at = middle(first);
         let message = format!(
@@ -66,14 +68,15 @@ pub fn checked(board: &Board) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
 fn layers(board: &Board) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
     let of = |region: Option<&Region>| region.and_then(Region::extents);
     let copper = |copper: &Option<Copper>| of(copper.as_ref().map(|copper| &copper.region));
+    let legend = |side: &Side| side.legend.as_ref().and_then(Image::extents);
     let layers = [
         ("outline", of(board.outline.as_ref())),
         ("front copper", copper(&board.front.copper)),
         ("back copper", copper(&board.back.copper)),
         ("front solder mask", of(board.front.mask.as_ref())),
         ("back solder mask", of(board.back.mask.as_ref())),
-        ("front legend", of(board.front.legend.as_ref())),
-        ("back legend", of(board.back.legend.as_ref())),
+        ("front legend", legend(&board.front)),
+        ("back legend", legend(&board.back)),
         ("holes", board.holes.iter().map(Hole::extents).reduce(around)),
     ];
     let mut there = layers.into_iter().filter_map(|(name, extents)| Some((name, extents?)));
@@ -100,20 +103,15 @@ fn layers(board: &Board) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
 }
 
 /// The copper that is not within the outline. Only islands that come near an edge are worked on.
-fn outside(copper: &Copper, outline: &Region) -> Result<Region, RegionError> {
-    let edges: Vec<Extents> =
-        outline.rings().flat_map(|ring| ring.elements()).map(|element| element.extents()).collect();
-    let near = |a: &Extents, b: &Extents| a.0.cmple(b.1).all() && b.0.cmple(a.1).all();
+fn outside(copper: &Copper, outline: &Region, index: &Index) -> Result<Region, RegionError> {
+    let near = |element: &Element| {
+        let (low, high) = element.extents();
+        index.within(low, high).next().is_some()
+    };
     let suspect = copper.region.islands().iter().filter(|island| {
-        let around = island.outer().extents();
-        let edges: Vec<&Extents> = edges.iter().filter(|edge| near(edge, &around)).collect();
-        let mut elements = island.outer().elements().iter();
-        let start = elements.clone().next().is_none_or(|element| !outline.contains(element.start));
-        start
-            || elements.any(|element| {
-                let around = element.extents();
-                edges.iter().any(|edge| near(edge, &around))
-            })
+        let elements = island.outer().elements();
+        let beside = |first: &Element| index.island_at(first.start).is_none();
+        elements.first().is_some_and(beside) || elements.iter().any(near)
     });
     suspect.cloned().collect::<Region>().difference(outline)
 }

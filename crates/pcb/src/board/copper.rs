@@ -30,6 +30,17 @@ pub enum Shape {
 pub type Named = (Copper, Vec<Diagnostic>);
 
 impl Copper {
+    /// The conductor that each island is part of, as the number of its first island: islands of one net are
+    /// one conductor, an island without a net is one of its own.
+    pub fn conductors(&self) -> Vec<usize> {
+        let mut first = BTreeMap::new();
+        let islands = 0..self.region.islands().len();
+        let net = |island: usize| self.nets.get(island)?.as_deref();
+        islands
+            .map(|island| net(island).map_or(island, |net| *first.entry(net).or_insert(island)))
+            .collect()
+    }
+
     /// What an image of copper covers, its islands with the nets that its objects have.
     ///
     /// # Errors

@@ -8,6 +8,7 @@ use super::{Board, Copper, check, covered, holes, outline};
 use crate::{excellon, gerber};
 use geom::region::RegionError;
 use program::Diagnostic;
+use std::{panic, thread};
 
 /// A file of a board.
 #[derive(Clone, Copy, Debug)]
@@ -41,9 +42,20 @@ pub fn read(name: &str, files: &[File]) -> Result<Reading, Vec<Diagnostic>> {
     let known = told_apart(files, &mut warnings)?;
     let mut board = Board { name: name.into(), ..Board::default() };
     let mut errors = Vec::new();
-    for layer in &known {
-        match layer.read(&mut board) {
-            Ok(found) => warnings.extend(found),
+    // All at the same time, and put together in the order of the files.
+    let parts = thread::scope(|scope| {
+        let threads: Vec<_> = known.iter().map(|layer| scope.spawn(|| layer.read())).collect();
+        let finished = threads.into_iter().map(|thread| thread.join());
+        finished
+            .map(|part| part.unwrap_or_else(|panic| panic::resume_unwind(panic)))
+            .collect::<Vec<_>>()
+    });
+    for part in parts {
+        match part {
+            Ok((part, found)) => {
+                board.take(part);
+                warnings.extend(found);
+            }
             Err(found) => errors.extend(found),
         }
     }
@@ -115,27 +127,27 @@ fn told_apart<'a>(
 }
 
 impl Known<'_> {
-    /// Reads the file into `board`; gives the warnings.
-    fn read(&self, board: &mut Board) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
+    /// A board with nothing but this layer, and the warnings.
+    fn read(&self) -> Result<(Board, Vec<Diagnostic>), Vec<Diagnostic>> {
         let File { name, text, .. } = *self.file;
+        let mut board = Board::default();
         if let (Layer::Holes(plated), Format::Excellon) = (self.layer, self.format) {
             let reading = excellon::read(name, text)?;
             board.holes.extend(holes::of_drill(reading.drill, plated));
-            return Ok(reading.warnings);
+            return Ok((board, reading.warnings));
         }
         let gerber::Reading { image, mut warnings } = gerber::read(name, text)?;
         let placed = |found: Diagnostic| found.file(name);
         if image.objects.is_empty() {
             let message = format!("nothing is on this layer: there is no {}", self.layer);
             warnings.push(placed(Diagnostic::warning("layer-empty", message)));
-            return Ok(warnings);
+            return Ok((board, warnings));
         }
         let no_region = |error: RegionError| {
             let message = format!("this layer cannot be taken: {error}");
             let help = "look at the unit, and at the sizes of apertures";
             vec![placed(Diagnostic::error("layer", message).help(help))]
         };
-        let whole = || covered(&image).map_err(no_region);
         let negative =
             image.file_attribute(".FilePolarity").is_some_and(|value| value == ["Negative"]);
         match self.layer {
@@ -150,8 +162,10 @@ impl Known<'_> {
                 board.side_mut(face).copper = Some(copper);
                 warnings.extend(found.into_iter().map(placed));
             }
-            Layer::Mask(face) => board.side_mut(face).mask = Some(whole()?),
-            Layer::Legend(face) => board.side_mut(face).legend = Some(whole()?),
+            Layer::Mask(face) => {
+                board.side_mut(face).mask = Some(covered(&image).map_err(no_region)?);
+            }
+            Layer::Legend(face) => board.side_mut(face).legend = Some(image),
             Layer::Outline => {
                 let outlined = outline::of_image(&image);
                 let (region, found) = outlined.map_err(|errors| {
@@ -167,7 +181,7 @@ impl Known<'_> {
             }
             Layer::Other => {}
         }
-        Ok(warnings)
+        Ok((board, warnings))
     }
 }
 

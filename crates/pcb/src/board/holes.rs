@@ -14,7 +14,15 @@ pub(super) fn of_drill(drill: Drill, plated: Option<bool>) -> Vec<Hole> {
     let holes = cuts.into_iter().filter_map(|cut| {
         let tool = tools.get(cut.tool as usize)?;
         let (diameter, plated) = (tool.diameter, tool.plated.or(plated));
-        Some(Hole { shape: cut.path, diameter, plated })
+        let shape = match cut.path {
+            // Some systems write slots so.
+            HoleShape::Route(way) => match way[..] {
+                [only] => drawn(only),
+                _ => HoleShape::Route(way),
+            },
+            shape => shape,
+        };
+        Some(Hole { shape, diameter, plated })
     });
     holes.filter(|hole| hole.diameter > 0.0).collect()
 }

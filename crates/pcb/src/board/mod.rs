@@ -23,6 +23,7 @@ pub use layer::{Face, Layer};
 pub use placed::Axis;
 
 use crate::Hole;
+use crate::gerber::Image;
 use geom::Vec2;
 use geom::region::Region;
 
@@ -49,7 +50,7 @@ pub struct Side {
     /// Where its solder mask is open.
     pub mask: Option<Region>,
     /// What is printed on it.
-    pub legend: Option<Region>,
+    pub legend: Option<Image>,
 }
 
 impl Board {

@@ -145,16 +145,24 @@ impl Board {
         Ok(panel.unwrap_or_default())
     }
 
-    /// Takes in another copy of itself, which does not come near.
-    fn take(&mut self, copy: Board) {
-        self.holes.extend(copy.holes);
-        take(&mut self.outline, copy.outline);
-        for (side, more) in [(&mut self.front, copy.front), (&mut self.back, copy.back)] {
+    /// Takes in other layers of the board, or another board, which does not come near.
+    pub(super) fn take(&mut self, other: Board) {
+        self.holes.extend(other.holes);
+        take(&mut self.outline, other.outline);
+        for (side, more) in [(&mut self.front, other.front), (&mut self.back, other.back)] {
             take(&mut side.mask, more.mask);
-            take(&mut side.legend, more.legend);
-            if let (Some(copper), Some(more)) = (&mut side.copper, more.copper) {
-                copper.region.extend(more.region);
-                copper.nets.extend(more.nets);
+            match (&mut side.legend, more.legend) {
+                (Some(legend), Some(more)) => legend.objects.extend(more.objects),
+                (legend @ None, more) => *legend = more,
+                (Some(_), None) => {}
+            }
+            match (&mut side.copper, more.copper) {
+                (Some(copper), Some(more)) => {
+                    copper.region.extend(more.region);
+                    copper.nets.extend(more.nets);
+                }
+                (copper @ None, more) => *copper = more,
+                (Some(_), None) => {}
             }
         }
     }
@@ -169,7 +177,7 @@ impl Board {
                 .as_ref()
                 .map(|copper| Copper { region: place(&copper.region), nets: copper.nets.clone() }),
             mask: side.mask.as_ref().map(place),
-            legend: side.legend.as_ref().map(place),
+            legend: side.legend.as_ref().map(|image| image.placed(transform, at)),
         };
         let hole = |hole: &Hole| Hole {
             shape: match &hole.shape {
@@ -192,14 +200,17 @@ impl Board {
         }
     }
 
-    /// How many lines, arcs and holes it has.
+    /// How many lines, arcs, printed objects and holes it has.
     fn elements(&self) -> usize {
         let sides = [&self.front, &self.back];
         let copper = sides.iter().filter_map(|side| side.copper.as_ref()).map(|c| &c.region);
-        let others = sides.iter().flat_map(|side| [side.mask.as_ref(), side.legend.as_ref()]);
+        let others = sides.iter().map(|side| side.mask.as_ref());
         let regions = copper.chain(others.flatten()).chain(&self.outline);
         let rings = regions.flat_map(|region| region.rings());
-        rings.map(|ring| ring.elements().len()).sum::<usize>() + self.holes.len()
+        let printed = sides.iter().filter_map(|side| side.legend.as_ref());
+        rings.map(|ring| ring.elements().len()).sum::<usize>()
+            + printed.map(|image| image.objects.len()).sum::<usize>()
+            + self.holes.len()
     }
 }
 
@@ -215,7 +226,9 @@ fn rename(nets: &mut [Option<Arc<str>>], place: &str) {
 
 /// Puts more of a layer to what there is.
 fn take(layer: &mut Option<Region>, more: Option<Region>) {
-    if let (Some(layer), Some(more)) = (layer, more) {
-        layer.extend(more);
+    match (&mut *layer, more) {
+        (Some(layer), Some(more)) => layer.extend(more),
+        (None, more) => *layer = more,
+        (Some(_), None) => {}
     }
 }

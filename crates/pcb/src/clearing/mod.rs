@@ -11,7 +11,7 @@ use crate::isolation::Direction;
 use crate::report::{Fault, Outcome, fault};
 use geom::region::{Region, RegionError};
 
-/// Of a place that was cut, what is not wider than twice this is not cut once more, mm.
+/// What is no farther than this from a place that the tool reaches counts as reached, mm.
 const SLIVER: f64 = 0.005;
 
 /// The finest step between rings, mm: regions are exact to a fifth of it.
@@ -37,7 +37,7 @@ pub struct Cleared {
     /// The ways of the middle of each tool, from the edge of the area inwards; closed, but for those along
     /// ridges between rings.
     pub passes: Vec<Vec<Path>>,
-    /// What no tool reaches, but for slivers up to 10 µm wide.
+    /// What no tool reaches, but for places up to 10 µm from one that is cut.
     pub rest: Region,
 }
 

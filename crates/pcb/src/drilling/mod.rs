@@ -1,7 +1,7 @@
 //! Drilling: which drill makes which hole, what is milled instead, and in which order.
 //!
 //! Drills come in rising diameters, one change each, and then the cutter. A slot is drilled hole by hole
-//! ([`chain`]) or milled; a route is milled, and so is what no drill makes ([`milled`]). Holes are drilled
+//! (`chain`) or milled; a route is milled, and so is what no drill makes (`milled`). Holes are drilled
 //! whether they are plated or not.
 
 mod chain;

@@ -134,6 +134,13 @@ impl Image {
         outlines.map(|contour| contour.extents()).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
     }
 
+    /// The same elsewhere: transformed about the origin, which goes to `at`.
+    pub(crate) fn placed(&self, transform: &Transform, at: Vec2) -> Image {
+        let place =
+            |object: &Object| Object { shape: object.shape.placed(transform, at), ..*object };
+        Image { objects: self.objects.iter().map(place).collect(), ..self.clone() }
+    }
+
     fn aperture(&self, index: u32) -> Option<&Aperture> {
         self.apertures.get(index as usize)
     }
@@ -146,20 +153,7 @@ impl Object {
     /// # Errors
     /// `not-a-place` where that leads out of this world.
     pub(super) fn placed(&self, outer: &Transform, to: Vec2, dark: bool) -> Outcome<Object> {
-        let shape = match self.shape {
-            Shape::Flash { aperture, transform, at } => {
-                let at = to + outer.apply(at);
-                Shape::Flash { aperture, transform: outer.after(&transform), at }
-            }
-            Shape::Stroke { aperture, transform, path } => {
-                let path = outer.element(&path, to);
-                Shape::Stroke { aperture, transform: outer.after(&transform), path }
-            }
-            Shape::Region { region, transform, at } => {
-                let at = to + outer.apply(at);
-                Shape::Region { region, transform: outer.after(&transform), at }
-            }
-        };
+        let shape = self.shape.placed(outer, to);
         let (place, transform) = match &shape {
             Shape::Flash { transform, at, .. } | Shape::Region { transform, at, .. } => {
                 (at, transform)
@@ -172,5 +166,25 @@ impl Object {
             return Err(fault("not-a-place", message, "look at distances, scales and the unit"));
         }
         Ok(Object { dark: self.dark == dark, shape, ..*self })
+    }
+}
+
+impl Shape {
+    /// The same, transformed about the origin, which goes to `to`.
+    fn placed(&self, outer: &Transform, to: Vec2) -> Shape {
+        match *self {
+            Shape::Flash { aperture, transform, at } => {
+                let at = to + outer.apply(at);
+                Shape::Flash { aperture, transform: outer.after(&transform), at }
+            }
+            Shape::Stroke { aperture, transform, path } => {
+                let path = outer.element(&path, to);
+                Shape::Stroke { aperture, transform: outer.after(&transform), path }
+            }
+            Shape::Region { region, transform, at } => {
+                let at = to + outer.apply(at);
+                Shape::Region { region, transform: outer.after(&transform), at }
+            }
+        }
     }
 }

@@ -20,12 +20,21 @@ pub(super) struct Edge<'a> {
     pub element: &'a Element,
 }
 
-impl Edge<'_> {
+impl<'a> Edge<'a> {
+    /// Whether the shortest way to `point` begins outside of the conductor, which is on its left. At a sharp
+    /// corner that may be told of one of its edges only.
+    pub fn is_left_towards(&self, point: Vec2) -> bool {
+        let (t, _) = self.element.nearest(point);
+        self.element.tangent(t).perp_dot(point - self.element.at(t)) <= 0.0
+    }
+
     /// What of it is nearest to `point`.
-    fn foot(&self, point: Vec2) -> Foot {
+    fn foot(&self, point: Vec2) -> Foot<'a> {
         let (t, away) = self.element.nearest(point);
         let at = self.element.at(t);
-        Foot { conductor: self.conductor, island: self.island, at, away }
+        let is_corner = t <= 0.0 || t >= 1.0;
+        let is_outside = is_corner || self.element.tangent(t).perp_dot(point - at) <= 0.0;
+        Foot { edge: *self, at, away, is_outside }
     }
 }
 
@@ -37,13 +46,14 @@ pub(super) struct Window<'a> {
 }
 
 /// What is nearest of a conductor.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Foot {
-    pub conductor: usize,
-    pub island: usize,
+#[derive(Clone, Copy)]
+pub(super) struct Foot<'a> {
+    pub edge: Edge<'a>,
     pub at: Vec2,
     /// How far away, mm.
     pub away: f64,
+    /// Whether it is seen from outside of the conductor, as far as that can be told.
+    pub is_outside: bool,
 }
 
 impl<'a> Field<'a> {
@@ -81,13 +91,10 @@ impl<'a> Field<'a> {
         self.index.within(low, high).all(|piece| piece.element.away(point) >= distance)
     }
 
-    /// Two islands of two conductors that are nearest to `point`, `away` mm or a little more.
-    pub fn islands(&self, point: Vec2, away: f64) -> Option<[usize; 2]> {
-        let mut feet = self.window(point, 2.0 * away + 1e-3).nearest(point, 1e-3);
-        feet.sort_by(|a, b| a.away.total_cmp(&b.away));
-        let first = feet.first()?;
-        let second = feet.iter().find(|foot| foot.conductor != first.conductor)?;
-        Some([first.island, second.island])
+    /// The islands of two conductors that are nearest to `point`, both `away` mm.
+    pub fn islands(&self, point: Vec2, pair: [usize; 2], away: f64) -> Option<[usize; 2]> {
+        let near = self.window(point, 3.0 * away + 1e-3).near(point, pair)?;
+        Some(near.feet.map(|foot| foot.edge.island))
     }
 
     /// The edges up to `half` mm left, right, above and below of `center`.
@@ -97,18 +104,23 @@ impl<'a> Field<'a> {
 }
 
 /// What is near a place, of two conductors and the rest.
-#[derive(Clone, Copy, Debug)]
-pub(super) struct Near {
+#[derive(Clone, Copy)]
+pub(super) struct Near<'a> {
     /// Of each of the two.
-    pub feet: [Foot; 2],
+    pub feet: [Foot<'a>; 2],
     /// How far the rest is at least, mm.
     pub other: f64,
 }
 
-impl Near {
+impl Near<'_> {
     /// How far the two are, mm, where they are as far.
     pub fn away(&self) -> f64 {
         self.feet[0].away.min(self.feet[1].away)
+    }
+
+    /// Whether it is outside of the two.
+    pub fn is_outside(&self) -> bool {
+        self.feet.iter().all(|foot| foot.is_outside)
     }
 
     /// How much farther the rest is, mm.
@@ -117,10 +129,10 @@ impl Near {
     }
 }
 
-impl Window<'_> {
+impl<'a> Window<'a> {
     /// What is near `point`; `None` where the window does not reach twice as far as the two are.
-    pub fn near(&self, point: Vec2, pair: [usize; 2]) -> Option<Near> {
-        let mut best: [Option<(f64, &Edge)>; 2] = [None; 2];
+    pub fn near(&self, point: Vec2, pair: [usize; 2]) -> Option<Near<'a>> {
+        let mut best: [Option<(f64, &Edge<'a>)>; 2] = [None; 2];
         let reach = self.reach(point);
         let mut other = reach;
         for edge in &self.edges {
@@ -144,8 +156,8 @@ impl Window<'_> {
     }
 
     /// The edges that are no farther than the nearest and `tie` mm more.
-    pub fn nearest(&self, point: Vec2, tie: f64) -> Vec<Foot> {
-        let mut feet: Vec<Foot> = self.edges.iter().map(|edge| edge.foot(point)).collect();
+    pub fn nearest(&self, point: Vec2, tie: f64) -> Vec<Foot<'a>> {
+        let mut feet: Vec<Foot<'a>> = self.edges.iter().map(|edge| edge.foot(point)).collect();
         let least = feet.iter().map(|foot| foot.away).fold(f64::INFINITY, f64::min);
         feet.retain(|foot| foot.away <= least + tie);
         feet

@@ -59,7 +59,7 @@ pub(super) fn gaps(field: &Field, width: f64) -> Result<Gaps, TooMany> {
             let path = path(&run.stations);
             let length = path.as_ref().map_or(0.0, Path::length);
             if run.is_narrow {
-                gaps.narrow.extend(narrow(field, &run, length, path));
+                gaps.narrow.extend(narrow(field, line.pair, &run, length, path));
             } else if length > width / 2.0 {
                 // A shorter one is cut from its ends.
                 gaps.fitting.extend(path);
@@ -96,9 +96,15 @@ fn runs(line: &Line, least: f64) -> Vec<Run> {
     runs
 }
 
-fn narrow(field: &Field, run: &Run, length: f64, middle: Option<Path>) -> Option<NarrowGap> {
+fn narrow(
+    field: &Field,
+    pair: [usize; 2],
+    run: &Run,
+    length: f64,
+    middle: Option<Path>,
+) -> Option<NarrowGap> {
     let least = run.stations.iter().min_by(|a, b| a.away.total_cmp(&b.away))?;
-    let mut islands = field.islands(least.at, least.away)?;
+    let mut islands = field.islands(least.at, pair, least.away)?;
     islands.sort_unstable();
     Some(NarrowGap { at: least.at, islands, width: 2.0 * least.away, length, middle })
 }

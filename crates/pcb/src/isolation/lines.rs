@@ -22,6 +22,8 @@ const SAME: f64 = 1e-5;
 /// The line between two conductors, or a piece of it.
 #[derive(Clone, Debug)]
 pub(super) struct Line {
+    /// The two conductors.
+    pub pair: [usize; 2],
     /// At least one place; the last is the first where it is closed.
     pub stations: Vec<Station>,
 }
@@ -176,7 +178,7 @@ impl<'f, 'a> Lines<'f, 'a> {
         }
         places.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
         let stations = places.into_iter().map(|(_, _, station)| station).collect();
-        self.lines.push(Line { stations });
+        self.lines.push(Line { pair, stations });
         Ok(())
     }
 
@@ -231,7 +233,7 @@ fn is_short(stations: &[Station]) -> bool {
 /// The lines that end in a corner: between each two of its feet that are next to each other around it.
 fn branches(corner: Vec2, feet: Vec<Foot>) -> Vec<Branch> {
     let mut around: Vec<(f64, usize)> =
-        feet.iter().map(|foot| ((foot.at - corner).to_angle(), foot.conductor)).collect();
+        feet.iter().map(|foot| ((foot.at - corner).to_angle(), foot.edge.conductor)).collect();
     around.sort_by(|a, b| a.0.total_cmp(&b.0));
     let nexts = around.iter().cycle().skip(1);
     let pairs = around.iter().zip(nexts).filter(|((_, first), (_, second))| first != second);
@@ -262,7 +264,9 @@ fn seeds(field: &Field, limit: f64) -> Result<Vec<Seed>, TooMany> {
             }
             let (a, b) = edge.element.closest(other.element);
             let station = Station { at: a.midpoint(b), away: a.distance(b) / 2.0 };
-            if station.away < limit && field.is_free(station.at, station.away - SAME) {
+            let is_outside = edge.is_left_towards(b) && other.is_left_towards(a);
+            let is_near = station.away < limit && (is_outside || station.away < SAME);
+            if is_near && field.is_free(station.at, station.away - SAME) {
                 let pair = [edge.conductor, other.conductor];
                 seeds.push(Seed { pair, station, is_passed: false });
             }

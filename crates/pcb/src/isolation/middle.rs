@@ -1,7 +1,7 @@
 //! The line between two conductors that is as far from the one as from the other, step by step.
 //!
 //! A step goes straight on, and from there at right angles to the line until both are as far. It is
-//! halved until its middle is on the line as well, and until it is so short that nothing third can have
+//! halved until its chord is near the line all along, and until it is so short that nothing third can have
 //! been nearer on the way: on a step of 1 mm the distance of anything changes by 1 mm at most.
 
 use super::field::{Field, Near, Window};
@@ -52,12 +52,12 @@ pub(super) struct Middle<'f, 'a> {
 }
 
 /// A place, and what is near it.
-struct Placed {
+struct Placed<'a> {
     at: Vec2,
-    near: Near,
+    near: Near<'a>,
 }
 
-impl Placed {
+impl Placed<'_> {
     fn station(&self) -> Station {
         Station { at: self.at, away: self.near.away() }
     }
@@ -67,6 +67,12 @@ impl Placed {
     fn across(&self) -> Vec2 {
         let [first, second] = self.near.feet.map(|foot| (self.at - foot.at) / foot.away);
         first - second
+    }
+
+    /// How far it is from the line, mm.
+    fn off(&self) -> f64 {
+        let [first, second] = self.near.feet.map(|foot| foot.away);
+        (first - second).abs() / self.across().length()
     }
 
     /// The direction of the line.
@@ -119,20 +125,25 @@ impl<'f, 'a> Middle<'f, 'a> {
     }
 
     /// The next place of the line, some `step` mm on; `None` where that is too far.
-    fn step(&mut self, from: Vec2, along: Vec2, step: f64, margin: f64) -> Option<Placed> {
+    fn step(&mut self, from: Vec2, along: Vec2, step: f64, margin: f64) -> Option<Placed<'a>> {
         let guess = from + along * step;
         let next = self.settled(guess)?;
         let length = from.distance(next.at);
         if guess.distance(next.at) > step || (next.at - from).dot(along) <= 0.0 {
             return None;
         }
-        let chord = from.midpoint(next.at);
-        let middle = self.settled(chord)?;
-        let margin = margin.min(middle.near.margin()).min(next.near.margin());
-        // Between two places that are half the length apart a margin shrinks, and grows again, by no more
-        // than that.
-        let is_seen = margin >= length / 2.0 && !self.is_beyond(&next);
-        (middle.at.distance(chord) <= CHORD && (is_seen || length <= SHORT)).then_some(next)
+        let mut margin = margin.min(next.near.margin());
+        for t in [0.25, 0.5, 0.75] {
+            let place = self.placed(from.lerp(next.at, t))?;
+            if place.off() > CHORD {
+                return None;
+            }
+            margin = margin.min(place.near.margin());
+        }
+        // Between two places that are a quarter of the length apart a margin shrinks, and grows again, by no
+        // more than that.
+        let is_seen = margin >= length / 4.0 && !self.is_beyond(&next);
+        (is_seen || length <= SHORT).then_some(next)
     }
 
     fn is_beyond(&self, placed: &Placed) -> bool {
@@ -140,7 +151,7 @@ impl<'f, 'a> Middle<'f, 'a> {
     }
 
     /// The last place between one of the line and one beyond its end.
-    fn end_between(&mut self, mut from: Station, mut beyond: Placed) -> (Station, End) {
+    fn end_between(&mut self, mut from: Station, mut beyond: Placed<'a>) -> (Station, End) {
         while from.at.distance(beyond.at) > EXACT {
             let Some(middle) = self.settled(from.at.midpoint(beyond.at)) else { break };
             if self.is_beyond(&middle) {
@@ -153,7 +164,7 @@ impl<'f, 'a> Middle<'f, 'a> {
     }
 
     /// The place of the line at right angles to it from `point`, which is near it.
-    fn settled(&mut self, mut point: Vec2) -> Option<Placed> {
+    fn settled(&mut self, mut point: Vec2) -> Option<Placed<'a>> {
         for _ in 0..TRIES {
             let placed = self.placed(point)?;
             let [first, second] = placed.near.feet.map(|foot| foot.away);
@@ -170,7 +181,8 @@ impl<'f, 'a> Middle<'f, 'a> {
         None
     }
 
-    fn placed(&mut self, at: Vec2) -> Option<Placed> {
+    /// What is near a place; `None` in copper, and where the two are far away.
+    fn placed(&mut self, at: Vec2) -> Option<Placed<'a>> {
         let mut half = 5.0 * self.away.max(SHORT);
         let near = loop {
             if let Some(near) = self.window.near(at, self.pair) {
@@ -183,6 +195,6 @@ impl<'f, 'a> Middle<'f, 'a> {
             half *= 2.0;
         };
         self.away = near.away();
-        Some(Placed { at, near })
+        near.is_outside().then_some(Placed { at, near })
     }
 }

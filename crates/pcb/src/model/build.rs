@@ -12,8 +12,8 @@ use std::f64::consts::PI;
 use std::sync::Arc;
 use toml::Spanned;
 
-/// The widest track, pad and hole, mm.
-const WIDEST: f64 = 1e4;
+/// The narrowest and the widest track, pad and hole, mm. What is thinner than 1 µm vanishes.
+const WIDTHS: std::ops::RangeInclusive<f64> = 0.01..=1e4;
 
 /// Shapes of copper, each with its element.
 type Shapes = Vec<(Shape, usize)>;
@@ -62,7 +62,7 @@ impl<'a> Maker<'a, '_, '_> {
 
     fn track(&mut self, scope: usize, track: &'a Spanned<Track>) {
         let Track { nodes, width, layer, net } = track.get_ref();
-        let width = self.length("a track", width);
+        let width = self.width("a track", width);
         let nodes: Option<Vec<usize>> =
             nodes.iter().map(|at| self.scopes.node(Some(scope), at, self.findings)).collect();
         let (Some(width), Some(nodes)) = (width, nodes) else { return };
@@ -83,7 +83,7 @@ impl<'a> Maker<'a, '_, '_> {
 
     fn pad(&mut self, scope: usize, pad: &'a Spanned<Pad>) {
         let Pad { node, shape, size, rotation, layer, net } = pad.get_ref();
-        let size = self.length("a pad", size);
+        let size = self.width("a pad", size);
         let node = self.scopes.node(Some(scope), node, self.findings);
         let degrees = rotation.as_ref().map_or(0.0, |degrees| *degrees.get_ref());
         if let Some(rotation) = rotation.as_ref().filter(|_| !degrees.is_finite()) {
@@ -100,7 +100,7 @@ impl<'a> Maker<'a, '_, '_> {
 
     fn hole(&mut self, scope: usize, hole: &'a Spanned<Bore>) {
         let Bore { node, diameter, plated } = hole.get_ref();
-        let diameter = self.length("a hole", diameter);
+        let diameter = self.width("a hole", diameter);
         let node = self.scopes.node(Some(scope), node, self.findings);
         let (Some(diameter), Some(node)) = (diameter, node) else { return };
         let shape = HoleShape::Round(self.scopes.position(node));
@@ -132,14 +132,14 @@ impl<'a> Maker<'a, '_, '_> {
         }
     }
 
-    /// A length above 0.
-    fn length(&mut self, of: &str, mm: &Spanned<f64>) -> Option<f64> {
+    /// The width of something.
+    fn width(&mut self, of: &str, mm: &Spanned<f64>) -> Option<f64> {
         let value = *mm.get_ref();
-        let good = value > 0.0 && value <= WIDEST;
+        let good = WIDTHS.contains(&value);
         if !good {
             let message = format!("{of} of {value} mm");
-            let help = format!("give a length above 0 and up to {WIDEST} mm");
-            self.findings.error(mm.span(), Diagnostic::error("length", message).help(help));
+            let help = format!("give {} to {} mm", WIDTHS.start(), WIDTHS.end());
+            self.findings.error(mm.span(), Diagnostic::error("width", message).help(help));
         }
         good.then_some(value)
     }
@@ -159,6 +159,9 @@ impl<'a> Maker<'a, '_, '_> {
         }
         let nets = nets.named(findings);
         let mut board = Board { holes, ..Board::default() };
+        if !findings.report.errors.is_empty() {
+            return board;
+        }
         let faces = [Face::Front, Face::Back];
         for (face, shapes) in faces.into_iter().zip(sides).filter(|(_, shapes)| !shapes.is_empty())
         {

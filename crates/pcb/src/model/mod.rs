@@ -25,8 +25,8 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, ValueDeserializer};
 
-/// The longest text of a board, bytes: some hundred thousand elements.
-const LONGEST: usize = 32 << 20;
+/// The longest text of a board, bytes: two hundred thousand elements.
+const LONGEST: usize = 16 << 20;
 
 /// What a text gives.
 #[derive(Clone, Debug, PartialEq)]
@@ -42,7 +42,7 @@ pub struct Reading {
 ///
 /// # Errors
 /// Every error found, at most twenty: `board-file` for what is no such text, with the keys that a wrong
-/// one is near to; `node-unknown`, `node`, `group`, `length`, `net-twice`, `no-board`, and what
+/// one is near to; `node-unknown`, `node`, `group`, `width`, `angle`, `net-twice`, `no-board`, and what
 /// [`outline::of_lines`](crate::board::outline::of_lines) and [`checked`] refuse. There is no
 /// partial board.
 pub fn read(file_name: &str, text: &[u8]) -> Result<Reading, Vec<Diagnostic>> {

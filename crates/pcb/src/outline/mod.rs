@@ -3,7 +3,7 @@
 //! The ways are the boundary of the board grown by half the width of the tool, so they leave all of it.
 //! What lies within another contour is cut before it, and the outer edge at last: until then the
 //! board is held. [`Tabs`] hold it after that. Where the tool is too wide to cut what the outline says,
-//! that is found as [`narrow`].
+//! that is found (`narrow`).
 
 mod narrow;
 mod tabs;

@@ -14,49 +14,32 @@ mod samples;
 mod straight;
 mod web;
 
+use crate::isolation::{FITS, NarrowGap};
 use crate::report::{Outcome, fault};
 use crate::{Copper, Path};
-use geom::Vec2;
 use geom::region::{Index, Region};
 use samples::{Boundary, frame};
 use web::Place;
 
+/// The most points on boundaries: some 500 MB.
+const MOST: usize = 2_000_000;
+
 /// A board takes more points than there may be.
 struct TooMany;
-
-/// A gap is resolved down to this part of the tool's width.
-const RESOLVED: f64 = 4.0;
-
-/// What is wider than a gap by no more than this fits into it, mm: rounding.
-const FITS: f64 = 1e-3;
 
 /// How a board is divided among its conductors.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Division {
     /// The ways of the middle of the tool.
     pub paths: Vec<Path>,
-    /// The ways where it would cut into copper.
-    pub straits: Vec<Strait>,
+    /// Where it would cut into copper, each with its way; the narrowest first.
+    pub narrow: Vec<NarrowGap>,
 }
 
-/// A way between two conductors that the tool is too wide for.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Strait {
-    /// The way in the middle, in parts where it leaves the area.
-    pub paths: Vec<Path>,
-    /// Where it is narrowest, mm.
-    pub at: Vec2,
-    /// How wide it is there, mm.
-    pub width: f64,
-    /// The islands of copper on both sides there.
-    pub islands: [usize; 2],
-}
-
-/// The ways of a tool of `width` mm that divide `area` among the conductors of `copper`. Islands of the same
-/// net are one conductor, an island of no known net is one of its own.
+/// The ways of a tool of `width` mm that divide `area` among the [conductors](Copper::conductors) of `copper`.
 ///
 /// # Errors
-/// `tool-width` where the width makes no sense; `too-much` where the boundaries are too long for it.
+/// `tool-width` where the width makes no sense; `too-much` where there are too many gaps.
 pub fn divided(copper: &Copper, area: &Region, width: f64) -> Outcome<Division> {
     if !(width > 0.0 && width.is_finite()) {
         let message = format!("a tool {width} mm wide cannot divide copper");
@@ -66,35 +49,42 @@ pub fn divided(copper: &Copper, area: &Region, width: f64) -> Outcome<Division> 
         return Ok(Division::default());
     };
     let boundary = Boundary::of(copper);
-    let mut samples =
-        boundary.samples(&Index::new(&copper.region), width / RESOLVED).map_err(|_| {
-            let message = format!("the copper is too much for a tool {width} mm wide");
-            fault("too-much", message, "use a wider tool, or divide the board in parts")
-        })?;
+    let index = Index::new(&copper.region);
+    let mut samples = boundary.samples(&index, MOST).map_err(|_| {
+        let message = format!("the gaps of the board take more than {MOST} points");
+        fault("too-much", message, "divide the board in parts")
+    })?;
     samples.extend(frame(board.0.min(around.0), board.1.max(around.1)));
-    let threads = web::threads(&boundary, samples)
+    let threads = web::threads(&boundary, samples, &index)
         .map_err(|error| fault("not-a-place", error.to_string(), "look at the copper's places"))?;
     let mut division = Division::default();
-    let index = Index::new(area);
+    let area = Index::new(area);
     let fits = |ends: &[Place]| ends.iter().all(|end| 2.0 * end.clearance >= width - FITS);
     for thread in &threads {
         for run in runs(thread, fits) {
             let path = straight::path(run.iter().map(|place| place.at));
-            let paths = path.map(|path| path.within(&index)).unwrap_or_default();
-            let inside = run.iter().filter(|place| index.island_at(place.at).is_some());
-            let narrowest = inside.min_by(|a, b| a.clearance.total_cmp(&b.clearance));
-            match narrowest.filter(|_| !fits(run)) {
-                _ if paths.is_empty() => {}
-                None => division.paths.extend(paths),
-                Some(place) => division.straits.push(Strait {
-                    paths,
-                    at: place.at,
-                    width: 2.0 * place.clearance,
-                    islands: place.islands,
-                }),
+            let paths = path.map(|path| path.within(&area)).unwrap_or_default();
+            if fits(run) {
+                division.paths.extend(paths);
+                continue;
             }
+            // The narrowest place of those that are in the area, if any is.
+            let outside = |place: &Place| area.island_at(place.at).is_none();
+            let narrowest = run.iter().min_by(|a, b| {
+                outside(a).cmp(&outside(b)).then(a.clearance.total_cmp(&b.clearance))
+            });
+            division.narrow.extend(narrowest.into_iter().flat_map(|place| {
+                paths.iter().map(|path| NarrowGap {
+                    at: place.at,
+                    islands: place.islands,
+                    width: 2.0 * place.clearance,
+                    length: path.length(),
+                    middle: Some(path.clone()),
+                })
+            }));
         }
     }
+    division.narrow.sort_by(|a, b| a.width.total_cmp(&b.width));
     Ok(division)
 }
 

@@ -5,11 +5,8 @@ use crate::Copper;
 use geom::region::Index;
 use geom::{Element, Vec2};
 use spade::{HasPosition, Point2};
-use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_4;
-
-/// The most points: some 500 MB.
-const MOST: usize = 2_000_000;
+use std::iter;
 
 /// The farthest that points are apart, mm.
 const FARTHEST: f64 = 1.0;
@@ -17,10 +14,13 @@ const FARTHEST: f64 = 1.0;
 /// How many times farther than that another conductor is.
 const APART: f64 = 4.0;
 
+/// Gaps are looked at as if they were no narrower, mm: a region is not more exact.
+const FINEST: f64 = 1e-3;
+
 /// The elements of the boundaries of conductors, one after the other.
 pub(super) struct Boundary {
     pieces: Vec<Piece>,
-    /// The conductor that each island is part of: the number of its first island.
+    /// The conductor that each island is part of.
     conductors: Vec<usize>,
 }
 
@@ -39,6 +39,8 @@ pub(super) struct Sample {
     pub(super) at: Vec2,
     /// What it is on; `None` for the frame.
     piece: Option<u32>,
+    /// Whether another conductor is too near to be told apart by points.
+    pub(super) touches: bool,
 }
 
 impl HasPosition for Sample {
@@ -50,34 +52,30 @@ impl HasPosition for Sample {
 }
 
 impl Boundary {
-    /// Islands of the same net are one conductor, an island of no known net is one of its own.
     pub(super) fn of(copper: &Copper) -> Boundary {
-        let mut first: HashMap<&str, usize> = HashMap::new();
-        let (mut pieces, mut conductors) = (Vec::new(), Vec::new());
+        let mut pieces: Vec<Piece> = Vec::new();
         for (island, rings) in copper.region.islands().iter().enumerate() {
-            let net = copper.nets.get(island).and_then(Option::as_deref);
-            conductors.push(net.map_or(island, |net| *first.entry(net).or_insert(island)));
-            for ring in std::iter::once(rings.outer()).chain(rings.holes()) {
-                let (start, count) = (pieces.len(), ring.elements().len());
+            for ring in iter::once(rings.outer()).chain(rings.holes()) {
+                let (first, count) = (pieces.len(), ring.elements().len());
                 pieces.extend(ring.elements().iter().enumerate().map(|(i, element)| Piece {
                     element: *element,
                     island,
-                    before: start + (i + count - 1) % count,
-                    after: start + (i + 1) % count,
+                    before: first + (i + count - 1) % count,
+                    after: first + (i + 1) % count,
                 }));
             }
         }
-        Boundary { pieces, conductors }
+        Boundary { pieces, conductors: copper.conductors() }
     }
 
     /// Points on it, among them the ends of all elements: so near to each other that another conductor is
-    /// four times as far, but none nearer than they need be for gaps of `finest` mm.
-    pub(super) fn samples(&self, index: &Index, finest: f64) -> Result<Vec<Sample>, TooMany> {
+    /// four times as far. `copper` is what it bounds. No more than `most`.
+    pub(super) fn samples(&self, copper: &Index, most: usize) -> Result<Vec<Sample>, TooMany> {
         let alone = |part: &Element, island: usize| {
             let (low, high) = part.extents();
             let (middle, length) = (part.at(0.5), part.length());
             let around = Vec2::splat(APART * length);
-            index.within(low - around, high + around).all(|near| {
+            copper.within(low - around, high + around).all(|near| {
                 self.conductors.get(near.island) == self.conductors.get(island)
                     || near.element.nearest(middle).1 > (APART + 0.5) * length
             })
@@ -89,11 +87,12 @@ impl Boundary {
                 let mut open = vec![(part as f64 / parts, (part + 1) as f64 / parts)];
                 while let Some((from, to)) = open.pop() {
                     let part = piece.element.part(from, to);
-                    if part.length() * APART > finest && !alone(&part, piece.island) {
+                    let alone = alone(&part, piece.island);
+                    if !alone && part.length() * APART > FINEST {
                         let middle = (from + to) / 2.0;
                         open.extend([(middle, to), (from, middle)]);
-                    } else if samples.len() < MOST {
-                        samples.push(Sample { at: part.start, piece: Some(i) });
+                    } else if samples.len() < most {
+                        samples.push(Sample { at: part.start, piece: Some(i), touches: !alone });
                     } else {
                         return Err(TooMany);
                     }
@@ -136,11 +135,35 @@ pub(super) fn frame(low: Vec2, high: Vec2) -> [Sample; 4] {
     let (middle, far) = ((low + high) / 2.0, 4.0 * (1.0 + low.distance(high)));
     let corners =
         [Vec2::new(-far, -far), Vec2::new(far, -far), Vec2::splat(far), Vec2::new(-far, far)];
-    corners.map(|corner| Sample { at: middle + corner, piece: None })
+    corners.map(|corner| Sample { at: middle + corner, piece: None, touches: false })
 }
 
 /// In how many parts an element is cut so that none is too long, nor more than an eighth of a circle.
 fn parts(element: &Element) -> f64 {
     let eighths = element.turn.map_or(0.0, |turn| turn.sweep.abs() / FRAC_PI_4);
     (element.length() / FARTHEST).max(eighths).ceil().max(1.0)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use geom::region::{Fill, Region, Ring};
+
+    #[test]
+    fn points_are_as_near_to_each_other_as_the_gap_asks_for_and_no_more_than_allowed() {
+        // Two plates of 10 mm, 0.2 mm apart.
+        let plate = |low: f64| {
+            let corners = [(0.0, low), (10.0, low), (10.0, low + 1.0), (0.0, low + 1.0)];
+            Ring::polygon(&corners.map(Vec2::from)).unwrap()
+        };
+        let region = Region::inside(&[plate(0.0), plate(1.2)], Fill::NonZero).unwrap();
+        let copper = Copper { region, nets: Vec::new() };
+        let (boundary, index) = (Boundary::of(&copper), Index::new(&copper.region));
+        let Ok(samples) = boundary.samples(&index, 10_000) else { panic!("too many") };
+        let mut edge: Vec<f64> =
+            samples.iter().filter(|s| (s.at.y - 1.0).abs() < 1e-9).map(|s| s.at.x).collect();
+        edge.sort_by(f64::total_cmp);
+        assert!(edge.windows(2).all(|pair| (0.015..=0.05).contains(&(pair[1] - pair[0]))));
+        assert!(samples.len() < 2000 && boundary.samples(&index, 100).is_err());
+    }
 }

@@ -6,6 +6,7 @@
 
 use super::samples::{Boundary, Sample};
 use geom::Vec2;
+use geom::region::Index;
 use spade::handles::{FaceHandle, InnerTag};
 use spade::{DelaunayTriangulation, InsertionError, Triangulation};
 
@@ -24,7 +25,8 @@ pub(super) struct Place {
 
 /// A place and the neighbours that threads lead to.
 struct Knot {
-    place: Place,
+    /// None where it is lost between conductors that all but touch.
+    place: Option<Place>,
     links: [Option<u32>; 3],
 }
 
@@ -38,6 +40,7 @@ type Triangle<'a> = FaceHandle<'a, InnerTag, Sample, (), (), ()>;
 pub(super) fn threads(
     boundary: &Boundary,
     samples: Vec<Sample>,
+    copper: &Index,
 ) -> Result<Vec<Vec<Place>>, InsertionError> {
     let triangles = DelaunayTriangulation::<Sample>::bulk_load(samples)?;
     // The middles of the circles about the triangles, where these have several conductors.
@@ -56,7 +59,8 @@ pub(super) fn threads(
             let known = of_triangle.get_mut(side.index())?;
             *known.get_or_insert_with(|| {
                 let corners = side.vertices().map(|vertex| *vertex.data());
-                knots.push(Knot { place: place(side, corners, boundary), links: [None; 3] });
+                knots
+                    .push(Knot { place: place(side, corners, boundary, copper), links: [None; 3] });
                 u32::try_from(knots.len() - 1).ok()
             })
         }) else {
@@ -73,7 +77,12 @@ pub(super) fn threads(
 }
 
 /// The place in the middle of a triangle.
-fn place(triangle: Triangle, corners: [Sample; 3], boundary: &Boundary) -> Place {
+fn place(
+    triangle: Triangle,
+    corners: [Sample; 3],
+    boundary: &Boundary,
+    copper: &Index,
+) -> Option<Place> {
     let center = triangle.circumcenter();
     let mut at = Vec2::new(center.x, center.y);
     if !at.is_finite() {
@@ -90,11 +99,19 @@ fn place(triangle: Triangle, corners: [Sample; 3], boundary: &Boundary) -> Place
             None => nearest.push(corner),
         }
     }
-    settled(at, &nearest, boundary)
+    let stand = settled(at, &nearest, boundary);
+    // Where conductors all but touch, the points of one do not keep the circle out of it.
+    let lost = corners.iter().any(|corner| corner.touches) && copper.island_at(stand.at).is_some();
+    if lost {
+        return None;
+    }
+    let mut islands = nearest.iter().filter_map(|sample| boundary.island(sample));
+    let islands = [islands.next()?, islands.next()?];
+    Some(Place { at: stand.at, clearance: stand.nearest, islands })
 }
 
 /// The place near `at` that is equally far from what is about all of some samples.
-fn settled(at: Vec2, samples: &[Sample], boundary: &Boundary) -> Place {
+fn settled(at: Vec2, samples: &[Sample], boundary: &Boundary) -> Stand {
     // Points are near to each other for the gap, and so the place is near by.
     let reach = samples.first().map_or(0.0, |sample| sample.at.distance(at) / 2.0);
     let mut best = Stand::at(at, samples, boundary);
@@ -111,10 +128,7 @@ fn settled(at: Vec2, samples: &[Sample], boundary: &Boundary) -> Place {
         }
         best = next;
     }
-    let mut islands = samples.iter().filter_map(|sample| boundary.island(sample));
-    let first = islands.next().unwrap_or_default();
-    let islands = [first, islands.next().unwrap_or(first)];
-    Place { at: best.at, clearance: best.nearest, islands }
+    best
 }
 
 /// A place, and the nearest of each conductor about it.
@@ -167,16 +181,18 @@ fn unravelled(knots: &mut [Knot]) -> Vec<Vec<Place>> {
 
 /// The thread that begins at a knot, to the next end or back; `None` where none is left.
 fn thread(knots: &mut [Knot], from: u32, is_end: &[bool]) -> Option<Vec<Place>> {
-    let mut thread = vec![knots.get(from as usize)?.place];
     let mut at = from;
+    let mut thread = Vec::new();
     while let Some(next) = untie(knots, at) {
-        thread.push(knots.get(next as usize)?.place);
+        thread.push(at);
         at = next;
         if at == from || is_end.get(at as usize) == Some(&true) {
             break;
         }
     }
-    (thread.len() > 1).then_some(thread)
+    thread.push(at);
+    let place = |knot: u32| knots.get(knot as usize)?.place;
+    (thread.len() > 1).then(|| thread.into_iter().filter_map(place).collect())
 }
 
 /// Takes one link of a knot away, and tells where it led to.

@@ -1,5 +1,6 @@
 //! Drilling: which tool makes what, where it goes, and what it takes away.
 
+use crate::{boards, data};
 use geom::region::{Cap, Region};
 use geom::{Element, Vec2};
 use std::f64::consts::PI;
@@ -203,4 +204,45 @@ fn what_makes_no_sense_is_refused() {
     assert_eq!(rule(Drilling { mill: Some(vee), ..drilling() }, &route), "cutter");
     let fine = Drilling { slots: Slots::Chain { scallop: 1e-12 }, ..drilling() };
     assert_eq!(rule(fine, &slot), "chain-too-long");
+}
+
+#[test]
+fn every_hole_of_the_boards_is_drilled_once_with_its_diameter() {
+    let Some(folder) = data::folder() else { return };
+    for name in ["StickHub", "ecc83-pp", "interf_u", "pic_programmer", "microwave"] {
+        let board = boards::folder(&folder.join("kicad").join(name)).unwrap().board;
+        let drilling = Drilling { mill: Some(mill(0.3)), slots: Slots::Mill, ..drilling() };
+        let made = made(&drilling, &board.holes);
+        let mut drilled: Vec<(f64, [u64; 2])> = Vec::new();
+        let mut travel = 0.0;
+        let mut at = Vec2::ZERO;
+        for operation in &made.operations {
+            for cut in &operation.cuts {
+                if let Cut::Hole { at, .. } = cut {
+                    drilled
+                        .push((operation.tool.cutter.width(0.0), at.to_array().map(f64::to_bits)));
+                }
+                travel += at.distance(cut.start());
+                at = cut.end();
+            }
+        }
+        let mut holes: Vec<(f64, [u64; 2])> = Vec::new();
+        let mut unordered = 0.0;
+        let mut before = Vec2::ZERO;
+        for hole in &board.holes {
+            if let HoleShape::Round(at) = hole.shape {
+                holes.push((hole.diameter, at.to_array().map(f64::to_bits)));
+                unordered += before.distance(at);
+                before = at;
+            }
+        }
+        drilled.sort_by(|a, b| a.partial_cmp(b).unwrap());
+        holes.sort_by(|a, b| a.partial_cmp(b).unwrap());
+        assert_eq!(drilled, holes, "{name}");
+        let diameters: Vec<f64> =
+            made.operations.iter().map(|operation| operation.tool.cutter.width(0.0)).collect();
+        let drills = diameters.len() - usize::from(drilled.len() < board.holes.len());
+        assert!(diameters[..drills].is_sorted(), "{name}: {diameters:?}");
+        assert!(travel <= unordered, "{name}: {travel} {unordered}");
+    }
 }

@@ -1,10 +1,14 @@
 //! The ways around copper: hand calculation, and the distances of points to the copper.
 
-use geom::region::{Cap, Region};
+use crate::data;
+use geom::region::{Cap, Fill, Index, Region, Ring};
 use geom::{Element, Vec2};
+use proptest::prelude::*;
+use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
+use toolpost_pcb::board::covered;
 use toolpost_pcb::isolation::{Direction, Isolated, Isolation, Narrow, NarrowGap};
-use toolpost_pcb::{Copper, Cutter, Path};
+use toolpost_pcb::{Copper, Cutter, Path, gerber};
 
 /// A cut 0.2 mm wide.
 const ISOLATION: Isolation = Isolation {
@@ -111,7 +115,7 @@ fn two_tracks_side_by_side_are_one_gap() {
         near(gap.length, 10.0 + 2.0 * (0.249f64.powi(2) - 0.04).sqrt(), 2e-3);
         // Apart by just as much as the cut is wide: one way between them, and no finding.
         let fits = [0.0, 0.5].map(|y| track(at(0.0, y), at(10.0, y), 0.3));
-        let Isolated { paths, narrow } = ISOLATION.isolate(&copper(&fits), None).unwrap();
+        let Isolated { paths, narrow, .. } = ISOLATION.isolate(&copper(&fits), None).unwrap();
         assert!(narrow.is_empty(), "{narrow:?}");
         let between: Vec<f64> =
             paths.iter().filter(|path| !path.is_closed()).map(Path::length).collect();
@@ -171,4 +175,151 @@ fn pads_that_touch_have_a_gap_of_nothing() {
     near(gap.width, 0.0, 1e-5);
     assert!(gap.at.distance(Vec2::X) < 1e-5);
     assert_eq!((gap.length, gap.middle.is_none(), gap.widest_cut()), (0.0, true, 0.0));
+}
+
+/// What a tool of `width` takes away along `paths`.
+fn swept(paths: &[Path], width: f64) -> Region {
+    let strokes: Vec<Region> = paths
+        .iter()
+        .flat_map(Path::elements)
+        .map(|element| Region::stroke(element, width, Cap::Round).unwrap())
+        .collect();
+    Region::union_of(&strokes).unwrap()
+}
+
+/// Cuts isolation out of the board and holds what is left against what was told.
+fn judge(name: &str, copper: &Copper, width: f64, narrow: Narrow) {
+    let isolation = Isolation { cutter: Cutter::Cylinder { diameter: width }, narrow, ..ISOLATION };
+    let isolated = isolation.isolate(copper, None).unwrap();
+    let index = Index::new(&copper.region);
+    for element in isolated.paths.iter().filter(|path| path.is_closed()).flat_map(Path::elements) {
+        for t in [0.0, 0.3, 0.7] {
+            let at = element.at(t);
+            let in_gap =
+                isolated.narrow.iter().flat_map(|gap| &gap.middle).flat_map(Path::elements);
+            let away = index.nearest(at, f64::INFINITY).unwrap().distance;
+            let is_around = (away - width / 2.0).abs() < 0.002;
+            assert!(is_around || in_gap.into_iter().any(|other| other == element), "{name} {at}");
+        }
+    }
+    let cut = swept(&isolated.paths, width);
+    let most = match narrow {
+        Narrow::LeaveOut => 0.0,
+        Narrow::Middle => {
+            isolated.narrow.iter().map(|gap| (gap.length + width) * 2.0 * gap.thinned(width)).sum()
+        }
+    };
+    let lost = copper.region.intersection(&cut).unwrap().area();
+    // The boundary of the cut may be 2 µm off.
+    let length = isolated.paths.iter().map(Path::length).sum::<f64>();
+    assert!(lost < most + 0.002 * length, "{name}: {lost} mm² lost");
+
+    // What is left is in pieces, and in each of them there is one conductor, or those that only gaps that
+    // are left out are between.
+    let (low, high) = copper.region.extents().unwrap();
+    let around = [low, Vec2::new(high.x, low.y), high, Vec2::new(low.x, high.y)];
+    let board = Region::inside(&[Ring::polygon(&around).unwrap()], Fill::NonZero).unwrap();
+    let left = board.offset(1.0).unwrap().difference(&cut).unwrap();
+    let pieces = Index::new(&left);
+    let mut conductors = BTreeMap::<usize, BTreeSet<usize>>::new();
+    let told: BTreeSet<usize> = isolated.severed.iter().map(|severed| severed.island).collect();
+    for (i, island) in copper.region.islands().iter().enumerate() {
+        let inside = |element: &Element| element.at(0.5) + element.tangent(0.5).perp() * 0.005;
+        let places = island.outer().elements().iter().map(inside);
+        let of: BTreeSet<usize> = places.filter_map(|place| pieces.island_at(place)).collect();
+        for &piece in &of {
+            conductors.entry(piece).or_default().insert(i);
+        }
+        assert!(of.len() < 2 || told.contains(&i), "{name}: island {i} is in {} pieces", of.len());
+    }
+    for mut together in conductors.into_values() {
+        let mut reached: Vec<usize> = together.pop_first().into_iter().collect();
+        while let Some(one) = reached.pop() {
+            let touching = isolated.narrow.iter().filter(|gap| {
+                gap.islands.contains(&one) && (narrow == Narrow::LeaveOut || gap.width < 1e-5)
+            });
+            for other in touching.flat_map(|gap| gap.islands) {
+                if together.remove(&other) {
+                    reached.push(other);
+                }
+            }
+        }
+        assert!(together.is_empty(), "{name}: {together:?} are joined");
+    }
+}
+
+#[test]
+fn on_real_boards_nothing_is_lost_and_conductors_are_apart() {
+    let Some(folder) = data::folder() else { return };
+    let coldfire = "kicad/kit-dev-coldfire-xilinx_5213/kit-dev-coldfire-xilinx_5213-F_Cu.gbr";
+    for (name, width, narrow) in [
+        ("kicad/StickHub/StickHub-F_Cu.gbr", 0.3, Narrow::Middle),
+        ("kicad/StickHub/StickHub-B_Cu.gbr", 0.3, Narrow::LeaveOut),
+        ("kicad/carte_test/carte_test-F_Cu.gbr", 0.3, Narrow::Middle),
+        ("kicad/ecc83-pp/ecc83-pp-B_Cu.gbr", 0.5, Narrow::Middle),
+        ("kicad/interf_u/interf_u-F_Cu.gbr", 0.3, Narrow::Middle),
+        (coldfire, 0.3, Narrow::Middle),
+        ("kicad/microwave/microwave-F_Cu.gbr", 0.4, Narrow::Middle),
+        ("kicad/pic_programmer/pic_programmer-B_Cu.gbr", 0.3, Narrow::LeaveOut),
+        ("a64/A64-OlinuXino_Rev_D-B.Cu.gbr", 0.2, Narrow::Middle),
+    ] {
+        let image = gerber::read(name, &data::bytes(&folder.join(name))).unwrap().image;
+        let region = covered(&image).unwrap();
+        let copper = Copper { nets: vec![None; region.islands().len()], region };
+        judge(name, &copper, width, narrow);
+    }
+}
+
+/// A pad or a track; on a grid, as on most boards, or not.
+fn shape() -> impl Strategy<Value = Region> {
+    let place = || (-40..40i32, -40..40i32, any::<bool>());
+    let at = |(x, y, on_grid): (i32, i32, bool)| {
+        let point = Vec2::new(x.into(), y.into());
+        if on_grid { (point * 0.25).round() * 0.5 } else { point * 0.117 }
+    };
+    (place(), place(), 1..4u32, any::<bool>()).prop_map(move |(from, to, size, is_pad)| {
+        let (from, to, width) = (at(from), at(to), f64::from(size) * 0.2);
+        let end = if is_pad { from } else { to };
+        Region::stroke(&Element::line(from, end), width, Cap::Round).unwrap()
+    })
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig { failure_persistence: None, ..ProptestConfig::with_cases(100) })]
+
+    #[test]
+    fn on_any_board_nothing_is_lost_and_conductors_are_apart(
+        shapes in proptest::collection::vec(shape(), 2..12), width in 1..12u32, middle: bool
+    ) {
+        let narrow = if middle { Narrow::Middle } else { Narrow::LeaveOut };
+        judge("random", &copper(&shapes), f64::from(width) * 0.1, narrow);
+    }
+
+    #[test]
+    fn the_middle_is_as_far_from_two_and_no_nearer_to_a_third(
+        shapes in proptest::collection::vec(shape(), 2..12), width in 1..20u32
+    ) {
+        let copper = copper(&shapes);
+        for gap in narrow(&copper, f64::from(width) * 0.1) {
+            let islands = copper.region.islands();
+            let away = |point| {
+                let mut away: Vec<f64> = islands.iter().map(|i| i.distance(point)).collect();
+                let two = gap.islands.map(|i| away[i]);
+                away.sort_by(f64::total_cmp);
+                (two, away[0])
+            };
+            let ([first, second], least) = away(gap.at);
+            let half = gap.width / 2.0;
+            prop_assert!([first, second, least].iter().all(|away| (away - half).abs() < 1e-5), "{first} {second} {least} {half} {gap:?}");
+            for element in gap.middle.iter().flat_map(Path::elements) {
+                for t in [0.0, 0.5, 1.0] {
+                    // Chords are 6 µm from the line at most, and at right angles to it distances change as much.
+                    let ([first, second], least) = away(element.at(t));
+                    prop_assert!((first - second).abs() < 0.013, "{first} {second} {element:?} {t} of {} len {} width {} {:?} {:?}", gap.length, element.length(), gap.width, gap.at, gap.middle);
+                    prop_assert!(first.min(second) - least < 0.013, "{first} {least}");
+                    prop_assert!(first > half - 0.007, "{first} {half} {gap:?}");
+                }
+            }
+        }
+    }
 }

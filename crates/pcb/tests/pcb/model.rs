@@ -187,9 +187,12 @@ fn what_is_no_board() {
     refused("", "no-board", (0, 0), "nothing");
     refused("name = ", "board-file", (1, 8), "");
     refused("{\"name\": ", "board-file", (1, 9), "JSON");
-    refused("[[pads]]\nnode = [0, 0]\nshape = \"circle\"\nsize = -1\n", "length", (4, 8), "-1 mm");
-    refused("[[holes]]\nnode = [0, 0]\ndiameter = nan\n", "length", (3, 12), "NaN mm");
+    refused("[[pads]]\nnode = [0, 0]\nshape = \"circle\"\nsize = -1\n", "width", (4, 8), "-1 mm");
+    refused("[[holes]]\nnode = [0, 0]\ndiameter = nan\n", "width", (3, 12), "NaN mm");
+    refused("[[holes]]\nnode = [0, 0]\ndiameter = 1e-9\n", "width", (3, 12), "0.01 to 10000");
     refused("[[holes]]\nnode = [0, inf]\ndiameter = 1\n", "node", (2, 8), "100000 mm");
+    let far = "[[edges]]\nnodes = [[0, 0], [1e300, 0], [0, -1e300]]\n";
+    refused(far, "node", (2, 18), "not a place");
     refused("[[holes]]\nnode = [0]\ndiameter = 1\n", "board-file", (2, 8), "[x, y]");
     refused("[[holes]]\nnode = [0, 0]\ndiametr = 1\n", "board-file", (3, 1), "mean `diameter`");
     refused("[[holes]]\nnode = [0, 0]\n", "board-file", (1, 1), "missing field `diameter`");
@@ -219,12 +222,7 @@ fn what_is_no_board() {
 
 #[test]
 fn errors_of_json_have_their_places() {
-    refused(
-        "{\n  \"holes\": [{\"node\": [0, 0], \"diameter\": -1}]\n}",
-        "length",
-        (2, 42),
-        "-1 mm",
-    );
+    refused("{\n  \"holes\": [{\"node\": [0, 0], \"diameter\": -1}]\n}", "width", (2, 42), "-1 mm");
     refused("{\n \"pads\": [{\"node\": \"x\",\n", "board-file", (3, 1), "JSON");
     refused("{\"holes\": [{\"node\": \"xé\", \"diameter\": 1}]}", "node-unknown", (1, 21), "xé");
     refused("{\"hols\": []}", "board-file", (1, 3), "`holes`");

@@ -1,5 +1,6 @@
 //! Outlines: what is cut, what stays, and what holds it.
 
+use crate::{boards, data};
 use geom::region::{Cap, Fill, Region, Ring};
 use geom::{Element, Vec2};
 use proptest::prelude::*;
@@ -114,10 +115,18 @@ fn tabs_are_on_straight_pieces_and_keep_their_width() {
     let left = swept(&cut, 0.5).difference(&swept(&cut, 1.7)).unwrap();
     assert_eq!(left.islands().len(), 4);
     assert!((left.area() - 4.0 * (10.0 - PI)).abs() < 1e-3, "{}", left.area());
-    // Evenly: a quarter of the way apart, give or take what corners take.
-    let mut xs: Vec<Vec2> = over[..4].iter().map(|tab| tab.element.at(0.5)).collect();
-    xs.sort_by(|a, b| a.x.total_cmp(&b.x));
-    println!("{xs:?}");
+    // Evenly: a quarter of the way apart, 120 mm and a circle of 1 mm in all.
+    let mut at = 0.0;
+    let mut middles = Vec::new();
+    for Stretch { element, depth } in way.iter().filter(|stretch| stretch.depth != 0.6) {
+        if *depth == 0.8 && middles.len() < 4 {
+            middles.push(at + element.length() / 2.0);
+        }
+        at += element.length();
+    }
+    for pair in middles.windows(2) {
+        assert!((pair[1] - pair[0] - (120.0 + TAU) / 4.0).abs() < 2.0, "{middles:?}");
+    }
 }
 
 #[test]
@@ -188,6 +197,22 @@ fn what_lies_within_is_cut_before_what_is_around_it() {
         .map(f64::round)
         .collect();
     assert_eq!(sides, [18.0, 42.0, 48.0, 62.0]);
+}
+
+#[test]
+fn real_boards_are_cut_out_whole() {
+    let Some(folder) = data::folder() else { return };
+    for name in ["StickHub", "ecc83-pp", "interf_u", "pic_programmer", "microwave"] {
+        let board = boards::folder(&folder.join("kicad").join(name)).unwrap().board.outline;
+        let Some(board) = board else { continue };
+        let tabs = Tabs { count: 4, width: 2.0, height: 0.8 };
+        let cut = outline(Some(tabs)).cut(&board).unwrap_or_else(|errors| panic!("{errors:#?}"));
+        let swept = swept(&cut, 1.7);
+        let kept = board.offset(-0.002).unwrap();
+        assert!(swept.intersection(&kept).unwrap().area() < 1e-9, "{name}");
+        let held = self::swept(&cut, 0.1).difference(&swept).unwrap();
+        assert!(held.islands().len() >= 4, "{name}");
+    }
 }
 
 proptest! {

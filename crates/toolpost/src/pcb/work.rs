@@ -7,10 +7,13 @@ use geom::Vec2;
 use geom::region::Region;
 use machine::Machine;
 use pcb::drilling::{Drilling, Mill, Slots};
+use pcb::gerber::Image;
 use pcb::isolation::{Direction, Isolation, Narrow, NarrowGap, Severed};
 use pcb::outline::{Outline, Tabs};
 use pcb::tour::Tour;
-use pcb::{Board, Clearing, Copper, Cut, Cutter, Engraving, Hole, Operation, Path, Tool, depths};
+use pcb::{
+    Board, Clearing, Copper, Cut, Cutter, Division, Engraving, Hole, Operation, Path, Tool, depths,
+};
 use program::Diagnostic;
 use std::collections::BTreeMap;
 
@@ -139,9 +142,7 @@ impl Worker<'_> {
             let help = "take a narrower tool, or leave narrow gaps out (--narrow leave-out)";
             work.warnings.push(Diagnostic::warning("conductor-severed", message).help(help));
         }
-        if let Some(widest) = isolated.narrow.first().map(NarrowGap::widest_cut) {
-            self.narrow(work, copper, &isolated.narrow, isolation.width(), widest)?;
-        }
+        self.narrow(work, copper, &isolated.narrow, isolation.width())?;
         Ok(isolated.paths)
     }
 
@@ -152,8 +153,8 @@ impl Worker<'_> {
         copper: &Copper,
         gaps: &[NarrowGap],
         width: f64,
-        widest: f64,
     ) -> Result<(), Stop> {
+        let Some(widest) = gaps.first().map(NarrowGap::widest_cut) else { return Ok(()) };
         let middle = self.args.isolation.narrow == args::Narrow::Middle;
         for gap in gaps {
             let done = match middle {
@@ -197,19 +198,10 @@ impl Worker<'_> {
         board: &Board,
         width: f64,
     ) -> Result<Vec<Path>, Stop> {
-        let middle = self.args.isolation.narrow == args::Narrow::Middle;
-        let division = pcb::divided(copper, &area(board)?, width)?;
-        let mut paths = division.paths;
-        for strait in &division.straits {
-            let what = format!(
-                "only {:.3} mm between nets, {}",
-                strait.width,
-                if middle { "cut all the same" } else { "left out" }
-            );
-            work.places.push((strait.at, what));
-            if middle {
-                paths.extend(strait.paths.iter().cloned());
-            }
+        let Division { mut paths, narrow } = pcb::divided(copper, &area(board)?, width)?;
+        self.narrow(work, copper, &narrow, width)?;
+        if self.args.isolation.narrow == args::Narrow::Middle {
+            paths.extend(narrow.into_iter().filter_map(|gap| gap.middle));
         }
         Ok(paths)
     }
@@ -283,9 +275,9 @@ impl Worker<'_> {
     }
 
     /// Engraves what is printed.
-    fn legend(&self, work: &mut Work, legend: &Region) -> Result<(), Stop> {
+    fn legend(&self, work: &mut Work, legend: &Image) -> Result<(), Stop> {
         let width = self.args.clearing.legend_tool.unwrap_or(0.0);
-        let Engraving { paths, rest } = pcb::outlined(legend, width)?;
+        let Engraving { paths, rest } = pcb::engraved(legend, width)?;
         let tool = self.end_mill(width);
         work.operations.push(Operation {
             name: format!("legend, {}", tool.name),
@@ -379,12 +371,28 @@ fn net(copper: &Copper, island: usize) -> String {
     }
 }
 
-/// Cuts along `paths` at each depth, in an order of short travel.
+/// Cuts along `paths` at each depth, in an order of short travel. A path without length is a dot.
 fn along(paths: &[Path], width: f64, depths: &[f64]) -> Vec<Cut> {
-    let merged: Vec<Path> = paths.iter().filter_map(|path| path.merged(MERGED)).collect();
+    let mut ways = Vec::with_capacity(paths.len());
+    let mut dots = Vec::new();
+    for path in paths {
+        match path.merged(MERGED) {
+            Some(way) => ways.push(way),
+            None => dots.push(path.start()),
+        }
+    }
     let tour = Tour { from: Vec2::ZERO, to: None, either_way: true };
-    let ways = pcb::joined(&tour.of_paths(&merged), width, JOINED);
-    ways.iter().map(|path| Cut::along(path, depths)).collect()
+    let mut ways = tour.of_paths(&ways);
+    if depths.len() == 1 {
+        // Deeper, a way that is not closed any more would be cut the other way round.
+        ways = pcb::joined(&ways, width, JOINED);
+    }
+    let at = ways.last().map_or(Vec2::ZERO, Path::end);
+    let order = Tour { from: at, ..tour }.of_points(&dots);
+    let depth = depths.iter().copied().fold(0.0, f64::max);
+    let dot = |at: &Vec2| Cut::Hole { at: *at, depth, peck: None };
+    let dots = order.into_iter().filter_map(|index| dots.get(index)).map(dot);
+    ways.iter().map(|path| Cut::along(path, depths)).chain(dots).collect()
 }
 
 /// Where there is board: its outline, or the box around it where that is not known.

@@ -30,8 +30,9 @@ pub fn sources() -> Vec<PathBuf> {
         };
         files.extend(entries.map(|entry| entry.unwrap().path()).filter(|path| path.is_file()));
     }
-    // Our examples have NC programs and a job of FreeCAD's among them.
-    files.retain(|file| file.extension().is_none_or(|ending| ending != "nc" && ending != "json"));
+    // Our examples have NC programs, a job of FreeCAD's and a board among them.
+    let others = ["nc", "json", "toml"];
+    files.retain(|file| file.extension().is_none_or(|ending| others.iter().all(|o| ending != *o)));
     files.sort();
     files
 }

@@ -27,7 +27,8 @@ impl Lines {
         Lines { lines: vec![vec![(left, right)]; self.lines.len()], ..*self }
     }
 
-    fn y(&self, line: usize) -> f64 {
+    /// Height of a line, mm.
+    pub fn y(&self, line: usize) -> f64 {
         self.low + (line as f64 + 0.5) * self.step
     }
 
@@ -181,6 +182,18 @@ impl Lines {
             }
         }
         Pieces { starts, groups }
+    }
+
+    /// The lines and spans that come so near to a place, mm.
+    pub fn around(&self, place: Vec2, near: f64) -> Vec<(usize, usize)> {
+        let mut found = Vec::new();
+        for line in self.between(place.y - near, place.y + near) {
+            let spans = self.lines[line].iter().enumerate();
+            let touched =
+                spans.filter(|(_, (from, to))| *from < place.x + near && *to > place.x - near);
+            found.extend(touched.map(|(i, _)| (line, i)));
+        }
+        found
     }
 
     /// The line and the span that a place is in, or that is nearest to it on its line.

@@ -1,0 +1,1 @@
+//! Boards and calls that nothing can be made of.

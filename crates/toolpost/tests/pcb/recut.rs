@@ -1,0 +1,222 @@
+//! The copper that a program leaves: its blocks are read by the virtual control, swept by the tool, and taken
+//! away from a sheet of copper. What is left has to be the copper of the Gerber file, net by net.
+
+use crate::scanlines::{Groups, Lines};
+use geom::Vec2;
+use pcb::board::Copper;
+use pcb::gerber::{self, Image};
+use serde_json::Value;
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use toolpost::Origin;
+
+/// From scan line to scan line, mm.
+const STEP: f64 = 0.02;
+
+/// How far a cut may be from where it was planned, mm: ways are merged within 4 µm, words have three
+/// decimals.
+const TOLERANCE: f64 = 0.005;
+
+/// The folder of real boards, or nothing where it is missing, which is said.
+fn data() -> Option<PathBuf> {
+    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
+    let folder = std::env::var_os("TOOLPOST_DATA").map_or(beside, PathBuf::from).join("gerber");
+    if !folder.is_dir() {
+        eprintln!("skipped: no real boards in {}", folder.display());
+        return None;
+    }
+    Some(folder)
+}
+
+/// A board whose copper was cut.
+struct Made {
+    folder: tempfile::TempDir,
+    machine: &'static str,
+    /// How wide the tool is, mm.
+    width: f64,
+    report: Value,
+}
+
+impl Made {
+    /// Cuts the copper of a board, which stays where its files have it.
+    fn of(board: &Path, machine: &'static str, width: f64, more: &[&str]) -> Made {
+        let folder = tempfile::tempdir().unwrap();
+        let (tool, output) = (width.to_string(), folder.path().display().to_string());
+        let board = board.display().to_string();
+        let mut words = vec![
+            "toolpost", "--quiet", "pcb", &board, "-m", machine, "--tool", &tool, "-o", &output,
+        ];
+        words.extend(["--as-drawn", "--picture", "none"]);
+        words.extend(more);
+        assert_eq!(toolpost::run(words.iter().map(Into::into)), 0, "{words:?}");
+        let report = std::fs::read(folder.path().join("report.json")).unwrap();
+        Made { report: serde_json::from_slice(&report).unwrap(), folder, machine, width }
+    }
+
+    /// What the tool cuts in the copper of a side, in the coordinates of the Gerber file: a little less, and a
+    /// little more than its own width.
+    fn cut(&self, side: &str, lines: &Lines) -> (Lines, Lines) {
+        let file = self.folder.path().join(side).with_extension("nc");
+        let origin = Origin { from: Some(self.machine.to_owned()), ..Origin::default() };
+        let read = toolpost::toolpath::read(&file, false, &origin, None).unwrap();
+        let x = |corner: &str| self.report["board"][corner][0].as_f64().unwrap();
+        let both = x("low_mm") + x("high_mm");
+        let (mut less, mut more) = (lines.clone(), lines.clone());
+        drawing::walk(&read.program, 1e-4, &mut |segment| {
+            if !segment.cuts || segment.from.z.min(segment.to.z) >= 0.0 {
+                return;
+            }
+            let place = |point: geom::Vec3| match side {
+                "back" => Vec2::new(both - point.x, point.y),
+                _ => point.truncate(),
+            };
+            let (from, to) = (place(segment.from), place(segment.to));
+            less.sweep(from, to, self.width / 2.0 - TOLERANCE);
+            more.sweep(from, to, self.width / 2.0 + TOLERANCE);
+        });
+        less.tidy();
+        more.tidy();
+        (less, more)
+    }
+
+    /// Where nets could not be parted, in the coordinates of the Gerber file.
+    fn places(&self, side: &str) -> Vec<Vec2> {
+        let x = |corner: &str| self.report["board"][corner][0].as_f64().unwrap();
+        let both = x("low_mm") + x("high_mm");
+        let programs = self.report["programs"].as_array().unwrap();
+        let program = programs.iter().find(|program| program["name"] == side).unwrap();
+        let number = |value: &Value| value.as_f64().unwrap();
+        let place = |place: &Value| Vec2::new(number(&place["x"]), number(&place["y"]));
+        let seen = program["places"].as_array().unwrap().iter().map(place);
+        seen.map(|place| if side == "back" { Vec2::new(both - place.x, place.y) } else { place })
+            .collect()
+    }
+
+    /// Holds a side against the image of its copper.
+    fn check(&self, side: &str, file: &Path) {
+        let text = std::fs::read(file).unwrap();
+        let image = gerber::read(&file.display().to_string(), &text).unwrap().image;
+        let Some((low, high)) = image.extents() else {
+            return assert!(!self.folder.path().join(side).with_extension("nc").exists());
+        };
+        let (low, high) = (low - Vec2::splat(2.0), high + Vec2::splat(2.0));
+        let none = Lines::none(low.y, high.y, STEP);
+        let mut copper = none.clone();
+        copper.paint(&image);
+        let (less, more) = self.cut(side, &none);
+        let thinned = copper.within(&less).area();
+        assert!(thinned < 1e-6, "{}: {thinned} mm² of copper are cut", file.display());
+        let left = none.filled(low.x, high.x).without(&less);
+        self.nets(side, &image, &copper, &left);
+        assert!(more.area() > less.area() && less.area() > 0.0);
+    }
+
+    /// Each piece of copper has to be in one piece of what is left; two in one piece have to be of one net,
+    /// or near each other at a place that is listed.
+    fn nets(&self, side: &str, image: &Image, copper: &Lines, left: &Lines) {
+        let (mut conductors, mut pieces) = (copper.pieces(), left.pieces());
+        let named = Copper::of_image(image).unwrap().0;
+        let index = geom::region::Index::new(&named.region);
+        // Of each conductor the net, and the piece that it is in.
+        let mut nets: BTreeMap<usize, Option<&str>> = BTreeMap::new();
+        let mut within: BTreeMap<usize, usize> = BTreeMap::new();
+        for (line, spans) in copper.lines.iter().enumerate() {
+            for (i, span) in spans.iter().enumerate() {
+                // What is this narrow touches a line by rounding.
+                if span.1 - span.0 < 2.0 * TOLERANCE {
+                    continue;
+                }
+                let middle = Vec2::new((span.0 + span.1) / 2.0, copper.y(line));
+                let conductor = conductors.of(line, i);
+                let net = index.island_at(middle).and_then(|island| named.nets[island].as_deref());
+                nets.entry(conductor).or_insert(net);
+                let Some((_, k)) = left.nearest(middle) else { panic!("nothing is left") };
+                let piece = pieces.of(line, k);
+                let first = *within.entry(conductor).or_insert(piece);
+                assert_eq!(first, piece, "{side}: {middle} is parted from the rest of its net");
+            }
+        }
+        let mut joined = Groups::new(copper.lines.iter().map(Vec::len).sum());
+        let mut known: BTreeMap<&str, usize> = BTreeMap::new();
+        for (conductor, net) in &nets {
+            if let Some(net) = net {
+                joined.join(*conductor, *known.entry(net).or_insert(*conductor));
+            }
+        }
+        for place in self.places(side) {
+            let around = copper.around(place, self.width);
+            let mut around = around.into_iter().map(|(line, i)| conductors.of(line, i));
+            if let Some(first) = around.next() {
+                around.for_each(|other| joined.join(first, other));
+            }
+        }
+        let mut holds: BTreeMap<usize, usize> = BTreeMap::new();
+        for (conductor, piece) in &within {
+            let first = *holds.entry(*piece).or_insert(*conductor);
+            assert_eq!(
+                joined.of(first),
+                joined.of(*conductor),
+                "{side}: {:?} and {:?} are not parted",
+                nets[&first],
+                nets[conductor]
+            );
+        }
+        let conductors: Vec<usize> = within.keys().map(|conductor| joined.of(*conductor)).collect();
+        assert!(!conductors.is_empty());
+    }
+}
+
+/// The copper files of a board of KiCad's.
+fn copper(board: &Path) -> [(&'static str, PathBuf); 2] {
+    let name = board.file_name().unwrap().to_string_lossy().into_owned();
+    let file = |side: &str| board.join(format!("{name}-{side}_Cu.gbr"));
+    [("front", file("F")), ("back", file("B"))]
+}
+
+/// The boards of KiCad, with a tool that fits between most of their nets.
+const BOARDS: &[(&str, f64)] = &[
+    ("StickHub", 0.1),
+    ("carte_test", 0.2),
+    ("ecc83-pp", 0.2),
+    ("interf_u", 0.2),
+    ("kit-dev-coldfire-xilinx_5213", 0.12),
+    ("microwave", 0.2),
+    ("pic_programmer", 0.2),
+];
+
+#[test]
+fn what_a_program_for_grbl_leaves_is_the_copper_net_by_net() {
+    let Some(data) = data() else { return };
+    for (name, width) in BOARDS {
+        let board = data.join("kicad").join(name);
+        let made = Made::of(&board, "grbl-3018", *width, &[]);
+        for (side, file) in copper(&board) {
+            made.check(side, &file);
+        }
+    }
+}
+
+#[test]
+fn what_a_program_for_linuxcnc_leaves_is_the_copper_net_by_net() {
+    let Some(data) = data() else { return };
+    for (name, width) in BOARDS {
+        let board = data.join("kicad").join(name);
+        let more = ["--passes", "2", "--direction", "conventional"];
+        // The mill is too short for one board: 254 mm.
+        let machine = if *name == "microwave" { "generic-3axis-linuxcnc" } else { "linuxcnc-mill" };
+        let made = Made::of(&board, machine, *width, &more);
+        for (side, file) in copper(&board) {
+            made.check(side, &file);
+        }
+    }
+}
+
+#[test]
+fn the_large_board_is_cut_right() {
+    let Some(data) = data() else { return };
+    let board = data.join("a64");
+    let made = Made::of(&board, "linuxcnc-mill", 0.1, &[]);
+    for (side, letter) in [("front", "F"), ("back", "B")] {
+        made.check(side, &board.join(format!("A64-OlinuXino_Rev_D-{letter}.Cu.gbr")));
+    }
+}
