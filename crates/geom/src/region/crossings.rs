@@ -6,7 +6,7 @@ use crate::{Element, Vec2};
 use static_aabb2d_index::Control;
 
 /// How deep two elements may cross and count as touching, mm: rounding of the kernel.
-const TOUCH: f64 = 2e-6;
+pub(super) const TOUCH: f64 = 2e-6;
 
 /// Where an element of a ring crosses another.
 #[derive(Clone, Copy, Debug)]

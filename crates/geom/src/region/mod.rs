@@ -14,16 +14,20 @@
 //! Arcs are cut into `chords`; the `kernel` does the boolean in whole numbers, which has no wrong
 //! answer where edges lie on each other, circles touch and ends meet, as on a board they all do;
 //! `refit` puts the arcs back. An `offset` is the union of what each element of the boundary sweeps,
-//! in the same kernel.
+//! in the same kernel. [`strokes`] makes the rings of a network of ways, without the parts of them that
+//! others cover; an [`Index`] finds what of a region is near a place.
 //!
 //! # What is promised
 //!
-//! - Ends of lines and arcs are kept to 0.1 nm, a step of the kernel's grid. Where a line or arc crosses
-//!   another, the corner is where they cross, to rounding, however flat.
-//! - Each operation adds less than 1 µm to what a boundary is off. What is thinner than 1 µm may vanish,
-//!   and arcs that come nearer to something than 1 µm may be joined with it, or not. Where they would
-//!   cross it, they are left as chords, up to 0.9 µm beside the arc; nothing else is. Where an arc does
-//!   not reach the place that it must end in, a line of less than 1 µm leads there.
+//! - Ends of lines and arcs are kept to 0.1 nm, a step of the kernel's grid. Where two elements cross,
+//!   the corner is where they do, to rounding, however flat; where only the lines or circles that they
+//!   are pieces of would, it is where their chords do.
+//! - Each operation adds less than 1 µm to what a boundary is off, and no arc gets longer than what it is
+//!   made of. What is thinner than 1 µm may vanish, also where boundaries run beside each other, and arcs
+//!   that come nearer to something than 1 µm may be joined with it, or not. Where they would cross it,
+//!   they are left as chords, up to 0.9 µm beside the arc; nothing else is. Where an arc does not reach
+//!   the place that it must end in, a line of less than 1 µm leads there.
+//! - What goes back on itself within 2 nm is no boundary: there are no slits or spikes of rounding.
 //! - The rings of a region cross neither themselves nor each other, but by rounding (2 nm). They may
 //!   touch in points; what is connected by a point alone is not connected.
 //! - Outer rings run counter-clockwise, holes clockwise: the region is on the left of its boundary.

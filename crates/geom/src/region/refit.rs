@@ -9,12 +9,13 @@
 //! them. So elements that cross all the same are taken back to chords, where they do.
 
 use super::chords::Source;
-use super::crossings::crossings;
+use super::crossings::{TOUCH, crossings};
 use super::index::tree;
 use super::kernel::{Edge, Place};
 use super::{Island, Region, Ring};
 use crate::crossing::Carrier;
 use crate::{Element, Vec2, turn_angle};
+use std::collections::VecDeque;
 use std::f64::consts::TAU;
 use std::ops::Range;
 
@@ -111,7 +112,8 @@ struct Outline {
 }
 
 impl Outline {
-    fn of(mut edges: Vec<Edge>, sources: &[Source]) -> Outline {
+    fn of(edges: Vec<Edge>, sources: &[Source]) -> Outline {
+        let mut edges = without_slits(edges);
         let mut before = edges.iter().rfind(|edge| !is_tiny(edge)).map_or(0, |edge| edge.source);
         let first = edges.iter().position(|edge| {
             let breaks = !is_tiny(edge) && !continues(before, edge, sources);
@@ -394,6 +396,42 @@ fn sweep(edges: &[Edge], center: Vec2) -> f64 {
         .iter()
         .map(|edge| turn_angle(edge.start.point() - center, edge.end.point() - center))
         .sum()
+}
+
+/// A ring without the parts of it that go back on themselves.
+fn without_slits(edges: Vec<Edge>) -> Vec<Edge> {
+    let mut kept = VecDeque::with_capacity(edges.len());
+    for edge in edges {
+        follow(&mut kept, edge);
+    }
+    // The last edge may go back on the first.
+    while let (Some(last), Some(first)) = (kept.back(), kept.front())
+        && kept.len() > 2
+        && goes_back(last, first)
+        && let Some(first) = kept.pop_front()
+    {
+        follow(&mut kept, first);
+    }
+    kept.into()
+}
+
+/// Adds an edge, but for what of it goes back on those before it.
+fn follow(kept: &mut VecDeque<Edge>, mut edge: Edge) {
+    while let Some(last) = kept.back().copied().filter(|last| goes_back(last, &edge)) {
+        kept.pop_back();
+        let longer = if length(&last) < length(&edge) { edge } else { last };
+        edge = Edge { start: last.start, end: edge.end, source: longer.source };
+    }
+    if edge.start != edge.end {
+        kept.push_back(edge);
+    }
+}
+
+/// Whether two edges that follow each other lie on each other, but for rounding.
+fn goes_back(first: &Edge, next: &Edge) -> bool {
+    let (from, tip, to) = (first.start.point(), next.start.point(), next.end.point());
+    (tip - from).dot(to - tip) < 0.0
+        && (line(first).away(to) < TOUCH || line(next).away(from) < TOUCH)
 }
 
 fn line(edge: &Edge) -> Element {

@@ -55,20 +55,17 @@ fn beside(rings: &mut Vec<Ring>, way: &Element, turn: Option<Turn>, radius: f64)
     // Counter-clockwise, so that the outer side of an arc is on its right.
     let way = if turn.is_some_and(|turn| turn.sweep < 0.0) { way.reversed() } else { *way };
     let Some(right) = way.parallel(-radius) else { return };
-    let elements = match (way.parallel(radius), turn) {
-        (Some(left), _) => vec![
-            right,
-            Element::line(right.end, left.end),
-            left.reversed(),
-            Element::line(left.start, right.start),
-        ],
-        (None, Some(turn)) => vec![
-            right,
-            Element::line(right.end, turn.center),
-            Element::line(turn.center, right.start),
-        ],
+    let (inside, back) = match (way.parallel(radius), turn) {
+        (Some(left), _) => (left.end, vec![left.reversed()]),
+        (None, Some(turn)) => (turn.center, Vec::new()),
         (None, None) => return,
     };
+    // By the ends of the way, as the ends' own rings: sides with the same corners leave nothing between.
+    let mut elements =
+        vec![right, Element::line(right.end, way.end), Element::line(way.end, inside)];
+    elements.extend(back);
+    let last = elements.last().map_or(inside, |last| last.end);
+    elements.extend([Element::line(last, way.start), Element::line(way.start, right.start)]);
     rings.push(Ring { elements });
 }
 

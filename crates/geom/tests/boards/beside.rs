@@ -105,6 +105,9 @@ fn flat(element: &Element, error: f64) -> Vec<Element> {
     (0..steps).map(|i| Element::line(at(i), at(i + 1))).collect()
 }
 
+/// Whether a point is in a result, by whether it is in the first and in the second.
+type Rule = fn(bool, bool) -> bool;
+
 /// Holds every boolean of the two against what is known of it without another boolean.
 pub fn judge(Pair { first, second }: &Pair, random: &mut Random) {
     let union = first.union(second).unwrap();
@@ -140,7 +143,7 @@ pub fn judge(Pair { first, second }: &Pair, random: &mut Random) {
         .filter_map(|element| Some((element.turn?, element.radius()?)))
         .map(|(turn, radius)| (turn.center, radius, turn.sweep.abs()))
         .collect();
-    let results: [(&str, &Region, fn(bool, bool) -> bool); 5] = [
+    let results: [(&str, &Region, Rule); 5] = [
         ("union", &union, |a, b| a || b),
         ("intersection", &common, |a, b| a && b),
         ("difference", &rest, |a, b| a && !b),
