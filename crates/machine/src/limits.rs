@@ -52,7 +52,8 @@ impl<'a> Limits<'a> {
 
     /// Checks positions of the linear axes (mm, as a program gives them) and the rotary axes (degrees
     /// of A, B, C) with a tool of `tool_length` mm, asked for by `line` of the source. A coordinate
-    /// that is not known (NaN) breaks no limit.
+    /// that is not known (NaN) breaks no limit. Where the work zero is not known, [`Limits::ways`] tells
+    /// about the linear axes.
     ///
     /// # Errors
     /// `axis-limit`, with the axis, its position, the limit and by how much it is broken.
@@ -73,7 +74,7 @@ impl<'a> Limits<'a> {
             if known {
                 held(letter, slides[i], axis.min, axis.max, " mm", line)?;
             } else {
-                self.stretch(i, letter, axis, slides[i], line)?;
+                self.stretch(i, slides[i], line);
             }
         }
         Ok(())
@@ -193,15 +194,32 @@ impl<'a> Limits<'a> {
         })
     }
 
-    /// Checks the way an axis needs against the length of its travel.
-    fn stretch(
-        &mut self,
-        i: usize,
-        letter: char,
-        axis: &LinearAxis,
-        at: f64,
-        line: u32,
-    ) -> Result<(), Box<Diagnostic>> {
+    /// What is wrong with the way that each axis has needed so far: where the work zero is not known, that may
+    /// not be longer than its travel (`axis-limit`).
+    pub fn ways(&self) -> impl Iterator<Item = Diagnostic> {
+        let axes = self.machine.linear.iter().zip(self.extent).zip(['X', 'Y', 'Z']);
+        axes.filter(|_| self.machine.work_zero.is_none()).filter_map(|((axis, ends), letter)| {
+            let [(low, _), (high, _)] = ends;
+            let (way, travel) = (high - low, axis.max - axis.min);
+            if way <= travel + ROUNDING || way < 0.0 {
+                return None;
+            }
+            let [low, high] = ends.map(|(at, line)| match line {
+                0 => format!("{at:.4} mm"),
+                line => format!("{at:.4} mm (line {line})"),
+            });
+            let message = format!(
+                "{letter} moves from {low} to {high}: {:.4} mm more than its travel of {travel} mm",
+                way - travel
+            );
+            let help = "divide the work, or take a larger machine";
+            let line = ends[0].1.max(ends[1].1);
+            Some(Diagnostic::error("axis-limit", message).help(help).line(line))
+        })
+    }
+
+    /// Keeps how far an axis has moved.
+    fn stretch(&mut self, i: usize, at: f64, line: u32) {
         let [low, high] = &mut self.extent[i];
         if at < low.0 {
             *low = (at, line);
@@ -209,20 +227,6 @@ impl<'a> Limits<'a> {
         if at > high.0 {
             *high = (at, line);
         }
-        let (way, travel) = (high.0 - low.0, axis.max - axis.min);
-        if way <= travel + ROUNDING || way < 0.0 {
-            return Ok(());
-        }
-        let message = format!(
-            "{letter} moves from {:.4} mm (line {}) to {:.4} mm (line {}): {:.4} mm more than its \
-             travel of {travel} mm",
-            low.0,
-            low.1,
-            high.0,
-            high.1,
-            way - travel
-        );
-        Err(Diagnostic::error("axis-limit", message).line(line).into())
     }
 }
 

@@ -39,13 +39,29 @@ fn without_a_work_zero_the_way_is_held_against_the_length_of_the_travel() {
     let mut limits = Limits::new(&mill);
     assert!(limits.position(Vec3::X * 3000.0, [0.0; 3], 0.0, 4).is_ok());
     assert!(limits.position(Vec3::X * 2000.0, [0.0; 3], 0.0, 5).is_ok());
-    let refused = limits.position(Vec3::X * 1999.999, [0.0; 3], 0.0, 6).unwrap_err();
-    assert_eq!((refused.rule, refused.line), ("axis-limit", 6));
-    assert_eq!(
-        refused.message,
-        "X moves from 1999.9990 mm (line 6) to 3000.0000 mm (line 4): 0.0010 mm more than its travel \
-         of 1000 mm"
-    );
+    assert_eq!(limits.ways().count(), 0);
+    for (x, line, way) in [
+        (1999.999, 6, "1999.9990 mm (line 6) to 3000.0000 mm (line 4): 0.0010 mm"),
+        (2500.0, 7, "1999.9990 mm (line 6) to 3000.0000 mm (line 4): 0.0010 mm"),
+        (1500.0, 8, "1500.0000 mm (line 8) to 3000.0000 mm (line 4): 500.0000 mm"),
+        // From nowhere in a source.
+        (1000.0, 0, "1000.0000 mm to 3000.0000 mm (line 4): 1000.0000 mm"),
+    ] {
+        assert!(limits.position(Vec3::X * x, [0.0; 3], 0.0, line).is_ok());
+        let refused: Vec<_> = limits.ways().collect();
+        assert_eq!(refused.len(), 1, "{refused:?}");
+        assert_eq!(refused[0].rule, "axis-limit");
+        let message = format!("X moves from {way} more than its travel of 1000 mm");
+        assert_eq!(refused[0].message, message);
+        let at = if line == 8 {
+            8
+        } else if line == 0 {
+            4
+        } else {
+            6
+        };
+        assert_eq!(refused[0].line, at);
+    }
 }
 
 #[test]

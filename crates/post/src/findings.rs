@@ -24,9 +24,16 @@ struct Lowered {
 }
 
 impl Findings {
-    /// Keeps an error; `false` when there are enough of them.
+    /// Keeps an error, or counts it where its line has broken the rule before and the way out is the same;
+    /// `false` when there are enough of them.
     pub(crate) fn error(&mut self, error: Diagnostic) -> bool {
-        self.errors.push(error);
+        let same = |known: &&mut Diagnostic| {
+            (known.rule, known.line, &known.help) == (error.rule, error.line, &error.help)
+        };
+        match self.errors.iter_mut().find(same) {
+            Some(known) if !error.help.is_empty() => known.count = known.count.saturating_add(1),
+            _ => self.errors.push(error),
+        }
         self.errors.len() < MOST_ERRORS
     }
 

@@ -147,6 +147,9 @@ impl<'a> Walk<'a> {
         if let Err(error) = self.records() {
             self.findings.error(*error);
         }
+        for error in self.limits.ways() {
+            self.findings.error(error);
+        }
         let warnings = self.findings.finish(self.machine.capabilities.lowering_tolerance)?;
         let (text, blocks) = self.writer.finish();
         self.limits.memory(blocks).map_err(|found| vec![*found])?;

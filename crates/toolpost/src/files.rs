@@ -14,7 +14,10 @@ const LARGEST: u64 = 4 << 30;
 /// # Errors
 /// Where it cannot be opened, is no file (a folder, a device), or is larger than the memory or 4 GiB.
 pub fn read(path: &Path) -> Result<Vec<u8>, Box<Diagnostic>> {
-    let unreadable = |why: String| about(path, "unreadable", format!("cannot be read: {why}"));
+    let unreadable = |why: String| {
+        let found = about(path, "unreadable", format!("cannot be read: {why}"));
+        found.help("give the name of a file that is there and may be read")
+    };
     // Looked at before it is opened: opening a pipe would wait for ever.
     let metadata = fs::metadata(path).map_err(|error| unreadable(error.to_string()))?;
     if !metadata.is_file() {

@@ -29,7 +29,8 @@ pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
     let machine = toolpath::machine_with(&args.machine, &args.option)?;
     if machine.wire.is_some() {
         let message = format!("`{}` cuts by wire: it mills and drills nothing", machine.name);
-        return Err(Diagnostic::error("machine-kind", message).into());
+        let help = "name a mill: `toolpost machines` lists what there is";
+        return Err(Diagnostic::error("machine-kind", message).help(help).into());
     }
     files::check_folder(&args.output)?;
     let progress = Progress::new(5, silent);

@@ -140,7 +140,8 @@ impl Known<'_> {
         let placed = |found: Diagnostic| found.file(name);
         if image.objects.is_empty() {
             let message = format!("nothing is on this layer: there is no {}", self.layer);
-            warnings.push(placed(Diagnostic::warning("layer-empty", message)));
+            let help = "plot it anew, or leave it out where there should be nothing";
+            warnings.push(placed(Diagnostic::warning("layer-empty", message).help(help)));
             return Ok((board, warnings));
         }
         let no_region = |error: RegionError| {

@@ -2,6 +2,7 @@
 
 mod bad_input;
 mod commands;
+#[path = "../folder/mod.rs"]
 mod folder;
 mod freecad;
 mod import;

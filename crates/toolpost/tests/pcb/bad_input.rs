@@ -1,1 +1,317 @@
-//! Boards and calls that nothing can be made of.
+//! Boards and calls that nothing can be made of: a clear error with its file, line and rule, and nothing is
+//! written.
+
+use crate::board::{CALL, DRILL, EDGE, FRONT, call, edge, front, gerber, refused, small};
+use crate::folder::Folder;
+use std::fs::{self, File};
+use std::io::Write;
+use std::time::Instant;
+
+/// Refused as input with [`CALL`].
+#[track_caller]
+fn bad(folder: &Folder, words: &[&str]) {
+    refused(folder, &CALL, 2, words);
+}
+
+/// Refused as input with [`CALL`] and more.
+#[track_caller]
+fn bad_call(folder: &Folder, more: &[&str], words: &[&str]) {
+    refused(folder, &[&CALL, more].concat(), 2, words);
+}
+
+/// The report's warnings of a board that is made all the same.
+#[track_caller]
+fn odd(folder: &Folder, words: &[&str]) {
+    let said = call(folder, &[]);
+    assert_eq!(said.code, 0, "{said:?}");
+    for word in words {
+        assert!(said.err.contains(word), "`{word}` is missing in\n{}", said.err);
+    }
+    let reported = folder.read("out/report.json");
+    fs::remove_dir_all(folder.path().join("out")).unwrap();
+    let rule = words[0].trim_start_matches("warning[").trim_end_matches(']');
+    assert!(reported.contains(&format!("\"rule\": \"{rule}\"")), "{rule}");
+    bad_call(folder, &["--strict"], &[&format!("error[{rule}]")]);
+}
+
+#[test]
+fn faults_of_a_gerber_file_have_their_file_line_and_rule() {
+    let folder = small();
+    let repeat = format!("%SRX1000000000Y1I1J1*%{FRONT}%SR*%\n");
+    for (body, place, rule, word) in [
+        ("D77*\n", "front.gbr:8:1", "missing-aperture", "D77"),
+        ("%AMM*\n1,1,1/($1-1),0,0*%\n%ADD20M,1*%\n", "front.gbr:9:1", "macro-division", "M"),
+        ("G36*\nX0Y0D02*\nX2000D01*\nY2000D01*\nG37*\n", "front.gbr:12:", "region-open", "2.828"),
+        (
+            "G36*\nX0Y0D02*\nX2000Y2000D01*\nX2000Y0D01*\nX0Y2000D01*\nX0Y0D01*\nG37*\n",
+            "front.gbr:14:",
+            "region-crosses-itself",
+            "X 1",
+        ),
+        (
+            "D10*\nG75*\nG03*\nX0Y0D02*\nX5000I1000J0D01*\n",
+            "front.gbr:12:",
+            "arc-center",
+            "4.000000 mm",
+        ),
+        (&repeat, "front.gbr:11:", "too-large", "5000000"),
+    ] {
+        front(&folder, body);
+        bad(&folder, &[place, &format!("error[{rule}]"), word]);
+    }
+}
+
+#[test]
+fn a_gerber_file_without_its_format() {
+    let folder = small();
+    let text = gerber("Copper,L1,Top", FRONT);
+    folder.write("board/front.gbr", text.replace("%FSLAX33Y33*%\n", ""));
+    bad(&folder, &["front.gbr:8:", "error[no-format]"]);
+}
+
+#[test]
+fn a_drill_file_without_its_unit() {
+    let folder = small();
+    // Drills of 0.8 may have that in mm or inches; zeros are not said either.
+    folder.write("board/holes.drl", "M48\nT1C0.125\n%\nT1\nX4.0Y5.0\nM30\n");
+    bad(&folder, &["holes.drl:", "error[no-unit]"]);
+}
+
+#[test]
+fn blocks_a_thousand_deep_are_a_pad() {
+    let folder = small();
+    let open: String = (1000..2000).map(|i| format!("%ABD{i}*%\n")).collect();
+    let close: String = (1000..2000).rev().map(|i| format!("X0Y0D03*\n%AB*%\nD{i}*\n")).collect();
+    front(&folder, &format!("{open}D10*\n{close}X4000Y5000D03*\nX14000Y5000D03*\n"));
+    let said = call(&folder, &[]);
+    assert_eq!(said.code, 0, "{said:?}");
+    let deep = folder.read("out/front.nc");
+    front(&folder, FRONT);
+    assert_eq!(call(&folder, &[]).code, 0);
+    assert_eq!(folder.read("out/front.nc"), deep);
+}
+
+#[test]
+fn layers_of_different_origins() {
+    let folder = small();
+    front(&folder, "D10*\nX104000Y5000D03*\nX114000Y5000D03*\n");
+    bad(
+        &folder,
+        &["error[layers-apart]", "front copper", "X 103.000 to 115.000", "X 0.000 to 20.000"],
+    );
+}
+
+#[test]
+fn an_outline_that_is_not_closed() {
+    let folder = small();
+    edge(&folder, &EDGE.replace("\nY0D01*", "\nY1000D01*"));
+    bad(
+        &folder,
+        &["edge.gbr:10:", "error[outline-open]", "1.0000 mm", "X 0.0000 Y 1.0000", "0.05 mm"],
+    );
+    // The tolerance closes it.
+    edge(&folder, &EDGE.replace("\nY0D01*", "\nY40D01*"));
+    odd(&folder, &["warning[outline-gap]", "0.0400 mm"]);
+}
+
+#[test]
+fn copper_outside_of_the_outline() {
+    let folder = small();
+    // Half of a pad.
+    front(&folder, &FRONT.replace("X14000", "X20000"));
+    odd(&folder, &["warning[copper-outside]", "1.571 mm²", "front", "in 1 place"]);
+}
+
+#[test]
+fn a_layer_with_nothing_on_it() {
+    let folder = small();
+    front(&folder, "");
+    bad_call(&folder, &["--only", "front"], &["error[no-such-part]", "copper of the front"]);
+    odd(&folder, &["warning[layer-empty]", "front.gbr", "front copper"]);
+    let said = call(&folder, &["--picture", "none"]);
+    assert_eq!(said.code, 0, "{said:?}");
+    let names = fs::read_dir(folder.path().join("out")).unwrap();
+    let mut names: Vec<_> = names.map(|entry| entry.unwrap().file_name()).collect();
+    names.sort();
+    assert_eq!(names, ["back.nc", "drill.nc", "outline.nc", "report.json"]);
+}
+
+#[test]
+fn a_hundred_megabytes_that_say_nothing() {
+    let folder = small();
+    for filling in ["G04 nothing to see here, go on*\n", " \n"] {
+        let head = gerber("Copper,L1,Top", "");
+        let mut file = File::create(folder.path().join("board/front.gbr")).unwrap();
+        file.write_all(head.strip_suffix("M02*\n").unwrap().as_bytes()).unwrap();
+        file.write_all(filling.repeat(100_000_000 / filling.len()).as_bytes()).unwrap();
+        let start = Instant::now();
+        bad(&folder, &["front.gbr:", "error[no-end]"]);
+        writeln!(file, "{FRONT}M02*").unwrap();
+        assert_eq!(call(&folder, &["--only", "front"]).code, 0);
+        fs::remove_dir_all(folder.path().join("out")).unwrap();
+        assert!(start.elapsed().as_secs() < 30, "{:?}", start.elapsed());
+    }
+}
+
+#[test]
+fn a_board_of_a_kicad_that_is_not_known() {
+    let folder = small();
+    folder.write("new.kicad_pcb", "(kicad_pcb\n (version 20990101)\n (generator pcbnew))\n");
+    let arguments = ["pcb", "new.kicad_pcb", "-o", "out", "-m", "grbl-3018", "--tool", "0.4"];
+    refused(&folder, &arguments, 2, &["new.kicad_pcb:2:", "error[version]", "20990101", "KiCad 9"]);
+}
+
+#[test]
+fn what_is_no_board() {
+    let folder = small();
+    let with = |board: &str, words: &[&str]| {
+        let arguments = ["pcb", board, "-o", "out", "-m", "grbl-3018", "--tool", "0.4"];
+        refused(&folder, &arguments, 2, words);
+    };
+    with("missing", &["missing: error[unreadable]"]);
+    fs::create_dir(folder.path().join("empty")).unwrap();
+    with("empty", &["empty: error[folder]"]);
+    folder.write("empty/README", "no board");
+    with("empty", &["error[no-board]"]);
+    folder.write("whole.kicad_pcb", "(kicad_pcb (version 20221018))");
+    with("whole.kicad_pcb", &["error["]);
+}
+
+#[test]
+fn a_tool_wider_than_every_gap() {
+    let folder = small();
+    // Squares with 0.3 mm between them; a tool needs 2 µm of room.
+    front(&folder, "D12*\nX4000Y5000D03*\nX6300Y5000D03*\n");
+    bad_call(
+        &folder,
+        &["--only", "front"],
+        &["error[tool-too-wide]", "0.400 mm", "0.298 mm", "--narrow"],
+    );
+}
+
+#[test]
+fn tools_that_are_none() {
+    let folder = small();
+    for tool in ["0", "-0.2", "nan", "inf", "wide"] {
+        let tool = format!("--tool={tool}");
+        let arguments = ["pcb", "board", "-o", "out", "-m", "grbl-3018", &tool];
+        refused(&folder, &arguments, 2, &["--tool", "greater than 0"]);
+    }
+    let none = ["pcb", "board", "-o", "out", "-m", "grbl-3018"];
+    refused(&folder, &none, 2, &["error[no-tool]", "--tool", "--vee", "--only"]);
+    for angle in ["0", "180", "-30"] {
+        let angle = format!("--vee={angle}");
+        refused(&folder, &[&none[..], &[&angle]].concat(), 2, &["--vee", "below 180 degrees"]);
+    }
+    refused(&folder, &[&none[..], &["--tip", "0.1"]].concat(), 2, &["--vee"]);
+    bad_call(&folder, &["--vee", "30"], &["--tool", "--vee"]);
+}
+
+#[test]
+fn drills_and_mills_that_do_not_fit() {
+    let folder = small();
+    bad_call(
+        &folder,
+        &["--drills", "0.6,1.2"],
+        &["error[no-drill]", "0.8 mm at X 4.000 Y 5.000", "0.6 mm", "0.05 mm", "2 times"],
+    );
+    // A slot of 0.8 mm.
+    folder.write("board/holes.drl", DRILL.replace("X4.0Y5.0", "X4.0Y5.0G85X6.0Y5.0"));
+    bad_call(
+        &folder,
+        &["--hole-mill", "1"],
+        &["error[no-cutter]", "slot of 0.8 mm at X 4.000 Y 5.000", "1 mm", "at most 0.8 mm"],
+    );
+}
+
+#[test]
+fn a_folder_that_nothing_can_be_saved_in() {
+    let folder = small();
+    folder.write("file", "");
+    let into = |output: &str, words: &[&str]| {
+        let arguments = ["pcb", "board", "-o", output, "-m", "grbl-3018", "--tool", "0.4"];
+        refused(&folder, &arguments, 2, words);
+    };
+    into("file", &["file: error[output-folder]", "not a folder"]);
+    into("missing/out", &["missing/out: error[output-folder]", "no folder missing"]);
+    // Nobody can write there, whoever runs the tests.
+    if cfg!(target_os = "linux") {
+        into("/proc", &["/proc", "error[output]"]);
+        into("/proc/out", &["/proc/out: error[output-folder]"]);
+    }
+}
+
+#[test]
+fn sides_that_are_not_there() {
+    let folder = small();
+    fs::remove_file(folder.path().join("board/back.gbr")).unwrap();
+    bad_call(&folder, &["--only", "back"], &["error[no-such-part]", "copper of the back"]);
+    fs::remove_file(folder.path().join("board/edge.gbr")).unwrap();
+    bad_call(&folder, &["--only", "outline"], &["error[no-such-part]", "outline"]);
+    bad_call(&folder, &["--clear", "0.8"], &["error[no-outline]"]);
+    bad_call(&folder, &["--only", "left"], &["left", "front"]);
+}
+
+#[test]
+fn heights_of_another_side_or_another_place() {
+    let folder = small();
+    folder.write("heights.txt", "0 0 0\n20 0 0\n0 10 0\n20 10 0\n");
+    bad_call(
+        &folder,
+        &["--heights", "heights.txt"],
+        &["error[heights]", "--only front,drill,outline"],
+    );
+    let front = ["--only", "front", "--heights", "heights.txt"];
+    // The board is from 0 to 20: heights of a part, and of another board.
+    for (x, y) in [(0, 20), (100, 0)] {
+        let corner = |dx: i32, dy: i32| format!("{} {} 0\n", x + dx, y + dy);
+        let text = corner(0, 0) + &corner(20, 0) + &corner(0, 10) + &corner(20, 10);
+        folder.write("heights.txt", text);
+        bad_call(&folder, &front, &["error[", "mm"]);
+    }
+    folder.write("heights.txt", "0 0 0\n20 0 high\n");
+    bad_call(&folder, &front, &["heights.txt:2", "error[height-map]"]);
+    bad_call(&folder, &["--heights", "none", "--only", "front"], &["none", "error[unreadable]"]);
+}
+
+#[test]
+fn numbers_that_are_no_panel() {
+    let folder = small();
+    for panel in ["0x2", "2x0", "2", "-1x2", "1001x1", "axb"] {
+        let panel = format!("--panel={panel}");
+        bad_call(&folder, &[&panel], &["--panel", "columns and rows"]);
+    }
+    let call = ["--panel", "2x1", "--spacing", "0"];
+    bad_call(&folder, &call, &["error[panel]", "0 and 0 mm"]);
+    bad_call(&folder, &["--panel", "200x200"], &["error[panel]", "200 by 200"]);
+}
+
+#[test]
+fn machines_that_cannot_do_it() {
+    let folder = small();
+    let wire = ["pcb", "board", "-o", "out", "-m", "bp-95d", "--tool", "0.4"];
+    refused(&folder, &wire, 2, &["error[machine-kind]", "bp-95d"]);
+    let missing = ["pcb", "board", "-o", "out", "-m", "mill-of-nobody", "--tool", "0.4"];
+    refused(&folder, &missing, 2, &["mill-of-nobody"]);
+    // 480 holes from 4 to 29 · 24 + 14 mm are one finding.
+    let long = ["--only", "drill", "--panel", "30x8", "--spacing", "4"];
+    let found =
+        ["error[axis-limit]: X moves from 4.0000 mm to 710.0000 mm: 406.0000 mm more", "300 mm"];
+    let said = refused(&folder, &[&CALL[..], &long].concat(), 1, &found);
+    assert_eq!(said.err.matches("error[").count(), 1, "{}", said.err);
+    // Where the work zero is known each place is held against the travel: one finding for each axis. X is
+    // beyond it from 14 + 4 · 24 mm on, in 51 holes of a row; of the others only the last row is, in 9.
+    let machine = "extends = \"grbl-3018\"\nwork_zero = [-100, -100, -20]\n";
+    folder.write("mine.toml", machine);
+    let mine = ["pcb", "board", "-o", "out", "-m", "mine.toml", "--tool", "0.4"];
+    let said = refused(
+        &folder,
+        &[&mine[..], &long].concat(),
+        1,
+        &[
+            "error[axis-limit]: X at 10.0000 mm is 10.0000 mm beyond its limit of 0 mm (408 times",
+            "error[axis-limit]: Y at 3.0000 mm is 3.0000 mm beyond its limit of 0 mm (9 times",
+        ],
+    );
+    assert_eq!(said.err.matches("error[").count(), 2, "{}", said.err);
+}

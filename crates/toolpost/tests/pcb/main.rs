@@ -1,5 +1,8 @@
 //! Boards, from their files to programs that are read back.
 
 mod bad_input;
+mod board;
+#[path = "../folder/mod.rs"]
+mod folder;
 mod recut;
 mod scanlines;

@@ -1,5 +1,7 @@
 //! Running the program itself, in folders that vanish.
 
+#![allow(dead_code, reason = "each test file uses its part")]
+
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::Command;
@@ -47,9 +49,14 @@ impl Said {
 pub struct Folder(TempDir);
 
 impl Folder {
+    /// One with nothing in it.
+    pub fn empty() -> Folder {
+        Folder(tempfile::tempdir().unwrap())
+    }
+
     /// One with [`SOURCE`] in `part.cls`.
     pub fn new() -> Folder {
-        let folder = Folder(tempfile::tempdir().unwrap());
+        let folder = Folder::empty();
         folder.write("part.cls", SOURCE);
         folder
     }
