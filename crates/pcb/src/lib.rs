@@ -1,16 +1,18 @@
-//! Printed circuit boards: what their files say, as exact shapes in mm.
+//! Printed circuit boards: from their files to what a machine does.
 //!
 //! ```text
-//!   copper, mask, outline ── gerber ──▶ Image: flashes, strokes and regions, dark and clear in order
-//!   holes, slots, routes ── excellon ─▶ Drill: holes and routes by tool
+//!   gerber, excellon ─┐                     ┌─ isolation, voronoi ─┐
+//!   kicad ────────────┼──▶ board::Board ────┼─ clearing, engraving ┼──▶ Operation ──job──▶ Program
+//!   model ────────────┘                     └─ drilling, outline ──┘
 //! ```
 //!
-//! Nothing is flattened here: arcs stay arcs. A shape is a list of [`Piece`]s, each of which adds to or takes
-//! from what the pieces before it made. Readers give every error they find, at most twenty, or a
-//! result with warnings.
+//! Nothing is flattened here: arcs stay arcs. Readers give every error they find, at most twenty, or a result
+//! with warnings. Areas are [`geom::region`]s; what a tool does is an [`Operation`], its ways are [`Path`]s
+//! in an order of short travel ([`tour`]). The board is seen from above, its surface is Z 0; lengths are
+//! mm, feeds mm/min, angles radians.
 //!
-//! What is believed of the two formats, with its sources, is in `docs/sources/gerber.md` and
-//! `docs/sources/excellon.md`.
+//! What is believed of the formats, with its sources, is in `docs/sources`; what is made of a board in
+//! `docs/pcb.md`.
 
 mod arc;
 pub mod board;
