@@ -90,10 +90,21 @@ fn import(file: &Path, output: &Path, extends: Option<&str>) -> Result<Answer, S
     let invalid = |findings| Stop { verdict: Verdict::Invalid, findings };
     let target = Target::new(output, &[file])?;
     let bytes = files::read(file)?;
-    let import = machine::import::import(&files::name(file), &bytes, extends).map_err(invalid)?;
+    let post = files::name(file);
+    let folder = output.parent().unwrap_or(Path::new(""));
+    let import = machine::import::import(&post, &bytes, extends, folder).map_err(invalid)?;
     let saved = output.display().to_string();
-    let machine = machine::load_text(&saved, &import.text)?;
-    post::check(&machine).map_err(invalid)?;
+    // What is wrong stands in a file that there will not be.
+    let unsaved = |found: Vec<Diagnostic>| {
+        let about = |found: Diagnostic| {
+            let message = format!("what it becomes is no machine: {}", found.message);
+            Diagnostic::error(found.rule, message).help(found.help).file(post.clone())
+        };
+        invalid([import.findings.clone(), found.into_iter().map(about).collect()].concat())
+    };
+    let machine =
+        machine::load_text(&saved, &import.text).map_err(|found| unsaved(vec![*found]))?;
+    post::check(&machine).map_err(unsaved)?;
     let proven = sample(&machine);
     files::save(&[(&target, import.text.as_bytes())])?;
     let (verdict, sample) = match &proven {

@@ -1,9 +1,11 @@
 //! Posts and templates of other systems, written here in the style that is in use, as machine files: the
 //! blocks that they become, what is told, and that the sample part is proven with each.
 
-use machine::import::{Import, import};
+use machine::import::{self, Import};
 use machine::{Machine, load_text};
+use program::Diagnostic;
 use proptest::prelude::*;
+use std::path::Path;
 
 /// Words and blocks that every post here has; an own one follows for what it differs in.
 const WORDS: &str = r#"
@@ -36,6 +38,10 @@ begin FIRST_FEED_MOVE
 begin FEED_MOVE
 "G1[X][Y][Z]"
 "#;
+
+fn import(file: &str, text: &[u8], extends: Option<&str>) -> Result<Import, Vec<Diagnostic>> {
+    import::import(file, text, extends, Path::new(""))
+}
 
 fn arcs(words: &str) -> String {
     let of = |name, code| {
@@ -360,6 +366,37 @@ G98 G81 X@x@ Y@y@ Z@depth@ R@clearance@ F@feed@
     // A control keeps the level to which it goes back from the program before: the proof finds it.
     let (_, machine) = imported("mill.txt", &text.replace("G98 ", ""), Some("linuxcnc"));
     assert_eq!(sample(&machine), Err("nc-cycle"));
+}
+
+/// `R` alone: it becomes the one with a sign. GRBL has no G81, so holes are moves.
+#[test]
+fn a_radius_without_sign_gets_one_and_a_cycle_needs_a_control_that_has_it() {
+    let text = "\
+[engraving: linear move]
+G1 X@x@ Y@y@ Z@z@ F@f@
+[engraving: arc cw]
+G2 X@x@ Y@y@ R@r@ F@f@
+[engraving: arc ccw]
+G3 X@x@ Y@y@ R@r@ F@f@
+[drilling: hole]
+G81 X@x@ Y@y@ Z@depth@ R@clearance@ F@f@
+";
+    for control in ["grbl", "marlin"] {
+        let (import, machine) = imported("mill.txt", text, Some(control));
+        assert_eq!(told(&import), [(4, OTHERWISE), (6, OTHERWISE), (8, LOST)]);
+        assert!(machine.capabilities.cycles.is_empty() && !machine.capabilities.arcs.is_empty());
+        blocks(&machine, &[("arc_cw", "G2 {{X}} {{Y}} {{R}} {{F}}")]);
+        let program = sample(&machine).unwrap();
+        assert!(!program.contains("G81"), "{program}");
+        assert!(program.lines().any(|l| l.starts_with("G3 ") && l.contains(" R10")), "{program}");
+    }
+    // Beside a centre it stays what it is, and a word that has no value leaves arcs out.
+    let beside = text.replace("R@r@", "I@i@ J@j@ R@r@");
+    let (_, machine) = imported("mill.txt", &beside, Some("grbl"));
+    blocks(&machine, &[("arc_cw", "G2 {{X}} {{Y}} {{I}} {{J}} {{RADIUS}} {{F}}")]);
+    let (import, machine) = imported("mill.txt", &text.replace("R@r@", "U@r@"), Some("grbl"));
+    assert!(machine.capabilities.arcs.is_empty());
+    assert!(import.findings[0].message.contains("arcs are written as lines"), "{import:?}");
 }
 
 #[test]

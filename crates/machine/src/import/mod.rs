@@ -15,8 +15,9 @@ mod text;
 mod vectric;
 mod write;
 
-use crate::load::load_origin;
+use crate::load::{is_path, load_origin};
 use program::Diagnostic;
+use std::path::Path;
 
 /// The largest file that is taken for a post, bytes.
 const LARGEST: usize = 1 << 20;
@@ -29,19 +30,24 @@ const MOST_FINDINGS: usize = 200;
 pub struct Import {
     /// The file, in TOML.
     pub text: String,
-    /// The control or machine that it extends.
+    /// The control or machine that it extends, a file by its way from the folder.
     pub extends: String,
     /// What could not be carried over, or stands otherwise than in the post, each with its line.
     pub findings: Vec<Diagnostic>,
 }
 
 /// Makes a machine file of a post of VCarve or Aspire (a name that ends in `.pp`) or of templates with
-/// parameters. It extends `extends`, a control or machine of the library or a file, or the control that the
-/// post names.
+/// parameters, to be saved in `folder`. It extends `extends`, a control or machine of the library or a file,
+/// or the control that the post names.
 ///
 /// # Errors
 /// What cannot be read, each with its line; a post that names no control where `extends` does not.
-pub fn import(file: &str, bytes: &[u8], extends: Option<&str>) -> Result<Import, Vec<Diagnostic>> {
+pub fn import(
+    file: &str,
+    bytes: &[u8],
+    extends: Option<&str>,
+    folder: &Path,
+) -> Result<Import, Vec<Diagnostic>> {
     let refused = |rule, message: String| Diagnostic::error(rule, message).file(file);
     if bytes.len() > LARGEST {
         let message = format!("{} bytes are more than any post has: {LARGEST}", bytes.len());
@@ -71,8 +77,28 @@ pub fn import(file: &str, bytes: &[u8], extends: Option<&str>) -> Result<Import,
         }
     };
     let base = load_origin(&name).map_err(|why| vec![*why])?;
+    let name = match is_path(&name) {
+        true => way(folder, Path::new(&name)).ok_or_else(|| {
+            let message = format!("there is no way from {} to `{name}`", folder.display());
+            vec![refused("import-control", message).help("save it in the folder of that file")]
+        })?,
+        false => name,
+    };
     let text = write::file(&post, &base, &name, file, &mut findings);
     Ok(Import { text, extends: name, findings: findings.told() })
+}
+
+/// The way from a folder to a file, as `extends` has it.
+fn way(folder: &Path, file: &Path) -> Option<String> {
+    let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+    let (folder, file) = (folder.canonicalize().ok()?, file.canonicalize().ok()?);
+    let (from, to) = (folder.components(), file.components());
+    let common = from.clone().zip(to.clone()).take_while(|(a, b)| a == b).count();
+    // Another drive has no way.
+    let up = (common > 0).then(|| from.skip(common).map(|_| Some("..")))?;
+    let down = to.skip(common).map(|part| part.as_os_str().to_str());
+    let way = up.chain(down).collect::<Option<Vec<&str>>>()?.join("/");
+    Some(if is_path(&way) { way } else { format!("./{way}") })
 }
 
 /// What the names of posts call the controls of the library.

@@ -4,6 +4,7 @@ use super::foreign::{Line, Part, Piece};
 use super::items::codes;
 use super::text::{literal, short};
 use super::write::Writing;
+use crate::model::CycleName;
 use std::fmt::Write as _;
 
 /// The parts that are one block of ours each, with the words that it must place: of each group one.
@@ -19,7 +20,7 @@ const MOVES: &[(Part, &str, &[&[&str]])] = &[
 ];
 
 /// What says the circle of an arc.
-const CIRCLE: &[&str] = &["I", "CX", "R", "MX", "SWEEP"];
+pub(super) const CIRCLE: &[&str] = &["I", "CX", "R", "MX", "SWEEP"];
 
 /// The words that only arcs have.
 const OF_ARCS: &[&str] = &[
@@ -53,20 +54,35 @@ impl Writing<'_> {
                 Ok(text) => drop(self.blocks.insert(name, text)),
                 Err((line, why)) => {
                     let line = if line == 0 { number } else { line };
-                    self.findings.lost(line, format!("`{name}` is that of the control: {why}"));
+                    let instead = match part {
+                        Part::ArcCw | Part::ArcCcw => "is left out, arcs are written as lines",
+                        Part::HelixCw | Part::HelixCcw => {
+                            "is left out, helices are lines where `arc_cw` has no Z"
+                        }
+                        Part::Hole => "is left out, holes are drilled by moves",
+                        _ => "is that of the control",
+                    };
+                    self.findings.lost(line, format!("`{name}` {instead}: {why}"));
                 }
             }
         }
         if let Some(text) = self.blocks.get("cycle_drill").cloned() {
             let number = self.post.parts.get(&Part::Hole).and_then(|lines| lines.first());
             let number = number.map_or(0, |line| line.number);
-            match codes(&text).any(|code| code == ('G', 81.0)) {
-                true => drop(self.blocks.insert("cycle_hole", text)),
-                false => {
-                    self.blocks.remove("cycle_drill");
-                    let message = "holes are drilled by moves, which `rapid` and `linear` write: only G81 is a block";
-                    self.findings.lost(number, message);
-                }
+            let why = if !codes(&text).any(|code| code == ('G', 81.0)) {
+                Some("only G81 is a block")
+            } else if !self.base.capabilities.cycles.contains(&CycleName::Drill) {
+                Some("the control has no such cycle")
+            } else {
+                None
+            };
+            if let Some(why) = why {
+                self.blocks.remove("cycle_drill");
+                let message =
+                    format!("holes are drilled by moves, which `rapid` and `linear` write: {why}");
+                self.findings.lost(number, message);
+            } else {
+                self.blocks.insert("cycle_hole", text);
             }
         }
         // Arcs are written in both directions or not at all.

@@ -2,6 +2,7 @@
 //! `docs/controls/importing.md`.
 
 use super::foreign::{Form, Line, Part, Piece, Post};
+use super::moves::CIRCLE;
 use super::{Findings, text};
 
 /// The fields of the drilling and the engraving template, by their words, and the part that each is of
@@ -133,7 +134,27 @@ pub(super) fn read(source: &str, findings: &mut Findings) -> Post {
             }
         }
     }
+    sign_radius(&mut post, findings);
     post
+}
+
+/// Gives a radius its sign where it is all that says a circle, behind the address by which controls read
+/// one.
+fn sign_radius(post: &mut Post, findings: &mut Findings) {
+    let read = post.words.get("RADIUS").is_some_and(|form| matches!(&*form.address, "R" | "CR="));
+    let has_other = |line: &Line| line.words().any(|word| CIRCLE.contains(&word));
+    if !read || post.parts.values().flatten().any(has_other) {
+        return;
+    }
+    let form = post.words.remove("RADIUS");
+    post.words.extend(form.map(|form| ("R", form)));
+    for line in post.parts.values_mut().flatten() {
+        for piece in line.pieces.iter_mut().filter(|piece| **piece == Piece::Word("RADIUS")) {
+            *piece = Piece::Word("R");
+            let message = "the radius is negative over a half circle, as controls read it";
+            findings.otherwise(line.number, message);
+        }
+    }
 }
 
 /// `[engraving: linear move]`: the template and the field, in small letters, signs as blanks.

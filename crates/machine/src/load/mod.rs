@@ -90,7 +90,8 @@ fn build(file: SheetFile) -> Result<Machine> {
     merged.finish(name.clone(), shown.clone(), control, &missing)
 }
 
-fn is_path(name: &str) -> bool {
+/// Whether it is the path of a file, not a name of the library.
+pub(crate) fn is_path(name: &str) -> bool {
     name.contains(['/', '\\']) || name.ends_with(".toml")
 }
 

@@ -54,3 +54,40 @@ fn nothing_is_saved_of_what_cannot_be_read() {
     assert!(said.code == 2 && said.err.contains("--extends"), "{said:?}");
     assert!(!folder.names().contains(&"mine.toml".to_string()));
 }
+
+#[test]
+fn what_it_extends_is_found_from_where_it_is_saved() {
+    let folder = Folder::new();
+    folder.write("shop.pp", POST);
+    for made in ["lib", "out"] {
+        std::fs::create_dir(folder.path().join(made)).unwrap();
+    }
+    folder.write("lib/my.toml", "extends = \"grbl\"\ntitle = \"Mine\"\n");
+    for (output, extends) in [("out/a.toml", "../lib/my.toml"), ("b.toml", "lib/my.toml")] {
+        let words =
+            ["machines", "import", "shop.pp", "--extends", "lib/my.toml", "-o", output, "--json"];
+        let said = folder.run(&words).json();
+        assert_eq!((&said["sample"], &said["extends"]), (&"proven".into(), &extends.into()));
+        assert_eq!(folder.run(&["machines", "check", output]).code, 0);
+    }
+}
+
+#[test]
+fn a_file_that_is_no_machine_is_not_named() {
+    let folder = Folder::new();
+    folder.write("shop.pp", POST);
+    folder.write("0.toml", "extends = \"grbl\"\n");
+    for above in 1..20 {
+        folder.write(&format!("{above}.toml"), format!("extends = \"{}.toml\"\n", above - 1));
+    }
+    // The last that still loads: what extends it is one too many.
+    let loads = |name: &String| folder.run(&["machines", "check", name]).code == 0;
+    let last = (0..20).map(|above| format!("{above}.toml")).take_while(loads).last().unwrap();
+    let said =
+        folder.run(&["machines", "import", "shop.pp", "--extends", &last, "-o", "mine.toml"]);
+    assert_eq!(said.code, 2, "{said:?}");
+    assert!(said.err.contains("shop.pp:7: warning[not-carried-over]"), "{said:?}");
+    assert!(said.err.contains("shop.pp: error[machine-file]: what it becomes"), "{said:?}");
+    assert!(!said.err.contains("mine.toml"), "{said:?}");
+    assert!(!folder.names().contains(&"mine.toml".to_string()));
+}
