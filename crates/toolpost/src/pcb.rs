@@ -32,6 +32,7 @@ pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
         let help = "name a mill: `toolpost machines` lists what there is";
         return Err(Diagnostic::error("machine-kind", message).help(help).into());
     }
+    let heights = heights(args)?;
     files::check_folder(&args.output)?;
     let progress = Progress::new(5, silent);
     progress.step("reading");
@@ -44,7 +45,9 @@ pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
     if let Some(grid) = args.running.probe {
         programs.push(probing(&plan, grid, &machine, args)?);
     }
-    for made in each(&plan.parts, |part| make(*part, &plan, surface.as_ref(), &machine, args)) {
+    for made in
+        each(&plan.parts, |part| make(*part, &plan, &heights, surface.as_ref(), &machine, args))
+    {
         let made = made?;
         warnings.extend(made.work.warnings.iter().map(|found| found.clone().file(made.name)));
         programs.push(made);
@@ -63,6 +66,19 @@ pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
     let folder = args.output.display();
     lines.push(("saved", format!("in {folder}: {}", saved.join(", "))));
     Ok(Answer::summary(Verdict::Done, rows(&lines), report.data).findings(warnings))
+}
+
+/// How high tools are above the board.
+fn heights(args: &Pcb) -> Result<Heights, Stop> {
+    let heights = Heights { travel: args.running.travel, approach: args.running.approach };
+    let Heights { travel, approach } = heights;
+    if travel >= approach {
+        return Ok(heights);
+    }
+    let message =
+        format!("rapid moves are {travel} mm over the board, and tools feed from {approach} mm on");
+    let help = "give --travel no less than --approach";
+    Err(Diagnostic::error("travel", message).help(help).into())
 }
 
 /// How closely programs follow the surface that was measured.
@@ -96,15 +112,15 @@ struct Made {
 fn make(
     part: Part,
     plan: &Plan,
+    heights: &Heights,
     surface: Option<&HeightMap>,
     machine: &Machine,
     args: &Pcb,
 ) -> Result<Made, Stop> {
     let board = plan.seen(part, args);
     let work = Work::of(part, plan, args, machine)?;
-    let heights = Heights { travel: args.running.travel, approach: args.running.approach };
     let name = format!("{} {}", plan.name, part.name());
-    let mut program = job::program(&name, &work.operations, &heights);
+    let mut program = job::program(&name, &work.operations, heights);
     if let Some(surface) = surface {
         program = level(&program, surface, &LEVELLED)?;
     }

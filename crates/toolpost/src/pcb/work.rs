@@ -135,8 +135,8 @@ impl Worker<'_> {
         }
         if let Some(severed) = isolated.severed.first() {
             let message = format!(
-                "{} conductors are cut to pieces by cuts down the middle of gaps, {} among them",
-                isolated.severed.len(),
+                "{} cut to pieces by cuts down the middle of gaps, {} among them",
+                counted(isolated.severed.len(), "conductor"),
                 net(copper, severed.island)
             );
             let help = "take a narrower tool, or leave narrow gaps out (--narrow leave-out)";
@@ -183,9 +183,9 @@ impl Worker<'_> {
             );
             return Err(Diagnostic::error("tool-too-wide", message).help(help).into());
         }
-        let (count, done) = (gaps.len(), if middle { "cut down the middle" } else { "left out" });
-        let message =
-            format!("{count} gaps are narrower than the cut of {width:.3} mm: they are {done}");
+        let done = if middle { "cut down the middle" } else { "left out" };
+        let gaps = counted(gaps.len(), "gap");
+        let message = format!("{gaps} narrower than the cut of {width:.3} mm: {done}");
         work.warnings.push(Diagnostic::warning("narrow-gap", message).help(help));
         Ok(())
     }
@@ -295,8 +295,8 @@ impl Worker<'_> {
             work.places.push((low.midpoint(high), what.to_owned()));
         }
         if !rest.is_empty() {
-            let message =
-                format!("{} places, {:.3} mm², are {what}", rest.islands().len(), rest.area());
+            let places = counted(rest.islands().len(), "place");
+            let message = format!("{places}, {:.3} mm², {what}", rest.area());
             let help = "take a narrower tool";
             work.warnings.push(Diagnostic::warning("not-reached", message).help(help));
         }
@@ -361,6 +361,11 @@ impl Worker<'_> {
         let running = &self.args.running;
         Tool { name, cutter, feed: running.feed, plunge: running.plunge, speed: self.speed }
     }
+}
+
+/// So many of something.
+fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
 }
 
 /// What a conductor is called.

@@ -198,6 +198,7 @@ fn tools_that_are_none() {
         refused(&folder, &arguments, 2, &["--tool", "greater than 0"]);
     }
     let none = ["pcb", "board", "-o", "out", "-m", "grbl-3018"];
+    refused(&folder, &[&none[..], &["--tool", "-0.2"]].concat(), 2, &["--tool", "greater than 0"]);
     refused(&folder, &none, 2, &["error[no-tool]", "--tool", "--vee", "--only"]);
     for angle in ["0", "180", "-30"] {
         let angle = format!("--vee={angle}");
@@ -205,6 +206,21 @@ fn tools_that_are_none() {
     }
     refused(&folder, &[&none[..], &["--tip", "0.1"]].concat(), 2, &["--vee"]);
     bad_call(&folder, &["--vee", "30"], &["--tool", "--vee"]);
+}
+
+#[test]
+fn steps_that_no_machine_makes_and_heights_that_cross() {
+    let folder = small();
+    for step in ["--step", "--outline-step", "--peck"] {
+        for length in ["0", "1e-9", "0.0009"] {
+            bad_call(&folder, &[step, length], &[step, "0.001 or more"]);
+        }
+    }
+    bad_call(
+        &folder,
+        &["--travel", "0.3"],
+        &["error[travel]", "0.3 mm", "0.5 mm", "--travel", "--approach"],
+    );
 }
 
 #[test]
