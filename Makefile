@@ -71,6 +71,9 @@ images: rust
 	$(TOOLPOST) --quiet wire examples/sector.nc --from fanuc-31i --machine bp-95d --side inside --wire 0.25 \
 		--gap 0.02 --thread 12,12 --round-corners --taper 10 --height 30 --chord-error 0.02 --select 6 \
 		--output out/sector.pts --picture docs/images/wire.png
+	$(TOOLPOST) --quiet pcb examples/lamp.toml --machine grbl-3018 --tool 0.3 --passes 3 --picture png \
+		--output out/lamp
+	@cp out/lamp/front.png docs/images/board.png
 
 ## The sample programs beside the machines, written anew: to be read before they are committed.
 samples: rust
