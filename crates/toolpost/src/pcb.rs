@@ -32,43 +32,40 @@ pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
         let help = "name a mill: `toolpost machines` lists what there is";
         return Err(Diagnostic::error("machine-kind", message).help(help).into());
     }
+    let heights = heights(args)?;
     files::check_folder(&args.output)?;
     not_among_inputs(args)?;
-    let progress = Progress::new(5, silent);
+    let progress = Progress::new(4, silent);
     progress.step("reading");
     let source = source::read(&args.board)?;
     let mut warnings = source.warnings;
     let plan = Plan::of(source.board, args)?;
     let surface = surface(&plan, args)?;
-    progress.step("writing and proving");
+    progress.step("planning");
     let works = each(&plan.parts, |part| Work::of(*part, &plan, args, &machine));
     let works = works.into_iter().collect::<Result<Vec<Work>, Stop>>()?;
     let rack = Rack::of(&works);
-    let jobs: Vec<(Part, Work)> = plan.parts.iter().copied().zip(works).collect();
-    let mut programs = Vec::with_capacity(jobs.len() + 1);
+    progress.step("writing and proving");
+    let shop = Shop { args, machine: &machine, plan: &plan, rack, heights, surface };
+    let mut programs = Vec::with_capacity(works.len() + 1);
     if let Some(grid) = args.running.probe {
-        programs.push(probing(&plan, grid, rack.next(), &machine, args)?);
+        programs.push(shop.probing(grid)?);
     }
-    for made in each(&jobs, |(part, work)| {
-        make(*part, work, &rack, &plan, surface.as_ref(), &machine, args)
-    }) {
+    let jobs: Vec<(Part, Work)> = plan.parts.iter().copied().zip(works).collect();
+    for made in each(&jobs, |(part, work)| shop.make(*part, work)) {
         programs.push(made?);
     }
     for made in &programs {
         let file = format!("{}.nc", made.name);
-        let found = made.work.warnings.iter().chain(&made.posted.account.findings);
-        warnings.extend(found.cloned().map(|found| match found.file.is_empty() {
-            true => found.file(&file),
-            false => found,
-        }));
+        warnings.extend(made.work.warnings.iter().map(|found| found.clone().file(&file)));
     }
     if let Some(failed) =
         programs.iter().position(|made| made.posted.account.verdict != Verdict::Done)
     {
         return Ok(programs.swap_remove(failed).posted.account.not_saved());
     }
+    let mut warnings = toolpath::held(warnings, args.strict)?;
     warnings.extend(older(args, &programs));
-    let warnings = toolpath::held(warnings, args.strict)?;
     progress.step("saving");
     let report = report::of(&source.layers, &plan, &programs, &machine, &warnings);
     let saved = save(args, &source.files, &programs, &format!("{:#}\n", report.data))?;
@@ -131,6 +128,19 @@ fn older(args: &Pcb, programs: &[Made]) -> Option<Diagnostic> {
     })
 }
 
+/// How high tools are above the board.
+fn heights(args: &Pcb) -> Result<Heights, Stop> {
+    let heights = Heights { travel: args.running.travel, approach: args.running.approach };
+    let Heights { travel, approach } = heights;
+    if travel >= approach {
+        return Ok(heights);
+    }
+    let message =
+        format!("rapid moves are {travel} mm over the board, and tools feed from {approach} mm on");
+    let help = "give --travel no less than --approach";
+    Err(Diagnostic::error("travel", message).help(help).into())
+}
+
 /// How closely programs follow the surface that was measured.
 const LEVELLED: Allowed = Allowed { deviation: 0.005, outside: 5.0 };
 
@@ -157,81 +167,86 @@ struct Made {
     picture: Option<Vec<u8>>,
 }
 
-/// The program of a part of the board, proven, with its picture.
-fn make(
-    part: Part,
-    work: &Work,
-    rack: &Rack,
-    plan: &Plan,
-    surface: Option<&HeightMap>,
-    machine: &Machine,
-    args: &Pcb,
-) -> Result<Made, Stop> {
-    let board = plan.seen(part, args);
-    let heights = Heights { travel: args.running.travel, approach: args.running.approach };
-    let name = format!("{}-{}", plan.name, part.name());
-    let operations: Vec<(u32, &Operation)> = work
-        .operations
-        .iter()
-        .map(|operation| (rack.number(&operation.tool.name), operation))
-        .collect();
-    let mut program = job::program(&name, &operations, &heights);
-    if let Some(surface) = surface {
-        program = level(&program, surface, &LEVELLED)?;
-    }
-    let toolpath = Toolpath::of_program(program, "board");
-    let file = format!("{}.nc", part.name());
-    let posted = post::proven(&toolpath, machine, &file, &args.closeness.tolerances(), &|_| {})?;
-    let format = match args.picture {
-        Picture::Svg => Some(Format::Svg),
-        Picture::Png => Some(Format::Png),
-        Picture::None => None,
-    };
-    let picture = format.map(|format| {
-        let widths: Vec<f64> = work.operations.iter().map(Operation::width).collect();
-        format.bytes(drawing::board(
-            &name,
-            &BoardPicture {
-                outline: board.outline.as_ref(),
-                copper: board.front.copper.as_ref(),
-                holes: &board.holes,
-                program: &toolpath.program,
-                widths: &widths,
-                problems: &work.places,
-            },
-        ))
-    });
-    let picture = picture.transpose()?;
-    Ok(Made { name: part.name(), work: work.clone(), program: toolpath.program, posted, picture })
-}
+/// How the height of the board is probed: slowly, from a millimetre above to one below.
+const PROBED: Probing = Probing { travel: 1.0, depth: 1.0, feed: 50.0 };
 
 /// What the program is called that measures the height of the board.
 const PROBE: &str = "probe";
 
-/// How the height of the board is probed: slowly, from a millimetre above to one below.
-const PROBED: Probing = Probing { travel: 1.0, depth: 1.0, feed: 50.0 };
-
 /// The file in which LinuxCNC keeps what it finds; to other controls it is a comment.
 const HEIGHTS: &str = "heights.txt";
 
-/// The program that measures the height of the board.
-fn probing(
-    plan: &Plan,
-    [columns, rows]: [u32; 2],
-    number: u32,
-    machine: &Machine,
-    args: &Pcb,
-) -> Result<Made, Stop> {
-    let (low, high) = plan.front().extents().unwrap_or_default();
-    let grid = Grid::new(low, high, columns as usize, rows as usize)?;
-    let name = PROBE;
-    let mut program = PROBED.program(&format!("{}-{name}", plan.name), &grid, Some(HEIGHTS))?;
-    let tool = program::Tool { number, name: String::from("probe"), ..program::Tool::default() };
-    program.records.insert(0, Record { line: 0, op: Op::Tool(Box::new(tool)) });
-    let toolpath = Toolpath::of_program(program, "board");
-    let file = format!("{name}.nc");
-    let posted = post::proven(&toolpath, machine, &file, &args.closeness.tolerances(), &|_| {})?;
-    Ok(Made { name, work: Work::default(), program: toolpath.program, posted, picture: None })
+/// What all programs of a board share.
+struct Shop<'a> {
+    args: &'a Pcb,
+    machine: &'a Machine,
+    plan: &'a Plan,
+    rack: Rack,
+    heights: Heights,
+    /// The surface that programs follow, where one was measured.
+    surface: Option<HeightMap>,
+}
+
+impl Shop<'_> {
+    /// The program of a part of the board, proven, with its picture.
+    fn make(&self, part: Part, work: &Work) -> Result<Made, Stop> {
+        let board = self.plan.seen(part, self.args);
+        let name = format!("{}-{}", self.plan.name, part.name());
+        let number = |operation: &Operation| self.rack.number(&operation.tool.name);
+        let operations: Vec<(u32, &Operation)> =
+            work.operations.iter().map(|operation| (number(operation), operation)).collect();
+        let mut program = job::program(&name, &operations, &self.heights);
+        if let Some(surface) = &self.surface {
+            program = level(&program, surface, &LEVELLED)?;
+        }
+        let (program, posted) = self.proven(program, part.name())?;
+        let format = match self.args.picture {
+            Picture::Svg => Some(Format::Svg),
+            Picture::Png => Some(Format::Png),
+            Picture::None => None,
+        };
+        let picture = format.map(|format| {
+            let widths: Vec<f64> = work.operations.iter().map(Operation::width).collect();
+            format.bytes(drawing::board(
+                &name,
+                &BoardPicture {
+                    outline: board.outline.as_ref(),
+                    copper: board.front.copper.as_ref(),
+                    holes: &board.holes,
+                    program: &program,
+                    widths: &widths,
+                    problems: &work.places,
+                },
+            ))
+        });
+        let picture = picture.transpose()?;
+        Ok(Made { name: part.name(), work: work.clone(), program, posted, picture })
+    }
+
+    /// The program that measures the height of the board.
+    fn probing(&self, [columns, rows]: [u32; 2]) -> Result<Made, Stop> {
+        let (low, high) = self.plan.front().extents().unwrap_or_default();
+        let grid = Grid::new(low, high, columns as usize, rows as usize)?;
+        let name = format!("{}-{PROBE}", self.plan.name);
+        let mut program = PROBED.program(&name, &grid, Some(HEIGHTS))?;
+        let tool = program::Tool {
+            number: self.rack.next(),
+            name: String::from(PROBE),
+            ..program::Tool::default()
+        };
+        program.records.insert(0, Record { line: 0, op: Op::Tool(Box::new(tool)) });
+        let (program, posted) = self.proven(program, PROBE)?;
+        Ok(Made { name: PROBE, work: Work::default(), program, posted, picture: None })
+    }
+
+    /// The text of a program, proven.
+    fn proven(&self, program: Program, name: &str) -> Result<(Program, Posted), Stop> {
+        let toolpath = Toolpath::of_program(program, "board");
+        let tolerances = self.args.closeness.tolerances();
+        let file = format!("{name}.nc");
+        let posted = post::proven(&toolpath, self.machine, &file, &tolerances, &|_| {})?;
+        Ok((toolpath.program, posted))
+    }
 }
 
 /// `work` for each thing, all at the same time, the answers in their order.

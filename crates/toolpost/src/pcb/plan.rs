@@ -30,14 +30,7 @@ impl Plan {
     /// # Errors
     /// Where the board cannot be put there, or has nothing of what is asked for.
     pub fn of(board: Board, args: &Pcb) -> Result<Plan, Stop> {
-        let (placing, running) = (&args.placing, &args.running);
-        if running.travel <= running.approach {
-            let (travel, approach) = (running.travel, running.approach);
-            let message =
-                format!("tools feed from {approach} mm on, and rapids are at {travel} mm");
-            let help = "--travel is above --approach";
-            return Err(Diagnostic::error("travel", message).help(help).into());
-        }
+        let placing = &args.placing;
         let board = match placing.panel {
             Some([columns, rows]) => {
                 board.panel(columns as usize, rows as usize, Vec2::splat(placing.spacing))?
