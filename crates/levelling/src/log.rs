@@ -14,6 +14,9 @@ const STEP: f64 = 0.005;
 /// How GRBL begins what a probe has found.
 const PROBED: &str = "[PRB:";
 
+/// How GRBL begins the line of `$#` behind which it says the last answer once more.
+const LENGTH: &str = "[TLO:";
+
 /// How many numbers a line of LinuxCNC's log has: X Y Z A B C U V W.
 const NINE: usize = 9;
 
@@ -115,7 +118,7 @@ impl Offsets {
             (self.whole, self.parts) = (None, Some(offset));
         }
         self.shift = vector("[G92:").unwrap_or(self.shift);
-        self.length = of("[TLO:").and_then(|tlo| tlo.first().copied()).unwrap_or(self.length);
+        self.length = of(LENGTH).and_then(|tlo| tlo.first().copied()).unwrap_or(self.length);
     }
 }
 
@@ -125,14 +128,16 @@ fn grbl(text: &[u8]) -> Result<Vec<Vec3>, Vec<Diagnostic>> {
     let mut points: Vec<Vec3> = Vec::new();
     // The offset of the points, as far as it has been said.
     let mut known: Option<Vec3> = None;
+    let mut repeats = false;
     for (number, line) in lines(text) {
         let Ok(shown) = std::str::from_utf8(line) else { continue };
+        let repeated = std::mem::replace(&mut repeats, shown.contains(LENGTH));
         offsets.take(shown);
         if !points.is_empty() && shown.contains("ALARM:") {
             let help = "probe the surface anew, as deep as it lies";
             return Err(vec![wrong(number, line, "the probing was broken off", help)]);
         }
-        let Some((_, found)) = shown.split_once(PROBED) else { continue };
+        let Some((_, found)) = shown.split_once(PROBED).filter(|_| !repeated) else { continue };
         let place = found.split_once(']').and_then(|(found, _)| found.rsplit_once(':'));
         let point = place.and_then(|(place, touched)| Some((numbers(place.as_bytes())?, touched)));
         let point = match point.as_ref().map(|(place, touched)| (&place[..], *touched)) {
@@ -206,7 +211,9 @@ mod tests {
         let last = "[PRB:-100.000,-60.000,-19.900:1]\nok\n";
         let before = format!("{numbers}[PRB:0.000,0.000,0.000:0]\nok\n{GRBL}");
         let behind = format!("{GRBL}{numbers}{last}");
-        for text in [&status, &before, &behind] {
+        // An earlier touch-off beside the surface is the last answer there.
+        let touched = format!("{numbers}[PRB:-5.000,-5.000,-42.000:1]\nok\n{GRBL}");
+        for text in [&status, &before, &behind, &touched] {
             assert!((height(text, 0.0, 0.0) + 0.1).abs() < 1e-9, "{text}");
             assert!((height(text, 30.0, 0.0) + 0.3).abs() < 1e-9, "{text}");
             assert!((height(text, 0.0, 20.0) - 0.1).abs() < 1e-9, "{text}");
