@@ -157,7 +157,8 @@ const EXTENSIONS: [(&[&str], Layer); 10] = [
 
 /// Endings of drawings, pictures and models that CAD systems save beside the layers, under the same names.
 const DRAWINGS: [&str; 14] = [
-    "pdf", "svg", "png", "jpg", "dxf", "ps", "eps", "step", "stp", "wrl", "zip", "html", "csv", "gbrjob",
+    "pdf", "svg", "png", "jpg", "dxf", "ps", "eps", "step", "stp", "wrl", "zip", "html", "csv",
+    "gbrjob",
 ];
 
 /// By words in the rest of the name: KiCad, Fusion and EAGLE 9, others.
