@@ -8,7 +8,7 @@ use geom::region::Region;
 use machine::Machine;
 use pcb::drilling::{Drilling, Mill, Slots};
 use pcb::gerber::Image;
-use pcb::isolation::{Direction, Isolation, Narrow, NarrowGap, Severed};
+use pcb::isolation::{Direction, Isolation, Narrow, NarrowGap, Severed, severed};
 use pcb::outline::{Outline, Tabs};
 use pcb::tour::Tour;
 use pcb::{
@@ -124,23 +124,7 @@ impl Worker<'_> {
             },
         };
         let isolated = isolation.isolate(copper, None)?;
-        for Severed { at, island, pieces } in &isolated.severed {
-            let net = net(copper, *island);
-            let what = match pieces {
-                0 => format!("nothing is left of {net}, by a cut down the middle of a gap"),
-                _ => format!("{net} is cut into {pieces} pieces, down the middle of a gap"),
-            };
-            work.places.push((*at, what));
-        }
-        if let Some(severed) = isolated.severed.first() {
-            let message = format!(
-                "{} cut to pieces by cuts down the middle of gaps, {} among them",
-                counted(isolated.severed.len(), "conductor"),
-                net(copper, severed.island)
-            );
-            let help = "take a narrower tool, or leave narrow gaps out (--narrow leave-out)";
-            work.warnings.push(Diagnostic::warning("conductor-severed", message).help(help));
-        }
+        tell_severed(work, copper, &isolated.severed);
         self.narrow(work, copper, &isolated.narrow, isolation.width())?;
         Ok(isolated.paths)
     }
@@ -156,7 +140,7 @@ impl Worker<'_> {
         let Some(widest) = gaps.first().map(NarrowGap::widest_cut) else { return Ok(()) };
         let middle = self.args.isolation.narrow == args::Narrow::Middle;
         for gap in gaps {
-            let done = match middle && gap.middle.is_some() {
+            let done = match middle && gap.can_be_cut() {
                 true => format!("cut all the same: {:.3} mm thinner each", gap.thinned(width)),
                 false => String::from("left out: the cut does not part them here"),
             };
@@ -177,7 +161,7 @@ impl Worker<'_> {
             (false, _) => String::from("where copper touches no tool fits: look at the board"),
         };
         let left: Vec<&NarrowGap> =
-            gaps.iter().filter(|gap| !middle || gap.middle.is_none()).collect();
+            gaps.iter().filter(|gap| !middle || !gap.can_be_cut()).collect();
         if all_joined(copper, &left) {
             let message = format!(
                 "a cut {width:.3} mm wide fits between no two nets that are not joined elsewhere: \
@@ -209,7 +193,9 @@ impl Worker<'_> {
         let Division { mut paths, narrow } = pcb::divided(copper, &area(board)?, width)?;
         self.narrow(work, copper, &narrow, width)?;
         if self.args.isolation.narrow == args::Narrow::Middle {
-            paths.extend(narrow.into_iter().filter_map(|gap| gap.middle));
+            let middles: Vec<Path> = narrow.into_iter().filter_map(|gap| gap.middle).collect();
+            tell_severed(work, copper, &severed(copper, &middles, width)?);
+            paths.extend(middles);
         }
         Ok(paths)
     }
@@ -375,6 +361,27 @@ impl Worker<'_> {
 /// So many of something.
 fn counted(count: usize, what: &str) -> String {
     format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}
+
+/// Tells of conductors that cuts down the middle of gaps leave in pieces.
+fn tell_severed(work: &mut Work, copper: &Copper, severed: &[Severed]) {
+    for Severed { at, island, pieces } in severed {
+        let net = net(copper, *island);
+        let what = match pieces {
+            0 => format!("nothing is left of {net}, by a cut down the middle of a gap"),
+            _ => format!("{net} is cut into {pieces} pieces, down the middle of a gap"),
+        };
+        work.places.push((*at, what));
+    }
+    if let Some(first) = severed.first() {
+        let message = format!(
+            "{} cut to pieces by cuts down the middle of gaps, {} among them",
+            counted(severed.len(), "conductor"),
+            net(copper, first.island)
+        );
+        let help = "take a narrower tool, or leave narrow gaps out (--narrow leave-out)";
+        work.warnings.push(Diagnostic::warning("conductor-severed", message).help(help));
+    }
 }
 
 /// What a conductor is called.
