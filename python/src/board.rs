@@ -25,7 +25,7 @@ impl Board {
     fn builder(name: &str) -> BoardBuilder {
         let mut sheet = Map::new();
         sheet.insert("name".into(), name.into());
-        BoardBuilder { sheet }
+        BoardBuilder { sheet, depth: 0, length: 0 }
     }
 
     /// What it is called.
@@ -48,9 +48,9 @@ impl Board {
 
     /// Its lower left and its upper right corner, mm.
     #[getter]
-    fn extents(&self) -> ([f64; 2], [f64; 2]) {
+    fn extents(&self) -> ((f64, f64), (f64, f64)) {
         let (low, high) = self.reading.board.extents().unwrap_or_default();
-        (low.to_array(), high.to_array())
+        (low.into(), high.into())
     }
 
     /// Save the board as a JSON file.
@@ -72,6 +72,10 @@ impl Board {
 #[pyclass(module = "toolpost")]
 pub struct BoardBuilder {
     sheet: Map<String, Value>,
+    /// How deep groups lie in it.
+    depth: usize,
+    /// How many bytes its elements and nodes are, about, as JSON without blanks: never more than the text.
+    length: usize,
 }
 
 /// The builder again.
@@ -104,7 +108,9 @@ impl BoardBuilder {
             let found = Diagnostic::error("node", format!("there is a node `{name}` already"));
             return Err(refused(py, found.help("give each node a name of its own")));
         }
+        let length = name.len() + position.to_string().len();
         nodes[name] = position;
+        slf.length += length;
         Ok(slf)
     }
 
@@ -185,6 +191,12 @@ impl BoardBuilder {
     ///     Degrees, counter-clockwise.
     /// mirrored : bool
     ///     Whether it lies on the other side: left and right, front and back change places.
+    ///
+    /// Raises
+    /// ------
+    /// toolpost.Error
+    ///     ``group`` or ``board-file`` where groups lie deeper in each other, or copies are more, than a board
+    ///     may have.
     #[pyo3(signature = (name, group, at, *, rotation = 0.0, mirrored = false))]
     fn group<'py>(
         mut slf: PyRefMut<'py, Self>,
@@ -195,12 +207,25 @@ impl BoardBuilder {
         mirrored: bool,
     ) -> Built<'py> {
         let py = slf.py();
+        let refuse = |rule, message: String, help: &str| {
+            Err(refused(py, Diagnostic::error(rule, message).help(help)))
+        };
+        let (depth, length) = (group.depth + 1, slf.length + group.length);
+        if depth > model::DEEPEST {
+            let message = format!("groups lie more than {} deep in each other", model::DEEPEST);
+            return refuse("group", message, "put groups beside each other");
+        }
+        if length > model::LONGEST {
+            let message = format!("{length} bytes are no board; {} are the most", model::LONGEST);
+            return refuse("board-file", message, "take fewer copies");
+        }
         let mut sheet = group.sheet.clone();
         sheet.insert("name".into(), name.into());
         sheet.insert("at".into(), at.value(py)?);
         sheet.insert("rotation".into(), number(py, "rotation", rotation)?.into());
         sheet.insert("mirrored".into(), mirrored.into());
         slf.add("groups", sheet.into(), None);
+        slf.depth = slf.depth.max(depth);
         Ok(slf)
     }
 
@@ -227,6 +252,7 @@ impl BoardBuilder {
         if let Some(net) = net {
             element["net"] = net.into();
         }
+        self.length += element.to_string().len();
         if let Value::Array(elements) = self.sheet.entry(table).or_insert_with(|| json!([])) {
             elements.push(element);
         }

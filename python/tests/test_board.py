@@ -46,7 +46,7 @@ def test_a_board_says_what_was_built():
         "edges": [{"nodes": [[0, 0], [30, 0], [30, 20], [0, 20]]}],
     }
     assert board.name == "lamp"
-    assert board.extents == ([0, 0], [30, 20])
+    assert board.extents == ((0, 0), (30, 20))
     assert board.warnings == ()
     assert repr(board) == "<Board lamp>"
 
@@ -57,8 +57,8 @@ def test_groups_are_copies_in_their_places():
     part.hole((50, 50), 1)
     low, high = board.build().extents
     # Both ends of the first, the lower and the upper end of the second.
-    assert low == pytest.approx([-0.9, -0.9])
-    assert high == pytest.approx([10 + 5.08 + 0.9, 10 + 5.08 + 0.9])
+    assert low == pytest.approx((-0.9, -0.9))
+    assert high == pytest.approx((10 + 5.08 + 0.9, 10 + 5.08 + 0.9))
     mirrored = Board.builder().group("R1", part, (0, 0), mirrored=True).build()
     assert json.loads(mirrored.text)["groups"][0]["mirrored"] is True
 
@@ -99,3 +99,25 @@ def test_what_no_board_can_say_is_refused_at_once():
     with pytest.raises(toolpost.Error, match="inf"):
         board.track(["a", (1, 1)], math.inf)
     assert json.loads(board.hole("a", 1).build().text)["nodes"] == {"a": [0, 0]}
+
+
+def test_groups_lie_as_deep_as_they_may_and_no_deeper():
+    nest = resistor()
+    for _ in range(64):
+        nest = Board.builder().group("g", nest, (0, 0))
+    assert nest.build().extents[0] == pytest.approx((-5.98, -0.9))
+    with pytest.raises(toolpost.Error, match="more than 64 deep") as raised:
+        Board.builder().group("g", nest, (0, 0))
+    assert raised.value.rule == "group"
+
+
+def test_copies_of_copies_end():
+    nest = resistor()
+    # Each holds the last one four times: after twelve a hundred bytes were more than a thousand million.
+    with pytest.raises(toolpost.Error, match="bytes are no board") as raised:
+        for _ in range(12):
+            outer = Board.builder()
+            for name in "abcd":
+                outer.group(name, nest, (0, 0))
+            nest = outer
+    assert raised.value.rule == "board-file"

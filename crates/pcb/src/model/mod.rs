@@ -25,8 +25,10 @@ use std::ops::Range;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue, ValueDeserializer};
 
+pub use scope::DEEPEST;
+
 /// The longest text of a board, bytes: two hundred thousand elements.
-const LONGEST: usize = 16 << 20;
+pub const LONGEST: usize = 16 << 20;
 
 /// What a text gives.
 #[derive(Clone, Debug, PartialEq)]

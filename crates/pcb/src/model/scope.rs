@@ -9,7 +9,7 @@ use std::iter;
 use toml::Spanned;
 
 /// How deep groups may lie in each other.
-const DEEPEST: usize = 64;
+pub const DEEPEST: usize = 64;
 
 /// The farthest coordinate, mm.
 const FAR: f64 = 1e5;
