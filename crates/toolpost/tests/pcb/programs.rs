@@ -132,6 +132,17 @@ fn copper_that_is_of_no_net_is_taken_away_by_the_widest_tool_first() {
 }
 
 #[test]
+fn a_tool_that_finds_nothing_to_take_away_is_named() {
+    let folder = small();
+    // The board is 10 mm high.
+    let made = made(&folder, &["--clear", "12,0.8", "--only", "front"]);
+    let said = "warning[not-reached]: surplus copper: nothing is left that end mill 12 mm reaches";
+    assert!(made.said.err.contains(said), "{}", made.said.err);
+    let operations = ["isolation, end mill 0.4 mm", "surplus copper, end mill 0.8 mm"];
+    assert_eq!(made.operations("front"), operations);
+}
+
+#[test]
 fn conductors_are_parted_in_the_middle_between_them() {
     let folder = small();
     let made = made(&folder, &["--isolate", "middle", "--only", "front"]);
