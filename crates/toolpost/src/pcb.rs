@@ -19,7 +19,7 @@ use drawing::{BoardPicture, Format};
 use levelling::{Allowed, Grid, HeightMap, Probing, level};
 use machine::Machine;
 use plan::Plan;
-use program::{Diagnostic, Program};
+use program::{Diagnostic, Op, Program, Record};
 use std::path::Path;
 use std::thread;
 use work::Work;
@@ -32,8 +32,8 @@ pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
         let help = "name a mill: `toolpost machines` lists what there is";
         return Err(Diagnostic::error("machine-kind", message).help(help).into());
     }
-    let heights = heights(args)?;
     files::check_folder(&args.output)?;
+    not_among_inputs(args)?;
     let progress = Progress::new(5, silent);
     progress.step("reading");
     let source = source::read(&args.board)?;
@@ -41,22 +41,33 @@ pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
     let plan = Plan::of(source.board, args)?;
     let surface = surface(&plan, args)?;
     progress.step("writing and proving");
-    let mut programs = Vec::with_capacity(plan.parts.len());
+    let works = each(&plan.parts, |part| Work::of(*part, &plan, args, &machine));
+    let works = works.into_iter().collect::<Result<Vec<Work>, Stop>>()?;
+    let rack = Rack::of(&works);
+    let jobs: Vec<(Part, Work)> = plan.parts.iter().copied().zip(works).collect();
+    let mut programs = Vec::with_capacity(jobs.len() + 1);
     if let Some(grid) = args.running.probe {
-        programs.push(probing(&plan, grid, &machine, args)?);
+        programs.push(probing(&plan, grid, rack.next(), &machine, args)?);
     }
-    for made in
-        each(&plan.parts, |part| make(*part, &plan, &heights, surface.as_ref(), &machine, args))
-    {
-        let made = made?;
-        warnings.extend(made.work.warnings.iter().map(|found| found.clone().file(made.name)));
-        programs.push(made);
+    for made in each(&jobs, |(part, work)| {
+        make(*part, work, &rack, &plan, surface.as_ref(), &machine, args)
+    }) {
+        programs.push(made?);
+    }
+    for made in &programs {
+        let file = format!("{}.nc", made.name);
+        let found = made.work.warnings.iter().chain(&made.posted.account.findings);
+        warnings.extend(found.cloned().map(|found| match found.file.is_empty() {
+            true => found.file(&file),
+            false => found,
+        }));
     }
     if let Some(failed) =
         programs.iter().position(|made| made.posted.account.verdict != Verdict::Done)
     {
         return Ok(programs.swap_remove(failed).posted.account.not_saved());
     }
+    warnings.extend(older(args, &programs));
     let warnings = toolpath::held(warnings, args.strict)?;
     progress.step("saving");
     let report = report::of(&source.layers, &plan, &programs, &machine, &warnings);
@@ -68,17 +79,56 @@ pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
     Ok(Answer::summary(Verdict::Done, rows(&lines), report.data).findings(warnings))
 }
 
-/// How high tools are above the board.
-fn heights(args: &Pcb) -> Result<Heights, Stop> {
-    let heights = Heights { travel: args.running.travel, approach: args.running.approach };
-    let Heights { travel, approach } = heights;
-    if travel >= approach {
-        return Ok(heights);
+/// Refuses a folder of output that is the board's own: what is saved there would be read as the board's the
+/// next time.
+fn not_among_inputs(args: &Pcb) -> Result<(), Stop> {
+    let whole = |path: &Path| std::fs::canonicalize(path).ok();
+    let output = whole(&args.output);
+    if args.board.iter().any(|path| path.is_dir() && whole(path) == output) {
+        let message = "the programs would be saved among the files of the board";
+        let found = Diagnostic::error("output-folder", message).help("give a folder of its own");
+        return Err(found.file(args.output.display().to_string()).into());
     }
-    let message =
-        format!("rapid moves are {travel} mm over the board, and tools feed from {approach} mm on");
-    let help = "give --travel no less than --approach";
-    Err(Diagnostic::error("travel", message).help(help).into())
+    Ok(())
+}
+
+/// The tools of all programs of a board: each has one number, whichever program calls it.
+struct Rack(Vec<String>);
+
+impl Rack {
+    fn of(works: &[Work]) -> Rack {
+        let mut names: Vec<String> = Vec::new();
+        for operation in works.iter().flat_map(|work| &work.operations) {
+            if !names.contains(&operation.tool.name) {
+                names.push(operation.tool.name.clone());
+            }
+        }
+        Rack(names)
+    }
+
+    /// The number of a tool, from 1.
+    fn number(&self, tool: &str) -> u32 {
+        let place = self.0.iter().position(|name| name == tool).unwrap_or(self.0.len());
+        u32::try_from(place + 1).unwrap_or(u32::MAX)
+    }
+
+    /// The first number that no tool has.
+    fn next(&self) -> u32 {
+        self.number("")
+    }
+}
+
+/// Tells of programs and pictures of another call that stay beside those of this one.
+fn older(args: &Pcb, programs: &[Made]) -> Option<Diagnostic> {
+    let is_made = |name: &str| programs.iter().any(|made| made.name == name);
+    let names = Part::ALL.into_iter().map(Part::name).chain([PROBE]);
+    let others = names.filter(|name| !is_made(name)).map(|name| format!("{name}.nc"));
+    let there: Vec<String> = others.filter(|file| args.output.join(file).exists()).collect();
+    (!there.is_empty()).then(|| {
+        let message = format!("of an earlier call there are still {}", there.join(", "));
+        let help = "they are not of these programs: remove them, or save in a new folder";
+        Diagnostic::warning("file-older", message).help(help)
+    })
 }
 
 /// How closely programs follow the surface that was measured.
@@ -89,8 +139,7 @@ fn surface(plan: &Plan, args: &Pcb) -> Result<Option<HeightMap>, Stop> {
     let Some(file) = &args.running.heights else { return Ok(None) };
     if !plan.parts.iter().all(|part| plan.face(*part, args) == plan.face(plan.parts[0], args)) {
         let message = "the heights are those of one side, and programs of both are asked for";
-        let help =
-            "make the programs of each side with its own heights: --only front,drill,outline";
+        let help = "make the programs of each side with its own heights: name them with --only";
         return Err(Diagnostic::error("heights", message).help(help).into());
     }
     let text = files::read(file)?;
@@ -111,16 +160,22 @@ struct Made {
 /// The program of a part of the board, proven, with its picture.
 fn make(
     part: Part,
+    work: &Work,
+    rack: &Rack,
     plan: &Plan,
-    heights: &Heights,
     surface: Option<&HeightMap>,
     machine: &Machine,
     args: &Pcb,
 ) -> Result<Made, Stop> {
     let board = plan.seen(part, args);
-    let work = Work::of(part, plan, args, machine)?;
-    let name = format!("{} {}", plan.name, part.name());
-    let mut program = job::program(&name, &work.operations, heights);
+    let heights = Heights { travel: args.running.travel, approach: args.running.approach };
+    let name = format!("{}-{}", plan.name, part.name());
+    let operations: Vec<(u32, &Operation)> = work
+        .operations
+        .iter()
+        .map(|operation| (rack.number(&operation.tool.name), operation))
+        .collect();
+    let mut program = job::program(&name, &operations, &heights);
     if let Some(surface) = surface {
         program = level(&program, surface, &LEVELLED)?;
     }
@@ -147,8 +202,11 @@ fn make(
         ))
     });
     let picture = picture.transpose()?;
-    Ok(Made { name: part.name(), work, program: toolpath.program, posted, picture })
+    Ok(Made { name: part.name(), work: work.clone(), program: toolpath.program, posted, picture })
 }
+
+/// What the program is called that measures the height of the board.
+const PROBE: &str = "probe";
 
 /// How the height of the board is probed: slowly, from a millimetre above to one below.
 const PROBED: Probing = Probing { travel: 1.0, depth: 1.0, feed: 50.0 };
@@ -160,13 +218,16 @@ const HEIGHTS: &str = "heights.txt";
 fn probing(
     plan: &Plan,
     [columns, rows]: [u32; 2],
+    number: u32,
     machine: &Machine,
     args: &Pcb,
 ) -> Result<Made, Stop> {
     let (low, high) = plan.front().extents().unwrap_or_default();
     let grid = Grid::new(low, high, columns as usize, rows as usize)?;
-    let name = "probe";
-    let program = PROBED.program(&format!("{} {name}", plan.name), &grid, Some(HEIGHTS))?;
+    let name = PROBE;
+    let mut program = PROBED.program(&format!("{}-{name}", plan.name), &grid, Some(HEIGHTS))?;
+    let tool = program::Tool { number, name: String::from("probe"), ..program::Tool::default() };
+    program.records.insert(0, Record { line: 0, op: Op::Tool(Box::new(tool)) });
     let toolpath = Toolpath::of_program(program, "board");
     let file = format!("{name}.nc");
     let posted = post::proven(&toolpath, machine, &file, &args.closeness.tolerances(), &|_| {})?;

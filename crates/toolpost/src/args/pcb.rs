@@ -68,16 +68,17 @@ pub enum Part {
 }
 
 impl Part {
-    /// All, in the order in which they are run.
+    /// All, in the order in which they are run: pins are drilled before the board is turned over, and it is
+    /// cut out at last.
     pub const ALL: [Part; 8] = [
         Part::Front,
-        Part::Back,
-        Part::Drill,
-        Part::Outline,
         Part::FrontMask,
-        Part::BackMask,
         Part::FrontLegend,
+        Part::Drill,
+        Part::Back,
+        Part::BackMask,
         Part::BackLegend,
+        Part::Outline,
     ];
 
     /// What its program and picture are called.

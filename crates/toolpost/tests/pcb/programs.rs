@@ -45,9 +45,10 @@ fn a_board_is_turned_over_about_either_line() {
 #[test]
 fn pins_are_where_they_were_when_the_board_is_turned() {
     let folder = small();
+    // The tool of 2 mm that cuts the board out, 1 mm, and half of a pin: 4.5 mm.
     for (turn, pins, holes) in [
-        ("y", [[-3.5, 5.0], [23.5, 5.0]], [[6.0, 5.0], [16.0, 5.0]]),
-        ("x", [[10.0, -3.5], [10.0, 13.5]], [[4.0, 5.0], [14.0, 5.0]]),
+        ("y", [[-4.5, 5.0], [24.5, 5.0]], [[6.0, 5.0], [16.0, 5.0]]),
+        ("x", [[10.0, -4.5], [10.0, 14.5]], [[4.0, 5.0], [14.0, 5.0]]),
     ] {
         for (from, holes) in [("front", [[4.0, 5.0], [14.0, 5.0]]), ("back", holes)] {
             let more = ["--alignment", "3", "--turn", turn, "--from", from, "--only", "drill"];
@@ -519,6 +520,7 @@ fn what_is_said_and_to_whom() {
     assert_eq!((said.code, &answer["status"]), (2, &"invalid".into()));
     assert_eq!(answer["errors"][0]["rule"], "no-drill");
     let said = folder.run(&call);
-    let saved = "in out: report.json, front.svg, back.svg, drill.svg, outline.svg, front.nc, back.nc, drill.nc, outline.nc";
+    let saved = "in out: report.json, front.svg, drill.svg, back.svg, outline.svg, front.nc, drill.nc, \
+                 back.nc, outline.nc";
     assert!(said.out.contains(saved), "{}", said.out);
 }
