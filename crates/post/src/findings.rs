@@ -65,9 +65,11 @@ impl Findings {
         }
     }
 
-    /// The warnings, or the errors where there are some.
-    pub(crate) fn finish(self, tolerance: f64) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
+    /// The warnings, or the errors in the order of their lines where there are some.
+    pub(crate) fn finish(mut self, tolerance: f64) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
         if !self.errors.is_empty() {
+            // Some are known only at the end.
+            self.errors.sort_by_key(|error| error.line);
             return Err(self.errors);
         }
         let mut warnings = self.warnings;

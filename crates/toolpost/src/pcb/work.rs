@@ -306,10 +306,13 @@ impl Worker<'_> {
         depths: &[f64],
     ) {
         for (width, paths) in clearing.widths.iter().zip(passes) {
+            let tool = self.end_mill(*width);
             if paths.is_empty() {
+                let message = format!("{what}: nothing is left that {} reaches", tool.name);
+                let help = "take a narrower tool, or leave it out";
+                work.warnings.push(Diagnostic::warning("not-reached", message).help(help));
                 continue;
             }
-            let tool = self.end_mill(*width);
             work.operations.push(Operation {
                 name: format!("{what}, {}", tool.name),
                 tool,

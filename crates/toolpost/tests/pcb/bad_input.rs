@@ -31,7 +31,7 @@ fn odd(folder: &Folder, words: &[&str]) {
     fs::remove_dir_all(folder.path().join("out")).unwrap();
     let rule = words[0].trim_start_matches("warning[").trim_end_matches(']');
     assert!(reported.contains(&format!("\"rule\": \"{rule}\"")), "{rule}");
-    bad_call(folder, &["--strict"], &[&format!("error[{rule}]")]);
+    bad_call(folder, &["--strict", "--only", "outline"], &[&format!("error[{rule}]")]);
 }
 
 #[test]
