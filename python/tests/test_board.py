@@ -112,12 +112,16 @@ def test_groups_lie_as_deep_as_they_may_and_no_deeper():
 
 
 def test_copies_of_copies_end():
+    def fourfold(nest):
+        outer = Board.builder()
+        for name in "abcd":
+            outer.group(name, nest, (0, 0))
+        return outer
+
     nest = resistor()
-    # Each holds the last one four times: after twelve a hundred bytes were more than a thousand million.
+    # Some 300 bytes; the eighth time they would be more than 16 MiB.
+    for _ in range(7):
+        nest = fourfold(nest)
     with pytest.raises(toolpost.Error, match="bytes are no board") as raised:
-        for _ in range(12):
-            outer = Board.builder()
-            for name in "abcd":
-                outer.group(name, nest, (0, 0))
-            nest = outer
+        fourfold(nest)
     assert raised.value.rule == "board-file"
