@@ -29,6 +29,9 @@ const LEGEND: (usize, usize) = (8, 10);
 /// The most places with a problem that are marked.
 const MAX_MARKS: usize = 2_000;
 
+/// The most holes that are drawn.
+const MAX_HOLES: usize = 50_000;
+
 /// How wide the ring around a problem is, pixels.
 const MARK: f64 = 9.0;
 
@@ -243,7 +246,7 @@ fn area(out: &mut String, trace: Trace, fill: &str, stroke: &str) {
 
 /// The holes, as strokes of their width with round ends.
 fn holes(out: &mut String, holes: &[Hole], view: &View) {
-    for hole in holes {
+    for hole in holes.iter().take(MAX_HOLES) {
         let at = |point: Vec2| view.at(point.extend(0.0));
         let mut data = String::new();
         let mut go = |letter: char, point: Vec2| {
@@ -294,7 +297,7 @@ fn legend(out: &mut String, drawn: &Drawn, picture: &BoardPicture, mut at: DVec2
     };
     if picture.copper.is_some() {
         let text = format!("COPPER, {} NETS", drawn.nets);
-        entry(out, &format!("stroke=\"{}\" stroke-width=\"8\"", NETS[0]), &text, "A COLOUR EACH");
+        entry(out, &format!("stroke=\"{}\" stroke-width=\"8\"", NETS[0]), &text, "");
     }
     if !picture.holes.is_empty() {
         let text = format!("{} HOLES", picture.holes.len());
@@ -341,7 +344,7 @@ mod tests {
         let cutter = Cutter::Cylinder { diameter: 1.0 };
         let tool = Tool { name: "MILL".into(), cutter, feed: 100.0, plunge: 50.0, speed: 9000.0 };
         let operation = Operation { name: "isolation".into(), tool, cuts };
-        let program = program("disc", &[operation], &Heights { travel: 2.0, approach: 0.5 });
+        let program = program("disc", &[(1, &operation)], &Heights { travel: 2.0, approach: 0.5 });
         let hole = Hole { shape: HoleShape::Round(Vec2::splat(10.0)), diameter: 1.0, plated: None };
         let picture = BoardPicture {
             outline: Some(&outline),

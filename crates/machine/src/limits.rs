@@ -42,12 +42,15 @@ pub struct Limits<'a> {
     machine: &'a Machine,
     /// Lowest and highest position of each linear axis so far, with the line that asked for it.
     extent: [[(f64, u32); 2]; 3],
+    /// The line that first asked for more than the length of the travel.
+    too_far: [Option<u32>; 3],
 }
 
 impl<'a> Limits<'a> {
     /// The limits of `machine`, nothing having moved yet.
     pub fn new(machine: &'a Machine) -> Limits<'a> {
-        Limits { machine, extent: [[(f64::INFINITY, 0), (f64::NEG_INFINITY, 0)]; 3] }
+        let nowhere = [(f64::INFINITY, 0), (f64::NEG_INFINITY, 0)];
+        Limits { machine, extent: [nowhere; 3], too_far: [None; 3] }
     }
 
     /// Checks positions of the linear axes (mm, as a program gives them) and the rotary axes (degrees
@@ -74,7 +77,7 @@ impl<'a> Limits<'a> {
             if known {
                 held(letter, slides[i], axis.min, axis.max, " mm", line)?;
             } else {
-                self.stretch(i, slides[i], line);
+                self.stretch(i, axis, slides[i], line);
             }
         }
         Ok(())
@@ -194,16 +197,13 @@ impl<'a> Limits<'a> {
         })
     }
 
-    /// What is wrong with the way that each axis has needed so far: where the work zero is not known, that may
-    /// not be longer than its travel (`axis-limit`).
+    /// What is wrong with the way that each axis has needed: where the work zero is not known, that may not
+    /// be longer than its travel (`axis-limit`).
     pub fn ways(&self) -> impl Iterator<Item = Diagnostic> {
         let axes = self.machine.linear.iter().zip(self.extent).zip(['X', 'Y', 'Z']);
-        axes.filter(|_| self.machine.work_zero.is_none()).filter_map(|((axis, ends), letter)| {
-            let [(low, _), (high, _)] = ends;
-            let (way, travel) = (high - low, axis.max - axis.min);
-            if way <= travel + ROUNDING || way < 0.0 {
-                return None;
-            }
+        axes.zip(self.too_far).filter_map(|(((axis, ends), letter), line)| {
+            let line = line?;
+            let (way, travel) = (ends[1].0 - ends[0].0, axis.max - axis.min);
             let [low, high] = ends.map(|(at, line)| match line {
                 0 => format!("{at:.4} mm"),
                 line => format!("{at:.4} mm (line {line})"),
@@ -213,19 +213,21 @@ impl<'a> Limits<'a> {
                 way - travel
             );
             let help = "divide the work, or take a larger machine";
-            let line = ends[0].1.max(ends[1].1);
             Some(Diagnostic::error("axis-limit", message).help(help).line(line))
         })
     }
 
-    /// Keeps how far an axis has moved.
-    fn stretch(&mut self, i: usize, at: f64, line: u32) {
+    /// Keeps how far an axis has moved, and whether that is too far.
+    fn stretch(&mut self, i: usize, axis: &LinearAxis, at: f64, line: u32) {
         let [low, high] = &mut self.extent[i];
         if at < low.0 {
             *low = (at, line);
         }
         if at > high.0 {
             *high = (at, line);
+        }
+        if high.0 - low.0 > axis.max - axis.min + ROUNDING {
+            self.too_far[i].get_or_insert(line);
         }
     }
 }

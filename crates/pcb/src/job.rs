@@ -16,9 +16,9 @@ pub struct Heights {
     pub approach: f64,
 }
 
-/// The program that does `operations`, one after the other, each with a tool of its own number from 1.
-/// What the records came from is no line of a file: theirs is 0.
-pub fn program(name: &str, operations: &[Operation], heights: &Heights) -> Program {
+/// The program that does `operations`, one after the other, each with the number of its tool. What the
+/// records came from is no line of a file: theirs is 0.
+pub fn program(name: &str, operations: &[(u32, &Operation)], heights: &Heights) -> Program {
     let mut writer = Writer {
         program: Program::new(name),
         heights: *heights,
@@ -26,8 +26,8 @@ pub fn program(name: &str, operations: &[Operation], heights: &Heights) -> Progr
         feed: None,
         cycle: None,
     };
-    for (operation, number) in operations.iter().zip(1..) {
-        writer.operation(operation, number);
+    for (number, operation) in operations {
+        writer.operation(operation, *number);
     }
     writer.push(Op::Spindle(Spindle::Off));
     writer.push(Op::End);
@@ -210,7 +210,7 @@ mod tests {
             "L 0 0 -0.2",
             "R 0 0 2",
         ];
-        assert_eq!(told(&program("a", &[operation], &heights)), right);
+        assert_eq!(told(&program("a", &[(1, &operation)], &heights)), right);
     }
 
     #[test]
@@ -218,7 +218,7 @@ mod tests {
         let hole = |x: f64, depth: f64| Cut::Hole { at: Vec2::new(x, 0.0), depth, peck: None };
         let cuts = vec![hole(1.0, 2.0), hole(2.0, 2.0), hole(3.0, 1.0)];
         let operation = Operation { name: "drill".into(), tool: tool(), cuts };
-        let program = program("a", &[operation], &Heights { travel: 2.0, approach: 0.5 });
+        let program = program("a", &[(1, &operation)], &Heights { travel: 2.0, approach: 0.5 });
         let cycles: Vec<f64> = program
             .records
             .iter()

@@ -6,12 +6,16 @@ use std::f64::consts::TAU;
 
 impl Path {
     /// The same way in fewer elements, nowhere farther than `tolerance` mm from this one. Elements shorter
-    /// than a quarter of that are dropped, and what is as good as one line or one arc is one.
+    /// than a quarter of that are dropped, what is as good as one line or one arc is one, and an arc with a
+    /// radius of less than 10 µm is lines.
     /// What is closed stays closed, though it may begin elsewhere; a way back along itself stays a
     /// way back. `None` where nothing is left.
     pub fn merged(&self, tolerance: f64) -> Option<Path> {
-        // Where something is dropped, starts move and centres follow, each by no more than a quarter.
-        let elements = without_short(self.elements(), tolerance / 4.0);
+        // Where something is dropped, starts move and centres follow, each by no more than a quarter; what
+        // has become lines has no centre to follow.
+        let elements: Vec<Element> =
+            self.elements().iter().flat_map(|element| straight(element, tolerance / 4.0)).collect();
+        let elements = without_short(&elements, tolerance / 4.0);
         let (merged, last) = merged(&elements, tolerance / 2.0);
         if self.is_closed() && last > 0 {
             // What ends at the start may go on there.
@@ -27,6 +31,13 @@ impl Path {
 
 /// The greatest radius of an arc that is made of others, mm: what is flatter stays as it is.
 const GREATEST: f64 = 1000.0;
+
+/// The least radius of an arc, mm: ten steps of a machine. Of a smaller one a control sees the rounding of
+/// its ends rather than the arc.
+const LEAST: f64 = 0.01;
+
+/// Lines for an arc whose radius is less than that are no more than so many.
+const CHORDS: f64 = 64.0;
 
 /// `paths`, in their order, without lifting the tool where it need not be: it cuts straight to where the next
 /// one starts where that widens a cut of `width` mm by no more than `tolerance` mm.
@@ -54,6 +65,23 @@ pub(crate) fn pitch(width: f64, scallop: f64) -> f64 {
     // Half the pitch, and what is left of half the width, are at right angles.
     let scallop = scallop.clamp(0.0, width / 2.0);
     2.0 * (scallop * (width - scallop)).sqrt()
+}
+
+/// The element; but for an arc that is too small, or from end to end no farther than `within` mm from a line,
+/// lines that are as near.
+fn straight(element: &Element, within: f64) -> Vec<Element> {
+    let Some(Turn { center, sweep }) = element.turn else { return vec![*element] };
+    let radius = element.start.distance(center);
+    // An arc is farthest from its chord in its middle: by the radius less the cosine of half its sweep.
+    let widest = 2.0 * (1.0 - within / radius).clamp(-1.0, 1.0).acos();
+    let chords = (sweep.abs() / widest).ceil().clamp(1.0, CHORDS);
+    if radius >= LEAST && chords > 1.0 {
+        return vec![*element];
+    }
+    let places = (1..chords as usize).map(|chord| element.at(chord as f64 / chords));
+    let mut start = element.start;
+    let line = |end| Element::line(std::mem::replace(&mut start, end), end);
+    places.chain([element.end]).map(line).collect()
 }
 
 /// The chain without what is shorter than `least` mm: the next element starts where the last one ended.
@@ -148,7 +176,7 @@ fn one(run: &[Element], within: f64) -> Option<Element> {
     let (mut before, mut turned) = (start, 0.0);
     let fits = turn.sweep * sense > 0.0
         && turn.sweep.abs() <= TAU * (1.0 + 1e-9)
-        && radius < GREATEST
+        && (LEAST..GREATEST).contains(&radius)
         && follows(run, within, |point| {
             turned += turn_angle(before - turn.center, point - turn.center);
             before = point;

@@ -3,6 +3,7 @@
 use crate::SAME;
 use geom::region::{Index, Ring};
 use geom::{Element, Vec2};
+use std::iter;
 
 /// A chain of lines and arcs, each of which starts where the one before ends, bit for bit; at least one.
 #[derive(Clone, Debug, PartialEq)]
@@ -148,24 +149,20 @@ impl Path {
     }
 }
 
-/// The pieces into which a boundary cuts an element, in its order.
+/// The pieces into which a boundary cuts an element, in its order; an element without length is one.
 fn pieces(element: &Element, boundary: &Index) -> impl Iterator<Item = Element> {
     let (low, high) = element.extents();
+    let length = element.length();
     let mut cuts: Vec<f64> = boundary
         .within(low, high)
         .flat_map(|piece| element.meets(piece.element, SAME))
         .map(|point| element.nearest(point).0)
-        .chain([0.0, 1.0])
+        .filter(|cut| cut * length > SAME && (1.0 - cut) * length > SAME)
         .collect();
     cuts.sort_by(f64::total_cmp);
-    let shortest = SAME / element.length();
-    cuts.dedup_by(|next, cut| *next - *cut <= shortest);
-    // The start and the end are kept.
-    if let Some(last) = cuts.last_mut() {
-        *last = 1.0;
-    }
-    let starts = cuts.clone().into_iter();
-    starts.zip(cuts.into_iter().skip(1)).map(|(from, to)| element.part(from, to))
+    cuts.dedup_by(|next, cut| (*next - *cut) * length <= SAME);
+    let starts = iter::once(0.0).chain(cuts.clone());
+    starts.zip(cuts.into_iter().chain([1.0])).map(|(from, to)| element.part(from, to))
 }
 
 #[cfg(test)]

@@ -24,15 +24,17 @@ struct Lowered {
 }
 
 impl Findings {
-    /// Keeps an error, or counts it where its line has broken the rule before and the way out is the same;
-    /// `false` when there are enough of them.
+    /// Keeps an error, or counts it where there is one of its rule and line that says the same or has the same
+    /// way out; `false` when there are enough of them.
     pub(crate) fn error(&mut self, error: Diagnostic) -> bool {
         let same = |known: &&mut Diagnostic| {
-            (known.rule, known.line, &known.help) == (error.rule, error.line, &error.help)
+            (known.rule, known.line) == (error.rule, error.line)
+                && (known.message == error.message
+                    || known.help == error.help && !error.help.is_empty())
         };
         match self.errors.iter_mut().find(same) {
-            Some(known) if !error.help.is_empty() => known.count = known.count.saturating_add(1),
-            _ => self.errors.push(error),
+            Some(known) => known.count = known.count.saturating_add(1),
+            None => self.errors.push(error),
         }
         self.errors.len() < MOST_ERRORS
     }
@@ -63,9 +65,11 @@ impl Findings {
         }
     }
 
-    /// The warnings, or the errors where there are some.
-    pub(crate) fn finish(self, tolerance: f64) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
+    /// The warnings, or the errors in the order of their lines where there are some.
+    pub(crate) fn finish(mut self, tolerance: f64) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
         if !self.errors.is_empty() {
+            // Some are known only at the end.
+            self.errors.sort_by_key(|error| error.line);
             return Err(self.errors);
         }
         let mut warnings = self.warnings;

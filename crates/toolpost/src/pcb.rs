@@ -19,7 +19,7 @@ use drawing::{BoardPicture, Format};
 use levelling::{Allowed, Grid, HeightMap, Probing, level};
 use machine::Machine;
 use plan::Plan;
-use program::{Diagnostic, Program};
+use program::{Diagnostic, Op, Program, Record};
 use std::path::Path;
 use std::thread;
 use work::Work;
@@ -32,29 +32,40 @@ pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
         let help = "name a mill: `toolpost machines` lists what there is";
         return Err(Diagnostic::error("machine-kind", message).help(help).into());
     }
+    let heights = heights(args)?;
     files::check_folder(&args.output)?;
-    let progress = Progress::new(5, silent);
+    not_among_inputs(args)?;
+    let progress = Progress::new(4, silent);
     progress.step("reading");
     let source = source::read(&args.board)?;
     let mut warnings = source.warnings;
     let plan = Plan::of(source.board, args)?;
     let surface = surface(&plan, args)?;
+    progress.step("planning");
+    let works = each(&plan.parts, |part| Work::of(*part, &plan, args, &machine));
+    let works = works.into_iter().collect::<Result<Vec<Work>, Stop>>()?;
+    let rack = Rack::of(&works);
     progress.step("writing and proving");
-    let mut programs = Vec::with_capacity(plan.parts.len());
+    let shop = Shop { args, machine: &machine, plan: &plan, rack, heights, surface };
+    let mut programs = Vec::with_capacity(works.len() + 1);
     if let Some(grid) = args.running.probe {
-        programs.push(probing(&plan, grid, &machine, args)?);
+        programs.push(shop.probing(grid)?);
     }
-    for made in each(&plan.parts, |part| make(*part, &plan, surface.as_ref(), &machine, args)) {
-        let made = made?;
-        warnings.extend(made.work.warnings.iter().map(|found| found.clone().file(made.name)));
-        programs.push(made);
+    let jobs: Vec<(Part, Work)> = plan.parts.iter().copied().zip(works).collect();
+    for made in each(&jobs, |(part, work)| shop.make(*part, work)) {
+        programs.push(made?);
+    }
+    for made in &programs {
+        let file = format!("{}.nc", made.name);
+        warnings.extend(made.work.warnings.iter().map(|found| found.clone().file(&file)));
     }
     if let Some(failed) =
         programs.iter().position(|made| made.posted.account.verdict != Verdict::Done)
     {
         return Ok(programs.swap_remove(failed).posted.account.not_saved());
     }
-    let warnings = toolpath::held(warnings, args.strict)?;
+    let mut warnings = toolpath::held(warnings, args.strict)?;
+    warnings.extend(older(args, &programs));
     progress.step("saving");
     let report = report::of(&source.layers, &plan, &programs, &machine, &warnings);
     let saved = save(args, &source.files, &programs, &format!("{:#}\n", report.data))?;
@@ -65,6 +76,71 @@ pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
     Ok(Answer::summary(Verdict::Done, rows(&lines), report.data).findings(warnings))
 }
 
+/// Refuses a folder of output that is the board's own: what is saved there would be read as the board's the
+/// next time.
+fn not_among_inputs(args: &Pcb) -> Result<(), Stop> {
+    let whole = |path: &Path| std::fs::canonicalize(path).ok();
+    let output = whole(&args.output);
+    if args.board.iter().any(|path| path.is_dir() && whole(path) == output) {
+        let message = "the programs would be saved among the files of the board";
+        let found = Diagnostic::error("output-folder", message).help("give a folder of its own");
+        return Err(found.file(args.output.display().to_string()).into());
+    }
+    Ok(())
+}
+
+/// The tools of all programs of a board: each has one number, whichever program calls it.
+struct Rack(Vec<String>);
+
+impl Rack {
+    fn of(works: &[Work]) -> Rack {
+        let mut names: Vec<String> = Vec::new();
+        for operation in works.iter().flat_map(|work| &work.operations) {
+            if !names.contains(&operation.tool.name) {
+                names.push(operation.tool.name.clone());
+            }
+        }
+        Rack(names)
+    }
+
+    /// The number of a tool, from 1.
+    fn number(&self, tool: &str) -> u32 {
+        let place = self.0.iter().position(|name| name == tool).unwrap_or(self.0.len());
+        u32::try_from(place + 1).unwrap_or(u32::MAX)
+    }
+
+    /// The first number that no tool has.
+    fn next(&self) -> u32 {
+        self.number("")
+    }
+}
+
+/// Tells of programs and pictures of another call that stay beside those of this one.
+fn older(args: &Pcb, programs: &[Made]) -> Option<Diagnostic> {
+    let is_made = |name: &str| programs.iter().any(|made| made.name == name);
+    let names = Part::ALL.into_iter().map(Part::name).chain([PROBE]);
+    let others = names.filter(|name| !is_made(name)).map(|name| format!("{name}.nc"));
+    let there: Vec<String> = others.filter(|file| args.output.join(file).exists()).collect();
+    (!there.is_empty()).then(|| {
+        let message = format!("of an earlier call there are still {}", there.join(", "));
+        let help = "they are not of these programs: remove them, or save in a new folder";
+        Diagnostic::warning("file-older", message).help(help)
+    })
+}
+
+/// How high tools are above the board.
+fn heights(args: &Pcb) -> Result<Heights, Stop> {
+    let heights = Heights { travel: args.running.travel, approach: args.running.approach };
+    let Heights { travel, approach } = heights;
+    if travel >= approach {
+        return Ok(heights);
+    }
+    let message =
+        format!("rapid moves are {travel} mm over the board, and tools feed from {approach} mm on");
+    let help = "give --travel no less than --approach";
+    Err(Diagnostic::error("travel", message).help(help).into())
+}
+
 /// How closely programs follow the surface that was measured.
 const LEVELLED: Allowed = Allowed { deviation: 0.005, outside: 5.0 };
 
@@ -73,8 +149,7 @@ fn surface(plan: &Plan, args: &Pcb) -> Result<Option<HeightMap>, Stop> {
     let Some(file) = &args.running.heights else { return Ok(None) };
     if !plan.parts.iter().all(|part| plan.face(*part, args) == plan.face(plan.parts[0], args)) {
         let message = "the heights are those of one side, and programs of both are asked for";
-        let help =
-            "make the programs of each side with its own heights: --only front,drill,outline";
+        let help = "make the programs of each side with its own heights: name them with --only";
         return Err(Diagnostic::error("heights", message).help(help).into());
     }
     let text = files::read(file)?;
@@ -92,69 +167,86 @@ struct Made {
     picture: Option<Vec<u8>>,
 }
 
-/// The program of a part of the board, proven, with its picture.
-fn make(
-    part: Part,
-    plan: &Plan,
-    surface: Option<&HeightMap>,
-    machine: &Machine,
-    args: &Pcb,
-) -> Result<Made, Stop> {
-    let board = plan.seen(part, args);
-    let work = Work::of(part, plan, args, machine)?;
-    let heights = Heights { travel: args.running.travel, approach: args.running.approach };
-    let name = format!("{} {}", plan.name, part.name());
-    let mut program = job::program(&name, &work.operations, &heights);
-    if let Some(surface) = surface {
-        program = level(&program, surface, &LEVELLED)?;
-    }
-    let toolpath = Toolpath::of_program(program, "board");
-    let file = format!("{}.nc", part.name());
-    let posted = post::proven(&toolpath, machine, &file, &args.closeness.tolerances(), &|_| {})?;
-    let format = match args.picture {
-        Picture::Svg => Some(Format::Svg),
-        Picture::Png => Some(Format::Png),
-        Picture::None => None,
-    };
-    let picture = format.map(|format| {
-        let widths: Vec<f64> = work.operations.iter().map(Operation::width).collect();
-        format.bytes(drawing::board(
-            &name,
-            &BoardPicture {
-                outline: board.outline.as_ref(),
-                copper: board.front.copper.as_ref(),
-                holes: &board.holes,
-                program: &toolpath.program,
-                widths: &widths,
-                problems: &work.places,
-            },
-        ))
-    });
-    let picture = picture.transpose()?;
-    Ok(Made { name: part.name(), work, program: toolpath.program, posted, picture })
-}
-
 /// How the height of the board is probed: slowly, from a millimetre above to one below.
 const PROBED: Probing = Probing { travel: 1.0, depth: 1.0, feed: 50.0 };
+
+/// What the program is called that measures the height of the board.
+const PROBE: &str = "probe";
 
 /// The file in which LinuxCNC keeps what it finds; to other controls it is a comment.
 const HEIGHTS: &str = "heights.txt";
 
-/// The program that measures the height of the board.
-fn probing(
-    plan: &Plan,
-    [columns, rows]: [u32; 2],
-    machine: &Machine,
-    args: &Pcb,
-) -> Result<Made, Stop> {
-    let (low, high) = plan.front().extents().unwrap_or_default();
-    let grid = Grid::new(low, high, columns as usize, rows as usize)?;
-    let name = "probe";
-    let program = PROBED.program(&format!("{} {name}", plan.name), &grid, Some(HEIGHTS))?;
-    let toolpath = Toolpath::of_program(program, "board");
-    let file = format!("{name}.nc");
-    let posted = post::proven(&toolpath, machine, &file, &args.closeness.tolerances(), &|_| {})?;
-    Ok(Made { name, work: Work::default(), program: toolpath.program, posted, picture: None })
+/// What all programs of a board share.
+struct Shop<'a> {
+    args: &'a Pcb,
+    machine: &'a Machine,
+    plan: &'a Plan,
+    rack: Rack,
+    heights: Heights,
+    /// The surface that programs follow, where one was measured.
+    surface: Option<HeightMap>,
+}
+
+impl Shop<'_> {
+    /// The program of a part of the board, proven, with its picture.
+    fn make(&self, part: Part, work: &Work) -> Result<Made, Stop> {
+        let board = self.plan.seen(part, self.args);
+        let name = format!("{}-{}", self.plan.name, part.name());
+        let number = |operation: &Operation| self.rack.number(&operation.tool.name);
+        let operations: Vec<(u32, &Operation)> =
+            work.operations.iter().map(|operation| (number(operation), operation)).collect();
+        let mut program = job::program(&name, &operations, &self.heights);
+        if let Some(surface) = &self.surface {
+            program = level(&program, surface, &LEVELLED)?;
+        }
+        let (program, posted) = self.proven(program, part.name())?;
+        let format = match self.args.picture {
+            Picture::Svg => Some(Format::Svg),
+            Picture::Png => Some(Format::Png),
+            Picture::None => None,
+        };
+        let picture = format.map(|format| {
+            let widths: Vec<f64> = work.operations.iter().map(Operation::width).collect();
+            format.bytes(drawing::board(
+                &name,
+                &BoardPicture {
+                    outline: board.outline.as_ref(),
+                    copper: board.front.copper.as_ref(),
+                    holes: &board.holes,
+                    program: &program,
+                    widths: &widths,
+                    problems: &work.places,
+                },
+            ))
+        });
+        let picture = picture.transpose()?;
+        Ok(Made { name: part.name(), work: work.clone(), program, posted, picture })
+    }
+
+    /// The program that measures the height of the board.
+    fn probing(&self, [columns, rows]: [u32; 2]) -> Result<Made, Stop> {
+        let (low, high) = self.plan.front().extents().unwrap_or_default();
+        let grid = Grid::new(low, high, columns as usize, rows as usize)?;
+        let name = format!("{}-{PROBE}", self.plan.name);
+        let mut program = PROBED.program(&name, &grid, Some(HEIGHTS))?;
+        let tool = program::Tool {
+            number: self.rack.next(),
+            name: String::from(PROBE),
+            ..program::Tool::default()
+        };
+        program.records.insert(0, Record { line: 0, op: Op::Tool(Box::new(tool)) });
+        let (program, posted) = self.proven(program, PROBE)?;
+        Ok(Made { name: PROBE, work: Work::default(), program, posted, picture: None })
+    }
+
+    /// The text of a program, proven.
+    fn proven(&self, program: Program, name: &str) -> Result<(Program, Posted), Stop> {
+        let toolpath = Toolpath::of_program(program, "board");
+        let tolerances = self.args.closeness.tolerances();
+        let file = format!("{name}.nc");
+        let posted = post::proven(&toolpath, self.machine, &file, &tolerances, &|_| {})?;
+        Ok((toolpath.program, posted))
+    }
 }
 
 /// `work` for each thing, all at the same time, the answers in their order.

@@ -72,7 +72,10 @@ fn the_sample_of_each_machine_is_proven_on_every_other_that_can_make_it() {
                 Err(found) => {
                     assert!(tilts && machine.rotary.is_empty(), "{from} on {to}: {found:?}");
                     let rule = if to == SMALL { "axis-limit" } else { "unreachable-orientation" };
-                    assert_eq!(found[0].rule, rule, "{from} on {to}");
+                    assert!(
+                        found.iter().any(|found| found.rule == rule),
+                        "{from} on {to}: {found:?}"
+                    );
                 }
             }
         }

@@ -3,7 +3,7 @@
 use crate::excellon::Drill;
 use crate::gerber::{Image, Object, Pen, Shape};
 use crate::report::{Outcome, fault};
-use crate::{Hole, HoleShape};
+use crate::{Hole, HoleShape, SAME};
 use geom::{Element, Vec2};
 use program::Diagnostic;
 use std::collections::HashSet;
@@ -68,25 +68,32 @@ fn drawn(path: Element) -> HoleShape {
 pub(crate) fn once(holes: &mut Vec<Hole>) -> Option<Diagnostic> {
     let mut seen = HashSet::with_capacity(holes.len());
     let all = holes.len();
-    holes.retain(|hole| {
-        let point = |p: Vec2| [p.x.to_bits(), p.y.to_bits()];
-        let mut key = vec![hole.diameter.to_bits()];
-        match &hole.shape {
-            HoleShape::Round(at) => key.extend(point(*at)),
-            HoleShape::Slot(from, to) => key.extend([*from, *to].into_iter().flat_map(point)),
-            HoleShape::Route(elements) => {
-                for Element { start, end, turn } in elements {
-                    key.extend([*start, *end].into_iter().flat_map(point));
-                    let turn =
-                        turn.iter().flat_map(|turn| [turn.center.x, turn.center.y, turn.sweep]);
-                    key.extend(turn.map(f64::to_bits));
-                }
-            }
-        }
-        seen.insert(key)
-    });
+    holes.retain(|hole| seen.insert(key(hole)));
     let again = all - holes.len();
     let message = format!("{again} holes come twice, at the same place and equally wide");
     let help = "they are made once; two files may hold the same holes";
     (again > 0).then(|| Diagnostic::warning("hole-twice", message).help(help))
+}
+
+/// What holes that are the same have in common: their lengths in steps of [`SAME`], as a file in inches and
+/// one in mm agree but for rounding. A slot is the same from either end.
+fn key(hole: &Hole) -> Vec<i64> {
+    let step = |length: f64| (length / SAME).round() as i64;
+    let point = |p: Vec2| [step(p.x), step(p.y)];
+    let mut key = vec![step(hole.diameter)];
+    match &hole.shape {
+        HoleShape::Round(at) => key.extend(point(*at)),
+        HoleShape::Slot(from, to) => {
+            let (from, to) = (point(*from), point(*to));
+            key.extend([from.min(to), from.max(to)].concat());
+        }
+        HoleShape::Route(elements) => {
+            for Element { start, end, turn } in elements {
+                key.extend([*start, *end].into_iter().flat_map(point));
+                let turn = turn.iter().flat_map(|turn| [turn.center.x, turn.center.y, turn.sweep]);
+                key.extend(turn.map(step));
+            }
+        }
+    }
+    key
 }

@@ -113,6 +113,9 @@ impl Layer {
         let name = name.rsplit(['/', '\\']).next().unwrap_or(&name);
         let (stem, extension) = name.rsplit_once('.').unwrap_or((name, ""));
         let known = EXTENSIONS.iter().find(|(extensions, _)| extensions.contains(&extension));
+        if DRAWINGS.contains(&extension) {
+            return Some(Layer::Other);
+        }
         let by_extension = known.map(|(_, layer)| *layer).or_else(|| numbered(extension));
         by_extension.or_else(|| {
             let known = WORDS.iter().find(|(words, _)| words.iter().any(|word| within(stem, word)));
@@ -150,6 +153,12 @@ const EXTENSIONS: [(&[&str], Layer); 10] = [
     (&["drl", "xln", "exc", "drd", "tap", "ncd"], Layer::Holes(None)),
     (&["gtp", "crc", "tsp", "spt", "gpt"], Layer::Other),
     (&["gbp", "crs", "bsp", "spb", "gpb"], Layer::Other),
+];
+
+/// Endings of drawings, pictures and models that CAD systems save beside the layers, under the same names.
+const DRAWINGS: [&str; 14] = [
+    "pdf", "svg", "png", "jpg", "dxf", "ps", "eps", "step", "stp", "wrl", "zip", "html", "csv",
+    "gbrjob",
 ];
 
 /// By words in the rest of the name: KiCad, Fusion and EAGLE 9, others.

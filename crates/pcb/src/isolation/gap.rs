@@ -35,6 +35,11 @@ impl NarrowGap {
         (self.width - FITS).max(0.0)
     }
 
+    /// Whether there is a middle to cut along: conductors that touch cannot be parted.
+    pub fn can_be_cut(&self) -> bool {
+        self.middle.is_some()
+    }
+
     /// By how much a cut down the middle makes the copper on each side thinner, mm.
     pub fn thinned(&self, cut: f64) -> f64 {
         (cut - self.width) / 2.0

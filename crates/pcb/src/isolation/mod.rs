@@ -16,7 +16,7 @@ mod middle;
 mod severed;
 
 pub use gap::{FITS, NarrowGap};
-pub use severed::Severed;
+pub use severed::{Severed, severed};
 
 use crate::{Copper, Cutter, Path};
 use field::Field;
@@ -105,7 +105,7 @@ impl Isolation {
             );
             gaps.narrow.retain(|gap| area.island_at(gap.at).is_some());
         }
-        let severed = severed::severed(copper, &middles, self.width()).map_err(too_large)?;
+        let severed = severed(copper, &middles, self.width())?;
         paths.append(&mut middles);
         Ok(Isolated { paths, narrow: gaps.narrow, severed })
     }

@@ -1,5 +1,7 @@
 //! Conductors that cuts down the middle of gaps leave in pieces.
 
+use super::too_large;
+use crate::report::Outcome;
 use crate::{Copper, Path};
 use geom::Vec2;
 use geom::region::{Cap, Index, Island, Region, RegionError};
@@ -19,18 +21,14 @@ pub struct Severed {
 }
 
 /// The islands that are not one piece any more when a tool of `width` mm has gone along `paths`.
-pub(super) fn severed(
-    copper: &Copper,
-    paths: &[Path],
-    width: f64,
-) -> Result<Vec<Severed>, RegionError> {
+///
+/// # Errors
+/// `board-too-large` where there is more than can be computed.
+pub fn severed(copper: &Copper, paths: &[Path], width: f64) -> Outcome<Vec<Severed>> {
     if paths.is_empty() {
         return Ok(Vec::new());
     }
-    let elements = paths.iter().flat_map(Path::elements);
-    let strokes: Result<Vec<Region>, _> =
-        elements.map(|element| Region::stroke(element, width, Cap::Round)).collect();
-    let left = copper.region.difference(&Region::union_of(&strokes?)?)?;
+    let left = left(copper, paths, width).map_err(too_large)?;
     let index = Index::new(&copper.region);
     let islands = copper.region.islands();
     // Of each island how many pieces there are, and the smallest.
@@ -51,6 +49,14 @@ pub(super) fn severed(
             Some(Severed { island, pieces, at: at.or_else(|| place_in(copper))? })
         })
         .collect())
+}
+
+/// The copper that a tool of `width` mm along `paths` does not take.
+fn left(copper: &Copper, paths: &[Path], width: f64) -> Result<Region, RegionError> {
+    let elements = paths.iter().flat_map(Path::elements);
+    let strokes: Result<Vec<Region>, _> =
+        elements.map(|element| Region::stroke(element, width, Cap::Round)).collect();
+    copper.region.difference(&Region::union_of(&strokes?)?)
 }
 
 /// A place in an island; none where it is but a sliver.

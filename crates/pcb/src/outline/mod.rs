@@ -55,11 +55,13 @@ impl Outline {
     ///
     /// # Errors
     /// `length`, `cutter`, `tab-height` and `tab-count` where a setting makes no sense; `no-outline` where
-    /// there is no board; `cutout-too-small` for each cut-out that the tool does not go into; `too-large`
-    /// where the outline is more than can be computed.
+    /// there is no board; `not-parted` for each piece that the tool does not part from another one,
+    /// `cutout-too-small` for each cut-out that it does not go into; `too-large` where the outline is more
+    /// than can be computed.
     pub fn cut(&self, board: &Region) -> Result<CutOut, Vec<Diagnostic>> {
         let width = self.check(board).map_err(|fault| vec![*fault])?;
-        let tight = narrow::cutouts(board, width).map_err(|error| vec![*too_large(error)])?;
+        let tight = || Ok([narrow::pieces(board, width)?, narrow::cutouts(board, width)?].concat());
+        let tight = tight().map_err(|error| vec![*too_large(error)])?;
         if !tight.is_empty() {
             return Err(tight);
         }

@@ -2,8 +2,9 @@
 
 use crate::setting::shown;
 use geom::Vec2;
-use geom::region::{Fill, Island, Region, RegionError, Ring};
+use geom::region::{Fill, Index, Island, Region, RegionError, Ring};
 use program::Diagnostic;
+use std::collections::BTreeMap;
 
 /// What is left of a corner is told from this width on, mm.
 const SLIVER: f64 = 0.02;
@@ -11,7 +12,7 @@ const SLIVER: f64 = 0.02;
 /// The largest tool that fits is looked for among so many widths up to that of the tool.
 const WIDTHS: usize = 16;
 
-/// More corners than this are counted, not listed.
+/// More places than this are counted, not listed.
 const LISTED: usize = 50;
 
 /// An error for each cut-out of `board` that a tool of `width` mm does not go into.
@@ -36,9 +37,53 @@ pub(super) fn cutouts(board: &Region, width: f64) -> Result<Vec<Diagnostic>, Reg
             at.y,
             shown(width)
         );
-        errors.push(Diagnostic::error("cutout-too-small", message).help(way_out(fits)));
+        list(&mut errors, Diagnostic::error("cutout-too-small", message).help(way_out(fits)));
     }
     Ok(errors)
+}
+
+/// An error for each piece of `board` that a tool of `width` mm does not part from one beside it.
+pub(super) fn pieces(board: &Region, width: f64) -> Result<Vec<Diagnostic>, RegionError> {
+    let together = together(board, width)?;
+    let mut fits: Vec<Option<f64>> = vec![None; together.len()];
+    for narrower in narrower(width) {
+        if fits.iter().all(Option::is_some) {
+            break;
+        }
+        let left = self::together(board, narrower)?;
+        for ((piece, _), fits) in together.iter().zip(&mut fits) {
+            if !left.iter().any(|(other, _)| other == piece) {
+                fits.get_or_insert(narrower);
+            }
+        }
+    }
+    let mut errors = Vec::new();
+    for ((piece, beside), fits) in together.into_iter().zip(fits) {
+        let [at, other] = [piece, beside].map(|i| middle(board.islands()[i].outer()));
+        let message = format!(
+            "a tool of {} mm does not part the piece around X {:.3} Y {:.3} from that around \
+             X {:.3} Y {:.3}",
+            shown(width),
+            at.x,
+            at.y,
+            other.x,
+            other.y
+        );
+        list(&mut errors, Diagnostic::error("not-parted", message).help(way_out(fits)));
+    }
+    Ok(errors)
+}
+
+/// Which islands of `board` are one when it has grown by half of `width` mm: each with the first of them.
+fn together(board: &Region, width: f64) -> Result<Vec<(usize, usize)>, RegionError> {
+    let grown = board.offset(width / 2.0)?;
+    let index = Index::new(&grown);
+    let mut firsts = BTreeMap::new();
+    let islands = board.islands().iter().enumerate().filter_map(|(i, island)| {
+        let start = island.outer().elements().first()?.start;
+        Some((i, *firsts.entry(index.island_at(start)?).or_insert(i)))
+    });
+    Ok(islands.filter(|(island, first)| island != first).collect())
 }
 
 /// A warning for each corner of `board` that a tool of `width` mm does not reach.
@@ -72,14 +117,18 @@ pub(super) fn corners(board: &Region, width: f64) -> Result<Vec<Diagnostic>, Reg
             at.x,
             at.y
         );
-        let warning = Diagnostic::warning("narrow-corner", message).help(way_out(fits));
-        let full = warnings.len() >= LISTED;
-        match warnings.last_mut().filter(|_| full) {
-            Some(last) => last.count = last.count.saturating_add(1),
-            None => warnings.push(warning),
-        }
+        list(&mut warnings, Diagnostic::warning("narrow-corner", message).help(way_out(fits)));
     }
     Ok(warnings)
+}
+
+/// Adds a finding, or counts it with the last where there are too many.
+fn list(findings: &mut Vec<Diagnostic>, finding: Diagnostic) {
+    let full = findings.len() >= LISTED;
+    match findings.last_mut().filter(|_| full) {
+        Some(last) => last.count = last.count.saturating_add(1),
+        None => findings.push(finding),
+    }
 }
 
 /// What a tool of `width` mm leaves beside the board that is no part of it, but for slivers.

@@ -296,6 +296,11 @@ fn empty_layers_and_holes_that_come_twice() {
     let empty = layer("Copper,L1,Top", "");
     let reading = read(&[("a", &empty), ("b.drl", drill), ("c.drl", drill)]).unwrap();
     assert_eq!(rules(&reading), ["layer-empty", "hole-twice"]);
+    // The same in inches, a slot from its other end, and a zero that has a sign.
+    let mm = b"M48\nMETRIC\nT1C1.016\n%\nT1\nX2.54Y0.0\nX10.16Y0.0G85X12.7Y0.0\nM30\n";
+    let inches = b"M48\nINCH\nT1C0.04\n%\nT1\nX0.1Y-0.0\nX0.5Y-0.0G85X0.4Y0.0\nM30\n";
+    let reading = read(&[("a.drl", mm), ("b.drl", inches)]).unwrap();
+    assert_eq!((rules(&reading), reading.board.holes.len()), (vec!["hole-twice"], 2));
     assert!(reading.board.front.copper.is_none());
     assert_eq!(reading.board.holes.len(), 2);
 }

@@ -54,6 +54,16 @@ fn what_is_erased_is_not_engraved() {
 }
 
 #[test]
+fn dots_stay_where_something_else_is_erased() {
+    // Dots at 0 and 4 mm, the second erased.
+    let text =
+        "%ADD10C,0.15*%%ADD11R,1X1*%D10*G01X0Y0D02*D01*X4000000D02*D01*%LPC*%D11*X4000000Y0D03*";
+    let engraving = engraved(&image(text), 0.2).unwrap();
+    let [dot] = &engraving.paths[..] else { panic!("{:?}", engraving.paths) };
+    assert_eq!((dot.start(), dot.end(), dot.length()), (Vec2::ZERO, Vec2::ZERO, 0.0));
+}
+
+#[test]
 fn widths_that_are_none_are_refused() {
     let letter = image("%ADD10C,0.15*%D10*X0Y0D02*X2000000D01*");
     for width in [0.0, -1.0, f64::NAN, f64::INFINITY] {

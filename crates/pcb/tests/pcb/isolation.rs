@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use std::collections::{BTreeMap, BTreeSet};
 use std::f64::consts::{FRAC_PI_4, PI, TAU};
 use toolpost_pcb::board::covered;
-use toolpost_pcb::isolation::{Direction, Isolated, Isolation, Narrow, NarrowGap};
+use toolpost_pcb::isolation::{Direction, Isolated, Isolation, Narrow, NarrowGap, severed};
 use toolpost_pcb::{Copper, Cutter, Path, gerber};
 
 /// A cut 0.2 mm wide.
@@ -175,6 +175,36 @@ fn pads_that_touch_have_a_gap_of_nothing() {
     near(gap.width, 0.0, 1e-5);
     assert!(gap.at.distance(Vec2::X) < 1e-5);
     assert_eq!((gap.length, gap.middle.is_none(), gap.widest_cut()), (0.0, true, 0.0));
+    assert!(!gap.can_be_cut());
+    let apart = narrow(&copper(&[disc(0.0, 0.0, 1.0), disc(2.1, 0.0, 1.0)]), 0.2);
+    assert!(apart[0].can_be_cut());
+}
+
+#[test]
+fn ways_across_a_track_sever_it_and_one_along_it_leaves_nothing() {
+    let tracks = [0.0, 1.0, 2.0].map(|y| track((0.0, y), (10.0, y), 0.3));
+    let copper = copper(&tracks);
+    let way = |from: (f64, f64), to: (f64, f64)| {
+        Path::new(vec![Element::line(from.into(), to.into())]).unwrap()
+    };
+    // Twice across the lowest, at 3 and 9 mm, along the middle one, and beside the uppermost.
+    let ways = [
+        way((3.0, -0.5), (3.0, 0.5)),
+        way((9.0, -0.5), (9.0, 0.5)),
+        way((-1.0, 1.0), (11.0, 1.0)),
+        way((-1.0, 2.2), (11.0, 2.2)),
+    ];
+    let mut pieces: Vec<(f64, usize, Vec2)> = severed(&copper, &ways, 0.4)
+        .unwrap()
+        .iter()
+        .map(|one| (copper.region.islands()[one.island].outer().extents().0.y, one.pieces, one.at))
+        .collect();
+    pieces.sort_by(|a, b| a.0.total_cmp(&b.0));
+    let [lowest, middle] = &pieces[..] else { panic!("{pieces:?}") };
+    assert_eq!((lowest.1, middle.1), (3, 0));
+    // The smallest piece is the last.
+    assert!(lowest.2.x > 9.0 && (middle.2.y - 1.0).abs() <= 0.15, "{pieces:?}");
+    assert_eq!(severed(&copper, &[], 0.4).unwrap(), []);
 }
 
 /// What a tool of `width` takes away along `paths`.

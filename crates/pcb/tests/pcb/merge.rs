@@ -93,6 +93,38 @@ fn what_is_short_is_dropped_and_the_chain_stays_closed() {
 }
 
 #[test]
+fn arcs_that_no_machine_resolves_are_lines() {
+    // A line of 5 mm with a half circle of this radius at its end, and a line on.
+    let bent = |radius: f64, sweep: f64| {
+        let (a, center) = (Vec2::new(5.0, 0.0), Vec2::new(5.0, radius));
+        let b = center + Vec2::from_angle(sweep).rotate(a - center);
+        let on = b + Vec2::from_angle(sweep) * 5.0;
+        let arc = Element::arc(a, b, center, sweep);
+        Path::new(vec![Element::line(Vec2::ZERO, a), arc, Element::line(b, on)]).unwrap()
+    };
+    let radii = |path: &Path| -> Vec<f64> {
+        let turned = |e: &Element| e.turn.map(|turn| turn.center.distance(e.start));
+        path.elements().iter().filter_map(turned).collect()
+    };
+    for (radius, sweep) in [(0.0005, PI), (0.001, PI), (0.003, 1.5 * PI), (0.009, PI), (0.2, 0.1)] {
+        let path = bent(radius, sweep);
+        let merged = path.merged(0.004).unwrap();
+        assert!(radii(&merged).iter().all(|radius| *radius >= 0.01), "{radius}: {merged:?}");
+        assert!(apart(&merged, &path) <= 0.004 && apart(&path, &merged) <= 0.004, "{radius}");
+        assert!(merged.elements().iter().all(|element| element.length() >= 0.001), "{radius}");
+    }
+    // 0.2·(1 - cos 0.05) is 0.25 µm, as good as a line; 0.2·(1 - cos 0.25) is 6 µm.
+    assert!(radii(&bent(0.2, 0.1).merged(0.004).unwrap()).is_empty());
+    for (radius, sweep) in [(0.02, PI), (0.2, 0.5)] {
+        assert_eq!(radii(&bent(radius, sweep).merged(0.004).unwrap()).len(), 1, "{radius}");
+    }
+    // Nor are lines made an arc that is as small.
+    let around = (0..=8).map(|i| Vec2::from_angle(PI * f64::from(i) / 8.0) * 0.006);
+    let around: Vec<(f64, f64)> = around.map(<(f64, f64)>::from).collect();
+    assert!(radii(&lines(&around).merged(0.004).unwrap()).is_empty());
+}
+
+#[test]
 fn near_ends_are_joined_where_that_cuts_nothing_new() {
     // Discs of 1 mm whose middles are 0.6 mm apart: 0.5 - √(0.5² - 0.3²) = 0.1 mm stay between them.
     let both = [lines(&[(0.0, 0.0), (5.0, 0.0)]), lines(&[(5.0, 0.6), (0.0, 0.6)])];

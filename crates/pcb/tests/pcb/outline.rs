@@ -166,6 +166,36 @@ fn too_wide_tools_are_found_with_the_place_and_what_fits() {
 }
 
 #[test]
+fn pieces_that_the_tool_does_not_part_are_refused() {
+    let panel = |gap: f64| {
+        let right = rectangle((10.0 + gap, 0.0), (20.0 + gap, 10.0));
+        region(&[rectangle((0.0, 0.0), (10.0, 10.0)), right])
+    };
+    let errors = outline(None).cut(&panel(1.5)).unwrap_err();
+    let [error] = &*errors else { panic!("{errors:?}") };
+    assert_eq!(error.rule, "not-parted");
+    assert!(error.message.contains("X 16.500 Y 5.000"), "{error}");
+    assert!(error.help.contains("1.375"), "{error}");
+    assert_eq!(ways(&outline(None).cut(&panel(2.1)).unwrap()).len(), 2);
+    // Nor is a piece in the cut-out of a frame.
+    let frame =
+        [((0.0, 0.0), (40.0, 40.0)), ((5.0, 5.0), (35.0, 35.0)), ((6.5, 6.5), (33.5, 33.5))];
+    let framed = region(&frame.map(|(low, high)| rectangle(low, high)));
+    assert_eq!(outline(None).cut(&framed).unwrap_err()[0].rule, "not-parted");
+}
+
+#[test]
+fn many_tight_cut_outs_are_counted() {
+    let slot =
+        |i: u32| rectangle((f64::from(i) * 2.0 + 1.0, 5.0), (f64::from(i) * 2.0 + 2.0, 15.0));
+    let rings: Vec<Ring> =
+        [rectangle((0.0, 0.0), (140.0, 20.0))].into_iter().chain((0..60).map(slot)).collect();
+    let errors = outline(None).cut(&region(&rings)).unwrap_err();
+    assert_eq!(errors.len(), 50);
+    assert_eq!(errors.iter().map(|error| error.count).sum::<u32>(), 60);
+}
+
+#[test]
 fn what_makes_no_sense_is_refused() {
     let board = region(&[rectangle((0.0, 0.0), (40.0, 20.0))]);
     let rule = |outline: Outline, board: &Region| outline.cut(board).unwrap_err()[0].rule;
@@ -237,7 +267,8 @@ proptest! {
         let cut = match outline(Some(tabs)).cut(&board) {
             Ok(cut) => cut,
             Err(errors) => {
-                prop_assert!(errors.iter().all(|error| error.rule == "cutout-too-small"));
+                let tight = |rule| matches!(rule, "cutout-too-small" | "not-parted");
+                prop_assert!(errors.iter().all(|error| tight(error.rule)));
                 return Ok(());
             }
         };

@@ -35,7 +35,9 @@ fn swept<'a>(paths: impl IntoIterator<Item = &'a Path>, width: f64) -> Region {
 fn check(copper: &Copper, board: &Region, width: f64) -> Division {
     let division = divided(copper, board, width).unwrap();
     let cut = swept(&division.paths, width);
-    let hurt = cut.intersection(&copper.region.offset(-0.005).unwrap()).unwrap();
+    // A gap that is just as wide as the tool is met to a fiftieth of it.
+    let near = (width / 45.0).max(0.005);
+    let hurt = cut.intersection(&copper.region.offset(-near).unwrap()).unwrap();
     assert!(hurt.area() < 1e-9, "{} mm² of copper at {:?}", hurt.area(), hurt.extents());
     // Where it is too wide the tool would cut copper; there a thin one shows that the way divides.
     let middles = division.narrow.iter().filter_map(|gap| gap.middle.as_ref());

@@ -68,16 +68,17 @@ pub enum Part {
 }
 
 impl Part {
-    /// All, in the order in which they are run.
+    /// All, in the order in which they are run: pins are drilled before the board is turned over, and it is
+    /// cut out at last.
     pub const ALL: [Part; 8] = [
         Part::Front,
-        Part::Back,
-        Part::Drill,
-        Part::Outline,
         Part::FrontMask,
-        Part::BackMask,
         Part::FrontLegend,
+        Part::Drill,
+        Part::Back,
+        Part::BackMask,
         Part::BackLegend,
+        Part::Outline,
     ];
 
     /// What its program and picture are called.
@@ -134,7 +135,7 @@ pub enum Picture {
 #[command(next_help_heading = "Copper")]
 pub struct Isolation {
     /// Width of the end mill that cuts around copper.
-    #[arg(long, value_name = "MM", value_parser = length, group = "bit")]
+    #[arg(long, value_name = "MM", value_parser = length, allow_negative_numbers = true, group = "bit")]
     pub tool: Option<f64>,
     /// Angle between the edges of a V-bit that does it; its width follows from --tip and --depth.
     #[arg(long, value_name = "DEGREES", value_parser = angle, group = "bit")]
@@ -146,7 +147,7 @@ pub struct Isolation {
     #[arg(long, value_name = "MM", value_parser = length, default_value = "0.1")]
     pub depth: f64,
     /// How deep at once [default: all of --depth].
-    #[arg(long, value_name = "MM", value_parser = length)]
+    #[arg(long, value_name = "MM", value_parser = step)]
     pub step: Option<f64>,
     /// How often around, each time farther out.
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=1000), default_value = "1")]
@@ -227,7 +228,7 @@ pub struct Drilling {
     #[arg(long, value_name = "MM", value_parser = length)]
     pub hole_mill: Option<f64>,
     /// How deep a drill goes at once [default: through].
-    #[arg(long, value_name = "MM", value_parser = length)]
+    #[arg(long, value_name = "MM", value_parser = step)]
     pub peck: Option<f64>,
     /// From which side holes and edges are cut.
     #[arg(long, value_name = "SIDE", default_value = "front")]
@@ -260,7 +261,7 @@ pub struct Outline {
     #[arg(long, value_name = "MM", value_parser = length, default_value = "2")]
     pub outline_tool: f64,
     /// How deep at once.
-    #[arg(long, value_name = "MM", value_parser = length, default_value = "0.5")]
+    #[arg(long, value_name = "MM", value_parser = step, default_value = "0.5")]
     pub outline_step: f64,
     /// How many tabs hold the board.
     #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(0..=100), default_value = "4")]
@@ -351,6 +352,14 @@ fn not_negative(text: &str) -> Result<f64, String> {
     match lengths(text) {
         Some([mm]) if mm >= 0.0 => Ok(mm),
         _ => Err(String::from("a length in mm is needed, 0 or more, such as 0.1")),
+    }
+}
+
+/// How deep at once, mm: not less than a machine can.
+fn step(text: &str) -> Result<f64, String> {
+    match lengths(text) {
+        Some([mm]) if mm >= 0.001 => Ok(mm),
+        _ => Err(String::from("a length in mm is needed, 0.001 or more, such as 0.1")),
     }
 }
 

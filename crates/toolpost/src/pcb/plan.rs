@@ -7,8 +7,8 @@ use pcb::board::{Axis, Face};
 use pcb::{Board, Hole};
 use program::Diagnostic;
 
-/// How far the pins that align a board are from it, mm.
-const PINS_BESIDE: f64 = 2.0;
+/// How much is left between the pins that align a board and the way on which it is cut out, mm.
+const PINS_BESIDE: f64 = 1.0;
 
 /// The programs of a board.
 pub struct Plan {
@@ -45,7 +45,10 @@ impl Plan {
             Turn::X => Axis::Y(front.middle().y),
         };
         let pins = match placing.alignment {
-            Some(diameter) => front.pins(axis, diameter, PINS_BESIDE)?.to_vec(),
+            Some(diameter) => {
+                let beside = args.outline.outline_tool + PINS_BESIDE;
+                front.pins(axis, diameter, beside)?.to_vec()
+            }
             None => Vec::new(),
         };
         let back = front.turned_over(axis);
@@ -58,6 +61,18 @@ impl Plan {
             let message = format!("there is no {} on {}", part.what(), plan.name);
             let help = "look which files of the board were read, and as what";
             return Err(Diagnostic::error("no-such-part", message).help(help).into());
+        }
+        let tools = [
+            (args.clearing.mask_tool, [Part::FrontMask, Part::BackMask]),
+            (args.clearing.legend_tool, [Part::FrontLegend, Part::BackLegend]),
+        ];
+        for (_, parts) in tools.iter().filter(|(tool, _)| tool.is_some()) {
+            if !parts.iter().any(|part| plan.has(*part)) {
+                let message =
+                    format!("a tool is given, and there is no {} nor of the back", parts[0].what());
+                let help = "give the layer too, or leave out the tool";
+                return Err(Diagnostic::error("no-such-part", message).help(help).into());
+            }
         }
         if plan.parts.is_empty() {
             return Err(empty().into());

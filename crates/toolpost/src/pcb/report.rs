@@ -78,13 +78,14 @@ impl Made {
     fn rows(&self, machine: &Machine) -> Vec<(&'static str, String)> {
         let shape = Shape::of(&self.program);
         let times = Times::of(&self.program, machine);
-        let data = &self.posted.account.data;
+        let account = &self.posted.account;
+        let data = &account.data;
         let (blocks, off) =
             (&data["program"]["blocks"], &data["proof"]["deviations"]["tip_mm"]["value"]);
         let operations: Vec<&str> =
             self.work.operations.iter().map(|operation| operation.name.as_str()).collect();
         let (cutting, rapid) = shape.lengths();
-        vec![
+        let mut rows = vec![
             (self.name, operations.join(", ")),
             (
                 "",
@@ -96,7 +97,10 @@ impl Made {
                     number(off.as_f64().unwrap_or_default(), 5),
                 ),
             ),
-        ]
+        ];
+        // What the writer says is no fault of the board.
+        rows.extend(account.findings.iter().map(|found| ("", found.message.clone())));
+        rows
     }
 
     fn describe(&self) -> Value {

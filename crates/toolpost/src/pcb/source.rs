@@ -29,12 +29,7 @@ pub fn read(paths: &[PathBuf]) -> Result<Source, Stop> {
         [folder] if folder.is_dir() => within(folder)?,
         files => files.to_vec(),
     };
-    let files: Vec<PathBuf> = match whole(&given) {
-        // A project of KiCad has its plots beside it, or nothing of a board but itself.
-        Some(board) if given.len() == 1 || !paths.contains(&board) => vec![board],
-        Some(board) => return Err(not_alone(&board)),
-        None => given,
-    };
+    let files = chosen(paths, given)?;
     let mut texts = Vec::with_capacity(files.len());
     for file in &files {
         texts.push((file.display().to_string(), files::name(file), files::read(file)?));
@@ -60,6 +55,12 @@ pub fn read(paths: &[PathBuf]) -> Result<Source, Stop> {
     Ok(Source { board, layers, warnings, files })
 }
 
+/// Endings that plots of layers have mostly: with such files beside it, a board of KiCad's is not read.
+const PLOTS: [&str; 9] = ["gbr", "ger", "gtl", "gbl", "cmp", "sol", "top", "bot", "drl"];
+
+/// What the names of copies begin with that KiCad makes while a board is edited.
+const COPY: &str = "_autosave-";
+
 /// Endings of boards as models.
 const MODEL: [&str; 2] = ["toml", "json"];
 
@@ -67,16 +68,27 @@ fn ending(file: &Path) -> String {
     file.extension().unwrap_or_default().to_string_lossy().to_lowercase()
 }
 
-/// The file that is a board by itself.
-fn whole(files: &[PathBuf]) -> Option<PathBuf> {
-    let whole = |file: &&PathBuf| {
+/// The files that are read: those of layers, or one that is a board by itself.
+fn chosen(paths: &[PathBuf], given: Vec<PathBuf>) -> Result<Vec<PathBuf>, Stop> {
+    let is_whole = |file: &&PathBuf| {
         let ending = ending(file);
-        ending == "kicad_pcb" || files.len() == 1 && MODEL.contains(&ending.as_str())
+        ending == "kicad_pcb" || given.len() == 1 && MODEL.contains(&ending.as_str())
     };
-    let plotted = |file: &PathBuf| matches!(ending(file).as_str(), "gbr" | "gtl" | "gbl" | "drl");
-    match files.iter().any(plotted) {
-        true => None,
-        false => files.iter().find(whole).cloned(),
+    let is_named = |file: &&&PathBuf| paths.contains(file);
+    let wholes: Vec<&PathBuf> = given.iter().filter(is_whole).collect();
+    match &wholes[..] {
+        [] => Ok(given),
+        [one] if given.len() == 1 => Ok(vec![(*one).clone()]),
+        _ if wholes.iter().any(|file| is_named(&file)) => Err(not_alone(wholes[0])),
+        // A folder of KiCad's has a board and its plots, or the board alone.
+        _ if given.iter().any(|file| PLOTS.contains(&ending(file).as_str())) => Ok(given),
+        [one] => Ok(vec![(*one).clone()]),
+        _ => {
+            let names: Vec<String> = wholes.iter().map(|file| files::name(file)).collect();
+            let message = format!("there are several boards in this folder: {}", names.join(", "));
+            let found = Diagnostic::error("board", message).help("give the file of the one");
+            Err(found.into())
+        }
     }
 }
 
@@ -95,9 +107,14 @@ fn within(folder: &Path) -> Result<Vec<PathBuf>, Stop> {
         |message: String| Diagnostic::error("folder", message).file(folder.display().to_string());
     let entries = std::fs::read_dir(folder)
         .map_err(|error| about(format!("the folder cannot be read: {error}")))?;
-    let paths = entries.flatten().map(|entry| entry.path());
-    let mut files: Vec<PathBuf> =
-        paths.filter(|path| path.is_file()).take(MOST_FILES + 1).collect();
+    let mut files = Vec::new();
+    for entry in entries.take(MOST_FILES + 1) {
+        let path =
+            entry.map_err(|error| about(format!("the folder cannot be read: {error}")))?.path();
+        if path.is_file() && !files::name(&path).starts_with(COPY) {
+            files.push(path);
+        }
+    }
     if files.is_empty() || files.len() > MOST_FILES {
         let message = match files.len() {
             0 => String::from("there is no file in this folder"),

@@ -8,14 +8,13 @@ use geom::region::Region;
 use machine::Machine;
 use pcb::drilling::{Drilling, Mill, Slots};
 use pcb::gerber::Image;
-use pcb::isolation::{Direction, Isolation, Narrow, NarrowGap, Severed};
+use pcb::isolation::{Direction, Isolation, Narrow, NarrowGap, Severed, severed};
 use pcb::outline::{Outline, Tabs};
 use pcb::tour::Tour;
 use pcb::{
     Board, Clearing, Copper, Cut, Cutter, Division, Engraving, Hole, Operation, Path, Tool, depths,
 };
 use program::Diagnostic;
-use std::collections::BTreeMap;
 
 /// The speed of a spindle that has no limit in its machine file, 1/min.
 const USUAL_SPEED: f64 = 10_000.0;
@@ -34,7 +33,7 @@ const SCALLOP: f64 = 0.02;
 const RINGS_OVERLAP: f64 = 0.4;
 
 /// What one program does.
-#[derive(Default)]
+#[derive(Clone, Default)]
 pub struct Work {
     /// Tool by tool.
     pub operations: Vec<Operation>,
@@ -104,10 +103,9 @@ impl Worker<'_> {
         }
         let area = area(board)?;
         let clearing = self.clearing(self.args.clearing.clear.clone());
-        // No nearer than the isolation, which leaves an edge of its own.
-        let margin = self.args.clearing.margin;
-        let cleared = clearing.rub_out(&copper.region, margin, &area)?;
+        let cleared = clearing.rub_out(&copper.region, self.args.clearing.margin, &area)?;
         self.cleared(work, "surplus copper", &clearing, &cleared.passes, &depths);
+        self.missing(work, &cleared.rest, "not cleared: the tools are too wide");
         Ok(())
     }
 
@@ -126,22 +124,7 @@ impl Worker<'_> {
             },
         };
         let isolated = isolation.isolate(copper, None)?;
-        for Severed { at, island, pieces } in &isolated.severed {
-            let net = net(copper, *island);
-            work.places.push((
-                *at,
-                format!("{net} is cut into {pieces} pieces, down the middle of a gap"),
-            ));
-        }
-        if let Some(severed) = isolated.severed.first() {
-            let message = format!(
-                "{} conductors are cut to pieces by cuts down the middle of gaps, {} among them",
-                isolated.severed.len(),
-                net(copper, severed.island)
-            );
-            let help = "take a narrower tool, or leave narrow gaps out (--narrow leave-out)";
-            work.warnings.push(Diagnostic::warning("conductor-severed", message).help(help));
-        }
+        tell_severed(work, copper, &isolated.severed);
         self.narrow(work, copper, &isolated.narrow, isolation.width())?;
         Ok(isolated.paths)
     }
@@ -157,9 +140,9 @@ impl Worker<'_> {
         let Some(widest) = gaps.first().map(NarrowGap::widest_cut) else { return Ok(()) };
         let middle = self.args.isolation.narrow == args::Narrow::Middle;
         for gap in gaps {
-            let done = match middle {
+            let done = match middle && gap.can_be_cut() {
                 true => format!("cut all the same: {:.3} mm thinner each", gap.thinned(width)),
-                false => String::from("left out: the nets stay joined here"),
+                false => String::from("left out: the cut does not part them here"),
             };
             let [a, b] = gap.islands.map(|island| net(copper, island));
             work.places.push((
@@ -170,22 +153,25 @@ impl Worker<'_> {
                 ),
             ));
         }
-        let help = match widest > 0.0 {
-            true => {
+        let help = match (widest > 0.0, middle) {
+            (true, true) => format!("a tool of {widest:.3} mm fits everywhere"),
+            (true, false) => {
                 format!("a tool of {widest:.3} mm fits everywhere; or cut them by --narrow middle")
             }
-            false => String::from("where copper touches no tool fits: look at the board"),
+            (false, _) => String::from("where copper touches no tool fits: look at the board"),
         };
-        if !middle && all_joined(copper, gaps) {
+        let left: Vec<&NarrowGap> =
+            gaps.iter().filter(|gap| !middle || !gap.can_be_cut()).collect();
+        if all_joined(copper, &left) {
             let message = format!(
                 "a cut {width:.3} mm wide fits between no two nets that are not joined elsewhere: \
                  nothing would be isolated"
             );
             return Err(Diagnostic::error("tool-too-wide", message).help(help).into());
         }
-        let (count, done) = (gaps.len(), if middle { "cut down the middle" } else { "left out" });
-        let message =
-            format!("{count} gaps are narrower than the cut of {width:.3} mm: they are {done}");
+        let done = if middle { "cut down the middle" } else { "left out" };
+        let gaps = counted(gaps.len(), "gap");
+        let message = format!("{gaps} narrower than the cut of {width:.3} mm: {done}");
         work.warnings.push(Diagnostic::warning("narrow-gap", message).help(help));
         Ok(())
     }
@@ -198,10 +184,18 @@ impl Worker<'_> {
         board: &Board,
         width: f64,
     ) -> Result<Vec<Path>, Stop> {
+        if self.args.isolation.passes > 1 {
+            let message =
+                "one way in the middle divides two nets, and several passes are asked for";
+            let help = "leave out --passes, or --isolate middle";
+            return Err(Diagnostic::error("passes", message).help(help).into());
+        }
         let Division { mut paths, narrow } = pcb::divided(copper, &area(board)?, width)?;
         self.narrow(work, copper, &narrow, width)?;
         if self.args.isolation.narrow == args::Narrow::Middle {
-            paths.extend(narrow.into_iter().filter_map(|gap| gap.middle));
+            let middles: Vec<Path> = narrow.into_iter().filter_map(|gap| gap.middle).collect();
+            tell_severed(work, copper, &severed(copper, &middles, width)?);
+            paths.extend(middles);
         }
         Ok(paths)
     }
@@ -254,7 +248,8 @@ impl Worker<'_> {
             from: Vec2::ZERO,
         };
         let cut = outline.cut(&area(board)?).map_err(Stop::invalid)?;
-        work.operations.push(cut.operation);
+        let name = format!("outline, {}", cut.operation.tool.name);
+        work.operations.push(Operation { name, ..cut.operation });
         work.warnings.extend(cut.warnings);
         Ok(())
     }
@@ -295,8 +290,8 @@ impl Worker<'_> {
             work.places.push((low.midpoint(high), what.to_owned()));
         }
         if !rest.is_empty() {
-            let message =
-                format!("{} places, {:.3} mm², are {what}", rest.islands().len(), rest.area());
+            let places = counted(rest.islands().len(), "place");
+            let message = format!("{places}, {:.3} mm², {what}", rest.area());
             let help = "take a narrower tool";
             work.warnings.push(Diagnostic::warning("not-reached", message).help(help));
         }
@@ -311,10 +306,13 @@ impl Worker<'_> {
         depths: &[f64],
     ) {
         for (width, paths) in clearing.widths.iter().zip(passes) {
+            let tool = self.end_mill(*width);
             if paths.is_empty() {
+                let message = format!("{what}: nothing is left that {} reaches", tool.name);
+                let help = "take a narrower tool, or leave it out";
+                work.warnings.push(Diagnostic::warning("not-reached", message).help(help));
                 continue;
             }
-            let tool = self.end_mill(*width);
             work.operations.push(Operation {
                 name: format!("{what}, {}", tool.name),
                 tool,
@@ -363,6 +361,32 @@ impl Worker<'_> {
     }
 }
 
+/// So many of something.
+fn counted(count: usize, what: &str) -> String {
+    format!("{count} {what}{}", if count == 1 { "" } else { "s" })
+}
+
+/// Tells of conductors that cuts down the middle of gaps leave in pieces.
+fn tell_severed(work: &mut Work, copper: &Copper, severed: &[Severed]) {
+    for Severed { at, island, pieces } in severed {
+        let net = net(copper, *island);
+        let what = match pieces {
+            0 => format!("nothing is left of {net}, by a cut down the middle of a gap"),
+            _ => format!("{net} is cut into {pieces} pieces, down the middle of a gap"),
+        };
+        work.places.push((*at, what));
+    }
+    if let Some(first) = severed.first() {
+        let message = format!(
+            "{} cut to pieces by cuts down the middle of gaps, {} among them",
+            counted(severed.len(), "conductor"),
+            net(copper, first.island)
+        );
+        let help = "take a narrower tool, or leave narrow gaps out (--narrow leave-out)";
+        work.warnings.push(Diagnostic::warning("conductor-severed", message).help(help));
+    }
+}
+
 /// What a conductor is called.
 fn net(copper: &Copper, island: usize) -> String {
     match copper.nets.get(island) {
@@ -385,7 +409,8 @@ fn along(paths: &[Path], width: f64, depths: &[f64]) -> Vec<Cut> {
     let mut ways = tour.of_paths(&ways);
     if depths.len() == 1 {
         // Deeper, a way that is not closed any more would be cut the other way round.
-        ways = pcb::joined(&ways, width, JOINED);
+        let joined = pcb::joined(&ways, width, JOINED);
+        ways = joined.iter().filter_map(|way| way.merged(MERGED)).collect();
     }
     let at = ways.last().map_or(Vec2::ZERO, Path::end);
     let order = Tour { from: at, ..tour }.of_points(&dots);
@@ -395,7 +420,7 @@ fn along(paths: &[Path], width: f64, depths: &[f64]) -> Vec<Cut> {
     ways.iter().map(|path| Cut::along(path, depths)).chain(dots).collect()
 }
 
-/// Where there is board: its outline, or the box around it where that is not known.
+/// Where there is board.
 fn area(board: &Board) -> Result<Region, Stop> {
     if let Some(outline) = &board.outline {
         return Ok(outline.clone());
@@ -405,29 +430,26 @@ fn area(board: &Board) -> Result<Region, Stop> {
     Err(Diagnostic::error("no-outline", message).help(help).into())
 }
 
-/// Whether gaps that are left out join all conductors with each other.
-fn all_joined(copper: &Copper, gaps: &[NarrowGap]) -> bool {
-    let mut group: Vec<usize> = (0..copper.region.islands().len()).collect();
-    fn root(group: &[usize], mut of: usize) -> usize {
-        while let Some(up) = group.get(of).filter(|up| **up != of) {
-            of = *up;
+/// Whether gaps that are left out join all conductors, which are more than one, with each other.
+fn all_joined(copper: &Copper, gaps: &[&NarrowGap]) -> bool {
+    let mut group = copper.conductors();
+    let conductors = group.iter().enumerate().filter(|(island, first)| island == *first).count();
+    fn root(group: &mut [usize], mut of: usize) -> usize {
+        while let Some(up) = group.get(of).copied().filter(|up| *up != of) {
+            // The way up is halved.
+            let beyond = group.get(up).copied().unwrap_or(up);
+            if let Some(place) = group.get_mut(of) {
+                *place = beyond;
+            }
+            of = up;
         }
         of
     }
-    let mut join = |a: usize, b: usize| {
-        let (a, b) = (root(&group, a), root(&group, b));
-        if let Some(group) = group.get_mut(a.max(b)) {
-            *group = a.min(b);
-        }
-    };
-    let mut known = BTreeMap::new();
-    for (island, net) in copper.nets.iter().enumerate() {
-        if let Some(net) = net {
-            join(*known.entry(net).or_insert(island), island);
-        }
-    }
     for gap in gaps {
-        join(gap.islands[0], gap.islands[1]);
+        let [a, b] = gap.islands.map(|island| root(&mut group, island));
+        if let Some(place) = group.get_mut(a.max(b)) {
+            *place = a.min(b);
+        }
     }
-    (0..group.len()).all(|island| root(&group, island) == 0)
+    conductors > 1 && (0..group.len()).all(|island| root(&mut group, island) == 0)
 }

@@ -31,7 +31,7 @@ fn odd(folder: &Folder, words: &[&str]) {
     fs::remove_dir_all(folder.path().join("out")).unwrap();
     let rule = words[0].trim_start_matches("warning[").trim_end_matches(']');
     assert!(reported.contains(&format!("\"rule\": \"{rule}\"")), "{rule}");
-    bad_call(folder, &["--strict"], &[&format!("error[{rule}]")]);
+    bad_call(folder, &["--strict", "--only", "outline"], &[&format!("error[{rule}]")]);
 }
 
 #[test]
@@ -198,6 +198,7 @@ fn tools_that_are_none() {
         refused(&folder, &arguments, 2, &["--tool", "greater than 0"]);
     }
     let none = ["pcb", "board", "-o", "out", "-m", "grbl-3018"];
+    refused(&folder, &[&none[..], &["--tool", "-0.2"]].concat(), 2, &["--tool", "greater than 0"]);
     refused(&folder, &none, 2, &["error[no-tool]", "--tool", "--vee", "--only"]);
     for angle in ["0", "180", "-30"] {
         let angle = format!("--vee={angle}");
@@ -205,6 +206,21 @@ fn tools_that_are_none() {
     }
     refused(&folder, &[&none[..], &["--tip", "0.1"]].concat(), 2, &["--vee"]);
     bad_call(&folder, &["--vee", "30"], &["--tool", "--vee"]);
+}
+
+#[test]
+fn steps_that_no_machine_makes_and_heights_that_cross() {
+    let folder = small();
+    for step in ["--step", "--outline-step", "--peck"] {
+        for length in ["0", "1e-9", "0.0009"] {
+            bad_call(&folder, &[step, length], &[step, "0.001 or more"]);
+        }
+    }
+    bad_call(
+        &folder,
+        &["--travel", "0.3"],
+        &["error[travel]", "0.3 mm", "0.5 mm", "--travel", "--approach"],
+    );
 }
 
 #[test]
@@ -256,11 +272,7 @@ fn sides_that_are_not_there() {
 fn heights_of_another_side_or_another_place() {
     let folder = small();
     folder.write("heights.txt", "0 0 0\n20 0 0\n0 10 0\n20 10 0\n");
-    bad_call(
-        &folder,
-        &["--heights", "heights.txt"],
-        &["error[heights]", "--only front,drill,outline"],
-    );
+    bad_call(&folder, &["--heights", "heights.txt"], &["error[heights]", "--only"]);
     let front = ["--only", "front", "--heights", "heights.txt"];
     // The board is from 0 to 20: heights of a part, and of another board.
     for (x, y) in [(0, 20), (100, 0)] {
@@ -314,4 +326,35 @@ fn machines_that_cannot_do_it() {
         ],
     );
     assert_eq!(said.err.matches("error[").count(), 2, "{}", said.err);
+}
+
+#[test]
+fn a_folder_with_two_boards() {
+    let folder = small();
+    std::fs::create_dir(folder.path().join("boards")).unwrap();
+    for name in ["a.kicad_pcb", "b.kicad_pcb"] {
+        folder.write(&format!("boards/{name}"), "(kicad_pcb)");
+    }
+    let call = ["pcb", "boards", "-o", "out", "-m", "grbl-3018"];
+    let said = folder.run(&call);
+    assert_eq!(said.code, 2);
+    for part in ["error[board]", "a.kicad_pcb, b.kicad_pcb", "the file of the one"] {
+        assert!(said.err.contains(part), "{part}: {}", said.err);
+    }
+    // What KiCad keeps while a board is edited is not one of them.
+    std::fs::rename(
+        folder.path().join("boards/a.kicad_pcb"),
+        folder.path().join("boards/_autosave-b.kicad_pcb"),
+    )
+    .unwrap();
+    let said = folder.run(&call);
+    assert!(said.err.contains("b.kicad_pcb:") && !said.err.contains("_autosave"), "{}", said.err);
+}
+
+#[test]
+fn an_output_among_the_files_of_the_board() {
+    let folder = small();
+    let said = folder.run(&["pcb", "board", "-o", "board", "-m", "grbl-3018", "--tool", "0.4"]);
+    assert_eq!(said.code, 2);
+    assert!(said.err.contains("error[output-folder]"), "{}", said.err);
 }

@@ -8,6 +8,12 @@
 //! ```
 
 use crate::folder::{Folder, Said};
+use drawing::Segment;
+use geom::Vec2;
+use program::Program;
+use serde_json::Value;
+use std::f64::consts::TAU;
+use toolpost::Origin;
 
 /// What isolates it, on a machine that has room for it.
 pub const CALL: [&str; 8] = ["pcb", "board", "-o", "out", "-m", "grbl-3018", "--tool", "0.4"];
@@ -72,3 +78,103 @@ pub fn refused(folder: &Folder, arguments: &[&str], code: i32, words: &[&str]) -
     assert_eq!(folder.names(), before);
     said
 }
+
+/// A board that was made: programs that are read back by the virtual control.
+pub struct Made<'a> {
+    pub folder: &'a Folder,
+    machine: &'a str,
+    pub said: Said,
+}
+
+impl<'a> Made<'a> {
+    /// Makes `board` with these arguments and no pictures, in the folder `out`.
+    #[track_caller]
+    pub fn of(folder: &'a Folder, board: &str, machine: &'a str, more: &[&str]) -> Made<'a> {
+        let call = ["pcb", board, "-o", "out", "-m", machine, "--picture", "none"];
+        let said = folder.run(&[&call, more].concat());
+        assert_eq!(said.code, 0, "{said:?}");
+        Made { folder, machine, said }
+    }
+
+    /// The report beside the programs.
+    pub fn report(&self) -> Value {
+        serde_json::from_str(&self.folder.read("out/report.json")).unwrap()
+    }
+
+    /// What the report says of the program of a part.
+    pub fn told(&self, part: &str) -> Value {
+        let report = self.report();
+        let programs = report["programs"].as_array().unwrap();
+        programs.iter().find(|program| program["name"] == part).unwrap().clone()
+    }
+
+    /// What its tools do, one after the other.
+    pub fn operations(&self, part: &str) -> Vec<String> {
+        let told = self.told(part);
+        let names = told["operations"].as_array().unwrap().iter();
+        names.map(|name| name.as_str().unwrap().to_owned()).collect()
+    }
+
+    /// The text of a program.
+    pub fn text(&self, part: &str) -> String {
+        self.folder.read(&format!("out/{part}.nc"))
+    }
+
+    /// The program of a part, as the control reads it.
+    pub fn program(&self, part: &str) -> Program {
+        let file = self.folder.path().join(format!("out/{part}.nc"));
+        let origin = Origin { from: Some(self.machine.to_owned()), ..Origin::default() };
+        toolpost::toolpath::read(&file, false, &origin, None).unwrap().program
+    }
+
+    /// What is cut with the tip below Z 0, straight down or along.
+    fn below(&self, part: &str, down: bool) -> Vec<Segment> {
+        let mut below = Vec::new();
+        drawing::walk(&self.program(part), 1e-4, &mut |segment| {
+            let is_down = segment.from.truncate().distance(segment.to.truncate()) < 1e-6;
+            if segment.cuts && segment.from.z.min(segment.to.z) < 0.0 && is_down == down {
+                below.push(segment);
+            }
+        });
+        assert!(!below.is_empty(), "nothing is cut in {part}");
+        below
+    }
+
+    /// What is cut along the board.
+    pub fn cuts(&self, part: &str) -> Vec<Segment> {
+        self.below(part, false)
+    }
+
+    /// How far is cut along the board, mm.
+    pub fn length(&self, part: &str) -> f64 {
+        self.cuts(part).iter().map(|cut| cut.length).sum()
+    }
+
+    /// Where a tool goes straight down, and how far: rounded to thousandths, sorted.
+    pub fn holes(&self, part: &str) -> Vec<[f64; 3]> {
+        let thousandth = |at: f64| (at * 1e3).round() / 1e3 + 0.0;
+        let place = |cut: Segment| cut.to.to_array().map(thousandth);
+        let mut holes: Vec<_> = self.below(part, true).into_iter().map(place).collect();
+        holes.sort_by(|a, b| a.partial_cmp(b).unwrap());
+        holes
+    }
+
+    /// Everything that is cut goes around one of `places`, mm, at this distance and depth.
+    #[track_caller]
+    pub fn circles(&self, part: &str, places: &[[f64; 2]], radius: f64, depth: f64) {
+        for cut in self.cuts(part) {
+            for end in [cut.from, cut.to] {
+                let off = |place: &[f64; 2]| Vec2::from(*place).distance(end.truncate());
+                let nearest = places.iter().map(off).fold(f64::INFINITY, f64::min);
+                assert!((nearest - radius).abs() < NEAR, "{part}: {end}, {nearest} mm");
+                assert!((end.z + depth).abs() < 1e-6, "{part}: {end}");
+            }
+        }
+        let whole = places.len() as f64 * TAU * radius;
+        let length = self.length(part);
+        assert!((length / whole - 1.0).abs() < 1e-3, "{part}: {length} mm, not {whole} mm");
+    }
+}
+
+/// How far a cut may be from where it should be, mm: ways are merged within 4 µm, words have three decimals.
+pub const NEAR: f64 = 0.005;

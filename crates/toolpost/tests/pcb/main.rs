@@ -4,5 +4,6 @@ mod bad_input;
 mod board;
 #[path = "../folder/mod.rs"]
 mod folder;
+mod programs;
 mod recut;
 mod scanlines;

@@ -6,7 +6,7 @@ use geom::Vec2;
 use pcb::board::Copper;
 use pcb::gerber::{self, Image};
 use serde_json::Value;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
 use toolpost::Origin;
 
@@ -53,15 +53,14 @@ impl Made {
         Made { report: serde_json::from_slice(&report).unwrap(), folder, machine, width }
     }
 
-    /// What the tool cuts in the copper of a side, in the coordinates of the Gerber file: a little less, and a
-    /// little more than its own width.
-    fn cut(&self, side: &str, lines: &Lines) -> (Lines, Lines) {
+    /// What the tool cuts for certain in the copper of a side, in the coordinates of the Gerber file.
+    fn cut(&self, side: &str, lines: &Lines) -> Lines {
         let file = self.folder.path().join(side).with_extension("nc");
         let origin = Origin { from: Some(self.machine.to_owned()), ..Origin::default() };
         let read = toolpost::toolpath::read(&file, false, &origin, None).unwrap();
         let x = |corner: &str| self.report["board"][corner][0].as_f64().unwrap();
         let both = x("low_mm") + x("high_mm");
-        let (mut less, mut more) = (lines.clone(), lines.clone());
+        let mut cut = lines.clone();
         drawing::walk(&read.program, 1e-4, &mut |segment| {
             if !segment.cuts || segment.from.z.min(segment.to.z) >= 0.0 {
                 return;
@@ -71,12 +70,10 @@ impl Made {
                 _ => point.truncate(),
             };
             let (from, to) = (place(segment.from), place(segment.to));
-            less.sweep(from, to, self.width / 2.0 - TOLERANCE);
-            more.sweep(from, to, self.width / 2.0 + TOLERANCE);
+            cut.sweep(from, to, self.width / 2.0 - TOLERANCE);
         });
-        less.tidy();
-        more.tidy();
-        (less, more)
+        cut.tidy();
+        cut
     }
 
     /// Where nets could not be parted, in the coordinates of the Gerber file.
@@ -103,12 +100,12 @@ impl Made {
         let none = Lines::none(low.y, high.y, STEP);
         let mut copper = none.clone();
         copper.paint(&image);
-        let (less, more) = self.cut(side, &none);
-        let thinned = copper.within(&less).area();
+        let cut = self.cut(side, &none);
+        let thinned = copper.within(&cut).area();
         assert!(thinned < 1e-6, "{}: {thinned} mm² of copper are cut", file.display());
-        let left = none.filled(low.x, high.x).without(&less);
+        let left = none.filled(low.x, high.x).without(&cut);
         self.nets(side, &image, &copper, &left);
-        assert!(more.area() > less.area() && less.area() > 0.0);
+        assert!(cut.area() > 0.0);
     }
 
     /// Each piece of copper has to be in one piece of what is left; two in one piece have to be of one net,
@@ -144,11 +141,12 @@ impl Made {
             }
         }
         for place in self.places(side) {
-            let around = copper.around(place, self.width);
-            let mut around = around.into_iter().map(|(line, i)| conductors.of(line, i));
-            if let Some(first) = around.next() {
-                around.for_each(|other| joined.join(first, other));
-            }
+            // A place that is listed is between two of them, nearer than the cut is wide.
+            let around = copper.around(place, self.width / 2.0);
+            let around: BTreeSet<usize> =
+                around.into_iter().map(|(line, i)| conductors.of(line, i)).collect();
+            assert!(around.len() > 1, "{side}: nothing is narrow at {place}");
+            around.iter().zip(around.iter().skip(1)).for_each(|(a, b)| joined.join(*a, *b));
         }
         let mut holds: BTreeMap<usize, usize> = BTreeMap::new();
         for (conductor, piece) in &within {

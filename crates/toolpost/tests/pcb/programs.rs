@@ -1,0 +1,541 @@
+//! Programs as they are asked for: what is cut where, worked out by hand for a small board.
+
+use crate::board::{DRILL, FRONT, Made, NEAR, edge, front, gerber, small};
+use crate::folder::Folder;
+use geom::Vec2;
+use program::Op;
+use std::collections::BTreeSet;
+use std::f64::consts::{PI, TAU};
+use std::path::Path;
+
+/// The small board on the small router, cut with 0.4 mm.
+#[track_caller]
+fn made<'a>(folder: &'a Folder, more: &[&str]) -> Made<'a> {
+    Made::of(folder, "board", "grbl-3018", &[&["--tool", "0.4"], more].concat())
+}
+
+/// The length of the middle of a tool of 2 mm around the small board, mm.
+const AROUND: f64 = 60.0 + TAU;
+
+#[test]
+fn a_board_is_isolated_drilled_and_cut_out() {
+    let folder = small();
+    let made = made(&folder, &[]);
+    made.circles("front", &[[4.0, 5.0], [14.0, 5.0]], 1.2, 0.1);
+    // Turned over about the line in its middle: X becomes 20 - X.
+    made.circles("back", &[[16.0, 3.0], [6.0, 8.0]], 0.7, 0.1);
+    assert_eq!(made.holes("drill"), [[4.0, 5.0, -1.8], [14.0, 5.0, -1.8]]);
+    let report = made.report();
+    assert_eq!(report["board"]["low_mm"], serde_json::json!([0.0, 0.0]));
+    assert_eq!(report["board"]["high_mm"], serde_json::json!([20.0, 10.0]));
+    assert_eq!(made.operations("front"), ["isolation, end mill 0.4 mm"]);
+    assert_eq!(made.operations("drill"), ["drill 0.8 mm"]);
+    for part in ["front", "back", "drill", "outline"] {
+        assert_eq!(made.told(part)["proof"]["proven"], true);
+    }
+}
+
+#[test]
+fn a_board_is_turned_over_about_either_line() {
+    let folder = small();
+    let made = made(&folder, &["--turn", "x", "--only", "back"]);
+    made.circles("back", &[[4.0, 7.0], [14.0, 2.0]], 0.7, 0.1);
+}
+
+#[test]
+fn pins_are_where_they_were_when_the_board_is_turned() {
+    let folder = small();
+    // Beside the way of the mill that cuts the board out, which is 2 mm wide: 1 mm is left between them.
+    for (turn, pins, holes) in [
+        ("y", [[-4.5, 5.0], [24.5, 5.0]], [[6.0, 5.0], [16.0, 5.0]]),
+        ("x", [[10.0, -4.5], [10.0, 14.5]], [[4.0, 5.0], [14.0, 5.0]]),
+    ] {
+        for (from, holes) in [("front", [[4.0, 5.0], [14.0, 5.0]]), ("back", holes)] {
+            let more = ["--alignment", "3", "--turn", turn, "--from", from, "--only", "drill"];
+            let made = made(&folder, &more);
+            assert_eq!(made.operations("drill"), ["drill 0.8 mm", "drill 3 mm"]);
+            let mut right: Vec<_> =
+                pins.into_iter().chain(holes).map(|[x, y]| [x, y, -1.8]).collect();
+            right.sort_by(|a, b| a.partial_cmp(b).unwrap());
+            assert_eq!(made.holes("drill"), right, "{turn}, {from}");
+        }
+    }
+}
+
+#[test]
+fn a_board_lies_where_it_is_put() {
+    let folder = small();
+    front(&folder, &FRONT.replace("X4000Y", "X24000Y").replace("X14000Y", "X34000Y"));
+    edge(&folder, "D11*\nX20000Y0D02*\nX40000D01*\nY10000D01*\nX20000D01*\nY0D01*\n");
+    std::fs::remove_file(folder.path().join("board/back.gbr")).unwrap();
+    std::fs::remove_file(folder.path().join("board/holes.drl")).unwrap();
+    for (more, x, y) in [
+        (&[][..], 0.0, 0.0),
+        (&["--as-drawn"][..], 20.0, 0.0),
+        (&["--corner", "100,50"][..], 100.0, 50.0),
+        (&["--corner", "-7.5,-0.5"][..], -7.5, -0.5),
+    ] {
+        let made = made(&folder, more);
+        made.circles("front", &[[x + 4.0, y + 5.0], [x + 14.0, y + 5.0]], 1.2, 0.1);
+        assert_eq!(made.report()["board"]["low_mm"], serde_json::json!([x, y]));
+    }
+}
+
+#[test]
+fn a_panel_is_many_boards() {
+    let folder = small();
+    let made = made(&folder, &["--panel", "2x2", "--spacing", "4"]);
+    // From board to board: 20 + 4 and 10 + 4 mm.
+    let places = |pads: [[f64; 2]; 2]| -> Vec<[f64; 2]> {
+        let corners = [[0.0, 0.0], [24.0, 0.0], [0.0, 14.0], [24.0, 14.0]];
+        corners.iter().flat_map(|[x, y]| pads.map(|pad| [x + pad[0], y + pad[1]])).collect()
+    };
+    made.circles("front", &places([[4.0, 5.0], [14.0, 5.0]]), 1.2, 0.1);
+    // X becomes 44 - X.
+    made.circles("back", &places([[16.0, 3.0], [6.0, 8.0]]), 0.7, 0.1);
+    let holes: BTreeSet<_> =
+        made.holes("drill").iter().map(|[x, y, _]| (*x as i32, *y as i32)).collect();
+    let right: Vec<_> = places([[4.0, 5.0], [14.0, 5.0]]);
+    assert_eq!(holes, right.iter().map(|[x, y]| (*x as i32, *y as i32)).collect());
+    let report = made.report();
+    assert_eq!(report["board"]["high_mm"], serde_json::json!([44.0, 24.0]));
+    assert_eq!(report["board"]["holes"], 8);
+}
+
+#[test]
+fn copper_that_is_of_no_net_is_taken_away_by_the_widest_tool_first() {
+    let folder = small();
+    let made = made(&folder, &["--clear", "0.8,0.4", "--only", "front"]);
+    let operations = made.operations("front");
+    assert_eq!(operations[..2], ["isolation, end mill 0.4 mm", "surplus copper, end mill 0.8 mm"]);
+    let cuts: Vec<_> = made.cuts("front");
+    let width = |tool: usize| if operations[tool - 1].contains("0.8") { 0.8 } else { 0.4 };
+    let pads = [Vec2::new(4.0, 5.0), Vec2::new(14.0, 5.0)];
+    let from_pads = |at: Vec2| at.distance(pads[0]).min(at.distance(pads[1])) - 1.0;
+    for (x, y) in (0..=100).flat_map(|x| (0..=50).map(move |y| (x, y))) {
+        // Tools stay on the board: a little is left in its corners.
+        if (x == 0 || x == 100) && (y == 0 || y == 50) {
+            continue;
+        }
+        let at = Vec2::new(f64::from(x), f64::from(y)) / 5.0;
+        let cut = cuts.iter().map(|cut| {
+            let (from, to) = (cut.from.truncate(), cut.to.truncate());
+            let along = ((at - from).dot(to - from) / from.distance_squared(to)).clamp(0.0, 1.0);
+            at.distance(from.lerp(to, along)) - width(cut.tool) / 2.0
+        });
+        let off = cut.fold(f64::INFINITY, f64::min);
+        if from_pads(at) > NEAR {
+            assert!(off < NEAR, "{at} stays, {off} mm from what is cut");
+        } else if from_pads(at) < -NEAR {
+            assert!(off > -from_pads(at) - NEAR, "{at} of a pad is cut");
+        }
+    }
+}
+
+#[test]
+fn conductors_are_parted_in_the_middle_between_them() {
+    let folder = small();
+    let made = made(&folder, &["--isolate", "middle", "--only", "front"]);
+    let cuts = made.cuts("front");
+    for end in cuts.iter().flat_map(|cut| [cut.from, cut.to]) {
+        assert!((end.x - 9.0).abs() < NEAR && end.z == -0.1, "{end}");
+    }
+    let ends = || cuts.iter().flat_map(|cut| [cut.from.y, cut.to.y]);
+    let (low, high) = (ends().fold(5.0, f64::min), ends().fold(5.0, f64::max));
+    // All through the board of 10 mm, and not farther than the tool is wide.
+    let reaches = |end: f64| (-NEAR..=0.4).contains(&end);
+    assert!(reaches(-low) && reaches(high - 10.0), "{low} {high}");
+}
+
+#[test]
+fn a_narrow_gap_is_left_out_or_cut_down_its_middle() {
+    let folder = small();
+    // Squares of 2 mm with 0.3 mm between them, and one far away.
+    front(&folder, "D12*\nX4000Y5000D03*\nX6300Y5000D03*\nX14000Y5000D03*\n");
+    let between = |made: &Made| -> f64 {
+        let cuts = made.cuts("front");
+        let within = cuts.iter().filter(|cut| {
+            let middle = cut.from.midpoint(cut.to);
+            (middle.x - 5.15).abs() < 0.01 && (middle.y - 5.0).abs() < 1.13
+        });
+        within.map(|cut| cut.length).sum()
+    };
+    let left = made(&folder, &["--only", "front"]);
+    assert_eq!(between(&left), 0.0);
+    assert!(
+        left.said
+            .err
+            .contains("warning[narrow-gap]: 1 gap narrower than the cut of 0.400 mm: left out"),
+        "{}",
+        left.said.err
+    );
+    let told = left.told("front");
+    let place = &told["places"][0];
+    // Between the corners, 0.3 mm apart, the way is 0.2 mm from both 0.132 mm farther out: √(0.2² - 0.15²).
+    let what = place["what"].as_str().unwrap();
+    assert!(what.contains("0.300 mm apart over 2.26 mm") && what.contains("left out"), "{what}");
+    let (x, y) = (place["x"].as_f64().unwrap(), place["y"].as_f64().unwrap());
+    assert!((x - 5.15).abs() < NEAR && (y - 5.0).abs() <= 1.133, "{x} {y}");
+    let cut = made(&folder, &["--only", "front", "--narrow", "middle"]);
+    let length = between(&cut);
+    assert!((length - 2.265).abs() < 0.01, "{length}");
+    let told = cut.told("front");
+    // Half of what the tool is wider than the gap.
+    assert!(told["places"][0]["what"].as_str().unwrap().contains("0.050 mm thinner"), "{told}");
+}
+
+#[test]
+fn a_bit_is_as_wide_as_it_is_deep() {
+    let folder = small();
+    let bit = ["--vee", "30", "--tip", "0.1", "--depth", "0.08", "--only", "front"];
+    let made = Made::of(&folder, "board", "grbl-3018", &bit);
+    // Width: 0.1 + 2 · 0.08 · tan 15°.
+    let width: f64 = 0.1 + 2.0 * 0.08 * 0.267_949_192;
+    made.circles("front", &[[4.0, 5.0], [14.0, 5.0]], 1.0 + width / 2.0, 0.08);
+    assert_eq!(made.operations("front"), ["isolation, V-bit 30 degrees"]);
+}
+
+#[test]
+fn a_depth_is_cut_in_steps() {
+    let folder = small();
+    let made = made(&folder, &["--depth", "0.1", "--step", "0.05", "--only", "front"]);
+    for (depth, count) in [(-0.05, 2), (-0.1, 2)] {
+        let cuts = made.cuts("front").into_iter().filter(|cut| cut.to.z == depth);
+        let length: f64 = cuts.map(|cut| cut.length).sum();
+        let right = f64::from(count) * TAU * 1.2;
+        assert!((length / right - 1.0).abs() < 1e-3, "{depth}: {length}");
+    }
+}
+
+#[test]
+fn solder_mask_is_opened() {
+    let folder = small();
+    folder.write("board/mask.gbr", gerber("Soldermask,Top", "D10*\nX4000Y5000D03*\n"));
+    let made = made(&folder, &["--mask-tool", "0.4", "--only", "front-mask"]);
+    assert_eq!(made.operations("front-mask"), ["solder mask, end mill 0.4 mm"]);
+    let cuts = made.cuts("front-mask");
+    let from = |end: geom::Vec3| end.truncate().distance(Vec2::new(4.0, 5.0));
+    let ends = || cuts.iter().flat_map(|cut| [cut.from, cut.to]);
+    let farthest = ends().map(from).fold(0.0, f64::max);
+    let nearest = ends().map(from).fold(9.0, f64::min);
+    assert!((farthest - 0.8).abs() < NEAR && nearest < 0.2 + NEAR, "{nearest} to {farthest}");
+    assert!(ends().all(|end| end.z == -0.05));
+    // Where a tool is given, it is among the programs that are made without being asked for.
+    let made = self::made(&folder, &["--mask-tool", "0.4"]);
+    assert_eq!(made.told("front-mask")["proof"]["proven"], true);
+    assert_eq!(made.report()["programs"].as_array().unwrap().len(), 5);
+}
+
+#[test]
+fn a_legend_is_engraved_around_its_strokes() {
+    let folder = small();
+    let line = "D11*\nX8000Y5000D02*\nX10000D01*\n";
+    folder.write("board/legend.gbr", gerber("Legend,Top", line));
+    let made = made(&folder, &["--legend-tool", "0.1", "--only", "front-legend"]);
+    // Within the line of 1 mm: two pieces of 2 mm, two half circles of 0.45 mm.
+    let (length, right) = (made.length("front-legend"), 4.0 + TAU * 0.45);
+    assert!((length / right - 1.0).abs() < 1e-3, "{length} mm, not {right} mm");
+    assert!(made.cuts("front-legend").iter().all(|cut| cut.to.z == -0.05));
+}
+
+#[test]
+fn holes_are_made_by_the_drills_that_there_are() {
+    let folder = small();
+    folder.write(
+        "board/holes.drl",
+        "M48\nMETRIC\nT1C0.8\nT2C0.82\n%\nT1\nX4.0Y5.0\nT2\nX14.0Y5.0\nM30\n",
+    );
+    let all = made(&folder, &["--only", "drill"]);
+    assert_eq!(all.operations("drill"), ["drill 0.8 mm", "drill 0.82 mm"]);
+    let one = made(&folder, &["--only", "drill", "--drills", "0.8,3"]);
+    assert_eq!(one.operations("drill"), ["drill 0.8 mm"]);
+    assert_eq!(one.holes("drill"), [[4.0, 5.0, -1.8], [14.0, 5.0, -1.8]]);
+    let differs =
+        "warning[drill-differs]: a hole of 0.82 mm at X 14.000 Y 5.000 is drilled with 0.8 mm";
+    assert!(one.said.err.contains(differs), "{}", one.said.err);
+}
+
+#[test]
+fn holes_without_a_drill_and_slots_are_milled() {
+    let folder = small();
+    folder.write(
+        "board/holes.drl",
+        "M48\nMETRIC\nT1C0.8\nT2C3.0\nT3C1.5\n%\nT1\nX4.0Y5.0\nT2\nX14.0Y5.0\nT3\n\
+         X8.0Y5.0G85X10.0Y5.0\nM30\n",
+    );
+    let made = made(&folder, &["--only", "drill", "--drills", "0.8", "--hole-mill", "1"]);
+    assert_eq!(made.operations("drill"), ["drill 0.8 mm", "mill holes"]);
+    let mut deepest = [0.0, 0.0];
+    for cut in made.cuts("drill") {
+        for end in [cut.from, cut.to] {
+            let at = end.truncate();
+            let slot = at.distance(Vec2::new(at.x.clamp(8.0, 10.0), 5.0));
+            // The edge of the mill, 0.5 mm away, reaches the wall and no farther.
+            assert!(slot < 0.25 + NEAR || at.distance(Vec2::new(14.0, 5.0)) < 1.0 + NEAR, "{at}");
+        }
+        if cut.from.z == -1.8 && cut.to.z == -1.8 {
+            deepest[usize::from(cut.to.x > 12.0)] += cut.length;
+        }
+    }
+    let right = [4.0 + TAU * 0.25, TAU];
+    for (length, right) in deepest.iter().zip(right) {
+        assert!(length / right > 0.999, "{length} mm, not {right} mm");
+    }
+    // Without a mill a slot is a chain of holes from end to end.
+    let only = DRILL.replace("X4.0Y5.0", "X4.0Y5.0G85X6.0Y5.0");
+    folder.write("board/holes.drl", only);
+    let chain = self::made(&folder, &["--only", "drill"]).holes("drill");
+    assert!(chain.len() > 4 && chain.contains(&[4.0, 5.0, -1.8]), "{chain:?}");
+    assert!(chain.contains(&[6.0, 5.0, -1.8]) && chain.iter().all(|hole| hole[1] == 5.0));
+}
+
+#[test]
+fn drills_peck() {
+    let folder = small();
+    let more = ["--peck", "0.5", "--only", "drill"];
+    // GRBL has no cycles: each peck is written out.
+    let depths: Vec<f64> =
+        made(&folder, &more).holes("drill").iter().filter(|h| h[0] == 4.0).map(|h| h[2]).collect();
+    assert_eq!(depths, [-1.8, -1.5, -1.0, -0.5]);
+    let text = Made::of(&folder, "board", "linuxcnc-mill", &more).text("drill");
+    let cycle = text.lines().find(|line| line.contains("G83")).unwrap();
+    assert!(cycle.contains("Z-1.8") && cycle.contains("Q0.5"), "{cycle}");
+}
+
+#[test]
+fn tabs_hold_the_board() {
+    let folder = small();
+    let at = |made: &Made, depth: f64| -> f64 {
+        let cuts = made.cuts("outline").into_iter();
+        let there = cuts.filter(|cut| cut.from.z == depth && cut.to.z == depth);
+        there.map(|cut| cut.length).sum()
+    };
+    let near = |length: f64, right: f64| {
+        assert!((length / right - 1.0).abs() < 1e-3, "{length} mm, not {right} mm");
+    };
+    let none = made(&folder, &["--tabs", "0", "--only", "outline"]);
+    near(at(&none, -1.8), AROUND);
+    // A tab of 2 mm is 4 mm of the way of a tool of 2 mm.
+    let two = ["--tabs", "2", "--tab-width", "2", "--tab-height", "0.6", "--only", "outline"];
+    let two = made(&folder, &two);
+    near(at(&two, -1.8), AROUND - 8.0);
+    let low = two.cuts("outline").iter().map(|cut| cut.from.z.min(cut.to.z)).fold(0.0, f64::min);
+    assert_eq!(low, -1.8);
+}
+
+#[test]
+fn the_height_of_a_board_is_probed() {
+    let folder = small();
+    for machine in ["grbl-3018", "linuxcnc-mill"] {
+        let made = Made::of(
+            &folder,
+            "board",
+            machine,
+            &["--tool", "0.4", "--probe", "4x3", "--only", "front"],
+        );
+        assert_eq!(made.text("probe").matches("G38.2").count(), 12);
+        let program = made.program("probe");
+        let probes = program.records.iter().filter_map(|record| match &record.op {
+            Op::Probe(probe) => Some(probe.end.point),
+            _ => None,
+        });
+        let places: BTreeSet<(i64, i64)> =
+            probes.map(|at| ((at.x * 1e3).round() as i64, (at.y * 1e3).round() as i64)).collect();
+        let columns = [0, 6667, 13333, 20000];
+        let right = columns.iter().flat_map(|x| [0, 5000, 10000].map(|y| (*x, y))).collect();
+        assert_eq!(places, right, "{machine}");
+    }
+}
+
+#[test]
+fn programs_follow_the_surface_that_was_measured() {
+    // A board that rises along X and falls along Y, as LinuxCNC and GRBL answer.
+    let plane = |x: f64, y: f64| -0.1 + 0.01 * x - 0.02 * y;
+    let places = [0.0, 10.0, 20.0].map(|x| [0.0, 5.0, 10.0].map(|y| (x, y))).concat();
+    let table: String = places
+        .iter()
+        .map(|(x, y)| format!("{x:.6} {y:.6} {:.6} 0.0 0.0 0.0 0.0 0.0 0.0\n", plane(*x, *y)))
+        .collect();
+    // The zero of the work is at -100 -80 -20 of the machine.
+    let answer = |(x, y): &(f64, f64)| {
+        format!("[PRB:{:.3},{:.3},{:.3}:1]\nok\n", x - 100.0, y - 80.0, plane(*x, *y) - 20.0)
+    };
+    let answers: String = places.iter().map(answer).collect();
+    let answers = format!("[G54:-100.000,-80.000,-20.000]\nok\n{answers}");
+    for (machine, heights) in [("linuxcnc-mill", table), ("grbl-3018", answers)] {
+        let folder = small();
+        let file = folder.write("heights.txt", heights);
+        let more = ["--tool", "0.4", "--only", "front,drill,outline", "--tabs", "0", "--heights"];
+        let made =
+            Made::of(&folder, "board", machine, &[&more[..], &[file.to_str().unwrap()]].concat());
+        let mut length = 0.0;
+        for cut in made.cuts("front") {
+            for end in [cut.from, cut.to] {
+                let off = end.z - plane(end.x, end.y) + 0.1;
+                assert!(off.abs() < 0.006, "{machine}: {end} is {off} mm off");
+            }
+            length += cut.length;
+        }
+        assert!((length / (2.0 * TAU * 1.2) - 1.0).abs() < 1e-3, "{length}");
+        // The surface is at -0.1 + 0.04 - 0.1 and at -0.1 + 0.14 - 0.1.
+        let holes = made.holes("drill");
+        assert_eq!(holes, [[4.0, 5.0, -1.96], [14.0, 5.0, -1.86]], "{machine}");
+        let low = made.cuts("outline").into_iter().filter(|cut| {
+            let off = cut.to.z - plane(cut.to.x.clamp(0.0, 20.0), cut.to.y.clamp(0.0, 10.0)) + 1.8;
+            off.abs() < 0.006
+        });
+        let around: f64 = low.map(|cut| cut.length).sum();
+        assert!((around / AROUND - 1.0).abs() < 0.01, "{machine}: {around}");
+    }
+}
+
+/// The way of the middle of a tool as points 0.05 mm apart, and by squares of 0.1 mm.
+struct Way {
+    points: Vec<Vec2>,
+    squares: BTreeSet<(i64, i64)>,
+}
+
+impl Way {
+    fn of(made: &Made, part: &str) -> Way {
+        let mut points = Vec::new();
+        for cut in made.cuts(part) {
+            let steps = (cut.length / 0.05).ceil().max(1.0);
+            for step in 0..=steps as u32 {
+                points.push(cut.from.lerp(cut.to, f64::from(step) / steps).truncate());
+            }
+        }
+        let squares = points.iter().map(|at| Way::square(*at)).collect();
+        Way { points, squares }
+    }
+
+    fn square(at: Vec2) -> (i64, i64) {
+        ((at.x * 10.0).floor() as i64, (at.y * 10.0).floor() as i64)
+    }
+
+    /// How many of its points are not in a square of the other way, or beside one.
+    fn beside(&self, other: &Way) -> usize {
+        let near = |at: &&Vec2| {
+            let (x, y) = Way::square(**at);
+            (-1..=1).all(|dx| (-1..=1).all(|dy| !other.squares.contains(&(x + dx, y + dy))))
+        };
+        self.points.iter().filter(near).count()
+    }
+}
+
+#[test]
+fn a_board_of_kicad_and_its_plots_are_the_same_programs() {
+    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
+    let data = std::env::var_os("TOOLPOST_DATA").map_or(beside, Into::into).join("gerber/kicad");
+    if !data.is_dir() {
+        return eprintln!("skipped: no real boards in {}", data.display());
+    }
+    let (plots, board) = (Folder::empty(), Folder::empty());
+    let path = |name: &str| data.join(name).display().to_string();
+    let more = ["--tool", "0.2"];
+    let plots = Made::of(&plots, &path("ecc83-pp"), "linuxcnc-mill", &more);
+    let board = Made::of(&board, &path("ecc83-pp.kicad_pcb"), "linuxcnc-mill", &more);
+    // From the edge: 52.07 by 46.355 mm.
+    for made in [&plots, &board] {
+        let [low, high] = ["low_mm", "high_mm"].map(|end| made.report()["board"][end].clone());
+        let size = |i: usize| high[i].as_f64().unwrap() - low[i].as_f64().unwrap();
+        assert!((size(0) - 52.07).abs() < 1e-6 && (size(1) - 46.355).abs() < 1e-6, "{high}");
+    }
+    assert_eq!(plots.holes("drill"), board.holes("drill"));
+    assert_eq!(plots.operations("drill"), board.operations("drill"));
+    for part in ["front", "back", "outline"] {
+        let (one, other) = (plots.length(part), board.length(part));
+        assert!((one / other - 1.0).abs() < 2e-3, "{part}: {one} mm and {other} mm");
+        let (one, other) = (Way::of(&plots, part), Way::of(&board, part));
+        assert_eq!((one.beside(&other), other.beside(&one)), (0, 0), "{part}");
+    }
+}
+
+#[test]
+fn a_model_is_a_board() {
+    let folder = Folder::empty();
+    folder.write("lamp.toml", include_str!("../../../../examples/lamp.toml"));
+    let made = Made::of(&folder, "lamp.toml", "linuxcnc-mill", &["--tool", "0.2"]);
+    assert_eq!(made.report()["board"]["high_mm"], serde_json::json!([30.0, 20.0]));
+    assert_eq!(made.operations("drill"), ["drill 0.8 mm", "drill 1 mm"]);
+    // R1 stands at 14,14, D1 at 24,8 and turned by 90 degrees.
+    let mut right =
+        [[4.0, 14.0], [4.0, 6.0], [8.92, 14.0], [19.08, 14.0], [24.0, 9.27], [24.0, 6.73]]
+            .map(|[x, y]| [x, y, -1.8]);
+    right.sort_by(|a, b| a.partial_cmp(b).unwrap());
+    assert_eq!(made.holes("drill"), right);
+    // Turned over: around the pads and the track from 26,6 to 6,6.73.
+    let lowest = made.cuts("back").iter().map(|cut| cut.from.x.min(cut.to.x)).fold(30.0, f64::min);
+    // The left edge of the square of 1.8 mm at 30 - 24, and half of the tool.
+    assert!((lowest - (6.0 - 0.9 - 0.1)).abs() < NEAR, "{lowest}");
+    assert!(made.length("front") > 2.0 * PI);
+}
+
+#[test]
+fn the_same_board_is_the_same_programs_to_the_last_byte() {
+    let folder = small();
+    let read = || -> Vec<(String, Vec<u8>)> {
+        let said =
+            crate::board::call(&folder, &["--clear", "0.8", "--probe", "2x2", "--passes", "2"]);
+        assert_eq!(said.code, 0, "{said:?}");
+        let out = folder.path().join("out");
+        let files = std::fs::read_dir(&out).unwrap().map(|entry| entry.unwrap().path());
+        let mut files: Vec<_> =
+            files.map(|file| (file.display().to_string(), std::fs::read(&file).unwrap())).collect();
+        files.sort();
+        std::fs::remove_dir_all(out).unwrap();
+        files
+    };
+    let first = read();
+    // Five programs, four pictures, a report.
+    assert_eq!(first.len(), 10);
+    assert!(first == read());
+}
+
+#[test]
+fn what_is_said_and_to_whom() {
+    let folder = small();
+    let call = ["pcb", "board", "-o", "out", "-m", "grbl-3018", "--tool", "0.4"];
+    let said = folder.run(&[&["--quiet"], &call[..]].concat());
+    assert_eq!((said.code, said.out.as_str(), said.err.as_str()), (0, "", ""));
+    let said = folder.run(&[&["--json"], &call[..]].concat());
+    assert_eq!((said.code, said.err.as_str()), (0, ""));
+    let answer = said.json();
+    assert_eq!(answer["status"], "done");
+    assert_eq!(answer["board"]["holes"], 2);
+    assert_eq!(answer["programs"].as_array().unwrap().len(), 4);
+    let narrow = ["--drills", "0.6"];
+    let said = folder.run(&[&["--json"], &call[..], &narrow].concat());
+    let answer = said.json();
+    assert_eq!((said.code, &answer["status"]), (2, &"invalid".into()));
+    assert_eq!(answer["errors"][0]["rule"], "no-drill");
+    let said = folder.run(&call);
+    let saved = "in out: report.json, front.svg, drill.svg, back.svg, outline.svg, front.nc, drill.nc, back.nc, outline.nc";
+    assert!(said.out.contains(saved), "{}", said.out);
+}
+
+#[test]
+fn a_tool_has_one_number_in_all_programs() {
+    let folder = small();
+    let more = ["--tool", "0.4", "--outline-tool", "2", "--probe", "2x2"];
+    let call = ["pcb", "board", "-o", "out", "-m", "linuxcnc-mill", "--quiet"];
+    assert_eq!(folder.run(&[&call[..], &more].concat()).code, 0);
+    let calls = |name: &str| -> Vec<String> {
+        let text = std::fs::read_to_string(folder.path().join("out").join(name)).unwrap();
+        let calls = text.split_whitespace().filter(|word| word.starts_with('T'));
+        calls.map(str::to_owned).collect()
+    };
+    // The mill for copper, the drill, the mill for the edge, and last the probe.
+    assert_eq!((calls("front.nc"), calls("back.nc")), (vec!["T1".into()], vec!["T1".into()]));
+    assert_eq!((calls("drill.nc"), calls("outline.nc")), (vec!["T2".into()], vec!["T3".into()]));
+    assert_eq!(calls("probe.nc"), ["T4"]);
+}
+
+#[test]
+fn programs_of_an_earlier_call_are_told() {
+    let folder = small();
+    let call = ["pcb", "board", "-o", "out", "-m", "grbl-3018", "--tool", "0.4"];
+    assert_eq!(folder.run(&call).code, 0);
+    let said = folder.run(&[&call[..], &["--only", "front"]].concat());
+    let told = "there are still drill.nc, back.nc, outline.nc";
+    assert!(said.code == 0 && said.err.contains(told), "{}", said.err);
+}
