@@ -6,6 +6,9 @@ use crate::{Cutter, Tool};
 /// The longest length that is taken, mm.
 const LONGEST: f64 = 1000.0;
 
+/// More levels than this nobody cuts.
+const MOST_LEVELS: f64 = 1000.0;
+
 /// Refuses what is no length above 0.
 ///
 /// # Errors
@@ -16,6 +19,19 @@ pub(crate) fn length(what: &str, mm: f64) -> Outcome {
     }
     let help = format!("give a length above 0 and up to {LONGEST} mm");
     Err(fault("length", format!("{what} is {mm} mm"), &help))
+}
+
+/// Refuses what is no step on the way down to `depth` mm, or takes too many.
+///
+/// # Errors
+/// `length`, `step`
+pub(crate) fn step(what: &str, mm: f64, depth: f64) -> Outcome {
+    length(what, mm)?;
+    if depth <= mm * MOST_LEVELS {
+        return Ok(());
+    }
+    let message = format!("{what} is {mm} mm: more than {MOST_LEVELS} levels down to {depth} mm");
+    Err(fault("step", message, &format!("give a step of at least {} mm", depth / MOST_LEVELS)))
 }
 
 /// The diameter of a tool that cuts upright walls, mm.

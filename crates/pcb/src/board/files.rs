@@ -10,6 +10,9 @@ use geom::region::RegionError;
 use program::Diagnostic;
 use std::{panic, thread};
 
+/// So many files are read at the same time.
+const AT_ONCE: usize = 8;
+
 /// A file of a board.
 #[derive(Clone, Copy, Debug)]
 pub struct File<'a> {
@@ -42,15 +45,17 @@ pub fn read(name: &str, files: &[File]) -> Result<Reading, Vec<Diagnostic>> {
     let known = told_apart(files, &mut warnings)?;
     let mut board = Board { name: name.into(), ..Board::default() };
     let mut errors = Vec::new();
-    // All at the same time, and put together in the order of the files.
-    let parts = thread::scope(|scope| {
-        let threads: Vec<_> = known.iter().map(|layer| scope.spawn(|| layer.read())).collect();
-        let finished = threads.into_iter().map(|thread| thread.join());
-        finished
-            .map(|part| part.unwrap_or_else(|panic| panic::resume_unwind(panic)))
-            .collect::<Vec<_>>()
-    });
-    for part in parts {
+    // Some at the same time, and put together in the order of the files.
+    let read = |some: &[Known]| {
+        thread::scope(|scope| {
+            let threads: Vec<_> = some.iter().map(|layer| scope.spawn(|| layer.read())).collect();
+            let finished = threads.into_iter().map(|thread| thread.join());
+            finished
+                .map(|part| part.unwrap_or_else(|panic| panic::resume_unwind(panic)))
+                .collect::<Vec<_>>()
+        })
+    };
+    for part in known.chunks(AT_ONCE).flat_map(read) {
         match part {
             Ok((part, found)) => {
                 board.take(part);
@@ -80,7 +85,7 @@ fn told_apart<'a>(
     files: &'a [File<'a>],
     warnings: &mut Vec<Diagnostic>,
 ) -> Result<Vec<Known<'a>>, Vec<Diagnostic>> {
-    let (mut known, mut others): (Vec<Known>, Vec<&str>) = (Vec::new(), Vec::new());
+    let (mut known, mut others, mut not_through) = (Vec::new(), Vec::new(), Vec::new());
     for file in files {
         let format = Format::of(file.text);
         let named = || match (format, Layer::named(file.name)) {
@@ -93,6 +98,7 @@ fn told_apart<'a>(
         let layer = stated.or_else(named);
         match layer {
             None if format == Some(Format::Gerber) => warnings.push(unknown(file.name)),
+            Some(Layer::Other) if Layer::is_not_through(file.text) => not_through.push(file.name),
             None | Some(Layer::Other) => others.push(file.name),
             Some(layer) => {
                 if stated.is_none() && format == Some(Format::Gerber) {
@@ -110,6 +116,14 @@ fn told_apart<'a>(
     if !others.is_empty() {
         let message = format!("left out, as they hold no layer that is cut: {}", listed(&others));
         warnings.push(Diagnostic::warning("file-unused", message));
+    }
+    if !not_through.is_empty() {
+        let message = format!(
+            "holes that do not go through the board are not drilled: {}",
+            listed(&not_through)
+        );
+        let help = "drill them in their layers, before these are joined";
+        warnings.push(Diagnostic::warning("holes-not-through", message).help(help));
     }
     if known.is_empty() {
         let message = format!("none of {} files is a layer of a board", files.len());

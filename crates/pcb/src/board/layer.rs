@@ -81,11 +81,7 @@ fn coordinates(line: &[u8]) -> bool {
 impl Layer {
     /// What the file says of itself (`.FileFunction`); `None` where it says nothing.
     pub(super) fn stated(text: &[u8]) -> Option<Layer> {
-        let attribute = b"TF.FileFunction,";
-        let value = text.get(memmem::find(text, attribute)? + attribute.len()..)?;
-        let end = value.iter().position(|byte| matches!(byte, b'*' | b'\n' | b'\r'));
-        let value = std::str::from_utf8(value.get(..end?)?).ok()?;
-        let mut fields = value.split(',').map(str::trim);
+        let mut fields = function(text)?;
         let function = fields.next()?;
         let rest: Vec<&str> = fields.collect();
         let face = || match () {
@@ -93,7 +89,7 @@ impl Layer {
             () if rest.contains(&"Bot") => Some(Face::Back),
             () => None,
         };
-        let through = !rest.iter().any(|field| matches!(*field, "Blind" | "Buried"));
+        let through = !rest.iter().any(is_not_through);
         let layer = match function {
             "Copper" => face().map(Layer::Copper),
             "Soldermask" => face().map(Layer::Mask),
@@ -105,6 +101,11 @@ impl Layer {
             _ => None,
         };
         Some(layer.unwrap_or(Layer::Other))
+    }
+
+    /// Whether the file says that it has holes which do not go through the board.
+    pub(super) fn is_not_through(text: &[u8]) -> bool {
+        function(text).is_some_and(|fields| fields.skip(1).any(|field| is_not_through(&field)))
     }
 
     /// What a file of this name holds, as the CAD systems name them; `None` where they have no such name.
@@ -122,6 +123,20 @@ impl Layer {
             known.map(|(_, layer)| *layer)
         })
     }
+}
+
+/// The fields of what the file says it is (`.FileFunction`).
+fn function(text: &[u8]) -> Option<impl Iterator<Item = &str>> {
+    let attribute = b"TF.FileFunction,";
+    let value = text.get(memmem::find(text, attribute)? + attribute.len()..)?;
+    let end = value.iter().position(|byte| matches!(byte, b'*' | b'\n' | b'\r'));
+    let value = std::str::from_utf8(value.get(..end?)?).ok()?;
+    Some(value.split(',').map(str::trim))
+}
+
+/// Whether a field of a function says that holes do not go through the board.
+fn is_not_through(field: &&str) -> bool {
+    matches!(*field, "Blind" | "Buried")
 }
 
 /// Whether `word` stands in `stem`, and not within another one.

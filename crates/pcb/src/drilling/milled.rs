@@ -2,7 +2,7 @@
 
 use super::{Mill, of};
 use crate::isolation::Direction;
-use crate::report::{Outcome, fault};
+use crate::report::{Fault, Outcome, fault};
 use crate::setting;
 use crate::{Cut, Hole, HoleShape, Path, Stretch, depths};
 use geom::Element;
@@ -25,9 +25,9 @@ pub(super) fn cuts(hole: &Hole, mill: &Mill, depth: f64) -> Outcome<Vec<Cut>> {
     // No core stays within the innermost ring, and each next takes at most half the cutter's width.
     let count = (reach / (width / 2.0)).ceil().max(1.0);
     let rings = (1..=count as usize).map(|ring| rings(hole, reach * ring as f64 / count));
-    let rings = rings.collect::<Result<Vec<Vec<Path>>, RegionError>>().map_err(|error| {
-        fault("too-large", format!("{}: {error}", of(hole)), "correct the drill file")
-    })?;
+    let rings = rings
+        .collect::<Result<Vec<Vec<Path>>, RegionError>>()
+        .map_err(|error| too_large(hole, &error))?;
     // The rings have what they clear on their left, and so what stays on their right.
     let turned = |path: Path| match mill.direction {
         Direction::Climb | Direction::Either => path,
@@ -43,6 +43,15 @@ pub(super) fn cuts(hole: &Hole, mill: &Mill, depth: f64) -> Outcome<Vec<Cut>> {
         Some(nested) => vec![outwards(&nested, &depths)],
         None => rings.iter().flatten().map(|ring| Cut::along(ring, &depths)).collect(),
     })
+}
+
+/// Whether a piece of the board comes loose within the hole: a route that closes leaves one, and no tab.
+pub(super) fn frees_a_piece(hole: &Hole) -> Outcome<bool> {
+    if !matches!(hole.shape, HoleShape::Route(_)) {
+        return Ok(false);
+    }
+    let rings = rings(hole, (hole.diameter + WIDTH) / 2.0);
+    Ok(rings.map_err(|error| too_large(hole, &error))?.len() > 1)
 }
 
 /// The middle line of what is not round.
@@ -92,4 +101,8 @@ fn outwards(rings: &[Path], depths: &[f64]) -> Cut {
         }
     }
     Cut::Way(stretches)
+}
+
+fn too_large(hole: &Hole, error: &RegionError) -> Fault {
+    fault("too-large", format!("{}: {error}", of(hole)), "correct the drill file")
 }

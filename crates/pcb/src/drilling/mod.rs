@@ -74,7 +74,7 @@ pub struct Mill {
 pub struct Drilled {
     /// One for each tool.
     pub operations: Vec<Operation>,
-    /// Where holes are not as the board has them.
+    /// Where holes are not as the board has them, and where pieces come loose.
     pub warnings: Vec<Diagnostic>,
 }
 
@@ -89,7 +89,7 @@ impl Drilling {
     /// Makes `holes`.
     ///
     /// # Errors
-    /// `length` and `cutter` where a setting makes no sense; `no-drill` where neither a drill nor the
+    /// `length`, `step` and `cutter` where a setting makes no sense; `no-drill` where neither a drill nor the
     /// cutter makes a hole, `no-cutter` where one is to be milled and there is no cutter or it is too wide;
     /// `chain-too-long` where a slot would take too many holes; `too-large` where a route is.
     pub fn drill(&self, holes: &[Hole]) -> Result<Drilled, Vec<Diagnostic>> {
@@ -121,6 +121,11 @@ impl Drilling {
             made.operations.push(operation.map_err(|fault| vec![*fault])?);
         }
         if let (Some(mill), false) = (&self.mill, milled.is_empty()) {
+            for hole in &milled {
+                if milled::frees_a_piece(hole).map_err(|fault| vec![*fault])? {
+                    count(&mut made.warnings, loose(hole));
+                }
+            }
             let operation = self.with_cutter(mill, &milled, &mut at);
             made.operations.push(operation.map_err(|fault| vec![*fault])?);
         }
@@ -140,7 +145,7 @@ impl Drilling {
             setting::length("the height between the holes of a slot", scallop)?;
         }
         if let Some(mill) = &self.mill {
-            setting::length("a step of milling", mill.step)?;
+            setting::step("a step of milling", mill.step, self.depth())?;
             setting::diameter(&mill.tool)?;
         }
         Ok(())
@@ -265,6 +270,12 @@ fn differs(hole: &Hole, drill: f64) -> Diagnostic {
     let message = format!("{} is drilled with {} mm", of(hole), shown(drill));
     let help = format!("add a drill of {} mm where that matters", shown(hole.diameter));
     Diagnostic::warning("drill-differs", message).help(help)
+}
+
+fn loose(hole: &Hole) -> Diagnostic {
+    let message = format!("{} closes: the piece within it comes loose", of(hole));
+    let help = "hold that piece, or leave gaps in the route; only the outline has tabs";
+    Diagnostic::warning("piece-loose", message).help(help)
 }
 
 /// A hole, its diameter and its place in words.

@@ -3,7 +3,6 @@
 use crate::Copper;
 use geom::region::Index;
 use geom::{Element, Vec2};
-use std::collections::BTreeMap;
 
 /// Copper as conductors: islands of one net are one, an island without a net is one of its own.
 pub(super) struct Field<'a> {
@@ -58,15 +57,7 @@ pub(super) struct Foot<'a> {
 
 impl<'a> Field<'a> {
     pub fn new(copper: &'a Copper) -> Field<'a> {
-        let mut named = BTreeMap::new();
-        let mut conductors = Vec::new();
-        for island in 0..copper.region.islands().len() {
-            conductors.push(match copper.nets.get(island) {
-                Some(Some(net)) => *named.entry(net).or_insert(island),
-                _ => island,
-            });
-        }
-        Field { index: Index::new(&copper.region), conductors }
+        Field { index: Index::new(&copper.region), conductors: copper.conductors() }
     }
 
     /// All edges.

@@ -29,7 +29,6 @@ type Net = Option<Arc<str>>;
 /// A board that is read.
 struct Reader<'a> {
     report: Report<'a>,
-    version: u32,
     /// The names of the nets by their numbers.
     nets: BTreeMap<u32, Arc<str>>,
     front: Vec<(Shape, Net)>,
@@ -54,7 +53,6 @@ const NO_COPPER: &[&[u8]] = &[
 pub(super) fn read(file_name: &str, text: &[u8]) -> Result<Reading, Vec<Diagnostic>> {
     let mut reader = Reader {
         report: Report::new(file_name, text),
-        version: 0,
         nets: BTreeMap::new(),
         front: Vec::new(),
         back: Vec::new(),
@@ -100,7 +98,6 @@ impl Reader<'_> {
             let help = "plot Gerber and Excellon files in KiCad, and read those";
             return Err(list.fault("version", message, help));
         }
-        self.version = version;
         for net in root.all("net") {
             if let (Some(number), Some(name)) = (net.whole(0), net.item(1)) {
                 self.nets.insert(number, name.text().into());
@@ -259,7 +256,7 @@ impl Reader<'_> {
     }
 
     fn zone(&mut self, item: Node) -> Outcome {
-        let zone = Zone::of(item, self.version)?;
+        let zone = Zone::of(item)?;
         let net = self.net(item)?;
         for (layers, shape) in zone.fills {
             self.add(item, layers, shape, &net);

@@ -6,10 +6,6 @@ use super::tree::{Node, Outcome};
 use crate::board::Shape;
 use crate::contour::{Contour, Piece};
 
-/// Up to this version a fill is the way of a pen of the least thickness, and what is within, unless the zone
-/// says otherwise.
-const LAST_STROKED: u32 = 20250209;
-
 /// A zone.
 pub(super) struct Zone {
     /// What its fill covers, and on which layers.
@@ -20,7 +16,7 @@ pub(super) struct Zone {
 
 impl Zone {
     /// The zone that `(zone …)` describes.
-    pub(super) fn of(item: Node, version: u32) -> Outcome<Zone> {
+    pub(super) fn of(item: Node) -> Outcome<Zone> {
         let mut zone = Zone { fills: Vec::new(), hollow: false };
         if item.find("keepout").is_some() || item.find("placement").is_some() {
             return Ok(zone);
@@ -34,10 +30,12 @@ impl Zone {
                 "fill all zones (key B) in KiCad, and save",
             ));
         }
+        // Up to KiCad 9 a fill is the way of a pen of the least thickness, and what is within, unless the
+        // zone says otherwise.
         let solid = item.find("filled_areas_thickness").and_then(|list| list.item(0));
         let solid = solid.is_some_and(|word| word.word() == b"no");
         let width = match item.find("min_thickness") {
-            Some(width) if !solid && version <= LAST_STROKED => width.length(0)?,
+            Some(width) if !solid => width.length(0)?,
             _ => 0.0,
         };
         for filled in item.all("filled_polygon") {

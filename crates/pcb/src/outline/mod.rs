@@ -54,7 +54,7 @@ impl Outline {
     /// Cuts `board` out.
     ///
     /// # Errors
-    /// `length`, `cutter`, `tab-height` and `tab-count` where a setting makes no sense; `no-outline` where
+    /// `length`, `step`, `cutter`, `tab-height` and `tab-count` where a setting makes no sense; `no-outline` where
     /// there is no board; `not-parted` for each piece that the tool does not part from another one,
     /// `cutout-too-small` for each cut-out that it does not go into; `too-large` where the outline is more
     /// than can be computed.
@@ -72,7 +72,7 @@ impl Outline {
     fn check(&self, board: &Region) -> Outcome<f64> {
         setting::length("the thickness of the board", self.thickness)?;
         setting::length("the depth of the outline", self.depth())?;
-        setting::length("a step of the outline", self.step)?;
+        setting::step("a step of the outline", self.step, self.depth())?;
         if let Some(tabs) = &self.tabs {
             tabs.check(self.thickness)?;
         }

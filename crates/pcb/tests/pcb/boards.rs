@@ -291,18 +291,38 @@ fn layers_that_do_not_fit() {
 }
 
 #[test]
+fn holes_that_do_not_go_through_are_told() {
+    let drill = b"M48\nMETRIC\nT1C0.8\n%\nT1\nX10.0Y10.0\nM30\n";
+    let blind = b"M48\n; #@! TF.FileFunction,Plated,1,2,Blind,Drill\nMETRIC\nT1C0.3\n%\nT1\nX2.0Y2.0\nM30\n";
+    let reading = read(&[("a.drl", drill), ("b.drl", blind)]).unwrap();
+    assert_eq!((rules(&reading), reading.board.holes.len()), (vec!["holes-not-through"], 1));
+    assert!(reading.warnings[0].message.contains("b.drl"), "{:?}", reading.warnings);
+}
+
+#[test]
+fn many_files_are_read_in_their_order() {
+    let drill = |i: usize| format!("M48\nMETRIC\nT1C0.8\n%\nT1\nX{i}.0Y10.0\nM30\n");
+    let texts: Vec<(String, String)> = (0..100).map(|i| (format!("{i}.drl"), drill(i))).collect();
+    let files: Vec<(&str, &[u8])> =
+        texts.iter().map(|(name, text)| (name.as_str(), text.as_bytes())).collect();
+    let holes = read(&files).unwrap().board.holes;
+    let places: Vec<f64> = holes.iter().map(|hole| hole.extents().0.x.round()).collect();
+    assert_eq!(places, (0..100).map(f64::from).collect::<Vec<f64>>());
+}
+
+#[test]
 fn empty_layers_and_holes_that_come_twice() {
     let drill = b"M48\nMETRIC\nT1C0.8\n%\nT1\nX10.0Y10.0\nX12.0Y10.0\nM30\n";
     let empty = layer("Copper,L1,Top", "");
     let reading = read(&[("a", &empty), ("b.drl", drill), ("c.drl", drill)]).unwrap();
     assert_eq!(rules(&reading), ["layer-empty", "hole-twice"]);
+    assert!(reading.board.front.copper.is_none());
+    assert_eq!(reading.board.holes.len(), 2);
     // The same in inches, a slot from its other end, and a zero that has a sign.
     let mm = b"M48\nMETRIC\nT1C1.016\n%\nT1\nX2.54Y0.0\nX10.16Y0.0G85X12.7Y0.0\nM30\n";
     let inches = b"M48\nINCH\nT1C0.04\n%\nT1\nX0.1Y-0.0\nX0.5Y-0.0G85X0.4Y0.0\nM30\n";
     let reading = read(&[("a.drl", mm), ("b.drl", inches)]).unwrap();
     assert_eq!((rules(&reading), reading.board.holes.len()), (vec!["hole-twice"], 2));
-    assert!(reading.board.front.copper.is_none());
-    assert_eq!(reading.board.holes.len(), 2);
 }
 
 #[test]

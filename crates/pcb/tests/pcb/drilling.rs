@@ -184,6 +184,27 @@ fn what_is_milled_is_the_hole() {
 }
 
 #[test]
+fn a_route_that_closes_frees_what_is_within() {
+    let milling = Drilling { mill: Some(mill(1.0)), ..drilling() };
+    let circle = |radius: f64| {
+        let start = Vec2::new(4.0 + radius, 5.0);
+        HoleShape::Route(vec![Element::arc(start, start, Vec2::new(4.0, 5.0), 2.0 * PI)])
+    };
+    let warned = |shape| {
+        let made = made(&milling, &[hole(1.0, shape)]);
+        made.warnings.iter().map(|found| (found.rule, found.message.clone())).collect::<Vec<_>>()
+    };
+    let [(rule, message)] = &*warned(circle(3.0)) else { panic!() };
+    assert_eq!(*rule, "piece-loose");
+    assert!(message.contains("X 7.000 Y 5.000"), "{message}");
+    // A circle of 0.9 mm, 1 mm wide, leaves nothing; an open route holds its piece.
+    assert!(warned(circle(0.45)).is_empty());
+    let corners = [(0.0, 0.0), (8.0, 0.0), (8.0, 8.0), (0.0, 8.0), (0.0, 2.0)].map(Vec2::from);
+    let open = corners.windows(2).map(|ends| Element::line(ends[0], ends[1])).collect();
+    assert!(warned(HoleShape::Route(open)).is_empty());
+}
+
+#[test]
 fn what_makes_no_sense_is_refused() {
     let slot = hole(1.0, HoleShape::Slot(Vec2::ZERO, Vec2::X));
     let route = hole(1.0, HoleShape::Route(vec![Element::line(Vec2::ZERO, Vec2::X)]));
@@ -199,6 +220,8 @@ fn what_makes_no_sense_is_refused() {
     );
     assert_eq!(rule(drilling(), &route), "no-cutter");
     assert_eq!(rule(Drilling { mill: Some(mill(1.2)), ..drilling() }, &route), "no-cutter");
+    let steps = Mill { step: 0.001, ..mill(1.0) };
+    assert_eq!(rule(Drilling { mill: Some(steps), ..drilling() }, &route), "step");
     let mut vee = mill(1.0);
     vee.tool.cutter = Cutter::Vee { tip: 0.1, angle: 1.0 };
     assert_eq!(rule(Drilling { mill: Some(vee), ..drilling() }, &route), "cutter");

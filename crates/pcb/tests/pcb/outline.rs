@@ -202,6 +202,7 @@ fn what_makes_no_sense_is_refused() {
     let tabs = |count, width, height| Some(Tabs { count, width, height });
     assert_eq!(rule(outline(None), &Region::default()), "no-outline");
     assert_eq!(rule(Outline { step: 0.0, ..outline(None) }, &board), "length");
+    assert_eq!(rule(Outline { step: 0.001, ..outline(None) }, &board), "step");
     assert_eq!(rule(Outline { thickness: f64::NAN, ..outline(None) }, &board), "length");
     assert_eq!(rule(outline(tabs(4, 3.0, 1.6)), &board), "tab-height");
     assert_eq!(rule(outline(tabs(0, 3.0, 0.5)), &board), "tab-count");
