@@ -89,8 +89,7 @@ const REFUSED: &[(&str, &[&str], &str)] = &[
     ("mach3-mill", &["SupPetriLED.apt", "coremill.cls"], "axis-limit"),
     ("mach3-mill", &["Sacrifice-Board.apt"], "feed-range"),
     // No coolant, 45 mm in Z, 10,000 1/min.
-    ("grbl-3018", &["coremill.cls"], "axis-limit"),
-    ("grbl-3018", &["plate.cls"], "missing-block"),
+    ("grbl-3018", &["coremill.cls", "plate.cls"], "axis-limit"),
     ("grbl-3018", &["Dem-target1.apt", "Dem-target2.apt"], "spindle-range"),
     ("grbl-3018", &["shimemcunha.apt"], "unreachable-orientation"),
     (

@@ -150,7 +150,7 @@ pub struct Isolation {
     #[arg(long, value_name = "MM", value_parser = step)]
     pub step: Option<f64>,
     /// How often around, each time farther out.
-    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=1000), default_value = "1")]
+    #[arg(long, value_name = "COUNT", value_parser = clap::value_parser!(u32).range(1..=100), default_value = "1")]
     pub passes: u32,
     /// Which part of the width passes overlap.
     #[arg(long, value_name = "PART", value_parser = part, default_value = "0.25")]
