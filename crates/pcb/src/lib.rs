@@ -34,7 +34,7 @@ mod operation;
 pub mod outline;
 mod path;
 mod report;
-mod setting;
+pub mod setting;
 mod stroke;
 pub mod tour;
 mod voronoi;

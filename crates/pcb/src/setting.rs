@@ -25,7 +25,7 @@ pub(crate) fn length(what: &str, mm: f64) -> Outcome {
 ///
 /// # Errors
 /// `length`, `step`
-pub(crate) fn step(what: &str, mm: f64, depth: f64) -> Outcome {
+pub fn step(what: &str, mm: f64, depth: f64) -> Outcome {
     length(what, mm)?;
     if depth <= mm * MOST_LEVELS {
         return Ok(());

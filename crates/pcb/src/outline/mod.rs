@@ -19,8 +19,9 @@ use geom::Vec2;
 use geom::region::{Fill, Region, RegionError, Ring};
 use program::Diagnostic;
 
-/// By how much merged ways may differ from the boundary, mm: a step of most machines.
-const MERGED: f64 = 0.001;
+/// By how much merged ways may differ from the boundary, mm: moves are no shorter than a quarter of it, a step
+/// of most machines.
+const MERGED: f64 = 0.004;
 
 /// How a board is cut out.
 #[derive(Clone, Debug, PartialEq)]

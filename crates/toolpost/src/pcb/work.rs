@@ -87,7 +87,9 @@ impl Worker<'_> {
     fn copper(&self, work: &mut Work, copper: &Copper, board: &Board) -> Result<(), Stop> {
         let settings = &self.args.isolation;
         let bit = self.bit()?;
-        let depths = depths(settings.depth, settings.step.unwrap_or(settings.depth));
+        let step = settings.step.unwrap_or(settings.depth);
+        pcb::setting::step("the step of the isolation", step, settings.depth)?;
+        let depths = depths(settings.depth, step);
         let width = bit.cutter.width(settings.depth);
         let paths = match settings.isolate {
             args::Isolate::Contours => self.around(work, copper, bit.cutter)?,

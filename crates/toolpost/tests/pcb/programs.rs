@@ -539,3 +539,15 @@ fn programs_of_an_earlier_call_are_told() {
     let told = "there are still drill.nc, back.nc, outline.nc";
     assert!(said.code == 0 && said.err.contains(told), "{}", said.err);
 }
+
+#[test]
+fn every_mill_of_the_library_makes_the_board() {
+    let folder = small();
+    let names = machine::library::names(machine::library::MACHINES);
+    let mills = names.filter(|name| machine::load(name).unwrap().wire.is_none());
+    for mill in mills {
+        let call = ["pcb", "board", "-o", "out", "-m", mill, "--tool", "0.4", "--peck", "0.5"];
+        let said = folder.run(&[&call[..], &["--picture", "none", "--quiet"]].concat());
+        assert_eq!(said.code, 0, "{mill}: {}", said.err);
+    }
+}
