@@ -12,6 +12,12 @@ MILLS = [
     if machine["control"] not in ("wire-iso", "points")
 ]
 
+# Jobs that ask for flood coolant.
+COOLED = [
+    *(f"several-{what}" for what in ("Fixture", "Operation", "Tool")),
+    *(f"split-{what}-{part}" for what in ("Fixture", "Operation", "Tool") for part in (1, 2)),
+]
+
 # What FreeCAD does not say, or a machine cannot do: the rule by which it is refused.
 REFUSED = {
     # As FreeCAD ships it, this job has neither feeds nor speeds.
@@ -19,6 +25,12 @@ REFUSED = {
     # The teaching mill: 200 mm of travel in X, tools up to 55 mm.
     ("Drilling_1", "emco"): "axis-limit",
     ("boxtest-Job001", "emco"): "tool-range",
+    # A small router, a bench mill: 45 mm in Z, 158 mm in Y.
+    ("Drilling_1", "grbl-3018"): "axis-limit",
+    ("Drilling_1", "linuxcnc-mill"): "axis-limit",
+    # A router without coolant.
+    ("mist", "grbl-3018"): "missing-block",
+    **{(job, "grbl-3018"): "missing-block" for job in COOLED},
     # Controls without mist.
     ("mist", "dmu50-heidenhain"): "missing-block",
     ("mist", "generic-3axis-heidenhain"): "missing-block",
