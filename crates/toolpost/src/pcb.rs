@@ -52,8 +52,10 @@ pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
         programs.push(shop.probing(grid)?);
     }
     let jobs: Vec<(Part, Work)> = plan.parts.iter().copied().zip(works).collect();
-    for made in each(&jobs, |(part, work)| shop.make(*part, work)) {
-        programs.push(made?);
+    let made = each(&jobs, |(part, work)| shop.make(*part, work));
+    for (made, (part, work)) in made.into_iter().zip(jobs) {
+        let (posted, picture) = made?;
+        programs.push(Made { name: part.name(), work, posted, picture });
     }
     for made in &programs {
         let file = format!("{}.nc", made.name);
@@ -161,8 +163,6 @@ struct Made {
     /// What it and its picture are called.
     name: &'static str,
     work: Work,
-    /// What it does.
-    program: Program,
     posted: Posted,
     picture: Option<Vec<u8>>,
 }
@@ -188,8 +188,8 @@ struct Shop<'a> {
 }
 
 impl Shop<'_> {
-    /// The program of a part of the board, proven, with its picture.
-    fn make(&self, part: Part, work: &Work) -> Result<Made, Stop> {
+    /// The program of a part of the board, proven, and its picture.
+    fn make(&self, part: Part, work: &Work) -> Result<(Posted, Option<Vec<u8>>), Stop> {
         let board = self.plan.seen(part, self.args);
         let name = format!("{}-{}", self.plan.name, part.name());
         let number = |operation: &Operation| self.rack.number(&operation.tool.name);
@@ -219,8 +219,7 @@ impl Shop<'_> {
                 },
             ))
         });
-        let picture = picture.transpose()?;
-        Ok(Made { name: part.name(), work: work.clone(), program, posted, picture })
+        Ok((posted, picture.transpose()?))
     }
 
     /// The program that measures the height of the board.
@@ -235,8 +234,8 @@ impl Shop<'_> {
             ..program::Tool::default()
         };
         program.records.insert(0, Record { line: 0, op: Op::Tool(Box::new(tool)) });
-        let (program, posted) = self.proven(program, PROBE)?;
-        Ok(Made { name: PROBE, work: Work::default(), program, posted, picture: None })
+        let (_, posted) = self.proven(program, PROBE)?;
+        Ok(Made { name: PROBE, work: Work::default(), posted, picture: None })
     }
 
     /// The text of a program, proven.

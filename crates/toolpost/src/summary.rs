@@ -48,11 +48,6 @@ impl Shape {
         Shape { statistics: Statistics::of(program), tool_use }
     }
 
-    /// Length of the cutting moves and of the rapids, mm.
-    pub fn lengths(&self) -> (f64, f64) {
-        (self.statistics.cutting_length, self.statistics.rapid_length)
-    }
-
     /// The lines of a summary: what, and how much.
     pub fn rows(&self) -> Vec<(&'static str, String)> {
         let s = &self.statistics;

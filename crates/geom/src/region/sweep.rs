@@ -7,6 +7,7 @@
 
 use super::kernel::Place;
 use super::ring::place;
+use super::shape::circle;
 use super::{FAR, RegionError, Ring};
 use crate::{Element, Turn, Vec2};
 use std::collections::HashMap;
@@ -72,9 +73,9 @@ fn beside(rings: &mut Vec<Ring>, way: &Element, turn: Option<Turn>, radius: f64)
 /// What is covered on a whole turn. The ring runs once around the outside and back around the inside.
 fn around(rings: &mut Vec<Ring>, way: &Element, turn: Turn, radius: f64) {
     let middle = way.start.distance(turn.center);
-    let mut elements = circle(turn.center, middle + radius).elements;
+    let mut elements = circle(turn.center, middle + radius, TAU).elements;
     if middle - radius > SAME {
-        let inner = circle(turn.center, middle - radius).elements;
+        let inner = circle(turn.center, middle - radius, TAU).elements;
         let (outside, inside) =
             (turn.center + Vec2::X * (middle + radius), turn.center + Vec2::X * (middle - radius));
         elements.push(Element::line(outside, inside));
@@ -82,11 +83,6 @@ fn around(rings: &mut Vec<Ring>, way: &Element, turn: Turn, radius: f64) {
         elements.push(Element::line(inside, outside));
     }
     rings.push(Ring { elements });
-}
-
-fn circle(center: Vec2, radius: f64) -> Ring {
-    let start = center + Vec2::X * radius;
-    Ring { elements: vec![Element::arc(start, start, center, TAU)] }
 }
 
 /// Where ways begin and end, and meet: once for each place and width.
@@ -154,7 +150,7 @@ impl Cone {
 impl End {
     fn ring(&self) -> Option<Ring> {
         let (from, to) = match self.cone {
-            Cone::All => return Some(circle(self.at, self.radius)),
+            Cone::All => return Some(circle(self.at, self.radius, TAU)),
             Cone::Between(from, to) => (self.at + from * self.radius, self.at + to * self.radius),
             Cone::Nothing => return None,
         };

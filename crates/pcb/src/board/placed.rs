@@ -148,22 +148,14 @@ impl Board {
     /// Takes in other layers of the board, or another board, which does not come near.
     pub(super) fn take(&mut self, other: Board) {
         self.holes.extend(other.holes);
-        take(&mut self.outline, other.outline);
+        take(&mut self.outline, other.outline, Region::extend);
         for (side, more) in [(&mut self.front, other.front), (&mut self.back, other.back)] {
-            take(&mut side.mask, more.mask);
-            match (&mut side.legend, more.legend) {
-                (Some(legend), Some(more)) => legend.objects.extend(more.objects),
-                (legend @ None, more) => *legend = more,
-                (Some(_), None) => {}
-            }
-            match (&mut side.copper, more.copper) {
-                (Some(copper), Some(more)) => {
-                    copper.region.extend(more.region);
-                    copper.nets.extend(more.nets);
-                }
-                (copper @ None, more) => *copper = more,
-                (Some(_), None) => {}
-            }
+            take(&mut side.mask, more.mask, Region::extend);
+            take(&mut side.legend, more.legend, |legend, more| legend.objects.extend(more.objects));
+            take(&mut side.copper, more.copper, |copper, more| {
+                copper.region.extend(more.region);
+                copper.nets.extend(more.nets);
+            });
         }
     }
 
@@ -224,10 +216,10 @@ fn rename(nets: &mut [Option<Arc<str>>], place: &str) {
     }
 }
 
-/// Puts more of a layer to what there is.
-fn take(layer: &mut Option<Region>, more: Option<Region>) {
+/// Puts more of a layer to what there is, by `put` where there is something.
+fn take<T>(layer: &mut Option<T>, more: Option<T>, put: impl FnOnce(&mut T, T)) {
     match (&mut *layer, more) {
-        (Some(layer), Some(more)) => layer.extend(more),
+        (Some(layer), Some(more)) => put(layer, more),
         (None, more) => *layer = more,
         (Some(_), None) => {}
     }

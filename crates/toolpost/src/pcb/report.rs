@@ -2,10 +2,9 @@
 
 use super::Made;
 use super::plan::Plan;
-use crate::summary::{Shape, duration, length, number};
+use crate::summary::{duration, length, number};
 use crate::toolpath;
 use machine::Machine;
-use machine::time::Times;
 use program::Diagnostic;
 use serde_json::{Value, json};
 
@@ -44,7 +43,7 @@ pub fn of(
     rows.extend(layers.iter().map(|(file, layer)| ("read", format!("{file}: {layer}"))));
     rows.push(("machine", format!("{} ({})", machine.title, machine.name)));
     for made in programs {
-        rows.extend(made.rows(machine));
+        rows.extend(made.rows());
     }
     let places = programs
         .iter()
@@ -75,26 +74,24 @@ pub fn of(
 
 impl Made {
     /// A line for each tool, and what the program amounts to.
-    fn rows(&self, machine: &Machine) -> Vec<(&'static str, String)> {
-        let shape = Shape::of(&self.program);
-        let times = Times::of(&self.program, machine);
+    fn rows(&self) -> Vec<(&'static str, String)> {
         let account = &self.posted.account;
         let data = &account.data;
-        let (blocks, off) =
-            (&data["program"]["blocks"], &data["proof"]["deviations"]["tip_mm"]["value"]);
+        let measures = &data["source"]["measures"];
+        let measured = |value: &Value| value.as_f64().unwrap_or_default();
         let operations: Vec<&str> =
             self.work.operations.iter().map(|operation| operation.name.as_str()).collect();
-        let (cutting, rapid) = shape.lengths();
         let mut rows = vec![
             (self.name, operations.join(", ")),
             (
                 "",
                 format!(
-                    "{blocks} blocks, cuts {}, rapid {}, {}; proven, off by {} mm at most",
-                    length(cutting),
-                    length(rapid),
-                    duration(times.total()),
-                    number(off.as_f64().unwrap_or_default(), 5),
+                    "{} blocks, cuts {}, rapid {}, {}; proven, off by {} mm at most",
+                    data["program"]["blocks"],
+                    length(measured(&measures["cutting_length"])),
+                    length(measured(&measures["rapid_length"])),
+                    duration(measured(&data["time_s"]["total"])),
+                    number(measured(&data["proof"]["deviations"]["tip_mm"]["value"]), 5),
                 ),
             ),
         ];

@@ -32,20 +32,20 @@ pub fn read(paths: &[PathBuf]) -> Result<Source, Stop> {
     let files = chosen(paths, given)?;
     let mut texts = Vec::with_capacity(files.len());
     for file in &files {
-        texts.push((file.display().to_string(), files::name(file), files::read(file)?));
+        texts.push((files::name(file), files::read(file)?));
     }
     let (board, layers, warnings) = match (&texts[..], files.first().map(|file| ending(file))) {
-        ([(_, file, text)], Some(kind)) if kind == "kicad_pcb" => {
+        ([(file, text)], Some(kind)) if kind == "kicad_pcb" => {
             let reading = pcb::kicad::read(file, text).map_err(Stop::invalid)?;
             let layers = vec![(file.clone(), String::from("a board of KiCad"))];
             (reading.board, layers, reading.warnings)
         }
-        ([(_, file, text)], Some(kind)) if MODEL.contains(&kind.as_str()) => {
+        ([(file, text)], Some(kind)) if MODEL.contains(&kind.as_str()) => {
             let reading = pcb::model::read(file, text).map_err(Stop::invalid)?;
             (reading.board, vec![(file.clone(), String::from("a model"))], reading.warnings)
         }
         _ => {
-            let all = texts.iter().map(|(_, name, text)| File { name, layer: None, text });
+            let all = texts.iter().map(|(name, text)| File { name, layer: None, text });
             let all: Vec<File> = all.collect();
             let reading = pcb::board::read(&name, &all).map_err(Stop::invalid)?;
             let told = |(name, layer): (String, pcb::board::Layer)| (name, layer.to_string());

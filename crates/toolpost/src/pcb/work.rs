@@ -33,7 +33,7 @@ const SCALLOP: f64 = 0.02;
 const RINGS_OVERLAP: f64 = 0.4;
 
 /// What one program does.
-#[derive(Clone, Default)]
+#[derive(Default)]
 pub struct Work {
     /// Tool by tool.
     pub operations: Vec<Operation>,
