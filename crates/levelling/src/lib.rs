@@ -10,11 +10,14 @@
 //! is believed of the logs, with its sources, is in `docs/sources/heights.md`.
 
 mod course;
+mod follow;
 mod grid;
+mod ground;
 mod heights;
 mod level;
 mod log;
 
+pub use follow::{follow, raised};
 pub use grid::{Grid, Probing};
 pub use heights::HeightMap;
 pub use level::{Allowed, level};
