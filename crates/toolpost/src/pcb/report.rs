@@ -95,12 +95,10 @@ impl Made {
                 ),
             ),
         ];
-        if let (Some([columns, rows]), Some(operation)) =
-            (self.probes, self.work.operations.first())
-        {
+        if let (Some([wide, deep]), Some(operation)) = (self.probes, self.work.operations.first()) {
             let tool = &operation.tool.name;
             let text = format!(
-                "first measures {columns} x {rows} heights with {tool}: set Z 0 near the copper, \
+                "first measures {wide} x {deep} heights with {tool}: set Z 0 near the copper, \
                  clip the probe to board and tool when it stops, and off when it stops again"
             );
             rows.push(("", text));
