@@ -41,8 +41,8 @@ pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
     let mut warnings = source.warnings;
     let plan = Plan::of(source.board, args)?;
     let surface = surface(&plan, args)?;
-    if args.running.on_control {
-        can_probe(&plan, &machine)?;
+    if let Some(places) = args.running.probe.filter(|_| args.running.on_control) {
+        can_probe(&plan, places, &machine)?;
     }
     progress.step("planning");
     let works = each(&plan.parts, |part| Work::of(*part, &plan, args, &machine));
@@ -165,8 +165,8 @@ fn surface(plan: &Plan, args: &Pcb) -> Result<Option<HeightMap>, Stop> {
 const STEEPNESS: f64 = 0.02;
 
 /// # Errors
-/// The control cannot keep what a probe finds, or a program cuts what no tool feels.
-fn can_probe(plan: &Plan, machine: &Machine) -> Result<(), Stop> {
+/// The control cannot keep what a probe finds at so many places, or a program cuts what no tool feels.
+fn can_probe(plan: &Plan, [columns, rows]: [u32; 2], machine: &Machine) -> Result<(), Stop> {
     let wrong = |message: String, help: &str| {
         Err(Diagnostic::error("on-control", message).help(help).into())
     };
@@ -177,6 +177,12 @@ fn can_probe(plan: &Plan, machine: &Machine) -> Result<(), Stop> {
         );
         let help = "leave out --on-control: run probe.nc first, and give its heights by --heights";
         return wrong(message, help);
+    }
+    let kept =
+        machine.words.get("HEIGHT").map_or(0.0, |word| word.max - f64::from(word.first) + 1.0);
+    if f64::from(columns) * f64::from(rows) > kept {
+        let message = format!("{columns} by {rows} places, and the control keeps {kept} heights");
+        return wrong(message, "fewer columns or rows");
     }
     let is_coated = |part: &&Part| part.face().is_some() && !part.is_copper();
     if let Some(part) = plan.parts.iter().find(is_coated) {
