@@ -30,7 +30,7 @@
 //!    stands at the stop.
 //! 9. **An end**, and before it, after the last motion, only ways away from the part.
 //!
-//! A program that finds the surface itself is run on three surfaces ([`surfaces`]), and held against the source raised
+//! A program that finds the surface itself is run on three surfaces, and held against the source raised
 //! to each.
 //!
 //! The rules in full, with what each keeps out, are in `docs/proof.md`.
