@@ -200,9 +200,7 @@ fn what_a_program_for_linuxcnc_leaves_is_the_copper_net_by_net() {
     for (name, width) in BOARDS {
         let board = data.join("kicad").join(name);
         let more = ["--passes", "2", "--direction", "conventional"];
-        // The mill is too short for one board: 254 mm.
-        let machine = if *name == "microwave" { "generic-3axis-linuxcnc" } else { "linuxcnc-mill" };
-        let made = Made::of(&board, machine, *width, &more);
+        let made = Made::of(&board, "linuxcnc-mill", *width, &more);
         for (side, file) in copper(&board) {
             made.check(side, &file);
         }
