@@ -8,13 +8,13 @@ use geom::Vec3;
 use program::{Diagnostic, Op, Pose, Program, Record, Spindle, Surface, lowering};
 
 /// The program that probes the surface with its first tool before that cuts, and then has the surface where
-/// `program` has Z 0, as [`crate::level`] has it of a map: [`Op::Surface`] says so. It stops before the probing and
+/// `program` has Z 0, as [`crate::level()`] has it of a map: [`Op::Surface`] says so. It stops before the probing and
 /// behind it, for the operator to clip the probe on and off. Cuts are divided for a surface that rises by `steepness`
 /// mm a mm along X and along Y at most; on one that is twice as steep the deviation is up to twice that allowed.
 /// Holes are drilled by moves, rapids stay above the highest place that the probe finds.
 ///
 /// # Errors
-/// Those of [`crate::level`]; a grid or a probing that is none; a program without tool, with a move or a turning
+/// Those of [`crate::level()`]; a grid or a probing that is none; a program without tool, with a move or a turning
 /// spindle before the first; a cycle that moves cannot make; rapids across the board that are no higher than cuts.
 pub fn follow(
     program: &Program,

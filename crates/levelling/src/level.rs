@@ -185,9 +185,8 @@ impl<'a> Level<'a> {
             let message = format!("the levelled program has more than {MOST_RECORDS} records");
             return Err(refused(message, "allow a larger deviation, or level it in parts"));
         }
-        match &op {
-            Op::Rapid(_) => {}
-            op => self.follows = op.pose().map_or(self.follows, |at| self.follows.max(at.point.z)),
+        if let Some(pose) = op.pose().filter(|_| !matches!(op, Op::Rapid(_))) {
+            self.follows = self.follows.max(pose.point.z);
         }
         self.records.push(Record { line, op });
         Ok(())
@@ -207,14 +206,27 @@ impl<'a> Level<'a> {
             let message = format!("a rapid along the board to Z{} mm, below it", said.z);
             return Err(refused(message, "go there at feed, or above the board"));
         }
-        let height = if said.z < 0.0 || is_down {
+        if said.z < 0.0 || is_down {
             let height = said.z + self.ground.at(said.truncate());
             self.follows = self.follows.max(height);
-            height
-        } else {
-            self.clears = self.clears.min(said.z + self.lift);
-            said.z + self.lift
-        };
+            return self.rapid_to(line, said, height);
+        }
+        // Before it goes on across the board, what has come down goes up again.
+        let low = self.place.filter(|place| place.height < place.said.z + self.lift);
+        if let Some(Place { said, .. }) = low.filter(|low| upright.is_none() && low.said.z >= 0.0) {
+            self.lifted(line, said)?;
+        }
+        self.lifted(line, said)
+    }
+
+    /// By rapid to a place above all of the surface.
+    fn lifted(&mut self, line: u32, said: Vec3) -> Done {
+        let height = said.z + self.lift;
+        self.clears = self.clears.min(height);
+        self.rapid_to(line, said, height)
+    }
+
+    fn rapid_to(&mut self, line: u32, said: Vec3, height: f64) -> Done {
         self.place = Some(Place { said, height });
         self.push(line, Op::Rapid(Pose::new(said.with_z(height), Vec3::Z)))
     }

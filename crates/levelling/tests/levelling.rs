@@ -297,6 +297,33 @@ fn rapids_are_lifted_and_holes_go_down_from_their_surface() {
     assert_eq!(z, [3.4, -0.2, 0.3, 3.4]);
 }
 
+/// Straight down it is as far above the surface as the source has it, and across the board above all of it, from
+/// where it was on.
+#[test]
+fn rapids_straight_down_keep_their_distance_from_the_surface() {
+    let source = program(vec![
+        Op::Rapid(pose(0.0, 0.0, 2.0)),
+        Op::Rapid(pose(0.0, 0.0, 0.5)),
+        Op::Rapid(pose(60.0, 40.0, 0.5)),
+        Op::Rapid(pose(60.0, 40.0, 0.2)),
+        Op::Rapid(pose(60.0, 40.0, 2.0)),
+    ]);
+    let mut heights = [0.0; 12];
+    (heights[0], heights[11], heights[5]) = (-0.2, 0.3, 0.4);
+    let levelled = level(&source, &map(&heights), &ALLOWED).unwrap();
+    let at: Vec<Vec3> = levelled.records.iter().filter_map(|r| Some(r.op.pose()?.point)).collect();
+    let right = [
+        (0., 0., 2.4),
+        (0., 0., 0.3),
+        (0., 0., 0.9),
+        (60., 40., 0.9),
+        (60., 40., 0.5),
+        (60., 40., 2.4),
+    ];
+    assert_eq!(at.len(), right.len(), "{at:?}");
+    assert!(at.iter().zip(right).all(|(at, right)| at.distance(right.into()) < 1e-12), "{at:?}");
+}
+
 #[track_caller]
 fn refuses(ops: Vec<Op>, message: &str) {
     let line = ops.len() as u32;
