@@ -4,6 +4,8 @@
 //!   Grid ── probing ──▶ Program ─ ─ the machine ─ ─▶ log ── read ──▶ HeightMap
 //!                                                                        │
 //!                       Program ──────────────── level ──────────────────┴──▶ Program
+//!
+//!   Grid and Program ── follow ──▶ Program that probes and follows, all on the control
 //! ```
 //!
 //! The surface between the places that were probed is bilinear; Z 0 is where the surface was taken to be. What

@@ -1,7 +1,7 @@
 //! Programs that find the surface themselves: written, proven, and what goes wrong.
 
 use geom::{Vec2, Vec3};
-use program::{ArcTo, Cycle, CycleKind, Feed, Op, Pose, Program, Spindle, Tool};
+use program::{ArcTo, Cycle, CycleKind, Feed, Op, Pose, Probe, Program, Spindle, Tool};
 use toolpost_levelling::{Allowed, Grid, Probing, follow};
 
 const ALLOWED: Allowed = Allowed { deviation: 0.005, outside: 5.0 };
@@ -186,6 +186,38 @@ fn a_control_that_keeps_no_heights_is_refused() {
         let found = post::write(&program, &machine::load(name).unwrap()).unwrap_err();
         let refused = found.iter().any(|found| found.message.contains("keeps no heights"));
         assert!(refused, "{name}: {found:?}");
+    }
+}
+
+/// What no writer makes over such a surface, behind the cuts of a program that finds one.
+#[test]
+fn what_does_not_follow_a_surface_is_refused() {
+    let program = followed(vec![Op::Line(pose(30.0, 5.0, -0.1))], 2, 2);
+    let surface = program.records.iter().find(|record| matches!(record.op, Op::Surface(_)));
+    let probe = Probe { end: pose(10.0, 15.0, -1.0), away: false, must_answer: true, place: None };
+    let cycle = Cycle {
+        kind: CycleKind::Drill,
+        depth: 1.0,
+        clearance: 0.5,
+        retract: 2.0,
+        feed: None,
+        dwell: 0.0,
+        first_peck: None,
+        peck: None,
+    };
+    for ops in [
+        vec![Op::WorkOffset(55)],
+        vec![Op::Cycle(Box::new(cycle)), Op::Hole(pose(10.0, 15.0, 0.0))],
+        vec![Op::Probe(Box::new(probe))],
+        vec![surface.unwrap().op.clone()],
+    ] {
+        let mut program = program.clone();
+        let end = program.records.len() - 2;
+        let records = ops.into_iter().map(|op| program::Record { line: 7, op });
+        program.records.splice(end..end, records);
+        let machine = machine::load("generic-3axis-linuxcnc").unwrap();
+        let found = post::write(&program, &machine).unwrap_err();
+        assert_eq!((found[0].rule, found[0].line), ("surface", 7), "{}", found[0]);
     }
 }
 

@@ -222,7 +222,7 @@ impl Walk<'_> {
             Kind::Bare | Kind::Plain | Kind::Machine => self.said,
             Kind::ToolCenter | Kind::Vectors => self.machine.linear_for(self.tip, degrees, length),
         };
-        for sway in self.sway(self.tip) {
+        for &sway in self.sways(self.tip) {
             self.limits.position(linear + Vec3::Z * sway, degrees, length, self.line)?;
         }
         Ok(())

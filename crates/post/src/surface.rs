@@ -57,11 +57,11 @@ impl<'a> Walk<'a> {
         self.writer.raise(surface.map(|surface| parts(surface, point.truncate(), self.first())));
     }
 
-    /// By how much the surface can change Z at `point`, mm: the least and the most.
-    pub(crate) fn sway(&self, point: Vec3) -> [f64; 2] {
+    /// By how much the surface can change Z at `point`, mm: the least and the most, where it can.
+    pub(crate) fn sways(&self, point: Vec3) -> &'a [f64] {
         match self.surface {
-            Some(surface) if point.z < surface.clear => surface.reach,
-            _ => [0.0; 2],
+            Some(surface) if point.z < surface.clear => &surface.reach,
+            _ => &[0.0],
         }
     }
 

@@ -270,14 +270,14 @@ impl Writer {
                 *modal
             }
         };
-        let raised = self.raised.filter(|_| word == WordName::Z);
-        if modal && raised.is_none() && self.known & bit != 0 && self.active[index] == value {
+        let is_raised = word == WordName::Z && self.raised.is_some();
+        if modal && !is_raised && self.known & bit != 0 && self.active[index] == value {
             return false;
         }
         self.known |= bit;
         self.active[index] = value;
         let separated = self.separated(gap, start);
-        match raised {
+        match self.raised.filter(|_| is_raised) {
             None => self.write(word, separated, value.steps),
             Some(parts) => {
                 // What it comes to, only the control knows.
