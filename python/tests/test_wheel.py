@@ -1,10 +1,12 @@
-"""The wheel, in an environment that has nothing else."""
+"""The wheel in an environment that has nothing else, the sources away from the repository."""
 
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
+import tarfile
 import venv
 import zipfile
 
@@ -45,3 +47,16 @@ def test_the_wheel_works_in_a_clean_environment(tmp_path, run):
     post = ["post", EXAMPLES / "dome.cls", "-m", "dmu50-heidenhain", "-o", again]
     assert run(binaries / "toolpost", *post).returncode == 0
     assert again.read_bytes() == program.read_bytes()
+
+
+def test_the_source_package_has_all_that_it_is_built_from(tmp_path):
+    maturin = [sys.executable, "-m", "maturin", "sdist", "--out", tmp_path]
+    subprocess.run(maturin, cwd=ROOT, check=True)
+    (archive,) = tmp_path.glob("*.tar.gz")
+    with tarfile.open(archive) as packed:
+        packed.extractall(tmp_path)
+    (source,) = tmp_path.glob("toolpost-*/python")
+    # What others have written is compiled already, where the tests of the repository are.
+    target = os.environ.get("CARGO_TARGET_DIR", ROOT / "target")
+    check = ["cargo", "check", "--quiet", "--locked", "--target-dir", target]
+    subprocess.run(check, cwd=source, check=True)
