@@ -150,6 +150,9 @@ pub struct Setup {
     /// Where the tool stands in the work frame when the program starts, mm, with all offsets of the
     /// control at 0; `None` where that is not known, and no offset is.
     pub start: Option<Vec3>,
+    /// Points of the part's surface, mm, work frame: straight down onto one of them a probe answers there. Of any
+    /// other probing move only the machine knows where it has ended.
+    pub surface: Vec<Vec3>,
 }
 
 /// A line of the control's tool table.

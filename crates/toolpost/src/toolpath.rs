@@ -206,6 +206,7 @@ impl Origin {
             }),
             block_delete: self.block_delete,
             start: self.start.map(Vec3::from_array),
+            surface: Vec::new(),
         })
     }
 }
