@@ -524,3 +524,16 @@ proptest! {
         prop_assert_eq!(region.islands().len(), 1);
     }
 }
+
+#[test]
+fn the_number_of_threads_does_not_show() {
+    // A grid of discs that overlap, of more chords than are sorted on one thread.
+    let discs: Vec<Region> =
+        (0..900).map(|i| disc(f64::from(i % 30) * 1.7, f64::from(i / 30) * 1.7, 1.0)).collect();
+    let on = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| Region::union_of(&discs).unwrap().offset(0.3).unwrap())
+    };
+    let one = on(1);
+    assert!([2, 3, 8].into_iter().all(|threads| on(threads) == one));
+}

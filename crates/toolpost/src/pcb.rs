@@ -19,9 +19,9 @@ use drawing::{BoardPicture, Format};
 use levelling::{Allowed, Grid, HeightMap, Probing, follow, level};
 use machine::Machine;
 use plan::Plan;
-use program::{Diagnostic, Op, Program, Record};
+use program::{Diagnostic, Op, Record};
+use rayon::prelude::*;
 use std::path::Path;
-use std::thread;
 use work::Work;
 
 /// Writes the programs, proves them, and only then saves them with their pictures and the report.
@@ -45,8 +45,8 @@ pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
         can_probe(&plan, places, &machine)?;
     }
     progress.step("planning");
-    let works = each(&plan.parts, |part| Work::of(*part, &plan, args, &machine));
-    let works = works.into_iter().collect::<Result<Vec<Work>, Stop>>()?;
+    let works = plan.parts.par_iter().map(|part| Work::of(*part, &plan, args, &machine));
+    let works = works.collect::<Vec<_>>().into_iter().collect::<Result<Vec<Work>, Stop>>()?;
     let rack = Rack::of(&works);
     progress.step("writing and proving");
     let shop = Shop { args, machine: &machine, plan: &plan, rack, heights, surface };
@@ -55,7 +55,7 @@ pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
         programs.push(shop.probing(grid)?);
     }
     let jobs: Vec<(Part, Work)> = plan.parts.iter().copied().zip(works).collect();
-    let made = each(&jobs, |(part, work)| shop.make(*part, work));
+    let made: Vec<_> = jobs.par_iter().map(|(part, work)| shop.make(*part, work)).collect();
     for (made, (part, work)) in made.into_iter().zip(jobs) {
         let (posted, picture) = made?;
         programs.push(Made { name: part.name(), work, posted, picture, probes: shop.probes(part) });
@@ -248,27 +248,26 @@ impl Shop<'_> {
             let grid = grid(board, places)?;
             program = follow(&program, &grid, &PROBED, STEEPNESS, &LEVELLED)?;
         }
-        let (program, posted) = self.proven(program, part.name())?;
+        let toolpath = Toolpath::of_program(program, "board");
         let format = match self.args.picture {
             Picture::Svg => Some(Format::Svg),
             Picture::Png => Some(Format::Png),
             Picture::None => None,
         };
-        let picture = format.map(|format| {
-            let widths: Vec<f64> = work.operations.iter().map(Operation::width).collect();
-            format.bytes(drawing::board(
-                &name,
-                &BoardPicture {
-                    outline: board.outline.as_ref(),
-                    copper: board.front.copper.as_ref(),
-                    holes: &board.holes,
-                    program: &program,
-                    widths: &widths,
-                    problems: &work.places,
-                },
-            ))
-        });
-        Ok((posted, picture.transpose()?))
+        let widths: Vec<f64> = work.operations.iter().map(Operation::width).collect();
+        let picture = BoardPicture {
+            outline: board.outline.as_ref(),
+            copper: board.front.copper.as_ref(),
+            holes: &board.holes,
+            program: &toolpath.program,
+            widths: &widths,
+            problems: &work.places,
+        };
+        let (posted, picture) = rayon::join(
+            || self.proven(&toolpath, part.name()),
+            || format.map(|format| format.bytes(drawing::board(&name, &picture))).transpose(),
+        );
+        Ok((posted?, picture?))
     }
 
     /// Columns and rows of the heights that the program of a part measures itself.
@@ -288,17 +287,15 @@ impl Shop<'_> {
             ..program::Tool::default()
         };
         program.records.insert(0, Record { line: 0, op: Op::Tool(Box::new(tool)) });
-        let (_, posted) = self.proven(program, PROBE)?;
+        let posted = self.proven(&Toolpath::of_program(program, "board"), PROBE)?;
         Ok(Made { name: PROBE, work: Work::default(), posted, picture: None, probes: None })
     }
 
     /// The text of a program, proven.
-    fn proven(&self, program: Program, name: &str) -> Result<(Program, Posted), Stop> {
-        let toolpath = Toolpath::of_program(program, "board");
+    fn proven(&self, toolpath: &Toolpath, name: &str) -> Result<Posted, Stop> {
         let tolerances = self.args.closeness.tolerances();
         let file = format!("{name}.nc");
-        let posted = post::proven(&toolpath, self.machine, &file, &tolerances, &|_| {})?;
-        Ok((toolpath.program, posted))
+        post::proven(toolpath, self.machine, &file, &tolerances, &|_| {})
     }
 }
 
@@ -306,16 +303,6 @@ impl Shop<'_> {
 fn grid(board: &Board, [columns, rows]: [u32; 2]) -> Result<Grid, Stop> {
     let (low, high) = board.extents().unwrap_or_default();
     Ok(Grid::new(low, high, columns as usize, rows as usize)?)
-}
-
-/// `work` for each thing, all at the same time, the answers in their order.
-fn each<T: Sync, A: Send>(things: &[T], work: impl Fn(&T) -> A + Sync) -> Vec<A> {
-    let work = &work;
-    thread::scope(|scope| {
-        let threads: Vec<_> = things.iter().map(|thing| scope.spawn(move || work(thing))).collect();
-        let finished = threads.into_iter().map(|thread| thread.join());
-        finished.map(|done| done.unwrap_or_else(|panic| std::panic::resume_unwind(panic))).collect()
-    })
 }
 
 /// Saves everything, or nothing; answers the names of the files.

@@ -3,6 +3,7 @@
 use super::index::tree;
 use crate::crossing::Carrier;
 use crate::{Element, Vec2};
+use rayon::prelude::*;
 use static_aabb2d_index::Control;
 
 /// How deep two elements may cross and count as touching, mm: rounding of the kernel.
@@ -27,19 +28,23 @@ pub(super) fn crossings(rings: &[&[Element]]) -> Vec<Place> {
         elements.iter().map(|(_, _, element)| element.extents()).collect();
     let Some(index) = tree(boxes.iter().copied()) else { return Vec::new() };
     let mut places: Vec<Option<Vec2>> = vec![None; elements.len()];
-    for (i, ((_, _, element), (low, high))) in elements.iter().zip(&boxes).enumerate() {
+    let found = elements.par_iter().zip(&boxes).enumerate().flat_map_iter(|(i, of)| {
+        let ((_, _, element), (low, high)) = of;
+        let mut found = Vec::new();
         index.visit_query(low.x, low.y, high.x, high.y, &mut |other: usize| {
             if let (true, Some((_, _, second))) = (other > i, elements.get(other))
                 && let Some(point) = crossing(element, second)
             {
-                for k in [i, other] {
-                    if let Some(place) = places.get_mut(k) {
-                        *place = Some(point);
-                    }
-                }
+                found.extend([(i, point), (other, point)]);
             }
             Control::<()>::Continue
         });
+        found
+    });
+    for (i, point) in found.collect::<Vec<_>>() {
+        if let Some(place) = places.get_mut(i) {
+            *place = Some(point);
+        }
     }
     let found = elements.iter().zip(places);
     found

@@ -31,7 +31,7 @@
 //! - The rings of a region cross neither themselves nor each other, but by rounding (2 nm). They may
 //!   touch in points; what is connected by a point alone is not connected.
 //! - Outer rings run counter-clockwise, holes clockwise: the region is on the left of its boundary.
-//! - The same regions in the same order give the same result, bit for bit.
+//! - The same regions in the same order give the same result, bit for bit, on any number of threads.
 //! - Time grows as n·log n of the elements, and with the number of places where they cross. An operation
 //!   of more than 33 million chords is refused ([`RegionError::TooLarge`]).
 //!

@@ -7,6 +7,9 @@
 //! arc, and at one that points inwards the way by the corner itself. The grown region is what the
 //! chain runs around at least once ([`Fill::Positive`]), however often it crosses itself. Shrinking is
 //! growing what is outside: the same chain on the other side.
+//!
+//! Where parallels of lines cross at a corner that points inwards, the chain goes on there, without the way by
+//! the corner: the kernel has fewer crossings to look for.
 
 use super::chords::boolean;
 use super::kernel::Keep;
@@ -38,7 +41,10 @@ impl Region {
 
 /// The chain at `distance` mm on the right of a ring.
 fn beside(ring: &[Element], distance: f64) -> Vec<Element> {
-    let sides: Vec<Side> = ring.iter().map(|element| Side::of(element, distance)).collect();
+    let mut sides: Vec<Side> = ring.iter().map(|element| Side::of(element, distance)).collect();
+    for i in 0..ring.len() {
+        trim(ring, &mut sides, i, distance);
+    }
     let mut chain = Vec::with_capacity(2 * ring.len());
     let nexts = ring.iter().zip(&sides).cycle().skip(1);
     for ((element, side), (next, after)) in ring.iter().zip(&sides).zip(nexts) {
@@ -70,6 +76,36 @@ fn beside(ring: &[Element], distance: f64) -> Vec<Element> {
         }
     }
     chain
+}
+
+/// Lets the parallels of line `i` and the next one end where they cross, at a corner that points inwards and
+/// is not sharp. What of the chain is left out there runs around what lies beside both lines: without it,
+/// the chain runs around that once less, and still once.
+fn trim(ring: &[Element], sides: &mut [Side], i: usize, distance: f64) {
+    let k = (i + 1) % ring.len();
+    let (Some(element), Some(next)) = (ring.get(i), ring.get(k)) else { return };
+    let (along, then) = (element.tangent(1.0), next.tangent(0.0));
+    let lines = element.turn.is_none() && next.turn.is_none();
+    if !(lines && along.dot(then) >= 0.0 && along.perp_dot(then) * distance < 0.0) {
+        return;
+    }
+    let Ok(
+        [Side { way: Way::Parallel(way), end, .. }, Side { way: Way::Parallel(after), start, .. }],
+    ) = sides.get_disjoint_mut([i, k])
+    else {
+        return;
+    };
+    // The one's end is beside the other line too, and neither parallel gets turned round.
+    let (from, to) = (*end - next.start, *start - next.start);
+    let crossing = next.start + (from + to) / (1.0 + along.dot(then));
+    if (*start - element.start).dot(along) >= 0.0
+        && (next.end - *end).dot(then) >= 0.0
+        && (crossing - way.start).dot(along) > 0.0
+        && (after.end - crossing).dot(then) > 0.0
+    {
+        way.end = crossing;
+        after.start = crossing;
+    }
 }
 
 /// The angle by which a ring turns between two elements, radians, positive to the left.

@@ -15,6 +15,7 @@ use super::kernel::{Edge, Place};
 use super::{Island, Region, Ring};
 use crate::crossing::Carrier;
 use crate::{Element, Vec2, turn_angle};
+use rayon::prelude::*;
 use std::collections::VecDeque;
 use std::f64::consts::TAU;
 use std::ops::Range;
@@ -52,19 +53,11 @@ const ROUNDS: usize = 8;
 
 /// The region of `islands`, whose edges are pieces of `sources`.
 pub(super) fn region(islands: Vec<Vec<Vec<Edge>>>, sources: &[Source]) -> Region {
-    let mut outlines = Vec::new();
-    for (island, rings) in islands.into_iter().enumerate() {
-        for (i, edges) in rings.into_iter().enumerate() {
-            let outline = Outline::of(edges, sources);
-            let is_hole = i > 0;
-            match (outline.is_nothing(is_hole), is_hole) {
-                (true, false) => break,
-                (true, true) => continue,
-                _ => {}
-            }
-            outlines.push((island, outline));
-        }
-    }
+    let outlines = islands.into_par_iter().enumerate().flat_map_iter(|(island, rings)| {
+        let outlines = Outline::of_island(rings, sources);
+        outlines.into_iter().map(move |outline| (island, outline))
+    });
+    let mut outlines: Vec<(usize, Outline)> = outlines.collect();
     for round in 1..=ROUNDS {
         let rings: Vec<&[Element]> = outlines.iter().map(|(_, o)| &*o.elements).collect();
         let mut found = false;
@@ -77,7 +70,7 @@ pub(super) fn region(islands: Vec<Vec<Vec<Edge>>>, sources: &[Source]) -> Region
         if !found {
             break;
         }
-        outlines.iter_mut().for_each(|(_, outline)| outline.fit(sources));
+        outlines.par_iter_mut().for_each(|(_, outline)| outline.fit(sources));
     }
     let mut region = Region::default();
     let mut last = None;
@@ -112,6 +105,20 @@ struct Outline {
 }
 
 impl Outline {
+    /// Those of an island that are something; none where the outer one is nothing.
+    fn of_island(rings: Vec<Vec<Edge>>, sources: &[Source]) -> Vec<Outline> {
+        let mut outlines = Vec::with_capacity(rings.len());
+        for (i, edges) in rings.into_iter().enumerate() {
+            let outline = Outline::of(edges, sources);
+            match outline.is_nothing(i > 0) {
+                true if i == 0 => break,
+                true => {}
+                false => outlines.push(outline),
+            }
+        }
+        outlines
+    }
+
     fn of(edges: Vec<Edge>, sources: &[Source]) -> Outline {
         let mut edges = without_slits(edges);
         let mut before = edges.iter().rfind(|edge| !is_tiny(edge)).map_or(0, |edge| edge.source);

@@ -8,10 +8,7 @@ use super::{Board, Copper, check, covered, holes, outline};
 use crate::{excellon, gerber};
 use geom::region::RegionError;
 use program::Diagnostic;
-use std::{panic, thread};
-
-/// So many files are read at the same time.
-const AT_ONCE: usize = 8;
+use rayon::prelude::*;
 
 /// A file of a board.
 #[derive(Clone, Copy, Debug)]
@@ -46,16 +43,7 @@ pub fn read(name: &str, files: &[File]) -> Result<Reading, Vec<Diagnostic>> {
     let mut board = Board { name: name.into(), ..Board::default() };
     let mut errors = Vec::new();
     // Some at the same time, and put together in the order of the files.
-    let read = |some: &[Known]| {
-        thread::scope(|scope| {
-            let threads: Vec<_> = some.iter().map(|layer| scope.spawn(|| layer.read())).collect();
-            let finished = threads.into_iter().map(|thread| thread.join());
-            finished
-                .map(|part| part.unwrap_or_else(|panic| panic::resume_unwind(panic)))
-                .collect::<Vec<_>>()
-        })
-    };
-    for part in known.chunks(AT_ONCE).flat_map(read) {
+    for part in known.par_iter().map(Known::read).collect::<Vec<_>>() {
         match part {
             Ok((part, found)) => {
                 board.take(part);

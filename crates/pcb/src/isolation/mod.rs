@@ -89,8 +89,9 @@ impl Isolation {
         copper: &Copper,
         area: Option<&Region>,
     ) -> Result<Isolated, Box<Diagnostic>> {
-        let mut paths = self.passes(copper).map_err(too_large)?;
-        let gaps = gap::gaps(&Field::new(copper), self.width());
+        let (paths, gaps) =
+            rayon::join(|| self.passes(copper), || gap::gaps(&Field::new(copper), self.width()));
+        let mut paths = paths.map_err(too_large)?;
         let mut gaps = gaps.map_err(|_| too_wide(self.width()))?;
         let mut middles = match self.narrow {
             Narrow::LeaveOut => Vec::new(),

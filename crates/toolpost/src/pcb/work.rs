@@ -15,6 +15,7 @@ use pcb::{
     Board, Clearing, Copper, Cut, Cutter, Division, Engraving, Hole, Operation, Path, Tool, depths,
 };
 use program::Diagnostic;
+use rayon::prelude::*;
 
 /// The speed of a spindle that has no limit in its machine file, 1/min.
 const USUAL_SPEED: f64 = 10_000.0;
@@ -401,8 +402,9 @@ fn net(copper: &Copper, island: usize) -> String {
 fn along(paths: &[Path], width: f64, depths: &[f64]) -> Vec<Cut> {
     let mut ways = Vec::with_capacity(paths.len());
     let mut dots = Vec::new();
-    for path in paths {
-        match path.merged(MERGED) {
+    let merged: Vec<Option<Path>> = paths.par_iter().map(|path| path.merged(MERGED)).collect();
+    for (path, way) in paths.iter().zip(merged) {
+        match way {
             Some(way) => ways.push(way),
             None => dots.push(path.start()),
         }
@@ -412,7 +414,7 @@ fn along(paths: &[Path], width: f64, depths: &[f64]) -> Vec<Cut> {
     if depths.len() == 1 {
         // Deeper, a way that is not closed any more would be cut the other way round.
         let joined = pcb::joined(&ways, width, JOINED);
-        ways = joined.iter().filter_map(|way| way.merged(MERGED)).collect();
+        ways = joined.par_iter().filter_map(|way| way.merged(MERGED)).collect();
     }
     let at = ways.last().map_or(Vec2::ZERO, Path::end);
     let order = Tour { from: at, ..tour }.of_points(&dots);
