@@ -295,9 +295,6 @@ fn apex(arc: &Element) -> f64 {
     arc.start.distance(center) * (1.0 / (sweep / 2.0).cos() - 1.0)
 }
 
-use super::fit::C;
-use std::sync::atomic::Ordering::Relaxed as R;
-
 /// How far an element that goes on over the corner between two would be from it, roughly, mm.
 pub(super) fn sharpness(before: &Element, next: &Element) -> f64 {
     let turn = turn_angle(before.tangent(1.0), next.tangent(0.0));

@@ -88,13 +88,11 @@ impl Run<'_> {
     /// The least and the greatest bulge of arcs from `start` to `end` that pass its marks within `tolerance` mm.
     /// Where all are as good, that is 0.
     pub(super) fn bulges(self, start: Vec2, end: Vec2, tolerance: f64) -> Option<(f64, f64)> {
-        C[0].fetch_add(1, R);
         let half = start.distance(end) / 2.0;
         let (middle, along) = (start.midpoint(end), (end - start) / (2.0 * half));
         let squared = tolerance * tolerance;
         let (mut low, mut high) = (f64::NEG_INFINITY, f64::INFINITY);
         for mark in self.marks {
-            C[1].fetch_add(1, R);
             let from = *mark - middle;
             let right = from.perp_dot(along);
             // Points of the circle with the ends for a diameter have 0, those within less.
@@ -109,7 +107,6 @@ impl Run<'_> {
             low = low.max((right - tolerance) * scale);
             high = high.min((right + tolerance) * scale);
             if !(low <= high) {
-                C[2].fetch_add(1, R);
                 return None;
             }
         }
@@ -122,7 +119,6 @@ impl Run<'_> {
     /// How far `element` and the run are from each other where both are followed from end to end without
     /// turning back, mm; `None` where that is more than `tolerance`.
     fn away(self, element: &Element, tolerance: f64) -> Option<f64> {
-        C[3].fetch_add(1, R);
         let mut walk = Walk::along(element, tolerance);
         walk.pass(self.pieces.first()?.start)?;
         for piece in self.pieces {
@@ -131,7 +127,6 @@ impl Run<'_> {
             }
             walk.pass(piece.end)?;
         }
-        C[4].fetch_add(1, R);
         Some(walk.away)
     }
 }
