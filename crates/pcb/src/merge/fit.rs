@@ -121,13 +121,14 @@ impl Run<'_> {
     fn away(self, element: &Element, tolerance: f64) -> Option<f64> {
         let mut walk = Walk::along(element, tolerance);
         walk.pass(self.pieces.first()?.start)?;
+        let begins = walk.may_begin();
         for piece in self.pieces {
             for point in walk.extremes(piece).into_iter().flatten() {
                 walk.pass(point)?;
             }
             walk.pass(piece.end)?;
         }
-        Some(walk.away)
+        (begins && walk.may_end()).then_some(walk.away)
     }
 }
 

@@ -16,8 +16,8 @@ pub(super) struct Walk {
     tolerance: f64,
     /// How far from it the farthest of them is, mm.
     pub(super) away: f64,
-    /// How far along the walk has come at least, mm.
-    reached: f64,
+    /// How far along the walk has come, at least and at most, mm.
+    reached: (f64, f64),
 }
 
 enum Course {
@@ -47,7 +47,17 @@ impl Walk {
             },
         };
         let ends = [element.start, element.end];
-        Walk { course, ends, length, tolerance, away: 0.0, reached: 0.0 }
+        Walk { course, ends, length, tolerance, away: 0.0, reached: (0.0, 0.0) }
+    }
+
+    /// Whether it may be at its start yet.
+    pub(super) fn may_begin(&self) -> bool {
+        self.reached.0 <= 0.0
+    }
+
+    /// Whether it may be at its end.
+    pub(super) fn may_end(&self) -> bool {
+        self.reached.1 >= self.length
     }
 
     /// Goes on to beside `point`; `None` where that is too far away or back.
@@ -78,10 +88,10 @@ impl Walk {
             let squared = self.tolerance * self.tolerance - beside * beside;
             (way, beside, squared.max(0.0).sqrt() * stretch)
         };
-        if away > self.tolerance || self.reached > way + reach {
+        if away > self.tolerance || self.reached.0 > way + reach {
             return None;
         }
-        self.reached = self.reached.max(way - reach);
+        self.reached = (self.reached.0.max(way - reach), way + reach);
         self.away = self.away.max(away);
         Some(())
     }
