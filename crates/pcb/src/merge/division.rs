@@ -3,10 +3,13 @@
 use super::fit::Run;
 use super::{LEAST, SHORT};
 use geom::{Element, Turn, Vec2, turn_angle};
-use std::f64::consts::{FRAC_PI_2, PI};
+use std::f64::consts::{FRAC_PI_4, PI};
 
 /// How far beside a corner of the way an element may end, of the tolerance: the rest is for rounding.
 const BESIDE: f64 = 0.9;
+
+/// What turns by less, radians, may be a corner of two lines.
+const BEND: f64 = 0.6 * PI;
 
 /// Corners where no element can go on are those that are sharper than this many tolerances.
 const SHARP: f64 = 2.0;
@@ -36,10 +39,12 @@ pub(super) struct Division {
 
 /// Where an element may end and the next one start.
 struct Node {
-    /// On the way; then beside it.
+    /// On the way, but for the middle of a bend; then beside it.
     places: [Vec2; 3],
     /// How many of them there are.
     count: usize,
+    /// Whether the first is on the way.
+    is_on: bool,
     /// Whether no element goes on here.
     is_sharp: bool,
 }
@@ -95,9 +100,9 @@ impl Division {
         let sweep = sweep.abs();
         if element.start.distance(center) < LEAST {
             // It becomes lines.
-            return (sweep / FRAC_PI_2 * 2.0).ceil().clamp(1.0, 64.0) as usize;
+            return (sweep / FRAC_PI_4).ceil().clamp(1.0, 64.0) as usize;
         }
-        let is_bend = sweep < FRAC_PI_2 * 1.2 && apex(element) < 2.2 * self.tolerance;
+        let is_bend = sweep < BEND && apex(element) < 2.2 * self.tolerance;
         if is_bend || sweep > PI { 2 } else { 1 }
     }
 
@@ -108,28 +113,37 @@ impl Division {
         let Some((before, next)) = around else {
             let on = self.pieces.get(i).map(|piece| piece.start);
             let on = on.or(self.pieces.last().map(|piece| piece.end)).unwrap_or_default();
-            return Node { places: [on; 3], count: 1, is_sharp: true };
+            return Node { places: [on; 3], count: 1, is_on: true, is_sharp: true };
         };
         let on = next.start;
         let (along, on_from) = (before.tangent(1.0), next.tangent(0.0));
         let is_sharp = self.is_sharp(before, next);
         let normal = (along + on_from).normalize_or_zero().perp();
-        if let (Some(Turn { center, sweep }), true) =
-            (next.turn, self.element[i - 1] == self.element[i])
-        {
+        if let (Some(Turn { center, sweep }), true) = (next.turn, self.is_of(i, i - 1)) {
             // Of an arc between two lines, where these meet.
             let out = (on - center).normalize_or_zero();
             let whole = Element::arc(before.start, next.end, center, 2.0 * sweep);
-            let beside = on + out * apex(&whole).min(0.97 * self.tolerance);
-            let is_bend = sweep.abs() < 1.0;
-            return Node { places: [on, beside, on], count: if is_bend { 2 } else { 1 }, is_sharp };
+            let apex = on + out * apex(&whole).min(0.97 * self.tolerance);
+            let is_on = sweep.abs() > BEND / 2.0
+                || self.is_of(i, i.wrapping_sub(2))
+                || self.is_of(i, i + 1);
+            return match is_on {
+                true => Node { places: [on; 3], count: 1, is_on, is_sharp },
+                false => Node { places: [apex; 3], count: 1, is_on, is_sharp },
+            };
         }
         let beside = normal * (BESIDE * self.tolerance);
         Node {
             places: [on, on + beside, on - beside],
             count: if is_sharp { 1 } else { 3 },
+            is_on: true,
             is_sharp,
         }
+    }
+
+    /// Whether two pieces are of one element.
+    fn is_of(&self, i: usize, k: usize) -> bool {
+        self.element.get(i).is_some_and(|element| self.element.get(k) == Some(element))
     }
 
     /// Whether no element goes on from one piece to the next.
@@ -267,7 +281,8 @@ impl Division {
 
     /// The element, or part of it, of which all pieces between two nodes are.
     fn whole(&self, from: (usize, usize), to: (usize, usize)) -> Option<Element> {
-        if from.1 > 0 || to.1 > 0 || self.element[from.0] != self.element[to.0 - 1] {
+        let is_on = |(node, place): (usize, usize)| place == 0 && self.nodes[node].is_on;
+        if !is_on(from) || !is_on(to) || !self.is_of(from.0, to.0 - 1) {
             return None;
         }
         let (first, last) = (self.pieces[from.0], self.pieces[to.0 - 1]);

@@ -47,8 +47,8 @@ impl Path {
         // Where it turns most an element ends in any case.
         let corners = elements.iter().zip(elements.iter().cycle().skip(elements.len() - 1));
         let sharp = corners.map(|(next, before)| sharpness(before, next)).enumerate();
-        let sharpest = sharp.max_by(|a, b| a.1.total_cmp(&b.1)).map_or(0, |(sharpest, _)| sharpest);
-        elements.rotate_left(sharpest);
+        let sharpest = sharp.reduce(|most, next| if next.1 > most.1 { next } else { most });
+        elements.rotate_left(sharpest.map_or(0, |(sharpest, _)| sharpest));
         let division = Division::of(&elements, tolerance);
         if let Some(circle) = division.circle() {
             return Path::new(vec![circle]);
