@@ -66,9 +66,7 @@ class Package:
 
     def _read(self, job, options):
         machine = self._machine(options.machine, dict(options.option))
-        # With `ensure_ascii`, which is twice as fast.
-        text = json.dumps(job)
-        return self.read_job(text, machine, file=f"{_stem(job)}.json"), machine
+        return self.read_job(job, machine, file=f"{_stem(job)}.json"), machine
 
     def _machine(self, name, changed):
         try:

@@ -1,11 +1,15 @@
 //! What Python gives: points, directions, arrays, words that stand for something.
 
-use crate::error::refused;
+use crate::error::{refused, released};
+use freecad::Job;
 use geom::Vec3;
 use numpy::{AllowTypeChange, PyArrayLike2};
 use program::Diagnostic;
 use pyo3::prelude::*;
+use pyo3::types::{PyBool, PyDict, PyList};
+use serde_json::Value;
 use std::path::PathBuf;
+use toolpost::answer::Stop;
 
 /// A path as text: what names a file, or something of the library.
 pub fn text(path: PathBuf) -> String {
@@ -26,6 +30,58 @@ impl Text {
             Text::Str(text) => text.as_bytes(),
             Text::Bytes(bytes) => bytes,
         }
+    }
+}
+
+/// A job of FreeCAD's: the text of its file, or what that would hold.
+#[derive(FromPyObject)]
+pub enum JobText<'py> {
+    Text(Text),
+    Sheet(Bound<'py, PyDict>),
+}
+
+impl JobText<'_> {
+    /// The job, which is called `file`.
+    pub fn job(self, py: Python<'_>, file: &str) -> PyResult<Job> {
+        let sheet = match self {
+            JobText::Text(text) => {
+                return released(py, || Ok::<_, Stop>(Job::of(file, text.bytes())?));
+            }
+            JobText::Sheet(sheet) => json(sheet.as_any(), DEEPEST)?,
+        };
+        released(py, || Ok::<_, Stop>(Job::of_value(file, sheet)?))
+    }
+}
+
+/// How deep the lists and dictionaries of a job may be in one another: they are three.
+const DEEPEST: u32 = 8;
+
+/// What JSON would hold of a dictionary, a list, text or a number.
+fn json(any: &Bound<'_, PyAny>, deepest: u32) -> PyResult<Value> {
+    let Some(deeper) = deepest.checked_sub(1) else {
+        let found = Diagnostic::error("argument", "a dictionary is in too many others");
+        return Err(refused(any.py(), found));
+    };
+    if let Ok(dictionary) = any.cast::<PyDict>() {
+        let entry =
+            |(key, value): (Bound<'_, PyAny>, _)| Ok((key.extract()?, json(&value, deeper)?));
+        return dictionary.iter().map(entry).collect::<PyResult<_>>().map(Value::Object);
+    }
+    if let Ok(list) = any.cast::<PyList>() {
+        return list.iter().map(|value| json(&value, deeper)).collect();
+    }
+    if any.is_none() {
+        return Ok(Value::Null);
+    }
+    if let Ok(is) = any.cast::<PyBool>() {
+        return Ok(Value::Bool(is.is_true()));
+    }
+    if let Ok(whole) = any.extract::<i64>() {
+        return Ok(whole.into());
+    }
+    match any.extract::<f64>() {
+        Ok(value) => Ok(number(any.py(), "a number of the job", value)?.into()),
+        Err(_) => Ok(any.extract::<String>()?.into()),
     }
 }
 

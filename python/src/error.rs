@@ -4,18 +4,21 @@ use program::Diagnostic;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyTuple, PyType};
-use std::cell::RefCell;
+use std::mem::take;
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use toolpost::answer::Stop;
 
-thread_local! {
-    /// What the last panic of this thread had to say, and where it was.
-    static PANIC: RefCell<String> = const { RefCell::new(String::new()) };
+/// What the last panic had to say, and where it was: work is done on several threads.
+static PANIC: Mutex<String> = Mutex::new(String::new());
+
+fn said() -> MutexGuard<'static, String> {
+    PANIC.lock().unwrap_or_else(PoisonError::into_inner)
 }
 
 /// From here on a panic says nothing on the error stream: [`released`] tells it.
 pub fn catch_panics() {
-    set_hook(Box::new(|panic| PANIC.with(|said| *said.borrow_mut() = panic.to_string())));
+    set_hook(Box::new(|panic| *said() = panic.to_string()));
 }
 
 /// Does `work` while other threads of Python go on. What stops it is raised, a panic like anything else.
@@ -23,7 +26,7 @@ pub fn released<T: Send, E: Into<Stop> + Send>(
     py: Python<'_>,
     work: impl FnOnce() -> Result<T, E> + Send,
 ) -> PyResult<T> {
-    match py.detach(|| catch_unwind(AssertUnwindSafe(work)).map_err(|_| PANIC.take())) {
+    match py.detach(|| catch_unwind(AssertUnwindSafe(work)).map_err(|_| take(&mut *said()))) {
         Ok(done) => done.map_err(|stop| raised(py, &stop.into().findings)),
         Err(said) => {
             let message = format!("this is a mistake in Toolpost: {said}");

@@ -1,6 +1,6 @@
 //! A program: read from a file, or built.
 
-use crate::arguments::{Text, number, text, word};
+use crate::arguments::{JobText, number, text, word};
 use crate::builder::Builder;
 use crate::columns::{Columns, Filled};
 use crate::error::{findings, released};
@@ -299,16 +299,16 @@ pub fn read(
     released(py, || toolpath::read(&path, strict, &origin, None)).map(Program::from)
 }
 
-/// Read a job of FreeCAD from its text.
+/// Read a job of FreeCAD.
 ///
 /// Parameters
 /// ----------
-/// text : str or bytes
-///     The job as JSON (``docs/sources/freecad.md``), or FreeCAD's own dump of its commands.
+/// job : dict, str or bytes
+///     The job (``docs/sources/freecad.md``) as a dictionary or as JSON, or FreeCAD's own dump of its commands.
 /// machine : Machine, optional
 ///     Whose rotary axes the words A, B and C are; without one there are three axes.
 /// file : str
-///     What the text is called in findings.
+///     What the job is called in findings.
 /// strict : bool
 ///     Take every warning as an error.
 ///
@@ -321,14 +321,15 @@ pub fn read(
 /// toolpost.Error
 ///     What is wrong with the job, with the operation and the number of its command.
 #[pyfunction]
-#[pyo3(signature = (text, machine=None, *, file="job.json", strict=false))]
+#[pyo3(signature = (job, machine=None, *, file="job.json", strict=false))]
 pub fn read_job(
     py: Python<'_>,
-    text: Text,
+    job: JobText<'_>,
     machine: Option<&Machine>,
     file: &str,
     strict: bool,
 ) -> PyResult<Program> {
     let machine = machine.map(|machine| &machine.described);
-    released(py, || toolpath::read_job(file, text.bytes(), strict, machine)).map(Program::from)
+    let job = job.job(py, file)?;
+    released(py, || toolpath::read_job(file, &job, strict, machine)).map(Program::from)
 }

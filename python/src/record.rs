@@ -176,6 +176,7 @@ fn kind(op: &Op, words: &Bound<'_, PyDict>) -> PyResult<&'static str> {
             words.set_item("number", number)?;
             "work-offset"
         }
+        Op::Surface(_) => "surface",
         Op::ThreadWire => "thread-wire",
         Op::CutWire => "cut-wire",
         Op::Taper(degrees) => {

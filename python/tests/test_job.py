@@ -1,4 +1,4 @@
-"""Jobs of FreeCAD, as text."""
+"""Jobs of FreeCAD, as text and as dictionaries."""
 
 from __future__ import annotations
 
@@ -13,10 +13,10 @@ from conftest import EXAMPLES
 JOB = EXAMPLES / "bracket.json"
 
 
-def test_a_job_is_the_same_from_its_file_and_from_its_text():
+def test_a_job_is_the_same_from_its_file_its_text_and_a_dictionary():
     read = toolpost.read(JOB)
-    for text in [JOB.read_text(), JOB.read_bytes()]:
-        job = toolpost.read_job(text, toolpost.machine("emco-concept-mill-105"), file=JOB.name)
+    for given in [JOB.read_text(), JOB.read_bytes(), json.loads(JOB.read_text())]:
+        job = toolpost.read_job(given, toolpost.machine("emco-concept-mill-105"), file=JOB.name)
         np.testing.assert_array_equal(job.positions, read.positions)
         assert [repr(record) for record in job] == [repr(record) for record in read]
         assert (job.file, job.dialect) == (read.file, read.dialect)
@@ -33,9 +33,35 @@ def test_what_is_wrong_with_a_job_names_its_operation():
     job = json.loads(JOB.read_text())
     label = job["operations"][0]["label"]
     job["operations"][0]["commands"] += "G99999\n"
-    with pytest.raises(toolpost.Error, match=label) as caught:
-        toolpost.read_job(json.dumps(job), file="bracket.json")
-    assert caught.value.line > 0
+    for given in [job, json.dumps(job)]:
+        with pytest.raises(toolpost.Error, match=label) as caught:
+            toolpost.read_job(given, file="bracket.json")
+        assert caught.value.line > 0
+
+
+def nested(depth):
+    """Answer a dictionary in so many others."""
+    return {"name": nested(depth - 1)} if depth else {}
+
+
+@pytest.mark.parametrize(
+    ("wrong", "said"),
+    [
+        ({}, "missing field `toolpost`"),
+        ({"toolpost": "freecad-job", "version": 2, "operations": []}, "version 2"),
+        ({"toolpost": "freecad-job", "version": 1, "operations": {}}, "expected a sequence"),
+        ({"toolpost": float("nan")}, "a number of the job is NaN"),
+        (nested(100), "a dictionary is in too many others"),
+    ],
+)
+def test_a_dictionary_that_is_no_job_is_refused(wrong, said):
+    with pytest.raises(toolpost.Error, match=said):
+        toolpost.read_job(wrong)
+
+
+def test_what_json_cannot_hold_is_refused():
+    with pytest.raises(TypeError):
+        toolpost.read_job({"toolpost": object()})
 
 
 def test_options_of_a_machine_are_set_by_keywords(slot):

@@ -1,12 +1,15 @@
-"""The wheel, in an environment that has nothing else."""
+"""The wheel in an environment that has nothing else, the sources away from the repository."""
 
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 import sys
+import tarfile
 import venv
 import zipfile
+from pathlib import Path
 
 from conftest import EXAMPLES, ROOT
 
@@ -45,3 +48,18 @@ def test_the_wheel_works_in_a_clean_environment(tmp_path, run):
     post = ["post", EXAMPLES / "dome.cls", "-m", "dmu50-heidenhain", "-o", again]
     assert run(binaries / "toolpost", *post).returncode == 0
     assert again.read_bytes() == program.read_bytes()
+
+
+def test_the_source_package_has_all_that_the_package_is_built_from(tmp_path):
+    maturin = [sys.executable, "-m", "maturin", "sdist", "--out", tmp_path]
+    subprocess.run(maturin, cwd=ROOT, check=True)
+    (archive,) = tmp_path.glob("*.tar.gz")
+    with tarfile.open(archive) as packed:
+        names = {name.partition("/")[2] for name in packed.getnames()}
+    # What cargo has found when it built the package for the other tests.
+    target = Path(os.environ.get("CARGO_TARGET_DIR", ROOT / "target"))
+    (found,) = target.glob("debug/*_native.d")
+    files = [Path(file).resolve() for file in found.read_text().split()[1:]]
+    needed = {file.relative_to(ROOT.resolve()).as_posix() for file in files}
+    assert "python/src/lib.rs" in needed
+    assert needed <= names

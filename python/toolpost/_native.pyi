@@ -231,7 +231,7 @@ def read(
     strict: bool = False,
 ) -> Program: ...
 def read_job(
-    text: str | bytes,
+    job: dict[str, Any] | str | bytes,
     machine: Machine | None = None,
     *,
     file: str = "job.json",

@@ -45,8 +45,17 @@ pub(crate) fn parse(text: &[u8]) -> Option<Decimal> {
 }
 
 /// The digits at the start of `text` behind those of `number`, and how many they are.
-fn digits(text: &[u8], mut number: u64) -> (u64, usize) {
+fn digits(mut text: &[u8], mut number: u64) -> (u64, usize) {
     let mut count = 0;
+    while let Some((eight, rest)) = text.split_first_chunk() {
+        let (value, digits) = leading(u64::from_le_bytes(*eight));
+        number = number.wrapping_mul(10u64.pow(digits)).wrapping_add(value);
+        count += digits as usize;
+        if digits < 8 {
+            return (number, count);
+        }
+        text = rest;
+    }
     for &byte in text {
         let digit = byte.wrapping_sub(b'0');
         if digit > 9 {
@@ -56,6 +65,24 @@ fn digits(text: &[u8], mut number: u64) -> (u64, usize) {
         count += 1;
     }
     (number, count)
+}
+
+/// The value of the digits with which eight bytes begin, the first of which is the lowest, and how many they
+/// are: all at once (Lemire, "Quickly parsing eight digits", 2018).
+fn leading(bytes: u64) -> (u64, u32) {
+    const EACH: u64 = u64::MAX / 0xFF;
+    let digits = bytes ^ (EACH * 0x30);
+    // The highest bit of each byte that is more than 9.
+    let others = (((digits & (EACH * 0x7F)) + EACH * (0x7F - 9)) | digits) & (EACH * 0x80);
+    let count = others.trailing_zeros() / 8;
+    // Zeros before them, in place of what follows them.
+    let digits = digits.checked_shl(64 - 8 * count).unwrap_or(0);
+    let pairs = (digits * 10).wrapping_add(digits >> 8);
+    let pair = |at: u32| (pairs >> at) & 0x0000_00FF_0000_00FF;
+    let value = (pair(0).wrapping_mul(100 + (1_000_000 << 32)))
+        .wrapping_add(pair(16).wrapping_mul(1 + (10_000 << 32)))
+        >> 32;
+    (value, count)
 }
 
 #[cfg(test)]

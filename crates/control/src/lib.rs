@@ -16,6 +16,7 @@ mod folders;
 mod iso;
 mod klartext;
 mod points;
+mod relay;
 mod sinumerik;
 pub mod tools;
 
@@ -149,6 +150,9 @@ pub struct Setup {
     /// Where the tool stands in the work frame when the program starts, mm, with all offsets of the
     /// control at 0; `None` where that is not known, and no offset is.
     pub start: Option<Vec3>,
+    /// Points of the part's surface, mm, work frame: straight down onto one of them a probe answers there. Of any
+    /// other probing move only the machine knows where it has ended.
+    pub surface: Vec<Vec3>,
 }
 
 /// A line of the control's tool table.
@@ -203,6 +207,9 @@ impl Settings {
 /// Where the records of a running program go. An error stops the run.
 pub type Sink<'a> = dyn FnMut(Record) -> Result<(), Box<Diagnostic>> + 'a;
 
+/// Length of a program, bytes, from which its control runs in a thread of its own.
+const LONG: usize = 1 << 16;
+
 /// Runs `text` on the virtual control of `settings` and hands each record to `sink`, in order. The
 /// line of a record is the line of the program (from 1); in a program that is called from another
 /// file, the line of the call in `text`.
@@ -222,10 +229,13 @@ pub fn read(
         Dialect::Points => points::run,
         _ => iso::run,
     };
-    let mut compensator = Compensator::new(settings, sink);
-    run(settings, text, &mut compensator)
-        .and_then(|()| compensator.finish())
-        .map_err(|d| if d.file.is_empty() { shown(*d, text).file(file_name).into() } else { d })
+    let run = |sink: &mut Sink| {
+        let mut compensator = Compensator::new(settings, sink);
+        run(settings, text, &mut compensator)?;
+        compensator.finish()
+    };
+    let read = if text.len() < LONG { run(sink) } else { relay::relayed(run, sink) };
+    read.map_err(|d| if d.file.is_empty() { shown(*d, text).file(file_name).into() } else { d })
 }
 
 /// With the block that it is about, where only its line is known.

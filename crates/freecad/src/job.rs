@@ -3,6 +3,7 @@
 use crate::dump;
 use program::{Coolant, Diagnostic};
 use serde::Deserialize;
+use serde_json::Value;
 
 /// A job of FreeCAD's.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -92,27 +93,48 @@ impl Job {
     /// What is no job, with `file_name`, line and column.
     pub fn of(file_name: &str, text: &[u8]) -> Result<Job, Box<Diagnostic>> {
         let read = if dump::begins(text) { dump::read(text) } else { from_json(text) };
-        let mut job = read.map_err(|found| found.file(file_name))?;
-        if job.name.is_empty() {
+        read.map(|job| job.called(file_name)).map_err(|found| found.file(file_name).into())
+    }
+
+    /// The same of a job that was never text: what its JSON would hold.
+    ///
+    /// # Errors
+    /// What is no job, with `file_name`.
+    pub fn of_value(file_name: &str, value: Value) -> Result<Job, Box<Diagnostic>> {
+        let read = serde_json::from_value(value).map_err(|error| no_job(&error.to_string()).into());
+        let read = read.and_then(from_sheet);
+        read.map(|job| job.called(file_name)).map_err(|found| found.file(file_name).into())
+    }
+
+    /// With the name of its file where it has none.
+    fn called(mut self, file_name: &str) -> Job {
+        if self.name.is_empty() {
             let stem = file_name.rsplit_once('.').map_or(file_name, |(stem, _)| stem);
-            job.name = stem.to_owned();
+            self.name = stem.to_owned();
         }
-        Ok(job)
+        self
     }
 }
 
 fn from_json(text: &[u8]) -> Result<Job, Box<Diagnostic>> {
-    let sheet: Sheet = serde_json::from_slice(text).map_err(|error| {
+    let sheet = serde_json::from_slice(text).map_err(|error| {
         let line = u32::try_from(error.line()).unwrap_or(u32::MAX);
         let shown = text.split(|&byte| byte == b'\n').nth(error.line().saturating_sub(1));
         let column = error.column().saturating_sub(1);
         // serde_json ends its message with the place.
         let message = error.to_string();
         let message = message.rsplit_once(" at line ").map_or(message.as_str(), |(said, _)| said);
-        Diagnostic::error("freecad-job", format!("this is no job of FreeCAD: {message}"))
-            .help("post from FreeCAD, or let FreeCAD write the job anew")
-            .at(line, shown.unwrap_or_default(), column, column + 1)
+        no_job(message).at(line, shown.unwrap_or_default(), column, column + 1)
     })?;
+    from_sheet(sheet)
+}
+
+fn no_job(message: &str) -> Diagnostic {
+    Diagnostic::error("freecad-job", format!("this is no job of FreeCAD: {message}"))
+        .help("post from FreeCAD, or let FreeCAD write the job anew")
+}
+
+fn from_sheet(sheet: Sheet) -> Result<Job, Box<Diagnostic>> {
     if sheet.toolpost != HEAD || sheet.version != VERSION {
         let (head, version) = (sheet.toolpost, sheet.version);
         let message = format!("`{head}`, version {version}: `{HEAD}`, version {VERSION} is read");

@@ -1,6 +1,6 @@
 //! The height of the surface along a way, as few straight pieces as a tolerance allows.
 
-use crate::heights::HeightMap;
+use crate::ground::Ground;
 use geom::{Arc, Vec2, Vec3};
 use std::f64::consts::TAU;
 
@@ -64,9 +64,9 @@ impl Way<'_> {
     /// Into how many parts of one patch a part of the way goes, so that in none the surface leaves the chord
     /// by more than `tolerance`: a part of length d (of 1) whose height has the second derivative f'' bulges by
     /// at most f'' d² / 8.
-    fn parts(&self, map: &HeightMap, from: f64, to: f64, tolerance: f64) -> usize {
+    fn parts(&self, ground: &Ground, from: f64, to: f64, tolerance: f64) -> usize {
         let middle = self.at((from + to) / 2.0);
-        let patch = map.patch(Vec2::new(middle.x, middle.y));
+        let patch = ground.patch(Vec2::new(middle.x, middle.y));
         let second = match self {
             Way::Line(from, to) => 2.0 * (patch.twist * (to.x - from.x) * (to.y - from.y)).abs(),
             Way::Arc(arc) => {
@@ -82,8 +82,8 @@ impl Way<'_> {
 /// Where a way is cut into pieces, each with the height that the tool has there: between two of them the
 /// height that rises evenly is within `tolerance` mm of that of the way over the surface. The last is the end.
 /// `None` where the height would have to be looked at in too many places.
-pub(crate) fn course(way: Way, map: &HeightMap, tolerance: f64) -> Option<Vec<(f64, f64)>> {
-    let [columns, rows] = map.lines();
+pub(crate) fn course(way: Way, ground: &Ground, tolerance: f64) -> Option<Vec<(f64, f64)>> {
+    let [columns, rows] = ground.lines();
     // A line of the grid is crossed twice in a turn.
     let crossings = 2.0 * way.turns().ceil() * (columns.len() + rows.len()) as f64;
     if crossings > MOST as f64 {
@@ -96,13 +96,15 @@ pub(crate) fn course(way: Way, map: &HeightMap, tolerance: f64) -> Option<Vec<(f
     seams.sort_by(f64::total_cmp);
     let height = |t: f64| {
         let point = way.at(t);
-        point.z + map.at(Vec2::new(point.x, point.y))
+        point.z + ground.at(Vec2::new(point.x, point.y))
     };
-    // Half of the tolerance for what lies between two samples, half for the samples.
-    let half = tolerance / 2.0;
+    // Half of the tolerance for what lies between two samples, half for the samples: these are passed over where
+    // their heights are known.
+    let is_known = matches!(ground, Ground::Known(_));
+    let half = if is_known { tolerance / 2.0 } else { tolerance };
     let mut samples = vec![(0.0, height(0.0))];
     for seam in seams.windows(2).filter(|seam| seam[1] > seam[0]) {
-        let parts = way.parts(map, seam[0], seam[1], half);
+        let parts = way.parts(ground, seam[0], seam[1], half);
         if samples.len().saturating_add(parts) > MOST {
             return None;
         }
@@ -114,7 +116,10 @@ pub(crate) fn course(way: Way, map: &HeightMap, tolerance: f64) -> Option<Vec<(f
             (t, height(t))
         }));
     }
-    Some(chords(&samples, half))
+    match is_known {
+        true => Some(chords(&samples, half)),
+        false => Some(samples.split_off(1)),
+    }
 }
 
 /// The ends of chords from sample to sample that leave none of those between by more than `tolerance`: each

@@ -41,14 +41,30 @@ impl Grid {
 
     /// Its places in the order in which they are probed, row after row, every second one backwards.
     pub fn places(&self) -> impl Iterator<Item = Vec2> + '_ {
-        let part = |index: usize, count: usize| index as f64 / (count - 1) as f64;
+        self.order().map(|(column, row)| Vec2::new(self.column(column), self.row(row)))
+    }
+
+    /// Column and row of the places in that order.
+    pub(crate) fn order(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
         (0..self.rows).flat_map(move |row| {
             (0..self.columns).map(move |column| {
-                let column = if row % 2 == 0 { column } else { self.columns - 1 - column };
-                let at = Vec2::new(part(column, self.columns), part(row, self.rows));
-                self.from + (self.to - self.from) * at
+                (if row % 2 == 0 { column } else { self.columns - 1 - column }, row)
             })
         })
+    }
+
+    /// X of the columns and Y of the rows, rising, mm.
+    pub(crate) fn lines(&self) -> [Vec<f64>; 2] {
+        let columns = (0..self.columns).map(|column| self.column(column));
+        [columns.collect(), (0..self.rows).map(|row| self.row(row)).collect()]
+    }
+
+    fn column(&self, column: usize) -> f64 {
+        self.from.x + (self.to.x - self.from.x) * (column as f64 / (self.columns - 1) as f64)
+    }
+
+    fn row(&self, row: usize) -> f64 {
+        self.from.y + (self.to.y - self.from.y) * (row as f64 / (self.rows - 1) as f64)
     }
 }
 
@@ -75,39 +91,51 @@ impl Probing {
         grid: &Grid,
         log: Option<&str>,
     ) -> Result<Program, Box<Diagnostic>> {
-        let wrong = |message: String, help: &str| {
-            Err(Diagnostic::error("probing", message).help(help).into())
-        };
+        let takes = |byte: u8| byte.is_ascii_alphanumeric() || b".-_/".contains(&byte);
+        if let Some(file) = log.filter(|file| file.is_empty() || !file.bytes().all(takes)) {
+            let message = format!("the log is called `{file}`");
+            return Err(Diagnostic::error("probing", message).help(NAME).into());
+        }
+        let mut program = Program::new(name);
+        program.push(0, Op::Operation("probing".into()));
+        if let Some(file) = log {
+            program.push(0, Op::Comment(format!("PROBEOPEN {file}").into()));
+        }
+        self.moves(grid, |_| None)?.into_iter().for_each(|op| program.push(0, op));
+        if log.is_some() {
+            program.push(0, Op::Comment("PROBECLOSE".into()));
+        }
+        program.push(0, Op::EndOfOperation);
+        program.push(0, Op::End);
+        Ok(program)
+    }
+
+    /// The moves that probe `grid`, with the feed before them; `place` says for which place of a surface the height
+    /// at a column and row is kept.
+    ///
+    /// # Errors
+    /// A height, depth or feed that is not greater than 0.
+    pub(crate) fn moves(
+        &self,
+        grid: &Grid,
+        place: impl Fn((usize, usize)) -> Option<u32>,
+    ) -> Result<Vec<Op>, Box<Diagnostic>> {
         for (what, value) in
             [("travel height", self.travel), ("depth", self.depth), ("feed", self.feed)]
         {
             if !(value.is_finite() && value > 0.0) {
-                return wrong(format!("the {what} of the probe is {value}"), "greater than 0");
+                let message = format!("the {what} of the probe is {value}");
+                return Err(Diagnostic::error("probing", message).help("greater than 0").into());
             }
         }
-        let takes = |byte: u8| byte.is_ascii_alphanumeric() || b".-_/".contains(&byte);
-        if let Some(file) = log.filter(|file| file.is_empty() || !file.bytes().all(takes)) {
-            return wrong(format!("the log is called `{file}`"), NAME);
+        let mut moves = vec![Op::Feed(Feed::PerMinute(self.feed))];
+        for at in grid.order() {
+            let pose = |z: f64| Pose::new(Vec3::new(grid.column(at.0), grid.row(at.1), z), Vec3::Z);
+            let (end, place) = (pose(-self.depth), place(at));
+            moves.push(Op::Rapid(pose(self.travel)));
+            moves.push(Op::Probe(Box::new(Probe { end, away: false, must_answer: true, place })));
+            moves.push(Op::Rapid(pose(self.travel)));
         }
-        let mut program = Program::new(name);
-        let mut push = |op| program.push(0, op);
-        let pose = |at: Vec2, z: f64| Pose::new(at.extend(z), Vec3::Z);
-        push(Op::Operation("probing".into()));
-        if let Some(file) = log {
-            push(Op::Comment(format!("PROBEOPEN {file}").into()));
-        }
-        push(Op::Feed(Feed::PerMinute(self.feed)));
-        for at in grid.places() {
-            push(Op::Rapid(pose(at, self.travel)));
-            let end = pose(at, -self.depth);
-            push(Op::Probe(Box::new(Probe { end, away: false, must_answer: true })));
-            push(Op::Rapid(pose(at, self.travel)));
-        }
-        if log.is_some() {
-            push(Op::Comment("PROBECLOSE".into()));
-        }
-        push(Op::EndOfOperation);
-        push(Op::End);
-        Ok(program)
+        Ok(moves)
     }
 }

@@ -106,7 +106,7 @@ impl HeightMap {
     }
 
     /// The corners of the rectangle that was probed, mm.
-    pub fn extents(&self) -> (Vec2, Vec2) {
+    fn extents(&self) -> (Vec2, Vec2) {
         let ends = |lines: &[f64]| (lines[0], lines[lines.len() - 1]);
         let ((left, right), (bottom, top)) = (ends(&self.columns), ends(&self.rows));
         (Vec2::new(left, bottom), Vec2::new(right, top))
@@ -165,7 +165,7 @@ fn near(lines: &[f64], value: f64) -> usize {
 }
 
 /// The line before a coordinate, or the last but one, and how far it is from there to the next, from 0 to 1.
-fn within(lines: &[f64], value: f64) -> (usize, f64) {
+pub(crate) fn within(lines: &[f64], value: f64) -> (usize, f64) {
     let before = lines.partition_point(|&line| line <= value).saturating_sub(1);
     let before = before.min(lines.len() - 2);
     let (from, to) = (lines[before], lines[before + 1]);

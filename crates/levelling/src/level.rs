@@ -1,6 +1,7 @@
 //! A program that follows a surface.
 
 use crate::course::{Way, course};
+use crate::ground::Ground;
 use crate::heights::HeightMap;
 use geom::{Arc, Vec2, Vec3};
 use program::{ArcTo, Compensation, Diagnostic, Feed, Op, Pose, Program, Record};
@@ -30,8 +31,8 @@ pub struct Allowed {
 
 /// The program with the surface of `map` where `program` has Z 0: each cut is as far from the surface as it was
 /// from Z 0, its lines and arcs divided so that they follow it; an arc becomes a helix. Holes go down from
-/// the surface where they are. Rapids stay as far above the highest place as they were above Z 0; one that ends
-/// below the surface, in a hole, keeps its distance there.
+/// the surface where they are. Rapids stay as far above the highest place as they were above Z 0; those straight
+/// down, and in a hole, keep their distance from the surface there.
 ///
 /// # Errors
 /// What cannot be levelled, with its line: a cut outside the map, a tilted tool, an arc in another plane than
@@ -42,27 +43,21 @@ pub fn level(
     map: &HeightMap,
     allowed: &Allowed,
 ) -> Result<Program, Box<Diagnostic>> {
-    if !(allowed.deviation >= 1e-4 && allowed.deviation.is_finite() && allowed.outside >= 0.0) {
-        let message = format!(
-            "a deviation of {} mm, {} mm outside the map",
-            allowed.deviation, allowed.outside
-        );
-        let help = "a deviation of 0.0001 mm at least, and no negative distance";
-        return Err(Diagnostic::error("levelling-tolerance", message).help(help).into());
-    }
-    let mut level = Level {
-        map,
-        allowed,
-        lift: map.highest().max(0.0),
-        place: None,
-        retract: 0.0,
-        work_offset: None,
-        records: Vec::with_capacity(program.records.len()),
-    };
+    let levelled = levelled(program, Ground::Known(map), allowed)?;
+    Ok(Program { name: program.name.clone(), records: levelled.records })
+}
+
+/// The same for any surface.
+pub(crate) fn levelled<'a>(
+    program: &Program,
+    ground: Ground<'a>,
+    allowed: &'a Allowed,
+) -> Result<Level<'a>, Box<Diagnostic>> {
+    let mut level = Level::new(ground, allowed)?;
     for record in &program.records {
         level.record(record).map_err(|found| Box::new(found.line(record.line)))?;
     }
-    Ok(Program { name: program.name.clone(), records: level.records })
+    Ok(level)
 }
 
 /// Where the tool is: as the program says it, and how high it really is.
@@ -72,8 +67,9 @@ struct Place {
     height: f64,
 }
 
-struct Level<'a> {
-    map: &'a HeightMap,
+/// A program as far as it is levelled.
+pub(crate) struct Level<'a> {
+    ground: Ground<'a>,
     allowed: &'a Allowed,
     /// By how much rapids are higher, mm.
     lift: f64,
@@ -81,10 +77,38 @@ struct Level<'a> {
     /// Retract level of the cycle that holds, mm above the point of a hole.
     retract: f64,
     work_offset: Option<u32>,
-    records: Vec<Record>,
+    /// Z of the highest pose that keeps its distance from the surface, mm.
+    pub(crate) follows: f64,
+    /// Z of the lowest that is above all of it instead, mm.
+    pub(crate) clears: f64,
+    pub(crate) records: Vec<Record>,
 }
 
-impl Level<'_> {
+impl<'a> Level<'a> {
+    /// # Errors
+    /// Tolerances that nothing keeps.
+    fn new(ground: Ground<'a>, allowed: &'a Allowed) -> Result<Level<'a>, Box<Diagnostic>> {
+        if !(allowed.deviation >= 1e-4 && allowed.deviation.is_finite() && allowed.outside >= 0.0) {
+            let message = format!(
+                "a deviation of {} mm, {} mm outside the map",
+                allowed.deviation, allowed.outside
+            );
+            let help = "a deviation of 0.0001 mm at least, and no negative distance";
+            return Err(Diagnostic::error("levelling-tolerance", message).help(help).into());
+        }
+        Ok(Level {
+            ground,
+            allowed,
+            lift: ground.highest().max(0.0),
+            place: None,
+            retract: 0.0,
+            work_offset: None,
+            follows: f64::NEG_INFINITY,
+            clears: f64::INFINITY,
+            records: Vec::new(),
+        })
+    }
+
     fn record(&mut self, record: &Record) -> Done {
         let line = record.line;
         match &record.op {
@@ -107,9 +131,9 @@ impl Level<'_> {
             Op::Hole(pose) => {
                 let point = upright(pose)?;
                 self.inside(point, point)?;
-                let height = self.map.at(point.truncate());
+                let height = self.ground.at(point.truncate());
                 // From there the tool goes to the next one.
-                if point.z + height + self.retract < self.map.highest() {
+                if point.z + height + self.retract < self.ground.highest() {
                     let message = format!(
                         "from a hole the tool goes on at {} mm above it, and the board rises higher",
                         self.retract
@@ -139,8 +163,8 @@ impl Level<'_> {
                 }
                 _ => {}
             },
-            Op::Thread(_) | Op::Probe(_) => {
-                let message = "a thread or a probing move in a program that is levelled";
+            Op::Thread(_) | Op::Probe(_) | Op::Surface(_) => {
+                let message = "a thread, a probing move or a surface of its own in a program that is levelled";
                 return Err(refused(message, "post it as a program of its own"));
             }
             Op::Compensation(Compensation::Left(_) | Compensation::Right(_)) => {
@@ -161,29 +185,48 @@ impl Level<'_> {
             let message = format!("the levelled program has more than {MOST_RECORDS} records");
             return Err(refused(message, "allow a larger deviation, or level it in parts"));
         }
+        if let Some(pose) = op.pose().filter(|_| !matches!(op, Op::Rapid(_))) {
+            self.follows = self.follows.max(pose.point.z);
+        }
         self.records.push(Record { line, op });
         Ok(())
     }
 
     /// The tool stands at the surface's height over `said`.
     fn arrive(&mut self, said: Vec3) {
-        let height = said.z + self.map.at(said.truncate());
+        let height = said.z + self.ground.at(said.truncate());
         self.place = Some(Place { said, height });
     }
 
     fn rapid(&mut self, line: u32, said: Vec3) -> Done {
-        let lift = match said.z < 0.0 {
-            true => {
-                let from = self.place.map(|place| place.said.truncate());
-                if from != Some(said.truncate()) {
-                    let message = format!("a rapid along the board to Z{} mm, below it", said.z);
-                    return Err(refused(message, "go there at feed, or above the board"));
-                }
-                self.map.at(said.truncate())
-            }
-            false => self.lift,
-        };
-        let height = said.z + lift;
+        let from = self.place.map(|place| place.said);
+        let upright = from.filter(|from| from.truncate() == said.truncate());
+        let is_down = upright.is_some_and(|from| said.z < from.z);
+        if said.z < 0.0 && upright.is_none() {
+            let message = format!("a rapid along the board to Z{} mm, below it", said.z);
+            return Err(refused(message, "go there at feed, or above the board"));
+        }
+        if said.z < 0.0 || is_down {
+            let height = said.z + self.ground.at(said.truncate());
+            self.follows = self.follows.max(height);
+            return self.rapid_to(line, said, height);
+        }
+        // Before it goes on across the board, what has come down goes up again.
+        let low = self.place.filter(|place| place.height < place.said.z + self.lift);
+        if let Some(Place { said, .. }) = low.filter(|low| upright.is_none() && low.said.z >= 0.0) {
+            self.lifted(line, said)?;
+        }
+        self.lifted(line, said)
+    }
+
+    /// By rapid to a place above all of the surface.
+    fn lifted(&mut self, line: u32, said: Vec3) -> Done {
+        let height = said.z + self.lift;
+        self.clears = self.clears.min(height);
+        self.rapid_to(line, said, height)
+    }
+
+    fn rapid_to(&mut self, line: u32, said: Vec3, height: f64) -> Done {
         self.place = Some(Place { said, height });
         self.push(line, Op::Rapid(Pose::new(said.with_z(height), Vec3::Z)))
     }
@@ -195,7 +238,7 @@ impl Level<'_> {
             let message = "a cut from a place that is not known";
             return Err(refused(message, "a rapid to its start before it"));
         };
-        let wanted = said.z + self.map.at(said.truncate());
+        let wanted = said.z + self.ground.at(said.truncate());
         if wanted != height && said.truncate() != to.truncate() {
             self.push(line, Op::Line(Pose::new(said.with_z(wanted), Vec3::Z)))?;
         }
@@ -203,7 +246,7 @@ impl Level<'_> {
     }
 
     fn course(&self, way: Way) -> Result<Vec<(f64, f64)>, Box<Diagnostic>> {
-        course(way, self.map, self.allowed.deviation).ok_or_else(|| {
+        course(way, &self.ground, self.allowed.deviation).ok_or_else(|| {
             let message = "a move over so much of the surface that it has more than 100000 pieces";
             refused(message, "allow a larger deviation, or divide it")
         })
@@ -246,7 +289,7 @@ impl Level<'_> {
     /// # Errors
     /// A cut between two corners goes further outside the map than is allowed.
     fn inside(&self, one: Vec3, other: Vec3) -> Done {
-        let (from, to) = self.map.extents();
+        let (from, to) = self.ground.extents();
         let (low, high) = (one.min(other).truncate(), one.max(other).truncate());
         let outside = (from - low).max(high - to).max_element();
         if outside <= self.allowed.outside {
@@ -271,6 +314,6 @@ fn upright(pose: &Pose) -> Result<Vec3, Box<Diagnostic>> {
     Ok(pose.point)
 }
 
-fn refused(message: impl Into<String>, help: &str) -> Box<Diagnostic> {
+pub(crate) fn refused(message: impl Into<String>, help: &str) -> Box<Diagnostic> {
     Diagnostic::error("levelling", message).help(help).into()
 }

@@ -4,17 +4,22 @@
 //!   Grid ── probing ──▶ Program ─ ─ the machine ─ ─▶ log ── read ──▶ HeightMap
 //!                                                                        │
 //!                       Program ──────────────── level ──────────────────┴──▶ Program
+//!
+//!   Grid and Program ── follow ──▶ Program that probes and follows, all on the control
 //! ```
 //!
 //! The surface between the places that were probed is bilinear; Z 0 is where the surface was taken to be. What
 //! is believed of the logs, with its sources, is in `docs/sources/heights.md`.
 
 mod course;
+mod follow;
 mod grid;
+mod ground;
 mod heights;
 mod level;
 mod log;
 
+pub use follow::{follow, raised};
 pub use grid::{Grid, Probing};
 pub use heights::HeightMap;
 pub use level::{Allowed, level};

@@ -298,7 +298,7 @@ pub struct Word {
     pub exact: bool,
     /// For the block number: what it grows by.
     pub step: u32,
-    /// For the block number: the first one.
+    /// For the block number, and for the parameters that keep heights: the first one.
     pub first: u32,
     /// What the value is multiplied with before it is written: 1000 for a dwell in milliseconds.
     pub scale: f64,

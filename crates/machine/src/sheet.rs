@@ -120,7 +120,7 @@ sheet!(merged WordSheet "words.NAME" {
     modal: bool, "", "Whether the word is left out while it repeats the active value.";
     exact: bool, "", "Whether values that differ by less than the decimals show are different, so that a modal word is written again.";
     step: u32, "", "Block number: what it grows by; 0 for none.";
-    first: u32, "", "Block number: the first one.";
+    first: u32, "", "Block number, parameters that keep heights: the first one.";
     scale: Positive, "", "What the value is multiplied with before it is written: 1000 for a dwell in milliseconds.";
     max: Positive, "", "Largest number that the control takes, as it is written. A block number starts over behind it.";
     codes: BTreeMap<String, String>, "", "Texts of a word that is no number, by what they mean.";

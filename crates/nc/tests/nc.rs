@@ -221,7 +221,7 @@ fn threads_and_probes_are_moves_at_feed() {
     assert_eq!(end, Some((at(0.0, 0.0, -9.0), 1.5)));
     let probe = fanuc(&format!("{start}G31 Z-9. F100.\nG0 Z5.\nM30\n"));
     let end = at(0.0, 0.0, -9.0);
-    let skip = Op::Probe(Box::new(Probe { end, away: false, must_answer: false }));
+    let skip = Op::Probe(Box::new(Probe { end, away: false, must_answer: false, place: None }));
     assert!(probe.records.iter().any(|record| record.op == skip));
     // Where the probe has stopped is not known: nothing is cut from there.
     assert_eq!(refused(&format!("{start}G31 Z-9. F100.\nG1 Z-5.\nM30\n")).rule, "unknown-position");

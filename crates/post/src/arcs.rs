@@ -96,12 +96,17 @@ impl Walk<'_> {
         };
         if let Kind::Plain | Kind::Machine = self.place.kind {
             let degrees = self.place.degrees().unwrap_or_default();
-            self.limits.arc(&local, degrees, self.tool_length(), self.line)?;
+            for &sway in self.sways(arc.end) {
+                let up = Vec3::Z * sway;
+                let local = Arc { start: local.start + up, end: local.end + up, ..local };
+                self.limits.arc(&local, degrees, self.tool_length(), self.line)?;
+            }
         }
         let Some(facts) = self.plane_of(&local) else {
             return self.lower(&arc, 0.0, 1.0, to, stop, "arcs outside the planes of the control");
         };
-        let rises = local.rise().abs() > 0.5 * self.machine.resolution();
+        let rises =
+            local.rise().abs() > 0.5 * self.machine.resolution() || self.is_over_surface(arc.end);
         // A circle through three points of a helix is none.
         let flat = self.notation(&local, facts, rises) == Notation::Middle;
         if rises && (flat || !self.machine.capabilities.helix) {
@@ -286,6 +291,7 @@ impl Walk<'_> {
             self.writer.set(MIDDLE[i], block.middle[i]);
             self.writer.set(START[i], start[i]);
         }
+        self.say_surface(block.to);
         let spoke = start - block.center;
         let begins = spoke[v].atan2(spoke[u]).rem_euclid(TAU);
         self.writer.set(WordName::StartAngle, begins.to_degrees());

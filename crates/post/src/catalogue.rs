@@ -92,6 +92,7 @@ names! {
         HelixCcw Block "helix_ccw", "", "Each counter-clockwise arc that rises; `arc_ccw` where it is missing.";
         Thread Block "thread", "", "Each straight move in step with the spindle, {{LEAD}} mm a turn. It runs along the axes whose words it places.";
         Probe Block "probe", "", "Each probing move: straight at the feed, until the probe answers.";
+        KeepHeight Block "keep_height", "", "After a probing move whose height is kept: the control puts what the probe has found into {{HEIGHT}}. A control that has this block calculates in its words: Z becomes `[z+part*HEIGHT...]`.";
         PlaneSelect Block "plane_select", "", "Where the plane must change before a block that does not say it.";
         Retract Block "retract", "", "Before the rotary axes turn away from a known position, or the work offset changes: the tool leaves the part in machine coordinates.";
         WorkOffsetSelect Block "work_offset_select", "", "Where the source names a work offset: `{{work_offset}}` is active from here on.";
@@ -187,6 +188,7 @@ names! {
         Plunge Word "PLUNGE", "mm/min", "Cycle: feed into the hole, where it is a parameter; in the unit of {{F}}.";
         Speed Word "SPEED", "1/min", "Cycle: speed of the spindle, where it is a parameter.";
         Lead Word "LEAD", "mm", "Way of a thread in a turn of the spindle.";
+        Height Word "HEIGHT", "", "Parameter that keeps the height of a place of the surface, the first as `first` says.";
         ProbeMode Code "probe_mode", "toward_or_error, toward, away_or_error, away", "Kind of probing move: until the probe touches the part or lets go of it, with an error where it does not or without. Those that the control lacks are left out.";
         Motion Code "motion", "rapid, linear, arc_cw, arc_ccw", "Kind of motion.";
         Plane Code "plane", "xy, xz, yz", "Plane of arcs and of cutter compensation.";

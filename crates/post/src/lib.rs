@@ -8,7 +8,7 @@
 //! [`catalogue()`] names every block, word and variable that a control file may use. One record at a time
 //! goes through `walk`, which knows what the control has been told; `place` brings the tool into its
 //! orientation, `motion`, `arcs`, `single` and `cycles` say where it goes, `wire` says how a wire stands,
-//! and `writer` leaves out what repeats. Before that, `sweep` splits cuts that would swing the tool out of
+//! `surface` says what Z counts from where the control finds that, and `writer` leaves out what repeats. Before that, `sweep` splits cuts that would swing the tool out of
 //! its way.
 
 mod arcs;
@@ -21,6 +21,7 @@ mod number;
 mod place;
 mod promises;
 mod single;
+mod surface;
 mod sweep;
 mod template;
 mod text;

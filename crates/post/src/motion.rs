@@ -195,6 +195,7 @@ impl Walk<'_> {
         self.writer.set(WordName::X, self.said.x);
         self.writer.set(WordName::Y, self.said.y);
         self.writer.set(WordName::Z, self.said.z);
+        self.say_surface(point);
     }
 
     /// A point of the work frame as blocks give it at the moment.
@@ -221,7 +222,10 @@ impl Walk<'_> {
             Kind::Bare | Kind::Plain | Kind::Machine => self.said,
             Kind::ToolCenter | Kind::Vectors => self.machine.linear_for(self.tip, degrees, length),
         };
-        self.limits.position(linear, degrees, length, self.line)
+        for &sway in self.sways(self.tip) {
+            self.limits.position(linear + Vec3::Z * sway, degrees, length, self.line)?;
+        }
+        Ok(())
     }
 
     /// Says the tool length offset in the next block.

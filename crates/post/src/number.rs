@@ -86,6 +86,18 @@ impl Number {
         }
     }
 
+    /// The whole word as a sum in brackets: its number, and `rest` with its signs.
+    pub(crate) fn write_sum(&self, separated: bool, steps: i64, rest: &[u8], out: &mut Vec<u8>) {
+        let lead = if separated { &self.separated } else { &self.address };
+        out.extend_from_slice(lead.long.as_bytes());
+        out.extend_from_slice(&lead.short[Lead::SHORT - lead.length..]);
+        out.push(b'[');
+        self.digits(&Lead::new(""), steps, out);
+        out.extend_from_slice(rest);
+        out.push(b']');
+        out.extend_from_slice(self.suffix.as_bytes());
+    }
+
     #[inline]
     fn digits(&self, lead: &Lead, steps: i64, out: &mut Vec<u8>) {
         // All digits from the right to the left, and in front of them what leads.

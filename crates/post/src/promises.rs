@@ -73,6 +73,7 @@ pub(crate) fn check(machine: &Machine, templates: &Templates) -> Result<(), Vec<
             errors.push(error.file(text.file.clone()).line(text.line));
         }
     };
+    placed(BlockName::KeepHeight, &[WordName::Height], "no height could be kept");
     placed(BlockName::Rapid, axes, "no move could go there");
     placed(BlockName::Linear, axes, "no move could go there");
     for (promise, why, word) in [

@@ -79,11 +79,12 @@ impl Walk<'_> {
         self.block(BlockName::Probe)?;
         self.writer.forget(moved | bit(WordName::Motion));
         self.here = None;
-        Ok(())
+        probe.place.map_or(Ok(()), |place| self.keep_height(place))
     }
 
     /// What holds for `what`, which is one block of the control.
     fn single(&mut self, block: BlockName, what: &str) -> Done {
+        self.not_over_surface(what)?;
         self.not_from_probe(what)?;
         if !self.templates.has(block) {
             return self.required(block);

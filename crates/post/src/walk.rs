@@ -16,8 +16,8 @@ use machine::{LengthOffset, Machine, OptionValue};
 use minijinja::value::Value;
 use program::statistics::Statistics;
 use program::{
-    Compensation, Coolant, Cycle, Diagnostic, Feed, Op, Pose, Program, Record, Spindle, Tool,
-    lowering,
+    Compensation, Coolant, Cycle, Diagnostic, Feed, Op, Pose, Program, Record, Spindle, Surface,
+    Tool, lowering,
 };
 
 /// A step that may be refused.
@@ -82,6 +82,8 @@ pub(crate) struct Walk<'a> {
     pub(crate) place: Place,
     /// The wire, where the machine has one.
     pub(crate) wire: Option<Wire>,
+    /// The surface that moves count from, where the control finds it.
+    pub(crate) surface: Option<&'a Surface>,
     /// Where the next block brings the tool tip, mm, work frame.
     pub(crate) tip: Vec3,
     /// The same in the coordinates of the block, mm.
@@ -133,6 +135,7 @@ impl<'a> Walk<'a> {
             located: false,
             place: Place::start(machine),
             wire: Wire::of(machine, program),
+            surface: None,
             tip: Vec3::ZERO,
             said: Vec3::ZERO,
             turned_to: None,
@@ -282,6 +285,7 @@ impl<'a> Walk<'a> {
                 self.leave_part()
             }
             Op::WorkOffset(number) => self.set_work_offset(*number),
+            Op::Surface(surface) => self.set_surface(surface),
             Op::LengthOffset(_) => {
                 Err(refuse("unsupported", "only virtual controls give this record"))
             }
@@ -297,7 +301,10 @@ impl<'a> Walk<'a> {
             Op::Rapid(pose) => self.rapid(pose, &stop),
             Op::Line(pose) => self.line(pose, &stop),
             Op::Arc(to) => self.arc(to, &stop),
-            Op::Hole(pose) => self.hole(pose, &stop),
+            Op::Hole(pose) => {
+                self.not_over_surface("a hole cycle")?;
+                self.hole(pose, &stop)
+            }
             Op::Thread(thread) => self.thread(thread, &stop),
             _ => Ok(()),
         }
@@ -315,6 +322,7 @@ impl<'a> Walk<'a> {
                 format!("`{name}` in [words.work_offset] of its file, or another work offset");
             return Err(refuse("unsupported", message).help(help).into());
         };
+        self.not_over_surface("another work offset")?;
         self.end_cycle()?;
         self.leave_part()?;
         self.leave_place()?;

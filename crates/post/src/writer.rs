@@ -2,6 +2,7 @@
 
 use crate::catalogue::WordName;
 use crate::number::Number;
+use crate::surface::{DECIMALS, Part};
 use crate::template::{Lines, ORIENTATION, POSITION, Step, Words, bit};
 use machine::Machine;
 use program::Diagnostic;
@@ -40,6 +41,8 @@ pub(crate) struct Writer {
     active: [Value; WordName::COUNT],
     /// The word whose form [`WordName::F`] has.
     feed_form: WordName,
+    /// What is added to Z in the block that comes next.
+    raised: Option<[Part; 4]>,
     /// A value that its word cannot take.
     refused: Option<(WordName, f64)>,
     next_number: u64,
@@ -72,6 +75,7 @@ impl Writer {
             known: 0,
             active: [Value::default(); WordName::COUNT],
             feed_form: WordName::F,
+            raised: None,
             refused: None,
             next_number: first.into(),
             text: Vec::new(),
@@ -92,6 +96,12 @@ impl Writer {
             }
             None => self.refused = Some((word, value)),
         }
+    }
+
+    /// Z of the next block is what has been set and these parts of heights that the control keeps.
+    #[inline]
+    pub(crate) fn raise(&mut self, parts: Option<[Part; 4]>) {
+        self.raised = parts;
     }
 
     /// The next block may write the code `word` with its entry `index`.
@@ -126,6 +136,9 @@ impl Writer {
     #[inline]
     pub(crate) fn changes(&self, words: Words) -> bool {
         let mut rest = self.set & words;
+        if self.raised.is_some() && rest & bit(WordName::Z) != 0 {
+            return true;
+        }
         while rest != 0 {
             let word = rest.trailing_zeros() as usize;
             if self.known & (1 << word) == 0 || self.values[word] != self.active[word] {
@@ -140,6 +153,9 @@ impl Writer {
     #[inline]
     pub(crate) fn unset(&mut self, words: Words) {
         self.set &= !words;
+        if words & bit(WordName::Z) != 0 {
+            self.raised = None;
+        }
     }
 
     /// The words of the next block.
@@ -226,6 +242,7 @@ impl Writer {
         // A position that the block leads to by other words (a helix by its angle) is not known by its own.
         self.known &= !(self.set & !placed & (POSITION | ORIENTATION));
         self.set = 0;
+        self.raised = None;
         Ok(())
     }
 
@@ -253,14 +270,44 @@ impl Writer {
                 *modal
             }
         };
-        if modal && self.known & bit != 0 && self.active[index] == value {
+        let is_raised = word == WordName::Z && self.raised.is_some();
+        if modal && !is_raised && self.known & bit != 0 && self.active[index] == value {
             return false;
         }
         self.known |= bit;
         self.active[index] = value;
         let separated = self.separated(gap, start);
-        self.write(word, separated, value.steps);
+        match self.raised.filter(|_| is_raised) {
+            None => self.write(word, separated, value.steps),
+            Some(parts) => {
+                // What it comes to, only the control knows.
+                self.known &= !bit;
+                self.write_raised(word, separated, value.steps, &parts);
+            }
+        }
         true
+    }
+
+    /// Writes a number and parts of heights as the sum that they are.
+    fn write_raised(&mut self, word: WordName, separated: bool, steps: i64, parts: &[Part]) {
+        let forms = [word, WordName::Height].map(|word| &self.forms[word as usize]);
+        let [Form::Number(number), Form::Number(height)] = forms else { return };
+        let mut sum = Vec::with_capacity(96);
+        for Part { parameter, part } in parts {
+            let part = format!("{part:.DECIMALS$}");
+            let part = part.trim_end_matches('0').trim_end_matches('.');
+            if part == "0" {
+                continue;
+            }
+            sum.push(b'+');
+            if part != "1" {
+                sum.extend_from_slice(part.as_bytes());
+                sum.push(b'*');
+            }
+            let steps = height.round(f64::from(*parameter)).unwrap_or_default();
+            height.write(false, steps, &mut sum);
+        }
+        number.write_sum(separated, steps, &sum, &mut self.text);
     }
 
     #[inline]

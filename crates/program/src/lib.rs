@@ -12,6 +12,8 @@ pub mod diagnostic;
 pub mod lowering;
 mod record;
 pub mod statistics;
+mod surface;
 
 pub use diagnostic::{Diagnostic, Severity, line_of, nearest};
 pub use record::*;
+pub use surface::Surface;

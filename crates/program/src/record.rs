@@ -1,5 +1,6 @@
 //! The records of a program.
 
+use crate::Surface;
 use geom::{Frame, Vec3};
 
 /// A program in the neutral vocabulary.
@@ -67,6 +68,9 @@ pub enum Op {
     /// (`G54`), 55 the second; 53 is none. Poses are in its frame, and how far it is from the one before
     /// is not known. A source without one leaves it to the machine.
     WorkOffset(u32),
+    /// From here on poses below [`Surface::clear`] count from this surface, whose heights probing moves have
+    /// found: the control raises each by the height of the surface there. Others count from Z 0, as before.
+    Surface(Box<Surface>),
     /// The wire is threaded where it stands (wire EDM), and cuts from here on.
     ThreadWire,
     /// The wire is cut: it is free of the part until it is threaded again.
@@ -176,6 +180,8 @@ pub struct Probe {
     pub away: bool,
     /// Whether a probe that has not answered on the way stops the program (`G38.2`, `G38.4`).
     pub must_answer: bool,
+    /// The place of a [`Surface`] whose height is kept where it answers, counted from 0 row by row.
+    pub place: Option<u32>,
 }
 
 /// How fast the tool moves.

@@ -30,6 +30,9 @@
 //!    stands at the stop.
 //! 9. **An end**, and before it, after the last motion, only ways away from the part.
 //!
+//! A program that finds the surface itself is run on three surfaces, and held against the source raised
+//! to each.
+//!
 //! The rules in full, with what each keeps out, are in `docs/proof.md`.
 
 mod arc;
@@ -42,6 +45,7 @@ mod prover;
 mod report;
 mod state;
 mod stops;
+mod surfaces;
 mod tolerance;
 
 pub use prover::Prover;
@@ -51,6 +55,7 @@ pub use tolerance::{Applied, Tolerances};
 use control::Setup;
 use machine::Machine;
 use program::Program;
+use surfaces::Trial;
 
 /// Runs `text` on the virtual control of `machine` and holds it against `source`.
 ///
@@ -62,8 +67,42 @@ pub fn prove(
     text: &[u8],
     tolerances: &Tolerances,
 ) -> Report {
+    let run = |source: &Program, setup: Setup| {
+        prove_on(source, machine, setup, file_name, text, tolerances)
+    };
+    let Some(surface) = surfaces::found(source) else { return run(source, Setup::default()) };
+    let trials = match surfaces::trials(surface) {
+        Ok(trials) => trials,
+        Err(found) => {
+            let mut prover = Prover::new(source, machine, tolerances);
+            prover.refused(*found);
+            return prover.finish();
+        }
+    };
+    let mut proven: Option<Report> = None;
+    for Trial { places, heights } in trials {
+        let setup = Setup { surface: places, ..Setup::default() };
+        let report = run(&levelling::raised(source, &heights), setup);
+        match &mut proven {
+            _ if !report.proven => return report,
+            Some(proven) => proven.deviations.widen(&report.deviations),
+            None => proven = Some(report),
+        }
+    }
+    proven.unwrap_or_default()
+}
+
+/// The proof of a program on a control with this set-up.
+fn prove_on(
+    source: &Program,
+    machine: &Machine,
+    setup: Setup,
+    file_name: &str,
+    text: &[u8],
+    tolerances: &Tolerances,
+) -> Report {
     let mut prover = Prover::new(source, machine, tolerances);
-    let run = match nc::settings(machine, Setup::default()) {
+    let run = match nc::settings(machine, setup) {
         Ok(settings) => {
             control::read(&settings, file_name, text, &mut |record| prover.record(&record))
         }

@@ -89,6 +89,18 @@ pub struct Worst {
     pub program_line: u32,
 }
 
+impl Deviations {
+    /// The larger of both.
+    pub(crate) fn widen(&mut self, other: &Deviations) {
+        let mine = [&mut self.tip_mm, &mut self.axis_degrees, &mut self.path_mm];
+        for (mine, Worst { value, source_line, program_line }) in
+            mine.into_iter().zip([other.tip_mm, other.axis_degrees, other.path_mm])
+        {
+            mine.note(value, source_line, program_line);
+        }
+    }
+}
+
 impl Worst {
     pub(crate) fn note(&mut self, value: f64, source_line: u32, program_line: u32) {
         if value > self.value {

@@ -13,10 +13,10 @@ use crate::post::{self, Posted};
 use crate::progress::Progress;
 use crate::summary::rows;
 use crate::toolpath::{self, Toolpath};
-use ::pcb::Operation;
 use ::pcb::job::{self, Heights};
+use ::pcb::{Board, Operation};
 use drawing::{BoardPicture, Format};
-use levelling::{Allowed, Grid, HeightMap, Probing, level};
+use levelling::{Allowed, Grid, HeightMap, Probing, follow, level};
 use machine::Machine;
 use plan::Plan;
 use program::{Diagnostic, Op, Program, Record};
@@ -41,6 +41,9 @@ pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
     let mut warnings = source.warnings;
     let plan = Plan::of(source.board, args)?;
     let surface = surface(&plan, args)?;
+    if let Some(places) = args.running.probe.filter(|_| args.running.on_control) {
+        can_probe(&plan, places, &machine)?;
+    }
     progress.step("planning");
     let works = each(&plan.parts, |part| Work::of(*part, &plan, args, &machine));
     let works = works.into_iter().collect::<Result<Vec<Work>, Stop>>()?;
@@ -48,14 +51,14 @@ pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
     progress.step("writing and proving");
     let shop = Shop { args, machine: &machine, plan: &plan, rack, heights, surface };
     let mut programs = Vec::with_capacity(works.len() + 1);
-    if let Some(grid) = args.running.probe {
+    if let Some(grid) = args.running.probe.filter(|_| !args.running.on_control) {
         programs.push(shop.probing(grid)?);
     }
     let jobs: Vec<(Part, Work)> = plan.parts.iter().copied().zip(works).collect();
     let made = each(&jobs, |(part, work)| shop.make(*part, work));
     for (made, (part, work)) in made.into_iter().zip(jobs) {
         let (posted, picture) = made?;
-        programs.push(Made { name: part.name(), work, posted, picture });
+        programs.push(Made { name: part.name(), work, posted, picture, probes: shop.probes(part) });
     }
     for made in &programs {
         let file = format!("{}.nc", made.name);
@@ -158,6 +161,46 @@ fn surface(plan: &Plan, args: &Pcb) -> Result<Option<HeightMap>, Stop> {
     Ok(Some(levelling::read(&files::name(file), &text).map_err(Stop::invalid)?))
 }
 
+/// How much a surface rises on which programs that measure it keep to that, mm a mm.
+const STEEPNESS: f64 = 0.02;
+
+/// # Errors
+/// The control cannot keep what a probe finds at so many places, or a program cuts what no tool feels.
+fn can_probe(plan: &Plan, [columns, rows]: [u32; 2], machine: &Machine) -> Result<(), Stop> {
+    let wrong = |message: String, help: &str| {
+        Err(Diagnostic::error("on-control", message).help(help).into())
+    };
+    if !machine.blocks.contains_key("keep_height") {
+        let message = format!(
+            "`{}` has a control that keeps no heights to calculate with: it cannot follow what it measures",
+            machine.name
+        );
+        let help = "leave out --on-control: run probe.nc first, and give its heights by --heights";
+        return wrong(message, help);
+    }
+    let kept =
+        machine.words.get("HEIGHT").map_or(0.0, |word| word.max - f64::from(word.first) + 1.0);
+    if f64::from(columns) * f64::from(rows) > kept {
+        let message = format!("{columns} by {rows} places, and the control keeps {kept} heights");
+        return wrong(message, "fewer columns or rows");
+    }
+    let is_coated = |part: &&Part| part.face().is_some() && !part.is_copper();
+    if let Some(part) = plan.parts.iter().find(is_coated) {
+        let message = format!("the {} conducts nothing: the tool does not feel it", part.what());
+        return wrong(
+            message,
+            "make the programs of the copper by themselves: name them with --only",
+        );
+    }
+    match plan.parts.iter().any(|part| part.is_copper()) {
+        true => Ok(()),
+        false => wrong(
+            "no program cuts copper: none would measure".into(),
+            "leave out --probe and --on-control",
+        ),
+    }
+}
+
 /// A program that was made.
 struct Made {
     /// What it and its picture are called.
@@ -165,6 +208,8 @@ struct Made {
     work: Work,
     posted: Posted,
     picture: Option<Vec<u8>>,
+    /// Columns and rows of the heights that it measures itself.
+    probes: Option<[u32; 2]>,
 }
 
 /// How the height of the board is probed: slowly, from a millimetre above to one below.
@@ -199,6 +244,10 @@ impl Shop<'_> {
         if let Some(surface) = &self.surface {
             program = level(&program, surface, &LEVELLED)?;
         }
+        if let Some(places) = self.probes(part) {
+            let grid = grid(board, places)?;
+            program = follow(&program, &grid, &PROBED, STEEPNESS, &LEVELLED)?;
+        }
         let (program, posted) = self.proven(program, part.name())?;
         let format = match self.args.picture {
             Picture::Svg => Some(Format::Svg),
@@ -222,10 +271,15 @@ impl Shop<'_> {
         Ok((posted, picture.transpose()?))
     }
 
+    /// Columns and rows of the heights that the program of a part measures itself.
+    fn probes(&self, part: Part) -> Option<[u32; 2]> {
+        let running = &self.args.running;
+        running.probe.filter(|_| running.on_control && part.is_copper())
+    }
+
     /// The program that measures the height of the board.
-    fn probing(&self, [columns, rows]: [u32; 2]) -> Result<Made, Stop> {
-        let (low, high) = self.plan.front().extents().unwrap_or_default();
-        let grid = Grid::new(low, high, columns as usize, rows as usize)?;
+    fn probing(&self, places: [u32; 2]) -> Result<Made, Stop> {
+        let grid = grid(self.plan.front(), places)?;
         let name = format!("{}-{PROBE}", self.plan.name);
         let mut program = PROBED.program(&name, &grid, Some(HEIGHTS))?;
         let tool = program::Tool {
@@ -235,7 +289,7 @@ impl Shop<'_> {
         };
         program.records.insert(0, Record { line: 0, op: Op::Tool(Box::new(tool)) });
         let (_, posted) = self.proven(program, PROBE)?;
-        Ok(Made { name: PROBE, work: Work::default(), posted, picture: None })
+        Ok(Made { name: PROBE, work: Work::default(), posted, picture: None, probes: None })
     }
 
     /// The text of a program, proven.
@@ -246,6 +300,12 @@ impl Shop<'_> {
         let posted = post::proven(&toolpath, self.machine, &file, &tolerances, &|_| {})?;
         Ok((toolpath.program, posted))
     }
+}
+
+/// So many columns and rows of places over a board.
+fn grid(board: &Board, [columns, rows]: [u32; 2]) -> Result<Grid, Stop> {
+    let (low, high) = board.extents().unwrap_or_default();
+    Ok(Grid::new(low, high, columns as usize, rows as usize)?)
 }
 
 /// `work` for each thing, all at the same time, the answers in their order.

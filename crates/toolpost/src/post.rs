@@ -15,6 +15,7 @@ use program::{Diagnostic, Program};
 use proof::Tolerances;
 use serde_json::json;
 use std::path::Path;
+use std::{panic, thread};
 
 /// Rules whose findings say that the machine cannot do what the toolpath asks for. All others of the
 /// writer are mistakes of the input: of the toolpath, or of the machine's file.
@@ -92,9 +93,16 @@ pub fn proven(
     }
     let mut warnings = toolpath.warnings.clone();
     step("writing");
-    let output = write(&toolpath.program, machine, toolpath, &mut warnings)?;
+    let program = &toolpath.program;
+    // What is told of the toolpath is found meanwhile.
+    let (output, (shape, times)) = thread::scope(|scope| {
+        let told = scope.spawn(|| (Shape::of(program), Times::of(program, machine)));
+        let output = write(program, machine, toolpath, &mut warnings);
+        (output, told.join().unwrap_or_else(|cause| panic::resume_unwind(cause)))
+    });
+    let output = output?;
     step("proving");
-    let proof = proof::prove(&toolpath.program, machine, file, &output.text, tolerances);
+    let proof = proof::prove(program, machine, file, &output.text, tolerances);
     if !proof.proven {
         let mut account = prove::failed(&proof, toolpath, file);
         account.findings.extend(warnings);
@@ -102,8 +110,6 @@ pub fn proven(
     }
 
     warnings.extend(proof.warnings.iter().cloned());
-    let shape = Shape::of(&toolpath.program);
-    let times = Times::of(&toolpath.program, machine);
     let data = json!({
         "toolpost": env!("CARGO_PKG_VERSION"),
         "source": toolpath.describe(&shape),

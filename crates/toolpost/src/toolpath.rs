@@ -60,26 +60,26 @@ pub fn read(
         return Err(Diagnostic::error("origin", message).help(help).file(file).into());
     }
     let named = origin.from.as_deref().map(machine::load_origin).transpose()?;
-    read_job(&files::name(path), &bytes, strict, named.as_ref().or(machine))
+    let file = files::name(path);
+    read_job(&file, &Job::of(&file, &bytes)?, strict, named.as_ref().or(machine))
 }
 
-/// Reads the text of a job of FreeCAD's, which is called `file`. Words for rotary axes are those of
+/// Reads a job of FreeCAD's, which is called `file`. Words for rotary axes are those of
 /// `machine`.
 ///
 /// # Errors
 /// As [`read`].
 pub fn read_job(
     file: &str,
-    text: &[u8],
+    job: &Job,
     strict: bool,
     machine: Option<&Machine>,
 ) -> Result<Toolpath, Stop> {
-    let job = Job::of(file, text)?;
     let machine = match machine {
         Some(machine) => machine,
         None => &machine::load_control(THREE_AXES)?,
     };
-    let freecad::Reading { program, listing, warnings } = freecad::read(machine, file, &job)?;
+    let freecad::Reading { program, listing, warnings } = freecad::read(machine, file, job)?;
     Ok(Toolpath {
         file: file.to_owned(),
         warnings: held(warnings, strict)?,
@@ -206,6 +206,7 @@ impl Origin {
             }),
             block_delete: self.block_delete,
             start: self.start.map(Vec3::from_array),
+            surface: Vec::new(),
         })
     }
 }

@@ -7,8 +7,8 @@
 mod files;
 
 use files::sources;
-use geom::{Arc, Vec3};
-use program::{Cycle, CycleKind, Op, Program};
+use geom::{Arc, Vec2, Vec3};
+use program::{ArcTo, Cycle, CycleKind, Feed, Op, Pose, Program, Spindle};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
@@ -205,6 +205,57 @@ fn linuxcnc_itself_runs_our_programs_along_the_source() {
         judged += 1;
     }
     assert!(judged > 0);
+}
+
+/// Every probing move ends where the interpreter goes: its end is where it touches. With another end for each place it
+/// finds a surface as uneven as we like.
+#[test]
+fn linuxcnc_itself_follows_a_surface_that_it_finds() {
+    if Command::new("rs274").arg("-h").stdin(Stdio::null()).output().is_err() {
+        return eprintln!("note: rs274 (Debian package linuxcnc-uspace) is not installed");
+    }
+    let pose = |x: f64, y: f64, z: f64| Pose::new(Vec3::new(x, y, z), Vec3::Z);
+    let arc = |end: Pose, center: Vec3, normal: Vec3| {
+        Op::Arc(Box::new(ArcTo { end, center, normal, turns: 0 }))
+    };
+    let mut board = Program::new("board");
+    for op in [
+        Op::Tool(Box::new(program::Tool { number: 1, ..Default::default() })),
+        Op::Spindle(Spindle::Clockwise(9000.0)),
+        Op::Feed(Feed::PerMinute(100.0)),
+        Op::Rapid(pose(10.0, 5.0, 2.0)),
+        Op::Rapid(pose(10.0, 5.0, 0.5)),
+        Op::Line(pose(10.0, 5.0, -0.1)),
+        arc(pose(30.0, 5.0, -0.1), Vec3::new(20.0, 5.0, 0.0), Vec3::NEG_Z),
+        Op::Line(pose(31.5, 17.25, -0.3)),
+        arc(pose(31.5, 17.25, -0.3), Vec3::new(25.0, 12.0, 0.0), Vec3::Z),
+        Op::Line(pose(-2.0, 22.0, -0.1)),
+        Op::Rapid(pose(-2.0, 22.0, 2.0)),
+        Op::End,
+    ] {
+        board.push(1, op);
+    }
+    let grid = levelling::Grid::new(Vec2::ZERO, Vec2::new(40.0, 20.0), 5, 4).unwrap();
+    let probing = levelling::Probing { travel: 1.0, depth: 1.0, feed: 50.0 };
+    let allowed = levelling::Allowed { deviation: 0.005, outside: 5.0 };
+    let program = levelling::follow(&board, &grid, &probing, 0.02, &allowed).unwrap();
+    let machine = machine::load("generic-3axis-linuxcnc").unwrap();
+    let text = String::from_utf8(post::write(&program, &machine).unwrap().text).unwrap();
+    let mut parts = text.split("G38.2 Z-1");
+    let mut text = String::from(parts.next().unwrap());
+    let mut points = Vec::new();
+    for (place, part) in grid.places().zip(parts) {
+        // Heights of four decimals, without order.
+        let height = (points.len() * 7919 % 1901) as f64 / 1000.0 - 0.95;
+        points.push(place.extend(height));
+        text += &format!("G38.2 Z{height}{part}");
+    }
+    assert_eq!(points.len(), 20);
+    let folder = tempfile::tempdir().unwrap();
+    let cuts = rs274(folder.path(), text.as_bytes()).unwrap();
+    let raised = levelling::raised(&program, &levelling::HeightMap::of(&points).unwrap());
+    let (count, _) = assert_same_cuts(&raised, &cuts, 2e-4, false);
+    assert!(count > 30, "{count}");
 }
 
 /// Prints a line `x y z` for every block that cuts.

@@ -82,7 +82,7 @@ const REFUSED: &[(&str, &[&str], &str)] = &[
     ("marlin-cnc", &["coremill.cls"], "axis-limit"),
     (
         "linuxcnc-mill",
-        &["Sacrifice-Board.apt", "Top-light-cover.apt", "basemach.apt", "coremill.cls"],
+        &["Sacrifice-Board.apt", "Top-light-cover.apt", "coremill.cls"],
         "axis-limit",
     ),
     ("linuxcnc-mill", &["Dem-target1.apt", "Dem-target2.apt"], "spindle-range"),

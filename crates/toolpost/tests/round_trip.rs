@@ -157,7 +157,7 @@ fn assemble(pieces: &[Piece]) -> Program {
                 let end = pose(here.with_z(5.0));
                 push(match *piece {
                     Piece::Probe { away, must_answer } => {
-                        Op::Probe(Box::new(Probe { end, away, must_answer }))
+                        Op::Probe(Box::new(Probe { end, away, must_answer, place: None }))
                     }
                     _ => Op::Thread(Box::new(Thread { end, pitch: 1.25 })),
                 });

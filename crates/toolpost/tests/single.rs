@@ -39,7 +39,7 @@ fn refused(machine: &str, ops: Vec<Op>) -> &'static str {
 fn probing(away: bool, must_answer: bool) -> Vec<Op> {
     let probe = |x| {
         let end = at(x, -10.0);
-        Op::Probe(Box::new(Probe { end, away, must_answer }))
+        Op::Probe(Box::new(Probe { end, away, must_answer, place: None }))
     };
     let rapid = |x| Op::Rapid(at(x, 5.0));
     vec![rapid(0.0), probe(0.0), rapid(0.0), rapid(20.0), probe(20.0), rapid(20.0)]
@@ -120,7 +120,12 @@ fn only_a_rapid_leads_from_where_a_probe_has_answered() {
     assert_eq!(then(probe()[1].clone()), "probe");
     let feed = [vec![Op::Feed(Feed::InverseTime(2.0))], probing(false, true)].concat();
     assert_eq!(refused(machine, feed), "probe");
-    let nowhere = Op::Probe(Box::new(Probe { end: at(0.0, 5.0), away: false, must_answer: true }));
+    let nowhere = Op::Probe(Box::new(Probe {
+        end: at(0.0, 5.0),
+        away: false,
+        must_answer: true,
+        place: None,
+    }));
     assert_eq!(refused(machine, vec![Op::Rapid(at(0.0, 5.0)), nowhere]), "probe");
     assert_eq!(refused(machine, probe()[1..].to_vec()), "single-block");
 }

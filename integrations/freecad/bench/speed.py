@@ -9,7 +9,6 @@ its share; nothing is posted without a proof, so that share is measured by itsel
 
 import contextlib
 import io
-import json
 import math
 import os
 import sys
@@ -94,7 +93,7 @@ def main():
         print("the proof's share is measured with the Python package alone")
         return
     machine = core.package.machine(options.machine)
-    program = core.package.read_job(json.dumps(job), machine)
+    program = core.package.read_job(job, machine)
     _, proof = timed("  of it: the proof", lambda: core.package.prove(text, machine, program))
     held(theirs / (ours - proof), WITHOUT, "as we do without the proof")
 

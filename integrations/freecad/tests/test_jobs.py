@@ -25,9 +25,8 @@ REFUSED = {
     # The teaching mill: 200 mm of travel in X, tools up to 55 mm.
     ("Drilling_1", "emco"): "axis-limit",
     ("boxtest-Job001", "emco"): "tool-range",
-    # A small router, a bench mill: 45 mm in Z, 158 mm in Y.
+    # A small router: 45 mm in Z.
     ("Drilling_1", "grbl-3018"): "axis-limit",
-    ("Drilling_1", "linuxcnc-mill"): "axis-limit",
     # A router without coolant.
     ("mist", "grbl-3018"): "missing-block",
     **{(job, "grbl-3018"): "missing-block" for job in COOLED},

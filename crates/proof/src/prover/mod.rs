@@ -155,7 +155,7 @@ impl<'a> Prover<'a> {
             Op::Hole(pose) => self.drilled(line, pose),
             Op::Thread(thread) => self.single(line, &thread.end, Kind::Thread(thread.pitch)),
             Op::Probe(probe) => {
-                let Probe { end, away, must_answer } = **probe;
+                let Probe { end, away, must_answer, .. } = **probe;
                 self.single(line, &end, Kind::Probe { away, must_answer })
             }
             Op::Home(axes) => self.home(line, *axes),

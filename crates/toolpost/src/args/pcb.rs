@@ -109,6 +109,11 @@ impl Part {
         }
     }
 
+    /// Whether it cuts copper from the top.
+    pub fn is_copper(self) -> bool {
+        matches!(self, Part::Front | Part::Back)
+    }
+
     /// The side that it is about; `None` for what goes through the board.
     pub fn face(self) -> Option<Face> {
         match self {
@@ -341,6 +346,10 @@ pub struct Running {
     /// Write a program too that measures the height of the board at so many places (probe.nc).
     #[arg(long, value_name = "COLUMNSxROWS", value_parser = grid)]
     pub probe: Option<[u32; 2]>,
+    /// The programs that cut copper measure these heights themselves, with the tool that cuts, and follow them: the
+    /// control does it, which needs one that keeps numbers (LinuxCNC). Replaces probe.nc and --heights.
+    #[arg(long, requires = "probe", conflicts_with = "heights")]
+    pub on_control: bool,
     /// Measured heights that the programs follow: what a probing program has logged, or X, Y and Z in
     /// columns.
     #[arg(long, value_name = "FILE")]

@@ -95,6 +95,14 @@ impl Made {
                 ),
             ),
         ];
+        if let (Some([wide, deep]), Some(operation)) = (self.probes, self.work.operations.first()) {
+            let tool = &operation.tool.name;
+            let text = format!(
+                "first measures {wide} x {deep} heights with {tool}: set Z 0 near the copper, \
+                 clip the probe to board and tool when it stops, and off when it stops again"
+            );
+            rows.push(("", text));
+        }
         // What the writer says is no fault of the board.
         rows.extend(account.findings.iter().map(|found| ("", found.message.clone())));
         rows
@@ -109,6 +117,9 @@ impl Made {
             data.retain(|key, _| key != "toolpost" && key != "machine");
         }
         data["name"] = json!(self.name);
+        if let Some([columns, rows]) = self.probes {
+            data["measures_heights"] = json!({ "columns": columns, "rows": rows });
+        }
         data["operations"] =
             json!(self.work.operations.iter().map(|operation| &operation.name).collect::<Vec<_>>());
         data["places"] = self.work.places.iter().map(place).collect();

@@ -287,6 +287,27 @@ fn heights_of_another_side_or_another_place() {
 }
 
 #[test]
+fn heights_that_nothing_measures() {
+    let folder = small();
+    let on_control = ["--probe", "3x3", "--on-control"];
+    bad_call(&folder, &on_control, &["error[on-control]", "`grbl-3018`", "--heights"]);
+    bad_call(&folder, &["--on-control"], &["--probe"]);
+    bad_call(&folder, &[&on_control[..], &["--heights", "h.txt"]].concat(), &["--heights"]);
+    folder.write("board/mask.gbr", gerber("Soldermask,Top", FRONT));
+    for (more, word) in [
+        (&["--only", "drill,outline"][..], "no program cuts copper"),
+        (&["--mask-tool", "0.4"][..], "the solder mask of the front conducts nothing"),
+    ] {
+        let call = ["pcb", "board", "-o", "out", "-m", "linuxcnc-mill", "--tool", "0.4"];
+        refused(&folder, &[&call[..], &on_control, more].concat(), 2, &["error[on-control]", word]);
+    }
+    // 4000 of its parameters are free.
+    let call = ["pcb", "board", "-o", "out", "-m", "linuxcnc-mill", "--tool", "0.4"];
+    let many = ["--probe", "64x63", "--on-control"];
+    refused(&folder, &[&call[..], &many].concat(), 2, &["error[on-control]", "64", "4000"]);
+}
+
+#[test]
 fn numbers_that_are_no_panel() {
     let folder = small();
     for panel in ["0x2", "2x0", "2", "-1x2", "1001x1", "axb"] {

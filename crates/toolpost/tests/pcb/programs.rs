@@ -2,7 +2,8 @@
 
 use crate::board::{DRILL, FRONT, Made, NEAR, edge, front, gerber, small};
 use crate::folder::Folder;
-use geom::Vec2;
+use control::Setup;
+use geom::{Vec2, Vec3};
 use program::Op;
 use std::collections::BTreeSet;
 use std::f64::consts::{PI, TAU};
@@ -386,6 +387,60 @@ fn programs_follow_the_surface_that_was_measured() {
         });
         let around: f64 = low.map(|cut| cut.length).sum();
         assert!((around / AROUND - 1.0).abs() < 0.01, "{machine}: {around}");
+    }
+}
+
+/// The ends of the cuts of a program, as a control makes them on this surface.
+fn cuts_on(text: &str, machine: &str, surface: Vec<Vec3>) -> Vec<Vec3> {
+    let machine = machine::load(machine).unwrap();
+    let settings = nc::settings(&machine, Setup { surface, ..Setup::default() }).unwrap();
+    let mut ends = Vec::new();
+    let read = control::read(&settings, "front.nc", text.as_bytes(), &mut |record| {
+        if let Op::Line(_) | Op::Arc(_) = record.op {
+            ends.extend(record.op.pose().map(|pose| pose.point));
+        }
+        Ok(())
+    });
+    read.unwrap();
+    ends
+}
+
+#[test]
+fn programs_that_cut_copper_measure_its_height_themselves() {
+    let folder = small();
+    let more = ["--tool", "0.4", "--probe", "3x3", "--on-control"];
+    let made = Made::of(&folder, "board", "linuxcnc-mill", &more);
+    assert!(!folder.path().join("out/probe.nc").exists());
+    let plane = |x: f64, y: f64| -0.1 + 0.01 * x - 0.02 * y;
+    // Unlike a plane, the heights of one place bend the surface about it.
+    let bent = |x: f64, y: f64| plane(x, y) + if (x, y) == (10.0, 5.0) { 0.3 } else { 0.0 };
+    let places = [0.0, 10.0, 20.0].map(|x| [0.0, 5.0, 10.0].map(|y| (x, y))).concat();
+    let surface = |height: &dyn Fn(f64, f64) -> f64| -> Vec<Vec3> {
+        places.iter().map(|&(x, y)| Vec3::new(x, y, height(x, y))).collect()
+    };
+    for part in ["front", "back"] {
+        assert_eq!(made.told(part)["proof"]["proven"], true);
+        let told = &made.told(part)["measures_heights"];
+        assert_eq!(*told, serde_json::json!({ "columns": 3, "rows": 3 }));
+        let text = made.text(part);
+        assert_eq!((text.matches("G38.2").count(), text.matches("\nM0").count()), (9, 2), "{text}");
+        let cuts = cuts_on(&text, "linuxcnc-mill", surface(&plane));
+        // Circles of 1.2 and of 0.7 mm, in 7 and in 5 pieces at least.
+        assert!(cuts.len() >= 2 * (1 + if part == "front" { 7 } else { 5 }));
+        for end in &cuts {
+            let off = end.z - plane(end.x, end.y) + 0.1;
+            assert!(off.abs() < 1e-4, "{end} is {off} mm off");
+        }
+        // Each cut is raised by as much of the middle place as it is near to it, by hand: a pyramid along both axes.
+        for (bent, end) in cuts_on(&text, "linuxcnc-mill", surface(&bent)).iter().zip(&cuts) {
+            let near = |at: f64, middle: f64| (1.0 - (at - middle).abs() / middle).max(0.0);
+            let right = end.z + 0.3 * near(end.x, 10.0) * near(end.y, 5.0);
+            assert!((bent.z - right).abs() < 1e-4 && bent.x == end.x, "{bent} and {right}");
+        }
+    }
+    // A drill goes through, and an outline too: they know no surface.
+    for part in ["drill", "outline"] {
+        assert!(!made.text(part).contains('#'));
     }
 }
 

@@ -200,9 +200,7 @@ fn what_a_program_for_linuxcnc_leaves_is_the_copper_net_by_net() {
     for (name, width) in BOARDS {
         let board = data.join("kicad").join(name);
         let more = ["--passes", "2", "--direction", "conventional"];
-        // The mill is too short for one board: 254 mm.
-        let machine = if *name == "microwave" { "generic-3axis-linuxcnc" } else { "linuxcnc-mill" };
-        let made = Made::of(&board, machine, *width, &more);
+        let made = Made::of(&board, "linuxcnc-mill", *width, &more);
         for (side, file) in copper(&board) {
             made.check(side, &file);
         }
@@ -213,8 +211,10 @@ fn what_a_program_for_linuxcnc_leaves_is_the_copper_net_by_net() {
 fn the_large_board_is_cut_right() {
     let Some(data) = data() else { return };
     let board = data.join("a64");
-    let made = Made::of(&board, "linuxcnc-mill", 0.1, &[]);
-    for (side, letter) in [("front", "F"), ("back", "B")] {
-        made.check(side, &board.join(format!("A64-OlinuXino_Rev_D-{letter}.Cu.gbr")));
+    for machine in ["grbl-3018", "linuxcnc-mill"] {
+        let made = Made::of(&board, machine, 0.1, &[]);
+        for (side, letter) in [("front", "F"), ("back", "B")] {
+            made.check(side, &board.join(format!("A64-OlinuXino_Rev_D-{letter}.Cu.gbr")));
+        }
     }
 }

@@ -9,6 +9,9 @@ use crate::iso::language::words::{Flavor, Group, Motion};
 use geom::Vec3;
 use program::{Op, Probe};
 
+/// How far beside a probe a point of the surface may be that it touches, mm: words are rounded.
+const BESIDE: f64 = 0.002;
+
 impl Step<'_, '_, '_> {
     /// `G28`, `G30`: by rapid through the point of the block to the reference position, the named axes
     /// only; LinuxCNC and GRBL without a word: all axes at once.
@@ -138,8 +141,9 @@ impl Step<'_, '_, '_> {
             return Err(self.block.whole("nc-probe", "a rotary axis in a probing move"));
         }
         self.feed_for_cut()?;
+        self.state.probed = if away { None } else { self.touched(&target, must_answer)? };
         let end = self.state.pose(target.point, target.rotary);
-        self.ops.push(Op::Probe(Box::new(Probe { end, away, must_answer })));
+        self.ops.push(Op::Probe(Box::new(Probe { end, away, must_answer, place: None })));
         self.arrive(target);
         for axis in 0..3 {
             if target.named & 1 << axis != 0 {
@@ -147,6 +151,35 @@ impl Step<'_, '_, '_> {
             }
         }
         Ok(())
+    }
+
+    /// Where a probe on its way to `target` touches the surface; none where that is not known. The tool comes to
+    /// rest somewhat beyond.
+    ///
+    /// # Errors
+    /// It has to touch it, and does not.
+    fn touched(&self, target: &Target, must_answer: bool) -> Result<Option<Vec3>, Fault> {
+        let place = &self.state.place;
+        let (from, to) = (place.point(self.state.position), place.point(target.point));
+        let below = |point: &&Vec3| point.truncate().distance(to.truncate()) <= BESIDE;
+        let straight = from.truncate() == to.truncate();
+        let Some(point) = self.state.touches.iter().find(below).filter(|_| straight) else {
+            return Ok(None);
+        };
+        match (to.z..=from.z).contains(&point.z) {
+            true => {
+                let unit = if self.state.inches == Some(true) { geom::INCH } else { 1.0 };
+                Ok(Some(place.programmed(to.with_z(point.z)) / unit))
+            }
+            false if !must_answer => Ok(None),
+            false => {
+                let message = format!(
+                    "the surface is at Z{} mm, not on the way of the probe: the control stops here",
+                    point.z
+                );
+                Err(self.block.whole("nc-probe", message))
+            }
+        }
     }
 
     /// `G53`: to a position in machine coordinates, by rapid.

@@ -63,6 +63,11 @@ pub(crate) struct State {
     pub aside: Option<Vec3>,
     /// Stored by `G28.1` and `G30.1`, in machine coordinates, mm; NaN where not known.
     pub homes: [Vec3; 2],
+    /// Points of the part's surface, in the work frame, that a probe touches.
+    pub touches: Vec<Vec3>,
+    /// Where the last probing move has been answered, in programmed coordinates and in the unit
+    /// of the program then; none where nobody knows.
+    pub probed: Option<Vec3>,
     /// The point on the way of the last `G28`, in the work frame.
     pub via: Option<Vec3>,
     /// `G99`: holes end at the R plane; `G98`: at the initial level. LinuxCNC's manual names no
@@ -191,6 +196,8 @@ impl State {
             registers: Registers::new(&settings.setup.tools),
             aside: settings.setup.aside,
             homes: [UNKNOWN; 2],
+            touches: settings.setup.surface.clone(),
+            probed: None,
             via: None,
             return_to_r: (flavor.is_fanuc() || flavor == Flavor::FreeCad).then_some(false),
             cycle_dwell: None,

@@ -30,7 +30,10 @@ pub(super) fn ngc_parameter(values: &Values, number: u32) -> Result<f64, String>
             Some(_) => Err("the tool table counts in the units of the machine".into()),
         },
         5599 => Ok(1.0),
-        5061..=5070 => Err("the result of probing is known only at the machine".into()),
+        5061..=5070 => match (values.state.probed, number) {
+            (Some(probed), 5061..=5063) => Ok(probed[number as usize - 5061]),
+            _ => Err("the result of probing is known only at the machine".into()),
+        },
         5399 => Err("what M66 has read is known only at the machine".into()),
         5600 | 5601 => Err("the tool changer's fault is known only at the machine".into()),
         _ => Err(format!("there is no parameter #{number} that can be read")),

@@ -1,0 +1,92 @@
+//! A control in a thread of its own: while it runs on, its records are dealt with.
+
+use crate::Sink;
+use program::{Diagnostic, Record};
+use std::sync::mpsc;
+use std::{mem, panic, thread};
+
+/// Records that are handed over at once.
+const BATCH: usize = 4096;
+
+/// Batches that wait at most: a control that is faster than its sink waits, and memory stays bounded.
+const WAITING: usize = 4;
+
+/// Hands what `run` gives to its sink over to `sink`, in the same order and on this thread, while `run` goes on
+/// in another.
+///
+/// # Errors
+/// The first of what `sink` and `run` answered, as their records come.
+pub fn relayed(
+    run: impl FnOnce(&mut Sink) -> Result<(), Box<Diagnostic>> + Send,
+    sink: &mut Sink,
+) -> Result<(), Box<Diagnostic>> {
+    let (sender, receiver) = mpsc::sync_channel::<Vec<Record>>(WAITING);
+    thread::scope(|scope| {
+        let control = scope.spawn(move || {
+            let mut batch = Vec::with_capacity(BATCH);
+            let result = run(&mut |record| {
+                batch.push(record);
+                if batch.len() < BATCH {
+                    return Ok(());
+                }
+                let full = mem::replace(&mut batch, Vec::with_capacity(BATCH));
+                // Where nobody takes it, the sink has refused a record, and its answer is the one that counts.
+                sender.send(full).map_err(|_| Diagnostic::error("stopped", "").into())
+            });
+            // What came before a block that is refused comes before the refusal.
+            sender.send(batch).map_or(Ok(()), |()| result)
+        });
+        let taken = receiver.into_iter().flatten().try_for_each(sink);
+        let run = control.join().unwrap_or_else(|cause| panic::resume_unwind(cause));
+        taken.and(run)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use program::Op;
+
+    /// A control that makes so many records, and then stops with an error where it has one.
+    fn control(
+        count: u32,
+        end: Option<&'static str>,
+    ) -> impl FnOnce(&mut Sink) -> Result<(), Box<Diagnostic>> + Send {
+        move |sink| {
+            (1..=count).try_for_each(|line| sink(Record { line, op: Op::End }))?;
+            end.map_or(Ok(()), |rule| Err(Diagnostic::error(rule, "").into()))
+        }
+    }
+
+    #[test]
+    fn every_record_arrives_in_its_order_and_before_what_is_refused_behind_it() {
+        let batch = BATCH as u32;
+        for count in [0, 1, batch - 1, batch, batch + 1, 20 * batch + 7] {
+            for end in [None, Some("nc-syntax")] {
+                let mut lines = Vec::new();
+                let answer = relayed(control(count, end), &mut |record| {
+                    lines.push(record.line);
+                    Ok(())
+                });
+                assert!(lines.into_iter().eq(1..=count), "{count}");
+                assert_eq!(answer.err().map(|found| found.rule), end);
+            }
+        }
+    }
+
+    #[test]
+    fn the_sink_stops_a_control_that_would_go_on() {
+        for last in [1, BATCH as u32, 50_000] {
+            let mut taken = 0;
+            let answer = relayed(control(u32::MAX, Some("nc-syntax")), &mut |record| {
+                taken += 1;
+                match record.line == last {
+                    true => Err(Diagnostic::error("program-length", "").into()),
+                    false => Ok(()),
+                }
+            });
+            assert_eq!(answer.unwrap_err().rule, "program-length");
+            assert_eq!(taken, last);
+        }
+    }
+}

@@ -1,0 +1,64 @@
+//! What a probe finds on a surface that the operator has described: LinuxCNC's `#5061` to `#5063`.
+
+use geom::Vec3;
+use program::Op;
+use toolpost_control::{Dialect, Settings, Setup, read};
+
+/// The ends of the straight cuts, on a surface of these points.
+fn cuts(text: &str, surface: &[Vec3]) -> Result<Vec<Vec3>, String> {
+    let setup = Setup { surface: surface.to_vec(), ..Setup::default() };
+    let settings = Settings { setup, ..Settings::new(Dialect::LinuxCnc, [false; 3]) };
+    let mut cuts = Vec::new();
+    let read = read(&settings, "program.ngc", text.as_bytes(), &mut |record| {
+        if let Op::Line(pose) = record.op {
+            cuts.push(pose.point);
+        }
+        Ok(())
+    });
+    read.map(|()| cuts).map_err(|found| found.to_string())
+}
+
+const SURFACE: [Vec3; 2] = [Vec3::new(1.0, 2.0, -0.25), Vec3::new(25.4, 0.0, 0.5)];
+
+#[test]
+fn what_the_probe_finds_can_be_calculated_with() {
+    let text = "G21 G90 G0 X1 Y2 Z1\nG38.2 Z-1 F50\n#1001=#5063\nG0 Z1\nX25.4 Y0\nG38.2 Z-1\n#1002=#5063\n\
+        G0 Z1\nG1 X10 Y#5062 Z[-0.1+0.5*#1001+0.25*#1002]\nM2\n";
+    // -0.1 - 0.125 + 0.125.
+    let [cut] = cuts(text, &SURFACE).unwrap()[..] else { panic!() };
+    assert!(cut.distance(Vec3::new(10.0, 0.0, -0.1)) < 1e-12, "{cut}");
+}
+
+/// The manual: in the current work coordinate system. The source: in the unit of the program.
+#[test]
+fn it_is_in_the_unit_and_the_zero_of_the_program() {
+    let text = "G20 G90 G92.1\nG0 X1 Y0 Z.1\nG38.2 Z-.1 F5\nG0 Z.1\nG1 X2 Z#5063\nG21 Z#5063\nM2\n";
+    let z: Vec<f64> = cuts(text, &SURFACE).unwrap().iter().map(|cut| cut.z).collect();
+    assert!((z[0] - 0.5).abs() < 1e-9 && (z[1] - 0.5 / 25.4).abs() < 1e-9, "{z:?}");
+    let text =
+        "G21 G90 G92.1\nG0 X1 Y2 Z1\nG92 X11 Z3\nG38.2 Z1 F5\nG0 Z3\nG1 X#5061 Z[#5063-1]\nM2\n";
+    // The surface is at Z1.75 of the shifted coordinates; told in those of the work.
+    let [cut] = cuts(text, &SURFACE).unwrap()[..] else { panic!() };
+    assert!(cut.distance(Vec3::new(1.0, 2.0, -1.25)) < 1e-9, "{cut}");
+}
+
+#[test]
+fn what_only_the_machine_knows_stays_unknown() {
+    let refused = |text: &str, surface: &[Vec3], message: &str| {
+        let found = cuts(&format!("G21 G90 G0 X1 Y2 Z1\nF50\n{text}\nM2\n"), surface).unwrap_err();
+        assert!(found.contains(message), "{found}");
+    };
+    let unknown = "the result of probing is known only at the machine";
+    refused("G1 Z#5063", &SURFACE, unknown);
+    refused("G38.2 Z-1\nG0 Z1\nG1 Z#5063", &[], unknown);
+    // Beside the points that are known, aslant, and back from the part.
+    refused("G0 X1.01\nG38.2 Z-1\nG0 Z1\nG1 Z#5063", &SURFACE, unknown);
+    refused("G0 X2\nG38.2 X1 Z-1\nG0 Z1\nG1 Z#5063", &SURFACE, unknown);
+    refused("G38.2 Z-1\nG38.4 Z1\nG0 Z1\nG1 Z#5063", &SURFACE, unknown);
+    // Not deep enough: `G38.2` stops the program, `G38.3` goes on.
+    refused("G38.2 Z-.2\nG0 Z1", &SURFACE, "not on the way of the probe");
+    refused("G0 Z-.3\nG38.2 Z-1\nG0 Z1", &SURFACE, "not on the way of the probe");
+    refused("G38.3 Z-.2\nG0 Z1\nG1 Z#5063", &SURFACE, unknown);
+    // The tool has come to rest somewhat beyond.
+    refused("G38.2 Z-1\nG91 G1 Z1", &SURFACE, "where Z stands is not known");
+}
