@@ -216,8 +216,7 @@ impl Division {
                 if at.elements > elements {
                     continue;
                 }
-                for to in 0..self.nodes[node].count {
-                    let old = reached[node][to];
+                for (to, old) in reached[node].iter_mut().enumerate().take(self.nodes[node].count) {
                     if (old.elements, old.strain) <= (elements + 1, at.strain) {
                         continue;
                     }
@@ -225,8 +224,7 @@ impl Division {
                     *farthest = node.max(*farthest);
                     let strain = at.strain + strain;
                     if (elements + 1, strain) < (old.elements, old.strain) {
-                        let from = (from, place);
-                        reached[node][to] = Reached { elements: elements + 1, strain, from };
+                        *old = Reached { elements: elements + 1, strain, from: (from, place) };
                     }
                 }
             }

@@ -106,7 +106,7 @@ impl Run<'_> {
             let scale = 2.0 / (root.sqrt() - beyond);
             low = low.max((right - tolerance) * scale);
             high = high.min((right + tolerance) * scale);
-            if !(low <= high) {
+            if low > high {
                 return None;
             }
         }

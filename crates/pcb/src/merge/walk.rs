@@ -129,10 +129,9 @@ impl Walk {
         let passed = |(i, out): &(usize, Vec2)| {
             (*i < 2 || cosine < 1.0) && before(from, *out) && before(*out, to)
         };
-        let mut count = 0;
-        for (_, out) in outs.into_iter().enumerate().filter(passed) {
-            points[count] = Some(center + out * radius);
-            count += 1;
+        let passed = outs.into_iter().enumerate().filter(passed);
+        for (point, (_, out)) in points.iter_mut().zip(passed) {
+            *point = Some(center + out * radius);
         }
         let order = |a: &Option<Vec2>, b: &Option<Vec2>| match (a, b) {
             (Some(a), Some(b)) => {
