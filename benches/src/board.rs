@@ -13,6 +13,9 @@ use std::time::{Duration, Instant};
 /// `offset`).
 const TOOL: &str = "0.002";
 
+/// Height of rapid moves, from which the tool feeds too, mm: `zsafe` of these settings.
+const SAFE: &str = "0.08";
+
 /// What boards were taken for elsewhere, on two cores, and what we ask of ourselves.
 const MARKS: [(&str, &str); 2] = [
     (
@@ -76,6 +79,7 @@ fn fastest(board: &Path, more: &[&str], rounds: usize) -> Result<Made, Vec<Diagn
     let source = board.display().to_string();
     let mut words = vec!["toolpost", "--quiet", "pcb", &source, "-m", "generic-3axis-linuxcnc"];
     words.extend(["--tool", TOOL, "--depth", "0.04", "-o", &output]);
+    words.extend(["--travel", SAFE, "--approach", SAFE]);
     words.extend(more);
     let mut best: Option<Made> = None;
     for _ in 0..rounds.max(1) {

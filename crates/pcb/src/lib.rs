@@ -45,7 +45,7 @@ pub use contour::{Contour, Piece};
 pub use engraving::{Engraving, engraved};
 pub use geom::Transform;
 pub use hole::{Hole, HoleShape};
-pub use merge::joined;
+pub use merge::{MERGED, joined};
 pub use operation::{Cut, Cutter, Operation, Stretch, Tool, depths};
 pub use path::{Path, Site};
 pub use voronoi::{Division, divided};

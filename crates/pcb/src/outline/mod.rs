@@ -14,14 +14,10 @@ use crate::isolation::Direction;
 use crate::report::{Fault, Outcome, fault};
 use crate::setting;
 use crate::tour::Tour;
-use crate::{Cut, Operation, Path, Stretch, Tool, depths};
+use crate::{Cut, MERGED, Operation, Path, Stretch, Tool, depths};
 use geom::Vec2;
 use geom::region::{Fill, Region, RegionError, Ring};
 use program::Diagnostic;
-
-/// By how much merged ways may differ from the boundary, mm: moves are no shorter than a quarter of it, a step
-/// of most machines.
-const MERGED: f64 = 0.004;
 
 /// How a board is cut out.
 #[derive(Clone, Debug, PartialEq)]

@@ -12,17 +12,14 @@ use pcb::isolation::{Direction, Isolation, Narrow, NarrowGap, Severed, severed};
 use pcb::outline::{Outline, Tabs};
 use pcb::tour::Tour;
 use pcb::{
-    Board, Clearing, Copper, Cut, Cutter, Division, Engraving, Hole, Operation, Path, Tool, depths,
+    Board, Clearing, Copper, Cut, Cutter, Division, Engraving, Hole, MERGED, Operation, Path, Tool,
+    depths,
 };
 use program::Diagnostic;
 use rayon::prelude::*;
 
 /// The speed of a spindle that has no limit in its machine file, 1/min.
 const USUAL_SPEED: f64 = 10_000.0;
-
-/// How far ways may be from what they were worked out as, mm: moves shorter than a quarter of it, less than
-/// a step of a machine, are none.
-const MERGED: f64 = 0.004;
 
 /// By how much the cut may be wider where the tool goes on to the next way without leaving the board, mm.
 const JOINED: f64 = 0.002;
@@ -413,8 +410,7 @@ fn along(paths: &[Path], width: f64, depths: &[f64]) -> Vec<Cut> {
     let mut ways = tour.of_paths(&ways);
     if depths.len() == 1 {
         // Deeper, a way that is not closed any more would be cut the other way round.
-        let joined = pcb::joined(&ways, width, JOINED);
-        ways = joined.par_iter().filter_map(|way| way.merged(MERGED)).collect();
+        ways = pcb::joined(&ways, width, JOINED);
     }
     let at = ways.last().map_or(Vec2::ZERO, Path::end);
     let order = Tour { from: at, ..tour }.of_points(&dots);

@@ -176,5 +176,5 @@ impl<'a> Made<'a> {
     }
 }
 
-/// How far a cut may be from where it should be, mm: ways are merged within 4 µm, words have three decimals.
+/// How far a cut may be from where it should be, mm.
 pub const NEAR: f64 = 0.005;

@@ -13,9 +13,9 @@ use toolpost::Origin;
 /// From scan line to scan line, mm.
 const STEP: f64 = 0.02;
 
-/// How far a cut may be from where it was planned, mm: ways are merged within 4 µm, words have three
+/// How far a cut may be from where it was planned, mm: ways are merged within 5 µm, words have three
 /// decimals.
-const TOLERANCE: f64 = 0.005;
+const TOLERANCE: f64 = 0.006;
 
 /// The folder of real boards, or nothing where it is missing, which is said.
 fn data() -> Option<PathBuf> {
