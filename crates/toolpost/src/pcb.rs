@@ -212,8 +212,8 @@ struct Made {
     probes: Option<[u32; 2]>,
 }
 
-/// How the height of the board is probed: slowly, from a millimetre above to one below.
-const PROBED: Probing = Probing { travel: 1.0, depth: 1.0, feed: 50.0 };
+/// How the height of the board is probed: slowly, and a millimetre above what it may rise to from place to place.
+const PROBED: Probing = Probing { travel: 2.0, reach: 1.0, feed: 50.0 };
 
 /// What the program is called that measures the height of the board.
 const PROBE: &str = "probe";
