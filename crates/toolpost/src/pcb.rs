@@ -16,6 +16,7 @@ use crate::toolpath::{self, Toolpath};
 use ::pcb::job::{self, Heights};
 use ::pcb::{Board, Operation};
 use drawing::{BoardPicture, Format};
+use geom::Vec2;
 use levelling::{Allowed, Grid, HeightMap, Probing, follow, level};
 use machine::Machine;
 use plan::Plan;
@@ -146,8 +147,12 @@ fn heights(args: &Pcb) -> Result<Heights, Stop> {
     Err(Diagnostic::error("travel", message).help(help).into())
 }
 
-/// How closely programs follow the surface that was measured.
-const LEVELLED: Allowed = Allowed { deviation: 0.005, outside: 5.0 };
+/// How far inside the edge of the board the outermost places are, mm: on the edge itself there may be no copper.
+const INSIDE: f64 = 1.0;
+
+/// How closely programs follow the surface that was measured, and up to 5 mm beyond the board the height of the
+/// outermost places.
+const LEVELLED: Allowed = Allowed { deviation: 0.005, outside: INSIDE + 5.0 };
 
 /// The surface that programs follow, where one was measured.
 fn surface(plan: &Plan, args: &Pcb) -> Result<Option<HeightMap>, Stop> {
@@ -299,10 +304,11 @@ impl Shop<'_> {
     }
 }
 
-/// So many columns and rows of places over a board.
+/// So many columns and rows of places over a board, [`INSIDE`] its edge; on a small one a quarter of it.
 fn grid(board: &Board, [columns, rows]: [u32; 2]) -> Result<Grid, Stop> {
     let (low, high) = board.extents().unwrap_or_default();
-    Ok(Grid::new(low, high, columns as usize, rows as usize)?)
+    let inside = Vec2::splat(INSIDE).min((high - low) / 4.0);
+    Ok(Grid::new(low + inside, high - inside, columns as usize, rows as usize)?)
 }
 
 /// Saves everything, or nothing; answers the names of the files.

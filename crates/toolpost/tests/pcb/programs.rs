@@ -342,8 +342,9 @@ fn the_height_of_a_board_is_probed() {
         });
         let places: BTreeSet<(i64, i64)> =
             probes.map(|at| ((at.x * 1e3).round() as i64, (at.y * 1e3).round() as i64)).collect();
-        let columns = [0, 6667, 13333, 20000];
-        let right = columns.iter().flat_map(|x| [0, 5000, 10000].map(|y| (*x, y))).collect();
+        // 1 mm inside the edge.
+        let columns = [1000, 7000, 13000, 19000];
+        let right = columns.iter().flat_map(|x| [1000, 5000, 9000].map(|y| (*x, y))).collect();
         assert_eq!(places, right, "{machine}");
     }
 }
@@ -414,7 +415,7 @@ fn programs_that_cut_copper_measure_its_height_themselves() {
     let plane = |x: f64, y: f64| -0.1 + 0.01 * x - 0.02 * y;
     // Unlike a plane, the heights of one place bend the surface about it.
     let bent = |x: f64, y: f64| plane(x, y) + if (x, y) == (10.0, 5.0) { 0.3 } else { 0.0 };
-    let places = [0.0, 10.0, 20.0].map(|x| [0.0, 5.0, 10.0].map(|y| (x, y))).concat();
+    let places = [1.0, 10.0, 19.0].map(|x| [1.0, 5.0, 9.0].map(|y| (x, y))).concat();
     let surface = |height: &dyn Fn(f64, f64) -> f64| -> Vec<Vec3> {
         places.iter().map(|&(x, y)| Vec3::new(x, y, height(x, y))).collect()
     };
@@ -433,8 +434,8 @@ fn programs_that_cut_copper_measure_its_height_themselves() {
         }
         // Each cut is raised by as much of the middle place as it is near to it, by hand: a pyramid along both axes.
         for (bent, end) in cuts_on(&text, "linuxcnc-mill", surface(&bent)).iter().zip(&cuts) {
-            let near = |at: f64, middle: f64| (1.0 - (at - middle).abs() / middle).max(0.0);
-            let right = end.z + 0.3 * near(end.x, 10.0) * near(end.y, 5.0);
+            let near = |off: f64, side: f64| (1.0 - off.abs() / side).max(0.0);
+            let right = end.z + 0.3 * near(end.x - 10.0, 9.0) * near(end.y - 5.0, 4.0);
             assert!((bent.z - right).abs() < 1e-4 && bent.x == end.x, "{bent} and {right}");
         }
     }
