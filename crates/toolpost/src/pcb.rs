@@ -251,6 +251,7 @@ impl Shop<'_> {
         }
         if let Some(places) = self.probes(part) {
             let grid = grid(board, places)?;
+            self.touches(part, work, &grid)?;
             program = follow(&program, &grid, &PROBED, STEEPNESS, &LEVELLED)?;
         }
         let toolpath = Toolpath::of_program(program, "board");
@@ -279,6 +280,32 @@ impl Shop<'_> {
     fn probes(&self, part: Part) -> Option<[u32; 2]> {
         let running = &self.args.running;
         running.probe.filter(|_| running.on_control && part.is_copper())
+    }
+
+    /// # Errors
+    /// A place at which the tool touches the rim of a hole, or nothing, since the holes are there already. What counts
+    /// is the width that it has at the surface when its tip is as deep as it probes.
+    fn touches(&self, part: Part, work: &Work, grid: &Grid) -> Result<(), Stop> {
+        if !self.plan.is_drilled(part, self.args) {
+            return Ok(());
+        }
+        let width = |operation: &Operation| operation.tool.cutter.width(PROBED.reach);
+        let beside = work.operations.first().map_or(0.0, width) / 2.0;
+        for place in grid.places() {
+            let mut holes = self.plan.drilled(part, self.args);
+            let Some(hole) = holes.find(|hole| hole.distance(place) < beside) else { continue };
+            let (low, high) = hole.extents();
+            let at = low.midpoint(high);
+            let message = format!(
+                "the height is measured at X{:.3} Y{:.3}, in the hole of {} mm at X{:.3} Y{:.3} or less than {beside:.3} mm \
+                 beside it, and it is drilled before",
+                place.x, place.y, hole.diameter, at.x, at.y
+            );
+            let help = "another number of columns or rows, or --from back: then holes are drilled after the back is cut";
+            let found = Diagnostic::error("probe-in-hole", message).help(help);
+            return Err(found.file(format!("{}.nc", part.name())).into());
+        }
+        Ok(())
     }
 
     /// The program that measures the height of the board.

@@ -68,8 +68,7 @@ pub enum Part {
 }
 
 impl Part {
-    /// All, in the order in which they are run: pins are drilled before the board is turned over, and it is
-    /// cut out at last.
+    /// All.
     pub const ALL: [Part; 8] = [
         Part::Front,
         Part::FrontMask,
