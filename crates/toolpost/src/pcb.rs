@@ -59,7 +59,8 @@ pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
     let made: Vec<_> = jobs.par_iter().map(|(part, work)| shop.make(*part, work)).collect();
     for (made, (part, work)) in made.into_iter().zip(jobs) {
         let (posted, picture) = made?;
-        programs.push(Made { name: part.name(), work, posted, picture, probes: shop.probes(part) });
+        let probes = shop.probes(part, &work);
+        programs.push(Made { name: part.name(), work, posted, picture, probes });
     }
     for made in &programs {
         let file = format!("{}.nc", made.name);
@@ -249,7 +250,7 @@ impl Shop<'_> {
         if let Some(surface) = &self.surface {
             program = level(&program, surface, &LEVELLED)?;
         }
-        if let Some(places) = self.probes(part) {
+        if let Some(places) = self.probes(part, work) {
             let grid = grid(board, places)?;
             self.touches(part, work, &grid)?;
             program = follow(&program, &grid, &PROBED, STEEPNESS, &LEVELLED)?;
@@ -276,10 +277,11 @@ impl Shop<'_> {
         Ok((posted?, picture?))
     }
 
-    /// Columns and rows of the heights that the program of a part measures itself.
-    fn probes(&self, part: Part) -> Option<[u32; 2]> {
+    /// Columns and rows of the heights that the program of a part measures itself, where it cuts anything.
+    fn probes(&self, part: Part, work: &Work) -> Option<[u32; 2]> {
         let running = &self.args.running;
-        running.probe.filter(|_| running.on_control && part.is_copper())
+        let cuts = work.operations.iter().any(|operation| !operation.cuts.is_empty());
+        running.probe.filter(|_| running.on_control && part.is_copper() && cuts)
     }
 
     /// # Errors

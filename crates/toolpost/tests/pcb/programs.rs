@@ -445,6 +445,21 @@ fn programs_that_cut_copper_measure_its_height_themselves() {
     }
 }
 
+/// On the back there is one net, and nothing in the middle between nets.
+#[test]
+fn a_program_that_cuts_nothing_measures_nothing() {
+    let folder = small();
+    folder.write("board/back.gbr", gerber("Copper,L2,Bot", "D11*\nX4000Y3000D03*\n"));
+    let more = ["--tool", "0.4", "--isolate", "middle", "--probe", "3x3", "--on-control"];
+    let made = Made::of(&folder, "board", "linuxcnc-mill", &more);
+    for (part, probes) in [("front", 9), ("back", 0)] {
+        assert_eq!(made.told(part)["measures_heights"].is_null(), probes == 0);
+        let text = made.text(part);
+        assert_eq!(text.matches("G38.2").count(), probes, "{text}");
+        assert_eq!(text.contains("M0"), probes > 0, "{text}");
+    }
+}
+
 /// The way of the middle of a tool as points 0.05 mm apart, and by squares of 0.1 mm.
 struct Way {
     points: Vec<Vec2>,
