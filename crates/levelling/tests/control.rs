@@ -149,6 +149,9 @@ fn a_wrong_part_of_a_height_is_no_proof() {
         ("G38.2 Z-1\n#1005", "G38.3 Z-1\n#1005"),
         ("Z3\n(MSG, take", "Z0.5\n(MSG, take"),
         ("G1 Z[-0.1", "G1 Z[-0.2"),
+        ("M0\nM5\nG0", "M5\nG0"),
+        ("tool)\nM0\nS9000", "tool)\nS9000"),
+        ("M0\nM5\nG0", "M0\nS9000 M3\nG0"),
     ] {
         let wrong = text.replacen(was, is, 1);
         assert_ne!(wrong, text, "{was}");
