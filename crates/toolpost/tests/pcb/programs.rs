@@ -1,6 +1,6 @@
 //! Programs as they are asked for: what is cut where, worked out by hand for a small board.
 
-use crate::board::{DRILL, FRONT, Made, NEAR, edge, front, gerber, small};
+use crate::board::{DRILL, EDGE, FRONT, Made, NEAR, edge, front, gerber, small};
 use crate::folder::Folder;
 use control::Setup;
 use geom::{Vec2, Vec3};
@@ -324,29 +324,35 @@ fn tabs_hold_the_board() {
     assert_eq!(low, -1.8);
 }
 
+/// The places that a program probes, µm.
+fn probed(made: &Made) -> BTreeSet<(i64, i64)> {
+    let program = made.program("probe");
+    let probes = program.records.iter().filter_map(|record| match &record.op {
+        Op::Probe(probe) => Some(probe.end.point),
+        _ => None,
+    });
+    probes.map(|at| ((at.x * 1e3).round() as i64, (at.y * 1e3).round() as i64)).collect()
+}
+
+/// The outermost places are 1 mm inside the edge; of a board of 2 mm a quarter.
 #[test]
 fn the_height_of_a_board_is_probed() {
+    let more = ["--tool", "0.4", "--probe", "4x3", "--only", "front"];
+    let right = |rows: [i64; 3]| -> BTreeSet<(i64, i64)> {
+        [1000, 7000, 13000, 19000].iter().flat_map(|x| rows.map(|y| (*x, y))).collect()
+    };
     let folder = small();
     for machine in ["grbl-3018", "linuxcnc-mill"] {
-        let made = Made::of(
-            &folder,
-            "board",
-            machine,
-            &["--tool", "0.4", "--probe", "4x3", "--only", "front"],
-        );
+        let made = Made::of(&folder, "board", machine, &more);
         assert_eq!(made.text("probe").matches("G38.2").count(), 12);
-        let program = made.program("probe");
-        let probes = program.records.iter().filter_map(|record| match &record.op {
-            Op::Probe(probe) => Some(probe.end.point),
-            _ => None,
-        });
-        let places: BTreeSet<(i64, i64)> =
-            probes.map(|at| ((at.x * 1e3).round() as i64, (at.y * 1e3).round() as i64)).collect();
-        // 1 mm inside the edge.
-        let columns = [1000, 7000, 13000, 19000];
-        let right = columns.iter().flat_map(|x| [1000, 5000, 9000].map(|y| (*x, y))).collect();
-        assert_eq!(places, right, "{machine}");
+        assert_eq!(probed(&made), right([1000, 5000, 9000]), "{machine}");
     }
+    edge(&folder, &EDGE.replace("Y10000", "Y2000"));
+    front(&folder, "D11*\nX4000Y1000D03*\n");
+    std::fs::remove_file(folder.path().join("board/back.gbr")).unwrap();
+    std::fs::remove_file(folder.path().join("board/holes.drl")).unwrap();
+    let narrow = Made::of(&folder, "board", "grbl-3018", &more);
+    assert_eq!(probed(&narrow), right([500, 1000, 1500]));
 }
 
 #[test]
