@@ -11,7 +11,7 @@ use program::{Diagnostic, Op, Pose, Program, Record, Spindle, Surface, lowering}
 /// `program` has Z 0, as [`crate::level()`] has it of a map: [`Op::Surface`] says so. It stops before the probing and
 /// behind it, for the operator to clip the probe on and off. Cuts are divided for a surface that rises by `steepness`
 /// mm a mm along X and along Y at most; on one that is twice as steep the deviation is up to twice that allowed.
-/// Holes are drilled by moves, rapids stay above the highest place that the probe finds.
+/// Holes are drilled by moves, rapids rise by the reach of the probe.
 ///
 /// # Errors
 /// Those of [`crate::level()`]; a grid or a probing that is none; a program without tool, with a move or a turning
@@ -30,8 +30,8 @@ pub fn follow(
     }
     let [columns, rows] = grid.lines();
     let wide = columns.len();
-    let moves = probing.moves(grid, |(column, row)| u32::try_from(row * wide + column).ok())?;
-    let reach = [-probing.depth, probing.travel];
+    let mut moves = probing.moves(grid, |(column, row)| u32::try_from(row * wide + column).ok())?;
+    let reach = [-probing.reach, probing.reach];
     let mut surface = Surface { columns, rows, reach, clear: f64::INFINITY };
     let ground = Ground::Found(&surface, steepness);
     let level = levelled(&drilled(program)?, ground, allowed)?;
@@ -42,6 +42,10 @@ pub fn follow(
         return Err(refused(message, "higher rapids"));
     }
     let first = first_tool(&records)?;
+    // From the last place the tool goes up as high as it then goes across.
+    if let Some(Op::Rapid(last)) = moves.last_mut().filter(|_| clear.is_finite()) {
+        last.point.z = last.point.z.max(clear);
+    }
     surface.clear = clear;
     let line = records.get(first).map_or(0, |record| record.line);
     let said = |text: &str| [Op::Message(text.into()), Op::Stop];

@@ -71,10 +71,10 @@ impl Grid {
 /// How a surface is probed; its height is expected at Z 0.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Probing {
-    /// Height of the moves from place to place, from which each probe starts, mm above the surface.
+    /// Height of the moves from place to place, from which each probe starts, mm above Z 0: higher than `reach`.
     pub travel: f64,
-    /// How deep below the surface it is looked for, mm, greater than 0.
-    pub depth: f64,
+    /// How far below and above Z 0 the surface may lie, mm, greater than 0.
+    pub reach: f64,
     /// Feed of the probe, mm/min.
     pub feed: f64,
 }
@@ -84,7 +84,8 @@ impl Probing {
     /// a sender of GRBL keeps what the machine answers.
     ///
     /// # Errors
-    /// A height, depth or feed that is not greater than 0; a name that a comment cannot hold.
+    /// A reach or feed that is not greater than 0, a height that is not above the reach; a name that a comment cannot
+    /// hold.
     pub fn program(
         &self,
         name: &str,
@@ -114,27 +115,29 @@ impl Probing {
     /// at a column and row is kept.
     ///
     /// # Errors
-    /// A height, depth or feed that is not greater than 0.
+    /// A reach or feed that is not greater than 0, a height that is not above the reach.
     pub(crate) fn moves(
         &self,
         grid: &Grid,
         place: impl Fn((usize, usize)) -> Option<u32>,
     ) -> Result<Vec<Op>, Box<Diagnostic>> {
-        for (what, value) in
-            [("travel height", self.travel), ("depth", self.depth), ("feed", self.feed)]
+        let Probing { travel, reach, feed } = *self;
+        for (what, value, above) in
+            [("feed", feed, 0.0), ("reach", reach, 0.0), ("travel height", travel, reach)]
         {
-            if !(value.is_finite() && value > 0.0) {
+            if !(value.is_finite() && value > above) {
                 let message = format!("the {what} of the probe is {value}");
-                return Err(Diagnostic::error("probing", message).help("greater than 0").into());
+                let help = format!("greater than {above}");
+                return Err(Diagnostic::error("probing", message).help(help).into());
             }
         }
-        let mut moves = vec![Op::Feed(Feed::PerMinute(self.feed))];
+        let mut moves = vec![Op::Feed(Feed::PerMinute(feed))];
         for at in grid.order() {
             let pose = |z: f64| Pose::new(Vec3::new(grid.column(at.0), grid.row(at.1), z), Vec3::Z);
-            let (end, place) = (pose(-self.depth), place(at));
-            moves.push(Op::Rapid(pose(self.travel)));
+            let (end, place) = (pose(-reach), place(at));
+            moves.push(Op::Rapid(pose(travel)));
             moves.push(Op::Probe(Box::new(Probe { end, away: false, must_answer: true, place })));
-            moves.push(Op::Rapid(pose(self.travel)));
+            moves.push(Op::Rapid(pose(travel)));
         }
         Ok(moves)
     }

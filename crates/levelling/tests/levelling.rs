@@ -377,7 +377,7 @@ fn an_arc_without_end_is_refused() {
 }
 
 const GRID: fn() -> Grid = || Grid::new(Vec2::new(2.0, 3.0), Vec2::new(62.0, 43.0), 4, 3).unwrap();
-const PROBING: Probing = Probing { travel: 2.0, depth: 1.5, feed: 40.0 };
+const PROBING: Probing = Probing { travel: 2.0, reach: 1.5, feed: 40.0 };
 
 #[test]
 fn a_grid_is_probed_row_by_row_there_and_back() {
@@ -392,7 +392,13 @@ fn a_grid_is_probed_row_by_row_there_and_back() {
     }
     assert!(Grid::new(Vec2::ZERO, Vec2::X, 2, 2).is_err());
     assert!(Grid::new(Vec2::ZERO, Vec2::new(f64::INFINITY, 1.0), 2, 2).is_err());
-    assert!(Probing { depth: 0.0, ..PROBING }.program("p", &GRID(), None).is_err());
+    for wrong in [
+        Probing { reach: 0.0, ..PROBING },
+        Probing { travel: 1.5, ..PROBING },
+        Probing { feed: f64::NAN, ..PROBING },
+    ] {
+        assert_eq!(wrong.program("p", &GRID(), None).unwrap_err().rule, "probing");
+    }
     assert!(PROBING.program("p", &GRID(), Some("a) G0 Z-9")).is_err());
 }
 

@@ -38,4 +38,37 @@ impl Hole {
         let radius = Vec2::splat(self.diameter / 2.0);
         (low - radius, high + radius)
     }
+
+    /// How far `place` is from its edge, mm, less than 0 within it.
+    pub fn distance(&self, place: Vec2) -> f64 {
+        let from_middle = match &self.shape {
+            HoleShape::Round(at) => at.distance(place),
+            HoleShape::Slot(from, to) => Element::line(*from, *to).away(place),
+            HoleShape::Route(elements) => {
+                elements.iter().map(|element| element.away(place)).fold(f64::INFINITY, f64::min)
+            }
+        };
+        from_middle - self.diameter / 2.0
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_edge_of_a_hole_is_half_its_width_from_its_middle() {
+        let (from, to) = (Vec2::new(2.0, 1.0), Vec2::new(6.0, 1.0));
+        let turned = vec![Element::line(from, to), Element::line(to, Vec2::new(6.0, 4.0))];
+        for (shape, place, right) in [
+            (HoleShape::Round(from), Vec2::new(5.0, 5.0), 4.5),
+            (HoleShape::Round(from), from, -0.5),
+            (HoleShape::Slot(from, to), Vec2::new(4.0, 3.0), 1.5),
+            (HoleShape::Slot(from, to), Vec2::new(9.0, 5.0), 4.5),
+            (HoleShape::Route(turned), Vec2::new(7.0, 3.0), 0.5),
+        ] {
+            let hole = Hole { shape, diameter: 1.0, plated: None };
+            assert_eq!(hole.distance(place), right, "{hole:?} {place}");
+        }
+    }
 }

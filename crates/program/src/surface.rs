@@ -9,7 +9,8 @@ pub struct Surface {
     pub columns: Vec<f64>,
     /// Y of the rows, rising, mm; two at least.
     pub rows: Vec<f64>,
-    /// Its lowest and its highest place, mm from Z 0: what lies beyond is not found, and stops the program.
+    /// Its lowest and its highest place, mm from Z 0. What lies lower is not found, and stops the program. What lies
+    /// higher is found as far as the probe starts above it, and cuts follow it, but rapids and limits count on this.
     pub reach: [f64; 2],
     /// Z below which poses count from the surface, mm.
     pub clear: f64,

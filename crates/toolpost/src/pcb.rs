@@ -16,6 +16,7 @@ use crate::toolpath::{self, Toolpath};
 use ::pcb::job::{self, Heights};
 use ::pcb::{Board, Operation};
 use drawing::{BoardPicture, Format};
+use geom::Vec2;
 use levelling::{Allowed, Grid, HeightMap, Probing, follow, level};
 use machine::Machine;
 use plan::Plan;
@@ -58,7 +59,8 @@ pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
     let made: Vec<_> = jobs.par_iter().map(|(part, work)| shop.make(*part, work)).collect();
     for (made, (part, work)) in made.into_iter().zip(jobs) {
         let (posted, picture) = made?;
-        programs.push(Made { name: part.name(), work, posted, picture, probes: shop.probes(part) });
+        let probes = shop.probes(part, &work);
+        programs.push(Made { name: part.name(), work, posted, picture, probes });
     }
     for made in &programs {
         let file = format!("{}.nc", made.name);
@@ -146,8 +148,12 @@ fn heights(args: &Pcb) -> Result<Heights, Stop> {
     Err(Diagnostic::error("travel", message).help(help).into())
 }
 
-/// How closely programs follow the surface that was measured.
-const LEVELLED: Allowed = Allowed { deviation: 0.005, outside: 5.0 };
+/// How far inside the edge of the board the outermost places are, mm: on the edge itself there may be no copper.
+const INSIDE: f64 = 1.0;
+
+/// How closely programs follow the surface that was measured, and up to 5 mm beyond the board the height of the
+/// outermost places.
+const LEVELLED: Allowed = Allowed { deviation: 0.005, outside: INSIDE + 5.0 };
 
 /// The surface that programs follow, where one was measured.
 fn surface(plan: &Plan, args: &Pcb) -> Result<Option<HeightMap>, Stop> {
@@ -212,8 +218,8 @@ struct Made {
     probes: Option<[u32; 2]>,
 }
 
-/// How the height of the board is probed: slowly, from a millimetre above to one below.
-const PROBED: Probing = Probing { travel: 1.0, depth: 1.0, feed: 50.0 };
+/// How the height of the board is probed: slowly, and a millimetre above what it may rise to from place to place.
+const PROBED: Probing = Probing { travel: 2.0, reach: 1.0, feed: 50.0 };
 
 /// What the program is called that measures the height of the board.
 const PROBE: &str = "probe";
@@ -244,8 +250,9 @@ impl Shop<'_> {
         if let Some(surface) = &self.surface {
             program = level(&program, surface, &LEVELLED)?;
         }
-        if let Some(places) = self.probes(part) {
+        if let Some(places) = self.probes(part, work) {
             let grid = grid(board, places)?;
+            self.touches(part, work, &grid)?;
             program = follow(&program, &grid, &PROBED, STEEPNESS, &LEVELLED)?;
         }
         let toolpath = Toolpath::of_program(program, "board");
@@ -270,10 +277,37 @@ impl Shop<'_> {
         Ok((posted?, picture?))
     }
 
-    /// Columns and rows of the heights that the program of a part measures itself.
-    fn probes(&self, part: Part) -> Option<[u32; 2]> {
+    /// Columns and rows of the heights that the program of a part measures itself, where it cuts anything.
+    fn probes(&self, part: Part, work: &Work) -> Option<[u32; 2]> {
         let running = &self.args.running;
-        running.probe.filter(|_| running.on_control && part.is_copper())
+        let cuts = work.operations.iter().any(|operation| !operation.cuts.is_empty());
+        running.probe.filter(|_| running.on_control && part.is_copper() && cuts)
+    }
+
+    /// # Errors
+    /// A place at which the tool touches the rim of a hole, or nothing, since the holes are there already. What counts
+    /// is the width that it has at the surface when its tip is as deep as it probes.
+    fn touches(&self, part: Part, work: &Work, grid: &Grid) -> Result<(), Stop> {
+        if !self.plan.is_drilled(part, self.args) {
+            return Ok(());
+        }
+        let width = |operation: &Operation| operation.tool.cutter.width(PROBED.reach);
+        let beside = work.operations.first().map_or(0.0, width) / 2.0;
+        for place in grid.places() {
+            let mut holes = self.plan.drilled(part, self.args);
+            let Some(hole) = holes.find(|hole| hole.distance(place) < beside) else { continue };
+            let (low, high) = hole.extents();
+            let at = low.midpoint(high);
+            let message = format!(
+                "the height is measured at X{:.3} Y{:.3}, in the hole of {} mm at X{:.3} Y{:.3} or less than {beside:.3} mm \
+                 beside it, and it is drilled before",
+                place.x, place.y, hole.diameter, at.x, at.y
+            );
+            let help = "another number of columns or rows, or --from back: then holes are drilled after the back is cut";
+            let found = Diagnostic::error("probe-in-hole", message).help(help);
+            return Err(found.file(format!("{}.nc", part.name())).into());
+        }
+        Ok(())
     }
 
     /// The program that measures the height of the board.
@@ -299,10 +333,11 @@ impl Shop<'_> {
     }
 }
 
-/// So many columns and rows of places over a board.
+/// So many columns and rows of places over a board, [`INSIDE`] its edge; on a small one a quarter of it.
 fn grid(board: &Board, [columns, rows]: [u32; 2]) -> Result<Grid, Stop> {
     let (low, high) = board.extents().unwrap_or_default();
-    Ok(Grid::new(low, high, columns as usize, rows as usize)?)
+    let inside = Vec2::splat(INSIDE).min((high - low) / 4.0);
+    Ok(Grid::new(low + inside, high - inside, columns as usize, rows as usize)?)
 }
 
 /// Saves everything, or nothing; answers the names of the files.

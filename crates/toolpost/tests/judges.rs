@@ -236,7 +236,7 @@ fn linuxcnc_itself_follows_a_surface_that_it_finds() {
         board.push(1, op);
     }
     let grid = levelling::Grid::new(Vec2::ZERO, Vec2::new(40.0, 20.0), 5, 4).unwrap();
-    let probing = levelling::Probing { travel: 1.0, depth: 1.0, feed: 50.0 };
+    let probing = levelling::Probing { travel: 2.0, reach: 1.0, feed: 50.0 };
     let allowed = levelling::Allowed { deviation: 0.005, outside: 5.0 };
     let program = levelling::follow(&board, &grid, &probing, 0.02, &allowed).unwrap();
     let machine = machine::load("generic-3axis-linuxcnc").unwrap();

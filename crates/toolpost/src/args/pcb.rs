@@ -68,8 +68,7 @@ pub enum Part {
 }
 
 impl Part {
-    /// All, in the order in which they are run: pins are drilled before the board is turned over, and it is
-    /// cut out at last.
+    /// All.
     pub const ALL: [Part; 8] = [
         Part::Front,
         Part::FrontMask,
@@ -347,7 +346,8 @@ pub struct Running {
     #[arg(long, value_name = "COLUMNSxROWS", value_parser = grid)]
     pub probe: Option<[u32; 2]>,
     /// The programs that cut copper measure these heights themselves, with the tool that cuts, and follow them: the
-    /// control does it, which needs one that keeps numbers (LinuxCNC). Replaces probe.nc and --heights.
+    /// control does it, which needs one that keeps numbers (LinuxCNC). Z 0 is set on the copper, from which holes and
+    /// edge count. Replaces probe.nc and --heights.
     #[arg(long, requires = "probe", conflicts_with = "heights")]
     pub on_control: bool,
     /// Measured heights that the programs follow: what a probing program has logged, or X, Y and Z in

@@ -53,10 +53,13 @@ impl Plan {
         };
         let back = front.turned_over(axis);
         let mut plan = Plan { name: front.name.clone(), front, back, pins, parts: Vec::new() };
-        plan.parts = match &args.only[..] {
-            [] => Part::ALL.into_iter().filter(|part| plan.is_usual(*part, args)).collect(),
-            only => Part::ALL.into_iter().filter(|part| only.contains(part)).collect(),
-        };
+        let mut parts = Part::ALL.to_vec();
+        parts.retain(|part| match &args.only[..] {
+            [] => plan.is_usual(*part, args),
+            only => only.contains(part),
+        });
+        parts.sort_by_key(|part| plan.order(*part, args));
+        plan.parts = parts;
         if let Some(part) = plan.parts.iter().find(|part| !plan.has(**part)) {
             let message = format!("there is no {} on {}", part.what(), plan.name);
             let help = "look which files of the board were read, and as what";
@@ -123,11 +126,22 @@ impl Plan {
         part.face().unwrap_or(args.drilling.from.into())
     }
 
-    /// The holes that are drilled: those of the board, and those of the pins. The line about which a
-    /// board is turned over is in the middle between these, so that they stay where they are.
-    pub fn drilled(&self, args: &Pcb) -> Vec<Hole> {
-        let board = self.seen(Part::Drill, args);
-        board.holes.iter().chain(&self.pins).cloned().collect()
+    /// The holes that are drilled, as they lie for a program: those of the board, and those of the pins. The line
+    /// about which a board is turned over is in the middle between these, so that they stay where they are.
+    pub fn drilled(&self, part: Part, args: &Pcb) -> impl Iterator<Item = &Hole> {
+        self.seen(part, args).holes.iter().chain(&self.pins)
+    }
+
+    /// Whether the holes are there already when a program runs.
+    pub fn is_drilled(&self, part: Part, args: &Pcb) -> bool {
+        self.order(Part::Drill, args) < self.order(part, args)
+    }
+
+    /// Where a program is in the order in which they are run: the front, then the back, on each side the holes at last,
+    /// so that pins are there before the board is turned over; and the outline behind all of it.
+    fn order(&self, part: Part, args: &Pcb) -> (bool, bool, bool) {
+        let is_back = self.face(part, args) == Face::Back;
+        (part == Part::Outline, is_back, part == Part::Drill)
     }
 }
 

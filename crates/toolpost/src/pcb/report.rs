@@ -98,7 +98,7 @@ impl Made {
         if let (Some([wide, deep]), Some(operation)) = (self.probes, self.work.operations.first()) {
             let tool = &operation.tool.name;
             let text = format!(
-                "first measures {wide} x {deep} heights with {tool}: set Z 0 near the copper, \
+                "first measures {wide} x {deep} heights with {tool}: set Z 0 on the copper, \
                  clip the probe to board and tool when it stops, and off when it stops again"
             );
             rows.push(("", text));

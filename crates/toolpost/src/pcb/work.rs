@@ -58,7 +58,10 @@ impl Work {
                     worker.copper(&mut work, copper, board)?;
                 }
             }
-            Part::Drill => worker.drill(&mut work, &plan.drilled(args))?,
+            Part::Drill => {
+                let holes: Vec<Hole> = plan.drilled(part, args).cloned().collect();
+                worker.drill(&mut work, &holes)?;
+            }
             Part::Outline => worker.outline(&mut work, board)?,
             Part::FrontMask | Part::BackMask => {
                 if let Some(mask) = &side.mask {

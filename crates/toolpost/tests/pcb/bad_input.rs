@@ -307,6 +307,41 @@ fn heights_that_nothing_measures() {
     refused(&folder, &[&call[..], &many].concat(), 2, &["error[on-control]", "64", "4000"]);
 }
 
+/// Seen from the back the holes of 0.8 mm are at 6 and 16. Four columns are at 1, 7, 13 and 19, nineteen 1 mm apart. A mill of 0.4 mm
+/// is at the rim of a hole from 0.6 mm on, a V-bit of 90 degrees, which is wide by 2.1 mm when it is 1 mm deep, from 1.45 mm on.
+#[test]
+fn heights_are_not_measured_in_holes() {
+    let folder = small();
+    let call = ["pcb", "board", "-o", "out", "-m", "linuxcnc-mill", "--on-control", "--probe"];
+    let inside = ["19x3", "--tool", "0.4"];
+    let words = [
+        "error[probe-in-hole]",
+        "back.nc",
+        "X16.000 Y5.000, in the hole of 0.8 mm at X16.000 Y5.000",
+    ];
+    refused(&folder, &[&call[..], &inside].concat(), 2, &words);
+    let beside = ["4x3", "--vee", "90"];
+    let words = ["X7.000 Y5.000", "hole of 0.8 mm at X6.000 Y5.000", "1.050 mm", "--from back"];
+    refused(&folder, &[&call[..], &beside].concat(), 2, &words);
+    for (good, run) in [
+        (&["4x3", "--tool", "0.4"][..], &["front", "drill", "back", "outline"][..]),
+        (&[&inside[..], &["--from", "back"]].concat(), &["front", "back", "drill", "outline"]),
+        (&[&inside[..], &["--only", "front,drill"]].concat(), &["front", "drill"]),
+    ] {
+        let said = folder.run(&[&call[..], good].concat());
+        assert_eq!(said.code, 0, "{said:?}");
+        let report: serde_json::Value =
+            serde_json::from_str(&folder.read("out/report.json")).unwrap();
+        let names: Vec<_> = report["programs"]
+            .as_array()
+            .unwrap()
+            .iter()
+            .map(|made| made["name"].as_str().unwrap())
+            .collect();
+        assert_eq!(names, run);
+    }
+}
+
 #[test]
 fn numbers_that_are_no_panel() {
     let folder = small();

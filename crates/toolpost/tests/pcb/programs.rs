@@ -1,6 +1,6 @@
 //! Programs as they are asked for: what is cut where, worked out by hand for a small board.
 
-use crate::board::{DRILL, FRONT, Made, NEAR, edge, front, gerber, small};
+use crate::board::{DRILL, EDGE, FRONT, Made, NEAR, edge, front, gerber, small};
 use crate::folder::Folder;
 use control::Setup;
 use geom::{Vec2, Vec3};
@@ -324,28 +324,35 @@ fn tabs_hold_the_board() {
     assert_eq!(low, -1.8);
 }
 
+/// The places that a program probes, µm.
+fn probed(made: &Made) -> BTreeSet<(i64, i64)> {
+    let program = made.program("probe");
+    let probes = program.records.iter().filter_map(|record| match &record.op {
+        Op::Probe(probe) => Some(probe.end.point),
+        _ => None,
+    });
+    probes.map(|at| ((at.x * 1e3).round() as i64, (at.y * 1e3).round() as i64)).collect()
+}
+
+/// The outermost places are 1 mm inside the edge; of a board of 2 mm a quarter.
 #[test]
 fn the_height_of_a_board_is_probed() {
+    let more = ["--tool", "0.4", "--probe", "4x3", "--only", "front"];
+    let right = |rows: [i64; 3]| -> BTreeSet<(i64, i64)> {
+        [1000, 7000, 13000, 19000].iter().flat_map(|x| rows.map(|y| (*x, y))).collect()
+    };
     let folder = small();
     for machine in ["grbl-3018", "linuxcnc-mill"] {
-        let made = Made::of(
-            &folder,
-            "board",
-            machine,
-            &["--tool", "0.4", "--probe", "4x3", "--only", "front"],
-        );
+        let made = Made::of(&folder, "board", machine, &more);
         assert_eq!(made.text("probe").matches("G38.2").count(), 12);
-        let program = made.program("probe");
-        let probes = program.records.iter().filter_map(|record| match &record.op {
-            Op::Probe(probe) => Some(probe.end.point),
-            _ => None,
-        });
-        let places: BTreeSet<(i64, i64)> =
-            probes.map(|at| ((at.x * 1e3).round() as i64, (at.y * 1e3).round() as i64)).collect();
-        let columns = [0, 6667, 13333, 20000];
-        let right = columns.iter().flat_map(|x| [0, 5000, 10000].map(|y| (*x, y))).collect();
-        assert_eq!(places, right, "{machine}");
+        assert_eq!(probed(&made), right([1000, 5000, 9000]), "{machine}");
     }
+    edge(&folder, &EDGE.replace("Y10000", "Y2000"));
+    front(&folder, "D11*\nX4000Y1000D03*\n");
+    std::fs::remove_file(folder.path().join("board/back.gbr")).unwrap();
+    std::fs::remove_file(folder.path().join("board/holes.drl")).unwrap();
+    let narrow = Made::of(&folder, "board", "grbl-3018", &more);
+    assert_eq!(probed(&narrow), right([500, 1000, 1500]));
 }
 
 #[test]
@@ -414,7 +421,7 @@ fn programs_that_cut_copper_measure_its_height_themselves() {
     let plane = |x: f64, y: f64| -0.1 + 0.01 * x - 0.02 * y;
     // Unlike a plane, the heights of one place bend the surface about it.
     let bent = |x: f64, y: f64| plane(x, y) + if (x, y) == (10.0, 5.0) { 0.3 } else { 0.0 };
-    let places = [0.0, 10.0, 20.0].map(|x| [0.0, 5.0, 10.0].map(|y| (x, y))).concat();
+    let places = [1.0, 10.0, 19.0].map(|x| [1.0, 5.0, 9.0].map(|y| (x, y))).concat();
     let surface = |height: &dyn Fn(f64, f64) -> f64| -> Vec<Vec3> {
         places.iter().map(|&(x, y)| Vec3::new(x, y, height(x, y))).collect()
     };
@@ -433,14 +440,29 @@ fn programs_that_cut_copper_measure_its_height_themselves() {
         }
         // Each cut is raised by as much of the middle place as it is near to it, by hand: a pyramid along both axes.
         for (bent, end) in cuts_on(&text, "linuxcnc-mill", surface(&bent)).iter().zip(&cuts) {
-            let near = |at: f64, middle: f64| (1.0 - (at - middle).abs() / middle).max(0.0);
-            let right = end.z + 0.3 * near(end.x, 10.0) * near(end.y, 5.0);
+            let near = |off: f64, side: f64| (1.0 - off.abs() / side).max(0.0);
+            let right = end.z + 0.3 * near(end.x - 10.0, 9.0) * near(end.y - 5.0, 4.0);
             assert!((bent.z - right).abs() < 1e-4 && bent.x == end.x, "{bent} and {right}");
         }
     }
     // A drill goes through, and an outline too: they know no surface.
     for part in ["drill", "outline"] {
         assert!(!made.text(part).contains('#'));
+    }
+}
+
+/// On the back there is one net, and nothing in the middle between nets.
+#[test]
+fn a_program_that_cuts_nothing_measures_nothing() {
+    let folder = small();
+    folder.write("board/back.gbr", gerber("Copper,L2,Bot", "D11*\nX4000Y3000D03*\n"));
+    let more = ["--tool", "0.4", "--isolate", "middle", "--probe", "3x3", "--on-control"];
+    let made = Made::of(&folder, "board", "linuxcnc-mill", &more);
+    for (part, probes) in [("front", 9), ("back", 0)] {
+        assert_eq!(made.told(part)["measures_heights"].is_null(), probes == 0);
+        let text = made.text(part);
+        assert_eq!(text.matches("G38.2").count(), probes, "{text}");
+        assert_eq!(text.contains("M0"), probes > 0, "{text}");
     }
 }
 
