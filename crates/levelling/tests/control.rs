@@ -243,6 +243,18 @@ fn arcs_too_short_for_the_decimals_become_one_line() {
     assert_eq!(found[0].rule, "surface", "{}", found[0]);
 }
 
+/// Columns 40/3 mm apart, in words of two decimals.
+#[test]
+fn places_are_found_though_their_words_are_rounded() {
+    let words = ["X", "Y", "Z"].map(|word| format!("{word} = {{ decimals = 2 }}\n"));
+    let machine = format!("extends = \"generic-3axis-linuxcnc\"\n[words]\n{}", words.concat());
+    let machine = machine::load_text("m.toml", &machine).unwrap();
+    let program = followed(vec![Op::Line(pose(30.0, 5.0, -0.1))], 4, 4);
+    let text = post::write(&program, &machine).unwrap().text;
+    let proof = proof::prove(&program, &machine, "board", &text, &Default::default());
+    assert!(proof.proven, "{proof:?}");
+}
+
 /// What no writer makes over such a surface, behind the cuts of a program that finds one.
 #[test]
 fn what_does_not_follow_a_surface_is_refused() {
