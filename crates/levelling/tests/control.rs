@@ -32,6 +32,13 @@ fn board(cuts: Vec<Op>) -> Program {
     program
 }
 
+/// A machine that says lengths by two decimals.
+fn two_decimals() -> machine::Machine {
+    let words = ["X", "Y", "Z", "I", "J"].map(|word| format!("{word} = {{ decimals = 2 }}\n"));
+    let text = format!("extends = \"generic-3axis-linuxcnc\"\n[words]\n{}", words.concat());
+    machine::load_text("m.toml", &text).unwrap()
+}
+
 fn text(program: &Program) -> String {
     let machine = machine::load("generic-3axis-linuxcnc").unwrap();
     String::from_utf8(post::write(program, &machine).unwrap().text).unwrap()
@@ -210,9 +217,7 @@ fn arcs_that_the_machine_takes_in_parts_are_refused() {
 /// A machine of two decimals, and arcs of a few steps of it.
 #[test]
 fn arcs_too_short_for_the_decimals_become_one_line() {
-    let words = ["X", "Y", "Z", "I", "J"].map(|word| format!("{word} = {{ decimals = 2 }}\n"));
-    let machine = format!("extends = \"generic-3axis-linuxcnc\"\n[words]\n{}", words.concat());
-    let machine = machine::load_text("m.toml", &machine).unwrap();
+    let machine = two_decimals();
     let arcs = |radius: f64, sweep: f64| {
         let center = Vec3::new(10.0 + radius, 5.0, -0.1);
         let spoke = Vec3::new(-sweep.cos(), sweep.sin(), 0.0) * radius;
@@ -246,13 +251,29 @@ fn arcs_too_short_for_the_decimals_become_one_line() {
 /// Columns 40/3 mm apart, in words of two decimals.
 #[test]
 fn places_are_found_though_their_words_are_rounded() {
-    let words = ["X", "Y", "Z"].map(|word| format!("{word} = {{ decimals = 2 }}\n"));
-    let machine = format!("extends = \"generic-3axis-linuxcnc\"\n[words]\n{}", words.concat());
-    let machine = machine::load_text("m.toml", &machine).unwrap();
+    let machine = two_decimals();
     let program = followed(vec![Op::Line(pose(30.0, 5.0, -0.1))], 4, 4);
     let text = post::write(&program, &machine).unwrap().text;
     let proof = proof::prove(&program, &machine, "board", &text, &Default::default());
     assert!(proof.proven, "{proof:?}");
+}
+
+/// Nine places from #1001 on, also in a program that has probed none of them.
+#[test]
+fn a_parameter_that_the_control_does_not_have_is_refused() {
+    let machine = |max: u32| {
+        let text =
+            format!("extends = \"generic-3axis-linuxcnc\"\n[words]\nHEIGHT = {{ max = {max} }}\n");
+        machine::load_text("m.toml", &text).unwrap()
+    };
+    let mut program = followed(vec![Op::Line(pose(30.0, 15.0, -0.1))], 3, 3);
+    assert!(post::write(&program, &machine(1009)).is_ok());
+    for _ in 0..2 {
+        let found = post::write(&program, &machine(1008)).unwrap_err();
+        assert_eq!(found[0].rule, "number-range", "{}", found[0]);
+        assert!(found[0].message.contains("1009"), "{}", found[0]);
+        program.records.retain(|record| !matches!(record.op, Op::Probe(_)));
+    }
 }
 
 /// What no writer makes over such a surface, behind the cuts of a program that finds one.
