@@ -70,6 +70,10 @@ impl Clearing {
                 let message = format!("clearing by steps of {step} mm takes {:.0} m", way / 1e3);
                 return Err(fault("too-much", message, "use a wider tool first, or clear less"));
             }
+            // Not where the middle may be, but where it goes: what is as small as the rounding of regions may be
+            // lost between the two, and a disc around it is not small.
+            let cut = busy.offset(width / 2.0 + SLIVER).map_err(too_large)?;
+            reached = reached.union(&cut).map_err(too_large)?;
             let rings = rings::of(busy, *width, step).map_err(too_large)?;
             // The rings have on their right what stays.
             let ways = rings.into_iter().map(|ring| match self.direction {
@@ -77,7 +81,6 @@ impl Clearing {
                 Direction::Conventional => ring.reversed(),
             });
             passes.push(ways.collect());
-            reached = middles.offset(width / 2.0 + SLIVER).map_err(too_large)?;
         }
         Ok(Cleared { passes, rest: area.difference(&reached).map_err(too_large)? })
     }

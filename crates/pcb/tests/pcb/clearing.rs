@@ -101,6 +101,15 @@ fn what_is_too_narrow_is_told() {
     assert!((clearing.rest.area() - 9.0).abs() < 1e-6);
 }
 
+/// Between a pad and the corner of the board a tool of 1.7 mm has 1.5 µm of room: its middle may be 0.85 mm from both
+/// edges, which is 0.8515 mm from the corner of the pad. Whether it goes there or not, nothing stays but what is told.
+#[test]
+fn where_a_tool_just_fits_it_cuts_or_leaves_it_to_the_next() {
+    let board = rectangle((-1.0, -1.0), (11.0, 11.0));
+    let area = board.difference(&rectangle((9.0, 9.3), (9.5, 9.6))).unwrap();
+    check(&area, &[1.7, 0.1], 0.0);
+}
+
 #[test]
 fn tools_that_cannot_clear_are_refused() {
     let area = rectangle((0.0, 0.0), (100.0, 100.0));
@@ -158,7 +167,7 @@ fn pad() -> impl Strategy<Value = Region> {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig { cases: 40, failure_persistence: None, ..Default::default() })]
+    #![proptest_config(ProptestConfig { cases: 100, failure_persistence: None, ..Default::default() })]
 
     #[test]
     fn any_board_is_rubbed_out(
