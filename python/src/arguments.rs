@@ -5,8 +5,9 @@ use freecad::Job;
 use geom::Vec3;
 use numpy::{AllowTypeChange, PyArrayLike2};
 use program::Diagnostic;
+use pyo3::exceptions::{PyOverflowError, PyTypeError, PyUnicodeEncodeError};
 use pyo3::prelude::*;
-use pyo3::types::{PyBool, PyDict, PyList};
+use pyo3::types::{PyBool, PyDict, PyList, PyTuple};
 use serde_json::Value;
 use std::path::PathBuf;
 use toolpost::answer::Stop;
@@ -47,7 +48,7 @@ impl JobText<'_> {
             JobText::Text(text) => {
                 return released(py, || Ok::<_, Stop>(Job::of(file, text.bytes())?));
             }
-            JobText::Sheet(sheet) => json(sheet.as_any(), DEEPEST)?,
+            JobText::Sheet(sheet) => json(sheet.as_any(), "job", DEEPEST)?,
         };
         released(py, || Ok::<_, Stop>(Job::of_value(file, sheet)?))
     }
@@ -56,19 +57,35 @@ impl JobText<'_> {
 /// How deep the lists and dictionaries of a job may be in one another: they are three.
 const DEEPEST: u32 = 8;
 
-/// What JSON would hold of a dictionary, a list, text or a number.
-fn json(any: &Bound<'_, PyAny>, deepest: u32) -> PyResult<Value> {
+/// What JSON would hold of a value that stands under `key`. Methods of Python's run meanwhile, which may change
+/// what is read here: lists and dictionaries are copied.
+fn json(any: &Bound<'_, PyAny>, key: &str, deepest: u32) -> PyResult<Value> {
+    let py = any.py();
+    let wrong = |message: String| {
+        let help = "text of whole characters, numbers, True, False, None, lists and dictionaries";
+        refused(py, Diagnostic::error("argument", message).help(help))
+    };
     let Some(deeper) = deepest.checked_sub(1) else {
-        let found = Diagnostic::error("argument", "a dictionary is in too many others");
-        return Err(refused(any.py(), found));
+        return Err(wrong(format!("`{key}` is in too many lists and dictionaries")));
     };
     if let Ok(dictionary) = any.cast::<PyDict>() {
-        let entry =
-            |(key, value): (Bound<'_, PyAny>, _)| Ok((key.extract()?, json(&value, deeper)?));
-        return dictionary.iter().map(entry).collect::<PyResult<_>>().map(Value::Object);
+        let entry = |(name, value): (Bound<'_, PyAny>, Bound<'_, PyAny>)| {
+            let Some(name) = exactly::<String>(&name)? else {
+                return Err(wrong(format!("`{key}` has a key that is no text")));
+            };
+            let value = json(&value, &name, deeper)?;
+            Ok((name, value))
+        };
+        let entries = dictionary.items();
+        return entries
+            .iter()
+            .map(|item| entry(item.extract()?))
+            .collect::<PyResult<_>>()
+            .map(Value::Object);
     }
-    if let Ok(list) = any.cast::<PyList>() {
-        return list.iter().map(|value| json(&value, deeper)).collect();
+    let list = any.cast::<PyList>().map(|list| list.to_tuple());
+    if let Ok(list) = list.or_else(|_| any.cast::<PyTuple>().cloned()) {
+        return list.iter().map(|value| json(&value, key, deeper)).collect();
     }
     if any.is_none() {
         return Ok(Value::Null);
@@ -76,13 +93,31 @@ fn json(any: &Bound<'_, PyAny>, deepest: u32) -> PyResult<Value> {
     if let Ok(is) = any.cast::<PyBool>() {
         return Ok(Value::Bool(is.is_true()));
     }
-    if let Ok(whole) = any.extract::<i64>() {
+    if let Some(text) = exactly::<String>(any)? {
+        return Ok(text.into());
+    }
+    if let Some(whole) = exactly::<i64>(any)? {
         return Ok(whole.into());
     }
-    match any.extract::<f64>() {
-        Ok(value) => Ok(number(any.py(), "a number of the job", value)?.into()),
-        Err(_) => Ok(any.extract::<String>()?.into()),
+    match exactly::<f64>(any)? {
+        Some(value) => Ok(number(py, "a number of the job", value)?.into()),
+        None => Err(wrong(format!("`{key}` is a {} that JSON does not hold", any.get_type()))),
     }
+}
+
+/// A value as a `T`, where it is one: of the right type, no text with half a character, no number that is too great.
+/// What else goes wrong, its own methods have raised.
+fn exactly<'py, T>(any: &Bound<'py, PyAny>) -> PyResult<Option<T>>
+where
+    T: for<'a> FromPyObject<'a, 'py, Error = PyErr>,
+{
+    let py = any.py();
+    any.extract().map(Some).or_else(|error: PyErr| {
+        let other = error.is_instance_of::<PyTypeError>(py)
+            || error.is_instance_of::<PyUnicodeEncodeError>(py)
+            || error.is_instance_of::<PyOverflowError>(py);
+        if other { Ok(None) } else { Err(error) }
+    })
 }
 
 /// A finite number.

@@ -4,12 +4,12 @@ use program::Diagnostic;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyTuple, PyType};
-use std::mem::take;
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use toolpost::answer::Stop;
 
-/// What the last panic had to say, and where it was: work is done on several threads.
+/// What the last panic had to say, and where it was. Work is done on several threads, so that the panic of a call
+/// need not be on its own: of two calls that panic at once both may tell the later one.
 static PANIC: Mutex<String> = Mutex::new(String::new());
 
 fn said() -> MutexGuard<'static, String> {
@@ -26,7 +26,7 @@ pub fn released<T: Send, E: Into<Stop> + Send>(
     py: Python<'_>,
     work: impl FnOnce() -> Result<T, E> + Send,
 ) -> PyResult<T> {
-    match py.detach(|| catch_unwind(AssertUnwindSafe(work)).map_err(|_| take(&mut *said()))) {
+    match py.detach(|| catch_unwind(AssertUnwindSafe(work)).map_err(|_| said().clone())) {
         Ok(done) => done.map_err(|stop| raised(py, &stop.into().findings)),
         Err(said) => {
             let message = format!("this is a mistake in Toolpost: {said}");

@@ -51,7 +51,13 @@ def nested(depth):
         ({"toolpost": "freecad-job", "version": 2, "operations": []}, "version 2"),
         ({"toolpost": "freecad-job", "version": 1, "operations": {}}, "expected a sequence"),
         ({"toolpost": float("nan")}, "a number of the job is NaN"),
-        (nested(100), "a dictionary is in too many others"),
+        ({"toolpost": 10**400}, "`toolpost` is a <class 'int'>"),
+        ({"toolpost": object()}, "`toolpost` is a <class 'object'>"),
+        ({"toolpost": "\ud800"}, "`toolpost` is a <class 'str'>"),
+        ({"toolpost": {1: "one"}}, "`toolpost` has a key that is no text"),
+        ({"\ud800": 1}, "`job` has a key that is no text"),
+        (nested(100), "`name` is in too many lists and dictionaries"),
+        ({"label": [[[[[[[[[]]]]]]]]]}, "`label` is in too many lists and dictionaries"),
     ],
 )
 def test_a_dictionary_that_is_no_job_is_refused(wrong, said):
@@ -59,9 +65,50 @@ def test_a_dictionary_that_is_no_job_is_refused(wrong, said):
         toolpost.read_job(wrong)
 
 
-def test_what_json_cannot_hold_is_refused():
-    with pytest.raises(TypeError):
+def test_what_is_no_json_is_a_wrong_argument():
+    with pytest.raises(toolpost.Error) as caught:
         toolpost.read_job({"toolpost": object()})
+    assert caught.value.rule == "argument"
+
+
+class Number:
+    """A number that does something when it is asked for."""
+
+    def __init__(self, asked):
+        """Do `asked`."""
+        self.asked = asked
+
+    def __index__(self):
+        """Answer 1."""
+        self.asked()
+        return 1
+
+
+def test_tuples_are_lists():
+    job = json.loads(JOB.read_text())
+    listed = toolpost.read_job(job)
+    job["operations"] = tuple(job["operations"])
+    np.testing.assert_array_equal(toolpost.read_job(job).positions, listed.positions)
+
+
+def test_a_job_that_changes_while_it_is_read_is_read_as_it_was():
+    job = {}
+    job.update({"toolpost": Number(lambda: job.update({str(len(job)): 1})), "version": 1})
+    with pytest.raises(toolpost.Error):
+        toolpost.read_job(job)
+    numbers = []
+    numbers.extend([Number(lambda: numbers.append(numbers[0]))])
+    with pytest.raises(toolpost.Error):
+        toolpost.read_job({"toolpost": numbers})
+
+
+@pytest.mark.parametrize("raised", [KeyboardInterrupt, ValueError])
+def test_what_a_number_raises_is_raised(raised):
+    def asked():
+        raise raised
+
+    with pytest.raises(raised):
+        toolpost.read_job({"version": Number(asked)})
 
 
 def test_options_of_a_machine_are_set_by_keywords(slot):

@@ -29,6 +29,21 @@ fn what_the_probe_finds_can_be_calculated_with() {
     assert!(cut.distance(Vec3::new(10.0, 0.0, -0.1)) < 1e-12, "{cut}");
 }
 
+/// Words of two decimals are off by up to 0.005 mm, each way.
+#[test]
+fn a_probe_touches_the_nearest_point_beside_it() {
+    let surface = [0.125, 0.134]
+        .map(|x| Vec3::new(x, 2.005, x))
+        .into_iter()
+        .chain(SURFACE)
+        .collect::<Vec<_>>();
+    for (x, height) in [(0.12, 0.125), (0.129, 0.125), (0.13, 0.134), (0.139, 0.134)] {
+        let text = format!("G21 G90 G0 X{x} Y2 Z1\nG38.2 Z-1 F50\nG0 Z1\nG1 Z#5063\nM2\n");
+        let [cut] = cuts(&text, &surface).unwrap()[..] else { panic!() };
+        assert!((cut.z - height).abs() < 1e-12, "{x} {cut}");
+    }
+}
+
 /// The manual: in the current work coordinate system. The source: in the unit of the program.
 #[test]
 fn it_is_in_the_unit_and_the_zero_of_the_program() {

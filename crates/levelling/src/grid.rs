@@ -1,10 +1,15 @@
 //! Where a surface is probed, and the program that does it.
 
+use crate::heights::APART;
 use geom::{Vec2, Vec3};
 use program::{Diagnostic, Feed, Op, Pose, Probe, Program};
 
 /// The most places that a grid has: a probe takes seconds for each.
 const MOST_PLACES: usize = 10_000;
+
+/// How near to each other columns and rows may be, mm. The words of a program round them by up to 0.005 mm and the
+/// machine answers in steps; nearer than 0.05 mm a log tells them not apart ([`crate::HeightMap::of`]).
+const NEAREST: f64 = 2.0 * APART;
 
 /// The names of files that a comment can hold.
 const NAME: &str = "letters, digits and . - _ /";
@@ -22,7 +27,8 @@ impl Grid {
     /// The grid of `columns` by `rows` places over the rectangle between two corners, mm.
     ///
     /// # Errors
-    /// Fewer than two columns or rows, more than 10,000 places, or a rectangle without area.
+    /// Fewer than two columns or rows, or nearer to each other than 0.1 mm; more than 10,000 places; a rectangle without
+    /// area.
     pub fn new(from: Vec2, to: Vec2, columns: usize, rows: usize) -> Result<Grid, Box<Diagnostic>> {
         let wrong = |message: String, help: &str| {
             Err(Diagnostic::error("probing-grid", message).help(help).into())
@@ -35,6 +41,15 @@ impl Grid {
         if !(from.is_finite() && to.is_finite() && from.x < to.x && from.y < to.y) {
             let message = format!("a grid from X{} Y{} to X{} Y{} mm", from.x, from.y, to.x, to.y);
             return wrong(message, "the corners of a rectangle lie apart in X and in Y");
+        }
+        for (what, count, length) in
+            [("columns", columns, to.x - from.x), ("rows", rows, to.y - from.y)]
+        {
+            let apart = length / (count - 1) as f64;
+            if apart < NEAREST {
+                let message = format!("{count} {what} over {length} mm are {apart} mm apart");
+                return wrong(message, &format!("{NEAREST} mm at least: fewer {what}"));
+            }
         }
         Ok(Grid { from, to, columns, rows })
     }

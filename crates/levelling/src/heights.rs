@@ -4,7 +4,7 @@ use geom::{Vec2, Vec3};
 use program::Diagnostic;
 
 /// Coordinates that lie no further apart are those of one line of the grid, mm: machines answer in steps.
-const APART: f64 = 0.05;
+pub(crate) const APART: f64 = 0.05;
 
 /// The highest and the lowest that a surface is believed to be, mm from Z 0: what lies further is no
 /// surface that somebody has set to 0, but perhaps counted from the machine's home.
@@ -83,7 +83,26 @@ impl HeightMap {
             let (x, y) = (columns[place % columns.len()], rows[place / columns.len()]);
             return Err(refused(format!("there is no height at X{x} Y{y}"), whole));
         }
-        Ok(HeightMap { columns, rows, heights })
+        HeightMap::on(columns, rows, heights)
+    }
+
+    /// The map of heights on columns and rows: row after row, mm.
+    ///
+    /// # Errors
+    /// Fewer than two columns or rows, or not rising; other than one height for each place.
+    pub fn on(
+        columns: Vec<f64>,
+        rows: Vec<f64>,
+        heights: Vec<f64>,
+    ) -> Result<HeightMap, Box<Diagnostic>> {
+        let rise = |lines: &[f64]| lines.len() >= 2 && lines.windows(2).all(|two| two[0] < two[1]);
+        let places = columns.len().saturating_mul(rows.len());
+        if rise(&columns) && rise(&rows) && heights.len() == places {
+            return Ok(HeightMap { columns, rows, heights });
+        }
+        let (columns, rows, heights) = (columns.len(), rows.len(), heights.len());
+        let message = format!("{heights} heights on {columns} columns and {rows} rows");
+        Err(refused(message, "one at each place of two columns and two rows at least, that rise"))
     }
 
     /// Height of the surface, mm.
@@ -211,6 +230,18 @@ mod tests {
         let map = HeightMap::of(&points).unwrap();
         assert_eq!(map.lines(), [&[0.002, 10.0][..], &[0.0, 20.0]]);
         assert!((map.at(Vec2::new(10.0, 20.0)) - 5.0).abs() < 1e-12);
+    }
+
+    #[test]
+    fn heights_on_lines_that_do_not_rise_are_no_map() {
+        let on = |columns: &[f64], rows: &[f64], heights: &[f64]| {
+            HeightMap::on(columns.to_vec(), rows.to_vec(), heights.to_vec())
+        };
+        let map = on(&[0.0, 0.01], &[0.0, 20.0], &[0.0, 1.0, 2.0, 5.0]).unwrap();
+        assert_eq!(map.at(Vec2::new(0.005, 10.0)), 2.0);
+        for columns in [&[0.0][..], &[1.0, 1.0], &[2.0, 1.0], &[0.0, f64::NAN], &[0.0, 1.0, 2.0]] {
+            assert_eq!(on(columns, &[0.0, 1.0], &[0.0; 4]).unwrap_err().rule, "height-map");
+        }
     }
 
     #[track_caller]

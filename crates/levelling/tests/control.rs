@@ -32,6 +32,13 @@ fn board(cuts: Vec<Op>) -> Program {
     program
 }
 
+/// A machine that says lengths by two decimals.
+fn two_decimals() -> machine::Machine {
+    let words = ["X", "Y", "Z", "I", "J"].map(|word| format!("{word} = {{ decimals = 2 }}\n"));
+    let text = format!("extends = \"generic-3axis-linuxcnc\"\n[words]\n{}", words.concat());
+    machine::load_text("m.toml", &text).unwrap()
+}
+
 fn text(program: &Program) -> String {
     let machine = machine::load("generic-3axis-linuxcnc").unwrap();
     String::from_utf8(post::write(program, &machine).unwrap().text).unwrap()
@@ -189,6 +196,86 @@ fn a_control_that_keeps_no_heights_is_refused() {
         let found = post::write(&program, &machine::load(name).unwrap()).unwrap_err();
         let refused = found.iter().any(|found| found.message.contains("keeps no heights"));
         assert!(refused, "{name}: {found:?}");
+    }
+}
+
+/// Half a circle becomes helices that the grid divides, of which the machine makes lines.
+#[test]
+fn arcs_that_the_machine_takes_in_parts_are_refused() {
+    let program = curved();
+    let machine = |can: &str| {
+        let text = format!("extends = \"generic-3axis-linuxcnc\"\n[capabilities]\n{can}\n");
+        machine::load_text("m.toml", &text).unwrap()
+    };
+    for can in ["helix = false", "arcs = []"] {
+        let found = post::write(&program, &machine(can)).unwrap_err();
+        assert_eq!(found[0].rule, "surface", "{}", found[0]);
+        assert!(found[0].message.contains("in parts only"), "{}", found[0]);
+    }
+    // A program without arcs needs none.
+    let straight = followed(vec![Op::Line(pose(30.0, 5.0, -0.1))], 2, 2);
+    assert!(post::write(&straight, &machine("helix = false")).is_ok());
+}
+
+/// A machine of two decimals, and arcs of a few steps of it.
+#[test]
+fn arcs_too_short_for_the_decimals_become_one_line() {
+    let machine = two_decimals();
+    let arcs = |radius: f64, sweep: f64| {
+        let center = Vec3::new(10.0 + radius, 5.0, -0.1);
+        let spoke = Vec3::new(-sweep.cos(), sweep.sin(), 0.0) * radius;
+        let end = Pose::new(center + spoke, Vec3::Z);
+        let arc = Op::Arc(Box::new(ArcTo { end, center, normal: Vec3::NEG_Z, turns: 0 }));
+        let allowed = Allowed { deviation: 0.0001, ..ALLOWED };
+        let cuts = board(vec![arc, Op::Line(pose(30.0, 5.0, -0.1))]);
+        follow(&cuts, &grid(3, 3), &PROBING, 0.02, &allowed).unwrap()
+    };
+    let (mut as_arcs, mut as_lines) = (0, 0);
+    for radius in [0.01, 0.014, 0.017, 0.02, 0.03, 0.05] {
+        for sweep in [1.0, 1.5, 2.5, 3.0, 4.0, 6.0] {
+            let program = arcs(radius, sweep);
+            let text = post::write(&program, &machine).unwrap().text;
+            let proof = proof::prove(&program, &machine, "board", &text, &Default::default());
+            assert!(proof.proven, "{radius} mm, {sweep} rad: {proof:?}");
+            let made = |op: &&program::Record| matches!(op.op, Op::Arc(_));
+            let arcs = program.records.iter().filter(made).count();
+            let text = String::from_utf8(text).unwrap();
+            let helices =
+                text.lines().filter(|line| line.contains('I') && line.contains("Z[")).count();
+            (as_arcs, as_lines) = (as_arcs + helices, as_lines + arcs - helices);
+        }
+    }
+    assert!(as_arcs > 10 && as_lines > 10, "{as_arcs} {as_lines}");
+    // Two arcs of 2 rad each: no line is one of them.
+    let found = post::write(&arcs(0.006, 4.0), &machine).unwrap_err();
+    assert_eq!(found[0].rule, "surface", "{}", found[0]);
+}
+
+/// Columns 40/3 mm apart, in words of two decimals.
+#[test]
+fn places_are_found_though_their_words_are_rounded() {
+    let machine = two_decimals();
+    let program = followed(vec![Op::Line(pose(30.0, 5.0, -0.1))], 4, 4);
+    let text = post::write(&program, &machine).unwrap().text;
+    let proof = proof::prove(&program, &machine, "board", &text, &Default::default());
+    assert!(proof.proven, "{proof:?}");
+}
+
+/// Nine places from #1001 on, also in a program that has probed none of them.
+#[test]
+fn a_parameter_that_the_control_does_not_have_is_refused() {
+    let machine = |max: u32| {
+        let text =
+            format!("extends = \"generic-3axis-linuxcnc\"\n[words]\nHEIGHT = {{ max = {max} }}\n");
+        machine::load_text("m.toml", &text).unwrap()
+    };
+    let mut program = followed(vec![Op::Line(pose(30.0, 15.0, -0.1))], 3, 3);
+    assert!(post::write(&program, &machine(1009)).is_ok());
+    for _ in 0..2 {
+        let found = post::write(&program, &machine(1008)).unwrap_err();
+        assert_eq!(found[0].rule, "number-range", "{}", found[0]);
+        assert!(found[0].message.contains("1009"), "{}", found[0]);
+        program.records.retain(|record| !matches!(record.op, Op::Probe(_)));
     }
 }
 

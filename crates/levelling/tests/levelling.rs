@@ -391,6 +391,10 @@ fn a_grid_is_probed_row_by_row_there_and_back() {
         assert_eq!(found.rule, "probing-grid");
     }
     assert!(Grid::new(Vec2::ZERO, Vec2::X, 2, 2).is_err());
+    // 10 mm in 100 parts are 0.1 mm each.
+    assert!(Grid::new(Vec2::ZERO, Vec2::splat(10.0), 2, 101).is_ok());
+    let found = Grid::new(Vec2::ZERO, Vec2::splat(10.0), 2, 102).unwrap_err();
+    assert!(found.message.contains("102 rows over 10 mm are 0.099"), "{found}");
     assert!(Grid::new(Vec2::ZERO, Vec2::new(f64::INFINITY, 1.0), 2, 2).is_err());
     for wrong in [
         Probing { reach: 0.0, ..PROBING },

@@ -2,6 +2,7 @@
 
 use crate::catalogue::{BlockName, WordName};
 use crate::place::{Kind, Stop};
+use crate::surface::LEVEL_FIRST;
 use crate::template::bit;
 use crate::walk::{Done, PLANE_XY, Walk, motion, refuse};
 use geom::{ANGLE_EPSILON, Arc, ArcError, Vec3, angle_between};
@@ -118,6 +119,7 @@ impl Walk<'_> {
         while let Some(&until) = ends.last() {
             match self.rounded_arc(&local, facts, from, until, rises) {
                 Some(block) => {
+                    self.followed(&arc, until - from == 1.0, "arcs")?;
                     self.arc_block(&arc, facts, &block, rises)?;
                     self.here = Some(Pose { point: arc.at(until), ..to.end });
                 }
@@ -345,8 +347,13 @@ impl Walk<'_> {
         stop: &Stop,
         what: &'static str,
     ) -> Done {
-        let all = arc.chords(self.machine.capabilities.lowering_tolerance) as f64;
+        let tolerance = self.machine.capabilities.lowering_tolerance;
+        // Over a surface only one line ends where the arc does; round a quarter or less it cannot turn back.
+        let bulge = arc.radius() * (1.0 - (arc.sweep / 2.0).cos());
+        let one = self.follows(arc) && arc.sweep <= PI / 2.0 && bulge <= tolerance;
+        let all = if one { 1.0 } else { arc.chords(tolerance) as f64 };
         let lines = ((until - from) * all - 1e-9).ceil().max(1.0) as usize;
+        self.followed(arc, lines == 1 && until - from == 1.0, what)?;
         for line in 1..=lines {
             let t = from + (until - from) * line as f64 / lines as f64;
             let point = if line == lines && until == 1.0 { arc.end } else { arc.at(t) };
@@ -354,6 +361,26 @@ impl Walk<'_> {
         }
         self.findings.lowered("arc-lowered", what, self.line, lines);
         Ok(())
+    }
+
+    /// An arc over a surface rises evenly from one end to the other, the surface under it does not: it is written as
+    /// one block, or not.
+    ///
+    /// # Errors
+    /// It is not `whole`.
+    fn followed(&self, arc: &Arc, whole: bool, what: &str) -> Done {
+        if whole || !self.follows(arc) {
+            return Ok(());
+        }
+        let message = format!(
+            "{what} over a surface that the control finds: the machine takes this one in parts only"
+        );
+        Err(refuse("surface", message).help(LEVEL_FIRST).into())
+    }
+
+    /// Whether an end of the arc counts from a surface.
+    fn follows(&self, arc: &Arc) -> bool {
+        [arc.start, arc.end].into_iter().any(|end| self.is_over_surface(end))
     }
 
     /// Back to the plane XY, which cutter compensation and cycles need.

@@ -6,6 +6,10 @@ use crate::template::Templates;
 use machine::{CycleName, HARMLESS_SIGNS, Machine, OrientationMode, Place};
 use program::{Diagnostic, nearest};
 
+/// The first parameter that can keep a height: those below are a subroutine's own (LinuxCNC, "Numbered Parameters": #1 to
+/// #30).
+const FIRST_KEPT: u32 = 31;
+
 /// Checks words against the catalogue, words that blocks place against the words that there are, and
 /// blocks against the capabilities.
 ///
@@ -48,6 +52,20 @@ pub(crate) fn check(machine: &Machine, templates: &Templates) -> Result<(), Vec<
         if !machine.words.contains_key(word.name()) {
             let message = format!("[words.{}] is missing", word.name());
             errors.push(file(Diagnostic::error("word", message)));
+        }
+    }
+    if let Some(word) = machine.words.get(WordName::Height.name()) {
+        let numbered = word.decimals == 0 && word.scale == 1.0;
+        if !(numbered && word.first >= FIRST_KEPT && f64::from(word.first) <= word.max) {
+            let message = format!(
+                "[words.HEIGHT] is no number of a parameter: {} decimals, a scale of {}, from {} to {}",
+                word.decimals, word.scale, word.first, word.max
+            );
+            let help = format!(
+                "`decimals = 0`, no `scale`, `first` from {FIRST_KEPT} to `max`: subroutines keep what they \
+                 are called with below"
+            );
+            errors.push(at(Diagnostic::error("word", message).help(help), &word.place));
         }
     }
     if let Some(sign) = machine.format.comment_signs.chars().find(|c| !HARMLESS_SIGNS.contains(*c))

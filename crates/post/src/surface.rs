@@ -8,6 +8,10 @@ use program::Surface;
 /// Parts of kept heights are written to so many decimals: a height of a metre is then right to a micrometre.
 pub(crate) const DECIMALS: usize = 6;
 
+/// The way out where the machine cannot follow a surface by itself.
+pub(crate) const LEVEL_FIRST: &str =
+    "probe it by a program of its own, and level this one with what that finds";
+
 /// A height that is kept, and how much of it is taken.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Part {
@@ -31,8 +35,7 @@ impl<'a> Walk<'a> {
             self.surface = Some(surface);
             return Ok(());
         };
-        let help = "probe it by a program of its own, and level this one with what that finds";
-        Err(refuse("surface", message).help(help).into())
+        Err(refuse("surface", message).help(LEVEL_FIRST).into())
     }
 
     /// # Errors

@@ -41,8 +41,8 @@ pub(crate) struct Writer {
     active: [Value; WordName::COUNT],
     /// The word whose form [`WordName::F`] has.
     feed_form: WordName,
-    /// What is added to Z in the block that comes next.
-    raised: Option<[Part; 4]>,
+    /// What is added to Z in the block that comes next: parts, and of which parameters, as those are written.
+    raised: Option<[(f64, i64); 4]>,
     /// A value that its word cannot take.
     refused: Option<(WordName, f64)>,
     next_number: u64,
@@ -101,7 +101,19 @@ impl Writer {
     /// Z of the next block is what has been set and these parts of heights that the control keeps.
     #[inline]
     pub(crate) fn raise(&mut self, parts: Option<[Part; 4]>) {
-        self.raised = parts;
+        self.raised = parts.map(|parts| {
+            parts.map(|Part { parameter, part }| {
+                let parameter = f64::from(parameter);
+                let steps = match &self.forms[WordName::Height as usize] {
+                    Form::Number(number) => number.round(parameter),
+                    _ => None,
+                };
+                if steps.is_none() {
+                    self.refused = Some((WordName::Height, parameter));
+                }
+                (part, steps.unwrap_or_default())
+            })
+        });
     }
 
     /// The next block may write the code `word` with its entry `index`.
@@ -289,11 +301,11 @@ impl Writer {
     }
 
     /// Writes a number and parts of heights as the sum that they are.
-    fn write_raised(&mut self, word: WordName, separated: bool, steps: i64, parts: &[Part]) {
+    fn write_raised(&mut self, word: WordName, separated: bool, steps: i64, parts: &[(f64, i64)]) {
         let forms = [word, WordName::Height].map(|word| &self.forms[word as usize]);
         let [Form::Number(number), Form::Number(height)] = forms else { return };
         let mut sum = Vec::with_capacity(96);
-        for Part { parameter, part } in parts {
+        for (part, parameter) in parts {
             let part = format!("{part:.DECIMALS$}");
             let part = part.trim_end_matches('0').trim_end_matches('.');
             if part == "0" {
@@ -304,8 +316,7 @@ impl Writer {
                 sum.extend_from_slice(part.as_bytes());
                 sum.push(b'*');
             }
-            let steps = height.round(f64::from(*parameter)).unwrap_or_default();
-            height.write(false, steps, &mut sum);
+            height.write(false, *parameter, &mut sum);
         }
         number.write_sum(separated, steps, &sum, &mut self.text);
     }

@@ -12,6 +12,25 @@ fn checked(template: &str) -> Result<(), String> {
     toolpost_post::check(&machine).map_err(|found| found[0].to_string())
 }
 
+/// What `post::check` says of a machine with this HEIGHT.
+fn kept(word: &str) -> Result<(), String> {
+    let text = format!("extends = \"linuxcnc\"\n[words]\nHEIGHT = {{ {word} }}\n");
+    let machine = machine::load_text("mine.toml", &text).unwrap();
+    toolpost_post::check(&machine).map_err(|found| found[0].to_string())
+}
+
+/// A subroutine has #1 to #30 for itself.
+#[test]
+fn heights_are_kept_in_whole_parameters_of_the_program() {
+    for right in ["first = 31", "first = 5000", "max = 1001"] {
+        kept(right).expect(right);
+    }
+    for wrong in ["first = 30", "first = 5001", "max = 1000", "decimals = 1", "scale = 2"] {
+        let said = kept(wrong).expect_err(wrong);
+        assert!(said.contains("error[word]") && said.starts_with("mine.toml:3:"), "{said}");
+    }
+}
+
 /// Each would take more memory than a machine has, or more time than a person.
 #[test]
 fn a_value_that_grows_without_bound_is_refused_at_once() {

@@ -52,7 +52,9 @@ fn trial(
         })
         .map(|(column, row, x, y)| Vec3::new(x, y, height(column, row)))
         .collect();
-    Ok(Trial { heights: HeightMap::of(&places)?, places })
+    let heights = places.iter().map(|place| place.z).collect();
+    let heights = HeightMap::on(surface.columns.clone(), surface.rows.clone(), heights)?;
+    Ok(Trial { places, heights })
 }
 
 /// A number from 0 to 1 for each number, without order: the finalizer of SplitMix64 (Steele, Lea, Flood, "Fast

@@ -9,8 +9,9 @@ use crate::iso::language::words::{Flavor, Group, Motion};
 use geom::Vec3;
 use program::{Op, Probe};
 
-/// How far beside a probe a point of the surface may be that it touches, mm: words are rounded.
-const BESIDE: f64 = 0.002;
+/// How far beside a probe a point of the surface may be that it touches, mm: words are rounded, those of two decimals
+/// by up to 0.005 mm along X and along Y.
+const BESIDE: f64 = 0.0075;
 
 impl Step<'_, '_, '_> {
     /// `G28`, `G30`: by rapid through the point of the block to the reference position, the named axes
@@ -153,17 +154,19 @@ impl Step<'_, '_, '_> {
         Ok(())
     }
 
-    /// Where a probe on its way to `target` touches the surface; none where that is not known. The tool comes to
-    /// rest somewhat beyond.
+    /// Where a probe on its way to `target` touches the surface: as high as at the nearest point; none where that is
+    /// not known. The tool comes to rest somewhat beyond.
     ///
     /// # Errors
     /// It has to touch it, and does not.
     fn touched(&self, target: &Target, must_answer: bool) -> Result<Option<Vec3>, Fault> {
         let place = &self.state.place;
         let (from, to) = (place.point(self.state.position), place.point(target.point));
-        let below = |point: &&Vec3| point.truncate().distance(to.truncate()) <= BESIDE;
+        let beside = |point: &Vec3| point.truncate().distance(to.truncate());
+        let below = self.state.touches.iter().filter(|point| beside(point) <= BESIDE);
+        let nearest = below.min_by(|a, b| beside(a).total_cmp(&beside(b)));
         let straight = from.truncate() == to.truncate();
-        let Some(point) = self.state.touches.iter().find(below).filter(|_| straight) else {
+        let Some(point) = nearest.filter(|_| straight) else {
             return Ok(None);
         };
         match (to.z..=from.z).contains(&point.z) {
