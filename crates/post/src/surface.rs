@@ -51,21 +51,23 @@ impl<'a> Walk<'a> {
 
     /// Whether a pose at this point counts from the surface.
     pub(crate) fn is_over_surface(&self, point: Vec3) -> bool {
-        self.surface.is_some_and(|surface| point.z < surface.clear)
+        self.over(point).is_some()
+    }
+
+    /// The surface from which a pose at this point counts.
+    fn over(&self, point: Vec3) -> Option<&'a Surface> {
+        self.surface.filter(|surface| point.z < surface.clear)
     }
 
     /// Says in the next block, besides Z, what the surface adds to it at `point`.
     pub(crate) fn say_surface(&mut self, point: Vec3) {
-        let surface = self.surface.filter(|surface| point.z < surface.clear);
-        self.writer.raise(surface.map(|surface| parts(surface, point.truncate(), self.first())));
+        let parts = |surface| parts(surface, point.truncate(), self.first());
+        self.writer.raise(self.over(point).map(parts));
     }
 
     /// By how much the surface can change Z at `point`, mm: the least and the most, where it can.
     pub(crate) fn sways(&self, point: Vec3) -> &'a [f64] {
-        match self.surface {
-            Some(surface) if point.z < surface.clear => &surface.reach,
-            _ => &[0.0],
-        }
+        self.over(point).map_or(&[0.0], |surface| &surface.reach)
     }
 
     /// What the probe has found is kept for a place of the surface.
