@@ -17,10 +17,15 @@ const POWERS: [f64; 23] = [
     1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
 ];
 
+/// By what so many digits are shifted to the left.
+const SCALES: [u64; 9] =
+    [1, 10, 100, 1000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000];
+
 /// The number that `text` begins with (`-1.5`, `+3.`, `.25`), or `None` where there is no digit.
 ///
 /// The value is correctly rounded: up to 15 digits the digits and the power of ten are both exact
 /// doubles, so one division rounds once (Clinger 1990); longer ones go to the standard library.
+#[inline]
 pub(crate) fn parse(text: &[u8]) -> Option<Decimal> {
     let (negative, sign) = match text.first() {
         Some(b'-') => (true, 1),
@@ -37,7 +42,8 @@ pub(crate) fn parse(text: &[u8]) -> Option<Decimal> {
         return None;
     }
     let magnitude = if count <= 15 {
-        number as f64 / POWERS[places]
+        // Below 2^53, and a signed number is faster to convert.
+        number as i64 as f64 / POWERS[places]
     } else {
         std::str::from_utf8(&text[sign..len]).ok()?.parse().ok()?
     };
@@ -45,31 +51,32 @@ pub(crate) fn parse(text: &[u8]) -> Option<Decimal> {
 }
 
 /// The digits at the start of `text` behind those of `number`, and how many they are.
-fn digits(mut text: &[u8], mut number: u64) -> (u64, usize) {
+#[inline]
+fn digits(text: &[u8], mut number: u64) -> (u64, usize) {
     let mut count = 0;
-    while let Some((eight, rest)) = text.split_first_chunk() {
-        let (value, digits) = leading(u64::from_le_bytes(*eight));
-        number = number.wrapping_mul(10u64.pow(digits)).wrapping_add(value);
-        count += digits as usize;
+    loop {
+        let (value, digits) = leading(eight(text.get(count..).unwrap_or_default()));
+        number = number.wrapping_mul(SCALES[digits]).wrapping_add(value);
+        count += digits;
         if digits < 8 {
             return (number, count);
         }
-        text = rest;
     }
-    for &byte in text {
-        let digit = byte.wrapping_sub(b'0');
-        if digit > 9 {
-            break;
-        }
-        number = number.wrapping_mul(10).wrapping_add(u64::from(digit));
-        count += 1;
+}
+
+/// The eight bytes with which `text` begins, the first of which is the lowest; where it ends before, zeros.
+#[inline]
+fn eight(text: &[u8]) -> u64 {
+    match text.first_chunk() {
+        Some(eight) => u64::from_le_bytes(*eight),
+        None => text.iter().rev().fold(0, |bytes, &byte| bytes << 8 | u64::from(byte)),
     }
-    (number, count)
 }
 
 /// The value of the digits with which eight bytes begin, the first of which is the lowest, and how many they
 /// are: all at once (Lemire, "Quickly parsing eight digits", 2018).
-fn leading(bytes: u64) -> (u64, u32) {
+#[inline]
+fn leading(bytes: u64) -> (u64, usize) {
     const EACH: u64 = u64::MAX / 0xFF;
     let digits = bytes ^ (EACH * 0x30);
     // The highest bit of each byte that is more than 9.
@@ -82,7 +89,7 @@ fn leading(bytes: u64) -> (u64, u32) {
     let value = (pair(0).wrapping_mul(100 + (1_000_000 << 32)))
         .wrapping_add(pair(16).wrapping_mul(1 + (10_000 << 32)))
         >> 32;
-    (value, count)
+    (value, count as usize)
 }
 
 #[cfg(test)]

@@ -38,7 +38,7 @@ impl Step<'_, '_, '_> {
             self.state.feed = None;
         }
         let Some(word) = self.block.take(b'F') else { return Ok(()) };
-        if motion == Some(G::Motion(Motion::Rapid)) {
+        if matches!(motion, Some(G::Motion(Motion::Rapid))) {
             return Ok(());
         }
         if word.value <= 0.0 {

@@ -54,18 +54,27 @@ impl Step<'_, '_, '_> {
     /// is that of RS274/NGC 3.8. FANUC leaves the moment of an M function to the builder of the
     /// machine: what could matter there is refused.
     fn run(&mut self) -> Result<(), Fault> {
+        let more = !self.block.only_moves();
         self.one_command()?;
         self.wire()?;
-        self.m_functions_beside_motion()?;
+        if more {
+            self.m_functions_beside_motion()?;
+        }
         self.feed()?;
-        self.speed()?;
+        if more {
+            self.speed()?;
+        }
         self.tool()?;
-        self.spindle_and_coolant()?;
-        self.neutral_m()?;
-        self.dwell()?;
-        self.modes()?;
+        if more {
+            self.spindle_and_coolant()?;
+            self.neutral_m()?;
+            self.dwell()?;
+            self.modes()?;
+        }
         self.motion()?;
-        self.flow()?;
+        if more {
+            self.flow()?;
+        }
         self.block.all_taken()
     }
 

@@ -3,13 +3,16 @@
 use super::arithmetic;
 use super::expression::{Reader, Target, Value};
 use super::parameters::{Language, Values};
-use super::words::{Dictionary, Flavor, G, Group, LETTERS, M, bit, index};
+use super::words::{Dictionary, Flavor, G, Group, LETTERS, M, bit, index, set};
 use crate::{Settings, decimal};
 use program::Diagnostic;
 
 /// From here on a number of FreeCAD's is none: it writes a NaN as -922337203685.477581, and nothing is a
 /// kilometre long.
 const NOTHING: f64 = 1e6;
+
+/// The letters of a block that only moves, by [`bit`].
+const MOVES: u32 = set(b"NXYZABCIJKRF");
 
 /// A finding about a block.
 pub(crate) type Fault = Box<Diagnostic>;
@@ -55,6 +58,8 @@ pub(crate) struct Block<'a> {
     pub words: [Word; LETTERS.len()],
     given: u32,
     pending: u32,
+    /// The groups of its G and M words, by [`Group::bit`].
+    groups: u32,
     g: [Option<G>; Group::COUNT],
     m: [Option<M>; Group::COUNT],
     pub places: [Word; Group::COUNT],
@@ -83,6 +88,7 @@ impl<'a> Block<'a> {
             words: [Word::default(); LETTERS.len()],
             given: 0,
             pending: 0,
+            groups: 0,
             g: [None; Group::COUNT],
             m: [None; Group::COUNT],
             places: [Word::default(); Group::COUNT],
@@ -97,10 +103,11 @@ impl<'a> Block<'a> {
     pub(crate) fn clear(&mut self, line: u32, text: &'a [u8]) {
         (self.text, self.line) = (text, line);
         (self.is_empty, self.started, self.calls) = (true, false, false);
-        if self.m_count > 0 {
-            self.m = [None; Group::COUNT];
+        while self.groups != 0 {
+            let group = self.groups.trailing_zeros() as usize;
+            (self.g[group], self.m[group]) = (None, None);
+            self.groups &= self.groups - 1;
         }
-        self.g = [None; Group::COUNT];
         (self.m_count, self.given, self.pending) = (0, 0, 0);
         self.comments.clear();
         self.prompt = None;
@@ -221,6 +228,7 @@ impl<'a> Block<'a> {
                     if self.g[group as usize].replace(meaning).is_some() {
                         return Err(self.same_group(group, at, end));
                     }
+                    self.groups |= group.bit();
                     self.places[group as usize] = word;
                     self.calls |= matches!(meaning, G::MacroCall { .. });
                 }
@@ -231,6 +239,7 @@ impl<'a> Block<'a> {
                     if self.m[group as usize].replace(meaning).is_some() {
                         return Err(self.same_group(group, at, end));
                     }
+                    self.groups |= group.bit();
                     self.places[group as usize] = word;
                     self.m_count += 1;
                     if dictionary.flavor == Flavor::Marlin {
@@ -411,14 +420,13 @@ impl<'a> Block<'a> {
     /// Whether the block has no word but `letters` and the M word of this group.
     pub(crate) fn has_only(&self, letters: &[u8], group: Group) -> bool {
         let allowed = letters.iter().fold(bit(b'N'), |bits, &letter| bits | bit(letter));
-        let others =
-            |n: &usize| *n != group as usize && (self.g[*n].is_some() || self.m[*n].is_some());
-        self.given & !allowed == 0 && !(0..Group::COUNT).any(|n| others(&n))
+        self.given & !allowed == 0 && self.groups & !group.bit() == 0
     }
 
     /// Puts a G word into the block.
     pub(crate) fn put_g(&mut self, group: Group, word: G) {
         self.g[group as usize] = Some(word);
+        self.groups |= group.bit();
         self.places[group as usize] = Word::default();
         self.is_empty = false;
     }
@@ -426,6 +434,7 @@ impl<'a> Block<'a> {
     /// Puts an M word into the block.
     pub(crate) fn put_m(&mut self, group: Group, word: M) {
         self.m[group as usize] = Some(word);
+        self.groups |= group.bit();
         self.m_count += 1;
         self.is_empty = false;
     }
@@ -450,7 +459,12 @@ impl<'a> Block<'a> {
 
     /// How many G and M words there are, apart from those of the builder.
     pub(crate) fn commands(&self) -> usize {
-        self.g.iter().flatten().count() + self.m.iter().flatten().count()
+        self.groups.count_ones() as usize
+    }
+
+    /// Whether it says how the tool moves and how fast, and nothing else.
+    pub(crate) fn only_moves(&self) -> bool {
+        self.groups & !Group::Motion.bit() == 0 && self.m_count == 0 && self.given & !MOVES == 0
     }
 
     /// Whether the block has this letter and nothing has taken it yet.

@@ -313,6 +313,11 @@ pub(crate) enum Group {
 impl Group {
     /// How many groups there are.
     pub(super) const COUNT: usize = Group::Wire as usize + 1;
+
+    /// The bit of the group in a set of groups.
+    pub(super) const fn bit(self) -> u32 {
+        1 << self as u32
+    }
 }
 
 /// A G word: ten times its number (`G43.4` is 434), its group, its meaning.
@@ -341,6 +346,16 @@ pub(crate) const fn bit(letter: u8) -> u32 {
     1 << index(letter)
 }
 
+/// The set of these letters, by [`bit`].
+pub(super) const fn set(letters: &[u8]) -> u32 {
+    let (mut bits, mut at) = (0, 0);
+    while at < letters.len() {
+        bits |= bit(letters[at]);
+        at += 1;
+    }
+    bits
+}
+
 /// The words of one flavour, found by number.
 #[derive(Debug)]
 pub(crate) struct Dictionary {
@@ -360,19 +375,13 @@ pub(crate) struct Dictionary {
 
 impl Dictionary {
     pub(super) const fn new(flavor: Flavor, letters: &[u8], longest: usize) -> Dictionary {
-        let mut bits = 0;
-        let mut at = 0;
-        while at < letters.len() {
-            bits |= bit(letters[at]);
-            at += 1;
-        }
         Dictionary {
             flavor,
             g: [None; 2000],
             m: [None; 500],
             refused_g: &[],
             refused_m: &[],
-            letters: bits,
+            letters: set(letters),
             longest,
         }
     }
@@ -430,7 +439,8 @@ impl Dictionary {
 
 /// Ten times a number that has at most one decimal and is below 1000.
 fn tenths(number: f64) -> Option<usize> {
-    let tenths = (number * 10.0).round();
-    ((0.0..10_000.0).contains(&tenths) && (number * 10.0 - tenths).abs() < 1e-9)
-        .then_some(tenths as usize)
+    let exact = number * 10.0;
+    // What is below 0 or no number becomes 0, and is not near to it.
+    let tenths = (exact + 0.5) as u32;
+    (tenths < 10_000 && (exact - f64::from(tenths)).abs() < 1e-9).then_some(tenths as usize)
 }
