@@ -12,14 +12,13 @@ pub(crate) struct Decimal {
 }
 
 /// Powers of ten that a double holds exactly.
-const POWERS: [f64; 23] = [
+pub(crate) const POWERS: [f64; 23] = [
     1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16,
     1e17, 1e18, 1e19, 1e20, 1e21, 1e22,
 ];
 
 /// By what so many digits are shifted to the left.
-const SCALES: [u64; 9] =
-    [1, 10, 100, 1000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000];
+const SCALES: [u64; 9] = [1, 10, 100, 1000, 10_000, 100_000, 1_000_000, 10_000_000, 100_000_000];
 
 /// The number that `text` begins with (`-1.5`, `+3.`, `.25`), or `None` where there is no digit.
 ///
@@ -32,12 +31,20 @@ pub(crate) fn parse(text: &[u8]) -> Option<Decimal> {
         Some(b'+') => (false, 1),
         _ => (false, 0),
     };
-    let (whole, integer) = digits(text.get(sign..)?, 0);
-    let after = sign + integer;
-    let point = text.get(after) == Some(&b'.');
-    let decimals = if point { text.get(after + 1..)? } else { &[] };
-    let (number, places) = digits(decimals, whole);
-    let (count, len) = (integer + places, after + usize::from(point) + places);
+    let (mut number, mut at) = (0u64, sign);
+    // Few digits stand before the point.
+    while let Some(digit @ 0..=9) = text.get(at).map(|byte| byte.wrapping_sub(b'0')) {
+        number = number.wrapping_mul(10).wrapping_add(u64::from(digit));
+        at += 1;
+    }
+    let point = text.get(at) == Some(&b'.');
+    let (mut count, mut places) = (at - sign, 0);
+    if point {
+        at += 1;
+        (number, places) = digits(text.get(at..).unwrap_or_default(), number);
+        count += places;
+    }
+    let len = at + places;
     if count == 0 {
         return None;
     }

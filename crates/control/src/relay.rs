@@ -6,7 +6,7 @@ use std::sync::mpsc;
 use std::{mem, panic, thread};
 
 /// Records that are handed over at once.
-const BATCH: usize = 4096;
+const BATCH: usize = 1024;
 
 /// Batches that wait at most: a control that is faster than its sink waits, and memory stays bounded.
 const WAITING: usize = 4;
@@ -21,22 +21,30 @@ pub fn relayed(
     sink: &mut Sink,
 ) -> Result<(), Box<Diagnostic>> {
     let (sender, receiver) = mpsc::sync_channel::<Vec<Record>>(WAITING);
+    // What has been emptied is filled again: fresh memory costs more than what is done with it.
+    let (emptied, empty) = mpsc::channel();
     thread::scope(|scope| {
         let control = scope.spawn(move || {
-            let mut batch = Vec::with_capacity(BATCH);
+            let another = || empty.try_recv().unwrap_or_else(|_| Vec::with_capacity(BATCH));
+            let mut batch = another();
             let result = run(&mut |record| {
                 batch.push(record);
                 if batch.len() < BATCH {
                     return Ok(());
                 }
-                let full = mem::replace(&mut batch, Vec::with_capacity(BATCH));
+                let full = mem::replace(&mut batch, another());
                 // Where nobody takes it, the sink has refused a record, and its answer is the one that counts.
                 sender.send(full).map_err(|_| Diagnostic::error("stopped", "").into())
             });
             // What came before a block that is refused comes before the refusal.
             sender.send(batch).map_or(Ok(()), |()| result)
         });
-        let taken = receiver.into_iter().flatten().try_for_each(sink);
+        let taken = receiver.into_iter().try_for_each(|mut batch| {
+            batch.drain(..).try_for_each(&mut *sink)?;
+            // Where nobody fills it again, the control has ended.
+            let _ = emptied.send(batch);
+            Ok(())
+        });
         let run = control.join().unwrap_or_else(|cause| panic::resume_unwind(cause));
         taken.and(run)
     })

@@ -5,7 +5,8 @@ use crate::listing::Listing;
 use crate::way::Way;
 use control::Setup;
 use machine::Machine;
-use program::{Diagnostic, Op, Program, Record, Spindle};
+use program::{Diagnostic, FIRST_WORK_OFFSET, Op, Program, Record, Spindle};
+use std::mem;
 
 /// What was read.
 #[derive(Clone, Debug, Default)]
@@ -35,15 +36,16 @@ pub fn read(machine: &Machine, file_name: &str, job: &Job) -> Result<Reading, Bo
     if !listing.turns() {
         speaks.rotary.clear();
     }
-    let read = nc::read(&speaks, Setup::default(), "", listing.text());
+    let mut told = Told::new(job, &listing);
+    let keep = &mut |records: &mut Vec<Record>, record| told.keep(records, record);
+    let read = nc::read_by(&speaks, Setup::default(), "", listing.text(), keep);
     let located = |found: Diagnostic| Box::new(listing.located(found));
-    let reading = read.map_err(|found| located(way_out(*found)))?;
-    let records = Told::new(job, &listing, &reading.program.records)
-        .tell(reading.program.records)
-        .map_err(|found| match found.line {
-            0 => Box::new(found.file(file_name)),
-            _ => located(*found),
-        })?;
+    let (reading, several) = read.map_err(|found| located(way_out(*found)))?;
+    let mut records = reading.program.records;
+    told.finish(&mut records, several).map_err(|found| match found.line {
+        0 => Box::new(found.file(file_name)),
+        _ => located(*found),
+    })?;
     let warnings = reading.warnings.into_iter().map(|found| listing.located(found)).collect();
     Ok(Reading { program: Program { name: job.name.clone(), records }, listing, warnings })
 }
@@ -76,48 +78,126 @@ fn way_out(mut found: Diagnostic) -> Diagnostic {
 struct Told<'a> {
     job: &'a Job,
     listing: &'a Listing,
-    /// Which of the operations move.
+    /// Which of the operations have moved.
     moves: Vec<bool>,
+    /// The last operation of which there is a record.
+    last: usize,
+    /// Its records, and what has come between them, while it has not moved: what is told of an operation that
+    /// moves stands before them.
+    waiting: Vec<Record>,
     way: Way,
     /// The operation of the record at hand.
     at: Option<usize>,
     /// Number and name of the tool in the spindle.
     tool: Option<(u32, String)>,
     turns: bool,
+    /// A work offset has been named.
+    is_offset_named: bool,
+    /// The first one, which belongs only to a program that works in others, too.
+    offset: Option<Offset>,
+    /// What is wrong with the first record that cannot be told.
+    refused: Option<Box<Diagnostic>>,
+}
+
+/// A work offset that is left out of the records.
+struct Offset {
+    record: Record,
+    /// How many records are before it.
+    before: usize,
+    /// Whether it is the first record of its operation.
+    opens: bool,
 }
 
 impl<'a> Told<'a> {
-    fn new(job: &'a Job, listing: &'a Listing, records: &[Record]) -> Told<'a> {
-        let mut moves = vec![false; job.operations.len()];
-        for record in records.iter().filter(|record| is_move(&record.op)) {
-            if let Some(moves) = moves.get_mut(listing.operation(record.line)) {
-                *moves = true;
-            }
+    fn new(job: &'a Job, listing: &'a Listing) -> Told<'a> {
+        Told {
+            job,
+            listing,
+            moves: vec![false; job.operations.len()],
+            last: 0,
+            waiting: Vec::new(),
+            way: Way::default(),
+            at: None,
+            tool: None,
+            turns: false,
+            is_offset_named: false,
+            offset: None,
+            refused: None,
         }
-        let way = Way::with_capacity(records.len() + 2 * moves.len());
-        Told { job, listing, moves, way, at: None, tool: None, turns: false }
     }
 
-    fn tell(mut self, records: Vec<Record>) -> Result<Vec<Record>, Box<Diagnostic>> {
+    /// Puts the next record to `records`, as soon as it is known whether its operation moves.
+    fn keep(&mut self, records: &mut Vec<Record>, record: Record) {
+        let at = self.listing.operation(record.line);
+        if at > self.last {
+            self.last = at;
+            self.tell_waiting(records);
+        }
+        if is_move(&record.op)
+            && let Some(moves @ false) = self.moves.get_mut(at)
+        {
+            *moves = true;
+            if at == self.last {
+                self.tell_waiting(records);
+            }
+        }
+        match self.moves.get(self.last) {
+            Some(true) => self.tell(records, record),
+            _ => self.waiting.push(record),
+        }
+    }
+
+    fn tell_waiting(&mut self, records: &mut Vec<Record>) {
+        for record in mem::take(&mut self.waiting) {
+            self.tell(records, record);
+        }
+    }
+
+    /// The program is complete; it works in `several` work offsets.
+    ///
+    /// # Errors
+    /// Nothing moves, or the first of what cannot be told.
+    fn finish(mut self, records: &mut Vec<Record>, several: bool) -> Result<(), Box<Diagnostic>> {
         if !self.moves.contains(&true) {
             let message = "no operation of the job moves the tool";
             let help = "give the job operations, make them active, and recompute";
             return Err(Diagnostic::error("no-motion", message).help(help).into());
         }
-        for record in records {
-            let at = self.listing.operation(record.line);
-            if matches!(record.op, Op::End) {
-                self.end(record.line);
-            } else if self.at != Some(at) {
-                self.end(record.line);
-                self.at = Some(at);
-                if self.moves.get(at) == Some(&true) {
-                    self.begin(at, record.line);
-                }
-            }
-            self.record(record)?;
+        self.tell_waiting(records);
+        if let Some(refused) = self.refused {
+            return Err(refused);
         }
-        Ok(self.way.finish())
+        self.way.end(records);
+        if let Some(offset) = self.offset.filter(|_| several) {
+            offset.insert(records, self.listing);
+        }
+        Ok(())
+    }
+
+    fn tell(&mut self, records: &mut Vec<Record>, record: Record) {
+        if self.refused.is_some() {
+            return;
+        }
+        let at = self.listing.operation(record.line);
+        if let Op::WorkOffset(number) = record.op
+            && !mem::replace(&mut self.is_offset_named, true)
+            && number == FIRST_WORK_OFFSET
+            && !self.way.is_anywhere()
+        {
+            let opens = self.at != Some(at);
+            self.offset = Some(Offset { record, before: records.len(), opens });
+            return;
+        }
+        if matches!(record.op, Op::End) {
+            self.end(records, record.line);
+        } else if self.at != Some(at) {
+            self.end(records, record.line);
+            self.at = Some(at);
+            if self.moves.get(at) == Some(&true) {
+                self.begin(records, at, record.line);
+            }
+        }
+        self.refused = self.record(records, record).err();
     }
 
     /// Whether the operation at hand moves.
@@ -125,18 +205,22 @@ impl<'a> Told<'a> {
         self.at.is_some_and(|at| self.moves.get(at) == Some(&true))
     }
 
-    fn end(&mut self, line: u32) {
+    fn end(&mut self, records: &mut Vec<Record>, line: u32) {
         if self.within() {
-            self.way.push(Record { line: line.saturating_sub(1), op: Op::EndOfOperation });
+            self.way.push(records, Record { line: line.saturating_sub(1), op: Op::EndOfOperation });
         }
     }
 
-    fn begin(&mut self, at: usize, line: u32) {
+    fn begin(&mut self, records: &mut Vec<Record>, at: usize, line: u32) {
         let label = self.job.operations.get(at).map_or("", |operation| operation.label.as_str());
-        self.way.push(Record { line, op: Op::Operation(label.into()) });
+        self.way.push(records, Record { line, op: Op::Operation(label.into()) });
     }
 
-    fn record(&mut self, mut record: Record) -> Result<(), Box<Diagnostic>> {
+    fn record(
+        &mut self,
+        records: &mut Vec<Record>,
+        mut record: Record,
+    ) -> Result<(), Box<Diagnostic>> {
         let line = record.line;
         match &mut record.op {
             Op::Comment(text) if self.is_told(text) => return Ok(()),
@@ -163,7 +247,7 @@ impl<'a> Told<'a> {
             op if is_move(op) => self.may_move(op, line)?,
             _ => {}
         }
-        self.way.push(record);
+        self.way.push(records, record);
         Ok(())
     }
 
@@ -199,6 +283,26 @@ impl<'a> Told<'a> {
             }
             _ => Ok(()),
         }
+    }
+}
+
+impl Offset {
+    /// Puts it where it has been left out. Where it opens its operation, what is told of that stands before it.
+    fn insert(self, records: &mut Vec<Record>, listing: &Listing) {
+        let Offset { record, before: mut at, opens } = self;
+        if opens {
+            if let Some(Record { line, op: Op::EndOfOperation }) = records.get_mut(at) {
+                *line = record.line.saturating_sub(1);
+                at += 1;
+            }
+            if let Some(Record { line, op: Op::Operation(_) }) = records.get_mut(at)
+                && listing.operation(*line) == listing.operation(record.line)
+            {
+                *line = record.line;
+                at += 1;
+            }
+        }
+        records.insert(at, record);
     }
 }
 

@@ -6,10 +6,9 @@
 use geom::Vec3;
 use program::{Cycle, Op, Pose, Record};
 
-/// The records on their way, of which those between two holes are held back.
+/// What of the records on their way is held back: those between two holes.
 #[derive(Debug, Default)]
 pub(crate) struct Way {
-    records: Vec<Record>,
     /// Where the tool is, as far as the last record says it.
     here: Option<Pose>,
     /// The cycle that is on.
@@ -20,13 +19,8 @@ pub(crate) struct Way {
 }
 
 impl Way {
-    /// For so many records.
-    pub(crate) fn with_capacity(records: usize) -> Way {
-        Way { records: Vec::with_capacity(records), ..Way::default() }
-    }
-
-    /// The next record.
-    pub(crate) fn push(&mut self, record: Record) {
+    /// Puts the next record to `records`.
+    pub(crate) fn push(&mut self, records: &mut Vec<Record>, record: Record) {
         match &record.op {
             // To where it is.
             Op::Rapid(pose) if self.here == Some(*pose) => return,
@@ -47,7 +41,7 @@ impl Way {
             Op::Hole(pose) if self.goes_to(pose) => self.held.clear(),
             _ => {}
         }
-        self.end();
+        self.end(records);
         match &record.op {
             Op::Cycle(cycle) => self.cycle = Some(**cycle),
             Op::Hole(pose) => {
@@ -58,7 +52,7 @@ impl Way {
             Op::Tool(_) | Op::Home(_) | Op::WorkOffset(_) | Op::Probe(_) => self.here = None,
             op => self.here = op.pose().copied().or(self.here),
         }
-        self.records.push(record);
+        records.push(record);
     }
 
     /// Whether what is held back leads to the place over the hole `to`, and the same cycle drills it.
@@ -71,14 +65,13 @@ impl Way {
     }
 
     /// What has been held back goes on: something else follows.
-    pub(crate) fn end(&mut self) {
-        self.records.append(&mut self.held);
+    pub(crate) fn end(&mut self, records: &mut Vec<Record>) {
+        records.append(&mut self.held);
         self.left = None;
     }
 
-    /// All records.
-    pub(crate) fn finish(mut self) -> Vec<Record> {
-        self.end();
-        self.records
+    /// Whether the records say where the tool is.
+    pub(crate) fn is_anywhere(&self) -> bool {
+        self.here.is_some()
     }
 }

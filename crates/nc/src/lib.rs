@@ -36,6 +36,9 @@ pub struct Reading {
     pub warnings: Vec<Diagnostic>,
 }
 
+/// How a record, the second, is put to those before it.
+pub type Keep<'a> = dyn FnMut(&mut Vec<Record>, Record) + 'a;
+
 /// The virtual control of `machine`, with what the operator has set up.
 ///
 /// # Errors
@@ -80,15 +83,39 @@ pub fn read(
     file_name: &str,
     text: &[u8],
 ) -> Result<Reading, Box<Diagnostic>> {
+    let keep = &mut |records: &mut Vec<Record>, record| records.push(record);
+    let (mut reading, several) = read_by(machine, setup, file_name, text, keep)?;
+    let records = &mut reading.program.records;
+    let is_offset = |record: &Record| matches!(record.op, Op::WorkOffset(_));
+    // There is one at most: another one would be one of several.
+    if !several && let Some(first) = records.iter().position(is_offset) {
+        records.remove(first);
+    }
+    Ok(reading)
+}
+
+/// The same for a caller that has a hand in how the records are kept, as they come. Answers besides whether
+/// the program works in more than the first work offset; one that does not leaves it to the machine, and what
+/// it says of it does not belong to its records.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_by(
+    machine: &Machine,
+    setup: Setup,
+    file_name: &str,
+    text: &[u8],
+    keep: &mut Keep,
+) -> Result<(Reading, bool), Box<Diagnostic>> {
     let settings = settings(machine, setup)?;
     let name = file_name.rsplit_once('.').map_or(file_name, |(stem, _)| stem);
-    let mut lift = Lift::new(machine, &settings.setup, name);
+    let mut lift = Lift::new(machine, &settings.setup, name, keep);
     let run = control::read(&settings, file_name, text, &mut |record| {
         let line = record.line;
         lift.record(record).map_err(|found| found.line(line).into())
     });
     run.map_err(|found| way_out(machine, found))?;
-    Ok(lift.finish())
+    Ok((Reading { program: lift.program, warnings: lift.warnings }, lift.several))
 }
 
 /// Adds to what a control refuses what the user of a source can do about it.
@@ -110,12 +137,15 @@ struct Lift<'a> {
     machine: &'a Machine,
     setup: &'a Setup,
     program: Program,
+    keep: &'a mut Keep<'a>,
+    /// How many records there have been.
+    count: usize,
     warnings: Vec<Diagnostic>,
     place: Place,
     /// Z has been sent home since the last move, on this line.
     home: Option<u32>,
-    /// Where the program's last tool call is in its records, and whether nothing has moved since.
-    tool: Option<(usize, bool)>,
+    /// The tool in the spindle, and whether nothing has moved since it was called.
+    tool: Option<(Loaded, bool)>,
     /// The cycle that goes aside from the wall, as the control says it, and the way aside of the last hole.
     boring: Option<(Cycle, Option<Vec3>)>,
     /// The work offset that the program names.
@@ -124,6 +154,15 @@ struct Lift<'a> {
     several: bool,
     /// Numbers of the tools that the program calls, with the names of those that it calls by name.
     numbers: Vec<(u32, String)>,
+}
+
+/// The tool in the spindle.
+#[derive(Clone, Copy, Debug)]
+struct Loaded {
+    /// Register of its length offset.
+    register: u32,
+    /// Length, where it is known, mm.
+    length: Option<f64>,
 }
 
 /// Where the tool is, as far as the program says it.
@@ -146,11 +185,13 @@ impl Place {
 }
 
 impl<'a> Lift<'a> {
-    fn new(machine: &'a Machine, setup: &'a Setup, name: &str) -> Lift<'a> {
+    fn new(machine: &'a Machine, setup: &'a Setup, name: &str, keep: &'a mut Keep<'a>) -> Lift<'a> {
         Lift {
             machine,
             setup,
             program: Program::new(name),
+            keep,
+            count: 0,
             warnings: Vec::new(),
             place: setup
                 .start
@@ -166,7 +207,7 @@ impl<'a> Lift<'a> {
 
     fn record(&mut self, record: Record) -> Done {
         let line = record.line;
-        if self.program.records.len() >= MOST_RECORDS {
+        if self.count >= MOST_RECORDS {
             let message = format!("the program makes more than {MOST_RECORDS} records");
             let help = "it may loop without end; if not, read it in parts";
             return Err(refuse("program-length", message, help));
@@ -219,7 +260,7 @@ impl<'a> Lift<'a> {
             Op::Cycle(cycle) => {
                 self.boring = cycle.kind.withdrawal().is_some().then_some((*cycle, None));
                 if self.boring.is_none() {
-                    self.program.push(line, Op::Cycle(cycle));
+                    self.push(line, Op::Cycle(cycle));
                 }
             }
             Op::Home(axes) => return self.go_home(line, axes),
@@ -230,22 +271,28 @@ impl<'a> Lift<'a> {
                     tool.length = Some(entry.length);
                 }
                 self.home = None;
-                self.tool = Some((self.program.records.len(), true));
-                self.program.push(line, Op::Tool(tool));
+                let register = tool.offset.unwrap_or(tool.number);
+                self.tool = Some((Loaded { register, length: tool.length }, true));
+                self.push(line, Op::Tool(tool));
             }
             Op::LengthOffset(register) => return self.length_offset(line, register),
             Op::WorkOffset(number) => self.set_work_offset(line, number),
-            op => self.program.push(line, op),
+            op => self.push(line, op),
         }
         Ok(())
+    }
+
+    fn push(&mut self, line: u32, op: Op) {
+        self.count += 1;
+        (self.keep)(&mut self.program.records, Record { line, op });
     }
 
     /// The tool moves, from home where it was sent there.
     fn arrive(&mut self, line: u32, op: Op) {
         match (self.home.take(), self.place) {
-            (Some(line), _) => self.program.push(line, Op::Home(Z)),
+            (Some(line), _) => self.push(line, Op::Home(Z)),
             (None, Place::Start(start)) if !matches!(op, Op::Rapid(_)) => {
-                self.program.push(line, Op::Rapid(start));
+                self.push(line, Op::Rapid(start));
             }
             _ => {}
         }
@@ -253,7 +300,7 @@ impl<'a> Lift<'a> {
             *fresh = false;
         }
         self.place = op.pose().map_or(Place::Nowhere, |pose| Place::At(*pose));
-        self.program.push(line, op);
+        self.push(line, op);
     }
 
     /// Says the boring cycle anew where its way aside, which turns with the table, is another one.
@@ -264,7 +311,7 @@ impl<'a> Lift<'a> {
         }
         *told = Some(aside);
         let cycle = Cycle { kind: cycle.kind.with_aside(aside), ..*cycle };
-        self.program.push(line, Op::Cycle(Box::new(cycle)));
+        self.push(line, Op::Cycle(Box::new(cycle)));
     }
 
     /// Where a cut ends; it must begin somewhere.
@@ -283,7 +330,7 @@ impl<'a> Lift<'a> {
     /// a head has turned, is not known.
     fn pose(&self, pose: &Pose) -> Pose {
         let Orientation::Rotary { degrees, tool_center } = pose.orientation else { return *pose };
-        let length = self.tool_length();
+        let length = self.tool.and_then(|(tool, _)| tool.length);
         let (mut tip, axis) = self.machine.resolve(pose, length.unwrap_or(0.0));
         let mut heads = self.machine.rotary.iter().filter(|axis| axis.on == Mount::Head);
         if length.is_none()
@@ -332,14 +379,6 @@ impl<'a> Lift<'a> {
         Ok(())
     }
 
-    /// Length of the tool in the spindle, where it is known, mm.
-    fn tool_length(&self) -> Option<f64> {
-        match &self.program.records.get(self.tool?.0)?.op {
-            Op::Tool(tool) => tool.length,
-            _ => None,
-        }
-    }
-
     /// Axes go to a fixed place of the machine. Only what Z does there matters: the others come back
     /// by words of their own, and their way is the machine's.
     fn go_home(&mut self, line: u32, axes: u8) -> Done {
@@ -357,30 +396,34 @@ impl<'a> Lift<'a> {
 
     fn length_offset(&mut self, line: u32, register: Option<u32>) -> Done {
         let Some(register) = register else { return Ok(()) };
-        let Some((index, fresh)) = self.tool else {
+        let Some((tool, fresh)) = &mut self.tool else {
             let message = format!("length offset {register} is called, and no tool before it");
             let found = Diagnostic::warning("length-offset", message);
             self.warnings.push(found.help("the tool is that of the new machine").line(line));
             return Ok(());
         };
-        let Some(Op::Tool(tool)) = self.program.records.get_mut(index).map(|r| &mut r.op) else {
-            return Ok(());
-        };
         // Where a register is an edge of the tool in the spindle (SINUMERIK's D), the first is the tool
         // itself.
         let edges = self.machine.capabilities.length_offset == LengthOffset::One;
-        let own = if edges { 1 } else { tool.offset.unwrap_or(tool.number) };
+        let own = if edges { 1 } else { tool.register };
         if register == own {
             return Ok(());
         }
-        if edges || !fresh {
+        if edges || !*fresh {
             let message = format!(
                 "length offset {register} where {own} is the tool's: a tool with two lengths cannot be told"
             );
             let help = "post the parts with each offset as programs of their own";
             return Err(refuse("length-offset", message, help));
         }
-        tool.offset = Some(register);
+        tool.register = register;
+        let last = self.program.records.iter_mut().rev().find_map(|record| match &mut record.op {
+            Op::Tool(tool) => Some(tool),
+            _ => None,
+        });
+        if let Some(tool) = last {
+            tool.offset = Some(register);
+        }
         Ok(())
     }
 
@@ -398,16 +441,7 @@ impl<'a> Lift<'a> {
             self.several = true;
             self.place = Place::Nowhere;
         }
-        self.program.push(line, Op::WorkOffset(number));
-    }
-
-    /// The program, after its last record. One that works in the first work offset alone leaves it to
-    /// the machine.
-    fn finish(mut self) -> Reading {
-        if !self.several {
-            self.program.records.retain(|record| !matches!(record.op, Op::WorkOffset(_)));
-        }
-        Reading { program: self.program, warnings: self.warnings }
+        self.push(line, Op::WorkOffset(number));
     }
 }
 

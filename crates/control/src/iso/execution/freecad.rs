@@ -2,6 +2,7 @@
 
 use super::cycles::Holding;
 use super::step::Step;
+use crate::decimal;
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::{Canned, FeedMode, G, Group, Motion};
 use program::{Feed, Op};
@@ -16,12 +17,17 @@ const TYPED: [f64; 4] = [1.0, 10.0, 100.0, 1000.0];
 /// The feed a minute that `text` gives a second: where a number with few decimals lies within what the
 /// text leaves open, that number, since it is what was typed (3.333333 is 200, not 199.99998).
 fn per_minute(value: f64, text: &[u8]) -> f64 {
-    let digits = |part: &[u8]| part.iter().filter(|byte| byte.is_ascii_digit()).count();
-    let number = text.get(1..).unwrap_or_default();
-    let point = number.iter().position(|&byte| byte == b'.').unwrap_or(number.len());
-    let (whole, decimals) = number.split_at(point);
-    let places = digits(decimals).max(DIGITS.saturating_sub(digits(whole))).min(15);
-    let open = 60.0 * 0.5 * 10f64.powi(-(places as i32));
+    let (mut whole, mut decimals, mut behind) = (0, 0, false);
+    for byte in text.get(1..).unwrap_or_default() {
+        match byte {
+            b'.' => behind = true,
+            b'0'..=b'9' if behind => decimals += 1,
+            b'0'..=b'9' => whole += 1,
+            _ => {}
+        }
+    }
+    let places = decimals.max(DIGITS.saturating_sub(whole)).min(15);
+    let open = 60.0 * 0.5 * (1.0 / decimal::POWERS[places]);
     let exact = value * 60.0;
     let mut typed = TYPED.iter().map(|scale| (exact * scale).round() / scale);
     // Half of the last place, and what the doubles add to it.

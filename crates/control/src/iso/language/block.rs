@@ -258,8 +258,7 @@ impl<'a> Block<'a> {
                     return Err(self.unknown(letter, word));
                 }
                 if self.given & letter_bit != 0 {
-                    let message = format!("{} is given twice in the block", char::from(letter));
-                    return Err(self.fault("nc-repeated-word", message, at, end));
+                    return Err(self.repeated(letter, at, end));
                 }
                 if letter == b'N' && (self.started || word.point || word.value < 0.0) {
                     let message = "N is a whole number and stands first in its block";

@@ -72,6 +72,12 @@ impl Block<'_> {
     }
 
     #[cold]
+    pub(super) fn repeated(&self, letter: u8, start: usize, end: usize) -> Fault {
+        let message = format!("{} is given twice in the block", char::from(letter));
+        self.fault("nc-repeated-word", message, start, end)
+    }
+
+    #[cold]
     pub(super) fn unknown(&self, letter: u8, word: Word) -> Fault {
         let (start, end) = (word.start as usize, word.end as usize);
         let shown = String::from_utf8_lossy(self.text.get(start..end).unwrap_or_default());
