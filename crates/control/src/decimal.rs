@@ -1,7 +1,7 @@
 //! Decimal numbers as NC programs write them: a sign, digits, a point; never an exponent.
 
 /// A number and how it was written.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Decimal {
     /// Its value, the nearest double.
     pub value: f64,
@@ -9,6 +9,8 @@ pub(crate) struct Decimal {
     pub len: usize,
     /// Whether it has a decimal point.
     pub point: bool,
+    /// How many digits it has before the point, and behind it.
+    pub digits: [usize; 2],
 }
 
 /// Powers of ten that a double holds exactly.
@@ -37,24 +39,22 @@ pub(crate) fn parse(text: &[u8]) -> Option<Decimal> {
         number = number.wrapping_mul(10).wrapping_add(u64::from(digit));
         at += 1;
     }
+    let integer = at - sign;
     let point = text.get(at) == Some(&b'.');
-    let (mut count, mut places) = (at - sign, 0);
+    let mut places = 0;
     if point {
         at += 1;
         (number, places) = digits(text.get(at..).unwrap_or_default(), number);
-        count += places;
     }
     let len = at + places;
-    if count == 0 {
-        return None;
-    }
-    let magnitude = if count <= 15 {
+    let magnitude = match integer + places {
+        0 => return None,
         // Below 2^53, and a signed number is faster to convert.
-        number as i64 as f64 / POWERS[places]
-    } else {
-        std::str::from_utf8(&text[sign..len]).ok()?.parse().ok()?
+        1..=15 => number as i64 as f64 / POWERS[places],
+        _ => std::str::from_utf8(&text[sign..len]).ok()?.parse().ok()?,
     };
-    Some(Decimal { value: if negative { -magnitude } else { magnitude }, len, point })
+    let value = if negative { -magnitude } else { magnitude };
+    Some(Decimal { value, len, point, digits: [integer, places] })
 }
 
 /// The digits at the start of `text` behind those of `number`, and how many they are.
@@ -116,6 +116,15 @@ mod tests {
         for nothing in ["", "-", ".", "+.", "X1", "--1"] {
             assert_eq!(read(nothing), None, "{nothing:?}");
         }
+    }
+
+    #[test]
+    fn digits_are_counted_on_either_side_of_the_point() {
+        let count = |text: &str| parse(text.as_bytes()).map(|d| d.digits);
+        assert_eq!(count("-12.5"), Some([2, 1]));
+        assert_eq!(count("007"), Some([3, 0]));
+        assert_eq!(count("3."), Some([1, 0]));
+        assert_eq!(count(".1234567890123"), Some([0, 13]));
     }
 
     proptest! {

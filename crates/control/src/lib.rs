@@ -9,6 +9,7 @@
 //! as [`program::Orientation::Rotary`]; vectors and tilted planes resolved into the work frame as
 //! [`program::Orientation::Axis`]. Kinematics are not this crate's business.
 
+mod belt;
 mod budget;
 mod compensation;
 mod decimal;

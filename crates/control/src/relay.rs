@@ -1,15 +1,12 @@
 //! A control in a thread of its own: while it runs on, its records are dealt with.
 
 use crate::Sink;
+use crate::belt::belt;
 use program::{Diagnostic, Record};
-use std::sync::mpsc;
 use std::{mem, panic, thread};
 
 /// Records that are handed over at once.
 const BATCH: usize = 1024;
-
-/// Batches that wait at most: a control that is faster than its sink waits, and memory stays bounded.
-const WAITING: usize = 4;
 
 /// Hands what `run` gives to its sink over to `sink`, in the same order and on this thread, while `run` goes on
 /// in another.
@@ -20,33 +17,33 @@ pub fn relayed(
     run: impl FnOnce(&mut Sink) -> Result<(), Box<Diagnostic>> + Send,
     sink: &mut Sink,
 ) -> Result<(), Box<Diagnostic>> {
-    let (sender, receiver) = mpsc::sync_channel::<Vec<Record>>(WAITING);
-    // What has been emptied is filled again: fresh memory costs more than what is done with it.
-    let (emptied, empty) = mpsc::channel();
+    let (feed, taken) = belt::<Vec<Record>>();
     thread::scope(|scope| {
         let control = scope.spawn(move || {
-            let another = || empty.try_recv().unwrap_or_else(|_| Vec::with_capacity(BATCH));
-            let mut batch = another();
+            let mut batch = Vec::with_capacity(BATCH);
             let result = run(&mut |record| {
                 batch.push(record);
                 if batch.len() < BATCH {
                     return Ok(());
                 }
-                let full = mem::replace(&mut batch, another());
                 // Where nobody takes it, the sink has refused a record, and its answer is the one that counts.
-                sender.send(full).map_err(|_| Diagnostic::error("stopped", "").into())
+                let stopped = || Diagnostic::error("stopped", "");
+                batch = feed.lay(mem::take(&mut batch)).ok_or_else(stopped)?;
+                Ok(())
             });
             // What came before a block that is refused comes before the refusal.
-            sender.send(batch).map_or(Ok(()), |()| result)
+            feed.lay(batch).map_or(Ok(()), |_| result)
         });
-        let taken = receiver.into_iter().try_for_each(|mut batch| {
-            batch.drain(..).try_for_each(&mut *sink)?;
-            // Where nobody fills it again, the control has ended.
-            let _ = emptied.send(batch);
+        let answer = (|| {
+            while let Some(mut batch) = taken.take() {
+                batch.drain(..).try_for_each(&mut *sink)?;
+                taken.give_back(batch);
+            }
             Ok(())
-        });
+        })();
+        drop(taken);
         let run = control.join().unwrap_or_else(|cause| panic::resume_unwind(cause));
-        taken.and(run)
+        answer.and(run)
     })
 }
 

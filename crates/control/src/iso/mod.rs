@@ -13,6 +13,7 @@ mod language;
 
 use crate::Settings;
 use crate::compensation::Compensator;
+use flow::ahead::Ahead;
 use flow::run::Run;
 use flow::source::Source;
 use language::block::Fault;
@@ -24,5 +25,5 @@ pub(crate) fn run(
     compensator: &mut Compensator,
 ) -> Result<(), Fault> {
     let main = Source::program(text);
-    Run::new(settings, &main, compensator).run()
+    Ahead::of(text, |ahead| Run::new(settings, &main, ahead, compensator).run())
 }

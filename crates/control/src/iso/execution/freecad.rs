@@ -9,25 +9,17 @@ use program::{Feed, Op};
 
 /// How many digits FreeCAD's shorter form of a number has (`Command G1 [ F:3.3333 ]`). It leaves zeros
 /// at the end out, so that a number with fewer digits is as good as one with so many.
-const DIGITS: usize = 5;
+const DIGITS: u8 = 5;
 
 /// No decimals to the most of a feed in mm/min that somebody has typed, as powers of ten.
 const TYPED: [f64; 4] = [1.0, 10.0, 100.0, 1000.0];
 
-/// The feed a minute that `text` gives a second: where a number with few decimals lies within what the
-/// text leaves open, that number, since it is what was typed (3.333333 is 200, not 199.99998).
-fn per_minute(value: f64, text: &[u8]) -> f64 {
-    let (mut whole, mut decimals, mut behind) = (0, 0, false);
-    for byte in text.get(1..).unwrap_or_default() {
-        match byte {
-            b'.' => behind = true,
-            b'0'..=b'9' if behind => decimals += 1,
-            b'0'..=b'9' => whole += 1,
-            _ => {}
-        }
-    }
+/// The feed a minute that `value` gives a second, which is written with so many digits before and behind its
+/// point: where a number with few decimals lies within what these leave open, that number, since it is what was
+/// typed (3.333333 is 200, not 199.99998).
+fn per_minute(value: f64, [whole, decimals]: [u8; 2]) -> f64 {
     let places = decimals.max(DIGITS.saturating_sub(whole)).min(15);
-    let open = 60.0 * 0.5 * (1.0 / decimal::POWERS[places]);
+    let open = 60.0 * 0.5 * (1.0 / decimal::POWERS[usize::from(places)]);
     let exact = value * 60.0;
     let mut typed = TYPED.iter().map(|scale| (exact * scale).round() / scale);
     // Half of the last place, and what the doubles add to it.
@@ -50,8 +42,7 @@ impl Step<'_, '_, '_> {
         if word.value <= 0.0 {
             return Err(self.block.at_word(b'F', "nc-feed", "the feed must be greater than 0"));
         }
-        let text = self.block.text.get(word.start as usize..word.end as usize);
-        let sixty = || per_minute(word.value, text.unwrap_or_default());
+        let sixty = || per_minute(word.value, word.digits);
         let feed = match self.state.feed_mode {
             _ if taps => Feed::PerTurn(word.value),
             FeedMode::PerMinute => Feed::PerMinute(sixty()),
@@ -68,9 +59,11 @@ impl Step<'_, '_, '_> {
 #[cfg(test)]
 mod tests {
     use super::per_minute;
+    use crate::decimal;
 
     fn read(text: &str) -> f64 {
-        per_minute(text[1..].parse().unwrap(), text.as_bytes())
+        let number = decimal::parse(&text.as_bytes()[1..]).unwrap();
+        per_minute(number.value, number.digits.map(|count| count as u8))
     }
 
     #[test]

@@ -164,8 +164,9 @@ impl<'a> Run<'a, '_> {
     fn arguments(&self) -> Result<Locals, Fault> {
         let mut locals: Locals = [None; 34];
         let mut triples = [0usize; 3];
-        for &(letter, word) in &self.block.arguments {
-            let value = self.argument(letter, word)?;
+        for &word in &self.block.arguments {
+            let letter = word.letter;
+            let value = self.argument(word)?;
             // The second I, J or K and those after it are of argument specification II: `#7` and so on.
             let variable = match letter {
                 b'I' | b'J' | b'K' => {

@@ -436,8 +436,8 @@ impl<'a> Run<'a, '_> {
 
     /// The value of an argument. Without a point it counts as a length does; letters of numbers count
     /// as they are.
-    pub(super) fn argument(&self, letter: u8, word: Word) -> Result<f64, Fault> {
-        let counts = matches!(letter, b'D' | b'H' | b'M' | b'S' | b'T');
+    pub(super) fn argument(&self, word: Word) -> Result<f64, Fault> {
+        let counts = matches!(word.letter, b'D' | b'H' | b'M' | b'S' | b'T');
         if counts || word.is_in_units() || word.value == 0.0 {
             return Ok(word.value);
         }
@@ -446,7 +446,7 @@ impl<'a> Run<'a, '_> {
         }
         let message = format!(
             "argument {} has no decimal point: units or increments, as the machine is set",
-            char::from(letter)
+            char::from(word.letter)
         );
         Err(self.at_line("nc-decimal-point", message))
     }

@@ -1,5 +1,6 @@
 //! The run of a program: line after line, and the calls and jumps from one to another.
 
+use super::ahead::Ahead;
 use super::calls::{Frame, Kind};
 use super::macros;
 use super::owords;
@@ -14,9 +15,10 @@ use crate::iso::language::block::{Block, Fault};
 use crate::iso::language::expression::Reader;
 use crate::iso::language::flavors;
 use crate::iso::language::parameters::{Language, Parameters, Values};
-use crate::iso::language::words::{Dictionary, G, Group, M};
+use crate::iso::language::words::{Dictionary, Flavor, G, Group, M};
 use program::{Diagnostic, Op, Record};
 use std::collections::HashMap;
+use std::ptr;
 
 /// A program on its way through a control.
 pub(crate) struct Run<'a, 's> {
@@ -42,6 +44,8 @@ pub(crate) struct Run<'a, 's> {
     pub flows: bool,
     /// The program has ended, and what follows is no part of it.
     over: bool,
+    /// The lines that have been read ahead.
+    ahead: Ahead,
     /// Where the records go.
     compensator: &'a mut Compensator<'s>,
 }
@@ -51,6 +55,7 @@ impl<'a, 's> Run<'a, 's> {
     pub(crate) fn new(
         settings: &'a Settings,
         main: &'a Source<'a>,
+        ahead: Ahead,
         compensator: &'a mut Compensator<'s>,
     ) -> Run<'a, 's> {
         let dictionary = flavors::dictionary(settings.dialect);
@@ -73,6 +78,7 @@ impl<'a, 's> Run<'a, 's> {
             twins: HashMap::new(),
             flows: false,
             over: false,
+            ahead,
             compensator,
         }
     }
@@ -82,9 +88,17 @@ impl<'a, 's> Run<'a, 's> {
         while !self.over {
             let source = self.here.source;
             let from = self.here.at;
-            let Some((text, line)) = self.here.next() else { return self.end_of_text() };
+            if from >= source.text.len() {
+                return self.end_of_text();
+            }
+            let plain = match self.dictionary.flavor {
+                // Texts without brackets stand behind some of its words.
+                Flavor::Marlin => None,
+                _ => self.ahead.line(&self.here, ptr::eq(source, self.main)),
+            };
+            let (text, line) = self.here.next(plain);
             self.text = (text, line);
-            self.line(from, text, line).map_err(|fault| source.located(fault))?;
+            self.line(from, text, line, plain.is_some()).map_err(|fault| source.located(fault))?;
             let line = self.caller.unwrap_or(line);
             for op in self.ops.drain(..) {
                 self.budget.record(&op);
@@ -117,7 +131,14 @@ impl<'a, 's> Run<'a, 's> {
         Err(self.here.source.located(self.at_line("nc-call", message)))
     }
 
-    fn line(&mut self, from: usize, text: &'a [u8], line: u32) -> Result<(), Fault> {
+    /// Runs the line `text`, which begins at byte `from`; where it is plain, its words are known.
+    fn line(
+        &mut self,
+        from: usize,
+        text: &'a [u8],
+        line: u32,
+        is_plain: bool,
+    ) -> Result<(), Fault> {
         if text.first() == Some(&b'%') && !self.dictionary.flavor.changes_by_hand() {
             return self.percent(text, line);
         }
@@ -141,10 +162,14 @@ impl<'a, 's> Run<'a, 's> {
             }
             Language::Rs274 | Language::Plain => {}
         }
-        let values = values(self.settings, &self.control.state, &self.parameters, line);
-        self.block.read(line, text, 0, &values)?;
-        self.assign()?;
-        self.comments();
+        if is_plain {
+            self.block.take_over(line, text, self.ahead.words())?;
+        } else {
+            let values = values(self.settings, &self.control.state, &self.parameters, line);
+            self.block.read(line, text, 0, &values)?;
+            self.assign()?;
+            self.comments();
+        }
         if self.block.is_empty {
             return Ok(());
         }

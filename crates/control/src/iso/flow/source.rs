@@ -118,21 +118,14 @@ impl<'t> Source<'t> {
 }
 
 impl<'a> Place<'a> {
-    /// The next line and its number.
-    pub(super) fn next(&mut self) -> Option<(&'a [u8], u32)> {
-        let text = self.source.text.get(self.at..).filter(|text| !text.is_empty())?;
-        let line = match memchr::memchr(b'\n', text) {
-            Some(end) => {
-                self.at += end + 1;
-                &text[..end]
-            }
-            None => {
-                self.at += text.len();
-                text
-            }
-        };
+    /// The next line and its number; how many bytes it has may be known.
+    pub(super) fn next(&mut self, length: Option<usize>) -> (&'a [u8], u32) {
+        let rest = self.source.text.get(self.at..).unwrap_or_default();
+        let end = length.or_else(|| memchr::memchr(b'\n', rest)).unwrap_or(rest.len());
+        let line = rest.get(..end).unwrap_or(rest);
+        self.at += rest.len().min(end + 1);
         self.line = self.line.saturating_add(1);
-        Some((line.strip_suffix(b"\r").unwrap_or(line), self.line))
+        (line.strip_suffix(b"\r").unwrap_or(line), self.line)
     }
 }
 

@@ -4,7 +4,8 @@ use super::arithmetic;
 use super::expression::{Reader, Target, Value};
 use super::parameters::{Language, Values};
 use super::words::{Dictionary, Flavor, G, Group, LETTERS, M, bit, index, set};
-use crate::{Settings, decimal};
+use crate::Settings;
+use crate::decimal::{self, Decimal};
 use program::Diagnostic;
 
 /// From here on a number of FreeCAD's is none: it writes a NaN as -922337203685.477581, and nothing is a
@@ -20,10 +21,13 @@ pub(crate) type Fault = Box<Diagnostic>;
 /// A letter with its number.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct Word {
+    pub letter: u8,
     /// The number.
     pub value: f64,
     /// Whether a decimal point was written.
     pub point: bool,
+    /// How many digits were written before the point, and behind it: 255 for more.
+    pub digits: [u8; 2],
     /// Whether the program has calculated it.
     pub computed: bool,
     pub start: u32,
@@ -31,6 +35,21 @@ pub(crate) struct Word {
 }
 
 impl Word {
+    /// The word of `letter` with `number`, from byte `start` to byte `end` of its line.
+    #[inline]
+    pub(super) fn written(letter: u8, number: &Decimal, start: usize, end: usize) -> Word {
+        let place = |at| u32::try_from(at).unwrap_or(u32::MAX);
+        Word {
+            letter,
+            value: number.value,
+            point: number.point,
+            digits: number.digits.map(|count| count.min(255) as u8),
+            computed: false,
+            start: place(start),
+            end: place(end),
+        }
+    }
+
     /// Whether it counts units, and not perhaps increments.
     pub(crate) fn is_in_units(&self) -> bool {
         self.point || self.computed
@@ -68,7 +87,7 @@ pub(crate) struct Block<'a> {
     /// What the block sets (RS274/NGC), which takes effect when the whole block has been read.
     pub assignments: Vec<(Target<'a>, Value)>,
     /// The words behind `G65` or `G66`, in their order.
-    pub arguments: Vec<(u8, Word)>,
+    pub arguments: Vec<Word>,
 }
 
 impl<'a> Block<'a> {
@@ -178,12 +197,7 @@ impl<'a> Block<'a> {
             self.is_empty = false;
             length += at - from;
         }
-        if length > dictionary.longest {
-            let message =
-                format!("the block has {length} characters, at most {}", dictionary.longest);
-            return Err(self.fault("nc-long-block", message, 0, text.len()));
-        }
-        Ok(())
+        self.is_short(length)
     }
 
     /// Reads the word at `at` and gives the place after it.
@@ -193,41 +207,90 @@ impl<'a> Block<'a> {
         while matches!(self.text.get(from), Some(b' ' | b'\t')) {
             from += 1;
         }
-        let mut word = Word { start: u32::try_from(at).unwrap_or(u32::MAX), ..Word::default() };
-        let end = match self.text.get(from..).and_then(decimal::parse) {
+        let number = self.text.get(from..).and_then(decimal::parse);
+        let (word, end) = match number {
             Some(number) => {
-                (word.value, word.point) = (number.value, number.point);
-                if dictionary.flavor == Flavor::FreeCad && number.value.abs() >= NOTHING {
-                    return Err(self.nothing(at, from + number.len));
-                }
-                from + number.len
+                let end = from + number.len;
+                (Word::written(letter, &number, at, end), end)
             }
             // Marlin's G28 X: an axis that is named.
             None if self.g(Group::OneShot) == Some(G::Home)
                 && dictionary.flavor == Flavor::Marlin =>
             {
-                at + 1
+                (Word::written(letter, &Decimal::default(), at, at + 1), at + 1)
             }
             None => {
                 let (value, end) = self.computed(letter, at, from, values)?;
                 self.started = true;
                 // A word whose variable is null is not there (B-63684EN, 16.1).
                 let Some(value) = value else { return Ok(end) };
-                (word.value, word.computed) = (value, true);
-                end
+                let number = Decimal { value, ..Decimal::default() };
+                (Word { computed: true, ..Word::written(letter, &number, at, end) }, end)
             }
         };
-        word.end = u32::try_from(end).unwrap_or(u32::MAX);
+        self.add(word)?;
+        if letter == b'M'
+            && dictionary.flavor == Flavor::Marlin
+            && let Some((_, meaning)) = dictionary.m(word.value)
+        {
+            return Ok(self.prompt(meaning, end));
+        }
+        Ok(end)
+    }
+
+    /// Takes `words`, of which alone `text` consists, in place of those of the last block.
+    ///
+    /// # Errors
+    /// As [`Block::read`].
+    pub(crate) fn take_over(
+        &mut self,
+        line: u32,
+        text: &'a [u8],
+        words: &[Word],
+    ) -> Result<(), Fault> {
+        self.clear(line, text);
+        self.is_empty = words.is_empty();
+        let mut length = 0;
+        for &word in words {
+            self.add(word)?;
+            length += (word.end - word.start) as usize;
+        }
+        self.is_short(length)
+    }
+
+    /// # Errors
+    /// The block has so many characters, and more than the control takes.
+    fn is_short(&self, length: usize) -> Result<(), Fault> {
+        let longest = self.dictionary.longest;
+        if length <= longest {
+            return Ok(());
+        }
+        let message = format!("the block has {length} characters, at most {longest}");
+        Err(self.fault("nc-long-block", message, 0, self.text.len()))
+    }
+
+    /// Adds a word.
+    ///
+    /// # Errors
+    /// It is none of the flavour, or does not go together with those before it.
+    fn add(&mut self, word: Word) -> Result<(), Fault> {
+        let dictionary = self.dictionary;
+        let letter = word.letter;
+        let (at, end) = (word.start as usize, word.end as usize);
+        if dictionary.flavor == Flavor::FreeCad && word.value.abs() >= NOTHING {
+            return Err(self.nothing(at, end));
+        }
         if self.calls && !matches!(letter, b'N' | b'P' | b'L' | b'G') {
-            self.arguments.push((letter, word));
-            return Ok(end);
+            self.arguments.push(word);
+            return Ok(());
         }
         match letter {
             b'G' => match dictionary.g(word.value) {
                 Some((group, meaning)) => {
-                    if self.g[group as usize].replace(meaning).is_some() {
+                    if self.groups & group.bit() != 0 {
                         return Err(self.same_group(group, at, end));
                     }
+                    self.g[group as usize] = Some(meaning);
                     self.groups |= group.bit();
                     self.places[group as usize] = word;
                     self.calls |= matches!(meaning, G::MacroCall { .. });
@@ -236,16 +299,13 @@ impl<'a> Block<'a> {
             },
             b'M' => match dictionary.m(word.value).or_else(|| self.of_the_machine(word.value)) {
                 Some((group, meaning)) => {
-                    if self.m[group as usize].replace(meaning).is_some() {
+                    if self.groups & group.bit() != 0 {
                         return Err(self.same_group(group, at, end));
                     }
+                    self.m[group as usize] = Some(meaning);
                     self.groups |= group.bit();
                     self.places[group as usize] = word;
                     self.m_count += 1;
-                    if dictionary.flavor == Flavor::Marlin {
-                        self.started = true;
-                        return Ok(self.prompt(meaning, end));
-                    }
                 }
                 None if self.settings.auxiliary.iter().any(|&m| f64::from(m) == word.value) => {
                     self.m_count += 1;
@@ -260,19 +320,20 @@ impl<'a> Block<'a> {
                 if self.given & letter_bit != 0 {
                     return Err(self.repeated(letter, at, end));
                 }
-                if letter == b'N' && (self.started || word.point || word.value < 0.0) {
-                    let message = "N is a whole number and stands first in its block";
-                    return Err(self.fault("nc-block-number", message, at, end));
-                }
-                self.given |= letter_bit;
-                if letter != b'N' {
+                if letter == b'N' {
+                    if self.started || word.point || word.value < 0.0 {
+                        let message = "N is a whole number and stands first in its block";
+                        return Err(self.fault("nc-block-number", message, at, end));
+                    }
+                } else {
                     self.pending |= letter_bit;
                 }
+                self.given |= letter_bit;
                 self.words[index(letter)] = word;
             }
         }
         self.started = true;
-        Ok(end)
+        Ok(())
     }
 
     /// Behind Marlin's `M0`, `M1` and `M117` at `at` stands a text, not words: the place after it.

@@ -11,5 +11,6 @@ pub(super) mod expression;
 mod faults;
 pub(super) mod flavors;
 pub(super) mod parameters;
+pub(super) mod plain;
 mod system;
 pub(super) mod words;

@@ -332,16 +332,24 @@ pub(super) type Refused = (u16, &'static str);
 /// What a word may begin with, beside the letters: LinuxCNC's polar words and the number of a spindle.
 pub(super) const LETTERS: [u8; 30] = *b"ABCDEFGHIJKLMNOPQRSTUVWXYZ@$ ^";
 
-/// Where a letter stands in [`LETTERS`].
-pub(super) const fn index(letter: u8) -> usize {
-    match letter {
-        b'@' => 26,
-        b'$' => 27,
-        _ => (letter - b'A') as usize,
+/// Where each byte stands in [`LETTERS`]; 0 where it does not.
+const PLACES: [u8; 128] = {
+    let (mut places, mut at) = ([0; 128], 0);
+    while at < LETTERS.len() {
+        places[LETTERS[at] as usize] = at as u8;
+        at += 1;
     }
+    places
+};
+
+/// Where a letter stands in [`LETTERS`].
+#[inline]
+pub(super) const fn index(letter: u8) -> usize {
+    PLACES[(letter & 0x7F) as usize] as usize
 }
 
 /// The bit of a letter in a set of letters.
+#[inline]
 pub(crate) const fn bit(letter: u8) -> u32 {
     1 << index(letter)
 }

@@ -1,0 +1,49 @@
+//! Batches on their way from one thread to another. They come back to be filled again: fresh memory costs more
+//! than what most of them are filled with.
+
+use std::sync::mpsc::{self, Receiver, Sender, SyncSender};
+
+/// Batches that wait at most: who fills them faster than they are taken waits, and memory stays bounded.
+const WAITING: usize = 4;
+
+/// A belt: the end where batches are laid on, and that where they are taken.
+pub(crate) fn belt<T>() -> (Feed<T>, Taken<T>) {
+    let (full, taken) = mpsc::sync_channel(WAITING);
+    let (back, empty) = mpsc::channel();
+    (Feed { full, empty }, Taken { full: taken, back })
+}
+
+/// Where batches are laid on.
+#[derive(Debug)]
+pub(crate) struct Feed<T> {
+    full: SyncSender<T>,
+    empty: Receiver<T>,
+}
+
+/// Where batches are taken.
+#[derive(Debug)]
+pub(crate) struct Taken<T> {
+    full: Receiver<T>,
+    back: Sender<T>,
+}
+
+impl<T: Default> Feed<T> {
+    /// Lays a batch on and gives an empty one for it; `None` where nobody takes batches any more.
+    pub(crate) fn lay(&self, batch: T) -> Option<T> {
+        self.full.send(batch).ok()?;
+        Some(self.empty.try_recv().unwrap_or_default())
+    }
+}
+
+impl<T> Taken<T> {
+    /// The next batch; `None` behind the last.
+    pub(crate) fn take(&self) -> Option<T> {
+        self.full.recv().ok()
+    }
+
+    /// An empty one goes back.
+    pub(crate) fn give_back(&self, batch: T) {
+        // Where nobody fills it again, there is nothing to come.
+        let _ = self.back.send(batch);
+    }
+}
