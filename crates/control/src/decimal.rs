@@ -58,26 +58,26 @@ pub(crate) fn parse(text: &[u8]) -> Option<Decimal> {
 }
 
 /// The digits at the start of `text` behind those of `number`, and how many they are.
-#[inline]
-fn digits(text: &[u8], mut number: u64) -> (u64, usize) {
+fn digits(mut text: &[u8], mut number: u64) -> (u64, usize) {
     let mut count = 0;
-    loop {
-        let (value, digits) = leading(eight(text.get(count..).unwrap_or_default()));
+    while let Some((eight, rest)) = text.split_first_chunk() {
+        let (value, digits) = leading(u64::from_le_bytes(*eight));
         number = number.wrapping_mul(SCALES[digits]).wrapping_add(value);
         count += digits;
         if digits < 8 {
             return (number, count);
         }
+        text = rest;
     }
-}
-
-/// The eight bytes with which `text` begins, the first of which is the lowest; where it ends before, zeros.
-#[inline]
-fn eight(text: &[u8]) -> u64 {
-    match text.first_chunk() {
-        Some(eight) => u64::from_le_bytes(*eight),
-        None => text.iter().rev().fold(0, |bytes, &byte| bytes << 8 | u64::from(byte)),
+    for &byte in text {
+        let digit = byte.wrapping_sub(b'0');
+        if digit > 9 {
+            break;
+        }
+        number = number.wrapping_mul(10).wrapping_add(u64::from(digit));
+        count += 1;
     }
+    (number, count)
 }
 
 /// The value of the digits with which eight bytes begin, the first of which is the lowest, and how many they

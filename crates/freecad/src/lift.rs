@@ -142,14 +142,14 @@ impl<'a> Told<'a> {
             }
         }
         match self.moves.get(self.last) {
-            Some(true) => self.tell(records, record),
+            Some(true) => self.tell(records, at, record),
             _ => self.waiting.push(record),
         }
     }
 
     fn tell_waiting(&mut self, records: &mut Vec<Record>) {
         for record in mem::take(&mut self.waiting) {
-            self.tell(records, record);
+            self.tell(records, self.listing.operation(record.line), record);
         }
     }
 
@@ -174,11 +174,11 @@ impl<'a> Told<'a> {
         Ok(())
     }
 
-    fn tell(&mut self, records: &mut Vec<Record>, record: Record) {
+    /// Adds the record, which is of operation `at`, and what the job says of that.
+    fn tell(&mut self, records: &mut Vec<Record>, at: usize, record: Record) {
         if self.refused.is_some() {
             return;
         }
-        let at = self.listing.operation(record.line);
         if let Op::WorkOffset(number) = record.op
             && !mem::replace(&mut self.is_offset_named, true)
             && number == FIRST_WORK_OFFSET

@@ -3,6 +3,9 @@
 use crate::job::Job;
 use program::{Coolant, Diagnostic};
 
+/// Bytes that are looked at at once.
+const PIECE: usize = 1 << 14;
+
 /// All commands of a job, one a line.
 #[derive(Clone, Debug, Default)]
 pub struct Listing {
@@ -72,17 +75,21 @@ impl Listing {
 
     /// Adds commands, one a line.
     fn push(&mut self, commands: &str) {
-        let is_command = |line: &str| !line.starts_with('(');
-        self.turns |= names_rotary_axis(commands)
-            && commands.lines().any(|line| is_command(line) && names_rotary_axis(line));
-        let before = self.text.len();
-        self.text.extend_from_slice(commands.as_bytes());
+        let (mut names, mut lines) = (false, 0);
+        // Each piece is near while all is done with it.
+        for piece in commands.as_bytes().chunks(PIECE) {
+            names |= names_rotary_axis(piece);
+            lines += memchr::memchr_iter(b'\n', piece).count();
+            self.text.extend_from_slice(piece);
+        }
         if !commands.is_empty() && !commands.ends_with('\n') {
             self.text.push(b'\n');
+            lines += 1;
         }
-        let added = self.text.get(before..).unwrap_or_default();
-        let lines = u32::try_from(memchr::memchr_iter(b'\n', added).count()).unwrap_or(u32::MAX);
-        self.lines = self.lines.saturating_add(lines);
+        self.lines = self.lines.saturating_add(u32::try_from(lines).unwrap_or(u32::MAX));
+        let is_command = |line: &str| !line.starts_with('(');
+        self.turns |= names
+            && commands.lines().any(|line| is_command(line) && names_rotary_axis(line.as_bytes()));
     }
 
     /// The text.
@@ -128,8 +135,8 @@ impl Listing {
 }
 
 /// Whether one of the letters A, B, C is in a text.
-fn names_rotary_axis(text: &str) -> bool {
+fn names_rotary_axis(text: &[u8]) -> bool {
     // Without a way out of the loop, which the compiler then does for many bytes at once.
-    let is = |byte: u8| byte.to_ascii_uppercase().wrapping_sub(b'A') < 3;
-    text.bytes().fold(false, |found, byte| found | is(byte))
+    let is = |byte: &u8| byte.to_ascii_uppercase().wrapping_sub(b'A') < 3;
+    text.iter().fold(false, |found, byte| found | is(byte))
 }

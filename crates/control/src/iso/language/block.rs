@@ -273,6 +273,7 @@ impl<'a> Block<'a> {
     ///
     /// # Errors
     /// It is none of the flavour, or does not go together with those before it.
+    #[inline]
     fn add(&mut self, word: Word) -> Result<(), Fault> {
         let dictionary = self.dictionary;
         let letter = word.letter;
