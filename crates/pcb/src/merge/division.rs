@@ -194,7 +194,13 @@ impl Division {
                 farthest.resize(farthest.len().max(fewest + 2), start);
                 let onwards = &mut reached[node - start + 1..];
                 far = self.reach(node, far.max(node + 1), end);
-                self.onwards(node, fewest, at, &mut onwards[..far - node], &mut farthest[fewest + 1]);
+                self.onwards(
+                    node,
+                    fewest,
+                    at,
+                    &mut onwards[..far - node],
+                    &mut farthest[fewest + 1],
+                );
             }
         }
         let mut to = (end, 0);
