@@ -52,6 +52,44 @@ fn temporary(files: &[(&str, &str)]) -> tempfile::TempDir {
     folder
 }
 
+/// So long that its lines are taken apart ahead of their run: loops go back behind that, and branches before it.
+#[test]
+fn a_long_program_is_followed_wherever_it_leads() {
+    const COUNT: u32 = 5000;
+    let mut text = String::from("G21\nG90 F100\no100 repeat [3]\n");
+    for i in 0..COUNT {
+        text.push_str(&format!("G1 X{i}.5 Y-{i}\n"));
+        if i % 7 == 0 {
+            text.push_str("(not plain) #1=[#1+1] g1 z#1\n");
+        }
+    }
+    text.push_str("o100 endrepeat\no200 if [#1 LT 0]\n");
+    (0..COUNT).for_each(|i| text.push_str(&format!("X-{i}.25 Y0.125\n")));
+    text.push_str("o200 endif\n");
+    let end = text.lines().count() as u32 + 1;
+    let records = run(&format!("{text}X1\n"), &[]).unwrap();
+    let moves: Vec<(u32, Vec3)> =
+        records.iter().filter_map(|(line, op)| Some((*line, op.pose()?.point))).collect();
+    // The block reads #1 before it sets it.
+    let (mut expected, mut z, mut counted) = (Vec::new(), 0.0, 0.0);
+    for _ in 0..3 {
+        let mut line = 3;
+        for i in 0..COUNT {
+            let (x, y) = (f64::from(i) + 0.5, -f64::from(i));
+            line += 1;
+            expected.push((line, Vec3::new(x, y, z)));
+            if i % 7 == 0 {
+                (line, z, counted) = (line + 1, counted, counted + 1.0);
+                expected.push((line, Vec3::new(x, y, z)));
+            }
+        }
+    }
+    expected.push((end, Vec3::new(1.0, 1.0 - f64::from(COUNT), z)));
+    assert_eq!(moves, expected);
+    let error = run(&format!("{text}X1 X2\n"), &[]).unwrap_err();
+    assert_eq!((error.rule, error.line, error.column), ("nc-repeated-word", end, 4));
+}
+
 #[test]
 fn operators_functions_and_numbers() {
     for line in [

@@ -5,7 +5,7 @@ use crate::listing::Listing;
 use crate::way::Way;
 use control::Setup;
 use machine::Machine;
-use program::{Diagnostic, FIRST_WORK_OFFSET, Op, Program, Record, Spindle};
+use program::{Diagnostic, Op, Program, Record, Spindle};
 use std::mem;
 
 /// What was read.
@@ -37,7 +37,8 @@ pub fn read(machine: &Machine, file_name: &str, job: &Job) -> Result<Reading, Bo
         speaks.rotary.clear();
     }
     let mut told = Told::new(job, &listing);
-    let keep = &mut |records: &mut Vec<Record>, record| told.keep(records, record);
+    let keep =
+        &mut |records: &mut Vec<Record>, record, several| told.keep(records, record, several);
     let read = nc::read_by(&speaks, Setup::default(), "", listing.text(), keep);
     let located = |found: Diagnostic| Box::new(listing.located(found));
     let (reading, several) = read.map_err(|found| located(way_out(*found)))?;
@@ -91,9 +92,9 @@ struct Told<'a> {
     /// Number and name of the tool in the spindle.
     tool: Option<(u32, String)>,
     turns: bool,
-    /// A work offset has been named.
-    is_offset_named: bool,
-    /// The first one, which belongs only to a program that works in others, too.
+    /// The next work offset belongs only to a program that works in others, too.
+    is_offset_open: bool,
+    /// That one.
     offset: Option<Offset>,
     /// What is wrong with the first record that cannot be told.
     refused: Option<Box<Diagnostic>>,
@@ -120,14 +121,15 @@ impl<'a> Told<'a> {
             at: None,
             tool: None,
             turns: false,
-            is_offset_named: false,
+            is_offset_open: false,
             offset: None,
             refused: None,
         }
     }
 
     /// Puts the next record to `records`, as soon as it is known whether its operation moves.
-    fn keep(&mut self, records: &mut Vec<Record>, record: Record) {
+    fn keep(&mut self, records: &mut Vec<Record>, record: Record, several: bool) {
+        self.is_offset_open |= !several && matches!(record.op, Op::WorkOffset(_));
         let at = self.listing.operation(record.line);
         if at > self.last {
             self.last = at;
@@ -179,11 +181,7 @@ impl<'a> Told<'a> {
         if self.refused.is_some() {
             return;
         }
-        if let Op::WorkOffset(number) = record.op
-            && !mem::replace(&mut self.is_offset_named, true)
-            && number == FIRST_WORK_OFFSET
-            && !self.way.is_anywhere()
-        {
+        if matches!(record.op, Op::WorkOffset(_)) && mem::take(&mut self.is_offset_open) {
             let opens = self.at != Some(at);
             self.offset = Some(Offset { record, before: records.len(), opens });
             return;

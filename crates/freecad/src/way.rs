@@ -69,9 +69,4 @@ impl Way {
         records.append(&mut self.held);
         self.left = None;
     }
-
-    /// Whether the records say where the tool is.
-    pub(crate) fn is_anywhere(&self) -> bool {
-        self.here.is_some()
-    }
 }

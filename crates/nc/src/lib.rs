@@ -36,8 +36,8 @@ pub struct Reading {
     pub warnings: Vec<Diagnostic>,
 }
 
-/// How a record, the second, is put to those before it.
-pub type Keep<'a> = dyn FnMut(&mut Vec<Record>, Record) + 'a;
+/// How a record is put to those before it, by a program that works in several work offsets so far, or not.
+pub type Keep<'a> = dyn FnMut(&mut Vec<Record>, Record, bool) + 'a;
 
 /// The virtual control of `machine`, with what the operator has set up.
 ///
@@ -83,7 +83,7 @@ pub fn read(
     file_name: &str,
     text: &[u8],
 ) -> Result<Reading, Box<Diagnostic>> {
-    let keep = &mut |records: &mut Vec<Record>, record| records.push(record);
+    let keep = &mut |records: &mut Vec<Record>, record, _| records.push(record);
     let (mut reading, several) = read_by(machine, setup, file_name, text, keep)?;
     let records = &mut reading.program.records;
     let is_offset = |record: &Record| matches!(record.op, Op::WorkOffset(_));
@@ -284,7 +284,7 @@ impl<'a> Lift<'a> {
 
     fn push(&mut self, line: u32, op: Op) {
         self.count += 1;
-        (self.keep)(&mut self.program.records, Record { line, op });
+        (self.keep)(&mut self.program.records, Record { line, op }, self.several);
     }
 
     /// The tool moves, from home where it was sent there.
