@@ -36,7 +36,7 @@ pub struct Reading {
     pub warnings: Vec<Diagnostic>,
 }
 
-/// How a record is put to those before it, by a program that works in several work offsets so far, or not.
+/// How a record is put to those before it, and whether the program has worked in several work offsets so far.
 pub type Keep<'a> = dyn FnMut(&mut Vec<Record>, Record, bool) + 'a;
 
 /// The virtual control of `machine`, with what the operator has set up.
