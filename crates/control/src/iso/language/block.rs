@@ -228,7 +228,7 @@ impl<'a> Block<'a> {
                 (Word { computed: true, ..Word::written(letter, &number, at, end) }, end)
             }
         };
-        self.add(word)?;
+        self.add(&word)?;
         if letter == b'M'
             && dictionary.flavor == Flavor::Marlin
             && let Some((_, meaning)) = dictionary.m(word.value)
@@ -251,7 +251,7 @@ impl<'a> Block<'a> {
         self.clear(line, text);
         self.is_empty = words.is_empty();
         let mut length = 0;
-        for &word in words {
+        for word in words {
             self.add(word)?;
             length += (word.end - word.start) as usize;
         }
@@ -273,8 +273,7 @@ impl<'a> Block<'a> {
     ///
     /// # Errors
     /// It is none of the flavour, or does not go together with those before it.
-    #[inline]
-    fn add(&mut self, word: Word) -> Result<(), Fault> {
+    fn add(&mut self, word: &Word) -> Result<(), Fault> {
         let dictionary = self.dictionary;
         let letter = word.letter;
         let (at, end) = (word.start as usize, word.end as usize);
@@ -282,7 +281,7 @@ impl<'a> Block<'a> {
             return Err(self.nothing(at, end));
         }
         if self.calls && !matches!(letter, b'N' | b'P' | b'L' | b'G') {
-            self.arguments.push(word);
+            self.arguments.push(*word);
             return Ok(());
         }
         match letter {
@@ -293,7 +292,7 @@ impl<'a> Block<'a> {
                     }
                     self.g[group as usize] = Some(meaning);
                     self.groups |= group.bit();
-                    self.places[group as usize] = word;
+                    self.places[group as usize] = *word;
                     self.calls |= matches!(meaning, G::MacroCall { .. });
                 }
                 None => return Err(self.unknown(letter, word)),
@@ -305,7 +304,7 @@ impl<'a> Block<'a> {
                     }
                     self.m[group as usize] = Some(meaning);
                     self.groups |= group.bit();
-                    self.places[group as usize] = word;
+                    self.places[group as usize] = *word;
                     self.m_count += 1;
                 }
                 None if self.settings.auxiliary.iter().any(|&m| f64::from(m) == word.value) => {
@@ -330,7 +329,7 @@ impl<'a> Block<'a> {
                     self.pending |= letter_bit;
                 }
                 self.given |= letter_bit;
-                self.words[index(letter)] = word;
+                self.words[index(letter)] = *word;
             }
         }
         self.started = true;

@@ -78,7 +78,7 @@ impl Block<'_> {
     }
 
     #[cold]
-    pub(super) fn unknown(&self, letter: u8, word: Word) -> Fault {
+    pub(super) fn unknown(&self, letter: u8, word: &Word) -> Fault {
         let (start, end) = (word.start as usize, word.end as usize);
         let shown = String::from_utf8_lossy(self.text.get(start..end).unwrap_or_default());
         let message = if matches!(letter, b'G' | b'M') {
