@@ -1,9 +1,9 @@
 //! The language: a line becomes a block of words, and what is wrong with it is said at its place.
 //!
 //! What a word means stands in one list ([`words`]), which of them a flavour has in its table
-//! ([`flavors`]). A line is taken apart by that ([`block`], [`faults`]); its numbers are calculated
-//! where it says so ([`expression`], [`arithmetic`]) from what the program has set ([`parameters`]) and
-//! what the control says of itself ([`system`]).
+//! ([`flavors`]). A line is taken apart by that ([`block`], [`faults`]), a plain one ahead of
+//! its run ([`plain`]); its numbers are calculated where it says so ([`expression`], [`arithmetic`]) from
+//! what the program has set ([`parameters`]) and what the control says of itself ([`system`]).
 
 pub(super) mod arithmetic;
 pub(super) mod block;
