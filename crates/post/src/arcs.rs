@@ -106,8 +106,7 @@ impl Walk<'_> {
         let Some(facts) = self.plane_of(&local) else {
             return self.lower(&arc, 0.0, 1.0, to, stop, "arcs outside the planes of the control");
         };
-        let rises =
-            local.rise().abs() > 0.5 * self.machine.resolution() || self.is_over_surface(arc.end);
+        let rises = local.rise().abs() > 0.5 * self.resolution || self.is_over_surface(arc.end);
         // A circle through three points of a helix is none.
         let flat = self.notation(&local, facts, rises) == Notation::Middle;
         if rises && (flat || !self.machine.capabilities.helix) {
@@ -150,11 +149,15 @@ impl Walk<'_> {
                 .is_some_and(|a| crate::place::same(a, Vec3::Z)),
             _ => true,
         };
-        let most = (self.machine.resolution() / (2.0 * arc.radius())).max(ANGLE_EPSILON);
+        let most = (self.resolution / (2.0 * arc.radius())).max(ANGLE_EPSILON);
         PLANES.iter().filter(|_| upright).find(|facts| {
             let along = Vec3::AXES[facts.axes[2]];
-            let off = angle_between(along, arc.normal);
-            self.machine.capabilities.arcs.contains(&facts.plane) && off.min(PI - off) <= most
+            let off = || {
+                let angle = angle_between(along, arc.normal);
+                angle.min(PI - angle)
+            };
+            self.machine.capabilities.arcs.contains(&facts.plane)
+                && (along.cross(arc.normal) == Vec3::ZERO || off() <= most)
         })
     }
 
@@ -208,7 +211,7 @@ impl Walk<'_> {
         let round = |words: &[WordName; 3], p: Vec3| {
             Vec3::from_array([0, 1, 2].map(|i| self.writer.rounded(words[i], p[i])))
         };
-        let start = self.stands(round(&END, arc.at(from)));
+        let start = self.stands(|| round(&END, arc.at(from)));
         let to = arc.at(until);
         // An arc that is told by its angle ends as far from its centre as it begins, and not at a
         // rounded place.
@@ -228,12 +231,15 @@ impl Walk<'_> {
         let even = c + along * ((s + e) * 0.5 - c).dot(along);
         let can = &self.machine.capabilities;
         let notation = self.notation(arc, facts, rises);
-        let middle = round(&MIDDLE, arc.at((from + until) / 2.0));
+        let middle = match self.writer.has(&MIDDLE) {
+            true => round(&MIDDLE, arc.at((from + until) / 2.0)),
+            false => to,
+        };
         let radius = if wanted > PI { -arc.radius() } else { arc.radius() };
         let said = self.writer.rounded(WordName::Radius, radius);
         // By as much an arc by its angle misses its end; any other is a spiral.
         let uneven = match by_angle {
-            true => ANGLE_STEPS * self.machine.resolution(),
+            true => ANGLE_STEPS * self.resolution,
             false => can.arc_tolerance / 2.0,
         };
         let legal = |c: Vec3| {
@@ -258,15 +264,15 @@ impl Walk<'_> {
             }
             sweep += TAU * ((wanted - sweep) / TAU).round().max(0.0);
             let radius = a.length();
-            let near =
-                (sweep - wanted).abs() * radius <= ROUNDING_STEPS * self.machine.resolution();
+            let near = (sweep - wanted).abs() * radius <= ROUNDING_STEPS * self.resolution;
             let even = (radius - b.length()).abs() <= uneven;
             let moved = flat(written).distance(flat(arc.center));
             let rise = end[w] - start[w];
             // The ends stay where they are; between them a shift of the centre moves the arc by as much
-            // as its turn, and a short chord is a long lever for where the even centre lies.
-            let lever = 1.0 - (wanted.min(TAU) / 2.0).cos();
-            let close = moved * lever <= CENTER_STEPS * self.machine.resolution() * (1.0 + 1e-9);
+            // as its turn, and a short chord is a long lever for where the even centre lies. None is longer than 2.
+            let lever = || 1.0 - (wanted.min(TAU) / 2.0).cos();
+            let most = CENTER_STEPS * self.resolution * (1.0 + 1e-9);
+            let close = moved * 2.0 <= most || moved * lever() <= most;
             (near && even && moved <= can.lowering_tolerance && close && radius > 0.0).then_some(
                 Block { to, end, center: written, middle, radius: said, sweep: sign * sweep, rise },
             )
@@ -277,7 +283,7 @@ impl Walk<'_> {
     fn arc_block(&mut self, arc: &Arc, facts: &Facts, block: &Block, rises: bool) -> Done {
         let ccw = block.sweep > 0.0;
         let [u, v, w] = facts.axes;
-        let start = self.stands(self.local(arc.start));
+        let start = self.stands(|| self.local(arc.start));
         let full = [u, v].iter().all(|&i| block.end[i] == start[i]);
         if rises || full {
             // A helix or a circle says where it ends in the plane even where that is where it began:
@@ -294,10 +300,12 @@ impl Walk<'_> {
             self.writer.set(START[i], start[i]);
         }
         self.say_surface(block.to);
-        let spoke = start - block.center;
-        let begins = spoke[v].atan2(spoke[u]).rem_euclid(TAU);
-        self.writer.set(WordName::StartAngle, begins.to_degrees());
-        self.writer.set(WordName::EndAngle, (begins + block.sweep).to_degrees());
+        if self.writer.has(&[WordName::StartAngle, WordName::EndAngle]) {
+            let spoke = start - block.center;
+            let begins = spoke[v].atan2(spoke[u]).rem_euclid(TAU);
+            self.writer.set(WordName::StartAngle, begins.to_degrees());
+            self.writer.set(WordName::EndAngle, (begins + block.sweep).to_degrees());
+        }
         self.writer.set(WordName::Radius, block.radius);
         self.writer.set(WordName::PlainRadius, block.radius.abs());
         let turns = (block.sweep.abs() / TAU - 1e-9).floor();
@@ -311,21 +319,27 @@ impl Walk<'_> {
         self.keep_compensation();
         self.writer.code(WordName::Plane, facts.code);
         self.writer.code(WordName::Motion, if ccw { motion::ARC_CCW } else { motion::ARC_CW });
-        let angle = self.writer.rounded(WordName::Sweep, block.sweep.to_degrees()).to_radians();
-        let rise = self.writer.rounded(WordName::Rise, block.rise);
-        let normal = Vec3::AXES[w];
-        let turned = geom::rotate(start - block.center, normal, angle) + normal * rise;
         let name = self.arc_name(ccw, rises);
-        self.turned_to =
-            self.templates.places(name, WordName::Sweep).then_some(block.center + turned);
+        self.turned_to = self.templates.places(name, WordName::Sweep).then(|| {
+            let angle = self.writer.rounded(WordName::Sweep, block.sweep.to_degrees()).to_radians();
+            let rise = self.writer.rounded(WordName::Rise, block.rise);
+            let normal = Vec3::AXES[w];
+            let turned = geom::rotate(start - block.center, normal, angle) + normal * rise;
+            block.center + turned
+        });
         self.block(name)
     }
 
     /// Where the control stands, in the coordinates of its blocks: as the last words say, or as the angle
     /// of the last arc leads to; `begin` where neither is known.
-    fn stands(&self, begin: Vec3) -> Vec3 {
-        let begin = self.turned_to.unwrap_or(begin);
-        Vec3::from_array([0, 1, 2].map(|i| self.writer.active(END[i]).unwrap_or(begin[i])))
+    fn stands(&self, begin: impl FnOnce() -> Vec3) -> Vec3 {
+        match END.map(|word| self.writer.active(word)) {
+            [Some(x), Some(y), Some(z)] => Vec3::new(x, y, z),
+            known => {
+                let begin = self.turned_to.unwrap_or_else(begin);
+                Vec3::from_array([0, 1, 2].map(|i| known[i].unwrap_or(begin[i])))
+            }
+        }
     }
 
     fn arc_name(&self, ccw: bool, rises: bool) -> BlockName {

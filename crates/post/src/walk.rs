@@ -79,6 +79,9 @@ pub(crate) struct Walk<'a> {
     pub(crate) here: Option<Pose>,
     /// Whether the control stands where the last pose says.
     pub(crate) located: bool,
+    /// Whether the last record was a straight cut, and one in the same orientation differs from it in where
+    /// it goes alone.
+    pub(crate) goes_on: bool,
     pub(crate) place: Place,
     /// The wire, where the machine has one.
     pub(crate) wire: Option<Wire>,
@@ -91,6 +94,8 @@ pub(crate) struct Walk<'a> {
     /// Where the last arc leads, in the coordinates of the block, where it is told by its angle.
     pub(crate) turned_to: Option<Vec3>,
     pub(crate) limits: Limits<'a>,
+    /// Smallest step of a linear axis, mm.
+    pub(crate) resolution: f64,
     /// Entry of the code word `work_offset` that is active.
     work_offset: usize,
     ended: bool,
@@ -133,6 +138,7 @@ impl<'a> Walk<'a> {
             whole: 0.0,
             here: None,
             located: false,
+            goes_on: false,
             place: Place::start(machine),
             wire: Wire::of(machine, program),
             surface: None,
@@ -140,6 +146,7 @@ impl<'a> Walk<'a> {
             said: Vec3::ZERO,
             turned_to: None,
             limits: Limits::new(machine),
+            resolution: machine.resolution(),
             work_offset: 0,
             ended: false,
         })
@@ -199,8 +206,11 @@ impl<'a> Walk<'a> {
                 _ => Err(refuse("after-end", "the program goes on after its end")),
             };
         }
-        if record.op.pose().is_some() {
-            return self.motion(&record.op, stop);
+        let goes_on = std::mem::take(&mut self.goes_on);
+        match &record.op {
+            Op::Line(pose) if goes_on && self.keeps_orientation(pose) => return self.line_on(pose),
+            op if op.pose().is_some() => return self.motion(op, stop),
+            _ => {}
         }
         match &record.op {
             Op::Rapid(_) | Op::Line(_) | Op::Arc(_) | Op::Thread(_) | Op::Hole(_) => Ok(()),
@@ -297,7 +307,7 @@ impl<'a> Walk<'a> {
             self.default_tool()?;
         }
         let Some(stop) = stop else { return Ok(()) };
-        match op {
+        let done = match op {
             Op::Rapid(pose) => self.rapid(pose, &stop),
             Op::Line(pose) => self.line(pose, &stop),
             Op::Arc(to) => self.arc(to, &stop),
@@ -307,7 +317,10 @@ impl<'a> Walk<'a> {
             }
             Op::Thread(thread) => self.thread(thread, &stop),
             _ => Ok(()),
-        }
+        };
+        // What others cut straight, they do with a feed or an end of their own.
+        self.goes_on &= matches!(op, Op::Line(_));
+        done
     }
 
     /// Positions are counted from another work offset from here on; the way there leads over the part.

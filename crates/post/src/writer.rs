@@ -3,7 +3,7 @@
 use crate::catalogue::WordName;
 use crate::number::Number;
 use crate::surface::{DECIMALS, Part};
-use crate::template::{Lines, ORIENTATION, POSITION, Step, Words, bit};
+use crate::template::{Lines, ORIENTATION, POSITION, Step, Words, bit, holds, words_of};
 use machine::Machine;
 use program::Diagnostic;
 
@@ -12,8 +12,8 @@ enum Form {
     /// The control does not use it.
     Absent,
     Number(Number),
-    /// Its texts, in the order of [`WordName::codes`], and whether it is modal.
-    Code(Vec<Option<String>>, bool),
+    /// Its texts, in the order of [`WordName::codes`].
+    Code(Vec<Option<String>>),
 }
 
 /// A value as it is compared: what repeats is left out.
@@ -33,12 +33,17 @@ pub(crate) struct Writer {
     line_length: usize,
     first: u32,
     step: u32,
-    /// The words of the block that comes next, and their values.
+    /// The words of the last block, of the one that comes next, and their values.
+    last: Words,
     set: Words,
     values: [Value; WordName::COUNT],
     /// The words whose active value is known, and those values.
     known: Words,
     active: [Value; WordName::COUNT],
+    /// Of the words of the next block those whose values are the active ones.
+    same: Words,
+    /// The words that are left out where they repeat themselves.
+    modal: Words,
     /// The word whose form [`WordName::F`] has.
     feed_form: WordName,
     /// What is added to Z in the block that comes next: parts, and of which parameters, as those are written.
@@ -52,14 +57,19 @@ pub(crate) struct Writer {
 
 impl Writer {
     pub(crate) fn new(machine: &Machine) -> Writer {
-        let form = |&name: &WordName| match machine.words.get(name.name()) {
+        let words = words_of(machine);
+        let word =
+            |name: WordName| machine.words.get(name.name()).filter(|_| words & bit(name) != 0);
+        let form = |&name: &WordName| match word(name) {
             None => Form::Absent,
             Some(word) if name.codes().next().is_some() => {
-                let texts = name.codes().map(|code| word.codes.get(code).cloned()).collect();
-                Form::Code(texts, word.modal)
+                Form::Code(name.codes().map(|code| word.codes.get(code).cloned()).collect())
             }
-            Some(word) if name == WordName::N && word.step == 0 => Form::Absent,
             Some(word) => Form::Number(Number::new(&machine.format.separator, word)),
+        };
+        let modal = |all, &name: &WordName| match word(name) {
+            Some(word) if word.modal => all | bit(name),
+            _ => all,
         };
         let number = machine.words.get(WordName::N.name());
         let first = number.map_or(1, |word| word.first);
@@ -70,10 +80,13 @@ impl Writer {
             line_length: machine.capabilities.line_length,
             first,
             step: number.map_or(1, |word| word.step),
+            last: 0,
             set: 0,
             values: [Value::default(); WordName::COUNT],
             known: 0,
             active: [Value::default(); WordName::COUNT],
+            same: 0,
+            modal: WordName::ALL.iter().fold(0, modal),
             feed_form: WordName::F,
             raised: None,
             refused: None,
@@ -91,8 +104,7 @@ impl Writer {
             Some(steps) => {
                 // Both zeros are one.
                 let exact = if number.exact { (value + 0.0).to_bits() } else { 0 };
-                self.values[word as usize] = Value { steps, exact };
-                self.set |= bit(word);
+                self.say(word, Value { steps, exact });
             }
             None => self.refused = Some((word, value)),
         }
@@ -119,8 +131,21 @@ impl Writer {
     /// The next block may write the code `word` with its entry `index`.
     #[inline]
     pub(crate) fn code(&mut self, word: WordName, index: usize) {
-        self.values[word as usize] = Value { steps: index as i64, exact: 0 };
-        self.set |= bit(word);
+        self.say(word, Value { steps: index as i64, exact: 0 });
+    }
+
+    #[inline]
+    fn say(&mut self, word: WordName, value: Value) {
+        let (index, bit) = (word as usize, bit(word));
+        self.values[index] = value;
+        self.set |= bit;
+        self.same = if self.active[index] == value { self.same | bit } else { self.same & !bit };
+    }
+
+    /// Whether the control has one of `words`.
+    #[inline]
+    pub(crate) fn has(&self, words: &[WordName]) -> bool {
+        words.iter().any(|word| !matches!(self.forms[*word as usize], Form::Absent))
     }
 
     /// How `value` is rounded by `word`: what reading it gives. The value itself where the control
@@ -147,18 +172,21 @@ impl Writer {
     /// Whether the next block, writing all that is set, changes one of `words`.
     #[inline]
     pub(crate) fn changes(&self, words: Words) -> bool {
-        let mut rest = self.set & words;
-        if self.raised.is_some() && rest & bit(WordName::Z) != 0 {
-            return true;
-        }
-        while rest != 0 {
-            let word = rest.trailing_zeros() as usize;
-            if self.known & (1 << word) == 0 || self.values[word] != self.active[word] {
-                return true;
-            }
-            rest &= rest - 1;
-        }
-        false
+        self.set & words & !self.repeated() != 0
+    }
+
+    /// The words that the control has been told as the next block says them.
+    #[inline]
+    fn repeated(&self) -> Words {
+        // What a raised one comes to, only the control knows.
+        let raised = if self.raised.is_some() { bit(WordName::Z) } else { 0 };
+        self.known & self.same & !raised
+    }
+
+    /// The next block may write what the last one might, with the same values.
+    #[inline]
+    pub(crate) fn repeat(&mut self) {
+        self.set = self.last;
     }
 
     /// Takes `words` out of the next block.
@@ -192,6 +220,12 @@ impl Writer {
         if self.feed_form != word {
             self.feed_form = word;
             self.forget(bit(WordName::F));
+            self.modal &= !bit(WordName::F);
+            if let Form::Number(number) = &self.forms[word as usize]
+                && number.modal
+            {
+                self.modal |= bit(WordName::F);
+            }
         }
     }
 
@@ -211,11 +245,11 @@ impl Writer {
         }
         let mut start = self.text.len();
         let (mut gap, mut full, mut numbered) = (false, false, false);
-        let mut placed = 0;
+        let mut fresh = self.fresh();
         for step in &block.steps {
             match *step {
-                Step::Gap => gap = true,
-                Step::Text(from, to) => {
+                Step::Text { gap: before, from, to } => {
+                    gap |= before;
                     if self.separated(&mut gap, start) {
                         self.text.extend_from_slice(&self.separator);
                     }
@@ -223,21 +257,17 @@ impl Writer {
                     self.text.extend_from_slice(text);
                     full = true;
                 }
-                Step::Word(WordName::N) => {
-                    if let Form::Number(number) = &self.forms[WordName::N as usize] {
-                        let next = self.next_number as f64;
-                        let steps = number.round(next).or_else(|| {
-                            self.next_number = self.first.into();
-                            number.round(f64::from(self.first))
-                        });
-                        let separated = self.separated(&mut gap, start);
-                        self.write(WordName::N, separated, steps.unwrap_or_default());
-                        numbered = true;
-                    }
+                Step::Word { gap: before, word: WordName::N } => {
+                    gap |= before;
+                    self.number(&mut gap, start);
+                    numbered = true;
                 }
-                Step::Word(word) => {
-                    placed |= bit(word);
-                    full |= self.word(word, &mut gap, start);
+                Step::Word { gap: before, word } => {
+                    gap |= before;
+                    if holds(fresh, word) {
+                        full |= self.word(word, &mut gap, start);
+                        fresh = self.fresh();
+                    }
                 }
                 Step::End => {
                     if full {
@@ -252,10 +282,16 @@ impl Writer {
             }
         }
         // A position that the block leads to by other words (a helix by its angle) is not known by its own.
-        self.known &= !(self.set & !placed & (POSITION | ORIENTATION));
-        self.set = 0;
+        self.known &= !(self.set & !block.words & (POSITION | ORIENTATION));
+        self.last = std::mem::take(&mut self.set);
         self.raised = None;
         Ok(())
+    }
+
+    /// The words of the next block that say something new, or are said each time.
+    #[inline]
+    fn fresh(&self) -> Words {
+        self.set & !(self.modal & self.repeated())
     }
 
     /// Whether something stands before on the line that began at `start`, and a gap after it.
@@ -264,38 +300,38 @@ impl Writer {
         std::mem::take(gap) && self.text.len() > start
     }
 
-    /// Writes a word where it is set and says something new; whether it did.
+    /// Writes the number of the block.
+    #[inline]
+    fn number(&mut self, gap: &mut bool, start: usize) {
+        let Form::Number(number) = &self.forms[WordName::N as usize] else { return };
+        let steps = number.round(self.next_number as f64).or_else(|| {
+            self.next_number = self.first.into();
+            number.round(f64::from(self.first))
+        });
+        let separated = self.separated(gap, start);
+        self.write(WordName::N, separated, steps.unwrap_or_default());
+    }
+
+    /// Writes a word; whether it has a text.
     #[inline]
     fn word(&mut self, word: WordName, gap: &mut bool, start: usize) -> bool {
         let (index, bit) = (word as usize, bit(word));
-        if self.set & bit == 0 {
-            return false;
-        }
         let value = self.values[index];
-        let modal = match &self.forms[self.form(word) as usize] {
-            Form::Absent => return false,
-            Form::Number(number) => number.modal,
-            Form::Code(texts, modal) => {
-                if texts.get(value.steps as usize).is_none_or(|text| text.as_deref() == Some("")) {
-                    return false;
-                }
-                *modal
-            }
-        };
-        let is_raised = word == WordName::Z && self.raised.is_some();
-        if modal && !is_raised && self.known & bit != 0 && self.active[index] == value {
+        if let Form::Code(texts) = &self.forms[index]
+            && texts.get(value.steps as usize).is_none_or(|text| text.as_deref() == Some(""))
+        {
             return false;
         }
         self.known |= bit;
+        self.same |= bit;
         self.active[index] = value;
         let separated = self.separated(gap, start);
-        match self.raised.filter(|_| is_raised) {
-            None => self.write(word, separated, value.steps),
-            Some(parts) => {
-                // What it comes to, only the control knows.
+        match self.raised {
+            Some(parts) if word == WordName::Z => {
                 self.known &= !bit;
                 self.write_raised(word, separated, value.steps, &parts);
             }
+            _ => self.write(word, separated, value.steps),
         }
         true
     }
@@ -326,7 +362,7 @@ impl Writer {
         match &self.forms[self.form(word) as usize] {
             Form::Absent => {}
             Form::Number(number) => number.write(separated, steps, &mut self.text),
-            Form::Code(texts, _) => {
+            Form::Code(texts) => {
                 if let Some(Some(text)) = texts.get(steps as usize) {
                     if separated {
                         self.text.extend_from_slice(&self.separator);
