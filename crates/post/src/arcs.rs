@@ -42,6 +42,16 @@ enum Notation {
     Middle,
 }
 
+impl Notation {
+    /// The angle up to which an arc that rounding spoils is not cut in two, radians.
+    fn longest(self) -> f64 {
+        match self {
+            Notation::Radius => PI / 2.0,
+            Notation::Center(_) | Notation::Middle => PI,
+        }
+    }
+}
+
 /// How many steps of the last decimal an arc may change in length when its ends are rounded.
 const ROUNDING_STEPS: f64 = 6.0;
 
@@ -53,6 +63,18 @@ const CENTER_STEPS: f64 = std::f64::consts::SQRT_2;
 /// How many steps the end of an arc that is told by its angle may be off: its start is rounded by up to
 /// √½ steps in the plane, and its centre by less.
 const ANGLE_STEPS: f64 = 0.85;
+
+/// How an arc is told.
+struct Form {
+    facts: &'static Facts,
+    /// Whether it is a helix.
+    rises: bool,
+    ccw: bool,
+    name: BlockName,
+    notation: Notation,
+    /// Whether its block says how far it turns, and not where it ends.
+    by_angle: bool,
+}
 
 /// Part of an arc as one block.
 struct Block {
@@ -87,7 +109,7 @@ impl Walk<'_> {
         // The reader holds arcs against its own tolerance; here the ends are what they are.
         let arc = Arc::new(here.point, to.end.point, to.center, to.normal, to.turns, f64::MAX)
             .map_err(no_arc)?;
-        self.whole = arc.length();
+        self.whole = if self.is_timed() { arc.length() } else { 0.0 };
         let local = Arc {
             start: self.local(arc.start),
             end: self.local(arc.end),
@@ -107,25 +129,28 @@ impl Walk<'_> {
             return self.lower(&arc, 0.0, 1.0, to, stop, "arcs outside the planes of the control");
         };
         let rises = local.rise().abs() > 0.5 * self.resolution || self.is_over_surface(arc.end);
+        let form = self.form(&local, facts, rises);
         // A circle through three points of a helix is none.
-        let flat = self.notation(&local, facts, rises) == Notation::Middle;
+        let flat = form.notation == Notation::Middle;
         if rises && (flat || !self.machine.capabilities.helix) {
             return self.lower(&arc, 0.0, 1.0, to, stop, "helices");
         }
         let pieces = self.pieces(&local, rises);
-        let mut ends: Vec<f64> = (1..=pieces).rev().map(|i| i as f64 / pieces as f64).collect();
-        let mut from = 0.0;
-        while let Some(&until) = ends.last() {
-            match self.rounded_arc(&local, facts, from, until, rises) {
+        // Ends of halves, the next one last.
+        let mut halves = Vec::new();
+        let (mut from, mut piece) = (0.0, 1);
+        while piece <= pieces {
+            let until = halves.last().copied().unwrap_or(piece as f64 / pieces as f64);
+            match self.rounded_arc(&local, &form, from, until) {
                 Some(block) => {
                     self.followed(&arc, until - from == 1.0, "arcs")?;
-                    self.arc_block(&arc, facts, &block, rises)?;
+                    self.arc_block(&arc, &form, &block)?;
                     self.here = Some(Pose { point: arc.at(until), ..to.end });
                 }
                 // Its ends are too near each other to say where its centre is, or too near the ends of a
                 // diameter for its radius to say that: two halves are better.
-                None if local.sweep * (until - from) > self.longest(&local, facts, rises) => {
-                    ends.push((from + until) / 2.0);
+                None if local.sweep * (until - from) > form.notation.longest() => {
+                    halves.push((from + until) / 2.0);
                     continue;
                 }
                 None => {
@@ -133,7 +158,7 @@ impl Walk<'_> {
                 }
             }
             from = until;
-            ends.pop();
+            piece += if halves.pop().is_none() { 1 } else { 0 };
         }
         self.here = Some(to.end);
         Ok(())
@@ -149,15 +174,15 @@ impl Walk<'_> {
                 .is_some_and(|a| crate::place::same(a, Vec3::Z)),
             _ => true,
         };
-        let most = (self.resolution / (2.0 * arc.radius())).max(ANGLE_EPSILON);
         PLANES.iter().filter(|_| upright).find(|facts| {
             let along = Vec3::AXES[facts.axes[2]];
-            let off = || {
-                let angle = angle_between(along, arc.normal);
-                angle.min(PI - angle)
+            let leans = || {
+                let most = (self.resolution / (2.0 * arc.radius())).max(ANGLE_EPSILON);
+                let off = angle_between(along, arc.normal);
+                off.min(PI - off) > most
             };
             self.machine.capabilities.arcs.contains(&facts.plane)
-                && (along.cross(arc.normal) == Vec3::ZERO || off() <= most)
+                && (along.cross(arc.normal) == Vec3::ZERO || !leans())
         })
     }
 
@@ -176,38 +201,27 @@ impl Walk<'_> {
         (turns / each - 1e-9).ceil() as usize
     }
 
-    /// By what the block of the arc says its circle.
-    fn notation(&self, arc: &Arc, facts: &Facts, rises: bool) -> Notation {
-        let name = self.arc_name(arc.normal[facts.axes[2]] > 0.0, rises);
+    /// How the arc is told in a plane.
+    fn form(&self, arc: &Arc, facts: &'static Facts, rises: bool) -> Form {
+        let [first, second, normal] = facts.axes;
+        let ccw = arc.normal[normal] > 0.0;
+        let name = self.arc_name(ccw, rises);
         let takes = |word| self.templates.places(name, word);
-        let [first, second, _] = facts.axes;
         let centers = [FROM_START, ABSOLUTE];
-        match centers.into_iter().find(|words| takes(words[first]) || takes(words[second])) {
-            Some(words) => Notation::Center(words),
-            None if takes(WordName::Radius) => Notation::Radius,
-            None if takes(MIDDLE[first]) || takes(MIDDLE[second]) => Notation::Middle,
-            None => Notation::Center(FROM_START),
-        }
-    }
-
-    /// The angle up to which an arc that rounding spoils is not cut in two, radians.
-    fn longest(&self, arc: &Arc, facts: &Facts, rises: bool) -> f64 {
-        match self.notation(arc, facts, rises) {
-            Notation::Radius => PI / 2.0,
-            Notation::Center(_) | Notation::Middle => PI,
-        }
+        let notation =
+            match centers.into_iter().find(|words| takes(words[first]) || takes(words[second])) {
+                Some(words) => Notation::Center(words),
+                None if takes(WordName::Radius) => Notation::Radius,
+                None if takes(MIDDLE[first]) || takes(MIDDLE[second]) => Notation::Middle,
+                None => Notation::Center(FROM_START),
+            };
+        Form { facts, rises, ccw, name, notation, by_angle: takes(WordName::Sweep) }
     }
 
     /// The part of the arc between two parameters as the control will read it; `None` where rounding
     /// leaves no legal arc.
-    fn rounded_arc(
-        &self,
-        arc: &Arc,
-        facts: &Facts,
-        from: f64,
-        until: f64,
-        rises: bool,
-    ) -> Option<Block> {
+    fn rounded_arc(&self, arc: &Arc, form: &Form, from: f64, until: f64) -> Option<Block> {
+        let &Form { facts, notation, by_angle, .. } = form;
         let round = |words: &[WordName; 3], p: Vec3| {
             Vec3::from_array([0, 1, 2].map(|i| self.writer.rounded(words[i], p[i])))
         };
@@ -215,9 +229,6 @@ impl Walk<'_> {
         let to = arc.at(until);
         // An arc that is told by its angle ends as far from its centre as it begins, and not at a
         // rounded place.
-        let by_angle = self
-            .templates
-            .places(self.arc_name(arc.normal[facts.axes[2]] > 0.0, rises), WordName::Sweep);
         let end = if by_angle { to } else { round(&END, to) };
         let [u, v, w] = facts.axes;
         let flat = |p: Vec3| Vec3::new(p[u], p[v], 0.0);
@@ -230,7 +241,6 @@ impl Walk<'_> {
         let along = chord.normalize_or_zero();
         let even = c + along * ((s + e) * 0.5 - c).dot(along);
         let can = &self.machine.capabilities;
-        let notation = self.notation(arc, facts, rises);
         let middle = match self.writer.has(&MIDDLE) {
             true => round(&MIDDLE, arc.at((from + until) / 2.0)),
             false => to,
@@ -280,8 +290,8 @@ impl Walk<'_> {
         legal(c).or_else(|| legal(even))
     }
 
-    fn arc_block(&mut self, arc: &Arc, facts: &Facts, block: &Block, rises: bool) -> Done {
-        let ccw = block.sweep > 0.0;
+    fn arc_block(&mut self, arc: &Arc, form: &Form, block: &Block) -> Done {
+        let &Form { facts, rises, ccw, name, by_angle, .. } = form;
         let [u, v, w] = facts.axes;
         let start = self.stands(|| self.local(arc.start));
         let full = [u, v].iter().all(|&i| block.end[i] == start[i]);
@@ -314,13 +324,15 @@ impl Walk<'_> {
         }
         self.writer.set(WordName::Sweep, block.sweep.to_degrees());
         self.writer.set(WordName::Rise, block.rise);
-        let radius = (start - block.center).reject_from_normalized(Vec3::AXES[w]).length();
-        self.say_feed((radius * block.sweep).hypot(block.rise), 1, false)?;
+        let length = || {
+            let radius = (start - block.center).reject_from_normalized(Vec3::AXES[w]).length();
+            (radius * block.sweep).hypot(block.rise)
+        };
+        self.say_feed(if self.is_timed() { length() } else { 0.0 }, 1, false)?;
         self.keep_compensation();
         self.writer.code(WordName::Plane, facts.code);
         self.writer.code(WordName::Motion, if ccw { motion::ARC_CCW } else { motion::ARC_CW });
-        let name = self.arc_name(ccw, rises);
-        self.turned_to = self.templates.places(name, WordName::Sweep).then(|| {
+        self.turned_to = by_angle.then(|| {
             let angle = self.writer.rounded(WordName::Sweep, block.sweep.to_degrees()).to_radians();
             let rise = self.writer.rounded(WordName::Rise, block.rise);
             let normal = Vec3::AXES[w];

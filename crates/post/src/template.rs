@@ -12,7 +12,7 @@ use deunicode::deunicode;
 use machine::{Block, Format, Machine, OptionValue};
 use minijinja::value::{Object, Value};
 use minijinja::{AutoEscape, Environment, ErrorKind, UndefinedBehavior};
-use program::{Diagnostic, Op, Program, Tool, nearest};
+use program::{Diagnostic, Op, Program, Record, Tool, nearest};
 use std::collections::BTreeMap;
 use std::io;
 use std::ops::Range;
@@ -186,6 +186,8 @@ fn placeholder(word: WordName) -> char {
 pub(crate) struct Template<'a> {
     block: &'a Block,
     uses: Words,
+    /// Whether it may read which tools the program calls.
+    tools: bool,
     /// `None`: the engine renders it.
     lines: Option<Lines>,
 }
@@ -255,7 +257,7 @@ impl Scope {
         program.push(1, Op::Tool(Box::new(tool.clone())));
         Scope {
             set: if first { Words::MAX } else { 0 },
-            program: program_value(machine, &program),
+            program: program_value(machine, &program.name, &program.records),
             operation: map([("name", Value::from(operation))]),
             tool: tool_value(machine, &tool, first),
             spindle: spindle_value(first, first),
@@ -328,9 +330,10 @@ fn identifies(name: &str) -> bool {
 }
 
 /// A program as templates see it. Its name becomes a file name on the control: the last part of a
-/// path, letters, digits, `_` and `-`, at most 24 of them (SINUMERIK), never empty.
-pub(crate) fn program_value(machine: &Machine, program: &Program) -> Value {
-    let name = program.name.rsplit(['/', '\\']).next().unwrap_or_default();
+/// path, letters, digits, `_` and `-`, at most 24 of them (SINUMERIK), never empty. Its tools are those that
+/// `records` call.
+pub(crate) fn program_value(machine: &Machine, name: &str, records: &[Record]) -> Value {
+    let name = name.rsplit(['/', '\\']).next().unwrap_or_default();
     let name = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
     let kept = |c: &char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
     let mut name: String = deunicode(name).chars().filter(kept).take(24).collect();
@@ -339,7 +342,7 @@ pub(crate) fn program_value(machine: &Machine, program: &Program) -> Value {
     }
     let mut seen = Vec::new();
     let mut tools = Vec::new();
-    for record in &program.records {
+    for record in records {
         if let Op::Tool(tool) = &record.op
             && !seen.contains(&tool.number)
         {
@@ -422,7 +425,7 @@ impl<'a> Templates<'a> {
     fn one(&self, block: &'a Block) -> Result<Template<'a>, Box<Diagnostic>> {
         if let Some((text, uses)) = plain(&block.text) {
             let lines = Lines::of(text, &self.machine.format, self.words);
-            return Ok(Template { block, uses, lines: Some(lines) });
+            return Ok(Template { block, uses, tools: false, lines: Some(lines) });
         }
         guard::check(&block.text, self.machine).map_err(|fault| match fault {
             Fault::Syntax(error) => {
@@ -439,13 +442,14 @@ impl<'a> Templates<'a> {
         let mut uses = 0;
         let mut names: Vec<String> = compiled.undeclared_variables(true).into_iter().collect();
         names.sort();
-        for name in names {
-            match WordName::named(&name) {
+        for name in &names {
+            match WordName::named(name) {
                 Some(word) => uses |= bit(word),
-                None => self.check_variable(block, &name)?,
+                None => self.check_variable(block, name)?,
             }
         }
-        Ok(Template { block, uses, lines: None })
+        let tools = names.iter().any(|name| name == "program" || name.starts_with("program.tools"));
+        Ok(Template { block, uses, tools, lines: None })
     }
 
     fn check_variable(&self, block: &Block, name: &str) -> Result<(), Box<Diagnostic>> {
@@ -473,6 +477,11 @@ impl<'a> Templates<'a> {
                 .help(help + "`toolpost explain` lists them");
         let place = block.text.find(name).unwrap_or(0);
         Err(Box::new(at(block, error, place, place + name.len())))
+    }
+
+    /// Whether some block may read which tools the program calls.
+    pub(crate) fn read_tools(&self) -> bool {
+        self.blocks.iter().flatten().any(|block| block.tools)
     }
 
     /// Whether the machine has the block.

@@ -106,7 +106,8 @@ impl<'a> Walk<'a> {
         let templates = Templates::compile(machine)?;
         crate::promises::check(machine, &templates)?;
         let mut scope = Scope::new(machine);
-        scope.program = program_value(machine, program);
+        let tools = if templates.read_tools() { &program.records[..] } else { &[] };
+        scope.program = program_value(machine, &program.name, tools);
         let mut writer = Writer::new(machine);
         // What the catalogue asks of `program_start`.
         writer.assume(WordName::Plane, PLANE_XY);
@@ -627,6 +628,12 @@ impl<'a> Walk<'a> {
     }
 
     // Feed.
+
+    /// Whether the feed is in inverse time: then the length of a cut counts.
+    #[inline]
+    pub(crate) fn is_timed(&self) -> bool {
+        matches!(self.feed, Some(Feed::InverseTime(_)))
+    }
 
     /// Says the feed of a cut of `length` mm in the next block, one of `pieces` of the source's. With
     /// `turning` the control, which knows nothing of the tool tip, is told the time instead, where it
