@@ -23,7 +23,7 @@ pub(crate) struct Number {
     suffix: String,
     pub(crate) modal: bool,
     /// Whether it is compared before it is rounded.
-    pub(crate) exact: bool,
+    exact: bool,
     decimals: usize,
     trim: bool,
     point: bool,
@@ -73,6 +73,24 @@ impl Number {
             }
         }
         Some(steps as i64)
+    }
+
+    /// What stands for `value` where it is compared: its steps, or the bits of one that is compared before it is
+    /// rounded. `None` where it has no steps.
+    #[inline]
+    pub(crate) fn key(&self, value: f64) -> Option<i64> {
+        let steps = self.round(value)?;
+        // Both zeros are one.
+        Some(if self.exact { (value + 0.0).to_bits() as i64 } else { steps })
+    }
+
+    /// The steps of the value for which `key` stands.
+    #[inline]
+    pub(crate) fn steps(&self, key: i64) -> i64 {
+        if !self.exact {
+            return key;
+        }
+        self.round(f64::from_bits(key as u64)).unwrap_or_default()
     }
 
     /// The value of so many steps: what reading the written number gives.

@@ -16,14 +16,8 @@ enum Form {
     Code(Vec<Option<String>>),
 }
 
-/// A value as it is compared: what repeats is left out.
-#[derive(Clone, Copy, Default, PartialEq)]
-struct Value {
-    /// Steps of a number, the entry of a code.
-    steps: i64,
-    /// Of a number that is compared before it is rounded its bits, else 0.
-    exact: u64,
-}
+/// A value as it is compared, for what repeats is left out: the key of a number, the entry of a code.
+type Key = i64;
 
 /// The program text and what the control remembers of it.
 pub(crate) struct Writer {
@@ -36,12 +30,10 @@ pub(crate) struct Writer {
     /// The words of the last block, of the one that comes next, and their values.
     last: Words,
     set: Words,
-    values: [Value; WordName::COUNT],
+    values: [Key; WordName::COUNT],
     /// The words whose active value is known, and those values.
     known: Words,
-    active: [Value; WordName::COUNT],
-    /// Of the words of the next block those whose values are the active ones.
-    same: Words,
+    active: [Key; WordName::COUNT],
     /// The words that are left out where they repeat themselves.
     modal: Words,
     /// The word whose form [`WordName::F`] has.
@@ -82,10 +74,9 @@ impl Writer {
             step: number.map_or(1, |word| word.step),
             last: 0,
             set: 0,
-            values: [Value::default(); WordName::COUNT],
+            values: [0; WordName::COUNT],
             known: 0,
-            active: [Value::default(); WordName::COUNT],
-            same: 0,
+            active: [0; WordName::COUNT],
             modal: WordName::ALL.iter().fold(0, modal),
             feed_form: WordName::F,
             raised: None,
@@ -100,12 +91,8 @@ impl Writer {
     #[inline]
     pub(crate) fn set(&mut self, word: WordName, value: f64) {
         let Form::Number(number) = &self.forms[self.form(word) as usize] else { return };
-        match number.round(value) {
-            Some(steps) => {
-                // Both zeros are one.
-                let exact = if number.exact { (value + 0.0).to_bits() } else { 0 };
-                self.say(word, Value { steps, exact });
-            }
+        match number.key(value) {
+            Some(key) => self.say(word, key),
             None => self.refused = Some((word, value)),
         }
     }
@@ -131,15 +118,13 @@ impl Writer {
     /// The next block may write the code `word` with its entry `index`.
     #[inline]
     pub(crate) fn code(&mut self, word: WordName, index: usize) {
-        self.say(word, Value { steps: index as i64, exact: 0 });
+        self.say(word, index as Key);
     }
 
     #[inline]
-    fn say(&mut self, word: WordName, value: Value) {
-        let (index, bit) = (word as usize, bit(word));
-        self.values[index] = value;
-        self.set |= bit;
-        self.same = if self.active[index] == value { self.same | bit } else { self.same & !bit };
+    fn say(&mut self, word: WordName, value: Key) {
+        self.values[word as usize] = value;
+        self.set |= bit(word);
     }
 
     /// Whether the control has one of `words`.
@@ -163,7 +148,7 @@ impl Writer {
     pub(crate) fn active(&self, word: WordName) -> Option<f64> {
         match &self.forms[self.form(word) as usize] {
             Form::Number(number) if self.known & bit(word) != 0 => {
-                Some(number.value(self.active[word as usize].steps))
+                Some(number.value(number.steps(self.active[word as usize])))
             }
             _ => None,
         }
@@ -172,15 +157,31 @@ impl Writer {
     /// Whether the next block, writing all that is set, changes one of `words`.
     #[inline]
     pub(crate) fn changes(&self, words: Words) -> bool {
-        self.set & words & !self.repeated() != 0
+        let set = self.set & words;
+        let mut rest = set & self.known & !self.raised();
+        if rest != set {
+            return true;
+        }
+        while rest != 0 {
+            let word = rest.trailing_zeros() as usize;
+            if self.values[word] != self.active[word] {
+                return true;
+            }
+            rest &= rest - 1;
+        }
+        false
     }
 
-    /// The words that the control has been told as the next block says them.
+    /// The words that are raised: what they come to, only the control knows.
     #[inline]
-    fn repeated(&self) -> Words {
-        // What a raised one comes to, only the control knows.
-        let raised = if self.raised.is_some() { bit(WordName::Z) } else { 0 };
-        self.known & self.same & !raised
+    fn raised(&self) -> Words {
+        if self.raised.is_some() { bit(WordName::Z) } else { 0 }
+    }
+
+    /// The words that are left out where they say what is active.
+    #[inline]
+    fn left_out(&self) -> Words {
+        self.modal & self.known & !self.raised()
     }
 
     /// The next block may write what the last one might, with the same values.
@@ -205,7 +206,7 @@ impl Writer {
 
     /// The control is at this entry of a code without being told.
     pub(crate) fn assume(&mut self, word: WordName, index: usize) {
-        self.active[word as usize] = Value { steps: index as i64, exact: 0 };
+        self.active[word as usize] = index as Key;
         self.known |= bit(word);
     }
 
@@ -245,7 +246,7 @@ impl Writer {
         }
         let mut start = self.text.len();
         let (mut gap, mut full, mut numbered) = (false, false, false);
-        let mut fresh = self.fresh();
+        let (set, mut left_out) = (self.set, self.left_out());
         for step in &block.steps {
             match *step {
                 Step::Text { gap: before, from, to } => {
@@ -264,9 +265,13 @@ impl Writer {
                 }
                 Step::Word { gap: before, word } => {
                     gap |= before;
-                    if holds(fresh, word) {
+                    let index = word as usize;
+                    let repeats = holds(left_out, word) && self.values[index] == self.active[index];
+                    if holds(set, word) && !repeats {
                         full |= self.word(word, &mut gap, start);
-                        fresh = self.fresh();
+                        if !holds(left_out, word) {
+                            left_out = self.left_out();
+                        }
                     }
                 }
                 Step::End => {
@@ -288,12 +293,6 @@ impl Writer {
         Ok(())
     }
 
-    /// The words of the next block that say something new, or are said each time.
-    #[inline]
-    fn fresh(&self) -> Words {
-        self.set & !(self.modal & self.repeated())
-    }
-
     /// Whether something stands before on the line that began at `start`, and a gap after it.
     #[inline]
     fn separated(&self, gap: &mut bool, start: usize) -> bool {
@@ -309,35 +308,36 @@ impl Writer {
             number.round(f64::from(self.first))
         });
         let separated = self.separated(gap, start);
-        self.write(WordName::N, separated, steps.unwrap_or_default());
+        number.write(separated, steps.unwrap_or_default(), &mut self.text);
     }
 
     /// Writes a word; whether it has a text.
     #[inline]
     fn word(&mut self, word: WordName, gap: &mut bool, start: usize) -> bool {
-        let (index, bit) = (word as usize, bit(word));
+        let index = word as usize;
         let value = self.values[index];
         if let Form::Code(texts) = &self.forms[index]
-            && texts.get(value.steps as usize).is_none_or(|text| text.as_deref() == Some(""))
+            && texts.get(value as usize).is_none_or(|text| text.as_deref() == Some(""))
         {
             return false;
         }
-        self.known |= bit;
-        self.same |= bit;
+        if !holds(self.known, word) {
+            self.known |= bit(word);
+        }
         self.active[index] = value;
         let separated = self.separated(gap, start);
         match self.raised {
             Some(parts) if word == WordName::Z => {
-                self.known &= !bit;
-                self.write_raised(word, separated, value.steps, &parts);
+                self.known &= !bit(word);
+                self.write_raised(word, separated, value, &parts);
             }
-            _ => self.write(word, separated, value.steps),
+            _ => self.write(word, separated, value),
         }
         true
     }
 
     /// Writes a number and parts of heights as the sum that they are.
-    fn write_raised(&mut self, word: WordName, separated: bool, steps: i64, parts: &[(f64, i64)]) {
+    fn write_raised(&mut self, word: WordName, separated: bool, value: Key, parts: &[(f64, i64)]) {
         let forms = [word, WordName::Height].map(|word| &self.forms[word as usize]);
         let [Form::Number(number), Form::Number(height)] = forms else { return };
         let mut sum = Vec::with_capacity(96);
@@ -354,16 +354,18 @@ impl Writer {
             }
             height.write(false, *parameter, &mut sum);
         }
-        number.write_sum(separated, steps, &sum, &mut self.text);
+        number.write_sum(separated, number.steps(value), &sum, &mut self.text);
     }
 
     #[inline]
-    fn write(&mut self, word: WordName, separated: bool, steps: i64) {
+    fn write(&mut self, word: WordName, separated: bool, value: Key) {
         match &self.forms[self.form(word) as usize] {
             Form::Absent => {}
-            Form::Number(number) => number.write(separated, steps, &mut self.text),
+            Form::Number(number) => {
+                number.write(separated, number.steps(value), &mut self.text);
+            }
             Form::Code(texts) => {
-                if let Some(Some(text)) = texts.get(steps as usize) {
+                if let Some(Some(text)) = texts.get(value as usize) {
                     if separated {
                         self.text.extend_from_slice(&self.separator);
                     }
