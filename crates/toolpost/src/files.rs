@@ -1,6 +1,7 @@
 //! Files: read whole, and written whole or not at all.
 
 use program::Diagnostic;
+use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
@@ -184,7 +185,6 @@ pub fn save(files: &[(&Target, &[u8])]) -> Result<(), Box<Diagnostic>> {
         let stage = || -> io::Result<_> {
             let mut new = target.beside()?;
             new.write_all(bytes)?;
-            new.as_file().sync_all()?;
             let old = kept.then(|| target.beside()).transpose()?;
             if let Some(old) = &old {
                 fs::copy(&target.path, old.path())?;
@@ -192,6 +192,10 @@ pub fn save(files: &[(&Target, &[u8])]) -> Result<(), Box<Diagnostic>> {
             Ok((*target, new, old))
         };
         staged.push(stage().map_err(|error| target.full(&error))?);
+    }
+    // Asked for when all are written, most of them are safe with the first.
+    for (target, new, _) in &staged {
+        new.as_file().sync_all().map_err(|error| target.full(&error))?;
     }
     let mut saved: Vec<(&Target, Option<NamedTempFile>)> = Vec::with_capacity(files.len());
     for (target, new, old) in staged {
@@ -206,9 +210,10 @@ pub fn save(files: &[(&Target, &[u8])]) -> Result<(), Box<Diagnostic>> {
         }
         saved.push((target, old));
     }
-    for (target, _) in &saved {
+    let folders: BTreeSet<&Path> = saved.iter().map(|(target, _)| &*target.folder).collect();
+    for folder in folders {
         // The names are safe once the folder is; where that cannot be asked for, nothing is lost.
-        let _ = File::open(&target.folder).and_then(|folder| folder.sync_all());
+        let _ = File::open(folder).and_then(|folder| folder.sync_all());
     }
     Ok(())
 }

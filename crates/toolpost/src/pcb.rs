@@ -13,6 +13,7 @@ use crate::post::{self, Posted};
 use crate::progress::Progress;
 use crate::summary::rows;
 use crate::toolpath::{self, Toolpath};
+use ::pcb::board::Face;
 use ::pcb::job::{self, Heights};
 use ::pcb::{Board, Operation};
 use drawing::{BoardPicture, Format};
@@ -41,6 +42,7 @@ pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
     let source = source::read(&args.board)?;
     let mut warnings = source.warnings;
     let plan = Plan::of(source.board, args)?;
+    warnings.extend(plan.late_pins(args));
     let surface = surface(&plan, args)?;
     if let Some(places) = args.running.probe.filter(|_| args.running.on_control) {
         can_probe(&plan, places, &machine)?;
@@ -60,7 +62,8 @@ pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
     for (made, (part, work)) in made.into_iter().zip(jobs) {
         let (posted, picture) = made?;
         let probes = shop.probes(part, &work);
-        programs.push(Made { name: part.name(), work, posted, picture, probes });
+        let up = Some(plan.face(part, args));
+        programs.push(Made { name: part.name(), up, work, posted, picture, probes });
     }
     for made in &programs {
         let file = format!("{}.nc", made.name);
@@ -74,7 +77,7 @@ pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
     let mut warnings = toolpath::held(warnings, args.strict)?;
     warnings.extend(older(args, &programs));
     progress.step("saving");
-    let report = report::of(&source.layers, &plan, &programs, &machine, &warnings);
+    let report = report::of(&source.layers, &plan, args, &programs, &machine, &warnings);
     let saved = save(args, &source.files, &programs, &format!("{:#}\n", report.data))?;
 
     let mut lines = report.rows;
@@ -211,6 +214,8 @@ fn can_probe(plan: &Plan, [columns, rows]: [u32; 2], machine: &Machine) -> Resul
 struct Made {
     /// What it and its picture are called.
     name: &'static str,
+    /// The side of the board that is up when it runs; `None` where it is run for either.
+    up: Option<Face>,
     work: Work,
     posted: Posted,
     picture: Option<Vec<u8>>,
@@ -322,7 +327,8 @@ impl Shop<'_> {
         };
         program.records.insert(0, Record { line: 0, op: Op::Tool(Box::new(tool)) });
         let posted = self.proven(&Toolpath::of_program(program, "board"), PROBE)?;
-        Ok(Made { name: PROBE, work: Work::default(), posted, picture: None, probes: None })
+        let (work, picture, probes) = (Work::default(), None, None);
+        Ok(Made { name: PROBE, up: None, work, posted, picture, probes })
     }
 
     /// The text of a program, proven.

@@ -23,6 +23,9 @@ const MISSED: usize = 2;
 /// Beyond so many nodes an element is not tried to each.
 const NEAR: usize = 16;
 
+/// More pieces than these are divided side by side.
+const LONG: usize = 256;
+
 /// A way that is divided: pieces of its elements, and the nodes between them.
 pub(super) struct Division {
     pieces: Vec<Element>,
@@ -166,22 +169,44 @@ impl Division {
     /// The fewest elements; among such, those that are nearest to the way. And of which element of the way the
     /// middle one of them starts.
     pub(super) fn fewest(&self) -> Option<(Vec<Element>, usize)> {
-        let end = self.pieces.len();
-        let mut reached = vec![[NEVER; 3]; end + 1];
-        reached[0][0] = Reached { elements: 0, strain: 0.0, from: (0, 0) };
+        let fewest = self.fewest_within(0, self.pieces.len())?;
+        let middle = fewest.get(fewest.len() / 2).map_or(0, |(_, piece)| self.element[*piece]);
+        Some((fewest.into_iter().map(|(element, _)| element).collect(), middle))
+    }
+
+    /// The fewest elements between two nodes at which they end in any case, and the piece at which each starts.
+    fn fewest_within(&self, start: usize, end: usize) -> Option<Vec<(Element, usize)>> {
+        if let Some(sharp) = self.parted(start, end) {
+            let halves =
+                rayon::join(|| self.fewest_within(start, sharp), || self.fewest_within(sharp, end));
+            return Some([halves.0?, halves.1?].concat());
+        }
+        // From the start on.
+        let mut reached = vec![[NEVER; 3]; end - start + 1];
+        reached[0][0] = Reached { elements: 0, strain: 0.0, from: (start, 0) };
         // The farthest node that is reached with so many elements.
-        let mut farthest = vec![0];
-        for node in 0..end {
-            let fewest = reached[node].iter().map(|at| at.elements).min().unwrap_or(usize::MAX);
+        let mut farthest = vec![start];
+        let mut far = start;
+        for node in start..end {
+            let at = reached[node - start];
+            let fewest = at.iter().map(|at| at.elements).min().unwrap_or(usize::MAX);
             if farthest.get(fewest).is_some_and(|far| *far <= node + BEHIND) {
-                farthest.resize(farthest.len().max(fewest + 2), 0);
-                self.onwards(node, fewest, &mut reached, &mut farthest[fewest + 1]);
+                farthest.resize(farthest.len().max(fewest + 2), start);
+                let onwards = &mut reached[node - start + 1..];
+                far = self.reach(node, far.max(node + 1), end);
+                self.onwards(
+                    node,
+                    fewest,
+                    at,
+                    &mut onwards[..far - node],
+                    &mut farthest[fewest + 1],
+                );
             }
         }
         let mut to = (end, 0);
         let mut fewest = Vec::new();
-        while to.0 > 0 {
-            let Reached { from, elements, .. } = reached[to.0][to.1];
+        while to.0 > start {
+            let Reached { from, elements, .. } = reached[to.0 - start][to.1];
             if elements == usize::MAX {
                 return None;
             }
@@ -189,8 +214,14 @@ impl Division {
             to = from;
         }
         fewest.reverse();
-        let middle = fewest.get(fewest.len() / 2).map_or(0, |(_, piece)| self.element[*piece]);
-        Some((fewest.into_iter().map(|(element, _)| element).collect(), middle))
+        Some(fewest)
+    }
+
+    /// Where the elements between two nodes are parted, so that both halves are found side by side.
+    fn parted(&self, start: usize, end: usize) -> Option<usize> {
+        let middle = start.midpoint(end);
+        let sharp = (start + 1..end).filter(|node| self.nodes[*node].is_sharp);
+        sharp.min_by_key(|node| node.abs_diff(middle)).filter(|_| end - start > LONG)
     }
 
     /// The element between two places.
@@ -200,23 +231,25 @@ impl Division {
         self.whole(from, to).or_else(|| Some(run.nearest(fitted()?)))
     }
 
-    /// Looks for elements from the places of a node to those after it.
+    /// Looks for elements from the places of a node, reached as told, to those after it.
     fn onwards(
         &self,
         from: usize,
         elements: usize,
+        at: [Reached; 3],
         reached: &mut [[Reached; 3]],
         farthest: &mut usize,
     ) {
-        for node in (from + 1..=self.reach(from)).rev() {
+        for node in (from + 1..=from + reached.len()).rev() {
             if node + BEHIND < *farthest {
                 return;
             }
-            for (place, at) in reached[from].into_iter().enumerate() {
+            for (place, at) in at.into_iter().enumerate() {
                 if at.elements > elements {
                     continue;
                 }
-                for (to, old) in reached[node].iter_mut().enumerate().take(self.nodes[node].count) {
+                let count = self.nodes[node].count;
+                for (to, old) in reached[node - from - 1].iter_mut().enumerate().take(count) {
                     if (old.elements, old.strain) <= (elements + 1, at.strain) {
                         continue;
                     }
@@ -231,10 +264,10 @@ impl Division {
         }
     }
 
-    /// The farthest node to which one element may lead.
-    fn reach(&self, from: usize) -> usize {
-        let (mut far, mut missed) = (from + 1, 0);
-        for node in from + 1..(from + 1 + NEAR).min(self.nodes.len()) {
+    /// The farthest node up to `end` to which one element may lead.
+    fn reach(&self, from: usize, mut far: usize, end: usize) -> usize {
+        let mut missed = 0;
+        for node in far..=(from + NEAR).min(end) {
             if self.leads(from, node, 2.0 * self.tolerance) {
                 (far, missed) = (node, 0);
             } else {
@@ -247,7 +280,7 @@ impl Division {
         // Longer and longer elements, until one is too long; then as long as may be.
         let (mut step, mut is_growing) = (NEAR, true);
         while step > 0 {
-            let leads = self.leads(from, far + step, self.tolerance);
+            let leads = far + step <= end && self.leads(from, far + step, self.tolerance);
             far += if leads { step } else { 0 };
             is_growing &= leads;
             step = if is_growing { step * 2 } else { step / 2 };
@@ -257,9 +290,6 @@ impl Division {
 
     /// Whether an element may lead from one node to another: a guess.
     fn leads(&self, from: usize, to: usize, tolerance: f64) -> bool {
-        if to >= self.nodes.len() {
-            return false;
-        }
         let (start, end) = (self.at((from, 0)), self.at((to, 0)));
         start == end || self.run(from, to).bulges(start, end, tolerance).is_some()
     }

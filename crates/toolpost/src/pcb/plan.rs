@@ -132,6 +132,20 @@ impl Plan {
         self.seen(part, args).holes.iter().chain(&self.pins)
     }
 
+    /// Tells of pins that are drilled when the board has been turned over already.
+    pub fn late_pins(&self, args: &Pcb) -> Option<Diagnostic> {
+        let is_face = |part: &Part, face| self.face(*part, args) == face;
+        let from_back =
+            self.parts.iter().any(|part| *part == Part::Drill && is_face(part, Face::Back));
+        let turned = self.parts.iter().any(|part| is_face(part, Face::Front));
+        (from_back && turned && !self.pins.is_empty()).then(|| {
+            let message =
+                "the pins that align the board are drilled when it has been turned over already";
+            let help = "drill from the front, or run drill.nc first and turn the board then";
+            Diagnostic::warning("pins-late", message).help(help)
+        })
+    }
+
     /// Whether the holes are there already when a program runs.
     pub fn is_drilled(&self, part: Part, args: &Pcb) -> bool {
         self.order(Part::Drill, args) < self.order(part, args)

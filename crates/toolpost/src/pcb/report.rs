@@ -2,9 +2,11 @@
 
 use super::Made;
 use super::plan::Plan;
+use crate::args::pcb::{Pcb, Turn};
 use crate::summary::{duration, length, number};
 use crate::toolpath;
 use machine::Machine;
+use pcb::board::Face;
 use program::Diagnostic;
 use serde_json::{Value, json};
 
@@ -21,6 +23,7 @@ pub struct Report {
 pub fn of(
     layers: &[(String, String)],
     plan: &Plan,
+    args: &Pcb,
     programs: &[Made],
     machine: &Machine,
     warnings: &[Diagnostic],
@@ -42,7 +45,16 @@ pub fn of(
     ];
     rows.extend(layers.iter().map(|(file, layer)| ("read", format!("{file}: {layer}"))));
     rows.push(("machine", format!("{} ({})", machine.title, machine.name)));
+    let mut up = Face::Front;
     for made in programs {
+        if let Some(face) = made.up.filter(|face| *face != up) {
+            let line = if args.placing.turn == Turn::Y { "Y" } else { "X" };
+            rows.push((
+                "turn",
+                format!("the board over, about a line along {line}: its {face} is up"),
+            ));
+            up = face;
+        }
         rows.extend(made.rows());
     }
     let places = programs
@@ -117,6 +129,7 @@ impl Made {
             data.retain(|key, _| key != "toolpost" && key != "machine");
         }
         data["name"] = json!(self.name);
+        data["up"] = json!(self.up.map(|face| face.to_string()));
         if let Some([columns, rows]) = self.probes {
             data["measures_heights"] = json!({ "columns": columns, "rows": rows });
         }

@@ -402,7 +402,8 @@ fn net(copper: &Copper, island: usize) -> String {
 fn along(paths: &[Path], width: f64, depths: &[f64]) -> Vec<Cut> {
     let mut ways = Vec::with_capacity(paths.len());
     let mut dots = Vec::new();
-    let merged: Vec<Option<Path>> = paths.par_iter().map(|path| path.merged(MERGED)).collect();
+    let merged: Vec<Option<Path>> =
+        paths.par_iter().with_max_len(1).map(|path| path.merged(MERGED)).collect();
     for (path, way) in paths.iter().zip(merged) {
         match way {
             Some(way) => ways.push(way),

@@ -5,6 +5,7 @@ use crate::folder::Folder;
 use control::Setup;
 use geom::{Vec2, Vec3};
 use program::Op;
+use serde_json::Value;
 use std::collections::BTreeSet;
 use std::f64::consts::{PI, TAU};
 use std::path::Path;
@@ -60,6 +61,36 @@ fn pins_are_where_they_were_when_the_board_is_turned() {
             right.sort_by(|a, b| a.partial_cmp(b).unwrap());
             assert_eq!(made.holes("drill"), right, "{turn}, {from}");
         }
+    }
+}
+
+#[test]
+fn it_is_told_when_the_board_is_turned() {
+    let folder = small();
+    let turns = |more: &[&str]| -> Vec<String> {
+        let made = made(&folder, more);
+        let up = |part: &Value| part["up"].as_str().unwrap().to_owned();
+        let told: Vec<_> = made.report()["programs"].as_array().unwrap().iter().map(up).collect();
+        let rows = made.said.out.lines().filter(|line| line.starts_with("turn "));
+        assert_eq!(rows.count(), told.windows(2).filter(|two| two[0] != two[1]).count());
+        told
+    };
+    // Front, holes, back, outline; front, back, holes, outline.
+    assert_eq!(turns(&[]), ["front", "front", "back", "front"]);
+    assert_eq!(turns(&["--from", "back", "--turn", "x"]), ["front", "back", "back", "back"]);
+}
+
+#[test]
+fn pins_that_come_when_the_board_is_turned_are_told() {
+    let folder = small();
+    for (from, more, late) in [
+        ("back", &[][..], true),
+        ("front", &[][..], false),
+        // The user has said in which order.
+        ("back", &["--only", "drill,back"][..], false),
+    ] {
+        let made = made(&folder, &[&["--alignment", "3", "--from", from], more].concat());
+        assert_eq!(made.said.err.contains("pins-late"), late, "{from} {more:?}");
     }
 }
 
