@@ -90,11 +90,12 @@ impl Walk<'_> {
         self.here.is_some_and(|here| here.orientation == pose.orientation)
     }
 
-    /// A straight cut of the source behind another one, where it goes on.
+    /// A straight cut of the source that goes on from another one.
     #[inline]
     pub(crate) fn line_on(&mut self, pose: &Pose) -> Done {
         self.here = Some(*pose);
         self.writer.repeat();
+        self.writer.code(WordName::Motion, motion::LINEAR);
         self.aim_to(pose.point);
         if self.writer.changes(POSITION) {
             self.check_limits()?;
@@ -173,6 +174,7 @@ impl Walk<'_> {
             self.say_taper();
         }
         self.writer.code(WordName::Motion, motion::LINEAR);
+        self.writer.keep();
         self.block(self.straight(BlockName::Linear))?;
         self.goes_on = goes_on;
         Ok(())

@@ -79,8 +79,8 @@ pub(crate) struct Walk<'a> {
     pub(crate) here: Option<Pose>,
     /// Whether the control stands where the last pose says.
     pub(crate) located: bool,
-    /// Whether the last record was a straight cut, and one in the same orientation differs from it in where
-    /// it goes alone.
+    /// Whether nothing but cuts has been since a straight one, and a straight one in the same orientation differs
+    /// from that in where it goes alone.
     pub(crate) goes_on: bool,
     pub(crate) place: Place,
     /// The wire, where the machine has one.
@@ -210,7 +210,7 @@ impl<'a> Walk<'a> {
         let goes_on = std::mem::take(&mut self.goes_on);
         match &record.op {
             Op::Line(pose) if goes_on && self.keeps_orientation(pose) => return self.line_on(pose),
-            op if op.pose().is_some() => return self.motion(op, stop),
+            op if op.pose().is_some() => return self.motion(op, stop, goes_on),
             _ => {}
         }
         match &record.op {
@@ -303,7 +303,7 @@ impl<'a> Walk<'a> {
         }
     }
 
-    fn motion(&mut self, op: &'a Op, stop: Option<crate::place::Stop>) -> Done {
+    fn motion(&mut self, op: &'a Op, stop: Option<crate::place::Stop>, goes_on: bool) -> Done {
         if self.tool.is_none() && self.wire.is_none() {
             self.default_tool()?;
         }
@@ -319,8 +319,13 @@ impl<'a> Walk<'a> {
             Op::Thread(thread) => self.thread(thread, &stop),
             _ => Ok(()),
         };
-        // What others cut straight, they do with a feed or an end of their own.
-        self.goes_on &= matches!(op, Op::Line(_));
+        self.goes_on = match op {
+            Op::Line(_) => self.goes_on,
+            // It changes nothing but how the control moves.
+            Op::Arc(_) => goes_on && done.is_ok(),
+            // What others cut straight, they do with a feed or an end of their own.
+            _ => false,
+        };
         done
     }
 

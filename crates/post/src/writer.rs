@@ -27,10 +27,11 @@ pub(crate) struct Writer {
     line_length: usize,
     first: u32,
     step: u32,
-    /// The words of the last block, of the one that comes next, and their values.
-    last: Words,
+    /// The words of the block that comes next, and their values.
     set: Words,
     values: [Key; WordName::COUNT],
+    /// The words that [`Writer::repeat`] says.
+    kept: Words,
     /// The words whose active value is known, and those values.
     known: Words,
     active: [Key; WordName::COUNT],
@@ -72,9 +73,9 @@ impl Writer {
             line_length: machine.capabilities.line_length,
             first,
             step: number.map_or(1, |word| word.step),
-            last: 0,
             set: 0,
             values: [0; WordName::COUNT],
+            kept: 0,
             known: 0,
             active: [0; WordName::COUNT],
             modal: WordName::ALL.iter().fold(0, modal),
@@ -184,10 +185,16 @@ impl Writer {
         self.modal & self.known & !self.raised()
     }
 
-    /// The next block may write what the last one might, with the same values.
+    /// The words of the next block are kept to be repeated.
+    #[inline]
+    pub(crate) fn keep(&mut self) {
+        self.kept = self.set;
+    }
+
+    /// The next block may write the words that have been kept, with the values that they have.
     #[inline]
     pub(crate) fn repeat(&mut self) {
-        self.set = self.last;
+        self.set = self.kept;
     }
 
     /// Takes `words` out of the next block.
@@ -288,7 +295,7 @@ impl Writer {
         }
         // A position that the block leads to by other words (a helix by its angle) is not known by its own.
         self.known &= !(self.set & !block.words & (POSITION | ORIENTATION));
-        self.last = std::mem::take(&mut self.set);
+        self.set = 0;
         self.raised = None;
         Ok(())
     }
