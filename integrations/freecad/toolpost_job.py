@@ -47,6 +47,8 @@ def job(objects, name):
 
 def storable(label):
     """Answer a label with a question mark for each surrogate, which no file can hold."""
+    if label.isascii():
+        return label
     return label.encode("utf-8", "replace").decode("utf-8")
 
 
@@ -219,7 +221,9 @@ def _commands(part):
     """Answer the commands of an object, one a line."""
     path = _placed(part)
     text = path.toGCode()
-    if text.count("\n") == path.Size and OVERFLOW not in text:
+    # Of what FreeCAD takes for a command, a comment alone can have a line break.
+    is_torn = "(" in text and text.count("\n") != path.Size
+    if not is_torn and OVERFLOW not in text:
         return text
     return "".join(_command(command) + "\n" for command in path.Commands)
 

@@ -264,10 +264,10 @@ impl Division {
         }
     }
 
-    /// The farthest node up to `end` to which one element may lead.
-    fn reach(&self, from: usize, mut far: usize, end: usize) -> usize {
-        let mut missed = 0;
-        for node in far..=(from + NEAR).min(end) {
+    /// The farthest node up to `end` to which one element may lead: `least` or one beyond it.
+    fn reach(&self, from: usize, least: usize, end: usize) -> usize {
+        let (mut far, mut missed) = (least, 0);
+        for node in least..=(from + NEAR).min(end) {
             if self.leads(from, node, 2.0 * self.tolerance) {
                 (far, missed) = (node, 0);
             } else {
