@@ -40,6 +40,7 @@ impl Travel {
 #[derive(Clone, Debug)]
 pub struct Limits<'a> {
     machine: &'a Machine,
+    travel: Travel,
     /// Lowest and highest position of each linear axis so far, with the line that asked for it.
     extent: [[(f64, u32); 2]; 3],
     /// The line that first asked for more than the length of the travel.
@@ -50,7 +51,7 @@ impl<'a> Limits<'a> {
     /// The limits of `machine`, nothing having moved yet.
     pub fn new(machine: &'a Machine) -> Limits<'a> {
         let nowhere = [(f64::INFINITY, 0), (f64::NEG_INFINITY, 0)];
-        Limits { machine, extent: [nowhere; 3], too_far: [None; 3] }
+        Limits { machine, travel: Travel::of(machine), extent: [nowhere; 3], too_far: [None; 3] }
     }
 
     /// Checks positions of the linear axes (mm, as a program gives them) and the rotary axes (degrees
@@ -71,8 +72,11 @@ impl<'a> Limits<'a> {
             let at = degrees[axis.index()];
             held(axis.letter, at, axis.min, axis.max, "°", line)?;
         }
+        if self.travel == Travel::Unlimited {
+            return Ok(());
+        }
         let slides = linear + Vec3::Z * tool_length + self.machine.work_zero.unwrap_or_default();
-        let known = self.machine.work_zero.is_some();
+        let known = self.travel == Travel::MachineCoordinates;
         for (i, (axis, letter)) in self.machine.linear.iter().zip(['X', 'Y', 'Z']).enumerate() {
             if known {
                 held(letter, slides[i], axis.min, axis.max, " mm", line)?;
@@ -95,6 +99,9 @@ impl<'a> Limits<'a> {
         tool_length: f64,
         line: u32,
     ) -> Result<(), Box<Diagnostic>> {
+        if self.travel == Travel::Unlimited {
+            return self.position(arc.end, degrees, tool_length, line);
+        }
         let (low, high) = arc.extents();
         self.position(low, degrees, tool_length, line)?;
         self.position(high, degrees, tool_length, line)

@@ -42,6 +42,16 @@ enum Notation {
     Middle,
 }
 
+impl Notation {
+    /// The angle up to which an arc that rounding spoils is not cut in two, radians.
+    fn longest(self) -> f64 {
+        match self {
+            Notation::Radius => PI / 2.0,
+            Notation::Center(_) | Notation::Middle => PI,
+        }
+    }
+}
+
 /// How many steps of the last decimal an arc may change in length when its ends are rounded.
 const ROUNDING_STEPS: f64 = 6.0;
 
@@ -53,6 +63,18 @@ const CENTER_STEPS: f64 = std::f64::consts::SQRT_2;
 /// How many steps the end of an arc that is told by its angle may be off: its start is rounded by up to
 /// √½ steps in the plane, and its centre by less.
 const ANGLE_STEPS: f64 = 0.85;
+
+/// How an arc is told.
+struct Form {
+    facts: &'static Facts,
+    /// Whether it is a helix.
+    rises: bool,
+    ccw: bool,
+    name: BlockName,
+    notation: Notation,
+    /// Whether its block says how far it turns, and not where it ends.
+    by_angle: bool,
+}
 
 /// Part of an arc as one block.
 struct Block {
@@ -87,7 +109,7 @@ impl Walk<'_> {
         // The reader holds arcs against its own tolerance; here the ends are what they are.
         let arc = Arc::new(here.point, to.end.point, to.center, to.normal, to.turns, f64::MAX)
             .map_err(no_arc)?;
-        self.whole = arc.length();
+        self.whole = if self.is_timed() { arc.length() } else { 0.0 };
         let local = Arc {
             start: self.local(arc.start),
             end: self.local(arc.end),
@@ -106,27 +128,29 @@ impl Walk<'_> {
         let Some(facts) = self.plane_of(&local) else {
             return self.lower(&arc, 0.0, 1.0, to, stop, "arcs outside the planes of the control");
         };
-        let rises =
-            local.rise().abs() > 0.5 * self.machine.resolution() || self.is_over_surface(arc.end);
+        let rises = local.rise().abs() > 0.5 * self.resolution || self.is_over_surface(arc.end);
+        let form = self.form(&local, facts, rises);
         // A circle through three points of a helix is none.
-        let flat = self.notation(&local, facts, rises) == Notation::Middle;
+        let flat = form.notation == Notation::Middle;
         if rises && (flat || !self.machine.capabilities.helix) {
             return self.lower(&arc, 0.0, 1.0, to, stop, "helices");
         }
         let pieces = self.pieces(&local, rises);
-        let mut ends: Vec<f64> = (1..=pieces).rev().map(|i| i as f64 / pieces as f64).collect();
-        let mut from = 0.0;
-        while let Some(&until) = ends.last() {
-            match self.rounded_arc(&local, facts, from, until, rises) {
+        // Ends of halves, the next one last.
+        let mut halves = Vec::new();
+        let (mut from, mut piece) = (0.0, 1);
+        while piece <= pieces {
+            let until = halves.last().copied().unwrap_or(piece as f64 / pieces as f64);
+            match self.rounded_arc(&local, &form, from, until) {
                 Some(block) => {
                     self.followed(&arc, until - from == 1.0, "arcs")?;
-                    self.arc_block(&arc, facts, &block, rises)?;
+                    self.arc_block(&arc, &form, &block)?;
                     self.here = Some(Pose { point: arc.at(until), ..to.end });
                 }
                 // Its ends are too near each other to say where its centre is, or too near the ends of a
                 // diameter for its radius to say that: two halves are better.
-                None if local.sweep * (until - from) > self.longest(&local, facts, rises) => {
-                    ends.push((from + until) / 2.0);
+                None if local.sweep * (until - from) > form.notation.longest() => {
+                    halves.push((from + until) / 2.0);
                     continue;
                 }
                 None => {
@@ -134,7 +158,7 @@ impl Walk<'_> {
                 }
             }
             from = until;
-            ends.pop();
+            piece += if halves.pop().is_none() { 1 } else { 0 };
         }
         self.here = Some(to.end);
         Ok(())
@@ -150,11 +174,15 @@ impl Walk<'_> {
                 .is_some_and(|a| crate::place::same(a, Vec3::Z)),
             _ => true,
         };
-        let most = (self.machine.resolution() / (2.0 * arc.radius())).max(ANGLE_EPSILON);
         PLANES.iter().filter(|_| upright).find(|facts| {
             let along = Vec3::AXES[facts.axes[2]];
-            let off = angle_between(along, arc.normal);
-            self.machine.capabilities.arcs.contains(&facts.plane) && off.min(PI - off) <= most
+            let leans = || {
+                let most = (self.resolution / (2.0 * arc.radius())).max(ANGLE_EPSILON);
+                let off = angle_between(along, arc.normal);
+                off.min(PI - off) > most
+            };
+            self.machine.capabilities.arcs.contains(&facts.plane)
+                && (along.cross(arc.normal) == Vec3::ZERO || !leans())
         })
     }
 
@@ -173,48 +201,34 @@ impl Walk<'_> {
         (turns / each - 1e-9).ceil() as usize
     }
 
-    /// By what the block of the arc says its circle.
-    fn notation(&self, arc: &Arc, facts: &Facts, rises: bool) -> Notation {
-        let name = self.arc_name(arc.normal[facts.axes[2]] > 0.0, rises);
+    /// How the arc is told in a plane.
+    fn form(&self, arc: &Arc, facts: &'static Facts, rises: bool) -> Form {
+        let [first, second, normal] = facts.axes;
+        let ccw = arc.normal[normal] > 0.0;
+        let name = self.arc_name(ccw, rises);
         let takes = |word| self.templates.places(name, word);
-        let [first, second, _] = facts.axes;
         let centers = [FROM_START, ABSOLUTE];
-        match centers.into_iter().find(|words| takes(words[first]) || takes(words[second])) {
-            Some(words) => Notation::Center(words),
-            None if takes(WordName::Radius) => Notation::Radius,
-            None if takes(MIDDLE[first]) || takes(MIDDLE[second]) => Notation::Middle,
-            None => Notation::Center(FROM_START),
-        }
-    }
-
-    /// The angle up to which an arc that rounding spoils is not cut in two, radians.
-    fn longest(&self, arc: &Arc, facts: &Facts, rises: bool) -> f64 {
-        match self.notation(arc, facts, rises) {
-            Notation::Radius => PI / 2.0,
-            Notation::Center(_) | Notation::Middle => PI,
-        }
+        let notation =
+            match centers.into_iter().find(|words| takes(words[first]) || takes(words[second])) {
+                Some(words) => Notation::Center(words),
+                None if takes(WordName::Radius) => Notation::Radius,
+                None if takes(MIDDLE[first]) || takes(MIDDLE[second]) => Notation::Middle,
+                None => Notation::Center(FROM_START),
+            };
+        Form { facts, rises, ccw, name, notation, by_angle: takes(WordName::Sweep) }
     }
 
     /// The part of the arc between two parameters as the control will read it; `None` where rounding
     /// leaves no legal arc.
-    fn rounded_arc(
-        &self,
-        arc: &Arc,
-        facts: &Facts,
-        from: f64,
-        until: f64,
-        rises: bool,
-    ) -> Option<Block> {
+    fn rounded_arc(&self, arc: &Arc, form: &Form, from: f64, until: f64) -> Option<Block> {
+        let &Form { facts, notation, by_angle, .. } = form;
         let round = |words: &[WordName; 3], p: Vec3| {
             Vec3::from_array([0, 1, 2].map(|i| self.writer.rounded(words[i], p[i])))
         };
-        let start = self.stands(round(&END, arc.at(from)));
+        let start = self.stands(|| round(&END, arc.at(from)));
         let to = arc.at(until);
         // An arc that is told by its angle ends as far from its centre as it begins, and not at a
         // rounded place.
-        let by_angle = self
-            .templates
-            .places(self.arc_name(arc.normal[facts.axes[2]] > 0.0, rises), WordName::Sweep);
         let end = if by_angle { to } else { round(&END, to) };
         let [u, v, w] = facts.axes;
         let flat = |p: Vec3| Vec3::new(p[u], p[v], 0.0);
@@ -227,13 +241,15 @@ impl Walk<'_> {
         let along = chord.normalize_or_zero();
         let even = c + along * ((s + e) * 0.5 - c).dot(along);
         let can = &self.machine.capabilities;
-        let notation = self.notation(arc, facts, rises);
-        let middle = round(&MIDDLE, arc.at((from + until) / 2.0));
+        let middle = match self.writer.has(&MIDDLE) {
+            true => round(&MIDDLE, arc.at((from + until) / 2.0)),
+            false => to,
+        };
         let radius = if wanted > PI { -arc.radius() } else { arc.radius() };
         let said = self.writer.rounded(WordName::Radius, radius);
         // By as much an arc by its angle misses its end; any other is a spiral.
         let uneven = match by_angle {
-            true => ANGLE_STEPS * self.machine.resolution(),
+            true => ANGLE_STEPS * self.resolution,
             false => can.arc_tolerance / 2.0,
         };
         let legal = |c: Vec3| {
@@ -258,15 +274,15 @@ impl Walk<'_> {
             }
             sweep += TAU * ((wanted - sweep) / TAU).round().max(0.0);
             let radius = a.length();
-            let near =
-                (sweep - wanted).abs() * radius <= ROUNDING_STEPS * self.machine.resolution();
+            let near = (sweep - wanted).abs() * radius <= ROUNDING_STEPS * self.resolution;
             let even = (radius - b.length()).abs() <= uneven;
             let moved = flat(written).distance(flat(arc.center));
             let rise = end[w] - start[w];
             // The ends stay where they are; between them a shift of the centre moves the arc by as much
-            // as its turn, and a short chord is a long lever for where the even centre lies.
-            let lever = 1.0 - (wanted.min(TAU) / 2.0).cos();
-            let close = moved * lever <= CENTER_STEPS * self.machine.resolution() * (1.0 + 1e-9);
+            // as its turn, and a short chord is a long lever for where the even centre lies. None is longer than 2.
+            let lever = || 1.0 - (wanted.min(TAU) / 2.0).cos();
+            let most = CENTER_STEPS * self.resolution * (1.0 + 1e-9);
+            let close = moved * 2.0 <= most || moved * lever() <= most;
             (near && even && moved <= can.lowering_tolerance && close && radius > 0.0).then_some(
                 Block { to, end, center: written, middle, radius: said, sweep: sign * sweep, rise },
             )
@@ -274,10 +290,10 @@ impl Walk<'_> {
         legal(c).or_else(|| legal(even))
     }
 
-    fn arc_block(&mut self, arc: &Arc, facts: &Facts, block: &Block, rises: bool) -> Done {
-        let ccw = block.sweep > 0.0;
+    fn arc_block(&mut self, arc: &Arc, form: &Form, block: &Block) -> Done {
+        let &Form { facts, rises, ccw, name, by_angle, .. } = form;
         let [u, v, w] = facts.axes;
-        let start = self.stands(self.local(arc.start));
+        let start = self.stands(|| self.local(arc.start));
         let full = [u, v].iter().all(|&i| block.end[i] == start[i]);
         if rises || full {
             // A helix or a circle says where it ends in the plane even where that is where it began:
@@ -294,10 +310,12 @@ impl Walk<'_> {
             self.writer.set(START[i], start[i]);
         }
         self.say_surface(block.to);
-        let spoke = start - block.center;
-        let begins = spoke[v].atan2(spoke[u]).rem_euclid(TAU);
-        self.writer.set(WordName::StartAngle, begins.to_degrees());
-        self.writer.set(WordName::EndAngle, (begins + block.sweep).to_degrees());
+        if self.writer.has(&[WordName::StartAngle, WordName::EndAngle]) {
+            let spoke = start - block.center;
+            let begins = spoke[v].atan2(spoke[u]).rem_euclid(TAU);
+            self.writer.set(WordName::StartAngle, begins.to_degrees());
+            self.writer.set(WordName::EndAngle, (begins + block.sweep).to_degrees());
+        }
         self.writer.set(WordName::Radius, block.radius);
         self.writer.set(WordName::PlainRadius, block.radius.abs());
         let turns = (block.sweep.abs() / TAU - 1e-9).floor();
@@ -306,26 +324,34 @@ impl Walk<'_> {
         }
         self.writer.set(WordName::Sweep, block.sweep.to_degrees());
         self.writer.set(WordName::Rise, block.rise);
-        let radius = (start - block.center).reject_from_normalized(Vec3::AXES[w]).length();
-        self.say_feed((radius * block.sweep).hypot(block.rise), 1, false)?;
+        let length = || {
+            let radius = (start - block.center).reject_from_normalized(Vec3::AXES[w]).length();
+            (radius * block.sweep).hypot(block.rise)
+        };
+        self.say_feed(if self.is_timed() { length() } else { 0.0 }, 1, false)?;
         self.keep_compensation();
         self.writer.code(WordName::Plane, facts.code);
         self.writer.code(WordName::Motion, if ccw { motion::ARC_CCW } else { motion::ARC_CW });
-        let angle = self.writer.rounded(WordName::Sweep, block.sweep.to_degrees()).to_radians();
-        let rise = self.writer.rounded(WordName::Rise, block.rise);
-        let normal = Vec3::AXES[w];
-        let turned = geom::rotate(start - block.center, normal, angle) + normal * rise;
-        let name = self.arc_name(ccw, rises);
-        self.turned_to =
-            self.templates.places(name, WordName::Sweep).then_some(block.center + turned);
+        self.turned_to = by_angle.then(|| {
+            let angle = self.writer.rounded(WordName::Sweep, block.sweep.to_degrees()).to_radians();
+            let rise = self.writer.rounded(WordName::Rise, block.rise);
+            let normal = Vec3::AXES[w];
+            let turned = geom::rotate(start - block.center, normal, angle) + normal * rise;
+            block.center + turned
+        });
         self.block(name)
     }
 
     /// Where the control stands, in the coordinates of its blocks: as the last words say, or as the angle
     /// of the last arc leads to; `begin` where neither is known.
-    fn stands(&self, begin: Vec3) -> Vec3 {
-        let begin = self.turned_to.unwrap_or(begin);
-        Vec3::from_array([0, 1, 2].map(|i| self.writer.active(END[i]).unwrap_or(begin[i])))
+    fn stands(&self, begin: impl FnOnce() -> Vec3) -> Vec3 {
+        match END.map(|word| self.writer.active(word)) {
+            [Some(x), Some(y), Some(z)] => Vec3::new(x, y, z),
+            known => {
+                let begin = self.turned_to.unwrap_or_else(begin);
+                Vec3::from_array([0, 1, 2].map(|i| known[i].unwrap_or(begin[i])))
+            }
+        }
     }
 
     fn arc_name(&self, ccw: bool, rises: bool) -> BlockName {

@@ -221,6 +221,8 @@ impl Walk<'_> {
         self.rapid_to(&lifted(pose, cycle.clearance), stop)?;
         let (spindle, feed) = (self.spindle, self.feed);
         self.feed = cycle.feed.or(feed);
+        // Each move is a cut of its own, and none a piece of the last one.
+        self.whole = 0.0;
         let count = moves.len();
         let done = moves.into_iter().try_for_each(|op| match op {
             Op::Rapid(pose) => self.rapid_to(&pose, stop),

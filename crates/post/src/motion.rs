@@ -7,7 +7,7 @@ use crate::walk::{Done, Walk, motion};
 use geom::Vec3;
 use machine::linearise::Stance;
 use machine::plan::Step;
-use program::{Diagnostic, Pose};
+use program::{Diagnostic, Feed, Pose};
 
 /// How far beyond everything the source touches the tool is drawn back before it turns, mm.
 const CLEAR: f64 = 5.0;
@@ -84,6 +84,29 @@ impl Walk<'_> {
         self.line_to(pose, stop)
     }
 
+    /// Whether the tool points in `pose` as it does here.
+    #[inline]
+    pub(crate) fn keeps_orientation(&self, pose: &Pose) -> bool {
+        self.here.is_some_and(|here| here.orientation == pose.orientation)
+    }
+
+    /// A straight cut of the source that goes on from another one.
+    #[inline]
+    pub(crate) fn line_on(&mut self, pose: &Pose) -> Done {
+        self.here = Some(*pose);
+        self.writer.repeat();
+        self.writer.code(WordName::Motion, motion::LINEAR);
+        self.aim_to(pose.point);
+        if self.writer.changes(POSITION) {
+            self.check_limits()?;
+            self.block(BlockName::Linear)?;
+        } else {
+            self.writer.unset(Words::MAX);
+        }
+        self.goes_on = true;
+        Ok(())
+    }
+
     /// The travel of a rotary axis ends in a cut: out along the tool axis, beyond every point of the
     /// source, to where the machine may turn, and in again at the same point.
     fn rewind(&mut self, degrees: [f64; 3], stop: &Stop) -> Done {
@@ -143,6 +166,7 @@ impl Walk<'_> {
             self.writer.unset(Words::MAX);
             return Ok(());
         }
+        let goes_on = turning == 0 && self.can_go_on();
         self.check_limits()?;
         self.say_feed(length, turning.max(1), turning > 0)?;
         self.compensate();
@@ -150,7 +174,21 @@ impl Walk<'_> {
             self.say_taper();
         }
         self.writer.code(WordName::Motion, motion::LINEAR);
-        self.block(self.straight(BlockName::Linear))
+        self.writer.keep();
+        self.block(self.straight(BlockName::Linear))?;
+        self.goes_on = goes_on;
+        Ok(())
+    }
+
+    /// Whether a straight cut in the orientation at hand may be followed by one that differs from it in where
+    /// it goes alone: neither its feed nor anything else depends on its way.
+    #[inline]
+    fn can_go_on(&self) -> bool {
+        matches!(self.place.kind, Kind::Plain | Kind::Tilted(..))
+            && matches!(self.feed, Some(Feed::PerMinute(_)))
+            && !self.compensation_pending()
+            && self.wire.is_none()
+            && self.surface.is_none()
     }
 
     /// The block for a straight move in the orientation at hand.
@@ -173,7 +211,6 @@ impl Walk<'_> {
 
     #[inline]
     pub(crate) fn aim_at(&mut self, point: Vec3, axis: Vec3, degrees: Option<[f64; 3]>) {
-        self.tip = point;
         if let Some(degrees) = degrees {
             if matches!(self.place.kind, Kind::ToolCenter | Kind::Machine) {
                 self.say_degrees(degrees);
@@ -191,11 +228,18 @@ impl Walk<'_> {
         if !matches!(self.place.kind, Kind::ToolCenter | Kind::Vectors) {
             self.say_length_offset();
         }
+        self.aim_to(point);
+        self.say_surface(point);
+    }
+
+    /// Says in the next block where the tool tip goes.
+    #[inline]
+    fn aim_to(&mut self, point: Vec3) {
+        self.tip = point;
         self.said = self.local(point);
         self.writer.set(WordName::X, self.said.x);
         self.writer.set(WordName::Y, self.said.y);
         self.writer.set(WordName::Z, self.said.z);
-        self.say_surface(point);
     }
 
     /// A point of the work frame as blocks give it at the moment.

@@ -9,6 +9,10 @@ const MOST_STEPS: f64 = (1u64 << 51) as f64;
 /// Added and taken away again, it rounds a smaller number to a whole one (ties to even).
 const ROUNDER: f64 = (3u64 << 51) as f64;
 
+/// The most signs that a number takes, with the last of what leads it: 20 digits before the point, and 9
+/// behind it.
+const MOST_SIGNS: usize = Lead::SHORT + 1 + 20 + 1 + 9 + 1;
+
 /// How one word is written.
 #[derive(Clone, Debug)]
 pub(crate) struct Number {
@@ -19,7 +23,7 @@ pub(crate) struct Number {
     suffix: String,
     pub(crate) modal: bool,
     /// Whether it is compared before it is rounded.
-    pub(crate) exact: bool,
+    exact: bool,
     decimals: usize,
     trim: bool,
     point: bool,
@@ -71,6 +75,24 @@ impl Number {
         Some(steps as i64)
     }
 
+    /// What stands for `value` where it is compared: its steps, or the bits of one that is compared before it is
+    /// rounded. `None` where it has no steps.
+    #[inline]
+    pub(crate) fn key(&self, value: f64) -> Option<i64> {
+        let steps = self.round(value)?;
+        // Both zeros are one.
+        Some(if self.exact { (value + 0.0).to_bits() as i64 } else { steps })
+    }
+
+    /// The steps of the value for which `key` stands.
+    #[inline]
+    pub(crate) fn steps(&self, key: i64) -> i64 {
+        if !self.exact {
+            return key;
+        }
+        self.round(f64::from_bits(key as u64)).unwrap_or_default()
+    }
+
     /// The value of so many steps: what reading the written number gives.
     #[inline]
     pub(crate) fn value(&self, steps: i64) -> f64 {
@@ -100,14 +122,26 @@ impl Number {
 
     #[inline]
     fn digits(&self, lead: &Lead, steps: i64, out: &mut Vec<u8>) {
-        // All digits from the right to the left, and in front of them what leads.
-        let mut text = [b'0'; 64];
+        // From the right to the left: decimals, point, whole part, sign, and what leads.
+        let mut text = [b'0'; 2 * MOST_SIGNS];
         let mut rest = steps.unsigned_abs();
-        let mut at = text.len();
+        let mut at = MOST_SIGNS;
+        for _ in 0..self.decimals / 2 {
+            at -= 2;
+            text[at..at + 2].copy_from_slice(pair(rest));
+            rest /= 100;
+        }
+        if self.decimals % 2 == 1 {
+            at -= 1;
+            text[at] = b'0' + (rest % 10) as u8;
+            rest /= 10;
+        }
+        at -= 1;
+        let point = at;
+        text[point] = b'.';
         while rest >= 100 {
             at -= 2;
-            let pair = (rest % 100) as usize * 2;
-            text[at..at + 2].copy_from_slice(&PAIRS[pair..pair + 2]);
+            text[at..at + 2].copy_from_slice(pair(rest));
             rest /= 100;
         }
         while rest > 0 {
@@ -115,32 +149,37 @@ impl Number {
             text[at] = b'0' + (rest % 10) as u8;
             rest /= 10;
         }
-        let point = text.len() - self.decimals;
         at = at.min(point - self.digits.clamp(1, 20));
-        let mut end = text.len();
+        let mut end = MOST_SIGNS;
         if self.trim {
-            while end > point && text[end - 1] == b'0' {
+            while text[end - 1] == b'0' {
                 end -= 1;
             }
         }
-        let pointed = end > point || self.point || (self.decimals > 0 && !self.trim);
-        if pointed {
-            // The whole part goes one to the left.
-            text.copy_within(at..point, at - 1);
-            text[point - 1] = b'.';
-            at -= 1;
+        let pointed = end > point + 1 || self.point || (self.decimals > 0 && !self.trim);
+        if !pointed {
+            end = point;
         }
         if steps < 0 || self.plus {
             at -= 1;
             text[at] = if steps < 0 { b'-' } else { b'+' };
         }
-        // One copy of fixed size costs less than a second append.
         text[at - Lead::SHORT..at].copy_from_slice(&lead.short);
         if !lead.long.is_empty() {
             out.extend_from_slice(lead.long.as_bytes());
         }
-        out.extend_from_slice(&text[at - lead.length..end]);
+        // A copy of fixed size costs less than one of just the signs that there are.
+        let from = at - lead.length;
+        let kept = out.len() + end - from;
+        out.extend_from_slice(&text[from..from + MOST_SIGNS]);
+        out.truncate(kept);
     }
+}
+
+/// The last two digits of a number.
+fn pair(number: u64) -> &'static [u8] {
+    let at = (number % 100) as usize * 2;
+    &PAIRS[at..at + 2]
 }
 
 /// What stands before the digits of a word.

@@ -95,11 +95,11 @@ impl Route {
         here: Option<Pose>,
         degrees: Option<[f64; 3]>,
     ) -> Result<Route, Box<Diagnostic>> {
-        let count = Route::length(records);
         if machine.rotary.is_empty() {
-            let mode = OrientationMode::Fixed;
-            return Ok(Route { records: count, mode, turning: false, plan: None });
+            let (records, mode) = (records.len(), OrientationMode::Fixed);
+            return Ok(Route { records, mode, turning: false, plan: None });
         }
+        let count = Route::length(records);
         let turning = turns_in_a_cut(&records[..count], here);
         let settings = &machine.orientation;
         let mode = if turning { settings.simultaneous } else { settings.positioned };

@@ -12,9 +12,10 @@ use deunicode::deunicode;
 use machine::{Block, Format, Machine, OptionValue};
 use minijinja::value::{Object, Value};
 use minijinja::{AutoEscape, Environment, ErrorKind, UndefinedBehavior};
-use program::{Diagnostic, Op, Program, Tool, nearest};
+use program::{Diagnostic, Op, Program, Record, Tool, nearest};
 use std::collections::BTreeMap;
 use std::io;
+use std::ops::Range;
 use std::sync::Arc;
 
 /// Steps of the engine after which a template is stopped: an endless loop.
@@ -34,6 +35,13 @@ pub(crate) const fn bit(word: WordName) -> Words {
     1 << word as u32
 }
 
+/// Whether `word` is one of `words`: faster than by its bit where it is not known beforehand.
+#[inline]
+pub(crate) const fn holds(words: Words, word: WordName) -> bool {
+    let half = if (word as u32) < 64 { words as u64 } else { (words >> 64) as u64 };
+    half >> (word as u32 % 64) & 1 != 0
+}
+
 /// The words that say where the tool is.
 pub(crate) const POSITION: Words = bit(WordName::X) | bit(WordName::Y) | bit(WordName::Z);
 /// The words that call the tool length offset.
@@ -48,15 +56,13 @@ pub(crate) const ORIENTATION: Words = bit(WordName::A)
     | bit(WordName::VY)
     | bit(WordName::VZ);
 
-/// One step of a block.
+/// One step of a block; with a gap before it, what separates two words, if something stands on both sides.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Step {
     /// Bytes of [`Lines::text`].
-    Text(u32, u32),
+    Text { gap: bool, from: u32, to: u32 },
     /// A word, left out where it repeats itself.
-    Word(WordName),
-    /// What separates two words, if something stands on both sides.
-    Gap,
+    Word { gap: bool, word: WordName },
     /// End of the line.
     End,
 }
@@ -89,67 +95,77 @@ impl Marks {
 pub(crate) struct Lines {
     pub(crate) text: String,
     pub(crate) steps: Vec<Step>,
+    /// The words among them.
+    pub(crate) words: Words,
 }
 
 impl Lines {
-    /// Cuts `text` into steps. A blank beside a word, outside of comments and quotes, is a separator.
-    fn of(text: String, format: &Format) -> Lines {
-        let mut steps = Vec::new();
+    /// Cuts `text` into steps, for a control that has only `words`. A blank beside a word, outside of comments
+    /// and quotes, is a separator.
+    fn of(text: String, format: &Format, words: Words) -> Lines {
+        let (mut steps, mut placed) = (Vec::new(), 0);
         for line in text.split('\n') {
             let origin = line.as_ptr() as usize - text.as_ptr() as usize;
-            let mut from = 0;
+            let (mut from, mut gap) = (0, false);
             let mut marks = Marks::default();
-            let literal = |steps: &mut Vec<Step>, from: usize, to: usize| {
-                if from < to {
-                    steps.push(Step::Text((origin + from) as u32, (origin + to) as u32));
-                }
-            };
             for (at, c) in line.char_indices() {
                 marks.pass(&line[at..], format);
                 let word = u32::from(c).checked_sub(FIRST_WORD).map(|i| i as usize);
-                let step = match word.and_then(|i| WordName::ALL.get(i)) {
-                    Some(&word) => Step::Word(word),
-                    None if c == '\r' => Step::Gap,
-                    None if c.is_ascii_whitespace() && !marks.inside() => Step::Gap,
-                    None => continue,
-                };
-                literal(&mut steps, from, at);
+                let word = word.and_then(|i| WordName::ALL.get(i).copied());
+                let blank = c == '\r' || c.is_ascii_whitespace() && !marks.inside();
+                if word.is_none() && !blank {
+                    continue;
+                }
+                literal(&mut steps, &mut gap, origin + from..origin + at);
                 from = at + c.len_utf8();
-                steps.push(step);
+                gap |= blank;
+                if let Some(word) = word.filter(|word| words & bit(*word) != 0) {
+                    steps.push(Step::Word { gap: std::mem::take(&mut gap), word });
+                    placed |= bit(word);
+                }
             }
-            literal(&mut steps, from, line.len());
+            literal(&mut steps, &mut gap, origin + from..origin + line.len());
             steps.push(Step::End);
         }
-        // The author of the text has put a blank between two literals, or none: it stays.
-        for i in 1..steps.len().saturating_sub(1) {
-            if let (Step::Text(_, end), Step::Gap, Step::Text(..)) =
-                (steps[i - 1], steps[i], steps[i + 1])
-            {
-                steps[i] = Step::Text(end, end + 1);
-            }
-        }
-        Lines { text, steps }
-    }
-
-    fn uses(&self) -> Words {
-        let words = self.steps.iter().filter_map(|step| match step {
-            Step::Word(word) => Some(bit(*word)),
-            _ => None,
-        });
-        words.fold(0, |all, word| all | word)
+        Lines { text, steps, words: placed }
     }
 }
 
-/// `text` with each `{{ word }}` as one character, where it consists of nothing but text and words.
-fn plain(text: &str) -> Option<String> {
+/// Puts bytes of a text behind `steps`, where there are some.
+fn literal(steps: &mut Vec<Step>, gap: &mut bool, bytes: Range<usize>) {
+    let (from, to) = (bytes.start as u32, bytes.end as u32);
+    match steps.last_mut() {
+        _ if bytes.is_empty() => {}
+        // The author of the text has put a blank between two literals: it stays.
+        Some(Step::Text { to: last, .. }) if *last + 1 == from => (*last, *gap) = (to, false),
+        _ => steps.push(Step::Text { gap: std::mem::take(gap), from, to }),
+    }
+}
+
+/// The words that the control of `machine` has.
+pub(crate) fn words_of(machine: &Machine) -> Words {
+    let has = |name: &&WordName| {
+        let word = machine.words.get(name.name());
+        // Blocks whose numbers do not grow have none.
+        word.is_some_and(|word| **name != WordName::N || word.step != 0)
+    };
+    WordName::ALL.iter().filter(has).fold(0, |all, word| all | bit(*word))
+}
+
+/// `text` with each `{{ word }}` as one character, and these words, where it consists of nothing but text and
+/// words.
+fn plain(text: &str) -> Option<(String, Words)> {
     let mut plain = String::with_capacity(text.len());
+    let mut words = 0;
     let mut rest = text;
     while let Some(at) = rest.find('{') {
         plain.push_str(&rest[..at]);
         rest = &rest[at..];
         if let Some(inner) = rest.strip_prefix("{{") {
             let (name, behind) = inner.split_once("}}")?;
-            plain.push(placeholder(WordName::named(name.trim())?));
+            let word = WordName::named(name.trim())?;
+            plain.push(placeholder(word));
+            words |= bit(word);
             rest = behind;
         } else if rest.starts_with("{%") || rest.starts_with("{#") {
             return None;
@@ -159,7 +175,7 @@ fn plain(text: &str) -> Option<String> {
         }
     }
     plain.push_str(rest);
-    Some(plain)
+    Some((plain, words))
 }
 
 fn placeholder(word: WordName) -> char {
@@ -170,6 +186,8 @@ fn placeholder(word: WordName) -> char {
 pub(crate) struct Template<'a> {
     block: &'a Block,
     uses: Words,
+    /// Whether it may read which tools the program calls.
+    tools: bool,
     /// `None`: the engine renders it.
     lines: Option<Lines>,
 }
@@ -239,7 +257,7 @@ impl Scope {
         program.push(1, Op::Tool(Box::new(tool.clone())));
         Scope {
             set: if first { Words::MAX } else { 0 },
-            program: program_value(machine, &program),
+            program: program_value(machine, &program.name, &program.records),
             operation: map([("name", Value::from(operation))]),
             tool: tool_value(machine, &tool, first),
             spindle: spindle_value(first, first),
@@ -312,9 +330,10 @@ fn identifies(name: &str) -> bool {
 }
 
 /// A program as templates see it. Its name becomes a file name on the control: the last part of a
-/// path, letters, digits, `_` and `-`, at most 24 of them (SINUMERIK), never empty.
-pub(crate) fn program_value(machine: &Machine, program: &Program) -> Value {
-    let name = program.name.rsplit(['/', '\\']).next().unwrap_or_default();
+/// path, letters, digits, `_` and `-`, at most 24 of them (SINUMERIK), never empty. Its tools are those that
+/// `records` call.
+pub(crate) fn program_value(machine: &Machine, name: &str, records: &[Record]) -> Value {
+    let name = name.rsplit(['/', '\\']).next().unwrap_or_default();
     let name = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
     let kept = |c: &char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
     let mut name: String = deunicode(name).chars().filter(kept).take(24).collect();
@@ -323,7 +342,7 @@ pub(crate) fn program_value(machine: &Machine, program: &Program) -> Value {
     }
     let mut seen = Vec::new();
     let mut tools = Vec::new();
-    for record in &program.records {
+    for record in records {
         if let Op::Tool(tool) = &record.op
             && !seen.contains(&tool.number)
         {
@@ -337,6 +356,8 @@ pub(crate) fn program_value(machine: &Machine, program: &Program) -> Value {
 /// All blocks of a machine.
 pub(crate) struct Templates<'a> {
     machine: &'a Machine,
+    /// The words that its control has.
+    words: Words,
     engine: Environment<'a>,
     blocks: Vec<Option<Template<'a>>>,
 }
@@ -352,7 +373,8 @@ impl<'a> Templates<'a> {
         engine.set_undefined_behavior(UndefinedBehavior::SemiStrict);
         engine.set_auto_escape_callback(|_| AutoEscape::None);
         engine.set_fuel(Some(FUEL));
-        let mut templates = Templates { machine, engine, blocks: Vec::new() };
+        let mut templates =
+            Templates { machine, words: words_of(machine), engine, blocks: Vec::new() };
         templates.blocks.resize_with(BlockName::COUNT, || None);
         let mut errors = Vec::new();
         for (name, block) in &machine.blocks {
@@ -401,9 +423,9 @@ impl<'a> Templates<'a> {
     }
 
     fn one(&self, block: &'a Block) -> Result<Template<'a>, Box<Diagnostic>> {
-        if let Some(text) = plain(&block.text) {
-            let lines = Lines::of(text, &self.machine.format);
-            return Ok(Template { block, uses: lines.uses(), lines: Some(lines) });
+        if let Some((text, uses)) = plain(&block.text) {
+            let lines = Lines::of(text, &self.machine.format, self.words);
+            return Ok(Template { block, uses, tools: false, lines: Some(lines) });
         }
         guard::check(&block.text, self.machine).map_err(|fault| match fault {
             Fault::Syntax(error) => {
@@ -420,13 +442,14 @@ impl<'a> Templates<'a> {
         let mut uses = 0;
         let mut names: Vec<String> = compiled.undeclared_variables(true).into_iter().collect();
         names.sort();
-        for name in names {
-            match WordName::named(&name) {
+        for name in &names {
+            match WordName::named(name) {
                 Some(word) => uses |= bit(word),
-                None => self.check_variable(block, &name)?,
+                None => self.check_variable(block, name)?,
             }
         }
-        Ok(Template { block, uses, lines: None })
+        let tools = names.iter().any(|name| name == "program" || name.starts_with("program.tools"));
+        Ok(Template { block, uses, tools, lines: None })
     }
 
     fn check_variable(&self, block: &Block, name: &str) -> Result<(), Box<Diagnostic>> {
@@ -454,6 +477,11 @@ impl<'a> Templates<'a> {
                 .help(help + "`toolpost explain` lists them");
         let place = block.text.find(name).unwrap_or(0);
         Err(Box::new(at(block, error, place, place + name.len())))
+    }
+
+    /// Whether some block may read which tools the program calls.
+    pub(crate) fn read_tools(&self) -> bool {
+        self.blocks.iter().flatten().any(|block| block.tools)
     }
 
     /// Whether the machine has the block.
@@ -496,7 +524,7 @@ impl<'a> Templates<'a> {
             })
             .map_err(|e| fault(block, &e))?;
         let text = String::from_utf8_lossy(&out.0).into_owned();
-        Ok(Lines::of(text, &self.machine.format))
+        Ok(Lines::of(text, &self.machine.format, self.words))
     }
 }
 

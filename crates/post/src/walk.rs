@@ -79,6 +79,9 @@ pub(crate) struct Walk<'a> {
     pub(crate) here: Option<Pose>,
     /// Whether the control stands where the last pose says.
     pub(crate) located: bool,
+    /// Whether nothing but cuts has been since a straight one, and a straight one in the same orientation differs
+    /// from that in where it goes alone.
+    pub(crate) goes_on: bool,
     pub(crate) place: Place,
     /// The wire, where the machine has one.
     pub(crate) wire: Option<Wire>,
@@ -91,6 +94,8 @@ pub(crate) struct Walk<'a> {
     /// Where the last arc leads, in the coordinates of the block, where it is told by its angle.
     pub(crate) turned_to: Option<Vec3>,
     pub(crate) limits: Limits<'a>,
+    /// Smallest step of a linear axis, mm.
+    pub(crate) resolution: f64,
     /// Entry of the code word `work_offset` that is active.
     work_offset: usize,
     ended: bool,
@@ -101,7 +106,8 @@ impl<'a> Walk<'a> {
         let templates = Templates::compile(machine)?;
         crate::promises::check(machine, &templates)?;
         let mut scope = Scope::new(machine);
-        scope.program = program_value(machine, program);
+        let tools = if templates.read_tools() { &program.records[..] } else { &[] };
+        scope.program = program_value(machine, &program.name, tools);
         let mut writer = Writer::new(machine);
         // What the catalogue asks of `program_start`.
         writer.assume(WordName::Plane, PLANE_XY);
@@ -133,6 +139,7 @@ impl<'a> Walk<'a> {
             whole: 0.0,
             here: None,
             located: false,
+            goes_on: false,
             place: Place::start(machine),
             wire: Wire::of(machine, program),
             surface: None,
@@ -140,6 +147,7 @@ impl<'a> Walk<'a> {
             said: Vec3::ZERO,
             turned_to: None,
             limits: Limits::new(machine),
+            resolution: machine.resolution(),
             work_offset: 0,
             ended: false,
         })
@@ -199,8 +207,11 @@ impl<'a> Walk<'a> {
                 _ => Err(refuse("after-end", "the program goes on after its end")),
             };
         }
-        if record.op.pose().is_some() {
-            return self.motion(&record.op, stop);
+        let goes_on = std::mem::take(&mut self.goes_on);
+        match &record.op {
+            Op::Line(pose) if goes_on && self.keeps_orientation(pose) => return self.line_on(pose),
+            op if op.pose().is_some() => return self.motion(op, stop, goes_on),
+            _ => {}
         }
         match &record.op {
             Op::Rapid(_) | Op::Line(_) | Op::Arc(_) | Op::Thread(_) | Op::Hole(_) => Ok(()),
@@ -292,12 +303,12 @@ impl<'a> Walk<'a> {
         }
     }
 
-    fn motion(&mut self, op: &'a Op, stop: Option<crate::place::Stop>) -> Done {
+    fn motion(&mut self, op: &'a Op, stop: Option<crate::place::Stop>, goes_on: bool) -> Done {
         if self.tool.is_none() && self.wire.is_none() {
             self.default_tool()?;
         }
         let Some(stop) = stop else { return Ok(()) };
-        match op {
+        let done = match op {
             Op::Rapid(pose) => self.rapid(pose, &stop),
             Op::Line(pose) => self.line(pose, &stop),
             Op::Arc(to) => self.arc(to, &stop),
@@ -307,7 +318,15 @@ impl<'a> Walk<'a> {
             }
             Op::Thread(thread) => self.thread(thread, &stop),
             _ => Ok(()),
-        }
+        };
+        self.goes_on = match op {
+            Op::Line(_) => self.goes_on,
+            // It changes nothing but how the control moves.
+            Op::Arc(_) => goes_on && done.is_ok(),
+            // What others cut straight, they do with a feed or an end of their own.
+            _ => false,
+        };
+        done
     }
 
     /// Positions are counted from another work offset from here on; the way there leads over the part.
@@ -614,6 +633,12 @@ impl<'a> Walk<'a> {
     }
 
     // Feed.
+
+    /// Whether the feed is in inverse time: then the length of a cut counts.
+    #[inline]
+    pub(crate) fn is_timed(&self) -> bool {
+        matches!(self.feed, Some(Feed::InverseTime(_)))
+    }
 
     /// Says the feed of a cut of `length` mm in the next block, one of `pieces` of the source's. With
     /// `turning` the control, which knows nothing of the tool tip, is told the time instead, where it

@@ -3,7 +3,7 @@
 use crate::catalogue::WordName;
 use crate::number::Number;
 use crate::surface::{DECIMALS, Part};
-use crate::template::{Lines, ORIENTATION, POSITION, Step, Words, bit};
+use crate::template::{Lines, ORIENTATION, POSITION, Step, Words, bit, holds, words_of};
 use machine::Machine;
 use program::Diagnostic;
 
@@ -12,18 +12,12 @@ enum Form {
     /// The control does not use it.
     Absent,
     Number(Number),
-    /// Its texts, in the order of [`WordName::codes`], and whether it is modal.
-    Code(Vec<Option<String>>, bool),
+    /// Its texts, in the order of [`WordName::codes`].
+    Code(Vec<Option<String>>),
 }
 
-/// A value as it is compared: what repeats is left out.
-#[derive(Clone, Copy, Default, PartialEq)]
-struct Value {
-    /// Steps of a number, the entry of a code.
-    steps: i64,
-    /// Of a number that is compared before it is rounded its bits, else 0.
-    exact: u64,
-}
+/// A value as it is compared, for what repeats is left out: the key of a number, the entry of a code.
+type Key = i64;
 
 /// The program text and what the control remembers of it.
 pub(crate) struct Writer {
@@ -35,10 +29,14 @@ pub(crate) struct Writer {
     step: u32,
     /// The words of the block that comes next, and their values.
     set: Words,
-    values: [Value; WordName::COUNT],
+    values: [Key; WordName::COUNT],
+    /// The words that [`Writer::repeat`] says.
+    kept: Words,
     /// The words whose active value is known, and those values.
     known: Words,
-    active: [Value; WordName::COUNT],
+    active: [Key; WordName::COUNT],
+    /// The words that are left out where they repeat themselves.
+    modal: Words,
     /// The word whose form [`WordName::F`] has.
     feed_form: WordName,
     /// What is added to Z in the block that comes next: parts, and of which parameters, as those are written.
@@ -52,14 +50,19 @@ pub(crate) struct Writer {
 
 impl Writer {
     pub(crate) fn new(machine: &Machine) -> Writer {
-        let form = |&name: &WordName| match machine.words.get(name.name()) {
+        let words = words_of(machine);
+        let word =
+            |name: WordName| machine.words.get(name.name()).filter(|_| words & bit(name) != 0);
+        let form = |&name: &WordName| match word(name) {
             None => Form::Absent,
             Some(word) if name.codes().next().is_some() => {
-                let texts = name.codes().map(|code| word.codes.get(code).cloned()).collect();
-                Form::Code(texts, word.modal)
+                Form::Code(name.codes().map(|code| word.codes.get(code).cloned()).collect())
             }
-            Some(word) if name == WordName::N && word.step == 0 => Form::Absent,
             Some(word) => Form::Number(Number::new(&machine.format.separator, word)),
+        };
+        let modal = |all, &name: &WordName| match word(name) {
+            Some(word) if word.modal => all | bit(name),
+            _ => all,
         };
         let number = machine.words.get(WordName::N.name());
         let first = number.map_or(1, |word| word.first);
@@ -71,9 +74,11 @@ impl Writer {
             first,
             step: number.map_or(1, |word| word.step),
             set: 0,
-            values: [Value::default(); WordName::COUNT],
+            values: [0; WordName::COUNT],
+            kept: 0,
             known: 0,
-            active: [Value::default(); WordName::COUNT],
+            active: [0; WordName::COUNT],
+            modal: WordName::ALL.iter().fold(0, modal),
             feed_form: WordName::F,
             raised: None,
             refused: None,
@@ -87,13 +92,8 @@ impl Writer {
     #[inline]
     pub(crate) fn set(&mut self, word: WordName, value: f64) {
         let Form::Number(number) = &self.forms[self.form(word) as usize] else { return };
-        match number.round(value) {
-            Some(steps) => {
-                // Both zeros are one.
-                let exact = if number.exact { (value + 0.0).to_bits() } else { 0 };
-                self.values[word as usize] = Value { steps, exact };
-                self.set |= bit(word);
-            }
+        match number.key(value) {
+            Some(key) => self.say(word, key),
             None => self.refused = Some((word, value)),
         }
     }
@@ -119,8 +119,19 @@ impl Writer {
     /// The next block may write the code `word` with its entry `index`.
     #[inline]
     pub(crate) fn code(&mut self, word: WordName, index: usize) {
-        self.values[word as usize] = Value { steps: index as i64, exact: 0 };
+        self.say(word, index as Key);
+    }
+
+    #[inline]
+    fn say(&mut self, word: WordName, value: Key) {
+        self.values[word as usize] = value;
         self.set |= bit(word);
+    }
+
+    /// Whether the control has one of `words`.
+    #[inline]
+    pub(crate) fn has(&self, words: &[WordName]) -> bool {
+        words.iter().any(|word| !matches!(self.forms[*word as usize], Form::Absent))
     }
 
     /// How `value` is rounded by `word`: what reading it gives. The value itself where the control
@@ -138,7 +149,7 @@ impl Writer {
     pub(crate) fn active(&self, word: WordName) -> Option<f64> {
         match &self.forms[self.form(word) as usize] {
             Form::Number(number) if self.known & bit(word) != 0 => {
-                Some(number.value(self.active[word as usize].steps))
+                Some(number.value(number.steps(self.active[word as usize])))
             }
             _ => None,
         }
@@ -147,18 +158,43 @@ impl Writer {
     /// Whether the next block, writing all that is set, changes one of `words`.
     #[inline]
     pub(crate) fn changes(&self, words: Words) -> bool {
-        let mut rest = self.set & words;
-        if self.raised.is_some() && rest & bit(WordName::Z) != 0 {
+        let set = self.set & words;
+        let mut rest = set & self.known & !self.raised();
+        if rest != set {
             return true;
         }
         while rest != 0 {
             let word = rest.trailing_zeros() as usize;
-            if self.known & (1 << word) == 0 || self.values[word] != self.active[word] {
+            if self.values[word] != self.active[word] {
                 return true;
             }
             rest &= rest - 1;
         }
         false
+    }
+
+    /// The words that are raised: what they come to, only the control knows.
+    #[inline]
+    fn raised(&self) -> Words {
+        if self.raised.is_some() { bit(WordName::Z) } else { 0 }
+    }
+
+    /// The words that are left out where they say what is active.
+    #[inline]
+    fn left_out(&self) -> Words {
+        self.modal & self.known & !self.raised()
+    }
+
+    /// The words of the next block are kept to be repeated.
+    #[inline]
+    pub(crate) fn keep(&mut self) {
+        self.kept = self.set;
+    }
+
+    /// The next block may write the words that have been kept, with the values that they have.
+    #[inline]
+    pub(crate) fn repeat(&mut self) {
+        self.set = self.kept;
     }
 
     /// Takes `words` out of the next block.
@@ -177,7 +213,7 @@ impl Writer {
 
     /// The control is at this entry of a code without being told.
     pub(crate) fn assume(&mut self, word: WordName, index: usize) {
-        self.active[word as usize] = Value { steps: index as i64, exact: 0 };
+        self.active[word as usize] = index as Key;
         self.known |= bit(word);
     }
 
@@ -192,6 +228,12 @@ impl Writer {
         if self.feed_form != word {
             self.feed_form = word;
             self.forget(bit(WordName::F));
+            self.modal &= !bit(WordName::F);
+            if let Form::Number(number) = &self.forms[word as usize]
+                && number.modal
+            {
+                self.modal |= bit(WordName::F);
+            }
         }
     }
 
@@ -211,11 +253,11 @@ impl Writer {
         }
         let mut start = self.text.len();
         let (mut gap, mut full, mut numbered) = (false, false, false);
-        let mut placed = 0;
+        let (set, mut left_out) = (self.set, self.left_out());
         for step in &block.steps {
             match *step {
-                Step::Gap => gap = true,
-                Step::Text(from, to) => {
+                Step::Text { gap: before, from, to } => {
+                    gap |= before;
                     if self.separated(&mut gap, start) {
                         self.text.extend_from_slice(&self.separator);
                     }
@@ -223,21 +265,21 @@ impl Writer {
                     self.text.extend_from_slice(text);
                     full = true;
                 }
-                Step::Word(WordName::N) => {
-                    if let Form::Number(number) = &self.forms[WordName::N as usize] {
-                        let next = self.next_number as f64;
-                        let steps = number.round(next).or_else(|| {
-                            self.next_number = self.first.into();
-                            number.round(f64::from(self.first))
-                        });
-                        let separated = self.separated(&mut gap, start);
-                        self.write(WordName::N, separated, steps.unwrap_or_default());
-                        numbered = true;
-                    }
+                Step::Word { gap: before, word: WordName::N } => {
+                    gap |= before;
+                    self.number(&mut gap, start);
+                    numbered = true;
                 }
-                Step::Word(word) => {
-                    placed |= bit(word);
-                    full |= self.word(word, &mut gap, start);
+                Step::Word { gap: before, word } => {
+                    gap |= before;
+                    let index = word as usize;
+                    let repeats = holds(left_out, word) && self.values[index] == self.active[index];
+                    if holds(set, word) && !repeats {
+                        full |= self.word(word, &mut gap, start);
+                        if !holds(left_out, word) {
+                            left_out = self.left_out();
+                        }
+                    }
                 }
                 Step::End => {
                     if full {
@@ -252,7 +294,7 @@ impl Writer {
             }
         }
         // A position that the block leads to by other words (a helix by its angle) is not known by its own.
-        self.known &= !(self.set & !placed & (POSITION | ORIENTATION));
+        self.known &= !(self.set & !block.words & (POSITION | ORIENTATION));
         self.set = 0;
         self.raised = None;
         Ok(())
@@ -264,44 +306,45 @@ impl Writer {
         std::mem::take(gap) && self.text.len() > start
     }
 
-    /// Writes a word where it is set and says something new; whether it did.
+    /// Writes the number of the block.
+    #[inline]
+    fn number(&mut self, gap: &mut bool, start: usize) {
+        let Form::Number(number) = &self.forms[WordName::N as usize] else { return };
+        let steps = number.round(self.next_number as f64).or_else(|| {
+            self.next_number = self.first.into();
+            number.round(f64::from(self.first))
+        });
+        let separated = self.separated(gap, start);
+        number.write(separated, steps.unwrap_or_default(), &mut self.text);
+    }
+
+    /// Writes a word; whether it has a text.
     #[inline]
     fn word(&mut self, word: WordName, gap: &mut bool, start: usize) -> bool {
-        let (index, bit) = (word as usize, bit(word));
-        if self.set & bit == 0 {
-            return false;
-        }
+        let index = word as usize;
         let value = self.values[index];
-        let modal = match &self.forms[self.form(word) as usize] {
-            Form::Absent => return false,
-            Form::Number(number) => number.modal,
-            Form::Code(texts, modal) => {
-                if texts.get(value.steps as usize).is_none_or(|text| text.as_deref() == Some("")) {
-                    return false;
-                }
-                *modal
-            }
-        };
-        let is_raised = word == WordName::Z && self.raised.is_some();
-        if modal && !is_raised && self.known & bit != 0 && self.active[index] == value {
+        if let Form::Code(texts) = &self.forms[index]
+            && texts.get(value as usize).is_none_or(|text| text.as_deref() == Some(""))
+        {
             return false;
         }
-        self.known |= bit;
+        if !holds(self.known, word) {
+            self.known |= bit(word);
+        }
         self.active[index] = value;
         let separated = self.separated(gap, start);
-        match self.raised.filter(|_| is_raised) {
-            None => self.write(word, separated, value.steps),
-            Some(parts) => {
-                // What it comes to, only the control knows.
-                self.known &= !bit;
-                self.write_raised(word, separated, value.steps, &parts);
+        match self.raised {
+            Some(parts) if word == WordName::Z => {
+                self.known &= !bit(word);
+                self.write_raised(word, separated, value, &parts);
             }
+            _ => self.write(word, separated, value),
         }
         true
     }
 
     /// Writes a number and parts of heights as the sum that they are.
-    fn write_raised(&mut self, word: WordName, separated: bool, steps: i64, parts: &[(f64, i64)]) {
+    fn write_raised(&mut self, word: WordName, separated: bool, value: Key, parts: &[(f64, i64)]) {
         let forms = [word, WordName::Height].map(|word| &self.forms[word as usize]);
         let [Form::Number(number), Form::Number(height)] = forms else { return };
         let mut sum = Vec::with_capacity(96);
@@ -318,16 +361,18 @@ impl Writer {
             }
             height.write(false, *parameter, &mut sum);
         }
-        number.write_sum(separated, steps, &sum, &mut self.text);
+        number.write_sum(separated, number.steps(value), &sum, &mut self.text);
     }
 
     #[inline]
-    fn write(&mut self, word: WordName, separated: bool, steps: i64) {
+    fn write(&mut self, word: WordName, separated: bool, value: Key) {
         match &self.forms[self.form(word) as usize] {
             Form::Absent => {}
-            Form::Number(number) => number.write(separated, steps, &mut self.text),
-            Form::Code(texts, _) => {
-                if let Some(Some(text)) = texts.get(steps as usize) {
+            Form::Number(number) => {
+                number.write(separated, number.steps(value), &mut self.text);
+            }
+            Form::Code(texts) => {
+                if let Some(Some(text)) = texts.get(value as usize) {
                     if separated {
                         self.text.extend_from_slice(&self.separator);
                     }

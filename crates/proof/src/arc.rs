@@ -49,12 +49,13 @@ pub(crate) fn follow(
     let left_mm = left(arc, reached);
     within("turns past the end of the arc", -left_mm, PAST * slack, "mm")?;
     let allowed = ROUNDINGS * slack;
+    let steepness = steepness(arc);
     let mut followed = Followed { t: reached, path_mm: 0.0, left_mm };
     // Four chords of a half circle do not hide a wrong centre; longer arcs get more samples.
     let samples = 4 * (block.sweep / PI).ceil().clamp(1.0, 100.0) as u32;
     for i in 1..=samples {
         let part = f64::from(i) / f64::from(samples);
-        let (beside, along) = off(arc, t + part * (reached - t), block.at(part));
+        let (beside, along) = off(arc, steepness, t + part * (reached - t), block.at(part));
         within("leaves the arc", beside, allowed, "mm")?;
         within("is elsewhere on the arc", along, allowed, "mm")?;
         followed.path_mm = followed.path_mm.max(beside);
@@ -83,10 +84,12 @@ pub(crate) fn follow_chord(
     let reached = t + turned / arc.sweep;
     let left_mm = left(arc, reached);
     within("turns past the end of the arc", -left_mm, PAST * slack, "mm")?;
-    let (end, along) = off(arc, reached, to.place.tip);
+    let steepness = steepness(arc);
+    let (end, along) = off(arc, steepness, reached, to.place.tip);
     within("leaves the arc", end, ROUNDINGS * slack, "mm")?;
     within("is elsewhere on the arc", along, ROUNDINGS * slack, "mm")?;
-    let (middle, _) = off(arc, (t + reached) / 2.0, (here.place.tip + to.place.tip) / 2.0);
+    let middle = (here.place.tip + to.place.tip) / 2.0;
+    let (middle, _) = off(arc, steepness, (t + reached) / 2.0, middle);
     within("cuts the arc off", middle, ROUNDINGS * slack + gauge.allowed.chord_mm, "mm")?;
     axis(gauge, goal, here, to)?;
     Ok(Followed { t: reached, path_mm: end.max(middle), left_mm })
@@ -101,15 +104,15 @@ fn parameter(arc: &Arc, point: Vec3, near: f64) -> f64 {
     (angle + turns * TAU) / arc.sweep
 }
 
-/// How far `point` is beside `arc` at `t`, and along it, mm. Along a steep helix counts as its turn
-/// does: a small error of the angle is a long way there, but no other path.
-fn off(arc: &Arc, t: f64, point: Vec3) -> (f64, f64) {
+/// How far `point` is beside `arc` at `t`, and along it, mm. Along a helix of this [`steepness`] counts as its
+/// turn does: a small error of the angle is a long way there, but no other path.
+fn off(arc: &Arc, steepness: f64, t: f64, point: Vec3) -> (f64, f64) {
     let on = arc_point(arc, t);
     let spoke = (on - arc.center).reject_from_normalized(arc.normal);
     let tangent = arc.normal.cross(spoke) * arc.sweep + arc.normal * arc.rise();
     let along = (point - on).dot(tangent) / tangent.length();
     let beside = (point - on - tangent.normalize() * along).length();
-    (beside, along.abs() / steepness(arc))
+    (beside, along.abs() / steepness)
 }
 
 /// What is left of `arc` from `t` on, mm of its turn.

@@ -42,7 +42,7 @@ pub(crate) fn follow(
         true => Some(between(from.axis, goal.to.axis, t)),
         false => None,
     };
-    axis(gauge, &from, &goal.to, expected(reached), to.place.axis)?;
+    axis(gauge, &from, &goal.to, || expected(reached), to.place.axis)?;
     let left_mm = (1.0 - reached) * length;
     let mut followed = Followed { t: reached, path_mm: beside, left_mm };
     if let Some(turn) = turn(&here.pose, &to.pose) {
@@ -57,7 +57,7 @@ pub(crate) fn follow(
                 within("swings off the line between its ends", beside, allowed, "mm")?;
                 followed.path_mm = followed.path_mm.max(beside);
             }
-            let expected = expected(t + (reached - t) * part);
+            let expected = || expected(t + (reached - t) * part);
             axis(gauge, &from, &goal.to, expected, place.axis)?;
         }
     } else if unlike(here, to) {
@@ -72,13 +72,13 @@ fn axis(
     gauge: &Gauge,
     from: &Place,
     to: &Place,
-    expected: Option<Vec3>,
+    expected: impl FnOnce() -> Option<Vec3>,
     axis: Vec3,
 ) -> Result<(), String> {
     if from.axis == to.axis && axis == to.axis {
         return Ok(());
     }
-    let off = match expected {
+    let off = match expected() {
         Some(expected) => geom::angle_between(expected, axis).to_degrees(),
         None => off_great_circle(from.axis, to.axis, axis),
     };

@@ -149,6 +149,11 @@ pub struct Extent {
 }
 
 impl Extent {
+    /// Whether all from `low` to `high` is within.
+    fn holds(&self, low: f64, high: f64) -> bool {
+        self.min.is_some_and(|min| min <= low) && self.max.is_some_and(|max| high <= max)
+    }
+
     fn include(&mut self, value: f64) {
         if value.is_nan() {
             return;
@@ -169,6 +174,12 @@ impl Summary {
                 extent.include(value);
             }
         }
+    }
+
+    /// Whether the extents hold all that is as near to `center` as `reach`, mm.
+    pub(crate) fn holds(&self, center: Vec3, reach: f64) -> bool {
+        let mut extents = self.linear_extents_mm.iter().zip(center.to_array());
+        extents.all(|(extent, at)| extent.holds(at - reach, at + reach))
     }
 
     /// Takes the quadrants of an arc, in the coordinates of its block, into the extents.
@@ -216,7 +227,7 @@ impl Report {
 
     /// Puts the file name and the blocks of the NC text beside what was found, and counts the blocks.
     pub(crate) fn quote(&mut self, file_name: &str, text: &[u8]) {
-        let lines = || text.split(|byte| *byte == b'\n');
+        let lines = || lines(text);
         self.program.blocks = lines().filter(|line| !line.trim_ascii().is_empty()).count();
         for found in self.mismatches.iter_mut().chain(&mut self.warnings) {
             found.file = file_name.into();
@@ -232,6 +243,16 @@ impl Report {
             first.block = found.excerpt.lines().next().unwrap_or_default().trim_end().into();
         }
     }
+}
+
+/// What stands between the line feeds of a text.
+fn lines(text: &[u8]) -> impl Iterator<Item = &[u8]> {
+    let mut from = 0;
+    memchr::memchr_iter(b'\n', text).chain([text.len()]).map(move |end| {
+        let line = &text[from..end];
+        from = end + 1;
+        line
+    })
 }
 
 fn note(list: &mut Vec<Diagnostic>, found: Diagnostic) {

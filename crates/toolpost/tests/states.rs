@@ -4,7 +4,9 @@
 use geom::Vec3;
 use machine::library::{MACHINES, names};
 use machine::{Machine, load};
-use program::{ArcTo, Compensation, Coolant, Feed, Op, Pose, Program, Spindle, Tool};
+use program::{
+    ArcTo, Compensation, Coolant, Cycle, CycleKind, Feed, Op, Pose, Program, Spindle, Tool,
+};
 
 fn mills() -> impl Iterator<Item = Machine> {
     names(MACHINES).map(|name| load(name).unwrap()).filter(|machine| machine.wire.is_none())
@@ -114,6 +116,25 @@ fn feeds_a_turn_and_feeds_in_inverse_time_are_written_or_counted_in_mm_per_minut
             let text = written(&machine, ops).unwrap();
             assert!(text.contains(feed[usize::from(!own)]), "{}: {text}", machine.name);
         }
+    }
+}
+
+/// 15 mm down in a thirtieth of a minute, however long the cut before was.
+#[test]
+fn a_hole_that_is_drilled_by_moves_takes_its_own_time() {
+    let kind = CycleKind::Drill;
+    let (first_peck, peck) = (None, None);
+    let (feed, dwell, depth) = (None, 0.0, 15.0);
+    let cycle = Cycle { kind, depth, clearance: 0.0, retract: 17.0, feed, dwell, first_peck, peck };
+    let machine = load("generic-3axis-grbl").unwrap();
+    let inverse = machine.capabilities.inverse_time;
+    for x in [0.5, 300.0] {
+        let hole = Op::Hole(at(x, 0.0, 3.0));
+        let ops = [Op::Line(at(x, 0.0, 20.0)), Op::Feed(Feed::InverseTime(30.0))];
+        let drilled = [Op::Cycle(Box::new(cycle)), hole, Op::CycleOff];
+        let text = written(&machine, &[&ops[..], &drilled[..]].concat()).unwrap();
+        let down = text.lines().find(|line| line.contains("Z-12")).unwrap();
+        assert!(down.ends_with(if inverse { "F30" } else { "F450" }), "{text}");
     }
 }
 

@@ -322,6 +322,10 @@ impl<'a> Prover<'a> {
         if let Some(to) = arc {
             let (start, end) = (self.here.pose.point, to.end.point);
             let radius = start.distance(to.center);
+            // No point of a helix is farther from a point of its axis than its ends are together.
+            if summary.holds(to.center, radius + end.distance(to.center)) {
+                return;
+            }
             if let Ok(arc) = Arc::new(start, end, to.center, to.normal, to.turns, radius) {
                 summary.include_arc(&arc);
             }
