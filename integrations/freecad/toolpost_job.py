@@ -17,10 +17,6 @@ from xml.etree import ElementTree
 
 COOLANT = {"Flood": "flood", "Mist": "mist"}
 
-# What `toGCode` writes for a number that does not fit into 64 bits of millionths: not a number at
-# all, infinite, or beyond 9.2e12.
-OVERFLOW = "-922337203685.477"
-
 OFFSET = re.compile(r"^G5(?:[4-8]|9(?:\.[1-9])?)$", re.MULTILINE)
 
 
@@ -222,19 +218,9 @@ def _commands(part):
     path = _placed(part)
     text = path.toGCode()
     # Of what FreeCAD takes for a command, a comment alone can have a line break.
-    is_torn = "(" in text and text.count("\n") != path.Size
-    if not is_torn and OVERFLOW not in text:
+    if "(" not in text or text.count("\n") == path.Size:
         return text
-    return "".join(_command(command) + "\n" for command in path.Commands)
-
-
-def _command(command):
-    """Answer a command on one line, with what is no number told as what it is."""
-    text = command.toGCode()
-    if OVERFLOW in text:
-        words = [f"{letter}{value:.6f}" for letter, value in sorted(command.Parameters.items())]
-        text = " ".join([command.Name, *words])
-    return " ".join(text.split("\n"))
+    return "".join(" ".join(command.toGCode().split("\n")) + "\n" for command in path.Commands)
 
 
 def _placed(part):

@@ -9,6 +9,7 @@ use crate::toolpath::{self, Toolpath};
 use machine::Machine;
 use proof::{Report, Tolerances};
 use serde_json::json;
+use std::{panic, thread};
 
 /// Runs the program on the virtual control of the machine and compares.
 pub fn run(args: &Prove, silent: bool) -> Result<Answer, Stop> {
@@ -30,7 +31,13 @@ pub fn compare(
     text: &[u8],
     tolerances: &Tolerances,
 ) -> Account {
-    let proof = proof::prove(&toolpath.program, machine, file, text, tolerances);
+    let program = &toolpath.program;
+    // What is told of the toolpath is found meanwhile.
+    let (proof, shape) = thread::scope(|scope| {
+        let shape = scope.spawn(|| Shape::of(program));
+        let proof = proof::prove(program, machine, file, text, tolerances);
+        (proof, shape.join().unwrap_or_else(|cause| panic::resume_unwind(cause)))
+    });
     let warnings = toolpath.warnings.iter().cloned();
     if !proof.proven {
         let mut account = failed(&proof, toolpath, file);
@@ -38,7 +45,6 @@ pub fn compare(
         return account;
     }
     let findings = warnings.chain(proof.warnings.iter().cloned()).collect();
-    let shape = Shape::of(&toolpath.program);
     let data = json!({
         "source": toolpath.describe(&shape),
         "machine": toolpath::describe(machine),

@@ -18,9 +18,10 @@ REFUSALS = {
         "give the tool controller of the operation its feeds",
     ],
     "code-unknown": ["operation `Custom`:5", "G999", "change the commands of the operation"],
-    "nan": ["operation `Broken`:3", "Ynan"],
-    "infinite": ["operation `Broken`:3", "Yinf"],
-    "huge": ["operation `Broken`:3", "Y10000000000000000905969664"],
+    # FreeCAD writes all of them as one number.
+    "nan": ["operation `Broken`:3", "is no number", "recompute the operation"],
+    "infinite": ["operation `Broken`:3", "is no number", "recompute the operation"],
+    "huge": ["operation `Broken`:3", "is no number", "recompute the operation"],
     "moved": ["Profile is moved by its Placement", "set it to zero"],
     "machine-missing": ["--machine", "name in the library"],
     "machine-unknown": [
