@@ -201,7 +201,12 @@ def _parts(obj):
 
 
 def _operation(part):
-    operation = {"label": storable(part.Label), "commands": storable(_commands(part))}
+    path = _placed(part)
+    operation = {
+        "label": storable(part.Label),
+        "count": path.Size,
+        "commands": storable(_commands(path)),
+    }
     controller = _property(part, "ToolController")
     if controller is not None:
         operation["tool"] = controller.ToolNumber
@@ -213,11 +218,9 @@ def _operation(part):
     return operation
 
 
-def _commands(part):
-    """Answer the commands of an object, one a line."""
-    path = _placed(part)
+def _commands(path):
+    """Answer the commands of a path, one a line, also those comments that have a line break."""
     text = path.toGCode()
-    # Of what FreeCAD takes for a command, a comment alone can have a line break.
     if "(" not in text or text.count("\n") == path.Size:
         return text
     return "".join(" ".join(command.toGCode().split("\n")) + "\n" for command in path.Commands)

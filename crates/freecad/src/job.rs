@@ -38,6 +38,8 @@ pub struct Operation {
     pub tool: Option<u32>,
     /// The coolant with which it cuts; none where the job does not say it.
     pub coolant: Option<Coolant>,
+    /// How many commands it has, where the job says it.
+    pub count: Option<u32>,
     /// Its commands, one a line.
     pub commands: String,
 }
@@ -61,6 +63,7 @@ struct OperationSheet {
     coolant: Option<CoolantSheet>,
     #[serde(default = "yes")]
     active: bool,
+    count: Option<u32>,
     commands: String,
 }
 
@@ -149,6 +152,7 @@ fn from_sheet(sheet: Sheet) -> Result<Job, Box<Diagnostic>> {
             CoolantSheet::Flood => Coolant::Flood,
             CoolantSheet::Mist => Coolant::Mist,
         }),
+        count: operation.count,
         commands: operation.commands,
     });
     Ok(Job { name: sheet.name, tools: sheet.tools, operations: operations.collect() })

@@ -31,7 +31,7 @@ pub fn read(machine: &Machine, file_name: &str, job: &Job) -> Result<Reading, Bo
         let help = "give one of the tool controllers another number";
         return Err(Diagnostic::error("two-tools", message).help(help).file(file_name).into());
     }
-    let listing = Listing::of(file_name, job);
+    let listing = Listing::of(file_name, job)?;
     let mut speaks = Machine { reader: String::from("freecad"), ..machine.clone() };
     if !listing.turns() {
         speaks.rotary.clear();

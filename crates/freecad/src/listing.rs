@@ -42,7 +42,10 @@ pub struct Place<'a> {
 
 impl Listing {
     /// The commands of `job`, which stands in `file`.
-    pub(crate) fn of(file: &str, job: &Job) -> Listing {
+    ///
+    /// # Errors
+    /// An operation that has not as many lines as commands.
+    pub(crate) fn of(file: &str, job: &Job) -> Result<Listing, Box<Diagnostic>> {
         let room = job.operations.iter().map(|operation| operation.commands.len() + 8).sum();
         let mut listing = Listing {
             file: file.to_owned(),
@@ -69,8 +72,16 @@ impl Listing {
             let before = listing.lines;
             listing.sections.push(Section { label: operation.label.clone(), before, from });
             listing.push(&operation.commands);
+            let lines = listing.lines - before;
+            if let Some(count) = operation.count.filter(|count| *count != lines) {
+                let label = &operation.label;
+                let message = format!("operation `{label}` has {count} commands on {lines} lines");
+                let help = "no name of a command may have a line break: make the operation anew";
+                let found = Diagnostic::error("freecad-lines", message).help(help);
+                return Err(found.file(file).into());
+            }
         }
-        listing
+        Ok(listing)
     }
 
     /// Adds commands, one a line.

@@ -241,6 +241,22 @@ fn operations_that_are_not_active_are_left_out() {
 }
 
 #[test]
+fn an_operation_has_a_line_for_each_command() {
+    let cut = format!("{START}G1 F2.0 Z0.0\n");
+    let lines = cut.lines().count();
+    let counted = |count: usize| {
+        job(json!([
+            { "label": "A", "coolant": "mist", "count": 0, "commands": "" },
+            { "label": "B", "coolant": "flood", "count": count, "commands": cut },
+        ]))
+    };
+    assert!(!ops(&counted(lines)).is_empty());
+    for wrong in [lines - 1, lines + 1] {
+        refused(&counted(wrong), "freecad-lines", "part.json:0", "line break");
+    }
+}
+
+#[test]
 fn an_empty_job_is_refused() {
     for operations in [json!([]), json!([{ "label": "A", "active": false, "commands": START }])] {
         refused(&job(operations), "no-motion", "part.json:0", "active");

@@ -37,6 +37,7 @@ pub struct Reading {
 }
 
 /// How a record is put to those before it, and whether the program has worked in several work offsets so far.
+/// It may hold records back, but no tool of a source that has length offsets: these correct the last tool.
 pub type Keep<'a> = dyn FnMut(&mut Vec<Record>, Record, bool) + 'a;
 
 /// The virtual control of `machine`, with what the operator has set up.

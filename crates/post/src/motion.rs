@@ -90,7 +90,8 @@ impl Walk<'_> {
         self.here.is_some_and(|here| here.orientation == pose.orientation)
     }
 
-    /// A straight cut of the source that goes on from another one.
+    /// A straight cut of the source that goes on from another one: `cut`, where nothing that it asks for can have
+    /// changed.
     #[inline]
     pub(crate) fn line_on(&mut self, pose: &Pose) -> Done {
         self.here = Some(*pose);

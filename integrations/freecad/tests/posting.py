@@ -167,6 +167,9 @@ def wrong():
     )
     broken = Path.Command("(one\nG1 X99)")
     case("comment-of-two-lines", [start, tool, Piece("Broken", [*whole, broken])])
+    two = Path.Command("G1")
+    two.Name = "G1 X5\nG1 Z-20"
+    case("command-of-two-lines", [start, tool, Piece("Broken", [*whole, two])])
     operation.Active = True
     operation.Placement.Base.z = 5
     case("moved", [start, tool, operation])

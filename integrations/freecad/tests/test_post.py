@@ -22,6 +22,7 @@ REFUSALS = {
     "nan": ["operation `Broken`:3", "is no number", "recompute the operation"],
     "infinite": ["operation `Broken`:3", "is no number", "recompute the operation"],
     "huge": ["operation `Broken`:3", "is no number", "recompute the operation"],
+    "command-of-two-lines": ["operation `Broken` has 3 commands on 4 lines", "line break"],
     "moved": ["Profile is moved by its Placement", "set it to zero"],
     "machine-missing": ["--machine", "name in the library"],
     "machine-unknown": [

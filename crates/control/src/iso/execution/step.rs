@@ -54,6 +54,7 @@ impl Step<'_, '_, '_> {
     /// is that of RS274/NGC 3.8. FANUC leaves the moment of an M function to the builder of the
     /// machine: what could matter there is refused.
     fn run(&mut self) -> Result<(), Fault> {
+        // What is left out where it only moves acts on G and M words of other groups, and on other letters.
         let more = !self.block.only_moves();
         self.one_command()?;
         self.wire()?;

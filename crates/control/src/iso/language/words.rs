@@ -342,9 +342,10 @@ const PLACES: [u8; 128] = {
     places
 };
 
-/// Where a letter stands in [`LETTERS`].
+/// Where a letter, which is one of them, stands in [`LETTERS`].
 #[inline]
 pub(super) const fn index(letter: u8) -> usize {
+    debug_assert!(letter == LETTERS[0] || PLACES[(letter & 0x7F) as usize] > 0);
     PLACES[(letter & 0x7F) as usize] as usize
 }
 
