@@ -81,7 +81,12 @@ impl Contour {
 
     /// The corners of the smallest box around it whose sides are parallel to the axes.
     pub fn extents(&self) -> (Vec2, Vec2) {
-        let all = self.elements.iter().map(Element::extents);
+        self.placed_extents(&Transform::NONE, Vec2::ZERO)
+    }
+
+    /// Those of the same elsewhere.
+    pub(crate) fn placed_extents(&self, transform: &Transform, at: Vec2) -> (Vec2, Vec2) {
+        let all = self.elements.iter().map(|element| transform.element(element, at).extents());
         all.reduce(around).unwrap_or_default()
     }
 

@@ -130,9 +130,13 @@ impl Image {
     /// The corners of the smallest box around everything that is dark; `None` where nothing is.
     pub fn extents(&self) -> Option<(Vec2, Vec2)> {
         let dark = self.objects.iter().filter(|object| object.dark);
-        let boxes = dark.filter_map(|object| match self.stroke(object) {
-            Some((way, diameter)) => stroke::extents(&way, diameter),
-            None => contour::extents(&self.pieces(object)),
+        let boxes = dark.filter_map(|object| match (self.stroke(object), object.shape) {
+            (Some((way, diameter)), _) => stroke::extents(&way, diameter),
+            (None, Shape::Region { region, transform, at }) => {
+                let contours = &self.regions.get(region as usize)?.contours;
+                contours.iter().map(|contour| contour.placed_extents(&transform, at)).reduce(around)
+            }
+            (None, _) => contour::extents(&self.pieces(object)),
         });
         boxes.reduce(around)
     }
