@@ -47,13 +47,7 @@ pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
         can_probe(&parts, places, &machine)?;
     }
     progress.step("planning");
-    let side = |face: Face, board: Board| -> Result<(Setup, Vec<(Part, Work)>), Stop> {
-        let setup = Setup::of(face, board, args)?;
-        let work = |part: &Part| Ok((*part, Work::of(*part, &setup, args, &machine)?));
-        let parts = parts.par_iter().filter(|part| plan::face(**part, args) == face);
-        let works = parts.map(work).collect::<Vec<_>>().into_iter().collect::<Result<_, Stop>>()?;
-        Ok((setup, works))
-    };
+    let side = |face: Face, board: Board| planned(face, board, &parts, args, &machine);
     let ([front, back], mut warnings) = source.artwork.each_side(side).map_err(Stop::invalid)?;
     let ((front, mut works), (back, more)) = (front?, back?);
     works.extend(more);
@@ -93,6 +87,21 @@ pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
     let folder = args.output.display();
     lines.push(("saved", format!("in {folder}: {}", saved.join(", "))));
     Ok(Answer::summary(Verdict::Done, rows(&lines), report.data).findings(warnings))
+}
+
+/// How the board lies with a side up, and what is cut of it then.
+fn planned(
+    face: Face,
+    board: Board,
+    parts: &[Part],
+    args: &Pcb,
+    machine: &Machine,
+) -> Result<(Setup, Vec<(Part, Work)>), Stop> {
+    let setup = Setup::of(face, board, args)?;
+    let parts = parts.par_iter().filter(|part| plan::face(**part, args) == face);
+    let works = parts.map(|part| Ok((*part, Work::of(*part, &setup, args, machine)?)));
+    let works = works.collect::<Vec<_>>().into_iter().collect::<Result<_, Stop>>()?;
+    Ok((setup, works))
 }
 
 /// Refuses a folder of output that is the board's own: what is saved there would be read as the board's the

@@ -95,8 +95,9 @@ impl Artwork {
         let side = |face: Face, pattern: Option<Pattern>| {
             let mut board = self.board.clone();
             let (copper, joined) = united(pattern)?;
-            let side = board.side_mut(face);
-            side.copper = copper.or(side.copper.take());
+            if copper.is_some() {
+                board.side_mut(face).copper = copper;
+            }
             let outside = check::copper(&board, face).map_err(|found| self.placed(vec![*found]))?;
             Ok((go_on(face, board), joined, outside))
         };

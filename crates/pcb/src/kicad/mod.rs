@@ -17,7 +17,7 @@ mod text;
 mod tree;
 mod zone;
 
-use crate::board::{Artwork, Board};
+use crate::{Artwork, Board};
 use program::Diagnostic;
 
 /// What a board file says.
