@@ -75,13 +75,12 @@ impl Control {
             given |= letter;
         }
         let moves = LINEAR.iter().any(|&letter| given & bit(letter) != 0);
-        let op = match motion {
-            Motion::Line if moves => Op::Line,
-            Motion::Rapid if moves => Op::Rapid,
-            _ => return None,
-        };
+        if !moves || !matches!(motion, Motion::Line | Motion::Rapid) {
+            return None;
+        }
         state.motion = Some(motion);
         state.arrive(point, state.rotary);
-        Some(op(state.pose(point, state.rotary)))
+        let pose = state.pose(point, state.rotary);
+        Some(if motion == Motion::Line { Op::Line(pose) } else { Op::Rapid(pose) })
     }
 }
