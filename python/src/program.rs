@@ -331,5 +331,5 @@ pub fn read_job(
 ) -> PyResult<Program> {
     let machine = machine.map(|machine| &machine.described);
     let job = job.job(py, file)?;
-    released(py, || toolpath::read_job(file, &job, strict, machine)).map(Program::from)
+    released(py, || toolpath::read_job(file, job, strict, machine)).map(Program::from)
 }

@@ -72,6 +72,10 @@ fn g92_says_where_the_tool_stands() {
         let lost = "G0 X1. Y1. Z1.\nG28 X1.\nG92 X0\n";
         assert_eq!(rule(dialect, lost), "nc-unknown-shift");
     }
+    // In an offset of its own, what it alone has told is said with the next cut, though one went before.
+    let cuts = "G0 X0 Y0 Z0\nG1 X1. F100.\nT1 M6\nG55\nG92 X5. Y5. Z5.\nF100.\nG1 X6.\n";
+    let way = [[0.0; 3], [1.0, 0.0, 0.0], [5.0; 3], [6.0, 5.0, 5.0]];
+    goes_to(Dialect::Mach3, cuts, &way);
     let marlin = ["G90", "G0 X30 Y20 Z5", "G92 X0", "G0 X1"].join("\n");
     goes_to(Dialect::Marlin, &marlin, &[[30.0, 20.0, 5.0], [31.0, 20.0, 5.0]]);
 }

@@ -25,18 +25,18 @@ pub struct Reading {
 /// # Errors
 /// The first command that means nothing or cannot be told, and what an operation lacks, with the
 /// operation, the command and the way out.
-pub fn read(machine: &Machine, file_name: &str, job: &Job) -> Result<Reading, Box<Diagnostic>> {
-    if let Some(number) = two_diameters(job) {
+pub fn read(machine: &Machine, file_name: &str, mut job: Job) -> Result<Reading, Box<Diagnostic>> {
+    if let Some(number) = two_diameters(&job) {
         let message = format!("two tools of different diameters have the number {number}");
         let help = "give one of the tool controllers another number";
         return Err(Diagnostic::error("two-tools", message).help(help).file(file_name).into());
     }
-    let listing = Listing::of(file_name, job)?;
+    let listing = Listing::of(file_name, &mut job)?;
     let mut speaks = Machine { reader: String::from("freecad"), ..machine.clone() };
     if !listing.turns() {
         speaks.rotary.clear();
     }
-    let mut told = Told::new(job, &listing);
+    let mut told = Told::new(&job, &listing);
     let keep =
         &mut |records: &mut Vec<Record>, record, several| told.keep(records, record, several);
     let read = nc::read_by(&speaks, Setup::default(), "", listing.text(), keep);
@@ -48,7 +48,7 @@ pub fn read(machine: &Machine, file_name: &str, job: &Job) -> Result<Reading, Bo
         _ => located(*found),
     })?;
     let warnings = reading.warnings.into_iter().map(|found| listing.located(found)).collect();
-    Ok(Reading { program: Program { name: job.name.clone(), records }, listing, warnings })
+    Ok(Reading { program: Program { name: job.name, records }, listing, warnings })
 }
 
 /// The number of two tools that differ in their diameter.

@@ -2,6 +2,7 @@
 
 use crate::job::Job;
 use program::{Coolant, Diagnostic};
+use std::mem;
 
 /// Bytes that are looked at at once.
 const PIECE: usize = 1 << 14;
@@ -41,37 +42,36 @@ pub struct Place<'a> {
 }
 
 impl Listing {
-    /// The commands of `job`, which stands in `file`.
+    /// The commands of `job`, which stands in `file`: they are moved here.
     ///
     /// # Errors
     /// An operation that has not as many lines as commands.
-    pub(crate) fn of(file: &str, job: &Job) -> Result<Listing, Box<Diagnostic>> {
-        let room = job.operations.iter().map(|operation| operation.commands.len() + 8).sum();
+    pub(crate) fn of(file: &str, job: &mut Job) -> Result<Listing, Box<Diagnostic>> {
         let mut listing = Listing {
             file: file.to_owned(),
-            text: Vec::with_capacity(room),
+            text: Vec::new(),
             lines: 0,
             turns: false,
             sections: Vec::with_capacity(job.operations.len()),
         };
         let mut coolant = None;
-        for operation in &job.operations {
+        for operation in &mut job.operations {
             let from = listing.lines;
             if operation.coolant != coolant {
                 // As FreeCAD's own posts do it: on before the operation, off behind it.
                 if coolant.is_some() {
-                    listing.push("M9");
+                    listing.push("M9".into());
                 }
                 match operation.coolant {
-                    Some(Coolant::Flood) => listing.push("M8"),
-                    Some(Coolant::Mist) => listing.push("M7"),
+                    Some(Coolant::Flood) => listing.push("M8".into()),
+                    Some(Coolant::Mist) => listing.push("M7".into()),
                     _ => {}
                 }
                 coolant = operation.coolant;
             }
             let before = listing.lines;
             listing.sections.push(Section { label: operation.label.clone(), before, from });
-            listing.push(&operation.commands);
+            listing.push(mem::take(&mut operation.commands));
             let lines = listing.lines - before;
             if let Some(count) = operation.count.filter(|count| *count != lines) {
                 let label = &operation.label;
@@ -85,22 +85,29 @@ impl Listing {
     }
 
     /// Adds commands, one a line.
-    fn push(&mut self, commands: &str) {
+    fn push(&mut self, commands: String) {
         let (mut names, mut lines) = (false, 0);
         // Each piece is near while all is done with it.
         for piece in commands.as_bytes().chunks(PIECE) {
             names |= names_rotary_axis(piece);
             lines += memchr::memchr_iter(b'\n', piece).count();
-            self.text.extend_from_slice(piece);
         }
-        if !commands.is_empty() && !commands.ends_with('\n') {
+        let is_command = |line: &str| !line.starts_with('(');
+        self.turns |= names
+            && commands.lines().any(|line| is_command(line) && names_rotary_axis(line.as_bytes()));
+        let ends = commands.is_empty() || commands.ends_with('\n');
+        // One long operation is most of many a job: it stays where it is.
+        if commands.len() > self.text.len() {
+            let before = mem::replace(&mut self.text, commands.into_bytes());
+            self.text.splice(..0, before);
+        } else {
+            self.text.extend_from_slice(commands.as_bytes());
+        }
+        if !ends {
             self.text.push(b'\n');
             lines += 1;
         }
         self.lines = self.lines.saturating_add(u32::try_from(lines).unwrap_or(u32::MAX));
-        let is_command = |line: &str| !line.starts_with('(');
-        self.turns |= names
-            && commands.lines().any(|line| is_command(line) && names_rotary_axis(line.as_bytes()));
     }
 
     /// The text.

@@ -17,7 +17,7 @@ const LOST: [(&str, &str); 2] =
 fn read(dump: &str) -> Reading {
     let machine = machine::load("emco-concept-mill-105").unwrap();
     let job = Job::of("part.dump", dump.as_bytes()).unwrap();
-    freecad::read(&machine, "part.dump", &job).unwrap()
+    freecad::read(&machine, "part.dump", job).unwrap()
 }
 
 fn emco_post() -> Machine {

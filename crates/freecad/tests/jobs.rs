@@ -24,7 +24,7 @@ fn operation(commands: &str) -> Value {
 fn read_on(machine: &str, job: &Value) -> Result<Program, Box<Diagnostic>> {
     let job = Job::of("part.json", job.to_string().as_bytes())?;
     let machine = machine::load(machine).unwrap();
-    Ok(freecad::read(&machine, "part.json", &job)?.program)
+    Ok(freecad::read(&machine, "part.json", job)?.program)
 }
 
 fn read(job: &Value) -> Result<Program, Box<Diagnostic>> {
@@ -254,6 +254,29 @@ fn an_operation_has_a_line_for_each_command() {
     for wrong in [lines - 1, lines + 1] {
         refused(&counted(wrong), "freecad-lines", "part.json:0", "line break");
     }
+}
+
+#[test]
+fn operations_keep_their_order_however_long_they_are() {
+    let lengths = [3, 200, 1, 40, 900, 5000, 2];
+    let mut count = 0;
+    let operations = lengths.map(|moves| {
+        let lines = (0..moves).map(|_| {
+            count += 1;
+            format!("G0 X{count}.000000")
+        });
+        let lines: Vec<String> = lines.collect();
+        let commands = format!("G0 Z20.000000 Y0.000000\n{}", lines.join("\n"));
+        json!({ "label": format!("of {moves}"), "commands": commands })
+    });
+    let ops = ops(&job(json!(operations)));
+    let mut stops: Vec<f64> = ops.iter().filter_map(|op| Some(op.pose()?.point.x)).collect();
+    stops.dedup();
+    assert!(stops.into_iter().eq((1..=count).map(f64::from)));
+    // A finding has its operation and the number of its command.
+    let mut operations = operations;
+    operations[4]["commands"] = json!("G0 X1.000000\nG1 Q1.000000");
+    refused(&job(json!(operations)), "nc-unused-word", "part.json: operation `of 900`:2", "");
 }
 
 #[test]

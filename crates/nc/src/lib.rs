@@ -318,11 +318,10 @@ impl<'a> Lift<'a> {
     /// Where a cut ends; it must begin somewhere.
     fn cut(&self, end: &Pose) -> Result<Pose, Box<Diagnostic>> {
         let end = self.pose(end);
-        let start = self.place.pose().filter(|_| self.home.is_none());
-        let start = start.copied().unwrap_or(Pose::new(Vec3::NAN, Vec3::Z));
-        match (known(&start), known(&end)) {
-            (false, _) => Err(unknown("the start of a cut", &start)),
-            (_, false) => Err(unknown("the end of a cut", &end)),
+        match self.place.pose().filter(|_| self.home.is_none()) {
+            Some(start) if !known(start) => Err(unknown("the start of a cut", start)),
+            None => Err(unknown("the start of a cut", &Pose::new(Vec3::NAN, Vec3::Z))),
+            _ if !known(&end) => Err(unknown("the end of a cut", &end)),
             _ => Ok(end),
         }
     }
@@ -331,6 +330,9 @@ impl<'a> Lift<'a> {
     /// a head has turned, is not known.
     fn pose(&self, pose: &Pose) -> Pose {
         let Orientation::Rotary { degrees, tool_center } = pose.orientation else { return *pose };
+        if self.machine.rotary.is_empty() {
+            return Pose::new(pose.point, Vec3::Z);
+        }
         let length = self.tool.and_then(|(tool, _)| tool.length);
         let (mut tip, axis) = self.machine.resolve(pose, length.unwrap_or(0.0));
         let mut heads = self.machine.rotary.iter().filter(|axis| axis.on == Mount::Head);
@@ -458,6 +460,7 @@ fn known(pose: &Pose) -> bool {
 }
 
 /// What is refused because of coordinates that no block has given.
+#[cold]
 fn unknown(what: &str, pose: &Pose) -> Box<Diagnostic> {
     let letters = ["X", "Y", "Z"].into_iter().zip(pose.point.to_array());
     let mut missing: Vec<&str> = letters.filter(|(_, v)| v.is_nan()).map(|(l, _)| l).collect();

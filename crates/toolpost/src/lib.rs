@@ -8,6 +8,7 @@
 
 pub mod answer;
 mod args;
+mod beside;
 mod explain;
 mod fcstd;
 pub mod files;

@@ -2,6 +2,7 @@
 
 use crate::answer::{Account, Answer, Stop, Verdict};
 use crate::args::Post;
+use crate::beside::beside;
 use crate::files::{self, Target};
 use crate::progress::Progress;
 use crate::prove;
@@ -15,7 +16,6 @@ use program::{Diagnostic, Program};
 use proof::Tolerances;
 use serde_json::json;
 use std::path::Path;
-use std::{panic, thread};
 
 /// Rules whose findings say that the machine cannot do what the toolpath asks for. All others of the
 /// writer are mistakes of the input: of the toolpath, or of the machine's file.
@@ -95,11 +95,10 @@ pub fn proven(
     step("writing");
     let program = &toolpath.program;
     // What is told of the toolpath is found meanwhile.
-    let (output, (shape, times)) = thread::scope(|scope| {
-        let told = scope.spawn(|| (Shape::of(program), Times::of(program, machine)));
-        let output = write(program, machine, toolpath, &mut warnings);
-        (output, told.join().unwrap_or_else(|cause| panic::resume_unwind(cause)))
-    });
+    let (output, (shape, times)) = beside(
+        || write(program, machine, toolpath, &mut warnings),
+        || (Shape::of(program), Times::of(program, machine)),
+    );
     let output = output?;
     step("proving");
     let proof = proof::prove(program, machine, file, &output.text, tolerances);

@@ -2,6 +2,7 @@
 
 use crate::answer::{Account, Answer, Stop, Verdict};
 use crate::args::{Closeness, Prove};
+use crate::beside::beside;
 use crate::files;
 use crate::progress::Progress;
 use crate::summary::{self, Shape, number};
@@ -9,7 +10,6 @@ use crate::toolpath::{self, Toolpath};
 use machine::Machine;
 use proof::{Report, Tolerances};
 use serde_json::json;
-use std::{panic, thread};
 
 /// Runs the program on the virtual control of the machine and compares.
 pub fn run(args: &Prove, silent: bool) -> Result<Answer, Stop> {
@@ -33,11 +33,8 @@ pub fn compare(
 ) -> Account {
     let program = &toolpath.program;
     // What is told of the toolpath is found meanwhile.
-    let (proof, shape) = thread::scope(|scope| {
-        let shape = scope.spawn(|| Shape::of(program));
-        let proof = proof::prove(program, machine, file, text, tolerances);
-        (proof, shape.join().unwrap_or_else(|cause| panic::resume_unwind(cause)))
-    });
+    let prove = || proof::prove(program, machine, file, text, tolerances);
+    let (proof, shape) = beside(prove, || Shape::of(program));
     let warnings = toolpath.warnings.iter().cloned();
     if !proof.proven {
         let mut account = failed(&proof, toolpath, file);

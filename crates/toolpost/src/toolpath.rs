@@ -61,7 +61,7 @@ pub fn read(
     }
     let named = origin.from.as_deref().map(machine::load_origin).transpose()?;
     let file = files::name(path);
-    read_job(&file, &Job::of(&file, &bytes)?, strict, named.as_ref().or(machine))
+    read_job(&file, Job::of(&file, &bytes)?, strict, named.as_ref().or(machine))
 }
 
 /// Reads a job of FreeCAD's, which is called `file`. Words for rotary axes are those of
@@ -71,7 +71,7 @@ pub fn read(
 /// As [`read`].
 pub fn read_job(
     file: &str,
-    job: &Job,
+    job: Job,
     strict: bool,
     machine: Option<&Machine>,
 ) -> Result<Toolpath, Stop> {

@@ -67,7 +67,7 @@ impl Step<'_, '_, '_> {
             normal: self.state.place.normal(axis),
             turns,
         })));
-        self.arrive(target);
+        self.state.arrive(target.point, target.rotary);
         Ok(())
     }
 

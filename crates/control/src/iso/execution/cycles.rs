@@ -417,7 +417,7 @@ impl Step<'_, '_, '_> {
             }
             self.ops.push(Op::Hole(pose));
         }
-        self.arrive(Target { point: level, rotary: self.state.rotary, named: 7 });
+        self.state.arrive(level, self.state.rotary);
         Ok(())
     }
 

@@ -4,7 +4,7 @@
 //! part: the words that move ([`motion`], [`arcs`], [`splines`], [`threads`], [`places`]), what is made
 //! of many moves ([`cycles`], [`patterns`]), the coordinates ([`coordinates`] say how [`frames`]
 //! change), [`tools`], the [`wire`], and FreeCAD's feeds ([`freecad`]). How a number counts is asked of
-//! [`numbers`], what holds of the [`state`].
+//! [`numbers`], what holds of the [`state`]. A straight move behind another goes [`onward`] without all that.
 
 mod arcs;
 mod coordinates;
@@ -13,6 +13,7 @@ mod frames;
 mod freecad;
 mod motion;
 pub(super) mod numbers;
+pub(super) mod onward;
 mod patterns;
 mod places;
 mod splines;

@@ -389,7 +389,7 @@ impl Step<'_, '_, '_> {
             Some(_) if self.state.feed_mode == FeedMode::PerTurn && self.spindle_stands() => {
                 "a feed per turn while the spindle stands"
             }
-            Some(_) if self.awaits_tool() => {
+            Some(_) if self.state.awaits_tool(self.flavor) => {
                 let message = "T has named a tool, and no M0 has stopped the program to put it in";
                 return Err(self.block.whole("nc-tool", message));
             }
@@ -430,7 +430,7 @@ impl Step<'_, '_, '_> {
         }
         let pose = self.state.pose(to, target.rotary);
         self.ops.push(if rapid { Op::Rapid(pose) } else { Op::Line(pose) });
-        self.arrive(target);
+        self.state.arrive(target.point, target.rotary);
         Ok(())
     }
 
@@ -442,14 +442,6 @@ impl Step<'_, '_, '_> {
             self.state.told = true;
             self.state.frames.used();
         }
-    }
-
-    /// The machine stands at `target` from here on.
-    pub(super) fn arrive(&mut self, target: Target) {
-        self.state.position = target.point;
-        self.state.rotary = target.rotary;
-        (self.state.moved, self.state.told) = (true, true);
-        self.state.frames.used();
     }
 
     /// Compensation starts and ends with the next linear move in the plane. In mirrored coordinates

@@ -145,7 +145,7 @@ impl Step<'_, '_, '_> {
         self.state.probed = if away { None } else { self.touched(&target, must_answer)? };
         let end = self.state.pose(target.point, target.rotary);
         self.ops.push(Op::Probe(Box::new(Probe { end, away, must_answer, place: None })));
-        self.arrive(target);
+        self.state.arrive(target.point, target.rotary);
         for axis in 0..3 {
             if target.named & 1 << axis != 0 {
                 self.state.position[axis] = f64::NAN;

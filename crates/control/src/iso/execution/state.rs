@@ -228,6 +228,19 @@ impl State {
         }
     }
 
+    /// The machine stands there from here on: `point` in the programmed frame, mm, `rotary` in degrees.
+    #[inline]
+    pub(super) fn arrive(&mut self, point: Vec3, rotary: [f64; 3]) {
+        (self.position, self.rotary) = (point, rotary);
+        (self.moved, self.told) = (true, true);
+        self.frames.used();
+    }
+
+    /// T has named another tool, which the operator puts in at the next `M0`.
+    pub(super) fn awaits_tool(&self, flavor: Flavor) -> bool {
+        flavor.changes_by_hand() && self.selected != self.tool
+    }
+
     /// What compensation has to know of the block that switches it.
     pub(crate) fn compensation_terms(&self) -> Terms {
         let [first, second, third] = self.plane.axes();

@@ -12,7 +12,7 @@ pub(crate) struct Control {
     pub flavor: Flavor,
     /// Which of A, B, C exist.
     pub axes: [bool; 3],
-    whole_numbers: WholeNumbers,
+    pub whole_numbers: WholeNumbers,
     pub state: State,
 }
 
@@ -457,7 +457,7 @@ impl Step<'_, '_, '_> {
             }
         }
         match self.block.m(Group::Flow) {
-            Some(M::Stop) if self.awaits_tool() => {
+            Some(M::Stop) if self.state.awaits_tool(self.flavor) => {
                 if self.state.spindle != Spindle::Off {
                     let message =
                         "a tool is changed by hand while the spindle turns; write M5 first";

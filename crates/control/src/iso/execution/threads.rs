@@ -24,7 +24,7 @@ impl Step<'_, '_, '_> {
         self.spindle_turns()?;
         let end = self.state.pose(target.point, target.rotary);
         self.ops.push(Op::Thread(Box::new(Thread { end, pitch })));
-        self.arrive(target);
+        self.state.arrive(target.point, target.rotary);
         Ok(())
     }
 
@@ -58,7 +58,7 @@ impl Step<'_, '_, '_> {
         self.ops.push(Op::Hole(self.state.pose(start, self.state.rotary)));
         self.ops.push(Op::CycleOff);
         let back = super::motion::Target { point: start, ..target };
-        self.arrive(back);
+        self.state.arrive(back.point, back.rotary);
         Ok(())
     }
 

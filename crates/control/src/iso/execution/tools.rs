@@ -106,11 +106,6 @@ impl Step<'_, '_, '_> {
         self.ops.push(Op::Tool(Box::new(Tool { number, ..Tool::default() })));
     }
 
-    /// T has named another tool, which the operator puts in at the next `M0`.
-    pub(super) fn awaits_tool(&self) -> bool {
-        self.flavor.changes_by_hand() && self.state.selected != self.state.tool
-    }
-
     /// D and H are modal by themselves (B-64484EN-2, "Tool length compensation", "Cutter compensation"):
     /// while `G43` is on, another H is another length at once.
     pub(super) fn remember_registers(&mut self) -> Result<(), Fault> {

@@ -8,6 +8,7 @@ use super::source::{self, Place, Source};
 use crate::Settings;
 use crate::budget::Budget;
 use crate::compensation::Compensator;
+use crate::iso::execution::onward::Onward;
 use crate::iso::execution::state::State;
 use crate::iso::execution::step::Control;
 use crate::iso::language::arithmetic;
@@ -46,6 +47,8 @@ pub(crate) struct Run<'a, 's> {
     over: bool,
     /// The lines that have been read ahead.
     ahead: Ahead,
+    /// The block before has moved, and straight moves go on behind it.
+    onward: Option<Onward>,
     /// Where the records go.
     compensator: &'a mut Compensator<'s>,
 }
@@ -79,6 +82,7 @@ impl<'a, 's> Run<'a, 's> {
             flows: false,
             over: false,
             ahead,
+            onward: None,
             compensator,
         }
     }
@@ -98,7 +102,10 @@ impl<'a, 's> Run<'a, 's> {
             };
             let (text, line) = self.here.next(plain);
             self.text = (text, line);
-            self.line(from, text, line, plain.is_some()).map_err(|fault| source.located(fault))?;
+            if plain.is_none() || !self.goes_on(text) {
+                let is_plain = plain.is_some();
+                self.line(from, text, line, is_plain).map_err(|fault| source.located(fault))?;
+            }
             let line = self.caller.unwrap_or(line);
             for op in self.ops.drain(..) {
                 self.budget.record(&op);
@@ -131,6 +138,17 @@ impl<'a, 's> Run<'a, 's> {
         Err(self.here.source.located(self.at_line("nc-call", message)))
     }
 
+    /// Whether the plain line `text` is a straight move behind another one: that has then been executed.
+    fn goes_on(&mut self, text: &[u8]) -> bool {
+        let Some(onward) = &self.onward else { return false };
+        if text.len() > self.dictionary.longest {
+            return false;
+        }
+        let Some(op) = self.control.go_on(onward, self.ahead.words()) else { return false };
+        self.ops.push(op);
+        true
+    }
+
     /// Runs the line `text`, which begins at byte `from`; where it is plain, its words are known.
     fn line(
         &mut self,
@@ -139,6 +157,7 @@ impl<'a, 's> Run<'a, 's> {
         line: u32,
         is_plain: bool,
     ) -> Result<(), Fault> {
+        self.onward = None;
         if text.first() == Some(&b'%') && !self.dictionary.flavor.changes_by_hand() {
             return self.percent(text, line);
         }
@@ -239,6 +258,9 @@ impl<'a, 's> Run<'a, 's> {
         }
         if flow == Some(M::Return) {
             return self.back(back);
+        }
+        if self.frame().modal.is_none() {
+            self.onward = Onward::behind(&self.block, &self.control.state);
         }
         self.after_move()
     }

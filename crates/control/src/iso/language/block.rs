@@ -10,7 +10,7 @@ use program::Diagnostic;
 
 /// From here on a number of FreeCAD's is none: it writes a NaN as -922337203685.477581, and nothing is a
 /// kilometre long.
-const NOTHING: f64 = 1e6;
+pub(crate) const NOTHING: f64 = 1e6;
 
 /// The letters of a block that only moves, by [`bit`].
 const MOVES: u32 = set(b"NXYZABCIJKRF");
@@ -48,6 +48,11 @@ impl Word {
             start: place(start),
             end: place(end),
         }
+    }
+
+    /// Whether it has the letter and the number of another one, in as many digits.
+    pub(crate) fn says_the_same_as(&self, other: &Word) -> bool {
+        (self.letter, self.value, self.digits) == (other.letter, other.value, other.digits)
     }
 
     /// Whether it counts units, and not perhaps increments.

@@ -344,7 +344,7 @@ const PLACES: [u8; 128] = {
 
 /// Where a letter, which is one of them, stands in [`LETTERS`].
 #[inline]
-pub(super) const fn index(letter: u8) -> usize {
+pub(crate) const fn index(letter: u8) -> usize {
     debug_assert!(letter == LETTERS[0] || PLACES[(letter & 0x7F) as usize] > 0);
     PLACES[(letter & 0x7F) as usize] as usize
 }
