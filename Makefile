@@ -49,10 +49,13 @@ bench: rust
 		$(addprefix --board ,$(wildcard $(addprefix $(DATA)/gerber/,a64 kicad/pic_programmer))) \
 		$(wildcard $(addprefix $(DATA)/cldata/,makino/* nx/* solidworks/*))
 
-## Format, lints, documentation.
+## Format, lints, documentation. The fuzz targets are a workspace of their own.
 lint: rust python
+	@scripts/setup fuzz
 	cargo fmt --all --check
+	cargo fmt --manifest-path fuzz/Cargo.toml --check
 	cargo clippy --workspace --all-targets -- -D warnings
+	cargo clippy --manifest-path fuzz/Cargo.toml -- -D warnings
 	RUSTDOCFLAGS="-D warnings" cargo doc --quiet --workspace --no-deps --document-private-items
 	ruff check
 	ruff format --check

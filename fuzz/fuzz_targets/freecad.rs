@@ -7,7 +7,8 @@ use machine::Machine;
 use program::Op;
 use std::sync::LazyLock;
 
-static MILL: LazyLock<Machine> = LazyLock::new(|| machine::load("sinumerik-840d-table-ac").unwrap());
+static MILL: LazyLock<Machine> =
+    LazyLock::new(|| machine::load("sinumerik-840d-table-ac").unwrap());
 
 fuzz_target!(|data: &[u8]| {
     let job = match Job::of("fuzz.json", data) {
@@ -17,10 +18,14 @@ fuzz_target!(|data: &[u8]| {
             return;
         }
     };
-    match read(&MILL, "fuzz.json", &job) {
+    match read(&MILL, "fuzz.json", job) {
         Ok(reading) => {
             let records = &reading.program.records;
-            assert!(records.iter().any(|record| record.op.pose().is_some() || matches!(record.op, Op::Probe(_))));
+            assert!(
+                records
+                    .iter()
+                    .any(|record| record.op.pose().is_some() || matches!(record.op, Op::Probe(_)))
+            );
             for pose in records.iter().filter_map(|record| record.op.pose()) {
                 assert!(pose.point.is_finite() && pose.axis().is_some());
             }

@@ -39,7 +39,9 @@ fuzz_target!(|data: &[u8]| {
             assert!(record.line > 0 && record.line as usize <= lines);
             records += 1;
             if records > MOST_RECORDS {
-                return Err(Diagnostic::error("enough", "a loop that moves").at(1, b" ", 0, 1).into());
+                return Err(Diagnostic::error("enough", "a loop that moves")
+                    .at(1, b" ", 0, 1)
+                    .into());
             }
             ended |= record.op == Op::End;
             match &record.op {

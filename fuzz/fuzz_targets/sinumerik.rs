@@ -23,7 +23,9 @@ fuzz_target!(|data: &[u8]| {
             ended = record.op == Op::End;
             records += 1;
             if records > MOST_RECORDS {
-                return Err(Diagnostic::error("enough", "a loop that moves").line(record.line).into());
+                return Err(Diagnostic::error("enough", "a loop that moves")
+                    .line(record.line)
+                    .into());
             }
             if let Op::Arc(arc) = &record.op {
                 assert!(arc.end.point.is_finite() && arc.center.is_finite());

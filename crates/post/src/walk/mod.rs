@@ -1,24 +1,26 @@
 //! The way through the program, record by record: what the machine is told, and when.
 
+mod compensation;
+mod technology;
+
 use crate::catalogue::{BlockName, WordName};
 use crate::findings::Findings;
 use crate::place::{Place, Route};
-use crate::template::{
-    LENGTH_OFFSET, ORIENTATION, POSITION, Scope, Templates, Words, bit, map, program_value,
-    spindle_value, tool_value,
-};
+use crate::template::{ORIENTATION, POSITION, Scope, Templates, Words, bit, map, program_value};
 use crate::text::printed;
 use crate::wire::Wire;
 use crate::writer::Writer;
+use compensation::compensation_code;
 use geom::Vec3;
+use machine::Machine;
 use machine::limits::Limits;
-use machine::{LengthOffset, Machine, OptionValue};
 use minijinja::value::Value;
 use program::statistics::Statistics;
 use program::{
     Compensation, Coolant, Cycle, Diagnostic, Feed, Op, Pose, Program, Record, Spindle, Surface,
-    Tool, lowering,
+    Tool,
 };
+use technology::feed_mode;
 
 /// A step that may be refused.
 pub(crate) type Done = Result<(), Box<Diagnostic>>;
@@ -29,13 +31,6 @@ pub(crate) mod motion {
     pub(crate) const LINEAR: usize = 1;
     pub(crate) const ARC_CW: usize = 2;
     pub(crate) const ARC_CCW: usize = 3;
-}
-
-/// Entries of the code word `feed_mode`.
-mod feed_mode {
-    pub(super) const PER_MINUTE: usize = 0;
-    pub(super) const PER_TURN: usize = 1;
-    pub(super) const INVERSE_TIME: usize = 2;
 }
 
 /// The words that say how the tool goes.
@@ -422,305 +417,9 @@ impl<'a> Walk<'a> {
         }
         self.required(name)
     }
-
-    // Tools.
-
-    fn change_tool(&mut self, tool: &Tool) -> Done {
-        self.uncompensated("the tool change")?;
-        self.end_cycle()?;
-        self.leave_place()?;
-        self.limits.tool(tool, self.line)?;
-        let number = f64::from(tool.number);
-        let edge = self.machine.capabilities.length_offset != LengthOffset::ToolNumber;
-        if let Some(register) = tool.offset.filter(|_| edge) {
-            self.leave_register_out("length", register);
-        }
-        self.length_offset = match self.machine.capabilities.length_offset {
-            LengthOffset::Implicit => None,
-            LengthOffset::One => Some(1.0),
-            LengthOffset::ToolNumber => Some(tool.offset.map_or(number, f64::from)),
-        };
-        self.writer.set(WordName::T, number);
-        self.writer.forget(LENGTH_OFFSET);
-        self.say_length_offset();
-        if let Some(speed) = self.coming_speed() {
-            self.writer.set(WordName::S, speed);
-        }
-        self.scope.tool = tool_value(self.machine, tool, self.tool.is_none());
-        self.required(BlockName::ToolChange)?;
-        self.tool = Some(tool.clone());
-        self.writer.forget(POSITION | ORIENTATION | MOTION | bit(WordName::D));
-        self.turned_to = None;
-        self.located = false;
-        (self.active_spindle, self.active_coolant) = (Some(Spindle::Off), Some(Coolant::Off));
-        Ok(())
-    }
-
-    /// The control has no word for the register that the source names for the `what` of the tool.
-    fn leave_register_out(&mut self, what: &str, register: u32) {
-        let message = format!(
-            "{what} register {register} is left out: the control takes the {what} with the tool"
-        );
-        self.findings.warn(Diagnostic::warning("register", message).line(self.line));
-    }
-
-    /// The speed at which the tool that is called now will cut first.
-    fn coming_speed(&self) -> Option<f64> {
-        let coming = self.source.records[self.index..].iter().map(|record| &record.op);
-        let mut until_cut = coming
-            .take_while(|op| !matches!(op, Op::Line(_) | Op::Arc(_) | Op::Thread(_) | Op::Hole(_)));
-        let next = until_cut.find_map(|op| match op {
-            Op::Spindle(spindle) => speed(*spindle),
-            _ => None,
-        });
-        next.or(speed(self.spindle))
-    }
-
-    /// The source calls no tool: the machine file may say which one that means.
-    fn default_tool(&mut self) -> Done {
-        let number = match self.machine.options.get("default_tool") {
-            Some(OptionValue::Number(number)) => *number as u32,
-            _ => {
-                let help =
-                    "LOAD/TOOL in the source, or `default_tool` in the [options] of the machine";
-                return Err(Box::new(
-                    refuse("no-tool", "the source moves before it calls a tool").help(help),
-                ));
-            }
-        };
-        let message = format!("the source calls no tool: tool {number} (`default_tool`) is called");
-        self.findings.warn(Diagnostic::warning("no-tool", message).line(self.line));
-        self.change_tool(&Tool { number, ..Tool::default() })
-    }
-
-    // Spindle and coolant.
-
-    fn set_spindle(&mut self, spindle: Spindle) -> Done {
-        self.spindle = spindle;
-        match speed(spindle) {
-            None => self.sync_spindle(),
-            Some(speed) if self.writer.rounded(WordName::S, speed) > 0.0 => {
-                self.limits.spindle(spindle, self.line)
-            }
-            Some(speed) => {
-                let help = "SPINDL/OFF where the spindle is to stand";
-                let message = format!("spindle speed {speed} 1/min, written as 0");
-                Err(refuse("spindle-range", message).help(help).into())
-            }
-        }
-    }
-
-    /// Tells the control the spindle that the source wants.
-    pub(crate) fn sync_spindle(&mut self) -> Done {
-        if self.active_spindle == Some(self.spindle) {
-            return Ok(());
-        }
-        self.active_spindle = Some(self.spindle);
-        if let Some(speed) = speed(self.spindle) {
-            self.writer.set(WordName::S, speed);
-        }
-        let changed = speed(self.spindle) != self.writer.active(WordName::S);
-        let counter = matches!(self.spindle, Spindle::CounterClockwise(_));
-        self.scope.spindle = spindle_value(changed, !counter);
-        self.required(match self.spindle {
-            Spindle::Off => BlockName::SpindleOff,
-            Spindle::Clockwise(_) => BlockName::SpindleCw,
-            Spindle::CounterClockwise(_) => BlockName::SpindleCcw,
-        })
-    }
-
-    pub(crate) fn sync_coolant(&mut self) -> Done {
-        if self.active_coolant == Some(self.coolant) {
-            return Ok(());
-        }
-        self.active_coolant = Some(self.coolant);
-        let block = match self.coolant {
-            Coolant::Off => BlockName::CoolantOff,
-            Coolant::Flood => BlockName::CoolantFlood,
-            Coolant::Mist => BlockName::CoolantMist,
-            Coolant::FloodAndMist => {
-                self.coolant_block(BlockName::CoolantMist)?;
-                BlockName::CoolantFlood
-            }
-            Coolant::Through => BlockName::CoolantThrough,
-        };
-        self.coolant_block(block)
-    }
-
-    /// Coolant that the control does nothing for is none.
-    fn coolant_block(&mut self, name: BlockName) -> Done {
-        if self.coolant != Coolant::Off && self.machine.leaves_out(name.name()) {
-            let message =
-                format!("the control has no coolant of this kind: `{}` is empty", name.name());
-            let help = "another coolant in the toolpath, or the block in a file of your own";
-            return Err(refuse("missing-block", message).help(help).into());
-        }
-        self.required(name)
-    }
-
-    /// Before the tool touches the part: it turns, and coolant runs.
-    #[inline]
-    pub(crate) fn before_cut(&mut self) -> Done {
-        self.wire_for(true, "a cut")?;
-        if self.spindle == Spindle::Off && self.wire.is_none() {
-            let help = "SPINDL/ with a speed before the first cut";
-            return Err(Box::new(
-                refuse("spindle-off", "a cut while the spindle stands").help(help),
-            ));
-        }
-        self.sync_spindle()?;
-        self.sync_coolant()
-    }
-
-    // Cutter compensation: it is switched with the first straight move in the plane, by rapid or in
-    // the cut, but not on the way from a place that the program does not know.
-
-    fn set_compensation(&mut self, compensation: Compensation) -> Done {
-        if compensation != Compensation::Off && !self.machine.capabilities.compensation {
-            // Whether the path is that of the tool's centre or the contour, only its author knows.
-            let help = "give the path of the tool's centre: without CUTCOM, or of an NC program with its tool table (--tools)";
-            return Err(Box::new(
-                refuse("compensation", "the control has no cutter compensation").help(help),
-            ));
-        }
-        if let Compensation::Left(Some(register)) | Compensation::Right(Some(register)) =
-            compensation
-            && !self.templates.places(BlockName::Linear, WordName::D)
-        {
-            self.leave_register_out("radius", register);
-        }
-        self.compensation = compensation;
-        self.compensation_line = self.line;
-        Ok(())
-    }
-
-    /// Says the compensation in the next block, a straight move; one in the plane switches it.
-    pub(crate) fn compensate(&mut self) {
-        let in_plane = bit(WordName::X) | bit(WordName::Y);
-        if self.compensation_pending() && self.writer.changes(in_plane) {
-            self.active_compensation = self.compensation;
-            let tool = self.tool.as_ref().map(|tool| tool.number);
-            match self.compensation {
-                Compensation::Left(register) | Compensation::Right(register) => {
-                    if let Some(register) = register.or(tool) {
-                        self.writer.set(WordName::D, f64::from(register));
-                    }
-                }
-                Compensation::Off => {}
-            }
-        }
-        self.keep_compensation();
-    }
-
-    /// Says in the next block the compensation that is active.
-    pub(crate) fn keep_compensation(&mut self) {
-        self.writer.code(WordName::Compensation, compensation_code(self.active_compensation));
-    }
-
-    /// Compensation has to be off before `what`.
-    pub(crate) fn uncompensated(&self, what: &str) -> Done {
-        if self.active_compensation == Compensation::Off {
-            return Ok(());
-        }
-        let help = "CUTCOM/OFF and a straight move in the plane before it";
-        let message = format!("cutter compensation is still on at {what}");
-        Err(refuse("compensation-active", message).help(help).into())
-    }
-
-    /// Whether the next straight move in the plane switches the compensation.
-    pub(crate) fn compensation_pending(&self) -> bool {
-        self.compensation != self.active_compensation
-    }
-
-    // Feed.
-
-    /// Whether the feed is in inverse time: then the length of a cut counts.
-    #[inline]
-    pub(crate) fn is_timed(&self) -> bool {
-        matches!(self.feed, Some(Feed::InverseTime(_)))
-    }
-
-    /// Says the feed of a cut of `length` mm in the next block, one of `pieces` of the source's. With
-    /// `turning` the control, which knows nothing of the tool tip, is told the time instead, where it
-    /// can be. Answers the feed as it is said.
-    #[inline]
-    pub(crate) fn say_feed(
-        &mut self,
-        length: f64,
-        pieces: usize,
-        turning: bool,
-    ) -> Result<f64, Box<Diagnostic>> {
-        let Some(mut feed) = self.feed else {
-            // The generator of a wire machine holds the gap, and finds the feed by it.
-            if self.wire.is_some() {
-                return Ok(0.0);
-            }
-            return Err(refuse("feed-missing", "a cut before the first feed"));
-        };
-        self.limits.feed(feed, self.spindle, self.line)?;
-        if let Feed::InverseTime(rate) = &mut feed {
-            // A piece has its part of the time.
-            let within = self.whole > 0.0 && length > 0.0;
-            *rate *= if within { self.whole / length } else { pieces as f64 };
-        }
-        let can = &self.machine.capabilities;
-        let speed = speed(self.spindle).unwrap_or_default();
-        let per_minute = || lowering::feed_per_minute(feed, length, speed);
-        let (mode, value) = match feed {
-            Feed::PerTurn(value) if can.feed_per_turn && !turning => (feed_mode::PER_TURN, value),
-            Feed::InverseTime(value) if can.inverse_time => (feed_mode::INVERSE_TIME, value),
-            _ if turning && can.inverse_time && length > 0.0 => {
-                (feed_mode::INVERSE_TIME, per_minute() / length)
-            }
-            _ => (feed_mode::PER_MINUTE, per_minute()),
-        };
-        match feed {
-            Feed::PerTurn(_) if mode == feed_mode::PER_MINUTE => {
-                self.findings.lowered("feed-per-turn", "feeds per turn (as mm/min)", self.line, 1);
-            }
-            Feed::InverseTime(_) if mode == feed_mode::PER_MINUTE => {
-                let what = "inverse-time feeds (as mm/min)";
-                self.findings.lowered("feed-inverse-time", what, self.line, 1);
-            }
-            _ => {}
-        }
-        self.writer.feed_form(match mode {
-            feed_mode::PER_TURN => WordName::FeedPerTurn,
-            feed_mode::INVERSE_TIME => WordName::FeedInverse,
-            _ => WordName::F,
-        });
-        if mode == feed_mode::INVERSE_TIME {
-            // Every block in inverse time has a feed of its own, even an equal one.
-            self.writer.forget(bit(WordName::F));
-        }
-        let written = self.writer.rounded(WordName::F, value);
-        let moves = written > 0.0;
-        if !moves {
-            let message = format!("a cut with a feed of {value}, written as {written}");
-            return Err(refuse("feed-zero", message));
-        }
-        self.writer.set(WordName::F, value);
-        self.writer.code(WordName::FeedMode, mode);
-        Ok(value)
-    }
 }
 
 /// An error; its line is that of the record at hand.
 pub(crate) fn refuse(rule: &'static str, message: impl Into<String>) -> Box<Diagnostic> {
     Box::new(Diagnostic::error(rule, message))
-}
-
-fn speed(spindle: Spindle) -> Option<f64> {
-    match spindle {
-        Spindle::Off => None,
-        Spindle::Clockwise(speed) | Spindle::CounterClockwise(speed) => Some(speed),
-    }
-}
-
-fn compensation_code(compensation: Compensation) -> usize {
-    match compensation {
-        Compensation::Off => 0,
-        Compensation::Left(_) => 1,
-        Compensation::Right(_) => 2,
-    }
 }
