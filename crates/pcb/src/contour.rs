@@ -81,8 +81,13 @@ impl Contour {
 
     /// The corners of the smallest box around it whose sides are parallel to the axes.
     pub fn extents(&self) -> (Vec2, Vec2) {
-        let all = self.elements.iter().map(Element::extents);
-        all.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or_default()
+        self.placed_extents(&Transform::NONE, Vec2::ZERO)
+    }
+
+    /// Those of the same elsewhere.
+    pub(crate) fn placed_extents(&self, transform: &Transform, at: Vec2) -> (Vec2, Vec2) {
+        let all = self.elements.iter().map(|element| transform.element(element, at).extents());
+        all.reduce(around).unwrap_or_default()
     }
 
     /// The same, counter-clockwise.
@@ -114,6 +119,18 @@ impl Piece {
         let contours = self.contours.iter().map(|contour| contour.placed(transform, at)).collect();
         Piece { solid: self.solid, contours }
     }
+}
+
+/// The corners of the smallest box around pieces that are added, mm; `None` where there are none.
+pub(crate) fn extents(pieces: &[Piece]) -> Option<(Vec2, Vec2)> {
+    let solid = pieces.iter().filter(|piece| piece.solid);
+    let boxes = solid.flat_map(|piece| &piece.contours).map(Contour::extents);
+    boxes.reduce(around)
+}
+
+/// The box around two boxes, each of which is given by its lower left and its upper right corner.
+pub(crate) fn around(a: (Vec2, Vec2), b: (Vec2, Vec2)) -> (Vec2, Vec2) {
+    (a.0.min(b.0), a.1.max(b.1))
 }
 
 /// The convex hull of `points`, counter-clockwise; fewer than three corners where they are in one line.

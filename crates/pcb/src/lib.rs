@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   gerber, excellon ─┐                     ┌─ isolation, voronoi ─┐
-//!   kicad ────────────┼──▶ board::Board ────┼─ clearing, engraving ┼──▶ Operation ──job──▶ Program
+//!   kicad ────────────┼──▶ Artwork ▶ Board ─┼─ clearing, engraving ┼──▶ Operation ──job──▶ Program
 //!   model ────────────┘                     └─ drilling, outline ──┘
 //! ```
 //!
@@ -39,7 +39,7 @@ mod stroke;
 pub mod tour;
 mod voronoi;
 
-pub use board::{Board, Copper, Side};
+pub use board::{Artwork, Board, Copper, Side};
 pub use clearing::{Cleared, Clearing};
 pub use contour::{Contour, Piece};
 pub use engraving::{Engraving, engraved};

@@ -33,6 +33,12 @@ impl Pen {
     }
 }
 
+/// The corners of the smallest box around what a round pen covers, mm; `None` where it has no size.
+pub(crate) fn extents(path: &Element, diameter: f64) -> Option<(Vec2, Vec2)> {
+    let (low, high) = path.extents();
+    (diameter > 0.0).then_some((low - diameter / 2.0, high + diameter / 2.0))
+}
+
 fn round(radius: f64, path: &Element) -> Vec<Piece> {
     let disc = |center: Vec2| Piece::new(true, Contour::circle(center, radius));
     if radius <= 0.0 {

@@ -3,6 +3,7 @@
 
 mod plan;
 mod report;
+mod setup;
 mod source;
 mod work;
 
@@ -20,9 +21,9 @@ use drawing::{BoardPicture, Format};
 use geom::Vec2;
 use levelling::{Allowed, Grid, HeightMap, Probing, follow, level};
 use machine::Machine;
-use plan::Plan;
 use program::{Diagnostic, Op, Record};
 use rayon::prelude::*;
+use setup::Setup;
 use std::path::Path;
 use work::Work;
 
@@ -40,29 +41,30 @@ pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
     let progress = Progress::new(4, silent);
     progress.step("reading");
     let source = source::read(&args.board)?;
-    let mut warnings = source.warnings;
-    let plan = Plan::of(source.board, args)?;
-    warnings.extend(plan.late_pins(args));
-    let surface = surface(&plan, args)?;
+    let parts = plan::parts(&source.artwork, args)?;
+    let surface = surface(&parts, args)?;
     if let Some(places) = args.running.probe.filter(|_| args.running.on_control) {
-        can_probe(&plan, places, &machine)?;
+        can_probe(&parts, places, &machine)?;
     }
     progress.step("planning");
-    let works = plan.parts.par_iter().map(|part| Work::of(*part, &plan, args, &machine));
-    let works = works.collect::<Vec<_>>().into_iter().collect::<Result<Vec<Work>, Stop>>()?;
+    let side = |face: Face, board: Board| planned(face, board, &parts, args, &machine);
+    let ([front, back], mut warnings) = source.artwork.each_side(side).map_err(Stop::invalid)?;
+    let ((front, mut works), (back, more)) = (front?, back?);
+    works.extend(more);
+    works.sort_by_key(|(part, _)| plan::order(*part, args));
+    warnings.extend(plan::late_pins(&parts, args));
     let rack = Rack::of(&works);
     progress.step("writing and proving");
-    let shop = Shop { args, machine: &machine, plan: &plan, rack, heights, surface };
+    let shop = Shop { args, machine: &machine, front, back, rack, heights, surface };
     let mut programs = Vec::with_capacity(works.len() + 1);
     if let Some(grid) = args.running.probe.filter(|_| !args.running.on_control) {
         programs.push(shop.probing(grid)?);
     }
-    let jobs: Vec<(Part, Work)> = plan.parts.iter().copied().zip(works).collect();
-    let made: Vec<_> = jobs.par_iter().map(|(part, work)| shop.make(*part, work)).collect();
-    for (made, (part, work)) in made.into_iter().zip(jobs) {
+    let made: Vec<_> = works.par_iter().map(|(part, work)| shop.make(*part, work)).collect();
+    for (made, (part, work)) in made.into_iter().zip(works) {
         let (posted, picture) = made?;
         let probes = shop.probes(part, &work);
-        let up = Some(plan.face(part, args));
+        let up = Some(plan::face(part, args));
         programs.push(Made { name: part.name(), up, work, posted, picture, probes });
     }
     for made in &programs {
@@ -77,13 +79,29 @@ pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
     let mut warnings = toolpath::held(warnings, args.strict)?;
     warnings.extend(older(args, &programs));
     progress.step("saving");
-    let report = report::of(&source.layers, &plan, args, &programs, &machine, &warnings);
+    let report =
+        report::of(&source.layers, &shop.front.board, args, &programs, &machine, &warnings);
     let saved = save(args, &source.files, &programs, &format!("{:#}\n", report.data))?;
 
     let mut lines = report.rows;
     let folder = args.output.display();
     lines.push(("saved", format!("in {folder}: {}", saved.join(", "))));
     Ok(Answer::summary(Verdict::Done, rows(&lines), report.data).findings(warnings))
+}
+
+/// How the board lies with a side up, and what is cut of it then.
+fn planned(
+    face: Face,
+    board: Board,
+    parts: &[Part],
+    args: &Pcb,
+    machine: &Machine,
+) -> Result<(Setup, Vec<(Part, Work)>), Stop> {
+    let setup = Setup::of(face, board, args)?;
+    let parts = parts.par_iter().filter(|part| plan::face(**part, args) == face);
+    let works = parts.map(|part| Ok((*part, Work::of(*part, &setup, args, machine)?)));
+    let works = works.collect::<Vec<_>>().into_iter().collect::<Result<_, Stop>>()?;
+    Ok((setup, works))
 }
 
 /// Refuses a folder of output that is the board's own: what is saved there would be read as the board's the
@@ -103,9 +121,9 @@ fn not_among_inputs(args: &Pcb) -> Result<(), Stop> {
 struct Rack(Vec<String>);
 
 impl Rack {
-    fn of(works: &[Work]) -> Rack {
+    fn of(works: &[(Part, Work)]) -> Rack {
         let mut names: Vec<String> = Vec::new();
-        for operation in works.iter().flat_map(|work| &work.operations) {
+        for operation in works.iter().flat_map(|(_, work)| &work.operations) {
             if !names.contains(&operation.tool.name) {
                 names.push(operation.tool.name.clone());
             }
@@ -159,9 +177,10 @@ const INSIDE: f64 = 1.0;
 const LEVELLED: Allowed = Allowed { deviation: 0.005, outside: INSIDE + 5.0 };
 
 /// The surface that programs follow, where one was measured.
-fn surface(plan: &Plan, args: &Pcb) -> Result<Option<HeightMap>, Stop> {
+fn surface(parts: &[Part], args: &Pcb) -> Result<Option<HeightMap>, Stop> {
     let Some(file) = &args.running.heights else { return Ok(None) };
-    if !plan.parts.iter().all(|part| plan.face(*part, args) == plan.face(plan.parts[0], args)) {
+    let is_up = |face| parts.iter().any(|part| plan::face(*part, args) == face);
+    if is_up(Face::Front) && is_up(Face::Back) {
         let message = "the heights are those of one side, and programs of both are asked for";
         let help = "make the programs of each side with its own heights: name them with --only";
         return Err(Diagnostic::error("heights", message).help(help).into());
@@ -175,7 +194,7 @@ const STEEPNESS: f64 = 0.02;
 
 /// # Errors
 /// The control cannot keep what a probe finds at so many places, or a program cuts what no tool feels.
-fn can_probe(plan: &Plan, [columns, rows]: [u32; 2], machine: &Machine) -> Result<(), Stop> {
+fn can_probe(parts: &[Part], [columns, rows]: [u32; 2], machine: &Machine) -> Result<(), Stop> {
     let wrong = |message: String, help: &str| {
         Err(Diagnostic::error("on-control", message).help(help).into())
     };
@@ -194,14 +213,14 @@ fn can_probe(plan: &Plan, [columns, rows]: [u32; 2], machine: &Machine) -> Resul
         return wrong(message, "fewer columns or rows");
     }
     let is_coated = |part: &&Part| part.face().is_some() && !part.is_copper();
-    if let Some(part) = plan.parts.iter().find(is_coated) {
+    if let Some(part) = parts.iter().find(is_coated) {
         let message = format!("the {} conducts nothing: the tool does not feel it", part.what());
         return wrong(
             message,
             "make the programs of the copper by themselves: name them with --only",
         );
     }
-    match plan.parts.iter().any(|part| part.is_copper()) {
+    match parts.iter().any(|part| part.is_copper()) {
         true => Ok(()),
         false => wrong(
             "no program cuts copper: none would measure".into(),
@@ -236,7 +255,10 @@ const HEIGHTS: &str = "heights.txt";
 struct Shop<'a> {
     args: &'a Pcb,
     machine: &'a Machine,
-    plan: &'a Plan,
+    /// The board with its front up.
+    front: Setup,
+    /// The board with its back up.
+    back: Setup,
     rack: Rack,
     heights: Heights,
     /// The surface that programs follow, where one was measured.
@@ -244,10 +266,18 @@ struct Shop<'a> {
 }
 
 impl Shop<'_> {
+    /// How the board lies for a program.
+    fn setup(&self, part: Part) -> &Setup {
+        match plan::face(part, self.args) {
+            Face::Front => &self.front,
+            Face::Back => &self.back,
+        }
+    }
+
     /// The program of a part of the board, proven, and its picture.
     fn make(&self, part: Part, work: &Work) -> Result<(Posted, Option<Vec<u8>>), Stop> {
-        let board = self.plan.seen(part, self.args);
-        let name = format!("{}-{}", self.plan.name, part.name());
+        let board = &self.setup(part).board;
+        let name = format!("{}-{}", board.name, part.name());
         let number = |operation: &Operation| self.rack.number(&operation.tool.name);
         let operations: Vec<(u32, &Operation)> =
             work.operations.iter().map(|operation| (number(operation), operation)).collect();
@@ -293,13 +323,13 @@ impl Shop<'_> {
     /// A place at which the tool touches the rim of a hole, or nothing, since the holes are there already. What counts
     /// is the width that it has at the surface when its tip is as deep as it probes.
     fn touches(&self, part: Part, work: &Work, grid: &Grid) -> Result<(), Stop> {
-        if !self.plan.is_drilled(part, self.args) {
+        if !plan::is_drilled(part, self.args) {
             return Ok(());
         }
         let width = |operation: &Operation| operation.tool.cutter.width(PROBED.reach);
         let beside = work.operations.first().map_or(0.0, width) / 2.0;
         for place in grid.places() {
-            let mut holes = self.plan.drilled(part, self.args);
+            let mut holes = self.setup(part).drilled();
             let Some(hole) = holes.find(|hole| hole.distance(place) < beside) else { continue };
             let (low, high) = hole.extents();
             let at = low.midpoint(high);
@@ -317,8 +347,8 @@ impl Shop<'_> {
 
     /// The program that measures the height of the board.
     fn probing(&self, places: [u32; 2]) -> Result<Made, Stop> {
-        let grid = grid(self.plan.front(), places)?;
-        let name = format!("{}-{PROBE}", self.plan.name);
+        let grid = grid(&self.front.board, places)?;
+        let name = format!("{}-{PROBE}", self.front.board.name);
         let mut program = PROBED.program(&name, &grid, Some(HEIGHTS))?;
         let tool = program::Tool {
             number: self.rack.next(),

@@ -27,7 +27,8 @@ pub(super) fn boolean<'a>(
     if edges > MOST_EDGES {
         return Err(RegionError::TooLarge);
     }
-    let mut chords = Chords { kernel: Kernel::new(edges), sources: Vec::new() };
+    let elements = first.clone().chain(second.clone()).map(<[Element]>::len).sum();
+    let mut chords = Chords { kernel: Kernel::new(edges), sources: Vec::with_capacity(elements) };
     first.for_each(|chain| chords.add(chain, Operand::First));
     second.for_each(|chain| chords.add(chain, Operand::Second));
     Ok(refit::region(chords.kernel.islands(keep, fill), &chords.sources))

@@ -1,7 +1,9 @@
 //! What is odd about a board: layers that do not fit together, copper and holes outside of it.
 
-use super::{Board, Copper, Face, Side, around};
+use super::{Board, Copper, Face, Side};
+use crate::contour::around;
 use crate::gerber::Image;
+use crate::report::Outcome;
 use crate::{Hole, HoleShape};
 use geom::region::{Index, Region, RegionError};
 use geom::{Element, Vec2};
@@ -13,59 +15,59 @@ const SLIVER: f64 = 1e-3;
 /// A box whose sides are parallel to the axes: two opposite corners, mm.
 type Extents = (Vec2, Vec2);
 
-/// Looks whether the layers of a board fit together, and whether copper and holes are within its
-/// outline.
+/// Copper of a side that is outside the outline.
 ///
 /// # Errors
-/// `layers-apart` where a layer lies beside the board as a whole: its origin is another one.
-pub fn checked(board: &Board) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
-    let mut warnings = layers(board)?;
-    let Some(outline) = &board.outline else { return Ok(warnings) };
-    let index = Index::new(outline);
-    for face in [Face::Front, Face::Back] {
-        let Some(copper) = &board.side(face).copper else { continue };
-        let outside = outside(copper, outline, &index).map_err(|error| {
-            let message = format!("copper and outline cannot be compared: {error}");
-            vec![Diagnostic::error("copper-outside", message)]
-        })?;
-        let area = outside.area();
-        if let Some(island) = outside.islands().first()
-            && area > SLIVER
-        {
-            let places = match outside.islands().len() {
-                1 => String::from("1 place"),
-                places => format!("{places} places"),
-            };
-            let first = shown(island.outer().extents());
-            let message = format!(
-                "{area:.3} mm² of the {face} copper is outside the outline, in {places}, the first \
-                 within {first}"
-            );
-            let help =
-                "it is cut through with the outline; look whether the outline is the right one";
-            warnings.push(Diagnostic::warning("copper-outside", message).help(help));
-        }
-    }
+/// `copper-outside` where the two cannot be compared.
+pub(super) fn copper(board: &Board, face: Face) -> Outcome<Option<Diagnostic>> {
+    let (Some(outline), Some(copper)) = (&board.outline, &board.side(face).copper) else {
+        return Ok(None);
+    };
+    let outside = outside(copper, outline).map_err(|error| {
+        let message = format!("copper and outline cannot be compared: {error}");
+        Box::new(Diagnostic::error("copper-outside", message))
+    })?;
+    let area = outside.area();
+    let first = outside.islands().first().filter(|_| area > SLIVER);
+    Ok(first.map(|island| {
+        let places = match outside.islands().len() {
+            1 => String::from("1 place"),
+            places => format!("{places} places"),
+        };
+        let first = shown(island.outer().extents());
+        let message = format!(
+            "{area:.3} mm² of the {face} copper is outside the outline, in {places}, the first \
+             within {first}"
+        );
+        let help = "it is cut through with the outline; look whether the outline is the right one";
+        Diagnostic::warning("copper-outside", message).help(help)
+    }))
+}
+
+/// Holes that are outside the outline.
+pub(super) fn holes(board: &Board) -> Option<Diagnostic> {
+    let index = Index::new(board.outline.as_ref()?);
     let beyond: Vec<&Hole> =
         board.holes.iter().filter(|hole| index.island_at(middle(hole)).is_none()).collect();
-    if let Some(first) = beyond.first() {
-        let at = middle(first);
-        let message = format!(
-            "{} of {} holes are outside the outline, first one of {:.3} mm at X {:.4} Y {:.4}",
-            beyond.len(),
-            board.holes.len(),
-            first.diameter,
-            at.x,
-            at.y
-        );
-        let help = "look whether outline and holes are of one board";
-        warnings.push(Diagnostic::warning("hole-outside", message).help(help));
-    }
-    Ok(warnings)
+    let first = beyond.first()?;
+    let at = middle(first);
+    let message = format!(
+        "{} of {} holes are outside the outline, first one of {:.3} mm at X {:.4} Y {:.4}",
+        beyond.len(),
+        board.holes.len(),
+        first.diameter,
+        at.x,
+        at.y
+    );
+    let help = "look whether outline and holes are of one board";
+    Some(Diagnostic::warning("hole-outside", message).help(help))
 }
 
 /// Each layer against the outline, or else the first layer that there is.
-fn layers(board: &Board) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
+///
+/// # Errors
+/// `layers-apart` where a layer lies beside the board as a whole: its origin is another one.
+pub(super) fn layers(board: &Board) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
     let of = |region: Option<&Region>| region.and_then(Region::extents);
     let copper = |copper: &Option<Copper>| of(copper.as_ref().map(|copper| &copper.region));
     let legend = |side: &Side| side.legend.as_ref().and_then(Image::extents);
@@ -103,7 +105,8 @@ fn layers(board: &Board) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
 }
 
 /// The copper that is not within the outline. Only islands that come near an edge are worked on.
-fn outside(copper: &Copper, outline: &Region, index: &Index) -> Result<Region, RegionError> {
+fn outside(copper: &Copper, outline: &Region) -> Result<Region, RegionError> {
+    let index = Index::new(outline);
     let near = |element: &Element| {
         let (low, high) = element.extents();
         index.within(low, high).next().is_some()

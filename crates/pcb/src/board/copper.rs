@@ -1,7 +1,9 @@
 //! What the objects of a layer cover, and which nets its copper belongs to.
 
-use crate::contour::Piece;
+use crate::contour::{self, Piece, around};
 use crate::gerber::{Image, Object};
+use crate::report::Outcome;
+use crate::stroke;
 use geom::region::{Fill, Index, Region, RegionError, Ring, strokes};
 use geom::{Element, Vec2};
 use program::Diagnostic;
@@ -24,6 +26,70 @@ pub enum Shape {
     Stroke(Element, f64),
     /// What remains of pieces that are added and taken away in their order.
     Pieces(Vec<Piece>),
+}
+
+/// The copper of a side as a file draws it.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Pattern {
+    /// The file.
+    pub(crate) file: String,
+    /// What it draws.
+    pub(crate) drawn: Drawn,
+}
+
+/// What copper is drawn with.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) enum Drawn {
+    /// Objects that are painted in their order.
+    Image(Image),
+    /// Shapes, each of which may be part of a net.
+    Shapes(Vec<(Shape, Option<Arc<str>>)>),
+}
+
+impl Pattern {
+    /// Shapes of a file, if there are any.
+    pub(crate) fn of_shapes(file: &str, shapes: Vec<(Shape, Option<Arc<str>>)>) -> Option<Pattern> {
+        let something = !shapes.is_empty();
+        something.then(|| Pattern { file: file.to_owned(), drawn: Drawn::Shapes(shapes) })
+    }
+
+    /// The corners of a box around all of it, mm; `None` where nothing is drawn.
+    pub(super) fn extents(&self) -> Option<(Vec2, Vec2)> {
+        match &self.drawn {
+            Drawn::Image(image) => image.extents(),
+            Drawn::Shapes(shapes) => {
+                shapes.iter().filter_map(|(shape, _)| shape.extents()).reduce(around)
+            }
+        }
+    }
+
+    /// What it covers.
+    ///
+    /// # Errors
+    /// `layer` where it cannot be united.
+    pub(super) fn united(&self) -> Outcome<Named> {
+        let named = match &self.drawn {
+            Drawn::Image(image) => Copper::of_image(image),
+            Drawn::Shapes(shapes) => Copper::of_shapes(shapes),
+        };
+        let placed = |found: Diagnostic| found.file(&self.file);
+        let (copper, found) = named.map_err(|error| {
+            let message = format!("the copper cannot be taken: {error}");
+            let help = "look at the unit, and for what is very large, far away or very many";
+            Box::new(placed(Diagnostic::error("layer", message).help(help)))
+        })?;
+        Ok((copper, found.into_iter().map(placed).collect()))
+    }
+}
+
+impl Shape {
+    /// The corners of the smallest box around it, mm; `None` where nothing is added.
+    fn extents(&self) -> Option<(Vec2, Vec2)> {
+        match self {
+            Shape::Stroke(way, width) => stroke::extents(way, *width),
+            Shape::Pieces(pieces) => contour::extents(pieces),
+        }
+    }
 }
 
 /// What a layer gives: its copper, and islands to which objects of several nets belong.

@@ -3,10 +3,9 @@
 //! Which file is which says the file itself (`.FileFunction`), or else its name; what is taken by its
 //! name, is left out or had to be mended is a warning. Two files of one layer are refused.
 
-use super::layer::{Format, Layer};
-use super::{Board, Copper, check, covered, holes, outline};
+use super::layer::{Face, Format, Layer};
+use super::{Artwork, Board, Drawn, Pattern, covered, holes, outline};
 use crate::{excellon, gerber};
-use geom::region::RegionError;
 use program::Diagnostic;
 use rayon::prelude::*;
 
@@ -21,13 +20,16 @@ pub struct File<'a> {
     pub text: &'a [u8],
 }
 
+/// The name of each file that is part of a board, and what it holds, in the order of the files.
+pub type Layers = Vec<(String, Layer)>;
+
 /// What the files of a board give.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading {
     /// The board.
     pub board: Board,
-    /// The name of each file that is part of it, and what it holds, in the order of the files.
-    pub layers: Vec<(String, Layer)>,
+    /// Its files.
+    pub layers: Layers,
     /// What had to be assumed or is not used, and what is odd about the board.
     pub warnings: Vec<Diagnostic>,
 }
@@ -35,30 +37,36 @@ pub struct Reading {
 /// Reads the files of a board of this name. Files that hold no layer are left out, with one warning.
 ///
 /// # Errors
-/// `layer-twice` where two files hold the same layer, `layer-negative`, `no-board` where no file has
-/// anything of a board, and all that the readers, [`outline::of_image`] and [`check::checked`] refuse.
+/// All that [`artwork`] and [`Artwork::united`] refuse.
 pub fn read(name: &str, files: &[File]) -> Result<Reading, Vec<Diagnostic>> {
-    let mut warnings = Vec::new();
-    let known = told_apart(files, &mut warnings)?;
-    let mut board = Board { name: name.into(), ..Board::default() };
+    let (artwork, layers) = artwork(name, files)?;
+    let (board, warnings) = artwork.united()?;
+    Ok(Reading { board, layers, warnings })
+}
+
+/// The same, with copper that is still to be united.
+///
+/// # Errors
+/// `layer-twice` where two files hold the same layer, `layer-negative`, `no-board` where no file has
+/// anything of a board, and all that the readers, [`outline::of_image`] and [`Artwork::united`] refuse.
+pub fn artwork(name: &str, files: &[File]) -> Result<(Artwork, Layers), Vec<Diagnostic>> {
+    let mut artwork = Artwork::default();
+    artwork.board.name = name.into();
+    let known = told_apart(files, &mut artwork.warnings)?;
     let mut errors = Vec::new();
     // Some at the same time, and put together in the order of the files.
     for part in known.par_iter().map(Known::read).collect::<Vec<_>>() {
         match part {
-            Ok((part, found)) => {
-                board.take(part);
-                warnings.extend(found);
-            }
+            Ok(part) => artwork.take(part),
             Err(found) => errors.extend(found),
         }
     }
     if !errors.is_empty() {
         return Err(errors);
     }
-    warnings.extend(holes::once(&mut board.holes));
-    warnings.extend(check::checked(&board)?);
+    artwork.warnings.extend(holes::once(&mut artwork.board.holes));
     let layers = known.iter().map(|layer| (layer.file.name.to_owned(), layer.layer)).collect();
-    Ok(Reading { board, layers, warnings })
+    Ok((artwork.whole()?, layers))
 }
 
 /// A file of which is known what it holds.
@@ -129,28 +137,26 @@ fn told_apart<'a>(
 }
 
 impl Known<'_> {
-    /// A board with nothing but this layer, and the warnings.
-    fn read(&self) -> Result<(Board, Vec<Diagnostic>), Vec<Diagnostic>> {
+    /// A board with nothing but this layer.
+    fn read(&self) -> Result<Artwork, Vec<Diagnostic>> {
         let File { name, text, .. } = *self.file;
-        let mut board = Board::default();
+        let mut artwork = Artwork::default();
+        let Artwork { board, warnings, .. } = &mut artwork;
         if let (Layer::Holes(plated), Format::Excellon) = (self.layer, self.format) {
             let reading = excellon::read(name, text)?;
             board.holes.extend(holes::of_drill(reading.drill, plated));
-            return Ok((board, reading.warnings));
+            warnings.extend(reading.warnings);
+            return Ok(artwork);
         }
-        let gerber::Reading { image, mut warnings } = gerber::read(name, text)?;
+        let gerber::Reading { image, warnings: found } = gerber::read(name, text)?;
+        warnings.extend(found);
         let placed = |found: Diagnostic| found.file(name);
         if image.objects.is_empty() {
             let message = format!("nothing is on this layer: there is no {}", self.layer);
             let help = "plot it anew, or leave it out where there should be nothing";
             warnings.push(placed(Diagnostic::warning("layer-empty", message).help(help)));
-            return Ok((board, warnings));
+            return Ok(artwork);
         }
-        let no_region = |error: RegionError| {
-            let message = format!("this layer cannot be taken: {error}");
-            let help = "look at the unit, and at the sizes of apertures";
-            vec![placed(Diagnostic::error("layer", message).help(help))]
-        };
         let negative =
             image.file_attribute(".FilePolarity").is_some_and(|value| value == ["Negative"]);
         match self.layer {
@@ -161,12 +167,19 @@ impl Known<'_> {
                 return Err(vec![placed(found)]);
             }
             Layer::Copper(face) => {
-                let (copper, found) = Copper::of_image(&image).map_err(no_region)?;
-                board.side_mut(face).copper = Some(copper);
-                warnings.extend(found.into_iter().map(placed));
+                let pattern = Pattern { file: name.to_owned(), drawn: Drawn::Image(image) };
+                match face {
+                    Face::Front => artwork.front = Some(pattern),
+                    Face::Back => artwork.back = Some(pattern),
+                }
             }
             Layer::Mask(face) => {
-                board.side_mut(face).mask = Some(covered(&image).map_err(no_region)?);
+                let mask = covered(&image).map_err(|error| {
+                    let message = format!("this layer cannot be taken: {error}");
+                    let help = "look at the unit, and at the sizes of apertures";
+                    vec![placed(Diagnostic::error("layer", message).help(help))]
+                })?;
+                board.side_mut(face).mask = Some(mask);
             }
             Layer::Legend(face) => board.side_mut(face).legend = Some(image),
             Layer::Outline => {
@@ -184,7 +197,7 @@ impl Known<'_> {
             }
             Layer::Other => {}
         }
-        Ok((board, warnings))
+        Ok(artwork)
     }
 }
 

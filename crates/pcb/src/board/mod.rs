@@ -1,13 +1,14 @@
 //! A board, whatever files it comes from.
 //!
 //! ```text
-//!   Gerber and Excellon ──files──▶ Board ──check──▶ what is odd about it
+//!   Gerber and Excellon ──files──▶ Artwork ──copper──▶ Board ──check──▶ what is odd about it
 //!                 edge ──outline──▶
 //! ```
 //!
-//! `layer` tells which file is which, `holes` what is drilled, `copper` what is copper. What is done to a
-//! board as a whole is in `placed`: moved, turned over, on a panel.
+//! `layer` tells which file is which, `holes` what is drilled, `copper` what is copper; [`Artwork`] is a board of which
+//! each side is united by itself. What is done to a board as a whole is in `placed`: moved, turned over, on a panel.
 
+mod artwork;
 mod check;
 mod copper;
 mod files;
@@ -16,13 +17,15 @@ mod layer;
 pub mod outline;
 mod placed;
 
-pub use check::checked;
+pub use artwork::Artwork;
 pub use copper::{Copper, Named, Shape, covered};
-pub use files::{File, Reading, read};
+pub(crate) use copper::{Drawn, Pattern};
+pub use files::{File, Layers, Reading, artwork, read};
 pub use layer::{Face, Layer};
 pub use placed::Axis;
 
 use crate::Hole;
+use crate::contour::around;
 use crate::gerber::Image;
 use geom::Vec2;
 use geom::region::Region;
@@ -78,9 +81,4 @@ impl Board {
         let holes = self.holes.iter().map(Hole::extents);
         regions.filter_map(Region::extents).chain(holes).reduce(around)
     }
-}
-
-/// The box around two boxes.
-fn around(a: (Vec2, Vec2), b: (Vec2, Vec2)) -> (Vec2, Vec2) {
-    (a.0.min(b.0), a.1.max(b.1))
 }

@@ -1,8 +1,9 @@
 //! The image that a file describes.
 
 use super::{Aperture, Attributes};
+use crate::contour::{self, around};
 use crate::report::{Outcome, fault};
-use crate::stroke::Pen;
+use crate::stroke::{self, Pen};
 use crate::{Contour, FAR, Piece, Transform};
 use geom::{Element, Vec2};
 
@@ -129,9 +130,15 @@ impl Image {
     /// The corners of the smallest box around everything that is dark; `None` where nothing is.
     pub fn extents(&self) -> Option<(Vec2, Vec2)> {
         let dark = self.objects.iter().filter(|object| object.dark);
-        let pieces = dark.flat_map(|object| self.pieces(object));
-        let outlines = pieces.filter(|piece| piece.solid).flat_map(|piece| piece.contours);
-        outlines.map(|contour| contour.extents()).reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))
+        let boxes = dark.filter_map(|object| match (self.stroke(object), object.shape) {
+            (Some((way, diameter)), _) => stroke::extents(&way, diameter),
+            (None, Shape::Region { region, transform, at }) => {
+                let contours = &self.regions.get(region as usize)?.contours;
+                contours.iter().map(|contour| contour.placed_extents(&transform, at)).reduce(around)
+            }
+            (None, _) => contour::extents(&self.pieces(object)),
+        });
+        boxes.reduce(around)
     }
 
     /// The same elsewhere: transformed about the origin, which goes to `at`.

@@ -17,7 +17,7 @@ mod text;
 mod tree;
 mod zone;
 
-use crate::Board;
+use crate::{Artwork, Board};
 use program::Diagnostic;
 
 /// What a board file says.
@@ -36,5 +36,14 @@ pub struct Reading {
 /// # Errors
 /// Every error found, at most twenty, in the order of their lines. There is no partial result.
 pub fn read(file_name: &str, text: &[u8]) -> Result<Reading, Vec<Diagnostic>> {
+    let (board, warnings) = artwork(file_name, text)?.united()?;
+    Ok(Reading { board, warnings })
+}
+
+/// The same, with copper that is still to be united.
+///
+/// # Errors
+/// As [`read`].
+pub fn artwork(file_name: &str, text: &[u8]) -> Result<Artwork, Vec<Diagnostic>> {
     reader::read(file_name, text)
 }

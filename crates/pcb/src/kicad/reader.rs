@@ -1,6 +1,5 @@
 //! The items of a board, and what becomes of them.
 
-use super::Reading;
 use super::frame::Frame;
 use super::graphic::{Graphic, arc};
 use super::layer::Layers;
@@ -8,10 +7,10 @@ use super::pad::{self, Pad};
 use super::text::Text;
 use super::tree::{Node, Outcome, Tree};
 use super::zone::Zone;
-use crate::board::{Shape, checked, holes, outline};
+use crate::board::{Artwork, Pattern, Shape, holes, outline};
 use crate::contour::{Contour, Piece};
 use crate::report::Report;
-use crate::{Board, Copper, Hole, HoleShape, Side};
+use crate::{Board, Hole, HoleShape};
 use geom::Element;
 use program::Diagnostic;
 use std::collections::BTreeMap;
@@ -50,7 +49,7 @@ const NO_COPPER: &[&[u8]] = &[
     b"model",
 ];
 
-pub(super) fn read(file_name: &str, text: &[u8]) -> Result<Reading, Vec<Diagnostic>> {
+pub(super) fn read(file_name: &str, text: &[u8]) -> Result<Artwork, Vec<Diagnostic>> {
     let mut reader = Reader {
         report: Report::new(file_name, text),
         nets: BTreeMap::new(),
@@ -323,26 +322,13 @@ impl Reader<'_> {
     }
 
     /// The board, when all of it is read.
-    fn finish(mut self, file_name: &str) -> Result<Reading, Vec<Diagnostic>> {
+    fn finish(mut self, file_name: &str) -> Result<Artwork, Vec<Diagnostic>> {
         if !self.report.errors.is_empty() {
             return Err(self.report.errors);
         }
         let placed = |found: Diagnostic| found.file(file_name);
         let all = |found: Vec<Diagnostic>| found.into_iter().map(placed).collect::<Vec<_>>();
         let mut warnings = self.report.warnings;
-        let mut side = |shapes: &[(Shape, Net)]| -> Result<Side, Vec<Diagnostic>> {
-            if shapes.is_empty() {
-                return Ok(Side::default());
-            }
-            let (copper, found) = Copper::of_shapes(shapes).map_err(|error| {
-                let message = format!("the copper cannot be taken: {error}");
-                let help = "look for items that are far away or very many";
-                vec![placed(Diagnostic::error("layer", message).help(help))]
-            })?;
-            warnings.extend(all(found));
-            Ok(Side { copper: Some(copper), ..Side::default() })
-        };
-        let (front, back) = (side(&self.front)?, side(&self.back)?);
         let mut outlined = None;
         if !self.edges.is_empty() {
             let (region, found) = outline::of_lines(&self.edges).map_err(all)?;
@@ -352,8 +338,9 @@ impl Reader<'_> {
         warnings.extend(holes::once(&mut self.holes).map(placed));
         let name = file_name.rsplit(['/', '\\']).next().unwrap_or(file_name);
         let name = name.strip_suffix(".kicad_pcb").unwrap_or(name).to_owned();
-        let board = Board { name, front, back, outline: outlined, holes: self.holes };
-        warnings.extend(all(checked(&board).map_err(all)?));
-        Ok(Reading { board, warnings })
+        let board = Board { name, outline: outlined, holes: self.holes, ..Board::default() };
+        let side = |shapes| Pattern::of_shapes(file_name, shapes);
+        let (front, back) = (side(self.front), side(self.back));
+        Artwork { board, front, back, file: Some(file_name.to_owned()), warnings }.whole()
     }
 }

@@ -4,12 +4,11 @@ use super::Findings;
 use super::net::Nets;
 use super::scope::{Scopes, no_angle};
 use super::sheet::{Bore, Edge, Form, Group, Pad, Track};
-use crate::board::{Board, Copper, Face, Shape, outline};
+use crate::board::{Artwork, Board, Face, Pattern, Shape, outline};
 use crate::{Contour, Hole, HoleShape, Piece, Transform};
 use geom::{Element, Vec2};
 use program::Diagnostic;
 use std::f64::consts::PI;
-use std::sync::Arc;
 use toml::Spanned;
 
 /// The narrowest and the widest track, pad and hole, mm. What is thinner than 1 µm vanishes.
@@ -18,8 +17,8 @@ const WIDTHS: std::ops::RangeInclusive<f64> = 0.01..=1e4;
 /// Shapes of copper, each with its element.
 type Shapes = Vec<(Shape, usize)>;
 
-/// The board that `root` describes; some of it where errors were told.
-pub(super) fn board(root: &Spanned<Group>, findings: &mut Findings) -> Board {
+/// The board that `root`, of a file, describes; some of it where errors were told.
+pub(super) fn artwork(root: &Spanned<Group>, file_name: &str, findings: &mut Findings) -> Artwork {
     let mut maker = Maker {
         scopes: Scopes::of(root, findings),
         nets: Nets::default(),
@@ -31,7 +30,7 @@ pub(super) fn board(root: &Spanned<Group>, findings: &mut Findings) -> Board {
     for scope in 0..maker.scopes.all.len() {
         maker.group(scope);
     }
-    maker.board()
+    maker.artwork(file_name)
 }
 
 /// A board at work.
@@ -149,7 +148,7 @@ impl<'a> Maker<'a, '_, '_> {
         self.findings.error(element.span(), Diagnostic::error("node", what).help(help));
     }
 
-    fn board(self) -> Board {
+    fn artwork(self, file_name: &str) -> Artwork {
         let Maker { nets, sides, holes, edge, findings, .. } = self;
         let nothing = holes.is_empty() && edge.is_empty() && sides.iter().all(Vec::is_empty);
         if nothing && findings.report.errors.is_empty() {
@@ -158,28 +157,15 @@ impl<'a> Maker<'a, '_, '_> {
             findings.report.errors.push(found);
         }
         let nets = nets.named(findings);
-        let mut board = Board { holes, ..Board::default() };
         if !findings.report.errors.is_empty() {
-            return board;
+            return Artwork::default();
         }
-        let faces = [Face::Front, Face::Back];
-        for (face, shapes) in faces.into_iter().zip(sides).filter(|(_, shapes)| !shapes.is_empty())
-        {
-            let net = |element: usize| -> Option<Arc<str>> { nets.get(element)?.clone() };
-            let shapes: Vec<(Shape, Option<Arc<str>>)> =
-                shapes.into_iter().map(|(shape, element)| (shape, net(element))).collect();
-            match Copper::of_shapes(&shapes) {
-                Ok((copper, found)) => {
-                    board.side_mut(face).copper = Some(copper);
-                    findings.report.warnings.extend(found);
-                }
-                Err(error) => {
-                    let message = format!("the {face} copper cannot be taken: {error}");
-                    let found = Diagnostic::error("copper", message);
-                    findings.report.errors.push(found.help("look at positions and sizes"));
-                }
-            }
-        }
+        let [front, back] = sides.map(|shapes| {
+            let net = |element: usize| nets.get(element).cloned().flatten();
+            let named = shapes.into_iter().map(|(shape, element)| (shape, net(element)));
+            Pattern::of_shapes(file_name, named.collect())
+        });
+        let mut board = Board { holes, ..Board::default() };
         if !edge.is_empty() {
             match outline::of_lines(&edge) {
                 Ok((region, found)) => {
@@ -189,7 +175,7 @@ impl<'a> Maker<'a, '_, '_> {
                 Err(found) => findings.report.errors.extend(found),
             }
         }
-        board
+        Artwork { board, front, back, ..Artwork::default() }
     }
 }
 

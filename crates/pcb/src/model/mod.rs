@@ -16,7 +16,7 @@ mod net;
 mod scope;
 mod sheet;
 
-use crate::board::{Board, checked};
+use crate::board::{Artwork, Board};
 use crate::report::{Place, Report};
 use program::{Diagnostic, nearest};
 use serde::Deserialize;
@@ -45,9 +45,18 @@ pub struct Reading {
 /// # Errors
 /// Every error found, at most twenty: `board-file` for what is no such text, with the keys that a wrong
 /// one is near to; `node-unknown`, `node`, `group`, `width`, `angle`, `net-twice`, `no-board`, and what
-/// [`outline::of_lines`](crate::board::outline::of_lines) and [`checked`] refuse. There is no
+/// [`outline::of_lines`](crate::board::outline::of_lines) and [`Artwork::united`] refuse. There is no
 /// partial board.
 pub fn read(file_name: &str, text: &[u8]) -> Result<Reading, Vec<Diagnostic>> {
+    let (board, warnings) = artwork(file_name, text)?.united()?;
+    Ok(Reading { board, warnings })
+}
+
+/// The same, with copper that is still to be united.
+///
+/// # Errors
+/// As [`read`].
+pub fn artwork(file_name: &str, text: &[u8]) -> Result<Artwork, Vec<Diagnostic>> {
     let mut findings = Findings::new(file_name, text);
     let root = match parse(text) {
         Ok(root) => root,
@@ -56,8 +65,8 @@ pub fn read(file_name: &str, text: &[u8]) -> Result<Reading, Vec<Diagnostic>> {
             return Err(findings.report.errors);
         }
     };
-    let board = build::board(&root, &mut findings);
-    let Report { errors, mut warnings, .. } = findings.report;
+    let mut artwork = build::artwork(&root, file_name, &mut findings);
+    let Report { errors, warnings, .. } = findings.report;
     let placed = |found: Vec<Diagnostic>| -> Vec<Diagnostic> {
         found.into_iter().map(|found| found.file(file_name)).collect()
     };
@@ -66,10 +75,10 @@ pub fn read(file_name: &str, text: &[u8]) -> Result<Reading, Vec<Diagnostic>> {
     }
     let file = file_name.rsplit(['/', '\\']).next().unwrap_or(file_name);
     let stem = file.rsplit_once('.').map_or(file, |(stem, _)| stem);
-    let name = root.into_inner().name.unwrap_or_else(|| stem.into());
-    let board = Board { name, ..board };
-    warnings.extend(checked(&board).map_err(placed)?);
-    Ok(Reading { board, warnings: placed(warnings) })
+    artwork.board.name = root.into_inner().name.unwrap_or_else(|| stem.into());
+    artwork.file = Some(file_name.to_owned());
+    artwork.warnings = placed(warnings);
+    artwork.whole()
 }
 
 /// Why a text is no board, and where.

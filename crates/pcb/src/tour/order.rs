@@ -3,7 +3,6 @@
 use super::tree::Tree;
 use geom::Vec2;
 use std::collections::VecDeque;
-use std::iter;
 
 /// How many neighbours of each stop are tried beside it.
 const NEIGHBOURS: usize = 8;
@@ -29,12 +28,12 @@ const WORTH: f64 = 1e-7;
 /// Stops in an order. Before the first and, where the tool goes somewhere after all, behind the last
 /// stands a stop that is never moved.
 pub(super) struct Order {
-    /// Where each stop is entered and left; turned round it is the other way.
-    ends: Vec<[Vec2; 2]>,
     /// Whether each stop cannot be turned round.
     one_way: Vec<bool>,
     turned: Vec<bool>,
     sequence: Vec<u32>,
+    /// Where what stands at each place of the sequence is entered and left.
+    ends: Vec<[Vec2; 2]>,
     /// Where in the sequence each stop stands.
     place: Vec<u32>,
     /// How many may be moved: those at the places from 1 on.
@@ -96,35 +95,35 @@ impl Order {
     /// and whether it is turned round.
     pub(super) fn new(
         (from, to): (Vec2, Option<Vec2>),
-        mut ends: Vec<[Vec2; 2]>,
+        ends: Vec<[Vec2; 2]>,
         mut one_way: Vec<bool>,
         sequence: impl Iterator<Item = (usize, bool)>,
     ) -> Order {
         let movable = ends.len();
         let mut order = vec![movable as u32];
+        let mut in_order = vec![[from; 2]];
         let mut turned = vec![false; movable];
         for (stop, round) in sequence {
             order.push(stop as u32);
+            in_order.push(facing(ends[stop], round));
             turned[stop] = round;
         }
-        if to.is_some() {
+        if let Some(to) = to {
             order.push(movable as u32 + 1);
+            in_order.push([to; 2]);
         }
-        for fixed in iter::once(from).chain(to) {
-            ends.push([fixed; 2]);
-            one_way.push(true);
-            turned.push(false);
-        }
+        one_way.resize(order.len(), true);
+        turned.resize(order.len(), false);
         let mut place = vec![0; order.len()];
         for (at, stop) in order.iter().enumerate() {
             place[*stop as usize] = at as u32;
         }
         let queued = vec![false; order.len()];
         Order {
-            ends,
             one_way,
             turned,
             sequence: order,
+            ends: in_order,
             place,
             movable,
             span: SPAN,
@@ -154,17 +153,15 @@ impl Order {
 
     /// Enters and leaves `stop` at `point`.
     pub(super) fn enter_at(&mut self, stop: usize, point: Vec2) {
-        self.ends[stop] = [point; 2];
+        self.ends[self.place[stop] as usize] = [point; 2];
     }
 
     fn enter(&self, at: usize) -> Vec2 {
-        let stop = self.sequence[at] as usize;
-        self.ends[stop][usize::from(self.turned[stop])]
+        self.ends[at][0]
     }
 
     fn leave(&self, at: usize) -> Vec2 {
-        let stop = self.sequence[at] as usize;
-        self.ends[stop][usize::from(!self.turned[stop])]
+        self.ends[at][1]
     }
 
     /// How far it is from `point` to where the stop at `at` is entered; nothing where there is none.
@@ -242,7 +239,8 @@ impl Order {
     }
 
     fn find_neighbours(&mut self) {
-        let points: Vec<Vec2> = self.ends.iter().flatten().copied().collect();
+        let ends = |(place, turned): (&u32, &bool)| facing(self.ends[*place as usize], *turned);
+        let points: Vec<Vec2> = self.place.iter().zip(&self.turned).flat_map(ends).collect();
         let tree = Tree::new(&points);
         self.neighbours.clear();
         for (end, point) in points.iter().enumerate() {
@@ -400,6 +398,8 @@ impl Order {
         let (first, last) = match step {
             Step::Reverse { first, last } => {
                 self.sequence[first..=last].reverse();
+                self.ends[first..=last].reverse();
+                self.ends[first..=last].iter_mut().for_each(|ends| ends.reverse());
                 for stop in &self.sequence[first..=last] {
                     self.turned[*stop as usize] ^= true;
                 }
@@ -407,6 +407,7 @@ impl Order {
             }
             Step::Rotate { low, middle, high } => {
                 self.sequence[low..high].rotate_left(middle - low);
+                self.ends[low..high].rotate_left(middle - low);
                 (low, high - 1)
             }
         };
@@ -414,4 +415,9 @@ impl Order {
             self.place[self.sequence[at] as usize] = at as u32;
         }
     }
+}
+
+/// Where a stop is entered and left that is turned round or not.
+fn facing([enter, leave]: [Vec2; 2], turned: bool) -> [Vec2; 2] {
+    if turned { [leave, enter] } else { [enter, leave] }
 }

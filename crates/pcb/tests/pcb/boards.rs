@@ -291,6 +291,63 @@ fn layers_that_do_not_fit() {
 }
 
 #[test]
+fn how_large_a_board_is_is_known_before_its_copper_is_united() {
+    // A pad of 1 mm on the front, and one on the back, in the square of 20 mm.
+    let size = |front: &str, back: &str| {
+        let pad = |at: &str| layer("", &format!("D11*\n{at}D03*\n"));
+        let texts = [("a.gtl", pad(front)), ("a.gbl", pad(back)), ("a.gko", layer("", &square()))];
+        let file = |(name, text)| File { name, layer: None, text };
+        let files: Vec<File> =
+            texts.iter().map(|(name, text)| file((*name, text.as_slice()))).collect();
+        let (artwork, _) = board::artwork("board", &files).unwrap();
+        let known = artwork.board().extents();
+        let (sides, _) = artwork.each_side(|_, board| board.extents()).unwrap();
+        assert_eq!(sides, [known; 2]);
+        known.unwrap()
+    };
+    let (low, high) = (Vec2::ZERO, Vec2::splat(20.0));
+    assert_eq!(size("X10000Y10000", "X5000Y5000"), (low, high));
+    // At the edge, and over it.
+    assert_eq!(size("X19500Y10000", "X5000Y5000"), (low, high));
+    assert_eq!(size("X10000Y10000", "X500Y0"), (Vec2::new(0.0, -0.5), high));
+    assert_eq!(size("X19800Y10000", "X500Y0"), (Vec2::new(0.0, -0.5), Vec2::new(20.3, 20.0)));
+}
+
+#[test]
+fn each_side_has_its_copper_and_what_is_odd_comes_in_order() {
+    // On each side two nets that touch; on the back, and in a hole, beside the ring that is the board.
+    let touching = |x: f64| {
+        let (at, beside) = ((x * 1e3) as i64, (x * 1e3) as i64 + 800);
+        format!("D11*\n%TO.N,A*%X{at}Y10000D03*\n%TO.N,B*%X{beside}Y10000D03*\n")
+    };
+    let edge =
+        layer("", &(square() + &lines(&[(8.0, 8.0), (12.0, 8.0), (12.0, 12.0), (8.0, 8.0)])));
+    let drill = b"M48\nMETRIC\nT1C0.8\n%\nT1\nX11.0Y9.5\nM30\n".to_vec();
+    let texts = [
+        ("a.gbl", layer("", &touching(11.0))),
+        ("a.gko", edge),
+        ("a.gtl", layer("", &touching(3.0))),
+        ("a.drl", drill),
+    ];
+    let files: Vec<File> =
+        texts.iter().map(|(name, text)| File { name, layer: None, text }).collect();
+    let (artwork, _) = board::artwork("board", &files).unwrap();
+    assert!(artwork.has_copper(Face::Front) && artwork.has_copper(Face::Back));
+    let (sides, odd) = artwork.each_side(|face, board| (face, board)).unwrap();
+    for ((face, board), expected) in sides.iter().zip([Face::Front, Face::Back]) {
+        let copper = board.side(*face).copper.as_ref().unwrap();
+        assert_eq!((*face, copper.region.islands().len()), (expected, 1));
+    }
+    let odd: Vec<(&str, &str)> =
+        odd.iter().map(|found| (found.rule, found.file.as_str())).collect();
+    let joined = [("nets-joined", "a.gtl"), ("nets-joined", "a.gbl")];
+    let named = ["a.gbl", "a.gko", "a.gtl"].map(|file| ("layer-by-name", file));
+    let outside = [("copper-outside", ""), ("hole-outside", "")];
+    let drawn = [("deprecated", "a.gko")];
+    assert_eq!(odd, [&named[..], &drawn, &joined, &outside].concat());
+}
+
+#[test]
 fn holes_that_do_not_go_through_are_told() {
     let drill = b"M48\nMETRIC\nT1C0.8\n%\nT1\nX10.0Y10.0\nM30\n";
     let blind = b"M48\n; #@! TF.FileFunction,Plated,1,2,Blind,Drill\nMETRIC\nT1C0.3\n%\nT1\nX2.0Y2.0\nM30\n";

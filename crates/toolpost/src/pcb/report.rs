@@ -1,11 +1,11 @@
 //! What is told of the programs of a board.
 
 use super::Made;
-use super::plan::Plan;
 use crate::args::pcb::{Pcb, Turn};
 use crate::summary::{duration, length, number};
 use crate::toolpath;
 use machine::Machine;
+use pcb::Board;
 use pcb::board::Face;
 use program::Diagnostic;
 use serde_json::{Value, json};
@@ -19,20 +19,19 @@ pub struct Report {
     pub data: Value,
 }
 
-/// The report of `programs`, from files that hold these `layers`.
+/// The report of `programs` for a board that lies so, from files that hold these `layers`.
 pub fn of(
     layers: &[(String, String)],
-    plan: &Plan,
+    board: &Board,
     args: &Pcb,
     programs: &[Made],
     machine: &Machine,
     warnings: &[Diagnostic],
 ) -> Report {
-    let board = plan.front();
     let (low, high) = board.extents().unwrap_or_default();
     let size = high - low;
     let mut rows = vec![
-        ("board", plan.name.clone()),
+        ("board", board.name.clone()),
         (
             "size",
             format!(
@@ -71,7 +70,7 @@ pub fn of(
     let data = json!({
         "toolpost": env!("CARGO_PKG_VERSION"),
         "board": {
-            "name": plan.name,
+            "name": board.name,
             "files": layers.iter().map(|(file, layer)| json!({ "file": file, "layer": layer })).collect::<Vec<_>>(),
             "low_mm": low.to_array(),
             "high_mm": high.to_array(),

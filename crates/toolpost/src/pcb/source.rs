@@ -2,8 +2,7 @@
 
 use crate::answer::Stop;
 use crate::files;
-use pcb::Board;
-use pcb::board::File;
+use pcb::board::{Artwork, File};
 use program::Diagnostic;
 use std::path::{Path, PathBuf};
 
@@ -12,12 +11,10 @@ const MOST_FILES: usize = 1000;
 
 /// A board as it was read.
 pub struct Source {
-    /// The board.
-    pub board: Board,
+    /// The board, with copper that is still to be united.
+    pub artwork: Artwork,
     /// Its files, and what each holds.
     pub layers: Vec<(String, String)>,
-    /// What had to be assumed, and what is odd about it.
-    pub warnings: Vec<Diagnostic>,
     /// The files that were read.
     pub files: Vec<PathBuf>,
 }
@@ -34,25 +31,24 @@ pub fn read(paths: &[PathBuf]) -> Result<Source, Stop> {
     for file in &files {
         texts.push((files::name(file), files::read(file)?));
     }
-    let (board, layers, warnings) = match (&texts[..], files.first().map(|file| ending(file))) {
+    let (artwork, layers) = match (&texts[..], files.first().map(|file| ending(file))) {
         ([(file, text)], Some(kind)) if kind == "kicad_pcb" => {
-            let reading = pcb::kicad::read(file, text).map_err(Stop::invalid)?;
-            let layers = vec![(file.clone(), String::from("a board of KiCad"))];
-            (reading.board, layers, reading.warnings)
+            let artwork = pcb::kicad::artwork(file, text).map_err(Stop::invalid)?;
+            (artwork, vec![(file.clone(), String::from("a board of KiCad"))])
         }
         ([(file, text)], Some(kind)) if MODEL.contains(&kind.as_str()) => {
-            let reading = pcb::model::read(file, text).map_err(Stop::invalid)?;
-            (reading.board, vec![(file.clone(), String::from("a model"))], reading.warnings)
+            let artwork = pcb::model::artwork(file, text).map_err(Stop::invalid)?;
+            (artwork, vec![(file.clone(), String::from("a model"))])
         }
         _ => {
             let all = texts.iter().map(|(name, text)| File { name, layer: None, text });
             let all: Vec<File> = all.collect();
-            let reading = pcb::board::read(&name, &all).map_err(Stop::invalid)?;
+            let (artwork, layers) = pcb::board::artwork(&name, &all).map_err(Stop::invalid)?;
             let told = |(name, layer): (String, pcb::board::Layer)| (name, layer.to_string());
-            (reading.board, reading.layers.into_iter().map(told).collect(), reading.warnings)
+            (artwork, layers.into_iter().map(told).collect())
         }
     };
-    Ok(Source { board, layers, warnings, files })
+    Ok(Source { artwork, layers, files })
 }
 
 /// Endings that plots of layers have mostly: with such files beside it, a board of KiCad's is not read.

@@ -1,6 +1,6 @@
 //! What is cut of a board: the operations of each program.
 
-use super::plan::Plan;
+use super::setup::Setup;
 use crate::answer::Stop;
 use crate::args::pcb::{self as args, Part, Pcb};
 use geom::Vec2;
@@ -42,12 +42,12 @@ pub struct Work {
 }
 
 impl Work {
-    /// What is cut for `part` of the board.
+    /// What is cut for `part` of a board that lies so.
     ///
     /// # Errors
     /// Where a tool is missing, or cannot do it.
-    pub fn of(part: Part, plan: &Plan, args: &Pcb, machine: &Machine) -> Result<Work, Stop> {
-        let board = plan.seen(part, args);
+    pub fn of(part: Part, setup: &Setup, args: &Pcb, machine: &Machine) -> Result<Work, Stop> {
+        let board = &setup.board;
         let speed = args.running.speed.unwrap_or(USUAL_SPEED.min(machine.spindle.max));
         let mut work = Work::default();
         let worker = Worker { args, speed };
@@ -59,7 +59,7 @@ impl Work {
                 }
             }
             Part::Drill => {
-                let holes: Vec<Hole> = plan.drilled(part, args).cloned().collect();
+                let holes: Vec<Hole> = setup.drilled().cloned().collect();
                 worker.drill(&mut work, &holes)?;
             }
             Part::Outline => worker.outline(&mut work, board)?,

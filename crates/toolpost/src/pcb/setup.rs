@@ -1,0 +1,60 @@
+//! How a board lies on the machine with one of its sides up.
+
+use super::plan::empty;
+use crate::answer::Stop;
+use crate::args::pcb::{Pcb, Turn};
+use geom::Vec2;
+use pcb::board::{Axis, Face};
+use pcb::{Board, Hole};
+
+/// How much is left between the pins that align a board and the way on which it is cut out, mm.
+const PINS_BESIDE: f64 = 1.0;
+
+/// A board on the machine.
+pub struct Setup {
+    /// The board as it lies there: its front is up, whichever side that is.
+    pub board: Board,
+    /// Holes beside the board by which it is aligned when it is turned over.
+    pins: Vec<Hole>,
+}
+
+impl Setup {
+    /// The board put where `args` say, with this side up.
+    ///
+    /// # Errors
+    /// Where it cannot be put there.
+    pub fn of(face: Face, board: Board, args: &Pcb) -> Result<Setup, Stop> {
+        let placing = &args.placing;
+        let board = match placing.panel {
+            Some([columns, rows]) => {
+                board.panel(columns as usize, rows as usize, Vec2::splat(placing.spacing))?
+            }
+            None => board,
+        };
+        let (low, _) = board.extents().ok_or_else(empty)?;
+        let corner = placing.corner.map_or(Vec2::ZERO, Vec2::from);
+        let front = if placing.as_drawn { board } else { board.moved(corner - low)? };
+        let axis = match placing.turn {
+            Turn::Y => Axis::X(front.middle().x),
+            Turn::X => Axis::Y(front.middle().y),
+        };
+        let pins = match placing.alignment {
+            Some(diameter) => {
+                let beside = args.outline.outline_tool + PINS_BESIDE;
+                front.pins(axis, diameter, beside)?.to_vec()
+            }
+            None => Vec::new(),
+        };
+        let board = match face {
+            Face::Front => front,
+            Face::Back => front.turned_over(axis),
+        };
+        Ok(Setup { board, pins })
+    }
+
+    /// The holes that are drilled: those of the board, and those of the pins. The line about which a board is turned
+    /// over is in the middle between these, so that they stay where they are.
+    pub fn drilled(&self) -> impl Iterator<Item = &Hole> {
+        self.board.holes.iter().chain(&self.pins)
+    }
+}
