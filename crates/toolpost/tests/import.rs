@@ -531,6 +531,7 @@ proptest! {
                 Just("VAR X_POSITION = [X|C| X|1.4]\n"), Just("VAR Y_POSITION = [Y|A|YY=|2.0]\n"),
                 Just("VAR LINE_NUMBER = [N|A||1.0]\n"), Just("VAR SPINDLE_SPEED = [S|A||1.0]\n"),
                 Just("\"[13][10]G1[X] F100\"\n"), Just("\"\\\\ %% (\"\n"), Just("\"; [DATE]\"\n"),
+                Just("VAR Z_POSITION = [Z|C|\"Z\\|1.4]\n"), Just("VAR DWELL_TIME = [P|A|\u{6}P|1.1]\n"),
                 Just("UNITS = \"INCHES\"\n"), Just("LINE_ENDING = \"[10]\"\n"), Just("\"{\"\n"),
             ],
             0..24,

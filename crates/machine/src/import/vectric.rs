@@ -144,6 +144,11 @@ fn variable(
         "A" | "a" => false,
         _ => return findings.error(number, "a variable is written always (A) or changed (C)"),
     };
+    if !text::literal(address) {
+        let message =
+            format!("the address `{}` has characters of no program", text::short(address));
+        return findings.error(number, message);
+    }
     let decimals = format.trim().split_once('.').and_then(|(_, decimals)| decimals.parse().ok());
     let Some(decimals) = decimals.filter(|decimals| *decimals <= 9) else {
         let message = format!("`{}` is no format such as 1.4", text::short(format));
