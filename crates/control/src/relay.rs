@@ -6,7 +6,7 @@ use program::{Diagnostic, Record};
 use std::{mem, panic, thread};
 
 /// Records that are handed over at once.
-const BATCH: usize = 1024;
+const BATCH: usize = 2048;
 
 /// Hands what `run` gives to its sink over to `sink`, in the same order and on this thread, while `run` goes on
 /// in another.

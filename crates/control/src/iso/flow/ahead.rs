@@ -9,7 +9,7 @@ use std::ops::Range;
 use std::{mem, thread};
 
 /// Lines that are handed over at once.
-const BATCH: usize = 512;
+const BATCH: usize = 1024;
 
 /// Plain lines in the order of the text, and their words one behind the other.
 #[derive(Debug, Default)]
