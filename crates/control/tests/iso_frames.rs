@@ -4,7 +4,7 @@
 mod common;
 
 use geom::Vec3;
-use program::{Compensation, Cycle, CycleKind, Diagnostic, Op, Spindle};
+use program::{Compensation, Cycle, CycleKind, Diagnostic, Feed, Op, Spindle};
 use toolpost_control::{Dialect, Settings, Setup, ToolData, WholeNumbers};
 
 fn run_with(setup: Setup, dialect: Dialect, text: &str) -> Result<Vec<Op>, Box<Diagnostic>> {
@@ -447,6 +447,11 @@ fn a_thread_and_a_skip() {
     assert_eq!((thread.pitch, thread.end.point.z), (1.5, -20.0));
     // The pitch is no feed.
     assert!(!got.iter().any(|op| matches!(op, Op::Feed(_))), "{got:?}");
+    // Nor where the same number is the feed of a cut behind it.
+    let cuts = "G90 G0 X0 Y0 Z5.\nS100 M3\nG1 Z0 F100.\nG33 Z-20. F1.5\nG0 Z5.\nG1 X5. F1.5\n";
+    let feeds: Vec<Op> =
+        ops(Dialect::Fanuc, cuts).into_iter().filter(|op| matches!(op, Op::Feed(_))).collect();
+    assert_eq!(feeds, [100.0, 1.5].map(|feed| Op::Feed(Feed::PerMinute(feed))));
     for dialect in [Dialect::Fanuc, Dialect::Haas, Dialect::Mach3] {
         let skip = "G90 G0 X0 Y0 Z5.\nG31 Z-20. F100\n";
         let got = ops(dialect, skip);

@@ -330,6 +330,7 @@ impl<'a> Lift<'a> {
     /// a head has turned, is not known.
     fn pose(&self, pose: &Pose) -> Pose {
         let Orientation::Rotary { degrees, tool_center } = pose.orientation else { return *pose };
+        // As the machine would resolve it, for most programs there are.
         if self.machine.rotary.is_empty() {
             return Pose::new(pose.point, Vec3::Z);
         }

@@ -145,8 +145,10 @@ fn variable(
         _ => return findings.error(number, "a variable is written always (A) or changed (C)"),
     };
     if !text::literal(address) {
-        let message =
-            format!("the address `{}` has characters of no program", text::short(address));
+        let message = format!(
+            "the address `{}` has characters that no program has: write it in letters of ASCII",
+            text::short(address)
+        );
         return findings.error(number, message);
     }
     let decimals = format.trim().split_once('.').and_then(|(_, decimals)| decimals.parse().ok());

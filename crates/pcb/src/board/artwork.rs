@@ -41,11 +41,12 @@ impl Artwork {
     /// outline.
     ///
     /// # Errors
-    /// As [`united`](Artwork::united), as far as that is known yet.
+    /// `layers-apart` where a layer lies beside the board as a whole; `layer` where copper cannot be united that
+    /// reaches beyond the outline.
     pub(crate) fn whole(mut self) -> Result<Artwork, Vec<Diagnostic>> {
         if !(self.is_within(&self.front) && self.is_within(&self.back)) {
             let (front, back) = (self.front.take(), self.back.take());
-            let (front, back) = both(|| united(front), || united(back))?;
+            let (front, back) = both(|| united(Face::Front, front), || united(Face::Back, back))?;
             for (face, (copper, joined)) in [(Face::Front, front), (Face::Back, back)] {
                 self.board.side_mut(face).copper = copper;
                 self.warnings.extend(joined);
@@ -74,8 +75,7 @@ impl Artwork {
     /// The board with all of its copper, and what is odd about it.
     ///
     /// # Errors
-    /// `layer` where copper cannot be united, `layers-apart` where a layer lies beside the board as a whole,
-    /// `copper-outside` where copper and outline cannot be compared.
+    /// `layer` where copper cannot be united, `copper-outside` where copper and outline cannot be compared.
     pub fn united(self) -> Result<(Board, Vec<Diagnostic>), Vec<Diagnostic>> {
         let ([mut board, back], warnings) = self.each_side(|_, board| board)?;
         board.back = back.back;
@@ -94,7 +94,7 @@ impl Artwork {
         let (front, back) = (self.front.take(), self.back.take());
         let side = |face: Face, pattern: Option<Pattern>| {
             let mut board = self.board.clone();
-            let (copper, joined) = united(pattern)?;
+            let (copper, joined) = united(face, pattern)?;
             if copper.is_some() {
                 board.side_mut(face).copper = copper;
             }
@@ -127,10 +127,13 @@ impl Artwork {
     }
 }
 
-/// What a pattern covers, if there is one.
-fn united(pattern: Option<Pattern>) -> Result<(Option<Copper>, Vec<Diagnostic>), Vec<Diagnostic>> {
+/// What the pattern of a side covers, if there is one.
+fn united(
+    face: Face,
+    pattern: Option<Pattern>,
+) -> Result<(Option<Copper>, Vec<Diagnostic>), Vec<Diagnostic>> {
     let Some(pattern) = pattern else { return Ok((None, Vec::new())) };
-    let (copper, found) = pattern.united().map_err(|found| vec![*found])?;
+    let (copper, found) = pattern.united(face).map_err(|found| vec![*found])?;
     Ok((Some(copper), found))
 }
 

@@ -24,7 +24,7 @@ pub(super) fn copper(board: &Board, face: Face) -> Outcome<Option<Diagnostic>> {
         return Ok(None);
     };
     let outside = outside(copper, outline).map_err(|error| {
-        let message = format!("copper and outline cannot be compared: {error}");
+        let message = format!("the {face} copper and the outline cannot be compared: {error}");
         Box::new(Diagnostic::error("copper-outside", message))
     })?;
     let area = outside.area();

@@ -1,5 +1,6 @@
 //! What the objects of a layer cover, and which nets its copper belongs to.
 
+use super::Face;
 use crate::contour::{self, Piece, around};
 use crate::gerber::{Image, Object};
 use crate::report::Outcome;
@@ -63,19 +64,19 @@ impl Pattern {
         }
     }
 
-    /// What it covers.
+    /// What it covers, as copper of this side.
     ///
     /// # Errors
     /// `layer` where it cannot be united.
-    pub(super) fn united(&self) -> Outcome<Named> {
+    pub(super) fn united(&self, face: Face) -> Outcome<Named> {
         let named = match &self.drawn {
             Drawn::Image(image) => Copper::of_image(image),
             Drawn::Shapes(shapes) => Copper::of_shapes(shapes),
         };
         let placed = |found: Diagnostic| found.file(&self.file);
         let (copper, found) = named.map_err(|error| {
-            let message = format!("the copper cannot be taken: {error}");
-            let help = "look at the unit, and for what is very large, far away or very many";
+            let message = format!("the {face} copper cannot be taken: {error}");
+            let help = "look at positions and sizes, for what is far away or very many";
             Box::new(placed(Diagnostic::error("layer", message).help(help)))
         })?;
         Ok((copper, found.into_iter().map(placed).collect()))

@@ -14,8 +14,9 @@ const FAR: f64 = 1e5;
 /// The most boards of a panel.
 const MOST_BOARDS: usize = 10_000;
 
-/// The most lines, arcs and holes of a panel, as many as a boolean of regions takes.
-const MOST_ELEMENTS: usize = 1 << 25;
+/// The most lines, arcs and holes of a panel: half as many as a boolean of regions takes, since the panel of each
+/// side of a board is made by itself, both at the same time.
+const MOST_ELEMENTS: usize = 1 << 24;
 
 /// Copies are at least this far apart, mm: what is nearer may become one.
 const APART: f64 = 1e-3;

@@ -44,8 +44,8 @@ pub struct Reading {
 ///
 /// # Errors
 /// Every error found, at most twenty: `board-file` for what is no such text, with the keys that a wrong
-/// one is near to; `node-unknown`, `node`, `group`, `width`, `angle`, `net-twice`, `no-board`, and what
-/// [`outline::of_lines`](crate::board::outline::of_lines) and [`Artwork::united`] refuse. There is no
+/// one is near to; `node-unknown`, `node`, `group`, `width`, `angle`, `net-twice`, `no-board`, `layers-apart`, and
+/// what [`outline::of_lines`](crate::board::outline::of_lines) and [`Artwork::united`] refuse. There is no
 /// partial board.
 pub fn read(file_name: &str, text: &[u8]) -> Result<Reading, Vec<Diagnostic>> {
     let (board, warnings) = artwork(file_name, text)?.united()?;

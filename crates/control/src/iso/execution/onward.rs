@@ -28,7 +28,7 @@ impl Onward {
             false => 1.0,
         };
         let is_feed_per_minute = matches!(state.feed, Some(Feed::PerMinute(_)));
-        let is_plain = !(state.incremental || state.diameter)
+        let is_simple = !(state.incremental || state.diameter)
             && state.polar.is_none()
             && state.cycle.is_none()
             && state.wire.is_none()
@@ -37,9 +37,9 @@ impl Onward {
             && !state.frames.lost
             && state.compensation.active == state.compensation.asked
             && !state.awaits_tool(block.dictionary.flavor);
-        let goes = is_plain && block.only_moves() && is_feed_per_minute && state.cut && state.told;
-        // FreeCAD's F beside a rapid is none of the moves behind it.
-        let cuts = state.motion != Some(Motion::Rapid);
+        let goes = is_simple && block.only_moves() && is_feed_per_minute && state.cut && state.told;
+        // FreeCAD's F beside a rapid is none of the moves behind it, and FANUC's beside G33 is a pitch.
+        let cuts = matches!(state.motion, Some(Motion::Line | Motion::Arc { .. }));
         let feed = (cuts && block.gives(b'F')).then(|| block.words[index(b'F')]);
         goes.then_some(Onward { unit, feed })
     }
@@ -54,6 +54,7 @@ impl Control {
         let mut given = 0;
         for word in words {
             let letter = bit(word.letter);
+            // What is so large is looked at once more.
             if given & letter != 0 || word.value.abs() >= NOTHING {
                 return None;
             }
