@@ -330,10 +330,6 @@ impl<'a> Lift<'a> {
     /// a head has turned, is not known.
     fn pose(&self, pose: &Pose) -> Pose {
         let Orientation::Rotary { degrees, tool_center } = pose.orientation else { return *pose };
-        // As the machine would resolve it, for most programs there are.
-        if self.machine.rotary.is_empty() {
-            return Pose::new(pose.point, Vec3::Z);
-        }
         let length = self.tool.and_then(|(tool, _)| tool.length);
         let (mut tip, axis) = self.machine.resolve(pose, length.unwrap_or(0.0));
         let mut heads = self.machine.rotary.iter().filter(|axis| axis.on == Mount::Head);
