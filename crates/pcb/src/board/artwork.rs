@@ -6,7 +6,7 @@
 
 use super::copper::{Copper, Pattern};
 use super::{Board, Face, check};
-use geom::region::Region;
+use geom::region::{Index, Region};
 use program::Diagnostic;
 
 /// Copper that is drawn so far within the box around the outline stays within it, mm, whatever uniting adds to
@@ -92,17 +92,20 @@ impl Artwork {
         go_on: impl Fn(Face, Board) -> T + Sync,
     ) -> Result<([T; 2], Vec<Diagnostic>), Vec<Diagnostic>> {
         let (front, back) = (self.front.take(), self.back.take());
+        let index = self.board.outline.as_ref().map(Index::new);
+        let index = index.as_ref();
         let side = |face: Face, pattern: Option<Pattern>| {
             let mut board = self.board.clone();
             let (copper, joined) = united(face, pattern)?;
             if copper.is_some() {
                 board.side_mut(face).copper = copper;
             }
-            let outside = check::copper(&board, face).map_err(|found| self.placed(vec![*found]))?;
+            let outside = check::copper(&board, face, index);
+            let outside = outside.map_err(|found| self.placed(vec![*found]))?;
             Ok((go_on(face, board), joined, outside))
         };
         let (front, back) = both(|| side(Face::Front, front), || side(Face::Back, back))?;
-        let odd = [front.2, back.2, check::holes(&self.board)];
+        let odd = [front.2, back.2, check::holes(&self.board, index)];
         let odd = self.placed(odd.into_iter().flatten().collect());
         let mut warnings = self.warnings;
         warnings.extend([front.1, back.1, odd].into_iter().flatten());

@@ -15,15 +15,21 @@ const SLIVER: f64 = 1e-3;
 /// A box whose sides are parallel to the axes: two opposite corners, mm.
 type Extents = (Vec2, Vec2);
 
-/// Copper of a side that is outside the outline.
+/// Copper of a side that is outside the outline, of which this is the index.
 ///
 /// # Errors
 /// `copper-outside` where the two cannot be compared.
-pub(super) fn copper(board: &Board, face: Face) -> Outcome<Option<Diagnostic>> {
-    let (Some(outline), Some(copper)) = (&board.outline, &board.side(face).copper) else {
+pub(super) fn copper(
+    board: &Board,
+    face: Face,
+    index: Option<&Index>,
+) -> Outcome<Option<Diagnostic>> {
+    let (Some(outline), Some(copper), Some(index)) =
+        (&board.outline, &board.side(face).copper, index)
+    else {
         return Ok(None);
     };
-    let outside = outside(copper, outline).map_err(|error| {
+    let outside = outside(copper, outline, index).map_err(|error| {
         let message = format!("the {face} copper and the outline cannot be compared: {error}");
         Box::new(Diagnostic::error("copper-outside", message))
     })?;
@@ -44,9 +50,9 @@ pub(super) fn copper(board: &Board, face: Face) -> Outcome<Option<Diagnostic>> {
     }))
 }
 
-/// Holes that are outside the outline.
-pub(super) fn holes(board: &Board) -> Option<Diagnostic> {
-    let index = Index::new(board.outline.as_ref()?);
+/// Holes that are outside the outline of this index.
+pub(super) fn holes(board: &Board, index: Option<&Index>) -> Option<Diagnostic> {
+    let index = index?;
     let beyond: Vec<&Hole> =
         board.holes.iter().filter(|hole| index.island_at(middle(hole)).is_none()).collect();
     let first = beyond.first()?;
@@ -105,8 +111,7 @@ pub(super) fn layers(board: &Board) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> 
 }
 
 /// The copper that is not within the outline. Only islands that come near an edge are worked on.
-fn outside(copper: &Copper, outline: &Region) -> Result<Region, RegionError> {
-    let index = Index::new(outline);
+fn outside(copper: &Copper, outline: &Region, index: &Index) -> Result<Region, RegionError> {
     let near = |element: &Element| {
         let (low, high) = element.extents();
         index.within(low, high).next().is_some()
