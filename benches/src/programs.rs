@@ -2,9 +2,9 @@
 //! The floor is to read the numbers of the text and to print them back; the peer is LinuxCNC's `rs274`.
 
 use crate::{Measured, clock, fastest, floor};
-use control::{Dialect, Settings, Setup};
+use control::{Dialect, Event, Settings, Setup};
 use geom::Vec3;
-use program::{Diagnostic, Record};
+use program::Diagnostic;
 use std::fmt::Write;
 use std::fs::File;
 use std::process::{Command, Stdio};
@@ -127,8 +127,8 @@ impl Language {
 fn run(dialect: Dialect, text: &str) -> Result<(), Vec<Diagnostic>> {
     let setup = Setup { start: Some(Vec3::ZERO), ..Setup::default() };
     let settings = Settings { setup, ..Settings::new(dialect, [false; 3]) };
-    let mut keep = |record: Record| {
-        std::hint::black_box(record);
+    let mut keep = |event: Event| {
+        std::hint::black_box(event);
         Ok(())
     };
     control::read(&settings, "program", text.as_bytes(), &mut keep).map_err(|found| vec![*found])

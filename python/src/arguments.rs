@@ -2,7 +2,6 @@
 
 use crate::error::{refused, released};
 use freecad::Job;
-use geom::Vec3;
 use numpy::{AllowTypeChange, PyArrayLike2};
 use program::Diagnostic;
 use pyo3::exceptions::{PyOverflowError, PyTypeError, PyUnicodeEncodeError};
@@ -137,24 +136,6 @@ pub fn positive(py: Python<'_>, what: &str, value: f64) -> PyResult<f64> {
             Err(refused(py, found.help("it must be greater than 0")))
         }
     }
-}
-
-/// A point of finite coordinates, mm.
-pub fn point(py: Python<'_>, what: &str, value: [f64; 3]) -> PyResult<Vec3> {
-    let [x, y, z] = value;
-    match Vec3::from_array(value) {
-        point if point.is_finite() => Ok(point),
-        _ => Err(refused(py, Diagnostic::error("number", format!("{what} is ({x}, {y}, {z})")))),
-    }
-}
-
-/// A direction of any length, as a unit vector.
-pub fn direction(py: Python<'_>, what: &str, value: [f64; 3]) -> PyResult<Vec3> {
-    let [x, y, z] = value;
-    geom::direction(Vec3::from_array(value)).ok_or_else(|| {
-        let message = format!("{what} is ({x}, {y}, {z}), which has no direction");
-        refused(py, Diagnostic::error("zero-vector", message))
-    })
 }
 
 /// What a word stands for, among those that there are.

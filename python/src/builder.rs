@@ -1,22 +1,17 @@
-//! Building a program record by record.
+//! Building a program record by record: Python's words for `program::Builder`, which checks them.
 
-use crate::arguments::{direction, number, point, positive, word};
+use crate::arguments::word;
 use crate::error::refused;
 use crate::program::Program;
 use crate::record::{COOLANTS, FEED_UNITS};
-use geom::{Arc, ArcError, Vec3};
+use geom::Vec3;
 use program::{
-    ArcTo, Compensation, Cycle, CycleKind, Diagnostic, Feed, Op, Pose, Spindle, Tool, Withdrawal,
+    Compensation, Cycle, CycleKind, Diagnostic, Feed, Output, OutputValue, Spindle, Tool,
+    Withdrawal, WorkOffset,
 };
 use pyo3::prelude::*;
+use pyo3::types::PyBool;
 use toolpost::toolpath::Toolpath;
-
-/// How far the ends of an arc may differ in their distance from its centre, mm: as in cutter-location
-/// data.
-const RADIUS_TOLERANCE: f64 = 0.005;
-
-/// The most turns of an arc.
-const MOST_TURNS: u32 = 10_000;
 
 /// Builds a :class:`Program`; every method but :meth:`build` answers the builder, for a chain of calls.
 ///
@@ -27,10 +22,7 @@ const MOST_TURNS: u32 = 10_000;
 /// greater than 0 where it has to be), ``zero-vector``, ``argument``.
 #[pyclass(module = "toolpost")]
 pub struct Builder {
-    program: program::Program,
-    axis: Vec3,
-    /// Where the tool is, where that is known.
-    tip: Option<Vec3>,
+    built: program::Builder,
 }
 
 /// The builder again.
@@ -39,23 +31,15 @@ type Built<'py> = PyResult<PyRefMut<'py, Builder>>;
 impl Builder {
     /// A program of this name with nothing in it.
     pub fn new(name: &str) -> Builder {
-        Builder { program: program::Program::new(name), axis: Vec3::Z, tip: None }
+        Builder { built: program::Builder::new(name) }
     }
+}
 
-    /// Records count as lines.
-    fn push(&mut self, op: Op) {
-        let line = u32::try_from(self.program.records.len() + 1).unwrap_or(u32::MAX);
-        self.program.push(line, op);
-    }
-
-    /// A pose at `at`, with the axis that holds or a new one.
-    fn pose(&mut self, py: Python<'_>, at: [f64; 3], axis: Option<[f64; 3]>) -> PyResult<Pose> {
-        let at = point(py, "the point", at)?;
-        if let Some(axis) = axis {
-            self.axis = direction(py, "the tool axis", axis)?;
-        }
-        self.tip = Some(at);
-        Ok(Pose::new(at, self.axis))
+/// The builder, where it has taken what was said.
+fn taken<'py>(slf: PyRefMut<'py, Builder>, done: Result<(), Box<Diagnostic>>) -> Built<'py> {
+    match done {
+        Ok(()) => Ok(slf),
+        Err(found) => Err(refused(slf.py(), *found)),
     }
 }
 
@@ -68,10 +52,8 @@ impl Builder {
         point: [f64; 3],
         axis: Option<[f64; 3]>,
     ) -> Built<'py> {
-        let py = slf.py();
-        let pose = slf.pose(py, point, axis)?;
-        slf.push(Op::Rapid(pose));
-        Ok(slf)
+        let done = slf.built.rapid(point, axis);
+        taken(slf, done)
     }
 
     /// Cut straight to a point; where an axis is given, the tool turns to it on the way.
@@ -81,10 +63,8 @@ impl Builder {
         point: [f64; 3],
         axis: Option<[f64; 3]>,
     ) -> Built<'py> {
-        let py = slf.py();
-        let pose = slf.pose(py, point, axis)?;
-        slf.push(Op::Line(pose));
-        Ok(slf)
+        let done = slf.built.line(point, axis);
+        taken(slf, done)
     }
 
     /// Cut along an arc or a helix about a centre: counter-clockwise, seen against ``normal``.
@@ -103,25 +83,9 @@ impl Builder {
         normal: [f64; 3],
         turns: u32,
     ) -> Built<'py> {
-        let py = slf.py();
-        let center = point(py, "the centre", center)?;
-        let normal = direction(py, "the normal", normal)?;
-        let normal = if clockwise { -normal } else { normal };
-        let Some(start) = slf.tip else {
-            let found = Diagnostic::error("no-start", "an arc, but from nowhere");
-            return Err(refused(py, found.help("go to its start before")));
-        };
-        if turns > MOST_TURNS {
-            let message = format!("an arc of {turns} full turns more; {MOST_TURNS} are the most");
-            return Err(refused(py, Diagnostic::error("number", message)));
-        }
-        let end = point(py, "the end", end)?;
-        Arc::new(start, end, center, normal, turns, RADIUS_TOLERANCE)
-            .map_err(|error| refused(py, no_arc(&error)))?;
-        slf.tip = Some(end);
-        let end = Pose::new(end, slf.axis);
-        slf.push(Op::Arc(Box::new(ArcTo { end, center, normal, turns })));
-        Ok(slf)
+        let normal = if clockwise { normal.map(|value| -value) } else { normal };
+        let done = slf.built.arc(end, center, normal, turns);
+        taken(slf, done)
     }
 
     /// Make a hole at each of ``points``, which lie on the surface.
@@ -182,10 +146,7 @@ impl Builder {
     ) -> Built<'py> {
         let py = slf.py();
         let no = |rule, message: &str| Err(refused(py, Diagnostic::error(rule, message)));
-        let withdrawal = Withdrawal {
-            aside: point(py, "aside", aside.unwrap_or_default())?,
-            angle: angle.map(|degrees| number(py, "angle", degrees)).transpose()?,
-        };
+        let withdrawal = Withdrawal { aside: Vec3::from_array(aside.unwrap_or_default()), angle };
         let kinds = [
             ("drill", CycleKind::Drill),
             ("deep", CycleKind::Deep),
@@ -197,46 +158,24 @@ impl Builder {
             ("back-bore", CycleKind::BackBore { withdrawal, through: None }),
         ];
         let kind = word(py, "kind", kind, &kinds)?;
-        let retract = number(py, "retract", retract.unwrap_or(clearance))?;
-        let cycle = Cycle {
-            kind,
-            depth: positive(py, "depth", depth)?,
-            clearance: number(py, "clearance", clearance)?,
-            retract,
-            feed: feed.map(|feed| positive(py, "feed", feed)).transpose()?.map(Feed::PerMinute),
-            dwell: if dwell == 0.0 { 0.0 } else { positive(py, "dwell", dwell)? },
-            first_peck: first_peck.map(|peck| positive(py, "first_peck", peck)).transpose()?,
-            peck: peck.map(|peck| positive(py, "peck", peck)).transpose()?,
-        };
-        if clearance <= -depth || retract < clearance {
-            return no(
-                "no-clear-plane",
-                "the tool feeds from `clearance`, above the bottom, and goes back to `retract`, no lower",
-            );
-        }
-        let pecks = matches!(kind, CycleKind::Deep | CycleKind::BreakChip);
-        if pecks != (peck.is_some() || first_peck.is_some()) {
-            return no("peck", "`deep` and `break-chip`, and no other, take a peck");
-        }
         if matches!(kind, CycleKind::Tap { .. }) != pitch.is_some() {
             return no("pitch", "`tap`, and no other, takes a pitch");
         }
         if kind.withdrawal().is_some() != aside.is_some_and(|aside| aside != [0.0; 3]) {
             return no("aside", "`fine-bore` and `back-bore`, and no other, go aside");
         }
-        if let Some(pitch) = pitch {
-            positive(py, "pitch", pitch)?;
-        }
-        let poses: PyResult<Vec<Pose>> =
-            points.into_iter().map(|at| slf.pose(py, at, axis)).collect();
-        let poses = poses?;
-        slf.push(Op::Cycle(Box::new(cycle)));
-        for pose in poses {
-            slf.push(Op::Hole(pose));
-        }
-        slf.push(Op::CycleOff);
-        slf.tip = slf.tip.map(|tip| tip + slf.axis * retract);
-        Ok(slf)
+        let cycle = Cycle {
+            kind,
+            depth,
+            clearance,
+            retract: retract.unwrap_or(clearance),
+            feed: feed.map(Feed::PerMinute),
+            dwell,
+            first_peck,
+            peck,
+        };
+        let done = slf.built.drill(cycle, &points, axis);
+        taken(slf, done)
     }
 
     /// Change to a tool.
@@ -261,49 +200,36 @@ impl Builder {
         length: Option<f64>,
         offset: Option<u32>,
     ) -> Built<'py> {
-        let py = slf.py();
-        if number == 0 {
-            let found = Diagnostic::error("number", "tool 0 is no tool");
-            return Err(refused(py, found.help("tools count from 1")));
-        }
-        let size = |what, mm: Option<f64>| mm.map(|mm| positive(py, what, mm)).transpose();
-        let (diameter, length) = (size("diameter", diameter)?, size("length", length)?);
-        let corner_radius =
-            corner_radius.map(|mm| self::number(py, "corner_radius", mm)).transpose()?;
         let name = name.to_owned();
         let tool = Tool { number, name, diameter, corner_radius, length, offset };
-        slf.push(Op::Tool(Box::new(tool)));
-        Ok(slf)
+        let done = slf.built.tool(tool);
+        taken(slf, done)
     }
 
     /// Feed from here on, in ``mm/min``, ``mm/rev`` (for a turn of the spindle) or ``1/min`` (moves in a
     /// minute).
     #[pyo3(signature = (feed, unit = "mm/min"))]
     fn feed<'py>(mut slf: PyRefMut<'py, Self>, feed: f64, unit: &str) -> Built<'py> {
-        let py = slf.py();
-        let unit = word(py, "unit", unit, &FEED_UNITS)?;
-        let feed = positive(py, "feed", feed)?;
-        slf.push(Op::Feed(unit(feed)));
-        Ok(slf)
+        let unit = word(slf.py(), "unit", unit, &FEED_UNITS)?;
+        let done = slf.built.feed(unit(feed));
+        taken(slf, done)
     }
 
     /// Spindle speed from here on, 1/min; 0 stops it.
     #[pyo3(signature = (speed, *, clockwise = true))]
     fn spindle<'py>(mut slf: PyRefMut<'py, Self>, speed: f64, clockwise: bool) -> Built<'py> {
-        let py = slf.py();
-        let spindle = match (speed == 0.0, clockwise) {
+        let done = slf.built.spindle(match (speed == 0.0, clockwise) {
             (true, _) => Spindle::Off,
-            (false, true) => Spindle::Clockwise(positive(py, "speed", speed)?),
-            (false, false) => Spindle::CounterClockwise(positive(py, "speed", speed)?),
-        };
-        slf.push(Op::Spindle(spindle));
-        Ok(slf)
+            (false, true) => Spindle::Clockwise(speed),
+            (false, false) => Spindle::CounterClockwise(speed),
+        });
+        taken(slf, done)
     }
 
     /// Coolant from here on: ``off``, ``flood``, ``mist``, ``flood-and-mist`` or ``through`` (the tool).
     fn coolant<'py>(mut slf: PyRefMut<'py, Self>, coolant: &str) -> Built<'py> {
         let coolant = word(slf.py(), "coolant", coolant, &COOLANTS)?;
-        slf.push(Op::Coolant(coolant));
+        slf.built.coolant(coolant);
         Ok(slf)
     }
 
@@ -320,76 +246,87 @@ impl Builder {
             ("right", Compensation::Right(register)),
         ];
         let compensation = word(slf.py(), "side", side, &sides)?;
-        slf.push(Op::Compensation(compensation));
+        slf.built.compensation(compensation);
         Ok(slf)
     }
 
     /// Work offset from here on: 54 is the first that the control can set (``G54``), 55 the second.
     fn work_offset<'py>(mut slf: PyRefMut<'py, Self>, number: u32) -> Built<'py> {
-        slf.tip = None;
-        slf.push(Op::WorkOffset(number));
+        let Some(offset) = WorkOffset::numbered(number) else {
+            let found = Diagnostic::error("number", format!("there is no work offset {number}"));
+            return Err(refused(slf.py(), found.help("54 is the first")));
+        };
+        slf.built.work_offset(offset);
         Ok(slf)
     }
 
     /// The tool leaves the part: Z goes home.
     fn home<'py>(mut slf: PyRefMut<'py, Self>) -> Built<'py> {
-        slf.tip = None;
-        slf.push(Op::Home(4));
+        slf.built.home();
         Ok(slf)
     }
 
     /// Wait, s.
     fn dwell<'py>(mut slf: PyRefMut<'py, Self>, seconds: f64) -> Built<'py> {
-        let seconds = positive(slf.py(), "dwell", seconds)?;
-        slf.push(Op::Dwell(seconds));
-        Ok(slf)
+        let done = slf.built.dwell(seconds);
+        taken(slf, done)
     }
 
     /// Stop until the operator goes on; with ``optional`` only where he has asked for it.
     #[pyo3(signature = (*, optional = false))]
     fn stop<'py>(mut slf: PyRefMut<'py, Self>, optional: bool) -> Built<'py> {
-        slf.push(if optional { Op::OptionalStop } else { Op::Stop });
+        slf.built.stop(optional);
+        Ok(slf)
+    }
+
+    /// Set an output of the machine: a digital one ``True`` or ``False``, an analog one to a number. With
+    /// ``with_motion`` it changes where the next motion begins, otherwise at once.
+    #[pyo3(signature = (number, value, *, with_motion = false))]
+    fn output<'py>(
+        mut slf: PyRefMut<'py, Self>,
+        number: u32,
+        value: &Bound<'py, PyAny>,
+        with_motion: bool,
+    ) -> Built<'py> {
+        let value = match value.cast::<PyBool>() {
+            Ok(on) => OutputValue::Digital(on.is_true()),
+            Err(_) => OutputValue::Analog(value.extract()?),
+        };
+        let done = slf.built.output(Output { number, value, with_motion });
+        taken(slf, done)
+    }
+
+    /// Call a function that the builder of the machine has added, by the number of its M function.
+    fn auxiliary(mut slf: PyRefMut<'_, Self>, number: u32) -> Built<'_> {
+        slf.built.auxiliary(number);
         Ok(slf)
     }
 
     /// An operation begins, of this name.
     fn operation<'py>(mut slf: PyRefMut<'py, Self>, name: &str) -> Built<'py> {
-        slf.push(Op::Operation(name.into()));
+        slf.built.operation(name);
         Ok(slf)
     }
 
     /// Words for the reader of the program.
     fn comment<'py>(mut slf: PyRefMut<'py, Self>, text: &str) -> Built<'py> {
-        slf.push(Op::Comment(text.into()));
+        slf.built.comment(text);
         Ok(slf)
     }
 
     /// Words for the operator's screen.
     fn message<'py>(mut slf: PyRefMut<'py, Self>, text: &str) -> Built<'py> {
-        slf.push(Op::Message(text.into()));
+        slf.built.message(text);
         Ok(slf)
     }
 
     /// The program as it is so far, with its end.
     fn build(&self) -> Program {
-        let mut built = Builder { program: self.program.clone(), ..*self };
-        built.push(Op::End);
-        Toolpath::of_program(built.program, "built").into()
+        Toolpath::of_program(self.built.build(), "built").into()
     }
 
     fn __repr__(&self) -> String {
-        format!("<Builder {}: {} records>", self.program.name, self.program.records.len())
+        let program = self.built.program();
+        format!("<Builder {}: {} records>", program.name, program.records.len())
     }
-}
-
-/// As a reader of cutter-location data says it.
-fn no_arc(error: &ArcError) -> Diagnostic {
-    let message = match error {
-        ArcError::NoAxis => String::from("the normal has no direction"),
-        ArcError::NoRadius => String::from("the arc starts on its own axis"),
-        ArcError::OffTheCircle(start, end) => {
-            format!("the arc starts {start:.4} mm from the centre, but ends {end:.4} mm from it")
-        }
-    };
-    Diagnostic::error("off-the-circle", message)
 }

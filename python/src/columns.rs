@@ -57,9 +57,8 @@ impl Filled {
                 Op::Hole(_) => (5, cycle.or(active)),
                 _ => (1, active),
             };
-            let axis = pose.axis().map_or([f64::NAN; 3], |axis| axis.to_array());
-            filled.positions.extend(pose.point.to_array());
-            filled.axes.extend(axis);
+            filled.positions.extend(pose.point().to_array());
+            filled.axes.extend(pose.axis().to_array());
             filled.feeds.push(match feed {
                 Some(Feed::PerMinute(feed)) => feed,
                 _ => f64::NAN,

@@ -1,7 +1,10 @@
 //! One record of a program.
 
 use geom::Vec3;
-use program::{Compensation, Coolant, CycleKind, Feed, Op, Pose, Spindle};
+use program::{
+    Beam, Compensation, Coolant, Course, CycleKind, Feed, Op, OutputValue, PathMode, Pose, Spindle,
+    Until,
+};
 use pyo3::prelude::*;
 use pyo3::types::PyDict;
 
@@ -10,10 +13,11 @@ use pyo3::types::PyDict;
 /// Attributes
 /// ----------
 /// kind : str
-///     What it is: ``rapid``, ``line``, ``arc``, ``thread``, ``probe``, ``hole``, ``cycle``, ``cycle-off``,
-///     ``feed``, ``spindle``, ``surface-speed``, ``coolant``, ``tool``, ``preselect``, ``length-offset``, ``compensation``,
-///     ``frame``, ``work-offset``, ``thread-wire``, ``cut-wire``, ``taper``, ``home``, ``dwell``, ``stop``,
-///     ``optional-stop``, ``operation``, ``end-of-operation``, ``comment``, ``message``, ``end``.
+///     What it is: ``rapid``, ``line``, ``arc``, ``thread``, ``probe``, ``hole``, ``oriented``, ``joints``,
+///     ``machine-move``, ``home``, ``cycle``, ``cycle-off``, ``feed``, ``path-mode``, ``spindle``, ``surface-speed``,
+///     ``coolant``, ``beam``, ``pulses``, ``tool``, ``preselect``, ``compensation``, ``frame``, ``work-offset``,
+///     ``surface``, ``clamp``, ``output``, ``input``, ``auxiliary``, ``thread-wire``, ``cut-wire``, ``taper``,
+///     ``dwell``, ``stop``, ``optional-stop``, ``operation``, ``end-of-operation``, ``comment``, ``message``, ``end``.
 /// line : int
 ///     Line of the source, from 1; of a program from a builder the number of the record.
 /// point : tuple of 3 floats, or None
@@ -52,13 +56,13 @@ impl Record {
     /// A record of a program.
     pub fn new(py: Python<'_>, record: &program::Record) -> PyResult<Record> {
         let words = PyDict::new(py);
-        let kind = kind(&record.op, &words)?;
+        say(&record.op, &words)?;
         let pose = pose(&record.op);
         Ok(Record {
-            kind,
+            kind: record.op.kind().name(),
             line: record.line,
-            point: pose.map(|pose| pose.point.into()),
-            axis: pose.and_then(Pose::axis).map(Vec3::into),
+            point: pose.map(|pose| pose.point().into()),
+            axis: pose.map(|pose| pose.axis().into()),
             words: words.unbind(),
         })
     }
@@ -72,27 +76,21 @@ pub fn pose(op: &Op) -> Option<&Pose> {
     }
 }
 
-/// What a record is; its words go into `words`.
-fn kind(op: &Op, words: &Bound<'_, PyDict>) -> PyResult<&'static str> {
-    Ok(match op {
-        Op::Rapid(_) => "rapid",
-        Op::Line(_) => "line",
+/// Puts what a record says into `words`.
+fn say(op: &Op, words: &Bound<'_, PyDict>) -> PyResult<()> {
+    match op {
         Op::Arc(arc) => {
             words.set_item("center", triple(arc.center))?;
             words.set_item("normal", triple(arc.normal))?;
             words.set_item("turns", arc.turns)?;
-            "arc"
         }
         Op::Thread(thread) => {
             words.set_item("pitch", thread.pitch)?;
-            "thread"
         }
         Op::Probe(probe) => {
             words.set_item("away", probe.away)?;
             words.set_item("must_answer", probe.must_answer)?;
-            "probe"
         }
-        Op::Hole(_) => "hole",
         Op::Cycle(cycle) => {
             words.set_item("cycle", cycle_name(cycle.kind))?;
             words.set_item("depth", cycle.depth)?;
@@ -112,12 +110,9 @@ fn kind(op: &Op, words: &Bound<'_, PyDict>) -> PyResult<&'static str> {
             if let Some(feed) = cycle.feed {
                 say_feed(feed, words)?;
             }
-            "cycle"
         }
-        Op::CycleOff => "cycle-off",
         Op::Feed(feed) => {
             say_feed(*feed, words)?;
-            "feed"
         }
         Op::Spindle(spindle) => {
             let (speed, clockwise) = match *spindle {
@@ -127,16 +122,13 @@ fn kind(op: &Op, words: &Bound<'_, PyDict>) -> PyResult<&'static str> {
             };
             words.set_item("speed", speed)?;
             words.set_item("clockwise", clockwise)?;
-            "spindle"
         }
         Op::SurfaceSpeed(speed) => {
             words.set_item("speed", speed)?;
-            "surface-speed"
         }
         Op::Coolant(coolant) => {
             let name = COOLANTS.iter().find(|(_, known)| known == coolant);
             words.set_item("coolant", name.map(|(name, _)| *name))?;
-            "coolant"
         }
         Op::Tool(tool) => {
             words.set_item("number", tool.number)?;
@@ -145,15 +137,9 @@ fn kind(op: &Op, words: &Bound<'_, PyDict>) -> PyResult<&'static str> {
             words.set_item("corner_radius", tool.corner_radius)?;
             words.set_item("length", tool.length)?;
             words.set_item("offset", tool.offset)?;
-            "tool"
         }
         Op::Preselect(number) => {
             words.set_item("number", number)?;
-            "preselect"
-        }
-        Op::LengthOffset(register) => {
-            words.set_item("register", register)?;
-            "length-offset"
         }
         Op::Compensation(compensation) => {
             let (side, register) = match *compensation {
@@ -163,52 +149,128 @@ fn kind(op: &Op, words: &Bound<'_, PyDict>) -> PyResult<&'static str> {
             };
             words.set_item("side", side)?;
             words.set_item("register", register)?;
-            "compensation"
         }
         Op::Frame(frame) => {
             words.set_item("origin", triple(frame.translation))?;
             let turned = frame.matrix3;
             let axes = [turned.x_axis, turned.y_axis, turned.z_axis];
             words.set_item("axes", <(_, _, _)>::from(axes.map(triple)))?;
-            "frame"
         }
-        Op::WorkOffset(number) => {
-            words.set_item("number", number)?;
-            "work-offset"
+        Op::WorkOffset(offset) => {
+            words.set_item("number", offset.number())?;
         }
-        Op::Surface(_) => "surface",
-        Op::ThreadWire => "thread-wire",
-        Op::CutWire => "cut-wire",
         Op::Taper(degrees) => {
             words.set_item("degrees", degrees)?;
-            "taper"
         }
-        Op::Home(axes) => {
-            let letters = "XYZABC".chars().enumerate().filter(|(bit, _)| axes >> bit & 1 == 1);
-            words.set_item("axes", letters.map(|(_, letter)| letter).collect::<String>())?;
-            "home"
+        Op::Oriented(to) => {
+            words.set_item("side", triple(to.end.side()))?;
+            words.set_item("external", to.external.clone())?;
+            words.set_item(
+                "course",
+                match to.course {
+                    Course::Rapid => "rapid",
+                    Course::Line => "line",
+                    Course::Arc { .. } => "arc",
+                },
+            )?;
+            if let Course::Arc { center, normal, turns } = to.course {
+                words.set_item("center", triple(center))?;
+                words.set_item("normal", triple(normal))?;
+                words.set_item("turns", turns)?;
+            }
+            if let Some(configuration) = to.configuration {
+                words.set_item("backward", configuration.backward)?;
+                words.set_item("elbow_down", configuration.elbow_down)?;
+                words.set_item("flipped", configuration.flipped)?;
+                words.set_item("joint_turns", configuration.turns)?;
+            }
+        }
+        Op::Joints(joints) => {
+            words.set_item("degrees", joints.degrees)?;
+            words.set_item("external", joints.external.clone())?;
+        }
+        Op::MachineMove(to) => {
+            let axes = "XYZABC".chars().zip(to.linear.into_iter().chain(to.rotary));
+            for (letter, position) in axes {
+                words.set_item(letter, position)?;
+            }
+        }
+        Op::Home => words.set_item("axes", "Z")?,
+        Op::PathMode(mode) => {
+            let (mode, within) = match *mode {
+                PathMode::ExactStop => ("exact-stop", None),
+                PathMode::ExactPath => ("exact-path", None),
+                PathMode::Blend(within) => ("blend", Some(within)),
+            };
+            words.set_item("mode", mode)?;
+            words.set_item("within", within)?;
+        }
+        Op::Beam(beam) => {
+            let (power, with_speed) = match *beam {
+                Beam::Off => (0.0, false),
+                Beam::On(power) => (power, false),
+                Beam::WithSpeed(power) => (power, true),
+            };
+            words.set_item("power", power)?;
+            words.set_item("with_speed", with_speed)?;
+        }
+        Op::Pulses(count) => words.set_item("count", count)?,
+        Op::Clamp(clamp) => {
+            words.set_item("axes", clamp.axes.letters())?;
+            words.set_item("closed", clamp.closed)?;
+        }
+        Op::Output(output) => {
+            words.set_item("number", output.number)?;
+            match output.value {
+                OutputValue::Digital(on) => words.set_item("value", on)?,
+                OutputValue::Analog(value) => words.set_item("value", value)?,
+            }
+            words.set_item("with_motion", output.with_motion)?;
+        }
+        Op::Input(input) => {
+            words.set_item("number", input.number)?;
+            words.set_item(
+                "until",
+                match input.until {
+                    Until::Read => "read",
+                    Until::ReadAnalog => "read-analog",
+                    Until::Rise => "rise",
+                    Until::Fall => "fall",
+                    Until::High => "high",
+                    Until::Low => "low",
+                },
+            )?;
+            words.set_item("timeout", input.timeout)?;
+        }
+        Op::Auxiliary(function) => {
+            words.set_item("number", function.number)?;
+            words.set_item("values", function.values)?;
         }
         Op::Dwell(seconds) => {
             words.set_item("seconds", seconds)?;
-            "dwell"
         }
-        Op::Stop => "stop",
-        Op::OptionalStop => "optional-stop",
         Op::Operation(name) => {
             words.set_item("name", &**name)?;
-            "operation"
         }
-        Op::EndOfOperation => "end-of-operation",
         Op::Comment(text) => {
             words.set_item("text", &**text)?;
-            "comment"
         }
         Op::Message(text) => {
             words.set_item("text", &**text)?;
-            "message"
         }
-        Op::End => "end",
-    })
+        Op::Rapid(_)
+        | Op::Line(_)
+        | Op::Hole(_)
+        | Op::CycleOff
+        | Op::Surface(_)
+        | Op::ThreadWire
+        | Op::CutWire
+        | Op::Stop
+        | Op::OptionalStop
+        | Op::EndOfOperation
+        | Op::End => {}
+    }
+    Ok(())
 }
 
 fn triple(v: Vec3) -> (f64, f64, f64) {

@@ -1,6 +1,6 @@
 //! How far a program may run: loops, calls and jumps end, whatever is written.
 
-use program::Op;
+use crate::event::Action;
 
 /// Deepest nesting of calls. FANUC has 4 with macros 5 more, SINUMERIK 16, LinuxCNC 10 (`interp_internal.hh`),
 /// HEIDENHAIN 19: each control states its own and none goes beyond this.
@@ -61,14 +61,14 @@ impl Budget {
 
     /// Something has happened. What does not lead the tool elsewhere is nothing.
     #[inline]
-    pub(crate) fn record(&mut self, op: &Op) {
+    pub(crate) fn record(&mut self, action: &Action) {
         if self.idle > 0 {
-            self.after_a_jump(op);
+            self.after_a_jump(action);
         }
     }
 
-    fn after_a_jump(&mut self, op: &Op) {
-        let place = op.pose().map(|pose| pose.point.to_array().map(f64::to_bits));
+    fn after_a_jump(&mut self, action: &Action) {
+        let place = action.position().map(|pose| pose.point.to_array().map(f64::to_bits));
         if place.is_some() && place != self.place {
             (self.idle, self.place) = (0, place);
         }
@@ -78,12 +78,12 @@ impl Budget {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::event::Position;
     use geom::Vec3;
-    use program::Pose;
 
     #[test]
     fn a_loop_that_goes_nowhere_ends_and_one_that_moves_goes_on() {
-        let to = |x: f64| Op::Rapid(Pose::new(Vec3::new(x, 0.0, f64::NAN), Vec3::Z));
+        let to = |x: f64| Action::Rapid(Position::new(Vec3::new(x, 0.0, f64::NAN), Vec3::Z));
         let mut budget = Budget::default();
         for x in [1.0, 2.0, 1.0] {
             assert!(budget.spend(IDLE as usize).is_ok());
@@ -91,8 +91,8 @@ mod tests {
         }
         // What is only said, a stop, and a way to where the tool is already.
         assert!((0..IDLE).all(|_| budget.jump().is_ok()));
-        for op in [Op::Comment("on the way".into()), Op::Stop, to(1.0)] {
-            budget.record(&op);
+        for action in [Action::Comment("on the way".into()), Action::Stop, to(1.0)] {
+            budget.record(&action);
         }
         assert!(budget.jump().is_err());
     }

@@ -5,14 +5,15 @@
 //! control does not understand is an error, never skipped. A block is read, checked as a whole, and
 //! only then executed, so that a bad block changes nothing.
 //!
-//! Records come out one by one as the program runs. Poses say what the block says: rotary positions
-//! as [`program::Orientation::Rotary`]; vectors and tilted planes resolved into the work frame as
-//! [`program::Orientation::Axis`]. Kinematics are not this crate's business.
+//! [`Event`]s come out one by one as the program runs. Positions say what the block says: those of rotary axes
+//! as [`Orientation::Rotary`]; vectors and tilted planes resolved into the work frame as
+//! [`Orientation::Axis`]. Kinematics are not this crate's business.
 
 mod belt;
 mod budget;
 mod compensation;
 mod decimal;
+mod event;
 mod folders;
 mod iso;
 mod klartext;
@@ -22,8 +23,10 @@ mod sinumerik;
 pub mod tools;
 
 use compensation::Compensator;
+pub use event::{Action, Event, Orientation, Position};
 use geom::Vec3;
-use program::{Diagnostic, Record};
+use iso::Flavor;
+use program::{Diagnostic, WorkOffset};
 use std::path::PathBuf;
 
 /// The languages that are understood.
@@ -80,18 +83,23 @@ impl Dialect {
         Dialect::NAMES.iter().find(|(n, _)| *n == name).map(|(_, dialect)| *dialect)
     }
 
-    /// The work offset that is active before a program names one, as [`program::Op::WorkOffset`] counts
-    /// them: on a SINUMERIK `G500`, which is none.
+    /// The work offset that is active before a program names one: on a SINUMERIK `G500`, which is none.
     /// A FANUC may keep that of the last program, and Klartext takes the operator's preset.
-    pub fn work_offset_at_reset(self) -> Option<u32> {
+    pub fn work_offset_at_reset(self) -> Option<WorkOffset> {
         match self {
-            Dialect::Sinumerik => Some(53),
+            Dialect::Sinumerik => Some(WorkOffset::NONE),
             Dialect::LinuxCnc
             | Dialect::Grbl
             | Dialect::Mach3
             | Dialect::Haas
-            | Dialect::FreeCad => Some(54),
-            _ => None,
+            | Dialect::FreeCad => Some(WorkOffset::FIRST),
+            Dialect::Fanuc
+            | Dialect::Marlin
+            | Dialect::Klartext
+            | Dialect::FanucWire
+            | Dialect::Sodick
+            | Dialect::Agie
+            | Dialect::Points => None,
         }
     }
 }
@@ -134,7 +142,7 @@ pub struct Wire {
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Setup {
     /// The tool table. Cutter radius compensation with a tool of the table is resolved into the path
-    /// of the tool's centre; with any other it stays a state ([`program::Op::Compensation`]).
+    /// of the tool's centre; with any other it stays a state ([`Action::Compensation`]).
     pub tools: Vec<ToolData>,
     /// Folders in which called programs are looked for, in this order. Nothing outside them is opened.
     pub folders: Vec<PathBuf>,
@@ -205,14 +213,14 @@ impl Settings {
     }
 }
 
-/// Where the records of a running program go. An error stops the run.
-pub type Sink<'a> = dyn FnMut(Record) -> Result<(), Box<Diagnostic>> + 'a;
+/// Where the events of a running program go. An error stops the run.
+pub type Sink<'a> = dyn FnMut(Event) -> Result<(), Box<Diagnostic>> + 'a;
 
 /// Length of a program, bytes, from which its control runs in a thread of its own.
 const LONG: usize = 1 << 16;
 
-/// Runs `text` on the virtual control of `settings` and hands each record to `sink`, in order. The
-/// line of a record is the line of the program (from 1); in a program that is called from another
+/// Runs `text` on the virtual control of `settings` and hands each event to `sink`, in order. The
+/// line of an event is the line of the program (from 1); in a program that is called from another
 /// file, the line of the call in `text`.
 ///
 /// # Errors
@@ -224,15 +232,24 @@ pub fn read(
     text: &[u8],
     sink: &mut Sink,
 ) -> Result<(), Box<Diagnostic>> {
-    let run = match settings.dialect {
-        Dialect::Sinumerik => sinumerik::run,
-        Dialect::Klartext => klartext::run,
-        Dialect::Points => points::run,
-        _ => iso::run,
-    };
     let run = |sink: &mut Sink| {
         let mut compensator = Compensator::new(settings, sink);
-        run(settings, text, &mut compensator)?;
+        let to = &mut compensator;
+        match settings.dialect {
+            Dialect::Fanuc => iso::run(Flavor::Fanuc, settings, text, to),
+            Dialect::Haas => iso::run(Flavor::Haas, settings, text, to),
+            Dialect::LinuxCnc => iso::run(Flavor::LinuxCnc, settings, text, to),
+            Dialect::Mach3 => iso::run(Flavor::Mach3, settings, text, to),
+            Dialect::Grbl => iso::run(Flavor::Grbl, settings, text, to),
+            Dialect::Marlin => iso::run(Flavor::Marlin, settings, text, to),
+            Dialect::FanucWire => iso::run(Flavor::FanucWire, settings, text, to),
+            Dialect::Sodick => iso::run(Flavor::Sodick, settings, text, to),
+            Dialect::Agie => iso::run(Flavor::Agie, settings, text, to),
+            Dialect::FreeCad => iso::run(Flavor::FreeCad, settings, text, to),
+            Dialect::Sinumerik => sinumerik::run(settings, text, to),
+            Dialect::Klartext => klartext::run(settings, text, to),
+            Dialect::Points => points::run(settings, text, to),
+        }?;
         compensator.finish()
     };
     let read = if text.len() < LONG { run(sink) } else { relay::relayed(run, sink) };

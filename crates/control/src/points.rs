@@ -5,9 +5,10 @@
 //! Nothing else can be said: `docs/controls/points.md`.
 
 use crate::compensation::Compensator;
+use crate::event::{Action, Event, Position};
 use crate::{Settings, decimal};
 use geom::{Vec3, direction};
-use program::{Diagnostic, Op, Pose, Record};
+use program::Diagnostic;
 
 type Result<T> = std::result::Result<T, Box<Diagnostic>>;
 
@@ -30,16 +31,16 @@ pub(crate) fn run(settings: &Settings, text: &[u8], path: &mut Compensator) -> R
         }
         (width, last) = (count, line.number);
         let pose = line.pose(values, count, settings.wire.height)?;
-        let mut tell = |op| path.take(Record { line: line.number, op });
+        let mut tell = |action| path.take(Event { line: line.number, action });
         if index == 0 {
-            tell(Op::Rapid(pose))?;
-            tell(Op::ThreadWire)?;
+            tell(Action::Rapid(pose))?;
+            tell(Action::ThreadWire)?;
         } else {
-            tell(Op::Line(pose))?;
+            tell(Action::Line(pose))?;
         }
     }
-    path.take(Record { line: last, op: Op::CutWire })?;
-    path.take(Record { line: last, op: Op::End })
+    path.take(Event { line: last, action: Action::CutWire })?;
+    path.take(Event { line: last, action: Action::End })
 }
 
 /// A line of a list.
@@ -83,10 +84,15 @@ impl Line<'_> {
         Err(self.error("nc-syntax", (0, self.bytes.len()), message).into())
     }
 
-    fn pose(&self, [x, y, u, v]: [f64; MOST], count: usize, height: Option<f64>) -> Result<Pose> {
+    fn pose(
+        &self,
+        [x, y, u, v]: [f64; MOST],
+        count: usize,
+        height: Option<f64>,
+    ) -> Result<Position> {
         let lower = Vec3::new(x, y, 0.0);
         if count == 2 {
-            return Ok(Pose::new(lower, Vec3::Z));
+            return Ok(Position::new(lower, Vec3::Z));
         }
         let Some(height) = height else {
             let message = "U and V, and the height of the upper plane is not known";
@@ -97,7 +103,7 @@ impl Line<'_> {
             let message = "U and V lie so far out that the wire has no direction";
             return Err(self.error("nc-number", (0, self.bytes.len()), message).into());
         };
-        Ok(Pose::new(lower, axis))
+        Ok(Position::new(lower, axis))
     }
 
     fn error(

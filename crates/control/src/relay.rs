@@ -1,32 +1,33 @@
-//! A control in a thread of its own: while it runs on, its records are dealt with.
+//! A control in a thread of its own: while it runs on, its events are dealt with.
 
 use crate::Sink;
 use crate::belt::belt;
-use program::{Diagnostic, Record};
+use crate::event::Event;
+use program::Diagnostic;
 use std::{mem, panic, thread};
 
-/// Records that are handed over at once.
+/// Events that are handed over at once.
 const BATCH: usize = 2048;
 
 /// Hands what `run` gives to its sink over to `sink`, in the same order and on this thread, while `run` goes on
 /// in another.
 ///
 /// # Errors
-/// The first of what `sink` and `run` answered, as their records come.
+/// The first of what `sink` and `run` answered, as their events come.
 pub fn relayed(
     run: impl FnOnce(&mut Sink) -> Result<(), Box<Diagnostic>> + Send,
     sink: &mut Sink,
 ) -> Result<(), Box<Diagnostic>> {
-    let (feed, taken) = belt::<Vec<Record>>();
+    let (feed, taken) = belt::<Vec<Event>>();
     thread::scope(|scope| {
         let control = scope.spawn(move || {
             let mut batch = Vec::with_capacity(BATCH);
-            let result = run(&mut |record| {
-                batch.push(record);
+            let result = run(&mut |event| {
+                batch.push(event);
                 if batch.len() < BATCH {
                     return Ok(());
                 }
-                // Where nobody takes it, the sink has refused a record, and its answer is the one that counts.
+                // Where nobody takes it, the sink has refused an event, and its answer is the one that counts.
                 let stopped = || Diagnostic::error("stopped", "");
                 batch = feed.lay(mem::take(&mut batch)).ok_or_else(stopped)?;
                 Ok(())
@@ -50,27 +51,27 @@ pub fn relayed(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use program::Op;
+    use crate::event::Action;
 
-    /// A control that makes so many records, and then stops with an error where it has one.
+    /// A control that makes so many events, and then stops with an error where it has one.
     fn control(
         count: u32,
         end: Option<&'static str>,
     ) -> impl FnOnce(&mut Sink) -> Result<(), Box<Diagnostic>> + Send {
         move |sink| {
-            (1..=count).try_for_each(|line| sink(Record { line, op: Op::End }))?;
+            (1..=count).try_for_each(|line| sink(Event { line, action: Action::End }))?;
             end.map_or(Ok(()), |rule| Err(Diagnostic::error(rule, "").into()))
         }
     }
 
     #[test]
-    fn every_record_arrives_in_its_order_and_before_what_is_refused_behind_it() {
+    fn every_event_arrives_in_its_order_and_before_what_is_refused_behind_it() {
         let batch = BATCH as u32;
         for count in [0, 1, batch - 1, batch, batch + 1, 20 * batch + 7] {
             for end in [None, Some("nc-syntax")] {
                 let mut lines = Vec::new();
-                let answer = relayed(control(count, end), &mut |record| {
-                    lines.push(record.line);
+                let answer = relayed(control(count, end), &mut |event| {
+                    lines.push(event.line);
                     Ok(())
                 });
                 assert!(lines.into_iter().eq(1..=count), "{count}");
@@ -83,9 +84,9 @@ mod tests {
     fn the_sink_stops_a_control_that_would_go_on() {
         for last in [1, BATCH as u32, 50_000] {
             let mut taken = 0;
-            let answer = relayed(control(u32::MAX, Some("nc-syntax")), &mut |record| {
+            let answer = relayed(control(u32::MAX, Some("nc-syntax")), &mut |event| {
                 taken += 1;
-                match record.line == last {
+                match event.line == last {
                     true => Err(Diagnostic::error("program-length", "").into()),
                     false => Ok(()),
                 }

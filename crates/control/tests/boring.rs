@@ -1,8 +1,8 @@
 //! Boring bars that stop in position and go aside from the wall, on every control that has them.
 
 use geom::Vec3;
-use program::{Cycle, CycleKind, Feed, Op, Withdrawal};
-use toolpost_control::{Dialect, Settings, read};
+use program::{Cycle, CycleKind, Feed, Withdrawal};
+use toolpost_control::{Action, Dialect, Settings, read};
 
 /// The holes of a program with their cycles and the heights of their points, on a machine whose setting
 /// says `aside`; or the rule that it breaks.
@@ -15,9 +15,9 @@ fn holes(
     settings.setup.aside = aside;
     let (mut active, mut holes) = (None, Vec::new());
     let run = read(&settings, "p.nc", text.as_bytes(), &mut |record| {
-        match record.op {
-            Op::Cycle(cycle) => active = Some(*cycle),
-            Op::Hole(pose) => holes.extend(active.map(|cycle| (cycle, pose.point.z))),
+        match record.action {
+            Action::Cycle(cycle) => active = Some(*cycle),
+            Action::Hole(pose) => holes.extend(active.map(|cycle| (cycle, pose.point.z))),
             _ => {}
         }
         Ok(())

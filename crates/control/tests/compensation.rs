@@ -2,8 +2,8 @@
 //! from what `docs/controls/compensation.md` says of each. A tool 1 (`MILL`) has a radius of 5 mm.
 
 use geom::Vec3;
-use program::{Compensation, Op};
-use toolpost_control::{Dialect, Settings, ToolData, read};
+use program::Compensation;
+use toolpost_control::{Action, Dialect, Settings, ToolData, read};
 
 /// The moves of a program, one a line: what, the end, of an arc the way it turns and its centre. What
 /// else happens is told by name.
@@ -13,18 +13,18 @@ fn path(dialect: Dialect, program: &str) -> Result<String, (&'static str, u32)> 
     settings.setup.tools = vec![tool(1, 5.0), ToolData { name: String::new(), ..tool(2, -5.0) }];
     let mut told = String::new();
     read(&settings, "p.nc", program.as_bytes(), &mut |record| {
-        told += &match record.op {
-            Op::Rapid(pose) => format!("rapid {}\n", shown(pose.point)),
-            Op::Line(pose) => format!("line {}\n", shown(pose.point)),
-            Op::Arc(arc) => {
+        told += &match record.action {
+            Action::Rapid(pose) => format!("rapid {}\n", shown(pose.point)),
+            Action::Line(pose) => format!("line {}\n", shown(pose.point)),
+            Action::Arc(arc) => {
                 let way = if arc.normal.element_sum() > 0.0 { "ccw" } else { "cw" };
                 let turns = if arc.turns > 0 { format!(" +{}", arc.turns) } else { String::new() };
                 let (end, center) = (shown(arc.end.point), shown(arc.center));
                 format!("{way} {end} about {center}{turns}\n")
             }
-            Op::Dwell(_) => "dwell\n".into(),
-            Op::Coolant(coolant) => format!("{coolant:?}\n"),
-            Op::Compensation(side) => format!("{side:?}\n"),
+            Action::Dwell(_) => "dwell\n".into(),
+            Action::Coolant(coolant) => format!("{coolant:?}\n"),
+            Action::Compensation(side) => format!("{side:?}\n"),
             _ => String::new(),
         };
         Ok(())

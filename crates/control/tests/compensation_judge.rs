@@ -1,10 +1,9 @@
 //! LinuxCNC's own interpreter as the judge of cutter radius compensation: a contour must make the same
 //! path of the centre in both, or be refused by both.
 
-use program::Op;
 use proptest::prelude::*;
 use std::process::Command;
-use toolpost_control::{Dialect, Settings, ToolData, read};
+use toolpost_control::{Action, Dialect, Settings, ToolData, read};
 
 /// A move of the centre: end in mm; of an arc also its centre and its turns begun, negative clockwise.
 #[derive(Clone, Debug)]
@@ -86,10 +85,10 @@ fn ours(program: &str, radius: f64) -> Result<Vec<Move>, String> {
     settings.setup.tools = vec![ToolData { number: 1, name: String::new(), radius, length: 25.4 }];
     let mut moves = Vec::new();
     read(&settings, "program.ngc", program.as_bytes(), &mut |record| {
-        moves.push(match record.op {
-            Op::Rapid(pose) => Move::Rapid(pose.point.to_array()),
-            Op::Line(pose) => Move::Feed(pose.point.to_array()),
-            Op::Arc(arc) => {
+        moves.push(match record.action {
+            Action::Rapid(pose) => Move::Rapid(pose.point.to_array()),
+            Action::Line(pose) => Move::Feed(pose.point.to_array()),
+            Action::Arc(arc) => {
                 let third = arc.normal.abs().max_position();
                 let center = arc.center.to_array();
                 Move::Arc {
@@ -98,9 +97,9 @@ fn ours(program: &str, radius: f64) -> Result<Vec<Move>, String> {
                     turns: (arc.turns as i32 + 1) * arc.normal[third] as i32,
                 }
             }
-            Op::Feed(program::Feed::PerMinute(feed)) => Move::Word(format!("F{feed}")),
-            Op::Dwell(seconds) => Move::Word(format!("P{seconds}")),
-            Op::Compensation(_) => panic!("compensation is left in the path"),
+            Action::Feed(program::Feed::PerMinute(feed)) => Move::Word(format!("F{feed}")),
+            Action::Dwell(seconds) => Move::Word(format!("P{seconds}")),
+            Action::Compensation(_) => panic!("compensation is left in the path"),
             _ => return Ok(()),
         });
         Ok(())

@@ -1,10 +1,9 @@
 //! The centre of the tool stays its radius away from the contour, on every control: random closed
 //! contours of lines and arcs, machined inside and outside, and distances computed by the test.
 
-use program::Op;
 use proptest::prelude::*;
 use std::f64::consts::TAU;
-use toolpost_control::{Dialect, Settings, ToolData, read};
+use toolpost_control::{Action, Dialect, Settings, ToolData, read};
 
 type Point = [f64; 2];
 
@@ -228,10 +227,12 @@ fn centre(dialect: Dialect, contour: &Contour) -> Result<Vec<Side>, &'static str
     let (mut at, mut moves) = ([f64::NAN; 2], Vec::new());
     let program = contour.program(dialect);
     read(&settings, "p.nc", program.as_bytes(), &mut |record| {
-        if let Some(pose) = record.op.pose() {
+        if let Some(pose) = record.action.position() {
             let to = [pose.point.x, pose.point.y];
-            moves.push(match &record.op {
-                Op::Arc(arc) => Side::arc(at, to, [arc.center.x, arc.center.y], arc.normal.z > 0.0),
+            moves.push(match &record.action {
+                Action::Arc(arc) => {
+                    Side::arc(at, to, [arc.center.x, arc.center.y], arc.normal.z > 0.0)
+                }
                 _ => Side { from: at, to, arc: None },
             });
             at = to;

@@ -5,16 +5,15 @@ mod common;
 
 use geom::Vec3;
 use program::{
-    ArcTo, Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, Op, Orientation, Pose,
-    Spindle,
+    ArcTo, Axes, Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, Spindle, WorkOffset,
 };
-use toolpost_control::{Dialect, Settings};
+use toolpost_control::{Action, Dialect, Orientation, Position, Settings};
 
 const FANUC: Dialect = Dialect::Fanuc;
 const LINUXCNC: Dialect = Dialect::LinuxCnc;
 const GRBL: Dialect = Dialect::Grbl;
 
-fn run(dialect: Dialect, rotary: [bool; 3], text: &str) -> Result<Vec<Op>, Box<Diagnostic>> {
+fn run(dialect: Dialect, rotary: [bool; 3], text: &str) -> Result<Vec<Action>, Box<Diagnostic>> {
     let settings = Settings { auxiliary: vec![26], ..Settings::new(dialect, rotary) };
     // Most of these programs are in mm and do not say so.
     let says_unit = ["%", "G20", "G21"].iter().any(|word| text.contains(word));
@@ -23,12 +22,12 @@ fn run(dialect: Dialect, rotary: [bool; 3], text: &str) -> Result<Vec<Op>, Box<D
 }
 
 /// The records of a program on a machine with A and C.
-fn ops(dialect: Dialect, text: &str) -> Vec<Op> {
+fn ops(dialect: Dialect, text: &str) -> Vec<Action> {
     run(dialect, [true, false, true], text).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
 /// The records of a program on a machine with three axes.
-fn ops_3(dialect: Dialect, text: &str) -> Vec<Op> {
+fn ops_3(dialect: Dialect, text: &str) -> Vec<Action> {
     run(dialect, [false; 3], text).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
@@ -45,15 +44,15 @@ fn rule(dialect: Dialect, text: &str) -> &'static str {
 }
 
 /// A pose on a machine with three axes.
-fn at(x: f64, y: f64, z: f64) -> Pose {
+fn at(x: f64, y: f64, z: f64) -> Position {
     let orientation = Orientation::Rotary { degrees: [0.0; 3], tool_center: false };
-    Pose { point: Vec3::new(x, y, z), orientation }
+    Position { point: Vec3::new(x, y, z), orientation }
 }
 
 /// Arcs of a program: end, centre, normal.
 fn arcs(dialect: Dialect, text: &str) -> Vec<(Vec3, Vec3, Vec3)> {
     let arc = |op| match op {
-        Op::Arc(arc) => Some((arc.end.point, arc.center, arc.normal)),
+        Action::Arc(arc) => Some((arc.end.point, arc.center, arc.normal)),
         _ => None,
     };
     ops_3(dialect, text).into_iter().filter_map(arc).collect()
@@ -80,23 +79,23 @@ fn a_fanuc_program_from_start_to_end() {
     let nan = f64::NAN;
     let tool = program::Tool { number: 5, ..Default::default() };
     let expected = [
-        Op::Comment("PART".into()),
-        Op::Home(4),
-        Op::Tool(Box::new(tool)),
-        Op::WorkOffset(54),
-        Op::Spindle(Spindle::Clockwise(3000.0)),
-        Op::Rapid(at(1.0, 2.0, nan)),
-        Op::Coolant(Coolant::Flood),
-        Op::LengthOffset(Some(5)),
-        Op::Rapid(at(1.0, 2.0, 50.0)),
-        Op::Feed(Feed::PerMinute(100.0)),
-        Op::Line(at(1.0, 2.0, -1.0)),
-        Op::Line(at(10.0, 2.0, -1.0)),
-        Op::Rapid(at(10.0, 2.0, 50.0)),
-        Op::Coolant(Coolant::Off),
-        Op::Spindle(Spindle::Off),
-        Op::Home(4),
-        Op::End,
+        Action::Comment("PART".into()),
+        Action::Home(Axes::Z),
+        Action::Tool(Box::new(tool)),
+        Action::WorkOffset(WorkOffset::FIRST),
+        Action::Spindle(Spindle::Clockwise(3000.0)),
+        Action::Rapid(at(1.0, 2.0, nan)),
+        Action::Coolant(Coolant::Flood),
+        Action::LengthOffset(Some(5)),
+        Action::Rapid(at(1.0, 2.0, 50.0)),
+        Action::Feed(Feed::PerMinute(100.0)),
+        Action::Line(at(1.0, 2.0, -1.0)),
+        Action::Line(at(10.0, 2.0, -1.0)),
+        Action::Rapid(at(10.0, 2.0, 50.0)),
+        Action::Coolant(Coolant::Off),
+        Action::Spindle(Spindle::Off),
+        Action::Home(Axes::Z),
+        Action::End,
     ];
     // NaN is not equal to itself: compare as they show.
     assert_eq!(format!("{got:#?}"), format!("{:#?}", expected.to_vec()));
@@ -109,15 +108,15 @@ fn a_fanuc_number_without_a_point_is_refused_unless_it_is_zero() {
     assert_eq!(rule(FANUC, "G0 C90\n"), "nc-decimal-point");
     assert_eq!(rule(FANUC, "G0 Z9. X0 Y0\nG83 Z-1. R1. Q1 F9\n"), "nc-decimal-point");
     assert_eq!(ops_3(FANUC, "G0 X0 Y-0 Z0.\n").len(), 1);
-    assert_eq!(ops_3(LINUXCNC, "G0 X10 Y-10 Z0.\n"), [Op::Rapid(at(10.0, -10.0, 0.0))]);
+    assert_eq!(ops_3(LINUXCNC, "G0 X10 Y-10 Z0.\n"), [Action::Rapid(at(10.0, -10.0, 0.0))]);
 }
 
 #[test]
 fn a_dwell_is_in_seconds_but_for_fanuc_p_in_milliseconds() {
-    assert_eq!(ops(FANUC, "G4 P1500\n"), [Op::Dwell(1.5)]);
-    assert_eq!(ops(FANUC, "G4 X1.5\n"), [Op::Dwell(1.5)]);
-    assert_eq!(ops(LINUXCNC, "G4 P1.5\n"), [Op::Dwell(1.5)]);
-    assert_eq!(ops(GRBL, "G4 P2\n"), [Op::Dwell(2.0)]);
+    assert_eq!(ops(FANUC, "G4 P1500\n"), [Action::Dwell(1.5)]);
+    assert_eq!(ops(FANUC, "G4 X1.5\n"), [Action::Dwell(1.5)]);
+    assert_eq!(ops(LINUXCNC, "G4 P1.5\n"), [Action::Dwell(1.5)]);
+    assert_eq!(ops(GRBL, "G4 P2\n"), [Action::Dwell(2.0)]);
     assert_eq!(rule(FANUC, "G4 P1.5\n"), "nc-number");
     assert_eq!(rule(FANUC, "G4 X2\n"), "nc-decimal-point");
     assert_eq!(rule(FANUC, "G4 U1.\n"), "nc-unknown-word");
@@ -160,9 +159,9 @@ fn a_full_circle_has_a_centre_and_a_helix_a_third_axis() {
             normal: Vec3::NEG_Z,
             turns: 0,
         };
-        assert!(got.contains(&Op::Arc(Box::new(circle))), "{got:?}");
+        assert!(got.contains(&Action::Arc(Box::new(circle))), "{got:?}");
         let helix = ArcTo { end: at(11.0, 2.0, 1.0), normal: Vec3::Z, ..circle };
-        assert!(got.contains(&Op::Arc(Box::new(helix))), "{got:?}");
+        assert!(got.contains(&Action::Arc(Box::new(helix))), "{got:?}");
         assert_eq!(rule(dialect, "G90 G0 X0. Y0. Z0.\nG2 X0. Y0. R5. F9\n"), "nc-arc");
     }
     // GRBL wants an axis word of the plane (its error 26), the others do not.
@@ -205,16 +204,16 @@ fn fanuc_drilling_returns_to_the_initial_level_or_to_r() {
         "G90 G0 X0 Y0 Z50.\nG98 G81 X10. Y5. Z-10. R2. F100\nX20.\nG99 X30.\nF50\nG80\nG0 Z50.\n",
     );
     let expected = [
-        Op::Rapid(at(0.0, 0.0, 50.0)),
-        Op::Feed(Feed::PerMinute(100.0)),
-        Op::Cycle(Box::new(HOLE)),
-        Op::Hole(at(10.0, 5.0, 2.0)),
-        Op::Hole(at(20.0, 5.0, 2.0)),
-        Op::Cycle(Box::new(Cycle { retract: 0.0, ..HOLE })),
-        Op::Hole(at(30.0, 5.0, 2.0)),
-        Op::Feed(Feed::PerMinute(50.0)),
-        Op::CycleOff,
-        Op::Rapid(at(30.0, 5.0, 50.0)),
+        Action::Rapid(at(0.0, 0.0, 50.0)),
+        Action::Feed(Feed::PerMinute(100.0)),
+        Action::Cycle(Box::new(HOLE)),
+        Action::Hole(at(10.0, 5.0, 2.0)),
+        Action::Hole(at(20.0, 5.0, 2.0)),
+        Action::Cycle(Box::new(Cycle { retract: 0.0, ..HOLE })),
+        Action::Hole(at(30.0, 5.0, 2.0)),
+        Action::Feed(Feed::PerMinute(50.0)),
+        Action::CycleOff,
+        Action::Rapid(at(30.0, 5.0, 50.0)),
     ];
     assert_eq!(got, expected);
 }
@@ -234,13 +233,13 @@ fn fanuc_cycle_words_stay_until_g80_and_k_repeats_in_a_row() {
         ..HOLE
     };
     let expected = [
-        Op::Cycle(Box::new(deep)),
-        Op::Hole(at(10.0, 5.0, 2.0)),
-        Op::Cycle(Box::new(Cycle { retract: 0.0, dwell: 0.25, ..HOLE })),
-        Op::Hole(at(20.0, 5.0, 2.0)),
-        Op::Hole(at(25.0, 5.0, 2.0)),
-        Op::Hole(at(30.0, 5.0, 2.0)),
-        Op::CycleOff,
+        Action::Cycle(Box::new(deep)),
+        Action::Hole(at(10.0, 5.0, 2.0)),
+        Action::Cycle(Box::new(Cycle { retract: 0.0, dwell: 0.25, ..HOLE })),
+        Action::Hole(at(20.0, 5.0, 2.0)),
+        Action::Hole(at(25.0, 5.0, 2.0)),
+        Action::Hole(at(30.0, 5.0, 2.0)),
+        Action::CycleOff,
     ];
     assert_eq!(got[2..], expected);
 }
@@ -251,8 +250,8 @@ fn in_g91_r_counts_from_the_initial_level_and_z_from_r() {
         let program =
             format!("G90 G0 X0 Y0 Z50.\nG91 G98 G81 X10. Z-12. R-48. F100 {repeats}3\nG80\n");
         let got = ops_3(dialect, &program);
-        let holes = [10.0, 20.0, 30.0].map(|x| Op::Hole(at(x, 0.0, 2.0)));
-        assert_eq!(got[2], Op::Cycle(Box::new(HOLE)));
+        let holes = [10.0, 20.0, 30.0].map(|x| Action::Hole(at(x, 0.0, 2.0)));
+        assert_eq!(got[2], Action::Cycle(Box::new(HOLE)));
         assert_eq!(got[3..6], holes);
     }
 }
@@ -263,19 +262,19 @@ fn fanuc_rigid_tapping_turns_the_spindle_itself_and_leaves_it_standing() {
         ops_3(FANUC, "G90 G0 X0 Y0 Z50.\nM29 S500\nG84 X10. Y5. Z-10. R2. F625.\nG80\nG0 Z60.\n");
     let tap = Cycle { kind: CycleKind::Tap { pitch: 1.25, left: false }, ..HOLE };
     let expected = [
-        Op::Feed(Feed::PerMinute(625.0)),
-        Op::Spindle(Spindle::Clockwise(500.0)),
-        Op::Cycle(Box::new(tap)),
-        Op::Hole(at(10.0, 5.0, 2.0)),
-        Op::CycleOff,
-        Op::Spindle(Spindle::Off),
-        Op::Rapid(at(10.0, 5.0, 60.0)),
+        Action::Feed(Feed::PerMinute(625.0)),
+        Action::Spindle(Spindle::Clockwise(500.0)),
+        Action::Cycle(Box::new(tap)),
+        Action::Hole(at(10.0, 5.0, 2.0)),
+        Action::CycleOff,
+        Action::Spindle(Spindle::Off),
+        Action::Rapid(at(10.0, 5.0, 60.0)),
     ];
     assert_eq!(got[1..], expected);
     // In G95 the feed is the pitch; the left-hand tap turns the other way.
     let got = ops_3(FANUC, "G90 G0 X0 Y0 Z50.\nS500 M4\nG95 G74 X10. Y5. Z-10. R2. F1.25\nG80\n");
     let left = Cycle { kind: CycleKind::Tap { pitch: 1.25, left: true }, ..HOLE };
-    assert!(got.contains(&Op::Cycle(Box::new(left))), "{got:?}");
+    assert!(got.contains(&Action::Cycle(Box::new(left))), "{got:?}");
     let wrong = "G90 G0 X0 Y0 Z50.\nS500 M4\nG84 X10. Y5. Z-10. R2. F625.\n";
     assert_eq!(rule(FANUC, wrong), "nc-cycle");
 }
@@ -294,7 +293,7 @@ fn every_cycle_has_its_kind() {
         let got = ops_3(FANUC, &format!("G90 G0 X0 Y0 Z50.\n{words} Z-10. R2. F100\n"));
         let peck = words.contains('Q').then_some(3.0);
         let cycle = Cycle { kind, dwell, first_peck: peck, peck, ..HOLE };
-        assert_eq!(got[2], Op::Cycle(Box::new(cycle)), "{words}");
+        assert_eq!(got[2], Action::Cycle(Box::new(cycle)), "{words}");
     }
 }
 
@@ -323,12 +322,12 @@ fn a_cycle_that_lacks_something_is_refused() {
 /// LinuxCNC, "G96, G97 Spindle Control Mode": S is metres or feet a minute, D the most speed.
 #[test]
 fn constant_surface_speed_is_a_state_beside_the_most_speed() {
-    let spindle = |text: &str| -> Vec<Op> {
-        let told = |op: &Op| matches!(op, Op::Spindle(_) | Op::SurfaceSpeed(_));
+    let spindle = |text: &str| -> Vec<Action> {
+        let told = |op: &Action| matches!(op, Action::Spindle(_) | Action::SurfaceSpeed(_));
         ops_3(LINUXCNC, text).into_iter().filter(told).collect()
     };
-    let clockwise = |speed| Op::Spindle(Spindle::Clockwise(speed));
-    let constant = |speed| Op::SurfaceSpeed(Some(speed));
+    let clockwise = |speed| Action::Spindle(Spindle::Clockwise(speed));
+    let constant = |speed| Action::SurfaceSpeed(Some(speed));
     assert_eq!(
         spindle("S500 M3\nG96 D2500 S100\nS70\nG97 S800\nM5\n"),
         [
@@ -336,9 +335,9 @@ fn constant_surface_speed_is_a_state_beside_the_most_speed() {
             constant(100.0),
             clockwise(2500.0),
             constant(70.0),
-            Op::SurfaceSpeed(None),
+            Action::SurfaceSpeed(None),
             clockwise(800.0),
-            Op::Spindle(Spindle::Off)
+            Action::Spindle(Spindle::Off)
         ]
     );
     assert_eq!(spindle("G20\nG96 S100\n"), [constant(30.48)]);
@@ -366,13 +365,13 @@ fn grbl_has_no_cycles_no_compensation_no_length_register_and_no_tool_change() {
 
 #[test]
 fn a_grbl_tool_is_set_up_at_first_and_changed_by_hand_at_m0_later() {
-    let tool = |number| Op::Tool(Box::new(program::Tool { number, ..Default::default() }));
+    let tool = |number| Action::Tool(Box::new(program::Tool { number, ..Default::default() }));
     let start = "G53 G0 Z0\nT3\nG0 X0 Y0 Z5\nG1 Z0 F9\n";
     let got = ops_3(GRBL, &format!("{start}T4\nG0 Z9\nM0\nG1 X1\nM0\n"));
     assert_eq!(got[1], tool(3));
-    assert_eq!((&got[6], &got[8]), (&tool(4), &Op::Stop));
+    assert_eq!((&got[6], &got[8]), (&tool(4), &Action::Stop));
     // The new tool is of another length.
-    assert!(got[7].pose().unwrap().point.z.is_nan());
+    assert!(got[7].position().unwrap().point.z.is_nan());
     assert_eq!(rule(GRBL, &format!("{start}T4\nG1 X1\n")), "nc-tool");
     assert_eq!(rule(GRBL, &format!("S9 M3\n{start}T4\nM0\n")), "nc-tool");
     assert_eq!(rule(GRBL, "G0 X0\nG1 X1 F9\nT4\nX2\n"), "nc-tool");
@@ -387,7 +386,7 @@ fn a_grbl_block_has_79_characters_at_most_blanks_and_comments_apart() {
 
 #[test]
 fn grbl_starts_in_g0_and_the_others_need_a_motion_word() {
-    assert_eq!(ops(GRBL, "X1 Y2 Z3\n"), [Op::Rapid(at(1.0, 2.0, 3.0))]);
+    assert_eq!(ops(GRBL, "X1 Y2 Z3\n"), [Action::Rapid(at(1.0, 2.0, 3.0))]);
     assert_eq!(rule(LINUXCNC, "X1\n"), "nc-no-motion");
     assert_eq!(rule(FANUC, "X1.\n"), "nc-no-motion");
     assert_eq!(rule(GRBL, "G0 X1\nG80\nX2\n"), "nc-no-motion");
@@ -446,10 +445,11 @@ fn a_feed_must_be_given_and_belongs_to_its_mode() {
         assert_eq!(rule(dialect, "G1 X1. F9\nG93 X2.\n"), "nc-feed");
         assert_eq!(rule(dialect, "G93 G1 X1. F9\nX2.\n"), "nc-feed");
         let got = ops(dialect, "G20\nG93 G1 X1. F9\nG94 X2. F9\n");
-        let feeds: Vec<Op> = got.into_iter().filter(|op| matches!(op, Op::Feed(_))).collect();
+        let feeds: Vec<Action> =
+            got.into_iter().filter(|op| matches!(op, Action::Feed(_))).collect();
         assert_eq!(
             feeds,
-            [Op::Feed(Feed::InverseTime(9.0)), Op::Feed(Feed::PerMinute(9.0 * 25.4))]
+            [Action::Feed(Feed::InverseTime(9.0)), Action::Feed(Feed::PerMinute(9.0 * 25.4))]
         );
     }
 }
@@ -459,9 +459,9 @@ fn inches_are_25_4_mm() {
     for dialect in [FANUC, LINUXCNC, GRBL] {
         let got = ops_3(dialect, "G20\nG0 X1. Y-2. Z.5\nG1 X0. F10.\n");
         let expected = [
-            Op::Rapid(at(25.4, -50.8, 12.7)),
-            Op::Feed(Feed::PerMinute(254.0)),
-            Op::Line(at(0.0, -50.8, 12.7)),
+            Action::Rapid(at(25.4, -50.8, 12.7)),
+            Action::Feed(Feed::PerMinute(254.0)),
+            Action::Line(at(0.0, -50.8, 12.7)),
         ];
         assert_eq!(got, expected);
     }
@@ -476,7 +476,7 @@ fn inches_are_25_4_mm() {
 
 #[test]
 fn a_feed_beside_the_units_is_in_those_that_the_control_takes_first() {
-    let feed = |per_minute| [Op::Feed(Feed::PerMinute(per_minute))];
+    let feed = |per_minute| [Action::Feed(Feed::PerMinute(per_minute))];
     for dialect in [FANUC, Dialect::Haas, GRBL] {
         assert_eq!(ops(dialect, "G20 G90 F10.\n"), feed(254.0));
     }
@@ -495,16 +495,16 @@ fn d_and_h_stay_for_the_words_that_use_them() {
     for dialect in [FANUC, Dialect::Haas] {
         let got = ops_3(dialect, "T4 D14 M6\nG0 X0. Y0.\nH4\nG43 Z9.\nG1 G41 X5. F9\n");
         let expected = [
-            Op::LengthOffset(Some(4)),
-            Op::Rapid(at(0.0, 0.0, 9.0)),
-            Op::Feed(Feed::PerMinute(9.0)),
-            Op::Compensation(Compensation::Left(Some(14))),
-            Op::Line(at(5.0, 0.0, 9.0)),
+            Action::LengthOffset(Some(4)),
+            Action::Rapid(at(0.0, 0.0, 9.0)),
+            Action::Feed(Feed::PerMinute(9.0)),
+            Action::Compensation(Compensation::Left(Some(14))),
+            Action::Line(at(5.0, 0.0, 9.0)),
         ];
         assert_eq!(got[got.len() - 5..], expected);
         // While G43 is on, another H is another length, and H0 none.
         let got = ops(dialect, "G43 H4\nH5\nH0\n");
-        assert_eq!(got, [Some(4), Some(5), None].map(Op::LengthOffset));
+        assert_eq!(got, [Some(4), Some(5), None].map(Action::LengthOffset));
         assert_eq!(rule(dialect, "G0 X0. Y0.\nG1 G41 D1 X5. F9\nX6. D2\n"), "nc-compensation");
         assert_eq!(rule(dialect, "G43 Z9.\n"), "nc-length");
     }
@@ -547,15 +547,16 @@ fn compensation_starts_with_a_linear_move() {
         let program =
             format!("G0 X0 Y0 Z0\nG1 F9\n{words}\nZ-1.\nX5.\nG2 X15. Y0 I5.\nG40\nG1 Z5.\nX20.\n");
         let got = ops_3(dialect, &program);
-        let start = got.iter().position(|op| *op == Op::Compensation(Compensation::Left(Some(7))));
-        let end = got.iter().position(|op| *op == Op::Compensation(Compensation::Off));
+        let start =
+            got.iter().position(|op| *op == Action::Compensation(Compensation::Left(Some(7))));
+        let end = got.iter().position(|op| *op == Action::Compensation(Compensation::Off));
         // LinuxCNC switches with any straight move, FANUC with one in the plane.
         let (first, last) = match dialect {
             LINUXCNC => (at(0.0, 0.0, -1.0), at(15.0, 0.0, 5.0)),
             _ => (at(5.0, 0.0, -1.0), at(20.0, 0.0, 5.0)),
         };
-        assert_eq!(got[start.unwrap() + 1], Op::Line(first));
-        assert_eq!(got[end.unwrap() + 1], Op::Line(last));
+        assert_eq!(got[start.unwrap() + 1], Action::Line(first));
+        assert_eq!(got[end.unwrap() + 1], Action::Line(last));
         for wrong in [
             "G1 G41 D1 X5.\nG40 G2 X15. I5.",
             "G1 G41 D1 X5.\nG28 Z9.",
@@ -581,29 +582,35 @@ fn the_way_home_leads_through_the_point_of_the_block() {
         let got = ops_3(dialect, "G90 G0 X1. Y2. Z3.\nG28 Z20.\nG0 Z1.\nG91 G28 X0 Y0\n");
         let nan = f64::NAN;
         let expected = vec![
-            Op::Rapid(at(1.0, 2.0, 3.0)),
-            Op::Rapid(at(1.0, 2.0, 20.0)),
-            Op::Home(4),
-            Op::Rapid(at(1.0, 2.0, 1.0)),
-            Op::Home(3),
+            Action::Rapid(at(1.0, 2.0, 3.0)),
+            Action::Rapid(at(1.0, 2.0, 20.0)),
+            Action::Home(Axes::Z),
+            Action::Rapid(at(1.0, 2.0, 1.0)),
+            Action::Home(Axes::X | Axes::Y),
         ];
         assert_eq!(format!("{got:?}"), format!("{expected:?}"));
         let after = ops_3(dialect, "G90 G0 X1. Y2. Z3.\nG53 G0 Z0\nX5.\n");
-        assert_eq!(format!("{:?}", after[2]), format!("{:?}", Op::Rapid(at(5.0, 2.0, nan))));
+        assert_eq!(format!("{:?}", after[2]), format!("{:?}", Action::Rapid(at(5.0, 2.0, nan))));
         assert_eq!(rule(dialect, "G91 G53 G0 Z0\n"), "nc-machine-position");
     }
     assert_eq!(rule(FANUC, "G28\n"), "nc-home");
-    assert_eq!(ops(GRBL, "G28\n"), [Op::Home(7)]);
-    assert_eq!(ops(LINUXCNC, "G30\n"), [Op::Home(0b10_1111)]);
+    assert_eq!(ops(GRBL, "G28\n"), [Action::Home(Axes::LINEAR)]);
+    assert_eq!(
+        ops(LINUXCNC, "G30\n"),
+        [Action::Home(Axes::X | Axes::Y | Axes::Z | Axes::A | Axes::C)]
+    );
 }
 
 #[test]
 fn the_tool_centre_point_is_kept_from_g43_4_to_g49() {
     let got = ops(FANUC, "G0 X0 Y0 Z0 A0 C0\nG43.4 H3 Z9.\nG1 X1. A30. C-45. F9\nG49\n");
     let center = Orientation::Rotary { degrees: [30.0, 0.0, -45.0], tool_center: true };
-    assert_eq!(got[1], Op::LengthOffset(Some(3)));
-    assert_eq!(got[4], Op::Line(Pose { point: Vec3::new(1.0, 0.0, 9.0), orientation: center }));
-    assert_eq!(got[5], Op::LengthOffset(None));
+    assert_eq!(got[1], Action::LengthOffset(Some(3)));
+    assert_eq!(
+        got[4],
+        Action::Line(Position { point: Vec3::new(1.0, 0.0, 9.0), orientation: center })
+    );
+    assert_eq!(got[5], Action::LengthOffset(None));
     let three = run(FANUC, [false; 3], "G43.4 H1\n").unwrap_err();
     assert_eq!(three.rule, "nc-axis");
     assert_eq!(rule(FANUC, "G0 B5.\n"), "nc-axis");
@@ -614,17 +621,17 @@ fn a_tilted_plane_turns_about_z_then_new_x_then_newest_z() {
     // J90 alone turns Z to -Y and Y to Z; I90 before it turns X to Y.
     let got =
         ops(FANUC, "G68.2 X10. Y20. Z30. I90. J90. K0\nG53.1\nG0 X1. Y2. Z3.\nG69\nG0 X0 Y0 Z0\n");
-    let Op::Rapid(pose) = &got[0] else { panic!("{got:?}") };
+    let Action::Rapid(pose) = &got[0] else { panic!("{got:?}") };
     // X of the plane is Y, its Z is X, so its Y is Z.
     assert!(pose.point.distance(Vec3::new(10.0 + 3.0, 20.0 + 1.0, 30.0 + 2.0)) < 1e-12, "{pose:?}");
     assert!(pose.axis().unwrap().distance(Vec3::X) < 1e-12, "{pose:?}");
-    let Op::Rapid(pose) = &got[1] else { panic!("{got:?}") };
+    let Action::Rapid(pose) = &got[1] else { panic!("{got:?}") };
     let Orientation::Rotary { degrees, tool_center: false } = pose.orientation else { panic!() };
     assert!(degrees[0].is_nan() && degrees[1] == 0.0 && degrees[2].is_nan());
     // 45° about X: a hole along (0, -1, 1).
     let got =
         ops(FANUC, "G68.2 X0 Y0 Z0 I0 J45. K0\nG53.1\nG0 X0 Y0 Z50.\nG81 Z-10. R2. F9\nG80\n");
-    let Op::Hole(pose) = &got[3] else { panic!("{got:?}") };
+    let Action::Hole(pose) = &got[3] else { panic!("{got:?}") };
     let half = 0.5_f64.sqrt();
     assert!(pose.axis().unwrap().distance(Vec3::new(0.0, -half, half)) < 1e-12);
     assert!(pose.point.distance(Vec3::new(0.0, -2.0 * half, 2.0 * half)) < 1e-12);
@@ -655,19 +662,19 @@ fn a_spindle_needs_a_speed_and_coolants_add_up_where_the_manual_says_so() {
         assert_eq!(rule(dialect, "M3\n"), "nc-spindle");
         let got = ops(dialect, "S500 M4\nS600\nM5\nM7\nM9\nM2\n");
         let expected = [
-            Op::Spindle(Spindle::CounterClockwise(500.0)),
-            Op::Spindle(Spindle::CounterClockwise(600.0)),
-            Op::Spindle(Spindle::Off),
-            Op::Coolant(Coolant::Mist),
-            Op::Coolant(Coolant::Off),
-            Op::End,
+            Action::Spindle(Spindle::CounterClockwise(500.0)),
+            Action::Spindle(Spindle::CounterClockwise(600.0)),
+            Action::Spindle(Spindle::Off),
+            Action::Coolant(Coolant::Mist),
+            Action::Coolant(Coolant::Off),
+            Action::End,
         ];
         assert_eq!(got, expected);
     }
     // Whether a FANUC then runs both is the builder's choice; LinuxCNC's and GRBL's manuals say so.
     assert_eq!(rule(FANUC, "M7\nM8\n"), "nc-coolant");
     for dialect in [LINUXCNC, GRBL] {
-        let both = [Op::Coolant(Coolant::Flood), Op::Coolant(Coolant::FloodAndMist)];
+        let both = [Action::Coolant(Coolant::Flood), Action::Coolant(Coolant::FloodAndMist)];
         assert_eq!(ops(dialect, "M8\nM7\n"), both);
     }
     assert_eq!(rule(FANUC, "S1 M3\nG1 X1. F9 M5\n"), "nc-m-beside-cut");
@@ -675,7 +682,7 @@ fn a_spindle_needs_a_speed_and_coolants_add_up_where_the_manual_says_so() {
     let drilled = "G0 X0. Y0. Z9.\nM8\nG98 G81 Z-1. R1. F9\n";
     for end in ["G80 G0 Z20. M9", "G0 Z20. M9", "G80 M9"] {
         let got = ops_3(FANUC, &format!("{drilled}{end}\n"));
-        assert_eq!(got.last(), Some(&Op::Coolant(Coolant::Off)), "{end}");
+        assert_eq!(got.last(), Some(&Action::Coolant(Coolant::Off)), "{end}");
     }
     for end in ["G80 G1 Z20. M9", "X5. M9", "G81 X5. M9"] {
         assert_eq!(rule(FANUC, &format!("{drilled}{end}\n")), "nc-m-beside-cut", "{end}");
@@ -695,8 +702,11 @@ fn nothing_follows_the_end_of_a_program() {
 #[test]
 fn comments_are_told_and_messages_too() {
     let got = ops(LINUXCNC, "(first) G0 (MSG, look) ; last\n");
-    let expected =
-        [Op::Comment("first".into()), Op::Message("look".into()), Op::Comment("last".into())];
+    let expected = [
+        Action::Comment("first".into()),
+        Action::Message("look".into()),
+        Action::Comment("last".into()),
+    ];
     assert_eq!(got, expected);
     assert_eq!(rule(FANUC, "G0 ; no comment\n"), "nc-syntax");
     assert_eq!(rule(FANUC, "(a (b))\n"), "nc-comment");
@@ -707,7 +717,7 @@ fn comments_are_told_and_messages_too() {
 fn blanks_within_a_number_are_refused_though_linuxcnc_would_close_them_up() {
     assert_eq!(rule(LINUXCNC, "G0 X1 0\n"), "nc-syntax");
     assert_eq!(rule(FANUC, "g0 x1.\n"), "nc-syntax");
-    assert_eq!(ops_3(LINUXCNC, "g0 x 1 y2z3\n"), [Op::Rapid(at(1.0, 2.0, 3.0))]);
+    assert_eq!(ops_3(LINUXCNC, "g0 x 1 y2z3\n"), [Action::Rapid(at(1.0, 2.0, 3.0))]);
 }
 
 /// The points of a spline, and how far the lines between them leave it. `at` gives the curve.
@@ -717,7 +727,7 @@ fn along_a_spline(blocks: &str, at: impl Fn(f64) -> [f64; 2]) {
     let mut here = [0.0; 2];
     let mut count = 0;
     for op in ops_3(LINUXCNC, &text) {
-        let Op::Line(pose) = op else { continue };
+        let Action::Line(pose) = op else { continue };
         let to = [pose.point.x, pose.point.y];
         let near = |p: [f64; 2]| {
             let far = |q: &[f64; 2]| (p[0] - q[0]).hypot(p[1] - q[1]);

@@ -3,14 +3,14 @@
 mod common;
 
 use geom::Vec3;
-use program::{Coolant, Cycle, CycleKind, Diagnostic, Op, Spindle};
-use toolpost_control::{Dialect, Settings, read};
+use program::{Axes, Coolant, Cycle, CycleKind, Diagnostic, Spindle};
+use toolpost_control::{Action, Dialect, Settings, read};
 
-fn run(dialect: Dialect, text: &str) -> Result<Vec<Op>, Box<Diagnostic>> {
+fn run(dialect: Dialect, text: &str) -> Result<Vec<Action>, Box<Diagnostic>> {
     common::ops(&Settings::new(dialect, [false; 3]), "p.nc", text)
 }
 
-fn ops(dialect: Dialect, text: &str) -> Vec<Op> {
+fn ops(dialect: Dialect, text: &str) -> Vec<Action> {
     run(dialect, text).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
@@ -22,8 +22,8 @@ fn rule(dialect: Dialect, text: &str) -> &'static str {
     }
 }
 
-fn points(ops: &[Op]) -> Vec<Vec3> {
-    ops.iter().filter_map(|op| Some(op.pose()?.point)).collect()
+fn points(ops: &[Action]) -> Vec<Vec3> {
+    ops.iter().filter_map(|op| Some(op.position()?.point)).collect()
 }
 
 #[track_caller]
@@ -39,7 +39,7 @@ fn haas_patterns_make_a_hole_of_the_cycle_at_each_place() {
         format!("G21 G90 G0 X10. Y5. Z20.\nG98 G81 Z-3. R2. F100. L0\n{pattern}\nG80\n")
     };
     let holes = |pattern: &str| -> Vec<Vec3> {
-        let hole = |op| if let Op::Hole(pose) = op { Some(pose.point) } else { None };
+        let hole = |op| if let Action::Hole(pose) = op { Some(pose.point) } else { None };
         ops(Dialect::Haas, &program(pattern)).into_iter().filter_map(hole).collect()
     };
     // Radius 4, the first at 90°, four of them, counter-clockwise about (10, 5).
@@ -64,15 +64,16 @@ fn a_haas_taps_without_m3_and_counts_seconds_where_there_is_a_point() {
         first_peck: None,
         peck: None,
     };
-    assert!(got.contains(&Op::Cycle(Box::new(tap))), "{got:?}");
-    assert!(got.contains(&Op::Spindle(Spindle::Clockwise(500.0))), "{got:?}");
-    assert_eq!(ops(Dialect::Haas, "G4 P1.5\nG4 P250\n"), [Op::Dwell(1.5), Op::Dwell(0.25)]);
+    assert!(got.contains(&Action::Cycle(Box::new(tap))), "{got:?}");
+    assert!(got.contains(&Action::Spindle(Spindle::Clockwise(500.0))), "{got:?}");
+    assert_eq!(ops(Dialect::Haas, "G4 P1.5\nG4 P250\n"), [Action::Dwell(1.5), Action::Dwell(0.25)]);
 }
 
 #[test]
 fn haas_coolant_through_the_spindle_has_its_own_way_off() {
     let got = ops(Dialect::Haas, "M88\nM89\nM8\nM9\n");
-    let expected = [Coolant::Through, Coolant::Off, Coolant::Flood, Coolant::Off].map(Op::Coolant);
+    let expected =
+        [Coolant::Through, Coolant::Off, Coolant::Flood, Coolant::Off].map(Action::Coolant);
     assert_eq!(got, expected);
     assert_eq!(rule(Dialect::Haas, "M88\nM9\n"), "nc-coolant");
     assert_eq!(rule(Dialect::Haas, "M8\nM88\n"), "nc-coolant");
@@ -94,10 +95,14 @@ fn haas_refuses_with_the_reason() {
 fn mach3_cuts_a_circular_pocket_out_and_back() {
     let got = ops(Dialect::Mach3, "G21 G90 G0 X1 Y2 Z-1\nF100\nG13 I5\nG12 I5\n");
     let moves = &got[2..];
-    let ccw = |op: &Op| matches!(op, Op::Arc(arc) if arc.normal == Vec3::Z);
-    assert!(matches!(moves[0], Op::Line(_)) && ccw(&moves[1]) && matches!(moves[2], Op::Line(_)));
-    assert!(matches!(&moves[4], Op::Arc(arc) if arc.normal == Vec3::NEG_Z));
-    let Op::Arc(arc) = &moves[1] else { panic!() };
+    let ccw = |op: &Action| matches!(op, Action::Arc(arc) if arc.normal == Vec3::Z);
+    assert!(
+        matches!(moves[0], Action::Line(_))
+            && ccw(&moves[1])
+            && matches!(moves[2], Action::Line(_))
+    );
+    assert!(matches!(&moves[4], Action::Arc(arc) if arc.normal == Vec3::NEG_Z));
+    let Action::Arc(arc) = &moves[1] else { panic!() };
     assert_eq!((arc.center, arc.turns), (Vec3::new(1.0, 2.0, -1.0), 0));
     let way = [[6.0, 2.0, -1.0], [6.0, 2.0, -1.0], [1.0, 2.0, -1.0]];
     are(&points(moves), &[way, way].concat());
@@ -109,11 +114,11 @@ fn mach3_takes_its_own_words_and_no_others() {
     let got = ops(Dialect::Mach3, "g70\ng0 x1 y2 z3\n");
     are(&points(&got), &[[25.4, 50.8, 76.2]]);
     let got = ops(Dialect::Mach3, "G21 G90.1 G0 X0 Y0 Z0\nG2 X10 Y0 I5 J0 F9\n");
-    assert!(matches!(&got[2], Op::Arc(arc) if arc.center == Vec3::new(5.0, 0.0, 0.0)));
+    assert!(matches!(&got[2], Action::Arc(arc) if arc.center == Vec3::new(5.0, 0.0, 0.0)));
     for word in ["G33", "G38.2", "G43.4", "G51.1", "G7", "G76", "G96", "M88", "M62"] {
         assert_eq!(rule(Dialect::Mach3, &format!("{word}\n")), "nc-unknown-word", "{word}");
     }
-    let both = [Op::Coolant(Coolant::Mist), Op::Coolant(Coolant::FloodAndMist)];
+    let both = [Action::Coolant(Coolant::Mist), Action::Coolant(Coolant::FloodAndMist)];
     assert_eq!(ops(Dialect::Mach3, "M7\nM8\n"), both);
 }
 
@@ -134,13 +139,13 @@ fn marlin_takes_one_command_a_line_and_needs_it_on_each() {
 fn marlin_dwells_homes_and_ends_in_its_own_way() {
     let got = ops(Dialect::Marlin, "G4 P500\nG4 S2\nG28 X Y\nG28\nM3 S1000\nM5\n");
     let expected = [
-        Op::Dwell(0.5),
-        Op::Dwell(2.0),
-        Op::Home(3),
-        Op::Home(7),
-        Op::Spindle(Spindle::Clockwise(1000.0)),
-        Op::Spindle(Spindle::Off),
-        Op::End,
+        Action::Dwell(0.5),
+        Action::Dwell(2.0),
+        Action::Home(Axes::X | Axes::Y),
+        Action::Home(Axes::LINEAR),
+        Action::Spindle(Spindle::Clockwise(1000.0)),
+        Action::Spindle(Spindle::Off),
+        Action::End,
     ];
     assert_eq!(got, expected);
     for word in ["M2", "M30", "M6", "M106", "G81", "G43", "G41", "G10", "G5", "G93"] {
@@ -152,17 +157,22 @@ fn marlin_dwells_homes_and_ends_in_its_own_way() {
 
 #[test]
 fn marlin_keeps_its_axes_while_m84_only_says_how_long() {
-    assert_eq!(ops(Dialect::Marlin, "M84 S0\nM18 S1800\n"), [Op::End]);
+    assert_eq!(ops(Dialect::Marlin, "M84 S0\nM18 S1800\n"), [Action::End]);
     assert_eq!(rule(Dialect::Marlin, "M84\n"), "nc-unknown-position");
     assert_eq!(rule(Dialect::Marlin, "G21\nG0 X1 S5\n"), "nc-unused-word");
 }
 
 #[test]
 fn marlin_shows_texts() {
-    let message = |text: &str| Op::Message(text.into());
+    let message = |text: &str| Action::Message(text.into());
     assert_eq!(
         ops(Dialect::Marlin, "M0 Attach ZProbe\nM117 2D Profile1 ; shown\nM0\n")[..4],
-        [message("Attach ZProbe"), Op::Stop, Op::Comment("shown".into()), message("2D Profile1")]
+        [
+            message("Attach ZProbe"),
+            Action::Stop,
+            Action::Comment("shown".into()),
+            message("2D Profile1")
+        ]
     );
     // How long it waits, which no record says.
     assert_eq!(rule(Dialect::Marlin, "M0 S5\n"), "nc-unused-word");
@@ -207,7 +217,7 @@ fn grbl_writes_offsets_homes_and_probes() {
         ("G38.5", (true, false)),
     ] {
         let got = ops(Dialect::Grbl, &format!("G21\nG0 X0 Y0 Z0\nF9\n{word} Z-5\n"));
-        let Some(Op::Probe(probe)) = got.last() else { panic!("{got:?}") };
+        let Some(Action::Probe(probe)) = got.last() else { panic!("{got:?}") };
         assert_eq!((probe.away, probe.must_answer), kind, "{word}");
     }
     for words in ["$H", "$J=G91X1", "G43 H1", "G10 L1 P1 Z1", "G92.2", "G52 X1", "M6"] {

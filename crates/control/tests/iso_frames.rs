@@ -4,15 +4,15 @@
 mod common;
 
 use geom::Vec3;
-use program::{Compensation, Cycle, CycleKind, Diagnostic, Feed, Op, Spindle};
-use toolpost_control::{Dialect, Settings, Setup, ToolData, WholeNumbers};
+use program::{Axes, Compensation, Cycle, CycleKind, Diagnostic, Feed, Spindle, WorkOffset};
+use toolpost_control::{Action, Dialect, Settings, Setup, ToolData, WholeNumbers};
 
-fn run_with(setup: Setup, dialect: Dialect, text: &str) -> Result<Vec<Op>, Box<Diagnostic>> {
+fn run_with(setup: Setup, dialect: Dialect, text: &str) -> Result<Vec<Action>, Box<Diagnostic>> {
     let settings = Settings { setup, ..Settings::new(dialect, [false; 3]) };
     common::ops(&settings, "p.nc", text)
 }
 
-fn ops(dialect: Dialect, text: &str) -> Vec<Op> {
+fn ops(dialect: Dialect, text: &str) -> Vec<Action> {
     let text = format!("G21\n{text}");
     run_with(Setup::default(), dialect, &text).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
@@ -27,7 +27,7 @@ fn rule(dialect: Dialect, text: &str) -> &'static str {
 
 /// The points that a program goes to.
 fn points(dialect: Dialect, text: &str) -> Vec<[f64; 3]> {
-    let point = |op: &Op| op.pose().map(|pose| pose.point.to_array());
+    let point = |op: &Action| op.position().map(|pose| pose.point.to_array());
     ops(dialect, text).iter().filter_map(point).collect()
 }
 
@@ -142,7 +142,7 @@ fn the_external_offset_moves_all_work_offsets() {
         "G90 G10 L2 P1 X0 Y0 Z0\nG10 L2 P2 X50. Y0 Z0\nG10 L2 P0 X7. Y7. Z7.\nG54 G0 X60. Y1. Z1.\n\
          G55\nG91 X1.\n",
     );
-    let Some(Op::Rapid(pose)) = got.last() else { panic!("{got:?}") };
+    let Some(Action::Rapid(pose)) = got.last() else { panic!("{got:?}") };
     assert_eq!(pose.point, Vec3::new(11.0, 1.0, 1.0));
     // What stood there before is not known; an increment is all the same.
     let unknown = "G90 G54 G0 X1. Y1. Z1.\nG10 L2 P0 X5.\n";
@@ -167,16 +167,17 @@ fn two_offsets_that_the_program_writes_lie_as_it_says() {
         Dialect::Fanuc,
         "G90 G10 L2 P1 X0 Y0 Z0\nG10 L2 P2 X50. Y0 Z0\nG54 G0 X60. Y1. Z1.\nG55\nG91 X1.\n",
     );
-    let Some(Op::Rapid(pose)) = got.last() else { panic!("{got:?}") };
+    let Some(Action::Rapid(pose)) = got.last() else { panic!("{got:?}") };
     // 60 in G54 is 10 in G55.
     assert_eq!(pose.point, Vec3::new(11.0, 1.0, 1.0));
-    assert!(got.contains(&Op::WorkOffset(55)));
+    assert!(got.contains(&Action::WorkOffset(WorkOffset::numbered(55).unwrap())));
 }
 
 #[test]
 fn the_additional_work_offsets_come_behind_the_first_six() {
     let offsets = |dialect, text: &str| -> Vec<u32> {
-        let number = |op| if let Op::WorkOffset(number) = op { Some(number) } else { None };
+        let number =
+            |op| if let Action::WorkOffset(offset) = op { Some(offset.number()) } else { None };
         ops(dialect, text).into_iter().filter_map(number).collect()
     };
     assert_eq!(offsets(Dialect::Fanuc, "G54.1 P7\nG54\nG54.1 P300\n"), [66, 54, 359]);
@@ -243,7 +244,7 @@ fn a_second_turn_in_g91_adds_on_a_haas_and_depends_on_a_fanuc() {
 #[test]
 fn arcs_turn_and_mirror_with_the_coordinates() {
     let arc = |text: &str| {
-        let arc = |op| if let Op::Arc(arc) = op { Some(arc) } else { None };
+        let arc = |op| if let Action::Arc(arc) = op { Some(arc) } else { None };
         let arc = ops(Dialect::Fanuc, text).into_iter().find_map(arc).unwrap();
         (arc.end.point, arc.center, arc.normal)
     };
@@ -282,9 +283,9 @@ fn a_mirror_is_ended_axis_by_axis() {
 #[test]
 fn a_mirror_swaps_the_sides_of_compensation() {
     let got = ops(Dialect::Fanuc, "G90 G0 X0 Y0 Z0\nG51.1 X0\nG41 D3 G1 X5. F9\n");
-    assert!(got.contains(&Op::Compensation(Compensation::Right(Some(3)))), "{got:?}");
+    assert!(got.contains(&Action::Compensation(Compensation::Right(Some(3)))), "{got:?}");
     let got = ops(Dialect::Fanuc, "G90 G0 X0 Y0 Z0\nG51.1 X0 Y0\nG41 D3 G1 X5. F9\n");
-    assert!(got.contains(&Op::Compensation(Compensation::Left(Some(3)))), "{got:?}");
+    assert!(got.contains(&Action::Compensation(Compensation::Left(Some(3)))), "{got:?}");
 }
 
 #[test]
@@ -368,11 +369,11 @@ fn machine_coordinates_are_known_where_the_offset_is() {
     let text = "G21 G90 G10 L2 P1 X10. Y0 Z-100.\nG54 G0 X1. Y1. Z1.\nG53 X0 Z0\n";
     let got = run_with(setup(), Dialect::Haas, text).unwrap();
     // Machine zero is at -10 and 100 of that offset.
-    let Some(Op::Rapid(pose)) = got.last() else { panic!("{got:?}") };
+    let Some(Action::Rapid(pose)) = got.last() else { panic!("{got:?}") };
     assert_eq!(pose.point, Vec3::new(-10.0, 1.0, 100.0));
     // Otherwise only the machine knows.
     let got = ops(Dialect::Haas, "G90 G54 G0 X1. Y1. Z1.\nG53 X0 Z0\n");
-    assert_eq!(got.last(), Some(&Op::Home(5)));
+    assert_eq!(got.last(), Some(&Action::Home(Axes::X | Axes::Z)));
 }
 
 #[test]
@@ -392,22 +393,22 @@ fn whole_numbers_count_what_the_machine_counts() {
     };
     let run = |numbers, unit| run_with(setup(numbers), Dialect::Fanuc, &program(unit));
     let got = run(WholeNumbers::Increments, "G21").unwrap();
-    assert_eq!(got[0].pose().unwrap().point, Vec3::new(1.0, 2.0, 50.0));
-    assert_eq!(got[2], Op::Cycle(Box::new(cycle(12.0, 3.0))));
+    assert_eq!(got[0].position().unwrap().point, Vec3::new(1.0, 2.0, 50.0));
+    assert_eq!(got[2], Action::Cycle(Box::new(cycle(12.0, 3.0))));
     // 0.0001 inch: 1000 are 2.54 mm.
     let got = run(WholeNumbers::Increments, "G20").unwrap();
-    assert!(got[0].pose().unwrap().point.distance(Vec3::new(2.54, 50.8, 127.0)) < 1e-9);
+    assert!(got[0].position().unwrap().point.distance(Vec3::new(2.54, 50.8, 127.0)) < 1e-9);
     let got = run(WholeNumbers::Units, "G21").unwrap();
-    assert_eq!(got[0].pose().unwrap().point, Vec3::new(1000.0, 2.0, 50000.0));
+    assert_eq!(got[0].position().unwrap().point, Vec3::new(1000.0, 2.0, 50000.0));
     assert_eq!(run(WholeNumbers::Unknown, "G21").unwrap_err().rule, "nc-decimal-point");
     let dwell = |numbers, text: &str| run_with(setup(numbers), Dialect::Fanuc, text).unwrap();
-    assert_eq!(dwell(WholeNumbers::Increments, "G4 X1500\n"), [Op::Dwell(1.5)]);
-    assert_eq!(dwell(WholeNumbers::Units, "G4 X2\n"), [Op::Dwell(2.0)]);
+    assert_eq!(dwell(WholeNumbers::Increments, "G4 X1500\n"), [Action::Dwell(1.5)]);
+    assert_eq!(dwell(WholeNumbers::Units, "G4 X2\n"), [Action::Dwell(2.0)]);
     // P counts milliseconds in any case.
-    assert_eq!(dwell(WholeNumbers::Units, "G4 P1500\n"), [Op::Dwell(1.5)]);
+    assert_eq!(dwell(WholeNumbers::Units, "G4 P1500\n"), [Action::Dwell(1.5)]);
     // The other dialects have one meaning.
     let got = run_with(Setup::default(), Dialect::Mach3, "G21 G0 X5 Y6 Z7\n").unwrap();
-    assert_eq!(got[0].pose().unwrap().point, Vec3::new(5.0, 6.0, 7.0));
+    assert_eq!(got[0].position().unwrap().point, Vec3::new(5.0, 6.0, 7.0));
 }
 
 #[test]
@@ -417,9 +418,9 @@ fn a_length_that_the_table_or_the_program_gives_is_known() {
     let run = |text: &str| run_with(setup.clone(), Dialect::Fanuc, &format!("G21 {text}"));
     // With 80 mm of tool the tip is 80 mm lower than the spindle.
     let got = run("G90 G0 X0 Y0 Z100.\nG43 H4\nG91 Z1.\n").unwrap();
-    assert_eq!(got.last().unwrap().pose().unwrap().point.z, 21.0);
+    assert_eq!(got.last().unwrap().position().unwrap().point.z, 21.0);
     let got = run("G90 G10 L10 P5 R30.\nG0 X0 Y0 Z100.\nG43 H5\nG91 Z1.\n").unwrap();
-    assert_eq!(got.last().unwrap().pose().unwrap().point.z, 71.0);
+    assert_eq!(got.last().unwrap().position().unwrap().point.z, 71.0);
     assert_eq!(run("G90 G43 H5\nG91 G0 Z1.\n").unwrap_err().rule, "nc-unknown-position");
     assert_eq!(run("G43 H4\nG10 L10 P4 R30.\n").unwrap_err().rule, "nc-data");
     // A radius that the program writes would have to reach the compensated path.
@@ -431,32 +432,32 @@ fn a_length_that_the_table_or_the_program_gives_is_known() {
 fn boring_by_hand_is_its_moves() {
     let got =
         ops(Dialect::Fanuc, "G90 G0 X0 Y0 Z50.\nS300 M3\nG98 G88 X10. Z-10. R2. P500 F50\nG80\n");
-    let heights: Vec<f64> = got.iter().filter_map(|op| Some(op.pose()?.point.z)).collect();
+    let heights: Vec<f64> = got.iter().filter_map(|op| Some(op.position()?.point.z)).collect();
     assert_eq!(heights, [50.0, 50.0, 2.0, -10.0, 50.0]);
-    let Some(stop) = got.iter().position(|op| *op == Op::Stop) else { panic!("{got:?}") };
-    assert_eq!(got[stop - 2..stop], [Op::Dwell(0.5), Op::Spindle(Spindle::Off)]);
-    assert_eq!(got.last(), Some(&Op::Spindle(Spindle::Clockwise(300.0))));
+    let Some(stop) = got.iter().position(|op| *op == Action::Stop) else { panic!("{got:?}") };
+    assert_eq!(got[stop - 2..stop], [Action::Dwell(0.5), Action::Spindle(Spindle::Off)]);
+    assert_eq!(got.last(), Some(&Action::Spindle(Spindle::Clockwise(300.0))));
 }
 
 #[test]
 fn a_thread_and_a_skip() {
     let got = ops(Dialect::Fanuc, "G90 G0 X0 Y0 Z5.\nS100 M3\nG33 Z-20. F1.5\nG0 Z5.\n");
-    let Some(Op::Thread(thread)) = got.iter().find(|op| matches!(op, Op::Thread(_))) else {
+    let Some(Action::Thread(thread)) = got.iter().find(|op| matches!(op, Action::Thread(_))) else {
         panic!("{got:?}")
     };
     assert_eq!((thread.pitch, thread.end.point.z), (1.5, -20.0));
     // The pitch is no feed.
-    assert!(!got.iter().any(|op| matches!(op, Op::Feed(_))), "{got:?}");
+    assert!(!got.iter().any(|op| matches!(op, Action::Feed(_))), "{got:?}");
     // Nor where the same number is the feed of a cut behind it.
     let cuts = "G90 G0 X0 Y0 Z5.\nS100 M3\nG1 Z0 F100.\nG33 Z-20. F1.5\nG0 Z5.\nG1 X5. F1.5\n";
-    let feeds: Vec<Op> =
-        ops(Dialect::Fanuc, cuts).into_iter().filter(|op| matches!(op, Op::Feed(_))).collect();
-    assert_eq!(feeds, [100.0, 1.5].map(|feed| Op::Feed(Feed::PerMinute(feed))));
+    let feeds: Vec<Action> =
+        ops(Dialect::Fanuc, cuts).into_iter().filter(|op| matches!(op, Action::Feed(_))).collect();
+    assert_eq!(feeds, [100.0, 1.5].map(|feed| Action::Feed(Feed::PerMinute(feed))));
     for dialect in [Dialect::Fanuc, Dialect::Haas, Dialect::Mach3] {
         let skip = "G90 G0 X0 Y0 Z5.\nG31 Z-20. F100\n";
         let got = ops(dialect, skip);
         assert!(
-            matches!(got.last(), Some(Op::Probe(probe)) if probe.end.point.z == -20.0),
+            matches!(got.last(), Some(Action::Probe(probe)) if probe.end.point.z == -20.0),
             "{got:?}"
         );
         assert_eq!(rule(dialect, &format!("{skip}G91 G0 Z1.\n")), "nc-unknown-position");

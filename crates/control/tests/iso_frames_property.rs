@@ -4,9 +4,8 @@
 mod common;
 
 use geom::Vec3;
-use program::Op;
 use proptest::prelude::*;
-use toolpost_control::{Dialect, Settings, Setup};
+use toolpost_control::{Action, Dialect, Settings, Setup};
 
 /// A block of a random program; lengths are thousandths of a millimetre.
 #[derive(Clone, Debug)]
@@ -240,7 +239,7 @@ fn check(dialect: Dialect, blocks: &[Block]) {
     let settings = Settings { setup, ..Settings::new(dialect, [false; 3]) };
     let text = &writer.text;
     let ops = common::ops(&settings, "t.nc", text).unwrap_or_else(|e| panic!("{e}\n{text}"));
-    let rapid = |op: &Op| if let Op::Rapid(pose) = op { Some(pose.point) } else { None };
+    let rapid = |op: &Action| if let Action::Rapid(pose) = op { Some(pose.point) } else { None };
     let points: Vec<Vec3> = ops.iter().filter_map(rapid).collect();
     assert_eq!(points.len(), writer.expected.len(), "{text}");
     for (n, (got, expected)) in points.iter().zip(&writer.expected).enumerate() {

@@ -4,14 +4,13 @@
 mod common;
 
 use geom::Vec3;
-use program::{Op, Record};
 use proptest::prelude::*;
-use toolpost_control::{Dialect, Settings, Setup, WholeNumbers, read};
+use toolpost_control::{Action, Dialect, Event, Settings, Setup, WholeNumbers, read};
 
 const FLAVORS: [Dialect; 5] =
     [Dialect::Fanuc, Dialect::Haas, Dialect::LinuxCnc, Dialect::Mach3, Dialect::Grbl];
 
-fn run(dialect: Dialect, text: &str) -> Result<Vec<Record>, Box<program::Diagnostic>> {
+fn run(dialect: Dialect, text: &str) -> Result<Vec<Event>, Box<program::Diagnostic>> {
     common::records(&Settings::new(dialect, [true, false, true]), "t.nc", text)
 }
 
@@ -152,15 +151,15 @@ fn point(thousandths: [i64; 3], unit: f64) -> Vec3 {
 
 fn check(dialect: Dialect, text: &str, expected: &[Expected], unit: f64) {
     let records = run(dialect, text).unwrap_or_else(|error| panic!("{error}\n{text}"));
-    let moves: Vec<&Op> =
-        records.iter().map(|record| &record.op).filter(|op| op.pose().is_some()).collect();
+    let moves: Vec<&Action> =
+        records.iter().map(|record| &record.action).filter(|op| op.position().is_some()).collect();
     assert_eq!(moves.len(), expected.len());
     for (op, expected) in moves.into_iter().zip(expected) {
         let near = |a: Vec3, b: [i64; 3]| a.distance(point(b, unit)) < 1e-6;
         let agrees = match (op, expected) {
-            (Op::Rapid(pose), Expected::Rapid(end)) => near(pose.point, *end),
-            (Op::Line(pose), Expected::Line(end)) => near(pose.point, *end),
-            (Op::Arc(arc), Expected::Arc { end, center, normal }) => {
+            (Action::Rapid(pose), Expected::Rapid(end)) => near(pose.point, *end),
+            (Action::Line(pose), Expected::Line(end)) => near(pose.point, *end),
+            (Action::Arc(arc), Expected::Arc { end, center, normal }) => {
                 // The centre may be any point of the axis.
                 let along = Vec3::from_array(*normal);
                 near(arc.end.point, *end)
@@ -297,14 +296,14 @@ fn blanks_within_words(text: &str) -> String {
 }
 
 /// What holds for every record.
-fn sound(record: Record) -> Result<(), Box<program::Diagnostic>> {
-    match &record.op {
-        Op::Arc(arc) => {
+fn sound(record: Event) -> Result<(), Box<program::Diagnostic>> {
+    match &record.action {
+        Action::Arc(arc) => {
             assert!(arc.end.point.is_finite() && arc.center.is_finite(), "{arc:?}");
             assert!((arc.normal.length() - 1.0).abs() < 1e-9, "{arc:?}");
         }
-        Op::Hole(pose) => assert!(pose.point.is_finite(), "{pose:?}"),
-        Op::Cycle(cycle) => assert!(cycle.depth > 0.0 && cycle.retract >= 0.0, "{cycle:?}"),
+        Action::Hole(pose) => assert!(pose.point.is_finite(), "{pose:?}"),
+        Action::Cycle(cycle) => assert!(cycle.depth > 0.0 && cycle.retract >= 0.0, "{cycle:?}"),
         _ => {}
     }
     Ok(())

@@ -5,9 +5,9 @@ mod common;
 use common::klartext::*;
 use geom::Vec3;
 use program::{
-    Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, Op, Orientation, Pose, Spindle,
+    Axes, Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, Spindle, WorkOffset,
 };
-use toolpost_control::Setup;
+use toolpost_control::{Action, Orientation, Position, Setup};
 
 #[test]
 fn an_ordinary_program_runs_block_by_block() {
@@ -22,25 +22,25 @@ L X+110 F500
 L IY+3 M9
 M30");
     let mut expected = vec![
-        Op::Comment("FACE MILL".into()),
-        Op::Tool(Box::new(program::Tool { number: 5, ..program::Tool::default() })),
-        Op::Spindle(Spindle::Clockwise(3000.0)),
-        Op::Coolant(Coolant::Flood),
+        Action::Comment("FACE MILL".into()),
+        Action::Tool(Box::new(program::Tool { number: 5, ..program::Tool::default() })),
+        Action::Spindle(Spindle::Clockwise(3000.0)),
+        Action::Coolant(Coolant::Flood),
     ];
     // Nothing is known of X and Y before the block that gives them.
-    let Op::Rapid(first) = &ops[4] else { panic!("{:?}", ops[4]) };
+    let Action::Rapid(first) = &ops[4] else { panic!("{:?}", ops[4]) };
     assert!(first.point.x.is_nan() && first.point.y.is_nan() && first.point.z == 50.0);
     expected.extend([
         ops[4].clone(),
-        Op::Rapid(upright(-10.0, 5.5, 50.0)),
-        Op::Feed(Feed::PerMinute(200.0)),
-        Op::Line(upright(-10.0, 5.5, -1.0)),
-        Op::Feed(Feed::PerMinute(500.0)),
-        Op::Line(upright(110.0, 5.5, -1.0)),
-        Op::Line(upright(110.0, 8.5, -1.0)),
-        Op::Coolant(Coolant::Off),
-        Op::Spindle(Spindle::Off),
-        Op::End,
+        Action::Rapid(upright(-10.0, 5.5, 50.0)),
+        Action::Feed(Feed::PerMinute(200.0)),
+        Action::Line(upright(-10.0, 5.5, -1.0)),
+        Action::Feed(Feed::PerMinute(500.0)),
+        Action::Line(upright(110.0, 5.5, -1.0)),
+        Action::Line(upright(110.0, 8.5, -1.0)),
+        Action::Coolant(Coolant::Off),
+        Action::Spindle(Spindle::Off),
+        Action::End,
     ]);
     assert_eq!(ops[..4], expected[..4]);
     assert_eq!(ops[5..], expected[5..]);
@@ -57,15 +57,15 @@ fn a_record_names_its_line_and_lines_may_end_in_any_way() {
 #[test]
 fn fmax_holds_for_one_block_and_f_for_all_that_follow() {
     let ops = run(&format!("{START}L X+1\nL X+2 FMAX\nL X+3"));
-    let kinds: Vec<bool> = ops[4..].iter().map(|op| matches!(op, Op::Rapid(_))).collect();
+    let kinds: Vec<bool> = ops[4..].iter().map(|op| matches!(op, Action::Rapid(_))).collect();
     assert_eq!(kinds[..3], [false, true, false]);
 }
 
 #[test]
 fn the_feed_of_an_inch_program_is_tenths_of_an_inch() {
     let records = run_on([false; 3], "INCH", "TOOL CALL 1 Z S10\nL X+1 Y+2 Z-0.5 F100").unwrap();
-    let ops: Vec<Op> = records.into_iter().map(|record| record.op).collect();
-    assert!(ops.contains(&Op::Feed(Feed::PerMinute(254.0))));
+    let ops: Vec<Action> = records.into_iter().map(|record| record.action).collect();
+    assert!(ops.contains(&Action::Feed(Feed::PerMinute(254.0))));
     let [x, y, z] = points(&ops)[0];
     assert!((x - 25.4).abs() < 1e-12 && (y - 50.8).abs() < 1e-12 && (z + 12.7).abs() < 1e-12);
 }
@@ -79,7 +79,7 @@ fn the_full_circle_of_the_manual_turns_counter_clockwise_about_the_pole() {
     assert_eq!(arc.center, Vec3::new(25.0, 25.0, -5.0));
     assert_eq!((arc.normal, arc.turns), (Vec3::Z, 0));
     assert_eq!(arc.end.point, Vec3::new(45.0, 25.0, -5.0));
-    assert!(ops.contains(&Op::Compensation(Compensation::Right(None))));
+    assert!(ops.contains(&Action::Compensation(Compensation::Right(None))));
 }
 
 #[test]
@@ -168,14 +168,14 @@ fn drilling_starts_at_the_surface_and_ends_at_the_second_clearance() {
     assert_eq!(
         ops[4..11],
         [
-            Op::Rapid(upright(30.0, 20.0, 50.0)),
-            Op::Cycle(Box::new(cycle)),
-            Op::Hole(upright(30.0, 20.0, 20.0)),
+            Action::Rapid(upright(30.0, 20.0, 50.0)),
+            Action::Cycle(Box::new(cycle)),
+            Action::Hole(upright(30.0, 20.0, 20.0)),
             // From the second clearance above the surface.
-            Op::Rapid(upright(80.0, 50.0, 120.0)),
-            Op::Hole(upright(80.0, 50.0, 20.0)),
-            Op::Rapid(upright(80.0, 50.0, 200.0)),
-            Op::Spindle(Spindle::Off),
+            Action::Rapid(upright(80.0, 50.0, 120.0)),
+            Action::Hole(upright(80.0, 50.0, 20.0)),
+            Action::Rapid(upright(80.0, 50.0, 200.0)),
+            Action::Spindle(Spindle::Off),
         ]
     );
 }
@@ -185,7 +185,7 @@ fn define(number: u32, parameters: &str) -> Result<Cycle, Box<Diagnostic>> {
         parameters.split_whitespace().map(|parameter| format!("  {parameter}")).collect();
     let blocks = format!("{START}CYCL DEF {number} NAME ~\n{}\nCYCL CALL", lines.join(" ~\n"));
     let records = run_on([false; 3], "MM", &blocks)?;
-    let ops: Vec<Op> = records.into_iter().map(|record| record.op).collect();
+    let ops: Vec<Action> = records.into_iter().map(|record| record.action).collect();
     Ok(cycles(&ops)[0])
 }
 
@@ -312,7 +312,7 @@ fn a_modal_call_drills_at_every_position_until_m99() {
     let holes: Vec<f64> = ops
         .iter()
         .filter_map(|op| match op {
-            Op::Hole(pose) => Some(pose.point.x),
+            Action::Hole(pose) => Some(pose.point.x),
             _ => None,
         })
         .collect();
@@ -333,23 +333,23 @@ fn a_dwell_is_in_seconds_and_a_tolerance_moves_nothing() {
         "{START}CYCL DEF 9.0 DWELL TIME\nCYCL DEF 9.1 DWELL 1.5
 CYCL DEF 32.0 TOLERANCE\nCYCL DEF 32.1 T0.05\nCYCL DEF 32.2 HSC-MODE:1 TA5"
     ));
-    assert_eq!(ops[4], Op::Dwell(1.5));
+    assert_eq!(ops[4], Action::Dwell(1.5));
     assert_eq!(ops.len(), 7);
 }
 
 #[test]
 fn a_preset_becomes_the_work_offset() {
     let ops = run("CYCL DEF 247 DATUM SETTING ~\n  Q339=+1 ;DATUM NUMBER");
-    assert_eq!(ops[0], Op::WorkOffset(54));
+    assert_eq!(ops[0], Action::WorkOffset(WorkOffset::FIRST));
 }
 
 #[test]
 fn machine_positions_and_retractions_leave_the_place_unknown() {
     let ops = run(&format!("{START}L Z+0 R0 FMAX M91\nL X+5 FMAX\nL M140 MB MAX\nL Z+1 F10"));
-    assert_eq!(ops[4], Op::Home(0b100));
-    let Op::Rapid(pose) = &ops[5] else { panic!() };
+    assert_eq!(ops[4], Action::Home(Axes::Z));
+    let Action::Rapid(pose) = &ops[5] else { panic!() };
     assert!(pose.point.z.is_nan() && pose.point.x == 5.0);
-    assert_eq!(ops[6], Op::Home(0b100));
+    assert_eq!(ops[6], Action::Home(Axes::Z));
     assert_eq!(points(&ops).last(), Some(&[5.0, 0.0, 1.0]));
     let ops = run(&format!("{START}L X+1 F125 M140 MB 50 F750"));
     assert_eq!(points(&ops)[1..], [[0.0, 0.0, 100.0], [1.0, 0.0, 100.0]]);
@@ -371,7 +371,7 @@ L X+1 Y+2 Z+3",
     let rotary = |b, c, tool_center| Orientation::Rotary { degrees: [0.0, b, c], tool_center };
     assert_eq!(poses[1].orientation, rotary(30.0, -90.0, false));
     assert_eq!(poses[2].orientation, rotary(30.0, -90.0, true));
-    assert_eq!(poses[3], Pose { orientation: rotary(40.0, -90.0, true), ..poses[2] });
+    assert_eq!(poses[3], Position { orientation: rotary(40.0, -90.0, true), ..poses[2] });
     assert_eq!(poses[4].orientation, rotary(40.0, -90.0, false));
     // The same numbers are another place, so a single word does not make the others known.
     let error = refused_five("L X+1 Y+2 Z+3 B+30 C+0 R0 FMAX\nM128\nL X+1 F100");
@@ -391,7 +391,7 @@ fn the_seeds_of_the_fuzz_target_are_legal_programs() {
     ] {
         let text = std::fs::read(seeds.join(name)).unwrap();
         let records = read_on(rotary, &text).unwrap_or_else(|error| panic!("{name}: {error}"));
-        assert_eq!(records.last().unwrap().op, Op::End);
+        assert_eq!(records.last().unwrap().action, Action::End);
     }
 }
 
@@ -413,14 +413,14 @@ LN X+1 Y+2 Z+3 NX+0 NY+0 NZ+1 TX+0 TY-0.6 TZ+0.8 F1000
 L X+5",
     );
     let poses = poses(&ops);
-    assert_eq!(poses[0], Pose::new(Vec3::new(1.0, 2.0, 3.0), Vec3::new(0.0, -0.6, 0.8)));
+    assert_eq!(poses[0], Position::new(Vec3::new(1.0, 2.0, 3.0), Vec3::new(0.0, -0.6, 0.8)));
     assert_eq!(poses[1].orientation, poses[0].orientation);
     // The block format of the TNC 640 manual has M128 in the same block.
     let ops = run_five(
         "LN X+31.737 Y+21.954 Z+33.165 NX+0.2637581 NY+0.0078922 NZ-0.8764339 TX+0.0078922 \
          TY-0.8764339 TZ+0.2590319 F1000 M128",
     );
-    let axis = ops.iter().find_map(Op::pose).unwrap().axis().unwrap();
+    let axis = ops.iter().find_map(Action::position).unwrap().axis().unwrap();
     assert!((axis.y / axis.x + 0.8764339 / 0.0078922).abs() < 1e-9 && axis.is_normalized());
     assert_eq!(refused_five("LN X+1 Y+2 Z+3 TX+0 TY+0 TZ+1 F10").rule, "tool-center");
     assert_eq!(refused_five("M128\nLN X+1 Y+2 Z+3 TX+0 TY+0 TZ+0 F10").rule, "zero-vector");
@@ -454,7 +454,7 @@ L X+1 F100\nL Y+1\n"
         ("SPA+30 SPB+60 SPC+90", Vec3::new(0.5, 0.75, 0.1875f64.sqrt())),
     ] {
         let ops = run_five(&format!("PLANE SPATIAL {angles} TURN FMAX\n{tilted}"));
-        let pose = *ops.iter().filter_map(Op::pose).next_back().unwrap();
+        let pose = *ops.iter().filter_map(Action::position).next_back().unwrap();
         assert!(pose.axis().unwrap().distance(axis) < 1e-12, "{angles}");
     }
 }
@@ -481,18 +481,19 @@ TOOL CALL 1 Z S1000 F100
 PLANE SPATIAL SPA+0 SPB+90 SPC+0 TURN MB MAX FMAX
 {DRILLING}L X+1 Y+2 Z+50 R0 FMAX M99"
     ));
-    let hole = ops.iter().rfind(|op| matches!(op, Op::Hole(_))).unwrap().pose().copied().unwrap();
+    let hole =
+        ops.iter().rfind(|op| matches!(op, Action::Hole(_))).unwrap().position().copied().unwrap();
     // B+90: X goes to -Z, Z to X. The surface is 20 along the axis from the shifted datum.
     assert!(hole.point.distance(Vec3::new(120.0, 2.0, -1.0)) < 1e-12);
     assert!(hole.axis().unwrap().distance(Vec3::X) < 1e-12);
-    assert!(ops.contains(&Op::Home(0b100)));
+    assert!(ops.contains(&Action::Home(Axes::Z)));
 }
 
 #[test]
 fn in_a_plane_that_stays_the_words_turn_the_axes() {
     let ops =
         run_five("PLANE SPATIAL SPA+0 SPB+30 SPC+0 STAY\nL B+30 C+0 R0 FMAX\nL X+0 Y+0 Z+10 FMAX");
-    let last = *ops.iter().filter_map(Op::pose).next_back().unwrap();
+    let last = *ops.iter().filter_map(Action::position).next_back().unwrap();
     let degrees = [0.0, 30.0, 0.0];
     assert_eq!(last.orientation, Orientation::Rotary { degrees, tool_center: true });
     assert!(last.point.distance(Vec3::new(5.0, 0.0, 75f64.sqrt())) < 1e-12);
@@ -509,7 +510,7 @@ fn in_a_tilted_plane_nothing_goes_down_at_an_unknown_place() {
 
 #[test]
 fn nothing_happens_after_the_end() {
-    assert_eq!(run("L X+1 FMAX M30\n; TOOL LIST").last(), Some(&Op::End));
+    assert_eq!(run("L X+1 FMAX M30\n; TOOL LIST").last(), Some(&Action::End));
     assert_eq!(refused("L X+1 FMAX M30 M9").rule, "program-frame");
     let error = refused(&format!("{START}{DRILLING}L X+1 FMAX M89\nL X+2 FMAX M30"));
     assert_eq!(error.rule, "cycle");
@@ -518,11 +519,11 @@ fn nothing_happens_after_the_end() {
 #[test]
 fn a_stop_and_a_tool_change_stop_spindle_and_coolant() {
     let ops = run(&format!("{START}M8\nSTOP\nM13\nTOOL CALL 6 Z S10"));
-    let off = [Op::Spindle(Spindle::Off), Op::Coolant(Coolant::Off)];
-    assert_eq!(ops[5], Op::Stop);
+    let off = [Action::Spindle(Spindle::Off), Action::Coolant(Coolant::Off)];
+    assert_eq!(ops[5], Action::Stop);
     assert_eq!(ops[6..8], off);
     assert_eq!(ops[10..12], off);
-    assert!(matches!(ops[12], Op::Tool(_)));
+    assert!(matches!(ops[12], Action::Tool(_)));
 }
 
 #[test]
@@ -648,12 +649,12 @@ fn a_block_with_a_slash_is_skipped_where_the_operator_says_so() {
     let ops = |block_delete| {
         let setup = Setup { block_delete, ..Setup::default() };
         let records = read_with(setup, [false; 3], text).unwrap();
-        records.into_iter().map(|record| record.op).collect::<Vec<_>>()
+        records.into_iter().map(|record| record.action).collect::<Vec<_>>()
     };
-    let kinds = |ops: &[Op]| {
-        let rapids = ops.iter().filter(|op| matches!(op, Op::Rapid(_))).count();
-        let offsets = ops.iter().filter(|op| matches!(op, Op::WorkOffset(_))).count();
-        (rapids, offsets, ops.iter().filter(|op| **op == Op::End).count())
+    let kinds = |ops: &[Action]| {
+        let rapids = ops.iter().filter(|op| matches!(op, Action::Rapid(_))).count();
+        let offsets = ops.iter().filter(|op| matches!(op, Action::WorkOffset(_))).count();
+        (rapids, offsets, ops.iter().filter(|op| **op == Action::End).count())
     };
     assert_eq!(kinds(&ops(false)), (2, 1, 1));
     assert_eq!(kinds(&ops(true)), (1, 0, 1));
@@ -667,7 +668,7 @@ fn blanks_stand_where_they_leave_no_doubt() {
         "Q5 = 2\nFN0: Q6 = 7\nL X + 1 Y - Q5 Z +Q5 FMAX\nCYCL DEF9 .0 DWELL\nCYCL DEF9.1 D.WELL1.5";
     let ops = run(apart);
     assert_eq!(format!("{:?}", ops), format!("{:?}", run(compact)));
-    assert!(ops.contains(&Op::Dwell(1.5)), "{ops:?}");
+    assert!(ops.contains(&Action::Dwell(1.5)), "{ops:?}");
     assert_eq!(refused("L X - -1 FMAX").rule, "unknown-word");
     assert_eq!(refused("CYCL DEF 9. DWELL").rule, "syntax");
 }

@@ -5,14 +5,15 @@ mod common;
 
 use common::klartext::*;
 use geom::Vec3;
-use program::{Compensation, Feed, Op};
+use program::{Compensation, Feed};
+use toolpost_control::Action;
 
 fn v(x: f64, y: f64, z: f64) -> Vec3 {
     Vec3::new(x, y, z)
 }
 
 /// The points of these blocks behind the start, which leaves the tool at 0, 0, −5 at F500.
-fn path(blocks: &str) -> Vec<Op> {
+fn path(blocks: &str) -> Vec<Action> {
     let at_depth = "TOOL CALL 5 Z S3000 F500\nL X+0 Y+0 Z-5 R0 FMAX M3\n";
     run_with_radius(5.0, &format!("{at_depth}{blocks}"))[4..].to_vec()
 }
@@ -39,9 +40,9 @@ fn a_corner_is_rounded_by_an_arc_that_touches_both_lines() {
     let arc = arcs(&ops)[0];
     assert!(arc.center.distance(center) < 1e-9 && arc.normal == Vec3::NEG_Z);
     // The feed of RND holds for the arc alone.
-    let feeds: Vec<&Op> = ops.iter().filter(|op| matches!(op, Op::Feed(_))).collect();
+    let feeds: Vec<&Action> = ops.iter().filter(|op| matches!(op, Action::Feed(_))).collect();
     let [first, rounding, again] = feeds[..] else { panic!("{feeds:?}") };
-    assert_eq!(*rounding, Op::Feed(Feed::PerMinute(100.0)));
+    assert_eq!(*rounding, Action::Feed(Feed::PerMinute(100.0)));
     assert_eq!(first, again);
     // Comments may stand between, and corners follow each other.
     let ops = path("L X+40 F300\n; HERE\nRND R5\n* - THERE\nL Y+40\nRND R3\nL X+0");
@@ -96,7 +97,7 @@ fn a_chamfer_begins_and_ends_at_its_length_from_the_corner() {
         &points(&ops),
         &[[0.0, 30.0, -5.0], from.to_array(), to.to_array(), [45.0, 0.0, -5.0]],
     );
-    assert!(ops.contains(&Op::Feed(Feed::PerMinute(250.0))));
+    assert!(ops.contains(&Action::Feed(Feed::PerMinute(250.0))));
 }
 
 #[test]
@@ -183,12 +184,12 @@ fn a_line_in_the_direction_of_the_contour_leads_to_it() {
         &[right(back, -5.0), right(back, -10.0), right(20.0, -10.0), right(35.0, -10.0)],
     );
     // Rapid to the auxiliary point, as the positioning before.
-    assert!(matches!(ops[1], Op::Rapid(_)));
-    assert_eq!(ops[2], Op::Feed(Feed::PerMinute(100.0)));
+    assert!(matches!(ops[1], Action::Rapid(_)));
+    assert_eq!(ops[2], Action::Feed(Feed::PerMinute(100.0)));
     // With a tool that is not in the table the contour is told, and that it is compensated.
     let ops = run("TOOL CALL 5 Z S3000 F500\nL X+40 Y+10 Z-5 R0 FMAX\n\
                    APPR LT X+20 Y+20 Z-10 LEN15 RR F100\nL X+35 Y+35");
-    let side = ops.iter().position(|op| *op == Op::Compensation(Compensation::Right(None)));
+    let side = ops.iter().position(|op| *op == Action::Compensation(Compensation::Right(None)));
     assert_near(&points(&ops[side.unwrap()..])[..1], &[[back, back, -5.0]]);
 }
 
@@ -235,7 +236,7 @@ fn a_line_and_an_arc_lead_to_the_contour() {
     assert_near(&points(&ops)[1..], &[[-5.0, 10.0, -5.0], [0.0, 5.0, -5.0], [50.0, 5.0, -5.0]]);
     let arc = arcs(&ops)[0];
     assert!(arc.center.distance(v(0.0, 10.0, -5.0)) < 1e-9 && arc.normal == Vec3::Z);
-    assert_eq!(ops[1], Op::Feed(Feed::PerMinute(100.0)));
+    assert_eq!(ops[1], Action::Feed(Feed::PerMinute(100.0)));
     // Polar, and on the right: the mirror image.
     let ops = path("L X-5 Y-40 FMAX\nCC X-3 Y+0\nAPPR PLCT PR+3 PA+0 R10 RR F100\nL X+50");
     assert_near(&points(&ops)[1..3], &[[-5.0, -10.0, -5.0], [0.0, -5.0, -5.0]]);
@@ -259,8 +260,8 @@ fn departures_go_on_from_the_last_element() {
     // radius 3 has its top.
     let ops = path(&format!("{contour}DEP LCT X+40 Y+23 R+8 F90"));
     assert_near(&points(&ops)[3..], &[[8.0, 23.0, -5.0], [40.0, 23.0, -5.0]]);
-    let arc = ops.iter().position(|op| matches!(op, Op::Arc(_))).unwrap();
-    assert!(matches!(ops[arc + 1], Op::Line(_)));
+    let arc = ops.iter().position(|op| matches!(op, Action::Arc(_))).unwrap();
+    assert!(matches!(ops[arc + 1], Action::Line(_)));
 }
 
 #[test]

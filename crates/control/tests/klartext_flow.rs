@@ -4,7 +4,8 @@
 mod common;
 
 use common::klartext::*;
-use program::{Diagnostic, Feed, Op};
+use program::{Diagnostic, Feed};
+use toolpost_control::Action;
 
 /// Where the rapids of these blocks go in X.
 fn xs(blocks: &str) -> Vec<f64> {
@@ -15,7 +16,7 @@ fn xs(blocks: &str) -> Vec<f64> {
 fn value(formula: &str) -> Result<f64, Box<Diagnostic>> {
     let blocks = format!("Q5 = 0.75\nQL7 = -4\nQ1 = {formula}\nL X+Q1 FMAX");
     let records = run_on([false; 3], "MM", &blocks)?;
-    Ok(records[0].op.pose().unwrap().point.x)
+    Ok(records[0].action.position().unwrap().point.x)
 }
 
 #[test]
@@ -224,11 +225,11 @@ TOOL CALL 5 Z SQ10\nL X+Q1 Y-Q1 Z+QL1 R0 FMAX M3\nL IX-QL1 FQR2\nCC X+0 Y+0\nLP 
         &points(&ops),
         &[[12.5, -12.5, 3.0], [9.5, -12.5, 3.0], [12.5 * polar.cos(), 12.5 * polar.sin(), 3.0]],
     );
-    assert!(ops.contains(&Op::Feed(Feed::PerMinute(800.0))));
-    assert!(ops.contains(&Op::Spindle(program::Spindle::Clockwise(4000.0))));
+    assert!(ops.contains(&Action::Feed(Feed::PerMinute(800.0))));
+    assert!(ops.contains(&Action::Spindle(program::Spindle::Clockwise(4000.0))));
     // A number in an inch program is in inches, wherever it comes from.
     let records = run_on([false; 3], "INCH", "Q1 = 2\nL X+Q1 FMAX").unwrap();
-    assert_eq!(records[0].op.pose().unwrap().point.x, 50.8);
+    assert_eq!(records[0].action.position().unwrap().point.x, 50.8);
 }
 
 #[test]
@@ -288,7 +289,7 @@ L X+QL1 FMAX\nCALL PGM lower\\in.h\nL X+1 FMAX\nQS2 = \"SUB.H\"\nCALL PGM QS2";
     let records = run_in(folder.path(), main).unwrap();
     let moves: Vec<(u32, f64)> = records
         .iter()
-        .filter_map(|record| Some((record.line, record.op.pose()?.point.x)))
+        .filter_map(|record| Some((record.line, record.action.position()?.point.x)))
         .collect();
     let expected = [
         (2, 0.0),
@@ -303,12 +304,12 @@ L X+QL1 FMAX\nCALL PGM lower\\in.h\nL X+1 FMAX\nQS2 = \"SUB.H\"\nCALL PGM QS2";
         (12, 15.0),
     ];
     assert_eq!(moves, expected);
-    assert_eq!(records.last().unwrap().op, Op::End);
+    assert_eq!(records.last().unwrap().action, Action::End);
     // The drive and its folders are the control's; of them the name of the file counts.
     for call in ["TNC:\\NC\\SUB.H", "sub", "Sub.h"] {
         let records =
             run_in(folder.path(), &format!("Q1 = 1\nL X+0 FMAX\nCALL PGM {call}")).unwrap();
-        assert_eq!(records.iter().filter_map(|r| r.op.pose()).count(), 3, "{call}");
+        assert_eq!(records.iter().filter_map(|r| r.action.position()).count(), 3, "{call}");
     }
 }
 
@@ -360,7 +361,7 @@ fn functions_of_the_control_are_neutral_or_refused_with_a_reason() {
         assert!(error.message.contains("not supported: it"), "{error}");
     }
     let ops = run("TOOL CALL 5 Z S3000 F700\nL X+0 Y+0 Z+0 FMAX\nL X+1 F100\nL X+2 FAUTO");
-    assert_eq!(ops.iter().filter(|op| **op == Op::Feed(Feed::PerMinute(700.0))).count(), 2);
+    assert_eq!(ops.iter().filter(|op| **op == Action::Feed(Feed::PerMinute(700.0))).count(), 2);
     assert_eq!(refused("L X+1 FZ0.1").rule, "feed");
 }
 
@@ -384,12 +385,12 @@ fn a_program_may_begin_at_a_place_that_is_known() {
     };
     let text = program("T", "MM", "L IX+1 IZ-1 F100");
     let records = read_with(setup, [false; 3], text.as_bytes()).unwrap();
-    assert_eq!(records[1].op.pose().unwrap().point.to_array(), [2.0, 2.0, 2.0]);
+    assert_eq!(records[1].action.position().unwrap().point.to_array(), [2.0, 2.0, 2.0]);
 }
 
 #[test]
 fn a_program_may_end_within_a_subprogram() {
     assert_eq!(xs("CALL LBL 1\nM30\nLBL 1\nL X+3 FMAX M30\nLBL 0"), [3.0]);
     let ops = run("CALL LBL 1\nM30\nLBL 1\nL X+3 FMAX M30\nLBL 0");
-    assert_eq!(ops.iter().filter(|op| **op == Op::End).count(), 1);
+    assert_eq!(ops.iter().filter(|op| **op == Action::End).count(), 1);
 }

@@ -5,7 +5,8 @@ mod common;
 
 use common::klartext::*;
 use geom::Vec3;
-use program::{Compensation, Op, Orientation};
+use program::Compensation;
+use toolpost_control::{Action, Orientation};
 
 /// The points of these blocks behind a start at 0, 0, 50.
 fn moves(blocks: &str) -> Vec<[f64; 3]> {
@@ -19,7 +20,8 @@ const DRILL: &str =
 /// The places of the holes of these blocks.
 fn holes(blocks: &str) -> Vec<[f64; 3]> {
     let ops = run(&format!("{START}{DRILL}{blocks}"));
-    let hole = |op: &Op| if let Op::Hole(pose) = op { Some(pose.point.to_array()) } else { None };
+    let hole =
+        |op: &Action| if let Action::Hole(pose) = op { Some(pose.point.to_array()) } else { None };
     ops.iter().filter_map(hole).collect()
 }
 
@@ -58,7 +60,7 @@ C X+0 Y+10 DR+\nL Y+20 R0\nCYCL DEF 8.0 MIRROR IMAGE\nCYCL DEF 8.1\nL IX+3";
         (Vec3::new(0.0, 10.0, 50.0), Vec3::new(0.0, 0.0, 50.0))
     );
     assert_eq!(arc.normal, Vec3::NEG_Z);
-    assert!(ops.contains(&Op::Compensation(Compensation::Right(None))));
+    assert!(ops.contains(&Action::Compensation(Compensation::Right(None))));
     assert_near(
         &points(&ops)[1..],
         &[[-10.0, 0.0, 50.0], [0.0, 10.0, 50.0], [0.0, 20.0, 50.0], [3.0, 20.0, 50.0]],
@@ -68,7 +70,7 @@ C X+0 Y+10 DR+\nL Y+20 R0\nCYCL DEF 8.0 MIRROR IMAGE\nCYCL DEF 8.1\nL IX+3";
         "{START}CYCL DEF 8.0 MIRROR\nCYCL DEF 8.1 X Y\nL X+10 RL F100\nCC X+0 Y+0\nC X+0 Y+10 DR+"
     ));
     assert_eq!(arcs(&ops)[0].normal, Vec3::Z);
-    assert!(ops.contains(&Op::Compensation(Compensation::Left(None))));
+    assert!(ops.contains(&Action::Compensation(Compensation::Left(None))));
 }
 
 #[test]
@@ -220,7 +222,7 @@ fn cycle_208_mills_a_bore_on_a_helix() {
     let ways: Vec<_> = arcs(&ops).iter().map(|arc| (arc.center.x, arc.normal, arc.turns)).collect();
     let ccw = Vec3::Z;
     assert_eq!(ways, [(2.25, ccw, 0), (1.0, ccw, 2), (1.0, ccw, 0), (-0.25, ccw, 0)]);
-    assert!(ops.contains(&Op::Feed(program::Feed::PerMinute(150.0))));
+    assert!(ops.contains(&Action::Feed(program::Feed::PerMinute(150.0))));
     // 4.2 / 0.7 is six turns: five, what is left of the sixth, and the flat one.
     let six = cycle.replace("Q201=-8", "Q201=-2.2").replace("Q334=4", "Q334=0.7");
     let ops = run_with_radius(10.0, &format!("{START}M3\n{six}\nCYCL CALL"));
@@ -265,7 +267,7 @@ fn a_rotation_in_a_tilted_plane_is_one_of_the_plane() {
         "PLANE SPATIAL SPA+90 SPB+0 SPC+0 TURN FMAX\nCYCL DEF 10.0 R\nCYCL DEF 10.1 ROT+90
 L X+5 Y+0 R0 FMAX\nL Z+2 FMAX",
     );
-    let last = ops.iter().filter_map(Op::pose).next_back().unwrap();
+    let last = ops.iter().filter_map(Action::position).next_back().unwrap();
     assert!(last.point.distance(Vec3::new(0.0, -2.0, 5.0)) < 1e-12, "{last:?}");
     assert!(last.axis().unwrap().distance(Vec3::NEG_Y) < 1e-12);
 }

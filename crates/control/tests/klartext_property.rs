@@ -3,11 +3,11 @@
 mod common;
 
 use geom::Vec3;
-use program::{Feed, Op, Record};
+use program::Feed;
 use proptest::prelude::*;
-use toolpost_control::{Dialect, Settings, read};
+use toolpost_control::{Action, Dialect, Event, Settings, read};
 
-fn run(text: &str) -> Vec<Record> {
+fn run(text: &str) -> Vec<Event> {
     let records = common::klartext::read_on([false; 3], text.as_bytes());
     records.unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
@@ -174,19 +174,19 @@ proptest! {
         let mut here = Vec3::ZERO;
         let mut expected = expected.iter();
         for record in run(&text) {
-            match record.op {
-                Op::Feed(Feed::PerMinute(f)) => feed = f,
-                Op::Rapid(pose) => {
+            match record.action {
+                Action::Feed(Feed::PerMinute(f)) => feed = f,
+                Action::Rapid(pose) => {
                     let Some(Expected::Rapid(to)) = expected.next() else { panic!("{text}") };
                     prop_assert!(pose.point.distance(*to) < 1e-6, "{text}");
                     here = pose.point;
                 }
-                Op::Line(pose) => {
+                Action::Line(pose) => {
                     let Some(Expected::Line(to, f)) = expected.next() else { panic!("{text}") };
                     prop_assert!(pose.point.distance(*to) < 1e-6 && feed == *f, "{text}");
                     here = pose.point;
                 }
-                Op::Arc(arc) => {
+                Action::Arc(arc) => {
                     let Some(Expected::Arc { end, center, left, sweep }) = expected.next() else {
                         panic!("{text}")
                     };
@@ -213,7 +213,7 @@ proptest! {
             "0 BEGIN PGM T {unit}\n1 L X{} Y{} Z{} FMAX\n2 END PGM T {unit}\n",
             written(to[0]), written(to[1]), written(to[2]),
         );
-        let first = |text: String| run(&text)[0].op.pose().unwrap().point;
+        let first = |text: String| run(&text)[0].action.position().unwrap().point;
         prop_assert!(first(body("INCH")).distance(first(body("MM")) * 25.4) < 1e-9);
     }
 
@@ -425,7 +425,7 @@ proptest! {
         let mut found = None;
         let text = numbered(&blocks);
         let result = read(&settings, "t.h", text.as_bytes(), &mut |record| {
-            found = found.or(record.op.pose().map(|pose| pose.point.x));
+            found = found.or(record.action.position().map(|pose| pose.point.x));
             Ok(())
         });
         match result {
@@ -456,7 +456,7 @@ proptest! {
         prop_assume!(reached.len() < 20_000);
         let text = numbered(&blocks);
         let found: Vec<f64> =
-            run(&text).iter().filter_map(|record| record.op.pose().map(|pose| pose.point.x)).collect();
+            run(&text).iter().filter_map(|record| record.action.position().map(|pose| pose.point.x)).collect();
         prop_assert_eq!(found.len(), reached.len() + 1);
         for (x, ticks) in found[1..].iter().zip(&reached) {
             prop_assert!((x - *ticks as f64 / 1e4).abs() < 1e-6, "{} {}\n{}", x, ticks, text);
@@ -482,8 +482,8 @@ proptest! {
             format!("RND R{radius:.9}"),
             format!("L X{:+.9} Y{:+.9}", end.x, end.y),
         ]);
-        let arc = run(&text).iter().find_map(|record| match &record.op {
-            Op::Arc(arc) => Some(**arc),
+        let arc = run(&text).iter().find_map(|record| match &record.action {
+            Action::Arc(arc) => Some(**arc),
             _ => None,
         }).unwrap();
         let start = corner - toward(heading) * take;
@@ -520,7 +520,7 @@ proptest! {
         let sign = |flag| if flag { -1.0 } else { 1.0 };
         let expected =
             Vec3::new(x * sign(mirror[0]) + shift[0], y * sign(mirror[1]) + shift[1], 0.0);
-        let found = run(&text)[0].op.pose().unwrap().point;
+        let found = run(&text)[0].action.position().unwrap().point;
         prop_assert!(found.distance(expected) < 1e-2, "{found} {expected}\n{text}");
     }
 }

@@ -3,19 +3,19 @@
 mod common;
 
 use geom::Vec3;
-use program::{Diagnostic, Op};
+use program::Diagnostic;
 use proptest::prelude::*;
 use std::path::PathBuf;
-use toolpost_control::{Dialect, Settings, Setup, WholeNumbers};
+use toolpost_control::{Action, Dialect, Settings, Setup, WholeNumbers};
 
 fn settings(dialect: Dialect, folders: &[PathBuf]) -> Settings {
     let setup = Setup { folders: folders.to_vec(), start: Some(Vec3::ZERO), ..Setup::default() };
     Settings { setup, ..Settings::new(dialect, [false; 3]) }
 }
 
-fn records(settings: &Settings, text: &str) -> Result<Vec<(u32, Op)>, Box<Diagnostic>> {
+fn records(settings: &Settings, text: &str) -> Result<Vec<(u32, Action)>, Box<Diagnostic>> {
     let records = common::records(settings, "main.nc", text)?;
-    Ok(records.into_iter().map(|record| (record.line, record.op)).collect())
+    Ok(records.into_iter().map(|record| (record.line, record.action)).collect())
 }
 
 /// The ends of the moves of a program in mm, which begins with `G21` and `G0`.
@@ -24,7 +24,7 @@ fn ends(text: &str) -> Vec<[f64; 3]> {
     let text = format!("G21 G90 G0\n{text}");
     let records = records(&settings(Dialect::Fanuc, &[]), &text);
     let records = records.unwrap_or_else(|error| panic!("{error}\n{text}"));
-    let end = |(_, op): &(u32, Op)| op.pose().map(|pose| pose.point.to_array());
+    let end = |(_, op): &(u32, Action)| op.position().map(|pose| pose.point.to_array());
     records.iter().filter_map(end).collect()
 }
 
@@ -285,7 +285,7 @@ fn system_variables_tell_what_the_program_has_done() {
     assert_eq!(xs("G55\nS900\nX#4014\nX#4119\nX[#4006+#4010]\n"), [55.0, 900.0, 119.0]);
     let stop = "G21 G0\n#3006=1 (LOOK)\nX1.\n";
     let got = records(&settings(Dialect::Fanuc, &[]), stop).unwrap();
-    assert!(got.iter().any(|(line, op)| *line == 2 && *op == Op::Stop));
+    assert!(got.iter().any(|(line, op)| *line == 2 && *op == Action::Stop));
     let alarm = refused("IF[1 EQ 1]GOTO 5\nN5 #3000=12 (TOOL BROKEN)");
     assert_eq!(alarm.rule, "nc-alarm");
     assert!(alarm.message.contains("3012") && alarm.message.contains("TOOL BROKEN"), "{alarm}");
@@ -306,7 +306,7 @@ fn programs_are_found_in_the_folders() {
     let settings = settings(Dialect::Fanuc, &[folder.path().to_path_buf()]);
     let got = records(&settings, "G21 G0\n\nM98 P50\nX9.\nM30\n").unwrap();
     let moves: Vec<(u32, f64)> =
-        got.iter().filter_map(|(l, op)| op.pose().map(|p| (*l, p.point.x))).collect();
+        got.iter().filter_map(|(l, op)| op.position().map(|p| (*l, p.point.x))).collect();
     assert_eq!(moves, [(3, 7.0), (3, 8.0), (4, 9.0)]);
     let error = records(&settings, "G21 G0\nM98 P70\nM30\n").unwrap_err();
     assert_eq!((error.file.as_str(), error.line), ("O0070.nc", 3));
@@ -329,14 +329,14 @@ fn arguments_without_a_point_are_units_where_the_machine_is_set_so() {
     let mut settings = settings(Dialect::Fanuc, &[]);
     settings.setup.whole_numbers = WholeNumbers::Units;
     let got = records(&settings, "G21 G0\nG65 P1 A3\nM30\nO1\nX#1\nM99\n").unwrap();
-    assert_eq!(got.iter().find_map(|(_, op)| op.pose()).unwrap().point.x, 3.0);
+    assert_eq!(got.iter().find_map(|(_, op)| op.position()).unwrap().point.x, 3.0);
 }
 
 #[test]
 fn haas_and_mach3_call_subprograms_too() {
     let run = |dialect, text: &str| {
         let got = records(&settings(dialect, &[]), text).unwrap_or_else(|e| panic!("{e}\n{text}"));
-        got.iter().filter_map(|(_, op)| op.pose().map(|p| p.point.x)).collect::<Vec<_>>()
+        got.iter().filter_map(|(_, op)| op.position().map(|p| p.point.x)).collect::<Vec<_>>()
     };
     assert_eq!(
         run(Dialect::Haas, "G21 G0\nM98 P12345 L2\nM97 P50\nM30\nN50 X2.\nM99\nO12345\nX1.\nM99\n"),

@@ -4,23 +4,23 @@ mod common;
 
 use common::linuxcnc::difference;
 use geom::Vec3;
-use program::{Diagnostic, Op};
+use program::Diagnostic;
 use proptest::prelude::*;
 use std::path::{Path, PathBuf};
-use toolpost_control::{Dialect, Settings, Setup, read};
+use toolpost_control::{Action, Dialect, Settings, Setup, read};
 
 /// Runs a program with everything in the control at 0.
-fn run(text: &str, folders: &[PathBuf]) -> Result<Vec<(u32, Op)>, Box<Diagnostic>> {
+fn run(text: &str, folders: &[PathBuf]) -> Result<Vec<(u32, Action)>, Box<Diagnostic>> {
     let setup = Setup { folders: folders.to_vec(), start: Some(Vec3::ZERO), ..Setup::default() };
     let settings = Settings { setup, ..Settings::new(Dialect::LinuxCnc, [true; 3]) };
     let records = common::records(&settings, "main.ngc", text)?;
-    Ok(records.into_iter().map(|record| (record.line, record.op)).collect())
+    Ok(records.into_iter().map(|record| (record.line, record.action)).collect())
 }
 
 /// X of each move.
 fn path(text: &str) -> Vec<f64> {
     let records = run(text, &[]).unwrap_or_else(|error| panic!("{error}\n{text}"));
-    let x = |(_, op): &(u32, Op)| op.pose().map(|pose| pose.point.x);
+    let x = |(_, op): &(u32, Action)| op.position().map(|pose| pose.point.x);
     records.iter().filter_map(x).collect()
 }
 
@@ -69,7 +69,7 @@ fn a_long_program_is_followed_wherever_it_leads() {
     let end = text.lines().count() as u32 + 1;
     let records = run(&format!("{text}X1\n"), &[]).unwrap();
     let moves: Vec<(u32, Vec3)> =
-        records.iter().filter_map(|(line, op)| Some((*line, op.pose()?.point))).collect();
+        records.iter().filter_map(|(line, op)| Some((*line, op.position()?.point))).collect();
     // The block reads #1 before it sets it.
     let (mut expected, mut z, mut counted) = (Vec::new(), 0.0, 0.0);
     for _ in 0..3 {
@@ -302,7 +302,7 @@ fn files_are_called_from_the_given_folders_and_errors_name_them() {
     let text = "G21\n\nO<OUTER> CALL [3]\nG0 X9\nM98 P100\nM2\n";
     let records = run(text, &folders).unwrap();
     let moves: Vec<(u32, f64)> =
-        records.iter().filter_map(|(l, op)| op.pose().map(|p| (*l, p.point.x))).collect();
+        records.iter().filter_map(|(l, op)| op.position().map(|p| (*l, p.point.x))).collect();
     // Moves of another file carry the line of the call.
     assert_eq!(moves, [(3, 3.0), (3, 4.0), (4, 9.0), (5, 7.0)]);
     if let Some(Some(difference)) = difference(text.as_bytes(), [false; 3], &folders) {
@@ -320,7 +320,7 @@ fn files_are_called_from_the_given_folders_and_errors_name_them() {
 fn messages_show_values_and_block_delete_skips() {
     let text = "G21\n#1=2.5 #<n>=3\n(debug, depth #1 of #<n> and #<none>)\n(print,now #[#<n>-2])\n\
                 /G0 X5\nG0 X1\n/o1 if [1]\nM2\n";
-    let op = |text: &str| Op::Message(text.into());
+    let op = |text: &str| Action::Message(text.into());
     let on = |block_delete: bool| {
         let setup = Setup { start: Some(Vec3::ZERO), block_delete, ..Setup::default() };
         let settings = Settings { setup, ..Settings::new(Dialect::LinuxCnc, [false; 3]) };
@@ -328,8 +328,8 @@ fn messages_show_values_and_block_delete_skips() {
     };
     let ops = on(true).unwrap();
     assert_eq!(ops[0], op("depth 2.500000 of 3.000000 and ######"));
-    assert_eq!(ops[1], Op::Comment("now 2.500000".into()));
-    assert_eq!(ops.iter().filter_map(Op::pose).count(), 1);
+    assert_eq!(ops[1], Action::Comment("now 2.500000".into()));
+    assert_eq!(ops.iter().filter_map(Action::position).count(), 1);
     assert!(on(false).is_err(), "the if has no end");
 }
 

@@ -3,30 +3,30 @@
 mod common;
 
 use geom::Vec3;
-use program::{Diagnostic, Op, Pose};
+use program::Diagnostic;
 use proptest::prelude::*;
-use toolpost_control::{Dialect, Settings, Wire};
+use toolpost_control::{Action, Dialect, Position, Settings, Wire};
 
-fn run(text: &str, upper_plane: Option<f64>) -> Result<Vec<(u32, Op)>, Box<Diagnostic>> {
+fn run(text: &str, upper_plane: Option<f64>) -> Result<Vec<(u32, Action)>, Box<Diagnostic>> {
     let wire = Wire { height: upper_plane, ..Wire::default() };
     let settings = Settings { wire, ..Settings::new(Dialect::Points, [false; 3]) };
     let records = common::records(&settings, "part.pts", text)?;
-    Ok(records.into_iter().map(|record| (record.line, record.op)).collect())
+    Ok(records.into_iter().map(|record| (record.line, record.action)).collect())
 }
 
-fn at(x: f64, y: f64) -> Pose {
-    Pose::new(Vec3::new(x, y, 0.0), Vec3::Z)
+fn at(x: f64, y: f64) -> Position {
+    Position::new(Vec3::new(x, y, 0.0), Vec3::Z)
 }
 
 #[test]
 fn the_first_point_is_threaded_and_the_last_one_cut() {
     let expected = vec![
-        (1, Op::Rapid(at(0.0, -1.5))),
-        (1, Op::ThreadWire),
-        (2, Op::Line(at(10.0, 0.25))),
-        (3, Op::Line(at(-0.0, 7.0))),
-        (3, Op::CutWire),
-        (3, Op::End),
+        (1, Action::Rapid(at(0.0, -1.5))),
+        (1, Action::ThreadWire),
+        (2, Action::Line(at(10.0, 0.25))),
+        (3, Action::Line(at(-0.0, 7.0))),
+        (3, Action::CutWire),
+        (3, Action::End),
     ];
     for text in ["0 -1.5\n10. .25\n-0 +7\n", "0\t-1.5 \r\n  10 0.25\r\n0 7"] {
         assert_eq!(run(text, None).unwrap(), expected, "{text:?}");
@@ -36,7 +36,7 @@ fn the_first_point_is_threaded_and_the_last_one_cut() {
 #[test]
 fn u_and_v_lean_the_wire_over_the_height_of_the_upper_plane() {
     let records = run("0 0 3 0\n5 0 0 -4\n", Some(4.0)).unwrap();
-    let axes: Vec<Vec3> = records.iter().filter_map(|(_, op)| op.pose()?.axis()).collect();
+    let axes: Vec<Vec3> = records.iter().filter_map(|(_, op)| op.position()?.axis()).collect();
     // 3-4-5, and 45 degrees.
     assert!(axes[0].distance(Vec3::new(0.6, 0.0, 0.8)) < 1e-15);
     let half = 0.5f64.sqrt();
@@ -87,7 +87,7 @@ proptest! {
             text.push('\n');
         }
         let records = run(&text, Some(25.0)).unwrap();
-        let poses: Vec<&Pose> = records.iter().filter_map(|(_, op)| op.pose()).collect();
+        let poses: Vec<&Position> = records.iter().filter_map(|(_, op)| op.position()).collect();
         prop_assert_eq!(poses.len(), points.len());
         for (pose, (x, y, u, v)) in poses.iter().zip(&points) {
             prop_assert_eq!(pose.point, Vec3::new(mm(*x), mm(*y), 0.0));

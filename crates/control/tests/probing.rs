@@ -1,8 +1,7 @@
 //! What a probe finds on a surface that the operator has described: LinuxCNC's `#5061` to `#5063`.
 
 use geom::Vec3;
-use program::Op;
-use toolpost_control::{Dialect, Settings, Setup, read};
+use toolpost_control::{Action, Dialect, Settings, Setup, read};
 
 /// The ends of the straight cuts, on a surface of these points.
 fn cuts(text: &str, surface: &[Vec3]) -> Result<Vec<Vec3>, String> {
@@ -10,7 +9,7 @@ fn cuts(text: &str, surface: &[Vec3]) -> Result<Vec<Vec3>, String> {
     let settings = Settings { setup, ..Settings::new(Dialect::LinuxCnc, [false; 3]) };
     let mut cuts = Vec::new();
     let read = read(&settings, "program.ngc", text.as_bytes(), &mut |record| {
-        if let Op::Line(pose) = record.op {
+        if let Action::Line(pose) = record.action {
             cuts.push(pose.point);
         }
         Ok(())

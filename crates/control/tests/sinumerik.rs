@@ -3,8 +3,9 @@
 mod common;
 
 use common::sinumerik::{arcs, blocks, degrees, near, points, poses, run, v};
-use program::{Compensation, Coolant, Feed, Op, Orientation, Pose, Spindle};
+use program::{Axes, Compensation, Coolant, Feed, Spindle, WorkOffset};
 use std::f64::consts::FRAC_1_SQRT_2;
+use toolpost_control::{Action, Orientation, Position};
 
 #[test]
 fn the_block_style_of_the_source_system_runs() {
@@ -12,31 +13,31 @@ fn the_block_style_of_the_source_system_runs() {
                 N7G0A30C=45+R24\nN8M26M28\nN9X10\nN10Y20M8\nN11Z30\nN12G1X12.5F200\nN13G41Y25\n\
                 N14G40Y30\nN15Z100\nN16G54\nN17G75Z0M5M9\nN18M17\n";
     let records = run(text).unwrap_or_else(|error| panic!("{error}"));
-    let pose = |x: f64, y: f64, z: f64| Pose {
+    let pose = |x: f64, y: f64, z: f64| Position {
         point: v(x, y, z),
         orientation: Orientation::Rotary { degrees: [30.0, 0.0, 45.0], tool_center: false },
     };
-    let expected: Vec<(u32, Op)> = vec![
-        (1, Op::Preselect(1)),
-        (1, Op::LengthOffset(Some(1))),
-        (3, Op::WorkOffset(54)),
-        (5, Op::Spindle(Spindle::Clockwise(3000.0))),
-        (10, Op::Coolant(Coolant::Flood)),
-        (12, Op::Feed(Feed::PerMinute(200.0))),
-        (12, Op::Line(pose(12.5, 20.0, 30.0))),
-        (13, Op::Compensation(Compensation::Left(Some(1)))),
-        (13, Op::Line(pose(12.5, 25.0, 30.0))),
-        (14, Op::Compensation(Compensation::Off)),
-        (14, Op::Line(pose(12.5, 30.0, 30.0))),
-        (15, Op::Line(pose(12.5, 30.0, 100.0))),
-        (17, Op::Spindle(Spindle::Off)),
-        (17, Op::Coolant(Coolant::Off)),
-        (17, Op::Home(0b100)),
-        (18, Op::End),
+    let expected: Vec<(u32, Action)> = vec![
+        (1, Action::Preselect(1)),
+        (1, Action::LengthOffset(Some(1))),
+        (3, Action::WorkOffset(WorkOffset::FIRST)),
+        (5, Action::Spindle(Spindle::Clockwise(3000.0))),
+        (10, Action::Coolant(Coolant::Flood)),
+        (12, Action::Feed(Feed::PerMinute(200.0))),
+        (12, Action::Line(pose(12.5, 20.0, 30.0))),
+        (13, Action::Compensation(Compensation::Left(Some(1)))),
+        (13, Action::Line(pose(12.5, 25.0, 30.0))),
+        (14, Action::Compensation(Compensation::Off)),
+        (14, Action::Line(pose(12.5, 30.0, 30.0))),
+        (15, Action::Line(pose(12.5, 30.0, 100.0))),
+        (17, Action::Spindle(Spindle::Off)),
+        (17, Action::Coolant(Coolant::Off)),
+        (17, Action::Home(Axes::Z)),
+        (18, Action::End),
     ];
     let mut rest = records.iter();
     for (line, op) in expected {
-        let found = rest.any(|record| record.line == line && record.op == op);
+        let found = rest.any(|record| record.line == line && record.action == op);
         assert!(found, "{op:?} is missing in order at line {line}: {records:#?}");
     }
 }
@@ -44,7 +45,7 @@ fn the_block_style_of_the_source_system_runs() {
 #[test]
 fn a_coordinate_that_no_block_has_said_is_not_known() {
     let records = run("G0 X1\nM30\n").unwrap();
-    let Op::Rapid(pose) = records[0].op else { panic!() };
+    let Action::Rapid(pose) = records[0].action else { panic!() };
     assert!(pose.point.x == 1.0 && pose.point.y.is_nan() && pose.point.z.is_nan());
     assert!(degrees(&pose).0[0].is_nan() && degrees(&pose).0[1] == 0.0);
 }
@@ -83,12 +84,12 @@ fn expressions_follow_the_rank_of_their_operators() {
 fn header_labels_skip_marks_and_comments_are_read() {
     let text = "%_N_PART_1_MPF\r\n;$PATH=/_N_MPF_DIR\r\n\r\n/1 N10 G0 X1 ; first\r\n\
                 :20 NEXT_PART: Y2\r\nN30 MSG(\"a;b\")\r\nN40 M30\r\n; done\r\n";
-    let ops: Vec<Op> = run(text).unwrap().into_iter().map(|record| record.op).collect();
-    assert_eq!(ops[0], Op::Comment("$PATH=/_N_MPF_DIR".into()));
-    assert_eq!(ops[1], Op::Comment("first".into()));
+    let ops: Vec<Action> = run(text).unwrap().into_iter().map(|record| record.action).collect();
+    assert_eq!(ops[0], Action::Comment("$PATH=/_N_MPF_DIR".into()));
+    assert_eq!(ops[1], Action::Comment("first".into()));
     assert_eq!(poses(&ops)[1].point.y, 2.0);
-    assert_eq!(ops[4], Op::Message("a;b".into()));
-    assert_eq!(ops[5], Op::End);
+    assert_eq!(ops[4], Action::Message("a;b".into()));
+    assert_eq!(ops[5], Action::End);
     assert_eq!(ops.len(), 6);
 }
 
@@ -99,7 +100,7 @@ fn words_that_do_not_move_leave_no_trace() {
                 SETMS(1)\nGROUP_BEGIN(0,\"HEAD\",0,0)\nGROUP_ADDEND(0,0)\nGROUP_END(0,0)";
     let text = text.replace("ORIWKS ORIAXES", "ORIWKS\nORIAXES");
     let text = text.replace("G60 G601", "G601");
-    assert_eq!(blocks(&text), vec![Op::End]);
+    assert_eq!(blocks(&text), vec![Action::End]);
 }
 
 #[test]
@@ -115,17 +116,17 @@ fn inches_are_converted_with_and_without_the_feed() {
     assert_eq!(poses(&ops)[0].point.x, 25.4);
     assert_eq!(poses(&ops)[1].point.x, 50.8);
     assert_eq!(poses(&ops)[2].point.x, 3.0);
-    let feeds: Vec<_> = ops.iter().filter(|op| matches!(op, Op::Feed(_))).collect();
-    let feed = |value| Op::Feed(Feed::PerMinute(value));
+    let feeds: Vec<_> = ops.iter().filter(|op| matches!(op, Action::Feed(_))).collect();
+    let feed = |value| Action::Feed(Feed::PerMinute(value));
     assert_eq!(feeds, [&feed(100.0), &feed(254.0), &feed(30.0)]);
 }
 
 #[test]
 fn inverse_time_is_reported_for_every_block() {
     let ops = blocks("G93 G1 X1 F10\nX2 F10\nG95 X3 F0.2");
-    let feeds: Vec<_> = ops.iter().filter(|op| matches!(op, Op::Feed(_))).collect();
-    let inverse = Op::Feed(Feed::InverseTime(10.0));
-    assert_eq!(feeds, [&inverse, &inverse, &Op::Feed(Feed::PerTurn(0.2))]);
+    let feeds: Vec<_> = ops.iter().filter(|op| matches!(op, Action::Feed(_))).collect();
+    let inverse = Action::Feed(Feed::InverseTime(10.0));
+    assert_eq!(feeds, [&inverse, &inverse, &Action::Feed(Feed::PerTurn(0.2))]);
 }
 
 #[test]
@@ -134,13 +135,13 @@ fn tools_are_called_by_number_and_name() {
     let tools: Vec<_> = ops
         .iter()
         .filter_map(|op| match op {
-            Op::Tool(tool) => Some((tool.number, tool.name.as_str())),
+            Action::Tool(tool) => Some((tool.number, tool.name.as_str())),
             _ => None,
         })
         .collect();
     assert_eq!(tools, [(0, "MILL D8"), (5, "")]);
-    let offsets: Vec<_> = ops.iter().filter(|op| matches!(op, Op::LengthOffset(_))).collect();
-    let offset = |edge| Op::LengthOffset(edge);
+    let offsets: Vec<_> = ops.iter().filter(|op| matches!(op, Action::LengthOffset(_))).collect();
+    let offset = |edge| Action::LengthOffset(edge);
     assert_eq!(offsets, [&offset(Some(1)), &offset(Some(2)), &offset(Some(1)), &offset(None)]);
 }
 
@@ -148,14 +149,14 @@ fn tools_are_called_by_number_and_name() {
 fn spindle_and_coolant_are_reported_where_they_change() {
     let ops = blocks("S1000\nM3\nS1=1200\nM1=4 M8\nM4 M7\nM5 M9");
     let expected = vec![
-        Op::Spindle(Spindle::Clockwise(1000.0)),
-        Op::Spindle(Spindle::Clockwise(1200.0)),
-        Op::Spindle(Spindle::CounterClockwise(1200.0)),
-        Op::Coolant(Coolant::Flood),
-        Op::Coolant(Coolant::Mist),
-        Op::Spindle(Spindle::Off),
-        Op::Coolant(Coolant::Off),
-        Op::End,
+        Action::Spindle(Spindle::Clockwise(1000.0)),
+        Action::Spindle(Spindle::Clockwise(1200.0)),
+        Action::Spindle(Spindle::CounterClockwise(1200.0)),
+        Action::Coolant(Coolant::Flood),
+        Action::Coolant(Coolant::Mist),
+        Action::Spindle(Spindle::Off),
+        Action::Coolant(Coolant::Off),
+        Action::End,
     ];
     assert_eq!(ops, expected);
 }
@@ -163,15 +164,15 @@ fn spindle_and_coolant_are_reported_where_they_change() {
 #[test]
 fn spindle_comes_before_the_motion_and_a_stop_after_it() {
     let ops = blocks("G1 X5 S100 M3 M0");
-    assert!(matches!(ops[..], [Op::Spindle(_), Op::Line(_), Op::Stop, Op::End]));
+    assert!(matches!(ops[..], [Action::Spindle(_), Action::Line(_), Action::Stop, Action::End]));
 }
 
 #[test]
 fn a_dwell_counts_seconds_or_turns() {
     let ops = blocks("S600 M3\nG4 F1.5\nG4 S30\nG1 X1");
     // 30 turns at 600 a minute are 3 s; neither F nor S of G4 stays.
-    assert!(ops.contains(&Op::Dwell(1.5)) && ops.contains(&Op::Dwell(3.0)));
-    assert!(!ops.iter().any(|op| matches!(op, Op::Feed(_))));
+    assert!(ops.contains(&Action::Dwell(1.5)) && ops.contains(&Action::Dwell(3.0)));
+    assert!(!ops.iter().any(|op| matches!(op, Action::Feed(_))));
 }
 
 #[test]
@@ -180,9 +181,9 @@ fn compensation_starts_with_the_first_move_in_the_plane() {
     let kinds: Vec<_> = ops
         .iter()
         .map(|op| match op {
-            Op::Compensation(Compensation::Left(edge)) => format!("left {edge:?}"),
-            Op::Compensation(_) => "off".into(),
-            Op::Line(_) => "line".into(),
+            Action::Compensation(Compensation::Left(edge)) => format!("left {edge:?}"),
+            Action::Compensation(_) => "off".into(),
+            Action::Line(_) => "line".into(),
             _ => "end".into(),
         })
         .collect();
@@ -291,9 +292,17 @@ fn vectors_of_the_tool_have_any_length_and_hold() {
 #[test]
 fn moves_in_machine_coordinates_leave_their_axes_unknown() {
     let ops = blocks("SUPA G0 Z0 D0\nG0 X5\nG74 X1=0 Y1=0\nG75 FP=2 Z1=0\nG53 G0 A0 C0\nG1 X1");
-    let homes: Vec<_> = ops.iter().filter(|op| matches!(op, Op::Home(_))).collect();
-    assert_eq!(homes, [&Op::Home(4), &Op::Home(3), &Op::Home(4), &Op::Home(0b10_1000)]);
-    assert!(ops.contains(&Op::LengthOffset(None)));
+    let homes: Vec<_> = ops.iter().filter(|op| matches!(op, Action::Home(_))).collect();
+    assert_eq!(
+        homes,
+        [
+            &Action::Home(Axes::Z),
+            &Action::Home(Axes::X | Axes::Y),
+            &Action::Home(Axes::Z),
+            &Action::Home(Axes::A | Axes::C)
+        ]
+    );
+    assert!(ops.contains(&Action::LengthOffset(None)));
     let poses = poses(&ops);
     assert!(poses[0].point.x == 5.0 && poses[0].point.y == 0.0 && poses[0].point.z.is_nan());
     assert!(poses[1].point.x == 1.0 && poses[1].point.y.is_nan());
@@ -303,8 +312,15 @@ fn moves_in_machine_coordinates_leave_their_axes_unknown() {
 #[test]
 fn another_work_offset_makes_the_position_unknown() {
     let ops = blocks("G54 G0 X1 Y1 Z1\nG54 X2\nG505 X3\nG500 X4");
-    let offsets: Vec<_> = ops.iter().filter(|op| matches!(op, Op::WorkOffset(_))).collect();
-    assert_eq!(offsets, [&Op::WorkOffset(54), &Op::WorkOffset(58), &Op::WorkOffset(53)]);
+    let offsets: Vec<_> = ops.iter().filter(|op| matches!(op, Action::WorkOffset(_))).collect();
+    assert_eq!(
+        offsets,
+        [
+            &Action::WorkOffset(WorkOffset::FIRST),
+            &Action::WorkOffset(WorkOffset::numbered(58).unwrap()),
+            &Action::WorkOffset(WorkOffset::NONE)
+        ]
+    );
     let poses = poses(&ops);
     assert_eq!(poses[1].point, v(2.0, 1.0, 1.0));
     assert!(poses[2].point.y.is_nan());

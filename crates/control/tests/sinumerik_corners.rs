@@ -4,16 +4,17 @@ mod common;
 
 use common::sinumerik::{blocks, error, near, v};
 use geom::{Arc, Vec3};
-use program::{Feed, Op};
+use program::Feed;
 use proptest::prelude::*;
+use toolpost_control::Action;
 
 /// The ways of the cuts: where each ends, and for arcs their centre and direction.
 fn ways(text: &str) -> Vec<(Vec3, Option<(Vec3, Vec3)>)> {
     blocks(text)
         .iter()
         .filter_map(|op| match op {
-            Op::Line(pose) => Some((pose.point, None)),
-            Op::Arc(arc) => Some((arc.end.point, Some((arc.center, arc.normal)))),
+            Action::Line(pose) => Some((pose.point, None)),
+            Action::Arc(arc) => Some((arc.end.point, Some((arc.center, arc.normal)))),
             _ => None,
         })
         .collect()
@@ -78,9 +79,9 @@ fn every_corner_is_rounded_until_it_is_ended() {
 #[test]
 fn a_corner_has_the_feed_of_the_next_block_or_its_own() {
     let feeds = |text: &str| -> Vec<String> {
-        let name = |op: &Op| match op {
-            Op::Feed(Feed::PerMinute(feed)) => Some(format!("F{feed}")),
-            Op::Line(_) => Some("line".into()),
+        let name = |op: &Action| match op {
+            Action::Feed(Feed::PerMinute(feed)) => Some(format!("F{feed}")),
+            Action::Line(_) => Some("line".into()),
             _ => None,
         };
         blocks(text).iter().filter_map(name).collect()
@@ -97,11 +98,11 @@ fn records_keep_their_order_around_a_corner() {
     let names: Vec<_> = ops
         .iter()
         .map(|op| match op {
-            Op::Comment(text) => text.to_string(),
-            Op::Coolant(_) => "coolant".into(),
-            Op::Line(_) => "line".into(),
-            Op::Arc(_) => "arc".into(),
-            Op::Stop => "stop".into(),
+            Action::Comment(text) => text.to_string(),
+            Action::Coolant(_) => "coolant".into(),
+            Action::Line(_) => "line".into(),
+            Action::Arc(_) => "arc".into(),
+            Action::Stop => "stop".into(),
             _ => "end".into(),
         })
         .collect();

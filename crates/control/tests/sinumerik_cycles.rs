@@ -3,7 +3,8 @@
 mod common;
 
 use common::sinumerik::{blocks, error, holes, near, poses, v};
-use program::{Cycle, CycleKind, Feed, Op, Orientation, Spindle};
+use program::{Cycle, CycleKind, Feed, Spindle};
+use toolpost_control::{Action, Orientation};
 
 /// The hole that one call makes at X5 Y6.
 fn hole(call: &str) -> Cycle {
@@ -40,7 +41,10 @@ fn cycle81_drills_from_the_safety_distance_to_the_depth_and_goes_back_to_the_ret
 #[test]
 fn a_call_alone_drills_once_and_leaves_the_tool_at_the_retraction_plane() {
     let ops = blocks("CYCLE81(10,0,2,-15)\nG0 X1");
-    assert!(matches!(&ops[..4], [Op::Cycle(_), Op::Hole(_), Op::CycleOff, Op::Rapid(_)]));
+    assert!(matches!(
+        &ops[..4],
+        [Action::Cycle(_), Action::Hole(_), Action::CycleOff, Action::Rapid(_)]
+    ));
     near(poses(&ops)[0].point, v(0.0, 0.0, 0.0));
     near(poses(&ops)[1].point, v(1.0, 0.0, 10.0));
 }
@@ -72,8 +76,8 @@ fn cycle84_turns_the_spindle_itself_and_takes_the_hand_from_the_sign_of_the_pitc
     let (_, cycle) = holes(&ops)[0];
     let right = CycleKind::Tap { pitch: 1.25, left: false };
     assert_eq!(cycle, Cycle { kind: right, dwell: 0.3, ..drill(20.0, 2.0, 10.0) });
-    let spindles: Vec<_> = ops.iter().filter(|op| matches!(op, Op::Spindle(_))).collect();
-    let clockwise = |speed| Op::Spindle(Spindle::Clockwise(speed));
+    let spindles: Vec<_> = ops.iter().filter(|op| matches!(op, Action::Spindle(_))).collect();
+    let clockwise = |speed| Action::Spindle(Spindle::Clockwise(speed));
     assert_eq!(spindles, [&clockwise(1000.0), &clockwise(400.0), &clockwise(1000.0)]);
     let left = hole("CYCLE84(10,0,2,-20,,0,5,,-2,0,400)");
     assert_eq!(left.kind, CycleKind::Tap { pitch: 2.0, left: true });
@@ -108,8 +112,8 @@ fn cycle86_leaves_the_spindle_standing() {
     let ops = blocks("S1000 M3\nCYCLE86(10,0,2,-15,,0.4,3,0,0,0,45)");
     let (_, cycle) = holes(&ops)[0];
     assert_eq!(cycle, Cycle { kind: CycleKind::Bore, dwell: 0.4, ..drill(15.0, 2.0, 10.0) });
-    let last = ops.iter().rev().find(|op| matches!(op, Op::Spindle(_))).unwrap();
-    assert_eq!(*last, Op::Spindle(Spindle::Off));
+    let last = ops.iter().rev().find(|op| matches!(op, Action::Spindle(_))).unwrap();
+    assert_eq!(*last, Action::Spindle(Spindle::Off));
 }
 
 #[test]
@@ -117,11 +121,11 @@ fn a_modal_call_drills_after_every_block_with_a_position_until_it_ends() {
     let ops = blocks("MCALL CYCLE81(10,0,2,-15)\nG0 X1 Y1\nM8\nX2\nY2\nMCALL\nX3");
     let points: Vec<_> = holes(&ops).iter().map(|(pose, _)| pose.point).collect();
     assert_eq!(points, [v(1.0, 1.0, 0.0), v(2.0, 1.0, 0.0), v(2.0, 2.0, 0.0)]);
-    let cycles = ops.iter().filter(|op| matches!(op, Op::Cycle(_))).count();
-    let rapids = ops.iter().filter(|op| matches!(op, Op::Rapid(_))).count();
+    let cycles = ops.iter().filter(|op| matches!(op, Action::Cycle(_))).count();
+    let rapids = ops.iter().filter(|op| matches!(op, Action::Rapid(_))).count();
     assert_eq!((cycles, rapids), (1, 4));
-    let off = ops.iter().position(|op| *op == Op::CycleOff).unwrap();
-    assert!(matches!(ops[off + 1], Op::Rapid(_)));
+    let off = ops.iter().position(|op| *op == Action::CycleOff).unwrap();
+    assert!(matches!(ops[off + 1], Action::Rapid(_)));
 }
 
 #[test]

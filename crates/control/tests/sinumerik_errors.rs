@@ -3,8 +3,8 @@
 mod common;
 
 use common::sinumerik::{blocks, error, run, settings};
-use program::{Diagnostic, Op};
-use toolpost_control::read;
+use program::Diagnostic;
+use toolpost_control::{Action, read};
 
 #[test]
 fn an_error_names_its_rule_and_place() {
@@ -232,7 +232,7 @@ fn what_the_sink_answers_stops_the_program_unchanged() {
     let mut count = 0;
     let error = read(&settings(), "p.mpf", b"G0 X1\nG0 X2\nM30\n", &mut |record| {
         count += 1;
-        if matches!(record.op, Op::Rapid(_)) { Err(answer.clone().into()) } else { Ok(()) }
+        if matches!(record.action, Action::Rapid(_)) { Err(answer.clone().into()) } else { Ok(()) }
     })
     .unwrap_err();
     assert_eq!((count, error.rule, error.line), (1, "stop", 0));
@@ -287,7 +287,7 @@ fn a_feed_group_without_a_linear_axis_makes_another_feed() {
     assert!(error("FGROUP(X,Y)").message.contains("without Z"));
     assert_eq!(error("FGROUP(X,Y,Z,Q)").rule, "feed-group");
     assert_eq!(error("FGROUP(X,Y,Z,B)").rule, "unknown-axis");
-    assert_eq!(blocks("FGROUP()\nFGROUP(X,Y,Z)\nFGROUP(X,Y,Z,A,C)"), [Op::End]);
+    assert_eq!(blocks("FGROUP()\nFGROUP(X,Y,Z)\nFGROUP(X,Y,Z,A,C)"), [Action::End]);
 }
 
 #[test]
@@ -299,6 +299,6 @@ fn a_path_tolerance_beyond_what_the_machine_file_says_is_refused() {
     }
     assert_eq!(
         blocks("CYCLE832(0.1,_FINISH,1)\nCTOL=0.1\nCYCLE832(0,_OFF,1)\nCYCLE832()"),
-        [Op::End]
+        [Action::End]
     );
 }

@@ -3,12 +3,12 @@
 mod common;
 
 use common::sinumerik::{poses, settings};
-use program::{Diagnostic, Op, Record};
-use toolpost_control::{Settings, Setup, read};
+use program::Diagnostic;
+use toolpost_control::{Action, Event, Settings, Setup, read};
 
 /// The X positions that a program moves to, with the line of each.
 fn moves_with(settings: &Settings, text: &str) -> Result<Vec<(u32, f64)>, Box<Diagnostic>> {
-    let x = |record: &Record| Some((record.line, record.op.pose()?.point.x));
+    let x = |record: &Event| Some((record.line, record.action.position()?.point.x));
     Ok(common::records(settings, "p.mpf", text)?.iter().filter_map(x).collect())
 }
 
@@ -272,7 +272,7 @@ fn block_delete_skips_what_the_operator_says() {
 #[test]
 fn texts_are_shown() {
     let text = "R1=5\nMSG(\"PART \"<<R1<<\" OF \"<<2.5)\nSETAL(66001,\"CHECK\")\nM30\n";
-    let message = |op| if let Op::Message(text) = op { Some(text.to_string()) } else { None };
+    let message = |op| if let Action::Message(text) = op { Some(text.to_string()) } else { None };
     let ops = common::ops(&settings(), "p.mpf", text).unwrap();
     let messages: Vec<String> = ops.into_iter().filter_map(message).collect();
     assert_eq!(messages, ["PART 5 OF 2.5", "alarm 66001: CHECK"]);

@@ -272,7 +272,7 @@ fn program(parts: &[Part]) -> String {
 
 fn run(text: &str) -> Vec<f64> {
     let records = common::sinumerik::run(text).unwrap_or_else(|error| panic!("{error}\n{text}"));
-    records.iter().filter_map(|record| Some(record.op.pose()?.point.x)).collect()
+    records.iter().filter_map(|record| Some(record.action.position()?.point.x)).collect()
 }
 
 proptest! {

@@ -3,8 +3,9 @@
 mod common;
 
 use common::sinumerik::{blocks, degrees, near, points, poses, v};
-use program::{Op, Orientation};
+use program::Axes;
 use std::f64::consts::FRAC_1_SQRT_2;
+use toolpost_control::{Action, Orientation};
 
 /// The tool axis and the point X1 Y2 Z3 in the plane of a `CYCLE800` with these arguments.
 fn swivelled(arguments: &str) -> (geom::Vec3, geom::Vec3) {
@@ -112,21 +113,23 @@ fn an_additive_plane_turns_in_the_axes_of_the_last() {
 fn swivelling_lifts_as_asked_and_makes_the_position_unknown() {
     let ops =
         blocks("CYCLE800(1,\"\",0,57,0,0,0,0,0,0,0,0,0,1)\nG0 X1\nG0 Y2\nG0 Z3\nCYCLE800()\nG0 X1");
-    assert_eq!(ops[0], Op::Home(0b100));
+    assert_eq!(ops[0], Action::Home(Axes::Z));
     let poses = poses(&ops);
     assert!(poses[0].point.x == 1.0 && poses[0].point.y.is_nan());
     near(poses[2].point, v(1.0, 2.0, 3.0));
     assert!(matches!(poses[3].orientation, Orientation::Rotary { .. }));
     assert!(degrees(&poses[3]).0[0].is_nan() && poses[3].point.y.is_nan());
     let all = blocks("CYCLE800(2,\"\",0,57,0,0,0,10,0,0,0,0,0,1)");
-    assert_eq!(all[0], Op::Home(0b111));
+    assert_eq!(all[0], Action::Home(Axes::LINEAR));
 }
 
 #[test]
 fn an_arc_in_a_swivelled_plane_lies_in_that_plane() {
     let ops =
         blocks("CYCLE800(0,\"\",0,57,0,0,0,90,0,0,0,0,0,1)\nG0 X0 Y0\nZ0\nG2 X20 Y0 I10 J0 F100");
-    let Some(Op::Arc(arc)) = ops.iter().find(|op| matches!(op, Op::Arc(_))) else { panic!() };
+    let Some(Action::Arc(arc)) = ops.iter().find(|op| matches!(op, Action::Arc(_))) else {
+        panic!()
+    };
     near(arc.center, v(10.0, 0.0, 0.0));
     // -Z of the plane is +Y of the work frame.
     near(arc.normal, v(0.0, 1.0, 0.0));

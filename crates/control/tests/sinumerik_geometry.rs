@@ -4,7 +4,8 @@
 mod common;
 
 use common::sinumerik::{arcs, blocks, holes, near, points, poses, v};
-use program::{Compensation, Op, Spindle};
+use program::{Compensation, Spindle};
+use toolpost_control::Action;
 
 #[test]
 fn a_scale_multiplies_from_the_zero_point_and_is_deleted_by_the_next_frame() {
@@ -34,7 +35,7 @@ fn an_arc_in_an_even_scale_is_a_larger_arc() {
 fn a_mirror_turns_arcs_and_compensation_round() {
     let ops = blocks("MIRROR X0\nG0 X5 Y0\nG1 G41 X10 Y0\nG2 X20 Y0 I5 J0\nG40 G1 X30");
     assert_eq!(poses(&ops)[1].point, v(-10.0, 0.0, 100.0));
-    assert!(ops.contains(&Op::Compensation(Compensation::Right(Some(1)))), "{ops:?}");
+    assert!(ops.contains(&Action::Compensation(Compensation::Right(Some(1)))), "{ops:?}");
     let arc = arcs("MIRROR X0\nG0 X10 Y0\nG2 X20 Y0 I5 J0")[0];
     near(arc.center, v(-15.0, 0.0, 100.0));
     near(arc.normal, v(0.0, 0.0, 1.0));
@@ -112,19 +113,19 @@ fn threads_go_in_step_with_the_spindle() {
     let threads: Vec<_> = ops
         .iter()
         .filter_map(|op| match op {
-            Op::Thread(thread) => Some((thread.end.point.z, thread.pitch)),
+            Action::Thread(thread) => Some((thread.end.point.z, thread.pitch)),
             _ => None,
         })
         .collect();
     assert_eq!(threads, [(50.0, 2.0), (40.0, 2.0), (50.0, 1.5), (60.0, 1.5)]);
-    let spindles: Vec<_> = ops.iter().filter(|op| matches!(op, Op::Spindle(_))).collect();
+    let spindles: Vec<_> = ops.iter().filter(|op| matches!(op, Action::Spindle(_))).collect();
     let expected = [
-        Op::Spindle(Spindle::Clockwise(500.0)),
-        Op::Spindle(Spindle::Clockwise(200.0)),
-        Op::Spindle(Spindle::CounterClockwise(200.0)),
-        Op::Spindle(Spindle::Clockwise(200.0)),
-        Op::Spindle(Spindle::Off),
-        Op::Spindle(Spindle::Clockwise(200.0)),
+        Action::Spindle(Spindle::Clockwise(500.0)),
+        Action::Spindle(Spindle::Clockwise(200.0)),
+        Action::Spindle(Spindle::CounterClockwise(200.0)),
+        Action::Spindle(Spindle::Clockwise(200.0)),
+        Action::Spindle(Spindle::Off),
+        Action::Spindle(Spindle::Clockwise(200.0)),
     ];
     assert_eq!(spindles, expected.iter().collect::<Vec<_>>());
 }
@@ -132,8 +133,9 @@ fn threads_go_in_step_with_the_spindle() {
 #[test]
 fn spindle_and_axes_are_positioned() {
     let ops = blocks("S500 M3\nSPOS=90\nM3\nM19\nPOS[X]=5 POS[C]=DC(90)\nY3");
-    let off = ops.iter().filter(|op| **op == Op::Spindle(Spindle::Off)).count();
+    let off = ops.iter().filter(|op| **op == Action::Spindle(Spindle::Off)).count();
     assert_eq!(off, 2);
-    let moves: Vec<_> = ops.iter().filter(|op| matches!(op, Op::Rapid(_) | Op::Line(_))).collect();
-    assert!(matches!(moves[..], [Op::Rapid(first), Op::Rapid(_)] if first.point.x == 5.0));
+    let moves: Vec<_> =
+        ops.iter().filter(|op| matches!(op, Action::Rapid(_) | Action::Line(_))).collect();
+    assert!(matches!(moves[..], [Action::Rapid(first), Action::Rapid(_)] if first.point.x == 5.0));
 }

@@ -7,9 +7,9 @@
 mod common;
 
 use geom::Vec3;
-use program::{Diagnostic, Record};
+use program::Diagnostic;
 use std::path::PathBuf;
-use toolpost_control::{Setup, read};
+use toolpost_control::{Event, Setup, read};
 
 /// A program of the judge.
 struct Case {
@@ -106,8 +106,8 @@ fn moved(case: &Case, text: &str) -> (Vec<Vec3>, Option<Box<Diagnostic>>) {
     let Case { definitions, called, .. } = case;
     let program = format!("{definitions}{head}F1000 T1\n{rest}{end}\n{called}");
     let mut points = Vec::new();
-    let ran = read(&settings, "judge.mpf", program.as_bytes(), &mut |record: Record| {
-        points.extend(record.op.pose().map(|pose| pose.point));
+    let ran = read(&settings, "judge.mpf", program.as_bytes(), &mut |record: Event| {
+        points.extend(record.action.position().map(|pose| pose.point));
         Ok(())
     });
     (points, ran.err())

@@ -4,10 +4,9 @@ mod common;
 
 use common::sinumerik::{run, settings};
 use geom::Vec3;
-use program::{Op, Orientation};
 use proptest::prelude::*;
 use std::fmt::Write;
-use toolpost_control::read;
+use toolpost_control::{Action, Orientation, read};
 
 /// One block of a random program. Lengths are thousandths of a mm, angles thousandths of a degree.
 #[derive(Clone, Debug)]
@@ -183,20 +182,20 @@ fn near(a: Vec3, b: Vec3) -> bool {
     a.distance(b) < 1e-6 * (1.0 + b.length())
 }
 
-fn check(expected: &Expected, op: &Op, cycle: Option<program::Cycle>) -> bool {
+fn check(expected: &Expected, op: &Action, cycle: Option<program::Cycle>) -> bool {
     match (expected, op) {
-        (Expected::Move { rapid, point, degrees }, Op::Rapid(pose) | Op::Line(pose)) => {
+        (Expected::Move { rapid, point, degrees }, Action::Rapid(pose) | Action::Line(pose)) => {
             let Orientation::Rotary { degrees: found, .. } = pose.orientation else { return false };
-            matches!(op, Op::Rapid(_)) == *rapid
+            matches!(op, Action::Rapid(_)) == *rapid
                 && near(pose.point, *point)
                 && found == [degrees[0], 0.0, degrees[1]]
         }
-        (Expected::Arc { end, center, ccw }, Op::Arc(arc)) => {
+        (Expected::Arc { end, center, ccw }, Action::Arc(arc)) => {
             near(arc.end.point, *end)
                 && near(arc.center, *center)
                 && arc.normal == if *ccw { Vec3::Z } else { Vec3::NEG_Z }
         }
-        (Expected::Hole { point, depth, safety, retract }, Op::Hole(pose)) => {
+        (Expected::Hole { point, depth, safety, retract }, Action::Hole(pose)) => {
             let close = |a: f64, b: f64| (a - b).abs() < 1e-6;
             near(pose.point, *point)
                 && cycle.is_some_and(|cycle| {
@@ -284,9 +283,9 @@ proptest! {
         let mut cycle = None;
         let mut wanted = expected.iter();
         for record in records.iter().filter(|record| record.line > 2) {
-            match &record.op {
-                Op::Cycle(c) => cycle = Some(**c),
-                op @ (Op::Rapid(_) | Op::Line(_) | Op::Arc(_) | Op::Hole(_)) => {
+            match &record.action {
+                Action::Cycle(c) => cycle = Some(**c),
+                op @ (Action::Rapid(_) | Action::Line(_) | Action::Arc(_) | Action::Hole(_)) => {
                     let want = wanted.next();
                     let fits = want.is_some_and(|want| check(want, op, cycle));
                     prop_assert!(fits, "{op:?} is not {want:?} in\n{text}");

@@ -10,7 +10,7 @@ fn every_seed_of_the_fuzz_target_runs() {
         let path = entry.unwrap().path();
         let text = std::fs::read_to_string(&path).unwrap();
         let records = common::sinumerik::run(&text).unwrap_or_else(|e| panic!("{path:?}: {e}"));
-        assert_eq!(records.last().unwrap().op, program::Op::End);
+        assert_eq!(records.last().unwrap().action, toolpost_control::Action::End);
         count += 1;
     }
     assert!(count >= 4);

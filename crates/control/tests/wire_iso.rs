@@ -3,17 +3,17 @@
 mod common;
 
 use geom::Vec3;
-use program::{ArcTo, Compensation, Diagnostic, Feed, Op, Pose};
-use toolpost_control::{Dialect, Settings, Wire};
+use program::{ArcTo, Compensation, Diagnostic, Feed};
+use toolpost_control::{Action, Dialect, Position, Settings, Wire};
 
-fn run(dialect: Dialect, text: &str, height: Option<f64>) -> Result<Vec<Op>, Box<Diagnostic>> {
+fn run(dialect: Dialect, text: &str, height: Option<f64>) -> Result<Vec<Action>, Box<Diagnostic>> {
     let wire = Wire { height, thread: Some(60), cut: Some(50) };
     let settings = Settings { wire, ..Settings::new(dialect, [false; 3]) };
     common::ops(&settings, "part.nc", text)
 }
 
-fn at(x: f64, y: f64) -> Pose {
-    Pose::new(Vec3::new(x, y, 0.0), Vec3::Z)
+fn at(x: f64, y: f64) -> Position {
+    Position::new(Vec3::new(x, y, 0.0), Vec3::Z)
 }
 
 /// Nothing names Z, and no feed: the wire has none.
@@ -23,15 +23,15 @@ fn a_die_with_the_controls_offset() {
                 N4 G3 X0. Y10. I-10. J0.\nN5 G1 G40 X0. Y0.\nN6 M50\nN7 M2\n%\n";
     let arc = ArcTo { end: at(0.0, 10.0), center: Vec3::ZERO, normal: Vec3::Z, turns: 0 };
     let expected = [
-        Op::Rapid(at(0.0, 0.0)),
-        Op::ThreadWire,
-        Op::Compensation(Compensation::Left(Some(1))),
-        Op::Line(at(10.0, 0.0)),
-        Op::Arc(Box::new(arc)),
-        Op::Compensation(Compensation::Off),
-        Op::Line(at(0.0, 0.0)),
-        Op::CutWire,
-        Op::End,
+        Action::Rapid(at(0.0, 0.0)),
+        Action::ThreadWire,
+        Action::Compensation(Compensation::Left(Some(1))),
+        Action::Line(at(10.0, 0.0)),
+        Action::Arc(Box::new(arc)),
+        Action::Compensation(Compensation::Off),
+        Action::Line(at(0.0, 0.0)),
+        Action::CutWire,
+        Action::End,
     ];
     assert_eq!(run(Dialect::FanucWire, text, None).unwrap(), expected);
 }
@@ -41,22 +41,22 @@ fn u_and_v_count_at_the_upper_plane_and_stay() {
     let text = "G21 G90 G0 X1. Y2. U3.\nM60\nG1 X5. F6.\nU0. V-4.\nG91 V4. X1.\nM50\nM30\n";
     // 3-4-5, and 45 degrees.
     let (half, point) = (0.5f64.sqrt(), |x: f64, y: f64| Vec3::new(x, y, 0.0));
-    let over = |x: f64, y: f64| Pose::new(point(x, y), Vec3::new(0.6, 0.0, 0.8));
-    let back = |x: f64, y: f64| Pose::new(point(x, y), Vec3::new(0.0, -half, half));
+    let over = |x: f64, y: f64| Position::new(point(x, y), Vec3::new(0.6, 0.0, 0.8));
+    let back = |x: f64, y: f64| Position::new(point(x, y), Vec3::new(0.0, -half, half));
     let expected = [
-        Op::Rapid(over(1.0, 2.0)),
-        Op::ThreadWire,
-        Op::Feed(Feed::PerMinute(6.0)),
-        Op::Line(over(5.0, 2.0)),
-        Op::Line(back(5.0, 2.0)),
-        Op::Line(at(6.0, 2.0)),
-        Op::CutWire,
-        Op::End,
+        Action::Rapid(over(1.0, 2.0)),
+        Action::ThreadWire,
+        Action::Feed(Feed::PerMinute(6.0)),
+        Action::Line(over(5.0, 2.0)),
+        Action::Line(back(5.0, 2.0)),
+        Action::Line(at(6.0, 2.0)),
+        Action::CutWire,
+        Action::End,
     ];
     let ops = run(Dialect::FanucWire, text, Some(4.0)).unwrap();
     assert_eq!(ops.len(), expected.len());
     for (op, expected) in ops.iter().zip(&expected) {
-        match (op.pose(), expected.pose()) {
+        match (op.position(), expected.position()) {
             (Some(pose), Some(wanted)) => {
                 assert_eq!(pose.point, wanted.point);
                 assert!(pose.axis().unwrap().distance(wanted.axis().unwrap()) < 1e-15);
@@ -73,7 +73,9 @@ fn the_control_leans_the_wire_to_either_side_of_its_way() {
     };
     let tapers = |dialect, text: &str| -> Vec<f64> {
         let ops = run(dialect, text, None).unwrap();
-        ops.iter().filter_map(|op| if let Op::Taper(a) = op { Some(*a) } else { None }).collect()
+        ops.iter()
+            .filter_map(|op| if let Action::Taper(a) = op { Some(*a) } else { None })
+            .collect()
     };
     assert_eq!(tapers(Dialect::FanucWire, &text("T1.5", "T30.")), [1.5, -30.0, 0.0]);
     assert_eq!(tapers(Dialect::Sodick, &text("A1.5", "A30.")), [1.5, -30.0, 0.0]);
@@ -90,7 +92,7 @@ fn each_maker_has_letters_of_its_own() {
     let offset = |dialect, text: &str| {
         let ops = run(dialect, text, None).unwrap();
         ops.into_iter()
-            .find_map(|op| if let Op::Compensation(side) = op { Some(side) } else { None })
+            .find_map(|op| if let Action::Compensation(side) = op { Some(side) } else { None })
     };
     let start = "G90 G0 X0. Y0.\nM60\n";
     let sodick = format!("G21 {start}C001\nT84\nG42 H003 G1 X5.\n");

@@ -344,7 +344,8 @@ mod tests {
         let cutter = Cutter::Cylinder { diameter: 1.0 };
         let tool = Tool { name: "MILL".into(), cutter, feed: 100.0, plunge: 50.0, speed: 9000.0 };
         let operation = Operation { name: "isolation".into(), tool, cuts };
-        let program = program("disc", &[(1, &operation)], &Heights { travel: 2.0, approach: 0.5 });
+        let heights = Heights { travel: 2.0, approach: 0.5 };
+        let program = program("disc", &[(1, &operation)], &heights).unwrap();
         let hole = Hole { shape: HoleShape::Round(Vec2::splat(10.0)), diameter: 1.0, plated: None };
         let picture = BoardPicture {
             outline: Some(&outline),

@@ -1,7 +1,7 @@
 //! A program as straight segments with what draws them, in the order of the program.
 
 use geom::{Arc, Vec3};
-use program::{Cycle, Op, Pose, Program, Tool};
+use program::{ArcTo, Course, Cycle, Op, Program, Tool};
 use std::collections::BTreeMap;
 
 /// A straight piece of the path.
@@ -39,8 +39,7 @@ fn round(value: f64) -> f64 {
 
 /// Hands every segment of `program` to `draw`, arcs as chords within `tolerance` mm, and answers the
 /// names of the tools in the order of their first calls; the first is that of a program that cuts
-/// before it calls one. A coordinate that is not a number breaks the path; the first pose has no way
-/// to it.
+/// before it calls one. The first pose has no way to it.
 pub fn walk(program: &Program, tolerance: f64, draw: &mut dyn FnMut(Segment)) -> Vec<String> {
     let mut names = vec![String::from("TOOL WITHOUT A CALL")];
     let mut calls = BTreeMap::new();
@@ -49,50 +48,52 @@ pub fn walk(program: &Program, tolerance: f64, draw: &mut dyn FnMut(Segment)) ->
     let mut tool = 0;
     for record in &program.records {
         let before = here;
-        let mut step = |cuts: bool, hole: bool, pose: &Pose| {
-            let to = pose.point;
-            let axis = pose.axis().unwrap_or(Vec3::Z);
-            if let Some(from) = here.filter(|from| from.is_finite() && to.is_finite()) {
+        let mut step = |cuts: bool, hole: bool, to: Vec3, axis: Vec3| {
+            if let Some(from) = here {
                 draw(Segment { cuts, tool, from, to, axis, length: from.distance(to), hole });
             }
             here = Some(to);
         };
         match &record.op {
-            Op::Rapid(pose) => step(false, false, pose),
-            Op::Line(pose) => step(true, false, pose),
-            Op::Thread(thread) => step(true, false, &thread.end),
+            Op::Rapid(pose) => step(false, false, pose.point(), pose.axis()),
+            Op::Line(pose) => step(true, false, pose.point(), pose.axis()),
+            Op::Thread(thread) => step(true, false, thread.end.point(), thread.end.axis()),
             Op::Probe(probe) => {
-                step(false, false, &probe.end);
+                step(false, false, probe.end.point(), probe.end.axis());
                 here = None;
             }
             Op::Hole(pose) => {
-                if let (Some(cycle), Some(axis)) = (cycle, pose.axis()) {
-                    let at = |height: f64| Pose::new(pose.point + axis * height, axis);
+                if let Some(cycle) = cycle {
+                    let axis = pose.axis();
+                    let at = |height: f64| pose.point() + axis * height;
                     // Across at the height of the tool, then down.
-                    let height = before.map_or(f64::NAN, |here| (here - pose.point).dot(axis));
+                    let height = before.map_or(f64::NAN, |here| (here - pose.point()).dot(axis));
                     if height > cycle.clearance {
-                        step(false, false, &at(height));
+                        step(false, false, at(height), axis);
                     }
-                    step(false, false, &at(cycle.clearance));
-                    step(true, true, &at(-cycle.depth));
-                    step(false, false, &at(cycle.retract));
+                    step(false, false, at(cycle.clearance), axis);
+                    step(true, true, at(-cycle.depth), axis);
+                    step(false, false, at(cycle.retract), axis);
                 }
             }
             Op::Arc(to) => {
-                let axis = to.end.axis().unwrap_or(Vec3::Z);
-                let arc = here.and_then(|from| {
-                    Arc::new(from, to.end.point, to.center, to.normal, to.turns, f64::MAX).ok()
-                });
-                if let Some(arc) = arc {
-                    let length = arc.length() / arc.chords(tolerance) as f64;
-                    let mut from = arc.start;
-                    for to in arc.flatten(tolerance) {
-                        draw(Segment { cuts: true, tool, from, to, axis, length, hole: false });
-                        from = to;
+                curve(here, to, tolerance, tool, draw);
+                here = Some(to.end.point());
+            }
+            Op::Oriented(to) => {
+                let end = *to.end.pose();
+                match to.course {
+                    Course::Rapid => step(false, false, end.point(), end.axis()),
+                    Course::Line => step(true, false, end.point(), end.axis()),
+                    Course::Arc { center, normal, turns } => {
+                        let to = ArcTo { end, center, normal, turns };
+                        curve(here, &to, tolerance, tool, draw);
+                        here = Some(end.point());
                     }
                 }
-                here = Some(to.end.point);
             }
+            // The way there is not known.
+            Op::Joints(_) | Op::MachineMove(_) => here = None,
             Op::Cycle(c) => cycle = Some(**c),
             Op::CycleOff => cycle = None,
             Op::Tool(called) => {
@@ -102,8 +103,56 @@ pub fn walk(program: &Program, tolerance: f64, draw: &mut dyn FnMut(Segment)) ->
                     names.push(name);
                 }
             }
-            _ => {}
+            // These draw nothing.
+            Op::Home
+            | Op::Feed(_)
+            | Op::PathMode(_)
+            | Op::Spindle(_)
+            | Op::SurfaceSpeed(_)
+            | Op::Coolant(_)
+            | Op::Beam(_)
+            | Op::Pulses(_)
+            | Op::Preselect(_)
+            | Op::Compensation(_)
+            | Op::Frame(_)
+            | Op::WorkOffset(_)
+            | Op::Surface(_)
+            | Op::Clamp(_)
+            | Op::Output(_)
+            | Op::Input(_)
+            | Op::Auxiliary(_)
+            | Op::ThreadWire
+            | Op::CutWire
+            | Op::Taper(_)
+            | Op::Dwell(_)
+            | Op::Stop
+            | Op::OptionalStop
+            | Op::Operation(_)
+            | Op::EndOfOperation
+            | Op::Comment(_)
+            | Op::Message(_)
+            | Op::End => {}
         }
     }
     names
+}
+
+/// Hands the chords of an arc from `here` to `draw`; none where no arc leads from there.
+fn curve(
+    here: Option<Vec3>,
+    to: &ArcTo,
+    tolerance: f64,
+    tool: usize,
+    draw: &mut dyn FnMut(Segment),
+) {
+    let end = to.end.point();
+    let arc =
+        here.and_then(|from| Arc::new(from, end, to.center, to.normal, to.turns, f64::MAX).ok());
+    let Some(arc) = arc else { return };
+    let (axis, length) = (to.end.axis(), arc.length() / arc.chords(tolerance) as f64);
+    let mut from = arc.start;
+    for to in arc.flatten(tolerance) {
+        draw(Segment { cuts: true, tool, from, to, axis, length, hole: false });
+        from = to;
+    }
 }

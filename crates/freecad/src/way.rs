@@ -25,11 +25,11 @@ impl Way {
             // To where it is.
             Op::Rapid(pose) if self.here == Some(*pose) => return,
             Op::CycleOff if self.here.is_some() && self.held.is_empty() => {
-                self.left = self.here.map(|here| here.point);
+                self.left = self.here.map(|here| here.point());
                 self.held.push(record);
                 return;
             }
-            Op::Rapid(pose) if self.left.is_some_and(|left| left.z == pose.point.z) => {
+            Op::Rapid(pose) if self.left.is_some_and(|left| left.z == pose.point().z) => {
                 self.here = Some(*pose);
                 self.held.push(record);
                 return;
@@ -45,11 +45,13 @@ impl Way {
         match &record.op {
             Op::Cycle(cycle) => self.cycle = Some(**cycle),
             Op::Hole(pose) => {
-                let over = self.cycle.map(|cycle| pose.point + Vec3::Z * cycle.retract);
-                let upright = pose.axis().is_none_or(|axis| axis == Vec3::Z);
-                self.here = over.filter(|_| upright).map(|point| Pose { point, ..*pose });
+                let over = self
+                    .cycle
+                    .and_then(|cycle| pose.at(pose.point() + Vec3::Z * cycle.retract).ok());
+                let upright = pose.axis() == Vec3::Z;
+                self.here = over.filter(|_| upright);
             }
-            Op::Tool(_) | Op::Home(_) | Op::WorkOffset(_) | Op::Probe(_) => self.here = None,
+            Op::Tool(_) | Op::Home | Op::WorkOffset(_) | Op::Probe(_) => self.here = None,
             op => self.here = op.pose().copied().or(self.here),
         }
         records.push(record);
@@ -58,10 +60,10 @@ impl Way {
     /// Whether what is held back leads to the place over the hole `to`, and the same cycle drills it.
     fn goes_to(&self, to: &Pose) -> bool {
         let (Some(left), Some(cycle)) = (self.left, self.cycle) else { return false };
-        let over = to.point + Vec3::Z * cycle.retract;
+        let over = to.point() + Vec3::Z * cycle.retract;
         let same = self.held.iter().any(|record| matches!(record.op, Op::Cycle(_)));
         let mut stops = self.held.iter().filter_map(|record| record.op.pose());
-        same && over.z == left.z && stops.all(|stop| stop.point == over)
+        same && over.z == left.z && stops.all(|stop| stop.point() == over)
     }
 
     /// What has been held back goes on: something else follows.

@@ -101,20 +101,20 @@ fn the_toolpath_has_the_measures_of_the_part() {
         match &record.op {
             Op::Operation(name) => operation = name,
             Op::Arc(arc) => {
-                let start = from.unwrap().point;
+                let start = from.unwrap().point();
                 let center = arc.center.with_z(start.z);
-                let (radius, end) = (start.distance(center), arc.end.point.with_z(start.z));
+                let (radius, end) = (start.distance(center), arc.end.point().with_z(start.z));
                 assert!((radius - end.distance(center)).abs() < 1e-3);
                 assert!((center.x - 45.0).abs() < 1e-3 && (center.y - 30.0).abs() < 1e-3);
                 circles.push((operation, radius));
                 if operation == "Helix" {
-                    levels.push(arc.end.point.z);
+                    levels.push(arc.end.point().z);
                 }
             }
             _ => {}
         }
         if let Some(pose) = record.op.pose() {
-            let point = pose.point;
+            let point = pose.point();
             assert!((6.0..=83.0).contains(&point.x) && (-20.0..=67.0).contains(&point.y));
             assert!((12.5..=20.0).contains(&point.z));
             from = Some(*pose);

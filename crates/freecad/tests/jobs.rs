@@ -59,9 +59,9 @@ fn an_operation_has_its_name_its_tool_and_its_moves() {
         ops[1..3],
         [Op::Spindle(Spindle::Clockwise(2000.0)), Op::Operation("Profile".into())]
     );
-    assert_eq!(ops[3].pose().unwrap().point, Vec3::new(1.0, 2.0, 20.0));
+    assert_eq!(ops[3].pose().unwrap().point(), Vec3::new(1.0, 2.0, 20.0));
     assert_eq!(ops[4], Op::Feed(Feed::PerMinute(200.0)));
-    assert_eq!(ops[5].pose().unwrap().point, Vec3::new(1.0, 2.0, -1.5));
+    assert_eq!(ops[5].pose().unwrap().point(), Vec3::new(1.0, 2.0, -1.5));
     assert_eq!(ops[6..], [Op::EndOfOperation, Op::End]);
 }
 
@@ -101,7 +101,7 @@ fn work_offsets_are_those_of_the_list() {
         { "label": "A", "commands": cut },
     ]));
     let offsets = ops(&job).into_iter().filter_map(|op| match op {
-        Op::WorkOffset(number) => Some(number),
+        Op::WorkOffset(offset) => Some(offset.number()),
         _ => None,
     });
     assert_eq!(offsets.collect::<Vec<_>>(), [54, 68]);
@@ -127,8 +127,8 @@ fn holes_of_one_cycle_stay_together() {
     let ops = ops(&operation(text));
     let from = ops.iter().position(|op| matches!(op, Op::Cycle(_))).unwrap();
     assert_eq!(ops[from], Op::Cycle(cycle.into()));
-    assert_eq!(ops[from + 1].pose().unwrap().point, Vec3::new(70.0, 15.0, 24.0));
-    assert_eq!(ops[from + 2].pose().unwrap().point, Vec3::new(70.0, 35.0, 24.0));
+    assert_eq!(ops[from + 1].pose().unwrap().point(), Vec3::new(70.0, 15.0, 24.0));
+    assert_eq!(ops[from + 2].pose().unwrap().point(), Vec3::new(70.0, 35.0, 24.0));
     assert!(matches!(ops[from + 3..], [Op::CycleOff, Op::Rapid(_), Op::EndOfOperation, Op::End]));
 }
 
@@ -205,7 +205,7 @@ fn an_arc_has_its_centre_from_its_start_and_its_k_means_nothing() {
     let ops = ops(&operation(&text));
     let Some(Op::Arc(arc)) = ops.iter().find(|op| matches!(op, Op::Arc(_))) else { panic!() };
     assert_eq!(arc.center.with_z(0.0), Vec3::new(1.0, 7.0, 0.0));
-    assert_eq!((arc.end.point, arc.normal), (Vec3::new(1.0, 12.0, -1.0), Vec3::Z));
+    assert_eq!((arc.end.point(), arc.normal), (Vec3::new(1.0, 12.0, -1.0), Vec3::Z));
 }
 
 /// A rotary axis is that of the machine; a job without one is made by every mill.
@@ -270,7 +270,7 @@ fn operations_keep_their_order_however_long_they_are() {
         json!({ "label": format!("of {moves}"), "commands": commands })
     });
     let ops = ops(&job(json!(operations)));
-    let mut stops: Vec<f64> = ops.iter().filter_map(|op| Some(op.pose()?.point.x)).collect();
+    let mut stops: Vec<f64> = ops.iter().filter_map(|op| Some(op.pose()?.point().x)).collect();
     stops.dedup();
     assert!(stops.into_iter().eq((1..=count).map(f64::from)));
     // A finding has its operation and the number of its command.

@@ -5,7 +5,7 @@ use crate::ground::Ground;
 use crate::heights::HeightMap;
 use crate::level::{Allowed, levelled, refused};
 use geom::Vec3;
-use program::{Diagnostic, Op, Pose, Program, Record, Spindle, Surface, lowering};
+use program::{Diagnostic, Op, Program, Record, Spindle, Surface, lowering};
 
 /// The program that probes the surface with its first tool before that cuts, and then has the surface where
 /// `program` has Z 0, as [`crate::level()`] has it of a map: [`Op::Surface`] says so. It stops before the probing and
@@ -44,7 +44,7 @@ pub fn follow(
     let first = first_tool(&records)?;
     // From the last place the tool goes up as high as it then goes across.
     if let Some(Op::Rapid(last)) = moves.last_mut().filter(|_| clear.is_finite()) {
-        last.point.z = last.point.z.max(clear);
+        *last = last.at(last.point().with_z(last.point().z.max(clear)))?;
     }
     surface.clear = clear;
     let line = records.get(first).map_or(0, |record| record.line);
@@ -58,7 +58,10 @@ pub fn follow(
 }
 
 /// The program as the control runs it that finds these heights: each pose that counts from the surface raised to it.
-pub fn raised(program: &Program, heights: &HeightMap) -> Program {
+///
+/// # Errors
+/// `no-pose` where a height is not finite.
+pub fn raised(program: &Program, heights: &HeightMap) -> Result<Program, Box<Diagnostic>> {
     let mut clear = f64::NEG_INFINITY;
     let mut program = program.clone();
     for record in &mut program.records {
@@ -72,11 +75,12 @@ pub fn raised(program: &Program, heights: &HeightMap) -> Program {
             Op::Thread(thread) => &mut thread.end,
             _ => continue,
         };
-        if pose.point.z < clear {
-            pose.point.z += heights.at(pose.point.truncate());
+        let point = pose.point();
+        if point.z < clear {
+            *pose = pose.at(point + Vec3::Z * heights.at(point.truncate()))?;
         }
     }
-    program
+    Ok(program)
 }
 
 /// Where the first tool is called, with which the surface is probed.
@@ -119,22 +123,22 @@ fn drilled(program: &Program) -> Result<Program, Box<Diagnostic>> {
                         refused(message, "drill it in a program of its own").line(*line),
                     ));
                 };
-                let at = |z: f64| Op::Rapid(Pose { point: pose.point + Vec3::Z * z, ..*pose });
-                let across = cycle.retract.max(height - pose.point.z);
-                moves.push(*line, at(across));
-                moves.push(*line, at(cycle.clearance));
+                let at = |z: f64| pose.at(pose.point() + Vec3::Z * z).map(Op::Rapid);
+                let across = cycle.retract.max(height - pose.point().z);
+                moves.push(*line, at(across)?);
+                moves.push(*line, at(cycle.clearance)?);
                 if let Some(feed) = cycle.feed {
                     moves.push(*line, Op::Feed(feed));
                 }
                 hole.into_iter().for_each(|op| moves.push(*line, op));
-                height = pose.point.z + cycle.retract;
+                height = pose.point().z + cycle.retract;
             }
             op => {
                 match op {
                     Op::Feed(found) => feed = Some(*found),
                     Op::Spindle(found) => spindle = *found,
                     Op::Tool(_) => height = f64::NEG_INFINITY,
-                    op => height = op.pose().map_or(height, |pose| pose.point.z),
+                    op => height = op.pose().map_or(height, |pose| pose.point().z),
                 }
                 moves.push(*line, op.clone());
             }

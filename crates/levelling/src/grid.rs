@@ -148,11 +148,11 @@ impl Probing {
         }
         let mut moves = vec![Op::Feed(Feed::PerMinute(feed))];
         for at in grid.order() {
-            let pose = |z: f64| Pose::new(Vec3::new(grid.column(at.0), grid.row(at.1), z), Vec3::Z);
-            let (end, place) = (pose(-reach), place(at));
-            moves.push(Op::Rapid(pose(travel)));
+            let pose = |z: f64| Pose::upright(Vec3::new(grid.column(at.0), grid.row(at.1), z));
+            let (end, place) = (pose(-reach)?, place(at));
+            moves.push(Op::Rapid(pose(travel)?));
             moves.push(Op::Probe(Box::new(Probe { end, away: false, must_answer: true, place })));
-            moves.push(Op::Rapid(pose(travel)));
+            moves.push(Op::Rapid(pose(travel)?));
         }
         Ok(moves)
     }

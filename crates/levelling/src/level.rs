@@ -4,7 +4,7 @@ use crate::course::{Way, course};
 use crate::ground::Ground;
 use crate::heights::HeightMap;
 use geom::{Arc, Vec2, Vec3};
-use program::{ArcTo, Compensation, Diagnostic, Feed, Op, Pose, Program, Record};
+use program::{ArcTo, Compensation, Diagnostic, Feed, Op, Pose, Program, Record, WorkOffset};
 use std::f64::consts::TAU;
 
 /// The most records of a levelled program, which are kept in memory.
@@ -76,7 +76,7 @@ pub(crate) struct Level<'a> {
     place: Option<Place>,
     /// Retract level of the cycle that holds, mm above the point of a hole.
     retract: f64,
-    work_offset: Option<u32>,
+    work_offset: Option<WorkOffset>,
     /// Z of the highest pose that keeps its distance from the surface, mm.
     pub(crate) follows: f64,
     /// Z of the lowest that is above all of it instead, mm.
@@ -122,7 +122,7 @@ impl<'a> Level<'a> {
                 self.inside(from, to)?;
                 for (t, z) in self.course(Way::Line(from, to))? {
                     let at = Way::Line(from, to).at(t);
-                    self.push(line, Op::Line(Pose::new(at.with_z(z), Vec3::Z)))?;
+                    self.push(line, Op::Line(Pose::upright(at.with_z(z))?))?;
                 }
                 self.arrive(to);
                 Ok(())
@@ -140,7 +140,7 @@ impl<'a> Level<'a> {
                     );
                     return Err(refused(message, "a higher retract level of the cycle"));
                 }
-                self.push(line, Op::Hole(Pose::new(point + Vec3::Z * height, Vec3::Z)))?;
+                self.push(line, Op::Hole(Pose::upright(point + Vec3::Z * height)?))?;
                 self.arrive(point + Vec3::Z * self.retract);
                 Ok(())
             }
@@ -154,8 +154,9 @@ impl<'a> Level<'a> {
     /// What is no move and stays as it is.
     fn modal(&mut self, op: &Op) -> Done {
         match op {
+            Op::Rapid(_) | Op::Line(_) | Op::Arc(_) | Op::Hole(_) => {}
             Op::Cycle(cycle) => self.retract = cycle.retract,
-            Op::Tool(_) | Op::Home(_) => self.place = None,
+            Op::Tool(_) | Op::Home => self.place = None,
             Op::WorkOffset(number) => match self.work_offset.replace(*number) {
                 Some(before) if before != *number => {
                     let message = "the program works in several work offsets, the map in one";
@@ -167,6 +168,11 @@ impl<'a> Level<'a> {
                 let message = "a thread, a probing move or a surface of its own in a program that is levelled";
                 return Err(refused(message, "post it as a program of its own"));
             }
+            Op::Oriented(_) | Op::Joints(_) | Op::MachineMove(_) => {
+                let message =
+                    "a move of a robot, or in machine coordinates, in a program that is levelled";
+                return Err(refused(message, "post it as a program of its own"));
+            }
             Op::Compensation(Compensation::Left(_) | Compensation::Right(_)) => {
                 let message = "radius compensation: the way of the tool's middle is the control's";
                 return Err(refused(message, "post the way of the tool's middle"));
@@ -175,7 +181,32 @@ impl<'a> Level<'a> {
                 let message = "a feed as inverse time, and moves that are divided";
                 return Err(refused(message, "post with feeds in mm/min"));
             }
-            _ => {}
+            Op::Feed(_)
+            | Op::Compensation(Compensation::Off)
+            | Op::CycleOff
+            | Op::PathMode(_)
+            | Op::Spindle(_)
+            | Op::SurfaceSpeed(_)
+            | Op::Coolant(_)
+            | Op::Beam(_)
+            | Op::Pulses(_)
+            | Op::Preselect(_)
+            | Op::Frame(_)
+            | Op::Clamp(_)
+            | Op::Output(_)
+            | Op::Input(_)
+            | Op::Auxiliary(_)
+            | Op::ThreadWire
+            | Op::CutWire
+            | Op::Taper(_)
+            | Op::Dwell(_)
+            | Op::Stop
+            | Op::OptionalStop
+            | Op::Operation(_)
+            | Op::EndOfOperation
+            | Op::Comment(_)
+            | Op::Message(_)
+            | Op::End => {}
         }
         Ok(())
     }
@@ -186,7 +217,7 @@ impl<'a> Level<'a> {
             return Err(refused(message, "allow a larger deviation, or level it in parts"));
         }
         if let Some(pose) = op.pose().filter(|_| !matches!(op, Op::Rapid(_))) {
-            self.follows = self.follows.max(pose.point.z);
+            self.follows = self.follows.max(pose.point().z);
         }
         self.records.push(Record { line, op });
         Ok(())
@@ -228,7 +259,7 @@ impl<'a> Level<'a> {
 
     fn rapid_to(&mut self, line: u32, said: Vec3, height: f64) -> Done {
         self.place = Some(Place { said, height });
-        self.push(line, Op::Rapid(Pose::new(said.with_z(height), Vec3::Z)))
+        self.push(line, Op::Rapid(Pose::upright(said.with_z(height))?))
     }
 
     /// Where a cut to `to` starts: the tool goes down to the surface's height there, unless the cut itself goes
@@ -240,7 +271,7 @@ impl<'a> Level<'a> {
         };
         let wanted = said.z + self.ground.at(said.truncate());
         if wanted != height && said.truncate() != to.truncate() {
-            self.push(line, Op::Line(Pose::new(said.with_z(wanted), Vec3::Z)))?;
+            self.push(line, Op::Line(Pose::upright(said.with_z(wanted))?))?;
         }
         Ok(said)
     }
@@ -269,7 +300,7 @@ impl<'a> Level<'a> {
         let way = Way::Arc(&arc);
         let mut before = 0.0;
         for (t, z) in self.course(way)? {
-            let pose = Pose::new(way.at(t).with_z(z), Vec3::Z);
+            let pose = Pose::upright(way.at(t).with_z(z))?;
             let sweep = (t - before) * arc.sweep;
             let op = match sweep * arc.radius() < SHORT {
                 true => Op::Line(pose),
@@ -305,13 +336,10 @@ impl<'a> Level<'a> {
 
 /// The point of a pose whose tool is upright.
 fn upright(pose: &Pose) -> Result<Vec3, Box<Diagnostic>> {
-    if pose.axis() != Some(Vec3::Z) {
+    if pose.axis() != Vec3::Z {
         return Err(refused("the tool is tilted", "level a program whose tool is upright"));
     }
-    if !pose.point.is_finite() {
-        return Err(refused("a place that is not known", "name every axis"));
-    }
-    Ok(pose.point)
+    Ok(pose.point())
 }
 
 pub(crate) fn refused(message: impl Into<String>, help: &str) -> Box<Diagnostic> {

@@ -1,14 +1,14 @@
 //! Programs that find the surface themselves: written, proven, and what goes wrong.
 
 use geom::{Vec2, Vec3};
-use program::{ArcTo, Cycle, CycleKind, Feed, Op, Pose, Probe, Program, Spindle, Tool};
+use program::{ArcTo, Cycle, CycleKind, Feed, Op, Pose, Probe, Program, Spindle, Tool, WorkOffset};
 use toolpost_levelling::{Allowed, Grid, Probing, follow};
 
 const ALLOWED: Allowed = Allowed { deviation: 0.005, outside: 5.0 };
 const PROBING: Probing = Probing { travel: 2.0, reach: 1.0, feed: 50.0 };
 
 fn pose(x: f64, y: f64, z: f64) -> Pose {
-    Pose::new(Vec3::new(x, y, z), Vec3::Z)
+    Pose::upright(Vec3::new(x, y, z)).unwrap()
 }
 
 fn grid(columns: usize, rows: usize) -> Grid {
@@ -224,7 +224,7 @@ fn arcs_too_short_for_the_decimals_become_one_line() {
     let arcs = |radius: f64, sweep: f64| {
         let center = Vec3::new(10.0 + radius, 5.0, -0.1);
         let spoke = Vec3::new(-sweep.cos(), sweep.sin(), 0.0) * radius;
-        let end = Pose::new(center + spoke, Vec3::Z);
+        let end = Pose::upright(center + spoke).unwrap();
         let arc = Op::Arc(Box::new(ArcTo { end, center, normal: Vec3::NEG_Z, turns: 0 }));
         let allowed = Allowed { deviation: 0.0001, ..ALLOWED };
         let cuts = board(vec![arc, Op::Line(pose(30.0, 5.0, -0.1))]);
@@ -296,7 +296,7 @@ fn what_does_not_follow_a_surface_is_refused() {
         peck: None,
     };
     for ops in [
-        vec![Op::WorkOffset(55)],
+        vec![Op::WorkOffset(WorkOffset::numbered(55).unwrap())],
         vec![Op::Cycle(Box::new(cycle)), Op::Hole(pose(10.0, 15.0, 0.0))],
         vec![Op::Probe(Box::new(probe))],
         vec![surface.unwrap().op.clone()],

@@ -1,7 +1,9 @@
 //! Levelled programs beside the surface that they follow, sample by sample.
 
 use geom::{Arc, Vec2, Vec3};
-use program::{ArcTo, Cycle, CycleKind, Feed, Op, Pose, Program, Record, Spindle, Tool};
+use program::{
+    ArcTo, Cycle, CycleKind, Feed, Op, Pose, Program, Record, Spindle, Tool, WorkOffset,
+};
 use proptest::prelude::*;
 use toolpost_levelling::{Allowed, Grid, HeightMap, Probing, follow, level, raised, read};
 
@@ -16,7 +18,7 @@ fn map(heights: &[f64]) -> HeightMap {
 }
 
 fn pose(x: f64, y: f64, z: f64) -> Pose {
-    Pose::new(Vec3::new(x, y, z), Vec3::Z)
+    Pose::upright(Vec3::new(x, y, z)).unwrap()
 }
 
 fn program(ops: Vec<Op>) -> Program {
@@ -30,7 +32,7 @@ fn ways(program: &Program) -> Vec<(u32, bool, Arc, bool)> {
     let mut here: Option<Vec3> = None;
     let mut ways = Vec::new();
     for record in &program.records {
-        let Some(end) = record.op.pose().map(|pose| pose.point) else { continue };
+        let Some(end) = record.op.pose().map(|pose| pose.point()) else { continue };
         if let Some(start) = here.replace(end) {
             let line = Arc { start, end, center: start, normal: Vec3::Z, sweep: 0.0 };
             match &record.op {
@@ -81,12 +83,12 @@ fn moves() -> impl Strategy<Value = Move> {
 fn source(moves: &[Move]) -> Program {
     let mut ops = vec![Op::Rapid(pose(20.0, 20.0, 2.0)), Op::Feed(Feed::PerMinute(100.0))];
     let mut here = Vec3::new(20.0, 20.0, -0.1);
-    ops.push(Op::Line(Pose::new(here, Vec3::Z)));
+    ops.push(Op::Line(Pose::upright(here).unwrap()));
     for step in moves {
         match *step {
             Move::Line(end) => {
                 here = Vec3::from_array(end);
-                ops.push(Op::Line(Pose::new(here, Vec3::Z)));
+                ops.push(Op::Line(Pose::upright(here).unwrap()));
             }
             Move::Arc { center, sweep, turns, rise, clockwise } => {
                 let center = Vec2::from_array(center);
@@ -99,7 +101,7 @@ fn source(moves: &[Move]) -> Program {
                 let end = center + Vec2::from_angle(sense * sweep).rotate(spoke);
                 here = end.extend((here.z + rise).min(0.0));
                 ops.push(Op::Arc(Box::new(ArcTo {
-                    end: Pose::new(here, Vec3::Z),
+                    end: Pose::upright(here).unwrap(),
                     center: center.extend(0.0),
                     normal: Vec3::Z * sense,
                     turns,
@@ -178,7 +180,8 @@ fn with_tool(mut source: Program) -> Program {
 /// What the control makes of a program that finds this surface.
 fn found(source: &Program, map: &HeightMap, steepness: f64, allowed: &Allowed) -> Program {
     let grid = Grid::new(Vec2::ZERO, Vec2::new(60.0, 40.0), 4, 3).unwrap();
-    raised(&follow(&with_tool(source.clone()), &grid, &PROBING, steepness, allowed).unwrap(), map)
+    let found = follow(&with_tool(source.clone()), &grid, &PROBING, steepness, allowed).unwrap();
+    raised(&found, map).unwrap()
 }
 
 proptest! {
@@ -242,7 +245,7 @@ fn a_flat_surface_shifts_a_program_and_divides_nothing() {
     for (was, is) in source.records.iter().zip(&levelled.records) {
         assert_eq!(was.line, is.line);
         if let (Some(was), Some(is)) = (was.op.pose(), is.op.pose()) {
-            assert!((was.point + Vec3::Z * 0.25).distance(is.point) < 1e-12);
+            assert!((was.point() + Vec3::Z * 0.25).distance(is.point()) < 1e-12);
         }
     }
     assert_eq!(level(&source, &map(&[0.0; 12]), &ALLOWED).unwrap(), source);
@@ -293,7 +296,8 @@ fn rapids_are_lifted_and_holes_go_down_from_their_surface() {
     let mut heights = [0.0; 12];
     (heights[0], heights[11], heights[5]) = (-0.2, 0.3, 0.4);
     let levelled = level(&source, &map(&heights), &ALLOWED).unwrap();
-    let z: Vec<f64> = levelled.records.iter().filter_map(|r| Some(r.op.pose()?.point.z)).collect();
+    let z: Vec<f64> =
+        levelled.records.iter().filter_map(|r| Some(r.op.pose()?.point().z)).collect();
     assert_eq!(z, [3.4, -0.2, 0.3, 3.4]);
 }
 
@@ -311,7 +315,8 @@ fn rapids_straight_down_keep_their_distance_from_the_surface() {
     let mut heights = [0.0; 12];
     (heights[0], heights[11], heights[5]) = (-0.2, 0.3, 0.4);
     let levelled = level(&source, &map(&heights), &ALLOWED).unwrap();
-    let at: Vec<Vec3> = levelled.records.iter().filter_map(|r| Some(r.op.pose()?.point)).collect();
+    let at: Vec<Vec3> =
+        levelled.records.iter().filter_map(|r| Some(r.op.pose()?.point())).collect();
     let right = [
         (0., 0., 2.4),
         (0., 0., 0.3),
@@ -338,7 +343,7 @@ fn what_cannot_be_levelled_is_refused_with_its_line() {
     refuses(vec![Op::Line(pose(1.0, 1.0, 0.0))], "a place that is not known");
     refuses(vec![above.clone(), Op::Line(pose(66.0, 1.0, 0.0))], "6.000 mm beyond");
     refuses(vec![above.clone(), Op::Rapid(pose(2.0, 1.0, -1.0))], "a rapid along the board");
-    let tilted = Pose::new(Vec3::ZERO, Vec3::X);
+    let tilted = Pose::new(Vec3::ZERO, Vec3::X).unwrap();
     refuses(vec![above.clone(), Op::Line(tilted)], "tilted");
     let arc = ArcTo {
         end: pose(1.0, 1.0, 2.0),
@@ -350,8 +355,11 @@ fn what_cannot_be_levelled_is_refused_with_its_line() {
     let flat = ArcTo { normal: Vec3::Z, ..arc };
     refuses(vec![above.clone(), Op::Arc(Box::new(flat))], "not equally far");
     refuses(vec![Op::Feed(Feed::InverseTime(3.0))], "inverse time");
-    refuses(vec![Op::WorkOffset(54), Op::WorkOffset(55)], "several work offsets");
-    let nowhere = Pose::new(Vec3::new(f64::NAN, 0.0, 0.0), Vec3::Z);
+    refuses(
+        vec![Op::WorkOffset(WorkOffset::FIRST), Op::WorkOffset(WorkOffset::numbered(55).unwrap())],
+        "several work offsets",
+    );
+    let nowhere = Pose::upright(Vec3::new(f64::NAN, 0.0, 0.0)).unwrap();
     refuses(vec![above, Op::Line(nowhere)], "not known");
     for deviation in [0.0, 1e-5, f64::NAN] {
         let allowed = Allowed { deviation, ..ALLOWED };

@@ -7,7 +7,6 @@
 
 use crate::{Machine, Mount, RotaryAxis, Wire};
 use geom::{Vec2, Vec3, rotate};
-use program::{Orientation, Pose};
 
 impl Machine {
     /// The tool tip (mm, work frame) and the tool axis (unit vector, work frame) for positions of the
@@ -45,19 +44,6 @@ impl Machine {
             axis.point + rotate(p - axis.point, axis.axis, axis.turned(degrees[axis.index()]))
         });
         turned - zero - self.head_swing(degrees, tool_length)
-    }
-
-    /// The tool tip and tool axis, both in the work frame, of a pose as a block gives it.
-    pub fn resolve(&self, pose: &Pose, tool_length: f64) -> (Vec3, Vec3) {
-        match pose.orientation {
-            Orientation::Axis(axis) => (pose.point, axis),
-            Orientation::Rotary { degrees, tool_center: true } => {
-                (pose.point, self.axis_at(degrees))
-            }
-            Orientation::Rotary { degrees, tool_center: false } => {
-                self.forward(pose.point, degrees, tool_length)
-            }
-        }
     }
 
     /// By how much the turned head moves the tip of a tool of `tool_length` from where it was.

@@ -10,6 +10,8 @@
 //! Lengths are mm, feeds mm/min, angles of rotary axes degrees where they are axis positions
 //! (`degrees` in the name) and radians elsewhere.
 
+#![warn(clippy::wildcard_enum_match_arm)]
+
 pub mod import;
 pub mod inverse;
 pub mod kinematics;

@@ -11,7 +11,7 @@
 
 use crate::Machine;
 use geom::{Arc, Vec3};
-use program::{Cycle, CycleKind, Feed, Op, Orientation, Pose, Program, Spindle, lowering};
+use program::{ArcTo, Course, Cycle, CycleKind, Feed, Op, Pose, Program, Spindle, lowering};
 use serde::Serialize;
 
 /// A tool change, seconds: a common machining centre, chip to chip.
@@ -36,7 +36,7 @@ impl Times {
         self.cutting + self.rapid + self.dwell + self.tool_change
     }
 
-    /// The times of `program`, from either side: poses of the work frame or positions of axes.
+    /// The times of `program`.
     pub fn of(program: &Program, machine: &Machine) -> Times {
         let mut clock = Clock::new(machine);
         program.records.iter().for_each(|record| clock.run(&record.op));
@@ -50,7 +50,7 @@ pub struct Clock<'a> {
     machine: &'a Machine,
     /// What has been spent so far.
     pub times: Times,
-    here: Option<Pose>,
+    here: Option<Spot>,
     /// Degrees of A, B, C.
     degrees: [f64; 3],
     feed: Feed,
@@ -75,37 +75,76 @@ impl<'a> Clock<'a> {
     /// Adds the time of one record.
     pub fn run(&mut self, op: &Op) {
         match op {
-            Op::Rapid(pose) => self.rapid(pose),
-            Op::Line(pose) => {
-                let length = self.here.map_or(0.0, |here| known(pose.point - here.point).length());
-                self.cut(pose, length);
-            }
-            Op::Arc(to) => {
-                let arc = self.here.and_then(|here| {
-                    let end = to.end.point;
-                    Arc::new(here.point, end, to.center, to.normal, to.turns, f64::MAX).ok()
-                });
-                self.cut(&to.end, arc.map_or(0.0, |arc| arc.length()));
-            }
+            Op::Rapid(pose) => self.rapid(pose.into()),
+            Op::Line(pose) => self.line(pose.into()),
+            Op::Arc(to) => self.arc(to),
             Op::Thread(thread) => {
                 let feed = std::mem::replace(&mut self.feed, Feed::PerTurn(thread.pitch));
-                self.run(&Op::Line(thread.end));
+                self.line((&thread.end).into());
                 self.feed = feed;
             }
             // At the latest it ends there.
-            Op::Probe(probe) => self.run(&Op::Line(probe.end)),
+            Op::Probe(probe) => self.line((&probe.end).into()),
             Op::Hole(pose) => self.hole(pose),
+            Op::Oriented(to) => {
+                let end = *to.end.pose();
+                match to.course {
+                    Course::Rapid => self.rapid((&end).into()),
+                    Course::Line => self.line((&end).into()),
+                    Course::Arc { center, normal, turns } => {
+                        self.arc(&ArcTo { end, center, normal, turns });
+                    }
+                }
+            }
             Op::Cycle(cycle) => self.cycle = Some(**cycle),
             Op::CycleOff => self.cycle = None,
             Op::Feed(feed) => self.feed = *feed,
             Op::Spindle(spindle) => self.spindle = *spindle,
             Op::Tool(_) => self.times.tool_change += TOOL_CHANGE,
             Op::Dwell(seconds) => self.times.dwell += seconds,
-            _ => {}
+            // Where the axes are sent to, or how far it is, the program does not know.
+            Op::Joints(_) | Op::MachineMove(_) | Op::Home | Op::WorkOffset(_) => {}
+            // Who answers, or when, is not known; the rest takes no time of its own.
+            Op::Stop
+            | Op::OptionalStop
+            | Op::Input(_)
+            | Op::PathMode(_)
+            | Op::SurfaceSpeed(_)
+            | Op::Coolant(_)
+            | Op::Beam(_)
+            | Op::Pulses(_)
+            | Op::Preselect(_)
+            | Op::Compensation(_)
+            | Op::Frame(_)
+            | Op::Surface(_)
+            | Op::Clamp(_)
+            | Op::Output(_)
+            | Op::Auxiliary(_)
+            | Op::ThreadWire
+            | Op::CutWire
+            | Op::Taper(_)
+            | Op::Operation(_)
+            | Op::EndOfOperation
+            | Op::Comment(_)
+            | Op::Message(_)
+            | Op::End => {}
         }
     }
 
-    fn rapid(&mut self, to: &Pose) {
+    fn line(&mut self, to: Spot) {
+        let length = self.here.map_or(0.0, |here| to.point.distance(here.point));
+        self.cut(to, length);
+    }
+
+    fn arc(&mut self, to: &ArcTo) {
+        let end: Spot = (&to.end).into();
+        let arc = self.here.and_then(|here| {
+            Arc::new(here.point, end.point, to.center, to.normal, to.turns, f64::MAX).ok()
+        });
+        self.cut(end, arc.map_or(0.0, |arc| arc.length()));
+    }
+
+    fn rapid(&mut self, to: Spot) {
         let (way, turn) = self.go(to);
         let linear = self.machine.linear.iter().zip(way.to_array()).map(|(axis, way)| {
             from_rest_to_rest(way, axis.rapid / 60.0, axis.acceleration * 1000.0)
@@ -116,7 +155,7 @@ impl<'a> Clock<'a> {
         self.times.rapid += linear.chain(rotary).fold(0.0, f64::max);
     }
 
-    fn cut(&mut self, to: &Pose, length: f64) {
+    fn cut(&mut self, to: Spot, length: f64) {
         let (way, turn) = self.go(to);
         let speed = match self.spindle {
             Spindle::Off => 0.0,
@@ -137,10 +176,10 @@ impl<'a> Clock<'a> {
 
     /// The moves of a hole, as if there were no cycle. Tapping goes in and out in step with the spindle.
     fn hole(&mut self, pose: &Pose) {
-        let Some(cycle) = self.cycle else { return self.rapid(pose) };
-        let axis = pose.axis().unwrap_or(Vec3::Z);
-        let at = |height: f64| Pose { point: pose.point + axis * height, ..*pose };
-        self.rapid(&at(cycle.clearance));
+        let Some(cycle) = self.cycle else { return self.rapid(pose.into()) };
+        let axis = pose.axis();
+        let at = |height: f64| Spot { point: pose.point() + axis * height, axis };
+        self.rapid(at(cycle.clearance));
         let feed = self.feed;
         if let Some(feed) = cycle.feed {
             self.feed = feed;
@@ -148,51 +187,47 @@ impl<'a> Clock<'a> {
         if let CycleKind::Tap { pitch, .. } = cycle.kind {
             self.feed = Feed::PerTurn(pitch);
             for height in [-cycle.depth, cycle.clearance] {
-                self.run(&Op::Line(at(height)));
+                self.line(at(height));
             }
             self.times.dwell += cycle.dwell;
-            self.rapid(&at(cycle.retract));
+            self.rapid(at(cycle.retract));
         } else if let Some(way) = cycle.kind.withdrawal() {
-            let beside = |height: f64| Pose { point: at(height).point + way.aside, ..*pose };
+            let beside = |height: f64| Spot { point: at(height).point + way.aside, axis };
             if let CycleKind::BackBore { through, .. } = cycle.kind {
                 let bored = self.feed;
-                self.rapid(&beside(cycle.clearance));
+                self.rapid(beside(cycle.clearance));
                 self.feed = through.unwrap_or(bored);
                 match through {
-                    Some(_) => self.run(&Op::Line(beside(-cycle.depth))),
-                    None => self.rapid(&beside(-cycle.depth)),
+                    Some(_) => self.line(beside(-cycle.depth)),
+                    None => self.rapid(beside(-cycle.depth)),
                 }
-                self.rapid(&at(-cycle.depth));
+                self.rapid(at(-cycle.depth));
                 self.feed = bored;
-                self.run(&Op::Line(at(0.0)));
+                self.line(at(0.0));
             } else {
-                self.run(&Op::Line(at(-cycle.depth)));
-                self.rapid(&beside(-cycle.depth));
+                self.line(at(-cycle.depth));
+                self.rapid(beside(-cycle.depth));
             }
             self.times.dwell += cycle.dwell;
-            self.rapid(&beside(cycle.retract));
-            self.rapid(&at(cycle.retract));
+            self.rapid(beside(cycle.retract));
+            self.rapid(at(cycle.retract));
         } else {
-            let pose = Pose::new(pose.point, axis);
-            let moves = lowering::hole(&cycle, &pose, self.spindle).unwrap_or_default();
+            let moves = lowering::hole(&cycle, pose, self.spindle).unwrap_or_default();
             moves.iter().for_each(|op| self.run(op));
         }
         self.feed = feed;
     }
 
-    /// Moves to a pose; returns the way of the linear axes in mm and of A, B, C in degrees.
-    fn go(&mut self, to: &Pose) -> (Vec3, [f64; 3]) {
-        let degrees = match to.orientation {
-            Orientation::Rotary { degrees, .. } => degrees,
-            Orientation::Axis(_) if self.here.is_some_and(|h| h.orientation == to.orientation) => {
-                self.degrees
-            }
-            Orientation::Axis(axis) => self.nearest(axis),
+    /// Moves to a spot; returns the way of the linear axes in mm and of A, B, C in degrees.
+    fn go(&mut self, to: Spot) -> (Vec3, [f64; 3]) {
+        let degrees = match self.here.is_some_and(|here| here.axis == to.axis) {
+            true => self.degrees,
+            false => self.nearest(to.axis),
         };
-        let way = self.here.map_or(Vec3::ZERO, |here| known(to.point - here.point));
+        let way = self.here.map_or(Vec3::ZERO, |here| to.point - here.point);
         let turn = [0, 1, 2].map(|i| degrees[i] - self.degrees[i]);
         self.degrees = degrees;
-        self.here = Some(*to);
+        self.here = Some(to);
         (way, turn)
     }
 
@@ -211,9 +246,17 @@ impl<'a> Clock<'a> {
     }
 }
 
-/// The way without the coordinates that are not known.
-fn known(way: Vec3) -> Vec3 {
-    Vec3::select(way.is_nan_mask(), Vec3::ZERO, way)
+/// Where the tool is on its way: tip and axis.
+#[derive(Clone, Copy, Debug)]
+struct Spot {
+    point: Vec3,
+    axis: Vec3,
+}
+
+impl From<&Pose> for Spot {
+    fn from(pose: &Pose) -> Spot {
+        Spot { point: pose.point(), axis: pose.axis() }
+    }
 }
 
 /// Seconds for `way` with the speed (per s) and the acceleration (per s²) of an axis.

@@ -15,7 +15,7 @@ fn times(ops: impl IntoIterator<Item = Op>) -> Times {
 }
 
 fn at(x: f64, y: f64, z: f64) -> Pose {
-    Pose::new(Vec3::new(x, y, z), Vec3::Z)
+    Pose::upright(Vec3::new(x, y, z)).unwrap()
 }
 
 fn assert_near(found: f64, wanted: f64) {
@@ -101,9 +101,9 @@ fn a_rotary_axis_may_be_the_slowest() {
     // A at 10 800°/min and 500°/s²: 90° takes 90/180 + 180/500 s.
     let mut program = Program::new("t");
     program.push(1, Op::Rapid(at(0.0, 0.0, 0.0)));
-    program.push(2, Op::Rapid(Pose::new(Vec3::X, Vec3::Y)));
+    program.push(2, Op::Rapid(Pose::new(Vec3::X, Vec3::Y).unwrap()));
     assert_near(Times::of(&program, &table_ac()).rapid, 0.86);
     program.push(3, Op::Feed(Feed::PerMinute(1000.0)));
-    program.push(4, Op::Line(Pose::new(Vec3::X, Vec3::Z)));
+    program.push(4, Op::Line(Pose::upright(Vec3::X).unwrap()));
     assert_near(Times::of(&program, &table_ac()).cutting, 0.5);
 }

@@ -2,7 +2,7 @@
 //!
 //! A control's records say what its blocks say: positions of rotary axes, coordinates that nobody knows
 //! yet, axes sent home. A neutral program says where the tool is: every pose complete and in the work
-//! frame. This crate goes from the one to the other:
+//! frame. This crate goes from the one to the other, and no other place does:
 //!
 //! - Rotary positions become a tool axis by the kinematics of the machine that the program was
 //!   written for.
@@ -16,10 +16,14 @@
 //!
 //! What cannot be told truly is refused with its line.
 
-use control::{Dialect, Settings, Setup, Wire};
+#![warn(clippy::wildcard_enum_match_arm)]
+
+use control::{Action, Dialect, Event, Orientation, Position, Settings, Setup, Wire};
 use geom::Vec3;
 use machine::{LengthOffset, Machine, Mount};
-use program::{Cycle, Diagnostic, FIRST_WORK_OFFSET, Op, Orientation, Pose, Program, Record, Tool};
+use program::{
+    ArcTo, Axes, Cycle, Diagnostic, Op, Pose, Probe, Program, Record, Thread, Tool, WorkOffset,
+};
 
 /// Most records of a reading, which are kept in memory: a program of a few lines can loop to more.
 const MOST_RECORDS: usize = 20_000_000;
@@ -111,9 +115,9 @@ pub fn read_by(
     let settings = settings(machine, setup)?;
     let name = file_name.rsplit_once('.').map_or(file_name, |(stem, _)| stem);
     let mut lift = Lift::new(machine, &settings.setup, name, keep);
-    let run = control::read(&settings, file_name, text, &mut |record| {
-        let line = record.line;
-        lift.record(record).map_err(|found| found.line(line).into())
+    let run = control::read(&settings, file_name, text, &mut |event| {
+        let line = event.line;
+        lift.event(event).map_err(|found| found.line(line).into())
     });
     run.map_err(|found| way_out(machine, found))?;
     Ok((Reading { program: lift.program, warnings: lift.warnings }, lift.several))
@@ -133,7 +137,7 @@ fn way_out(machine: &Machine, mut found: Box<Diagnostic>) -> Box<Diagnostic> {
     found
 }
 
-/// The records of a control on their way into a neutral program.
+/// The events of a control on their way into a neutral program.
 struct Lift<'a> {
     machine: &'a Machine,
     setup: &'a Setup,
@@ -150,7 +154,7 @@ struct Lift<'a> {
     /// The cycle that goes aside from the wall, as the control says it, and the way aside of the last hole.
     boring: Option<(Cycle, Option<Vec3>)>,
     /// The work offset that the program names.
-    work_offset: Option<u32>,
+    work_offset: Option<WorkOffset>,
     /// Whether it works in more than the first.
     several: bool,
     /// Numbers of the tools that the program calls, with the names of those that it calls by name.
@@ -166,20 +170,34 @@ struct Loaded {
     length: Option<f64>,
 }
 
+/// A tool tip (mm) and a tool axis (unit vector) in the work frame; what is not known is NaN.
+#[derive(Clone, Copy, Debug)]
+struct Spot {
+    tip: Vec3,
+    axis: Vec3,
+}
+
+impl Spot {
+    /// The pose that it is, where everything is known.
+    fn pose(self) -> Option<Pose> {
+        Pose::new(self.tip, self.axis).ok()
+    }
+}
+
 /// Where the tool is, as far as the program says it.
 #[derive(Clone, Copy, Debug)]
 enum Place {
     /// Where it was said to stand at the start: a cut from there begins with the way to it.
-    Start(Pose),
+    Start(Spot),
     /// Where the last block has sent it.
-    At(Pose),
+    At(Spot),
     Nowhere,
 }
 
 impl Place {
-    fn pose(&self) -> Option<&Pose> {
+    fn spot(&self) -> Option<&Spot> {
         match self {
-            Place::Start(pose) | Place::At(pose) => Some(pose),
+            Place::Start(spot) | Place::At(spot) => Some(spot),
             Place::Nowhere => None,
         }
     }
@@ -196,7 +214,7 @@ impl<'a> Lift<'a> {
             warnings: Vec::new(),
             place: setup
                 .start
-                .map_or(Place::Nowhere, |start| Place::Start(Pose::new(start, Vec3::Z))),
+                .map_or(Place::Nowhere, |tip| Place::Start(Spot { tip, axis: Vec3::Z })),
             home: None,
             tool: None,
             boring: None,
@@ -206,66 +224,59 @@ impl<'a> Lift<'a> {
         }
     }
 
-    fn record(&mut self, record: Record) -> Done {
-        let line = record.line;
+    fn event(&mut self, event: Event) -> Done {
+        let line = event.line;
         if self.count >= MOST_RECORDS {
             let message = format!("the program makes more than {MOST_RECORDS} records");
             let help = "it may loop without end; if not, read it in parts";
             return Err(refuse("program-length", message, help));
         }
-        match record.op {
-            Op::Rapid(pose) => {
-                let pose = self.pose(&pose);
-                match known(&pose) {
-                    true => self.arrive(line, Op::Rapid(pose)),
-                    false => self.place = Place::At(pose),
+        match event.action {
+            Action::Rapid(position) => {
+                let spot = self.spot(&position);
+                match spot.pose() {
+                    Some(pose) => self.arrive(line, Op::Rapid(pose)),
+                    None => self.place = Place::At(spot),
                 }
             }
-            Op::Line(pose) => {
-                let pose = self.cut(&pose)?;
+            Action::Line(position) => {
+                let pose = self.cut(&position)?;
                 self.arrive(line, Op::Line(pose));
             }
-            Op::Arc(mut arc) => {
-                if !self.machine.rotary.is_empty() {
-                    // The centre and the axis turn with the table, as the end does.
-                    let of = |point| self.pose(&Pose { point, ..arc.end }).point;
-                    let center = of(arc.center);
-                    arc.normal = (of(arc.center + arc.normal) - center).normalize();
-                    arc.center = center;
-                }
-                arc.end = self.cut(&arc.end)?;
-                self.arrive(line, Op::Arc(arc));
+            Action::Arc(arc) => {
+                let arc = self.arc(&arc)?;
+                self.arrive(line, Op::Arc(Box::new(arc)));
             }
-            Op::Thread(mut thread) => {
-                thread.end = self.cut(&thread.end)?;
-                self.arrive(line, Op::Thread(thread));
+            Action::Thread(thread) => {
+                let end = self.cut(&thread.end)?;
+                self.arrive(line, Op::Thread(Box::new(Thread { end, pitch: thread.pitch })));
             }
-            Op::Probe(mut probe) => {
-                probe.end = self.cut(&probe.end)?;
-                self.arrive(line, Op::Probe(probe));
+            Action::Probe(probe) => {
+                let Probe { away, must_answer, place, .. } = *probe;
+                let end = self.cut(&probe.end)?;
+                let probe = Probe { end, away, must_answer, place };
+                self.arrive(line, Op::Probe(Box::new(probe)));
                 self.place = Place::Nowhere;
             }
-            Op::Hole(own) => {
-                let pose = self.pose(&own);
+            Action::Hole(position) => {
+                let spot = self.spot(&position);
                 let way = self.boring.as_ref().and_then(|(cycle, _)| cycle.kind.withdrawal());
                 let aside = way.map(|way| {
-                    let beside = Pose { point: own.point + way.aside, ..own };
-                    self.pose(&beside).point - pose.point
+                    let beside = Position { point: position.point + way.aside, ..position };
+                    self.spot(&beside).tip - spot.tip
                 });
-                if !known(&pose) {
-                    return Err(unknown("a hole", &pose));
-                }
+                let Some(pose) = spot.pose() else { return Err(unknown("a hole", &spot)) };
                 self.bore(line, aside);
                 self.arrive(line, Op::Hole(pose));
             }
-            Op::Cycle(cycle) => {
+            Action::Cycle(cycle) => {
                 self.boring = cycle.kind.withdrawal().is_some().then_some((*cycle, None));
                 if self.boring.is_none() {
                     self.push(line, Op::Cycle(cycle));
                 }
             }
-            Op::Home(axes) => return self.go_home(line, axes),
-            Op::Tool(mut tool) => {
+            Action::Home(axes) => return self.go_home(line, axes),
+            Action::Tool(mut tool) => {
                 self.number(line, &mut tool)?;
                 if let Some(entry) = self.setup.tools.iter().find(|e| e.number == tool.number) {
                     tool.diameter = Some(2.0 * entry.radius);
@@ -276,9 +287,27 @@ impl<'a> Lift<'a> {
                 self.tool = Some((Loaded { register, length: tool.length }, true));
                 self.push(line, Op::Tool(tool));
             }
-            Op::LengthOffset(register) => return self.length_offset(line, register),
-            Op::WorkOffset(number) => self.set_work_offset(line, number),
-            op => self.push(line, op),
+            Action::LengthOffset(register) => return self.length_offset(line, register),
+            Action::WorkOffset(offset) => self.set_work_offset(line, offset),
+            Action::CycleOff => self.push(line, Op::CycleOff),
+            Action::Feed(feed) => self.push(line, Op::Feed(feed)),
+            Action::Spindle(spindle) => self.push(line, Op::Spindle(spindle)),
+            Action::SurfaceSpeed(speed) => self.push(line, Op::SurfaceSpeed(speed)),
+            Action::Coolant(coolant) => self.push(line, Op::Coolant(coolant)),
+            Action::Preselect(number) => self.push(line, Op::Preselect(number)),
+            Action::Compensation(side) => self.push(line, Op::Compensation(side)),
+            Action::Output(output) => self.push(line, Op::Output(output)),
+            Action::Input(input) => self.push(line, Op::Input(input)),
+            Action::Auxiliary(function) => self.push(line, Op::Auxiliary(function)),
+            Action::ThreadWire => self.push(line, Op::ThreadWire),
+            Action::CutWire => self.push(line, Op::CutWire),
+            Action::Taper(degrees) => self.push(line, Op::Taper(degrees)),
+            Action::Dwell(seconds) => self.push(line, Op::Dwell(seconds)),
+            Action::Stop => self.push(line, Op::Stop),
+            Action::OptionalStop => self.push(line, Op::OptionalStop),
+            Action::Comment(text) => self.push(line, Op::Comment(text)),
+            Action::Message(text) => self.push(line, Op::Message(text)),
+            Action::End => self.push(line, Op::End),
         }
         Ok(())
     }
@@ -291,16 +320,18 @@ impl<'a> Lift<'a> {
     /// The tool moves, from home where it was sent there.
     fn arrive(&mut self, line: u32, op: Op) {
         match (self.home.take(), self.place) {
-            (Some(line), _) => self.push(line, Op::Home(Z)),
+            (Some(line), _) => self.push(line, Op::Home),
             (None, Place::Start(start)) if !matches!(op, Op::Rapid(_)) => {
-                self.push(line, Op::Rapid(start));
+                let start = start.pose().map(Op::Rapid);
+                start.into_iter().for_each(|start| self.push(line, start));
             }
             _ => {}
         }
         if let Some((_, fresh)) = &mut self.tool {
             *fresh = false;
         }
-        self.place = op.pose().map_or(Place::Nowhere, |pose| Place::At(*pose));
+        let at = |pose: &Pose| Place::At(Spot { tip: pose.point(), axis: pose.axis() });
+        self.place = op.pose().map_or(Place::Nowhere, at);
         self.push(line, op);
     }
 
@@ -316,22 +347,40 @@ impl<'a> Lift<'a> {
     }
 
     /// Where a cut ends; it must begin somewhere.
-    fn cut(&self, end: &Pose) -> Result<Pose, Box<Diagnostic>> {
-        let end = self.pose(end);
-        match self.place.pose().filter(|_| self.home.is_none()) {
-            Some(start) if !known(start) => Err(unknown("the start of a cut", start)),
-            None => Err(unknown("the start of a cut", &Pose::new(Vec3::NAN, Vec3::Z))),
-            _ if !known(&end) => Err(unknown("the end of a cut", &end)),
-            _ => Ok(end),
+    fn cut(&self, end: &Position) -> Result<Pose, Box<Diagnostic>> {
+        let end = self.spot(end);
+        let start = self.place.spot().filter(|_| self.home.is_none());
+        let nowhere = Spot { tip: Vec3::NAN, axis: Vec3::Z };
+        match start.copied().unwrap_or(nowhere) {
+            start if start.pose().is_none() => Err(unknown("the start of a cut", &start)),
+            _ => end.pose().ok_or_else(|| unknown("the end of a cut", &end)),
         }
     }
 
-    /// A pose as a block gives it, in the work frame. Where the tip of a tool of unknown length is that
+    /// An arc in the work frame: its centre and its axis turn with the table, as its end does.
+    fn arc(&self, arc: &ArcTo<Position>) -> Result<ArcTo, Box<Diagnostic>> {
+        let ArcTo { mut center, mut normal, turns, .. } = *arc;
+        if !self.machine.rotary.is_empty() {
+            let of = |point| self.spot(&Position { point, ..arc.end }).tip;
+            center = of(arc.center);
+            normal = (of(arc.center + arc.normal) - center).normalize();
+        }
+        let end = self.cut(&arc.end)?;
+        if !(center.is_finite() && normal.is_finite()) {
+            return Err(unknown("the centre of an arc", &Spot { tip: center, axis: end.axis() }));
+        }
+        Ok(ArcTo { end, center, normal, turns })
+    }
+
+    /// A position as a block gives it, in the work frame. Where the tip of a tool of unknown length is that
     /// a head has turned, is not known.
-    fn pose(&self, pose: &Pose) -> Pose {
-        let Orientation::Rotary { degrees, tool_center } = pose.orientation else { return *pose };
+    fn spot(&self, position: &Position) -> Spot {
+        let Orientation::Rotary { degrees, tool_center } = position.orientation else {
+            let (tip, axis) = resolve(self.machine, position, 0.0);
+            return Spot { tip, axis };
+        };
         let length = self.tool.and_then(|(tool, _)| tool.length);
-        let (mut tip, axis) = self.machine.resolve(pose, length.unwrap_or(0.0));
+        let (mut tip, axis) = resolve(self.machine, position, length.unwrap_or(0.0));
         let mut heads = self.machine.rotary.iter().filter(|axis| axis.on == Mount::Head);
         if length.is_none()
             && !tool_center
@@ -339,7 +388,7 @@ impl<'a> Lift<'a> {
         {
             tip = Vec3::NAN;
         }
-        Pose::new(tip, axis)
+        Spot { tip, axis }
     }
 
     /// Gives a tool that is called by its name a number, of which no other tool has it.
@@ -381,14 +430,15 @@ impl<'a> Lift<'a> {
 
     /// Axes go to a fixed place of the machine. Only what Z does there matters: the others come back
     /// by words of their own, and their way is the machine's.
-    fn go_home(&mut self, line: u32, axes: u8) -> Done {
-        if axes & Z == 0 && self.home.is_none() && self.place.pose().is_some_and(known) {
+    fn go_home(&mut self, line: u32, axes: Axes) -> Done {
+        let is_known = self.place.spot().is_some_and(|spot| spot.pose().is_some());
+        if !axes.contains(Axes::Z) && self.home.is_none() && is_known {
             let message =
                 "axes are sent home while Z is not: the way there beside the part is the machine's";
             let help = "send Z home before";
             return Err(refuse("home", message, help));
         }
-        if axes & Z != 0 && self.place.pose().is_some() {
+        if axes.contains(Axes::Z) && self.place.spot().is_some() {
             self.home.get_or_insert(line);
         }
         Ok(())
@@ -428,40 +478,46 @@ impl<'a> Lift<'a> {
     }
 
     /// Positions are counted from another work offset from here on.
-    fn set_work_offset(&mut self, line: u32, number: u32) {
+    fn set_work_offset(&mut self, line: u32, offset: WorkOffset) {
         // Where the start is given, all offsets are 0, and it is one in the first.
-        let known = self.setup.start.map(|_| FIRST_WORK_OFFSET);
-        let before = self.work_offset.replace(number).or(known);
-        if before == Some(number) {
+        let known = self.setup.start.map(|_| WorkOffset::FIRST);
+        let before = self.work_offset.replace(offset).or(known);
+        if before == Some(offset) {
             return;
         }
-        self.several |= number != FIRST_WORK_OFFSET;
+        self.several |= offset != WorkOffset::FIRST;
         // Where the tool stands at the start is said with all offsets at 0.
         if let Place::At(_) = self.place {
             self.several = true;
             self.place = Place::Nowhere;
         }
-        self.push(line, Op::WorkOffset(number));
+        self.push(line, Op::WorkOffset(offset));
     }
 }
 
 /// What two places that are the same may be apart after a turn of the table, mm.
 const ROUNDING: f64 = 1e-9;
 
-/// The bit of Z in [`Op::Home`].
-const Z: u8 = 4;
-
-/// Whether every coordinate is known.
-fn known(pose: &Pose) -> bool {
-    pose.point.is_finite() && pose.axis().is_none_or(Vec3::is_finite)
+/// The tool tip (mm) and the tool axis (unit vector), both in the work frame, of a position as a block gives it,
+/// with a tool of `tool_length` mm. What is not known is NaN.
+pub fn resolve(machine: &Machine, position: &Position, tool_length: f64) -> (Vec3, Vec3) {
+    match position.orientation {
+        Orientation::Axis(axis) => (position.point, axis),
+        Orientation::Rotary { degrees, tool_center: true } => {
+            (position.point, machine.axis_at(degrees))
+        }
+        Orientation::Rotary { degrees, tool_center: false } => {
+            machine.forward(position.point, degrees, tool_length)
+        }
+    }
 }
 
 /// What is refused because of coordinates that no block has given.
 #[cold]
-fn unknown(what: &str, pose: &Pose) -> Box<Diagnostic> {
-    let letters = ["X", "Y", "Z"].into_iter().zip(pose.point.to_array());
+fn unknown(what: &str, spot: &Spot) -> Box<Diagnostic> {
+    let letters = ["X", "Y", "Z"].into_iter().zip(spot.tip.to_array());
     let mut missing: Vec<&str> = letters.filter(|(_, v)| v.is_nan()).map(|(l, _)| l).collect();
-    if pose.axis().is_some_and(|axis| !axis.is_finite()) {
+    if !spot.axis.is_finite() {
         missing.push("the rotary axes");
     }
     let message = match missing.is_empty() {

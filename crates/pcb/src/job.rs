@@ -5,7 +5,7 @@
 
 use crate::{Cut, Operation, Stretch, Tool};
 use geom::{Vec2, Vec3};
-use program::{ArcTo, Cycle, CycleKind, Feed, Op, Pose, Program, Spindle};
+use program::{ArcTo, Cycle, CycleKind, Feed, NoPose, Op, Pose, Program, Spindle};
 
 /// Heights of the tool tip above the board, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -18,7 +18,14 @@ pub struct Heights {
 
 /// The program that does `operations`, one after the other, each with the number of its tool. What the
 /// records came from is no line of a file: theirs is 0.
-pub fn program(name: &str, operations: &[(u32, &Operation)], heights: &Heights) -> Program {
+///
+/// # Errors
+/// A place or a height that is not finite.
+pub fn program(
+    name: &str,
+    operations: &[(u32, &Operation)],
+    heights: &Heights,
+) -> Result<Program, NoPose> {
     let mut writer = Writer {
         program: Program::new(name),
         heights: *heights,
@@ -27,11 +34,11 @@ pub fn program(name: &str, operations: &[(u32, &Operation)], heights: &Heights) 
         cycle: None,
     };
     for (number, operation) in operations {
-        writer.operation(operation, *number);
+        writer.operation(operation, *number)?;
     }
     writer.push(Op::Spindle(Spindle::Off));
     writer.push(Op::End);
-    writer.program
+    Ok(writer.program)
 }
 
 struct Writer {
@@ -50,7 +57,7 @@ impl Writer {
         self.program.push(0, op);
     }
 
-    fn operation(&mut self, operation: &Operation, number: u32) {
+    fn operation(&mut self, operation: &Operation, number: u32) -> Result<(), NoPose> {
         let Operation { name, tool, cuts } = operation;
         self.push(Op::Operation(name.as_str().into()));
         self.push(Op::Tool(Box::new(program::Tool {
@@ -63,18 +70,19 @@ impl Writer {
         self.push(Op::Spindle(Spindle::Clockwise(tool.speed)));
         for cut in cuts {
             match cut {
-                Cut::Hole { at, depth, peck } => self.hole(tool, *at, *depth, *peck),
-                Cut::Way(stretches) => self.way(tool, stretches),
+                Cut::Hole { at, depth, peck } => self.hole(tool, *at, *depth, *peck)?,
+                Cut::Way(stretches) => self.way(tool, stretches)?,
             }
         }
         self.end_of_cycle();
         self.push(Op::EndOfOperation);
+        Ok(())
     }
 
-    fn hole(&mut self, tool: &Tool, at: Vec2, depth: f64, peck: Option<f64>) {
+    fn hole(&mut self, tool: &Tool, at: Vec2, depth: f64, peck: Option<f64>) -> Result<(), NoPose> {
         if self.cycle != Some((depth, peck)) {
             self.end_of_cycle();
-            self.over(at);
+            self.over(at)?;
             self.push(Op::Cycle(Box::new(Cycle {
                 kind: if peck.is_some() { CycleKind::Deep } else { CycleKind::Drill },
                 depth,
@@ -87,27 +95,28 @@ impl Writer {
             })));
             self.cycle = Some((depth, peck));
         }
-        self.push(Op::Hole(pose(at.extend(0.0))));
+        self.push(Op::Hole(Pose::upright(at.extend(0.0))?));
         self.at = Some(at.extend(self.heights.travel));
+        Ok(())
     }
 
-    fn way(&mut self, tool: &Tool, stretches: &[Stretch]) {
-        let Some(first) = stretches.first() else { return };
+    fn way(&mut self, tool: &Tool, stretches: &[Stretch]) -> Result<(), NoPose> {
+        let Some(first) = stretches.first() else { return Ok(()) };
         self.end_of_cycle();
         let start = first.element.start;
-        self.over(start);
-        self.rapid(start.extend(self.heights.approach));
+        self.over(start)?;
+        self.rapid(start.extend(self.heights.approach))?;
         for Stretch { element, depth } in stretches {
-            self.line(tool, element.start.extend(-depth));
+            self.line(tool, element.start.extend(-depth))?;
             self.set_feed(tool.feed);
             let end = element.end.extend(-depth);
             match element.turn {
-                None => self.line(tool, end),
+                None => self.line(tool, end)?,
                 Some(turn) => {
                     let normal = if turn.sweep > 0.0 { Vec3::Z } else { Vec3::NEG_Z };
                     let center = turn.center.extend(-depth);
                     self.push(Op::Arc(Box::new(ArcTo {
-                        end: pose(end),
+                        end: Pose::upright(end)?,
                         center,
                         normal,
                         turns: 0,
@@ -117,29 +126,32 @@ impl Writer {
             }
         }
         if let Some(at) = self.at {
-            self.rapid(Vec3 { z: self.heights.travel, ..at });
+            self.rapid(Vec3 { z: self.heights.travel, ..at })?;
         }
+        Ok(())
     }
 
     /// By rapid over a place of the board, at the height of travel.
-    fn over(&mut self, place: Vec2) {
-        self.rapid(place.extend(self.heights.travel));
+    fn over(&mut self, place: Vec2) -> Result<(), NoPose> {
+        self.rapid(place.extend(self.heights.travel))
     }
 
-    fn rapid(&mut self, to: Vec3) {
+    fn rapid(&mut self, to: Vec3) -> Result<(), NoPose> {
         if self.at != Some(to) {
-            self.push(Op::Rapid(pose(to)));
+            self.push(Op::Rapid(Pose::upright(to)?));
             self.at = Some(to);
         }
+        Ok(())
     }
 
     /// Straight to `to`, where that is somewhere else; straight down at the feed for it.
-    fn line(&mut self, tool: &Tool, to: Vec3) {
-        let Some(from) = self.at.filter(|from| *from != to) else { return };
+    fn line(&mut self, tool: &Tool, to: Vec3) -> Result<(), NoPose> {
+        let Some(from) = self.at.filter(|from| *from != to) else { return Ok(()) };
         let down = from.truncate() == to.truncate() && to.z < from.z;
         self.set_feed(if down { tool.plunge } else { tool.feed });
-        self.push(Op::Line(pose(to)));
+        self.push(Op::Line(Pose::upright(to)?));
         self.at = Some(to);
+        Ok(())
     }
 
     fn set_feed(&mut self, feed: f64) {
@@ -156,10 +168,6 @@ impl Writer {
     }
 }
 
-fn pose(point: Vec3) -> Pose {
-    Pose::new(point, Vec3::Z)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -173,7 +181,7 @@ mod tests {
 
     /// The ops as short words: R rapid, L line, F feed, H hole.
     fn told(program: &Program) -> Vec<String> {
-        let at = |pose: &Pose| format!("{} {} {}", pose.point.x, pose.point.y, pose.point.z);
+        let at = |pose: &Pose| pose.point().to_array().map(|value| value.to_string()).join(" ");
         let word = |op: &Op| match op {
             Op::Rapid(pose) => Some(format!("R {}", at(pose))),
             Op::Line(pose) => Some(format!("L {}", at(pose))),
@@ -210,7 +218,7 @@ mod tests {
             "L 0 0 -0.2",
             "R 0 0 2",
         ];
-        assert_eq!(told(&program("a", &[(1, &operation)], &heights)), right);
+        assert_eq!(told(&program("a", &[(1, &operation)], &heights).unwrap()), right);
     }
 
     #[test]
@@ -218,7 +226,8 @@ mod tests {
         let hole = |x: f64, depth: f64| Cut::Hole { at: Vec2::new(x, 0.0), depth, peck: None };
         let cuts = vec![hole(1.0, 2.0), hole(2.0, 2.0), hole(3.0, 1.0)];
         let operation = Operation { name: "drill".into(), tool: tool(), cuts };
-        let program = program("a", &[(1, &operation)], &Heights { travel: 2.0, approach: 0.5 });
+        let program =
+            program("a", &[(1, &operation)], &Heights { travel: 2.0, approach: 0.5 }).unwrap();
         let cycles: Vec<f64> = program
             .records
             .iter()

@@ -7,7 +7,7 @@ use crate::template::bit;
 use crate::walk::{Done, PLANE_XY, Walk, motion, refuse};
 use geom::{ANGLE_EPSILON, Arc, ArcError, Vec3, angle_between};
 use machine::Plane;
-use program::{ArcTo, Diagnostic, Pose};
+use program::{ArcTo, Diagnostic};
 use std::f64::consts::{PI, TAU};
 
 /// A plane of arcs: its code, its axes (first, second, normal) as places in X, Y, Z, and the words of
@@ -107,7 +107,7 @@ impl Walk<'_> {
             return Err(refuse("arc-start", "an arc from a position that is not known"));
         };
         // The reader holds arcs against its own tolerance; here the ends are what they are.
-        let arc = Arc::new(here.point, to.end.point, to.center, to.normal, to.turns, f64::MAX)
+        let arc = Arc::new(here.point(), to.end.point(), to.center, to.normal, to.turns, f64::MAX)
             .map_err(no_arc)?;
         self.whole = if self.is_timed() { arc.length() } else { 0.0 };
         let local = Arc {
@@ -145,7 +145,7 @@ impl Walk<'_> {
                 Some(block) => {
                     self.followed(&arc, until - from == 1.0, "arcs")?;
                     self.arc_block(&arc, &form, &block)?;
-                    self.here = Some(Pose { point: arc.at(until), ..to.end });
+                    self.here = Some(to.end.at(arc.at(until))?);
                 }
                 // Its ends are too near each other to say where its centre is, or too near the ends of a
                 // diameter for its radius to say that: two halves are better.
@@ -168,10 +168,9 @@ impl Walk<'_> {
     fn plane_of(&self, arc: &Arc) -> Option<&'static Facts> {
         // Under tool center point control the plane turns with the tool.
         let upright = match self.place.kind {
-            Kind::ToolCenter | Kind::Vectors => self
-                .here
-                .and_then(|here| here.axis())
-                .is_some_and(|a| crate::place::same(a, Vec3::Z)),
+            Kind::ToolCenter | Kind::Vectors => {
+                self.here.is_some_and(|here| crate::place::same(here.axis(), Vec3::Z))
+            }
             _ => true,
         };
         PLANES.iter().filter(|_| upright).find(|facts| {
@@ -383,7 +382,7 @@ impl Walk<'_> {
         for line in 1..=lines {
             let t = from + (until - from) * line as f64 / lines as f64;
             let point = if line == lines && until == 1.0 { arc.end } else { arc.at(t) };
-            self.line_to(&Pose { point, ..to.end }, stop)?;
+            self.line_to(&to.end.at(point)?, stop)?;
         }
         self.findings.lowered("arc-lowered", what, self.line, lines);
         Ok(())

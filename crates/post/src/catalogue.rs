@@ -117,6 +117,11 @@ names! {
         Dwell Block "dwell", "", "A dwell.";
         Stop Block "stop", "", "An unconditional stop.";
         OptionalStop Block "optional_stop", "", "A stop that the operator can switch off.";
+        Auxiliary Block "auxiliary", "", "A function of the machine's builder that the source calls ({{M}}) and `auxiliary` of the machine lists. Empty leaves such functions out.";
+        DigitalOutput Block "digital_output", "", "Where the source switches an output: {{output}} says how, {{SIGNAL}} which.";
+        AnalogOutput Block "analog_output", "", "Where the source sets an analog output: {{analog}} says when, {{CHANNEL}} which, {{VALUE}} to what.";
+        DigitalInput Block "digital_input", "", "Where the source reads an input, or waits for it: {{SIGNAL}} says which, {{until}} for what, {{TIMEOUT}} how long.";
+        AnalogInput Block "analog_input", "", "Where the source reads an analog input, {{CHANNEL}}.";
     }
 }
 
@@ -189,6 +194,16 @@ names! {
         Speed Word "SPEED", "1/min", "Cycle: speed of the spindle, where it is a parameter.";
         Lead Word "LEAD", "mm", "Way of a thread in a turn of the spindle.";
         Height Word "HEIGHT", "", "Parameter that keeps the height of a place of the surface, the first as `first` says.";
+        M Word "M", "", "Number of a function of the machine's builder.";
+        FirstValue Word "FIRST_VALUE", "", "First value that a function of the machine's builder is called with.";
+        SecondValue Word "SECOND_VALUE", "", "Second value that it is called with.";
+        Signal Word "SIGNAL", "", "Number of a digital output or input.";
+        Channel Word "CHANNEL", "", "Number of an analog output or input.";
+        Value Word "VALUE", "", "What an analog output is set to, in the unit of the machine.";
+        Timeout Word "TIMEOUT", "s", "How long the program waits for an input at the most; left out where it only reads it.";
+        Output Code "output", "on, off, on_with_motion, off_with_motion", "How an output is switched: at once, or with the beginning of the next motion. Those that the control lacks are left out.";
+        AnalogOutput Code "analog", "at_once, with_motion", "When an analog output is set. Those that the control lacks are left out.";
+        Until Code "until", "read, rise, fall, high, low", "What the program waits for at an input; `read` does not wait. Those that the control lacks are left out.";
         ProbeMode Code "probe_mode", "toward_or_error, toward, away_or_error, away", "Kind of probing move: until the probe touches the part or lets go of it, with an error where it does not or without. Those that the control lacks are left out.";
         Motion Code "motion", "rapid, linear, arc_cw, arc_ccw", "Kind of motion.";
         Plane Code "plane", "xy, xz, yz", "Plane of arcs and of cutter compensation.";

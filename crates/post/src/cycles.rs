@@ -90,8 +90,8 @@ impl Walk<'_> {
         let along_z = match self.place.kind {
             Kind::Plain | Kind::Tilted(..) => true,
             Kind::Machine => {
-                let axis = pose.axis().unwrap_or(Vec3::Z);
-                let up = self.local(pose.point + axis) - self.local(pose.point);
+                let axis = pose.axis();
+                let up = self.local(pose.point() + axis) - self.local(pose.point());
                 up.distance(Vec3::Z) < 10.0 * ANGLE_EPSILON
             }
             _ => false,
@@ -101,7 +101,7 @@ impl Walk<'_> {
     }
 
     fn native(&mut self, name: BlockName, cycle: &Cycle, pose: &Pose, stop: &Stop) -> Done {
-        let at = self.local(pose.point);
+        let at = self.local(pose.point());
         let level = |word, height: f64| self.writer.rounded(word, at.z + height);
         let levels = Levels {
             surface: level(WordName::Surface, 0.0),
@@ -109,7 +109,7 @@ impl Walk<'_> {
             bottom: level(WordName::Bottom, -cycle.depth),
             retract: level(WordName::Retract, cycle.retract),
         };
-        let over = lifted(pose, cycle.retract);
+        let over = pose.lifted(cycle.retract)?;
         let open = Open { block: name, levels };
         if self.open_cycle == Some(open) {
             self.say_hole(at, &levels);
@@ -137,11 +137,11 @@ impl Walk<'_> {
         let (Some(here), true) = (self.here, self.located) else {
             return self.rapid_to(over, stop);
         };
-        let axis = over.axis().unwrap_or(Vec3::Z);
-        let height = (over.point - here.point).dot(axis);
+        let axis = over.axis();
+        let height = (over.point() - here.point()).dot(axis);
         let corner =
-            if height > 0.0 { here.point + axis * height } else { over.point - axis * height };
-        self.rapid_to(&Pose { point: corner, ..*over }, stop)?;
+            if height > 0.0 { here.point() + axis * height } else { over.point() - axis * height };
+        self.rapid_to(&over.at(corner)?, stop)?;
         self.rapid_to(over, stop)
     }
 
@@ -217,8 +217,8 @@ impl Walk<'_> {
             return Err(refuse("cycle-peck", "the pecks of this cycle have no end"));
         };
         self.settle(pose, stop, false)?;
-        self.go_over(&lifted(pose, cycle.retract), stop)?;
-        self.rapid_to(&lifted(pose, cycle.clearance), stop)?;
+        self.go_over(&pose.lifted(cycle.retract)?, stop)?;
+        self.rapid_to(&pose.lifted(cycle.clearance)?, stop)?;
         let (spindle, feed) = (self.spindle, self.feed);
         self.feed = cycle.feed.or(feed);
         // Each move is a cut of its own, and none a piece of the last one.
@@ -241,11 +241,6 @@ impl Walk<'_> {
         self.findings.lowered("cycle-expanded", "holes of cycles", self.line, count);
         done
     }
-}
-
-/// The pose so far above a hole.
-fn lifted(pose: &Pose, height: f64) -> Pose {
-    Pose { point: pose.point + pose.axis().unwrap_or(Vec3::Z) * height, ..*pose }
 }
 
 /// What no cycle makes sense without.

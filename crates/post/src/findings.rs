@@ -24,13 +24,13 @@ struct Lowered {
 }
 
 impl Findings {
-    /// Keeps an error, or counts it where there is one of its rule and line that says the same or has the same
-    /// way out; `false` when there are enough of them.
+    /// Keeps an error, or counts it where there is one of its rule that says the same, or has the same way out in
+    /// the same line; `false` when there are enough of them.
     pub(crate) fn error(&mut self, error: Diagnostic) -> bool {
         let same = |known: &&mut Diagnostic| {
-            (known.rule, known.line) == (error.rule, error.line)
-                && (known.message == error.message
-                    || known.help == error.help && !error.help.is_empty())
+            let same_way_out = known.help == error.help && !error.help.is_empty();
+            known.rule == error.rule
+                && (known.message == error.message || known.line == error.line && same_way_out)
         };
         match self.errors.iter_mut().find(same) {
             Some(known) => known.count = known.count.saturating_add(1),

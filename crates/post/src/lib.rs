@@ -11,6 +11,8 @@
 //! `surface` says what Z counts from where the control finds that, and `writer` leaves out what repeats. Before that, `sweep` splits cuts that would swing the tool out of
 //! its way.
 
+#![warn(clippy::wildcard_enum_match_arm)]
+
 mod arcs;
 mod catalogue;
 mod cycles;
@@ -20,6 +22,7 @@ mod motion;
 mod number;
 mod place;
 mod promises;
+mod signals;
 mod single;
 mod surface;
 mod sweep;

@@ -77,7 +77,7 @@ impl Walk<'_> {
             self.findings.warn(Diagnostic::warning("feed-approach", message).line(self.line));
             self.located = true;
         }
-        self.whole = self.here.map_or(0.0, |here| here.point.distance(pose.point));
+        self.whole = self.here.map_or(0.0, |here| here.point().distance(pose.point()));
         if let Some(degrees) = stop.step.and_then(|step| step.rewind) {
             self.rewind(degrees, stop)?;
         }
@@ -87,7 +87,7 @@ impl Walk<'_> {
     /// Whether the tool points in `pose` as it does here.
     #[inline]
     pub(crate) fn keeps_orientation(&self, pose: &Pose) -> bool {
-        self.here.is_some_and(|here| here.orientation == pose.orientation)
+        self.here.is_some_and(|here| here.axis() == pose.axis())
     }
 
     /// A straight cut of the source that goes on from another one: `cut`, where nothing that it asks for can have
@@ -97,7 +97,7 @@ impl Walk<'_> {
         self.here = Some(*pose);
         self.writer.repeat();
         self.writer.code(WordName::Motion, motion::LINEAR);
-        self.aim_to(pose.point);
+        self.aim_to(pose.point());
         if self.writer.changes(POSITION) {
             self.check_limits()?;
             self.block(BlockName::Linear)?;
@@ -112,9 +112,9 @@ impl Walk<'_> {
     /// source, to where the machine may turn, and in again at the same point.
     fn rewind(&mut self, degrees: [f64; 3], stop: &Stop) -> Done {
         let Some(here) = self.here else { return Ok(()) };
-        let axis = here.axis().unwrap_or(Vec3::Z);
-        let way = self.reach(axis) - here.point.dot(axis) + CLEAR;
-        let out = Pose { point: here.point + axis * way, ..here };
+        let axis = here.axis();
+        let way = self.reach(axis) - here.point().dot(axis) + CLEAR;
+        let out = here.at(here.point() + axis * way)?;
         let at = |degrees| Stop { step: Some(Step { degrees, rewind: None }), ..*stop };
         if let Some(held) = self.place.degrees() {
             self.rapid_to(&out, &at(held))?;
@@ -127,16 +127,16 @@ impl Walk<'_> {
     /// A straight cut in the orientation at hand.
     pub(crate) fn line_to(&mut self, pose: &Pose, stop: &Stop) -> Done {
         let from = self.here.replace(*pose);
-        let length = from.map_or(0.0, |from| from.point.distance(pose.point));
+        let length = from.map_or(0.0, |from| from.point().distance(pose.point()));
         if self.compensation_pending() {
             self.plane_xy()?;
         }
         if let (Kind::Machine, Some(from), Some(step), Some(degrees)) =
             (&self.place.kind, from, stop.step, self.place.degrees())
         {
-            let to = Stance { tip: pose.point, degrees: self.written(step.degrees) };
+            let to = Stance { tip: pose.point(), degrees: self.written(step.degrees) };
             if to.degrees != degrees {
-                return self.turning_line(Stance { tip: from.point, degrees }, to, length);
+                return self.turning_line(Stance { tip: from.point(), degrees }, to, length);
             }
         }
         self.aim(pose, stop);
@@ -207,7 +207,7 @@ impl Walk<'_> {
     #[inline]
     pub(crate) fn aim(&mut self, pose: &Pose, stop: &Stop) {
         let degrees = stop.step.map(|step| step.degrees);
-        self.aim_at(pose.point, pose.axis().unwrap_or(Vec3::Z), degrees);
+        self.aim_at(pose.point(), pose.axis(), degrees);
     }
 
     #[inline]

@@ -134,12 +134,12 @@ impl Route {
 }
 
 fn target(record: &Record) -> Option<Target> {
+    let axis = record.op.pose()?.axis();
     let kind = match record.op {
         Op::Rapid(_) | Op::Hole(_) => TargetKind::Rapid,
         Op::Arc(_) => TargetKind::Arc,
         _ => TargetKind::Feed,
     };
-    let axis = record.op.pose()?.axis()?;
     Some(Target { axis, line: record.line, kind })
 }
 
@@ -147,7 +147,7 @@ fn target(record: &Record) -> Option<Target> {
 fn one_orientation(records: &[Record]) -> usize {
     let mut held = None;
     let changes = |record: &Record| {
-        let axis = record.op.pose().and_then(Pose::axis);
+        let axis = record.op.pose().map(Pose::axis);
         axis.is_some_and(|axis| !same(*held.get_or_insert(axis), axis))
     };
     records.iter().position(changes).unwrap_or(records.len())
@@ -155,9 +155,9 @@ fn one_orientation(records: &[Record]) -> usize {
 
 /// Whether the tool axis changes while the tool cuts.
 fn turns_in_a_cut(records: &[Record], here: Option<Pose>) -> bool {
-    let mut last = here.and_then(|pose| pose.axis());
+    let mut last = here.map(|pose| pose.axis());
     records.iter().any(|record| {
-        let Some(axis) = record.op.pose().and_then(Pose::axis) else { return false };
+        let Some(axis) = record.op.pose().map(Pose::axis) else { return false };
         let before = last.replace(axis);
         let cut = matches!(record.op, Op::Line(_) | Op::Arc(_));
         cut && before.is_some_and(|before| !same(before, axis))
@@ -182,7 +182,7 @@ impl Walk<'_> {
             let found = refuse("orientation-in-cut", "the plane of work changes in a cut");
             return Err(found.help(help).into());
         }
-        self.turn(pose.axis().unwrap_or(Vec3::Z), stop)
+        self.turn(pose.axis(), stop)
     }
 
     /// Whether `pose` can be written as the control counts, and with the rotary axes as they stand.
@@ -196,7 +196,7 @@ impl Walk<'_> {
         stop: &Stop,
         cut: bool,
     ) -> Result<bool, Box<Diagnostic>> {
-        let axis = pose.axis().unwrap_or(Vec3::Z);
+        let axis = pose.axis();
         Ok(match (&self.place.kind, stop.mode) {
             (Kind::Plain, OrientationMode::Fixed) => match &self.wire {
                 Some(wire) => self.wire_stands(wire, pose).map(|()| true)?,

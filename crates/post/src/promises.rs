@@ -35,7 +35,7 @@ pub(crate) fn check(machine: &Machine, templates: &Templates) -> Result<(), Vec<
             errors.push(error.file(block.file.clone()).line(block.line));
             continue;
         };
-        let lacks = |code: &&str| !known.codes.contains_key(*code) && needs(machine, code);
+        let lacks = |code: &&str| !known.codes.contains_key(*code) && needs(machine, word, code);
         for code in word.codes().filter(lacks) {
             let message = format!("[words.{name}] has no text for `{code}` in its `codes`");
             errors.push(at(Diagnostic::error("word", message), &known.place));
@@ -108,8 +108,13 @@ pub(crate) fn check(machine: &Machine, templates: &Templates) -> Result<(), Vec<
 }
 
 /// Whether the machine can come to say this entry of a code.
-fn needs(machine: &Machine, code: &str) -> bool {
+fn needs(machine: &Machine, word: WordName, code: &str) -> bool {
     let can = &machine.capabilities;
+    // A control has as many of these as it has.
+    let any = [WordName::ProbeMode, WordName::Output, WordName::AnalogOutput, WordName::Until];
+    if any.contains(&word) {
+        return false;
+    }
     let plane = |name: &str| can.arcs.iter().any(|p| format!("{p:?}").eq_ignore_ascii_case(name));
     match code {
         "arc_cw" | "arc_ccw" => !can.arcs.is_empty(),
@@ -117,7 +122,6 @@ fn needs(machine: &Machine, code: &str) -> bool {
         "left" | "right" => can.compensation,
         "per_turn" => can.feed_per_turn,
         "inverse_time" => can.inverse_time,
-        "toward_or_error" | "toward" | "away_or_error" | "away" => false,
         // A control has as many work offsets as it has; the first is the one that it works in.
         number if number.starts_with(|c: char| c.is_ascii_digit()) => number == "54",
         _ => true,

@@ -4,7 +4,6 @@ use crate::catalogue::{BlockName, WordName};
 use crate::place::{Kind, Stop, same};
 use crate::template::{POSITION, Words, bit};
 use crate::walk::{Done, Walk, refuse};
-use geom::Vec3;
 use program::{Feed, Probe, Thread};
 
 impl Walk<'_> {
@@ -62,12 +61,12 @@ impl Walk<'_> {
         };
         self.sync_spindle()?;
         self.sync_coolant()?;
-        let axis = probe.end.axis().unwrap_or(Vec3::Z);
-        let length = self.here.map_or(0.0, |here| here.point.distance(probe.end.point));
-        if self.here.and_then(|here| here.axis()).is_none_or(|held| !same(held, axis)) {
+        let axis = probe.end.axis();
+        let length = self.here.map_or(0.0, |here| here.point().distance(probe.end.point()));
+        if self.here.is_none_or(|here| !same(here.axis(), axis)) {
             return Err(refuse("probe", "the tool axis turns in a probing move"));
         }
-        self.aim_at(probe.end.point, axis, None);
+        self.aim_at(probe.end.point(), axis, None);
         let words = [WordName::X, WordName::Y, WordName::Z].map(bit);
         let moved: Words = words.into_iter().filter(|word| self.writer.changes(*word)).sum();
         if moved == 0 {

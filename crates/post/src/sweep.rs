@@ -42,7 +42,9 @@ pub(crate) fn split(program: &Program, machine: &Machine) -> Option<(Vec<Record>
         }
         if let (Op::Line(to), Some(from)) = (&record.op, from) {
             let parts = parts(machine, came, &from, to, room);
-            came = from.axis().filter(|axis| Some(*axis) != to.axis()).or(came);
+            if from.axis() != to.axis() {
+                came = Some(from.axis());
+            }
             if !parts.is_empty() {
                 if lines.is_empty() {
                     split.extend_from_slice(&program.records[..index]);
@@ -81,7 +83,7 @@ fn put(split: &mut Vec<Record>, cut: &Record, parts: &[Pose], feed: Option<Feed>
 /// The poses on the way of a cut at which it is split evenly: none where the swing is small, or where
 /// there is no room for so many.
 fn parts(machine: &Machine, came: Option<Vec3>, from: &Pose, to: &Pose, room: usize) -> Vec<Pose> {
-    let (Some(a), Some(b)) = (from.axis(), to.axis()) else { return Vec::new() };
+    let (a, b) = (from.axis(), to.axis());
     // Cheaper than the angle, and on the safe side.
     if a.distance_squared(b) < SMALL * SMALL || angle_between(a, b) < SMALL {
         return Vec::new();
@@ -90,13 +92,18 @@ fn parts(machine: &Machine, came: Option<Vec3>, from: &Pose, to: &Pose, room: us
         let count = 1 << halvings;
         let axis = |i: usize| between(a, b, i as f64 / count as f64);
         if (0..count).all(|i| swing(machine, axis(i), axis(i + 1)) <= SWING) {
-            let part = |i: usize| Pose {
-                point: from.point.lerp(to.point, i as f64 / count as f64),
-                ..Pose::new(from.point, axis(i))
+            let part = |i: usize| {
+                let point = from.point().lerp(to.point(), i as f64 / count as f64);
+                Pose::new(point, axis(i))
             };
             let stands = came.is_some_and(|came| turns_round(machine, came, a, b));
-            let all = stands.then_some(*from).into_iter().chain((1..count).map(part));
-            return if count <= room { all.collect() } else { Vec::new() };
+            let all = stands.then_some(Ok(*from)).into_iter().chain((1..count).map(part));
+            // What cannot be split goes as it is, and the proof looks at it.
+            return if count <= room {
+                all.collect::<Result<_, _>>().unwrap_or_default()
+            } else {
+                Vec::new()
+            };
         }
     }
     Vec::new()

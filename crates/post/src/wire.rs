@@ -28,7 +28,7 @@ impl Wire {
     pub(crate) fn of(machine: &Machine, program: &Program) -> Option<Wire> {
         let leans = || {
             let mut poses = program.records.iter().filter_map(|record| record.op.pose());
-            poses.any(|pose| pose.axis() != Some(Vec3::Z))
+            poses.any(|pose| pose.axis() != Vec3::Z)
         };
         machine.wire.map(|machine| Wire {
             machine,
@@ -137,8 +137,8 @@ impl Walk<'_> {
 
     /// Whether the wire can stand at `pose`.
     pub(crate) fn wire_stands(&self, wire: &Wire, pose: &Pose) -> Done {
-        if pose.point.z.abs() > FLAT {
-            let message = format!("Z{:.4}: a wire crosses the lower plane at Z0", pose.point.z);
+        if pose.point().z.abs() > FLAT {
+            let message = format!("Z{:.4}: a wire crosses the lower plane at Z0", pose.point().z);
             let help = "`toolpost wire` makes the way of a wire from a contour at any height";
             return Err(refuse("wire-plane", message).help(help).into());
         }
@@ -148,7 +148,7 @@ impl Walk<'_> {
         if !self.templates.places(BlockName::Linear, WordName::U) {
             return Err(refuse("wire-leans", "the wire leans, and the control has no U and V"));
         }
-        let axis = pose.axis().unwrap_or(Vec3::Z);
+        let axis = pose.axis();
         let Some(lean) = wire.machine.lean(axis) else {
             let message = "the wire leans, and the height of the upper plane is not known";
             let help = "give it with --height, or as `height` in the [wire] table of the machine";

@@ -4,16 +4,29 @@
 //! of the source it came from. Its vocabulary is that of cutter-location data (ISO 4343): rapid,
 //! line, arc, hole, tool, spindle, feed, coolant, compensation, frame, comment.
 //!
-//! Lengths are mm, feeds mm/min, times s, spindle speeds 1/min. A [`Pose`] is a tool tip with an
-//! orientation; a reader of cutter-location data gives both in the frame of the part (the work
-//! frame), a virtual control gives what the block says ([`Orientation`]).
+//! Lengths are mm, feeds mm/min, times s, spindle speeds 1/min. A [`Pose`] is a tool tip and a tool axis in the
+//! frame of the part (the work frame): every number of it is finite, and the axis is a unit vector. What a virtual
+//! control reports, with coordinates that nobody knows and positions of rotary axes, is no program: `control` has
+//! its own records, and `nc` makes a program of them.
 
+#![warn(clippy::wildcard_enum_match_arm)]
+
+mod builder;
+mod cycle;
 pub mod diagnostic;
 pub mod lowering;
+mod motion;
+mod pose;
 mod record;
 pub mod statistics;
 mod surface;
+mod technology;
 
+pub use builder::Builder;
+pub use cycle::*;
 pub use diagnostic::{Diagnostic, Severity, line_of, nearest};
+pub use motion::*;
+pub use pose::{FullPose, NoPose, Pose};
 pub use record::*;
 pub use surface::Surface;
+pub use technology::*;

@@ -15,27 +15,27 @@ pub const MAX_PECKS: usize = 10_000;
 /// `hole` + retract. `spindle` is what runs, so that a boring cycle can start it again.
 ///
 /// Returns `None` where moves cannot do it: tapping needs the control to couple feed and spindle, a
-/// withdrawal has to stop the spindle in position, and a peck that is not positive, or would take more than [`MAX_PECKS`], has no end.
+/// withdrawal has to stop the spindle in position, a peck that is not positive, or would take more than [`MAX_PECKS`], has no
+/// end, and heights that are not finite are nowhere.
 pub fn hole(cycle: &Cycle, hole: &Pose, spindle: Spindle) -> Option<Vec<Op>> {
-    let axis = hole.axis()?;
-    let at = |height: f64| Pose { point: hole.point + axis * height, ..*hole };
+    let at = |height: f64| hole.lifted(height).ok();
     let mut ops = Vec::with_capacity(4);
     match cycle.kind {
         CycleKind::Tap { .. } | CycleKind::FineBore(_) | CycleKind::BackBore { .. } => return None,
         CycleKind::Drill | CycleKind::Bore | CycleKind::Ream => {
-            ops.push(Op::Line(at(-cycle.depth)))
+            ops.push(Op::Line(at(-cycle.depth)?))
         }
         CycleKind::Deep | CycleKind::BreakChip => {
             let bottoms = pecks(cycle)?;
             for (i, &bottom) in bottoms.iter().enumerate() {
                 if i > 0 && cycle.kind == CycleKind::Deep {
-                    ops.push(Op::Rapid(at((REENTRY - bottoms[i - 1]).min(cycle.clearance))));
+                    ops.push(Op::Rapid(at((REENTRY - bottoms[i - 1]).min(cycle.clearance))?));
                 }
-                ops.push(Op::Line(at(-bottom)));
+                ops.push(Op::Line(at(-bottom)?));
                 if i + 1 < bottoms.len() {
-                    ops.push(match cycle.kind {
-                        CycleKind::Deep => Op::Rapid(at(cycle.clearance)),
-                        _ => Op::Rapid(at((CHIP_BREAK - bottom).min(cycle.clearance))),
+                    ops.push(match cycle.kind == CycleKind::Deep {
+                        true => Op::Rapid(at(cycle.clearance)?),
+                        false => Op::Rapid(at((CHIP_BREAK - bottom).min(cycle.clearance))?),
                     });
                 }
             }
@@ -44,13 +44,14 @@ pub fn hole(cycle: &Cycle, hole: &Pose, spindle: Spindle) -> Option<Vec<Op>> {
     if cycle.dwell > 0.0 {
         ops.push(Op::Dwell(cycle.dwell));
     }
-    match cycle.kind {
-        CycleKind::Ream => ops.push(Op::Line(at(cycle.clearance))),
-        CycleKind::Bore => ops.push(Op::Spindle(Spindle::Off)),
-        _ => {}
+    if cycle.kind == CycleKind::Ream {
+        ops.push(Op::Line(at(cycle.clearance)?));
+    }
+    if cycle.kind == CycleKind::Bore {
+        ops.push(Op::Spindle(Spindle::Off));
     }
     if cycle.kind != CycleKind::Ream || cycle.retract != cycle.clearance {
-        ops.push(Op::Rapid(at(cycle.retract)));
+        ops.push(Op::Rapid(at(cycle.retract)?));
     }
     if cycle.kind == CycleKind::Bore {
         ops.push(Op::Spindle(spindle));
@@ -106,10 +107,10 @@ mod tests {
     }
 
     fn heights(ops: &[Op]) -> Vec<f64> {
-        ops.iter().filter_map(|op| op.pose().map(|p| p.point.z)).collect()
+        ops.iter().filter_map(|op| op.pose().map(|p| p.point().z)).collect()
     }
 
-    const POSE: fn() -> Pose = || Pose::new(Vec3::ZERO, Vec3::Z);
+    const POSE: fn() -> Pose = || Pose::upright(Vec3::ZERO).unwrap();
 
     #[test]
     fn drilling_feeds_in_and_goes_out_by_rapid() {

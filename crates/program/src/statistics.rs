@@ -1,6 +1,6 @@
 //! What a program amounts to: lengths, extents, tools, counts.
 
-use crate::{Cycle, Op, Orientation, Program};
+use crate::{ArcTo, Course, Cycle, Op, Pose, Program};
 use geom::{Arc, Vec3};
 use serde::Serialize;
 
@@ -32,7 +32,7 @@ pub struct Statistics {
 }
 
 impl Statistics {
-    /// Counts `program`. Records whose pose is not in the work frame count, but add no length.
+    /// Counts `program`.
     pub fn of(program: &Program) -> Statistics {
         let mut s = Statistics { records: program.records.len(), ..Statistics::default() };
         let (mut low, mut high) = (Vec3::INFINITY, Vec3::NEG_INFINITY);
@@ -41,47 +41,67 @@ impl Statistics {
         for record in &program.records {
             let from = here;
             if let Some(pose) = record.op.pose() {
-                low = low.min(pose.point);
-                high = high.max(pose.point);
-                here = Some(pose.point);
-                if let Orientation::Axis(axis) = pose.orientation {
-                    s.tilted |= axis.distance_squared(Vec3::Z) > 1e-12;
-                }
+                low = low.min(pose.point());
+                high = high.max(pose.point());
+                here = Some(pose.point());
+                s.tilted |= pose.axis().distance_squared(Vec3::Z) > 1e-12;
             }
-            let step = |to: Vec3| from.map_or(0.0, |from| from.distance(to));
+            let step = |to: &Pose| from.map_or(0.0, |from| from.distance(to.point()));
+            let mut arc = |s: &mut Statistics, to: &ArcTo| {
+                s.arcs += 1;
+                let arc = from.and_then(|from| {
+                    Arc::new(from, to.end.point(), to.center, to.normal, to.turns, f64::MAX).ok()
+                });
+                if let Some(arc) = arc {
+                    s.cutting_length += arc.length();
+                    let (a, b) = arc.extents();
+                    low = low.min(a);
+                    high = high.max(b);
+                }
+            };
             match &record.op {
                 Op::Rapid(pose) => {
                     s.rapids += 1;
-                    s.rapid_length += step(pose.point);
+                    s.rapid_length += step(pose);
                 }
                 Op::Line(pose) => {
                     s.lines += 1;
-                    s.cutting_length += step(pose.point);
+                    s.cutting_length += step(pose);
                 }
                 Op::Thread(thread) => {
                     s.lines += 1;
-                    s.cutting_length += step(thread.end.point);
+                    s.cutting_length += step(&thread.end);
                 }
-                // How far it gets only the machine knows.
-                Op::Probe(_) => here = None,
-                Op::Arc(to) => {
-                    s.arcs += 1;
-                    let arc = from.and_then(|from| {
-                        Arc::new(from, to.end.point, to.center, to.normal, to.turns, f64::MAX).ok()
-                    });
-                    if let Some(arc) = arc {
-                        s.cutting_length += arc.length();
-                        let (a, b) = arc.extents();
-                        low = low.min(a);
-                        high = high.max(b);
+                Op::Arc(to) => arc(&mut s, to),
+                Op::Oriented(to) => {
+                    let end = *to.end.pose();
+                    match to.course {
+                        Course::Rapid => {
+                            s.rapids += 1;
+                            s.rapid_length += step(&end);
+                        }
+                        Course::Line => {
+                            s.lines += 1;
+                            s.cutting_length += step(&end);
+                        }
+                        Course::Arc { center, normal, turns } => {
+                            arc(&mut s, &ArcTo { end, center, normal, turns });
+                        }
                     }
                 }
+                // How far these get only the machine knows.
+                Op::Joints(_) | Op::MachineMove(_) => {
+                    s.rapids += 1;
+                    here = None;
+                }
+                Op::Probe(_) => here = None,
                 Op::Hole(pose) => {
                     s.holes += 1;
-                    if let (Some(cycle), Some(axis)) = (&cycle, pose.axis()) {
-                        let at = |height: f64| pose.point + axis * height;
+                    if let Some(cycle) = &cycle {
+                        let at = |height: f64| pose.point() + pose.axis() * height;
+                        let over = from.map_or(0.0, |from| from.distance(at(cycle.clearance)));
                         s.cutting_length += cycle.clearance + cycle.depth;
-                        s.rapid_length += step(at(cycle.clearance)) + cycle.retract + cycle.depth;
+                        s.rapid_length += over + cycle.retract + cycle.depth;
                         low = low.min(at(-cycle.depth)).min(at(cycle.retract));
                         high = high.max(at(-cycle.depth)).max(at(cycle.retract));
                         here = Some(at(cycle.retract));
@@ -89,8 +109,41 @@ impl Statistics {
                 }
                 Op::Cycle(c) => cycle = Some(**c),
                 Op::CycleOff => cycle = None,
-                Op::Tool(tool) if !s.tools.contains(&tool.number) => s.tools.push(tool.number),
-                _ => {}
+                Op::Tool(tool) => {
+                    if !s.tools.contains(&tool.number) {
+                        s.tools.push(tool.number);
+                    }
+                }
+                // These neither move the tool nor say which one it is. The way home, like that into
+                // another offset, is the machine's own.
+                Op::Home
+                | Op::Feed(_)
+                | Op::PathMode(_)
+                | Op::Spindle(_)
+                | Op::SurfaceSpeed(_)
+                | Op::Coolant(_)
+                | Op::Beam(_)
+                | Op::Pulses(_)
+                | Op::Preselect(_)
+                | Op::Compensation(_)
+                | Op::Frame(_)
+                | Op::WorkOffset(_)
+                | Op::Surface(_)
+                | Op::Clamp(_)
+                | Op::Output(_)
+                | Op::Input(_)
+                | Op::Auxiliary(_)
+                | Op::ThreadWire
+                | Op::CutWire
+                | Op::Taper(_)
+                | Op::Dwell(_)
+                | Op::Stop
+                | Op::OptionalStop
+                | Op::Operation(_)
+                | Op::EndOfOperation
+                | Op::Comment(_)
+                | Op::Message(_)
+                | Op::End => {}
             }
         }
         if low.is_finite() && high.is_finite() {
@@ -115,7 +168,7 @@ mod tests {
 
     #[test]
     fn lengths_and_extents_are_those_of_the_path() {
-        let at = |x: f64, y: f64, z: f64| Pose::new(Vec3::new(x, y, z), Vec3::Z);
+        let at = |x: f64, y: f64, z: f64| Pose::upright(Vec3::new(x, y, z)).unwrap();
         let mut p = Program::new("t");
         p.push(1, Op::Rapid(at(0.0, 0.0, 5.0)));
         p.push(2, Op::Rapid(at(10.0, 0.0, 5.0)));

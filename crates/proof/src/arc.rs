@@ -4,8 +4,9 @@ use crate::expected::Goal;
 use crate::gauge::Gauge;
 use crate::line::{Followed, turn, within};
 use crate::place::{Place, Station};
+use control::Position;
 use geom::{Arc, Vec3};
-use program::{ArcTo, Pose};
+use program::ArcTo;
 use std::f64::consts::{PI, TAU};
 
 /// How far rounding moves a point of an arc, in tip tolerances: an end by 0.82 of one (√½ steps in the
@@ -17,9 +18,10 @@ const ROUNDINGS: f64 = 3.0;
 pub(crate) const PAST: f64 = 4.0;
 
 /// The arc that a block of the program makes, in the work frame, or `None` where it makes none.
-pub(crate) fn of_block(gauge: &Gauge, here: &Station, to: &ArcTo) -> Option<Arc> {
-    let tip =
-        |point: Vec3| Place::of(gauge.machine, &Pose { point, ..to.end }, gauge.tool_length).tip;
+pub(crate) fn of_block(gauge: &Gauge, here: &Station, to: &ArcTo<Position>) -> Option<Arc> {
+    let tip = |point: Vec3| {
+        Place::of(gauge.machine, &Position { point, ..to.end }, gauge.tool_length).tip
+    };
     let center = tip(to.center);
     let normal = tip(to.center + to.normal) - center;
     let start = here.place.tip;
@@ -138,7 +140,7 @@ fn arc_point(arc: &Arc, t: f64) -> Vec3 {
 
 /// Holds the tool axis against the source, in which it stands still during an arc.
 fn axis(gauge: &Gauge, goal: &Goal, here: &Station, to: &Station) -> Result<(), String> {
-    if turn(&here.pose, &to.pose).is_some() {
+    if turn(&here.position, &to.position).is_some() {
         return Err("turns a rotary axis during an arc".into());
     }
     let off = goal.to.apart(&to.place).1;

@@ -3,7 +3,10 @@
 use crate::place::Place;
 use geom::{Arc, Vec3};
 use machine::Machine;
-use program::{Compensation, Coolant, Cycle, Feed, Op, Probe, Record, Spindle, Tool};
+use program::{
+    Auxiliary, Compensation, Coolant, Cycle, Feed, Input, Op, Output, Pose, Probe, Record, Spindle,
+    Tool, WorkOffset,
+};
 
 /// A motion of the source, from where the one before it ends.
 #[derive(Clone, Debug)]
@@ -50,6 +53,11 @@ pub(crate) enum Step {
     OptionalStop,
     ThreadWire,
     CutWire,
+    Output(Output),
+    Input(Input),
+    Auxiliary(Auxiliary),
+    /// A record that no program can be compared with, and what it is.
+    Unproven(&'static str),
     End,
 }
 
@@ -66,7 +74,7 @@ pub(crate) struct Wanted<'a> {
     /// Lean of the wire by the control, degrees.
     pub taper: f64,
     /// The work offset, where the source names one.
-    pub work_offset: Option<u32>,
+    pub work_offset: Option<WorkOffset>,
     cycle: Option<Cycle>,
 }
 
@@ -131,10 +139,10 @@ impl<'a> Cursor<'a> {
                 Op::Rapid(pose) => self.motion(Kind::Rapid, pose),
                 Op::Line(pose) => self.motion(Kind::Line, pose),
                 Op::Arc(to) => {
-                    let end = self.place(&to.end);
                     let arc = self.here.and_then(|here| {
                         let radius = here.tip.distance(to.center);
-                        Arc::new(here.tip, end.tip, to.center, to.normal, to.turns, radius).ok()
+                        let end = to.end.point();
+                        Arc::new(here.tip, end, to.center, to.normal, to.turns, radius).ok()
                     });
                     self.motion(
                         arc.map_or(Kind::Broken("its points make no arc"), Kind::Arc),
@@ -150,13 +158,43 @@ impl<'a> Cursor<'a> {
                     let Probe { away, must_answer, .. } = **probe;
                     self.motion(Kind::Probe { away, must_answer }, &probe.end)
                 }
+                Op::Oriented(_) => Step::Unproven("the turn of a tool about its axis"),
+                Op::Joints(_) => Step::Unproven("a move of joints"),
+                Op::MachineMove(_) => Step::Unproven("a move in machine coordinates"),
+                Op::PathMode(_) => Step::Unproven("what happens at corners"),
+                Op::Beam(_) | Op::Pulses(_) => Step::Unproven("a beam"),
+                Op::Clamp(_) => Step::Unproven("a clamp"),
                 Op::Dwell(seconds) if *seconds > 0.0 => Step::Dwell(*seconds),
+                Op::Dwell(_) => continue,
                 Op::Stop => Step::Stop,
+                Op::OptionalStop if self.machine.leaves_out("optional_stop") => continue,
+                Op::OptionalStop => Step::OptionalStop,
                 Op::ThreadWire => Step::ThreadWire,
                 Op::CutWire => Step::CutWire,
-                Op::OptionalStop if !self.machine.leaves_out("optional_stop") => Step::OptionalStop,
-                op => {
-                    self.note(op);
+                Op::Output(output) => Step::Output(*output),
+                Op::Input(input) => Step::Input(**input),
+                Op::Auxiliary(_) if self.machine.leaves_out("auxiliary") => continue,
+                Op::Auxiliary(function) => Step::Auxiliary(*function),
+                Op::Home
+                | Op::Cycle(_)
+                | Op::CycleOff
+                | Op::Feed(_)
+                | Op::Spindle(_)
+                | Op::SurfaceSpeed(_)
+                | Op::Coolant(_)
+                | Op::Tool(_)
+                | Op::Preselect(_)
+                | Op::Compensation(_)
+                | Op::Frame(_)
+                | Op::WorkOffset(_)
+                | Op::Surface(_)
+                | Op::Taper(_)
+                | Op::Operation(_)
+                | Op::EndOfOperation
+                | Op::Comment(_)
+                | Op::Message(_)
+                | Op::End => {
+                    self.note(&record.op);
                     continue;
                 }
             };
@@ -172,20 +210,16 @@ impl<'a> Cursor<'a> {
     }
 
     /// The next motion, whatever dwells and stops come before it.
-    fn motion(&self, kind: Kind, pose: &program::Pose) -> Step {
+    fn motion(&self, kind: Kind, pose: &Pose) -> Step {
         Step::Move(Goal {
             line: self.line,
             kind,
             from: self.here,
-            to: self.place(pose),
+            to: pose.into(),
             tool_change: self.tool_change,
             reset: self.reset,
             homed: self.homed,
         })
-    }
-
-    fn place(&self, pose: &program::Pose) -> Place {
-        Place::of(self.machine, pose, self.tool_length())
     }
 
     /// Length of the active tool, mm; 0 where the source does not say.
@@ -193,6 +227,7 @@ impl<'a> Cursor<'a> {
         self.wanted.tool.and_then(|tool| tool.length).unwrap_or(0.0)
     }
 
+    /// What holds from here on.
     fn note(&mut self, op: &'a Op) {
         let wanted = &mut self.wanted;
         match op {
@@ -209,13 +244,42 @@ impl<'a> Cursor<'a> {
                 self.tool_change = true;
             }
             Op::Frame(_) => self.reset = true,
-            Op::Home(_) => self.homed = true,
-            Op::WorkOffset(number) => {
-                wanted.work_offset = Some(*number);
+            Op::Home => self.homed = true,
+            Op::WorkOffset(offset) => {
+                wanted.work_offset = Some(*offset);
                 // How far the new frame is from the old is not known: the tool comes from above.
                 self.homed |= self.here.take().is_some();
             }
-            _ => {}
+            // Words for people, and what the control may do or leave. The surface is that of the trial.
+            Op::Preselect(_)
+            | Op::Surface(_)
+            | Op::Operation(_)
+            | Op::EndOfOperation
+            | Op::Comment(_)
+            | Op::Message(_)
+            | Op::End => {}
+            // Steps of their own.
+            Op::Rapid(_)
+            | Op::Line(_)
+            | Op::Arc(_)
+            | Op::Thread(_)
+            | Op::Probe(_)
+            | Op::Hole(_)
+            | Op::Oriented(_)
+            | Op::Joints(_)
+            | Op::MachineMove(_)
+            | Op::PathMode(_)
+            | Op::Beam(_)
+            | Op::Pulses(_)
+            | Op::Clamp(_)
+            | Op::Output(_)
+            | Op::Input(_)
+            | Op::Auxiliary(_)
+            | Op::ThreadWire
+            | Op::CutWire
+            | Op::Dwell(_)
+            | Op::Stop
+            | Op::OptionalStop => {}
         }
     }
 }

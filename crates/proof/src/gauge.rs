@@ -2,9 +2,9 @@
 
 use crate::place::{Place, Station};
 use crate::tolerance::Applied;
+use control::Position;
 use geom::{Vec3, angle_between};
 use machine::Machine;
-use program::Pose;
 
 /// The machine, the tolerances, the length of the active tool.
 #[derive(Clone, Copy)]
@@ -17,13 +17,13 @@ pub(crate) struct Gauge<'a> {
 
 impl Gauge<'_> {
     /// The place that a block says.
-    pub fn station(&self, line: u32, pose: Pose) -> Station {
-        Station { line, pose, place: Place::of(self.machine, &pose, self.tool_length) }
+    pub fn station(&self, line: u32, position: Position) -> Station {
+        Station { line, position, place: Place::of(self.machine, &position, self.tool_length) }
     }
 
     /// How far the tip may be from where it should be at `station`, mm.
     pub fn slack(&self, station: &Station) -> f64 {
-        self.allowed.tip(self.machine, &station.pose, &station.place, self.tool_length)
+        self.allowed.tip(self.machine, &station.position, &station.place, self.tool_length)
     }
 
     /// Whether `station` is at `place`: tip and axis. Never where a coordinate is not known.

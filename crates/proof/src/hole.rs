@@ -6,8 +6,9 @@ use crate::gauge::Gauge;
 use crate::line::within;
 use crate::place::{Number, Place, Station};
 use crate::state::Difference;
+use control::{Orientation, Position};
 use geom::Vec3;
-use program::{Cycle, CycleKind, Orientation, Pose, Withdrawal};
+use program::{Cycle, CycleKind, Withdrawal};
 
 /// A hole of the source.
 pub(crate) struct Hole<'a> {
@@ -251,13 +252,13 @@ pub(crate) struct Drilled {
 impl Drilled {
     /// The hole at `pose` on `line` of the program. The heights of a cycle count along Z of the
     /// block's coordinates, which in the work frame is the tool axis.
-    pub fn new(gauge: &Gauge, line: u32, pose: &Pose, cycle: Cycle) -> Drilled {
+    pub fn new(gauge: &Gauge, line: u32, pose: &Position, cycle: Cycle) -> Drilled {
         let along = match pose.orientation {
             Orientation::Axis(axis) => axis,
             Orientation::Rotary { degrees, tool_center: true } => gauge.machine.axis_at(degrees),
             Orientation::Rotary { .. } => Vec3::Z,
         };
-        let moved = |by: Vec3| gauge.station(line, Pose { point: pose.point + by, ..*pose });
+        let moved = |by: Vec3| gauge.station(line, Position { point: pose.point + by, ..*pose });
         let at = |height: f64| moved(along * height);
         let tip = |by: Vec3| moved(by).place.tip;
         Drilled {

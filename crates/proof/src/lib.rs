@@ -35,6 +35,8 @@
 //!
 //! The rules in full, with what each keeps out, are in `docs/proof.md`.
 
+#![warn(clippy::wildcard_enum_match_arm)]
+
 mod arc;
 mod expected;
 mod gauge;
@@ -54,7 +56,7 @@ pub use tolerance::{Applied, Tolerances};
 
 use control::Setup;
 use machine::Machine;
-use program::Program;
+use program::{Diagnostic, Program};
 use surfaces::Trial;
 
 /// Runs `text` on the virtual control of `machine` and holds it against `source`.
@@ -73,16 +75,15 @@ pub fn prove(
     let Some(surface) = surfaces::found(source) else { return run(source, Setup::default()) };
     let trials = match surfaces::trials(surface) {
         Ok(trials) => trials,
-        Err(found) => {
-            let mut prover = Prover::new(source, machine, tolerances);
-            prover.refused(*found);
-            return prover.finish();
-        }
+        Err(found) => return refused(source, machine, tolerances, *found),
     };
     let mut proven: Option<Report> = None;
     for Trial { places, heights } in trials {
         let setup = Setup { surface: places, ..Setup::default() };
-        let report = run(&levelling::raised(source, &heights), setup);
+        let report = match levelling::raised(source, &heights) {
+            Ok(raised) => run(&raised, setup),
+            Err(found) => return refused(source, machine, tolerances, *found),
+        };
         match &mut proven {
             _ if !report.proven => return report,
             Some(proven) => proven.deviations.widen(&report.deviations),
@@ -90,6 +91,18 @@ pub fn prove(
         }
     }
     proven.unwrap_or_default()
+}
+
+/// The report of a proof that cannot begin.
+fn refused(
+    source: &Program,
+    machine: &Machine,
+    tolerances: &Tolerances,
+    found: Diagnostic,
+) -> Report {
+    let mut prover = Prover::new(source, machine, tolerances);
+    prover.refused(found);
+    prover.finish()
 }
 
 /// The proof of a program on a control with this set-up.
@@ -104,7 +117,7 @@ fn prove_on(
     let mut prover = Prover::new(source, machine, tolerances);
     let run = match nc::settings(machine, setup) {
         Ok(settings) => {
-            control::read(&settings, file_name, text, &mut |record| prover.record(&record))
+            control::read(&settings, file_name, text, &mut |event| prover.event(&event))
         }
         Err(found) => Err(found),
     };

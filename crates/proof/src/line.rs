@@ -3,8 +3,8 @@
 use crate::expected::Goal;
 use crate::gauge::{Gauge, off_great_circle};
 use crate::place::{Number, Place, Station};
+use control::{Orientation, Position};
 use geom::{Vec3, between, nearest_on_segment};
-use program::{Orientation, Pose};
 
 /// How far a program has come on a source move.
 #[derive(Clone, Copy, Debug)]
@@ -45,11 +45,11 @@ pub(crate) fn follow(
     axis(gauge, &from, &goal.to, || expected(reached), to.place.axis)?;
     let left_mm = (1.0 - reached) * length;
     let mut followed = Followed { t: reached, path_mm: beside, left_mm };
-    if let Some(turn) = turn(&here.pose, &to.pose) {
+    if let Some(turn) = turn(&here.position, &to.position) {
         let samples = (turn / SAMPLE).ceil().clamp(1.0, 360.0) as u32;
         for i in 1..=samples {
             let part = f64::from(i) / f64::from(samples + 1);
-            let pose = blend(&here.pose, &to.pose, part);
+            let pose = blend(&here.position, &to.position, part);
             let place = Place::of(gauge.machine, &pose, gauge.tool_length);
             if !matches!(pose.orientation, Orientation::Rotary { tool_center: true, .. }) {
                 let (_, beside) = nearest_on_segment(from.tip, goal.to.tip, place.tip);
@@ -89,7 +89,7 @@ fn axis(
 
 /// The largest turn of a rotary axis between two poses, degrees, where one turns and both say so in
 /// the same kind of coordinates.
-pub(crate) fn turn(from: &Pose, to: &Pose) -> Option<f64> {
+pub(crate) fn turn(from: &Position, to: &Position) -> Option<f64> {
     match (from.orientation, to.orientation) {
         (
             Orientation::Rotary { degrees: a, tool_center: s },
@@ -104,20 +104,20 @@ pub(crate) fn turn(from: &Pose, to: &Pose) -> Option<f64> {
 /// Whether the machine turns the tool in a move of its own axes that began in other coordinates: the
 /// way of the tip is then not known.
 fn unlike(here: &Station, to: &Station) -> bool {
-    let same_kind = match (here.pose.orientation, to.pose.orientation) {
+    let same_kind = match (here.position.orientation, to.position.orientation) {
         (
             Orientation::Rotary { tool_center: s, .. },
             Orientation::Rotary { tool_center: t, .. },
         ) => s == t,
         _ => false,
     };
-    matches!(to.pose.orientation, Orientation::Rotary { tool_center: false, .. })
+    matches!(to.position.orientation, Orientation::Rotary { tool_center: false, .. })
         && !same_kind
         && here.place.axis.distance_squared(to.place.axis) > 1e-18
 }
 
 /// The pose `t` (0 to 1) of the way between two poses of the same kind, as a control interpolates.
-fn blend(from: &Pose, to: &Pose, t: f64) -> Pose {
+fn blend(from: &Position, to: &Position, t: f64) -> Position {
     let point = from.point.lerp(to.point, t);
     let orientation = match (from.orientation, to.orientation) {
         (
@@ -129,7 +129,7 @@ fn blend(from: &Pose, to: &Pose, t: f64) -> Pose {
         }
         (_, orientation) => orientation,
     };
-    Pose { point, orientation }
+    Position { point, orientation }
 }
 
 /// Refuses a deviation that is larger than allowed, or not a number.

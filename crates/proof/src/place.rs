@@ -1,5 +1,6 @@
 //! Where a tool is.
 
+use control::Position;
 use geom::{Vec3, angle_between};
 use machine::Machine;
 use program::Pose;
@@ -13,9 +14,9 @@ pub(crate) struct Place {
 }
 
 impl Place {
-    /// The place of a pose, with a tool of `tool_length` mm.
-    pub fn of(machine: &Machine, pose: &Pose, tool_length: f64) -> Place {
-        let (tip, axis) = machine.resolve(pose, tool_length);
+    /// The place that a block says, with a tool of `tool_length` mm.
+    pub fn of(machine: &Machine, position: &Position, tool_length: f64) -> Place {
+        let (tip, axis) = nc::resolve(machine, position, tool_length);
         Place { tip, axis }
     }
 
@@ -69,6 +70,13 @@ impl fmt::Display for Place {
     }
 }
 
+/// The place of a pose of the source.
+impl From<&Pose> for Place {
+    fn from(pose: &Pose) -> Place {
+        Place { tip: pose.point(), axis: pose.axis() }
+    }
+}
+
 /// A number for a person: at most four decimals, no trailing zeros, no `-0`.
 pub(crate) struct Number(pub f64);
 
@@ -85,7 +93,7 @@ pub(crate) struct Station {
     /// Line of the NC program.
     pub line: u32,
     /// What the block says.
-    pub pose: Pose,
+    pub position: Position,
     /// Where that is in the work frame.
     pub place: Place,
 }

@@ -1,8 +1,9 @@
 //! What a proof found, for a machinist and for a program that reads JSON.
 
 use crate::tolerance::Applied;
+use control::{Orientation, Position};
 use geom::{Arc, Vec3};
-use program::{Diagnostic, Orientation, Pose};
+use program::Diagnostic;
 use serde::Serialize;
 
 /// The most mismatches and the most warnings that a report names; more of a rule raise its count.
@@ -165,7 +166,7 @@ impl Extent {
 
 impl Summary {
     /// Takes a programmed pose into the extents.
-    pub(crate) fn include(&mut self, pose: &Pose) {
+    pub(crate) fn include(&mut self, pose: &Position) {
         for (extent, value) in self.linear_extents_mm.iter_mut().zip(pose.point.to_array()) {
             extent.include(value);
         }

@@ -5,7 +5,7 @@ use crate::place::Number;
 use crate::tolerance::Applied;
 use control::Dialect;
 use machine::{LengthOffset, Machine};
-use program::{Compensation, Coolant, Cycle, FIRST_WORK_OFFSET, Feed, Spindle, Tool};
+use program::{Compensation, Coolant, Cycle, Feed, Spindle, Tool, WorkOffset};
 
 /// What the program has switched on.
 #[derive(Clone, Debug)]
@@ -23,7 +23,7 @@ pub(crate) struct Running {
     /// Lean of the wire by the control, degrees.
     pub taper: f64,
     pub length_offset: Option<u32>,
-    pub work_offset: Option<u32>,
+    pub work_offset: Option<WorkOffset>,
     pub cycle: Option<Cycle>,
 }
 
@@ -107,13 +107,15 @@ pub(crate) fn at_stop(machine: &Machine, wanted: &Wanted, running: &Running) -> 
 }
 
 fn work_offset(machine: &Machine, wanted: &Wanted, running: &Running) -> Option<Difference> {
-    let expected = wanted.work_offset.unwrap_or(FIRST_WORK_OFFSET);
+    let expected = wanted.work_offset.unwrap_or(WorkOffset::FIRST);
     match running.work_offset {
-        Some(n) if n != expected => {
+        Some(active) if active != expected => {
+            let (n, expected) = (active.number(), expected.number());
             let message = format!("work offset {n} is active, not {expected} (54 is the first)");
             Some(("work-offset", message))
         }
         None if wanted.work_offset.is_some() => {
+            let expected = expected.number();
             let message = format!("no work offset is named, but should be {expected}");
             Some(("work-offset", message))
         }

@@ -2,8 +2,8 @@
 
 use crate::gauge::Gauge;
 use crate::place::Station;
+use control::Orientation;
 use geom::Vec3;
-use program::Orientation;
 
 /// A coordinate of a block counts as repeated below this (mm or degrees): noise of a control's
 /// arithmetic, far below any word.
@@ -73,7 +73,7 @@ fn each(s: Vec3, a: Vec3, b: Vec3, slack: f64) -> bool {
 
 /// Whether each coordinate of `stop` is that of `start`, that of `end`, or not known.
 fn corner(gauge: &Gauge, stop: &Station, start: &Station, end: &Station, free: bool) -> bool {
-    let rotary = |station: &Station| match station.pose.orientation {
+    let rotary = |station: &Station| match station.position.orientation {
         Orientation::Rotary { degrees, tool_center } => Some((degrees, tool_center)),
         Orientation::Axis(_) => None,
     };
@@ -84,7 +84,8 @@ fn corner(gauge: &Gauge, stop: &Station, start: &Station, end: &Station, free: b
     {
         let turned = (0..3).all(|i| either(s[i], a[i], b[i], SAME));
         let parked = free && !stop.place.tip.is_finite();
-        return each(stop.pose.point, start.pose.point, end.pose.point, SAME) && (turned || parked);
+        return each(stop.position.point, start.position.point, end.position.point, SAME)
+            && (turned || parked);
     }
     // Blocks in different kinds of coordinates meet in the work frame.
     let slack = gauge.slack(stop);
@@ -103,9 +104,9 @@ fn corner(gauge: &Gauge, stop: &Station, start: &Station, end: &Station, free: b
 /// its block says counts against the end that has the same; where neither has, only the height must be
 /// unknown: then Z is home, and nothing has gone down yet.
 fn partly_known(stop: &Station, start: &Station, end: &Station, slack: f64) -> bool {
-    let s = stop.pose;
-    let alike = |other: &Station| s.orientation == other.pose.orientation;
-    let said = |other: &Station| if alike(other) { other.pose.point } else { Vec3::NAN };
+    let s = stop.position;
+    let alike = |other: &Station| s.orientation == other.position.orientation;
+    let said = |other: &Station| if alike(other) { other.position.point } else { Vec3::NAN };
     match alike(start) || alike(end) {
         true => each(s.point, said(start), said(end), slack),
         false => s.point.z.is_nan(),

@@ -1,9 +1,9 @@
 //! How close the two motions must be.
 
 use crate::place::Place;
+use control::{Orientation, Position};
 use geom::Vec3;
 use machine::{Machine, Mount};
-use program::{Orientation, Pose};
 use serde::Serialize;
 
 /// How close the two motions must be.
@@ -93,7 +93,7 @@ impl Applied {
     pub(crate) fn tip(
         &self,
         machine: &Machine,
-        pose: &Pose,
+        pose: &Position,
         place: &Place,
         tool_length: f64,
     ) -> f64 {

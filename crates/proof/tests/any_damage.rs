@@ -3,6 +3,7 @@
 mod common;
 
 use common::*;
+use control::{Action, Position};
 use geom::Vec3;
 use program::*;
 use proptest::prelude::*;
@@ -62,19 +63,19 @@ fn piece() -> impl Strategy<Value = Piece> {
 }
 
 /// The source and the program of these pieces, which begin with a rapid and end with a cut.
-fn both(pieces: &[Piece]) -> (Vec<Op>, Vec<Op>) {
+fn both(pieces: &[Piece]) -> (Vec<Op>, Vec<Action>) {
     let (mut own, mut nc) = (start(), nc_start());
     let (mut here, mut number) = (Vec3::new(0.0, 0.0, 90.0), 1);
-    let go = |to: Vec3, own: &mut Vec<Op>, nc: &mut Vec<Op>, op: fn(Pose) -> Op| {
+    let go = |to: Vec3, own: &mut Vec<Op>, nc: &mut Vec<Action>, op: fn(Pose) -> Op| {
         own.push(op(at(to.x, to.y, to.z)));
         let rounded = (to * 1e3).round() / 1e3;
-        nc.push(op(block(rounded.x, rounded.y, rounded.z)));
+        nc.push(action(&op(at(rounded.x, rounded.y, rounded.z))));
     };
     go(here, &mut own, &mut nc, Op::Rapid);
     for piece in pieces {
         let mut alike = |op: Op| {
-            own.push(op.clone());
-            nc.push(op);
+            nc.push(action(&op));
+            own.push(op);
         };
         match piece {
             Piece::Rapid(to) | Piece::Line(to) if to.distance(here) < 0.1 => {}
@@ -91,14 +92,14 @@ fn both(pieces: &[Piece]) -> (Vec<Op>, Vec<Op>) {
                 let spoke = geom::rotate(Vec3::X * *radius, Vec3::Z, from.to_radians());
                 let center = here - spoke;
                 let to = center + geom::rotate(spoke, Vec3::Z, turn.to_radians()) + Vec3::Z * *rise;
-                own.push(arc(at(to.x, to.y, to.z), center.into(), normal));
+                own.push(Op::Arc(arc(at(to.x, to.y, to.z), center.into(), normal)));
                 let (end, middle) = ((to * 1e3).round() / 1e3, (center * 1e3).round() / 1e3);
-                nc.push(arc(block(end.x, end.y, end.z), middle.into(), normal));
+                nc.push(Action::Arc(arc(block(end.x, end.y, end.z), middle.into(), normal)));
                 here = to;
             }
             Piece::Hole { x, y, depth } => {
                 let depth = (depth * 1e3).round() / 1e3;
-                alike(cycle(Cycle { depth, feed: None, ..drill() }));
+                alike(Op::Cycle(Box::new(Cycle { depth, feed: None, ..drill() })));
                 go(Vec3::new(*x, *y, 0.0), &mut own, &mut nc, Op::Hole);
                 here = Vec3::new(*x, *y, 20.0);
             }
@@ -111,10 +112,10 @@ fn both(pieces: &[Piece]) -> (Vec<Op>, Vec<Op>) {
             Piece::Stop => alike(Op::Stop),
             Piece::Tool => {
                 number += 1;
-                alike(tool(number));
-                nc.push(Op::LengthOffset(Some(number)));
+                alike(Op::Tool(tool(number)));
+                nc.push(Action::LengthOffset(Some(number)));
                 own.extend(start()[1..].iter().cloned());
-                nc.extend(start()[1..].iter().cloned());
+                nc.extend(actions(&start()[1..]));
                 here = Vec3::new(5.0 * f64::from(number), 5.0, 95.0);
                 go(here, &mut own, &mut nc, Op::Rapid);
             }
@@ -123,76 +124,88 @@ fn both(pieces: &[Piece]) -> (Vec<Op>, Vec<Op>) {
     // A last cut, so that no word stands where it does nothing.
     here.z += if here.z > 0.0 { -31.0 } else { 31.0 };
     go(here, &mut own, &mut nc, Op::Line);
-    nc.extend([Op::Home(4), Op::End]);
+    nc.extend([Action::Home(Axes::Z), Action::End]);
     (own, nc)
 }
 
-/// Damages `op` in the way that `how` chooses, by at least ten times the tolerance. `None` where there
+/// Damages `action` in the way that `how` chooses, by at least ten times the tolerance. `None` where there
 /// is no such damage, or it would not change what the machine does.
-fn damaged(op: &Op, how: usize, by: f64) -> Option<Vec<Op>> {
-    let shift = |pose: &Pose| {
-        let mut pose = *pose;
-        pose.point[how % 3] += by;
-        pose
+fn damaged(action: &Action, how: usize, by: f64) -> Option<Vec<Action>> {
+    let shift = |position: &Position| {
+        let mut position = *position;
+        position.point[how % 3] += by;
+        position
     };
-    Some(match (op, how) {
-        (Op::Rapid(_) | Op::Line(_) | Op::Hole(_) | Op::Arc(_) | Op::Dwell(_) | Op::Stop, 3) => {
+    Some(match (action, how) {
+        (
+            Action::Rapid(_)
+            | Action::Line(_)
+            | Action::Hole(_)
+            | Action::Arc(_)
+            | Action::Dwell(_)
+            | Action::Stop,
+            3,
+        ) => {
             vec![]
         }
-        (Op::Tool(_), 3) => vec![],
+        (Action::Tool(_), 3) => vec![],
         // A stop too many is no harm before a tool change, so it is not among the damages.
-        (Op::Dwell(_) | Op::Hole(_), 4) => vec![op.clone(), op.clone()],
-        (Op::Rapid(pose), 4) => vec![Op::Line(*pose)],
-        (Op::Line(pose), 4) => vec![Op::Rapid(*pose)],
-        (Op::Rapid(pose), 0..3) => vec![Op::Rapid(shift(pose))],
-        (Op::Line(pose), 0..3) => vec![Op::Line(shift(pose))],
-        (Op::Hole(pose), 0..3) => vec![Op::Hole(shift(pose))],
-        (Op::Line(pose), 5) => {
+        (Action::Dwell(_) | Action::Hole(_), 4) => vec![action.clone(), action.clone()],
+        (Action::Rapid(position), 4) => vec![Action::Line(*position)],
+        (Action::Line(position), 4) => vec![Action::Rapid(*position)],
+        (Action::Rapid(position), 0..3) => vec![Action::Rapid(shift(position))],
+        (Action::Line(position), 0..3) => vec![Action::Line(shift(position))],
+        (Action::Hole(position), 0..3) => vec![Action::Hole(shift(position))],
+        (Action::Line(position), 5) => {
             // Off in all axes, so that it does not lie on the next line.
-            let point = pose.point + Vec3::new(by, -2.0 * by, 3.0 * by);
-            vec![op.clone(), Op::Line(Pose { point, ..*pose })]
+            let point = position.point + Vec3::new(by, -2.0 * by, 3.0 * by);
+            vec![action.clone(), Action::Line(Position { point, ..*position })]
         }
-        (Op::Arc(to), 0..3) => vec![Op::Arc(Box::new(ArcTo { end: shift(&to.end), ..**to }))],
-        (Op::Arc(to), 4) => vec![Op::Arc(Box::new(ArcTo { normal: -to.normal, ..**to }))],
-        (Op::Arc(to), 5) => vec![Op::Arc(Box::new(ArcTo { turns: to.turns + 1, ..**to }))],
-        (Op::Arc(to), 6) => {
+        (Action::Arc(to), 0..3) => {
+            vec![Action::Arc(Box::new(ArcTo { end: shift(&to.end), ..**to }))]
+        }
+        (Action::Arc(to), 4) => vec![Action::Arc(Box::new(ArcTo { normal: -to.normal, ..**to }))],
+        (Action::Arc(to), 5) => vec![Action::Arc(Box::new(ArcTo { turns: to.turns + 1, ..**to }))],
+        (Action::Arc(to), 6) => {
             let center = to.center + Vec3::new(by.signum() * 20.0, 20.0, 0.0);
-            vec![Op::Arc(Box::new(ArcTo { center, ..**to }))]
+            vec![Action::Arc(Box::new(ArcTo { center, ..**to }))]
         }
-        (Op::Arc(to), 7) => vec![Op::Line(to.end)],
-        (Op::Dwell(seconds), 5) => vec![Op::Dwell(seconds * 10.0)],
-        (Op::Stop, 5) => vec![Op::OptionalStop],
-        (Op::Tool(called), 5) => vec![tool(called.number + 1)],
-        (Op::Cycle(of), 0) => vec![cycle(Cycle { depth: of.depth + by, ..**of })],
-        (Op::Cycle(of), 1) => vec![cycle(Cycle { clearance: of.clearance + by, ..**of })],
-        (Op::Cycle(of), 2) => vec![cycle(Cycle { retract: of.retract + by, ..**of })],
-        (Op::Cycle(of), 3) => vec![cycle(Cycle { kind: CycleKind::Ream, ..**of })],
-        (Op::LengthOffset(_), 0) => vec![],
-        (Op::End, 0) => vec![],
+        (Action::Arc(to), 7) => vec![Action::Line(to.end)],
+        (Action::Dwell(seconds), 5) => vec![Action::Dwell(seconds * 10.0)],
+        (Action::Stop, 5) => vec![Action::OptionalStop],
+        (Action::Tool(called), 5) => vec![Action::Tool(tool(called.number + 1))],
+        (Action::Cycle(of), 0) => vec![cycle(Cycle { depth: of.depth + by, ..**of })],
+        (Action::Cycle(of), 1) => vec![cycle(Cycle { clearance: of.clearance + by, ..**of })],
+        (Action::Cycle(of), 2) => vec![cycle(Cycle { retract: of.retract + by, ..**of })],
+        (Action::Cycle(of), 3) => vec![cycle(Cycle { kind: CycleKind::Ream, ..**of })],
+        (Action::LengthOffset(_), 0) => vec![],
+        (Action::End, 0) => vec![],
         _ => return None,
     })
 }
 
 /// Words that count where the next cut begins.
-fn word_damaged(op: &Op) -> Option<Vec<Op>> {
-    Some(match op {
-        Op::Feed(Feed::PerMinute(feed)) => vec![Op::Feed(Feed::PerMinute(feed + 1.0))],
-        Op::Spindle(Spindle::Clockwise(speed)) => {
-            vec![Op::Spindle(Spindle::CounterClockwise(*speed))]
+fn word_damaged(action: &Action) -> Option<Vec<Action>> {
+    Some(match action {
+        Action::Feed(Feed::PerMinute(feed)) => vec![Action::Feed(Feed::PerMinute(feed + 1.0))],
+        Action::Spindle(Spindle::Clockwise(speed)) => {
+            vec![Action::Spindle(Spindle::CounterClockwise(*speed))]
         }
-        Op::Coolant(Coolant::Flood) => vec![Op::Coolant(Coolant::Mist)],
+        Action::Coolant(Coolant::Flood) => vec![Action::Coolant(Coolant::Mist)],
         _ => return None,
     })
 }
 
 /// Whether a word is followed by a cut before another word of its kind, so that it does something.
-fn matters(nc: &[Op], index: usize) -> bool {
+fn matters(nc: &[Action], index: usize) -> bool {
     let kind = std::mem::discriminant(&nc[index]);
-    for op in &nc[index + 1..] {
-        match op {
-            Op::Line(_) | Op::Arc(_) | Op::Hole(_) => return true,
-            op if std::mem::discriminant(op) == kind => return false,
-            Op::Tool(_) if !matches!(nc[index], Op::Feed(_) | Op::Tool(_)) => return false,
+    for action in &nc[index + 1..] {
+        match action {
+            Action::Line(_) | Action::Arc(_) | Action::Hole(_) => return true,
+            action if std::mem::discriminant(action) == kind => return false,
+            Action::Tool(_) if !matches!(nc[index], Action::Feed(_) | Action::Tool(_)) => {
+                return false;
+            }
             _ => {}
         }
     }
@@ -212,21 +225,21 @@ proptest! {
         let own = program(own);
         let faithful = run(&machine, &own, nc.clone());
         prop_assert!(faithful.proven, "{:#?}", faithful.mismatches);
-        for (index, op) in nc.iter().enumerate() {
+        for (index, action) in nc.iter().enumerate() {
             for how in 0..8 {
-                let Some(instead) = damaged(op, how, by).or_else(|| word_damaged(op)) else { continue };
-                let word = !matches!(op, Op::Rapid(_) | Op::Line(_) | Op::Arc(_) | Op::Hole(_) | Op::Dwell(_) | Op::Stop | Op::End);
+                let Some(instead) = damaged(action, how, by).or_else(|| word_damaged(action)) else { continue };
+                let word = !matches!(action, Action::Rapid(_) | Action::Line(_) | Action::Arc(_) | Action::Hole(_) | Action::Dwell(_) | Action::Stop | Action::End);
                 if word && !matters(&nc, index) {
                     continue;
                 }
                 let mut bad = nc.clone();
                 bad.splice(index..=index, instead.clone());
                 let report = run(&machine, &own, bad);
-                prop_assert!(!report.proven, "{op:?} at {index} became {instead:?}");
+                prop_assert!(!report.proven, "{action:?} at {index} became {instead:?}");
             }
         }
         for index in 1..nc.len() {
-            let moves = |op: &Op| op.pose().copied();
+            let moves = |action: &Action| action.position().copied();
             if let (Some(a), Some(b)) = (moves(&nc[index - 1]), moves(&nc[index]))
                 && a.point.distance(b.point) > 0.1
             {

@@ -3,6 +3,7 @@
 mod common;
 
 use common::*;
+use control::{Action, Orientation, Position};
 use geom::Vec3;
 use machine::Machine;
 use program::*;
@@ -16,28 +17,28 @@ fn degrees(point: Point) -> [f64; 3] {
 
 /// What the source says of a point.
 fn wanted(machine: &Machine, point: Point) -> Pose {
-    Pose::new(point.0, machine.axis_at(degrees(point)))
+    Pose::new(point.0, machine.axis_at(degrees(point))).unwrap()
 }
 
 /// What a block without tool-center control says.
-fn axes(machine: &Machine, point: Point) -> Pose {
+fn axes(machine: &Machine, point: Point) -> Position {
     let degrees = degrees(point);
     let linear = machine.linear_for(point.0, degrees, 0.0);
-    Pose { point: linear, orientation: Orientation::Rotary { degrees, tool_center: false } }
+    Position { point: linear, orientation: Orientation::Rotary { degrees, tool_center: false } }
 }
 
 /// What a block with tool-center control says.
-fn centered(_: &Machine, point: Point) -> Pose {
+fn centered(_: &Machine, point: Point) -> Position {
     let orientation = Orientation::Rotary { degrees: degrees(point), tool_center: true };
-    Pose { point: point.0, orientation }
+    Position { point: point.0, orientation }
 }
 
 /// What a block in a tilted plane, or with a vector, says.
-fn vector(machine: &Machine, point: Point) -> Pose {
-    wanted(machine, point)
+fn vector(machine: &Machine, point: Point) -> Position {
+    Position::new(point.0, machine.axis_at(degrees(point)))
 }
 
-type Notation = fn(&Machine, Point) -> Pose;
+type Notation = fn(&Machine, Point) -> Position;
 
 const NOTATIONS: [Notation; 3] = [axes, centered, vector];
 
@@ -50,16 +51,26 @@ fn path(step: f64) -> Vec<Point> {
     (0..8).map(f64::from).map(|i| at_point(10.0 + i, 5.0, 2.0, 20.0 + i * step, i * step)).collect()
 }
 
-fn along(points: &[Point], pose: impl Fn(Point) -> Pose) -> Vec<Op> {
-    let mut ops: Vec<Op> = points.iter().map(|point| Op::Line(pose(*point))).collect();
-    ops[0] = Op::Rapid(pose(points[0]));
+/// What the source says of a cut along these points, behind a rapid to the first.
+fn along(machine: &Machine, points: &[Point]) -> Vec<Op> {
+    let line = |point: &Point| Op::Line(wanted(machine, *point));
+    let mut ops: Vec<Op> = points.iter().map(line).collect();
+    ops[0] = Op::Rapid(wanted(machine, points[0]));
     ops
+}
+
+/// What a program says of it in this notation.
+fn along_nc(machine: &Machine, points: &[Point], notation: Notation) -> Vec<Action> {
+    let line = |point: &Point| Action::Line(notation(machine, *point));
+    let mut does: Vec<Action> = points.iter().map(line).collect();
+    does[0] = Action::Rapid(notation(machine, points[0]));
+    does
 }
 
 fn judged(notation: Notation, own: &[Point], nc: &[Point]) -> Vec<&'static str> {
     let machine = five_axes();
-    let own = source(along(own, |point| wanted(&machine, point)));
-    rules(&judge(&machine, &own, along(nc, |point| notation(&machine, point))))
+    let own = source(along(&machine, own));
+    rules(&judge(&machine, &own, along_nc(&machine, nc, notation)))
 }
 
 #[test]
@@ -132,23 +143,23 @@ fn the_length_of_the_tool_counts_where_a_head_swings_it() {
     let posed = |length: f64| {
         let degrees = [0.0, 30.0, 0.0];
         let point = machine.linear_for(Vec3::new(1.0, 2.0, 3.0), degrees, length);
-        Pose { point, orientation: Orientation::Rotary { degrees, tool_center: false } }
+        Position { point, orientation: Orientation::Rotary { degrees, tool_center: false } }
     };
     let call = Tool { number: 1, length: Some(100.0), ..Tool::default() };
-    let to = Pose::new(Vec3::new(1.0, 2.0, 3.0), machine.axis_at([0.0, 30.0, 0.0]));
+    let to = Pose::new(Vec3::new(1.0, 2.0, 3.0), machine.axis_at([0.0, 30.0, 0.0])).unwrap();
     let own = program(vec![Op::Tool(Box::new(call)), Op::Rapid(to)]);
-    let judged = |length| rules(&judge(&machine, &own, vec![Op::Rapid(posed(length))]));
+    let judged = |length| rules(&judge(&machine, &own, vec![Action::Rapid(posed(length))]));
     assert!(judged(100.0).is_empty());
     assert_eq!(judged(101.0), ["end-point"]);
 }
 
 /// From one set-up to another: a source rapid that turns the tool, and the program's way.
-fn set_up(way: impl Fn(&Machine) -> Vec<Op>) -> Report {
+fn set_up(way: impl Fn(&Machine) -> Vec<Action>) -> Report {
     let machine = five_axes();
     let (a, b) = (at_point(5.0, 6.0, 1.0, 0.0, 0.0), at_point(7.0, -9.0, 40.0, 90.0, 45.0));
     let to = |point| wanted(&machine, point);
     let own = source(vec![Op::Rapid(to(a)), Op::Line(to(a)), Op::Rapid(to(b))]);
-    judge(&machine, &own, [vec![Op::Rapid(axes(&machine, a))], way(&machine)].concat())
+    judge(&machine, &own, [vec![Action::Rapid(axes(&machine, a))], way(&machine)].concat())
 }
 
 use toolpost_proof::Report;
@@ -158,23 +169,23 @@ fn between_set_ups_the_machine_may_go_home_and_turn_then_approach() {
     let b = at_point(7.0, -9.0, 40.0, 90.0, 45.0);
     let stop = |x: f64, y: f64, z: f64, a: f64, c: f64| {
         let orientation = Orientation::Rotary { degrees: [a, 0.0, c], tool_center: false };
-        Op::Rapid(Pose { point: Vec3::new(x, y, z), orientation })
+        Action::Rapid(Position { point: Vec3::new(x, y, z), orientation })
     };
     let end = |machine: &Machine| axes(machine, b).point;
     let approach = |machine: &Machine| {
         let to = end(machine);
         vec![
-            Op::Home(4),
+            Action::Home(Axes::Z),
             stop(5.0, 6.0, f64::NAN, 90.0, 45.0),
             stop(to.x, 6.0, f64::NAN, 90.0, 45.0),
             stop(to.x, to.y, f64::NAN, 90.0, 45.0),
-            Op::Rapid(axes(machine, b)),
+            Action::Rapid(axes(machine, b)),
         ]
     };
     proven(&set_up(approach));
-    proven(&set_up(|machine| vec![Op::Rapid(axes(machine, b))]));
+    proven(&set_up(|machine| vec![Action::Rapid(axes(machine, b))]));
     let astray =
-        |machine: &Machine| vec![stop(90.0, 6.0, 1.0, 0.0, 0.0), Op::Rapid(axes(machine, b))];
+        |machine: &Machine| vec![stop(90.0, 6.0, 1.0, 0.0, 0.0), Action::Rapid(axes(machine, b))];
     assert_eq!(rules(&set_up(astray)), ["rapid-stop"]);
     // Up first, and over there; but a way that begins at home comes down by
     // the coordinates of its end only.
@@ -184,14 +195,14 @@ fn between_set_ups_the_machine_may_go_home_and_turn_then_approach() {
             stop(5.0, 6.0, 100.0, 0.0, 0.0),
             stop(5.0, 6.0, 100.0, 90.0, 45.0),
             stop(to.x, to.y, 90.0, 90.0, 45.0),
-            Op::Rapid(axes(machine, b)),
+            Action::Rapid(axes(machine, b)),
         ]
     };
     proven(&set_up(over));
-    let down_again = set_up(|machine| [vec![Op::Home(4)], over(machine)].concat());
+    let down_again = set_up(|machine| [vec![Action::Home(Axes::Z)], over(machine)].concat());
     assert_eq!(rules(&down_again), ["rapid-stop"]);
     let half_turned =
-        |machine: &Machine| vec![stop(5.0, 6.0, 1.0, 45.0, 0.0), Op::Rapid(axes(machine, b))];
+        |machine: &Machine| vec![stop(5.0, 6.0, 1.0, 45.0, 0.0), Action::Rapid(axes(machine, b))];
     assert_eq!(rules(&set_up(half_turned)), ["rapid-stop"]);
 }
 
@@ -203,10 +214,10 @@ fn a_stop_at_a_place_half_known_has_the_coordinates_of_an_end() {
     let own = source(vec![Op::Rapid(to(a)), Op::Rapid(to(b))]);
     let stop = |x: f64, z: f64, a: f64| {
         let orientation = Orientation::Rotary { degrees: [a, 0.0, 0.0], tool_center: false };
-        Op::Rapid(Pose { point: Vec3::new(x, f64::NAN, z), orientation })
+        Action::Rapid(Position { point: Vec3::new(x, f64::NAN, z), orientation })
     };
-    let by = |stop: Op| {
-        let (start, end) = (Op::Rapid(centered(&machine, a)), Op::Rapid(axes(&machine, b)));
+    let by = |stop: Action| {
+        let (start, end) = (Action::Rapid(centered(&machine, a)), Action::Rapid(axes(&machine, b)));
         rules(&judge(&machine, &own, vec![start, stop, end]))
     };
     let unknown = f64::NAN;
@@ -223,18 +234,18 @@ fn a_rotary_axis_is_rewound_above_the_part_and_the_tool_comes_back() {
     let (from, to) = (at_point(10.0, 5.0, 2.0, 20.0, 350.0), at_point(12.0, 5.0, 2.0, 20.0, 351.0));
     let lifted = |point: Point| {
         let pose = wanted(&machine, point);
-        (pose.point + machine.axis_at(degrees(point)) * 80.0, point.1, point.2)
+        (pose.point() + machine.axis_at(degrees(point)) * 80.0, point.1, point.2)
     };
     let unwound = |point: Point| (point.0, point.1, point.2 - 360.0);
-    let own = source(along(&[from, to], |point| wanted(&machine, point)));
+    let own = source(along(&machine, &[from, to]));
     let rewind = |turned: fn(Point) -> Point| {
         let block = |point| axes(&machine, point);
         let nc = vec![
-            Op::Rapid(block(from)),
-            Op::Rapid(block(lifted(from))),
-            Op::Rapid(block(turned(lifted(from)))),
-            Op::Line(block(turned(from))),
-            Op::Line(block(turned(to))),
+            Action::Rapid(block(from)),
+            Action::Rapid(block(lifted(from))),
+            Action::Rapid(block(turned(lifted(from)))),
+            Action::Line(block(turned(from))),
+            Action::Line(block(turned(to))),
         ];
         judge(&machine, &own, nc)
     };
@@ -254,21 +265,21 @@ fn a_canned_cycle_in_a_tilted_plane_drills_along_the_tool() {
     let above = (point.0 + machine.axis_at(degrees(point)) * 20.0, point.1, point.2);
     let own = source(vec![
         Op::Rapid(wanted(&machine, above)),
-        cycle(drill()),
+        Op::Cycle(Box::new(drill())),
         Op::Hole(wanted(&machine, point)),
     ]);
     for notation in NOTATIONS {
         let nc = vec![
-            Op::Rapid(notation(&machine, above)),
+            Action::Rapid(notation(&machine, above)),
             cycle(drill()),
-            Op::Hole(notation(&machine, point)),
+            Action::Hole(notation(&machine, point)),
         ];
         proven(&judge(&machine, &own, nc));
     }
     let straight = vec![
-        Op::Rapid(centered(&machine, above)),
+        Action::Rapid(centered(&machine, above)),
         cycle(drill()),
-        Op::Hole(Pose::new(point.0, Vec3::Z)),
+        Action::Hole(Position::new(point.0, Vec3::Z)),
     ];
     assert_eq!(rules(&judge(&machine, &own, straight)), ["hole"]);
 }

@@ -3,14 +3,14 @@
 mod common;
 
 use common::*;
-use geom::Vec3;
+use control::Action;
 use program::*;
 
 /// A source with two holes of a cycle, at the height -1, from 20 mm above.
 fn holes(of: Cycle) -> Program {
     source(vec![
         Op::Rapid(at(0.0, 0.0, 19.0)),
-        cycle(of),
+        Op::Cycle(Box::new(of)),
         Op::Hole(at(5.0, 0.0, -1.0)),
         Op::Hole(at(15.0, 0.0, -1.0)),
         Op::CycleOff,
@@ -19,28 +19,28 @@ fn holes(of: Cycle) -> Program {
 }
 
 /// The same as a control with an R plane and no surface sees it.
-fn canned(of: Cycle, first: Op) -> Vec<&'static str> {
+fn canned(of: Cycle, first: Action) -> Vec<&'static str> {
     let seen = Cycle {
         depth: of.depth + of.clearance,
         clearance: 0.0,
         retract: of.retract - of.clearance,
         ..of
     };
-    judged(of, vec![cycle(seen), first, Op::Hole(block(15.0, 0.0, 1.0)), Op::CycleOff])
+    judged(of, vec![cycle(seen), first, Action::Hole(block(15.0, 0.0, 1.0)), Action::CycleOff])
 }
 
-fn judged(of: Cycle, ops: Vec<Op>) -> Vec<&'static str> {
-    let start = vec![Op::Rapid(block(0.0, 0.0, 19.0))];
-    let end = vec![Op::Rapid(block(15.0, 0.0, 60.0))];
-    rules(&judge(&mill(), &holes(of), [start, ops, end].concat()))
+fn judged(of: Cycle, between: Vec<Action>) -> Vec<&'static str> {
+    let start = vec![Action::Rapid(block(0.0, 0.0, 19.0))];
+    let end = vec![Action::Rapid(block(15.0, 0.0, 60.0))];
+    rules(&judge(&mill(), &holes(of), [start, between, end].concat()))
 }
 
-fn first() -> Op {
-    Op::Hole(block(5.0, 0.0, 1.0))
+fn first() -> Action {
+    Action::Hole(block(5.0, 0.0, 1.0))
 }
 
-fn second() -> Op {
-    Op::Hole(block(15.0, 0.0, 1.0))
+fn second() -> Action {
+    Action::Hole(block(15.0, 0.0, 1.0))
 }
 
 #[test]
@@ -48,21 +48,21 @@ fn a_cycle_may_count_from_another_plane() {
     assert!(canned(drill(), first()).is_empty());
     let same = vec![
         cycle(drill()),
-        Op::Hole(block(5.0, 0.0, -1.0)),
-        Op::Rapid(block(15.0, 0.0, 19.0)),
-        Op::Hole(block(15.0, 0.0, -1.0)),
+        Action::Hole(block(5.0, 0.0, -1.0)),
+        Action::Rapid(block(15.0, 0.0, 19.0)),
+        Action::Hole(block(15.0, 0.0, -1.0)),
     ];
     assert!(judged(drill(), same).is_empty());
 }
 
 #[test]
 fn a_hole_elsewhere_twice_or_not_at_all_is_refused() {
-    assert_eq!(canned(drill(), Op::Hole(block(5.0, 0.01, 1.0))), ["hole"]);
-    assert_eq!(canned(drill(), Op::Hole(block(5.0, 0.0, 0.9))), ["hole"]);
-    assert_eq!(canned(drill(), Op::Hole(block(5.0, f64::NAN, 1.0))), ["hole"]);
-    assert_eq!(canned(drill(), Op::Comment("".into())), ["hole"]);
+    assert_eq!(canned(drill(), Action::Hole(block(5.0, 0.01, 1.0))), ["hole"]);
+    assert_eq!(canned(drill(), Action::Hole(block(5.0, 0.0, 0.9))), ["hole"]);
+    assert_eq!(canned(drill(), Action::Hole(block(5.0, f64::NAN, 1.0))), ["hole"]);
+    assert_eq!(canned(drill(), Action::Comment("".into())), ["hole"]);
     let seen = Cycle { depth: 12.0, clearance: 0.0, retract: 18.0, ..drill() };
-    let hole = |x| Op::Hole(block(x, 0.0, 1.0));
+    let hole = |x| Action::Hole(block(x, 0.0, 1.0));
     assert_eq!(judged(drill(), vec![cycle(seen), hole(5.0), hole(5.0), hole(15.0)]), ["hole"]);
     assert_eq!(judged(drill(), vec![cycle(seen), hole(5.0), hole(15.0), hole(15.0)]), ["hole"]);
     assert_eq!(judged(drill(), vec![hole(5.0), hole(15.0)]), ["hole"]);
@@ -74,7 +74,11 @@ fn altered(of: Cycle, alter: impl Fn(&mut Cycle)) -> Vec<&'static str> {
     alter(&mut other);
     judged(
         of,
-        vec![cycle(other), Op::Hole(block(5.0, 0.0, -1.0)), Op::Hole(block(15.0, 0.0, -1.0))],
+        vec![
+            cycle(other),
+            Action::Hole(block(5.0, 0.0, -1.0)),
+            Action::Hole(block(15.0, 0.0, -1.0)),
+        ],
     )
 }
 
@@ -112,32 +116,32 @@ fn pecks_are_those_of_the_source() {
 
 #[test]
 fn what_must_hold_in_a_cut_must_hold_in_a_hole() {
-    for (op, rule) in [
-        (Op::Spindle(Spindle::Off), "spindle"),
-        (Op::Coolant(Coolant::Off), "coolant"),
-        (Op::Compensation(Compensation::Left(None)), "compensation"),
-        (Op::LengthOffset(None), "length-offset"),
+    for (word, rule) in [
+        (Action::Spindle(Spindle::Off), "spindle"),
+        (Action::Coolant(Coolant::Off), "coolant"),
+        (Action::Compensation(Compensation::Left(None)), "compensation"),
+        (Action::LengthOffset(None), "length-offset"),
     ] {
-        let hole = |x| Op::Hole(block(x, 0.0, -1.0));
-        assert_eq!(judged(drill(), vec![op, cycle(drill()), hole(5.0), hole(15.0)])[0], rule);
+        let hole = |x| Action::Hole(block(x, 0.0, -1.0));
+        assert_eq!(judged(drill(), vec![word, cycle(drill()), hole(5.0), hole(15.0)])[0], rule);
     }
 }
 
 /// Both holes by moves, over each first, with the same moves in each.
-fn moves(of: Cycle, in_hole: impl Fn(f64) -> Vec<Op>) -> Vec<&'static str> {
-    let mut ops = vec![Op::Feed(Feed::PerMinute(120.0))];
+fn moves(of: Cycle, in_hole: impl Fn(f64) -> Vec<Action>) -> Vec<&'static str> {
+    let mut does = vec![Action::Feed(Feed::PerMinute(120.0))];
     for x in [5.0, 15.0] {
-        ops.push(Op::Rapid(block(x, 0.0, 19.0)));
-        ops.push(Op::Rapid(block(x, 0.0, 1.0)));
-        ops.extend(in_hole(x));
+        does.push(Action::Rapid(block(x, 0.0, 19.0)));
+        does.push(Action::Rapid(block(x, 0.0, 1.0)));
+        does.extend(in_hole(x));
     }
-    judged(of, ops)
+    judged(of, does)
 }
 
 #[test]
 fn drilling_by_moves_is_proven() {
-    let line = |x, z| Op::Line(block(x, 0.0, z));
-    let rapid = |x, z| Op::Rapid(block(x, 0.0, z));
+    let line = |x, z| Action::Line(block(x, 0.0, z));
+    let rapid = |x, z| Action::Rapid(block(x, 0.0, z));
     assert!(moves(drill(), |x| vec![line(x, -11.0), rapid(x, 19.0)]).is_empty());
     assert!(moves(drill(), |x| vec![line(x, -11.0), rapid(x, 1.0), rapid(x, 19.0)]).is_empty());
     for (wrong, rule) in [
@@ -161,32 +165,27 @@ fn drilling_by_moves_is_proven() {
 #[test]
 fn the_way_to_a_hole_goes_down_only_over_it() {
     let seen = Cycle { depth: 12.0, clearance: 0.0, retract: 18.0, ..drill() };
-    let rapid = |x, z| Op::Rapid(block(x, 0.0, z));
-    let by_moves = |way: Vec<Op>| {
-        let hole = vec![Op::Line(block(15.0, 0.0, -11.0)), rapid(15.0, 19.0)];
-        let words = vec![cycle(seen), first(), Op::CycleOff, Op::Feed(Feed::PerMinute(120.0))];
+    let rapid = |x, z| Action::Rapid(block(x, 0.0, z));
+    let by_moves = |way: Vec<Action>| {
+        let hole = vec![Action::Line(block(15.0, 0.0, -11.0)), rapid(15.0, 19.0)];
+        let words =
+            vec![cycle(seen), first(), Action::CycleOff, Action::Feed(Feed::PerMinute(120.0))];
         judged(drill(), [words, way, hole].concat())
     };
     assert!(by_moves(vec![rapid(15.0, 19.0), rapid(15.0, 1.0)]).is_empty());
     assert!(by_moves(vec![rapid(5.0, 25.0), rapid(15.0, 25.0), rapid(15.0, 1.0)]).is_empty());
     assert_eq!(by_moves(vec![rapid(15.0, 1.0)]), ["hole"]);
     assert_eq!(by_moves(vec![rapid(5.0, 1.0), rapid(15.0, 1.0)]), ["hole"]);
-    let by_cycle =
-        |way: Vec<Op>| judged(drill(), [vec![cycle(seen), first()], way, vec![second()]].concat());
+    let by_cycle = |way: Vec<Action>| {
+        judged(drill(), [vec![cycle(seen), first()], way, vec![second()]].concat())
+    };
     assert!(by_cycle(vec![rapid(15.0, 19.0)]).is_empty());
     assert_eq!(by_cycle(vec![rapid(5.0, 1.0)]), ["hole"]);
 }
 
 /// The moves that [`lowering::hole`] makes, in blocks.
-fn lowered(of: Cycle, x: f64) -> Vec<Op> {
-    let surface = Pose::new(Vec3::new(x, 0.0, -1.0), Vec3::Z);
-    let mut ops = lowering::hole(&of, &surface, Spindle::Clockwise(1000.0)).unwrap();
-    for op in &mut ops {
-        if let Op::Rapid(pose) | Op::Line(pose) = op {
-            *pose = block(pose.point.x, pose.point.y, pose.point.z);
-        }
-    }
-    ops
+fn lowered(of: Cycle, x: f64) -> Vec<Action> {
+    actions(&lowering::hole(&of, &at(x, 0.0, -1.0), Spindle::Clockwise(1000.0)).unwrap())
 }
 
 #[test]
@@ -199,10 +198,10 @@ fn every_lowered_cycle_is_proven_and_none_of_its_moves_is_superfluous() {
         let count = lowered(of, 0.0).len();
         for missing in 0..count {
             let found = moves(of, |x| {
-                let mut ops = lowered(of, x);
+                let mut others = lowered(of, x);
                 // The spindle starts again after boring, which nothing but the next hole needs.
-                ops.remove(missing);
-                ops
+                others.remove(missing);
+                others
             });
             assert!(!found.is_empty(), "{kind:?} without move {missing}");
         }
@@ -211,8 +210,8 @@ fn every_lowered_cycle_is_proven_and_none_of_its_moves_is_superfluous() {
 
 #[test]
 fn pecks_by_moves_are_those_of_the_source() {
-    let line = |x, z| Op::Line(block(x, 0.0, z));
-    let rapid = |x, z| Op::Rapid(block(x, 0.0, z));
+    let line = |x, z| Action::Line(block(x, 0.0, z));
+    let rapid = |x, z| Action::Rapid(block(x, 0.0, z));
     // Pecks end 5, 8 and 10 mm below the point at -1.
     let pecked = |a: f64, b: f64, up: f64, gap: f64| {
         moves(deep(), |x| {
@@ -240,6 +239,6 @@ fn pecks_by_moves_are_those_of_the_source() {
 #[test]
 fn tapping_by_moves_is_refused() {
     let tap = Cycle { kind: CycleKind::Tap { pitch: 0.7, left: false }, ..drill() };
-    let line = |x, z| Op::Line(block(x, 0.0, z));
+    let line = |x, z| Action::Line(block(x, 0.0, z));
     assert_eq!(moves(tap, |x| vec![line(x, -11.0), line(x, 1.0)]), ["hole"]);
 }

@@ -3,6 +3,7 @@
 mod common;
 
 use common::*;
+use control::Action;
 use geom::Vec3;
 use program::*;
 
@@ -17,21 +18,21 @@ fn square() -> Vec<Op> {
     ]
 }
 
-fn square_nc() -> Vec<Op> {
+fn square_nc() -> Vec<Action> {
     vec![
-        Op::Rapid(block(0.0, 0.0, 50.0)),
-        Op::Rapid(block(0.0, 0.0, 2.0)),
-        Op::Line(block(0.0, 0.0, -1.0)),
-        Op::Line(block(30.0, 0.0, -1.0)),
-        Op::Line(block(30.0, 20.0, -1.0)),
-        Op::Rapid(block(30.0, 20.0, 50.0)),
+        Action::Rapid(block(0.0, 0.0, 50.0)),
+        Action::Rapid(block(0.0, 0.0, 2.0)),
+        Action::Line(block(0.0, 0.0, -1.0)),
+        Action::Line(block(30.0, 0.0, -1.0)),
+        Action::Line(block(30.0, 20.0, -1.0)),
+        Action::Rapid(block(30.0, 20.0, 50.0)),
     ]
 }
 
-/// Judges the square with one record of the program replaced by these.
-fn with(index: usize, ops: Vec<Op>) -> Vec<&'static str> {
+/// Judges the square with one event of the program replaced by these.
+fn with(index: usize, instead: Vec<Action>) -> Vec<&'static str> {
     let mut all = square_nc();
-    all.splice(index..=index, ops);
+    all.splice(index..=index, instead);
     rules(&judge(&mill(), &source(square()), all))
 }
 
@@ -50,15 +51,15 @@ fn the_same_motion_is_proven() {
 #[test]
 fn half_a_step_on_each_axis_is_rounding_and_more_is_a_mismatch() {
     let off = 0.000_49;
-    assert!(with(3, vec![Op::Line(block(30.0 + off, off, -1.0 + off))]).is_empty());
-    assert_eq!(with(3, vec![Op::Line(block(30.0, 0.0, -1.001))]), ["path"]);
-    assert_eq!(with(3, vec![Op::Line(block(30.002, 0.0, -1.0))]), ["path"]);
+    assert!(with(3, vec![Action::Line(block(30.0 + off, off, -1.0 + off))]).is_empty());
+    assert_eq!(with(3, vec![Action::Line(block(30.0, 0.0, -1.001))]), ["path"]);
+    assert_eq!(with(3, vec![Action::Line(block(30.002, 0.0, -1.0))]), ["path"]);
 }
 
 #[test]
 fn a_deviation_is_reported_with_both_lines() {
     let mut nc = square_nc();
-    nc[3] = Op::Line(block(30.000_4, 0.0, -1.0));
+    nc[3] = Action::Line(block(30.000_4, 0.0, -1.0));
     let report = judge(&mill(), &source(square()), nc);
     proven(&report);
     let worst = report.deviations.tip_mm;
@@ -68,14 +69,14 @@ fn a_deviation_is_reported_with_both_lines() {
 
 #[test]
 fn a_coordinate_that_is_not_known_is_never_equal() {
-    assert_eq!(with(3, vec![Op::Line(block(30.0, f64::NAN, -1.0))]), ["path"]);
-    assert_eq!(with(0, vec![Op::Rapid(block(0.0, f64::NAN, 50.0))]), ["end-point"]);
-    assert_eq!(with(5, vec![Op::Rapid(block(30.0, f64::NAN, 50.0))]), ["end-point"]);
+    assert_eq!(with(3, vec![Action::Line(block(30.0, f64::NAN, -1.0))]), ["path"]);
+    assert_eq!(with(0, vec![Action::Rapid(block(0.0, f64::NAN, 50.0))]), ["end-point"]);
+    assert_eq!(with(5, vec![Action::Rapid(block(30.0, f64::NAN, 50.0))]), ["end-point"]);
 }
 
 #[test]
 fn a_line_may_be_split_but_not_bent_or_run_back() {
-    let go = |x: f64, y: f64| Op::Line(block(x, y, -1.0));
+    let go = |x: f64, y: f64| Action::Line(block(x, y, -1.0));
     assert!(with(3, vec![go(10.0, 0.0), go(20.0, 0.0), go(30.0, 0.0)]).is_empty());
     assert_eq!(with(3, vec![go(10.0, 0.01), go(30.0, 0.0)]), ["path"]);
     assert_eq!(with(3, vec![go(20.0, 0.0), go(10.0, 0.0), go(30.0, 0.0)]), ["path"]);
@@ -86,17 +87,17 @@ fn a_line_may_be_split_but_not_bent_or_run_back() {
 fn a_missing_an_extra_and_a_swapped_move_are_found() {
     assert_eq!(with(3, vec![]), ["path"]);
     assert_eq!(with(5, vec![]), ["missing"]);
-    let line = |x, y| Op::Line(block(x, y, -1.0));
+    let line = |x, y| Action::Line(block(x, y, -1.0));
     assert_eq!(with(3, vec![line(30.0, 0.0), line(40.0, 0.0)]), ["path"]);
     assert_eq!(with(3, vec![line(30.0, 20.0), line(30.0, 0.0)]), ["path"]);
 }
 
 #[test]
 fn rapid_and_feed_are_not_the_same() {
-    assert_eq!(with(3, vec![Op::Rapid(block(30.0, 0.0, -1.0))]), ["rapid-feed"]);
-    assert_eq!(with(2, vec![Op::Rapid(block(0.0, 0.0, -1.0))]), ["rapid-feed"]);
-    assert_eq!(with(1, vec![Op::Line(block(0.0, 0.0, 2.0))]), ["rapid-feed"]);
-    assert_eq!(with(5, vec![Op::Line(block(30.0, 20.0, 50.0))]), ["rapid-feed"]);
+    assert_eq!(with(3, vec![Action::Rapid(block(30.0, 0.0, -1.0))]), ["rapid-feed"]);
+    assert_eq!(with(2, vec![Action::Rapid(block(0.0, 0.0, -1.0))]), ["rapid-feed"]);
+    assert_eq!(with(1, vec![Action::Line(block(0.0, 0.0, 2.0))]), ["rapid-feed"]);
+    assert_eq!(with(5, vec![Action::Line(block(30.0, 20.0, 50.0))]), ["rapid-feed"]);
 }
 
 #[test]
@@ -107,9 +108,9 @@ fn a_feed_retract_written_as_rapid_is_refused_although_it_leaves_along_the_axis(
         Op::Line(at(0.0, 0.0, 5.0)),
     ]);
     let nc = vec![
-        Op::Rapid(block(0.0, 0.0, 5.0)),
-        Op::Line(block(0.0, 0.0, -1.0)),
-        Op::Rapid(block(0.0, 0.0, 5.0)),
+        Action::Rapid(block(0.0, 0.0, 5.0)),
+        Action::Line(block(0.0, 0.0, -1.0)),
+        Action::Rapid(block(0.0, 0.0, 5.0)),
     ];
     assert_eq!(rules(&judge(&mill(), &up, nc)), ["rapid-feed"]);
 }
@@ -117,8 +118,8 @@ fn a_feed_retract_written_as_rapid_is_refused_although_it_leaves_along_the_axis(
 #[test]
 fn a_rapid_may_go_axis_by_axis_and_nowhere_else() {
     let nan = f64::NAN;
-    let rapid = |x, y, z| Op::Rapid(block(x, y, z));
-    let first = |ops: Vec<Op>| with(0, ops);
+    let rapid = |x, y, z| Action::Rapid(block(x, y, z));
+    let first = |instead: Vec<Action>| with(0, instead);
     let from_home = [rapid(0.0, nan, nan), rapid(0.0, 0.0, nan), rapid(0.0, 0.0, 50.0)];
     assert!(first(from_home.to_vec()).is_empty());
     assert_eq!(first(vec![rapid(7.0, nan, nan), rapid(0.0, 0.0, 50.0)]), ["rapid-stop"]);
@@ -136,7 +137,7 @@ fn a_rapid_may_go_axis_by_axis_and_nowhere_else() {
 #[test]
 fn a_wrong_rapid_is_named_at_its_own_block() {
     let mut nc = square_nc();
-    nc[1] = Op::Rapid(block(0.0, 0.0, -2.0));
+    nc[1] = Action::Rapid(block(0.0, 0.0, -2.0));
     let report = judge(&mill(), &source(square()), nc);
     assert_eq!(rules(&report), ["end-point"]);
     let first = report.first_mismatch.unwrap();
@@ -151,43 +152,43 @@ fn moves_below_the_resolution_may_be_left_out_or_written() {
     proven(&judge(&mill(), &source(tiny.clone()), square_nc()));
     tiny[5] = Op::Line(at(30.0, 0.000_6, -1.0));
     let mut nc = square_nc();
-    nc.insert(4, Op::Line(block(30.0, 0.001, -1.0)));
+    nc.insert(4, Action::Line(block(30.0, 0.001, -1.0)));
     proven(&judge(&mill(), &source(tiny), nc));
 }
 
 fn round() -> Vec<Op> {
     vec![
         Op::Rapid(at(10.0, 0.0, 0.0)),
-        arc(at(0.0, 10.0, 0.0), (0.0, 0.0, 0.0), Vec3::Z),
-        arc(at(0.0, 10.0, -2.0), (0.0, 0.0, 0.0), Vec3::NEG_Z),
+        Op::Arc(arc(at(0.0, 10.0, 0.0), (0.0, 0.0, 0.0), Vec3::Z)),
+        Op::Arc(arc(at(0.0, 10.0, -2.0), (0.0, 0.0, 0.0), Vec3::NEG_Z)),
     ]
 }
 
-fn round_nc(first: Vec<Op>, second: Vec<Op>) -> Vec<&'static str> {
-    let start = vec![Op::Rapid(block(10.0, 0.0, 0.0))];
+fn round_nc(first: Vec<Action>, second: Vec<Action>) -> Vec<&'static str> {
+    let start = vec![Action::Rapid(block(10.0, 0.0, 0.0))];
     rules(&judge(&mill(), &source(round()), [start, first, second].concat()))
 }
 
-fn quarter() -> Vec<Op> {
-    vec![arc(block(0.0, 10.0, 0.0), (0.0, 0.0, 0.0), Vec3::Z)]
+fn quarter() -> Vec<Action> {
+    vec![Action::Arc(arc(block(0.0, 10.0, 0.0), (0.0, 0.0, 0.0), Vec3::Z))]
 }
 
-fn turn() -> Vec<Op> {
-    vec![arc(block(0.0, 10.0, -2.0), (0.0, 0.0, 0.0), Vec3::NEG_Z)]
+fn turn() -> Vec<Action> {
+    vec![Action::Arc(arc(block(0.0, 10.0, -2.0), (0.0, 0.0, 0.0), Vec3::NEG_Z))]
 }
 
 #[test]
 fn arcs_and_helices_are_proven_whole_split_and_as_chords() {
     assert!(round_nc(quarter(), turn()).is_empty());
     let half = vec![
-        arc(block(0.0, -10.0, -1.0), (0.0, 0.0, 0.0), Vec3::NEG_Z),
-        arc(block(0.0, 10.0, -2.0), (0.0, 0.0, 0.0), Vec3::NEG_Z),
+        Action::Arc(arc(block(0.0, -10.0, -1.0), (0.0, 0.0, 0.0), Vec3::NEG_Z)),
+        Action::Arc(arc(block(0.0, 10.0, -2.0), (0.0, 0.0, 0.0), Vec3::NEG_Z)),
     ];
     assert!(round_nc(quarter(), half).is_empty());
-    let chords = |n: u32| -> Vec<Op> {
+    let chords = |n: u32| -> Vec<Action> {
         let point = |i: u32| {
             let angle = std::f64::consts::FRAC_PI_2 * f64::from(i) / f64::from(n);
-            Op::Line(block(10.0 * angle.cos(), 10.0 * angle.sin(), 0.0))
+            Action::Line(block(10.0 * angle.cos(), 10.0 * angle.sin(), 0.0))
         };
         (1..=n).map(point).collect()
     };
@@ -199,19 +200,19 @@ fn arcs_and_helices_are_proven_whole_split_and_as_chords() {
 #[test]
 fn an_arc_the_other_way_the_long_way_or_round_another_centre_is_refused() {
     let end = block(0.0, 10.0, 0.0);
-    let wrong = |center, normal| round_nc(vec![arc(end, center, normal)], turn());
+    let wrong = |center, normal| round_nc(vec![Action::Arc(arc(end, center, normal))], turn());
     assert_eq!(wrong((0.0, 0.0, 0.0), Vec3::NEG_Z), ["path"]);
     assert_eq!(wrong((10.0, 10.0, 0.0), Vec3::Z), ["path"]);
     assert_eq!(wrong((-0.05, -0.05, 0.0), Vec3::Z), ["path"]);
     assert_eq!(wrong((0.0, 0.0, 0.0), Vec3::Y), ["arc"]);
     assert_eq!(wrong((0.0, 0.0, 0.0), Vec3::new(0.1, 0.1, 1.0)), ["path"]);
-    assert_eq!(round_nc(vec![Op::Line(end)], turn()), ["path"]);
-    assert_eq!(round_nc(quarter(), vec![Op::Line(block(0.0, 10.0, -2.0))]), ["path"]);
+    assert_eq!(round_nc(vec![Action::Line(end)], turn()), ["path"]);
+    assert_eq!(round_nc(quarter(), vec![Action::Line(block(0.0, 10.0, -2.0))]), ["path"]);
 }
 
 #[test]
 fn a_turn_too_many_or_too_few_is_refused() {
-    let twice = Op::Arc(Box::new(ArcTo {
+    let twice = Action::Arc(Box::new(ArcTo {
         end: block(0.0, 10.0, -2.0),
         center: Vec3::ZERO,
         normal: Vec3::NEG_Z,
@@ -223,5 +224,6 @@ fn a_turn_too_many_or_too_few_is_refused() {
 
 #[test]
 fn an_arc_where_the_source_has_a_line_is_refused() {
-    assert_eq!(with(3, vec![arc(block(30.0, 0.0, -1.0), (15.0, 0.0, -1.0), Vec3::Z)]), ["path"]);
+    let over = arc(block(30.0, 0.0, -1.0), (15.0, 0.0, -1.0), Vec3::Z);
+    assert_eq!(with(3, vec![Action::Arc(over)]), ["path"]);
 }

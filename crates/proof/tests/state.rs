@@ -3,6 +3,7 @@
 mod common;
 
 use common::*;
+use control::Action;
 use machine::{LengthOffset, Machine};
 use program::*;
 
@@ -15,47 +16,52 @@ fn cut() -> Vec<Op> {
     ]
 }
 
-fn cut_nc() -> Vec<Op> {
+fn cut_nc() -> Vec<Action> {
     vec![
-        Op::Rapid(block(0.0, 0.0, 5.0)),
-        Op::Line(block(0.0, 0.0, -1.0)),
-        Op::Line(block(30.0, 0.0, -1.0)),
-        Op::Rapid(block(30.0, 0.0, 5.0)),
+        Action::Rapid(block(0.0, 0.0, 5.0)),
+        Action::Line(block(0.0, 0.0, -1.0)),
+        Action::Line(block(30.0, 0.0, -1.0)),
+        Action::Rapid(block(30.0, 0.0, 5.0)),
     ]
 }
 
-/// Judges the cut with this before its first record.
-fn after_start(ops: Vec<Op>) -> Vec<&'static str> {
-    rules(&judge(&mill(), &source(cut()), [ops, cut_nc()].concat()))
+/// The work offset of that number.
+fn offset(number: u32) -> WorkOffset {
+    WorkOffset::numbered(number).unwrap()
 }
 
-/// Judges the cut with these before record `index` of the source and of the program.
-fn at_record(index: usize, source_ops: Vec<Op>, nc_ops: Vec<Op>) -> Vec<&'static str> {
+/// Judges the cut with this before its first event.
+fn after_start(words: Vec<Action>) -> Vec<&'static str> {
+    rules(&judge(&mill(), &source(cut()), [words, cut_nc()].concat()))
+}
+
+/// Judges the cut with these before record `index` of the source and event `index` of the program.
+fn at_record(index: usize, ops: Vec<Op>, actions: Vec<Action>) -> Vec<&'static str> {
     let (mut own, mut nc) = (cut(), cut_nc());
-    own.splice(index..index, source_ops);
-    nc.splice(index..index, nc_ops);
+    own.splice(index..index, ops);
+    nc.splice(index..index, actions);
     rules(&judge(&mill(), &source(own), nc))
 }
 
-/// Judges the cut of a program that lacks a record of its start.
-fn without(missing: impl Fn(&Op) -> bool) -> Vec<&'static str> {
-    let start = nc_start().into_iter().filter(|op| !missing(op));
-    let nc = start.chain(cut_nc()).chain([Op::Home(4), Op::End]).collect();
+/// Judges the cut of a program that lacks an event of its start.
+fn without(missing: impl Fn(&Action) -> bool) -> Vec<&'static str> {
+    let start = nc_start().into_iter().filter(|action| !missing(action));
+    let nc = start.chain(cut_nc()).chain([Action::Home(Axes::Z), Action::End]).collect();
     rules(&run(&mill(), &source(cut()), nc))
 }
 
 #[test]
 fn each_word_of_the_start_is_needed() {
-    assert_eq!(without(|op| matches!(op, Op::Feed(_))), ["feed"]);
-    assert_eq!(without(|op| matches!(op, Op::Spindle(_))), ["spindle"]);
-    assert_eq!(without(|op| matches!(op, Op::Coolant(_))), ["coolant"]);
-    assert_eq!(without(|op| matches!(op, Op::LengthOffset(_))), ["length-offset"]);
-    assert_eq!(without(|op| matches!(op, Op::Tool(_)))[0], "tool");
+    assert_eq!(without(|action| matches!(action, Action::Feed(_))), ["feed"]);
+    assert_eq!(without(|action| matches!(action, Action::Spindle(_))), ["spindle"]);
+    assert_eq!(without(|action| matches!(action, Action::Coolant(_))), ["coolant"]);
+    assert_eq!(without(|action| matches!(action, Action::LengthOffset(_))), ["length-offset"]);
+    assert_eq!(without(|action| matches!(action, Action::Tool(_)))[0], "tool");
 }
 
 #[test]
 fn another_feed_is_refused_and_half_a_step_is_rounding() {
-    let feed = |f| after_start(vec![Op::Feed(Feed::PerMinute(f))]);
+    let feed = |f| after_start(vec![Action::Feed(Feed::PerMinute(f))]);
     assert!(feed(300.5).is_empty());
     assert_eq!(feed(301.0), ["feed"]);
     assert_eq!(feed(f64::NAN), ["feed"]);
@@ -63,7 +69,7 @@ fn another_feed_is_refused_and_half_a_step_is_rounding() {
 
 #[test]
 fn feed_per_turn_counts_with_the_speed() {
-    let per_turn = |f| after_start(vec![Op::Feed(Feed::PerTurn(f))]);
+    let per_turn = |f| after_start(vec![Action::Feed(Feed::PerTurn(f))]);
     assert!(per_turn(0.3).is_empty());
     assert_eq!(per_turn(300.0), ["feed"]);
 }
@@ -72,7 +78,7 @@ fn feed_per_turn_counts_with_the_speed() {
 fn inverse_time_counts_with_the_length_of_each_block() {
     // 300 mm/min: 6 mm take 1/50 min, 30 mm take 1/10 min.
     let timed = |plunge, along| {
-        let (mut nc, rate) = (cut_nc(), |r| Op::Feed(Feed::InverseTime(r)));
+        let (mut nc, rate) = (cut_nc(), |r| Action::Feed(Feed::InverseTime(r)));
         nc.splice(1..3, [rate(plunge), nc[1].clone(), rate(along), nc[2].clone()]);
         rules(&judge(&mill(), &source(cut()), nc))
     };
@@ -81,34 +87,34 @@ fn inverse_time_counts_with_the_length_of_each_block() {
     let own = at_record(
         2,
         vec![Op::Feed(Feed::InverseTime(20.0))],
-        vec![Op::Feed(Feed::PerMinute(600.0))],
+        vec![Action::Feed(Feed::PerMinute(600.0))],
     );
     assert!(own.is_empty());
 }
 
 #[test]
 fn the_spindle_turns_as_fast_and_the_way_the_source_says() {
-    assert_eq!(after_start(vec![Op::Spindle(Spindle::CounterClockwise(1000.0))]), ["spindle"]);
-    assert_eq!(after_start(vec![Op::Spindle(Spindle::Clockwise(100.0))]), ["spindle"]);
-    assert_eq!(after_start(vec![Op::Spindle(Spindle::Off)]), ["spindle"]);
-    assert_eq!(after_start(vec![Op::Coolant(Coolant::Mist)]), ["coolant"]);
+    assert_eq!(after_start(vec![Action::Spindle(Spindle::CounterClockwise(1000.0))]), ["spindle"]);
+    assert_eq!(after_start(vec![Action::Spindle(Spindle::Clockwise(100.0))]), ["spindle"]);
+    assert_eq!(after_start(vec![Action::Spindle(Spindle::Off)]), ["spindle"]);
+    assert_eq!(after_start(vec![Action::Coolant(Coolant::Mist)]), ["coolant"]);
 }
 
 #[test]
 fn spindle_and_coolant_count_in_the_cut_not_where_their_word_stands() {
     let (mut own, mut nc) = (cut(), cut_nc());
     own.push(Op::Spindle(Spindle::Off));
-    nc.insert(3, Op::Coolant(Coolant::Off));
+    nc.insert(3, Action::Coolant(Coolant::Off));
     proven(&judge(&mill(), &source(own), nc));
 }
 
 #[test]
 fn a_wrong_offset_or_tool_is_refused() {
-    assert_eq!(after_start(vec![Op::LengthOffset(Some(2))]), ["length-offset"]);
-    assert_eq!(after_start(vec![Op::LengthOffset(None)]), ["length-offset"]);
-    assert_eq!(after_start(vec![Op::WorkOffset(55)]), ["work-offset"]);
+    assert_eq!(after_start(vec![Action::LengthOffset(Some(2))]), ["length-offset"]);
+    assert_eq!(after_start(vec![Action::LengthOffset(None)]), ["length-offset"]);
+    assert_eq!(after_start(vec![Action::WorkOffset(offset(55))]), ["work-offset"]);
     // Without a word a FANUC may keep that of the last program, and a SINUMERIK has none.
-    let nc = [nc_start(), cut_nc(), vec![Op::End]].concat();
+    let nc = [nc_start(), cut_nc(), vec![Action::End]].concat();
     for (reader, wrong) in [("fanuc", true), ("sinumerik", true), ("grbl", false)] {
         let machine = Machine { reader: reader.into(), ..mill() };
         proven(&run(&machine, &source(cut()), nc.clone()));
@@ -117,21 +123,22 @@ fn a_wrong_offset_or_tool_is_refused() {
         assert_eq!(rules(&unsaid).contains(&"work-offset"), wrong, "{reader}");
     }
     let mut start = nc_start();
-    start[1] = tool(2);
-    let nc = [start, cut_nc(), vec![Op::End]].concat();
+    start[1] = Action::Tool(tool(2));
+    let nc = [start, cut_nc(), vec![Action::End]].concat();
     assert_eq!(rules(&run(&mill(), &source(cut()), nc)), ["tool"]);
 }
 
 #[test]
 fn compensation_switches_with_the_first_straight_cut_in_the_plane() {
     use Compensation::*;
-    let on = |side| vec![Op::Compensation(side)];
+    let own_on = |side| vec![Op::Compensation(side)];
+    let on = |side| vec![Action::Compensation(side)];
     // Before the plunge the source asks for it; the program may wait for the move in X.
-    assert!(at_record(1, on(Left(None)), on(Left(Some(1)))).is_empty());
-    let late = |op: Vec<Op>| {
+    assert!(at_record(1, own_on(Left(None)), on(Left(Some(1)))).is_empty());
+    let late = |word: Vec<Action>| {
         let (mut own, mut nc) = (cut(), cut_nc());
-        own.splice(1..1, on(Left(None)));
-        nc.splice(2..2, op);
+        own.splice(1..1, own_on(Left(None)));
+        nc.splice(2..2, word);
         rules(&judge(&mill(), &source(own), nc))
     };
     assert!(late(on(Left(None))).is_empty());
@@ -143,21 +150,18 @@ fn compensation_switches_with_the_first_straight_cut_in_the_plane() {
 
 #[test]
 fn compensation_does_not_switch_on_an_arc() {
-    let round = |z: f64, pose: fn(f64, f64, f64) -> Pose| {
-        let up = geom::Vec3::Z;
-        vec![
-            Op::Rapid(pose(10.0, 0.0, z)),
-            Op::Line(pose(11.0, 0.0, z)),
-            Op::Line(pose(10.0, 0.0, z)),
-            arc(pose(0.0, 10.0, z), (0.0, 0.0, 0.0), up),
-            Op::Line(pose(0.0, 20.0, z)),
-        ]
-    };
+    let mut own = vec![
+        Op::Rapid(at(10.0, 0.0, 0.0)),
+        Op::Line(at(11.0, 0.0, 0.0)),
+        Op::Line(at(10.0, 0.0, 0.0)),
+        Op::Arc(arc(at(0.0, 10.0, 0.0), (0.0, 0.0, 0.0), geom::Vec3::Z)),
+        Op::Line(at(0.0, 20.0, 0.0)),
+    ];
+    let (mut early, mut late) = (actions(&own), actions(&own));
     let on = Op::Compensation(Compensation::Left(None));
-    let (mut own, mut early, mut late) = (round(0.0, at), round(0.0, block), round(0.0, block));
-    own.insert(3, on.clone());
-    early.insert(3, on.clone());
-    late.insert(4, on);
+    early.insert(3, action(&on));
+    late.insert(4, action(&on));
+    own.insert(3, on);
     assert_eq!(rules(&judge(&mill(), &source(own.clone()), early)), ["compensation"]);
     // Nor may the arc be cut without it.
     assert_eq!(rules(&judge(&mill(), &source(own), late)), ["compensation"]);
@@ -165,20 +169,18 @@ fn compensation_does_not_switch_on_an_arc() {
 
 #[test]
 fn compensation_goes_off_with_a_rapid_before_the_tool_comes_down_elsewhere() {
-    let path = |pose: fn(f64, f64, f64) -> Pose| {
-        vec![
-            Op::Rapid(pose(0.0, 0.0, 5.0)),
-            Op::Line(pose(0.0, 0.0, -1.0)),
-            Op::Compensation(Compensation::Left(None)),
-            Op::Line(pose(10.0, 0.0, -1.0)),
-            Op::Compensation(Compensation::Off),
-            Op::Line(pose(10.0, 0.0, 5.0)),
-            Op::Rapid(pose(50.0, 0.0, 5.0)),
-            Op::Line(pose(50.0, 0.0, -1.0)),
-            Op::Line(pose(60.0, 0.0, -1.0)),
-        ]
-    };
-    let (own, nc) = (path(at), path(block));
+    let own = vec![
+        Op::Rapid(at(0.0, 0.0, 5.0)),
+        Op::Line(at(0.0, 0.0, -1.0)),
+        Op::Compensation(Compensation::Left(None)),
+        Op::Line(at(10.0, 0.0, -1.0)),
+        Op::Compensation(Compensation::Off),
+        Op::Line(at(10.0, 0.0, 5.0)),
+        Op::Rapid(at(50.0, 0.0, 5.0)),
+        Op::Line(at(50.0, 0.0, -1.0)),
+        Op::Line(at(60.0, 0.0, -1.0)),
+    ];
+    let nc = actions(&own);
     let mut late = nc.clone();
     let off = late.remove(4);
     late.insert(7, off);
@@ -188,16 +190,18 @@ fn compensation_goes_off_with_a_rapid_before_the_tool_comes_down_elsewhere() {
 
 #[test]
 fn dwells_and_stops_come_in_their_place() {
-    let dwell = |s| vec![Op::Dwell(s)];
-    assert!(at_record(2, dwell(1.5), dwell(1.5)).is_empty());
-    assert_eq!(at_record(2, dwell(1.5), dwell(15.0)), ["dwell"]);
-    assert_eq!(at_record(2, dwell(1.5), vec![]), ["dwell"]);
+    let own_dwell = |s| vec![Op::Dwell(s)];
+    let dwell = |s| vec![Action::Dwell(s)];
+    assert!(at_record(2, own_dwell(1.5), dwell(1.5)).is_empty());
+    assert_eq!(at_record(2, own_dwell(1.5), dwell(15.0)), ["dwell"]);
+    assert_eq!(at_record(2, own_dwell(1.5), vec![]), ["dwell"]);
     assert_eq!(at_record(2, vec![], dwell(1.5)), ["dwell"]);
-    assert!(at_record(2, vec![Op::Stop], vec![Op::Stop, Op::Comment("x".into())]).is_empty());
-    assert_eq!(at_record(2, vec![Op::Stop], vec![Op::OptionalStop]), ["stop"]);
-    assert_eq!(at_record(3, vec![], vec![Op::Stop]), ["stop"]);
+    let told = vec![Action::Stop, Action::Comment("x".into())];
+    assert!(at_record(2, vec![Op::Stop], told).is_empty());
+    assert_eq!(at_record(2, vec![Op::Stop], vec![Action::OptionalStop]), ["stop"]);
+    assert_eq!(at_record(3, vec![], vec![Action::Stop]), ["stop"]);
     let mut moved = cut_nc();
-    moved.insert(3, Op::Dwell(1.5));
+    moved.insert(3, Action::Dwell(1.5));
     let mut own = cut();
     own.insert(2, Op::Dwell(1.5));
     assert_eq!(rules(&judge(&mill(), &source(own), moved)), ["dwell"]);
@@ -206,30 +210,30 @@ fn dwells_and_stops_come_in_their_place() {
 #[test]
 fn the_spindle_stands_where_the_source_stops_it_for_the_operator() {
     let stop = vec![Op::Spindle(Spindle::Off), Op::Stop, Op::Spindle(Spindle::Clockwise(1000.0))];
-    assert!(at_record(1, stop.clone(), stop.clone()).is_empty());
-    assert_eq!(at_record(1, stop, vec![Op::Stop]), ["spindle"]);
+    assert!(at_record(1, stop.clone(), actions(&stop)).is_empty());
+    assert_eq!(at_record(1, stop, vec![Action::Stop]), ["spindle"]);
 }
 
 fn two_tools() -> Vec<Op> {
     let mut ops = cut();
-    ops.extend([tool(2), Op::Spindle(Spindle::Clockwise(500.0))]);
+    ops.extend([Op::Tool(tool(2)), Op::Spindle(Spindle::Clockwise(500.0))]);
     ops.extend(cut());
     ops
 }
 
-fn change() -> Vec<Op> {
+fn change() -> Vec<Action> {
     vec![
-        Op::Home(4),
-        Op::Spindle(Spindle::Off),
-        tool(2),
-        Op::Spindle(Spindle::Clockwise(500.0)),
-        Op::Coolant(Coolant::Flood),
-        Op::LengthOffset(Some(2)),
-        Op::Rapid(block(0.0, 0.0, f64::NAN)),
+        Action::Home(Axes::Z),
+        Action::Spindle(Spindle::Off),
+        Action::Tool(tool(2)),
+        Action::Spindle(Spindle::Clockwise(500.0)),
+        Action::Coolant(Coolant::Flood),
+        Action::LengthOffset(Some(2)),
+        Action::Rapid(block(0.0, 0.0, f64::NAN)),
     ]
 }
 
-fn changed(change: Vec<Op>) -> Vec<&'static str> {
+fn changed(change: Vec<Action>) -> Vec<&'static str> {
     rules(&judge(&mill(), &source(two_tools()), [cut_nc(), change, cut_nc()].concat()))
 }
 
@@ -237,9 +241,9 @@ fn changed(change: Vec<Op>) -> Vec<&'static str> {
 fn a_tool_change_establishes_everything_again() {
     assert!(changed(change()).is_empty());
     let without = |index: usize| {
-        let mut ops = change();
-        ops.remove(index);
-        changed(ops)
+        let mut others = change();
+        others.remove(index);
+        changed(others)
     };
     assert!(without(0).is_empty());
     assert_eq!(without(2), ["tool"]);
@@ -250,34 +254,35 @@ fn a_tool_change_establishes_everything_again() {
 
 #[test]
 fn a_tool_change_that_the_source_does_not_have_is_refused() {
-    assert_eq!(at_record(2, vec![], vec![tool(1)]), ["extra-tool-change"]);
-    assert_eq!(at_record(4, vec![], vec![tool(1)]), ["extra-tool-change"]);
+    assert_eq!(at_record(2, vec![], vec![Action::Tool(tool(1))]), ["extra-tool-change"]);
+    assert_eq!(at_record(4, vec![], vec![Action::Tool(tool(1))]), ["extra-tool-change"]);
 }
 
 #[test]
 fn a_part_without_tool_calls_takes_any_one_tool() {
     let own = program([start()[1..].to_vec(), cut()].concat());
     proven(&judge(&mill(), &own, cut_nc()));
-    let nc = [cut_nc(), vec![Op::Home(4), tool(2)]].concat();
+    let nc = [cut_nc(), vec![Action::Home(Axes::Z), Action::Tool(tool(2))]].concat();
     assert_eq!(rules(&judge(&mill(), &own, nc)), ["extra-tool-change"]);
 }
 
 #[test]
 fn home_in_the_middle_of_the_work_is_refused() {
     // Only Z, and only when the tool comes back down to where it left, is an excursion.
-    let back = vec![Op::Home(4), Op::Rapid(block(0.0, 0.0, -1.0))];
-    let report = |nc_ops: Vec<Op>| {
+    let down = Action::Rapid(block(0.0, 0.0, -1.0));
+    let back = vec![Action::Home(Axes::Z), down.clone()];
+    let report = |between: Vec<Action>| {
         let mut nc = cut_nc();
-        nc.splice(2..2, nc_ops);
+        nc.splice(2..2, between);
         judge(&mill(), &source(cut()), nc)
     };
     let there_and_back = report(back);
     proven(&there_and_back);
     assert_eq!(there_and_back.compared.excursions, 1);
     assert_eq!(there_and_back.excursions[0].source_line, 7);
-    assert_eq!(rules(&report(vec![Op::Home(7), Op::Rapid(block(0.0, 0.0, -1.0))])), ["home"]);
-    assert_eq!(rules(&report(vec![Op::Home(1)])), ["home"]);
-    assert_eq!(rules(&report(vec![Op::Home(4)])), ["rapid-feed"]);
+    assert_eq!(rules(&report(vec![Action::Home(Axes::LINEAR), down])), ["home"]);
+    assert_eq!(rules(&report(vec![Action::Home(Axes::X)])), ["home"]);
+    assert_eq!(rules(&report(vec![Action::Home(Axes::Z)])), ["rapid-feed"]);
 }
 
 #[test]
@@ -286,11 +291,11 @@ fn a_tool_is_called_by_its_number_or_by_its_own_name() {
     implicit.capabilities.length_offset = LengthOffset::Implicit;
     let called = |source: (u32, &str), block: (u32, &str)| {
         let tool = |(number, name): (u32, &str)| {
-            Op::Tool(Box::new(Tool { number, name: name.into(), ..Tool::default() }))
+            Box::new(Tool { number, name: name.into(), ..Tool::default() })
         };
-        let own = program([vec![tool(source)], start()[1..].to_vec(), cut()].concat());
-        let mut nc = [nc_start(), cut_nc(), vec![Op::End]].concat();
-        nc[1] = tool(block);
+        let own = program([vec![Op::Tool(tool(source))], start()[1..].to_vec(), cut()].concat());
+        let mut nc = [nc_start(), cut_nc(), vec![Action::End]].concat();
+        nc[1] = Action::Tool(tool(block));
         run(&implicit, &own, nc).proven
     };
     assert!(called((3, ""), (3, "")) && called((3, "MILL 16"), (0, "mill_16")));
@@ -302,16 +307,17 @@ fn a_tool_is_called_by_its_number_or_by_its_own_name() {
 
 #[test]
 fn the_length_offset_holds_on_the_way_to_a_tool_change() {
-    let report = |off: Vec<Op>| {
+    let report = |off: Vec<Action>| {
         let mut own = cut();
-        own.extend([vec![tool(2)], start()[1..].to_vec(), cut()].concat());
-        let mut nc = [cut_nc(), off, vec![Op::Rapid(block(30.0, 0.0, 60.0)), tool(2)]].concat();
-        nc.extend([start()[1..].to_vec(), vec![Op::LengthOffset(Some(2))], cut_nc()].concat());
+        own.extend([vec![Op::Tool(tool(2))], start()[1..].to_vec(), cut()].concat());
+        let away = vec![Action::Rapid(block(30.0, 0.0, 60.0)), Action::Tool(tool(2))];
+        let mut nc = [cut_nc(), off, away].concat();
+        nc.extend([actions(&start()[1..]), vec![Action::LengthOffset(Some(2))], cut_nc()].concat());
         rules(&judge(&mill(), &source(own), nc))
     };
     assert!(report(vec![]).is_empty());
-    assert_eq!(report(vec![Op::LengthOffset(None)]), ["length-offset"]);
-    assert_eq!(report(vec![Op::WorkOffset(55)]), ["work-offset"]);
+    assert_eq!(report(vec![Action::LengthOffset(None)]), ["length-offset"]);
+    assert_eq!(report(vec![Action::WorkOffset(offset(55))]), ["work-offset"]);
 }
 
 #[test]
@@ -319,7 +325,8 @@ fn other_axes_go_home_with_z_only_from_above_the_part() {
     let report = |above: f64| {
         let (mut own, mut nc) = (cut(), cut_nc());
         own.extend([vec![Op::Rapid(at(30.0, 0.0, above))], start(), cut()].concat());
-        nc.extend([vec![Op::Rapid(block(30.0, 0.0, above)), Op::Home(7)], nc_start()].concat());
+        nc.extend([Action::Rapid(block(30.0, 0.0, above)), Action::Home(Axes::LINEAR)]);
+        nc.extend(nc_start());
         judge(&mill(), &source(own), [nc, cut_nc()].concat())
     };
     let from_above = report(5.0);
@@ -330,13 +337,13 @@ fn other_axes_go_home_with_z_only_from_above_the_part() {
 
 #[test]
 fn a_lift_along_the_tool_axis_and_back_is_an_excursion() {
-    let report = |ops: Vec<Op>| {
+    let report = |way: Vec<Action>| {
         let mut nc = cut_nc();
-        nc.splice(2..2, [vec![Op::Line(block(10.0, 0.0, -1.0))], ops].concat());
+        nc.splice(2..2, [vec![Action::Line(block(10.0, 0.0, -1.0))], way].concat());
         judge(&mill(), &source(cut()), nc)
     };
-    let rapid = |x, y, z| Op::Rapid(block(x, y, z));
-    let lifted = report(vec![rapid(10.0, 0.0, 40.0), Op::Line(block(10.0, 0.0, -1.0))]);
+    let rapid = |x, y, z| Action::Rapid(block(x, y, z));
+    let lifted = report(vec![rapid(10.0, 0.0, 40.0), Action::Line(block(10.0, 0.0, -1.0))]);
     proven(&lifted);
     assert_eq!(lifted.excursions[0].lift_mm, 41.0);
     let (up, down) = (rapid(10.0, 0.0, 40.0), rapid(10.0, 0.0, -1.0));
@@ -352,17 +359,19 @@ fn a_lift_along_the_tool_axis_and_back_is_an_excursion() {
 
 #[test]
 fn after_the_last_motion_the_tool_only_leaves() {
-    let ending =
-        |ops: Vec<Op>| rules(&run(&mill(), &source(cut()), [nc_start(), cut_nc(), ops].concat()));
-    let away = Op::Rapid(block(30.0, 0.0, 100.0));
-    assert!(ending(vec![away.clone(), Op::Home(4), Op::Home(3), Op::End]).is_empty());
-    assert_eq!(ending(vec![Op::Home(4)]), ["no-end"]);
-    assert_eq!(ending(vec![Op::Rapid(block(30.0, 5.0, 5.0)), Op::End]), ["extra-motion"]);
-    assert_eq!(ending(vec![Op::Rapid(block(30.0, 0.0, -5.0)), Op::End]), ["extra-motion"]);
-    assert_eq!(ending(vec![Op::Line(block(30.0, 0.0, 9.0)), Op::End]), ["extra-motion"]);
-    assert_eq!(ending(vec![Op::Home(3), Op::End]), ["home"]);
-    assert_eq!(ending(vec![Op::End, away]), ["after-end"]);
-    assert_eq!(ending(vec![Op::End, Op::Spindle(Spindle::Clockwise(9.0))]), ["after-end"]);
+    let ending = |end: Vec<Action>| {
+        rules(&run(&mill(), &source(cut()), [nc_start(), cut_nc(), end].concat()))
+    };
+    let away = Action::Rapid(block(30.0, 0.0, 100.0));
+    let (up, aside) = (Action::Home(Axes::Z), Action::Home(Axes::X | Axes::Y));
+    assert!(ending(vec![away.clone(), up.clone(), aside.clone(), Action::End]).is_empty());
+    assert_eq!(ending(vec![up]), ["no-end"]);
+    assert_eq!(ending(vec![Action::Rapid(block(30.0, 5.0, 5.0)), Action::End]), ["extra-motion"]);
+    assert_eq!(ending(vec![Action::Rapid(block(30.0, 0.0, -5.0)), Action::End]), ["extra-motion"]);
+    assert_eq!(ending(vec![Action::Line(block(30.0, 0.0, 9.0)), Action::End]), ["extra-motion"]);
+    assert_eq!(ending(vec![aside, Action::End]), ["home"]);
+    assert_eq!(ending(vec![Action::End, away]), ["after-end"]);
+    assert_eq!(ending(vec![Action::End, Action::Spindle(Spindle::Clockwise(9.0))]), ["after-end"]);
 }
 
 #[test]
@@ -372,14 +381,14 @@ fn a_first_cut_from_an_unknown_place_has_to_go_straight_to_its_end() {
     proven(&report);
     assert_eq!(report.warnings[0].rule, "unknown-start");
     let mut nc = cut_nc()[1..].to_vec();
-    nc.insert(0, Op::Line(block(0.0, 3.0, -1.0)));
+    nc.insert(0, Action::Line(block(0.0, 3.0, -1.0)));
     assert_eq!(rules(&judge(&mill(), &own, nc)), ["unknown-start"]);
 }
 
 #[test]
 fn the_same_difference_is_told_once_with_its_count() {
-    let report =
-        judge(&mill(), &source(cut()), [vec![Op::Feed(Feed::PerMinute(30.0))], cut_nc()].concat());
+    let slow = vec![Action::Feed(Feed::PerMinute(30.0))];
+    let report = judge(&mill(), &source(cut()), [slow, cut_nc()].concat());
     assert_eq!(report.mismatches.len(), 1);
     assert_eq!(report.mismatches[0].count, 2);
     let message = "source line 6: the feed is 30 mm/min, but should be 300 mm/min";
@@ -387,28 +396,27 @@ fn the_same_difference_is_told_once_with_its_count() {
 }
 
 /// The cut, then the same cut after `between`.
-fn twice(cut: Vec<Op>, between: Vec<Op>) -> Vec<Op> {
+fn twice<T: Clone>(cut: Vec<T>, between: Vec<T>) -> Vec<T> {
     [cut.clone(), between, cut].concat()
 }
 
 #[test]
 fn a_change_of_the_work_offset_is_made_from_above_and_to_the_right_one() {
-    let own = twice(cut(), vec![Op::WorkOffset(55)]);
+    let own = twice(cut(), vec![Op::WorkOffset(offset(55))]);
     let judged = |between| rules(&judge(&mill(), &source(own.clone()), twice(cut_nc(), between)));
-    assert!(judged(vec![Op::Home(4), Op::WorkOffset(55)]).is_empty());
-    assert_eq!(judged(vec![Op::Home(4), Op::WorkOffset(56)])[0], "work-offset");
-    assert_eq!(judged(vec![Op::WorkOffset(55)])[0], "home");
-    assert!(!judged(vec![Op::Home(4)]).is_empty());
+    let (up, to) = (Action::Home(Axes::Z), |number| Action::WorkOffset(offset(number)));
+    assert!(judged(vec![up.clone(), to(55)]).is_empty());
+    assert_eq!(judged(vec![up.clone(), to(56)])[0], "work-offset");
+    assert_eq!(judged(vec![to(55)])[0], "home");
+    assert!(!judged(vec![up]).is_empty());
     // A source without work offsets is made in the first.
-    let once =
-        rules(&judge(&mill(), &source(cut()), [vec![Op::WorkOffset(55)], cut_nc()].concat()));
-    assert_eq!(once[0], "work-offset");
+    assert_eq!(after_start(vec![to(55)])[0], "work-offset");
 }
 
 #[test]
 fn the_tool_goes_home_where_the_source_does() {
-    let own = twice(cut(), vec![Op::Home(4)]);
+    let own = twice(cut(), vec![Op::Home]);
     let judged = |between| rules(&judge(&mill(), &source(own.clone()), twice(cut_nc(), between)));
-    assert!(judged(vec![Op::Home(4)]).is_empty());
+    assert!(judged(vec![Action::Home(Axes::Z)]).is_empty());
     assert_eq!(judged(vec![])[0], "home");
 }

@@ -281,7 +281,8 @@ impl Shop<'_> {
         let number = |operation: &Operation| self.rack.number(&operation.tool.name);
         let operations: Vec<(u32, &Operation)> =
             work.operations.iter().map(|operation| (number(operation), operation)).collect();
-        let mut program = job::program(&name, &operations, &self.heights);
+        let mut program =
+            job::program(&name, &operations, &self.heights).map_err(Box::<Diagnostic>::from)?;
         if let Some(surface) = &self.surface {
             program = level(&program, surface, &LEVELLED)?;
         }

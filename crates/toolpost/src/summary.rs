@@ -153,7 +153,7 @@ mod tests {
 
     #[test]
     fn each_tool_has_the_length_that_it_cuts() {
-        let at = |x: f64, y: f64| Pose::new(Vec3::new(x, y, 0.0), Vec3::Z);
+        let at = |x: f64, y: f64| Pose::upright(Vec3::new(x, y, 0.0)).unwrap();
         let tool = |number| Op::Tool(Box::new(Tool { number, ..Tool::default() }));
         let mut p = Program::new("t");
         p.push(1, tool(1));

@@ -48,7 +48,7 @@ pub fn run(args: &args::Wire, silent: bool) -> Result<Answer, Stop> {
     warnings.extend(rounded);
     divide(&mut legs, &args.division, &machine)?;
     let cut = Cut::of(legs, &machine);
-    let program = cut.program(&toolpath.program.name);
+    let program = cut.program(&toolpath.program.name).map_err(Box::<Diagnostic>::from)?;
     let output = post::write(&program, &machine, &toolpath, &mut warnings)?;
     progress.step("proving");
     if cut.points().is_some() {
@@ -57,7 +57,8 @@ pub fn run(args: &args::Wire, silent: bool) -> Result<Answer, Stop> {
     }
     let file = files::name(&args.output);
     let tolerances = args.closeness.tolerances();
-    let proof = proof::of(&cut, &machine, &toolpath.program.name, &file, &output.text, &tolerances);
+    let proof = proof::of(&cut, &machine, &toolpath.program.name, &file, &output.text, &tolerances)
+        .map_err(Box::<Diagnostic>::from)?;
     if !proof.proven {
         let mut failed = prove::failed(&proof, &toolpath, &file);
         failed.findings.extend(warnings);

@@ -7,11 +7,11 @@ use program::{ArcTo, Feed, Op, Pose, Program, Spindle, Tool};
 use proptest::prelude::*;
 
 fn at(x: f64, y: f64, z: f64) -> Pose {
-    Pose::new(Vec3::new(x, y, z), Vec3::Z)
+    Pose::upright(Vec3::new(x, y, z)).unwrap()
 }
 
 fn arc(end: Pose, center: [f64; 2], ccw: bool) -> Op {
-    let center = Vec3::new(center[0], center[1], end.point.z);
+    let center = Vec3::new(center[0], center[1], end.point().z);
     let normal = if ccw { Vec3::Z } else { Vec3::NEG_Z };
     Op::Arc(Box::new(ArcTo { end, center, normal, turns: 0 }))
 }

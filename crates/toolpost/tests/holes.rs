@@ -32,7 +32,7 @@ fn cycle(kind: CycleKind, dwell: f64) -> Cycle {
 }
 
 fn source(cycle: Cycle) -> Program {
-    let at = |z| Pose::new(Vec3::new(10.0, 5.0, z), Vec3::Z);
+    let at = |z| Pose::upright(Vec3::new(10.0, 5.0, z)).unwrap();
     let left = matches!(cycle.kind, CycleKind::Tap { left: true, .. });
     let turn = if left { Spindle::CounterClockwise } else { Spindle::Clockwise };
     let mut program = Program::new("holes");
@@ -169,7 +169,7 @@ fn the_feeds_of_cycle85_count_as_the_feed_does() {
 fn the_spindle_is_told_anew_after_boring() {
     let machine = machine::load("generic-3axis-sinumerik").unwrap();
     let mut source = source(cycle(BORE, 0.0));
-    let at = |z| Pose::new(Vec3::new(30.0, 5.0, z), Vec3::Z);
+    let at = |z| Pose::upright(Vec3::new(30.0, 5.0, z)).unwrap();
     source.records.truncate(7);
     let ops = [Op::Rapid(at(20.0)), Op::Line(at(3.0)), Op::Rapid(at(50.0)), Op::End];
     for (line, op) in (8..).zip(ops) {

@@ -77,22 +77,22 @@ fn assert_same_cuts(program: &Program, cuts: &[Cut], tolerance: f64, holes: bool
         };
         match &record.op {
             Op::Line(to) => {
-                let length = here.map(|from| from.distance(to.point));
+                let length = here.map(|from| from.distance(to.point()));
                 // A move shorter than the resolution is not there on the control.
                 if length.is_none_or(|length| length > tolerance) {
-                    follow(here, to.point, length);
+                    follow(here, to.point(), length);
                 }
             }
             Op::Arc(to) => {
                 let from = here.expect("an arc has a start");
                 let arc =
-                    Arc::new(from, to.end.point, to.center, to.normal, to.turns, 0.01).unwrap();
-                follow(here, to.end.point, Some(arc.length()));
+                    Arc::new(from, to.end.point(), to.center, to.normal, to.turns, 0.01).unwrap();
+                follow(here, to.end.point(), Some(arc.length()));
             }
             Op::Cycle(new) => cycle = Some(**new),
             Op::Hole(at) if holes => {
                 let cycle = cycle.expect("a hole has a cycle");
-                let bottom = at.point - at.axis().unwrap() * cycle.depth;
+                let bottom = at.point() - at.axis() * cycle.depth;
                 // Pecks, if any, then the bottom; never beside the hole nor below it.
                 loop {
                     let cut = cuts.next().unwrap_or_else(|| panic!("line {line}: no more holes"));
@@ -118,9 +118,9 @@ fn assert_same_cuts(program: &Program, cuts: &[Cut], tolerance: f64, holes: bool
         }
         match (&record.op, &cycle) {
             (Op::Hole(at), Some(cycle)) => {
-                here = Some(at.point + at.axis().unwrap() * cycle.retract);
+                here = Some(at.point() + at.axis() * cycle.retract);
             }
-            (op, _) => here = op.pose().map(|pose| pose.point).or(here),
+            (op, _) => here = op.pose().map(|pose| pose.point()).or(here),
         }
     }
     assert!(cuts.next().is_none(), "the judge cuts on after the end of the source");
@@ -214,7 +214,7 @@ fn linuxcnc_itself_follows_a_surface_that_it_finds() {
     if Command::new("rs274").arg("-h").stdin(Stdio::null()).output().is_err() {
         return eprintln!("note: rs274 (Debian package linuxcnc-uspace) is not installed");
     }
-    let pose = |x: f64, y: f64, z: f64| Pose::new(Vec3::new(x, y, z), Vec3::Z);
+    let pose = |x: f64, y: f64, z: f64| Pose::upright(Vec3::new(x, y, z)).unwrap();
     let arc = |end: Pose, center: Vec3, normal: Vec3| {
         Op::Arc(Box::new(ArcTo { end, center, normal, turns: 0 }))
     };
@@ -253,7 +253,8 @@ fn linuxcnc_itself_follows_a_surface_that_it_finds() {
     assert_eq!(points.len(), 20);
     let folder = tempfile::tempdir().unwrap();
     let cuts = rs274(folder.path(), text.as_bytes()).unwrap();
-    let raised = levelling::raised(&program, &levelling::HeightMap::of(&points).unwrap());
+    let heights = levelling::HeightMap::of(&points).unwrap();
+    let raised = levelling::raised(&program, &heights).unwrap();
     let (count, _) = assert_same_cuts(&raised, &cuts, 2e-4, false);
     assert!(count > 30, "{count}");
 }
@@ -302,19 +303,20 @@ fn another_sinumerik_interpreter_ends_every_block_where_the_source_does() {
             };
             // Blocks without a motion of their own (M8, F) repeat the last position; so does a full
             // circle, which this judge cannot tell from them.
-            while let Some(end) = left.next_if(|end| near(*end, here) && !near(*end, pose.point)) {
+            while let Some(end) = left.next_if(|end| near(*end, here) && !near(*end, pose.point()))
+            {
                 here = end;
             }
-            match left.next_if(|end| near(*end, pose.point)) {
+            match left.next_if(|end| near(*end, pose.point())) {
                 Some(end) => here = end,
                 None => assert!(
-                    near(here, pose.point),
+                    near(here, pose.point()),
                     "{}:{}: {:?}, then {:?}, is not {}",
                     file.display(),
                     record.line,
                     here,
                     left.peek(),
-                    pose.point
+                    pose.point()
                 ),
             }
         }

@@ -5,12 +5,13 @@
 
 mod files;
 
+use control::{Action, Event, Orientation, Position};
 use files::{cldata, root};
 use geom::{Arc, Vec3, nearest_on_segment};
 use machine::Machine;
 use program::{
-    ArcTo, Compensation, Coolant, Cycle, CycleKind, Feed, Op, Orientation, Pose, Program, Record,
-    Spindle, Tool,
+    ArcTo, Axes, Compensation, Coolant, Cycle, CycleKind, Feed, Op, Program, Spindle, Tool,
+    WorkOffset,
 };
 use proof::{Applied, Tolerances};
 use std::collections::BTreeMap;
@@ -41,7 +42,7 @@ struct Sample {
     text: Vec<u8>,
     /// The lines of the text (their newlines with them), those that differ only in digits together.
     kinds: Vec<Vec<(usize, usize)>>,
-    records: Vec<Record>,
+    records: Vec<Event>,
 }
 
 impl Sample {
@@ -97,10 +98,9 @@ impl Sample {
     fn harmless(&self, text: &[u8]) -> Result<&'static str, String> {
         let records = records(&self.machine, text);
         // As text, for a coordinate that is not known equals nothing.
-        let said = |records: &[Record], comments: bool| -> Vec<String> {
-            let comment =
-                |op: &Op| matches!(op, Op::Comment(_) | Op::Message(_) | Op::Operation(_));
-            let ops = records.iter().map(|record| &record.op);
+        let said = |records: &[Event], comments: bool| -> Vec<String> {
+            let comment = |op: &Action| matches!(op, Action::Comment(_) | Action::Message(_));
+            let ops = records.iter().map(|record| &record.action);
             ops.filter(|op| comments || !comment(op)).map(|op| format!("{op:?}")).collect()
         };
         let alike = |comments| said(&self.records, comments) == said(&records, comments);
@@ -114,7 +114,7 @@ impl Sample {
 }
 
 /// What the control of `machine` makes of `text`.
-fn records(machine: &Machine, text: &[u8]) -> Vec<Record> {
+fn records(machine: &Machine, text: &[u8]) -> Vec<Event> {
     let settings = nc::settings(machine, control::Setup::default()).unwrap();
     let mut records = Vec::new();
     control::read(&settings, "", text, &mut |record| {
@@ -134,12 +134,12 @@ struct Step {
 
 #[derive(Clone, Debug)]
 enum Act {
-    Rapid(Pose),
-    Home(u8),
-    Line(Pose),
+    Rapid(Position),
+    Home(Axes),
+    Line(Position),
     /// From a pose.
-    Arc(Pose, Box<ArcTo>),
-    Hole(Pose, Box<Cycle>),
+    Arc(Position, Box<ArcTo<Position>>),
+    Hole(Position, Box<Cycle>),
     Tool(Box<Tool>),
     Dwell(f64),
     Stop,
@@ -154,11 +154,11 @@ struct On {
     coolant: Coolant,
     compensation: Compensation,
     length_offset: Option<u32>,
-    work_offset: Option<u32>,
+    work_offset: Option<WorkOffset>,
 }
 
 /// What a machine does that is given `records`.
-fn steps(records: &[Record]) -> Vec<Step> {
+fn steps(records: &[Event]) -> Vec<Step> {
     let mut on = On {
         feed: None,
         spindle: Spindle::Off,
@@ -170,16 +170,16 @@ fn steps(records: &[Record]) -> Vec<Step> {
     let (mut steps, mut cycle, mut here) = (Vec::new(), None, None);
     // A tool change stops spindle and coolant, but for what its own block switches on.
     let (mut spindle_line, mut coolant_line) = (0, 0);
-    for Record { line, op } in records {
+    for Event { line, action: op } in records {
         let act = match op {
             // Nothing moves where the tool already is.
-            Op::Rapid(to) | Op::Line(to) if here == Some(*to) => continue,
-            Op::Rapid(to) => Act::Rapid(*to),
-            Op::Home(axes) => Act::Home(*axes),
-            Op::Line(to) => Act::Line(*to),
-            Op::Arc(to) => Act::Arc(here.unwrap_or(to.end), to.clone()),
-            Op::Hole(at) => Act::Hole(*at, Option::clone(&cycle).unwrap()),
-            Op::Tool(tool) => {
+            Action::Rapid(to) | Action::Line(to) if here == Some(*to) => continue,
+            Action::Rapid(to) => Act::Rapid(*to),
+            Action::Home(axes) => Act::Home(*axes),
+            Action::Line(to) => Act::Line(*to),
+            Action::Arc(to) => Act::Arc(here.unwrap_or(to.end), to.clone()),
+            Action::Hole(at) => Act::Hole(*at, Option::clone(&cycle).unwrap()),
+            Action::Tool(tool) => {
                 if spindle_line != *line {
                     on.spindle = Spindle::Off;
                 }
@@ -188,28 +188,28 @@ fn steps(records: &[Record]) -> Vec<Step> {
                 }
                 Act::Tool(tool.clone())
             }
-            Op::Dwell(seconds) => Act::Dwell(*seconds),
-            Op::Stop => Act::Stop,
-            Op::OptionalStop => Act::OptionalStop,
-            Op::End => Act::End,
+            Action::Dwell(seconds) => Act::Dwell(*seconds),
+            Action::Stop => Act::Stop,
+            Action::OptionalStop => Act::OptionalStop,
+            Action::End => Act::End,
             op => {
                 match op {
-                    Op::Feed(feed) => on.feed = Some(*feed),
-                    Op::Spindle(spindle) => (on.spindle, spindle_line) = (*spindle, *line),
-                    Op::Coolant(coolant) => (on.coolant, coolant_line) = (*coolant, *line),
-                    Op::Compensation(side) => on.compensation = *side,
-                    Op::LengthOffset(register) => on.length_offset = *register,
-                    Op::WorkOffset(number) => on.work_offset = Some(*number),
-                    Op::Cycle(new) => cycle = Some(new.clone()),
-                    Op::CycleOff => cycle = None,
+                    Action::Feed(feed) => on.feed = Some(*feed),
+                    Action::Spindle(spindle) => (on.spindle, spindle_line) = (*spindle, *line),
+                    Action::Coolant(coolant) => (on.coolant, coolant_line) = (*coolant, *line),
+                    Action::Compensation(side) => on.compensation = *side,
+                    Action::LengthOffset(register) => on.length_offset = *register,
+                    Action::WorkOffset(number) => on.work_offset = Some(*number),
+                    Action::Cycle(new) => cycle = Some(new.clone()),
+                    Action::CycleOff => cycle = None,
                     _ => {}
                 }
                 continue;
             }
         };
         here = match op {
-            Op::Home(_) | Op::Hole(_) => None,
-            op => op.pose().copied().or(here),
+            Action::Home(_) | Action::Hole(_) => None,
+            op => op.position().copied().or(here),
         };
         steps.push(Step { act, on });
     }
@@ -243,15 +243,15 @@ impl Allowed<'_> {
             machine,
             proof: Applied::new(machine, &Tolerances::default()),
             tool_length: lengths.fold(0.0, f64::max),
-            top: heights.map(|pose| pose.point.z).fold(f64::NEG_INFINITY, f64::max),
+            top: heights.map(|pose| pose.point().z).fold(f64::NEG_INFINITY, f64::max),
             cycles: cycles.collect(),
         }
     }
 
     /// Whether the tool stands at the same place and angle, as far as either is known.
-    fn pose(&self, a: &Pose, b: &Pose) -> bool {
+    fn pose(&self, a: &Position, b: &Position) -> bool {
         let unknown = |a: f64, b: f64| a.is_nan() && b.is_nan();
-        let degrees = |pose: &Pose| match pose.orientation {
+        let degrees = |pose: &Position| match pose.orientation {
             Orientation::Rotary { degrees, .. } => degrees,
             Orientation::Axis(_) => [0.0; 3],
         };
@@ -268,16 +268,16 @@ impl Allowed<'_> {
                 }
             }
         }
-        let (tip, axis) = self.machine.resolve(&a, self.tool_length);
-        let (other, toward) = self.machine.resolve(&b, self.tool_length);
+        let (tip, axis) = nc::resolve(self.machine, &a, self.tool_length);
+        let (other, toward) = nc::resolve(self.machine, &b, self.tool_length);
         tip.distance(other) <= 2.0 * self.tip(&a)
             && (axis == toward
                 || geom::angle_between(axis, toward).to_degrees() <= 2.0 * self.proof.axis_degrees)
     }
 
     /// How far the tip may be from the source, mm: rotary words err at their distance from the centre.
-    fn tip(&self, pose: &Pose) -> f64 {
-        let (tip, _) = self.machine.resolve(pose, self.tool_length);
+    fn tip(&self, pose: &Position) -> f64 {
+        let (tip, _) = nc::resolve(self.machine, pose, self.tool_length);
         let lever = match pose.orientation {
             Orientation::Rotary { tool_center: true, .. } => 0.0,
             Orientation::Axis(axis) if axis == Vec3::Z => 0.0,
@@ -361,7 +361,7 @@ impl Allowed<'_> {
             (Act::Line(a), Act::Line(b)) => cut && self.pose(a, b),
             (Act::Arc(start, a), Act::Arc(other, b)) => {
                 cut && self.pose(start, other) && self.pose(&a.end, &b.end) && {
-                    let arc = |from: &Pose, to: &ArcTo| {
+                    let arc = |from: &Position, to: &ArcTo<Position>| {
                         let radius = from.point.distance(to.center);
                         let (center, end) = (to.center, to.end.point);
                         Arc::new(from.point, end, center, to.normal, to.turns, radius).unwrap()
@@ -377,7 +377,7 @@ impl Allowed<'_> {
             (Act::Hole(a, first), Act::Hole(b, second)) => {
                 let along = a.axis().unwrap_or(Vec3::Z);
                 let higher = (b.point - a.point).dot(along);
-                let level = Pose { point: b.point - along * higher, ..*b };
+                let level = Position { point: b.point - along * higher, ..*b };
                 // A tap's feed is its pitch, and a cycle may name its own.
                 let own = matches!(first.kind, CycleKind::Tap { .. }) || first.feed.is_some();
                 let feed = if own { on.1.feed } else { on.0.feed };
@@ -450,7 +450,7 @@ impl Allowed<'_> {
     /// axes while Z is home, and none is reached by going down aside where the other way does not. Z may
     /// go home, other axes after it or from the top. Stops of the program may be added where a tool is
     /// changed or nothing has been cut.
-    fn same_transit(&self, before: Option<Pose>, a: &[Step], b: &[Step], next: &Act) -> bool {
+    fn same_transit(&self, before: Option<Position>, a: &[Step], b: &[Step], next: &Act) -> bool {
         let tool = |steps: &[Step]| {
             let mut tools = steps.iter().rev().filter_map(|step| match &step.act {
                 Act::Tool(tool) => Some((tool.number, tool.name.clone())),
@@ -461,7 +461,7 @@ impl Allowed<'_> {
         let halts = |steps: &[Step]| {
             steps.iter().filter(|step| matches!(step.act, Act::Stop | Act::OptionalStop)).count()
         };
-        let ends = |steps: &[Step]| -> Vec<Pose> {
+        let ends = |steps: &[Step]| -> Vec<Position> {
             before.into_iter().chain(steps.iter().filter_map(|step| step.act.end())).collect()
         };
         let (mut way, other) = (ends(a), ends(b));
@@ -481,7 +481,8 @@ impl Allowed<'_> {
             Act::Rapid(to) => {
                 let known = to.point.is_finite();
                 let slope = here.is_some_and(|here| {
-                    let leg = |leg: &[Pose]| self.pose(&leg[0], &here) && self.pose(&leg[1], to);
+                    let leg =
+                        |leg: &[Position]| self.pose(&leg[0], &here) && self.pose(&leg[1], to);
                     self.slopes(&here, to) && !way.windows(2).any(leg)
                 });
                 here = Some(*to);
@@ -495,9 +496,9 @@ impl Allowed<'_> {
             }
             Act::Home(axes) => {
                 let top = here.is_none_or(|here| here.point.z >= self.top);
-                let fair = *axes == 4 || homed || top || a.iter().any(|a| self.step(a, step));
-                homed |= axes & 4 != 0;
-                if let (Some(here), true) = (&mut here, axes & 4 != 0) {
+                let fair = *axes == Axes::Z || homed || top || a.iter().any(|a| self.step(a, step));
+                homed |= axes.contains(Axes::Z);
+                if let (Some(here), true) = (&mut here, axes.contains(Axes::Z)) {
                     here.point.z = f64::NAN;
                 }
                 fair
@@ -510,8 +511,8 @@ impl Allowed<'_> {
 
     /// Whether each coordinate of `to`, as its block says it or in the work frame, is that of a place on
     /// the way or not known.
-    fn corner(&self, way: &[Pose], to: &Pose) -> bool {
-        let tip = |pose: &Pose| self.machine.resolve(pose, self.tool_length).0;
+    fn corner(&self, way: &[Position], to: &Position) -> bool {
+        let tip = |pose: &Position| nc::resolve(self.machine, pose, self.tool_length).0;
         let near = |a: f64, b: f64| (a - b).abs() <= 2.0 * self.proof.tip_mm;
         (0..3).all(|i| {
             to.point[i].is_nan()
@@ -522,9 +523,9 @@ impl Allowed<'_> {
     }
 
     /// Whether the tool stands at `to` as at `place`, higher along its axis.
-    fn above(&self, place: &Pose, to: &Pose) -> bool {
-        let (tip, axis) = self.machine.resolve(place, self.tool_length);
-        let height = (self.machine.resolve(to, self.tool_length).0 - tip).dot(axis);
+    fn above(&self, place: &Position, to: &Position) -> bool {
+        let (tip, axis) = nc::resolve(self.machine, place, self.tool_length);
+        let height = (nc::resolve(self.machine, to, self.tool_length).0 - tip).dot(axis);
         height > 0.0 && {
             let mut lower = *to;
             lower.point -= match to.orientation {
@@ -536,9 +537,9 @@ impl Allowed<'_> {
     }
 
     /// Whether a rapid goes down and aside in one, seen along the tool axis and along Z.
-    fn slopes(&self, from: &Pose, to: &Pose) -> bool {
-        let (tip, axis) = self.machine.resolve(to, self.tool_length);
-        let way = tip - self.machine.resolve(from, self.tool_length).0;
+    fn slopes(&self, from: &Position, to: &Position) -> bool {
+        let (tip, axis) = nc::resolve(self.machine, to, self.tool_length);
+        let way = tip - nc::resolve(self.machine, from, self.tool_length).0;
         let off = 2.0 * self.proof.tip_mm;
         [axis, Vec3::Z].iter().all(|along| {
             let down = way.dot(*along);
@@ -548,9 +549,9 @@ impl Allowed<'_> {
 
     /// Whether two rows of lines are one path, cut at the same feed and so on: the points of each lie on
     /// the other, in their order.
-    fn same_path(&self, before: Option<Pose>, a: &[Step], b: &[Step]) -> bool {
+    fn same_path(&self, before: Option<Position>, a: &[Step], b: &[Step]) -> bool {
         let Some(before) = before else { return false };
-        let tip = |pose: &Pose| self.machine.resolve(pose, self.tool_length).0;
+        let tip = |pose: &Position| nc::resolve(self.machine, pose, self.tool_length).0;
         let points = |steps: &[Step]| -> Vec<Vec3> {
             let ends = steps.iter().filter_map(|step| step.act.end());
             std::iter::once(before).chain(ends).map(|pose| tip(&pose)).collect()
@@ -577,8 +578,8 @@ impl Allowed<'_> {
 }
 
 /// The pose so many mm above that of a hole, along Z of its coordinates.
-fn above(hole: &Pose, height: f64) -> Pose {
-    Pose { point: hole.point + hole.axis().unwrap_or(Vec3::Z) * height, ..*hole }
+fn above(hole: &Position, height: f64) -> Position {
+    Position { point: hole.point + hole.axis().unwrap_or(Vec3::Z) * height, ..*hole }
 }
 
 impl Act {
@@ -596,7 +597,7 @@ impl Act {
     }
 
     /// Where the tool is afterwards, if this moves it to a place.
-    fn end(&self) -> Option<Pose> {
+    fn end(&self) -> Option<Position> {
         match self {
             Act::Rapid(to) | Act::Line(to) => Some(*to),
             Act::Arc(_, arc) => Some(arc.end),
@@ -605,7 +606,7 @@ impl Act {
         }
     }
 
-    fn r_plane(&self) -> Option<Pose> {
+    fn r_plane(&self) -> Option<Position> {
         match self {
             Act::Hole(at, cycle) => Some(above(at, cycle.clearance)),
             _ => None,

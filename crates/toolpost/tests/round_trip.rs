@@ -6,6 +6,7 @@ use machine::Machine;
 use machine::library::{MACHINES, names};
 use program::{
     ArcTo, Coolant, Cycle, CycleKind, Feed, Op, Pose, Probe, Program, Spindle, Thread, Tool,
+    WorkOffset,
 };
 use proptest::prelude::*;
 
@@ -122,7 +123,7 @@ fn assemble(pieces: &[Piece]) -> Program {
         line += 1;
         program.push(line, op);
     };
-    let pose = |p: Vec3| Pose::new(p, Vec3::Z);
+    let pose = |p: Vec3| Pose::upright(p).unwrap();
     let tool = |number| Op::Tool(Box::new(Tool { number, ..Tool::default() }));
     let top = |p: Vec3| Vec3::new(p.x, p.y, 20.0);
     let (mut here, mut left) = (Vec3::new(0.0, 0.0, 20.0), false);
@@ -202,12 +203,12 @@ fn assemble(pieces: &[Piece]) -> Program {
             }
             Piece::Dwell(seconds) => push(Op::Dwell(*seconds)),
             Piece::WorkOffset(number) => {
-                push(Op::WorkOffset(*number));
+                push(Op::WorkOffset(WorkOffset::numbered(*number).unwrap()));
                 here = top(here);
                 push(Op::Rapid(pose(here)));
             }
             Piece::Home => {
-                push(Op::Home(4));
+                push(Op::Home);
                 here = top(here);
                 push(Op::Rapid(pose(here)));
             }
@@ -244,14 +245,14 @@ fn cuts(program: &Program) -> Vec<Cut> {
     let (mut cycle, mut all) = (None, Vec::new());
     for record in &program.records {
         match &record.op {
-            Op::Line(pose) => all.push(Cut { bottom: pose.point, ..now.clone() }),
+            Op::Line(pose) => all.push(Cut { bottom: pose.point(), ..now.clone() }),
             Op::Thread(thread) => {
-                all.push(Cut { bottom: thread.end.point, feed: None, ..now.clone() });
+                all.push(Cut { bottom: thread.end.point(), feed: None, ..now.clone() });
             }
-            Op::Probe(probe) => all.push(Cut { bottom: probe.end.point, ..now.clone() }),
+            Op::Probe(probe) => all.push(Cut { bottom: probe.end.point(), ..now.clone() }),
             Op::Arc(to) => {
                 let arc = Some((to.center, to.normal.z));
-                all.push(Cut { bottom: to.end.point, arc, ..now.clone() });
+                all.push(Cut { bottom: to.end.point(), arc, ..now.clone() });
             }
             Op::Cycle(with) => cycle = Some(**with),
             Op::Hole(pose) => {
@@ -259,14 +260,14 @@ fn cuts(program: &Program) -> Vec<Cut> {
                 // The pitch of a tap is its feed, which the proof compares.
                 let tap = matches!(cycle.kind, CycleKind::Tap { .. });
                 let feed = cycle.feed.or(now.feed).filter(|_| !tap);
-                let bottom = pose.point - Vec3::Z * cycle.depth;
+                let bottom = pose.point() - Vec3::Z * cycle.depth;
                 all.push(Cut { bottom, feed, ..now.clone() });
             }
             Op::Feed(feed) => now.feed = Some(*feed),
             Op::Spindle(spindle) => now.spindle = *spindle,
             Op::Coolant(coolant) => now.coolant = *coolant,
             Op::Tool(tool) => now.tool = tool.number,
-            Op::WorkOffset(number) => now.work_offset = *number,
+            Op::WorkOffset(offset) => now.work_offset = offset.number(),
             _ => {}
         }
     }

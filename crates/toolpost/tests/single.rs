@@ -6,7 +6,7 @@ use program::{Diagnostic, Feed, Op, Pose, Probe, Program, Spindle, Thread, Tool}
 use std::process::{Command, Stdio};
 
 fn at(x: f64, z: f64) -> Pose {
-    Pose::new(Vec3::new(x, 0.0, z), Vec3::Z)
+    Pose::upright(Vec3::new(x, 0.0, z)).unwrap()
 }
 
 fn program(ops: Vec<Op>) -> Program {

@@ -13,7 +13,7 @@ fn mills() -> impl Iterator<Item = Machine> {
 }
 
 fn at(x: f64, y: f64, z: f64) -> Pose {
-    Pose::new(Vec3::new(x, y, z), Vec3::Z)
+    Pose::upright(Vec3::new(x, y, z)).unwrap()
 }
 
 /// The program of `ops` between a start above the part and its end.
@@ -141,7 +141,7 @@ fn a_hole_that_is_drilled_by_moves_takes_its_own_time() {
 #[test]
 fn a_tool_axis_is_written_by_machines_that_turn_it() {
     let lean = Vec3::new(0.0, -0.5, 0.75f64.sqrt());
-    let pose = |x: f64| Pose::new(Vec3::new(x, 0.0, 20.0), lean);
+    let pose = |x: f64| Pose::new(Vec3::new(x, 0.0, 20.0), lean).unwrap();
     let ops = [Op::Rapid(pose(0.0)), Op::Line(pose(30.0))];
     for machine in mills() {
         match machine.rotary.is_empty() {

@@ -14,12 +14,12 @@ fn machine(text: &str) -> Machine {
 }
 
 fn upright(x: f64, y: f64) -> Pose {
-    Pose::new(Vec3::new(x, y, 0.0), Vec3::Z)
+    Pose::upright(Vec3::new(x, y, 0.0)).unwrap()
 }
 
 /// A wire that is at `x` `y` below, and `u` `v` beside that 40 mm above.
 fn leaning(x: f64, y: f64, u: f64, v: f64) -> Pose {
-    Pose::new(Vec3::new(x, y, 0.0), Vec3::new(u, v, 40.0).normalize())
+    Pose::new(Vec3::new(x, y, 0.0), Vec3::new(u, v, 40.0).normalize()).unwrap()
 }
 
 fn program(ops: impl IntoIterator<Item = Op>) -> Program {
@@ -148,7 +148,7 @@ fn what_a_wire_cannot_do_is_refused_with_its_line() {
     assert_eq!(rule(vec![Op::Rapid(start), Op::ThreadWire, Op::ThreadWire]), "wire-threaded");
     let ends = vec![Op::Rapid(start), Op::ThreadWire, Op::Line(end), Op::End];
     assert_eq!(rule(ends), "wire-threaded");
-    let below = Pose::new(Vec3::new(1.0, 0.0, -2.0), Vec3::Z);
+    let below = Pose::upright(Vec3::new(1.0, 0.0, -2.0)).unwrap();
     assert_eq!(rule(vec![Op::Rapid(below)]), "wire-plane");
     let one = [Op::Rapid(start), Op::ThreadWire, Op::Line(end), Op::CutWire];
     assert_eq!(rule([one.clone(), one].concat()), "one-opening");

@@ -3,7 +3,7 @@
 use crate::contour::Contour;
 use crate::element::{ARC_TOLERANCE, Direction, Element, SAME};
 use geom::{Vec2, angle_between};
-use program::{ArcTo, Compensation, Diagnostic, Op, Orientation, Pose, Program};
+use program::{ArcTo, Compensation, Diagnostic, Op, Pose, Program};
 
 /// What `program` cuts in the plane of X and Y: each contour runs from where a rapid ends to where the
 /// next begins, and its start is where the wire is threaded. `start` is where the wire stands before
@@ -34,7 +34,7 @@ pub fn cuts(program: &Program, start: Option<Vec2>) -> Result<Vec<Vec<Element>>,
                 cuts.push(Vec::new());
                 continue;
             }
-            Op::Home(axes) if axes & 3 != 0 => {
+            Op::MachineMove(_) | Op::Joints(_) => {
                 position = Vec2::NAN;
                 cuts.push(Vec::new());
                 continue;
@@ -161,15 +161,12 @@ pub fn beside(
 
 /// The place of a pose whose wire stands upright.
 fn upright(pose: &Pose) -> Result<Vec2, Box<Diagnostic>> {
-    let upright = match pose.orientation {
-        Orientation::Axis(axis) => angle_between(axis, geom::Vec3::Z) < geom::ANGLE_EPSILON,
-        Orientation::Rotary { degrees, .. } => degrees.iter().all(|angle| angle.abs() < 1e-9),
-    };
+    let upright = angle_between(pose.axis(), geom::Vec3::Z) < geom::ANGLE_EPSILON;
     if !upright {
         let way_out = "a wire leans by U and V, or by the taper";
         return Err(refused("not-upright", "a tool that leans or is turned", way_out));
     }
-    Ok(pose.point.truncate())
+    Ok(pose.point().truncate())
 }
 
 fn turned(start: Vec2, arc: &ArcTo) -> Result<Element, Box<Diagnostic>> {

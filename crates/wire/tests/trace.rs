@@ -1,7 +1,8 @@
 //! NC programs as contours: through a virtual control, and record by record.
 
+use control::{Action, Position};
 use geom::Vec2;
-use program::{ArcTo, Compensation, Cycle, CycleKind, Op, Orientation, Pose, Program};
+use program::{ArcTo, Axes, Compensation, Cycle, CycleKind, Op, Pose, Program};
 use std::f64::consts::PI;
 use toolpost_wire::points::{Step, points};
 use toolpost_wire::{Path, beside, contours, cuts};
@@ -11,16 +12,34 @@ type Vec3 = geom::Vec3;
 fn program(text: &str) -> Program {
     let settings = control::Settings::new(control::Dialect::Fanuc, [false; 3]);
     let mut program = Program::new("test");
-    control::read(&settings, "test.nc", text.as_bytes(), &mut |record| {
-        program.records.push(record);
+    control::read(&settings, "test.nc", text.as_bytes(), &mut |event| {
+        let op = match event.action {
+            Action::Rapid(to) => Op::Rapid(flat(&to)),
+            Action::Line(to) => Op::Line(flat(&to)),
+            Action::Arc(arc) => {
+                let ArcTo { center, normal, turns, .. } = *arc;
+                Op::Arc(Box::new(ArcTo { end: flat(&arc.end), center, normal, turns }))
+            }
+            Action::Compensation(side) => Op::Compensation(side),
+            Action::ThreadWire => Op::ThreadWire,
+            Action::CutWire => Op::CutWire,
+            Action::Home(axes) if axes.contains(Axes::X) => Op::MachineMove(Box::default()),
+            _ => return Ok(()),
+        };
+        program.push(event.line, op);
         Ok(())
     })
     .unwrap();
     program
 }
 
+/// A position of a program that never says Z.
+fn flat(position: &Position) -> Pose {
+    Pose::upright(position.point.with_z(0.0)).unwrap()
+}
+
 fn pose(x: f64, y: f64) -> Pose {
-    Pose::new(Vec3::new(x, y, f64::NAN), Vec3::Z)
+    Pose::upright(Vec3::new(x, y, 0.0)).unwrap()
 }
 
 fn of(ops: Vec<Op>) -> Program {
@@ -77,16 +96,13 @@ fn what_is_no_way_of_a_wire_is_refused_with_its_line() {
     assert_eq!(rule(vec![]), ("empty-contour", 0));
     assert_eq!(rule(vec![start.clone(), Op::Line(pose(0.0, 0.0))]), ("empty-contour", 0));
     assert_eq!(rule(vec![Op::Line(pose(1.0, 0.0))]), ("nc-unknown-position", 1));
-    let gone = vec![start.clone(), Op::Home(1), Op::Line(pose(1.0, 0.0))];
+    let gone = vec![start.clone(), Op::MachineMove(Box::default()), Op::Line(pose(1.0, 0.0))];
     assert_eq!(rule(gone), ("nc-unknown-position", 3));
     let open = vec![start.clone(), Op::Compensation(Compensation::Left(Some(1)))];
     assert_eq!(rule(open), ("open-compensation", 2));
     assert_eq!(rule(vec![start.clone(), Op::Hole(pose(1.0, 0.0))]), ("not-a-cut", 2));
-    let leaning = Pose::new(Vec3::ZERO, Vec3::new(0.1, 0.0, 0.995).normalize());
+    let leaning = Pose::new(Vec3::ZERO, Vec3::new(0.1, 0.0, 0.995).normalize()).unwrap();
     assert_eq!(rule(vec![start.clone(), Op::Line(leaning)]), ("not-upright", 2));
-    let orientation = Orientation::Rotary { degrees: [0.0, 5.0, 0.0], tool_center: false };
-    let turned = Pose { orientation, ..pose(1.0, 0.0) };
-    assert_eq!(rule(vec![start.clone(), Op::Line(turned)]), ("not-upright", 2));
     let arc = |end: Pose, center: Vec3, normal: Vec3, turns: u32| {
         Op::Arc(Box::new(ArcTo { end, center, normal, turns }))
     };

@@ -2,8 +2,8 @@
 
 use super::plane::Plane;
 use super::{Fallible, SAME, error};
+use crate::event::Position;
 use geom::{Element, Vec2};
-use program::Pose;
 
 /// The end of a contour that the tool has not left yet.
 pub(super) struct Leaving {
@@ -17,7 +17,7 @@ pub(super) struct Leaving {
 impl Leaving {
     /// # Errors
     /// The tool does not leave the contour by a straight move to `pose`.
-    pub(super) fn check(&self, line: u32, pose: &Pose) -> Fallible<()> {
+    pub(super) fn check(&self, line: u32, pose: &Position) -> Fallible<()> {
         let (to, _) = self.plane.flat(pose.point);
         if !self.guarded || to.is_nan() {
             return Ok(());

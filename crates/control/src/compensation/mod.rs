@@ -11,11 +11,12 @@ mod path;
 mod plane;
 mod rules;
 
+use crate::event::{Action, Event, Orientation, Position};
 use crate::{Dialect, Settings, Sink, ToolData};
 use geom::Vec3;
 use leaving::Leaving;
 use path::Path;
-use program::{Compensation, Diagnostic, Feed, Op, Orientation, Pose, Record};
+use program::{Axes, Compensation, Diagnostic, Feed};
 pub(crate) use rules::Outer;
 use rules::Rules;
 
@@ -48,7 +49,7 @@ pub(crate) struct Compensator<'a> {
     /// The tool in the spindle, where the table has it.
     tool: Option<&'a ToolData>,
     /// Where the tool was sent last; NaN where that is not known.
-    at: Pose,
+    at: Position,
     inverse_time: bool,
     /// The contour, while compensation is on and resolved.
     path: Option<Box<Path>>,
@@ -66,7 +67,7 @@ impl<'a> Compensator<'a> {
             dialect: settings.dialect,
             tools: &settings.setup.tools,
             tool: None,
-            at: Pose { point: Vec3::NAN, orientation: nowhere },
+            at: Position { point: Vec3::NAN, orientation: nowhere },
             inverse_time: false,
             path: None,
             told: false,
@@ -76,12 +77,12 @@ impl<'a> Compensator<'a> {
 
     /// Takes any record but a change of compensation.
     #[inline]
-    pub(crate) fn take(&mut self, record: Record) -> Fallible<()> {
+    pub(crate) fn take(&mut self, record: Event) -> Fallible<()> {
         match self.path {
             Some(_) => self.follow(record),
             None => {
-                match &record.op {
-                    Op::Rapid(pose) | Op::Line(pose) => self.arrive(record.line, *pose)?,
+                match &record.action {
+                    Action::Rapid(pose) | Action::Line(pose) => self.arrive(record.line, *pose)?,
                     _ => self.note(&record)?,
                 }
                 (self.sink)(record)
@@ -116,7 +117,7 @@ impl<'a> Compensator<'a> {
                     .into());
             }
             self.told = side != Compensation::Off;
-            return (self.sink)(Record { line, op: Op::Compensation(side) });
+            return (self.sink)(Event { line, action: Action::Compensation(side) });
         };
         let Some(rules) = Rules::of(self.dialect) else {
             let message = "how this control leads the tool with compensation is not known";
@@ -162,8 +163,8 @@ impl<'a> Compensator<'a> {
         }
     }
 
-    fn follow(&mut self, record: Record) -> Fallible<()> {
-        if record.op == Op::End {
+    fn follow(&mut self, record: Event) -> Fallible<()> {
+        if record.action == Action::End {
             self.finish()?;
             return (self.sink)(record);
         }
@@ -174,10 +175,10 @@ impl<'a> Compensator<'a> {
     }
 
     /// Keeps in mind what compensation will need.
-    fn note(&mut self, record: &Record) -> Fallible<()> {
-        match &record.op {
-            Op::Feed(feed) => self.inverse_time = matches!(feed, Feed::InverseTime(_)),
-            Op::Tool(tool) => {
+    fn note(&mut self, record: &Event) -> Fallible<()> {
+        match &record.action {
+            Action::Feed(feed) => self.inverse_time = matches!(feed, Feed::InverseTime(_)),
+            Action::Tool(tool) => {
                 let named = |t: &&ToolData| !tool.name.is_empty() && t.name == tool.name;
                 self.tool = match self.tools.iter().find(named) {
                     None if tool.name.is_empty() => self.of_number(tool.number),
@@ -185,16 +186,16 @@ impl<'a> Compensator<'a> {
                 };
                 self.at.point = Vec3::NAN;
             }
-            Op::Arc(_) if self.told => return Err(on_arc(record.line)),
-            Op::WorkOffset(_) | Op::Probe(_) => self.at.point = Vec3::NAN,
-            Op::Home(axes) => {
+            Action::Arc(_) if self.told => return Err(on_arc(record.line)),
+            Action::WorkOffset(_) | Action::Probe(_) => self.at.point = Vec3::NAN,
+            Action::Home(axes) => {
                 self.leaving = None;
-                for axis in (0..3).filter(|axis| axes & 1 << axis != 0) {
+                for axis in (0..3).filter(|axis| axes.contains(Axes::linear(*axis))) {
                     self.at.point[axis] = f64::NAN;
                 }
             }
-            op => {
-                if let Some(pose) = op.pose() {
+            action => {
+                if let Some(pose) = action.position() {
                     self.arrive(record.line, *pose)?;
                 }
             }
@@ -204,7 +205,7 @@ impl<'a> Compensator<'a> {
 
     /// The tool moves to `pose`, without compensation.
     #[inline]
-    fn arrive(&mut self, line: u32, pose: Pose) -> Fallible<()> {
+    fn arrive(&mut self, line: u32, pose: Position) -> Fallible<()> {
         if let Some(leaving) = self.leaving.take() {
             leaving.check(line, &pose)?;
         }

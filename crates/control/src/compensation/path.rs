@@ -5,8 +5,9 @@ use super::plane::Plane;
 use super::rules::{Entry, Outer, Rules};
 use super::{Fallible, SAME, error, inverse_time, on_arc};
 use crate::Sink;
+use crate::event::{Action, Event, Orientation, Position};
 use geom::{Arc, Element, Turn, Vec2, Vec3, turn_angle};
-use program::{ArcTo, Diagnostic, Feed, Op, Orientation, Pose, Record};
+use program::{ArcTo, Diagnostic, Feed};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Most records between two elements of the contour.
@@ -25,10 +26,10 @@ pub(super) struct Path {
     /// How far the centre is on the left of the contour, mm; on its right where negative.
     left: f64,
     /// Where the program, which knows of no radius, has brought the tool.
-    at: Pose,
+    at: Position,
     stage: Stage,
     /// What happens between the element that is held back and the next one.
-    waiting: Vec<Record>,
+    waiting: Vec<Event>,
 }
 
 /// How far the contour has come.
@@ -71,21 +72,21 @@ struct Way {
 
 impl Path {
     /// Compensation by `left` mm across `normal` for a tool that stands at `at`.
-    pub(super) fn new(rules: Rules, normal: Vec3, left: f64, at: Pose) -> Path {
+    pub(super) fn new(rules: Rules, normal: Vec3, left: f64, at: Position) -> Path {
         let plane = Plane::new(normal);
         Path { rules, plane, left, at, stage: Stage::On, waiting: Vec::new() }
     }
 
     /// Where the program has brought the tool.
-    pub(super) fn programmed(&self) -> Pose {
+    pub(super) fn programmed(&self) -> Position {
         self.at
     }
 
     /// Takes a record while compensation is on.
-    pub(super) fn take(&mut self, record: Record, sink: &mut Sink) -> Fallible<()> {
+    pub(super) fn take(&mut self, record: Event, sink: &mut Sink) -> Fallible<()> {
         let line = record.line;
-        match &record.op {
-            Op::Rapid(pose) | Op::Line(pose) => {
+        match &record.action {
+            Action::Rapid(pose) | Action::Line(pose) => {
                 let ((from, start), (to, end)) = self.arrive(line, pose)?;
                 if from.distance(to) < SAME {
                     if matches!(self.stage, Stage::On) && self.rules.entry == Entry::OfItself {
@@ -93,11 +94,11 @@ impl Path {
                     }
                     return self.pass(record, sink);
                 }
-                let rapid = matches!(record.op, Op::Rapid(_));
+                let rapid = matches!(record.action, Action::Rapid(_));
                 let piece = self.piece(line, Element::line(from, to), [start, end, end])?;
                 self.element(Piece { rapid, ..piece }, sink)
             }
-            Op::Arc(arc) => {
+            Action::Arc(arc) => {
                 let sweep = self.sweep(line, arc)?;
                 let ((from, start), (to, end)) = self.arrive(line, &arc.end)?;
                 let (center, height) = self.plane.flat(arc.center);
@@ -105,15 +106,15 @@ impl Path {
                 let piece = self.piece(line, contour, [start, end, height])?;
                 self.element(piece, sink)
             }
-            Op::Feed(Feed::InverseTime(_)) => Err(inverse_time(line)),
-            Op::Home(_) | Op::WorkOffset(_) | Op::Tool(_) | Op::Cycle(_) | Op::Frame(_) => {
+            Action::Feed(Feed::InverseTime(_)) => Err(inverse_time(line)),
+            Action::Home(_) | Action::WorkOffset(_) | Action::Tool(_) | Action::Cycle(_) => {
                 let message = "a tool change, a cycle, another frame or a move to a fixed position \
                                while compensation is on";
                 Err(error("compensation-on", line, message)
                     .help("switch it off (G40, R0) with a straight move first")
                     .into())
             }
-            op if op.pose().is_some() || matches!(op, Op::Probe(_)) => {
+            action if action.position().is_some() || matches!(action, Action::Probe(_)) => {
                 let message = "only straight moves and arcs lead the tool while compensation is on";
                 Err(error("compensation-on", line, message).into())
             }
@@ -141,7 +142,7 @@ impl Path {
     }
 
     /// The program goes to `pose`: place in the plane and height before, and there.
-    fn arrive(&mut self, line: u32, pose: &Pose) -> Fallible<((Vec2, f64), (Vec2, f64))> {
+    fn arrive(&mut self, line: u32, pose: &Position) -> Fallible<((Vec2, f64), (Vec2, f64))> {
         if pose.point.is_nan() || self.at.point.is_nan() {
             let message = "compensation, and where the tool stands is not known";
             return Err(error("compensation-unknown-position", line, message)
@@ -162,7 +163,7 @@ impl Path {
     }
 
     /// The angle through which an arc turns in the plane, positive counter-clockwise.
-    fn sweep(&self, line: u32, arc: &ArcTo) -> Fallible<f64> {
+    fn sweep(&self, line: u32, arc: &ArcTo<Position>) -> Fallible<f64> {
         let side = arc.normal.dot(self.plane.normal);
         if side.abs() < 1.0 - 1e-9 {
             let message = "an arc out of the plane of compensation";
@@ -409,10 +410,10 @@ impl Path {
     /// # Errors
     /// The control does not see as far as the element in `line`.
     fn sees(&self, line: u32) -> Fallible<()> {
-        let silent = |op: &Op| matches!(op, Op::Comment(_) | Op::Operation(_) | Op::EndOfOperation);
+        let silent = |action: &Action| matches!(action, Action::Comment(_));
         let mut blocks = 0;
         let mut last = line;
-        for record in self.waiting.iter().filter(|record| !silent(&record.op)) {
+        for record in self.waiting.iter().filter(|record| !silent(&record.action)) {
             blocks += usize::from(record.line != last);
             last = record.line;
         }
@@ -430,7 +431,7 @@ impl Path {
     }
 
     /// A record that moves nothing in the plane.
-    fn pass(&mut self, record: Record, sink: &mut Sink) -> Fallible<()> {
+    fn pass(&mut self, record: Event, sink: &mut Sink) -> Fallible<()> {
         if matches!(self.stage, Stage::On) {
             return sink(record);
         }
@@ -446,7 +447,7 @@ impl Path {
     /// What has waited happens at `point` of the plane.
     fn send_waiting(&mut self, point: Vec2, sink: &mut Sink) -> Fallible<()> {
         for mut record in self.waiting.drain(..) {
-            if let Op::Rapid(pose) | Op::Line(pose) = &mut record.op {
+            if let Action::Rapid(pose) | Action::Line(pose) = &mut record.action {
                 pose.point = self.plane.lift(point, self.plane.flat(pose.point).1);
             }
             sink(record)?;
@@ -456,22 +457,22 @@ impl Path {
 
     fn send(&self, way: Way, sink: &mut Sink) -> Fallible<()> {
         let Way { line, rapid, end, height, turn } = way;
-        let end = Pose { point: self.plane.lift(end, height), ..self.at };
+        let end = Position { point: self.plane.lift(end, height), ..self.at };
         // An arc of no length would be read as a full circle.
         let arc = turn.filter(|(turn, _)| {
             turn.sweep.abs() * self.plane.flat(end.point).0.distance(turn.center) > SAME
         });
-        let op = match arc {
-            Some((Turn { center, sweep }, height)) => Op::Arc(Box::new(ArcTo {
+        let action = match arc {
+            Some((Turn { center, sweep }, height)) => Action::Arc(Box::new(ArcTo {
                 end,
                 center: self.plane.lift(center, height),
                 normal: self.plane.normal * sweep.signum(),
                 turns: ((sweep.abs() / TAU - 1e-9).ceil() - 1.0).max(0.0) as u32,
             })),
-            None if rapid => Op::Rapid(end),
-            None => Op::Line(end),
+            None if rapid => Action::Rapid(end),
+            None => Action::Line(end),
         };
-        sink(Record { line, op })
+        sink(Event { line, action })
     }
 }
 

@@ -17,13 +17,15 @@ use flow::ahead::Ahead;
 use flow::run::Run;
 use flow::source::Source;
 use language::block::Fault;
+pub(crate) use language::words::Flavor;
 
-/// Runs a program.
+/// Runs a program of this flavour.
 pub(crate) fn run(
+    flavor: Flavor,
     settings: &Settings,
     text: &[u8],
     compensator: &mut Compensator,
 ) -> Result<(), Fault> {
     let main = Source::program(text);
-    Ahead::of(text, |ahead| Run::new(settings, &main, ahead, compensator).run())
+    Ahead::of(text, |ahead| Run::new(flavor, settings, &main, ahead, compensator).run())
 }

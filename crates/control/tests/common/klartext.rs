@@ -2,13 +2,13 @@
 
 use super::records;
 use geom::Vec3;
-use program::{ArcTo, Cycle, Diagnostic, Op, Orientation, Pose, Record};
+use program::{ArcTo, Cycle, Diagnostic};
 use std::path::Path;
-use toolpost_control::{Dialect, Settings, Setup, ToolData};
+use toolpost_control::{Action, Dialect, Event, Orientation, Position, Settings, Setup, ToolData};
 
 pub const FIVE_AXES: [bool; 3] = [false, true, true];
 
-pub fn run_on(rotary: [bool; 3], unit: &str, blocks: &str) -> Result<Vec<Record>, Box<Diagnostic>> {
+pub fn run_on(rotary: [bool; 3], unit: &str, blocks: &str) -> Result<Vec<Event>, Box<Diagnostic>> {
     read_on(rotary, program("T", unit, blocks).as_bytes())
 }
 
@@ -29,16 +29,20 @@ pub fn program(name: &str, unit: &str, blocks: &str) -> String {
 }
 
 /// Runs blocks where tool 5 has this radius.
-pub fn run_with_radius(radius: f64, blocks: &str) -> Vec<Op> {
+pub fn run_with_radius(radius: f64, blocks: &str) -> Vec<Action> {
     let tool = ToolData { number: 5, name: "MILL".into(), radius, length: 100.0 };
     let setup = Setup { tools: vec![tool], ..Setup::default() };
     let text = program("T", "MM", blocks);
     let records = read_with(setup, [false; 3], text.as_bytes());
-    records.unwrap_or_else(|error| panic!("{error}")).into_iter().map(|record| record.op).collect()
+    records
+        .unwrap_or_else(|error| panic!("{error}"))
+        .into_iter()
+        .map(|record| record.action)
+        .collect()
 }
 
 /// Runs a program that may call those of a folder.
-pub fn run_in(folder: &Path, blocks: &str) -> Result<Vec<Record>, Box<Diagnostic>> {
+pub fn run_in(folder: &Path, blocks: &str) -> Result<Vec<Event>, Box<Diagnostic>> {
     let setup = Setup { folders: vec![folder.into()], ..Setup::default() };
     read_with(setup, [false; 3], program("T", "MM", blocks).as_bytes())
 }
@@ -50,7 +54,7 @@ pub fn assert_near(found: &[[f64; 3]], expected: &[[f64; 3]]) {
     }
 }
 
-pub fn read_on(rotary: [bool; 3], text: &[u8]) -> Result<Vec<Record>, Box<Diagnostic>> {
+pub fn read_on(rotary: [bool; 3], text: &[u8]) -> Result<Vec<Event>, Box<Diagnostic>> {
     read_with(Setup::default(), rotary, text)
 }
 
@@ -58,18 +62,18 @@ pub fn read_with(
     setup: Setup,
     rotary: [bool; 3],
     text: &[u8],
-) -> Result<Vec<Record>, Box<Diagnostic>> {
+) -> Result<Vec<Event>, Box<Diagnostic>> {
     let auxiliary = vec![60];
     let settings = Settings { auxiliary, setup, ..Settings::new(Dialect::Klartext, rotary) };
     records(&settings, "t.h", text)
 }
 
-pub fn run(blocks: &str) -> Vec<Op> {
-    run_on([false; 3], "MM", blocks).unwrap().into_iter().map(|record| record.op).collect()
+pub fn run(blocks: &str) -> Vec<Action> {
+    run_on([false; 3], "MM", blocks).unwrap().into_iter().map(|record| record.action).collect()
 }
 
-pub fn run_five(blocks: &str) -> Vec<Op> {
-    run_on(FIVE_AXES, "MM", blocks).unwrap().into_iter().map(|record| record.op).collect()
+pub fn run_five(blocks: &str) -> Vec<Action> {
+    run_on(FIVE_AXES, "MM", blocks).unwrap().into_iter().map(|record| record.action).collect()
 }
 
 pub fn refused(blocks: &str) -> Box<Diagnostic> {
@@ -80,32 +84,32 @@ pub fn refused_five(blocks: &str) -> Box<Diagnostic> {
     run_on(FIVE_AXES, "MM", blocks).unwrap_err()
 }
 
-pub fn upright(x: f64, y: f64, z: f64) -> Pose {
+pub fn upright(x: f64, y: f64, z: f64) -> Position {
     let orientation = Orientation::Rotary { degrees: [0.0; 3], tool_center: false };
-    Pose { point: Vec3::new(x, y, z), orientation }
+    Position { point: Vec3::new(x, y, z), orientation }
 }
 
-pub fn poses(ops: &[Op]) -> Vec<Pose> {
-    ops.iter().filter_map(|op| op.pose().copied()).collect()
+pub fn poses(ops: &[Action]) -> Vec<Position> {
+    ops.iter().filter_map(|op| op.position().copied()).collect()
 }
 
-pub fn points(ops: &[Op]) -> Vec<[f64; 3]> {
+pub fn points(ops: &[Action]) -> Vec<[f64; 3]> {
     poses(ops).iter().map(|pose| pose.point.to_array()).collect()
 }
 
-pub fn arcs(ops: &[Op]) -> Vec<ArcTo> {
+pub fn arcs(ops: &[Action]) -> Vec<ArcTo<Position>> {
     ops.iter()
         .filter_map(|op| match op {
-            Op::Arc(arc) => Some(**arc),
+            Action::Arc(arc) => Some(**arc),
             _ => None,
         })
         .collect()
 }
 
-pub fn cycles(ops: &[Op]) -> Vec<Cycle> {
+pub fn cycles(ops: &[Action]) -> Vec<Cycle> {
     ops.iter()
         .filter_map(|op| match op {
-            Op::Cycle(cycle) => Some(**cycle),
+            Action::Cycle(cycle) => Some(**cycle),
             _ => None,
         })
         .collect()

@@ -2,13 +2,13 @@
 //! where the two differ.
 
 use geom::{Frame, Mat3, Vec3};
-use program::{Cycle, CycleKind, Op, Orientation, Pose};
+use program::{Cycle, CycleKind};
 use std::collections::HashMap;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, ExitStatus, Stdio};
 use std::time::{Duration, Instant};
-use toolpost_control::{Dialect, Settings, Setup, ToolData, read};
+use toolpost_control::{Action, Dialect, Orientation, Position, Settings, Setup, ToolData, read};
 
 /// The longest that either side may take over a program.
 const LONGEST: Duration = Duration::from_secs(10);
@@ -212,7 +212,7 @@ pub fn ours(text: &[u8], rotary: [bool; 3], folders: &[PathBuf]) -> Result<Vec<M
         if begun.elapsed() > LONGEST {
             return Err(program::Diagnostic::error("late", "takes too long").into());
         }
-        let to = |pose: &Pose, at: [f64; 6]| {
+        let to = |pose: &Position, at: [f64; 6]| {
             let Vec3 { x, y, z } = pose.point;
             let [a, b, c] = match pose.orientation {
                 Orientation::Rotary { degrees, .. } => degrees,
@@ -221,35 +221,41 @@ pub fn ours(text: &[u8], rotary: [bool; 3], folders: &[PathBuf]) -> Result<Vec<M
             let p = [x, y, z, a, b, c];
             std::array::from_fn(|i| if p[i].is_nan() { at[i] } else { p[i] })
         };
-        match record.op {
-            Op::Rapid(pose) => {
+        match record.action {
+            Action::Rapid(pose) => {
                 at = to(&pose, at);
                 moves.push(Motion::Rapid(at));
             }
-            Op::Line(pose) => {
+            Action::Line(pose) => {
                 at = to(&pose, at);
                 moves.push(Motion::Feed(at));
             }
-            Op::Probe(probe) => {
+            Action::Probe(probe) => {
                 at = to(&probe.end, at);
                 moves.push(Motion::Probe(at));
             }
-            Op::Thread(thread) => {
+            Action::Thread(thread) => {
                 at = to(&thread.end, at);
                 moves.push(Motion::Thread(at, thread.pitch));
             }
-            Op::Arc(arc) => {
+            Action::Arc(arc) => {
                 at = to(&arc.end, at);
                 let (center, normal, turns) = (arc.center, arc.normal, arc.turns as i32 + 1);
                 moves.push(Motion::Arc { end: at, center, normal, turns });
             }
-            Op::Home(axes) => {
-                at = std::array::from_fn(|i| if axes & 1 << i != 0 { 0.0 } else { at[i] });
+            Action::Home(axes) => {
+                at = std::array::from_fn(|i| {
+                    if axes.letters().contains(['X', 'Y', 'Z', 'A', 'B', 'C'][i]) {
+                        0.0
+                    } else {
+                        at[i]
+                    }
+                });
                 moves.push(Motion::Rapid(at));
             }
-            Op::Dwell(seconds) => moves.push(Motion::Dwell(seconds)),
-            Op::Cycle(cycle) => active = Some(*cycle),
-            Op::Hole(pose) => {
+            Action::Dwell(seconds) => moves.push(Motion::Dwell(seconds)),
+            Action::Cycle(cycle) => active = Some(*cycle),
+            Action::Hole(pose) => {
                 let cycle = active.as_ref().unwrap();
                 let axis = pose.axis().map_or(2, |a| a.abs().max_position());
                 at = hole(&mut moves, cycle, at, to(&pose, at), axis);

@@ -5,15 +5,15 @@ pub mod klartext;
 pub mod linuxcnc;
 pub mod sinumerik;
 
-use program::{Diagnostic, Op, Record};
-use toolpost_control::{Settings, read};
+use program::Diagnostic;
+use toolpost_control::{Action, Event, Settings, read};
 
 /// The records of a program.
 pub fn records(
     settings: &Settings,
     file: &str,
     text: impl AsRef<[u8]>,
-) -> Result<Vec<Record>, Box<Diagnostic>> {
+) -> Result<Vec<Event>, Box<Diagnostic>> {
     let mut records = Vec::new();
     read(settings, file, text.as_ref(), &mut |record| {
         records.push(record);
@@ -27,7 +27,7 @@ pub fn ops(
     settings: &Settings,
     file: &str,
     text: impl AsRef<[u8]>,
-) -> Result<Vec<Op>, Box<Diagnostic>> {
+) -> Result<Vec<Action>, Box<Diagnostic>> {
     let records = records(settings, file, text)?;
-    Ok(records.into_iter().map(|record| record.op).collect())
+    Ok(records.into_iter().map(|record| record.action).collect())
 }

@@ -2,8 +2,8 @@
 
 use super::records;
 use geom::Vec3;
-use program::{ArcTo, Cycle, Diagnostic, Op, Orientation, Pose, Record};
-use toolpost_control::{Dialect, Settings};
+use program::{ArcTo, Cycle, Diagnostic};
+use toolpost_control::{Action, Dialect, Event, Orientation, Position, Settings};
 
 /// A machine with A and C and clamps.
 pub fn settings() -> Settings {
@@ -18,15 +18,15 @@ pub fn settings() -> Settings {
 }
 
 /// What a program does.
-pub fn run(text: &str) -> Result<Vec<Record>, Box<Diagnostic>> {
+pub fn run(text: &str) -> Result<Vec<Event>, Box<Diagnostic>> {
     records(&settings(), "p.mpf", text)
 }
 
 /// What these blocks do, with a start that gives feed, tool and place, and an end.
-pub fn blocks(text: &str) -> Vec<Op> {
+pub fn blocks(text: &str) -> Vec<Action> {
     let program = format!("T1 M6\nG0 X0 Y0 Z100 A0 C0 F500\n{text}\nM30\n");
     let records = run(&program).unwrap_or_else(|error| panic!("{error}\n{program}"));
-    records.into_iter().filter(|record| record.line > 2).map(|record| record.op).collect()
+    records.into_iter().filter(|record| record.line > 2).map(|record| record.action).collect()
 }
 
 /// The error that these blocks make, with their first line as line 1.
@@ -39,8 +39,8 @@ pub fn error(text: &str) -> Diagnostic {
 }
 
 /// The poses that blocks move to.
-pub fn poses(ops: &[Op]) -> Vec<Pose> {
-    ops.iter().filter_map(|op| op.pose().copied()).collect()
+pub fn poses(ops: &[Action]) -> Vec<Position> {
+    ops.iter().filter_map(|op| op.position().copied()).collect()
 }
 
 /// The points that blocks move to.
@@ -49,20 +49,20 @@ pub fn points(text: &str) -> Vec<Vec3> {
 }
 
 /// The arcs among the records.
-pub fn arcs(text: &str) -> Vec<ArcTo> {
-    let arc = |op| if let Op::Arc(arc) = op { Some(*arc) } else { None };
+pub fn arcs(text: &str) -> Vec<ArcTo<Position>> {
+    let arc = |op| if let Action::Arc(arc) = op { Some(*arc) } else { None };
     blocks(text).into_iter().filter_map(arc).collect()
 }
 
 /// The holes with the cycle that makes each.
-pub fn holes(ops: &[Op]) -> Vec<(Pose, Cycle)> {
+pub fn holes(ops: &[Action]) -> Vec<(Position, Cycle)> {
     let mut active = None;
     let mut holes = Vec::new();
     for op in ops {
         match op {
-            Op::Cycle(cycle) => active = Some(**cycle),
-            Op::CycleOff => active = None,
-            Op::Hole(pose) => holes.push((*pose, active.expect("a cycle is active"))),
+            Action::Cycle(cycle) => active = Some(**cycle),
+            Action::CycleOff => active = None,
+            Action::Hole(pose) => holes.push((*pose, active.expect("a cycle is active"))),
             _ => {}
         }
     }
@@ -70,7 +70,7 @@ pub fn holes(ops: &[Op]) -> Vec<(Pose, Cycle)> {
 }
 
 /// Rotary positions of a pose.
-pub fn degrees(pose: &Pose) -> ([f64; 3], bool) {
+pub fn degrees(pose: &Position) -> ([f64; 3], bool) {
     match pose.orientation {
         Orientation::Rotary { degrees, tool_center } => (degrees, tool_center),
         Orientation::Axis(axis) => panic!("an axis {axis}, not rotary positions"),

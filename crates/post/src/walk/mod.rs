@@ -18,7 +18,7 @@ use minijinja::value::Value;
 use program::statistics::Statistics;
 use program::{
     Compensation, Coolant, Cycle, Diagnostic, Feed, Op, Pose, Program, Record, Spindle, Surface,
-    Tool,
+    Tool, WorkOffset,
 };
 use technology::feed_mode;
 
@@ -209,7 +209,20 @@ impl<'a> Walk<'a> {
             _ => {}
         }
         match &record.op {
+            // Motions have been looked at above.
             Op::Rapid(_) | Op::Line(_) | Op::Arc(_) | Op::Thread(_) | Op::Hole(_) => Ok(()),
+            Op::Oriented(_) => {
+                let help = "post it for a robot, or give the tool axis alone";
+                Err(unknown_here(
+                    "a move that says how far the tool is turned about its axis",
+                    help,
+                ))
+            }
+            Op::Joints(_) => Err(unknown_here("a move of joints", "post it for a robot")),
+            Op::MachineMove(_) => Err(unknown_here(
+                "a move to a position that counts from the zero of the machine",
+                "leave it out: where the tool leaves the part, the machine file says it",
+            )),
             Op::Probe(probe) => self.probe(probe),
             Op::Cycle(cycle) => {
                 self.end_cycle()?;
@@ -286,15 +299,24 @@ impl<'a> Walk<'a> {
             Op::ThreadWire => self.thread_wire(),
             Op::CutWire => self.cut_wire(),
             Op::Taper(degrees) => self.set_taper(*degrees),
-            Op::Home(_) => {
+            Op::Home => {
                 self.end_cycle()?;
                 self.leave_part()
             }
-            Op::WorkOffset(number) => self.set_work_offset(*number),
+            Op::WorkOffset(offset) => self.set_work_offset(*offset),
             Op::Surface(surface) => self.set_surface(surface),
-            Op::LengthOffset(_) => {
-                Err(refuse("unsupported", "only virtual controls give this record"))
-            }
+            Op::PathMode(_) => Err(unknown_here(
+                "what happens at corners (exact stop, blending)",
+                "leave it out: the machine file says how corners are taken",
+            )),
+            Op::Beam(_) | Op::Pulses(_) => Err(unknown_here("a beam", "post it for a laser")),
+            Op::Clamp(_) => Err(unknown_here(
+                "a clamp that the source opens or closes",
+                "leave it out: the blocks of the machine file work the clamps",
+            )),
+            Op::Output(output) => self.output(output),
+            Op::Input(input) => self.input(input),
+            Op::Auxiliary(function) => self.auxiliary(function),
         }
     }
 
@@ -325,7 +347,8 @@ impl<'a> Walk<'a> {
     }
 
     /// Positions are counted from another work offset from here on; the way there leads over the part.
-    fn set_work_offset(&mut self, number: u32) -> Done {
+    fn set_work_offset(&mut self, offset: WorkOffset) -> Done {
+        let number = offset.number();
         let name = number.to_string();
         let texts = self.machine.words.get(WordName::WorkOffset.name()).map(|word| &word.codes);
         let known = WordName::WorkOffset.codes().position(|code| code == name);
@@ -417,6 +440,11 @@ impl<'a> Walk<'a> {
         }
         self.required(name)
     }
+}
+
+/// No block of a mill or a wire machine says this.
+fn unknown_here(what: &str, help: &str) -> Box<Diagnostic> {
+    refuse("unsupported", format!("the machine has no words for {what}")).help(help).into()
 }
 
 /// An error; its line is that of the record at hand.

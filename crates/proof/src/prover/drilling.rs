@@ -45,7 +45,7 @@ impl Prover<'_> {
     }
 
     /// A hole of a canned cycle.
-    pub(super) fn drilled(&mut self, line: u32, pose: &Pose) -> Outcome {
+    pub(super) fn drilled(&mut self, line: u32, pose: &Position) -> Outcome {
         let Some(own) = self.running.cycle else {
             return Err(self.lost_at(line, "hole", "drills without a cycle"));
         };
@@ -75,7 +75,7 @@ impl Prover<'_> {
         let summary = &mut self.report.program;
         summary.cutting_length_mm += own.clearance + own.depth;
         for station in [&drilled.bottom, &drilled.r_plane, &drilled.retracted] {
-            summary.include(&station.pose);
+            summary.include(&station.position);
         }
         let over = self.here.place.tip.distance(drilled.r_plane.place.tip);
         let out = drilled.bottom.place.tip.distance(drilled.retracted.place.tip);

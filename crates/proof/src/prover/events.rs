@@ -1,6 +1,7 @@
-//! Tool changes, dwells, stops, and the wire.
+//! Tool changes, dwells, stops, the wire, outputs and inputs, functions of the machine's builder.
 
 use super::*;
+use program::{Output, OutputValue};
 
 impl Prover<'_> {
     /// A tool change.
@@ -16,18 +17,23 @@ impl Prover<'_> {
         Ok(())
     }
 
-    /// A dwell, a stop, or the wire threaded or cut.
-    pub(super) fn event(&mut self, line: u32, event: Step) {
+    /// Something that happens between motions: a dwell, a stop, an output.
+    ///
+    /// Functions of the builder that the source does not call are the machine's own: blocks of its file write them.
+    pub(super) fn happens(&mut self, line: u32, event: Step) -> Outcome {
         if let (Step::Move(Goal { kind: Kind::Hole(cycle), to, .. }), Step::Dwell(seconds)) =
             (&self.cursor.step, &event)
         {
             let hole = Hole { gauge: &self.gauge, point: to, cycle };
             if self.leg.hole.dwell(&hole, &self.here, *seconds) {
-                return;
+                return Ok(());
             }
         }
         if self.leg.t == 0.0 && self.leg.stops.is_empty() && self.leg.left.is_none() {
             self.pass_left_out(|_| false);
+        }
+        if let Step::Unproven(what) = self.cursor.step {
+            return Err(self.unproven(line, what));
         }
         let allowed = self.gauge.allowed.dwell_s;
         let same = match (&self.cursor.step, &event) {
@@ -36,6 +42,18 @@ impl Prover<'_> {
             | (Step::OptionalStop, Step::OptionalStop)
             | (Step::ThreadWire, Step::ThreadWire)
             | (Step::CutWire, Step::CutWire) => true,
+            (Step::Output(a), Step::Output(b)) => same_output(a, b),
+            (Step::Input(a), Step::Input(b)) => {
+                (a.number, a.until) == (b.number, b.until)
+                    && (a.timeout - b.timeout).abs() <= allowed
+            }
+            (Step::Auxiliary(a), Step::Auxiliary(b)) => {
+                a.number == b.number
+                    && a.values.iter().zip(b.values).all(|(a, b)| match (a, b) {
+                        (Some(a), Some(b)) => (a - b).abs() <= SIGNAL,
+                        (a, b) => a.is_none() && b.is_none(),
+                    })
+            }
             _ => false,
         };
         if same {
@@ -49,16 +67,22 @@ impl Prover<'_> {
             let message = format!("dwells {} s, but should {} s", Number(*b), Number(*a));
             self.differs(line, ("dwell", message));
             self.advance();
+        } else if matches!(event, Step::Auxiliary(_)) {
+            // Of the machine's own blocks.
         } else if !matches!(event, Step::Stop | Step::OptionalStop) || !self.at_tool_change() {
             let (rule, what) = match event {
                 Step::Dwell(_) => ("dwell", "dwells"),
                 Step::ThreadWire => ("wire", "threads the wire"),
                 Step::CutWire => ("wire", "cuts the wire"),
                 Step::Stop => ("stop", "stops"),
-                _ => ("stop", "stops if the operator asks for it"),
+                Step::OptionalStop => ("stop", "stops if the operator asks for it"),
+                Step::Output(_) => ("output", "sets an output"),
+                Step::Input(_) => ("input", "reads an input or waits for it"),
+                Step::Auxiliary(_) | Step::Move(_) | Step::Unproven(_) | Step::End => return Ok(()),
             };
             self.differs(line, (rule, format!("{what} where the source does not")));
         }
+        Ok(())
     }
 
     /// Whether the source has a tool change here, or nothing before. Goes there past motions that may
@@ -73,7 +97,7 @@ impl Prover<'_> {
         self.cursor.at_tool_change()
     }
 
-    /// Tells dwells, stops and the wire's events that stand before the next motion of the source.
+    /// Reports what stands before the next motion of the source, and is missing.
     pub(super) fn miss_events(&mut self, line: u32) {
         loop {
             let (rule, what) = match &self.cursor.step {
@@ -82,10 +106,28 @@ impl Prover<'_> {
                 Step::OptionalStop => ("stop", "an optional stop".into()),
                 Step::ThreadWire => ("wire", "threading the wire".into()),
                 Step::CutWire => ("wire", "cutting the wire".into()),
-                _ => return,
+                Step::Output(output) => ("output", format!("output {} being set", output.number)),
+                Step::Input(input) => ("input", format!("reading input {}", input.number)),
+                Step::Auxiliary(function) => {
+                    ("auxiliary", format!("the auxiliary function M{}", function.number))
+                }
+                Step::Move(_) | Step::Unproven(_) | Step::End => return,
             };
             self.differs(line, (rule, format!("{what} is missing before this")));
             self.advance();
         }
     }
+}
+
+/// How far a value of an output or a function may be off: half a step of the four decimals that are written.
+const SIGNAL: f64 = 0.5e-4 + 1e-9;
+
+fn same_output(a: &Output, b: &Output) -> bool {
+    let value = match (a.value, b.value) {
+        (OutputValue::Digital(a), OutputValue::Digital(b)) => a == b,
+        (OutputValue::Analog(a), OutputValue::Analog(b)) => (a - b).abs() <= SIGNAL,
+        (OutputValue::Digital(_), OutputValue::Analog(_))
+        | (OutputValue::Analog(_), OutputValue::Digital(_)) => false,
+    };
+    value && (a.number, a.with_motion) == (b.number, b.with_motion)
 }

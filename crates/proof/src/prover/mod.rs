@@ -15,12 +15,11 @@ use crate::report::{Excursion, Report};
 use crate::state::{self, Difference, Lengths, Running};
 use crate::tolerance::{Applied, Tolerances};
 use crate::{arc, line, stops};
+use control::{Action, Event, Orientation, Position};
 use geom::{Arc, Vec3};
 use machine::{Machine, Mount};
 use program::statistics::Statistics;
-use program::{
-    ArcTo, Compensation, Diagnostic, Op, Orientation, Pose, Probe, Program, Record, Spindle, Tool,
-};
+use program::{ArcTo, Compensation, Diagnostic, Probe, Program, Spindle, Tool};
 
 /// Compares a program with its source, record by record, as a control runs it.
 pub struct Prover<'a> {
@@ -75,7 +74,7 @@ impl<'a> Prover<'a> {
         let allowed = Applied::new(machine, tolerances);
         let cursor = Cursor::new(machine, &source.records);
         let gauge = Gauge { machine, allowed, tool_length: cursor.tool_length() };
-        let unknown = Pose {
+        let unknown = Position {
             point: Vec3::NAN,
             orientation: Orientation::Rotary { degrees: [f64::NAN; 3], tool_center: false },
         };
@@ -96,15 +95,15 @@ impl<'a> Prover<'a> {
         prover
     }
 
-    /// The next record of the program.
+    /// The next event of the program.
     ///
     /// # Errors
     /// The mismatch after which nothing can be compared any more; it is in the report too.
-    pub fn record(&mut self, record: &Record) -> Outcome {
+    pub fn event(&mut self, event: &Event) -> Outcome {
         if self.lost {
             return Ok(());
         }
-        let outcome = self.take(record);
+        let outcome = self.take(event);
         if let Err(found) = &outcome {
             self.lost = true;
             self.report.mismatch(self.cursor.line, (**found).clone());
@@ -112,13 +111,18 @@ impl<'a> Prover<'a> {
         outcome
     }
 
-    /// The report, after the last record.
+    /// The report, after the last event.
     pub fn finish(mut self) -> Report {
         if !self.lost {
             self.pass_left_out(|_| false);
+            self.miss_events(0);
             let stop = self.nearest_stop().filter(|_| self.leg.left.is_none());
             match (&self.cursor.step, stop) {
                 (Step::End, _) => {}
+                (Step::Unproven(what), _) => {
+                    let found = self.unproven(0, what);
+                    self.report.mismatch(self.cursor.line, *found);
+                }
                 (_, Some(stop)) => self.differs(stop.line, ("end-point", self.not_reached(&stop))),
                 _ => self.differs(0, ("missing", "the program ends before this".into())),
             }
@@ -130,7 +134,7 @@ impl<'a> Prover<'a> {
         self.report
     }
 
-    /// The control refused a block, so the rest is not known. What [`Prover::record`] answered is
+    /// The control refused a block, so the rest is not known. What [`Prover::event`] answered is
     /// in the report already.
     pub(crate) fn refused(&mut self, found: Diagnostic) {
         if !self.lost {
@@ -139,71 +143,73 @@ impl<'a> Prover<'a> {
         }
     }
 
-    fn take(&mut self, record: &Record) -> Outcome {
-        let line = record.line;
-        let passive = matches!(
-            record.op,
-            Op::Comment(_) | Op::Message(_) | Op::Operation(_) | Op::EndOfOperation | Op::End
-        );
+    fn take(&mut self, event: &Event) -> Outcome {
+        let line = event.line;
+        let passive = matches!(event.action, Action::Comment(_) | Action::Message(_) | Action::End);
         if self.ended && !passive {
             return Err(self.lost_at(line, "after-end", "goes on after the end of the program"));
         }
-        match &record.op {
-            Op::Rapid(pose) => self.motion(line, Gait::Rapid, pose, None),
-            Op::Line(pose) => self.motion(line, Gait::Feed, pose, None),
-            Op::Arc(to) => self.motion(line, Gait::Feed, &to.end, Some(to)),
-            Op::Hole(pose) => self.drilled(line, pose),
-            Op::Thread(thread) => self.single(line, &thread.end, Kind::Thread(thread.pitch)),
-            Op::Probe(probe) => {
-                let Probe { end, away, must_answer, .. } = **probe;
-                self.single(line, &end, Kind::Probe { away, must_answer })
-            }
-            Op::Home(axes) => self.home(line, *axes),
-            Op::Tool(tool) => self.change_tool(line, tool),
-            op => {
-                match op {
-                    Op::Dwell(seconds) if *seconds == 0.0 => {}
-                    Op::Dwell(seconds) => self.event(line, Step::Dwell(*seconds)),
-                    Op::Stop => self.event(line, Step::Stop),
-                    Op::OptionalStop => self.event(line, Step::OptionalStop),
-                    Op::ThreadWire => self.event(line, Step::ThreadWire),
-                    Op::CutWire => self.event(line, Step::CutWire),
-                    op => self.switch(line, op),
-                }
-                Ok(())
-            }
-        }
-    }
-
-    /// A modal word.
-    fn switch(&mut self, line: u32, op: &Op) {
         let running = &mut self.running;
-        match op {
-            Op::Feed(feed) => running.feed = Some(*feed),
-            Op::Spindle(spindle) => (running.spindle, running.spindle_line) = (*spindle, line),
-            Op::SurfaceSpeed(speed) => running.surface_speed = *speed,
-            Op::Coolant(coolant) => (running.coolant, running.coolant_line) = (*coolant, line),
-            Op::Compensation(side) => running.compensation = *side,
-            Op::Taper(degrees) => running.taper = *degrees,
-            Op::LengthOffset(register) => running.length_offset = *register,
-            Op::WorkOffset(number) => {
-                running.work_offset = Some(*number);
-                let pose = Pose { point: Vec3::NAN, ..self.here.pose };
-                self.here = self.gauge.station(line, pose);
+        match &event.action {
+            Action::Rapid(position) => return self.motion(line, Gait::Rapid, position, None),
+            Action::Line(position) => return self.motion(line, Gait::Feed, position, None),
+            Action::Arc(to) => return self.motion(line, Gait::Feed, &to.end, Some(to)),
+            Action::Hole(position) => return self.drilled(line, position),
+            Action::Thread(thread) => {
+                return self.single(line, &thread.end, Kind::Thread(thread.pitch));
             }
-            Op::Cycle(cycle) => running.cycle = Some(**cycle),
-            Op::CycleOff => running.cycle = None,
-            Op::End => self.ended = true,
-            _ => {}
+            Action::Probe(probe) => {
+                let Probe { end, away, must_answer, .. } = **probe;
+                return self.single(line, &end, Kind::Probe { away, must_answer });
+            }
+            Action::Home(axes) => return self.home(line, *axes),
+            Action::Tool(tool) => return self.change_tool(line, tool),
+            Action::Dwell(seconds) if *seconds == 0.0 => {}
+            Action::Dwell(seconds) => return self.happens(line, Step::Dwell(*seconds)),
+            Action::Stop => return self.happens(line, Step::Stop),
+            Action::OptionalStop => return self.happens(line, Step::OptionalStop),
+            Action::ThreadWire => return self.happens(line, Step::ThreadWire),
+            Action::CutWire => return self.happens(line, Step::CutWire),
+            Action::Output(output) => return self.happens(line, Step::Output(*output)),
+            Action::Input(input) => return self.happens(line, Step::Input(**input)),
+            Action::Auxiliary(function) => return self.happens(line, Step::Auxiliary(*function)),
+            Action::Feed(feed) => running.feed = Some(*feed),
+            Action::Spindle(spindle) => {
+                (running.spindle, running.spindle_line) = (*spindle, line);
+            }
+            Action::SurfaceSpeed(speed) => running.surface_speed = *speed,
+            Action::Coolant(coolant) => {
+                (running.coolant, running.coolant_line) = (*coolant, line);
+            }
+            Action::Compensation(side) => running.compensation = *side,
+            Action::Taper(degrees) => running.taper = *degrees,
+            Action::LengthOffset(register) => running.length_offset = *register,
+            Action::WorkOffset(offset) => {
+                running.work_offset = Some(*offset);
+                let position = Position { point: Vec3::NAN, ..self.here.position };
+                self.here = self.gauge.station(line, position);
+            }
+            Action::Cycle(cycle) => running.cycle = Some(**cycle),
+            Action::CycleOff => running.cycle = None,
+            Action::End => self.ended = true,
+            // A tool that is made ready changes nothing, and words are for people.
+            Action::Preselect(_) | Action::Comment(_) | Action::Message(_) => {}
         }
+        Ok(())
     }
 
-    /// A move to `pose`.
-    fn motion(&mut self, line: u32, gait: Gait, pose: &Pose, arc: Option<&ArcTo>) -> Outcome {
-        if arc.is_none() && *pose == self.here.pose {
+    /// A move to a position.
+    fn motion(
+        &mut self,
+        line: u32,
+        gait: Gait,
+        position: &Position,
+        arc: Option<&ArcTo<Position>>,
+    ) -> Outcome {
+        if arc.is_none() && *position == self.here.position {
             return Ok(());
         }
-        let to = self.gauge.station(line, *pose);
+        let to = self.gauge.station(line, *position);
         let block = arc.map(|arc| arc::of_block(&self.gauge, &self.here, arc));
         if block == Some(None) {
             return Err(self.lost_at(line, "arc", "makes no arc"));
@@ -243,6 +249,7 @@ impl<'a> Prover<'a> {
                     Err(self.lost_at(line, "source", &message))
                 }
             },
+            Step::Unproven(what) => Err(self.unproven(line, what)),
             _ => self.closing(gait, &to),
         };
         self.here = to;
@@ -309,9 +316,15 @@ impl<'a> Prover<'a> {
     }
 
     /// Adds a move to the totals of the program.
-    fn count(&mut self, gait: Gait, to: &Station, arc: Option<&ArcTo>, block: Option<&Arc>) {
+    fn count(
+        &mut self,
+        gait: Gait,
+        to: &Station,
+        arc: Option<&ArcTo<Position>>,
+        block: Option<&Arc>,
+    ) {
         let summary = &mut self.report.program;
-        summary.include(&to.pose);
+        summary.include(&to.position);
         let length = block.map_or(self.here.place.tip.distance(to.place.tip), Arc::length);
         if length.is_finite() {
             match gait {
@@ -320,7 +333,7 @@ impl<'a> Prover<'a> {
             }
         }
         if let Some(to) = arc {
-            let (start, end) = (self.here.pose.point, to.end.point);
+            let (start, end) = (self.here.position.point, to.end.point);
             let radius = start.distance(to.center);
             // No point of a helix is farther from a point of its axis than its ends are together.
             if summary.holds(to.center, radius + end.distance(to.center)) {
@@ -343,6 +356,12 @@ impl<'a> Prover<'a> {
         if let Some(difference) = difference {
             self.differs(line, difference);
         }
+    }
+
+    /// The source has something before this that no program can be compared with.
+    fn unproven(&self, line: u32, what: &str) -> Box<Diagnostic> {
+        let message = format!("cannot be compared: the source has {what} before this");
+        self.lost_at(line, "unproven", &message)
     }
 
     /// The mismatch on `line` of the program after which the comparison cannot go on.

@@ -1,6 +1,7 @@
 //! Rapids, excursions from the path of a cut, home positions, and the way out at the end.
 
 use super::*;
+use program::Axes;
 
 impl Prover<'_> {
     /// A move while the source goes by rapid.
@@ -120,10 +121,10 @@ impl Prover<'_> {
             return stops::lifted(&self.gauge, to, last);
         }
         // From home only Z is left to go.
-        let (a, b) = (last.pose.point, to.pose.point);
+        let (a, b) = (last.position.point, to.position.point);
         (a.x - b.x).abs() <= 1e-6
             && (a.y - b.y).abs() <= 1e-6
-            && last.pose.orientation == to.pose.orientation
+            && last.position.orientation == to.position.orientation
     }
 
     pub(super) fn note_excursion(&mut self, to: &Station, lift_mm: f64) {
@@ -137,7 +138,7 @@ impl Prover<'_> {
     }
 
     /// Axes sent to a fixed position.
-    pub(super) fn home(&mut self, line: u32, axes: u8) -> Outcome {
+    pub(super) fn home(&mut self, line: u32, axes: Axes) -> Outcome {
         let axis_degrees = self.gauge.allowed.axis_degrees;
         self.pass_left_out(|goal| goal.free(axis_degrees));
         let (first, free, holding) = match &self.cursor.step {
@@ -151,16 +152,16 @@ impl Prover<'_> {
             }
             _ => (false, true, false),
         };
-        let z = axes & 4 != 0;
-        let retracted = self.here.pose.point.z.is_nan() || self.leg.homed;
+        let z = axes.contains(Axes::Z);
+        let retracted = self.here.position.point.z.is_nan() || self.leg.homed;
         if !first && !retracted && !z {
             return Err(self.lost_at(line, "home", "sends axes home before the tool is retracted"));
         }
-        let up = axes == 4 && (self.hangs_down() || self.clear_of_part());
+        let up = axes == Axes::Z && (self.hangs_down() || self.clear_of_part());
         if !first && !free && (!up || self.leg.hole.over) {
             return Err(self.lost_at(line, "home", "sends axes home in the middle of the work"));
         }
-        if !first && !retracted && axes != 4 {
+        if !first && !retracted && axes != Axes::Z {
             if !self.clear_of_part() {
                 let message = "sends axes home together with Z, not after it, beside the part";
                 return Err(self.lost_at(line, "home", message));
@@ -172,18 +173,16 @@ impl Prover<'_> {
             self.leg.left = Some(self.here);
         }
         self.leg.homed |= z;
-        let mut pose = self.here.pose;
-        for (i, bit) in [(0, 1), (1, 2), (2, 4)] {
-            if axes & bit != 0 {
-                pose.point[i] = f64::NAN;
-            }
+        let mut pose = self.here.position;
+        for i in (0..3).filter(|i| axes.contains(Axes::linear(*i))) {
+            pose.point[i] = f64::NAN;
         }
         match &mut pose.orientation {
             Orientation::Axis(axis) if *axis != Vec3::Z => pose.point = Vec3::NAN,
             Orientation::Axis(_) => {}
             Orientation::Rotary { degrees, .. } => {
                 for (i, degrees) in degrees.iter_mut().enumerate() {
-                    if axes & (8 << i) != 0 {
+                    if axes.contains(Axes::rotary(i)) {
                         *degrees = f64::NAN;
                     }
                 }
@@ -215,7 +214,7 @@ impl Prover<'_> {
         if heads.peek().is_none() {
             return true;
         }
-        match self.here.pose.orientation {
+        match self.here.position.orientation {
             Orientation::Rotary { degrees, .. } => {
                 heads.all(|axis| axis.turned(degrees[axis.index()]).abs() < 1e-6)
             }
@@ -229,8 +228,8 @@ impl Prover<'_> {
     /// while the machine is at home.
     pub(super) fn closing(&mut self, gait: Gait, to: &Station) -> Outcome {
         let lifts = stops::lifted(&self.gauge, &self.here, to);
-        let turns_at_home = to.pose.point.z.is_nan() && self.leg.homed && {
-            let (a, b) = (self.here.pose.point, to.pose.point);
+        let turns_at_home = to.position.point.z.is_nan() && self.leg.homed && {
+            let (a, b) = (self.here.position.point, to.position.point);
             (0..3).all(|i| a[i] == b[i] || b[i].is_nan())
         };
         match gait == Gait::Rapid && (lifts || turns_at_home) {

@@ -5,7 +5,7 @@ use crate::hole::PITCH;
 
 impl Prover<'_> {
     /// A thread or a probing move of the program.
-    pub(super) fn single(&mut self, line: u32, pose: &Pose, is: Kind) -> Outcome {
+    pub(super) fn single(&mut self, line: u32, pose: &Position, is: Kind) -> Outcome {
         let to = self.gauge.station(line, *pose);
         self.count(Gait::Feed, &to, None, None);
         self.pass_left_out(|_| false);
@@ -49,9 +49,9 @@ impl Prover<'_> {
         self.report.deviations.tip_mm.note(to.place.apart(&goes_to).0, self.cursor.line, line);
         let mut end = to;
         if matches!(is, Kind::Probe { .. }) {
-            let (from, moved) = (here.pose.point, &mut end.pose.point);
+            let (from, moved) = (here.position.point, &mut end.position.point);
             *moved = Vec3::select(moved.cmpeq(from), *moved, Vec3::splat(f64::NAN));
-            end = self.gauge.station(line, end.pose);
+            end = self.gauge.station(line, end.position);
         }
         self.arrive(&end);
         Ok(())

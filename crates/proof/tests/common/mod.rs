@@ -1,7 +1,8 @@
-//! A machine, a source and faithful records to disturb.
+//! A machine, a source and faithful events to disturb.
 
 #![allow(dead_code, reason = "each test file uses its part")]
 
+use control::{Action, Event, Orientation, Position};
 use geom::Vec3;
 use machine::Machine;
 use program::*;
@@ -55,22 +56,54 @@ pub fn five_axes() -> Machine {
 }
 
 pub fn at(x: f64, y: f64, z: f64) -> Pose {
-    Pose::new(Vec3::new(x, y, z), Vec3::Z)
+    Pose::upright(Vec3::new(x, y, z)).unwrap()
 }
 
 /// What a block of a three-axis program says.
-pub fn block(x: f64, y: f64, z: f64) -> Pose {
+pub fn block(x: f64, y: f64, z: f64) -> Position {
     let orientation = Orientation::Rotary { degrees: [0.0; 3], tool_center: false };
-    Pose { point: Vec3::new(x, y, z), orientation }
+    Position { point: Vec3::new(x, y, z), orientation }
 }
 
-pub fn arc(end: Pose, center: (f64, f64, f64), normal: Vec3) -> Op {
+/// What a block of a three-axis program says where the source says this.
+pub fn action(op: &Op) -> Action {
+    let says = |pose: &Pose| {
+        assert_eq!(pose.axis(), Vec3::Z, "no pose of three axes");
+        let point = pose.point();
+        block(point.x, point.y, point.z)
+    };
+    match op {
+        Op::Rapid(pose) => Action::Rapid(says(pose)),
+        Op::Line(pose) => Action::Line(says(pose)),
+        Op::Hole(pose) => Action::Hole(says(pose)),
+        Op::Arc(to) => {
+            let ArcTo { end, center, normal, turns } = **to;
+            Action::Arc(Box::new(ArcTo { end: says(&end), center, normal, turns }))
+        }
+        Op::Cycle(cycle) => Action::Cycle(cycle.clone()),
+        Op::Feed(feed) => Action::Feed(*feed),
+        Op::Spindle(spindle) => Action::Spindle(*spindle),
+        Op::Coolant(coolant) => Action::Coolant(*coolant),
+        Op::Compensation(side) => Action::Compensation(*side),
+        Op::Tool(tool) => Action::Tool(tool.clone()),
+        Op::Dwell(seconds) => Action::Dwell(*seconds),
+        Op::Stop => Action::Stop,
+        op => panic!("no test has {op:?} on both sides"),
+    }
+}
+
+/// The same of several.
+pub fn actions(ops: &[Op]) -> Vec<Action> {
+    ops.iter().map(action).collect()
+}
+
+pub fn arc<P>(end: P, center: (f64, f64, f64), normal: Vec3) -> Box<ArcTo<P>> {
     let center = Vec3::new(center.0, center.1, center.2);
-    Op::Arc(Box::new(ArcTo { end, center, normal, turns: 0 }))
+    Box::new(ArcTo { end, center, normal, turns: 0 })
 }
 
-pub fn tool(number: u32) -> Op {
-    Op::Tool(Box::new(Tool { number, ..Tool::default() }))
+pub fn tool(number: u32) -> Box<Tool> {
+    Box::new(Tool { number, ..Tool::default() })
 }
 
 pub fn drill() -> Cycle {
@@ -86,8 +119,8 @@ pub fn drill() -> Cycle {
     }
 }
 
-pub fn cycle(cycle: Cycle) -> Op {
-    Op::Cycle(Box::new(cycle))
+pub fn cycle(cycle: Cycle) -> Action {
+    Action::Cycle(Box::new(cycle))
 }
 
 pub fn program(ops: Vec<Op>) -> Program {
@@ -98,10 +131,10 @@ pub fn program(ops: Vec<Op>) -> Program {
     program
 }
 
-/// Tool 1 at 1000 1/min with flood and 300 mm/min, for either side.
+/// Tool 1 at 1000 1/min with flood and 300 mm/min.
 pub fn start() -> Vec<Op> {
     vec![
-        tool(1),
+        Op::Tool(tool(1)),
         Op::Spindle(Spindle::Clockwise(1000.0)),
         Op::Coolant(Coolant::Flood),
         Op::Feed(Feed::PerMinute(300.0)),
@@ -109,11 +142,11 @@ pub fn start() -> Vec<Op> {
 }
 
 /// The same in a program, with what only a program says.
-pub fn nc_start() -> Vec<Op> {
-    let mut ops = vec![Op::WorkOffset(54)];
-    ops.extend(start());
-    ops.push(Op::LengthOffset(Some(1)));
-    ops
+pub fn nc_start() -> Vec<Action> {
+    let mut does = vec![Action::WorkOffset(WorkOffset::FIRST)];
+    does.extend(actions(&start()));
+    does.push(Action::LengthOffset(Some(1)));
+    does
 }
 
 /// A source of these motions, after the start.
@@ -121,16 +154,16 @@ pub fn source(motions: Vec<Op>) -> Program {
     program([start(), motions].concat())
 }
 
-/// The report on a program that begins and ends well and does `ops` between.
-pub fn judge(machine: &Machine, source: &Program, ops: Vec<Op>) -> Report {
-    run(machine, source, [nc_start(), ops, vec![Op::Home(4), Op::End]].concat())
+/// The report on a program that begins and ends well and does this between.
+pub fn judge(machine: &Machine, source: &Program, between: Vec<Action>) -> Report {
+    run(machine, source, [nc_start(), between, vec![Action::Home(Axes::Z), Action::End]].concat())
 }
 
-/// The report on these records, on line 1, 2 ...
-pub fn run(machine: &Machine, source: &Program, ops: Vec<Op>) -> Report {
+/// The report on a control that does this, on line 1, 2 ...
+pub fn run(machine: &Machine, source: &Program, does: Vec<Action>) -> Report {
     let mut prover = Prover::new(source, machine, &Tolerances::default());
-    for (line, op) in (1..).zip(ops) {
-        if prover.record(&Record { line, op }).is_err() {
+    for (line, action) in (1..).zip(does) {
+        if prover.event(&Event { line, action }).is_err() {
             break;
         }
     }

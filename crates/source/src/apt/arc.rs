@@ -117,7 +117,7 @@ impl Reader {
             return Err(Fault::new("no-start", "an arc, but from nowhere")
                 .help("add a GOTO to its start before the CIRCLE"));
         };
-        let arc = Arc::new(start.point, end.point, circle.center, normal, 0, RADIUS_TOLERANCE)
+        let arc = Arc::new(start.point(), end.point(), circle.center, normal, 0, RADIUS_TOLERANCE)
             .map_err(|error| not_an_arc(&error))?;
         let radius = arc.radius();
         if let Some(given) = circle.radius
@@ -128,7 +128,7 @@ impl Reader {
             );
             return Err(Fault::new("off-the-circle", message));
         }
-        if arc.sweep < TAU && arc.sweep > PI && start.point.distance(end.point) < NEARLY {
+        if arc.sweep < TAU && arc.sweep > PI && start.point().distance(end.point()) < NEARLY {
             let message = "the ends of this arc are not the same, but so near that it could be a full \
                            circle or nothing";
             return Err(
@@ -141,7 +141,7 @@ impl Reader {
             return Err(Fault::new("unsupported", message)
                 .help("end the full turns first, then the rest in an arc of its own"));
         }
-        let tilt = start.axis().zip(end.axis()).map_or(PI, |(a, b)| angle_between(a, b));
+        let tilt = angle_between(start.axis(), end.axis());
         if tilt > ANGLE_EPSILON {
             return Err(Fault::new("unsupported", "the tool axis turns during this arc")
                 .help("let the CAM system write lines where the axis turns"));
@@ -150,7 +150,7 @@ impl Reader {
         let to = ArcTo { end, center: circle.center, normal: arc.normal, turns };
         self.push(record.line, Op::Arc(Box::new(to)));
         self.arrive(end);
-        self.last_arc = Some(start.point);
+        self.last_arc = Some(start.point());
         Ok(())
     }
 
@@ -164,14 +164,14 @@ impl Reader {
             return Ok(false);
         };
         let arc = |end| Arc::new(start, end, to.center, to.normal, 0, RADIUS_TOLERANCE);
-        let so_far = arc(to.end.point).map_err(|error| not_an_arc(&error))?;
+        let so_far = arc(to.end.point()).map_err(|error| not_an_arc(&error))?;
         let further = arc(point).map_err(|error| not_an_arc(&error))?;
         if further.sweep <= so_far.sweep {
             let message = "the points of this arc do not follow each other the way it turns";
             return Err(Fault::new("arc-direction", message));
         }
-        to.end.point = point;
-        let end = to.end;
+        let end = to.end.at(point)?;
+        to.end = end;
         self.arrive(end);
         self.last_arc = Some(start);
         Ok(true)
@@ -183,14 +183,14 @@ impl Reader {
     /// own record.
     pub(super) fn not_on_the_arc(&mut self, record: &Record, pose: &Pose) -> Outcome {
         let (Dialect::Creo, Some(start)) = (self.dialect, self.last_arc) else { return Ok(()) };
-        if start.distance(pose.point) <= RADIUS_TOLERANCE {
+        if start.distance(pose.point()) <= RADIUS_TOLERANCE {
             let message =
                 "a line to the start of the arc just cut: read as the chord that closes it";
             self.report.warn(record, "arc-points", message, "check that no full circle is meant");
             return Ok(());
         }
         let Some(Op::Arc(to)) = self.program.records.last().map(|r| &r.op) else { return Ok(()) };
-        let on = Arc::new(to.end.point, pose.point, to.center, to.normal, 0, RADIUS_TOLERANCE);
+        let on = Arc::new(to.end.point(), pose.point(), to.center, to.normal, 0, RADIUS_TOLERANCE);
         match on {
             Ok(arc) if arc.rise().abs() <= RADIUS_TOLERANCE => {
                 let message = "a line to another point of the circle just cut: is it a chord, or a \
@@ -235,7 +235,7 @@ impl Reader {
             )
             .help("add GOTO/ and INDIRV/ before it"));
         };
-        let spoke = start.point - center;
+        let spoke = start.point() - center;
         let Some(normal) = direction(spoke.cross(towards)) else { return Err(no_direction()) };
         if spoke.normalize_or_zero().dot(towards).abs() > 0.1 {
             return Err(Fault::new("arc-direction", "INDIRV is not tangent to this circle"));
@@ -244,7 +244,7 @@ impl Reader {
         let normal = principal.into_iter().find(|a| a.distance(normal) < SNAP).unwrap_or(normal);
         self.next = Next::Line;
         let circle = Circle { center, axis: normal, radius, times: 1 };
-        self.arc_about(record, &circle, normal, Pose::new(end, self.axis))
+        self.arc_about(record, &circle, normal, Pose::new(end, self.axis)?)
             .map_err(|fault| fault.fields(0, count))
     }
 }
@@ -282,7 +282,7 @@ pub(super) fn weigh(program: &Program) -> Evidence {
     for record in &program.records {
         let Some(pose) = record.op.pose() else { continue };
         let straight = match (&record.op, here) {
-            (Op::Line(_), Some(here)) => direction(pose.point - here),
+            (Op::Line(_), Some(here)) => direction(pose.point() - here),
             _ => None,
         };
         if let Some((line, before, start, end)) = open.take() {
@@ -300,13 +300,13 @@ pub(super) fn weigh(program: &Program) -> Evidence {
             }
         }
         if let (Op::Arc(to), Some(start)) = (&record.op, here)
-            && let Ok(arc) = Arc::new(start, pose.point, to.center, to.normal, to.turns, f64::MAX)
+            && let Ok(arc) = Arc::new(start, pose.point(), to.center, to.normal, to.turns, f64::MAX)
         {
             let back = Arc { start: arc.end, end: arc.start, normal: -arc.normal, ..arc };
             open = Some((record.line, before, arc.tangent(), -back.tangent()));
         }
         before = straight;
-        here = Some(pose.point);
+        here = Some(pose.point());
     }
     evidence
 }

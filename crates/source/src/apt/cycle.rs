@@ -151,7 +151,7 @@ impl Reader {
                 return Ok(());
             }
             () if record.is(0, "ON") => {
-                let initial = self.tip.map(|tip| tip.point);
+                let initial = self.tip.map(|tip| tip.point());
                 let last = self.cycle.take().or_else(|| self.last_cycle.take());
                 self.cycle = last.map(|last| ActiveCycle { initial, ..last });
                 return match self.cycle {
@@ -230,7 +230,7 @@ impl Reader {
         let (threads, turns) = (parts.get(Part::ThreadsPerInch), parts.get(Part::DwellTurns));
         let (initial, told) = match &self.cycle {
             Some(active) => (active.initial, active.told),
-            None => (self.tip.map(|tip| tip.point), None),
+            None => (self.tip.map(|tip| tip.point()), None),
         };
         let (line, to_initial) = (record.line, parts.to_initial);
         Ok(ActiveCycle { line, cycle, threads, turns, to_initial, initial, told })
@@ -438,7 +438,7 @@ impl Reader {
                 )
                 .help("add a RAPID GOTO before the cycle"));
             };
-            cycle.retract = cycle.clearance.max((initial - pose.point).dot(axis));
+            cycle.retract = cycle.clearance.max((initial - pose.point()).dot(axis));
         }
         if active.told != Some(cycle) {
             let line = active.line;
@@ -449,7 +449,7 @@ impl Reader {
         }
         self.push(record.line, Op::Hole(pose));
         self.arrive(pose);
-        self.tip = Some(Pose { point: pose.point + axis * cycle.retract, ..pose });
+        self.tip = Some(pose.at(pose.point() + axis * cycle.retract)?);
         Ok(())
     }
 }

@@ -84,10 +84,10 @@ impl Reader {
         if !self.setup.identity {
             point = self.setup.to_work.transform_point3(point);
         }
+        let Ok(pose) = Pose::new(point, axis) else { return false };
         self.axis = axis;
         self.next = Next::Line;
         self.inside_goto = true;
-        let pose = Pose::new(point, axis);
         self.arrive(pose);
         self.push(line, if rapid { Op::Rapid(pose) } else { Op::Line(pose) });
         true
@@ -119,7 +119,8 @@ impl Reader {
                 .help("give the vector: GOTO/x,y,z,i,j,k")
                 .fields(first, count));
         }
-        self.go(record, Pose::new(point, self.axis)).map_err(|fault| fault.fields(first, count))
+        let pose = Pose::new(point, self.axis)?;
+        self.go(record, pose).map_err(|fault| fault.fields(first, count))
     }
 
     /// Whether a `GOTO` without a vector leaves the tool axis in doubt. In the measured set-ups of
@@ -198,7 +199,7 @@ impl Reader {
     /// The tool is at `pose` now.
     #[inline]
     pub(super) fn arrive(&mut self, pose: Pose) {
-        self.point = Some(pose.point);
+        self.point = Some(pose.point());
         self.tip = Some(pose);
         self.last_arc = None;
         self.towards = None;
@@ -306,7 +307,7 @@ impl Reader {
         if count == 6 {
             self.axis = self.given_axis(record, 3)?;
         }
-        let pose = Pose::new(point, self.axis);
+        let pose = Pose::new(point, self.axis)?;
         self.arrive(pose);
         self.from = Some((record.line, pose));
         self.ready = Ready::No;
@@ -320,7 +321,7 @@ impl Reader {
             return Err(Fault::new("no-start", "a relative motion, but from nowhere")
                 .help("add FROM/x,y,z or an absolute GOTO before it"));
         };
-        if self.cycle.is_none() && self.tip.is_some_and(|tip| tip.point != last) {
+        if self.cycle.is_none() && self.tip.is_some_and(|tip| tip.point() != last) {
             return Err(Fault::new(
                 "no-start",
                 "a relative motion after a hole: from which height?",
@@ -341,7 +342,7 @@ impl Reader {
         if to.abs().max_element() > FARTHEST {
             return Err(Fault::new("out-of-range", "this leads beyond the farthest point"));
         }
-        self.go(record, Pose::new(to, self.axis))
+        self.go(record, Pose::new(to, self.axis)?)
     }
 
     /// `RAPID`: the next motion is one.

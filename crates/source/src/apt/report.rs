@@ -1,7 +1,7 @@
 //! Where the reader's findings gather: errors up to a cap, warnings one for each cause.
 
 use super::record::Record;
-use program::Diagnostic;
+use program::{Diagnostic, NoPose};
 
 /// After so many errors the reader gives up: what follows is mostly the echo of the first.
 const MAX_ERRORS: usize = 20;
@@ -35,6 +35,13 @@ impl Fault {
     pub(super) fn fields(mut self: Box<Self>, first: usize, count: usize) -> Box<Fault> {
         self.fields = Some((first, count));
         self
+    }
+}
+
+/// Numbers that make no pose; frames and units may lead beyond what a number holds.
+impl From<NoPose> for Box<Fault> {
+    fn from(numbers: NoPose) -> Box<Fault> {
+        Fault::new("out-of-range", numbers.to_string())
     }
 }
 

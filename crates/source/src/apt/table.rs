@@ -30,7 +30,7 @@ pub(super) const WORDS: &[(&str, Use)] = &[
     ("$$->", By(Reader::creo_directive)),
     ("ARCSLP", Refused),
     ("AUTOPS", Ignored),
-    ("AUXFUN", NotPassedOn),
+    ("AUXFUN", By(Reader::auxfun)),
     ("CALL", Refused),
     ("CIRCLE", By(Reader::circle)),
     ("CLAMP", NotPassedOn),

@@ -5,7 +5,7 @@ use super::report::{Fault, Outcome};
 use super::text::decode;
 use super::{Reader, Ready};
 use geom::INCH;
-use program::{Compensation, Coolant, Feed, Op, Record as Step, Spindle, Tool};
+use program::{Auxiliary, Compensation, Coolant, Feed, Op, Record as Step, Spindle, Tool};
 use std::f64::consts::PI;
 
 /// The largest number of a tool or an offset.
@@ -501,6 +501,14 @@ impl Reader {
             _ => Err(Fault::new("dwell", "a dwell in turns needs a running spindle")
                 .help("add SPINDL/speed,RPM,CLW before it, or give the dwell in seconds")),
         }
+    }
+
+    /// `AUXFUN/n`: a function that the builder of the machine has added, by the number of its M function.
+    pub(super) fn auxfun(&mut self, record: &Record) -> Outcome {
+        record.count(&[1], "AUXFUN/number")?;
+        let number = whole(record, 0, 0.0, "malformed")?;
+        self.push(record.line, Op::Auxiliary(Auxiliary::of(number)));
+        Ok(())
     }
 
     /// `STOP`.

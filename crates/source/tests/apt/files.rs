@@ -121,7 +121,7 @@ fn every_real_file_gives_the_moves_tools_and_points_that_are_in_it() {
         let s = Statistics::of(&reading.program);
         assert_eq!([s.rapids, s.lines, s.arcs, s.holes], [rapids, lines, arcs, holes], "{name}");
         assert_eq!(s.tools, tools, "{name}");
-        let points: Vec<Vec3> = poses(&reading.program).map(|pose| pose.point).collect();
+        let points: Vec<Vec3> = poses(&reading.program).map(|pose| pose.point()).collect();
         let fold = |f: fn(Vec3, Vec3) -> Vec3| points.iter().copied().reduce(f).unwrap().to_array();
         assert_eq!((fold(Vec3::min), fold(Vec3::max)), (low, high), "{name}");
         assert!(matches!(reading.program.records.last().unwrap().op, Op::End), "{name}");
@@ -149,14 +149,14 @@ fn the_cam_system_is_told_by_the_file() {
 fn arcs(program: &Program) -> Vec<(Arc, Option<Vec3>, Option<Vec3>)> {
     let moves: Vec<&Op> =
         program.records.iter().map(|r| &r.op).filter(|op| op.pose().is_some()).collect();
-    let point = |i: usize| moves[i].pose().unwrap().point;
+    let point = |i: usize| moves[i].pose().unwrap().point();
     let cut = |i: usize| {
         let line = i > 0 && matches!(moves.get(i), Some(Op::Line(_)));
         line.then(|| point(i) - point(i - 1)).and_then(geom::direction)
     };
     let arc = |i: usize| match moves[i] {
         Op::Arc(a) => {
-            let arc = Arc::new(point(i - 1), a.end.point, a.center, a.normal, a.turns, 0.005);
+            let arc = Arc::new(point(i - 1), a.end.point(), a.center, a.normal, a.turns, 0.005);
             Some((arc.unwrap(), cut(i - 1), cut(i + 1)))
         }
         _ => None,
@@ -218,7 +218,7 @@ fn a_set_up_changes_the_frame_and_the_axis_of_every_point_in_it() {
                 assert_eq!(frame.translation, Vec3::ZERO);
             }
             if let Some(pose) = record.op.pose() {
-                assert!(pose.axis().unwrap().distance(axis) < 2e-6, "{name}:{}", record.line);
+                assert!(pose.axis().distance(axis) < 2e-6, "{name}:{}", record.line);
             }
         }
         assert_eq!(frames.len(), axes.len(), "{name}");

@@ -35,7 +35,7 @@ pub fn error(body: &str) -> &'static str {
 }
 
 pub fn at(x: f64, y: f64, z: f64) -> Pose {
-    Pose::new(Vec3::new(x, y, z), Vec3::Z)
+    Pose::upright(Vec3::new(x, y, z)).unwrap()
 }
 
 /// Whether the poses of `ops` are `expected` (point, axis) within rounding.
@@ -45,8 +45,8 @@ pub fn assert_poses(ops: &[Op], expected: &[([f64; 3], [f64; 3])]) {
     assert_eq!(poses.len(), expected.len(), "{ops:?}");
     for (pose, (point, axis)) in poses.iter().zip(expected) {
         let near = |a: Vec3, b: [f64; 3]| a.distance(Vec3::from_array(b)) < 1e-9;
-        assert!(near(pose.point, *point), "{:?} is not {point:?}", pose.point);
-        assert!(near(pose.axis().unwrap(), *axis), "{:?} is not {axis:?}", pose.axis());
+        assert!(near(pose.point(), *point), "{:?} is not {point:?}", pose.point());
+        assert!(near(pose.axis(), *axis), "{:?} is not {axis:?}", pose.axis());
     }
 }
 

@@ -1,7 +1,7 @@
 //! The ways of the wire as a neutral program: as they are, or as points.
 
 use geom::{Vec2, Vec3};
-use program::{ArcTo, Compensation, Feed, Op, Pose, Program};
+use program::{ArcTo, Compensation, Feed, NoPose, Op, Pose, Program};
 use wire::points::Points;
 use wire::{Contour, Element, Path};
 
@@ -95,7 +95,10 @@ impl Leg {
 
 /// The program of `legs`: as points where they have them, else with their arcs. Leaning wires reach
 /// the upper contour at `height` mm. With `feeds` it says how fast.
-pub fn program(name: &str, legs: &[Leg], height: f64, feeds: bool) -> Program {
+///
+/// # Errors
+/// A point that is not finite.
+pub fn program(name: &str, legs: &[Leg], height: f64, feeds: bool) -> Result<Program, NoPose> {
     assemble(name, legs, feeds, |leg| match &leg.points {
         Some(points) => divided(points, leg.line(), height),
         None => exact(leg.path.lower()),
@@ -103,19 +106,27 @@ pub fn program(name: &str, legs: &[Leg], height: f64, feeds: bool) -> Program {
 }
 
 /// The same with every arc, as one end of the wire goes.
-pub fn end(name: &str, legs: &[Leg], end: End, feeds: bool) -> Program {
+///
+/// # Errors
+/// A point that is not finite.
+pub fn end(name: &str, legs: &[Leg], end: End, feeds: bool) -> Result<Program, NoPose> {
     assemble(name, legs, feeds, |leg| exact(leg.contour(end)))
 }
 
 /// Where a leg starts, and its moves with their lines of the source.
-type Moves = (Pose, Vec<(u32, Op)>);
+type Moves = Result<(Pose, Vec<(u32, Op)>), NoPose>;
 
-fn assemble(name: &str, legs: &[Leg], feeds: bool, moves: impl Fn(&Leg) -> Moves) -> Program {
+fn assemble(
+    name: &str,
+    legs: &[Leg],
+    feeds: bool,
+    moves: impl Fn(&Leg) -> Moves,
+) -> Result<Program, NoPose> {
     let mut program = Program::new(name);
     let mut feed = None;
     let mut line = 0;
     for leg in legs {
-        let (start, moves) = moves(leg);
+        let (start, moves) = moves(leg)?;
         line = leg.line();
         if leg.stop {
             program.push(line, Op::Stop);
@@ -143,23 +154,23 @@ fn assemble(name: &str, legs: &[Leg], feeds: bool, moves: impl Fn(&Leg) -> Moves
         }
     }
     program.push(line, Op::End);
-    program
+    Ok(program)
 }
 
 fn exact(contour: &Contour) -> Moves {
-    let moves = contour.elements().iter().map(|element| (element.line, op(element)));
-    (upright(contour.start()), moves.collect())
+    let moves = contour.elements().iter().map(|element| Ok((element.line, op(element)?)));
+    Ok((upright(contour.start())?, moves.collect::<Result<_, _>>()?))
 }
 
-fn op(element: &Element) -> Op {
-    let end = upright(element.end);
-    match element.turn {
+fn op(element: &Element) -> Result<Op, NoPose> {
+    let end = upright(element.end)?;
+    Ok(match element.turn {
         None => Op::Line(end),
         Some(turn) => {
             let normal = Vec3::Z * turn.sweep.signum();
             Op::Arc(Box::new(ArcTo { end, center: turn.center.extend(0.0), normal, turns: 0 }))
         }
-    }
+    })
 }
 
 fn divided(points: &Points, first: u32, height: f64) -> Moves {
@@ -171,11 +182,12 @@ fn divided(points: &Points, first: u32, height: f64) -> Moves {
         }
     };
     let mut poses = points.lower.iter().enumerate().map(pose);
-    let start = poses.next().unwrap_or(upright(Vec2::ZERO));
+    let start = poses.next().unwrap_or_else(|| upright(Vec2::ZERO))?;
     let line = |i| points.line_of(i).unwrap_or(first);
-    (start, (1..).zip(poses).map(|(i, pose)| (line(i), Op::Line(pose))).collect())
+    let moves = (1..).zip(poses).map(|(i, pose)| Ok((line(i), Op::Line(pose?))));
+    Ok((start, moves.collect::<Result<_, _>>()?))
 }
 
-fn upright(point: Vec2) -> Pose {
-    Pose::new(point.extend(0.0), Vec3::Z)
+fn upright(point: Vec2) -> Result<Pose, NoPose> {
+    Pose::upright(point.extend(0.0))
 }

@@ -3,13 +3,16 @@
 
 use super::leg::{End, Leg};
 use super::report::Cut;
-use control::Setup;
+use control::{Action, Position, Setup};
 use geom::Vec3;
 use machine::Machine;
-use program::{Op, Pose, Program};
+use program::{NoPose, Program};
 use proof::{Prover, Report, Tolerances};
 
 /// Runs `text` on the control of `machine` and holds it against what `cut` wants.
+///
+/// # Errors
+/// A contour with a point that is not finite.
 pub fn of(
     cut: &Cut,
     machine: &Machine,
@@ -17,15 +20,15 @@ pub fn of(
     file: &str,
     text: &[u8],
     tolerances: &Tolerances,
-) -> Report {
+) -> Result<Report, NoPose> {
     if !cut.legs.iter().any(Leg::leans) {
-        let contour = cut.end(name, End::Lower);
-        return proof::prove(&contour, machine, file, text, tolerances);
+        let contour = cut.end(name, End::Lower)?;
+        return Ok(proof::prove(&contour, machine, file, text, tolerances));
     }
-    let mut report = proof::prove(&cut.program(name), machine, file, text, tolerances);
+    let mut report = proof::prove(&cut.program(name)?, machine, file, text, tolerances);
     for end in [End::Lower, End::Upper] {
         if report.proven {
-            let contour = cut.end(name, end);
+            let contour = cut.end(name, end)?;
             let found = one_end(&contour, end, machine, file, text, tolerances);
             report.proven = found.proven;
             report.mismatches.extend(found.mismatches);
@@ -39,7 +42,7 @@ pub fn of(
             };
         }
     }
-    report
+    Ok(report)
 }
 
 /// Holds the way of one end of the wire against the contour that it follows.
@@ -60,23 +63,23 @@ fn one_end(
     let tolerances = Tolerances { position: Some(position), ..*tolerances };
     let mut prover = Prover::new(contour, machine, &tolerances);
     let wire = machine.wire;
-    let stand = |pose: &mut Pose| {
-        let lean = pose.axis().and_then(|axis| wire?.lean(axis)).unwrap_or_default();
+    let stand = |position: &mut Position| {
+        let lean = position.axis().and_then(|axis| wire?.lean(axis)).unwrap_or_default();
         let by = match end {
             End::Lower => Vec3::ZERO,
             End::Upper => lean.extend(0.0),
         };
-        *pose = Pose::new(pose.point + by, Vec3::Z);
+        *position = Position::new(position.point + by, Vec3::Z);
         by
     };
     let run = nc::settings(machine, Setup::default()).and_then(|settings| {
-        control::read(&settings, file, text, &mut |mut record| {
-            match &mut record.op {
-                Op::Rapid(pose) | Op::Line(pose) => drop(stand(pose)),
-                Op::Arc(arc) => arc.center += stand(&mut arc.end),
+        control::read(&settings, file, text, &mut |mut event| {
+            match &mut event.action {
+                Action::Rapid(position) | Action::Line(position) => drop(stand(position)),
+                Action::Arc(arc) => arc.center += stand(&mut arc.end),
                 _ => {}
             }
-            prover.record(&record)
+            prover.event(&event)
         })
     });
     // What the control refuses it has refused before, for the program as a whole.
@@ -105,8 +108,8 @@ mod tests {
         let mut machine = machine::load_text("shop.toml", text).unwrap();
         let cut = Cut::of(vec![leg], &machine);
         machine.capabilities.lowering_tolerance = 0.01;
-        let written = post::write(&cut.program("cone"), &machine).unwrap().text;
-        of(&cut, &machine, "cone", "cone.pts", &written, &Tolerances::default())
+        let written = post::write(&cut.program("cone").unwrap(), &machine).unwrap().text;
+        of(&cut, &machine, "cone", "cone.pts", &written, &Tolerances::default()).unwrap()
     }
 
     #[test]

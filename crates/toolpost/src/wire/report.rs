@@ -6,7 +6,7 @@ use ::wire::points::Step;
 use ::wire::{Accuracy, Chords};
 use drawing::{WireLeg, WirePicture};
 use machine::Machine;
-use program::Program;
+use program::{NoPose, Program};
 use serde_json::{Value, json};
 
 /// The most ways that a summary lists.
@@ -42,12 +42,18 @@ impl Cut {
     }
 
     /// The program to write.
-    pub fn program(&self, name: &str) -> Program {
+    ///
+    /// # Errors
+    /// A point that is not finite.
+    pub fn program(&self, name: &str) -> Result<Program, NoPose> {
         leg::program(name, &self.legs, self.height.unwrap_or(f64::INFINITY), self.says_feed)
     }
 
     /// The same as one end of the wire goes, arcs and all.
-    pub fn end(&self, name: &str, end: End) -> Program {
+    ///
+    /// # Errors
+    /// A point that is not finite.
+    pub fn end(&self, name: &str, end: End) -> Result<Program, NoPose> {
         leg::end(name, &self.legs, end, self.says_feed)
     }
 

@@ -4,9 +4,9 @@ use crate::answer::Stop;
 use crate::args::{self, Sync};
 use crate::files;
 use crate::toolpath::{self, Toolpath};
-use geom::{Vec2, Vec3};
+use geom::Vec2;
 use machine::Machine;
-use program::{Diagnostic, Op, Pose, Program};
+use program::{Diagnostic, NoPose, Op, Pose, Program};
 use wire::{Beside, Contour, Element, Path, beside, contours, cuts, dxf};
 
 /// A source with the ways that it gives the wire.
@@ -215,32 +215,38 @@ fn leaning(
     program: &Program,
     machine: &Machine,
 ) -> Option<Result<(Program, Program), Box<Diagnostic>>> {
-    let leans = |pose: &Pose| pose.axis().is_some_and(|axis| axis.truncate() != Vec2::ZERO);
+    let leans = |pose: &Pose| pose.axis().truncate() != Vec2::ZERO;
     let mut poses = program.records.iter().filter_map(|record| record.op.pose());
     if !poses.any(leans) {
         return None;
     }
     let (mut lower, mut upper) = (program.clone(), program.clone());
     for (below, above) in lower.records.iter_mut().zip(&mut upper.records) {
-        let Some(axis) = below.op.pose().and_then(Pose::axis) else { continue };
+        let Some(axis) = below.op.pose().map(Pose::axis) else { continue };
         let Some(lean) = machine.wire.and_then(|wire| wire.lean(axis)) else {
             return Some(Err(without_upper_plane().line(below.line).into()));
         };
-        stand(&mut below.op, Vec2::ZERO);
-        stand(&mut above.op, lean);
+        if let Err(numbers) =
+            stand(&mut below.op, Vec2::ZERO).and_then(|()| stand(&mut above.op, lean))
+        {
+            return Some(Err(numbers.into()));
+        }
     }
     Some(Ok((lower, upper)))
 }
 
 /// The same move of an upright wire, moved by `by`.
-fn stand(op: &mut Op, by: Vec2) {
-    let upright = |pose: &mut Pose| *pose = Pose::new(pose.point + by.extend(0.0), Vec3::Z);
+fn stand(op: &mut Op, by: Vec2) -> Result<(), NoPose> {
+    let upright = |pose: &mut Pose| {
+        *pose = Pose::upright(pose.point() + by.extend(0.0))?;
+        Ok(())
+    };
     match op {
         Op::Rapid(pose) | Op::Line(pose) => upright(pose),
         Op::Arc(arc) => {
-            upright(&mut arc.end);
             arc.center += by.extend(0.0);
+            upright(&mut arc.end)
         }
-        _ => {}
+        _ => Ok(()),
     }
 }

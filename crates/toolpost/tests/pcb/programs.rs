@@ -2,7 +2,7 @@
 
 use crate::board::{DRILL, EDGE, FRONT, Made, NEAR, edge, front, gerber, small};
 use crate::folder::Folder;
-use control::Setup;
+use control::{Action, Setup};
 use geom::{Vec2, Vec3};
 use program::Op;
 use serde_json::Value;
@@ -359,7 +359,7 @@ fn tabs_hold_the_board() {
 fn probed(made: &Made) -> BTreeSet<(i64, i64)> {
     let program = made.program("probe");
     let probes = program.records.iter().filter_map(|record| match &record.op {
-        Op::Probe(probe) => Some(probe.end.point),
+        Op::Probe(probe) => Some(probe.end.point()),
         _ => None,
     });
     probes.map(|at| ((at.x * 1e3).round() as i64, (at.y * 1e3).round() as i64)).collect()
@@ -433,9 +433,9 @@ fn cuts_on(text: &str, machine: &str, surface: Vec<Vec3>) -> Vec<Vec3> {
     let machine = machine::load(machine).unwrap();
     let settings = nc::settings(&machine, Setup { surface, ..Setup::default() }).unwrap();
     let mut ends = Vec::new();
-    let read = control::read(&settings, "front.nc", text.as_bytes(), &mut |record| {
-        if let Op::Line(_) | Op::Arc(_) = record.op {
-            ends.extend(record.op.pose().map(|pose| pose.point));
+    let read = control::read(&settings, "front.nc", text.as_bytes(), &mut |event| {
+        if let Action::Line(_) | Action::Arc(_) = event.action {
+            ends.extend(event.action.position().map(|position| position.point));
         }
         Ok(())
     });

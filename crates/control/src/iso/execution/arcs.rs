@@ -3,10 +3,11 @@
 use super::motion::Target;
 use super::state::Tilt;
 use super::step::Step;
+use crate::event::Action;
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::Flavor;
 use geom::Vec3;
-use program::{ArcTo, Op};
+use program::ArcTo;
 
 /// The letters of the centre, by axis.
 const CENTER: [u8; 3] = *b"IJK";
@@ -61,7 +62,7 @@ impl Step<'_, '_, '_> {
         self.switch_compensation();
         let mut axis = Vec3::ZERO;
         axis[third] = if clockwise { -1.0 } else { 1.0 };
-        self.ops.push(Op::Arc(Box::new(ArcTo {
+        self.actions.push(Action::Arc(Box::new(ArcTo {
             end: self.state.pose(target.point, target.rotary),
             center: self.state.place.point(center),
             normal: self.state.place.normal(axis),

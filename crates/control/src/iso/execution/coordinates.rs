@@ -4,9 +4,11 @@ use super::frames::{Six, Transform, Unknown};
 use super::motion::LINEAR;
 use super::state::{Length, Polar, Tilt, UNKNOWN};
 use super::step::Step;
+use crate::event::Action;
 use crate::iso::language::block::{Fault, Word};
 use crate::iso::language::words::{Flavor, G, Group};
 use geom::{Frame, Mat3, Vec3};
+use program::WorkOffset;
 
 /// The letters of the axes, in the order of [`Six`].
 const AXES: [u8; 6] = *b"XYZABC";
@@ -158,7 +160,7 @@ impl Step<'_, '_, '_> {
             self.state.position = self.state.place.programmed(frames.of_machine(machine));
         }
         self.state.work_offset = Some(number);
-        self.ops.push(program::Op::WorkOffset(number));
+        self.actions.extend(WorkOffset::numbered(number).map(Action::WorkOffset));
         Ok(())
     }
 

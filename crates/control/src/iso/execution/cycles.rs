@@ -3,10 +3,11 @@
 use super::motion::{LINEAR, Target};
 use super::state::Tilt;
 use super::step::Step;
+use crate::event::{Action, Orientation};
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::{Canned, Flavor, G, Group};
 use geom::Vec3;
-use program::{Cycle, CycleKind, Feed, Op, Orientation, Spindle, Withdrawal};
+use program::{Cycle, CycleKind, Feed, Spindle, Withdrawal};
 
 /// The most often that a block may repeat its hole: FANUC's K has four digits.
 const MOST_REPEATS: u32 = 9999;
@@ -118,7 +119,7 @@ impl Step<'_, '_, '_> {
     pub(super) fn end_cycle(&mut self) {
         let Some(held) = self.state.cycle.take() else { return };
         if held.told.is_some() {
-            self.ops.push(Op::CycleOff);
+            self.actions.push(Action::CycleOff);
         }
         // The end of rigid tapping leaves the spindle standing.
         if held.rigid {
@@ -387,7 +388,7 @@ impl Step<'_, '_, '_> {
     fn lift(&mut self, r: f64, axis: usize) {
         self.state.position[axis] = r;
         let pose = self.state.pose(self.state.position, self.state.rotary);
-        self.ops.push(Op::Rapid(pose));
+        self.actions.push(Action::Rapid(pose));
     }
 
     /// One hole from its point on the R plane.
@@ -409,13 +410,13 @@ impl Step<'_, '_, '_> {
             self.by_hand(at, level, axis, &cycle)?;
         } else {
             if held.told.replace(cycle) != Some(cycle) {
-                self.ops.push(Op::Cycle(Box::new(cycle)));
+                self.actions.push(Action::Cycle(Box::new(cycle)));
             }
             let mut pose = self.state.pose(at, self.state.rotary);
             if axis != 2 {
                 pose.orientation = Orientation::Axis(self.state.place.direction(Vec3::AXES[axis]));
             }
-            self.ops.push(Op::Hole(pose));
+            self.actions.push(Action::Hole(pose));
         }
         self.state.arrive(level, self.state.rotary);
         Ok(())
@@ -431,13 +432,14 @@ impl Step<'_, '_, '_> {
         let from = self.state.position[axis].max(at[axis]);
         let rotary = self.state.rotary;
         let pose = |state: &super::state::State, point: Vec3| state.pose(point, rotary);
-        self.ops.push(Op::Rapid(pose(self.state, at.with_axis(axis, from))));
-        self.ops.push(Op::Rapid(pose(self.state, at)));
-        self.ops.push(Op::Line(pose(self.state, at.with_axis(axis, at[axis] - cycle.depth))));
-        self.ops.push(Op::Dwell(cycle.dwell));
+        self.actions.push(Action::Rapid(pose(self.state, at.with_axis(axis, from))));
+        self.actions.push(Action::Rapid(pose(self.state, at)));
+        self.actions
+            .push(Action::Line(pose(self.state, at.with_axis(axis, at[axis] - cycle.depth))));
+        self.actions.push(Action::Dwell(cycle.dwell));
         self.turn(Spindle::Off);
-        self.ops.push(Op::Stop);
-        self.ops.push(Op::Rapid(pose(self.state, level)));
+        self.actions.push(Action::Stop);
+        self.actions.push(Action::Rapid(pose(self.state, level)));
         self.turn(spindle);
         Ok(())
     }

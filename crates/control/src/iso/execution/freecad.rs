@@ -3,9 +3,10 @@
 use super::cycles::Holding;
 use super::step::Step;
 use crate::decimal;
+use crate::event::Action;
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::{Canned, FeedMode, G, Group, Motion};
-use program::{Feed, Op};
+use program::Feed;
 
 /// How many digits FreeCAD's shorter form of a number has (`Command G1 [ F:3.3333 ]`). It leaves zeros
 /// at the end out, so that a number with fewer digits is as good as one with so many.
@@ -50,7 +51,7 @@ impl Step<'_, '_, '_> {
             FeedMode::InverseTime => Feed::InverseTime(sixty()),
         };
         if self.state.feed.replace(feed) != Some(feed) {
-            self.ops.push(Op::Feed(feed));
+            self.actions.push(Action::Feed(feed));
         }
         Ok(())
     }

@@ -16,6 +16,7 @@ pub(super) mod numbers;
 pub(super) mod onward;
 mod patterns;
 mod places;
+mod signals;
 mod splines;
 pub(super) mod state;
 pub(super) mod step;

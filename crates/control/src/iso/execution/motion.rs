@@ -2,10 +2,11 @@
 
 use super::state::{Polar, Tilt};
 use super::step::Step;
+use crate::event::Action;
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::{FeedMode, Flavor, G, Group, Motion, bit};
 use geom::Vec3;
-use program::{Compensation, Feed, Op};
+use program::{Compensation, Feed};
 
 /// The letters of the linear axes.
 pub(super) const LINEAR: [u8; 3] = *b"XYZ";
@@ -429,7 +430,7 @@ impl Step<'_, '_, '_> {
             self.switch_compensation();
         }
         let pose = self.state.pose(to, target.rotary);
-        self.ops.push(if rapid { Op::Rapid(pose) } else { Op::Line(pose) });
+        self.actions.push(if rapid { Action::Rapid(pose) } else { Action::Line(pose) });
         self.state.arrive(target.point, target.rotary);
         Ok(())
     }
@@ -438,7 +439,7 @@ impl Step<'_, '_, '_> {
     pub(super) fn stood(&mut self) {
         if !self.state.told && self.state.position.is_finite() {
             let here = self.state.pose(self.state.position, self.state.rotary);
-            self.ops.push(Op::Rapid(here));
+            self.actions.push(Action::Rapid(here));
             self.state.told = true;
             self.state.frames.used();
         }
@@ -454,7 +455,7 @@ impl Step<'_, '_, '_> {
         compensation.active = compensation.asked;
         let [first, second, _] = self.state.plane.axes();
         let swaps = self.state.frames.transform.swaps_sides(first, second);
-        self.ops.push(Op::Compensation(match compensation.asked {
+        self.actions.push(Action::Compensation(match compensation.asked {
             Compensation::Left(register) if swaps => Compensation::Right(register),
             Compensation::Right(register) if swaps => Compensation::Left(register),
             side => side,

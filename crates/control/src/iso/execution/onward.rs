@@ -7,9 +7,10 @@ use super::motion::LINEAR;
 use super::state::{State, Tilt};
 use super::step::Control;
 use crate::WholeNumbers;
+use crate::event::Action;
 use crate::iso::language::block::{Block, NOTHING, Word};
 use crate::iso::language::words::{Motion, bit, index};
-use program::{Feed, Op};
+use program::Feed;
 
 /// What holds from one straight move to the next.
 #[derive(Clone, Copy, Debug)]
@@ -48,7 +49,7 @@ impl Onward {
 impl Control {
     /// Executes a block of these words where it is a straight move behind what is `onward`, as
     /// [`Control::execute`] would. `None` where it is not: nothing has changed.
-    pub(crate) fn go_on(&mut self, onward: &Onward, words: &[Word]) -> Option<Op> {
+    pub(crate) fn go_on(&mut self, onward: &Onward, words: &[Word]) -> Option<Action> {
         let state = &mut self.state;
         let (mut motion, mut point) = (state.motion?, state.position);
         let mut given = 0;
@@ -82,6 +83,6 @@ impl Control {
         state.motion = Some(motion);
         state.arrive(point, state.rotary);
         let pose = state.pose(point, state.rotary);
-        Some(if motion == Motion::Line { Op::Line(pose) } else { Op::Rapid(pose) })
+        Some(if motion == Motion::Line { Action::Line(pose) } else { Action::Rapid(pose) })
     }
 }

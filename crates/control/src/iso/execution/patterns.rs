@@ -2,10 +2,11 @@
 
 use super::motion::Target;
 use super::step::Step;
+use crate::event::Action;
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::{Group, Pattern};
 use geom::Vec3;
-use program::{ArcTo, Op};
+use program::ArcTo;
 
 /// Most holes of a pattern.
 const MOST_HOLES: u32 = 9999;
@@ -30,7 +31,7 @@ impl Step<'_, '_, '_> {
         let rim = Target { point: center + Vec3::X * radius, rotary, named: 1 };
         self.straight(rim, false)?;
         let normal = if clockwise { Vec3::NEG_Z } else { Vec3::Z };
-        self.ops.push(Op::Arc(Box::new(ArcTo {
+        self.actions.push(Action::Arc(Box::new(ArcTo {
             end: self.state.pose(rim.point, rotary),
             center: self.state.place.point(center),
             normal: self.state.place.normal(normal),

@@ -4,10 +4,11 @@
 use super::motion::{LINEAR, Target};
 use super::state::{Tilt, UNKNOWN};
 use super::step::Step;
+use crate::event::Action;
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::{Flavor, Group, Motion};
 use geom::Vec3;
-use program::{Op, Probe};
+use program::{Axes, Probe};
 
 /// How far beside a probe a point of the surface may be that it touches, mm: words are rounded, those of two decimals
 /// by up to 0.005 mm along X and along Y.
@@ -144,7 +145,7 @@ impl Step<'_, '_, '_> {
         self.feed_for_cut()?;
         self.state.probed = if away { None } else { self.touched(&target, must_answer)? };
         let end = self.state.pose(target.point, target.rotary);
-        self.ops.push(Op::Probe(Box::new(Probe { end, away, must_answer, place: None })));
+        self.actions.push(Action::Probe(Box::new(Probe { end, away, must_answer, place: None })));
         self.state.arrive(target.point, target.rotary);
         for axis in 0..3 {
             if target.named & 1 << axis != 0 {
@@ -257,7 +258,8 @@ impl Step<'_, '_, '_> {
         }
         self.state.position = self.state.place.programmed(point);
         self.state.moved = true;
-        self.ops.push(Op::Home(named));
+        self.actions
+            .push(Action::Home(Axes::of([0, 1, 2, 3, 4, 5].map(|bit| named >> bit & 1 == 1))));
     }
 
     fn all_axes(&self) -> u8 {

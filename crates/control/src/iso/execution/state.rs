@@ -5,10 +5,11 @@ use super::frames::{Frames, Place};
 use super::tools::Registers;
 use super::wire::Wire;
 use crate::compensation::Terms;
+use crate::event::{Orientation, Position};
 use crate::iso::language::words::{FeedMode, Flavor, Motion, Plane, Side};
 use crate::{Settings, Units};
 use geom::{Frame, Vec3};
-use program::{Coolant, Feed, Orientation, Pose, Spindle};
+use program::{Coolant, Feed, Spindle, WorkOffset};
 
 /// The modes, the position and what the machine was last told.
 #[derive(Clone, Debug)]
@@ -38,7 +39,7 @@ pub(crate) struct State {
     pub tool: Option<u32>,
     pub length: Length,
     pub compensation: Compensation,
-    /// What [`program::Op::WorkOffset`] has said last.
+    /// What [`Action::WorkOffset`] has said last.
     pub work_offset: Option<u32>,
     /// Programmed position in the frame in which words are read, mm; NaN where not known.
     pub position: Vec3,
@@ -156,7 +157,7 @@ impl State {
         let start = settings.setup.start;
         let all_zero = start.is_some();
         // A FANUC goes on in the work offset of the program before.
-        let work_offset = settings.dialect.work_offset_at_reset().unwrap_or(0);
+        let work_offset = settings.dialect.work_offset_at_reset().map_or(0, WorkOffset::number);
         let turns_offsets = flavor == Flavor::LinuxCnc;
         State {
             motion: (flavor == Flavor::Grbl).then_some(Motion::Rapid),
@@ -211,14 +212,14 @@ impl State {
 
     /// The pose of a programmed point with the rotary axes at `rotary` (degrees).
     #[inline]
-    pub(super) fn pose(&self, point: Vec3, rotary: [f64; 3]) -> Pose {
+    pub(super) fn pose(&self, point: Vec3, rotary: [f64; 3]) -> Position {
         let point = self.place.point(point);
         if let Some(wire) = &self.wire {
-            return Pose { point, orientation: wire.orientation() };
+            return Position { point, orientation: wire.orientation() };
         }
         match self.tilt {
-            Tilt::Reached(_) => Pose::new(point, self.place.direction(Vec3::Z)),
-            Tilt::None | Tilt::Declared(_) => Pose {
+            Tilt::Reached(_) => Position::new(point, self.place.direction(Vec3::Z)),
+            Tilt::None | Tilt::Declared(_) => Position {
                 point,
                 orientation: Orientation::Rotary {
                     degrees: self.place.rotary(rotary),

@@ -1,10 +1,11 @@
 //! One block, in the order in which a control executes it.
 
 use super::state::State;
+use crate::event::Action;
 use crate::iso::language::block::{Block, Fault};
 use crate::iso::language::words::{FeedMode, Flavor, G, Group, M, Motion, Plane, Side};
 use crate::{Settings, WholeNumbers};
-use program::{Coolant, Feed, Op, Spindle};
+use program::{Coolant, Feed, Spindle};
 
 /// A virtual control: its flavour, its axes and its state.
 #[derive(Debug)]
@@ -23,7 +24,7 @@ pub(super) struct Step<'s, 'b, 't> {
     pub whole_numbers: WholeNumbers,
     pub state: &'s mut State,
     pub block: &'b mut Block<'t>,
-    pub ops: &'s mut Vec<Op>,
+    pub actions: &'s mut Vec<Action>,
 }
 
 impl Control {
@@ -38,14 +39,18 @@ impl Control {
         Control { flavor, axes, whole_numbers, state: State::new(flavor, axes, settings) }
     }
 
-    /// Executes `block` and puts its records into `ops`.
+    /// Executes `block` and puts its records into `actions`.
     ///
     /// # Errors
     /// The block means nothing, or is not legal here: the run ends with it.
-    pub(crate) fn execute(&mut self, block: &mut Block, ops: &mut Vec<Op>) -> Result<(), Fault> {
+    pub(crate) fn execute(
+        &mut self,
+        block: &mut Block,
+        actions: &mut Vec<Action>,
+    ) -> Result<(), Fault> {
         let Control { flavor, axes, whole_numbers, state } = self;
         let (flavor, axes, whole_numbers) = (*flavor, *axes, *whole_numbers);
-        Step { flavor, axes, whole_numbers, state, block, ops }.run()
+        Step { flavor, axes, whole_numbers, state, block, actions }.run()
     }
 }
 
@@ -154,7 +159,7 @@ impl Step<'_, '_, '_> {
             FeedMode::InverseTime => Feed::InverseTime(word.value),
         };
         if self.state.feed.replace(feed) != Some(feed) {
-            self.ops.push(Op::Feed(feed));
+            self.actions.push(Action::Feed(feed));
         }
         Ok(())
     }
@@ -192,7 +197,7 @@ impl Step<'_, '_, '_> {
         if self.state.surface.is_some() {
             // Metres, or feet where lengths are inches.
             let meters = if self.unit(self.state.inches, b'S')? == 1.0 { 1.0 } else { 0.3048 };
-            self.ops.push(Op::SurfaceSpeed(Some(word.value * meters)));
+            self.actions.push(Action::SurfaceSpeed(Some(word.value * meters)));
         }
         let most = self.state.surface.unwrap_or(word.value);
         match self.state.spindle {
@@ -217,7 +222,7 @@ impl Step<'_, '_, '_> {
         }
         if !constant {
             if self.state.surface.take().is_some() {
-                self.ops.push(Op::SurfaceSpeed(None));
+                self.actions.push(Action::SurfaceSpeed(None));
             }
             return Ok(());
         }
@@ -239,7 +244,7 @@ impl Step<'_, '_, '_> {
     pub(super) fn turn(&mut self, spindle: Spindle) {
         if self.state.spindle != spindle {
             self.state.spindle = spindle;
-            self.ops.push(Op::Spindle(spindle));
+            self.actions.push(Action::Spindle(spindle));
         }
     }
 
@@ -287,18 +292,12 @@ impl Step<'_, '_, '_> {
         Ok(())
     }
 
-    /// M functions for which nothing moves: their letters are taken.
+    /// M functions for which nothing moves.
     fn neutral_m(&mut self) -> Result<(), Fault> {
+        self.signals()?;
         for group in [Group::Override, Group::Output] {
             match self.block.m(group) {
                 Some(M::Neutral(letters)) => self.block.pass(letters),
-                Some(M::Output(letters)) => {
-                    if let Some(&letter) = letters.iter().find(|&&letter| !self.block.has(letter)) {
-                        let message = format!("{} is missing", char::from(letter));
-                        return Err(self.block.at_group(group, "nc-output", message));
-                    }
-                    self.block.pass(letters);
-                }
                 Some(M::IdleTime) if self.block.take(b'S').is_none() => {
                     let message =
                         "the axes are let go: where the tool stands afterwards is not known";
@@ -331,7 +330,7 @@ impl Step<'_, '_, '_> {
             return Err(fault.help("write M9 first").into());
         }
         self.state.coolant = coolant;
-        self.ops.push(Op::Coolant(coolant));
+        self.actions.push(Action::Coolant(coolant));
         Ok(())
     }
 
@@ -352,7 +351,7 @@ impl Step<'_, '_, '_> {
         };
         match seconds {
             Some(seconds) if seconds >= 0.0 => {
-                self.ops.push(Op::Dwell(seconds));
+                self.actions.push(Action::Dwell(seconds));
                 Ok(())
             }
             Some(_) => Err(self.block.whole("nc-dwell", "the dwell is below 0")),
@@ -465,9 +464,11 @@ impl Step<'_, '_, '_> {
                 }
                 self.change_by_hand();
             }
-            Some(M::Stop) => self.ops.push(Op::Stop),
+            Some(M::Stop) => self.actions.push(Action::Stop),
             // GRBL reads M1 and does nothing.
-            Some(M::OptionalStop) if self.flavor != Flavor::Grbl => self.ops.push(Op::OptionalStop),
+            Some(M::OptionalStop) if self.flavor != Flavor::Grbl => {
+                self.actions.push(Action::OptionalStop)
+            }
             Some(M::End) => {
                 // The others switch off by themselves; on FANUC it is the builder's choice.
                 if self.flavor != Flavor::Fanuc {
@@ -475,7 +476,7 @@ impl Step<'_, '_, '_> {
                     self.cool(Coolant::Off)?;
                 }
                 self.state.ended = true;
-                self.ops.push(Op::End);
+                self.actions.push(Action::End);
             }
             _ => {}
         }

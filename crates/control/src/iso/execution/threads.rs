@@ -1,8 +1,9 @@
 //! Moves in step with the spindle: `G33`, `G33.1`.
 
 use super::step::Step;
+use crate::event::Action;
 use crate::iso::language::block::Fault;
-use program::{Cycle, CycleKind, Op, Spindle, Thread};
+use program::{Cycle, CycleKind, Spindle, Thread};
 
 impl Step<'_, '_, '_> {
     /// `G33`: a straight line in step with the spindle. LinuxCNC's K counts along the way, FANUC's F
@@ -23,7 +24,7 @@ impl Step<'_, '_, '_> {
         let pitch = self.pitch(if self.flavor.is_fanuc() { b'F' } else { b'K' })?;
         self.spindle_turns()?;
         let end = self.state.pose(target.point, target.rotary);
-        self.ops.push(Op::Thread(Box::new(Thread { end, pitch })));
+        self.actions.push(Action::Thread(Box::new(Thread { end, pitch })));
         self.state.arrive(target.point, target.rotary);
         Ok(())
     }
@@ -54,9 +55,9 @@ impl Step<'_, '_, '_> {
             first_peck: None,
             peck: None,
         };
-        self.ops.push(Op::Cycle(Box::new(cycle)));
-        self.ops.push(Op::Hole(self.state.pose(start, self.state.rotary)));
-        self.ops.push(Op::CycleOff);
+        self.actions.push(Action::Cycle(Box::new(cycle)));
+        self.actions.push(Action::Hole(self.state.pose(start, self.state.rotary)));
+        self.actions.push(Action::CycleOff);
         let back = super::motion::Target { point: start, ..target };
         self.state.arrive(back.point, back.rotary);
         Ok(())

@@ -3,9 +3,10 @@
 use super::state::{Length, Tilt, UNKNOWN};
 use super::step::Step;
 use crate::ToolData;
+use crate::event::Action;
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::{Flavor, G, Group, M, bit};
-use program::{Op, Spindle, Tool};
+use program::{Spindle, Tool};
 
 /// What the program can know of the tool registers.
 #[derive(Clone, Debug, Default)]
@@ -71,7 +72,7 @@ impl Step<'_, '_, '_> {
                 Ok(())
             }
             None => {
-                self.ops.extend(number.map(Op::Preselect));
+                self.actions.extend(number.map(Action::Preselect));
                 Ok(())
             }
         }
@@ -103,7 +104,7 @@ impl Step<'_, '_, '_> {
 
     fn put_in(&mut self, number: u32) {
         self.state.tool = Some(number);
-        self.ops.push(Op::Tool(Box::new(Tool { number, ..Tool::default() })));
+        self.actions.push(Action::Tool(Box::new(Tool { number, ..Tool::default() })));
     }
 
     /// D and H are modal by themselves (B-64484EN-2, "Tool length compensation", "Cutter compensation"):
@@ -190,7 +191,7 @@ impl Step<'_, '_, '_> {
         let registers = &self.state.registers;
         self.state.position.z += self.state.length.value(registers) - length.value(registers);
         self.state.length = length;
-        self.ops.push(Op::LengthOffset(match length {
+        self.actions.push(Action::LengthOffset(match length {
             Length::None => None,
             Length::Register(register) | Length::Center(register) => Some(register),
             Length::Value(_) => Some(0),

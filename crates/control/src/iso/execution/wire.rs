@@ -2,10 +2,10 @@
 
 use super::step::Step;
 use crate::Settings;
+use crate::event::{Action, Orientation};
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::{G, Group, M, Motion, Side};
 use geom::{Vec3, direction};
-use program::{Op, Orientation};
 
 /// The wire as the control knows it.
 #[derive(Clone, Copy, Debug)]
@@ -17,7 +17,7 @@ pub(crate) struct Wire {
     v: f64,
     /// Where that points it: it is set up upright.
     axis: Vec3,
-    /// By how much the control leans it, as [`Op::Taper`] says it.
+    /// By how much the control leans it, as [`Action::Taper`] says it.
     taper: f64,
 }
 
@@ -46,16 +46,16 @@ impl Step<'_, '_, '_> {
         self.state.position.z = 0.0;
         self.taper()?;
         self.block.pass(self.flavor.conditions());
-        let op = match self.block.m(Group::Wire) {
+        let action = match self.block.m(Group::Wire) {
             None => return Ok(()),
-            Some(M::ThreadWire) => Op::ThreadWire,
-            Some(_) => Op::CutWire,
+            Some(M::ThreadWire) => Action::ThreadWire,
+            Some(_) => Action::CutWire,
         };
         if b"XYUV".iter().any(|&letter| self.block.has(letter)) {
             let message = "the wire is threaded or cut in a block that moves: before or after it?";
             return Err(self.block.at_group(Group::Wire, "nc-wire", message));
         }
-        if op == Op::CutWire {
+        if action == Action::CutWire {
             self.not_compensated("the end of the wire")?;
             if self.state.wire.is_some_and(|wire| wire.taper != 0.0) {
                 let message = "the end of the wire while the control leans it; write G50 first";
@@ -63,7 +63,7 @@ impl Step<'_, '_, '_> {
             }
         }
         self.stood();
-        self.ops.push(op);
+        self.actions.push(action);
         Ok(())
     }
 
@@ -87,7 +87,7 @@ impl Step<'_, '_, '_> {
             && wire.taper != angle
         {
             wire.taper = angle;
-            self.ops.push(Op::Taper(angle));
+            self.actions.push(Action::Taper(angle));
         }
         Ok(())
     }

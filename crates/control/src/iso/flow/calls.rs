@@ -4,11 +4,11 @@ use super::macros;
 use super::modes::Modes;
 use super::run::Run;
 use super::source::Place;
+use crate::event::Action;
 use crate::iso::language::arithmetic;
 use crate::iso::language::block::{Block, Fault};
 use crate::iso::language::parameters::{Language, Locals};
 use crate::iso::language::words::{Flavor, G, Group, M};
-use program::Op;
 
 /// How many calls LinuxCNC nests (`INTERP_SUB_ROUTINE_LEVELS` less that of the program).
 const NGC_CALLS: usize = 9;
@@ -187,11 +187,12 @@ impl<'a> Run<'a, '_> {
 
     /// After a move the macro of `G66` is called.
     pub(super) fn after_move(&mut self) -> Result<(), Fault> {
-        let moves = |op: &Op| op.pose().is_some() || matches!(op, Op::Home(_));
+        let moves =
+            |action: &Action| action.position().is_some() || matches!(action, Action::Home(_));
         let Some(modal) = self.frames.last().and_then(|frame| frame.modal.as_ref()) else {
             return Ok(());
         };
-        if !self.ops.iter().any(moves) {
+        if !self.actions.iter().any(moves) {
             return Ok(());
         }
         let (place, turns, locals) = (modal.place, modal.turns, modal.locals);

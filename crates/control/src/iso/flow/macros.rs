@@ -4,11 +4,12 @@
 
 use super::run::Run;
 use super::source::{self, Place, Source};
+use crate::event::Action;
 use crate::iso::language::arithmetic;
 use crate::iso::language::block::{Fault, Word};
 use crate::iso::language::expression::{Reader, Target};
 use crate::{WholeNumbers, decimal};
-use program::{Diagnostic, Op};
+use program::Diagnostic;
 use std::collections::HashMap;
 
 /// What begins a statement.
@@ -318,7 +319,7 @@ impl<'a> Run<'a, '_> {
             }
             Keyword::Print => {
                 let shown = String::from_utf8_lossy(text.get(at..).unwrap_or_default());
-                self.tell(Op::Comment(shown.trim().into()));
+                self.tell(Action::Comment(shown.trim().into()));
                 Ok(())
             }
         }
@@ -347,7 +348,7 @@ impl<'a> Run<'a, '_> {
                 Err(Diagnostic::error("nc-alarm", message).at(line, text, at, text.len()).into())
             }
             3006 => {
-                self.tell(Op::Stop);
+                self.tell(Action::Stop);
                 Ok(())
             }
             // Clocks, and what the operator's keys may do meanwhile.

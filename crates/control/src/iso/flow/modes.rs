@@ -111,7 +111,7 @@ impl Run<'_, '_> {
         if now.length != kept.length {
             block.put_g(Group::Length, G::CancelLength);
         }
-        self.control.execute(&mut self.block, &mut self.ops)?;
+        self.control.execute(&mut self.block, &mut self.actions)?;
         self.block.clear(line, text);
         let block = &mut self.block;
         if let Some(f) = kept.f {
@@ -136,6 +136,6 @@ impl Run<'_, '_> {
                 Coolant::Off | Coolant::Through => M::CoolantOff,
             },
         );
-        self.control.execute(&mut self.block, &mut self.ops)
+        self.control.execute(&mut self.block, &mut self.actions)
     }
 }

@@ -8,6 +8,7 @@ use super::source::{self, Place, Source};
 use crate::Settings;
 use crate::budget::Budget;
 use crate::compensation::Compensator;
+use crate::event::{Action, Event};
 use crate::iso::execution::onward::Onward;
 use crate::iso::execution::state::State;
 use crate::iso::execution::step::Control;
@@ -17,7 +18,7 @@ use crate::iso::language::expression::Reader;
 use crate::iso::language::flavors;
 use crate::iso::language::parameters::{Language, Parameters, Values};
 use crate::iso::language::words::{Dictionary, Flavor, G, Group, M};
-use program::{Diagnostic, Op, Record};
+use program::Diagnostic;
 use std::collections::HashMap;
 use std::ptr;
 
@@ -29,7 +30,7 @@ pub(crate) struct Run<'a, 's> {
     pub control: Control,
     pub parameters: Parameters,
     pub block: Block<'a>,
-    pub ops: Vec<Op>,
+    pub actions: Vec<Action>,
     /// The program itself.
     pub main: &'a Source<'a>,
     pub here: Place<'a>,
@@ -56,12 +57,13 @@ pub(crate) struct Run<'a, 's> {
 impl<'a, 's> Run<'a, 's> {
     /// At the start of `main`.
     pub(crate) fn new(
+        flavor: Flavor,
         settings: &'a Settings,
         main: &'a Source<'a>,
         ahead: Ahead,
         compensator: &'a mut Compensator<'s>,
     ) -> Run<'a, 's> {
-        let dictionary = flavors::dictionary(settings.dialect);
+        let dictionary = flavors::dictionary(flavor);
         let language = dictionary.flavor.language();
         let here = Place { source: main, at: 0, line: 0, percent_signs: 0 };
         Run {
@@ -71,7 +73,7 @@ impl<'a, 's> Run<'a, 's> {
             control: Control::new(settings, dictionary.flavor),
             parameters: Parameters::new(language),
             block: Block::new(dictionary, settings),
-            ops: Vec::new(),
+            actions: Vec::new(),
             main,
             here,
             text: (b"", 0),
@@ -107,14 +109,14 @@ impl<'a, 's> Run<'a, 's> {
                 self.line(from, text, line, is_plain).map_err(|fault| source.located(fault))?;
             }
             let line = self.caller.unwrap_or(line);
-            for op in self.ops.drain(..) {
-                self.budget.record(&op);
-                match op {
-                    Op::Compensation(side) => {
+            for action in self.actions.drain(..) {
+                self.budget.record(&action);
+                match action {
+                    Action::Compensation(side) => {
                         let terms = self.control.state.compensation_terms();
                         self.compensator.switch(line, side, terms)?;
                     }
-                    op => self.compensator.take(Record { line, op })?,
+                    action => self.compensator.take(Event { line, action })?,
                 }
             }
         }
@@ -126,7 +128,7 @@ impl<'a, 's> Run<'a, 's> {
         if self.frames.len() == 1 {
             if self.dictionary.flavor.ends_with_text() && !self.control.state.ended {
                 let line = self.here.line.max(1);
-                self.compensator.take(Record { line, op: Op::End })?;
+                self.compensator.take(Event { line, action: Action::End })?;
             }
             return Ok(());
         }
@@ -144,8 +146,8 @@ impl<'a, 's> Run<'a, 's> {
         if text.len() > self.dictionary.longest {
             return false;
         }
-        let Some(op) = self.control.go_on(onward, self.ahead.words()) else { return false };
-        self.ops.push(op);
+        let Some(action) = self.control.go_on(onward, self.ahead.words()) else { return false };
+        self.actions.push(action);
         true
     }
 
@@ -242,7 +244,7 @@ impl<'a, 's> Run<'a, 's> {
         let calls = matches!(flow, Some(M::Call | M::CallBlock));
         let call = if calls { Some(self.called_program()?) } else { None };
         let back = if flow == Some(M::Return) { self.whole_word(b'P')? } else { None };
-        self.control.execute(&mut self.block, &mut self.ops)?;
+        self.control.execute(&mut self.block, &mut self.actions)?;
         if self.block.g(Group::Macro) == Some(G::CancelMacroCall) {
             self.frame().modal = None;
         }
@@ -306,23 +308,23 @@ impl<'a, 's> Run<'a, 's> {
     fn comments(&mut self) {
         for comment in self.block.comments() {
             let text = String::from_utf8_lossy(comment);
-            let op = match text.split_once(',') {
+            let action = match text.split_once(',') {
                 Some((head, message)) if head.trim().eq_ignore_ascii_case("MSG") => {
-                    Op::Message(message.trim().into())
+                    Action::Message(message.trim().into())
                 }
                 Some((head, message)) if self.language == Language::Ngc => {
                     match head.trim().to_ascii_lowercase().as_str() {
-                        "debug" => Op::Message(self.shown(message).trim().into()),
-                        "print" | "log" => Op::Comment(self.shown(message).trim().into()),
-                        _ => Op::Comment(text.trim().into()),
+                        "debug" => Action::Message(self.shown(message).trim().into()),
+                        "print" | "log" => Action::Comment(self.shown(message).trim().into()),
+                        _ => Action::Comment(text.trim().into()),
                     }
                 }
-                _ => Op::Comment(text.trim().into()),
+                _ => Action::Comment(text.trim().into()),
             };
-            self.ops.push(op);
+            self.actions.push(action);
         }
         if let Some(message) = self.block.message() {
-            self.ops.push(Op::Message(String::from_utf8_lossy(message).into()));
+            self.actions.push(Action::Message(String::from_utf8_lossy(message).into()));
         }
     }
 
@@ -368,8 +370,8 @@ impl<'a, 's> Run<'a, 's> {
     }
 
     /// Adds a record.
-    pub(super) fn tell(&mut self, op: Op) {
-        self.ops.push(op);
+    pub(super) fn tell(&mut self, action: Action) {
+        self.actions.push(action);
     }
 
     /// What the comments of the block say.

@@ -93,6 +93,8 @@ pub(crate) struct Block<'a> {
     pub assignments: Vec<(Target<'a>, Value)>,
     /// The words behind `G65` or `G66`, in their order.
     pub arguments: Vec<Word>,
+    /// The M functions of the machine's builder that stand for themselves, in their order.
+    pub auxiliary: Vec<u32>,
 }
 
 impl<'a> Block<'a> {
@@ -120,6 +122,7 @@ impl<'a> Block<'a> {
             prompt: None,
             assignments: Vec::new(),
             arguments: Vec::new(),
+            auxiliary: Vec::new(),
         }
     }
 
@@ -137,6 +140,7 @@ impl<'a> Block<'a> {
         self.prompt = None;
         self.assignments.clear();
         self.arguments.clear();
+        self.auxiliary.clear();
     }
 
     /// Takes the words of `text` from byte `at` on in place of those of the last block.
@@ -312,10 +316,13 @@ impl<'a> Block<'a> {
                     self.places[group as usize] = *word;
                     self.m_count += 1;
                 }
-                None if self.settings.auxiliary.iter().any(|&m| f64::from(m) == word.value) => {
-                    self.m_count += 1;
-                }
-                None => return Err(self.unknown(letter, word)),
+                None => match self.auxiliary(word.value) {
+                    Some(number) => {
+                        self.m_count += 1;
+                        self.auxiliary.push(number);
+                    }
+                    None => return Err(self.unknown(letter, word)),
+                },
             },
             _ => {
                 let letter_bit = bit(letter);
@@ -365,13 +372,18 @@ impl<'a> Block<'a> {
         Some(self.text.get(from..to).unwrap_or_default().trim_ascii())
     }
 
+    /// The M function of this number, where the builder of the machine has added it.
+    fn auxiliary(&self, number: f64) -> Option<u32> {
+        self.settings.auxiliary.iter().copied().find(|&m| f64::from(m) == number)
+    }
+
     /// The M function of this number that is the machine's own: it threads or cuts the wire, or runs a
     /// program of LinuxCNC's (`M100` to `M199`), to which P and Q belong.
     fn of_the_machine(&self, number: f64) -> Option<(Group, M)> {
         let is = |function: Option<u32>| function.map(f64::from) == Some(number);
         let runs = self.dictionary.flavor == Flavor::LinuxCnc && (100.0..200.0).contains(&number);
-        if runs && self.settings.auxiliary.iter().any(|&m| f64::from(m) == number) {
-            return Some((Group::Output, M::Neutral(b"PQ")));
+        if let Some(number) = self.auxiliary(number).filter(|_| runs) {
+            return Some((Group::Output, M::Program(number)));
         }
         match self.settings.wire {
             _ if !self.dictionary.flavor.is_wire() => None,

@@ -271,8 +271,20 @@ pub(crate) enum M {
     Message,
     /// Marlin's `M18`, `M84`: with S after how many idle seconds the axes are let go.
     IdleTime,
-    /// An output of the machine; the letters must stand beside it.
-    Output(&'static [u8]),
+    /// `M62` to `M65`: the digital output that P names.
+    Digital {
+        on: bool,
+        with_motion: bool,
+    },
+    /// `M67`, `M68`: the analog output that E names, to Q.
+    Analog {
+        with_motion: bool,
+    },
+    /// `M66`: waits for the input that P or E names.
+    Input,
+    /// A program that the user has added as an M function (LinuxCNC's `M100` to `M199`); P and Q are
+    /// handed to it.
+    Program(u32),
 }
 
 /// Words of one group exclude each other in a block.

@@ -6,11 +6,12 @@
 
 use super::contour::{Bend, Element, Waiting, left_of};
 use super::state::Control;
+use crate::event::Action;
 use crate::klartext::language::functions::When;
 use crate::klartext::language::scan::{Result, Scanner};
 use crate::klartext::language::words::{CCA, FeedWord, LEN, LINEAR, PA, PR, RADIUS, Words, slot};
 use geom::Vec3;
-use program::{Compensation, Diagnostic, Op};
+use program::{Compensation, Diagnostic};
 
 /// The shape of an approach or a departure.
 #[derive(Clone, Copy, PartialEq)]
@@ -191,7 +192,7 @@ impl Control<'_, '_> {
         let to = before.with_z(start.z);
         if rapid && !matches!(shape, Shape::LineAndArc(_)) {
             self.here = to;
-            self.emit(Op::Rapid(self.pose(to)))?;
+            self.emit(Action::Rapid(self.pose(to)))?;
         } else {
             self.needs_feed(s, false)?;
             self.tell(s, Element { start, end: to, arc: None })?;

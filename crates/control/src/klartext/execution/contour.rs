@@ -287,7 +287,7 @@ impl Control<'_, '_> {
             return Ok(());
         }
         self.feed = Some(feed);
-        self.emit(program::Op::Feed(feed))
+        self.emit(crate::event::Action::Feed(feed))
     }
 
     /// Goes back to the feed from before a block with a feed of its own.

@@ -4,12 +4,13 @@ use super::hole::{Hole, RAPID_FEED};
 use super::layout::{self, Layout, Unit};
 use super::older::Older;
 use super::state::{Control, TENTH_INCH, Tip};
+use crate::event::Action;
 use crate::klartext::language::functions::When;
 use crate::klartext::language::registers::{Parameter, Registers};
 use crate::klartext::language::scan::{Result, Scanner};
 use crate::klartext::language::words::{LINEAR, Words, slot};
 use geom::Vec3;
-use program::{Compensation, CycleKind, Diagnostic, Feed, Op, Spindle};
+use program::{Compensation, CycleKind, Diagnostic, Feed, Spindle, WorkOffset};
 
 /// Highest number of a cycle and of its parts.
 const MOST: u32 = 999;
@@ -196,7 +197,8 @@ impl Control<'_, '_> {
         }
         self.outside = super::transform::Transforms::default();
         self.forget_position();
-        self.emit(Op::WorkOffset(53 + preset as u32))
+        let Some(offset) = WorkOffset::at(preset as u32) else { return Ok(()) };
+        self.emit(Action::WorkOffset(offset))
     }
 
     /// `CYCL CALL`, from behind it.
@@ -233,10 +235,10 @@ impl Control<'_, '_> {
         let (surface, clearance) = (hole.surface() + at(slot::Z), hole.get(200));
         if self.here.z < surface {
             self.here.z = surface + clearance;
-            self.emit(Op::Rapid(self.pose(self.here)))?;
+            self.emit(Action::Rapid(self.pose(self.here)))?;
         }
         self.here = Vec3::new(at(slot::X), at(slot::Y), self.here.z);
-        self.emit(Op::Rapid(self.pose(self.here)))?;
+        self.emit(Action::Rapid(self.pose(self.here)))?;
         self.drill(s, at(slot::Z), None)?;
         self.functions(s, words.functions, When::End)
     }
@@ -294,9 +296,9 @@ impl Control<'_, '_> {
         let hole = self.cutting_pose(s, self.here.with_z(point))?;
         if self.told != Some(cycle) {
             self.told = Some(cycle);
-            self.emit(Op::Cycle(Box::new(cycle)))?;
+            self.emit(Action::Cycle(Box::new(cycle)))?;
         }
-        self.emit(Op::Hole(hole))?;
+        self.emit(Action::Hole(hole))?;
         self.here.z = point + cycle.retract;
         self.path = None;
         Ok(())
@@ -368,7 +370,7 @@ impl Control<'_, '_> {
         if seconds < 0.0 {
             return Err(s.error_block("dwell", "a dwell is not negative"));
         }
-        self.emit(Op::Dwell(seconds))
+        self.emit(Action::Dwell(seconds))
     }
 
     /// `FUNCTION DWELL TIME10`, from behind `DWELL`.
@@ -376,7 +378,7 @@ impl Control<'_, '_> {
         let seconds = s.take_symbol(b"TIME").then(|| s.value(&self.registers)).transpose()?;
         s.finish()?;
         match seconds.filter(|seconds| *seconds >= 0.0) {
-            Some(seconds) => self.emit(Op::Dwell(seconds)),
+            Some(seconds) => self.emit(Action::Dwell(seconds)),
             None => Err(s.error_block("dwell", "FUNCTION DWELL takes TIME with seconds")),
         }
     }

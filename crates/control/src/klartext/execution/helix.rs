@@ -3,9 +3,10 @@
 use super::contour::{Bend, Element};
 use super::hole::Hole;
 use super::state::Control;
+use crate::event::Action;
 use crate::klartext::language::scan::{Result, Scanner};
 use geom::Vec3;
-use program::{Feed, Op, Spindle};
+use program::{Feed, Spindle};
 
 /// The most turns of one bore.
 const MOST_TURNS: f64 = 10_000.0;
@@ -91,7 +92,7 @@ impl Control<'_, '_> {
         let at = |height: f64| axis + Vec3::Z * height;
         self.here = at(helix.clearance);
         self.cutting_pose(s, self.here)?;
-        self.emit(Op::Rapid(self.pose(self.here)))?;
+        self.emit(Action::Rapid(self.pose(self.here)))?;
         let before = self.feed;
         self.take_feed(Feed::PerMinute(helix.feed))?;
         if helix.radius == 0.0 {
@@ -102,7 +103,7 @@ impl Control<'_, '_> {
         self.restore_feed(before)?;
         self.here = at(level.map_or(helix.retract, |level| level - surface));
         self.path = None;
-        self.emit(Op::Rapid(self.pose(self.here)))
+        self.emit(Action::Rapid(self.pose(self.here)))
     }
 
     /// The ways at the feed, from the axis above the bore to the axis at its bottom.

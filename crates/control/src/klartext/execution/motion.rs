@@ -2,13 +2,14 @@
 
 use super::contour::{Bend, Element, left_of};
 use super::state::{AXES, Control, Tip};
+use crate::event::{Action, Orientation, Position};
 use crate::klartext::language::functions::{Function, When};
 use crate::klartext::language::scan::{Result, Scanner};
 use crate::klartext::language::words::{
     LINEAR, PA, PR, RADIUS, ROTARY, TURN, VECTORS, Words, slot,
 };
 use geom::{Arc, ArcError, Vec3, direction};
-use program::{ArcTo, Compensation, Op, Orientation, Pose};
+use program::{ArcTo, Axes, Compensation};
 
 /// By how much the radii at the two ends of an arc may differ, mm: the most that the machine
 /// parameter circleDeviation (MP7431) takes.
@@ -198,15 +199,15 @@ impl Control<'_, '_> {
                 }
                 self.forget_position();
                 return self.emit(match rapid {
-                    true => Op::Rapid(self.pose(self.here)),
-                    false => Op::Line(self.cutting_pose(s, self.here)?),
+                    true => Action::Rapid(self.pose(self.here)),
+                    false => Action::Line(self.cutting_pose(s, self.here)?),
                 });
             }
         }
         if rapid {
             self.path = Some(element);
             self.check_descent(s)?;
-            return self.emit(Op::Rapid(self.pose(self.here)));
+            return self.emit(Action::Rapid(self.pose(self.here)));
         }
         self.contour_element(s, element, corner)
     }
@@ -217,7 +218,7 @@ impl Control<'_, '_> {
         self.path = Some(element);
         let end = self.cutting_pose(s, element.end)?;
         let Some(Bend { center, sense, turns }) = element.arc else {
-            return self.emit(Op::Line(end));
+            return self.emit(Action::Line(end));
         };
         if !self.transforms().keeps_circles() {
             let message = "an arc in coordinates that are scaled differently in X and Y";
@@ -231,7 +232,7 @@ impl Control<'_, '_> {
             normal: self.work_direction(Vec3::Z * sense),
             turns,
         };
-        self.emit(Op::Arc(Box::new(arc)))
+        self.emit(Action::Arc(Box::new(arc)))
     }
 
     /// In a turned plane nothing goes down at a place that is not known.
@@ -247,7 +248,7 @@ impl Control<'_, '_> {
     }
 
     /// The pose at a programmed position where something is cut, which must be known.
-    pub(super) fn cutting_pose(&self, s: &Scanner, programmed: Vec3) -> Result<Pose> {
+    pub(super) fn cutting_pose(&self, s: &Scanner, programmed: Vec3) -> Result<Position> {
         let pose = self.pose(programmed);
         let rotary_known = match pose.orientation {
             Orientation::Axis(axis) => axis.is_finite(),
@@ -282,8 +283,8 @@ impl Control<'_, '_> {
             let message = "M128 is reset before positioning with M91 or M92";
             return Err(s.error_block("tool-center", message).help("program M129 first").into());
         }
-        let bits = (0..6).filter(|i| words.has(1 << i)).fold(0, |bits, i| bits | 1 << i);
-        if bits == 0 {
+        let axes = Axes::of([0, 1, 2, 3, 4, 5].map(|i| words.has(1 << i)));
+        if axes.is_empty() {
             return Err(s.error_block("missing-word", "M91 and M92 need coordinates"));
         }
         if words.has(ROTARY) {
@@ -299,7 +300,7 @@ impl Control<'_, '_> {
                 self.here[i] = f64::NAN;
             }
         }
-        self.emit(Op::Home(bits))
+        self.emit(Action::Home(axes))
     }
 
     /// `CC`: the pole; without coordinates where the tool is.

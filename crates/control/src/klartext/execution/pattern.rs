@@ -2,11 +2,11 @@
 
 use super::cycle::Definition;
 use super::state::Control;
+use crate::event::Action;
 use crate::klartext::language::functions::When;
 use crate::klartext::language::scan::{Result, Scanner};
 use crate::klartext::language::words::Words;
 use geom::Vec3;
-use program::Op;
 
 /// Most points of a pattern.
 const MOST: f64 = 99_999.0;
@@ -78,7 +78,7 @@ impl Control<'_, '_> {
         // First to the second clearance, then in the plane.
         self.here.z = surface + second;
         self.check_descent(s)?;
-        self.emit(Op::Rapid(self.pose(self.here)))?;
+        self.emit(Action::Rapid(self.pose(self.here)))?;
         self.drill_at(s, &points, between)?;
         // At which of the two heights the tool ends is not said where they differ.
         if between != surface + clearance.max(second) {
@@ -154,10 +154,10 @@ impl Control<'_, '_> {
             // Upwards before it goes in the plane.
             if self.here.z < level {
                 self.here.z = level;
-                self.emit(Op::Rapid(self.pose(self.here)))?;
+                self.emit(Action::Rapid(self.pose(self.here)))?;
             }
             self.here = point.with_z(self.here.z);
-            self.emit(Op::Rapid(self.pose(self.here)))?;
+            self.emit(Action::Rapid(self.pose(self.here)))?;
             self.drill(s, point.z, Some(level))?;
         }
         Ok(())

@@ -2,10 +2,11 @@
 
 use super::state::{Control, Tip};
 use super::transform::Transforms;
+use crate::event::Action;
 use crate::klartext::language::scan::{Result, Scanner};
 use crate::klartext::language::words::{ROTARY, Words, feed_word, slot};
 use geom::{Mat3, Vec3, direction};
-use program::Op;
+use program::Axes;
 
 /// A tilted plane of work.
 #[derive(Clone, Debug, PartialEq)]
@@ -162,13 +163,13 @@ impl Control<'_, '_> {
         self.tilt = turn.map(|turn| Tilt { turn, inside, turned });
         if let Positioning::Turn { rapid, retract } = positioning {
             if retract {
-                self.emit(Op::Home(0b100))?;
+                self.emit(Action::Home(Axes::Z))?;
             }
             if self.tilt.is_none() {
                 self.degrees = [0.0; 3];
             }
             let pose = self.pose(self.here);
-            self.emit(if rapid { Op::Rapid(pose) } else { Op::Line(pose) })?;
+            self.emit(if rapid { Action::Rapid(pose) } else { Action::Line(pose) })?;
         }
         Ok(())
     }

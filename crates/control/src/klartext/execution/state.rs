@@ -9,12 +9,13 @@ use crate::Settings;
 use crate::ToolData;
 use crate::budget::Budget;
 use crate::compensation::{Compensator, Terms};
+use crate::event::{Action, Event, Orientation, Position};
 use crate::klartext::language::functions::{Function, Functions, When};
 use crate::klartext::language::registers::Registers;
 use crate::klartext::language::scan::{Result, Scanner};
 use crate::klartext::language::words::FeedWord;
 use geom::Vec3;
-use program::{Compensation, Coolant, Cycle, Feed, Op, Orientation, Pose, Record, Spindle};
+use program::{Auxiliary, Axes, Compensation, Coolant, Cycle, Feed, Spindle};
 
 use std::collections::HashMap;
 
@@ -137,9 +138,9 @@ impl<'a, 's> Control<'a, 's> {
         }
     }
 
-    pub(crate) fn emit(&mut self, op: Op) -> Result<()> {
-        self.budget.record(&op);
-        self.compensator.take(Record { line: self.line, op })
+    pub(crate) fn emit(&mut self, action: Action) -> Result<()> {
+        self.budget.record(&action);
+        self.compensator.take(Event { line: self.line, action })
     }
 
     /// A jump, a call or a return, after which so many bytes are read again: programs that never end
@@ -174,8 +175,8 @@ impl<'a, 's> Control<'a, 's> {
     }
 
     /// The pose of the tool at a programmed position.
-    pub(super) fn pose(&self, programmed: Vec3) -> Pose {
-        Pose { point: self.work_point(programmed), orientation: self.orientation() }
+    pub(super) fn pose(&self, programmed: Vec3) -> Position {
+        Position { point: self.work_point(programmed), orientation: self.orientation() }
     }
 
     /// A programmed position in the work frame.
@@ -276,7 +277,7 @@ impl<'a, 's> Control<'a, 's> {
         }
         if self.spindle != spindle {
             self.spindle = spindle;
-            self.emit(Op::Spindle(spindle))?;
+            self.emit(Action::Spindle(spindle))?;
         }
         Ok(())
     }
@@ -285,7 +286,7 @@ impl<'a, 's> Control<'a, 's> {
         self.registers.preassign(111, f64::from(coolant != Coolant::Off));
         if self.coolant != coolant {
             self.coolant = coolant;
-            self.emit(Op::Coolant(coolant))?;
+            self.emit(Action::Coolant(coolant))?;
         }
         Ok(())
     }
@@ -341,11 +342,11 @@ impl<'a, 's> Control<'a, 's> {
             Function::Coolant => self.set_coolant(Coolant::Flood),
             Function::CoolantOff => self.set_coolant(Coolant::Off),
             Function::Stop => {
-                self.emit(Op::Stop)?;
+                self.emit(Action::Stop)?;
                 self.stop_all()
             }
             Function::OptionalStop => {
-                self.emit(Op::OptionalStop)?;
+                self.emit(Action::OptionalStop)?;
                 self.stop_all()
             }
             Function::End if self.is_called() => {
@@ -375,6 +376,7 @@ impl<'a, 's> Control<'a, 's> {
                 self.calls_modally = false;
                 self.call_cycle(s)
             }
+            Function::Auxiliary(number) => self.emit(Action::Auxiliary(Auxiliary::of(number))),
             Function::MachineCoordinates | Function::Nothing => Ok(()),
         }
     }
@@ -393,7 +395,7 @@ impl<'a, 's> Control<'a, 's> {
     /// Back along the tool axis by `distance` mm; infinite is to the end of the travel.
     fn retract(&mut self, s: &Scanner, distance: f64, feed: Option<FeedWord>) -> Result<()> {
         if distance.is_infinite() {
-            self.emit(Op::Home(0b100))?;
+            self.emit(Action::Home(Axes::Z))?;
             if self.tilt.is_none() && self.stands_upright() {
                 self.here.z = f64::NAN;
             } else {
@@ -412,20 +414,20 @@ impl<'a, 's> Control<'a, 's> {
         self.here += axis * distance;
         let pose = self.pose(self.here);
         if matches!(feed, None | Some(FeedWord::Max)) {
-            return self.emit(Op::Rapid(pose));
+            return self.emit(Action::Rapid(pose));
         }
         let path = self.feed;
         self.set_feed(s, feed)?;
-        self.emit(Op::Line(pose))?;
+        self.emit(Action::Line(pose))?;
         self.feed = path;
-        path.map_or(Ok(()), |feed| self.emit(Op::Feed(feed)))
+        path.map_or(Ok(()), |feed| self.emit(Action::Feed(feed)))
     }
 
     /// The end of the program.
     pub(crate) fn end(&mut self) -> Result<()> {
         self.stop_all()?;
         self.ended = true;
-        self.emit(Op::End)
+        self.emit(Action::End)
     }
 
     /// `FN 18: SYSREAD`, from behind its `=`: `ID270 NR1 IDX1`. Lengths are mm in every program.

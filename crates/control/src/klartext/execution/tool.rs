@@ -2,11 +2,12 @@
 
 use super::state::{Control, Tip};
 use crate::ToolData;
+use crate::event::Action;
 use crate::klartext::language::registers::Parameter;
 use crate::klartext::language::scan::{Result, Scanner};
 use crate::klartext::language::words::{self, LINEAR, Words, feed_word};
 use geom::Vec3;
-use program::{Compensation, Diagnostic, Op, Spindle, Tool};
+use program::{Compensation, Diagnostic, Spindle, Tool};
 
 impl Control<'_, '_> {
     /// `TOOL CALL` and `TOOL DEF`, from behind `TOOL`.
@@ -77,7 +78,7 @@ impl Control<'_, '_> {
     fn define_tool(&mut self, s: &mut Scanner) -> Result<()> {
         let number = self.tool_number(s)?;
         if s.is_done() {
-            return self.emit(Op::Preselect(number));
+            return self.emit(Action::Preselect(number));
         }
         let (mut length, mut radius) = (None, None);
         while let Some(word) = s.word(&self.registers)? {
@@ -153,7 +154,7 @@ impl Control<'_, '_> {
         self.registers.preassign(108, metric.map_or(f64::NAN, |data| data.radius));
         self.registers.preassign(109, 2.0);
         self.registers.preassign(114, metric.map_or(f64::NAN, |data| data.length));
-        self.emit(Op::Tool(Box::new(tool)))?;
+        self.emit(Action::Tool(Box::new(tool)))?;
         self.here = Vec3::NAN;
         Ok(())
     }

@@ -2,6 +2,7 @@
 
 use super::calls::Calls;
 use super::source::{Line, Place, Source};
+use crate::event::Action;
 use crate::klartext::execution::cycle::Designation;
 use crate::klartext::execution::older::parts_needed;
 use crate::klartext::execution::state::Control;
@@ -10,7 +11,7 @@ use crate::klartext::language::functions::{Function, Functions, When};
 use crate::klartext::language::registers::Parameter;
 use crate::klartext::language::scan::{Result, Scanner};
 use crate::klartext::language::words::Words;
-use program::{Diagnostic, Op};
+use program::Diagnostic;
 
 /// A program on its way through the control.
 pub(crate) struct Run<'t, 'c, 'a, 's> {
@@ -221,7 +222,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
             let text = line.scanner.rest();
             let text = text.strip_prefix(b";").unwrap_or(text).trim_ascii_start();
             self.control.at_line(line.scanner.line);
-            self.control.emit(Op::Comment(String::from_utf8_lossy(text).into()))?;
+            self.control.emit(Action::Comment(String::from_utf8_lossy(text).into()))?;
             next = if line.continued { self.source.continuation() } else { None };
         }
         Ok(())

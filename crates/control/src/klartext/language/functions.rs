@@ -35,7 +35,9 @@ pub(crate) enum Function {
     ReleaseTip,
     /// Feed for each turn of the spindle (`M136`) or for each minute (`M137`).
     FeedPerTurn(bool),
-    /// Moves nothing: the builder's own, and those of the control that change no path.
+    /// A function that the builder of the machine has added.
+    Auxiliary(u32),
+    /// Moves nothing and changes no path.
     Nothing,
     /// Retracts along the tool axis: by so many mm, infinite for `M140 MB MAX`; at a feed of its own
     /// or by rapid.
@@ -121,8 +123,11 @@ impl Function {
             }
             return Ok(*function);
         }
-        let builders = control.settings.auxiliary.iter().any(|n| f64::from(*n) == number);
-        if builders || NEUTRAL.iter().any(is) {
+        let added = control.settings.auxiliary.iter().find(|n| f64::from(**n) == number);
+        if let Some(number) = added {
+            return Ok(Function::Auxiliary(*number));
+        }
+        if NEUTRAL.iter().any(is) {
             return Ok(Function::Nothing);
         }
         let reason = REFUSED.iter().find(|(n, _)| is(n)).map(|(_, reason)| *reason);

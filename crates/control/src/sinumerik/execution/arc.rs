@@ -2,12 +2,12 @@
 
 use super::corner::Element;
 use super::interpreter::Interpreter;
+use crate::event::Action;
 use crate::sinumerik::Fallible;
 use crate::sinumerik::language::block::{Block, Coordinate, Count};
 use crate::sinumerik::language::commands::{Diameter, Motion};
 use crate::sinumerik::language::scan::Source;
 use geom::{Arc, ArcError, Vec3, direction, rotate};
-use program::Op;
 
 /// How far the radii at the ends of an arc may be apart: mm for small arcs, part of the radius for
 /// large ones (MD21000, MD21010 as delivered; alarm 14040).
@@ -112,14 +112,14 @@ impl Interpreter<'_, '_> {
         self.state.heading = circle.normal.cross(end - circle.center);
         let circle = Some((circle.center, circle.normal));
         let element = Element { start, end, circle, cut: turns == 0 };
-        let mut op = self.piece(source, &element)?;
-        if let Op::Arc(arc) = &mut op {
+        let mut action = self.piece(source, &element)?;
+        if let Action::Arc(arc) = &mut action {
             arc.turns = turns;
         }
         if self.cornered(block) {
-            return self.go_round(source, block, element, op);
+            return self.go_round(source, block, element, action);
         }
-        self.emit(source, op)
+        self.emit(source, action)
     }
 
     /// `I J K`: from the start, whatever `G90` and `G91` say, unless `AC()` says otherwise.

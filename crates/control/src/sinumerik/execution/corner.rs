@@ -5,11 +5,12 @@
 //! and what is said in between with it.
 
 use super::interpreter::Interpreter;
+use crate::event::{Action, Event};
 use crate::sinumerik::Fallible;
 use crate::sinumerik::language::block::{Block, Corner};
 use crate::sinumerik::language::scan::Source;
 use geom::{Arc, Vec3};
-use program::{ArcTo, Diagnostic, Feed, Op, Record};
+use program::{ArcTo, Diagnostic, Feed};
 
 /// Most records between the two blocks of a corner; our own limit.
 const MOST_BETWEEN: usize = 100;
@@ -39,7 +40,7 @@ pub(crate) struct Held {
     feed: Option<f64>,
     line: u32,
     /// What has been said since.
-    between: Vec<Record>,
+    between: Vec<Event>,
 }
 
 /// Where a corner leaves the first block, where it meets the second, and its arc.
@@ -159,7 +160,7 @@ impl Interpreter<'_, '_> {
         source: &Source,
         block: &Block,
         mut element: Element,
-        op: Op,
+        action: Action,
     ) -> Fallible<()> {
         let own = block.rare.as_ref().and_then(|rare| rare.corner);
         let modal = own.is_none();
@@ -175,8 +176,8 @@ impl Interpreter<'_, '_> {
         let corner =
             corner.filter(|_| !modal || element.cut && level && element.start != element.end);
         let Some(corner) = corner else {
-            let op = if shortened { self.piece(source, &element)? } else { op };
-            return self.emit(source, op);
+            let action = if shortened { self.piece(source, &element)? } else { action };
+            return self.emit(source, action);
         };
         if !element.cut
             || !level
@@ -209,19 +210,27 @@ impl Interpreter<'_, '_> {
 
     /// A record while a block is held.
     #[cold]
-    pub fn keep(&mut self, source: &Source, record: Record) -> Fallible<()> {
+    pub fn keep(&mut self, source: &Source, record: Event) -> Fallible<()> {
         let Some(held) = &mut self.held else { return self.send(record) };
         let said = matches!(
-            record.op,
-            Op::Feed(_) | Op::Spindle(_) | Op::Coolant(_) | Op::Comment(_) | Op::Message(_)
+            record.action,
+            Action::Feed(_)
+                | Action::Spindle(_)
+                | Action::Coolant(_)
+                | Action::Comment(_)
+                | Action::Message(_)
         );
         if said && held.between.len() < MOST_BETWEEN {
             held.between.push(record);
             return Ok(());
         }
         let pauses = matches!(
-            record.op,
-            Op::Stop | Op::OptionalStop | Op::Dwell(_) | Op::Compensation(_) | Op::LengthOffset(_)
+            record.action,
+            Action::Stop
+                | Action::OptionalStop
+                | Action::Dwell(_)
+                | Action::Compensation(_)
+                | Action::LengthOffset(_)
         );
         if pauses {
             return Err(no_second_side(source, held.line));
@@ -236,8 +245,8 @@ impl Interpreter<'_, '_> {
         if !held.modal {
             return Err(no_second_side(source, held.line));
         }
-        let op = self.piece(source, &held.element)?;
-        self.send(Record { line: held.line, op })?;
+        let action = self.piece(source, &held.element)?;
+        self.send(Event { line: held.line, action })?;
         held.between.into_iter().try_for_each(|record| self.send(record))
     }
 
@@ -266,12 +275,12 @@ impl Interpreter<'_, '_> {
         if let Some(joint) = &joint {
             first.end = joint.from;
         }
-        let op = self.piece(source, &first)?;
-        self.send(Record { line: held.line, op })?;
+        let action = self.piece(source, &first)?;
+        self.send(Event { line: held.line, action })?;
         held.between.into_iter().try_for_each(|record| self.send(record))?;
         let Some(joint) = joint else { return Ok(false) };
         let piece = Element { start: joint.from, end: joint.to, circle: joint.circle, cut: true };
-        let op = self.piece(source, &piece)?;
+        let action = self.piece(source, &piece)?;
         let active = self.state.active_feed();
         let feed = match (held.feed, active) {
             (Some(feed), Some(Feed::PerMinute(_))) => Some(Feed::PerMinute(feed)),
@@ -282,11 +291,11 @@ impl Interpreter<'_, '_> {
             (None, _) => None,
         };
         if let Some(feed) = feed {
-            self.emit(source, Op::Feed(feed))?;
+            self.emit(source, Action::Feed(feed))?;
         }
-        self.send(Record { line: held.line, op })?;
+        self.send(Event { line: held.line, action })?;
         if let (Some(_), Some(active)) = (feed, active) {
-            self.emit(source, Op::Feed(active))?;
+            self.emit(source, Action::Feed(active))?;
         }
         second.start = joint.to;
         Ok(true)
@@ -345,15 +354,15 @@ impl Interpreter<'_, '_> {
     }
 
     /// The record of a way.
-    pub fn piece(&self, source: &Source, element: &Element) -> Fallible<Op> {
+    pub fn piece(&self, source: &Source, element: &Element) -> Fallible<Action> {
         let end = self.state.pose(element.end);
-        let Some((center, normal)) = element.circle else { return Ok(Op::Line(end)) };
+        let Some((center, normal)) = element.circle else { return Ok(Action::Line(end)) };
         let Some(normal) = self.state.frames.circle_normal(normal) else {
             let message = "the arc is no arc in this frame: its plane is scaled unevenly";
             return Err(source.block_error("arc", message));
         };
         let center = self.state.frames.in_work_frame(center);
-        Ok(Op::Arc(ArcTo { end, center, normal, turns: 0 }.into()))
+        Ok(Action::Arc(ArcTo { end, center, normal, turns: 0 }.into()))
     }
 }
 

@@ -7,7 +7,7 @@ use super::state::State;
 use crate::sinumerik::Fallible;
 use crate::sinumerik::language::call::Call;
 use crate::sinumerik::language::commands::FeedType;
-use crate::sinumerik::language::forms::{Action, Form};
+use crate::sinumerik::language::forms::{Form, Operation};
 use crate::sinumerik::language::scan::Source;
 use geom::Vec3;
 use program::{Cycle, CycleKind, Diagnostic, Feed, Spindle, Withdrawal};
@@ -229,13 +229,13 @@ impl Drilling {
             needs_feed: true,
         };
         match form.action {
-            Action::Drill => {}
-            Action::Peck => drilling.peck(&arguments)?,
-            Action::RigidTap => drilling.rigid_tap(&arguments, state)?,
-            Action::Tap => drilling.tap(&arguments, state)?,
-            Action::Ream => drilling.ream(&arguments, state)?,
-            Action::Bore => drilling.bore(&arguments, state)?,
-            Action::StopInHole => {
+            Operation::Drill => {}
+            Operation::Peck => drilling.peck(&arguments)?,
+            Operation::RigidTap => drilling.rigid_tap(&arguments, state)?,
+            Operation::Tap => drilling.tap(&arguments, state)?,
+            Operation::Ream => drilling.ream(&arguments, state)?,
+            Operation::Bore => drilling.bore(&arguments, state)?,
+            Operation::StopInHole => {
                 let message = "it stops the program in the hole; use CYCLE86";
                 return Err(arguments.error("unsupported", message));
             }

@@ -12,6 +12,7 @@ use super::state::State;
 use crate::Settings;
 use crate::budget::Budget;
 use crate::compensation::{Compensator, Terms};
+use crate::event::{Action, Event};
 use crate::sinumerik::Fallible;
 use crate::sinumerik::language::block::{Block, ToolCall};
 use crate::sinumerik::language::call::{Argument, Call, Procedure};
@@ -19,7 +20,7 @@ use crate::sinumerik::language::commands::{Code, FeedType, Motion};
 use crate::sinumerik::language::scan::Source;
 use crate::sinumerik::language::system::AXIS_NAMES;
 use crate::sinumerik::language::variables::ELEMENTS_IN_A_TURN;
-use program::{Compensation, Coolant, Cycle, Feed, Op, Record, Spindle, Tool};
+use program::{Auxiliary, Compensation, Coolant, Cycle, Feed, Spindle, Tool};
 
 /// Runs blocks.
 pub(crate) struct Interpreter<'a, 's> {
@@ -49,6 +50,13 @@ const COOLANT: &[u32] = &[7, 8, 9];
 /// Automatic gear stage, gear stages 1 to 5.
 const GEARS: std::ops::RangeInclusive<u32> = 40..=45;
 
+/// Whether an M function is the control's own, and not one of the builder's.
+fn is_own(m: u32) -> bool {
+    matches!(m, 6 | 19)
+        || [STOPS, SPINDLE, COOLANT].iter().any(|group| group.contains(&m))
+        || GEARS.contains(&m)
+}
+
 impl<'a, 's> Interpreter<'a, 's> {
     /// At the start of a program.
     pub fn new(
@@ -70,14 +78,14 @@ impl<'a, 's> Interpreter<'a, 's> {
 
     /// Reports what happens.
     #[inline]
-    pub fn emit(&mut self, source: &Source, op: Op) -> Fallible<()> {
-        let record = Record { line: self.line.unwrap_or(source.line), op };
+    pub fn emit(&mut self, source: &Source, action: Action) -> Fallible<()> {
+        let record = Event { line: self.line.unwrap_or(source.line), action };
         if self.held.is_some() { self.keep(source, record) } else { self.send(record) }
     }
 
     #[inline]
-    pub fn send(&mut self, record: Record) -> Fallible<()> {
-        self.budget.record(&record.op);
+    pub fn send(&mut self, record: Event) -> Fallible<()> {
+        self.budget.record(&record.action);
         self.compensator.take(record).inspect_err(|_| self.stopped = true)
     }
 
@@ -85,7 +93,7 @@ impl<'a, 's> Interpreter<'a, 's> {
     pub fn switch(&mut self, source: &Source, side: Compensation, terms: Terms) -> Fallible<()> {
         let line = self.line.unwrap_or(source.line);
         if self.held.is_some() {
-            return self.keep(source, Record { line, op: Op::Compensation(side) });
+            return self.keep(source, Event { line, action: Action::Compensation(side) });
         }
         self.compensator.switch(line, side, terms).inspect_err(|_| self.stopped = true)
     }
@@ -103,7 +111,7 @@ impl<'a, 's> Interpreter<'a, 's> {
     /// Carries out a block.
     pub fn run(&mut self, source: &Source, block: &mut Block) -> Fallible<()> {
         if let Some(comment) = block.comment.take() {
-            self.emit(source, Op::Comment(comment.into()))?;
+            self.emit(source, Action::Comment(comment.into()))?;
         }
         if !block.any {
             return Ok(());
@@ -115,7 +123,7 @@ impl<'a, 's> Interpreter<'a, 's> {
             }
         }
         if let Some(message) = block.message.take() {
-            self.emit(source, Op::Message(message.into()))?;
+            self.emit(source, Action::Message(message.into()))?;
         }
         if self.held.is_some() && block.changes_frame() {
             self.release(source)?;
@@ -135,6 +143,12 @@ impl<'a, 's> Interpreter<'a, 's> {
                 self.state.modal_round = radius.max(0.0) * self.state.unit;
             }
             self.state.corner_feed = rare.modal_corner_feed.or(self.state.corner_feed);
+        }
+        // What the builder has added, before the motion.
+        for m in block.m.iter().flatten() {
+            if self.settings.auxiliary.contains(m) && !is_own(*m) {
+                self.emit(source, Action::Auxiliary(Auxiliary::of(*m)))?;
+            }
         }
         match block.code(3) {
             Some(Code::Frame(command)) => return self.frame_command(source, block, command),
@@ -168,11 +182,7 @@ impl<'a, 's> Interpreter<'a, 's> {
             }
         }
         for m in block.m.iter().flatten() {
-            let known = matches!(*m, 6 | 19)
-                || [STOPS, SPINDLE, COOLANT].iter().any(|group| group.contains(m))
-                || GEARS.contains(m)
-                || self.settings.auxiliary.contains(m);
-            if !known {
+            if !is_own(*m) && !self.settings.auxiliary.contains(m) {
                 let message = format!("M{m} is not an M function of the control");
                 let mut error = source.block_error("unknown-m", message);
                 error.help =
@@ -302,7 +312,7 @@ impl<'a, 's> Interpreter<'a, 's> {
             };
             // A name has no number to report before the change.
             if !block.has_m(6) && tool.name.is_empty() {
-                self.emit(source, Op::Preselect(tool.number))?;
+                self.emit(source, Action::Preselect(tool.number))?;
             }
             self.state.selected = Some(Box::new(tool));
         }
@@ -314,7 +324,7 @@ impl<'a, 's> Interpreter<'a, 's> {
                 );
             };
             self.state.tool = Some(tool.clone());
-            self.emit(source, Op::Tool(tool))?;
+            self.emit(source, Action::Tool(tool))?;
             self.report_spindle(source, Spindle::Off)?;
             self.report_coolant(source, Coolant::Off)?;
             // The change activates edge 1 unless the block says another (MD20270 = 1).
@@ -325,7 +335,7 @@ impl<'a, 's> Interpreter<'a, 's> {
             let active = (number > 0).then_some(number);
             if active != self.state.edge || block.has_m(6) {
                 self.state.edge = active;
-                self.emit(source, Op::LengthOffset(active))?;
+                self.emit(source, Action::LengthOffset(active))?;
             }
         }
         Ok(())
@@ -348,7 +358,7 @@ impl<'a, 's> Interpreter<'a, 's> {
     fn report_feed(&mut self, source: &Source) -> Fallible<()> {
         self.state.reported_feed = self.state.active_feed();
         match self.state.reported_feed {
-            Some(feed) => self.emit(source, Op::Feed(feed)),
+            Some(feed) => self.emit(source, Action::Feed(feed)),
             None => Ok(()),
         }
     }
@@ -404,7 +414,7 @@ impl<'a, 's> Interpreter<'a, 's> {
             return Ok(());
         }
         self.state.coolant = coolant;
-        self.emit(source, Op::Coolant(coolant))
+        self.emit(source, Action::Coolant(coolant))
     }
 
     /// The spindle does this from here on.
@@ -421,7 +431,7 @@ impl<'a, 's> Interpreter<'a, 's> {
             }
         }
         self.state.spindle = spindle;
-        self.emit(source, Op::Spindle(spindle))
+        self.emit(source, Action::Spindle(spindle))
     }
 
     /// `G25`, `G26`: limits of the speed of the spindle, and of the work area. Where the tool would leave
@@ -443,8 +453,8 @@ impl<'a, 's> Interpreter<'a, 's> {
             return Ok(());
         }
         match block.m.iter().flatten().find(|m| STOPS.contains(m)) {
-            Some(0) => self.emit(source, Op::Stop),
-            Some(1) => self.emit(source, Op::OptionalStop),
+            Some(0) => self.emit(source, Action::Stop),
+            Some(1) => self.emit(source, Action::OptionalStop),
             Some(_) => self.end(source),
             None => Ok(()),
         }
@@ -452,7 +462,7 @@ impl<'a, 's> Interpreter<'a, 's> {
 
     fn end(&mut self, source: &Source) -> Fallible<()> {
         self.state.ended = true;
-        if self.called { Ok(()) } else { self.emit(source, Op::End) }
+        if self.called { Ok(()) } else { self.emit(source, Action::End) }
     }
 
     /// `G4`: in a block of its own; its `F` (seconds) and `S` (turns) change neither feed nor speed.
@@ -466,7 +476,7 @@ impl<'a, 's> Interpreter<'a, 's> {
             return Err(source.block_error("dwell", "G4 stands in a block of its own"));
         }
         match pause.seconds(self.state.spindle) {
-            Some(seconds) if seconds >= 0.0 => self.emit(source, Op::Dwell(seconds)),
+            Some(seconds) if seconds >= 0.0 => self.emit(source, Action::Dwell(seconds)),
             Some(_) => Err(source.block_error("dwell", "a dwell has no sign")),
             None => Err(source.block_error("dwell", "turns of a spindle that stands")),
         }

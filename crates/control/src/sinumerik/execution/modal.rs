@@ -2,11 +2,12 @@
 
 use super::cycles::Drilling;
 use super::interpreter::Interpreter;
+use crate::event::Action;
 use crate::sinumerik::Fallible;
 use crate::sinumerik::language::scan::Source;
 use crate::sinumerik::language::statement::ProgramCall;
 use geom::Vec3;
-use program::{Cycle, Op};
+use program::Cycle;
 
 /// What `MCALL` has after each block with a motion.
 pub(crate) enum Modal {
@@ -31,7 +32,7 @@ impl Modal {
 impl Interpreter<'_, '_> {
     pub fn cycle_off(&mut self, source: &Source) -> Fallible<()> {
         if self.reported_cycle.take().is_some() {
-            self.emit(source, Op::CycleOff)?;
+            self.emit(source, Action::CycleOff)?;
         }
         Ok(())
     }
@@ -96,13 +97,13 @@ impl Interpreter<'_, '_> {
         }
         if self.reported_cycle != Some(cycle) {
             self.reported_cycle = Some(cycle);
-            self.emit(source, Op::Cycle(cycle.into()))?;
+            self.emit(source, Action::Cycle(cycle.into()))?;
         }
         self.state.position.z = drilling.surface;
         let pose = self.state.pose(self.state.position);
         self.state.position.z = drilling.surface + cycle.retract;
         self.state.programmed.z = self.state.position.z;
-        self.emit(source, Op::Hole(pose))?;
+        self.emit(source, Action::Hole(pose))?;
         if let Some(spindle) = drilling.spindle_after {
             self.report_spindle(source, spindle)?;
         }

@@ -5,13 +5,14 @@ use super::interpreter::Interpreter;
 use super::polar::axes_of_plane;
 use super::state::ToolAxis;
 use crate::compensation::{Outer, Terms};
+use crate::event::Action;
 use crate::sinumerik::Fallible;
 use crate::sinumerik::language::block::{Block, Coordinate, Count, Rare};
 use crate::sinumerik::language::commands::{Code, Diameter, Motion};
 use crate::sinumerik::language::scan::Source;
 use crate::sinumerik::language::system::AXIS_NAMES;
 use geom::{Vec3, direction};
-use program::{Compensation, Op};
+use program::{Axes, Compensation};
 
 impl Interpreter<'_, '_> {
     /// The motion of a block, if it has one.
@@ -73,12 +74,12 @@ impl Interpreter<'_, '_> {
             self.state.programmed = programmed;
             let pose = self.state.pose(position);
             let cut = motion == Motion::Line;
-            let op = if cut { Op::Line(pose) } else { Op::Rapid(pose) };
+            let action = if cut { Action::Line(pose) } else { Action::Rapid(pose) };
             if self.cornered(block) {
                 let element = Element { start, end: position, circle: None, cut };
-                self.go_round(source, block, element, op)?;
+                self.go_round(source, block, element, action)?;
             } else {
-                self.emit(source, op)?;
+                self.emit(source, action)?;
             }
         }
         self.call_modal(source)
@@ -451,9 +452,7 @@ impl Interpreter<'_, '_> {
     /// The named axes go to a place of the machine.
     fn home(&mut self, source: &Source, named: [bool; 6]) -> Fallible<()> {
         let turned = self.state.frames.turned();
-        let mut bits = 0;
         for (i, _) in named.iter().enumerate().filter(|(_, named)| **named) {
-            bits |= 1 << i;
             if i >= 3 {
                 self.check_rotary(source, i - 3)?;
                 self.state.rotary[i - 3] = f64::NAN;
@@ -465,6 +464,6 @@ impl Interpreter<'_, '_> {
                 self.state.programmed[i] = f64::NAN;
             }
         }
-        self.emit(source, Op::Home(bits))
+        self.emit(source, Action::Home(Axes::of(named)))
     }
 }

@@ -2,10 +2,11 @@
 
 use super::interpreter::Interpreter;
 use super::state::{Modes, place};
+use crate::event::Action;
 use crate::sinumerik::Fallible;
 use crate::sinumerik::language::scan::Source;
 use geom::Vec3;
-use program::{Compensation, Op};
+use program::{Compensation, WorkOffset};
 use std::collections::HashMap;
 
 /// Values of the settable work offsets, mm; NaN where a component is not known.
@@ -88,7 +89,10 @@ impl Interpreter<'_, '_> {
                 state.programmed[i] = f64::NAN;
             }
         }
-        if other { self.emit(source, Op::WorkOffset(place(number))) } else { Ok(()) }
+        match WorkOffset::numbered(place(number)).filter(|_| other) {
+            Some(offset) => self.emit(source, Action::WorkOffset(offset)),
+            None => Ok(()),
+        }
     }
 
     /// Back to the modal commands and the frame of the caller of a program with `SAVE`.

@@ -3,11 +3,12 @@
 use super::frames::{swivel_order, swivelled};
 use super::interpreter::Interpreter;
 use super::state::ToolAxis;
+use crate::event::Action;
 use crate::sinumerik::Fallible;
 use crate::sinumerik::language::call::{Argument, Call};
 use crate::sinumerik::language::scan::Source;
 use geom::{Frame, Vec3};
-use program::{Compensation, Op};
+use program::{Axes, Compensation};
 
 /// Places of the parameters of `CYCLE800`: `_FR _TC _ST _MODE _X0 _Y0 _Z0 _A _B _C _X1 _Y1 _Z1 _DIR
 /// _FR_I _DMODE`.
@@ -118,10 +119,10 @@ impl Interpreter<'_, '_> {
             }
         };
         let home = match whole(RETRACT, "_FR")? {
-            0 => 0,
+            0 => Axes::NONE,
             // Z of the machine; Z, then X and Y; along the tool to the end of travel or by _FR_I.
-            1 => 0b100,
-            2 | 4 | 5 => 0b111,
+            1 => Axes::Z,
+            2 | 4 | 5 => Axes::LINEAR,
             other => {
                 let message = format!("_FR = {other} of CYCLE800 is not supported");
                 return Err(source.block_error("unsupported", message));
@@ -141,7 +142,7 @@ impl Interpreter<'_, '_> {
         let plane = base * plane;
         self.state.frames.set_swivel(Some(plane));
         self.state.tool_axis = ToolAxis::Vector(plane.matrix3.z_axis);
-        if home == 0 { Ok(()) } else { self.emit(source, Op::Home(home)) }
+        if home.is_empty() { Ok(()) } else { self.emit(source, Action::Home(home)) }
     }
 
     /// `CYCLE800()`: no plane; where the rotary axes are left is the machine's business.

@@ -2,12 +2,12 @@
 
 use super::interpreter::Interpreter;
 use super::modal::Modal;
+use crate::event::Action;
 use crate::sinumerik::Fallible;
 use crate::sinumerik::language::call::{Argument, Call};
 use crate::sinumerik::language::forms::Pattern;
 use crate::sinumerik::language::scan::Source;
 use geom::Vec3;
-use program::Op;
 
 /// Most holes of a pattern; our own limit.
 const MOST_HOLES: f64 = 10_000.0;
@@ -109,7 +109,7 @@ impl Interpreter<'_, '_> {
                 self.state.programmed[i] = place[i];
             }
             let pose = self.state.pose(self.state.position);
-            self.emit(source, Op::Rapid(pose))?;
+            self.emit(source, Action::Rapid(pose))?;
             self.call_modal(source)?;
         }
         Ok(())

@@ -5,11 +5,12 @@ use super::modal::Modal;
 use super::offsets::WorkOffsets;
 use crate::Settings;
 use crate::compensation::Outer;
+use crate::event::{Orientation, Position};
 use crate::sinumerik::language::commands::{Diameter, FeedType, Motion};
 use crate::sinumerik::language::value::Value;
 use crate::sinumerik::language::variables::{Locals, Parameters, Place};
 use geom::{Frame, Vec3};
-use program::{Compensation, Coolant, Feed, Orientation, Pose, Spindle, Tool};
+use program::{Compensation, Coolant, Feed, Spindle, Tool};
 
 /// `G500`: none, in the reset state that the maker delivers.
 pub const WORK_OFFSET_AT_RESET: u32 = 500;
@@ -196,14 +197,14 @@ impl State {
 
     /// The pose at `point` of the program.
     #[inline(always)]
-    pub fn pose(&self, point: Vec3) -> Pose {
+    pub fn pose(&self, point: Vec3) -> Position {
         let orientation = match self.tool_axis {
             ToolAxis::Rotary => {
                 Orientation::Rotary { degrees: self.rotary, tool_center: self.tool_center }
             }
             ToolAxis::Vector(axis) => Orientation::Axis(axis),
         };
-        Pose { point: self.frames.in_work_frame(point), orientation }
+        Position { point: self.frames.in_work_frame(point), orientation }
     }
 
     /// Sets an R parameter, a variable or a work offset.

@@ -1,11 +1,12 @@
 //! Threads by G command: `G33`, `G331`, `G332`, `G63`.
 
 use super::interpreter::Interpreter;
+use crate::event::Action;
 use crate::sinumerik::Fallible;
 use crate::sinumerik::language::block::Block;
 use crate::sinumerik::language::commands::Motion;
 use crate::sinumerik::language::scan::Source;
-use program::{Op, Spindle, Thread};
+use program::{Spindle, Thread};
 
 impl Interpreter<'_, '_> {
     /// `G33`, `G331`, `G332`: a straight way along one axis in step with the spindle; `I J K` is the pitch
@@ -51,7 +52,7 @@ impl Interpreter<'_, '_> {
         self.state.position = position;
         self.state.programmed = programmed;
         let thread = Thread { end: self.state.pose(position), pitch: pitch.abs() };
-        self.emit(source, Op::Thread(thread.into()))?;
+        self.emit(source, Action::Thread(thread.into()))?;
         // G331 and G332 hold the spindle in position, where it stays until M3 or M4.
         if motion == Motion::TapOut {
             self.report_spindle(source, Spindle::Off)?;

@@ -5,14 +5,14 @@ pub(crate) struct Form {
     /// Its name.
     pub name: &'static str,
     /// What it does in the hole.
-    pub action: Action,
+    pub action: Operation,
     /// Its parameters in the order of the call.
     pub parameters: &'static [&'static str],
 }
 
 /// What a cycle does in the hole.
 #[derive(Clone, Copy, PartialEq, Eq)]
-pub(crate) enum Action {
+pub(crate) enum Operation {
     /// Feed in, rapid out.
     Drill,
     /// Feed in by pecks.
@@ -34,12 +34,12 @@ pub(crate) enum Action {
 pub(crate) const CYCLES: &[Form] = &[
     Form {
         name: "CYCLE81",
-        action: Action::Drill,
+        action: Operation::Drill,
         parameters: &["RTP", "RFP", "SDIS", "DP", "DPR", "DTB", "_GMODE", "_DMODE", "_AMODE"],
     },
     Form {
         name: "CYCLE82",
-        action: Action::Drill,
+        action: Operation::Drill,
         parameters: &[
             "RTP", "RFP", "SDIS", "DP", "DPR", "DTB", "_GMODE", "_DMODE", "_AMODE", "_VARI",
             "S_ZA", "S_FA", "S_ZD", "S_FD",
@@ -47,7 +47,7 @@ pub(crate) const CYCLES: &[Form] = &[
     },
     Form {
         name: "CYCLE83",
-        action: Action::Peck,
+        action: Operation::Peck,
         parameters: &[
             "RTP", "RFP", "SDIS", "DP", "DPR", "FDEP", "FDPR", "DAM", "DTB", "DTS", "FRF", "VARI",
             "_AXN", "_MDEP", "_VRT", "_DTD", "_DIS1", "_GMODE", "_DMODE", "_AMODE",
@@ -55,7 +55,7 @@ pub(crate) const CYCLES: &[Form] = &[
     },
     Form {
         name: "CYCLE84",
-        action: Action::RigidTap,
+        action: Operation::RigidTap,
         parameters: &[
             "RTP", "RFP", "SDIS", "DP", "DPR", "DTB", "SDAC", "MPIT", "PIT", "POSS", "SST", "SST1",
             "_AXN", "_PITA", "_TECHNO", "_VARI", "_DAM", "_VRT", "_PITM", "_PTAB", "_PTABA",
@@ -64,7 +64,7 @@ pub(crate) const CYCLES: &[Form] = &[
     },
     Form {
         name: "CYCLE840",
-        action: Action::Tap,
+        action: Operation::Tap,
         parameters: &[
             "RTP", "RFP", "SDIS", "DP", "DPR", "DTB", "SDR", "SDAC", "ENC", "MPIT", "PIT", "_AXN",
             "_PITA", "_TECHNO", "_PITM", "_PTAB", "_PTABA", "_GMODE", "_DMODE", "_AMODE",
@@ -72,14 +72,14 @@ pub(crate) const CYCLES: &[Form] = &[
     },
     Form {
         name: "CYCLE85",
-        action: Action::Ream,
+        action: Operation::Ream,
         parameters: &[
             "RTP", "RFP", "SDIS", "DP", "DPR", "DTB", "FFR", "RFF", "_GMODE", "_DMODE", "_AMODE",
         ],
     },
     Form {
         name: "CYCLE86",
-        action: Action::Bore,
+        action: Operation::Bore,
         parameters: &[
             "RTP", "RFP", "SDIS", "DP", "DPR", "DTB", "SDIR", "RPA", "RPO", "RPAP", "POSS",
             "_GMODE", "_DMODE", "_AMODE",
@@ -87,17 +87,17 @@ pub(crate) const CYCLES: &[Form] = &[
     },
     Form {
         name: "CYCLE87",
-        action: Action::StopInHole,
+        action: Operation::StopInHole,
         parameters: &["RTP", "RFP", "SDIS", "DP", "DPR", "SDIR"],
     },
     Form {
         name: "CYCLE88",
-        action: Action::StopInHole,
+        action: Operation::StopInHole,
         parameters: &["RTP", "RFP", "SDIS", "DP", "DPR", "DTB", "SDIR"],
     },
     Form {
         name: "CYCLE89",
-        action: Action::Ream,
+        action: Operation::Ream,
         parameters: &["RTP", "RFP", "SDIS", "DP", "DPR", "DTB"],
     },
 ];

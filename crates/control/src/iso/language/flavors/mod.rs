@@ -12,21 +12,20 @@ mod wire;
 use super::words::{
     Canned, Dictionary, FeedMode, Flavor, G, GRow, Group, M, MRow, Motion, Plane, Side,
 };
-use crate::Dialect;
 
-/// The words of `dialect` (those of LinuxCNC where it is not one of ISO code).
-pub(crate) fn dictionary(dialect: Dialect) -> &'static Dictionary {
-    match dialect {
-        Dialect::Fanuc => &fanuc::WORDS,
-        Dialect::Haas => &haas::WORDS,
-        Dialect::Mach3 => &mach3::WORDS,
-        Dialect::Grbl => &grbl::WORDS,
-        Dialect::Marlin => &marlin::WORDS,
-        Dialect::FanucWire => &wire::FANUC,
-        Dialect::Sodick => &wire::SODICK,
-        Dialect::Agie => &wire::AGIE,
-        Dialect::FreeCad => &freecad::WORDS,
-        _ => &linuxcnc::WORDS,
+/// The words of `flavor`.
+pub(crate) fn dictionary(flavor: Flavor) -> &'static Dictionary {
+    match flavor {
+        Flavor::Fanuc => &fanuc::WORDS,
+        Flavor::Haas => &haas::WORDS,
+        Flavor::LinuxCnc => &linuxcnc::WORDS,
+        Flavor::Mach3 => &mach3::WORDS,
+        Flavor::Grbl => &grbl::WORDS,
+        Flavor::Marlin => &marlin::WORDS,
+        Flavor::FanucWire => &wire::FANUC,
+        Flavor::Sodick => &wire::SODICK,
+        Flavor::Agie => &wire::AGIE,
+        Flavor::FreeCad => &freecad::WORDS,
     }
 }
 

@@ -1,0 +1,168 @@
+//! What a virtual control reports: the motion that it makes, in the words of its blocks.
+
+use geom::Vec3;
+use program::{
+    ArcTo, Auxiliary, Axes, Compensation, Coolant, Cycle, Feed, Input, Output, Probe, Spindle,
+    Thread, Tool, WorkOffset,
+};
+
+/// One thing that the control does, and the line (from 1) of the program that makes it do so.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Event {
+    /// Line of the program, from 1.
+    pub line: u32,
+    /// What the control does.
+    pub action: Action,
+}
+
+/// What a control does. Modal words (feed, spindle, coolant, compensation, cycle) hold from their event on; every
+/// position is absolute.
+///
+/// It is no [`program::Op`]: a position says what the block says, and a coordinate that nobody knows is NaN. `nc`
+/// alone makes a neutral program of it, and the proof compares it with one.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Action {
+    /// Rapid to a position. The way there is the machine's own, only its end counts.
+    Rapid(Position),
+    /// Straight line to a position at the active feed.
+    Line(Position),
+    /// Arc or helix at the active feed.
+    Arc(Box<ArcTo<Position>>),
+    /// Straight line whose feed is tied to the turn of the spindle (`G33`).
+    Thread(Box<Thread<Position>>),
+    /// Straight line at the active feed that ends where the probe answers.
+    Probe(Box<Probe<Position>>),
+    /// One hole of the active [`Cycle`]; the position is the point of the cycle on the surface. The tool ends at
+    /// the cycle's retract level.
+    Hole(Position),
+    /// Axes go to a fixed position of the machine. Where they stand afterwards only the machine knows.
+    Home(Axes),
+    /// The hole cycle for the [`Action::Hole`]s that follow.
+    Cycle(Box<Cycle>),
+    /// End of the hole cycle.
+    CycleOff,
+    /// Feed from here on.
+    Feed(Feed),
+    /// Spindle from here on.
+    Spindle(Spindle),
+    /// Constant surface speed from here on, m/min; `None` is the speed of the spindle itself again.
+    SurfaceSpeed(Option<f64>),
+    /// Coolant from here on.
+    Coolant(Coolant),
+    /// Change to this tool.
+    Tool(Box<Tool>),
+    /// Make this tool number ready; nothing is changed yet.
+    Preselect(u32),
+    /// Tool length offset from here on: its register, or none.
+    LengthOffset(Option<u32>),
+    /// Cutter radius compensation from here on.
+    Compensation(Compensation),
+    /// Work offset from here on. Positions are in its frame.
+    WorkOffset(WorkOffset),
+    /// An output of the machine is set.
+    Output(Output),
+    /// The program waits for an input of the machine, or reads it.
+    Input(Box<Input>),
+    /// A function that the builder of the machine has added.
+    Auxiliary(Auxiliary),
+    /// The wire is threaded (wire EDM).
+    ThreadWire,
+    /// The wire is cut.
+    CutWire,
+    /// The control leans the wire from here on, degrees: to the left of its way where positive, to the right where
+    /// negative, 0 for not at all.
+    Taper(f64),
+    /// Dwell, seconds.
+    Dwell(f64),
+    /// Unconditional stop.
+    Stop,
+    /// Stop when the operator has asked for it.
+    OptionalStop,
+    /// Words for the reader of the program.
+    Comment(Box<str>),
+    /// Words for the operator's screen.
+    Message(Box<str>),
+    /// End of the program.
+    End,
+}
+
+/// What a block says of where the tool goes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Position {
+    /// Tool tip, or position of the linear axes ([`Orientation`]), mm. A coordinate that no block has set yet, or
+    /// that an [`Action::Home`] has made unknown, is NaN.
+    pub point: Vec3,
+    /// Where the tool points.
+    pub orientation: Orientation,
+}
+
+/// How a block says where the tool points.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Orientation {
+    /// Unit vector from the tool tip towards the spindle, in the work frame; the point is the tip in the work
+    /// frame, too.
+    Axis(Vec3),
+    /// Positions of the rotary axes in degrees, in the order A, B, C (those the machine lacks are 0). With
+    /// `tool_center` the control keeps the tip where the block says, in the work frame (`TRAORI`, `G43.4`,
+    /// `M128`); without, the point is the linear axes' position and the tip follows from the machine's kinematics.
+    Rotary {
+        /// Degrees of A, B, C.
+        degrees: [f64; 3],
+        /// Whether the control does the tool-center-point transformation.
+        tool_center: bool,
+    },
+}
+
+impl Position {
+    /// The tip at `point`, mm, in the work frame, with the tool along the unit vector `axis`.
+    pub fn new(point: Vec3, axis: Vec3) -> Position {
+        Position { point, orientation: Orientation::Axis(axis) }
+    }
+
+    /// The tool axis in the work frame, where the block says it.
+    pub fn axis(&self) -> Option<Vec3> {
+        match self.orientation {
+            Orientation::Axis(axis) => Some(axis),
+            Orientation::Rotary { .. } => None,
+        }
+    }
+}
+
+impl Action {
+    /// Where the tool is after it, where it moves the tool to a position.
+    #[inline]
+    pub fn position(&self) -> Option<&Position> {
+        match self {
+            Action::Rapid(position) | Action::Line(position) | Action::Hole(position) => {
+                Some(position)
+            }
+            Action::Arc(arc) => Some(&arc.end),
+            Action::Thread(thread) => Some(&thread.end),
+            Action::Probe(_)
+            | Action::Home(_)
+            | Action::Cycle(_)
+            | Action::CycleOff
+            | Action::Feed(_)
+            | Action::Spindle(_)
+            | Action::SurfaceSpeed(_)
+            | Action::Coolant(_)
+            | Action::Tool(_)
+            | Action::Preselect(_)
+            | Action::LengthOffset(_)
+            | Action::Compensation(_)
+            | Action::WorkOffset(_)
+            | Action::Output(_)
+            | Action::Input(_)
+            | Action::Auxiliary(_)
+            | Action::ThreadWire
+            | Action::CutWire
+            | Action::Taper(_)
+            | Action::Dwell(_)
+            | Action::Stop
+            | Action::OptionalStop
+            | Action::Comment(_)
+            | Action::Message(_)
+            | Action::End => None,
+        }
+    }
+}
