@@ -11,8 +11,6 @@
 //! The surface between the places that were probed is bilinear; Z 0 is where the surface was taken to be. What
 //! is believed of the logs, with its sources, is in `docs/sources/heights.md`.
 
-#![warn(clippy::wildcard_enum_match_arm)]
-
 mod course;
 mod follow;
 mod grid;

@@ -226,7 +226,7 @@ impl Chain {
                 [around.minus(outer), in_plane.minus(inner)]
             }
             Solver::Two(Pair { in_plane, .. }) => [around.plus(outer), in_plane.plus(inner)],
-            _ => [around, inner],
+            Solver::Fixed { .. } | Solver::One { .. } => [around, inner],
         };
         [turned[0].plus(self.offsets[0]), turned[1].plus(self.offsets[1])]
     }

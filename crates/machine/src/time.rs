@@ -163,7 +163,9 @@ impl<'a> Clock<'a> {
         };
         let at_feed = match self.feed {
             Feed::InverseTime(moves) => 1.0 / moves,
-            feed => length / lowering::feed_per_minute(feed, length, speed),
+            feed @ (Feed::PerMinute(_) | Feed::PerTurn(_)) => {
+                length / lowering::feed_per_minute(feed, length, speed)
+            }
         };
         let linear = self.machine.linear.iter().zip(way.to_array());
         let linear = linear.map(|(axis, way)| way.abs() / axis.rapid);

@@ -16,7 +16,7 @@
 //!
 //! What cannot be told truly is refused with its line.
 
-#![warn(clippy::wildcard_enum_match_arm)]
+#![deny(clippy::wildcard_enum_match_arm)]
 
 use control::{Action, Dialect, Event, Orientation, Position, Settings, Setup, Wire};
 use geom::Vec3;
@@ -467,10 +467,9 @@ impl<'a> Lift<'a> {
             return Err(refuse("length-offset", message, help));
         }
         tool.register = register;
-        let last = self.program.records.iter_mut().rev().find_map(|record| match &mut record.op {
-            Op::Tool(tool) => Some(tool),
-            _ => None,
-        });
+        let mut records = self.program.records.iter_mut().rev();
+        let last = records
+            .find_map(|record| if let Op::Tool(tool) = &mut record.op { Some(tool) } else { None });
         if let Some(tool) = last {
             tool.offset = Some(register);
         }

@@ -171,7 +171,7 @@ impl Walk<'_> {
             Kind::ToolCenter | Kind::Vectors => {
                 self.here.is_some_and(|here| crate::place::same(here.axis(), Vec3::Z))
             }
-            _ => true,
+            Kind::Bare | Kind::Plain | Kind::Tilted(..) | Kind::Machine => true,
         };
         PLANES.iter().filter(|_| upright).find(|facts| {
             let along = Vec3::AXES[facts.axes[2]];

@@ -94,7 +94,7 @@ impl Walk<'_> {
                 let up = self.local(pose.point() + axis) - self.local(pose.point());
                 up.distance(Vec3::Z) < 10.0 * ANGLE_EPSILON
             }
-            _ => false,
+            Kind::Bare | Kind::ToolCenter | Kind::Vectors => false,
         };
         let says_all = says_dwell && says_clearance && per_minute && along_z;
         (known && self.templates.has(name) && says_all).then_some(name)
@@ -235,7 +235,43 @@ impl Walk<'_> {
                 self.spindle = spindle;
                 self.sync_spindle()
             }
-            _ => Ok(()),
+            // The moves of a hole are those above.
+            Op::Arc(_)
+            | Op::Thread(_)
+            | Op::Probe(_)
+            | Op::Hole(_)
+            | Op::Oriented(_)
+            | Op::Joints(_)
+            | Op::MachineMove(_)
+            | Op::Home
+            | Op::Cycle(_)
+            | Op::CycleOff
+            | Op::Feed(_)
+            | Op::PathMode(_)
+            | Op::SurfaceSpeed(_)
+            | Op::Coolant(_)
+            | Op::Beam(_)
+            | Op::Pulses(_)
+            | Op::Tool(_)
+            | Op::Preselect(_)
+            | Op::Compensation(_)
+            | Op::Frame(_)
+            | Op::WorkOffset(_)
+            | Op::Surface(_)
+            | Op::Clamp(_)
+            | Op::Output(_)
+            | Op::Input(_)
+            | Op::Auxiliary(_)
+            | Op::ThreadWire
+            | Op::CutWire
+            | Op::Taper(_)
+            | Op::Stop
+            | Op::OptionalStop
+            | Op::Operation(_)
+            | Op::EndOfOperation
+            | Op::Comment(_)
+            | Op::Message(_)
+            | Op::End => Err(refuse("cycle", "a hole is made of moves, dwells and spindle alone")),
         });
         (self.spindle, self.feed) = (spindle, feed);
         self.findings.lowered("cycle-expanded", "holes of cycles", self.line, count);

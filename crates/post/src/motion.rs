@@ -195,9 +195,9 @@ impl Walk<'_> {
     /// The block for a straight move in the orientation at hand.
     #[inline]
     fn straight(&self, name: BlockName) -> BlockName {
-        let vector = match name {
-            BlockName::Rapid => BlockName::RapidVector,
-            _ => BlockName::LinearVector,
+        let vector = match name == BlockName::Rapid {
+            true => BlockName::RapidVector,
+            false => BlockName::LinearVector,
         };
         let by_vector = matches!(self.place.kind, Kind::Vectors) && self.templates.has(vector);
         if by_vector { vector } else { name }

@@ -109,7 +109,9 @@ impl Route {
         let targets = records[..count].iter().filter_map(target);
         let plan = match mode {
             OrientationMode::Fixed | OrientationMode::TiltedPlane => None,
-            _ => Some(plan::plan(machine, degrees, targets)?),
+            OrientationMode::ToolCenterAngles
+            | OrientationMode::Vectors
+            | OrientationMode::MachineAngles => Some(plan::plan(machine, degrees, targets)?),
         };
         Ok(Route { records: count, mode, turning, plan })
     }
@@ -135,9 +137,11 @@ impl Route {
 
 fn target(record: &Record) -> Option<Target> {
     let axis = record.op.pose()?.axis();
-    let kind = match record.op {
-        Op::Rapid(_) | Op::Hole(_) => TargetKind::Rapid,
-        Op::Arc(_) => TargetKind::Arc,
+    let (free, arc) =
+        (matches!(record.op, Op::Rapid(_) | Op::Hole(_)), matches!(record.op, Op::Arc(_)));
+    let kind = match (free, arc) {
+        (true, _) => TargetKind::Rapid,
+        (_, true) => TargetKind::Arc,
         _ => TargetKind::Feed,
     };
     Some(Target { axis, line: record.line, kind })
@@ -252,12 +256,14 @@ impl Walk<'_> {
                 self.place.kind = Kind::Plain;
             }
             OrientationMode::TiltedPlane => self.tilt(axis)?,
-            mode => {
+            mode @ (OrientationMode::ToolCenterAngles
+            | OrientationMode::Vectors
+            | OrientationMode::MachineAngles) => {
                 self.rotate(stop.step.map(|step| step.degrees))?;
-                self.place.kind = match mode {
-                    OrientationMode::ToolCenterAngles => Kind::ToolCenter,
-                    OrientationMode::Vectors => Kind::Vectors,
-                    _ => Kind::Machine,
+                self.place.kind = match mode == OrientationMode::ToolCenterAngles {
+                    true => Kind::ToolCenter,
+                    false if mode == OrientationMode::Vectors => Kind::Vectors,
+                    false => Kind::Machine,
                 };
                 if mode != OrientationMode::MachineAngles {
                     self.writer.forget(LENGTH_OFFSET);

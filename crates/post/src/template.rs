@@ -540,9 +540,9 @@ fn unknown_block(name: &str, block: &Block) -> Box<Diagnostic> {
 
 /// What the engine says, at its place.
 fn fault(block: &Block, error: &minijinja::Error) -> Box<Diagnostic> {
-    let mut message = match error.kind() {
-        ErrorKind::OutOfFuel => String::from("it does not come to an end"),
-        kind => kind.to_string(),
+    let mut message = match error.kind() == ErrorKind::OutOfFuel {
+        true => String::from("it does not come to an end"),
+        false => error.kind().to_string(),
     };
     if let Some(detail) = error.detail() {
         message = format!("{message}: {detail}");

@@ -106,7 +106,7 @@ impl Writer {
                 let parameter = f64::from(parameter);
                 let steps = match &self.forms[WordName::Height as usize] {
                     Form::Number(number) => number.round(parameter),
-                    _ => None,
+                    Form::Code(_) | Form::Absent => None,
                 };
                 if steps.is_none() {
                     self.refused = Some((WordName::Height, parameter));
@@ -140,7 +140,7 @@ impl Writer {
     pub(crate) fn rounded(&self, word: WordName, value: f64) -> f64 {
         match &self.forms[self.form(word) as usize] {
             Form::Number(number) => number.round(value).map_or(value, |steps| number.value(steps)),
-            _ => value,
+            Form::Code(_) | Form::Absent => value,
         }
     }
 
@@ -151,7 +151,7 @@ impl Writer {
             Form::Number(number) if self.known & bit(word) != 0 => {
                 Some(number.value(number.steps(self.active[word as usize])))
             }
-            _ => None,
+            Form::Number(_) | Form::Code(_) | Form::Absent => None,
         }
     }
 

@@ -9,7 +9,7 @@
 //! control reports, with coordinates that nobody knows and positions of rotary axes, is no program: `control` has
 //! its own records, and `nc` makes a program of them.
 
-#![warn(clippy::wildcard_enum_match_arm)]
+#![deny(clippy::wildcard_enum_match_arm)]
 
 mod builder;
 mod cycle;

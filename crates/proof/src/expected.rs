@@ -290,7 +290,7 @@ impl Goal {
         match &self.kind {
             Kind::Hole(cycle) => self.to.lifted(cycle.retract),
             Kind::Probe { .. } => self.answered(),
-            _ => self.to,
+            Kind::Rapid | Kind::Line | Kind::Arc(_) | Kind::Thread(_) | Kind::Broken(_) => self.to,
         }
     }
 
@@ -306,7 +306,12 @@ impl Goal {
     pub fn length(&self) -> f64 {
         match &self.kind {
             Kind::Arc(arc) => arc.length(),
-            _ => self.from.map_or(0.0, |from| from.tip.distance(self.to.tip)),
+            Kind::Rapid
+            | Kind::Line
+            | Kind::Hole(_)
+            | Kind::Thread(_)
+            | Kind::Probe { .. }
+            | Kind::Broken(_) => self.from.map_or(0.0, |from| from.tip.distance(self.to.tip)),
         }
     }
 

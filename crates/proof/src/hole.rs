@@ -85,13 +85,10 @@ impl Hole<'_> {
 /// What a cycle does: one whose first peck reaches the bottom drills in one go.
 fn kind_in_effect(cycle: &Cycle) -> CycleKind {
     let first = cycle.first_peck.or(cycle.peck);
-    match cycle.kind {
-        CycleKind::Deep | CycleKind::BreakChip
-            if first.is_some_and(|f| f >= cycle.depth - REST) =>
-        {
-            CycleKind::Drill
-        }
-        kind => kind,
+    let pecks = matches!(cycle.kind, CycleKind::Deep | CycleKind::BreakChip);
+    match pecks && first.is_some_and(|first| first >= cycle.depth - REST) {
+        true => CycleKind::Drill,
+        false => cycle.kind,
     }
 }
 
@@ -216,7 +213,12 @@ impl Run {
             CycleKind::BreakChip => {
                 within("breaks the chip above the R plane", -below, slack, "mm")
             }
-            _ => Err("leaves the hole before its bottom".into()),
+            CycleKind::Drill
+            | CycleKind::Tap { .. }
+            | CycleKind::Ream
+            | CycleKind::Bore
+            | CycleKind::FineBore(_)
+            | CycleKind::BackBore { .. } => Err("leaves the hole before its bottom".into()),
         }
     }
 

@@ -35,7 +35,7 @@
 //!
 //! The rules in full, with what each keeps out, are in `docs/proof.md`.
 
-#![warn(clippy::wildcard_enum_match_arm)]
+#![deny(clippy::wildcard_enum_match_arm)]
 
 mod arc;
 mod expected;

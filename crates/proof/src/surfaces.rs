@@ -18,10 +18,10 @@ pub(crate) struct Trial {
 
 /// The surface that the control finds for `program`, where it finds one.
 pub(crate) fn found(program: &Program) -> Option<&Surface> {
-    program.records.iter().find_map(|record| match &record.op {
-        Op::Surface(surface) => Some(&**surface),
-        _ => None,
-    })
+    let mut records = program.records.iter();
+    records.find_map(
+        |record| if let Op::Surface(surface) = &record.op { Some(&**surface) } else { None },
+    )
 }
 
 /// A flat surface at Z 0, one that is tilted in X and Y, and one without any order.

@@ -5,7 +5,7 @@ mod technology;
 
 use crate::catalogue::{BlockName, WordName};
 use crate::findings::Findings;
-use crate::place::{Place, Route};
+use crate::place::{Place, Route, Stop};
 use crate::template::{ORIENTATION, POSITION, Scope, Templates, Words, bit, map, program_value};
 use crate::text::printed;
 use crate::wire::Wire;
@@ -195,22 +195,38 @@ impl<'a> Walk<'a> {
         if self.ended { Ok(()) } else { self.end() }
     }
 
-    fn record(&mut self, record: &'a Record, stop: Option<crate::place::Stop>) -> Done {
+    fn record(&mut self, record: &'a Record, stop: Option<Stop>) -> Done {
         if self.ended {
-            return match record.op {
-                Op::End | Op::Comment(_) | Op::EndOfOperation => Ok(()),
-                _ => Err(refuse("after-end", "the program goes on after its end")),
+            return match matches!(record.op, Op::End | Op::Comment(_) | Op::EndOfOperation) {
+                true => Ok(()),
+                false => Err(refuse("after-end", "the program goes on after its end")),
             };
         }
         let goes_on = std::mem::take(&mut self.goes_on);
         match &record.op {
-            Op::Line(pose) if goes_on && self.keeps_orientation(pose) => return self.line_on(pose),
-            op if op.pose().is_some() => return self.motion(op, stop, goes_on),
-            _ => {}
-        }
-        match &record.op {
-            // Motions have been looked at above.
-            Op::Rapid(_) | Op::Line(_) | Op::Arc(_) | Op::Thread(_) | Op::Hole(_) => Ok(()),
+            Op::Line(pose) if goes_on && self.keeps_orientation(pose) => self.line_on(pose),
+            Op::Rapid(pose) => self.motion(stop, |walk, stop| walk.rapid(pose, stop)),
+            Op::Line(pose) => {
+                let mut goes_on = false;
+                let done = self.motion(stop, |walk, stop| {
+                    let done = walk.line(pose, stop);
+                    goes_on = walk.goes_on;
+                    done
+                });
+                self.goes_on = goes_on;
+                done
+            }
+            Op::Arc(to) => {
+                let done = self.motion(stop, |walk, stop| walk.arc(to, stop));
+                // It changes nothing but how the control moves.
+                self.goes_on = goes_on && done.is_ok();
+                done
+            }
+            Op::Thread(thread) => self.motion(stop, |walk, stop| walk.thread(thread, stop)),
+            Op::Hole(pose) => self.motion(stop, |walk, stop| {
+                walk.not_over_surface("a hole cycle")?;
+                walk.hole(pose, stop)
+            }),
             Op::Oriented(_) => {
                 let help = "post it for a robot, or give the tool axis alone";
                 Err(unknown_here(
@@ -320,29 +336,14 @@ impl<'a> Walk<'a> {
         }
     }
 
-    fn motion(&mut self, op: &'a Op, stop: Option<crate::place::Stop>, goes_on: bool) -> Done {
+    /// A motion, by a tool that has been called. What it cuts straight on its way has a feed or an end of its own.
+    #[inline]
+    fn motion(&mut self, stop: Option<Stop>, go: impl FnOnce(&mut Self, &Stop) -> Done) -> Done {
         if self.tool.is_none() && self.wire.is_none() {
             self.default_tool()?;
         }
-        let Some(stop) = stop else { return Ok(()) };
-        let done = match op {
-            Op::Rapid(pose) => self.rapid(pose, &stop),
-            Op::Line(pose) => self.line(pose, &stop),
-            Op::Arc(to) => self.arc(to, &stop),
-            Op::Hole(pose) => {
-                self.not_over_surface("a hole cycle")?;
-                self.hole(pose, &stop)
-            }
-            Op::Thread(thread) => self.thread(thread, &stop),
-            _ => Ok(()),
-        };
-        self.goes_on = match op {
-            Op::Line(_) => self.goes_on,
-            // It changes nothing but how the control moves.
-            Op::Arc(_) => goes_on && done.is_ok(),
-            // What others cut straight, they do with a feed or an end of their own.
-            _ => false,
-        };
+        let done = stop.map_or(Ok(()), |stop| go(self, &stop));
+        self.goes_on = false;
         done
     }
 

@@ -58,10 +58,8 @@ impl Walk<'_> {
         let coming = self.source.records[self.index..].iter().map(|record| &record.op);
         let mut until_cut = coming
             .take_while(|op| !matches!(op, Op::Line(_) | Op::Arc(_) | Op::Thread(_) | Op::Hole(_)));
-        let next = until_cut.find_map(|op| match op {
-            Op::Spindle(spindle) => speed(*spindle),
-            _ => None,
-        });
+        let next = until_cut
+            .find_map(|op| if let Op::Spindle(spindle) = op { speed(*spindle) } else { None });
         next.or(speed(self.spindle))
     }
 
@@ -194,10 +192,14 @@ impl Walk<'_> {
         let (mode, value) = match feed {
             Feed::PerTurn(value) if can.feed_per_turn && !turning => (feed_mode::PER_TURN, value),
             Feed::InverseTime(value) if can.inverse_time => (feed_mode::INVERSE_TIME, value),
-            _ if turning && can.inverse_time && length > 0.0 => {
+            Feed::PerMinute(_) | Feed::PerTurn(_) | Feed::InverseTime(_)
+                if turning && can.inverse_time && length > 0.0 =>
+            {
                 (feed_mode::INVERSE_TIME, per_minute() / length)
             }
-            _ => (feed_mode::PER_MINUTE, per_minute()),
+            Feed::PerMinute(_) | Feed::PerTurn(_) | Feed::InverseTime(_) => {
+                (feed_mode::PER_MINUTE, per_minute())
+            }
         };
         match feed {
             Feed::PerTurn(_) if mode == feed_mode::PER_MINUTE => {
@@ -207,7 +209,7 @@ impl Walk<'_> {
                 let what = "inverse-time feeds (as mm/min)";
                 self.findings.lowered("feed-inverse-time", what, self.line, 1);
             }
-            _ => {}
+            Feed::PerMinute(_) | Feed::PerTurn(_) | Feed::InverseTime(_) => {}
         }
         self.writer.feed_form(match mode {
             feed_mode::PER_TURN => WordName::FeedPerTurn,

@@ -250,7 +250,15 @@ impl<'a> Prover<'a> {
                 }
             },
             Step::Unproven(what) => Err(self.unproven(line, what)),
-            _ => self.closing(gait, &to),
+            Step::Dwell(_)
+            | Step::Stop
+            | Step::OptionalStop
+            | Step::ThreadWire
+            | Step::CutWire
+            | Step::Output(_)
+            | Step::Input(_)
+            | Step::Auxiliary(_)
+            | Step::End => self.closing(gait, &to),
         };
         self.here = to;
         outcome

@@ -150,7 +150,16 @@ impl Prover<'_> {
                     matches!(goal.kind, Kind::Line | Kind::Arc(_)),
                 )
             }
-            _ => (false, true, false),
+            Step::Dwell(_)
+            | Step::Stop
+            | Step::OptionalStop
+            | Step::ThreadWire
+            | Step::CutWire
+            | Step::Output(_)
+            | Step::Input(_)
+            | Step::Auxiliary(_)
+            | Step::Unproven(_)
+            | Step::End => (false, true, false),
         };
         let z = axes.contains(Axes::Z);
         let retracted = self.here.position.point.z.is_nan() || self.leg.homed;

@@ -16,7 +16,17 @@ impl Prover<'_> {
                 let message = format!("{}, but the source {}", does(&is), does(kind));
                 return Err(self.lost_at(line, "single-block", &message));
             }
-            _ => {
+            Step::Move(_)
+            | Step::Dwell(_)
+            | Step::Stop
+            | Step::OptionalStop
+            | Step::ThreadWire
+            | Step::CutWire
+            | Step::Output(_)
+            | Step::Input(_)
+            | Step::Auxiliary(_)
+            | Step::Unproven(_)
+            | Step::End => {
                 let message = format!("{} where the source does not", does(&is));
                 return Err(self.lost_at(line, "single-block", &message));
             }
@@ -74,6 +84,8 @@ pub(super) fn does(kind: &Kind) -> String {
             if *away { "away from" } else { "towards" },
             if *must_answer { "or stops with an error" } else { "or goes on" }
         ),
-        _ => String::from("moves"),
+        Kind::Rapid | Kind::Line | Kind::Arc(_) | Kind::Hole(_) | Kind::Broken(_) => {
+            String::from("moves")
+        }
     }
 }
