@@ -1,5 +1,7 @@
 # `make demo` and `make test` need nothing but a Debian machine: Rust is installed where it is missing.
 
+# The path of the caller, before the tools of the project stand on it.
+CALLERS_PATH := $(PATH)
 export PATH := $(CURDIR)/.venv/bin:$(or $(CARGO_HOME),$(HOME)/.cargo)/bin:$(PATH)
 
 # The part of the demo: a real one where the folder of real input is there, otherwise our own.
@@ -10,20 +12,43 @@ DEMO    := out/$(basename $(notdir $(PART)))
 
 SEED ?= 1
 
-TOOLPOST := cargo run --quiet --release --bin toolpost --
+# Where `make install` puts the command: in the folder `bin` of this one.
+PREFIX ?= $(HOME)/.local
 
-.PHONY: demo test freecad bench lint judges images samples rust python
+# The quick profile is compiled within two minutes; `make install` and `make bench` take the fast one.
+TOOLPOST := cargo run --quiet --locked --profile quick --package toolpost --
 
-## Post a part, prove it, draw it.
+.PHONY: demo install test freecad bench lint judges images samples rust python
+
+## Post a part, prove it, draw it, and say what to do next.
 demo: rust
 	@mkdir -p out
 	$(TOOLPOST) post $(PART) --machine $(MACHINE) --output $(DEMO).mpf
+	@$(TOOLPOST) show $(PART) --output $(DEMO).png > /dev/null
 	@echo
 	@head -n 24 $(DEMO).mpf
 	@echo "..."
 	@echo
-	@$(TOOLPOST) show $(PART) --output $(DEMO).png > /dev/null
-	@echo "the program is $(DEMO).mpf, its report $(DEMO).report.json, its picture $(DEMO).png"
+	@echo "program  $(DEMO).mpf"
+	@echo "report   $(DEMO).report.json"
+	@echo "picture  $(DEMO).png"
+	@echo
+	@echo "What to do next:"
+	@echo
+	@echo "    make install             # puts the command toolpost into $(PREFIX)/bin; takes some four minutes"
+	@echo "    toolpost machines list   # the machines that it can write for"
+	@echo "    toolpost post $(PART) --machine fanuc-table-bc --output $(DEMO).nc"
+
+## Put the command toolpost into PREFIX/bin (~/.local/bin), compiled for speed.
+install: rust
+	cargo install --locked --path crates/toolpost --root "$(PREFIX)" --no-track --force
+	@case ":$(CALLERS_PATH):" in \
+	*":$(PREFIX)/bin:"*) ;; \
+	*) \
+		echo "$(PREFIX)/bin is not on your PATH. Put it there, and write the line into ~/.profile to keep it:"; \
+		echo; \
+		echo "    export PATH=\"$(PREFIX)/bin:\$$PATH\"" ;; \
+	esac
 
 ## Every test; those that need an outside judge or real input say so where it is missing. Property tests
 ## draw the same cases in every run; `make test SEED=2`, or any other whole number, draws others. What
