@@ -18,7 +18,11 @@ PREFIX ?= $(HOME)/.local
 # The quick profile is compiled within two minutes; `make install` and `make bench` take the fast one.
 TOOLPOST := cargo run --quiet --locked --profile quick --package toolpost --
 
-.PHONY: demo install test freecad bench lint judges images samples rust python
+# What fails stops nothing that does not need it.
+MAKEFLAGS += --keep-going
+
+.PHONY: demo install test test-rust test-python freecad tests bench judges images samples rust python
+.PHONY: lint lint-format lint-rust lint-fuzz lint-docs lint-python
 
 ## Post a part, prove it, draw it, and say what to do next.
 demo: rust
@@ -50,21 +54,26 @@ install: rust
 		echo "    export PATH=\"$(PREFIX)/bin:\$$PATH\"" ;; \
 	esac
 
-## Every test; those that need an outside judge or real input say so where it is missing. Property tests
-## draw the same cases in every run; `make test SEED=2`, or any other whole number, draws others. What
-## fails does not stop the rest.
-test: rust python
-	@failed=; \
+## Every test; those that need an outside judge or real input say so where it is missing, and fail where
+## CI=true. Property tests draw the same cases in every run; `make test SEED=2`, or any other whole number,
+## draws others. What fails does not stop the rest.
+test: test-rust test-python freecad
+
+test-rust: rust
 	PROPTEST_RNG_SEED=$(SEED) PROPTEST_DISABLE_FAILURE_PERSISTENCE=1 \
-		cargo test --workspace --no-fail-fast || failed=yes; \
-	pytest --quiet --hypothesis-seed $(SEED) || failed=yes; \
-	$(MAKE) freecad || failed=yes; \
-	test -z "$$failed"
+		cargo test --workspace --no-fail-fast
+
+test-python: python
+	pytest --quiet --hypothesis-seed $(SEED)
 
 ## The tests within FreeCAD (`scripts/setup freecad`), with the command as cargo has built it.
 freecad: python
-	cargo build --quiet --package toolpost
+	cargo build --quiet --bin toolpost
 	PATH="$(or $(CARGO_TARGET_DIR),$(CURDIR)/target)/debug:$$PATH" pytest --quiet integrations/freecad/tests
+
+## The tests in Rust, compiled and not run.
+tests: rust
+	cargo test --workspace --no-run
 
 ## Speed and memory, each beside a floor in the same run.
 bench: rust
@@ -75,13 +84,24 @@ bench: rust
 		$(wildcard $(addprefix $(DATA)/cldata/,makino/* nx/* solidworks/*))
 
 ## Format, lints, documentation. The fuzz targets are a workspace of their own.
-lint: rust python
-	@scripts/setup fuzz
+lint: lint-format lint-rust lint-fuzz lint-docs lint-python
+
+lint-format: rust
 	cargo fmt --all --check
 	cargo fmt --manifest-path fuzz/Cargo.toml --check
+
+lint-rust: rust
 	cargo clippy --workspace --all-targets -- -D warnings
-	cargo clippy --manifest-path fuzz/Cargo.toml -- -D warnings
+
+# Nothing is linked: any file stands for libFuzzer, which is not compiled then.
+lint-fuzz: rust
+	CUSTOM_LIBFUZZER_PATH=$(CURDIR)/fuzz/Cargo.toml \
+		cargo clippy --manifest-path fuzz/Cargo.toml -- -D warnings
+
+lint-docs: rust
 	RUSTDOCFLAGS="-D warnings" cargo doc --quiet --workspace --no-deps --document-private-items
+
+lint-python: python
 	ruff check
 	ruff format --check
 	mypy
