@@ -1,5 +1,7 @@
 # `make demo` and `make test` need nothing but a Debian machine: Rust is installed where it is missing.
 
+# The path of the caller, before the tools of the project stand on it.
+CALLERS_PATH := $(PATH)
 export PATH := $(CURDIR)/.venv/bin:$(or $(CARGO_HOME),$(HOME)/.cargo)/bin:$(PATH)
 
 # The part of the demo: a real one where the folder of real input is there, otherwise our own.
@@ -10,36 +12,68 @@ DEMO    := out/$(basename $(notdir $(PART)))
 
 SEED ?= 1
 
-TOOLPOST := cargo run --quiet --release --bin toolpost --
+# Where `make install` puts the command: in the folder `bin` of this one.
+PREFIX ?= $(HOME)/.local
 
-.PHONY: demo test freecad bench lint judges images samples rust python
+# The quick profile is compiled within two minutes; `make install` and `make bench` take the fast one.
+TOOLPOST := cargo run --quiet --locked --profile quick --package toolpost --
 
-## Post a part, prove it, draw it.
+# What fails stops nothing that does not need it.
+MAKEFLAGS += --keep-going
+
+.PHONY: demo install test test-rust test-python freecad tests bench judges images samples rust python
+.PHONY: lint lint-format lint-rust lint-fuzz lint-docs lint-python
+
+## Post a part, prove it, draw it, and say what to do next.
 demo: rust
 	@mkdir -p out
 	$(TOOLPOST) post $(PART) --machine $(MACHINE) --output $(DEMO).mpf
+	@$(TOOLPOST) show $(PART) --output $(DEMO).png > /dev/null
 	@echo
 	@head -n 24 $(DEMO).mpf
 	@echo "..."
 	@echo
-	@$(TOOLPOST) show $(PART) --output $(DEMO).png > /dev/null
-	@echo "the program is $(DEMO).mpf, its report $(DEMO).report.json, its picture $(DEMO).png"
+	@echo "program  $(DEMO).mpf"
+	@echo "report   $(DEMO).report.json"
+	@echo "picture  $(DEMO).png"
+	@echo
+	@echo "What to do next:"
+	@echo
+	@echo "    make install             # puts the command toolpost into $(PREFIX)/bin; takes some four minutes"
+	@echo "    toolpost machines list   # the machines that it can write for"
+	@echo "    toolpost post $(PART) --machine fanuc-table-bc --output $(DEMO).nc"
 
-## Every test; those that need an outside judge or real input say so where it is missing. Property tests
-## draw the same cases in every run; `make test SEED=2`, or any other whole number, draws others. What
-## fails does not stop the rest.
-test: rust python
-	@failed=; \
+## Put the command toolpost into PREFIX/bin (~/.local/bin), compiled for speed.
+install: rust
+	cargo install --locked --path crates/toolpost --root "$(PREFIX)" --no-track --force
+	@case ":$(CALLERS_PATH):" in \
+	*":$(PREFIX)/bin:"*) ;; \
+	*) \
+		echo "$(PREFIX)/bin is not on your PATH. Put it there, and write the line into ~/.profile to keep it:"; \
+		echo; \
+		echo "    export PATH=\"$(PREFIX)/bin:\$$PATH\"" ;; \
+	esac
+
+## Every test; those that need an outside judge or real input say so where it is missing, and fail where
+## CI=true. Property tests draw the same cases in every run; `make test SEED=2`, or any other whole number,
+## draws others. What fails does not stop the rest.
+test: test-rust test-python freecad
+
+test-rust: rust
 	PROPTEST_RNG_SEED=$(SEED) PROPTEST_DISABLE_FAILURE_PERSISTENCE=1 \
-		cargo test --workspace --no-fail-fast || failed=yes; \
-	pytest --quiet --hypothesis-seed $(SEED) || failed=yes; \
-	$(MAKE) freecad || failed=yes; \
-	test -z "$$failed"
+		cargo test --workspace --no-fail-fast
+
+test-python: python
+	pytest --quiet --hypothesis-seed $(SEED)
 
 ## The tests within FreeCAD (`scripts/setup freecad`), with the command as cargo has built it.
 freecad: python
-	cargo build --quiet --package toolpost
+	cargo build --quiet --bin toolpost
 	PATH="$(or $(CARGO_TARGET_DIR),$(CURDIR)/target)/debug:$$PATH" pytest --quiet integrations/freecad/tests
+
+## The tests in Rust, compiled and not run.
+tests: rust
+	cargo test --workspace --no-run
 
 ## Speed and memory, each beside a floor in the same run.
 bench: rust
@@ -50,13 +84,24 @@ bench: rust
 		$(wildcard $(addprefix $(DATA)/cldata/,makino/* nx/* solidworks/*))
 
 ## Format, lints, documentation. The fuzz targets are a workspace of their own.
-lint: rust python
-	@scripts/setup fuzz
+lint: lint-format lint-rust lint-fuzz lint-docs lint-python
+
+lint-format: rust
 	cargo fmt --all --check
 	cargo fmt --manifest-path fuzz/Cargo.toml --check
+
+lint-rust: rust
 	cargo clippy --workspace --all-targets -- -D warnings
-	cargo clippy --manifest-path fuzz/Cargo.toml -- -D warnings
+
+# Nothing is linked: any file stands for libFuzzer, which is not compiled then.
+lint-fuzz: rust
+	CUSTOM_LIBFUZZER_PATH=$(CURDIR)/fuzz/Cargo.toml \
+		cargo clippy --manifest-path fuzz/Cargo.toml -- -D warnings
+
+lint-docs: rust
 	RUSTDOCFLAGS="-D warnings" cargo doc --quiet --workspace --no-deps --document-private-items
+
+lint-python: python
 	ruff check
 	ruff format --check
 	mypy

@@ -18,7 +18,9 @@ if TYPE_CHECKING:
     from collections.abc import Callable
 
 # The seed (Makefile) decides what is drawn, not what has failed before; a machine may be slow.
-settings.register_profile("toolpost", database=None, deadline=None)
+settings.register_profile(
+    "toolpost", settings.get_profile("default"), database=None, deadline=None, derandomize=False
+)
 settings.load_profile("toolpost")
 
 ROOT = Path(__file__).resolve().parents[2]

@@ -29,3 +29,15 @@ def test_the_examples_of_a_page_do_what_they_say(page, tmp_path, monkeypatch):
     test = doctest.DocTest(examples, {}, page.name, str(page), 0, None)
     result = doctest.DocTestRunner().run(test, out=said.append)
     assert result.failed == 0, "".join(said)
+
+
+def test_the_example_of_the_readme_does_what_it_says(tmp_path, monkeypatch):
+    (tmp_path / "examples").symlink_to(ROOT / "examples")
+    monkeypatch.chdir(tmp_path)
+    text = (ROOT / "README.md").read_text()
+    blocks = re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+    assert blocks
+    for block in blocks:
+        exec(compile(block, "README.md", "exec"), {})
+    assert (tmp_path / "dome.nc").is_file()
+    assert (tmp_path / "dome.report.json").is_file()

@@ -25,6 +25,9 @@ fn axes(plane: &str) -> [usize; 3] {
 
 /// What `rs274 -g` makes of a program with a tool 1 of this radius; `None` where it is not installed.
 fn judged(program: &str, radius: f64) -> Option<Result<Vec<Move>, String>> {
+    if !judge::program("rs274", "Debian package linuxcnc-uspace") {
+        return None;
+    }
     let folder = tempfile::tempdir().unwrap();
     let path = |name: &str| folder.path().join(name);
     // Alone, rs274 counts the table in inches.
@@ -33,15 +36,12 @@ fn judged(program: &str, radius: f64) -> Option<Result<Vec<Move>, String>> {
     std::fs::write(path("rs274.var"), "").unwrap();
     std::fs::write(path("program.ngc"), program).unwrap();
     // It keeps the table in a file of the home folder, which two of them at once must not share.
-    let run = Command::new("rs274")
+    let output = Command::new("rs274")
         .args(["-t", "tool.tbl", "-v", "rs274.var", "-g", "program.ngc"])
         .env("HOME", folder.path())
         .current_dir(folder.path())
-        .output();
-    let Ok(output) = run else {
-        eprintln!("rs274 (Debian package linuxcnc-uspace) is not installed: LinuxCNC is not asked");
-        return None;
-    };
+        .output()
+        .expect("rs274 is run");
     Some(match output.status.success() {
         true => Ok(canonical(&String::from_utf8_lossy(&output.stdout))),
         false => Err(String::from_utf8_lossy(&output.stderr).into_owned()),

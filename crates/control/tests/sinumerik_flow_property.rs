@@ -448,17 +448,18 @@ fn judged(programs: &[String]) -> Option<Vec<String>> {
                   try:\n        d, _ = nc_to_dataframe(p, iteration_limit=100000)\n        \
                   print(' '.join(str(x) for x in d['X'] if x is not None))\n    \
                   except ValueError as e:\n        print(repr(e))\n";
-    let mut child = Command::new("python3")
+    let mut child = Command::new(judge::python("nc_gcode_interpreter")?)
         .args(["-c", script])
         .stdin(Stdio::piped())
         .stdout(Stdio::piped())
         .stderr(Stdio::null())
         .spawn()
-        .ok()?;
-    child.stdin.take()?.write_all(programs.join("\0").as_bytes()).ok()?;
-    let output = child.wait_with_output().ok()?;
-    let text = String::from_utf8(output.stdout).ok()?;
-    output.status.success().then(|| text.lines().map(str::to_owned).collect())
+        .unwrap();
+    child.stdin.take().unwrap().write_all(programs.join("\0").as_bytes()).unwrap();
+    let output = child.wait_with_output().unwrap();
+    assert!(output.status.success(), "the interpreter stops: {}", output.status);
+    let text = String::from_utf8(output.stdout).unwrap();
+    Some(text.lines().map(str::to_owned).collect())
 }
 
 #[test]
@@ -475,10 +476,7 @@ fn an_outside_interpreter_moves_there_too() {
             })
             .take(40)
             .collect();
-    let Some(judged) = judged(&programs) else {
-        eprintln!("skipped: nc-gcode-interpreter (PyPI) is not installed");
-        return;
-    };
+    let Some(judged) = judged(&programs) else { return };
     assert_eq!(programs.len(), judged.len());
     for (text, judged) in programs.iter().zip(judged) {
         let numbers: Result<Vec<f64>, _> = judged.split(' ').map(str::parse).collect();

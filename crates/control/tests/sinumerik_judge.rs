@@ -76,13 +76,6 @@ const CASES: &[Case] = &[
     case("variables"),
 ];
 
-fn data() -> Option<PathBuf> {
-    let beside = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data");
-    let folder = std::env::var_os("TOOLPOST_DATA").map_or_else(|| beside.into(), PathBuf::from);
-    let folder = folder.join("sinumerik");
-    folder.is_dir().then_some(folder)
-}
-
 /// The points that a program moves to, with the error that ends it.
 fn moved(case: &Case, text: &str) -> (Vec<Vec3>, Option<Box<Diagnostic>>) {
     let mut settings = common::sinumerik::settings();
@@ -137,10 +130,7 @@ fn same(a: Vec3, b: Vec3) -> bool {
 
 #[test]
 fn positions_are_those_of_the_judge_in_order() {
-    let Some(folder) = data() else {
-        eprintln!("skipped: no data (TOOLPOST_DATA)");
-        return;
-    };
+    let Some(folder) = judge::data("sinumerik") else { return };
     for case in CASES {
         let name = case.name;
         let file =

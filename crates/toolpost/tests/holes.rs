@@ -354,8 +354,8 @@ fn rs274(program: &str) -> Vec<String> {
 
 #[test]
 fn linuxcnc_itself_moves_as_the_manual_says() {
-    if Command::new("rs274").arg("-h").stdin(Stdio::null()).output().is_err() {
-        return eprintln!("note: rs274 (Debian package linuxcnc-uspace) is not installed");
+    if !judge::program("rs274", "Debian package linuxcnc-uspace") {
+        return;
     }
     // It draws back and comes back by a hundredth of an inch.
     let motions: [&[&str]; 10] = [

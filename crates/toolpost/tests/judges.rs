@@ -2,7 +2,7 @@
 //! `linuxcnc-uspace`) and `nc-gcode-interpreter` (PyPI). Both are programs run beside ours; their
 //! motion is held against the source, so nothing of ours but the reader and the writer is trusted.
 //!
-//! A judge that is not installed is named on stderr and its test passes; CI installs both.
+//! A judge that is not installed is named on stderr and its test passes; in CI it fails.
 
 mod files;
 
@@ -191,8 +191,8 @@ fn rs274(folder: &Path, text: &[u8]) -> Result<Vec<Cut>, String> {
 
 #[test]
 fn linuxcnc_itself_runs_our_programs_along_the_source() {
-    if Command::new("rs274").arg("-h").stdin(Stdio::null()).output().is_err() {
-        return eprintln!("note: rs274 (Debian package linuxcnc-uspace) is not installed");
+    if !judge::program("rs274", "Debian package linuxcnc-uspace") {
+        return;
     }
     let folder = tempfile::tempdir().unwrap();
     let mut judged = 0;
@@ -211,8 +211,8 @@ fn linuxcnc_itself_runs_our_programs_along_the_source() {
 /// finds a surface as uneven as we like.
 #[test]
 fn linuxcnc_itself_follows_a_surface_that_it_finds() {
-    if Command::new("rs274").arg("-h").stdin(Stdio::null()).output().is_err() {
-        return eprintln!("note: rs274 (Debian package linuxcnc-uspace) is not installed");
+    if !judge::program("rs274", "Debian package linuxcnc-uspace") {
+        return;
     }
     let pose = |x: f64, y: f64, z: f64| Pose::upright(Vec3::new(x, y, z)).unwrap();
     let arc = |end: Pose, center: Vec3, normal: Vec3| {
@@ -270,11 +270,7 @@ for row in frame.iter_rows(named=True):
 
 #[test]
 fn another_sinumerik_interpreter_ends_every_block_where_the_source_does() {
-    let python = std::env::var("TOOLPOST_JUDGE_PYTHON").unwrap_or_else(|_| "python3".into());
-    let there = Command::new(&python).args(["-c", "import nc_gcode_interpreter"]).output();
-    if !there.is_ok_and(|run| run.status.success()) {
-        return eprintln!("note: {python} has no nc-gcode-interpreter (PyPI)");
-    }
+    let Some(python) = judge::python("nc_gcode_interpreter") else { return };
     let folder = tempfile::tempdir().unwrap();
     let mut judged = 0;
     for file in sources() {

@@ -6,7 +6,7 @@
 mod files;
 
 use control::{Action, Event, Orientation, Position};
-use files::{cldata, root};
+use files::root;
 use geom::{Arc, Vec3, nearest_on_segment};
 use machine::Machine;
 use program::{
@@ -657,10 +657,8 @@ fn samples() -> Vec<Sample> {
         ("solidworks/shimemcunha.apt", "dmu50-heidenhain"),
         ("solidworks/SupPetriLED.apt", "sinumerik-840d-traori"),
     ] {
-        match cldata().join(file) {
-            path if path.is_file() => samples.push(Sample::new(file, &read(path), machine)),
-            path => eprintln!("note: no {} here", path.display()),
-        }
+        let Some(cldata) = judge::data("cldata") else { continue };
+        samples.push(Sample::new(file, &read(cldata.join(file)), machine));
     }
     samples
 }

@@ -194,8 +194,8 @@ fn another_thread_or_probing_move_is_not_proven() {
 
 #[test]
 fn linuxcnc_itself_probes_and_cuts_the_thread() {
-    if Command::new("rs274").arg("-h").stdin(Stdio::null()).output().is_err() {
-        return eprintln!("note: rs274 (Debian package linuxcnc-uspace) is not installed");
+    if !judge::program("rs274", "Debian package linuxcnc-uspace") {
+        return;
     }
     let folder = tempfile::tempdir().unwrap();
     std::fs::write(folder.path().join("t.tbl"), "T1 P1 D0 Z0\n").unwrap();

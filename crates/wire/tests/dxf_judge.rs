@@ -68,25 +68,12 @@ for entity in msp:
     show(entity)
 "#;
 
-/// A Python that has ezdxf: that of `make judges`, or the one on the path.
-fn python() -> Option<&'static str> {
-    let ours = concat!(env!("CARGO_MANIFEST_DIR"), "/../../.venv/bin/python");
-    let has = |python: &&str| {
-        let run = Command::new(python).args(["-c", "import ezdxf"]).output();
-        run.is_ok_and(|run| run.status.success())
-    };
-    [ours, "python3"].into_iter().find(has)
-}
-
 #[test]
 fn contours_run_where_the_judge_s_do() {
-    let Some(python) = python() else {
-        eprintln!("skipped: no Python with ezdxf (`make judges`)");
-        return;
-    };
+    let Some(python) = judge::python("ezdxf") else { return };
     for (version, unread) in [("R12", 2), ("R2000", 3), ("R2018", 3)] {
         let file = std::env::temp_dir().join(format!("toolpost-{version}-{}", std::process::id()));
-        let run = Command::new(python).args(["-c", WRITE, version]).arg(&file).output().unwrap();
+        let run = Command::new(&python).args(["-c", WRITE, version]).arg(&file).output().unwrap();
         assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
         let text = std::fs::read(&file).unwrap();
         std::fs::remove_file(&file).unwrap();

@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import itertools
 import re
+import shutil
 import subprocess
 from dataclasses import dataclass, replace
+
+from conftest import absent
 
 
 @dataclass(frozen=True)
@@ -46,6 +49,8 @@ class JudgeError(Exception):
 
 def moves(program, folder):
     """Answer the moves of a file, without those from tool to tool, which posts choose freely."""
+    if shutil.which("rs274") is None:
+        absent("rs274 (Debian package linuxcnc-uspace) is not installed")
     # By itself the interpreter counts inches.
     table = "".join(f"T{n} P{n} Z0 D{5 / 25.4:f}\n" for n in range(1, 20))
     (folder / "tool.tbl").write_text(table)

@@ -6,7 +6,7 @@ import shutil
 from pathlib import Path
 
 import pytest
-from conftest import ADDON, HERE, missing, run
+from conftest import ADDON, HERE, absent, missing, run
 
 PICTURES = ["freecad-job", "freecad-editor", "freecad-not-proven"]
 
@@ -15,9 +15,9 @@ PICTURES = ["freecad-job", "freecad-editor", "freecad-not-proven"]
 def window(tmp_path_factory):
     """Post in the window; with TOOLPOST_IMAGES the pictures of it go to that folder."""
     if missing():
-        pytest.skip(missing())
+        absent(missing())
     if shutil.which("xvfb-run") is None:
-        pytest.skip("a screen for FreeCAD's window (Debian packages xvfb, xauth) is not installed")
+        absent("a screen for FreeCAD's window (Debian packages xvfb, xauth) is not installed")
     home = tmp_path_factory.mktemp("home")
     (home / "Mod").mkdir()
     (home / "Mod" / "toolpost").symlink_to(ADDON, target_is_directory=True)

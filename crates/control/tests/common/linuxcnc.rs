@@ -59,6 +59,9 @@ pub fn difference(text: &[u8], rotary: [bool; 3], folders: &[PathBuf]) -> Option
 ///
 /// It reports a file without `M2` and `%` when it has run it to its end, which we take as its end.
 pub fn theirs(text: &[u8], folders: &[PathBuf]) -> Option<Result<Vec<Motion>, String>> {
+    if !judge::program("rs274", "Debian package linuxcnc-uspace") {
+        return None;
+    }
     let place = tempfile::tempdir().unwrap();
     let path = |name: &str| place.path().join(name);
     let subroutines: Vec<String> = folders.iter().map(|f| f.display().to_string()).collect();
@@ -70,10 +73,7 @@ pub fn theirs(text: &[u8], folders: &[PathBuf]) -> Option<Result<Vec<Motion>, St
     fs::write(path("tool.tbl"), table.collect::<String>()).unwrap();
     fs::write(path("rs274.var"), "").unwrap();
     fs::write(path("program.ngc"), text).unwrap();
-    let Ok(status) = run(place.path()) else {
-        eprintln!("rs274 (Debian package linuxcnc-uspace) is not installed: LinuxCNC is not asked");
-        return None;
-    };
+    let status = run(place.path()).expect("rs274 is run");
     let errors = fs::read(path("errors")).unwrap();
     let errors = String::from_utf8_lossy(&errors).into_owned();
     match status {

@@ -2,16 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-/// The folder of Gerber and Excellon files, or nothing where it is missing, which is said.
+/// The folder of Gerber and Excellon files.
 pub fn folder() -> Option<PathBuf> {
-    let here = concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data");
-    let data = std::env::var_os("TOOLPOST_DATA").map_or_else(|| PathBuf::from(here), PathBuf::from);
-    let folder = data.join("gerber");
-    if !folder.is_dir() {
-        eprintln!("skipped: no real files in {}", folder.display());
-        return None;
-    }
-    Some(folder)
+    judge::data("gerber")
 }
 
 /// All files below `folder` whose names end so, in order.

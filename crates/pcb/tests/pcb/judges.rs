@@ -10,11 +10,7 @@ use toolpost_pcb::{excellon, gerber};
 const PIXEL: f64 = 25.4 / 2000.0;
 
 fn gerbv() -> bool {
-    let found = Command::new("gerbv").arg("--version").output().is_ok();
-    if !found {
-        eprintln!("skipped: no gerbv (`make judges`)");
-    }
-    found
+    judge::program("gerbv", "Debian package gerbv")
 }
 
 /// Which pixels of `raster` gerbv makes dark.
@@ -134,24 +130,10 @@ for o in (ExcellonFile if name.endswith(".drl") else GerberFile).open(name).obje
         print("region", f"{a:.6f} {b:.6f} {c:.6f} {d:.6f}")
 "#;
 
-/// A Python that has gerbonara: that of `make judges`, or the one on the path.
-fn python() -> Option<&'static str> {
-    let ours = concat!(env!("CARGO_MANIFEST_DIR"), "/../../.venv/bin/python");
-    let has = |python: &&str| {
-        let run = Command::new(python).args(["-c", "import gerbonara"]).output();
-        run.is_ok_and(|run| run.status.success())
-    };
-    let found = [ours, "python3"].into_iter().find(has);
-    if found.is_none() {
-        eprintln!("skipped: no Python with gerbonara (`make judges`)");
-    }
-    found
-}
-
 /// A kind of object and its numbers.
 type Seen = (String, Vec<f64>);
 
-fn gerbonara(python: &str, file: &Path) -> Vec<Seen> {
+fn gerbonara(python: &Path, file: &Path) -> Vec<Seen> {
     let run = Command::new(python).args(["-c", GERBONARA]).arg(file).output().unwrap();
     assert!(run.status.success(), "{}", String::from_utf8_lossy(&run.stderr));
     let text = String::from_utf8(run.stdout).unwrap();
@@ -186,7 +168,7 @@ fn assert_same(file: &Path, ours: &[Seen], theirs: &[Seen]) {
 
 #[test]
 fn every_object_of_a_layer_is_where_gerbonara_sees_it() {
-    let (Some(folder), Some(python)) = (data::folder(), python()) else { return };
+    let (Some(folder), Some(python)) = (data::folder(), judge::python("gerbonara")) else { return };
     let boards =
         ["kicad/StickHub", "kicad/microwave", "kicad/pic_programmer", "features/arc-strokes"];
     for file in boards.iter().flat_map(|board| data::files(&folder.join(board), ".gbr")) {
@@ -212,13 +194,13 @@ fn every_object_of_a_layer_is_where_gerbonara_sees_it() {
                 }
             }
         }
-        assert_same(&file, &ours, &gerbonara(python, &file));
+        assert_same(&file, &ours, &gerbonara(&python, &file));
     }
 }
 
 #[test]
 fn every_hole_and_route_is_where_gerbonara_sees_it() {
-    let (Some(folder), Some(python)) = (data::folder(), python()) else { return };
+    let (Some(folder), Some(python)) = (data::folder(), judge::python("gerbonara")) else { return };
     for file in data::files(&folder.join("kicad"), ".drl") {
         let drill = excellon::read("board.drl", &data::bytes(&file)).unwrap().drill;
         let mut ours = Vec::new();
@@ -234,6 +216,6 @@ fn every_hole_and_route_is_where_gerbonara_sees_it() {
                 }
             }
         }
-        assert_same(&file, &ours, &gerbonara(python, &file));
+        assert_same(&file, &ours, &gerbonara(&python, &file));
     }
 }

@@ -7,16 +7,9 @@ use program::{CycleKind, Op, Program, Spindle};
 use std::path::PathBuf;
 use toolpost_source::apt::{Dialect, Options, Reading, read};
 
-/// The folder of real input: `TOOLPOST_DATA`, or `../shared/data` beside the workspace.
+/// The folder of real input.
 fn data() -> Option<PathBuf> {
-    let beside = || PathBuf::from(concat!(env!("CARGO_MANIFEST_DIR"), "/../../../shared/data"));
-    let folder = std::env::var_os("TOOLPOST_DATA").map_or_else(beside, PathBuf::from);
-    let folder = folder.join("cldata");
-    if folder.is_dir() {
-        return Some(folder);
-    }
-    eprintln!("no real input at {}: nothing is tested", folder.display());
-    None
+    judge::data("cldata")
 }
 
 /// Reads `name`; `None` where there is no real input.

@@ -7,5 +7,6 @@ mod folder;
 mod freecad;
 mod import;
 mod nc;
+mod readme;
 mod saving;
 mod wire;

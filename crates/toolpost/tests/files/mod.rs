@@ -11,27 +11,16 @@ pub fn root() -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join("../..")
 }
 
-/// The folder of real cutter-location data: in `TOOLPOST_DATA`, or in `../shared/data` beside the
-/// checkout.
-pub fn cldata() -> PathBuf {
-    let beside = root().join("../shared/data");
-    std::env::var_os("TOOLPOST_DATA").map_or(beside, PathBuf::from).join("cldata")
-}
-
-/// Every file of cutter-location data that there is: our examples and the real ones. A folder that is
-/// missing is named on stderr.
+/// Every file of cutter-location data that there is: our examples and the real ones.
 pub fn sources() -> Vec<PathBuf> {
-    let real = ["makino", "nx", "solidworks"].map(|system| cldata().join(system));
+    let systems = ["cldata/makino", "cldata/nx", "cldata/solidworks"];
     let mut files = Vec::new();
-    for folder in real.into_iter().chain([root().join("examples")]) {
-        let Ok(entries) = std::fs::read_dir(&folder) else {
-            eprintln!("note: no {} here", folder.display());
-            continue;
-        };
+    for folder in systems.into_iter().filter_map(judge::data).chain([root().join("examples")]) {
+        let entries = std::fs::read_dir(&folder).unwrap();
         files.extend(entries.map(|entry| entry.unwrap().path()).filter(|path| path.is_file()));
     }
-    // Our examples have NC programs, a job of FreeCAD's and a board among them.
-    let others = ["nc", "json", "toml"];
+    // Our examples have NC programs, a tool table, a job of FreeCAD's and a board among them.
+    let others = ["nc", "tbl", "json", "toml"];
     files.retain(|file| file.extension().is_none_or(|ending| others.iter().all(|o| ending != *o)));
     files.sort();
     files

@@ -532,11 +532,7 @@ impl Way {
 
 #[test]
 fn a_board_of_kicad_and_its_plots_are_the_same_programs() {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    let data = std::env::var_os("TOOLPOST_DATA").map_or(beside, Into::into).join("gerber/kicad");
-    if !data.is_dir() {
-        return eprintln!("skipped: no real boards in {}", data.display());
-    }
+    let Some(data) = judge::data("gerber/kicad") else { return };
     let (plots, board) = (Folder::empty(), Folder::empty());
     let path = |name: &str| data.join(name).display().to_string();
     let more = ["--tool", "0.2"];

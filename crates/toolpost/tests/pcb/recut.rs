@@ -17,17 +17,6 @@ const STEP: f64 = 0.02;
 /// decimals.
 const TOLERANCE: f64 = 0.006;
 
-/// The folder of real boards, or nothing where it is missing, which is said.
-fn data() -> Option<PathBuf> {
-    let beside = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../../shared/data");
-    let folder = std::env::var_os("TOOLPOST_DATA").map_or(beside, PathBuf::from).join("gerber");
-    if !folder.is_dir() {
-        eprintln!("skipped: no real boards in {}", folder.display());
-        return None;
-    }
-    Some(folder)
-}
-
 /// A board whose copper was cut.
 struct Made {
     folder: tempfile::TempDir,
@@ -184,7 +173,7 @@ const BOARDS: &[(&str, f64)] = &[
 
 #[test]
 fn what_a_program_for_grbl_leaves_is_the_copper_net_by_net() {
-    let Some(data) = data() else { return };
+    let Some(data) = judge::data("gerber") else { return };
     for (name, width) in BOARDS {
         let board = data.join("kicad").join(name);
         let made = Made::of(&board, "grbl-3018", *width, &[]);
@@ -196,7 +185,7 @@ fn what_a_program_for_grbl_leaves_is_the_copper_net_by_net() {
 
 #[test]
 fn what_a_program_for_linuxcnc_leaves_is_the_copper_net_by_net() {
-    let Some(data) = data() else { return };
+    let Some(data) = judge::data("gerber") else { return };
     for (name, width) in BOARDS {
         let board = data.join("kicad").join(name);
         let more = ["--passes", "2", "--direction", "conventional"];
@@ -209,7 +198,7 @@ fn what_a_program_for_linuxcnc_leaves_is_the_copper_net_by_net() {
 
 #[test]
 fn the_large_board_is_cut_right() {
-    let Some(data) = data() else { return };
+    let Some(data) = judge::data("gerber") else { return };
     let board = data.join("a64");
     for machine in ["grbl-3018", "linuxcnc-mill"] {
         let made = Made::of(&board, machine, 0.1, &[]);

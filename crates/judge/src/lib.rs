@@ -1,0 +1,89 @@
+//! For tests: finds the judges, which are other people's programs, Python modules and real files.
+//!
+//! None of them is part of the project. Where one is missing, the test says on the error stream that
+//! nothing was judged, and passes. With `CI=true` in the environment, which `.ci/run` sets, it fails.
+//!
+//! ```no_run
+//! if !judge::program("rs274", "Debian package linuxcnc-uspace") {
+//!     return;
+//! }
+//! ```
+
+use std::env;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+/// Whether the program is on the `PATH`; `source` says where it comes from.
+#[track_caller]
+pub fn program(name: &str, source: &str) -> bool {
+    let path = env::var_os("PATH").unwrap_or_default();
+    let found = env::split_paths(&path).any(|folder| folder.join(name).is_file());
+    if !found {
+        missing(&format!("{name} ({source}) is not installed"));
+    }
+    found
+}
+
+/// A Python that has the module, which is a package of PyPI: that of `make judges`, or the one on the `PATH`.
+#[track_caller]
+pub fn python(module: &str) -> Option<PathBuf> {
+    let ours = project().join(".venv/bin/python");
+    let has = |python: &PathBuf| {
+        let run = Command::new(python).args(["-c", &format!("import {module}")]).output();
+        run.is_ok_and(|run| run.status.success())
+    };
+    let found = [ours, "python3".into()].into_iter().find(has);
+    if found.is_none() {
+        missing(&format!("no Python has the module {module} (PyPI)"));
+    }
+    found
+}
+
+/// A folder of the real input: of `TOOLPOST_DATA`, or of `../shared/data` beside the project.
+#[track_caller]
+pub fn data(folder: &str) -> Option<PathBuf> {
+    let beside = || project().join("../shared/data");
+    let data = env::var_os("TOOLPOST_DATA").map_or_else(beside, PathBuf::from).join(folder);
+    if data.is_dir() {
+        return Some(data);
+    }
+    missing(&format!("there is no real input in {} (TOOLPOST_DATA)", data.display()));
+    None
+}
+
+/// Says on the error stream that nothing was judged, and why.
+///
+/// # Panics
+///
+/// With `CI=true` in the environment.
+#[track_caller]
+pub fn missing(why: &str) {
+    missing_where(env::var_os("CI").is_some_and(|value| value == "true"), why);
+}
+
+#[track_caller]
+fn missing_where(required: bool, why: &str) {
+    assert!(!required, "{why}; with CI=true every judge has to be there (`scripts/setup judges`)");
+    eprintln!("nothing was judged: {why} (`make judges`)");
+}
+
+/// The top folder of the project.
+fn project() -> &'static Path {
+    Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../.."))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_missing_judge_is_no_failure_at_home() {
+        missing_where(false, "rs274 is not installed");
+    }
+
+    #[test]
+    #[should_panic(expected = "rs274 is not installed; with CI=true")]
+    fn a_missing_judge_is_a_failure_in_ci() {
+        missing_where(true, "rs274 is not installed");
+    }
+}
