@@ -14,8 +14,8 @@
 //! The toolpath is generated ([`path`]). NC programs are run on the virtual controls ([`programs`]), the contour of a
 //! wire becomes points ([`wire`]). Circuit boards: copper united and grown ([`copper`]), a Gerber layer read
 //! ([`layer`]), real boards made whole ([`board`]). Memory is what the program asks the allocator for
-//! ([`memory`]), the most of all rounds. A path ten times as long, for the first machine, shows that time and memory grow
-//! no faster. Then come real files ([`library`]).
+//! ([`memory`]), the most of all rounds. A path ten times as long, for the first machine, shows that time
+//! and memory grow no faster. Then come real files ([`library`]).
 
 mod board;
 mod clock;
