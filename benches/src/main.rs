@@ -3,8 +3,8 @@
 //!
 //! Every figure is two: **processor time**, which counts all threads of the process together, also those that have
 //! ended, and **wall**, from start to end ([`clock`]). A program that works on two threads takes more processor time
-//! than wall. Each stage runs `--rounds` times; the round that is fastest by wall counts, with its own processor
-//! time. Beside a floor or a peer, processor time is divided by processor time and wall by wall. Other work on the
+//! than wall. Each stage runs `--rounds` times, a short one until 0.3 s have gone by; the round that is fastest by
+//! wall counts, with its own processor time. Beside a floor or a peer, processor time is divided by processor time and wall by wall. Other work on the
 //! machine makes the wall longer and changes the processor time little: compare runs by processor time, and wall
 //! only on an idle machine.
 //!
@@ -35,7 +35,7 @@ use machine::Machine;
 use program::{Diagnostic, Program};
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 #[global_allocator]
 static ALLOCATOR: memory::Counting = memory::Counting;
@@ -49,7 +49,7 @@ struct Arguments {
     /// Machine of the library, or the path of its file; may be given several times.
     #[arg(long, default_values_t = [String::from("dmu50-heidenhain")])]
     machine: Vec<String>,
-    /// Rounds of each stage; the fastest by wall counts, with its processor time.
+    /// Rounds of each stage at least; the fastest by wall counts, with its processor time.
     #[arg(long, default_value_t = 3)]
     rounds: usize,
     /// Blocks of the NC programs; 0 leaves them out.
@@ -206,13 +206,18 @@ fn keep<T>(result: T) -> Result<(), Vec<Diagnostic>> {
     Ok(())
 }
 
-/// The fastest of several rounds by wall, and the most memory.
+/// How long all rounds of a stage take together at least.
+const LEAST: Duration = Duration::from_millis(300);
+
+/// The fastest of several rounds by wall, and the most memory. A short stage has more rounds.
 fn fastest(
     rounds: usize,
     work: &mut dyn FnMut() -> Result<(), Vec<Diagnostic>>,
 ) -> Result<Measured, Vec<Diagnostic>> {
     let mut best = Measured { time: Taken::MAX, peak: 0 };
-    for _ in 0..rounds.max(1) {
+    let (start, mut round) = (Instant::now(), 0);
+    while round < rounds.max(1) || start.elapsed() < LEAST {
+        round += 1;
         let ((result, peak), taken) = clock::time(|| memory::peak(&mut *work));
         result?;
         best = Measured { time: best.time.faster(taken), peak: best.peak.max(peak) };

@@ -1,8 +1,8 @@
 //! The clock, checked from outside: a stage that it has measured here runs again alone in a process of its own, and
 //! what the system accounts to that process has to agree. A clock that leaves threads out fails.
 
-use crate::clock::{Taken, time_children};
-use crate::{fastest, path, programs, read_write_prove};
+use crate::clock::{Taken, time, time_children};
+use crate::{path, programs, read_write_prove};
 use program::Diagnostic;
 use std::env;
 use std::ffi::OsString;
@@ -87,7 +87,9 @@ fn agree(
     let (mut here, mut there, mut start) = (Taken::MAX, Taken::MAX, Taken::MAX);
     // In turn, so that other work on the machine is the same for all of them.
     for round in 1..=rounds.max(MOST) {
-        here = here.least(fastest(1, &mut || stage(&long_words))?.time);
+        let (done, taken) = time(|| stage(&long_words));
+        done?;
+        here = here.least(taken);
         there = there.least(alone(&long_words, 1)?);
         start = start.least(alone(&empty_words, 1)?);
         if round >= rounds && AGREES.contains(&here.times(there.beyond(start)).processor) {
