@@ -1,5 +1,7 @@
 //! NC programs of each control, run on its virtual control: plain blocks, and loops with expressions.
-//! The floor is to read the numbers of the text and to print them back; the peer is LinuxCNC's `rs274`.
+//! The floor is to read the numbers of the text and to print them back; the peer is LinuxCNC's `rs274`. It reads a file
+//! and prints what it has run, so beside the virtual control stands the whole command `toolpost show`, which reads the
+//! same file.
 
 use crate::clock::{Taken, time_children};
 use crate::{Measured, fastest, floor, outside};
