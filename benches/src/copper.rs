@@ -1,6 +1,7 @@
 //! A circuit board: its copper united, and grown by the radius of a tool, beside another library's union
 //! and growth of the same copper as polygons.
 
+use crate::clock::Taken;
 use crate::{Measured, fastest};
 use clipper2_rust::core::{FillRule, PathsD, PointD};
 use clipper2_rust::offset::{EndType, JoinType};
@@ -23,7 +24,7 @@ const TOOL: f64 = 0.1;
 /// # Errors
 /// Where a board is refused.
 pub fn measure(shapes: usize, rounds: usize) -> Result<(), Vec<Diagnostic>> {
-    let mut before: Option<f64> = None;
+    let mut before: Option<Taken> = None;
     for shapes in [shapes, 16 * shapes] {
         let copper = board(shapes).map_err(refused)?;
         let united = Region::union_of(&copper).map_err(refused)?;
@@ -61,21 +62,26 @@ pub fn measure(shapes: usize, rounds: usize) -> Result<(), Vec<Diagnostic>> {
             Ok(())
         })?;
         row("grown", &grown, &theirs);
-        let seconds = ours.time.as_secs_f64();
-        if let Some(before) = before.replace(seconds) {
-            println!("  sixteen times the board takes {:.1} times as long", seconds / before);
+        if let Some(before) = before.replace(ours.time) {
+            println!(
+                "  united, divided by the board with a sixteenth of it: {}",
+                ours.time.times(before)
+            );
         }
     }
     Ok(())
 }
 
-/// A row: what it takes, and what it takes the other library.
+/// A row: what it takes, and what it takes the other library, which uses one thread.
 fn row(what: &str, ours: &Measured, theirs: &Measured) {
-    let (ours_s, theirs_s) = (ours.time.as_secs_f64(), theirs.time.as_secs_f64());
+    let mb = |of: &Measured| of.peak / 1_000_000;
     println!(
-        "  {what:24}{ours_s:9.3} s; the other library {theirs_s:.3} s; {} MB, {} MB",
-        ours.peak / 1_000_000,
-        theirs.peak / 1_000_000,
+        "  {what}: {}, {} MB\n    the other library: {}, {} MB; divided by ours: {}",
+        ours.time,
+        mb(ours),
+        theirs.time,
+        mb(theirs),
+        theirs.time.times(ours.time),
     );
 }
 

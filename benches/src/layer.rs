@@ -21,13 +21,14 @@ pub fn measure(strokes: usize, rounds: usize) -> Result<(), Vec<Diagnostic>> {
         objects = pcb::gerber::read("layer.gbr", text.as_bytes())?.image.objects.len();
         Ok(())
     })?;
-    let (floor, seconds) = (by_hand.time.as_secs_f64(), read.time.as_secs_f64());
     println!(
-        "a copper layer of {objects} objects, {} kB; the floor by hand {floor:.4} s\n  \
-         read{seconds:29.4} s{:9.1} times the floor; {} bytes an object",
+        "a copper layer of {objects} objects, {} kB; the floor by hand: {:.4}\n  \
+         read: {:.4}; {} bytes an object\n    divided by the floor: {}",
         text.len() / 1000,
-        seconds / floor,
-        read.peak / objects.max(1)
+        by_hand.time,
+        read.time,
+        read.peak / objects.max(1),
+        read.time.times(by_hand.time),
     );
     Ok(())
 }

@@ -1,11 +1,11 @@
 //! Real files, read, written and proven on every machine of the library.
 
-use crate::{clock, floor};
+use crate::clock::{self, Taken};
+use crate::floor;
 use machine::Machine;
 use machine::library::{MACHINES, names};
 use program::Diagnostic;
 use std::path::{Path, PathBuf};
-use std::time::Duration;
 
 /// Prints what all `files` take on all machines, beside the floor for as many bytes.
 ///
@@ -26,26 +26,24 @@ pub fn measure(files: &[PathBuf], rounds: usize) -> Result<(), Vec<Diagnostic>> 
         .collect::<Result<_, _>>()
         .map_err(|finding| vec![*finding])?;
     machines.retain(|machine| machine.wire.is_none());
-    let mut best = (Duration::MAX, 0);
-    let mut least = Duration::MAX;
+    let (mut best, mut least, mut count) = (Taken::MAX, Taken::MAX, 0);
     for _ in 0..rounds.max(1) {
-        let start = clock::now();
-        let proven = machines.iter().map(|machine| proven(&texts, machine)).sum();
-        best = best.min((clock::now().saturating_sub(start), proven));
-        let start = clock::now();
-        for (_, text) in machines.iter().flat_map(|_| &texts) {
-            std::hint::black_box(floor::by_hand(text));
-        }
-        least = least.min(clock::now().saturating_sub(start));
+        let (proven, taken) =
+            clock::time(|| machines.iter().map(|machine| proven(&texts, machine)).sum());
+        (best, count) = (best.faster(taken), proven);
+        let ((), taken) = clock::time(|| {
+            for (_, text) in machines.iter().flat_map(|_| &texts) {
+                std::hint::black_box(floor::by_hand(text));
+            }
+        });
+        least = least.faster(taken);
     }
     println!(
-        "{} files on {} machines: {} programs proven, {} refused, in {:.2} s, {:.1} times the floor by hand",
+        "{} files on {} machines: {count} programs proven, {} refused\n  {best:.2}\n  divided by the floor by hand: {}",
         texts.len(),
         machines.len(),
-        best.1,
-        texts.len() * machines.len() - best.1,
-        best.0.as_secs_f64(),
-        best.0.as_secs_f64() / least.as_secs_f64(),
+        texts.len() * machines.len() - count,
+        best.times(least),
     );
     Ok(())
 }

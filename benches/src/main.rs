@@ -1,11 +1,21 @@
 //! How fast a five-axis program is read, written and proven, and how much memory that takes, beside a
 //! floor in the same run.
 //!
-//! The toolpath is generated ([`path`]); every stage runs `--rounds` times on one core, and its fastest
-//! round counts ([`clock`]). NC programs are run on the virtual controls ([`programs`]), the contour of a
+//! Every figure is two: **processor time**, which counts all threads of the process together, also those that have
+//! ended, and **wall**, from start to end ([`clock`]). A program that works on two threads takes more processor time
+//! than wall. Each stage runs `--rounds` times, a short one until 0.3 s have gone by; the round that is fastest by
+//! wall counts, with its own processor time. Beside a floor or a peer, processor time is divided by processor time and wall by wall. Other work on the
+//! machine makes the wall longer and changes the processor time little: compare runs by processor time, and wall
+//! only on an idle machine.
+//!
+//! The clock itself is checked ([`outside`]): a stage runs again in a process of its own, and the processor time that
+//! the system accounts to that process has to agree. Otherwise the run fails.
+//!
+//! The toolpath is generated ([`path`]). NC programs are run on the virtual controls ([`programs`]), the contour of a
 //! wire becomes points ([`wire`]). Circuit boards: copper united and grown ([`copper`]), a Gerber layer read
-//! ([`layer`]), real boards made whole ([`board`]). Memory is what the program asks the allocator for ([`memory`]). A path ten times as long
-//! shows that time and memory grow no faster. Then come real files ([`library`]).
+//! ([`layer`]), real boards made whole ([`board`]). Memory is what the program asks the allocator for
+//! ([`memory`]), the most of all rounds. A path ten times as long, for the first machine, shows that time
+//! and memory grow no faster. Then come real files ([`library`]).
 
 mod board;
 mod clock;
@@ -14,16 +24,18 @@ mod floor;
 mod layer;
 mod library;
 mod memory;
+mod outside;
 mod path;
 mod programs;
 mod wire;
 
 use clap::Parser;
+use clock::Taken;
 use machine::Machine;
 use program::{Diagnostic, Program};
 use std::path::PathBuf;
 use std::process::ExitCode;
-use std::time::Duration;
+use std::time::{Duration, Instant};
 
 #[global_allocator]
 static ALLOCATOR: memory::Counting = memory::Counting;
@@ -37,7 +49,7 @@ struct Arguments {
     /// Machine of the library, or the path of its file; may be given several times.
     #[arg(long, default_values_t = [String::from("dmu50-heidenhain")])]
     machine: Vec<String>,
-    /// Rounds of each stage; the fastest counts.
+    /// Rounds of each stage at least; the fastest by wall counts, with its processor time.
     #[arg(long, default_value_t = 3)]
     rounds: usize,
     /// Blocks of the NC programs; 0 leaves them out.
@@ -61,12 +73,16 @@ struct Arguments {
 
 /// What a stage took.
 struct Measured {
-    time: Duration,
-    /// The most bytes in use at once, beyond those before it.
+    /// The fastest round by wall.
+    time: Taken,
+    /// The most bytes in use at once, beyond those before it, of all rounds.
     peak: usize,
 }
 
 fn main() -> ExitCode {
+    if let Some(code) = outside::asked() {
+        return code.into();
+    }
     let arguments = Arguments::parse();
     match run(&arguments) {
         Ok(()) => ExitCode::SUCCESS,
@@ -78,6 +94,8 @@ fn main() -> ExitCode {
 }
 
 fn run(arguments: &Arguments) -> Result<(), Vec<Diagnostic>> {
+    let machine = arguments.machine.first().map_or("", String::as_str);
+    outside::check(arguments.blocks, arguments.records, machine, arguments.rounds)?;
     if arguments.blocks > 0 {
         programs::measure(arguments.blocks, arguments.rounds)?;
     }
@@ -116,7 +134,12 @@ fn five_axes(arguments: &Arguments) -> Result<(), Vec<Diagnostic>> {
     let source = read(&text)?;
     let stored = memory::live() - before;
 
-    for name in &arguments.machine {
+    let folder = tempfile::tempdir().map_err(|error| outside::failed(&error))?;
+    let path = folder.path().join("wave.apt");
+    let saved = folder.path().join("wave.nc").display().to_string();
+    std::fs::write(&path, &text).map_err(|error| outside::failed(&error))?;
+
+    for (i, name) in arguments.machine.iter().enumerate() {
         let machine = machine::load(name).map_err(|finding| vec![*finding])?;
         println!("{name}");
         let writing = measure(&mut || keep(post::write(&read(&text)?, &machine)?))?;
@@ -125,15 +148,25 @@ fn five_axes(arguments: &Arguments) -> Result<(), Vec<Diagnostic>> {
         let proving = measure(&mut || read_write_prove(&text, &machine))?;
         table.row("read, kinematics, write, prove", &proving, &by_hand, &standard);
         println!(
-            "  proof: {:.2} times the program without; program text {} MB; beside the texts {} bytes a \
-             move to write, {} to prove",
-            proving.time.as_secs_f64() / writing.time.as_secs_f64(),
+            "  the proof: {:.3}\n    all divided by all without the proof: {:.2}\n  \
+             program text {} MB; beside the texts {} bytes a move to write, {} to prove",
+            proving.time.beyond(writing.time),
+            proving.time.times(writing.time),
             output.text.len() / 1_000_000,
             table.each(writing.peak.saturating_sub(output.text.capacity())),
             table.each(proving.peak.saturating_sub(output.text.capacity())),
         );
         drop(output);
-        ten_times(arguments.records, &machine, &proving)?;
+        let file = path.display().to_string();
+        let words = ["--quiet", "post", &file, "--machine", name, "--output", &saved];
+        let whole = outside::command(&words, arguments.rounds)?;
+        println!(
+            "  the whole command `toolpost post`: {whole}; of it read, write, prove: {:.0} % of the processor time",
+            100.0 * proving.time.times(whole).processor
+        );
+        if i == 0 {
+            ten_times(arguments.records, &machine, &proving)?;
+        }
     }
     println!("the program in memory: {} bytes a move", table.each(stored));
     Ok(())
@@ -144,11 +177,11 @@ fn ten_times(records: usize, machine: &Machine, once: &Measured) -> Result<(), V
     let text = path::cutter_location_data(10 * records);
     let all = fastest(1, &mut || read_write_prove(&text, machine))?;
     println!(
-        "  {} GOTO: {:.1} s to read, write and prove, {:.2} times ten times the above; peak {} bytes a \
-         move, program text included",
+        "  {} GOTO to read, write and prove: {:.1}\n  \
+         a tenth of it divided by the above: {:.2}; peak {} bytes a move, program text included",
         10 * records,
-        all.time.as_secs_f64(),
-        all.time.as_secs_f64() / (10.0 * once.time.as_secs_f64()),
+        all.time,
+        all.time.share(10).times(once.time),
         all.peak.div_ceil(10 * records.max(1)),
     );
     Ok(())
@@ -173,42 +206,48 @@ fn keep<T>(result: T) -> Result<(), Vec<Diagnostic>> {
     Ok(())
 }
 
-/// The fastest of several rounds, and the memory of the last.
+/// How long all rounds of a stage take together at least.
+const LEAST: Duration = Duration::from_millis(300);
+
+/// The fastest of several rounds by wall, and the most memory. A short stage has more rounds.
 fn fastest(
     rounds: usize,
     work: &mut dyn FnMut() -> Result<(), Vec<Diagnostic>>,
 ) -> Result<Measured, Vec<Diagnostic>> {
-    let mut best = Measured { time: Duration::MAX, peak: 0 };
-    for _ in 0..rounds.max(1) {
-        let start = clock::now();
-        let (result, peak) = memory::peak(&mut *work);
+    let mut best = Measured { time: Taken::MAX, peak: 0 };
+    let (start, mut round) = (Instant::now(), 0);
+    while round < rounds.max(1) || start.elapsed() < LEAST {
+        round += 1;
+        let ((result, peak), taken) = clock::time(|| memory::peak(&mut *work));
         result?;
-        best = Measured { time: best.time.min(clock::now().saturating_sub(start)), peak };
+        best = Measured { time: best.time.faster(taken), peak: best.peak.max(peak) };
     }
     Ok(best)
 }
 
-/// The figures, a row a stage.
+/// The figures, a row a stage: processor time on the left, wall on the right.
 struct Table {
     records: usize,
 }
 
 impl Table {
     fn head(&self) {
-        println!(
-            "{:36}{:>9}{:>12}{:>9}{:>10}{:>11}",
-            "", "s", "records/s", "ns each", "by hand", "standard"
-        );
+        let columns = format!("{:>9}{:>8}{:>9}{:>10}", "s", "M/s", "by hand", "standard");
+        println!("{:36}{:>36}{:>36}", "", "processor time", "wall");
+        println!("{:36}{columns}{columns}", "");
     }
 
     fn row(&self, name: &str, stage: &Measured, by_hand: &Measured, standard: &Measured) {
-        let seconds = stage.time.as_secs_f64();
+        let (by_hand, standard) = (stage.time.times(by_hand.time), stage.time.times(standard.time));
+        let half = |time: Duration, by_hand: f64, standard: f64| {
+            let seconds = time.as_secs_f64();
+            let millions = self.records as f64 / seconds / 1e6;
+            format!("{seconds:9.3}{millions:8.2}{by_hand:8.2}x{standard:9.2}x")
+        };
         println!(
-            "{name:36}{seconds:9.3}{:11.2}M{:9.0}{:9.2}x{:10.2}x",
-            self.records as f64 / seconds / 1e6,
-            seconds / self.records as f64 * 1e9,
-            seconds / by_hand.time.as_secs_f64(),
-            seconds / standard.time.as_secs_f64(),
+            "{name:36}{}{}",
+            half(stage.time.processor, by_hand.processor, standard.processor),
+            half(stage.time.wall, by_hand.wall, standard.wall),
         );
     }
 

@@ -1,12 +1,16 @@
 //! NC programs of each control, run on its virtual control: plain blocks, and loops with expressions.
-//! The floor is to read the numbers of the text and to print them back; the peer is LinuxCNC's `rs274`.
+//! The floor is to read the numbers of the text and to print them back; the peer is LinuxCNC's `rs274`. It reads a file
+//! and prints what it has run, so beside the virtual control stands the whole command `toolpost show`, which reads the
+//! same file.
 
-use crate::{Measured, clock, fastest, floor};
+use crate::clock::{Taken, time_children};
+use crate::{Measured, fastest, floor, outside};
 use control::{Dialect, Event, Settings, Setup};
 use geom::Vec3;
 use program::Diagnostic;
 use std::fmt::Write;
-use std::fs::File;
+use std::fs::{self, File};
+use std::path::Path;
 use std::process::{Command, Stdio};
 use std::time::Duration;
 
@@ -16,47 +20,61 @@ use std::time::Duration;
 /// A program that a control refuses.
 pub fn measure(blocks: usize, rounds: usize) -> Result<(), Vec<Diagnostic>> {
     println!("NC programs of {blocks} blocks, run on their virtual controls");
-    println!(
-        "{:36}{:>9}{:>12}{:>9}{:>10}{:>9}",
-        "", "s", "blocks/s", "ns each", "by hand", "bytes"
-    );
-    let mut plain_ours = Duration::ZERO;
+    let columns = format!("{:>9}{:>8}{:>9}", "s", "M/s", "by hand");
+    println!("{:28}{:>26}{:>26}", "", "processor time", "wall");
+    println!("{:28}{columns}{columns}{:>9}", "", "bytes");
     for dialect in DIALECTS {
         let (name, plain, loops) = dialect.programs(blocks);
-        for (what, text, executed) in [("plain blocks", &plain, blocks), ("a loop", &loops, blocks)]
-        {
-            let Measured { time, peak } = fastest(rounds, &mut || run(dialect.0, text))?;
-            let start = clock::now();
-            std::hint::black_box(floor::by_hand(text.as_bytes()));
-            let by_hand = clock::now().saturating_sub(start);
-            let seconds = time.as_secs_f64();
-            let beside = match what {
-                "plain blocks" => format!("{:9.2}x", seconds / by_hand.as_secs_f64()),
-                _ => String::from("         -"),
+        for (what, text) in [("plain blocks", &plain), ("a loop", &loops)] {
+            let ours = fastest(rounds, &mut || run(dialect.0, text))?;
+            // A loop has few numbers to read.
+            let by_hand = match what {
+                "plain blocks" => Some(fastest(rounds, &mut || {
+                    std::hint::black_box(floor::by_hand(text.as_bytes()));
+                    Ok(())
+                })?),
+                _ => None,
             };
-            println!(
-                "{:36}{seconds:9.3}{:11.2}M{:9.0}{beside}{peak:9}",
-                format!("{name}: {what}"),
-                executed as f64 / seconds / 1e6,
-                seconds / executed as f64 * 1e9,
-            );
-            if dialect.0 == Dialect::LinuxCnc && what == "plain blocks" {
-                plain_ours = time;
+            row(&format!("{name}: {what}"), blocks, &ours, by_hand.as_ref());
+            if dialect.0 == Dialect::LinuxCnc {
+                beside(text, what, ours.time, rounds)?;
             }
         }
-        if dialect.0 == Dialect::LinuxCnc {
-            for (what, text) in [("plain blocks", &plain), ("a loop", &loops)] {
-                match peer(text) {
-                    Some(time) if what == "plain blocks" => println!(
-                        "  rs274, plain blocks: {:.3} s, {:.1} times ours",
-                        time.as_secs_f64(),
-                        time.as_secs_f64() / plain_ours.as_secs_f64()
-                    ),
-                    Some(time) => println!("  rs274, a loop: {:.3} s", time.as_secs_f64()),
-                    None => println!("  rs274 (Debian package linuxcnc-uspace) is not installed"),
-                }
-            }
-        }
+    }
+    Ok(())
+}
+
+fn row(name: &str, blocks: usize, ours: &Measured, by_hand: Option<&Measured>) {
+    let times = by_hand.map(|by_hand| ours.time.times(by_hand.time));
+    let half = |time: Duration, times: Option<f64>| {
+        let seconds = time.as_secs_f64();
+        let times = times.map_or(String::from("-"), |times| format!("{times:.2}x"));
+        format!("{seconds:9.3}{:8.2}{times:>9}", blocks as f64 / seconds / 1e6)
+    };
+    println!(
+        "{name:28}{}{}{:9}",
+        half(ours.time.processor, times.map(|times| times.processor)),
+        half(ours.time.wall, times.map(|times| times.wall)),
+        ours.peak,
+    );
+}
+
+/// Prints what the whole command takes for the program, and the peer.
+fn beside(text: &str, what: &str, ours: Taken, rounds: usize) -> Result<(), Vec<Diagnostic>> {
+    let folder = tempfile::tempdir().map_err(|error| outside::failed(&error))?;
+    let file = folder.path().join("program.ngc");
+    fs::write(&file, text).map_err(|error| outside::failed(&error))?;
+    let name = file.display().to_string();
+    let whole =
+        outside::command(&["show", &name, "--from", "linuxcnc", "--start", "0,0,0"], rounds)?;
+    println!("  the whole command `toolpost show`: {whole}");
+    match peer(folder.path(), rounds) {
+        Some(peer) => println!(
+            "  rs274, {what}: {peer}\n    divided by the virtual control: {}\n    divided by the whole command: {}",
+            peer.times(ours),
+            peer.times(whole),
+        ),
+        None => println!("  rs274 (Debian package linuxcnc-uspace) is not installed"),
     }
     Ok(())
 }
@@ -123,8 +141,13 @@ impl Language {
     }
 }
 
+/// The program of plain blocks for LinuxCNC.
+pub fn plain(blocks: usize) -> String {
+    DIALECTS[0].programs(blocks).1
+}
+
 /// Runs a program, from where all of its offsets are 0.
-fn run(dialect: Dialect, text: &str) -> Result<(), Vec<Diagnostic>> {
+pub fn run(dialect: Dialect, text: &str) -> Result<(), Vec<Diagnostic>> {
     let setup = Setup { start: Some(Vec3::ZERO), ..Setup::default() };
     let settings = Settings { setup, ..Settings::new(dialect, [false; 3]) };
     let mut keep = |event: Event| {
@@ -134,23 +157,24 @@ fn run(dialect: Dialect, text: &str) -> Result<(), Vec<Diagnostic>> {
     control::read(&settings, "program", text.as_bytes(), &mut keep).map_err(|found| vec![*found])
 }
 
-/// What `rs274` takes for a program, on the processor; `None` where it is not installed.
-fn peer(text: &str) -> Option<Duration> {
-    let folder = std::env::temp_dir().join(format!("toolpost-bench-{}", std::process::id()));
-    std::fs::create_dir_all(&folder).ok()?;
+/// What `rs274` takes for `program.ngc` in `folder`, from start to end: the fastest round by wall. `None` where it is
+/// not installed.
+fn peer(folder: &Path, rounds: usize) -> Option<Taken> {
     let path = |name: &str| folder.join(name);
-    std::fs::write(path("program.ngc"), text).ok()?;
-    std::fs::write(path("tool.tbl"), "T1 P1 Z0 D6\n").ok()?;
-    std::fs::write(path("rs274.var"), "").ok()?;
-    let before = clock::children()?;
-    let status = Command::new("rs274")
-        .args(["-t", "tool.tbl", "-v", "rs274.var", "-g", "program.ngc"])
-        .current_dir(&folder)
-        .env("HOME", &folder)
-        .stdout(File::create(path("out.txt")).ok()?)
-        .stderr(Stdio::null())
-        .status();
-    let time = clock::children()?.saturating_sub(before);
-    std::fs::remove_dir_all(&folder).ok()?;
-    status.ok().filter(|status| status.success()).map(|_| time)
+    fs::write(path("tool.tbl"), "T1 P1 Z0 D6\n").ok()?;
+    let mut best: Option<Taken> = None;
+    for _ in 0..rounds.max(1) {
+        fs::write(path("rs274.var"), "").ok()?;
+        let mut command = Command::new("rs274");
+        command
+            .args(["-t", "tool.tbl", "-v", "rs274.var", "-g", "program.ngc"])
+            .current_dir(folder)
+            .env("HOME", folder)
+            .stdout(File::create(path("out.txt")).ok()?)
+            .stderr(Stdio::null());
+        let (status, taken) = time_children(|| command.status());
+        status.ok().filter(|status| status.success())?;
+        best = Some(best.map_or(taken, |best| best.faster(taken)));
+    }
+    best
 }

@@ -1,10 +1,10 @@
 //! Any bytes as ISO code, the flavour by the first byte: no panic, and what runs makes sense.
 #![no_main]
 
-use control::{Dialect, Settings, Setup, Wire, read};
+use control::{Action, Dialect, Orientation, Settings, Setup, Wire, read};
 use geom::Vec3;
 use libfuzzer_sys::fuzz_target;
-use program::{Diagnostic, Op, Orientation};
+use program::Diagnostic;
 
 /// By the first byte: `0` is FANUC, `1` LinuxCNC and so on.
 const DIALECTS: [Dialect; 10] = [
@@ -34,29 +34,31 @@ fuzz_target!(|data: &[u8]| {
         let lines = text.split(|&byte| byte == b'\n').count();
         let mut records = 0;
         let mut ended = false;
-        let ran = read(&settings, "fuzz.nc", text, &mut |record| {
-            assert!(!ended || matches!(record.op, Op::Comment(_) | Op::Message(_)));
-            assert!(record.line > 0 && record.line as usize <= lines);
+        let ran = read(&settings, "fuzz.nc", text, &mut |event| {
+            assert!(!ended || matches!(event.action, Action::Comment(_) | Action::Message(_)));
+            assert!(event.line > 0 && event.line as usize <= lines);
             records += 1;
             if records > MOST_RECORDS {
                 return Err(Diagnostic::error("enough", "a loop that moves")
                     .at(1, b" ", 0, 1)
                     .into());
             }
-            ended |= record.op == Op::End;
-            match &record.op {
-                Op::Arc(arc) => {
+            ended |= event.action == Action::End;
+            match &event.action {
+                Action::Arc(arc) => {
                     assert!(arc.end.point.is_finite() && arc.center.is_finite());
                     assert!((arc.normal.length() - 1.0).abs() < 1e-9);
                 }
-                Op::Cycle(cycle) => {
+                Action::Cycle(cycle) => {
                     assert!(cycle.depth > 0.0 && cycle.clearance >= 0.0 && cycle.retract >= 0.0);
                     assert!(cycle.peck.is_none_or(|peck| peck > 0.0) && cycle.dwell >= 0.0);
                 }
-                Op::Hole(pose) => assert!(pose.point.is_finite()),
+                Action::Hole(pose) => assert!(pose.point.is_finite()),
                 _ => {}
             }
-            if let Some(Orientation::Axis(axis)) = record.op.pose().map(|pose| pose.orientation) {
+            if let Some(Orientation::Axis(axis)) =
+                event.action.position().map(|position| position.orientation)
+            {
                 assert!((axis.length() - 1.0).abs() < 1e-9);
             }
             Ok(())

@@ -1,9 +1,9 @@
 //! Any bytes as a SINUMERIK program: no panic, and what runs makes sense.
 #![no_main]
 
-use control::{Dialect, Settings, read};
+use control::{Action, Dialect, Orientation, Settings, read};
 use libfuzzer_sys::fuzz_target;
-use program::{Diagnostic, Op, Orientation};
+use program::Diagnostic;
 
 /// After so many records a program is left: loops may go round for long.
 const MOST_RECORDS: u32 = 10_000;
@@ -18,23 +18,25 @@ fuzz_target!(|data: &[u8]| {
         };
         let lines = data.split(|byte| *byte == b'\n').count();
         let (mut ended, mut records) = (false, 0);
-        let ran = read(&settings, "fuzz.mpf", data, &mut |record| {
-            assert!(!ended && record.line as usize <= lines);
-            ended = record.op == Op::End;
+        let ran = read(&settings, "fuzz.mpf", data, &mut |event| {
+            assert!(!ended && event.line as usize <= lines);
+            ended = event.action == Action::End;
             records += 1;
             if records > MOST_RECORDS {
                 return Err(Diagnostic::error("enough", "a loop that moves")
-                    .line(record.line)
+                    .line(event.line)
                     .into());
             }
-            if let Op::Arc(arc) = &record.op {
+            if let Action::Arc(arc) = &event.action {
                 assert!(arc.end.point.is_finite() && arc.center.is_finite());
                 assert!((arc.normal.length() - 1.0).abs() < 1e-9);
             }
-            if let Op::Cycle(cycle) = &record.op {
+            if let Action::Cycle(cycle) = &event.action {
                 assert!(cycle.depth > 0.0 && cycle.clearance >= 0.0 && cycle.retract >= 0.0);
             }
-            if let Some(Orientation::Axis(axis)) = record.op.pose().map(|pose| pose.orientation) {
+            if let Some(Orientation::Axis(axis)) =
+                event.action.position().map(|position| position.orientation)
+            {
                 assert!((axis.length() - 1.0).abs() < 1e-9);
             }
             Ok(())
