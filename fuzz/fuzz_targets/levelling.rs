@@ -18,8 +18,8 @@ fn ends(program: &Program) -> Vec<(u32, Vec3)> {
     for record in &program.records {
         let Some(pose) = record.op.pose() else { continue };
         match ends.last_mut() {
-            Some(last) if last.0 == record.line => last.1 = pose.point,
-            _ => ends.push((record.line, pose.point)),
+            Some(last) if last.0 == record.line => last.1 = pose.point(),
+            _ => ends.push((record.line, pose.point())),
         }
     }
     ends

@@ -20,7 +20,7 @@ const PART: f64 = 2000.0;
 
 fn is_near(program: &Program) -> bool {
     let mut poses = program.records.iter().filter_map(|record| record.op.pose());
-    poses.all(|pose| pose.point.abs().max_element() < PART)
+    poses.all(|pose| pose.point().abs().max_element() < PART)
 }
 
 fuzz_target!(|data: &[u8]| {

@@ -1,0 +1,342 @@
+//! Every kind of record beside who handles it: the table of `docs/architecture.md`, found by doing it.
+//!
+//! `TOOLPOST_DOCS=write cargo test -p toolpost --test records` writes the table anew.
+
+use geom::{Frame, Vec3};
+use machine::Machine;
+use machine::time::Times;
+use program::statistics::Statistics;
+use program::{
+    ArcTo, Auxiliary, Axes, Beam, Clamp, Compensation, Coolant, Course, Cycle, CycleKind, Feed,
+    FullPose, Input, JointMove, Kind, MachineMove, Op, Oriented, Output, OutputValue, PathMode,
+    Pose, Probe, Program, Spindle, Surface, Thread, Tool, Until, WorkOffset,
+};
+use std::fmt::Write;
+use std::path::{Path, PathBuf};
+
+/// A record where it makes sense: what comes before it, and what has to follow.
+struct Sample {
+    before: Vec<Op>,
+    op: Op,
+    after: Vec<Op>,
+}
+
+fn at(x: f64, y: f64, z: f64) -> Pose {
+    Pose::upright(Vec3::new(x, y, z)).unwrap()
+}
+
+/// A record of the kind. It stands in a cut at X0 Y0 Z-1, and the next cut goes to X10 Y5 Z-1.
+fn sample(kind: Kind) -> Sample {
+    let alone = |op| Sample { before: Vec::new(), op, after: Vec::new() };
+    let cycle = || {
+        Op::Cycle(Box::new(Cycle {
+            kind: CycleKind::Drill,
+            depth: 5.0,
+            clearance: 2.0,
+            retract: 6.0,
+            feed: None,
+            dwell: 0.0,
+            first_peck: None,
+            peck: None,
+        }))
+    };
+    let up = || Op::Rapid(at(0.0, 0.0, 6.0));
+    let down = || Op::Line(at(0.0, 0.0, -1.0));
+    match kind {
+        Kind::Rapid => Sample {
+            before: vec![up()],
+            op: Op::Rapid(at(30.0, 0.0, 6.0)),
+            after: vec![up(), down()],
+        },
+        Kind::Line => alone(Op::Line(at(-10.0, 0.0, -1.0))),
+        Kind::Arc => {
+            let (end, center) = (at(-20.0, 0.0, -1.0), Vec3::new(-10.0, 0.0, -1.0));
+            alone(Op::Arc(Box::new(ArcTo { end, center, normal: Vec3::Z, turns: 0 })))
+        }
+        Kind::Thread => alone(Op::Thread(Box::new(Thread { end: at(0.0, 0.0, -8.0), pitch: 1.5 }))),
+        Kind::Probe => {
+            let (away, must_answer) = (false, true);
+            let probe = Probe { end: at(0.0, 0.0, -9.0), away, must_answer, place: None };
+            Sample { before: vec![up()], op: Op::Probe(Box::new(probe)), after: vec![up(), down()] }
+        }
+        Kind::Hole => Sample {
+            before: vec![up(), cycle(), Op::Hole(at(0.0, 0.0, 0.0))],
+            op: Op::Hole(at(20.0, 0.0, 0.0)),
+            after: vec![Op::CycleOff, up(), down()],
+        },
+        Kind::Cycle => Sample {
+            before: vec![up(), cycle(), Op::Hole(at(0.0, 0.0, 0.0))],
+            op: {
+                let Op::Cycle(cycle) = cycle() else { unreachable!() };
+                Op::Cycle(Box::new(Cycle { depth: 9.0, ..*cycle }))
+            },
+            after: vec![Op::Hole(at(20.0, 0.0, 0.0)), Op::CycleOff, up(), down()],
+        },
+        Kind::CycleOff => Sample {
+            before: vec![up(), cycle(), Op::Hole(at(0.0, 0.0, 0.0))],
+            op: Op::CycleOff,
+            after: vec![up(), down()],
+        },
+        Kind::Oriented => alone(Op::Oriented(Box::new(Oriented {
+            end: FullPose::new(at(-10.0, 0.0, -1.0), Vec3::X).unwrap(),
+            course: Course::Line,
+            configuration: None,
+            external: Vec::new(),
+        }))),
+        Kind::Joints => {
+            let joints = JointMove { degrees: [0.0, -90.0, 90.0, 0.0, 0.0, 0.0], external: vec![] };
+            alone(Op::Joints(Box::new(joints)))
+        }
+        Kind::MachineMove => {
+            let to = MachineMove { linear: [None, None, Some(0.0)], ..MachineMove::default() };
+            Sample {
+                before: vec![up()],
+                op: Op::MachineMove(Box::new(to)),
+                after: vec![up(), down()],
+            }
+        }
+        Kind::Home => Sample { before: vec![up()], op: Op::Home, after: vec![up(), down()] },
+        Kind::Feed => alone(Op::Feed(Feed::PerMinute(150.0))),
+        Kind::PathMode => alone(Op::PathMode(PathMode::Blend(0.1))),
+        Kind::Spindle => alone(Op::Spindle(Spindle::Clockwise(700.0))),
+        Kind::SurfaceSpeed => alone(Op::SurfaceSpeed(Some(100.0))),
+        Kind::Coolant => alone(Op::Coolant(Coolant::Flood)),
+        Kind::Beam => alone(Op::Beam(Beam::On(0.5))),
+        Kind::Pulses => alone(Op::Pulses(1)),
+        Kind::Tool => Sample {
+            before: vec![up()],
+            op: Op::Tool(Box::new(Tool { number: 2, ..Tool::default() })),
+            after: vec![Op::Spindle(Spindle::Clockwise(1000.0)), up(), down()],
+        },
+        Kind::Preselect => alone(Op::Preselect(2)),
+        Kind::Compensation => Sample {
+            before: Vec::new(),
+            op: Op::Compensation(Compensation::Left(None)),
+            after: vec![
+                Op::Line(at(0.0, 20.0, -1.0)),
+                Op::Line(at(20.0, 20.0, -1.0)),
+                Op::Compensation(Compensation::Off),
+                Op::Line(at(20.0, 0.0, -1.0)),
+            ],
+        },
+        Kind::Frame => Sample {
+            before: vec![up()],
+            op: Op::Frame(Box::new(Frame::IDENTITY)),
+            after: vec![up(), down()],
+        },
+        Kind::WorkOffset => Sample {
+            before: vec![up()],
+            op: Op::WorkOffset(WorkOffset::numbered(55).unwrap()),
+            after: vec![up(), down()],
+        },
+        Kind::Surface => {
+            let (columns, rows) = (vec![0.0, 10.0], vec![0.0, 10.0]);
+            let surface = Surface { columns, rows, reach: [-0.5, 0.5], clear: 3.0 };
+            let places = [(0.0, 0.0), (10.0, 0.0), (0.0, 10.0), (10.0, 10.0)];
+            let touched = (0..).zip(places).flat_map(|(place, (x, y))| {
+                let (end, place) = (at(x, y, -0.5), Some(place));
+                let probe = Probe { end, away: false, must_answer: true, place };
+                let over = Op::Rapid(at(x, y, 6.0));
+                [over.clone(), Op::Probe(Box::new(probe)), over]
+            });
+            Sample {
+                before: [up()].into_iter().chain(touched).chain([up()]).collect(),
+                op: Op::Surface(Box::new(surface)),
+                after: vec![down()],
+            }
+        }
+        Kind::Clamp => alone(Op::Clamp(Clamp { axes: Axes::A, closed: true })),
+        Kind::Output => alone(Op::Output(Output {
+            number: 3,
+            value: OutputValue::Digital(true),
+            with_motion: false,
+        })),
+        Kind::Input => {
+            alone(Op::Input(Box::new(Input { number: 2, until: Until::High, timeout: 5.0 })))
+        }
+        Kind::Auxiliary => alone(Op::Auxiliary(Auxiliary::of(101))),
+        Kind::ThreadWire => alone(Op::ThreadWire),
+        Kind::CutWire => alone(Op::CutWire),
+        Kind::Taper => alone(Op::Taper(2.0)),
+        Kind::Dwell => alone(Op::Dwell(2.0)),
+        Kind::Stop => alone(Op::Stop),
+        Kind::OptionalStop => alone(Op::OptionalStop),
+        Kind::Operation => alone(Op::Operation("SLOT".into())),
+        Kind::EndOfOperation => alone(Op::EndOfOperation),
+        Kind::Comment => alone(Op::Comment("here".into())),
+        Kind::Message => alone(Op::Message("here".into())),
+        Kind::End => Sample { before: vec![up()], op: Op::End, after: Vec::new() },
+    }
+}
+
+/// A program of a mill around the sample, with and without its record.
+fn milled(kind: Kind) -> [Program; 2] {
+    let Sample { before, op, after } = sample(kind);
+    [true, false].map(|with| {
+        let start = [
+            Op::Tool(Box::new(Tool { number: 1, ..Tool::default() })),
+            Op::Spindle(Spindle::Clockwise(1000.0)),
+            Op::Feed(Feed::PerMinute(300.0)),
+            Op::Rapid(at(0.0, 0.0, 6.0)),
+            Op::Line(at(0.0, 0.0, -1.0)),
+        ];
+        let rest = [Op::Line(at(10.0, 5.0, -1.0)), Op::Rapid(at(10.0, 5.0, 6.0)), Op::End];
+        let rest = if kind == Kind::End { Vec::new() } else { rest.to_vec() };
+        let op = with.then_some(op.clone());
+        let all = start.into_iter().chain(before.clone()).chain(op).chain(after.clone());
+        lines(all.chain(rest))
+    })
+}
+
+/// A program of a wire machine, with and without the record: in an opening, or instead of the record that opens or
+/// ends it. What is switched on ends with the last cut.
+fn wired(kind: Kind) -> [Program; 2] {
+    [true, false].map(|with| {
+        let own = matches!(kind, Kind::ThreadWire | Kind::CutWire | Kind::End);
+        let op = match kind {
+            Kind::Line => Op::Line(at(25.0, 10.0, 0.0)),
+            Kind::Arc => {
+                let (end, center) = (at(20.0, 10.0, 0.0), Vec3::new(20.0, 5.0, 0.0));
+                Op::Arc(Box::new(ArcTo { end, center, normal: Vec3::Z, turns: 0 }))
+            }
+            Kind::Compensation => Op::Compensation(Compensation::Left(Some(1))),
+            other => sample(other).op,
+        };
+        let off = match kind {
+            Kind::Compensation => Some(Op::Compensation(Compensation::Off)),
+            Kind::Taper => Some(Op::Taper(0.0)),
+            _ => None,
+        };
+        let cuts = [at(20.0, 0.0, 0.0), at(20.0, 20.0, 0.0), at(0.0, 20.0, 0.0)].map(Op::Line);
+        let [first, second, third] = cuts;
+        let all = [Op::Rapid(at(0.0, 0.0, 0.0)), Op::ThreadWire, first]
+            .into_iter()
+            .chain((with && !own).then_some(op))
+            .chain([second, third])
+            .chain(off.filter(|_| with))
+            .chain([Op::Line(at(0.0, 10.0, 0.0)), Op::CutWire, Op::End]);
+        lines(all.filter(|op| with || !own || op.kind() != kind))
+    })
+}
+
+fn lines(ops: impl IntoIterator<Item = Op>) -> Program {
+    let mut program = Program::new("SAMPLE");
+    for (line, op) in (1..).zip(ops) {
+        program.push(line, op);
+    }
+    program
+}
+
+/// What the writer makes of the record: a text, or the rule by which it refuses.
+fn writes(with: &Program, without: &Program, machine: &Machine) -> String {
+    let text = |program: &Program| post::write(program, machine);
+    match (text(with), text(without)) {
+        (Ok(with), Ok(without)) if with.text == without.text => "nothing".into(),
+        (Ok(_), _) => "writes it".into(),
+        (Err(found), _) => format!("refuses (`{}`)", found[0].rule),
+    }
+}
+
+/// What the proof makes of it: whether a program without the record is refused as one of the source with it, or the
+/// other way round. A record that cannot be compared is refused whatever the program says.
+fn proves(with: &Program, without: &Program, machine: &Machine) -> &'static str {
+    let text = |program: &Program| post::write(program, machine).ok().map(|output| output.text);
+    let prove = |source: &Program, text: &[u8]| {
+        proof::prove(source, machine, "sample", text, &Default::default())
+    };
+    let proven = |source: &Program, text: &[u8]| prove(source, text).proven;
+    match (text(with), text(without)) {
+        (Some(own), other) => {
+            let report = prove(with, &own);
+            let text = String::from_utf8_lossy(&own);
+            assert!(report.proven, "{:?}\n{text}\n{:?}", with.records, report.mismatches);
+            let accepted = proven(without, &own) && other.is_none_or(|text| proven(with, &text));
+            if accepted { "not compared" } else { "compares it" }
+        }
+        (None, Some(other)) => {
+            if proven(with, &other) {
+                "passes it over"
+            } else {
+                "refuses"
+            }
+        }
+        (None, None) => "refuses",
+    }
+}
+
+/// The table, a row for each kind.
+fn table() -> String {
+    let load = |text: &str| machine::load_text("sample.toml", text).unwrap();
+    let mill = load("extends = \"generic-3axis-linuxcnc\"\nauxiliary = [101]\n");
+    let wire = load("extends = \"fanuc-wire\"\nauxiliary = [101]\n");
+    let mut table = String::from(
+        "| record | a mill (LinuxCNC) | a wire machine (FANUC) | proof | time | statistics | picture |\n\
+         |---|---|---|---|---|---|---|\n",
+    );
+    for kind in Kind::ALL {
+        let [with, without] = milled(kind);
+        let [wire_with, wire_without] = wired(kind);
+        let own = matches!(kind, Kind::ThreadWire | Kind::CutWire | Kind::Taper);
+        let proof = match own {
+            true => proves(&wire_with, &wire_without, &wire),
+            false => proves(&with, &without, &mill),
+        };
+        let counts = |differs: bool| if differs { "counts" } else { "" };
+        // A record more is counted whatever it is.
+        let statistics = |program: &Program| Statistics { records: 0, ..Statistics::of(program) };
+        let picture = |program: &Program| drawing::tool_path("sample", program);
+        writeln!(
+            table,
+            "| `{}` | {} | {} | {proof} | {} | {} | {} |",
+            kind.name(),
+            writes(&with, &without, &mill),
+            writes(&wire_with, &wire_without, &wire),
+            counts(Times::of(&with, &mill) != Times::of(&without, &mill)),
+            counts(statistics(&with) != statistics(&without)),
+            counts(picture(&with) != picture(&without)),
+        )
+        .unwrap();
+    }
+    table
+}
+
+fn architecture() -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/architecture.md")
+}
+
+#[test]
+fn the_table_of_records_is_that_of_the_documentation() {
+    let text = std::fs::read_to_string(architecture()).unwrap();
+    let (head, rest) = text.split_once("<!-- records -->\n").expect("a place for the table");
+    let (told, tail) = rest.split_once("<!-- end of records -->").expect("its end");
+    let table = table();
+    if std::env::var("TOOLPOST_DOCS").is_ok_and(|how| how == "write") {
+        let text = format!("{head}<!-- records -->\n{table}<!-- end of records -->{tail}");
+        std::fs::write(architecture(), text).unwrap();
+        return;
+    }
+    assert_eq!(told, table, "TOOLPOST_DOCS=write cargo test -p toolpost --test records");
+}
+
+/// What is compared with nothing changes neither where the tool goes nor what it does there: a cycle matters for its
+/// holes alone, a frame for the way in which poses are written, and every program has an end of its own.
+#[test]
+fn no_record_that_moves_or_switches_anything_is_proven_uncompared() {
+    let free = [
+        Kind::CycleOff,
+        Kind::Preselect,
+        Kind::Frame,
+        Kind::Operation,
+        Kind::EndOfOperation,
+        Kind::Comment,
+        Kind::Message,
+        Kind::End,
+    ];
+    for row in table().lines().skip(2) {
+        let cells: Vec<&str> = row.split('|').map(str::trim).collect();
+        let name = cells[1].trim_matches('`');
+        let is_free = free.iter().any(|kind| kind.name() == name);
+        let compared = matches!(cells[4], "compares it" | "refuses");
+        assert_ne!(is_free, compared, "{row}");
+    }
+}
