@@ -304,3 +304,23 @@ fn a_rapid_before_the_first_load_is_made_with_that_tool_and_a_cut_is_refused() {
         assert!(!error.help.is_empty());
     }
 }
+
+/// `AUXFUN/n` is the M function of that number (ISO 4343): it stays between the motions where it stands.
+#[test]
+fn a_function_of_the_builder_stays_where_it_stands() {
+    let text = "GOTO/0,0,5\nAUXFUN/21\nGOTO/1,2,3\nAUXFUN/22\nGOTO/4,5,6";
+    let functions = |number| Op::Auxiliary(program::Auxiliary::of(number));
+    let own = [
+        Op::Line(at(0., 0., 5.)),
+        functions(21),
+        Op::Line(at(1., 2., 3.)),
+        functions(22),
+        Op::Line(at(4., 5., 6.)),
+    ];
+    assert_eq!(ops(text), own);
+    for wrong in
+        ["AUXFUN", "AUXFUN/", "AUXFUN/M", "AUXFUN/1.5", "AUXFUN/-1", "AUXFUN/1,2", "AUXFUN/1e12"]
+    {
+        assert_eq!(error(&format!("GOTO/0,0,5\n{wrong}")), "malformed", "{wrong}");
+    }
+}

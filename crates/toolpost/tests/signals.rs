@@ -1,0 +1,166 @@
+//! Outputs, inputs and functions of the machine's builder: from a program into one of another machine.
+
+use control::Setup;
+use machine::Machine;
+use program::Diagnostic;
+use std::process::{Command, Stdio};
+
+/// A program for LinuxCNC with everything that switches.
+const SWITCHING: &str = "G21 G90 G94 G17 G40 G54\nT1 M6\nS1000 M3\nG0 X0 Y0\nG43 H1 Z5\nM64 P1\nG1 Z-1 F100\nM62 P2\n\
+    X10\nM63 P2\nM66 P3 L3 Q5\nY10\nM67 E1 Q2.5\nX0\nM68 E0 Q-0.5\nM66 P3\nM66 E1\nM101 P2 Q-3.5\nM101\nY0\nM65 P1\n\
+    G0 Z5\nM2\n";
+
+fn machine(text: &str) -> Machine {
+    machine::load_text("mine.toml", text).unwrap()
+}
+
+fn linuxcnc() -> Machine {
+    machine("extends = \"generic-3axis-linuxcnc\"\nauxiliary = [101]\n")
+}
+
+/// The program of `text` of `from`, for `to`, proven.
+fn rewritten(from: &Machine, text: &str, to: &Machine) -> Result<String, Vec<Diagnostic>> {
+    let reading = nc::read(from, Setup::default(), "old", text.as_bytes()).unwrap();
+    let output = post::write(&reading.program, to)?;
+    let report = proof::prove(&reading.program, to, "new", &output.text, &Default::default());
+    assert!(report.proven, "{:?}\n{}", report.mismatches, String::from_utf8_lossy(&output.text));
+    Ok(String::from_utf8(output.text).unwrap())
+}
+
+/// The blocks of a program that switch something or cut.
+fn switching(text: &str) -> Vec<&str> {
+    let after_tool = text.lines().skip_while(|block| !block.starts_with("G43"));
+    let is = |block: &&str| {
+        ["M62", "M63", "M64", "M65", "M66", "M67", "M68", "M101"]
+            .iter()
+            .any(|m| block.starts_with(m))
+    };
+    after_tool.filter(is).collect()
+}
+
+#[test]
+fn linuxcnc_says_again_what_it_has_been_told() {
+    let text = rewritten(&linuxcnc(), SWITCHING, &linuxcnc()).unwrap();
+    let own = [
+        "M64 P1",
+        "M62 P2",
+        "M63 P2",
+        "M66 P3 L3 Q5",
+        "M67 E1 Q2.5",
+        "M68 E0 Q-0.5",
+        "M66 P3 L0",
+        "M66 E1 L0",
+        "M101 P2 Q-3.5",
+        "M101",
+        "M65 P1",
+    ];
+    assert_eq!(switching(&text), own);
+    let at = |block: &str| text.lines().position(|line| line == block).unwrap();
+    assert!(at("M64 P1") < at("G1 Z-1 F100") && at("G1 Z-1 F100") < at("M62 P2"), "{text}");
+}
+
+/// LinuxCNC's own interpreter makes of the new program what it makes of the old one.
+#[test]
+fn linuxcnc_itself_switches_as_in_the_source() {
+    if !judge::program("rs274", "Debian package linuxcnc-uspace") {
+        return;
+    }
+    // Its interpreter runs no programs of the user's.
+    let source = SWITCHING.replace("M101 P2 Q-3.5\nM101\n", "");
+    let text = rewritten(&linuxcnc(), &source, &linuxcnc()).unwrap();
+    let (old, new) = (canonical(&source), canonical(&text));
+    assert_eq!(old.len(), 6 + 5, "{old:?}");
+    assert_eq!(old, new);
+}
+
+/// Outputs and cuts that `rs274` makes of a program.
+fn canonical(text: &str) -> Vec<String> {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    write("program.ngc", text);
+    write("tool.tbl", "T1 P1 Z0 D6\n");
+    write("rs274.var", "");
+    let said = Command::new("rs274")
+        .args(["-t", "tool.tbl", "-v", "rs274.var", "-g", "program.ngc"])
+        .current_dir(folder.path())
+        .env("HOME", folder.path())
+        .stdin(Stdio::null())
+        .output()
+        .unwrap();
+    let said = String::from_utf8(said.stdout).unwrap();
+    let calls = said.lines().filter_map(|line| line.split_once("..... ")).map(|(_, call)| call);
+    let counts = ["STRAIGHT_FEED", "OUTPUT_BIT", "OUTPUT_VALUE"];
+    calls.filter(|call| counts.iter().any(|word| call.contains(word))).map(String::from).collect()
+}
+
+#[test]
+fn a_control_without_words_for_it_refuses_with_the_line() {
+    let found = rewritten(&linuxcnc(), SWITCHING, &machine("extends = \"generic-3axis-fanuc\"\n"));
+    let found = found.unwrap_err();
+    let lines: Vec<u32> = found.iter().map(|found| found.line).collect();
+    assert_eq!(lines[..4], [6, 8, 10, 11], "{found:?}");
+    assert!(found.iter().all(|found| !found.help.is_empty()), "{found:?}");
+}
+
+#[test]
+fn a_function_of_the_builder_is_written_where_the_machine_file_has_it() {
+    let fanuc = |more: &str| machine(&format!("extends = \"generic-3axis-fanuc\"\n{more}"));
+    let has = fanuc("auxiliary = [21, 22]\n");
+    let text = "G21 G90 G94 G17 G54\nT1 M6\nS900 M3\nG0 X0. Y0.\nG43 H1 Z5.\nM21\nG1 Z-1. F90.\nM22\nX9.\nG0 Z5.\nM30\n";
+    let new = rewritten(&has, text, &has).unwrap();
+    let blocks: Vec<&str> =
+        new.lines().map(|block| block.split_once(' ').map_or("", |(_, b)| b)).collect();
+    let at = |wanted: &str| blocks.iter().position(|block| *block == wanted).unwrap();
+    assert!(
+        at("M21") < at("G1 Z-1. F90.") && at("G1 Z-1. F90.") < at("M22") && at("M22") < at("X9."),
+        "{new}"
+    );
+
+    let found = rewritten(&has, text, &fanuc("")).unwrap_err();
+    assert_eq!(
+        found.iter().map(|found| (found.rule, found.line)).collect::<Vec<_>>(),
+        [("auxiliary", 6), ("auxiliary", 8)]
+    );
+    // As the help says: an empty block leaves them out, with a warning.
+    let without = fanuc("[blocks]\nauxiliary = \"\"\n");
+    let reading = nc::read(&has, Setup::default(), "old", text.as_bytes()).unwrap();
+    let output = post::write(&reading.program, &without).unwrap();
+    let warned: Vec<_> = output.warnings.iter().filter(|found| found.rule == "auxiliary").collect();
+    assert_eq!(warned.len(), 2, "{:?}", output.warnings);
+    assert!(rewritten(&has, text, &without).is_ok());
+    // A control that hands no values over refuses them.
+    let calls = SWITCHING
+        .replace("M101\n", "")
+        .lines()
+        .filter(|b| !b.starts_with("M6"))
+        .collect::<Vec<_>>()
+        .join("\n");
+    let found = rewritten(&linuxcnc(), &calls, &fanuc("auxiliary = [101]\n")).unwrap_err();
+    assert!(found.iter().any(|found| found.rule == "auxiliary"), "{found:?}");
+}
+
+#[test]
+fn every_control_of_mills_has_a_word_for_functions_of_the_builder() {
+    let source = "PARTNO/T\nUNITS/MM\nLOADTL/1\nSPINDL/RPM,900,CLW\nRAPID\nGOTO/0,0,5\nFEDRAT/MMPM,90\nAUXFUN/61\nGOTO/0,0,-1\n\
+        AUXFUN/62\nGOTO/9,0,-1\nRAPID\nGOTO/9,0,5\nFINI\n";
+    let reading = source::apt::read("t.apt", source.as_bytes(), &Default::default()).unwrap();
+    for name in [
+        "fanuc",
+        "haas",
+        "sinumerik",
+        "sinumerik-828d",
+        "heidenhain",
+        "linuxcnc",
+        "mach3",
+        "grbl",
+        "marlin",
+    ] {
+        let to = machine(&format!("extends = \"generic-3axis-{name}\"\nauxiliary = [61, 62]\n"));
+        // M61 and M62 are LinuxCNC's own.
+        let output = post::write(&reading.program, &to).unwrap();
+        let text = String::from_utf8(output.text).unwrap();
+        let report =
+            proof::prove(&reading.program, &to, "new", text.as_bytes(), &Default::default());
+        assert_eq!(report.proven, name != "linuxcnc", "{name}: {:?}\n{text}", report.mismatches);
+    }
+}
