@@ -8,7 +8,6 @@ mod common;
 
 use geom::Vec3;
 use program::{Diagnostic, Record};
-use std::path::PathBuf;
 use toolpost_control::{Setup, read};
 
 /// A program of the judge.

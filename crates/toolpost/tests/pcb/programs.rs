@@ -8,7 +8,6 @@ use program::Op;
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::f64::consts::{PI, TAU};
-use std::path::Path;
 
 /// The small board on the small router, cut with 0.4 mm.
 #[track_caller]
