@@ -103,6 +103,9 @@ def test_every_word_of_a_program_can_be_built():
         .dwell(1.5)
         .stop()
         .stop(optional=True)
+        .output(3, True)
+        .output(1, 2.5, with_motion=True)
+        .auxiliary(21)
         .spindle(0)
         .home()
         .build()
@@ -132,6 +135,9 @@ def test_every_word_of_a_program_can_be_built():
         ("dwell", {"seconds": 1.5}),
         ("stop", {}),
         ("optional-stop", {}),
+        ("output", {"number": 3, "value": True, "with_motion": False}),
+        ("output", {"number": 1, "value": 2.5, "with_motion": True}),
+        ("auxiliary", {"number": 21, "values": [None, None]}),
         ("spindle", {"speed": 0, "clockwise": True}),
         ("home", {"axes": "Z"}),
         ("end", {}),

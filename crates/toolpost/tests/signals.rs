@@ -164,3 +164,29 @@ fn every_control_of_mills_has_a_word_for_functions_of_the_builder() {
         assert_eq!(report.proven, name != "linuxcnc", "{name}: {:?}\n{text}", report.mismatches);
     }
 }
+
+#[test]
+fn the_contour_of_a_wire_leaves_them_out_and_says_so() {
+    let folder = tempfile::tempdir().unwrap();
+    let write = |name: &str, text: &str| std::fs::write(folder.path().join(name), text).unwrap();
+    write("mine.toml", "extends = \"generic-3axis-fanuc\"\nauxiliary = [21]\n");
+    let cut = "G1 X20. F9.\nM21\nY20.\nM21\nX0.\nY0.\nM30\n";
+    write("part.nc", &format!("G21 G90 G94 G17 G54\nG0 X0. Y0. Z0.\n{cut}"));
+    let run = |more: &[&str]| {
+        Command::new(env!("CARGO_BIN_EXE_toolpost"))
+            .args(["wire", "part.nc", "--from", "mine.toml", "-m", "fanuc-wire", "-o", "part.iso"])
+            .args(more)
+            .current_dir(folder.path())
+            .output()
+            .unwrap()
+    };
+    let done = run(&[]);
+    let said = String::from_utf8(done.stderr).unwrap();
+    assert!(done.status.success(), "{said}");
+    assert!(
+        said.contains("part.nc:4: warning[auxiliary]: M21 of the source is left out"),
+        "{said}"
+    );
+    assert!(said.contains("(2 times, first here)"), "{said}");
+    assert!(!run(&["--strict"]).status.success());
+}

@@ -91,7 +91,11 @@ impl File {
         if !ending.eq_ignore_ascii_case("dxf") {
             let (strict, origin) = (args.source.strict, &args.source.origin);
             let toolpath = toolpath::read_wire(path, strict, origin, args.ends.height);
-            return toolpath.map(File::Program).map_err(without_height);
+            let toolpath = toolpath.map_err(without_height)?;
+            let mut warnings = left_out(&toolpath.program);
+            toolpath.quote(&mut warnings);
+            warnings.splice(0..0, toolpath.warnings.clone());
+            return Ok(File::Program(toolpath.warned(warnings, strict)?));
         }
         let text = files::read(path)?;
         let options = dxf::Options {
@@ -153,6 +157,29 @@ impl File {
 
 fn upright(contours: Vec<Contour>) -> Vec<Path> {
     contours.into_iter().map(Path::upright).collect()
+}
+
+/// What a source calls besides its contour, and the program of a wire does not.
+fn left_out(program: &Program) -> Vec<Diagnostic> {
+    let found = program.records.iter().filter_map(|record| {
+        let what = match &record.op {
+            Op::Auxiliary(function) => format!("M{}", function.number),
+            Op::Output(output) => format!("output {}", output.number),
+            Op::Input(input) => format!("input {}", input.number),
+            _ => return None,
+        };
+        let message = format!("{what} of the source is left out: a contour alone is taken from it");
+        let help = "write it into the blocks of the machine file, if every program needs it";
+        Some(Diagnostic::warning("auxiliary", message).help(help).line(record.line))
+    });
+    let mut all: Vec<Diagnostic> = Vec::new();
+    for warning in found {
+        match all.iter_mut().find(|known| known.message == warning.message) {
+            Some(known) => known.count += 1,
+            None => all.push(warning),
+        }
+    }
+    all
 }
 
 /// Says how a program that never names Z is read.
