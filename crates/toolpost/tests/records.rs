@@ -340,3 +340,65 @@ fn no_record_that_moves_or_switches_anything_is_proven_uncompared() {
         assert_ne!(is_free, compared, "{row}");
     }
 }
+
+/// Seeds of the fuzz targets and the samples of the library, hostile and plain, read as programs.
+fn readings() -> Vec<(String, Program)> {
+    let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
+    let files = |folder: &str| {
+        let all = std::fs::read_dir(root.join(folder)).unwrap();
+        let mut all: Vec<PathBuf> = all.map(|entry| entry.unwrap().path()).collect();
+        all.sort();
+        all.into_iter().filter(|path| path.is_file())
+    };
+    let mut found = Vec::new();
+    let mut read = |machine: &str, path: &Path, text: &[u8]| {
+        let machine = machine::load(machine).unwrap();
+        for start in [None, Some(Vec3::ZERO)] {
+            let setup = control::Setup { start, ..control::Setup::default() };
+            if let Ok(reading) = nc::read(&machine, setup, "p", text) {
+                found.push((path.display().to_string(), reading.program));
+            }
+        }
+    };
+    for path in files("fuzz/seeds/iso") {
+        let bytes = std::fs::read(&path).unwrap();
+        let Some((_, text)) = bytes.split_first() else { continue };
+        for machine in ["generic-3axis-fanuc", "generic-3axis-linuxcnc", "fanuc-table-bc"] {
+            read(machine, &path, text);
+        }
+    }
+    for (folder, machine) in [
+        ("fuzz/seeds/sinumerik", "sinumerik-840d-table-ac"),
+        ("fuzz/seeds/klartext", "dmu50-heidenhain"),
+    ] {
+        files(folder).for_each(|path| read(machine, &path, &std::fs::read(&path).unwrap()));
+    }
+    for path in files("machines/samples") {
+        let name = path.file_stem().unwrap().to_str().unwrap().to_owned();
+        if path.extension().is_some_and(|extension| extension != "cls") {
+            read(&name, &path, &std::fs::read(&path).unwrap());
+        }
+    }
+    for path in files("fuzz/seeds/apt") {
+        let text = std::fs::read(&path).unwrap();
+        if let Ok(reading) = source::apt::read("p", &text, &Default::default()) {
+            found.push((path.display().to_string(), reading.program));
+        }
+    }
+    found
+}
+
+/// A control may not know where the tool is; a program always does.
+#[test]
+fn a_program_that_has_been_read_holds_finite_numbers_alone() {
+    let readings = readings();
+    assert!(readings.len() > 40, "{}", readings.len());
+    for (file, program) in readings {
+        for record in &program.records {
+            let shown = format!("{:?}", record.op);
+            let text = matches!(record.op, Op::Comment(_) | Op::Message(_) | Op::Operation(_));
+            let odd = ["NaN", "(inf", " inf", "-inf"].iter().any(|number| shown.contains(number));
+            assert!(text || !odd, "{file}: {shown}");
+        }
+    }
+}
