@@ -130,7 +130,7 @@ fn drilled(program: &Program) -> Result<Program, Box<Diagnostic>> {
                 if let Some(feed) = cycle.feed {
                     moves.push(*line, Op::Feed(feed));
                 }
-                hole.into_iter().for_each(|op| moves.push(*line, op));
+                hole.into_iter().for_each(|part| moves.push(*line, part.into()));
                 height = pose.point().z + cycle.retract;
             }
             op => {

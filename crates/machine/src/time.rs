@@ -215,7 +215,7 @@ impl<'a> Clock<'a> {
             self.rapid(at(cycle.retract));
         } else {
             let moves = lowering::hole(&cycle, pose, self.spindle).unwrap_or_default();
-            moves.iter().for_each(|op| self.run(op));
+            moves.into_iter().for_each(|part| self.run(&part.into()));
         }
         self.feed = feed;
     }

@@ -6,7 +6,8 @@ use crate::template::bit;
 use crate::walk::{Done, Walk, motion, refuse};
 use geom::{ANGLE_EPSILON, Vec3};
 use machine::CycleName;
-use program::{Cycle, CycleKind, Diagnostic, Feed, Op, Pose, Spindle, lowering};
+use program::lowering::{self, HoleMove};
+use program::{Cycle, CycleKind, Diagnostic, Feed, Pose, Spindle};
 
 /// The cycle that the control has on: its definition and the levels it was given, mm along Z.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -224,54 +225,17 @@ impl Walk<'_> {
         // Each move is a cut of its own, and none a piece of the last one.
         self.whole = 0.0;
         let count = moves.len();
-        let done = moves.into_iter().try_for_each(|op| match op {
-            Op::Rapid(pose) => self.rapid_to(&pose, stop),
-            Op::Line(pose) => self.line_to(&pose, stop),
-            Op::Dwell(seconds) => {
+        let done = moves.into_iter().try_for_each(|part| match part {
+            HoleMove::Rapid(pose) => self.rapid_to(&pose, stop),
+            HoleMove::Line(pose) => self.line_to(&pose, stop),
+            HoleMove::Dwell(seconds) => {
                 self.writer.set(WordName::P, seconds);
                 self.required(BlockName::Dwell)
             }
-            Op::Spindle(spindle) => {
+            HoleMove::Spindle(spindle) => {
                 self.spindle = spindle;
                 self.sync_spindle()
             }
-            // The moves of a hole are those above.
-            Op::Arc(_)
-            | Op::Thread(_)
-            | Op::Probe(_)
-            | Op::Hole(_)
-            | Op::Oriented(_)
-            | Op::Joints(_)
-            | Op::MachineMove(_)
-            | Op::Home
-            | Op::Cycle(_)
-            | Op::CycleOff
-            | Op::Feed(_)
-            | Op::PathMode(_)
-            | Op::SurfaceSpeed(_)
-            | Op::Coolant(_)
-            | Op::Beam(_)
-            | Op::Pulses(_)
-            | Op::Tool(_)
-            | Op::Preselect(_)
-            | Op::Compensation(_)
-            | Op::Frame(_)
-            | Op::WorkOffset(_)
-            | Op::Surface(_)
-            | Op::Clamp(_)
-            | Op::Output(_)
-            | Op::Input(_)
-            | Op::Auxiliary(_)
-            | Op::ThreadWire
-            | Op::CutWire
-            | Op::Taper(_)
-            | Op::Stop
-            | Op::OptionalStop
-            | Op::Operation(_)
-            | Op::EndOfOperation
-            | Op::Comment(_)
-            | Op::Message(_)
-            | Op::End => Err(refuse("cycle", "a hole is made of moves, dwells and spindle alone")),
         });
         (self.spindle, self.feed) = (spindle, feed);
         self.findings.lowered("cycle-expanded", "holes of cycles", self.line, count);

@@ -11,52 +11,78 @@ pub const CHIP_BREAK: f64 = 0.5;
 /// The most pecks one hole may take; a cycle that asks for more is a slip of the keyboard.
 pub const MAX_PECKS: usize = 10_000;
 
+/// A part of a hole that is made without a cycle.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum HoleMove {
+    /// By rapid to a pose.
+    Rapid(Pose),
+    /// At the feed of the cycle to a pose.
+    Line(Pose),
+    /// A dwell, s.
+    Dwell(f64),
+    /// The spindle stops, or turns again.
+    Spindle(Spindle),
+}
+
+impl From<HoleMove> for Op {
+    fn from(part: HoleMove) -> Op {
+        match part {
+            HoleMove::Rapid(pose) => Op::Rapid(pose),
+            HoleMove::Line(pose) => Op::Line(pose),
+            HoleMove::Dwell(seconds) => Op::Dwell(seconds),
+            HoleMove::Spindle(spindle) => Op::Spindle(spindle),
+        }
+    }
+}
+
 /// The moves of one hole, from the R plane on: the tool is at `hole` + clearance, and ends at
 /// `hole` + retract. `spindle` is what runs, so that a boring cycle can start it again.
 ///
 /// Returns `None` where moves cannot do it: tapping needs the control to couple feed and spindle, a
 /// withdrawal has to stop the spindle in position, a peck that is not positive, or would take more than [`MAX_PECKS`], has no
 /// end, and heights that are not finite are nowhere.
-pub fn hole(cycle: &Cycle, hole: &Pose, spindle: Spindle) -> Option<Vec<Op>> {
+pub fn hole(cycle: &Cycle, hole: &Pose, spindle: Spindle) -> Option<Vec<HoleMove>> {
     let at = |height: f64| hole.lifted(height).ok();
-    let mut ops = Vec::with_capacity(4);
+    let mut moves = Vec::with_capacity(4);
     match cycle.kind {
         CycleKind::Tap { .. } | CycleKind::FineBore(_) | CycleKind::BackBore { .. } => return None,
         CycleKind::Drill | CycleKind::Bore | CycleKind::Ream => {
-            ops.push(Op::Line(at(-cycle.depth)?))
+            moves.push(HoleMove::Line(at(-cycle.depth)?))
         }
         CycleKind::Deep | CycleKind::BreakChip => {
             let bottoms = pecks(cycle)?;
             for (i, &bottom) in bottoms.iter().enumerate() {
                 if i > 0 && cycle.kind == CycleKind::Deep {
-                    ops.push(Op::Rapid(at((REENTRY - bottoms[i - 1]).min(cycle.clearance))?));
+                    moves.push(HoleMove::Rapid(at(
+                        (REENTRY - bottoms[i - 1]).min(cycle.clearance)
+                    )?));
                 }
-                ops.push(Op::Line(at(-bottom)?));
+                moves.push(HoleMove::Line(at(-bottom)?));
                 if i + 1 < bottoms.len() {
-                    ops.push(match cycle.kind == CycleKind::Deep {
-                        true => Op::Rapid(at(cycle.clearance)?),
-                        false => Op::Rapid(at((CHIP_BREAK - bottom).min(cycle.clearance))?),
+                    moves.push(match cycle.kind == CycleKind::Deep {
+                        true => HoleMove::Rapid(at(cycle.clearance)?),
+                        false => HoleMove::Rapid(at((CHIP_BREAK - bottom).min(cycle.clearance))?),
                     });
                 }
             }
         }
     }
     if cycle.dwell > 0.0 {
-        ops.push(Op::Dwell(cycle.dwell));
+        moves.push(HoleMove::Dwell(cycle.dwell));
     }
     if cycle.kind == CycleKind::Ream {
-        ops.push(Op::Line(at(cycle.clearance)?));
+        moves.push(HoleMove::Line(at(cycle.clearance)?));
     }
     if cycle.kind == CycleKind::Bore {
-        ops.push(Op::Spindle(Spindle::Off));
+        moves.push(HoleMove::Spindle(Spindle::Off));
     }
     if cycle.kind != CycleKind::Ream || cycle.retract != cycle.clearance {
-        ops.push(Op::Rapid(at(cycle.retract)?));
+        moves.push(HoleMove::Rapid(at(cycle.retract)?));
     }
     if cycle.kind == CycleKind::Bore {
-        ops.push(Op::Spindle(spindle));
+        moves.push(HoleMove::Spindle(spindle));
     }
-    Some(ops)
+    Some(moves)
 }
 
 /// The depth of each peck below the point of the hole, mm, the last one the full depth. The first
@@ -106,8 +132,9 @@ mod tests {
         }
     }
 
-    fn heights(ops: &[Op]) -> Vec<f64> {
-        ops.iter().filter_map(|op| op.pose().map(|p| p.point().z)).collect()
+    fn heights(moves: &[HoleMove]) -> Vec<f64> {
+        let ops = moves.iter().map(|part| Op::from(*part));
+        ops.filter_map(|op| op.pose().map(|p| p.point().z)).collect()
     }
 
     const POSE: fn() -> Pose = || Pose::upright(Vec3::ZERO).unwrap();
@@ -115,7 +142,7 @@ mod tests {
     #[test]
     fn drilling_feeds_in_and_goes_out_by_rapid() {
         let ops = hole(&cycle(CycleKind::Drill), &POSE(), Spindle::Off).unwrap();
-        assert!(matches!(ops[..], [Op::Line(_), Op::Rapid(_)]));
+        assert!(matches!(ops[..], [HoleMove::Line(_), HoleMove::Rapid(_)]));
         assert_eq!(heights(&ops), [-12.0, 25.0]);
     }
 
@@ -134,15 +161,15 @@ mod tests {
     #[test]
     fn reaming_feeds_out_and_boring_stops_the_spindle_at_the_bottom() {
         let ops = hole(&cycle(CycleKind::Ream), &POSE(), Spindle::Off).unwrap();
-        assert!(matches!(ops[..], [Op::Line(_), Op::Line(_), Op::Rapid(_)]));
+        assert!(matches!(ops[..], [HoleMove::Line(_), HoleMove::Line(_), HoleMove::Rapid(_)]));
         let ops = hole(&cycle(CycleKind::Bore), &POSE(), Spindle::Clockwise(500.0)).unwrap();
         assert!(matches!(
             ops[..],
             [
-                Op::Line(_),
-                Op::Spindle(Spindle::Off),
-                Op::Rapid(_),
-                Op::Spindle(Spindle::Clockwise(500.0))
+                HoleMove::Line(_),
+                HoleMove::Spindle(Spindle::Off),
+                HoleMove::Rapid(_),
+                HoleMove::Spindle(Spindle::Clockwise(500.0))
             ]
         ));
     }

@@ -185,7 +185,9 @@ fn the_way_to_a_hole_goes_down_only_over_it() {
 
 /// The moves that [`lowering::hole`] makes, in blocks.
 fn lowered(of: Cycle, x: f64) -> Vec<Action> {
-    actions(&lowering::hole(&of, &at(x, 0.0, -1.0), Spindle::Clockwise(1000.0)).unwrap())
+    let moves = lowering::hole(&of, &at(x, 0.0, -1.0), Spindle::Clockwise(1000.0)).unwrap();
+    let ops: Vec<Op> = moves.into_iter().map(Op::from).collect();
+    actions(&ops)
 }
 
 #[test]
