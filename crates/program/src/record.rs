@@ -262,7 +262,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn a_move_takes_at_most_72_bytes() {
-        assert!(size_of::<Record>() <= 72, "{}", size_of::<Record>());
+    fn a_move_takes_at_most_64_bytes() {
+        assert!(size_of::<Record>() <= 64, "{}", size_of::<Record>());
     }
 }

@@ -58,7 +58,7 @@ pub struct Reading {
 /// Reads cutter-location data. `file_name` is for the messages, and names the program where the file
 /// does not.
 ///
-/// Time and memory are linear in `text`; a move takes at most 72 bytes.
+/// Time and memory are linear in `text`; a move takes at most 64 bytes.
 ///
 /// # Errors
 /// Every error found, at most twenty, in the order of their lines. There is no partial program.
