@@ -90,6 +90,7 @@ fn a_fanuc_program_from_start_to_end() {
         Action::Rapid(at(1.0, 2.0, 50.0)),
         Action::Feed(Feed::PerMinute(100.0)),
         Action::Line(at(1.0, 2.0, -1.0)),
+        Action::Auxiliary(program::Auxiliary::of(26)),
         Action::Line(at(10.0, 2.0, -1.0)),
         Action::Rapid(at(10.0, 2.0, 50.0)),
         Action::Coolant(Coolant::Off),
@@ -434,7 +435,7 @@ fn a_control_without_parameters_says_so() {
 fn an_m_function_is_the_controls_or_the_builders() {
     assert_eq!(rule(FANUC, "M77\n"), "nc-unknown-word");
     // The builder of this machine has an M26.
-    assert_eq!(ops(FANUC, "M26\n"), []);
+    assert_eq!(ops(FANUC, "M26\n"), [Action::Auxiliary(program::Auxiliary::of(26))]);
 }
 
 #[test]

@@ -528,7 +528,9 @@ fn a_stop_and_a_tool_change_stop_spindle_and_coolant() {
 
 #[test]
 fn the_functions_of_the_builder_move_nothing() {
-    assert_eq!(run("L X+1 FMAX M60").len(), 2);
+    let ops = run("L X+1 FMAX M60");
+    assert_eq!(ops.len(), 3);
+    assert_eq!(ops[0], Action::Auxiliary(program::Auxiliary::of(60)));
     assert_eq!(refused("L X+1 FMAX M61").rule, "m-function");
 }
 

@@ -39,7 +39,7 @@ pub(crate) struct State {
     pub tool: Option<u32>,
     pub length: Length,
     pub compensation: Compensation,
-    /// What [`Action::WorkOffset`] has said last.
+    /// What [`Action::WorkOffset`](crate::Action::WorkOffset) has said last.
     pub work_offset: Option<u32>,
     /// Programmed position in the frame in which words are read, mm; NaN where not known.
     pub position: Vec3,
