@@ -80,12 +80,12 @@ pub fn pose(op: &Op) -> Option<&Pose> {
 fn say(op: &Op, words: &Bound<'_, PyDict>) -> PyResult<()> {
     match op {
         Op::Arc(arc) => {
-            words.set_item("center", triple(arc.center))?;
-            words.set_item("normal", triple(arc.normal))?;
-            words.set_item("turns", arc.turns)?;
+            words.set_item("center", triple(arc.circle.center()))?;
+            words.set_item("normal", triple(arc.circle.normal()))?;
+            words.set_item("turns", arc.circle.turns())?;
         }
         Op::Thread(thread) => {
-            words.set_item("pitch", thread.pitch)?;
+            words.set_item("pitch", thread.pitch())?;
         }
         Op::Probe(probe) => {
             words.set_item("away", probe.away)?;
@@ -173,10 +173,10 @@ fn say(op: &Op, words: &Bound<'_, PyDict>) -> PyResult<()> {
                     Course::Arc { .. } => "arc",
                 },
             )?;
-            if let Course::Arc { center, normal, turns } = to.course {
-                words.set_item("center", triple(center))?;
-                words.set_item("normal", triple(normal))?;
-                words.set_item("turns", turns)?;
+            if let Course::Arc(circle) = to.course {
+                words.set_item("center", triple(circle.center()))?;
+                words.set_item("normal", triple(circle.normal()))?;
+                words.set_item("turns", circle.turns())?;
             }
             if let Some(configuration) = to.configuration {
                 words.set_item("backward", configuration.backward)?;

@@ -2,8 +2,8 @@
 
 use geom::Vec3;
 use program::{
-    ArcTo, Auxiliary, Axes, Compensation, Coolant, Cycle, Feed, Input, Output, Probe, Spindle,
-    Thread, Tool, WorkOffset,
+    Auxiliary, Axes, Compensation, Coolant, Cycle, Feed, Input, Output, Probe, Spindle, Tool,
+    WorkOffset,
 };
 
 /// One thing that the control does, and the line (from 1) of the program that makes it do so.
@@ -13,6 +13,28 @@ pub struct Event {
     pub line: u32,
     /// What the control does.
     pub action: Action,
+}
+
+/// An arc or helix from where the tool is. Where the start is not known, its centre may be NaN.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct ArcTo {
+    /// Where it ends.
+    pub end: Position,
+    /// A point of the axis of the arc, in the frame of the position.
+    pub center: Vec3,
+    /// Unit vector about which the arc turns counter-clockwise.
+    pub normal: Vec3,
+    /// Full turns more than the shortest.
+    pub turns: u32,
+}
+
+/// A thread from where the tool is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Thread {
+    /// Where it ends.
+    pub end: Position,
+    /// mm along the way for each turn of the spindle.
+    pub pitch: f64,
 }
 
 /// What a control does. Modal words (feed, spindle, coolant, compensation, cycle) hold from their event on; every
@@ -27,9 +49,9 @@ pub enum Action {
     /// Straight line to a position at the active feed.
     Line(Position),
     /// Arc or helix at the active feed.
-    Arc(Box<ArcTo<Position>>),
+    Arc(Box<ArcTo>),
     /// Straight line whose feed is tied to the turn of the spindle (`G33`).
-    Thread(Box<Thread<Position>>),
+    Thread(Box<Thread>),
     /// Straight line at the active feed that ends where the probe answers.
     Probe(Box<Probe<Position>>),
     /// One hole of the active [`Cycle`]; the position is the point of the cycle on the surface. The tool ends at

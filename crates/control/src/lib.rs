@@ -23,7 +23,7 @@ mod sinumerik;
 pub mod tools;
 
 use compensation::Compensator;
-pub use event::{Action, Event, Orientation, Position};
+pub use event::{Action, ArcTo, Event, Orientation, Position, Thread};
 use geom::Vec3;
 use iso::Flavor;
 use program::{Diagnostic, WorkOffset};

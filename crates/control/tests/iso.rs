@@ -5,9 +5,9 @@ mod common;
 
 use geom::Vec3;
 use program::{
-    ArcTo, Axes, Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, Spindle, WorkOffset,
+    Axes, Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, Spindle, WorkOffset,
 };
-use toolpost_control::{Action, Dialect, Orientation, Position, Settings};
+use toolpost_control::{Action, ArcTo, Dialect, Orientation, Position, Settings};
 
 const FANUC: Dialect = Dialect::Fanuc;
 const LINUXCNC: Dialect = Dialect::LinuxCnc;

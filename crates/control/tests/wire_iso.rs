@@ -3,8 +3,8 @@
 mod common;
 
 use geom::Vec3;
-use program::{ArcTo, Compensation, Diagnostic, Feed};
-use toolpost_control::{Action, Dialect, Position, Settings, Wire};
+use program::{Compensation, Diagnostic, Feed};
+use toolpost_control::{Action, ArcTo, Dialect, Position, Settings, Wire};
 
 fn run(dialect: Dialect, text: &str, height: Option<f64>) -> Result<Vec<Action>, Box<Diagnostic>> {
     let wire = Wire { height, thread: Some(60), cut: Some(50) };

@@ -1,6 +1,6 @@
 //! A program as straight segments with what draws them, in the order of the program.
 
-use geom::{Arc, Vec3};
+use geom::Vec3;
 use program::{ArcTo, Course, Cycle, Op, Program, Tool};
 use std::collections::BTreeMap;
 
@@ -85,9 +85,8 @@ pub fn walk(program: &Program, tolerance: f64, draw: &mut dyn FnMut(Segment)) ->
                 match to.course {
                     Course::Rapid => step(false, false, end.point(), end.axis()),
                     Course::Line => step(true, false, end.point(), end.axis()),
-                    Course::Arc { center, normal, turns } => {
-                        let to = ArcTo { end, center, normal, turns };
-                        curve(here, &to, tolerance, tool, draw);
+                    Course::Arc(circle) => {
+                        curve(here, &ArcTo { end, circle }, tolerance, tool, draw);
                         here = Some(end.point());
                     }
                 }
@@ -146,8 +145,7 @@ fn curve(
     draw: &mut dyn FnMut(Segment),
 ) {
     let end = to.end.point();
-    let arc =
-        here.and_then(|from| Arc::new(from, end, to.center, to.normal, to.turns, f64::MAX).ok());
+    let arc = here.and_then(|from| to.circle.arc(from, end, f64::MAX).ok());
     let Some(arc) = arc else { return };
     let (axis, length) = (to.end.axis(), arc.length() / arc.chords(tolerance) as f64);
     let mut from = arc.start;

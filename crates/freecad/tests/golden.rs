@@ -102,7 +102,7 @@ fn the_toolpath_has_the_measures_of_the_part() {
             Op::Operation(name) => operation = name,
             Op::Arc(arc) => {
                 let start = from.unwrap().point();
-                let center = arc.center.with_z(start.z);
+                let center = arc.circle.center().with_z(start.z);
                 let (radius, end) = (start.distance(center), arc.end.point().with_z(start.z));
                 assert!((radius - end.distance(center)).abs() < 1e-3);
                 assert!((center.x - 45.0).abs() < 1e-3 && (center.y - 30.0).abs() < 1e-3);

@@ -204,8 +204,8 @@ fn an_arc_has_its_centre_from_its_start_and_its_k_means_nothing() {
     let text = format!("{START}G1 F2.0 Z0.0\nG3 F2.0 I0.0 J5.0 K3.0 X1.0 Y12.0 Z-1.0\n");
     let ops = ops(&operation(&text));
     let Some(Op::Arc(arc)) = ops.iter().find(|op| matches!(op, Op::Arc(_))) else { panic!() };
-    assert_eq!(arc.center.with_z(0.0), Vec3::new(1.0, 7.0, 0.0));
-    assert_eq!((arc.end.point(), arc.normal), (Vec3::new(1.0, 12.0, -1.0), Vec3::Z));
+    assert_eq!(arc.circle.center().with_z(0.0), Vec3::new(1.0, 7.0, 0.0));
+    assert_eq!((arc.end.point(), arc.circle.normal()), (Vec3::new(1.0, 12.0, -1.0), Vec3::Z));
 }
 
 /// A rotary axis is that of the machine; a job without one is made by every mill.

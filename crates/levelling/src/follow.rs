@@ -32,7 +32,7 @@ pub fn follow(
     let wide = columns.len();
     let mut moves = probing.moves(grid, |(column, row)| u32::try_from(row * wide + column).ok())?;
     let reach = [-probing.reach, probing.reach];
-    let mut surface = Surface { columns, rows, reach, clear: f64::INFINITY };
+    let surface = Surface::new(columns, rows, reach, f64::INFINITY)?;
     let ground = Ground::Found(&surface, steepness);
     let level = levelled(&drilled(program)?, ground, allowed)?;
     let (mut records, clear) = (level.records, level.clears);
@@ -46,12 +46,11 @@ pub fn follow(
     if let Some(Op::Rapid(last)) = moves.last_mut().filter(|_| clear.is_finite()) {
         *last = last.at(last.point().with_z(last.point().z.max(clear)))?;
     }
-    surface.clear = clear;
     let line = records.get(first).map_or(0, |record| record.line);
     let said = |text: &str| [Op::Message(text.into()), Op::Stop];
     let probed = said("clip the probe to the board and to the tool").into_iter().chain(moves);
     let probed = probed.chain(said("take the probe off the tool"));
-    let probed = probed.chain([Op::Surface(Box::new(surface))]);
+    let probed = probed.chain([Op::Surface(Box::new(surface.counted_below(clear)?))]);
     let probed: Vec<Record> = probed.map(|op| Record { line, op }).collect();
     records.splice(first + 1..first + 1, probed);
     Ok(Program { name: program.name.clone(), records })
@@ -67,7 +66,7 @@ pub fn raised(program: &Program, heights: &HeightMap) -> Result<Program, Box<Dia
     for record in &mut program.records {
         let pose = match &mut record.op {
             Op::Surface(surface) => {
-                clear = surface.clear;
+                clear = surface.clear();
                 continue;
             }
             Op::Rapid(pose) | Op::Line(pose) | Op::Hole(pose) => pose,

@@ -26,7 +26,7 @@ impl Ground<'_> {
     pub(crate) fn highest(&self) -> f64 {
         match self {
             Ground::Known(map) => map.highest(),
-            Ground::Found(surface, _) => surface.reach[1],
+            Ground::Found(surface, _) => surface.reach()[1],
         }
     }
 
@@ -34,7 +34,7 @@ impl Ground<'_> {
     pub(crate) fn lines(&self) -> [&[f64]; 2] {
         match self {
             Ground::Known(map) => map.lines(),
-            Ground::Found(surface, _) => [&surface.columns, &surface.rows],
+            Ground::Found(surface, _) => [surface.columns(), surface.rows()],
         }
     }
 
@@ -64,7 +64,7 @@ impl Ground<'_> {
         let (slope, twist) = match inside {
             (true, true) => {
                 // Two opposite edges of the patch differ by twice what one rises, at most.
-                let longest = side(&surface.columns, place.x).max(side(&surface.rows, place.y));
+                let longest = side(surface.columns(), place.x).max(side(surface.rows(), place.y));
                 (steepness * std::f64::consts::SQRT_2, 2.0 * steepness / longest)
             }
             (false, false) => (0.0, 0.0),

@@ -3,8 +3,10 @@
 use crate::course::{Way, course};
 use crate::ground::Ground;
 use crate::heights::HeightMap;
-use geom::{Arc, Vec2, Vec3};
-use program::{ArcTo, Compensation, Diagnostic, Feed, Op, Pose, Program, Record, WorkOffset};
+use geom::{Vec2, Vec3};
+use program::{
+    ArcTo, Circle, Compensation, Diagnostic, Feed, Op, Pose, Program, Record, WorkOffset,
+};
 use std::f64::consts::TAU;
 
 /// The most records of a levelled program, which are kept in memory.
@@ -285,13 +287,13 @@ impl<'a> Level<'a> {
 
     fn arc(&mut self, line: u32, to: &ArcTo) -> Done {
         let end = upright(&to.end)?;
-        if to.normal.truncate() != Vec2::ZERO {
+        if to.circle.normal().truncate() != Vec2::ZERO {
             let message = "an arc that does not turn in the plane XY";
             return Err(refused(message, "post it as lines"));
         }
         // A full circle ends where it starts, and goes down first all the same.
         let from = self.start(line, Vec3::NAN)?;
-        let arc = Arc::new(from, end, to.center, to.normal, to.turns, ROUND);
+        let arc = to.circle.arc(from, end, ROUND);
         let arc = arc.map_err(|_| {
             refused("an arc whose ends are not equally far from its centre", "correct the source")
         })?;
@@ -307,7 +309,8 @@ impl<'a> Level<'a> {
                 false => {
                     // Ends that meet are one turn, not none.
                     let turns = ((sweep / TAU - 1e-9).ceil() - 1.0).max(0.0) as u32;
-                    Op::Arc(Box::new(ArcTo { end: pose, turns, ..*to }))
+                    let circle = Circle::new(to.circle.center(), to.circle.normal(), turns)?;
+                    Op::Arc(Box::new(ArcTo { end: pose, circle }))
                 }
             };
             self.push(line, op)?;

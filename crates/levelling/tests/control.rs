@@ -1,7 +1,9 @@
 //! Programs that find the surface themselves: written, proven, and what goes wrong.
 
 use geom::{Vec2, Vec3};
-use program::{ArcTo, Cycle, CycleKind, Feed, Op, Pose, Probe, Program, Spindle, Tool, WorkOffset};
+use program::{
+    ArcTo, Circle, Cycle, CycleKind, Feed, Op, Pose, Probe, Program, Spindle, Tool, WorkOffset,
+};
 use toolpost_levelling::{Allowed, Grid, Probing, follow};
 
 const ALLOWED: Allowed = Allowed { deviation: 0.005, outside: 5.0 };
@@ -97,7 +99,7 @@ fn a_line_is_divided_where_it_crosses_the_grid() {
 fn curved() -> Program {
     let arc = |x: f64, center: f64, turns: u32| {
         let (end, center) = (pose(x, 5.0, -0.1), Vec3::new(center, 5.0, -0.1));
-        Op::Arc(Box::new(ArcTo { end, center, normal: Vec3::NEG_Z, turns }))
+        Op::Arc(Box::new(ArcTo { end, circle: Circle::new(center, Vec3::NEG_Z, turns).unwrap() }))
     };
     let cycle = Cycle {
         kind: CycleKind::Drill,
@@ -225,7 +227,8 @@ fn arcs_too_short_for_the_decimals_become_one_line() {
         let center = Vec3::new(10.0 + radius, 5.0, -0.1);
         let spoke = Vec3::new(-sweep.cos(), sweep.sin(), 0.0) * radius;
         let end = Pose::upright(center + spoke).unwrap();
-        let arc = Op::Arc(Box::new(ArcTo { end, center, normal: Vec3::NEG_Z, turns: 0 }));
+        let arc =
+            Op::Arc(Box::new(ArcTo { end, circle: Circle::new(center, Vec3::NEG_Z, 0).unwrap() }));
         let allowed = Allowed { deviation: 0.0001, ..ALLOWED };
         let cuts = board(vec![arc, Op::Line(pose(30.0, 5.0, -0.1))]);
         follow(&cuts, &grid(3, 3), &PROBING, 0.02, &allowed).unwrap()

@@ -2,7 +2,7 @@
 
 use geom::{Arc, Vec2, Vec3};
 use program::{
-    ArcTo, Cycle, CycleKind, Feed, Op, Pose, Program, Record, Spindle, Tool, WorkOffset,
+    ArcTo, Circle, Cycle, CycleKind, Feed, Op, Pose, Program, Record, Spindle, Tool, WorkOffset,
 };
 use proptest::prelude::*;
 use toolpost_levelling::{Allowed, Grid, HeightMap, Probing, follow, level, raised, read};
@@ -37,8 +37,7 @@ fn ways(program: &Program) -> Vec<(u32, bool, Arc, bool)> {
             let line = Arc { start, end, center: start, normal: Vec3::Z, sweep: 0.0 };
             match &record.op {
                 Op::Arc(arc) => {
-                    let way =
-                        Arc::new(start, end, arc.center, arc.normal, arc.turns, 0.02).unwrap();
+                    let way = arc.circle.arc(start, end, 0.02).unwrap();
                     ways.push((record.line, false, way, true));
                 }
                 op => ways.push((record.line, matches!(op, Op::Rapid(_)), line, false)),
@@ -102,9 +101,7 @@ fn source(moves: &[Move]) -> Program {
                 here = end.extend((here.z + rise).min(0.0));
                 ops.push(Op::Arc(Box::new(ArcTo {
                     end: Pose::upright(here).unwrap(),
-                    center: center.extend(0.0),
-                    normal: Vec3::Z * sense,
-                    turns,
+                    circle: Circle::new(center.extend(0.0), Vec3::Z * sense, turns).unwrap(),
                 })));
             }
         }
@@ -347,12 +344,10 @@ fn what_cannot_be_levelled_is_refused_with_its_line() {
     refuses(vec![above.clone(), Op::Line(tilted)], "tilted");
     let arc = ArcTo {
         end: pose(1.0, 1.0, 2.0),
-        center: Vec3::new(1.0, 1.0, 0.0),
-        normal: Vec3::Y,
-        turns: 0,
+        circle: Circle::new(Vec3::new(1.0, 1.0, 0.0), Vec3::Y, 0).unwrap(),
     };
     refuses(vec![above.clone(), Op::Arc(Box::new(arc))], "plane XY");
-    let flat = ArcTo { normal: Vec3::Z, ..arc };
+    let flat = ArcTo { circle: Circle::new(Vec3::ZERO, Vec3::Z, 0).unwrap(), ..arc };
     refuses(vec![above.clone(), Op::Arc(Box::new(flat))], "not equally far");
     refuses(vec![Op::Feed(Feed::InverseTime(3.0))], "inverse time");
     refuses(
@@ -373,9 +368,7 @@ fn what_cannot_be_levelled_is_refused_with_its_line() {
 fn an_arc_without_end_is_refused() {
     let arc = ArcTo {
         end: pose(20.0, 20.0, 0.0),
-        center: Vec3::new(25.0, 20.0, 0.0),
-        normal: Vec3::Z,
-        turns: u32::MAX,
+        circle: Circle::new(Vec3::new(25.0, 20.0, 0.0), Vec3::Z, u32::MAX).unwrap(),
     };
     let mut heights = [0.0; 12];
     heights[5] = 0.3;

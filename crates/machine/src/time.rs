@@ -10,7 +10,7 @@
 //! way of the tip.
 
 use crate::Machine;
-use geom::{Arc, Vec3};
+use geom::Vec3;
 use program::{ArcTo, Course, Cycle, CycleKind, Feed, Op, Pose, Program, Spindle, lowering};
 use serde::Serialize;
 
@@ -79,7 +79,7 @@ impl<'a> Clock<'a> {
             Op::Line(pose) => self.line(pose.into()),
             Op::Arc(to) => self.arc(to),
             Op::Thread(thread) => {
-                let feed = std::mem::replace(&mut self.feed, Feed::PerTurn(thread.pitch));
+                let feed = std::mem::replace(&mut self.feed, Feed::PerTurn(thread.pitch()));
                 self.line((&thread.end).into());
                 self.feed = feed;
             }
@@ -91,9 +91,7 @@ impl<'a> Clock<'a> {
                 match to.course {
                     Course::Rapid => self.rapid((&end).into()),
                     Course::Line => self.line((&end).into()),
-                    Course::Arc { center, normal, turns } => {
-                        self.arc(&ArcTo { end, center, normal, turns });
-                    }
+                    Course::Arc(circle) => self.arc(&ArcTo { end, circle }),
                 }
             }
             Op::Cycle(cycle) => self.cycle = Some(**cycle),
@@ -138,9 +136,7 @@ impl<'a> Clock<'a> {
 
     fn arc(&mut self, to: &ArcTo) {
         let end: Spot = (&to.end).into();
-        let arc = self.here.and_then(|here| {
-            Arc::new(here.point, end.point, to.center, to.normal, to.turns, f64::MAX).ok()
-        });
+        let arc = self.here.and_then(|here| to.circle.arc(here.point, end.point, f64::MAX).ok());
         self.cut(end, arc.map_or(0.0, |arc| arc.length()));
     }
 

@@ -4,7 +4,7 @@ mod common;
 
 use common::{machine, table_ac};
 use geom::Vec3;
-use program::{ArcTo, Cycle, CycleKind, Feed, Op, Pose, Program, Spindle, Tool};
+use program::{ArcTo, Circle, Cycle, CycleKind, Feed, Op, Pose, Program, Spindle, Tool};
 use toolpost_machine::time::{TOOL_CHANGE, Times};
 
 /// 30 m/min and 5 m/s²: at speed after 0.1 s and 25 mm.
@@ -53,7 +53,8 @@ fn a_cut_takes_its_length_at_its_feed_in_every_unit() {
 
 #[test]
 fn an_arc_is_as_long_as_it_is() {
-    let to = ArcTo { end: at(-10.0, 0.0, 0.0), center: Vec3::ZERO, normal: Vec3::Z, turns: 0 };
+    let to =
+        ArcTo { end: at(-10.0, 0.0, 0.0), circle: Circle::new(Vec3::ZERO, Vec3::Z, 0).unwrap() };
     let ops =
         [Op::Feed(Feed::PerMinute(60.0)), Op::Rapid(at(10.0, 0.0, 0.0)), Op::Arc(Box::new(to))];
     assert_near(times(ops).cutting, 10.0 * std::f64::consts::PI);

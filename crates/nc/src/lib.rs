@@ -22,7 +22,8 @@ use control::{Action, Dialect, Event, Orientation, Position, Settings, Setup, Wi
 use geom::Vec3;
 use machine::{LengthOffset, Machine, Mount};
 use program::{
-    ArcTo, Axes, Cycle, Diagnostic, Op, Pose, Probe, Program, Record, Thread, Tool, WorkOffset,
+    ArcTo, Axes, Circle, Cycle, Diagnostic, Op, Pose, Probe, Program, Record, Thread, Tool,
+    WorkOffset,
 };
 
 /// Most records of a reading, which are kept in memory: a program of a few lines can loop to more.
@@ -249,7 +250,7 @@ impl<'a> Lift<'a> {
             }
             Action::Thread(thread) => {
                 let end = self.cut(&thread.end)?;
-                self.arrive(line, Op::Thread(Box::new(Thread { end, pitch: thread.pitch })));
+                self.arrive(line, Op::Thread(Box::new(Thread::new(end, thread.pitch)?)));
             }
             Action::Probe(probe) => {
                 let Probe { away, must_answer, place, .. } = *probe;
@@ -358,18 +359,19 @@ impl<'a> Lift<'a> {
     }
 
     /// An arc in the work frame: its centre and its axis turn with the table, as its end does.
-    fn arc(&self, arc: &ArcTo<Position>) -> Result<ArcTo, Box<Diagnostic>> {
-        let ArcTo { mut center, mut normal, turns, .. } = *arc;
+    fn arc(&self, arc: &control::ArcTo) -> Result<ArcTo, Box<Diagnostic>> {
+        let control::ArcTo { mut center, mut normal, turns, .. } = *arc;
         if !self.machine.rotary.is_empty() {
             let of = |point| self.spot(&Position { point, ..arc.end }).tip;
             center = of(arc.center);
             normal = (of(arc.center + arc.normal) - center).normalize();
         }
         let end = self.cut(&arc.end)?;
-        if !(center.is_finite() && normal.is_finite()) {
-            return Err(unknown("the centre of an arc", &Spot { tip: center, axis: end.axis() }));
-        }
-        Ok(ArcTo { end, center, normal, turns })
+        let circle = Circle::new(center, normal, turns);
+        let circle = circle.map_err(|_| {
+            unknown("the centre of an arc", &Spot { tip: center, axis: end.axis() })
+        })?;
+        Ok(ArcTo { end, circle })
     }
 
     /// A position as a block gives it, in the work frame. Where the tip of a tool of unknown length is that

@@ -155,7 +155,9 @@ fn an_arc_on_a_turned_table_turns_with_it() {
     let Op::Arc(arc) = ways(&reading.program)[2].1 else { panic!("no arc") };
     let apart = |a: Vec3, b: Vec3| a.distance(b) < 1e-9;
     assert!(apart(arc.end.point(), Vec3::new(-10.0, 0.0, 5.0)), "{}", arc.end.point());
-    assert!(apart(arc.center, Vec3::new(0.0, 0.0, 5.0)) && apart(arc.normal, Vec3::Z));
+    assert!(
+        apart(arc.circle.center(), Vec3::new(0.0, 0.0, 5.0)) && apart(arc.circle.normal(), Vec3::Z)
+    );
 }
 
 #[test]
@@ -215,7 +217,7 @@ fn threads_and_probes_are_moves_at_feed() {
     let start = "G21 G90 G54 G0\nS100 M3\nX0 Y0 Z5.\n";
     let thread = fanuc(&format!("{start}G33 Z-9. F1.5\nG0 Z5.\nM30\n"));
     let end = thread.records.iter().find_map(|record| match &record.op {
-        Op::Thread(thread) => Some((thread.end, thread.pitch)),
+        Op::Thread(thread) => Some((thread.end, thread.pitch())),
         _ => None,
     });
     assert_eq!(end, Some((at(0.0, 0.0, -9.0), 1.5)));

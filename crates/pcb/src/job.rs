@@ -5,7 +5,7 @@
 
 use crate::{Cut, Operation, Stretch, Tool};
 use geom::{Vec2, Vec3};
-use program::{ArcTo, Cycle, CycleKind, Feed, NoPose, Op, Pose, Program, Spindle};
+use program::{ArcTo, Circle, Cycle, CycleKind, Feed, NoPose, Op, Pose, Program, Spindle};
 
 /// Heights of the tool tip above the board, mm.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -117,9 +117,7 @@ impl Writer {
                     let center = turn.center.extend(-depth);
                     self.push(Op::Arc(Box::new(ArcTo {
                         end: Pose::upright(end)?,
-                        center,
-                        normal,
-                        turns: 0,
+                        circle: Circle::new(center, normal, 0)?,
                     })));
                     self.at = Some(end);
                 }
@@ -187,7 +185,7 @@ mod tests {
             Op::Line(pose) => Some(format!("L {}", at(pose))),
             Op::Hole(pose) => Some(format!("H {}", at(pose))),
             Op::Feed(Feed::PerMinute(feed)) => Some(format!("F {feed}")),
-            Op::Arc(arc) => Some(format!("A {} about {}", at(&arc.end), arc.normal.z)),
+            Op::Arc(arc) => Some(format!("A {} about {}", at(&arc.end), arc.circle.normal().z)),
             _ => None,
         };
         program.records.iter().filter_map(|record| word(&record.op)).collect()

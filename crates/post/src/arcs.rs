@@ -107,8 +107,7 @@ impl Walk<'_> {
             return Err(refuse("arc-start", "an arc from a position that is not known"));
         };
         // The reader holds arcs against its own tolerance; here the ends are what they are.
-        let arc = Arc::new(here.point(), to.end.point(), to.center, to.normal, to.turns, f64::MAX)
-            .map_err(no_arc)?;
+        let arc = to.circle.arc(here.point(), to.end.point(), f64::MAX).map_err(no_arc)?;
         self.whole = if self.is_timed() { arc.length() } else { 0.0 };
         let local = Arc {
             start: self.local(arc.start),

@@ -9,10 +9,11 @@ use program::{Feed, Probe, Thread};
 impl Walk<'_> {
     /// A thread of the source.
     pub(crate) fn thread(&mut self, thread: &Thread, stop: &Stop) -> Done {
-        let in_step =
-            thread.pitch.is_finite() && self.writer.rounded(WordName::Lead, thread.pitch) > 0.0;
-        if !in_step {
-            return Err(refuse("thread", format!("a thread with a pitch of {} mm", thread.pitch)));
+        if self.writer.rounded(WordName::Lead, thread.pitch()) <= 0.0 {
+            return Err(refuse(
+                "thread",
+                format!("a thread with a pitch of {} mm", thread.pitch()),
+            ));
         }
         self.single(BlockName::Thread, "a thread")?;
         self.before_cut()?;
@@ -34,7 +35,7 @@ impl Walk<'_> {
             self.writer.unset(bit(word));
         }
         self.check_limits()?;
-        self.writer.set(WordName::Lead, thread.pitch);
+        self.writer.set(WordName::Lead, thread.pitch());
         self.block(BlockName::Thread)?;
         // The pitch may stand in F.
         self.writer.forget(bit(WordName::Motion) | bit(WordName::F));

@@ -29,8 +29,6 @@ impl<'a> Walk<'a> {
             "a machine with rotary axes follows no surface that it finds itself"
         } else if self.surface.is_some() {
             "a second surface"
-        } else if [&surface.columns, &surface.rows].iter().any(|lines| !is_grid(lines)) {
-            "a surface whose columns and rows are not two at least, and rising"
         } else {
             self.surface = Some(surface);
             return Ok(());
@@ -56,7 +54,7 @@ impl<'a> Walk<'a> {
 
     /// The surface from which a pose at this point counts.
     fn over(&self, point: Vec3) -> Option<&'a Surface> {
-        self.surface.filter(|surface| point.z < surface.clear)
+        self.surface.filter(|surface| point.z < surface.clear())
     }
 
     /// Says in the next block, besides Z, what the surface adds to it at `point`.
@@ -67,7 +65,7 @@ impl<'a> Walk<'a> {
 
     /// By how much the surface can change Z at `point`, mm: the least and the most, where it can.
     pub(crate) fn sways(&self, point: Vec3) -> &'a [f64] {
-        self.over(point).map_or(&[0.0], |surface| &surface.reach)
+        self.over(point).map_or(&[0.0], |surface| surface.reach())
     }
 
     /// What the probe has found is kept for a place of the surface.
@@ -83,16 +81,12 @@ impl<'a> Walk<'a> {
     }
 }
 
-fn is_grid(lines: &[f64]) -> bool {
-    lines.len() >= 2 && lines.windows(2).all(|pair| pair[0] < pair[1])
-}
-
 /// The four corners of the patch about a point, and how much of the height of each is in that of the surface
 /// there.
 fn parts(surface: &Surface, at: Vec2, first: u32) -> [Part; 4] {
-    let wide = surface.columns.len();
-    let (column, right) = share(&surface.columns, at.x);
-    let (row, up) = share(&surface.rows, at.y);
+    let wide = surface.columns().len();
+    let (column, right) = share(surface.columns(), at.x);
+    let (row, up) = share(surface.rows(), at.y);
     let corners = [(0, 0), (1, 0), (0, 1), (1, 1)];
     corners.map(|(x, y)| {
         let part =

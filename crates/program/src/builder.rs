@@ -1,8 +1,8 @@
 //! Building a program record by record: what people and other programs say of it is checked once, here.
 
 use crate::{
-    ArcTo, Auxiliary, Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, Input, Op, Output,
-    OutputValue, Pose, Program, Spindle, Tool, Withdrawal, WorkOffset,
+    ArcTo, Auxiliary, Circle, Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, Input, Op,
+    Output, OutputValue, Pose, Program, Spindle, Tool, Withdrawal, WorkOffset,
 };
 use geom::{Arc, ArcError, Vec3};
 
@@ -103,7 +103,10 @@ impl Builder {
             .map_err(|error| no_arc(&error))?;
         let pose = Pose::new(end, self.axis)?;
         self.tip = Some(end);
-        self.push(Op::Arc(Box::new(ArcTo { end: pose, center, normal, turns })));
+        self.push(Op::Arc(Box::new(ArcTo {
+            end: pose,
+            circle: Circle::new(center, normal, turns)?,
+        })));
         Ok(())
     }
 

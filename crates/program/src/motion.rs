@@ -1,28 +1,91 @@
 //! What motions need beside the pose where they end.
 
-use crate::{FullPose, Pose};
-use geom::Vec3;
+use crate::pose::is_unit;
+use crate::{Diagnostic, FullPose, NoPose, Pose};
+use geom::{Arc, ArcError, Vec3};
 
-/// An arc or helix from where the tool is, which ends at a pose of the type `P`.
+/// An arc or helix from where the tool is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct ArcTo<P = Pose> {
+pub struct ArcTo {
     /// Where it ends. The orientation holds during the arc.
-    pub end: P,
-    /// A point of the axis of the arc, in the frame of the pose's point.
-    pub center: Vec3,
-    /// Unit vector about which the arc turns counter-clockwise.
-    pub normal: Vec3,
+    pub end: Pose,
+    /// The circle that it follows.
+    pub circle: Circle,
+}
+
+/// The circle of an arc, and how often the arc goes round it. Every number is finite, and the normal is a unit
+/// vector. How far the arc goes, and how high a helix rises, its start and its end say.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Circle {
+    center: Vec3,
+    normal: Vec3,
+    turns: u32,
+}
+
+impl Circle {
+    /// The circle about the axis through `center`, mm, along the unit vector `normal`, about which an arc turns
+    /// counter-clockwise, with `turns` full turns more than the shortest.
+    ///
+    /// # Errors
+    /// A number that is not finite, or a normal whose length is not 1.
+    pub fn new(center: Vec3, normal: Vec3, turns: u32) -> Result<Circle, NoPose> {
+        match center.is_finite() && is_unit(normal) {
+            true => Ok(Circle { center, normal, turns }),
+            false => Err(NoPose::of(center, normal)),
+        }
+    }
+
+    /// The arc on it from `start` to `end`, whose distances from the axis differ by `tolerance` at most, all in mm.
+    ///
+    /// # Errors
+    /// As [`Arc::new`].
+    pub fn arc(&self, start: Vec3, end: Vec3, tolerance: f64) -> Result<Arc, ArcError> {
+        Arc::new(start, end, self.center, self.normal, self.turns, tolerance)
+    }
+
+    /// A point of the axis, mm.
+    pub fn center(&self) -> Vec3 {
+        self.center
+    }
+
+    /// Unit vector about which an arc turns counter-clockwise.
+    pub fn normal(&self) -> Vec3 {
+        self.normal
+    }
+
     /// Full turns more than the shortest.
-    pub turns: u32,
+    pub fn turns(&self) -> u32 {
+        self.turns
+    }
 }
 
 /// A thread from where the tool is.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Thread<P = Pose> {
+pub struct Thread {
     /// Where it ends.
-    pub end: P,
-    /// mm along the way for each turn of the spindle.
-    pub pitch: f64,
+    pub end: Pose,
+    pitch: f64,
+}
+
+impl Thread {
+    /// The thread that ends at `end`, with `pitch` mm along the way for each turn of the spindle.
+    ///
+    /// # Errors
+    /// `thread` where the pitch is not finite, or not above 0.
+    pub fn new(end: Pose, pitch: f64) -> Result<Thread, Box<Diagnostic>> {
+        match pitch.is_finite() && pitch > 0.0 {
+            true => Ok(Thread { end, pitch }),
+            false => {
+                let message = format!("a thread with a pitch of {pitch} mm");
+                Err(Diagnostic::error("thread", message).into())
+            }
+        }
+    }
+
+    /// mm along the way for each turn of the spindle, above 0.
+    pub fn pitch(&self) -> f64 {
+        self.pitch
+    }
 }
 
 /// A probing move from where the tool is.
@@ -59,15 +122,8 @@ pub enum Course {
     Rapid,
     /// Straight at the active feed.
     Line,
-    /// On an arc at the active feed, as [`ArcTo`] says it.
-    Arc {
-        /// A point of the axis of the arc, mm.
-        center: Vec3,
-        /// Unit vector about which the arc turns counter-clockwise.
-        normal: Vec3,
-        /// Full turns more than the shortest.
-        turns: u32,
-    },
+    /// On an arc at the active feed.
+    Arc(Circle),
 }
 
 /// In which of the ways that reach a pose an arm stands.
@@ -99,4 +155,20 @@ pub struct MachineMove {
     pub linear: [Option<f64>; 3],
     /// Where A, B and C go, degrees; `None` for an axis that stays.
     pub rotary: [Option<f64>; 3],
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_circle_is_of_finite_numbers_about_a_unit_vector() {
+        assert!(Circle::new(Vec3::ZERO, Vec3::NEG_Z, 2).is_ok());
+        for center in [Vec3::NAN, Vec3::INFINITY] {
+            assert!(Circle::new(center, Vec3::Z, 0).is_err(), "{center}");
+        }
+        for normal in [Vec3::ZERO, Vec3::splat(1.0), Vec3::NAN, Vec3::Z * 1.001] {
+            assert!(Circle::new(Vec3::ZERO, normal, 0).is_err(), "{normal}");
+        }
+    }
 }

@@ -106,12 +106,12 @@ impl FullPose {
 }
 
 #[inline]
-fn is_unit(axis: Vec3) -> bool {
+pub(crate) fn is_unit(axis: Vec3) -> bool {
     // False for what is not a number.
     (axis.length_squared() - 1.0).abs() <= UNIT
 }
 
-/// Numbers that make no pose: one that is not finite, or an axis that is no unit vector.
+/// Numbers that make no pose and no circle: one that is not finite, or an axis that is no unit vector.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NoPose {
     point: Vec3,
@@ -120,7 +120,7 @@ pub struct NoPose {
 
 impl NoPose {
     #[cold]
-    fn of(point: Vec3, axis: Vec3) -> NoPose {
+    pub(crate) fn of(point: Vec3, axis: Vec3) -> NoPose {
         NoPose { point, axis }
     }
 }

@@ -1,7 +1,7 @@
 //! What a program amounts to: lengths, extents, tools, counts.
 
 use crate::{ArcTo, Course, Cycle, Op, Pose, Program};
-use geom::{Arc, Vec3};
+use geom::Vec3;
 use serde::Serialize;
 
 /// Totals of a program whose poses are in the work frame.
@@ -49,9 +49,7 @@ impl Statistics {
             let step = |to: &Pose| from.map_or(0.0, |from| from.distance(to.point()));
             let mut arc = |s: &mut Statistics, to: &ArcTo| {
                 s.arcs += 1;
-                let arc = from.and_then(|from| {
-                    Arc::new(from, to.end.point(), to.center, to.normal, to.turns, f64::MAX).ok()
-                });
+                let arc = from.and_then(|from| to.circle.arc(from, to.end.point(), f64::MAX).ok());
                 if let Some(arc) = arc {
                     s.cutting_length += arc.length();
                     let (a, b) = arc.extents();
@@ -84,9 +82,7 @@ impl Statistics {
                             s.lines += 1;
                             s.cutting_length += step(&end);
                         }
-                        Course::Arc { center, normal, turns } => {
-                            arc(&mut s, &ArcTo { end, center, normal, turns });
-                        }
+                        Course::Arc(circle) => arc(&mut s, &ArcTo { end, circle }),
                     }
                 }
                 // How far these get only the machine knows.
@@ -163,7 +159,7 @@ impl Statistics {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::{ArcTo, CycleKind, Pose};
+    use crate::{ArcTo, Circle, CycleKind, Pose};
     use std::f64::consts::PI;
 
     #[test]
@@ -174,7 +170,10 @@ mod tests {
         p.push(2, Op::Rapid(at(10.0, 0.0, 5.0)));
         p.push(3, Op::Line(at(10.0, 0.0, 0.0)));
         let end = at(-10.0, 0.0, 0.0);
-        p.push(4, Op::Arc(Box::new(ArcTo { end, center: Vec3::ZERO, normal: Vec3::Z, turns: 0 })));
+        p.push(
+            4,
+            Op::Arc(Box::new(ArcTo { end, circle: Circle::new(Vec3::ZERO, Vec3::Z, 0).unwrap() })),
+        );
         let cycle = Cycle {
             kind: CycleKind::Drill,
             depth: 8.0,

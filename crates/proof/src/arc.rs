@@ -4,9 +4,8 @@ use crate::expected::Goal;
 use crate::gauge::Gauge;
 use crate::line::{Followed, turn, within};
 use crate::place::{Place, Station};
-use control::Position;
+use control::{ArcTo, Position};
 use geom::{Arc, Vec3};
-use program::ArcTo;
 use std::f64::consts::{PI, TAU};
 
 /// How far rounding moves a point of an arc, in tip tolerances: an end by 0.82 of one (√½ steps in the
@@ -18,7 +17,7 @@ const ROUNDINGS: f64 = 3.0;
 pub(crate) const PAST: f64 = 4.0;
 
 /// The arc that a block of the program makes, in the work frame, or `None` where it makes none.
-pub(crate) fn of_block(gauge: &Gauge, here: &Station, to: &ArcTo<Position>) -> Option<Arc> {
+pub(crate) fn of_block(gauge: &Gauge, here: &Station, to: &ArcTo) -> Option<Arc> {
     let tip = |point: Vec3| {
         Place::of(gauge.machine, &Position { point, ..to.end }, gauge.tool_length).tip
     };

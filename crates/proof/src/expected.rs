@@ -140,9 +140,10 @@ impl<'a> Cursor<'a> {
                 Op::Line(pose) => self.motion(Kind::Line, pose),
                 Op::Arc(to) => {
                     let arc = self.here.and_then(|here| {
-                        let radius = here.tip.distance(to.center);
+                        let center = to.circle.center();
+                        let radius = here.tip.distance(center);
                         let end = to.end.point();
-                        Arc::new(here.tip, end, to.center, to.normal, to.turns, radius).ok()
+                        to.circle.arc(here.tip, end, radius).ok()
                     });
                     self.motion(
                         arc.map_or(Kind::Broken("its points make no arc"), Kind::Arc),
@@ -153,7 +154,7 @@ impl<'a> Cursor<'a> {
                     let cycle = self.wanted.cycle.map(Kind::Hole);
                     self.motion(cycle.unwrap_or(Kind::Broken("no cycle is active")), pose)
                 }
-                Op::Thread(thread) => self.motion(Kind::Thread(thread.pitch), &thread.end),
+                Op::Thread(thread) => self.motion(Kind::Thread(thread.pitch()), &thread.end),
                 Op::Probe(probe) => {
                     let Probe { away, must_answer, .. } = **probe;
                     self.motion(Kind::Probe { away, must_answer }, &probe.end)

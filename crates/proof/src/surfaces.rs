@@ -29,8 +29,8 @@ pub(crate) fn found(program: &Program) -> Option<&Surface> {
 /// # Errors
 /// A grid that is none.
 pub(crate) fn trials(surface: &Surface) -> Result<[Trial; 3], Box<Diagnostic>> {
-    let [low, high] = surface.reach.map(|reach| WITHIN * reach);
-    let (columns, rows) = (surface.columns.len(), surface.rows.len());
+    let [low, high] = surface.reach().map(|reach| WITHIN * reach);
+    let (columns, rows) = (surface.columns().len(), surface.rows().len());
     let part = |index: usize, count: usize| index as f64 / count.saturating_sub(1).max(1) as f64;
     let tilted = |column: usize, row: usize| {
         low + (high - low) * (part(column, columns) + 2.0 * (1.0 - part(row, rows))) / 3.0
@@ -44,16 +44,16 @@ fn trial(
     surface: &Surface,
     height: impl Fn(usize, usize) -> f64,
 ) -> Result<Trial, Box<Diagnostic>> {
-    let rows = surface.rows.iter().enumerate();
+    let rows = surface.rows().iter().enumerate();
     let places: Vec<Vec3> = rows
         .flat_map(|(row, y)| {
-            let columns = surface.columns.iter().enumerate();
+            let columns = surface.columns().iter().enumerate();
             columns.map(move |(column, x)| (column, row, *x, *y))
         })
         .map(|(column, row, x, y)| Vec3::new(x, y, height(column, row)))
         .collect();
     let heights = places.iter().map(|place| place.z).collect();
-    let heights = HeightMap::on(surface.columns.clone(), surface.rows.clone(), heights)?;
+    let heights = HeightMap::on(surface.columns().to_vec(), surface.rows().to_vec(), heights)?;
     Ok(Trial { places, heights })
 }
 

@@ -94,7 +94,7 @@ fn both(pieces: &[Piece]) -> (Vec<Op>, Vec<Action>) {
                 let to = center + geom::rotate(spoke, Vec3::Z, turn.to_radians()) + Vec3::Z * *rise;
                 own.push(Op::Arc(arc(at(to.x, to.y, to.z), center.into(), normal)));
                 let (end, middle) = ((to * 1e3).round() / 1e3, (center * 1e3).round() / 1e3);
-                nc.push(Action::Arc(arc(block(end.x, end.y, end.z), middle.into(), normal)));
+                nc.push(Action::Arc(arc_block(block(end.x, end.y, end.z), middle.into(), normal)));
                 here = to;
             }
             Piece::Hole { x, y, depth } => {
@@ -162,13 +162,17 @@ fn damaged(action: &Action, how: usize, by: f64) -> Option<Vec<Action>> {
             vec![action.clone(), Action::Line(Position { point, ..*position })]
         }
         (Action::Arc(to), 0..3) => {
-            vec![Action::Arc(Box::new(ArcTo { end: shift(&to.end), ..**to }))]
+            vec![Action::Arc(Box::new(control::ArcTo { end: shift(&to.end), ..**to }))]
         }
-        (Action::Arc(to), 4) => vec![Action::Arc(Box::new(ArcTo { normal: -to.normal, ..**to }))],
-        (Action::Arc(to), 5) => vec![Action::Arc(Box::new(ArcTo { turns: to.turns + 1, ..**to }))],
+        (Action::Arc(to), 4) => {
+            vec![Action::Arc(Box::new(control::ArcTo { normal: -to.normal, ..**to }))]
+        }
+        (Action::Arc(to), 5) => {
+            vec![Action::Arc(Box::new(control::ArcTo { turns: to.turns + 1, ..**to }))]
+        }
         (Action::Arc(to), 6) => {
             let center = to.center + Vec3::new(by.signum() * 20.0, 20.0, 0.0);
-            vec![Action::Arc(Box::new(ArcTo { center, ..**to }))]
+            vec![Action::Arc(Box::new(control::ArcTo { center, ..**to }))]
         }
         (Action::Arc(to), 7) => vec![Action::Line(to.end)],
         (Action::Dwell(seconds), 5) => vec![Action::Dwell(seconds * 10.0)],

@@ -170,19 +170,19 @@ fn round_nc(first: Vec<Action>, second: Vec<Action>) -> Vec<&'static str> {
 }
 
 fn quarter() -> Vec<Action> {
-    vec![Action::Arc(arc(block(0.0, 10.0, 0.0), (0.0, 0.0, 0.0), Vec3::Z))]
+    vec![Action::Arc(arc_block(block(0.0, 10.0, 0.0), (0.0, 0.0, 0.0), Vec3::Z))]
 }
 
 fn turn() -> Vec<Action> {
-    vec![Action::Arc(arc(block(0.0, 10.0, -2.0), (0.0, 0.0, 0.0), Vec3::NEG_Z))]
+    vec![Action::Arc(arc_block(block(0.0, 10.0, -2.0), (0.0, 0.0, 0.0), Vec3::NEG_Z))]
 }
 
 #[test]
 fn arcs_and_helices_are_proven_whole_split_and_as_chords() {
     assert!(round_nc(quarter(), turn()).is_empty());
     let half = vec![
-        Action::Arc(arc(block(0.0, -10.0, -1.0), (0.0, 0.0, 0.0), Vec3::NEG_Z)),
-        Action::Arc(arc(block(0.0, 10.0, -2.0), (0.0, 0.0, 0.0), Vec3::NEG_Z)),
+        Action::Arc(arc_block(block(0.0, -10.0, -1.0), (0.0, 0.0, 0.0), Vec3::NEG_Z)),
+        Action::Arc(arc_block(block(0.0, 10.0, -2.0), (0.0, 0.0, 0.0), Vec3::NEG_Z)),
     ];
     assert!(round_nc(quarter(), half).is_empty());
     let chords = |n: u32| -> Vec<Action> {
@@ -200,7 +200,8 @@ fn arcs_and_helices_are_proven_whole_split_and_as_chords() {
 #[test]
 fn an_arc_the_other_way_the_long_way_or_round_another_centre_is_refused() {
     let end = block(0.0, 10.0, 0.0);
-    let wrong = |center, normal| round_nc(vec![Action::Arc(arc(end, center, normal))], turn());
+    let wrong =
+        |center, normal| round_nc(vec![Action::Arc(arc_block(end, center, normal))], turn());
     assert_eq!(wrong((0.0, 0.0, 0.0), Vec3::NEG_Z), ["path"]);
     assert_eq!(wrong((10.0, 10.0, 0.0), Vec3::Z), ["path"]);
     assert_eq!(wrong((-0.05, -0.05, 0.0), Vec3::Z), ["path"]);
@@ -212,7 +213,7 @@ fn an_arc_the_other_way_the_long_way_or_round_another_centre_is_refused() {
 
 #[test]
 fn a_turn_too_many_or_too_few_is_refused() {
-    let twice = Action::Arc(Box::new(ArcTo {
+    let twice = Action::Arc(Box::new(control::ArcTo {
         end: block(0.0, 10.0, -2.0),
         center: Vec3::ZERO,
         normal: Vec3::NEG_Z,
@@ -224,6 +225,6 @@ fn a_turn_too_many_or_too_few_is_refused() {
 
 #[test]
 fn an_arc_where_the_source_has_a_line_is_refused() {
-    let over = arc(block(30.0, 0.0, -1.0), (15.0, 0.0, -1.0), Vec3::Z);
+    let over = arc_block(block(30.0, 0.0, -1.0), (15.0, 0.0, -1.0), Vec3::Z);
     assert_eq!(with(3, vec![Action::Arc(over)]), ["path"]);
 }

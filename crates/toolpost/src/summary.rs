@@ -136,7 +136,7 @@ pub fn rows(rows: &[(&str, String)]) -> String {
 mod tests {
     use super::*;
     use geom::Vec3;
-    use program::{ArcTo, Op, Pose, Tool};
+    use program::{ArcTo, Circle, Op, Pose, Tool};
     use std::f64::consts::TAU;
 
     #[test]
@@ -158,7 +158,8 @@ mod tests {
         let mut p = Program::new("t");
         p.push(1, tool(1));
         p.push(2, Op::Rapid(at(10.0, 0.0)));
-        let circle = ArcTo { end: at(10.0, 0.0), center: Vec3::ZERO, normal: Vec3::Z, turns: 0 };
+        let circle =
+            ArcTo { end: at(10.0, 0.0), circle: Circle::new(Vec3::ZERO, Vec3::Z, 0).unwrap() };
         p.push(3, Op::Arc(Box::new(circle)));
         p.push(4, tool(2));
         p.push(5, Op::Line(at(10.0, 30.0)));

@@ -3,7 +3,7 @@
 
 use geom::Vec3;
 use machine::Machine;
-use program::{ArcTo, Feed, Op, Pose, Program, Spindle, Tool};
+use program::{ArcTo, Circle, Feed, Op, Pose, Program, Spindle, Tool};
 use proptest::prelude::*;
 
 fn at(x: f64, y: f64, z: f64) -> Pose {
@@ -13,7 +13,7 @@ fn at(x: f64, y: f64, z: f64) -> Pose {
 fn arc(end: Pose, center: [f64; 2], ccw: bool) -> Op {
     let center = Vec3::new(center[0], center[1], end.point().z);
     let normal = if ccw { Vec3::Z } else { Vec3::NEG_Z };
-    Op::Arc(Box::new(ArcTo { end, center, normal, turns: 0 }))
+    Op::Arc(Box::new(ArcTo { end, circle: Circle::new(center, normal, 0).unwrap() }))
 }
 
 /// From X20 Y0 on: a quarter; three quarters; a full circle; a half circle the other way.
@@ -178,7 +178,8 @@ fn a_point_half_way_makes_the_circle() {
 /// Three points of a helix make a circle that is tilted: it goes by lines, within the tolerance.
 #[test]
 fn a_point_half_way_makes_no_helix() {
-    let rising = ArcTo { end: at(0.0, 20.0, -3.0), center: Vec3::ZERO, normal: Vec3::Z, turns: 0 };
+    let rising =
+        ArcTo { end: at(0.0, 20.0, -3.0), circle: Circle::new(Vec3::ZERO, Vec3::Z, 0).unwrap() };
     let ops = vec![
         Op::Rapid(at(20.0, 0.0, 5.0)),
         Op::Line(at(20.0, 0.0, -1.0)),

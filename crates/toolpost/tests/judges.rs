@@ -8,7 +8,7 @@ mod files;
 
 use files::sources;
 use geom::{Arc, Vec2, Vec3};
-use program::{ArcTo, Cycle, CycleKind, Feed, Op, Pose, Program, Spindle};
+use program::{ArcTo, Circle, Cycle, CycleKind, Feed, Op, Pose, Program, Spindle};
 use std::path::Path;
 use std::process::{Command, Stdio};
 
@@ -85,8 +85,7 @@ fn assert_same_cuts(program: &Program, cuts: &[Cut], tolerance: f64, holes: bool
             }
             Op::Arc(to) => {
                 let from = here.expect("an arc has a start");
-                let arc =
-                    Arc::new(from, to.end.point(), to.center, to.normal, to.turns, 0.01).unwrap();
+                let arc = to.circle.arc(from, to.end.point(), 0.01).unwrap();
                 follow(here, to.end.point(), Some(arc.length()));
             }
             Op::Cycle(new) => cycle = Some(**new),
@@ -216,7 +215,7 @@ fn linuxcnc_itself_follows_a_surface_that_it_finds() {
     }
     let pose = |x: f64, y: f64, z: f64| Pose::upright(Vec3::new(x, y, z)).unwrap();
     let arc = |end: Pose, center: Vec3, normal: Vec3| {
-        Op::Arc(Box::new(ArcTo { end, center, normal, turns: 0 }))
+        Op::Arc(Box::new(ArcTo { end, circle: Circle::new(center, normal, 0).unwrap() }))
     };
     let mut board = Program::new("board");
     for op in [

@@ -5,13 +5,12 @@
 
 mod files;
 
-use control::{Action, Event, Orientation, Position};
+use control::{Action, ArcTo, Event, Orientation, Position};
 use files::root;
 use geom::{Arc, Vec3, nearest_on_segment};
 use machine::Machine;
 use program::{
-    ArcTo, Axes, Compensation, Coolant, Cycle, CycleKind, Feed, Op, Program, Spindle, Tool,
-    WorkOffset,
+    Axes, Compensation, Coolant, Cycle, CycleKind, Feed, Op, Program, Spindle, Tool, WorkOffset,
 };
 use proof::{Applied, Tolerances};
 use std::collections::BTreeMap;
@@ -138,7 +137,7 @@ enum Act {
     Home(Axes),
     Line(Position),
     /// From a pose.
-    Arc(Position, Box<ArcTo<Position>>),
+    Arc(Position, Box<ArcTo>),
     Hole(Position, Box<Cycle>),
     Tool(Box<Tool>),
     Dwell(f64),
@@ -361,7 +360,7 @@ impl Allowed<'_> {
             (Act::Line(a), Act::Line(b)) => cut && self.pose(a, b),
             (Act::Arc(start, a), Act::Arc(other, b)) => {
                 cut && self.pose(start, other) && self.pose(&a.end, &b.end) && {
-                    let arc = |from: &Position, to: &ArcTo<Position>| {
+                    let arc = |from: &Position, to: &ArcTo| {
                         let radius = from.point.distance(to.center);
                         let (center, end) = (to.center, to.end.point);
                         Arc::new(from.point, end, center, to.normal, to.turns, radius).unwrap()

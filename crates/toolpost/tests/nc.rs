@@ -137,7 +137,7 @@ fn the_example_is_made_by_every_mill_that_is_high_enough_and_is_what_it_says() {
     let (mut circles, mut holes) = (Vec::new(), Vec::new());
     for record in &program.records {
         match &record.op {
-            Op::Arc(arc) => circles.push((arc.center, arc.end.point())),
+            Op::Arc(arc) => circles.push((arc.circle.center(), arc.end.point())),
             Op::Hole(pose) => holes.push(pose.point()),
             _ => {}
         }

@@ -7,9 +7,9 @@ use machine::Machine;
 use machine::time::Times;
 use program::statistics::Statistics;
 use program::{
-    ArcTo, Auxiliary, Axes, Beam, Clamp, Compensation, Coolant, Course, Cycle, CycleKind, Feed,
-    FullPose, Input, JointMove, Kind, MachineMove, Op, Oriented, Output, OutputValue, PathMode,
-    Pose, Probe, Program, Spindle, Surface, Thread, Tool, Until, WorkOffset,
+    ArcTo, Auxiliary, Axes, Beam, Circle, Clamp, Compensation, Coolant, Course, Cycle, CycleKind,
+    Feed, FullPose, Input, JointMove, Kind, MachineMove, Op, Oriented, Output, OutputValue,
+    PathMode, Pose, Probe, Program, Spindle, Surface, Thread, Tool, Until, WorkOffset,
 };
 use std::fmt::Write;
 use std::path::{Path, PathBuf};
@@ -51,9 +51,12 @@ fn sample(kind: Kind) -> Sample {
         Kind::Line => alone(Op::Line(at(-10.0, 0.0, -1.0))),
         Kind::Arc => {
             let (end, center) = (at(-20.0, 0.0, -1.0), Vec3::new(-10.0, 0.0, -1.0));
-            alone(Op::Arc(Box::new(ArcTo { end, center, normal: Vec3::Z, turns: 0 })))
+            alone(Op::Arc(Box::new(ArcTo {
+                end,
+                circle: Circle::new(center, Vec3::Z, 0).unwrap(),
+            })))
         }
-        Kind::Thread => alone(Op::Thread(Box::new(Thread { end: at(0.0, 0.0, -8.0), pitch: 1.5 }))),
+        Kind::Thread => alone(Op::Thread(Box::new(Thread::new(at(0.0, 0.0, -8.0), 1.5).unwrap()))),
         Kind::Probe => {
             let (away, must_answer) = (false, true);
             let probe = Probe { end: at(0.0, 0.0, -9.0), away, must_answer, place: None };
@@ -131,7 +134,7 @@ fn sample(kind: Kind) -> Sample {
         },
         Kind::Surface => {
             let (columns, rows) = (vec![0.0, 10.0], vec![0.0, 10.0]);
-            let surface = Surface { columns, rows, reach: [-0.5, 0.5], clear: 3.0 };
+            let surface = Surface::new(columns, rows, [-0.5, 0.5], 3.0).unwrap();
             let places = [(0.0, 0.0), (10.0, 0.0), (0.0, 10.0), (10.0, 10.0)];
             let touched = (0..).zip(places).flat_map(|(place, (x, y))| {
                 let (end, place) = (at(x, y, -0.5), Some(place));
@@ -197,7 +200,7 @@ fn wired(kind: Kind) -> [Program; 2] {
             Kind::Line => Op::Line(at(25.0, 10.0, 0.0)),
             Kind::Arc => {
                 let (end, center) = (at(20.0, 10.0, 0.0), Vec3::new(20.0, 5.0, 0.0));
-                Op::Arc(Box::new(ArcTo { end, center, normal: Vec3::Z, turns: 0 }))
+                Op::Arc(Box::new(ArcTo { end, circle: Circle::new(center, Vec3::Z, 0).unwrap() }))
             }
             Kind::Compensation => Op::Compensation(Compensation::Left(Some(1))),
             other => sample(other).op,

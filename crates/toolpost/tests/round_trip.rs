@@ -5,8 +5,8 @@ use geom::Vec3;
 use machine::Machine;
 use machine::library::{MACHINES, names};
 use program::{
-    ArcTo, Coolant, Cycle, CycleKind, Feed, Op, Pose, Probe, Program, Spindle, Thread, Tool,
-    WorkOffset,
+    ArcTo, Circle, Coolant, Cycle, CycleKind, Feed, Op, Pose, Probe, Program, Spindle, Thread,
+    Tool, WorkOffset,
 };
 use proptest::prelude::*;
 
@@ -150,7 +150,10 @@ fn assemble(pieces: &[Piece]) -> Program {
                     + Vec3::Z * *rise;
                 here = end;
                 let normal = Vec3::Z * sense;
-                push(Op::Arc(Box::new(ArcTo { end: pose(end), center, normal, turns: 0 })));
+                push(Op::Arc(Box::new(ArcTo {
+                    end: pose(end),
+                    circle: Circle::new(center, normal, 0).unwrap(),
+                })));
             }
             Piece::Thread | Piece::Probe { .. } => {
                 here = top(here);
@@ -160,7 +163,7 @@ fn assemble(pieces: &[Piece]) -> Program {
                     Piece::Probe { away, must_answer } => {
                         Op::Probe(Box::new(Probe { end, away, must_answer, place: None }))
                     }
-                    _ => Op::Thread(Box::new(Thread { end, pitch: 1.25 })),
+                    _ => Op::Thread(Box::new(Thread::new(end, 1.25).unwrap())),
                 });
                 push(Op::Rapid(pose(here)));
             }
@@ -251,7 +254,7 @@ fn cuts(program: &Program) -> Vec<Cut> {
             }
             Op::Probe(probe) => all.push(Cut { bottom: probe.end.point(), ..now.clone() }),
             Op::Arc(to) => {
-                let arc = Some((to.center, to.normal.z));
+                let arc = Some((to.circle.center(), to.circle.normal().z));
                 all.push(Cut { bottom: to.end.point(), arc, ..now.clone() });
             }
             Op::Cycle(with) => cycle = Some(**with),

@@ -47,7 +47,7 @@ fn probing(away: bool, must_answer: bool) -> Vec<Op> {
 
 /// A thread 15 mm deep of 1.5 mm pitch, and a cut after it.
 fn threading(to: Pose) -> Vec<Op> {
-    let thread = Thread { end: to, pitch: 1.5 };
+    let thread = Thread::new(to, 1.5).unwrap();
     vec![
         Op::Spindle(Spindle::Clockwise(500.0)),
         Op::Rapid(at(0.0, 3.0)),
@@ -116,7 +116,7 @@ fn only_a_rapid_leads_from_where_a_probe_has_answered() {
     let then =
         |op| refused(machine, [probe(), vec![Op::Spindle(Spindle::Clockwise(9.0)), op]].concat());
     assert_eq!(then(Op::Line(at(5.0, -10.0))), "probe");
-    assert_eq!(then(Op::Thread(Box::new(Thread { end: at(0.0, -12.0), pitch: 1.0 }))), "probe");
+    assert_eq!(then(Op::Thread(Box::new(Thread::new(at(0.0, -12.0), 1.0).unwrap()))), "probe");
     assert_eq!(then(probe()[1].clone()), "probe");
     let feed = [vec![Op::Feed(Feed::InverseTime(2.0))], probing(false, true)].concat();
     assert_eq!(refused(machine, feed), "probe");
@@ -154,11 +154,14 @@ fn threads() {
 
 #[test]
 fn a_thread_needs_a_pitch_and_a_spindle_that_turns() {
-    for pitch in [0.0, -1.5, 1e-6, f64::NAN, f64::INFINITY] {
-        let mut ops = threading(at(0.0, -12.0));
-        ops[2] = Op::Thread(Box::new(Thread { end: at(0.0, -12.0), pitch }));
-        assert_eq!(refused("generic-3axis-linuxcnc", ops), "thread", "{pitch}");
+    for pitch in [0.0, -1.5, f64::NAN, f64::INFINITY] {
+        let refused = Thread::new(at(0.0, -12.0), pitch).map_err(|found| found.rule);
+        assert_eq!(refused, Err("thread"), "{pitch}");
     }
+    // Finer than the program can say.
+    let mut ops = threading(at(0.0, -12.0));
+    ops[2] = Op::Thread(Box::new(Thread::new(at(0.0, -12.0), 1e-6).unwrap()));
+    assert_eq!(refused("generic-3axis-linuxcnc", ops), "thread");
     let still = threading(at(0.0, -12.0)).split_off(1);
     assert_eq!(refused("generic-3axis-linuxcnc", still), "spindle-off");
 }

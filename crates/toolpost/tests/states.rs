@@ -5,7 +5,7 @@ use geom::Vec3;
 use machine::library::{MACHINES, names};
 use machine::{Machine, load};
 use program::{
-    ArcTo, Compensation, Coolant, Cycle, CycleKind, Feed, Op, Pose, Program, Spindle, Tool,
+    ArcTo, Circle, Compensation, Coolant, Cycle, CycleKind, Feed, Op, Pose, Program, Spindle, Tool,
 };
 
 fn mills() -> impl Iterator<Item = Machine> {
@@ -44,7 +44,7 @@ fn written(machine: &Machine, ops: &[Op]) -> Result<String, &'static str> {
 
 /// A helix about the zero from `from`, so many turns, to the height `z`.
 fn helix(end: Pose, turns: u32) -> Op {
-    Op::Arc(Box::new(ArcTo { end, center: Vec3::ZERO, normal: Vec3::Z, turns }))
+    Op::Arc(Box::new(ArcTo { end, circle: Circle::new(Vec3::ZERO, Vec3::Z, turns).unwrap() }))
 }
 
 #[test]

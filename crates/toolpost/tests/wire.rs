@@ -2,7 +2,7 @@
 
 use geom::Vec3;
 use machine::Machine;
-use program::{ArcTo, Compensation, Diagnostic, Feed, Op, Pose, Program, Tool};
+use program::{ArcTo, Circle, Compensation, Diagnostic, Feed, Op, Pose, Program, Tool};
 use proof::{Report, Tolerances};
 use proptest::prelude::*;
 
@@ -46,7 +46,7 @@ fn frustum() -> Program {
 /// A quarter of a circle of 40 mm between two radii, counter-clockwise.
 fn sector() -> Program {
     let end = upright(0.0, 40.0);
-    let arc = ArcTo { end, center: Vec3::ZERO, normal: Vec3::Z, turns: 0 };
+    let arc = ArcTo { end, circle: Circle::new(Vec3::ZERO, Vec3::Z, 0).unwrap() };
     let ways = [Op::Line(upright(40.0, 0.0)), Op::Arc(Box::new(arc)), Op::Line(upright(0.0, 0.0))];
     opening(upright(0.0, 0.0), ways)
 }
@@ -167,7 +167,8 @@ fn what_a_wire_cannot_do_is_refused_with_its_line() {
 
 /// A die in ISO code, offset and leant by the control: in from the middle, round three sides and an arc, and back.
 fn die() -> Program {
-    let arc = ArcTo { end: upright(0.0, 40.0), center: Vec3::ZERO, normal: Vec3::Z, turns: 0 };
+    let arc =
+        ArcTo { end: upright(0.0, 40.0), circle: Circle::new(Vec3::ZERO, Vec3::Z, 0).unwrap() };
     let ways = [
         Op::Feed(Feed::PerMinute(6.0)),
         Op::Compensation(Compensation::Left(Some(1))),

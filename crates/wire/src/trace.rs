@@ -171,19 +171,19 @@ fn upright(pose: &Pose) -> Result<Vec2, Box<Diagnostic>> {
 
 fn turned(start: Vec2, arc: &ArcTo) -> Result<Element, Box<Diagnostic>> {
     let end = upright(&arc.end)?;
-    let direction = match arc.normal.z {
+    let direction = match arc.circle.normal().z {
         z if z > 1.0 - 1e-9 => Direction::CounterClockwise,
         z if z < 1e-9 - 1.0 => Direction::Clockwise,
         _ => return Err(refused("not-a-cut", "an arc out of the plane G17", "cut in X and Y")),
     };
-    if arc.turns > 0 {
+    if arc.circle.turns() > 0 {
         return Err(refused("not-a-cut", "an arc of more than one turn", "cut it once"));
     }
     // Where the ends are not known, the caller says so of the whole block.
     if start.is_nan() || end.is_nan() {
         return Ok(Element::line(start, end));
     }
-    Element::arc_by_center(start, end, arc.center.truncate(), direction, ARC_TOLERANCE)
+    Element::arc_by_center(start, end, arc.circle.center().truncate(), direction, ARC_TOLERANCE)
 }
 
 fn refused(rule: &'static str, what: &str, way_out: &str) -> Box<Diagnostic> {

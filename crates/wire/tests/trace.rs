@@ -2,7 +2,7 @@
 
 use control::{Action, Position};
 use geom::Vec2;
-use program::{ArcTo, Axes, Compensation, Cycle, CycleKind, Op, Pose, Program};
+use program::{ArcTo, Axes, Circle, Compensation, Cycle, CycleKind, Op, Pose, Program};
 use std::f64::consts::PI;
 use toolpost_wire::points::{Step, points};
 use toolpost_wire::{Path, beside, contours, cuts};
@@ -17,8 +17,11 @@ fn program(text: &str) -> Program {
             Action::Rapid(to) => Op::Rapid(flat(&to)),
             Action::Line(to) => Op::Line(flat(&to)),
             Action::Arc(arc) => {
-                let ArcTo { center, normal, turns, .. } = *arc;
-                Op::Arc(Box::new(ArcTo { end: flat(&arc.end), center, normal, turns }))
+                let control::ArcTo { center, normal, turns, .. } = *arc;
+                Op::Arc(Box::new(ArcTo {
+                    end: flat(&arc.end),
+                    circle: Circle::new(center, normal, turns).unwrap(),
+                }))
             }
             Action::Compensation(side) => Op::Compensation(side),
             Action::ThreadWire => Op::ThreadWire,
@@ -104,7 +107,7 @@ fn what_is_no_way_of_a_wire_is_refused_with_its_line() {
     let leaning = Pose::new(Vec3::ZERO, Vec3::new(0.1, 0.0, 0.995).normalize()).unwrap();
     assert_eq!(rule(vec![start.clone(), Op::Line(leaning)]), ("not-upright", 2));
     let arc = |end: Pose, center: Vec3, normal: Vec3, turns: u32| {
-        Op::Arc(Box::new(ArcTo { end, center, normal, turns }))
+        Op::Arc(Box::new(ArcTo { end, circle: Circle::new(center, normal, turns).unwrap() }))
     };
     let (end, center) = (pose(2.0, 0.0), Vec3::X);
     let upright = arc(end, center, Vec3::X, 0);

@@ -5,9 +5,9 @@ use super::plane::Plane;
 use super::rules::{Entry, Outer, Rules};
 use super::{Fallible, SAME, error, inverse_time, on_arc};
 use crate::Sink;
-use crate::event::{Action, Event, Orientation, Position};
+use crate::event::{Action, ArcTo, Event, Orientation, Position};
 use geom::{Arc, Element, Turn, Vec2, Vec3, turn_angle};
-use program::{ArcTo, Diagnostic, Feed};
+use program::{Diagnostic, Feed};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
 
 /// Most records between two elements of the contour.
@@ -163,7 +163,7 @@ impl Path {
     }
 
     /// The angle through which an arc turns in the plane, positive counter-clockwise.
-    fn sweep(&self, line: u32, arc: &ArcTo<Position>) -> Fallible<f64> {
+    fn sweep(&self, line: u32, arc: &ArcTo) -> Fallible<f64> {
         let side = arc.normal.dot(self.plane.normal);
         if side.abs() < 1.0 - 1e-9 {
             let message = "an arc out of the plane of compensation";

@@ -2,9 +2,11 @@
 
 use super::records;
 use geom::Vec3;
-use program::{ArcTo, Cycle, Diagnostic};
+use program::{Cycle, Diagnostic};
 use std::path::Path;
-use toolpost_control::{Action, Dialect, Event, Orientation, Position, Settings, Setup, ToolData};
+use toolpost_control::{
+    Action, ArcTo, Dialect, Event, Orientation, Position, Settings, Setup, ToolData,
+};
 
 pub const FIVE_AXES: [bool; 3] = [false, true, true];
 
@@ -97,7 +99,7 @@ pub fn points(ops: &[Action]) -> Vec<[f64; 3]> {
     poses(ops).iter().map(|pose| pose.point.to_array()).collect()
 }
 
-pub fn arcs(ops: &[Action]) -> Vec<ArcTo<Position>> {
+pub fn arcs(ops: &[Action]) -> Vec<ArcTo> {
     ops.iter()
         .filter_map(|op| match op {
             Action::Arc(arc) => Some(**arc),

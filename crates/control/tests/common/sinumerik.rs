@@ -2,8 +2,8 @@
 
 use super::records;
 use geom::Vec3;
-use program::{ArcTo, Cycle, Diagnostic};
-use toolpost_control::{Action, Dialect, Event, Orientation, Position, Settings};
+use program::{Cycle, Diagnostic};
+use toolpost_control::{Action, ArcTo, Dialect, Event, Orientation, Position, Settings};
 
 /// A machine with A and C and clamps.
 pub fn settings() -> Settings {
@@ -49,7 +49,7 @@ pub fn points(text: &str) -> Vec<Vec3> {
 }
 
 /// The arcs among the records.
-pub fn arcs(text: &str) -> Vec<ArcTo<Position>> {
+pub fn arcs(text: &str) -> Vec<ArcTo> {
     let arc = |op| if let Action::Arc(arc) = op { Some(*arc) } else { None };
     blocks(text).into_iter().filter_map(arc).collect()
 }

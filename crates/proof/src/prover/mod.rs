@@ -15,11 +15,11 @@ use crate::report::{Excursion, Report};
 use crate::state::{self, Difference, Lengths, Running};
 use crate::tolerance::{Applied, Tolerances};
 use crate::{arc, line, stops};
-use control::{Action, Event, Orientation, Position};
+use control::{Action, ArcTo, Event, Orientation, Position};
 use geom::{Arc, Vec3};
 use machine::{Machine, Mount};
 use program::statistics::Statistics;
-use program::{ArcTo, Compensation, Diagnostic, Probe, Program, Spindle, Tool};
+use program::{Compensation, Diagnostic, Probe, Program, Spindle, Tool};
 
 /// Compares a program with its source, record by record, as a control runs it.
 pub struct Prover<'a> {
@@ -204,7 +204,7 @@ impl<'a> Prover<'a> {
         line: u32,
         gait: Gait,
         position: &Position,
-        arc: Option<&ArcTo<Position>>,
+        arc: Option<&ArcTo>,
     ) -> Outcome {
         if arc.is_none() && *position == self.here.position {
             return Ok(());
@@ -324,13 +324,7 @@ impl<'a> Prover<'a> {
     }
 
     /// Adds a move to the totals of the program.
-    fn count(
-        &mut self,
-        gait: Gait,
-        to: &Station,
-        arc: Option<&ArcTo<Position>>,
-        block: Option<&Arc>,
-    ) {
+    fn count(&mut self, gait: Gait, to: &Station, arc: Option<&ArcTo>, block: Option<&Arc>) {
         let summary = &mut self.report.program;
         summary.include(&to.position);
         let length = block.map_or(self.here.place.tip.distance(to.place.tip), Arc::length);

@@ -77,8 +77,9 @@ pub fn action(op: &Op) -> Action {
         Op::Line(pose) => Action::Line(says(pose)),
         Op::Hole(pose) => Action::Hole(says(pose)),
         Op::Arc(to) => {
-            let ArcTo { end, center, normal, turns } = **to;
-            Action::Arc(Box::new(ArcTo { end: says(&end), center, normal, turns }))
+            let (center, normal, turns) =
+                (to.circle.center(), to.circle.normal(), to.circle.turns());
+            Action::Arc(Box::new(control::ArcTo { end: says(&to.end), center, normal, turns }))
         }
         Op::Cycle(cycle) => Action::Cycle(cycle.clone()),
         Op::Feed(feed) => Action::Feed(*feed),
@@ -97,9 +98,13 @@ pub fn actions(ops: &[Op]) -> Vec<Action> {
     ops.iter().map(action).collect()
 }
 
-pub fn arc<P>(end: P, center: (f64, f64, f64), normal: Vec3) -> Box<ArcTo<P>> {
-    let center = Vec3::new(center.0, center.1, center.2);
-    Box::new(ArcTo { end, center, normal, turns: 0 })
+pub fn arc(end: Pose, center: (f64, f64, f64), normal: Vec3) -> Box<ArcTo> {
+    Box::new(ArcTo { end, circle: Circle::new(center.into(), normal, 0).unwrap() })
+}
+
+/// The same as a control reports it.
+pub fn arc_block(end: Position, center: (f64, f64, f64), normal: Vec3) -> Box<control::ArcTo> {
+    Box::new(control::ArcTo { end, center: center.into(), normal, turns: 0 })
 }
 
 pub fn tool(number: u32) -> Box<Tool> {

@@ -12,7 +12,7 @@ use super::motion::Next;
 use super::record::Record;
 use super::report::{Fault, Outcome};
 use geom::{ANGLE_EPSILON, Arc, ArcError, Vec3, angle_between, direction};
-use program::{ArcTo, Diagnostic, Op, Pose, Program};
+use program::{ArcTo, Circle, Diagnostic, Op, Pose, Program};
 use std::f64::consts::{PI, TAU};
 
 /// How far the ends of an arc, and the radius the record gives, may be from each other, mm. Files give
@@ -31,7 +31,7 @@ const NEARLY: f64 = 0.002;
 
 /// A circle of a record, in the work frame.
 #[derive(Clone, Debug)]
-pub(super) struct Circle {
+pub(super) struct CircleWord {
     center: Vec3,
     /// As the record gives it.
     axis: Vec3,
@@ -72,7 +72,7 @@ impl Reader {
             },
         };
         let axis = self.setup.to_work.transform_vector3(axis);
-        self.next = Next::Arc(Box::new(Circle { center, axis, radius, times }));
+        self.next = Next::Arc(Box::new(CircleWord { center, axis, radius, times }));
         self.circle_at = record.line;
         Ok(())
     }
@@ -101,7 +101,7 @@ impl Reader {
     }
 
     /// The arc of `circle` from where the tool is to `end`.
-    pub(super) fn arc(&mut self, record: &Record, circle: &Circle, end: Pose) -> Outcome {
+    pub(super) fn arc(&mut self, record: &Record, circle: &CircleWord, end: Pose) -> Outcome {
         self.circles = true;
         let normal = match self.dialect.turn().unwrap_or(Turn::RightHand) {
             Turn::RightHand => circle.axis,
@@ -111,7 +111,13 @@ impl Reader {
     }
 
     /// The arc of `circle` counter-clockwise about `normal`.
-    fn arc_about(&mut self, record: &Record, circle: &Circle, normal: Vec3, end: Pose) -> Outcome {
+    fn arc_about(
+        &mut self,
+        record: &Record,
+        circle: &CircleWord,
+        normal: Vec3,
+        end: Pose,
+    ) -> Outcome {
         self.prepare(record, true)?;
         let Some(start) = self.tip else {
             return Err(Fault::new("no-start", "an arc, but from nowhere")
@@ -147,7 +153,7 @@ impl Reader {
                 .help("let the CAM system write lines where the axis turns"));
         }
         let turns = circle.times - 1;
-        let to = ArcTo { end, center: circle.center, normal: arc.normal, turns };
+        let to = ArcTo { end, circle: Circle::new(circle.center, arc.normal, turns)? };
         self.push(record.line, Op::Arc(Box::new(to)));
         self.arrive(end);
         self.last_arc = Some(start.point());
@@ -163,7 +169,8 @@ impl Reader {
         let Some(Op::Arc(to)) = self.program.records.last_mut().map(|r| &mut r.op) else {
             return Ok(false);
         };
-        let arc = |end| Arc::new(start, end, to.center, to.normal, 0, RADIUS_TOLERANCE);
+        let arc =
+            |end| Arc::new(start, end, to.circle.center(), to.circle.normal(), 0, RADIUS_TOLERANCE);
         let so_far = arc(to.end.point()).map_err(|error| not_an_arc(&error))?;
         let further = arc(point).map_err(|error| not_an_arc(&error))?;
         if further.sweep <= so_far.sweep {
@@ -190,7 +197,14 @@ impl Reader {
             return Ok(());
         }
         let Some(Op::Arc(to)) = self.program.records.last().map(|r| &r.op) else { return Ok(()) };
-        let on = Arc::new(to.end.point(), pose.point(), to.center, to.normal, 0, RADIUS_TOLERANCE);
+        let on = Arc::new(
+            to.end.point(),
+            pose.point(),
+            to.circle.center(),
+            to.circle.normal(),
+            0,
+            RADIUS_TOLERANCE,
+        );
         match on {
             Ok(arc) if arc.rise().abs() <= RADIUS_TOLERANCE => {
                 let message = "a line to another point of the circle just cut: is it a chord, or a \
@@ -243,7 +257,7 @@ impl Reader {
         let principal = [Vec3::X, Vec3::Y, Vec3::Z].into_iter().flat_map(|axis| [axis, -axis]);
         let normal = principal.into_iter().find(|a| a.distance(normal) < SNAP).unwrap_or(normal);
         self.next = Next::Line;
-        let circle = Circle { center, axis: normal, radius, times: 1 };
+        let circle = CircleWord { center, axis: normal, radius, times: 1 };
         self.arc_about(record, &circle, normal, Pose::new(end, self.axis)?)
             .map_err(|fault| fault.fields(0, count))
     }
@@ -300,7 +314,7 @@ pub(super) fn weigh(program: &Program) -> Evidence {
             }
         }
         if let (Op::Arc(to), Some(start)) = (&record.op, here)
-            && let Ok(arc) = Arc::new(start, pose.point(), to.center, to.normal, to.turns, f64::MAX)
+            && let Ok(arc) = to.circle.arc(start, pose.point(), f64::MAX)
         {
             let back = Arc { start: arc.end, end: arc.start, normal: -arc.normal, ..arc };
             open = Some((record.line, before, arc.tangent(), -back.tangent()));

@@ -1,6 +1,6 @@
 //! Records that move the tool.
 
-use super::arc::Circle;
+use super::arc::CircleWord;
 use super::frame::{FARTHEST, SKEW};
 use super::number;
 use super::record::{Field, Record, is_blank};
@@ -18,7 +18,7 @@ pub(super) enum Next {
     /// By rapid.
     Rapid,
     /// Along a circle.
-    Arc(Box<Circle>),
+    Arc(Box<CircleWord>),
 }
 
 /// The values of a `GOTO` line in its plain shape, read without taking the record apart: three or six

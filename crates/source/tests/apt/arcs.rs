@@ -25,7 +25,7 @@ fn the_way_an_arc_turns_is_the_habit_of_the_system() {
         ("$$* Pro/CLfile", Dialect::Creo, Vec3::Z),
         ("$$ ", Dialect::Iso, Vec3::Z),
     ] {
-        assert_eq!(arc(sign, body.0, body.1).normal, normal, "{dialect}");
+        assert_eq!(arc(sign, body.0, body.1).circle.normal(), normal, "{dialect}");
         let whole = reading(&format!("{sign}\n{HEAD}{}\n{}\n", body.0, body.1));
         assert_eq!(whole.dialect, dialect);
         // Where no source says how, that is said.
@@ -59,13 +59,19 @@ fn the_path_is_held_against_the_habit() {
 fn arcs_lie_in_any_plane_and_go_round_as_often_as_asked() {
     let creo = "$$* Pro/CLfile";
     let side = arc(creo, "GOTO/0,10,5", "CIRCLE/0,0,5,1,0,0,10\nGOTO/0,0,15\nFINI");
-    assert_eq!((side.normal, side.center, side.turns), (Vec3::X, Vec3::new(0., 0., 5.), 0));
+    assert_eq!(
+        (side.circle.normal(), side.circle.center(), side.circle.turns()),
+        (Vec3::X, Vec3::new(0., 0., 5.), 0)
+    );
     let full = arc(creo, "GOTO/10,0,0", "CIRCLE/0,0,0,0,0,-2,10\nGOTO/10,0,0\nFINI");
-    assert_eq!((full.normal, full.end, full.turns), (Vec3::NEG_Z, at(10., 0., 0.), 0));
+    assert_eq!(
+        (full.circle.normal(), full.end, full.circle.turns()),
+        (Vec3::NEG_Z, at(10., 0., 0.), 0)
+    );
     let helix = arc(creo, "GOTO/10,0,0", "CIRCLE/0,0,0,0,0,1,10,TIMES,3\nGOTO/10,0,-6\nFINI");
-    assert_eq!((helix.end, helix.turns), (at(10., 0., -6.), 2));
+    assert_eq!((helix.end, helix.circle.turns()), (at(10., 0., -6.), 2));
     let canon = arc(creo, "GOTO/10,0,0", "CIRCLE/CANON,0,0,0,0,0,1,10\nGOTO/0,10,0\nFINI");
-    assert_eq!(canon.normal, Vec3::Z);
+    assert_eq!(canon.circle.normal(), Vec3::Z);
     let other_records = "CIRCLE/0,0,0,0,0,1,10\nPAINT/COLOR,1\nFEDRAT/5,MMPM\nGOTO/0,10,0\nFINI";
     assert_eq!(arc("PAINT/PATH", "GOTO/10,0,0", other_records).end, at(0., 10., 0.));
     let inches = arc(creo, "UNITS/INCHES\nGOTO/1,0,0", "CIRCLE/0,0,0,0,0,1,1\nGOTO/0,1,0\nFINI");
@@ -136,7 +142,7 @@ fn tlon_turns_the_way_indirv_points_in_any_plane() {
         format!("GOTO/10,0,0\nINDIRV/{towards}\nTLON,GOFWD/ (CIRCLE/ 0,0,0,$\n10),{plane}")
     };
     let normal = |text: &str| match ops(text).last() {
-        Some(Op::Arc(arc)) => arc.normal,
+        Some(Op::Arc(arc)) => arc.circle.normal(),
         op => panic!("{op:?}"),
     };
     assert_eq!(normal(&tlon("0,1,0", "ON,(LINE/0,0,0,0,10,0)")), Vec3::Z);

@@ -149,7 +149,7 @@ fn arcs(program: &Program) -> Vec<(Arc, Option<Vec3>, Option<Vec3>)> {
     };
     let arc = |i: usize| match moves[i] {
         Op::Arc(a) => {
-            let arc = Arc::new(point(i - 1), a.end.point(), a.center, a.normal, a.turns, 0.005);
+            let arc = a.circle.arc(point(i - 1), a.end.point(), 0.005);
             Some((arc.unwrap(), cut(i - 1), cut(i + 1)))
         }
         _ => None,

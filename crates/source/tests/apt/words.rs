@@ -2,7 +2,7 @@
 
 use crate::support::{HEAD, HEAD_OPS, at, error, ops, reading, warnings};
 use geom::Vec3;
-use program::{ArcTo, Feed, Op, Spindle, Tool};
+use program::{ArcTo, Circle, Feed, Op, Spindle, Tool};
 use toolpost_source::apt::{Dialect, Options, read};
 
 /// The published sample of CATIA (with a start for its first motion): centre (-42, 8), radius 21, end
@@ -29,7 +29,8 @@ fn the_published_sample_of_catia_is_read() {
     let ops: Vec<&Op> = reading.program.records.iter().map(|r| &r.op).collect();
     let center = Vec3::new(-42., 8., 14.);
     // From (-63, 8) up: clockwise, a quarter.
-    let arc = ArcTo { end: at(-42., 29., 14.), center, normal: Vec3::NEG_Z, turns: 0 };
+    let arc =
+        ArcTo { end: at(-42., 29., 14.), circle: Circle::new(center, Vec3::NEG_Z, 0).unwrap() };
     let tool = Tool { number: 3, offset: Some(1), ..Tool::default() };
     let expected = [
         Op::Operation("Profile Contouring.2".into()),

@@ -1,7 +1,7 @@
 //! The ways of the wire as a neutral program: as they are, or as points.
 
 use geom::{Vec2, Vec3};
-use program::{ArcTo, Compensation, Feed, NoPose, Op, Pose, Program};
+use program::{ArcTo, Circle, Compensation, Feed, NoPose, Op, Pose, Program};
 use wire::points::Points;
 use wire::{Contour, Element, Path};
 
@@ -168,7 +168,10 @@ fn op(element: &Element) -> Result<Op, NoPose> {
         None => Op::Line(end),
         Some(turn) => {
             let normal = Vec3::Z * turn.sweep.signum();
-            Op::Arc(Box::new(ArcTo { end, center: turn.center.extend(0.0), normal, turns: 0 }))
+            Op::Arc(Box::new(ArcTo {
+                end,
+                circle: Circle::new(turn.center.extend(0.0), normal, 0)?,
+            }))
         }
     })
 }

@@ -6,7 +6,7 @@ use crate::files;
 use crate::toolpath::{self, Toolpath};
 use geom::Vec2;
 use machine::Machine;
-use program::{Diagnostic, NoPose, Op, Pose, Program};
+use program::{Circle, Diagnostic, NoPose, Op, Pose, Program};
 use wire::{Beside, Contour, Element, Path, beside, contours, cuts, dxf};
 
 /// A source with the ways that it gives the wire.
@@ -271,7 +271,9 @@ fn stand(op: &mut Op, by: Vec2) -> Result<(), NoPose> {
     match op {
         Op::Rapid(pose) | Op::Line(pose) => upright(pose),
         Op::Arc(arc) => {
-            arc.center += by.extend(0.0);
+            let circle = arc.circle;
+            arc.circle =
+                Circle::new(circle.center() + by.extend(0.0), circle.normal(), circle.turns())?;
             upright(&mut arc.end)
         }
         _ => Ok(()),

@@ -3,11 +3,10 @@
 use super::motion::Target;
 use super::state::Tilt;
 use super::step::Step;
-use crate::event::Action;
+use crate::event::{Action, ArcTo};
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::Flavor;
 use geom::Vec3;
-use program::ArcTo;
 
 /// The letters of the centre, by axis.
 const CENTER: [u8; 3] = *b"IJK";

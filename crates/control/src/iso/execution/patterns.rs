@@ -2,11 +2,10 @@
 
 use super::motion::Target;
 use super::step::Step;
-use crate::event::Action;
+use crate::event::{Action, ArcTo};
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::{Group, Pattern};
 use geom::Vec3;
-use program::ArcTo;
 
 /// Most holes of a pattern.
 const MOST_HOLES: u32 = 9999;

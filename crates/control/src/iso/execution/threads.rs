@@ -1,9 +1,9 @@
 //! Moves in step with the spindle: `G33`, `G33.1`.
 
 use super::step::Step;
-use crate::event::Action;
+use crate::event::{Action, Thread};
 use crate::iso::language::block::Fault;
-use program::{Cycle, CycleKind, Spindle, Thread};
+use program::{Cycle, CycleKind, Spindle};
 
 impl Step<'_, '_, '_> {
     /// `G33`: a straight line in step with the spindle. LinuxCNC's K counts along the way, FANUC's F

@@ -2,14 +2,14 @@
 
 use super::contour::{Bend, Element, left_of};
 use super::state::{AXES, Control, Tip};
-use crate::event::{Action, Orientation, Position};
+use crate::event::{Action, ArcTo, Orientation, Position};
 use crate::klartext::language::functions::{Function, When};
 use crate::klartext::language::scan::{Result, Scanner};
 use crate::klartext::language::words::{
     LINEAR, PA, PR, RADIUS, ROTARY, TURN, VECTORS, Words, slot,
 };
 use geom::{Arc, ArcError, Vec3, direction};
-use program::{ArcTo, Axes, Compensation};
+use program::{Axes, Compensation};
 
 /// By how much the radii at the two ends of an arc may differ, mm: the most that the machine
 /// parameter circleDeviation (MP7431) takes.

@@ -5,12 +5,12 @@
 //! and what is said in between with it.
 
 use super::interpreter::Interpreter;
-use crate::event::{Action, Event};
+use crate::event::{Action, ArcTo, Event};
 use crate::sinumerik::Fallible;
 use crate::sinumerik::language::block::{Block, Corner};
 use crate::sinumerik::language::scan::Source;
 use geom::{Arc, Vec3};
-use program::{ArcTo, Diagnostic, Feed};
+use program::{Diagnostic, Feed};
 
 /// Most records between the two blocks of a corner; our own limit.
 const MOST_BETWEEN: usize = 100;

@@ -1,12 +1,12 @@
 //! Threads by G command: `G33`, `G331`, `G332`, `G63`.
 
 use super::interpreter::Interpreter;
-use crate::event::Action;
+use crate::event::{Action, Thread};
 use crate::sinumerik::Fallible;
 use crate::sinumerik::language::block::Block;
 use crate::sinumerik::language::commands::Motion;
 use crate::sinumerik::language::scan::Source;
-use program::{Spindle, Thread};
+use program::Spindle;
 
 impl Interpreter<'_, '_> {
     /// `G33`, `G331`, `G332`: a straight way along one axis in step with the spindle; `I J K` is the pitch
