@@ -347,7 +347,7 @@ fn what_cannot_be_levelled_is_refused_with_its_line() {
         circle: Circle::new(Vec3::new(1.0, 1.0, 0.0), Vec3::Y, 0).unwrap(),
     };
     refuses(vec![above.clone(), Op::Arc(Box::new(arc))], "plane XY");
-    let flat = ArcTo { circle: Circle::new(Vec3::ZERO, Vec3::Z, 0).unwrap(), ..arc };
+    let flat = ArcTo { circle: Circle::new(arc.circle.center(), Vec3::Z, 0).unwrap(), ..arc };
     refuses(vec![above.clone(), Op::Arc(Box::new(flat))], "not equally far");
     refuses(vec![Op::Feed(Feed::InverseTime(3.0))], "inverse time");
     refuses(
