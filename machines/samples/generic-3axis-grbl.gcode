@@ -5,7 +5,7 @@ G21 G17 G40 G49 G90 G94 G54
 (SLOT)
 M5
 M9
-G53 G0 Z0
+G53 G0 Z-1
 T1
 (MILL_6)
 S3000 M3
@@ -27,7 +27,7 @@ G0 Z20
 (HOLES)
 M5
 M9
-G53 G0 Z0
+G53 G0 Z-1
 T2
 (DRILL_3.3)
 (change the tool by hand; its tip must stand where the last one stood)
@@ -53,5 +53,5 @@ Z20
 M5
 M5
 M9
-G53 G0 Z0
+G53 G0 Z-1
 M30

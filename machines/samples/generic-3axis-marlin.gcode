@@ -8,7 +8,7 @@ G54
 ; SLOT
 M5
 M9
-G53 G0 Z0
+G53 G0 Z200
 T1
 ; MILL_6
 M3 S3000
@@ -30,7 +30,7 @@ G0 Z20
 ; HOLES
 M5
 M9
-G53 G0 Z0
+G53 G0 Z200
 T2
 ; DRILL_3.3
 ; its tip must stand where the last one stood
@@ -56,4 +56,4 @@ G0 Z20
 M5
 M5
 M9
-G53 G0 Z0
+G53 G0 Z200

@@ -2,8 +2,8 @@
 
 use geom::Vec3;
 use program::{
-    Auxiliary, Axes, Compensation, Coolant, Cycle, Feed, Input, Output, Probe, Spindle, Tool,
-    WorkOffset,
+    Auxiliary, Axes, Compensation, Coolant, Cycle, Feed, Input, MachineMove, Output, Probe,
+    Spindle, Tool, WorkOffset,
 };
 
 /// One thing that the control does, and the line (from 1) of the program that makes it do so.
@@ -59,6 +59,10 @@ pub enum Action {
     Hole(Position),
     /// Axes go to a fixed position of the machine. Where they stand afterwards only the machine knows.
     Home(Axes),
+    /// Axes go by rapid to positions that count from the zero of the machine, for Z that of the gauge line of the
+    /// spindle. A position is NaN where the block does not say that (an active tool length is part of it). Where
+    /// they stand afterwards in the work, only the machine knows.
+    MachineMove(Box<MachineMove>),
     /// The hole cycle for the [`Action::Hole`]s that follow.
     Cycle(Box<Cycle>),
     /// End of the hole cycle.
@@ -112,7 +116,7 @@ pub enum Action {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Position {
     /// Tool tip, or position of the linear axes ([`Orientation`]), mm. A coordinate that no block has set yet, or
-    /// that an [`Action::Home`] has made unknown, is NaN.
+    /// that an [`Action::Home`] or an [`Action::MachineMove`] has made unknown, is NaN.
     pub point: Vec3,
     /// Where the tool points.
     pub orientation: Orientation,
@@ -162,6 +166,7 @@ impl Action {
             Action::Thread(thread) => Some(&thread.end),
             Action::Probe(_)
             | Action::Home(_)
+            | Action::MachineMove(_)
             | Action::Cycle(_)
             | Action::CycleOff
             | Action::Feed(_)

@@ -4,7 +4,7 @@
 mod common;
 
 use geom::Vec3;
-use program::{Axes, Compensation, Cycle, CycleKind, Diagnostic, Feed, Spindle, WorkOffset};
+use program::{Compensation, Cycle, CycleKind, Diagnostic, Feed, MachineMove, Spindle, WorkOffset};
 use toolpost_control::{Action, Dialect, Settings, Setup, ToolData, WholeNumbers};
 
 fn run_with(setup: Setup, dialect: Dialect, text: &str) -> Result<Vec<Action>, Box<Diagnostic>> {
@@ -373,7 +373,8 @@ fn machine_coordinates_are_known_where_the_offset_is() {
     assert_eq!(pose.point, Vec3::new(-10.0, 1.0, 100.0));
     // Otherwise only the machine knows.
     let got = ops(Dialect::Haas, "G90 G54 G0 X1. Y1. Z1.\nG53 X0 Z0\n");
-    assert_eq!(got.last(), Some(&Action::Home(Axes::X | Axes::Z)));
+    let to = MachineMove { linear: [Some(0.0), None, Some(0.0)], ..MachineMove::default() };
+    assert_eq!(got.last(), Some(&Action::MachineMove(Box::new(to))));
 }
 
 #[test]

@@ -5,7 +5,8 @@ mod common;
 use common::klartext::*;
 use geom::Vec3;
 use program::{
-    Axes, Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, Spindle, WorkOffset,
+    Axes, Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, MachineMove, Spindle,
+    WorkOffset,
 };
 use toolpost_control::{Action, Orientation, Position, Setup};
 
@@ -346,7 +347,12 @@ fn a_preset_becomes_the_work_offset() {
 #[test]
 fn machine_positions_and_retractions_leave_the_place_unknown() {
     let ops = run(&format!("{START}L Z+0 R0 FMAX M91\nL X+5 FMAX\nL M140 MB MAX\nL Z+1 F10"));
-    assert_eq!(ops[4], Action::Home(Axes::Z));
+    let to = MachineMove { linear: [None, None, Some(0.0)], ..MachineMove::default() };
+    assert_eq!(ops[4], Action::MachineMove(Box::new(to)));
+    // Where the datum of M92 is, only the builder knows.
+    let ops_of_m92 = run(&format!("{START}L Z-5 R0 FMAX M92"));
+    let Action::MachineMove(to) = &ops_of_m92[4] else { panic!("{ops_of_m92:?}") };
+    assert!(to.linear[2].is_some_and(f64::is_nan), "{to:?}");
     let Action::Rapid(pose) = &ops[5] else { panic!() };
     assert!(pose.point.z.is_nan() && pose.point.x == 5.0);
     assert_eq!(ops[6], Action::Home(Axes::Z));

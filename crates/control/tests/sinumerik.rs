@@ -3,7 +3,7 @@
 mod common;
 
 use common::sinumerik::{arcs, blocks, degrees, near, points, poses, run, v};
-use program::{Axes, Compensation, Coolant, Feed, Spindle, WorkOffset};
+use program::{Axes, Compensation, Coolant, Feed, MachineMove, Spindle, WorkOffset};
 use std::f64::consts::FRAC_1_SQRT_2;
 use toolpost_control::{Action, Orientation, Position};
 
@@ -293,17 +293,25 @@ fn vectors_of_the_tool_have_any_length_and_hold() {
 #[test]
 fn moves_in_machine_coordinates_leave_their_axes_unknown() {
     let ops = blocks("SUPA G0 Z0 D0\nG0 X5\nG74 X1=0 Y1=0\nG75 FP=2 Z1=0\nG53 G0 A0 C0\nG1 X1");
-    let homes: Vec<_> = ops.iter().filter(|op| matches!(op, Action::Home(_))).collect();
+    let is_home = |op: &&Action| matches!(op, Action::Home(_) | Action::MachineMove(_));
+    let homes: Vec<_> = ops.iter().filter(is_home).collect();
     assert_eq!(
         homes,
         [
-            &Action::Home(Axes::Z),
+            &Action::MachineMove(machine_move([None, None, Some(0.0)], [None; 3])),
             &Action::Home(Axes::X | Axes::Y),
             &Action::Home(Axes::Z),
-            &Action::Home(Axes::A | Axes::C)
+            &Action::MachineMove(machine_move([None; 3], [Some(0.0), None, Some(0.0)]))
         ]
     );
     assert!(ops.contains(&Action::LengthOffset(None)));
+    // With a tool length, Z of the spindle is higher by what only the control knows.
+    let with_length = blocks("T1 M6\nG0 SUPA X-5 Z-10");
+    let [.., Action::MachineMove(to), Action::End] = &with_length[..] else {
+        panic!("{with_length:?}")
+    };
+    assert_eq!(to.linear[0], Some(-5.0));
+    assert!(to.linear[2].is_some_and(f64::is_nan), "{to:?}");
     let poses = poses(&ops);
     assert!(poses[0].point.x == 5.0 && poses[0].point.y == 0.0 && poses[0].point.z.is_nan());
     assert!(poses[1].point.x == 1.0 && poses[1].point.y.is_nan());
@@ -325,4 +333,8 @@ fn another_work_offset_makes_the_position_unknown() {
     let poses = poses(&ops);
     assert_eq!(poses[1].point, v(2.0, 1.0, 1.0));
     assert!(poses[2].point.y.is_nan());
+}
+
+fn machine_move(linear: [Option<f64>; 3], rotary: [Option<f64>; 3]) -> Box<MachineMove> {
+    Box::new(MachineMove { linear, rotary })
 }

@@ -1,7 +1,7 @@
 //! What a machine is, after its files are merged.
 
 use geom::Vec3;
-use program::{CycleKind, Diagnostic};
+use program::{CycleKind, Diagnostic, MachineMove};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -39,6 +39,9 @@ pub struct Machine {
     /// Work zero (`G54`) in machine coordinates, mm, where it is known. Limits are then checked in
     /// machine coordinates; otherwise only the extent is held against the travel.
     pub work_zero: Option<Vec3>,
+    /// The least Z of the gauge line in machine coordinates, mm, at which every tool is clear of every part, where
+    /// it is known. Retracts in machine coordinates go there.
+    pub safe_height: Option<f64>,
     /// How a tool orientation is written.
     pub orientation: OrientationSettings,
     /// The wire, where the machine is one for wire EDM; a mill has none.
@@ -365,6 +368,10 @@ pub enum OptionValue {
     Text(String),
 }
 
+/// How a machine file says its safe height.
+pub const SAFE_HEIGHT_HELP: &str = "add `safe_height = 0` to the machine's file, with the Z that the control shows in \
+     machine coordinates once the axis is homed and at its top (mm)";
+
 impl Machine {
     /// Gives a value of `[options]` another one, in its own kind.
     ///
@@ -402,6 +409,65 @@ impl Machine {
     /// Whether its file says, by an empty block of that name, that the control does nothing for it.
     pub fn leaves_out(&self, block: &str) -> bool {
         self.blocks.get(block).is_some_and(|block| block.text.trim().is_empty())
+    }
+
+    /// What is wrong with a move to these positions in machine coordinates: one that is not known (NaN) or beyond the
+    /// travel of its axis, an axis whose travel the file does not say, Z below the safe height or without one.
+    /// Nothing where it is safe.
+    pub fn unsafe_position(&self, to: &MachineMove) -> Option<Diagnostic> {
+        let found = |message: String, help: String| {
+            Some(Diagnostic::error("machine-position", message).help(help))
+        };
+        let step = self.resolution() / 2.0;
+        for (i, name) in ["X", "Y", "Z"].into_iter().enumerate() {
+            let (Some(at), LinearAxis { min, max, .. }) = (to.linear[i], self.linear[i]) else {
+                continue;
+            };
+            let place = format!("{name} goes to {at} mm in machine coordinates");
+            if at.is_nan() {
+                let message = format!("where {name} goes in machine coordinates is not known");
+                let help =
+                    "end the tool length in that block, and count from the zero of the machine";
+                return found(message, help.into());
+            }
+            if i == 2 {
+                let Some(safe) = self.safe_height else {
+                    let message = format!("{place}, and the machine's file gives no safe height");
+                    return found(message, SAFE_HEIGHT_HELP.into());
+                };
+                if (at - safe).abs() <= step {
+                    continue;
+                }
+                if at < safe {
+                    let message = format!("{place}, below the safe height of {safe} mm");
+                    return found(message, "go to the safe height".into());
+                }
+            }
+            if !(min.is_finite() && max.is_finite()) {
+                let message = format!("{place}, and the machine's file gives no travel");
+                let help = format!(
+                    "give it below [axes], from what the control shows at both ends (mm): \
+                     `{name} = {{ min = -300, max = 0 }}`"
+                );
+                return found(message, help);
+            }
+            if at < min - step || at > max + step {
+                let message = format!("{place}, where it travels from {min} to {max} mm");
+                return found(message, "stay within the travel".into());
+            }
+        }
+        for axis in &self.rotary {
+            if let Some(at) = to.rotary[axis.index()]
+                && !(axis.min..=axis.max).contains(&at)
+            {
+                let message = format!(
+                    "{} goes to {at}° in machine coordinates, where it travels from {}° to {}°",
+                    axis.letter, axis.min, axis.max
+                );
+                return found(message, "stay within the travel".into());
+            }
+        }
+        None
     }
 
     /// How far its control may leave the path while it smooths it, mm: `path_tolerance` of the options,

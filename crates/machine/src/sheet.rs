@@ -74,6 +74,7 @@ sheet!(Sheet "" {
     axes: BTreeMap<LinearName, Spanned<LinearSheet>>, "", "Table: X, Y and Z.";
     rotary: Spanned<Vec<Spanned<RotarySheet>>>, "", "Tables [[rotary]]: the rotary axes from the machine's frame outwards, at most two.";
     work_zero: Point, "mm", "The work zero (G54) in machine coordinates, where it is known: travels are then checked in machine coordinates, otherwise only their length.";
+    safe_height: Spanned<Finite>, "mm", "Z of the gauge line in machine coordinates at which every tool is clear of every part: where the control shows it, homed and at its top. Retracts in machine coordinates (G53, SUPA, M91) go there; without it none is written.";
     orientation: Spanned<OrientationSheet>, "", "Table: how a tool axis is written.";
     wire: Spanned<WireSheet>, "", "Table: the wire of a machine for wire EDM; a machine without it is a mill.";
     spindle: Spanned<SpindleSheet>, "", "Table: the speeds of the spindle.";

@@ -22,8 +22,8 @@ use control::{Action, Dialect, Event, Orientation, Position, Settings, Setup, Wi
 use geom::Vec3;
 use machine::{LengthOffset, Machine, Mount};
 use program::{
-    ArcTo, Axes, Circle, Cycle, Diagnostic, Op, Pose, Probe, Program, Record, Thread, Tool,
-    WorkOffset,
+    ArcTo, Axes, Circle, Cycle, Diagnostic, MachineMove, Op, Pose, Probe, Program, Record, Thread,
+    Tool, WorkOffset,
 };
 
 /// Most records of a reading, which are kept in memory: a program of a few lines can loop to more.
@@ -277,6 +277,7 @@ impl<'a> Lift<'a> {
                 }
             }
             Action::Home(axes) => return self.go_home(line, axes),
+            Action::MachineMove(to) => return self.machine_move(line, &to),
             Action::Tool(mut tool) => {
                 self.number(line, &mut tool)?;
                 if let Some(entry) = self.setup.tools.iter().find(|e| e.number == tool.number) {
@@ -444,6 +445,35 @@ impl<'a> Lift<'a> {
             self.home.get_or_insert(line);
         }
         Ok(())
+    }
+
+    /// A move in machine coordinates is a way home where Z goes to its safe height. Where the machine's file does not
+    /// say that, Z 0 or above is taken for it, as on machines whose Z counts down from its top.
+    fn machine_move(&mut self, line: u32, to: &MachineMove) -> Done {
+        if let Some(z) = to.linear[2] {
+            let safe = self.machine.safe_height;
+            if z.is_nan() || z < safe.unwrap_or(0.0) - ROUNDING {
+                let below = safe.map_or(String::new(), |safe| {
+                    format!(
+                        ", below the safe height of {safe} mm of the machine it was written for"
+                    )
+                });
+                let message = format!(
+                    "Z goes to {z} mm in machine coordinates{below}: where that is in the work is \
+                     not known"
+                );
+                return Err(refuse("machine-position", message, machine::SAFE_HEIGHT_HELP));
+            }
+            if safe.is_none() {
+                let message = format!(
+                    "Z {z} mm in machine coordinates is taken for clear of the part: no safe height \
+                     of the machine is known that the program was written for"
+                );
+                let found = Diagnostic::warning("machine-position", message);
+                self.warnings.push(found.help(machine::SAFE_HEIGHT_HELP).line(line));
+            }
+        }
+        self.go_home(line, to.axes())
     }
 
     fn length_offset(&mut self, line: u32, register: Option<u32>) -> Done {

@@ -180,6 +180,7 @@ names! {
         Euler1 Word "E1", "degrees", "Turn of the tilted plane about Z, first of the Euler angles Z-X'-Z''.";
         Euler2 Word "E2", "degrees", "Turn about the new X, second.";
         Euler3 Word "E3", "degrees", "Turn about the new Z, third.";
+        SafeHeight Word "SAFE_HEIGHT", "mm", "The safe height of the machine, in machine coordinates (`safe_height`): in every block.";
         Surface Word "SURFACE", "mm", "Cycle: level of the point of the hole.";
         Clear Word "CLEAR", "mm", "Cycle: level from which the tool feeds (R plane).";
         Bottom Word "BOTTOM", "mm", "Cycle: level of the bottom.";

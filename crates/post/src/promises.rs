@@ -29,6 +29,13 @@ pub(crate) fn check(machine: &Machine, templates: &Templates) -> Result<(), Vec<
     }
     for (word, block) in templates.words() {
         let name = word.name();
+        if word == WordName::SafeHeight && machine.safe_height.is_none() {
+            let message = "the block retracts in machine coordinates, and the machine's file gives no safe \
+                           height";
+            let error = Diagnostic::error("safe-height", message).help(machine::SAFE_HEIGHT_HELP);
+            errors.push(error.file(block.file.clone()).line(block.line));
+            continue;
+        }
         let Some(known) = machine.words.get(name) else {
             let message = format!("the block places `{name}`, and [words.{name}] is missing");
             let error = Diagnostic::error("word", message);

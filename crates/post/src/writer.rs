@@ -27,6 +27,8 @@ pub(crate) struct Writer {
     line_length: usize,
     first: u32,
     step: u32,
+    /// The words that every block may write, with values of the machine.
+    constant: Words,
     /// The words of the block that comes next, and their values.
     set: Words,
     values: [Key; WordName::COUNT],
@@ -66,13 +68,14 @@ impl Writer {
         };
         let number = machine.words.get(WordName::N.name());
         let first = number.map_or(1, |word| word.first);
-        Writer {
+        let mut writer = Writer {
             forms: WordName::ALL.iter().map(form).collect(),
             separator: machine.format.separator.clone().into(),
             line_end: machine.format.line_end.clone().into(),
             line_length: machine.capabilities.line_length,
             first,
             step: number.map_or(1, |word| word.step),
+            constant: 0,
             set: 0,
             values: [0; WordName::COUNT],
             kept: 0,
@@ -85,7 +88,12 @@ impl Writer {
             next_number: first.into(),
             text: Vec::new(),
             lines: 0,
+        };
+        if let Some(height) = machine.safe_height {
+            writer.set(WordName::SafeHeight, height);
+            writer.constant = writer.set;
         }
+        writer
     }
 
     /// The next block may write `word` with this value. Nothing where the control lacks the word.
@@ -208,7 +216,7 @@ impl Writer {
 
     /// The words of the next block.
     pub(crate) fn set_words(&self) -> Words {
-        self.set | bit(WordName::N)
+        self.set | self.constant | bit(WordName::N)
     }
 
     /// The control is at this entry of a code without being told.
@@ -253,7 +261,7 @@ impl Writer {
         }
         let mut start = self.text.len();
         let (mut gap, mut full, mut numbered) = (false, false, false);
-        let (set, mut left_out) = (self.set, self.left_out());
+        let (set, mut left_out) = (self.set | self.constant, self.left_out());
         for step in &block.steps {
             match *step {
                 Step::Text { gap: before, from, to } => {

@@ -5,7 +5,7 @@ use std::time::{Duration, Instant};
 /// What `post::check` says of a machine with this `program_start`.
 fn checked(template: &str) -> Result<(), String> {
     let text = format!(
-        "extends = \"linuxcnc\"\n[options]\nfirst_offset = 100\nshop = \"north\"\n[blocks]\n\
+        "extends = \"generic-3axis-linuxcnc\"\n[options]\nfirst_offset = 100\nshop = \"north\"\n[blocks]\n\
          program_start = '''{template}'''\n"
     );
     let machine = machine::load_text("mine.toml", &text).unwrap();
@@ -14,7 +14,7 @@ fn checked(template: &str) -> Result<(), String> {
 
 /// What `post::check` says of a machine with this HEIGHT.
 fn kept(word: &str) -> Result<(), String> {
-    let text = format!("extends = \"linuxcnc\"\n[words]\nHEIGHT = {{ {word} }}\n");
+    let text = format!("extends = \"generic-3axis-linuxcnc\"\n[words]\nHEIGHT = {{ {word} }}\n");
     let machine = machine::load_text("mine.toml", &text).unwrap();
     toolpost_post::check(&machine).map_err(|found| found[0].to_string())
 }
@@ -119,7 +119,7 @@ fn a_name_that_the_engine_does_not_know_is_told_with_those_that_it_knows() {
 #[test]
 fn a_promise_that_a_file_does_not_keep_is_told_where_the_file_makes_it() {
     let found = |text: &str| {
-        let text = format!("extends = \"linuxcnc\"\n{text}");
+        let text = format!("extends = \"generic-3axis-linuxcnc\"\n{text}");
         let machine = machine::load_text("mine.toml", &text).unwrap();
         let found = toolpost_post::check(&machine).expect_err(&text);
         found.iter().map(|error| format!("{error}\n")).collect::<String>()

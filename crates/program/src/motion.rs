@@ -1,7 +1,7 @@
 //! What motions need beside the pose where they end.
 
 use crate::pose::is_unit;
-use crate::{Diagnostic, FullPose, NoPose, Pose};
+use crate::{Axes, Diagnostic, FullPose, NoPose, Pose};
 use geom::{Arc, ArcError, Vec3};
 
 /// An arc or helix from where the tool is.
@@ -155,6 +155,14 @@ pub struct MachineMove {
     pub linear: [Option<f64>; 3],
     /// Where A, B and C go, degrees; `None` for an axis that stays.
     pub rotary: [Option<f64>; 3],
+}
+
+impl MachineMove {
+    /// The axes that move.
+    pub fn axes(&self) -> Axes {
+        let ([x, y, z], [a, b, c]) = (self.linear, self.rotary);
+        Axes::of([x, y, z, a, b, c].map(|to| to.is_some()))
+    }
 }
 
 #[cfg(test)]

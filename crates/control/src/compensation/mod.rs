@@ -188,12 +188,8 @@ impl<'a> Compensator<'a> {
             }
             Action::Arc(_) if self.told => return Err(on_arc(record.line)),
             Action::WorkOffset(_) | Action::Probe(_) => self.at.point = Vec3::NAN,
-            Action::Home(axes) => {
-                self.leaving = None;
-                for axis in (0..3).filter(|axis| axes.contains(Axes::linear(*axis))) {
-                    self.at.point[axis] = f64::NAN;
-                }
-            }
+            Action::Home(axes) => self.leave_for(*axes),
+            Action::MachineMove(to) => self.leave_for(to.axes()),
             action => {
                 if let Some(pose) = action.position() {
                     self.arrive(record.line, *pose)?;
@@ -205,6 +201,14 @@ impl<'a> Compensator<'a> {
 
     /// The tool moves to `pose`, without compensation.
     #[inline]
+    /// The axes go where only the machine knows.
+    fn leave_for(&mut self, axes: Axes) {
+        self.leaving = None;
+        for axis in (0..3).filter(|axis| axes.contains(Axes::linear(*axis))) {
+            self.at.point[axis] = f64::NAN;
+        }
+    }
+
     fn arrive(&mut self, line: u32, pose: Position) -> Fallible<()> {
         if let Some(leaving) = self.leaving.take() {
             leaving.check(line, &pose)?;

@@ -107,7 +107,11 @@ impl Path {
                 self.element(piece, sink)
             }
             Action::Feed(Feed::InverseTime(_)) => Err(inverse_time(line)),
-            Action::Home(_) | Action::WorkOffset(_) | Action::Tool(_) | Action::Cycle(_) => {
+            Action::Home(_)
+            | Action::MachineMove(_)
+            | Action::WorkOffset(_)
+            | Action::Tool(_)
+            | Action::Cycle(_) => {
                 let message = "a tool change, a cycle, another frame or a move to a fixed position \
                                while compensation is on";
                 Err(error("compensation-on", line, message)

@@ -253,6 +253,13 @@ pub fn ours(text: &[u8], rotary: [bool; 3], folders: &[PathBuf]) -> Result<Vec<M
                 });
                 moves.push(Motion::Rapid(at));
             }
+            Action::MachineMove(to) => {
+                let [x, y, z] = to.linear;
+                let [a, b, c] = to.rotary;
+                let to = [x, y, z, a, b, c];
+                at = std::array::from_fn(|i| to[i].unwrap_or(at[i]));
+                moves.push(Motion::Rapid(at));
+            }
             Action::Dwell(seconds) => moves.push(Motion::Dwell(seconds)),
             Action::Cycle(cycle) => active = Some(*cycle),
             Action::Hole(pose) => {

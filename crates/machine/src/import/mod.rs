@@ -153,6 +153,11 @@ impl Findings {
         self.add(Diagnostic::warning("carried-otherwise", message), line);
     }
 
+    /// What no post says, and a machine must.
+    fn assumed(&mut self, rule: &'static str, message: String) {
+        self.add(Diagnostic::warning(rule, message), 0);
+    }
+
     fn add(&mut self, found: Diagnostic, line: u32) {
         if self.list.len() < MOST_FINDINGS {
             self.list.push(found.file(self.file.clone()).line(line));

@@ -5,6 +5,8 @@ use super::Findings;
 use super::foreign::{Form, Line, Part, Piece, Post};
 use super::items::codes;
 use super::text::{quoted, short};
+use crate::library::{MACHINES, names};
+use crate::load;
 use crate::model::{Machine, Word};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
@@ -54,6 +56,18 @@ impl Writing<'_> {
         let mut out = format!("# Imported from {}.\nextends = {}\n", short(origin), quoted(base));
         let title = if post.title.trim().is_empty() { origin } else { post.title.trim() };
         let _ = writeln!(out, "title = {}", quoted(&short(title)));
+        if let (None, Some(height)) = (self.base.safe_height, self.generic_height()) {
+            let _ = writeln!(
+                out,
+                "# The post does not say where Z is at its top: look at the machine, homed, and write it here.\n\
+                 safe_height = {height}"
+            );
+            let message = format!(
+                "no post says where Z is at its top in machine coordinates: `safe_height = {height}` \
+                 is written, as of any mill with this control; write that of the machine"
+            );
+            self.findings.assumed("safe-height", message);
+        }
         if let Some(ending) = post.extension.as_ref().filter(|e| plain(e) && !e.is_empty()) {
             let _ = writeln!(out, "extension = {}", quoted(&short(ending)));
         }
@@ -89,6 +103,15 @@ impl Writing<'_> {
             let _ = writeln!(out, "{name} = {}", quoted(text));
         }
         out
+    }
+
+    /// The safe height of any mill of the library with the same control.
+    fn generic_height(&self) -> Option<f64> {
+        let own = [&self.base.name, &self.base.control];
+        let generic = names(MACHINES).filter(|name| name.starts_with("generic-"));
+        let generic = generic.filter_map(|name| load(name).ok());
+        let mut generic = generic.filter(|machine| own.contains(&&machine.control));
+        generic.find_map(|machine| machine.safe_height)
     }
 
     fn words(&self, out: &mut String) {

@@ -57,6 +57,7 @@ pub(super) struct CheckedSheet {
     axes: BTreeMap<LinearName, Placed<LinearSheet>>,
     rotary: Option<Placed<Vec<RotaryAxis>>>,
     work_zero: Option<Point>,
+    safe_height: Option<Placed<Finite>>,
     orientation: Option<Placed<OrientationSheet>>,
     wire: Option<Placed<WireSheet>>,
     spindle: Option<Placed<SpindleSheet>>,
@@ -95,6 +96,7 @@ impl CheckedSheet {
             axes: axes?,
             rotary: sheet.rotary.map(|axes| check_rotary(file, axes)).transpose()?,
             work_zero: sheet.work_zero,
+            safe_height: sheet.safe_height.map(|z| Placed::new(file, "safe_height", z)),
             orientation: sheet.orientation.map(|o| Placed::new(file, "orientation", o)),
             wire: sheet.wire.map(|wire| Placed::new(file, "wire", wire)),
             spindle,
@@ -222,6 +224,7 @@ impl CheckedSheet {
             }),
             rotary: nearer.rotary.or(self.rotary),
             work_zero: nearer.work_zero.or(self.work_zero),
+            safe_height: nearer.safe_height.or(self.safe_height),
             orientation: joined(self.orientation, nearer.orientation, OrientationSheet::under),
             wire: joined(self.wire, nearer.wire, WireSheet::under),
             spindle: joined(self.spindle, nearer.spindle, SpindleSheet::under),
@@ -248,6 +251,8 @@ impl CheckedSheet {
                 *axis = finish_linear(&sheet);
             }
         }
+        let safe_height = self.safe_height.map(|safe| check_safe_height(&safe, &linear[2]));
+        let safe_height = safe_height.transpose()?;
         let (mut spindle, mut orientation) = (SpindleSheet::default(), OrientationSheet::default());
         if let Some(Placed { sheet, place }) = self.spindle {
             check_range(&place, sheet.min, sheet.max, "1/min")?;
@@ -321,6 +326,7 @@ impl CheckedSheet {
             linear,
             rotary,
             work_zero: self.work_zero.map(|point| Vec3::from_array(point.0)),
+            safe_height,
             orientation: OrientationSettings {
                 simultaneous,
                 positioned,
@@ -351,6 +357,16 @@ impl CheckedSheet {
                 .collect(),
         })
     }
+}
+
+/// The safe height, which Z must reach.
+fn check_safe_height(safe: &Placed<Finite>, z: &LinearAxis) -> Result<f64> {
+    let (height, LinearAxis { min, max, .. }) = (safe.sheet.0, *z);
+    if height < min || height > max {
+        let message = format!("{height} mm, and Z travels from {min} to {max} mm");
+        return Err(wrong(&safe.place, &message));
+    }
+    Ok(height)
 }
 
 fn finish_linear(sheet: &LinearSheet) -> LinearAxis {

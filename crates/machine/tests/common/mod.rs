@@ -42,6 +42,7 @@ pub fn machine(rotary: Vec<RotaryAxis>) -> Machine {
         linear: [linear; 3],
         rotary,
         work_zero: Some(Vec3::ZERO),
+        safe_height: None,
         wire: None,
         orientation: OrientationSettings {
             simultaneous: OrientationMode::MachineAngles,

@@ -19,7 +19,7 @@ use control::{Action, ArcTo, Event, Orientation, Position};
 use geom::{Arc, Vec3};
 use machine::{Machine, Mount};
 use program::statistics::Statistics;
-use program::{Compensation, Diagnostic, Probe, Program, Spindle, Tool};
+use program::{Compensation, Diagnostic, MachineMove, Probe, Program, Spindle, Tool};
 
 /// Compares a program with its source, record by record, as a control runs it.
 pub struct Prover<'a> {
@@ -163,6 +163,7 @@ impl<'a> Prover<'a> {
                 return self.single(line, &end, Kind::Probe { away, must_answer });
             }
             Action::Home(axes) => return self.home(line, *axes),
+            Action::MachineMove(to) => return self.machine_move(line, to),
             Action::Tool(tool) => return self.change_tool(line, tool),
             Action::Dwell(seconds) if *seconds == 0.0 => {}
             Action::Dwell(seconds) => return self.happens(line, Step::Dwell(*seconds)),

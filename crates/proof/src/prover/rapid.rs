@@ -137,6 +137,16 @@ impl Prover<'_> {
         });
     }
 
+    /// Axes sent to positions in machine coordinates: where the machine's file says that they are safe, that is a
+    /// home position.
+    pub(super) fn machine_move(&mut self, line: u32, to: &MachineMove) -> Outcome {
+        if let Some(found) = self.gauge.machine.unsafe_position(to) {
+            let message = format!("source line {}: {}", self.cursor.line, found.message);
+            return Err(Diagnostic { message, ..found }.line(line).into());
+        }
+        self.home(line, to.axes())
+    }
+
     /// Axes sent to a fixed position.
     pub(super) fn home(&mut self, line: u32, axes: Axes) -> Outcome {
         let axis_degrees = self.gauge.allowed.axis_degrees;

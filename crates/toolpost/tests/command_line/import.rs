@@ -26,7 +26,9 @@ fn a_post_becomes_a_file_that_posts() {
     assert_eq!(folder.run(&["machines", "check", "mine.toml"]).code, 0);
     let said = folder.run(&["machines", "import", "shop.pp", "-o", "mine.toml", "--json"]).json();
     assert_eq!((&said["sample"], &said["extends"]), (&"proven".into(), &"grbl".into()));
-    assert_eq!(said["warnings"][0]["line"], 7);
+    assert_eq!(said["warnings"][1]["line"], 7);
+    // No post says where Z is at its top: that of any mill with this control, and it is told.
+    assert!(said["warnings"][0]["message"].as_str().unwrap().contains("`safe_height = -1`"));
 }
 
 #[test]
@@ -76,7 +78,7 @@ fn what_it_extends_is_found_from_where_it_is_saved() {
 fn a_file_that_is_no_machine_is_not_named() {
     let folder = Folder::new();
     folder.write("shop.pp", POST);
-    folder.write("0.toml", "extends = \"grbl\"\n");
+    folder.write("0.toml", "extends = \"generic-3axis-grbl\"\n");
     for above in 1..20 {
         folder.write(&format!("{above}.toml"), format!("extends = \"{}.toml\"\n", above - 1));
     }

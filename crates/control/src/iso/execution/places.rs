@@ -8,7 +8,7 @@ use crate::event::Action;
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::{Flavor, Group, Motion};
 use geom::Vec3;
-use program::{Axes, Probe};
+use program::{Axes, MachineMove, Probe};
 
 /// How far beside a probe a point of the surface may be that it touches, mm: words are rounded, those of two decimals
 /// by up to 0.005 mm along X and along Y.
@@ -48,7 +48,8 @@ impl Step<'_, '_, '_> {
         self.state.via = Some(self.state.place.point(target.point));
         let home = self.state.homes[usize::from(second)];
         if !home.is_nan() && target.named < 8 {
-            return self.go_to_machine(home, target.named, true);
+            let action = home_action(target.named);
+            return self.go_to_machine(home, target.named, true, action);
         }
         self.leave_for(target.named);
         Ok(())
@@ -105,8 +106,15 @@ impl Step<'_, '_, '_> {
         self.state.frames.to_machine(tip) + Vec3::Z * self.length_in_use()
     }
 
-    /// The named axes go to `place`, given for the gauge line in machine coordinates.
-    fn go_to_machine(&mut self, place: Vec3, named: u8, rapid: bool) -> Result<(), Fault> {
+    /// The named axes go to `place`, given for the gauge line in machine coordinates: `unknown` is that where nobody
+    /// knows where it is in the work.
+    fn go_to_machine(
+        &mut self,
+        place: Vec3,
+        named: u8,
+        rapid: bool,
+        unknown: Action,
+    ) -> Result<(), Fault> {
         let mut machine = self.machine();
         for axis in 0..3 {
             if named & 1 << axis != 0 {
@@ -116,7 +124,7 @@ impl Step<'_, '_, '_> {
         let tip = machine - Vec3::Z * self.length_in_use();
         let point = self.state.place.programmed(self.state.frames.of_machine(tip));
         if (0..3).any(|axis| named & 1 << axis != 0 && point[axis].is_nan()) {
-            self.leave_for(named);
+            self.leave(named, unknown);
             return Ok(());
         }
         let point = Vec3::select(point.is_nan_mask(), self.state.position, point);
@@ -209,13 +217,19 @@ impl Step<'_, '_, '_> {
         }
         self.state.diameter = diameter;
         let linear = named;
-        named |= self.target(false)?.named;
+        let target = self.target(false)?;
+        named |= target.named;
         if named == 0 {
             let message = "name the axes that G53 moves";
             return Err(self.block.at_group(Group::OneShot, "nc-machine-position", message));
         }
+        let value = |axis: usize, value: f64| (named & 1 << axis != 0).then_some(value);
+        let to = MachineMove {
+            linear: [0, 1, 2].map(|axis| value(axis, place[axis])),
+            rotary: [0, 1, 2].map(|axis| value(axis + 3, target.rotary[axis])),
+        };
         if rapid && named != linear {
-            self.leave_for(named);
+            self.leave(named, Action::MachineMove(Box::new(to)));
             return Ok(());
         }
         if !rapid {
@@ -227,7 +241,7 @@ impl Step<'_, '_, '_> {
                 return Err(self.block.at_group(Group::OneShot, "nc-machine-position", message));
             }
         }
-        self.go_to_machine(place, named, rapid)
+        self.go_to_machine(place, named, rapid, Action::MachineMove(Box::new(to)))
     }
 
     /// What holds before each move to a fixed place of the machine.
@@ -244,8 +258,13 @@ impl Step<'_, '_, '_> {
         Ok(())
     }
 
-    /// The named axes go where only the machine knows.
+    /// The named axes go to their fixed positions.
     fn leave_for(&mut self, named: u8) {
+        self.leave(named, home_action(named));
+    }
+
+    /// The named axes go where only the machine knows, by `action`.
+    fn leave(&mut self, named: u8, action: Action) {
         self.switch_compensation();
         let mut point = self.state.place.point(self.state.position);
         for (axis, gone) in self.state.frames.depend_on(named).into_iter().enumerate() {
@@ -258,8 +277,7 @@ impl Step<'_, '_, '_> {
         }
         self.state.position = self.state.place.programmed(point);
         self.state.moved = true;
-        self.actions
-            .push(Action::Home(Axes::of([0, 1, 2, 3, 4, 5].map(|bit| named >> bit & 1 == 1))));
+        self.actions.push(action);
     }
 
     fn all_axes(&self) -> u8 {
@@ -285,4 +303,9 @@ impl Step<'_, '_, '_> {
         self.state.moved = true;
         Ok(())
     }
+}
+
+/// The axes whose bits are set go to their fixed positions.
+fn home_action(named: u8) -> Action {
+    Action::Home(Axes::of([0, 1, 2, 3, 4, 5].map(|bit| named >> bit & 1 == 1)))
 }

@@ -187,8 +187,10 @@ impl<'a> Run<'a, '_> {
 
     /// After a move the macro of `G66` is called.
     pub(super) fn after_move(&mut self) -> Result<(), Fault> {
-        let moves =
-            |action: &Action| action.position().is_some() || matches!(action, Action::Home(_));
+        let moves = |action: &Action| {
+            action.position().is_some()
+                || matches!(action, Action::Home(_) | Action::MachineMove(_))
+        };
         let Some(modal) = self.frames.last().and_then(|frame| frame.modal.as_ref()) else {
             return Ok(());
         };

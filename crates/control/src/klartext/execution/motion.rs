@@ -9,7 +9,7 @@ use crate::klartext::language::words::{
     LINEAR, PA, PR, RADIUS, ROTARY, TURN, VECTORS, Words, slot,
 };
 use geom::{Arc, ArcError, Vec3, direction};
-use program::{Axes, Compensation};
+use program::{Axes, Compensation, MachineMove};
 
 /// By how much the radii at the two ends of an arc may differ, mm: the most that the machine
 /// parameter circleDeviation (MP7431) takes.
@@ -85,8 +85,8 @@ impl Control<'_, '_> {
             None => self.targets(s, words)?,
         };
         let rapid = self.set_feed(s, words.feed)?;
-        if words.functions.contains(Function::MachineCoordinates) {
-            self.machine_position(s, words)?;
+        if let Some(builders) = words.functions.machine_coordinates() {
+            self.machine_position(s, words, builders)?;
         } else {
             if let Some(compensation) = words.compensation {
                 self.set_compensation(compensation)?;
@@ -269,7 +269,7 @@ impl Control<'_, '_> {
     }
 
     /// `M91`, `M92`: the axes go to a place of the machine; where that is in the work is not known.
-    fn machine_position(&mut self, s: &Scanner, words: &Words) -> Result<()> {
+    fn machine_position(&mut self, s: &Scanner, words: &Words, builders: bool) -> Result<()> {
         if words.is_incremental(LINEAR | ROTARY) {
             let message = "an incremental word with M91 is not supported";
             return Err(s.error_block("unsupported", message));
@@ -287,6 +287,13 @@ impl Control<'_, '_> {
         if axes.is_empty() {
             return Err(s.error_block("missing-word", "M91 and M92 need coordinates"));
         }
+        // M91 leaves the tool length out. Where the datum of M92 is, only the builder knows.
+        let datum = if builders { f64::NAN } else { 0.0 };
+        let value = |slot: usize| words.get(slot).map(|value| datum + value);
+        let to = MachineMove {
+            linear: [slot::X, slot::Y, slot::Z].map(value),
+            rotary: [slot::A, slot::A + 1, slot::A + 2].map(value),
+        };
         if words.has(ROTARY) {
             self.vector = None;
         }
@@ -300,7 +307,7 @@ impl Control<'_, '_> {
                 self.here[i] = f64::NAN;
             }
         }
-        self.emit(Action::Home(axes))
+        self.emit(Action::MachineMove(Box::new(to)))
     }
 
     /// `CC`: the pole; without coordinates where the tool is.
@@ -454,7 +461,7 @@ impl Control<'_, '_> {
                 s.error_block("missing-word", "the sense of rotation DR+ or DR- is missing")
             );
         }
-        if words.functions.contains(Function::MachineCoordinates) {
+        if words.functions.machine_coordinates().is_some() {
             return Err(s.error_block("m-function", "M91 and M92 belong to straight lines"));
         }
         if words.compensation.is_some_and(|c| c != self.compensation) {

@@ -377,7 +377,7 @@ impl<'a, 's> Control<'a, 's> {
                 self.call_cycle(s)
             }
             Function::Auxiliary(number) => self.emit(Action::Auxiliary(Auxiliary::of(number))),
-            Function::MachineCoordinates | Function::Nothing => Ok(()),
+            Function::MachineCoordinates { .. } | Function::Nothing => Ok(()),
         }
     }
 

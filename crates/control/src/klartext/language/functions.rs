@@ -23,8 +23,8 @@ pub(crate) enum Function {
     Coolant,
     /// `M9`.
     CoolantOff,
-    /// The block gives machine coordinates: `M91`, `M92`.
-    MachineCoordinates,
+    /// The block gives machine coordinates (`M91`), or coordinates that count from the datum of the builder (`M92`).
+    MachineCoordinates { builders: bool },
     /// Calls the cycle after every positioning block: `M89`.
     CallCyclesModally,
     /// Calls the cycle after this block: `M99`.
@@ -59,8 +59,8 @@ const FUNCTIONS: [(u16, Function); 20] = [
     (14, Function::CounterClockwise { coolant: true }),
     (30, Function::End),
     (89, Function::CallCyclesModally),
-    (91, Function::MachineCoordinates),
-    (92, Function::MachineCoordinates),
+    (91, Function::MachineCoordinates { builders: false }),
+    (92, Function::MachineCoordinates { builders: true }),
     (99, Function::CallCycle),
     (128, Function::KeepTip),
     (129, Function::ReleaseTip),
@@ -206,6 +206,14 @@ impl Functions {
     /// Whether there is none.
     pub(crate) fn is_empty(self) -> bool {
         self.0[0].is_none()
+    }
+
+    /// Whether the block gives machine coordinates, and then whether from the datum of the builder.
+    pub(crate) fn machine_coordinates(self) -> Option<bool> {
+        self.0.iter().find_map(|function| match function {
+            Some(Function::MachineCoordinates { builders }) => Some(*builders),
+            _ => None,
+        })
     }
 
     /// Whether one of them is `function`.

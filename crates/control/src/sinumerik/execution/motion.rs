@@ -12,7 +12,7 @@ use crate::sinumerik::language::commands::{Code, Diameter, Motion};
 use crate::sinumerik::language::scan::Source;
 use crate::sinumerik::language::system::AXIS_NAMES;
 use geom::{Vec3, direction};
-use program::{Axes, Compensation};
+use program::{Axes, Compensation, MachineMove};
 
 impl Interpreter<'_, '_> {
     /// The motion of a block, if it has one.
@@ -408,7 +408,29 @@ impl Interpreter<'_, '_> {
         if self.state.motion == Motion::Line {
             self.use_feed(source)?;
         }
-        self.home(source, block.axes.map(|axis| axis.is_some()))
+        let to = self.machine_target(source, block)?;
+        self.leave_for(
+            source,
+            block.axes.map(|axis| axis.is_some()),
+            Action::MachineMove(to.into()),
+        )
+    }
+
+    /// The positions of a block in machine coordinates. `SUPA` and its kin leave the tool length on (Programming
+    /// Manual Fundamentals, "Deselect frame": `D0` beside them ends it), so Z of the spindle is not known with an edge.
+    fn machine_target(&self, source: &Source, block: &Block) -> Fallible<MachineMove> {
+        let mut to = MachineMove::default();
+        for (axis, word) in block.axes.iter().enumerate() {
+            let Some(coordinate) = word else { continue };
+            if axis >= 3 {
+                to.rotary[axis - 3] = Some(coordinate.value);
+                continue;
+            }
+            let value = self.linear(source, *coordinate, f64::NAN, AXIS_NAMES[axis])?;
+            let with_length = axis == 2 && self.state.edge.is_some();
+            to.linear[axis] = Some(if with_length { f64::NAN } else { value });
+        }
+        Ok(to)
     }
 
     /// `G74`, `G75`: the values of the axes mean nothing, only their names.
@@ -426,7 +448,7 @@ impl Interpreter<'_, '_> {
             return Err(source.block_error("home", message));
         }
         self.check_free(source, name)?;
-        self.home(source, named)
+        self.leave_for(source, named, Action::Home(Axes::of(named)))
     }
 
     /// Moves in machine coordinates are made neither with compensation nor between modal holes, nor
@@ -449,8 +471,8 @@ impl Interpreter<'_, '_> {
         Ok(())
     }
 
-    /// The named axes go to a place of the machine.
-    fn home(&mut self, source: &Source, named: [bool; 6]) -> Fallible<()> {
+    /// The named axes go to a place of the machine, by `action`.
+    fn leave_for(&mut self, source: &Source, named: [bool; 6], action: Action) -> Fallible<()> {
         let turned = self.state.frames.turned();
         for (i, _) in named.iter().enumerate().filter(|(_, named)| **named) {
             if i >= 3 {
@@ -464,6 +486,6 @@ impl Interpreter<'_, '_> {
                 self.state.programmed[i] = f64::NAN;
             }
         }
-        self.emit(source, Action::Home(Axes::of(named)))
+        self.emit(source, action)
     }
 }

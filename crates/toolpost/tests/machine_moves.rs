@@ -1,0 +1,138 @@
+//! Moves in machine coordinates: the values count. A retract goes up to the safe height, and no axis beyond its
+//! travel, whoever wrote the block.
+
+use machine::{Machine, library, load, load_text};
+use std::path::Path;
+
+/// The block of a retract on a control, with any words.
+fn block(machine: &Machine, words: &str) -> String {
+    match machine.reader.as_str() {
+        "klartext" => format!("L {words} R0 FMAX M91"),
+        "sinumerik" => format!("G0 SUPA {words} D0"),
+        _ => format!("G53 G0 {words}"),
+    }
+}
+
+fn sample() -> program::Program {
+    let file = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../machines/samples/three-axes.cls");
+    let text = std::fs::read(&file).unwrap();
+    source::apt::read("three-axes.cls", &text, &Default::default()).unwrap().program
+}
+
+fn posted(machine: &Machine) -> Result<String, &'static str> {
+    let text = post::write(&sample(), machine).map_err(|found| found[0].rule)?.text;
+    Ok(String::from_utf8(text).unwrap())
+}
+
+/// Whether the program is proven on the machine, or the rule of the first mismatch.
+fn proven(machine: &Machine, text: &str) -> Result<(), &'static str> {
+    let report = proof::prove(&sample(), machine, "t", text.as_bytes(), &Default::default());
+    report.mismatches.first().map_or(Ok(()), |found| Err(found.rule))
+}
+
+/// The mills of three axes, with the program of the sample on each.
+fn mills() -> impl Iterator<Item = (Machine, String)> {
+    let machines = library::names(library::MACHINES).map(|name| load(name).unwrap());
+    let mills = machines.filter(|machine| machine.wire.is_none() && machine.rotary.is_empty());
+    mills.map(|machine| {
+        let text = posted(&machine).unwrap_or_else(|rule| panic!("{}: {rule}", machine.name));
+        assert_eq!(proven(&machine, &text), Ok(()), "{}", machine.name);
+        (machine, text)
+    })
+}
+
+/// The program with a line put before the second tool change.
+fn with(text: &str, line: &str) -> String {
+    let mut lines: Vec<&str> = text.lines().collect();
+    let change = lines.iter().rposition(|line| line.contains("T2") || line.contains("TOOL CALL 2"));
+    let change = change.expect("a second tool");
+    lines.insert(change, line);
+    if !text.starts_with("0 BEGIN PGM") {
+        return lines.join("\n") + "\n";
+    }
+    // HEIDENHAIN numbers each block; a line that goes on has no number.
+    let mut next = 0;
+    let mut numbered = |line: &str| {
+        let rest = match line.split_once(' ') {
+            Some((number, rest)) if number.parse::<u32>().is_ok() => rest,
+            _ if line.starts_with('Q') => return format!("{line}\n"),
+            _ => line,
+        };
+        next += 1;
+        format!("{} {rest}\n", next - 1)
+    };
+    lines.into_iter().map(numbered).collect()
+}
+
+#[test]
+fn a_retract_in_machine_coordinates_that_goes_down_is_refused_on_every_mill() {
+    for (machine, text) in mills() {
+        let name = &machine.name;
+        let down = with(&text, &block(&machine, "Z-400.0"));
+        assert_eq!(proven(&machine, &down), Err("machine-position"), "{name}");
+        let away = with(&text, &block(&machine, "X-9999.0 Y-9999.0"));
+        assert_eq!(proven(&machine, &away), Err("machine-position"), "{name}");
+        let Some(height) = machine.safe_height else { continue };
+        let up = with(&text, &block(&machine, &format!("Z{height:+.1}")));
+        assert_eq!(proven(&machine, &up), Ok(()), "{name}");
+        let lower = with(&text, &block(&machine, &format!("Z{:+.2}", height - 0.01)));
+        assert_eq!(proven(&machine, &lower), Err("machine-position"), "{name}");
+    }
+}
+
+#[test]
+fn axes_go_within_their_travel() {
+    let machine = load("linuxcnc-mill").unwrap();
+    let text = posted(&machine).unwrap();
+    for (words, expected) in [
+        ("X0 Y0", Ok(())),
+        ("X355 Y-190", Ok(())),
+        ("X355.1", Err("machine-position")),
+        ("X-0.1", Err("machine-position")),
+        ("Y0.1", Err("machine-position")),
+        ("Z0.1", Err("machine-position")),
+    ] {
+        assert_eq!(proven(&machine, &with(&text, &block(&machine, words))), expected, "{words}");
+    }
+    // Of a machine whose travel nobody knows, no place can be said to be within it.
+    let endless = load("generic-3axis-linuxcnc").unwrap();
+    let text = with(&posted(&endless).unwrap(), &block(&endless, "X0 Y0"));
+    assert_eq!(proven(&endless, &text), Err("machine-position"));
+}
+
+#[test]
+fn a_block_of_the_machine_is_held_to_the_same() {
+    let own = |keys: &str| {
+        let change = "M5\\nM9\\nG53 G0 X-9999 Y-9999 Z-9999\\n{{T}} M6";
+        let text =
+            format!("extends = \"linuxcnc-mill\"\n{keys}\n[blocks]\ntool_change = \"{change}\"\n");
+        load_text("own.toml", &text).unwrap()
+    };
+    let machine = own("");
+    assert_eq!(proven(&machine, &posted(&machine).unwrap()), Err("machine-position"));
+}
+
+/// The message says the line to add.
+#[test]
+fn without_a_safe_height_no_retract_is_written() {
+    let machine = load_text("own.toml", "extends = \"linuxcnc\"\n").unwrap();
+    let found = post::write(&sample(), &machine).map(|_| ()).unwrap_err();
+    assert_eq!(found[0].rule, "safe-height");
+    assert!(found[0].help.contains("`safe_height = 0`"), "{}", found[0]);
+    // A way home by reference points needs none.
+    let machine = load_text("own.toml", "extends = \"fanuc-31i\"\n").unwrap();
+    assert_eq!((machine.safe_height, posted(&machine).map(|_| ())), (None, Ok(())));
+}
+
+#[test]
+fn a_safe_height_lies_within_the_travel() {
+    let of = |height: &str| {
+        let text = format!("extends = \"linuxcnc-mill\"\nsafe_height = {height}\n");
+        load_text("own.toml", &text).map(|machine| machine.safe_height)
+    };
+    assert_eq!(of("-5"), Ok(Some(-5.0)));
+    for wrong in ["1", "-400"] {
+        let found = of(wrong).unwrap_err();
+        assert!(found.to_string().contains("-336 to 0 mm"), "{found}");
+    }
+}
