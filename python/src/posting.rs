@@ -119,7 +119,7 @@ pub fn prove<'py>(
 
 fn tolerances(py: Python<'_>, position: Option<f64>) -> PyResult<Tolerances> {
     let position = position.map(|mm| positive(py, "tolerance", mm)).transpose()?;
-    Ok(Tolerances { position, angle: None })
+    Ok(Tolerances { position, ..Tolerances::default() })
 }
 
 fn report<'py>(py: Python<'py>, account: &Account) -> PyResult<Bound<'py, PyAny>> {

@@ -201,6 +201,7 @@ fn say(op: &Op, words: &Bound<'_, PyDict>) -> PyResult<()> {
                 PathMode::ExactStop => ("exact-stop", None),
                 PathMode::ExactPath => ("exact-path", None),
                 PathMode::Blend(within) => ("blend", Some(within)),
+                PathMode::AsSetUp => ("as-set-up", None),
             };
             words.set_item("mode", mode)?;
             words.set_item("within", within)?;

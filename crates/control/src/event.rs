@@ -2,8 +2,8 @@
 
 use geom::Vec3;
 use program::{
-    Auxiliary, Axes, Compensation, Coolant, Cycle, Feed, Input, MachineMove, Output, Probe,
-    Spindle, Tool, WorkOffset,
+    Auxiliary, Axes, Compensation, Coolant, Cycle, Feed, Input, MachineMove, Output, PathMode,
+    Probe, Spindle, Tool, WorkOffset,
 };
 
 /// One thing that the control does, and the line (from 1) of the program that makes it do so.
@@ -85,6 +85,8 @@ pub enum Action {
     Compensation(Compensation),
     /// Work offset from here on. Positions are in its frame.
     WorkOffset(WorkOffset),
+    /// What happens at corners from here on.
+    PathMode(PathMode),
     /// An output of the machine is set.
     Output(Output),
     /// The program waits for an input of the machine, or reads it.
@@ -104,12 +106,26 @@ pub enum Action {
     Stop,
     /// Stop when the operator has asked for it.
     OptionalStop,
+    /// What the block does hangs on something that the program does not say, or stays when the program has ended.
+    Risk(Box<Risk>),
     /// Words for the reader of the program.
     Comment(Box<str>),
     /// Words for the operator's screen.
     Message(Box<str>),
     /// End of the program.
     End,
+}
+
+/// What may do harm although the motion is known: a state that hangs on a setting of the control or on its operator, or
+/// data that the program rewrites. A source with it is told of, a program that is to be proven is refused.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Risk {
+    /// Its name, by which it may be accepted.
+    pub rule: &'static str,
+    /// What may happen, after "the program".
+    pub what: &'static str,
+    /// The way out.
+    pub help: &'static str,
 }
 
 /// What a block says of where the tool goes.
@@ -178,6 +194,7 @@ impl Action {
             | Action::LengthOffset(_)
             | Action::Compensation(_)
             | Action::WorkOffset(_)
+            | Action::PathMode(_)
             | Action::Output(_)
             | Action::Input(_)
             | Action::Auxiliary(_)
@@ -187,6 +204,7 @@ impl Action {
             | Action::Dwell(_)
             | Action::Stop
             | Action::OptionalStop
+            | Action::Risk(_)
             | Action::Comment(_)
             | Action::Message(_)
             | Action::End => None,

@@ -23,7 +23,7 @@ mod sinumerik;
 pub mod tools;
 
 use compensation::Compensator;
-pub use event::{Action, ArcTo, Event, Orientation, Position, Thread};
+pub use event::{Action, ArcTo, Event, Orientation, Position, Risk, Thread};
 use geom::Vec3;
 use iso::Flavor;
 use program::{Diagnostic, WorkOffset};
@@ -83,6 +83,24 @@ impl Dialect {
         Dialect::NAMES.iter().find(|(n, _)| *n == name).map(|(_, dialect)| *dialect)
     }
 
+    /// By how much this control leaves the path at corners where it is said no bound (`G64` alone, or nothing at all).
+    pub fn corners(self) -> Corners {
+        match self {
+            Dialect::LinuxCnc | Dialect::Klartext => Corners::Unbounded,
+            Dialect::Mach3 => Corners::AsSetUp,
+            Dialect::Fanuc
+            | Dialect::Haas
+            | Dialect::Grbl
+            | Dialect::Marlin
+            | Dialect::Sinumerik
+            | Dialect::FanucWire
+            | Dialect::Sodick
+            | Dialect::Agie
+            | Dialect::Points
+            | Dialect::FreeCad => Corners::Followed,
+        }
+    }
+
     /// The work offset that is active before a program names one: on a SINUMERIK `G500`, which is none.
     /// A FANUC may keep that of the last program, and Klartext takes the operator's preset.
     pub fn work_offset_at_reset(self) -> Option<WorkOffset> {
@@ -102,6 +120,17 @@ impl Dialect {
             | Dialect::Points => None,
         }
     }
+}
+
+/// What a control does at corners of which the program says nothing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Corners {
+    /// It keeps to the path, but for what its drives lag behind.
+    Followed,
+    /// It cuts them by an amount that hangs on the feed, or on parameters of its builder.
+    Unbounded,
+    /// Its operator has set by how much it cuts them.
+    AsSetUp,
 }
 
 /// What a virtual control has to know of its machine.

@@ -5,7 +5,7 @@ mod common;
 
 use geom::Vec3;
 use program::{
-    Axes, Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, Spindle, WorkOffset,
+    Axes, Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, PathMode, Spindle, WorkOffset,
 };
 use toolpost_control::{Action, ArcTo, Dialect, Orientation, Position, Settings};
 
@@ -361,7 +361,8 @@ fn grbl_has_no_cycles_no_compensation_no_length_register_and_no_tool_change() {
     }
     assert_eq!(rule(GRBL, "%\n"), "nc-syntax");
     assert_eq!(rule(GRBL, "$H\n"), "nc-syntax");
-    assert_eq!(ops(GRBL, "M1\nG40 G49 G61 G92.1 G91.1\n"), []);
+    let exact = Action::PathMode(PathMode::ExactStop);
+    assert_eq!(ops(GRBL, "M1\nG40 G49 G61 G92.1 G91.1\n"), [exact]);
 }
 
 #[test]

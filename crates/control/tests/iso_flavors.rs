@@ -3,7 +3,7 @@
 mod common;
 
 use geom::Vec3;
-use program::{Axes, Coolant, Cycle, CycleKind, Diagnostic, Spindle};
+use program::{Axes, Coolant, Cycle, CycleKind, Diagnostic, PathMode, Spindle};
 use toolpost_control::{Action, Dialect, Settings, read};
 
 fn run(dialect: Dialect, text: &str) -> Result<Vec<Action>, Box<Diagnostic>> {
@@ -87,7 +87,11 @@ fn haas_refuses_with_the_reason() {
         assert_eq!(error.rule, "nc-unknown-word", "{word}");
         assert!(!error.help.is_empty(), "{word}");
     }
-    assert_eq!(ops(Dialect::Haas, "G103 P1\nG187 P3 E0.01\nG64\n"), []);
+    // How far it may leave the path: G187 with E, and without it as the machine is set up.
+    let corners =
+        [PathMode::Blend(0.01), PathMode::AsSetUp, PathMode::ExactStop, PathMode::AsSetUp];
+    let said = "G103 P1\nG21\nG187 P3 E0.01\nG187 P2\nG61\nG64\n";
+    assert_eq!(ops(Dialect::Haas, said), corners.map(Action::PathMode));
     assert_eq!(rule(Dialect::Haas, "G21\nG0 X1\n"), "nc-decimal-point");
 }
 

@@ -5,8 +5,8 @@ mod common;
 use common::klartext::*;
 use geom::Vec3;
 use program::{
-    Axes, Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, MachineMove, Spindle,
-    WorkOffset,
+    Axes, Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, MachineMove, PathMode,
+    Spindle, WorkOffset,
 };
 use toolpost_control::{Action, Orientation, Position, Setup};
 
@@ -329,13 +329,17 @@ fn the_datum_shift_is_absolute_or_incremental_and_moves_the_count() {
 }
 
 #[test]
-fn a_dwell_is_in_seconds_and_a_tolerance_moves_nothing() {
+fn a_dwell_is_in_seconds_and_a_tolerance_says_how_far_the_path_may_be_left() {
     let ops = run(&format!(
         "{START}CYCL DEF 9.0 DWELL TIME\nCYCL DEF 9.1 DWELL 1.5
 CYCL DEF 32.0 TOLERANCE\nCYCL DEF 32.1 T0.05\nCYCL DEF 32.2 HSC-MODE:1 TA5"
     ));
     assert_eq!(ops[4], Action::Dwell(1.5));
-    assert_eq!(ops.len(), 7);
+    assert_eq!(ops[5], Action::PathMode(PathMode::Blend(0.05)));
+    assert_eq!(ops.len(), 8);
+    // An empty cycle ends it: the control is as its parameters set it up.
+    let ended = run(&format!("{START}CYCL DEF 32.0 TOLERANCE\nCYCL DEF 32.1"));
+    assert_eq!(ended[4], Action::PathMode(PathMode::AsSetUp));
 }
 
 #[test]

@@ -18,7 +18,7 @@
 
 #![deny(clippy::wildcard_enum_match_arm)]
 
-use control::{Action, Dialect, Event, Orientation, Position, Settings, Setup, Wire};
+use control::{Action, Dialect, Event, Orientation, Position, Risk, Settings, Setup, Wire};
 use geom::Vec3;
 use machine::{LengthOffset, Machine, Mount};
 use program::{
@@ -304,6 +304,10 @@ impl<'a> Lift<'a> {
             Action::ThreadWire => self.push(line, Op::ThreadWire),
             Action::CutWire => self.push(line, Op::CutWire),
             Action::Taper(degrees) => self.push(line, Op::Taper(degrees)),
+            Action::Risk(risk) => {
+                self.risk(line, *risk);
+            }
+            Action::PathMode(mode) => self.push(line, Op::PathMode(mode)),
             Action::Dwell(seconds) => self.push(line, Op::Dwell(seconds)),
             Action::Stop => self.push(line, Op::Stop),
             Action::OptionalStop => self.push(line, Op::OptionalStop),
@@ -445,6 +449,19 @@ impl<'a> Lift<'a> {
             self.home.get_or_insert(line);
         }
         Ok(())
+    }
+
+    /// Tells of a risk, once for all its lines.
+    fn risk(&mut self, line: u32, risk: Risk) {
+        let message = format!("the program {}", risk.what);
+        let same = |found: &&mut Diagnostic| found.rule == risk.rule && found.message == message;
+        match self.warnings.iter_mut().find(same) {
+            Some(found) => found.count += 1,
+            None => {
+                let found = Diagnostic::warning(risk.rule, message);
+                self.warnings.push(found.help(risk.help).line(line));
+            }
+        }
     }
 
     /// A move in machine coordinates is a way home where Z goes to its safe height. Where the machine's file does not

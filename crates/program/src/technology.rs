@@ -180,6 +180,8 @@ pub enum PathMode {
     ExactPath,
     /// It leaves the path at corners, by so many mm at most (`G64 P`, `zone` of a robot).
     Blend(f64),
+    /// It leaves the path at corners as the control is set up (`G64`).
+    AsSetUp,
 }
 
 /// An output of the machine that the program sets: a gripper, a valve, a laser's shutter.

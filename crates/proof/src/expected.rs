@@ -162,7 +162,6 @@ impl<'a> Cursor<'a> {
                 Op::Oriented(_) => Step::Unproven("the turn of a tool about its axis"),
                 Op::Joints(_) => Step::Unproven("a move of joints"),
                 Op::MachineMove(_) => Step::Unproven("a move in machine coordinates"),
-                Op::PathMode(_) => Step::Unproven("what happens at corners"),
                 Op::Beam(_) | Op::Pulses(_) => Step::Unproven("a beam"),
                 Op::Clamp(_) => Step::Unproven("a clamp"),
                 Op::Dwell(seconds) if *seconds > 0.0 => Step::Dwell(*seconds),
@@ -189,6 +188,7 @@ impl<'a> Cursor<'a> {
                 | Op::Frame(_)
                 | Op::WorkOffset(_)
                 | Op::Surface(_)
+                | Op::PathMode(_)
                 | Op::Taper(_)
                 | Op::Operation(_)
                 | Op::EndOfOperation
@@ -251,8 +251,10 @@ impl<'a> Cursor<'a> {
                 // How far the new frame is from the old is not known: the tool comes from above.
                 self.homed |= self.here.take().is_some();
             }
-            // Words for people, and what the control may do or leave. The surface is that of the trial.
+            // Words for people, and what the control may do or leave. The surface is that of the trial. By how much a
+            // path may be left, the machine's file says.
             Op::Preselect(_)
+            | Op::PathMode(_)
             | Op::Surface(_)
             | Op::Operation(_)
             | Op::EndOfOperation
@@ -269,7 +271,6 @@ impl<'a> Cursor<'a> {
             | Op::Oriented(_)
             | Op::Joints(_)
             | Op::MachineMove(_)
-            | Op::PathMode(_)
             | Op::Beam(_)
             | Op::Pulses(_)
             | Op::Clamp(_)

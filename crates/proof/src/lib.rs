@@ -37,6 +37,7 @@
 
 #![deny(clippy::wildcard_enum_match_arm)]
 
+mod accepted;
 mod arc;
 mod expected;
 mod gauge;
@@ -50,6 +51,7 @@ mod stops;
 mod surfaces;
 mod tolerance;
 
+pub use accepted::{ACCEPTABLE, Accepted};
 pub use prover::Prover;
 pub use report::{Compared, Deviations, Excursion, Extent, Report, SideBySide, Summary, Worst};
 pub use tolerance::{Applied, Tolerances};

@@ -3,7 +3,7 @@
 use crate::tolerance::Applied;
 use control::{Orientation, Position};
 use geom::{Arc, Vec3};
-use program::Diagnostic;
+use program::{Diagnostic, Severity};
 use serde::Serialize;
 
 /// The most mismatches and the most warnings that a report names; more of a rule raise its count.
@@ -22,6 +22,8 @@ pub struct Report {
     pub mismatches: Vec<Diagnostic>,
     /// What is worth knowing.
     pub warnings: Vec<Diagnostic>,
+    /// What would be mismatches, had their rules not been accepted for this run ([`Accepted`](crate::Accepted)).
+    pub accepted: Vec<Diagnostic>,
     /// The first mismatch as source line beside program block.
     pub first_mismatch: Option<SideBySide>,
     /// How close the motions had to be.
@@ -215,6 +217,11 @@ impl Report {
         note(&mut self.mismatches, found);
     }
 
+    pub(crate) fn accept(&mut self, mut found: Diagnostic) {
+        found.severity = Severity::Warning;
+        note(&mut self.accepted, found);
+    }
+
     pub(crate) fn warn(&mut self, found: Diagnostic) {
         note(&mut self.warnings, found);
     }
@@ -230,7 +237,8 @@ impl Report {
     pub(crate) fn quote(&mut self, file_name: &str, text: &[u8]) {
         let lines = || lines(text);
         self.program.blocks = lines().filter(|line| !line.trim_ascii().is_empty()).count();
-        for found in self.mismatches.iter_mut().chain(&mut self.warnings) {
+        for found in self.mismatches.iter_mut().chain(&mut self.warnings).chain(&mut self.accepted)
+        {
             found.file = file_name.into();
             let block = found.line.checked_sub(1).and_then(|index| lines().nth(index as usize));
             if let (Some(block), true) = (block, found.excerpt.is_empty()) {

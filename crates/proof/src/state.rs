@@ -3,9 +3,9 @@
 use crate::expected::Wanted;
 use crate::place::Number;
 use crate::tolerance::Applied;
-use control::Dialect;
+use control::{Corners, Dialect};
 use machine::{LengthOffset, Machine};
-use program::{Compensation, Coolant, Cycle, Feed, Spindle, Tool, WorkOffset};
+use program::{Compensation, Coolant, Cycle, Feed, PathMode, Spindle, Tool, WorkOffset};
 
 /// What the program has switched on.
 #[derive(Clone, Debug)]
@@ -25,6 +25,8 @@ pub(crate) struct Running {
     pub length_offset: Option<u32>,
     pub work_offset: Option<WorkOffset>,
     pub cycle: Option<Cycle>,
+    /// What happens at corners.
+    pub path: PathMode,
 }
 
 impl Running {
@@ -44,6 +46,7 @@ impl Running {
             length_offset: None,
             work_offset: dialect.and_then(Dialect::work_offset_at_reset),
             cycle: None,
+            path: PathMode::AsSetUp,
         }
     }
 
@@ -148,6 +151,32 @@ pub(crate) fn spindle_and_coolant(
         let (is, should) = (coolant(running.coolant), coolant(wanted.coolant));
         ("coolant", format!("coolant is {is}, but should be {should}"))
     })
+}
+
+/// By how much the control may leave the path at corners.
+pub(crate) fn corners(machine: &Machine, running: &Running) -> Option<Difference> {
+    let allowed = machine.path_tolerance();
+    let most = match running.path {
+        PathMode::ExactStop | PathMode::ExactPath => 0.0,
+        PathMode::Blend(most) => most,
+        PathMode::AsSetUp => match Dialect::named(&machine.reader)?.corners() {
+            Corners::Followed => 0.0,
+            // What its operator has set, the machine's file says.
+            Corners::AsSetUp if allowed > 0.0 => allowed,
+            Corners::AsSetUp | Corners::Unbounded => f64::INFINITY,
+        },
+    };
+    // Rounding of what the template writes.
+    if most <= allowed * (1.0 + 1e-9) {
+        return None;
+    }
+    let by = if most.is_finite() { format!("{} mm", Number(most)) } else { "any amount".into() };
+    let message = format!(
+        "the control may leave the path at corners by {by}, the machine file allows {} mm \
+         (`path_tolerance` in [options])",
+        Number(allowed)
+    );
+    Some(("path-tolerance", message))
 }
 
 /// What leans the wire in the cut.

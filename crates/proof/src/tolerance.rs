@@ -1,18 +1,21 @@
 //! How close the two motions must be.
 
+use crate::accepted::Accepted;
 use crate::place::Place;
 use control::{Orientation, Position};
 use geom::Vec3;
 use machine::{Machine, Mount};
 use serde::Serialize;
 
-/// How close the two motions must be.
+/// How close the two motions must be, and what is let pass.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Tolerances {
     /// Distance of the tool tips, mm; by default from the resolution of the machine's words.
     pub position: Option<f64>,
     /// Angle between the tool axes, degrees; by default from the resolution of the rotary words.
     pub angle: Option<f64>,
+    /// Rules that are let pass.
+    pub accepted: Accepted,
 }
 
 /// The tolerances that a proof used, each with its unit in its name.

@@ -137,7 +137,6 @@ fn what_cannot_be_compared_is_never_proven() {
         })),
         Op::Joints(Box::new(JointMove { degrees: [0.0; 6], external: Vec::new() })),
         Op::MachineMove(Box::default()),
-        Op::PathMode(PathMode::ExactStop),
         Op::Beam(Beam::Off),
         Op::Pulses(1),
         Op::Clamp(Clamp { axes: Axes::A, closed: true }),

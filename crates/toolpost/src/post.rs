@@ -12,7 +12,7 @@ use ::post::Output;
 use machine::Machine;
 use machine::limits::Travel;
 use machine::time::Times;
-use program::{Diagnostic, Program};
+use program::{Diagnostic, Op, Program, Record};
 use proof::Tolerances;
 use serde_json::json;
 use std::path::Path;
@@ -95,8 +95,9 @@ pub fn proven(
     step("writing");
     let program = &toolpath.program;
     // What is told of the toolpath is found meanwhile.
+    let headed = headed(program, tolerances);
     let (output, (shape, times)) = beside(
-        || write(program, machine, toolpath, &mut warnings),
+        || write(headed.as_ref().unwrap_or(program), machine, toolpath, &mut warnings),
         || (Shape::of(program), Times::of(program, machine)),
     );
     let output = output?;
@@ -108,7 +109,7 @@ pub fn proven(
         return Ok(Posted { text: output.text, account });
     }
 
-    warnings.extend(proof.warnings.iter().cloned());
+    warnings.extend(proof.warnings.iter().chain(&proof.accepted).cloned());
     let data = json!({
         "toolpost": env!("CARGO_PKG_VERSION"),
         "source": toolpath.describe(&shape),
@@ -125,6 +126,18 @@ pub fn proven(
     rows.extend(prove::rows(&proof, machine));
     let account = Account { verdict: Verdict::Done, rows, data, findings: warnings };
     Ok(Posted { text: output.text, account })
+}
+
+/// The program with the rules that are let pass in its head, where there are some.
+fn headed(program: &Program, tolerances: &Tolerances) -> Option<Program> {
+    let names: Vec<&str> = tolerances.accepted.names().collect();
+    if names.is_empty() {
+        return None;
+    }
+    let mut headed = program.clone();
+    let op = Op::Comment(format!("accepted for this run: {}", names.join(", ")).into());
+    headed.records.insert(0, Record { line: 0, op });
+    Some(headed)
 }
 
 /// Writes `program`, which came from `toolpath`. What the writer has to say goes behind the warnings that

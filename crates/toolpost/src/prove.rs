@@ -8,7 +8,7 @@ use crate::progress::Progress;
 use crate::summary::{self, Shape, number};
 use crate::toolpath::{self, Toolpath};
 use machine::Machine;
-use proof::{Report, Tolerances};
+use proof::{Accepted, Report, Tolerances};
 use serde_json::json;
 
 /// Runs the program on the virtual control of the machine and compares.
@@ -41,7 +41,8 @@ pub fn compare(
         account.findings.extend(warnings);
         return account;
     }
-    let findings = warnings.chain(proof.warnings.iter().cloned()).collect();
+    let found = proof.warnings.iter().chain(&proof.accepted);
+    let findings = warnings.chain(found.cloned()).collect();
     let data = json!({
         "source": toolpath.describe(&shape),
         "machine": toolpath::describe(machine),
@@ -57,7 +58,9 @@ pub fn compare(
 impl Closeness {
     /// As the proof takes it.
     pub fn tolerances(&self) -> Tolerances {
-        Tolerances { position: self.tolerance, angle: None }
+        let names = self.accept.iter();
+        let accepted = names.fold(Accepted::default(), |all, name| all.and(name).unwrap_or(all));
+        Tolerances { position: self.tolerance, angle: None, accepted }
     }
 }
 
@@ -93,6 +96,10 @@ pub fn rows(proof: &Report, machine: &Machine) -> Vec<(&'static str, String)> {
         let most = number(machine.path_tolerance(), 5);
         let text = format!("by up to {most} mm where the program lets it, which no proof sees");
         rows.push(("smoothing", text));
+    }
+    if !proof.accepted.is_empty() {
+        let rules: Vec<&str> = proof.accepted.iter().map(|found| found.rule).collect();
+        rows.push(("accepted", format!("{}, which the proof would refuse", rules.join(", "))));
     }
     if compared.excursions > 0 {
         rows.push(("excursions", format!("{}, listed in the report", compared.excursions)));

@@ -183,10 +183,10 @@ fn the_spindle_is_told_anew_after_boring() {
     assert!(after.contains("S1000 M3"), "{after}");
 }
 
-/// The parameters of a Klartext cycle, without their names: `Q200=+0 Q201=-15 ...`.
+/// The parameters of a Klartext cycle (200 and on), without their names: `Q200=+0 Q201=-15 ...`.
 fn klartext(kind: CycleKind, dwell: f64) -> String {
     let blocks = posted("generic-3axis-heidenhain", cycle(kind, dwell)).unwrap();
-    let start = blocks.iter().position(|block| block.starts_with("CYCL DEF")).unwrap();
+    let start = blocks.iter().position(|block| block.starts_with("CYCL DEF 2")).unwrap();
     let number = blocks[start].split(' ').nth(2).unwrap().to_string();
     let parameters = blocks[start + 1..].iter().take_while(|block| block.starts_with('Q'));
     let parameters = parameters.map(|block| block.split(' ').next().unwrap().to_string());

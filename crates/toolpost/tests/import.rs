@@ -241,7 +241,7 @@ fn centres_may_be_absolute_and_a_radius_may_stand_for_them() {
     let program = sample(&machine).unwrap();
     assert!(program.contains("G3X50.000Y20.000R10.0000"), "{program}");
     // Without the code that says so the control counts from the start: the proof finds it.
-    let wrong = post.replace("G90.1", "G64") + &arcs("[X][Y][IA][JA]");
+    let wrong = post.replace("G90.1", "G98") + &arcs("[X][Y][IA][JA]");
     assert_eq!(sample(&imported("c.pp", &wrong, None).1), Err("nc-arc"));
 }
 

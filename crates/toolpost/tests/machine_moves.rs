@@ -52,7 +52,7 @@ fn with(text: &str, line: &str) -> String {
     }
     // HEIDENHAIN numbers each block; a line that goes on has no number.
     let mut next = 0;
-    let mut numbered = |line: &str| {
+    let numbered = |line: &str| {
         let rest = match line.split_once(' ') {
             Some((number, rest)) if number.parse::<u32>().is_ok() => rest,
             _ if line.starts_with('Q') => return format!("{line}\n"),

@@ -322,13 +322,15 @@ fn the_table_of_records_is_that_of_the_documentation() {
 }
 
 /// What is compared with nothing changes neither where the tool goes nor what it does there: a cycle matters for its
-/// holes alone, a frame for the way in which poses are written, and every program has an end of its own.
+/// holes alone, a frame for the way in which poses are written, and every program has an end of its own. How far the
+/// path may be left the machine's file says, and every cut is held to that, whatever the source asks for.
 #[test]
 fn no_record_that_moves_or_switches_anything_is_proven_uncompared() {
     let free = [
         Kind::CycleOff,
         Kind::Preselect,
         Kind::Frame,
+        Kind::PathMode,
         Kind::Operation,
         Kind::EndOfOperation,
         Kind::Comment,

@@ -202,6 +202,7 @@ impl Writing<'_> {
                 "a stop that the toolpath does not ask for",
             );
         }
+        self.leave_path_mode(&mut items, number);
         let inch = |item: &&Item| matches!(code(&item.text), Some(('G', unit)) if unit == 20.0 || unit == 70.0);
         if items.iter().any(|item| inch(&item)) {
             self.findings.otherwise(number, "programs of ours are in millimetres (G21)");
@@ -223,6 +224,25 @@ impl Writing<'_> {
             rest.text = text.trim().to_owned();
         }
         Some(rest)
+    }
+
+    /// Leaves out `G61`, and `G64` with its bounds, where the start of the control says by how much it may leave the
+    /// path: the number of the post is in its own unit, and a bare `G64` bounds nothing.
+    fn leave_path_mode(&mut self, items: &mut Vec<Item>, number: u32) {
+        let is_mode = |item: &Item| matches!(code(&item.text), Some(('G', mode)) if mode.trunc() == 61.0 || mode == 64.0);
+        if !self.base.options.contains_key("path_tolerance") || !items.iter().any(is_mode) {
+            return;
+        }
+        let bound = |item: &Item| matches!(code(&item.text), Some(('P' | 'Q', _)));
+        let (left, kept): (Vec<Item>, Vec<Item>) =
+            std::mem::take(items).into_iter().partition(|item| is_mode(item) || bound(item));
+        let said: Vec<&str> = left.iter().map(|item| item.text.as_str()).collect();
+        let message = format!(
+            "`{}`: `path_tolerance` in [options] says how far the path may be left at corners",
+            short(&said.join(" "))
+        );
+        self.findings.otherwise(number, message);
+        *items = kept;
     }
 
     /// Takes what switches the spindle on out of a line; the first line that says both is how it is said.

@@ -321,10 +321,10 @@ impl<'a> Walk<'a> {
             }
             Op::WorkOffset(offset) => self.set_work_offset(*offset),
             Op::Surface(surface) => self.set_surface(surface),
-            Op::PathMode(_) => Err(unknown_here(
-                "what happens at corners (exact stop, blending)",
-                "leave it out: the machine file says how corners are taken",
-            )),
+            Op::PathMode(mode) => {
+                self.path_mode(*mode);
+                Ok(())
+            }
             Op::Beam(_) | Op::Pulses(_) => Err(unknown_here("a beam", "post it for a laser")),
             Op::Clamp(_) => Err(unknown_here(
                 "a clamp that the source opens or closes",

@@ -4,7 +4,7 @@ use super::{Done, MOTION, Walk, refuse};
 use crate::catalogue::{BlockName, WordName};
 use crate::template::{LENGTH_OFFSET, ORIENTATION, POSITION, bit, spindle_value, tool_value};
 use machine::{LengthOffset, OptionValue};
-use program::{Coolant, Diagnostic, Feed, Op, Spindle, Tool, lowering};
+use program::{Coolant, Diagnostic, Feed, Op, PathMode, Spindle, Tool, lowering};
 
 /// Entries of the code word `feed_mode`.
 pub(super) mod feed_mode {
@@ -14,6 +14,23 @@ pub(super) mod feed_mode {
 }
 
 impl Walk<'_> {
+    /// How the source wants corners to be taken. The machine's file says how its control takes them, and what is less
+    /// than the source asks for is told.
+    pub(crate) fn path_mode(&mut self, mode: PathMode) {
+        let allowed = self.machine.path_tolerance();
+        let less = match mode {
+            PathMode::AsSetUp => return,
+            PathMode::ExactStop => "the source stops at each corner".to_owned(),
+            PathMode::ExactPath if allowed > 0.0 => "the source keeps to the path".to_owned(),
+            PathMode::Blend(most) if allowed > most => {
+                format!("the source leaves the path by {most} mm at corners")
+            }
+            PathMode::ExactPath | PathMode::Blend(_) => return,
+        };
+        let message = format!("{less}: this control leaves it by {allowed} mm at the most there");
+        self.findings.warn(Diagnostic::warning("path-mode", message).line(self.line));
+    }
+
     pub(super) fn change_tool(&mut self, tool: &Tool) -> Done {
         self.uncompensated("the tool change")?;
         self.end_cycle()?;

@@ -69,6 +69,7 @@ impl Prover<'_> {
             state::set_up(machine, wanted, running),
             state::spindle_and_coolant(allowed, wanted, running),
             state::taper(allowed, wanted, running),
+            state::corners(machine, running),
             state::feed(machine, allowed, wanted.feed, running.feed, wanted.spindle, lengths),
         ];
         let in_plane = to.place.is_across(self.here.place.tip, lengths.rounding);

@@ -6,6 +6,7 @@ mod events;
 mod rapid;
 mod single;
 
+use crate::accepted::Accepted;
 use crate::expected::{Cursor, Goal, Kind, Step};
 use crate::gauge::Gauge;
 use crate::hole::{Drilled, Hole, Run};
@@ -34,6 +35,7 @@ pub struct Prover<'a> {
     here: Station,
     leg: Leg,
     report: Report,
+    accepted: Accepted,
     ended: bool,
     lost: bool,
 }
@@ -88,6 +90,7 @@ impl<'a> Prover<'a> {
             compensation: Compensation::Off,
             leg: Leg::default(),
             report: Report { tolerances: allowed, ..Report::default() },
+            accepted: tolerances.accepted,
             ended: false,
             lost: false,
         };
@@ -184,6 +187,7 @@ impl<'a> Prover<'a> {
             }
             Action::Compensation(side) => running.compensation = *side,
             Action::Taper(degrees) => running.taper = *degrees,
+            Action::PathMode(mode) => running.path = *mode,
             Action::LengthOffset(register) => running.length_offset = *register,
             Action::WorkOffset(offset) => {
                 running.work_offset = Some(*offset);
@@ -192,6 +196,12 @@ impl<'a> Prover<'a> {
             }
             Action::Cycle(cycle) => running.cycle = Some(**cycle),
             Action::CycleOff => running.cycle = None,
+            Action::Risk(risk) => {
+                let message =
+                    format!("source line {}: the program {}", self.cursor.line, risk.what);
+                let found = Diagnostic::error(risk.rule, message).help(risk.help).line(line);
+                self.found(found);
+            }
             Action::End => self.ended = true,
             // A tool that is made ready changes nothing, and words are for people.
             Action::Preselect(_) | Action::Comment(_) | Action::Message(_) => {}
@@ -352,7 +362,15 @@ impl<'a> Prover<'a> {
     fn differs(&mut self, line: u32, (rule, what): Difference) {
         let source = self.cursor.line;
         let message = format!("source line {source}: {what}");
-        self.report.mismatch(source, Diagnostic::error(rule, message).line(line));
+        self.found(Diagnostic::error(rule, message).line(line));
+    }
+
+    /// What does not keep the motions from being compared.
+    fn found(&mut self, found: Diagnostic) {
+        match self.accepted.holds(found.rule) {
+            true => self.report.accept(found),
+            false => self.report.mismatch(self.cursor.line, found),
+        }
     }
 
     fn check(&mut self, line: u32, difference: Option<Difference>) {

@@ -144,6 +144,15 @@ pub struct Closeness {
     /// resolution].
     #[arg(long, value_name = "MM", value_parser = length)]
     pub tolerance: Option<f64>,
+    /// Let a rule pass in this run that hangs on how the machine is set up; may be given several times. The head of the
+    /// program and the report name it.
+    #[arg(long, value_name = "RULE", value_parser = accepted)]
+    pub accept: Vec<&'static str>,
+}
+
+/// The rule of this name, where it may be accepted.
+fn accepted(name: &str) -> Result<&'static str, String> {
+    proof::Accepted::default().and(name)?.names().next().ok_or_else(String::new)
 }
 
 /// Arguments of `post`.

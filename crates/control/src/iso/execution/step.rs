@@ -3,9 +3,9 @@
 use super::state::State;
 use crate::event::Action;
 use crate::iso::language::block::{Block, Fault};
-use crate::iso::language::words::{FeedMode, Flavor, G, Group, M, Motion, Plane, Side};
+use crate::iso::language::words::{FeedMode, Flavor, G, Group, M, Motion, Path, Plane, Side};
 use crate::{Settings, WholeNumbers};
-use program::{Coolant, Feed, Spindle};
+use program::{Coolant, Feed, PathMode, Spindle};
 
 /// A virtual control: its flavour, its axes and its state.
 #[derive(Debug)]
@@ -359,6 +359,37 @@ impl Step<'_, '_, '_> {
         }
     }
 
+    /// What happens at corners. LinuxCNC cuts them by P, and makes one line of lines within Q, or P without it; by any
+    /// amount without P or with P 0 (G codes, "G64 Path Blending"; P 0 found on LinuxCNC 2.9 itself).
+    fn corners(&mut self) -> Result<(), Fault> {
+        let mode = match (self.block.g(Group::Path), self.block.g(Group::OneShot)) {
+            (Some(G::Path(Path::ExactStop)), _) => PathMode::ExactStop,
+            (Some(G::Path(Path::Exact)), _) => PathMode::ExactPath,
+            (Some(G::Path(Path::Blend { bounded: true })), _) => {
+                let corner = self.take_length(b'P')?;
+                let lines = self.take_length(b'Q')?;
+                if [corner, lines].iter().flatten().any(|mm| *mm < 0.0) {
+                    let message = "P and Q of G64 are distances, not below 0";
+                    return Err(self.block.at_group(Group::Path, "nc-path-mode", message));
+                }
+                match corner {
+                    Some(corner) if corner > 0.0 => {
+                        PathMode::Blend(corner + lines.unwrap_or(corner))
+                    }
+                    _ => PathMode::AsSetUp,
+                }
+            }
+            (Some(G::Path(Path::Blend { .. })), _) => PathMode::AsSetUp,
+            (_, Some(G::Smoothness)) => {
+                self.block.take(b'P');
+                self.take_length(b'E')?.map_or(PathMode::AsSetUp, PathMode::Blend)
+            }
+            _ => return Ok(()),
+        };
+        self.actions.push(Action::PathMode(mode));
+        Ok(())
+    }
+
     /// Plane, units, compensation, length, work offset, path, distance, return, tilt.
     fn modes(&mut self) -> Result<(), Fault> {
         if let Some(G::Plane(plane)) = self.block.g(Group::Plane)
@@ -383,8 +414,8 @@ impl Step<'_, '_, '_> {
         }
         self.length()?;
         self.work_offset()?;
-        for group in [Group::Path, Group::OneShot] {
-            let Some(G::Neutral(letters)) = self.block.g(group) else { continue };
+        self.corners()?;
+        if let Some(G::Neutral(letters)) = self.block.g(Group::OneShot) {
             self.block.pass(letters);
         }
         if let Some(G::Diameter(diameter)) = self.block.g(Group::Diameter) {

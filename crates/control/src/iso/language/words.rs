@@ -98,6 +98,10 @@ pub(crate) enum G {
     /// How the path is smoothed, or a mode that is off anyway: nothing moves elsewhere for it. The
     /// letters may stand beside it.
     Neutral(&'static [u8]),
+    /// `G61`, `G61.1`, `G64`: what happens at corners.
+    Path(Path),
+    /// Haas `G187`: P how smooth, E by how much corners are cut.
+    Smoothness,
     /// `G68`
     Turn,
     /// `G68.2`
@@ -215,6 +219,17 @@ pub(crate) enum Plane {
     Xy,
     Zx,
     Yz,
+}
+
+/// What happens at corners.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Path {
+    /// The axes stop at each.
+    ExactStop,
+    /// The path is kept to.
+    Exact,
+    /// They are cut: by P, and lines within Q are made one, where `bounded` says that the control has these words.
+    Blend { bounded: bool },
 }
 
 /// What F means.

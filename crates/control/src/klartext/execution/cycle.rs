@@ -7,10 +7,10 @@ use super::state::{Control, TENTH_INCH, Tip};
 use crate::event::Action;
 use crate::klartext::language::functions::When;
 use crate::klartext::language::registers::{Parameter, Registers};
-use crate::klartext::language::scan::{Result, Scanner};
+use crate::klartext::language::scan::{Result, Scanner, Word};
 use crate::klartext::language::words::{LINEAR, Words, slot};
 use geom::Vec3;
-use program::{Compensation, CycleKind, Diagnostic, Feed, Spindle, WorkOffset};
+use program::{Compensation, CycleKind, Diagnostic, Feed, PathMode, Spindle, WorkOffset};
 
 /// Highest number of a cycle and of its parts.
 const MOST: u32 = 999;
@@ -356,7 +356,6 @@ impl Control<'_, '_> {
             (11, 1) => self.scale(s),
             (19, 1) => self.working_plane(s),
             (26, 1) => self.axis_scale(s),
-            // A tolerance changes how the control smooths, not where the program goes.
             (32, 1 | 2) => self.tolerance(s),
             _ => Err(s.error_block("cycle-parameter", "the cycle has no such part")),
         }
@@ -383,20 +382,25 @@ impl Control<'_, '_> {
         }
     }
 
-    /// `T0.01`, or `HSC-MODE:1 TA0.5`, or nothing, which ends the tolerance.
-    fn tolerance(&self, s: &mut Scanner) -> Result<()> {
+    /// `T0.01`, by which the path may be left, or `HSC-MODE:1 TA0.5`, or nothing, which ends the tolerance.
+    fn tolerance(&mut self, s: &mut Scanner) -> Result<()> {
+        let first = s.is_done();
+        let mut mode = first.then_some(PathMode::AsSetUp);
         while !s.is_done() {
             if s.take(b"HSC-MODE:0") || s.take(b"HSC-MODE:1") {
                 continue;
             }
             match s.word(&self.registers)? {
-                Some(word) if matches!(word.address, b"T" | b"TA") && word.number.is_some() => {}
+                Some(Word { address: b"T", number: Some(number), .. }) if number >= 0.0 => {
+                    mode = Some(PathMode::Blend(number * self.unit));
+                }
+                Some(word) if word.address == b"TA" && word.number.is_some() => {}
                 _ => {
                     let message = "cycle 32 takes T, HSC-MODE and TA";
                     return Err(s.error_block("cycle-parameter", message));
                 }
             }
         }
-        Ok(())
+        mode.map_or(Ok(()), |mode| self.emit(Action::PathMode(mode)))
     }
 }

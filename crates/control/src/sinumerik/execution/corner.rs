@@ -231,6 +231,7 @@ impl Interpreter<'_, '_> {
                 | Action::Dwell(_)
                 | Action::Compensation(_)
                 | Action::LengthOffset(_)
+                | Action::PathMode(_)
         );
         if pauses {
             return Err(no_second_side(source, held.line));

@@ -1,7 +1,9 @@
 //! FANUC 30i, milling, G code list of B-64484EN-2. Group 09, the canned cycles, is apart from group
 //! 01, the interpolation.
 
-use super::super::words::{Canned, Dictionary, Flavor, G, GRow, Group, M, MRow, Motion, Refused};
+use super::super::words::{
+    Canned, Dictionary, Flavor, G, GRow, Group, M, MRow, Motion, Path, Refused,
+};
 use super::{END_M, FRAME_G, MACRO_G, MILL_G, POLAR_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
 
 const G_WORDS: &[GRow] = &[
@@ -21,7 +23,7 @@ const G_WORDS: &[GRow] = &[
     (600, Group::OneShot, G::OneSided),
     (620, Group::Path, G::Neutral(b"")),
     (630, Group::Path, G::Neutral(b"")),
-    (640, Group::Path, G::Neutral(b"")),
+    (640, Group::Path, G::Path(Path::Blend { bounded: false })),
     (682, Group::Tilt, G::Tilt),
     (760, Group::Cycle, G::Cycle(Canned::FineBore)),
     (800, Group::Cycle, G::CancelCycle),

@@ -1,6 +1,8 @@
 //! Haas NGC mills, "Mill Operator's Manual", chapters G codes and M codes.
 
-use super::super::words::{Canned, Dictionary, Flavor, G, GRow, Group, M, MRow, Pattern, Refused};
+use super::super::words::{
+    Canned, Dictionary, Flavor, G, GRow, Group, M, MRow, Path, Pattern, Refused,
+};
 use super::{END_M, FRAME_G, MACRO_G, MILL_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
 
 const G_WORDS: &[GRow] = &[
@@ -9,7 +11,7 @@ const G_WORDS: &[GRow] = &[
     (290, Group::OneShot, G::FromHome),
     (310, Group::OneShot, G::Skip),
     (600, Group::OneShot, G::OneSided),
-    (640, Group::Path, G::Neutral(b"")),
+    (640, Group::Path, G::Path(Path::Blend { bounded: false })),
     (700, Group::OneShot, G::Pattern(Pattern::Circle)),
     (710, Group::OneShot, G::Pattern(Pattern::Arc)),
     (720, Group::OneShot, G::Pattern(Pattern::Line)),
@@ -39,7 +41,7 @@ const G_WORDS: &[GRow] = &[
     (1280, Group::WorkOffset, G::WorkOffset(78)),
     (1290, Group::WorkOffset, G::WorkOffset(79)),
     (1540, Group::WorkOffset, G::FurtherOffset { most: 99 }),
-    (1870, Group::OneShot, G::Neutral(b"PE")),
+    (1870, Group::OneShot, G::Smoothness),
 ];
 
 const M_WORDS: &[MRow] = &[

@@ -1,7 +1,9 @@
 //! LinuxCNC, "G-Code Overview", table of modal groups. `G80` may stand beside `G0` to `G3`, so it has
 //! a group of its own.
 
-use super::super::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Motion, Refused, Side};
+use super::super::words::{
+    Dictionary, Flavor, G, GRow, Group, M, MRow, Motion, Path, Refused, Side,
+};
 use super::{END_M, MILL_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
 
 const G_WORDS: &[GRow] = &[
@@ -22,8 +24,9 @@ const G_WORDS: &[GRow] = &[
     (591, Group::WorkOffset, G::WorkOffset(60)),
     (592, Group::WorkOffset, G::WorkOffset(61)),
     (593, Group::WorkOffset, G::WorkOffset(62)),
-    (611, Group::Path, G::Neutral(b"")),
-    (640, Group::Path, G::Neutral(b"PQ")),
+    (610, Group::Path, G::Path(Path::Exact)),
+    (611, Group::Path, G::Path(Path::ExactStop)),
+    (640, Group::Path, G::Path(Path::Blend { bounded: true })),
     (800, Group::Cycle, G::CancelCycle),
     (901, Group::ArcDistance, G::CentersAbsolute(true)),
     (911, Group::ArcDistance, G::CentersAbsolute(false)),

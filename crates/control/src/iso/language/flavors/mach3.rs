@@ -1,7 +1,7 @@
 //! Mach3, "Mach3 G and M-code Reference", table of G codes. The modal groups are those of RS274/NGC,
 //! on which it is built; `G80` may stand beside `G0` to `G3`.
 
-use super::super::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Refused};
+use super::super::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Path, Refused};
 use super::{END_M, FRAME_G, MILL_G, POLAR_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
 
 const G_WORDS: &[GRow] = &[
@@ -9,7 +9,7 @@ const G_WORDS: &[GRow] = &[
     (120, Group::OneShot, G::Pocket { clockwise: true }),
     (130, Group::OneShot, G::Pocket { clockwise: false }),
     (310, Group::OneShot, G::Skip),
-    (640, Group::Path, G::Neutral(b"")),
+    (640, Group::Path, G::Path(Path::Blend { bounded: false })),
     (700, Group::Units, G::Inches(true)),
     (710, Group::Units, G::Inches(false)),
     (800, Group::Cycle, G::CancelCycle),

@@ -10,7 +10,7 @@ mod marlin;
 mod wire;
 
 use super::words::{
-    Canned, Dictionary, FeedMode, Flavor, G, GRow, Group, M, MRow, Motion, Plane, Side,
+    Canned, Dictionary, FeedMode, Flavor, G, GRow, Group, M, MRow, Motion, Path, Plane, Side,
 };
 
 /// The words of `flavor`.
@@ -77,7 +77,7 @@ const MILL_G: &[GRow] = &[
     (300, Group::OneShot, G::SecondHome),
     (400, Group::Compensation, G::Compensation(Side::Off)),
     (490, Group::Length, G::CancelLength),
-    (610, Group::Path, G::Neutral(b"")),
+    (610, Group::Path, G::Path(Path::ExactStop)),
     (930, Group::FeedMode, G::FeedMode(FeedMode::InverseTime)),
     (940, Group::FeedMode, G::FeedMode(FeedMode::PerMinute)),
 ];

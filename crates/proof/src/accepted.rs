@@ -1,0 +1,36 @@
+//! Rules that whoever posts a program may let pass for one run: each hangs on how the machine is set up, which the
+//! program does not say.
+
+/// The rules that may be accepted, each with what its acceptance answers for.
+pub const ACCEPTABLE: [(&str, &str); 1] =
+    [("path-tolerance", "corners may be cut by more than the machine's file allows")];
+
+/// Rules of [`ACCEPTABLE`] that are accepted: the program is proven all the same, and the report lists what was found.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Accepted(u32);
+
+impl Accepted {
+    /// These rules and `rule`.
+    ///
+    /// # Errors
+    /// No rule of this name may be accepted.
+    pub fn and(self, rule: &str) -> Result<Accepted, String> {
+        match ACCEPTABLE.iter().position(|(name, _)| *name == rule) {
+            Some(index) => Ok(Accepted(self.0 | 1 << index)),
+            None => {
+                let all: Vec<&str> = ACCEPTABLE.iter().map(|(name, _)| *name).collect();
+                Err(format!("no rule that may be accepted; these may: {}", all.join(", ")))
+            }
+        }
+    }
+
+    /// Their names.
+    pub fn names(self) -> impl Iterator<Item = &'static str> {
+        let rules = ACCEPTABLE.iter().enumerate();
+        rules.filter(move |(index, _)| self.0 & (1 << index) != 0).map(|(_, (name, _))| *name)
+    }
+
+    pub(crate) fn holds(self, rule: &str) -> bool {
+        self.names().any(|name| name == rule)
+    }
+}
