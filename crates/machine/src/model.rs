@@ -1,7 +1,7 @@
 //! What a machine is, after its files are merged.
 
 use geom::Vec3;
-use program::{CycleKind, Diagnostic, MachineMove};
+use program::{Axes, CycleKind, Diagnostic, MachineMove};
 use serde::Deserialize;
 use std::collections::BTreeMap;
 
@@ -110,9 +110,20 @@ pub struct RotaryAxis {
     pub rapid: f64,
     /// Acceleration, degrees/s².
     pub acceleration: f64,
+    /// Its clamp, where it has one.
+    pub clamp: Option<Clamp>,
     /// Which of the two solutions is taken where nothing else decides: the one in which this axis is
     /// positive or negative; 0 for no preference.
     pub prefer: f64,
+}
+
+/// The M functions of a rotary axis's clamp.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Clamp {
+    /// Opens it: the axis turns only after it.
+    pub open: u32,
+    /// Closes it.
+    pub close: u32,
 }
 
 /// What a rotary axis carries.
@@ -468,6 +479,27 @@ impl Machine {
             }
         }
         None
+    }
+
+    /// The rotary axes whose clamps `M` and this number work, and whether it closes them: `None` where it works none.
+    pub fn clamps(&self, number: u32) -> Option<program::Clamp> {
+        let of = |which: fn(&Clamp) -> u32| {
+            let works =
+                |axis: &&RotaryAxis| axis.clamp.is_some_and(|clamp| which(&clamp) == number);
+            let axes = self.rotary.iter().filter(works);
+            axes.fold(Axes::NONE, |all, axis| all | Axes::rotary(axis.index()))
+        };
+        let (opened, closed) = (of(|clamp| clamp.open), of(|clamp| clamp.close));
+        match (opened == Axes::NONE, closed == Axes::NONE) {
+            (true, true) => None,
+            (false, _) => Some(program::Clamp { axes: opened, closed: false }),
+            (true, false) => Some(program::Clamp { axes: closed, closed: true }),
+        }
+    }
+
+    /// Whether a rotary axis has a clamp.
+    pub fn has_clamps(&self) -> bool {
+        self.rotary.iter().any(|axis| axis.clamp.is_some())
     }
 
     /// How far its control may leave the path while it smooths it, mm: `path_tolerance` of the options,

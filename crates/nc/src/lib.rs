@@ -64,8 +64,10 @@ pub fn settings(machine: &Machine, setup: Setup) -> Result<Settings, Box<Diagnos
     for axis in &machine.rotary {
         rotary[axis.index()] = true;
     }
+    let clamps = machine.rotary.iter().filter_map(|axis| axis.clamp);
+    let clamps = clamps.flat_map(|clamp| [clamp.open, clamp.close]);
     Ok(Settings {
-        auxiliary: machine.auxiliary.clone(),
+        auxiliary: machine.auxiliary.iter().copied().chain(clamps).collect(),
         operator_parameters: machine.operator_parameters.clone(),
         wire: machine.wire.map_or(Wire::default(), |wire| Wire {
             height: wire.height,
@@ -300,7 +302,10 @@ impl<'a> Lift<'a> {
             Action::Compensation(side) => self.push(line, Op::Compensation(side)),
             Action::Output(output) => self.push(line, Op::Output(output)),
             Action::Input(input) => self.push(line, Op::Input(input)),
-            Action::Auxiliary(function) => self.push(line, Op::Auxiliary(function)),
+            Action::Auxiliary(function) => {
+                let clamp = self.machine.clamps(function.number).map(Op::Clamp);
+                self.push(line, clamp.unwrap_or(Op::Auxiliary(function)));
+            }
             Action::ThreadWire => self.push(line, Op::ThreadWire),
             Action::CutWire => self.push(line, Op::CutWire),
             Action::Taper(degrees) => self.push(line, Op::Taper(degrees)),

@@ -97,6 +97,8 @@ names! {
         Retract Block "retract", "", "Before the rotary axes turn away from a known position, or the work offset changes: the tool leaves the part in machine coordinates.";
         WorkOffsetSelect Block "work_offset_select", "", "Where the source names a work offset: `{{work_offset}}` is active from here on.";
         Rotate Block "rotate", "", "Rotary axes to their positions while the tool is clear of the part.";
+        Unclamp Block "unclamp", "", "The clamps of the rotary axes open: before they turn, where they may be closed.";
+        Clamp Block "clamp", "", "The clamps of the rotary axes close: behind `rotate`, where the axes then stand in the cut.";
         PlaneTilt Block "plane_tilt", "", "Tilted plane of work on: frame and swivelling.";
         PlaneTiltOff Block "plane_tilt_off", "", "Tilted plane of work off, rotary axes to zero.";
         ToolCenterOn Block "tool_center_on", "", "Tool center point control on.";

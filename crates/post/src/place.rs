@@ -179,7 +179,8 @@ impl Walk<'_> {
     #[inline]
     pub(crate) fn settle(&mut self, pose: &Pose, stop: &Stop, cut: bool) -> Done {
         if self.settled(pose, stop, cut)? {
-            return Ok(());
+            // The axes go along with the moves of this operation.
+            return if stop.turning { self.unclamp() } else { Ok(()) };
         }
         if cut && self.located {
             let help = "begin the operation with a rapid move in the new orientation";
@@ -259,7 +260,7 @@ impl Walk<'_> {
             mode @ (OrientationMode::ToolCenterAngles
             | OrientationMode::Vectors
             | OrientationMode::MachineAngles) => {
-                self.rotate(stop.step.map(|step| step.degrees))?;
+                self.rotate(stop.step.map(|step| step.degrees), stop.turning)?;
                 self.place.kind = match mode == OrientationMode::ToolCenterAngles {
                     true => Kind::ToolCenter,
                     false if mode == OrientationMode::Vectors => Kind::Vectors,
@@ -329,17 +330,36 @@ impl Walk<'_> {
     }
 
     /// The rotary axes to these positions, while the tool is clear of the part.
-    fn rotate(&mut self, degrees: Option<[f64; 3]>) -> Done {
+    /// They are clamped there, unless they turn in the cuts that follow.
+    fn rotate(&mut self, degrees: Option<[f64; 3]>, turning: bool) -> Done {
         let Some(degrees) = degrees else { return Ok(()) };
+        self.say_degrees(degrees);
+        let turns = self.writer.changes(ORIENTATION);
+        self.writer.unset(Words::MAX);
+        if turns || turning {
+            self.unclamp()?;
+        }
         self.say_degrees(degrees);
         self.place.degrees = Some(self.written(degrees));
         self.writer.code(WordName::Motion, motion::RAPID);
-        if self.writer.changes(ORIENTATION) {
-            self.required(BlockName::Rotate)
-        } else {
-            self.writer.unset(Words::MAX);
-            Ok(())
+        match turns {
+            true => self.required(BlockName::Rotate)?,
+            false => self.writer.unset(Words::MAX),
         }
+        if !turning && self.machine.has_clamps() && self.clamped != Some(true) {
+            self.clamped = Some(true);
+            self.required(BlockName::Clamp)?;
+        }
+        Ok(())
+    }
+
+    /// The clamps open, where they may be closed.
+    fn unclamp(&mut self) -> Done {
+        if self.machine.has_clamps() && self.clamped != Some(false) {
+            self.clamped = Some(false);
+            self.required(BlockName::Unclamp)?;
+        }
+        Ok(())
     }
 
     pub(crate) fn say_degrees(&mut self, degrees: [f64; 3]) {

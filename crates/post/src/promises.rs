@@ -180,6 +180,9 @@ fn promised(machine: &Machine) -> Vec<(BlockName, &'static str)> {
         };
         all.extend(blocks.iter().map(|&block| (block, "the orientation is written with it")));
     }
+    if machine.has_clamps() {
+        all.extend([B::Unclamp, B::Clamp].map(|block| (block, "a rotary axis has a clamp")));
+    }
     all.dedup();
     all
 }

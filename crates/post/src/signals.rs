@@ -94,6 +94,11 @@ impl Walk<'_> {
             self.findings.warn(Diagnostic::warning("auxiliary", message).line(self.line));
             return Ok(());
         }
+        if self.machine.clamps(number).is_some() {
+            let message = format!("M{number} works a clamp of a rotary axis on this machine");
+            let help = "leave it out: the clamps are opened and closed where the axes turn";
+            return Err(refuse("auxiliary", message).help(help).into());
+        }
         if !self.machine.auxiliary.contains(&number) {
             let message = format!("the machine file has no auxiliary function M{number}");
             let help = format!(

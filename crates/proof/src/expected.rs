@@ -163,7 +163,6 @@ impl<'a> Cursor<'a> {
                 Op::Joints(_) => Step::Unproven("a move of joints"),
                 Op::MachineMove(_) => Step::Unproven("a move in machine coordinates"),
                 Op::Beam(_) | Op::Pulses(_) => Step::Unproven("a beam"),
-                Op::Clamp(_) => Step::Unproven("a clamp"),
                 Op::Dwell(seconds) if *seconds > 0.0 => Step::Dwell(*seconds),
                 Op::Dwell(_) => continue,
                 Op::Stop => Step::Stop,
@@ -189,6 +188,7 @@ impl<'a> Cursor<'a> {
                 | Op::WorkOffset(_)
                 | Op::Surface(_)
                 | Op::PathMode(_)
+                | Op::Clamp(_)
                 | Op::Taper(_)
                 | Op::Operation(_)
                 | Op::EndOfOperation
@@ -252,9 +252,10 @@ impl<'a> Cursor<'a> {
                 self.homed |= self.here.take().is_some();
             }
             // Words for people, and what the control may do or leave. The surface is that of the trial. By how much a
-            // path may be left, the machine's file says.
+            // path may be left, the machine's file says; clamps follow the axes of this machine.
             Op::Preselect(_)
             | Op::PathMode(_)
+            | Op::Clamp(_)
             | Op::Surface(_)
             | Op::Operation(_)
             | Op::EndOfOperation
@@ -273,7 +274,6 @@ impl<'a> Cursor<'a> {
             | Op::MachineMove(_)
             | Op::Beam(_)
             | Op::Pulses(_)
-            | Op::Clamp(_)
             | Op::Output(_)
             | Op::Input(_)
             | Op::Auxiliary(_)

@@ -4,7 +4,7 @@ use crate::expected::Wanted;
 use crate::place::Number;
 use crate::tolerance::Applied;
 use control::{Corners, Dialect};
-use machine::{LengthOffset, Machine};
+use machine::{LengthOffset, Machine, RotaryAxis};
 use program::{Compensation, Coolant, Cycle, Feed, PathMode, Spindle, Tool, WorkOffset};
 
 /// What the program has switched on.
@@ -27,6 +27,8 @@ pub(crate) struct Running {
     pub cycle: Option<Cycle>,
     /// What happens at corners.
     pub path: PathMode,
+    /// Whether the clamps of A, B and C are closed; `None` where no block has said so.
+    pub clamps: [Option<bool>; 3],
 }
 
 impl Running {
@@ -47,6 +49,7 @@ impl Running {
             work_offset: dialect.and_then(Dialect::work_offset_at_reset),
             cycle: None,
             path: PathMode::AsSetUp,
+            clamps: [None; 3],
         }
     }
 
@@ -177,6 +180,21 @@ pub(crate) fn corners(machine: &Machine, running: &Running) -> Option<Difference
         Number(allowed)
     );
     Some(("path-tolerance", message))
+}
+
+/// A rotary axis that turns against its clamp; `turns` says which of A, B and C do.
+pub(crate) fn clamps(machine: &Machine, turns: [bool; 3], running: &Running) -> Option<Difference> {
+    let held = |axis: &&RotaryAxis| {
+        let index = axis.index();
+        axis.clamp.is_some() && turns[index] && running.clamps[index] != Some(false)
+    };
+    let axis = machine.rotary.iter().find(held)?;
+    let state = match running.clamps[axis.index()] {
+        Some(_) => "its clamp is closed",
+        None => "nothing has opened its clamp",
+    };
+    let open = axis.clamp.map_or(0, |clamp| clamp.open);
+    Some(("clamp", format!("{} turns, but {state}: M{open} opens it", axis.letter)))
 }
 
 /// What leans the wire in the cut.

@@ -323,7 +323,8 @@ fn the_table_of_records_is_that_of_the_documentation() {
 
 /// What is compared with nothing changes neither where the tool goes nor what it does there: a cycle matters for its
 /// holes alone, a frame for the way in which poses are written, and every program has an end of its own. How far the
-/// path may be left the machine's file says, and every cut is held to that, whatever the source asks for.
+/// path may be left the machine's file says, and every cut is held to that, whatever the source asks for. Clamps hold the axes
+/// of the source's machine; those of this one are held to where its axes turn.
 #[test]
 fn no_record_that_moves_or_switches_anything_is_proven_uncompared() {
     let free = [
@@ -331,6 +332,7 @@ fn no_record_that_moves_or_switches_anything_is_proven_uncompared() {
         Kind::Preselect,
         Kind::Frame,
         Kind::PathMode,
+        Kind::Clamp,
         Kind::Operation,
         Kind::EndOfOperation,
         Kind::Comment,

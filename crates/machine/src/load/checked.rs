@@ -173,8 +173,18 @@ fn check_rotary(
             Some(Number(max)),
             "degrees",
         )?;
+        let clamp = match (sheet.clamp_open, sheet.clamp_close) {
+            (None, None) => None,
+            (Some(open), Some(close)) if open != close => Some(Clamp { open, close }),
+            _ => {
+                return Err(fail(
+                    "`clamp_open` and `clamp_close` are two M functions, both or none",
+                ));
+            }
+        };
         checked.push(RotaryAxis {
             letter,
+            clamp,
             on: sheet.on.ok_or_else(|| missing("on"))?,
             axis,
             point: sheet.point.map_or(Vec3::ZERO, |point| Vec3::from_array(point.0)),
@@ -188,6 +198,28 @@ fn check_rotary(
         });
     }
     Ok(Placed { sheet: checked, place })
+}
+
+/// A number opens clamps or closes them; and where the control turns the axes by itself, no word says when they turn.
+fn check_clamps(
+    place: &Diagnostic,
+    rotary: &[RotaryAxis],
+    modes: [OrientationMode; 2],
+) -> Result<()> {
+    let clamps: Vec<Clamp> = rotary.iter().filter_map(|axis| axis.clamp).collect();
+    if clamps.iter().any(|a| clamps.iter().any(|b| a.open == b.close)) {
+        return Err(wrong(place, "one M function opens a clamp and closes another"));
+    }
+    let by_words =
+        |mode| matches!(mode, OrientationMode::MachineAngles | OrientationMode::ToolCenterAngles);
+    match modes.into_iter().all(by_words) {
+        true => Ok(()),
+        false => Err(wrong(
+            place,
+            "axes with clamps are written as positions (machine-angles or tool-center-angles): with vectors and \
+             tilted planes the control turns them where no word says so",
+        )),
+    }
 }
 
 /// `nearer` over `farther`, entry by entry; what both have is joined by `join`.
@@ -258,7 +290,7 @@ impl CheckedSheet {
             check_range(&place, sheet.min, sheet.max, "1/min")?;
             spindle = sheet;
         }
-        let mut rotary = Vec::new();
+        let (mut rotary, mut rotary_place) = (Vec::new(), None);
         if let Some(Placed { sheet, place }) = self.rotary {
             let modes = self.orientation.as_ref().and_then(|o| o.sheet.simultaneous);
             if matches!(modes, None | Some(OrientationMode::Fixed)) && !sheet.is_empty() {
@@ -266,7 +298,7 @@ impl CheckedSheet {
                                written: machine-angles, tool-center-angles or vectors";
                 return Err(wrong(&place, message));
             }
-            rotary = sheet;
+            (rotary, rotary_place) = (sheet, Some(place));
         }
         if let Some(Placed { sheet, place }) = self.orientation {
             let modes = [sheet.simultaneous, sheet.positioned];
@@ -284,6 +316,10 @@ impl CheckedSheet {
         }
         let simultaneous = orientation.simultaneous.unwrap_or(OrientationMode::Fixed);
         let positioned = orientation.positioned.unwrap_or(simultaneous);
+        if let Some(place) = rotary_place.filter(|_| rotary.iter().any(|axis| axis.clamp.is_some()))
+        {
+            check_clamps(&place, &rotary, [simultaneous, positioned])?;
+        }
         let capabilities = self.capabilities;
         let format = self.format;
         let line_length = capabilities.line_length.unwrap_or(256);

@@ -77,6 +77,8 @@ pub(crate) struct Walk<'a> {
     /// Whether nothing but cuts has been since a straight one, and a straight one in the same orientation differs
     /// from that in where it goes alone.
     pub(crate) goes_on: bool,
+    /// Whether the clamps of the rotary axes are closed; `None` where the program has not said it.
+    pub(crate) clamped: Option<bool>,
     pub(crate) place: Place,
     /// The wire, where the machine has one.
     pub(crate) wire: Option<Wire>,
@@ -135,6 +137,7 @@ impl<'a> Walk<'a> {
             here: None,
             located: false,
             goes_on: false,
+            clamped: None,
             place: Place::start(machine),
             wire: Wire::of(machine, program),
             surface: None,
@@ -326,10 +329,12 @@ impl<'a> Walk<'a> {
                 Ok(())
             }
             Op::Beam(_) | Op::Pulses(_) => Err(unknown_here("a beam", "post it for a laser")),
-            Op::Clamp(_) => Err(unknown_here(
-                "a clamp that the source opens or closes",
-                "leave it out: the blocks of the machine file work the clamps",
-            )),
+            Op::Clamp(_) => {
+                let message = "a clamp of the source's machine is left to this one's file: its blocks \
+                               `unclamp` and `clamp` follow the axes";
+                self.findings.warn(Diagnostic::warning("clamp", message).line(self.line));
+                Ok(())
+            }
             Op::Output(output) => self.output(output),
             Op::Input(input) => self.input(input),
             Op::Auxiliary(function) => self.auxiliary(function),

@@ -60,6 +60,7 @@ impl Prover<'_> {
         };
         let (gauge, cycle, point) = (self.gauge, *cycle, *point);
         let hole = Hole { gauge: &gauge, point: &point, cycle: &cycle };
+        self.unclamped(line, &pose.orientation);
         let drilled = Drilled::new(&gauge, line, pose, own);
         if self.leg.hole.begun(&cycle) {
             return Err(self.lost_at(line, "hole", "drills a hole that has been begun by moves"));

@@ -20,7 +20,7 @@ use control::{Action, ArcTo, Event, Orientation, Position};
 use geom::{Arc, Vec3};
 use machine::{Machine, Mount};
 use program::statistics::Statistics;
-use program::{Compensation, Diagnostic, MachineMove, Probe, Program, Spindle, Tool};
+use program::{Axes, Compensation, Diagnostic, MachineMove, Probe, Program, Spindle, Tool};
 
 /// Compares a program with its source, record by record, as a control runs it.
 pub struct Prover<'a> {
@@ -176,7 +176,16 @@ impl<'a> Prover<'a> {
             Action::CutWire => return self.happens(line, Step::CutWire),
             Action::Output(output) => return self.happens(line, Step::Output(*output)),
             Action::Input(input) => return self.happens(line, Step::Input(**input)),
-            Action::Auxiliary(function) => return self.happens(line, Step::Auxiliary(*function)),
+            Action::Auxiliary(function) => {
+                let Some(clamp) = self.gauge.machine.clamps(function.number) else {
+                    return self.happens(line, Step::Auxiliary(*function));
+                };
+                for (i, state) in running.clamps.iter_mut().enumerate() {
+                    if clamp.axes.contains(Axes::rotary(i)) {
+                        *state = Some(clamp.closed);
+                    }
+                }
+            }
             Action::Feed(feed) => running.feed = Some(*feed),
             Action::Spindle(spindle) => {
                 (running.spindle, running.spindle_line) = (*spindle, line);
@@ -220,6 +229,7 @@ impl<'a> Prover<'a> {
         if arc.is_none() && *position == self.here.position {
             return Ok(());
         }
+        self.unclamped(line, &position.orientation);
         let to = self.gauge.station(line, *position);
         let block = arc.map(|arc| arc::of_block(&self.gauge, &self.here, arc));
         if block == Some(None) {
@@ -273,6 +283,25 @@ impl<'a> Prover<'a> {
         };
         self.here = to;
         outcome
+    }
+
+    /// Holds the clamps open of the rotary axes that turn from here on.
+    fn unclamped(&mut self, line: u32, to: &Orientation) {
+        let here = &self.here.position.orientation;
+        let turns = match (here, to) {
+            (
+                Orientation::Rotary { degrees: from, .. },
+                Orientation::Rotary { degrees: to, .. },
+            ) => [0, 1, 2].map(|i| from[i] != to[i] && !to[i].is_nan()),
+            _ => [here != to; 3],
+        };
+        self.turns(line, turns);
+    }
+
+    /// The same for axes that turn to places of the machine.
+    fn turns(&mut self, line: u32, turns: [bool; 3]) {
+        let found = state::clamps(self.gauge.machine, turns, &self.running);
+        self.check(line, found);
     }
 
     /// Passes motions that the tool need not make: those shorter than the resolution of the machine,
