@@ -21,7 +21,7 @@ TOOLPOST := cargo run --quiet --locked --profile quick --package toolpost --
 # What fails stops nothing that does not need it.
 MAKEFLAGS += --keep-going
 
-.PHONY: demo install test test-rust test-python freecad tests bench judges images samples rust python
+.PHONY: demo install test test-rust test-python freecad tests bench judges judges-long images samples rust python
 .PHONY: lint lint-format lint-rust lint-fuzz lint-docs lint-python
 
 ## Post a part, prove it, draw it, and say what to do next.
@@ -111,6 +111,11 @@ lint-python: python
 judges:
 	scripts/setup judges
 	$(MAKE) test
+
+## The same, and what takes long: a hundred programs on a real LinuxCNC, 2000 damages, other random input each time.
+judges-long:
+	scripts/setup judges
+	TOOLPOST_JUDGES=long $(MAKE) test
 
 ## The pictures of the documentation, drawn anew.
 images: rust

@@ -51,6 +51,28 @@ pub fn data(folder: &str) -> Option<PathBuf> {
     None
 }
 
+/// The script that runs a program on a whole LinuxCNC: of `TOOLPOST_TOOLS`, or of `../shared/tools` beside the project.
+/// `None` as well where the package `linuxcnc-uspace` is not installed.
+#[track_caller]
+pub fn linuxcnc() -> Option<PathBuf> {
+    let beside = || project().join("../shared/tools");
+    let tools = env::var_os("TOOLPOST_TOOLS").map_or_else(beside, PathBuf::from);
+    let script = tools.join("linuxcnc-run/linuxcnc-run");
+    if !program("linuxcnc", "Debian package linuxcnc-uspace") {
+        return None;
+    }
+    if script.is_file() {
+        return Some(script);
+    }
+    missing(&format!("there is no {} (TOOLPOST_TOOLS)", script.display()));
+    None
+}
+
+/// Whether the judges may take their time (`make judges-long`): many more programs, and other ones each time.
+pub fn long() -> bool {
+    env::var_os("TOOLPOST_JUDGES").is_some_and(|value| value == "long")
+}
+
 /// Says on the error stream that nothing was judged, and why.
 ///
 /// # Panics
