@@ -245,6 +245,18 @@ impl Settings {
 /// Where the events of a running program go. An error stops the run.
 pub type Sink<'a> = dyn FnMut(Event) -> Result<(), Box<Diagnostic>> + 'a;
 
+/// The blocks of `text` that the operator may switch off, since they begin with `/`: their lines, from 1, and the levels
+/// of the switch, `/1` to `/9`, 0 for `/` alone.
+pub fn optional_blocks(text: &[u8]) -> impl Iterator<Item = (u32, u8)> {
+    let end = if text.contains(&b'\n') { b'\n' } else { b'\r' };
+    let lines = (1..).zip(text.split(move |byte| *byte == end));
+    lines.filter_map(|(number, line)| {
+        let block = line.trim_ascii_start().strip_prefix(b"/")?;
+        let level = block.first().filter(|byte| byte.is_ascii_digit());
+        Some((number, level.map_or(0, |digit| digit - b'0')))
+    })
+}
+
 /// Length of a program, bytes, from which its control runs in a thread of its own.
 const LONG: usize = 1 << 16;
 

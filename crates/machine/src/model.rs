@@ -366,6 +366,8 @@ pub struct ToolRange {
     pub max_diameter: f64,
     /// Longest tool, mm.
     pub max_length: f64,
+    /// Whether the tool change brings Z up by itself.
+    pub retracts: bool,
 }
 
 /// A value of `[options]`.

@@ -174,6 +174,7 @@ sheet!(merged ToolsSheet "tools" {
     max_number: u32, "", "Highest number of a tool.";
     max_diameter: Positive, "mm", "Largest diameter.";
     max_length: Positive, "mm", "Longest tool.";
+    retracts: bool, "", "Whether the tool change brings Z up by itself; without it Z has to be home before each.";
 });
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize)]

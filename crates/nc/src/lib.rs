@@ -123,6 +123,18 @@ pub fn read_by(
         lift.event(event).map_err(|found| found.line(line).into())
     });
     run.map_err(|found| way_out(machine, found))?;
+    let mut optional = control::optional_blocks(text);
+    if let Some((line, _)) = optional.next() {
+        let (done, other) = match settings.setup.block_delete {
+            true => ("left out", "without it they run"),
+            false => ("run", "`--block-delete` leaves them out"),
+        };
+        let message =
+            format!("the blocks behind `/`, which the operator may switch off, are read as {done}");
+        let mut found = Diagnostic::warning("block-skip", message).help(other).line(line);
+        found.count += u32::try_from(optional.count()).unwrap_or(u32::MAX - 1);
+        lift.warnings.push(found);
+    }
     Ok((Reading { program: lift.program, warnings: lift.warnings }, lift.several))
 }
 

@@ -2,8 +2,10 @@
 //! program does not say.
 
 /// The rules that may be accepted, each with what its acceptance answers for.
-pub const ACCEPTABLE: [(&str, &str); 1] =
-    [("path-tolerance", "corners may be cut by more than the machine's file allows")];
+pub const ACCEPTABLE: [(&str, &str); 2] = [
+    ("path-tolerance", "corners may be cut by more than the machine's file allows"),
+    ("tool-change-height", "the tool change of the machine brings Z up by itself"),
+];
 
 /// Rules of [`ACCEPTABLE`] that are accepted: the program is proven all the same, and the report lists what was found.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

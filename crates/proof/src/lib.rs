@@ -72,7 +72,23 @@ pub fn prove(
     tolerances: &Tolerances,
 ) -> Report {
     let run = |source: &Program, setup: Setup| {
-        prove_on(source, machine, setup, file_name, text, tolerances)
+        let report = prove_on(source, machine, setup.clone(), file_name, text, tolerances);
+        let mut optional = control::optional_blocks(text);
+        let Some((_, level)) = optional.next().filter(|_| report.proven) else { return report };
+        if let Some((line, other)) = optional.find(|(_, other)| *other != level) {
+            let message = format!(
+                "blocks behind /{level} and /{other} are switched apart: not each position is proven"
+            );
+            let found = Diagnostic::error("block-skip", message).help("use one of them").line(line);
+            return refused(source, machine, tolerances, found);
+        }
+        // The operator may have switched the blocks behind `/` off.
+        let setup = Setup { block_delete: true, ..setup };
+        let mut without = prove_on(source, machine, setup, file_name, text, tolerances);
+        for found in &mut without.mismatches {
+            found.message = format!("without the blocks behind `/`: {}", found.message);
+        }
+        if without.proven { report } else { without }
     };
     let Some(surface) = surfaces::found(source) else { return run(source, Setup::default()) };
     let trials = match surfaces::trials(surface) {

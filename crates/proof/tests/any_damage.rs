@@ -112,7 +112,10 @@ fn both(pieces: &[Piece]) -> (Vec<Op>, Vec<Action>) {
             Piece::Stop => alike(Op::Stop),
             Piece::Tool => {
                 number += 1;
-                alike(Op::Tool(tool(number)));
+                nc.push(Action::Home(Axes::Z));
+                let op = Op::Tool(tool(number));
+                nc.push(action(&op));
+                own.push(op);
                 nc.push(Action::LengthOffset(Some(number)));
                 own.extend(start()[1..].iter().cloned());
                 nc.extend(actions(&start()[1..]));

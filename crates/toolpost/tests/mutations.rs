@@ -1,4 +1,5 @@
-//! Proven programs with one character damaged: the proof refuses each, or the machine does the same.
+//! Proven programs with one character damaged, or with a block put in: the proof refuses each, or the machine does the
+//! same. `make judges-long` damages ten times as many.
 //!
 //! What a surviving program does is shown without the proof: the virtual control runs it beside the
 //! one it came from, and both do the same things at the same places.
@@ -17,8 +18,218 @@ use std::collections::BTreeMap;
 use std::ops::RangeInclusive;
 use std::path::PathBuf;
 
-/// So many damages, spread evenly over the programs.
-const DAMAGES: usize = 200;
+/// So many damages of each of two kinds, spread evenly over the programs.
+fn damages() -> usize {
+    if judge::long() { 1000 } else { 100 }
+}
+
+/// Blocks for the controls that read ISO code.
+const ISO_BLOCKS: &[&str] = &[
+    "G53 G0 Z-400",
+    "G53 G0 X-9999",
+    "G53 G0 Z0",
+    "G10 L2 P1 X0 Y0 Z-50",
+    "G10 L1 P1 Z500",
+    "G92 X0 Y0 Z0",
+    "G92 Z300",
+    "G52 X5",
+    "G49",
+    "G43 H2",
+    "G43.1 Z-20",
+    "G64",
+    "G64 P5",
+    "G61",
+    "G18",
+    "G19",
+    "G20",
+    "G91",
+    "G93",
+    "G95",
+    "G55",
+    "G59",
+    "G54.1 P1",
+    "G68 X0 Y0 R5",
+    "G51 X0 Y0 P2",
+    "G28 Z0",
+    "G91 G28 Z0",
+    "G28",
+    "G30 Z0",
+    "G30 P4 Z0",
+    "G29 Z2",
+    "M3",
+    "M4",
+    "M5",
+    "M8",
+    "M9",
+    "M0",
+    "M1",
+    "M2",
+    "M30",
+    "M98 P1",
+    "M99",
+    "G41 D1",
+    "G40",
+    "G98",
+    "G99",
+    "G81 X0 Y0 Z-5 R2",
+    "G80",
+    "G4 P1",
+    "M6",
+    "T9",
+    "T9 M6",
+    "#5221=5",
+    "#3004=7",
+    "#1=5",
+    "G0",
+    "G1",
+    "G2",
+    "F9999",
+    "S50",
+    "G96 S100",
+    "M62 P1",
+    "M10",
+    "M29 S100",
+    "G5.1 Q1",
+    "G187 P3 E5.",
+    "M61 Q9",
+    "G90",
+    "G17",
+    "G21",
+    "G94",
+    "G54",
+    "G0 Z-5",
+    "G1 Z-5",
+    "G0 X500",
+];
+
+/// Blocks for a SINUMERIK.
+const SINUMERIK_BLOCKS: &[&str] = &[
+    "G0 SUPA Z-400",
+    "G0 G53 X999",
+    "G500",
+    "G54",
+    "G55",
+    "TRANS X5",
+    "ATRANS Z-1",
+    "ROT RPL=5",
+    "MIRROR X0",
+    "SCALE X2",
+    "G64",
+    "G641",
+    "G642 ADIS=5",
+    "CYCLE832(5,_FINISH,1)",
+    "CTOL=5",
+    "G18",
+    "G19",
+    "G70",
+    "G700",
+    "G91",
+    "G93",
+    "G95",
+    "G41",
+    "G40",
+    "D0",
+    "D1",
+    "D2",
+    "T9",
+    "M6",
+    "M0",
+    "M1",
+    "M2",
+    "M17",
+    "M30",
+    "M3",
+    "M4",
+    "M5",
+    "M8",
+    "M9",
+    "$P_UIFR[1,Z,TR]=-50",
+    "$TC_DP3[1,1]=5",
+    "TRAORI",
+    "TRAFOOF",
+    "STOPRE",
+    "G74 Z1=0",
+    "G75 Z0",
+    "MSG(\"x\")",
+    "FFWON",
+    "SOFT",
+    "G4 F1",
+    "R1=5",
+    "G0",
+    "G1",
+    "F9999",
+    "S50",
+    "M10",
+    "G58 X5",
+    "COMPCAD",
+    "G505",
+    "G0 Z-5",
+    "G1 Z-5",
+    "G0 X500",
+    "CYCLE800()",
+    "MCALL",
+    "MCALL CYCLE81(10,0,2,-5)",
+    "M26",
+    "M27",
+    "M28 M29",
+    "G9",
+    "G60",
+    "FNORM",
+    "SPOS=0",
+    "AROT Z5",
+];
+
+/// Blocks for Klartext, whose numbers are made anew.
+const KLARTEXT_BLOCKS: &[&str] = &[
+    "L Z-400 R0 FMAX M91",
+    "L Z+0 R0 FMAX M91",
+    "L X+999 R0 FMAX M92",
+    "CYCL DEF 7.0 DATUM SHIFT\n0 CYCL DEF 7.1 Z-5",
+    "TOOL DEF 1 L+5 R+3",
+    "M126",
+    "M127",
+    "M128",
+    "M129",
+    "M140 MB MAX",
+    "M3",
+    "M4",
+    "M5",
+    "M8",
+    "M9",
+    "STOP",
+    "M0",
+    "M1",
+    "M2",
+    "M30",
+    "CYCL DEF 247 DATUM SETTING ~\n  Q339=+2 ;DATUM NUMBER",
+    "CYCL DEF 10.0 ROTATION\n0 CYCL DEF 10.1 ROT+5",
+    "CYCL DEF 8.0 MIRRORING\n0 CYCL DEF 8.1 X",
+    "CYCL DEF 32.0 TOLERANCE\n0 CYCL DEF 32.1 T5",
+    "CYCL DEF 32.0 TOLERANCE\n0 CYCL DEF 32.1",
+    "TOOL CALL 1",
+    "TOOL CALL 2 Z S500",
+    "TOOL CALL DL+1",
+    "PLANE RESET STAY",
+    "L Z+5 R0 FMAX",
+    "L Z-5 R0 FMAX",
+    "L X+500 FMAX",
+    "L IZ-1 R0 F100",
+    "CC X+0 Y+0",
+    "M136",
+    "M137",
+    "M89",
+    "M99",
+    "Q1=+5",
+    "CYCL DEF 11.0 SCALING\n0 CYCL DEF 11.1 SCL 2",
+    "CYCL DEF 19.0 WORKING PLANE\n0 CYCL DEF 19.1 A+5",
+    "CYCL DEF 9.0 DWELL TIME\n0 CYCL DEF 9.1 DWELL 1",
+    "FN 17: SYSWRITE ID50 NR1 IDX1 = +5",
+    "M101",
+    "M120 LA5",
+    "LBL 1",
+    "CALL LBL 1",
+    "; WORDS",
+];
 
 /// A generator of numbers that is the same everywhere: SplitMix64.
 struct Random(u64);
@@ -88,6 +299,31 @@ impl Sample {
                 return text;
             }
         }
+    }
+
+    /// The text with a block put in somewhere, or with a block that the operator may switch off.
+    fn with_block(&self, random: &mut Random) -> Vec<u8> {
+        let blocks = match self.machine.reader.as_str() {
+            "sinumerik" => SINUMERIK_BLOCKS,
+            "klartext" => KLARTEXT_BLOCKS,
+            _ => ISO_BLOCKS,
+        };
+        let text = std::str::from_utf8(&self.text).unwrap();
+        let mut lines: Vec<String> = text.split_inclusive('\n').map(str::to_owned).collect();
+        let pointed = |block: &str| match self.machine.reader.as_str() {
+            "fanuc" | "haas" => block.split(' ').map(with_point).collect::<Vec<_>>().join(" "),
+            _ => block.to_owned(),
+        };
+        // Behind the start, before the end.
+        let place = 2 + random.below(lines.len() - 4);
+        match random.below(8) {
+            0 => lines[place].insert(0, '/'),
+            _ => lines.insert(place, format!("{}\n", pointed(blocks[random.below(blocks.len())]))),
+        }
+        if self.machine.reader == "klartext" {
+            lines = numbered(&lines.concat());
+        }
+        lines.concat().into_bytes()
     }
 
     /// Why the machine does the same when it is given the proven `text`.
@@ -662,20 +898,63 @@ fn samples() -> Vec<Sample> {
     samples
 }
 
+/// A word of a length with its point.
+fn with_point(word: &str) -> String {
+    let length = word.starts_with(['X', 'Y', 'Z', 'R', 'I', 'J', 'K']) && !word.contains('.');
+    if length { format!("{word}.") } else { word.to_owned() }
+}
+
+/// Blocks of Klartext with their numbers from 0; a line that goes on has none.
+fn numbered(text: &str) -> Vec<String> {
+    let mut next = 0;
+    let number = |line: &str| {
+        let rest = match line.split_once(' ') {
+            Some((number, rest)) if number.parse::<u32>().is_ok() => rest,
+            _ if line.trim_start().starts_with('Q') && !line.contains("Q1=") => {
+                return format!("{line}\n");
+            }
+            _ => line,
+        };
+        let (skip, rest) = rest.strip_prefix('/').map_or(("", rest), |rest| ("/", rest));
+        next += 1;
+        format!("{skip}{} {rest}\n", next - 1)
+    };
+    text.lines().map(number).collect()
+}
+
 #[test]
 fn a_damaged_program_is_refused_or_does_the_same() {
+    judged(45, Sample::damaged);
+}
+
+#[test]
+fn a_program_with_a_block_put_in_is_refused_or_does_the_same() {
+    judged(46, Sample::with_block);
+}
+
+/// Damages the programs, as `seed` draws it.
+fn judged(seed: u64, damage: impl Fn(&Sample, &mut Random) -> Vec<u8>) {
     let samples = samples();
-    let mut random = Random(45);
+    let mut random = Random(seed);
     let mut table = BTreeMap::<String, BTreeMap<&str, BTreeMap<&str, usize>>>::new();
-    let mut harmful = Vec::new();
-    for sample in samples.iter().cycle().take(DAMAGES) {
-        let text = sample.damaged(&mut random);
+    let (mut harmful, mut survivors) = (Vec::new(), BTreeMap::<(String, String), usize>::new());
+    for sample in samples.iter().cycle().take(damages()) {
+        let text = damage(sample, &mut random);
         let report =
             proof::prove(&sample.source, &sample.machine, "", &text, &Tolerances::default());
         let (end, why) = match report.mismatches.first() {
             Some(found) => ("caught", found.rule),
             None => match sample.harmless(&text) {
-                Ok(why) => ("harmless", why),
+                Ok(why) => {
+                    let (_, before, after) = difference(&sample.text, &text);
+                    let reader = sample.machine.reader.clone();
+                    if judge::long() {
+                        *survivors
+                            .entry((reader, format!("{after} (at {before})")))
+                            .or_default() += 1;
+                    }
+                    ("harmless", why)
+                }
                 Err(what) => {
                     let (line, before, after) = difference(&sample.text, &text);
                     let name = &sample.name;
@@ -695,6 +974,9 @@ fn a_damaged_program_is_refused_or_does_the_same() {
                 reasons.iter().map(|(why, count)| format!("{why} {count}")).collect();
             println!("    {end}: {}", reasons.join(", "));
         }
+    }
+    for ((control, change), count) in survivors {
+        println!("{control}: {change}: {count}");
     }
     assert!(harmful.is_empty(), "{}", harmful.join("\n\n"));
 }

@@ -51,7 +51,7 @@ pub fn machine(rotary: Vec<RotaryAxis>) -> Machine {
         },
         spindle: SpindleRange { min: 50.0, max: 12_000.0 },
         feed_max: f64::INFINITY,
-        tools: ToolRange { max_number: 99, max_diameter: 80.0, max_length: 300.0 },
+        tools: ToolRange { max_number: 99, max_diameter: 80.0, max_length: 300.0, retracts: false },
         auxiliary: Vec::new(),
         operator_parameters: Vec::new(),
         approach: Vec::new(),

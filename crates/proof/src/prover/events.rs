@@ -10,6 +10,15 @@ impl Prover<'_> {
             let message = "changes the tool where the source does not";
             return Err(self.lost_at(line, "extra-tool-change", message));
         }
+        if !self.gauge.machine.tools.retracts && self.here.position.point.z.is_finite() {
+            let message = format!(
+                "source line {}: the program changes the tool where Z has not been home since the last move",
+                self.cursor.line
+            );
+            let help = "send Z home before it, or say `retracts = true` in [tools] of the machine's file where its \
+                        tool change brings Z up by itself";
+            self.found(Diagnostic::error("tool-change-height", message).help(help).line(line));
+        }
         self.report.compared.tool_changes += 1;
         let name = if tool.number > 0 { tool.number.to_string() } else { tool.name.clone() };
         self.report.program.tool(name);
