@@ -128,6 +128,23 @@ pub struct Risk {
     pub help: &'static str,
 }
 
+impl Risk {
+    /// `#3003`, `#3004` of FANUC and Haas (B-64484EN-2, "Automatic operation control"): they hold until the control is
+    /// reset.
+    pub(crate) const OPERATOR_CONTROLS: Risk = Risk {
+        rule: "operator-controls",
+        what: "takes single block, feed hold, feed override or exact stop from the operator",
+        help: "leave it out; where the operator knows of it, `--accept operator-controls` lets it pass",
+    };
+
+    /// Work offsets, tool lengths and radii belong to the operator, who has measured them.
+    pub(crate) const OPERATOR_DATA: Risk = Risk {
+        rule: "operator-data",
+        what: "rewrites work offsets or tool data of the operator, and they stay so when it has ended",
+        help: "leave them to the operator; where the shop sets its fixtures by programs, `--accept operator-data` lets it pass",
+    };
+}
+
 /// What a block says of where the tool goes.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Position {

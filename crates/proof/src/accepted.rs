@@ -2,7 +2,9 @@
 //! program does not say.
 
 /// The rules that may be accepted, each with what its acceptance answers for.
-pub const ACCEPTABLE: [(&str, &str); 2] = [
+pub const ACCEPTABLE: [(&str, &str); 4] = [
+    ("operator-controls", "the operator can neither stop the program nor slow it down"),
+    ("operator-data", "work offsets and tool data that the program rewrites"),
     ("path-tolerance", "corners may be cut by more than the machine's file allows"),
     ("tool-change-height", "the tool change of the machine brings Z up by itself"),
 ];

@@ -4,7 +4,7 @@ use super::frames::{Six, Transform, Unknown};
 use super::motion::LINEAR;
 use super::state::{Length, Polar, Tilt, UNKNOWN};
 use super::step::Step;
-use crate::event::Action;
+use crate::event::{Action, Risk};
 use crate::iso::language::block::{Fault, Word};
 use crate::iso::language::words::{Flavor, G, Group};
 use geom::{Frame, Mat3, Vec3};
@@ -20,6 +20,7 @@ impl Step<'_, '_, '_> {
     /// `G92` and its kin, `G52`, `G10`.
     pub(super) fn coordinates(&mut self, word: G) -> Result<(), Fault> {
         if word == G::WriteData {
+            self.actions.push(Action::Risk(Risk::OPERATOR_DATA.into()));
             return self.write_data();
         }
         self.may_change_coordinates(Group::OneShot)?;
@@ -29,6 +30,10 @@ impl Step<'_, '_, '_> {
         }
         match word {
             G::ShiftHere => {
+                // It stays when the program has ended. A wire-EDM machine knows no other origin: its programs begin so.
+                if !self.flavor.is_wire() {
+                    self.actions.push(Action::Risk(Risk::OPERATOR_DATA.into()));
+                }
                 let values = self.axis_values()?;
                 let here = self.here();
                 // After a way home the records do not say what G92 does.
@@ -45,6 +50,10 @@ impl Step<'_, '_, '_> {
                         *local = value.unwrap_or(*local);
                     }
                 } else {
+                    // It is kept where G92 is, and stays when the program has ended.
+                    if values.iter().flatten().any(|value| *value != 0.0) {
+                        self.actions.push(Action::Risk(Risk::OPERATOR_DATA.into()));
+                    }
                     let shifted = self.state.frames.shift_to(values);
                     self.known(shifted)?;
                 }

@@ -4,7 +4,7 @@
 
 use super::run::Run;
 use super::source::{self, Place, Source};
-use crate::event::Action;
+use crate::event::{Action, Risk};
 use crate::iso::language::arithmetic;
 use crate::iso::language::block::{Fault, Word};
 use crate::iso::language::expression::{Reader, Target};
@@ -351,7 +351,11 @@ impl<'a> Run<'a, '_> {
                 self.tell(Action::Stop);
                 Ok(())
             }
-            // Clocks, and what the operator's keys may do meanwhile.
+            3003 | 3004 if code != 0.0 => {
+                self.tell(Action::Risk(Risk::OPERATOR_CONTROLS.into()));
+                Ok(())
+            }
+            // Clocks, and the keys of the operator given back.
             3001..=3004 | 3011 | 3012 => Ok(()),
             0 => Err(self.wrong(text, at, "#0 is null and cannot be set")),
             _ => {

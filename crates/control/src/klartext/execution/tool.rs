@@ -2,7 +2,7 @@
 
 use super::state::{Control, Tip};
 use crate::ToolData;
-use crate::event::Action;
+use crate::event::{Action, Risk};
 use crate::klartext::language::registers::Parameter;
 use crate::klartext::language::scan::{Result, Scanner};
 use crate::klartext::language::words::{self, LINEAR, Words, feed_word};
@@ -101,6 +101,7 @@ impl Control<'_, '_> {
             let message = format!("tool {number} is another one in the tool table");
             return Err(s.error_block("tool", message));
         }
+        self.emit(Action::Risk(Risk::OPERATOR_DATA.into()))?;
         self.defined_tools.insert(number, ToolData { number, name: String::new(), radius, length });
         Ok(())
     }

@@ -12,14 +12,15 @@ use super::state::State;
 use crate::Settings;
 use crate::budget::Budget;
 use crate::compensation::{Compensator, Terms};
-use crate::event::{Action, Event};
+use crate::event::{Action, Event, Risk};
 use crate::sinumerik::Fallible;
 use crate::sinumerik::language::block::{Block, ToolCall};
 use crate::sinumerik::language::call::{Argument, Call, Procedure};
 use crate::sinumerik::language::commands::{Code, FeedType, Motion};
 use crate::sinumerik::language::scan::Source;
 use crate::sinumerik::language::system::AXIS_NAMES;
-use crate::sinumerik::language::variables::ELEMENTS_IN_A_TURN;
+use crate::sinumerik::language::value::Value;
+use crate::sinumerik::language::variables::{ELEMENTS_IN_A_TURN, Place};
 use program::{Auxiliary, Compensation, Coolant, Cycle, Feed, Spindle, Tool};
 
 /// Runs blocks.
@@ -108,6 +109,15 @@ impl<'a, 's> Interpreter<'a, 's> {
         self.budget.read(bytes).map_err(|message| source.block_error("endless", message))
     }
 
+    /// Sets what a block or a loop assigns to.
+    pub fn assign(&mut self, source: &Source, place: Place, value: Value) -> Fallible<()> {
+        self.state.assign(place, value);
+        match place {
+            Place::WorkOffset(..) => self.emit(source, Action::Risk(Risk::OPERATOR_DATA.into())),
+            Place::Parameter(_) | Place::Element(..) => Ok(()),
+        }
+    }
+
     /// Carries out a block.
     pub fn run(&mut self, source: &Source, block: &mut Block) -> Fallible<()> {
         if let Some(comment) = block.comment.take() {
@@ -119,7 +129,7 @@ impl<'a, 's> Interpreter<'a, 's> {
         if !block.assigned.is_empty() {
             self.spend(source, block.assigned.len() / ELEMENTS_IN_A_TURN)?;
             for (place, value) in block.assigned.drain(..) {
-                self.state.assign(place, value);
+                self.assign(source, place, value)?;
             }
         }
         if let Some(message) = block.message.take() {

@@ -245,12 +245,10 @@ impl<'a, 's> Run<'a, 's> {
     }
 
     fn set(&mut self, source: &Source, count: &Count, value: f64) -> Fallible<()> {
-        let state = &mut self.interpreter.state;
-        let (kind, _) = Evaluator::new(state, &[]).room(count.place);
+        let (kind, _) = Evaluator::new(&self.interpreter.state, &[]).room(count.place);
         let value =
             kind.keep(Value::Real(value)).map_err(|message| source.block_error("type", message))?;
-        state.assign(count.place, value);
-        Ok(())
+        self.interpreter.assign(source, count.place, value)
     }
 
     /// `ENDFOR`: adds 1 and goes on with the loop or behind it. When the control reads the last value
