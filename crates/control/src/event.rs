@@ -137,6 +137,14 @@ impl Risk {
         help: "leave it out; where the operator knows of it, `--accept operator-controls` lets it pass",
     };
 
+    /// FANUC moves Z by a length that begins, ends or changes, or it moves the coordinates: parameter 5006, bit 6
+    /// (B-64484EN-2, "Tool length compensation").
+    pub(crate) const LENGTH_CHANGE: Risk = Risk {
+        rule: "length-change",
+        what: "changes the tool length offset where Z is not home: whether Z moves by it, parameter 5006#6 says",
+        help: "send Z home before (`G91 G28 Z0`), or say Z in the same block",
+    };
+
     /// Work offsets, tool lengths and radii belong to the operator, who has measured them.
     pub(crate) const OPERATOR_DATA: Risk = Risk {
         rule: "operator-data",

@@ -505,7 +505,8 @@ fn d_and_h_stay_for_the_words_that_use_them() {
         ];
         assert_eq!(got[got.len() - 5..], expected);
         // While G43 is on, another H is another length, and H0 none.
-        let got = ops(dialect, "G43 H4\nH5\nH0\n");
+        let mut got = ops(dialect, "G43 H4\nH5\nH0\n");
+        got.retain(|action| matches!(action, Action::LengthOffset(_)));
         assert_eq!(got, [Some(4), Some(5), None].map(Action::LengthOffset));
         assert_eq!(rule(dialect, "G0 X0. Y0.\nG1 G41 D1 X5. F9\nX6. D2\n"), "nc-compensation");
         assert_eq!(rule(dialect, "G43 Z9.\n"), "nc-length");
@@ -612,7 +613,8 @@ fn the_tool_centre_point_is_kept_from_g43_4_to_g49() {
         got[4],
         Action::Line(Position { point: Vec3::new(1.0, 0.0, 9.0), orientation: center })
     );
-    assert_eq!(got[5], Action::LengthOffset(None));
+    assert!(matches!(got[5], Action::Risk(_)));
+    assert_eq!(got[6], Action::LengthOffset(None));
     let three = run(FANUC, [false; 3], "G43.4 H1\n").unwrap_err();
     assert_eq!(three.rule, "nc-axis");
     assert_eq!(rule(FANUC, "G0 B5.\n"), "nc-axis");
@@ -643,7 +645,7 @@ fn a_tilted_plane_turns_about_z_then_new_x_then_newest_z() {
 fn a_tilted_plane_is_complete_and_reached_before_anything_moves() {
     let plane = "G68.2 X0 Y0 Z0 I0 J45. K0\n";
     for rest in
-        ["G0 X1.", "G53.1\nG0 A5.", "G53.1\nG28 Z0", "G53.1\nG43.4 H1", "G68.2 X0 Y0 Z0 I0 J0 K0"]
+        ["G0 X1.", "G53.1\nG0 A5.", "G53.1\nG53 Z0", "G53.1\nG43.4 H1", "G68.2 X0 Y0 Z0 I0 J0 K0"]
     {
         assert_eq!(rule(FANUC, &format!("{plane}{rest}\n")), "nc-tilt", "{rest}");
     }

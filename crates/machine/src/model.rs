@@ -200,6 +200,8 @@ pub struct Capabilities {
     pub feed_per_turn: bool,
     /// Whether it has inverse-time feed.
     pub inverse_time: bool,
+    /// Whether that is, on an arc too, the number of times that the move goes into a minute.
+    pub inverse_time_arcs: bool,
     /// How the tool length offset is called.
     pub length_offset: LengthOffset,
     /// Largest number of characters in a line, its end not counted.

@@ -95,6 +95,7 @@ sheet!(merged CapabilitiesSheet "capabilities" {
     compensation: bool, "", "Whether it has cutter radius compensation.";
     feed_per_turn: bool, "", "Whether it has feed per turn.";
     inverse_time: bool, "", "Whether it has inverse-time feed.";
+    inverse_time_arcs: bool, "", "Whether inverse-time feed counts the time of an arc as that of a line; FANUC divides by the radius.";
     length_offset: LengthOffset, "", "How the tool length offset is called: implicit, one, tool-number.";
     line_length: usize, "", "Most characters of a line, its end not counted.";
     lowering_tolerance: Positive, "mm", "How far arcs and curves that are split into lines may leave the path.";

@@ -4,7 +4,7 @@ use crate::catalogue::{BlockName, WordName};
 use crate::place::{Kind, Stop};
 use crate::surface::LEVEL_FIRST;
 use crate::template::bit;
-use crate::walk::{Done, PLANE_XY, Walk, motion, refuse};
+use crate::walk::{Cut, Done, PLANE_XY, Walk, motion, refuse};
 use geom::{ANGLE_EPSILON, Arc, ArcError, Vec3, angle_between};
 use machine::Plane;
 use program::{ArcTo, Diagnostic};
@@ -326,7 +326,7 @@ impl Walk<'_> {
             let radius = (start - block.center).reject_from_normalized(Vec3::AXES[w]).length();
             (radius * block.sweep).hypot(block.rise)
         };
-        self.say_feed(if self.is_timed() { length() } else { 0.0 }, 1, false)?;
+        self.say_feed(if self.is_timed() { length() } else { 0.0 }, 1, Cut::Arc)?;
         self.keep_compensation();
         self.writer.code(WordName::Plane, facts.code);
         self.writer.code(WordName::Motion, if ccw { motion::ARC_CCW } else { motion::ARC_CW });

@@ -3,7 +3,7 @@
 use crate::catalogue::{BlockName, WordName};
 use crate::place::{Kind, Stop};
 use crate::template::bit;
-use crate::walk::{Done, Walk, motion, refuse};
+use crate::walk::{Cut, Done, Walk, motion, refuse};
 use geom::{ANGLE_EPSILON, Vec3};
 use machine::CycleName;
 use program::lowering::{self, HoleMove};
@@ -190,7 +190,7 @@ impl Walk<'_> {
         self.writer.set(WordName::S, speed);
         self.writer.set(WordName::Speed, speed);
         let before = std::mem::replace(&mut self.feed, feed);
-        let said = self.say_feed(0.0, 1, false);
+        let said = self.say_feed(0.0, 1, Cut::Straight);
         self.feed = before;
         self.writer.set(WordName::Plunge, said?);
         Ok(())

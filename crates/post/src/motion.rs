@@ -3,7 +3,7 @@
 use crate::catalogue::{BlockName, WordName};
 use crate::place::{Kind, Stop};
 use crate::template::{ORIENTATION, POSITION, Words, bit};
-use crate::walk::{Done, Walk, motion};
+use crate::walk::{Cut, Done, Walk, motion};
 use geom::Vec3;
 use machine::linearise::Stance;
 use machine::plan::Step;
@@ -169,7 +169,8 @@ impl Walk<'_> {
         }
         let goes_on = turning == 0 && self.can_go_on();
         self.check_limits()?;
-        self.say_feed(length, turning.max(1), turning > 0)?;
+        let cut = if turning > 0 { Cut::Turning } else { Cut::Straight };
+        self.say_feed(length, turning.max(1), cut)?;
         self.compensate();
         if self.wire.is_some() {
             self.say_taper();

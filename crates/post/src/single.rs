@@ -3,7 +3,7 @@
 use crate::catalogue::{BlockName, WordName};
 use crate::place::{Kind, Stop, same};
 use crate::template::{POSITION, Words, bit};
-use crate::walk::{Done, Walk, refuse};
+use crate::walk::{Cut, Done, Walk, refuse};
 use program::{Feed, Probe, Thread};
 
 impl Walk<'_> {
@@ -74,7 +74,7 @@ impl Walk<'_> {
             return Err(refuse("probe", "a probing move that goes nowhere"));
         }
         self.check_limits()?;
-        self.say_feed(length, 1, false)?;
+        self.say_feed(length, 1, Cut::Straight)?;
         self.writer.code(WordName::ProbeMode, kind);
         self.block(BlockName::Probe)?;
         self.writer.forget(moved | bit(WordName::Motion));

@@ -116,7 +116,7 @@ fn fanuc() {
     fanuc(REAM, 0.5, &["G98 G89 X10. Y5. Z-12. R3. P500 F120."]);
     fanuc(BORE, 0.0, &["G98 G86 X10. Y5. Z-12. R3. F120."]);
     // G86 has no dwell: the hole is made by moves.
-    fanuc(BORE, 0.5, &["G1 Z-12. F120.", "G4 P500", "M5", "G0 Z20."]);
+    fanuc(BORE, 0.5, &["G1 Z-12. F120.", "G4 X0.5", "M5", "G0 Z20."]);
 }
 
 /// Haas Mill Operator's Manual: P in milliseconds without a point; G84 and G74 turn the spindle, and have

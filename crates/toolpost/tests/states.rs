@@ -119,6 +119,23 @@ fn feeds_a_turn_and_feeds_in_inverse_time_are_written_or_counted_in_mm_per_minut
     }
 }
 
+/// Half a circle of radius 10 in a tenth of a minute: 314.159 mm/min. FANUC would divide by the radius.
+#[test]
+fn an_arc_in_inverse_time_is_written_where_the_control_counts_its_time() {
+    let circle = Circle::new(Vec3::new(20.0, 0.0, 0.0), Vec3::Z, 0).unwrap();
+    let arc = Op::Arc(Box::new(ArcTo { end: at(30.0, 0.0, 20.0), circle }));
+    let ops = [Op::Feed(Feed::InverseTime(10.0)), arc, Op::Line(at(50.0, 0.0, 20.0))];
+    for machine in mills() {
+        let can = &machine.capabilities;
+        let text = written(&machine, &ops).unwrap();
+        let feed = match can.inverse_time && can.inverse_time_arcs {
+            true => "F10",
+            false => "F314",
+        };
+        assert!(!can.arcs.is_empty() && text.contains(feed), "{}: {text}", machine.name);
+    }
+}
+
 /// 15 mm down in a thirtieth of a minute, however long the cut before was.
 #[test]
 fn a_hole_that_is_drilled_by_moves_takes_its_own_time() {

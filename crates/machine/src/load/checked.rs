@@ -342,6 +342,7 @@ impl CheckedSheet {
                 compensation: capabilities.compensation.unwrap_or(false),
                 feed_per_turn: capabilities.feed_per_turn.unwrap_or(false),
                 inverse_time: capabilities.inverse_time.unwrap_or(false),
+                inverse_time_arcs: capabilities.inverse_time_arcs.unwrap_or(true),
                 length_offset: capabilities.length_offset.unwrap_or(LengthOffset::Implicit),
                 line_length,
                 lowering_tolerance: capabilities.lowering_tolerance.map_or(0.005, |mm| mm.0),

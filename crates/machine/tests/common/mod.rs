@@ -24,6 +24,7 @@ pub fn machine(rotary: Vec<RotaryAxis>) -> Machine {
             compensation: true,
             feed_per_turn: true,
             inverse_time: true,
+            inverse_time_arcs: true,
             length_offset: LengthOffset::Implicit,
             line_length: 120,
             lowering_tolerance: 0.01,

@@ -3,6 +3,8 @@
 mod compensation;
 mod technology;
 
+pub(crate) use technology::Cut;
+
 use crate::catalogue::{BlockName, WordName};
 use crate::findings::Findings;
 use crate::place::{Place, Route, Stop};

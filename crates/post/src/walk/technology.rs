@@ -13,6 +13,15 @@ pub(super) mod feed_mode {
     pub(crate) const INVERSE_TIME: usize = 2;
 }
 
+/// What a cut is to the feed.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Cut {
+    Straight,
+    Arc,
+    /// Rotary axes turn, and the control, which knows nothing of the tool tip, is told the time where it can be.
+    Turning,
+}
+
 impl Walk<'_> {
     /// How the source wants corners to be taken. The machine's file says how its control takes them, and what is less
     /// than the source asks for is told.
@@ -180,15 +189,14 @@ impl Walk<'_> {
         matches!(self.feed, Some(Feed::InverseTime(_)))
     }
 
-    /// Says the feed of a cut of `length` mm in the next block, one of `pieces` of the source's. With
-    /// `turning` the control, which knows nothing of the tool tip, is told the time instead, where it
-    /// can be. Answers the feed as it is said.
+    /// Says the feed of a cut of `length` mm in the next block, one of `pieces` of the source's. Answers the feed as it
+    /// is said.
     #[inline]
     pub(crate) fn say_feed(
         &mut self,
         length: f64,
         pieces: usize,
-        turning: bool,
+        cut: Cut,
     ) -> Result<f64, Box<Diagnostic>> {
         let Some(mut feed) = self.feed else {
             // The generator of a wire machine holds the gap, and finds the feed by it.
@@ -204,13 +212,15 @@ impl Walk<'_> {
             *rate *= if within { self.whole / length } else { pieces as f64 };
         }
         let can = &self.machine.capabilities;
+        let turning = cut == Cut::Turning;
+        let timed = can.inverse_time && (cut != Cut::Arc || can.inverse_time_arcs);
         let speed = speed(self.spindle).unwrap_or_default();
         let per_minute = || lowering::feed_per_minute(feed, length, speed);
         let (mode, value) = match feed {
             Feed::PerTurn(value) if can.feed_per_turn && !turning => (feed_mode::PER_TURN, value),
-            Feed::InverseTime(value) if can.inverse_time => (feed_mode::INVERSE_TIME, value),
+            Feed::InverseTime(value) if timed => (feed_mode::INVERSE_TIME, value),
             Feed::PerMinute(_) | Feed::PerTurn(_) | Feed::InverseTime(_)
-                if turning && can.inverse_time && length > 0.0 =>
+                if turning && timed && length > 0.0 =>
             {
                 (feed_mode::INVERSE_TIME, per_minute() / length)
             }

@@ -5,7 +5,7 @@ use super::step::Step;
 use crate::event::Action;
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::{FeedMode, Flavor, G, Group, Motion, bit};
-use geom::Vec3;
+use geom::{Arc, Vec3};
 use program::{Compensation, Feed};
 
 /// The letters of the linear axes.
@@ -163,7 +163,13 @@ impl Step<'_, '_, '_> {
                     return Ok(());
                 }
                 self.feed_for_cut()?;
-                self.arc(target, clockwise)
+                let (from, first) =
+                    (self.state.place.point(self.state.position), self.actions.len());
+                self.arc(target, clockwise)?;
+                if self.flavor == Flavor::Fanuc {
+                    self.count_radii(from, first);
+                }
+                Ok(())
             }
             Motion::Rapid | Motion::Line => {
                 let target = self.target(false)?;
@@ -400,6 +406,23 @@ impl Step<'_, '_, '_> {
             }
         };
         Err(self.block.whole("nc-feed", message))
+    }
+
+    /// FANUC's F of an arc in `G93` is the feed divided by the radius (B-62764EN, "Inverse time feed"), so the arc from
+    /// `from` goes F times into a minute for each radian that it turns. The arc is behind `first` of the actions.
+    fn count_radii(&mut self, from: Vec3, first: usize) {
+        let Some(Feed::InverseTime(f)) = self.state.feed else { return };
+        let arcs = self.actions[first..].iter().enumerate().rev();
+        let found = arcs.filter_map(|(i, action)| match action {
+            Action::Arc(to) => Some((first + i, to)),
+            _ => None,
+        });
+        let Some((at, to)) = found.take(1).next() else { return };
+        let arc = Arc::new(from, to.end.point, to.center, to.normal, to.turns, f64::INFINITY);
+        let rate = arc.map_or(f64::NAN, |arc| f / arc.sweep);
+        self.actions.insert(at, Action::Feed(Feed::InverseTime(rate)));
+        // The next move says its own.
+        self.state.feed = None;
     }
 
     fn spindle_stands(&self) -> bool {

@@ -2,7 +2,7 @@
 //! and where a probe stops.
 
 use super::motion::{LINEAR, Target};
-use super::state::{Tilt, UNKNOWN};
+use super::state::{Length, Tilt, UNKNOWN};
 use super::step::Step;
 use crate::event::Action;
 use crate::iso::language::block::Fault;
@@ -19,6 +19,10 @@ impl Step<'_, '_, '_> {
     /// only; LinuxCNC and GRBL without a word: all axes at once.
     pub(super) fn home(&mut self, second: bool) -> Result<(), Fault> {
         self.before_fixed_position()?;
+        // FANUC goes to the reference position out of a tilted plane (B-64484EN-2, "Tilted working plane").
+        if self.state.tilt != Tilt::None && self.flavor != Flavor::Fanuc {
+            return Err(self.in_tilted_plane());
+        }
         if self.flavor == Flavor::Marlin {
             return self.home_switches();
         }
@@ -46,6 +50,10 @@ impl Step<'_, '_, '_> {
             self.straight(target, true)?;
         }
         self.state.via = Some(self.state.place.point(target.point));
+        // "G28 ... also cancels tool length offsets" is the Haas manual's word for it.
+        if self.flavor == Flavor::Haas {
+            self.change_length(Length::None);
+        }
         let home = self.state.homes[usize::from(second)];
         if !home.is_nan() && target.named < 8 {
             let action = home_action(target.named);
@@ -79,6 +87,9 @@ impl Step<'_, '_, '_> {
     /// `G29`: by rapid through the point on the way of the last `G28`.
     pub(super) fn leave_home(&mut self) -> Result<(), Fault> {
         self.before_fixed_position()?;
+        if self.state.tilt != Tilt::None {
+            return Err(self.in_tilted_plane());
+        }
         let Some(via) = self.state.via else {
             let message = "G29 goes through the point of the last G28, and there was none";
             return Err(self.block.at_group(Group::OneShot, "nc-home", message));
@@ -128,7 +139,9 @@ impl Step<'_, '_, '_> {
             return Ok(());
         }
         let point = Vec3::select(point.is_nan_mask(), self.state.position, point);
-        self.straight(Target { point, named, ..self.place_of_tool() }, rapid)
+        self.straight(Target { point, named, ..self.place_of_tool() }, rapid)?;
+        self.state.z_is_home |= named & 4 != 0;
+        Ok(())
     }
 
     /// `G60`: by rapid, from one side whichever way it comes: past the end where it must.
@@ -197,6 +210,9 @@ impl Step<'_, '_, '_> {
     /// `G53`: to a position in machine coordinates, by rapid.
     pub(super) fn machine_position(&mut self) -> Result<(), Fault> {
         self.before_fixed_position()?;
+        if self.state.tilt != Tilt::None {
+            return Err(self.in_tilted_plane());
+        }
         if self.state.incremental {
             let message = "G53 takes absolute positions; write G90";
             return Err(self.block.at_group(Group::OneShot, "nc-machine-position", message));
@@ -251,11 +267,13 @@ impl Step<'_, '_, '_> {
             let message = "a move to a fixed position in a cycle; cancel it with G80 first";
             return Err(self.block.at_group(Group::OneShot, "nc-cycle", message));
         }
-        if self.state.tilt != Tilt::None {
-            let message = "a move to a fixed position in a tilted plane; cancel it with G69 first";
-            return Err(self.block.at_group(Group::OneShot, "nc-tilt", message));
-        }
         Ok(())
+    }
+
+    /// `G29`, `G53`, and `G28` of most controls, are not for a tilted plane.
+    fn in_tilted_plane(&self) -> Fault {
+        let message = "a move to a fixed position in a tilted plane; cancel it with G69 first";
+        self.block.at_group(Group::OneShot, "nc-tilt", message)
     }
 
     /// The named axes go to their fixed positions.
@@ -267,6 +285,10 @@ impl Step<'_, '_, '_> {
     fn leave(&mut self, named: u8, action: Action) {
         self.switch_compensation();
         let mut point = self.state.place.point(self.state.position);
+        if self.state.tilt != Tilt::None || self.keeps_center() {
+            // Each axis of the machine moves the tip along all of the work.
+            point = UNKNOWN;
+        }
         for (axis, gone) in self.state.frames.depend_on(named).into_iter().enumerate() {
             if gone {
                 point[axis] = f64::NAN;
@@ -277,6 +299,7 @@ impl Step<'_, '_, '_> {
         }
         self.state.position = self.state.place.programmed(point);
         self.state.moved = true;
+        self.state.z_is_home |= named & 4 != 0;
         self.actions.push(action);
     }
 

@@ -79,6 +79,8 @@ pub(crate) struct State {
     pub cycle: Option<Holding>,
     /// The records say where the tool stands, as far as it is known.
     pub told: bool,
+    /// Z stands where `G28`, `G30` or `G53` has sent it.
+    pub z_is_home: bool,
     /// Something has moved.
     pub moved: bool,
     /// Something has moved at feed.
@@ -204,6 +206,7 @@ impl State {
             cycle_dwell: None,
             cycle: None,
             told: all_zero,
+            z_is_home: false,
             moved: false,
             cut: false,
             ended: false,
@@ -234,6 +237,9 @@ impl State {
     pub(super) fn arrive(&mut self, point: Vec3, rotary: [f64; 3]) {
         (self.position, self.rotary) = (point, rotary);
         (self.moved, self.told) = (true, true);
+        // Words of X and Y move Z as well where the axes are not those of the machine.
+        let apart = self.tilt != Tilt::None || matches!(self.length, Length::Center(_));
+        self.z_is_home &= point.z.is_nan() && !apart;
         self.frames.used();
     }
 

@@ -495,10 +495,14 @@ impl Step<'_, '_, '_> {
                 }
                 self.change_by_hand();
             }
-            Some(M::Stop) => self.actions.push(Action::Stop),
+            Some(M::Stop) => {
+                self.actions.push(Action::Stop);
+                self.stop_all()?;
+            }
             // GRBL reads M1 and does nothing.
             Some(M::OptionalStop) if self.flavor != Flavor::Grbl => {
-                self.actions.push(Action::OptionalStop)
+                self.actions.push(Action::OptionalStop);
+                self.stop_all()?;
             }
             Some(M::End) => {
                 // The others switch off by themselves; on FANUC it is the builder's choice.
@@ -510,6 +514,16 @@ impl Step<'_, '_, '_> {
                 self.actions.push(Action::End);
             }
             _ => {}
+        }
+        Ok(())
+    }
+
+    /// `M0` and `M1` of Haas stop the spindle and the coolant, and nothing starts them again (*Mill Operator's Manual*,
+    /// M00). `M1` counts as if the operator had asked for it.
+    fn stop_all(&mut self) -> Result<(), Fault> {
+        if self.flavor == Flavor::Haas {
+            self.turn(Spindle::Off);
+            self.cool(Coolant::Off)?;
         }
         Ok(())
     }

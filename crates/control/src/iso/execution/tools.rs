@@ -3,7 +3,7 @@
 use super::state::{Length, Tilt, UNKNOWN};
 use super::step::Step;
 use crate::ToolData;
-use crate::event::Action;
+use crate::event::{Action, Risk};
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::{Flavor, G, Group, M, bit};
 use program::{Spindle, Tool};
@@ -181,6 +181,19 @@ impl Step<'_, '_, '_> {
         if length == self.state.length {
             return Ok(());
         }
+        let says_z = self.block.has(b'Z') && self.block.g(Group::OneShot).is_none();
+        if self.flavor == Flavor::Fanuc && !self.state.z_is_home && !says_z {
+            self.actions.push(Action::Risk(Risk::LENGTH_CHANGE.into()));
+        }
+        self.change_length(length);
+        Ok(())
+    }
+
+    /// Another length counts from here on; nothing moves.
+    pub(super) fn change_length(&mut self, length: Length) {
+        if length == self.state.length {
+            return;
+        }
         let center = |l: Length| matches!(l, Length::Center(_));
         // The tip's coordinates change by a length that may be known only to the machine; with the
         // tool centre point in play and the axes turned, in all directions.
@@ -196,7 +209,6 @@ impl Step<'_, '_, '_> {
             Length::Register(register) | Length::Center(register) => Some(register),
             Length::Value(_) => Some(0),
         }));
-        Ok(())
     }
 
     /// The length that is in use, mm; NaN where not known.

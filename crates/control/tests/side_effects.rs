@@ -1,0 +1,128 @@
+//! What a control does besides its words: lengths that end or change, home positions that cancel, stops that switch off,
+//! feeds that count otherwise on arcs. Each fact is from the manual that stands beside it.
+
+mod common;
+
+use program::{Coolant, Diagnostic, Feed, Spindle};
+use toolpost_control::{Action, Dialect, Settings};
+
+/// What a program does on a machine with B and C.
+fn run(dialect: Dialect, text: &str) -> Result<Vec<Action>, Box<Diagnostic>> {
+    common::ops(&Settings::new(dialect, [false, true, true]), "p.nc", text)
+}
+
+fn actions(dialect: Dialect, text: &str) -> Vec<Action> {
+    run(dialect, text).unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+/// The rules of what hangs on something that the program does not say.
+fn risks(dialect: Dialect, text: &str) -> Vec<&'static str> {
+    let rule = |action: &Action| match action {
+        Action::Risk(risk) => Some(risk.rule),
+        _ => None,
+    };
+    actions(dialect, text).iter().filter_map(rule).collect()
+}
+
+/// B-64484EN-2, "Tool length compensation"; parameter 5006, bit 6: the axis moves where it is 0, the coordinates where
+/// it is 1. At the reference position the offset is suspended, and where a block says Z its end is the same on both.
+#[test]
+fn a_length_that_changes_on_fanuc_moves_z_or_does_not() {
+    const START: &str = "G21 G90 G94 G17\nT1 M6\nG91 G28 Z0.\nG90 G0 X0. Y0.\n";
+    for (block, harmless) in [
+        ("G43 H1 Z50.\nG49", false),
+        ("G43 H1 Z50.\nG43 H0", false),
+        ("G43 H1 Z50.\nH2\nZ60.", false),
+        ("G43 H1 Z50.\nG43 H2\nZ60.", false),
+        ("G43.4 H1 Z50.\nG49", false),
+        ("G0 Z50.\nG43 H1\nZ40.", false),
+        ("G43 H1 Z50.\nG49 Z60.", true),
+        ("G43 H1 Z50.\nG91 G28 Z0.\nG49", true),
+        ("G43 H1 Z50.\nG91 G30 Z0.\nG90\nG49", true),
+        ("G43 H1 Z50.\nG90 G53 Z0.\nG49", true),
+        ("G43 H1 Z50.\nG91 G28 Z0.\nG90 X50.\nG49", true),
+        ("G43 H1 Z50.\nG91 G28 X0.\nG49", false),
+        ("G43 H1 Z50.\nG91 G28 Z0.\nG90 Z30.\nG49", false),
+        ("G43.4 H1 Z50.\nG91 G28 Z0.\nG49", true),
+        // With the tool centre kept, words of X and Y may move Z.
+        ("G43.4 H1 Z50.\nG91 G28 Z0.\nG90 X50. Y0. B0. C0.\nG49", false),
+        ("G43 H1\nZ50.", true),
+        // No length is active.
+        ("Z50.\nG49", true),
+    ] {
+        let expected: &[&str] = if harmless { &[] } else { &["length-change"] };
+        let found = risks(Dialect::Fanuc, &format!("{START}{block}\nM30\n"));
+        assert_eq!(found, expected, "{block}");
+    }
+}
+
+/// Out of a tilted plane the reference position is reached before `G49` and `G69`; where the tool then stands in the
+/// work nobody knows.
+#[test]
+fn fanuc_goes_home_out_of_a_tilted_plane() {
+    const TILTED: &str = "G21 G90 G94 G17\nT1 M6\nG91 G28 Z0.\nG90 G68.2 X0. Y0. Z0. I0. J30. K0.\nG53.1\n\
+                          G0 X0. Y0.\nG43 H1 Z50.\n";
+    assert!(
+        risks(Dialect::Fanuc, &format!("{TILTED}G91 G28 Z0.\nG90\nG49\nG69\nM30\n")).is_empty()
+    );
+    let over_the_part = format!("{TILTED}G49\nG69\nM30\n");
+    assert_eq!(risks(Dialect::Fanuc, &over_the_part), ["length-change"]);
+    let unknown = format!("{TILTED}G91 G28 Z0.\nG90 G69\nG1 X5. F100.\nM30\n");
+    let cut = actions(Dialect::Fanuc, &unknown);
+    let cut = cut.iter().find_map(|a| if let Action::Line(to) = a { Some(to.point) } else { None });
+    assert!(cut.is_some_and(|point| point.x == 5.0 && point.y.is_nan() && point.z.is_nan()));
+}
+
+/// Haas, *Mill Operator's Manual*, G28: the return to machine zero cancels the tool length offset.
+#[test]
+fn haas_cancels_the_length_at_machine_zero() {
+    let lengths = |dialect| {
+        let text =
+            "G21 G90 G94 G17 G54\nT1 M6\nG0 X0. Y0.\nG43 H1 Z50.\nG28 G91 Z0.\nG90 X5.\nM30\n";
+        let offset = |action: &Action| match action {
+            Action::LengthOffset(register) => Some(*register),
+            _ => None,
+        };
+        actions(dialect, text).iter().filter_map(offset).collect::<Vec<_>>()
+    };
+    assert_eq!(lengths(Dialect::Haas), [Some(1), None]);
+    assert_eq!(lengths(Dialect::Fanuc), [Some(1)]);
+}
+
+/// Haas, *Mill Operator's Manual*, M00 and M01: the spindle stops, and the coolant goes off.
+#[test]
+fn a_stop_of_haas_stops_the_spindle_and_the_coolant() {
+    for stop in ["M0", "M1"] {
+        let text = format!("G21 G90 G94 G17 G54\nT1 M6\nS1000 M3\nM8\n{stop}\nM30\n");
+        let after = |dialect| {
+            let found = actions(dialect, &text);
+            let at = found.iter().position(|a| matches!(a, Action::Stop | Action::OptionalStop));
+            found[at.unwrap() + 1..].to_vec()
+        };
+        let off = [Action::Spindle(Spindle::Off), Action::Coolant(Coolant::Off), Action::End];
+        assert_eq!(after(Dialect::Haas), off);
+        assert_eq!(after(Dialect::Fanuc), [Action::End]);
+    }
+}
+
+/// B-62764EN, "Inverse time feed": on an arc F is the feed divided by the radius. Half a circle of radius 10 at
+/// 200 mm/min: F20, and a π·10/200 of a minute. Haas counts strokes a minute there too.
+#[test]
+fn in_inverse_time_an_arc_of_fanuc_counts_by_its_radius() {
+    for (dialect, rate) in [
+        (Dialect::Fanuc, 20.0 / std::f64::consts::PI),
+        (Dialect::Haas, 20.0),
+        (Dialect::LinuxCnc, 20.0),
+    ] {
+        let text = "G21 G90 G94 G17 G54\nG0 X10. Y0. Z0.\nG93 G3 X-10. Y0. I-10. J0. F20.\nG1 X-20. F20.\nM30\n";
+        let feeds: Vec<Feed> = actions(dialect, text)
+            .iter()
+            .take_while(|action| !matches!(action, Action::Line(_)))
+            .filter_map(|action| if let Action::Feed(feed) = action { Some(*feed) } else { None })
+            .collect();
+        let at = feeds.len() - if dialect == Dialect::Fanuc { 2 } else { 1 };
+        let Feed::InverseTime(counted) = feeds[at] else { panic!("{feeds:?}") };
+        assert!((counted - rate).abs() < 1e-12, "{dialect:?} {feeds:?}");
+        assert_eq!(feeds.last(), Some(&Feed::InverseTime(20.0)));
+    }
+}
