@@ -145,6 +145,13 @@ impl Risk {
         help: "send Z home before (`G91 G28 Z0`), or say Z in the same block",
     };
 
+    /// Turns over the part whose way the program does not say ([`way`](crate::way)).
+    pub(crate) const ROTARY_WAY: Risk = Risk {
+        rule: "rotary-way",
+        what: "turns a rotary axis, and by which way hangs on whether the control counts it modulo 360°",
+        help: "say `modulo` of the axis in the machine file, or write M126 (HEIDENHAIN), DC() (SINUMERIK)",
+    };
+
     /// Work offsets, tool lengths and radii belong to the operator, who has measured them.
     pub(crate) const OPERATOR_DATA: Risk = Risk {
         rule: "operator-data",

@@ -21,6 +21,7 @@ mod points;
 mod relay;
 mod sinumerik;
 pub mod tools;
+mod way;
 
 use compensation::Compensator;
 pub use event::{Action, ArcTo, Event, Orientation, Position, Risk, Thread};
@@ -44,8 +45,10 @@ pub enum Dialect {
     Grbl,
     /// Marlin 2, on a mill.
     Marlin,
-    /// SINUMERIK 840D sl and 828D.
+    /// SINUMERIK 840D sl.
     Sinumerik,
+    /// SINUMERIK 828D: the same but for some work offsets.
+    Sinumerik828d,
     /// HEIDENHAIN Klartext (TNC 640, iTNC 530).
     Klartext,
     /// ISO code of wire-EDM machines: FANUC ROBOCUT.
@@ -62,7 +65,7 @@ pub enum Dialect {
 
 impl Dialect {
     /// Every dialect with the name that a control file gives as its `reader`.
-    pub const NAMES: [(&'static str, Dialect); 13] = [
+    pub const NAMES: [(&'static str, Dialect); 14] = [
         ("fanuc", Dialect::Fanuc),
         ("haas", Dialect::Haas),
         ("linuxcnc", Dialect::LinuxCnc),
@@ -70,6 +73,7 @@ impl Dialect {
         ("grbl", Dialect::Grbl),
         ("marlin", Dialect::Marlin),
         ("sinumerik", Dialect::Sinumerik),
+        ("sinumerik-828d", Dialect::Sinumerik828d),
         ("klartext", Dialect::Klartext),
         ("fanuc-wire", Dialect::FanucWire),
         ("sodick", Dialect::Sodick),
@@ -93,6 +97,7 @@ impl Dialect {
             | Dialect::Grbl
             | Dialect::Marlin
             | Dialect::Sinumerik
+            | Dialect::Sinumerik828d
             | Dialect::FanucWire
             | Dialect::Sodick
             | Dialect::Agie
@@ -105,7 +110,7 @@ impl Dialect {
     /// A FANUC may keep that of the last program, and Klartext takes the operator's preset.
     pub fn work_offset_at_reset(self) -> Option<WorkOffset> {
         match self {
-            Dialect::Sinumerik => Some(WorkOffset::NONE),
+            Dialect::Sinumerik | Dialect::Sinumerik828d => Some(WorkOffset::NONE),
             Dialect::LinuxCnc
             | Dialect::Grbl
             | Dialect::Mach3
@@ -140,6 +145,8 @@ pub struct Settings {
     pub dialect: Dialect,
     /// Which of the rotary axes A, B, C exist; a word for one that does not is an error.
     pub rotary: [bool; 3],
+    /// Whether the control counts A, B, C modulo 360°; `None` where that is not known.
+    pub modulo: [Option<bool>; 3],
     /// Numbers of the M functions that the machine's builder has added (clamps, flaps, chip conveyor),
     /// none of which moves an axis or touches spindle and coolant. Any other M function that is not
     /// the control's own is an error.
@@ -233,6 +240,7 @@ impl Settings {
         Settings {
             dialect,
             rotary,
+            modulo: [None; 3],
             auxiliary: Vec::new(),
             operator_parameters: Vec::new(),
             wire: Wire::default(),
@@ -287,7 +295,7 @@ pub fn read(
             Dialect::Sodick => iso::run(Flavor::Sodick, settings, text, to),
             Dialect::Agie => iso::run(Flavor::Agie, settings, text, to),
             Dialect::FreeCad => iso::run(Flavor::FreeCad, settings, text, to),
-            Dialect::Sinumerik => sinumerik::run(settings, text, to),
+            Dialect::Sinumerik | Dialect::Sinumerik828d => sinumerik::run(settings, text, to),
             Dialect::Klartext => klartext::run(settings, text, to),
             Dialect::Points => points::run(settings, text, to),
         }?;

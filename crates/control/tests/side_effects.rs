@@ -15,13 +15,25 @@ fn actions(dialect: Dialect, text: &str) -> Vec<Action> {
     run(dialect, text).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
+/// The same where the machine's file says how B and C are counted.
+fn risks_counted(dialect: Dialect, modulo: Option<bool>, text: &str) -> Vec<&'static str> {
+    let settings =
+        Settings { modulo: [None, modulo, modulo], ..Settings::new(dialect, [false, true, true]) };
+    let actions = common::ops(&settings, "p.nc", text).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    rules(&actions)
+}
+
 /// The rules of what hangs on something that the program does not say.
 fn risks(dialect: Dialect, text: &str) -> Vec<&'static str> {
+    rules(&actions(dialect, text))
+}
+
+fn rules(actions: &[Action]) -> Vec<&'static str> {
     let rule = |action: &Action| match action {
         Action::Risk(risk) => Some(risk.rule),
         _ => None,
     };
-    actions(dialect, text).iter().filter_map(rule).collect()
+    actions.iter().filter_map(rule).collect()
 }
 
 /// B-64484EN-2, "Tool length compensation"; parameter 5006, bit 6: the axis moves where it is 0, the coordinates where
@@ -125,4 +137,71 @@ fn in_inverse_time_an_arc_of_fanuc_counts_by_its_radius() {
         assert!((counted - rate).abs() < 1e-12, "{dialect:?} {feeds:?}");
         assert_eq!(feeds.last(), Some(&Feed::InverseTime(20.0)));
     }
+}
+
+/// TNC 620 user's manual, "Shorter-path traverse of rotary axes: M126"; SINUMERIK *Axes and Spindles*, MD30310 and MD30455;
+/// FANUC B-64484EN-2, "Rotary axis roll-over". The sources say nothing of an axis that is not counted modulo 360°.
+#[test]
+fn the_way_of_a_rotary_axis_over_the_part_is_the_same_however_it_is_counted() {
+    let klartext = |start: &str, moves: &str| {
+        let text =
+            format!("BEGIN PGM P MM\nTOOL CALL 1 Z S1000\n{start}\n{moves}M30\nEND PGM P MM\n");
+        text.lines().enumerate().map(|(i, line)| format!("{i} {line}\n")).collect::<String>()
+    };
+    let turn = |from: f64, to: f64| {
+        format!("L B+0 C{from:+} R0 FMAX\nL X+0 Y+0 Z+10 R0 FMAX\nL C{to:+} R0 F1000\n")
+    };
+    for (from, to, plain, shorter) in [
+        (-9.8, 0.16, false, true),
+        (350.0, 370.0, false, true),
+        (10.0, 40.0, true, true),
+        (-30.0, -10.0, true, true),
+        (0.0, 180.0, false, false),
+        (0.0, 200.0, false, false),
+    ] {
+        let expected = |held: bool| if held { vec![] } else { vec!["rotary-way"] };
+        let moves = turn(from, to);
+        for modulo in [None, Some(true)] {
+            let found = |start| risks_counted(Dialect::Klartext, modulo, &klartext(start, &moves));
+            assert_eq!(found("M127"), expected(plain), "{from} {to}");
+            assert_eq!(found("M126"), expected(shorter), "{from} {to}");
+            let fanuc = format!(
+                "G21 G90 G94 G54\nG0 B0. C{from:.3}\nX0. Y0. Z10.\nG1 C{to:.3} F100.\nM30\n"
+            );
+            assert_eq!(risks_counted(Dialect::Fanuc, modulo, &fanuc), expected(shorter));
+            let sinumerik =
+                format!("G54 G90 G94\nG0 B0 C={from}\nX0 Y0 Z10\nG1 C={to} F100\nM30\n");
+            assert_eq!(risks_counted(Dialect::Sinumerik, modulo, &sinumerik), expected(plain));
+        }
+        let counts_on = risks_counted(Dialect::Klartext, Some(false), &klartext("M127", &moves));
+        assert!(counts_on.is_empty());
+        // Away from the part an axis may turn as it likes.
+        let away = klartext(
+            "M127",
+            &format!("L C{from:+} R0 FMAX\nL Z+0 R0 FMAX M91\nL C{to:+} R0 FMAX\n"),
+        );
+        assert!(risks_counted(Dialect::Klartext, None, &away).is_empty());
+    }
+    let by_dc = "G54 G90 G94\nG0 B0 C=350\nX0 Y0 Z10\nG1 C=DC(10) F100\nC=IC(300)\nM30\n";
+    assert!(risks_counted(Dialect::Sinumerik, None, by_dc).is_empty());
+}
+
+/// Fundamentals 12/2019, "Settable work offset": on an 828D G58 and G59 call the fifth and the sixth, and there is no G505,
+/// G506; on an 840D sl G58 and G59 are programmable.
+#[test]
+fn the_fifth_work_offset_of_an_828d_is_g58() {
+    let offsets = |dialect, text: &str| -> Result<Vec<u32>, &'static str> {
+        let settings = Settings::new(dialect, [false; 3]);
+        let found = common::ops(&settings, "p.nc", text).map_err(|error| error.rule)?;
+        let number = |action: &Action| match action {
+            Action::WorkOffset(offset) => Some(offset.number()),
+            _ => None,
+        };
+        Ok(found.iter().filter_map(number).collect())
+    };
+    let (of_840d, of_828d) = (Dialect::Sinumerik, Dialect::Sinumerik828d);
+    assert_eq!(offsets(of_828d, "G58\nG0 X1\nG59 X1\nG507 X1\nM30\n"), Ok(vec![58, 59, 60]));
+    assert_eq!(offsets(of_840d, "G505\nG0 X1\nG506 X1\nG507 X1\nM30\n"), Ok(vec![58, 59, 60]));
+    assert_eq!(offsets(of_828d, "G505\nM30\n"), Err("unknown-word"));
+    assert_eq!(offsets(of_840d, "G54\nG58 X10\nG0 X1\nM30\n"), Ok(vec![54]));
 }

@@ -110,6 +110,9 @@ pub struct RotaryAxis {
     pub rapid: f64,
     /// Acceleration, degrees/s².
     pub acceleration: f64,
+    /// Whether its control counts it modulo 360° (SINUMERIK MD30310, FANUC parameter 1008#0, the display of a TNC); `None`
+    /// where that is not known.
+    pub modulo: Option<bool>,
     /// Its clamp, where it has one.
     pub clamp: Option<Clamp>,
     /// Which of the two solutions is taken where nothing else decides: the one in which this axis is

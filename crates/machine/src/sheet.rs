@@ -146,6 +146,7 @@ sheet!(RotarySheet "rotary" {
     max: Number, "degrees", "Upper end of the travel.";
     rapid: Positive, "degrees/min", "Speed of a rapid move.";
     acceleration: Positive, "degrees/s²", "Acceleration.";
+    modulo: bool, "", "Whether its control counts it modulo 360 degrees; an axis whose travel ends within a turn is not, of another it is not known.";
     clamp_open: u32, "", "M function that opens its clamp: the axis turns only after it.";
     clamp_close: u32, "", "M function that closes its clamp. A machine whose axes have clamps needs the blocks `unclamp` and `clamp`.";
     prefer: Finite, "", "Which solution is taken where nothing else decides: the one in which this axis is positive (1) or negative (-1).";

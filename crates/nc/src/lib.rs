@@ -60,14 +60,16 @@ pub fn settings(machine: &Machine, setup: Setup) -> Result<Settings, Box<Diagnos
             .line(place.line)
             .into());
     };
-    let mut rotary = [false; 3];
+    let (mut rotary, mut modulo) = ([false; 3], [None; 3]);
     for axis in &machine.rotary {
         rotary[axis.index()] = true;
+        modulo[axis.index()] = axis.modulo;
     }
     let clamps = machine.rotary.iter().filter_map(|axis| axis.clamp);
     let clamps = clamps.flat_map(|clamp| [clamp.open, clamp.close]);
     Ok(Settings {
         auxiliary: machine.auxiliary.iter().copied().chain(clamps).collect(),
+        modulo,
         operator_parameters: machine.operator_parameters.clone(),
         wire: machine.wire.map_or(Wire::default(), |wire| Wire {
             height: wire.height,

@@ -2,11 +2,12 @@
 //! program does not say.
 
 /// The rules that may be accepted, each with what its acceptance answers for.
-pub const ACCEPTABLE: [(&str, &str); 5] = [
+pub const ACCEPTABLE: [(&str, &str); 6] = [
     ("length-change", "Z moves by the tool length where parameter 5006#6 is 0"),
     ("operator-controls", "the operator can neither stop the program nor slow it down"),
     ("operator-data", "work offsets and tool data that the program rewrites"),
     ("path-tolerance", "corners may be cut by more than the machine's file allows"),
+    ("rotary-way", "which way the rotary axes turn"),
     ("tool-change-height", "the tool change of the machine brings Z up by itself"),
 ];
 

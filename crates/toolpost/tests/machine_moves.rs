@@ -8,7 +8,7 @@ use std::path::Path;
 fn block(machine: &Machine, words: &str) -> String {
     match machine.reader.as_str() {
         "klartext" => format!("L {words} R0 FMAX M91"),
-        "sinumerik" => format!("G0 SUPA {words} D0"),
+        "sinumerik" | "sinumerik-828d" => format!("G0 SUPA {words} D0"),
         _ => format!("G53 G0 {words}"),
     }
 }

@@ -304,7 +304,7 @@ impl Sample {
     /// The text with a block put in somewhere, or with a block that the operator may switch off.
     fn with_block(&self, random: &mut Random) -> Vec<u8> {
         let blocks = match self.machine.reader.as_str() {
-            "sinumerik" => SINUMERIK_BLOCKS,
+            "sinumerik" | "sinumerik-828d" => SINUMERIK_BLOCKS,
             "klartext" => KLARTEXT_BLOCKS,
             _ => ISO_BLOCKS,
         };

@@ -228,10 +228,10 @@ impl<'a> Compensator<'a> {
     /// the spindle; on a SINUMERIK it counts the edges of the tool, of which the table knows the first.
     fn radius(&self, register: Option<u32>) -> Option<f64> {
         let tool = match (self.dialect, register) {
-            (Dialect::Sinumerik, Some(1))
+            (Dialect::Sinumerik | Dialect::Sinumerik828d, Some(1))
             | (Dialect::LinuxCnc, None | Some(0))
             | (Dialect::Klartext, None) => self.tool,
-            (Dialect::Sinumerik, _) | (_, None) => None,
+            (Dialect::Sinumerik | Dialect::Sinumerik828d, _) | (_, None) => None,
             (_, Some(0)) => return (!self.tools.is_empty()).then_some(0.0),
             (_, Some(number)) => self.of_number(number),
         };

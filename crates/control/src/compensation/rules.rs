@@ -70,7 +70,7 @@ impl Rules {
             // Parameters 5003#0,#1 = 0 (type A), 19607#2 = 0, 19625 = 3 blocks, as delivered.
             Dialect::Fanuc => Some(Rules { outer: Outer::Polygon, blind: 1, ..rules }),
             // NORM, G450; MD20250 CUTCOM_MAXNUM_DUMMY_BLOCKS = 3.
-            Dialect::Sinumerik => Some(Rules { blind: 3, ..rules }),
+            Dialect::Sinumerik | Dialect::Sinumerik828d => Some(Rules { blind: 3, ..rules }),
             Dialect::Klartext => Some(rules),
             // Mach3 and Haas have it, and how they go is not documented well enough.
             Dialect::Haas | Dialect::Mach3 => None,

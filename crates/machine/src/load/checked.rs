@@ -184,6 +184,7 @@ fn check_rotary(
         };
         checked.push(RotaryAxis {
             letter,
+            modulo: sheet.modulo.or((max - min < 360.0).then_some(false)),
             clamp,
             on: sheet.on.ok_or_else(|| missing("on"))?,
             axis,

@@ -73,6 +73,7 @@ pub fn axis(letter: char, on: Mount, direction: Vec3, sign: f64) -> RotaryAxis {
         max: f64::INFINITY,
         rapid: 10_800.0,
         acceleration: 500.0,
+        modulo: None,
         clamp: None,
         prefer: 0.0,
     }

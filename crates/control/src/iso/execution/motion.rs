@@ -2,9 +2,10 @@
 
 use super::state::{Polar, Tilt};
 use super::step::Step;
-use crate::event::Action;
+use crate::event::{Action, Risk};
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::{FeedMode, Flavor, G, Group, Motion, bit};
+use crate::way::{self, Modulo};
 use geom::{Arc, Vec3};
 use program::{Compensation, Feed};
 
@@ -221,11 +222,22 @@ impl Step<'_, '_, '_> {
             }
             if let Some(value) = self.take_degrees(letter)? {
                 target.named |= 1 << (axis + 3);
-                target.rotary[axis] =
-                    self.advance(target.rotary[axis], value, letter, unknown_stays)?;
+                let from = target.rotary[axis];
+                target.rotary[axis] = self.advance(from, value, letter, unknown_stays)?;
+                self.hold_way(axis, from, target.rotary[axis]);
             }
         }
         Ok(())
+    }
+
+    /// FANUC turns an axis that rolls over (parameter 1008#0) the shorter way (1008#1 as delivered). Away from the part it
+    /// may turn as it likes.
+    fn hold_way(&mut self, axis: usize, from: f64, to: f64) {
+        let sure = way::is_sure(from, to, self.state.modulo[axis], Modulo::Shorter);
+        let away = self.state.z_is_home || self.state.position.z.is_nan();
+        if self.flavor == Flavor::Fanuc && !self.state.incremental && !sure && !away {
+            self.actions.push(Action::Risk(Risk::ROTARY_WAY.into()));
+        }
     }
 
     /// The words of the two axes of the plane.

@@ -45,6 +45,8 @@ pub(crate) struct State {
     pub position: Vec3,
     /// Positions of A, B, C in degrees; 0 for axes that the machine lacks, NaN where not known.
     pub rotary: [f64; 3],
+    /// Whether the control counts A, B, C modulo 360°, where that is known.
+    pub modulo: [Option<bool>; 3],
     /// What lies between programmed coordinates and the work frame.
     pub frames: Frames,
     /// The same as one way: [`Frames::place`], kept.
@@ -189,6 +191,7 @@ impl State {
             work_offset: None,
             position: start.unwrap_or(UNKNOWN),
             rotary: axes.map(|exists| if exists { f64::NAN } else { 0.0 }),
+            modulo: settings.modulo,
             frames: Frames::new(work_offset, all_zero, turns_offsets),
             place: Place::SAME,
             tilt: Tilt::None,

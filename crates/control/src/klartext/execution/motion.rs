@@ -2,12 +2,13 @@
 
 use super::contour::{Bend, Element, left_of};
 use super::state::{AXES, Control, Tip};
-use crate::event::{Action, ArcTo, Orientation, Position};
+use crate::event::{Action, ArcTo, Orientation, Position, Risk};
 use crate::klartext::language::functions::{Function, When};
 use crate::klartext::language::scan::{Result, Scanner};
 use crate::klartext::language::words::{
     LINEAR, PA, PR, RADIUS, ROTARY, TURN, VECTORS, Words, slot,
 };
+use crate::way::{self, Modulo};
 use geom::{Arc, ArcError, Vec3, direction};
 use program::{Axes, Compensation, MachineMove};
 
@@ -190,6 +191,7 @@ impl Control<'_, '_> {
         }
         if words.has(ROTARY) {
             self.vector = None;
+            self.hold_way(words, degrees, element.start)?;
             self.degrees = degrees;
             // In a plane that is only declared the tip goes where the turning axes take it.
             if self.tilt.is_some() {
@@ -210,6 +212,21 @@ impl Control<'_, '_> {
             return self.emit(Action::Rapid(self.pose(self.here)));
         }
         self.contour_element(s, element, corner)
+    }
+
+    /// Tells where nobody knows which way an axis turns that goes to `degrees` from the place `here` of the tool.
+    fn hold_way(&mut self, words: &Words, degrees: [f64; 3], here: Vec3) -> Result<()> {
+        let modulo = if self.shorter_way { Modulo::Shorter } else { Modulo::AsSetUp };
+        let is_sure = |i: usize| {
+            let (from, counted) = (self.degrees[i], self.settings.modulo[i]);
+            words.is_incremental(1 << (slot::A + i))
+                || way::is_sure(from, degrees[i], counted, modulo)
+        };
+        // Away from the part an axis may turn as it likes; and spatial angles are no positions of axes.
+        if here.z.is_nan() || self.tip == Tip::KeptSpatial || (0..3).all(is_sure) {
+            return Ok(());
+        }
+        self.emit(Action::Risk(Risk::ROTARY_WAY.into()))
     }
 
     /// Tells an element of the contour that is cut.

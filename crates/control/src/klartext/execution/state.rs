@@ -65,6 +65,8 @@ pub(crate) struct Control<'a, 's> {
     /// Radius of the tool in the tool table, mm.
     pub(super) tool_radius: Option<f64>,
     pub(super) per_turn: bool,
+    /// `M126`: rotary axes go the shorter way. `M127` and the end of the program end it.
+    pub(super) shorter_way: bool,
     pub(super) compensation: Compensation,
     pub(super) speed: Option<f64>,
     pub(super) spindle: Spindle,
@@ -111,6 +113,7 @@ impl<'a, 's> Control<'a, 's> {
             tool_number: None,
             tool_radius: None,
             per_turn: false,
+            shorter_way: false,
             compensation: Compensation::Off,
             speed: None,
             spindle: Spindle::Off,
@@ -365,6 +368,10 @@ impl<'a, 's> Control<'a, 's> {
                     self.per_turn = per_turn;
                     self.feed = None;
                 }
+                Ok(())
+            }
+            Function::ShorterWay(on) => {
+                self.shorter_way = on;
                 Ok(())
             }
             Function::Retract(distance, feed) => self.retract(s, distance, feed),

@@ -35,6 +35,8 @@ pub(crate) enum Function {
     ReleaseTip,
     /// Feed for each turn of the spindle (`M136`) or for each minute (`M137`).
     FeedPerTurn(bool),
+    /// Rotary axes go the shorter way (`M126`), or as a parameter of the builder says (`M127`).
+    ShorterWay(bool),
     /// A function that the builder of the machine has added.
     Auxiliary(u32),
     /// Moves nothing and changes no path.
@@ -45,7 +47,7 @@ pub(crate) enum Function {
 }
 
 /// The number of an M function, and what it is. M140 takes its distance from the text.
-const FUNCTIONS: [(u16, Function); 20] = [
+const FUNCTIONS: [(u16, Function); 22] = [
     (0, Function::Stop),
     (1, Function::OptionalStop),
     (2, Function::End),
@@ -62,6 +64,8 @@ const FUNCTIONS: [(u16, Function); 20] = [
     (91, Function::MachineCoordinates { builders: false }),
     (92, Function::MachineCoordinates { builders: true }),
     (99, Function::CallCycle),
+    (126, Function::ShorterWay(true)),
+    (127, Function::ShorterWay(false)),
     (128, Function::KeepTip),
     (129, Function::ReleaseTip),
     (136, Function::FeedPerTurn(true)),
@@ -70,10 +74,8 @@ const FUNCTIONS: [(u16, Function); 20] = [
 
 /// Functions that change neither where the tool goes nor what it does there: the speed in corners
 /// (M90, M134, M135), sister tools (M101, M102, M107, M108), feed in arcs as it is without (M111), the
-/// way of rotary axes (M126, M127), ends of what is refused (M117, M121, M145), probe monitoring
-/// (M141), lift-off at a stop (M148, M149).
-const NEUTRAL: [u16; 16] =
-    [90, 101, 102, 107, 108, 111, 117, 121, 126, 127, 134, 135, 141, 145, 148, 149];
+/// ends of what is refused (M117, M121, M145), probe monitoring (M141), lift-off at a stop (M148, M149).
+const NEUTRAL: [u16; 14] = [90, 101, 102, 107, 108, 111, 117, 121, 134, 135, 141, 145, 148, 149];
 
 /// Functions that are refused, and why.
 const REFUSED: [(u16, &str); 18] = [

@@ -5,12 +5,13 @@ use super::interpreter::Interpreter;
 use super::polar::axes_of_plane;
 use super::state::ToolAxis;
 use crate::compensation::{Outer, Terms};
-use crate::event::Action;
+use crate::event::{Action, Risk};
 use crate::sinumerik::Fallible;
 use crate::sinumerik::language::block::{Block, Coordinate, Count, Rare};
 use crate::sinumerik::language::commands::{Code, Diameter, Motion};
 use crate::sinumerik::language::scan::Source;
 use crate::sinumerik::language::system::AXIS_NAMES;
+use crate::way::{self, Modulo};
 use geom::{Vec3, direction};
 use program::{Axes, Compensation, MachineMove};
 
@@ -219,7 +220,9 @@ impl Interpreter<'_, '_> {
         }
         for i in 0..3 {
             if let Some(coordinate) = block.axes[i + 3] {
-                self.state.rotary[i] = self.turned_to(source, coordinate, i)?;
+                let to = self.turned_to(source, coordinate, i)?;
+                self.hold_way(source, coordinate, i, to)?;
+                self.state.rotary[i] = to;
                 self.check_offset(source, coordinate, i)?;
             }
         }
@@ -248,6 +251,29 @@ impl Interpreter<'_, '_> {
             Count::Negative => from - (from - value).rem_euclid(360.0),
             _ => value,
         })
+    }
+
+    /// Tells where nobody knows which way the axis turns to `to`: one that is counted modulo 360° (MD30310) goes to its
+    /// plain position the shorter way, or without passing 0° (MD30455, bit 2), as Axes and Spindles 12/2019 says.
+    fn hold_way(
+        &mut self,
+        source: &Source,
+        coordinate: Coordinate,
+        index: usize,
+        to: f64,
+    ) -> Fallible<()> {
+        let modulo = match coordinate.count {
+            Count::Shorter => Modulo::Shorter,
+            Count::Absolute => Modulo::AsSetUp,
+            Count::Modal if self.state.absolute => Modulo::AsSetUp,
+            Count::Modal | Count::Incremental | Count::Positive | Count::Negative => return Ok(()),
+        };
+        let (from, counted) = (self.state.rotary[index], self.settings.modulo[index]);
+        // Away from the part an axis may turn as it likes.
+        if self.state.position.z.is_nan() || way::is_sure(from, to, counted, modulo) {
+            return Ok(());
+        }
+        self.emit(source, Action::Risk(Risk::ROTARY_WAY.into()))
     }
 
     /// The proof takes the operator's offset as 0. So it must shift every position of its axis alike:

@@ -3,12 +3,12 @@
 use super::frames::Frames;
 use super::modal::Modal;
 use super::offsets::WorkOffsets;
-use crate::Settings;
 use crate::compensation::Outer;
 use crate::event::{Orientation, Position};
 use crate::sinumerik::language::commands::{Diameter, FeedType, Motion};
 use crate::sinumerik::language::value::Value;
 use crate::sinumerik::language::variables::{Locals, Parameters, Place};
+use crate::{Dialect, Settings};
 use geom::{Frame, Vec3};
 use program::{Compensation, Coolant, Feed, Spindle, Tool};
 
@@ -16,7 +16,7 @@ use program::{Compensation, Coolant, Feed, Spindle, Tool};
 pub const WORK_OFFSET_AT_RESET: u32 = 500;
 
 /// The place of a settable offset as the neutral program counts them: 53 for none (`G500`), 54 to 57,
-/// then `G505` and so on.
+/// then `G505` (on an 828D `G58`, `G59`) and so on.
 pub fn place(number: u32) -> u32 {
     match number {
         500 => 53,
@@ -123,6 +123,8 @@ pub(crate) struct State {
     /// The operator's parameter that the positions of A, B, C are written with, and the line that
     /// wrote one first.
     pub offsets: [Option<(Option<usize>, u32)>; 3],
+    /// The control is an 828D, whose `G58` and `G59` are settable work offsets.
+    pub is_828d: bool,
     /// Whether the program has ended.
     pub ended: bool,
 }
@@ -191,6 +193,7 @@ impl State {
             moved: false,
             machine_known: settings.setup.start.is_some(),
             offsets: [None; 3],
+            is_828d: settings.dialect == Dialect::Sinumerik828d,
             ended: false,
         }
     }
