@@ -145,6 +145,14 @@ impl Risk {
         help: "send Z home before (`G91 G28 Z0`), or say Z in the same block",
     };
 
+    /// A tool length counts along the axis that stands on the plane, or along Z always (SINUMERIK SD42940, "Tool offsets";
+    /// FANUC parameter 5001, tool length types A and B).
+    pub(crate) const LENGTH_PLANE: Risk = Risk {
+        rule: "length-plane",
+        what: "uses a tool length in G18 or G19: whether it counts along Z there, a parameter says (SD42940, 5001)",
+        help: "write G17, or say `length_along_z = true` in [settings] of the machine file where it does",
+    };
+
     /// Turns over the part whose way the program does not say ([`way`](crate::way)).
     pub(crate) const ROTARY_WAY: Risk = Risk {
         rule: "rotary-way",

@@ -147,6 +147,11 @@ pub struct Settings {
     pub rotary: [bool; 3],
     /// Whether the control counts A, B, C modulo 360°; `None` where that is not known.
     pub modulo: [Option<bool>; 3],
+    /// Whether the tool length counts along Z in every plane, where that is known (SINUMERIK SD42940, FANUC parameter
+    /// 5001).
+    pub length_along_z: Option<bool>,
+    /// Whether Z moves where a tool length begins, ends or changes, where that is known (FANUC parameter 5006#6).
+    pub length_moves_axis: Option<bool>,
     /// Numbers of the M functions that the machine's builder has added (clamps, flaps, chip conveyor),
     /// none of which moves an axis or touches spindle and coolant. Any other M function that is not
     /// the control's own is an error.
@@ -241,6 +246,8 @@ impl Settings {
             dialect,
             rotary,
             modulo: [None; 3],
+            length_along_z: None,
+            length_moves_axis: None,
             auxiliary: Vec::new(),
             operator_parameters: Vec::new(),
             wire: Wire::default(),

@@ -205,3 +205,31 @@ fn the_fifth_work_offset_of_an_828d_is_g58() {
     assert_eq!(offsets(of_828d, "G505\nM30\n"), Err("unknown-word"));
     assert_eq!(offsets(of_840d, "G54\nG58 X10\nG0 X1\nM30\n"), Ok(vec![54]));
 }
+
+/// SINUMERIK *Tools*, SD42940: as delivered the plane decides along which axis the length counts, G17 Z, G18 Y, G19 X. FANUC
+/// parameter 5001: length type A is Z, type B the axis that stands on the plane.
+#[test]
+fn a_tool_length_in_another_plane_counts_along_another_axis() {
+    let risks = |dialect, length_along_z, text: &str| {
+        let settings = Settings { length_along_z, ..Settings::new(dialect, [false; 3]) };
+        rules(&common::ops(&settings, "p.nc", text).unwrap_or_else(|e| panic!("{e}\n{text}")))
+    };
+    let sinumerik = "G54 G90 G94 G17\nT1\nM6\nD1\nG0 X0 Y0 Z5\nG18 G1 Z0 F100\nG2 X10 Z0 I5 K0\nG17 G0 Z5\nM30\n";
+    for (length_along_z, found) in [(None, 2), (Some(false), 2), (Some(true), 0)] {
+        let expected = vec!["length-plane"; found];
+        assert_eq!(risks(Dialect::Sinumerik, length_along_z, sinumerik), expected);
+    }
+    // Without an edge there is no length.
+    let none = sinumerik.replace("\nD1\n", "\nD0\n");
+    assert!(risks(Dialect::Sinumerik, None, &none).is_empty());
+
+    let fanuc = "G21 G90 G94 G54\nT1 M6\nG18\nG0 X0. Y0.\nG43 Z5. H1\nM30\n";
+    for (length_along_z, found) in [(None, 1), (Some(false), 1), (Some(true), 0)] {
+        let expected = vec!["length-plane"; found];
+        assert_eq!(risks(Dialect::Fanuc, length_along_z, fanuc), expected);
+        assert!(risks(Dialect::Haas, length_along_z, fanuc).is_empty());
+    }
+    // What has begun along Z stays there.
+    let before = fanuc.replace("G18\n", "").replace("M30", "G18 G1 X5. F100.\nM30");
+    assert!(risks(Dialect::Fanuc, None, &before).is_empty());
+}

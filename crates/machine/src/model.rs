@@ -27,6 +27,8 @@ pub struct Machine {
     pub capabilities: Capabilities,
     /// How text is put together.
     pub format: Format,
+    /// Parameters of the control.
+    pub settings: ControlSettings,
     /// The words of the control by name (`X`, `F`, `N` ...).
     pub words: BTreeMap<String, Word>,
     /// The blocks (templates) of the control by name (`linear`, `tool_change` ...).
@@ -62,6 +64,15 @@ pub struct Machine {
     pub approach: Vec<String>,
     /// Values that the templates of this machine read, by name.
     pub options: BTreeMap<String, OptionValue>,
+}
+
+/// Parameters of the control as the machine has them; `None` is not known.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct ControlSettings {
+    /// Whether the tool length counts along Z in every plane (SINUMERIK SD42940, FANUC parameter 5001).
+    pub length_along_z: Option<bool>,
+    /// Whether Z moves where a tool length begins, ends or changes (FANUC parameter 5006#6).
+    pub length_moves_axis: Option<bool>,
 }
 
 /// A linear axis.

@@ -25,6 +25,7 @@ pub fn keys() -> impl Iterator<Item = &'static Key> {
         Sheet::KEYS,
         CapabilitiesSheet::KEYS,
         FormatSheet::KEYS,
+        SettingsSheet::KEYS,
         WordSheet::KEYS,
         LinearSheet::KEYS,
         RotarySheet::KEYS,
@@ -69,6 +70,7 @@ sheet!(Sheet "" {
     extension: String, "", "Ending of its programs, without the dot.";
     capabilities: CapabilitiesSheet, "", "Table: what the control can do; what it cannot is lowered.";
     format: FormatSheet, "", "Table: how text is put together.";
+    settings: SettingsSheet, "", "Table: parameters of the control as this machine has them; of one that is not given every value is tried, and each must be safe.";
     words: BTreeMap<String, Spanned<WordSheet>>, "", "Table: how each word is written.";
     blocks: BTreeMap<String, Spanned<String>>, "", "Table: the templates of the blocks.";
     axes: BTreeMap<LinearName, Spanned<LinearSheet>>, "", "Table: X, Y and Z.";
@@ -99,6 +101,11 @@ sheet!(merged CapabilitiesSheet "capabilities" {
     length_offset: LengthOffset, "", "How the tool length offset is called: implicit, one, tool-number.";
     line_length: usize, "", "Most characters of a line, its end not counted.";
     lowering_tolerance: Positive, "mm", "How far arcs and curves that are split into lines may leave the path.";
+});
+
+sheet!(merged SettingsSheet "settings" {
+    length_along_z: bool, "", "Whether the tool length counts along Z in every plane: SINUMERIK SD42940 is 17, FANUC parameters 5001#0 and 5001#1 are 0.";
+    length_moves_axis: bool, "", "Whether Z moves where a tool length begins, ends or changes: FANUC parameter 5006#6 is 0.";
 });
 
 sheet!(merged FormatSheet "format" {

@@ -291,6 +291,7 @@ impl Walk<'_> {
         if self.located {
             self.uncompensated("a new orientation")?;
             self.tool_center_off()?;
+            self.plane_xy()?;
             self.required(BlockName::Retract)?;
             self.lose_position();
         }

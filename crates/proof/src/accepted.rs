@@ -2,8 +2,9 @@
 //! program does not say.
 
 /// The rules that may be accepted, each with what its acceptance answers for.
-pub const ACCEPTABLE: [(&str, &str); 6] = [
+pub const ACCEPTABLE: [(&str, &str); 7] = [
     ("length-change", "Z moves by the tool length where parameter 5006#6 is 0"),
+    ("length-plane", "along which axis the tool length counts in G18 and G19"),
     ("operator-controls", "the operator can neither stop the program nor slow it down"),
     ("operator-data", "work offsets and tool data that the program rewrites"),
     ("path-tolerance", "corners may be cut by more than the machine's file allows"),

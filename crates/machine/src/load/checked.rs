@@ -52,6 +52,7 @@ pub(super) struct CheckedSheet {
     extension: Option<String>,
     capabilities: CapabilitiesSheet,
     format: FormatSheet,
+    settings: SettingsSheet,
     words: BTreeMap<String, (WordSheet, Place)>,
     blocks: BTreeMap<String, Block>,
     axes: BTreeMap<LinearName, Placed<LinearSheet>>,
@@ -91,6 +92,7 @@ impl CheckedSheet {
             extension: sheet.extension,
             capabilities: sheet.capabilities.unwrap_or_default(),
             format: sheet.format.unwrap_or_default(),
+            settings: sheet.settings.unwrap_or_default(),
             words: sheet.words.unwrap_or_default().into_iter().map(word).collect(),
             blocks: blocks.map(|(name, text)| (name, file.block(text))).collect(),
             axes: axes?,
@@ -248,6 +250,7 @@ impl CheckedSheet {
             extension: nearer.extension.or(self.extension),
             capabilities: self.capabilities.under(nearer.capabilities),
             format: self.format.under(nearer.format),
+            settings: self.settings.under(nearer.settings),
             words: overlay(self.words, nearer.words, |farther, nearer| {
                 (farther.0.under(nearer.0), nearer.1)
             }),
@@ -347,6 +350,10 @@ impl CheckedSheet {
                 length_offset: capabilities.length_offset.unwrap_or(LengthOffset::Implicit),
                 line_length,
                 lowering_tolerance: capabilities.lowering_tolerance.map_or(0.005, |mm| mm.0),
+            },
+            settings: ControlSettings {
+                length_along_z: self.settings.length_along_z,
+                length_moves_axis: self.settings.length_moves_axis,
             },
             format: Format {
                 separator: format.separator.unwrap_or_else(|| " ".into()),

@@ -29,6 +29,7 @@ pub fn machine(rotary: Vec<RotaryAxis>) -> Machine {
             line_length: 120,
             lowering_tolerance: 0.01,
         },
+        settings: ControlSettings::default(),
         format: Format {
             separator: " ".into(),
             line_end: "\n".into(),

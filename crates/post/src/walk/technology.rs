@@ -55,6 +55,8 @@ impl Walk<'_> {
             LengthOffset::One => Some(1.0),
             LengthOffset::ToolNumber => Some(tool.offset.map_or(number, f64::from)),
         };
+        // The plane may say along which axis the length counts.
+        self.plane_xy()?;
         self.writer.set(WordName::T, number);
         self.writer.forget(LENGTH_OFFSET);
         self.say_length_offset();

@@ -5,7 +5,7 @@ use super::step::Step;
 use crate::ToolData;
 use crate::event::{Action, Risk};
 use crate::iso::language::block::Fault;
-use crate::iso::language::words::{Flavor, G, Group, M, bit};
+use crate::iso::language::words::{Flavor, G, Group, M, Plane, bit};
 use program::{Spindle, Tool};
 
 /// What the program can know of the tool registers.
@@ -181,12 +181,23 @@ impl Step<'_, '_, '_> {
         if length == self.state.length {
             return Ok(());
         }
-        let says_z = self.block.has(b'Z') && self.block.g(Group::OneShot).is_none();
-        if self.flavor == Flavor::Fanuc && !self.state.z_is_home && !says_z {
-            self.actions.push(Action::Risk(Risk::LENGTH_CHANGE.into()));
+        if self.flavor == Flavor::Fanuc {
+            self.hold_length(length);
         }
         self.change_length(length);
         Ok(())
+    }
+
+    /// Tells where parameters of the control say what `length` does.
+    fn hold_length(&mut self, length: Length) {
+        let says_z = self.block.has(b'Z') && self.block.g(Group::OneShot).is_none();
+        if self.state.length_moves_axis != Some(false) && !self.state.z_is_home && !says_z {
+            self.actions.push(Action::Risk(Risk::LENGTH_CHANGE.into()));
+        }
+        let begins = length != Length::None && self.state.plane != Plane::Xy;
+        if begins && self.state.length_along_z != Some(true) {
+            self.actions.push(Action::Risk(Risk::LENGTH_PLANE.into()));
+        }
     }
 
     /// Another length counts from here on; nothing moves.

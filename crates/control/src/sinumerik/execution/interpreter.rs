@@ -178,6 +178,13 @@ impl<'a, 's> Interpreter<'a, 's> {
             }
             _ => {
                 self.technology(source, block)?;
+                let is_across = self.state.plane_normal != 2 && self.state.edge.is_some();
+                if is_across
+                    && self.settings.length_along_z != Some(true)
+                    && block.axes[..3].iter().any(Option::is_some)
+                {
+                    self.emit(source, Action::Risk(Risk::LENGTH_PLANE.into()))?;
+                }
                 self.motion(source, block)?;
             }
         }
