@@ -137,6 +137,14 @@ impl Risk {
         help: "leave it out; where the operator knows of it, `--accept operator-controls` lets it pass",
     };
 
+    /// `G84` and `G74` that do not couple feed and spindle: LinuxCNC ("Canned Cycles": for a floating chuck), Mach3, and
+    /// FANUC without `M29` (parameter 5200#0).
+    pub(crate) const FLOATING_TAP: Risk = Risk {
+        rule: "floating-tap",
+        what: "taps without coupling feed and spindle: a tap that is held fast breaks",
+        help: "tap by G33.1 (LinuxCNC) or behind M29 (FANUC); or say `floating_holder = true` in [settings] of the machine file",
+    };
+
     /// FANUC moves Z by a length that begins, ends or changes, or it moves the coordinates: parameter 5006, bit 6
     /// (B-64484EN-2, "Tool length compensation").
     pub(crate) const LENGTH_CHANGE: Risk = Risk {
@@ -151,6 +159,13 @@ impl Risk {
         rule: "length-plane",
         what: "uses a tool length in G18 or G19: whether it counts along Z there, a parameter says (SD42940, 5001)",
         help: "write G17, or say `length_along_z = true` in [settings] of the machine file where it does",
+    };
+
+    /// Where `G30` goes, and `G28` of LinuxCNC and GRBL, parameters or the operator have set: it may be in the part.
+    pub(crate) const STORED_POSITION: Risk = Risk {
+        rule: "stored-position",
+        what: "sends Z to a position that is stored in the control, not to the end of its travel",
+        help: "retract by G53 to the safe height of the machine, or by the G28 of a control whose G28 is the reference position",
     };
 
     /// Turns over the part whose way the program does not say ([`way`](crate::way)).

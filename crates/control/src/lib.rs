@@ -152,6 +152,8 @@ pub struct Settings {
     pub length_along_z: Option<bool>,
     /// Whether Z moves where a tool length begins, ends or changes, where that is known (FANUC parameter 5006#6).
     pub length_moves_axis: Option<bool>,
+    /// Whether taps are held in a chuck that floats along its axis.
+    pub floating_holder: bool,
     /// Numbers of the M functions that the machine's builder has added (clamps, flaps, chip conveyor),
     /// none of which moves an axis or touches spindle and coolant. Any other M function that is not
     /// the control's own is an error.
@@ -247,6 +249,7 @@ impl Settings {
             rotary,
             modulo: [None; 3],
             length_along_z: None,
+            floating_holder: false,
             length_moves_axis: None,
             auxiliary: Vec::new(),
             operator_parameters: Vec::new(),

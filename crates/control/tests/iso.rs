@@ -582,7 +582,9 @@ fn compensation_starts_with_a_linear_move() {
 #[test]
 fn the_way_home_leads_through_the_point_of_the_block() {
     for dialect in [FANUC, LINUXCNC, GRBL] {
-        let got = ops_3(dialect, "G90 G0 X1. Y2. Z3.\nG28 Z20.\nG0 Z1.\nG91 G28 X0 Y0\n");
+        let mut got = ops_3(dialect, "G90 G0 X1. Y2. Z3.\nG28 Z20.\nG0 Z1.\nG91 G28 X0 Y0\n");
+        // On two of them the operator has stored where that is.
+        got.retain(|action| !matches!(action, Action::Risk(_)));
         let nan = f64::NAN;
         let expected = vec![
             Action::Rapid(at(1.0, 2.0, 3.0)),
@@ -597,9 +599,9 @@ fn the_way_home_leads_through_the_point_of_the_block() {
         assert_eq!(rule(dialect, "G91 G53 G0 Z0\n"), "nc-machine-position");
     }
     assert_eq!(rule(FANUC, "G28\n"), "nc-home");
-    assert_eq!(ops(GRBL, "G28\n"), [Action::Home(Axes::LINEAR)]);
+    assert_eq!(ops(GRBL, "G28\n")[1..], [Action::Home(Axes::LINEAR)]);
     assert_eq!(
-        ops(LINUXCNC, "G30\n"),
+        ops(LINUXCNC, "G30\n")[1..],
         [Action::Home(Axes::X | Axes::Y | Axes::Z | Axes::A | Axes::C)]
     );
 }

@@ -50,7 +50,6 @@ fn a_length_that_changes_on_fanuc_moves_z_or_does_not() {
         ("G0 Z50.\nG43 H1\nZ40.", false),
         ("G43 H1 Z50.\nG49 Z60.", true),
         ("G43 H1 Z50.\nG91 G28 Z0.\nG49", true),
-        ("G43 H1 Z50.\nG91 G30 Z0.\nG90\nG49", true),
         ("G43 H1 Z50.\nG90 G53 Z0.\nG49", true),
         ("G43 H1 Z50.\nG91 G28 Z0.\nG90 X50.\nG49", true),
         ("G43 H1 Z50.\nG91 G28 X0.\nG49", false),
@@ -232,4 +231,28 @@ fn a_tool_length_in_another_plane_counts_along_another_axis() {
     // What has begun along Z stays there.
     let before = fanuc.replace("G18\n", "").replace("M30", "G18 G1 X5. F100.\nM30");
     assert!(risks(Dialect::Fanuc, None, &before).is_empty());
+}
+
+/// FANUC parameters 1241 to 1243, LinuxCNC #5161 and #5181, GRBL `G28.1`: these positions are the operator's. A way home
+/// that the program itself has stored is known.
+#[test]
+fn a_stored_position_is_no_reference_position() {
+    for (dialect, block, told) in [
+        (Dialect::Fanuc, "G91 G28 Z0.", false),
+        (Dialect::Fanuc, "G91 G30 Z0.", true),
+        (Dialect::Fanuc, "G91 G30 P4 Z0.", true),
+        (Dialect::Fanuc, "G91 G30 P4 X0.", false),
+        (Dialect::Haas, "G91 G28 Z0.", false),
+        (Dialect::Mach3, "G91 G28 Z0", false),
+        (Dialect::Mach3, "G91 G30 Z0", true),
+        (Dialect::LinuxCnc, "G91 G28 Z0", true),
+        (Dialect::LinuxCnc, "G30", true),
+        (Dialect::Grbl, "G91 G28 Z0", true),
+    ] {
+        let settings = Settings::new(dialect, [false; 3]);
+        let text = format!("G21 G90 G94 G17 G54\nG0 X0. Y0. Z50.\n{block}\nM30\n");
+        let found = common::ops(&settings, "p.nc", &text).unwrap_or_else(|e| panic!("{e}\n{text}"));
+        let expected: &[&str] = if told { &["stored-position"] } else { &[] };
+        assert_eq!(rules(&found), expected, "{dialect:?} {block}");
+    }
 }

@@ -70,6 +70,7 @@ pub fn settings(machine: &Machine, setup: Setup) -> Result<Settings, Box<Diagnos
     Ok(Settings {
         auxiliary: machine.auxiliary.iter().copied().chain(clamps).collect(),
         modulo,
+        floating_holder: machine.settings.floating_holder,
         length_along_z: machine.settings.length_along_z,
         length_moves_axis: machine.settings.length_moves_axis,
         operator_parameters: machine.operator_parameters.clone(),

@@ -183,8 +183,10 @@ names! {
         Euler2 Word "E2", "degrees", "Turn about the new X, second.";
         Euler3 Word "E3", "degrees", "Turn about the new Z, third.";
         SafeHeight Word "SAFE_HEIGHT", "mm", "The safe height of the machine, in machine coordinates (`safe_height`): in every block.";
+        RapidFeed Word "RAPID_FEED", "mm/min", "The fastest rapid of X, Y and Z, for a control whose rapids go at the last F: in every block. F is said anew behind it.";
         Surface Word "SURFACE", "mm", "Cycle: level of the point of the hole.";
         Clear Word "CLEAR", "mm", "Cycle: level from which the tool feeds (R plane).";
+        RPlane Word "R_PLANE", "mm", "Cycle: the same level as a coordinate of a move. A cycle that places it makes one hole, by moves that end at the retract level, and is written for each.";
         Bottom Word "BOTTOM", "mm", "Cycle: level of the bottom.";
         Retract Word "RETRACT", "mm", "Cycle: level to which the tool goes back.";
         Depth Word "DEPTH", "mm", "Cycle: depth from the point of the hole, positive.";

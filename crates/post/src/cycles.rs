@@ -112,7 +112,16 @@ impl Walk<'_> {
         };
         let over = pose.lifted(cycle.retract)?;
         let open = Open { block: name, levels };
-        if self.open_cycle == Some(open) {
+        if self.templates.places(name, WordName::RPlane) {
+            self.end_cycle()?;
+            self.settle(pose, stop, false)?;
+            self.go_over(&over, stop)?;
+            self.plane_xy()?;
+            self.say_cycle(cycle, &levels)?;
+            self.say_hole(at, &levels);
+            self.block(name)?;
+            self.writer.forget(bit(WordName::Motion));
+        } else if self.open_cycle == Some(open) {
             self.say_hole(at, &levels);
             self.block(BlockName::CycleHole)?;
         } else {
@@ -159,6 +168,8 @@ impl Walk<'_> {
     fn say_cycle(&mut self, cycle: &Cycle, levels: &Levels) -> Done {
         let w = &mut self.writer;
         w.forget(bit(WordName::Bottom) | bit(WordName::Clear) | bit(WordName::Motion));
+        w.forget(bit(WordName::RPlane) | bit(WordName::Retract) | bit(WordName::Lead));
+        w.set(WordName::RPlane, levels.clear);
         w.set(WordName::Surface, levels.surface);
         w.set(WordName::Retract, levels.retract);
         w.set(WordName::Depth, levels.surface - levels.bottom);
@@ -184,6 +195,7 @@ impl Walk<'_> {
         let mut feed = cycle.feed.or(self.feed);
         if let CycleKind::Tap { pitch, left } = cycle.kind {
             self.writer.set(WordName::Pitch, if left { -pitch } else { pitch });
+            self.writer.set(WordName::Lead, pitch);
             // The feed of a tap follows from its pitch, whatever else is active.
             feed = Some(Feed::PerMinute(pitch * speed));
         }

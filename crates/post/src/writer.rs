@@ -91,8 +91,10 @@ impl Writer {
         };
         if let Some(height) = machine.safe_height {
             writer.set(WordName::SafeHeight, height);
-            writer.constant = writer.set;
         }
+        let rapids = machine.linear.iter().map(|axis| axis.rapid);
+        writer.set(WordName::RapidFeed, rapids.fold(0.0, f64::max));
+        writer.constant = writer.set;
         writer
     }
 

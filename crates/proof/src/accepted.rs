@@ -2,13 +2,15 @@
 //! program does not say.
 
 /// The rules that may be accepted, each with what its acceptance answers for.
-pub const ACCEPTABLE: [(&str, &str); 7] = [
+pub const ACCEPTABLE: [(&str, &str); 9] = [
+    ("floating-tap", "taps are held in a floating chuck"),
     ("length-change", "Z moves by the tool length where parameter 5006#6 is 0"),
     ("length-plane", "along which axis the tool length counts in G18 and G19"),
     ("operator-controls", "the operator can neither stop the program nor slow it down"),
     ("operator-data", "work offsets and tool data that the program rewrites"),
     ("path-tolerance", "corners may be cut by more than the machine's file allows"),
     ("rotary-way", "which way the rotary axes turn"),
+    ("stored-position", "where the stored position is to which Z goes"),
     ("tool-change-height", "the tool change of the machine brings Z up by itself"),
 ];
 

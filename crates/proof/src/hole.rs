@@ -99,6 +99,11 @@ impl Run {
         *self = Run { deepest: cycle.clearance, reentry, chip_break, ..Run::default() };
     }
 
+    /// A canned cycle has made the hole of `cycle`, and the tool stands at its R plane.
+    pub fn drilled(&mut self, cycle: &Cycle) {
+        (self.over, self.dwelled, self.deepest) = (true, true, -cycle.depth);
+    }
+
     /// Whether the tool is in the hole.
     pub fn begun(&self, cycle: &Cycle) -> bool {
         self.over && self.deepest < cycle.clearance
@@ -272,11 +277,11 @@ impl Drilled {
         }
     }
 
-    /// Holds the places of the hole against those of the source.
+    /// Holds the places of the hole against those of the source; where it ends only where it `ends` there.
     ///
     /// # Errors
     /// Which of them is elsewhere.
-    pub fn place(&self, hole: &Hole) -> Result<(), String> {
+    pub fn place(&self, hole: &Hole, ends: bool) -> Result<(), String> {
         let cycle = hole.cycle;
         for (what, station, height) in [
             ("bottom of the hole", &self.bottom, -cycle.depth),
@@ -284,7 +289,8 @@ impl Drilled {
             ("retract level", &self.retracted, cycle.retract),
         ] {
             let should = hole.point.lifted(height);
-            if !hole.gauge.at(station, &should) {
+            let counts = ends || height != cycle.retract;
+            if counts && !hole.gauge.at(station, &should) {
                 let apart = Number(station.place.tip.distance(should.tip));
                 let (is, should): (&Place, _) = (&station.place, should);
                 return Err(format!("has the {what} at {is}, but should at {should}: {apart} mm"));

@@ -77,13 +77,11 @@ fn stands(machine: &str, kind: CycleKind, dwell: f64, row: &[&str]) {
 }
 
 /// LinuxCNC's manual, "Canned Cycles": P in seconds, the pitch of a tap is F / S.
-const LINUXCNC: [(CycleKind, f64, &str); 10] = [
+const LINUXCNC: [(CycleKind, f64, &str); 8] = [
     (DRILL, 0.0, "G98 G81 X10 Y5 Z-12 R3 F120"),
     (DRILL, 0.5, "G98 G82 X10 Y5 Z-12 R3 P0.5 F120"),
     (DEEP, 0.0, "G98 G83 X10 Y5 Z-12 R3 Q4 F120"),
     (BREAK_CHIP, 0.0, "G98 G73 X10 Y5 Z-12 R3 Q4 F120"),
-    (TAP, 0.0, "G98 G84 X10 Y5 Z-12 R3 P0 F1250"),
-    (LEFT_TAP, 0.5, "G98 G74 X10 Y5 Z-12 R3 P0.5 F1250"),
     (REAM, 0.0, "G98 G85 X10 Y5 Z-12 R3 F120"),
     (REAM, 0.5, "G98 G89 X10 Y5 Z-12 R3 P0.5 F120"),
     (BORE, 0.0, "G98 G86 X10 Y5 Z-12 R3 P0 F120"),
@@ -94,12 +92,68 @@ const LINUXCNC: [(CycleKind, f64, &str); 10] = [
 fn linuxcnc_and_mach3() {
     for (kind, dwell, block) in LINUXCNC {
         stands("generic-3axis-linuxcnc", kind, dwell, &[block, "G80"]);
-        // Mach3 is told P of a tap by nothing.
-        if !matches!(kind, CycleKind::Tap { .. }) {
-            stands("generic-3axis-mach3", kind, dwell, &[block, "G80"]);
+        stands("generic-3axis-mach3", kind, dwell, &[block, "G80"]);
+    }
+    // Rigid tapping: in, and with the spindle reversed out to where it began.
+    for kind in [TAP, LEFT_TAP] {
+        stands("generic-3axis-linuxcnc", kind, 0.0, &["Z3", "G33.1 Z-12 K1.25", "G0 Z20"]);
+    }
+    assert_eq!(posted("generic-3axis-linuxcnc", cycle(TAP, 0.5)), Err("cycle-tap"));
+}
+
+/// LinuxCNC's manual, "G84", "G74": for a floating chuck. Mach3 has no G74; FANUC couples feed and spindle behind M29
+/// (parameter 5200#0). Where taps float the machine's file says it.
+#[test]
+fn taps_that_are_not_coupled_need_a_floating_holder() {
+    let g84 = "cycle_tap = \"{{N}} {{feed_mode}} G98 G84 {{X}} {{Y}} {{BOTTOM}} {{CLEAR}} {{F}}\"";
+    for name in [
+        "generic-3axis-iso",
+        "generic-3axis-mach3",
+        "generic-3axis-fanuc",
+        "generic-3axis-linuxcnc",
+    ] {
+        for floats in [false, true] {
+            let text = format!(
+                "extends = \"{name}\"\n[settings]\nfloating_holder = {floats}\n[capabilities]\n\
+                 cycles = [\"tap\"]\n[blocks]\n{g84}\n"
+            );
+            let machine = machine::load_text("m.toml", &text).unwrap();
+            let source = source(cycle(TAP, 0.0));
+            let output = post::write(&source, &machine).unwrap();
+            let report = proof::prove(&source, &machine, "p", &output.text, &Default::default());
+            let found = report.mismatches.first().map(|found| found.rule);
+            assert_eq!(found, (!floats).then_some("floating-tap"), "{name}");
         }
     }
-    stands("generic-3axis-mach3", TAP, 0.0, &["G98 G84 X10 Y5 Z-12 R3 F1250"]);
+    for name in ["generic-3axis-iso", "generic-3axis-mach3"] {
+        assert_eq!(posted(name, cycle(TAP, 0.0)), Err("cycle-tap"));
+        assert_eq!(posted(name, cycle(LEFT_TAP, 0.0)), Err("cycle-tap"));
+    }
+}
+
+/// A hole that ends at the R plane is done when the tool is at the retract level, straight above.
+#[test]
+fn the_way_up_belongs_to_a_hole_that_ends_at_the_r_plane() {
+    let machine = machine::load("generic-3axis-linuxcnc").unwrap();
+    let source = source(cycle(TAP, 0.0));
+    let output = post::write(&source, &machine).unwrap();
+    let text = String::from_utf8(output.text).unwrap();
+    let rule = |text: &str| {
+        let report = proof::prove(&source, &machine, "p", text.as_bytes(), &Default::default());
+        report.mismatches.first().map(|found| found.rule)
+    };
+    assert_eq!(rule(&text), None);
+    let up = "G33.1 Z-12 K1.25\nG0 Z20\n";
+    assert!(text.contains(up), "{text}");
+    for other in [
+        "G33.1 Z-12 K1.25\n",
+        "G33.1 Z-12 K1.25\nG0 X50\nG0 Z20\n",
+        "G33.1 Z-12 K1.25\nG0 Z25\n",
+        "G33.1 Z-12 K1.2\nG0 Z20\n",
+        "G33.1 Z-13 K1.25\nG0 Z20\n",
+    ] {
+        assert!(rule(&text.replace(up, other)).is_some(), "{other}");
+    }
 }
 
 /// B-64484EN-2, "Canned cycle for drilling": P in milliseconds; M29 announces rigid tapping.
@@ -298,7 +352,13 @@ fn every_cycle_is_read_as_it_was_meant() {
         "generic-3axis-heidenhain",
     ];
     for machine in machines.map(|name| machine::load(name).unwrap()) {
-        for kind in [DRILL, DEEP, BREAK_CHIP, TAP, LEFT_TAP, REAM, BORE] {
+        // LinuxCNC's taps end at the R plane; what does not couple feed and spindle taps nothing.
+        let taps: &[CycleKind] = match machine.reader.as_str() {
+            "linuxcnc" | "mach3" => &[],
+            _ if machine.control == "iso" => &[],
+            _ => &[TAP, LEFT_TAP],
+        };
+        for &kind in [DRILL, DEEP, BREAK_CHIP, REAM, BORE].iter().chain(taps) {
             let asked = cycle(kind, 0.0);
             let output = post::write(&source(asked), &machine).unwrap();
             let read = nc::read(&machine, Setup::default(), "p", &output.text).unwrap();

@@ -281,7 +281,7 @@ begin FOOTER
             ("linear", "G1 {{X}} {{Y}} {{Z}} {{F}}"),
             (
                 "tool_change",
-                "G53 G0 {{SAFE_HEIGHT}}\nM5\n; Tool {{ tool.number }}: {{ tool.name }}\n{{T}}\n\
+                "G53 G0 {{SAFE_HEIGHT}} {{RAPID_FEED}}\nM5\n; Tool {{ tool.number }}: {{ tool.name }}\n{{T}}\n\
                  {% if not tool.first %}M0 Load the tool{% endif %}",
             ),
         ],

@@ -74,6 +74,10 @@ const REFUSED: &[(&str, &[&str], &str)] = &[
     // From below: no table of these turns that far.
     ("sinumerik-840d-table-ac", &["Sacrifice-Board.apt"], "axis-limit"),
     ("dmu50-heidenhain", &["Sacrifice-Board.apt"], "unreachable-orientation"),
+    // Nothing couples feed and spindle in a tap.
+    ("generic-3axis-iso", &["plate.cls"], "cycle-tap"),
+    ("generic-3axis-mach3", &["plate.cls"], "cycle-tap"),
+    ("mach3-mill", &["plate.cls"], "cycle-tap"),
     // No compensation, no tapping.
     ("generic-3axis-grbl", COMPENSATED, "compensation"),
     ("generic-3axis-marlin", COMPENSATED, "compensation"),

@@ -105,7 +105,7 @@ fn has(machine: &Machine, piece: &Piece) -> bool {
     let is =
         |names: &[&str]| names.iter().any(|name| machine.name == format!("generic-3axis-{name}"));
     match piece {
-        Piece::Tap(_) => !is(&["grbl", "marlin"]),
+        Piece::Tap(_) => !is(&["grbl", "marlin", "iso", "mach3"]),
         Piece::Thread => is(&["linuxcnc", "fanuc", "sinumerik", "sinumerik-828d"]),
         Piece::Probe { away: false, must_answer: false } => {
             is(&["linuxcnc", "grbl", "fanuc", "haas", "mach3"])

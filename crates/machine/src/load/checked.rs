@@ -352,6 +352,7 @@ impl CheckedSheet {
                 lowering_tolerance: capabilities.lowering_tolerance.map_or(0.005, |mm| mm.0),
             },
             settings: ControlSettings {
+                floating_holder: self.settings.floating_holder.unwrap_or(false),
                 length_along_z: self.settings.length_along_z,
                 length_moves_axis: self.settings.length_moves_axis,
             },

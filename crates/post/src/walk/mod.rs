@@ -97,6 +97,8 @@ pub(crate) struct Walk<'a> {
     pub(crate) resolution: f64,
     /// Entry of the code word `work_offset` that is active.
     work_offset: usize,
+    /// Rapids say their feed, in whose place the next cut says its own.
+    feeds_rapids: bool,
     ended: bool,
 }
 
@@ -108,6 +110,7 @@ impl<'a> Walk<'a> {
         let tools = if templates.read_tools() { &program.records[..] } else { &[] };
         scope.program = program_value(machine, &program.name, tools);
         let mut writer = Writer::new(machine);
+        let feeds_rapids = templates.words().any(|(word, _)| word == WordName::RapidFeed);
         // What the catalogue asks of `program_start`.
         writer.assume(WordName::Plane, PLANE_XY);
         writer.assume(WordName::Compensation, compensation_code(Compensation::Off));
@@ -116,6 +119,7 @@ impl<'a> Walk<'a> {
         Ok(Walk {
             machine,
             templates,
+            feeds_rapids,
             writer,
             findings: Findings::default(),
             scope,
@@ -386,12 +390,16 @@ impl<'a> Walk<'a> {
     pub(crate) fn block(&mut self, name: BlockName) -> Done {
         self.writer.code(WordName::WorkOffset, self.work_offset);
         match self.templates.lines(name) {
-            Some(lines) => self.writer.block(lines),
+            Some(lines) => self.writer.block(lines)?,
             None => {
                 let scope = Scope { set: self.writer.set_words(), ..self.scope.clone() };
-                self.writer.block(&self.templates.render(name, scope)?)
+                self.writer.block(&self.templates.render(name, scope)?)?;
             }
         }
+        if self.feeds_rapids && self.templates.places(name, WordName::RapidFeed) {
+            self.writer.forget(bit(WordName::F));
+        }
+        Ok(())
     }
 
     /// Writes a block that must be there.

@@ -65,7 +65,9 @@ impl Prover<'_> {
         if self.leg.hole.begun(&cycle) {
             return Err(self.lost_at(line, "hole", "drills a hole that has been begun by moves"));
         }
-        drilled.place(&hole).map_err(|how| self.lost_at(line, "hole", &how))?;
+        // A cycle may end at the R plane: then the way up to the retract level is still to come.
+        let below = own.retract == own.clearance && cycle.retract > cycle.clearance;
+        drilled.place(&hole, !below).map_err(|how| self.lost_at(line, "hole", &how))?;
         self.approached(&drilled.r_plane)?;
         // A cycle itself goes across first, then down.
         self.comes_from_above(&hole, None)?;
@@ -82,7 +84,12 @@ impl Prover<'_> {
         let out = drilled.bottom.place.tip.distance(drilled.retracted.place.tip);
         summary.rapid_length_mm += if over.is_nan() { out } else { over + out };
         self.here = drilled.retracted;
-        self.arrive(&drilled.retracted);
+        if below {
+            self.leg.hole.drilled(&cycle);
+            self.leg.stops.clear();
+        } else {
+            self.arrive(&drilled.retracted);
+        }
         Ok(())
     }
 

@@ -3,7 +3,7 @@
 use super::motion::{LINEAR, Target};
 use super::state::Tilt;
 use super::step::Step;
-use crate::event::{Action, Orientation};
+use crate::event::{Action, Orientation, Risk};
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::{Canned, Flavor, G, Group};
 use geom::Vec3;
@@ -357,6 +357,8 @@ impl Step<'_, '_, '_> {
         } else if self.state.spindle != needed {
             let message = "the spindle does not turn the way this tapping cycle needs";
             return Err(self.wrong(message));
+        } else if !self.state.floating_holder && self.flavor != Flavor::FreeCad {
+            self.actions.push(Action::Risk(Risk::FLOATING_TAP.into()));
         }
         let pitch = match self.state.feed {
             Some(Feed::PerMinute(feed)) => feed / speed,

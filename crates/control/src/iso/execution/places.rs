@@ -4,7 +4,7 @@
 use super::motion::{LINEAR, Target};
 use super::state::{Length, Tilt, UNKNOWN};
 use super::step::Step;
-use crate::event::Action;
+use crate::event::{Action, Risk};
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::{Flavor, Group, Motion};
 use geom::Vec3;
@@ -58,6 +58,10 @@ impl Step<'_, '_, '_> {
         if !home.is_nan() && target.named < 8 {
             let action = home_action(target.named);
             return self.go_to_machine(home, target.named, true, action);
+        }
+        let is_stored = second || matches!(self.flavor, Flavor::LinuxCnc | Flavor::Grbl);
+        if is_stored && target.named & 4 != 0 {
+            self.actions.push(Action::Risk(Risk::STORED_POSITION.into()));
         }
         self.leave_for(target.named);
         Ok(())

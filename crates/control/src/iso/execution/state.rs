@@ -47,6 +47,8 @@ pub(crate) struct State {
     pub rotary: [f64; 3],
     /// Whether the control counts A, B, C modulo 360°, where that is known.
     pub modulo: [Option<bool>; 3],
+    /// Whether taps are held in a chuck that floats.
+    pub floating_holder: bool,
     /// Whether the tool length counts along Z in every plane, and whether Z moves where it changes, where that is known.
     pub length_along_z: Option<bool>,
     pub length_moves_axis: Option<bool>,
@@ -195,6 +197,7 @@ impl State {
             position: start.unwrap_or(UNKNOWN),
             rotary: axes.map(|exists| if exists { f64::NAN } else { 0.0 }),
             modulo: settings.modulo,
+            floating_holder: settings.floating_holder,
             length_along_z: settings.length_along_z,
             length_moves_axis: settings.length_moves_axis,
             frames: Frames::new(work_offset, all_zero, turns_offsets),

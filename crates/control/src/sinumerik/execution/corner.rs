@@ -219,6 +219,7 @@ impl Interpreter<'_, '_> {
                 | Action::Coolant(_)
                 | Action::Comment(_)
                 | Action::Message(_)
+                | Action::Risk(_)
         );
         if said && held.between.len() < MOST_BETWEEN {
             held.between.push(record);

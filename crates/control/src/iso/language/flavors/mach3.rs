@@ -26,6 +26,7 @@ const REFUSED_G: &[Refused] = &[
     (281, "a stored home position is known only at the machine"),
     (301, "a stored home position is known only at the machine"),
     (320, "threading is for Mach3 Turn"),
+    (740, "left-hand tapping is not in Mach3 Mill"),
     (760, "fine boring is not in Mach3 Mill"),
     (870, "back boring is not followed; write its moves"),
     (960, "constant surface speed is for turning"),
