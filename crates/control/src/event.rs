@@ -161,11 +161,19 @@ impl Risk {
         help: "write G17, or say `length_along_z = true` in [settings] of the machine file where it does",
     };
 
-    /// Where `G30` goes, and `G28` of LinuxCNC and GRBL, parameters or the operator have set: it may be in the part.
+    /// Where `G30` goes, and `G28` of LinuxCNC and GRBL, parameters or the operator have set, and Marlin's `G28` goes to
+    /// a switch, which may be at the bed.
     pub(crate) const STORED_POSITION: Risk = Risk {
         rule: "stored-position",
-        what: "sends Z to a position that is stored in the control, not to the end of its travel",
+        what: "sends Z to a position that only the machine knows: one that is stored, or a switch",
         help: "retract by G53 to the safe height of the machine, or by the G28 of a control whose G28 is the reference position",
+    };
+
+    /// `G642` to `G645` and the compressors of SINUMERIK keep to tolerances of machine data (MD33100, MD33120).
+    pub(crate) const SMOOTHING: Risk = Risk {
+        rule: "path-tolerance",
+        what: "lets the control leave the path by as much as its machine data say",
+        help: "write G64, or say how far in `path_tolerance` in [options] of the machine file",
     };
 
     /// Turns over the part whose way the program does not say ([`way`](crate::way)).

@@ -256,3 +256,25 @@ fn a_stored_position_is_no_reference_position() {
         assert_eq!(rules(&found), expected, "{dialect:?} {block}");
     }
 }
+
+/// GRBL and LinuxCNC: `G43.1` puts a length in; Marlin: `G28` goes to the switches; SINUMERIK *Fundamentals*, "Smoothing", and
+/// "Compressor": MD33100 and MD33120 say how far, CTOL where it is written.
+#[test]
+fn lengths_switches_and_smoothing_that_nobody_states_are_told() {
+    let risks_within = |dialect, path_tolerance, block: &str| {
+        let settings = Settings { path_tolerance, ..Settings::new(dialect, [false; 3]) };
+        let text = format!("G90\nG17\nG54\nG0 X0 Y0 Z50\n{block}\nG0 X5\n");
+        let text = if dialect == Dialect::Sinumerik { text + "M30\n" } else { format!("G21\n{text}") };
+        rules(&common::ops(&settings, "p.nc", &text).unwrap_or_else(|e| panic!("{e}\n{text}")))
+    };
+    assert_eq!(risks_within(Dialect::Grbl, 0.0, "G43.1 Z10"), ["operator-data"]);
+    assert_eq!(risks_within(Dialect::Marlin, 0.0, "G28 Z"), ["stored-position"]);
+    assert_eq!(risks_within(Dialect::Marlin, 0.0, "G28 X Y"), [""; 0]);
+    for word in ["G642", "G645", "COMPCAD", "COMPON"] {
+        assert_eq!(risks_within(Dialect::Sinumerik, 0.0, word), ["path-tolerance"], "{word}");
+        assert_eq!(risks_within(Dialect::Sinumerik, 0.01, word), [""; 0], "{word}");
+    }
+    assert_eq!(risks_within(Dialect::Sinumerik, 0.0, "G64\nCOMPOF\nG60"), [""; 0]);
+    let error = common::ops(&Settings::new(Dialect::Fanuc, [false; 3]), "p.nc", "G21 G90\nG91 G28 Z0.\nG90 G29 Z5.\nM30\n");
+    assert_eq!(error.unwrap_err().rule, "nc-home");
+}

@@ -78,7 +78,11 @@ impl Step<'_, '_, '_> {
                 named |= 1 << axis;
             }
         }
-        self.leave_for(if named == 0 { self.all_axes() } else { named });
+        let named = if named == 0 { self.all_axes() } else { named };
+        if named & 4 != 0 {
+            self.actions.push(Action::Risk(Risk::STORED_POSITION.into()));
+        }
+        self.leave_for(named);
         Ok(())
     }
 
@@ -102,6 +106,10 @@ impl Step<'_, '_, '_> {
         let mut first = self.place_of_tool();
         for axis in 0..3 {
             if self.block.has(LINEAR[axis]) {
+                if via[axis].is_nan() {
+                    let message = "G29 goes through the point of the last G28, which is not known";
+                    return Err(self.block.at_word(LINEAR[axis], "nc-home", message));
+                }
                 first.point[axis] = via[axis];
             }
         }

@@ -173,6 +173,8 @@ impl Step<'_, '_, '_> {
                     let message = "G43.1 takes Z alone, and no motion beside it";
                     return Err(self.block.at_group(Group::Length, "nc-length", message));
                 }
+                // No program has measured it.
+                self.actions.push(Action::Risk(Risk::OPERATOR_DATA.into()));
                 Length::Value(self.take_length(b'Z')?.unwrap_or(0.0))
             }
             Some(_) => Length::None,

@@ -242,6 +242,12 @@ impl<'a, 's> Interpreter<'a, 's> {
 
     /// The modal G commands.
     fn modes(&mut self, source: &Source, block: &Block) -> Fallible<()> {
+        let smooths =
+            [10, 30].iter().any(|&group| matches!(block.code(group), Some(Code::Smoothing)));
+        // How far the machine data let it leave the path, the machine file says.
+        if smooths && self.settings.path_tolerance == 0.0 {
+            self.emit(source, Action::Risk(Risk::SMOOTHING.into()))?;
+        }
         if let Some(Code::Motion(motion)) = block.code(1) {
             self.state.motion = motion;
         }

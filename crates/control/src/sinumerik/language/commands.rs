@@ -34,6 +34,8 @@ pub(crate) enum Code {
     Approach { around: bool },
     /// Settable work offset, 500 for none.
     WorkOffset(u32),
+    /// The path is smoothed within tolerances of machine data (`G642` to `G645`, the compressors).
+    Smoothing,
     /// Every offset is off for this block.
     MachineCoordinates,
     /// Length of a unit of the program in mm; whether feeds are counted in it too.
@@ -253,10 +255,10 @@ pub(super) static COMMANDS: &[Command] = &[
     same("G60", 10),
     same("G64", 10),
     same("G641", 10),
-    same("G642", 10),
-    same("G643", 10),
-    same("G644", 10),
-    same("G645", 10),
+    g("G642", 10, Code::Smoothing),
+    g("G643", 10, Code::Smoothing),
+    g("G644", 10, Code::Smoothing),
+    g("G645", 10, Code::Smoothing),
     same("G9", 11),
     same("G601", 12),
     same("G602", 12),
@@ -313,10 +315,10 @@ pub(super) static COMMANDS: &[Command] = &[
     g("DIAMON", 29, Code::Diameter(Diameter::On)),
     g("DIAM90", 29, Code::Diameter(Diameter::Absolute)),
     same("COMPOF", 30),
-    same("COMPON", 30),
-    same("COMPCURV", 30),
-    same("COMPCAD", 30),
-    same("COMPSURF", 30),
+    g("COMPON", 30, Code::Smoothing),
+    g("COMPCURV", 30, Code::Smoothing),
+    g("COMPCAD", 30, Code::Smoothing),
+    g("COMPSURF", 30, Code::Smoothing),
     // 34: smoothing of the orientation
     same("OSOF", 34),
     same("OSC", 34),
