@@ -106,6 +106,23 @@ impl Dialect {
         }
     }
 
+    /// How a program for this control ends.
+    pub fn ending(self) -> Ending {
+        match self {
+            Dialect::LinuxCnc => Ending::CodeOrPercent,
+            Dialect::Fanuc
+            | Dialect::Haas
+            | Dialect::Sinumerik
+            | Dialect::Sinumerik828d
+            | Dialect::Klartext
+            | Dialect::FanucWire
+            | Dialect::Sodick
+            | Dialect::Agie => Ending::Code,
+            Dialect::Mach3 | Dialect::Grbl => Ending::CodeOrText,
+            Dialect::Marlin | Dialect::Points | Dialect::FreeCad => Ending::Text,
+        }
+    }
+
     /// The work offset that is active before a program names one: on a SINUMERIK `G500`, which is none.
     /// A FANUC may keep that of the last program, and Klartext takes the operator's preset.
     pub fn work_offset_at_reset(self) -> Option<WorkOffset> {
@@ -125,6 +142,19 @@ impl Dialect {
             | Dialect::Points => None,
         }
     }
+}
+
+/// How a program ends.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Ending {
+    /// By a code (`M2`, `M30`, `END PGM`): without it the control gives an alarm, or the file is cut off.
+    Code,
+    /// By a code, or by a second `%` (LinuxCNC's manual, "File Requirements").
+    CodeOrPercent,
+    /// By a code, which many programs leave out, or with its last line.
+    CodeOrText,
+    /// With its last line: there is no code.
+    Text,
 }
 
 /// What a control does at corners of which the program says nothing.
@@ -273,6 +303,12 @@ pub fn optional_blocks(text: &[u8]) -> impl Iterator<Item = (u32, u8)> {
         let level = block.first().filter(|byte| byte.is_ascii_digit());
         Some((number, level.map_or(0, |digit| digit - b'0')))
     })
+}
+
+/// How often `%` stands first on a line of `text`.
+pub fn percent_signs(text: &[u8]) -> usize {
+    let lines = text.split(|byte| matches!(byte, b'\n' | b'\r'));
+    lines.filter(|line| line.trim_ascii_start().first() == Some(&b'%')).count()
 }
 
 /// Length of a program, bytes, from which its control runs in a thread of its own.

@@ -264,7 +264,8 @@ fn lengths_switches_and_smoothing_that_nobody_states_are_told() {
     let risks_within = |dialect, path_tolerance, block: &str| {
         let settings = Settings { path_tolerance, ..Settings::new(dialect, [false; 3]) };
         let text = format!("G90\nG17\nG54\nG0 X0 Y0 Z50\n{block}\nG0 X5\n");
-        let text = if dialect == Dialect::Sinumerik { text + "M30\n" } else { format!("G21\n{text}") };
+        let text =
+            if dialect == Dialect::Sinumerik { text + "M30\n" } else { format!("G21\n{text}") };
         rules(&common::ops(&settings, "p.nc", &text).unwrap_or_else(|e| panic!("{e}\n{text}")))
     };
     assert_eq!(risks_within(Dialect::Grbl, 0.0, "G43.1 Z10"), ["operator-data"]);
@@ -275,6 +276,10 @@ fn lengths_switches_and_smoothing_that_nobody_states_are_told() {
         assert_eq!(risks_within(Dialect::Sinumerik, 0.01, word), [""; 0], "{word}");
     }
     assert_eq!(risks_within(Dialect::Sinumerik, 0.0, "G64\nCOMPOF\nG60"), [""; 0]);
-    let error = common::ops(&Settings::new(Dialect::Fanuc, [false; 3]), "p.nc", "G21 G90\nG91 G28 Z0.\nG90 G29 Z5.\nM30\n");
+    let error = common::ops(
+        &Settings::new(Dialect::Fanuc, [false; 3]),
+        "p.nc",
+        "G21 G90\nG91 G28 Z0.\nG90 G29 Z5.\nM30\n",
+    );
     assert_eq!(error.unwrap_err().rule, "nc-home");
 }

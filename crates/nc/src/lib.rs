@@ -18,7 +18,7 @@
 
 #![deny(clippy::wildcard_enum_match_arm)]
 
-use control::{Action, Dialect, Event, Orientation, Position, Risk, Settings, Setup, Wire};
+use control::{Action, Dialect, Ending, Event, Orientation, Position, Risk, Settings, Setup, Wire};
 use geom::Vec3;
 use machine::{LengthOffset, Machine, Mount};
 use program::{
@@ -128,6 +128,16 @@ pub fn read_by(
         lift.event(event).map_err(|found| found.line(line).into())
     });
     run.map_err(|found| way_out(machine, found))?;
+    let cut_off = cut_off(settings.dialect, lift.ended, lift.count, text);
+    if let Some(found) = cut_off {
+        let lines = text.iter().filter(|byte| **byte == b'\n').count();
+        let last = u32::try_from(lines).unwrap_or(u32::MAX).max(1);
+        let found = found.file(file_name).line(last);
+        if found.is_error() {
+            return Err(found.into());
+        }
+        lift.warnings.push(found);
+    }
     let mut optional = control::optional_blocks(text);
     if let Some((line, _)) = optional.next() {
         let (done, other) = match settings.setup.block_delete {
@@ -141,6 +151,35 @@ pub fn read_by(
         lift.warnings.push(found);
     }
     Ok((Reading { program: lift.program, warnings: lift.warnings }, lift.several))
+}
+
+/// What says that the program in `text` is only the first part of one; `ended` is whether a code has ended it.
+fn cut_off(dialect: Dialect, ended: bool, records: usize, text: &[u8]) -> Option<Diagnostic> {
+    const HELP: &str = "the file may be cut off: send it once more";
+    if records == usize::from(ended) {
+        let message = "there is no program in the file: nothing moves, and nothing is switched";
+        return Some(Diagnostic::error("program-end", message).help(HELP));
+    }
+    let ending = dialect.ending();
+    let has_percent = !matches!(dialect, Dialect::Klartext | Dialect::Grbl | Dialect::Marlin)
+        && !matches!(dialect, Dialect::Sinumerik | Dialect::Sinumerik828d | Dialect::FreeCad);
+    let percent_signs = if has_percent { control::percent_signs(text) } else { 0 };
+    if percent_signs == 1 {
+        let message = "`%` opens the program, and none closes it";
+        let found = if ended { Diagnostic::warning } else { Diagnostic::error };
+        return Some(found("program-end", message).help(HELP));
+    }
+    if ended || ending == Ending::CodeOrPercent && percent_signs > 1 {
+        return None;
+    }
+    let message = "the program has no end: M30 or M2 is missing";
+    match ending {
+        Ending::Code | Ending::CodeOrPercent => {
+            Some(Diagnostic::error("program-end", message).help(HELP))
+        }
+        Ending::CodeOrText => Some(Diagnostic::warning("program-end", message).help(HELP)),
+        Ending::Text => None,
+    }
 }
 
 /// Adds to what a control refuses what the user of a source can do about it.
@@ -165,6 +204,8 @@ struct Lift<'a> {
     keep: &'a mut Keep<'a>,
     /// How many records there have been.
     count: usize,
+    /// A code has ended the program.
+    ended: bool,
     warnings: Vec<Diagnostic>,
     place: Place,
     /// Z has been sent home since the last move, on this line.
@@ -231,6 +272,7 @@ impl<'a> Lift<'a> {
             program: Program::new(name),
             keep,
             count: 0,
+            ended: false,
             warnings: Vec::new(),
             place: setup
                 .start
@@ -335,7 +377,10 @@ impl<'a> Lift<'a> {
             Action::OptionalStop => self.push(line, Op::OptionalStop),
             Action::Comment(text) => self.push(line, Op::Comment(text)),
             Action::Message(text) => self.push(line, Op::Message(text)),
-            Action::End => self.push(line, Op::End),
+            Action::End => {
+                self.ended = true;
+                self.push(line, Op::End);
+            }
         }
         Ok(())
     }

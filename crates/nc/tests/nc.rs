@@ -240,3 +240,46 @@ fn a_cut_may_begin_where_g92_says_that_the_tool_stands() {
     assert_eq!(ways(&program), expected);
     assert_eq!(wire("G21 G90\nG92 X5.\nG1 X10. Y0.\nM2\n").unwrap_err().rule, "unknown-position");
 }
+
+/// A file that is cut off is no program: FANUC and Haas end by M30 or M2, LinuxCNC by those or a second `%` (manual, "File
+/// Requirements"); of GRBL and Mach3 many programs have no end, and Marlin has no code for it.
+#[test]
+fn a_program_that_is_cut_off_is_refused_where_its_control_knows_an_end() {
+    let found = |machine: &str, text: &str| {
+        let machine = machine::load(machine).unwrap();
+        match nc::read(&machine, Setup::default(), "p.nc", text.as_bytes()) {
+            Ok(reading) => {
+                let ends = reading.warnings.iter().find(|found| found.rule == "program-end");
+                ends.map_or("whole", |_| "told")
+            }
+            Err(error) => {
+                assert!(error.line > 0 && !error.help.is_empty(), "{error}");
+                error.rule
+            }
+        }
+    };
+    let body = "G21 G90 G94 G17 G54\nG0 X0. Y0.\n";
+    for (machine, no_end, one_percent) in [
+        ("generic-3axis-fanuc", "program-end", "program-end"),
+        ("generic-3axis-haas", "program-end", "program-end"),
+        ("generic-3axis-iso", "program-end", "program-end"),
+        ("generic-3axis-linuxcnc", "program-end", "program-end"),
+        ("generic-3axis-mach3", "told", "program-end"),
+        ("generic-3axis-grbl", "told", "nc-syntax"),
+        ("generic-3axis-marlin", "whole", "nc-syntax"),
+    ] {
+        let body =
+            if machine.ends_with("marlin") { "G21\nG90\nG17\nG54\nG0 X0 Y0\n" } else { body };
+        assert_eq!(found(machine, body), no_end, "{machine}");
+        let marlin = machine.ends_with("marlin");
+        let ended = if marlin { body.into() } else { format!("{body}M30\n") };
+        assert_eq!(found(machine, &ended), "whole", "{machine}");
+        let open = found(machine, &format!("%\n{body}"));
+        assert!(open == one_percent || open.starts_with("nc-"), "{machine}: {open}");
+        assert_eq!(found(machine, ""), "program-end", "{machine}");
+    }
+    assert_eq!(found("generic-3axis-linuxcnc", &format!("%\n{body}%\n")), "whole");
+    assert_eq!(found("generic-3axis-fanuc", &format!("%\nO1\n{body}%\n")), "program-end");
+    assert_eq!(found("generic-3axis-fanuc", &format!("%\nO1\n{body}M30\n")), "told");
+    assert_eq!(found("generic-3axis-fanuc", &format!("%\nO1\n{body}M30\n%\n")), "whole");
+}
