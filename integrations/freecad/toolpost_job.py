@@ -215,6 +215,9 @@ def _operation(part):
         operation["coolant"] = coolant
     if _property(part, "Active") is False:
         operation["active"] = False
+    # FreeCAD has not been able to recompute it: its path is empty, or an old one.
+    if "Invalid" in getattr(part, "State", ()):
+        operation["invalid"] = True
     return operation
 
 
@@ -248,6 +251,12 @@ def _tool(controller):
         value = getattr(bit, name, None)
         if value is not None:
             tool[name.lower()] = float(getattr(value, "Value", value))
+    if bit is not None:
+        tool["bit"] = storable(getattr(bit, "Name", "") or getattr(bit, "Label", ""))
+    feed = getattr(controller, "HorizFeed", None)
+    if feed is not None:
+        # mm/s
+        tool["horizontal_feed"] = float(getattr(feed, "Value", feed))
     return tool
 
 

@@ -58,7 +58,7 @@ pub(crate) fn read(text: &[u8]) -> Result<Job, Box<Diagnostic>> {
         let tool = command(&joined, &mut operation.commands)
             .map_err(|message| wrong(&message, line, number))?;
         if let Some(number) = tool {
-            job.tools.push(Tool { number, name: operation.label.clone(), diameter: None });
+            job.tools.push(Tool { number, name: operation.label.clone(), ..Tool::default() });
         }
     }
     Ok(job)

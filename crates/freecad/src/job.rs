@@ -27,6 +27,10 @@ pub struct Tool {
     pub name: String,
     /// Cutting diameter, mm.
     pub diameter: Option<f64>,
+    /// The tool bit of the document that it is, where the job says it: two tool controllers may have one.
+    pub bit: Option<String>,
+    /// Feed of cuts along X and Y, mm/s, where the job says it.
+    pub horizontal_feed: Option<f64>,
 }
 
 /// An object of a job with commands.
@@ -63,6 +67,8 @@ struct OperationSheet {
     coolant: Option<CoolantSheet>,
     #[serde(default = "yes")]
     active: bool,
+    #[serde(default)]
+    invalid: bool,
     count: Option<u32>,
     commands: String,
 }
@@ -143,6 +149,13 @@ fn from_sheet(sheet: Sheet) -> Result<Job, Box<Diagnostic>> {
         let message = format!("`{head}`, version {version}: `{HEAD}`, version {VERSION} is read");
         let help = "the part of Toolpost in FreeCAD and this one have to be of one version";
         return Err(Diagnostic::error("freecad-job", message).help(help).into());
+    }
+    let active = || sheet.operations.iter().filter(|operation| operation.active);
+    if let Some(invalid) = active().find(|operation| operation.invalid) {
+        let message =
+            format!("{}: FreeCAD could not recompute this operation (Invalid)", invalid.label);
+        let help = "mend it and recompute, or switch it off (Active)";
+        return Err(Diagnostic::error("freecad-invalid", message).help(help).into());
     }
     let active = sheet.operations.into_iter().filter(|operation| operation.active);
     let operations = active.map(|operation| Operation {

@@ -6,6 +6,7 @@ use crate::way::Way;
 use control::Setup;
 use machine::Machine;
 use program::{Diagnostic, Op, Program, Record, Spindle};
+use std::collections::HashMap;
 use std::mem;
 
 /// What was read.
@@ -26,10 +27,18 @@ pub struct Reading {
 /// The first command that means nothing or cannot be told, and what an operation lacks, with the
 /// operation, the command and the way out.
 pub fn read(machine: &Machine, file_name: &str, mut job: Job) -> Result<Reading, Box<Diagnostic>> {
-    if let Some(number) = two_diameters(&job) {
-        let message = format!("two tools of different diameters have the number {number}");
+    if let Some((number, what)) = two_tools(&job) {
+        let message = format!("two tools of different {what} have the number {number}");
         let help = "give one of the tool controllers another number";
         return Err(Diagnostic::error("two-tools", message).help(help).file(file_name).into());
+    }
+    if let Some((operation, tool)) = without_feed(&job) {
+        let message = format!(
+            "{operation}: the tool controller {tool} has a horizontal feed of 0, and the cuts along X and Y would go \
+             at the vertical one"
+        );
+        let help = "give the tool controller a horizontal feed, and recompute";
+        return Err(Diagnostic::error("nc-feed", message).help(help).file(file_name).into());
     }
     let listing = Listing::of(file_name, &mut job)?;
     let mut speaks = Machine { reader: String::from("freecad"), ..machine.clone() };
@@ -51,13 +60,38 @@ pub fn read(machine: &Machine, file_name: &str, mut job: Job) -> Result<Reading,
     Ok(Reading { program: Program { name: job.name, records }, listing, warnings })
 }
 
-/// The number of two tools that differ in their diameter.
-fn two_diameters(job: &Job) -> Option<u32> {
-    let mut known = std::collections::HashMap::new();
-    let mut tools = job.tools.iter().filter_map(|tool| Some((tool.number, tool.diameter?)));
-    tools
-        .find(|&(number, diameter)| *known.entry(number).or_insert(diameter) != diameter)
-        .map(|(number, _)| number)
+/// The number of two tools that are not one, and in what they differ. Several tool controllers may have one tool bit.
+fn two_tools(job: &Job) -> Option<(u32, &'static str)> {
+    let mut known = HashMap::new();
+    let differ = |a: &Tool, b: &Tool| {
+        let diameters = a.diameter.zip(b.diameter).is_some_and(|(a, b)| a != b);
+        let bits = a.bit.as_ref().zip(b.bit.as_ref()).is_some_and(|(a, b)| a != b);
+        [(diameters, "diameters"), (bits, "tool bits")].into_iter().find(|(differ, _)| *differ)
+    };
+    job.tools.iter().find_map(|tool| {
+        let first = *known.entry(tool.number).or_insert(tool);
+        differ(first, tool).map(|(_, what)| (tool.number, what))
+    })
+}
+
+/// An operation that cuts along X or Y without a feed of its own, and its tool controller, which has none for that.
+fn without_feed(job: &Job) -> Option<(&str, &str)> {
+    let cuts = |line: &str| {
+        let mut words = line.split_ascii_whitespace();
+        matches!(words.next(), Some("G1" | "G01" | "G2" | "G02" | "G3" | "G03"))
+            && words.clone().any(|word| word.starts_with(['X', 'Y']))
+            && !words.any(|word| word.starts_with('F'))
+    };
+    let unfed = job.tools.iter().filter(|tool| tool.horizontal_feed == Some(0.0));
+    let unfed: HashMap<u32, &Tool> = unfed.map(|tool| (tool.number, tool)).collect();
+    job.operations.iter().find_map(|operation| {
+        let tool = unfed.get(&operation.tool?)?;
+        operation
+            .commands
+            .lines()
+            .any(cuts)
+            .then_some((operation.label.as_str(), tool.name.as_str()))
+    })
 }
 
 /// Adds to what the control refuses where in FreeCAD it is set right.

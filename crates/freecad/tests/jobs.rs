@@ -377,3 +377,55 @@ fn what_is_no_dump_is_refused_with_its_line() {
     let found = Job::of("a.dump", b"Command G0 [ X:1 ]\n").unwrap_err();
     assert_eq!(found.line, 1);
 }
+
+/// FreeCAD posts a job although an operation of it could not be recomputed: its path is empty, or an old one.
+#[test]
+fn an_operation_that_freecad_could_not_recompute_is_refused_with_its_name() {
+    let with = |active: bool| {
+        let commands = format!("{START}G1 F3.333333 Z-1.500000\n");
+        job(json!([
+            { "label": "Profile", "commands": commands },
+            { "label": "Pocket003", "commands": "", "invalid": true, "active": active },
+        ]))
+    };
+    let found = read(&with(true)).unwrap_err();
+    assert_eq!(found.rule, "freecad-invalid");
+    assert!(found.message.contains("Pocket003"), "{found}");
+    assert!(read(&with(false)).is_ok());
+}
+
+#[test]
+fn two_tool_bits_do_not_have_one_number() {
+    let with = |bit: &str| {
+        let mut job = operation(START);
+        job["tools"] = json!([
+            { "number": 1, "name": "Fast", "diameter": 5.0, "bit": "ToolBit001" },
+            { "number": 1, "name": "Slow", "diameter": 5.0, "bit": bit },
+        ]);
+        job
+    };
+    assert_eq!(read(&with("ToolBit002")).unwrap_err().rule, "two-tools");
+    // Two controllers of one bit: another speed, another feed.
+    assert!(read(&with("ToolBit001")).is_ok());
+}
+
+/// Without a horizontal feed FreeCAD's cuts along X and Y have no F, and go at that of the plunge before them.
+#[test]
+fn a_tool_controller_without_a_horizontal_feed_is_refused_where_it_cuts_sideways() {
+    let with = |feed: f64, commands: &str| {
+        let commands = format!("{START}{commands}");
+        let mut job = job(json!([{ "label": "Profile", "tool": 1, "commands": commands }]));
+        job["tools"] = json!([{ "number": 1, "name": "Mill 5", "horizontal_feed": feed }]);
+        job
+    };
+    let plunge = "G1 F3.333333 Z-1.500000\n";
+    let sideways = format!("{plunge}G1 X9.000000\n");
+    let found = read(&with(0.0, &sideways)).unwrap_err();
+    assert!(found.message.contains("Profile") && found.message.contains("Mill 5"), "{found}");
+    assert_eq!(found.rule, "nc-feed");
+    for (feed, commands) in
+        [(5.0, sideways.as_str()), (0.0, plunge), (0.0, "G1 F3.333333 X9.000000\n")]
+    {
+        assert!(read(&with(feed, commands)).is_ok(), "{feed} {commands}");
+    }
+}
