@@ -251,8 +251,10 @@ def _tool(controller):
         value = getattr(bit, name, None)
         if value is not None:
             tool[name.lower()] = float(getattr(value, "Value", value))
-    if bit is not None:
-        tool["bit"] = storable(getattr(bit, "Name", "") or getattr(bit, "Label", ""))
+    # "endmill.fcstd", in FreeCAD 1.1 "Endmill": each tool controller may have a copy of its bit.
+    shape = getattr(bit, "BitShape", None) or getattr(bit, "ShapeType", None)
+    if shape:
+        tool["shape"] = storable(os.path.splitext(os.path.basename(shape))[0].lower())
     feed = getattr(controller, "HorizFeed", None)
     if feed is not None:
         # mm/s

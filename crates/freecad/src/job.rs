@@ -27,8 +27,8 @@ pub struct Tool {
     pub name: String,
     /// Cutting diameter, mm.
     pub diameter: Option<f64>,
-    /// The tool bit of the document that it is, where the job says it: two tool controllers may have one.
-    pub bit: Option<String>,
+    /// What kind of cutter it is (`endmill`, `ballend`), where the job says it.
+    pub shape: Option<String>,
     /// Feed of cuts along X and Y, mm/s, where the job says it.
     pub horizontal_feed: Option<f64>,
 }

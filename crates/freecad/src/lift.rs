@@ -32,14 +32,7 @@ pub fn read(machine: &Machine, file_name: &str, mut job: Job) -> Result<Reading,
         let help = "give one of the tool controllers another number";
         return Err(Diagnostic::error("two-tools", message).help(help).file(file_name).into());
     }
-    if let Some((operation, tool)) = without_feed(&job) {
-        let message = format!(
-            "{operation}: the tool controller {tool} has a horizontal feed of 0, and the cuts along X and Y would go \
-             at the vertical one"
-        );
-        let help = "give the tool controller a horizontal feed, and recompute";
-        return Err(Diagnostic::error("nc-feed", message).help(help).file(file_name).into());
-    }
+    let unfed = without_feed(&job).map(|(operation, tool)| (operation.to_owned(), tool.to_owned()));
     let listing = Listing::of(file_name, &mut job)?;
     let mut speaks = Machine { reader: String::from("freecad"), ..machine.clone() };
     if !listing.turns() {
@@ -56,17 +49,25 @@ pub fn read(machine: &Machine, file_name: &str, mut job: Job) -> Result<Reading,
         0 => Box::new(found.file(file_name)),
         _ => located(*found),
     })?;
+    if let Some((operation, tool)) = unfed {
+        let message = format!(
+            "operation `{operation}`: the tool controller {tool} has a horizontal feed of 0, and the cuts along X and Y would go \
+             at the vertical one"
+        );
+        let help = "give the tool controller a horizontal feed, and recompute";
+        return Err(Diagnostic::error("nc-feed", message).help(help).file(file_name).into());
+    }
     let warnings = reading.warnings.into_iter().map(|found| listing.located(found)).collect();
     Ok(Reading { program: Program { name: job.name, records }, listing, warnings })
 }
 
-/// The number of two tools that are not one, and in what they differ. Several tool controllers may have one tool bit.
+/// The number of two tools that are not one, and in what they differ. Several tool controllers may be for one tool.
 fn two_tools(job: &Job) -> Option<(u32, &'static str)> {
     let mut known = HashMap::new();
     let differ = |a: &Tool, b: &Tool| {
         let diameters = a.diameter.zip(b.diameter).is_some_and(|(a, b)| a != b);
-        let bits = a.bit.as_ref().zip(b.bit.as_ref()).is_some_and(|(a, b)| a != b);
-        [(diameters, "diameters"), (bits, "tool bits")].into_iter().find(|(differ, _)| *differ)
+        let shapes = a.shape.as_ref().zip(b.shape.as_ref()).is_some_and(|(a, b)| a != b);
+        [(diameters, "diameters"), (shapes, "shapes")].into_iter().find(|(differ, _)| *differ)
     };
     job.tools.iter().find_map(|tool| {
         let first = *known.entry(tool.number).or_insert(tool);

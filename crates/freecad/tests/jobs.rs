@@ -395,18 +395,18 @@ fn an_operation_that_freecad_could_not_recompute_is_refused_with_its_name() {
 }
 
 #[test]
-fn two_tool_bits_do_not_have_one_number() {
-    let with = |bit: &str| {
+fn two_tools_do_not_have_one_number() {
+    let with = |shape: &str| {
         let mut job = operation(START);
         job["tools"] = json!([
-            { "number": 1, "name": "Fast", "diameter": 5.0, "bit": "ToolBit001" },
-            { "number": 1, "name": "Slow", "diameter": 5.0, "bit": bit },
+            { "number": 1, "name": "Fast", "diameter": 5.0, "shape": "endmill" },
+            { "number": 1, "name": "Slow", "diameter": 5.0, "shape": shape },
         ]);
         job
     };
-    assert_eq!(read(&with("ToolBit002")).unwrap_err().rule, "two-tools");
-    // Two controllers of one bit: another speed, another feed.
-    assert!(read(&with("ToolBit001")).is_ok());
+    assert_eq!(read(&with("ballend")).unwrap_err().rule, "two-tools");
+    // Two controllers of one tool: another speed, another feed.
+    assert!(read(&with("endmill")).is_ok());
 }
 
 /// Without a horizontal feed FreeCAD's cuts along X and Y have no F, and go at that of the plunge before them.

@@ -34,6 +34,7 @@ REFUSED = {
     ("mist", "dmu50-heidenhain"): "missing-block",
     ("mist", "generic-3axis-heidenhain"): "missing-block",
     ("mist", "generic-3axis-haas"): "missing-block",
+    ("mist", "generic-3axis-grbl"): "missing-block",
 }
 
 
