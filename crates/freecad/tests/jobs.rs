@@ -429,3 +429,21 @@ fn a_tool_controller_without_a_horizontal_feed_is_refused_where_it_cuts_sideways
         assert!(read(&with(feed, commands)).is_ok(), "{feed} {commands}");
     }
 }
+
+/// What the builder of the machine has added reaches the program, from a Custom operation too.
+#[test]
+fn functions_of_the_builder_in_a_custom_operation_are_told() {
+    let text = "extends = \"generic-3axis-fanuc\"\nauxiliary = [10, 62]\n";
+    let machine = machine::load_text("m.toml", text).unwrap();
+    let commands = format!("{START}M10\nG1 F3.333333 Z-1.500000\nM62\n");
+    let job = job(json!([{ "label": "Custom", "commands": commands }]));
+    let job = Job::of("part.json", job.to_string().as_bytes()).unwrap();
+    let program = freecad::read(&machine, "part.json", job).unwrap().program;
+    let numbers: Vec<u32> = (program.records.iter())
+        .filter_map(|record| match record.op {
+            Op::Auxiliary(function) => Some(function.number),
+            _ => None,
+        })
+        .collect();
+    assert_eq!(numbers, [10, 62]);
+}

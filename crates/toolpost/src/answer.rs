@@ -137,7 +137,8 @@ impl Answer {
 
     fn say_text(self, quiet: bool) -> io::Result<()> {
         let mut err = io::stderr().lock();
-        for finding in self.findings.iter().filter(|f| f.is_error() || !quiet) {
+        let is_said = |f: &&Diagnostic| f.is_error() || !quiet || is_assumption(f.rule);
+        for finding in self.findings.iter().filter(is_said) {
             writeln!(err, "{}", printable(&finding.to_string()))?;
         }
         let mut out = io::stdout().lock();
@@ -180,6 +181,11 @@ impl From<Stop> for Answer {
 /// Text from a file may hold control characters that would steer a terminal: they show as blanks.
 fn printable(text: &str) -> String {
     text.chars().map(|c| if c.is_control() && c != '\n' && c != '\t' { ' ' } else { c }).collect()
+}
+
+/// Whether a program rests on what a finding of this rule says: a unit that was guessed, a rule that was accepted.
+fn is_assumption(rule: &str) -> bool {
+    rule == "unknown-unit" || proof::ACCEPTABLE.iter().any(|(name, _)| *name == rule)
 }
 
 #[cfg(test)]

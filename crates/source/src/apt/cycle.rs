@@ -117,6 +117,7 @@ const OTHER_BORES: [(&str, &str); 3] = [
 /// The active cycle.
 #[derive(Clone, Debug)]
 pub(super) struct ActiveCycle {
+    /// Of its record.
     line: u32,
     /// As its record gives it; pitch, hand and a dwell in turns follow at each hole.
     cycle: Cycle,
@@ -130,6 +131,13 @@ pub(super) struct ActiveCycle {
     initial: Option<Vec3>,
     /// What was last told to the writers.
     told: Option<Cycle>,
+}
+
+impl ActiveCycle {
+    /// Line of its record.
+    pub fn line(&self) -> u32 {
+        self.line
+    }
 }
 
 impl ActiveCycle {

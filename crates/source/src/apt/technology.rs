@@ -347,6 +347,12 @@ impl Reader {
             i += 2;
         }
         self.no_pending_circle()?;
+        if let Some(cycle) = &self.cycle {
+            // The next GOTO would be a hole of the new tool.
+            let message =
+                format!("the hole cycle of line {} is still on at the tool change", cycle.line());
+            return Err(Fault::new("cycle-on", message).help("add CYCLE/OFF behind the last hole"));
+        }
         if let Some(early) = self.early.take() {
             if early.diameter.is_some() && early.diameter != tool.diameter {
                 let message = format!(

@@ -234,6 +234,8 @@ fn a_cycle_that_is_not_whole_is_refused() {
         ("CYCLE/DRILL,FEDTO,5,RAPTO,3,RTRCTO,AUTO\nGOTO/0,0,0", "no-start"),
         ("CYCLE/DRILL,FEDTO,5,RAPTO,3\nCIRCLE/0,0,0,0,0,1\nGOTO/0,0,0", "unsupported"),
         ("CYCLE/DRILL,FEDTO,5,RAPTO,3\nGOTO/0,0,0\nCYCLE/OFF\nGODLTA/0,0,5", "no-start"),
+        // The next GOTO would be a hole of the new tool.
+        ("CYCLE/DRILL,FEDTO,5,RAPTO,3\nGOTO/0,0,0\nLOAD/TOOL,7\nGOTO/1,0,0", "cycle-on"),
     ] {
         assert_eq!(error(text), rule, "{text}");
     }

@@ -17,7 +17,7 @@ pub struct CommandLine {
     /// What to do.
     #[command(subcommand)]
     pub command: Command,
-    /// Say only what went wrong, and what was asked for.
+    /// Say only what went wrong, what was asked for, and on what assumptions the program rests.
     #[arg(long, short, global = true)]
     pub quiet: bool,
     /// Answer with one JSON object instead of text.
@@ -142,7 +142,7 @@ pub enum Way {
 pub struct Closeness {
     /// Largest distance of the tool tip from the toolpath, mm [default: from the program's own
     /// resolution].
-    #[arg(long, value_name = "MM", value_parser = length)]
+    #[arg(long, value_name = "MM", value_parser = closeness)]
     pub tolerance: Option<f64>,
     /// Let a rule pass in this run that hangs on how the machine is set up; may be given several times. The head of the
     /// program and the report name it.
@@ -419,6 +419,17 @@ fn length(text: &str) -> Result<f64, String> {
         _ => Err(String::from("a length in mm greater than 0 is needed, such as 0.01")),
     }
 }
+
+/// How far a program may be from its source, mm.
+fn closeness(text: &str) -> Result<f64, String> {
+    match length(text)? {
+        mm if mm <= MOST_TOLERANCE => Ok(mm),
+        _ => Err(format!("more than {MOST_TOLERANCE} mm is no proof")),
+    }
+}
+
+/// The largest `--tolerance`, mm: beyond it another contour would pass.
+const MOST_TOLERANCE: f64 = 2.0;
 
 /// A name and its value.
 fn option(text: &str) -> Result<(String, String), String> {

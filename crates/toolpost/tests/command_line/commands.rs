@@ -22,6 +22,16 @@ fn a_summary_tells_tools_lengths_extents_and_proof() {
     }
 }
 
+/// Whoever asks for silence still has to know on what the program rests.
+#[test]
+fn quiet_still_says_that_the_unit_was_guessed() {
+    let folder = Folder::new();
+    folder.write("no-unit.cls", "LOAD/TOOL,1\nSPINDL/RPM,1000,CLW\nRAPID\nGOTO/1,2,3\nFINI\n");
+    let said = folder.run(&["post", "no-unit.cls", "-m", MACHINE, "-o", "out.mpf", "--quiet"]);
+    assert_eq!(said.code, 0, "{said:?}");
+    assert!(said.err.contains("read as mm") && said.out.is_empty(), "{said:?}");
+}
+
 #[test]
 fn quiet_says_nothing_when_all_is_well() {
     let folder = Folder::new();
@@ -205,6 +215,7 @@ fn a_wrong_call_is_a_mistake_of_usage() {
         &["post", "part.cls"],
         &["post", "part.cls", "-m", MACHINE, "-o", "out.mpf", "--tolerance", "0"],
         &["post", "part.cls", "-m", MACHINE, "-o", "out.mpf", "--tolerance", "nan"],
+        &["post", "part.cls", "-m", MACHINE, "-o", "out.mpf", "--tolerance", "1e9"],
         &["completions", "nonesuch"],
     ] {
         let said = folder.run(arguments);

@@ -88,6 +88,14 @@ impl Step<'_, '_, '_> {
             let message = "a cycle out of the plane G17: the drilling axis is a setting (5101#0)";
             return Err(self.block.whole("nc-cycle", message));
         }
+        // LinuxCNC feeds along another axis than that of the plane there (found with `rs274`).
+        if self.flavor == Flavor::LinuxCnc
+            && axis != 2
+            && matches!(canned, Canned::Tap | Canned::LeftTap)
+        {
+            let message = "G84 and G74 are followed in G17 only";
+            return Err(self.block.whole("nc-cycle", message));
+        }
         if !self.flavor.is_fanuc() {
             self.state.motion = None;
         }
