@@ -396,10 +396,12 @@ fn rs274(program: &str) -> Vec<String> {
     let mut heights = String::new();
     let does = |line: &str| {
         let (head, rest) = line.split_once('(')?;
-        let z = rest.split(',').nth(2).and_then(|z| z.trim().parse::<f64>().ok());
+        let third = rest.trim_end_matches(')').split(',').nth(2);
+        let z = third.and_then(|z| z.trim().parse::<f64>().ok());
         let step = match (head.rsplit(' ').next()?, z) {
             ("STRAIGHT_TRAVERSE", Some(z)) => format!("rapid {z}"),
             ("STRAIGHT_FEED", Some(z)) => format!("feed {z}"),
+            ("RIGID_TAP", Some(z)) => format!("rigid tap {z}"),
             ("DWELL", _) => "dwell".into(),
             ("STOP_SPINDLE_TURNING", _) => "stop".into(),
             ("START_SPINDLE_CLOCKWISE", _) => "clockwise".into(),
@@ -418,7 +420,7 @@ fn linuxcnc_itself_moves_as_the_manual_says() {
         return;
     }
     // It draws back and comes back by a hundredth of an inch.
-    let motions: [&[&str]; 10] = [
+    let motions: [&[&str]; 8] = [
         &["feed -12", "rapid 20"],
         &["feed -12", "dwell", "rapid 20"],
         &[
@@ -444,14 +446,16 @@ fn linuxcnc_itself_moves_as_the_manual_says() {
             "feed -12",
             "rapid 20",
         ],
-        &["feed -12", "stop", "counter-clockwise", "dwell", "feed 20", "stop", "clockwise"],
-        &["feed -12", "stop", "clockwise", "dwell", "feed 20", "stop", "counter-clockwise"],
         &["feed -12", "feed 3", "rapid 20"],
         &["feed -12", "dwell", "feed 20"],
         &["feed -12", "dwell", "stop", "rapid 20", "clockwise"],
         &["feed -12", "dwell", "stop", "rapid 20", "clockwise"],
     ];
-    for ((kind, dwell, _), motion) in LINUXCNC.into_iter().zip(motions) {
+    let cycles = LINUXCNC.map(|(kind, dwell, _)| (kind, dwell)).into_iter().zip(motions);
+    // In step with the spindle to the bottom, and back to where it began.
+    let tap: &[&str] = &["rigid tap -12", "rapid 20"];
+    let taps = [TAP, LEFT_TAP].map(|kind| ((kind, 0.0), tap));
+    for ((kind, dwell), motion) in cycles.chain(taps) {
         let program = posted("generic-3axis-linuxcnc", cycle(kind, dwell)).unwrap().join("\n");
         let steps = rs274(&program);
         let row = [&["rapid 3"], motion].concat();

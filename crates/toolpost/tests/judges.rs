@@ -166,6 +166,12 @@ fn rs274(folder: &Path, text: &[u8]) -> Result<Vec<Cut>, String> {
                 cuts.push(Cut { from: at, to, length: Some(at.distance(to)) });
                 at = to;
             }
+            // In, and with the spindle reversed out again.
+            "RIGID_TAP" => {
+                let to = Vec3::new(numbers[0], numbers[1], numbers[2]);
+                let length = Some(at.distance(to));
+                cuts.extend([Cut { from: at, to, length }, Cut { from: to, to: at, length }]);
+            }
             "ARC_FEED" => {
                 // First and second axis of the plane (X Y, Y Z, Z X), then the one it rises along.
                 let turned = |a: f64, b: f64, c: f64| match plane {
@@ -271,9 +277,14 @@ for row in frame.iter_rows(named=True):
 fn another_sinumerik_interpreter_ends_every_block_where_the_source_does() {
     let Some(python) = judge::python("nc_gcode_interpreter") else { return };
     let folder = tempfile::tempdir().unwrap();
+    // Arcs in every plane.
+    let machine = folder.path().join("mill.toml");
+    let says = "extends = \"generic-3axis-sinumerik\"\n[settings]\nlength_along_z = true\n\
+                [capabilities]\narcs = [\"XY\", \"XZ\", \"YZ\"]\n";
+    std::fs::write(&machine, says).unwrap();
     let mut judged = 0;
     for file in sources() {
-        let Some((program, text)) = posted(&file, "generic-3axis-sinumerik") else { continue };
+        let Some((program, text)) = posted(&file, machine.to_str().unwrap()) else { continue };
         let path = folder.path().join("program.mpf");
         std::fs::write(&path, text).unwrap();
         let run = Command::new(&python).args(["-c", INTERPRET]).arg(&path).output().unwrap();
