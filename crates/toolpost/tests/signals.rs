@@ -165,6 +165,88 @@ fn every_control_of_mills_has_a_word_for_functions_of_the_builder() {
     }
 }
 
+/// The numbers of the M functions of the builder that a program calls, in order.
+fn called(program: &program::Program) -> Vec<u32> {
+    let calls = program.records.iter().filter_map(|record| match &record.op {
+        program::Op::Auxiliary(function) => Some(function.number),
+        _ => None,
+    });
+    calls.collect()
+}
+
+const MILLS: [&str; 9] =
+    ["fanuc", "haas", "iso", "linuxcnc", "mach3", "grbl", "marlin", "sinumerik", "heidenhain"];
+
+/// Before the first tool, between two cuts, in a cycle, beside a move and behind the last one.
+#[test]
+fn functions_of_the_builder_go_from_each_control_to_each_other() {
+    let list = "auxiliary = [10, 11, 162]\n";
+    let mine = |name: &str| machine(&format!("extends = \"generic-3axis-{name}\"\n{list}"));
+    let text = "G21 G90 G94 G17 G54\nM10\nT1 M6\nS900 M3\nM162\nG0 X0. Y0.\nG43 H1 Z5.\nM10\nG1 Z-1. F90.\nM11\n\
+                X10. M162\nG0 Z5.\nG81 G98 X1. Y1. Z-3. R2. F90.\nM10\nX5.\nG80\nM11\nG0 Z5.\nM162\nM30\n";
+    let numbers = [10, 162, 10, 11, 162, 10, 11, 162];
+    for name in MILLS {
+        let to = mine(name);
+        let new = rewritten(&mine("fanuc"), text, &to).unwrap_or_else(|e| panic!("{name}: {e:?}"));
+        let back = nc::read(&to, Setup::default(), "new", new.as_bytes()).unwrap().program;
+        assert_eq!(called(&back), numbers, "{name}:\n{new}");
+    }
+}
+
+#[test]
+fn functions_of_the_builder_in_operations_of_freecad_are_written_or_refused() {
+    let cut = "G0 Z20.0\nG0 X1.0 Y2.0\nG1 F2.0 X1.0 Y2.0 Z0.0\nG1 F2.0 X5.0\nM11\nG1 F2.0 X9.0\nG0 Z20.0\n";
+    let operation =
+        |label: &str, commands: &str| serde_json::json!({ "label": label, "commands": commands });
+    let job = serde_json::json!({
+        "toolpost": "freecad-job", "version": 1, "name": "part",
+        "tools": [{ "number": 1, "name": "Mill", "diameter": 5.0 }],
+        "operations": [
+            operation("First", "M10\n"),
+            operation("Mill", "M6 T1.000000\nM3 S2000.000000\n"),
+            operation("Custom", "(Custom)\nM162\n"),
+            operation("Profile", cut),
+            operation("Last", "M10\n"),
+        ],
+    });
+    let job = freecad::Job::of("part.json", job.to_string().as_bytes()).unwrap();
+    for name in MILLS {
+        let text = format!("extends = \"generic-3axis-{name}\"\nauxiliary = [10, 11, 162]\n");
+        let to = machine(&text);
+        let program = freecad::read(&to, "part.json", job.clone()).unwrap().program;
+        assert_eq!(called(&program), [10, 162, 11, 10], "{name}");
+        let output = post::write(&program, &to).unwrap();
+        let report = proof::prove(&program, &to, "new", &output.text, &Default::default());
+        assert!(report.proven, "{name}: {:?}", report.mismatches);
+        let without = machine(&format!("extends = \"generic-3axis-{name}\"\n"));
+        let found = freecad::read(&without, "part.json", job.clone()).unwrap_err();
+        assert!(
+            found.message.contains("M10") && found.help.contains("auxiliary"),
+            "{name}: {found}"
+        );
+    }
+}
+
+#[test]
+fn a_function_that_does_nothing_on_the_control_itself_is_the_builders_where_the_file_lists_it() {
+    for (name, number) in
+        [("fanuc", 48), ("linuxcnc", 50), ("marlin", 17), ("sinumerik", 41), ("heidenhain", 90)]
+    {
+        let own = machine(&format!("extends = \"generic-3axis-{name}\"\n"));
+        let listed =
+            machine(&format!("extends = \"generic-3axis-{name}\"\nauxiliary = [{number}]\n"));
+        let text = match name {
+            "heidenhain" => format!("0 BEGIN PGM A MM\n1 M{number}\n2 END PGM A MM\n"),
+            "marlin" => format!("M{number}\n"),
+            _ => format!("M{number}\nM30\n"),
+        };
+        let calls = |machine: &Machine| {
+            called(&nc::read(machine, Setup::default(), "old", text.as_bytes()).unwrap().program)
+        };
+        assert_eq!((calls(&own), calls(&listed)), (vec![], vec![number]), "{name}");
+    }
+}
+
 #[test]
 fn the_contour_of_a_wire_leaves_them_out_and_says_so() {
     let folder = tempfile::tempdir().unwrap();

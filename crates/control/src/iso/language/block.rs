@@ -306,7 +306,14 @@ impl<'a> Block<'a> {
                 }
                 None => return Err(self.unknown(letter, word)),
             },
-            b'M' => match dictionary.m(word.value).or_else(|| self.of_the_machine(word.value)) {
+            // What does nothing on the control itself is the builder's where the machine's file says so.
+            b'M' => match dictionary
+                .m(word.value)
+                .filter(|(_, meaning)| {
+                    !matches!(meaning, M::Neutral(_)) || self.auxiliary(word.value).is_none()
+                })
+                .or_else(|| self.of_the_machine(word.value))
+            {
                 Some((group, meaning)) => {
                     if self.groups & group.bit() != 0 {
                         return Err(self.same_group(group, at, end));

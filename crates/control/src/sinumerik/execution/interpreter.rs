@@ -154,9 +154,9 @@ impl<'a, 's> Interpreter<'a, 's> {
             }
             self.state.corner_feed = rare.modal_corner_feed.or(self.state.corner_feed);
         }
-        // What the builder has added, before the motion.
+        // What the builder has added, before the motion; a gear that its machine's file lists does something there.
         for m in block.m.iter().flatten() {
-            if self.settings.auxiliary.contains(m) && !is_own(*m) {
+            if self.settings.auxiliary.contains(m) && (!is_own(*m) || GEARS.contains(m)) {
                 self.emit(source, Action::Auxiliary(Auxiliary::of(*m)))?;
             }
         }
