@@ -5,7 +5,7 @@ use libfuzzer_sys::fuzz_target;
 use source::apt::{Options, read};
 
 fuzz_target!(|data: &[u8]| {
-    let lenient = read("fuzz.cls", data, &Options { strict: false });
+    let lenient = read("fuzz.cls", data, &Options { strict: false, ..Options::default() });
     match &lenient {
         Ok(reading) => {
             for pose in reading.program.records.iter().filter_map(|record| record.op.pose()) {
@@ -20,6 +20,6 @@ fuzz_target!(|data: &[u8]| {
         }
     }
     // Strict reading is lenient reading without warnings.
-    let strict = read("fuzz.cls", data, &Options { strict: true });
+    let strict = read("fuzz.cls", data, &Options { strict: true, ..Options::default() });
     assert_eq!(strict.is_ok(), lenient.is_ok_and(|reading| reading.warnings.is_empty()));
 });

@@ -16,7 +16,7 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use toolpost::answer::Stop;
 use toolpost::toolpath::{self, Toolpath};
-use toolpost::{Origin, Units, Way, WholeNumbers};
+use toolpost::{Csys, Origin, Units, Way, WholeNumbers};
 
 /// A program in the neutral vocabulary: a sequence of records, and its moves as NumPy arrays.
 ///
@@ -245,6 +245,9 @@ impl Records {
 ///     Where the tool stands when the program starts, mm.
 /// aside : {"+X", "-X", "+Y", "-Y"}, optional
 ///     Which way a boring bar goes from the wall of a hole, where the machine is set to it.
+/// csys : {'local', 'world'}, optional
+///     Where the coordinates behind a ``CSYS`` of SolidWorks CAM stand; by default in the world, where the file says
+///     ``TRNTYP/WORLD``.
 /// strict : bool
 ///     Take every warning as an error.
 ///
@@ -263,7 +266,7 @@ impl Records {
 /// What each format means, with sources: ``docs/sources/apt.md``, ``docs/controls``.
 #[pyfunction]
 #[pyo3(signature = (path, control=None, *, tools=None, folders=Vec::new(), whole_numbers=None, units=None,
-                    block_delete=false, start=None, aside=None, strict=false))]
+                    block_delete=false, start=None, aside=None, csys=None, strict=false))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub fn read(
     py: Python<'_>,
@@ -276,8 +279,10 @@ pub fn read(
     block_delete: bool,
     start: Option<[f64; 3]>,
     aside: Option<&str>,
+    csys: Option<&str>,
     strict: bool,
 ) -> PyResult<Program> {
+    let frames = [("local", Csys::Local), ("world", Csys::World)];
     let counts = [("units", WholeNumbers::Units), ("increments", WholeNumbers::Increments)];
     let ways = [("+X", Way::PlusX), ("-X", Way::MinusX), ("+Y", Way::PlusY), ("-Y", Way::MinusY)];
     let lengths = [("mm", Units::Mm), ("inch", Units::Inch)];
@@ -295,6 +300,7 @@ pub fn read(
         block_delete,
         start,
         aside: aside.map(|given| word(py, "aside", given, &ways)).transpose()?,
+        csys: csys.map(|given| word(py, "csys", given, &frames)).transpose()?,
     };
     released(py, || toolpath::read(&path, strict, &origin, None)).map(Program::from)
 }

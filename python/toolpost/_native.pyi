@@ -228,6 +228,7 @@ def read(
     whole_numbers: Literal["units", "increments"] | None = None,
     units: Literal["mm", "inch"] | None = None,
     aside: Literal["+X", "-X", "+Y", "-Y"] | None = None,
+    csys: Literal["local", "world"] | None = None,
     block_delete: bool = False,
     start: _Point | None = None,
     strict: bool = False,

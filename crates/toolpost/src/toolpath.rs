@@ -1,7 +1,7 @@
 //! Getting the toolpath and the machine that a command names.
 
 use crate::answer::{Stop, Verdict};
-use crate::args::{Origin, Units, Way, WholeNumbers};
+use crate::args::{Csys, Origin, Units, Way, WholeNumbers};
 use crate::fcstd;
 use crate::files;
 use crate::summary::Shape;
@@ -11,6 +11,7 @@ use geom::Vec3;
 use machine::{Machine, library};
 use program::{Diagnostic, Op, Program, Severity, line_of};
 use serde_json::{Value, json};
+use source::apt::{self, SetUps};
 use std::path::{Path, PathBuf};
 
 /// A toolpath as it was read.
@@ -28,6 +29,8 @@ pub struct Toolpath {
     pub warnings: Vec<Diagnostic>,
     /// Of a job of FreeCAD's, the commands that the lines of the program stand for.
     listing: Option<Listing>,
+    /// The set-ups of SolidWorks CAM, where it matters in which frame they are read.
+    set_ups: Option<SetUps>,
 }
 
 /// Endings that NC programs have.
@@ -52,6 +55,9 @@ pub fn read(
     };
     if !Job::begins(&bytes) {
         return read_by(path, &bytes, strict, origin, |machine| machine);
+    }
+    if origin.csys.is_some() {
+        return Err(without_csys(&files::name(path)).into());
     }
     if origin.has_set_up() {
         let message = "a job of FreeCAD's runs on no control that somebody has set up";
@@ -117,24 +123,30 @@ fn read_by(
     set_up: impl Fn(Machine) -> Machine,
 ) -> Result<Toolpath, Stop> {
     let file = files::name(path);
-    let (dialect, program, warnings) = match &origin.from {
+    let (dialect, program, warnings, set_ups) = match &origin.from {
         Some(from) => {
             let machine = set_up(machine::load_origin(from)?);
             let reading = nc::read(&machine, origin.setup()?, &file, bytes)?;
-            (machine.title, reading.program, reading.warnings)
+            (machine.title, reading.program, reading.warnings, None)
         }
         None => {
-            let reading = source::apt::read(&file, bytes, &source::apt::Options { strict });
+            let csys = origin.csys.map(|csys| match csys {
+                Csys::Local => apt::Csys::Local,
+                Csys::World => apt::Csys::World,
+            });
+            let reading = apt::read(&file, bytes, &apt::Options { strict, csys });
             let reading = reading.map_err(|findings| match is_nc(path) {
                 true => without_origin(&file),
                 false => Stop { verdict: Verdict::Invalid, findings },
             })?;
-            (reading.dialect.to_string(), reading.program, reading.warnings)
+            let matters = |set_ups: &SetUps| set_ups.is_given || set_ups.changes > 0;
+            let set_ups = reading.set_ups.filter(matters);
+            (reading.dialect.to_string(), reading.program, reading.warnings, set_ups)
         }
     };
     let warnings = held(warnings, strict)?;
     let path = Some(path.to_owned());
-    Ok(Toolpath { path, file, dialect, program, warnings, listing: None })
+    Ok(Toolpath { path, file, dialect, program, warnings, listing: None, set_ups })
 }
 
 /// The warnings; with `strict` they stop the command.
@@ -145,6 +157,38 @@ pub(crate) fn held(warnings: Vec<Diagnostic>, strict: bool) -> Result<Vec<Diagno
     let strictly = |found: Diagnostic| Diagnostic { severity: Severity::Error, ..found };
     let findings = warnings.into_iter().map(strictly).collect();
     Err(Stop { verdict: Verdict::Invalid, findings })
+}
+
+/// What refuses `--csys` for a source that cannot have the record.
+pub(crate) fn without_csys(file: &str) -> Diagnostic {
+    let message = "--csys is for cutter-location data with CSYS records, which this is not";
+    Diagnostic::error("origin", message).help("leave it out").file(file)
+}
+
+/// What the frame of set-ups is called.
+fn name(csys: apt::Csys) -> &'static str {
+    match csys {
+        apt::Csys::Local => "local",
+        apt::Csys::World => "world",
+    }
+}
+
+/// In which frame set-ups have been read, and why.
+fn told(set_ups: &SetUps) -> String {
+    let count = match set_ups.changes {
+        0 => String::from("one CSYS origin"),
+        1 => String::from("the CSYS origin changes once"),
+        n => format!("the CSYS origin changes {n} times"),
+    };
+    let frame = match set_ups.csys {
+        apt::Csys::Local => "in the frame of each CSYS",
+        apt::Csys::World => "in the world",
+    };
+    let why = match set_ups.is_given {
+        true => "as --csys says",
+        false => "as TRNTYP/WORLD says (--csys local reads them in each CSYS)",
+    };
+    format!("{count}; coordinates read {frame}, {why}")
 }
 
 /// Whether a file has the name of an NC program.
@@ -166,8 +210,17 @@ fn without_origin(file: &str) -> Stop {
 impl Origin {
     /// Whether it says more than what the source was written for.
     fn has_set_up(&self) -> bool {
-        let Origin { from: _, tools, folder, whole_numbers, units, aside, block_delete, start } =
-            self;
+        let Origin {
+            from: _,
+            tools,
+            folder,
+            whole_numbers,
+            units,
+            aside,
+            block_delete,
+            start,
+            csys: _,
+        } = self;
         *block_delete
             || !folder.is_empty()
             || tools.is_some()
@@ -231,6 +284,7 @@ impl Toolpath {
             program,
             warnings: Vec::new(),
             listing: None,
+            set_ups: None,
         }
     }
 
@@ -273,6 +327,12 @@ impl Toolpath {
     /// The source and its measures, as JSON.
     pub fn describe(&self, shape: &Shape) -> Value {
         let mut source = json!({ "file": self.file, "dialect": self.dialect, "measures": shape });
+        if let Some(set_ups) = &self.set_ups {
+            let SetUps { csys, is_given, changes } = *set_ups;
+            let said_by = if is_given { "--csys" } else { "TRNTYP/WORLD" };
+            source["set_ups"] =
+                json!({ "csys": name(csys), "said_by": said_by, "changes_of_origin": changes });
+        }
         if let Some(listing) = &self.listing {
             let operation = |(label, before)| json!({ "label": label, "before": before });
             source["operations"] = listing.operations().map(operation).collect();
@@ -286,6 +346,9 @@ impl Toolpath {
         rows.extend(
             machine.map(|machine| ("machine", format!("{} ({})", machine.title, machine.name))),
         );
+        if let Some(set_ups) = &self.set_ups {
+            rows.push(("set-ups", told(set_ups)));
+        }
         if self.listing.is_some() {
             let operations = self.program.records.iter().filter_map(|record| match &record.op {
                 Op::Operation(name) => Some(name.as_ref()),

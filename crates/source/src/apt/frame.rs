@@ -5,12 +5,15 @@
 
 use super::record::Record;
 use super::report::{Fault, Outcome};
-use super::{Dialect, Reader};
+use super::{Csys, Dialect, Reader, SetUps};
 use geom::{Frame, INCH, Mat3, Vec3, direction};
 use program::Op;
 
 /// Coordinates beyond this are a fault of the file, mm: no machine is a kilometre long.
 pub(super) const FARTHEST: f64 = 1e6;
+
+/// How far two origins of one place may be apart, in the unit of the file: they are printed with six decimals.
+const SAME_ORIGIN: f64 = 1e-6;
 
 /// How far axis vectors printed with a few decimals may be from unit length and a right angle.
 pub(super) const SKEW: f64 = 1e-3;
@@ -33,8 +36,10 @@ pub(super) struct Setup {
     told: Mat3,
     /// `TRNTYP/WORLD` was given: coordinates are in the world whatever `CSYS` says.
     world: bool,
-    /// Origin of the first `CSYS`.
-    csys_origin: Option<Vec3>,
+    /// What the options say of the coordinates behind `CSYS`.
+    csys: Option<Csys>,
+    /// Origin of the last `CSYS`, as the file gives it, and how often it was another one than before.
+    csys_origin: Option<(Vec3, usize)>,
     /// The first coordinate system of a Creo file.
     creo_system: Option<[f64; 12]>,
     /// Rows of an axis system of CATIA that is being read, and where it began.
@@ -43,7 +48,7 @@ pub(super) struct Setup {
 
 impl Setup {
     /// The work frame itself.
-    pub(super) fn new() -> Setup {
+    pub(super) fn new(csys: Option<Csys>) -> Setup {
         Setup {
             to_work: Frame::IDENTITY,
             identity: true,
@@ -53,10 +58,23 @@ impl Setup {
             base: Frame::IDENTITY,
             told: Mat3::IDENTITY,
             world: false,
+            csys,
             csys_origin: None,
             creo_system: None,
             rows: None,
         }
+    }
+
+    /// The set-ups, where the file has had `CSYS`.
+    pub(super) fn set_ups(&self) -> Option<SetUps> {
+        let (_, changes) = self.csys_origin?;
+        let csys = self.csys.unwrap_or(Csys::World);
+        Some(SetUps { csys, is_given: self.csys.is_some(), changes })
+    }
+
+    /// The options say where the coordinates behind `CSYS` stand, and there is none.
+    pub(super) fn lacks_csys(&self) -> bool {
+        self.csys.is_some() && self.csys_origin.is_none()
     }
 }
 
@@ -209,24 +227,36 @@ impl Reader {
         Ok(())
     }
 
-    /// `CSYS/xx,yx,zx,ox,xy,yy,zy,oy,xz,yz,zz,oz`: the set-up of a SolidWorks CAM operation. Points
-    /// and vectors are in the world already; the set-up tells the plane of work.
+    /// `CSYS/xx,yx,zx,ox,xy,yy,zy,oy,xz,yz,zz,oz`: the set-up of a SolidWorks CAM operation. Behind `TRNTYP/WORLD`
+    /// points and vectors are in the world already, and the set-up tells the plane of work; so it is also where the origin
+    /// changes: read in the frame of each, set-ups of one part drill their holes in the same places, and read in the
+    /// world the holes lie apart and within the stock.
     pub(super) fn csys(&mut self, record: &Record) -> Outcome {
         record.count(&[12], "CSYS/ and three rows of four values")?;
         let values = record.numbers::<12>(0)?;
         let rows: Vec<[f64; 4]> =
             values.chunks_exact(4).map(|r| [r[0], r[1], r[2], r[3]]).collect();
-        let frame = frame_of_rows(&rows).map_err(|fault| fault.fields(0, 12))?;
-        if !self.setup.world && frame.matrix3 != Mat3::IDENTITY {
-            let message = "without TRNTYP/WORLD it is not known where the coordinates stand";
-            return Err(Fault::new("frame", message));
+        let mut frame = frame_of_rows(&rows).map_err(|fault| fault.fields(0, 12))?;
+        let (last, count) = *self.setup.csys_origin.get_or_insert((frame.translation, 0));
+        let is_another = last.distance(frame.translation) > SAME_ORIGIN;
+        if is_another {
+            self.setup.csys_origin = Some((frame.translation, count + 1));
         }
-        let origin = *self.setup.csys_origin.get_or_insert(frame.translation);
-        if origin.distance(frame.translation) > 1e-6 {
-            let message = "this set-up has another origin than the first, and whether the \
-                           coordinates move with it is not known";
-            return Err(Fault::new("frame", message)
-                .help("post the set-ups one by one, or give them one origin"));
+        let is_known = self.setup.world || self.setup.csys.is_some();
+        if !is_known && (is_another || frame.matrix3 != Mat3::IDENTITY) {
+            let message = "without TRNTYP/WORLD it is not known whether the coordinates stand in the world or in \
+                           this CSYS";
+            let help =
+                "let the CAM system write TRNTYP/WORLD, or say it by --csys local or --csys world";
+            return Err(Fault::new("frame", message).help(help));
+        }
+        if self.setup.csys == Some(Csys::Local) {
+            for (i, field) in [3, 7, 11].into_iter().enumerate() {
+                let length = self.length(frame.translation[i]);
+                frame.translation[i] = length.map_err(|fault| fault.fields(field, 1))?;
+            }
+            self.relative_set_up(record.line, frame);
+            return Ok(());
         }
         self.axis = frame.matrix3.z_axis;
         self.tell(record.line, Frame::from_mat3(frame.matrix3));

@@ -42,6 +42,28 @@ use technology::FeedUnit;
 pub struct Options {
     /// Warnings are errors.
     pub strict: bool,
+    /// Where the coordinates of a file with `CSYS` stand, for whoever knows better than the file.
+    pub csys: Option<Csys>,
+}
+
+/// Where coordinates and vectors stand that follow a `CSYS` of SolidWorks CAM.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Csys {
+    /// In the frame of that `CSYS`.
+    Local,
+    /// In one frame, whatever `CSYS` says.
+    World,
+}
+
+/// The set-ups of a file with `CSYS`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct SetUps {
+    /// Where their coordinates have been read.
+    pub csys: Csys,
+    /// The options have said so, and not the file.
+    pub is_given: bool,
+    /// How often the origin is another one than before.
+    pub changes: usize,
 }
 
 /// What a file says.
@@ -53,6 +75,8 @@ pub struct Reading {
     pub warnings: Vec<Diagnostic>,
     /// The CAM system that wrote it.
     pub dialect: Dialect,
+    /// Its set-ups; none where it has no `CSYS`.
+    pub set_ups: Option<SetUps>,
 }
 
 /// Reads cutter-location data. `file_name` is for the messages, and names the program where the file
@@ -208,7 +232,7 @@ impl Reader {
             unit_assumed: false,
             unit_used: Cell::new(0),
             line: 0,
-            setup: Setup::new(),
+            setup: Setup::new(options.csys),
             point: None,
             tip: None,
             axis: Vec3::Z,
@@ -259,8 +283,9 @@ impl Reader {
             self.judge_the_arcs(text);
         }
         if self.report.errors.is_empty() {
+            let set_ups = self.setup.set_ups();
             let Reader { program, report, dialect, .. } = self;
-            return Ok(Reading { program, warnings: report.warnings, dialect });
+            return Ok(Reading { program, warnings: report.warnings, dialect, set_ups });
         }
         Err(self.report.errors)
     }
@@ -282,6 +307,13 @@ impl Reader {
         }
         if self.point.is_none() {
             return self.report.error(Diagnostic::error("no-motion", "nothing moves in this file"));
+        }
+        if self.setup.lacks_csys() {
+            let message =
+                "where coordinates stand is asked for by `csys`, and the file has no CSYS record";
+            return self
+                .report
+                .error(Diagnostic::error("frame", message).help("leave `--csys` out"));
         }
         if let (Some(early), Some(load)) = (&self.early, self.first_load) {
             // What looked like a record was part of another one.

@@ -273,7 +273,7 @@ fn a_real_file_in_strict_mode_fails_by_its_warnings_only() {
         let Some(folder) = data() else { return };
         let text = std::fs::read(folder.join(name)).unwrap();
         let warnings = reading(name).unwrap().warnings;
-        match read(name, &text, &Options { strict: true }) {
+        match read(name, &text, &Options { strict: true, ..Options::default() }) {
             Ok(_) => assert!(warnings.is_empty()),
             Err(errors) => {
                 let rules = |list: &[program::Diagnostic]| -> Vec<&str> {

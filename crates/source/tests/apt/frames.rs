@@ -3,7 +3,7 @@
 use crate::support::{HEAD, Z, assert_poses, error, ops, reading};
 use geom::Vec3;
 use program::Op;
-use toolpost_source::apt::{Dialect, Options, read};
+use toolpost_source::apt::{Csys, Dialect, Options, Reading, SetUps, read};
 
 #[test]
 fn frames_are_resolved_relative_to_the_first() {
@@ -71,7 +71,8 @@ fn origins_shifts_inches_and_axes_are_resolved() {
         ("TRNTYP/WORLD,0,0,5", "frame"),
         ("CSYS/0,0,1,0,0,1,0,0,-1,0,0,0", "frame"),
         ("TRNTYP/WORLD\nCSYS/1,0,0,0,0,1,0,0,0,0,-1,0", "frame"),
-        ("TRNTYP/WORLD\nCSYS/1,0,0,0,0,1,0,0,0,0,1,0\nCSYS/1,0,0,5,0,1,0,0,0,0,1,0", "frame"),
+        // Without TRNTYP/WORLD nothing says where the second set-up stands.
+        ("CSYS/1,0,0,0,0,1,0,0,0,0,1,0\nCSYS/1,0,0,5,0,1,0,0,0,0,1,0", "frame"),
     ] {
         assert_eq!(error(text), rule, "{text}");
     }
@@ -131,4 +132,48 @@ fn catia_gives_its_axis_system_in_remarks() {
     let ops: Vec<Op> = whole.program.records.into_iter().map(|r| r.op).collect();
     assert_poses(&ops, &[([1., 2., 3.], Z), ([-2., 1., 10.], Z)]);
     assert!(!ops.iter().any(|op| matches!(op, Op::Comment(_))));
+}
+
+/// Two set-ups of a block of 100 x 40 mm, whose second origin is 60 mm further and turned a quarter: each drills two
+/// holes 10 and 30 mm behind its own origin, in the world.
+const TWO_SET_UPS: &str = "TRNTYP/WORLD,0,0,0\nCSYS/1,0,0,0,0,1,0,0,0,0,1,0\nGOTO/10,5,0\nGOTO/30,5,0\n\
+                           TRNTYP/WORLD,0,0,0\nCSYS/0,-1,0,60,1,0,0,5,0,0,1,0\nGOTO/60,15,0\nGOTO/60,35,0";
+
+fn read_in(csys: Option<Csys>, body: &str) -> Result<Reading, Vec<program::Diagnostic>> {
+    let options = Options { csys, ..Options::default() };
+    read("s.apt", format!("{HEAD}{body}\nFINI\n").as_bytes(), &options)
+}
+
+fn points(reading: &Reading) -> Vec<[f64; 3]> {
+    let poses = reading.program.records.iter().filter_map(|record| record.op.pose());
+    poses.map(|pose| pose.point().to_array().map(|value| (value * 1e6).round() / 1e6)).collect()
+}
+
+#[test]
+fn several_origins_are_read_in_the_world_unless_somebody_says_otherwise() {
+    let world = [[10., 5., 0.], [30., 5., 0.], [60., 15., 0.], [60., 35., 0.]];
+    for (csys, is_given) in [(None, false), (Some(Csys::World), true)] {
+        let reading = read_in(csys, TWO_SET_UPS).unwrap();
+        assert_eq!(points(&reading), world);
+        assert_eq!(reading.set_ups, Some(SetUps { csys: Csys::World, is_given, changes: 1 }));
+    }
+    // In the frame of the second, 10 mm along its X is 10 mm along Y of the first.
+    let local = TWO_SET_UPS.replace("60,15,0", "10,0,0").replace("60,35,0", "30,0,0");
+    let reading = read_in(Some(Csys::Local), &local).unwrap();
+    assert_eq!(points(&reading), world);
+    assert_eq!(reading.set_ups, Some(SetUps { csys: Csys::Local, is_given: true, changes: 1 }));
+    // Origins are in the unit of the file.
+    let inches = read_in(Some(Csys::Local), &format!("UNITS/INCHES\n{local}")).unwrap();
+    assert_eq!(points(&inches)[2], [60.0 * 25.4, 15.0 * 25.4, 0.0]);
+}
+
+#[test]
+fn where_the_coordinates_of_set_ups_stand_is_asked_where_the_file_does_not_say_it() {
+    let body = TWO_SET_UPS.replace("TRNTYP/WORLD,0,0,0\n", "");
+    let found = read_in(None, &body).unwrap_err().remove(0);
+    assert_eq!((found.rule, found.line), ("frame", 8), "{found}");
+    assert!(found.help.contains("--csys local or --csys world"), "{found}");
+    assert!(read_in(Some(Csys::World), &body).is_ok() && read_in(Some(Csys::Local), &body).is_ok());
+    let none = read_in(Some(Csys::World), "GOTO/1,2,3").unwrap_err().remove(0);
+    assert!(none.rule == "frame" && none.message.contains("no CSYS"), "{none}");
 }

@@ -174,6 +174,6 @@ proptest! {
             0..12,
         ),
     ) {
-        let _ = read("t.apt", records.join("\n").as_bytes(), &Options { strict: true });
+        let _ = read("t.apt", records.join("\n").as_bytes(), &Options { strict: true, ..Options::default() });
     }
 }

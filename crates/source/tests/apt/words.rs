@@ -83,7 +83,8 @@ fn words_that_are_not_known_are_one_warning_each() {
     let found = reading(&text).warnings;
     let seen: Vec<(&str, u32, u32)> = found.iter().map(|w| (w.rule, w.line, w.count)).collect();
     assert_eq!(seen, [("unknown-word", 5, 2), ("unknown-word", 6, 1), ("ignored-word", 9, 1)]);
-    let strict = read("s.apt", text.as_bytes(), &Options { strict: true }).unwrap_err();
+    let strict = read("s.apt", text.as_bytes(), &Options { strict: true, ..Options::default() })
+        .unwrap_err();
     assert!(strict.iter().all(|e| e.is_error()));
     assert_eq!(
         strict.iter().map(|e| (e.rule, e.line)).collect::<Vec<_>>()[..2],

@@ -100,6 +100,23 @@ pub struct Origin {
     /// Where the tool stands when the program starts, mm.
     #[arg(long, value_name = "X,Y,Z", requires = "from", value_parser = point, allow_hyphen_values = true)]
     pub start: Option<[f64; 3]>,
+    /// Where the coordinates behind a CSYS of SolidWorks CAM stand [default: world, where the file says TRNTYP/WORLD].
+    #[arg(
+        long,
+        value_name = "FRAME",
+        conflicts_with = "from",
+        help_heading = "SolidWorks CAM as the source"
+    )]
+    pub csys: Option<Csys>,
+}
+
+/// Where the coordinates behind a `CSYS` stand.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum Csys {
+    /// In the frame of each CSYS.
+    Local,
+    /// In one frame, whatever CSYS says.
+    World,
 }
 
 /// What lengths count.

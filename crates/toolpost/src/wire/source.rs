@@ -97,6 +97,9 @@ impl File {
             warnings.splice(0..0, toolpath.warnings.clone());
             return Ok(File::Program(toolpath.warned(warnings, strict)?));
         }
+        if args.source.origin.csys.is_some() {
+            return Err(toolpath::without_csys(&files::name(path)).into());
+        }
         let text = files::read(path)?;
         let options = dxf::Options {
             layers: args.drawing.layer.clone(),

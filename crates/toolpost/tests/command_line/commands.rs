@@ -225,3 +225,34 @@ fn a_wrong_call_is_a_mistake_of_usage() {
     assert_eq!(folder.run(&["--help"]).code, 0);
     assert_eq!(folder.run(&["--version"]).code, 0);
 }
+
+/// Two set-ups whose origins are 60 mm apart: in the world their holes lie apart, in the frame of each at the same place.
+#[test]
+fn the_summary_says_in_which_frame_set_ups_are_read_and_why() {
+    let folder = Folder::new();
+    let set_up = |origin: u32, x: u32| {
+        format!(
+            "TRNTYP/WORLD,0,0,0\nCSYS/1,0,0,{origin},0,1,0,0,0,0,1,0\nGOTO/{x},5,0\nGOTO/{},5,0\n",
+            x + 20
+        )
+    };
+    let head = "UNITS/MM\nLOADTL/1\nSPINDL/900,RPM,CLW\nFEDRAT/100,MMPM\nRAPID\nGOTO/10,5,20\n";
+    let cycle = "CYCLE/DRILL,FEDTO,5,RAPTO,2,MMPM,100\n";
+    let text = format!("{head}{cycle}{}{}CYCLE/OFF\nFINI\n", set_up(0, 10), set_up(60, 70));
+    folder.write("two.apt", text);
+    let said = folder.run(&["show", "two.apt"]);
+    assert_eq!(said.code, 0, "{said:?}");
+    assert!(said.out.contains("read in the world, as TRNTYP/WORLD says"), "{}", said.out);
+    assert!(said.out.contains("10 ... 90 mm"), "{}", said.out);
+    let said = folder.run(&["show", "two.apt", "--csys", "local"]);
+    assert!(said.out.contains("read in the frame of each CSYS, as --csys says"), "{}", said.out);
+    assert!(said.out.contains("10 ... 150 mm"), "{}", said.out);
+    let post = ["post", "two.apt", "-m", MACHINE, "-o", "two.mpf", "--json"];
+    let answer = folder.run(&post).json();
+    let expected =
+        serde_json::json!({ "csys": "world", "said_by": "TRNTYP/WORLD", "changes_of_origin": 1 });
+    assert_eq!(answer["source"]["set_ups"], expected, "{answer}");
+    // A file without the record has no use for the option.
+    let said = folder.run(&["show", "part.cls", "--csys", "world"]);
+    assert!(said.code == 2 && said.err.contains("no CSYS"), "{said:?}");
+}
