@@ -25,6 +25,7 @@ use program::{
     ArcTo, Axes, Circle, Cycle, Diagnostic, MachineMove, Op, Pose, Probe, Program, Record, Thread,
     Tool, WorkOffset,
 };
+use std::collections::BTreeSet;
 
 /// Most records of a reading, which are kept in memory: a program of a few lines can loop to more.
 const MOST_RECORDS: usize = 20_000_000;
@@ -123,12 +124,14 @@ pub fn read_by(
     let settings = settings(machine, setup)?;
     let name = file_name.rsplit_once('.').map_or(file_name, |(stem, _)| stem);
     let mut lift = Lift::new(machine, &settings.setup, name, keep);
+    // FreeCAD's commands call no lengths: the post does.
+    lift.calls_lengths &= settings.dialect != Dialect::FreeCad;
     let run = control::read(&settings, file_name, text, &mut |event| {
         let line = event.line;
         lift.event(event).map_err(|found| found.line(line).into())
     });
     run.map_err(|found| way_out(machine, found))?;
-    let cut_off = cut_off(settings.dialect, lift.ended, lift.count, text);
+    let cut_off = cut_off(settings.dialect, lift.ended, text);
     if let Some(found) = cut_off {
         let lines = text.iter().filter(|byte| **byte == b'\n').count();
         let last = u32::try_from(lines).unwrap_or(u32::MAX).max(1);
@@ -154,10 +157,10 @@ pub fn read_by(
 }
 
 /// What says that the program in `text` is only the first part of one; `ended` is whether a code has ended it.
-fn cut_off(dialect: Dialect, ended: bool, records: usize, text: &[u8]) -> Option<Diagnostic> {
+fn cut_off(dialect: Dialect, ended: bool, text: &[u8]) -> Option<Diagnostic> {
     const HELP: &str = "the file may be cut off: send it once more";
-    if records == usize::from(ended) {
-        let message = "there is no program in the file: nothing moves, and nothing is switched";
+    if text.trim_ascii().is_empty() {
+        let message = "the file is empty";
         return Some(Diagnostic::error("program-end", message).help(HELP));
     }
     let ending = dialect.ending();
@@ -220,6 +223,12 @@ struct Lift<'a> {
     several: bool,
     /// Numbers of the tools that the program calls, with the names of those that it calls by name.
     numbers: Vec<(u32, String)>,
+    /// The program has to call length offsets, since its control takes none with the tool.
+    calls_lengths: bool,
+    /// The register of the length offset that it has called last, also for another tool.
+    length_offset: Option<u32>,
+    /// Registers of the tools that are told to cut without a length offset.
+    bare: BTreeSet<u32>,
 }
 
 /// The tool in the spindle.
@@ -229,6 +238,9 @@ struct Loaded {
     register: u32,
     /// Length, where it is known, mm.
     length: Option<f64>,
+    /// Whether it has cut with the length offset of the register (`true`) or without any; it has not cut yet without
+    /// a value.
+    offset: Option<bool>,
 }
 
 /// A tool tip (mm) and a tool axis (unit vector) in the work frame; what is not known is NaN.
@@ -283,6 +295,9 @@ impl<'a> Lift<'a> {
             work_offset: None,
             several: false,
             numbers: Vec::new(),
+            calls_lengths: machine.capabilities.length_offset == LengthOffset::ToolNumber,
+            length_offset: None,
+            bare: BTreeSet::new(),
         }
     }
 
@@ -297,27 +312,27 @@ impl<'a> Lift<'a> {
             Action::Rapid(position) => {
                 let spot = self.spot(&position);
                 match spot.pose() {
-                    Some(pose) => self.arrive(line, Op::Rapid(pose)),
+                    Some(pose) => self.arrive(line, Op::Rapid(pose))?,
                     None => self.place = Place::At(spot),
                 }
             }
             Action::Line(position) => {
                 let pose = self.cut(&position)?;
-                self.arrive(line, Op::Line(pose));
+                self.arrive(line, Op::Line(pose))?;
             }
             Action::Arc(arc) => {
                 let arc = self.arc(&arc)?;
-                self.arrive(line, Op::Arc(Box::new(arc)));
+                self.arrive(line, Op::Arc(Box::new(arc)))?;
             }
             Action::Thread(thread) => {
                 let end = self.cut(&thread.end)?;
-                self.arrive(line, Op::Thread(Box::new(Thread::new(end, thread.pitch)?)));
+                self.arrive(line, Op::Thread(Box::new(Thread::new(end, thread.pitch)?)))?;
             }
             Action::Probe(probe) => {
                 let Probe { away, must_answer, place, .. } = *probe;
                 let end = self.cut(&probe.end)?;
                 let probe = Probe { end, away, must_answer, place };
-                self.arrive(line, Op::Probe(Box::new(probe)));
+                self.arrive(line, Op::Probe(Box::new(probe)))?;
                 self.place = Place::Nowhere;
             }
             Action::Hole(position) => {
@@ -329,7 +344,7 @@ impl<'a> Lift<'a> {
                 });
                 let Some(pose) = spot.pose() else { return Err(unknown("a hole", &spot)) };
                 self.bore(line, aside);
-                self.arrive(line, Op::Hole(pose));
+                self.arrive(line, Op::Hole(pose))?;
             }
             Action::Cycle(cycle) => {
                 self.boring = cycle.kind.withdrawal().is_some().then_some((*cycle, None));
@@ -347,7 +362,7 @@ impl<'a> Lift<'a> {
                 }
                 self.home = None;
                 let register = tool.offset.unwrap_or(tool.number);
-                self.tool = Some((Loaded { register, length: tool.length }, true));
+                self.tool = Some((Loaded { register, length: tool.length, offset: None }, true));
                 self.push(line, Op::Tool(tool));
             }
             Action::LengthOffset(register) => return self.length_offset(line, register),
@@ -391,7 +406,10 @@ impl<'a> Lift<'a> {
     }
 
     /// The tool moves, from home where it was sent there.
-    fn arrive(&mut self, line: u32, op: Op) {
+    fn arrive(&mut self, line: u32, op: Op) -> Done {
+        if self.calls_lengths && !matches!(op, Op::Rapid(_)) {
+            self.see_length(line)?;
+        }
         match (self.home.take(), self.place) {
             (Some(line), _) => self.push(line, Op::Home),
             (None, Place::Start(start)) if !matches!(op, Op::Rapid(_)) => {
@@ -406,6 +424,54 @@ impl<'a> Lift<'a> {
         let at = |pose: &Pose| Place::At(Spot { tip: pose.point(), axis: pose.axis() });
         self.place = op.pose().map_or(Place::Nowhere, at);
         self.push(line, op);
+        Ok(())
+    }
+
+    /// The tool cuts: whether a length offset is on, and whose. The new program calls that of the tool in any case.
+    fn see_length(&mut self, line: u32) -> Done {
+        let Some((tool, _)) = &mut self.tool else { return Ok(()) };
+        let (register, active) = (tool.register, self.length_offset);
+        if tool.offset.replace(active.is_some()).is_some_and(|before| before != active.is_some()) {
+            let message = "the tool cuts with its length offset and without: a tool with two lengths cannot be told";
+            let help = "post the parts with the offset and without as programs of their own";
+            return Err(refuse("length-offset", message, help));
+        }
+        match active {
+            None if self.bare.insert(register) => {
+                let message = format!(
+                    "the tool cuts without a length offset (no G43): a control that calls lengths writes register \
+                     {register}"
+                );
+                let help = "where the source counts on a length of 0, set that of the tool to 0 at the new machine";
+                let found = Diagnostic::warning("length-offset", message).help(help);
+                self.warnings.push(found.line(line));
+            }
+            Some(active) if active != register => {
+                let message = format!(
+                    "length offset {active}, which was called before the tool, stays on for it: it is written in \
+                     place of {register}"
+                );
+                let help = "check that the tool is meant to have that length";
+                let found = Diagnostic::warning("length-offset", message).help(help);
+                self.warnings.push(found.line(line));
+                self.correct(active);
+            }
+            _ => {}
+        }
+        Ok(())
+    }
+
+    /// The tool has another register for its length.
+    fn correct(&mut self, register: u32) {
+        if let Some((tool, _)) = &mut self.tool {
+            tool.register = register;
+        }
+        let mut records = self.program.records.iter_mut().rev();
+        let last = records
+            .find_map(|record| if let Op::Tool(tool) = &mut record.op { Some(tool) } else { None });
+        if let Some(tool) = last {
+            tool.offset = Some(register);
+        }
     }
 
     /// Says the boring cycle anew where its way aside, which turns with the table, is another one.
@@ -561,11 +627,16 @@ impl<'a> Lift<'a> {
     }
 
     fn length_offset(&mut self, line: u32, register: Option<u32>) -> Done {
+        self.length_offset = register;
         let Some(register) = register else { return Ok(()) };
         let Some((tool, fresh)) = &mut self.tool else {
-            let message = format!("length offset {register} is called, and no tool before it");
+            let message = format!(
+                "length offset {register} is called, and no tool before it: the new program writes the register \
+                 of the tool that it calls"
+            );
             let found = Diagnostic::warning("length-offset", message);
-            self.warnings.push(found.help("the tool is that of the new machine").line(line));
+            let help = "name the tool in the source, or set `default_tool` to the one that has this register";
+            self.warnings.push(found.help(help).line(line));
             return Ok(());
         };
         // Where a register is an edge of the tool in the spindle (SINUMERIK's D), the first is the tool
@@ -582,13 +653,7 @@ impl<'a> Lift<'a> {
             let help = "post the parts with each offset as programs of their own";
             return Err(refuse("length-offset", message, help));
         }
-        tool.register = register;
-        let mut records = self.program.records.iter_mut().rev();
-        let last = records
-            .find_map(|record| if let Op::Tool(tool) = &mut record.op { Some(tool) } else { None });
-        if let Some(tool) = last {
-            tool.offset = Some(register);
-        }
+        self.correct(register);
         Ok(())
     }
 

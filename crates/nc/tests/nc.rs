@@ -283,3 +283,70 @@ fn a_program_that_is_cut_off_is_refused_where_its_control_knows_an_end() {
     assert_eq!(found("generic-3axis-fanuc", &format!("%\nO1\n{body}M30\n")), "told");
     assert_eq!(found("generic-3axis-fanuc", &format!("%\nO1\n{body}M30\n%\n")), "whole");
 }
+
+/// The registers of the tools of a program, and what is told of its lengths.
+fn registers(control: &str, text: &str) -> (Vec<(u32, Option<u32>)>, Vec<Diagnostic>) {
+    let machine = load_origin(control).unwrap();
+    let reading = read_for(&machine, Setup::default(), text).unwrap_or_else(|e| panic!("{e}"));
+    let tools = reading.program.records.iter().filter_map(|record| match &record.op {
+        Op::Tool(tool) => Some((tool.number, tool.offset)),
+        _ => None,
+    });
+    let told = reading.warnings.into_iter().filter(|found| found.rule == "length-offset");
+    (tools.collect(), told.collect())
+}
+
+const CUT: &str = "G0 X0. Y0. Z5.\nG1 Z-1. F90.\nX9.\nG0 Z5.\n";
+
+#[test]
+fn a_tool_that_cuts_without_a_length_offset_is_told_once() {
+    for control in ["fanuc-31i", "haas", "linuxcnc", "mach3"] {
+        let text = format!("G21 G90 G94 G54\nT2 M6\nS900 M3\n{CUT}T2 M6\n{CUT}M30\n");
+        let (tools, told) = registers(control, &text);
+        assert_eq!(tools, [(2, None), (2, None)], "{control}");
+        let [found] = &told[..] else { panic!("{control}: {told:?}") };
+        assert!(found.line == 5 && found.message.contains("register 2"), "{control}: {found}");
+        // With G43 nothing is told.
+        let text = format!("G21 G90 G94 G54\nT2 M6\nS900 M3\nG0 X0. Y0.\nG43 H2 Z9.\n{CUT}M30\n");
+        assert_eq!(registers(control, &text), (vec![(2, None)], vec![]), "{control}");
+    }
+    // These take the length with the tool.
+    for (control, text) in [
+        ("grbl", format!("G21 G90 G94 G54\nT2\nS900 M3\n{CUT}M30\n")),
+        ("sinumerik-840d", format!("G71 G90 G94 G54\nT2 M6\nS900 M3\n{CUT}M30\n")),
+    ] {
+        assert!(registers(control, &text).1.is_empty(), "{control}");
+    }
+}
+
+/// G43 and its register stay on through a tool change: the control cuts with the length of the other tool.
+#[test]
+fn a_length_offset_that_was_called_before_the_tool_stays_its_own_and_is_told() {
+    let first = format!("T1 M6\nS900 M3\nG0 X0. Y0.\nG43 H1 Z9.\n{CUT}");
+    for second in ["", "G43 H1\n"] {
+        for control in ["fanuc-31i", "haas", "linuxcnc"] {
+            let text = format!("G21 G90 G94 G54\n{first}T2 M6\nS900 M3\n{second}{CUT}M30\n");
+            let (tools, told) = registers(control, &text);
+            assert_eq!(tools, [(1, None), (2, Some(1))], "{control}: {second}");
+            let [found] = &told[..] else { panic!("{control}: {told:?}") };
+            assert!(
+                found.message.contains("offset 1") && found.message.contains("place of 2"),
+                "{found}"
+            );
+        }
+    }
+    let text = format!("G21 G90 G94 G54\nG43 H1\nT2 M6\nS900 M3\n{CUT}M30\n");
+    let (tools, told) = registers("fanuc-31i", &text);
+    assert_eq!((&tools[..], told.len()), (&[(2, Some(1))][..], 2));
+}
+
+#[test]
+fn a_tool_that_cuts_with_and_without_its_length_offset_is_refused() {
+    let start = "G21 G90 G94 G54\nT2 M6\nS900 M3\n";
+    let found = refused(&format!("{start}{CUT}G43 H2\n{CUT}M30\n"));
+    assert_eq!((found.rule, found.line), ("length-offset", 10), "{found}");
+    let found = refused(&format!("{start}G43 H2\n{CUT}G49\n{CUT}M30\n"));
+    assert_eq!((found.rule, found.line), ("length-offset", 11), "{found}");
+    // Up and home without it is no cut.
+    fanuc(&format!("{start}G43 H2\n{CUT}G49 G0 Z9.\nM30\n"));
+}
