@@ -24,6 +24,7 @@ mod model;
 pub mod plan;
 mod sheet;
 pub mod time;
+pub mod upgrade;
 
 pub use load::{load, load_control, load_origin, load_text};
 pub use model::*;

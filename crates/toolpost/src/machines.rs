@@ -17,7 +17,8 @@ pub fn run(command: &Machines) -> Result<Answer, Stop> {
         Machines::Show { name } => show(name),
         Machines::New { name, from } => new(name, from),
         Machines::Import { file, output, extends } => import(file, output, extends.as_deref()),
-        Machines::Check { file } => check(file),
+        Machines::Check { file, upgrade: true } => upgrade(file),
+        Machines::Check { file, upgrade: false } => check(file),
     }
 }
 
@@ -149,6 +150,31 @@ fn check(file: &str) -> Result<Answer, Stop> {
     let lines = [("machine", machine.title.clone()), ("mistakes", String::from("none"))];
     let data = json!({ "machine": describe(&machine) });
     Ok(Answer::summary(Verdict::Done, summary::rows(&lines), data))
+}
+
+/// Says which keys a file lacks that is older than they are.
+fn upgrade(file: &str) -> Result<Answer, Stop> {
+    let machine = toolpath::machine(file)?;
+    let missing = machine::upgrade::missing(&machine);
+    let mut text = String::new();
+    if missing.is_empty() {
+        text.push_str("nothing is missing\n");
+    } else {
+        text.push_str("# As controls are delivered: read each value on yours.\n");
+    }
+    let mut table = "";
+    for key in &missing {
+        if key.table != table {
+            table = &key.table;
+            text.push_str(&format!("\n{}\n", key.table.replacen("]] ", "]]  # the one with ", 1)));
+        }
+        text.push_str(&format!("# {}\n{}\n", key.place, key.line));
+    }
+    let keys = missing
+        .iter()
+        .map(|key| json!({ "table": key.table, "line": key.line, "place": key.place }));
+    let data = json!({ "machine": describe(&machine), "missing": keys.collect::<Vec<Value>>() });
+    Ok(Answer::product(text, data))
 }
 
 fn library_text(name: &str) -> Result<&'static str, Stop> {

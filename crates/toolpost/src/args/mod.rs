@@ -426,6 +426,9 @@ pub enum Machines {
     Check {
         /// The file, ending in .toml; or a name in the library.
         file: String,
+        /// Print the keys on which its programs hang and which the file does not say, each as the line to add.
+        #[arg(long)]
+        upgrade: bool,
     },
 }
 

@@ -256,3 +256,28 @@ fn the_summary_says_in_which_frame_set_ups_are_read_and_why() {
     let said = folder.run(&["show", "part.cls", "--csys", "world"]);
     assert!(said.code == 2 && said.err.contains("no CSYS"), "{said:?}");
 }
+
+/// What a file does not say on which programs hang: all at once, as lines to add.
+#[test]
+fn a_machine_file_that_is_older_than_a_key_is_told_the_line_to_add() {
+    let folder = Folder::new();
+    let rotary = "[[rotary]]\nletter = \"C\"\non = \"table\"\naxis = [0, 0, 1]\nrapid = 9000\nacceleration = 300\n";
+    let old = format!(
+        "extends = \"sinumerik-840d\"\n[orientation]\nsimultaneous = \"machine-angles\"\n{rotary}"
+    );
+    folder.write("old.toml", &old);
+    let said = folder.run(&["machines", "check", "--upgrade", "old.toml"]);
+    assert_eq!(said.code, 0, "{said:?}");
+    for line in
+        ["safe_height = 0", "path_tolerance = 0.01", "length_along_z = false", "modulo = true"]
+    {
+        assert!(said.out.contains(&format!("\n{line}\n")), "{line}: {}", said.out);
+    }
+    let new = format!(
+        "extends = \"sinumerik-840d\"\nsafe_height = 0\n[options]\npath_tolerance = 0.01\n[settings]\n\
+         length_along_z = false\n[orientation]\nsimultaneous = \"machine-angles\"\n{rotary}modulo = true\n"
+    );
+    folder.write("new.toml", &new);
+    let said = folder.run(&["machines", "check", "--upgrade", "new.toml"]);
+    assert_eq!((said.code, said.out.as_str()), (0, "nothing is missing\n"));
+}

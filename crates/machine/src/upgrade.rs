@@ -1,0 +1,71 @@
+//! Keys on which a machine's programs hang, and which its file does not say: files that are older than a key lack it.
+
+use crate::model::{Machine, OptionValue};
+
+/// A key that a machine file lacks.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Missing {
+    /// The table that it stands in; empty for the top of the file.
+    pub table: String,
+    /// The line to add, with the value of a control as it is delivered.
+    pub line: String,
+    /// Where on the control the value is read, and what hangs on it.
+    pub place: &'static str,
+}
+
+/// All keys that the file of `machine` lacks, in the order of their tables.
+pub fn missing(machine: &Machine) -> Vec<Missing> {
+    let mut all = Vec::new();
+    let mut lacks = |table: String, line: &str, place| {
+        all.push(Missing { table, line: line.to_owned(), place });
+    };
+    let retracts = machine.blocks.values().any(|block| block.text.contains("SAFE_HEIGHT"));
+    if machine.safe_height.is_none() && retracts {
+        lacks(
+            String::new(),
+            "safe_height = 0",
+            "Z that the control shows in machine coordinates, homed and at its top (mm): retracts go there",
+        );
+    }
+    let is_sinumerik = machine.reader.starts_with("sinumerik");
+    let says_tolerance =
+        matches!(machine.options.get("path_tolerance"), Some(OptionValue::Number(_)));
+    if is_sinumerik && !says_tolerance {
+        lacks(
+            "[options]".into(),
+            "path_tolerance = 0.01",
+            "MD33100 and MD33120 (mm): how far G642 to G645 and the compressors leave the path",
+        );
+    }
+    if is_sinumerik && machine.settings.length_along_z.is_none() {
+        lacks(
+            "[settings]".into(),
+            "length_along_z = false",
+            "SD42940: true where it is 17; arcs of other planes than XY hang on it",
+        );
+    }
+    if machine.reader == "fanuc" {
+        if machine.settings.length_along_z.is_none() {
+            lacks(
+                "[settings]".into(),
+                "length_along_z = true",
+                "parameters 5001#0 and 5001#1: true where both are 0",
+            );
+        }
+        if machine.settings.length_moves_axis.is_none() {
+            lacks(
+                "[settings]".into(),
+                "length_moves_axis = true",
+                "parameter 5006#6: true where it is 0; G49 then moves Z by the length",
+            );
+        }
+    }
+    for axis in machine.rotary.iter().filter(|axis| axis.modulo.is_none()) {
+        lacks(
+            format!("[[rotary]] letter = \"{}\"", axis.letter),
+            "modulo = true",
+            "SINUMERIK MD30310, FANUC parameter 1008#0, on a HEIDENHAIN a display that ends at 360 degrees",
+        );
+    }
+    all
+}
