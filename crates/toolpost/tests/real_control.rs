@@ -352,3 +352,24 @@ fn the_axes_of_a_real_control_show_why_the_proof_refuses() {
         assert!((damage.shows)(&samples, off), "{}: {off} mm", damage.name);
     });
 }
+
+/// `G33.1` goes on in step with the spindle while that comes to rest and turns back, so it goes deeper than its word by
+/// what the spindle still turns, and comes back. `G84` turns the axis where its word says, whatever the spindle does: a
+/// tap that is held fast breaks there.
+#[test]
+fn a_tap_of_the_real_control_follows_the_spindle_by_g33_1_and_not_by_g84() {
+    let Some(script) = judge::linuxcnc() else { return };
+    let lowest = |name: &str, tap: &str| {
+        let start =
+            "G21 G17 G40 G49 G80 G90 G94 G54\nG61\nT1 M6\nS500 M3\nG0 X10 Y5\nG43 Z-5 H1\nZ-10\n";
+        let samples = run(&script, name, &format!("{start}{tap}\nG80\nG0 Z-5\nM5\nM2\n"), 1);
+        // From the R plane on.
+        let below = samples.iter().filter(|sample| sample.line >= 7);
+        let heights = below.map(|sample| sample.at.z - LENGTHS[0]);
+        heights.fold(f64::INFINITY, f64::min)
+    };
+    let coupled = lowest("rigid-tap", "G33.1 Z-22 K1.25");
+    let not_coupled = lowest("floating-tap", "G98 G84 Z-22 R-10 F625");
+    assert!(coupled < -22.1 && coupled > -25.0, "{coupled}");
+    assert!((not_coupled + 22.0).abs() < ROUNDING, "{not_coupled}");
+}
