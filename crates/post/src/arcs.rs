@@ -125,6 +125,9 @@ impl Walk<'_> {
             }
         }
         let Some(facts) = self.plane_of(&local) else {
+            if self.runs_through(&local) {
+                return self.arc_through(&arc, &local, to, stop);
+            }
             return self.lower(&arc, 0.0, 1.0, to, stop, "arcs outside the planes of the control");
         };
         let rises = local.rise().abs() > 0.5 * self.resolution || self.is_over_surface(arc.end);
@@ -158,6 +161,54 @@ impl Walk<'_> {
             }
             from = until;
             piece += if halves.pop().is_none() { 1 } else { 0 };
+        }
+        self.here = Some(to.end);
+        Ok(())
+    }
+
+    /// Whether the control cuts an arc of any plane by three points. Compensation counts in the plane that
+    /// is active, and a tool center point control may turn the tool along the arc.
+    fn runs_through(&self, arc: &Arc) -> bool {
+        self.templates.has(BlockName::ArcThrough)
+            && matches!(
+                self.place.kind,
+                Kind::Bare | Kind::Plain | Kind::Machine | Kind::Tilted(..)
+            )
+            && !self.is_compensating()
+            && arc.rise().abs() <= 0.5 * self.resolution
+            && !self.follows(arc)
+    }
+
+    /// An arc by the point half way, in parts of a half circle at most; as lines where the decimals leave
+    /// another circle than the source's.
+    fn arc_through(&mut self, arc: &Arc, local: &Arc, to: &ArcTo, stop: &Stop) -> Done {
+        let parts = (arc.sweep / PI - 1e-9).ceil().max(1.0) as usize;
+        for part in 0..parts {
+            let [from, until] = [part, part + 1].map(|part| part as f64 / parts as f64);
+            let [middle, end] = [(from + until) / 2.0, until].map(|at| local.at(at));
+            let round = |words: &[WordName; 3], p: Vec3| {
+                Vec3::from_array([0, 1, 2].map(|i| self.writer.rounded(words[i], p[i])))
+            };
+            let start = self.stands(|| round(&END, local.at(from)));
+            let read = through_in_space(start, round(&MIDDLE, middle), round(&END, end));
+            let most = CENTER_STEPS * self.resolution;
+            let quarters = [0.25, 0.75].map(|part| local.at(from + (until - from) * part));
+            let near = |circle: &SpaceCircle| quarters.iter().all(|&p| circle.beside(p) <= most);
+            if !read.is_some_and(|circle| near(&circle)) {
+                self.lower(arc, from, until, to, stop, "arcs too short for the decimals")?;
+                continue;
+            }
+            for i in 0..3 {
+                self.writer.set(END[i], end[i]);
+                self.writer.set(MIDDLE[i], middle[i]);
+            }
+            let length = local.radius() * local.sweep * (until - from);
+            self.say_feed(if self.is_timed() { length } else { 0.0 }, 1, Cut::Arc)?;
+            self.keep_compensation();
+            self.block(BlockName::ArcThrough)?;
+            // The block names its own motion.
+            self.writer.forget(bit(WordName::Motion));
+            self.here = Some(to.end.at(arc.at(until))?);
         }
         self.here = Some(to.end);
         Ok(())
@@ -432,6 +483,34 @@ fn by_radius(start: Vec3, end: Vec3, radius: f64) -> Option<[f64; 2]> {
     let center = start + half + left * height.copysign(radius);
     let found = half != Vec3::ZERO && height >= NEAREST_CENTER * radius.abs();
     found.then_some([center.x, center.y])
+}
+
+/// A circle in space.
+struct SpaceCircle {
+    center: Vec3,
+    /// Its axis, a unit vector.
+    normal: Vec3,
+    radius: f64,
+}
+
+impl SpaceCircle {
+    /// How far a point is from the circle, mm.
+    fn beside(&self, point: Vec3) -> f64 {
+        let spoke = point - self.center;
+        let across = spoke.reject_from_normalized(self.normal).length();
+        (across - self.radius).hypot(spoke.dot(self.normal))
+    }
+}
+
+/// The circle through three points of space; `None` where they lie on a line.
+fn through_in_space(start: Vec3, middle: Vec3, end: Vec3) -> Option<SpaceCircle> {
+    let (a, b) = (middle - start, end - start);
+    let across = a.cross(b);
+    let center = start
+        + (across.cross(a) * b.length_squared() + b.cross(across) * a.length_squared())
+            / (2.0 * across.length_squared());
+    let normal = across.try_normalize()?;
+    center.is_finite().then(|| SpaceCircle { center, normal, radius: center.distance(start) })
 }
 
 /// The centre of the circle through three points of a plane.

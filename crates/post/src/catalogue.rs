@@ -90,6 +90,7 @@ names! {
         ArcCcw Block "arc_ccw", "", "Each counter-clockwise arc.";
         HelixCw Block "helix_cw", "", "Each clockwise arc that rises; `arc_cw` where it is missing.";
         HelixCcw Block "helix_ccw", "", "Each counter-clockwise arc that rises; `arc_ccw` where it is missing.";
+        ArcThrough Block "arc_through", "", "Each arc outside the planes of arcs that the machine file lists: through the point half way, {{MX}} {{MY}} {{MZ}}, in any plane. Such arcs are lines where the block is missing.";
         Thread Block "thread", "", "Each straight move in step with the spindle, {{LEAD}} mm a turn. It runs along the axes whose words it places.";
         Probe Block "probe", "", "Each probing move: straight at the feed, until the probe answers.";
         KeepHeight Block "keep_height", "", "After a probing move whose height is kept: the control puts what the probe has found into {{HEIGHT}}. A control that has this block calculates in its words: Z becomes `[z+part*HEIGHT...]`.";

@@ -176,6 +176,58 @@ fn a_point_half_way_makes_the_circle() {
 }
 
 /// Three points of a helix make a circle that is tilted: it goes by lines, within the tolerance.
+/// Outside the plane XY the length of the tool would count along another axis (SD42940), so that the
+/// SINUMERIK cuts such arcs by three points of space and stays in `G17`.
+#[test]
+fn a_sinumerik_cuts_an_arc_of_another_plane_through_three_points() {
+    let machine = machine::load("generic-3axis-sinumerik").unwrap();
+    let around = |end: Pose, center: Vec3, normal: Vec3| {
+        Op::Arc(Box::new(ArcTo { end, circle: Circle::new(center, normal, 0).unwrap() }))
+    };
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    let leaning = Vec3::new(0.0, -half, half);
+    let text = proven(
+        &machine,
+        vec![
+            Op::Rapid(at(0.0, 0.0, 5.0)),
+            Op::Line(at(0.0, 0.0, -1.0)),
+            // Half a circle about Y, over X 10; a quarter in a plane that leans by 45°; a whole circle about Y; the
+            // end of a circle about Y of 300 mm, 0.02 mm of it, of which three points with three decimals say no circle.
+            around(at(20.0, 0.0, -1.0), Vec3::new(10.0, 0.0, -1.0), Vec3::Y),
+            around(
+                at(30.0, 10.0 * half, 10.0 * half - 1.0),
+                Vec3::new(20.0, 10.0 * half, 10.0 * half - 1.0),
+                leaning,
+            ),
+            around(
+                at(30.0, 10.0 * half, 10.0 * half - 1.0),
+                Vec3::new(25.0, 10.0 * half, 10.0 * half - 1.0),
+                Vec3::Y,
+            ),
+            around(
+                at(30.02, 10.0 * half, 10.0 * half - 1.0),
+                Vec3::new(30.01, 10.0 * half, 10.0 * half - 301.0),
+                Vec3::Y,
+            ),
+            Op::Rapid(at(30.02, 10.0 * half, 50.0)),
+        ],
+    );
+    let through: Vec<&str> = text.lines().filter(|line| line.contains("CIP")).collect();
+    // By hand: the top of the half circle is X10 Z9. The quarter begins below its centre, X20 Y0 Z-1, and its middle is
+    // at 45°: X 20 + 10 sin 45°, (10 - 10 cos 45°) sin 45° along Y and Z. The circle begins at its greatest X,
+    // and about Y from X lies -Z: down first, and two halves.
+    let expected = [
+        "CIP X20 I1=10 J1=0 K1=9",
+        "CIP X30 Y7.071 Z6.071 I1=27.071 J1=2.071 K1=1.071",
+        "CIP X20 I1=25 J1=7.071 K1=1.071",
+        "CIP X30 I1=25 J1=7.071 K1=11.071",
+    ];
+    let bare: Vec<&str> = through.iter().map(|line| line.split_once(' ').unwrap().1).collect();
+    assert_eq!(bare, expected, "{text}");
+    assert!(text.contains(" G1 X30.02\n"), "{text}");
+    assert!(!text.contains("G18"), "{text}");
+}
+
 #[test]
 fn a_point_half_way_makes_no_helix() {
     let rising =

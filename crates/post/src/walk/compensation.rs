@@ -51,12 +51,17 @@ impl Walk<'_> {
 
     /// Compensation has to be off before `what`.
     pub(crate) fn uncompensated(&self, what: &str) -> Done {
-        if self.active_compensation == Compensation::Off {
+        if !self.is_compensating() {
             return Ok(());
         }
         let help = "CUTCOM/OFF and a straight move in the plane before it";
         let message = format!("cutter compensation is still on at {what}");
         Err(refuse("compensation-active", message).help(help).into())
+    }
+
+    /// Whether cutter compensation is on.
+    pub(crate) fn is_compensating(&self) -> bool {
+        self.active_compensation != Compensation::Off
     }
 
     /// Whether the next straight move in the plane switches the compensation.
