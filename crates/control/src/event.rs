@@ -126,6 +126,8 @@ pub struct Risk {
     pub what: &'static str,
     /// The way out.
     pub help: &'static str,
+    /// Whether a program that is to be proven is refused for it; it is told of where not.
+    pub refused: bool,
 }
 
 impl Risk {
@@ -135,6 +137,48 @@ impl Risk {
         rule: "operator-controls",
         what: "takes single block, feed hold, feed override or exact stop from the operator",
         help: "leave it out; where the operator knows of it, `--accept operator-controls` lets it pass",
+        refused: true,
+    };
+
+    /// P of a dwell counts least increments of time on a FANUC: a millisecond, and a tenth of one with increment system C
+    /// and parameter 1015#7 = 0.
+    pub(crate) const DWELL_UNIT: Risk = Risk {
+        rule: "dwell-unit",
+        what: "dwells by P, which counts milliseconds or tenths of them, as parameters 1013 and 1015#7 say",
+        help: "write G4 X with a decimal point, or say `dwell_p_milliseconds` in [settings] of the machine file",
+        refused: true,
+    };
+
+    /// FANUC parameter 3405#1: under `G95` a dwell counts seconds or turns of the spindle.
+    pub(crate) const DWELL_TURNS: Risk = Risk {
+        rule: "dwell-unit",
+        what: "dwells under G95: seconds, or turns of the spindle, as parameter 3405#1 says",
+        help: "write G94 before the dwell",
+        refused: true,
+    };
+
+    /// `M99` of a program that nobody has called (B-64484EN-2, "Subprogram"; Haas, M99).
+    pub(crate) const PROGRAM_REPEATS: Risk = Risk {
+        rule: "program-repeats",
+        what: "ends with M99, by which the control begins it again without end",
+        help: "write M30 where it shall run once",
+        refused: false,
+    };
+
+    /// LinuxCNC `M61` ("Set Current Tool"): the spindle keeps the tool that it has.
+    pub(crate) const TOOL_DECLARED: Risk = Risk {
+        rule: "operator-data",
+        what: "tells the control which tool is in the spindle, and changes none",
+        help: "call the tool by T and M6; where the operator puts it in before, `--accept operator-data` lets it pass",
+        refused: true,
+    };
+
+    /// B-64484EN-2, "Inch/metric conversion": `G20`, `G21` stand in a block of their own.
+    pub(crate) const UNIT_BLOCK: Risk = Risk {
+        rule: "unit-block",
+        what: "says G20 or G21 in a block with other words, which the manual does not allow",
+        help: "write it in a block of its own at the start of the program",
+        refused: false,
     };
 
     /// `G84` and `G74` that do not couple feed and spindle: LinuxCNC ("Canned Cycles": for a floating chuck), Mach3, and
@@ -143,6 +187,7 @@ impl Risk {
         rule: "floating-tap",
         what: "taps without coupling feed and spindle: a tap that is held fast breaks",
         help: "tap by G33.1 (LinuxCNC) or behind M29 (FANUC); or say `floating_holder = true` in [settings] of the machine file",
+        refused: true,
     };
 
     /// FANUC moves Z by a length that begins, ends or changes, or it moves the coordinates: parameter 5006, bit 6
@@ -151,6 +196,7 @@ impl Risk {
         rule: "length-change",
         what: "changes the tool length offset where Z is not home: whether Z moves by it, parameter 5006#6 says",
         help: "send Z home before (`G91 G28 Z0`), or say Z in the same block",
+        refused: true,
     };
 
     /// A tool length counts along the axis that stands on the plane, or along Z always (SINUMERIK SD42940, "Tool offsets";
@@ -159,6 +205,7 @@ impl Risk {
         rule: "length-plane",
         what: "uses a tool length in G18 or G19: whether it counts along Z there, a parameter says (SD42940, 5001)",
         help: "write G17, or say `length_along_z = true` in [settings] of the machine file where it does",
+        refused: true,
     };
 
     /// Where `G30` goes, and `G28` of LinuxCNC and GRBL, parameters or the operator have set, and Marlin's `G28` goes to
@@ -167,6 +214,7 @@ impl Risk {
         rule: "stored-position",
         what: "sends Z to a position that only the machine knows: one that is stored, or a switch",
         help: "retract by G53 to the safe height of the machine, or by the G28 of a control whose G28 is the reference position",
+        refused: true,
     };
 
     /// `G642` to `G645` and the compressors of SINUMERIK keep to tolerances of machine data (MD33100, MD33120).
@@ -174,6 +222,7 @@ impl Risk {
         rule: "path-tolerance",
         what: "lets the control leave the path by as much as its machine data say",
         help: "write G64, or say how far in `path_tolerance` in [options] of the machine file",
+        refused: true,
     };
 
     /// Turns over the part whose way the program does not say ([`way`](crate::way)).
@@ -181,6 +230,7 @@ impl Risk {
         rule: "rotary-way",
         what: "turns a rotary axis, and by which way hangs on whether the control counts it modulo 360°",
         help: "say `modulo` of the axis in the machine file, or write M126 (HEIDENHAIN), DC() (SINUMERIK)",
+        refused: true,
     };
 
     /// Work offsets, tool lengths and radii belong to the operator, who has measured them.
@@ -188,6 +238,7 @@ impl Risk {
         rule: "operator-data",
         what: "rewrites work offsets or tool data of the operator, and they stay so when it has ended",
         help: "leave them to the operator; where the shop sets its fixtures by programs, `--accept operator-data` lets it pass",
+        refused: true,
     };
 }
 

@@ -182,6 +182,11 @@ pub struct Settings {
     pub length_along_z: Option<bool>,
     /// Whether Z moves where a tool length begins, ends or changes, where that is known (FANUC parameter 5006#6).
     pub length_moves_axis: Option<bool>,
+    /// Whether P of a dwell counts milliseconds, or tenths of them, where that is known (FANUC parameters 1013, 1015#7).
+    pub dwell_p_milliseconds: Option<bool>,
+    /// Whether the sign of a rotary word is the direction of an axis that rolls over, where that is known (FANUC parameter
+    /// 1008#1).
+    pub rotary_by_sign: Option<bool>,
     /// Whether taps are held in a chuck that floats along its axis.
     pub floating_holder: bool,
     /// Numbers of the M functions that the machine's builder has added (clamps, flaps, chip conveyor),
@@ -281,6 +286,8 @@ impl Settings {
             length_along_z: None,
             floating_holder: false,
             length_moves_axis: None,
+            dwell_p_milliseconds: None,
+            rotary_by_sign: None,
             auxiliary: Vec::new(),
             operator_parameters: Vec::new(),
             wire: Wire::default(),

@@ -8,6 +8,10 @@ pub(crate) enum Modulo {
     Shorter,
     /// The shorter way, or without passing 0°: a parameter says which.
     AsSetUp,
+    /// The sign of the position is the direction, its amount the place within a turn.
+    BySign,
+    /// The shorter way, or by the sign: a parameter says which.
+    ShorterOrBySign,
 }
 
 /// Degrees by which two ways are the same.
@@ -25,7 +29,16 @@ pub(crate) fn is_sure(from: f64, to: f64, counted: Option<bool>, modulo: Modulo)
     // 180° are as far one way as the other.
     let is_shorter = same(shorter) && shorter.abs() < 180.0 - SAME;
     let shown = |degrees: f64| ((degrees / SAME).round() * SAME).rem_euclid(360.0);
-    is_shorter && (modulo == Modulo::Shorter || same(shown(to) - shown(from)))
+    let by_sign = || match to.is_sign_negative() {
+        true => same(-shown(from + to)),
+        false => same(shown(way)),
+    };
+    match modulo {
+        Modulo::Shorter => is_shorter,
+        Modulo::AsSetUp => is_shorter && same(shown(to) - shown(from)),
+        Modulo::BySign => by_sign(),
+        Modulo::ShorterOrBySign => is_shorter && by_sign(),
+    }
 }
 
 #[cfg(test)]
@@ -52,7 +65,30 @@ mod tests {
         ] {
             assert_eq!(is_sure(from, to, None, Modulo::AsSetUp), as_set_up, "{from} {to}");
             assert_eq!(is_sure(from, to, Some(true), Modulo::Shorter), shorter, "{from} {to}");
+            let either = shorter && is_sure(from, to, None, Modulo::BySign);
+            assert_eq!(is_sure(from, to, None, Modulo::ShorterOrBySign), either, "{from} {to}");
             assert!(is_sure(from, to, Some(false), Modulo::AsSetUp), "{from} {to}");
         }
+    }
+
+    /// LinuxCNC, INI file, `WRAPPED_ROTARY`: A, B, C go to 0° to 359.999°, and the sign is the direction. From 10° to -20 by
+    /// -350°, not by -30°.
+    #[test]
+    fn by_its_sign_a_position_names_the_direction() {
+        for (from, to, sure) in [
+            (10.0, 40.0, true),
+            (10.0, 300.0, true),
+            (350.0, 370.0, true),
+            (40.0, 10.0, false),
+            (10.0, -20.0, false),
+            (-10.0, -20.0, false),
+            (0.0, -360.0, false),
+            (20.0, -20.0, false),
+            (-30.0, 10.0, true),
+        ] {
+            assert_eq!(is_sure(from, to, None, Modulo::BySign), sure, "{from} {to}");
+        }
+        // From 30° to the place of -20, which is 20°, against the clock: by -10°, and plainly by -50°.
+        assert!(!is_sure(30.0, -20.0, Some(true), Modulo::BySign));
     }
 }

@@ -14,11 +14,19 @@ const LINUXCNC: Dialect = Dialect::LinuxCnc;
 const GRBL: Dialect = Dialect::Grbl;
 
 fn run(dialect: Dialect, rotary: [bool; 3], text: &str) -> Result<Vec<Action>, Box<Diagnostic>> {
-    let settings = Settings { auxiliary: vec![26], ..Settings::new(dialect, rotary) };
+    let settings = Settings {
+        auxiliary: vec![26],
+        dwell_p_milliseconds: Some(true),
+        rotary_by_sign: Some(false),
+        ..Settings::new(dialect, rotary)
+    };
     // Most of these programs are in mm and do not say so.
     let says_unit = ["%", "G20", "G21"].iter().any(|word| text.contains(word));
     let text = if says_unit { text.to_owned() } else { format!("G21\n{text}") };
-    common::ops(&settings, "p.nc", text)
+    let mut actions = common::ops(&settings, "p.nc", text)?;
+    // What is only told of has tests of its own (`side_effects.rs`).
+    actions.retain(|action| !matches!(action, Action::Risk(risk) if !risk.refused));
+    Ok(actions)
 }
 
 /// The records of a program on a machine with A and C.

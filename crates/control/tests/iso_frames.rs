@@ -8,7 +8,8 @@ use program::{Compensation, Cycle, CycleKind, Diagnostic, Feed, MachineMove, Spi
 use toolpost_control::{Action, Dialect, Settings, Setup, ToolData, WholeNumbers};
 
 fn run_with(setup: Setup, dialect: Dialect, text: &str) -> Result<Vec<Action>, Box<Diagnostic>> {
-    let settings = Settings { setup, ..Settings::new(dialect, [false; 3]) };
+    let known = Settings { dwell_p_milliseconds: Some(true), ..Settings::new(dialect, [false; 3]) };
+    let settings = Settings { setup, ..known };
     common::ops(&settings, "p.nc", text)
 }
 
@@ -381,7 +382,7 @@ fn machine_coordinates_are_known_where_the_offset_is() {
 fn whole_numbers_count_what_the_machine_counts() {
     let setup = |whole_numbers| Setup { whole_numbers, ..Setup::default() };
     let program =
-        |unit: &str| format!("{unit} G90 G0 X1000 Y2. Z50000\nG73 Z-10000 R2000 Q3000 F100\n");
+        |unit: &str| format!("{unit}\nG90 G0 X1000 Y2. Z50000\nG73 Z-10000 R2000 Q3000 F100\n");
     let cycle = |depth, peck| Cycle {
         kind: CycleKind::BreakChip,
         depth,

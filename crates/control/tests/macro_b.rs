@@ -249,7 +249,6 @@ fn subprograms_are_repeated_and_return_to_a_block() {
     assert_eq!(xs("M98 P1\nM30\n:1\nX4.\nM99\n"), [4.0]);
     assert_eq!(xs("M98 P1\nM30\nO1 (SUB)\nX4.\nX5. M99\n"), [4.0, 5.0]);
     for (wrong, rule) in [
-        ("M99", "nc-call"),
         ("M98", "nc-call"),
         ("M98 P5", "nc-call"),
         ("M98 P1\nM30\nO1\nM98 P1\nM99", "nc-call"),
@@ -260,6 +259,8 @@ fn subprograms_are_repeated_and_return_to_a_block() {
     ] {
         assert_eq!(refused(wrong).rule, rule, "{wrong}");
     }
+    // The control begins its program again at M99: what follows is not reached.
+    assert_eq!(xs("X1.\nM99\nX2.\n"), [1.0]);
     let ends_early = "G21 G0\nM98 P1\nM30\nO1\nX1.\n";
     let error = records(&settings(Dialect::Fanuc, &[]), ends_early).unwrap_err();
     assert!(error.message.contains("without M99"), "{error}");

@@ -17,8 +17,11 @@ fn actions(dialect: Dialect, text: &str) -> Vec<Action> {
 
 /// The same where the machine's file says how B and C are counted.
 fn risks_counted(dialect: Dialect, modulo: Option<bool>, text: &str) -> Vec<&'static str> {
-    let settings =
-        Settings { modulo: [None, modulo, modulo], ..Settings::new(dialect, [false, true, true]) };
+    let settings = Settings {
+        modulo: [None, modulo, modulo],
+        rotary_by_sign: Some(false),
+        ..Settings::new(dialect, [false, true, true])
+    };
     let actions = common::ops(&settings, "p.nc", text).unwrap_or_else(|e| panic!("{e}\n{text}"));
     rules(&actions)
 }
@@ -28,9 +31,10 @@ fn risks(dialect: Dialect, text: &str) -> Vec<&'static str> {
     rules(&actions(dialect, text))
 }
 
+/// Those that the proof refuses.
 fn rules(actions: &[Action]) -> Vec<&'static str> {
     let rule = |action: &Action| match action {
-        Action::Risk(risk) => Some(risk.rule),
+        Action::Risk(risk) if risk.refused => Some(risk.rule),
         _ => None,
     };
     actions.iter().filter_map(rule).collect()
@@ -82,6 +86,51 @@ fn fanuc_goes_home_out_of_a_tilted_plane() {
     let cut = actions(Dialect::Fanuc, &unknown);
     let cut = cut.iter().find_map(|a| if let Action::Line(to) = a { Some(to.point) } else { None });
     assert!(cut.is_some_and(|point| point.x == 5.0 && point.y.is_nan() && point.z.is_nan()));
+}
+
+/// Parameters 1013#1 and 1015#7: P counts milliseconds, or tenths of them. 3405#1: seconds under `G95`, or turns. `G4 X` with
+/// its point counts seconds under `G94` everywhere.
+#[test]
+fn how_long_a_fanuc_dwells_hangs_on_its_parameters() {
+    let dwell = |dwell_p_milliseconds, block: &str| {
+        let settings =
+            Settings { dwell_p_milliseconds, ..Settings::new(Dialect::Fanuc, [false; 3]) };
+        let text = format!("G21\nG90 G94 G17 G54\nS100 M3\nG0 X0. Y0. Z5.\n{block}\nM30\n");
+        let found = common::ops(&settings, "p.nc", &text).unwrap_or_else(|e| panic!("{e}\n{text}"));
+        let seconds = found.iter().find_map(|action| match action {
+            Action::Dwell(seconds) => Some(*seconds),
+            Action::Cycle(cycle) => Some(cycle.dwell),
+            _ => None,
+        });
+        (rules(&found), seconds.unwrap())
+    };
+    let (known, unknown) = (vec![], vec!["dwell-unit"]);
+    let cycle = "G98 G82 Z-5. R2. P500 F100";
+    for block in ["G4 P500", cycle] {
+        assert_eq!(dwell(None, block), (unknown.clone(), 0.5));
+        assert_eq!(dwell(Some(true), block), (known.clone(), 0.5));
+        assert_eq!(dwell(Some(false), block), (known.clone(), 0.05));
+    }
+    assert_eq!(dwell(None, "G4 X0.5"), (known.clone(), 0.5));
+    assert_eq!(dwell(None, "G4 P0"), (known.clone(), 0.0));
+    assert_eq!(dwell(None, "G95 G4 X0.5"), (unknown, 0.5));
+    assert_eq!(dwell(None, "G95\nG94 G4 X0.5"), (known, 0.5));
+}
+
+/// B-64484EN-2, "Inch/metric conversion": in a block of its own. What moves is the same, so that it is told and not refused.
+#[test]
+fn fanuc_wants_the_unit_in_a_block_of_its_own() {
+    for (block, found) in [("G21", 0), ("N10 G21", 0), ("G21 G17 G40", 1), ("G20 G90", 1)] {
+        let text = format!("{block}\nM30\n");
+        let told: Vec<_> = actions(Dialect::Fanuc, &text)
+            .into_iter()
+            .filter_map(|a| {
+                if let Action::Risk(risk) = a { Some((risk.rule, risk.refused)) } else { None }
+            })
+            .collect();
+        assert_eq!(told, vec![("unit-block", false); found], "{block}");
+        assert_eq!(risks(Dialect::Haas, &text), [""; 0]);
+    }
 }
 
 /// Haas, *Mill Operator's Manual*, G28: the return to machine zero cancels the tool length offset.
@@ -183,6 +232,32 @@ fn the_way_of_a_rotary_axis_over_the_part_is_the_same_however_it_is_counted() {
     }
     let by_dc = "G54 G90 G94\nG0 B0 C=350\nX0 Y0 Z10\nG1 C=DC(10) F100\nC=IC(300)\nM30\n";
     assert!(risks_counted(Dialect::Sinumerik, None, by_dc).is_empty());
+}
+
+/// FANUC parameter 1008#1 and LinuxCNC's `WRAPPED_ROTARY`: the sign of the word is the direction. GRBL and Mach3 have neither
+/// word nor parameter.
+#[test]
+fn the_sign_of_a_rotary_word_may_be_its_direction() {
+    let risks = |dialect, rotary_by_sign, (from, to): (f64, f64)| {
+        let settings = Settings { rotary_by_sign, ..Settings::new(dialect, [false, true, true]) };
+        let text =
+            format!("G21\nG90 G94 G54\nG0 B0. C{from:.3}\nX0. Y0. Z10.\nG1 C{to:.3} F100.\nM30\n");
+        rules(&common::ops(&settings, "p.nc", &text).unwrap_or_else(|e| panic!("{e}\n{text}")))
+    };
+    for (turn, shorter, by_sign) in [
+        ((10.0, 40.0), true, true),
+        ((10.0, 300.0), false, true),
+        ((40.0, 10.0), true, false),
+        ((10.0, -20.0), true, false),
+        ((350.0, 370.0), true, true),
+    ] {
+        let expected = |held: bool| if held { vec![] } else { vec!["rotary-way"] };
+        assert_eq!(risks(Dialect::Fanuc, Some(false), turn), expected(shorter), "{turn:?}");
+        assert_eq!(risks(Dialect::Fanuc, Some(true), turn), expected(by_sign), "{turn:?}");
+        assert_eq!(risks(Dialect::Fanuc, None, turn), expected(shorter && by_sign), "{turn:?}");
+        assert_eq!(risks(Dialect::LinuxCnc, None, turn), expected(by_sign), "{turn:?}");
+        assert!(risks(Dialect::Mach3, None, turn).is_empty());
+    }
 }
 
 /// Fundamentals 12/2019, "Settable work offset": on an 828D G58 and G59 call the fifth and the sixth, and there is no G505,

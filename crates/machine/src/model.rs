@@ -75,6 +75,10 @@ pub struct ControlSettings {
     pub length_along_z: Option<bool>,
     /// Whether Z moves where a tool length begins, ends or changes (FANUC parameter 5006#6).
     pub length_moves_axis: Option<bool>,
+    /// Whether P of a dwell counts milliseconds, or tenths of them (FANUC parameters 1013, 1015#7).
+    pub dwell_p_milliseconds: Option<bool>,
+    /// Whether the sign of a rotary word is the direction of an axis that rolls over (FANUC parameter 1008#1).
+    pub rotary_by_sign: Option<bool>,
 }
 
 /// A linear axis.
@@ -520,6 +524,11 @@ impl Machine {
     /// Whether a rotary axis has a clamp.
     pub fn has_clamps(&self) -> bool {
         self.rotary.iter().any(|axis| axis.clamp.is_some())
+    }
+
+    /// Whether it is known how long a hole cycle dwells: on a FANUC P counts increments, whose length parameters say.
+    pub fn counts_dwells(&self) -> bool {
+        self.reader != "fanuc" || self.settings.dwell_p_milliseconds.is_some()
     }
 
     /// How far its control may leave the path while it smooths it, mm: `path_tolerance` of the options,

@@ -104,9 +104,11 @@ sheet!(merged CapabilitiesSheet "capabilities" {
 });
 
 sheet!(merged SettingsSheet "settings" {
+    dwell_p_milliseconds: bool, "", "Whether P of a dwell counts milliseconds, or tenths of them: FANUC increment system B (parameter 1013), or 1015#7 is 1.";
     floating_holder: bool, "", "Whether taps are held in a chuck that floats along its axis, so that a tapping cycle need not couple feed and spindle.";
     length_along_z: bool, "", "Whether the tool length counts along Z in every plane: SINUMERIK SD42940 is 17, FANUC parameters 5001#0 and 5001#1 are 0.";
     length_moves_axis: bool, "", "Whether Z moves where a tool length begins, ends or changes: FANUC parameter 5006#6 is 0.";
+    rotary_by_sign: bool, "", "Whether the sign of a rotary word is the direction of an axis that rolls over: FANUC parameter 1008#1 is 1.";
 });
 
 sheet!(merged FormatSheet "format" {

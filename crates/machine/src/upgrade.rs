@@ -45,6 +45,13 @@ pub fn missing(machine: &Machine) -> Vec<Missing> {
         );
     }
     if machine.reader == "fanuc" {
+        if machine.settings.dwell_p_milliseconds.is_none() {
+            lacks(
+                "[settings]".into(),
+                "dwell_p_milliseconds = true",
+                "parameters 1013#1 and 1015#7: true where the first is 0 or the second is 1; cycles that dwell need it",
+            );
+        }
         if machine.settings.length_along_z.is_none() {
             lacks(
                 "[settings]".into(),
@@ -59,6 +66,14 @@ pub fn missing(machine: &Machine) -> Vec<Missing> {
                 "parameter 5006#6: true where it is 0; G49 then moves Z by the length",
             );
         }
+    }
+    let rolls_over = machine.rotary.iter().any(|axis| axis.modulo != Some(false));
+    if machine.reader == "fanuc" && rolls_over && machine.settings.rotary_by_sign.is_none() {
+        lacks(
+            "[settings]".into(),
+            "rotary_by_sign = false",
+            "parameter 1008#1 of the rotary axes: true where it is 1",
+        );
     }
     for axis in machine.rotary.iter().filter(|axis| axis.modulo.is_none()) {
         lacks(

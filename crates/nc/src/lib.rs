@@ -74,6 +74,8 @@ pub fn settings(machine: &Machine, setup: Setup) -> Result<Settings, Box<Diagnos
         floating_holder: machine.settings.floating_holder,
         length_along_z: machine.settings.length_along_z,
         length_moves_axis: machine.settings.length_moves_axis,
+        dwell_p_milliseconds: machine.settings.dwell_p_milliseconds,
+        rotary_by_sign: machine.settings.rotary_by_sign,
         operator_parameters: machine.operator_parameters.clone(),
         wire: machine.wire.map_or(Wire::default(), |wire| Wire {
             height: wire.height,

@@ -169,7 +169,7 @@ impl Walk<'_> {
     /// Whether the control cuts an arc of any plane by three points. Compensation counts in the plane that
     /// is active, and a tool center point control may turn the tool along the arc.
     fn runs_through(&self, arc: &Arc) -> bool {
-        self.templates.has(BlockName::ArcThrough)
+        self.templates.places(BlockName::ArcThrough, WordName::MX)
             && matches!(
                 self.place.kind,
                 Kind::Bare | Kind::Plain | Kind::Machine | Kind::Tilted(..)

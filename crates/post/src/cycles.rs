@@ -83,7 +83,8 @@ impl Walk<'_> {
         };
         let cycles = &self.machine.capabilities.cycles;
         let known = CycleName::of(cycle.kind).is_some_and(|name| cycles.contains(&name));
-        let says_dwell = !dwells || self.templates.places(name, WordName::Dwell);
+        let says_dwell =
+            !dwells || self.templates.places(name, WordName::Dwell) && self.machine.counts_dwells();
         // A safety distance has no sign.
         let says_clearance =
             cycle.clearance >= 0.0 || !self.templates.places(name, WordName::Safety);

@@ -2,7 +2,8 @@
 //! program does not say.
 
 /// The rules that may be accepted, each with what its acceptance answers for.
-pub const ACCEPTABLE: [(&str, &str); 9] = [
+pub const ACCEPTABLE: [(&str, &str); 10] = [
+    ("dwell-unit", "what a dwell counts in"),
     ("floating-tap", "taps are held in a floating chuck"),
     ("length-change", "Z moves by the tool length where parameter 5006#6 is 0"),
     ("length-plane", "along which axis the tool length counts in G18 and G19"),

@@ -6,6 +6,7 @@
 
 use control::Setup;
 use geom::Vec3;
+use machine::Machine;
 use program::{Cycle, CycleKind, Feed, Op, Pose, Program, Spindle, Tool};
 use std::process::{Command, Stdio};
 
@@ -55,10 +56,13 @@ fn source(cycle: Cycle) -> Program {
 
 /// The proven program of one hole, without its block numbers.
 fn posted(machine: &str, cycle: Cycle) -> Result<Vec<String>, &'static str> {
-    let machine = machine::load(machine).unwrap();
+    posted_for(&machine::load(machine).unwrap(), cycle)
+}
+
+fn posted_for(machine: &Machine, cycle: Cycle) -> Result<Vec<String>, &'static str> {
     let source = source(cycle);
-    let output = post::write(&source, &machine).map_err(|found| found[0].rule)?;
-    let report = proof::prove(&source, &machine, "p", &output.text, &Default::default());
+    let output = post::write(&source, machine).map_err(|found| found[0].rule)?;
+    let report = proof::prove(&source, machine, "p", &output.text, &Default::default());
     assert!(report.proven, "{}: {:?}", machine.name, report.mismatches);
     let numbered = |line: &str| match line.split_once(' ') {
         Some((number, rest)) if number.trim_start_matches('N').parse::<u32>().is_ok() => {
@@ -71,7 +75,12 @@ fn posted(machine: &str, cycle: Cycle) -> Result<Vec<String>, &'static str> {
 
 #[track_caller]
 fn stands(machine: &str, kind: CycleKind, dwell: f64, row: &[&str]) {
-    let blocks = posted(machine, cycle(kind, dwell)).unwrap();
+    stand(&machine::load(machine).unwrap(), kind, dwell, row);
+}
+
+#[track_caller]
+fn stand(machine: &Machine, kind: CycleKind, dwell: f64, row: &[&str]) {
+    let blocks = posted_for(machine, cycle(kind, dwell)).unwrap();
     let found = blocks.windows(row.len()).any(|blocks| blocks == row);
     assert!(found, "{kind:?}: {row:#?} is not in\n{}", blocks.join("\n"));
 }
@@ -156,10 +165,18 @@ fn the_way_up_belongs_to_a_hole_that_ends_at_the_r_plane() {
     }
 }
 
-/// B-64484EN-2, "Canned cycle for drilling": P in milliseconds; M29 announces rigid tapping.
+/// B-64484EN-2, "Canned cycle for drilling": P in increments of time, milliseconds as a rule (1013#1, 1015#7); M29 announces
+/// rigid tapping.
 #[test]
 fn fanuc() {
-    let fanuc = |kind, dwell, row: &[&str]| stands("generic-3axis-fanuc", kind, dwell, row);
+    let counts = "extends = \"generic-3axis-fanuc\"\n[settings]\ndwell_p_milliseconds = true\n";
+    let counts = machine::load_text("counts.toml", counts).unwrap();
+    let fanuc = |kind, dwell, row: &[&str]| stand(&counts, kind, dwell, row);
+    let unknown = |kind, dwell, row: &[&str]| stands("generic-3axis-fanuc", kind, dwell, row);
+    unknown(DRILL, 0.0, &["G98 G81 X10. Y5. Z-12. R3. F120."]);
+    unknown(DRILL, 0.5, &["G1 Z-12. F120.", "G4 X0.5", "G0 Z20."]);
+    unknown(TAP, 0.0, &["M29 S1000", "G98 G84 X10. Y5. Z-12. R3. P0 F1250."]);
+    assert_eq!(posted("generic-3axis-fanuc", cycle(TAP, 0.5)), Err("cycle-tap"));
     fanuc(DRILL, 0.0, &["G98 G81 X10. Y5. Z-12. R3. F120."]);
     fanuc(DRILL, 0.5, &["G98 G82 X10. Y5. Z-12. R3. P500 F120."]);
     fanuc(DEEP, 0.0, &["G98 G83 X10. Y5. Z-12. R3. Q4. F120."]);

@@ -355,6 +355,8 @@ impl CheckedSheet {
                 floating_holder: self.settings.floating_holder.unwrap_or(false),
                 length_along_z: self.settings.length_along_z,
                 length_moves_axis: self.settings.length_moves_axis,
+                dwell_p_milliseconds: self.settings.dwell_p_milliseconds,
+                rotary_by_sign: self.settings.rotary_by_sign,
             },
             format: Format {
                 separator: format.separator.unwrap_or_else(|| " ".into()),

@@ -208,8 +208,12 @@ impl<'a> Prover<'a> {
             Action::Risk(risk) => {
                 let message =
                     format!("source line {}: the program {}", self.cursor.line, risk.what);
-                let found = Diagnostic::error(risk.rule, message).help(risk.help).line(line);
-                self.found(found);
+                if risk.refused {
+                    self.found(Diagnostic::error(risk.rule, message).help(risk.help).line(line));
+                } else {
+                    let found = Diagnostic::warning(risk.rule, message).help(risk.help);
+                    self.report.warn(found.line(line));
+                }
             }
             Action::End => self.ended = true,
             // A tool that is made ready changes nothing, and words are for people.

@@ -45,14 +45,14 @@ fn the_sector_has_the_points_errors_and_time_of_the_specification() {
         ("0.5", 126, 7.812e-4, 1.95e-5),
         ("1", 63, 3.125e-3, 7.8e-5),
     ] {
-        let said = wire(&folder, &["--step", step, "--feed", "0.11", "--select", "6"]);
+        let said = wire(&folder, &["--step", step, "--feed", "0.11", "--select", "7"]);
         assert_eq!((said.code, said.err.as_str()), (0, ""), "{said:?}");
         // The start, the end of each radius, and the arc.
         assert_eq!(folder.read("part.pts").lines().count(), points + 3);
         let report = report(&folder);
         let wire = &report["wire"];
         let arc = &wire["ways"][0]["arcs"][0];
-        assert_eq!((&arc["line"], &arc["chord_error"]["points"]), (&6.into(), &points.into()));
+        assert_eq!((&arc["line"], &arc["chord_error"]["points"]), (&7.into(), &points.into()));
         let largest = arc["chord_error"]["largest_mm"].as_f64().unwrap();
         assert!((largest / error - 1.0).abs() < 2e-4, "{largest}");
         assert!((largest / 40.0 / relative - 1.0).abs() < 4e-3, "{largest}");
@@ -61,7 +61,7 @@ fn the_sector_has_the_points_errors_and_time_of_the_specification() {
         let selected = &wire["selected"]["points"][0];
         assert_eq!((&selected["first"], &selected["last"]), (&3.into(), &(points + 2).into()));
         let last = report["instructions"].as_array().unwrap().last().unwrap();
-        assert_eq!((&last["line"], &last["first_point"]), (&7.into(), &(points + 3).into()));
+        assert_eq!((&last["line"], &last["first_point"]), (&8.into(), &(points + 3).into()));
         assert_eq!(report["proof"]["proven"], true);
         assert!(said.out.contains("time         21 min 38 s"), "{}", said.out);
     }
@@ -122,14 +122,14 @@ fn a_bad_source_is_told_with_its_line_and_writes_nothing() {
         refused(&folder, &[], 2, words);
     };
     // Half the chord is 20·√2 = 28.2843 mm.
-    bad("R40.", "R28.27", &["sector.nc:6:"]);
-    bad("X0. Y40. R40.", "X40. Y0. R40.", &["sector.nc:6:"]);
-    bad("R40.", "I-40.1 J0.", &["sector.nc:6:"]);
-    bad("N30 G1 X40. Y0. F6.6", "N30 G1 X40. Y0. Q6.6", &["sector.nc:5:"]);
+    bad("R40.", "R28.27", &["sector.nc:7:"]);
+    bad("X0. Y40. R40.", "X40. Y0. R40.", &["sector.nc:7:"]);
+    bad("R40.", "I-40.1 J0.", &["sector.nc:7:"]);
+    bad("N30 G1 X40. Y0. F6.6", "N30 G1 X40. Y0. Q6.6", &["sector.nc:6:"]);
     let offsets = "N45 G55 G0 X0. Y90. Z0.\nN50 G1 X0.";
     let two = SECTOR.replace("N20 G0", "N20 G54 G0");
-    bad(SECTOR, &two.replace("N50 G1 X0.", offsets), &["error[work-offset]", "sector.nc:7:"]);
-    bad(" Z0.", "", &["sector.nc:5:", "--start"]);
+    bad(SECTOR, &two.replace("N50 G1 X0.", offsets), &["error[work-offset]", "sector.nc:8:"]);
+    bad(" Z0.", "", &["sector.nc:6:", "--start"]);
     bad("N30 G1 X40. Y0. F6.6\nN40 G3 X0. Y40. R40.\nN50 G1 X0. Y0.\n", "", &["empty-contour"]);
 }
 
@@ -160,7 +160,7 @@ fn frustum() -> Folder {
     let folder = Folder::new();
     let square = |low: f64, high: f64| {
         format!(
-            "G21 G17 G90\nG0 X{low:.1} Y{low:.1} Z0.\nG1 X{high:.1} F5.\nY{high:.1}\nX{low:.1}\nY{low:.1}\nM30\n"
+            "G21\nG17 G90\nG0 X{low:.1} Y{low:.1} Z0.\nG1 X{high:.1} F5.\nY{high:.1}\nX{low:.1}\nY{low:.1}\nM30\n"
         )
     };
     folder.write("sector.nc", square(0.0, 10.0));
@@ -219,7 +219,7 @@ fn a_list_says_one_opening_only() {
     let folder = sector();
     let second = "G0 X100. Y0.\nG1 X110.\nY10.\nX100. Y0.\nN60 M30";
     folder.write("sector.nc", SECTOR.replace("N60 M30", second));
-    refused(&folder, &[], 1, &["error[one-opening]", "sector.nc:9:"]);
+    refused(&folder, &[], 1, &["error[one-opening]", "sector.nc:10:"]);
 }
 
 #[test]

@@ -237,7 +237,7 @@ impl Step<'_, '_, '_> {
         }
         if held.canned.may_dwell(self.flavor) {
             let seconds = match self.flavor {
-                Flavor::Fanuc => self.take_whole(b'P')?.map(|ms| f64::from(ms) / 1000.0),
+                Flavor::Fanuc => self.dwell_increments()?,
                 _ => self.dwell_p(),
             };
             if seconds.is_some_and(|s| s < 0.0) {

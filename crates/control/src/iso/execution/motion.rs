@@ -230,12 +230,18 @@ impl Step<'_, '_, '_> {
         Ok(())
     }
 
-    /// FANUC turns an axis that rolls over (parameter 1008#0) the shorter way (1008#1 as delivered). Away from the part it
-    /// may turn as it likes.
+    /// FANUC turns an axis that rolls over (parameter 1008#0) the shorter way, or by the sign of its word (1008#1), LinuxCNC by
+    /// the sign (`WRAPPED_ROTARY`). Away from the part it may turn as it likes.
     fn hold_way(&mut self, axis: usize, from: f64, to: f64) {
-        let sure = way::is_sure(from, to, self.state.modulo[axis], Modulo::Shorter);
+        let modulo = match (self.flavor, self.state.rotary_by_sign) {
+            (Flavor::LinuxCnc, _) | (Flavor::Fanuc, Some(true)) => Modulo::BySign,
+            (Flavor::Fanuc, Some(false)) => Modulo::Shorter,
+            (Flavor::Fanuc, None) => Modulo::ShorterOrBySign,
+            _ => return,
+        };
+        let sure = way::is_sure(from, to, self.state.modulo[axis], modulo);
         let away = self.state.z_is_home || self.state.position.z.is_nan();
-        if self.flavor == Flavor::Fanuc && !self.state.incremental && !sure && !away {
+        if !self.state.incremental && !sure && !away {
             self.actions.push(Action::Risk(Risk::ROTARY_WAY.into()));
         }
     }

@@ -2,6 +2,7 @@
 
 use super::step::Step;
 use crate::WholeNumbers;
+use crate::event::{Action, Risk};
 use crate::iso::language::arithmetic;
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::Flavor;
@@ -89,6 +90,18 @@ impl Step<'_, '_, '_> {
                 Err(self.block.at_word(letter, "nc-number", message))
             }
         }
+    }
+
+    /// The dwell of a FANUC in P, s: least increments of time, of which it is not known how long they are where the
+    /// machine's file does not say it.
+    pub(super) fn dwell_increments(&mut self) -> Result<Option<f64>, Fault> {
+        let Some(increments) = self.take_whole(b'P')? else { return Ok(None) };
+        if self.state.dwell_p_milliseconds.is_none() && increments > 0 {
+            self.actions.push(Action::Risk(Risk::DWELL_UNIT.into()));
+        }
+        let a_second =
+            if self.state.dwell_p_milliseconds == Some(false) { 10_000.0 } else { 1000.0 };
+        Ok(Some(f64::from(increments) / a_second))
     }
 
     /// The dwell in P, s. Haas counts milliseconds where there is no point, Marlin always.

@@ -52,6 +52,10 @@ pub(crate) struct State {
     /// Whether the tool length counts along Z in every plane, and whether Z moves where it changes, where that is known.
     pub length_along_z: Option<bool>,
     pub length_moves_axis: Option<bool>,
+    /// Whether P of a dwell counts milliseconds, or tenths of them, where that is known.
+    pub dwell_p_milliseconds: Option<bool>,
+    /// Whether the sign of a rotary word is the direction, where that is known.
+    pub rotary_by_sign: Option<bool>,
     /// What lies between programmed coordinates and the work frame.
     pub frames: Frames,
     /// The same as one way: [`Frames::place`], kept.
@@ -200,6 +204,8 @@ impl State {
             floating_holder: settings.floating_holder,
             length_along_z: settings.length_along_z,
             length_moves_axis: settings.length_moves_axis,
+            dwell_p_milliseconds: settings.dwell_p_milliseconds,
+            rotary_by_sign: settings.rotary_by_sign,
             frames: Frames::new(work_offset, all_zero, turns_offsets),
             place: Place::SAME,
             tilt: Tilt::None,

@@ -1,7 +1,7 @@
 //! One block, in the order in which a control executes it.
 
 use super::state::State;
-use crate::event::Action;
+use crate::event::{Action, Risk};
 use crate::iso::language::block::{Block, Fault};
 use crate::iso::language::words::{FeedMode, Flavor, G, Group, M, Motion, Path, Plane, Side};
 use crate::{Settings, WholeNumbers};
@@ -345,12 +345,16 @@ impl Step<'_, '_, '_> {
                     false => value,
                 })
             }
-            Flavor::Fanuc => self.take_whole(b'P')?.map(|ms| f64::from(ms) / 1000.0),
+            Flavor::Fanuc => self.dwell_increments()?,
             Flavor::Marlin if self.block.has(b'S') => self.block.take(b'S').map(|word| word.value),
             _ => self.dwell_p(),
         };
         match seconds {
             Some(seconds) if seconds >= 0.0 => {
+                let per_turn = self.state.feed_mode == FeedMode::PerTurn;
+                if self.flavor == Flavor::Fanuc && per_turn && seconds > 0.0 {
+                    self.actions.push(Action::Risk(Risk::DWELL_TURNS.into()));
+                }
                 self.actions.push(Action::Dwell(seconds));
                 Ok(())
             }
@@ -407,6 +411,12 @@ impl Step<'_, '_, '_> {
                 return Err(self.block.at_group(Group::Units, "nc-units", message));
             }
             self.state.inches = Some(inches);
+        }
+        if self.flavor == Flavor::Fanuc
+            && self.block.g(Group::Units).is_some()
+            && !self.block.has_only(&[], Group::Units)
+        {
+            self.actions.push(Action::Risk(Risk::UNIT_BLOCK.into()));
         }
         self.remember_registers()?;
         if let Some(g) = self.block.g(Group::Compensation) {

@@ -68,6 +68,7 @@ impl Step<'_, '_, '_> {
                     let message = "M61 needs Q, the number of the tool that is in";
                     return Err(self.block.at_group(Group::ToolChange, "nc-tool", message));
                 };
+                self.actions.push(Action::Risk(Risk::TOOL_DECLARED.into()));
                 self.put_in(number);
                 Ok(())
             }

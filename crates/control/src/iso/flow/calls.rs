@@ -4,7 +4,7 @@ use super::macros;
 use super::modes::Modes;
 use super::run::Run;
 use super::source::Place;
-use crate::event::Action;
+use crate::event::{Action, Risk};
 use crate::iso::language::arithmetic;
 use crate::iso::language::block::{Block, Fault};
 use crate::iso::language::parameters::{Language, Locals};
@@ -273,8 +273,15 @@ impl<'a> Run<'a, '_> {
         self.flows = true;
         let fault = |run: &Self, message: &str| run.block.at_group(Group::Flow, "nc-call", message);
         match (self.kind(), label) {
+            (Kind::Main, None) if self.language == Language::Ngc => {
+                Err(fault(self, "M99 in the program itself runs it again without end; write M2"))
+            }
+            // The control begins the program again: what follows is not reached.
             (Kind::Main, None) => {
-                Err(fault(self, "M99 in the program itself runs it again without end; write M30"))
+                self.actions.push(Action::Risk(Risk::PROGRAM_REPEATS.into()));
+                self.actions.push(Action::End);
+                self.control.state.ended = true;
+                Ok(())
             }
             (Kind::Subroutine, _) => Err(fault(self, "a subroutine ends with endsub")),
             (_, Some(_)) if self.language == Language::Ngc => {
