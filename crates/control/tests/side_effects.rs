@@ -219,7 +219,9 @@ fn the_way_of_a_rotary_axis_over_the_part_is_the_same_however_it_is_counted() {
             assert_eq!(risks_counted(Dialect::Fanuc, modulo, &fanuc), expected(shorter));
             let sinumerik =
                 format!("G54 G90 G94\nG0 B0 C={from}\nX0 Y0 Z10\nG1 C={to} F100\nM30\n");
-            assert_eq!(risks_counted(Dialect::Sinumerik, modulo, &sinumerik), expected(plain));
+            let within = modulo.is_none() || (0.0..360.0).contains(&to);
+            let risks = risks_counted(Dialect::Sinumerik, modulo, &sinumerik);
+            assert_eq!(risks, expected(plain && within), "{from} {to}");
         }
         let counts_on = risks_counted(Dialect::Klartext, Some(false), &klartext("M127", &moves));
         assert!(counts_on.is_empty());
@@ -232,6 +234,23 @@ fn the_way_of_a_rotary_axis_over_the_part_is_the_same_however_it_is_counted() {
     }
     let by_dc = "G54 G90 G94\nG0 B0 C=350\nX0 Y0 Z10\nG1 C=DC(10) F100\nC=IC(300)\nM30\n";
     assert!(risks_counted(Dialect::Sinumerik, None, by_dc).is_empty());
+}
+
+/// SINUMERIK Axes and Spindles, "Modulo rotary axis": a position is within 0 to 359.999, otherwise alarm 16830, unless bit 0 of
+/// MD30455 brings it there.
+#[test]
+fn a_position_of_a_modulo_axis_is_within_a_turn() {
+    let sinumerik =
+        |block: &str| format!("G54 G90 G94\nG0 B0 C=350\nX0 Y0 Z10\nG1 {block} F100\nM30\n");
+    for block in ["C=DC(370)", "C=DC(-10)", "C=DC(360)", "C=ACP(400)", "C=ACN(-1)"] {
+        let rule = run(Dialect::Sinumerik, &sinumerik(block)).map_err(|error| error.rule);
+        assert_eq!(rule, Err("modulo-position"), "{block}");
+    }
+    for (block, found) in [("C=-10", 1), ("C=370", 1), ("C=340", 0), ("C=IC(40)", 0)] {
+        let risks = risks_counted(Dialect::Sinumerik, Some(true), &sinumerik(block));
+        assert_eq!(risks, vec!["rotary-way"; found], "{block}");
+        assert!(risks_counted(Dialect::Sinumerik, Some(false), &sinumerik(block)).is_empty());
+    }
 }
 
 /// FANUC parameter 1008#1 and LinuxCNC's `WRAPPED_ROTARY`: the sign of the word is the direction. GRBL and Mach3 have neither

@@ -332,6 +332,8 @@ pub struct Word {
     pub modal: bool,
     /// Whether two values that are written alike are still two, so that the second is written again.
     pub exact: bool,
+    /// Whether a position of a rotary axis is written within a turn, from 0 to below 360: `C=DC(350)`.
+    pub within_turn: bool,
     /// For the block number: what it grows by.
     pub step: u32,
     /// For the block number, and for the parameters that keep heights: the first one.

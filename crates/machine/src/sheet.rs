@@ -131,6 +131,7 @@ sheet!(merged WordSheet "words.NAME" {
     digits: u8, "", "Fewest digits before the point, filled with zeros.";
     modal: bool, "", "Whether the word is left out while it repeats the active value.";
     exact: bool, "", "Whether values that differ by less than the decimals show are different, so that a modal word is written again.";
+    within_turn: bool, "", "Whether a position of a rotary axis is written within a turn, from 0 to below 360: what DC() of a SINUMERIK takes.";
     step: u32, "", "Block number: what it grows by; 0 for none.";
     first: u32, "", "Block number, parameters that keep heights: the first one.";
     scale: Positive, "", "What the value is multiplied with before it is written: 1000 for a dwell in milliseconds.";

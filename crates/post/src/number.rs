@@ -29,6 +29,8 @@ pub(crate) struct Number {
     point: bool,
     plus: bool,
     digits: usize,
+    /// Steps in a turn, where the number is written within one.
+    turn: Option<i64>,
     /// Steps in a unit of the value.
     factor: f64,
     most: f64,
@@ -49,6 +51,7 @@ impl Number {
             point: word.point,
             plus: word.plus,
             digits: usize::from(word.digits),
+            turn: word.within_turn.then_some((360.0 * power as f64 * word.scale) as i64),
             factor: power as f64 * word.scale,
             most: (word.max * power as f64).min(MOST_STEPS),
         }
@@ -102,6 +105,7 @@ impl Number {
     /// The whole word: address, number, suffix; `separator` first, where there is one.
     #[inline]
     pub(crate) fn write(&self, separated: bool, steps: i64, out: &mut Vec<u8>) {
+        let steps = self.turn.map_or(steps, |turn| steps.rem_euclid(turn));
         self.digits(if separated { &self.separated } else { &self.address }, steps, out);
         if !self.suffix.is_empty() {
             out.extend_from_slice(self.suffix.as_bytes());
@@ -238,6 +242,7 @@ mod tests {
             digits: 1,
             modal: false,
             exact: false,
+            within_turn: false,
             step: 1,
             first: 1,
             scale: 1.0,

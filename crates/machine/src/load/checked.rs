@@ -450,6 +450,7 @@ fn finish_word(name: String, (sheet, place): (WordSheet, Place)) -> (String, Wor
         digits: sheet.digits.unwrap_or(1),
         modal: sheet.modal.unwrap_or(false),
         exact: sheet.exact.unwrap_or(false),
+        within_turn: sheet.within_turn.unwrap_or(false),
         step: sheet.step.unwrap_or(10),
         first: sheet.first.or(sheet.step).unwrap_or(10),
         scale: sheet.scale.map_or(1.0, |scale| scale.0),

@@ -243,6 +243,14 @@ impl Interpreter<'_, '_> {
             let message = format!("{name} is incremental, but it is not known from where");
             return Err(source.block_error("unknown-position", message));
         }
+        let is_modulo =
+            matches!(coordinate.count, Count::Shorter | Count::Positive | Count::Negative);
+        if is_modulo && !(0.0..360.0).contains(&value) {
+            let message = format!(
+                "{name} is counted modulo 360°, and {value} is not within 0 to 359.999 (alarm 16830)"
+            );
+            return Err(source.block_error("modulo-position", message));
+        }
         Ok(match coordinate.count {
             _ if incremental => from + value,
             Count::Shorter | Count::Positive | Count::Negative if from.is_nan() => value,
@@ -262,15 +270,25 @@ impl Interpreter<'_, '_> {
         index: usize,
         to: f64,
     ) -> Fallible<()> {
+        let (from, counted) = (self.state.rotary[index], self.settings.modulo[index]);
+        let is_absolute = match coordinate.count {
+            Count::Modal => self.state.absolute,
+            count => count == Count::Absolute,
+        };
         let modulo = match coordinate.count {
             Count::Shorter => Modulo::Shorter,
             Count::Absolute => Modulo::AsSetUp,
             Count::Modal if self.state.absolute => Modulo::AsSetUp,
             Count::Modal | Count::Incremental | Count::Positive | Count::Negative => return Ok(()),
         };
-        let (from, counted) = (self.state.rotary[index], self.settings.modulo[index]);
         // Away from the part an axis may turn as it likes.
-        if self.state.position.z.is_nan() || way::is_sure(from, to, counted, modulo) {
+        if self.state.position.z.is_nan() {
+            return Ok(());
+        }
+        // MD30455, bit 0: alarm 16830, or the place within the turn.
+        let within =
+            !is_absolute || counted != Some(true) || (0.0..360.0).contains(&coordinate.value);
+        if within && way::is_sure(from, to, counted, modulo) {
             return Ok(());
         }
         self.emit(source, Action::Risk(Risk::ROTARY_WAY.into()))
