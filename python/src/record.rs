@@ -220,6 +220,12 @@ fn say(op: &Op, words: &Bound<'_, PyDict>) -> PyResult<()> {
             words.set_item("axes", clamp.axes.letters())?;
             words.set_item("closed", clamp.closed)?;
         }
+        Op::WorkOffsetData(data) => {
+            words.set_item("number", data.offset.number())?;
+            for (letter, value) in ["x", "y", "z", "a", "b", "c"].into_iter().zip(data.zero) {
+                words.set_item(letter, value)?;
+            }
+        }
         Op::Output(output) => {
             words.set_item("number", output.number)?;
             match output.value {

@@ -3,7 +3,7 @@
 use geom::Vec3;
 use program::{
     Auxiliary, Axes, Compensation, Coolant, Cycle, Feed, Input, MachineMove, Output, PathMode,
-    Probe, Spindle, Tool, WorkOffset,
+    Probe, Spindle, Tool, WorkOffset, WorkOffsetData,
 };
 
 /// One thing that the control does, and the line (from 1) of the program that makes it do so.
@@ -97,6 +97,8 @@ pub enum Action {
     ThreadWire,
     /// The wire is cut.
     CutWire,
+    /// The zero of a work offset is written into the table of the control.
+    WorkOffsetData(Box<WorkOffsetData>),
     /// The control leans the wire from here on, degrees: to the left of its way where positive, to the right where
     /// negative, 0 for not at all.
     Taper(f64),
@@ -237,7 +239,7 @@ impl Risk {
     pub(crate) const OPERATOR_DATA: Risk = Risk {
         rule: "operator-data",
         what: "rewrites work offsets or tool data of the operator, and they stay so when it has ended",
-        help: "leave them to the operator; where the shop sets its fixtures by programs, `--accept operator-data` lets it pass",
+        help: "leave them to the operator; for one run `--accept operator-data` lets it pass, and a machine whose shop sets its fixtures by G10 L2 says `sets_work_offsets` in [settings]",
         refused: true,
     };
 }
@@ -308,6 +310,7 @@ impl Action {
             | Action::LengthOffset(_)
             | Action::Compensation(_)
             | Action::WorkOffset(_)
+            | Action::WorkOffsetData(_)
             | Action::PathMode(_)
             | Action::Output(_)
             | Action::Input(_)

@@ -187,6 +187,8 @@ pub struct Settings {
     /// Whether the sign of a rotary word is the direction of an axis that rolls over, where that is known (FANUC parameter
     /// 1008#1).
     pub rotary_by_sign: Option<bool>,
+    /// Whether programs of this machine write work offsets (`G10 L2`).
+    pub sets_work_offsets: bool,
     /// Whether taps are held in a chuck that floats along its axis.
     pub floating_holder: bool,
     /// Numbers of the M functions that the machine's builder has added (clamps, flaps, chip conveyor),
@@ -288,6 +290,7 @@ impl Settings {
             length_moves_axis: None,
             dwell_p_milliseconds: None,
             rotary_by_sign: None,
+            sets_work_offsets: false,
             auxiliary: Vec::new(),
             operator_parameters: Vec::new(),
             wire: Wire::default(),

@@ -115,6 +115,7 @@ pub fn walk(program: &Program, tolerance: f64, draw: &mut dyn FnMut(Segment)) ->
             | Op::Compensation(_)
             | Op::Frame(_)
             | Op::WorkOffset(_)
+            | Op::WorkOffsetData(_)
             | Op::Surface(_)
             | Op::Clamp(_)
             | Op::Output(_)

@@ -195,6 +195,7 @@ impl<'a> Level<'a> {
             | Op::Preselect(_)
             | Op::Frame(_)
             | Op::Clamp(_)
+            | Op::WorkOffsetData(_)
             | Op::Output(_)
             | Op::Input(_)
             | Op::Auxiliary(_)

@@ -79,6 +79,8 @@ pub struct ControlSettings {
     pub dwell_p_milliseconds: Option<bool>,
     /// Whether the sign of a rotary word is the direction of an axis that rolls over (FANUC parameter 1008#1).
     pub rotary_by_sign: Option<bool>,
+    /// Whether programs of this machine write work offsets: its fixtures are set so, and not by the operator.
+    pub sets_work_offsets: bool,
 }
 
 /// A linear axis.

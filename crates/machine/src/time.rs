@@ -102,6 +102,7 @@ impl<'a> Clock<'a> {
             Op::Dwell(seconds) => self.times.dwell += seconds,
             // Where the axes are sent to, or how far it is, the program does not know.
             Op::Joints(_) | Op::MachineMove(_) | Op::Home | Op::WorkOffset(_) => {}
+            Op::WorkOffsetData(_) => {}
             // Who answers, or when, is not known; the rest takes no time of its own.
             Op::Stop
             | Op::OptionalStop

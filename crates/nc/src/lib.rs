@@ -76,6 +76,7 @@ pub fn settings(machine: &Machine, setup: Setup) -> Result<Settings, Box<Diagnos
         length_moves_axis: machine.settings.length_moves_axis,
         dwell_p_milliseconds: machine.settings.dwell_p_milliseconds,
         rotary_by_sign: machine.settings.rotary_by_sign,
+        sets_work_offsets: machine.settings.sets_work_offsets,
         operator_parameters: machine.operator_parameters.clone(),
         wire: machine.wire.map_or(Wire::default(), |wire| Wire {
             height: wire.height,
@@ -369,6 +370,7 @@ impl<'a> Lift<'a> {
             }
             Action::LengthOffset(register) => return self.length_offset(line, register),
             Action::WorkOffset(offset) => self.set_work_offset(line, offset),
+            Action::WorkOffsetData(data) => self.push(line, Op::WorkOffsetData(data)),
             Action::CycleOff => self.push(line, Op::CycleOff),
             Action::Feed(feed) => self.push(line, Op::Feed(feed)),
             Action::Spindle(spindle) => self.push(line, Op::Spindle(spindle)),

@@ -97,6 +97,7 @@ names! {
         PlaneSelect Block "plane_select", "", "Where the plane must change before a block that does not say it.";
         Retract Block "retract", "", "Before the rotary axes turn away from a known position, or the work offset changes: the tool leaves the part in machine coordinates.";
         WorkOffsetSelect Block "work_offset_select", "", "Where the source names a work offset: `{{work_offset}}` is active from here on.";
+        WorkOffsetData Block "work_offset_data", "", "Where the source writes the zero of a work offset, {{OFFSET}}, as X, Y, Z, A, B, C in machine coordinates, and `sets_work_offsets` of the machine allows it.";
         Rotate Block "rotate", "", "Rotary axes to their positions while the tool is clear of the part.";
         Unclamp Block "unclamp", "", "The clamps of the rotary axes open: before they turn, where they may be closed.";
         Clamp Block "clamp", "", "The clamps of the rotary axes close: behind `rotate`, where the axes then stand in the cut.";
@@ -203,6 +204,7 @@ names! {
         M Word "M", "", "Number of a function of the machine's builder.";
         FirstValue Word "FIRST_VALUE", "", "First value that a function of the machine's builder is called with.";
         SecondValue Word "SECOND_VALUE", "", "Second value that it is called with.";
+        Offset Word "OFFSET", "", "Place of the work offset that is written: 1 is the first.";
         Signal Word "SIGNAL", "", "Number of a digital output or input.";
         Channel Word "CHANNEL", "", "Number of an analog output or input.";
         Value Word "VALUE", "", "What an analog output is set to, in the unit of the machine.";

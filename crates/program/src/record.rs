@@ -3,7 +3,7 @@
 use crate::{
     ArcTo, Auxiliary, Beam, Clamp, Compensation, Coolant, Cycle, Feed, Input, JointMove,
     MachineMove, Oriented, Output, PathMode, Pose, Probe, Spindle, Surface, Thread, Tool,
-    WorkOffset,
+    WorkOffset, WorkOffsetData,
 };
 use geom::Frame;
 
@@ -88,6 +88,8 @@ pub enum Op {
     /// Work offset from here on. Poses are in its frame, and how far it is from the one before
     /// is not known. A source without one leaves it to the machine.
     WorkOffset(WorkOffset),
+    /// The zero of a work offset is written into the table of the control, where it stays when the program has ended.
+    WorkOffsetData(Box<WorkOffsetData>),
     /// From here on poses below [`Surface::clear`] count from this surface, whose heights probing moves have
     /// found: the control raises each by the height of the surface there. Others count from Z 0, as before.
     Surface(Box<Surface>),
@@ -182,6 +184,7 @@ kinds! {
     Compensation "compensation" Op::Compensation(_),
     Frame "frame" Op::Frame(_),
     WorkOffset "work-offset" Op::WorkOffset(_),
+    WorkOffsetData "work-offset-data" Op::WorkOffsetData(_),
     Surface "surface" Op::Surface(_),
     Clamp "clamp" Op::Clamp(_),
     Output "output" Op::Output(_),
@@ -225,6 +228,7 @@ impl Op {
             | Op::Compensation(_)
             | Op::Frame(_)
             | Op::WorkOffset(_)
+            | Op::WorkOffsetData(_)
             | Op::Surface(_)
             | Op::Clamp(_)
             | Op::Output(_)

@@ -124,6 +124,7 @@ impl Statistics {
                 | Op::Compensation(_)
                 | Op::Frame(_)
                 | Op::WorkOffset(_)
+                | Op::WorkOffsetData(_)
                 | Op::Surface(_)
                 | Op::Clamp(_)
                 | Op::Output(_)

@@ -102,6 +102,16 @@ impl WorkOffset {
     }
 }
 
+/// Where a work offset puts its zero: what a program writes into the table of the control (`G10 L2`).
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct WorkOffsetData {
+    /// The work offset that is written.
+    pub offset: WorkOffset,
+    /// X, Y, Z (mm) and A, B, C (degrees) of the zero in machine coordinates; those that are not given keep what
+    /// they have.
+    pub zero: [Option<f64>; 6],
+}
+
 /// A set of axes of the machine.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Axes(u8);

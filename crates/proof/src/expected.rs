@@ -5,7 +5,7 @@ use geom::{Arc, Vec3};
 use machine::Machine;
 use program::{
     Auxiliary, Compensation, Coolant, Cycle, Feed, Input, Op, Output, Pose, Probe, Record, Spindle,
-    Tool, WorkOffset,
+    Tool, WorkOffset, WorkOffsetData,
 };
 
 /// A motion of the source, from where the one before it ends.
@@ -56,6 +56,7 @@ pub(crate) enum Step {
     Output(Output),
     Input(Input),
     Auxiliary(Auxiliary),
+    WorkOffsetData(WorkOffsetData),
     /// A record that no program can be compared with, and what it is.
     Unproven(&'static str),
     End,
@@ -172,6 +173,8 @@ impl<'a> Cursor<'a> {
                 Op::CutWire => Step::CutWire,
                 Op::Output(output) => Step::Output(*output),
                 Op::Input(input) => Step::Input(**input),
+                Op::WorkOffsetData(_) if !self.machine.settings.sets_work_offsets => continue,
+                Op::WorkOffsetData(data) => Step::WorkOffsetData(**data),
                 Op::Auxiliary(_) if self.machine.leaves_out("auxiliary") => continue,
                 Op::Auxiliary(function) => Step::Auxiliary(*function),
                 Op::Home
@@ -275,6 +278,7 @@ impl<'a> Cursor<'a> {
             | Op::Beam(_)
             | Op::Pulses(_)
             | Op::Output(_)
+            | Op::WorkOffsetData(_)
             | Op::Input(_)
             | Op::Auxiliary(_)
             | Op::ThreadWire

@@ -83,3 +83,54 @@ fn the_keys_of_the_operator_stay_his() {
         assert_eq!(rule(&machine, &back, &[]), None, "{name}");
     }
 }
+
+/// A shop may set its fixtures by programs (B-64484EN-2, "Setting workpiece coordinate system": G10 L2 P1 to P6). Where the
+/// machine's file says so, the values of the source are written, and held.
+#[test]
+fn work_offsets_are_written_where_the_machine_declares_it() {
+    let sets = "extends = \"generic-3axis-fanuc\"\n[settings]\nsets_work_offsets = true\n";
+    let sets = machine::load_text("sets.toml", sets).unwrap();
+    let keeps = load("generic-3axis-fanuc").unwrap();
+    let text = "%\nO1\nG21\nG17 G40 G49 G80 G90 G94 G54\nG10 L2 P1 X-350. Y-210.5 Z-400.\nG10 L2 P3 X0. Z-1.\n\
+                T1 M6\nS1000 M3\nG0 X0. Y0.\nG43 H1 Z50.\nG1 Z-1. F100.\nX10.\nG0 Z50.\nG91 G28 Z0.\nG90\nM30\n%\n";
+    let read = |machine: &Machine| {
+        nc::read(machine, Default::default(), "s.nc", text.as_bytes())
+            .unwrap_or_else(|e| panic!("{e}"))
+    };
+    // In a source of another machine they are told of.
+    assert!(read(&keeps).warnings.iter().any(|found| found.rule == "operator-data"));
+    let source = read(&sets);
+    assert!(source.warnings.iter().all(|found| found.rule != "operator-data"));
+    let source = source.program;
+
+    let output = post::write(&source, &sets).unwrap_or_else(|found| panic!("{found:?}"));
+    let written = String::from_utf8(output.text).unwrap();
+    let blocks = ["G10 L2 P1 X-350. Y-210.5 Z-400.", "G10 L2 P3 X0. Z-1."];
+    assert!(blocks.iter().all(|block| written.contains(block)), "{written}");
+    let rule = |machine: &Machine, text: &str| {
+        let report = proof::prove(&source, machine, "t", text.as_bytes(), &Default::default());
+        report.mismatches.first().map(|found| found.rule)
+    };
+    assert_eq!(rule(&sets, &written), None, "{written}");
+    for (from, to) in [
+        ("Z-400.", "Z-40."),
+        ("Z-400.", ""),
+        ("P1 X-350.", "P2 X-350."),
+        ("X0. Z-1.", "X0. Y0. Z-1."),
+        ("G10 L2 P3", "G10 L10 P3 R1. (G10 L2 P3)"),
+    ] {
+        let damaged = written.replacen(from, to, 1);
+        assert_ne!(damaged, written);
+        assert!(rule(&sets, &damaged).is_some(), "{from} {to}");
+    }
+    let less: String =
+        written.lines().filter(|line| !line.contains("P3")).map(|l| format!("{l}\n")).collect();
+    assert_eq!(rule(&sets, &less), Some("operator-data"));
+    // Another machine's operator has measured his own.
+    assert_eq!(rule(&keeps, &written), Some("operator-data"));
+    let output = post::write(&source, &keeps).unwrap();
+    assert!(output.warnings.iter().any(|found| found.rule == "operator-data"));
+    let written = String::from_utf8(output.text).unwrap();
+    assert!(!written.contains("G10"));
+    assert_eq!(rule(&keeps, &written), None);
+}

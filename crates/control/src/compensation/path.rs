@@ -110,6 +110,7 @@ impl Path {
             Action::Home(_)
             | Action::MachineMove(_)
             | Action::WorkOffset(_)
+            | Action::WorkOffsetData(_)
             | Action::Tool(_)
             | Action::Cycle(_) => {
                 let message = "a tool change, a cycle, another frame or a move to a fixed position \

@@ -357,6 +357,7 @@ impl CheckedSheet {
                 length_moves_axis: self.settings.length_moves_axis,
                 dwell_p_milliseconds: self.settings.dwell_p_milliseconds,
                 rotary_by_sign: self.settings.rotary_by_sign,
+                sets_work_offsets: self.settings.sets_work_offsets.unwrap_or(false),
             },
             format: Format {
                 separator: format.separator.unwrap_or_else(|| " ".into()),

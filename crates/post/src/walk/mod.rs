@@ -20,7 +20,7 @@ use minijinja::value::Value;
 use program::statistics::Statistics;
 use program::{
     Compensation, Coolant, Cycle, Diagnostic, Feed, Op, Pose, Program, Record, Spindle, Surface,
-    Tool, WorkOffset,
+    Tool, WorkOffset, WorkOffsetData,
 };
 use technology::feed_mode;
 
@@ -329,6 +329,7 @@ impl<'a> Walk<'a> {
                 self.leave_part()
             }
             Op::WorkOffset(offset) => self.set_work_offset(*offset),
+            Op::WorkOffsetData(data) => self.write_work_offset(data),
             Op::Surface(surface) => self.set_surface(surface),
             Op::PathMode(mode) => {
                 self.path_mode(*mode);
@@ -378,6 +379,37 @@ impl<'a> Walk<'a> {
         self.work_offset = index;
         self.required(BlockName::WorkOffsetSelect)?;
         self.lose_position();
+        Ok(())
+    }
+
+    /// The zero of a work offset, where the machine's programs may write it.
+    fn write_work_offset(&mut self, data: &WorkOffsetData) -> Done {
+        if !self.machine.settings.sets_work_offsets {
+            let message = "the source writes work offsets (G10), and the program does not: whoever runs it sets them";
+            let help = "`sets_work_offsets = true` in [settings] of a machine file whose shop sets its fixtures by programs";
+            let found = Diagnostic::warning("operator-data", message).help(help);
+            self.findings.warn(found.line(self.line));
+            return Ok(());
+        }
+        if self.located {
+            let message = "a work offset is written while the tool is over the part: where it then stands is not known";
+            let help = "G10 before the first move of the tool";
+            return Err(refuse("operator-data", message).help(help).into());
+        }
+        self.end_cycle()?;
+        // Here these words are no position to go to.
+        let axes = POSITION | ORIENTATION;
+        self.writer.forget(axes);
+        let words = [WordName::X, WordName::Y, WordName::Z, WordName::A, WordName::B, WordName::C];
+        for (word, value) in words.into_iter().zip(data.zero) {
+            if let Some(value) = value {
+                self.writer.set(word, value);
+            }
+        }
+        self.writer
+            .set(WordName::Offset, f64::from(data.offset.number() - WorkOffset::NONE.number()));
+        self.required(BlockName::WorkOffsetData)?;
+        self.writer.forget(axes);
         Ok(())
     }
 

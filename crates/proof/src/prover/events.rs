@@ -56,6 +56,13 @@ impl Prover<'_> {
                 (a.number, a.until) == (b.number, b.until)
                     && (a.timeout - b.timeout).abs() <= allowed
             }
+            (Step::WorkOffsetData(a), Step::WorkOffsetData(b)) => {
+                let same = |(a, b): (&Option<f64>, Option<f64>)| match (a, b) {
+                    (Some(a), Some(b)) => (a - b).abs() <= OFFSET_DATA,
+                    (a, b) => a.is_none() && b.is_none(),
+                };
+                a.offset == b.offset && a.zero.iter().zip(b.zero).all(same)
+            }
             (Step::Auxiliary(a), Step::Auxiliary(b)) => {
                 a.number == b.number
                     && a.values.iter().zip(b.values).all(|(a, b)| match (a, b) {
@@ -87,6 +94,7 @@ impl Prover<'_> {
                 Step::OptionalStop => ("stop", "stops if the operator asks for it"),
                 Step::Output(_) => ("output", "sets an output"),
                 Step::Input(_) => ("input", "reads an input or waits for it"),
+                Step::WorkOffsetData(_) => ("operator-data", "writes a work offset"),
                 Step::Auxiliary(_) | Step::Move(_) | Step::Unproven(_) | Step::End => return Ok(()),
             };
             self.differs(line, (rule, format!("{what} where the source does not")));
@@ -120,6 +128,10 @@ impl Prover<'_> {
                 Step::Auxiliary(function) => {
                     ("auxiliary", format!("the auxiliary function M{}", function.number))
                 }
+                Step::WorkOffsetData(data) => {
+                    let number = data.offset.number();
+                    ("operator-data", format!("writing work offset {number} (54 is the first)"))
+                }
                 Step::Move(_) | Step::Unproven(_) | Step::End => return,
             };
             self.differs(line, (rule, format!("{what} is missing before this")));
@@ -130,6 +142,9 @@ impl Prover<'_> {
 
 /// How far a value of an output or a function may be off: half a step of the four decimals that are written.
 const SIGNAL: f64 = 0.5e-4 + 1e-9;
+
+/// The same of the zero of a work offset, mm or degrees: half a step of three decimals.
+const OFFSET_DATA: f64 = 0.5e-3 + 1e-9;
 
 fn same_output(a: &Output, b: &Output) -> bool {
     let value = match (a.value, b.value) {

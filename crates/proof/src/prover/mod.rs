@@ -175,6 +175,11 @@ impl<'a> Prover<'a> {
             Action::ThreadWire => return self.happens(line, Step::ThreadWire),
             Action::CutWire => return self.happens(line, Step::CutWire),
             Action::Output(output) => return self.happens(line, Step::Output(*output)),
+            Action::WorkOffsetData(data) if self.gauge.machine.settings.sets_work_offsets => {
+                return self.happens(line, Step::WorkOffsetData(**data));
+            }
+            // The risk before it is refused, or accepted.
+            Action::WorkOffsetData(_) => {}
             Action::Input(input) => return self.happens(line, Step::Input(**input)),
             Action::Auxiliary(function) => {
                 let Some(clamp) = self.gauge.machine.clamps(function.number) else {
@@ -283,6 +288,7 @@ impl<'a> Prover<'a> {
             | Step::Output(_)
             | Step::Input(_)
             | Step::Auxiliary(_)
+            | Step::WorkOffsetData(_)
             | Step::End => self.closing(gait, &to),
         };
         self.here = to;

@@ -169,6 +169,7 @@ impl Prover<'_> {
             | Step::Output(_)
             | Step::Input(_)
             | Step::Auxiliary(_)
+            | Step::WorkOffsetData(_)
             | Step::Unproven(_)
             | Step::End => (false, true, false),
         };

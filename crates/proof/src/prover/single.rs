@@ -25,6 +25,7 @@ impl Prover<'_> {
             | Step::Output(_)
             | Step::Input(_)
             | Step::Auxiliary(_)
+            | Step::WorkOffsetData(_)
             | Step::Unproven(_)
             | Step::End => {
                 let message = format!("{} where the source does not", does(&is));

@@ -168,6 +168,7 @@ fn left_out(program: &Program) -> Vec<Diagnostic> {
         let what = match &record.op {
             Op::Auxiliary(function) => format!("M{}", function.number),
             Op::Output(output) => format!("output {}", output.number),
+            Op::WorkOffsetData(_) => "G10".to_owned(),
             Op::Input(input) => format!("input {}", input.number),
             _ => return None,
         };

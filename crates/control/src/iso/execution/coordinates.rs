@@ -8,7 +8,7 @@ use crate::event::{Action, Risk};
 use crate::iso::language::block::{Fault, Word};
 use crate::iso::language::words::{Flavor, G, Group};
 use geom::{Frame, Mat3, Vec3};
-use program::WorkOffset;
+use program::{WorkOffset, WorkOffsetData};
 
 /// The letters of the axes, in the order of [`Six`].
 const AXES: [u8; 6] = *b"XYZABC";
@@ -20,7 +20,6 @@ impl Step<'_, '_, '_> {
     /// `G92` and its kin, `G52`, `G10`.
     pub(super) fn coordinates(&mut self, word: G) -> Result<(), Fault> {
         if word == G::WriteData {
-            self.actions.push(Action::Risk(Risk::OPERATOR_DATA.into()));
             return self.write_data();
         }
         self.may_change_coordinates(Group::OneShot)?;
@@ -192,7 +191,10 @@ impl Step<'_, '_, '_> {
         };
         match kind {
             2 | 20 => self.write_offset(kind),
-            1 | 10..=13 => self.write_tool(kind),
+            1 | 10..=13 => {
+                self.actions.push(Action::Risk(Risk::OPERATOR_DATA.into()));
+                self.write_tool(kind)
+            }
             _ => {
                 let message = format!("G10 L{kind} is not known to this control");
                 Err(self.block.at_word(b'L', "nc-data", message))
@@ -234,6 +236,16 @@ impl Step<'_, '_, '_> {
         } else {
             self.axis_values()?
         };
+        // Values that are added, turned or counted from the tool are not the place of a zero.
+        let add = self.flavor.is_fanuc() && self.state.incremental;
+        let places_zero = !sets_here && !external && !add && angle.is_none();
+        if !(places_zero && self.state.sets_work_offsets) {
+            self.actions.push(Action::Risk(Risk::OPERATOR_DATA.into()));
+        }
+        if let (true, Some(offset)) = (places_zero, WorkOffset::numbered(number)) {
+            let data = WorkOffsetData { offset, zero: values };
+            self.actions.push(Action::WorkOffsetData(Box::new(data)));
+        }
         let here = self.here();
         let point = self.state.place.point(self.state.position);
         let frames = &mut self.state.frames;
@@ -247,7 +259,6 @@ impl Step<'_, '_, '_> {
         }
         let (machine, used) = (frames.to_machine(point), frames.is_used());
         let rotary = frames.rotary_origin();
-        let add = self.flavor.is_fanuc() && self.state.incremental;
         let written = match external {
             true => frames.write_external(values, add),
             false => frames.write(number, values, angle, add),

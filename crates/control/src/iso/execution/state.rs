@@ -56,6 +56,8 @@ pub(crate) struct State {
     pub dwell_p_milliseconds: Option<bool>,
     /// Whether the sign of a rotary word is the direction, where that is known.
     pub rotary_by_sign: Option<bool>,
+    /// Whether programs of this machine write work offsets.
+    pub sets_work_offsets: bool,
     /// What lies between programmed coordinates and the work frame.
     pub frames: Frames,
     /// The same as one way: [`Frames::place`], kept.
@@ -206,6 +208,7 @@ impl State {
             length_moves_axis: settings.length_moves_axis,
             dwell_p_milliseconds: settings.dwell_p_milliseconds,
             rotary_by_sign: settings.rotary_by_sign,
+            sets_work_offsets: settings.sets_work_offsets,
             frames: Frames::new(work_offset, all_zero, turns_offsets),
             place: Place::SAME,
             tilt: Tilt::None,
