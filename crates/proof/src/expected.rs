@@ -44,7 +44,6 @@ pub(crate) enum Kind {
 
 /// What comes next.
 #[derive(Clone, Debug)]
-#[expect(clippy::large_enum_variant, reason = "there is one step at a time, mostly a motion")]
 pub(crate) enum Step {
     Move(Goal),
     /// A dwell in s.
