@@ -21,7 +21,7 @@ fn grid(columns: usize, rows: usize) -> Grid {
 fn board(cuts: Vec<Op>) -> Program {
     let mut program = Program::new("board");
     let mut push = |op| program.push(0, op);
-    push(Op::Tool(Box::new(Tool { number: 1, ..Tool::default() })));
+    push(Op::Tool(Box::new(Tool { number: 1, length: Some(20.0), ..Tool::default() })));
     push(Op::Spindle(Spindle::Clockwise(9000.0)));
     push(Op::Rapid(pose(10.0, 5.0, 2.0)));
     push(Op::Rapid(pose(10.0, 5.0, 0.5)));
@@ -178,7 +178,7 @@ fn a_wrong_part_of_a_height_is_no_proof() {
 fn the_axes_have_to_reach_what_the_probe_can_find() {
     let machine = |low: f64| {
         let text = format!(
-            "extends = \"generic-3axis-linuxcnc\"\nwork_zero = [0, 0, -30]\n[axes]\nZ = {{ min = {low}, max = 0 }}\n"
+            "extends = \"generic-3axis-linuxcnc\"\nwork_zero = [0, 0, -50]\n[axes]\nZ = {{ min = {low}, max = 0 }}\n"
         );
         machine::load_text("m.toml", &text).unwrap()
     };

@@ -6,7 +6,57 @@
 //! frame follows from the tip in the machine by undoing the table.
 
 use crate::{Machine, Mount, RotaryAxis, Wire};
-use geom::{Vec2, Vec3, rotate};
+use geom::{ANGLE_EPSILON, Vec2, Vec3, rotate};
+use serde::Serialize;
+use std::fmt;
+
+/// A fact on which the place of a tool hangs, and that nobody has said: nothing that is missing is zero.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Unsaid {
+    /// A point of this rotary axis (`point` of the machine file).
+    AxisPoint(char),
+    /// The work zero in machine coordinates (`work_zero` of the machine file).
+    WorkZero,
+    /// The length of the tool.
+    ToolLength,
+}
+
+impl Unsaid {
+    /// The rule under which a program that hangs on it is refused.
+    pub fn rule(self) -> &'static str {
+        match self {
+            Unsaid::AxisPoint(_) | Unsaid::WorkZero => "kinematics",
+            Unsaid::ToolLength => "tool-length",
+        }
+    }
+
+    /// Where it is said.
+    pub fn way_out(self) -> String {
+        match self {
+            Unsaid::AxisPoint(letter) => format!(
+                "`point = [x, y, z]` (mm) in the [[rotary]] of {letter}: of a table in machine coordinates, of a head from \
+                 the gauge point of the spindle"
+            ),
+            Unsaid::WorkZero => String::from(
+                "`work_zero = [x, y, z]` (mm) in the machine file: where G54 lies in machine coordinates",
+            ),
+            Unsaid::ToolLength => String::from(
+                "LENGTH in the source's tool call, or in its tool table; tool center point control needs none",
+            ),
+        }
+    }
+}
+
+impl fmt::Display for Unsaid {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Unsaid::AxisPoint(letter) => write!(f, "where the axis of {letter} lies"),
+            Unsaid::WorkZero => f.write_str("where the work lies on the turned table"),
+            Unsaid::ToolLength => f.write_str("the length of the tool that the head tilts"),
+        }
+    }
+}
 
 impl Machine {
     /// The tool tip (mm, work frame) and the tool axis (unit vector, work frame) for positions of the
@@ -44,6 +94,31 @@ impl Machine {
             axis.point + rotate(p - axis.point, axis.axis, axis.turned(degrees[axis.index()]))
         });
         turned - zero - self.head_swing(degrees, tool_length)
+    }
+
+    /// What nobody has said of where the tool tip is with the rotary axes at `degrees` (of A, B, C): what turns must
+    /// know where its axis lies, a table also where the work lies on it, and a tilted head how long its tool is.
+    #[inline]
+    pub fn unsaid(&self, degrees: [f64; 3], tool_length: Option<f64>) -> Option<Unsaid> {
+        let turns = |axis: &&RotaryAxis| axis.turned(degrees[axis.index()]) != 0.0;
+        let mut turned = self.rotary.iter().filter(turns);
+        if let Some(axis) = turned.clone().find(|axis| !axis.is_placed) {
+            return Some(Unsaid::AxisPoint(axis.letter));
+        }
+        if self.work_zero.is_none() && turned.any(|axis| axis.on == Mount::Table) {
+            return Some(Unsaid::WorkZero);
+        }
+        let is_measured = tool_length.is_some() || self.rotary.is_empty();
+        (!is_measured && self.tilts_tool(degrees)).then_some(Unsaid::ToolLength)
+    }
+
+    /// Whether the head turns the tool away from where it points in the zero position.
+    fn tilts_tool(&self, degrees: [f64; 3]) -> bool {
+        let tool = self
+            .on(Mount::Head)
+            .rev()
+            .fold(Vec3::Z, |v, axis| rotate(v, axis.axis, axis.turned(degrees[axis.index()])));
+        tool.distance(Vec3::Z) > ANGLE_EPSILON
     }
 
     /// By how much the turned head moves the tip of a tool of `tool_length` from where it was.

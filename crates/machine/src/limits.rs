@@ -4,7 +4,7 @@
 //! position of the tool tip, the work zero and, along Z, the length of the tool. Otherwise only what
 //! can be said without it is: no axis may need more way than its travel is long.
 
-use crate::{LinearAxis, Machine};
+use crate::{LinearAxis, Machine, Unsaid};
 use geom::{Arc, Vec2, Vec3, angle_between};
 use program::{Diagnostic, Feed, Spindle, Tool};
 use serde::Serialize;
@@ -45,19 +45,45 @@ pub struct Limits<'a> {
     extent: [[(f64, u32); 2]; 3],
     /// The line that first asked for more than the length of the travel.
     too_far: [Option<u32>; 3],
+    /// What kept positions from being held.
+    unsaid: Vec<Unsaid>,
 }
 
 impl<'a> Limits<'a> {
     /// The limits of `machine`, nothing having moved yet.
     pub fn new(machine: &'a Machine) -> Limits<'a> {
         let nowhere = [(f64::INFINITY, 0), (f64::NEG_INFINITY, 0)];
-        Limits { machine, travel: Travel::of(machine), extent: [nowhere; 3], too_far: [None; 3] }
+        Limits {
+            machine,
+            travel: Travel::of(machine),
+            extent: [nowhere; 3],
+            too_far: [None; 3],
+            unsaid: Vec::new(),
+        }
+    }
+
+    /// The position of the linear axes where it hangs on what nobody has said.
+    pub fn unknown(&mut self, unsaid: Unsaid) -> Vec3 {
+        self.note(unsaid);
+        Vec3::NAN
+    }
+
+    /// What nobody has said, and so has kept positions from being held against the travel.
+    pub fn unsaid(&self) -> &[Unsaid] {
+        &self.unsaid
+    }
+
+    #[inline]
+    fn note(&mut self, unsaid: Unsaid) {
+        if self.unsaid.last() != Some(&unsaid) && !self.unsaid.contains(&unsaid) {
+            self.unsaid.push(unsaid);
+        }
     }
 
     /// Checks positions of the linear axes (mm, as a program gives them) and the rotary axes (degrees
     /// of A, B, C) with a tool of `tool_length` mm, asked for by `line` of the source. A coordinate
-    /// that is not known (NaN) breaks no limit. Where the work zero is not known, [`Limits::ways`] tells
-    /// about the linear axes.
+    /// that is not known (NaN) breaks no limit, and how low the slide of a tool of unknown length goes is not known.
+    /// Where the work zero is not known, [`Limits::ways`] tells about the linear axes.
     ///
     /// # Errors
     /// `axis-limit`, with the axis, its position, the limit and by how much it is broken.
@@ -65,7 +91,7 @@ impl<'a> Limits<'a> {
         &mut self,
         linear: Vec3,
         degrees: [f64; 3],
-        tool_length: f64,
+        tool_length: Option<f64>,
         line: u32,
     ) -> Result<(), Box<Diagnostic>> {
         for axis in &self.machine.rotary {
@@ -75,11 +101,18 @@ impl<'a> Limits<'a> {
         if self.travel == Travel::Unlimited {
             return Ok(());
         }
-        let slides = linear + Vec3::Z * tool_length + self.machine.work_zero.unwrap_or_default();
+        let length = tool_length.unwrap_or(0.0);
+        let slides = linear + Vec3::Z * length + self.machine.work_zero.unwrap_or_default();
         let known = self.travel == Travel::MachineCoordinates;
         for (i, (axis, letter)) in self.machine.linear.iter().zip(['X', 'Y', 'Z']).enumerate() {
             if known {
-                held(letter, slides[i], axis.min, axis.max, " mm", line)?;
+                // The slide of Z stands above the tip, by how much is not known.
+                let mut min = axis.min;
+                if i == 2 && tool_length.is_none() && min.is_finite() {
+                    min = f64::NEG_INFINITY;
+                    self.note(Unsaid::ToolLength);
+                }
+                held(letter, slides[i], min, axis.max, " mm", line)?;
             } else {
                 self.stretch(i, axis, slides[i], line);
             }
@@ -96,7 +129,7 @@ impl<'a> Limits<'a> {
         &mut self,
         arc: &Arc,
         degrees: [f64; 3],
-        tool_length: f64,
+        tool_length: Option<f64>,
         line: u32,
     ) -> Result<(), Box<Diagnostic>> {
         if self.travel == Travel::Unlimited {

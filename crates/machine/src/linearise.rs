@@ -37,7 +37,7 @@ impl Machine {
         &self,
         from: Stance,
         to: Stance,
-        tool_length: f64,
+        tool_length: Option<f64>,
         tolerance: f64,
     ) -> Result<impl ExactSizeIterator<Item = Stance> + use<>, Box<Diagnostic>> {
         let chords = (self.bend(&from, &to, tool_length) / (8.0 * tolerance)).sqrt().ceil();
@@ -55,9 +55,9 @@ impl Machine {
     }
 
     /// A bound of |L″|, mm, for the whole move.
-    fn bend(&self, from: &Stance, to: &Stance, tool_length: f64) -> f64 {
+    fn bend(&self, from: &Stance, to: &Stance, tool_length: Option<f64>) -> f64 {
         let zero = self.work_zero.unwrap_or(Vec3::ZERO);
-        let hanging = Vec3::new(0.0, 0.0, -tool_length);
+        let hanging = Vec3::new(0.0, 0.0, -tool_length.unwrap_or(0.0));
         let path = [from.tip + zero, to.tip + zero];
         self.bend_of(Mount::Table, path, from, to)
             + self.bend_of(Mount::Head, [hanging; 2], from, to)

@@ -114,8 +114,11 @@ pub struct RotaryAxis {
     /// Unit vector of the axis at the zero position of all others, machine frame.
     pub axis: Vec3,
     /// A point of the axis, mm: for a table in machine coordinates, for a head from the gauge point
-    /// of the spindle (so `[0, 0, 150]` is a pivot 150 mm above it).
+    /// of the spindle (so `[0, 0, 150]` is a pivot 150 mm above it). It means nothing where
+    /// [`RotaryAxis::is_placed`] is false.
     pub point: Vec3,
+    /// Whether its file says where it lies.
+    pub is_placed: bool,
     /// What a growing position does: +1 turns what the axis carries right-handed about `axis`, −1
     /// left-handed (the way ISO 841 counts a table).
     pub sign: f64,

@@ -1,6 +1,6 @@
 //! Keys on which a machine's programs hang, and which its file does not say: files that are older than a key lack it.
 
-use crate::model::{Machine, OptionValue};
+use crate::model::{Machine, Mount, OptionValue, OrientationMode};
 
 /// A key that a machine file lacks.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -25,6 +25,19 @@ pub fn missing(machine: &Machine) -> Vec<Missing> {
             String::new(),
             "safe_height = 0",
             "Z that the control shows in machine coordinates, homed and at its top (mm): retracts go there",
+        );
+    }
+    let orientation = machine.orientation;
+    let turns_axes = [orientation.simultaneous, orientation.positioned]
+        .contains(&OrientationMode::MachineAngles);
+    if turns_axes
+        && machine.work_zero.is_none()
+        && machine.rotary.iter().any(|axis| axis.on == Mount::Table)
+    {
+        lacks(
+            String::new(),
+            "work_zero = [0, 0, 0]",
+            "G54 in machine coordinates (mm): every position on a turned table hangs on how far the work is from its axes",
         );
     }
     let is_sinumerik = machine.reader.starts_with("sinumerik");
@@ -75,12 +88,22 @@ pub fn missing(machine: &Machine) -> Vec<Missing> {
             "parameter 1008#1 of the rotary axes: true where it is 1",
         );
     }
-    for axis in machine.rotary.iter().filter(|axis| axis.modulo.is_none()) {
-        lacks(
-            format!("[[rotary]] letter = \"{}\"", axis.letter),
-            "modulo = true",
-            "SINUMERIK MD30310, FANUC parameter 1008#0, on a HEIDENHAIN a display that ends at 360 degrees",
-        );
+    for axis in &machine.rotary {
+        let table = format!("[[rotary]] letter = \"{}\"", axis.letter);
+        if turns_axes && !axis.is_placed {
+            lacks(
+                table.clone(),
+                "point = [0, 0, 0]",
+                "a point of the axis (mm): of a table in machine coordinates, of a head from the gauge point of the spindle",
+            );
+        }
+        if axis.modulo.is_none() {
+            lacks(
+                table,
+                "modulo = true",
+                "SINUMERIK MD30310, FANUC parameter 1008#0, on a HEIDENHAIN a display that ends at 360 degrees",
+            );
+        }
     }
     all
 }

@@ -125,6 +125,7 @@ fn any_rotary(letter: char) -> impl Strategy<Value = RotaryAxis> {
         .prop_map(move |(direction, head, positive, offset, point)| RotaryAxis {
             offset,
             point: point * 200.0,
+            is_placed: true,
             ..prefer(
                 1.0,
                 axis(

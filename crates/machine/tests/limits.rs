@@ -16,11 +16,11 @@ fn mill() -> Machine {
 fn a_thousandth_beyond_the_travel_is_refused_with_axis_amount_and_line() {
     let mill = Machine { work_zero: Some(Vec3::new(100.0, 0.0, 0.0)), ..mill() };
     let mut limits = Limits::new(&mill);
-    assert!(limits.position(Vec3::X * 400.0, [0.0; 3], 0.0, 1).is_ok());
-    let refused = limits.position(Vec3::X * 400.001, [0.0; 3], 0.0, 17).unwrap_err();
+    assert!(limits.position(Vec3::X * 400.0, [0.0; 3], Some(0.0), 1).is_ok());
+    let refused = limits.position(Vec3::X * 400.001, [0.0; 3], Some(0.0), 17).unwrap_err();
     assert_eq!((refused.rule, refused.line), ("axis-limit", 17));
     assert_eq!(refused.message, "X at 500.0010 mm is 0.0010 mm beyond its limit of 500 mm");
-    let refused = limits.position(Vec3::Y * -500.25, [0.0; 3], 0.0, 18).unwrap_err();
+    let refused = limits.position(Vec3::Y * -500.25, [0.0; 3], Some(0.0), 18).unwrap_err();
     assert_eq!(refused.message, "Y at -500.2500 mm is 0.2500 mm beyond its limit of -500 mm");
 }
 
@@ -28,8 +28,8 @@ fn a_thousandth_beyond_the_travel_is_refused_with_axis_amount_and_line() {
 fn the_tool_lifts_the_spindle_by_its_length() {
     let mill = mill();
     let mut limits = Limits::new(&mill);
-    assert!(limits.position(Vec3::Z * 400.0, [0.0; 3], 100.0, 1).is_ok());
-    let refused = limits.position(Vec3::Z * 400.0, [0.0; 3], 100.5, 2).unwrap_err();
+    assert!(limits.position(Vec3::Z * 400.0, [0.0; 3], Some(100.0), 1).is_ok());
+    let refused = limits.position(Vec3::Z * 400.0, [0.0; 3], Some(100.5), 2).unwrap_err();
     assert!(refused.message.starts_with("Z at 500.5000 mm"), "{}", refused.message);
 }
 
@@ -37,8 +37,8 @@ fn the_tool_lifts_the_spindle_by_its_length() {
 fn without_a_work_zero_the_way_is_held_against_the_length_of_the_travel() {
     let mill = Machine { work_zero: None, ..mill() };
     let mut limits = Limits::new(&mill);
-    assert!(limits.position(Vec3::X * 3000.0, [0.0; 3], 0.0, 4).is_ok());
-    assert!(limits.position(Vec3::X * 2000.0, [0.0; 3], 0.0, 5).is_ok());
+    assert!(limits.position(Vec3::X * 3000.0, [0.0; 3], Some(0.0), 4).is_ok());
+    assert!(limits.position(Vec3::X * 2000.0, [0.0; 3], Some(0.0), 5).is_ok());
     assert_eq!(limits.ways().count(), 0);
     for (x, line, way) in [
         (1999.999, 6, "1999.9990 mm (line 6) to 3000.0000 mm (line 4): 0.0010 mm"),
@@ -47,7 +47,7 @@ fn without_a_work_zero_the_way_is_held_against_the_length_of_the_travel() {
         // From nowhere in a source.
         (1000.0, 0, "1000.0000 mm to 3000.0000 mm (line 4): 1000.0000 mm"),
     ] {
-        assert!(limits.position(Vec3::X * x, [0.0; 3], 0.0, line).is_ok());
+        assert!(limits.position(Vec3::X * x, [0.0; 3], Some(0.0), line).is_ok());
         let refused: Vec<_> = limits.ways().collect();
         assert_eq!(refused.len(), 1, "{refused:?}");
         // Where it went too far first.
@@ -61,8 +61,8 @@ fn without_a_work_zero_the_way_is_held_against_the_length_of_the_travel() {
 fn a_rotary_axis_has_limits_too_and_an_unknown_position_breaks_none() {
     let mill = mill();
     let mut limits = Limits::new(&mill);
-    assert!(limits.position(Vec3::NAN, [120.0, 0.0, 0.0], 0.0, 1).is_ok());
-    let refused = limits.position(Vec3::ZERO, [-30.001, 0.0, 0.0], 0.0, 2).unwrap_err();
+    assert!(limits.position(Vec3::NAN, [120.0, 0.0, 0.0], Some(0.0), 1).is_ok());
+    let refused = limits.position(Vec3::ZERO, [-30.001, 0.0, 0.0], Some(0.0), 2).unwrap_err();
     assert_eq!(refused.message, "A at -30.0010° is 0.0010° beyond its limit of -30°");
 }
 
@@ -74,8 +74,8 @@ fn an_arc_may_bulge_over_a_limit_that_its_ends_keep() {
         Arc::new(from, to, Vec3::new(x, 0.0, 0.0), Vec3::Z, 0, 1e-3).unwrap()
     };
     let mut limits = Limits::new(&mill);
-    assert!(limits.arc(&half_round(490.0), [0.0; 3], 0.0, 1).is_ok());
-    let refused = limits.arc(&half_round(490.001), [0.0; 3], 0.0, 2).unwrap_err();
+    assert!(limits.arc(&half_round(490.0), [0.0; 3], Some(0.0), 1).is_ok());
+    let refused = limits.arc(&half_round(490.001), [0.0; 3], Some(0.0), 2).unwrap_err();
     assert!(refused.message.starts_with("X at 500.0010 mm is 0.0010 mm"), "{}", refused.message);
 }
 

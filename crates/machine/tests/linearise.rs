@@ -36,7 +36,7 @@ fn largest_deviation(
 fn a_line_without_turning_needs_no_point() {
     let from = Stance { tip: Vec3::ZERO, degrees: [30.0, 0.0, 40.0] };
     let to = Stance { tip: Vec3::X * 500.0, ..from };
-    let points: Vec<_> = table_ac().linearise(from, to, 100.0, 1e-6).unwrap().collect();
+    let points: Vec<_> = table_ac().linearise(from, to, Some(100.0), 1e-6).unwrap().collect();
     assert_eq!(points, [to]);
 }
 
@@ -45,7 +45,7 @@ fn turning_about_a_tip_at_rest_takes_the_chords_of_its_circle() {
     // The table turns by 90° under a tip 100 mm out: chords of an arc of that radius.
     let from = Stance { tip: Vec3::X * 100.0, degrees: [0.0; 3] };
     let to = Stance { degrees: [0.0, 0.0, 90.0], ..from };
-    let count = table_ac().linearise(from, to, 0.0, 0.01).unwrap().len();
+    let count = table_ac().linearise(from, to, Some(0.0), 0.01).unwrap().len();
     let step = 2.0 * (1.0 - 0.01 / 100.0f64).acos().to_degrees();
     assert_eq!(count, (90.0 / step).ceil() as usize);
 }
@@ -54,11 +54,11 @@ fn turning_about_a_tip_at_rest_takes_the_chords_of_its_circle() {
 fn a_line_without_end_is_refused() {
     let from = Stance { tip: Vec3::X * 1e6, degrees: [0.0; 3] };
     let to = Stance { degrees: [0.0, 0.0, 170.0], ..from };
-    let refusal = |to: Stance, tolerance: f64| match table_ac().linearise(from, to, 0.0, tolerance)
-    {
-        Ok(points) => panic!("{} points", points.len()),
-        Err(refused) => refused.rule,
-    };
+    let refusal =
+        |to: Stance, tolerance: f64| match table_ac().linearise(from, to, Some(0.0), tolerance) {
+            Ok(points) => panic!("{} points", points.len()),
+            Err(refused) => refused.rule,
+        };
     assert_eq!(refusal(to, 1e-9), "linearisation");
     assert_eq!(refusal(to, 0.0), "linearisation");
     assert_eq!(refusal(to, -1.0), "linearisation");
@@ -75,6 +75,7 @@ fn any_rotary(letter: char) -> impl Strategy<Value = RotaryAxis> {
     (direction, any_vector(200.0), any::<bool>(), any::<bool>()).prop_map(
         move |(direction, point, head, positive)| RotaryAxis {
             point,
+            is_placed: true,
             ..axis(
                 letter,
                 if head { Mount::Head } else { Mount::Table },
@@ -104,7 +105,7 @@ proptest! {
         let machine = Machine { work_zero: Some(zero), ..machine(rotary) };
         let a = Stance { tip: ends[0], degrees: from };
         let b = Stance { tip: ends[1], degrees: [0, 1, 2].map(|k| from[k] + turn[k]) };
-        let points: Vec<_> = machine.linearise(a, b, length, tolerance).unwrap().collect();
+        let points: Vec<_> = machine.linearise(a, b, Some(length), tolerance).unwrap().collect();
         prop_assert_eq!(points.last(), Some(&b));
         let worst = largest_deviation(&machine, a, b, length, &points);
         prop_assert!(worst <= tolerance, "{} mm with {} points", worst, points.len());

@@ -20,7 +20,7 @@
 
 use control::{Action, Dialect, Ending, Event, Orientation, Position, Risk, Settings, Setup, Wire};
 use geom::Vec3;
-use machine::{LengthOffset, Machine, Mount};
+use machine::{LengthOffset, Machine};
 use program::{
     ArcTo, Axes, Circle, Cycle, Diagnostic, MachineMove, Op, Pose, Probe, Program, Record, Thread,
     Tool, WorkOffset,
@@ -345,7 +345,9 @@ impl<'a> Lift<'a> {
                     let beside = Position { point: position.point + way.aside, ..position };
                     self.spot(&beside).tip - spot.tip
                 });
-                let Some(pose) = spot.pose() else { return Err(unknown("a hole", &spot)) };
+                let Some(pose) = spot.pose() else {
+                    return Err(self.lost("a hole", &position, &spot));
+                };
                 self.bore(line, aside);
                 self.arrive(line, Op::Hole(pose))?;
             }
@@ -491,12 +493,28 @@ impl<'a> Lift<'a> {
 
     /// Where a cut ends; it must begin somewhere.
     fn cut(&self, end: &Position) -> Result<Pose, Box<Diagnostic>> {
-        let end = self.spot(end);
+        let spot = self.spot(end);
         let start = self.place.spot().filter(|_| self.home.is_none());
         let nowhere = Spot { tip: Vec3::NAN, axis: Vec3::Z };
         match start.copied().unwrap_or(nowhere) {
-            start if start.pose().is_none() => Err(unknown("the start of a cut", &start)),
-            _ => end.pose().ok_or_else(|| unknown("the end of a cut", &end)),
+            start if start.pose().is_none() => Err(self.lost("the start of a cut", end, &start)),
+            _ => spot.pose().ok_or_else(|| self.lost("the end of a cut", end, &spot)),
+        }
+    }
+
+    /// What is refused because nobody knows where `spot` is, of a block that goes to `end`.
+    #[cold]
+    fn lost(&self, what: &str, end: &Position, spot: &Spot) -> Box<Diagnostic> {
+        let Orientation::Rotary { degrees, tool_center: false } = end.orientation else {
+            return unknown(what, spot);
+        };
+        let length = self.tool.and_then(|(tool, _)| tool.length);
+        match self.machine.unsaid(degrees, length) {
+            Some(unsaid) => {
+                let message = format!("{what} hangs on what nobody says: {unsaid}");
+                refuse(unsaid.rule(), message, &unsaid.way_out())
+            }
+            None => unknown(what, spot),
         }
     }
 
@@ -519,19 +537,8 @@ impl<'a> Lift<'a> {
     /// A position as a block gives it, in the work frame. Where the tip of a tool of unknown length is that
     /// a head has turned, is not known.
     fn spot(&self, position: &Position) -> Spot {
-        let Orientation::Rotary { degrees, tool_center } = position.orientation else {
-            let (tip, axis) = resolve(self.machine, position, 0.0);
-            return Spot { tip, axis };
-        };
         let length = self.tool.and_then(|(tool, _)| tool.length);
-        let (mut tip, axis) = resolve(self.machine, position, length.unwrap_or(0.0));
-        let mut heads = self.machine.rotary.iter().filter(|axis| axis.on == Mount::Head);
-        if length.is_none()
-            && !tool_center
-            && heads.any(|axis| axis.turned(degrees[axis.index()]) != 0.0)
-        {
-            tip = Vec3::NAN;
-        }
+        let (tip, axis) = resolve(self.machine, position, length);
         Spot { tip, axis }
     }
 
@@ -683,15 +690,17 @@ impl<'a> Lift<'a> {
 const ROUNDING: f64 = 1e-9;
 
 /// The tool tip (mm) and the tool axis (unit vector), both in the work frame, of a position as a block gives it,
-/// with a tool of `tool_length` mm. What is not known is NaN.
-pub fn resolve(machine: &Machine, position: &Position, tool_length: f64) -> (Vec3, Vec3) {
+/// with a tool of `tool_length` mm. What is not known is NaN: also a tip of which [`Machine::unsaid`] names a fact.
+pub fn resolve(machine: &Machine, position: &Position, tool_length: Option<f64>) -> (Vec3, Vec3) {
     match position.orientation {
         Orientation::Axis(axis) => (position.point, axis),
         Orientation::Rotary { degrees, tool_center: true } => {
             (position.point, machine.axis_at(degrees))
         }
         Orientation::Rotary { degrees, tool_center: false } => {
-            machine.forward(position.point, degrees, tool_length)
+            let (tip, axis) = machine.forward(position.point, degrees, tool_length.unwrap_or(0.0));
+            let is_known = machine.unsaid(degrees, tool_length).is_none();
+            (if is_known { tip } else { Vec3::NAN }, axis)
         }
     }
 }
@@ -708,9 +717,7 @@ fn unknown(what: &str, spot: &Spot) -> Box<Diagnostic> {
         true => format!("{what} is at the machine's home, which the program does not know"),
         false => format!("{what} is not known in {}", missing.join(", ")),
     };
-    let help = "go there by rapid with every axis named, before; \
-                where a head is turned and the control does not keep the tool's tip, its length has to be in \
-                the tool table";
+    let help = "go there by rapid with every axis named, before";
     refuse("unknown-position", message, help)
 }
 

@@ -10,6 +10,19 @@ fn read_for(machine: &Machine, setup: Setup, text: &str) -> Result<nc::Reading, 
     nc::read(machine, setup, "old.nc", text.as_bytes())
 }
 
+/// The mill with B and C on its table whose work zero stands where they cross.
+fn table() -> Machine {
+    let rotary = |letter: char, axis: &str| {
+        format!(
+            "[[rotary]]\nletter = \"{letter}\"\non = \"table\"\naxis = {axis}\npoint = [0, 0, 0]\nsign = -1\n\
+             rapid = 9000\nacceleration = 300\n"
+        )
+    };
+    let (b, c) = (rotary('B', "[0, 1, 0]"), rotary('C', "[0, 0, 1]"));
+    let text = format!("extends = \"fanuc-table-bc\"\nwork_zero = [0, 0, 0]\n{b}{c}");
+    machine::load_text("table.toml", &text).unwrap()
+}
+
 fn fanuc(text: &str) -> Program {
     let machine = load_origin("fanuc-31i").unwrap();
     read_for(&machine, Setup::default(), text).unwrap().program
@@ -59,7 +72,7 @@ fn where_z_is_at_its_switch_g92_says() {
 /// another way in the work.
 #[test]
 fn a_boring_bar_goes_aside_as_the_table_stands() {
-    let machine = load("fanuc-table-bc").unwrap();
+    let machine = table();
     let aside = |c: &str| {
         let setup = Setup { aside: Some(Vec3::X), ..Setup::default() };
         let text = format!(
@@ -131,7 +144,7 @@ fn the_register_of_a_length_offset_is_that_of_the_tool() {
 #[test]
 fn rotary_positions_become_a_tool_axis_by_the_machine_of_the_program() {
     // C turns the table left-handed about Z: at C90 a point on X of the machine is one on Y of the part.
-    let machine = load("fanuc-table-bc").unwrap();
+    let machine = table();
     let text = "G21 G90 G54\nT1 M6\nG0 B0 C90.\nX10. Y0.\nG43 Z5. H1\nG1 Z1. F100.\nM30\n";
     let reading = read_for(&machine, Setup::default(), text).unwrap();
     let poses: Vec<Vec3> =
@@ -148,7 +161,7 @@ fn rotary_positions_become_a_tool_axis_by_the_machine_of_the_program() {
 
 #[test]
 fn an_arc_on_a_turned_table_turns_with_it() {
-    let machine = load("fanuc-table-bc").unwrap();
+    let machine = table();
     let text =
         "G21 G90 G54\nT1 M6\nG0 B0 C90.\nX10. Y0.\nG43 Z5. H1\nG3 X0. Y10. I-10. J0. F100.\nM30\n";
     let reading = read_for(&machine, Setup::default(), text).unwrap();
@@ -165,7 +178,7 @@ fn a_turned_head_needs_the_length_of_the_tool() {
     let machine = load("sinumerik-840d-traori").unwrap();
     let text = "G90 G54\nT1\nM6\nD1\nG0 A90 C0\nX0 Y0 Z0\nG1 X5 F100\nM30\n";
     let found = read_for(&machine, Setup::default(), text).unwrap_err();
-    assert_eq!((found.rule, found.line), ("unknown-position", 7));
+    assert_eq!((found.rule, found.line), ("tool-length", 7));
     let tool = ToolData { number: 1, name: String::new(), radius: 3.0, length: 100.0 };
     let setup = Setup { tools: vec![tool], ..Setup::default() };
     assert!(read_for(&machine, setup, text).is_ok());

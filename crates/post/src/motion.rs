@@ -3,8 +3,9 @@
 use crate::catalogue::{BlockName, WordName};
 use crate::place::{Kind, Stop};
 use crate::template::{ORIENTATION, POSITION, Words, bit};
-use crate::walk::{Cut, Done, Walk, motion};
+use crate::walk::{Cut, Done, Walk, motion, refuse};
 use geom::Vec3;
+use machine::Unsaid;
 use machine::linearise::Stance;
 use machine::plan::Step;
 use program::{Diagnostic, Feed, Pose};
@@ -252,7 +253,7 @@ impl Walk<'_> {
             Kind::Tilted(into, _) => into.transform_point3(point),
             Kind::Machine => {
                 let degrees = self.place.degrees().unwrap_or_default();
-                self.machine.linear_for(point, degrees, self.tool_length())
+                self.machine.linear_for(point, degrees, self.tool_length().unwrap_or(0.0))
             }
         }
     }
@@ -265,8 +266,16 @@ impl Walk<'_> {
         let length = self.tool_length();
         let linear = match self.place.kind {
             Kind::Tilted(..) => return Ok(()),
-            Kind::Bare | Kind::Plain | Kind::Machine => self.said,
-            Kind::ToolCenter | Kind::Vectors => self.machine.linear_for(self.tip, degrees, length),
+            Kind::Bare | Kind::Plain => self.said,
+            Kind::Machine => match self.machine.unsaid(degrees, length) {
+                Some(unsaid) => return Err(hangs_on(unsaid)),
+                None => self.said,
+            },
+            // The control knows what its file does not say.
+            Kind::ToolCenter | Kind::Vectors => match self.machine.unsaid(degrees, length) {
+                Some(unsaid) => self.limits.unknown(unsaid),
+                None => self.machine.linear_for(self.tip, degrees, length.unwrap_or(0.0)),
+            },
         };
         for &sway in self.sways(self.tip) {
             self.limits.position(linear + Vec3::Z * sway, degrees, length, self.line)?;
@@ -282,8 +291,15 @@ impl Walk<'_> {
         }
     }
 
-    /// Length of the tool, mm; 0 where the source is silent.
-    pub(crate) fn tool_length(&self) -> f64 {
-        self.tool.as_ref().and_then(|tool| tool.length).unwrap_or_default()
+    /// Length of the tool, mm, where the source says it.
+    pub(crate) fn tool_length(&self) -> Option<f64> {
+        self.tool.as_ref().and_then(|tool| tool.length)
     }
+}
+
+/// The positions of the axes hang on what nobody has said.
+#[cold]
+fn hangs_on(unsaid: Unsaid) -> Box<Diagnostic> {
+    let message = format!("nobody says {unsaid}: the positions of all axes hang on it");
+    refuse(unsaid.rule(), message).help(unsaid.way_out()).into()
 }

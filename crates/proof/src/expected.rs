@@ -225,9 +225,9 @@ impl<'a> Cursor<'a> {
         })
     }
 
-    /// Length of the active tool, mm; 0 where the source does not say.
-    pub fn tool_length(&self) -> f64 {
-        self.wanted.tool.and_then(|tool| tool.length).unwrap_or(0.0)
+    /// Length of the active tool, mm, where the source says it.
+    pub fn tool_length(&self) -> Option<f64> {
+        self.wanted.tool.and_then(|tool| tool.length)
     }
 
     /// What holds from here on.

@@ -11,8 +11,8 @@ use machine::Machine;
 pub(crate) struct Gauge<'a> {
     pub machine: &'a Machine,
     pub allowed: Applied,
-    /// mm; 0 where the source does not say.
-    pub tool_length: f64,
+    /// mm, where the source says it.
+    pub tool_length: Option<f64>,
 }
 
 impl Gauge<'_> {

@@ -15,7 +15,7 @@ pub(crate) struct Place {
 
 impl Place {
     /// The place that a block says, with a tool of `tool_length` mm.
-    pub fn of(machine: &Machine, position: &Position, tool_length: f64) -> Place {
+    pub fn of(machine: &Machine, position: &Position, tool_length: Option<f64>) -> Place {
         let (tip, axis) = nc::resolve(machine, position, tool_length);
         Place { tip, axis }
     }

@@ -98,7 +98,7 @@ impl Applied {
         machine: &Machine,
         pose: &Position,
         place: &Place,
-        tool_length: f64,
+        tool_length: Option<f64>,
     ) -> f64 {
         if self.rotary_degrees == 0.0 {
             return self.tip_mm;
@@ -112,7 +112,7 @@ impl Applied {
                 let zero = machine.work_zero.unwrap_or(Vec3::ZERO);
                 let arm = |axis: &machine::RotaryAxis| match axis.on {
                     Mount::Table => (place.tip + zero).distance(axis.point),
-                    Mount::Head => axis.point.length() + tool_length,
+                    Mount::Head => axis.point.length() + tool_length.unwrap_or(0.0),
                 };
                 machine.rotary.iter().map(arm).sum()
             }

@@ -136,6 +136,7 @@ fn the_length_of_the_tool_counts_where_a_head_swings_it() {
         letter = "B"
         on = "head"
         axis = [0, 1, 0]
+        point = [0, 0, 0]
         rapid = 1e4
         acceleration = 100
     "#;

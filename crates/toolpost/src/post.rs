@@ -9,9 +9,9 @@ use crate::prove;
 use crate::summary::{Shape, time, travel};
 use crate::toolpath::{self, Toolpath};
 use ::post::Output;
-use machine::Machine;
 use machine::limits::Travel;
 use machine::time::Times;
+use machine::{Machine, Unsaid};
 use program::{Diagnostic, Op, Program, Record};
 use proof::Tolerances;
 use serde_json::json;
@@ -116,13 +116,14 @@ pub fn proven(
         "machine": toolpath::describe(machine),
         "program": { "file": file, "blocks": output.blocks, "bytes": output.text.len() },
         "travel": Travel::of(machine),
+        "travel_unsaid": output.unsaid.iter().map(Unsaid::to_string).collect::<Vec<_>>(),
         "time_s": { "total": times.total(), "cutting": times.cutting, "rapid": times.rapid },
         "proof": proof,
     });
     let mut rows = toolpath.rows(Some(machine));
     rows.extend(shape.rows());
     rows.push(("time", time(&times)));
-    rows.push(("travel", travel(Travel::of(machine))));
+    rows.push(("travel", travel(Travel::of(machine), &output.unsaid)));
     rows.extend(prove::rows(&proof, machine));
     let account = Account { verdict: Verdict::Done, rows, data, findings: warnings };
     Ok(Posted { text: output.text, account })

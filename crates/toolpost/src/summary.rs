@@ -1,6 +1,7 @@
 //! What a program amounts to, as a machinist reads it and as JSON.
 
 use drawing::walk;
+use machine::Unsaid;
 use machine::limits::Travel;
 use machine::time::Times;
 use program::Program;
@@ -102,15 +103,22 @@ pub fn duration(seconds: f64) -> String {
     }
 }
 
-/// How the positions of a program are held against the travel of the machine.
-pub fn travel(travel: Travel) -> String {
-    String::from(match travel {
+/// How the positions of a program are held against the travel of the machine, and what was missing for those that
+/// are not.
+pub fn travel(travel: Travel, unsaid: &[Unsaid]) -> String {
+    let held = match travel {
         Travel::Unlimited => "not checked: the machine file gives no travel",
         Travel::Lengths => {
             "only the lengths of the ways are held against the travel: work_zero is not given"
         }
         Travel::MachineCoordinates => "every position is within it, in machine coordinates",
-    })
+    };
+    let missing: Vec<String> =
+        unsaid.iter().map(|unsaid| format!("nobody says {unsaid}")).collect();
+    match missing.is_empty() {
+        true => held.to_owned(),
+        false => format!("{held}, but not where {}", missing.join(" or ")),
+    }
 }
 
 /// How far something goes.

@@ -503,8 +503,8 @@ impl Allowed<'_> {
                 }
             }
         }
-        let (tip, axis) = nc::resolve(self.machine, &a, self.tool_length);
-        let (other, toward) = nc::resolve(self.machine, &b, self.tool_length);
+        let (tip, axis) = nc::resolve(self.machine, &a, Some(self.tool_length));
+        let (other, toward) = nc::resolve(self.machine, &b, Some(self.tool_length));
         tip.distance(other) <= 2.0 * self.tip(&a)
             && (axis == toward
                 || geom::angle_between(axis, toward).to_degrees() <= 2.0 * self.proof.axis_degrees)
@@ -512,7 +512,7 @@ impl Allowed<'_> {
 
     /// How far the tip may be from the source, mm: rotary words err at their distance from the centre.
     fn tip(&self, pose: &Position) -> f64 {
-        let (tip, _) = nc::resolve(self.machine, pose, self.tool_length);
+        let (tip, _) = nc::resolve(self.machine, pose, Some(self.tool_length));
         let lever = match pose.orientation {
             Orientation::Rotary { tool_center: true, .. } => 0.0,
             Orientation::Axis(axis) if axis == Vec3::Z => 0.0,
@@ -747,7 +747,7 @@ impl Allowed<'_> {
     /// Whether each coordinate of `to`, as its block says it or in the work frame, is that of a place on
     /// the way or not known.
     fn corner(&self, way: &[Position], to: &Position) -> bool {
-        let tip = |pose: &Position| nc::resolve(self.machine, pose, self.tool_length).0;
+        let tip = |pose: &Position| nc::resolve(self.machine, pose, Some(self.tool_length)).0;
         let near = |a: f64, b: f64| (a - b).abs() <= 2.0 * self.proof.tip_mm;
         (0..3).all(|i| {
             to.point[i].is_nan()
@@ -759,8 +759,8 @@ impl Allowed<'_> {
 
     /// Whether the tool stands at `to` as at `place`, higher along its axis.
     fn above(&self, place: &Position, to: &Position) -> bool {
-        let (tip, axis) = nc::resolve(self.machine, place, self.tool_length);
-        let height = (nc::resolve(self.machine, to, self.tool_length).0 - tip).dot(axis);
+        let (tip, axis) = nc::resolve(self.machine, place, Some(self.tool_length));
+        let height = (nc::resolve(self.machine, to, Some(self.tool_length)).0 - tip).dot(axis);
         height > 0.0 && {
             let mut lower = *to;
             lower.point -= match to.orientation {
@@ -773,8 +773,8 @@ impl Allowed<'_> {
 
     /// Whether a rapid goes down and aside in one, seen along the tool axis and along Z.
     fn slopes(&self, from: &Position, to: &Position) -> bool {
-        let (tip, axis) = nc::resolve(self.machine, to, self.tool_length);
-        let way = tip - nc::resolve(self.machine, from, self.tool_length).0;
+        let (tip, axis) = nc::resolve(self.machine, to, Some(self.tool_length));
+        let way = tip - nc::resolve(self.machine, from, Some(self.tool_length)).0;
         let off = 2.0 * self.proof.tip_mm;
         [axis, Vec3::Z].iter().all(|along| {
             let down = way.dot(*along);
@@ -786,7 +786,7 @@ impl Allowed<'_> {
     /// the other, in their order.
     fn same_path(&self, before: Option<Position>, a: &[Step], b: &[Step]) -> bool {
         let Some(before) = before else { return false };
-        let tip = |pose: &Position| nc::resolve(self.machine, pose, self.tool_length).0;
+        let tip = |pose: &Position| nc::resolve(self.machine, pose, Some(self.tool_length)).0;
         let points = |steps: &[Step]| -> Vec<Vec3> {
             let ends = steps.iter().filter_map(|step| step.act.end());
             std::iter::once(before).chain(ends).map(|pose| tip(&pose)).collect()

@@ -191,6 +191,7 @@ fn check_rotary(
             on: sheet.on.ok_or_else(|| missing("on"))?,
             axis,
             point: sheet.point.map_or(Vec3::ZERO, |point| Vec3::from_array(point.0)),
+            is_placed: sheet.point.is_some(),
             sign,
             offset: sheet.offset.map_or(0.0, |offset| offset.0),
             min,

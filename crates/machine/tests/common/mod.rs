@@ -68,6 +68,7 @@ pub fn axis(letter: char, on: Mount, direction: Vec3, sign: f64) -> RotaryAxis {
         on,
         axis: direction.normalize(),
         point: Vec3::ZERO,
+        is_placed: true,
         sign,
         offset: 0.0,
         min: f64::NEG_INFINITY,

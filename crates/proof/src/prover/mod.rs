@@ -239,6 +239,7 @@ impl<'a> Prover<'a> {
             return Ok(());
         }
         self.unclamped(line, &position.orientation);
+        self.measured(line, position)?;
         let to = self.gauge.station(line, *position);
         let block = arc.map(|arc| arc::of_block(&self.gauge, &self.here, arc));
         if block == Some(None) {
@@ -422,6 +423,25 @@ impl<'a> Prover<'a> {
     fn unproven(&self, line: u32, what: &str) -> Box<Diagnostic> {
         let message = format!("cannot be compared: the source has {what} before this");
         self.lost_at(line, "unproven", &message)
+    }
+
+    /// Holds known what the place of the tip hangs on.
+    ///
+    /// # Errors
+    /// The control does not keep the tip, and a fact of the machine or the tool is missing to know where it is. Where
+    /// a coordinate is not known either, as at a reference position, nothing is compared with it.
+    fn measured(&self, line: u32, position: &Position) -> Outcome {
+        let Orientation::Rotary { degrees, tool_center: false } = position.orientation else {
+            return Ok(());
+        };
+        let Gauge { machine, tool_length, .. } = self.gauge;
+        match machine.unsaid(degrees, tool_length) {
+            Some(unsaid) if position.point.is_finite() => {
+                let what = format!("turns axes, and nobody says {unsaid}");
+                Err(self.lost_at(line, unsaid.rule(), &what).help(unsaid.way_out()).into())
+            }
+            _ => Ok(()),
+        }
     }
 
     /// The mismatch on `line` of the program after which the comparison cannot go on.

@@ -268,14 +268,19 @@ fn a_machine_file_that_is_older_than_a_key_is_told_the_line_to_add() {
     folder.write("old.toml", &old);
     let said = folder.run(&["machines", "check", "--upgrade", "old.toml"]);
     assert_eq!(said.code, 0, "{said:?}");
-    for line in
-        ["safe_height = 0", "path_tolerance = 0.01", "length_along_z = false", "modulo = true"]
-    {
+    for line in [
+        "safe_height = 0",
+        "work_zero = [0, 0, 0]",
+        "path_tolerance = 0.01",
+        "length_along_z = false",
+        "point = [0, 0, 0]",
+        "modulo = true",
+    ] {
         assert!(said.out.contains(&format!("\n{line}\n")), "{line}: {}", said.out);
     }
     let new = format!(
-        "extends = \"sinumerik-840d\"\nsafe_height = 0\n[options]\npath_tolerance = 0.01\n[settings]\n\
-         length_along_z = false\n[orientation]\nsimultaneous = \"machine-angles\"\n{rotary}modulo = true\n"
+        "extends = \"sinumerik-840d\"\nsafe_height = 0\nwork_zero = [0, 0, 0]\n[options]\npath_tolerance = 0.01\n[settings]\n\
+         length_along_z = false\n[orientation]\nsimultaneous = \"machine-angles\"\n{rotary}point = [0, 0, 0]\nmodulo = true\n"
     );
     folder.write("new.toml", &new);
     let said = folder.run(&["machines", "check", "--upgrade", "new.toml"]);
