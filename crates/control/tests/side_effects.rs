@@ -337,6 +337,7 @@ fn a_stored_position_is_no_reference_position() {
         (Dialect::Fanuc, "G91 G30 P4 Z0.", true),
         (Dialect::Fanuc, "G91 G30 P4 X0.", false),
         (Dialect::Haas, "G91 G28 Z0.", false),
+        (Dialect::Haas, "G91 G30 Z0.", true),
         (Dialect::Mach3, "G91 G28 Z0", false),
         (Dialect::Mach3, "G91 G30 Z0", true),
         (Dialect::LinuxCnc, "G91 G28 Z0", true),
@@ -376,4 +377,127 @@ fn lengths_switches_and_smoothing_that_nobody_states_are_told() {
         "G21 G90\nG91 G28 Z0.\nG90 G29 Z5.\nM30\n",
     );
     assert_eq!(error.unwrap_err().rule, "nc-home");
+}
+
+/// What is switched off behind a block that says nothing of it: B-64484EN-2 and the Haas manual, "M functions"; SINUMERIK MD20270
+/// for the edge; LinuxCNC "M Codes"; GRBL `gc_execute_line`, step 21; TNC 640, `TOOL CALL`, `M1`.
+#[test]
+fn a_change_a_stop_and_an_end_switch_what_their_control_switches() {
+    const SPINDLE: Action = Action::Spindle(Spindle::Off);
+    const COOLANT: Action = Action::Coolant(Coolant::Off);
+    let edge = Action::LengthOffset(Some(1));
+    let table: [(Dialect, &str, &[Action]); 13] = [
+        (Dialect::Fanuc, "T2 M6", &[SPINDLE]),
+        (Dialect::Fanuc, "M0", &[]),
+        (Dialect::Fanuc, "M1", &[]),
+        (Dialect::Fanuc, "M30", &[]),
+        (Dialect::Haas, "M30", &[SPINDLE, COOLANT]),
+        (Dialect::LinuxCnc, "T2 M6", &[SPINDLE]),
+        (Dialect::LinuxCnc, "M2", &[SPINDLE, COOLANT]),
+        (Dialect::Mach3, "T2 M6", &[SPINDLE]),
+        (Dialect::Grbl, "M30", &[SPINDLE, COOLANT]),
+        (Dialect::Sinumerik, "T2\nM6", &[SPINDLE, COOLANT, edge]),
+        (Dialect::Sinumerik, "M1", &[]),
+        (Dialect::Klartext, "TOOL CALL 2 Z S100", &[SPINDLE, COOLANT]),
+        (Dialect::Klartext, "M1", &[SPINDLE, COOLANT]),
+    ];
+    for (dialect, block, switched) in table {
+        let end = if block.starts_with("M30") || block == "M2" { "" } else { "\nM30" };
+        let text = match dialect {
+            Dialect::Klartext => format!("TOOL CALL 1 Z S100\nM13\n{block}{end}"),
+            Dialect::Grbl => format!("G21 G90 G94 G17 G54\nS1000 M3\nM8\n{block}{end}\n"),
+            Dialect::Sinumerik => format!("G54 G90 G94\nT1\nM6\nS1000 M3\nM8\n{block}{end}\n"),
+            _ => format!("G90 G94 G17 G54\nT1 M6\nS1000 M3\nM8\n{block}{end}\n"),
+        };
+        let text = if dialect == Dialect::Klartext { numbered(&text) } else { text };
+        let found = actions(dialect, &text);
+        // What follows the coolant, up to the end of the program.
+        let on = found.iter().position(|a| matches!(a, Action::Coolant(Coolant::Flood))).unwrap();
+        let kept = |a: &&Action| {
+            matches!(a, Action::Spindle(_) | Action::Coolant(_) | Action::LengthOffset(_))
+        };
+        let until_end = found[on + 1..].iter().filter(kept).cloned();
+        let found: Vec<Action> = until_end.take(switched.len().max(1)).collect();
+        assert_eq!(found, switched, "{dialect:?} {block}");
+    }
+}
+
+/// A program of Klartext with its numbers.
+fn numbered(blocks: &str) -> String {
+    let text = format!("BEGIN PGM P MM\n{blocks}\nEND PGM P MM");
+    text.lines().enumerate().map(|(i, line)| format!("{i} {line}\n")).collect()
+}
+
+/// Haas, "G43": nothing moves, the next Z counts. LinuxCNC 2.9 itself: the same, and an X behind it brings no Z.
+#[test]
+fn a_length_alone_moves_nothing_and_leaves_z_unknown_until_it_is_named() {
+    for dialect in [Dialect::Haas, Dialect::LinuxCnc] {
+        let text =
+            "G21 G90 G94 G17 G54\nT1 M6\nG0 X0. Y0. Z50.\nG43 H1\nX5.\nZ40.\nG49\nX6.\nM30\n";
+        let found = actions(dialect, text);
+        let places: Vec<[f64; 2]> = found
+            .iter()
+            .filter_map(|a| if let Action::Rapid(to) = a { Some(to.point) } else { None })
+            .map(|point| [point.x, point.z])
+            .collect();
+        assert_eq!(places.len(), 4, "{dialect:?} {places:?}");
+        assert_eq!((places[0], places[2]), ([0.0, 50.0], [5.0, 40.0]));
+        for place in [places[1], places[3]] {
+            assert!(place[0] > 0.0 && place[1].is_nan(), "{dialect:?} {places:?}");
+        }
+        assert!(rules(&found).is_empty());
+    }
+}
+
+/// Data and keys of the operator: what is written stays when the program has ended.
+#[test]
+fn data_and_keys_of_the_operator_are_told() {
+    for (dialect, block, rule) in [
+        (Dialect::Fanuc, "G10 L2 P1 X0. Y0. Z-5.", "operator-data"),
+        (Dialect::Fanuc, "G92 X0.", "operator-data"),
+        (Dialect::Fanuc, "#3003=1", "operator-controls"),
+        (Dialect::Fanuc, "#3004=7", "operator-controls"),
+        (Dialect::LinuxCnc, "G92 X0", "operator-data"),
+        (Dialect::LinuxCnc, "G52 X1", "operator-data"),
+        (Dialect::LinuxCnc, "G10 L2 P1 X0", "operator-data"),
+        (Dialect::LinuxCnc, "G43.1 Z5", "operator-data"),
+        (Dialect::LinuxCnc, "M61 Q2", "operator-data"),
+        (Dialect::Sinumerik, "$P_UIFR[1,X,TR]=5", "operator-data"),
+        (Dialect::Klartext, "TOOL DEF 5 L+10 R+3", "operator-data"),
+    ] {
+        let text = match dialect {
+            Dialect::Klartext => numbered(&format!("{block}\nTOOL CALL 5 Z S100\nM30")),
+            Dialect::Sinumerik => format!("G90 G94\n{block}\nM30\n"),
+            _ => format!("G21\nG90 G94 G17 G54\n{block}\nM30\n"),
+        };
+        assert_eq!(risks(dialect, &text), [rule], "{dialect:?} {block}");
+    }
+}
+
+/// B-64484EN-2, "M99": in a main program it goes back to its begin.
+#[test]
+fn m99_begins_a_fanuc_program_again_and_is_told() {
+    let found = actions(Dialect::Fanuc, "G21\nG90\nM99\n");
+    let [.., Action::Risk(risk), Action::End] = &found[..] else { panic!("{found:?}") };
+    assert_eq!((risk.rule, risk.refused), ("program-repeats", false));
+}
+
+/// Marlin's G-code index, "G0-G1": both have one feed.
+#[test]
+fn a_cut_of_marlin_goes_at_the_feed_of_the_rapid_before() {
+    let found = actions(Dialect::Marlin, "G21\nG90\nG1 X1 Y0 Z5 F200\nG0 X2 F5000\nG1 X3\n");
+    let feeds: Vec<Feed> = found
+        .iter()
+        .filter_map(|action| if let Action::Feed(feed) = action { Some(*feed) } else { None })
+        .collect();
+    assert_eq!(feeds, [Feed::PerMinute(200.0), Feed::PerMinute(5000.0)]);
+}
+
+/// TNC 620 user's manual p. 340: M128 is reset before positioning with M91.
+#[test]
+fn m128_is_off_before_a_move_in_machine_coordinates() {
+    let text = "TOOL CALL 5 Z S100\nL B+0 C+0 R0 FMAX\nL X+0 Y+0 Z+9 R0 FMAX\nM128\nL Z+0 R0 FMAX M91\nM30";
+    let found = run(Dialect::Klartext, &numbered(text)).unwrap_err();
+    assert_eq!((found.rule, found.line), ("tool-center", 6));
+    assert!(run(Dialect::Klartext, &numbered(&text.replace("L Z+0", "M129\nL Z+0"))).is_ok());
 }

@@ -70,3 +70,32 @@ fn every_block_of_every_sample_is_read() {
     let names: Vec<&String> = all.keys().collect();
     assert!(names.is_empty(), "there are no samples {names:?}");
 }
+
+/// Each row of the side effects names the tests that hold it, and these are there.
+#[test]
+fn every_side_effect_is_held_by_a_test() {
+    let mut tests = std::collections::BTreeSet::new();
+    for folder in ["crates/control/tests", "crates/toolpost/tests"] {
+        for file in std::fs::read_dir(root().join(folder)).unwrap() {
+            let Ok(text) = std::fs::read_to_string(file.unwrap().path()) else { continue };
+            let named = text.split("#[test]\n").skip(1).filter_map(|test| {
+                let (name, _) = test.strip_prefix("fn ")?.split_once('(')?;
+                Some(name.to_owned())
+            });
+            tests.extend(named);
+        }
+    }
+    let page = std::fs::read_to_string(root().join("docs/controls/side-effects.md")).unwrap();
+    let rows = page.lines().filter(|line| line.starts_with("| ") && !line.ends_with(" test |"));
+    let mut count = 0;
+    for row in rows {
+        let names = row.trim_end_matches('|').rsplit('|').next().unwrap();
+        let names: Vec<&str> = names.split('`').skip(1).step_by(2).collect();
+        assert!(!names.is_empty(), "no test holds {row}");
+        for name in names {
+            assert!(tests.contains(name), "there is no test `{name}`: {row}");
+        }
+        count += 1;
+    }
+    assert!(count > 50, "{count} rows");
+}
