@@ -63,6 +63,9 @@ pub enum Action {
     /// spindle. A position is NaN where the block does not say that (an active tool length is part of it). Where
     /// they stand afterwards in the work, only the machine knows.
     MachineMove(Box<MachineMove>),
+    /// The control turns the rotary axes to its tilted plane, by a solution of its own; the linear axes stand still.
+    /// Where the tool then stands in the work, only the machine knows.
+    Swivel,
     /// The hole cycle for the [`Action::Hole`]s that follow.
     Cycle(Box<Cycle>),
     /// End of the hole cycle.
@@ -299,6 +302,7 @@ impl Action {
             Action::Probe(_)
             | Action::Home(_)
             | Action::MachineMove(_)
+            | Action::Swivel
             | Action::Cycle(_)
             | Action::CycleOff
             | Action::Feed(_)

@@ -635,17 +635,18 @@ fn a_tilted_plane_turns_about_z_then_new_x_then_newest_z() {
     // J90 alone turns Z to -Y and Y to Z; I90 before it turns X to Y.
     let got =
         ops(FANUC, "G68.2 X10. Y20. Z30. I90. J90. K0\nG53.1\nG0 X1. Y2. Z3.\nG69\nG0 X0 Y0 Z0\n");
-    let Action::Rapid(pose) = &got[0] else { panic!("{got:?}") };
+    assert_eq!(got[0], Action::Swivel);
+    let Action::Rapid(pose) = &got[1] else { panic!("{got:?}") };
     // X of the plane is Y, its Z is X, so its Y is Z.
     assert!(pose.point.distance(Vec3::new(10.0 + 3.0, 20.0 + 1.0, 30.0 + 2.0)) < 1e-12, "{pose:?}");
     assert!(pose.axis().unwrap().distance(Vec3::X) < 1e-12, "{pose:?}");
-    let Action::Rapid(pose) = &got[1] else { panic!("{got:?}") };
+    let Action::Rapid(pose) = &got[2] else { panic!("{got:?}") };
     let Orientation::Rotary { degrees, tool_center: false } = pose.orientation else { panic!() };
     assert!(degrees[0].is_nan() && degrees[1] == 0.0 && degrees[2].is_nan());
     // 45° about X: a hole along (0, -1, 1).
     let got =
         ops(FANUC, "G68.2 X0 Y0 Z0 I0 J45. K0\nG53.1\nG0 X0 Y0 Z50.\nG81 Z-10. R2. F9\nG80\n");
-    let Action::Hole(pose) = &got[3] else { panic!("{got:?}") };
+    let Action::Hole(pose) = &got[4] else { panic!("{got:?}") };
     let half = 0.5_f64.sqrt();
     assert!(pose.axis().unwrap().distance(Vec3::new(0.0, -half, half)) < 1e-12);
     assert!(pose.point.distance(Vec3::new(0.0, -2.0 * half, 2.0 * half)) < 1e-12);
@@ -667,7 +668,7 @@ fn a_tilted_plane_is_complete_and_reached_before_anything_moves() {
 fn in_a_tilted_plane_nothing_goes_down_at_an_unknown_place() {
     let plane = "G68.2 X0 Y0 Z0 I0 J45. K0\nG53.1\nG0 ";
     assert_eq!(rule(FANUC, &format!("{plane}X0 Z9.\n")), "nc-unknown-position");
-    assert_eq!(ops(FANUC, &format!("{plane}X0 Y0\nZ9.\n")).len(), 2);
+    assert_eq!(ops(FANUC, &format!("{plane}X0 Y0\nZ9.\n")).len(), 3);
 }
 
 #[test]

@@ -2,7 +2,7 @@
 //! program does not say.
 
 /// The rules that may be accepted, each with what its acceptance answers for.
-pub const ACCEPTABLE: [(&str, &str); 10] = [
+pub const ACCEPTABLE: [(&str, &str); 11] = [
     ("dwell-unit", "what a dwell counts in"),
     ("floating-tap", "taps are held in a floating chuck"),
     ("length-change", "Z moves by the tool length where parameter 5006#6 is 0"),
@@ -13,6 +13,7 @@ pub const ACCEPTABLE: [(&str, &str); 10] = [
     ("rotary-way", "which way the rotary axes turn"),
     ("stored-position", "where the stored position is to which Z goes"),
     ("tool-change-height", "the tool change of the machine brings Z up by itself"),
+    ("turn-height", "room for the part and the tool where rotary axes turn"),
 ];
 
 /// Rules of [`ACCEPTABLE`] that are accepted: the program is proven all the same, and the report lists what was found.

@@ -36,6 +36,8 @@ pub struct Prover<'a> {
     leg: Leg,
     report: Report,
     accepted: Accepted,
+    /// Whether Z is home, or where the tool change brings it, so that axes may turn.
+    raised: bool,
     ended: bool,
     lost: bool,
 }
@@ -91,6 +93,7 @@ impl<'a> Prover<'a> {
             leg: Leg::default(),
             report: Report { tolerances: allowed, ..Report::default() },
             accepted: tolerances.accepted,
+            raised: false,
             ended: false,
             lost: false,
         };
@@ -167,6 +170,7 @@ impl<'a> Prover<'a> {
             }
             Action::Home(axes) => return self.home(line, *axes),
             Action::MachineMove(to) => return self.machine_move(line, to),
+            Action::Swivel => self.check_height(line),
             Action::Tool(tool) => return self.change_tool(line, tool),
             Action::Dwell(seconds) if *seconds == 0.0 => {}
             Action::Dwell(seconds) => return self.happens(line, Step::Dwell(*seconds)),
@@ -239,6 +243,11 @@ impl<'a> Prover<'a> {
             return Ok(());
         }
         self.unclamped(line, &position.orientation);
+        if position.point.z.is_finite() {
+            self.raised = false;
+        } else if gait == Gait::Rapid && self.turns_by_words(&position.orientation) {
+            self.check_height(line);
+        }
         self.measured(line, position)?;
         let to = self.gauge.station(line, *position);
         let block = arc.map(|arc| arc::of_block(&self.gauge, &self.here, arc));
@@ -307,6 +316,30 @@ impl<'a> Prover<'a> {
             _ => [here != to; 3],
         };
         self.turns(line, turns);
+    }
+
+    /// Whether the words of a block turn axes that the tool does not follow.
+    fn turns_by_words(&self, to: &Orientation) -> bool {
+        let Orientation::Rotary { degrees: to, tool_center: false } = to else { return false };
+        match &self.here.position.orientation {
+            Orientation::Rotary { degrees: from, .. } => {
+                (0..3).any(|i| from[i] != to[i] && !to[i].is_nan())
+            }
+            Orientation::Axis(_) => true,
+        }
+    }
+
+    /// Holds Z up where axes turn at a height that nobody knows: a table swings the part up, a head its tool down.
+    fn check_height(&mut self, line: u32) {
+        if self.raised || self.gauge.machine.rotary.is_empty() {
+            return;
+        }
+        let message = format!(
+            "source line {}: the program turns rotary axes where Z has not been home since the last move",
+            self.cursor.line
+        );
+        let help = "send Z home before it";
+        self.found(Diagnostic::error("turn-height", message).help(help).line(line));
     }
 
     /// The same for axes that turn to places of the machine.

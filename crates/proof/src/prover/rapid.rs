@@ -194,6 +194,7 @@ impl Prover<'_> {
             self.leg.left = Some(self.here);
         }
         self.leg.homed |= z;
+        self.raised |= z;
         let mut pose = self.here.position;
         for i in (0..3).filter(|i| axes.contains(Axes::linear(*i))) {
             pose.point[i] = f64::NAN;

@@ -336,6 +336,7 @@ impl Step<'_, '_, '_> {
             }
         }
         self.state.moved = true;
+        self.actions.push(Action::Swivel);
         Ok(())
     }
 }

@@ -168,6 +168,7 @@ impl Control<'_, '_> {
             if self.tilt.is_none() {
                 self.degrees = [0.0; 3];
             }
+            self.emit(Action::Swivel)?;
             let pose = self.pose(self.here);
             self.emit(if rapid { Action::Rapid(pose) } else { Action::Line(pose) })?;
         }

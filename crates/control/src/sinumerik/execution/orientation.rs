@@ -142,7 +142,10 @@ impl Interpreter<'_, '_> {
         let plane = base * plane;
         self.state.frames.set_swivel(Some(plane));
         self.state.tool_axis = ToolAxis::Vector(plane.matrix3.z_axis);
-        if home.is_empty() { Ok(()) } else { self.emit(source, Action::Home(home)) }
+        if !home.is_empty() {
+            self.emit(source, Action::Home(home))?;
+        }
+        self.emit(source, Action::Swivel)
     }
 
     /// `CYCLE800()`: no plane; where the rotary axes are left is the machine's business.
