@@ -140,10 +140,19 @@ impl Wire {
     /// U and V (mm) of a wire along `axis` (a unit vector, upwards); nothing where it leans and the
     /// height of the upper plane is not known, or it lies flat.
     pub fn lean(&self, axis: Vec3) -> Option<Vec2> {
-        let across = axis.truncate();
         match self.height {
-            Some(height) if axis.z > 0.0 => Some(across * (height / axis.z)),
-            _ => (across == Vec2::ZERO).then_some(Vec2::ZERO),
+            Some(height) => lean(axis, height),
+            None => (axis.truncate() == Vec2::ZERO).then_some(Vec2::ZERO),
         }
+    }
+}
+
+/// How far a wire along `axis` (a unit vector, upwards) is `height` mm up beside where it crosses Z 0, mm; nothing
+/// where it leans and lies flat.
+pub fn lean(axis: Vec3, height: f64) -> Option<Vec2> {
+    let across = axis.truncate();
+    match axis.z > 0.0 {
+        true => Some(across * (height / axis.z)),
+        false => (across == Vec2::ZERO).then_some(Vec2::ZERO),
     }
 }

@@ -26,7 +26,7 @@ mod sheet;
 pub mod time;
 pub mod upgrade;
 
-pub use kinematics::Unsaid;
+pub use kinematics::{Unsaid, lean};
 pub use load::{load, load_control, load_origin, load_text};
 pub use model::*;
 pub use sheet::{Key, keys};

@@ -151,7 +151,7 @@ impl Walk<'_> {
         let axis = pose.axis();
         let Some(lean) = wire.machine.lean(axis) else {
             let message = "the wire leans, and the height of the upper plane is not known";
-            let help = "give it with --height, or as `height` in the [wire] table of the machine";
+            let help = "`height` in the [wire] table of the machine, or --uv-height for one run";
             return Err(refuse("wire-height", message).help(help).into());
         };
         self.limits.lean(lean, axis, self.line)

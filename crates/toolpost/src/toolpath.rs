@@ -109,7 +109,7 @@ pub fn read_wire(
 ) -> Result<Toolpath, Stop> {
     read_by(path, &files::read(path)?, strict, origin, |mut machine| {
         if let Some(wire) = &mut machine.wire {
-            wire.height = height.or(wire.height);
+            wire.height = wire.height.or(height);
         }
         machine
     })

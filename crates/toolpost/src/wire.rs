@@ -39,15 +39,14 @@ pub fn run(args: &args::Wire, silent: bool) -> Result<Answer, Stop> {
 
     let progress = Progress::new(if picture.is_some() { 5 } else { 4 }, silent);
     progress.step("reading");
-    let Source { mut toolpath, paths, beside } = Source::read(args, &machine)?;
+    let Source { mut toolpath, paths, beside, height } = Source::read(args)?;
     let mut warnings = std::mem::take(&mut toolpath.warnings);
     progress.step("writing");
-    let height = machine.wire.and_then(|wire| wire.height);
     let planned = cutting::legs(paths, &beside, &args.cutting, height);
     let (mut legs, rounded) = planned.map_err(|found| toolpath.refused(*found))?;
     warnings.extend(rounded);
     divide(&mut legs, &args.division, &machine)?;
-    let cut = Cut::of(legs, &machine);
+    let cut = Cut::of(legs, height, &machine);
     let program = cut.program(&toolpath.program.name).map_err(Box::<Diagnostic>::from)?;
     let output = post::write(&program, &machine, &toolpath, &mut warnings)?;
     progress.step("proving");
@@ -114,11 +113,18 @@ fn set_up(machine: &mut Machine, args: &args::Wire) -> Result<(), Stop> {
         let help = "leave --by-control out: the way of the wire's centre is then worked out here";
         return Err(Diagnostic::error("by-control", message).help(help).into());
     }
-    machine.wire = Some(Wire {
-        height: args.ends.height.or(wire.height),
-        memory: args.division.memory.or(wire.memory),
-        ..wire
-    });
+    let height = match (wire.height, args.ends.uv_height) {
+        (Some(own), Some(said)) if own != said => {
+            let message = format!(
+                "`{}` counts U and V in a plane {own} mm up, and --uv-height says {said} mm",
+                machine.name
+            );
+            let help = "leave --uv-height out, or change `height` in [wire] of the machine's file";
+            return Err(Diagnostic::error("wire-height", message).help(help).into());
+        }
+        (own, said) => own.or(said),
+    };
+    machine.wire = Some(Wire { height, memory: args.division.memory.or(wire.memory), ..wire });
     Ok(())
 }
 

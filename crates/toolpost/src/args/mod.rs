@@ -330,9 +330,12 @@ pub struct Ends {
     /// of travel, between which both ends cover the same part of their length.
     #[arg(long, value_name = "X,Y,X,Y", value_parser = pair, requires = "upper", conflicts_with = "sync", allow_hyphen_values = true)]
     pub pair: Vec<[f64; 4]>,
-    /// Height of the upper contour over the lower [default: that of the machine file].
+    /// Height of the part: of the upper contour over the lower [default: of a source with U and V, that of its plane].
     #[arg(long, value_name = "MM", value_parser = length)]
     pub height: Option<f64>,
+    /// Height of the plane in which the machine counts U and V, where its file does not say it (`height` in [wire]).
+    #[arg(long, value_name = "MM", value_parser = length)]
+    pub uv_height: Option<f64>,
 }
 
 /// Which point above belongs to which below.

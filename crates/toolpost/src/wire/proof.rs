@@ -29,7 +29,7 @@ pub fn of(
     for end in [End::Lower, End::Upper] {
         if report.proven {
             let contour = cut.end(name, end)?;
-            let found = one_end(&contour, end, machine, file, text, tolerances);
+            let found = one_end(&contour, (end, cut.height()), machine, file, text, tolerances);
             report.proven = found.proven;
             report.mismatches.extend(found.mismatches);
             report.first_mismatch = found.first_mismatch;
@@ -45,26 +45,28 @@ pub fn of(
     Ok(report)
 }
 
-/// Holds the way of one end of the wire against the contour that it follows.
+/// Holds the way of one end of the wire, the upper one so many mm up, against the contour that it follows.
 fn one_end(
     contour: &Program,
-    end: End,
+    (end, height): (End, Option<f64>),
     machine: &Machine,
     file: &str,
     text: &[u8],
     tolerances: &Tolerances,
 ) -> Report {
-    // The upper end is X + U, Y + V: two words are rounded.
-    let rounded = match end {
-        End::Lower => 1.0,
-        End::Upper => 2.0,
+    // The upper end is X + U, Y + V where the part is as high as the plane of U and V: two words are rounded.
+    let plane = machine.wire.and_then(|wire| wire.height);
+    let rounded = match (end, height.zip(plane)) {
+        (End::Upper, Some((height, plane))) => 1.0 + height / plane,
+        (End::Upper, None) => 2.0,
+        (End::Lower, _) => 1.0,
     };
     let position = tolerances.position.unwrap_or(rounded * machine.resolution() / 2f64.sqrt());
     let tolerances = Tolerances { position: Some(position), ..*tolerances };
     let mut prover = Prover::new(contour, machine, &tolerances);
-    let wire = machine.wire;
     let stand = |position: &mut Position| {
-        let lean = position.axis().and_then(|axis| wire?.lean(axis)).unwrap_or_default();
+        let lean =
+            position.axis().and_then(|axis| machine::lean(axis, height?)).unwrap_or_default();
         let by = match end {
             End::Lower => Vec3::ZERO,
             End::Upper => lean.extend(0.0),
@@ -106,7 +108,7 @@ mod tests {
         let leg = Leg { points: all.pop(), ..Leg::of(path) };
         let text = "extends = \"bp-95d\"\n[wire]\nheight = 30\n";
         let mut machine = machine::load_text("shop.toml", text).unwrap();
-        let cut = Cut::of(vec![leg], &machine);
+        let cut = Cut::of(vec![leg], Some(30.0), &machine);
         machine.capabilities.lowering_tolerance = 0.01;
         let written = post::write(&cut.program("cone").unwrap(), &machine).unwrap().text;
         of(&cut, &machine, "cone", "cone.pts", &written, &Tolerances::default()).unwrap()

@@ -18,7 +18,7 @@ pub struct Cut {
     pub legs: Vec<Leg>,
     /// How well the points of each follow the lower and the upper contour.
     accuracy: Vec<(Accuracy, Option<Accuracy>)>,
-    /// Height of the upper contour, mm.
+    /// Height of the part, and so of the upper contour, mm.
     height: Option<f64>,
     memory: Option<usize>,
     /// Whether the program says how fast.
@@ -26,19 +26,24 @@ pub struct Cut {
 }
 
 impl Cut {
-    /// `legs` as `machine` cuts them.
-    pub fn of(legs: Vec<Leg>, machine: &Machine) -> Cut {
+    /// `legs` as `machine` cuts them, in a part `height` mm high.
+    pub fn of(legs: Vec<Leg>, height: Option<f64>, machine: &Machine) -> Cut {
         let measured = |leg: &Leg| match &leg.points {
             Some(points) => Accuracy::of(&leg.path, points),
             None => (Accuracy::default(), None),
         };
         Cut {
             accuracy: legs.iter().map(measured).collect(),
-            height: machine.wire.and_then(|wire| wire.height),
+            height,
             memory: machine.wire.and_then(|wire| wire.memory),
             says_feed: machine.words.contains_key("F"),
             legs,
         }
+    }
+
+    /// Height of the part, mm, where it is said.
+    pub fn height(&self) -> Option<f64> {
+        self.height
     }
 
     /// The program to write.

@@ -5,7 +5,6 @@ use crate::args::{self, Sync};
 use crate::files;
 use crate::toolpath::{self, Toolpath};
 use geom::Vec2;
-use machine::Machine;
 use program::{Circle, Diagnostic, NoPose, Op, Pose, Program};
 use wire::{Beside, Contour, Element, Path, beside, contours, cuts, dxf};
 
@@ -17,6 +16,8 @@ pub struct Source {
     pub paths: Vec<Path>,
     /// How the program has its control lead the wire beside each; empty where it does not.
     pub beside: Vec<Beside>,
+    /// Height of the part, mm, where it is said: of the upper contour over the lower.
+    pub height: Option<f64>,
 }
 
 /// One file of the source.
@@ -28,11 +29,12 @@ enum File {
 }
 
 impl Source {
-    /// Reads what `args` names, for `machine`.
+    /// Reads what `args` names.
     ///
     /// # Errors
     /// What is wrong with a file, or cannot be cut.
-    pub fn read(args: &args::Wire, machine: &Machine) -> Result<Source, Stop> {
+    pub fn read(args: &args::Wire) -> Result<Source, Stop> {
+        let height = height(args)?;
         let start = args.source.origin.start.map(|[x, y, _]| Vec2::new(x, y));
         let lower = File::read(&args.source.path, args)?;
         let upper = match &args.ends.upper {
@@ -49,7 +51,7 @@ impl Source {
         let contours_beside = || beside.iter().map(|found| found.contour.clone()).collect();
         let paths = match (&lower, &upper) {
             _ if !beside.is_empty() => Ok(upright(contours_beside())),
-            (File::Program(below), None) => match leaning(&below.program, machine) {
+            (File::Program(below), None) => match leaning(&below.program, height) {
                 Some(ends) => ends.and_then(|(below, above)| {
                     lower.in_one_frame()?;
                     by_block(cuts(&below, start)?, cuts(&above, start)?)
@@ -74,14 +76,14 @@ impl Source {
         };
         let paths = paths.map_err(|found| lower.toolpath().refused(*found))?;
         let leans = |path: &Path| path.upper().is_some();
-        if paths.iter().any(leans) && machine.wire.is_none_or(|wire| wire.height.is_none()) {
-            return Err(without_upper_plane().into());
+        if paths.iter().any(leans) && height.is_none() {
+            return Err(without_height_of_part().into());
         }
         let (File::Drawing(mut toolpath, _) | File::Program(mut toolpath)) = lower;
         if let Some(File::Drawing(above, _) | File::Program(above)) = upper {
             toolpath.warnings.extend(above.warnings);
         }
-        Ok(Source { toolpath, paths, beside })
+        Ok(Source { toolpath, paths, beside, height })
     }
 }
 
@@ -235,16 +237,23 @@ fn as_many(below: usize, above: usize) -> Result<(), Box<Diagnostic>> {
 }
 
 /// Where the upper contour is, nobody has said.
-fn without_upper_plane() -> Diagnostic {
-    let message = "the wire leans, and the height of the upper contour is not known";
-    Diagnostic::error("wire-height", message)
-        .help("give it with --height, or as `height` in the [wire] table of the machine")
+fn without_height_of_part() -> Diagnostic {
+    let message = "the wire leans, and the height of the part is not known";
+    Diagnostic::error("wire-height", message).help("give it with --height")
+}
+
+/// Height of the part, mm: as the call says it, else that of the plane in which a source counts U and V.
+fn height(args: &args::Wire) -> Result<Option<f64>, Stop> {
+    match (args.ends.height, &args.source.origin.from) {
+        (None, Some(from)) => Ok(machine::load_origin(from)?.wire.and_then(|wire| wire.height)),
+        (said, _) => Ok(said),
+    }
 }
 
 /// The ways of both ends of a wire that leans by itself, such as by U and V.
 fn leaning(
     program: &Program,
-    machine: &Machine,
+    height: Option<f64>,
 ) -> Option<Result<(Program, Program), Box<Diagnostic>>> {
     let leans = |pose: &Pose| pose.axis().truncate() != Vec2::ZERO;
     let mut poses = program.records.iter().filter_map(|record| record.op.pose());
@@ -254,8 +263,8 @@ fn leaning(
     let (mut lower, mut upper) = (program.clone(), program.clone());
     for (below, above) in lower.records.iter_mut().zip(&mut upper.records) {
         let Some(axis) = below.op.pose().map(Pose::axis) else { continue };
-        let Some(lean) = machine.wire.and_then(|wire| wire.lean(axis)) else {
-            return Some(Err(without_upper_plane().line(below.line).into()));
+        let Some(lean) = height.and_then(|height| machine::lean(axis, height)) else {
+            return Some(Err(without_height_of_part().line(below.line).into()));
         };
         if let Err(numbers) =
             stand(&mut below.op, Vec2::ZERO).and_then(|()| stand(&mut above.op, lean))

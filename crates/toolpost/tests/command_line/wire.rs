@@ -171,7 +171,8 @@ fn frustum() -> Folder {
 #[test]
 fn two_contours_make_a_wire_that_leans() {
     let folder = frustum();
-    let call = ["--upper", "upper.nc", "--height", "40", "--picture", "part.svg"];
+    let call =
+        ["--upper", "upper.nc", "--height", "40", "--uv-height", "40", "--picture", "part.svg"];
     let said = wire(&folder, &call);
     assert_eq!((said.code, said.err.as_str()), (0, ""), "{said:?}");
     let expected = "0.000 0.000 -2.000 -2.000\n10.000 0.000 2.000 -2.000\n10.000 10.000 2.000 2.000\n\
@@ -193,7 +194,8 @@ fn given_points_say_what_belongs_together() {
     let folder = frustum();
     let upper = folder.read("upper.nc").replace("Y12.0\n", "Y5.0\nY12.0\n");
     folder.write("upper.nc", upper);
-    let call = ["--upper", "upper.nc", "--height", "40", "--pair", "10,10,12,5"];
+    let call =
+        ["--upper", "upper.nc", "--height", "40", "--uv-height", "40", "--pair", "10,10,12,5"];
     let said = wire(&folder, &call);
     assert_eq!((said.code, said.err.as_str()), (0, ""), "{said:?}");
     assert!(folder.read("part.pts").contains("\n10.000 10.000 2.000 -5.000\n"));
@@ -208,10 +210,83 @@ fn a_wire_that_leans_too_far_is_the_machines_affair() {
     folder.write("shop.toml", "extends = \"bp-95d\"\n[wire]\nheight = 40\ntaper_max = 3\n");
     let mut call = CALL;
     call[5] = "shop.toml";
-    let said = folder.run(&[&call[..], &["--upper", "upper.nc"]].concat());
+    let said = folder.run(&[&call[..], &["--upper", "upper.nc", "--height", "40"]].concat());
     // atan(√8/40) = 4.04°.
     assert_eq!(said.code, 1, "{said:?}");
     assert!(said.err.contains("error[taper-limit]") && said.err.contains("4.0447°"), "{said:?}");
+}
+
+/// U and V count in the machine's own plane, however high the part is: by the theorem on intersecting lines the wire is
+/// 2 mm aside 40 mm up and 4 mm aside 80 mm up.
+#[test]
+fn the_height_of_the_part_is_not_that_of_the_machines_plane() {
+    let folder = frustum();
+    let on = |plane: &str, more: &[&str]| {
+        let file = format!("extends = \"bp-95d\"\n[wire]\n{plane}\n");
+        folder.write("shop.toml", file);
+        let mut call = CALL;
+        call[5] = "shop.toml";
+        folder.run(&[&call[..], more].concat())
+    };
+    let part = ["--upper", "upper.nc", "--height", "40"];
+    let said = on("height = 80", &part);
+    assert_eq!((said.code, said.err.as_str()), (0, ""), "{said:?}");
+    let expected = "0.000 0.000 -4.000 -4.000\n10.000 0.000 4.000 -4.000\n10.000 10.000 4.000 4.000\n\
+                    0.000 10.000 -4.000 4.000\n0.000 0.000 -4.000 -4.000\n";
+    assert_eq!(folder.read("part.pts"), expected);
+    assert_eq!(report(&folder)["wire"]["height_mm"], 40.0);
+    let list = folder.read("part.pts");
+    let said = on("", &[&part[..], &["--uv-height", "80"]].concat());
+    assert_eq!((said.code, folder.read("part.pts")), (0, list), "{said:?}");
+
+    for (plane, more, words) in [
+        ("", &[][..], ["wire-height", "`height` in the [wire] table"]),
+        ("height = 80", &["--uv-height", "40"], ["wire-height", "80 mm up"]),
+    ] {
+        let said = on(plane, &[&part[..], more].concat());
+        assert!(said.code > 0 && words.iter().all(|word| said.err.contains(word)), "{said:?}");
+    }
+    let said = on("height = 80", &part[..2]);
+    assert!(said.code == 2 && said.err.contains("height of the part"), "{said:?}");
+
+    // A taper of 10° through 20 mm is one of 10° in the machine's plane 40 mm up: 40 mm · tan 10° = 7.053 mm.
+    let taper = ["--side", "inside", "--taper", "-10", "--height", "20", "--thread", "5,5"];
+    let said = on("height = 40", &taper);
+    assert_eq!(said.code, 0, "{said:?}");
+    let most = folder
+        .read("part.pts")
+        .lines()
+        .flat_map(|line| {
+            let words: Vec<f64> = line.split(' ').map(|word| word.parse().unwrap()).collect();
+            [words[2].abs(), words[3].abs()]
+        })
+        .fold(0.0, f64::max);
+    assert!((most - 7.053).abs() < 5e-4, "{most}");
+}
+
+/// A source that says U and V in a plane 60 mm up, cut in a part of 30 mm: half as far aside.
+#[test]
+fn a_source_with_u_and_v_is_read_in_its_own_plane() {
+    let folder = sector();
+    folder.write("old.toml", "extends = \"fanuc-wire\"\n[wire]\nheight = 60\n");
+    folder.write("new.toml", "extends = \"bp-95d\"\n[wire]\nheight = 90\n");
+    folder.write(
+        "sector.nc",
+        "G21 G90\nG0 X0. Y0. U0. V0.\nM60\nG1 X10. U2. V0. F6.\nY10.\nX0. Y0. U0.\nM50\nM30\n",
+    );
+    let call = ["wire", "sector.nc", "--from", "old.toml", "-m", "new.toml", "-o", "part.pts"];
+    for more in [&["--height", "30"][..], &[]] {
+        let said = folder.run(&[&call[..], more].concat());
+        assert_eq!(said.code, 0, "{said:?}");
+        // 90 mm up the wire is half as far again aside.
+        assert!(
+            folder.read("part.pts").contains("\n10.000 10.000 3.000 0.000\n"),
+            "{}",
+            folder.read("part.pts")
+        );
+        let height = if more.is_empty() { 60.0 } else { 30.0 };
+        assert_eq!(report(&folder)["wire"]["height_mm"], height);
+    }
 }
 
 #[test]
