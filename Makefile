@@ -122,7 +122,7 @@ images: rust
 	$(TOOLPOST) show examples/dome.cls --output docs/images/dome.png > /dev/null
 	@mkdir -p out
 	$(TOOLPOST) --quiet wire examples/sector.nc --from fanuc-31i --machine bp-95d --side inside --wire 0.25 \
-		--gap 0.02 --thread 12,12 --round-corners --taper 10 --height 30 --chord-error 0.02 --select 7 \
+		--gap 0.02 --thread 12,12 --round-corners --taper 10 --height 30 --uv-height 30 --chord-error 0.02 --select 7 \
 		--output out/sector.pts --picture docs/images/wire.png
 	$(TOOLPOST) --quiet pcb examples/lamp.toml --machine grbl-3018 --tool 0.3 --passes 3 --picture png \
 		--output out/lamp
