@@ -51,6 +51,17 @@ pub fn between(a: Vec3, b: Vec3, t: f64) -> Vec3 {
     (a * from + b * to).normalize_or(b)
 }
 
+/// How far the unit vector `v` is from the way from `a` to `b` on their great circle, radians.
+pub fn off_great_circle(a: Vec3, b: Vec3, v: Vec3) -> f64 {
+    let normal = a.cross(b);
+    let ends = angle_between(v, a).min(angle_between(v, b));
+    let within = normal.cross(a).dot(v) >= 0.0 && b.cross(normal).dot(v) >= 0.0;
+    match normal.try_normalize() {
+        Some(normal) if within => normal.dot(v).clamp(-1.0, 1.0).asin().abs().min(ends),
+        _ => ends,
+    }
+}
+
 /// `v` turned by `angle` (radians) about the unit vector `axis` through the origin (Rodrigues).
 pub fn rotate(v: Vec3, axis: Vec3, angle: f64) -> Vec3 {
     let (sin, cos) = angle.sin_cos();

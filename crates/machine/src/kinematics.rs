@@ -96,6 +96,16 @@ impl Machine {
         turned - zero - self.head_swing(degrees, tool_length)
     }
 
+    /// The tips (mm, work frame) at the corners of the box in which the linear axes go from one tip to another with the
+    /// rotary axes at `degrees`, where each goes at its own speed: the tip is never outside it.
+    pub fn wandering(&self, from: Vec3, to: Vec3, degrees: [f64; 3]) -> [Vec3; 8] {
+        let [a, b] = [from, to].map(|tip| self.linear_for(tip, degrees, 0.0));
+        let corner = |i: usize| {
+            Vec3::from_array([0, 1, 2].map(|k| if i >> k & 1 == 0 { a[k] } else { b[k] }))
+        };
+        std::array::from_fn(|i| self.forward(corner(i), degrees, 0.0).0)
+    }
+
     /// What nobody has said of where the tool tip is with the rotary axes at `degrees` (of A, B, C): what turns must
     /// know where its axis lies, a table also where the work lies on it, and a tilted head how long its tool is.
     #[inline]

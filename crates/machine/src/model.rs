@@ -81,6 +81,8 @@ pub struct ControlSettings {
     pub rotary_by_sign: Option<bool>,
     /// Whether programs of this machine write work offsets: its fixtures are set so, and not by the operator.
     pub sets_work_offsets: bool,
+    /// How the axes go in a rapid (FANUC parameter 1401#1, SINUMERIK MD20730).
+    pub rapid_path: Option<RapidPath>,
 }
 
 /// A linear axis.
@@ -233,6 +235,20 @@ pub struct Capabilities {
     pub line_length: usize,
     /// Chord error of arcs and curves that are split into lines, mm.
     pub lowering_tolerance: f64,
+    /// How far a rapid may be from the straight way of the source where it is near the part, mm.
+    pub rapid_corridor: f64,
+    /// How far beyond all cuts, along its own axis, the tool may go by rapid in any way, mm.
+    pub rapid_clearance: f64,
+}
+
+/// How the axes go in a rapid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RapidPath {
+    /// Together, so that the way is straight.
+    Linear,
+    /// Each at its own speed: where the tool goes between the ends is not known.
+    Independent,
 }
 
 /// A hole cycle that a control may have: [`program::CycleKind`] without its numbers.
@@ -531,6 +547,11 @@ impl Machine {
     /// Whether a rotary axis has a clamp.
     pub fn has_clamps(&self) -> bool {
         self.rotary.iter().any(|axis| axis.clamp.is_some())
+    }
+
+    /// Whether its axes go together in a rapid. Where nobody says it, each goes at its own speed.
+    pub fn has_straight_rapids(&self) -> bool {
+        self.settings.rapid_path == Some(RapidPath::Linear)
     }
 
     /// Whether it is known how long a hole cycle dwells: on a FANUC P counts increments, whose length parameters say.

@@ -101,6 +101,8 @@ sheet!(merged CapabilitiesSheet "capabilities" {
     length_offset: LengthOffset, "", "How the tool length offset is called: implicit, one, tool-number.";
     line_length: usize, "", "Most characters of a line, its end not counted.";
     lowering_tolerance: Positive, "mm", "How far arcs and curves that are split into lines may leave the path.";
+    rapid_corridor: Positive, "mm", "How far a rapid may be from the straight way of the source where it is not beyond all cuts; 0.1 where it is missing.";
+    rapid_clearance: Positive, "mm", "How far the tool must be beyond all cuts, along its own axis, to go by rapid in any way; 1 where it is missing.";
 });
 
 sheet!(merged SettingsSheet "settings" {
@@ -108,6 +110,7 @@ sheet!(merged SettingsSheet "settings" {
     floating_holder: bool, "", "Whether taps are held in a chuck that floats along its axis, so that a tapping cycle need not couple feed and spindle.";
     length_along_z: bool, "", "Whether the tool length counts along Z in every plane: SINUMERIK SD42940 is 17, FANUC parameters 5001#0 and 5001#1 are 0.";
     length_moves_axis: bool, "", "Whether Z moves where a tool length begins, ends or changes: FANUC parameter 5006#6 is 0.";
+    rapid_path: RapidPath, "", "How the axes go in a rapid: linear (together, on a straight line) or independent (each at its own speed), which is taken where it is missing. FANUC: linear where parameter 1401#1 is 1; SINUMERIK: MD20730.";
     sets_work_offsets: bool, "", "Whether programs write the work offsets that their source writes (G10 L2): the shop sets its fixtures so, and not by the operator.";
     rotary_by_sign: bool, "", "Whether the sign of a rotary word is the direction of an axis that rolls over: FANUC parameter 1008#1 is 1.";
 });

@@ -80,6 +80,13 @@ pub fn missing(machine: &Machine) -> Vec<Missing> {
             );
         }
     }
+    if machine.settings.rapid_path.is_none() && machine.wire.is_none() {
+        lacks(
+            "[settings]".into(),
+            "rapid_path = \"independent\"",
+            "FANUC parameter 1401#1, SINUMERIK MD20730: \"linear\" where it is 1; else G0 goes by no straight line, and rapids near the part are refused",
+        );
+    }
     let rolls_over = machine.rotary.iter().any(|axis| axis.modulo != Some(false));
     if machine.reader == "fanuc" && rolls_over && machine.settings.rotary_by_sign.is_none() {
         lacks(

@@ -146,14 +146,14 @@ impl Walk<'_> {
     /// To the retract level over the first hole: up first and then across, or across and then down.
     fn go_over(&mut self, over: &Pose, stop: &Stop) -> Done {
         let (Some(here), true) = (self.here, self.located) else {
-            return self.rapid_to(over, stop);
+            return self.rapid_to_hole(over, stop);
         };
         let axis = over.axis();
         let height = (over.point() - here.point()).dot(axis);
         let corner =
             if height > 0.0 { here.point() + axis * height } else { over.point() - axis * height };
-        self.rapid_to(&over.at(corner)?, stop)?;
-        self.rapid_to(over, stop)
+        self.rapid_to_hole(&over.at(corner)?, stop)?;
+        self.rapid_to_hole(over, stop)
     }
 
     fn say_hole(&mut self, at: Vec3, levels: &Levels) {
@@ -232,14 +232,14 @@ impl Walk<'_> {
         };
         self.settle(pose, stop, false)?;
         self.go_over(&pose.lifted(cycle.retract)?, stop)?;
-        self.rapid_to(&pose.lifted(cycle.clearance)?, stop)?;
+        self.rapid_to_hole(&pose.lifted(cycle.clearance)?, stop)?;
         let (spindle, feed) = (self.spindle, self.feed);
         self.feed = cycle.feed.or(feed);
         // Each move is a cut of its own, and none a piece of the last one.
         self.whole = 0.0;
         let count = moves.len();
         let done = moves.into_iter().try_for_each(|part| match part {
-            HoleMove::Rapid(pose) => self.rapid_to(&pose, stop),
+            HoleMove::Rapid(pose) => self.rapid_to_hole(&pose, stop),
             HoleMove::Line(pose) => self.line_to(&pose, stop),
             HoleMove::Dwell(seconds) => {
                 self.writer.set(WordName::P, seconds);

@@ -23,6 +23,7 @@ mod motion;
 mod number;
 mod place;
 mod promises;
+mod rapid;
 mod signals;
 mod single;
 mod surface;

@@ -1,8 +1,8 @@
-//! Straight moves: rapid and in the cut, from known positions and from unknown ones.
+//! Straight cuts, and the words of any straight move: where it goes, and whether the axes may go there.
 
 use crate::catalogue::{BlockName, WordName};
 use crate::place::{Kind, Stop};
-use crate::template::{ORIENTATION, POSITION, Words, bit};
+use crate::template::{ORIENTATION, POSITION, Words};
 use crate::walk::{Cut, Done, Walk, motion, refuse};
 use geom::Vec3;
 use machine::Unsaid;
@@ -14,58 +14,6 @@ use program::{Diagnostic, Feed, Pose};
 const CLEAR: f64 = 5.0;
 
 impl Walk<'_> {
-    /// A rapid of the source.
-    pub(crate) fn rapid(&mut self, pose: &Pose, stop: &Stop) -> Done {
-        self.end_cycle()?;
-        self.wire_for(false, "a rapid")?;
-        self.same_taper("a rapid")?;
-        self.sync_spindle()?;
-        self.settle(pose, stop, false)?;
-        self.rapid_to(pose, stop)
-    }
-
-    /// A rapid in the orientation at hand.
-    pub(crate) fn rapid_to(&mut self, pose: &Pose, stop: &Stop) -> Done {
-        if !self.located {
-            return self.approach(pose, stop);
-        }
-        if self.compensation_pending() {
-            self.plane_xy()?;
-        }
-        self.aim(pose, stop);
-        self.here = Some(*pose);
-        if !self.writer.changes(POSITION | ORIENTATION) {
-            self.writer.unset(Words::MAX);
-            return Ok(());
-        }
-        self.check_limits()?;
-        self.compensate();
-        self.writer.code(WordName::Motion, motion::RAPID);
-        self.block(self.straight(BlockName::Rapid))
-    }
-
-    /// The first position after a tool change or in a new orientation, in the machine's order of axes.
-    fn approach(&mut self, pose: &Pose, stop: &Stop) -> Done {
-        let machine = self.machine;
-        for group in &machine.approach {
-            self.aim(pose, stop);
-            let words = group.chars().filter_map(|c| WordName::named(c.encode_utf8(&mut [0; 4])));
-            let group = words.fold(0, |all, word| all | bit(word));
-            let length = bit(WordName::H) | bit(WordName::Length);
-            let held = if group & bit(WordName::Z) == 0 { length } else { 0 };
-            self.writer.unset((POSITION & !group) | held);
-            if self.writer.changes(POSITION | ORIENTATION) {
-                self.writer.code(WordName::Motion, motion::RAPID);
-                self.keep_compensation();
-                self.block(BlockName::Rapid)?;
-            }
-            self.writer.unset(Words::MAX);
-        }
-        self.located = true;
-        self.here = Some(*pose);
-        self.check_limits()
-    }
-
     /// A straight cut of the source.
     pub(crate) fn line(&mut self, pose: &Pose, stop: &Stop) -> Done {
         self.not_from_probe("a cut")?;
@@ -118,10 +66,10 @@ impl Walk<'_> {
         let out = here.at(here.point() + axis * way)?;
         let at = |degrees| Stop { step: Some(Step { degrees, rewind: None }), ..*stop };
         if let Some(held) = self.place.degrees() {
-            self.rapid_to(&out, &at(held))?;
+            self.rapid_at_once(&out, &at(held))?;
         }
         self.turn(axis, &at(degrees))?;
-        self.rapid_to(&out, &at(degrees))?;
+        self.approach(&out, &at(degrees))?;
         self.line_to(&here, &at(degrees))
     }
 
@@ -196,7 +144,7 @@ impl Walk<'_> {
 
     /// The block for a straight move in the orientation at hand.
     #[inline]
-    fn straight(&self, name: BlockName) -> BlockName {
+    pub(crate) fn straight(&self, name: BlockName) -> BlockName {
         let vector = match name == BlockName::Rapid {
             true => BlockName::RapidVector,
             false => BlockName::LinearVector,

@@ -12,6 +12,7 @@
 #![deny(clippy::wildcard_enum_match_arm)]
 
 mod builder;
+mod cut_box;
 mod cycle;
 pub mod diagnostic;
 pub mod lowering;
@@ -23,6 +24,7 @@ mod surface;
 mod technology;
 
 pub use builder::Builder;
+pub use cut_box::CutBox;
 pub use cycle::*;
 pub use diagnostic::{Diagnostic, Severity, line_of, nearest};
 pub use motion::*;

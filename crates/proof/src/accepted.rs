@@ -2,7 +2,7 @@
 //! program does not say.
 
 /// The rules that may be accepted, each with what its acceptance answers for.
-pub const ACCEPTABLE: [(&str, &str); 11] = [
+pub const ACCEPTABLE: [(&str, &str); 12] = [
     ("dwell-unit", "what a dwell counts in"),
     ("floating-tap", "taps are held in a floating chuck"),
     ("length-change", "Z moves by the tool length where parameter 5006#6 is 0"),
@@ -10,6 +10,7 @@ pub const ACCEPTABLE: [(&str, &str); 11] = [
     ("operator-controls", "the operator can neither stop the program nor slow it down"),
     ("operator-data", "work offsets and tool data that the program rewrites"),
     ("path-tolerance", "corners may be cut by more than the machine's file allows"),
+    ("rapid-path", "room for the tool where it goes by rapid beside the way of the source"),
     ("rotary-way", "which way the rotary axes turn"),
     ("stored-position", "where the stored position is to which Z goes"),
     ("tool-change-height", "the tool change of the machine brings Z up by itself"),

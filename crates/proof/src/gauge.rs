@@ -3,7 +3,6 @@
 use crate::place::{Place, Station};
 use crate::tolerance::Applied;
 use control::Position;
-use geom::{Vec3, angle_between};
 use machine::Machine;
 
 /// The machine, the tolerances, the length of the active tool.
@@ -37,16 +36,4 @@ impl Gauge<'_> {
         let (height, beside) = place.above(station.place.tip);
         (beside <= self.slack(station)).then_some(height)
     }
-}
-
-/// Angle of the unit vector `v` from the great circle between `a` and `b`, degrees.
-pub(crate) fn off_great_circle(a: Vec3, b: Vec3, v: Vec3) -> f64 {
-    let normal = a.cross(b);
-    let ends = angle_between(v, a).min(angle_between(v, b));
-    let within = normal.cross(a).dot(v) >= 0.0 && b.cross(normal).dot(v) >= 0.0;
-    let off = match normal.try_normalize() {
-        Some(normal) if within => normal.dot(v).clamp(-1.0, 1.0).asin().abs().min(ends),
-        _ => ends,
-    };
-    off.to_degrees()
 }

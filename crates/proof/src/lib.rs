@@ -12,7 +12,8 @@
 //!    the tolerances of the report ([`Applied`]). Only a motion that is shorter than a step of the
 //!    machine may be missing.
 //! 2. **A rapid for a rapid.** It may stop on its way where each coordinate of the block is as before
-//!    or as after (axis by axis), or on the tool axis above either end.
+//!    or as after (axis by axis), or on the tool axis above either end. As the control really goes it stays on
+//!    the straight way of the source, or beyond all that the source cuts.
 //! 3. **Feed for a line**: one block or several, each on the line, none back. While rotary axes turn,
 //!    the way between the ends is sampled through the kinematics.
 //! 4. **Arcs for an arc**, in its plane and direction, points between the ends compared; or chords

@@ -1,10 +1,10 @@
 //! A straight move of the source against the feed moves of the program.
 
 use crate::expected::Goal;
-use crate::gauge::{Gauge, off_great_circle};
+use crate::gauge::Gauge;
 use crate::place::{Number, Place, Station};
 use control::{Orientation, Position};
-use geom::{Vec3, between, nearest_on_segment};
+use geom::{Vec3, between, nearest_on_segment, off_great_circle};
 
 /// How far a program has come on a source move.
 #[derive(Clone, Copy, Debug)]
@@ -80,7 +80,7 @@ fn axis(
     }
     let off = match expected() {
         Some(expected) => geom::angle_between(expected, axis).to_degrees(),
-        None => off_great_circle(from.axis, to.axis, axis),
+        None => off_great_circle(from.axis, to.axis, axis).to_degrees(),
     };
     let swept = from.apart(to).1 > gauge.allowed.axis_degrees;
     let sweep = if swept { gauge.allowed.sweep_degrees } else { 0.0 };
@@ -117,7 +117,7 @@ fn unlike(here: &Station, to: &Station) -> bool {
 }
 
 /// The pose `t` (0 to 1) of the way between two poses of the same kind, as a control interpolates.
-fn blend(from: &Position, to: &Position, t: f64) -> Position {
+pub(crate) fn blend(from: &Position, to: &Position, t: f64) -> Position {
     let point = from.point.lerp(to.point, t);
     let orientation = match (from.orientation, to.orientation) {
         (

@@ -120,6 +120,8 @@ fn both(pieces: &[Piece]) -> (Vec<Op>, Vec<Action>) {
                 own.extend(start()[1..].iter().cloned());
                 nc.extend(actions(&start()[1..]));
                 here = Vec3::new(5.0 * f64::from(number), 5.0, 95.0);
+                // From home across first, then down.
+                nc.push(Action::Rapid(block(here.x, here.y, f64::NAN)));
                 go(here, &mut own, &mut nc, Op::Rapid);
             }
         }
@@ -140,6 +142,8 @@ fn damaged(action: &Action, how: usize, by: f64) -> Option<Vec<Action>> {
         position
     };
     Some(match (action, how) {
+        // Where Z is not known yet it cannot be shifted, and beyond all cuts it may come down with X and Y.
+        (Action::Rapid(position), 2 | 3) if position.point.z.is_nan() => return None,
         (
             Action::Rapid(_)
             | Action::Line(_)

@@ -184,10 +184,12 @@ fn between_set_ups_the_machine_may_go_home_and_turn_then_approach() {
         ]
     };
     proven(&set_up(approach));
-    proven(&set_up(|machine| vec![Action::Rapid(axes(machine, b))]));
+    // All axes together swing the part through the tool.
+    let at_once = |machine: &Machine| vec![Action::Rapid(axes(machine, b))];
+    assert_eq!(rules(&set_up(at_once)), ["rapid-path"]);
     let astray =
         |machine: &Machine| vec![stop(90.0, 6.0, 1.0, 0.0, 0.0), Action::Rapid(axes(machine, b))];
-    assert_eq!(rules(&set_up(astray)), ["rapid-stop"]);
+    assert_eq!(rules(&set_up(astray)), ["rapid-path", "rapid-stop"]);
     // Up first, and over there; but a way that begins at home comes down by
     // the coordinates of its end only.
     let over = |machine: &Machine| {
@@ -204,7 +206,7 @@ fn between_set_ups_the_machine_may_go_home_and_turn_then_approach() {
     assert_eq!(rules(&down_again), ["rapid-stop"]);
     let half_turned =
         |machine: &Machine| vec![stop(5.0, 6.0, 1.0, 45.0, 0.0), Action::Rapid(axes(machine, b))];
-    assert_eq!(rules(&set_up(half_turned)), ["rapid-stop"]);
+    assert_eq!(rules(&set_up(half_turned)), ["rapid-path", "rapid-stop"]);
 }
 
 #[test]

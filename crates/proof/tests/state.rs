@@ -362,7 +362,7 @@ fn a_lift_along_the_tool_axis_and_back_is_an_excursion() {
     let aside = vec![up.clone(), rapid(10.0, 9.0, 40.0), down.clone()];
     assert_eq!(rules(&report(aside)), ["excursion"]);
     let astray = vec![up.clone(), rapid(10.0, 9.0, -1.0), up.clone(), down];
-    assert_eq!(rules(&report(astray)), ["rapid-stop"]);
+    assert_eq!(rules(&report(astray)), ["rapid-path", "rapid-stop"]);
     assert_eq!(rules(&report(vec![up])), ["rapid-feed"]);
 }
 

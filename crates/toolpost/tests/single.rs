@@ -140,7 +140,8 @@ fn threads() {
     let text = written("generic-3axis-linuxcnc", threading(at(20.0, 3.0))).unwrap();
     stands(&text, "G33 X20 K1.5\n");
     let text = written("generic-3axis-fanuc", down()).unwrap();
-    stands(&text, "G33 Z-12. F1.5\nG0 X30. Z3.\nG1 Z1. F100.");
+    // Its rapids are not straight: up first, then across.
+    stands(&text, "G33 Z-12. F1.5\nG0 Z3.\nX30.\nG1 Z1. F100.");
     let text = written("generic-3axis-sinumerik", down()).unwrap();
     stands(&text, "G33 Z-12 K1.5\nG0 X30 Z3\nG1 Z1 F100");
     for machine in ["generic-3axis-fanuc", "generic-3axis-sinumerik"] {

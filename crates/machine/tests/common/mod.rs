@@ -28,6 +28,8 @@ pub fn machine(rotary: Vec<RotaryAxis>) -> Machine {
             length_offset: LengthOffset::Implicit,
             line_length: 120,
             lowering_tolerance: 0.01,
+            rapid_corridor: 0.1,
+            rapid_clearance: 1.0,
         },
         settings: ControlSettings::default(),
         format: Format {

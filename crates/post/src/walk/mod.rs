@@ -19,8 +19,8 @@ use machine::limits::Limits;
 use minijinja::value::Value;
 use program::statistics::Statistics;
 use program::{
-    Compensation, Coolant, Cycle, Diagnostic, Feed, Op, Pose, Program, Record, Spindle, Surface,
-    Tool, WorkOffset, WorkOffsetData,
+    Compensation, Coolant, CutBox, Cycle, Diagnostic, Feed, Op, Pose, Program, Record, Spindle,
+    Surface, Tool, WorkOffset, WorkOffsetData,
 };
 use technology::feed_mode;
 
@@ -51,6 +51,8 @@ pub(crate) struct Walk<'a> {
     source: &'a Program,
     /// How far the source reaches; counted where it is asked for.
     statistics: Option<Statistics>,
+    /// What it cuts; counted where it is asked for.
+    cuts: Option<CutBox>,
     /// Where in its records we are.
     index: usize,
     /// Source line of the record at hand.
@@ -125,6 +127,7 @@ impl<'a> Walk<'a> {
             scope,
             source: program,
             statistics: None,
+            cuts: None,
             index: 0,
             line: 0,
             tool: None,
@@ -416,6 +419,23 @@ impl<'a> Walk<'a> {
     /// How far the source reaches along the unit vector `direction`, mm.
     pub(crate) fn reach(&mut self, direction: Vec3) -> f64 {
         self.statistics.get_or_insert_with(|| Statistics::of(self.source)).reach(direction)
+    }
+
+    /// How far the cuts of the source reach along the unit vector `direction`, mm.
+    pub(crate) fn cut_reach(&mut self, direction: Vec3) -> f64 {
+        self.cuts.get_or_insert_with(|| CutBox::of(self.source)).reach(direction)
+    }
+
+    /// The fastest feed that the machine is known to take, mm/min: its own, or the fastest that the source has.
+    pub(crate) fn known_feed(&self) -> Option<f64> {
+        if self.machine.feed_max.is_finite() {
+            return Some(self.machine.feed_max);
+        }
+        let feeds = self.source.records.iter().filter_map(|record| match record.op {
+            Op::Feed(Feed::PerMinute(feed)) => Some(feed),
+            _ => None,
+        });
+        feeds.reduce(f64::max)
     }
 
     /// Writes a block, where the machine has it.

@@ -5,6 +5,7 @@ mod drilling;
 mod events;
 mod rapid;
 mod single;
+mod way;
 
 use crate::accepted::Accepted;
 use crate::expected::{Cursor, Goal, Kind, Step};
@@ -20,13 +21,17 @@ use control::{Action, ArcTo, Event, Orientation, Position};
 use geom::{Arc, Vec3};
 use machine::{Machine, Mount};
 use program::statistics::Statistics;
-use program::{Axes, Compensation, Diagnostic, MachineMove, Probe, Program, Spindle, Tool};
+use program::{
+    Axes, Compensation, CutBox, Diagnostic, Feed, MachineMove, Probe, Program, Spindle, Tool,
+};
 
 /// Compares a program with its source, record by record, as a control runs it.
 pub struct Prover<'a> {
     source: &'a Program,
     /// How far the source reaches; counted where it is asked for.
     statistics: Option<Statistics>,
+    /// What it cuts; counted where it is asked for.
+    cuts: Option<CutBox>,
     gauge: Gauge<'a>,
     cursor: Cursor<'a>,
     running: Running,
@@ -85,6 +90,7 @@ impl<'a> Prover<'a> {
         let mut prover = Prover {
             source,
             statistics: None,
+            cuts: None,
             here: gauge.station(0, unknown),
             gauge,
             cursor,
@@ -269,6 +275,7 @@ impl<'a> Prover<'a> {
             });
         }
         self.miss_events(line);
+        let wrong_way = if gait == Gait::Rapid { self.wrong_way(&to) } else { None };
         let outcome = match &self.cursor.step {
             Step::Move(goal) => match &goal.kind {
                 Kind::Rapid => self.rapid(gait, &to),
@@ -301,6 +308,9 @@ impl<'a> Prover<'a> {
             | Step::WorkOffsetData(_)
             | Step::End => self.closing(gait, &to),
         };
+        if let (Ok(()), Some(found)) = (&outcome, wrong_way) {
+            self.found(found);
+        }
         self.here = to;
         outcome
     }

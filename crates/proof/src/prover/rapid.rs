@@ -6,6 +6,12 @@ use program::Axes;
 impl Prover<'_> {
     /// A move while the source goes by rapid.
     pub(super) fn rapid(&mut self, gait: Gait, to: &Station) -> Outcome {
+        if gait == Gait::Feed
+            && !self.gauge.machine.has_straight_rapids()
+            && self.leg.stops.is_empty()
+        {
+            return self.rapid_by_feed(to);
+        }
         if gait == Gait::Feed {
             return Err(match self.nearest_stop() {
                 Some(stop) => self.lost_at(stop.line, "end-point", &self.not_reached(&stop)),
@@ -23,7 +29,51 @@ impl Prover<'_> {
             self.arrive(to);
             return Ok(());
         }
-        self.stop_at(to)
+        match self.goes_on_the_way(to) {
+            true => Ok(()),
+            false => self.stop_at(to),
+        }
+    }
+
+    /// A rapid of the source by feed, which is straight where a rapid of the machine is not.
+    fn rapid_by_feed(&mut self, to: &Station) -> Outcome {
+        let Step::Move(goal) = &self.cursor.step else { return Ok(()) };
+        if !self.here.place.known() || goal.from.is_none() {
+            return Err(self.lost_at(
+                to.line,
+                "rapid-feed",
+                "feeds where the source goes by rapid",
+            ));
+        }
+        let Followed { t, .. } = line::follow(&self.gauge, goal, self.leg.t, &self.here, to)
+            .map_err(|how| {
+                let message = format!(
+                    "goes to {} and {how}; the source goes to {} by rapid",
+                    to.place, goal.to
+                );
+                self.lost_at(to.line, "path", &message)
+            })?;
+        let done = self.gauge.at(to, &goal.to);
+        self.leg.t = t;
+        if !matches!(self.running.feed, Some(Feed::PerMinute(feed)) if feed > 0.0) {
+            self.differs(to.line, ("feed", "no feed in mm/min is set".into()));
+        }
+        self.check(to.line, state::corners(self.gauge.machine, &self.running));
+        if done {
+            self.approached(to)?;
+            self.arrive(to);
+        }
+        Ok(())
+    }
+
+    /// Whether a rapid has come to a place on the straight way of the source, and not back.
+    fn goes_on_the_way(&mut self, to: &Station) -> bool {
+        let goes_on = |(t, length): &(f64, f64)| (self.leg.t - t) * length <= self.gauge.slack(to);
+        let on_the_way = self.on_the_way(to).filter(|_| self.leg.stops.is_empty());
+        let Some((t, _)) = on_the_way.filter(goes_on) else { return false };
+        self.leg.t = t;
+        self.leg.start = Some(*to);
+        true
     }
 
     /// Keeps a stop of a rapid until its end explains it.

@@ -15,6 +15,8 @@ reader = "fanuc"
 length_offset = "tool-number"
 compensation = true
 lowering_tolerance = 0.01
+[settings]
+rapid_path = "linear"
 [words]
 X = { decimals = 3 }
 A = { decimals = 3 }

@@ -1,0 +1,278 @@
+//! Rapids, from known positions and from unknown ones, so that the tool goes where the source goes: straight, or beyond
+//! all that the source cuts.
+//!
+//! A control moves its axes, and not the tool. Where axes turn that the tip does not follow, or where each axis goes at
+//! its own speed, the way between two points is another than the source's. It is then written in pieces, round a
+//! corner, by feed, or from home, whichever keeps the tool on the way.
+
+use crate::catalogue::{BlockName, WordName};
+use crate::place::{Kind, Stop, same};
+use crate::template::{ORIENTATION, POSITION, Words, bit};
+use crate::walk::{Cut, Done, Walk, motion, refuse};
+use geom::{Vec3, nearest_on_segment, off_great_circle};
+use machine::linearise::Stance;
+use program::{Diagnostic, Feed, Pose};
+
+/// Part of the corridor that is used, and of the angle by which the tool axis may be off its way: the rest is for the
+/// rounding of words.
+const USED: f64 = 0.8;
+
+/// How far the tool axis may be off its way near the part, radians: half a degree.
+const SWING: f64 = std::f64::consts::PI / 360.0;
+
+/// What is added to the clearance for the rounding of words, mm.
+const ROUNDING: f64 = 0.01;
+
+/// Rotary axes turn at most this much between two places that are looked at, degrees.
+const SAMPLE: f64 = 1.0;
+
+/// A rapid that takes more pieces goes home instead.
+const MOST_PIECES: usize = 200;
+
+/// How a rapid is written.
+enum Course {
+    /// In one block.
+    AtOnce,
+    /// By a corner from which, or to which, the tool goes along its axis.
+    Corner(Pose),
+    /// In pieces while axes turn.
+    Pieces(Vec<Stance>),
+    /// By feed, which is straight on every control.
+    Feed,
+    /// From home, where the axes turn.
+    Home,
+}
+
+impl Walk<'_> {
+    /// A rapid of the source.
+    pub(crate) fn rapid(&mut self, pose: &Pose, stop: &Stop) -> Done {
+        self.end_cycle()?;
+        self.wire_for(false, "a rapid")?;
+        self.same_taper("a rapid")?;
+        self.sync_spindle()?;
+        self.settle(pose, stop, false)?;
+        let Some(from) = self.here.filter(|_| self.located) else {
+            return self.approach(pose, stop);
+        };
+        match self.course(&from, pose, stop, true)? {
+            Course::AtOnce => self.rapid_at_once(pose, stop),
+            Course::Corner(corner) => {
+                self.rapid_at_once(&corner, stop)?;
+                self.rapid_at_once(pose, stop)
+            }
+            Course::Pieces(stances) => self.in_pieces(pose, &stances),
+            Course::Feed => self.by_feed(&from, pose, stop),
+            Course::Home => self.by_home(pose, stop),
+        }
+    }
+
+    /// A rapid to a hole or in it: what the cycle of a control would do, axes that turn apart.
+    pub(crate) fn rapid_to_hole(&mut self, pose: &Pose, stop: &Stop) -> Done {
+        let Some(from) = self.here.filter(|_| self.located) else {
+            return self.approach(pose, stop);
+        };
+        match self.turns(stop) && !matches!(self.course(&from, pose, stop, false)?, Course::AtOnce)
+        {
+            true => self.by_home(pose, stop),
+            false => self.rapid_at_once(pose, stop),
+        }
+    }
+
+    /// A rapid in one block, from a known position.
+    pub(crate) fn rapid_at_once(&mut self, pose: &Pose, stop: &Stop) -> Done {
+        if self.compensation_pending() {
+            self.plane_xy()?;
+        }
+        self.aim(pose, stop);
+        self.here = Some(*pose);
+        self.rapid_block()
+    }
+
+    /// The first position after a tool change or in a new orientation, in the machine's order of axes.
+    pub(crate) fn approach(&mut self, pose: &Pose, stop: &Stop) -> Done {
+        let machine = self.machine;
+        for group in &machine.approach {
+            self.aim(pose, stop);
+            let words = group.chars().filter_map(|c| WordName::named(c.encode_utf8(&mut [0; 4])));
+            let group = words.fold(0, |all, word| all | bit(word));
+            let length = bit(WordName::H) | bit(WordName::Length);
+            let held = if group & bit(WordName::Z) == 0 { length } else { 0 };
+            self.writer.unset((POSITION & !group) | held);
+            if self.writer.changes(POSITION | ORIENTATION) {
+                self.writer.code(WordName::Motion, motion::RAPID);
+                self.keep_compensation();
+                self.block(BlockName::Rapid)?;
+            }
+            self.writer.unset(Words::MAX);
+        }
+        self.located = true;
+        self.here = Some(*pose);
+        self.check_limits()
+    }
+
+    /// Writes the rapid that has been aimed.
+    fn rapid_block(&mut self) -> Done {
+        if !self.writer.changes(POSITION | ORIENTATION) {
+            self.writer.unset(Words::MAX);
+            return Ok(());
+        }
+        self.check_limits()?;
+        self.compensate();
+        self.writer.code(WordName::Motion, motion::RAPID);
+        self.block(self.straight(BlockName::Rapid))
+    }
+
+    fn in_pieces(&mut self, pose: &Pose, stances: &[Stance]) -> Done {
+        if self.compensation_pending() {
+            self.plane_xy()?;
+        }
+        for stance in stances {
+            self.aim_at(stance.tip, Vec3::Z, Some(stance.degrees));
+            self.rapid_block()?;
+        }
+        self.here = Some(*pose);
+        let message =
+            "rapids while axes turn are written in pieces, so that the tool goes straight";
+        self.findings.warn(Diagnostic::warning("rapid-path", message).line(self.line));
+        Ok(())
+    }
+
+    fn by_feed(&mut self, from: &Pose, pose: &Pose, stop: &Stop) -> Done {
+        let help = "`rapid_path = \"linear\"` in [settings] where its axes go together by rapid (FANUC: parameter 1401#1 is 1)";
+        let Some(feed) = self.known_feed() else {
+            let message = "a rapid near the part, where each axis of the machine goes at its own speed, and no feed is known \
+                           by which it could be written instead";
+            return Err(refuse("rapid-path", message).help(help).into());
+        };
+        let message = format!(
+            "rapids near the part are written with a feed of {feed} mm/min: each axis of the machine goes at its own speed \
+             by rapid"
+        );
+        self.findings.warn(Diagnostic::warning("rapid-path", message).help(help).line(self.line));
+        let wanted = self.feed.replace(Feed::PerMinute(feed));
+        if self.compensation_pending() {
+            self.plane_xy()?;
+        }
+        self.aim(pose, stop);
+        self.here = Some(*pose);
+        self.check_limits()?;
+        let length = from.point().distance(pose.point());
+        self.say_feed(length, 1, Cut::Straight)?;
+        self.feed = wanted;
+        self.compensate();
+        self.writer.code(WordName::Motion, motion::LINEAR);
+        self.block(self.straight(BlockName::Linear))
+    }
+
+    fn by_home(&mut self, pose: &Pose, stop: &Stop) -> Done {
+        self.turn(pose.axis(), stop)?;
+        self.approach(pose, stop)
+    }
+
+    /// Whether rotary axes turn that the program names.
+    fn turns(&self, stop: &Stop) -> bool {
+        let (Kind::ToolCenter | Kind::Machine, Some(step)) = (&self.place.kind, stop.step) else {
+            return false;
+        };
+        self.place.degrees().is_some_and(|degrees| self.written(step.degrees) != degrees)
+    }
+
+    /// How a rapid from `from` to `to` is written; `is_straight` where the source goes straight.
+    fn course(
+        &mut self,
+        from: &Pose,
+        to: &Pose,
+        stop: &Stop,
+        is_straight: bool,
+    ) -> Result<Course, Box<Diagnostic>> {
+        let machine = self.machine;
+        let linear = machine.has_straight_rapids() || machine.wire.is_some();
+        match (self.turns(stop), linear) {
+            (true, false) => return Ok(Course::Home),
+            (false, true) => return Ok(Course::AtOnce),
+            (false, false) => return self.corner(from, to),
+            (true, true) => {}
+        }
+        let (Some(step), Some(degrees)) = (stop.step, self.place.degrees()) else {
+            return Ok(Course::AtOnce);
+        };
+        let here = Stance { tip: from.point(), degrees };
+        let there = Stance { tip: to.point(), degrees: self.written(step.degrees) };
+        let length = self.tool_length();
+        let own = matches!(self.place.kind, Kind::Machine);
+        if own
+            && (machine.unsaid(degrees, length).or(machine.unsaid(there.degrees, length))).is_some()
+        {
+            // What its place hangs on is asked for where the block is written.
+            return Ok(Course::AtOnce);
+        }
+        let most = (0..3).map(|i| (there.degrees[i] - degrees[i]).abs()).fold(0.0, f64::max);
+        let count = (most / SAMPLE).ceil().max(8.0) as usize;
+        let measured = length.unwrap_or(0.0);
+        let ends =
+            [here, there].map(|stance| machine.linear_for(stance.tip, stance.degrees, measured));
+        let corridor = USED * machine.capabilities.rapid_corridor;
+        let (mut at_once, mut in_pieces) = (true, true);
+        for i in 0..=count {
+            let part = i as f64 / count as f64;
+            let degrees = [0, 1, 2].map(|k| degrees[k] + (there.degrees[k] - degrees[k]) * part);
+            let axis = machine.axis_at(degrees);
+            let on_way = from.point().lerp(to.point(), part);
+            let tip = match own {
+                true => machine.forward(ends[0].lerp(ends[1], part), degrees, measured).0,
+                false => on_way,
+            };
+            let aligned = is_straight && off_great_circle(from.axis(), to.axis(), axis) <= SWING;
+            let near = nearest_on_segment(from.point(), to.point(), tip).1 <= corridor;
+            at_once &= aligned && near || self.is_beyond(tip, axis);
+            in_pieces &= own && (aligned || self.is_beyond(on_way, axis));
+        }
+        if at_once {
+            return Ok(Course::AtOnce);
+        }
+        if in_pieces {
+            let stances = machine.linearise(here, there, length, corridor)?;
+            if stances.len() <= MOST_PIECES {
+                return Ok(Course::Pieces(stances.collect()));
+            }
+        }
+        Ok(Course::Home)
+    }
+
+    /// How a rapid is written while no axis turns, and each goes at its own speed: anywhere in the box between the ends.
+    fn corner(&mut self, from: &Pose, to: &Pose) -> Result<Course, Box<Diagnostic>> {
+        let axis = to.axis();
+        let degrees = match &self.place.kind {
+            Kind::Bare | Kind::Plain => Some([0.0; 3]),
+            Kind::ToolCenter | Kind::Machine => self.place.degrees(),
+            Kind::Tilted(..) | Kind::Vectors => None,
+        };
+        let Some(degrees) = degrees.filter(|_| same(from.axis(), axis)) else {
+            return Ok(Course::Feed);
+        };
+        let corridor = USED * self.machine.capabilities.rapid_corridor;
+        let machine = self.machine;
+        let wandering = |a, b| machine.wandering(a, b, degrees);
+        let is_straight =
+            |a, b| wandering(a, b).iter().all(|tip| nearest_on_segment(a, b, *tip).1 <= corridor);
+        let (a, b) = (from.point(), to.point());
+        let height = (b - a).dot(axis);
+        let corner = if height > 0.0 { a + axis * height } else { b - axis * height };
+        let (legs, goes_up) = ([(a, corner), (corner, b)], height > 0.0);
+        let [along, across] = if goes_up { legs } else { [legs[1], legs[0]] };
+        let mut is_beyond = |(a, b)| wandering(a, b).iter().all(|tip| self.is_beyond(*tip, axis));
+        Ok(if is_straight(a, b) || is_beyond((a, b)) {
+            Course::AtOnce
+        } else if is_straight(along.0, along.1) && is_beyond(across) {
+            Course::Corner(to.at(corner)?)
+        } else {
+            Course::Feed
+        })
+    }
+
+    /// Whether the tool is beyond all cuts along its axis.
+    fn is_beyond(&mut self, tip: Vec3, axis: Vec3) -> bool {
+        let clearance = self.machine.capabilities.rapid_clearance + ROUNDING;
+        tip.dot(axis) >= self.cut_reach(axis) + clearance
+    }
+}

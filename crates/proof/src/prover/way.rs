@@ -1,0 +1,222 @@
+//! The way of a rapid between its ends: as the control really goes, held against the straight way of the source.
+//!
+//! A block goes near the part only on the straight way that the source goes by rapid, along the tool axis away from a
+//! place or down to it, or from home along Z. Any other way must be beyond all that the source cuts, along the tool
+//! axis as it is at each point. Where the axes of the machine go each at its own speed, the way is anywhere in the box
+//! that they span.
+
+use super::*;
+use crate::line::{blend, turn};
+use geom::{nearest_on_segment, off_great_circle};
+
+/// Rotary axes turn at most this much between two samples of a rapid, degrees: with the part half a metre off, the tip
+/// leaves the chord between two by less than 0.005 mm.
+const SAMPLE: f64 = 0.5;
+
+/// Positions at which an axis that is free in a singular pose may stand, as parts of half a turn.
+const FREE_POSITIONS: u32 = 16;
+
+impl Prover<'_> {
+    /// What is wrong with the way of a rapid block from where the tool is to `to`.
+    pub(super) fn wrong_way(&mut self, to: &Station) -> Option<Diagnostic> {
+        let gauge = self.gauge;
+        if gauge.machine.wire.is_some() || !to.place.known() {
+            return None;
+        }
+        let Step::Move(goal) = &self.cursor.step else { return None };
+        let from = goal.from?;
+        let here = self.here;
+        let turns = here.position.orientation != to.position.orientation;
+        let (straight, end) = match &goal.kind {
+            Kind::Rapid => (Some((from, goal.to)), goal.to),
+            // How a cycle goes, it decides itself; what comes from above is looked at there.
+            Kind::Hole(_) if self.leg.hole.over || !turns => return None,
+            Kind::Hole(cycle) => (None, goal.to.lifted(cycle.clearance)),
+            Kind::Line | Kind::Arc(_) => (None, self.leg.left.map_or(from, |left| left.place)),
+            Kind::Thread(_) | Kind::Probe { .. } | Kind::Broken(_) => return None,
+        };
+        if !here.place.known() {
+            return self.wrong_way_from_home(to);
+        }
+        let way = Way { gauge: &gauge, straight };
+        let is_straight = gauge.machine.has_straight_rapids() && !turns;
+        if is_straight && way.holds(&here.place) && way.holds(&to.place) {
+            return None;
+        }
+        let Some(places) = way.places(&here, to) else {
+            let what = "turns axes that go each at its own speed: where the tool goes between the ends is not known";
+            return Some(self.way_refused(to, what));
+        };
+        if along_axis(&gauge, &here, to, &places, &end) {
+            return None;
+        }
+        let short = self.short_of_clearance(places.iter().filter(|place| !way.holds(place)))?;
+        let clearance = Number(gauge.machine.capabilities.rapid_clearance);
+        let what = format!(
+            "leaves the straight way of the source {} mm short of {clearance} mm beyond all cuts",
+            Number(short)
+        );
+        Some(self.way_refused(to, &what))
+    }
+
+    /// How far a place is along the straight way of a rapid of the source, 0 to 1, where it is on it; and the length of
+    /// the way, mm.
+    pub(super) fn on_the_way(&self, to: &Station) -> Option<(f64, f64)> {
+        let Step::Move(goal @ Goal { kind: Kind::Rapid, from: Some(from), .. }) = &self.cursor.step
+        else {
+            return None;
+        };
+        let way = Way { gauge: &self.gauge, straight: Some((*from, goal.to)) };
+        let (t, _) = nearest_on_segment(from.tip, goal.to.tip, to.place.tip);
+        way.holds(&to.place).then(|| (t, goal.length()))
+    }
+
+    /// From home only Z comes down, or all axes together to a place beyond all cuts.
+    fn wrong_way_from_home(&mut self, to: &Station) -> Option<Diagnostic> {
+        let (a, b) = (self.here.position, to.position);
+        // In a tilted plane no coordinate is known until all are.
+        if matches!(b.orientation, Orientation::Axis(axis) if axis != Vec3::Z) {
+            return None;
+        }
+        if a.orientation == b.orientation && a.point.x == b.point.x && a.point.y == b.point.y {
+            return None;
+        }
+        self.short_of_clearance(std::iter::once(&to.place))?;
+        Some(self.way_refused(to, "comes down from home while other axes are still on their way"))
+    }
+
+    /// By how much the tool is not the clearance beyond all cuts at the worst of these places, mm.
+    fn short_of_clearance<'p>(&mut self, places: impl Iterator<Item = &'p Place>) -> Option<f64> {
+        let cuts = *self.cuts.get_or_insert_with(|| CutBox::of(self.source));
+        let clearance = self.gauge.machine.capabilities.rapid_clearance;
+        let slack = self.gauge.slack(&self.here);
+        let short = |place: &Place| cuts.reach(place.axis) + clearance - place.tip.dot(place.axis);
+        let worst = places.map(short).fold(f64::NEG_INFINITY, f64::max);
+        (worst > slack).then_some(worst)
+    }
+
+    fn way_refused(&self, to: &Station, what: &str) -> Diagnostic {
+        let message = format!(
+            "source line {}: the program goes by rapid to {} and {what}",
+            self.cursor.line, to.place
+        );
+        let help = match self.gauge.machine.settings.rapid_path {
+            Some(_) => "go away from the part first, along the tool axis",
+            None => {
+                "go away from the part first, along the tool axis; or say `rapid_path = \"linear\"` in [settings] of the \
+                 machine's file where its axes go together by rapid"
+            }
+        };
+        Diagnostic::error("rapid-path", message).help(help).line(to.line)
+    }
+}
+
+/// The straight way of the source, where it goes by rapid.
+struct Way<'a> {
+    gauge: &'a Gauge<'a>,
+    straight: Option<(Place, Place)>,
+}
+
+impl Way<'_> {
+    /// Whether a place is on it, with the tool as it is there.
+    fn holds(&self, place: &Place) -> bool {
+        let Some((from, to)) = &self.straight else { return false };
+        let (machine, allowed) = (self.gauge.machine, &self.gauge.allowed);
+        let corridor = machine.capabilities.rapid_corridor + allowed.tip_mm;
+        let (_, beside) = nearest_on_segment(from.tip, to.tip, place.tip);
+        let off = off_great_circle(from.axis, to.axis, place.axis).to_degrees();
+        beside <= corridor && off <= allowed.axis_degrees + allowed.sweep_degrees
+    }
+
+    /// Places on the way of a block, in all ways that the machine may stand; nothing where it is not known what lies
+    /// between its ends.
+    fn places(&self, here: &Station, to: &Station) -> Option<Vec<Place>> {
+        let machine = self.gauge.machine;
+        let turns = here.position.orientation != to.position.orientation;
+        if machine.has_straight_rapids() {
+            return Some(if turns { self.turning(here, to) } else { vec![here.place, to.place] });
+        }
+        let stances = if turns { Vec::new() } else { self.stances(to) };
+        let wandering = |degrees| {
+            let tips = machine.wandering(here.place.tip, to.place.tip, degrees);
+            tips.map(|tip| Place { tip, axis: to.place.axis })
+        };
+        (!stances.is_empty()).then(|| stances.into_iter().flat_map(wandering).collect())
+    }
+
+    /// The positions of the rotary axes with the tool as it stands at `to`.
+    fn stances(&self, to: &Station) -> Vec<[f64; 3]> {
+        let machine = self.gauge.machine;
+        match to.position.orientation {
+            Orientation::Rotary { degrees, .. } => vec![degrees],
+            Orientation::Axis(_) if machine.rotary.is_empty() => vec![[0.0; 3]],
+            Orientation::Axis(axis) => {
+                let Ok(solutions) = machine.inverse(axis) else { return Vec::new() };
+                let free = |degrees: [f64; 3]| {
+                    let count = if solutions.free.is_some() { FREE_POSITIONS } else { 1 };
+                    (0..count).map(move |k| {
+                        let mut degrees = degrees;
+                        if let Some(free) = solutions.free {
+                            degrees[free] += 180.0 * f64::from(k) / f64::from(count);
+                        }
+                        degrees
+                    })
+                };
+                solutions.degrees.into_iter().flat_map(free).collect()
+            }
+        }
+    }
+
+    /// Places on a way on which the tool turns, all axes going together.
+    fn turning(&self, here: &Station, to: &Station) -> Vec<Place> {
+        let Gauge { machine, tool_length, .. } = *self.gauge;
+        let start = in_the_kind_of(machine, here, to, tool_length);
+        let most = turn(&start, &to.position).unwrap_or_else(|| here.place.apart(&to.place).1);
+        let samples = (most / SAMPLE).ceil().clamp(1.0, 1440.0) as u32;
+        let part = |i: u32| f64::from(i) / f64::from(samples);
+        (0..=samples)
+            .map(|i| match to.position.orientation {
+                Orientation::Rotary { .. } => {
+                    Place::of(machine, &blend(&start, &to.position, part(i)), tool_length)
+                }
+                // The control turns the vector itself.
+                Orientation::Axis(axis) => Place {
+                    tip: here.place.tip.lerp(to.place.tip, part(i)),
+                    axis: geom::between(here.place.axis, axis, part(i)),
+                },
+            })
+            .collect()
+    }
+}
+
+/// Where `here` is, said as the block that goes to `to` says it.
+fn in_the_kind_of(
+    machine: &Machine,
+    here: &Station,
+    to: &Station,
+    tool_length: Option<f64>,
+) -> Position {
+    match (here.position.orientation, to.position.orientation) {
+        (
+            Orientation::Rotary { degrees, tool_center: before },
+            Orientation::Rotary { tool_center, .. },
+        ) if before != tool_center => {
+            let point = match tool_center {
+                true => here.place.tip,
+                false => machine.linear_for(here.place.tip, degrees, tool_length.unwrap_or(0.0)),
+            };
+            Position { point, orientation: Orientation::Rotary { degrees, tool_center } }
+        }
+        _ => here.position,
+    }
+}
+
+/// Whether a block goes along the tool axis: away, or down to the end of the way.
+fn along_axis(gauge: &Gauge, here: &Station, to: &Station, places: &[Place], end: &Place) -> bool {
+    let is_up = stops::lifted(gauge, here, to);
+    let is_down = stops::lifted(gauge, to, here)
+        && gauge.height_over(end, to).is_some_and(|height| height >= -gauge.slack(to));
+    let corridor = gauge.machine.capabilities.rapid_corridor;
+    let on_line = |place: &Place| here.place.above(place.tip).1 <= corridor;
+    (is_up || is_down) && places.iter().all(on_line)
+}

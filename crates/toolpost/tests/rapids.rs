@@ -1,0 +1,236 @@
+//! A rapid is a path: the tool goes where the source goes, straight, or beyond all that it cuts, whatever the axes of the
+//! machine do between two blocks.
+
+use geom::Vec3;
+use machine::{Machine, load, load_text};
+use program::{Diagnostic, Program};
+
+fn read(text: &str) -> Program {
+    let read = source::apt::read("job.cls", text.as_bytes(), &Default::default());
+    read.unwrap_or_else(|found| panic!("{found:?}")).program
+}
+
+/// Cuts near Y 100, then goes at Z 5 straight to Y -100 while the tool leans by 60°, and cuts there.
+fn leaning() -> Program {
+    read(
+        "UNITS/MM\nMULTAX/ON\nLOADTL/1,LENGTH,100\nSPINDL/1000,RPM,CLW\nFEDRAT/300,MMPM\nRAPID\nGOTO/0,100,50,0,0,1\n\
+         RAPID\nGOTO/0,100,5\nGOTO/0,100,0\nGOTO/10,100,0,0,0.087156,0.996195\nGOTO/0,100,0,0,0,1\nGOTO/0,100,5\n\
+         RAPID\nGOTO/0,-100,5,0,0.866025,0.5\nGOTO/0,-100,0\nGOTO/10,-100,0\nRAPID\nGOTO/10,-100,60\nFINI\n",
+    )
+}
+
+fn written(source: &Program, machine: &Machine) -> post::Output {
+    post::write(source, machine).unwrap_or_else(|found| panic!("{found:?}"))
+}
+
+fn text(output: &post::Output) -> String {
+    String::from_utf8(output.text.clone()).unwrap()
+}
+
+/// A program without its block numbers.
+fn plain(text: &str) -> String {
+    let words = |line: &str| match line.strip_prefix('N') {
+        Some(rest) => rest.split_once(' ').map_or(String::new(), |(_, words)| format!("{words}\n")),
+        None => format!("{line}\n"),
+    };
+    text.lines().map(words).collect()
+}
+
+/// The mismatches of a program.
+fn found(source: &Program, machine: &Machine, text: &str) -> Vec<Diagnostic> {
+    proof::prove(source, machine, "p", text.as_bytes(), &Default::default()).mismatches
+}
+
+#[track_caller]
+fn proven(source: &Program, machine: &Machine, text: &str) {
+    let found = found(source, machine, text);
+    assert!(found.is_empty(), "{found:#?}\n{text}");
+}
+
+/// The rules that a program breaks, and in which lines.
+fn refused(source: &Program, machine: &Machine, text: &str) -> Vec<(&'static str, u32)> {
+    found(source, machine, text).iter().map(|found| (found.rule, found.line)).collect()
+}
+
+/// The number behind `letter` in a block of a SINUMERIK.
+fn word(block: &str, letter: char) -> Option<f64> {
+    let at = block.find(letter)? + 1;
+    let number = block[at..].trim_start_matches('=');
+    let end = number.find(|c: char| c != '-' && c != '.' && !c.is_ascii_digit());
+    number[..end.unwrap_or(number.len())].parse().ok()
+}
+
+/// The positions X, Y, Z, A, C that the blocks of `sinumerik-840d-table-ac` go to, each with its line and whether the
+/// move is a rapid; from the first block that says where Z is.
+fn positions(text: &str) -> Vec<(u32, bool, [f64; 5])> {
+    let (mut at, mut rapid, mut all) = ([f64::NAN; 5], false, Vec::new());
+    for (line, block) in (1..).zip(text.lines()) {
+        let block = block.split_once(' ').map_or(block, |(_, words)| words);
+        rapid = if block.contains("G0") { true } else { rapid && !block.contains("G1") };
+        if block.starts_with("G75") {
+            at[2] = f64::NAN;
+            continue;
+        }
+        let words = ['X', 'Y', 'Z', 'A', 'C'].map(|letter| word(block, letter));
+        if block.contains("FGROUP") || words.iter().all(Option::is_none) {
+            continue;
+        }
+        for (at, word) in at.iter_mut().zip(words) {
+            *at = word.unwrap_or(*at);
+        }
+        if at.iter().all(|at| at.is_finite()) {
+            all.push((line, rapid, at));
+        }
+    }
+    all
+}
+
+/// Where the tip is on the part: the table tilts by A about X and turns by C about Z on it, both right-handed for the part
+/// but for the sign of C.
+fn tip([x, y, z, a, c]: [f64; 5]) -> Vec3 {
+    let (sin, cos) = a.to_radians().sin_cos();
+    let (y, z) = (y * cos + z * sin, z * cos - y * sin);
+    let (sin, cos) = c.to_radians().sin_cos();
+    Vec3::new(x * cos - y * sin, x * sin + y * cos, z)
+}
+
+/// The farthest that the tip is from the line `from` to `to` in the blocks of these lines, with the axes going together.
+fn farthest(positions: &[(u32, bool, [f64; 5])], from: Vec3, to: Vec3) -> f64 {
+    let off = |pair: &[(u32, bool, [f64; 5])]| {
+        (0..=200)
+            .map(f64::from)
+            .map(|i| {
+                let at: [f64; 5] = std::array::from_fn(|k| {
+                    pair[0].2[k] + (pair[1].2[k] - pair[0].2[k]) * i / 200.0
+                });
+                geom::nearest_on_segment(from, to, tip(at)).1
+            })
+            .fold(0.0, f64::max)
+    };
+    positions.windows(2).map(off).fold(0.0, f64::max)
+}
+
+/// `Y-54.33Z-84.103A60` in one block takes the tip some 50 mm below the straight way.
+#[test]
+fn a_rapid_that_leans_the_tool_stays_on_the_straight_way() {
+    let (source, machine) = (leaning(), load("sinumerik-840d-table-ac").unwrap());
+    let good = text(&written(&source, &machine));
+    proven(&source, &machine, &good);
+    let all = positions(&good);
+    let end = all.iter().position(|(_, rapid, at)| *rapid && at[3] == 60.0).unwrap();
+    let start = all[..end].iter().rposition(|(_, rapid, _)| !rapid).unwrap();
+    assert!(good.lines().nth(all[end].0 as usize - 1).unwrap().ends_with("Y-54.33Z-84.103A60"));
+    let (from, to) = (Vec3::new(0.0, 100.0, 5.0), Vec3::new(0.0, -100.0, 5.0));
+    assert!(farthest(&all[start..=end], from, to) < 0.1);
+    let swung = farthest(&[all[start], all[end]], from, to);
+    assert!((swung - 50.7).abs() < 0.1, "{swung}");
+    // The same in one block.
+    let between = |line: u32| line > all[start + 1].0 && line < all[end].0;
+    let lines = (1..).zip(good.lines()).filter(|(line, _)| !between(*line));
+    let mut bad: Vec<String> = lines.map(|(_, line)| line.to_owned()).collect();
+    bad.remove(all[start + 1].0 as usize - 1);
+    let at = all[start + 1].0;
+    bad[at as usize - 1] = bad[at as usize - 1].replace(" Y", " G0Y");
+    assert_eq!(refused(&source, &machine, &(bad.join("\n") + "\n")), [("rapid-path", at)]);
+}
+
+/// The axis of C is 30 mm from the bore: C may not turn on the way down unless X and Y follow.
+#[test]
+fn a_rapid_down_a_bore_keeps_to_the_bore_while_the_table_turns() {
+    let source = read(
+        "UNITS/MM\nMULTAX/ON\nLOADTL/1,LENGTH,100\nSPINDL/1000,RPM,CLW\nFEDRAT/300,MMPM\nRAPID\nGOTO/-40,0,50,0,0,1\n\
+         GOTO/-40,0,0\nGOTO/-30,0,0,0,0.087156,0.996195\nGOTO/-30,0,10,0,0,1\nRAPID\nGOTO/-30,0,50\nRAPID\nGOTO/30,0,50\n\
+         RAPID\nGOTO/30,0,-20\nGOTO/30,0,-22\nGOTO/31,0,-22,0.087156,0,0.996195\nGOTO/30,0,-22,0,0,1\nRAPID\n\
+         GOTO/30,0,60\nFINI\n",
+    );
+    let machine = load("sinumerik-840d-table-ac").unwrap();
+    let good = text(&written(&source, &machine));
+    proven(&source, &machine, &good);
+    let all = positions(&good);
+    let down = all.iter().rposition(|(_, rapid, at)| *rapid && at[2] == -20.0).unwrap();
+    let over = all[..down].iter().rposition(|(_, _, at)| at[2] >= 50.0).unwrap();
+    let bore = [50.0, -20.0].map(|z| Vec3::new(30.0, 0.0, z));
+    assert!(farthest(&all[over..=down], bore[0], bore[1]) < 0.1, "{good}");
+}
+
+/// B and C of the nutating table swing the tool off its way: it goes home first.
+#[test]
+fn a_rapid_whose_tool_leaves_its_way_goes_home_first() {
+    let (source, machine) = (leaning(), load("dmu50-heidenhain").unwrap());
+    let good = text(&written(&source, &machine));
+    proven(&source, &machine, &good);
+    let lines: Vec<&str> = good.lines().collect();
+    let turn = lines.iter().position(|line| line.contains("B+90")).unwrap();
+    assert!(lines[turn - 1].contains("M91"), "{good}");
+    // At once under M128, without the way home.
+    let kept = lines[..turn - 2].iter().copied();
+    let all = kept
+        .chain(["19 L X+0 Y-100 Z+5 B+90 C-54.736 R0 FMAX"])
+        .chain(lines[turn + 4..].iter().copied());
+    let numbered =
+        all.enumerate().map(|(i, line)| format!("{i} {}\n", line.split_once(' ').unwrap().1));
+    let rules = refused(&source, &machine, &numbered.collect::<String>());
+    assert_eq!(rules, [("rapid-path", turn as u32 - 1)]);
+}
+
+/// Rapids in a pocket: up and over, down, and from one low place to another.
+fn pocket() -> Program {
+    read(
+        "UNITS/MM\nLOADTL/1\nSPINDL/1000,RPM,CLW\nFEDRAT/300,MMPM\nRAPID\nGOTO/0,0,50\nRAPID\nGOTO/0,0,2\nGOTO/0,0,-5\n\
+         GOTO/40,0,-5\nRAPID\nGOTO/60,20,2\nGOTO/60,20,-5\nRAPID\nGOTO/0,20,-4\nRAPID\nGOTO/30,0,-4\nGOTO/30,0,-5\n\
+         GOTO/0,0,0\nRAPID\nGOTO/0,0,50\nFINI\n",
+    )
+}
+
+#[test]
+fn where_each_axis_goes_at_its_own_speed_only_one_moves_near_the_part() {
+    let source = pocket();
+    let straight = load_text(
+        "m.toml",
+        "extends = \"generic-3axis-fanuc\"\n[settings]\nrapid_path = \"linear\"\n",
+    )
+    .unwrap();
+    let at_once = plain(&text(&written(&source, &straight)));
+    proven(&source, &straight, &at_once);
+    assert!(
+        at_once.contains("G0 X60. Y20. Z2.\n") && at_once.contains("G0 X0. Z-4.\nX30. Y0.\n"),
+        "{at_once}"
+    );
+    let machine = load("generic-3axis-fanuc").unwrap();
+    let found = found(&source, &machine, &at_once);
+    let rules: Vec<_> = found.iter().map(|found| (found.rule, found.count)).collect();
+    assert_eq!(rules, [("rapid-path", 3)], "{at_once}");
+    let output = written(&source, &machine);
+    let good = plain(&text(&output));
+    proven(&source, &machine, &good);
+    // Up first; where no height is beyond the cuts by feed, at the fastest that the source has.
+    assert!(good.contains("G0 Z2.\nX60. Y20.\nG1 Z-5."), "{good}");
+    assert!(good.contains("X0. Z-4.\nX30. Y0.\nZ-5.\n"), "{good}");
+    let warnings: Vec<_> =
+        output.warnings.iter().filter(|found| found.rule == "rapid-path").collect();
+    assert!(warnings.len() == 1 && warnings[0].message.contains("300 mm/min"), "{warnings:?}");
+    // A feed in place of a rapid that does not keep to the way is none.
+    let beside = good.replace("X30. Y0.\nZ-5.", "X0. Y0.\nX30.\nZ-5.");
+    assert_eq!(refused(&source, &machine, &beside)[0].0, "path");
+    // Where rapids are straight, nobody asks for it.
+    assert_eq!(refused(&source, &straight, &good)[0].0, "rapid-feed");
+}
+
+#[test]
+fn from_home_only_z_comes_down() {
+    let source = read(
+        "UNITS/MM\nLOADTL/1\nSPINDL/1000,RPM,CLW\nFEDRAT/300,MMPM\nRAPID\nGOTO/0,0,50\nGOTO/0,0,-5\nRAPID\nGOTO/0,0,50\n\
+         LOADTL/2\nSPINDL/1000,RPM,CLW\nRAPID\nGOTO/60,20,-4\nGOTO/60,30,-5\nRAPID\nGOTO/60,30,50\nFINI\n",
+    );
+    let machine = load("generic-3axis-sinumerik").unwrap();
+    let good = text(&written(&source, &machine));
+    proven(&source, &machine, &good);
+    let approach = good.lines().position(|line| line.contains("X60 Y20")).unwrap();
+    let lines: Vec<&str> = good.lines().collect();
+    assert!(lines[approach + 1].ends_with("Z-4"), "{good}");
+    let mut all: Vec<String> = lines.iter().map(|&line| line.to_owned()).collect();
+    all[approach] = all[approach].replace("Y20", "Y20 Z-4");
+    all.remove(approach + 1);
+    let line = approach as u32 + 1;
+    assert_eq!(refused(&source, &machine, &(all.join("\n") + "\n")), [("rapid-path", line)]);
+}
