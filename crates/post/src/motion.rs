@@ -88,8 +88,30 @@ impl Walk<'_> {
                 return self.turning_line(Stance { tip: from.point(), degrees }, to, length);
             }
         }
+        let pieces = match from.and_then(|from| self.half_way(&from, pose, stop)) {
+            Some(half) => {
+                self.aim_at(half.tip, self.machine.axis_at(half.degrees), Some(half.degrees));
+                self.cut(length / 2.0, 2)?;
+                2
+            }
+            None => 1,
+        };
         self.aim(pose, stop);
-        self.cut(length, 0)
+        self.cut(length / f64::from(pieces), if pieces > 1 { 2 } else { 0 })
+    }
+
+    /// The place half way of a cut in which an axis that may be counted modulo 360° turns by half a turn: which way it
+    /// would go in one block nobody knows.
+    fn half_way(&self, from: &Pose, to: &Pose, stop: &Stop) -> Option<Stance> {
+        let (Kind::ToolCenter, Some(step)) = (&self.place.kind, stop.step) else { return None };
+        let (here, there) = (self.place.degrees()?, self.written(step.degrees));
+        let step = self.machine.rotary_resolution();
+        let halves = self.machine.rotary.iter().any(|axis| {
+            let i = axis.index();
+            axis.modulo != Some(false) && ((there[i] - here[i]).abs() - 180.0).abs() < step
+        });
+        let degrees = [0, 1, 2].map(|i| (here[i] + there[i]) / 2.0);
+        halves.then(|| Stance { tip: from.point().lerp(to.point(), 0.5), degrees })
     }
 
     /// A straight cut while rotary axes turn that the control moves on their own: with as many points

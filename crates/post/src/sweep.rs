@@ -13,6 +13,9 @@ const SWING: f64 = std::f64::consts::PI / 360.0;
 /// A turn of the tool axis below this (radians, 1°) cannot swing it out by more than [`SWING`].
 const SMALL: f64 = 2.0 * SWING;
 
+/// What rounding may add to a position at the end of a travel, degrees.
+const ROUNDING: f64 = 1e-6;
+
 /// How often a cut is halved at the most.
 const HALVINGS: u32 = 8;
 
@@ -117,9 +120,12 @@ fn turns_round(machine: &Machine, came: Vec3, at: Vec3, to: Vec3) -> bool {
         return false;
     };
     let Some(free) = singular.free.filter(|_| after.free.is_none()) else { return false };
-    let turns =
-        (0..4).map(|k| short_way(before.degrees[k / 2][free], after.degrees[k % 2][free]).abs());
-    let turn = turns.fold(f64::INFINITY, f64::min).to_radians();
+    let ways = (0..4).map(|k| {
+        let (start, end) = (before.degrees[k / 2], after.degrees[k % 2]);
+        [0, 1, 2].map(|i| (start[i], short_way(start[i], end[i])))
+    });
+    let turns = ways.filter(|way| within_travel(machine, way)).map(|way| way[free].1.abs());
+    let turn = turns.reduce(f64::min).unwrap_or_default().to_radians();
     // Half way out it is off by half of the turn, seen from the pole.
     angle_between(at, to) / 2.0 * turn / 2.0 > SWING
 }
@@ -128,6 +134,20 @@ fn turns_round(machine: &Machine, came: Vec3, at: Vec3, to: Vec3) -> bool {
 fn short_way(from: f64, to: f64) -> f64 {
     let turn = to - from;
     turn - 360.0 * (turn / 360.0).round()
+}
+
+/// Whether both ends of a way are within the travels of the rotary axes, which may count whole turns.
+fn within_travel(machine: &Machine, way: &[(f64, f64); 3]) -> bool {
+    let held = |axis: &machine::RotaryAxis, at: f64| {
+        (-1..=1).any(|turns| {
+            let at = at + 360.0 * f64::from(turns);
+            at >= axis.min - ROUNDING && at <= axis.max + ROUNDING
+        })
+    };
+    machine.rotary.iter().all(|axis| {
+        let (start, turn) = way[axis.index()];
+        held(axis, start) && held(axis, start + turn)
+    })
 }
 
 /// How far the tool axis leaves the great circle from `a` to `b` while the rotary axes go evenly and the
@@ -145,7 +165,12 @@ fn swing(machine: &Machine, a: Vec3, b: Vec3) -> f64 {
     };
     let ways = (0..4).map(|k| way(from.degrees[k / 2], to.degrees[k % 2]));
     let length = |way: &[(f64, f64); 3]| way.iter().map(|(_, turn)| turn.abs()).sum::<f64>();
-    let Some(way) = ways.min_by(|v, w| length(v).total_cmp(&length(w))) else { return 0.0 };
+    let Some(way) = ways
+        .filter(|way| within_travel(machine, way))
+        .min_by(|v, w| length(v).total_cmp(&length(w)))
+    else {
+        return 0.0;
+    };
     let off = |t: f64| {
         let degrees = way.map(|(start, turn)| start + t * turn);
         angle_between(machine.axis_at(degrees), between(a, b, t))

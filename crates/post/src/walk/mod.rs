@@ -431,9 +431,9 @@ impl<'a> Walk<'a> {
         if self.machine.feed_max.is_finite() {
             return Some(self.machine.feed_max);
         }
-        let feeds = self.source.records.iter().filter_map(|record| match record.op {
-            Op::Feed(Feed::PerMinute(feed)) => Some(feed),
-            _ => None,
+        let feeds = self.source.records.iter().filter_map(|record| {
+            let Op::Feed(Feed::PerMinute(feed)) = record.op else { return None };
+            Some(feed)
         });
         feeds.reduce(f64::max)
     }

@@ -274,6 +274,14 @@ impl<'a> Prover<'a> {
                 alike && gauge.at(&to, &goal.to)
             });
         }
+        // Axes that turn while Z is home go nowhere yet: what the source has next may still come.
+        if !matches!(self.cursor.step, Step::Move(_))
+            && gait == Gait::Rapid
+            && self.turns_at_home(&to)
+        {
+            self.here = to;
+            return Ok(());
+        }
         self.miss_events(line);
         let wrong_way = if gait == Gait::Rapid { self.wrong_way(&to) } else { None };
         let outcome = match &self.cursor.step {
@@ -398,8 +406,11 @@ impl<'a> Prover<'a> {
     }
 
     fn advance(&mut self) {
+        // What happens between two motions brings Z nowhere.
+        let homed = self.leg.homed && !matches!(self.cursor.step, Step::Move(_));
         self.cursor.advance();
         self.enter();
+        self.leg.homed = homed;
     }
 
     /// Makes ready for the step at hand.

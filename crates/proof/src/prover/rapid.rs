@@ -224,11 +224,12 @@ impl Prover<'_> {
             | Step::End => (false, true, false),
         };
         let z = axes.contains(Axes::Z);
-        let retracted = self.here.position.point.z.is_nan() || self.leg.homed;
+        let is_up = self.here.position.point.z.is_nan();
+        let retracted = is_up || self.leg.homed;
         if !first && !retracted && !z {
             return Err(self.lost_at(line, "home", "sends axes home before the tool is retracted"));
         }
-        let up = axes == Axes::Z && (self.hangs_down() || self.clear_of_part());
+        let up = axes == Axes::Z && (is_up || self.hangs_down() || self.clear_of_part());
         if !first && !free && (!up || self.leg.hole.over) {
             return Err(self.lost_at(line, "home", "sends axes home in the middle of the work"));
         }
@@ -300,17 +301,19 @@ impl Prover<'_> {
     /// while the machine is at home.
     pub(super) fn closing(&mut self, gait: Gait, to: &Station) -> Outcome {
         let lifts = stops::lifted(&self.gauge, &self.here, to);
-        let turns_at_home = to.position.point.z.is_nan() && self.leg.homed && {
-            let (a, b) = (self.here.position.point, to.position.point);
-            (0..3).all(|i| a[i] == b[i] || b[i].is_nan())
-        };
-        match gait == Gait::Rapid && (lifts || turns_at_home) {
+        match gait == Gait::Rapid && (lifts || self.turns_at_home(to)) {
             true => Ok(()),
             false => {
                 let message = format!("goes to {} after the last motion of the source", to.place);
                 Err(self.lost_at(to.line, "extra-motion", &message))
             }
         }
+    }
+
+    /// Whether a move turns rotary axes alone, while the machine is at home.
+    pub(super) fn turns_at_home(&self, to: &Station) -> bool {
+        let (a, b) = (self.here.position.point, to.position.point);
+        b.z.is_nan() && self.leg.homed && (0..3).all(|i| a[i] == b[i] || b[i].is_nan())
     }
 
     /// The stop that comes nearest to where the source goes.
