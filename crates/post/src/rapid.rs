@@ -225,7 +225,7 @@ impl Walk<'_> {
             let aligned = is_straight && off_great_circle(from.axis(), to.axis(), axis) <= SWING;
             let near = nearest_on_segment(from.point(), to.point(), tip).1 <= corridor;
             at_once &= aligned && near || self.is_beyond(tip, axis);
-            in_pieces &= own && (aligned || self.is_beyond(on_way, axis));
+            in_pieces &= own && aligned;
         }
         if at_once {
             return Ok(Course::AtOnce);
