@@ -75,6 +75,11 @@ pub fn wrap(angle: f64) -> f64 {
     if wrapped <= -std::f64::consts::PI { wrapped + turn } else { wrapped }
 }
 
+/// How far the box from `low` to `high` reaches along the unit vector `direction`, seen from the origin.
+pub fn reach_of_box(low: Vec3, high: Vec3, direction: Vec3) -> f64 {
+    (low * direction).max(high * direction).element_sum()
+}
+
 /// Where `point` falls on the segment `from`..`to`: the parameter 0..=1 of the nearest point and the
 /// distance to it in mm. A segment without length has parameter 1.
 pub fn nearest_on_segment(from: Vec3, to: Vec3, point: Vec3) -> (f64, f64) {

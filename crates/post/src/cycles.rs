@@ -2,6 +2,7 @@
 
 use crate::catalogue::{BlockName, WordName};
 use crate::place::{Kind, Stop};
+use crate::rapid::corner;
 use crate::template::bit;
 use crate::walk::{Cut, Done, Walk, motion, refuse};
 use geom::{ANGLE_EPSILON, Vec3};
@@ -148,10 +149,7 @@ impl Walk<'_> {
         let (Some(here), true) = (self.here, self.located) else {
             return self.rapid_to_hole(over, stop);
         };
-        let axis = over.axis();
-        let height = (over.point() - here.point()).dot(axis);
-        let corner =
-            if height > 0.0 { here.point() + axis * height } else { over.point() - axis * height };
+        let corner = corner(here.point(), over.point(), over.axis());
         self.rapid_to_hole(&over.at(corner)?, stop)?;
         self.rapid_to_hole(over, stop)
     }

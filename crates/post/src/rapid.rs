@@ -8,7 +8,7 @@
 use crate::catalogue::{BlockName, WordName};
 use crate::place::{Kind, Stop, same};
 use crate::template::{ORIENTATION, POSITION, Words, bit};
-use crate::walk::{Cut, Done, Walk, motion, refuse};
+use crate::walk::{Done, Walk, motion, refuse};
 use geom::{Vec3, nearest_on_segment, off_great_circle};
 use machine::linearise::Stance;
 use program::{Diagnostic, Feed, Pose};
@@ -61,7 +61,7 @@ impl Walk<'_> {
                 self.rapid_at_once(pose, stop)
             }
             Course::Pieces(stances) => self.in_pieces(pose, &stances),
-            Course::Feed => self.by_feed(&from, pose, stop),
+            Course::Feed => self.by_feed(pose, stop),
             Course::Home => self.by_home(pose, stop),
         }
     }
@@ -137,7 +137,7 @@ impl Walk<'_> {
         Ok(())
     }
 
-    fn by_feed(&mut self, from: &Pose, pose: &Pose, stop: &Stop) -> Done {
+    fn by_feed(&mut self, pose: &Pose, stop: &Stop) -> Done {
         let help = "`rapid_path = \"linear\"` in [settings] where its axes go together by rapid (FANUC: parameter 1401#1 is 1)";
         let Some(feed) = self.known_feed() else {
             let message = "a rapid near the part, where each axis of the machine goes at its own speed, and no feed is known \
@@ -150,18 +150,9 @@ impl Walk<'_> {
         );
         self.findings.warn(Diagnostic::warning("rapid-path", message).help(help).line(self.line));
         let wanted = self.feed.replace(Feed::PerMinute(feed));
-        if self.compensation_pending() {
-            self.plane_xy()?;
-        }
-        self.aim(pose, stop);
-        self.here = Some(*pose);
-        self.check_limits()?;
-        let length = from.point().distance(pose.point());
-        self.say_feed(length, 1, Cut::Straight)?;
+        let done = self.line_to(pose, stop);
         self.feed = wanted;
-        self.compensate();
-        self.writer.code(WordName::Motion, motion::LINEAR);
-        self.block(self.straight(BlockName::Linear))
+        done
     }
 
     fn by_home(&mut self, pose: &Pose, stop: &Stop) -> Done {
@@ -190,7 +181,7 @@ impl Walk<'_> {
         match (self.turns(stop), linear) {
             (true, false) => return Ok(Course::Home),
             (false, true) => return Ok(Course::AtOnce),
-            (false, false) => return self.corner(from, to),
+            (false, false) => return self.one_axis_at_a_time(from, to),
             (true, true) => {}
         }
         let (Some(step), Some(degrees)) = (stop.step, self.place.degrees()) else {
@@ -240,7 +231,7 @@ impl Walk<'_> {
     }
 
     /// How a rapid is written while no axis turns, and each goes at its own speed: anywhere in the box between the ends.
-    fn corner(&mut self, from: &Pose, to: &Pose) -> Result<Course, Box<Diagnostic>> {
+    fn one_axis_at_a_time(&mut self, from: &Pose, to: &Pose) -> Result<Course, Box<Diagnostic>> {
         let axis = to.axis();
         let degrees = match &self.place.kind {
             Kind::Bare | Kind::Plain => Some([0.0; 3]),
@@ -256,9 +247,8 @@ impl Walk<'_> {
         let is_straight =
             |a, b| wandering(a, b).iter().all(|tip| nearest_on_segment(a, b, *tip).1 <= corridor);
         let (a, b) = (from.point(), to.point());
-        let height = (b - a).dot(axis);
-        let corner = if height > 0.0 { a + axis * height } else { b - axis * height };
-        let (legs, goes_up) = ([(a, corner), (corner, b)], height > 0.0);
+        let corner = corner(a, b, axis);
+        let (legs, goes_up) = ([(a, corner), (corner, b)], (b - a).dot(axis) > 0.0);
         let [along, across] = if goes_up { legs } else { [legs[1], legs[0]] };
         let mut is_beyond = |(a, b)| wandering(a, b).iter().all(|tip| self.is_beyond(*tip, axis));
         Ok(if is_straight(a, b) || is_beyond((a, b)) {
@@ -275,4 +265,11 @@ impl Walk<'_> {
         let clearance = self.machine.capabilities.rapid_clearance + ROUNDING;
         tip.dot(axis) >= self.cut_reach(axis) + clearance
     }
+}
+
+/// Where a tool along `axis` (a unit vector) turns on its way: above `from` at the height of `to`, or above `to` at the
+/// height of `from`, whichever is higher.
+pub(crate) fn corner(from: Vec3, to: Vec3, axis: Vec3) -> Vec3 {
+    let height = (to - from).dot(axis);
+    if height > 0.0 { from + axis * height } else { to - axis * height }
 }

@@ -95,7 +95,7 @@ impl CutBox {
         if self.low.x > self.high.x {
             return f64::NEG_INFINITY;
         }
-        (self.low * direction).max(self.high * direction).element_sum()
+        geom::reach_of_box(self.low, self.high, direction)
     }
 
     fn add(&mut self, point: Vec3) {

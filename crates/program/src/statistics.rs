@@ -152,8 +152,7 @@ impl Statistics {
 
     /// How far the box of all tool tips reaches along the unit vector `direction`, mm from the origin.
     pub fn reach(&self, direction: Vec3) -> f64 {
-        let (low, high) = (Vec3::from(self.low), Vec3::from(self.high));
-        (low * direction).max(high * direction).element_sum()
+        geom::reach_of_box(self.low.into(), self.high.into(), direction)
     }
 }
 

@@ -22,6 +22,7 @@ use program::{
     Compensation, Coolant, CutBox, Cycle, Diagnostic, Feed, Op, Pose, Program, Record, Spindle,
     Surface, Tool, WorkOffset, WorkOffsetData,
 };
+use std::cell::OnceCell;
 use technology::feed_mode;
 
 /// A step that may be refused.
@@ -53,6 +54,8 @@ pub(crate) struct Walk<'a> {
     statistics: Option<Statistics>,
     /// What it cuts; counted where it is asked for.
     cuts: Option<CutBox>,
+    /// The fastest feed that the machine is known to take, mm/min; looked for where it is asked for.
+    known_feed: OnceCell<Option<f64>>,
     /// Where in its records we are.
     index: usize,
     /// Source line of the record at hand.
@@ -128,6 +131,7 @@ impl<'a> Walk<'a> {
             source: program,
             statistics: None,
             cuts: None,
+            known_feed: OnceCell::new(),
             index: 0,
             line: 0,
             tool: None,
@@ -428,14 +432,16 @@ impl<'a> Walk<'a> {
 
     /// The fastest feed that the machine is known to take, mm/min: its own, or the fastest that the source has.
     pub(crate) fn known_feed(&self) -> Option<f64> {
-        if self.machine.feed_max.is_finite() {
-            return Some(self.machine.feed_max);
-        }
-        let feeds = self.source.records.iter().filter_map(|record| {
-            let Op::Feed(Feed::PerMinute(feed)) = record.op else { return None };
-            Some(feed)
-        });
-        feeds.reduce(f64::max)
+        *self.known_feed.get_or_init(|| {
+            if self.machine.feed_max.is_finite() {
+                return Some(self.machine.feed_max);
+            }
+            let feeds = self.source.records.iter().filter_map(|record| {
+                let Op::Feed(Feed::PerMinute(feed)) = record.op else { return None };
+                Some(feed)
+            });
+            feeds.reduce(f64::max)
+        })
     }
 
     /// Writes a block, where the machine has it.

@@ -325,26 +325,25 @@ impl<'a> Prover<'a> {
 
     /// Holds the clamps open of the rotary axes that turn from here on.
     fn unclamped(&mut self, line: u32, to: &Orientation) {
+        self.turns(line, self.turning(to));
+    }
+
+    /// Which of A, B and C turn on the way from here.
+    fn turning(&self, to: &Orientation) -> [bool; 3] {
         let here = &self.here.position.orientation;
-        let turns = match (here, to) {
+        match (here, to) {
             (
                 Orientation::Rotary { degrees: from, .. },
                 Orientation::Rotary { degrees: to, .. },
             ) => [0, 1, 2].map(|i| from[i] != to[i] && !to[i].is_nan()),
-            _ => [here != to; 3],
-        };
-        self.turns(line, turns);
+            (Orientation::Axis(_), _) | (_, Orientation::Axis(_)) => [here != to; 3],
+        }
     }
 
     /// Whether the words of a block turn axes that the tool does not follow.
     fn turns_by_words(&self, to: &Orientation) -> bool {
-        let Orientation::Rotary { degrees: to, tool_center: false } = to else { return false };
-        match &self.here.position.orientation {
-            Orientation::Rotary { degrees: from, .. } => {
-                (0..3).any(|i| from[i] != to[i] && !to[i].is_nan())
-            }
-            Orientation::Axis(_) => true,
-        }
+        matches!(to, Orientation::Rotary { tool_center: false, .. })
+            && self.turning(to).contains(&true)
     }
 
     /// Holds Z up where axes turn at a height that nobody knows: a table swings the part up, a head its tool down.
@@ -360,7 +359,7 @@ impl<'a> Prover<'a> {
         self.found(Diagnostic::error("turn-height", message).help(help).line(line));
     }
 
-    /// The same for axes that turn to places of the machine.
+    /// Holds the clamps of these axes open.
     fn turns(&mut self, line: u32, turns: [bool; 3]) {
         let found = state::clamps(self.gauge.machine, turns, &self.running);
         self.check(line, found);
@@ -407,10 +406,9 @@ impl<'a> Prover<'a> {
 
     fn advance(&mut self) {
         // What happens between two motions brings Z nowhere.
-        let homed = self.leg.homed && !matches!(self.cursor.step, Step::Move(_));
+        self.leg.homed &= !matches!(self.cursor.step, Step::Move(_));
         self.cursor.advance();
         self.enter();
-        self.leg.homed = homed;
     }
 
     /// Makes ready for the step at hand.
@@ -419,7 +417,6 @@ impl<'a> Prover<'a> {
         self.leg.start = Some(self.here);
         self.leg.stops.clear();
         self.leg.left = None;
-        self.leg.homed = false;
         self.gauge.tool_length = self.cursor.tool_length();
         if let Step::Move(Goal { kind: Kind::Hole(cycle), .. }) = &self.cursor.step {
             self.leg.hole.restart(cycle);

@@ -6,19 +6,18 @@ use program::Axes;
 impl Prover<'_> {
     /// A move while the source goes by rapid.
     pub(super) fn rapid(&mut self, gait: Gait, to: &Station) -> Outcome {
-        if gait == Gait::Feed
-            && !self.gauge.machine.has_straight_rapids()
-            && self.leg.stops.is_empty()
-        {
-            return self.rapid_by_feed(to);
-        }
+        let Step::Move(goal) = &self.cursor.step else { return Ok(()) };
         if gait == Gait::Feed {
+            let from_a_place = self.here.place.known() && goal.from.is_some();
+            let straight = self.gauge.machine.has_straight_rapids();
+            if !straight && from_a_place && self.leg.stops.is_empty() {
+                return self.rapid_by_feed(to);
+            }
             return Err(match self.nearest_stop() {
                 Some(stop) => self.lost_at(stop.line, "end-point", &self.not_reached(&stop)),
                 None => self.lost_at(to.line, "rapid-feed", "feeds where the source goes by rapid"),
             });
         }
-        let Step::Move(goal) = &self.cursor.step else { return Ok(()) };
         if self.gauge.at(to, &goal.to) {
             let slack = self.gauge.slack(to);
             let across = goal.from.is_none_or(|from| from.is_across(goal.to.tip, slack));
@@ -38,13 +37,6 @@ impl Prover<'_> {
     /// A rapid of the source by feed, which is straight where a rapid of the machine is not.
     fn rapid_by_feed(&mut self, to: &Station) -> Outcome {
         let Step::Move(goal) = &self.cursor.step else { return Ok(()) };
-        if !self.here.place.known() || goal.from.is_none() {
-            return Err(self.lost_at(
-                to.line,
-                "rapid-feed",
-                "feeds where the source goes by rapid",
-            ));
-        }
         let Followed { t, .. } = line::follow(&self.gauge, goal, self.leg.t, &self.here, to)
             .map_err(|how| {
                 let message = format!(
@@ -297,11 +289,10 @@ impl Prover<'_> {
         }
     }
 
-    /// A move after the last motion of the source: away along the tool axis, or turning rotary axes
-    /// while the machine is at home.
+    /// A move after the last motion of the source: away along the tool axis.
     pub(super) fn closing(&mut self, gait: Gait, to: &Station) -> Outcome {
         let lifts = stops::lifted(&self.gauge, &self.here, to);
-        match gait == Gait::Rapid && (lifts || self.turns_at_home(to)) {
+        match gait == Gait::Rapid && lifts {
             true => Ok(()),
             false => {
                 let message = format!("goes to {} after the last motion of the source", to.place);

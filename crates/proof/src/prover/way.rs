@@ -207,7 +207,7 @@ fn in_the_kind_of(
             };
             Position { point, orientation: Orientation::Rotary { degrees, tool_center } }
         }
-        _ => here.position,
+        (Orientation::Rotary { .. } | Orientation::Axis(_), _) => here.position,
     }
 }
 
