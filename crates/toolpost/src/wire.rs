@@ -113,6 +113,14 @@ fn set_up(machine: &mut Machine, args: &args::Wire) -> Result<(), Stop> {
         let help = "leave --by-control out: the way of the wire's centre is then worked out here";
         return Err(Diagnostic::error("by-control", message).help(help).into());
     }
+    if args.cutting.tab.is_some() && !machine.blocks.contains_key("stop") {
+        let message = format!(
+            "a tab is cut while the operator holds the part, and `{}` has no block `stop`",
+            machine.name
+        );
+        let help = "leave --tab out, or write how the control stops into the machine's file";
+        return Err(Diagnostic::error("tab", message).help(help).into());
+    }
     let height = match (wire.height, args.ends.uv_height) {
         (Some(own), Some(said)) if own != said => {
             let message = format!(

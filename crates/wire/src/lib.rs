@@ -28,6 +28,7 @@ mod order;
 mod path;
 pub mod plan;
 pub mod points;
+mod room;
 mod round;
 mod sync;
 pub mod taper;

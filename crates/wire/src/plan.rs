@@ -3,10 +3,10 @@
 use crate::contour::Contour;
 use crate::element::{Element, FAR};
 use crate::lead::{Lead, LeadShape};
-use crate::near::Near;
-use crate::offset::{Corner, Corners, EXACT};
+use crate::offset::{Corner, Corners};
 use crate::order::order;
 use crate::path::Path;
+use crate::room::Room;
 use crate::round::Round;
 use crate::taper::Rounding;
 use geom::Vec2;
@@ -157,7 +157,7 @@ impl Plan {
 /// # Errors
 /// `passes`, `taper-angle`, `lead` and `tab` for values that cannot be; `open-contour` where a closed one is needed;
 /// `tab` as well for one that is no part of its contour; `no-thread` where nobody says where to thread;
-/// `cuts-part` where a lead or a pass would cut into a contour; those of [`offset`](crate::offset),
+/// `cuts-part` where a lead or a pass would cut into a contour; `taper-lead` where the wire cannot come to lean on its lead; those of [`offset`](crate::offset),
 /// [`lean`](crate::taper::lean) and [`Path::by_block`].
 pub fn plan(openings: &[Opening], settings: &Settings) -> Result<Plan, Box<Diagnostic>> {
     sensible(settings)?;
@@ -172,16 +172,14 @@ pub fn plan(openings: &[Opening], settings: &Settings) -> Result<Plan, Box<Diagn
     let threads: Vec<Vec2> = rounds.iter().map(Round::thread).collect();
     let order = order(&contours, &threads);
     let all: Vec<Element> = contours.iter().flat_map(|c| c.elements()).copied().collect();
-    let near = Near::new(&all);
+    let above: Vec<Element> = rounds.iter().flat_map(Round::last_above).copied().collect();
+    let room = Room::new(&all, &above, settings);
     let mut passes = Vec::new();
     for index in order {
         let (Some(round), Some(opening)) = (rounds.get(index), openings.get(index)) else {
             continue;
         };
-        let computed = round.passes(index, settings)?;
-        for pass in &computed {
-            unhurt(&near, pass, settings)?;
-        }
+        let computed = room.passes(round, index, opening)?;
         passes.extend(match settings.by_control {
             true => round.at_contour(opening).passes(index, settings)?,
             false => computed,
@@ -227,32 +225,6 @@ fn sensible(settings: &Settings) -> Result<(), Box<Diagnostic>> {
     }
     if !(0.0..=FAR).contains(&settings.tab) {
         return Err(refused("tab", format!("a tab of {} mm", settings.tab), "0 mm for none"));
-    }
-    Ok(())
-}
-
-/// Refuses a pass that comes nearer to any contour than the last one may.
-fn unhurt(near: &Near, pass: &Pass, settings: &Settings) -> Result<(), Box<Diagnostic>> {
-    let last = settings.passes.last().map_or(0.0, |cut| settings.beside(cut));
-    let least = last - EXACT;
-    for element in pass.path.lower().elements() {
-        if let Some(distance) = near.clearance(element, least) {
-            let line = pass.path.lower().elements().iter().map(|e| e.line).find(|line| *line > 0);
-            let message = format!(
-                "pass {} of opening {} comes as near as {distance:.4} mm to a contour on its way \
-                 from X{:.4} Y{:.4} to X{:.4} Y{:.4}, and the last offset is {last:.4} mm",
-                pass.number + 1,
-                pass.opening + 1,
-                element.start.x,
-                element.start.y,
-                element.end.x,
-                element.end.y
-            );
-            return Err(Diagnostic::error("cuts-part", message)
-                .help("thread elsewhere, start elsewhere, or take a smaller lead-in")
-                .line(line.unwrap_or_default())
-                .into());
-        }
     }
     Ok(())
 }

@@ -2,11 +2,11 @@
 
 use crate::contour::{Contour, Place};
 use crate::element::{Element, SAME};
-use crate::lead::{Pairs, reversed};
+use crate::lead::{LeadShape, Pairs, reversed};
 use crate::offset::{Corner, Corners, offset};
 use crate::path::Path;
 use crate::plan::{Cut, Opening, Pass, Settings, Side, Trims};
-use crate::taper::lean;
+use crate::taper::{Remains, lean};
 use geom::{Vec2, turn_angle};
 use program::Diagnostic;
 
@@ -49,7 +49,7 @@ impl Round {
         let left = opening.left();
         let start = match opening.start.or(opening.thread) {
             Some(point) if closed => contour.nearest(point),
-            None if closed && narrows(contour, left) => middle(contour),
+            None if closed && narrows(contour, left, settings) => middle(contour),
             _ => contour.place_at(0.0),
         };
         let thread = match opening.thread {
@@ -102,8 +102,13 @@ impl Round {
         let Some(taper) = settings.taper else { return Ok((Path::upright(lower), beside.rounded)) };
         // Larger at the top is to the right of what goes round counter-clockwise.
         let out = if opening.contour.area() > 0.0 { -1.0 } else { 1.0 };
-        let upper = lean(&lower, out * taper.height * taper.angle.tan(), taper.rounding)?;
-        upper.simple()?;
+        let aside = out * taper.height * taper.angle.tan();
+        let remains = Remains { contour: &opening.contour, distance };
+        let upper = lean(&lower, aside, taper.rounding, Some(remains))?;
+        upper.simple().map_err(|found| {
+            let message = format!("no upper contour: {}", found.message);
+            Diagnostic::error("taper-corner", message).help("lean less").line(found.line)
+        })?;
         let path = Path::by_block(lower.elements().to_vec(), upper.elements().to_vec())?;
         Ok((path, beside.rounded))
     }
@@ -130,9 +135,44 @@ impl Round {
         self.thread.or_else(start).unwrap_or_default()
     }
 
+    /// Where the upper end of a leaning wire goes in the last pass.
+    pub fn last_above(&self) -> &[Element] {
+        let upper = self.ways.last().and_then(Path::upper);
+        upper.map_or(&[], Contour::elements)
+    }
+
+    /// The leads of a leaning wire on the upper face, each from where it is threaded to the contour.
+    pub fn leads_above(&self, settings: &Settings) -> impl Iterator<Item = Vec<Element>> {
+        let leaning = self.ways.iter().filter(|way| way.upper().is_some());
+        leaning.flat_map(move |way| {
+            let into = self.lead_in(settings, way, self.left);
+            let out = reversed(&self.lead_out(settings, way, self.left));
+            [into, out].map(|pairs| pairs.into_iter().map(|(_, above)| above).collect())
+        })
+    }
+
+    /// Whether the wire is threaded where the part is on the upper face.
+    pub fn threads_in_part(&self) -> bool {
+        let Some(last) = self.ways.last().and_then(Path::upper) else { return false };
+        let inside = self.left == (last.area() > 0.0);
+        last.is_closed() && self.thread.is_some_and(|thread| last.encloses(thread) != inside)
+    }
+
+    /// How far from the contour the wire has to be threaded so that both of its ends come to it from there, mm.
+    pub fn reach(&self, settings: &Settings) -> f64 {
+        let arc = if let LeadShape::Arc(radius) = settings.lead.shape { radius } else { 0.0 };
+        let reach = |way: &Path| {
+            let (below, above) = (way.lower().start(), way.upper().unwrap_or(way.lower()).start());
+            let out = (below - self.start.point).normalize_or_zero();
+            below.distance(self.start.point) + (above - below).dot(out).max(0.0) + arc
+        };
+        self.ways.iter().map(reach).fold(0.0, f64::max)
+    }
+
     /// The passes in their order.
     pub fn passes(&self, index: usize, settings: &Settings) -> Result<Vec<Pass>, Box<Diagnostic>> {
-        let mut strands = Strands { index, settings, passes: Vec::new() };
+        let leans = self.ways.iter().any(|way| way.upper().is_some());
+        let mut strands = Strands { index, settings, leans, passes: Vec::new() };
         if settings.tab > 0.0 {
             self.with_tab(&mut strands)?;
         } else {
@@ -204,16 +244,22 @@ impl Round {
 }
 
 /// Whether a closed contour starts in an inner corner of the wire's side: what stands across its first
-/// element there comes near the last.
-fn narrows(contour: &Contour, left: bool) -> bool {
+/// element there comes near the last, or one of both is a fillet that the wire of the first pass does not fit into.
+fn narrows(contour: &Contour, left: bool, settings: &Settings) -> bool {
     let elements = contour.elements();
     let (Some(first), Some(last)) = (elements.first(), elements.last()) else { return false };
+    let side = if left { 1.0 } else { -1.0 };
     let turn = turn_angle(last.tangent(1.0), first.tangent(0.0));
-    (if left { turn } else { -turn }) > CORNER
+    let widest = settings.passes.first().map_or(0.0, |cut| settings.beside(cut));
+    let fillet = |element: &Element| {
+        let inner = element.turn.is_some_and(|turn| turn.sweep * side > 0.0);
+        inner && element.radius().is_some_and(|radius| radius < widest)
+    };
+    turn * side > CORNER || fillet(first) || fillet(last)
 }
 
 /// The middle of the longest element.
-fn middle(contour: &Contour) -> Place {
+pub(crate) fn middle(contour: &Contour) -> Place {
     let (mut along, mut longest, mut place) = (0.0, 0.0, 0.0);
     for length in contour.elements().iter().map(|element| element.length()) {
         if length > longest {
@@ -237,6 +283,7 @@ struct Strand {
 struct Strands<'a> {
     index: usize,
     settings: &'a Settings,
+    leans: bool,
     passes: Vec<Pass>,
 }
 
@@ -258,9 +305,9 @@ impl Strands<'_> {
             }
         }
         let (lower, upper) = pairs.into_iter().unzip();
-        let path = match self.settings.taper {
-            Some(_) if !self.settings.by_control => Path::by_block(lower, upper)?,
-            _ => Path::upright(Contour::new(lower, 10.0 * SAME)?),
+        let path = match self.leans {
+            true => Path::by_block(lower, upper).map_err(short)?,
+            false => Path::upright(Contour::new(lower, 10.0 * SAME)?),
         };
         let Some(settings) = self.settings.passes.get(number).copied() else { return Ok(()) };
         let (opening, stop) = (self.index, tab && number == 0);
@@ -277,4 +324,14 @@ impl Strands<'_> {
         });
         Ok(())
     }
+}
+
+/// The wires do not cross along the way itself: where they do, it is on a lead that is shorter than the wire leans.
+fn short(found: Box<Diagnostic>) -> Box<Diagnostic> {
+    if found.rule != "wires-cross" {
+        return found;
+    }
+    let message = format!("the lead is shorter than the wire leans: {}", found.message);
+    let help = "thread the wire farther from the contour";
+    Diagnostic::error("taper-lead", message).help(help).line(found.line).into()
 }

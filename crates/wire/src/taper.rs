@@ -2,12 +2,17 @@
 
 use crate::contour::Contour;
 use crate::element::{Element, SAME};
+use crate::offset::EXACT;
 use geom::{Turn, Vec2, turn_angle};
 use program::Diagnostic;
 use std::f64::consts::{PI, TAU};
 
 /// The widest corner whose radius can stay the same: beyond it the two sides nearly face each other.
 const WIDEST: f64 = 5.0 / 6.0 * PI;
+
+/// How far an arc may be from tangent to a line that it rounds: radians; or mm, by which ends in three decimals may be off, and
+/// radians at most.
+const SMOOTH: (f64, f64, f64) = (1e-4, 2e-3, 0.2);
 
 /// What becomes of rounded corners on the way up.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -20,8 +25,20 @@ pub enum Rounding {
     Constant,
 }
 
+/// The contour that shall remain on the lower face, and how far to its left the wire's centre runs, mm.
+#[derive(Clone, Copy, Debug)]
+pub struct Remains<'a> {
+    /// The contour.
+    pub contour: &'a Contour,
+    /// To its right where it is negative.
+    pub distance: f64,
+}
+
 /// The contour that lies `distance` mm to the left of `lower`, element by element: each keeps its
 /// partner, lines meet where they cross. To the right where it is negative.
+///
+/// Where `lower` is the way of a wire beside a contour that `remains`, an arc of it about a sharp corner of that contour has no
+/// radius of the part: it goes about the corner above, with the radius that it has below.
 ///
 /// # Errors
 /// `taper-corner` where an element has no partner: an arc whose radius would pass zero, a side that
@@ -30,30 +47,25 @@ pub fn lean(
     lower: &Contour,
     distance: f64,
     rounding: Rounding,
+    remains: Option<Remains>,
 ) -> Result<Contour, Box<Diagnostic>> {
     let elements = lower.elements();
     let n = elements.len();
-    let neighbour = |i: usize, step: usize| -> Option<usize> {
-        let j = i + step;
-        (lower.is_closed() || (1..=n).contains(&j)).then(|| (j + n - 1) % n)
-    };
-    let corner = |i: usize| -> Option<Vec2> {
-        let (before, after) = (neighbour(i, 0)?, neighbour(i, 2)?);
-        shift(elements.get(before)?, elements.get(i)?, elements.get(after)?, distance)
-            .filter(|_| rounding == Rounding::Constant && before != after)
-    };
-    let shifts: Vec<Option<Vec2>> = (0..n).map(corner).collect();
-    let moved = elements.iter().zip(&shifts).map(|(element, shift)| match shift {
-        Some(_) => Ok(*element),
+    let before = |i: usize| (lower.is_closed() || i > 0).then(|| (i + n - 1) % n);
+    let kept = Kept { lower, distance, rounding, remains };
+    let kept = (0..n).map(|i| kept.above(i)).collect::<Result<Vec<_>, _>>()?;
+    let moved = elements.iter().zip(&kept).map(|(element, kept)| match kept {
+        Some(kept) => Ok(element.shaped(*kept)),
         None => aside(element, distance),
     });
     let moved: Vec<Element> = moved.collect::<Result<_, _>>()?;
     // The start of each element; after the last of an open contour, its end.
     let joint = |i: usize| -> Result<Vec2, Box<Diagnostic>> {
         let element = &elements[i];
-        let Some(before) = neighbour(i, 0) else { return Ok(moved[i].start) };
-        match (shifts[i], shifts[before]) {
-            (Some(shift), _) | (None, Some(shift)) => Ok(element.start + shift),
+        let Some(before) = before(i) else { return Ok(moved[i].start) };
+        match (kept[before], kept[i]) {
+            (Some(arc), _) => Ok(arc.end),
+            (None, Some(arc)) => Ok(arc.start),
             (None, None) => meeting(&moved[before], &moved[i]).ok_or_else(|| {
                 refused(element, "neighbours part from each other", "round the corner")
             }),
@@ -64,17 +76,129 @@ pub fn lean(
     joints.push(closing.copied().unwrap_or_default());
     let mut upper = Vec::with_capacity(n);
     for (i, ends) in joints.windows(2).enumerate() {
-        let (below, beside) = (&elements[i], &moved[i]);
-        let element = match shifts[i] {
-            Some(shift) => {
-                let turn = below.turn.map(|turn| Turn { center: turn.center + shift, ..turn });
-                below.shaped(geom::Element { start: ends[0], end: ends[1], turn })
-            }
-            None => trimmed(below, beside, ends[0], ends[1])?,
-        };
-        upper.push(element);
+        upper.push(match kept[i] {
+            Some(arc) => elements[i].shaped(geom::Element { start: ends[0], end: ends[1], ..arc }),
+            None => trimmed(&elements[i], &moved[i], ends[0], ends[1])?,
+        });
     }
     Contour::joined(upper, SAME)
+}
+
+/// Arcs that keep their radius on the way up: those about a sharp corner of the part, and where corners are
+/// [`Rounding::Constant`] those between two lines.
+struct Kept<'a> {
+    lower: &'a Contour,
+    distance: f64,
+    rounding: Rounding,
+    remains: Option<Remains<'a>>,
+}
+
+impl Kept<'_> {
+    /// The partner of element `i`, where its radius stays. An arc that the start of the contour divides is one arc.
+    fn above(&self, i: usize) -> Result<Option<geom::Element>, Box<Diagnostic>> {
+        let elements = self.lower.elements();
+        let Some(Turn { center, sweep }) = elements[i].turn else { return Ok(None) };
+        let same = |j: usize| {
+            let turn = elements[j].turn.filter(|turn| turn.center.distance(center) < 1e-6);
+            turn.filter(|turn| turn.sweep.signum() == sweep.signum()).map(|turn| turn.sweep)
+        };
+        let (Some((first, covered)), Some((last, rest))) =
+            (self.beyond(i, false, same), self.beyond(i, true, same))
+        else {
+            return Ok(None);
+        };
+        let (first, last) = (&elements[first], &elements[last]);
+        let whole = covered + sweep + rest;
+        let radius = elements[i].start.distance(center);
+        let sharp = self.is_sharp(center, radius, sweep);
+        if !sharp && !self.is_rounding(first, &elements[i], last, whole) {
+            return Ok(None);
+        }
+        // The centre lies where both neighbours meet, moved until they run through it.
+        let through = self.distance + radius * sweep.signum();
+        let above = match (first.turn, last.turn) {
+            (None, None) => {
+                let (p, q) = (first.tangent(1.0).perp(), last.tangent(0.0).perp());
+                Some(center + (p + q) * (self.distance / (1.0 + p.dot(q))))
+            }
+            _ => meeting(&aside(first, through)?, &aside(last, through)?),
+        };
+        let lost = || refused(&elements[i], "the corner has no partner", "lean less");
+        let above = above.ok_or_else(lost)?;
+        let (start, end) = (self.foot(first, above)?, self.foot(last, above)?);
+        let turned = turn_angle(start - above, end - above);
+        // Half a turn may come out on either side.
+        let turned = match turned * sweep < 0.0 && turned.abs() > 3.0 {
+            true => turned + TAU.copysign(sweep),
+            false => turned,
+        };
+        if turned * sweep < 0.0 && turned.abs() > 1e-6 {
+            return Err(lost());
+        }
+        let arc = geom::Element::arc(start, end, above, turned);
+        Ok(Some(arc.part(covered / whole, (covered + sweep) / whole)))
+    }
+
+    /// The first element beyond the arc of `i`, and the sweep of what of the arc lies between.
+    fn beyond(
+        &self,
+        i: usize,
+        onward: bool,
+        same: impl Fn(usize) -> Option<f64>,
+    ) -> Option<(usize, f64)> {
+        let n = self.lower.elements().len();
+        let mut between = 0.0;
+        for away in 1..n {
+            let j = if onward { i + away } else { i + n - away };
+            if !self.lower.is_closed() && (n > j) != onward {
+                return None;
+            }
+            match same(j % n) {
+                Some(sweep) => between += sweep,
+                None => return Some((j % n, between)),
+            }
+        }
+        None
+    }
+
+    /// Whether an arc of the wire goes about a sharp corner of what remains.
+    fn is_sharp(&self, center: Vec2, radius: f64, sweep: f64) -> bool {
+        let Some(Remains { contour, distance }) = self.remains else { return false };
+        let about = (radius - distance.abs()).abs() < EXACT && sweep * distance < 0.0;
+        about && contour.elements().iter().any(|side| side.start.distance(center) < EXACT)
+    }
+
+    /// Whether it rounds the corner between two lines: tangent to both, as far as their places are exact.
+    fn is_rounding(&self, before: &Element, arc: &Element, after: &Element, sweep: f64) -> bool {
+        let Some(turn) = arc.turn.filter(|_| self.rounding == Rounding::Constant) else {
+            return false;
+        };
+        let radius = arc.start.distance(turn.center);
+        let smooth = |line: &Element, place: Vec2| {
+            let (along, inward) = (line.tangent(0.0), (turn.center - place) / radius);
+            let off = inward.dot(along).abs();
+            let near = off < SMOOTH.0 || (off * radius < SMOOTH.1 && off < SMOOTH.2);
+            near && along.perp_dot(inward) * turn.sweep > 0.0
+        };
+        let lines = before.turn.is_none() && after.turn.is_none();
+        lines && sweep.abs() <= WIDEST && smooth(before, before.end) && smooth(after, after.start)
+    }
+
+    /// Where the partner of `neighbour` is nearest to `point`.
+    fn foot(&self, neighbour: &Element, point: Vec2) -> Result<Vec2, Box<Diagnostic>> {
+        let moved = aside(neighbour, self.distance)?;
+        Ok(match moved.turn {
+            Some(Turn { center, .. }) => {
+                center + (point - center).normalize_or_zero() * moved.start.distance(center)
+            }
+            // The tip of a cone.
+            None if neighbour.turn.is_some() => moved.start,
+            None => {
+                let along = neighbour.tangent(0.0);
+                moved.start + along * (point - moved.start).dot(along)
+            }
+        })
+    }
 }
 
 /// A whole element `distance` to its left.
@@ -84,7 +208,9 @@ fn aside(element: &Element, distance: f64) -> Result<Element, Box<Diagnostic>> {
         let rest = radius - distance * sweep.signum();
         if rest < -SAME {
             let what = format!("the radius {radius:.4} mm would become {rest:.4} mm");
-            return Err(refused(element, &what, "let corners keep their radius, or lean less"));
+            let way_out = "lean less, take a larger radius, or let corners between lines keep theirs \
+                           (--rounding constant)";
+            return Err(refused(element, &what, way_out));
         }
         if rest <= SAME {
             return Ok(element.shaped(geom::Element::line(center, center)));
@@ -92,18 +218,6 @@ fn aside(element: &Element, distance: f64) -> Result<Element, Box<Diagnostic>> {
     }
     // Without length it stays where it is: its neighbours say whether they still meet.
     Ok(element.shaped(element.parallel(distance).unwrap_or(element.shape)))
-}
-
-/// By how much a corner between two lines moves, where the arc is one: tangent to both.
-fn shift(before: &Element, arc: &Element, after: &Element, distance: f64) -> Option<Vec2> {
-    let turn = arc.turn?;
-    let lines = before.turn.is_none() && after.turn.is_none();
-    let smooth = |a: &Element, b: &Element| turn_angle(a.tangent(1.0), b.tangent(0.0)).abs() < 1e-4;
-    if !lines || turn.sweep.abs() > WIDEST || !smooth(before, arc) || !smooth(arc, after) {
-        return None;
-    }
-    let (p, q) = (before.tangent(1.0).perp(), after.tangent(0.0).perp());
-    Some((p + q) * (distance / (1.0 + p.dot(q))))
 }
 
 /// Where two moved neighbours meet: of the crossings of their whole lines and circles the nearest.

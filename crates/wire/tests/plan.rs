@@ -288,3 +288,92 @@ fn an_open_contour_is_cut_there_and_back() {
     assert_eq!(ends(1), (p(10.0, 0.2), p(0.0, 0.1)));
     assert!(plan.passes[0].left && !plan.passes[1].left);
 }
+
+/// Taper by so many mm over a height of 40 mm.
+fn leaned(mm: f64, rounding: Rounding) -> Option<Taper> {
+    Some(Taper { angle: (mm / 40.0).atan(), height: 40.0, rounding })
+}
+
+/// What is sharp below is sharp above: the wire goes round the corner of the upper face as it does round that of the lower
+/// one, by an arc of its own offset, which is 0.15 mm over the cosine of the angle.
+#[test]
+fn a_punch_with_sharp_corners_leans_either_way_and_keeps_them_sharp() {
+    for (aside, start) in [(2.0, None), (-2.0, None), (-2.0, Some(p(30.0, 20.0)))] {
+        for rounding in [Rounding::Conical, Rounding::Constant] {
+            let settings = Settings { taper: leaned(aside, rounding), ..settings(&[0.2, 0.15]) };
+            let punch = Opening { start, ..opening(plate(), Side::Outside) };
+            let plan = planned(punch, &settings);
+            let last = plan.passes.last().unwrap();
+            let r = 0.15 / f64::atan(2.0 / 40.0).cos();
+            let radii = last.path.upper().unwrap().elements().iter().filter_map(|e| e.radius());
+            assert!(radii.clone().all(|radius| (radius - r).abs() < 1e-9) && radii.count() >= 4);
+            let (w, h) = (30.0 + 2.0 * aside, 20.0 + 2.0 * aside);
+            let expected = w * h + 2.0 * (w + h) * r + PI * r * r;
+            let area = last.path.upper().unwrap().area().abs();
+            assert!((area - expected).abs() < 1e-6, "{aside} {rounding:?}: {area} {expected}");
+        }
+    }
+}
+
+/// The sharp end between a line and an arc: 3 mm aside the circle of 10 about the origin has 7 mm, and crosses y = 3 at √40.
+#[test]
+fn a_sharp_corner_at_an_arc_goes_to_where_line_and_circle_cross_above() {
+    let half = vec![
+        Element::line(p(-10.0, 0.0), p(10.0, 0.0)).from_line(1),
+        Element::arc(p(10.0, 0.0), p(-10.0, 0.0), Vec2::ZERO, PI).from_line(2),
+    ];
+    let half = Contour::new(half, 0.0).unwrap();
+    let settings = Settings { taper: leaned(-3.0, Rounding::Conical), ..settings(&[0.15]) };
+    let plan = planned(opening(half, Side::Outside), &settings);
+    let upper = plan.passes[0].path.upper().unwrap();
+    let centers: Vec<Vec2> =
+        upper.elements().iter().filter_map(|e| e.turn).map(|t| t.center).collect();
+    for corner in [p(40f64.sqrt(), 3.0), p(-(40f64.sqrt()), 3.0)] {
+        assert!(centers.iter().any(|center| center.distance(corner) < 1e-9), "{centers:?}");
+    }
+}
+
+/// An opening whose upper edge lies 2 mm nearer to where the wire is threaded.
+#[test]
+fn a_lead_shorter_than_the_wire_leans_is_refused_with_one_that_has_room() {
+    let die = |thread, start| Opening { thread, start, ..opening(plate(), Side::Inside) };
+    let taper = leaned(-2.0, Rounding::Conical);
+    let narrow = Settings { taper, corners: Corners::Round, ..settings(&[0.15]) };
+    let with =
+        |length| Settings { lead: Lead { length, shape: LeadShape::Straight }, ..narrow.clone() };
+    let refused = plan(&[die(None, None)], &with(1.0)).unwrap_err();
+    assert_eq!(
+        (refused.rule, refused.help.as_str()),
+        ("taper-lead", "there is room with --lead 2.4")
+    );
+    assert_eq!(planned(die(None, None), &with(2.4)).passes.len(), 1);
+    // 1 mm from the lower edge, and so in the part above; the ends of the wire do not move against each other.
+    let refused = plan(&[die(Some(p(5.0, 1.0)), Some(p(15.0, 0.0)))], &narrow).unwrap_err();
+    assert_eq!(refused.rule, "taper-lead");
+    assert!(refused.message.contains("cuts into the part on its upper face"), "{refused}");
+    assert_eq!(refused.help, "there is room with --lead 2.4 and without --thread");
+    // Wider above, the same places do.
+    let wide = Settings { taper: leaned(2.0, Rounding::Conical), ..narrow };
+    assert_eq!(planned(die(Some(p(5.0, 1.0)), Some(p(15.0, 0.0))), &wide).passes.len(), 1);
+}
+
+/// The contour begins with a fillet of 0.1 mm, into which a wire at 0.15 mm does not go.
+#[test]
+fn a_cut_does_not_begin_on_a_fillet_that_is_smaller_than_the_wire() {
+    let fillet = vec![
+        Element::arc(p(0.0, 0.1), p(0.1, 0.0), p(0.1, 0.1), PI / 2.0),
+        Element::line(p(0.1, 0.0), p(30.0, 0.0)),
+        Element::line(p(30.0, 0.0), p(30.0, 20.0)),
+        Element::line(p(30.0, 20.0), p(0.0, 20.0)),
+        Element::line(p(0.0, 20.0), p(0.0, 0.1)),
+    ];
+    let contour = Contour::new(fillet, 0.0).unwrap();
+    let round = Settings { corners: Corners::Round, ..settings(&[0.15]) };
+    let made = planned(opening(contour.clone(), Side::Inside), &round);
+    assert!(made.passes[0].path.lower().elements()[0].end.distance(p(15.0, 19.85)) < 0.2);
+    // Where somebody asks for it, the message says where else.
+    let begun = Opening { start: Some(p(0.0, 0.1)), ..opening(contour, Side::Inside) };
+    let refused = plan(&[begun], &round).unwrap_err();
+    assert_eq!(refused.rule, "cuts-part");
+    assert_eq!(refused.help, "there is room with --begin 15.0000,20.0000 --lead 5");
+}

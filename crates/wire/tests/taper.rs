@@ -35,7 +35,7 @@ fn area(width: f64, height: f64, r: f64) -> f64 {
 fn conical_corners_grow_and_constant_ones_stay() {
     // 1 mm outwards: to the right of a counter-clockwise contour.
     for (rounding, radius) in [(Rounding::Conical, 4.0), (Rounding::Constant, 3.0)] {
-        let upper = lean(&rounded(3.0), -1.0, rounding).unwrap();
+        let upper = lean(&rounded(3.0), -1.0, rounding, None).unwrap();
         assert_eq!(upper.elements().len(), 8);
         let radii = upper.elements().iter().filter_map(|e| e.radius());
         assert!(radii.clone().all(|r| (r - radius).abs() < 1e-12) && radii.count() == 4);
@@ -46,13 +46,13 @@ fn conical_corners_grow_and_constant_ones_stay() {
 
 #[test]
 fn a_corner_radius_that_would_pass_zero_needs_constant_corners() {
-    let refused = lean(&rounded(0.8), 1.0, Rounding::Conical).unwrap_err();
+    let refused = lean(&rounded(0.8), 1.0, Rounding::Conical, None).unwrap_err();
     assert_eq!((refused.rule, refused.line), ("taper-corner", 2));
     assert!(refused.message.contains("0.8000 mm would become -0.2000 mm"), "{refused}");
-    let upper = lean(&rounded(0.8), 1.0, Rounding::Constant).unwrap();
+    let upper = lean(&rounded(0.8), 1.0, Rounding::Constant, None).unwrap();
     assert!((upper.area() - area(28.0, 18.0, 0.8)).abs() < 1e-9);
     // Exactly zero is the tip of a cone: the upper end stands still there.
-    let upper = lean(&rounded(1.0), 1.0, Rounding::Conical).unwrap();
+    let upper = lean(&rounded(1.0), 1.0, Rounding::Conical, None).unwrap();
     assert_eq!(upper.elements()[1].length(), 0.0);
     assert!((upper.area() - 28.0 * 18.0).abs() < 1e-9);
 }
@@ -62,7 +62,7 @@ fn sharp_corners_stay_sharp() {
     let corners = [p(0.0, 0.0), p(30.0, 0.0), p(30.0, 20.0), p(0.0, 20.0)];
     let next = corners.iter().cycle().skip(1);
     let lines = corners.iter().zip(next).map(|(&p, &q)| Element::line(p, q)).collect();
-    let upper = lean(&Contour::new(lines, 0.0).unwrap(), -1.0, Rounding::Conical).unwrap();
+    let upper = lean(&Contour::new(lines, 0.0).unwrap(), -1.0, Rounding::Conical, None).unwrap();
     assert!(upper.elements()[1].start.distance(p(31.0, -1.0)) < 1e-12);
     assert!((upper.area() - 32.0 * 22.0).abs() < 1e-9);
 }
@@ -77,7 +77,7 @@ fn a_line_and_an_arc_meet_where_line_and_circle_cross() {
         ],
         0.0,
     );
-    let upper = lean(&open.unwrap(), 1.0, Rounding::Conical).unwrap();
+    let upper = lean(&open.unwrap(), 1.0, Rounding::Conical, None).unwrap();
     let expected = p(120f64.sqrt(), -1.0);
     assert!(upper.elements()[1].start.distance(expected) < 1e-12, "{:?}", upper.elements());
     let expected = (1.0f64 / 11.0).asin() - PI / 2.0;
@@ -88,14 +88,15 @@ fn a_line_and_an_arc_meet_where_line_and_circle_cross() {
 fn a_circle_becomes_a_cone_and_a_side_that_vanishes_is_refused() {
     let start = p(5.0, 0.0);
     let circle = Contour::new(vec![Element::arc(start, start, Vec2::ZERO, TAU)], 0.0).unwrap();
-    let upper = lean(&circle, 2.0, Rounding::Constant).unwrap();
+    let upper = lean(&circle, 2.0, Rounding::Constant, None).unwrap();
     assert!((upper.length() - TAU * 3.0).abs() < 1e-12);
-    assert_eq!(lean(&circle, 5.5, Rounding::Constant).unwrap_err().rule, "taper-corner");
+    assert_eq!(lean(&circle, 5.5, Rounding::Constant, None).unwrap_err().rule, "taper-corner");
     // A step 1 mm wide between two outer corners, leaned inwards by 2 mm.
     let narrow = [p(0.0, 0.0), p(10.0, 0.0), p(10.0, 10.0), p(9.0, 11.0), p(0.0, 11.0)];
     let next = narrow.iter().cycle().skip(1);
     let lines: Vec<_> = narrow.iter().zip(next).map(|(&p, &q)| Element::line(p, q)).collect();
-    let refused = lean(&Contour::new(lines, 0.0).unwrap(), 2.0, Rounding::Conical).unwrap_err();
+    let refused =
+        lean(&Contour::new(lines, 0.0).unwrap(), 2.0, Rounding::Conical, None).unwrap_err();
     assert_eq!(refused.rule, "taper-corner");
 }
 
@@ -118,7 +119,7 @@ proptest! {
             Element::arc(a, b, center, sweep)
         });
         let lower = Contour::new(elements.collect(), 0.0).unwrap();
-        let Ok(upper) = lean(&lower, distance, Rounding::Conical) else { return Ok(()) };
+        let Ok(upper) = lean(&lower, distance, Rounding::Conical, None) else { return Ok(()) };
         prop_assert!(upper.is_closed() && upper.elements().len() == n);
         for (below, above) in lower.elements().iter().zip(upper.elements()) {
             let left = match below.turn {
