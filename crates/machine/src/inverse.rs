@@ -41,27 +41,51 @@ impl Machine {
     /// # Errors
     /// [`Unreachable`] where no position does.
     pub fn inverse(&self, axis: Vec3) -> Result<Solutions, Unreachable> {
-        let zero = self.rotary.iter().fold([0.0; 3], |mut zero, axis| {
+        Inverse::of(self).solve(axis)
+    }
+
+    /// Whether these positions are of the solution that the machine does not prefer.
+    pub(crate) fn misses_preference(&self, degrees: [f64; 3]) -> bool {
+        self.rotary.iter().any(|axis| axis.prefer * degrees[axis.index()] < -1e-6)
+    }
+}
+
+/// The inverse kinematics of the rotary axes of one machine, made once for many tool axes.
+#[derive(Clone, Debug)]
+pub struct Inverse<'a> {
+    machine: &'a Machine,
+    /// Degrees of A, B, C in the kinematic zero.
+    zero: [f64; 3],
+    chain: Chain,
+}
+
+impl<'a> Inverse<'a> {
+    /// That of `machine`.
+    pub fn of(machine: &'a Machine) -> Inverse<'a> {
+        let zero = machine.rotary.iter().fold([0.0; 3], |mut zero, axis| {
             zero[axis.index()] = axis.offset;
             zero
         });
-        let chain = Chain::new(self, zero);
+        Inverse { machine, zero, chain: Chain::new(machine, zero) }
+    }
+
+    /// [`Machine::inverse`].
+    ///
+    /// # Errors
+    /// [`Unreachable`] where no position brings the tool along `axis`.
+    pub fn solve(&self, axis: Vec3) -> Result<Solutions, Unreachable> {
+        let Inverse { machine, zero, chain } = self;
         let bearings = chain.bearings(axis)?;
         let mut degrees = [0, 1].map(|family| {
             let turns = chain.solution(&bearings, family);
             let held = if bearings.free() { zero[chain.places[0]] } else { turns[0].degrees() };
             chain.spread([held, turns[1].degrees()])
         });
-        if self.misses_preference(degrees[0]) && !self.misses_preference(degrees[1]) {
+        if machine.misses_preference(degrees[0]) && !machine.misses_preference(degrees[1]) {
             degrees.swap(0, 1);
         }
         let free = (bearings.free() && chain.links > 0).then_some(chain.places[0]);
         Ok(Solutions { degrees, free })
-    }
-
-    /// Whether these positions are of the solution that the machine does not prefer.
-    pub(crate) fn misses_preference(&self, degrees: [f64; 3]) -> bool {
-        self.rotary.iter().any(|axis| axis.prefer * degrees[axis.index()] < -1e-6)
     }
 }
 

@@ -20,13 +20,15 @@ pub enum Unsaid {
     WorkZero,
     /// The length of the tool.
     ToolLength,
+    /// Which of its two solutions the control takes for a tilted plane, or for a vector.
+    Solution,
 }
 
 impl Unsaid {
     /// The rule under which a program that hangs on it is refused.
     pub fn rule(self) -> &'static str {
         match self {
-            Unsaid::AxisPoint(_) | Unsaid::WorkZero => "kinematics",
+            Unsaid::AxisPoint(_) | Unsaid::WorkZero | Unsaid::Solution => "kinematics",
             Unsaid::ToolLength => "tool-length",
         }
     }
@@ -44,6 +46,9 @@ impl Unsaid {
             Unsaid::ToolLength => String::from(
                 "LENGTH in the source's tool call, or in its tool table; tool center point control needs none",
             ),
+            Unsaid::Solution => String::from(
+                "`work_zero = [x, y, z]` (mm) in the machine file: then each is checked",
+            ),
         }
     }
 }
@@ -54,6 +59,9 @@ impl fmt::Display for Unsaid {
             Unsaid::AxisPoint(letter) => write!(f, "where the axis of {letter} lies"),
             Unsaid::WorkZero => f.write_str("where the work lies on the turned table"),
             Unsaid::ToolLength => f.write_str("the length of the tool that the head tilts"),
+            Unsaid::Solution => {
+                f.write_str("which positions the rotary axes take for a tilted plane")
+            }
         }
     }
 }

@@ -26,6 +26,7 @@ mod sheet;
 pub mod time;
 pub mod upgrade;
 
+pub use inverse::{Inverse, Solutions};
 pub use kinematics::{Unsaid, lean};
 pub use load::{load, load_control, load_origin, load_text};
 pub use model::*;

@@ -4,7 +4,7 @@
 //! position of the tool tip, the work zero and, along Z, the length of the tool. Otherwise only what
 //! can be said without it is: no axis may need more way than its travel is long.
 
-use crate::{LinearAxis, Machine, Unsaid};
+use crate::{LinearAxis, Machine};
 use geom::{Arc, Vec2, Vec3, angle_between};
 use program::{Diagnostic, Feed, Spindle, Tool};
 use serde::Serialize;
@@ -13,10 +13,11 @@ use serde::Serialize;
 const ROUNDING: f64 = 1e-6;
 
 /// What is known of the travel of the linear axes, and so how a program is held against it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Travel {
     /// No axis has a limit.
+    #[default]
     Unlimited,
     /// The work zero is not known: no axis may need more way than its travel is long.
     Lengths,
@@ -45,39 +46,13 @@ pub struct Limits<'a> {
     extent: [[(f64, u32); 2]; 3],
     /// The line that first asked for more than the length of the travel.
     too_far: [Option<u32>; 3],
-    /// What kept positions from being held.
-    unsaid: Vec<Unsaid>,
 }
 
 impl<'a> Limits<'a> {
     /// The limits of `machine`, nothing having moved yet.
     pub fn new(machine: &'a Machine) -> Limits<'a> {
         let nowhere = [(f64::INFINITY, 0), (f64::NEG_INFINITY, 0)];
-        Limits {
-            machine,
-            travel: Travel::of(machine),
-            extent: [nowhere; 3],
-            too_far: [None; 3],
-            unsaid: Vec::new(),
-        }
-    }
-
-    /// The position of the linear axes where it hangs on what nobody has said.
-    pub fn unknown(&mut self, unsaid: Unsaid) -> Vec3 {
-        self.note(unsaid);
-        Vec3::NAN
-    }
-
-    /// What nobody has said, and so has kept positions from being held against the travel.
-    pub fn unsaid(&self) -> &[Unsaid] {
-        &self.unsaid
-    }
-
-    #[inline]
-    fn note(&mut self, unsaid: Unsaid) {
-        if self.unsaid.last() != Some(&unsaid) && !self.unsaid.contains(&unsaid) {
-            self.unsaid.push(unsaid);
-        }
+        Limits { machine, travel: Travel::of(machine), extent: [nowhere; 3], too_far: [None; 3] }
     }
 
     /// Checks positions of the linear axes (mm, as a program gives them) and the rotary axes (degrees
@@ -110,7 +85,6 @@ impl<'a> Limits<'a> {
                 let mut min = axis.min;
                 if i == 2 && tool_length.is_none() && min.is_finite() {
                     min = f64::NEG_INFINITY;
-                    self.note(Unsaid::ToolLength);
                 }
                 held(letter, slides[i], min, axis.max, " mm", line)?;
             } else {

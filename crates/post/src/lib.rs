@@ -36,7 +36,7 @@ mod writer;
 
 pub use catalogue::{Kind, Parameter, catalogue};
 
-use machine::{Machine, Unsaid};
+use machine::Machine;
 use program::{Diagnostic, Program};
 
 /// A written program.
@@ -48,8 +48,6 @@ pub struct Output {
     pub blocks: usize,
     /// What was lowered or is worth knowing, with source lines.
     pub warnings: Vec<Diagnostic>,
-    /// What nobody has said, and so has kept positions from being held against the travel.
-    pub unsaid: Vec<Unsaid>,
 }
 
 /// Writes `program` for `machine`.

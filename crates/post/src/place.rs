@@ -382,9 +382,8 @@ impl Walk<'_> {
     /// A tilted plane whose Z is `axis`: that of the set-up where it fits, else the one that turns
     /// about X and Y only.
     fn tilt(&mut self, axis: Vec3) -> Done {
-        if self.machine.inverse(axis).is_err() {
-            return Err(unreachable(axis));
-        }
+        let target = Target { axis, line: self.line, kind: TargetKind::Rapid };
+        plan::plan(self.machine, self.place.degrees, [target])?;
         let set_up = self.place.set_up;
         let (matrix, origin) = if angle_between(set_up.matrix3.z_axis, axis) < ANGLE_EPSILON {
             (set_up.matrix3, set_up.translation)

@@ -44,6 +44,7 @@ mod expected;
 mod gauge;
 mod hole;
 mod line;
+mod machine_pose;
 mod place;
 mod prover;
 mod report;
@@ -51,10 +52,13 @@ mod state;
 mod stops;
 mod surfaces;
 mod tolerance;
+mod travel;
 
 pub use accepted::{ACCEPTABLE, Accepted};
 pub use prover::Prover;
-pub use report::{Compared, Deviations, Excursion, Extent, Report, SideBySide, Summary, Worst};
+pub use report::{
+    Compared, Deviations, Excursion, Extent, Report, SideBySide, Summary, TravelChecked, Worst,
+};
 pub use tolerance::{Applied, Tolerances};
 
 use control::Setup;

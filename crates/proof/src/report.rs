@@ -3,6 +3,8 @@
 use crate::tolerance::Applied;
 use control::{Orientation, Position};
 use geom::{Arc, Vec3};
+use machine::Unsaid;
+use machine::limits::Travel;
 use program::{Diagnostic, Severity};
 use serde::Serialize;
 
@@ -34,8 +36,19 @@ pub struct Report {
     pub deviations: Deviations,
     /// Where the program leaves the source's path and comes back to it; the first hundred.
     pub excursions: Vec<Excursion>,
+    /// What of the travel of the axes was checked.
+    pub travel: TravelChecked,
     /// What the program does, as the control runs it.
     pub program: Summary,
+}
+
+/// What of the travel of the axes was checked, in machine space. Limits of rotary axes always are.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct TravelChecked {
+    /// How X, Y and Z were checked.
+    pub linear: Travel,
+    /// What nobody says, for want of which positions of X, Y and Z were not checked.
+    pub unsaid: Vec<Unsaid>,
 }
 
 /// A place of the source beside a place of the program.

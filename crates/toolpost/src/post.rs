@@ -6,12 +6,11 @@ use crate::beside::beside;
 use crate::files::{self, Target};
 use crate::progress::Progress;
 use crate::prove;
-use crate::summary::{Shape, time, travel};
+use crate::summary::{Shape, time};
 use crate::toolpath::{self, Toolpath};
 use ::post::Output;
-use machine::limits::Travel;
+use machine::Machine;
 use machine::time::Times;
-use machine::{Machine, Unsaid};
 use program::{Diagnostic, Op, Program, Record};
 use proof::Tolerances;
 use serde_json::json;
@@ -115,15 +114,12 @@ pub fn proven(
         "source": toolpath.describe(&shape),
         "machine": toolpath::describe(machine),
         "program": { "file": file, "blocks": output.blocks, "bytes": output.text.len() },
-        "travel": Travel::of(machine),
-        "travel_unsaid": output.unsaid.iter().map(Unsaid::to_string).collect::<Vec<_>>(),
         "time_s": { "total": times.total(), "cutting": times.cutting, "rapid": times.rapid },
         "proof": proof,
     });
     let mut rows = toolpath.rows(Some(machine));
     rows.extend(shape.rows());
     rows.push(("time", time(&times)));
-    rows.push(("travel", travel(Travel::of(machine), &output.unsaid)));
     rows.extend(prove::rows(&proof, machine));
     let account = Account { verdict: Verdict::Done, rows, data, findings: warnings };
     Ok(Posted { text: output.text, account })

@@ -79,6 +79,9 @@ pub fn rows(proof: &Report, machine: &Machine) -> Vec<(&'static str, String)> {
             rows.push((letter, summary::extent(min, max, unit)));
         }
     }
+    if machine.wire.is_none() {
+        rows.push(("travel", summary::travel(&proof.travel)));
+    }
     let compared = &proof.compared;
     let moves = compared.rapids + compared.lines + compared.arcs + compared.holes;
     rows.push(("proof", format!("all {moves} moves are those of the toolpath")));

@@ -6,6 +6,7 @@ use machine::limits::Travel;
 use machine::time::Times;
 use program::Program;
 use program::statistics::Statistics;
+use proof::TravelChecked;
 use serde::Serialize;
 
 /// Totals of a toolpath, and of each tool.
@@ -103,21 +104,31 @@ pub fn duration(seconds: f64) -> String {
     }
 }
 
-/// How the positions of a program are held against the travel of the machine, and what was missing for those that
-/// are not.
-pub fn travel(travel: Travel, unsaid: &[Unsaid]) -> String {
-    let held = match travel {
+/// What of the travel of the axes was checked, what was not, and what to do about it.
+pub fn travel(travel: &TravelChecked) -> String {
+    let checked = match travel.linear {
         Travel::Unlimited => "not checked: the machine file gives no travel",
-        Travel::Lengths => {
-            "only the lengths of the ways are held against the travel: work_zero is not given"
-        }
-        Travel::MachineCoordinates => "every position is within it, in machine coordinates",
+        Travel::Lengths => "only stroke lengths checked; set work_zero to check positions",
+        Travel::MachineCoordinates => "every position checked in machine coordinates",
     };
-    let missing: Vec<String> =
-        unsaid.iter().map(|unsaid| format!("nobody says {unsaid}")).collect();
-    match missing.is_empty() {
-        true => held.to_owned(),
-        false => format!("{held}, but not where {}", missing.join(" or ")),
+    if travel.linear == Travel::Unlimited || travel.unsaid.is_empty() {
+        return checked.to_owned();
+    }
+    let missing: Vec<String> = travel.unsaid.iter().map(unchecked).collect();
+    format!("{checked}; unchecked: {}", missing.join(", "))
+}
+
+/// Positions that were not checked, and what is missing for that.
+fn unchecked(unsaid: &Unsaid) -> String {
+    match unsaid {
+        Unsaid::AxisPoint(letter) => {
+            format!("X, Y, Z where {letter} turns (set `point` of {letter})")
+        }
+        Unsaid::WorkZero => "X, Y, Z where the table turns (set work_zero)".into(),
+        Unsaid::ToolLength => {
+            "Z downwards, and X, Y, Z where a head tilts (give the tool length)".into()
+        }
+        Unsaid::Solution => "tilted planes that have two solutions (set work_zero)".into(),
     }
 }
 

@@ -73,6 +73,8 @@ const REFUSED: &[(&str, &[&str], &str)] = &[
     ("marlin-cnc", TILTED, "unreachable-orientation"),
     // From below: no table of these turns that far.
     ("sinumerik-840d-table-ac", &["Sacrifice-Board.apt"], "axis-limit"),
+    ("fanuc-table-bc", &["Sacrifice-Board.apt"], "axis-limit"),
+    ("sinumerik-840d-traori", &["Sacrifice-Board.apt"], "axis-limit"),
     ("dmu50-heidenhain", &["Sacrifice-Board.apt"], "unreachable-orientation"),
     // Nothing couples feed and spindle in a tap.
     ("generic-3axis-iso", &["plate.cls"], "cycle-tap"),

@@ -175,7 +175,7 @@ impl<'a> Walk<'a> {
         let warnings = self.findings.finish(self.machine.capabilities.lowering_tolerance)?;
         let (text, blocks) = self.writer.finish();
         self.limits.memory(blocks).map_err(|found| vec![*found])?;
-        Ok(crate::Output { text, blocks, warnings, unsaid: self.limits.unsaid().to_vec() })
+        Ok(crate::Output { text, blocks, warnings })
     }
 
     fn records(&mut self) -> Done {

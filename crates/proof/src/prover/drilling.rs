@@ -83,6 +83,10 @@ impl Prover<'_> {
         let over = self.here.place.tip.distance(drilled.r_plane.place.tip);
         let out = drilled.bottom.place.tip.distance(drilled.retracted.place.tip);
         summary.rapid_length_mm += if over.is_nan() { out } else { over + out };
+        for station in [&drilled.bottom, &drilled.r_plane, &drilled.retracted] {
+            self.hold_travel(station, None);
+        }
+        self.standing.arrive(&pose.orientation);
         self.here = drilled.retracted;
         if below {
             self.leg.hole.drilled(&cycle);

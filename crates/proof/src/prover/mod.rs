@@ -5,6 +5,7 @@ mod drilling;
 mod events;
 mod rapid;
 mod single;
+mod travel;
 mod way;
 
 use crate::accepted::Accepted;
@@ -12,10 +13,12 @@ use crate::expected::{Cursor, Goal, Kind, Step};
 use crate::gauge::Gauge;
 use crate::hole::{Drilled, Hole, Run};
 use crate::line::Followed;
+use crate::machine_pose::Standing;
 use crate::place::{Number, Place, Station};
-use crate::report::{Excursion, Report};
+use crate::report::{Excursion, Report, TravelChecked};
 use crate::state::{self, Difference, Lengths, Running};
 use crate::tolerance::{Applied, Tolerances};
+use crate::travel::Travel;
 use crate::{arc, line, stops};
 use control::{Action, ArcTo, Event, Orientation, Position};
 use geom::{Arc, Vec3};
@@ -38,6 +41,9 @@ pub struct Prover<'a> {
     /// Compensation of the source as far as moves have switched it.
     compensation: Compensation,
     here: Station,
+    /// Where the rotary axes stand.
+    standing: Standing<'a>,
+    travel: Travel,
     leg: Leg,
     report: Report,
     accepted: Accepted,
@@ -92,6 +98,8 @@ impl<'a> Prover<'a> {
             statistics: None,
             cuts: None,
             here: gauge.station(0, unknown),
+            standing: Standing::new(machine),
+            travel: Travel::new(machine),
             gauge,
             cursor,
             running: Running::at_reset(machine),
@@ -142,6 +150,8 @@ impl<'a> Prover<'a> {
                 self.differs(0, ("no-end", "the program has no end".into()));
             }
         }
+        let linear = self.travel.known();
+        self.report.travel = TravelChecked { linear, unsaid: self.travel.into_unsaid() };
         self.report.proven = self.report.mismatches.is_empty();
         self.report
     }
@@ -176,7 +186,10 @@ impl<'a> Prover<'a> {
             }
             Action::Home(axes) => return self.home(line, *axes),
             Action::MachineMove(to) => return self.machine_move(line, to),
-            Action::Swivel => self.check_height(line),
+            Action::Swivel => {
+                self.standing.swivel();
+                self.check_height(line);
+            }
             Action::Tool(tool) => return self.change_tool(line, tool),
             Action::Dwell(seconds) if *seconds == 0.0 => {}
             Action::Dwell(seconds) => return self.happens(line, Step::Dwell(*seconds)),
@@ -262,6 +275,7 @@ impl<'a> Prover<'a> {
         }
         let block = block.flatten();
         self.count(gait, &to, arc, block.as_ref());
+        self.hold_travel(&to, block.as_ref());
         if self.leg.left.is_none() {
             let gauge = self.gauge;
             self.pass_left_out(|goal| {
@@ -279,6 +293,7 @@ impl<'a> Prover<'a> {
             && gait == Gait::Rapid
             && self.turns_at_home(&to)
         {
+            self.standing.arrive(&to.position.orientation);
             self.here = to;
             return Ok(());
         }
@@ -319,6 +334,7 @@ impl<'a> Prover<'a> {
         if let (Ok(()), Some(found)) = (&outcome, wrong_way) {
             self.found(found);
         }
+        self.standing.arrive(&to.position.orientation);
         self.here = to;
         outcome
     }

@@ -253,6 +253,9 @@ impl Prover<'_> {
                 }
             }
         }
+        if (0..3).any(|i| axes.contains(Axes::rotary(i))) {
+            self.standing.forget();
+        }
         let to = self.gauge.station(line, pose);
         if self.leg.left.is_some() {
             self.stop_at(&to)?;

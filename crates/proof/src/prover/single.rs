@@ -8,6 +8,8 @@ impl Prover<'_> {
     pub(super) fn single(&mut self, line: u32, pose: &Position, is: Kind) -> Outcome {
         let to = self.gauge.station(line, *pose);
         self.count(Gait::Feed, &to, None, None);
+        self.hold_travel(&to, None);
+        self.standing.arrive(&to.position.orientation);
         self.pass_left_out(|_| false);
         self.miss_events(line);
         let goal = match &self.cursor.step {

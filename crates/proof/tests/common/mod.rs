@@ -57,6 +57,14 @@ pub fn five_axes() -> Machine {
     machine::load_text("five.toml", &format!("work_zero = [0, 0, 0]\n{mill}{TABLE}")).unwrap()
 }
 
+/// The same with these keys at the top, these lines below `[axes]`, and this much travel of A.
+pub fn five_axes_within(top: &str, axes: &str, travel: [f64; 2]) -> Machine {
+    let mill = MILL.replace("[orientation]", "[orientation]\nsimultaneous = \"machine-angles\"");
+    let range = format!("letter = \"A\"\nmin = {}\nmax = {}", travel[0], travel[1]);
+    let table = TABLE.replace("letter = \"A\"", &range);
+    machine::load_text("five.toml", &format!("{top}\n{mill}\n[axes]\n{axes}\n{table}")).unwrap()
+}
+
 pub fn at(x: f64, y: f64, z: f64) -> Pose {
     Pose::upright(Vec3::new(x, y, z)).unwrap()
 }

@@ -1,0 +1,65 @@
+//! Each block of the program in machine space: no axis leaves its travel, at its end and on the way.
+
+use super::*;
+
+/// Rotary axes turn at most this much between two positions that are looked at, degrees: 200 mm from the axis of a table
+/// the slides leave the chord between two by 0.07 mm.
+const SAMPLE: f64 = 3.0;
+
+impl Prover<'_> {
+    /// Holds the axes within their travel in a move to `to`, along `block` where it is an arc.
+    #[inline]
+    pub(super) fn hold_travel(&mut self, to: &Station, block: Option<&Arc>) {
+        let gauge = self.gauge;
+        if gauge.machine.wire.is_some() {
+            return;
+        }
+        let slack = gauge.slack(to);
+        let from = single(self.standing.here());
+        let angles = self.standing.at(&to.position.orientation);
+        let mut found = self.travel.broken_at(&gauge, angles, &to.position, slack);
+        if let (None, Some(arc)) = (&found, block) {
+            found = self.travel.broken_on_arc(&gauge, angles, arc, slack);
+        }
+        let own = matches!(to.position.orientation, Orientation::Rotary { tool_center: false, .. });
+        if let (None, Some(from), Some(end), false) = (&found, from, single(angles), own) {
+            found = self.broken_on_way(to, from, end, slack);
+        }
+        if let Some(found) = found {
+            let message = format!("source line {}: {}", self.cursor.line, found.message);
+            self.found(Diagnostic { message, ..found }.line(to.line));
+        }
+    }
+
+    /// What is wrong between the ends of a move in which the rotary axes turn from one place (degrees of A, B, C) to
+    /// another, and the control makes the linear axes follow.
+    fn broken_on_way(
+        &mut self,
+        to: &Station,
+        from: [f64; 3],
+        end: [f64; 3],
+        slack: f64,
+    ) -> Option<Diagnostic> {
+        let turned = (0..3).map(|i| (end[i] - from[i]).abs()).fold(0.0, f64::max);
+        if turned <= SAMPLE {
+            return None;
+        }
+        let samples = (turned / SAMPLE).ceil().min(360.0) as u32;
+        (1..samples).find_map(|i| {
+            let part = f64::from(i) / f64::from(samples);
+            let degrees = [0, 1, 2].map(|k| from[k] + (end[k] - from[k]) * part);
+            let orientation = Orientation::Rotary { degrees, tool_center: true };
+            let point = self.here.place.tip.lerp(to.place.tip, part);
+            let on_way = Position { point, orientation };
+            self.travel.broken_at(&self.gauge, &[degrees], &on_way, slack)
+        })
+    }
+}
+
+/// Where the rotary axes stand, where only one place is possible.
+fn single(angles: &[[f64; 3]]) -> Option<[f64; 3]> {
+    match angles {
+        [one] => Some(*one),
+        _ => None,
+    }
+}
