@@ -6,8 +6,8 @@ use crate::program::Program;
 use crate::record::{COOLANTS, FEED_UNITS};
 use geom::Vec3;
 use program::{
-    Compensation, Cycle, CycleKind, Diagnostic, Feed, Output, OutputValue, Spindle, Tool,
-    Withdrawal, WorkOffset,
+    CompensatedPath, Compensation, Cycle, CycleKind, Diagnostic, Feed, Output, OutputValue,
+    Spindle, Tool, Withdrawal, WorkOffset,
 };
 use pyo3::prelude::*;
 use pyo3::types::PyBool;
@@ -201,7 +201,8 @@ impl Builder {
         offset: Option<u32>,
     ) -> Built<'py> {
         let name = name.to_owned();
-        let tool = Tool { number, name, diameter, corner_radius, length, offset };
+        let tapered = false;
+        let tool = Tool { number, name, diameter, corner_radius, length, offset, tapered };
         let done = slf.built.tool(tool);
         taken(slf, done)
     }
@@ -233,21 +234,28 @@ impl Builder {
         Ok(slf)
     }
 
-    /// Cutter radius compensation from here on: ``off``, or the tool ``left`` or ``right`` of the path.
-    #[pyo3(signature = (side, register = None))]
+    /// Cutter radius compensation from here on: ``off``, or the tool ``left`` or ``right`` of the path, which is that of the
+    /// tool's ``centre`` or the ``contour``, in the whole program.
+    #[pyo3(signature = (side, register = None, *, path = None))]
     fn compensation<'py>(
         mut slf: PyRefMut<'py, Self>,
         side: &str,
         register: Option<u32>,
+        path: Option<&str>,
     ) -> Built<'py> {
+        let paths = [("centre", CompensatedPath::Center), ("contour", CompensatedPath::Contour)];
         let sides = [
             ("off", Compensation::Off),
             ("left", Compensation::Left(register)),
             ("right", Compensation::Right(register)),
         ];
         let compensation = word(slf.py(), "side", side, &sides)?;
-        slf.built.compensation(compensation);
-        Ok(slf)
+        let path = path.map(|path| word(slf.py(), "path", path, &paths)).transpose()?;
+        let done = path.map_or(Ok(()), |path| slf.built.compensated_path(path));
+        if done.is_ok() {
+            slf.built.compensation(compensation);
+        }
+        taken(slf, done)
     }
 
     /// Work offset from here on: 54 is the first that the control can set (``G54``), 55 the second.

@@ -16,7 +16,7 @@ use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
 use toolpost::answer::Stop;
 use toolpost::toolpath::{self, Toolpath};
-use toolpost::{Csys, Origin, Units, Way, WholeNumbers};
+use toolpost::{Csys, CutcomPath, Origin, Units, Way, WholeNumbers};
 
 /// A program in the neutral vocabulary: a sequence of records, and its moves as NumPy arrays.
 ///
@@ -248,6 +248,8 @@ impl Records {
 /// csys : {'local', 'world'}, optional
 ///     Where the coordinates behind a ``CSYS`` of SolidWorks CAM stand; by default in the world, where the file says
 ///     ``TRNTYP/WORLD``.
+/// cutcom : {'centre', 'contour'}, optional
+///     Which path the coordinates behind ``CUTCOM`` are; by default what an arc in the file shows.
 /// strict : bool
 ///     Take every warning as an error.
 ///
@@ -266,7 +268,7 @@ impl Records {
 /// What each format means, with sources: ``docs/sources/apt.md``, ``docs/controls``.
 #[pyfunction]
 #[pyo3(signature = (path, control=None, *, tools=None, folders=Vec::new(), whole_numbers=None, units=None,
-                    block_delete=false, start=None, aside=None, csys=None, strict=false))]
+                    block_delete=false, start=None, aside=None, csys=None, cutcom=None, strict=false))]
 #[expect(clippy::too_many_arguments, reason = "keywords of Python")]
 pub fn read(
     py: Python<'_>,
@@ -280,9 +282,11 @@ pub fn read(
     start: Option<[f64; 3]>,
     aside: Option<&str>,
     csys: Option<&str>,
+    cutcom: Option<&str>,
     strict: bool,
 ) -> PyResult<Program> {
     let frames = [("local", Csys::Local), ("world", Csys::World)];
+    let paths = [("centre", CutcomPath::Centre), ("contour", CutcomPath::Contour)];
     let counts = [("units", WholeNumbers::Units), ("increments", WholeNumbers::Increments)];
     let ways = [("+X", Way::PlusX), ("-X", Way::MinusX), ("+Y", Way::PlusY), ("-Y", Way::MinusY)];
     let lengths = [("mm", Units::Mm), ("inch", Units::Inch)];
@@ -301,6 +305,7 @@ pub fn read(
         start,
         aside: aside.map(|given| word(py, "aside", given, &ways)).transpose()?,
         csys: csys.map(|given| word(py, "csys", given, &frames)).transpose()?,
+        cutcom: cutcom.map(|given| word(py, "cutcom", given, &paths)).transpose()?,
     };
     released(py, || toolpath::read(&path, strict, &origin, None)).map(Program::from)
 }

@@ -203,3 +203,31 @@ def test_arrays_have_what_was_built(moves):
     assert program.positions.tolist() == [list(point) for _, point in moves]
     assert [Kind(kind).name.lower() for kind in program.kinds] == [kind for kind, _ in moves]
     assert program.axes.tolist() == [[0, 0, 1]] * len(moves)
+
+
+def contour(path=None):
+    """Build a program with compensation around two walls."""
+    built = Program.builder("walls").tool(1, diameter=6).spindle(5000).feed(300)
+    built.rapid((0, -9, 5)).line((0, -9, -1)).compensation("left", path=path)
+    built.line((0, 0, -1)).line((30, 0, -1)).compensation("off").line((30, -9, -1))
+    return built.rapid((30, -9, 5)).build()
+
+
+def test_who_builds_a_program_with_compensation_says_which_path_it_is():
+    mill = toolpost.machine("generic-3axis-linuxcnc")
+    assert "G41 D1" in toolpost.post(contour("contour"), mill).text
+    assert "G41" not in toolpost.post(contour("centre"), mill).text
+    with pytest.raises(toolpost.Error) as error:
+        toolpost.post(contour(), mill)
+    assert error.value.rule == "compensated-path"
+    both = Program.builder("both").tool(1).compensation("left", path="centre")
+    with pytest.raises(toolpost.Error):
+        both.compensation("right", path="contour")
+
+
+def test_which_path_cutcom_means_is_an_option_of_reading(tmp_path):
+    plate = EXAMPLES / "plate.cls"
+    assert toolpost.read(plate, cutcom="centre").name == toolpost.read(plate).name
+    with pytest.raises(toolpost.Error) as error:
+        toolpost.read(plate, cutcom="contour")
+    assert (error.value.rule, error.value.line) == ("compensated-path", 47)

@@ -183,7 +183,11 @@ class Builder:
         self, coolant: Literal["off", "flood", "mist", "flood-and-mist", "through"]
     ) -> Builder: ...
     def compensation(
-        self, side: Literal["off", "left", "right"], register: int | None = None
+        self,
+        side: Literal["off", "left", "right"],
+        register: int | None = None,
+        *,
+        path: Literal["centre", "contour"] | None = None,
     ) -> Builder: ...
     def work_offset(self, number: int) -> Builder: ...
     def home(self) -> Builder: ...
@@ -229,6 +233,7 @@ def read(
     units: Literal["mm", "inch"] | None = None,
     aside: Literal["+X", "-X", "+Y", "-Y"] | None = None,
     csys: Literal["local", "world"] | None = None,
+    cutcom: Literal["centre", "contour"] | None = None,
     block_delete: bool = False,
     start: _Point | None = None,
     strict: bool = False,

@@ -43,8 +43,8 @@ pub fn read(machine: &Machine, file_name: &str, mut job: Job) -> Result<Reading,
         &mut |records: &mut Vec<Record>, record, several| told.keep(records, record, several);
     let read = nc::read_by(&speaks, Setup::default(), "", listing.text(), keep);
     let located = |found: Diagnostic| Box::new(listing.located(found));
-    let (reading, several) = read.map_err(|found| located(way_out(*found)))?;
-    let mut records = reading.program.records;
+    let (mut reading, several) = read.map_err(|found| located(way_out(*found)))?;
+    let mut records = std::mem::take(&mut reading.program.records);
     told.finish(&mut records, several).map_err(|found| match found.line {
         0 => Box::new(found.file(file_name)),
         _ => located(*found),
@@ -58,7 +58,8 @@ pub fn read(machine: &Machine, file_name: &str, mut job: Job) -> Result<Reading,
         return Err(Diagnostic::error("nc-feed", message).help(help).file(file_name).into());
     }
     let warnings = reading.warnings.into_iter().map(|found| listing.located(found)).collect();
-    Ok(Reading { program: Program { name: job.name, records }, listing, warnings })
+    let program = Program { name: job.name, records, ..reading.program };
+    Ok(Reading { program, listing, warnings })
 }
 
 /// The number of two tools that are not one, and in what they differ. Several tool controllers may be for one tool.

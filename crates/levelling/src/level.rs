@@ -46,7 +46,11 @@ pub fn level(
     allowed: &Allowed,
 ) -> Result<Program, Box<Diagnostic>> {
     let levelled = levelled(program, Ground::Known(map), allowed)?;
-    Ok(Program { name: program.name.clone(), records: levelled.records })
+    Ok(Program {
+        name: program.name.clone(),
+        records: levelled.records,
+        compensated_path: program.compensated_path,
+    })
 }
 
 /// The same for any surface.

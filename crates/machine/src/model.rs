@@ -83,6 +83,8 @@ pub struct ControlSettings {
     pub sets_work_offsets: bool,
     /// How the axes go in a rapid (FANUC parameter 1401#1, SINUMERIK MD20730).
     pub rapid_path: Option<RapidPath>,
+    /// What the tool table keeps as the radius of a tool.
+    pub tool_radius: Option<ToolRadius>,
 }
 
 /// A linear axis.
@@ -249,6 +251,16 @@ pub enum RapidPath {
     Linear,
     /// Each at its own speed: where the tool goes between the ends is not known.
     Independent,
+}
+
+/// What a tool table keeps as the radius of a tool.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum ToolRadius {
+    /// The radius itself: compensated programs are contours.
+    Full,
+    /// By how much the tool differs from the one of the toolpath: compensated programs are paths of the tool's centre.
+    Wear,
 }
 
 /// A hole cycle that a control may have: [`program::CycleKind`] without its numbers.

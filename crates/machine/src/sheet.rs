@@ -111,6 +111,7 @@ sheet!(merged SettingsSheet "settings" {
     length_along_z: bool, "", "Whether the tool length counts along Z in every plane: SINUMERIK SD42940 is 17, FANUC parameters 5001#0 and 5001#1 are 0.";
     length_moves_axis: bool, "", "Whether Z moves where a tool length begins, ends or changes: FANUC parameter 5006#6 is 0.";
     rapid_path: RapidPath, "", "How the axes go in a rapid: linear (together, on a straight line) or independent (each at its own speed), which is taken where it is missing. FANUC: linear where parameter 1401#1 is 1; SINUMERIK: MD20730.";
+    tool_radius: ToolRadius, "", "What the tool table keeps as the radius of a tool (D, the radius of an edge, R): full, the radius itself, for contours; or wear, its difference from the tool of the toolpath, for paths of the tool's centre.";
     sets_work_offsets: bool, "", "Whether programs write the work offsets that their source writes (G10 L2): the shop sets its fixtures so, and not by the operator.";
     rotary_by_sign: bool, "", "Whether the sign of a rotary word is the direction of an axis that rolls over: FANUC parameter 1008#1 is 1.";
 });

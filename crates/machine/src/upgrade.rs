@@ -87,6 +87,14 @@ pub fn missing(machine: &Machine) -> Vec<Missing> {
             "FANUC parameter 1401#1, SINUMERIK MD20730: \"linear\" where it is 1; else G0 goes by no straight line, and rapids near the part are refused",
         );
     }
+    let compensates = machine.capabilities.compensation && machine.wire.is_none();
+    if compensates && machine.settings.tool_radius.is_none() {
+        lacks(
+            "[settings]".into(),
+            "tool_radius = \"full\"",
+            "what the tool table keeps: the radius of the tool, or \"wear\", its difference from the tool of the toolpath; contours with compensation need it",
+        );
+    }
     let rolls_over = machine.rotary.iter().any(|axis| axis.modulo != Some(false));
     if machine.reader == "fanuc" && rolls_over && machine.settings.rotary_by_sign.is_none() {
         lacks(

@@ -22,8 +22,8 @@ use control::{Action, Dialect, Ending, Event, Orientation, Position, Risk, Setti
 use geom::Vec3;
 use machine::{LengthOffset, Machine};
 use program::{
-    ArcTo, Axes, Circle, Cycle, Diagnostic, MachineMove, Op, Pose, Probe, Program, Record, Thread,
-    Tool, WorkOffset,
+    ArcTo, Axes, Circle, CompensatedPath, Cycle, Diagnostic, MachineMove, Op, Pose, Probe, Program,
+    Record, Thread, Tool, WorkOffset,
 };
 use std::collections::BTreeSet;
 
@@ -284,7 +284,11 @@ impl<'a> Lift<'a> {
         Lift {
             machine,
             setup,
-            program: Program::new(name),
+            program: Program {
+                // What the control offsets is the contour.
+                compensated_path: Some(CompensatedPath::Contour),
+                ..Program::new(name)
+            },
             keep,
             count: 0,
             ended: false,

@@ -59,8 +59,9 @@ pub fn write(program: &Program, machine: &Machine) -> Result<Output, Vec<Diagnos
     let Some((records, lines)) = sweep::split(program, machine) else {
         return walk::Walk::new(program, machine)?.run();
     };
-    let name = program.name.clone();
-    let mut output = walk::Walk::new(&Program { name, records }, machine)?.run()?;
+    let split =
+        Program { name: program.name.clone(), records, compensated_path: program.compensated_path };
+    let mut output = walk::Walk::new(&split, machine)?.run()?;
     let message = format!(
         "{} cuts turn the tool so far, or so near to a singular pose, that they are split, first here",
         lines.len()

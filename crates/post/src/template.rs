@@ -251,8 +251,14 @@ impl Scope {
         let [(_, text), (_, operation), (_, name)] = SAMPLES;
         let name = if first { name } else { "SAMPLE" };
         let (diameter, corner_radius, length) = (Some(10.0), Some(0.5), Some(100.0));
-        let tool =
-            Tool { number: 1, name: name.into(), diameter, corner_radius, length, offset: None };
+        let tool = Tool {
+            number: 1,
+            name: name.into(),
+            diameter,
+            corner_radius,
+            length,
+            ..Tool::default()
+        };
         let mut program = Program::new("sample");
         program.push(1, Op::Tool(Box::new(tool.clone())));
         Scope {

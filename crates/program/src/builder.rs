@@ -1,8 +1,8 @@
 //! Building a program record by record: what people and other programs say of it is checked once, here.
 
 use crate::{
-    ArcTo, Auxiliary, Circle, Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, Input, Op,
-    Output, OutputValue, Pose, Program, Spindle, Tool, Withdrawal, WorkOffset,
+    ArcTo, Auxiliary, Circle, CompensatedPath, Compensation, Coolant, Cycle, CycleKind, Diagnostic,
+    Feed, Input, Op, Output, OutputValue, Pose, Program, Spindle, Tool, Withdrawal, WorkOffset,
 };
 use geom::{Arc, ArcError, Vec3};
 
@@ -176,6 +176,20 @@ impl Builder {
     /// Cutter radius compensation from here on.
     pub fn compensation(&mut self, side: Compensation) {
         self.push(Op::Compensation(side));
+    }
+
+    /// Which path the coordinates are where cutter compensation is on, in the whole program.
+    ///
+    /// # Errors
+    /// `compensated-path` where the other has been said before.
+    pub fn compensated_path(&mut self, path: CompensatedPath) -> Done {
+        if self.program.compensated_path.is_some_and(|known| known != path) {
+            let message = "compensation with coordinates of the tool's centre and of the contour in one program";
+            let found = Diagnostic::error("compensated-path", message);
+            return Err(found.help("build two programs").into());
+        }
+        self.program.compensated_path = Some(path);
+        Ok(())
     }
 
     /// Work offset from here on. Where the tool is in it is not known.

@@ -12,6 +12,7 @@
 #![deny(clippy::wildcard_enum_match_arm)]
 
 mod builder;
+mod compensated;
 mod cut_box;
 mod cycle;
 pub mod diagnostic;
@@ -24,6 +25,7 @@ mod surface;
 mod technology;
 
 pub use builder::Builder;
+pub use compensated::{CompensatedPath, PathEvidence};
 pub use cut_box::CutBox;
 pub use cycle::*;
 pub use diagnostic::{Diagnostic, Severity, line_of, nearest};

@@ -1,9 +1,9 @@
 //! The records of a program.
 
 use crate::{
-    ArcTo, Auxiliary, Beam, Clamp, Compensation, Coolant, Cycle, Feed, Input, JointMove,
-    MachineMove, Oriented, Output, PathMode, Pose, Probe, Spindle, Surface, Thread, Tool,
-    WorkOffset, WorkOffsetData,
+    ArcTo, Auxiliary, Beam, Clamp, CompensatedPath, Compensation, Coolant, Cycle, Feed, Input,
+    JointMove, MachineMove, Oriented, Output, PathMode, Pose, Probe, Spindle, Surface, Thread,
+    Tool, WorkOffset, WorkOffsetData,
 };
 use geom::Frame;
 
@@ -14,6 +14,8 @@ pub struct Program {
     pub name: String,
     /// The records in the order in which they happen.
     pub records: Vec<Record>,
+    /// Which path the coordinates are where cutter compensation is on; `None` where nobody has said or shown it.
+    pub compensated_path: Option<CompensatedPath>,
 }
 
 /// One thing that happens, and the line (from 1) of the source that says so.
@@ -252,7 +254,7 @@ impl Op {
 impl Program {
     /// An empty program.
     pub fn new(name: impl Into<String>) -> Program {
-        Program { name: name.into(), records: Vec::new() }
+        Program { name: name.into(), ..Program::default() }
     }
 
     /// Adds a record that came from `line` of the source.

@@ -61,6 +61,9 @@ pub struct Tool {
     pub length: Option<f64>,
     /// Register of the length offset where the source names one.
     pub offset: Option<u32>,
+    /// Whether its side or its end leans (a drill, a countersink, a cone), so that the radius with which it cuts aside depends
+    /// on the depth.
+    pub tapered: bool,
 }
 
 /// Cutter radius compensation.

@@ -1,11 +1,12 @@
 //! What the source says comes next.
 
+use crate::compensation;
 use crate::place::Place;
 use geom::{Arc, Vec3};
 use machine::Machine;
 use program::{
-    Auxiliary, Compensation, Coolant, Cycle, Feed, Input, Op, Output, Pose, Probe, Record, Spindle,
-    Tool, WorkOffset, WorkOffsetData,
+    Auxiliary, Compensation, Coolant, Cycle, Feed, Input, Op, Output, Pose, Probe, Program, Record,
+    Spindle, Tool, WorkOffset, WorkOffsetData,
 };
 
 /// A motion of the source, from where the one before it ends.
@@ -92,11 +93,13 @@ pub(crate) struct Cursor<'a> {
     tool_change: bool,
     reset: bool,
     homed: bool,
+    /// Whether the program has to compensate where the source does.
+    compensates: bool,
 }
 
 impl<'a> Cursor<'a> {
     /// A walk that stands at the first step.
-    pub fn new(machine: &'a Machine, records: &'a [Record]) -> Cursor<'a> {
+    pub fn new(machine: &'a Machine, source: &'a Program) -> Cursor<'a> {
         let wanted = Wanted {
             feed: None,
             spindle: Spindle::Off,
@@ -110,7 +113,8 @@ impl<'a> Cursor<'a> {
         };
         let mut cursor = Cursor {
             machine,
-            records,
+            records: &source.records,
+            compensates: compensation::is_due(source, machine),
             next: 0,
             here: None,
             line: 0,
@@ -225,6 +229,11 @@ impl<'a> Cursor<'a> {
         })
     }
 
+    /// Whether the program has to compensate where the source does.
+    pub fn compensates(&self) -> bool {
+        self.compensates
+    }
+
     /// Length of the active tool, mm, where the source says it.
     pub fn tool_length(&self) -> Option<f64> {
         self.wanted.tool.and_then(|tool| tool.length)
@@ -238,6 +247,7 @@ impl<'a> Cursor<'a> {
             Op::Spindle(spindle) => wanted.spindle = *spindle,
             Op::SurfaceSpeed(speed) => wanted.surface_speed = *speed,
             Op::Coolant(coolant) => wanted.coolant = *coolant,
+            Op::Compensation(_) if !self.compensates => {}
             Op::Compensation(side) => wanted.compensation = *side,
             Op::Taper(degrees) => wanted.taper = *degrees,
             Op::Cycle(cycle) => wanted.cycle = Some(**cycle),

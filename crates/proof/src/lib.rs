@@ -40,6 +40,7 @@
 
 mod accepted;
 mod arc;
+mod compensation;
 mod expected;
 mod gauge;
 mod hole;
@@ -76,6 +77,9 @@ pub fn prove(
     text: &[u8],
     tolerances: &Tolerances,
 ) -> Report {
+    if let Some(found) = compensation::unsettled(source, machine) {
+        return refused(source, machine, tolerances, found);
+    }
     let run = |source: &Program, setup: Setup| {
         let report = prove_on(source, machine, setup.clone(), file_name, text, tolerances);
         let mut optional = control::optional_blocks(text);

@@ -22,7 +22,7 @@ pub mod summary;
 pub mod toolpath;
 mod wire;
 
-pub use args::{Csys, Origin, Units, Way, WholeNumbers};
+pub use args::{Csys, CutcomPath, Origin, Units, Way, WholeNumbers};
 
 use answer::Answer;
 use args::{Command, CommandLine};

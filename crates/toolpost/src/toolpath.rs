@@ -1,17 +1,17 @@
 //! Getting the toolpath and the machine that a command names.
 
 use crate::answer::{Stop, Verdict};
-use crate::args::{Csys, Origin, Units, Way, WholeNumbers};
+use crate::args::{Csys, CutcomPath, Origin, Units, Way, WholeNumbers};
 use crate::fcstd;
 use crate::files;
-use crate::summary::Shape;
+use crate::summary::{Shape, number};
 use control::{Dialect, Setup};
 use freecad::{Job, Listing};
 use geom::Vec3;
 use machine::{Machine, library};
-use program::{Diagnostic, Op, Program, Severity, line_of};
+use program::{CompensatedPath, Diagnostic, Op, Program, Severity, line_of};
 use serde_json::{Value, json};
-use source::apt::{self, SetUps};
+use source::apt::{self, Cutcom, SetUps};
 use std::path::{Path, PathBuf};
 
 /// A toolpath as it was read.
@@ -31,6 +31,8 @@ pub struct Toolpath {
     listing: Option<Listing>,
     /// The set-ups of SolidWorks CAM, where it matters in which frame they are read.
     set_ups: Option<SetUps>,
+    /// Of cutter-location data with `CUTCOM`, which path its coordinates are.
+    cutcom: Option<Cutcom>,
 }
 
 /// Endings that NC programs have.
@@ -58,6 +60,9 @@ pub fn read(
     }
     if origin.csys.is_some() {
         return Err(without_csys(&files::name(path)).into());
+    }
+    if origin.cutcom.is_some() {
+        return Err(without_cutcom(&files::name(path)).into());
     }
     if origin.has_set_up() {
         let message = "a job of FreeCAD's runs on no control that somebody has set up";
@@ -123,30 +128,35 @@ fn read_by(
     set_up: impl Fn(Machine) -> Machine,
 ) -> Result<Toolpath, Stop> {
     let file = files::name(path);
-    let (dialect, program, warnings, set_ups) = match &origin.from {
+    let (dialect, program, warnings, set_ups, cutcom) = match &origin.from {
         Some(from) => {
             let machine = set_up(machine::load_origin(from)?);
             let reading = nc::read(&machine, origin.setup()?, &file, bytes)?;
-            (machine.title, reading.program, reading.warnings, None)
+            (machine.title, reading.program, reading.warnings, None, None)
         }
         None => {
             let csys = origin.csys.map(|csys| match csys {
                 Csys::Local => apt::Csys::Local,
                 Csys::World => apt::Csys::World,
             });
-            let reading = apt::read(&file, bytes, &apt::Options { strict, csys });
+            let cutcom = origin.cutcom.map(|path| match path {
+                CutcomPath::Centre => CompensatedPath::Center,
+                CutcomPath::Contour => CompensatedPath::Contour,
+            });
+            let reading = apt::read(&file, bytes, &apt::Options { strict, csys, cutcom });
             let reading = reading.map_err(|findings| match is_nc(path) {
                 true => without_origin(&file),
                 false => Stop { verdict: Verdict::Invalid, findings },
             })?;
             let matters = |set_ups: &SetUps| set_ups.is_given || set_ups.changes > 0;
             let set_ups = reading.set_ups.filter(matters);
-            (reading.dialect.to_string(), reading.program, reading.warnings, set_ups)
+            let apt::Reading { program, warnings, dialect, cutcom, .. } = reading;
+            (dialect.to_string(), program, warnings, set_ups, cutcom)
         }
     };
     let warnings = held(warnings, strict)?;
     let path = Some(path.to_owned());
-    Ok(Toolpath { path, file, dialect, program, warnings, listing: None, set_ups })
+    Ok(Toolpath { path, file, dialect, program, warnings, listing: None, set_ups, cutcom })
 }
 
 /// The warnings; with `strict` they stop the command.
@@ -163,6 +173,29 @@ pub(crate) fn held(warnings: Vec<Diagnostic>, strict: bool) -> Result<Vec<Diagno
 pub(crate) fn without_csys(file: &str) -> Diagnostic {
     let message = "--csys is for cutter-location data with CSYS records, which this is not";
     Diagnostic::error("origin", message).help("leave it out").file(file)
+}
+
+/// What refuses `--cutcom` for a source that cannot have the record.
+pub(crate) fn without_cutcom(file: &str) -> Diagnostic {
+    let message = "--cutcom is for cutter-location data with CUTCOM records, which this is not";
+    Diagnostic::error("origin", message).help("leave it out").file(file)
+}
+
+/// Which path the coordinates behind `CUTCOM` are, and what says so.
+fn compensated(cutcom: &Cutcom) -> String {
+    match (cutcom.path, cutcom.evidence) {
+        (None, _) => String::from("not known which path it means: --cutcom says it"),
+        (Some(path), None) => format!("{}, as --cutcom says", path.described()),
+        (Some(path), Some(shown)) => format!(
+            "{}: line {} is an arc of radius {} mm with a tool of radius {} mm ({} of {} stretches show it)",
+            path.described(),
+            shown.line,
+            number(shown.radius, 3),
+            number(shown.tool_radius, 3),
+            shown.showing,
+            shown.stretches
+        ),
+    }
 }
 
 /// What the frame of set-ups is called.
@@ -220,6 +253,7 @@ impl Origin {
             block_delete,
             start,
             csys: _,
+            cutcom: _,
         } = self;
         *block_delete
             || !folder.is_empty()
@@ -285,6 +319,7 @@ impl Toolpath {
             warnings: Vec::new(),
             listing: None,
             set_ups: None,
+            cutcom: None,
         }
     }
 
@@ -333,6 +368,18 @@ impl Toolpath {
             source["set_ups"] =
                 json!({ "csys": name(csys), "said_by": said_by, "changes_of_origin": changes });
         }
+        if let Some(cutcom) = &self.cutcom {
+            source["cutcom"] = json!({ "path": cutcom.path.map(CompensatedPath::name) });
+            if let Some(shown) = cutcom.evidence {
+                source["cutcom"]["shown_by"] = json!({
+                    "line": shown.line,
+                    "arc_radius_mm": shown.radius,
+                    "tool_radius_mm": shown.tool_radius,
+                    "stretches": shown.stretches,
+                    "stretches_that_show_it": shown.showing,
+                });
+            }
+        }
         if let Some(listing) = &self.listing {
             let operation = |(label, before)| json!({ "label": label, "before": before });
             source["operations"] = listing.operations().map(operation).collect();
@@ -348,6 +395,9 @@ impl Toolpath {
         );
         if let Some(set_ups) = &self.set_ups {
             rows.push(("set-ups", told(set_ups)));
+        }
+        if let Some(cutcom) = &self.cutcom {
+            rows.push(("CUTCOM", compensated(cutcom)));
         }
         if self.listing.is_some() {
             let operations = self.program.records.iter().filter_map(|record| match &record.op {

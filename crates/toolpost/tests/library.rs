@@ -48,19 +48,6 @@ fn the_sample_program_of_each_machine_is_as_it_was_read() {
     }
 }
 
-/// The files with cutter compensation.
-const COMPENSATED: &[&str] = &[
-    "plate.cls",
-    "Dem-target2.apt",
-    "Interface-glue.apt",
-    "Sacrifice-Board.apt",
-    "SupPetriLED.apt",
-    "Teflon-gasket.apt",
-    "Teste-Metrologia.apt",
-    "Top-light-cover.apt",
-    "basemach.apt",
-];
-
 /// The files whose tool axis turns, or points elsewhere than up.
 const TILTED: &[&str] =
     &["dome.cls", "Sacrifice-Board.apt", "Teste-Metrologia.apt", "shimemcunha.apt"];
@@ -80,10 +67,10 @@ const REFUSED: &[(&str, &[&str], &str)] = &[
     ("generic-3axis-iso", &["plate.cls"], "cycle-tap"),
     ("generic-3axis-mach3", &["plate.cls"], "cycle-tap"),
     ("mach3-mill", &["plate.cls"], "cycle-tap"),
-    // No compensation, no tapping.
-    ("generic-3axis-grbl", COMPENSATED, "compensation"),
-    ("generic-3axis-marlin", COMPENSATED, "compensation"),
-    ("marlin-cnc", COMPENSATED, "compensation"),
+    // No tapping.
+    ("generic-3axis-grbl", &["plate.cls"], "cycle-tap"),
+    ("generic-3axis-marlin", &["plate.cls"], "cycle-tap"),
+    ("marlin-cnc", &["plate.cls"], "cycle-tap"),
     // Too high, too long, too fast for the machines of a desk.
     ("marlin-cnc", &["coremill.cls"], "axis-limit"),
     (

@@ -7,9 +7,9 @@ use machine::Machine;
 use machine::time::Times;
 use program::statistics::Statistics;
 use program::{
-    ArcTo, Auxiliary, Axes, Beam, Circle, Clamp, Compensation, Coolant, Course, Cycle, CycleKind,
-    Feed, FullPose, Input, JointMove, Kind, MachineMove, Op, Oriented, Output, OutputValue,
-    PathMode, Pose, Probe, Program, Spindle, Surface, Thread, Tool, Until, WorkOffset,
+    ArcTo, Auxiliary, Axes, Beam, Circle, Clamp, CompensatedPath, Compensation, Coolant, Course,
+    Cycle, CycleKind, Feed, FullPose, Input, JointMove, Kind, MachineMove, Op, Oriented, Output,
+    OutputValue, PathMode, Pose, Probe, Program, Spindle, Surface, Thread, Tool, Until, WorkOffset,
     WorkOffsetData,
 };
 use std::fmt::Write;
@@ -228,7 +228,8 @@ fn wired(kind: Kind) -> [Program; 2] {
 }
 
 fn lines(ops: impl IntoIterator<Item = Op>) -> Program {
-    let mut program = Program::new("SAMPLE");
+    let compensated_path = Some(CompensatedPath::Contour);
+    let mut program = Program { compensated_path, ..Program::new("SAMPLE") };
     for (line, op) in (1..).zip(ops) {
         program.push(line, op);
     }

@@ -5,7 +5,8 @@ use geom::Vec3;
 use machine::library::{MACHINES, names};
 use machine::{Machine, load};
 use program::{
-    ArcTo, Circle, Compensation, Coolant, Cycle, CycleKind, Feed, Op, Pose, Program, Spindle, Tool,
+    ArcTo, Circle, CompensatedPath, Compensation, Coolant, Cycle, CycleKind, Feed, Op, Pose,
+    Program, Spindle, Tool,
 };
 
 fn mills() -> impl Iterator<Item = Machine> {
@@ -24,7 +25,8 @@ fn program(ops: Vec<Op>) -> Program {
         Op::Feed(Feed::PerMinute(200.0)),
         Op::Rapid(at(10.0, 0.0, 20.0)),
     ];
-    let mut program = Program::new("states");
+    let compensated_path = Some(CompensatedPath::Contour);
+    let mut program = Program { compensated_path, ..Program::new("states") };
     for (line, op) in (1..).zip(start.into_iter().chain(ops)) {
         program.push(line, op);
     }

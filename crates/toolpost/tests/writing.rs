@@ -1,7 +1,8 @@
 //! Short toolpaths and the blocks that they have to become, worked out by hand. Each program is proven
 //! as well.
 
-use program::Diagnostic;
+use program::{CompensatedPath, Diagnostic};
+use source::apt::Options;
 
 /// The blocks after the last tool change of the proven program, and the rules of the warnings.
 fn posted(machine: &str, path: &str) -> (Vec<String>, Vec<&'static str>) {
@@ -22,7 +23,9 @@ fn written(machine: &str, path: &str) -> Result<(String, Vec<Diagnostic>), Vec<D
     let machine = machine::load(machine).unwrap();
     let path =
         format!("UNITS/MM\nLOAD/TOOL,1\nSPINDL/RPM,1000,CLW\nFEDRAT/300,MMPM\n{path}\nFINI\n");
-    let reading = source::apt::read("part.apt", path.as_bytes(), &Default::default())?;
+    let cutcom = path.contains("CUTCOM").then_some(CompensatedPath::Contour);
+    let options = Options { cutcom, ..Options::default() };
+    let reading = source::apt::read("part.apt", path.as_bytes(), &options)?;
     let output = post::write(&reading.program, &machine)?;
     let tolerances = Default::default();
     let report = proof::prove(&reading.program, &machine, "part.nc", &output.text, &tolerances);

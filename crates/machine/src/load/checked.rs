@@ -360,6 +360,7 @@ impl CheckedSheet {
                 length_moves_axis: self.settings.length_moves_axis,
                 dwell_p_milliseconds: self.settings.dwell_p_milliseconds,
                 rapid_path: self.settings.rapid_path,
+                tool_radius: self.settings.tool_radius,
                 rotary_by_sign: self.settings.rotary_by_sign,
                 sets_work_offsets: self.settings.sets_work_offsets.unwrap_or(false),
             },

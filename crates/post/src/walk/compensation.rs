@@ -4,12 +4,15 @@
 use super::{Done, Walk, refuse};
 use crate::catalogue::{BlockName, WordName};
 use crate::template::bit;
-use program::Compensation;
+use machine::ToolRadius;
+use program::{CompensatedPath, Compensation, Diagnostic};
 
 impl Walk<'_> {
     pub(super) fn set_compensation(&mut self, compensation: Compensation) -> Done {
+        if compensation != Compensation::Off && self.wire.is_none() && self.leaves_off()? {
+            return Ok(());
+        }
         if compensation != Compensation::Off && !self.machine.capabilities.compensation {
-            // Whether the path is that of the tool's centre or the contour, only its author knows.
             let help = "give the path of the tool's centre: without CUTCOM, or of an NC program with its tool table (--tools)";
             return Err(Box::new(
                 refuse("compensation", "the control has no cutter compensation").help(help),
@@ -24,6 +27,60 @@ impl Walk<'_> {
         self.compensation = compensation;
         self.compensation_line = self.line;
         Ok(())
+    }
+
+    /// Whether the path is that of the tool's centre and is written without compensation.
+    ///
+    /// # Errors
+    /// What the tool table keeps does not go with the path, or either is not known: the control would offset by the tool once
+    /// too often, or not at all.
+    fn leaves_off(&mut self) -> Result<bool, Box<Diagnostic>> {
+        let table = self.machine.settings.tool_radius;
+        match (self.source.compensated_path, table) {
+            (None, _) => {
+                let message = "nothing in the source shows whether its coordinates with compensation are the path of the \
+                               tool's centre or the contour";
+                let help = "`--cutcom centre` or `--cutcom contour` (in Python `cutcom`; `path` of a builder's \
+                            compensation): look at the setting of the CAM system, or compare with the drawing";
+                Err(refuse("compensated-path", message).help(help).into())
+            }
+            (Some(CompensatedPath::Center), Some(ToolRadius::Wear))
+                if self.machine.capabilities.compensation =>
+            {
+                Ok(false)
+            }
+            (Some(CompensatedPath::Center), _) => {
+                let message = "with compensation the source gives the path of the tool's centre: it is written without \
+                               compensation";
+                let help = match self.machine.capabilities.compensation {
+                    true => {
+                        "where the tool table keeps nothing but wear: `tool_radius = \"wear\"` in [settings] of the machine file"
+                    }
+                    false => "the control has none",
+                };
+                let found = Diagnostic::warning("compensated-path", message).help(help);
+                self.findings.warn(found.line(self.line));
+                Ok(true)
+            }
+            (Some(CompensatedPath::Contour), _) if !self.machine.capabilities.compensation => {
+                Ok(false)
+            }
+            (Some(CompensatedPath::Contour), Some(ToolRadius::Full)) => Ok(false),
+            (Some(CompensatedPath::Contour), Some(ToolRadius::Wear)) => {
+                let message = "the source gives the contour, and the tool table keeps nothing but wear: the tool would be \
+                               off by its radius";
+                let help = "give the path of the tool's centre, or a machine whose table keeps the full radius (`tool_radius` \
+                            in [settings])";
+                Err(refuse("compensated-path", message).help(help).into())
+            }
+            (Some(CompensatedPath::Contour), None) => {
+                let message = "the source gives the contour, and the machine file does not say that the tool table keeps the \
+                               radius of the tool";
+                let help =
+                    "`tool_radius = \"full\"` in [settings] of the machine file, where it does";
+                Err(refuse("compensated-path", message).help(help).into())
+            }
+        }
     }
 
     /// Says the compensation in the next block, a straight move; one in the plane switches it.

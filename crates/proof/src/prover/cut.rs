@@ -92,7 +92,13 @@ impl Prover<'_> {
             self.differs(line, ("compensation", "compensation is switched on an arc".into()));
         } else if !kept || must {
             let (is, should) = (state::compensation(is), state::compensation(wanted));
-            let message = format!("compensation is {is}, but should be {should}");
+            let why = match self.cursor.compensates() {
+                true => "",
+                false => {
+                    ": the source gives the path of the tool's centre, and the control offsets it by the tool once more"
+                }
+            };
+            let message = format!("compensation is {is}, but should be {should}{why}");
             self.differs(line, ("compensation", message));
         }
     }

@@ -87,7 +87,7 @@ impl<'a> Prover<'a> {
     /// Before the first record of a program for `machine`.
     pub fn new(source: &'a Program, machine: &'a Machine, tolerances: &Tolerances) -> Prover<'a> {
         let allowed = Applied::new(machine, tolerances);
-        let cursor = Cursor::new(machine, &source.records);
+        let cursor = Cursor::new(machine, source);
         let gauge = Gauge { machine, allowed, tool_length: cursor.tool_length() };
         let unknown = Position {
             point: Vec3::NAN,

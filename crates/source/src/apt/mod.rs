@@ -30,7 +30,8 @@ use frame::Setup;
 use geom::Vec3;
 use motion::Next;
 use program::{
-    Compensation, Coolant, Diagnostic, Feed, Op, Pose, Program, Record as Step, Spindle, Tool,
+    CompensatedPath, Compensation, Coolant, Diagnostic, Feed, Op, PathEvidence, Pose, Program,
+    Record as Step, Spindle, Tool,
 };
 use record::{Joiner, Line, Lines, is_blank};
 use report::Report;
@@ -44,6 +45,8 @@ pub struct Options {
     pub strict: bool,
     /// Where the coordinates of a file with `CSYS` stand, for whoever knows better than the file.
     pub csys: Option<Csys>,
+    /// Which path the coordinates behind `CUTCOM` are, where the file does not show it.
+    pub cutcom: Option<CompensatedPath>,
 }
 
 /// Where coordinates and vectors stand that follow a `CSYS` of SolidWorks CAM.
@@ -66,6 +69,16 @@ pub struct SetUps {
     pub changes: usize,
 }
 
+/// What is known of the coordinates of a file with `CUTCOM`; the program has it as its
+/// [`Program::compensated_path`].
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cutcom {
+    /// Which path they are, where it is known.
+    pub path: Option<CompensatedPath>,
+    /// What in the file shows it.
+    pub evidence: Option<PathEvidence>,
+}
+
 /// What a file says.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Reading {
@@ -77,6 +90,8 @@ pub struct Reading {
     pub dialect: Dialect,
     /// Its set-ups; none where it has no `CSYS`.
     pub set_ups: Option<SetUps>,
+    /// Which path its coordinates behind `CUTCOM` are; none where it switches no compensation on.
+    pub cutcom: Option<Cutcom>,
 }
 
 /// Reads cutter-location data. `file_name` is for the messages, and names the program where the file
@@ -183,6 +198,8 @@ struct Reader {
     last_spindle: Option<Spindle>,
     /// The last kind, for `COOLNT/ON`.
     last_coolant: Coolant,
+    /// Which path the coordinates behind `CUTCOM` are, where the options say it.
+    cutcom: Option<CompensatedPath>,
     /// The last side, for `CUTCOM/ON`.
     last_side: Option<Compensation>,
     /// The tool in the spindle; number 0 for none.
@@ -249,6 +266,7 @@ impl Reader {
             last_spindle: None,
             // Coolant as such is flood.
             last_coolant: Coolant::Flood,
+            cutcom: options.cutcom,
             last_side: None,
             tool: Tool::default(),
             tool_record: None,
@@ -283,9 +301,21 @@ impl Reader {
             self.judge_the_arcs(text);
         }
         if self.report.errors.is_empty() {
-            let set_ups = self.setup.set_ups();
-            let Reader { program, report, dialect, .. } = self;
-            return Ok(Reading { program, warnings: report.warnings, dialect, set_ups });
+            match self.judge_the_compensation() {
+                Ok(cutcom) => {
+                    let set_ups = self.setup.set_ups();
+                    let Reader { mut program, report, dialect, .. } = self;
+                    program.compensated_path = cutcom.and_then(|cutcom| cutcom.path);
+                    let warnings = report.warnings;
+                    return Ok(Reading { program, warnings, dialect, set_ups, cutcom });
+                }
+                Err(mut finding) => {
+                    if let Some(line) = Lines::of(text).find(|line| line.number == finding.line) {
+                        finding = finding.at(line.number, line.text, 0, line.text.len()).into();
+                    }
+                    self.report.error(*finding);
+                }
+            }
         }
         Err(self.report.errors)
     }
@@ -340,6 +370,37 @@ impl Reader {
                 let help = "check that it is not cut off";
                 self.report.warning(place(warning.help(help)));
                 self.push(last.number, Op::End);
+            }
+        }
+    }
+
+    /// Which path the coordinates behind `CUTCOM` are.
+    ///
+    /// # Errors
+    /// The file shows both, or another than the options say; the options say it, and there is no `CUTCOM`.
+    fn judge_the_compensation(&self) -> Result<Option<Cutcom>, Box<Diagnostic>> {
+        let evidence = PathEvidence::of(&self.program)?;
+        match (self.cutcom, evidence) {
+            (Some(_), _) if self.program.compensates().is_none() => {
+                let message =
+                    "which path CUTCOM means is given by `cutcom`, and the file has no CUTCOM";
+                let found = Diagnostic::error("compensated-path", message);
+                Err(found.help("leave `--cutcom` out").into())
+            }
+            (Some(given), Some(shown)) if given != shown.path => {
+                let message = format!(
+                    "`cutcom` says {}, and this arc (radius {:.3} mm, tool radius {:.3} mm) can only be {}",
+                    given.name(),
+                    shown.radius,
+                    shown.tool_radius,
+                    shown.path.described()
+                );
+                let found = Diagnostic::error("compensated-path", message).line(shown.line);
+                Err(found.help(format!("`--cutcom {}`, or leave it out", shown.path.name())).into())
+            }
+            (given, evidence) => {
+                let path = given.or(evidence.map(|evidence| evidence.path));
+                Ok(self.program.compensates().map(|_| Cutcom { path, evidence }))
             }
         }
     }

@@ -429,9 +429,11 @@ impl Reader {
             Some(Field::Number(angle)) if *angle > 0.0 => Some(180.0 - 2.0 * angle),
             _ => None,
         };
+        let tapered = leans(record, 4) || leans(record, 5);
         self.describe_tool(record, |tool| {
             tool.diameter = Some(diameter);
             tool.corner_radius = radius;
+            tool.tapered = tapered;
             if let Some(name) = name {
                 tool.name = name;
             }
@@ -459,6 +461,8 @@ impl Reader {
         self.next_line = record.line;
         self.next_tool.diameter = Some(diameter);
         self.next_tool.corner_radius = radius;
+        self.next_tool.tapered =
+            record.is(0, "DRILL") || leans(record, first + 3) || leans(record, first + 4);
         self.point_angle = angle;
         self.tool_record = None;
         Ok(())
@@ -557,4 +561,9 @@ fn unknown_feed(field: usize) -> Box<Fault> {
     Fault::new("unknown-unit", "this unit of a feed is not known")
         .help("units are MMPM, IPM, PERMIN, MMPR, IPR, PERREV and INVERS")
         .fields(field, 1)
+}
+
+/// Whether the angle in field `index` is there and not 0.
+fn leans(record: &Record, index: usize) -> bool {
+    matches!(record.fields.get(index), Some(Field::Number(angle)) if *angle != 0.0)
 }

@@ -4,6 +4,7 @@
 
 mod arcs;
 mod bad_input;
+mod compensated;
 mod cycles;
 mod files;
 mod frames;

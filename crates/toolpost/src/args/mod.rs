@@ -108,6 +108,23 @@ pub struct Origin {
         help_heading = "SolidWorks CAM as the source"
     )]
     pub csys: Option<Csys>,
+    /// Which path the coordinates behind CUTCOM are [default: what an arc in the file shows].
+    #[arg(
+        long,
+        value_name = "PATH",
+        conflicts_with = "from",
+        help_heading = "Cutter-location data as the source"
+    )]
+    pub cutcom: Option<CutcomPath>,
+}
+
+/// Which path the coordinates behind `CUTCOM` are.
+#[derive(Clone, Copy, Debug, ValueEnum)]
+pub enum CutcomPath {
+    /// That of the tool's centre: the CAM system has offset it by the tool.
+    Centre,
+    /// The contour that is cut: the control has to offset it.
+    Contour,
 }
 
 /// Where the coordinates behind a `CSYS` stand.

@@ -102,6 +102,9 @@ impl File {
         if args.source.origin.csys.is_some() {
             return Err(toolpath::without_csys(&files::name(path)).into());
         }
+        if args.source.origin.cutcom.is_some() {
+            return Err(toolpath::without_cutcom(&files::name(path)).into());
+        }
         let text = files::read(path)?;
         let options = dxf::Options {
             layers: args.drawing.layer.clone(),

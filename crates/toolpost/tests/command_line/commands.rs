@@ -273,6 +273,7 @@ fn a_machine_file_that_is_older_than_a_key_is_told_the_line_to_add() {
         "work_zero = [0, 0, 0]",
         "path_tolerance = 0.01",
         "length_along_z = false",
+        "tool_radius = \"full\"",
         "point = [0, 0, 0]",
         "modulo = true",
     ] {
@@ -280,9 +281,41 @@ fn a_machine_file_that_is_older_than_a_key_is_told_the_line_to_add() {
     }
     let new = format!(
         "extends = \"sinumerik-840d\"\nsafe_height = 0\nwork_zero = [0, 0, 0]\n[options]\npath_tolerance = 0.01\n[settings]\n\
-         length_along_z = false\n[orientation]\nsimultaneous = \"machine-angles\"\n{rotary}point = [0, 0, 0]\nmodulo = true\n"
+         length_along_z = false\ntool_radius = \"full\"\n[orientation]\nsimultaneous = \"machine-angles\"\n{rotary}point = [0, 0, 0]\nmodulo = true\n"
     );
     folder.write("new.toml", &new);
     let said = folder.run(&["machines", "check", "--upgrade", "new.toml"]);
     assert_eq!((said.code, said.out.as_str()), (0, "nothing is missing\n"));
+}
+
+#[test]
+fn which_path_cutcom_means_is_asked_for_where_no_arc_shows_it() {
+    let folder = Folder::new();
+    let part = "UNITS/MM\nCUTTER/6,0\nLOAD/TOOL,1\nSPINDL/RPM,1000,CLW\nRAPID\nGOTO/0,-9,5\nFEDRAT/300,MMPM\n\
+                GOTO/0,-9,-1\nCUTCOM/LEFT\nGOTO/0,0,-1\nGOTO/30,0,-1\nCUTCOM/OFF\nGOTO/30,-9,-1\nRAPID\nGOTO/30,-9,5\nFINI\n";
+    folder.write("part.apt", part);
+    let post = |more: &[&str]| {
+        let common = ["post", "part.apt", "-m", "generic-3axis-linuxcnc", "-o", "part.ngc"];
+        folder.run(&[&common[..], more].concat())
+    };
+    let said = post(&[]);
+    assert_eq!(said.code, 2, "{said:?}");
+    assert!(
+        said.err.contains("part.apt:9") && said.err.contains("`--cutcom centre`"),
+        "{}",
+        said.err
+    );
+    assert_eq!(post(&["--cutcom", "contour"]).code, 0);
+    assert!(folder.read("part.ngc").contains("G41 D1"));
+    let said = post(&["--cutcom", "centre"]);
+    assert_eq!(said.code, 0);
+    assert!(said.err.contains("written without compensation"), "{}", said.err);
+    assert!(said.out.contains("the path of the tool's centre, as --cutcom says"), "{}", said.out);
+    assert!(!folder.read("part.ngc").contains("G41"));
+    // The program of the contour is no program of the centre.
+    post(&["--cutcom", "contour"]);
+    let prove = ["prove", "part.ngc", "-m", "generic-3axis-linuxcnc", "--against", "part.apt"];
+    for (path, code) in [("contour", 0), ("centre", 1)] {
+        assert_eq!(folder.run(&[&prove[..], &["--cutcom", path]].concat()).code, code, "{path}");
+    }
 }
