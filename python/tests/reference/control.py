@@ -11,7 +11,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from .cldata import chords
-from .machine import ARRAY, Machine, Z
+from .machine import ARRAY, Machine, Z, slerp
 
 ONE = np.eye(3)
 
@@ -164,12 +164,7 @@ class Control:
         turns = self.turned(words)
         feed = self.feed(rapid)
         if along is not None:
-            before = self.machine.forward(np.zeros((1, 3)), self.turns[None], np.zeros(1))[1][0]
-            answers = self.machine.reach(along, self.turns)
-            if not answers:
-                raise self.fault(f"no axes reach the tool axis {along}")
-            turns = min(answers, key=lambda turns: float(abs(turns - self.turns).max()))
-            self.row(end, turns, feed, (before, along))
+            self.swing(end, along, feed)
             return
         if rapid and not self.machine.straight and not self.frames[-1].follows:
             self.dog_leg(end, turns)
@@ -177,6 +172,34 @@ class Control:
         if not rapid and not self.frames[-1].follows and (turns != self.turns).any():
             feed = feed._replace(degrees=self.degrees())
         self.row(end, turns, feed)
+
+    def swing(self, end: ARRAY, along: ARRAY, feed: Feed) -> None:
+        """Straight motion while the tool axis turns on the great circle; the axes follow it."""
+        start = self.at
+        before = self.machine.forward(np.zeros((1, 3)), self.turns[None], np.zeros(1))[1][0]
+        sweep = float(np.degrees(np.arccos(np.clip(before @ along, -1, 1))))
+        # Close to the pole the axes turn much in a small step: smaller steps tell which way.
+        for finest in (2.0, 0.1, 0.005):
+            count = max(int(np.ceil(sweep / finest)), 1)
+            share = np.arange(1, count + 1) / count
+            axes = slerp(np.tile(before, (count, 1)), np.tile(along, (count, 1)), share)
+            places = self.track(self.machine.orient(axes))
+            if abs(np.diff(places, axis=0)).max() < 15:
+                break
+        for part, axis, turns in zip(share, axes, places[1:]):
+            self.row(start + (end - start) * part, turns, feed, (before, axis))
+            before = axis
+
+    def track(self, both: ARRAY) -> ARRAY:
+        """Rotary positions that go on from where the axes are, out of both answers to each pose."""
+        places = [self.turns]
+        for pair in both.transpose(1, 0, 2):
+            now = places[-1]
+            # What the pole leaves free stays.
+            near = np.where(np.isnan(pair), now, pair)
+            near += 360 * np.round((now - near) / 360)
+            places.append(near[abs(near - now).sum(1).argmin()])
+        return np.array(places)
 
     def degrees(self) -> tuple[float, ...]:
         """Millimetres of way that a degree of each rotary axis counts; a dialect says it."""

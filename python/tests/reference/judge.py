@@ -17,7 +17,7 @@ import numpy as np
 
 from .cldata import Move, Source
 from .control import Control
-from .machine import ARRAY
+from .machine import ARRAY, slerp
 
 
 @dataclass(frozen=True)
@@ -67,20 +67,6 @@ class Samples:
     along: ARRAY
     axes: ARRAY
     turns: ARRAY
-
-
-def unit(vectors: ARRAY) -> ARRAY:
-    return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))
-
-
-def slerp(start: ARRAY, end: ARRAY, share: ARRAY) -> ARRAY:
-    """Axes on the great circle between two; rows of unit vectors."""
-    cross = np.linalg.norm(np.cross(start, end), axis=1)
-    sweep = np.arctan2(cross, (start * end).sum(1))
-    sin = np.where(cross > 1e-9, np.sin(sweep), 1.0)
-    one = np.where(cross > 1e-9, np.sin((1 - share) * sweep) / sin, 1 - share)
-    two = np.where(cross > 1e-9, np.sin(share * sweep) / sin, share)
-    return unit(start * one[:, None] + end * two[:, None])
 
 
 def apart(one: ARRAY, two: ARRAY) -> ARRAY:

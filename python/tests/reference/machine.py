@@ -153,6 +153,20 @@ def angle(axis: ARRAY, start: ARRAY, end: ARRAY) -> ARRAY:
     return np.where(np.hypot(sin, cos) < 1e-10, np.nan, turn)
 
 
+def unit(vectors: ARRAY) -> ARRAY:
+    return np.asarray(vectors / np.linalg.norm(vectors, axis=-1, keepdims=True))
+
+
+def slerp(start: ARRAY, end: ARRAY, share: ARRAY) -> ARRAY:
+    """Axes on the great circle between two; rows of unit vectors."""
+    cross = np.linalg.norm(np.cross(start, end), axis=1)
+    sweep = np.arctan2(cross, (start * end).sum(1))
+    sin = np.where(cross > 1e-9, np.sin(sweep), 1.0)
+    one = np.where(cross > 1e-9, np.sin((1 - share) * sweep) / sin, 1 - share)
+    two = np.where(cross > 1e-9, np.sin(share * sweep) / sin, share)
+    return unit(start * one[:, None] + end * two[:, None])
+
+
 def matrix(axis: ARRAY, degrees: float) -> ARRAY:
     """Matrix that turns by degrees about an axis."""
     return rotate(np.eye(3), axis, np.full(3, np.radians(degrees))).T
