@@ -304,7 +304,9 @@ class Judge:
         allowed = reach + np.where(inner, self.limits.between, self.limits.end)
         self.report("path", row, best - allowed, lambda n: f"tip {best[n]:.4f} mm off its way")
         # The source says the axis at its own points only; between them the sweep is limited.
-        corner = ~inner & (self.share[row] > 1 - 1e-6) & (self.samples.share[here] > 0)
+        lines = np.array([r.line for r in self.rows] + [-1])
+        last = (self.share > 1 - 1e-6) & (lines[1:] != lines[:-1])
+        corner = ~inner & last[row] & (self.samples.share[here] > 0)
         angles = np.where(turning & ~corner, self.limits.sweep, self.limits.axis)
         self.report("axis", row, lean - angles, lambda n: f"axis {lean[n]:.3f} degrees off")
         self.states(np.flatnonzero(self.piece[:, 0] >= 0))
