@@ -198,12 +198,23 @@ pub struct Settings {
     /// R parameters that the operator sets at the machine to shift the zero of a rotary axis
     /// (SINUMERIK). They count as 0; any other that no block has set is an error.
     pub operator_parameters: Vec<u32>,
+    /// The M functions that switch the kinematics, where the machine has two (LinuxCNC).
+    pub kinematics: Option<Kinematics>,
     /// The wire, where the machine has one.
     pub wire: Wire,
     /// How far the control may be allowed to leave the path while it smooths it, mm.
     pub path_tolerance: f64,
     /// What the operator has set up.
     pub setup: Setup,
+}
+
+/// The M functions by which a program switches the kinematics of a LinuxCNC (`switchkins`, remapped).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Kinematics {
+    /// X, Y and Z are the tip of the tool in the work frame, from here on: rotary axes that turn leave it there.
+    pub tip: u32,
+    /// X, Y and Z are the axes themselves, from here on.
+    pub axes: u32,
 }
 
 /// What a virtual control has to know of a wire.
@@ -293,6 +304,7 @@ impl Settings {
             sets_work_offsets: false,
             auxiliary: Vec::new(),
             operator_parameters: Vec::new(),
+            kinematics: None,
             wire: Wire::default(),
             path_tolerance: 0.0,
             setup: Setup::default(),

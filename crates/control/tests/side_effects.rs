@@ -4,7 +4,7 @@
 mod common;
 
 use program::{Coolant, Diagnostic, Feed, Spindle};
-use toolpost_control::{Action, Dialect, Settings};
+use toolpost_control::{Action, Dialect, Kinematics, Orientation, Position, Settings};
 
 /// What a program does on a machine with B and C.
 fn run(dialect: Dialect, text: &str) -> Result<Vec<Action>, Box<Diagnostic>> {
@@ -500,4 +500,84 @@ fn m128_is_off_before_a_move_in_machine_coordinates() {
     let found = run(Dialect::Klartext, &numbered(text)).unwrap_err();
     assert_eq!((found.rule, found.line), ("tool-center", 6));
     assert!(run(Dialect::Klartext, &numbered(&text.replace("L Z+0", "M129\nL Z+0"))).is_ok());
+}
+
+/// What a program does on a LinuxCNC with B and C whose builder switches the kinematics by `M428` and `M429`.
+fn switched(text: &str) -> Result<Vec<Action>, &'static str> {
+    let settings = Settings {
+        kinematics: Some(Kinematics { tip: 428, axes: 429 }),
+        ..Settings::new(Dialect::LinuxCnc, [false, true, true])
+    };
+    common::ops(&settings, "p.ngc", text).map_err(|found| found.rule)
+}
+
+/// Measured on LinuxCNC 2.9: the kinematics stay when the program has ended, `5axiskins` starts with those of the tip, and
+/// `M428` leaves the axes where they are: the tip then stands at other coordinates, (15.5, 10.7, 90.7) instead of (5, -7, 83).
+#[test]
+fn a_switch_of_the_kinematics_moves_nothing_and_leaves_the_position_unknown() {
+    const START: &str = "G21 G90 G94 G17\nT1 M6\nM429\nG0 B30 C40\nX0 Y0\nG43 Z50 H1\nM428\n";
+    let rapids = |text: &str| {
+        let actions = switched(text).unwrap();
+        let rapid = |action: &Action| match action {
+            Action::Rapid(to) => Some(*to),
+            _ => None,
+        };
+        actions.iter().filter_map(rapid).collect::<Vec<_>>()
+    };
+    let moves = rapids(&format!("{START}X10 Y5\nZ20\nM429\nG53 G0 Z100\nM2\n"));
+    let by_tip = |to: &Position| {
+        matches!(
+            to.orientation,
+            Orientation::Rotary { tool_center: true, degrees: [_, 30.0, 40.0] }
+        )
+    };
+    assert_eq!(moves.iter().map(by_tip).collect::<Vec<_>>(), [false, false, false, true, true]);
+    // Behind the switch X and Y say nothing of Z.
+    assert_eq!((moves[3].point.x, moves[3].point.y), (10.0, 5.0));
+    assert!(moves[3].point.z.is_nan());
+    assert_eq!(moves[4].point.to_array(), [10.0, 5.0, 20.0]);
+    assert_eq!(switched(&format!("{START}G91 Z1\nM429\nM2\n")), Err("nc-unknown-position"));
+    // Back again, nothing of it is known either.
+    assert_eq!(
+        switched(&format!("{START}X1 Y2 Z3\nM429\nG91 Z1\nM2\n")),
+        Err("nc-unknown-position")
+    );
+}
+
+/// Measured on LinuxCNC 2.9 with A at 30 degrees, by the kinematics of the tip: `G53 G0 Z100` goes along Z of the turned
+/// work (the slide ends at 86.8), `G91 G28 Z0` brings the slide down to 3.4; `G43` of a tool that is 20 mm longer makes Y
+/// jump by 10 mm within two milliseconds.
+#[test]
+fn by_the_kinematics_of_the_tip_no_length_changes_and_nothing_goes_to_a_fixed_place() {
+    const START: &str =
+        "G21 G90 G94 G17\nT1 M6\nM429\nG0 B30 C40\nX0 Y0\nG43 Z50 H1\nM428\nX1 Y2 Z3\n";
+    for (block, right) in [
+        ("G1 Z2 F100", true),
+        ("G2 X2 Y3 J1 F100", true),
+        ("G43 H1", true),
+        ("G43 H2", false),
+        ("G49", false),
+        ("G43.1 Z20", false),
+        ("G53 G0 Z100", false),
+        ("G28", false),
+        ("G91 G28 Z0", false),
+        ("G30", false),
+        ("G28.1", false),
+        ("M428 X2", false),
+        ("M428 M8", false),
+    ] {
+        let found = switched(&format!("{START}{block}\nG90\nM429\nM2\n"));
+        assert_eq!(found.err(), (!right).then_some("nc-kinematics"), "{block}");
+    }
+    // It would drill along Z of the work, wherever the tool points.
+    assert_eq!(switched(&format!("{START}G98 G81 Z-5 R2 F100\nG80\nM429\nM2\n")), Err("nc-cycle"));
+}
+
+#[test]
+fn a_program_says_which_kinematics_it_has_and_leaves_those_of_the_axes() {
+    for text in ["G21 G90\nG0 X1 Y2\nM2\n", "G21 G90\nG28\nM2\n", "G21 G90\nG53 G0 Z0\nM2\n"] {
+        assert_eq!(switched(text), Err("nc-kinematics"), "{text}");
+        assert!(switched(&text.replacen('\n', "\nM429\n", 1)).is_ok(), "{text}");
+    }
+    assert_eq!(switched("G21 G90\nM428\nM2\n"), Err("nc-kinematics"));
 }

@@ -81,10 +81,21 @@ pub struct ControlSettings {
     pub rotary_by_sign: Option<bool>,
     /// Whether programs of this machine write work offsets: its fixtures are set so, and not by the operator.
     pub sets_work_offsets: bool,
+    /// The M functions that switch the kinematics of the control (LinuxCNC).
+    pub kinematics: Option<Kinematics>,
     /// How the axes go in a rapid (FANUC parameter 1401#1, SINUMERIK MD20730).
     pub rapid_path: Option<RapidPath>,
     /// What the tool table keeps as the radius of a tool.
     pub tool_radius: Option<ToolRadius>,
+}
+
+/// The M functions by which programs switch the kinematics of a LinuxCNC (`switchkins`).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Kinematics {
+    /// X, Y and Z are the tip of the tool in the turned work, from here on.
+    pub tip: u32,
+    /// X, Y and Z are the axes, from here on.
+    pub axes: u32,
 }
 
 /// A linear axis.

@@ -83,6 +83,10 @@ pub fn settings(machine: &Machine, setup: Setup) -> Result<Settings, Box<Diagnos
             thread: wire.thread,
             cut: wire.cut,
         }),
+        kinematics: machine
+            .settings
+            .kinematics
+            .map(|k| control::Kinematics { tip: k.tip, axes: k.axes }),
         path_tolerance: machine.path_tolerance(),
         setup,
         ..Settings::new(dialect, rotary)

@@ -63,6 +63,9 @@ const REFUSED: &[(&str, &[&str], &str)] = &[
     ("fanuc-table-bc", &["Sacrifice-Board.apt"], "axis-limit"),
     ("sinumerik-840d-traori", &["Sacrifice-Board.apt"], "axis-limit"),
     ("dmu50-heidenhain", &["Sacrifice-Board.apt"], "unreachable-orientation"),
+    ("linuxcnc-xyz", &["Sacrifice-Board.apt"], "axis-limit"),
+    // Taps need a cycle, and that the kinematics of the axes.
+    ("linuxcnc-xyzbc-head", &["plate.cls"], "cycle-tap"),
     // Nothing couples feed and spindle in a tap.
     ("generic-3axis-iso", &["plate.cls"], "cycle-tap"),
     ("generic-3axis-mach3", &["plate.cls"], "cycle-tap"),

@@ -325,6 +325,15 @@ impl CheckedSheet {
         {
             check_clamps(&place, &rotary, [simultaneous, positioned])?;
         }
+        let kinematics = match (self.settings.tip_kinematics, self.settings.axis_kinematics) {
+            (None, None) => None,
+            (Some(tip), Some(axes)) if tip != axes => Some(Kinematics { tip, axes }),
+            _ => {
+                return Err(missing(
+                    "`tip_kinematics` or `axis_kinematics` in [settings], two M functions,",
+                ));
+            }
+        };
         let capabilities = self.capabilities;
         let format = self.format;
         let line_length = capabilities.line_length.unwrap_or(256);
@@ -359,6 +368,7 @@ impl CheckedSheet {
                 length_along_z: self.settings.length_along_z,
                 length_moves_axis: self.settings.length_moves_axis,
                 dwell_p_milliseconds: self.settings.dwell_p_milliseconds,
+                kinematics,
                 rapid_path: self.settings.rapid_path,
                 tool_radius: self.settings.tool_radius,
                 rotary_by_sign: self.settings.rotary_by_sign,

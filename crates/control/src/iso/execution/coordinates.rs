@@ -2,7 +2,7 @@
 
 use super::frames::{Six, Transform, Unknown};
 use super::motion::LINEAR;
-use super::state::{Length, Polar, Tilt, UNKNOWN};
+use super::state::{Polar, Tilt, UNKNOWN};
 use super::step::Step;
 use crate::event::{Action, Risk};
 use crate::iso::language::block::{Fault, Word};
@@ -307,7 +307,7 @@ impl Step<'_, '_, '_> {
     /// Takes over changed coordinates.
     fn transformed(&mut self, transform: Transform, group: Group) -> Result<(), Fault> {
         self.may_change_coordinates(group)?;
-        if self.state.tilt != Tilt::None || self.keeps_center() {
+        if self.state.tilt != Tilt::None || self.state.keeps_center() {
             let message = "coordinates turned, scaled or mirrored in a tilted plane or with G43.4";
             return Err(self.block.at_group(group, "nc-frame", message));
         }
@@ -483,7 +483,7 @@ impl Step<'_, '_, '_> {
     fn tilt(&mut self) -> Result<(), Fault> {
         self.has_rotary_axes(Group::Tilt)?;
         self.not_compensated("a tilted plane")?;
-        let busy = self.state.frames.is_transformed() || self.keeps_center();
+        let busy = self.state.frames.is_transformed() || self.state.keeps_center();
         if busy || self.state.tilt != Tilt::None {
             let message = "G68.2 while other coordinates or G43.4 are active; cancel them first";
             return Err(self.block.at_group(Group::Tilt, "nc-tilt", message));
@@ -504,10 +504,5 @@ impl Step<'_, '_, '_> {
         self.state.tilt = Tilt::Declared(Frame::from_mat3_translation(turn, Vec3::new(x, y, z)));
         self.state.position = UNKNOWN;
         Ok(())
-    }
-
-    /// `G43.4` keeps the tool centre point.
-    pub(super) fn keeps_center(&self) -> bool {
-        matches!(self.state.length, Length::Center(_))
     }
 }

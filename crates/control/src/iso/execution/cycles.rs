@@ -79,8 +79,9 @@ impl Step<'_, '_, '_> {
     /// The cycle of the block becomes active.
     pub(super) fn begin_cycle(&mut self, canned: Canned) -> Result<(), Fault> {
         self.not_compensated("a cycle")?;
-        if self.keeps_center() {
-            let message = "a cycle while G43.4 keeps the tool centre point; use G43 or G68.2";
+        if self.state.keeps_center() {
+            // It would go along Z of the work, wherever the tool points.
+            let message = "a cycle while the control keeps the tool centre point: end that first";
             return Err(self.block.whole("nc-cycle", message));
         }
         let axis = self.state.plane.axes()[2];

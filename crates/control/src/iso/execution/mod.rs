@@ -3,7 +3,7 @@
 //! One [`step`] goes through the block in the order of the control and asks each of the others for its
 //! part: the words that move ([`motion`], [`arcs`], [`splines`], [`threads`], [`places`]), what is made
 //! of many moves ([`cycles`], [`patterns`]), the coordinates ([`coordinates`] say how [`frames`]
-//! change), [`tools`], the [`wire`], and FreeCAD's feeds ([`freecad`]). How a number counts is asked of
+//! change), [`kinematics`] that a program switches, [`tools`], the [`wire`], and FreeCAD's feeds ([`freecad`]). How a number counts is asked of
 //! [`numbers`], what holds of the [`state`]. A straight move behind another goes [`onward`] without all that.
 
 mod arcs;
@@ -11,6 +11,7 @@ mod coordinates;
 mod cycles;
 mod frames;
 mod freecad;
+mod kinematics;
 mod motion;
 pub(super) mod numbers;
 pub(super) mod onward;

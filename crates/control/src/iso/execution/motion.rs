@@ -26,6 +26,7 @@ pub(super) struct Target {
 impl Step<'_, '_, '_> {
     /// What the block moves.
     pub(super) fn motion(&mut self) -> Result<(), Fault> {
+        self.counts_axes()?;
         let Some(word) = self.block.g(Group::OneShot) else {
             return self.interpolation().and_then(|()| self.go());
         };

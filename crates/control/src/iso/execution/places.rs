@@ -88,6 +88,7 @@ impl Step<'_, '_, '_> {
 
     /// `G28.1`, `G30.1`: the reference position is where the machine stands.
     pub(super) fn store_home(&mut self, second: bool) -> Result<(), Fault> {
+        self.counts_machine()?;
         self.state.homes[usize::from(second)] = self.machine();
         self.go()
     }
@@ -274,6 +275,7 @@ impl Step<'_, '_, '_> {
 
     /// What holds before each move to a fixed place of the machine.
     fn before_fixed_position(&mut self) -> Result<(), Fault> {
+        self.counts_machine()?;
         self.not_compensated("a move to a fixed position")?;
         if self.state.cycle.is_some() {
             let message = "a move to a fixed position in a cycle; cancel it with G80 first";
@@ -297,7 +299,7 @@ impl Step<'_, '_, '_> {
     fn leave(&mut self, named: u8, action: Action) {
         self.switch_compensation();
         let mut point = self.state.place.point(self.state.position);
-        if self.state.tilt != Tilt::None || self.keeps_center() {
+        if self.state.tilt != Tilt::None || self.state.keeps_center() {
             // Each axis of the machine moves the tip along all of the work.
             point = UNKNOWN;
         }

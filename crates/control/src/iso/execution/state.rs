@@ -2,6 +2,7 @@
 
 use super::cycles::Holding;
 use super::frames::{Frames, Place};
+use super::kinematics::Kinematics;
 use super::tools::Registers;
 use super::wire::Wire;
 use crate::compensation::Terms;
@@ -63,6 +64,7 @@ pub(crate) struct State {
     /// The same as one way: [`Frames::place`], kept.
     pub place: Place,
     pub tilt: Tilt,
+    pub kinematics: Kinematics,
     /// The wire of a wire-EDM machine.
     pub wire: Option<Wire>,
     /// Axes (bit 0 is X) of which the next absolute words must come together, since the coordinates
@@ -212,6 +214,7 @@ impl State {
             frames: Frames::new(work_offset, all_zero, turns_offsets),
             place: Place::SAME,
             tilt: Tilt::None,
+            kinematics: Kinematics::at_start(flavor, settings),
             wire: flavor.is_wire().then(|| Wire::new(settings)),
             loose: 0,
             polar: None,
@@ -246,10 +249,16 @@ impl State {
                 point,
                 orientation: Orientation::Rotary {
                     degrees: self.place.rotary(rotary),
-                    tool_center: matches!(self.length, Length::Center(_)),
+                    tool_center: self.keeps_center(),
                 },
             },
         }
+    }
+
+    /// Whether the tip stays where it is while rotary axes turn: under `G43.4`, or by the kinematics that are on.
+    #[inline]
+    pub(super) fn keeps_center(&self) -> bool {
+        matches!(self.length, Length::Center(_)) || self.kinematics == Kinematics::Tip
     }
 
     /// The machine stands there from here on: `point` in the programmed frame, mm, `rotary` in degrees.
@@ -258,7 +267,7 @@ impl State {
         (self.position, self.rotary) = (point, rotary);
         (self.moved, self.told) = (true, true);
         // Words of X and Y move Z as well where the axes are not those of the machine.
-        let apart = self.tilt != Tilt::None || matches!(self.length, Length::Center(_));
+        let apart = self.tilt != Tilt::None || self.keeps_center();
         self.z_is_home &= point.z.is_nan() && !apart;
         self.frames.used();
     }

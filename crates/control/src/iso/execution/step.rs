@@ -74,6 +74,7 @@ impl Step<'_, '_, '_> {
         if more {
             self.spindle_and_coolant()?;
             self.neutral_m()?;
+            self.kinematics()?;
             self.dwell()?;
             self.modes()?;
         }
@@ -515,6 +516,7 @@ impl Step<'_, '_, '_> {
                 self.stop_all()?;
             }
             Some(M::End) => {
+                self.ends_with_axes()?;
                 // The others switch off by themselves; on FANUC it is the builder's choice.
                 if self.flavor != Flavor::Fanuc {
                     self.turn(Spindle::Off);

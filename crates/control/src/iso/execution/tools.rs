@@ -187,6 +187,7 @@ impl Step<'_, '_, '_> {
         if self.flavor == Flavor::Fanuc {
             self.hold_length(length);
         }
+        self.keeps_length()?;
         self.change_length(length);
         Ok(())
     }

@@ -384,10 +384,18 @@ impl<'a> Block<'a> {
         self.settings.auxiliary.iter().copied().find(|&m| f64::from(m) == number)
     }
 
-    /// The M function of this number that is the machine's own: it threads or cuts the wire, or runs a
-    /// program of LinuxCNC's (`M100` to `M199`), to which P and Q belong.
+    /// The M function of this number that is the machine's own: it switches the kinematics, threads or cuts the wire, or
+    /// runs a program of LinuxCNC's (`M100` to `M199`), to which P and Q belong.
     fn of_the_machine(&self, number: f64) -> Option<(Group, M)> {
         let is = |function: Option<u32>| function.map(f64::from) == Some(number);
+        let kinematics =
+            self.settings.kinematics.filter(|_| self.dictionary.flavor == Flavor::LinuxCnc);
+        for (function, follows) in kinematics.iter().flat_map(|k| [(k.tip, true), (k.axes, false)])
+        {
+            if is(Some(function)) {
+                return Some((Group::Kinematics, M::FollowTip(follows)));
+            }
+        }
         let runs = self.dictionary.flavor == Flavor::LinuxCnc && (100.0..200.0).contains(&number);
         if let Some(number) = self.auxiliary(number).filter(|_| runs) {
             return Some((Group::Output, M::Program(number)));

@@ -297,6 +297,8 @@ pub(crate) enum M {
     },
     /// `M66`: waits for the input that P or E names.
     Input,
+    /// The kinematics that follow the tip from here on, or those of the axes themselves (`switchkins` of LinuxCNC).
+    FollowTip(bool),
     /// A program that the user has added as an M function (LinuxCNC's `M100` to `M199`); P and Q are
     /// handed to it.
     Program(u32),
@@ -335,11 +337,12 @@ pub(crate) enum Group {
     Output,
     Modes,
     Wire,
+    Kinematics,
 }
 
 impl Group {
     /// How many groups there are.
-    pub(super) const COUNT: usize = Group::Wire as usize + 1;
+    pub(super) const COUNT: usize = Group::Kinematics as usize + 1;
 
     /// The bit of the group in a set of groups.
     pub(super) const fn bit(self) -> u32 {

@@ -1,0 +1,113 @@
+//! The kinematics of a machine that has two: on a LinuxCNC M functions of the builder choose whether X, Y and Z are the
+//! axes, or the tip of the tool in coordinates that turn with the table (`switchkins`; `docs/controls/linuxcnc.md`).
+
+use super::state::UNKNOWN;
+use super::step::Step;
+use crate::Settings;
+use crate::iso::language::block::Fault;
+use crate::iso::language::words::{Flavor, G, Group, M, bit};
+
+/// What X, Y and Z are.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Kinematics {
+    /// The axes: the machine has nothing to switch.
+    Single,
+    /// Whatever the program before has left: neither the end of a program nor a reset switches.
+    Unknown,
+    /// The axes.
+    Axes,
+    /// The tip of the tool in the work frame.
+    Tip,
+}
+
+impl Kinematics {
+    /// At the start of a program.
+    pub(super) fn at_start(flavor: Flavor, settings: &Settings) -> Kinematics {
+        match settings.kinematics {
+            Some(_) if flavor == Flavor::LinuxCnc => Kinematics::Unknown,
+            _ => Kinematics::Single,
+        }
+    }
+}
+
+impl Step<'_, '_, '_> {
+    /// The M functions that switch. Nothing moves for them, and what stood at one place by the one kinematics stands at
+    /// another by the other.
+    pub(super) fn kinematics(&mut self) -> Result<(), Fault> {
+        let Some(M::FollowTip(follows)) = self.block.m(Group::Kinematics) else { return Ok(()) };
+        if self.block.m_count > 1 || !self.block.has_only(b"M", Group::Kinematics) {
+            return Err(self.wrong_kinematics("the kinematics are switched by a block of its own"));
+        }
+        self.not_compensated("a change of the kinematics")?;
+        if self.state.cycle.is_some() {
+            return Err(self.wrong_kinematics(
+                "the kinematics change within a cycle; cancel it with G80 first",
+            ));
+        }
+        let to = if follows { Kinematics::Tip } else { Kinematics::Axes };
+        if self.state.kinematics != to {
+            self.state.kinematics = to;
+            self.state.position = UNKNOWN;
+        }
+        Ok(())
+    }
+
+    /// # Errors
+    /// The block names coordinates, and nobody knows whether they are those of the axes or of the tip.
+    #[inline]
+    pub(super) fn counts_axes(&self) -> Result<(), Fault> {
+        if self.state.kinematics != Kinematics::Unknown {
+            return Ok(());
+        }
+        let axes = b"XYZABC@^".iter().fold(0, |bits, &letter| bits | bit(letter));
+        let goes_home = matches!(self.block.g(Group::OneShot), Some(G::Home | G::SecondHome));
+        if !self.block.has_any(axes) && !goes_home {
+            return Ok(());
+        }
+        let message =
+            "which kinematics are on, the program before has left: they are the axes' or the tip's";
+        let fault = self.block.whole("nc-kinematics", message);
+        Err(fault.help("switch to those of the axes at the start of the program").into())
+    }
+
+    /// # Errors
+    /// Fixed places count from the zero of the machine by the axes alone: by the kinematics of the tip `G53 Z` and `G28`
+    /// go along Z of the turned work (measured).
+    pub(super) fn counts_machine(&self) -> Result<(), Fault> {
+        if self.state.kinematics != Kinematics::Tip {
+            return Ok(());
+        }
+        let message =
+            "a fixed position by the kinematics of the tip, where it counts in the turned work";
+        let fault = self.block.at_group(Group::OneShot, "nc-kinematics", message);
+        Err(fault.help("switch to the kinematics of the axes first").into())
+    }
+
+    /// # Errors
+    /// The axes jump by what another length changes in the kinematics of the tip (measured: 10 mm in a millisecond).
+    pub(super) fn keeps_length(&self) -> Result<(), Fault> {
+        if self.state.kinematics != Kinematics::Tip {
+            return Ok(());
+        }
+        let message =
+            "another tool length by the kinematics of the tip: the axes jump by what it changes";
+        let fault = self.block.at_group(Group::Length, "nc-kinematics", message);
+        Err(fault.help("switch to the kinematics of the axes first").into())
+    }
+
+    /// # Errors
+    /// The program ends with the kinematics of the tip, which the next one then has.
+    pub(super) fn ends_with_axes(&self) -> Result<(), Fault> {
+        if self.state.kinematics != Kinematics::Tip {
+            return Ok(());
+        }
+        let message =
+            "the program ends with the kinematics of the tip, by which the next one then moves";
+        let fault = self.block.at_group(Group::Flow, "nc-kinematics", message);
+        Err(fault.help("switch to the kinematics of the axes before").into())
+    }
+
+    fn wrong_kinematics(&self, message: &str) -> Fault {
+        self.block.at_group(Group::Kinematics, "nc-kinematics", message)
+    }
+}
