@@ -34,7 +34,7 @@ demo: rust
 	@echo "..."
 	@echo
 	@echo "program  $(DEMO).mpf"
-	@echo "report   $(DEMO).report.json"
+	@echo "report   $(DEMO).mpf.report.json"
 	@echo "picture  $(DEMO).png"
 	@echo
 	@echo "What to do next:"

@@ -19,8 +19,6 @@ type Pair<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>);
 #[pyclass(frozen, module = "toolpost")]
 pub struct Machine {
     pub described: ::machine::Machine,
-    /// The name or the file that it was loaded by.
-    pub loaded_by: PathBuf,
 }
 
 #[pymethods]
@@ -197,7 +195,7 @@ pub fn machine(
             .set_option(&name.extract::<String>()?, &value)
             .map_err(|found| refused(py, *found))?;
     }
-    Ok(Machine { described, loaded_by: name_or_path })
+    Ok(Machine { described })
 }
 
 /// The machines of the library, in the order of their names.
@@ -209,7 +207,5 @@ pub fn machine(
 pub fn library(py: Python<'_>) -> PyResult<Vec<Machine>> {
     let machines =
         released(py, || names(MACHINES).map(toolpath::machine).collect::<Result<Vec<_>, Stop>>())?;
-    let loaded_by = |machine: &::machine::Machine| PathBuf::from(&machine.name);
-    let wrap = |described| Machine { loaded_by: loaded_by(&described), described };
-    Ok(machines.into_iter().map(wrap).collect())
+    Ok(machines.into_iter().map(|described| Machine { described }).collect())
 }

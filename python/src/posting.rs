@@ -54,13 +54,9 @@ pub fn post<'py>(
     file: Option<String>,
     tolerance: Option<f64>,
 ) -> PyResult<Bound<'py, PyAny>> {
-    let inputs: Vec<PathBuf> = program
-        .toolpath
-        .path()
-        .into_iter()
-        .chain([machine.loaded_by.as_path()])
-        .map(Path::to_owned)
-        .collect();
+    let read = program.toolpath.files().into_iter().map(Path::to_owned);
+    let inputs: Vec<PathBuf> =
+        read.chain(machine.described.loaded_from.files.iter().cloned()).collect();
     let (toolpath, machine) = (&program.toolpath, &machine.described);
     let file = file.unwrap_or_else(|| {
         let name = toolpath.file.rsplit_once('.').map_or(&*toolpath.file, |(stem, _)| stem);
@@ -142,7 +138,7 @@ pub fn save(
         let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
         let target = Target::new(&path, &inputs)?;
         let Some(report) = report else { return files::save(&[(&target, text)]) };
-        let report_target = Target::new(&path.with_extension("report.json"), &inputs)?;
+        let report_target = Target::new(&files::report_of(&path), &inputs)?;
         files::save(&[(&report_target, report.as_bytes()), (&target, text)])
     })
 }

@@ -40,4 +40,4 @@ def test_the_example_of_the_readme_does_what_it_says(tmp_path, monkeypatch):
     for block in blocks:
         exec(compile(block, "README.md", "exec"), {})
     assert (tmp_path / "dome.nc").is_file()
-    assert (tmp_path / "dome.report.json").is_file()
+    assert (tmp_path / "dome.nc.report.json").is_file()

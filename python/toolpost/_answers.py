@@ -171,7 +171,7 @@ class Result:
         Parameters
         ----------
         path : str or os.PathLike
-            Where; the report is there under the ending ``.report.json``. Neither can be a file that
+            Where; the report is there under its name and ``.report.json``. Neither can be a file that
             the program was made of.
         report : bool
             Whether the report is saved too.

@@ -1,18 +1,62 @@
 //! Programs that a program calls, from the folders that the operator has given.
 
+use std::collections::BTreeSet;
 use std::fs;
 use std::io::Read;
 use std::path::{Component, Path, PathBuf};
+use std::sync::{Arc, Mutex, PoisonError};
 
 /// Largest called program, bytes.
 const LARGEST: u64 = 64 << 20;
+
+/// Folders in which called programs are looked for, in this order. Nothing outside them is opened.
+#[derive(Clone, Debug, Default)]
+pub struct Folders {
+    paths: Vec<PathBuf>,
+    /// The files that have been read; clones have it in common.
+    read: Arc<Mutex<BTreeSet<PathBuf>>>,
+}
+
+impl PartialEq for Folders {
+    fn eq(&self, other: &Folders) -> bool {
+        self.paths == other.paths
+    }
+}
+
+impl From<Vec<PathBuf>> for Folders {
+    fn from(paths: Vec<PathBuf>) -> Folders {
+        Folders { paths, ..Folders::default() }
+    }
+}
+
+impl Folders {
+    /// The files that have been read from them, by any of the controls that were set up with clones of it.
+    pub fn files_read(&self) -> Vec<PathBuf> {
+        self.read.lock().unwrap_or_else(PoisonError::into_inner).iter().cloned().collect()
+    }
+
+    /// Whether one of them has a file of that name.
+    pub(crate) fn have(&self, name: &str) -> bool {
+        self.paths.iter().any(|folder| folder.join(name).is_file())
+    }
+
+    /// Finds a called program, in the first folder that has it, and reads it.
+    ///
+    /// # Errors
+    /// What to say where there is none, or it cannot be read.
+    pub(crate) fn open(&self, name: &str) -> Result<Vec<u8>, String> {
+        let (path, text) = open(&self.paths, name)?;
+        self.read.lock().unwrap_or_else(PoisonError::into_inner).insert(path);
+        Ok(text)
+    }
+}
 
 /// Finds a called program in `folders`, the first that has it, and reads it. `name` may lead into a
 /// folder below, never out: a name with `..` or a root, or a link that leads out, finds nothing.
 ///
 /// # Errors
 /// What to say where there is none, or it cannot be read.
-pub(crate) fn open(folders: &[PathBuf], name: &str) -> Result<Vec<u8>, String> {
+fn open(folders: &[PathBuf], name: &str) -> Result<(PathBuf, Vec<u8>), String> {
     let inside = Path::new(name).components().all(|part| matches!(part, Component::Normal(_)));
     if !inside || name.is_empty() {
         return Err(format!("{name:?} does not name a file within the given folders"));
@@ -31,7 +75,7 @@ pub(crate) fn open(folders: &[PathBuf], name: &str) -> Result<Vec<u8>, String> {
         if text.len() as u64 > LARGEST {
             return Err(format!("{name} is larger than {} MB", LARGEST >> 20));
         }
-        return Ok(text);
+        return Ok((real, text));
     }
     let among = match folders {
         [] => String::from("no folder for called programs is given"),
@@ -56,9 +100,9 @@ mod tests {
         }
         fs::write(outside.path().join("secret.ngc"), "no").unwrap();
         fs::write(folders[1].join("sub.ngc"), "second").unwrap();
-        assert_eq!(open(&folders, "sub.ngc").unwrap(), b"second");
+        assert_eq!(open(&folders, "sub.ngc").unwrap().1, b"second");
         fs::write(folders[0].join("sub.ngc"), "first").unwrap();
-        assert_eq!(open(&folders, "sub.ngc").unwrap(), b"first");
+        assert_eq!(open(&folders, "sub.ngc").unwrap().1, b"first");
         let absolute = outside.path().join("secret.ngc").display().to_string();
         for name in ["../secret.ngc", &absolute, "a/../../secret.ngc", "", "missing.ngc"] {
             assert!(open(&folders, name).is_err(), "{name}");

@@ -25,10 +25,10 @@ mod way;
 
 use compensation::Compensator;
 pub use event::{Action, ArcTo, Event, Orientation, Position, Risk, Thread};
+pub use folders::Folders;
 use geom::Vec3;
 use iso::Flavor;
 use program::{Diagnostic, WorkOffset};
-use std::path::PathBuf;
 
 /// The languages that are understood.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -235,8 +235,8 @@ pub struct Setup {
     /// The tool table. Cutter radius compensation with a tool of the table is resolved into the path
     /// of the tool's centre; with any other it stays a state ([`Action::Compensation`]).
     pub tools: Vec<ToolData>,
-    /// Folders in which called programs are looked for, in this order. Nothing outside them is opened.
-    pub folders: Vec<PathBuf>,
+    /// Folders in which called programs are looked for.
+    pub folders: Folders,
     /// What a length or an angle without a decimal point counts.
     pub whole_numbers: WholeNumbers,
     /// What lengths count before the program says it (`G20`, `G21`): what the last program has left.

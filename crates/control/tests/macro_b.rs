@@ -9,7 +9,8 @@ use std::path::PathBuf;
 use toolpost_control::{Action, Dialect, Settings, Setup, WholeNumbers};
 
 fn settings(dialect: Dialect, folders: &[PathBuf]) -> Settings {
-    let setup = Setup { folders: folders.to_vec(), start: Some(Vec3::ZERO), ..Setup::default() };
+    let setup =
+        Setup { folders: folders.to_vec().into(), start: Some(Vec3::ZERO), ..Setup::default() };
     Settings { setup, ..Settings::new(dialect, [false; 3]) }
 }
 

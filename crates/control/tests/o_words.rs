@@ -11,7 +11,8 @@ use toolpost_control::{Action, Dialect, Settings, Setup, read};
 
 /// Runs a program with everything in the control at 0.
 fn run(text: &str, folders: &[PathBuf]) -> Result<Vec<(u32, Action)>, Box<Diagnostic>> {
-    let setup = Setup { folders: folders.to_vec(), start: Some(Vec3::ZERO), ..Setup::default() };
+    let setup =
+        Setup { folders: folders.to_vec().into(), start: Some(Vec3::ZERO), ..Setup::default() };
     let settings = Settings { setup, ..Settings::new(Dialect::LinuxCnc, [true; 3]) };
     let records = common::records(&settings, "main.ngc", text)?;
     Ok(records.into_iter().map(|record| (record.line, record.action)).collect())

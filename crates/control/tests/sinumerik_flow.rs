@@ -243,7 +243,7 @@ fn programs_of_the_folders_carry_the_line_of_their_call() {
     std::fs::write(folder.path().join("inner.spf"), "PROC INNER(INT NN)\nX=10*NN\nRET\n").unwrap();
     std::fs::write(folder.path().join("BAD.SPF"), "G0 X1\nX=1/0\nM17\n").unwrap();
     let mut settings = settings();
-    settings.setup = Setup { folders: vec![folder.path().to_owned()], ..Setup::default() };
+    settings.setup = Setup { folders: vec![folder.path().to_owned()].into(), ..Setup::default() };
     let run = |text: &str| moves_with(&settings, text);
     assert_eq!(run("X0 F100\nOUTER\nG0 X5\nM30\n").unwrap()[1..], [(2, 1.0), (2, 20.0), (3, 5.0)]);
     let error = run("G0 X0\nBAD\nM30\n").unwrap_err();

@@ -1,9 +1,10 @@
 //! What a machine is, after its files are merged.
 
 use geom::Vec3;
-use program::{Axes, CycleKind, Diagnostic, MachineMove};
+use program::{Axes, CycleKind, Diagnostic, Digest, MachineMove};
 use serde::Deserialize;
 use std::collections::BTreeMap;
+use std::path::PathBuf;
 
 /// A machine with its control.
 #[derive(Clone, Debug, PartialEq)]
@@ -12,6 +13,8 @@ pub struct Machine {
     pub name: String,
     /// The file it was loaded from, for findings.
     pub file: String,
+    /// All files that it was loaded from.
+    pub loaded_from: LoadedFrom,
     /// What a person calls it.
     pub title: String,
     /// The control it extends, itself or by another machine.
@@ -64,6 +67,15 @@ pub struct Machine {
     pub approach: Vec<String>,
     /// Values that the templates of this machine read, by name.
     pub options: BTreeMap<String, OptionValue>,
+}
+
+/// What a machine was loaded from: its file, and those that it extends.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub struct LoadedFrom {
+    /// The files of the user's own, the nearest first; those of the library are not among them.
+    pub files: Vec<PathBuf>,
+    /// SHA-256 of the texts of all files and of the options that were set since, in hexadecimal digits.
+    pub digest: String,
 }
 
 /// Parameters of the control as the machine has them; `None` is not known.
@@ -484,6 +496,8 @@ impl Machine {
         *option = given.ok_or_else(|| {
             refused(format!("option `{name}` is {kind}, not `{value}`"), String::new())
         })?;
+        let digest = &mut self.loaded_from.digest;
+        *digest = Digest::of([digest.as_bytes(), name.as_bytes(), value.as_bytes()]);
         Ok(())
     }
 

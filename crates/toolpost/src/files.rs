@@ -1,10 +1,15 @@
 //! Files: read whole, and written whole or not at all.
+//!
+//! New contents are written under a name of their own in the folder of the file, and renamed at the end. Whoever does
+//! that has locked the folder, so that of two commands that save the same files one saves all of them. The system
+//! opens the lock of a process that is killed; what such a process left is removed by the next one.
 
 use program::Diagnostic;
 use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
+use std::sync::{Mutex, MutexGuard, PoisonError};
 use tempfile::{Builder, NamedTempFile};
 
 /// The largest file that is read, bytes: more lines than a line number counts.
@@ -42,6 +47,14 @@ pub fn name(path: &Path) -> String {
     path.file_name().unwrap_or(path.as_os_str()).to_string_lossy().into_owned()
 }
 
+/// Where the report of the program `program` is saved: under its name and one more ending, so that `part.nc` and
+/// `part.h` have a report each.
+pub fn report_of(program: &Path) -> PathBuf {
+    let mut name = program.as_os_str().to_owned();
+    name.push(".report.json");
+    PathBuf::from(name)
+}
+
 /// A place where a file will be saved, looked at before the work begins.
 #[derive(Debug)]
 pub struct Target {
@@ -56,8 +69,8 @@ impl Target {
     /// The file `path`, which must be none of `inputs`.
     ///
     /// # Errors
-    /// Where its folder is missing, it is no ordinary file, or it is one of the inputs, by whatever
-    /// links.
+    /// Where its folder is missing, it is no ordinary file or may not be written, or it is one of the inputs, by
+    /// whatever links.
     pub fn new(path: &Path, inputs: &[&Path]) -> Result<Target, Box<Diagnostic>> {
         let refused = |rule, why: &str, way_out: &str| {
             Err(about(path, rule, format!("cannot be saved: {why}")).help(way_out).into())
@@ -70,6 +83,10 @@ impl Target {
         let resolved = match &existing {
             Ok(metadata) if !metadata.is_file() => {
                 return refused("output", "it is not a file", "give the name of a file");
+            }
+            Ok(metadata) if metadata.permissions().readonly() => {
+                let way_out = "allow writing to it, or give another name";
+                return refused("output", "it is there already, and read-only", way_out);
             }
             Ok(_) => fs::canonicalize(path).unwrap_or_else(|_| path.to_owned()),
             Err(_) if linked => {
@@ -85,10 +102,23 @@ impl Target {
             let why = format!("there is no folder {}", folder.display());
             return refused("output-folder", &why, "make the folder first");
         }
-        if inputs.iter().any(|input| same_file(&resolved, input)) {
-            return refused("output", "it is the input itself", "give another name");
+        let target = Target { given: path.to_owned(), path: resolved, folder };
+        target.spare(inputs)?;
+        Ok(target)
+    }
+
+    /// Checks that it is none of `inputs`: for those that are known only once the work has begun.
+    ///
+    /// # Errors
+    /// It is one of them, by whatever links.
+    pub fn spare(&self, inputs: &[impl AsRef<Path>]) -> Result<(), Box<Diagnostic>> {
+        match inputs.iter().find(|input| same_file(&self.path, input.as_ref())) {
+            Some(input) => {
+                let message = format!("cannot be saved: it is the input {}", name(input.as_ref()));
+                Err(about(&self.given, "output", message).help("give another name").into())
+            }
+            None => Ok(()),
         }
-        Ok(Target { given: path.to_owned(), path: resolved, folder })
     }
 
     fn full(&self, error: &io::Error) -> Diagnostic {
@@ -99,7 +129,7 @@ impl Target {
     /// A file in the same folder, gone when it is dropped.
     fn beside(&self) -> io::Result<NamedTempFile> {
         let mut builder = Builder::new();
-        builder.prefix(".toolpost-");
+        builder.prefix(TEMPORARY.0).suffix(TEMPORARY.1);
         #[cfg(unix)]
         {
             use std::os::unix::fs::PermissionsExt;
@@ -173,12 +203,62 @@ impl Drop for Folder {
     }
 }
 
+/// What the name of a file begins and ends with until all of it is written.
+const TEMPORARY: (&str, &str) = (".toolpost-", ".tmp");
+
+/// Held while files are saved.
+static SAVING: Mutex<()> = Mutex::new(());
+
+/// Waits until no file is being saved, and keeps others from beginning: who holds it may end the process.
+pub fn saved() -> MutexGuard<'static, ()> {
+    SAVING.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Folders in which nobody else saves anything meanwhile.
+struct Locked {
+    /// Their locks, which end with the process at the latest.
+    _folders: Vec<File>,
+}
+
+impl Locked {
+    /// Locks the folders of `files`, waiting for others, and removes what killed processes have left there. A folder
+    /// that the system cannot lock is left as it is.
+    fn of<'t>(files: impl Iterator<Item = &'t Target>) -> Locked {
+        // In the same order by everybody: nobody waits for who waits for him.
+        let folders: BTreeSet<PathBuf> =
+            files.filter_map(|target| fs::canonicalize(&target.folder).ok()).collect();
+        let locked = folders.into_iter().filter_map(|path| {
+            let folder = File::open(&path).ok()?;
+            folder.lock().ok()?;
+            sweep(&path);
+            Some(folder)
+        });
+        Locked { _folders: locked.collect() }
+    }
+}
+
+/// Removes the files that a killed process has begun in a folder. Nobody else may be saving there.
+fn sweep(folder: &Path) {
+    let Ok(entries) = fs::read_dir(folder) else { return };
+    for entry in entries.filter_map(Result::ok) {
+        let name = entry.file_name();
+        let name = name.to_string_lossy();
+        let begun = name.strip_prefix(TEMPORARY.0).and_then(|name| name.strip_suffix(TEMPORARY.1));
+        let ours = begun.is_some_and(|middle| middle.bytes().all(|b| b.is_ascii_alphanumeric()));
+        if ours && entry.file_type().is_ok_and(|kind| kind.is_file()) {
+            let _ = fs::remove_file(entry.path());
+        }
+    }
+}
+
 /// Saves all of the files or, where one cannot be saved, none: what was there before stays. A copy of
 /// what is there is kept of all but the last, so the largest should be the last.
 ///
 /// # Errors
 /// The file that could not be saved, and why.
 pub fn save(files: &[(&Target, &[u8])]) -> Result<(), Box<Diagnostic>> {
+    let _saving = saved();
+    let _locked = Locked::of(files.iter().map(|(target, _)| *target));
     let mut staged = Vec::with_capacity(files.len());
     for (i, (target, bytes)) in files.iter().enumerate() {
         let kept = i + 1 < files.len() && target.path.exists();

@@ -17,6 +17,7 @@ mod pcb;
 pub mod post;
 mod progress;
 pub mod prove;
+pub mod report;
 mod show;
 pub mod summary;
 pub mod toolpath;
@@ -30,6 +31,19 @@ use clap::{CommandFactory, Parser};
 use serde_json::json;
 use std::ffi::OsString;
 
+/// Has Ctrl-C, and whatever else asks the process to end, wait until files that are being saved are whole.
+fn end_cleanly() {
+    // A process that has a handler of its own keeps it.
+    let _ = ctrlc::set_handler(|| {
+        let _whole = files::saved();
+        eprintln!("\ninterrupted");
+        std::process::exit(INTERRUPTED);
+    });
+}
+
+/// The exit code of a command that was interrupted: 128 and the number of the signal, as shells have it.
+const INTERRUPTED: i32 = 130;
+
 /// Obeys a command line, whose first word is the name of the command, and answers the exit code.
 pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
     let CommandLine { command, quiet, json } = match CommandLine::try_parse_from(words) {
@@ -40,6 +54,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
             return u8::try_from(usage.exit_code()).unwrap_or(u8::MAX);
         }
     };
+    end_cleanly();
     let silent = quiet || json;
     let answer = match command {
         Command::Post(args) => post::run(&args, silent),

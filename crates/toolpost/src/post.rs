@@ -6,6 +6,7 @@ use crate::beside::beside;
 use crate::files::{self, Target};
 use crate::progress::Progress;
 use crate::prove;
+use crate::report::{self, Digests};
 use crate::summary::{Shape, time};
 use crate::toolpath::{self, Toolpath};
 use ::post::Output;
@@ -52,7 +53,7 @@ pub struct Posted {
 pub fn run(args: &Post, silent: bool) -> Result<Answer, Stop> {
     let source = &args.source.path;
     let inputs = [source.as_path(), Path::new(&args.machine)];
-    let report_path = args.output.with_extension("report.json");
+    let report_path = files::report_of(&args.output);
     let target = Target::new(&args.output, &inputs)?;
     let report_target = Target::new(&report_path, &inputs)?;
     let machine = toolpath::machine_with(&args.machine, &args.option)?;
@@ -66,11 +67,24 @@ pub fn run(args: &Post, silent: bool) -> Result<Answer, Stop> {
     if account.verdict != Verdict::Done {
         return Ok(account.not_saved());
     }
+    spare(&[&target, &report_target], &toolpath, &machine)?;
     progress.step("saving");
     files::save(&[(&report_target, account.report().as_bytes()), (&target, &text)])?;
     account.rows.push(("saved", args.output.display().to_string()));
     account.rows.push(("", report_path.display().to_string()));
     Ok(account.into())
+}
+
+/// Checks that none of `targets` is one of the files that have been read.
+///
+/// # Errors
+/// The one that is.
+pub fn spare(targets: &[&Target], toolpath: &Toolpath, machine: &Machine) -> Result<(), Stop> {
+    for target in targets {
+        target.spare(&toolpath.files())?;
+        target.spare(&machine.loaded_from.files)?;
+    }
+    Ok(())
 }
 
 /// Writes the program of `toolpath`, which is called `file`, and proves it; `step` is told what is
@@ -110,7 +124,9 @@ pub fn proven(
 
     warnings.extend(proof.warnings.iter().chain(&proof.accepted).cloned());
     let data = json!({
+        "schema": report::SCHEMA,
         "toolpost": env!("CARGO_PKG_VERSION"),
+        "sha256": Digests::of(&output.text, toolpath, machine),
         "source": toolpath.describe(&shape),
         "machine": toolpath::describe(machine),
         "program": { "file": file, "blocks": output.blocks, "bytes": output.text.len() },

@@ -5,6 +5,7 @@ use crate::args::{Closeness, Prove};
 use crate::beside::beside;
 use crate::files;
 use crate::progress::Progress;
+use crate::report::{self, Digests};
 use crate::summary::{self, Shape, number};
 use crate::toolpath::{self, Toolpath};
 use machine::Machine;
@@ -20,7 +21,12 @@ pub fn run(args: &Prove, silent: bool) -> Result<Answer, Stop> {
     let text = files::read(&args.program)?;
     progress.step("proving");
     let file = files::name(&args.program);
-    Ok(compare(&toolpath, &machine, &file, &text, &args.closeness.tolerances()).into())
+    let mut account = compare(&toolpath, &machine, &file, &text, &args.closeness.tolerances());
+    match report::pair(&args.program, &Digests::of(&text, &toolpath, &machine)) {
+        Ok(pair) => account.rows.extend(pair.map(|text| ("report", text))),
+        Err(found) => account.findings.push(*found),
+    }
+    Ok(account.into())
 }
 
 /// Holds the program `text`, which is called `file`, against `toolpath`.

@@ -24,6 +24,7 @@ pub fn run(args: &Show, silent: bool) -> Result<Answer, Stop> {
     if let Some((target, format)) = target {
         progress.step("drawing");
         let picture = format.bytes(drawing::tool_path(&toolpath.file, &toolpath.program))?;
+        target.spare(&toolpath.files())?;
         files::save(&[(&target, &picture)])?;
     }
     let mut lines = toolpath.rows(None);

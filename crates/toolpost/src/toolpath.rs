@@ -9,7 +9,7 @@ use control::{Dialect, Setup};
 use freecad::{Job, Listing};
 use geom::Vec3;
 use machine::{Machine, library};
-use program::{CompensatedPath, Diagnostic, Op, Program, Severity, line_of};
+use program::{CompensatedPath, Diagnostic, Digest, Op, Program, Severity, line_of};
 use serde_json::{Value, json};
 use source::apt::{self, Cutcom, SetUps};
 use std::path::{Path, PathBuf};
@@ -19,6 +19,11 @@ use std::path::{Path, PathBuf};
 pub struct Toolpath {
     /// Where it was read from; nowhere where it was put together in memory.
     path: Option<PathBuf>,
+    /// What else was read for it: the tool table, called programs.
+    read_with: Vec<PathBuf>,
+    /// SHA-256 of what was read (of a FreeCAD document, of its job), in hexadecimal digits; none for what was put
+    /// together in memory.
+    digest: Option<String>,
     /// Name of its file.
     pub file: String,
     /// The CAM system whose habits the file has, or the control that it was written for.
@@ -72,7 +77,9 @@ pub fn read(
     }
     let named = origin.from.as_deref().map(machine::load_origin).transpose()?;
     let file = files::name(path);
-    read_job(&file, Job::of(&file, &bytes)?, strict, named.as_ref().or(machine))
+    let digest = Some(Digest::of([&bytes[..]]));
+    let toolpath = read_job(&file, Job::of(&file, &bytes)?, strict, named.as_ref().or(machine))?;
+    Ok(Toolpath { path: Some(path.to_owned()), digest, ..toolpath })
 }
 
 /// Reads a job of FreeCAD's, which is called `file`. Words for rotary axes are those of
@@ -128,10 +135,16 @@ fn read_by(
     set_up: impl Fn(Machine) -> Machine,
 ) -> Result<Toolpath, Stop> {
     let file = files::name(path);
+    let mut read_with = Vec::new();
     let (dialect, program, warnings, set_ups, cutcom) = match &origin.from {
         Some(from) => {
             let machine = set_up(machine::load_origin(from)?);
-            let reading = nc::read(&machine, origin.setup()?, &file, bytes)?;
+            let setup = origin.setup()?;
+            let folders = setup.folders.clone();
+            let reading = nc::read(&machine, setup, &file, bytes)?;
+            read_with.extend(origin.tools.clone());
+            read_with.extend(machine.loaded_from.files.clone());
+            read_with.extend(folders.files_read());
             (machine.title, reading.program, reading.warnings, None, None)
         }
         None => {
@@ -156,7 +169,20 @@ fn read_by(
     };
     let warnings = held(warnings, strict)?;
     let path = Some(path.to_owned());
-    Ok(Toolpath { path, file, dialect, program, warnings, listing: None, set_ups, cutcom })
+    let digest = Some(Digest::of([bytes]));
+    let listing = None;
+    Ok(Toolpath {
+        path,
+        read_with,
+        digest,
+        file,
+        dialect,
+        program,
+        warnings,
+        listing,
+        set_ups,
+        cutcom,
+    })
 }
 
 /// The warnings; with `strict` they stop the command.
@@ -275,7 +301,7 @@ impl Origin {
         };
         Ok(Setup {
             tools,
-            folders: self.folder.clone(),
+            folders: self.folder.clone().into(),
             whole_numbers: match self.whole_numbers {
                 None => control::WholeNumbers::Unknown,
                 Some(WholeNumbers::Units) => control::WholeNumbers::Units,
@@ -300,10 +326,11 @@ impl Origin {
 
 impl Toolpath {
     /// A drawing, which has contours and no moves.
-    pub fn of_drawing(path: &Path, dialect: &str) -> Toolpath {
+    pub fn of_drawing(path: &Path, bytes: &[u8], dialect: &str) -> Toolpath {
         let name = path.file_stem().unwrap_or_default().to_string_lossy();
         Toolpath {
             path: Some(path.to_owned()),
+            digest: Some(Digest::of([bytes])),
             file: files::name(path),
             ..Toolpath::of_program(Program::new(name), dialect)
         }
@@ -313,6 +340,8 @@ impl Toolpath {
     pub fn of_program(program: Program, dialect: &str) -> Toolpath {
         Toolpath {
             path: None,
+            read_with: Vec::new(),
+            digest: None,
             file: program.name.clone(),
             dialect: dialect.to_owned(),
             program,
@@ -326,6 +355,25 @@ impl Toolpath {
     /// The file that it was read from, where there is one.
     pub fn path(&self) -> Option<&Path> {
         self.path.as_deref()
+    }
+
+    /// With another toolpath that it was read together with: the upper contour of a wire.
+    pub fn read_with(mut self, other: Toolpath) -> Toolpath {
+        self.read_with.extend(other.files().into_iter().map(Path::to_owned));
+        let both = self.digest.iter().chain(&other.digest).map(String::as_bytes);
+        self.digest = Some(Digest::of(both));
+        self.warnings.extend(other.warnings);
+        self
+    }
+
+    /// All files that it was read from.
+    pub fn files(&self) -> Vec<&Path> {
+        self.path().into_iter().chain(self.read_with.iter().map(PathBuf::as_path)).collect()
+    }
+
+    /// SHA-256 of what was read, in hexadecimal digits; none where nothing was.
+    pub fn digest(&self) -> Option<&str> {
+        self.digest.as_deref()
     }
 
     /// With what was not passed on; with `strict` that stops the command.

@@ -10,6 +10,7 @@ use crate::answer::{Answer, Stop, Verdict};
 use crate::args::{self, Division};
 use crate::files::{self, Target};
 use crate::progress::Progress;
+use crate::report::Digests;
 use crate::summary::rows;
 use crate::{post, prove, toolpath};
 use ::wire::Contour;
@@ -27,7 +28,7 @@ pub fn run(args: &args::Wire, silent: bool) -> Result<Answer, Stop> {
     let path = &args.source.path;
     let mut inputs = vec![path.as_path(), std::path::Path::new(&args.machine)];
     inputs.extend(args.ends.upper.as_deref());
-    let report_path = args.output.with_extension("report.json");
+    let report_path = files::report_of(&args.output);
     let target = Target::new(&args.output, &inputs)?;
     let report_target = Target::new(&report_path, &inputs)?;
     let picture = match &args.picture {
@@ -66,7 +67,9 @@ pub fn run(args: &args::Wire, silent: bool) -> Result<Answer, Stop> {
 
     warnings.extend(proof.warnings.iter().cloned());
     let data = json!({
+        "schema": crate::report::SCHEMA,
         "toolpost": env!("CARGO_PKG_VERSION"),
+        "sha256": Digests::of(&output.text, &toolpath, &machine),
         "source": { "file": toolpath.file, "dialect": toolpath.dialect },
         "machine": toolpath::describe(&machine),
         "program": { "file": file, "blocks": output.blocks, "bytes": output.text.len() },
@@ -84,6 +87,9 @@ pub fn run(args: &args::Wire, silent: bool) -> Result<Answer, Stop> {
         }
         None => None,
     };
+    let picture_target = picture.iter().map(|(target, _)| target);
+    let targets: Vec<&Target> = picture_target.chain([&target, &report_target]).collect();
+    post::spare(&targets, &toolpath, &machine)?;
     progress.step("saving");
     let mut saved = vec![(&report_target, report.as_bytes())];
     if let (Some((target, _)), Some(bytes)) = (&picture, &drawn) {

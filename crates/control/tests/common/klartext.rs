@@ -45,7 +45,7 @@ pub fn run_with_radius(radius: f64, blocks: &str) -> Vec<Action> {
 
 /// Runs a program that may call those of a folder.
 pub fn run_in(folder: &Path, blocks: &str) -> Result<Vec<Event>, Box<Diagnostic>> {
-    let setup = Setup { folders: vec![folder.into()], ..Setup::default() };
+    let setup = Setup { folders: vec![folder.into()].into(), ..Setup::default() };
     read_with(setup, [false; 3], program("T", "MM", blocks).as_bytes())
 }
 

@@ -198,7 +198,7 @@ pub fn ours(text: &[u8], rotary: [bool; 3], folders: &[PathBuf]) -> Result<Vec<M
     let settings = Settings {
         setup: Setup {
             tools: TOOLS.map(tool).collect(),
-            folders: folders.to_vec(),
+            folders: folders.to_vec().into(),
             start: Some(Vec3::ZERO),
             ..Setup::default()
         },

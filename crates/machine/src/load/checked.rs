@@ -340,6 +340,7 @@ impl CheckedSheet {
         let (reader, reader_place) =
             self.reader.ok_or_else(|| missing("`reader`, the virtual control,"))?;
         Ok(Machine {
+            loaded_from: LoadedFrom::default(),
             title: self.title.unwrap_or_else(|| name.clone()),
             name,
             file,

@@ -5,6 +5,8 @@ use crate::library;
 use crate::model::{Block, Place};
 use crate::sheet::Sheet;
 use program::{Diagnostic, nearest};
+use std::fs::{self, File};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use toml::Spanned;
 
@@ -17,9 +19,21 @@ pub(super) struct SheetFile {
     pub(super) text: String,
     /// Whether it is a file of the user's, not of the library.
     pub(super) own: bool,
+    /// Whether findings may quote it. A machine file from a stranger may extend any file of this computer by its path:
+    /// what lies outside the folder is not shown.
+    pub(super) quoted: bool,
+    /// Where its lines begin.
+    lines: Vec<usize>,
 }
 
 impl SheetFile {
+    /// A file whose text may be quoted.
+    pub(super) fn new(path: PathBuf, text: String, own: bool) -> SheetFile {
+        let ends = text.bytes().enumerate().filter(|(_, byte)| *byte == b'\n');
+        let lines = std::iter::once(0).chain(ends.map(|(at, _)| at + 1)).collect();
+        SheetFile { path, text, own, quoted: true, lines }
+    }
+
     pub(super) fn read(path: &Path) -> Result<SheetFile> {
         let shown = path.display().to_string();
         let fail = |why: String| {
@@ -27,20 +41,26 @@ impl SheetFile {
                 .help("`toolpost machines list` names the machines of the library")
                 .file(shown.clone())
         };
-        let size = std::fs::metadata(path).map_err(|e| fail(format!("cannot be read: {e}")))?.len();
-        if size > LARGEST_FILE {
-            return Err(fail(format!("{size} bytes are no machine file")).into());
+        let unreadable = |error: std::io::Error| fail(format!("cannot be read: {error}"));
+        // Looked at before it is opened: opening a pipe would wait for ever.
+        if !fs::metadata(path).map_err(unreadable)?.is_file() {
+            return Err(fail(String::from("cannot be read: it is not a file")).into());
+        }
+        let mut bytes = Vec::new();
+        let file = File::open(path).map_err(unreadable)?;
+        file.take(LARGEST_FILE + 1).read_to_end(&mut bytes).map_err(unreadable)?;
+        if bytes.len() as u64 > LARGEST_FILE {
+            let message = format!("more than {} MB are no machine file", LARGEST_FILE >> 20);
+            return Err(fail(message).into());
         }
         let text =
-            std::fs::read_to_string(path).map_err(|e| fail(format!("cannot be read: {e}")))?;
-        Ok(SheetFile { path: path.to_path_buf(), text, own: true })
+            String::from_utf8(bytes).map_err(|_| fail(String::from("this file is not UTF-8")))?;
+        Ok(SheetFile::new(path.to_path_buf(), text, true))
     }
 
     pub(super) fn of_library(name: &str, kinds: &[library::Kind]) -> Result<SheetFile> {
         match library::find(name, kinds) {
-            Some((path, text)) => {
-                Ok(SheetFile { path: PathBuf::from(path), text: text.to_string(), own: false })
-            }
+            Some((path, text)) => Ok(SheetFile::new(PathBuf::from(path), text.to_string(), false)),
             None if library::find(name, library::EVERYTHING).is_some() => {
                 let known = builders(name).collect::<Vec<_>>().join(", ");
                 let message = format!("`{name}` is a control, not a machine");
@@ -64,12 +84,29 @@ impl SheetFile {
     pub(super) fn parent(&self, parent: &Spanned<String>) -> Result<SheetFile> {
         let name = parent.get_ref();
         let found = if is_path(name) && self.own {
-            let folder = self.path.parent().unwrap_or(Path::new(""));
-            SheetFile::read(&folder.join(name))
+            self.parent_file(name)
         } else {
             SheetFile::of_library(name, library::EVERYTHING)
         };
         found.map_err(|d| self.at("extends", parent, &d.message).help(d.help).into())
+    }
+
+    /// The file of that path, from the folder of this one.
+    fn parent_file(&self, name: &str) -> Result<SheetFile> {
+        let folder = self.path.parent().unwrap_or(Path::new(""));
+        let path = folder.join(name);
+        let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
+        let is_inside = match (fs::canonicalize(&path), fs::canonicalize(folder)) {
+            (Ok(file), Ok(folder)) => file.starts_with(folder),
+            _ => false,
+        };
+        if !is_inside && !name.ends_with(".toml") {
+            let message = "a file outside the folder of this one, whose name does not end in .toml, is not read";
+            let help = "copy it beside this file";
+            return Err(Diagnostic::error("machine-file", message).help(help).into());
+        }
+        let quoted = self.quoted && is_inside;
+        Ok(SheetFile { quoted, ..SheetFile::read(&path)? })
     }
 
     pub(super) fn name(&self) -> String {
@@ -79,7 +116,10 @@ impl SheetFile {
     pub(super) fn parse(&self) -> Result<Sheet> {
         toml::from_str(&self.text).map_err(|e| {
             let span = e.span().unwrap_or(0..0);
-            let message = e.message().trim().replace('\n', "; ");
+            let message = match self.quoted {
+                true => e.message().trim().replace('\n', "; "),
+                false => String::from("this is no machine file"),
+            };
             self.diagnostic("machine-file", message, span).into()
         })
     }
@@ -97,6 +137,9 @@ impl SheetFile {
         let before = &self.text.as_bytes()[..span.start.min(self.text.len())];
         let start = before.iter().rposition(|&b| b == b'\n').map_or(0, |i| i + 1);
         let line = self.line_of(span.start);
+        if !self.quoted {
+            return Diagnostic::error(rule, message).file(self.name()).line(line);
+        }
         let text = self.text.as_bytes()[start..].split(|&b| b == b'\n').next().unwrap_or_default();
         Diagnostic::error(rule, message).file(self.name()).at(
             line,
@@ -107,8 +150,7 @@ impl SheetFile {
     }
 
     fn line_of(&self, offset: usize) -> u32 {
-        let before = &self.text.as_bytes()[..offset.min(self.text.len())];
-        1 + before.iter().filter(|&&b| b == b'\n').count() as u32
+        self.lines.partition_point(|&start| start <= offset) as u32
     }
 
     pub(super) fn placed<T>(&self, value: Spanned<T>) -> (T, Place) {

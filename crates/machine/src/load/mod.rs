@@ -8,10 +8,10 @@ mod checked;
 mod file;
 
 use crate::library;
-use crate::model::Machine;
+use crate::model::{LoadedFrom, Machine};
 use checked::CheckedSheet;
 use file::SheetFile;
-use program::Diagnostic;
+use program::{Diagnostic, Digest};
 use std::path::{Path, PathBuf};
 
 /// How many files a chain of `extends` may have.
@@ -57,7 +57,7 @@ pub fn load_origin(name_or_path: &str) -> Result<Machine> {
 /// # Errors
 /// As [`load`].
 pub fn load_text(file_name: &str, text: &str) -> Result<Machine> {
-    build(SheetFile { path: PathBuf::from(file_name), text: text.to_string(), own: true })
+    build(SheetFile::new(PathBuf::from(file_name), text.to_string(), true))
 }
 
 fn build(file: SheetFile) -> Result<Machine> {
@@ -65,6 +65,12 @@ fn build(file: SheetFile) -> Result<Machine> {
     let shown = file.name();
     let mut control = None;
     let mut merged = CheckedSheet::new(file.parse()?, &file)?;
+    let (mut texts, mut files) = (Digest::default(), Vec::new());
+    let mut add = |file: &SheetFile| {
+        texts.add(file.text.as_bytes());
+        files.extend(file.own.then(|| file.path.clone()));
+    };
+    add(&file);
     let mut here = file;
     for depth in 0.. {
         let Some(parent) = merged.extends.take() else { break };
@@ -80,6 +86,7 @@ fn build(file: SheetFile) -> Result<Machine> {
             control = Some(parent.get_ref().clone());
         }
         merged = CheckedSheet::new(next.parse()?, &next)?.under(merged);
+        add(&next);
         here = next;
     }
     let missing = |what: &str| {
@@ -87,7 +94,8 @@ fn build(file: SheetFile) -> Result<Machine> {
         Box::new(Diagnostic::error("machine-incomplete", message).file(shown.clone()))
     };
     let control = control.unwrap_or_else(|| name.clone());
-    merged.finish(name.clone(), shown.clone(), control, &missing)
+    let machine = merged.finish(name.clone(), shown.clone(), control, &missing)?;
+    Ok(Machine { loaded_from: LoadedFrom { files, digest: texts.finish() }, ..machine })
 }
 
 /// Whether it is the path of a file, not a name of the library.

@@ -81,7 +81,7 @@ impl Source {
         }
         let (File::Drawing(mut toolpath, _) | File::Program(mut toolpath)) = lower;
         if let Some(File::Drawing(above, _) | File::Program(above)) = upper {
-            toolpath.warnings.extend(above.warnings);
+            toolpath = toolpath.read_with(above);
         }
         Ok(Source { toolpath, paths, beside, height })
     }
@@ -111,7 +111,7 @@ impl File {
             gap: args.drawing.close,
             ..dxf::Options::default()
         };
-        let toolpath = Toolpath::of_drawing(path, "DXF");
+        let toolpath = Toolpath::of_drawing(path, &text, "DXF");
         let drawing = dxf::read(&text, &options).map_err(|found| toolpath.refused(*found))?;
         let toolpath = toolpath.warned(drawing.warnings, args.source.strict)?;
         Ok(File::Drawing(toolpath, drawing.contours))

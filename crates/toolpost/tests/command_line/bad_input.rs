@@ -193,3 +193,56 @@ fn a_text_that_the_control_would_run() {
     refused("[blocks]\nmessage = '''\n; said\nMSG({{ text }})\n'''\n", "6:8");
     refused("[blocks]\noperation_start = \"{{ operation.name }} ; begins\"\n", "4:23");
 }
+
+#[cfg(unix)]
+#[test]
+fn a_machine_file_that_is_a_pipe_or_a_device_is_refused() {
+    let folder = Folder::new();
+    let pipe = folder.path().join("pipe.toml");
+    assert!(std::process::Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+    std::os::unix::fs::symlink("/dev/zero", folder.path().join("endless.toml")).unwrap();
+    folder.write("mine.toml", "extends = \"pipe.toml\"\n");
+    for machine in ["pipe.toml", "endless.toml", "mine.toml"] {
+        let said = folder.run(&["post", "part.cls", "-m", machine, "-o", "out.mpf"]);
+        assert_eq!(said.code, 2, "{said:?}");
+        assert!(said.err.contains("it is not a file"), "{said:?}");
+    }
+}
+
+#[test]
+fn a_machine_file_shows_nothing_of_files_outside_its_folder() {
+    let folder = Folder::new();
+    std::fs::create_dir(folder.path().join("theirs")).unwrap();
+    let secret = "password = \"swordfish\"\n";
+    folder.write("secret.txt", secret);
+    folder.write("secret.toml", secret);
+    #[cfg(unix)]
+    std::os::unix::fs::symlink("../secret.txt", folder.path().join("theirs/link.toml")).unwrap();
+    let absolute = folder.path().join("secret.txt").display().to_string();
+    for outside in ["../secret.txt", "../secret.toml", "link.toml", &absolute] {
+        folder.write("theirs/mill.toml", format!("extends = '{outside}'\n"));
+        let said = folder.run(&["post", "part.cls", "-m", "theirs/mill.toml", "-o", "out.mpf"]);
+        assert_eq!(said.code, 2, "{said:?}");
+        let shown = format!("{}{}", said.out, said.err);
+        assert!(!shown.contains("password") && !shown.contains("swordfish"), "{outside}: {shown}");
+    }
+    // A machine file of the shop's, in the folder above, is extended as before.
+    folder.write("shop.toml", format!("extends = \"{MACHINE}\"\n"));
+    folder.write("theirs/mill.toml", "extends = \"../shop.toml\"\n");
+    let said = folder.run(&["post", "part.cls", "-m", "theirs/mill.toml", "-o", "out.mpf"]);
+    assert_eq!(said.code, 0, "{said:?}");
+}
+
+#[test]
+fn a_machine_file_of_many_unknown_keys_is_refused_at_once() {
+    let folder = Folder::new();
+    let mut text = String::from("extends = \"generic-3axis-sinumerik\"\n[words]\n");
+    for i in 0..150_000 {
+        text.push_str(&format!("W{i} = {{}}\n"));
+    }
+    folder.write("mine.toml", text);
+    let begun = std::time::Instant::now();
+    let said = folder.run(&["post", "part.cls", "-m", "mine.toml", "-o", "out.mpf"]);
+    assert_eq!(said.code, 2, "{said:?}");
+    assert!(begun.elapsed().as_secs() < 30, "{:?}", begun.elapsed());
+}

@@ -29,7 +29,8 @@ fn the_example_is_posted_and_proven_and_its_operations_are_named() {
     // Four holes of one cycle: from Z2 down to Z-8 in pecks of 2.5 mm.
     assert!(text.contains("MCALL CYCLE83(2,2,0,-8,,,2.5,0,0,0,1,1)\n"), "{text}");
     assert_eq!(text.matches("MCALL CYCLE83").count(), 1);
-    let report: serde_json::Value = serde_json::from_str(&folder.read("out.report.json")).unwrap();
+    let report: serde_json::Value =
+        serde_json::from_str(&folder.read("out.mpf.report.json")).unwrap();
     let labels = report["source"]["operations"].as_array().unwrap().iter();
     let labels: Vec<_> = labels.map(|operation| operation["label"].as_str().unwrap()).collect();
     assert_eq!(labels, ["G54", "Mill 6", "Profile", "Bore", "Drill 5", "Drilling"]);

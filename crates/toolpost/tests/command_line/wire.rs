@@ -20,7 +20,7 @@ fn wire(folder: &Folder, more: &[&str]) -> Said {
 }
 
 fn report(folder: &Folder) -> Value {
-    serde_json::from_str(&folder.read("part.report.json")).unwrap()
+    serde_json::from_str(&folder.read("part.pts.report.json")).unwrap()
 }
 
 /// Refused with this code and in these words, and nothing is written.

@@ -2,12 +2,11 @@
 
 use super::macros::Labels;
 use super::owords::OWords;
-use crate::folders;
+use crate::folders::Folders;
 use crate::iso::language::block::Fault;
 use program::Diagnostic;
 use std::borrow::Cow;
 use std::cell::OnceCell;
-use std::path::PathBuf;
 
 /// The most files of a run.
 const MOST_FILES: usize = 200;
@@ -50,11 +49,7 @@ impl<'t> Source<'t> {
     ///
     /// # Errors
     /// There is none, or there are too many files already.
-    pub(super) fn open(
-        &self,
-        folders: &[PathBuf],
-        names: &[String],
-    ) -> Result<&Source<'t>, String> {
+    pub(super) fn open(&self, folders: &Folders, names: &[String]) -> Result<&Source<'t>, String> {
         let (mut last, mut count) = (self, 1);
         loop {
             if names.contains(&last.name) {
@@ -70,7 +65,7 @@ impl<'t> Source<'t> {
         }
         let mut missing = String::new();
         for name in names {
-            match folders::open(folders, name) {
+            match folders.open(name) {
                 Ok(text) => {
                     let fresh = || Box::new(Source::new(name.clone(), text.into()));
                     return Ok(last.next.get_or_init(fresh));

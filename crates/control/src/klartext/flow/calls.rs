@@ -3,7 +3,6 @@
 use super::run::Run;
 use super::source::{LAST_LABEL, Label, Place, written_label};
 use crate::budget::DEEPEST;
-use crate::folders;
 use crate::klartext::language::registers::{Numbers, Parameter, Registers};
 use crate::klartext::language::scan::{Result, Scanner};
 use std::borrow::Cow;
@@ -210,11 +209,11 @@ impl<'t> Run<'t, '_, '_, '_> {
         let folders = &self.control.settings.setup.folders;
         // The control does not tell capitals from small letters.
         let names = [name.to_ascii_uppercase(), name.to_ascii_lowercase(), name];
-        let there = |name: &&String| folders.iter().any(|f| f.join(name).is_file());
+        let there = |name: &&String| folders.have(name);
         let [_, _, written] = &names;
         let name = names.iter().rev().find(there).unwrap_or(written);
-        let text = folders::open(folders, name)
-            .map_err(|message| s.error("called-program", span, message))?;
+        let text =
+            folders.open(name).map_err(|message| s.error("called-program", span, message))?;
         self.control.count_jump(s, FILE.saturating_add(text.len()))?;
         let unit = self.control.unit;
         let local = self.control.registers.exchange_local(Numbers::default());

@@ -1,14 +1,13 @@
 //! Programs: the main one, those that travel in the same file, and those of the operator's folders.
 
 use super::outline::Outline;
-use crate::folders;
+use crate::folders::Folders;
 use crate::sinumerik::Fallible;
 use crate::sinumerik::language::scan::{Name, Scanner, Source};
 use program::Diagnostic;
 use std::borrow::Cow;
 use std::cell::OnceCell;
 use std::collections::HashMap;
-use std::path::PathBuf;
 use std::rc::Rc;
 
 /// A program.
@@ -57,7 +56,7 @@ impl Program<'_> {
 
 /// Where programs are found.
 pub(crate) struct Library<'a> {
-    folders: &'a [PathBuf],
+    folders: &'a Folders,
     /// Those of the main file.
     here: Vec<Rc<Program<'a>>>,
     /// Those of the folders that have been called.
@@ -69,7 +68,7 @@ impl<'a> Library<'a> {
     ///
     /// # Errors
     /// A header that names no program.
-    pub fn new(folders: &'a [PathBuf], text: &'a [u8]) -> Fallible<Library<'a>> {
+    pub fn new(folders: &'a Folders, text: &'a [u8]) -> Fallible<Library<'a>> {
         let here = split(text)?.into_iter().map(Rc::new).collect();
         Ok(Library { folders, here, called: HashMap::new() })
     }
@@ -119,9 +118,9 @@ impl<'a> Library<'a> {
             .iter()
             .flat_map(|ending| stems.iter().map(move |stem| format!("{stem}.{ending}")))
             .collect();
-        let there = |name: &&String| self.folders.iter().any(|f| f.join(name).is_file());
+        let there = |name: &&String| self.folders.have(name);
         let file = names.iter().find(there).or(names.first()).cloned().unwrap_or_default();
-        let text = folders::open(self.folders, &file)?;
+        let text = self.folders.open(&file)?;
         let in_file = |error: Box<Diagnostic>| format!("{file}: {}", error.message);
         let mut found = split(&text).map_err(in_file)?;
         // A file of one program is called by the name of the file; of several, each by its header.
@@ -194,7 +193,7 @@ mod tests {
     #[test]
     fn a_file_holds_programs_by_their_headers() {
         let text = b"%_N_A_SPF\n;$PATH=/_N_SPF_DIR\nM17\n%_N_B_MPF\nA\nM30\n";
-        let mut library = Library::new(&[], text).unwrap();
+        let mut library = Library::new(&Folders::default(), text).unwrap();
         let main = library.main().unwrap();
         assert_eq!((main.first_line, &main.text[..]), (5, &b"A\nM30\n"[..]));
         for name in ["a", "A_SPF", "_N_A_SPF", "/_N_WKS_DIR/_N_X_WPD/_N_A_SPF", "A.spf"] {
@@ -203,15 +202,15 @@ mod tests {
         for name in ["C", "A_MPF", "", "../A B", "A\u{fc}"] {
             assert!(library.find(name).is_err(), "{name}");
         }
-        assert!(Library::new(&[], b"%_N_A_XYZ\n").is_err());
-        assert!(Library::new(&[], b"").unwrap().main().unwrap().text.is_empty());
+        assert!(Library::new(&Folders::default(), b"%_N_A_XYZ\n").is_err());
+        assert!(Library::new(&Folders::default(), b"").unwrap().main().unwrap().text.is_empty());
     }
 
     #[test]
     fn a_called_file_is_found_in_capitals_or_not() {
         let folder = tempfile::tempdir().unwrap();
         std::fs::write(folder.path().join("sub.spf"), "%_N_OTHER_SPF\nM17\n").unwrap();
-        let folders = [folder.path().to_owned()];
+        let folders = Folders::from(vec![folder.path().to_owned()]);
         let mut library = Library::new(&folders, b"M30\n").unwrap();
         let program = library.find("SUB").unwrap();
         assert_eq!(program.file.as_deref(), Some("sub.spf"));

@@ -1,0 +1,83 @@
+//! What stands beside a program: the report of what it was made of, and whether the two are still a pair.
+
+use crate::files;
+use crate::toolpath::Toolpath;
+use machine::Machine;
+use program::{Diagnostic, Digest};
+use serde::{Deserialize, Serialize};
+use std::path::Path;
+
+/// The version of the shape of a report. It grows where a key goes or means something else; new keys may come at any
+/// time.
+pub const SCHEMA: u32 = 1;
+
+/// The largest report that is read, bytes.
+const LARGEST: u64 = 256 << 20;
+
+/// SHA-256 of a program and of what it was made of, in hexadecimal digits.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+pub struct Digests {
+    /// The program.
+    program: String,
+    /// The toolpath, where it came from a file.
+    source: Option<String>,
+    /// The files of the machine and the options that were given for it.
+    machine: String,
+}
+
+impl Digests {
+    /// The digests of a program and what it was made of.
+    pub fn of(text: &[u8], toolpath: &Toolpath, machine: &Machine) -> Digests {
+        Digests {
+            program: Digest::of([text]),
+            source: toolpath.digest().map(str::to_owned),
+            machine: machine.loaded_from.digest.clone(),
+        }
+    }
+
+    /// What is not the same on two sides.
+    fn differences(&self, other: &Digests) -> Vec<&'static str> {
+        let sides = [
+            (self.program != other.program, "program"),
+            (self.source != other.source, "toolpath"),
+            (self.machine != other.machine, "machine file"),
+        ];
+        sides.into_iter().filter(|(differs, _)| *differs).map(|(_, name)| name).collect()
+    }
+}
+
+/// What a report holds, as far as it is read again.
+#[derive(Deserialize)]
+struct Saved {
+    sha256: Digests,
+}
+
+/// What the report beside the program file `path` says about its origin; `now` are the digests of today. Nothing where
+/// there is no report.
+///
+/// # Errors
+/// A warning: it is the report of something else, or it cannot be read.
+pub fn pair(path: &Path, now: &Digests) -> Result<Option<String>, Box<Diagnostic>> {
+    let report = files::report_of(path);
+    let name = files::name(&report);
+    let other = |message: String| {
+        let help = "post the program anew for a report of its own, or remove the report";
+        let found = Diagnostic::warning("report-pair", message);
+        Err(found.help(help).file(name.clone()).into())
+    };
+    let Ok(metadata) = std::fs::metadata(&report) else { return Ok(None) };
+    if metadata.len() > LARGEST {
+        return other(format!("is no report: it is larger than {} MB", LARGEST >> 20));
+    }
+    let bytes = match files::read(&report) {
+        Ok(bytes) => bytes,
+        Err(found) => return other(found.message),
+    };
+    let Ok(Saved { sha256 }) = serde_json::from_slice(&bytes) else {
+        return other(String::from("does not say what it was made of"));
+    };
+    match sha256.differences(now)[..] {
+        [] => Ok(Some(format!("{name} belongs to this program, toolpath and machine file"))),
+        ref what => other(format!("is the report of another {}", what.join(" and "))),
+    }
+}
