@@ -184,3 +184,19 @@ fn builders(control: &str) -> impl Iterator<Item = &'static str> {
         chain.any(|ancestor| ancestor == control)
     })
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_place_of_a_text_is_on_the_line_that_counting_gives() {
+        for text in ["", "a", "a\n", "\n\nbc\n", "a\r\nb"] {
+            let file = SheetFile::new(PathBuf::from("t.toml"), text.into(), true);
+            for offset in 0..=text.len() {
+                let counted = 1 + text[..offset].matches('\n').count() as u32;
+                assert_eq!(file.line_of(offset), counted, "{text:?} at {offset}");
+            }
+        }
+    }
+}

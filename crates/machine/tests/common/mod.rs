@@ -10,6 +10,7 @@ pub fn machine(rotary: Vec<RotaryAxis>) -> Machine {
     Machine {
         name: "test".into(),
         file: "test.toml".into(),
+        loaded_from: Default::default(),
         title: "Test".into(),
         control: "iso".into(),
         reader: "fanuc".into(),

@@ -50,7 +50,7 @@ fn nothing_is_saved_of_what_cannot_be_read() {
     assert_eq!(said.code, 2, "{said:?}");
     assert!(said.err.contains("shop.pp:6: error[import]"), "{said:?}");
     let said = folder.run(&["machines", "import", "shop.pp", "-o", "shop.pp"]);
-    assert!(said.code == 2 && said.err.contains("the input itself"), "{said:?}");
+    assert!(said.code == 2 && said.err.contains("is the input shop.pp"), "{said:?}");
     folder.write("plain.pp", POST.replace("Grbl", "router"));
     let said = folder.run(&["machines", "import", "plain.pp", "-o", "mine.toml"]);
     assert!(said.code == 2 && said.err.contains("--extends"), "{said:?}");

@@ -180,7 +180,7 @@ fn a_full_disk_keeps_the_earlier_files_and_nothing_half_written() {
 fn post_with_all_kinds_of_input(folder: &Folder, output: &str) -> Said {
     folder.write(
         "main.ngc",
-        "G21 G17 G90 G94 G54\nM3 S1000\nT1 M6\nG43 H1\nG0 X0 Y0 Z5\no<sub> call\nM2\n",
+        "G21 G17 G90 G94 G54\nT1 M6\nM3 S1000\nG43 H1\nG0 X0 Y0 Z5\no<sub> call\nM2\n",
     );
     folder.write("sub.ngc", "o<sub> sub\nG1 Z-1 F100\nX20\nG0 Z5\no<sub> endsub\n");
     folder.write("tools.tbl", "T1 P1 D6 Z50\n");

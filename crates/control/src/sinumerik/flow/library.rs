@@ -193,7 +193,8 @@ mod tests {
     #[test]
     fn a_file_holds_programs_by_their_headers() {
         let text = b"%_N_A_SPF\n;$PATH=/_N_SPF_DIR\nM17\n%_N_B_MPF\nA\nM30\n";
-        let mut library = Library::new(&Folders::default(), text).unwrap();
+        let folders = Folders::default();
+        let mut library = Library::new(&folders, text).unwrap();
         let main = library.main().unwrap();
         assert_eq!((main.first_line, &main.text[..]), (5, &b"A\nM30\n"[..]));
         for name in ["a", "A_SPF", "_N_A_SPF", "/_N_WKS_DIR/_N_X_WPD/_N_A_SPF", "A.spf"] {
