@@ -6,7 +6,7 @@
 //! frame follows from the tip in the machine by undoing the table.
 
 use crate::{Machine, Mount, RotaryAxis, Wire};
-use geom::{ANGLE_EPSILON, Vec2, Vec3, rotate};
+use geom::{ANGLE_EPSILON, Vec2, Vec3, angle_between, between, rotate};
 use serde::Serialize;
 use std::fmt;
 
@@ -91,6 +91,16 @@ impl Machine {
             .fold(tool, |v, axis| rotate(v, axis.axis, -axis.turned(degrees[axis.index()])))
     }
 
+    /// How far the tool axis leaves the great circle between two tool axes (unit vectors, work frame), radians, while the
+    /// rotary axes turn evenly from one of `degrees` to the other, seen at seven places on the way.
+    pub fn swing(&self, degrees: [[f64; 3]; 2], axes: [Vec3; 2]) -> f64 {
+        let off = |t: f64| {
+            let turned = [0, 1, 2].map(|i| degrees[0][i] + t * (degrees[1][i] - degrees[0][i]));
+            angle_between(self.axis_at(turned), between(axes[0], axes[1], t))
+        };
+        (1..8).map(|i| off(f64::from(i) / 8.0)).fold(0.0, f64::max)
+    }
+
     /// The positions of the linear axes (mm) that bring the tool tip to `tip` (mm, work frame) with
     /// the rotary axes at `degrees`: the inverse of [`Machine::forward`] for given rotary positions.
     pub fn linear_for(&self, tip: Vec3, degrees: [f64; 3], tool_length: f64) -> Vec3 {
@@ -130,8 +140,9 @@ impl Machine {
         (!is_measured && self.tilts_tool(degrees)).then_some(Unsaid::ToolLength)
     }
 
-    /// Whether the head turns the tool away from where it points in the zero position.
-    fn tilts_tool(&self, degrees: [f64; 3]) -> bool {
+    /// Whether the head turns the tool away from where it points in the zero position, with the rotary axes at `degrees`
+    /// (of A, B, C).
+    pub fn tilts_tool(&self, degrees: [f64; 3]) -> bool {
         let tool = self
             .on(Mount::Head)
             .rev()

@@ -31,6 +31,12 @@ impl Gauge<'_> {
         tip <= self.slack(station) && axis <= self.allowed.axis_degrees
     }
 
+    /// Whether two places of the program are one: each is rounded for itself.
+    pub fn meet(&self, a: &Station, b: &Station) -> bool {
+        let (tip, axis) = a.place.apart(&b.place);
+        tip <= self.slack(a) + self.slack(b) && axis <= 2.0 * self.allowed.axis_degrees
+    }
+
     /// How far `station` stands above `place` along its axis, where it stands on that axis.
     pub fn height_over(&self, place: &Place, station: &Station) -> Option<f64> {
         let (height, beside) = place.above(station.place.tip);

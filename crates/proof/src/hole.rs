@@ -28,6 +28,8 @@ pub(crate) struct Run {
     /// Pecks that are done: drilled and left.
     pecks: u32,
     dwelled: bool,
+    /// Whether the tool has left the bottom.
+    left: bool,
     /// How far above the last depth a rapid back into the hole ends, mm: the writer's choice, but one
     /// for all holes.
     reentry: Option<f64>,
@@ -56,7 +58,8 @@ impl Hole<'_> {
         };
         let ((high, _), (low, _)) =
             (self.point.above(from.place.tip), self.point.above(to.place.tip));
-        let slack = self.gauge.slack(to);
+        // Both ends are rounded, each for itself.
+        let slack = self.gauge.slack(from) + self.gauge.slack(to);
         let beside = |station: &Station| self.point.above(station.place.tip).1 > slack;
         aligned(from) && aligned(to) && high - low > slack && (beside(from) || beside(to))
     }
@@ -101,7 +104,8 @@ impl Run {
 
     /// A canned cycle has made the hole of `cycle`, and the tool stands at its R plane.
     pub fn drilled(&mut self, cycle: &Cycle) {
-        (self.over, self.dwelled, self.deepest) = (true, true, -cycle.depth);
+        (self.over, self.dwelled) = (true, true);
+        (self.deepest, self.pecks) = (-cycle.depth, u32::MAX);
     }
 
     /// Whether the tool is in the hole.
@@ -123,15 +127,16 @@ impl Run {
         let (from, height) = (hole.height(here)?, hole.height(to)?);
         let (cycle, slack) = (hole.cycle, hole.gauge.slack(to));
         if height < from {
-            return self.back_in(cycle, height, slack).map(|()| false);
+            return self.back_in(hole, height, slack).map(|()| false);
         }
         if !self.begun(cycle) {
             return Ok(false);
         }
-        if !self.at_bottom(cycle, slack) {
+        if !self.at_bottom(hole, slack) {
             return self.leave_peck(hole, height, slack).map(|()| false);
         }
         self.leave_bottom(cycle)?;
+        self.left = true;
         if from < cycle.clearance - slack {
             if cycle.kind == CycleKind::Ream {
                 return Err("leaves the hole by rapid, but should feed out".into());
@@ -163,7 +168,7 @@ impl Run {
             self.deepest = self.deepest.min(height);
             return Ok(false);
         }
-        if cycle.kind != CycleKind::Ream || !self.at_bottom(cycle, slack) {
+        if cycle.kind != CycleKind::Ream || !self.at_bottom(hole, slack) {
             return Err("feeds upwards".into());
         }
         self.leave_bottom(cycle)?;
@@ -177,19 +182,22 @@ impl Run {
         let height = hole.height(here).unwrap_or(f64::INFINITY);
         let right = !self.dwelled
             && self.begun(cycle)
-            && self.at_bottom(cycle, slack)
+            && self.at_bottom(hole, slack)
             && height <= self.deepest + slack
             && (seconds - cycle.dwell).abs() <= hole.gauge.allowed.dwell_s;
         self.dwelled |= right;
         right
     }
 
-    fn at_bottom(&self, cycle: &Cycle, slack: f64) -> bool {
-        self.deepest <= slack - cycle.depth
+    /// Whether the last peck has reached the bottom: one before it may end within rounding of it.
+    fn at_bottom(&self, hole: &Hole, slack: f64) -> bool {
+        let last = hole.depth_of_peck(self.pecks) == hole.cycle.depth;
+        last && self.deepest <= slack - hole.cycle.depth
     }
 
     /// A rapid down: to the R plane, or back to a little above the last depth.
-    fn back_in(&mut self, cycle: &Cycle, height: f64, slack: f64) -> Result<(), String> {
+    fn back_in(&mut self, hole: &Hole, height: f64, slack: f64) -> Result<(), String> {
+        let cycle = hole.cycle;
         if !self.begun(cycle) {
             return within(
                 "goes by rapid below the R plane",
@@ -198,7 +206,7 @@ impl Run {
                 "mm",
             );
         }
-        if self.at_bottom(cycle, slack) || height <= self.deepest + slack {
+        if self.left || height <= self.deepest + slack {
             return Err("goes by rapid to the bottom of the hole".into());
         }
         gap("ends above the last depth", &mut self.reentry, height - self.deepest, slack)

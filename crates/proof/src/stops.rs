@@ -53,14 +53,15 @@ pub(crate) fn explain<'s>(
     }
 }
 
-/// Whether `stop` is above `base` along its tool axis, with the tool as it stands there. The axis is known as well as
-/// its words say it, so the higher, the farther beside.
+/// Whether `stop` is above `base` along its tool axis, with the tool as it stands there. Both are rounded, and the axis is
+/// known as well as its words say it, so the higher, the farther beside.
 pub(crate) fn lifted(gauge: &Gauge, base: &Station, stop: &Station) -> bool {
     let (height, beside) = base.place.above(stop.place.tip);
     let slack = gauge.slack(stop);
     let axis_degrees = gauge.allowed.axis_degrees;
-    let same_axis = base.place.apart(&stop.place).1 <= axis_degrees;
-    height > slack && beside <= slack + height * axis_degrees.to_radians() && same_axis
+    let same_axis = base.place.apart(&stop.place).1 <= 2.0 * axis_degrees;
+    let rounding = slack + gauge.slack(base) + height * axis_degrees.to_radians();
+    height > slack && beside <= rounding && same_axis
 }
 
 /// Whether `s` is `a`, or `b`, or not known.

@@ -79,7 +79,9 @@ impl Applied {
         Applied {
             tip_mm: given.position.unwrap_or(machine.resolution() / 2.0 * 3f64.sqrt()) + NOISE,
             rotary_degrees: rotary,
-            axis_degrees: given.angle.unwrap_or((rotary * 2f64.sqrt()).max(vector).max(lean))
+            axis_degrees: given
+                .angle
+                .unwrap_or((rotary * turns_added(machine)).max(vector).max(lean))
                 + NOISE,
             sweep_degrees: SWEEP,
             linearisation_mm: machine.orientation.tolerance,
@@ -119,4 +121,27 @@ impl Applied {
         };
         self.tip_mm + lever * self.rotary_degrees.to_radians()
     }
+}
+
+/// By how many degrees the tool axis is off where each of two rotary words is off by 1°, at the worst of the places that
+/// they bring it to.
+///
+/// Words that are off by e each move the tool axis c by e (k₁ × c ± k₂ × c), with k₁ the rotary axis nearest to the part
+/// and k₂ the one nearest to the tool. With u = k₁ · c the square of that is e² (1 − u² + |k₂ × Z|² + 2 |k₁ · k₂ − u k₂ · Z|):
+/// √2 at the most where the axes are perpendicular, 1.71 on a table that nutates by 45°, whose two axes move the tool the same
+/// way where it lies flat.
+fn turns_added(machine: &Machine) -> f64 {
+    let tables = machine.rotary.iter().filter(|axis| axis.on == Mount::Table).rev();
+    let heads = machine.rotary.iter().filter(|axis| axis.on == Mount::Head);
+    let axes: Vec<Vec3> = tables.chain(heads).map(|axis| axis.axis).collect();
+    let [outer, inner] = axes[..] else { return 2f64.sqrt() };
+    let (between, tilt) = (outer.dot(inner), inner.z);
+    // The cosine of the angle to the outer axis goes as far as the inner one turns the tool.
+    let (middle, reach) =
+        (between * tilt, ((1.0 - between * between) * (1.0 - tilt * tilt)).max(0.0).sqrt());
+    let worst = |u: f64| 2.0 - tilt * tilt - u * u + 2.0 * (between - u * tilt).abs();
+    let (low, high) = (middle - reach, middle + reach);
+    // Its peaks are at the ends, where the part within | | changes its sign, and where a parabola is level.
+    let peaks = [low, high, tilt, -tilt, if tilt == 0.0 { 0.0 } else { between / tilt }];
+    peaks.into_iter().map(|u| worst(u.clamp(low, high))).fold(0.0, f64::max).sqrt()
 }

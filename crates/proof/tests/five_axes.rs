@@ -286,3 +286,90 @@ fn a_canned_cycle_in_a_tilted_plane_drills_along_the_tool() {
     ];
     assert_eq!(rules(&judge(&machine, &own, straight)), ["hole"]);
 }
+
+/// A table that nutates by 45°, with tool-center control.
+fn nutating() -> Machine {
+    let text = r#"
+        reader = "fanuc"
+        [words]
+        X = { decimals = 3 }
+        B = { decimals = 3 }
+        C = { decimals = 3 }
+        [orientation]
+        simultaneous = "tool-center-angles"
+        [[rotary]]
+        letter = "B"
+        on = "table"
+        axis = [0, 1, 1]
+        rapid = 1e4
+        acceleration = 100
+        [[rotary]]
+        letter = "C"
+        on = "table"
+        axis = [0, 0, 1]
+        sign = -1
+        rapid = 1e4
+        acceleration = 100
+    "#;
+    machine::load_text("nutating.toml", text).unwrap()
+}
+
+/// With B at 180° the tool lies flat, and B and C turn it the same way: a step of B by sin 45° of it, a step of C by all of
+/// it. Half a step of each is off by 0.00085°, and no more than rounding.
+#[test]
+fn half_a_step_of_two_words_that_turn_the_tool_the_same_way_is_rounding() {
+    let machine = nutating();
+    let tip = Vec3::new(10.0, 5.0, 2.0);
+    let own = source(vec![Op::Rapid(Pose::new(tip, machine.axis_at([0.0, 180.0, 20.0])).unwrap())]);
+    let off_by = |b: f64, c: f64| {
+        let orientation =
+            Orientation::Rotary { degrees: [0.0, 180.0 + b, 20.0 + c], tool_center: true };
+        rules(&judge(&machine, &own, vec![Action::Rapid(Position { point: tip, orientation })]))
+    };
+    let half = 0.0005;
+    for (b, c) in [(half, half), (half, -half), (-half, half), (-half, -half)] {
+        assert!(off_by(b, c).is_empty(), "{b} {c}");
+    }
+    assert!(
+        !off_by(2.0 * half, -2.0 * half).is_empty() || !off_by(2.0 * half, 2.0 * half).is_empty()
+    );
+}
+
+/// A fork head with C turned and A at 0 hangs along Z: Z home is away from the part in any orientation of C.
+#[test]
+fn a_head_that_is_turned_about_its_tool_goes_home_by_z() {
+    let text = r#"
+        reader = "fanuc"
+        [orientation]
+        simultaneous = "tool-center-angles"
+        [[rotary]]
+        letter = "C"
+        on = "head"
+        axis = [0, 0, 1]
+        rapid = 1e4
+        acceleration = 100
+        [[rotary]]
+        letter = "A"
+        on = "head"
+        axis = [1, 0, 0]
+        point = [0, 0, 200]
+        rapid = 1e4
+        acceleration = 100
+    "#;
+    let machine = machine::load_text("fork.toml", text).unwrap();
+    let (low, far) = (Vec3::new(0.0, 0.0, 5.0), Vec3::new(40.0, 0.0, 80.0));
+    let home = |a: f64| {
+        let axis = machine.axis_at([a, 0.0, 30.0]);
+        let [low, far] = [low, far].map(|tip| Op::Rapid(Pose::new(tip, axis).unwrap()));
+        let at = |point: Vec3| {
+            let orientation = Orientation::Rotary { degrees: [a, 0.0, 30.0], tool_center: true };
+            Action::Rapid(Position { point, orientation })
+        };
+        let corner = at(Vec3::new(40.0, 0.0, f64::NAN));
+        let nc = vec![at(Vec3::new(0.0, 0.0, 5.0)), Action::Home(Axes::Z), corner];
+        let end = at(Vec3::new(40.0, 0.0, 80.0));
+        rules(&judge(&machine, &source(vec![low, far]), [nc, vec![end]].concat()))
+    };
+    assert!(home(0.0).is_empty(), "{:?}", home(0.0));
+    assert_eq!(home(30.0), ["home"]);
+}

@@ -244,3 +244,54 @@ fn tapping_by_moves_is_refused() {
     let line = |x, z| Action::Line(block(x, 0.0, z));
     assert_eq!(moves(tap, |x| vec![line(x, -11.0), line(x, 1.0)]), ["hole"]);
 }
+
+/// Each of two places is rounded for itself: half a step up, half a step down.
+#[test]
+fn a_way_from_hole_to_hole_is_level_but_for_the_rounding_of_both_ends() {
+    let seen = Cycle { depth: 12.0, clearance: 0.0, retract: 18.0, ..drill() };
+    let rapid = |z| Action::Rapid(block(15.0, 0.0, z));
+    let across_at = |z: f64| {
+        let way = vec![cycle(seen), first(), Action::CycleOff, rapid(z), rapid(1.0)];
+        let hole = vec![
+            Action::Feed(Feed::PerMinute(120.0)),
+            Action::Line(block(15.0, 0.0, -11.0)),
+            rapid(19.0),
+        ];
+        judged(drill(), [way, hole].concat())
+    };
+    assert!(across_at(19.0 - 0.0015).is_empty());
+    assert_eq!(across_at(19.0 - 0.003), ["hole"]);
+}
+
+/// Where the machine's own axes are said, a tip is known to 0.0018 mm here: a peck that ends 0.0015 mm above the bottom is not
+/// the last.
+#[test]
+fn a_peck_that_ends_within_rounding_of_the_bottom_is_not_the_last() {
+    let machine = five_axes();
+    let of = Cycle { depth: 10.0015, first_peck: Some(5.0), peck: Some(5.0), ..deep() };
+    let line = |z| Action::Line(block(5.0, 0.0, z));
+    let rapid = |z| Action::Rapid(block(5.0, 0.0, z));
+    let own = source(vec![
+        Op::Rapid(at(5.0, 0.0, 19.0)),
+        Op::Cycle(Box::new(of)),
+        Op::Hole(at(5.0, 0.0, -1.0)),
+        Op::CycleOff,
+    ]);
+    let drilled = |pecks: &[Action]| {
+        let start = vec![Action::Feed(Feed::PerMinute(120.0)), rapid(19.0), rapid(1.0)];
+        rules(&judge(&machine, &own, [start, pecks.to_vec(), vec![rapid(19.0)]].concat()))
+    };
+    let pecks = [
+        line(-6.0),
+        rapid(1.0),
+        rapid(-5.5),
+        line(-11.0),
+        rapid(1.0),
+        rapid(-10.5),
+        line(-11.0015),
+    ];
+    assert!(drilled(&pecks).is_empty(), "{:?}", drilled(&pecks));
+    // Back in where nothing is left to drill.
+    let again = [&pecks[..], &[rapid(1.0), rapid(-10.5), line(-11.0015)]].concat();
+    assert_eq!(drilled(&again), ["hole"]);
+}

@@ -129,7 +129,7 @@ impl Prover<'_> {
         if gait == Gait::Feed && goal.tool_change && !self.here.place.known() {
             return self.cut_from_nowhere(to, None);
         }
-        if self.gauge.at(to, &left.place) {
+        if self.gauge.meet(to, &left) {
             let last = self.leg.stops.last().copied().unwrap_or(left);
             if !self.comes_down(&last, to) {
                 return Err(self.lost_at(
@@ -278,13 +278,11 @@ impl Prover<'_> {
     /// Whether the tool hangs along Z of the machine, so that Z home is away from the part.
     pub(super) fn hangs_down(&self) -> bool {
         let machine = self.gauge.machine;
-        let mut heads = machine.rotary.iter().filter(|axis| axis.on == Mount::Head).peekable();
-        if heads.peek().is_none() {
-            return true;
-        }
         match self.here.position.orientation {
+            _ if machine.rotary.iter().all(|axis| axis.on == Mount::Table) => true,
             Orientation::Rotary { degrees, .. } => {
-                heads.all(|axis| axis.turned(degrees[axis.index()]).abs() < 1e-6)
+                let mut heads = machine.rotary.iter().filter(|axis| axis.on == Mount::Head);
+                heads.all(|axis| degrees[axis.index()].is_finite()) && !machine.tilts_tool(degrees)
             }
             Orientation::Axis(axis) => {
                 machine.rotary.iter().all(|axis| axis.on == Mount::Head) && axis == Vec3::Z
