@@ -5,7 +5,7 @@ use crate::place::{Kind, Stop};
 use crate::rapid::corner;
 use crate::template::bit;
 use crate::walk::{Cut, Done, Walk, motion, refuse};
-use geom::{ANGLE_EPSILON, Vec3};
+use geom::Vec3;
 use machine::CycleName;
 use program::lowering::{self, HoleMove};
 use program::{Cycle, CycleKind, Diagnostic, Feed, Pose, Spindle};
@@ -38,6 +38,9 @@ impl Walk<'_> {
         if self.compensation_pending() {
             return Err(refuse("compensation", "cutter compensation cannot be switched at a hole"));
         }
+        if let CycleKind::Tap { left, .. } = cycle.kind {
+            self.turns_into(left)?;
+        }
         self.before_cut()?;
         if self.open_cycle.is_some() && !self.settled(pose, stop, false)? {
             self.end_cycle()?;
@@ -61,6 +64,19 @@ impl Walk<'_> {
             }
             None => self.expand(cycle, pose, stop),
         }
+    }
+
+    /// The thread of a tap goes into the hole as the spindle turns: counter-clockwise for one that is left-handed.
+    fn turns_into(&self, left: bool) -> Done {
+        let (hand, way, help) = match (left, self.spindle) {
+            (true, Spindle::Clockwise(_)) => ("left", "clockwise", "SPINDL/ with CCLW before it"),
+            (false, Spindle::CounterClockwise(_)) => {
+                ("right", "counter-clockwise", "SPINDL/ with CLW before it")
+            }
+            _ => return Ok(()),
+        };
+        let message = format!("a {hand}-hand thread is tapped while the spindle turns {way}");
+        Err(refuse("cycle-tap", message).help(help).into())
     }
 
     /// The block of the control's own cycle, where it has one that says everything.
@@ -91,12 +107,7 @@ impl Walk<'_> {
             cycle.clearance >= 0.0 || !self.templates.places(name, WordName::Safety);
         let per_minute = !matches!(cycle.feed.or(self.feed), Some(Feed::InverseTime(_)));
         let along_z = match self.place.kind {
-            Kind::Plain | Kind::Tilted(..) => true,
-            Kind::Machine => {
-                let axis = pose.axis();
-                let up = self.local(pose.point() + axis) - self.local(pose.point());
-                up.distance(Vec3::Z) < 10.0 * ANGLE_EPSILON
-            }
+            Kind::Plain | Kind::Tilted(..) | Kind::Machine => self.is_along_z(pose.axis()),
             Kind::Bare | Kind::ToolCenter | Kind::Vectors => false,
         };
         let says_all = says_dwell && says_clearance && per_minute && along_z;
@@ -116,6 +127,8 @@ impl Walk<'_> {
         let open = Open { block: name, levels };
         if self.templates.places(name, WordName::RPlane) {
             self.end_cycle()?;
+            // The last one may have left it at rest.
+            self.sync_spindle()?;
             self.settle(pose, stop, false)?;
             self.go_over(&over, stop)?;
             self.plane_xy()?;
@@ -128,6 +141,8 @@ impl Walk<'_> {
             self.block(BlockName::CycleHole)?;
         } else {
             self.end_cycle()?;
+            // The last one may have left it at rest.
+            self.sync_spindle()?;
             self.settle(pose, stop, false)?;
             self.go_over(&over, stop)?;
             self.plane_xy()?;
@@ -150,7 +165,9 @@ impl Walk<'_> {
             return self.rapid_to_hole(over, stop);
         };
         let corner = corner(here.point(), over.point(), over.axis());
-        self.rapid_to_hole(&over.at(corner)?, stop)?;
+        if corner.distance(here.point()) > self.resolution {
+            self.rapid_to_hole(&over.at(corner)?, stop)?;
+        }
         self.rapid_to_hole(over, stop)
     }
 
@@ -180,7 +197,8 @@ impl Walk<'_> {
         {
             // One size of peck: the smaller of the first and the further ones, never more than asked.
             let asked = [cycle.first_peck, cycle.peck].into_iter().flatten();
-            let peck = asked.fold(f64::INFINITY, f64::min).min(cycle.depth);
+            // A control refuses a peck deeper than the hole, whose depth is that of its levels as they are written.
+            let peck = asked.fold(f64::INFINITY, f64::min).min(levels.surface - levels.bottom);
             w.set(WordName::Peck, peck);
             if cycle.first_peck.is_some_and(|first| first > peck) && pecks.len() > 1 {
                 let message = "the first peck is made as small as the further ones";
@@ -239,10 +257,7 @@ impl Walk<'_> {
         let done = moves.into_iter().try_for_each(|part| match part {
             HoleMove::Rapid(pose) => self.rapid_to_hole(&pose, stop),
             HoleMove::Line(pose) => self.line_to(&pose, stop),
-            HoleMove::Dwell(seconds) => {
-                self.writer.set(WordName::P, seconds);
-                self.required(BlockName::Dwell)
-            }
+            HoleMove::Dwell(seconds) => self.write_dwell(seconds),
             HoleMove::Spindle(spindle) => {
                 self.spindle = spindle;
                 self.sync_spindle()

@@ -1,10 +1,10 @@
 //! Straight cuts, and the words of any straight move: where it goes, and whether the axes may go there.
 
 use crate::catalogue::{BlockName, WordName};
-use crate::place::{Kind, Stop};
+use crate::place::{Kind, Stop, same};
 use crate::template::{ORIENTATION, POSITION, Words};
 use crate::walk::{Cut, Done, Walk, motion, refuse};
-use geom::Vec3;
+use geom::{ANGLE_EPSILON, Vec3};
 use machine::Unsaid;
 use machine::linearise::Stance;
 use machine::plan::Step;
@@ -12,6 +12,12 @@ use program::{Diagnostic, Feed, Pose};
 
 /// How far beyond everything the source touches the tool is drawn back before it turns, mm.
 const CLEAR: f64 = 5.0;
+
+/// How far the tool axis may leave its way in a cut, degrees.
+const SWING: f64 = 1.0;
+
+/// Turns of less than this in all, degrees, leave it by less (see `machine::plan`).
+const NEAR: f64 = 14.0;
 
 impl Walk<'_> {
     /// A straight cut of the source.
@@ -77,8 +83,11 @@ impl Walk<'_> {
     pub(crate) fn line_to(&mut self, pose: &Pose, stop: &Stop) -> Done {
         let from = self.here.replace(*pose);
         let length = from.map_or(0.0, |from| from.point().distance(pose.point()));
-        if self.compensation_pending() {
-            self.plane_xy()?;
+        self.switch_plane(pose.axis())?;
+        if let (Kind::ToolCenter | Kind::Machine, Some(from), Some(step), Some(degrees)) =
+            (&self.place.kind, from, stop.step, self.place.degrees())
+        {
+            self.keeps_to_its_way([degrees, step.degrees], [from.axis(), pose.axis()])?;
         }
         if let (Kind::Machine, Some(from), Some(step), Some(degrees)) =
             (&self.place.kind, from, stop.step, self.place.degrees())
@@ -98,6 +107,23 @@ impl Walk<'_> {
         };
         self.aim(pose, stop);
         self.cut(length / f64::from(pieces), if pieces > 1 { 2 } else { 0 })
+    }
+
+    /// Holds the tool axis on its way in a cut that could not be split finely enough.
+    fn keeps_to_its_way(&self, degrees: [[f64; 3]; 2], axes: [Vec3; 2]) -> Done {
+        let turn: f64 = (0..3).map(|i| (degrees[1][i] - degrees[0][i]).abs()).sum();
+        if turn <= NEAR {
+            return Ok(());
+        }
+        let swing = self.machine.swing(degrees, axes).to_degrees();
+        if swing <= SWING {
+            return Ok(());
+        }
+        let message = format!(
+            "the rotary axes swing the tool axis {swing:.2}° off its way in this cut, {SWING}° are allowed"
+        );
+        let help = "make the steps of the tool axis smaller in the source";
+        Err(refuse("axis-swing", message).help(help).into())
     }
 
     /// The place half way of a cut in which an axis that may be counted modulo 360° turns by half a turn: which way it
@@ -224,6 +250,18 @@ impl Walk<'_> {
             Kind::Machine => {
                 let degrees = self.place.degrees().unwrap_or_default();
                 self.machine.linear_for(point, degrees, self.tool_length().unwrap_or(0.0))
+            }
+        }
+    }
+
+    /// Whether a tool along `axis` stands along Z of the coordinates that blocks have.
+    pub(crate) fn is_along_z(&self, axis: Vec3) -> bool {
+        match &self.place.kind {
+            Kind::Bare | Kind::Plain | Kind::Tilted(..) => true,
+            Kind::ToolCenter | Kind::Vectors => same(axis, Vec3::Z),
+            Kind::Machine => {
+                let up = self.local(axis) - self.local(Vec3::ZERO);
+                up.distance(Vec3::Z) < 10.0 * ANGLE_EPSILON
             }
         }
     }

@@ -80,9 +80,7 @@ impl Walk<'_> {
 
     /// A rapid in one block, from a known position.
     pub(crate) fn rapid_at_once(&mut self, pose: &Pose, stop: &Stop) -> Done {
-        if self.compensation_pending() {
-            self.plane_xy()?;
-        }
+        self.switch_plane(pose.axis())?;
         self.aim(pose, stop);
         self.here = Some(*pose);
         self.rapid_block()
@@ -123,9 +121,7 @@ impl Walk<'_> {
     }
 
     fn in_pieces(&mut self, pose: &Pose, stances: &[Stance]) -> Done {
-        if self.compensation_pending() {
-            self.plane_xy()?;
-        }
+        self.switch_plane(pose.axis())?;
         for stance in stances {
             self.aim_at(stance.tip, Vec3::Z, Some(stance.degrees));
             self.rapid_block()?;
@@ -204,6 +200,7 @@ impl Walk<'_> {
             [here, there].map(|stance| machine.linear_for(stance.tip, stance.degrees, measured));
         let corridor = USED * machine.capabilities.rapid_corridor;
         let (mut at_once, mut in_pieces) = (true, true);
+        let mut before = (true, true);
         for i in 0..=count {
             let part = i as f64 / count as f64;
             let degrees = [0, 1, 2].map(|k| degrees[k] + (there.degrees[k] - degrees[k]) * part);
@@ -215,7 +212,10 @@ impl Walk<'_> {
             };
             let aligned = is_straight && off_great_circle(from.axis(), to.axis(), axis) <= SWING;
             let near = nearest_on_segment(from.point(), to.point(), tip).1 <= corridor;
-            at_once &= aligned && near || self.is_beyond(tip, axis);
+            let keeps = (aligned && near, self.is_beyond(tip, axis));
+            // Also between two places, for the same reason at both.
+            at_once &= keeps.0 && before.0 || keeps.1 && before.1;
+            before = keeps;
             in_pieces &= own && aligned;
         }
         if at_once {

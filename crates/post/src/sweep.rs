@@ -48,13 +48,19 @@ pub(crate) fn split(program: &Program, machine: &Machine) -> Option<(Vec<Record>
             if from.axis() != to.axis() {
                 came = Some(from.axis());
             }
-            if !parts.is_empty() {
+            if let Some(parts) = parts {
                 if lines.is_empty() {
                     split.extend_from_slice(&program.records[..index]);
                 }
-                room = room.saturating_sub(parts.len() + 2);
+                room = room.saturating_sub(parts.poses.len() + 2);
                 lines.push(record.line);
-                put(&mut split, record, &parts, feed);
+                let inverse = match feed {
+                    Some(Feed::InverseTime(rate)) => Some(rate),
+                    Some(Feed::PerMinute(_) | Feed::PerTurn(_)) | None => None,
+                };
+                let length = from.point().distance(to.point());
+                let timed = machine.capabilities.inverse_time;
+                put(&mut split, record, &parts, inverse.map(|rate| Timed { rate, length, timed }));
                 continue;
             }
         }
@@ -65,31 +71,60 @@ pub(crate) fn split(program: &Program, machine: &Machine) -> Option<(Vec<Record>
     (!lines.is_empty()).then_some((split, lines))
 }
 
-/// Puts a cut behind its parts. In inverse time each has its part of the time; parts of one cut turn
-/// the tool axis by as much each.
-fn put(split: &mut Vec<Record>, cut: &Record, parts: &[Pose], feed: Option<Feed>) {
-    let mut push = |op| split.push(Record { line: cut.line, op });
-    let inverse = match feed {
-        Some(Feed::InverseTime(rate)) => Some(rate),
-        _ => None,
-    };
-    if let Some(rate) = inverse {
-        push(Op::Feed(Feed::InverseTime(rate * (parts.len() + 1) as f64)));
-    }
-    parts.iter().for_each(|pose| push(Op::Line(*pose)));
-    push(cut.op.clone());
-    if let Some(rate) = inverse {
-        push(Op::Feed(Feed::InverseTime(rate)));
-    }
+/// The poses before the end of a cut, and in how many parts of the same turn it is split: in a singular pose the tool
+/// stands, which is none.
+struct Parts {
+    poses: Vec<Pose>,
+    count: usize,
+    /// Whether it does so before it sets out.
+    stands_first: bool,
 }
 
-/// The poses on the way of a cut at which it is split evenly: none where the swing is small, or where
-/// there is no room for so many.
-fn parts(machine: &Machine, came: Option<Vec3>, from: &Pose, to: &Pose, room: usize) -> Vec<Pose> {
+/// A cut in inverse time.
+struct Timed {
+    rate: f64,
+    /// Way of the tip, mm.
+    length: f64,
+    /// Whether the control knows it.
+    timed: bool,
+}
+
+/// Puts a cut behind its parts. In inverse time each has its part of the time; where the control does not know that, the axes
+/// turn about a standing tool at the number of the feed along the way.
+fn put(split: &mut Vec<Record>, cut: &Record, parts: &Parts, feed: Option<Timed>) {
+    let mut push = |op| split.push(Record { line: cut.line, op });
+    let Some(Timed { rate, length, timed }) = feed else {
+        parts.poses.iter().for_each(|pose| push(Op::Line(*pose)));
+        return push(cut.op.clone());
+    };
+    let part = Feed::InverseTime(rate * parts.count as f64);
+    push(Op::Feed(part));
+    for (i, pose) in parts.poses.iter().enumerate() {
+        let stands = i == 0 && parts.stands_first || i > 0 && parts.poses[i - 1] == *pose;
+        if stands && !timed {
+            push(Op::Feed(Feed::PerMinute(rate * length)));
+            push(Op::Line(*pose));
+            push(Op::Feed(part));
+        } else {
+            push(Op::Line(*pose));
+        }
+    }
+    push(cut.op.clone());
+    push(Op::Feed(Feed::InverseTime(rate)));
+}
+
+/// How a cut is split evenly: not where the swing is small, or where there is no room for so many parts.
+fn parts(
+    machine: &Machine,
+    came: Option<Vec3>,
+    from: &Pose,
+    to: &Pose,
+    room: usize,
+) -> Option<Parts> {
     let (a, b) = (from.axis(), to.axis());
     // Cheaper than the angle, and on the safe side.
     if a.distance_squared(b) < SMALL * SMALL || angle_between(a, b) < SMALL {
-        return Vec::new();
+        return None;
     }
     for halvings in 0..=HALVINGS {
         let count = 1 << halvings;
@@ -99,27 +134,40 @@ fn parts(machine: &Machine, came: Option<Vec3>, from: &Pose, to: &Pose, room: us
                 let point = from.point().lerp(to.point(), i as f64 / count as f64);
                 Pose::new(point, axis(i))
             };
-            let stands = came.is_some_and(|came| turns_round(machine, came, a, b));
-            let all = stands.then_some(Ok(*from)).into_iter().chain((1..count).map(part));
-            // What cannot be split goes as it is, and the proof looks at it.
-            return if count <= room {
-                all.collect::<Result<_, _>>().unwrap_or_default()
-            } else {
-                Vec::new()
+            // In a singular pose the tool stands while the axis that is free there turns.
+            let stands = |i: usize| {
+                let before = if i == 0 { came } else { Some(axis(i - 1)) };
+                before.is_some_and(|before| turns_round(machine, before, axis(i), axis(i + 1)))
             };
+            let at = |i: usize| {
+                let go = (i > 0).then(|| part(i));
+                go.into_iter().chain(stands(i).then(|| part(i)))
+            };
+            // What cannot be split goes as it is, and the proof looks at it.
+            let poses: Vec<Pose> = (0..count).flat_map(at).collect::<Result<_, _>>().ok()?;
+            let stands_first = stands(0);
+            return (count <= room && !poses.is_empty()).then_some(Parts {
+                poses,
+                count,
+                stands_first,
+            });
         }
     }
-    Vec::new()
+    None
 }
 
 /// Whether the axis that is free in the singular pose `at` stands so far from where `to` needs it, after
 /// `came`, that turning on the way would swing the tool.
 fn turns_round(machine: &Machine, came: Vec3, at: Vec3, to: Vec3) -> bool {
-    let [Ok(before), Ok(singular), Ok(after)] = [came, at, to].map(|axis| machine.inverse(axis))
-    else {
+    let Some(free) = machine.inverse(at).ok().and_then(|singular| singular.free) else {
         return false;
     };
-    let Some(free) = singular.free.filter(|_| after.free.is_none()) else { return false };
+    let [Ok(before), Ok(after)] = [came, to].map(|axis| machine.inverse(axis)) else {
+        return false;
+    };
+    if after.free.is_some() {
+        return false;
+    }
     let ways = (0..4).map(|k| {
         let (start, end) = (before.degrees[k / 2], after.degrees[k % 2]);
         [0, 1, 2].map(|i| (start[i], short_way(start[i], end[i])))
@@ -171,9 +219,5 @@ fn swing(machine: &Machine, a: Vec3, b: Vec3) -> f64 {
     else {
         return 0.0;
     };
-    let off = |t: f64| {
-        let degrees = way.map(|(start, turn)| start + t * turn);
-        angle_between(machine.axis_at(degrees), between(a, b, t))
-    };
-    [0.25, 0.5, 0.75].into_iter().map(off).fold(0.0, f64::max)
+    machine.swing([way.map(|(start, _)| start), way.map(|(start, turn)| start + turn)], [a, b])
 }

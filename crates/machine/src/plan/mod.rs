@@ -5,8 +5,8 @@
 //! operation at once (dynamic programming), in this order:
 //!
 //! 1. no rotary axis leaves its travel;
-//! 2. in a cut the tool never swings out of the plane of its turn, and no axis turns by more than
-//!    half a turn: where the travel leaves no such way on, the tool must leave the part, turn back
+//! 2. in a cut the tool axis keeps within 0.9° of the great circle of its turn, and no axis turns by more
+//!    than half a turn: where the travel leaves no such way on, the tool must leave the part, turn back
 //!    and come in again, as late and therefore as seldom as possible;
 //! 3. the rotary travel within the operation is the shortest;
 //! 4. the preferred solution at its start; 5. the shortest way from where the axes stand to it.
@@ -57,6 +57,10 @@ pub struct Plan {
     /// For each of the `in_turns` states of a solution the turn of the outer and of the inner axis.
     turns: [[f64; 2]; TURNS],
     in_turns: usize,
+    /// Whether the control turns the tool along a vector by itself, and not the axes evenly.
+    by_vector: bool,
+    /// Turns of less than this, degrees, need no look at where the tool is between.
+    near: f64,
     start: [f64; 2],
     cells: Vec<Cell>,
     /// Where the travel leaves no way on, in order.

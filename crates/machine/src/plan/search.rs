@@ -2,8 +2,8 @@
 
 use super::axis::{Axis, SLACK};
 use super::{Cell, Plan, Rewind, TURN, TURNS, Target, TargetKind};
-use crate::Machine;
 use crate::inverse::{Bearings, Chain, Unreachable};
+use crate::{Machine, OrientationMode};
 use geom::{ANGLE_EPSILON, Vec3, angle_between};
 use program::Diagnostic;
 use std::f64::consts::PI;
@@ -15,10 +15,13 @@ const BITS: u32 = 3;
 /// Every state follows from the state of the same number.
 const SAME: u32 = 0o76_543_210;
 
-/// The farthest that the tool may swing out of its way in a cut, radians (1°).
-const SWING: f64 = PI / 180.0;
-/// Within one solution, turns of less than this in all (degrees) do not swing the tool out of its way.
-const NEAR: f64 = 90.0;
+/// The farthest that the tool axis may leave its way in a cut, radians: 0.9°, of the 1° that a proof allows.
+const SWING: f64 = PI / 200.0;
+/// Turns of less than this in all, degrees, leave it by less. Both the way that the axes make and the great circle bend by
+/// no more than the square of the turn w, so that between their common ends they are apart by w² / 4 at the most.
+const NEAR: f64 = 14.0;
+/// Where the control itself turns the tool along a vector: turns of less than this, degrees, within one solution stay near.
+const NEAR_BY_VECTOR: f64 = 90.0;
 /// What not being the preferred solution costs, in degrees of travel: it decides between ways of the
 /// same length, which differ by rounding only.
 const PREFERENCE: f64 = 0.05;
@@ -92,11 +95,14 @@ impl<'a> Search<'a> {
             Some(_) => held,
             None => [axes[0].nearest(held[0]), axes[1].nearest(held[1])],
         };
+        let by_vector = machine.orientation.simultaneous == OrientationMode::Vectors;
         let plan = Plan {
             chain,
             axes,
             turns,
             in_turns: (outer * inner).min(TURNS),
+            by_vector,
+            near: if by_vector { NEAR_BY_VECTOR } else { NEAR },
             start: start_pair,
             cells: Vec::with_capacity(expected),
             rewinds: Vec::new(),
@@ -383,7 +389,7 @@ impl Plan {
             }
         }
         next.margin = front.margin - 2.0 * longest;
-        next.margin > 0.0 && longest <= NEAR
+        next.margin > 0.0 && longest <= self.near
     }
 
     /// By how much, at least, going on in a state of `front` is better than changing to it; nothing
@@ -433,7 +439,8 @@ impl Plan {
                     let travel = [0, 1].map(|k| self.axes[k].travel(state[k], to[k]));
                     let cost = front.cost[i] + travel[0] + travel[1];
                     if cost < best {
-                        let near = first == (j & TURNS) && travel[0] + travel[1] <= NEAR;
+                        let near = travel[0] + travel[1] <= self.near
+                            && (first == (j & TURNS) || !self.by_vector);
                         let open = freedom == Freedom::All
                             || travel[0].max(travel[1]) <= 180.0 + SLACK
                                 && (near
@@ -453,7 +460,8 @@ impl Plan {
         reached.then_some(link)
     }
 
-    /// Whether the tool, half way from one position to the other, is still between the two tool axes.
+    /// Whether the tool keeps to its way from one position to the other; where the control turns it by itself, whether
+    /// half way it would still be between the two tool axes.
     fn stays_near(
         &self,
         machine: &Machine,
@@ -463,8 +471,14 @@ impl Plan {
         j: usize,
     ) -> bool {
         let (from, to) = (&front.states[i], &next.states[j]);
-        let half = [0, 1].map(|k| from[k] + self.axes[k].way(from[k], to[k]) / 2.0);
-        let axis = machine.axis_at(self.chain.spread(half));
+        let part = |t: f64| {
+            let turned = [0, 1].map(|k| from[k] + self.axes[k].way(from[k], to[k]) * t);
+            self.chain.spread(turned)
+        };
+        if !self.by_vector {
+            return machine.swing([part(0.0), part(1.0)], [front.axis, next.axis]) <= SWING;
+        }
+        let axis = machine.axis_at(part(0.5));
         let turn = angle_between(front.axis, next.axis);
         let swing = angle_between(axis, front.axis).max(angle_between(axis, next.axis));
         swing <= turn + SWING

@@ -4,6 +4,7 @@
 use super::{Done, Walk, refuse};
 use crate::catalogue::{BlockName, WordName};
 use crate::template::bit;
+use geom::Vec3;
 use machine::ToolRadius;
 use program::{CompensatedPath, Compensation, Diagnostic};
 
@@ -114,6 +115,21 @@ impl Walk<'_> {
         let help = "CUTCOM/OFF and a straight move in the plane before it";
         let message = format!("cutter compensation is still on at {what}");
         Err(refuse("compensation-active", message).help(help).into())
+    }
+
+    /// The plane of work for a straight move that may switch compensation, with the tool along `axis`: the control offsets
+    /// across Z of the coordinates that blocks have.
+    pub(crate) fn switch_plane(&mut self, axis: Vec3) -> Done {
+        if !self.compensation_pending() {
+            return Ok(());
+        }
+        if self.compensation != Compensation::Off && !self.is_along_z(axis) {
+            let message = "cutter compensation is switched on for a tool that does not stand along Z of the control's coordinates";
+            let help = "work in the plane of a set-up (`positioned = \"tilted-plane\"` in the machine file), or give the path of \
+                        the tool's centre";
+            return Err(refuse("compensation", message).help(help).into());
+        }
+        self.plane_xy()
     }
 
     /// Whether cutter compensation is on.
