@@ -80,6 +80,7 @@ names! {
         SpindleOff Block "spindle_off", "", "Where the source stops the spindle.";
         CoolantFlood Block "coolant_flood", "", "Before the first cut with flood coolant.";
         CoolantMist Block "coolant_mist", "", "Before the first cut with mist.";
+        CoolantFloodAndMist Block "coolant_flood_and_mist", "", "Before the first cut with both, where both can run.";
         CoolantThrough Block "coolant_through", "", "Before the first cut with coolant through the tool.";
         CoolantOff Block "coolant_off", "", "Where the source stops the coolant.";
         Rapid Block "rapid", "", "Each rapid move.";

@@ -1,15 +1,31 @@
 //! Harsh five-axis jobs on fourteen shapes of machine: each is made and proven, or refused by the writer under a rule that a
 //! machinist accepts. What is written never fails its own proof.
 
-use geom::Vec3;
+use geom::{Frame, Mat3, Vec3};
 use machine::{Machine, load, load_text};
 use program::{
-    ArcTo, Circle, Coolant, Cycle, CycleKind, Feed, Op, Pose, Program, Spindle, Tool, WorkOffset,
+    ArcTo, Circle, Compensation, Coolant, Cycle, CycleKind, Feed, Op, PathMode, Pose, Program,
+    Spindle, Tool, Withdrawal, WorkOffset,
 };
 use std::collections::BTreeMap;
 
 /// Rules under which the writer may refuse a job.
-const ACCEPTED: &[&str] = &["axis-limit", "orientation-in-cut", "unreachable-orientation"];
+const ACCEPTED: &[&str] = &[
+    "axis-limit",
+    // Compensation across a tool that is tilted, or still on at the end.
+    "compensation",
+    "compensation-active",
+    // No cycle goes aside from the wall of a hole.
+    "cycle-bore",
+    // A tap across Z of the control, or whose spindle turns the other way.
+    "cycle-tap",
+    // A coolant that the machine does not have.
+    "missing-block",
+    "orientation-in-cut",
+    // Each axis goes at its own speed by rapid, and the source has no feed in mm/min.
+    "rapid-path",
+    "unreachable-orientation",
+];
 
 /// How many jobs there are, and how many with `TOOLPOST_JUDGES=long`.
 const JOBS: [u64; 2] = [300, 10_000];
@@ -217,21 +233,27 @@ impl Job {
         self.push(Op::Line(Pose::new(point, axis).unwrap()));
     }
 
-    /// A tool axis: upright, hardly tilted, at the edge of what tables reach, or anywhere above the part and a little below.
+    /// A tool axis: upright, hardly tilted, at the edge of what tables reach, from below (an undercut), or anywhere above the
+    /// part and a little below.
     fn axis(&mut self) -> Vec3 {
-        let tilt = match self.dice.below(8) {
-            0 => 0.0,
-            1 => self.dice.number(0.001, 0.5),
-            2 => 90.0,
-            3 => 30.0,
-            4 => self.dice.number(85.0, 105.0),
+        let tilt = match self.dice.below(20) {
+            0..=2 => 0.0,
+            3 | 4 => self.dice.number(0.001, 0.5),
+            5 | 6 => 90.0,
+            7 | 8 => 30.0,
+            9 => self.dice.number(85.0, 105.0),
+            10 => self.dice.number(95.0, 135.0),
             _ => self.dice.number(1.0, 85.0),
         };
-        let azimuth = match self.dice.below(3) {
+        leaning(tilt, self.azimuth())
+    }
+
+    /// A direction in the plane XY, degrees.
+    fn azimuth(&mut self) -> f64 {
+        match self.dice.below(3) {
             0 => 90.0 * self.dice.below(4) as f64,
             _ => self.dice.number(0.0, 360.0),
-        };
-        leaning(tilt, azimuth)
+        }
     }
 
     fn point(&mut self) -> Vec3 {
@@ -243,10 +265,12 @@ impl Job {
         self.tools += 1;
         let length = self.dice.number(40.0, 160.0);
         let (number, diameter) = (self.tools % 9 + 1, self.dice.number(2.0, 20.0));
+        let offset = self.dice.once_in(8).then_some(number + 10);
         self.push(Op::Tool(Box::new(Tool {
             number,
             diameter: Some(diameter),
             length: Some(length),
+            offset,
             ..Tool::default()
         })));
         let speed = self.dice.number(100.0, 6000.0).round();
@@ -256,28 +280,56 @@ impl Job {
 
     fn feed(&mut self) {
         let feed = self.dice.number(50.0, 2000.0).round();
-        self.push(Op::Feed(Feed::PerMinute(feed)));
+        let feed = match self.dice.below(12) {
+            0 => Feed::PerTurn(self.dice.number(0.02, 0.4)),
+            1 => Feed::InverseTime(self.dice.number(0.5, 60.0)),
+            _ => Feed::PerMinute(feed),
+        };
+        self.push(Op::Feed(feed));
     }
 
-    /// What is switched between operations.
+    fn spindle(&mut self) {
+        let speed = self.dice.number(100.0, 6000.0).round();
+        let spindle = match self.dice.once_in(3) {
+            true => Spindle::CounterClockwise(speed),
+            false => Spindle::Clockwise(speed),
+        };
+        self.push(Op::Spindle(spindle));
+    }
+
+    /// What is switched or said between operations.
     fn state(&mut self) {
-        match self.dice.below(9) {
-            0 => self.tool(),
-            1 => self.feed(),
-            2 => {
-                let speed = self.dice.number(100.0, 6000.0).round();
-                self.push(Op::Spindle(Spindle::CounterClockwise(speed)));
+        let op = match self.dice.below(24) {
+            0..=2 => return self.tool(),
+            3 | 4 => return self.feed(),
+            5 => return self.spindle(),
+            6 => {
+                self.push(Op::Spindle(Spindle::Off));
+                self.push(Op::Dwell(0.25));
+                return self.spindle();
             }
-            3 => self.push(Op::Coolant(Coolant::Flood)),
-            4 => self.push(Op::Coolant(Coolant::Off)),
-            5 => self.push(Op::Dwell(0.5)),
-            6 => self.push(Op::Stop),
-            7 => self.push(Op::Home),
+            7 | 8 => Op::Coolant(Coolant::Flood),
+            9 => Op::Coolant(Coolant::Mist),
+            10 => Op::Coolant(self.dice.one_of(&[Coolant::FloodAndMist, Coolant::Through])),
+            11 | 12 => Op::Coolant(Coolant::Off),
+            13 => Op::Dwell(self.dice.number(0.1, 3.0)),
+            14 => Op::Stop,
+            15 => Op::OptionalStop,
+            16 | 17 => Op::Home,
+            18 => Op::PathMode(self.dice.one_of(&[
+                PathMode::ExactStop,
+                PathMode::Blend(0.05),
+                PathMode::AsSetUp,
+            ])),
+            19 => Op::Preselect(self.dice.below(9) as u32 + 1),
+            20 => Op::Message("TURN THE PART".into()),
+            21 => Op::EndOfOperation,
             _ => {
-                let offset = WorkOffset::numbered(54 + self.dice.below(3) as u32).unwrap();
-                self.push(Op::WorkOffset(offset));
+                let number = 54 + self.dice.below(3) as u32;
+                Op::WorkOffset(WorkOffset::numbered(number).unwrap())
             }
-        }
+        };
+        self.push(op);
     }
 
     /// Down onto a place and away again, with what `work` does there.
@@ -304,9 +356,18 @@ impl Job {
     fn face(&mut self) {
         let (at, axis) = (self.point(), self.axis());
         self.push(Op::Operation("FACE".into()));
+        if self.dice.once_in(4) {
+            self.set_up(axis);
+        }
+        let compensated = self.dice.once_in(8);
         self.visit(at, axis, |job, at, axis| {
             let side = axis.any_orthonormal_vector();
             let up = axis.cross(side);
+            if compensated {
+                job.push(Op::Compensation(Compensation::Left(None)));
+                job.line(at + side * 30.0, axis);
+                job.line(at + side * 30.0 + up * 20.0, axis);
+            }
             for _ in 0..=job.dice.below(4) {
                 let (u, v) = (job.dice.number(-40.0, 40.0), job.dice.number(-40.0, 40.0));
                 let to = at + side * u + up * v;
@@ -329,24 +390,47 @@ impl Job {
                     _ => job.line(to, axis),
                 }
             }
+            if compensated {
+                let here = job.here().point();
+                job.push(Op::Compensation(Compensation::Off));
+                job.line(here + side * 30.0, axis);
+            }
         });
+    }
+
+    /// The frame of a set-up, with its Z along `axis`, turned about it in some way, and its zero anywhere.
+    fn set_up(&mut self, axis: Vec3) {
+        let turn = self.dice.number(0.0, 360.0).to_radians();
+        let x = geom::rotate(axis.any_orthonormal_vector(), axis, turn);
+        let matrix = Mat3::from_cols(x, axis.cross(x), axis);
+        let zero = self.point();
+        self.push(Op::Frame(Box::new(Frame::from_mat3_translation(matrix, zero))));
     }
 
     /// The tool turns while it cuts.
     fn ridge(&mut self) {
         let at = self.point();
-        let pole = self.dice.once_in(4);
-        let azimuth = self.dice.number(0.0, 360.0);
-        let [from, to] = match pole {
-            true => [-1.0, 1.0].map(|side| leaning(20.0 * side, azimuth)),
-            false => [self.axis(), self.axis()],
+        let azimuth = self.azimuth();
+        let [from, to] = match self.dice.below(6) {
+            0 => [-1.0, 1.0].map(|side| leaning(20.0 * side, azimuth)),
+            // Past the pole by less than a degree, and in large steps.
+            1 => {
+                let off = self.dice.number(-2.0, 2.0);
+                [leaning(-self.dice.number(1.0, 60.0), azimuth + off), leaning(60.0, azimuth)]
+            }
+            // Round the tool's cone, at the same tilt.
+            2 => {
+                let (tilt, turn) = (self.dice.number(5.0, 90.0), self.dice.number(90.0, 179.0));
+                [leaning(tilt, azimuth), leaning(tilt, azimuth + turn)]
+            }
+            _ => [self.axis(), self.axis()],
         };
         if from.dot(to) < -0.9 {
             return;
         }
         self.push(Op::Operation("RIDGE".into()));
         self.visit(at, from, |job, at, _| {
-            let count = 2 + job.dice.below(30);
+            let count = 1 + job.dice.below(30);
             let way = job.point() / 3.0;
             for i in 1..=count {
                 let part = i as f64 / count as f64;
@@ -359,6 +443,20 @@ impl Job {
                 job.rapid(place, next);
                 job.line(place - next, next);
             }
+        });
+    }
+
+    /// Into the pole, upright for a while, and out of it another way.
+    fn pole(&mut self) {
+        let (at, tilt) = (self.point(), self.dice.number(0.5, 40.0));
+        let azimuths = [self.azimuth(), self.azimuth()];
+        self.push(Op::Operation("POLE".into()));
+        self.visit(at, leaning(tilt, azimuths[0]), |job, at, _| {
+            for i in 1..=1 + job.dice.below(3) {
+                job.line(at + Vec3::X * 4.0 * i as f64, Vec3::Z);
+            }
+            let here = job.here().point();
+            job.line(here + Vec3::Y * 5.0, leaning(tilt, azimuths[1]));
         });
     }
 
@@ -380,9 +478,33 @@ impl Job {
 
     fn holes(&mut self) {
         let axis = self.axis();
-        let kind = self.dice.one_of(&[CycleKind::Drill, CycleKind::Deep, CycleKind::Ream]);
+        let aside = axis.any_orthonormal_vector() * 0.3;
+        let pitch = self.dice.one_of(&[0.5, 1.0, 1.25]);
+        let withdrawal = Withdrawal { aside, angle: None };
+        let kind = match self.dice.below(24) {
+            0..=6 => CycleKind::Drill,
+            7..=11 => CycleKind::Deep,
+            12..=14 => CycleKind::BreakChip,
+            15..=18 => CycleKind::Ream,
+            19 | 20 => CycleKind::Bore,
+            21 => CycleKind::Tap { pitch, left: false },
+            22 => {
+                let speed = self.dice.number(100.0, 2000.0).round();
+                self.push(Op::Spindle(Spindle::CounterClockwise(speed)));
+                CycleKind::Tap { pitch, left: true }
+            }
+            _ if self.dice.once_in(2) => CycleKind::FineBore(withdrawal),
+            _ => CycleKind::BackBore { withdrawal, through: None },
+        };
         let depth = self.dice.number(1.0, 20.0);
-        let peck = (kind == CycleKind::Deep).then_some(self.dice.number(1.0, 5.0));
+        let pecks = matches!(kind, CycleKind::Deep | CycleKind::BreakChip);
+        let peck = pecks.then_some(self.dice.number(1.0, 5.0));
+        let first_peck = match self.dice.once_in(3) {
+            true => peck.map(|peck| peck + 1.0),
+            false => peck,
+        };
+        let dwell = if self.dice.once_in(4) { self.dice.number(0.1, 2.0) } else { 0.0 };
+        let feed = (!self.dice.once_in(6)).then_some(Feed::PerMinute(120.0));
         let retract = self.dice.one_of(&[2.0, 5.0, 30.0]);
         self.push(Op::Operation("HOLES".into()));
         let at = self.point();
@@ -392,9 +514,9 @@ impl Job {
             depth,
             clearance: 2.0,
             retract,
-            feed: Some(Feed::PerMinute(120.0)),
-            dwell: 0.0,
-            first_peck: peck,
+            feed,
+            dwell,
+            first_peck,
             peck,
         })));
         let side = axis.any_orthonormal_vector();
@@ -417,10 +539,11 @@ fn job(seed: u64) -> Program {
     let mut job = Job { dice: Dice(seed), program: Program::new("HARSH"), line: 0, tools: 0 };
     job.tool();
     for _ in 0..=job.dice.below(4) {
-        match job.dice.below(5) {
-            0 | 1 => job.face(),
-            2 => job.ridge(),
-            3 => job.swirl(),
+        match job.dice.below(12) {
+            0..=3 => job.face(),
+            4 | 5 => job.ridge(),
+            6 => job.pole(),
+            7 | 8 => job.swirl(),
             _ => job.holes(),
         }
         while job.dice.once_in(2) {

@@ -105,6 +105,46 @@ fn a_coolant_that_the_machine_does_not_have_is_refused() {
     }
 }
 
+/// LinuxCNC, "M7, M8, M9": both may run. On a FANUC it is the builder's affair.
+#[test]
+fn a_coolant_goes_off_before_another_one_runs() {
+    let cut = |x: f64| Op::Line(at(x, 0.0, 20.0));
+    let ops = [
+        Op::Coolant(Coolant::Flood),
+        cut(20.0),
+        Op::Coolant(Coolant::Mist),
+        cut(30.0),
+        Op::Stop,
+        Op::Coolant(Coolant::Flood),
+        cut(40.0),
+    ];
+    let both =
+        [Op::Coolant(Coolant::Flood), cut(20.0), Op::Coolant(Coolant::FloodAndMist), cut(30.0)];
+    for machine in mills() {
+        let (name, has) = (machine.name.as_str(), |block: &str| {
+            machine.blocks.contains_key(block) && !machine.leaves_out(block)
+        });
+        match has("coolant_mist") {
+            true => {
+                let text = written(&machine, &ops).unwrap();
+                let codes: Vec<_> = text
+                    .lines()
+                    .filter_map(|line| {
+                        line.split(' ').find(|word| ["M7", "M8", "M9"].contains(word))
+                    })
+                    .collect();
+                assert!(codes.join(" ").contains("M8 M9 M7 M9 M8"), "{name}: {text}");
+            }
+            false => assert_eq!(written(&machine, &ops), Err("missing-block"), "{name}"),
+        }
+        let text = written(&machine, &both);
+        match has("coolant_flood_and_mist") {
+            true => assert!(text.unwrap().contains("M7"), "{name}"),
+            false => assert_eq!(text, Err("missing-block"), "{name}"),
+        }
+    }
+}
+
 #[test]
 fn feeds_a_turn_and_feeds_in_inverse_time_are_written_or_counted_in_mm_per_minute() {
     // 0.1 mm at 1000 1/min; 20 mm in a tenth of a minute: 100 and 200 mm/min.

@@ -68,6 +68,8 @@ pub(crate) struct Walk<'a> {
     pub(crate) active_spindle: Option<Spindle>,
     coolant: Coolant,
     active_coolant: Option<Coolant>,
+    /// The coolant that has been switched last: after a stop nobody knows whether it runs.
+    last_coolant: Coolant,
     pub(crate) feed: Option<Feed>,
     compensation: Compensation,
     active_compensation: Compensation,
@@ -140,6 +142,7 @@ impl<'a> Walk<'a> {
             active_spindle: Some(Spindle::Off),
             coolant: Coolant::Off,
             active_coolant: Some(Coolant::Off),
+            last_coolant: Coolant::Off,
             feed: None,
             compensation: Compensation::Off,
             active_compensation: Compensation::Off,
@@ -501,6 +504,17 @@ impl<'a> Walk<'a> {
         }
         self.end_cycle()?;
         self.sync_spindle()?;
+        self.write_dwell(seconds)
+    }
+
+    /// A dwell. Where it says the feed mode, that is mm/min: under a feed per turn a control may count turns.
+    pub(crate) fn write_dwell(&mut self, seconds: f64) -> Done {
+        if self.templates.places(BlockName::Dwell, WordName::FeedMode) {
+            self.writer.code(WordName::FeedMode, feed_mode::PER_MINUTE);
+            if self.writer.changes(bit(WordName::FeedMode)) {
+                self.writer.forget(bit(WordName::F));
+            }
+        }
         self.writer.set(WordName::P, seconds);
         self.required(BlockName::Dwell)
     }

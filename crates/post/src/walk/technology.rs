@@ -146,18 +146,23 @@ impl Walk<'_> {
         if self.active_coolant == Some(self.coolant) {
             return Ok(());
         }
-        self.active_coolant = Some(self.coolant);
-        let block = match self.coolant {
+        // Where another one may still run, some controls let both run (LinuxCNC), and others leave it to the builder (FANUC).
+        let stays = match (self.last_coolant, self.coolant) {
+            (Coolant::Off, _) | (_, Coolant::Off) => true,
+            (Coolant::Flood | Coolant::Mist, Coolant::FloodAndMist) => true,
+            (last, next) => last == next,
+        };
+        if !stays && self.active_coolant != Some(Coolant::Off) {
+            self.required(BlockName::CoolantOff)?;
+        }
+        (self.active_coolant, self.last_coolant) = (Some(self.coolant), self.coolant);
+        self.coolant_block(match self.coolant {
             Coolant::Off => BlockName::CoolantOff,
             Coolant::Flood => BlockName::CoolantFlood,
             Coolant::Mist => BlockName::CoolantMist,
-            Coolant::FloodAndMist => {
-                self.coolant_block(BlockName::CoolantMist)?;
-                BlockName::CoolantFlood
-            }
+            Coolant::FloodAndMist => BlockName::CoolantFloodAndMist,
             Coolant::Through => BlockName::CoolantThrough,
-        };
-        self.coolant_block(block)
+        })
     }
 
     /// Coolant that the control does nothing for is none.
