@@ -4,8 +4,8 @@
 use geom::{Frame, Mat3, Vec3};
 use machine::{Machine, load, load_text};
 use program::{
-    ArcTo, Circle, Compensation, Coolant, Cycle, CycleKind, Feed, Op, PathMode, Pose, Program,
-    Spindle, Tool, Withdrawal, WorkOffset,
+    ArcTo, Circle, CompensatedPath, Compensation, Coolant, Cycle, CycleKind, Feed, Op, PathMode,
+    Pose, Program, Spindle, Tool, Withdrawal, WorkOffset,
 };
 use std::collections::BTreeMap;
 
@@ -15,6 +15,8 @@ const ACCEPTED: &[&str] = &[
     // Compensation across a tool that is tilted, or still on at the end.
     "compensation",
     "compensation-active",
+    // Whether the coordinates are the tool's centre or the contour nobody says, or the tool table does not go with it.
+    "compensated-path",
     // No cycle goes aside from the wall of a hole.
     "cycle-bore",
     // A tap across Z of the control, or whose spindle turns the other way.
@@ -80,7 +82,7 @@ fn machines() -> Vec<(&'static str, Machine)> {
                 settings: &str,
                 axes: [String; 2]| {
         let text = format!(
-            "extends = \"{control}\"\nsafe_height = 800\nwork_zero = [10, -20, 30]\n[options]\n[settings]\n{settings}\n\
+            "extends = \"{control}\"\nsafe_height = 800\nwork_zero = [10, -20, 30]\n[options]\n[settings]\ntool_radius = \"full\"\n{settings}\n\
              [orientation]\nsimultaneous = \"{}\"\npositioned = \"{}\"\ntolerance = 0.01\n[axes]\n\
              X = {{ min = -3000, max = 3000, rapid = 20000, acceleration = 3 }}\n\
              Y = {{ min = -3000, max = 3000, rapid = 20000, acceleration = 3 }}\n\
@@ -360,6 +362,10 @@ impl Job {
             self.set_up(axis);
         }
         let compensated = self.dice.once_in(8);
+        if compensated && self.program.compensated_path.is_none() {
+            let paths = [Some(CompensatedPath::Contour), Some(CompensatedPath::Center), None];
+            self.program.compensated_path = self.dice.one_of(&paths);
+        }
         self.visit(at, axis, |job, at, axis| {
             let side = axis.any_orthonormal_vector();
             let up = axis.cross(side);
