@@ -11,6 +11,7 @@ from .control import Control
 from .fanuc import Fanuc
 from .judge import Judge, Limits, Verdict
 from .klartext import Klartext
+from .linuxcnc import LinuxCNC
 from .machine import Machine, library, load
 from .sinumerik import Sinumerik
 
@@ -20,6 +21,9 @@ READERS: dict[str, Any] = {
     "sinumerik-840d-traori": Sinumerik,
     "fanuc-table-bc": Fanuc,
     "dmu50-heidenhain": Klartext,
+    "linuxcnc-xyzac": LinuxCNC,
+    "linuxcnc-xyzbc": LinuxCNC,
+    "linuxcnc-xyzbc-head": LinuxCNC,
 }
 
 
@@ -74,5 +78,8 @@ STATED = {
     "sinumerik-840d-table-ac": ([40, -25, -190], {"A": [5, 10, -260], "C": [20, -10, -240]}),
     "sinumerik-840d-traori": ([150, 80, -560], {"C": [0, 0, 0], "A": [0, 30, 220]}),
     "fanuc-table-bc": ([30, -20, -150], {"B": [10, 0, -210], "C": [20, -15, -200]}),
+    "linuxcnc-xyzac": ([40, -25, -90], {"A": [5, 10, -160], "C": [20, -10, -140]}),
+    "linuxcnc-xyzbc": ([30, -20, -100], {"B": [10, 0, -160], "C": [20, -15, -150]}),
+    "linuxcnc-xyzbc-head": ([150, 80, -160], {"C": [0, 0, 0], "B": [30, 0, 250]}),
     "dmu50-heidenhain": ([25, -15, -120], {"B": [0, 5, -160], "C": [15, -10, -150]}),
 }

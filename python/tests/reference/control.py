@@ -77,7 +77,8 @@ class Control:
         self.frames: list[Frame] = []
         self.rows: list[Row] = []
         self.turns = np.array(turns or [0.0] * len(machine.rotary))
-        self.at = np.array([*start, machine.home])
+        # A program begins somewhere: that Z is home, it has to see to itself.
+        self.at = np.array([*start, machine.home - 50])
         self.line = 0
         self.tool, self.length_on = 0, False
         self.speed, self.direction, self.coolant, self.side = 0.0, 0, False, ""

@@ -114,7 +114,19 @@ KLARTEXT = [
     Damage("sign of C", r"C-84", swap("C-84", "C+84")),
     Damage("M91 under M128", r"M129", swap("M129", "M128")),
 ]
+LINUXCNC = [
+    Damage("X of a cut", r"G1 X|^X30$", shift("X", 0.1)),
+    Damage("feed", r"F\d+", shift("F", 100)),
+    Damage("way of an arc", r"G3", swap("G3", "G2")),
+    Damage("kinematics of the axes", r"M428", swap("M428", "M429")),
+    Damage("kinematics not stated", r"M429", drop),
+    Damage("C of a cut", r"C-26", swap("C-26", "C-27")),
+    Damage("sign of A", r"A45", swap("A45", "A-45")),
+    Damage("bottom of a hole", r"G81", shift("Z", -2)),
+    Damage("register of the length", r"G43 H2", swap("H2", "H1")),
+]
 DAMAGES = {
+    "linuxcnc-xyzac": LINUXCNC,
     "sinumerik-840d-table-ac": TABLE,
     "sinumerik-840d-traori": TRAORI,
     "fanuc-table-bc": FANUC,

@@ -22,6 +22,9 @@ CYCLES = {73.0, 74.0, 81.0, 82.0, 83.0, 84.0, 85.0, 86.0, 89.0}
 class Fanuc(Control):
     """Runs a program."""
 
+    #: X10 without a point counts in steps, or in mm: the parameter is not known.
+    points = True
+
     def run(self, text: str) -> None:
         self.motion, self.cycle = 0, 0.0
         self.plane_of_arcs = Z
@@ -54,7 +57,8 @@ class Fanuc(Control):
             elif letter in words:
                 raise self.fault(f"{letter} stands twice")
             else:
-                if letter in "XYZABCIJKR" and "." not in value and float(value) != 0:
+                whole = self.points and "." not in value and float(value) != 0
+                if letter in "XYZABCIJKR" and whole:
                     raise self.fault(f"{letter}{value} has no point")
                 words[letter] = float(value)
         words.pop("N", None)
@@ -62,6 +66,9 @@ class Fanuc(Control):
 
     def execute(self, words: dict[str, float], codes: list[float], functions: list[int]) -> None:
         if 4 in codes:
+            # A dwell has no words but its time; its unit may be set in front of it.
+            for code in set(codes) - {4.0}:
+                self.code(code, {})
             return
         if 29 in functions:
             functions.remove(29)
@@ -129,7 +136,7 @@ class Fanuc(Control):
             self.coolant = function != 9
         elif function == 6:
             self.change(self.pending)
-        elif function == 30:
+        elif function in (2, 30):
             self.ended = True
         elif function not in (0, 1):
             raise self.fault(f"M{function} is not known")

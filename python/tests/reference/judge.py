@@ -35,8 +35,10 @@ class Limits:
     corridor: float = 0.11
     #: How far the line of the tool stays from the box of all cuts, mm.
     clear: float = 0.5
-    #: The tip's speed against the feed of the source: at most, at least.
+    #: The tip's speed against the feed of the source: over a block at most, over half a
+    #: millimetre at most, over a block at least.
     fast: float = 1.02
+    peak: float = 1.1
     slow: float = 0.9
     #: Steps of samples: mm, and degrees.
     step: float = 1.0
@@ -133,7 +135,7 @@ class Judge:
         self.control, self.machine = control, control.machine
         self.rows = control.rows
         self.verdict = Verdict()
-        self.moves = moving(source.moves)
+        self.moves, self.lengths = moving(source.moves), source.lengths
         self.samples = sample(control, self.limits)
         self.verdict.samples = len(self.samples.row)
         self.last = np.flatnonzero(np.append(np.diff(self.samples.row) > 0, True))
@@ -438,7 +440,16 @@ class Judge:
         out = (flat & ((tip < low) | (tip > high))).any(1)
         enter = np.where(flat, -np.inf, np.minimum(one, two)).max(1)
         leave = np.where(flat, np.inf, np.maximum(one, two)).min(1)
-        return np.asarray(out | (enter > leave) | (leave < 0))
+        return np.asarray(out | (enter > leave) | (leave < 0) | self.beyond(tip, along))
+
+    def beyond(self, tip: ARRAY, along: ARRAY) -> ARRAY:
+        """Say where all cuts lie behind the plane through the tip, at right angles to the tool."""
+        if not len(tip):
+            return np.zeros(0, dtype=bool)
+        axes, which = np.unique(np.round(along, 6), axis=0, return_inverse=True)
+        cuts = np.concatenate([self.start[self.cutting], self.end[self.cutting]])
+        farthest = np.array([(cuts @ axis).max() for axis in axes])
+        return np.asarray((tip * along).sum(1) > farthest[which.ravel()] + self.limits.clear)
 
     # Speed and travels.
 
@@ -454,21 +465,29 @@ class Judge:
             if move.feed is None or way < 1e-6:
                 continue
             minutes = self.minutes(number, way)
-            speed = way / minutes
-            peak = float(steps.max()) * len(steps) / minutes
-            shape = speed / move.feed
-            self.verdict.fastest = max(self.verdict.fastest, peak / move.feed)
+            mean = way / minutes / move.feed
+            peak = max(mean, self.peak(steps) * len(steps) / minutes / move.feed)
+            self.verdict.fastest = max(self.verdict.fastest, peak)
+            self.verdict.slowest = min(self.verdict.slowest, mean)
             # Words have three decimals: of a short way its length is not known better than that.
             blur = 0.0025 / way
-            if peak / move.feed > limits.fast + blur:
-                self.verdict.add(
-                    "fast", row.line, f"{peak:.0f} mm/min at a feed of {move.feed:.0f}"
-                )
-            elif shape < limits.slow - blur and not self.held_back(number, way / move.feed):
-                self.verdict.add(
-                    "slow", row.line, f"{speed:.1f} mm/min at a feed of {move.feed:.0f}"
-                )
-            self.verdict.slowest = min(self.verdict.slowest, shape)
+            text = f"{move.feed * mean:.1f}, at most {move.feed * peak:.1f} mm/min"
+            if mean > limits.fast + blur or peak > limits.peak + blur:
+                self.verdict.add("fast", row.line, f"{text} at a feed of {move.feed:.0f}")
+            elif mean < limits.slow - blur and not self.held_back(number, way / move.feed):
+                self.verdict.add("slow", row.line, f"{text} at a feed of {move.feed:.0f}")
+
+    @staticmethod
+    def peak(steps: ARRAY) -> float:
+        """Longest step that the tip makes in even times, over at least half a millimetre of way."""
+        gone = np.append(0, np.cumsum(steps))
+        # Where the way gone is half a millimetre more than at each sample.
+        reach = np.searchsorted(gone, gone + 0.5)
+        here = np.flatnonzero(reach < len(gone))
+        if not len(here):
+            return 0.0
+        span = reach[here]
+        return float(((gone[span] - gone[here]) / (span - here)).max())
 
     def minutes(self, number: int, way: float) -> float:
         """Time of a row."""
@@ -501,13 +520,17 @@ class Judge:
             self.report("travel", of, over, self.position(axis.letter, at))
         if not self.machine.placed:
             return
+        # Without the length of the tool nobody knows where Z stands, and no axis under a head.
+        known = bool(self.lengths)
+        heads = any(axis.head for axis in self.machine.rotary)
+        judged = np.array([known or not heads, known or not heads, known])
         over = np.maximum(
             self.machine.low - self.samples.axes, self.samples.axes - self.machine.high
         )
         self.report(
             "travel",
             of,
-            over.max(1) - 2e-3,
+            np.where(judged, over, -1).max(1) - 2e-3,
             lambda n: f"axes at {np.round(self.samples.axes[n], 3)}",
         )
 

@@ -172,9 +172,9 @@ def matrix(axis: ARRAY, degrees: float) -> ARRAY:
     return rotate(np.eye(3), axis, np.full(3, np.radians(degrees))).T
 
 
-def load(text: str, control: str = "") -> Machine:
-    """Take the facts of a machine file; those of the control it builds on stand in another text."""
-    file, below = tomllib.loads(text), tomllib.loads(control)
+def load(text: str, *below: str) -> Machine:
+    """Take the facts of a machine file; the files that it builds on follow, the nearest first."""
+    file = tomllib.loads(text)
     axes = [file["axes"][letter] for letter in "XYZ"]
     top = float(file.get("safe_height", axes[2]["max"]))
     # What the file does not state is assumed, and no travels are judged: a part well below the top.
@@ -200,7 +200,9 @@ def load(text: str, control: str = "") -> Machine:
     low, high, rapid = (
         np.array([float(axis[k]) for axis in axes]) for k in ("min", "max", "rapid")
     )
-    settings = {**below.get("settings", {}), **file.get("settings", {})}
+    settings: dict[str, Any] = {}
+    for part in reversed((text, *below)):
+        settings.update(tomllib.loads(part).get("settings", {}))
     return Machine(
         low=low,
         high=high,
@@ -214,8 +216,9 @@ def load(text: str, control: str = "") -> Machine:
     )
 
 
-def library(root: Path, name: str) -> tuple[str, str]:
-    """Text of a machine file of the library, and of the control that it builds on."""
-    text = (root / "machines" / f"{name}.toml").read_text()
-    control = tomllib.loads(text)["extends"]
-    return text, (root / "controls" / f"{control}.toml").read_text()
+def library(root: Path, name: str) -> list[str]:
+    """Text of a machine file of the library, and of the controls that it builds on."""
+    texts = [(root / "machines" / f"{name}.toml").read_text()]
+    while "extends" in (file := tomllib.loads(texts[-1])):
+        texts.append((root / "controls" / f"{file['extends']}.toml").read_text())
+    return texts

@@ -21,7 +21,15 @@ LONG = os.environ.get("TOOLPOST_JUDGES") == "long"
 NAMES = sorted(READERS)
 SAMPLE = ROOT / "machines" / "samples" / "five-axes.cls"
 #: Files that take seconds each: with TOOLPOST_JUDGES=long only.
-LARGE = ["coremill", "Interface-glue", "SupPetriLED", "Top-light-cover", "basemach"]
+LARGE = [
+    "Plane_2",
+    "coremill",
+    "Interface-glue",
+    "SupPetriLED",
+    "Teflon-gasket",
+    "Top-light-cover",
+    "basemach",
+]
 FILES = [
     "makino/Plane_1.cldata",
     "makino/Plane_2.cldata",
@@ -44,7 +52,7 @@ FILES = [
     ),
 ]
 #: What a machine of the library says when it cannot run a source.
-REFUSED = {"axis-limit", "unreachable-orientation"}
+REFUSED = {"axis-limit", "unreachable-orientation", "cycle-tap"}
 
 #: What is known to be wrong, and open in issue 14: rules of the judge that are not looked at yet.
 FEEDS = {"slow", "fast"}  # Item 3: F on machines without tool-centre control.
@@ -85,7 +93,7 @@ def test_a_program_of_an_example_does_what_its_source_says(file, name):
 
 
 @pytest.mark.parametrize("name", NAMES)
-@pytest.mark.parametrize("seed", range(200 if LONG else 10))
+@pytest.mark.parametrize("seed", range(200 if LONG else 8))
 def test_a_program_of_a_harsh_job_does_what_its_source_says(name, seed, tmp_path):
     path = tmp_path / "job.cls"
     path.write_text(job(seed))
@@ -95,7 +103,7 @@ def test_a_program_of_a_harsh_job_does_what_its_source_says(name, seed, tmp_path
         text = stated(name, *STATED[name])
         file = tmp_path / "machine.toml"
         file.write_text(text)
-        machine, sees = toolpost.machine(file), load(text, library(ROOT, name)[1])
+        machine, sees = toolpost.machine(file), load(text, *library(ROOT, name)[1:])
     known = FEEDS if name == "sinumerik-840d-table-ac" else APPROACH
     assert found(name, path, machine, sees, known) == []
 
@@ -153,7 +161,7 @@ def test_at_the_pole_c_is_free_and_stays():
 
 @pytest.mark.parametrize("name", NAMES)
 def test_axes_found_for_a_pose_lead_back_to_it(name):
-    machine = load(stated(name, *STATED[name]), library(ROOT, name)[1])
+    machine = load(stated(name, *STATED[name]), *library(ROOT, name)[1:])
     chance = np.random.default_rng(1)
     tip = chance.uniform(-100, 100, (50, 3))
     along = np.column_stack([chance.uniform(-0.4, 0.4, (50, 2)), np.ones(50)])
