@@ -238,6 +238,16 @@ impl Risk {
         refused: true,
     };
 
+    /// How the tool turns within a block under `TRAORI`: about the shortest way between its ends (`ORIVECT`, `ORIWKS`), or as
+    /// its axes turn evenly (`ORIAXES`, `ORIMKS`). Which of the two G groups says it, MD21104 decides.
+    pub(crate) const ORIENTATION_WAY: Risk = Risk {
+        rule: "orientation-way",
+        what: "turns the tool under TRAORI, and does not say that it turns the way that its words need",
+        help: "write ORIWKS and ORIVECT where the tool turns by vectors, ORIMKS and ORIAXES where it turns by positions of axes: with both \
+               it is so whatever MD21104 is",
+        refused: true,
+    };
+
     /// Work offsets, tool lengths and radii belong to the operator, who has measured them.
     pub(crate) const OPERATOR_DATA: Risk = Risk {
         rule: "operator-data",

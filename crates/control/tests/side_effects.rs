@@ -327,6 +327,44 @@ fn a_tool_length_in_another_plane_counts_along_another_axis() {
     assert!(risks(Dialect::Fanuc, None, &before).is_empty());
 }
 
+/// Job Planning 7.2.6 and NC programming 4.3.51: MD21104 decides whether ORIWKS and ORIMKS or ORIVECT and ORIAXES say how the tool
+/// turns within a block. Vectors are meant on the great circle, positions of axes as the axes turn evenly.
+#[test]
+fn how_the_tool_turns_under_traori_is_said_by_two_words_that_agree() {
+    let settings = Settings::new(Dialect::Sinumerik, [true, false, true]);
+    let risks = |text: &str| {
+        let found = common::ops(&settings, "p.mpf", text).unwrap_or_else(|e| panic!("{e}\n{text}"));
+        rules(&found).into_iter().filter(|rule| *rule == "orientation-way").count()
+    };
+    let vectors = |words: &str| {
+        risks(&format!(
+            "G54 G90 G94\nTRAORI\nG54 D1\n{words}G0 X0 Y0 Z50 A3=0 B3=0 C3=1\nG1 X5 F500\nX10 A3=0.1 B3=0 C3=1\nX20 A3=0.1 B3=0 C3=1\nM30\n"
+        ))
+    };
+    let positions = |words: &str| {
+        risks(&format!(
+            "G54 G90 G94\nTRAORI\nG54 D1\n{words}G0 X0 Y0 Z50 A0 C0\nG1 X5 F500\nX10 A10 C5\nX20 A10 C5\nM30\n"
+        ))
+    };
+    for (words, by_vectors, by_positions) in [
+        ("", 1, 1),
+        ("ORIWKS\n", 1, 1),
+        ("ORIVECT\n", 1, 1),
+        ("ORIAXES\n", 1, 1),
+        ("ORIWKS\nORIVECT\n", 0, 1),
+        ("ORIWKS\nORIPLANE\n", 0, 1),
+        ("ORIWKS\nORIAXES\n", 1, 1),
+    ] {
+        assert_eq!((vectors(words), positions(words)), (by_vectors, by_positions), "{words}");
+    }
+    // With ORIMKS no vector is taken at all.
+    for (words, found) in [("ORIMKS\n", 1), ("ORIMKS\nORIVECT\n", 1), ("ORIMKS\nORIAXES\n", 0)] {
+        assert_eq!(positions(words), found, "{words}");
+    }
+    // The last word of a group counts.
+    assert_eq!(positions("ORIMKS\nORIAXES\nORIVECT\n"), 1);
+}
+
 /// FANUC parameters 1241 to 1243, LinuxCNC #5161 and #5181, GRBL `G28.1`: these positions are the operator's. A way home
 /// that the program itself has stored is known.
 #[test]

@@ -230,6 +230,11 @@ pub(crate) const VARIABLES: &[Parameter] = &[
     variable("program.tools", "", "The tools in the order of their first use, each as `tool`."),
     variable("machine.name", "", "Name of the machine, as `--machine` takes it."),
     variable("machine.title", "", "What a person calls the machine."),
+    variable(
+        "machine.vectors",
+        "",
+        "Whether cuts that turn the tool are written with its axis as a vector (`simultaneous` is `vectors`).",
+    ),
     variable("operation.name", "", "Name of the operation, in its blocks and all that follow."),
     variable("tool.number", "", "Number of the tool."),
     variable("tool.first", "", "Whether no tool has been called before."),

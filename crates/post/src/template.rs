@@ -9,7 +9,7 @@ use crate::catalogue::{BlockName, VARIABLES, WordName};
 use crate::guard::{self, Fault};
 use crate::text::{clean, printed};
 use deunicode::deunicode;
-use machine::{Block, Format, Machine, OptionValue};
+use machine::{Block, Format, Machine, OptionValue, OrientationMode};
 use minijinja::value::{Object, Value};
 use minijinja::{AutoEscape, Environment, ErrorKind, UndefinedBehavior};
 use program::{Diagnostic, Op, Program, Record, Tool, nearest};
@@ -282,10 +282,12 @@ impl Scope {
             (name.clone(), value)
         });
         let names = [("name", &machine.name), ("title", &machine.title)];
+        let names = names.map(|(key, name)| (key, Value::from(clean(name))));
+        let vectors = machine.orientation.simultaneous == OrientationMode::Vectors;
         Scope {
             set: 0,
             program: Value::UNDEFINED,
-            machine: map(names.map(|(key, name)| (key, Value::from(clean(name))))),
+            machine: map(names.into_iter().chain([("vectors", Value::from(vectors))])),
             options: Value::from(options.collect::<BTreeMap<String, Value>>()),
             operation: map([("name", Value::from(""))]),
             tool: tool_value(machine, &Tool::default(), true),

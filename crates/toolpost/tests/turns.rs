@@ -66,3 +66,29 @@ fn a_tool_change_that_does_not_go_up_leaves_no_room_to_turn() {
     let text = String::from_utf8(text).unwrap();
     assert_eq!(proven(&machine, &text), Err(("turn-height", 7)));
 }
+
+/// The same sample on fork heads, by vectors and by positions of the axes: without either of the two words, and with the
+/// other kind of turn, it is refused where it first turns the tool in a cut.
+#[test]
+fn how_the_tool_turns_in_a_cut_has_to_be_said() {
+    let vectors = load("sinumerik-840d-traori").unwrap();
+    let positions = "extends = \"sinumerik-840d\"\nsafe_height = 0\n[orientation]\nsimultaneous = \"tool-center-angles\"\n\
+                     tolerance = 0.005\n[axes]\nZ = { min = -800, max = 0, rapid = 30000, acceleration = 3 }\n\
+                     [[rotary]]\nletter = \"C\"\non = \"head\"\naxis = [0, 0, 1]\npoint = [0, 0, 0]\nmodulo = false\nrapid = 9000\nacceleration = 400\n\
+                     [[rotary]]\nletter = \"A\"\non = \"head\"\naxis = [1, 0, 0]\npoint = [0, 0, 220]\nmin = -115\nmax = 115\nrapid = 9000\nacceleration = 400\n";
+    let positions = machine::load_text("shop.toml", positions).unwrap();
+    for (machine, words, other) in [
+        (&vectors, ["ORIWKS", "ORIVECT"], "ORIAXES"),
+        (&positions, ["ORIMKS", "ORIAXES"], "ORIVECT"),
+    ] {
+        let text = post::write(&sample(), machine).unwrap_or_else(|found| panic!("{found:?}")).text;
+        let text = String::from_utf8(text).unwrap();
+        assert_eq!(proven(machine, &text), Ok(()), "{text}");
+        for (word, with) in [(words[0], ";"), (words[1], ";"), (words[1], other)] {
+            let damage = text.replacen(&format!(" {word}\n"), &format!(" {with}\n"), 1);
+            assert_ne!(damage, text);
+            let Err((rule, _)) = proven(machine, &damage) else { panic!("proven:\n{damage}") };
+            assert_eq!(rule, "orientation-way", "{damage}");
+        }
+    }
+}

@@ -290,6 +290,10 @@ impl<'a, 's> Interpreter<'a, 's> {
         }
         if let Some(Code::VectorsInWorkFrame(in_work_frame)) = block.code(25) {
             state.vectors_in_work_frame = in_work_frame;
+            state.turning.in_work_frame = Some(in_work_frame);
+        }
+        if let Some(Code::GreatCircle(great_circle)) = block.code(51) {
+            state.turning.great_circle = Some(great_circle);
         }
         if let Some(Code::Compensation(compensation)) = block.code(7) {
             self.select_compensation(source, compensation)?;

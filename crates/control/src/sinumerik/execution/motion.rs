@@ -218,6 +218,7 @@ impl Interpreter<'_, '_> {
             let message = "a rotary axis moves in a plane swivelled by CYCLE800";
             return Err(source.block_error("orientation", message));
         }
+        let (before, axis) = (self.state.rotary, self.state.tool_axis);
         for i in 0..3 {
             if let Some(coordinate) = block.axes[i + 3] {
                 let to = self.turned_to(source, coordinate, i)?;
@@ -227,7 +228,18 @@ impl Interpreter<'_, '_> {
             }
         }
         self.state.tool_axis = ToolAxis::Rotary;
-        Ok(())
+        let turns = !matches!(axis, ToolAxis::Rotary) || self.state.rotary != before;
+        self.hold_turning(source, turns, false)
+    }
+
+    /// Tells where the tool turns under `TRAORI` over the part, and not surely on the great circle, or not surely by its axes.
+    fn hold_turning(&mut self, source: &Source, turns: bool, great_circle: bool) -> Fallible<()> {
+        let state = &self.state;
+        let over_part = state.tool_center && !state.position.z.is_nan();
+        if !(turns && over_part) || state.turning.on_great_circle() == Some(great_circle) {
+            return Ok(());
+        }
+        self.emit(source, Action::Risk(Risk::ORIENTATION_WAY.into()))
     }
 
     /// Position of rotary axis `index`, degrees. `DC`, `ACP` and `ACN` go on counting, so that the way
@@ -352,9 +364,10 @@ impl Interpreter<'_, '_> {
             let message = "the vector of the tool (A3= B3= C3=) has no length";
             return Err(source.block_error("zero-vector", message));
         };
+        let turns = !matches!(self.state.tool_axis, ToolAxis::Vector(before) if before == axis);
         self.state.tool_axis = ToolAxis::Vector(axis);
         self.state.rotary = self.settings.rotary.map(|exists| if exists { f64::NAN } else { 0.0 });
-        Ok(())
+        self.hold_turning(source, turns, true)
     }
 
     /// Compensation takes effect with the first move in the plane, which must be straight.

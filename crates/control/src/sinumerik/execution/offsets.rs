@@ -119,6 +119,7 @@ impl Interpreter<'_, '_> {
         state.diameter = modes.diameter;
         state.feed_type = modes.feed_type;
         state.vectors_in_work_frame = modes.vectors_in_work_frame;
+        state.turning = modes.turning;
         (state.corner, state.goes_around) = (modes.corner, modes.goes_around);
         state.compensation = modes.compensation;
         if frame {

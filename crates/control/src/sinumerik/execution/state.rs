@@ -34,6 +34,24 @@ pub(crate) enum ToolAxis {
     Vector(Vec3),
 }
 
+/// What a program has said of how the tool turns within a block under `TRAORI`; `None` is as the builder has set the control up
+/// (MD20150).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Turning {
+    /// G group 25: in the frame of the work, and so on the great circle, or in that of the machine, and so by its axes.
+    pub in_work_frame: Option<bool>,
+    /// G group 51: on the great circle, or by the axes.
+    pub great_circle: Option<bool>,
+}
+
+impl Turning {
+    /// Whether the tool turns on the great circle: known where both groups say the same, for MD21104 says which of them counts
+    /// (Job Planning, "Orientation axis reference"; Transformations, "Large circle interpolation").
+    pub fn on_great_circle(self) -> Option<bool> {
+        self.in_work_frame.filter(|_| self.in_work_frame == self.great_circle)
+    }
+}
+
 /// The state between two blocks. The words are in units of the machine: mm, degrees, 1/min.
 pub(crate) struct State {
     /// G group 1.
@@ -52,6 +70,8 @@ pub(crate) struct State {
     pub diameter: Diameter,
     /// G group 25.
     pub vectors_in_work_frame: bool,
+    /// What the program has said of how the tool turns within a block.
+    pub turning: Turning,
     /// G group 8: 500 for none.
     pub work_offset: u32,
     /// G group 7 as the blocks say.
@@ -137,6 +157,7 @@ pub(crate) struct Modes {
     pub absolute: bool,
     pub feed_type: FeedType,
     pub vectors_in_work_frame: bool,
+    pub turning: Turning,
     pub work_offset: u32,
     pub compensation: Compensation,
     pub programmable: (Frame, Vec3),
@@ -158,6 +179,7 @@ impl State {
             feed_type: FeedType::PerMinute,
             diameter: Diameter::Off,
             vectors_in_work_frame: true,
+            turning: Turning::default(),
             work_offset: WORK_OFFSET_AT_RESET,
             compensation: Compensation::Off,
             compensation_in_effect: Compensation::Off,
@@ -272,6 +294,7 @@ impl State {
             absolute: self.absolute,
             feed_type: self.feed_type,
             vectors_in_work_frame: self.vectors_in_work_frame,
+            turning: self.turning,
             work_offset: self.work_offset,
             compensation: self.compensation,
             programmable: (self.frames.programmable(), self.frames.fine()),

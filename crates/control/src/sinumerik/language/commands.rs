@@ -48,6 +48,8 @@ pub(crate) enum Code {
     Diameter(Diameter),
     /// Vectors of the tool axis count in the work frame or in the machine's.
     VectorsInWorkFrame(bool),
+    /// The tool turns on the great circle between two orientations, or its axes turn evenly.
+    GreatCircle(bool),
     /// How the control drives along the path, not where: dynamics, rounding and compression within
     /// the machine's tolerances, interpolation of the orientation between given ends.
     NoMotion,
@@ -343,9 +345,9 @@ pub(super) static COMMANDS: &[Command] = &[
     same("ORIEULER", 50),
     same("ORIRPY", 50),
     same("ORIRPY2", 50),
-    same("ORIVECT", 51),
-    same("ORIPLANE", 51),
-    same("ORIAXES", 51),
+    g("ORIVECT", 51, Code::GreatCircle(true)),
+    g("ORIPLANE", 51, Code::GreatCircle(true)),
+    g("ORIAXES", 51, Code::GreatCircle(false)),
     not("ORIPATH", 51, "orientation from the path"),
     // 52, 53: frames from part and tool
     same("PAROTOF", 52),
