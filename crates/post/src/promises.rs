@@ -111,7 +111,86 @@ pub(crate) fn check(machine: &Machine, templates: &Templates) -> Result<(), Vec<
             placed(BlockName::Linear, &[word], why);
         }
     }
+    errors.extend(orientation(machine, templates));
     if errors.is_empty() { Ok(()) } else { Err(errors) }
+}
+
+/// What the blocks lack to write the tool's orientation as the machine's file says.
+fn orientation(machine: &Machine, templates: &Templates) -> Vec<Diagnostic> {
+    use BlockName as B;
+    let letters: Vec<WordName> = machine
+        .rotary
+        .iter()
+        .filter_map(|axis| WordName::named(&axis.letter.to_string()))
+        .collect();
+    let vector = [WordName::VX, WordName::VY, WordName::VZ];
+    let settings = &machine.orientation;
+    let mut errors: Vec<Diagnostic> = Vec::new();
+    for (key, mode) in
+        [("simultaneous", settings.simultaneous), ("positioned", settings.positioned)]
+    {
+        let (name, blocks): (&str, &[BlockName]) = match mode {
+            OrientationMode::Fixed => continue,
+            OrientationMode::MachineAngles => ("machine-angles", &[B::Retract, B::Rotate]),
+            OrientationMode::ToolCenterAngles => {
+                ("tool-center-angles", &[B::Retract, B::Rotate, B::ToolCenterOn, B::ToolCenterOff])
+            }
+            OrientationMode::Vectors => {
+                ("vectors", &[B::Retract, B::Rotate, B::ToolCenterOn, B::ToolCenterOff])
+            }
+            OrientationMode::TiltedPlane => {
+                ("tilted-plane", &[B::Retract, B::PlaneTilt, B::PlaneTiltOff])
+            }
+        };
+        let why = format!("`orientation.{key}` is \"{name}\"");
+        for &block in blocks {
+            // The axes turn away from the part, and the way of writing is switched: an empty block does neither.
+            let switches = [B::ToolCenterOn, B::PlaneTilt].contains(&block);
+            if !templates.has(block) || (switches && machine.leaves_out(block.name())) {
+                let message = format!("the block `{}` is missing: {why}", block.name());
+                let help = format!("write the block, or let `{key}` be what the blocks can write");
+                let error = Diagnostic::error("missing-block", message).help(help);
+                errors.push(error.file(machine.file.clone()));
+            }
+        }
+        let cuts = [B::Rapid, B::Linear];
+        let placed: Vec<(BlockName, &[WordName])> = match mode {
+            OrientationMode::Vectors => cuts.map(|block| (block, &vector[..])).to_vec(),
+            OrientationMode::TiltedPlane => Vec::new(),
+            _ if key == "simultaneous" => cuts.map(|block| (block, &letters[..])).to_vec(),
+            _ => Vec::new(),
+        };
+        let turns = (B::Rotate, &letters[..]);
+        let placed =
+            placed.into_iter().chain((mode != OrientationMode::TiltedPlane).then_some(turns));
+        for (block, words) in placed {
+            let Some(text) = machine.blocks.get(block.name()) else { continue };
+            for word in words.iter().filter(|word| !templates.places(block, **word)) {
+                let message =
+                    format!("the block `{}` lacks `{}`: {why}", block.name(), word.name());
+                let help = match mode {
+                    OrientationMode::Vectors => format!(
+                        "put {{{{{}}}}} where the control reads it; a control that takes no vectors is given \
+                         \"tool-center-angles\"",
+                        word.name()
+                    ),
+                    _ => format!("put {{{{{}}}}} where the control reads it", word.name()),
+                };
+                let error = Diagnostic::error("missing-word", message).help(help);
+                errors.push(error.file(text.file.clone()).line(text.line));
+            }
+        }
+        let spatial = [WordName::RX, WordName::SpatialA, WordName::Euler1];
+        let tilts = spatial.iter().any(|word| templates.places(B::PlaneTilt, *word));
+        let tilt = machine.blocks.get(B::PlaneTilt.name()).filter(|_| templates.has(B::PlaneTilt));
+        if let (OrientationMode::TiltedPlane, Some(text), false) = (mode, tilt, tilts) {
+            let message = format!("the block `plane_tilt` says no angle of the plane: {why}");
+            let help = "put {{RX}} {{RY}} {{RZ}}, {{SPA}} {{SPB}} {{SPC}} or {{E1}} {{E2}} {{E3}} where the control reads them";
+            let error = Diagnostic::error("missing-word", message).help(help);
+            errors.push(error.file(text.file.clone()).line(text.line));
+        }
+    }
+    errors
 }
 
 /// Whether the machine can come to say this entry of a code.
@@ -167,18 +246,6 @@ fn promised(machine: &Machine) -> Vec<(BlockName, &'static str)> {
         };
         all.push((block, "its cycle is promised"));
         all.extend([B::CycleHole, B::CycleOff].map(|block| (block, "`cycles` are promised")));
-    }
-    let settings = &machine.orientation;
-    for mode in [settings.simultaneous, settings.positioned] {
-        let blocks: &[BlockName] = match mode {
-            OrientationMode::Fixed => &[],
-            OrientationMode::MachineAngles => &[B::Retract, B::Rotate],
-            OrientationMode::ToolCenterAngles | OrientationMode::Vectors => {
-                &[B::Retract, B::Rotate, B::ToolCenterOn, B::ToolCenterOff]
-            }
-            OrientationMode::TiltedPlane => &[B::Retract, B::PlaneTilt, B::PlaneTiltOff],
-        };
-        all.extend(blocks.iter().map(|&block| (block, "the orientation is written with it")));
     }
     if machine.has_clamps() {
         all.extend([B::Unclamp, B::Clamp].map(|block| (block, "a rotary axis has a clamp")));

@@ -116,6 +116,84 @@ fn a_name_that_the_engine_does_not_know_is_told_with_those_that_it_knows() {
     assert!(said.contains("`X` has a meaning already"), "{said}");
 }
 
+/// A machine file whose orientation is written in a way that no block of its control writes.
+#[test]
+fn a_way_to_write_the_tool_axis_that_no_block_writes_is_refused() {
+    let found = |control: &str, modes: [&str; 2], blocks: &str| {
+        let axis = |letter, axis| {
+            format!(
+                "[[rotary]]\nletter = \"{letter}\"\non = \"table\"\naxis = {axis}\npoint = [0, 0, 0]\nmodulo = false\nmin = -100\n\
+                 max = 100\nrapid = 9000\nacceleration = 400\n"
+            )
+        };
+        let text = format!(
+            "extends = \"{control}\"\nsafe_height = 0\nwork_zero = [0, 0, 0]\n[orientation]\nsimultaneous = \"{}\"\npositioned = \"{}\"\ntolerance = 0.01\n\
+             [blocks]\n{blocks}\n{}{}",
+            modes[0],
+            modes[1],
+            axis("B", "[0, 1, 0]"),
+            axis("C", "[0, 0, 1]")
+        );
+        let machine = machine::load_text("mine.toml", &text).unwrap();
+        match toolpost_post::check(&machine) {
+            Ok(()) => String::new(),
+            Err(found) => found.iter().map(|error| format!("{error}\n")).collect(),
+        }
+    };
+    let refused = |control, modes, blocks, words: &[&str]| {
+        let said = found(control, modes, blocks);
+        assert!(words.iter().all(|word| said.contains(word)), "{said}");
+    };
+    let (angles, tip, vectors, plane) =
+        ("machine-angles", "tool-center-angles", "vectors", "tilted-plane");
+    for (control, modes) in [
+        ("heidenhain-tnc640", [tip, plane]),
+        ("sinumerik-840d", [vectors, plane]),
+        ("sinumerik-840d", [angles, angles]),
+        ("fanuc-31i", [tip, plane]),
+    ] {
+        assert_eq!(found(control, modes, ""), "", "{control} {modes:?}");
+    }
+    refused(
+        "heidenhain-tnc640",
+        [vectors, plane],
+        "",
+        &[
+            "error[missing-word]: the block `linear` lacks `VX`: `orientation.simultaneous` is \"vectors\"",
+            "tool-center-angles",
+        ],
+    );
+    // LinuxCNC follows no tip by itself, nor has it a tilted plane.
+    refused(
+        "linuxcnc",
+        [tip, tip],
+        "",
+        &["the block `tool_center_on` is missing: `orientation.simultaneous`"],
+    );
+    refused(
+        "linuxcnc",
+        [angles, plane],
+        "",
+        &["the block `plane_tilt` is missing: `orientation.positioned`"],
+    );
+    refused(
+        "sinumerik-840d",
+        [tip, tip],
+        "tool_center_on = \"\"",
+        &["`tool_center_on` is missing"],
+    );
+    let tilt = "plane_tilt = \"{{N}} CYCLE800({{OX}})\"";
+    refused("sinumerik-840d", [angles, plane], tilt, &["mine.toml:9", "says no angle"]);
+    let linear =
+        "linear = \"{{N}} G1 {{X}} {{Y}} {{Z}} {{compensation}} {{feed_mode}} {{C}} {{F}}\"";
+    refused(
+        "sinumerik-840d",
+        [angles, angles],
+        linear,
+        &["mine.toml:9", "the block `linear` lacks `B`"],
+    );
+}
+
 #[test]
 fn a_promise_that_a_file_does_not_keep_is_told_where_the_file_makes_it() {
     let found = |text: &str| {

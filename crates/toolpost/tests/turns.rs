@@ -85,7 +85,7 @@ fn how_the_tool_turns_in_a_cut_has_to_be_said() {
         let text = String::from_utf8(text).unwrap();
         assert_eq!(proven(machine, &text), Ok(()), "{text}");
         for (word, with) in [(words[0], ";"), (words[1], ";"), (words[1], other)] {
-            let damage = text.replacen(&format!(" {word}\n"), &format!(" {with}\n"), 1);
+            let damage = text.replace(&format!(" {word}\n"), &format!(" {with}\n"));
             assert_ne!(damage, text);
             let Err((rule, _)) = proven(machine, &damage) else { panic!("proven:\n{damage}") };
             assert_eq!(rule, "orientation-way", "{damage}");
