@@ -117,9 +117,9 @@ pub struct LinearAxis {
     pub min: f64,
     /// Upper end of the travel, mm.
     pub max: f64,
-    /// Rapid, mm/min.
-    pub rapid: f64,
-    /// Acceleration, m/s².
+    /// Rapid, mm/min, where it is known; the estimate of the time takes 10 000 otherwise.
+    pub rapid: Option<f64>,
+    /// Acceleration, m/s²; only the estimate of the time goes by it.
     pub acceleration: f64,
 }
 
@@ -127,7 +127,7 @@ impl Default for LinearAxis {
     /// An axis of which nothing is known.
     fn default() -> LinearAxis {
         let (min, max) = (f64::NEG_INFINITY, f64::INFINITY);
-        LinearAxis { min, max, rapid: 10_000.0, acceleration: 2.0 }
+        LinearAxis { min, max, rapid: None, acceleration: 2.0 }
     }
 }
 

@@ -9,10 +9,13 @@
 //! The linear axes are taken to move as the program says: with tool center point control, that is the
 //! way of the tip.
 
-use crate::Machine;
+use crate::{LinearAxis, Machine};
 use geom::Vec3;
 use program::{ArcTo, Course, Cycle, CycleKind, Feed, Op, Pose, Program, Spindle, lowering};
 use serde::Serialize;
+
+/// Rapid of an axis of which the machine's file does not say it, mm/min.
+const UNKNOWN_RAPID: f64 = 10_000.0;
 
 /// A tool change, seconds: a common machining centre, chip to chip.
 pub const TOOL_CHANGE: f64 = 6.0;
@@ -144,7 +147,7 @@ impl<'a> Clock<'a> {
     fn rapid(&mut self, to: Spot) {
         let (way, turn) = self.go(to);
         let linear = self.machine.linear.iter().zip(way.to_array()).map(|(axis, way)| {
-            from_rest_to_rest(way, axis.rapid / 60.0, axis.acceleration * 1000.0)
+            from_rest_to_rest(way, rapid_of(axis) / 60.0, axis.acceleration * 1000.0)
         });
         let rotary = self.machine.rotary.iter().map(|axis| {
             from_rest_to_rest(turn[axis.index()], axis.rapid / 60.0, axis.acceleration)
@@ -165,7 +168,7 @@ impl<'a> Clock<'a> {
             }
         };
         let linear = self.machine.linear.iter().zip(way.to_array());
-        let linear = linear.map(|(axis, way)| way.abs() / axis.rapid);
+        let linear = linear.map(|(axis, way)| way.abs() / rapid_of(axis));
         let rotary = self.machine.rotary.iter();
         let rotary = rotary.map(|axis| turn[axis.index()].abs() / axis.rapid);
         // A feed that is missing makes no sensible time: what the axes need is left.
@@ -256,6 +259,11 @@ impl From<&Pose> for Spot {
     fn from(pose: &Pose) -> Spot {
         Spot { point: pose.point(), axis: pose.axis() }
     }
+}
+
+/// Rapid of an axis, mm/min.
+fn rapid_of(axis: &LinearAxis) -> f64 {
+    axis.rapid.unwrap_or(UNKNOWN_RAPID)
 }
 
 /// Seconds for `way` with the speed (per s) and the acceleration (per s²) of an axis.

@@ -36,6 +36,13 @@ pub(crate) fn check(machine: &Machine, templates: &Templates) -> Result<(), Vec<
             errors.push(error.file(block.file.clone()).line(block.line));
             continue;
         }
+        if word == WordName::RapidFeed && machine.linear.iter().all(|axis| axis.rapid.is_none()) {
+            let message = "the block goes by rapid at an F, and the machine's file does not say how fast an axis is";
+            let help = "add `rapid` in mm/min below [axes]: `X = { rapid = 6000 }`";
+            let error = Diagnostic::error("rapid-feed", message).help(help);
+            errors.push(error.file(block.file.clone()).line(block.line));
+            continue;
+        }
         let Some(known) = machine.words.get(name) else {
             let message = format!("the block places `{name}`, and [words.{name}] is missing");
             let error = Diagnostic::error("word", message);
@@ -156,9 +163,15 @@ fn orientation(machine: &Machine, templates: &Templates) -> Vec<Diagnostic> {
         let cuts = [B::Rapid, B::Linear];
         let placed: Vec<(BlockName, &[WordName])> = match mode {
             OrientationMode::Vectors => cuts.map(|block| (block, &vector[..])).to_vec(),
-            OrientationMode::TiltedPlane => Vec::new(),
-            _ if key == "simultaneous" => cuts.map(|block| (block, &letters[..])).to_vec(),
-            _ => Vec::new(),
+            OrientationMode::MachineAngles | OrientationMode::ToolCenterAngles
+                if key == "simultaneous" =>
+            {
+                cuts.map(|block| (block, &letters[..])).to_vec()
+            }
+            OrientationMode::MachineAngles
+            | OrientationMode::ToolCenterAngles
+            | OrientationMode::TiltedPlane
+            | OrientationMode::Fixed => Vec::new(),
         };
         let turns = (B::Rotate, &letters[..]);
         let placed =
@@ -168,14 +181,10 @@ fn orientation(machine: &Machine, templates: &Templates) -> Vec<Diagnostic> {
             for word in words.iter().filter(|word| !templates.places(block, **word)) {
                 let message =
                     format!("the block `{}` lacks `{}`: {why}", block.name(), word.name());
-                let help = match mode {
-                    OrientationMode::Vectors => format!(
-                        "put {{{{{}}}}} where the control reads it; a control that takes no vectors is given \
-                         \"tool-center-angles\"",
-                        word.name()
-                    ),
-                    _ => format!("put {{{{{}}}}} where the control reads it", word.name()),
-                };
+                let mut help = format!("put {{{{{}}}}} where the control reads it", word.name());
+                if mode == OrientationMode::Vectors {
+                    help += "; a control that takes no vectors is given \"tool-center-angles\"";
+                }
                 let error = Diagnostic::error("missing-word", message).help(help);
                 errors.push(error.file(text.file.clone()).line(text.line));
             }

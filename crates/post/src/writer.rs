@@ -92,8 +92,9 @@ impl Writer {
         if let Some(height) = machine.safe_height {
             writer.set(WordName::SafeHeight, height);
         }
-        let rapids = machine.linear.iter().map(|axis| axis.rapid);
-        writer.set(WordName::RapidFeed, rapids.fold(0.0, f64::max));
+        if let Some(rapid) = machine.linear.iter().filter_map(|axis| axis.rapid).reduce(f64::max) {
+            writer.set(WordName::RapidFeed, rapid);
+        }
         writer.constant = writer.set;
         writer
     }

@@ -194,6 +194,19 @@ fn a_way_to_write_the_tool_axis_that_no_block_writes_is_refused() {
     );
 }
 
+/// A control that keeps one F for cuts and rapids: how fast a rapid goes is not made up.
+#[test]
+fn a_rapid_that_goes_at_an_f_needs_the_speed_of_an_axis() {
+    let found = |axes: &str| {
+        let text = format!("extends = \"marlin\"\nsafe_height = 100\n{axes}");
+        let machine = machine::load_text("mine.toml", &text).unwrap();
+        toolpost_post::check(&machine).map_err(|found| found[0].to_string())
+    };
+    let said = found("").unwrap_err();
+    assert!(said.contains("error[rapid-feed]") && said.contains("[axes]"), "{said}");
+    assert_eq!(found("[axes]\nX = { rapid = 6000 }\n"), Ok(()));
+}
+
 #[test]
 fn a_promise_that_a_file_does_not_keep_is_told_where_the_file_makes_it() {
     let found = |text: &str| {

@@ -440,7 +440,7 @@ fn finish_linear(sheet: &LinearSheet) -> LinearAxis {
     LinearAxis {
         min: sheet.min.map_or(default.min, |mm| mm.0),
         max: sheet.max.map_or(default.max, |mm| mm.0),
-        rapid: sheet.rapid.map_or(default.rapid, |rate| rate.0),
+        rapid: sheet.rapid.map(|rate| rate.0),
         acceleration: sheet.acceleration.map_or(default.acceleration, |rate| rate.0),
     }
 }

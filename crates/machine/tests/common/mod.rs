@@ -6,7 +6,7 @@ use std::collections::BTreeMap;
 use toolpost_machine::*;
 
 pub fn machine(rotary: Vec<RotaryAxis>) -> Machine {
-    let linear = LinearAxis { min: -500.0, max: 500.0, rapid: 30_000.0, acceleration: 5.0 };
+    let linear = LinearAxis { min: -500.0, max: 500.0, rapid: Some(30_000.0), acceleration: 5.0 };
     Machine {
         name: "test".into(),
         file: "test.toml".into(),
