@@ -92,6 +92,9 @@ pub struct Deviations {
     pub axis_degrees: Worst,
     /// Of the tool tip from the path of a cutting move, mm.
     pub path_mm: Worst,
+    /// Of the tool tip, anywhere on the way of a rapid, from the straight way of the source, mm: where it keeps to that way, and
+    /// where it is not beyond all cuts. As the axes really go; what is beyond all cuts may go in any way and does not count.
+    pub rapid_mm: Worst,
 }
 
 /// A largest value and where it is.
@@ -108,9 +111,10 @@ pub struct Worst {
 impl Deviations {
     /// The larger of both.
     pub(crate) fn widen(&mut self, other: &Deviations) {
-        let mine = [&mut self.tip_mm, &mut self.axis_degrees, &mut self.path_mm];
+        let mine =
+            [&mut self.tip_mm, &mut self.axis_degrees, &mut self.path_mm, &mut self.rapid_mm];
         for (mine, Worst { value, source_line, program_line }) in
-            mine.into_iter().zip([other.tip_mm, other.axis_degrees, other.path_mm])
+            mine.into_iter().zip([other.tip_mm, other.axis_degrees, other.path_mm, other.rapid_mm])
         {
             mine.note(value, source_line, program_line);
         }

@@ -101,6 +101,11 @@ pub fn rows(proof: &Report, machine: &Machine) -> Vec<(&'static str, String)> {
         let text = deviation(axis.value, allowed.axis_degrees, "degrees", axis.program_line);
         rows.push(("axis off by", text));
     }
+    let rapid = worst.rapid_mm;
+    if rapid.value > allowed.tip_mm {
+        let corridor = machine.capabilities.rapid_corridor;
+        rows.push(("rapids off by", deviation(rapid.value, corridor, "mm", rapid.program_line)));
+    }
     if machine.path_tolerance() > 0.0 {
         let most = number(machine.path_tolerance(), 5);
         let text = format!("by up to {most} mm where the program lets it, which no proof sees");

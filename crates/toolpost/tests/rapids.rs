@@ -124,6 +124,16 @@ fn a_rapid_that_leans_the_tool_stays_on_the_straight_way() {
     assert!(farthest(&all[start..=end], from, to) < 0.1);
     let swung = farthest(&[all[start], all[end]], from, to);
     assert!((swung - 50.7).abs() < 0.1, "{swung}");
+    // The report measures it as the tip really goes.
+    let report = |text: &str| {
+        let accepted = proof::Accepted::default().and("rapid-path").unwrap();
+        let tolerances = proof::Tolerances { accepted, ..Default::default() };
+        proof::prove(&source, &machine, "p", text.as_bytes(), &tolerances).deviations.rapid_mm
+    };
+    let measured = report(&good);
+    let mine = farthest(&all[start..=end], from, to);
+    assert!((measured.value - mine).abs() < 5e-3, "{measured:?} {mine}");
+    assert!((all[start].0..=all[end].0).contains(&measured.program_line), "{measured:?}");
     // The same in one block.
     let between = |line: u32| line > all[start + 1].0 && line < all[end].0;
     let lines = (1..).zip(good.lines()).filter(|(line, _)| !between(*line));
@@ -131,7 +141,10 @@ fn a_rapid_that_leans_the_tool_stays_on_the_straight_way() {
     bad.remove(all[start + 1].0 as usize - 1);
     let at = all[start + 1].0;
     bad[at as usize - 1] = bad[at as usize - 1].replace(" Y", " G0Y");
-    assert_eq!(refused(&source, &machine, &(bad.join("\n") + "\n")), [("rapid-path", at)]);
+    let bad = bad.join("\n") + "\n";
+    assert_eq!(refused(&source, &machine, &bad), [("rapid-path", at)]);
+    let measured = report(&bad);
+    assert!((measured.value - swung).abs() < 1e-2 && measured.program_line == at, "{measured:?}");
 }
 
 /// The axis of C is 30 mm from the bore: C may not turn on the way down unless X and Y follow.

@@ -41,6 +41,7 @@ impl Prover<'_> {
         let way = Way { gauge: &gauge, straight };
         let is_straight = gauge.machine.has_straight_rapids() && !turns;
         if is_straight && way.holds(&here.place) && way.holds(&to.place) {
+            self.note_rapid(&way, std::iter::once(&to.place), to.line);
             return None;
         }
         let Some(places) = way.places(&here, to) else {
@@ -50,13 +51,31 @@ impl Prover<'_> {
         if along_axis(&gauge, &here, to, &places, &end) {
             return None;
         }
-        let short = self.short_of_clearance(places.iter().filter(|place| !way.holds(place)))?;
+        let (on_way, elsewhere): (Vec<&Place>, Vec<&Place>) =
+            places.iter().partition(|place| way.holds(place));
+        self.note_rapid(&way, on_way.into_iter(), to.line);
+        let short = self.short_of_clearance(elsewhere.iter().copied())?;
+        let slack = self.gauge.slack(&here);
+        let low: Vec<&Place> =
+            elsewhere.into_iter().filter(|place| self.short(place) > slack).collect();
+        self.note_rapid(&way, low.into_iter(), to.line);
         let clearance = Number(gauge.machine.capabilities.rapid_clearance);
         let what = format!(
             "leaves the straight way of the source {} mm short of {clearance} mm beyond all cuts",
             Number(short)
         );
         Some(self.way_refused(to, &what))
+    }
+
+    /// How far these places of a rapid are from the straight way of the source.
+    fn note_rapid<'p>(
+        &mut self,
+        way: &Way,
+        places: impl Iterator<Item = &'p Place>,
+        program_line: u32,
+    ) {
+        let off = places.filter_map(|place| way.beside(place)).fold(0.0, f64::max);
+        self.report.deviations.rapid_mm.note(off, self.cursor.line, program_line);
     }
 
     /// How far a place is along the straight way of a rapid of the source, 0 to 1, where it is on it; and the length of
@@ -87,12 +106,16 @@ impl Prover<'_> {
 
     /// By how much the tool is not the clearance beyond all cuts at the worst of these places, mm.
     fn short_of_clearance<'p>(&mut self, places: impl Iterator<Item = &'p Place>) -> Option<f64> {
+        let worst = places.map(|place| self.short(place)).fold(f64::NEG_INFINITY, f64::max);
+        let slack = self.gauge.slack(&self.here);
+        (worst > slack).then_some(worst)
+    }
+
+    /// How far a place is below the clearance beyond all cuts, along the tool axis there, mm.
+    fn short(&mut self, place: &Place) -> f64 {
         let cuts = *self.cuts.get_or_insert_with(|| CutBox::of(self.source));
         let clearance = self.gauge.machine.capabilities.rapid_clearance;
-        let slack = self.gauge.slack(&self.here);
-        let short = |place: &Place| cuts.reach(place.axis) + clearance - place.tip.dot(place.axis);
-        let worst = places.map(short).fold(f64::NEG_INFINITY, f64::max);
-        (worst > slack).then_some(worst)
+        cuts.reach(place.axis) + clearance - place.tip.dot(place.axis)
     }
 
     fn way_refused(&self, to: &Station, what: &str) -> Diagnostic {
@@ -126,6 +149,12 @@ impl Way<'_> {
         let (_, beside) = nearest_on_segment(from.tip, to.tip, place.tip);
         let off = off_great_circle(from.axis, to.axis, place.axis).to_degrees();
         beside <= corridor && off <= allowed.axis_degrees + allowed.sweep_degrees
+    }
+
+    /// How far a place is from it, mm.
+    fn beside(&self, place: &Place) -> Option<f64> {
+        let (from, to) = self.straight.as_ref()?;
+        Some(nearest_on_segment(from.tip, to.tip, place.tip).1)
     }
 
     /// Places on the way of a block, in all ways that the machine may stand; nothing where it is not known what lies
