@@ -127,6 +127,10 @@ images: rust
 	$(TOOLPOST) --quiet pcb examples/lamp.toml --machine grbl-3018 --tool 0.3 --passes 3 --picture png \
 		--output out/lamp
 	@cp out/lamp/front.png docs/images/board.png
+	$(TOOLPOST) --quiet post examples/lean.cls --machine sinumerik-840d-table-ac --output out/lean.mpf
+	$(TOOLPOST) --quiet show out/lean.mpf --from sinumerik-840d-table-ac --output docs/images/rapid-pieces.png
+	$(TOOLPOST) --quiet show examples/lean-one-block.mpf --from sinumerik-840d-table-ac \
+		--output docs/images/rapid-one-block.png
 
 ## The sample programs beside the machines, written anew: to be read before they are committed.
 samples: rust

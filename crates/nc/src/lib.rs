@@ -30,6 +30,9 @@ use std::collections::BTreeSet;
 /// Most records of a reading, which are kept in memory: a program of a few lines can loop to more.
 const MOST_RECORDS: usize = 20_000_000;
 
+/// Most places of one rapid in a picture.
+const MOST_PLACES: f64 = 1440.0;
+
 /// A step that may be refused.
 type Done = Result<(), Box<Diagnostic>>;
 
@@ -113,6 +116,34 @@ pub fn read(
         records.remove(first);
     }
     Ok(reading)
+}
+
+/// The same for a picture: a rapid that turns rotary axes without tool-centre control is as many as its tip takes to be seen where
+/// it really goes, all axes going together.
+///
+/// # Errors
+/// As [`read`].
+pub fn read_swinging(
+    machine: &Machine,
+    setup: Setup,
+    file_name: &str,
+    text: &[u8],
+) -> Result<Program, Box<Diagnostic>> {
+    let settings = settings(machine, setup)?;
+    let keep = &mut |records: &mut Vec<Record>, record, _| records.push(record);
+    let mut lift = Lift::new(machine, &settings.setup, file_name, keep);
+    let mut before: Option<Position> = None;
+    let run = control::read(&settings, file_name, text, &mut |event| {
+        let line = event.line;
+        let told = |found: Box<Diagnostic>| found.line(line).into();
+        if let (Action::Rapid(to), Some(from)) = (&event.action, before) {
+            lift.swing(line, &from, to).map_err(told)?;
+        }
+        before = event.action.position().copied().or(before);
+        lift.event(event).map_err(told)
+    });
+    run.map_err(|found| way_out(machine, found))?;
+    Ok(lift.program)
 }
 
 /// The same for a caller that has a hand in how the records are kept, as they come. Answers besides whether
@@ -411,6 +442,29 @@ impl<'a> Lift<'a> {
             Action::End => {
                 self.ended = true;
                 self.push(line, Op::End);
+            }
+        }
+        Ok(())
+    }
+
+    /// Places of a rapid on which rotary axes turn that the tip does not follow, a degree apart.
+    fn swing(&mut self, line: u32, from: &Position, to: &Position) -> Done {
+        let (
+            Orientation::Rotary { degrees: a, tool_center: false },
+            Orientation::Rotary { degrees: b, tool_center: false },
+        ) = (from.orientation, to.orientation)
+        else {
+            return Ok(());
+        };
+        let turn = (0..3).map(|i| f64::abs(b[i] - a[i])).fold(0.0, f64::max);
+        let places = turn.ceil().min(MOST_PLACES);
+        for i in 1..places as u32 {
+            let part = f64::from(i) / places;
+            let degrees = std::array::from_fn(|k| a[k] + (b[k] - a[k]) * part);
+            let orientation = Orientation::Rotary { degrees, tool_center: false };
+            let place = Position { point: from.point.lerp(to.point, part), orientation };
+            if let Some(pose) = self.spot(&place).pose() {
+                self.arrive(line, Op::Rapid(pose))?;
             }
         }
         Ok(())

@@ -23,7 +23,9 @@ pub fn run(args: &Show, silent: bool) -> Result<Answer, Stop> {
     let shape = Shape::of(&toolpath.program);
     if let Some((target, format)) = target {
         progress.step("drawing");
-        let picture = format.bytes(drawing::tool_path(&toolpath.file, &toolpath.program))?;
+        let swinging = toolpath::swinging(path, &args.source.origin)?;
+        let program = swinging.as_ref().unwrap_or(&toolpath.program);
+        let picture = format.bytes(drawing::tool_path(&toolpath.file, program))?;
         target.spare(&toolpath.files())?;
         files::save(&[(&target, &picture)])?;
     }

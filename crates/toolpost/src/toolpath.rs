@@ -185,6 +185,21 @@ fn read_by(
     })
 }
 
+/// The NC program of a machine with rotary axes as a picture shows it: the tip goes by rapid where the axes take it.
+///
+/// # Errors
+/// As [`read`].
+pub fn swinging(path: &Path, origin: &Origin) -> Result<Option<Program>, Stop> {
+    let Some(from) = origin.from.as_deref().filter(|_| !fcstd::is(path)) else { return Ok(None) };
+    let machine = machine::load_origin(from)?;
+    let bytes = files::read(path)?;
+    if machine.rotary.is_empty() || Job::begins(&bytes) {
+        return Ok(None);
+    }
+    let program = nc::read_swinging(&machine, origin.setup()?, &files::name(path), &bytes)?;
+    Ok(Some(program))
+}
+
 /// The warnings; with `strict` they stop the command.
 pub(crate) fn held(warnings: Vec<Diagnostic>, strict: bool) -> Result<Vec<Diagnostic>, Stop> {
     if !strict || warnings.is_empty() {

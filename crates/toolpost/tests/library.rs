@@ -50,7 +50,7 @@ fn the_sample_program_of_each_machine_is_as_it_was_read() {
 
 /// The files whose tool axis turns, or points elsewhere than up.
 const TILTED: &[&str] =
-    &["dome.cls", "Sacrifice-Board.apt", "Teste-Metrologia.apt", "shimemcunha.apt"];
+    &["dome.cls", "lean.cls", "Sacrifice-Board.apt", "Teste-Metrologia.apt", "shimemcunha.apt"];
 
 /// What a machine cannot make, and why: the rule by which it refuses. Everything else is proven.
 const REFUSED: &[(&str, &[&str], &str)] = &[
@@ -85,7 +85,7 @@ const REFUSED: &[(&str, &[&str], &str)] = &[
     ("mach3-mill", &["SupPetriLED.apt", "coremill.cls"], "axis-limit"),
     ("mach3-mill", &["Sacrifice-Board.apt"], "feed-range"),
     // No coolant, 45 mm in Z, 10,000 1/min.
-    ("grbl-3018", &["coremill.cls", "plate.cls"], "axis-limit"),
+    ("grbl-3018", &["coremill.cls", "lean.cls", "plate.cls"], "axis-limit"),
     ("grbl-3018", &["Dem-target1.apt", "Dem-target2.apt"], "spindle-range"),
     ("grbl-3018", &["shimemcunha.apt"], "unreachable-orientation"),
     (
@@ -105,6 +105,7 @@ const REFUSED: &[(&str, &[&str], &str)] = &[
     // A small mill: 5000 1/min, ten tools, 150 mm in Y.
     ("emco-", &["dome.cls", "plate.cls", "Teste-Metrologia.apt"], "spindle-range"),
     ("emco-", &["coremill.cls"], "axis-limit"),
+    ("emco-", &["lean.cls"], "unreachable-orientation"),
     (
         "emco-",
         &[

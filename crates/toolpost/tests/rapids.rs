@@ -147,6 +147,28 @@ fn a_rapid_that_leans_the_tool_stays_on_the_straight_way() {
     assert!((measured.value - swung).abs() < 1e-2 && measured.program_line == at, "{measured:?}");
 }
 
+/// The example of docs/proof.md, as `show` draws it: in one block the tip comes 50.7 mm below Z 5, in pieces it stays there.
+#[test]
+fn a_picture_shows_where_the_axes_take_the_tip_by_rapid() {
+    let machine = load("sinumerik-840d-table-ac").unwrap();
+    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/");
+    let example = |name: &str| std::fs::read_to_string(format!("{root}{name}")).unwrap();
+    let source = read(&example("lean.cls"));
+    let (good, bad) = (text(&written(&source, &machine)), example("lean-one-block.mpf"));
+    assert_eq!(refused(&source, &machine, &bad)[0].0, "rapid-path");
+    let lowest = |text: &str| {
+        let program =
+            nc::read_swinging(&machine, Default::default(), "p", text.as_bytes()).unwrap();
+        let rapids = program.records.iter().filter_map(|record| match &record.op {
+            program::Op::Rapid(pose) => Some(pose.point().z),
+            _ => None,
+        });
+        rapids.fold(f64::INFINITY, f64::min)
+    };
+    assert!((lowest(&bad) - (5.0 - 50.7)).abs() < 0.1, "{}", lowest(&bad));
+    assert!((lowest(&good) - 5.0).abs() < 0.1, "{}", lowest(&good));
+}
+
 /// The axis of C is 30 mm from the bore: C may not turn on the way down unless X and Y follow.
 #[test]
 fn a_rapid_down_a_bore_keeps_to_the_bore_while_the_table_turns() {

@@ -20,7 +20,7 @@ pub fn sources() -> Vec<PathBuf> {
         files.extend(entries.map(|entry| entry.unwrap().path()).filter(|path| path.is_file()));
     }
     // Our examples have NC programs, a tool table, a job of FreeCAD's and a board among them.
-    let others = ["nc", "tbl", "json", "toml"];
+    let others = ["nc", "mpf", "tbl", "json", "toml"];
     files.retain(|file| file.extension().is_none_or(|ending| others.iter().all(|o| ending != *o)));
     files.sort();
     files
