@@ -22,7 +22,7 @@ const ACCEPTED: &[&str] = &[
 ];
 
 /// How many jobs there are, and how many with `TOOLPOST_JUDGES=long`.
-const JOBS: [u64; 2] = [240, 4_000];
+const JOBS: [u64; 2] = [240, 2_000];
 
 /// SplitMix64: the same numbers everywhere.
 struct Dice(u64);
@@ -260,5 +260,8 @@ fn each_wire_job_is_made_and_proven_or_refused_with_a_way_out() {
     }
     eprintln!("{outcomes:?}");
     assert!(failed.is_empty(), "{} jobs fail:\n{}", failed.len(), failed.join("\n"));
-    assert!(outcomes["made"] * 2 > JOBS[usize::from(long)], "{outcomes:?}");
+    // At once, or with the lead that the refusal names.
+    let made = outcomes.iter().filter(|(how, _)| how.ends_with("made"));
+    let made: u64 = made.map(|(_, count)| count).sum();
+    assert!(made * 2 > JOBS[usize::from(long)], "{outcomes:?}");
 }
