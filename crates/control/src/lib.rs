@@ -106,6 +106,12 @@ impl Dialect {
         }
     }
 
+    /// Whether compensation with a tool of the table is resolved into the path of its centre; with the others such a program is
+    /// refused, since how they lead it is not documented well enough.
+    pub fn resolves_compensation(self) -> bool {
+        compensation::Rules::of(self).is_some()
+    }
+
     /// How a program for this control ends.
     pub fn ending(self) -> Ending {
         match self {

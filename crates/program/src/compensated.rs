@@ -121,7 +121,7 @@ struct Search {
 impl Search {
     fn take(&mut self, line: u32, op: &Op) {
         match op {
-            Op::Tool(tool) => self.radius = cutting_radius(tool),
+            Op::Tool(tool) => self.radius = tool.cutting_radius(),
             Op::Compensation(compensation) => {
                 let side = match compensation {
                     Compensation::Off => 0.0,
@@ -232,9 +232,11 @@ impl Search {
     }
 }
 
-/// The radius with which a tool cuts aside, mm, where it is known and the same at every depth.
-fn cutting_radius(tool: &Tool) -> Option<f64> {
-    tool.diameter.filter(|_| !tool.tapered).map(|diameter| diameter / 2.0)
+impl Tool {
+    /// The radius with which it cuts aside, mm, where that is known and the same at every depth.
+    pub fn cutting_radius(&self) -> Option<f64> {
+        self.diameter.filter(|_| !self.tapered).map(|diameter| diameter / 2.0)
+    }
 }
 
 /// The source is two things at once.

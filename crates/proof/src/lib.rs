@@ -3,7 +3,8 @@
 //! The text is run on the virtual control of its dialect; every pose goes through the machine's forward
 //! kinematics into the work frame and is compared there with the source: tool tip, tool axis, arcs,
 //! order, rapid or feed, feed, spindle, coolant, tool, compensation, dwell. The control's records are
-//! compared as they come and not kept, so memory does not grow with the program. A coordinate that no
+//! compared as they come and not kept, but for the contours of a program with compensation, which are compared a second time as the
+//! control leads the centres of the source's tools along them. A coordinate that no
 //! block has set is not equal to anything.
 //!
 //! # What is accepted
@@ -62,6 +63,7 @@ pub use report::{
 };
 pub use tolerance::{Applied, Tolerances};
 
+use compensation::resolved;
 use control::Setup;
 use machine::Machine;
 use program::{Diagnostic, Program};
@@ -142,7 +144,11 @@ fn prove_on(
     tolerances: &Tolerances,
 ) -> Report {
     let mut prover = Prover::new(source, machine, tolerances);
-    let run = match nc::settings(machine, setup) {
+    let resolved = compensation::is_resolved(source, machine);
+    if resolved == Ok(true) {
+        prover.keep_trail();
+    }
+    let run = match nc::settings(machine, setup.clone()) {
         Ok(settings) => {
             control::read(&settings, file_name, text, &mut |event| prover.event(&event))
         }
@@ -151,7 +157,19 @@ fn prove_on(
     if let Err(found) = run {
         prover.refused(*found);
     }
+    let (gauge, stretches) = prover.stretches();
     let mut report = prover.finish();
+    if report.proven {
+        match resolved {
+            Ok(_) if stretches.is_empty() => {}
+            Ok(_) => {
+                let program = (file_name, text);
+                resolved::compare(source, setup, program, gauge, &stretches, &mut report);
+                report.proven = report.mismatches.is_empty();
+            }
+            Err(found) => report.warn(*found),
+        }
+    }
     report.quote(file_name, text);
     report
 }

@@ -81,6 +81,8 @@ pub struct Compared {
     pub tool_changes: usize,
     /// Excursions of the program.
     pub excursions: usize,
+    /// Contours beside which the control leads the centre of the source's tool as it has to.
+    pub contours: usize,
 }
 
 /// The largest deviations of the program from the source.

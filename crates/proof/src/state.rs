@@ -325,7 +325,7 @@ pub(crate) fn same_tool(source: &Tool, block: &Tool) -> bool {
 }
 
 /// A name without what a control does not take in a tool name.
-fn plain(name: &str) -> String {
+pub(crate) fn plain(name: &str) -> String {
     name.chars().map(|c| if c.is_ascii_alphanumeric() { c } else { '_' }).collect()
 }
 

@@ -91,6 +91,13 @@ pub fn rows(proof: &Report, machine: &Machine) -> Vec<(&'static str, String)> {
     let compared = &proof.compared;
     let moves = compared.rapids + compared.lines + compared.arcs + compared.holes;
     rows.push(("proof", format!("all {moves} moves are those of the toolpath")));
+    if compared.contours > 0 {
+        let text = format!(
+            "{}, beside each of which the control leads the tool as it has to",
+            compared.contours
+        );
+        rows.push(("contours", text));
+    }
     let deviation = |value: f64, allowed: f64, unit: &str, line: u32| {
         let place = if line > 0 { format!(" (line {line})") } else { String::new() };
         format!("{} {unit} at most{place}; {} allowed", number(value, 5), number(allowed, 5))

@@ -17,8 +17,7 @@ use geom::Vec3;
 use leaving::Leaving;
 use path::Path;
 use program::{Axes, Compensation, Diagnostic, Feed};
-pub(crate) use rules::Outer;
-use rules::Rules;
+pub(crate) use rules::{Outer, Rules};
 
 type Fallible<T> = Result<T, Box<Diagnostic>>;
 

@@ -5,7 +5,7 @@ use std::f64::consts::PI;
 
 /// What a control does with a contour.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Rules {
+pub(crate) struct Rules {
     pub entry: Entry,
     pub outer: Outer,
     /// Elements that turn by no more than this, radians, join without a corner; so near to a half turn
@@ -21,7 +21,7 @@ pub(super) struct Rules {
 
 /// Where the move that switches compensation on ends.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Entry {
+pub(crate) enum Entry {
     /// Across the end of the move itself, which counts as the first element of the contour.
     OfItself,
     /// Across the start of the next element.
@@ -49,7 +49,7 @@ impl Outer {
 
 impl Rules {
     /// Those of `dialect`; none where it has no compensation.
-    pub(super) fn of(dialect: Dialect) -> Option<Rules> {
+    pub(crate) fn of(dialect: Dialect) -> Option<Rules> {
         let rules = Rules {
             entry: Entry::OfNext,
             outer: Outer::Arc,

@@ -9,6 +9,8 @@ mod travel;
 mod way;
 
 use crate::accepted::Accepted;
+use crate::compensation::Part;
+use crate::compensation::trail::{Piece, Stretch, Terms, Trail};
 use crate::expected::{Cursor, Goal, Kind, Step};
 use crate::gauge::Gauge;
 use crate::hole::{Drilled, Hole, Run};
@@ -40,6 +42,8 @@ pub struct Prover<'a> {
     running: Running,
     /// Compensation of the source as far as moves have switched it.
     compensation: Compensation,
+    /// The stretches in which the program compensates, where they are wanted.
+    trail: Option<Trail>,
     here: Station,
     /// Where the rotary axes stand.
     standing: Standing<'a>,
@@ -104,6 +108,7 @@ impl<'a> Prover<'a> {
             cursor,
             running: Running::at_reset(machine),
             compensation: Compensation::Off,
+            trail: None,
             leg: Leg::default(),
             report: Report { tolerances: allowed, ..Report::default() },
             accepted: tolerances.accepted,
@@ -115,6 +120,16 @@ impl<'a> Prover<'a> {
         prover
     }
 
+    /// Keeps the stretches in which the program compensates.
+    pub(crate) fn keep_trail(&mut self) {
+        self.trail = Some(Trail::default());
+    }
+
+    /// Those stretches, and what places in them need.
+    pub(crate) fn stretches(&mut self) -> (Gauge<'a>, Vec<Stretch>) {
+        (self.gauge, self.trail.take().map_or_else(Vec::new, Trail::finish))
+    }
+
     /// The next event of the program.
     ///
     /// # Errors
@@ -123,6 +138,7 @@ impl<'a> Prover<'a> {
         if self.lost {
             return Ok(());
         }
+        self.follow(event);
         let outcome = self.take(event);
         if let Err(found) = &outcome {
             self.lost = true;
@@ -163,6 +179,25 @@ impl<'a> Prover<'a> {
             self.lost = true;
             self.report.mismatch(self.cursor.line, found);
         }
+    }
+
+    /// Keeps a move where the stretches with compensation are wanted.
+    fn follow(&mut self, event: &Event) {
+        let Some(trail) = &mut self.trail else { return };
+        let (position, arc) = match Part::of(&event.action) {
+            Part::Move(position, arc) => (position, arc),
+            Part::End => return trail.close(),
+            Part::Side(_) | Part::Other => return,
+        };
+        let to = self.gauge.station(event.line, *position);
+        let arc = arc.and_then(|arc| arc::of_block(&self.gauge, &self.here, arc));
+        let terms = Terms {
+            source_line: self.cursor.line,
+            side: self.running.compensation,
+            radius: self.cursor.wanted.tool.and_then(Tool::cutting_radius),
+            tool_length: self.gauge.tool_length,
+        };
+        trail.moved(terms, Piece { line: event.line, from: self.here.place, to: to.place, arc });
     }
 
     fn take(&mut self, event: &Event) -> Outcome {
