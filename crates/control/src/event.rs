@@ -63,9 +63,9 @@ pub enum Action {
     /// spindle. A position is NaN where the block does not say that (an active tool length is part of it). Where
     /// they stand afterwards in the work, only the machine knows.
     MachineMove(Box<MachineMove>),
-    /// The control turns the rotary axes to its tilted plane, by a solution of its own; the linear axes stand still.
-    /// Where the tool then stands in the work, only the machine knows.
-    Swivel,
+    /// The control turns the rotary axes to its tilted plane, by a solution that it chooses itself; the linear axes stand
+    /// still. Where the tool then stands in the work, only the machine knows.
+    Swivel(TiltChoice),
     /// The hole cycle for the [`Action::Hole`]s that follow.
     Cycle(Box<Cycle>),
     /// End of the hole cycle.
@@ -119,6 +119,26 @@ pub enum Action {
     Message(Box<str>),
     /// End of the program.
     End,
+}
+
+/// By which rule a control takes one of the two solutions (positions of the rotary axes) for a tilted plane.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum TiltChoice {
+    /// FANUC `G53.1`: the one whose first rotary axis turns least, of those that are alike the one whose second does, then
+    /// the one whose first and whose second stand nearest to 0°. On a machine with one axis in the head and one in the
+    /// table the table counts first. Parameters 19608#5 (the second axis first) and 19741 to 19744 (within a range)
+    /// change it.
+    LeastTurn,
+    /// HEIDENHAIN `PLANE` without `SEQ`: of those within the travel the one with the shorter way.
+    ShorterWithin,
+    /// HEIDENHAIN `SEQ+` (`true`), `SEQ-`: of those within the travel the one whose main rotary axis is positive, or
+    /// negative; an error where there is none.
+    Sequence(bool),
+    /// HEIDENHAIN `SYM+`, `SYM-`: of those within the travel one, on a side of a point that the machine's builder has set.
+    Symmetry,
+    /// SINUMERIK `CYCLE800` with `_DIR` 1 (`true`) or -1: of those within the travel the one with the higher, or lower,
+    /// position of the rotary axis that the swivel data set refers to.
+    Higher(bool),
 }
 
 /// What may do harm although the motion is known: a state that hangs on a setting of the control or on its operator, or
@@ -312,7 +332,7 @@ impl Action {
             Action::Probe(_)
             | Action::Home(_)
             | Action::MachineMove(_)
-            | Action::Swivel
+            | Action::Swivel(_)
             | Action::Cycle(_)
             | Action::CycleOff
             | Action::Feed(_)

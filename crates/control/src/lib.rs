@@ -24,7 +24,7 @@ pub mod tools;
 mod way;
 
 use compensation::Compensator;
-pub use event::{Action, ArcTo, Event, Orientation, Position, Risk, Thread};
+pub use event::{Action, ArcTo, Event, Orientation, Position, Risk, Thread, TiltChoice};
 pub use folders::Folders;
 use geom::Vec3;
 use iso::Flavor;

@@ -7,7 +7,7 @@ use geom::Vec3;
 use program::{
     Axes, Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, PathMode, Spindle, WorkOffset,
 };
-use toolpost_control::{Action, ArcTo, Dialect, Orientation, Position, Settings};
+use toolpost_control::{Action, ArcTo, Dialect, Orientation, Position, Settings, TiltChoice};
 
 const FANUC: Dialect = Dialect::Fanuc;
 const LINUXCNC: Dialect = Dialect::LinuxCnc;
@@ -635,7 +635,7 @@ fn a_tilted_plane_turns_about_z_then_new_x_then_newest_z() {
     // J90 alone turns Z to -Y and Y to Z; I90 before it turns X to Y.
     let got =
         ops(FANUC, "G68.2 X10. Y20. Z30. I90. J90. K0\nG53.1\nG0 X1. Y2. Z3.\nG69\nG0 X0 Y0 Z0\n");
-    assert_eq!(got[0], Action::Swivel);
+    assert_eq!(got[0], Action::Swivel(TiltChoice::LeastTurn));
     let Action::Rapid(pose) = &got[1] else { panic!("{got:?}") };
     // X of the plane is Y, its Z is X, so its Y is Z.
     assert!(pose.point.distance(Vec3::new(10.0 + 3.0, 20.0 + 1.0, 30.0 + 2.0)) < 1e-12, "{pose:?}");

@@ -8,7 +8,7 @@ use program::{
     Axes, Compensation, Coolant, Cycle, CycleKind, Diagnostic, Feed, MachineMove, PathMode,
     Spindle, WorkOffset,
 };
-use toolpost_control::{Action, Orientation, Position, Setup};
+use toolpost_control::{Action, Orientation, Position, Setup, TiltChoice};
 
 #[test]
 fn an_ordinary_program_runs_block_by_block() {
@@ -434,6 +434,27 @@ L X+5",
     assert!((axis.y / axis.x + 0.8764339 / 0.0078922).abs() < 1e-9 && axis.is_normalized());
     assert_eq!(refused_five("LN X+1 Y+2 Z+3 TX+0 TY+0 TZ+1 F10").rule, "tool-center");
     assert_eq!(refused_five("M128\nLN X+1 Y+2 Z+3 TX+0 TY+0 TZ+0 F10").rule, "zero-vector");
+}
+
+/// 530 p. 472, 620 p. 556: `SEQ` names the sign of the main rotary axis, and without it the control takes the shorter way.
+#[test]
+fn a_plane_says_which_solution_the_control_takes() {
+    for (says, expected) in [
+        ("TURN FMAX", Some(TiltChoice::ShorterWithin)),
+        ("TURN FMAX SEQ+", Some(TiltChoice::Sequence(true))),
+        ("SEQ- TURN MB MAX FMAX", Some(TiltChoice::Sequence(false))),
+        ("MOVE DIST50 F1000 SYM- TABLE ROT", Some(TiltChoice::Symmetry)),
+        ("STAY", None),
+    ] {
+        let ops = run_five(&format!("PLANE SPATIAL SPA+45 SPB+0 SPC+0 {says}"));
+        let chosen = ops.iter().find_map(|op| match op {
+            Action::Swivel(choice) => Some(*choice),
+            _ => None,
+        });
+        assert_eq!(chosen, expected, "{says}");
+    }
+    let twice = refused_five("PLANE SPATIAL SPA+45 SPB+0 SPC+0 TURN FMAX SEQ+ SEQ-");
+    assert_eq!(twice.rule, "unknown-word");
 }
 
 #[test]

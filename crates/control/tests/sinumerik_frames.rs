@@ -5,7 +5,7 @@ mod common;
 use common::sinumerik::{blocks, degrees, near, points, poses, v};
 use program::Axes;
 use std::f64::consts::FRAC_1_SQRT_2;
-use toolpost_control::{Action, Orientation};
+use toolpost_control::{Action, Orientation, TiltChoice};
 
 /// The tool axis and the point X1 Y2 Z3 in the plane of a `CYCLE800` with these arguments.
 fn swivelled(arguments: &str) -> (geom::Vec3, geom::Vec3) {
@@ -133,4 +133,14 @@ fn an_arc_in_a_swivelled_plane_lies_in_that_plane() {
     near(arc.center, v(10.0, 0.0, 0.0));
     // -Z of the plane is +Y of the work frame.
     near(arc.normal, v(0.0, 1.0, 0.0));
+}
+
+/// Operating manual, "Direction (minus/plus)": the lower or the higher position of the axis of the swivel data set.
+#[test]
+fn the_direction_of_cycle800_chooses_the_solution() {
+    for (direction, is_higher) in [(-1, false), (1, true)] {
+        let ops = blocks(&format!("CYCLE800(0,\"\",0,57,0,0,0,30,0,0,0,0,0,{direction},0)"));
+        let chosen = Action::Swivel(TiltChoice::Higher(is_higher));
+        assert!(ops.contains(&chosen), "{direction}: {ops:?}");
+    }
 }

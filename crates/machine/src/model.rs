@@ -99,6 +99,12 @@ pub struct ControlSettings {
     pub rapid_path: Option<RapidPath>,
     /// What the tool table keeps as the radius of a tool.
     pub tool_radius: Option<ToolRadius>,
+    /// Letter of the rotary axis to which `_DIR` of `CYCLE800` refers (SINUMERIK, `$TC_CARR37`).
+    pub swivel_direction: Option<char>,
+    /// Whether `G53.1` compares the turns of the second rotary axis first (FANUC parameter 19608#5).
+    pub tilt_second_axis_first: Option<bool>,
+    /// Whether `G53.1` takes only positions within the travel of the rotary axes (FANUC parameters 19741 to 19744).
+    pub tilt_within_travel: Option<bool>,
 }
 
 /// The M functions by which programs switch the kinematics of a LinuxCNC (`switchkins`).

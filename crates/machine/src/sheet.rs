@@ -115,6 +115,9 @@ sheet!(merged SettingsSheet "settings" {
     sets_work_offsets: bool, "", "Whether programs write the work offsets that their source writes (G10 L2): the shop sets its fixtures so, and not by the operator.";
     tip_kinematics: u32, "", "M function that switches a LinuxCNC to the kinematics that follow the tip (switchkins): X, Y and Z are then the tip in the turned work.";
     axis_kinematics: u32, "", "M function that switches a LinuxCNC back to the kinematics of the axes themselves.";
+    swivel_direction: char, "", "Letter of the rotary axis to which _DIR of CYCLE800 refers: SINUMERIK, direction reference of the swivel data set ($TC_CARR37).";
+    tilt_second_axis_first: bool, "", "Whether G53.1 compares the turns of the second rotary axis before those of the first, where it chooses between two solutions: FANUC parameter 19608#5 is 1.";
+    tilt_within_travel: bool, "", "Whether G53.1 takes only rotary positions within the travel of this file: FANUC parameters 19741 to 19744 hold it.";
     rotary_by_sign: bool, "", "Whether the sign of a rotary word is the direction of an axis that rolls over: FANUC parameter 1008#1 is 1.";
 });
 

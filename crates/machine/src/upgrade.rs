@@ -95,6 +95,33 @@ pub fn missing(machine: &Machine) -> Vec<Missing> {
             "what the tool table keeps: the radius of the tool, or \"wear\", its difference from the tool of the toolpath; contours with compensation need it",
         );
     }
+    let tilts =
+        [orientation.simultaneous, orientation.positioned].contains(&OrientationMode::TiltedPlane);
+    if tilts && machine.reader == "fanuc" && machine.settings.tilt_within_travel.is_none() {
+        lacks(
+            "[settings]".into(),
+            "tilt_within_travel = true",
+            "parameters 19741 to 19744: true where they hold the travel of the rotary axes; which solution G53.1 takes hangs on it",
+        );
+    }
+    if tilts && machine.reader == "fanuc" && machine.settings.tilt_second_axis_first.is_none() {
+        lacks(
+            "[settings]".into(),
+            "tilt_second_axis_first = false",
+            "parameter 19608#5: true where it is 1; which solution G53.1 takes hangs on it",
+        );
+    }
+    if let Some(axis) = machine.rotary.first()
+        && tilts
+        && is_sinumerik
+        && machine.settings.swivel_direction.is_none()
+    {
+        lacks(
+            "[settings]".into(),
+            &format!("swivel_direction = \"{}\"", axis.letter),
+            "direction reference of the swivel data set ($TC_CARR37): the axis whose lower or higher position _DIR of CYCLE800 takes",
+        );
+    }
     let rolls_over = machine.rotary.iter().any(|axis| axis.modulo != Some(false));
     if machine.reader == "fanuc" && rolls_over && machine.settings.rotary_by_sign.is_none() {
         lacks(

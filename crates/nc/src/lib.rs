@@ -413,7 +413,7 @@ impl<'a> Lift<'a> {
             Action::WorkOffset(offset) => self.set_work_offset(line, offset),
             Action::WorkOffsetData(data) => self.push(line, Op::WorkOffsetData(data)),
             // The moves behind it say where the tool goes.
-            Action::Swivel => {}
+            Action::Swivel(_) => {}
             Action::CycleOff => self.push(line, Op::CycleOff),
             Action::Feed(feed) => self.push(line, Op::Feed(feed)),
             Action::Spindle(spindle) => self.push(line, Op::Spindle(spindle)),

@@ -53,6 +53,7 @@ mod report;
 mod state;
 mod stops;
 mod surfaces;
+mod tilt;
 mod tolerance;
 mod travel;
 

@@ -10,9 +10,10 @@
 //! between two poses of the same tool are right all the same.
 
 use crate::gauge::Gauge;
-use control::{Orientation, Position};
+use crate::tilt::{self, Degrees};
+use control::{Orientation, Position, TiltChoice};
 use geom::Vec3;
-use machine::{Inverse, Machine, Solutions, Unsaid};
+use machine::{Inverse, Machine, Unsaid};
 
 /// Positions of the axes of the machine; NaN where they are not known.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -50,28 +51,24 @@ impl Gauge<'_> {
     }
 }
 
-/// Positions at which an axis that is free in a singular pose may stand, as parts of a turn.
-const FREE_POSITIONS: u32 = 32;
-
-/// Turns that differ by less, degrees, are as long as each other.
-const SAME_TURN: f64 = 0.01;
-
 /// Where the rotary axes stand, as far as the program lets it be known.
 ///
 /// A block that says their positions leaves no question. Of a vector the control takes the solution that is the nearest
-/// to where the axes stand; of a tilted plane, and of a vector behind an unknown place, each solution within the travel is
-/// possible.
+/// to where the axes stand, behind an unknown place any that is within the travel; of a tilted plane those that its rule
+/// of choice allows ([`tilt`](crate::tilt)).
 pub(crate) struct Standing<'a> {
     machine: &'a Machine,
     inverse: Inverse<'a>,
     /// Degrees of A, B, C; several where it is not known which the control has taken, none where nothing is known.
-    angles: Vec<[f64; 3]>,
+    angles: Vec<Degrees>,
     /// The tool axis that they give, where the program has said that.
     axis: Option<Vec3>,
-    /// Whether the control is about to turn to a tilted plane by a choice of its own.
-    swivels: bool,
+    /// How the control is about to turn to a tilted plane.
+    swivels: Option<TiltChoice>,
+    /// How it has turned to the one in which it is.
+    choice: Option<TiltChoice>,
     /// Angles of the block looked at, and the tool axis for which they were worked out.
-    next: Vec<[f64; 3]>,
+    next: Vec<Degrees>,
     next_axis: Option<Vec3>,
 }
 
@@ -83,15 +80,21 @@ impl<'a> Standing<'a> {
             inverse: Inverse::of(machine),
             angles: Vec::new(),
             axis: None,
-            swivels: false,
+            swivels: None,
+            choice: None,
             next: Vec::new(),
             next_axis: None,
         }
     }
 
     /// The control turns the axes to a tilted plane.
-    pub fn swivel(&mut self) {
-        (self.swivels, self.axis, self.next_axis) = (true, None, None);
+    pub fn swivel(&mut self, choice: TiltChoice) {
+        (self.swivels, self.axis, self.next_axis) = (Some(choice), None, None);
+    }
+
+    /// What a person can do where several positions are possible.
+    pub fn way_out(&self) -> Option<&'static str> {
+        tilt::way_out(self.machine, self.swivels.or(self.choice)?)
     }
 
     /// The axes stand where nobody knows.
@@ -101,14 +104,14 @@ impl<'a> Standing<'a> {
     }
 
     /// Degrees of A, B, C where the axes stand.
-    pub fn here(&self) -> &[[f64; 3]] {
+    pub fn here(&self) -> &[Degrees] {
         &self.angles
     }
 
     /// Degrees of A, B, C for a block that goes to `orientation` from here: several where each is possible, none where
     /// nothing is known.
     #[inline]
-    pub fn at(&mut self, orientation: &Orientation) -> &[[f64; 3]] {
+    pub fn at(&mut self, orientation: &Orientation) -> &[Degrees] {
         match *orientation {
             Orientation::Rotary { degrees, .. } => {
                 self.next.clear();
@@ -132,7 +135,7 @@ impl<'a> Standing<'a> {
             Orientation::Rotary { .. } => self.axis = None,
         }
         std::mem::swap(&mut self.angles, &mut self.next);
-        (self.swivels, self.next_axis) = (false, None);
+        (self.choice, self.next_axis) = (self.swivels.take(), None);
     }
 
     /// Finds where the axes may stand with the tool along `axis`.
@@ -144,82 +147,23 @@ impl<'a> Standing<'a> {
             return;
         }
         let Ok(solutions) = self.inverse.solve(axis) else { return };
-        let is_known = |angles: &[f64; 3]| angles.iter().all(|degrees| degrees.is_finite());
-        if !self.swivels && !self.angles.is_empty() && self.angles.iter().all(is_known) {
-            for from in &self.angles {
-                let nearest = nearest(self.machine, from, &solutions);
-                self.next.extend(nearest.into_iter().flatten());
-            }
+        if let Some(choice) = self.swivels {
+            tilt::take(self.machine, choice, &self.angles, &solutions, &mut self.next);
             return;
         }
-        self.next.extend(all(solutions).map(|angles| within_travel(self.machine, angles)));
-        if self.next.iter().any(|angles| is_within_travel(self.machine, angles)) {
-            self.next.retain(|angles| is_within_travel(self.machine, angles));
+        let is_known =
+            !self.angles.is_empty() && self.angles.iter().flatten().all(|at| at.is_finite());
+        if !is_known {
+            self.next.extend(tilt::all(self.machine, &solutions));
+            tilt::keep_within(self.machine, &mut self.next);
+            return;
         }
-    }
-}
-
-/// The solutions to which the axes turn least from `from`; a free axis stands still.
-fn nearest(machine: &Machine, from: &[f64; 3], solutions: &Solutions) -> [Option<[f64; 3]>; 2] {
-    let ways = solutions.degrees.map(|mut degrees| {
-        if let Some(free) = solutions.free {
-            degrees[free] = from[free];
-        }
-        let mut turn = 0f64;
-        for axis in &machine.rotary {
-            let i = axis.index();
-            let way = degrees[i] - from[i];
-            let way = way - 360.0 * (way / 360.0).round();
-            degrees[i] = from[i] + way;
-            turn = turn.max(way.abs());
-        }
-        (degrees, turn)
-    });
-    let least = ways[0].1.min(ways[1].1);
-    let mut taken = ways.map(|(degrees, turn)| (turn <= least + SAME_TURN).then_some(degrees));
-    if taken[0] == taken[1] {
-        taken[1] = None;
-    }
-    taken
-}
-
-/// All solutions, with a free axis anywhere.
-fn all(solutions: Solutions) -> impl Iterator<Item = [f64; 3]> {
-    let count = if solutions.degrees[0] == solutions.degrees[1] { 1 } else { 2 };
-    let stands = if solutions.free.is_some() { FREE_POSITIONS } else { 1 };
-    solutions.degrees.into_iter().take(count).flat_map(move |degrees| {
-        (0..stands).map(move |k| {
-            let mut degrees = degrees;
-            if let Some(free) = solutions.free {
-                degrees[free] += 360.0 * f64::from(k) / f64::from(stands);
-            }
-            degrees
-        })
-    })
-}
-
-/// The same positions in whole turns that are within the travel, where there are such.
-fn within_travel(machine: &Machine, mut degrees: [f64; 3]) -> [f64; 3] {
-    for axis in &machine.rotary {
-        let at = &mut degrees[axis.index()];
-        let turns = ((axis.min - SLACK - *at) / 360.0).ceil();
-        if *at < axis.min - SLACK || *at > axis.max + SLACK {
-            let first = *at + 360.0 * turns;
-            if first <= axis.max + SLACK {
-                *at = first;
+        for from in &self.angles {
+            for degrees in tilt::nearest(self.machine, from, &solutions).into_iter().flatten() {
+                if !self.next.contains(&degrees) {
+                    self.next.push(degrees);
+                }
             }
         }
     }
-    degrees
-}
-
-/// What a position that was worked out of a tool axis may be beyond its travel, degrees: the rounding of the words.
-pub(crate) const SLACK: f64 = 2e-3;
-
-/// Whether the rotary axes stand within their travel.
-fn is_within_travel(machine: &Machine, degrees: &[f64; 3]) -> bool {
-    machine.rotary.iter().all(|axis| {
-        let at = degrees[axis.index()];
-        at >= axis.min - SLACK && at <= axis.max + SLACK
-    })
 }

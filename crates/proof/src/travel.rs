@@ -4,7 +4,8 @@
 //! want of a fact is kept for the report.
 
 use crate::gauge::Gauge;
-use crate::machine_pose::{MachinePose, SLACK};
+use crate::machine_pose::MachinePose;
+use crate::tilt::SLACK;
 use control::{Orientation, Position};
 use geom::{Arc, Vec3};
 use machine::limits::Travel as Known;

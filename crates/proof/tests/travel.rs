@@ -6,7 +6,7 @@
 mod common;
 
 use common::*;
-use control::{Action, Orientation, Position};
+use control::{Action, Orientation, Position, TiltChoice};
 use geom::Vec3;
 use machine::Machine;
 use machine::limits::Travel;
@@ -95,8 +95,11 @@ fn a_tilted_plane_that_no_solution_reaches_is_refused() {
     for (a, expected) in [(100.0, &[][..]), (120.0, &["axis-limit"]), (180.0, &["axis-limit"])] {
         let (tip, axis) = (Vec3::ZERO, machine.axis_at([a, 0.0, 30.0]));
         let source = source(vec![Op::Rapid(Pose::new(tip, axis).unwrap())]);
-        let does =
-            vec![Action::Home(Axes::Z), Action::Swivel, Action::Rapid(Position::new(tip, axis))];
+        let does = vec![
+            Action::Home(Axes::Z),
+            Action::Swivel(TiltChoice::ShorterWithin),
+            Action::Rapid(Position::new(tip, axis)),
+        ];
         assert_eq!(rules(&judge(&machine, &source, does)), expected, "A {a}");
     }
 }
@@ -109,8 +112,11 @@ fn every_solution_of_a_tilted_plane_has_to_be_within_the_travel_of_the_slides() 
         let machine = five_axes_within(ZERO, &axes('Y', y[0], y[1]), travel);
         let axis = machine.axis_at([a, 0.0, 0.0]);
         let source = source(vec![Op::Rapid(Pose::new(tip, axis).unwrap())]);
-        let does =
-            vec![Action::Home(Axes::Z), Action::Swivel, Action::Rapid(Position::new(tip, axis))];
+        let does = vec![
+            Action::Home(Axes::Z),
+            Action::Swivel(TiltChoice::ShorterWithin),
+            Action::Rapid(Position::new(tip, axis)),
+        ];
         rules(&judge(&machine, &source, does))
     };
     assert!(judged([-51.0, 51.0], WIDE).is_empty());

@@ -305,6 +305,12 @@ impl CheckedSheet {
             }
             (rotary, rotary_place) = (sheet, Some(place));
         }
+        if let (Some(letter), Some(place)) = (self.settings.swivel_direction, &rotary_place)
+            && rotary.iter().all(|axis| axis.letter != letter)
+        {
+            let message = format!("none of them is {letter}, as `swivel_direction` says");
+            return Err(wrong(place, &message));
+        }
         if let Some(Placed { sheet, place }) = self.orientation {
             let modes = [sheet.simultaneous, sheet.positioned];
             let turns = |mode: &OrientationMode| *mode != OrientationMode::Fixed;
@@ -374,6 +380,9 @@ impl CheckedSheet {
                 tool_radius: self.settings.tool_radius,
                 rotary_by_sign: self.settings.rotary_by_sign,
                 sets_work_offsets: self.settings.sets_work_offsets.unwrap_or(false),
+                swivel_direction: self.settings.swivel_direction,
+                tilt_second_axis_first: self.settings.tilt_second_axis_first,
+                tilt_within_travel: self.settings.tilt_within_travel,
             },
             format: Format {
                 separator: format.separator.unwrap_or_else(|| " ".into()),

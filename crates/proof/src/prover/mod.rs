@@ -221,8 +221,8 @@ impl<'a> Prover<'a> {
             }
             Action::Home(axes) => return self.home(line, *axes),
             Action::MachineMove(to) => return self.machine_move(line, to),
-            Action::Swivel => {
-                self.standing.swivel();
+            Action::Swivel(choice) => {
+                self.standing.swivel(*choice);
                 self.check_height(line);
             }
             Action::Tool(tool) => return self.change_tool(line, tool),

@@ -25,7 +25,10 @@ impl Prover<'_> {
         if let (None, Some(from), Some(end), false) = (&found, from, single(angles), own) {
             found = self.broken_on_way(to, from, end, slack);
         }
-        if let Some(found) = found {
+        if let Some(mut found) = found {
+            if let Some(way_out) = self.standing.way_out() {
+                found.help = format!("{}; {way_out}", found.help);
+            }
             let message = format!("source line {}: {}", self.cursor.line, found.message);
             self.found(Diagnostic { message, ..found }.line(to.line));
         }

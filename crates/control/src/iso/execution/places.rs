@@ -4,7 +4,7 @@
 use super::motion::{LINEAR, Target};
 use super::state::{Length, Tilt, UNKNOWN};
 use super::step::Step;
-use crate::event::{Action, Risk};
+use crate::event::{Action, Risk, TiltChoice};
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::{Flavor, Group, Motion};
 use geom::Vec3;
@@ -338,7 +338,7 @@ impl Step<'_, '_, '_> {
             }
         }
         self.state.moved = true;
-        self.actions.push(Action::Swivel);
+        self.actions.push(Action::Swivel(TiltChoice::LeastTurn));
         Ok(())
     }
 }

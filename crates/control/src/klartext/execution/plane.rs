@@ -2,7 +2,7 @@
 
 use super::state::{Control, Tip};
 use super::transform::Transforms;
-use crate::event::Action;
+use crate::event::{Action, TiltChoice};
 use crate::klartext::language::scan::{Result, Scanner};
 use crate::klartext::language::words::{ROTARY, Words, feed_word, slot};
 use geom::{Mat3, Vec3, direction};
@@ -24,7 +24,7 @@ const SQUARE: f64 = 1e-4;
 
 /// What the rotary axes do when a plane is declared.
 enum Positioning {
-    Turn { rapid: bool, retract: bool },
+    Turn { rapid: bool, retract: bool, choice: TiltChoice },
     Stay,
 }
 
@@ -161,14 +161,14 @@ impl Control<'_, '_> {
         self.pole = None;
         let inside = Transforms::default();
         self.tilt = turn.map(|turn| Tilt { turn, inside, turned });
-        if let Positioning::Turn { rapid, retract } = positioning {
+        if let Positioning::Turn { rapid, retract, choice } = positioning {
             if retract {
                 self.emit(Action::Home(Axes::Z))?;
             }
             if self.tilt.is_none() {
                 self.degrees = [0.0; 3];
             }
-            self.emit(Action::Swivel)?;
+            self.emit(Action::Swivel(choice))?;
             let pose = self.pose(self.here);
             self.emit(if rapid { Action::Rapid(pose) } else { Action::Line(pose) })?;
         }
@@ -177,7 +177,7 @@ impl Control<'_, '_> {
 
     /// The end of a PLANE block: what the rotary axes do, and which solution they take.
     fn positioning_of_plane(&self, s: &mut Scanner) -> Result<Positioning> {
-        let mut positioning = None;
+        let (mut positioning, mut taken) = (None, TiltChoice::ShorterWithin);
         while !s.is_done() {
             let (token, span) = s.token();
             let known = match token {
@@ -189,8 +189,15 @@ impl Control<'_, '_> {
                     positioning = Some(Positioning::Stay);
                     true
                 }
-                // Which of the two solutions, and what a free C axis does: neither changes the plane.
-                b"SEQ+" | b"SEQ-" | b"SYM+" | b"SYM-" => true,
+                b"SEQ+" | b"SEQ-" if taken == TiltChoice::ShorterWithin => {
+                    taken = TiltChoice::Sequence(token == b"SEQ+");
+                    true
+                }
+                b"SYM+" | b"SYM-" if taken == TiltChoice::ShorterWithin => {
+                    taken = TiltChoice::Symmetry;
+                    true
+                }
+                // What a free C axis does: it does not change the plane.
                 b"TABLE" | b"COORD" => s.take(b"ROT"),
                 _ => false,
             };
@@ -201,6 +208,9 @@ impl Control<'_, '_> {
                     "this word is not understood in a PLANE block",
                 ));
             }
+        }
+        if let Some(Positioning::Turn { choice, .. }) = &mut positioning {
+            *choice = taken;
         }
         positioning.ok_or_else(|| {
             let message = "the block must say what the rotary axes do";
@@ -232,7 +242,7 @@ impl Control<'_, '_> {
         let rapid = rapid.ok_or_else(|| {
             s.error_block("feed", "the turning of the rotary axes needs F or FMAX")
         })?;
-        Ok(Positioning::Turn { rapid, retract })
+        Ok(Positioning::Turn { rapid, retract, choice: TiltChoice::ShorterWithin })
     }
 
     /// A `FUNCTION` block, from behind the keyword.

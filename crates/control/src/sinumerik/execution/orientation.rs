@@ -3,7 +3,7 @@
 use super::frames::{swivel_order, swivelled};
 use super::interpreter::Interpreter;
 use super::state::ToolAxis;
-use crate::event::Action;
+use crate::event::{Action, TiltChoice};
 use crate::sinumerik::Fallible;
 use crate::sinumerik::language::call::{Argument, Call};
 use crate::sinumerik::language::scan::Source;
@@ -128,7 +128,8 @@ impl Interpreter<'_, '_> {
                 return Err(source.block_error("unsupported", message));
             }
         };
-        if !matches!(number(DIRECTION)?, -1.0 | 1.0) {
+        let direction = number(DIRECTION)?;
+        if !matches!(direction, -1.0 | 1.0) {
             let message = "_DIR of CYCLE800 must be -1 or 1: without it only the frame turns, not the \
                            machine";
             return error("unsupported", message);
@@ -145,7 +146,7 @@ impl Interpreter<'_, '_> {
         if !home.is_empty() {
             self.emit(source, Action::Home(home))?;
         }
-        self.emit(source, Action::Swivel)
+        self.emit(source, Action::Swivel(TiltChoice::Higher(direction > 0.0)))
     }
 
     /// `CYCLE800()`: no plane; where the rotary axes are left is the machine's business.
