@@ -597,6 +597,12 @@ impl Machine {
         self.settings.rapid_path == Some(RapidPath::Linear)
     }
 
+    /// Whether its control may take rotary positions beyond their travel for a tilted plane (FANUC parameters 19741 to
+    /// 19744).
+    pub fn tilts_blindly(&self) -> bool {
+        self.reader == "fanuc" && self.settings.tilt_within_travel != Some(true)
+    }
+
     /// Whether it is known how long a hole cycle dwells: on a FANUC P counts increments, whose length parameters say.
     pub fn counts_dwells(&self) -> bool {
         self.reader != "fanuc" || self.settings.dwell_p_milliseconds.is_some()

@@ -124,6 +124,7 @@ impl Walk<'_> {
                 self.limits.arc(&local, degrees, self.tool_length(), self.line)?;
             }
         }
+        self.check_arc(&arc)?;
         let Some(facts) = self.plane_of(&local) else {
             if self.runs_through(&local) {
                 return self.arc_through(&arc, &local, to, stop);

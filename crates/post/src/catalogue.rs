@@ -102,7 +102,7 @@ names! {
         Rotate Block "rotate", "", "Rotary axes to their positions while the tool is clear of the part.";
         Unclamp Block "unclamp", "", "The clamps of the rotary axes open: before they turn, where they may be closed.";
         Clamp Block "clamp", "", "The clamps of the rotary axes close: behind `rotate`, where the axes then stand in the cut.";
-        PlaneTilt Block "plane_tilt", "", "Tilted plane of work on: frame and swivelling.";
+        PlaneTilt Block "plane_tilt", "", "Tilted plane of work on: frame and swivelling. Which solution the control takes is said by {{sequence}}, by {{DIR}}, or by a move of the rotary axes to it before, where the block places their words.";
         PlaneTiltOff Block "plane_tilt_off", "", "Tilted plane of work off, rotary axes to zero.";
         ToolCenterOn Block "tool_center_on", "", "Tool center point control on.";
         ToolCenterOff Block "tool_center_off", "", "Tool center point control off.";
@@ -185,6 +185,7 @@ names! {
         Euler1 Word "E1", "degrees", "Turn of the tilted plane about Z, first of the Euler angles Z-X'-Z''.";
         Euler2 Word "E2", "degrees", "Turn about the new X, second.";
         Euler3 Word "E3", "degrees", "Turn about the new Z, third.";
+        Direction Word "DIR", "", "Which of the two solutions for a tilted plane the control takes: 1 the one with the higher position of the axis that `swivel_direction` names, -1 the one with the lower. -1 where that makes no difference.";
         SafeHeight Word "SAFE_HEIGHT", "mm", "The safe height of the machine, in machine coordinates (`safe_height`): in every block.";
         RapidFeed Word "RAPID_FEED", "mm/min", "The fastest rapid of X, Y and Z, for a control whose rapids go at the last F: in every block. F is said anew behind it.";
         Surface Word "SURFACE", "mm", "Cycle: level of the point of the hole.";
@@ -220,6 +221,7 @@ names! {
         TaperSide Code "taper", "off, left, right", "Lean of the wire by the control; switched with a straight cut (wire EDM).";
         Length Code "length", "on", "Tool length offset, with each straight move that says Z.";
         WorkOffset Code "work_offset", "54, 55, 56, 57, 58, 59, 60, 61, 62", "The active work offset, in every block: 54 is the first that the control can set. Those that it lacks are left out.";
+        Sequence Code "sequence", "positive, negative", "The sign of the main rotary axis (the first from the tool, or the last from the table), in the block of a tilted plane that has two solutions within the travel.";
         FeedMode Code "feed_mode", "per_minute, per_turn, inverse_time", "What {{F}} means.";
     }
 }

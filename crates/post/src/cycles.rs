@@ -124,6 +124,7 @@ impl Walk<'_> {
             retract: level(WordName::Retract, cycle.retract),
         };
         let over = pose.lifted(cycle.retract)?;
+        self.check_hole(cycle, pose)?;
         let open = Open { block: name, levels };
         if self.templates.places(name, WordName::RPlane) {
             self.end_cycle()?;
@@ -156,6 +157,16 @@ impl Walk<'_> {
             self.open_cycle = Some(open);
         }
         self.here = Some(over);
+        Ok(())
+    }
+
+    /// Checks the levels of a hole that a cycle makes against the limits.
+    fn check_hole(&mut self, cycle: &Cycle, pose: &Pose) -> Done {
+        for height in [-cycle.depth, cycle.clearance, cycle.retract] {
+            self.tip = pose.lifted(height)?.point();
+            self.said = self.local(self.tip);
+            self.check_limits()?;
+        }
         Ok(())
     }
 

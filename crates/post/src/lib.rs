@@ -30,6 +30,7 @@ mod surface;
 mod sweep;
 mod template;
 mod text;
+mod tilt;
 mod walk;
 mod wire;
 mod writer;

@@ -266,24 +266,28 @@ impl Walk<'_> {
         }
     }
 
-    /// Holds the position that has been aimed against the limits of the axes. Where the control finds
-    /// the rotary positions of a tilted plane by itself, they are not known here.
+    /// Checks the position that has been aimed against the limits of the axes.
     #[inline]
     pub(crate) fn check_limits(&mut self) -> Done {
         let degrees = self.place.degrees().unwrap_or_default();
         let length = self.tool_length();
         let linear = match self.place.kind {
-            Kind::Tilted(..) => return Ok(()),
+            Kind::Tilted(..) => return self.check_in_plane(self.tip),
             Kind::Bare | Kind::Plain => self.said,
             Kind::Machine => match self.machine.unsaid(degrees, length) {
                 Some(unsaid) => return Err(hangs_on(unsaid)),
                 None => self.said,
             },
             // The control knows what its file does not say; the proof reports what was not checked.
-            Kind::ToolCenter | Kind::Vectors => match self.machine.unsaid(degrees, length) {
-                Some(_) => Vec3::NAN,
-                None => self.machine.linear_for(self.tip, degrees, length.unwrap_or(0.0)),
-            },
+            Kind::ToolCenter | Kind::Vectors => {
+                if let Some(from) = self.checked.replace((self.tip, degrees)) {
+                    self.check_way(from, degrees)?;
+                }
+                match self.machine.unsaid(degrees, length) {
+                    Some(_) => Vec3::NAN,
+                    None => self.machine.linear_for(self.tip, degrees, length.unwrap_or(0.0)),
+                }
+            }
         };
         for &sway in self.sways(self.tip) {
             self.limits.position(linear + Vec3::Z * sway, degrees, length, self.line)?;

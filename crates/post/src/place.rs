@@ -3,6 +3,7 @@
 
 use crate::catalogue::{BlockName, WordName};
 use crate::template::{LENGTH_OFFSET, ORIENTATION, POSITION, Words, bit};
+use crate::tilt::Solution;
 use crate::walk::{Done, Walk, motion, refuse};
 use geom::{ANGLE_EPSILON, Euler, Frame, Mat3, Vec3, angle_between};
 use machine::plan::{self, Plan, Step, Target, TargetKind};
@@ -34,13 +35,15 @@ pub(crate) struct Place {
     degrees: Option<[f64; 3]>,
     /// The frame of the set-up in the source.
     set_up: Frame,
+    /// Rotary positions that the control may take for the tilted plane that is on.
+    solutions: Vec<Solution>,
 }
 
 impl Place {
     pub(crate) fn start(machine: &Machine) -> Place {
         let fixed = machine.rotary.is_empty();
         let kind = if fixed { Kind::Plain } else { Kind::Bare };
-        Place { kind, degrees: None, set_up: Frame::IDENTITY }
+        Place { kind, degrees: None, set_up: Frame::IDENTITY, solutions: Vec::new() }
     }
 
     pub(crate) fn degrees(&self) -> Option<[f64; 3]> {
@@ -49,6 +52,14 @@ impl Place {
 
     pub(crate) fn turn_to(&mut self, degrees: [f64; 3]) {
         self.degrees = Some(degrees);
+    }
+
+    pub(crate) fn solutions(&self) -> &[Solution] {
+        &self.solutions
+    }
+
+    pub(crate) fn keep_solutions(&mut self, solutions: Vec<Solution>) {
+        self.solutions = solutions;
     }
 
     pub(crate) fn set_up(&mut self, frame: Frame) {
@@ -282,6 +293,7 @@ impl Walk<'_> {
         self.writer.forget(POSITION | LENGTH_OFFSET | vector | bit(WordName::Motion));
         self.located = false;
         self.turned_to = None;
+        self.checked = None;
     }
 
     /// Away from the part in machine coordinates, before a rotary axis turns. These are positions of
@@ -382,8 +394,6 @@ impl Walk<'_> {
     /// A tilted plane whose Z is `axis`: that of the set-up where it fits, else the one that turns
     /// about X and Y only.
     fn tilt(&mut self, axis: Vec3) -> Done {
-        let target = Target { axis, line: self.line, kind: TargetKind::Rapid };
-        plan::plan(self.machine, self.place.degrees, [target])?;
         let set_up = self.place.set_up;
         let (matrix, origin) = if angle_between(set_up.matrix3.z_axis, axis) < ANGLE_EPSILON {
             (set_up.matrix3, set_up.translation)
@@ -408,10 +418,11 @@ impl Walk<'_> {
                 frame.matrix3 = notation.matrix(rounded.map(f64::to_radians));
             }
         }
+        self.choose_solution(axis)?;
         self.required(BlockName::PlaneTilt)?;
         self.place.kind = Kind::Tilted(frame.inverse(), axis);
         self.place.degrees = None;
-        self.writer.forget(ORIENTATION);
+        self.writer.forget(ORIENTATION | bit(WordName::Motion));
         Ok(())
     }
 }

@@ -49,7 +49,7 @@ fn axes_turn_only_where_z_is_home() {
         let Err(found) = proven(&machine, &text) else { panic!("{name} is proven:\n{text}") };
         // FANUC's length ends before the plane turns.
         let (rule, line) = match name {
-            "fanuc-table-bc" => ("length-change", line - 3),
+            "fanuc-table-bc" => ("length-change", line - 4),
             _ => ("turn-height", line),
         };
         assert_eq!(found, (rule, line), "{name}:\n{text}");

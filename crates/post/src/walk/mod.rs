@@ -100,6 +100,9 @@ pub(crate) struct Walk<'a> {
     /// Where the last arc leads, in the coordinates of the block, where it is told by its angle.
     pub(crate) turned_to: Option<Vec3>,
     pub(crate) limits: Limits<'a>,
+    /// Tip and degrees of A, B, C of the position that was checked last, where the control moves the linear axes along with
+    /// the rotary axes.
+    pub(crate) checked: Option<(Vec3, [f64; 3])>,
     /// Smallest step of a linear axis, mm.
     pub(crate) resolution: f64,
     /// Entry of the code word `work_offset` that is active.
@@ -161,6 +164,7 @@ impl<'a> Walk<'a> {
             said: Vec3::ZERO,
             turned_to: None,
             limits: Limits::new(machine),
+            checked: None,
             resolution: machine.resolution(),
             work_offset: 0,
             ended: false,
