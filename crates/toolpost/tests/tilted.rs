@@ -251,7 +251,7 @@ fn what_the_travel_does_not_take_is_refused_before_it_is_written() {
                     match written(&machine, source) {
                         Ok(text) => {
                             made += 1;
-                            proven(&machine, &source, &text).unwrap_or_else(|why| {
+                            proven(&machine, source, &text).unwrap_or_else(|why| {
                                 panic!("{control} {zero} {a} job {number}: {why}\n{text}")
                             });
                         }
