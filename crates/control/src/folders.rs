@@ -75,6 +75,10 @@ fn open(folders: &[PathBuf], name: &str) -> Result<(PathBuf, Vec<u8>), String> {
         if text.len() as u64 > LARGEST {
             return Err(format!("{name} is larger than {} MB", LARGEST >> 20));
         }
+        // The mark that editors of some systems put before UTF-8 is no part of the program.
+        if text.starts_with(b"\xef\xbb\xbf") {
+            text.drain(..3);
+        }
         return Ok((real, text));
     }
     let among = match folders {

@@ -41,6 +41,38 @@ pub fn read(path: &Path) -> Result<Vec<u8>, Box<Diagnostic>> {
     Ok(bytes)
 }
 
+/// The text of a file, without the byte order mark that editors of some systems put before UTF-8.
+///
+/// # Errors
+/// As [`read`], and as [`text_of`].
+pub fn text(path: &Path) -> Result<Vec<u8>, Box<Diagnostic>> {
+    text_of(path, read(path)?)
+}
+
+/// The same of the bytes of the file `path`.
+///
+/// # Errors
+/// The text is in UTF-16.
+pub fn text_of(path: &Path, mut bytes: Vec<u8>) -> Result<Vec<u8>, Box<Diagnostic>> {
+    let is_utf_16 = match bytes[..] {
+        [0xfe, 0xff, ..] | [0xff, 0xfe, ..] => true,
+        // Without a mark: two letters of ASCII, each with a zero byte.
+        [a, 0, b, 0, ..] | [0, a, 0, b, ..] => a.is_ascii_graphic() && b.is_ascii_graphic(),
+        _ => false,
+    };
+    if is_utf_16 {
+        let found = Diagnostic::error("encoding", "this file is in UTF-16").file(name(path));
+        return Err(found.help("save it as plain text (ASCII, Latin-1 or UTF-8)").into());
+    }
+    if bytes.starts_with(BYTE_ORDER_MARK) {
+        bytes.drain(..BYTE_ORDER_MARK.len());
+    }
+    Ok(bytes)
+}
+
+/// U+FEFF in UTF-8.
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
 /// The name of a file, for findings and reports: without its folder, so that they do not depend on
 /// where it lies.
 pub fn name(path: &Path) -> String {

@@ -67,7 +67,7 @@ fn new(name: &str, from: &str) -> Result<Answer, Stop> {
             .into());
     }
     let text = if from.contains(['/', '\\']) || from.ends_with(".toml") {
-        let bytes = files::read(Path::new(from))?;
+        let bytes = files::text(Path::new(from))?;
         String::from_utf8(bytes)
             .map_err(|_| Diagnostic::error("encoding", "this file is not UTF-8").file(from))?
     } else {
@@ -90,7 +90,7 @@ const SAMPLE: &str = include_str!("../../../machines/samples/three-axes.cls");
 fn import(file: &Path, output: &Path, extends: Option<&str>) -> Result<Answer, Stop> {
     let invalid = |findings| Stop { verdict: Verdict::Invalid, findings };
     let target = Target::new(output, &[file])?;
-    let bytes = files::read(file)?;
+    let bytes = files::text(file)?;
     let post = files::name(file);
     let folder = output.parent().unwrap_or(Path::new(""));
     let import = machine::import::import(&post, &bytes, extends, folder).map_err(invalid)?;

@@ -185,7 +185,7 @@ fn surface(parts: &[Part], args: &Pcb) -> Result<Option<HeightMap>, Stop> {
         let help = "make the programs of each side with its own heights: name them with --only";
         return Err(Diagnostic::error("heights", message).help(help).into());
     }
-    let text = files::read(file)?;
+    let text = files::text(file)?;
     Ok(Some(levelling::read(&files::name(file), &text).map_err(Stop::invalid)?))
 }
 

@@ -61,7 +61,7 @@ pub fn read(
         false => files::read(path)?,
     };
     if !Job::begins(&bytes) {
-        return read_by(path, &bytes, strict, origin, |machine| machine);
+        return read_by(path, bytes, strict, origin, |machine| machine);
     }
     if origin.csys.is_some() {
         return Err(without_csys(&files::name(path)).into());
@@ -119,7 +119,7 @@ pub fn read_wire(
     origin: &Origin,
     height: Option<f64>,
 ) -> Result<Toolpath, Stop> {
-    read_by(path, &files::read(path)?, strict, origin, |mut machine| {
+    read_by(path, files::read(path)?, strict, origin, |mut machine| {
         if let Some(wire) = &mut machine.wire {
             wire.height = wire.height.or(height);
         }
@@ -129,19 +129,21 @@ pub fn read_wire(
 
 fn read_by(
     path: &Path,
-    bytes: &[u8],
+    bytes: Vec<u8>,
     strict: bool,
     origin: &Origin,
     set_up: impl Fn(Machine) -> Machine,
 ) -> Result<Toolpath, Stop> {
     let file = files::name(path);
+    let digest = Some(Digest::of([&bytes[..]]));
+    let bytes = files::text_of(path, bytes)?;
     let mut read_with = Vec::new();
     let (dialect, program, warnings, set_ups, cutcom) = match &origin.from {
         Some(from) => {
             let machine = set_up(machine::load_origin(from)?);
             let setup = origin.setup()?;
             let folders = setup.folders.clone();
-            let reading = nc::read(&machine, setup, &file, bytes)?;
+            let reading = nc::read(&machine, setup, &file, &bytes)?;
             read_with.extend(origin.tools.clone());
             read_with.extend(machine.loaded_from.files.clone());
             read_with.extend(folders.files_read());
@@ -156,7 +158,7 @@ fn read_by(
                 CutcomPath::Centre => CompensatedPath::Center,
                 CutcomPath::Contour => CompensatedPath::Contour,
             });
-            let reading = apt::read(&file, bytes, &apt::Options { strict, csys, cutcom });
+            let reading = apt::read(&file, &bytes, &apt::Options { strict, csys, cutcom });
             let reading = reading.map_err(|findings| match is_nc(path) {
                 true => without_origin(&file),
                 false => Stop { verdict: Verdict::Invalid, findings },
@@ -169,7 +171,6 @@ fn read_by(
     };
     let warnings = held(warnings, strict)?;
     let path = Some(path.to_owned());
-    let digest = Some(Digest::of([bytes]));
     let listing = None;
     Ok(Toolpath {
         path,
@@ -310,7 +311,7 @@ impl Origin {
         let tools = match &self.tools {
             None => Vec::new(),
             Some(path) => {
-                let found = control::tools::read(&files::read(path)?);
+                let found = control::tools::read(&files::text(path)?);
                 found.map_err(|found| found.file(files::name(path)))?
             }
         };
@@ -484,7 +485,7 @@ impl Toolpath {
 
     /// The text of the source, as far as there is one still.
     fn text(&self) -> Vec<u8> {
-        self.path.as_deref().and_then(|path| files::read(path).ok()).unwrap_or_default()
+        self.path.as_deref().and_then(|path| files::text(path).ok()).unwrap_or_default()
     }
 }
 

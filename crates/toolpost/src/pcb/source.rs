@@ -29,7 +29,7 @@ pub fn read(paths: &[PathBuf]) -> Result<Source, Stop> {
     let files = chosen(paths, given)?;
     let mut texts = Vec::with_capacity(files.len());
     for file in &files {
-        texts.push((files::name(file), files::read(file)?));
+        texts.push((files::name(file), files::text(file)?));
     }
     let (artwork, layers) = match (&texts[..], files.first().map(|file| ending(file))) {
         ([(file, text)], Some(kind)) if kind == "kicad_pcb" => {

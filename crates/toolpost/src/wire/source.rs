@@ -105,7 +105,7 @@ impl File {
         if args.source.origin.cutcom.is_some() {
             return Err(toolpath::without_cutcom(&files::name(path)).into());
         }
-        let text = files::read(path)?;
+        let text = files::text(path)?;
         let options = dxf::Options {
             layers: args.drawing.layer.clone(),
             gap: args.drawing.close,

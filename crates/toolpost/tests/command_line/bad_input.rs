@@ -232,3 +232,25 @@ fn a_machine_file_shows_nothing_of_files_outside_its_folder() {
     let said = folder.run(&["post", "part.cls", "-m", "theirs/mill.toml", "-o", "out.mpf"]);
     assert_eq!(said.code, 0, "{said:?}");
 }
+
+#[test]
+fn a_byte_order_mark_is_no_part_of_a_text_and_utf_16_is_said() {
+    let folder = Folder::new();
+    let program =
+        "G21 G17 G90 G94 G54\nT1 M6\nM3 S1000\nG43 H1\nG0 X0 Y0 Z5\nG1 Z-1 F100\nG0 Z5\nM2\n";
+    let nc = ["--from", "linuxcnc", "--tools", "tools.tbl"];
+    for (name, text, options) in [("part.cls", SOURCE, &[][..]), ("part.ngc", program, &nc)] {
+        let show = [&["show", name], options].concat();
+        folder.write("tools.tbl", "\u{feff}T1 P1 D6 Z50\n");
+        folder.write(name, format!("\u{feff}{text}"));
+        let said = folder.run(&show);
+        assert_eq!((said.code, said.err.as_str()), (0, ""), "{said:?}");
+        let wide: Vec<u8> = text.encode_utf16().flat_map(u16::to_le_bytes).collect();
+        for mark in [&[][..], &[0xff, 0xfe]] {
+            folder.write(name, [mark, &wide].concat());
+            let said = folder.run(&show);
+            assert_eq!(said.code, 2, "{said:?}");
+            assert!(said.err.contains("error[encoding]: this file is in UTF-16"), "{said:?}");
+        }
+    }
+}
