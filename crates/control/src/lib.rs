@@ -256,9 +256,24 @@ pub struct Setup {
     /// Where the tool stands in the work frame when the program starts, mm, with all offsets of the
     /// control at 0; `None` where that is not known, and no offset is.
     pub start: Option<Vec3>,
+    /// Whether the program is read for its contour in the plane XY alone: Z is 0 while nothing says it.
+    pub flat: bool,
     /// Points of the part's surface, mm, work frame: straight down onto one of them a probe answers there. Of any
     /// other probing move only the machine knows where it has ended.
     pub surface: Vec<Vec3>,
+}
+
+impl Setup {
+    /// Where the tool stands in the work frame before the first block, mm; NaN where that is not known.
+    pub(crate) fn position_at_start(&self) -> Vec3 {
+        self.start.unwrap_or(self.unknown_position())
+    }
+
+    /// The position of a tool of which nobody knows where it stands, mm: NaN but for Z of a flat contour.
+    pub(crate) fn unknown_position(&self) -> Vec3 {
+        let z = if self.flat { 0.0 } else { f64::NAN };
+        Vec3::new(f64::NAN, f64::NAN, z)
+    }
 }
 
 /// A line of the control's tool table.

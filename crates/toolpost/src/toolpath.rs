@@ -61,7 +61,7 @@ pub fn read(
         false => files::read(path)?,
     };
     if !Job::begins(&bytes) {
-        return read_by(path, bytes, strict, origin, |machine| machine);
+        return read_by(path, bytes, strict, origin, false, |machine| machine);
     }
     if origin.csys.is_some() {
         return Err(without_csys(&files::name(path)).into());
@@ -119,7 +119,7 @@ pub fn read_wire(
     origin: &Origin,
     height: Option<f64>,
 ) -> Result<Toolpath, Stop> {
-    read_by(path, files::read(path)?, strict, origin, |mut machine| {
+    read_by(path, files::read(path)?, strict, origin, true, |mut machine| {
         if let Some(wire) = &mut machine.wire {
             wire.height = wire.height.or(height);
         }
@@ -132,6 +132,7 @@ fn read_by(
     bytes: Vec<u8>,
     strict: bool,
     origin: &Origin,
+    is_wire: bool,
     set_up: impl Fn(Machine) -> Machine,
 ) -> Result<Toolpath, Stop> {
     let file = files::name(path);
@@ -143,7 +144,12 @@ fn read_by(
             let machine = set_up(machine::load_origin(from)?);
             let setup = origin.setup()?;
             let folders = setup.folders.clone();
-            let reading = nc::read(&machine, setup, &file, &bytes)?;
+            let reading = match nc::read(&machine, setup.clone(), &file, &bytes) {
+                Err(found) if is_wire && found.rule.ends_with("unknown-position") => {
+                    flat(&machine, setup, &file, &bytes).ok_or(found)?
+                }
+                read => read?,
+            };
             read_with.extend(origin.tools.clone());
             read_with.extend(machine.loaded_from.files.clone());
             read_with.extend(folders.files_read());
@@ -193,12 +199,22 @@ fn read_by(
 pub fn swinging(path: &Path, origin: &Origin) -> Result<Option<Program>, Stop> {
     let Some(from) = origin.from.as_deref().filter(|_| !fcstd::is(path)) else { return Ok(None) };
     let machine = machine::load_origin(from)?;
-    let bytes = files::read(path)?;
+    let bytes = files::text(path)?;
     if machine.rotary.is_empty() || Job::begins(&bytes) {
         return Ok(None);
     }
     let program = nc::read_swinging(&machine, origin.setup()?, &files::name(path), &bytes)?;
     Ok(Some(program))
+}
+
+/// The program of a mill's control as a contour in the plane XY, at Z 0 where no block says Z: a wire goes through all
+/// heights. Nothing where that is not what it lacks.
+fn flat(machine: &Machine, setup: Setup, file: &str, bytes: &[u8]) -> Option<nc::Reading> {
+    let setup = Setup { flat: true, ..setup };
+    let mut reading = nc::read(machine, setup, file, bytes).ok()?;
+    let message = "the program cuts before a block says Z: it is read as a flat contour, at Z 0";
+    reading.warnings.push(Diagnostic::warning("flat-contour", message));
+    Some(reading)
 }
 
 /// The warnings; with `strict` they stop the command.
@@ -335,6 +351,7 @@ impl Origin {
             }),
             block_delete: self.block_delete,
             start: self.start.map(Vec3::from_array),
+            flat: false,
             surface: Vec::new(),
         })
     }

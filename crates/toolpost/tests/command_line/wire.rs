@@ -129,7 +129,7 @@ fn a_bad_source_is_told_with_its_line_and_writes_nothing() {
     let offsets = "N45 G55 G0 X0. Y90. Z0.\nN50 G1 X0.";
     let two = SECTOR.replace("N20 G0", "N20 G54 G0");
     bad(SECTOR, &two.replace("N50 G1 X0.", offsets), &["error[work-offset]", "sector.nc:8:"]);
-    bad(" Z0.", "", &["sector.nc:6:", "--start"]);
+    bad("N20 G0 X0. Y0. Z0.", "N20 G0 X0. Z0.", &["sector.nc:6:", "--start"]);
     bad("N30 G1 X40. Y0. F6.6\nN40 G3 X0. Y40. R40.\nN50 G1 X0. Y0.\n", "", &["empty-contour"]);
 }
 
@@ -458,4 +458,40 @@ fn drawings_are_read_by_layer() {
     assert_eq!(folder.read("part.pts").lines().count(), 51);
     let said = folder.run(&[&call[..], &["NONE"]].concat());
     assert_eq!((said.code, folder.names().len()), (2, 4), "{said:?}");
+}
+
+/// Cuts `source` round its outside.
+fn round(folder: &Folder, control: &str, source: &str) -> Said {
+    folder.write("flat.nc", source);
+    let call = ["wire", "flat.nc", "--from", control, "-m", "fanuc-wire", "--side", "outside"];
+    let cut = ["--wire", "0.25", "--gap", "0.02", "--thread", "50,-10", "-o", "part.nc"];
+    folder.run(&[&call[..], &cut].concat())
+}
+
+#[test]
+fn a_contour_of_which_no_block_says_z_is_flat() {
+    let folder = Folder::empty();
+    let contour = "G1 X40. F100.\nG3 X40. Y20. I0. J10.\nG1 X0.\nG1 Y0.\n";
+    // A SINUMERIK knows no coordinate behind the word of a work offset until it is said.
+    let heads = |control| if control == "sinumerik-840d" { &[""][..] } else { &["G54\n", ""] };
+    for control in ["fanuc-31i", "sinumerik-840d", "linuxcnc", "haas"] {
+        for head in heads(control) {
+            let source = format!("G21\nG90 G17\n{head}G0 X0. Y0. Z0.\n{contour}M30\n");
+            let source =
+                if control.starts_with("sin") { source.replace("G21", "G71") } else { source };
+            let said = round(&folder, control, &source);
+            assert_eq!(said.code, 0, "{control}: {said:?}");
+            assert!(!said.err.contains("flat-contour"), "{control}: {said:?}");
+            let with_z = folder.read("part.nc");
+            let source = source.replace("Y0. Z0.", "Y0.");
+            let said = round(&folder, control, &source);
+            assert_eq!(said.code, 0, "{control} {head}: {said:?}");
+            assert!(said.err.contains("warning[flat-contour]"), "{control}: {said:?}");
+            assert_eq!(folder.read("part.nc"), with_z);
+            // A Z that is said, and differs.
+            let said = round(&folder, control, &source.replace("M30", "G1 Z-5.\nG1 X40.\nM30"));
+            assert_eq!(said.code, 2, "{control}: {said:?}");
+            assert_eq!(folder.read("part.nc"), with_z);
+        }
+    }
 }

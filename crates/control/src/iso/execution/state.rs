@@ -42,6 +42,8 @@ pub(crate) struct State {
     pub compensation: Compensation,
     /// What [`Action::WorkOffset`](crate::Action::WorkOffset) has said last.
     pub work_offset: Option<u32>,
+    /// The position of a tool of which nobody knows where it stands.
+    pub nowhere: Vec3,
     /// Programmed position in the frame in which words are read, mm; NaN where not known.
     pub position: Vec3,
     /// Positions of A, B, C in degrees; 0 for axes that the machine lacks, NaN where not known.
@@ -171,8 +173,7 @@ impl State {
     /// The state at the start of a program: that of a control after power on. FANUC: parameters 3401
     /// and 3402 as delivered; LinuxCNC: `RS274NGC_STARTUP_CODE` empty; GRBL: its first `$G` report.
     pub(super) fn new(flavor: Flavor, axes: [bool; 3], settings: &Settings) -> State {
-        let start = settings.setup.start;
-        let all_zero = start.is_some();
+        let all_zero = settings.setup.start.is_some();
         // A FANUC goes on in the work offset of the program before.
         let work_offset = settings.dialect.work_offset_at_reset().map_or(0, WorkOffset::number);
         let turns_offsets = flavor == Flavor::LinuxCnc;
@@ -202,7 +203,8 @@ impl State {
                 radius: None,
             },
             work_offset: None,
-            position: start.unwrap_or(UNKNOWN),
+            nowhere: settings.setup.unknown_position(),
+            position: settings.setup.position_at_start(),
             rotary: axes.map(|exists| if exists { f64::NAN } else { 0.0 }),
             modulo: settings.modulo,
             floating_holder: settings.floating_holder,

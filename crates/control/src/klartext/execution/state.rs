@@ -101,7 +101,7 @@ impl<'a, 's> Control<'a, 's> {
             compensator,
             line: 0,
             unit: 1.0,
-            here: settings.setup.start.unwrap_or(Vec3::NAN),
+            here: settings.setup.position_at_start(),
             degrees: settings.rotary.map(|exists| if exists { f64::NAN } else { 0.0 }),
             vector: None,
             outside: Transforms::default(),
@@ -231,7 +231,7 @@ impl<'a, 's> Control<'a, 's> {
 
     /// The position of the linear axes is not known any more.
     pub(super) fn forget_position(&mut self) {
-        self.here = Vec3::NAN;
+        self.here = self.settings.setup.unknown_position();
     }
 
     /// The positions of the rotary axes are not known any more.

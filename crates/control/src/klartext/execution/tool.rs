@@ -6,7 +6,6 @@ use crate::event::{Action, Risk};
 use crate::klartext::language::registers::Parameter;
 use crate::klartext::language::scan::{Result, Scanner};
 use crate::klartext::language::words::{self, LINEAR, Words, feed_word};
-use geom::Vec3;
 use program::{Compensation, Diagnostic, Spindle, Tool};
 
 impl Control<'_, '_> {
@@ -156,7 +155,7 @@ impl Control<'_, '_> {
         self.registers.preassign(109, 2.0);
         self.registers.preassign(114, metric.map_or(f64::NAN, |data| data.length));
         self.emit(Action::Tool(Box::new(tool)))?;
-        self.here = Vec3::NAN;
+        self.forget_position();
         Ok(())
     }
 

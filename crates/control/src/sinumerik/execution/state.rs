@@ -104,6 +104,8 @@ pub(crate) struct State {
     pub tool_center: bool,
     /// The frames.
     pub frames: Frames,
+    /// The position of a tool of which nobody knows where it stands.
+    pub nowhere: Vec3,
     /// Where the tool is in the coordinates of the program, mm.
     pub position: Vec3,
     /// The coordinates that were programmed last, mm: what incremental ones count from.
@@ -196,8 +198,9 @@ impl State {
             edge: None,
             tool_center: false,
             frames: Frames::new(),
-            position: settings.setup.start.unwrap_or(Vec3::NAN),
-            programmed: settings.setup.start.unwrap_or(Vec3::NAN),
+            nowhere: settings.setup.unknown_position(),
+            position: settings.setup.position_at_start(),
+            programmed: settings.setup.position_at_start(),
             heading: Vec3::NAN,
             pole: Vec3::ZERO,
             polar: (None, None),
@@ -346,8 +349,8 @@ impl State {
 
     /// Nobody knows any more where the linear axes are.
     pub fn lose_position(&mut self) {
-        self.position = Vec3::NAN;
-        self.programmed = Vec3::NAN;
+        self.position = self.nowhere;
+        self.programmed = self.nowhere;
         self.heading = Vec3::NAN;
     }
 
