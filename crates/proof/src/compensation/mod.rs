@@ -84,7 +84,7 @@ impl Part<'_> {
             | Action::Hole(_)
             | Action::Thread(_)
             | Action::Probe(_) => Part::End,
-            Action::Swivel
+            Action::Swivel(_)
             | Action::Cycle(_)
             | Action::CycleOff
             | Action::Feed(_)
