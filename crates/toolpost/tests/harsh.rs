@@ -21,6 +21,8 @@ const ACCEPTED: &[&str] = &[
     "cycle-bore",
     // A tap across Z of the control, or whose spindle turns the other way.
     "cycle-tap",
+    // A feed in inverse time that comes to less than half a step of F.
+    "feed-zero",
     // A coolant that the machine does not have.
     "missing-block",
     "orientation-in-cut",
