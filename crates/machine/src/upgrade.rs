@@ -40,6 +40,20 @@ pub fn missing(machine: &Machine) -> Vec<Missing> {
             "G54 in machine coordinates (mm): every position on a turned table hangs on how far the work is from its axes",
         );
     }
+    let follows_tip = [orientation.simultaneous, orientation.positioned]
+        .contains(&OrientationMode::ToolCenterAngles);
+    if machine.reader == "linuxcnc" && follows_tip && machine.settings.kinematics.is_none() {
+        lacks(
+            "[settings]".into(),
+            "tip_kinematics = 428",
+            "the REMAP lines of the INI file: the M function that switches to the kinematics of the tip",
+        );
+        lacks(
+            "[settings]".into(),
+            "axis_kinematics = 429",
+            "the REMAP lines of the INI file: the M function that switches back to those of the axes",
+        );
+    }
     let is_sinumerik = machine.reader.starts_with("sinumerik");
     let says_tolerance =
         matches!(machine.options.get("path_tolerance"), Some(OptionValue::Number(_)));

@@ -336,7 +336,12 @@ fn ways(source: &Program) -> Vec<Way> {
             Op::Hole(at) => {
                 let cycle: &Cycle = cycle.unwrap();
                 let over = at.at(at.point() + at.axis() * cycle.clearance).unwrap();
-                go(line, false, vec![over.point()], over, &mut here);
+                // Across as high as it is, then down, as a canned cycle does.
+                let height = here.map_or(0.0, |pose| (pose.point() - over.point()).dot(at.axis()));
+                let across = over.point() + at.axis() * height.max(0.0);
+                let points =
+                    if here.is_some() { vec![across, over.point()] } else { vec![over.point()] };
+                go(line, false, points, over, &mut here);
                 for part in lowering::hole(cycle, at, spindle).unwrap() {
                     match part {
                         HoleMove::Rapid(to) => go(line, false, vec![to.point()], to, &mut here),
@@ -395,9 +400,13 @@ impl Walk {
         Walk { ways, cuts, tolerance, at: 0, reached: false, worst: Worst::default() }
     }
 
-    /// How far `spot` is from a motion, mm and degrees, where it is on it.
-    fn on(&self, way: &Way, spot: &Spot) -> Option<(f64, f64)> {
-        let (off, part) = way.apart(spot.tip);
+    /// How far `spot` is from a motion, mm and degrees, where it is on it. Past a point of which nobody knows the way there
+    /// it goes between two milliseconds.
+    fn on(&self, way: &Way, here: &Spot, spot: &Spot) -> Option<(f64, f64)> {
+        let (off, part) = match way.points[..] {
+            [point] => (geom::nearest_on_segment(here.tip, spot.tip, point).1, 1.0),
+            _ => way.apart(spot.tip),
+        };
         let [from, to] = way.axes;
         let bend = match way.stands() {
             true => geom::off_great_circle(from, to, spot.axis),
@@ -435,8 +444,9 @@ impl Walk {
             let turned = angle_between(spot.axis, way.axes[1]).to_degrees();
             self.reached |= passed <= self.tolerance.max(0.02) && turned <= SWEEP;
             let next = self.ways.get(self.at + 1);
-            let goes_on = self.reached && next.is_some_and(|next| self.on(next, spot).is_some());
-            if !goes_on && let Some((off, bend)) = self.on(way, spot) {
+            let goes_on =
+                self.reached && next.is_some_and(|next| self.on(next, here, spot).is_some());
+            if !goes_on && let Some((off, bend)) = self.on(way, here, spot) {
                 // At a corner it is on the motion before or behind as well.
                 let beside = [self.at.wrapping_sub(1), self.at + 1].map(|at| self.ways.get(at));
                 let beside = beside.into_iter().flatten().map(|way| way.apart(spot.tip).0);

@@ -345,6 +345,12 @@ impl CheckedSheet {
         let line_length = capabilities.line_length.unwrap_or(256);
         let (reader, reader_place) =
             self.reader.ok_or_else(|| missing("`reader`, the virtual control,"))?;
+        if kinematics.is_some() && reader != "linuxcnc" {
+            let message = format!(
+                "`tip_kinematics` in [settings] is for LinuxCNC, and the reader is `{reader}`"
+            );
+            return Err(Diagnostic::error("machine-file", message).file(file).into());
+        }
         Ok(Machine {
             loaded_from: LoadedFrom::default(),
             title: self.title.unwrap_or_else(|| name.clone()),

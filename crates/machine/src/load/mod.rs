@@ -140,6 +140,26 @@ max = 200.5
     }
 
     #[test]
+    fn the_kinematics_are_switched_by_two_functions_of_a_linuxcnc() {
+        let with = |reader: &str, settings: &str| {
+            let text = MILL.replace("linuxcnc", reader);
+            load_text("mill.toml", &format!("{text}[settings]\n{settings}"))
+        };
+        let both = "tip_kinematics = 428\naxis_kinematics = 429\n";
+        let mill = with("linuxcnc", both).unwrap();
+        assert_eq!(mill.settings.kinematics, Some(Kinematics { tip: 428, axes: 429 }));
+        for (reader, settings) in [
+            ("linuxcnc", "tip_kinematics = 428\n"),
+            ("linuxcnc", "axis_kinematics = 429\n"),
+            ("linuxcnc", "tip_kinematics = 428\naxis_kinematics = 428\n"),
+            ("fanuc", both),
+        ] {
+            let found = with(reader, settings).unwrap_err().to_string();
+            assert!(found.contains("tip_kinematics"), "{reader} {settings}: {found}");
+        }
+    }
+
+    #[test]
     fn a_block_knows_where_its_text_begins() {
         let mill = load_text("mill.toml", MILL).unwrap();
         assert_eq!((mill.blocks["rapid"].line, mill.blocks["rapid"].column), (7, 10));

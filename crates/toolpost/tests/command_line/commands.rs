@@ -279,6 +279,13 @@ fn a_machine_file_that_is_older_than_a_key_is_told_the_line_to_add() {
     ] {
         assert!(said.out.contains(&format!("\n{line}\n")), "{line}: {}", said.out);
     }
+    let linuxcnc = format!(
+        "extends = \"linuxcnc\"\n[orientation]\nsimultaneous = \"tool-center-angles\"\n{rotary}"
+    );
+    folder.write("linuxcnc.toml", &linuxcnc);
+    let said = folder.run(&["machines", "check", "--upgrade", "linuxcnc.toml"]);
+    assert!(said.out.contains("\ntip_kinematics = 428\n"), "{}", said.out);
+    assert!(said.out.contains("\naxis_kinematics = 429\n"), "{}", said.out);
     let new = format!(
         "extends = \"sinumerik-840d\"\nsafe_height = 0\nwork_zero = [0, 0, 0]\n[options]\npath_tolerance = 0.01\n[settings]\n\
          length_along_z = false\ntool_radius = \"full\"\n[orientation]\nsimultaneous = \"machine-angles\"\n{rotary}point = [0, 0, 0]\nmodulo = true\n"
