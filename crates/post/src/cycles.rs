@@ -1,7 +1,7 @@
 //! Hole cycles: the control's own where it has them, moves where not.
 
 use crate::catalogue::{BlockName, WordName};
-use crate::place::{Kind, Stop};
+use crate::place::{Kind, Stop, same};
 use crate::rapid::corner;
 use crate::template::bit;
 use crate::walk::{Cut, Done, Walk, motion, refuse};
@@ -170,11 +170,15 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// To the retract level over the first hole: up first and then across, or across and then down.
+    /// To the retract level over the first hole: up first and then across, or across and then down. A tool that turns on
+    /// the way has no corner at which both legs are along its axis or across it: it goes there beyond all cuts, or from home.
     fn go_over(&mut self, over: &Pose, stop: &Stop) -> Done {
         let (Some(here), true) = (self.here, self.located) else {
             return self.rapid_to_hole(over, stop);
         };
+        if !same(here.axis(), over.axis()) {
+            return self.rapid_to_hole(over, stop);
+        }
         let corner = corner(here.point(), over.point(), over.axis());
         if corner.distance(here.point()) > self.resolution {
             self.rapid_to_hole(&over.at(corner)?, stop)?;

@@ -9,7 +9,7 @@ use crate::catalogue::{BlockName, WordName};
 use crate::place::{Kind, Stop, same};
 use crate::template::{ORIENTATION, POSITION, Words, bit};
 use crate::walk::{Done, Walk, motion, refuse};
-use geom::{Vec3, nearest_on_segment, off_great_circle};
+use geom::{Vec3, angle_between, between, nearest_on_segment, off_great_circle};
 use machine::linearise::Stance;
 use program::{Diagnostic, Feed, Pose};
 
@@ -71,10 +71,13 @@ impl Walk<'_> {
         let Some(from) = self.here.filter(|_| self.located) else {
             return self.approach(pose, stop);
         };
-        match self.turns(stop) && !matches!(self.course(&from, pose, stop, false)?, Course::AtOnce)
-        {
-            true => self.by_home(pose, stop),
-            false => self.rapid_at_once(pose, stop),
+        let at_once = match self.turns(stop) {
+            true => matches!(self.course(&from, pose, stop, false)?, Course::AtOnce),
+            false => self.vector_is_beyond(&from, pose),
+        };
+        match at_once {
+            true => self.rapid_at_once(pose, stop),
+            false => self.by_home(pose, stop),
         }
     }
 
@@ -162,6 +165,20 @@ impl Walk<'_> {
             return false;
         };
         self.place.degrees().is_some_and(|degrees| self.written(step.degrees) != degrees)
+    }
+
+    /// Whether the tool is beyond all cuts while the control turns it along a vector on the way from `from` to `to`, if
+    /// it does.
+    fn vector_is_beyond(&mut self, from: &Pose, to: &Pose) -> bool {
+        let (a, b) = (from.axis(), to.axis());
+        if same(a, b) {
+            return true;
+        }
+        let count = (angle_between(a, b).to_degrees() / SAMPLE).ceil().max(8.0) as usize;
+        (0..=count).all(|i| {
+            let part = i as f64 / count as f64;
+            self.is_beyond(from.point().lerp(to.point(), part), between(a, b, part))
+        })
     }
 
     /// How a rapid from `from` to `to` is written; `is_straight` where the source goes straight.

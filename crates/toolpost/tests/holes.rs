@@ -85,6 +85,56 @@ fn stand(machine: &Machine, kind: CycleKind, dwell: f64, row: &[&str]) {
     assert!(found, "{kind:?}: {row:#?} is not in\n{}", blocks.join("\n"));
 }
 
+/// Two holes of one cycle, whose tool axes differ, in an operation that also turns the tool in a cut: between them the
+/// tool turns, beyond all cuts or from home, and stops at no corner that is on neither way.
+#[test]
+fn the_tool_turns_between_two_holes_of_one_cycle() {
+    let pose = |x: f64, y: f64, z: f64, lean: [f64; 2]| {
+        let axis = Vec3::new(lean[0], lean[1], 1.0).normalize();
+        Pose::new(Vec3::new(x, y, z), axis).unwrap()
+    };
+    let reaming = Cycle { clearance: 3.0, depth: 7.0, ..cycle(REAM, 0.0) };
+    for machine in [
+        "fanuc-table-bc",
+        "dmu50-heidenhain",
+        "linuxcnc-xyzac",
+        "linuxcnc-xyzbc-head",
+        "sinumerik-840d-table-ac",
+        "sinumerik-840d-traori",
+    ] {
+        let machine = machine::load(machine).unwrap();
+        // One retract level from which the tool reaches the next hole beyond all cuts, and one from which it does not.
+        for retract in [40.0, 5.0] {
+            let mut source = Program::new("holes");
+            let ops = [
+                Op::Tool(Box::new(Tool { number: 1, length: Some(140.0), ..Tool::default() })),
+                Op::Spindle(Spindle::Clockwise(1000.0)),
+                Op::Feed(Feed::PerMinute(300.0)),
+                Op::Rapid(pose(0.0, 0.0, 60.0, [0.0, 0.0])),
+                Op::Cycle(Box::new(Cycle { retract, ..reaming })),
+                Op::Hole(pose(-7.8, 20.2, -4.6, [0.486, 0.157])),
+                Op::Hole(pose(-8.4, -27.2, -1.3, [-0.119, 0.06])),
+                Op::Hole(pose(-8.4, -7.2, -1.3, [-0.119, 0.06])),
+                Op::CycleOff,
+                Op::Rapid(pose(35.0, -20.0, 60.0, [-0.157, 0.308])),
+                Op::Rapid(pose(35.0, -20.0, 2.0, [-0.157, 0.308])),
+                Op::Line(pose(35.0, -20.0, -3.0, [-0.157, 0.308])),
+                Op::Line(pose(30.0, -6.0, -3.0, [-0.05, -0.016])),
+                Op::Rapid(pose(30.0, -6.0, 60.0, [-0.05, -0.016])),
+                Op::End,
+            ];
+            for (line, op) in (1..).zip(ops) {
+                source.push(line, op);
+            }
+            let output = post::write(&source, &machine)
+                .unwrap_or_else(|found| panic!("{}: {found:?}", machine.name));
+            let report = proof::prove(&source, &machine, "p", &output.text, &Default::default());
+            let text = String::from_utf8_lossy(&output.text);
+            assert!(report.proven, "{}: {:?}\n{text}", machine.name, report.mismatches);
+        }
+    }
+}
+
 /// LinuxCNC's manual, "Canned Cycles": P in seconds, the pitch of a tap is F / S.
 const LINUXCNC: [(CycleKind, f64, &str); 8] = [
     (DRILL, 0.0, "G98 G81 X10 Y5 Z-12 R3 F120"),
