@@ -66,6 +66,9 @@ pub enum Action {
     /// The control turns the rotary axes to its tilted plane, by a solution that it chooses itself; the linear axes stand
     /// still. Where the tool then stands in the work, only the machine knows.
     Swivel(TiltChoice),
+    /// By rapid in a tilted plane while nobody knows how high the tool is over it: to the line along the tool axis
+    /// through this point.
+    Across(Box<Position>),
     /// The hole cycle for the [`Action::Hole`]s that follow.
     Cycle(Box<Cycle>),
     /// End of the hole cycle.
@@ -333,6 +336,7 @@ impl Action {
             | Action::Home(_)
             | Action::MachineMove(_)
             | Action::Swivel(_)
+            | Action::Across(_)
             | Action::Cycle(_)
             | Action::CycleOff
             | Action::Feed(_)

@@ -653,6 +653,16 @@ fn a_tilted_plane_turns_about_z_then_new_x_then_newest_z() {
 }
 
 #[test]
+fn x_and_y_of_a_tilted_plane_are_known_before_its_z_is() {
+    let got = ops(FANUC, "G68.2 X10. Y20. Z30. I90. J90. K0\nG53.1\nG0 X1. Y2.\nZ3.\n");
+    let Action::Across(over) = &got[1] else { panic!("{got:?}") };
+    assert!(over.point.distance(Vec3::new(10.0, 20.0 + 1.0, 30.0 + 2.0)) < 1e-12, "{over:?}");
+    assert!(over.axis().unwrap().distance(Vec3::X) < 1e-12, "{over:?}");
+    let Action::Rapid(pose) = &got[2] else { panic!("{got:?}") };
+    assert!(pose.point.distance(Vec3::new(10.0 + 3.0, 20.0 + 1.0, 30.0 + 2.0)) < 1e-12, "{pose:?}");
+}
+
+#[test]
 fn a_tilted_plane_is_complete_and_reached_before_anything_moves() {
     let plane = "G68.2 X0 Y0 Z0 I0 J45. K0\n";
     for rest in

@@ -491,6 +491,19 @@ L X+1 F100\nL Y+1\n"
 }
 
 #[test]
+fn x_and_y_of_a_turned_plane_are_known_before_its_z_is() {
+    let ops = run_five("PLANE SPATIAL SPA+0 SPB+90 SPC+0 TURN FMAX\nL X+1 Y+2 R0 FMAX\nL Z+3 FMAX");
+    // Z of the plane is X of the work, its X is -Z.
+    let Some(Action::Across(over)) = ops.iter().find(|op| matches!(op, Action::Across(_))) else {
+        panic!("{ops:?}")
+    };
+    assert!(over.point.distance(Vec3::new(0.0, 2.0, -1.0)) < 1e-12, "{over:?}");
+    assert!(over.axis().unwrap().distance(Vec3::X) < 1e-12);
+    let pose = ops.iter().filter_map(Action::position).next_back().unwrap();
+    assert!(pose.point.distance(Vec3::new(3.0, 2.0, -1.0)) < 1e-12, "{pose:?}");
+}
+
+#[test]
 fn a_plane_by_vectors_has_its_x_along_the_base() {
     let ops = run_five(
         "PLANE VECTOR BX+0 BY+1 BZ+0 NX+1 NY+0 NZ+1 TURN FMAX

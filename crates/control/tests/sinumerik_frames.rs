@@ -106,7 +106,7 @@ fn an_additive_plane_turns_in_the_axes_of_the_last() {
     let text =
         "CYCLE800(0,\"\",0,57,0,0,0,90,0,0,0,0,0,1)\nCYCLE800(0,\"\",1,57,0,0,0,0,90,0,0,0,0,1)";
     let ops = blocks(&format!("{text}\nG0 X0 Y0\nZ1"));
-    near(poses(&ops)[1].axis().unwrap(), v(1.0, 0.0, 0.0));
+    near(poses(&ops)[0].axis().unwrap(), v(1.0, 0.0, 0.0));
 }
 
 #[test]
@@ -116,11 +116,23 @@ fn swivelling_lifts_as_asked_and_makes_the_position_unknown() {
     assert_eq!(ops[0], Action::Home(Axes::Z));
     let poses = poses(&ops);
     assert!(poses[0].point.x == 1.0 && poses[0].point.y.is_nan());
-    near(poses[2].point, v(1.0, 2.0, 3.0));
-    assert!(matches!(poses[3].orientation, Orientation::Rotary { .. }));
-    assert!(degrees(&poses[3]).0[0].is_nan() && poses[3].point.y.is_nan());
+    near(poses[1].point, v(1.0, 2.0, 3.0));
+    assert!(matches!(poses[2].orientation, Orientation::Rotary { .. }));
+    assert!(degrees(&poses[2]).0[0].is_nan() && poses[2].point.y.is_nan());
     let all = blocks("CYCLE800(2,\"\",0,57,0,0,0,10,0,0,0,0,0,1)");
     assert_eq!(all[0], Action::Home(Axes::LINEAR));
+}
+
+#[test]
+fn x_and_y_of_a_swivelled_plane_are_known_before_its_z_is() {
+    let ops = blocks("CYCLE800(0,\"\",0,57,0,0,5,90,0,0,0,0,0,1)\nG0 X1\nY2\nZ3");
+    // The plane's Y is Z of the work, its Z is -Y; X alone says nothing of the line along the tool.
+    let Some(Action::Across(over)) = ops.iter().find(|op| matches!(op, Action::Across(_))) else {
+        panic!("{ops:?}")
+    };
+    near(over.point, v(1.0, 0.0, 7.0));
+    near(over.axis().unwrap(), v(0.0, -1.0, 0.0));
+    near(poses(&ops)[1].point, v(1.0, -3.0, 7.0));
 }
 
 #[test]

@@ -101,6 +101,13 @@ impl Machine {
         (1..8).map(|i| off(f64::from(i) / 8.0)).fold(0.0, f64::max)
     }
 
+    /// Where +Z of the machine points in the work frame (unit vector) with the rotary axes at `degrees`: a table turns the
+    /// part under it, a head does not.
+    pub fn up_at(&self, degrees: [f64; 3]) -> Vec3 {
+        self.on(Mount::Table)
+            .fold(Vec3::Z, |v, axis| rotate(v, axis.axis, -axis.turned(degrees[axis.index()])))
+    }
+
     /// The positions of the linear axes (mm) that bring the tool tip to `tip` (mm, work frame) with
     /// the rotary axes at `degrees`: the inverse of [`Machine::forward`] for given rotary positions.
     pub fn linear_for(&self, tip: Vec3, degrees: [f64; 3], tool_length: f64) -> Vec3 {

@@ -414,6 +414,10 @@ impl<'a> Lift<'a> {
             Action::WorkOffsetData(data) => self.push(line, Op::WorkOffsetData(data)),
             // The moves behind it say where the tool goes.
             Action::Swivel(_) => {}
+            Action::Across(position) => {
+                let nowhere = Position { point: Vec3::NAN, ..*position };
+                self.place = Place::At(self.spot(&nowhere));
+            }
             Action::CycleOff => self.push(line, Op::CycleOff),
             Action::Feed(feed) => self.push(line, Op::Feed(feed)),
             Action::Spindle(spindle) => self.push(line, Op::Spindle(spindle)),

@@ -11,6 +11,7 @@ use crate::template::{ORIENTATION, POSITION, Words, bit};
 use crate::walk::{Done, Walk, motion, refuse};
 use geom::{Vec3, angle_between, between, nearest_on_segment, off_great_circle};
 use machine::linearise::Stance;
+use machine::{Mount, Unsaid};
 use program::{Diagnostic, Feed, Pose};
 
 /// Part of the corridor that is used, and of the angle by which the tool axis may be off its way: the rest is for the
@@ -41,6 +42,23 @@ enum Course {
     Feed,
     /// From home, where the axes turn.
     Home,
+}
+
+/// Sine of the angle over level from which a tilted tool comes down along itself from above all cuts.
+const STEEP: f64 = 0.5;
+
+/// A tool that points down by more than this sine has no room beside it.
+const NEARLY_DOWN: f64 = 0.9;
+
+/// A tool that points down by less than this sine lies level.
+const LEVEL: f64 = 1e-4;
+
+/// By which places the tool comes from home to a pose.
+struct Entry {
+    /// Above all cuts: from anywhere at home all axes may go there together.
+    above: Pose,
+    /// Under it, from where the tool goes along its axis to the pose.
+    beyond: Pose,
 }
 
 impl Walk<'_> {
@@ -89,10 +107,45 @@ impl Walk<'_> {
         self.rapid_block()
     }
 
-    /// The first position after a tool change or in a new orientation, in the machine's order of axes.
+    /// The first position after a tool change or in a new orientation, from home.
+    ///
+    /// X and Y may stand anywhere. Where the Z of the program is that of the machine, they go first, at the height of
+    /// home; otherwise all axes go together to a place above all cuts. What is left is a way along the tool axis.
     pub(crate) fn approach(&mut self, pose: &Pose, stop: &Stop) -> Done {
-        let machine = self.machine;
-        for group in &machine.approach {
+        let axis = pose.axis();
+        let in_order = self.machine.approach.iter().map(String::as_str);
+        if self.wire.is_some() {
+            return self.in_groups(pose, stop, in_order);
+        }
+        self.home_clears(axis, stop)?;
+        let ups = self.ups(axis, stop);
+        let is_along = |other: Vec3| ups.iter().all(|up| same(*up, other));
+        let is_level = match &self.place.kind {
+            Kind::Bare | Kind::Plain | Kind::Machine => true,
+            Kind::Tilted(_, tilted) => is_along(*tilted),
+            Kind::ToolCenter | Kind::Vectors => is_along(Vec3::Z),
+        };
+        if is_level && is_along(axis) {
+            return self.in_groups(pose, stop, in_order);
+        }
+        let Entry { above, beyond } = self.entry(pose, &ups, is_level)?;
+        if is_level {
+            self.in_groups(&beyond, stop, in_order)?;
+        } else {
+            self.in_groups(&above, stop, ["XYZ"])?;
+            self.in_groups(&beyond, stop, ["XYZ"])?;
+        }
+        self.in_groups(pose, stop, ["XYZ"])
+    }
+
+    /// A position in blocks that name these axes, one after the other.
+    fn in_groups<'g>(
+        &mut self,
+        pose: &Pose,
+        stop: &Stop,
+        groups: impl IntoIterator<Item = &'g str>,
+    ) -> Done {
+        for group in groups {
             self.aim(pose, stop);
             let words = group.chars().filter_map(|c| WordName::named(c.encode_utf8(&mut [0; 4])));
             let group = words.fold(0, |all, word| all | bit(word));
@@ -109,6 +162,115 @@ impl Walk<'_> {
         self.located = true;
         self.here = Some(*pose);
         self.check_limits()
+    }
+
+    /// Where +Z of the machine points on the part with the tool along `axis`: in both ways, where the control chooses.
+    fn ups(&self, axis: Vec3, stop: &Stop) -> Vec<Vec3> {
+        let machine = self.machine;
+        if machine.rotary.iter().all(|rotary| rotary.on == Mount::Head) {
+            return vec![Vec3::Z];
+        }
+        if machine.rotary.iter().all(|rotary| rotary.on == Mount::Table) {
+            return vec![axis];
+        }
+        match stop.step {
+            Some(step) => vec![machine.up_at(self.written(step.degrees))],
+            None => {
+                let solutions = machine.inverse(axis).ok().into_iter();
+                solutions
+                    .flat_map(|all| all.degrees)
+                    .map(|degrees| machine.up_at(degrees))
+                    .collect()
+            }
+        }
+    }
+
+    /// Holds home, where its place is known, above all that the source cuts: a table swings the part up to it.
+    ///
+    /// # Errors
+    /// `home-height`.
+    fn home_clears(&mut self, axis: Vec3, stop: &Stop) -> Done {
+        let (machine, length) = (self.machine, self.tool_length());
+        let home = machine.safe_height.unwrap_or(machine.linear[2].max);
+        let (Some(zero), Some(measured)) = (machine.work_zero, length) else { return Ok(()) };
+        if !home.is_finite() {
+            return Ok(());
+        }
+        let stances = match stop.step {
+            Some(step) => vec![self.written(step.degrees)],
+            None if machine.rotary.is_empty() => vec![[0.0; 3]],
+            None => machine.inverse(axis).map_or(Vec::new(), |all| all.degrees.to_vec()),
+        };
+        let top = Vec3::new(0.0, 0.0, home - measured - zero.z);
+        for degrees in stances {
+            if machine.unsaid(degrees, length).is_some() {
+                continue;
+            }
+            let up = machine.up_at(degrees);
+            let hangs = (-axis.dot(up)).max(0.0) * measured;
+            let clearance = machine.capabilities.rapid_clearance + ROUNDING;
+            let needed = self.cut_reach(up) + clearance + hangs;
+            let short = needed - machine.forward(top, degrees, measured).0.dot(up);
+            if short > 0.0 {
+                let message = format!(
+                    "with Z home at {home} mm the tool, {measured} mm long, is {short:.3} mm short of {clearance} mm above \
+                     all cuts: so far up do the rotary axes bring the part"
+                );
+                let help = "a shorter tool, a part nearer to the rotary axes, or the `safe_height` and `work_zero` that the machine has";
+                return Err(refuse("home-height", message).help(help).into());
+            }
+        }
+        Ok(())
+    }
+
+    /// By which places the tool comes from home to `pose` where it does not stand along Z of the machine, or Z of the
+    /// program does not.
+    ///
+    /// # Errors
+    /// A tool that points up, whose length nobody says.
+    fn entry(
+        &mut self,
+        pose: &Pose,
+        ups: &[Vec3],
+        is_level: bool,
+    ) -> Result<Entry, Box<Diagnostic>> {
+        let (tip, axis) = (pose.point(), pose.axis());
+        let clearance = self.machine.capabilities.rapid_clearance + ROUNDING;
+        let mut entry = Entry { above: *pose, beyond: *pose };
+        let mut farthest = 0.0;
+        for &up in ups {
+            let rise = axis.dot(up);
+            let hangs = if rise < -LEVEL { -rise } else { 0.0 };
+            let Some(length) = self.tool_length().or((hangs == 0.0).then_some(0.0)) else {
+                let message = "the tool points down, and how far it hangs there nobody says: its length is missing";
+                return Err(refuse("tool-length", message)
+                    .help(Unsaid::ToolLength.way_out())
+                    .into());
+            };
+            let below = self.cut_reach(up) + clearance + hangs * length - tip.dot(up);
+            if below <= 0.0 {
+                continue;
+            }
+            if hangs > NEARLY_DOWN {
+                let message = "the tool points down along Z of the machine: from home it comes to no place beside the part";
+                let help = "another set-up, in which it points to the side or up";
+                return Err(refuse("rapid-path", message).help(help).into());
+            }
+            let inside = (self.cut_reach(axis) + clearance - tip.dot(axis)).max(0.0);
+            let (out, climb) = if rise >= STEEP || is_level && rise > 0.0 && below / rise <= inside
+            {
+                (below / rise, 0.0)
+            } else {
+                let out = (inside + hangs * below) / (1.0 - hangs * hangs);
+                (out, (below - out * rise).max(0.0))
+            };
+            if out + climb > farthest {
+                farthest = out + climb;
+                let beyond = tip + axis * out;
+                entry = Entry { above: pose.at(beyond + up * climb)?, beyond: pose.at(beyond)? };
+            }
+        }
+        Ok(entry)
     }
 
     /// Writes the rapid that has been aimed.

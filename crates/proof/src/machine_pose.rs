@@ -97,6 +97,11 @@ impl<'a> Standing<'a> {
         tilt::way_out(self.machine, self.swivels.or(self.choice)?)
     }
 
+    /// Whether it has turned them, and no block has moved since.
+    pub fn has_swivelled(&self) -> bool {
+        self.swivels.is_some()
+    }
+
     /// The axes stand where nobody knows.
     pub fn forget(&mut self) {
         self.angles.clear();

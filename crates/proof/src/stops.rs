@@ -105,7 +105,7 @@ fn corner(gauge: &Gauge, stop: &Station, start: &Station, end: &Station, free: b
 
 /// The same for a stop whose place is not known, in a kind of coordinates that not both ends have. What
 /// its block says counts against the end that has the same; where neither has, only the height must be
-/// unknown: then Z is home, and nothing has gone down yet.
+/// unknown: then Z is home. Where the axes of the machine go meanwhile, `approach` looks at.
 fn partly_known(stop: &Station, start: &Station, end: &Station, slack: f64) -> bool {
     let s = stop.position;
     let alike = |other: &Station| s.orientation == other.position.orientation;

@@ -72,7 +72,8 @@ fn the_length_of_the_tool_lifts_the_slide_of_z() {
         all[0] = tool(length);
         all.push(Op::Rapid(pose));
         let [own, ..] = notations(&machine, Vec3::ZERO, 90.0, 0.0);
-        let does = vec![Action::Home(Axes::Z), Action::Rapid(own)];
+        let turned = Action::Rapid(Position { point: Vec3::NAN, ..own });
+        let does = vec![Action::Home(Axes::Z), turned, Action::Rapid(own)];
         let report = judge(&machine, &program(all), does);
         assert_eq!(rules(&report), expected);
         assert!(report.travel.unsaid.is_empty());

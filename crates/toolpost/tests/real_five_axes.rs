@@ -440,12 +440,15 @@ impl Walk {
     fn step(&mut self, here: &Spot, spot: &Spot) -> Result<(), String> {
         loop {
             let way = &self.ways[self.at];
-            let passed = geom::nearest_on_segment(here.tip, spot.tip, way.end()).1;
+            let off = |place| geom::nearest_on_segment(here.tip, spot.tip, place).1;
+            let (passed, within) = (off(way.end()), self.tolerance.max(0.02));
             let turned = angle_between(spot.axis, way.axes[1]).to_degrees();
-            self.reached |= passed <= self.tolerance.max(0.02) && turned <= SWEEP;
+            self.reached |= passed <= within && turned <= SWEEP;
             let next = self.ways.get(self.at + 1);
-            let goes_on =
-                self.reached && next.is_some_and(|next| self.on(next, here, spot).is_some());
+            // A rapid from elsewhere may pass the end of its way between two samples.
+            let passes = |next: &Way| !next.cuts && off(next.end()) <= within;
+            let goes_on = self.reached
+                && next.is_some_and(|next| self.on(next, here, spot).is_some() || passes(next));
             if !goes_on && let Some((off, bend)) = self.on(way, here, spot) {
                 // At a corner it is on the motion before or behind as well.
                 let beside = [self.at.wrapping_sub(1), self.at + 1].map(|at| self.ways.get(at));

@@ -186,7 +186,9 @@ impl<'a> Compensator<'a> {
                 self.at.point = Vec3::NAN;
             }
             Action::Arc(_) if self.told => return Err(on_arc(record.line)),
-            Action::WorkOffset(_) | Action::Probe(_) => self.at.point = Vec3::NAN,
+            Action::WorkOffset(_) | Action::Probe(_) | Action::Across(_) => {
+                self.at.point = Vec3::NAN;
+            }
             Action::Home(axes) => self.leave_for(*axes),
             Action::MachineMove(to) => self.leave_for(to.axes()),
             action => {

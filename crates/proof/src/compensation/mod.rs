@@ -83,7 +83,8 @@ impl Part<'_> {
             | Action::WorkOffset(_)
             | Action::Hole(_)
             | Action::Thread(_)
-            | Action::Probe(_) => Part::End,
+            | Action::Probe(_)
+            | Action::Across(_) => Part::End,
             Action::Swivel(_)
             | Action::Cycle(_)
             | Action::CycleOff

@@ -68,7 +68,11 @@ impl Prover<'_> {
         // A cycle may end at the R plane: then the way up to the retract level is still to come.
         let below = own.retract == own.clearance && cycle.retract > cycle.clearance;
         drilled.place(&hole, !below).map_err(|how| self.lost_at(line, "hole", &how))?;
+        let wrong_way = self.wrong_cycle(&drilled.r_plane);
         self.approached(&drilled.r_plane)?;
+        if let Some(found) = wrong_way {
+            self.found(found);
+        }
         // A cycle itself goes across first, then down.
         self.comes_from_above(&hole, None)?;
         for difference in drilled.kind(&hole) {

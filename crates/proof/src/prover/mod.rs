@@ -1,5 +1,6 @@
 //! The walk of the program along the source.
 
+mod approach;
 mod cut;
 mod drilling;
 mod events;
@@ -53,6 +54,10 @@ pub struct Prover<'a> {
     accepted: Accepted,
     /// Whether Z is home, or where the tool change brings it, so that axes may turn.
     raised: bool,
+    /// Whether the tool has stood at a place that is known.
+    has_stood: bool,
+    /// The line along the tool axis on which the tool stands in a tilted plane, at a height that nobody knows.
+    over: Option<Place>,
     ended: bool,
     lost: bool,
 }
@@ -82,6 +87,9 @@ enum Gait {
 
 /// The most stops that a rapid may have: a corner for each of five axes, and lifts.
 const MOST_STOPS: usize = 16;
+
+/// A coordinate of a block counts as repeated below this, mm.
+const SAME: f64 = 1e-6;
 
 /// What a comparison answers: the mismatch after which the two motions cannot be laid beside each
 /// other any more.
@@ -113,6 +121,8 @@ impl<'a> Prover<'a> {
             report: Report { tolerances: allowed, ..Report::default() },
             accepted: tolerances.accepted,
             raised: false,
+            has_stood: false,
+            over: None,
             ended: false,
             lost: false,
         };
@@ -224,7 +234,9 @@ impl<'a> Prover<'a> {
             Action::Swivel(choice) => {
                 self.standing.swivel(*choice);
                 self.check_height(line);
+                self.over = None;
             }
+            Action::Across(position) => return self.across(line, position),
             Action::Tool(tool) => return self.change_tool(line, tool),
             Action::Dwell(seconds) if *seconds == 0.0 => {}
             Action::Dwell(seconds) => return self.happens(line, Step::Dwell(*seconds)),
@@ -297,9 +309,8 @@ impl<'a> Prover<'a> {
             return Ok(());
         }
         self.unclamped(line, &position.orientation);
-        if position.point.z.is_finite() {
-            self.raised = false;
-        } else if gait == Gait::Rapid && self.turns_by_words(&position.orientation) {
+        let is_up = position.point.z.is_nan();
+        if is_up && gait == Gait::Rapid && self.turns_by_words(&position.orientation) {
             self.check_height(line);
         }
         self.measured(line, position)?;
@@ -328,6 +339,9 @@ impl<'a> Prover<'a> {
             && gait == Gait::Rapid
             && self.turns_at_home(&to)
         {
+            if let Some(found) = self.wrong_approach(&to) {
+                self.found(found);
+            }
             self.standing.arrive(&to.position.orientation);
             self.here = to;
             return Ok(());
@@ -371,6 +385,9 @@ impl<'a> Prover<'a> {
         }
         self.standing.arrive(&to.position.orientation);
         self.here = to;
+        self.raised &= is_up;
+        self.has_stood |= to.place.known();
+        self.over = None;
         outcome
     }
 

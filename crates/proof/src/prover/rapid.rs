@@ -28,7 +28,7 @@ impl Prover<'_> {
             self.arrive(to);
             return Ok(());
         }
-        match self.goes_on_the_way(to) {
+        match self.goes_on_the_way(to) || self.begins_above(to) {
             true => Ok(()),
             false => self.stop_at(to),
         }
@@ -238,6 +238,7 @@ impl Prover<'_> {
         }
         self.leg.homed |= z;
         self.raised |= z;
+        self.over = None;
         let mut pose = self.here.position;
         for i in (0..3).filter(|i| axes.contains(Axes::linear(*i))) {
             pose.point[i] = f64::NAN;

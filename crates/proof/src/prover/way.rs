@@ -20,24 +20,27 @@ impl Prover<'_> {
     /// What is wrong with the way of a rapid block from where the tool is to `to`.
     pub(super) fn wrong_way(&mut self, to: &Station) -> Option<Diagnostic> {
         let gauge = self.gauge;
-        if gauge.machine.wire.is_some() || !to.place.known() {
+        if gauge.machine.wire.is_some() {
             return None;
         }
         let Step::Move(goal) = &self.cursor.step else { return None };
-        let from = goal.from?;
+        if !self.here.place.known() {
+            return self.wrong_approach(to);
+        }
+        if !to.place.known() {
+            return None;
+        }
         let here = self.here;
         let turns = here.position.orientation != to.position.orientation;
+        let from = goal.from.unwrap_or(goal.to);
         let (straight, end) = match &goal.kind {
-            Kind::Rapid => (Some((from, goal.to)), goal.to),
+            Kind::Rapid => (goal.from.map(|from| (from, goal.to)), goal.to),
             // How a cycle goes, it decides itself; what comes from above is looked at there.
             Kind::Hole(_) if self.leg.hole.over || !turns => return None,
             Kind::Hole(cycle) => (None, goal.to.lifted(cycle.clearance)),
             Kind::Line | Kind::Arc(_) => (None, self.leg.left.map_or(from, |left| left.place)),
             Kind::Thread(_) | Kind::Probe { .. } | Kind::Broken(_) => return None,
         };
-        if !here.place.known() {
-            return self.wrong_way_from_home(to);
-        }
         let way = Way { gauge: &gauge, straight };
         let is_straight = gauge.machine.has_straight_rapids() && !turns;
         if is_straight && way.holds(&here.place) && way.holds(&to.place) {
@@ -90,22 +93,11 @@ impl Prover<'_> {
         way.holds(&to.place).then(|| (t, goal.length()))
     }
 
-    /// From home only Z comes down, or all axes together to a place beyond all cuts.
-    fn wrong_way_from_home(&mut self, to: &Station) -> Option<Diagnostic> {
-        let (a, b) = (self.here.position, to.position);
-        // In a tilted plane no coordinate is known until all are.
-        if matches!(b.orientation, Orientation::Axis(axis) if axis != Vec3::Z) {
-            return None;
-        }
-        if a.orientation == b.orientation && a.point.x == b.point.x && a.point.y == b.point.y {
-            return None;
-        }
-        self.short_of_clearance(std::iter::once(&to.place))?;
-        Some(self.way_refused(to, "comes down from home while other axes are still on their way"))
-    }
-
     /// By how much the tool is not the clearance beyond all cuts at the worst of these places, mm.
-    fn short_of_clearance<'p>(&mut self, places: impl Iterator<Item = &'p Place>) -> Option<f64> {
+    pub(super) fn short_of_clearance<'p>(
+        &mut self,
+        places: impl Iterator<Item = &'p Place>,
+    ) -> Option<f64> {
         let worst = places.map(|place| self.short(place)).fold(f64::NEG_INFINITY, f64::max);
         let slack = self.gauge.slack(&self.here);
         (worst > slack).then_some(worst)
@@ -113,12 +105,22 @@ impl Prover<'_> {
 
     /// How far a place is below the clearance beyond all cuts, along the tool axis there, mm.
     fn short(&mut self, place: &Place) -> f64 {
-        let cuts = *self.cuts.get_or_insert_with(|| CutBox::of(self.source));
+        let cuts = self.cuts();
         let clearance = self.gauge.machine.capabilities.rapid_clearance;
         cuts.reach(place.axis) + clearance - place.tip.dot(place.axis)
     }
 
-    fn way_refused(&self, to: &Station, what: &str) -> Diagnostic {
+    /// The box of all that the source cuts.
+    fn cuts(&mut self) -> CutBox {
+        *self.cuts.get_or_insert_with(|| CutBox::of(self.source))
+    }
+
+    /// How far the cuts of the source reach along the unit vector `direction`, mm.
+    pub(super) fn cut_reach(&mut self, direction: Vec3) -> f64 {
+        self.cuts().reach(direction)
+    }
+
+    pub(super) fn way_refused(&self, to: &Station, what: &str) -> Diagnostic {
         let message = format!(
             "source line {}: the program goes by rapid to {} and {what}",
             self.cursor.line, to.place

@@ -472,7 +472,14 @@ impl Step<'_, '_, '_> {
             self.switch_compensation();
         }
         let pose = self.state.pose(to, target.rotary);
-        self.actions.push(if rapid { Action::Rapid(pose) } else { Action::Line(pose) });
+        let at_no_height = matches!(self.state.tilt, Tilt::Reached(_)) && to.z.is_nan() && !aside;
+        self.actions.push(match rapid {
+            true if at_no_height => {
+                Action::Across(Box::new(self.state.pose(to.with_z(0.0), target.rotary)))
+            }
+            true => Action::Rapid(pose),
+            false => Action::Line(pose),
+        });
         self.state.arrive(target.point, target.rotary);
         Ok(())
     }

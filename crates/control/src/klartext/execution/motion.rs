@@ -209,7 +209,12 @@ impl Control<'_, '_> {
         if rapid {
             self.path = Some(element);
             self.check_descent(s)?;
-            return self.emit(Action::Rapid(self.pose(self.here)));
+            let [x, y, z] = self.here.to_array();
+            let turned = self.tilt.as_ref().is_some_and(|tilt| tilt.turned);
+            return self.emit(match turned && z.is_nan() && x.is_finite() && y.is_finite() {
+                true => Action::Across(Box::new(self.pose(self.here.with_z(0.0)))),
+                false => Action::Rapid(self.pose(self.here)),
+            });
         }
         self.contour_element(s, element, corner)
     }

@@ -65,7 +65,8 @@ impl Interpreter<'_, '_> {
                 self.use_feed(source)?;
             }
             let [x, y, z] = position.to_array();
-            if self.state.frames.turned() && z.is_finite() && !(x.is_finite() && y.is_finite()) {
+            let over = x.is_finite() && y.is_finite();
+            if self.state.frames.turned() && z.is_finite() && !over {
                 let message =
                     "Z in a turned frame before X and Y: where the tool goes down is not known";
                 return Err(source.block_error("unknown-position", message));
@@ -75,7 +76,14 @@ impl Interpreter<'_, '_> {
             self.state.programmed = programmed;
             let pose = self.state.pose(position);
             let cut = motion == Motion::Line;
-            let action = if cut { Action::Line(pose) } else { Action::Rapid(pose) };
+            let at_no_height = self.state.frames.swivel().is_some() && z.is_nan() && over;
+            let action = match cut {
+                true => Action::Line(pose),
+                false if at_no_height => {
+                    Action::Across(Box::new(self.state.pose(position.with_z(0.0))))
+                }
+                false => Action::Rapid(pose),
+            };
             if self.cornered(block) {
                 let element = Element { start, end: position, circle: None, cut };
                 self.go_round(source, block, element, action)?;
