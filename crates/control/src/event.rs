@@ -75,6 +75,8 @@ pub enum Action {
     CycleOff,
     /// Feed from here on.
     Feed(Feed),
+    /// Which axes the feed of a cut is the speed of, from here on.
+    FeedPath(FeedPath),
     /// Spindle from here on.
     Spindle(Spindle),
     /// Constant surface speed from here on, m/min; `None` is the speed of the spindle itself again.
@@ -142,6 +144,71 @@ pub enum TiltChoice {
     /// SINUMERIK `CYCLE800` with `_DIR` 1 (`true`) or -1: of those within the travel the one with the higher, or lower,
     /// position of the rotary axis that the swivel data set refers to.
     Higher(bool),
+}
+
+/// Along which way a control counts the feed of a straight cut. Where no rotary axis turns, that is the way of the tool tip
+/// on every control, and so it is where the control keeps the tip (`G43.4`, `M128`), unless its feed group says otherwise.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum FeedPath {
+    /// X, Y, Z and the axes A, B, C of a feed group together, each degree as so many mm; an axis with 0 goes along
+    /// (SINUMERIK `FGROUP`, `FGREF`). It counts so with tool-centre control too.
+    Group([f64; 3]),
+    /// All axes together, a degree as a mm.
+    AllAxes,
+    /// X, Y and Z, and the rotary axes arrive with them; where these stand still, the degrees of all rotary axes together.
+    LinearAxes,
+    /// A parameter of the control decides, and nobody has said how it stands.
+    AsSetUp,
+}
+
+/// A way below this, mm, is none: far below any word, and what frames add to a position (LinuxCNC `emccanon.cc`, `tiny`).
+const STILL: f64 = 1e-7;
+
+impl FeedPath {
+    /// Whether the number behind F is the speed of the tool tip in a straight cut between two positions: no rotary axis turns,
+    /// or none whose degrees count while the control keeps the tip.
+    #[inline]
+    pub fn is_of_tip(&self, from: &Position, to: &Position) -> bool {
+        let counts = || matches!(self, FeedPath::Group(weights) if *weights != [0.0; 3]);
+        match (from.orientation, to.orientation) {
+            (
+                Orientation::Rotary { degrees: a, .. },
+                Orientation::Rotary { degrees: b, tool_center },
+            ) => a == b || (tool_center && !counts()),
+            (a, b) => a == b || !counts(),
+        }
+    }
+
+    /// The length of the straight way between two positions, mm, by which the control divides the feed to find the time
+    /// of a cut. `None` where nobody knows it: a parameter decides, or none of the axes that move is in the feed group.
+    pub fn length(&self, from: &Position, to: &Position) -> Option<f64> {
+        let linear = from.point.distance(to.point);
+        let (turns, tool_center) = match (from.orientation, to.orientation) {
+            (
+                Orientation::Rotary { degrees: a, tool_center: s },
+                Orientation::Rotary { degrees: b, tool_center: t },
+            ) if s == t => ([0, 1, 2].map(|i| b[i] - a[i]), t),
+            (Orientation::Axis(a), Orientation::Axis(b)) => {
+                // How far a vector turns each axis, only the control knows.
+                let counts = matches!(self, FeedPath::Group(weights) if *weights != [0.0; 3]);
+                return (a == b || !counts).then_some(linear);
+            }
+            (Orientation::Rotary { .. } | Orientation::Axis(_), _) => return None,
+        };
+        let together = |weights: [f64; 3]| {
+            let squares = [0, 1, 2].map(|i| (weights[i] * turns[i]).powi(2));
+            (linear * linear + squares.iter().sum::<f64>()).sqrt()
+        };
+        match self {
+            _ if turns == [0.0; 3] => Some(linear),
+            FeedPath::Group(weights) => Some(together(*weights)).filter(|way| *way > STILL),
+            _ if tool_center => Some(linear),
+            FeedPath::AllAxes => Some(together([1.0; 3])),
+            FeedPath::LinearAxes if linear > STILL => Some(linear),
+            FeedPath::LinearAxes => Some(together([1.0; 3])),
+            FeedPath::AsSetUp => None,
+        }
+    }
 }
 
 /// What may do harm although the motion is known: a state that hangs on a setting of the control or on its operator, or
@@ -340,6 +407,7 @@ impl Action {
             | Action::Cycle(_)
             | Action::CycleOff
             | Action::Feed(_)
+            | Action::FeedPath(_)
             | Action::Spindle(_)
             | Action::SurfaceSpeed(_)
             | Action::Coolant(_)

@@ -24,7 +24,9 @@ pub mod tools;
 mod way;
 
 use compensation::Compensator;
-pub use event::{Action, ArcTo, Event, Orientation, Position, Risk, Thread, TiltChoice};
+pub use event::{
+    Action, ArcTo, Event, FeedPath, Orientation, Position, Risk, Thread, TiltChoice,
+};
 pub use folders::Folders;
 use geom::Vec3;
 use iso::Flavor;
@@ -126,6 +128,24 @@ impl Dialect {
             | Dialect::Agie => Ending::Code,
             Dialect::Mach3 | Dialect::Grbl => Ending::CodeOrText,
             Dialect::Marlin | Dialect::Points | Dialect::FreeCad => Ending::Text,
+        }
+    }
+
+    /// Along which way this control counts the feed before a program says it (docs/controls, "F where rotary axes turn").
+    pub fn feed_path(self) -> FeedPath {
+        match self {
+            Dialect::Sinumerik | Dialect::Sinumerik828d => FeedPath::Group([0.0; 3]),
+            Dialect::Klartext | Dialect::Grbl => FeedPath::AllAxes,
+            Dialect::LinuxCnc | Dialect::Marlin => FeedPath::LinearAxes,
+            // FANUC 1408#0 (rotary feed by a radius), Haas settings 34 and 79, Mach3 "Use Radius for Feedrate".
+            Dialect::Fanuc
+            | Dialect::Haas
+            | Dialect::Mach3
+            | Dialect::FanucWire
+            | Dialect::Sodick
+            | Dialect::Agie
+            | Dialect::Points
+            | Dialect::FreeCad => FeedPath::AsSetUp,
         }
     }
 

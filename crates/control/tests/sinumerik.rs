@@ -96,7 +96,7 @@ fn header_labels_skip_marks_and_comments_are_read() {
 #[test]
 fn words_that_do_not_move_leave_no_trace() {
     let text = "G60 G601 SOFT FFWON COMPCAD G642 ADIS=0.1 DYNFINISH\nCYCLE832(0.01,_FINISH,1)\n\
-                FGROUP(X,Y,Z,A)\nM41\nM26 M28\nSTOPRE\nCYCLE832()\nORIWKS ORIAXES\nFNORM\nSETMS\n\
+                FGROUP(X,Y,Z)\nM41\nM26 M28\nSTOPRE\nCYCLE832()\nORIWKS ORIAXES\nFNORM\nSETMS\n\
                 SETMS(1)\nGROUP_BEGIN(0,\"HEAD\",0,0)\nGROUP_ADDEND(0,0)\nGROUP_END(0,0)";
     let text = text.replace("ORIWKS ORIAXES", "ORIWKS\nORIAXES");
     let text = text.replace("G60 G601", "G601");
@@ -337,4 +337,34 @@ fn another_work_offset_makes_the_position_unknown() {
 
 fn machine_move(linear: [Option<f64>; 3], rotary: [Option<f64>; 3]) -> Box<MachineMove> {
     Box::new(MachineMove { linear, rotary })
+}
+
+/// The example of the manual (Fundamentals, "Feedrate", FGROUP and FGREF): which way `R1=$AC_TIME` is measured along. With
+/// `FGREF[A]=360/(2*$PI)` in inches a degree counts an inch.
+#[test]
+fn the_feed_group_and_its_radius_say_what_the_feed_counts() {
+    let text = "FGROUP(X,A)\n".replace("X,A", "X,Y,Z,A")
+        + "G90 G1 G710 F100 X0 Y0 Z0 A0 C0\nX10\nX20 A10\nA20\nX20.001 A30\nG700 F100\nFGREF[A]=360/(2*$PI)\n\
+           X=20.002/25.4 A40\nFGROUP()\nA50\nX21/25.4 A60";
+    let text = text.replace("X=20.002/25.4", "X=(20.002/25.4)").replace("X21/25.4", "X=(21/25.4)");
+    let (mut path, mut last, mut ways) = (None, None, Vec::new());
+    for op in blocks(&text) {
+        match op {
+            Action::FeedPath(new) => path = Some(new),
+            Action::Line(to) => {
+                let from = last.replace(to);
+                ways.extend(from.map(|from| path.unwrap().length(&from, &to)));
+            }
+            _ => {}
+        }
+    }
+    let expected =
+        [Some(10.0), Some(200f64.sqrt()), Some(10.0), Some(10.0), Some(254.0), None, Some(0.998)];
+    assert_eq!(ways.len(), expected.len());
+    for (way, expected) in ways.iter().zip(expected) {
+        match (way, expected) {
+            (Some(way), Some(expected)) => assert!((way - expected).abs() < 1e-4, "{ways:?}"),
+            (way, expected) => assert_eq!(*way, expected, "{ways:?}"),
+        }
+    }
 }

@@ -4,7 +4,7 @@ mod common;
 
 use common::sinumerik::{blocks, error, run, settings};
 use program::Diagnostic;
-use toolpost_control::{Action, read};
+use toolpost_control::{Action, FeedPath, read};
 
 #[test]
 fn an_error_names_its_rule_and_place() {
@@ -287,7 +287,11 @@ fn a_feed_group_without_a_linear_axis_makes_another_feed() {
     assert!(error("FGROUP(X,Y)").message.contains("without Z"));
     assert_eq!(error("FGROUP(X,Y,Z,Q)").rule, "feed-group");
     assert_eq!(error("FGROUP(X,Y,Z,B)").rule, "unknown-axis");
-    assert_eq!(blocks("FGROUP()\nFGROUP(X,Y,Z)\nFGROUP(X,Y,Z,A,C)"), [Action::End]);
+    let group = |c| Action::FeedPath(FeedPath::Group([1.0, 0.0, c]));
+    let path = [group(1.0), group(20f64.to_radians()), Action::End];
+    assert_eq!(blocks("FGROUP()\nFGROUP(X,Y,Z)\nFGROUP(X,Y,Z,A,C)\nFGREF[C]=20"), path);
+    assert_eq!(error("FGREF[X]=20").rule, "feed-group");
+    assert_eq!(error("FGREF[C]=0").rule, "feed-group");
 }
 
 #[test]

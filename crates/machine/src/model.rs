@@ -91,6 +91,8 @@ pub struct ControlSettings {
     pub dwell_p_milliseconds: Option<bool>,
     /// Whether the sign of a rotary word is the direction of an axis that rolls over (FANUC parameter 1008#1).
     pub rotary_by_sign: Option<bool>,
+    /// What the feed counts where rotary axes turn in a cut and the control does not keep the tool tip.
+    pub rotary_feed: Option<RotaryFeed>,
     /// Whether programs of this machine write work offsets: its fixtures are set so, and not by the operator.
     pub sets_work_offsets: bool,
     /// The M functions that switch the kinematics of the control (LinuxCNC).
@@ -290,6 +292,30 @@ pub enum ToolRadius {
     Full,
     /// By how much the tool differs from the one of the toolpath: compensated programs are paths of the tool's centre.
     Wear,
+}
+
+/// What a feed in mm/min counts where rotary axes turn in a cut and the control does not keep the tool tip.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum RotaryFeed {
+    /// The ways of all axes together, a degree as a mm.
+    AllAxes,
+    /// The way of X, Y and Z, with which the rotary axes arrive; the degrees of these where X, Y and Z stand still.
+    LinearAxes,
+}
+
+impl RotaryFeed {
+    /// The length by which the control divides F to find the time of a cut, mm: along it X, Y and Z go so far, and A, B and
+    /// C turn by so many degrees.
+    pub fn counted(self, linear: Vec3, degrees: [f64; 3]) -> f64 {
+        let linear = linear.length();
+        match self {
+            RotaryFeed::LinearAxes if linear > 0.0 => linear,
+            RotaryFeed::LinearAxes | RotaryFeed::AllAxes => {
+                linear.hypot(Vec3::from_array(degrees).length())
+            }
+        }
+    }
 }
 
 /// A hole cycle that a control may have: [`program::CycleKind`] without its numbers.

@@ -112,6 +112,7 @@ sheet!(merged SettingsSheet "settings" {
     length_moves_axis: bool, "", "Whether Z moves where a tool length begins, ends or changes: FANUC parameter 5006#6 is 0.";
     rapid_path: RapidPath, "", "How the axes go in a rapid: linear (together, on a straight line) or independent (each at its own speed), which is taken where it is missing. FANUC: linear where parameter 1401#1 is 1; SINUMERIK: MD20730.";
     tool_radius: ToolRadius, "", "What the tool table keeps as the radius of a tool (D, the radius of an edge, R): full, the radius itself, for contours; or wear, its difference from the tool of the toolpath, for paths of the tool's centre.";
+    rotary_feed: RotaryFeed, "", "What F in mm/min counts where rotary axes turn in a cut and the control does not keep the tool tip: all-axes (all of them together, a degree as a mm: FANUC where parameter 1408#0 is 0, HEIDENHAIN, SINUMERIK after FGROUP with them) or linear-axes (X, Y and Z alone; LinuxCNC). It is needed where the control has no inverse-time feed.";
     sets_work_offsets: bool, "", "Whether programs write the work offsets that their source writes (G10 L2): the shop sets its fixtures so, and not by the operator.";
     tip_kinematics: u32, "", "M function that switches a LinuxCNC to the kinematics that follow the tip (switchkins): X, Y and Z are then the tip in the turned work.";
     axis_kinematics: u32, "", "M function that switches a LinuxCNC back to the kinematics of the axes themselves.";

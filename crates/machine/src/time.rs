@@ -6,10 +6,11 @@
 //!   are taken for free, as a control that looks ahead nearly does.
 //! - A tool change takes [`TOOL_CHANGE`], a dwell what it says; what waits for a person takes nothing.
 //!
-//! The linear axes are taken to move as the program says: with tool center point control, that is the
-//! way of the tip.
+//! Where rotary axes turn, the linear axes go as the kinematics of the machine have it, where its file and the tool say enough
+//! for that; otherwise as the tip. F is the speed of the tip, as the writer makes it: where it has to count degrees for that, F
+//! goes no higher than `feed_max`. Where the tool turns about its tip without tool-centre control, F is the speed of the axes.
 
-use crate::{LinearAxis, Machine};
+use crate::{LinearAxis, Machine, OrientationMode, RotaryFeed};
 use geom::Vec3;
 use program::{ArcTo, Course, Cycle, CycleKind, Feed, Op, Pose, Program, Spindle, lowering};
 use serde::Serialize;
@@ -19,6 +20,9 @@ const UNKNOWN_RAPID: f64 = 10_000.0;
 
 /// A tool change, seconds: a common machining centre, chip to chip.
 pub const TOOL_CHANGE: f64 = 6.0;
+
+/// A way of the tip below this, mm, is none.
+const STANDS: f64 = 1e-6;
 
 /// Seconds that a program takes, by what they are spent on.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
@@ -56,6 +60,8 @@ pub struct Clock<'a> {
     here: Option<Spot>,
     /// Degrees of A, B, C.
     degrees: [f64; 3],
+    /// Length of the tool, mm, where it is known.
+    tool_length: Option<f64>,
     feed: Feed,
     spindle: Spindle,
     cycle: Option<Cycle>,
@@ -69,6 +75,7 @@ impl<'a> Clock<'a> {
             times: Times::default(),
             here: None,
             degrees: [0.0; 3],
+            tool_length: None,
             feed: Feed::PerMinute(0.0),
             spindle: Spindle::Off,
             cycle: None,
@@ -101,7 +108,10 @@ impl<'a> Clock<'a> {
             Op::CycleOff => self.cycle = None,
             Op::Feed(feed) => self.feed = *feed,
             Op::Spindle(spindle) => self.spindle = *spindle,
-            Op::Tool(_) => self.times.tool_change += TOOL_CHANGE,
+            Op::Tool(tool) => {
+                self.tool_length = tool.length;
+                self.times.tool_change += TOOL_CHANGE;
+            }
             Op::Dwell(seconds) => self.times.dwell += seconds,
             // Where the axes are sent to, or how far it is, the program does not know.
             Op::Joints(_) | Op::MachineMove(_) | Op::Home | Op::WorkOffset(_) => {}
@@ -171,9 +181,27 @@ impl<'a> Clock<'a> {
         let linear = linear.map(|(axis, way)| way.abs() / rapid_of(axis));
         let rotary = self.machine.rotary.iter();
         let rotary = rotary.map(|axis| turn[axis.index()].abs() / axis.rapid);
+        let at_feed = self.counted(at_feed, length, way, turn);
         // A feed that is missing makes no sensible time: what the axes need is left.
         let at_feed = if at_feed.is_finite() { at_feed } else { 0.0 };
         self.times.cutting += 60.0 * linear.chain(rotary).fold(at_feed, f64::max);
+    }
+
+    /// The time of a cut at its feed, minutes, where the control does not follow the tip and F counts degrees.
+    fn counted(&self, at_feed: f64, length: f64, way: Vec3, turn: [f64; 3]) -> f64 {
+        let machine = self.machine;
+        let by_angles = machine.orientation.simultaneous == OrientationMode::MachineAngles;
+        if !by_angles || turn == [0.0; 3] {
+            return at_feed;
+        }
+        let counted = machine.settings.rotary_feed.unwrap_or(RotaryFeed::AllAxes).counted(way, turn);
+        match self.feed {
+            Feed::PerMinute(feed) if length <= STANDS => counted / feed,
+            Feed::PerMinute(_) | Feed::PerTurn(_) | Feed::InverseTime(_) => {
+                let most = if machine.capabilities.inverse_time { f64::INFINITY } else { machine.feed_max };
+                at_feed.max(counted / most)
+            }
+        }
     }
 
     /// The moves of a hole, as if there were no cycle. Tapping goes in and out in step with the spindle.
@@ -226,11 +254,24 @@ impl<'a> Clock<'a> {
             true => self.degrees,
             false => self.nearest(to.axis),
         };
-        let way = self.here.map_or(Vec3::ZERO, |here| to.point - here.point);
+        let way = self.here.map_or(Vec3::ZERO, |here| {
+            match degrees == self.degrees {
+                true => to.point - here.point,
+                false => self.axes(to.point, degrees) - self.axes(here.point, self.degrees),
+            }
+        });
         let turn = [0, 1, 2].map(|i| degrees[i] - self.degrees[i]);
         self.degrees = degrees;
         self.here = Some(to);
         (way, turn)
+    }
+
+    /// The positions of the linear axes, mm, where it is known how the rotary ones carry the tip and the part.
+    fn axes(&self, tip: Vec3, degrees: [f64; 3]) -> Vec3 {
+        match self.machine.unsaid(degrees, self.tool_length) {
+            Some(_) => tip,
+            None => self.machine.linear_for(tip, degrees, self.tool_length.unwrap_or(0.0)),
+        }
     }
 
     /// The positions for a tool axis that are reached soonest from where the axes stand.

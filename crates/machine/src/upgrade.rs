@@ -136,6 +136,13 @@ pub fn missing(machine: &Machine) -> Vec<Missing> {
             "direction reference of the swivel data set ($TC_CARR37): the axis whose lower or higher position _DIR of CYCLE800 takes",
         );
     }
+    if turns_axes && !machine.capabilities.inverse_time && machine.settings.rotary_feed.is_none() {
+        lacks(
+            "[settings]".into(),
+            "rotary_feed = \"all-axes\"",
+            "FANUC parameter 1408#0 is 0, HEIDENHAIN, SINUMERIK after FGROUP with the rotary axes: \"all-axes\"; LinuxCNC: \"linear-axes\"; F of a cut in which rotary axes turn hangs on it",
+        );
+    }
     let rolls_over = machine.rotary.iter().any(|axis| axis.modulo != Some(false));
     if machine.reader == "fanuc" && rolls_over && machine.settings.rotary_by_sign.is_none() {
         lacks(

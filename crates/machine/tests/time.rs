@@ -6,6 +6,7 @@ use common::{machine, table_ac};
 use geom::Vec3;
 use program::{ArcTo, Circle, Cycle, CycleKind, Feed, Op, Pose, Program, Spindle, Tool};
 use toolpost_machine::time::{TOOL_CHANGE, Times};
+use toolpost_machine::{Machine, OrientationMode};
 
 /// 30 m/min and 5 m/s²: at speed after 0.1 s and 25 mm.
 fn times(ops: impl IntoIterator<Item = Op>) -> Times {
@@ -105,6 +106,45 @@ fn a_rotary_axis_may_be_the_slowest() {
     program.push(2, Op::Rapid(Pose::new(Vec3::X, Vec3::Y).unwrap()));
     assert_near(Times::of(&program, &table_ac()).rapid, 0.86);
     program.push(3, Op::Feed(Feed::PerMinute(1000.0)));
-    program.push(4, Op::Line(Pose::upright(Vec3::X).unwrap()));
+    program.push(4, Op::Line(Pose::upright(Vec3::X * 2.0).unwrap()));
     assert_near(Times::of(&program, &table_ac()).cutting, 0.5);
+}
+
+/// The table of the test above on a control without inverse time.
+fn by_angles(feed_max: f64) -> Machine {
+    let mut mill = Machine { feed_max, ..table_ac() };
+    mill.capabilities.inverse_time = false;
+    mill
+}
+
+/// A cut from `from`, with the tool along Z, to `to`, with the tool along Y: A turns by 90°.
+fn leaning(mill: &Machine, from: Vec3, to: Vec3) -> f64 {
+    let mut program = Program::new("t");
+    program.push(1, Op::Feed(Feed::PerMinute(1000.0)));
+    program.push(2, Op::Rapid(Pose::upright(from).unwrap()));
+    program.push(3, Op::Line(Pose::new(to, Vec3::Y).unwrap()));
+    Times::of(&program, mill).cutting
+}
+
+#[test]
+fn a_cut_takes_what_the_linear_axes_need_to_carry_the_tip() {
+    // The table carries a tip at Y 300 to Z: 300 mm at 30 m/min, where A alone takes 0.5 s.
+    let from = Vec3::new(0.0, 300.0, 0.0);
+    assert_near(leaning(&by_angles(f64::INFINITY), from, from + Vec3::X * 0.01), 0.6);
+    // Nobody knows how far it is where the file does not say where the work stands.
+    let unsaid = Machine { work_zero: None, ..by_angles(f64::INFINITY) };
+    assert_near(leaning(&unsaid, from, from + Vec3::X * 0.01), 0.5);
+}
+
+#[test]
+fn f_counts_degrees_where_the_control_does_not_follow_the_tip() {
+    // 90 counts at F1000, in a turn about a tip that stands on the axis.
+    assert_near(leaning(&by_angles(f64::INFINITY), Vec3::ZERO, Vec3::ZERO), 5.4);
+    let mut follows = by_angles(f64::INFINITY);
+    follows.orientation.simultaneous = OrientationMode::ToolCenterAngles;
+    assert_near(leaning(&follows, Vec3::ZERO, Vec3::ZERO), 0.5);
+    // 20 mm of the tip at F1000; with F of no more than 2000 √(20² + 90²) counts take longer.
+    let to = Vec3::X * 20.0;
+    assert_near(leaning(&by_angles(f64::INFINITY), Vec3::ZERO, to), 1.2);
+    assert_near(leaning(&by_angles(2000.0), Vec3::ZERO, to), 8500f64.sqrt() * 0.03);
 }

@@ -18,12 +18,14 @@
 
 #![deny(clippy::wildcard_enum_match_arm)]
 
-use control::{Action, Dialect, Ending, Event, Orientation, Position, Risk, Settings, Setup, Wire};
+use control::{
+    Action, Dialect, Ending, Event, FeedPath, Orientation, Position, Risk, Settings, Setup, Wire,
+};
 use geom::Vec3;
-use machine::{LengthOffset, Machine};
+use machine::{LengthOffset, Machine, RotaryFeed};
 use program::{
-    ArcTo, Axes, Circle, CompensatedPath, Cycle, Diagnostic, MachineMove, Op, Pose, Probe, Program,
-    Record, Thread, Tool, WorkOffset,
+    ArcTo, Axes, Circle, CompensatedPath, Cycle, Diagnostic, Feed, MachineMove, Op, Pose, Probe,
+    Program, Record, Thread, Tool, WorkOffset,
 };
 use std::collections::BTreeSet;
 
@@ -94,6 +96,17 @@ pub fn settings(machine: &Machine, setup: Setup) -> Result<Settings, Box<Diagnos
         setup,
         ..Settings::new(dialect, rotary)
     })
+}
+
+/// Along which way the control of `machine` counts the feed before a program says it. What a parameter of the control decides,
+/// the machine's file may say.
+pub fn feed_path(machine: &Machine) -> FeedPath {
+    let path = Dialect::named(&machine.reader).map_or(FeedPath::AsSetUp, Dialect::feed_path);
+    match (path, machine.settings.rotary_feed) {
+        (FeedPath::AsSetUp, Some(RotaryFeed::AllAxes)) => FeedPath::AllAxes,
+        (FeedPath::AsSetUp, Some(RotaryFeed::LinearAxes)) => FeedPath::LinearAxes,
+        (path, _) => path,
+    }
 }
 
 /// Reads the NC program `text`, which was written for `machine`.
@@ -249,6 +262,12 @@ struct Lift<'a> {
     ended: bool,
     warnings: Vec<Diagnostic>,
     place: Place,
+    /// What the last block that moved has said, where the axes have not gone home since.
+    position: Option<Position>,
+    /// The active feed, what it counts, and the feed of the last record.
+    feed: Option<Feed>,
+    feed_path: FeedPath,
+    written_feed: Option<Feed>,
     /// Z has been sent home since the last move, on this line.
     home: Option<u32>,
     /// The tool in the spindle, and whether nothing has moved since it was called.
@@ -331,6 +350,10 @@ impl<'a> Lift<'a> {
             place: setup
                 .start
                 .map_or(Place::Nowhere, |tip| Place::Start(Spot { tip, axis: Vec3::Z })),
+            position: None,
+            feed: None,
+            feed_path: feed_path(machine),
+            written_feed: None,
             home: None,
             tool: None,
             boring: None,
@@ -350,6 +373,12 @@ impl<'a> Lift<'a> {
             let help = "it may loop without end; if not, read it in parts";
             return Err(refuse("program-length", message, help));
         }
+        let position = event.action.position().copied();
+        if let (Action::Arc(_) | Action::Hole(_) | Action::Probe(_), Some(feed)) =
+            (&event.action, self.feed)
+        {
+            self.say_feed(line, feed);
+        }
         match event.action {
             Action::Rapid(position) => {
                 let spot = self.spot(&position);
@@ -360,6 +389,7 @@ impl<'a> Lift<'a> {
             }
             Action::Line(position) => {
                 let pose = self.cut(&position)?;
+                self.time_cut(line, &position);
                 self.arrive(line, Op::Line(pose))?;
             }
             Action::Arc(arc) => {
@@ -396,8 +426,14 @@ impl<'a> Lift<'a> {
                     self.push(line, Op::Cycle(cycle));
                 }
             }
-            Action::Home(axes) => return self.go_home(line, axes),
-            Action::MachineMove(to) => return self.machine_move(line, &to),
+            Action::Home(axes) => {
+                self.position = None;
+                return self.go_home(line, axes);
+            }
+            Action::MachineMove(to) => {
+                self.position = None;
+                return self.machine_move(line, &to);
+            }
             Action::Tool(mut tool) => {
                 self.number(line, &mut tool)?;
                 if let Some(entry) = self.setup.tools.iter().find(|e| e.number == tool.number) {
@@ -419,7 +455,11 @@ impl<'a> Lift<'a> {
                 self.place = Place::At(self.spot(&nowhere));
             }
             Action::CycleOff => self.push(line, Op::CycleOff),
-            Action::Feed(feed) => self.push(line, Op::Feed(feed)),
+            Action::Feed(feed) => {
+                (self.feed, self.written_feed) = (Some(feed), Some(feed));
+                self.push(line, Op::Feed(feed));
+            }
+            Action::FeedPath(path) => self.feed_path = path,
             Action::Spindle(spindle) => self.push(line, Op::Spindle(spindle)),
             Action::SurfaceSpeed(speed) => self.push(line, Op::SurfaceSpeed(speed)),
             Action::Coolant(coolant) => self.push(line, Op::Coolant(coolant)),
@@ -448,6 +488,7 @@ impl<'a> Lift<'a> {
                 self.push(line, Op::End);
             }
         }
+        self.position = position.or(self.position);
         Ok(())
     }
 
@@ -472,6 +513,47 @@ impl<'a> Lift<'a> {
             }
         }
         Ok(())
+    }
+
+    /// Says the feed of a straight cut to `to` where its number is not the speed of the tip: as the time that the cut takes.
+    fn time_cut(&mut self, line: u32, to: &Position) {
+        let Some(feed) = self.feed else { return };
+        let turned = self.position.filter(|from| !self.feed_path.is_of_tip(from, to));
+        let counted = turned.and_then(|from| self.feed_path.length(&from, to));
+        let feed = match (feed, counted) {
+            (Feed::PerMinute(f), Some(way)) if way > 0.0 => Feed::InverseTime(f / way),
+            (feed, None) if turned.is_some() && matches!(feed, Feed::PerMinute(_)) => {
+                self.unknown_speed(line);
+                feed
+            }
+            (feed, _) => feed,
+        };
+        self.say_feed(line, feed);
+    }
+
+    /// Says a feed that the last record of a feed does not.
+    fn say_feed(&mut self, line: u32, feed: Feed) {
+        if self.written_feed != Some(feed) {
+            self.written_feed = Some(feed);
+            self.push(line, Op::Feed(feed));
+        }
+    }
+
+    /// F is taken as the speed of the tip where nobody knows what it counts.
+    #[cold]
+    fn unknown_speed(&mut self, line: u32) {
+        // FreeCAD's feeds are those of the tool.
+        if Dialect::named(&self.machine.reader) == Some(Dialect::FreeCad) {
+            return;
+        }
+        let message = "rotary axes turn in the cut, and which axes F in mm/min counts, a parameter of the control decides: it is \
+                       taken as the speed of the tool tip";
+        if let Some(known) = self.warnings.iter_mut().find(|found| found.rule == "rotary-feed") {
+            known.count = known.count.saturating_add(1);
+            return;
+        }
+        let help = "say `rotary_feed` in [settings] of the machine file (FANUC: parameter 1408#0)";
+        self.warnings.push(Diagnostic::warning("rotary-feed", message).help(help).line(line));
     }
 
     fn push(&mut self, line: u32, op: Op) {

@@ -3,7 +3,7 @@
 use crate::catalogue::{BlockName, WordName};
 use crate::place::{Kind, Stop, same};
 use crate::template::{ORIENTATION, POSITION, Words};
-use crate::walk::{Cut, Done, Walk, motion, refuse};
+use crate::walk::{Cut, Done, Turn, Walk, motion, refuse};
 use geom::{ANGLE_EPSILON, Vec3};
 use machine::Unsaid;
 use machine::linearise::Stance;
@@ -100,13 +100,13 @@ impl Walk<'_> {
         let pieces = match from.and_then(|from| self.half_way(&from, pose, stop)) {
             Some(half) => {
                 self.aim_at(half.tip, self.machine.axis_at(half.degrees), Some(half.degrees));
-                self.cut(length / 2.0, 2)?;
+                self.cut(length / 2.0, 2, Cut::Straight)?;
                 2
             }
             None => 1,
         };
         self.aim(pose, stop);
-        self.cut(length / f64::from(pieces), if pieces > 1 { 2 } else { 0 })
+        self.cut(length / pieces as f64, pieces, Cut::Straight)
     }
 
     /// Holds the tool axis on its way in a cut that could not be split finely enough.
@@ -146,9 +146,17 @@ impl Walk<'_> {
         let tolerance = self.machine.orientation.tolerance;
         let stances = self.machine.linearise(from, to, self.tool_length(), tolerance)?;
         let count = stances.len();
+        let mut here = self.axes_at(&from);
+        // The way of the tip for which no block was written: its axes have not changed by a step.
+        let mut owed = 0.0;
         for stance in stances {
+            let there = self.axes_at(&stance);
+            let way = here.to(&there);
+            let length = length / count as f64 + owed;
             self.aim_at(stance.tip, Vec3::Z, Some(stance.degrees));
-            self.cut(length / count as f64, count)?;
+            owed = if way == Turn::default() { length } else { 0.0 };
+            self.cut(length, count, Cut::Turning(way))?;
+            here = there;
         }
         if count > 1 {
             self.findings.lowered("linearised", "moves with turning axes", self.line, count);
@@ -156,18 +164,29 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// Writes the straight cut that has been aimed, `length` mm long; while rotary axes turn, one of so
-    /// many pieces.
+    /// Where the axes stand for a stance, as their words give it.
+    fn axes_at(&self, stance: &Stance) -> Turn {
+        let (length, degrees) = (self.tool_length().unwrap_or(0.0), self.written(stance.degrees));
+        let at = self.machine.linear_for(stance.tip, degrees, length);
+        let rounded = |word, value| self.writer.rounded(word, value);
+        let linear = Vec3::new(
+            rounded(WordName::X, at.x),
+            rounded(WordName::Y, at.y),
+            rounded(WordName::Z, at.z),
+        );
+        Turn { linear, degrees }
+    }
+
+    /// Writes the straight cut that has been aimed, `length` mm long, one of so many pieces of the source's.
     #[inline]
-    fn cut(&mut self, length: f64, turning: usize) -> Done {
+    fn cut(&mut self, length: f64, pieces: usize, cut: Cut) -> Done {
         if !self.writer.changes(POSITION | ORIENTATION) {
             self.writer.unset(Words::MAX);
             return Ok(());
         }
-        let goes_on = turning == 0 && self.can_go_on();
+        let goes_on = pieces == 1 && cut == Cut::Straight && self.can_go_on();
         self.check_limits()?;
-        let cut = if turning > 0 { Cut::Turning } else { Cut::Straight };
-        self.say_feed(length, turning.max(1), cut)?;
+        self.say_feed(length, pieces, cut)?;
         self.compensate();
         if self.wire.is_some() {
             self.say_taper();

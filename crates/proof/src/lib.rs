@@ -47,6 +47,7 @@ mod gauge;
 mod hole;
 mod line;
 mod machine_pose;
+mod pace;
 mod place;
 mod prover;
 mod report;

@@ -83,6 +83,8 @@ pub struct Compared {
     pub excursions: usize,
     /// Contours beside which the control leads the centre of the source's tool as it has to.
     pub contours: usize,
+    /// Cuts in which the tip is slower than the source wants it, since an axis, or F, can go no faster.
+    pub slowed: usize,
 }
 
 /// The largest deviations of the program from the source.
@@ -97,6 +99,10 @@ pub struct Deviations {
     /// Of the tool tip, anywhere on the way of a rapid, from the straight way of the source, mm: where it keeps to that way, and
     /// where it is not beyond all cuts. As the axes really go; what is beyond all cuts may go in any way and does not count.
     pub rapid_mm: Worst,
+    /// Of the average speed of the tip from the feed of the source, percent, where the number behind F is not that speed: in
+    /// inverse time, and where rotary axes turn and the control counts their degrees. By F alone: a cut in which an axis can
+    /// go no faster is in it where its F says so.
+    pub tip_speed_percent: Worst,
 }
 
 /// A largest value and where it is.
@@ -113,11 +119,21 @@ pub struct Worst {
 impl Deviations {
     /// The larger of both.
     pub(crate) fn widen(&mut self, other: &Deviations) {
-        let mine =
-            [&mut self.tip_mm, &mut self.axis_degrees, &mut self.path_mm, &mut self.rapid_mm];
-        for (mine, Worst { value, source_line, program_line }) in
-            mine.into_iter().zip([other.tip_mm, other.axis_degrees, other.path_mm, other.rapid_mm])
-        {
+        let mine = [
+            &mut self.tip_mm,
+            &mut self.axis_degrees,
+            &mut self.path_mm,
+            &mut self.rapid_mm,
+            &mut self.tip_speed_percent,
+        ];
+        let others = [
+            other.tip_mm,
+            other.axis_degrees,
+            other.path_mm,
+            other.rapid_mm,
+            other.tip_speed_percent,
+        ];
+        for (mine, Worst { value, source_line, program_line }) in mine.into_iter().zip(others) {
             mine.note(value, source_line, program_line);
         }
     }

@@ -3,7 +3,7 @@
 use crate::expected::Wanted;
 use crate::place::Number;
 use crate::tolerance::Applied;
-use control::{Corners, Dialect};
+use control::{Corners, Dialect, FeedPath};
 use machine::{LengthOffset, Machine, RotaryAxis};
 use program::{Compensation, Coolant, Cycle, Feed, PathMode, Spindle, Tool, WorkOffset};
 
@@ -11,6 +11,8 @@ use program::{Compensation, Coolant, Cycle, Feed, PathMode, Spindle, Tool, WorkO
 #[derive(Clone, Debug)]
 pub(crate) struct Running {
     pub feed: Option<Feed>,
+    /// What the control counts for it.
+    pub feed_path: FeedPath,
     pub spindle: Spindle,
     /// Constant surface speed, m/min.
     pub surface_speed: Option<f64>,
@@ -37,6 +39,7 @@ impl Running {
         let dialect = Dialect::named(&machine.reader);
         Running {
             feed: None,
+            feed_path: nc::feed_path(machine),
             spindle: Spindle::Off,
             surface_speed: None,
             coolant: Coolant::Off,
@@ -212,26 +215,14 @@ pub(crate) fn taper(allowed: &Applied, wanted: &Wanted, running: &Running) -> Op
     (!same).then(|| ("taper", message()))
 }
 
-/// The lengths (mm) that feed in inverse time counts with.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Lengths {
-    /// Way of the tip in the source move.
-    pub source: f64,
-    /// Way of the tip in the block.
-    pub block: f64,
-    /// Rounding of either.
-    pub rounding: f64,
-}
-
-/// Holds a feed against what the source wants. Both count as mm/min where they are in different
-/// units.
+/// Compares a feed with what the source wants, where it is the speed of the tip: by the spindle where one counts a minute
+/// and the other a turn. How fast the tip is in inverse time, [`Pace`](crate::pace::Pace) finds.
 pub(crate) fn feed(
     machine: &Machine,
     allowed: &Applied,
     wanted: Option<Feed>,
     running: Option<Feed>,
     spindle: Spindle,
-    lengths: &Lengths,
 ) -> Option<Difference> {
     let Some(wanted) = wanted else {
         // A wire goes as fast as its generator lets it, where nobody says otherwise.
@@ -244,46 +235,28 @@ pub(crate) fn feed(
     let Some(running) = running else {
         return Some(("feed", format!("no feed is set, but should be {}", shown(wanted))));
     };
-    let speed = match spindle {
-        Spindle::Off => 0.0,
-        Spindle::Clockwise(speed) | Spindle::CounterClockwise(speed) => speed,
-    };
-    // Too short a move has no meaningful time.
-    let timed = |length: f64| length > 8.0 * lengths.rounding;
-    let blurred = |feed: f64, length: f64| feed * lengths.rounding / length;
+    let speed = speed(spindle);
     let same = match (wanted, running) {
-        (Feed::PerMinute(a), Feed::PerMinute(b)) | (Feed::PerTurn(a), Feed::PerTurn(b)) => {
-            (a - b).abs() <= allowed.feed
+        (Feed::PerMinute(a), Feed::PerMinute(b)) => (a - b).abs() <= allowed.feed,
+        (Feed::PerTurn(a), Feed::PerTurn(b)) => (a - b).abs() <= allowed.feed_per_turn,
+        (Feed::PerMinute(a), Feed::PerTurn(b)) => {
+            (a - b * speed).abs() <= allowed.feed_per_turn * speed
         }
-        (Feed::PerMinute(a), Feed::PerTurn(b)) => (a - b * speed).abs() <= allowed.feed * speed,
         (Feed::PerTurn(a), Feed::PerMinute(b)) => (a * speed - b).abs() <= allowed.feed,
-        (Feed::InverseTime(a), Feed::InverseTime(b)) if lengths.source == lengths.block => {
-            (a - b).abs() <= allowed.feed
-        }
-        (Feed::InverseTime(rate), _) if !timed(lengths.source) => rate > 0.0,
-        (wanted, Feed::InverseTime(rate)) if timed(lengths.block) => {
-            let per_minute = match wanted {
-                Feed::PerMinute(feed) => feed,
-                Feed::PerTurn(feed) => feed * speed,
-                Feed::InverseTime(rate) => rate * lengths.source,
-            };
-            let expected = per_minute / lengths.block;
-            (expected - rate).abs() <= allowed.feed + 2.0 * blurred(expected, lengths.block)
-        }
-        (_, Feed::InverseTime(rate)) => rate > 0.0,
-        (Feed::InverseTime(rate), Feed::PerMinute(b)) => {
-            let expected = rate * lengths.source;
-            (expected - b).abs() <= allowed.feed + 2.0 * blurred(expected, lengths.source)
-        }
-        (Feed::InverseTime(rate), Feed::PerTurn(b)) => {
-            let expected = rate * lengths.source;
-            let blur = 2.0 * blurred(expected, lengths.source);
-            (expected - b * speed).abs() <= allowed.feed * speed + blur
-        }
+        (Feed::InverseTime(a), Feed::InverseTime(b)) => (a - b).abs() <= allowed.inverse_time,
+        (Feed::InverseTime(_), feed) | (_, feed @ Feed::InverseTime(_)) => feed.value() > 0.0,
     };
     (!same).then(|| {
         ("feed", format!("the feed is {}, but should be {}", shown(running), shown(wanted)))
     })
+}
+
+/// Turns of a spindle a minute.
+pub(crate) fn speed(spindle: Spindle) -> f64 {
+    match spindle {
+        Spindle::Off => 0.0,
+        Spindle::Clockwise(speed) | Spindle::CounterClockwise(speed) => speed,
+    }
 }
 
 /// Whether the program's compensation is the source's. A register that the source does not name may
@@ -378,7 +351,7 @@ pub(crate) fn compensation(side: Compensation) -> String {
     }
 }
 
-fn shown(feed: Feed) -> String {
+pub(crate) fn shown(feed: Feed) -> String {
     match feed {
         Feed::PerMinute(f) => format!("{} mm/min", Number(f)),
         Feed::PerTurn(f) => format!("{} mm per turn", Number(f)),

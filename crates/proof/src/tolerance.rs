@@ -35,8 +35,12 @@ pub struct Applied {
     pub linearisation_mm: f64,
     /// Chord error of arcs that are written as lines, mm, on top of `tip_mm`.
     pub chord_mm: f64,
-    /// Feed, in the unit it is programmed in.
+    /// Feed, mm/min.
     pub feed: f64,
+    /// Feed per turn of the spindle, mm.
+    pub feed_per_turn: f64,
+    /// Feed in inverse time, 1/min.
+    pub inverse_time: f64,
     /// Spindle speed, 1/min.
     pub speed_per_min: f64,
     /// Lean of a wire by the control, degrees.
@@ -59,6 +63,9 @@ impl Applied {
             let decimals = machine.words.get(name).map_or(otherwise, |w| i32::from(w.decimals));
             10f64.powi(-decimals)
         };
+        let half = |name: &str| step(name, 3) / 2.0 * (1.0 + 1e-9);
+        // Where F has no form of its own for a unit, it is written as in mm/min.
+        let form = |name: &'static str| if machine.words.contains_key(name) { name } else { "F" };
         let rotary = match given.angle {
             Some(_) => 0.0,
             None if machine.rotary.is_empty() => 0.0,
@@ -86,7 +93,9 @@ impl Applied {
             sweep_degrees: SWEEP,
             linearisation_mm: machine.orientation.tolerance,
             chord_mm: machine.capabilities.lowering_tolerance,
-            feed: step("F", 3) / 2.0 * (1.0 + 1e-9),
+            feed: half("F"),
+            feed_per_turn: half(form("F_per_turn")),
+            inverse_time: half(form("F_inverse_time")),
             speed_per_min: step("S", 0) / 2.0 * (1.0 + 1e-9),
             taper_degrees: step("TAPER", 3) / 2.0 * (1.0 + 1e-9),
             dwell_s: 1e-3,

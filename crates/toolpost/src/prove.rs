@@ -113,6 +113,17 @@ pub fn rows(proof: &Report, machine: &Machine) -> Vec<(&'static str, String)> {
         let corridor = machine.capabilities.rapid_corridor;
         rows.push(("rapids off by", deviation(rapid.value, corridor, "mm", rapid.program_line)));
     }
+    let speed = worst.tip_speed_percent;
+    if speed.value > 0.0 {
+        let slowed = match compared.slowed {
+            0 => String::new(),
+            count => format!(
+                "; slower than its feed in {count} cuts, in which an axis or F goes no faster"
+            ),
+        };
+        let (percent, line) = (number(speed.value, 2), speed.program_line);
+        rows.push(("tip speed", format!("off by {percent} % at most (line {line}){slowed}")));
+    }
     if machine.path_tolerance() > 0.0 {
         let most = number(machine.path_tolerance(), 5);
         let text = format!("by up to {most} mm where the program lets it, which no proof sees");

@@ -384,6 +384,7 @@ impl CheckedSheet {
                 kinematics,
                 rapid_path: self.settings.rapid_path,
                 tool_radius: self.settings.tool_radius,
+                rotary_feed: self.settings.rotary_feed,
                 rotary_by_sign: self.settings.rotary_by_sign,
                 sets_work_offsets: self.settings.sets_work_offsets.unwrap_or(false),
                 swivel_direction: self.settings.swivel_direction,

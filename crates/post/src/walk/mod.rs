@@ -3,7 +3,7 @@
 mod compensation;
 mod technology;
 
-pub(crate) use technology::Cut;
+pub(crate) use technology::{Cut, Turn};
 
 use crate::catalogue::{BlockName, WordName};
 use crate::findings::Findings;

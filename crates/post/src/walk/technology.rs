@@ -3,7 +3,8 @@
 use super::{Done, MOTION, Walk, refuse};
 use crate::catalogue::{BlockName, WordName};
 use crate::template::{LENGTH_OFFSET, ORIENTATION, POSITION, bit, spindle_value, tool_value};
-use machine::{LengthOffset, OptionValue};
+use geom::Vec3;
+use machine::{LengthOffset, Machine, OptionValue};
 use program::{Coolant, Diagnostic, Feed, Op, PathMode, Spindle, Tool, lowering};
 
 /// Entries of the code word `feed_mode`.
@@ -14,13 +15,43 @@ pub(super) mod feed_mode {
 }
 
 /// What a cut is to the feed.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum Cut {
     Straight,
     Arc,
-    /// Rotary axes turn, and the control, which knows nothing of the tool tip, is told the time where it can be.
-    Turning,
+    /// Rotary axes turn by so much, and the control knows nothing of the tool tip.
+    Turning(Turn),
 }
+
+/// Positions of the axes without tool-centre control, or the way between two of them.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Turn {
+    /// X, Y and Z, mm.
+    pub linear: Vec3,
+    /// A, B and C, degrees.
+    pub degrees: [f64; 3],
+}
+
+impl Turn {
+    /// The way to another position.
+    pub fn to(&self, there: &Turn) -> Turn {
+        let degrees = [0, 1, 2].map(|i| there.degrees[i] - self.degrees[i]);
+        Turn { linear: there.linear - self.linear, degrees }
+    }
+
+    /// What the slowest axis takes at its rapid, minutes, and its name.
+    fn least(&self, machine: &Machine) -> (f64, char) {
+        let linear = ['X', 'Y', 'Z'].into_iter().zip(&machine.linear).zip(self.linear.to_array());
+        let linear = linear.map(|((name, axis), way)| (way.abs() / axis.rapid, name));
+        let rotary = machine.rotary.iter();
+        let rotary =
+            rotary.map(|axis| (self.degrees[axis.index()].abs() / axis.rapid, axis.letter));
+        linear.chain(rotary).fold((0.0, 'X'), |most, one| if one.0 > most.0 { one } else { most })
+    }
+}
+
+/// A way of the tip below this, mm, is none: the tool turns about its tip, and F is the speed of its axes.
+const STANDS: f64 = 1e-6;
 
 impl Walk<'_> {
     /// How the source wants corners to be taken. The machine's file says how its control takes them, and what is less
@@ -219,19 +250,14 @@ impl Walk<'_> {
             *rate *= if within { self.whole / length } else { pieces as f64 };
         }
         let can = &self.machine.capabilities;
-        let turning = cut == Cut::Turning;
         let timed = can.inverse_time && (cut != Cut::Arc || can.inverse_time_arcs);
         let speed = speed(self.spindle).unwrap_or_default();
         let per_minute = || lowering::feed_per_minute(feed, length, speed);
-        let (mode, value) = match feed {
-            Feed::PerTurn(value) if can.feed_per_turn && !turning => (feed_mode::PER_TURN, value),
-            Feed::InverseTime(value) if timed => (feed_mode::INVERSE_TIME, value),
-            Feed::PerMinute(_) | Feed::PerTurn(_) | Feed::InverseTime(_)
-                if turning && timed && length > 0.0 =>
-            {
-                (feed_mode::INVERSE_TIME, per_minute() / length)
-            }
-            Feed::PerMinute(_) | Feed::PerTurn(_) | Feed::InverseTime(_) => {
+        let (mode, value) = match (feed, cut) {
+            (_, Cut::Turning(turn)) => self.feed_of_turn(feed, length, &turn)?,
+            (Feed::PerTurn(value), _) if can.feed_per_turn => (feed_mode::PER_TURN, value),
+            (Feed::InverseTime(value), _) if timed => (feed_mode::INVERSE_TIME, value),
+            (Feed::PerMinute(_) | Feed::PerTurn(_) | Feed::InverseTime(_), _) => {
                 (feed_mode::PER_MINUTE, per_minute())
             }
         };
@@ -263,6 +289,60 @@ impl Walk<'_> {
         self.writer.set(WordName::F, value);
         self.writer.code(WordName::FeedMode, mode);
         Ok(value)
+    }
+}
+
+impl Walk<'_> {
+    /// The feed by which the tip goes `length` mm at the speed of the source while rotary axes turn without tool-centre
+    /// control: as the time that takes where the control has it, otherwise as a number that counts what the control counts.
+    /// No axis is asked to go faster than its rapid, and F is no more than `feed_max`: then the tip is slower.
+    fn feed_of_turn(
+        &mut self,
+        feed: Feed,
+        length: f64,
+        turn: &Turn,
+    ) -> Result<(usize, f64), Box<Diagnostic>> {
+        let speed = speed(self.spindle).unwrap_or_default();
+        let inverse = self.machine.capabilities.inverse_time;
+        let wanted = match feed {
+            Feed::InverseTime(rate) => 1.0 / rate,
+            Feed::PerMinute(_) | Feed::PerTurn(_) => {
+                let per_minute = lowering::feed_per_minute(feed, length, speed);
+                if length <= STANDS {
+                    return Ok((feed_mode::PER_MINUTE, per_minute));
+                }
+                length / per_minute
+            }
+        };
+        let (least, axis) = turn.least(self.machine);
+        let minutes = wanted.max(least);
+        if wanted < least {
+            self.slowed(&format!("{axis} goes no faster than its rapid"));
+        }
+        if inverse {
+            return Ok((feed_mode::INVERSE_TIME, 1.0 / minutes));
+        }
+        let Some(counts) = self.machine.settings.rotary_feed else {
+            let message = "rotary axes turn in a cut, the control has no inverse-time feed, and nobody says what F counts there";
+            let help = "`rotary_feed = \"all-axes\"` in [settings] of the machine file where F counts a degree like a mm, \
+                        `\"linear-axes\"` where it counts X, Y and Z alone";
+            return Err(refuse("rotary-feed", message).help(help).into());
+        };
+        let value = counts.counted(turn.linear, turn.degrees) / minutes;
+        let most =
+            self.machine.words.get(WordName::F.name()).map_or(f64::INFINITY, |word| word.max);
+        let most = most.min(self.machine.feed_max);
+        if value > most {
+            self.slowed(&format!("F is {most} at the most"));
+        }
+        Ok((feed_mode::PER_MINUTE, value.min(most)))
+    }
+
+    /// The tip is slower than the source wants it.
+    fn slowed(&mut self, why: &str) {
+        let message =
+            format!("the tip is slower than the feed of the source where rotary axes turn: {why}");
+        self.findings.warn(Diagnostic::warning("feed-limited", message).line(self.line));
     }
 }
 

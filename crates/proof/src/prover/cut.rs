@@ -24,12 +24,13 @@ impl Prover<'_> {
             let message = format!("goes to {} and {how}; the source goes to {}", to.place, goal.to);
             self.lost_at(to.line, "path", &message)
         })?;
-        let length = block.map_or(here.place.tip.distance(to.place.tip), Arc::length);
-        let lengths =
-            Lengths { source: goal.length(), block: length, rounding: self.gauge.slack(to) };
-        let done = self.gauge.at(to, &goal.to) && left_mm <= arc::PAST * lengths.rounding;
+        let (rounding, source) = (self.gauge.slack(to), goal.length());
+        let done = self.gauge.at(to, &goal.to) && left_mm <= arc::PAST * rounding;
+        // What is left by rounding is not made good by the next cut.
+        let way = (if done { 1.0 } else { t } - self.leg.t) * source;
         self.leg.t = t;
-        self.check_cut(to, &lengths, block.is_some());
+        let feed = self.feed_of(to, block.map(Arc::length), way, source);
+        self.check_cut(to, feed, block.is_some());
         self.report.deviations.path_mm.note(path_mm, self.cursor.line, to.line);
         if done {
             self.arrive(to);
@@ -55,14 +56,67 @@ impl Prover<'_> {
         let message =
             format!("source line {}: feeds to {} from an unknown place", goal.line, to.place);
         self.report.warn(Diagnostic::warning("unknown-start", message).line(to.line));
-        let lengths = Lengths { source: 0.0, block: 0.0, rounding: self.gauge.slack(to) };
-        self.check_cut(to, &lengths, false);
+        let feed = self.feed_by_number();
+        self.check_cut(to, feed, false);
         self.arrive(to);
         Ok(())
     }
 
-    /// What must hold in a cut.
-    pub(super) fn check_cut(&mut self, to: &Station, lengths: &Lengths, on_arc: bool) {
+    /// What is wrong with the feed of a cut to `to` along `way` mm of a move of the source that is `source` mm long; `arc` is
+    /// the length of an arc, mm.
+    pub(super) fn feed_of(
+        &mut self,
+        to: &Station,
+        arc: Option<f64>,
+        way: f64,
+        source: f64,
+    ) -> Option<Difference> {
+        let (Some(wanted), Some(running)) = (self.cursor.wanted.feed, self.running.feed) else {
+            return self.feed_by_number();
+        };
+        let (from, path) = (&self.here.position, self.running.feed_path);
+        let inverse = [wanted, running].iter().any(|feed| matches!(feed, Feed::InverseTime(_)));
+        if !inverse && path.is_of_tip(from, &to.position) {
+            self.pace = Pace::default();
+            return self.feed_by_number();
+        }
+        let (rounding, by_number) = (self.gauge.slack(to), self.feed_by_number());
+        if source <= pace::STANDS || (way.abs() <= rounding && by_number.is_none()) {
+            // The tool turns about its tip, which has no speed: the number says how fast the axes are.
+            return if inverse { None } else { by_number };
+        }
+        let spindle = self.cursor.wanted.spindle;
+        let (gauge, to_position) = (&self.gauge, &to.position);
+        let cut = pace::Cut {
+            gauge,
+            from,
+            to: to_position,
+            arc,
+            path,
+            way,
+            source,
+            rounding,
+            wanted,
+            running,
+            spindle,
+        };
+        let Compared { percent, is_slowed, difference } = self.pace.add(&cut)?;
+        let deviations = &mut self.report.deviations;
+        deviations.tip_speed_percent.note(percent.abs(), self.cursor.line, to.line);
+        self.report.compared.slowed += usize::from(is_slowed);
+        difference
+    }
+
+    /// What is wrong with the feed where its number is the speed of the tip.
+    pub(super) fn feed_by_number(&self) -> Option<Difference> {
+        let (wanted, running) = (&self.cursor.wanted, &self.running);
+        let Gauge { machine, allowed, .. } = &self.gauge;
+        state::feed(machine, allowed, wanted.feed, running.feed, wanted.spindle)
+    }
+
+    /// What must hold in a cut, whose feed has been compared.
+    pub(super) fn check_cut(&mut self, to: &Station, feed: Option<Difference>, on_arc: bool) {
+        let rounding = self.gauge.slack(to);
         let (allowed, wanted, running) = (&self.gauge.allowed, &self.cursor.wanted, &self.running);
         let machine = self.gauge.machine;
         let found = [
@@ -70,9 +124,9 @@ impl Prover<'_> {
             state::spindle_and_coolant(allowed, wanted, running),
             state::taper(allowed, wanted, running),
             state::corners(machine, running),
-            state::feed(machine, allowed, wanted.feed, running.feed, wanted.spindle, lengths),
+            feed,
         ];
-        let in_plane = to.place.is_across(self.here.place.tip, lengths.rounding);
+        let in_plane = to.place.is_across(self.here.place.tip, rounding);
         for difference in found {
             self.check(to.line, difference);
         }

@@ -110,7 +110,6 @@ impl Prover<'_> {
     ) {
         let (allowed, wanted, running) = (&self.gauge.allowed, &self.cursor.wanted, &self.running);
         let machine = self.gauge.machine;
-        let lengths = Lengths { source: 0.0, block: 0.0, rounding: 1.0 };
         let tapping = matches!(
             &self.cursor.step,
             Step::Move(Goal { kind: Kind::Hole(c), .. })
@@ -121,14 +120,7 @@ impl Prover<'_> {
             state::spindle_and_coolant(allowed, wanted, running),
             match tapping {
                 true => None,
-                false => state::feed(
-                    machine,
-                    allowed,
-                    cycle.or(wanted.feed),
-                    is,
-                    wanted.spindle,
-                    &lengths,
-                ),
+                false => state::feed(machine, allowed, cycle.or(wanted.feed), is, wanted.spindle),
             },
         ];
         for difference in found {

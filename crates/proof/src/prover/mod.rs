@@ -17,9 +17,10 @@ use crate::gauge::Gauge;
 use crate::hole::{Drilled, Hole, Run};
 use crate::line::Followed;
 use crate::machine_pose::Standing;
+use crate::pace::{self, Compared, Pace};
 use crate::place::{Number, Place, Station};
 use crate::report::{Excursion, Report, TravelChecked};
-use crate::state::{self, Difference, Lengths, Running};
+use crate::state::{self, Difference, Running};
 use crate::tolerance::{Applied, Tolerances};
 use crate::travel::Travel;
 use crate::{arc, line, stops};
@@ -50,6 +51,8 @@ pub struct Prover<'a> {
     standing: Standing<'a>,
     travel: Travel,
     leg: Leg,
+    /// What the cuts have taken, where the number behind F does not say it.
+    pace: Pace,
     report: Report,
     accepted: Accepted,
     /// Whether Z is home, or where the tool change brings it, so that axes may turn.
@@ -118,6 +121,7 @@ impl<'a> Prover<'a> {
             compensation: Compensation::Off,
             trail: None,
             leg: Leg::default(),
+            pace: Pace::default(),
             report: Report { tolerances: allowed, ..Report::default() },
             accepted: tolerances.accepted,
             raised: false,
@@ -262,6 +266,7 @@ impl<'a> Prover<'a> {
                 }
             }
             Action::Feed(feed) => running.feed = Some(*feed),
+            Action::FeedPath(path) => running.feed_path = *path,
             Action::Spindle(spindle) => {
                 (running.spindle, running.spindle_line) = (*spindle, line);
             }
@@ -309,6 +314,9 @@ impl<'a> Prover<'a> {
             return Ok(());
         }
         self.unclamped(line, &position.orientation);
+        if gait == Gait::Rapid {
+            self.pace = Pace::default();
+        }
         let is_up = position.point.z.is_nan();
         if is_up && gait == Gait::Rapid && self.turns_by_words(&position.orientation) {
             self.check_height(line);
@@ -449,6 +457,7 @@ impl<'a> Prover<'a> {
                 return;
             }
             self.report.compared.left_out += 1;
+            self.pace.owe((1.0 - self.leg.t) * goal.length());
             self.advance();
         }
     }

@@ -43,17 +43,19 @@ impl Prover<'_> {
             let message = format!("goes to {}; the source goes to {goes_to}", to.place);
             return Err(self.lost_at(line, "path", &message));
         }
-        let (source, block) = (goal.length(), here.place.tip.distance(to.place.tip));
-        let lengths = Lengths { source, block, rounding: self.gauge.slack(&to) };
+        let length = goal.length();
+        self.pace = Pace::default();
+        // The pitch is the feed of a thread.
+        let feed = match is {
+            Kind::Thread(_) => None,
+            _ => self.feed_of(&to, None, length, length),
+        };
         let (allowed, wanted, running) = (&self.gauge.allowed, &self.cursor.wanted, &self.running);
         let machine = self.gauge.machine;
-        let feed =
-            || state::feed(machine, allowed, wanted.feed, running.feed, wanted.spindle, &lengths);
         let found = [
             state::set_up(machine, wanted, running),
             state::spindle_and_coolant(allowed, wanted, running),
-            // The pitch is the feed of a thread.
-            if matches!(is, Kind::Thread(_)) { None } else { feed() },
+            feed,
         ];
         for difference in found {
             self.check(line, difference);

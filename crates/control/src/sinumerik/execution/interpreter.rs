@@ -12,7 +12,7 @@ use super::state::State;
 use crate::Settings;
 use crate::budget::Budget;
 use crate::compensation::{Compensator, Terms};
-use crate::event::{Action, Event, Risk};
+use crate::event::{Action, Event, FeedPath, Risk};
 use crate::sinumerik::Fallible;
 use crate::sinumerik::language::block::{Block, ToolCall};
 use crate::sinumerik::language::call::{Argument, Call, Procedure};
@@ -153,6 +153,7 @@ impl<'a, 's> Interpreter<'a, 's> {
                 self.state.modal_round = radius.max(0.0) * self.state.unit;
             }
             self.state.corner_feed = rare.modal_corner_feed.or(self.state.corner_feed);
+            self.feed_reference(source, rare.feed_reference)?;
         }
         // What the builder has added, before the motion; a gear that its machine's file lists does something there.
         for m in block.m.iter().flatten() {
@@ -586,7 +587,7 @@ impl<'a, 's> Interpreter<'a, 's> {
 
     /// `FGROUP(...)`: the axes that F is the speed of. Without one of X, Y, Z the tool would move at
     /// another feed than F wherever that axis takes part.
-    fn feed_group(&self, source: &Source, call: &Call) -> Fallible<()> {
+    fn feed_group(&mut self, source: &Source, call: &Call) -> Fallible<()> {
         let mut named = [false; 6];
         for argument in &call.arguments {
             let name = if let Argument::Text(name) = argument { name.as_str() } else { "" };
@@ -602,12 +603,36 @@ impl<'a, 's> Interpreter<'a, 's> {
         }
         // FGROUP() goes back to the basic setting: the geometry axes.
         let missing = (0..3).find(|i| !call.arguments.is_empty() && !named[*i]);
-        let Some(missing) = missing else { return Ok(()) };
-        let message = format!(
-            "FGROUP without {}: F would not be the speed of the tool where that axis moves",
-            AXIS_NAMES[missing]
-        );
-        Err(source.block_error("feed-group", message))
+        if let Some(missing) = missing {
+            let message = format!(
+                "FGROUP without {}: F would not be the speed of the tool where that axis moves",
+                AXIS_NAMES[missing]
+            );
+            return Err(source.block_error("feed-group", message));
+        }
+        let before = self.state.feed_path();
+        self.state.feed_group = [named[3], named[4], named[5]];
+        self.report_feed_path(source, before)
+    }
+
+    /// `FGREF[C]=...`: the radius at which a degree of an axis of the group counts, 57.296 mm as delivered (Programming
+    /// Manual Fundamentals, "Feedrate": 1 mm a degree).
+    fn feed_reference(&mut self, source: &Source, radii: [Option<f64>; 3]) -> Fallible<()> {
+        if radii == [None; 3] {
+            return Ok(());
+        }
+        let before = self.state.feed_path();
+        for (counts, radius) in self.state.mm_per_degree.iter_mut().zip(radii) {
+            *counts = radius.map_or(*counts, |radius| (radius * self.state.unit).to_radians());
+        }
+        self.report_feed_path(source, before)
+    }
+
+    fn report_feed_path(&mut self, source: &Source, before: FeedPath) -> Fallible<()> {
+        match self.state.feed_path() {
+            path if path == before => Ok(()),
+            path => self.emit(source, Action::FeedPath(path)),
+        }
     }
 }
 

@@ -4,7 +4,7 @@ use super::frames::Frames;
 use super::modal::Modal;
 use super::offsets::WorkOffsets;
 use crate::compensation::Outer;
-use crate::event::{Orientation, Position};
+use crate::event::{FeedPath, Orientation, Position};
 use crate::sinumerik::language::commands::{Diameter, FeedType, Motion};
 use crate::sinumerik::language::value::Value;
 use crate::sinumerik::language::variables::{Locals, Parameters, Place};
@@ -86,6 +86,10 @@ pub(crate) struct State {
     pub goes_around: bool,
     /// `F` in the active type, mm/min or mm.
     pub feed: Option<f64>,
+    /// Which of A, B and C stand in the feed group (`FGROUP`).
+    pub feed_group: [bool; 3],
+    /// `FGREF`: mm that a degree of A, B and C counts in it.
+    pub mm_per_degree: [f64; 3],
     /// The feed that was reported last.
     pub reported_feed: Option<Feed>,
     /// `S`, 1/min.
@@ -189,6 +193,8 @@ impl State {
             peak: false,
             goes_around: false,
             feed: None,
+            feed_group: [false; 3],
+            mm_per_degree: [1.0; 3],
             reported_feed: None,
             speed: 0.0,
             spindle: Spindle::Off,
@@ -305,6 +311,12 @@ impl State {
             corner: self.corner,
             goes_around: self.goes_around,
         }
+    }
+
+    /// The way that the feed counts along.
+    pub fn feed_path(&self) -> FeedPath {
+        let weight = |i: usize| if self.feed_group[i] { self.mm_per_degree[i] } else { 0.0 };
+        FeedPath::Group([0, 1, 2].map(weight))
     }
 
     /// The active feed, where `F` has been given.

@@ -77,6 +77,8 @@ pub(crate) struct Rare {
     pub spindle_position: Option<f64>,
     /// POS of X Y Z A B C.
     pub positioned: [Option<Coordinate>; 6],
+    /// FGREF of A B C, in the units of the program.
+    pub feed_reference: [Option<f64>; 3],
 }
 
 /// Most M functions in a block (Programming Manual 06/2019, 2.13).

@@ -23,6 +23,8 @@ pub(super) enum Setting {
     ModalCornerFeed,
     SpindlePosition,
     Position,
+    /// The radius at which a degree of a rotary axis counts for the feed.
+    FeedReference,
     /// How far an outer corner is from an arc.
     Peak,
     /// How far the control may leave the path of a cut.
@@ -49,6 +51,7 @@ const SETTINGS: &[(&str, Setting)] = &[
     ("FRCM", Setting::ModalCornerFeed),
     ("SPOS", Setting::SpindlePosition),
     ("POS", Setting::Position),
+    ("FGREF", Setting::FeedReference),
     ("ADIS", Setting::PathTolerance),
     ("ADISPOS", Setting::NoMotion),
     ("CTOL", Setting::PathTolerance),
@@ -69,8 +72,10 @@ impl Reader<'_, '_> {
         said: &'static str,
         setting: Setting,
     ) -> Fallible<()> {
-        if let Setting::Position = setting {
-            return self.positioning(start);
+        match setting {
+            Setting::Position => return self.positioning(start),
+            Setting::FeedReference => return self.feed_reference(start),
+            _ => {}
         }
         self.scanner.expect(b'=')?;
         if let Setting::PolarAngle | Setting::PolarRadius = setting {
@@ -105,15 +110,17 @@ impl Reader<'_, '_> {
             Setting::CornerFeed => rare(block, |r| &mut r.corner_feed),
             Setting::ModalCornerFeed => rare(block, |r| &mut r.modal_corner_feed),
             Setting::SpindlePosition => rare(block, |r| &mut r.spindle_position),
-            Setting::Position | Setting::PolarAngle | Setting::PolarRadius | Setting::NoMotion => {
-                false
-            }
+            Setting::Position
+            | Setting::FeedReference
+            | Setting::PolarAngle
+            | Setting::PolarRadius
+            | Setting::NoMotion => false,
         };
         self.once(start, repeated)
     }
 
-    /// `POS[X]=...`.
-    fn positioning(&mut self, start: usize) -> Fallible<()> {
+    /// `[X]=` behind an address that each axis has.
+    fn indexed_axis(&mut self) -> Fallible<usize> {
         self.scanner.expect(b'[')?;
         self.scanner.blanks();
         let at = self.scanner.at;
@@ -123,6 +130,29 @@ impl Reader<'_, '_> {
         };
         self.scanner.expect(b']')?;
         self.scanner.expect(b'=')?;
+        Ok(axis)
+    }
+
+    /// `FGREF[A]=...`.
+    fn feed_reference(&mut self, start: usize) -> Fallible<()> {
+        let axis = self.indexed_axis()?;
+        let radius = self.expression()?;
+        let Some(axis) = axis.checked_sub(3) else {
+            let message = "FGREF is the radius of a rotary axis";
+            return Err(self.scanner.error_since(start, "feed-group", message));
+        };
+        if radius <= 0.0 {
+            let message = "the radius of FGREF must be above 0";
+            return Err(self.scanner.error_since(start, "feed-group", message));
+        }
+        let place = self.block.rare.get_or_insert_default().feed_reference.get_mut(axis);
+        let repeated = place.is_some_and(|place| place.replace(radius).is_some());
+        self.once(start, repeated)
+    }
+
+    /// `POS[X]=...`.
+    fn positioning(&mut self, start: usize) -> Fallible<()> {
+        let axis = self.indexed_axis()?;
         let coordinate = self.counted(axis >= 3)?;
         let place = self.block.rare.get_or_insert_default().positioned.get_mut(axis);
         let repeated = place.is_some_and(|place| place.replace(coordinate).is_some());
