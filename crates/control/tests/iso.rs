@@ -453,8 +453,8 @@ fn a_feed_must_be_given_and_belongs_to_its_mode() {
         assert_eq!(rule(dialect, "G1 X1.\n"), "nc-feed");
         assert_eq!(rule(dialect, "G1 X1. F0\n"), "nc-feed");
         assert_eq!(rule(dialect, "G1 X1. F9\nG93 X2.\n"), "nc-feed");
-        assert_eq!(rule(dialect, "G93 G1 X1. F9\nX2.\n"), "nc-feed");
-        let got = ops(dialect, "G20\nG93 G1 X1. F9\nG94 X2. F9\n");
+        assert_eq!(rule(dialect, "G93 G1 X1. F9.\nX2.\n"), "nc-feed");
+        let got = ops(dialect, "G20\nG93 G1 X1. F9.\nG94 X2. F9\n");
         let feeds: Vec<Action> =
             got.into_iter().filter(|op| matches!(op, Action::Feed(_))).collect();
         assert_eq!(

@@ -187,6 +187,31 @@ fn in_inverse_time_an_arc_of_fanuc_counts_by_its_radius() {
     }
 }
 
+/// B-62764EN, "Inverse time feed": F1 is 0.001, or 1 where parameter 3401#0 is 1; F1.0 is 1; F takes 0.001 to 9999.999.
+#[test]
+fn in_inverse_time_f_of_fanuc_needs_its_point_and_ends_at_9999_999() {
+    let read = |whole_numbers, f: &str| {
+        let mut settings = Settings::new(Dialect::Fanuc, [false; 3]);
+        settings.setup.whole_numbers = whole_numbers;
+        let text = format!("G21 G90 G94 G17 G54\nG0 X10. Y0. Z0.\nG93 G1 X0. {f}\nM30\n");
+        let mut rate = None;
+        let run = toolpost_control::read(&settings, "p.nc", text.as_bytes(), &mut |event| {
+            if let Action::Feed(Feed::InverseTime(f)) = event.action {
+                rate = Some(f);
+            }
+            Ok(())
+        });
+        run.map(|()| rate.unwrap()).map_err(|found| found.rule)
+    };
+    use toolpost_control::WholeNumbers::{Increments, Units, Unknown};
+    assert_eq!(read(Unknown, "F20"), Err("nc-decimal-point"));
+    assert_eq!(read(Increments, "F20"), Ok(0.02));
+    assert_eq!(read(Units, "F20"), Ok(20.0));
+    assert_eq!(read(Unknown, "F20."), Ok(20.0));
+    assert_eq!(read(Unknown, "F9999.999"), Ok(9999.999));
+    assert_eq!(read(Unknown, "F10000."), Err("nc-feed"));
+}
+
 /// TNC 620 user's manual, "Shorter-path traverse of rotary axes: M126"; SINUMERIK *Axes and Spindles*, MD30310 and MD30455;
 /// FANUC B-64484EN-2, "Rotary axis roll-over". The sources say nothing of an axis that is not counted modulo 360°.
 #[test]

@@ -194,11 +194,16 @@ impl<'a> Clock<'a> {
         if !by_angles || turn == [0.0; 3] {
             return at_feed;
         }
-        let counted = machine.settings.rotary_feed.unwrap_or(RotaryFeed::AllAxes).counted(way, turn);
+        let counted =
+            machine.settings.rotary_feed.unwrap_or(RotaryFeed::AllAxes).counted(way, turn);
         match self.feed {
             Feed::PerMinute(feed) if length <= STANDS => counted / feed,
             Feed::PerMinute(_) | Feed::PerTurn(_) | Feed::InverseTime(_) => {
-                let most = if machine.capabilities.inverse_time { f64::INFINITY } else { machine.feed_max };
+                let most = if machine.capabilities.inverse_time {
+                    f64::INFINITY
+                } else {
+                    machine.feed_max
+                };
                 at_feed.max(counted / most)
             }
         }
@@ -254,11 +259,9 @@ impl<'a> Clock<'a> {
             true => self.degrees,
             false => self.nearest(to.axis),
         };
-        let way = self.here.map_or(Vec3::ZERO, |here| {
-            match degrees == self.degrees {
-                true => to.point - here.point,
-                false => self.axes(to.point, degrees) - self.axes(here.point, self.degrees),
-            }
+        let way = self.here.map_or(Vec3::ZERO, |here| match degrees == self.degrees {
+            true => to.point - here.point,
+            false => self.axes(to.point, degrees) - self.axes(here.point, self.degrees),
         });
         let turn = [0, 1, 2].map(|i| degrees[i] - self.degrees[i]);
         self.degrees = degrees;

@@ -146,14 +146,17 @@ impl Walk<'_> {
         let tolerance = self.machine.orientation.tolerance;
         let stances = self.machine.linearise(from, to, self.tool_length(), tolerance)?;
         let count = stances.len();
-        let mut here = self.axes_at(&from);
+        let (length_of_tool, start) = (self.tool_length().unwrap_or(0.0), from.degrees);
+        let start = self.machine.linear_for(from.tip, start, length_of_tool);
+        let mut here = Turn { linear: self.rounded(start), degrees: from.degrees };
         // The way of the tip for which no block was written: its axes have not changed by a step.
         let mut owed = 0.0;
         for stance in stances {
-            let there = self.axes_at(&stance);
+            self.aim_at(stance.tip, Vec3::Z, Some(stance.degrees));
+            let degrees = self.place.degrees().unwrap_or(stance.degrees);
+            let there = Turn { linear: self.rounded(self.said), degrees };
             let way = here.to(&there);
             let length = length / count as f64 + owed;
-            self.aim_at(stance.tip, Vec3::Z, Some(stance.degrees));
             owed = if way == Turn::default() { length } else { 0.0 };
             self.cut(length, count, Cut::Turning(way))?;
             here = there;
@@ -164,17 +167,14 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// Where the axes stand for a stance, as their words give it.
-    fn axes_at(&self, stance: &Stance) -> Turn {
-        let (length, degrees) = (self.tool_length().unwrap_or(0.0), self.written(stance.degrees));
-        let at = self.machine.linear_for(stance.tip, degrees, length);
+    /// Positions of the linear axes, as their words give them.
+    fn rounded(&self, at: Vec3) -> Vec3 {
         let rounded = |word, value| self.writer.rounded(word, value);
-        let linear = Vec3::new(
+        Vec3::new(
             rounded(WordName::X, at.x),
             rounded(WordName::Y, at.y),
             rounded(WordName::Z, at.z),
-        );
-        Turn { linear, degrees }
+        )
     }
 
     /// Writes the straight cut that has been aimed, `length` mm long, one of so many pieces of the source's.

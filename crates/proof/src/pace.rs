@@ -160,7 +160,8 @@ impl Pace {
         let took = (least + if most.is_finite() { most } else { least }) / 2.0;
         let is_fast = most < wanted * (1.0 - blur);
         // Not a number is never right.
-        let is_slow = !(least <= slowest * (1.0 + blur));
+        let is_in_time = least <= slowest * (1.0 + blur);
+        let is_slow = !is_in_time;
         let message = || {
             let (goes, should) = (Number(way / took), Number(speed));
             let why = match cut.counted() {

@@ -265,7 +265,8 @@ fn f_of_the_source_in_the_blocks_is_refused_where_the_control_counts_degrees() {
         (near_the_pole(Feed::PerMinute(1000.0)), 0.013..0.03),
     ] {
         for (name, machine, counts) in machines() {
-            if counts == Counts::Time {
+            // F1000 along X, Y and Z near the pole is more than C can follow, and less than the tip may go at.
+            if counts == Counts::Time || (counts == Counts::Linear && factor.start < 1.0) {
                 continue;
             }
             let (good, _) = written(&source, &machine);

@@ -193,6 +193,7 @@ fn a_hole_that_is_drilled_by_moves_takes_its_own_time() {
         let drilled = [Op::Cycle(Box::new(cycle)), hole, Op::CycleOff];
         let text = written(&machine, &[&ops[..], &drilled[..]].concat()).unwrap();
         let down = text.lines().find(|line| line.contains("Z-12")).unwrap();
+        let down = down.trim_end_matches('.');
         assert!(down.ends_with(if inverse { "F30" } else { "F450" }), "{text}");
     }
 }

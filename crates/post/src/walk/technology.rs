@@ -319,23 +319,30 @@ impl Walk<'_> {
         if wanted < least {
             self.slowed(&format!("{axis} goes no faster than its rapid"));
         }
-        if inverse {
-            return Ok((feed_mode::INVERSE_TIME, 1.0 / minutes));
-        }
-        let Some(counts) = self.machine.settings.rotary_feed else {
-            let message = "rotary axes turn in a cut, the control has no inverse-time feed, and nobody says what F counts there";
-            let help = "`rotary_feed = \"all-axes\"` in [settings] of the machine file where F counts a degree like a mm, \
-                        `\"linear-axes\"` where it counts X, Y and Z alone";
-            return Err(refuse("rotary-feed", message).help(help).into());
+        let counts = self.machine.settings.rotary_feed;
+        let most = |word: WordName| {
+            self.machine.words.get(word.name()).map_or(f64::INFINITY, |word| word.max)
         };
-        let value = counts.counted(turn.linear, turn.degrees) / minutes;
-        let most =
-            self.machine.words.get(WordName::F.name()).map_or(f64::INFINITY, |word| word.max);
-        let most = most.min(self.machine.feed_max);
+        let (mode, value, most) = match counts {
+            // A block that is too short for inverse time may still have an F that counts.
+            _ if inverse && (counts.is_none() || 1.0 / minutes <= most(WordName::FeedInverse)) => {
+                (feed_mode::INVERSE_TIME, 1.0 / minutes, most(WordName::FeedInverse))
+            }
+            Some(counts) => {
+                let value = counts.counted(turn.linear, turn.degrees) / minutes;
+                (feed_mode::PER_MINUTE, value, most(WordName::F).min(self.machine.feed_max))
+            }
+            None => {
+                let message = "rotary axes turn in a cut, the control has no inverse-time feed, and nobody says what F counts there";
+                let help = "`rotary_feed = \"all-axes\"` in [settings] of the machine file where F counts a degree like a mm, \
+                            `\"linear-axes\"` where it counts X, Y and Z alone";
+                return Err(refuse("rotary-feed", message).help(help).into());
+            }
+        };
         if value > most {
             self.slowed(&format!("F is {most} at the most"));
         }
-        Ok((feed_mode::PER_MINUTE, value.min(most)))
+        Ok((mode, value.min(most)))
     }
 
     /// The tip is slower than the source wants it.

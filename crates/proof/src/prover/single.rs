@@ -46,9 +46,9 @@ impl Prover<'_> {
         let length = goal.length();
         self.pace = Pace::default();
         // The pitch is the feed of a thread.
-        let feed = match is {
-            Kind::Thread(_) => None,
-            _ => self.feed_of(&to, None, length, length),
+        let feed = match matches!(is, Kind::Thread(_)) {
+            true => None,
+            false => self.feed_of(&to, None, length, length),
         };
         let (allowed, wanted, running) = (&self.gauge.allowed, &self.cursor.wanted, &self.running);
         let machine = self.gauge.machine;

@@ -148,6 +148,9 @@ impl Step<'_, '_, '_> {
         if self.flavor == Flavor::FreeCad {
             return self.feed_of_command();
         }
+        if self.flavor == Flavor::Fanuc && self.state.feed_mode == FeedMode::InverseTime {
+            return self.feed_as_time();
+        }
         let Some(word) = self.block.take(b'F') else { return Ok(()) };
         let inches = self.inches_of_feed()?;
         if word.value <= 0.0 {
@@ -159,6 +162,23 @@ impl Step<'_, '_, '_> {
             FeedMode::PerTurn => Feed::PerTurn(word.value * self.unit(inches, b'F')?),
             FeedMode::InverseTime => Feed::InverseTime(word.value),
         };
+        if self.state.feed.replace(feed) != Some(feed) {
+            self.actions.push(Action::Feed(feed));
+        }
+        Ok(())
+    }
+
+    /// F in `G93` of a FANUC (B-62764EN, "Inverse time feed"): 0.001 to 9999.999, and a thousandth of a number that has no
+    /// point, unless parameter 3401#0 says otherwise.
+    fn feed_as_time(&mut self) -> Result<(), Fault> {
+        let Some((value, thousandths)) = self.take_pointed(b'F')? else { return Ok(()) };
+        let rate = if thousandths { value / 1000.0 } else { value };
+        if !(0.001..=9999.999).contains(&rate) {
+            let message = "F takes 0.001 to 9999.999 in G93";
+            return Err(self.block.at_word(b'F', "nc-feed", message));
+        }
+        self.state.f = Some(value);
+        let feed = Feed::InverseTime(rate);
         if self.state.feed.replace(feed) != Some(feed) {
             self.actions.push(Action::Feed(feed));
         }
