@@ -164,8 +164,10 @@ fn cuts(text: &str, counts: Counts) -> Vec<Cut> {
             *at = value.unwrap_or(*at);
         }
         let by: [f64; 5] = std::array::from_fn(|i| at[i] - from[i]);
+        // Not a number where a coordinate is not known yet.
         let turns = by[3].hypot(by[4]);
-        if rapid || !(turns > 0.0) {
+        let is_turning = turns > 0.0;
+        if rapid || !is_turning {
             continue;
         }
         let linear = Vec3::new(by[0], by[1], by[2]).length();
