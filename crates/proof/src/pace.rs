@@ -13,7 +13,7 @@ use program::{Feed, Spindle};
 pub(crate) const STANDS: f64 = 1e-6;
 
 /// A way that is so many times its rounding is long enough to have a speed.
-const TIMED: f64 = 8.0;
+pub(crate) const TIMED: f64 = 8.0;
 
 /// A cut of the program, and what the source wants of it.
 pub(crate) struct Cut<'a> {

@@ -81,6 +81,11 @@ impl Prover<'_> {
             return self.feed_by_number();
         }
         let (rounding, by_number) = (self.gauge.slack(to), self.feed_by_number());
+        let moved = self.here.place.tip.distance(to.place.tip);
+        if matches!(wanted, Feed::InverseTime(_)) && moved <= pace::TIMED * rounding {
+            // The time of the source is that of a whole move, in which the tool may stand while axes turn.
+            return None;
+        }
         if source <= pace::STANDS || (way.abs() <= rounding && by_number.is_none()) {
             // The tool turns about its tip, which has no speed: the number says how fast the axes are.
             return if inverse { None } else { by_number };
