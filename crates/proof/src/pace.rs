@@ -108,7 +108,7 @@ impl Cut<'_> {
             (Orientation::Rotary { .. } | Orientation::Axis(_), _) => (Vec3::ZERO, [0.0; 3]),
         };
         let linear = machine.linear.iter().zip(way.to_array());
-        let linear = linear.map(|(axis, way)| way.abs() / axis.rapid);
+        let linear = linear.map(|(axis, way)| axis.rapid.map_or(0.0, |rapid| way.abs() / rapid));
         let rotary = machine.rotary.iter();
         let rotary = rotary.map(|axis| turns[axis.index()].abs() / axis.rapid);
         let most = |word: &str| machine.words.get(word).map_or(f64::INFINITY, |word| word.max);

@@ -42,7 +42,8 @@ impl Turn {
     /// What the slowest axis takes at its rapid, minutes, and its name.
     fn least(&self, machine: &Machine) -> (f64, char) {
         let linear = ['X', 'Y', 'Z'].into_iter().zip(&machine.linear).zip(self.linear.to_array());
-        let linear = linear.map(|((name, axis), way)| (way.abs() / axis.rapid, name));
+        let linear = linear
+            .map(|((name, axis), way)| (axis.rapid.map_or(0.0, |rapid| way.abs() / rapid), name));
         let rotary = machine.rotary.iter();
         let rotary =
             rotary.map(|axis| (self.degrees[axis.index()].abs() / axis.rapid, axis.letter));
