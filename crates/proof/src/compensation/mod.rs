@@ -89,6 +89,7 @@ impl Part<'_> {
             | Action::Cycle(_)
             | Action::CycleOff
             | Action::Feed(_)
+            | Action::FeedPath(_)
             | Action::Spindle(_)
             | Action::SurfaceSpeed(_)
             | Action::Coolant(_)
