@@ -24,9 +24,7 @@ pub mod tools;
 mod way;
 
 use compensation::Compensator;
-pub use event::{
-    Action, ArcTo, Event, FeedPath, Orientation, Position, Risk, Thread, TiltChoice,
-};
+pub use event::{Action, ArcTo, Event, FeedPath, Orientation, Position, Risk, Thread, TiltChoice};
 pub use folders::Folders;
 use geom::Vec3;
 use iso::Flavor;
