@@ -328,6 +328,16 @@ impl Risk {
         refused: true,
     };
 
+    /// Where X, Y and Z count under `G43.4` that comes with a turned table: in the frame of the part with the table at 0, or
+    /// in the work offset as it lies over the turned table (A-79348E p. 19, parameter 19696#5).
+    pub(crate) const TABLE_FRAME: Risk = Risk {
+        rule: "table-frame",
+        what: "switches G43.4 on with a turned table, and in which frame X, Y and Z count then the machine file does not say",
+        help: "turn the table to 0 before G43.4; or try a place beside the centre of the table on the machine, and write \
+               `table_frame_at_zero = true` below [settings] where it is that of the part",
+        refused: true,
+    };
+
     /// How the tool turns within a block under `TRAORI`: about the shortest way between its ends (`ORIVECT`, `ORIWKS`), or as
     /// its axes turn evenly (`ORIAXES`, `ORIMKS`). Which of the two G groups says it, MD21104 decides.
     pub(crate) const ORIENTATION_WAY: Risk = Risk {

@@ -211,6 +211,11 @@ pub struct Settings {
     /// Whether the sign of a rotary word is the direction of an axis that rolls over, where that is known (FANUC parameter
     /// 1008#1).
     pub rotary_by_sign: Option<bool>,
+    /// Which of A, B and C turn a table.
+    pub table: [bool; 3],
+    /// Whether X, Y and Z under `G43.4` count in the frame of the part with the table at 0, however the table is turned
+    /// when it comes, where that is known (FANUC).
+    pub table_frame_at_zero: Option<bool>,
     /// Whether programs of this machine write work offsets (`G10 L2`).
     pub sets_work_offsets: bool,
     /// Whether taps are held in a chuck that floats along its axis.
@@ -340,6 +345,8 @@ impl Settings {
             length_moves_axis: None,
             dwell_p_milliseconds: None,
             rotary_by_sign: None,
+            table: [false; 3],
+            table_frame_at_zero: None,
             sets_work_offsets: false,
             auxiliary: Vec::new(),
             operator_parameters: Vec::new(),

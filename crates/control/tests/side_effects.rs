@@ -644,3 +644,38 @@ fn a_program_says_which_kinematics_it_has_and_leaves_those_of_the_axes() {
     }
     assert_eq!(switched("G21 G90\nM428\nM2\n"), Err("nc-kinematics"));
 }
+
+/// A-79348E p. 19: the work offset "at that point of time" is fixed on the table, and "the angle of the table's rotary axis
+/// represents the initial state". At 0 both readings are one; a head turns no table.
+#[test]
+fn in_which_frame_g43_4_counts_with_a_turned_table_the_machine_file_says() {
+    let risks = |table, table_frame_at_zero, turn: &str| {
+        let settings = Settings {
+            table,
+            table_frame_at_zero,
+            length_moves_axis: Some(false),
+            ..Settings::new(Dialect::Fanuc, [false, true, true])
+        };
+        let text = format!("G21\nG90 G94 G54\nG91 G28 Z0.\nG90\nT1 M6\n{turn}G43.4 H1\nM30\n");
+        rules(&common::ops(&settings, "p.nc", &text).unwrap_or_else(|e| panic!("{e}\n{text}")))
+    };
+    let (head, table) = ([false; 3], [false, true, true]);
+    for (mount, setting, turn, is_risk) in [
+        (table, None, "G0 B30. C0.\n", true),
+        (table, Some(false), "G0 B30. C0.\n", true),
+        (table, Some(true), "G0 B30. C0.\n", false),
+        (table, None, "G0 B0. C90.\n", true),
+        // Nobody knows where the table stands.
+        (table, None, "", true),
+        (table, None, "G0 B0. C0.\n", false),
+        (head, None, "G0 B30. C90.\n", false),
+        (head, None, "", false),
+    ] {
+        let found = risks(mount, setting, turn);
+        assert_eq!(
+            found.contains(&"table-frame"),
+            is_risk,
+            "{mount:?} {setting:?} {turn}: {found:?}"
+        );
+    }
+}

@@ -91,6 +91,9 @@ pub struct ControlSettings {
     pub dwell_p_milliseconds: Option<bool>,
     /// Whether the sign of a rotary word is the direction of an axis that rolls over (FANUC parameter 1008#1).
     pub rotary_by_sign: Option<bool>,
+    /// Whether X, Y and Z under `G43.4` count in the frame of the part with the table at 0, however the table is turned when
+    /// it comes (FANUC).
+    pub table_frame_at_zero: Option<bool>,
     /// What the feed counts where rotary axes turn in a cut and the control does not keep the tool tip.
     pub rotary_feed: Option<RotaryFeed>,
     /// Whether programs of this machine write work offsets: its fixtures are set so, and not by the operator.

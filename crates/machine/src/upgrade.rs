@@ -151,6 +151,20 @@ pub fn missing(machine: &Machine) -> Vec<Missing> {
             "parameter 1008#1 of the rotary axes: true where it is 1",
         );
     }
+    let modes = [machine.orientation.simultaneous, machine.orientation.positioned];
+    let keeps_tip = modes.contains(&OrientationMode::ToolCenterAngles);
+    let turns_table = machine.rotary.iter().any(|axis| axis.on == Mount::Table);
+    if machine.reader == "fanuc"
+        && keeps_tip
+        && turns_table
+        && machine.settings.table_frame_at_zero.is_none()
+    {
+        lacks(
+            "[settings]".into(),
+            "table_frame_at_zero = true",
+            "no parameter alone says it (19696#5): try G43.4 with a turned table at a place beside its centre",
+        );
+    }
     for axis in &machine.rotary {
         let table = format!("[[rotary]] letter = \"{}\"", axis.letter);
         if turns_axes && !axis.is_placed {

@@ -22,7 +22,7 @@ use control::{
     Action, Dialect, Ending, Event, FeedPath, Orientation, Position, Risk, Settings, Setup, Wire,
 };
 use geom::Vec3;
-use machine::{LengthOffset, Machine, RotaryFeed};
+use machine::{LengthOffset, Machine, Mount, RotaryFeed};
 use program::{
     ArcTo, Axes, Circle, CompensatedPath, Cycle, Diagnostic, Feed, MachineMove, Op, Pose, Probe,
     Program, Record, Thread, Tool, WorkOffset,
@@ -66,9 +66,10 @@ pub fn settings(machine: &Machine, setup: Setup) -> Result<Settings, Box<Diagnos
             .line(place.line)
             .into());
     };
-    let (mut rotary, mut modulo) = ([false; 3], [None; 3]);
+    let (mut rotary, mut table, mut modulo) = ([false; 3], [false; 3], [None; 3]);
     for axis in &machine.rotary {
         rotary[axis.index()] = true;
+        table[axis.index()] = axis.on == Mount::Table;
         modulo[axis.index()] = axis.modulo;
     }
     let clamps = machine.rotary.iter().filter_map(|axis| axis.clamp);
@@ -81,6 +82,8 @@ pub fn settings(machine: &Machine, setup: Setup) -> Result<Settings, Box<Diagnos
         length_moves_axis: machine.settings.length_moves_axis,
         dwell_p_milliseconds: machine.settings.dwell_p_milliseconds,
         rotary_by_sign: machine.settings.rotary_by_sign,
+        table,
+        table_frame_at_zero: machine.settings.table_frame_at_zero,
         sets_work_offsets: machine.settings.sets_work_offsets,
         operator_parameters: machine.operator_parameters.clone(),
         wire: machine.wire.map_or(Wire::default(), |wire| Wire {

@@ -2,7 +2,7 @@
 //! program does not say.
 
 /// The rules that may be accepted, each with what its acceptance answers for.
-pub const ACCEPTABLE: [(&str, &str); 13] = [
+pub const ACCEPTABLE: [(&str, &str); 14] = [
     ("dwell-unit", "what a dwell counts in"),
     ("floating-tap", "taps are held in a floating chuck"),
     ("length-change", "Z moves by the tool length where parameter 5006#6 is 0"),
@@ -14,6 +14,7 @@ pub const ACCEPTABLE: [(&str, &str); 13] = [
     ("rapid-path", "room for the tool where it goes by rapid beside the way of the source"),
     ("rotary-way", "which way the rotary axes turn"),
     ("stored-position", "where the stored position is to which Z goes"),
+    ("table-frame", "in which frame X, Y and Z count behind G43.4 with a turned table"),
     ("tool-change-height", "the tool change of the machine brings Z up by itself"),
     ("turn-height", "room for the part and the tool where rotary axes turn"),
 ];

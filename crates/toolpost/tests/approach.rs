@@ -58,7 +58,7 @@ fn trunnion(control: &str, more: &str) -> Machine {
 }
 
 fn fanuc() -> Machine {
-    let settings = "rotary_by_sign = false\nlength_moves_axis = false\nlength_along_z = true\nrapid_path = \"linear\"";
+    let settings = "table_frame_at_zero = true\nrotary_by_sign = false\nlength_moves_axis = false\nlength_along_z = true\nrapid_path = \"linear\"";
     trunnion("fanuc-31i", settings)
 }
 
@@ -267,7 +267,7 @@ fn the_samples_approach_in_the_machine() {
 /// cuts along the tool it comes in as it was drawn.
 #[test]
 fn a_tilted_head_comes_in_along_its_tool() {
-    let text = "extends = \"fanuc-31i\"\nsafe_height = 400\nwork_zero = [0, 0, 0]\n[settings]\nrotary_by_sign = false\n\
+    let text = "extends = \"fanuc-31i\"\nsafe_height = 400\nwork_zero = [0, 0, 0]\n[settings]\ntable_frame_at_zero = true\nrotary_by_sign = false\n\
          length_moves_axis = false\nlength_along_z = true\nrapid_path = \"linear\"\n[orientation]\n\
          simultaneous = \"tool-center-angles\"\npositioned = \"tool-center-angles\"\ntolerance = 0.01\n\
          [[rotary]]\nletter = \"A\"\non = \"head\"\naxis = [1, 0, 0]\npoint = [0, 0, 200]\nmin = -115\nmax = 115\n\

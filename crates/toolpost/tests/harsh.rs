@@ -114,7 +114,7 @@ fn machines() -> Vec<(&'static str, Machine)> {
     let (angles, tip, vectors, plane) =
         ("machine-angles", "tool-center-angles", "vectors", "tilted-plane");
     let (plain, count) = ("modulo = false\n", "min = -360\nmax = 360\nmodulo = false\n");
-    let fanuc = "rotary_by_sign = false\nlength_moves_axis = false\nlength_along_z = true\ndwell_p_milliseconds = true";
+    let fanuc = "table_frame_at_zero = true\nrotary_by_sign = false\nlength_moves_axis = false\nlength_along_z = true\ndwell_p_milliseconds = true";
     let straight = format!("{fanuc}\nrapid_path = \"linear\"");
     vec![
         library("sinumerik-840d-table-ac"),

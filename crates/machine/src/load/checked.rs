@@ -386,6 +386,7 @@ impl CheckedSheet {
                 tool_radius: self.settings.tool_radius,
                 rotary_feed: self.settings.rotary_feed,
                 rotary_by_sign: self.settings.rotary_by_sign,
+                table_frame_at_zero: self.settings.table_frame_at_zero,
                 sets_work_offsets: self.settings.sets_work_offsets.unwrap_or(false),
                 swivel_direction: self.settings.swivel_direction,
                 tilt_second_axis_first: self.settings.tilt_second_axis_first,

@@ -59,6 +59,10 @@ pub(crate) struct State {
     pub dwell_p_milliseconds: Option<bool>,
     /// Whether the sign of a rotary word is the direction, where that is known.
     pub rotary_by_sign: Option<bool>,
+    /// Which of A, B and C turn a table.
+    pub table: [bool; 3],
+    /// Whether `G43.4` counts in the frame of the part with the table at 0, where that is known (FANUC).
+    pub table_frame_at_zero: Option<bool>,
     /// Whether programs of this machine write work offsets.
     pub sets_work_offsets: bool,
     /// What lies between programmed coordinates and the work frame.
@@ -212,6 +216,8 @@ impl State {
             length_moves_axis: settings.length_moves_axis,
             dwell_p_milliseconds: settings.dwell_p_milliseconds,
             rotary_by_sign: settings.rotary_by_sign,
+            table: settings.table,
+            table_frame_at_zero: settings.table_frame_at_zero,
             sets_work_offsets: settings.sets_work_offsets,
             frames: Frames::new(work_offset, all_zero, turns_offsets),
             place: Place::SAME,

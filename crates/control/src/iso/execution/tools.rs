@@ -198,6 +198,13 @@ impl Step<'_, '_, '_> {
         if self.state.length_moves_axis != Some(false) && !self.state.z_is_home && !says_z {
             self.actions.push(Action::Risk(Risk::LENGTH_CHANGE.into()));
         }
+        let turned = |i: usize| self.state.table[i] && self.state.rotary[i] != 0.0;
+        if matches!(length, Length::Center(_))
+            && (0..3).any(turned)
+            && self.state.table_frame_at_zero != Some(true)
+        {
+            self.actions.push(Action::Risk(Risk::TABLE_FRAME.into()));
+        }
         let begins = length != Length::None && self.state.plane != Plane::Xy;
         if begins && self.state.length_along_z != Some(true) {
             self.actions.push(Action::Risk(Risk::LENGTH_PLANE.into()));
