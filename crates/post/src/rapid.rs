@@ -126,6 +126,11 @@ impl Walk<'_> {
             Kind::ToolCenter | Kind::Vectors => is_along(Vec3::Z),
         };
         if is_level && is_along(axis) {
+            // Z that comes down while nobody knows X and Y has room above all cuts alone.
+            let z_last = self.machine.approach.last().is_some_and(|group| group == "Z");
+            if !z_last && !self.is_beyond(pose.point(), axis) {
+                return self.in_groups(pose, stop, ["XY", "Z"]);
+            }
             return self.in_groups(pose, stop, in_order);
         }
         let Entry { above, beyond } = self.entry(pose, &ups, is_level)?;

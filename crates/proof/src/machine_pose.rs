@@ -55,7 +55,7 @@ impl Gauge<'_> {
 ///
 /// A block that says their positions leaves no question. Of a vector the control takes the solution that is the nearest
 /// to where the axes stand, behind an unknown place any that is within the travel; of a tilted plane those that its rule
-/// of choice allows ([`tilt`](crate::tilt)).
+/// of choice allows ([`crate::tilt`]).
 pub(crate) struct Standing<'a> {
     machine: &'a Machine,
     inverse: Inverse<'a>,

@@ -155,7 +155,8 @@ fn a_picture_shows_where_the_axes_take_the_tip_by_rapid() {
     let example = |name: &str| std::fs::read_to_string(format!("{root}{name}")).unwrap();
     let source = read(&example("lean.cls"));
     let (good, bad) = (text(&written(&source, &machine)), example("lean-one-block.mpf"));
-    assert_eq!(refused(&source, &machine, &bad)[0].0, "rapid-path");
+    let found = refused(&source, &machine, &bad);
+    assert!(found.iter().any(|found| found.0 == "rapid-path"), "{found:?}");
     let lowest = |text: &str| {
         let program =
             nc::read_swinging(&machine, Default::default(), "p", text.as_bytes()).unwrap();

@@ -17,7 +17,7 @@ fn table(control: &str, top: &str, settings: &str, a: &str, slides: [f64; 3]) ->
         )
     };
     let text = format!(
-        "extends = \"{control}\"\nsafe_height = {z}\n{top}\n[settings]\nrapid_path = \"linear\"\n{settings}\n\
+        "extends = \"{control}\"\nsafe_height = {z}\n{top}\n[settings]\nrapid_path = \"linear\"\ntable_frame_at_zero = true\n{settings}\n\
          [orientation]\nsimultaneous = \"tool-center-angles\"\npositioned = \"tilted-plane\"\ntolerance = 0.01\n\
          [axes]\n{axes}{}{}",
         axis("A", "[1, 0, 0]", a),
@@ -257,8 +257,8 @@ fn what_the_travel_does_not_take_is_refused_before_it_is_written() {
                         }
                         Err(why) => {
                             refused += 1;
-                            assert_eq!(
-                                why.rule, "axis-limit",
+                            assert!(
+                                matches!(why.rule, "axis-limit" | "home-height"),
                                 "{control} {zero} {a} job {number}: {why}"
                             );
                         }

@@ -22,7 +22,7 @@ fn source(length: &str) -> Program {
 /// of the machine.
 fn mill(on: &str, axis: &str, top: &str) -> Machine {
     let text = format!(
-        "extends = \"sinumerik-840d\"\nsafe_height = 0\n{top}\n[orientation]\nsimultaneous = \"machine-angles\"\n\
+        "extends = \"sinumerik-840d\"\nsafe_height = 400\n{top}\n[orientation]\nsimultaneous = \"machine-angles\"\n\
          [axes]\nZ = {{ min = -900, max = 900, rapid = 9000, acceleration = 3 }}\n\
          [[rotary]]\nletter = \"A\"\non = \"{on}\"\naxis = [1, 0, 0]\n{axis}\nmin = -100\nmax = 100\n\
          rapid = 9000\nacceleration = 300\n"

@@ -117,7 +117,7 @@ fn holes_along_several_axes_each_have_their_plane() {
 fn a_piece_of_a_move_has_its_part_of_the_inverse_time() {
     let helix = "RAPID\nGOTO/10,0,3\nFEDRAT/2,INVERS\nCIRCLE/0,0,3,0,0,1,10,TIMES,3\nGOTO/10,0,0";
     let (blocks, _) = posted("generic-3axis-haas", helix);
-    assert_eq!(blocks.iter().filter(|block| block.ends_with(" F6")).count(), 3, "{blocks:#?}");
+    assert_eq!(blocks.iter().filter(|block| block.ends_with(" F6.")).count(), 3, "{blocks:#?}");
 }
 
 #[test]

@@ -58,12 +58,13 @@ SINUMERIK = [
     Damage("surface of a hole", r"CYCLE81", swap(",27.071,", ",17.071,")),
 ]
 TABLE = [
-    *SINUMERIK,
+    *(damage for damage in SINUMERIK if damage.name != "feed"),
+    # F of a block is worked out for its axes: up to ten times that of the tip.
+    Damage("feed", r"F\d+", shift("F", 3000)),
     Damage("A of an operation", r"G0A45C", shift("A", 0.5)),
     Damage("sign of C", r"G0A45C", swap("C=-", "C=")),
     Damage("a cut left out", r"C=26\.302", drop),
     Damage("C of a cut", r"C=8\.", swap("C=8.", "C=7.")),
-    Damage("no retract", r"G75Z0$", drop),
 ]
 TRAORI = [
     *SINUMERIK,

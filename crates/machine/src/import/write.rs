@@ -102,16 +102,39 @@ impl Writing<'_> {
         for (name, text) in &self.blocks {
             let _ = writeln!(out, "{name} = {}", quoted(text));
         }
+        self.rapids(&mut out);
         out
+    }
+
+    /// How fast the axes are, where the rapids of the control go at an F.
+    fn rapids(&mut self, out: &mut String) {
+        let states = |machine: &Machine| machine.linear.iter().any(|axis| axis.rapid.is_some());
+        if states(self.base) {
+            return;
+        }
+        let Some(generic) = self.generic().into_iter().find(states) else { return };
+        out.push_str("\n# The post does not say how fast its rapids are: write the speeds of the machine here.\n[axes]\n");
+        for (name, axis) in ["X", "Y", "Z"].into_iter().zip(&generic.linear) {
+            if let Some(rapid) = axis.rapid {
+                let _ = writeln!(out, "{name} = {{ rapid = {rapid} }}");
+            }
+        }
+        let message = "no post says how fast rapids are that go at an F: the `rapid` of any mill with this control is \
+                       written; write that of the machine";
+        self.findings.assumed("rapid-feed", message.into());
     }
 
     /// The safe height of any mill of the library with the same control.
     fn generic_height(&self) -> Option<f64> {
+        self.generic().iter().find_map(|machine| machine.safe_height)
+    }
+
+    /// Any mills of the library with the same control.
+    fn generic(&self) -> Vec<Machine> {
         let own = [&self.base.name, &self.base.control];
         let generic = names(MACHINES).filter(|name| name.starts_with("generic-"));
         let generic = generic.filter_map(|name| load(name).ok());
-        let mut generic = generic.filter(|machine| own.contains(&&machine.control));
-        generic.find_map(|machine| machine.safe_height)
+        generic.filter(|machine| own.contains(&&machine.control)).collect()
     }
 
     fn words(&self, out: &mut String) {
