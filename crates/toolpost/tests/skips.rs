@@ -36,7 +36,7 @@ fn what_the_program_needs_may_not_be_switched_off() {
             "M5",
         ),
         ("generic-3axis-haas", &[("G43", "rapid-feed"), ("T2 M6", "tool")], "M5"),
-        ("linuxcnc-mill", &[("G43", "length-offset"), ("G64", "path-tolerance")], "M5"),
+        ("linuxcnc-mill", &[("G43", "rapid-feed"), ("G64", "path-tolerance")], "M5"),
         ("mach3-mill", &[("G61", "path-tolerance")], "M5"),
         ("generic-3axis-sinumerik", &[("S3000 M3", "spindle"), ("G1 Z-2", "rapid-feed")], "M5"),
         ("generic-3axis-heidenhain", &[("L Z-2", "path")], "M5"),

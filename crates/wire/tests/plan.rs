@@ -347,11 +347,15 @@ fn a_lead_shorter_than_the_wire_leans_is_refused_with_one_that_has_room() {
         ("taper-lead", "there is room with --lead 2.4")
     );
     assert_eq!(planned(die(None, None), &with(2.4)).passes.len(), 1);
-    // 1 mm from the lower edge, and so in the part above; the ends of the wire do not move against each other.
+    // 1 mm from the lower edge, and so in the part above: the lower end goes to the edge, the upper one away from it.
     let refused = plan(&[die(Some(p(5.0, 1.0)), Some(p(15.0, 0.0)))], &narrow).unwrap_err();
     assert_eq!(refused.rule, "taper-lead");
-    assert!(refused.message.contains("cuts into the part on its upper face"), "{refused}");
-    assert_eq!(refused.help, "there is room with --lead 2.4 and without --thread");
+    assert!(refused.message.contains("the ends move against each other"), "{refused}");
+    assert_eq!(
+        refused.help,
+        "there is room with --begin 15.0000,0.0000 --lead 5 and without --thread"
+    );
+    assert_eq!(planned(die(None, Some(p(15.0, 0.0))), &with(5.0)).passes.len(), 1);
     // Wider above, the same places do.
     let wide = Settings { taper: leaned(2.0, Rounding::Conical), ..narrow };
     assert_eq!(planned(die(Some(p(5.0, 1.0)), Some(p(15.0, 0.0))), &wide).passes.len(), 1);
