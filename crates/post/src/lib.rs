@@ -31,6 +31,7 @@ mod sweep;
 mod template;
 mod text;
 mod tilt;
+mod vectors;
 mod walk;
 mod wire;
 mod writer;

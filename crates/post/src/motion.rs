@@ -3,6 +3,7 @@
 use crate::catalogue::{BlockName, WordName};
 use crate::place::{Kind, Stop, same};
 use crate::template::{ORIENTATION, POSITION, Words};
+use crate::vectors;
 use crate::walk::{Cut, Done, Turn, Walk, motion, refuse};
 use geom::{ANGLE_EPSILON, Vec3};
 use machine::Unsaid;
@@ -36,7 +37,45 @@ impl Walk<'_> {
         if let Some(degrees) = stop.step.and_then(|step| step.rewind) {
             self.rewind(degrees, stop)?;
         }
+        if self.vector_strays(pose.axis())
+            && let Some(here) = self.here
+        {
+            let degrees = self.vector_start(here.axis(), pose.axis())?;
+            let message = "the travel of the rotary axes ends in this cut: the tool is drawn back, turned and brought in again";
+            self.findings.warn(Diagnostic::warning("rewind", message).line(self.line));
+            self.rewind(degrees, stop)?;
+        }
         self.line_to(pose, stop)
+    }
+
+    /// Where the rotary axes come while the control turns the tool along a vector to `axis`, where it does and that is known.
+    fn vector_ends(&self, axis: Vec3) -> Option<[f64; 3]> {
+        let from = self.place.degrees().filter(|_| matches!(self.place.kind, Kind::Vectors))?;
+        vectors::arrival(self.machine, from, axis)
+    }
+
+    /// Whether a rotary axis would leave its travel while the control turns the tool along a vector to `axis`.
+    pub(crate) fn vector_strays(&self, axis: Vec3) -> bool {
+        matches!(self.place.kind, Kind::Vectors)
+            && self.place.degrees().is_some()
+            && self.vector_ends(axis).is_none()
+    }
+
+    /// Where the rotary axes have to stand along `from`, so that each stays within its travel on the way to `to`.
+    fn vector_start(&self, from: Vec3, to: Vec3) -> Result<[f64; 3], Box<Diagnostic>> {
+        let machine = self.machine;
+        let off = |start: [f64; 3]| {
+            let end = vectors::arrival(machine, start, to)?;
+            Some((start, vectors::off_center(machine, start) + vectors::off_center(machine, end)))
+        };
+        let starts = vectors::starts(machine, from).into_iter().filter_map(off);
+        let best = starts.min_by(|a, b| a.1.total_cmp(&b.1));
+        best.map(|(start, _)| start).ok_or_else(|| {
+            let message =
+                "along the vector of this cut a rotary axis leaves its travel, wherever it starts";
+            let help = "make the steps of the tool axis smaller, or turn the part on the table";
+            Box::new(Diagnostic::error("axis-limit", message).help(help))
+        })
     }
 
     /// Whether the tool points in `pose` as it does here.
@@ -233,7 +272,9 @@ impl Walk<'_> {
             if matches!(self.place.kind, Kind::ToolCenter | Kind::Machine) {
                 self.say_degrees(degrees);
             }
-            self.place.turn_to(self.written(degrees));
+            // Along a vector the axes stand where the control has brought them, whatever was planned.
+            let stands = self.vector_ends(axis).unwrap_or(degrees);
+            self.place.turn_to(self.written(stands));
         }
         if matches!(self.place.kind, Kind::Vectors) {
             self.writer.set(WordName::VX, axis.x);

@@ -72,6 +72,9 @@ impl Walk<'_> {
         let Some(from) = self.here.filter(|_| self.located) else {
             return self.approach(pose, stop);
         };
+        if self.vector_strays(pose.axis()) {
+            return self.by_home(pose, stop);
+        }
         match self.course(&from, pose, stop, true)? {
             Course::AtOnce => self.rapid_at_once(pose, stop),
             Course::Corner(corner) => {
@@ -91,7 +94,7 @@ impl Walk<'_> {
         };
         let at_once = match self.turns(stop) {
             true => matches!(self.course(&from, pose, stop, false)?, Course::AtOnce),
-            false => self.vector_is_beyond(&from, pose),
+            false => !self.vector_strays(pose.axis()) && self.vector_is_beyond(&from, pose),
         };
         match at_once {
             true => self.rapid_at_once(pose, stop),

@@ -12,8 +12,8 @@
 use crate::gauge::Gauge;
 use crate::tilt::{self, Degrees};
 use control::{Orientation, Position, TiltChoice};
-use geom::Vec3;
-use machine::{Inverse, Machine, Unsaid};
+use geom::{Vec3, angle_between, between};
+use machine::{Inverse, Machine, Solutions, Unsaid};
 
 /// Positions of the axes of the machine; NaN where they are not known.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,9 +53,10 @@ impl Gauge<'_> {
 
 /// Where the rotary axes stand, as far as the program lets it be known.
 ///
-/// A block that says their positions leaves no question. Of a vector the control takes the solution that is the nearest
-/// to where the axes stand, behind an unknown place any that is within the travel; of a tilted plane those that its rule
-/// of choice allows ([`crate::tilt`]).
+/// A block that says their positions leaves no question. Along a vector the control turns the tool on the great circle,
+/// and the axes follow without a jump from where they stand, also beyond half a turn; behind an unknown place they may
+/// stand at any solution that is within the travel. Of a tilted plane the control takes those that its rule of choice
+/// allows ([`crate::tilt`]).
 pub(crate) struct Standing<'a> {
     machine: &'a Machine,
     inverse: Inverse<'a>,
@@ -70,7 +71,16 @@ pub(crate) struct Standing<'a> {
     /// Angles of the block looked at, and the tool axis for which they were worked out.
     next: Vec<Degrees>,
     next_axis: Option<Vec3>,
+    /// The first position beyond the travel on the way there.
+    strayed: Option<Degrees>,
 }
+
+/// Part of the angle to the pole by which the tool turns from one position that is looked at to the next: the axis that is
+/// free in the pole then turns by less than 20°, and the other solution is at least half a turn less that away.
+const POLE_PART: f64 = 0.25;
+
+/// Nearer to a pole than four times this, radians (0.002°), the tool goes through it.
+const LEAST_STEP: f64 = 3.5e-5;
 
 impl<'a> Standing<'a> {
     /// Before the first block: nowhere that is known.
@@ -84,6 +94,7 @@ impl<'a> Standing<'a> {
             choice: None,
             next: Vec::new(),
             next_axis: None,
+            strayed: None,
         }
     }
 
@@ -113,6 +124,11 @@ impl<'a> Standing<'a> {
         &self.angles
     }
 
+    /// The first position beyond the travel on the way to what [`Standing::at`] was asked for last.
+    pub fn strayed(&self) -> Option<Degrees> {
+        self.strayed
+    }
+
     /// Degrees of A, B, C for a block that goes to `orientation` from here: several where each is possible, none where
     /// nothing is known.
     #[inline]
@@ -121,9 +137,12 @@ impl<'a> Standing<'a> {
             Orientation::Rotary { degrees, .. } => {
                 self.next.clear();
                 self.next.push(degrees);
-                self.next_axis = None;
+                (self.next_axis, self.strayed) = (None, None);
             }
-            Orientation::Axis(axis) if self.axis == Some(axis) => return &self.angles,
+            Orientation::Axis(axis) if self.axis == Some(axis) => {
+                self.strayed = None;
+                return &self.angles;
+            }
             Orientation::Axis(axis) if self.next_axis == Some(axis) => {}
             Orientation::Axis(axis) => self.solve(axis),
         }
@@ -146,7 +165,7 @@ impl<'a> Standing<'a> {
     /// Finds where the axes may stand with the tool along `axis`.
     fn solve(&mut self, axis: Vec3) {
         self.next.clear();
-        self.next_axis = Some(axis);
+        (self.next_axis, self.strayed) = (Some(axis), None);
         if self.machine.rotary.is_empty() {
             self.next.push([0.0; 3]);
             return;
@@ -163,12 +182,67 @@ impl<'a> Standing<'a> {
             tilt::keep_within(self.machine, &mut self.next);
             return;
         }
-        for from in &self.angles {
-            for degrees in tilt::nearest(self.machine, from, &solutions).into_iter().flatten() {
+        let angles = std::mem::take(&mut self.angles);
+        for from in &angles {
+            for degrees in self.followed(*from, axis) {
                 if !self.next.contains(&degrees) {
                     self.next.push(degrees);
                 }
             }
         }
+        self.angles = angles;
     }
+
+    /// Where the axes come from one place while the tool turns on the great circle to `to`: to several positions where it
+    /// leaves a pole in the middle between two solutions.
+    fn followed(&mut self, from: Degrees, to: Vec3) -> Vec<Degrees> {
+        let start = self.machine.axis_at(from);
+        let turn = angle_between(start, to);
+        let mut stands = vec![from];
+        let (mut done, mut step) = (0.0, turn);
+        let mut beside = self.inverse.solve(start).map_or(0.0, |all| from_pole(self.machine, &all));
+        loop {
+            let goal = (done + step).min(turn);
+            let is_end = goal >= turn;
+            let axis = if is_end { to } else { between(start, to, goal / turn) };
+            let Ok(solutions) = self.inverse.solve(axis) else { return Vec::new() };
+            let near = from_pole(self.machine, &solutions);
+            let longest = (POLE_PART * near.min(beside)).max(LEAST_STEP);
+            if goal - done > longest {
+                step = (goal - done) / 2.0;
+                continue;
+            }
+            let mut reached: Vec<Degrees> = Vec::new();
+            for degrees in
+                stands.iter().flat_map(|at| tilt::nearest(self.machine, at, &solutions)).flatten()
+            {
+                if !reached.contains(&degrees) {
+                    reached.push(degrees);
+                }
+            }
+            if self.strayed.is_none() {
+                let beyond = |degrees: &&Degrees| !tilt::is_within(self.machine, degrees);
+                self.strayed = reached.iter().find(beyond).copied();
+            }
+            if is_end {
+                return reached;
+            }
+            (stands, done, step, beside) = (reached, goal, 2.0 * (goal - done), near);
+        }
+    }
+}
+
+/// How far the tool is from the pole in which its solutions are one, radians; as far as can be where there is one alone.
+fn from_pole(machine: &Machine, solutions: &Solutions) -> f64 {
+    let [one, other] = solutions.degrees;
+    if solutions.free.is_some() {
+        return 0.0;
+    }
+    if one == other {
+        return std::f64::consts::PI;
+    }
+    let apart = |axis: &machine::RotaryAxis| {
+        tilt::short(one[axis.index()] - other[axis.index()]).abs().to_radians() / 2.0
+    };
+    machine.rotary.iter().map(apart).fold(std::f64::consts::PI, f64::min)
 }

@@ -247,7 +247,7 @@ fn turns(machine: &Machine, from: &Degrees, to: &Degrees) -> Degrees {
 }
 
 /// An angle without its whole turns, degrees from -180 to 180.
-fn short(degrees: f64) -> f64 {
+pub(crate) fn short(degrees: f64) -> f64 {
     degrees - 360.0 * (degrees / 360.0).round()
 }
 
@@ -267,7 +267,7 @@ fn within_travel(machine: &Machine, mut degrees: Degrees) -> Degrees {
 }
 
 /// Whether the rotary axes stand within their travel.
-fn is_within(machine: &Machine, degrees: &Degrees) -> bool {
+pub(crate) fn is_within(machine: &Machine, degrees: &Degrees) -> bool {
     machine.rotary.iter().all(|axis| {
         let at = degrees[axis.index()];
         at >= axis.min - SLACK && at <= axis.max + SLACK

@@ -82,6 +82,11 @@ impl Travel {
         None
     }
 
+    /// What is wrong with a position of the rotary axes (degrees of A, B, C) on the way of a vector.
+    pub fn turned_too_far(&self, gauge: &Gauge, angles: [f64; 3]) -> Option<Diagnostic> {
+        turned_too_far(gauge.machine, &angles, SLACK)
+    }
+
     /// The same for every position of an arc (work frame), during which the rotary axes stand.
     pub fn broken_on_arc(
         &mut self,

@@ -146,6 +146,37 @@ fn a_way_that_leaves_the_travel_between_its_ends_is_refused() {
     assert_eq!(judged(79.0), ["axis-limit"]);
 }
 
+/// The fork head of the library under `TRAORI`: C travels from -225° to 225°. The axes follow each vector from where they
+/// stand: round a cone by 60° at a time to C 180, 240; and past the pole at 1°, from C 170 by half a turn either way, as the
+/// pole lies to the left or to the right.
+#[test]
+fn a_rotary_axis_follows_vectors_on_and_on_to_the_end_of_its_travel() {
+    let machine = machine::load("sinumerik-840d-traori").unwrap();
+    let judged = |start: f64, vectors: &[[f64; 2]]| {
+        let axis = |[a, c]: [f64; 2]| machine.axis_at([a, 0.0, c]);
+        let tip = |i: usize| Vec3::new(10.0 * i as f64, 0.0, 0.0);
+        let mut ops = vec![Op::Rapid(Pose::new(tip(0), axis([20.0, start])).unwrap())];
+        let home = Position {
+            point: Vec3::NAN,
+            orientation: Orientation::Rotary { degrees: [20.0, 0.0, start], tool_center: false },
+        };
+        let first = Position::new(tip(0), axis([20.0, start]));
+        let mut does = vec![Action::Home(Axes::Z), Action::Rapid(home), Action::Rapid(first)];
+        for (i, at) in (1..).zip(vectors) {
+            ops.push(Op::Line(Pose::new(tip(i), axis(*at)).unwrap()));
+            does.push(Action::Line(Position::new(tip(i), axis(*at))));
+        }
+        rules(&judge(&machine, &source(ops), does))
+    };
+    let round: Vec<[f64; 2]> = (1..=7).map(|i| [20.0, 60.0 * f64::from(i)]).collect();
+    assert!(judged(0.0, &round[..3]).is_empty());
+    assert_eq!(judged(0.0, &round[..4]), ["axis-limit"]);
+    assert!(judged(-210.0, &[[20.0, -150.0], [20.0, -90.0], [20.0, 210.0]]).is_empty());
+    // 20° before the pole and 20° behind it, 5.3° aside of the diameter: on the great circle 0.95° beside the pole.
+    assert_eq!(judged(170.0, &[[20.0, 344.7]]), ["axis-limit"]);
+    assert!(judged(170.0, &[[20.0, -4.7]]).is_empty());
+}
+
 #[test]
 fn an_arc_and_a_hole_are_within_the_travel_where_their_ends_are_not_all() {
     let arcs = |x: f64| {

@@ -16,8 +16,13 @@ impl Prover<'_> {
         }
         let slack = gauge.slack(to);
         let from = single(self.standing.here());
+        self.standing.at(&to.position.orientation);
+        let strayed = self.standing.strayed();
         let angles = self.standing.at(&to.position.orientation);
         let mut found = self.travel.broken_at(&gauge, angles, &to.position, slack);
+        if let (None, Some(strayed)) = (&found, strayed) {
+            found = self.travel.turned_too_far(&gauge, strayed);
+        }
         if let (None, Some(arc)) = (&found, block) {
             found = self.travel.broken_on_arc(&gauge, angles, arc, slack);
         }

@@ -1,0 +1,138 @@
+//! Where the rotary axes come while the control turns the tool along a vector: the tool goes on the great circle, and the
+//! axes follow it from where they stand, without a jump.
+
+use geom::{Vec3, angle_between, between};
+use machine::{Machine, Solutions};
+
+/// The longest turn of the tool between two places that are looked at, radians (1°).
+const LONGEST: f64 = 0.0175;
+
+/// The shortest, radians (0.002°): nearer than a few of these to a pole the tool goes through it.
+const SHORTEST: f64 = 3.5e-5;
+
+/// The longest turn of a rotary axis between two places that are looked at, degrees.
+const TURN: f64 = 15.0;
+
+/// Of two solutions that are nearer than this, degrees, the control may take either.
+const ALIKE: f64 = 0.1;
+
+/// How far a position may be beyond the end of a travel by rounding, degrees.
+const ROUNDING: f64 = 1e-3;
+
+/// The most whole turns that are looked at on either side.
+const TURNS: i32 = 2;
+
+/// The degrees of A, B, C to which the axes come from `from` while the tool turns to `to`; `None` where the travel of one
+/// ends before, or where it is not known.
+pub(crate) fn arrival(machine: &Machine, from: [f64; 3], to: Vec3) -> Option<[f64; 3]> {
+    let start = machine.axis_at(from);
+    let turn = angle_between(start, to);
+    let (mut done, mut at) = (0.0, from);
+    let mut step = LONGEST;
+    while done < turn {
+        let goal = (done + step).min(turn);
+        let axis = if goal < turn { between(start, to, goal / turn) } else { to };
+        let solutions = machine.inverse(axis).ok()?;
+        let (next, way, other) = nearest(machine, at, &solutions);
+        let half = angle_between(machine.axis_at(at), machine.axis_at(next)) / 2.0;
+        let is_sure = way <= TURN && pole(machine, &solutions) > 2.0 * half;
+        if goal - done > 1.001 * SHORTEST && !is_sure {
+            step = ((goal - done) / 2.0).max(SHORTEST);
+            continue;
+        }
+        let is_either = other.is_some_and(|other| other - way < ALIKE);
+        if is_either || !is_within(machine, next) {
+            return None;
+        }
+        (at, done, step) = (next, goal, (2.0 * step).min(LONGEST));
+    }
+    Some(at)
+}
+
+/// The positions within the travel that bring the tool along `axis`.
+pub(crate) fn starts(machine: &Machine, axis: Vec3) -> Vec<[f64; 3]> {
+    let Ok(solutions) = machine.inverse(axis) else { return Vec::new() };
+    let mut starts = solutions.degrees.to_vec();
+    if let Some(free) = solutions.free {
+        let turned = |k: i32| {
+            let mut degrees = solutions.degrees[0];
+            degrees[free] += 45.0 * f64::from(k);
+            degrees
+        };
+        starts = (-4..4).map(turned).collect();
+    }
+    for rotary in &machine.rotary {
+        let i = rotary.index();
+        let turned = |degrees: [f64; 3]| {
+            (-TURNS..=TURNS).map(move |k| {
+                let mut degrees = degrees;
+                degrees[i] += 360.0 * f64::from(k);
+                degrees
+            })
+        };
+        starts = starts.into_iter().flat_map(turned).collect();
+        starts.retain(|degrees| (degrees[i] <= rotary.max) && (degrees[i] >= rotary.min));
+    }
+    starts
+}
+
+/// How far these positions are from the middle of the travels, degrees.
+pub(crate) fn off_center(machine: &Machine, degrees: [f64; 3]) -> f64 {
+    let off = |axis: &machine::RotaryAxis| {
+        if axis.unlimited() {
+            0.0
+        } else {
+            (degrees[axis.index()] - (axis.min + axis.max) / 2.0).abs()
+        }
+    };
+    machine.rotary.iter().map(off).sum()
+}
+
+/// The solution to which the axes turn least, by how much at the most, and by how much to the other, where there is one.
+fn nearest(
+    machine: &Machine,
+    from: [f64; 3],
+    solutions: &Solutions,
+) -> ([f64; 3], f64, Option<f64>) {
+    let [one, other] = solutions.degrees.map(|degrees| {
+        let mut wound = from;
+        let mut most: f64 = 0.0;
+        for i in machine.rotary.iter().map(machine::RotaryAxis::index) {
+            if solutions.free != Some(i) {
+                let way = degrees[i] - from[i];
+                let short = way - 360.0 * (way / 360.0).round();
+                wound[i] = from[i] + short;
+                most = most.max(short.abs());
+            }
+        }
+        (wound, most)
+    });
+    if solutions.free.is_some() || solutions.degrees[0] == solutions.degrees[1] {
+        return (one.0, one.1, None);
+    }
+    let (near, far) = if one.1 <= other.1 { (one, other) } else { (other, one) };
+    (near.0, near.1, Some(far.1))
+}
+
+/// How far the tool is from the pole in which both solutions are one, radians.
+fn pole(machine: &Machine, solutions: &Solutions) -> f64 {
+    let [one, other] = solutions.degrees;
+    if solutions.free.is_none() && one == other {
+        return f64::INFINITY;
+    }
+    let apart = |i: usize| {
+        let way = one[i] - other[i];
+        (way - 360.0 * (way / 360.0).round()).abs().to_radians() / 2.0
+    };
+    if solutions.free.is_some() {
+        return 0.0;
+    }
+    machine.rotary.iter().map(|axis| apart(axis.index())).fold(f64::INFINITY, f64::min)
+}
+
+fn is_within(machine: &Machine, degrees: [f64; 3]) -> bool {
+    machine.rotary.iter().all(|axis| {
+        let at = degrees[axis.index()];
+        at >= axis.min - ROUNDING && at <= axis.max + ROUNDING
+    })
+}
