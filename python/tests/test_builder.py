@@ -225,7 +225,7 @@ def test_who_builds_a_program_with_compensation_says_which_path_it_is():
         both.compensation("right", path="contour")
 
 
-def test_which_path_cutcom_means_is_an_option_of_reading(tmp_path):
+def test_which_path_cutcom_means_is_an_option_of_reading():
     plate = EXAMPLES / "plate.cls"
     assert toolpost.read(plate, cutcom="centre").name == toolpost.read(plate).name
     with pytest.raises(toolpost.Error) as error:

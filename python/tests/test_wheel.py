@@ -42,7 +42,8 @@ def test_the_wheel_works_in_a_clean_environment(tmp_path, run):
     assert (used.returncode, used.stderr) == (0, "")
     moves, version = used.stdout.split()
     assert moves == "1773"
-    assert json.loads(program.with_name(f"{program.name}.report.json").read_text())["toolpost"] == version
+    report = program.with_name(f"{program.name}.report.json")
+    assert json.loads(report.read_text())["toolpost"] == version
 
     again = tmp_path / "again.h"
     post = ["post", EXAMPLES / "dome.cls", "-m", "dmu50-heidenhain", "-o", again]

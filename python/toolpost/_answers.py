@@ -171,8 +171,8 @@ class Result:
         Parameters
         ----------
         path : str or os.PathLike
-            Where; the report is there under its name and ``.report.json``. Neither can be a file that
-            the program was made of.
+            Where; the report is there under its name and ``.report.json``. Neither can be a file
+            that the program was made of.
         report : bool
             Whether the report is saved too.
 
