@@ -155,13 +155,17 @@ fn a_rotary_axis_follows_vectors_on_and_on_to_the_end_of_its_travel() {
     let judged = |start: f64, vectors: &[[f64; 2]]| {
         let axis = |[a, c]: [f64; 2]| machine.axis_at([a, 0.0, c]);
         let tip = |i: usize| Vec3::new(10.0 * i as f64, 0.0, 0.0);
-        let mut ops = vec![Op::Rapid(Pose::new(tip(0), axis([20.0, start])).unwrap())];
+        let leaning = axis([20.0, start]);
+        // From home to far above all cuts, and down along the tool.
+        let above = tip(0) + leaning * 200.0;
+        let places = [above, tip(0)];
+        let mut ops = places.map(|tip| Op::Rapid(Pose::new(tip, leaning).unwrap())).to_vec();
         let home = Position {
             point: Vec3::NAN,
             orientation: Orientation::Rotary { degrees: [20.0, 0.0, start], tool_center: false },
         };
-        let first = Position::new(tip(0), axis([20.0, start]));
-        let mut does = vec![Action::Home(Axes::Z), Action::Rapid(home), Action::Rapid(first)];
+        let mut does = vec![Action::Home(Axes::Z), Action::Rapid(home)];
+        does.extend(places.map(|tip| Action::Rapid(Position::new(tip, leaning))));
         for (i, at) in (1..).zip(vectors) {
             ops.push(Op::Line(Pose::new(tip(i), axis(*at)).unwrap()));
             does.push(Action::Line(Position::new(tip(i), axis(*at))));
