@@ -1,5 +1,6 @@
 //! Programs that a program calls, from the folders that the operator has given.
 
+use program::encoding;
 use std::collections::BTreeSet;
 use std::fs;
 use std::io::Read;
@@ -75,10 +76,7 @@ fn open(folders: &[PathBuf], name: &str) -> Result<(PathBuf, Vec<u8>), String> {
         if text.len() as u64 > LARGEST {
             return Err(format!("{name} is larger than {} MB", LARGEST >> 20));
         }
-        // The mark that editors of some systems put before UTF-8 is no part of the program.
-        if text.starts_with(b"\xef\xbb\xbf") {
-            text.drain(..3);
-        }
+        text.drain(..text.len() - encoding::without_mark(&text).len());
         return Ok((real, text));
     }
     let among = match folders {

@@ -17,6 +17,7 @@ mod cut_box;
 mod cycle;
 pub mod diagnostic;
 mod digest;
+pub mod encoding;
 pub mod lowering;
 mod motion;
 mod pose;

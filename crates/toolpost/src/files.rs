@@ -4,7 +4,7 @@
 //! that has locked the folder, so that of two commands that save the same files one saves all of them. The system
 //! opens the lock of a process that is killed; what such a process left is removed by the next one.
 
-use program::Diagnostic;
+use program::{Diagnostic, encoding};
 use std::collections::BTreeSet;
 use std::fs::{self, File};
 use std::io::{self, Read, Write};
@@ -61,17 +61,11 @@ pub fn text_of(path: &Path, mut bytes: Vec<u8>) -> Result<Vec<u8>, Box<Diagnosti
         _ => false,
     };
     if is_utf_16 {
-        let found = Diagnostic::error("encoding", "this file is in UTF-16").file(name(path));
-        return Err(found.help("save it as plain text (ASCII, Latin-1 or UTF-8)").into());
+        return Err(encoding::utf_16().file(name(path)).into());
     }
-    if bytes.starts_with(BYTE_ORDER_MARK) {
-        bytes.drain(..BYTE_ORDER_MARK.len());
-    }
+    bytes.drain(..bytes.len() - encoding::without_mark(&bytes).len());
     Ok(bytes)
 }
-
-/// U+FEFF in UTF-8.
-const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
 
 /// The name of a file, for findings and reports: without its folder, so that they do not depend on
 /// where it lies.

@@ -11,7 +11,7 @@ use crate::HoleShape;
 use crate::decimal::whole;
 use crate::report::{Outcome, Place, Report, fault};
 use geom::{Element, Vec2};
-use program::Diagnostic;
+use program::{Diagnostic, encoding};
 
 /// So many holes are more than any board has.
 const MOST_CUTS: usize = 1_000_000;
@@ -48,7 +48,7 @@ struct Reader<'a> {
 
 /// Reads a file; see [`super::read`].
 pub(super) fn read(file_name: &str, text: &[u8]) -> Result<Reading, Vec<Diagnostic>> {
-    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+    let text = encoding::without_mark(text);
     let evidence = Evidence::of(text);
     let mut reader = Reader {
         report: Report::new(file_name, text),

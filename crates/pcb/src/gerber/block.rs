@@ -2,6 +2,7 @@
 
 use crate::report::{Outcome, Place, fault};
 use memchr::{memchr, memchr_iter, memchr2};
+use program::encoding;
 
 /// What comes next.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -24,7 +25,7 @@ pub(super) struct Blocks<'a> {
 
 impl<'a> Blocks<'a> {
     pub(super) fn of(text: &'a [u8]) -> Blocks<'a> {
-        let at = if text.starts_with(b"\xef\xbb\xbf") { 3 } else { 0 };
+        let at = text.len() - encoding::without_mark(text).len();
         Blocks { text, at, line: 1, extended: false, place: Place::default() }
     }
 

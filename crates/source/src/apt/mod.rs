@@ -31,7 +31,7 @@ use geom::Vec3;
 use motion::Next;
 use program::{
     CompensatedPath, Compensation, Coolant, Diagnostic, Feed, Op, PathEvidence, Pose, Program,
-    Record as Step, Spindle, Tool,
+    Record as Step, Spindle, Tool, encoding,
 };
 use record::{Joiner, Line, Lines, is_blank};
 use report::Report;
@@ -102,11 +102,10 @@ pub struct Reading {
 /// # Errors
 /// Every error found, at most twenty, in the order of their lines. There is no partial program.
 pub fn read(file_name: &str, text: &[u8], options: &Options) -> Result<Reading, Vec<Diagnostic>> {
-    let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+    let text = encoding::without_mark(text);
     let mut reader = Reader::new(file_name, text, options);
     if text.starts_with(b"\xff\xfe") || text.starts_with(b"\xfe\xff") {
-        let error = Diagnostic::error("encoding", "this file is in UTF-16");
-        reader.report.error(error.help("save it as plain text (ASCII, Latin-1 or UTF-8)").line(1));
+        reader.report.error(encoding::utf_16().line(1));
         return Err(reader.report.errors);
     }
     let mut joiner = Joiner::default();

@@ -11,7 +11,7 @@ use crate::klartext::language::functions::{Function, Functions, When};
 use crate::klartext::language::registers::Parameter;
 use crate::klartext::language::scan::{Result, Scanner};
 use crate::klartext::language::words::Words;
-use program::Diagnostic;
+use program::{Diagnostic, encoding};
 
 /// A program on its way through the control.
 pub(crate) struct Run<'t, 'c, 'a, 's> {
@@ -33,7 +33,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
         text: &'t [u8],
     ) -> Result<Self> {
         // A text may begin with the mark of its encoding.
-        let text = text.strip_prefix(b"\xef\xbb\xbf").unwrap_or(text);
+        let text = encoding::without_mark(text);
         let mut source = Source::new(file, text, control.settings.setup.block_delete);
         let Some(Line { scanner: mut s, .. }) = source.next()? else {
             let empty = Scanner::new(file, 1, text);

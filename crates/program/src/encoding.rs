@@ -1,0 +1,17 @@
+//! How texts begin, whoever has saved them.
+
+use crate::Diagnostic;
+
+/// U+FEFF in UTF-8.
+const BYTE_ORDER_MARK: &[u8] = b"\xef\xbb\xbf";
+
+/// A text without the byte order mark that editors of some systems put before UTF-8.
+pub fn without_mark(text: &[u8]) -> &[u8] {
+    text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text)
+}
+
+/// What is said of a file in UTF-16, which no reader takes.
+pub fn utf_16() -> Diagnostic {
+    Diagnostic::error("encoding", "this file is in UTF-16")
+        .help("save it as plain text (ASCII, Latin-1 or UTF-8)")
+}
