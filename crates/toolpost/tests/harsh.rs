@@ -1,6 +1,9 @@
 //! Harsh five-axis jobs on fourteen shapes of machine: each is made and proven, or refused by the writer under a rule that a
 //! machinist accepts. What is written never fails its own proof.
 
+mod dice;
+
+use dice::Dice;
 use geom::{Frame, Mat3, Vec3};
 use machine::{Machine, load, load_text};
 use program::{
@@ -33,39 +36,6 @@ const ACCEPTED: &[&str] = &[
 
 /// How many jobs there are, and how many with `TOOLPOST_JUDGES=long`.
 const JOBS: [u64; 2] = [300, 10_000];
-
-/// SplitMix64: the same numbers everywhere.
-struct Dice(u64);
-
-impl Dice {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// 0 to below `n`.
-    fn below(&mut self, n: u64) -> u64 {
-        self.next() % n
-    }
-
-    /// Whether one of `n` times comes up.
-    fn once_in(&mut self, n: u64) -> bool {
-        self.below(n) == 0
-    }
-
-    /// A number from `low` to `high`, in whole thousandths.
-    fn number(&mut self, low: f64, high: f64) -> f64 {
-        let part = self.below(1 << 20) as f64 / f64::from(1 << 20);
-        ((low + (high - low) * part) * 1e3).round() / 1e3
-    }
-
-    fn one_of<T: Copy>(&mut self, all: &[T]) -> T {
-        all[self.below(all.len() as u64) as usize]
-    }
-}
 
 /// A rotary axis of a machine file.
 fn rotary(letter: char, on: &str, axis: &str, point: &str, more: &str) -> String {

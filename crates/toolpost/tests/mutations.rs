@@ -4,9 +4,11 @@
 //! What a surviving program does is shown without the proof: the virtual control runs it beside the
 //! one it came from, and both do the same things at the same places.
 
+mod dice;
 mod files;
 
 use control::{Action, ArcTo, Event, Orientation, Position};
+use dice::Dice;
 use files::root;
 use geom::{Arc, Vec3, nearest_on_segment};
 use machine::Machine;
@@ -231,19 +233,6 @@ const KLARTEXT_BLOCKS: &[&str] = &[
     "; WORDS",
 ];
 
-/// A generator of numbers that is the same everywhere: SplitMix64.
-struct Random(u64);
-
-impl Random {
-    fn below(&mut self, end: usize) -> usize {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        ((z ^ (z >> 31)) % end as u64) as usize
-    }
-}
-
 /// A program that is proven, and what it is proven against.
 struct Sample {
     name: String,
@@ -280,15 +269,15 @@ impl Sample {
 
     /// The text with one character replaced, deleted, inserted, or swapped with the next. What comes
     /// in is a character of the text, as often as it is there.
-    fn damaged(&self, random: &mut Random) -> Vec<u8> {
+    fn damaged(&self, random: &mut Dice) -> Vec<u8> {
         loop {
             // Every kind of block is as likely as any other: most blocks are points of a path.
-            let kind = &self.kinds[random.below(self.kinds.len())];
-            let (start, length) = kind[random.below(kind.len())];
-            let place = start + random.below(length);
-            let byte = self.text[random.below(self.text.len())];
+            let kind = &self.kinds[random.index(self.kinds.len())];
+            let (start, length) = kind[random.index(kind.len())];
+            let place = start + random.index(length);
+            let byte = self.text[random.index(self.text.len())];
             let mut text = self.text.clone();
-            match random.below(4) {
+            match random.index(4) {
                 0 => text[place] = byte,
                 1 => drop(text.remove(place)),
                 2 => text.insert(place, byte),
@@ -302,7 +291,7 @@ impl Sample {
     }
 
     /// The text with a block put in somewhere, or with a block that the operator may switch off.
-    fn with_block(&self, random: &mut Random) -> Vec<u8> {
+    fn with_block(&self, random: &mut Dice) -> Vec<u8> {
         let blocks = match self.machine.reader.as_str() {
             "sinumerik" | "sinumerik-828d" => SINUMERIK_BLOCKS,
             "klartext" => KLARTEXT_BLOCKS,
@@ -315,10 +304,10 @@ impl Sample {
             _ => block.to_owned(),
         };
         // Behind the start, before the end.
-        let place = 2 + random.below(lines.len() - 4);
-        match random.below(8) {
+        let place = 2 + random.index(lines.len() - 4);
+        match random.index(8) {
             0 => lines[place].insert(0, '/'),
-            _ => lines.insert(place, format!("{}\n", pointed(blocks[random.below(blocks.len())]))),
+            _ => lines.insert(place, format!("{}\n", pointed(blocks[random.index(blocks.len())]))),
         }
         if self.machine.reader == "klartext" {
             lines = numbered(&lines.concat());
@@ -934,9 +923,9 @@ fn a_program_with_a_block_put_in_is_refused_or_does_the_same() {
 }
 
 /// Damages the programs, as `seed` draws it.
-fn judged(seed: u64, damage: impl Fn(&Sample, &mut Random) -> Vec<u8>) {
+fn judged(seed: u64, damage: impl Fn(&Sample, &mut Dice) -> Vec<u8>) {
     let samples = samples();
-    let mut random = Random(seed);
+    let mut random = Dice(seed);
     let mut table = BTreeMap::<String, BTreeMap<&str, BTreeMap<&str, usize>>>::new();
     let (mut harmful, mut survivors) = (Vec::new(), BTreeMap::<(String, String), usize>::new());
     for sample in samples.iter().cycle().take(damages()) {

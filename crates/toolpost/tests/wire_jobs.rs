@@ -1,11 +1,13 @@
 //! Random wire jobs on the wire machines of the library: each is made and proven, or refused by the planner under a rule that a
 //! machinist accepts, with a way out. What is written never fails its own proof.
 
+use dice::Dice;
 use folder::Folder;
 use geom::Vec2;
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
+mod dice;
 mod folder;
 
 /// Rules under which a job may be refused, each before anything is written.
@@ -23,39 +25,6 @@ const ACCEPTED: &[&str] = &[
 
 /// How many jobs there are, and how many with `TOOLPOST_JUDGES=long`.
 const JOBS: [u64; 2] = [240, 2_000];
-
-/// SplitMix64: the same numbers everywhere.
-struct Dice(u64);
-
-impl Dice {
-    fn next(&mut self) -> u64 {
-        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
-        let mut z = self.0;
-        z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
-        z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
-        z ^ (z >> 31)
-    }
-
-    /// 0 to below `n`.
-    fn below(&mut self, n: u64) -> u64 {
-        self.next() % n
-    }
-
-    /// Whether one of `n` times comes up.
-    fn once_in(&mut self, n: u64) -> bool {
-        self.below(n) == 0
-    }
-
-    /// A number from `low` to `high`, in whole thousandths.
-    fn number(&mut self, low: f64, high: f64) -> f64 {
-        let part = self.below(1 << 20) as f64 / f64::from(1 << 20);
-        ((low + (high - low) * part) * 1e3).round() / 1e3
-    }
-
-    fn one_of<T: Copy>(&mut self, all: &[T]) -> T {
-        all[self.below(all.len() as u64) as usize]
-    }
-}
 
 /// The corners of a shape, counter-clockwise about the origin.
 fn corners(dice: &mut Dice) -> Vec<Vec2> {
