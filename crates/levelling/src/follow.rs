@@ -53,7 +53,7 @@ pub fn follow(
     let probed = probed.chain([Op::Surface(Box::new(surface.counted_below(clear)?))]);
     let probed: Vec<Record> = probed.map(|op| Record { line, op }).collect();
     records.splice(first + 1..first + 1, probed);
-    Ok(Program { name: program.name.clone(), records, compensated_path: program.compensated_path })
+    Ok(program.with_records(records))
 }
 
 /// The program as the control runs it that finds these heights: each pose that counts from the surface raised to it.

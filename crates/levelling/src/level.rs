@@ -46,11 +46,7 @@ pub fn level(
     allowed: &Allowed,
 ) -> Result<Program, Box<Diagnostic>> {
     let levelled = levelled(program, Ground::Known(map), allowed)?;
-    Ok(Program {
-        name: program.name.clone(),
-        records: levelled.records,
-        compensated_path: program.compensated_path,
-    })
+    Ok(program.with_records(levelled.records))
 }
 
 /// The same for any surface.

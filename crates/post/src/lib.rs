@@ -61,9 +61,7 @@ pub fn write(program: &Program, machine: &Machine) -> Result<Output, Vec<Diagnos
     let Some((records, lines)) = sweep::split(program, machine) else {
         return walk::Walk::new(program, machine)?.run();
     };
-    let split =
-        Program { name: program.name.clone(), records, compensated_path: program.compensated_path };
-    let mut output = walk::Walk::new(&split, machine)?.run()?;
+    let mut output = walk::Walk::new(&program.with_records(records), machine)?.run()?;
     let message = format!(
         "{} cuts turn the tool so far, or so near to a singular pose, that they are split, first here",
         lines.len()

@@ -257,6 +257,11 @@ impl Program {
         Program { name: name.into(), ..Program::default() }
     }
 
+    /// The same program with other records.
+    pub fn with_records(&self, records: Vec<Record>) -> Program {
+        Program { name: self.name.clone(), records, compensated_path: self.compensated_path }
+    }
+
     /// Adds a record that came from `line` of the source.
     pub fn push(&mut self, line: u32, op: Op) {
         self.records.push(Record { line, op });
