@@ -3,12 +3,12 @@
 use crate::catalogue::{BlockName, WordName};
 use crate::place::{Kind, Stop, same};
 use crate::template::{ORIENTATION, POSITION, Words};
-use crate::vectors;
+use crate::vectors::{self, Followed};
 use crate::walk::{Cut, Done, Turn, Walk, motion, refuse};
 use geom::{ANGLE_EPSILON, Vec3};
 use machine::Unsaid;
 use machine::linearise::Stance;
-use machine::plan::Step;
+use machine::plan::{NEAR, Step};
 use program::{Diagnostic, Feed, Pose};
 
 /// How far beyond everything the source touches the tool is drawn back before it turns, mm.
@@ -16,9 +16,6 @@ const CLEAR: f64 = 5.0;
 
 /// How far the tool axis may leave its way in a cut, degrees.
 const SWING: f64 = 1.0;
-
-/// Turns of less than this in all, degrees, leave it by less (see `machine::plan`).
-const NEAR: f64 = 14.0;
 
 impl Walk<'_> {
     /// A straight cut of the source.
@@ -51,7 +48,14 @@ impl Walk<'_> {
     /// Where the rotary axes come while the control turns the tool along a vector to `axis`, where it does and that is known.
     fn vector_ends(&self, axis: Vec3) -> Option<[f64; 3]> {
         let from = self.place.degrees().filter(|_| matches!(self.place.kind, Kind::Vectors))?;
-        vectors::arrival(self.machine, from, axis)
+        // It is asked for before a block is aimed, and by the block.
+        let known = self.followed.get().filter(|way| way.from == from && way.to == axis);
+        let followed = known.unwrap_or_else(|| {
+            let arrival = vectors::arrival(self.machine, from, axis);
+            Followed { from, to: axis, arrival }
+        });
+        self.followed.set(Some(followed));
+        followed.arrival
     }
 
     /// Whether a rotary axis would leave its travel while the control turns the tool along a vector to `axis`.

@@ -181,15 +181,15 @@ impl Walk<'_> {
         if machine.rotary.iter().all(|rotary| rotary.on == Mount::Table) {
             return vec![axis];
         }
+        self.stances(axis, stop).into_iter().map(|degrees| machine.up_at(degrees)).collect()
+    }
+
+    /// Degrees of A, B, C with the tool along `axis`: both solutions, where the control chooses.
+    fn stances(&self, axis: Vec3, stop: &Stop) -> Vec<[f64; 3]> {
         match stop.step {
-            Some(step) => vec![machine.up_at(self.written(step.degrees))],
-            None => {
-                let solutions = machine.inverse(axis).ok().into_iter();
-                solutions
-                    .flat_map(|all| all.degrees)
-                    .map(|degrees| machine.up_at(degrees))
-                    .collect()
-            }
+            Some(step) => vec![self.written(step.degrees)],
+            None if self.machine.rotary.is_empty() => vec![[0.0; 3]],
+            None => self.machine.inverse(axis).map_or(Vec::new(), |all| all.degrees.to_vec()),
         }
     }
 
@@ -204,13 +204,8 @@ impl Walk<'_> {
         if !home.is_finite() {
             return Ok(());
         }
-        let stances = match stop.step {
-            Some(step) => vec![self.written(step.degrees)],
-            None if machine.rotary.is_empty() => vec![[0.0; 3]],
-            None => machine.inverse(axis).map_or(Vec::new(), |all| all.degrees.to_vec()),
-        };
         let top = Vec3::new(0.0, 0.0, home - measured - zero.z);
-        for degrees in stances {
+        for degrees in self.stances(axis, stop) {
             if machine.unsaid(degrees, length).is_some() {
                 continue;
             }

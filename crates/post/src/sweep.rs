@@ -179,7 +179,7 @@ fn turns_round(machine: &Machine, came: Vec3, at: Vec3, to: Vec3) -> bool {
 }
 
 /// The short way round from one position of a rotary axis to another, degrees.
-fn short_way(from: f64, to: f64) -> f64 {
+pub(crate) fn short_way(from: f64, to: f64) -> f64 {
     let turn = to - from;
     turn - 360.0 * (turn / 360.0).round()
 }

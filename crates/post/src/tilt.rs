@@ -3,6 +3,7 @@
 
 use crate::catalogue::{BlockName, WordName};
 use crate::place::{Kind, rotary_word};
+use crate::sweep::short_way;
 use crate::template::ORIENTATION;
 use crate::walk::{Done, Walk, motion};
 use geom::{Arc, Frame, Mat3, Vec3};
@@ -15,7 +16,7 @@ use program::Diagnostic;
 pub(crate) struct Solution {
     /// Degrees of A, B, C.
     degrees: [f64; 3],
-    /// From the work frame to positions of X, Y and Z, where nothing is missing for that.
+    /// From the work frame to positions of X, Y and Z, where nothing is missing to check them.
     into_axes: Option<Frame>,
 }
 
@@ -40,7 +41,11 @@ impl Walk<'_> {
         let is_sure = self.says_direction(wanted, other) || is_sure;
         let others = other.filter(|_| !is_sure);
         let all = [Some(wanted), others].into_iter().flatten();
-        let solutions = all.map(|degrees| self.solution(degrees)).collect();
+        let mut solutions: Vec<Solution> = all.map(|degrees| self.solution(degrees)).collect();
+        // The stroke of two solutions that are both possible is that of none.
+        if self.machine.work_zero.is_none() && solutions.len() > 1 {
+            solutions.iter_mut().for_each(|solution| solution.into_axes = None);
+        }
         self.place.keep_solutions(solutions);
         Ok(())
     }
@@ -49,11 +54,7 @@ impl Walk<'_> {
     fn other_solution(&self, axis: Vec3, wanted: [f64; 3]) -> Option<[f64; 3]> {
         let solutions = self.machine.inverse(axis).ok()?;
         let apart = |degrees: &[f64; 3]| {
-            let turned = |i: usize| {
-                let way = degrees[i] - wanted[i];
-                (way - 360.0 * (way / 360.0).round()).abs()
-            };
-            (0..3).map(turned).fold(0.0, f64::max)
+            (0..3).map(|i| short_way(wanted[i], degrees[i]).abs()).fold(0.0, f64::max)
         };
         let [one, two] = solutions.degrees;
         if apart(&one).max(apart(&two)) < ALIKE {
@@ -123,10 +124,8 @@ impl Walk<'_> {
     /// Checks a tip in a tilted plane against the limits, for each solution that the control may take.
     pub(crate) fn check_in_plane(&mut self, tip: Vec3) -> Done {
         let length = self.tool_length();
-        let is_sure = self.machine.work_zero.is_some() || self.place.solutions().len() == 1;
         for Solution { degrees, into_axes } in self.place.solutions() {
-            let linear = into_axes.filter(|_| is_sure).map(|into| into.transform_point3(tip));
-            let linear = linear.unwrap_or(Vec3::NAN);
+            let linear = into_axes.map_or(Vec3::NAN, |into| into.transform_point3(tip));
             self.limits.position(linear, *degrees, length, self.line)?;
         }
         Ok(())
@@ -144,9 +143,8 @@ impl Walk<'_> {
             }
             Kind::Bare | Kind::Plain | Kind::Machine => return Ok(()),
         };
-        let is_sure = self.machine.work_zero.is_some() || solutions.len() == 1;
         for Solution { degrees, into_axes } in solutions {
-            let Some(into) = into_axes.filter(|_| is_sure) else { continue };
+            let Some(into) = into_axes else { continue };
             let in_axes = Arc {
                 start: into.transform_point3(arc.start),
                 end: into.transform_point3(arc.end),

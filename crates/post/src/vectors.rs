@@ -1,8 +1,9 @@
 //! Where the rotary axes come while the control turns the tool along a vector: the tool goes on the great circle, and the
 //! axes follow it from where they stand, without a jump.
 
+use crate::sweep::short_way;
 use geom::{Vec3, angle_between, between};
-use machine::{Machine, Solutions};
+use machine::{Machine, RotaryAxis, Solutions};
 
 /// The longest turn of the tool between two places that are looked at, radians (1°).
 const LONGEST: f64 = 0.0175;
@@ -21,6 +22,17 @@ const ROUNDING: f64 = 1e-3;
 
 /// The most whole turns that are looked at on either side.
 const TURNS: i32 = 2;
+
+/// A way along a vector that has been followed.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Followed {
+    /// Degrees of A, B, C at its start.
+    pub from: [f64; 3],
+    /// The tool axis at its end.
+    pub to: Vec3,
+    /// What [`arrival`] answers.
+    pub arrival: Option<[f64; 3]>,
+}
 
 /// The degrees of A, B, C to which the axes come from `from` while the tool turns to `to`; `None` where the travel of one
 /// ends before, or where it is not known.
@@ -78,7 +90,7 @@ pub(crate) fn starts(machine: &Machine, axis: Vec3) -> Vec<[f64; 3]> {
 
 /// How far these positions are from the middle of the travels, degrees.
 pub(crate) fn off_center(machine: &Machine, degrees: [f64; 3]) -> f64 {
-    let off = |axis: &machine::RotaryAxis| {
+    let off = |axis: &RotaryAxis| {
         if axis.unlimited() {
             0.0
         } else {
@@ -97,10 +109,9 @@ fn nearest(
     let [one, other] = solutions.degrees.map(|degrees| {
         let mut wound = from;
         let mut most: f64 = 0.0;
-        for i in machine.rotary.iter().map(machine::RotaryAxis::index) {
+        for i in machine.rotary.iter().map(RotaryAxis::index) {
             if solutions.free != Some(i) {
-                let way = degrees[i] - from[i];
-                let short = way - 360.0 * (way / 360.0).round();
+                let short = short_way(from[i], degrees[i]);
                 wound[i] = from[i] + short;
                 most = most.max(short.abs());
             }
@@ -120,10 +131,7 @@ fn pole(machine: &Machine, solutions: &Solutions) -> f64 {
     if solutions.free.is_none() && one == other {
         return f64::INFINITY;
     }
-    let apart = |i: usize| {
-        let way = one[i] - other[i];
-        (way - 360.0 * (way / 360.0).round()).abs().to_radians() / 2.0
-    };
+    let apart = |i: usize| short_way(other[i], one[i]).abs().to_radians() / 2.0;
     if solutions.free.is_some() {
         return 0.0;
     }

@@ -20,6 +20,8 @@
 mod axis;
 mod search;
 
+pub use search::NEAR;
+
 use crate::Machine;
 use crate::inverse::{Bearings, Chain};
 use axis::Axis;

@@ -17,9 +17,10 @@ const SAME: u32 = 0o76_543_210;
 
 /// The farthest that the tool axis may leave its way in a cut, radians: 0.9°, of the 1° that a proof allows.
 const SWING: f64 = PI / 200.0;
-/// Turns of less than this in all, degrees, leave it by less. Both the way that the axes make and the great circle bend by
-/// no more than the square of the turn w, so that between their common ends they are apart by w² / 4 at the most.
-const NEAR: f64 = 14.0;
+/// Turns of rotary axes of less than this in all, degrees, swing the tool axis off its way by less than 0.9°. Both the way
+/// that the axes make and the great circle bend by no more than the square of the turn w, so that between their common ends
+/// they are apart by w² / 4 at the most.
+pub const NEAR: f64 = 14.0;
 /// Where the control itself turns the tool along a vector: turns of less than this, degrees, within one solution stay near.
 const NEAR_BY_VECTOR: f64 = 90.0;
 /// What not being the preferred solution costs, in degrees of travel: it decides between ways of the

@@ -10,6 +10,7 @@ use crate::findings::Findings;
 use crate::place::{Place, Route, Stop};
 use crate::template::{ORIENTATION, POSITION, Scope, Templates, Words, bit, map, program_value};
 use crate::text::printed;
+use crate::vectors::Followed;
 use crate::wire::Wire;
 use crate::writer::Writer;
 use compensation::compensation_code;
@@ -22,7 +23,7 @@ use program::{
     Compensation, Coolant, CutBox, Cycle, Diagnostic, Feed, Op, Pose, Program, Record, Spindle,
     Surface, Tool, WorkOffset, WorkOffsetData,
 };
-use std::cell::OnceCell;
+use std::cell::{Cell, OnceCell};
 use technology::feed_mode;
 
 /// A step that may be refused.
@@ -103,6 +104,8 @@ pub(crate) struct Walk<'a> {
     /// Tip and degrees of A, B, C of the position that was checked last, where the control moves the linear axes along with
     /// the rotary axes.
     pub(crate) checked: Option<(Vec3, [f64; 3])>,
+    /// The way along a vector that was asked for last.
+    pub(crate) followed: Cell<Option<Followed>>,
     /// Smallest step of a linear axis, mm.
     pub(crate) resolution: f64,
     /// Entry of the code word `work_offset` that is active.
@@ -165,6 +168,7 @@ impl<'a> Walk<'a> {
             turned_to: None,
             limits: Limits::new(machine),
             checked: None,
+            followed: Cell::new(None),
             resolution: machine.resolution(),
             work_offset: 0,
             ended: false,
