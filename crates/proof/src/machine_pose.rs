@@ -175,12 +175,8 @@ impl<'a> Standing<'a> {
             tilt::take(self.machine, choice, &self.angles, &solutions, &mut self.next);
             return;
         }
-        let is_known =
-            !self.angles.is_empty() && self.angles.iter().flatten().all(|at| at.is_finite());
-        if !is_known {
-            self.next.extend(tilt::all(self.machine, &solutions));
-            tilt::keep_within(self.machine, &mut self.next);
-            return;
+        if !tilt::is_known(&self.angles) {
+            return tilt::reachable(self.machine, &solutions, &mut self.next);
         }
         let angles = std::mem::take(&mut self.angles);
         for from in &angles {

@@ -27,9 +27,8 @@ pub(crate) fn take(
     solutions: &Solutions,
     taken: &mut Vec<Degrees>,
 ) {
-    let is_known = !from.is_empty() && from.iter().flatten().all(|degrees| degrees.is_finite());
     match choice {
-        TiltChoice::LeastTurn if is_known => {
+        TiltChoice::LeastTurn if is_known(from) => {
             for from in from {
                 take_least(machine, from, solutions, taken);
             }
@@ -41,8 +40,7 @@ pub(crate) fn take(
             }
         }
         TiltChoice::ShorterWithin => {
-            taken.extend(all(machine, solutions));
-            keep_within(machine, taken);
+            reachable(machine, solutions, taken);
             if let ([one, other], [from]) = (&taken[..], from) {
                 let is_shorter = |a: &Degrees, b: &Degrees| {
                     let (a, b) = (turns(machine, from, a), turns(machine, from, b));
@@ -67,13 +65,9 @@ pub(crate) fn take(
             taken.extend(all(machine, solutions).filter(fits));
             keep_within(machine, taken);
         }
-        TiltChoice::Symmetry => {
-            taken.extend(all(machine, solutions));
-            keep_within(machine, taken);
-        }
+        TiltChoice::Symmetry => reachable(machine, solutions, taken),
         TiltChoice::Higher(is_higher) => {
-            taken.extend(all(machine, solutions));
-            keep_within(machine, taken);
+            reachable(machine, solutions, taken);
             keep_side(machine, is_higher, taken);
         }
     }
@@ -100,7 +94,7 @@ pub(crate) fn way_out(machine: &Machine, choice: TiltChoice) -> Option<&'static 
 }
 
 /// All solutions, with a free axis anywhere, each in whole turns that are within the travel where there are such.
-pub(crate) fn all(machine: &Machine, solutions: &Solutions) -> impl Iterator<Item = Degrees> {
+fn all(machine: &Machine, solutions: &Solutions) -> impl Iterator<Item = Degrees> {
     let count = if solutions.degrees[0] == solutions.degrees[1] { 1 } else { 2 };
     let Solutions { degrees, free } = *solutions;
     let stands = if free.is_some() { FREE_POSITIONS } else { 1 };
@@ -134,8 +128,19 @@ pub(crate) fn nearest(
     taken
 }
 
+/// Whether it is known at which of these places the rotary axes stand.
+pub(crate) fn is_known(angles: &[Degrees]) -> bool {
+    !angles.is_empty() && angles.iter().flatten().all(|degrees| degrees.is_finite())
+}
+
+/// Puts into `taken` all solutions, and where some are within the travel those alone.
+pub(crate) fn reachable(machine: &Machine, solutions: &Solutions, taken: &mut Vec<Degrees>) {
+    taken.extend(all(machine, solutions));
+    keep_within(machine, taken);
+}
+
 /// Keeps the positions that are within the travel, where some are.
-pub(crate) fn keep_within(machine: &Machine, taken: &mut Vec<Degrees>) {
+fn keep_within(machine: &Machine, taken: &mut Vec<Degrees>) {
     if taken.iter().any(|degrees| is_within(machine, degrees)) {
         taken.retain(|degrees| is_within(machine, degrees));
     }
