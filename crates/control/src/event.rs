@@ -169,14 +169,18 @@ impl FeedPath {
     /// or none whose degrees count while the control keeps the tip.
     #[inline]
     pub fn is_of_tip(&self, from: &Position, to: &Position) -> bool {
-        let counts = || matches!(self, FeedPath::Group(weights) if *weights != [0.0; 3]);
         match (from.orientation, to.orientation) {
             (
                 Orientation::Rotary { degrees: a, .. },
                 Orientation::Rotary { degrees: b, tool_center },
-            ) => a == b || (tool_center && !counts()),
-            (a, b) => a == b || !counts(),
+            ) => a == b || (tool_center && !self.counts_turns()),
+            (a, b) => a == b || !self.counts_turns(),
         }
+    }
+
+    /// Whether degrees count also while the control keeps the tip.
+    fn counts_turns(&self) -> bool {
+        matches!(self, FeedPath::Group(weights) if *weights != [0.0; 3])
     }
 
     /// The length of the straight way between two positions, mm, by which the control divides the feed to find the time
@@ -190,8 +194,7 @@ impl FeedPath {
             ) if s == t => ([0, 1, 2].map(|i| b[i] - a[i]), t),
             (Orientation::Axis(a), Orientation::Axis(b)) => {
                 // How far a vector turns each axis, only the control knows.
-                let counts = matches!(self, FeedPath::Group(weights) if *weights != [0.0; 3]);
-                return (a == b || !counts).then_some(linear);
+                return (a == b || !self.counts_turns()).then_some(linear);
             }
             (Orientation::Rotary { .. } | Orientation::Axis(_), _) => return None,
         };

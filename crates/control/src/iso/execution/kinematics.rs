@@ -73,37 +73,34 @@ impl Step<'_, '_, '_> {
     /// Fixed places count from the zero of the machine by the axes alone: by the kinematics of the tip `G53 Z` and `G28`
     /// go along Z of the turned work (measured).
     pub(super) fn counts_machine(&self) -> Result<(), Fault> {
-        if self.state.kinematics != Kinematics::Tip {
-            return Ok(());
-        }
-        let message =
+        let what =
             "a fixed position by the kinematics of the tip, where it counts in the turned work";
-        let fault = self.block.at_group(Group::OneShot, "nc-kinematics", message);
-        Err(fault.help("switch to the kinematics of the axes first").into())
+        self.by_axes(Group::OneShot, what, "first")
     }
 
     /// # Errors
     /// The axes jump by what another length changes in the kinematics of the tip (measured: 10 mm in a millisecond).
     pub(super) fn keeps_length(&self) -> Result<(), Fault> {
-        if self.state.kinematics != Kinematics::Tip {
-            return Ok(());
-        }
-        let message =
+        let what =
             "another tool length by the kinematics of the tip: the axes jump by what it changes";
-        let fault = self.block.at_group(Group::Length, "nc-kinematics", message);
-        Err(fault.help("switch to the kinematics of the axes first").into())
+        self.by_axes(Group::Length, what, "first")
     }
 
     /// # Errors
     /// The program ends with the kinematics of the tip, which the next one then has.
     pub(super) fn ends_with_axes(&self) -> Result<(), Fault> {
+        let what =
+            "the program ends with the kinematics of the tip, by which the next one then moves";
+        self.by_axes(Group::Flow, what, "before")
+    }
+
+    /// Refuses `what` by the kinematics of the tip: those of the axes come `when`.
+    fn by_axes(&self, group: Group, what: &str, when: &str) -> Result<(), Fault> {
         if self.state.kinematics != Kinematics::Tip {
             return Ok(());
         }
-        let message =
-            "the program ends with the kinematics of the tip, by which the next one then moves";
-        let fault = self.block.at_group(Group::Flow, "nc-kinematics", message);
-        Err(fault.help("switch to the kinematics of the axes before").into())
+        let fault = self.block.at_group(group, "nc-kinematics", what);
+        Err(fault.help(format!("switch to the kinematics of the axes {when}")).into())
     }
 
     fn wrong_kinematics(&self, message: &str) -> Fault {
