@@ -82,10 +82,8 @@ impl<'a> Limits<'a> {
         for (i, (axis, letter)) in self.machine.linear.iter().zip(['X', 'Y', 'Z']).enumerate() {
             if known {
                 // The slide of Z stands above the tip, by how much is not known.
-                let mut min = axis.min;
-                if i == 2 && tool_length.is_none() && min.is_finite() {
-                    min = f64::NEG_INFINITY;
-                }
+                let is_measured = i != 2 || tool_length.is_some();
+                let min = if is_measured { axis.min } else { f64::NEG_INFINITY };
                 held(letter, slides[i], min, axis.max, " mm", line)?;
             } else {
                 self.stretch(i, axis, slides[i], line);

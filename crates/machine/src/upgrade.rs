@@ -28,20 +28,18 @@ pub fn missing(machine: &Machine) -> Vec<Missing> {
         );
     }
     let orientation = machine.orientation;
-    let turns_axes = [orientation.simultaneous, orientation.positioned]
-        .contains(&OrientationMode::MachineAngles);
-    if turns_axes
-        && machine.work_zero.is_none()
-        && machine.rotary.iter().any(|axis| axis.on == Mount::Table)
-    {
+    let writes = |mode| [orientation.simultaneous, orientation.positioned].contains(&mode);
+    let turns_axes = writes(OrientationMode::MachineAngles);
+    let follows_tip = writes(OrientationMode::ToolCenterAngles);
+    let tilts = writes(OrientationMode::TiltedPlane);
+    let turns_table = machine.rotary.iter().any(|axis| axis.on == Mount::Table);
+    if turns_axes && machine.work_zero.is_none() && turns_table {
         lacks(
             String::new(),
             "work_zero = [0, 0, 0]",
             "G54 in machine coordinates (mm): every position on a turned table hangs on how far the work is from its axes",
         );
     }
-    let follows_tip = [orientation.simultaneous, orientation.positioned]
-        .contains(&OrientationMode::ToolCenterAngles);
     if machine.reader == "linuxcnc" && follows_tip && machine.settings.kinematics.is_none() {
         lacks(
             "[settings]".into(),
@@ -109,8 +107,6 @@ pub fn missing(machine: &Machine) -> Vec<Missing> {
             "what the tool table keeps: the radius of the tool, or \"wear\", its difference from the tool of the toolpath; contours with compensation need it",
         );
     }
-    let tilts =
-        [orientation.simultaneous, orientation.positioned].contains(&OrientationMode::TiltedPlane);
     if tilts && machine.reader == "fanuc" && machine.settings.tilt_within_travel.is_none() {
         lacks(
             "[settings]".into(),
@@ -151,11 +147,8 @@ pub fn missing(machine: &Machine) -> Vec<Missing> {
             "parameter 1008#1 of the rotary axes: true where it is 1",
         );
     }
-    let modes = [machine.orientation.simultaneous, machine.orientation.positioned];
-    let keeps_tip = modes.contains(&OrientationMode::ToolCenterAngles);
-    let turns_table = machine.rotary.iter().any(|axis| axis.on == Mount::Table);
     if machine.reader == "fanuc"
-        && keeps_tip
+        && follows_tip
         && turns_table
         && machine.settings.table_frame_at_zero.is_none()
     {
