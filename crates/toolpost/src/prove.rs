@@ -22,7 +22,7 @@ pub fn run(args: &Prove, silent: bool) -> Result<Answer, Stop> {
     progress.step("proving");
     let file = files::name(&args.program);
     let mut account = compare(&toolpath, &machine, &file, &text, &args.closeness.tolerances());
-    match report::pair(&args.program, &Digests::of(&text, &toolpath, &machine)) {
+    match report::pair(&args.program, || Digests::of(&text, &toolpath, &machine)) {
         Ok(pair) => account.rows.extend(pair.map(|text| ("report", text))),
         Err(found) => account.findings.push(*found),
     }

@@ -52,12 +52,12 @@ struct Saved {
     sha256: Digests,
 }
 
-/// What the report beside the program file `path` says about its origin; `now` are the digests of today. Nothing where
+/// What the report beside the program file `path` says about its origin; `now` finds the digests of today. Nothing where
 /// there is no report.
 ///
 /// # Errors
 /// A warning: it is the report of something else, or it cannot be read.
-pub fn pair(path: &Path, now: &Digests) -> Result<Option<String>, Box<Diagnostic>> {
+pub fn pair(path: &Path, now: impl FnOnce() -> Digests) -> Result<Option<String>, Box<Diagnostic>> {
     let report = files::report_of(path);
     let name = files::name(&report);
     let other = |message: String| {
@@ -76,7 +76,7 @@ pub fn pair(path: &Path, now: &Digests) -> Result<Option<String>, Box<Diagnostic
     let Ok(Saved { sha256 }) = serde_json::from_slice(&bytes) else {
         return other(String::from("does not say what it was made of"));
     };
-    match sha256.differences(now)[..] {
+    match sha256.differences(&now())[..] {
         [] => Ok(Some(format!("{name} belongs to this program, toolpath and machine file"))),
         ref what => other(format!("is the report of another {}", what.join(" and "))),
     }

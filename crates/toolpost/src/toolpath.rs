@@ -199,8 +199,11 @@ fn read_by(
 pub fn swinging(path: &Path, origin: &Origin) -> Result<Option<Program>, Stop> {
     let Some(from) = origin.from.as_deref().filter(|_| !fcstd::is(path)) else { return Ok(None) };
     let machine = machine::load_origin(from)?;
+    if machine.rotary.is_empty() {
+        return Ok(None);
+    }
     let bytes = files::text(path)?;
-    if machine.rotary.is_empty() || Job::begins(&bytes) {
+    if Job::begins(&bytes) {
         return Ok(None);
     }
     let program = nc::read_swinging(&machine, origin.setup()?, &files::name(path), &bytes)?;
