@@ -5,6 +5,7 @@ A row is a piece of motion along which everything that is interpolated changes e
 
 from __future__ import annotations
 
+from abc import ABC, abstractmethod
 from dataclasses import dataclass
 from typing import Any, NamedTuple
 
@@ -62,7 +63,7 @@ class FaultError(Exception):
     """The program does what the reference holds for wrong, or does not know."""
 
 
-class Control:
+class Control(ABC):
     """State of a control that runs a program."""
 
     def __init__(
@@ -89,9 +90,9 @@ class Control:
         self.centre = False
         self.frames.append(Frame(False, ONE, np.zeros(3), 0.0, 0.0))
 
+    @abstractmethod
     def run(self, text: str) -> None:
         """Run a program to its end."""
-        raise NotImplementedError
 
     def fault(self, why: str) -> FaultError:
         return FaultError(f"block {self.line}: {why}")
