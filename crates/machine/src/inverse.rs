@@ -69,6 +69,11 @@ impl<'a> Inverse<'a> {
         Inverse { machine, zero, chain: Chain::new(machine, zero) }
     }
 
+    /// The machine whose axes these are.
+    pub fn machine(&self) -> &'a Machine {
+        self.machine
+    }
+
     /// [`Machine::inverse`].
     ///
     /// # Errors

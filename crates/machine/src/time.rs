@@ -10,7 +10,7 @@
 //! for that; otherwise as the tip. F is the speed of the tip, as the writer makes it: where it has to count degrees for that, F
 //! goes no higher than `feed_max`. Where the tool turns about its tip without tool-centre control, F is the speed of the axes.
 
-use crate::{LinearAxis, Machine, OrientationMode, RotaryFeed};
+use crate::{Inverse, LinearAxis, Machine, OrientationMode, RotaryFeed};
 use geom::Vec3;
 use program::{ArcTo, Course, Cycle, CycleKind, Feed, Op, Pose, Program, Spindle, lowering};
 use serde::Serialize;
@@ -57,6 +57,7 @@ pub struct Clock<'a> {
     machine: &'a Machine,
     /// What has been spent so far.
     pub times: Times,
+    inverse: Inverse<'a>,
     here: Option<Spot>,
     /// Degrees of A, B, C.
     degrees: [f64; 3],
@@ -73,6 +74,7 @@ impl<'a> Clock<'a> {
         Clock {
             machine,
             times: Times::default(),
+            inverse: Inverse::of(machine),
             here: None,
             degrees: [0.0; 3],
             tool_length: None,
@@ -279,7 +281,7 @@ impl<'a> Clock<'a> {
 
     /// The positions for a tool axis that are reached soonest from where the axes stand.
     fn nearest(&self, axis: Vec3) -> [f64; 3] {
-        let Ok(solutions) = self.machine.inverse(axis) else { return self.degrees };
+        let Ok(solutions) = self.inverse.solve(axis) else { return self.degrees };
         let near = solutions.degrees.map(|degrees| {
             [0, 1, 2].map(|i| {
                 let turn = (degrees[i] - self.degrees[i]).to_radians();

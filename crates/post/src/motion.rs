@@ -51,7 +51,7 @@ impl Walk<'_> {
         // It is asked for before a block is aimed, and by the block.
         let known = self.followed.get().filter(|way| way.from == from && way.to == axis);
         let followed = known.unwrap_or_else(|| {
-            let arrival = vectors::arrival(self.machine, from, axis);
+            let arrival = vectors::arrival(&self.inverse, from, axis);
             Followed { from, to: axis, arrival }
         });
         self.followed.set(Some(followed));
@@ -69,10 +69,10 @@ impl Walk<'_> {
     fn vector_start(&self, from: Vec3, to: Vec3) -> Result<[f64; 3], Box<Diagnostic>> {
         let machine = self.machine;
         let off = |start: [f64; 3]| {
-            let end = vectors::arrival(machine, start, to)?;
+            let end = vectors::arrival(&self.inverse, start, to)?;
             Some((start, vectors::off_center(machine, start) + vectors::off_center(machine, end)))
         };
-        let starts = vectors::starts(machine, from).into_iter().filter_map(off);
+        let starts = vectors::starts(&self.inverse, from).into_iter().filter_map(off);
         let best = starts.min_by(|a, b| a.1.total_cmp(&b.1));
         best.map(|(start, _)| start).ok_or_else(|| {
             let message =

@@ -189,7 +189,7 @@ impl Walk<'_> {
         match stop.step {
             Some(step) => vec![self.written(step.degrees)],
             None if self.machine.rotary.is_empty() => vec![[0.0; 3]],
-            None => self.machine.inverse(axis).map_or(Vec::new(), |all| all.degrees.to_vec()),
+            None => self.inverse.solve(axis).map_or(Vec::new(), |all| all.degrees.to_vec()),
         }
     }
 

@@ -52,7 +52,7 @@ impl Walk<'_> {
 
     /// The solution beside `wanted` that the control may take too.
     fn other_solution(&self, axis: Vec3, wanted: [f64; 3]) -> Option<[f64; 3]> {
-        let solutions = self.machine.inverse(axis).ok()?;
+        let solutions = self.inverse.solve(axis).ok()?;
         let apart = |degrees: &[f64; 3]| {
             (0..3).map(|i| short_way(wanted[i], degrees[i]).abs()).fold(0.0, f64::max)
         };

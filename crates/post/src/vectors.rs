@@ -3,7 +3,7 @@
 
 use crate::sweep::short_way;
 use geom::{Vec3, angle_between, between};
-use machine::{Machine, RotaryAxis, Solutions};
+use machine::{Inverse, Machine, RotaryAxis, Solutions};
 
 /// The longest turn of the tool between two places that are looked at, radians (1°).
 const LONGEST: f64 = 0.0175;
@@ -36,17 +36,18 @@ pub(crate) struct Followed {
 
 /// The degrees of A, B, C to which the axes come from `from` while the tool turns to `to`; `None` where the travel of one
 /// ends before, or where it is not known.
-pub(crate) fn arrival(machine: &Machine, from: [f64; 3], to: Vec3) -> Option<[f64; 3]> {
+pub(crate) fn arrival(inverse: &Inverse, from: [f64; 3], to: Vec3) -> Option<[f64; 3]> {
+    let machine = inverse.machine();
     let start = machine.axis_at(from);
     let turn = angle_between(start, to);
-    let (mut done, mut at) = (0.0, from);
+    let (mut done, mut at, mut points) = (0.0, from, start);
     let mut step = LONGEST;
     while done < turn {
         let goal = (done + step).min(turn);
         let axis = if goal < turn { between(start, to, goal / turn) } else { to };
-        let solutions = machine.inverse(axis).ok()?;
+        let solutions = inverse.solve(axis).ok()?;
         let (next, way, other) = nearest(machine, at, &solutions);
-        let half = angle_between(machine.axis_at(at), machine.axis_at(next)) / 2.0;
+        let half = angle_between(points, axis) / 2.0;
         let is_sure = way <= TURN && pole(machine, &solutions) > 2.0 * half;
         if goal - done > 1.001 * SHORTEST && !is_sure {
             step = ((goal - done) / 2.0).max(SHORTEST);
@@ -56,14 +57,15 @@ pub(crate) fn arrival(machine: &Machine, from: [f64; 3], to: Vec3) -> Option<[f6
         if is_either || !is_within(machine, next) {
             return None;
         }
-        (at, done, step) = (next, goal, (2.0 * step).min(LONGEST));
+        (at, done, points, step) = (next, goal, axis, (2.0 * step).min(LONGEST));
     }
     Some(at)
 }
 
 /// The positions within the travel that bring the tool along `axis`.
-pub(crate) fn starts(machine: &Machine, axis: Vec3) -> Vec<[f64; 3]> {
-    let Ok(solutions) = machine.inverse(axis) else { return Vec::new() };
+pub(crate) fn starts(inverse: &Inverse, axis: Vec3) -> Vec<[f64; 3]> {
+    let machine = inverse.machine();
+    let Ok(solutions) = inverse.solve(axis) else { return Vec::new() };
     let mut starts = solutions.degrees.to_vec();
     if let Some(free) = solutions.free {
         let turned = |k: i32| {

@@ -64,6 +64,8 @@ pub(crate) struct Standing<'a> {
     angles: Vec<Degrees>,
     /// The tool axis that they give, where the program has said that.
     axis: Option<Vec3>,
+    /// How far that is from the pole, radians.
+    from_pole: f64,
     /// How the control is about to turn to a tilted plane.
     swivels: Option<TiltChoice>,
     /// How it has turned to the one in which it is.
@@ -71,6 +73,7 @@ pub(crate) struct Standing<'a> {
     /// Angles of the block looked at, and the tool axis for which they were worked out.
     next: Vec<Degrees>,
     next_axis: Option<Vec3>,
+    next_from_pole: f64,
     /// The first position beyond the travel on the way there.
     strayed: Option<Degrees>,
 }
@@ -90,10 +93,12 @@ impl<'a> Standing<'a> {
             inverse: Inverse::of(machine),
             angles: Vec::new(),
             axis: None,
+            from_pole: 0.0,
             swivels: None,
             choice: None,
             next: Vec::new(),
             next_axis: None,
+            next_from_pole: 0.0,
             strayed: None,
         }
     }
@@ -159,6 +164,7 @@ impl<'a> Standing<'a> {
             Orientation::Rotary { .. } => self.axis = None,
         }
         std::mem::swap(&mut self.angles, &mut self.next);
+        self.from_pole = self.next_from_pole;
         (self.choice, self.next_axis) = (self.swivels.take(), None);
     }
 
@@ -171,6 +177,7 @@ impl<'a> Standing<'a> {
             return;
         }
         let Ok(solutions) = self.inverse.solve(axis) else { return };
+        self.next_from_pole = from_pole(self.machine, &solutions);
         if let Some(choice) = self.swivels {
             tilt::take(self.machine, choice, &self.angles, &solutions, &mut self.next);
             return;
@@ -180,31 +187,70 @@ impl<'a> Standing<'a> {
         }
         let angles = std::mem::take(&mut self.angles);
         for from in &angles {
-            for degrees in self.followed(*from, axis) {
-                if !self.next.contains(&degrees) {
-                    self.next.push(degrees);
+            let (start, near) = self.start(*from);
+            let turn = angle_between(start, axis);
+            if turn <= longest_step(near, self.next_from_pole) {
+                self.step(from, &solutions);
+            } else {
+                for degrees in self.followed(*from, [start, axis], turn, near) {
+                    self.add(degrees);
                 }
             }
         }
         self.angles = angles;
     }
 
+    /// The tool axis with the rotary axes at `from`, and how far it is from the pole, radians.
+    fn start(&self, from: Degrees) -> (Vec3, f64) {
+        if let Some(axis) = self.axis {
+            return (axis, self.from_pole);
+        }
+        let axis = self.machine.axis_at(from);
+        let solutions = self.inverse.solve(axis);
+        (axis, solutions.map_or(0.0, |all| from_pole(self.machine, &all)))
+    }
+
+    /// Adds where the axes come from one place in a turn so short that they cannot leave the solution in which they are.
+    #[inline]
+    fn step(&mut self, from: &Degrees, solutions: &Solutions) {
+        for degrees in tilt::nearest(self.machine, from, solutions).into_iter().flatten() {
+            self.stray(&degrees);
+            self.add(degrees);
+        }
+    }
+
+    fn add(&mut self, degrees: Degrees) {
+        if !self.next.contains(&degrees) {
+            self.next.push(degrees);
+        }
+    }
+
+    /// Notes a position on the way that is beyond the travel.
+    fn stray(&mut self, degrees: &Degrees) {
+        if self.strayed.is_none() && !tilt::is_within(self.machine, degrees) {
+            self.strayed = Some(*degrees);
+        }
+    }
+
     /// Where the axes come from one place while the tool turns on the great circle to `to`: to several positions where it
-    /// leaves a pole in the middle between two solutions.
-    fn followed(&mut self, from: Degrees, to: Vec3) -> Vec<Degrees> {
-        let start = self.machine.axis_at(from);
-        let turn = angle_between(start, to);
+    /// leaves a pole in the middle between two solutions. `turn` is the angle between both tool axes, `near` that from the
+    /// first to the pole, radians.
+    fn followed(
+        &mut self,
+        from: Degrees,
+        [start, to]: [Vec3; 2],
+        turn: f64,
+        near: f64,
+    ) -> Vec<Degrees> {
         let mut stands = vec![from];
-        let (mut done, mut step) = (0.0, turn);
-        let mut beside = self.inverse.solve(start).map_or(0.0, |all| from_pole(self.machine, &all));
+        let (mut done, mut step, mut before) = (0.0, turn, near);
         loop {
             let goal = (done + step).min(turn);
             let is_end = goal >= turn;
             let axis = if is_end { to } else { between(start, to, goal / turn) };
             let Ok(solutions) = self.inverse.solve(axis) else { return Vec::new() };
             let near = from_pole(self.machine, &solutions);
-            let longest = (POLE_PART * near.min(beside)).max(LEAST_STEP);
-            if goal - done > longest {
+            if goal - done > longest_step(near, before) {
                 step = (goal - done) / 2.0;
                 continue;
             }
@@ -216,16 +262,18 @@ impl<'a> Standing<'a> {
                     reached.push(degrees);
                 }
             }
-            if self.strayed.is_none() {
-                let beyond = |degrees: &&Degrees| !tilt::is_within(self.machine, degrees);
-                self.strayed = reached.iter().find(beyond).copied();
-            }
+            reached.iter().for_each(|degrees| self.stray(degrees));
             if is_end {
                 return reached;
             }
-            (stands, done, step, beside) = (reached, goal, 2.0 * (goal - done), near);
+            (stands, done, step, before) = (reached, goal, 2.0 * (goal - done), near);
         }
     }
+}
+
+/// The longest turn of the tool between two positions that are looked at, radians, so far from the pole at either.
+fn longest_step(near: f64, before: f64) -> f64 {
+    (POLE_PART * near.min(before)).max(LEAST_STEP)
 }
 
 /// How far the tool is from the pole in which its solutions are one, radians; as far as can be where there is one alone.

@@ -4,7 +4,7 @@ use super::axis::{Axis, SLACK};
 use super::{Cell, Plan, Rewind, TURN, TURNS, Target, TargetKind};
 use crate::inverse::{Bearings, Chain, Unreachable};
 use crate::{Machine, OrientationMode};
-use geom::{ANGLE_EPSILON, Vec3, angle_between};
+use geom::{ANGLE_EPSILON, Vec3, angle_between, between};
 use program::Diagnostic;
 use std::f64::consts::PI;
 
@@ -476,10 +476,12 @@ impl Plan {
             let turned = [0, 1].map(|k| from[k] + self.axes[k].way(from[k], to[k]) * t);
             self.chain.spread(turned)
         };
-        if !self.by_vector {
-            return machine.swing([part(0.0), part(1.0)], [front.axis, next.axis]) <= SWING;
-        }
         let axis = machine.axis_at(part(0.5));
+        if !self.by_vector {
+            // Half way says it of most positions that leave the way.
+            return angle_between(axis, between(front.axis, next.axis, 0.5)) <= SWING
+                && machine.swing([part(0.0), part(1.0)], [front.axis, next.axis]) <= SWING;
+        }
         let turn = angle_between(front.axis, next.axis);
         let swing = angle_between(axis, front.axis).max(angle_between(axis, next.axis));
         swing <= turn + SWING

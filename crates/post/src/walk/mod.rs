@@ -15,8 +15,8 @@ use crate::wire::Wire;
 use crate::writer::Writer;
 use compensation::compensation_code;
 use geom::Vec3;
-use machine::Machine;
 use machine::limits::Limits;
+use machine::{Inverse, Machine};
 use minijinja::value::Value;
 use program::statistics::Statistics;
 use program::{
@@ -46,6 +46,7 @@ pub(crate) const PLANE_XY: usize = 0;
 /// A program being written.
 pub(crate) struct Walk<'a> {
     pub(crate) machine: &'a Machine,
+    pub(crate) inverse: Inverse<'a>,
     pub(crate) templates: Templates<'a>,
     pub(crate) writer: Writer,
     pub(crate) findings: Findings,
@@ -131,6 +132,7 @@ impl<'a> Walk<'a> {
         writer.assume(WordName::FeedMode, feed_mode::PER_MINUTE);
         Ok(Walk {
             machine,
+            inverse: Inverse::of(machine),
             templates,
             feeds_rapids,
             writer,

@@ -80,15 +80,19 @@ impl Prover<'_> {
             self.pace = Pace::default();
             return self.feed_by_number();
         }
-        let (rounding, by_number) = (self.gauge.slack(to), self.feed_by_number());
+        let rounding = self.gauge.slack(to);
         let moved = self.here.place.tip.distance(to.place.tip);
         if matches!(wanted, Feed::InverseTime(_)) && moved <= pace::TIMED * rounding {
             // The time of the source is that of a whole move, in which the tool may stand while axes turn.
             return None;
         }
-        if source <= pace::STANDS || (way.abs() <= rounding && by_number.is_none()) {
-            // The tool turns about its tip, which has no speed: the number says how fast the axes are.
-            return if inverse { None } else { by_number };
+        let is_standing = source <= pace::STANDS;
+        if is_standing || way.abs() <= rounding {
+            let by_number = self.feed_by_number();
+            if is_standing || by_number.is_none() {
+                // The tool turns about its tip, which has no speed: the number says how fast the axes are.
+                return if inverse { None } else { by_number };
+            }
         }
         let spindle = self.cursor.wanted.spindle;
         let (gauge, to_position) = (&self.gauge, &to.position);
