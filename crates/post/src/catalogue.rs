@@ -251,6 +251,16 @@ pub(crate) const VARIABLES: &[Parameter] = &[
     variable("tool.length", "mm", "Length of the tool; undefined where the source is silent."),
     variable("spindle.clockwise", "", "Whether the spindle turns clockwise, while it turns."),
     variable("spindle.changed", "", "Whether the speed is another than the one last written."),
+    variable(
+        "spindle.stopped",
+        "",
+        "Whether the spindle is known to stand: since a stop or a tool change of the program.",
+    ),
+    variable(
+        "coolant.stopped",
+        "",
+        "Whether the coolant is known to be off: since the program has switched it off, or changed a tool.",
+    ),
     variable("text", "", "The text of a comment or a message."),
     variable("options", "", "The values of `[options]` of the machine: `{{ options.NAME }}`."),
 ];

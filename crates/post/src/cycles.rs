@@ -275,7 +275,8 @@ impl Walk<'_> {
             HoleMove::Dwell(seconds) => self.write_dwell(seconds),
             HoleMove::Spindle(spindle) => {
                 self.spindle = spindle;
-                self.sync_spindle()
+                // Out of the hole it waits for what needs it.
+                if spindle == Spindle::Off { self.sync_spindle() } else { Ok(()) }
             }
         });
         (self.spindle, self.feed) = (spindle, feed);

@@ -164,7 +164,8 @@ enum Kind {
 type Shape = (Kind, usize);
 
 /// The values with members.
-const GROUPS: [&str; 6] = ["machine", "operation", "options", "program", "spindle", "tool"];
+const GROUPS: [&str; 7] =
+    ["coolant", "machine", "operation", "options", "program", "spindle", "tool"];
 
 struct Guard<'m> {
     machine: &'m Machine,

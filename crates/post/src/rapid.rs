@@ -67,7 +67,7 @@ impl Walk<'_> {
         self.end_cycle()?;
         self.wire_for(false, "a rapid")?;
         self.same_taper("a rapid")?;
-        self.sync_spindle()?;
+        self.expect_spindle()?;
         self.settle(pose, stop, false)?;
         let Some(from) = self.here.filter(|_| self.located) else {
             return self.approach(pose, stop);

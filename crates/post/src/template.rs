@@ -203,6 +203,7 @@ pub(crate) struct Scope {
     pub(crate) operation: Value,
     pub(crate) tool: Value,
     pub(crate) spindle: Value,
+    pub(crate) coolant: Value,
     pub(crate) text: Value,
 }
 
@@ -215,6 +216,7 @@ impl Object for Scope {
             "operation" => &self.operation,
             "tool" => &self.tool,
             "spindle" => &self.spindle,
+            "coolant" => &self.coolant,
             "text" => &self.text,
             name => {
                 let word = WordName::named(name)?;
@@ -266,7 +268,8 @@ impl Scope {
             program: program_value(machine, &program.name, &program.records),
             operation: map([("name", Value::from(operation))]),
             tool: tool_value(machine, &tool, first),
-            spindle: spindle_value(first, first),
+            spindle: spindle_value(first, first, !first),
+            coolant: coolant_value(!first),
             text: Value::from(text),
             ..Scope::new(machine)
         }
@@ -291,7 +294,8 @@ impl Scope {
             options: Value::from(options.collect::<BTreeMap<String, Value>>()),
             operation: map([("name", Value::from(""))]),
             tool: tool_value(machine, &Tool::default(), true),
-            spindle: spindle_value(true, true),
+            spindle: spindle_value(true, true, false),
+            coolant: coolant_value(false),
             text: Value::from(""),
         }
     }
@@ -309,8 +313,14 @@ pub(crate) fn map(members: impl IntoIterator<Item = (&'static str, Value)>) -> V
 }
 
 /// The spindle as templates see it.
-pub(crate) fn spindle_value(changed: bool, clockwise: bool) -> Value {
-    map([("changed", Value::from(changed)), ("clockwise", Value::from(clockwise))])
+pub(crate) fn spindle_value(changed: bool, clockwise: bool, stopped: bool) -> Value {
+    let members = [("changed", changed), ("clockwise", clockwise), ("stopped", stopped)];
+    map(members.map(|(key, value)| (key, Value::from(value))))
+}
+
+/// The coolant as templates see it.
+pub(crate) fn coolant_value(stopped: bool) -> Value {
+    map([("stopped", Value::from(stopped))])
 }
 
 /// A tool as templates see it; `first` where none has been called before.
@@ -463,7 +473,7 @@ impl<'a> Templates<'a> {
     fn check_variable(&self, block: &Block, name: &str) -> Result<(), Box<Diagnostic>> {
         let known = match name.split_once('.') {
             Some(("options", option)) => self.machine.options.contains_key(option),
-            Some(("tool" | "spindle" | "operation" | "program" | "machine", _)) => {
+            Some(("tool" | "spindle" | "coolant" | "operation" | "program" | "machine", _)) => {
                 VARIABLES.iter().any(|row| row.name == name)
             }
             _ => {

@@ -8,7 +8,10 @@ pub(crate) use technology::{Cut, Turn};
 use crate::catalogue::{BlockName, WordName};
 use crate::findings::Findings;
 use crate::place::{Place, Route, Stop};
-use crate::template::{ORIENTATION, POSITION, Scope, Templates, Words, bit, map, program_value};
+use crate::template::{
+    ORIENTATION, POSITION, Scope, Templates, Words, bit, coolant_value, map, program_value,
+    spindle_value,
+};
 use crate::text::printed;
 use crate::vectors::Followed;
 use crate::wire::Wire;
@@ -68,6 +71,10 @@ pub(crate) struct Walk<'a> {
     /// What the source wants, and what the control has been told.
     pub(crate) spindle: Spindle,
     pub(crate) active_spindle: Option<Spindle>,
+    /// Whether its speed was another than the one before when it was last switched.
+    speed_changed: bool,
+    /// Up to which record no cut needs the spindle.
+    idle_until: usize,
     coolant: Coolant,
     active_coolant: Option<Coolant>,
     /// The coolant that has been switched last: after a stop nobody knows whether it runs.
@@ -148,6 +155,8 @@ impl<'a> Walk<'a> {
             length_offset: None,
             spindle: Spindle::Off,
             active_spindle: Some(Spindle::Off),
+            speed_changed: true,
+            idle_until: 0,
             coolant: Coolant::Off,
             active_coolant: Some(Coolant::Off),
             last_coolant: Coolant::Off,
@@ -322,7 +331,7 @@ impl<'a> Walk<'a> {
             Op::Operation(name) => {
                 // What was switched on before it does not belong to it.
                 if self.tool.is_some() {
-                    self.sync_spindle()?;
+                    self.expect_spindle()?;
                 }
                 if self.machine.format.fresh_operations {
                     self.writer.forget(POSITION | ORIENTATION | MOTION);
@@ -463,7 +472,16 @@ impl<'a> Walk<'a> {
         match self.templates.lines(name) {
             Some(lines) => self.writer.block(lines)?,
             None => {
-                let scope = Scope { set: self.writer.set_words(), ..self.scope.clone() };
+                // What runs before the first tool change, nobody knows.
+                let known = self.tool.is_some();
+                let spindle_stopped = known && self.active_spindle == Some(Spindle::Off);
+                let clockwise = !matches!(self.spindle, Spindle::CounterClockwise(_));
+                let scope = Scope {
+                    set: self.writer.set_words(),
+                    spindle: spindle_value(self.speed_changed, clockwise, spindle_stopped),
+                    coolant: coolant_value(known && self.active_coolant == Some(Coolant::Off)),
+                    ..self.scope.clone()
+                };
                 self.writer.block(&self.templates.render(name, scope)?)?;
             }
         }
@@ -513,7 +531,7 @@ impl<'a> Walk<'a> {
             return Err(refuse("dwell", message).help("leave it out, or make it longer").into());
         }
         self.end_cycle()?;
-        self.sync_spindle()?;
+        self.expect_spindle()?;
         self.write_dwell(seconds)
     }
 
@@ -529,13 +547,12 @@ impl<'a> Walk<'a> {
         self.required(BlockName::Dwell)
     }
 
-    /// A stop, after which spindle and coolant are told anew: some controls switch both off for it
-    /// (HEIDENHAIN's `M0`), and so may the operator.
+    /// A stop, after which spindle and coolant that were on are switched on anew: some controls switch both off for it
+    /// (HEIDENHAIN's `M0`), and so may the operator. None switches on what is off.
     fn stop(&mut self, name: BlockName) -> Done {
         self.end_cycle()?;
-        if self.wire.is_none() {
-            (self.active_spindle, self.active_coolant) = (None, None);
-        }
+        self.active_spindle = self.active_spindle.filter(|active| *active == Spindle::Off);
+        self.active_coolant = self.active_coolant.filter(|active| *active == Coolant::Off);
         self.required(name)
     }
 }

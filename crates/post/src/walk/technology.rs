@@ -2,7 +2,7 @@
 
 use super::{Done, MOTION, Walk, refuse};
 use crate::catalogue::{BlockName, WordName};
-use crate::template::{LENGTH_OFFSET, ORIENTATION, POSITION, bit, spindle_value, tool_value};
+use crate::template::{LENGTH_OFFSET, ORIENTATION, POSITION, bit, tool_value};
 use geom::Vec3;
 use machine::{LengthOffset, Machine, OptionValue};
 use program::{Coolant, Diagnostic, Feed, Op, PathMode, Spindle, Tool, lowering};
@@ -155,23 +155,58 @@ impl Walk<'_> {
         }
     }
 
-    /// Tells the control the spindle that the source wants.
+    /// Switches the spindle as the source wants it, where something needs it before it stops again.
+    pub(crate) fn expect_spindle(&mut self) -> Done {
+        if self.spindle == Spindle::Off || self.is_spindle_needed() {
+            return self.sync_spindle();
+        }
+        Ok(())
+    }
+
+    /// Whether the source cuts, or dwells, before it stops the spindle or gives it another speed.
+    fn is_spindle_needed(&mut self) -> bool {
+        if self.index < self.idle_until {
+            return false;
+        }
+        let needs = |op: &Op| {
+            matches!(
+                op,
+                Op::Line(_)
+                    | Op::Arc(_)
+                    | Op::Thread(_)
+                    | Op::Hole(_)
+                    | Op::Probe(_)
+                    | Op::Dwell(_)
+            )
+        };
+        let ends = |op: &Op| {
+            matches!(op, Op::Spindle(_) | Op::Tool(_) | Op::Stop | Op::OptionalStop | Op::End)
+        };
+        let coming = &self.source.records[self.index..];
+        let next = coming.iter().position(|record| needs(&record.op) || ends(&record.op));
+        if next.is_some_and(|next| needs(&coming[next].op)) {
+            return true;
+        }
+        self.idle_until = self.index + next.unwrap_or(coming.len());
+        false
+    }
+
+    /// Switches the spindle as the source wants it.
     pub(crate) fn sync_spindle(&mut self) -> Done {
         if self.active_spindle == Some(self.spindle) {
             return Ok(());
         }
-        self.active_spindle = Some(self.spindle);
         if let Some(speed) = speed(self.spindle) {
             self.writer.set(WordName::S, speed);
         }
-        let changed = speed(self.spindle) != self.writer.active(WordName::S);
-        let counter = matches!(self.spindle, Spindle::CounterClockwise(_));
-        self.scope.spindle = spindle_value(changed, !counter);
+        self.speed_changed = speed(self.spindle) != self.writer.active(WordName::S);
         self.required(match self.spindle {
             Spindle::Off => BlockName::SpindleOff,
             Spindle::Clockwise(_) => BlockName::SpindleCw,
             Spindle::CounterClockwise(_) => BlockName::SpindleCcw,
-        })
+        })?;
+        self.active_spindle = Some(self.spindle);
+        Ok(())
     }
 
     pub(crate) fn sync_coolant(&mut self) -> Done {

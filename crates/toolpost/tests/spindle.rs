@@ -1,0 +1,187 @@
+//! When the spindle is switched, on every mill of the library: it is started where something needs it, and stopped once.
+
+mod files;
+
+use control::{Action, Setup};
+use files::{mills, root, sources};
+use geom::Vec3;
+use machine::Machine;
+use program::{Cycle, CycleKind, Feed, Op, Pose, Program, Spindle, Tool};
+use std::collections::BTreeSet;
+use std::path::Path;
+
+/// Numbers of the M functions of a block, in order; what stands in comments and quotes is none.
+fn functions(block: &str) -> Vec<u32> {
+    let (mut found, mut brackets, mut quoted, mut word) = (Vec::new(), 0, false, false);
+    for (at, c) in block.char_indices() {
+        match c {
+            ';' => break,
+            '"' => quoted = !quoted,
+            '(' => brackets += 1,
+            ')' => brackets -= 1,
+            'M' if brackets == 0 && !quoted && !word => {
+                let digits = block[at + 1..].split(|c: char| !c.is_ascii_digit()).next().unwrap();
+                found.extend(digits.parse::<u32>());
+            }
+            _ => {}
+        }
+        word = c.is_ascii_alphabetic();
+    }
+    found
+}
+
+/// The lines of a program on which something needs the spindle: cuts, holes, dwells.
+fn lines_that_need_it(machine: &Machine, text: &str) -> BTreeSet<u32> {
+    let mut lines = BTreeSet::new();
+    let needs = |action: &Action| {
+        matches!(
+            action,
+            Action::Line(_)
+                | Action::Arc(_)
+                | Action::Hole(_)
+                | Action::Thread(_)
+                | Action::Dwell(_)
+        )
+    };
+    control::read(
+        &nc::settings(machine, Setup::default()).unwrap(),
+        "p",
+        text.as_bytes(),
+        &mut |event| {
+            if needs(&event.action) {
+                lines.insert(event.line);
+            }
+            Ok(())
+        },
+    )
+    .unwrap();
+    lines
+}
+
+/// What a program does twice, or for nothing.
+fn idle(machine: &Machine, text: &str) -> Option<String> {
+    let needed = lines_that_need_it(machine, text);
+    let (mut stopped, mut started) = (false, None);
+    for (line, block) in (1..).zip(text.lines()) {
+        if needed.contains(&line) {
+            started = None;
+        }
+        for function in functions(block) {
+            match function {
+                3 | 4 | 13 | 14 => (stopped, started) = (false, Some(line)),
+                5 if stopped => return Some(format!("{line}: a second M5")),
+                0 | 1 | 2 | 5 | 6 | 30 => {
+                    if let Some(line) = started {
+                        return Some(format!("{line}: a start for nothing"));
+                    }
+                    stopped |= function == 5;
+                }
+                _ => {}
+            }
+        }
+    }
+    None
+}
+
+fn at(x: f64, z: f64) -> Pose {
+    Pose::upright(Vec3::new(x, 0.0, z)).unwrap()
+}
+
+fn hole(kind: CycleKind) -> [Op; 3] {
+    let cycle = Cycle {
+        kind,
+        depth: 6.0,
+        clearance: 2.0,
+        retract: 5.0,
+        feed: Some(Feed::PerMinute(100.0)),
+        peck: None,
+        first_peck: None,
+        dwell: 0.0,
+    };
+    [Op::Cycle(Box::new(cycle)), Op::Hole(at(10.0, 0.0)), Op::CycleOff]
+}
+
+/// Jobs whose spindle a control or an operator stops besides the source: taps, bores, stops.
+fn jobs() -> Vec<(&'static str, Vec<Op>)> {
+    let tap = CycleKind::Tap { pitch: 1.0, left: false };
+    let up = || Op::Rapid(at(10.0, 50.0));
+    let off = || Op::Spindle(Spindle::Off);
+    let on = |speed| Op::Spindle(Spindle::Clockwise(speed));
+    let next = || Op::Tool(Box::new(Tool { number: 2, ..Tool::default() }));
+    let cut = || Op::Line(at(20.0, -1.0));
+    let with = |kind, rest: Vec<Op>| hole(kind).into_iter().chain(rest).collect::<Vec<_>>();
+    vec![
+        ("tap, up, off", with(tap, vec![up(), off()])),
+        ("tap, up, end", with(tap, vec![up()])),
+        ("tap, up, next tool", with(tap, vec![up(), next(), up(), cut(), off(), up()])),
+        ("bore, up, off", with(CycleKind::Bore, vec![up(), off(), up()])),
+        (
+            "off, stop, next tool",
+            vec![cut(), up(), off(), Op::Stop, next(), on(900.0), up(), cut()],
+        ),
+        ("stop, up, end", vec![cut(), Op::Stop, up()]),
+        ("stop, operation, up, off", vec![cut(), Op::Stop, Op::Operation("B".into()), up(), off()]),
+        (
+            "optional stop, next tool",
+            vec![cut(), up(), off(), Op::OptionalStop, next(), up(), cut()],
+        ),
+        ("two speeds, one cut", vec![on(500.0), up(), on(900.0), up(), cut(), off()]),
+        ("a speed for nothing", vec![cut(), on(500.0), up(), off(), off()]),
+        ("warm up", vec![on(900.0), up(), Op::Dwell(60.0), off(), up()]),
+    ]
+}
+
+fn program(ops: Vec<Op>) -> Program {
+    let start = [
+        Op::Tool(Box::new(Tool { number: 1, ..Tool::default() })),
+        Op::Spindle(Spindle::Clockwise(600.0)),
+        Op::Feed(Feed::PerMinute(200.0)),
+        Op::Rapid(at(10.0, 20.0)),
+    ];
+    let mut program = Program::new("spindle");
+    for (line, op) in (1..).zip(start.into_iter().chain(ops).chain([Op::End])) {
+        program.push(line, op);
+    }
+    program
+}
+
+fn written(machine: &Machine, source: &Program) -> Option<String> {
+    let text = post::write(source, machine).ok()?.text;
+    let report = proof::prove(source, machine, "p", &text, &Default::default());
+    assert!(report.proven, "{}: {:?}", machine.name, report.mismatches);
+    Some(String::from_utf8(text).unwrap())
+}
+
+fn read(path: &Path) -> Program {
+    let text = std::fs::read(path).unwrap();
+    let name = path.file_name().unwrap().to_string_lossy();
+    source::apt::read(&name, &text, &Default::default()).unwrap().program
+}
+
+#[test]
+fn no_program_stops_its_spindle_twice_or_starts_it_for_nothing() {
+    let samples = ["three-axes", "five-axes"];
+    let samples = samples.map(|name| root().join(format!("machines/samples/{name}.cls")));
+    let examples = sources().into_iter().filter(|path| path.starts_with(root().join("examples")));
+    let mut sources: Vec<(String, Program)> =
+        jobs().into_iter().map(|(name, ops)| (name.to_owned(), program(ops))).collect();
+    sources.extend(
+        samples.into_iter().chain(examples).map(|path| (path.display().to_string(), read(&path))),
+    );
+    let (mut made, mut wrong) = (0, Vec::new());
+    for machine in mills() {
+        for (name, source) in &sources {
+            let Some(text) = written(&machine, source) else { continue };
+            made += 1;
+            wrong.extend(idle(&machine, &text).map(|why| format!("{} {name}:{why}", machine.name)));
+        }
+    }
+    assert!(made > 200, "{made} programs");
+    assert!(wrong.is_empty(), "{} of {made}: {wrong:#?}", wrong.len());
+}
+
+#[test]
+fn the_functions_of_a_block_are_those_outside_of_comments_and_quotes() {
+    assert_eq!(functions("N10 G75Z0M5M9 (M3 first) T=\"M4\" ; M30"), [5, 9]);
+    assert_eq!(functions("12 L Z+0 R0 FMAX M91"), [91]);
+}
