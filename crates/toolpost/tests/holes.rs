@@ -400,7 +400,8 @@ fn grbl_and_marlin() {
         ],
     );
     in_and_out(REAM, 0.5, &["G1 Z-12 F120", "G4 P0.5", "Z3", "G0 Z20"]);
-    in_and_out(BORE, 0.0, &["G1 Z-12 F120", "M5", "G0 Z20", "S1000 M3"]);
+    // No hole follows that needs the spindle again.
+    in_and_out(BORE, 0.0, &["G1 Z-12 F120", "M5", "G0 Z20", "Z50"]);
     for machine in ["generic-3axis-grbl", "generic-3axis-marlin"] {
         assert_eq!(posted(machine, cycle(TAP, 0.0)), Err("cycle-tap"));
     }
