@@ -1,5 +1,6 @@
 //! What a reader, a writer or the proof has to say about a place in a file.
 
+use crate::ways_out::way_out;
 use serde::Serialize;
 use std::fmt::{self, Write as _};
 
@@ -22,7 +23,7 @@ pub struct Diagnostic {
     pub rule: &'static str,
     /// What is wrong, with values and units.
     pub message: String,
-    /// The way out; empty where the message says it.
+    /// The way out: that of the finding, or that of its rule.
     pub help: String,
     /// Name of the file; empty where there is none.
     pub file: String,
@@ -42,12 +43,12 @@ pub struct Diagnostic {
 const EXCERPT: usize = 160;
 
 impl Diagnostic {
-    /// An error of `rule`.
+    /// An error of `rule`, with the way out of the rule.
     pub fn error(rule: &'static str, message: impl Into<String>) -> Diagnostic {
         Diagnostic::new(Severity::Error, rule, message.into())
     }
 
-    /// A warning of `rule`.
+    /// A warning of `rule`, with the way out of the rule.
     pub fn warning(rule: &'static str, message: impl Into<String>) -> Diagnostic {
         Diagnostic::new(Severity::Warning, rule, message.into())
     }
@@ -57,7 +58,7 @@ impl Diagnostic {
             severity,
             rule,
             message,
-            help: String::new(),
+            help: way_out(rule).into(),
             file: String::new(),
             line: 0,
             column: 0,
@@ -67,9 +68,12 @@ impl Diagnostic {
         }
     }
 
-    /// With the way out.
+    /// With this way out; where it is empty, with that of the rule.
     pub fn help(mut self, help: impl Into<String>) -> Diagnostic {
-        self.help = help.into();
+        let help = help.into();
+        if !help.is_empty() {
+            self.help = help;
+        }
         self
     }
 

@@ -25,6 +25,7 @@ mod record;
 pub mod statistics;
 mod surface;
 mod technology;
+mod ways_out;
 
 pub use builder::Builder;
 pub use compensated::{CompensatedPath, PathEvidence};

@@ -124,6 +124,8 @@ impl Answer {
 
     /// Says it, and answers the exit code.
     pub fn say(self, quiet: bool, json: bool) -> u8 {
+        let lost = self.findings.iter().find(|finding| finding.help.is_empty());
+        debug_assert!(lost.is_none(), "a finding without a way out: {lost:?}");
         let code = self.verdict.code();
         let said = if json { self.say_json() } else { self.say_text(quiet) };
         match said {

@@ -32,6 +32,13 @@ use program::{
     Axes, Compensation, CutBox, Diagnostic, Feed, MachineMove, Probe, Program, Spindle, Tool,
 };
 
+/// The way out of a difference.
+const ALIKE: &str =
+    "change the program here, or the toolpath if the program is right: both have to say the same";
+
+/// The way out where nothing can be compared.
+const COMPARABLE: &str = "take this record out of the toolpath";
+
 /// Compares a program with its source, record by record, as a control runs it.
 pub struct Prover<'a> {
     source: &'a Program,
@@ -373,7 +380,7 @@ impl<'a> Prover<'a> {
                 }
                 Kind::Broken(why) => {
                     let message = format!("has no motion to hold against: {why}");
-                    Err(self.lost_at(line, "source", &message))
+                    Err(self.lost_at(line, "source", &message).help(COMPARABLE).into())
                 }
             },
             Step::Unproven(what) => Err(self.unproven(line, what)),
@@ -530,7 +537,7 @@ impl<'a> Prover<'a> {
     fn differs(&mut self, line: u32, (rule, what): Difference) {
         let source = self.cursor.line;
         let message = format!("source line {source}: {what}");
-        self.found(Diagnostic::error(rule, message).line(line));
+        self.found(Diagnostic::error(rule, message).help(ALIKE).line(line));
     }
 
     /// What does not keep the motions from being compared.
@@ -550,7 +557,7 @@ impl<'a> Prover<'a> {
     /// The source has something before this that no program can be compared with.
     fn unproven(&self, line: u32, what: &str) -> Box<Diagnostic> {
         let message = format!("cannot be compared: the source has {what} before this");
-        self.lost_at(line, "unproven", &message)
+        self.lost_at(line, "unproven", &message).help(COMPARABLE).into()
     }
 
     /// Holds known what the place of the tip hangs on.
@@ -575,6 +582,6 @@ impl<'a> Prover<'a> {
     /// The mismatch on `line` of the program after which the comparison cannot go on.
     fn lost_at(&self, line: u32, rule: &'static str, what: &str) -> Box<Diagnostic> {
         let message = format!("source line {}: the program {what}", self.cursor.line);
-        Diagnostic::error(rule, message).line(line).into()
+        Diagnostic::error(rule, message).help(ALIKE).line(line).into()
     }
 }

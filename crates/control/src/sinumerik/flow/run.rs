@@ -93,10 +93,8 @@ impl<'a, 's> Run<'a, 's> {
             && !self.interpreter.stopped
         {
             error.file.clone_from(file);
-            if let Some(line) = self.interpreter.line
-                && error.help.is_empty()
-            {
-                error.help = format!("it was called from line {line} of the main program");
+            if let Some(line) = self.interpreter.line {
+                error.help_too(&format!("it was called from line {line} of the main program"));
             }
         }
         error
