@@ -61,23 +61,23 @@ test: test-rust test-python freecad
 
 test-rust: rust
 	PROPTEST_RNG_SEED=$(SEED) PROPTEST_DISABLE_FAILURE_PERSISTENCE=1 \
-		cargo test --workspace --no-fail-fast
+		cargo test --locked --workspace --no-fail-fast
 
 test-python: python
 	pytest --quiet --hypothesis-seed $(SEED)
 
 ## The tests within FreeCAD (`scripts/setup freecad`), with the command as cargo has built it.
 freecad: python
-	cargo build --quiet --bin toolpost
+	cargo build --quiet --locked --bin toolpost
 	PATH="$(or $(CARGO_TARGET_DIR),$(CURDIR)/target)/debug:$$PATH" pytest --quiet integrations/freecad/tests
 
 ## The tests in Rust, compiled and not run.
 tests: rust
-	cargo test --workspace --no-run
+	cargo test --locked --workspace --no-run
 
 ## Speed and memory, each beside a floor in the same run.
 bench: rust
-	cargo run --quiet --release --package toolpost-bench -- \
+	cargo run --quiet --locked --release --package toolpost-bench -- \
 		--machine sinumerik-840d-table-ac --machine sinumerik-840d-traori \
 		--machine dmu50-heidenhain --machine fanuc-table-bc \
 		$(addprefix --board ,$(wildcard $(addprefix $(DATA)/gerber/,a64 kicad/pic_programmer))) \
@@ -91,15 +91,15 @@ lint-format: rust
 	cargo fmt --manifest-path fuzz/Cargo.toml --check
 
 lint-rust: rust
-	cargo clippy --workspace --all-targets -- -D warnings
+	cargo clippy --locked --workspace --all-targets -- -D warnings
 
 # Nothing is linked: any file stands for libFuzzer, which is not compiled then.
 lint-fuzz: rust
 	CUSTOM_LIBFUZZER_PATH=$(CURDIR)/fuzz/Cargo.toml \
-		cargo clippy --manifest-path fuzz/Cargo.toml -- -D warnings
+		cargo clippy --locked --manifest-path fuzz/Cargo.toml -- -D warnings
 
 lint-docs: rust
-	RUSTDOCFLAGS="-D warnings" cargo doc --quiet --workspace --no-deps --document-private-items
+	RUSTDOCFLAGS="-D warnings" cargo doc --quiet --locked --workspace --no-deps --document-private-items
 
 lint-python: python
 	ruff check

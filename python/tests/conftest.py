@@ -87,7 +87,7 @@ def slot() -> toolpost.Program:
 @pytest.fixture(scope="session")
 def native() -> Path:
     """Build the command without Python."""
-    cargo = ["cargo", "build", "--bin", "toolpost", "--message-format", "json"]
+    cargo = ["cargo", "build", "--locked", "--bin", "toolpost", "--message-format", "json"]
     done = subprocess.run(cargo, cwd=ROOT, check=True, capture_output=True, text=True)
     found = re.findall(r'"executable":"([^"]+)"', done.stdout)
     return Path(found[-1])
