@@ -22,6 +22,7 @@ TOOLPOST := cargo run --quiet --locked --profile quick --package toolpost --
 MAKEFLAGS += --keep-going
 
 .PHONY: demo install test test-rust test-python freecad tests bench judges judges-long images samples rust python
+.PHONY: deny notices
 .PHONY: lint lint-format lint-rust lint-fuzz lint-docs lint-python
 
 ## Post a part, prove it, draw it, and say what to do next.
@@ -116,6 +117,20 @@ judges:
 judges-long:
 	scripts/setup judges
 	TOOLPOST_JUDGES=long $(MAKE) test
+
+## Licences, sources and versions of all crates, the fuzz targets' too. What is known of their weaknesses is asked of a
+## database on GitHub: `cargo deny check advisories`, where the network reaches it.
+deny: rust
+	scripts/setup deny
+	cargo deny --locked check licenses bans sources
+	cargo deny --locked --manifest-path fuzz/Cargo.toml --config deny.toml check licenses bans sources
+
+## THIRD-PARTY.md, the terms of the crates that are linked into the command and the Python package, written anew.
+notices: rust
+	scripts/setup deny
+	cargo fetch --locked
+	cargo about generate --locked --offline --manifest-path python/Cargo.toml --config scripts/notices/about.toml \
+		scripts/notices/notices.hbs --output-file THIRD-PARTY.md
 
 ## The pictures of the documentation, drawn anew.
 images: rust
