@@ -9,6 +9,7 @@ G53 G0 Z-1
 T1
 (MILL_6)
 S3000 M3
+G4 P3
 G0 X10 Y10
 Z20
 Z2
@@ -32,6 +33,7 @@ T2
 (change the tool by hand; its tip must stand where the last one stood)
 M0
 S2500 M3
+G4 P3
 G0 X15 Y20
 Z20
 Z5

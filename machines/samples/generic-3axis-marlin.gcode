@@ -12,6 +12,7 @@ G53 G0 Z200 F10000
 T1
 ; MILL_6
 M3 S3000
+G4 P3000
 G0 X10 Y10 F10000
 G0 Z20 F10000
 G0 Z2 F10000
@@ -35,6 +36,7 @@ T2
 ; its tip must stand where the last one stood
 M0 Change the tool by hand
 M3 S2500
+G4 P3000
 G0 X15 Y20 F10000
 G0 Z20 F10000
 G0 Z5 F10000

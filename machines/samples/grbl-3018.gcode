@@ -9,6 +9,7 @@ T1
 (MILL_6)
 (machine zero must be at the top of Z)
 S3000 M3
+G4 P2
 G0 X10 Y10
 Z20
 Z2
@@ -32,6 +33,7 @@ T2
 (change the tool by hand; its tip must stand where the last one stood)
 M0
 S2500 M3
+G4 P2
 G0 X15 Y20
 Z20
 Z5

@@ -12,6 +12,7 @@ G53 G0 Z0 F6000
 T1
 ; MILL_6
 M3 S3000
+G4 P3000
 G0 X10 Y10 F6000
 G0 Z20 F6000
 G0 Z2 F6000
@@ -35,6 +36,7 @@ T2
 ; its tip must stand where the last one stood
 M0 Change the tool by hand
 M3 S2500
+G4 P3000
 G0 X15 Y20 F6000
 G0 Z20 F6000
 G0 Z5 F6000

@@ -463,13 +463,15 @@ pub struct Block {
     pub column: u32,
 }
 
-/// What the spindle can do, 1/min.
+/// What the spindle can do.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct SpindleRange {
-    /// Slowest.
+    /// Slowest, 1/min.
     pub min: f64,
-    /// Fastest.
+    /// Fastest, 1/min.
     pub max: f64,
+    /// How long programs dwell behind each start, s; 0 where the control waits for the spindle.
+    pub dwell: f64,
 }
 
 /// What the tool magazine takes.

@@ -193,6 +193,7 @@ sheet!(merged WireSheet "wire" {
 sheet!(merged SpindleSheet "spindle" {
     min: Number, "1/min", "The slowest speed.";
     max: Number, "1/min", "The fastest speed.";
+    dwell: Positive, "s", "How long the spindle takes to reach its speed where the control does not wait for it: programs dwell so long behind each start.";
 });
 
 sheet!(merged ToolsSheet "tools" {

@@ -109,8 +109,17 @@ impl<'a> Clock<'a> {
             Op::Cycle(cycle) => self.cycle = Some(**cycle),
             Op::CycleOff => self.cycle = None,
             Op::Feed(feed) => self.feed = *feed,
-            Op::Spindle(spindle) => self.spindle = *spindle,
+            Op::Spindle(spindle) => {
+                if *spindle != Spindle::Off && self.spindle == Spindle::Off {
+                    self.times.dwell += self.machine.spindle.dwell;
+                }
+                self.spindle = *spindle;
+            }
             Op::Tool(tool) => {
+                // The change has stopped it.
+                if self.spindle != Spindle::Off {
+                    self.times.dwell += self.machine.spindle.dwell;
+                }
                 self.tool_length = tool.length;
                 self.times.tool_change += TOOL_CHANGE;
             }

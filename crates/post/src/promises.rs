@@ -256,6 +256,9 @@ fn promised(machine: &Machine) -> Vec<(BlockName, &'static str)> {
         all.push((block, "its cycle is promised"));
         all.extend([B::CycleHole, B::CycleOff].map(|block| (block, "`cycles` are promised")));
     }
+    if machine.spindle.dwell > 0.0 {
+        all.push((B::Dwell, "`dwell` of [spindle] is given"));
+    }
     if machine.has_clamps() {
         all.extend([B::Unclamp, B::Clamp].map(|block| (block, "a rotary axis has a clamp")));
     }

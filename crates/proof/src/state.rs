@@ -14,6 +14,10 @@ pub(crate) struct Running {
     /// What the control counts for it.
     pub feed_path: FeedPath,
     pub spindle: Spindle,
+    /// How long the spindle still takes to its speed, s, where the machine's file says that the control does not wait.
+    pub runs_up: f64,
+    /// Whether nothing has been cut since the spindle started, or may have been started anew behind a stop or a cycle.
+    pub just_started: bool,
     /// Constant surface speed, m/min.
     pub surface_speed: Option<f64>,
     pub coolant: Coolant,
@@ -41,6 +45,8 @@ impl Running {
             feed: None,
             feed_path: nc::feed_path(machine),
             spindle: Spindle::Off,
+            runs_up: 0.0,
+            just_started: false,
             surface_speed: None,
             coolant: Coolant::Off,
             spindle_line: 0,
@@ -56,11 +62,34 @@ impl Running {
         }
     }
 
+    /// The spindle is switched on `line`. From a stand, or the other way round, it takes `dwell` s to its speed.
+    pub fn switch_spindle(&mut self, line: u32, spindle: Spindle, dwell: f64) {
+        let goes_on = matches!(
+            (self.spindle, spindle),
+            (Spindle::Clockwise(_), Spindle::Clockwise(_))
+                | (Spindle::CounterClockwise(_), Spindle::CounterClockwise(_))
+        );
+        if !goes_on {
+            self.runs_up = if spindle == Spindle::Off { 0.0 } else { dwell };
+            self.just_started = spindle != Spindle::Off;
+        }
+        (self.spindle, self.spindle_line) = (spindle, line);
+    }
+
+    /// A dwell of that many seconds, `allowed` of which are rounding: whether it is the `dwell` of the machine's file
+    /// behind a start of the spindle.
+    pub fn waits_for_spindle(&mut self, seconds: f64, dwell: f64, allowed: f64) -> bool {
+        self.runs_up = if self.runs_up <= seconds + allowed { 0.0 } else { self.runs_up - seconds };
+        let is_own = self.just_started && dwell > 0.0 && (seconds - dwell).abs() <= allowed;
+        self.just_started &= !is_own;
+        is_own
+    }
+
     /// A tool change on `line`: the machine stops spindle and coolant for it, except what the same
     /// block switches on.
     pub fn change_tool(&mut self, line: u32, tool: Tool) {
         if self.spindle_line != line {
-            self.spindle = Spindle::Off;
+            (self.spindle, self.runs_up, self.just_started) = (Spindle::Off, 0.0, false);
         }
         if self.coolant_line != line {
             self.coolant = Coolant::Off;
@@ -145,6 +174,12 @@ pub(crate) fn spindle_and_coolant(
     if !same_spindle(allowed, wanted.spindle, running.spindle) {
         let (is, should) = (spindle(running.spindle), spindle(wanted.spindle));
         return Some(("spindle", format!("the spindle is {is}, but should be {should}")));
+    }
+    if running.runs_up > 0.0 {
+        let seconds = Number(running.runs_up);
+        let message =
+            format!("cuts {seconds} s before the spindle has its speed (`dwell` in [spindle])");
+        return Some(("spindle-dwell", message));
     }
     if wanted.surface_speed != running.surface_speed {
         let shown = |speed: Option<f64>| {

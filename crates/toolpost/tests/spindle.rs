@@ -185,3 +185,65 @@ fn the_functions_of_a_block_are_those_outside_of_comments_and_quotes() {
     assert_eq!(functions("N10 G75Z0M5M9 (M3 first) T=\"M4\" ; M30"), [5, 9]);
     assert_eq!(functions("12 L Z+0 R0 FMAX M91"), [91]);
 }
+
+/// The program of a slot on the machine of this text.
+fn slot(text: &str) -> (Program, Machine, String) {
+    let machine = machine::load_text("m.toml", text).unwrap();
+    let up = || Op::Rapid(at(10.0, 20.0));
+    let source = program(vec![
+        Op::Line(at(10.0, -1.0)),
+        up(),
+        Op::Stop,
+        up(),
+        Op::Line(at(10.0, -2.0)),
+        up(),
+    ]);
+    let text = written(&machine, &source).unwrap();
+    (source, machine, text)
+}
+
+fn rules(source: &Program, machine: &Machine, text: &str) -> Vec<&'static str> {
+    let report = proof::prove(source, machine, "p", text.as_bytes(), &Default::default());
+    report.mismatches.iter().map(|found| found.rule).collect()
+}
+
+/// Two seconds, in the unit of each control.
+#[test]
+fn behind_each_start_of_a_spindle_that_nobody_waits_for_the_program_dwells() {
+    for (name, start, dwell) in [
+        ("generic-3axis-fanuc", "S600 M3", "G4 X2."),
+        ("generic-3axis-haas", "S600 M3", "G4 P2000"),
+        ("generic-3axis-grbl", "S600 M3", "G4 P2"),
+        ("generic-3axis-marlin", "M3 S600", "G4 P2000"),
+        ("generic-3axis-mach3", "S600 M3", "G4 P2"),
+    ] {
+        let file = format!("extends = \"{name}\"\n[spindle]\ndwell = 2\n");
+        let (source, machine, text) = slot(&file);
+        let blocks: Vec<&str> = text.lines().collect();
+        let starts = blocks.windows(2).filter(|two| two[0].ends_with(start));
+        // At the start, and behind the stop, at which the operator may have switched it off.
+        assert_eq!(starts.filter(|two| two[1].ends_with(dwell)).count(), 2, "{name}: {text}");
+        assert_eq!(blocks.iter().filter(|block| block.ends_with(dwell)).count(), 2, "{name}");
+        assert_eq!(rules(&source, &machine, &text), [""; 0]);
+    }
+}
+
+#[test]
+fn a_cut_before_the_spindle_has_its_speed_is_refused() {
+    let (source, machine, text) = slot("extends = \"generic-3axis-grbl\"\n[spindle]\ndwell = 2\n");
+    for (was, is, rule) in [
+        ("M3\nG4 P2\n", "M3\n", "spindle-dwell"),
+        ("M3\nG4 P2\n", "M3\nG4 P1.5\n", "spindle-dwell"),
+        // It is no dwell of the machine's where nothing has started.
+        ("G1 Z-1 F200\n", "G1 Z-1 F200\nG4 P2\n", "dwell"),
+        ("M3\nG4 P2\n", "M3\nG4 P2\nG4 P2\n", "dwell"),
+    ] {
+        let wrong = text.replacen(was, is, 1);
+        assert_ne!(wrong, text, "{was}");
+        assert!(rules(&source, &machine, &wrong).contains(&rule), "{rule}: {wrong}");
+    }
+    // A machine whose file says nothing of it is not asked for it.
+    let (source, machine, text) = slot("extends = \"linuxcnc-mill\"\n");
+    assert!(!text.contains("G4 "));
+    assert_eq!(rules(&source, &machine, &text), [""; 0]);
+}

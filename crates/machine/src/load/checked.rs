@@ -418,6 +418,7 @@ impl CheckedSheet {
             spindle: SpindleRange {
                 min: spindle.min.map_or(0.0, |speed| speed.0),
                 max: spindle.max.map_or(f64::INFINITY, |speed| speed.0),
+                dwell: spindle.dwell.map_or(0.0, |seconds| seconds.0),
             },
             feed_max: self.feed_max.map_or(f64::INFINITY, |feed| feed.0),
             tools: ToolRange {

@@ -54,7 +54,7 @@ pub fn machine(rotary: Vec<RotaryAxis>) -> Machine {
             positioned: OrientationMode::MachineAngles,
             tolerance: 0.01,
         },
-        spindle: SpindleRange { min: 50.0, max: 12_000.0 },
+        spindle: SpindleRange { min: 50.0, max: 12_000.0, dwell: 0.0 },
         feed_max: f64::INFINITY,
         tools: ToolRange { max_number: 99, max_diameter: 80.0, max_length: 300.0, retracts: false },
         auxiliary: Vec::new(),

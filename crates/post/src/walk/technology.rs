@@ -205,8 +205,15 @@ impl Walk<'_> {
             Spindle::Clockwise(_) => BlockName::SpindleCw,
             Spindle::CounterClockwise(_) => BlockName::SpindleCcw,
         })?;
-        self.active_spindle = Some(self.spindle);
-        Ok(())
+        let before = self.active_spindle.replace(self.spindle);
+        let goes_on = matches!(
+            (before, self.spindle),
+            (_, Spindle::Off)
+                | (Some(Spindle::Clockwise(_)), Spindle::Clockwise(_))
+                | (Some(Spindle::CounterClockwise(_)), Spindle::CounterClockwise(_))
+        );
+        let dwell = self.machine.spindle.dwell;
+        if goes_on || dwell == 0.0 { Ok(()) } else { self.write_dwell(dwell) }
     }
 
     pub(crate) fn sync_coolant(&mut self) -> Done {

@@ -228,6 +228,14 @@ impl<'a> Prover<'a> {
             return Err(self.lost_at(line, "after-end", "goes on after the end of the program"));
         }
         let running = &mut self.running;
+        running.just_started &= !matches!(
+            event.action,
+            Action::Line(_)
+                | Action::Arc(_)
+                | Action::Thread(_)
+                | Action::Probe(_)
+                | Action::Hole(_)
+        );
         match &event.action {
             Action::Rapid(position) => return self.motion(line, Gait::Rapid, position, None),
             Action::Line(position) => return self.motion(line, Gait::Feed, position, None),
@@ -250,9 +258,19 @@ impl<'a> Prover<'a> {
             Action::Across(position) => return self.across(line, position),
             Action::Tool(tool) => return self.change_tool(line, tool),
             Action::Dwell(seconds) if *seconds == 0.0 => {}
-            Action::Dwell(seconds) => return self.happens(line, Step::Dwell(*seconds)),
-            Action::Stop => return self.happens(line, Step::Stop),
-            Action::OptionalStop => return self.happens(line, Step::OptionalStop),
+            Action::Dwell(seconds) => {
+                let allowed = self.gauge.allowed.dwell_s;
+                let dwell = self.gauge.machine.spindle.dwell;
+                if running.waits_for_spindle(*seconds, dwell, allowed) {
+                    return Ok(());
+                }
+                return self.happens(line, Step::Dwell(*seconds));
+            }
+            Action::Stop | Action::OptionalStop => {
+                running.just_started = running.spindle != Spindle::Off;
+                let stop = event.action == Action::Stop;
+                return self.happens(line, if stop { Step::Stop } else { Step::OptionalStop });
+            }
             Action::ThreadWire => return self.happens(line, Step::ThreadWire),
             Action::CutWire => return self.happens(line, Step::CutWire),
             Action::Output(output) => return self.happens(line, Step::Output(*output)),
@@ -275,7 +293,7 @@ impl<'a> Prover<'a> {
             Action::Feed(feed) => running.feed = Some(*feed),
             Action::FeedPath(path) => running.feed_path = *path,
             Action::Spindle(spindle) => {
-                (running.spindle, running.spindle_line) = (*spindle, line);
+                running.switch_spindle(line, *spindle, self.gauge.machine.spindle.dwell);
             }
             Action::SurfaceSpeed(speed) => running.surface_speed = *speed,
             Action::Coolant(coolant) => {
@@ -291,7 +309,11 @@ impl<'a> Prover<'a> {
                 self.here = self.gauge.station(line, position);
             }
             Action::Cycle(cycle) => running.cycle = Some(**cycle),
-            Action::CycleOff => running.cycle = None,
+            Action::CycleOff => {
+                // Taps and bores stop the spindle themselves; a program that starts it anew is not waited for either.
+                running.just_started = running.spindle != Spindle::Off;
+                running.cycle = None;
+            }
             Action::Risk(risk) => {
                 let message =
                     format!("source line {}: the program {}", self.cursor.line, risk.what);
