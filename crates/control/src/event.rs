@@ -351,6 +351,15 @@ impl Risk {
         refused: true,
     };
 
+    /// `G5.1 Q1` and `G5 P10000` are for contours; with cycles, a tool change, `G43.4` and `G68.2` the control may give an
+    /// alarm, and what it does at the end is a parameter.
+    pub(crate) const LOOK_AHEAD: Risk = Risk {
+        rule: "look-ahead",
+        what: "has look-ahead on at a cycle, a tool change, G43.4, a tilted plane or the end, where not every control takes that",
+        help: "write G5.1 Q0 (G5 P0) in a block of its own before it",
+        refused: true,
+    };
+
     /// Work offsets, tool lengths and radii belong to the operator, who has measured them.
     pub(crate) const OPERATOR_DATA: Risk = Risk {
         rule: "operator-data",

@@ -71,6 +71,36 @@ fn a_length_that_changes_on_fanuc_moves_z_or_does_not() {
     }
 }
 
+/// B-64484EN, "AI contour control": a mode for contours. Where else it may be on is a matter of model and parameters.
+#[test]
+fn look_ahead_is_for_contours() {
+    const START: &str = "G21 G90 G94 G17 G98 G54\nT1 M6\nS500 M3\nG91 G28 Z0.\nG90 G0 X0. Y0. B0. C0.\nG43 H1 Z50.\n";
+    for on in ["G5.1 Q1", "G5 P10000"] {
+        let off = if on == "G5.1 Q1" { "G5.1 Q0" } else { "G5 P0" };
+        for (blocks, harmless) in [
+            (format!("{on}\nG1 Z1. F100.\n{off}"), true),
+            (format!("{on}\nG1 Z1. F100."), false),
+            (format!("{on}\nG81 Z-5. R2. F100.\nG80\n{off}"), false),
+            (format!("{on}\n{off}\nG81 Z-5. R2. F100.\nG80"), true),
+            (format!("{on}\nG91 G28 Z0.\nG90\nT2 M6\n{off}"), false),
+            (
+                format!("{on}\nG91 G28 Z0.\nG90\nG49\nG68.2 X0. Y0. Z0. I0. J9. K0.\nG69\n{off}"),
+                false,
+            ),
+            (format!("G91 G28 Z0.\nG90 G49\n{on}\nG43.4 H1\n{off}\nG49"), false),
+            (format!("G91 G28 Z0.\nG90 G49\nG43.4 H1\n{on}\n{off}\nG49"), true),
+            (format!("G91 G28 Z0.\nG90 G49\nG43.4 H1\n{on}\nG49\n{off}"), false),
+        ] {
+            let expected: &[&str] = if harmless { &[] } else { &["look-ahead"] };
+            assert_eq!(
+                risks(Dialect::Fanuc, &format!("{START}{blocks}\nM30\n")),
+                expected,
+                "{blocks}"
+            );
+        }
+    }
+}
+
 /// Out of a tilted plane the reference position is reached before `G49` and `G69`; where the tool then stands in the
 /// work nobody knows.
 #[test]

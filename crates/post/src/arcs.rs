@@ -103,6 +103,7 @@ impl Walk<'_> {
         self.end_cycle()?;
         self.before_cut()?;
         self.settle(&to.end, stop, true)?;
+        self.look_ahead_in_cuts()?;
         let Some(here) = self.here.filter(|_| self.located) else {
             return Err(refuse("arc-start", "an arc from a position that is not known"));
         };

@@ -104,6 +104,8 @@ names! {
         Clamp Block "clamp", "", "The clamps of the rotary axes close: behind `rotate`, where the axes then stand in the cut.";
         PlaneTilt Block "plane_tilt", "", "Tilted plane of work on: frame and swivelling. Which solution the control takes is said by {{sequence}}, by {{DIR}}, or by a move of the rotary axes to it before, where the block places their words.";
         PlaneTiltOff Block "plane_tilt_off", "", "Tilted plane of work off, rotary axes to zero.";
+        LookAheadOn Block "look_ahead_on", "", "Before the first line or arc that cuts: the control looks ahead from here on.";
+        LookAheadOff Block "look_ahead_off", "", "Before what look-ahead must not be on for: a hole cycle, a thread, a probing move, a tool change, a turn of the rotary axes, a work offset, the end.";
         ToolCenterOn Block "tool_center_on", "", "Tool center point control on.";
         ToolCenterOff Block "tool_center_off", "", "Tool center point control off.";
         ThreadWire Block "thread_wire", "", "Where the wire is threaded (wire EDM). Empty on a control that is told of no wire: its program cuts one opening.";
@@ -229,6 +231,11 @@ names! {
 /// What templates may read beside words. `options.` stands for the machine's own `[options]`.
 pub(crate) const VARIABLES: &[Parameter] = &[
     variable("program.name", "", "Name of the program: letters, digits, `_` and `-` only."),
+    variable(
+        "program.number",
+        "",
+        "Number of the program, where its name is one: 1 to 8999, with or without an O before it; otherwise undefined.",
+    ),
     variable("program.tools", "", "The tools in the order of their first use, each as `tool`."),
     variable("machine.name", "", "Name of the machine, as `--machine` takes it."),
     variable("machine.title", "", "What a person calls the machine."),

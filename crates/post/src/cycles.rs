@@ -41,6 +41,7 @@ impl Walk<'_> {
         if let CycleKind::Tap { left, .. } = cycle.kind {
             self.turns_into(left)?;
         }
+        self.look_ahead(false)?;
         self.before_cut()?;
         if self.open_cycle.is_some() && !self.settled(pose, stop, false)? {
             self.end_cycle()?;

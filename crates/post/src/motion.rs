@@ -24,6 +24,7 @@ impl Walk<'_> {
         self.end_cycle()?;
         self.before_cut()?;
         self.settle(pose, stop, true)?;
+        self.look_ahead_in_cuts()?;
         if !self.located {
             let message =
                 "the first move of the tool is a cut: it starts from wherever the tool is";

@@ -254,7 +254,7 @@ impl Walk<'_> {
         if upright && matches!(self.place.kind, Kind::Bare) && self.place.degrees == Some([0.0; 3])
         {
             self.place.kind = Kind::Plain;
-            return Ok(());
+            return self.clamp();
         }
         self.leave_part()?;
         self.leave_place()?;
@@ -266,6 +266,7 @@ impl Walk<'_> {
                     self.plane_tilt_off()?;
                 }
                 self.place.kind = Kind::Plain;
+                self.clamp()?;
             }
             OrientationMode::TiltedPlane => self.tilt(axis)?,
             mode @ (OrientationMode::ToolCenterAngles
@@ -302,6 +303,7 @@ impl Walk<'_> {
     pub(crate) fn leave_part(&mut self) -> Done {
         if self.located {
             self.uncompensated("a new orientation")?;
+            self.look_ahead(false)?;
             self.tool_center_off()?;
             self.plane_xy()?;
             self.required(BlockName::Retract)?;
@@ -359,7 +361,12 @@ impl Walk<'_> {
             true => self.required(BlockName::Rotate)?,
             false => self.writer.unset(Words::MAX),
         }
-        if !turning && self.machine.has_clamps() && self.clamped != Some(true) {
+        if turning { Ok(()) } else { self.clamp() }
+    }
+
+    /// The clamps close, where they may be open: the axes stand in the cuts that follow.
+    fn clamp(&mut self) -> Done {
+        if self.machine.has_clamps() && self.clamped != Some(true) {
             self.clamped = Some(true);
             self.required(BlockName::Clamp)?;
         }
@@ -382,6 +389,7 @@ impl Walk<'_> {
     }
 
     fn plane_tilt_off(&mut self) -> Done {
+        self.unclamp()?;
         self.writer.forget(ORIENTATION);
         self.say_degrees([0.0; 3]);
         self.writer.code(WordName::Motion, motion::RAPID);
@@ -394,6 +402,7 @@ impl Walk<'_> {
     /// A tilted plane whose Z is `axis`: that of the set-up where it fits, else the one that turns
     /// about X and Y only.
     fn tilt(&mut self, axis: Vec3) -> Done {
+        self.unclamp()?;
         let set_up = self.place.set_up;
         let (matrix, origin) = if angle_between(set_up.matrix3.z_axis, axis) < ANGLE_EPSILON {
             (set_up.matrix3, set_up.translation)
@@ -423,7 +432,7 @@ impl Walk<'_> {
         self.place.kind = Kind::Tilted(frame.inverse(), axis);
         self.place.degrees = None;
         self.writer.forget(ORIENTATION | bit(WordName::Motion));
-        Ok(())
+        self.clamp()
     }
 }
 

@@ -96,6 +96,7 @@ impl Walk<'_> {
             return Err(refuse("single-block", message).help(help).into());
         }
         self.uncompensated(what)?;
+        self.look_ahead(false)?;
         if self.compensation_pending() {
             let message = format!("cutter compensation cannot be switched at {what}");
             return Err(refuse("compensation", message));

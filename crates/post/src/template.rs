@@ -46,6 +46,8 @@ pub(crate) const fn holds(words: Words, word: WordName) -> bool {
 pub(crate) const POSITION: Words = bit(WordName::X) | bit(WordName::Y) | bit(WordName::Z);
 /// The words that call the tool length offset.
 pub(crate) const LENGTH_OFFSET: Words = bit(WordName::H) | bit(WordName::Length);
+/// The word that says the safe height of the machine.
+const SAFE_HEIGHT: Words = bit(WordName::SafeHeight);
 /// The words that say where it points.
 pub(crate) const ORIENTATION: Words = bit(WordName::A)
     | bit(WordName::B)
@@ -368,7 +370,17 @@ pub(crate) fn program_value(machine: &Machine, name: &str, records: &[Record]) -
             seen.push(tool.number);
         }
     }
-    map([("name", Value::from(name)), ("tools", Value::from(tools))])
+    let number = number_of(&name).map(|number| ("number", Value::from(number)));
+    let members = [("name", Value::from(name.as_str())), ("tools", Value::from(tools))];
+    map(members.into_iter().chain(number))
+}
+
+/// The digits of a name that is the number of a program. From 9000 on they are those of the machine's builder.
+fn number_of(name: &str) -> Option<String> {
+    let digits = name.strip_prefix(['O', 'o']).unwrap_or(name);
+    let plain = (1..=4).contains(&digits.len()) && digits.bytes().all(|c| c.is_ascii_digit());
+    let number: u32 = digits.parse().ok().filter(|_| plain)?;
+    (1..9000).contains(&number).then(|| digits.to_owned())
 }
 
 /// All blocks of a machine.
@@ -406,19 +418,35 @@ impl<'a> Templates<'a> {
             }
         }
         if errors.is_empty() {
-            let names = BlockName::ALL.iter();
-            errors.extend(names.filter_map(|&name| templates.attempt(name).err()).map(|e| *e));
+            for &name in BlockName::ALL {
+                match templates.attempt(name) {
+                    // A machine whose options leave the safe height out need not have one.
+                    Ok(placed) if placed & SAFE_HEIGHT == 0 => templates.unplace(name, SAFE_HEIGHT),
+                    Ok(_) => {}
+                    Err(error) => errors.push(*error),
+                }
+            }
         }
         if errors.is_empty() { Ok(templates) } else { Err(errors) }
     }
 
-    /// Runs a block on samples, so that one that can never run is told before a program needs it.
-    fn attempt(&self, name: BlockName) -> Result<(), Box<Diagnostic>> {
+    /// The block places none of `words` on this machine.
+    fn unplace(&mut self, name: BlockName, words: Words) {
+        if let Some(template) = &mut self.blocks[name as usize] {
+            template.uses &= !words;
+        }
+    }
+
+    /// Runs a block on samples, so that one that can never run is told before a program needs it. Answers the words that
+    /// it has placed.
+    fn attempt(&self, name: BlockName) -> Result<Words, Box<Diagnostic>> {
         let (Some(template), None) = (&self.blocks[name as usize], self.lines(name)) else {
-            return Ok(());
+            return Ok(Words::MAX);
         };
+        let mut placed = 0;
         for first in [true, false] {
             let rendered = self.render(name, Scope::sample(self.machine, first))?;
+            placed |= rendered.words;
             let spoken =
                 SAMPLES.iter().find(|(_, text)| bare(&rendered.text, text, &self.machine.format));
             if let Some((variable, _)) = spoken {
@@ -437,7 +465,7 @@ impl<'a> Templates<'a> {
                 return Err(Box::new(at(template.block, found, place, place + variable.len())));
             }
         }
-        Ok(())
+        Ok(placed)
     }
 
     fn one(&self, block: &'a Block) -> Result<Template<'a>, Box<Diagnostic>> {

@@ -111,6 +111,40 @@ fn a_fanuc_table_opens_each_clamp_in_a_block_of_its_own() {
     }
 }
 
+/// The rotary axes turn by words before `G68.2`, and stand at `G53.1`: the clamps are open at both, and closed in the cuts.
+#[test]
+fn clamps_are_open_where_a_plane_is_tilted_and_closed_in_its_cuts() {
+    let own =
+        TABLE.replacen("positioned = \"tool-center-angles\"", "positioned = \"tilted-plane\"", 1);
+    let machine = load_text("own.toml", &own).unwrap();
+    post::check(&machine).unwrap();
+    let text = posted(&machine);
+    assert_eq!(proven(&machine, &text), Ok(()), "{text}");
+    let blocks: Vec<&str> = text.lines().filter_map(|line| Some(line.split_once(' ')?.1)).collect();
+    let slope = blocks.iter().position(|block| *block == "G0 B-45. C-45.").unwrap();
+    assert_eq!(blocks[slope - 2..slope], ["M11", "M13"]);
+    assert_eq!(blocks[slope + 2..slope + 5], ["G53.1", "M10", "M12"]);
+    // Upright again, and at the start.
+    let upright: Vec<usize> = (0..blocks.len()).filter(|&i| blocks[i] == "G0 B0. C0.").collect();
+    assert_eq!(blocks[upright[0] + 1..upright[0] + 3], ["M10", "M12"]);
+    for code in ["M11", "M13"] {
+        let without: String = text
+            .lines()
+            .filter(|line| !line.ends_with(&format!(" {code}")))
+            .map(|line| format!("{line}\n"))
+            .collect();
+        assert_eq!(proven(&machine, &without), Err("clamp"), "{code}");
+    }
+    // A plane that the control turns to by itself.
+    let alone =
+        "plane_tilt = \"\"\"\nG68.2 {{OX}} {{OY}} {{OZ}} {{E1}} {{E2}} {{E3}}\nG53.1\n\"\"\"\n";
+    let alone = format!("{own}{alone}");
+    assert!(load_text("own.toml", &alone).unwrap_err().message.contains("written as positions"));
+    // Closed between the turn and the swivel.
+    let early = text.replacen("G53.1\n", "M10\nN9999 G53.1\n", 1);
+    assert_eq!(proven(&machine, &early), Err("clamp"));
+}
+
 #[test]
 fn a_machine_with_clamps_says_all_that_they_need() {
     let fails = |old: &str, new: &str| {
@@ -128,7 +162,7 @@ fn a_machine_with_clamps_says_all_that_they_need() {
     assert!(
         fails("clamp_open = 11", "clamp_open = 12").contains("opens a clamp and closes another")
     );
-    let planes = fails("positioned = \"tool-center-angles\"", "positioned = \"tilted-plane\"");
+    let planes = fails("positioned = \"tool-center-angles\"", "positioned = \"vectors\"");
     assert!(planes.contains("written as positions"), "{planes}");
     assert!(fails("unclamp = ", "message = ").contains("unclamp"));
 }

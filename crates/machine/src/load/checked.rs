@@ -205,23 +205,32 @@ fn check_rotary(
 }
 
 /// A number opens clamps or closes them; and where the control turns the axes by itself, no word says when they turn.
+/// A tilted plane whose block places the words of the axes turns them itself before.
 fn check_clamps(
     place: &Diagnostic,
     rotary: &[RotaryAxis],
     modes: [OrientationMode; 2],
+    blocks: &BTreeMap<String, Block>,
 ) -> Result<()> {
     let clamps: Vec<Clamp> = rotary.iter().filter_map(|axis| axis.clamp).collect();
     if clamps.iter().any(|a| clamps.iter().any(|b| a.open == b.close)) {
         return Err(wrong(place, "one M function opens a clamp and closes another"));
     }
-    let by_words =
-        |mode| matches!(mode, OrientationMode::MachineAngles | OrientationMode::ToolCenterAngles);
+    let turned_by = |block: &Block| {
+        let text = block.text.replace(' ', "");
+        rotary.iter().all(|axis| text.contains(&format!("{{{{{}}}}}", axis.letter)))
+    };
+    let by_words = |mode| match mode {
+        OrientationMode::MachineAngles | OrientationMode::ToolCenterAngles => true,
+        OrientationMode::TiltedPlane => blocks.get("plane_tilt").is_some_and(turned_by),
+        OrientationMode::Fixed | OrientationMode::Vectors => false,
+    };
     match modes.into_iter().all(by_words) {
         true => Ok(()),
         false => Err(wrong(
             place,
-            "axes with clamps are written as positions (machine-angles or tool-center-angles): with vectors and \
-             tilted planes the control turns them where no word says so",
+            "axes with clamps are written as positions (machine-angles or tool-center-angles), or turned by words of \
+             the block `plane_tilt`: with vectors, and where a tilted plane turns them, no word says when they turn",
         )),
     }
 }
@@ -329,7 +338,7 @@ impl CheckedSheet {
         let positioned = orientation.positioned.unwrap_or(simultaneous);
         if let Some(place) = rotary_place.filter(|_| rotary.iter().any(|axis| axis.clamp.is_some()))
         {
-            check_clamps(&place, &rotary, [simultaneous, positioned])?;
+            check_clamps(&place, &rotary, [simultaneous, positioned], &self.blocks)?;
         }
         let kinematics = match (self.settings.tip_kinematics, self.settings.axis_kinematics) {
             (None, None) => None,

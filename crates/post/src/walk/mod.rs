@@ -95,6 +95,8 @@ pub(crate) struct Walk<'a> {
     /// Whether nothing but cuts has been since a straight one, and a straight one in the same orientation differs
     /// from that in where it goes alone.
     pub(crate) goes_on: bool,
+    /// Whether the control looks ahead.
+    pub(crate) looks_ahead: bool,
     /// Whether the clamps of the rotary axes are closed; `None` where the program has not said it.
     pub(crate) clamped: Option<bool>,
     pub(crate) place: Place,
@@ -170,6 +172,7 @@ impl<'a> Walk<'a> {
             here: None,
             located: false,
             goes_on: false,
+            looks_ahead: false,
             clamped: None,
             place: Place::start(machine),
             wire: Wire::of(machine, program),
@@ -512,6 +515,7 @@ impl<'a> Walk<'a> {
         self.wire_for(false, "the end of the program")?;
         self.uncompensated("the end of the program")?;
         self.end_cycle()?;
+        self.look_ahead(false)?;
         self.leave_place()?;
         if self.compensation != self.active_compensation {
             let message = "cutter compensation is switched here, and no move in the plane follows";

@@ -5,7 +5,7 @@ use crate::catalogue::{BlockName, WordName};
 use crate::template::{LENGTH_OFFSET, ORIENTATION, POSITION, bit, tool_value};
 use geom::Vec3;
 use machine::{LengthOffset, Machine, OptionValue};
-use program::{Coolant, Diagnostic, Feed, Op, PathMode, Spindle, Tool, lowering};
+use program::{Compensation, Coolant, Diagnostic, Feed, Op, PathMode, Spindle, Tool, lowering};
 
 /// Entries of the code word `feed_mode`.
 pub(super) mod feed_mode {
@@ -75,6 +75,7 @@ impl Walk<'_> {
     pub(super) fn change_tool(&mut self, tool: &Tool) -> Done {
         self.uncompensated("the tool change")?;
         self.end_cycle()?;
+        self.look_ahead(false)?;
         self.leave_place()?;
         self.limits.tool(tool, self.line)?;
         let number = f64::from(tool.number);
@@ -262,6 +263,24 @@ impl Walk<'_> {
         }
         self.sync_spindle()?;
         self.sync_coolant()
+    }
+
+    /// Look-ahead goes on or off, where the machine's file has the blocks for it.
+    #[inline]
+    pub(crate) fn look_ahead(&mut self, on: bool) -> Done {
+        if self.looks_ahead == on {
+            return Ok(());
+        }
+        self.looks_ahead = on;
+        let name = if on { BlockName::LookAheadOn } else { BlockName::LookAheadOff };
+        if self.templates.has(name) { self.block(name) } else { Ok(()) }
+    }
+
+    /// Look-ahead goes on before a cut, unless the control compensates already: then it follows with the next contour.
+    #[inline]
+    pub(crate) fn look_ahead_in_cuts(&mut self) -> Done {
+        let compensates = self.active_compensation != Compensation::Off;
+        if compensates { Ok(()) } else { self.look_ahead(true) }
     }
 
     /// Whether the feed is in inverse time: then the length of a cut counts.

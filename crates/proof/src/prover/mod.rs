@@ -64,6 +64,8 @@ pub struct Prover<'a> {
     accepted: Accepted,
     /// Whether Z is home, or where the tool change brings it, so that axes may turn.
     raised: bool,
+    /// Whether the control has turned the rotary axes to a tilted plane, and nothing has moved since.
+    swivelled: bool,
     /// Whether the tool has stood at a place that is known.
     has_stood: bool,
     /// The line along the tool axis on which the tool stands in a tilted plane, at a height that nobody knows.
@@ -132,6 +134,7 @@ impl<'a> Prover<'a> {
             report: Report { tolerances: allowed, ..Report::default() },
             accepted: tolerances.accepted,
             raised: false,
+            swivelled: false,
             has_stood: false,
             over: None,
             ended: false,
@@ -253,6 +256,8 @@ impl<'a> Prover<'a> {
             Action::Swivel(choice) => {
                 self.standing.swivel(*choice);
                 self.check_height(line);
+                self.turns(line, [true; 3]);
+                self.swivelled = true;
                 self.over = None;
             }
             Action::Across(position) => return self.across(line, position),
@@ -430,6 +435,10 @@ impl<'a> Prover<'a> {
 
     /// Holds the clamps open of the rotary axes that turn from here on.
     fn unclamped(&mut self, line: u32, to: &Orientation) {
+        // The control has turned them already; the clamps were looked at then.
+        if std::mem::take(&mut self.swivelled) && matches!(to, Orientation::Axis(_)) {
+            return;
+        }
         self.turns(line, self.turning(to));
     }
 

@@ -485,6 +485,7 @@ impl Step<'_, '_, '_> {
     fn tilt(&mut self) -> Result<(), Fault> {
         self.has_rotary_axes(Group::Tilt)?;
         self.not_compensated("a tilted plane")?;
+        self.looks_ahead_no_more();
         let busy = self.state.frames.is_transformed() || self.state.keeps_center();
         if busy || self.state.tilt != Tilt::None {
             let message = "G68.2 while other coordinates or G43.4 are active; cancel them first";

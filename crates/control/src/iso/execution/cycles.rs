@@ -79,6 +79,7 @@ impl Step<'_, '_, '_> {
     /// The cycle of the block becomes active.
     pub(super) fn begin_cycle(&mut self, canned: Canned) -> Result<(), Fault> {
         self.not_compensated("a cycle")?;
+        self.looks_ahead_no_more();
         if self.state.keeps_center() {
             // It would go along Z of the work, wherever the tool points.
             let message = "a cycle while the control keeps the tool centre point: end that first";

@@ -516,13 +516,23 @@ impl Step<'_, '_, '_> {
     fn look_ahead(&mut self, letter: u8, on: u32) -> Result<(), Fault> {
         self.take_whole(b'R')?;
         match self.take_whole(letter)? {
-            Some(number) if number == on || number == 0 => Ok(()),
+            Some(number) if number == on || number == 0 => {
+                self.state.looks_ahead = number == on;
+                Ok(())
+            }
             _ => {
                 let letter = char::from(letter);
                 let message =
                     format!("look-ahead goes on with {letter}{on} and off with {letter}0");
                 Err(self.block.at_group(Group::OneShot, "nc-look-ahead", message))
             }
+        }
+    }
+
+    /// Tells that look-ahead is on at something before which it ends.
+    pub(super) fn looks_ahead_no_more(&mut self) {
+        if self.state.looks_ahead {
+            self.actions.push(Action::Risk(Risk::LOOK_AHEAD.into()));
         }
     }
 

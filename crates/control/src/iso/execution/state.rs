@@ -106,6 +106,8 @@ pub(crate) struct State {
     pub moved: bool,
     /// Something has moved at feed.
     pub cut: bool,
+    /// Look-ahead is on (FANUC `G5.1 Q1`, `G5 P10000`).
+    pub looks_ahead: bool,
     /// `M2` or `M30` has been executed.
     pub ended: bool,
 }
@@ -240,6 +242,7 @@ impl State {
             z_is_home: false,
             moved: false,
             cut: false,
+            looks_ahead: false,
             ended: false,
         }
     }

@@ -537,6 +537,7 @@ impl Step<'_, '_, '_> {
             }
             Some(M::End) => {
                 self.ends_with_axes()?;
+                self.looks_ahead_no_more();
                 // The others switch off by themselves; on FANUC it is the builder's choice.
                 if self.flavor != Flavor::Fanuc {
                     self.turn(Spindle::Off);

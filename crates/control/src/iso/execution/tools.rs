@@ -89,6 +89,7 @@ impl Step<'_, '_, '_> {
             return Err(self.block.at_group(Group::ToolChange, "nc-tool", message));
         }
         self.not_compensated("a tool change")?;
+        self.looks_ahead_no_more();
         self.put_in(number);
         self.turn(Spindle::Off);
         // The machine may go to a place of its own for the change.
@@ -197,6 +198,9 @@ impl Step<'_, '_, '_> {
         let says_z = self.block.has(b'Z') && self.block.g(Group::OneShot).is_none();
         if self.state.length_moves_axis != Some(false) && !self.state.z_is_home && !says_z {
             self.actions.push(Action::Risk(Risk::LENGTH_CHANGE.into()));
+        }
+        if [length, self.state.length].iter().any(|length| matches!(length, Length::Center(_))) {
+            self.looks_ahead_no_more();
         }
         let turned = |i: usize| self.state.table[i] && self.state.rotary[i] != 0.0;
         if matches!(length, Length::Center(_))

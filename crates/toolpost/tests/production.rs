@@ -1,0 +1,138 @@
+//! What production programs have: the number of the program, stops between tools, look-ahead, retracts by `G53`. Each by a
+//! key of the machine file, written, proven, and looked at as an operator would.
+
+mod files;
+
+use files::root;
+use geom::Vec3;
+use machine::Machine;
+use program::{Op, Program};
+
+fn machine(text: &str) -> Machine {
+    let machine = machine::load_text("own.toml", text).unwrap();
+    post::check(&machine).unwrap();
+    machine
+}
+
+fn sample(axes: &str) -> Program {
+    let file = root().join("machines/samples").join(axes).with_extension("cls");
+    let text = std::fs::read(&file).unwrap();
+    source::apt::read(axes, &text, &Default::default()).unwrap().program
+}
+
+fn rules(source: &Program, machine: &Machine, text: &str) -> Vec<&'static str> {
+    let report = proof::prove(source, machine, "p", text.as_bytes(), &Default::default());
+    report.mismatches.iter().map(|found| found.rule).collect()
+}
+
+/// The proven program, without the numbers of its blocks.
+fn written(source: &Program, machine: &Machine) -> String {
+    let text = String::from_utf8(post::write(source, machine).unwrap().text).unwrap();
+    assert_eq!(rules(source, machine, &text), [""; 0], "{text}");
+    let bare = |line: &str| match line.split_once(' ') {
+        Some((number, rest)) if number.starts_with('N') => rest.to_owned(),
+        _ => line.to_owned(),
+    };
+    text.lines().map(|line| bare(line) + "\n").collect()
+}
+
+#[test]
+fn a_program_whose_name_is_a_number_has_that_number() {
+    for (name, options, expected) in [
+        ("O1234", "", "O1234 (O1234)"),
+        ("o77", "", "O77 (o77)"),
+        ("42", "", "O42 (42)"),
+        // Of the builder's numbers, of none, and of too many digits it is none.
+        ("O9001", "", "O0001 (O9001)"),
+        ("O0", "", "O0001 (O0)"),
+        ("12345", "", "O0001 (12345)"),
+        ("BRACKET", "", "O0001 (BRACKET)"),
+        ("O1234", "program_number = \"O0007\"", "O0007 (O1234)"),
+    ] {
+        let machine =
+            machine(&format!("extends = \"generic-3axis-fanuc\"\n[options]\n{options}\n"));
+        let source = Program { name: name.into(), ..sample("three-axes") };
+        let text = written(&source, &machine);
+        assert_eq!(text.lines().nth(1), Some(expected));
+    }
+}
+
+#[test]
+fn a_stop_for_the_operator_stands_before_each_further_tool() {
+    for (name, before, after) in [
+        ("generic-3axis-fanuc", "G90", "(DRILL_3.3)"),
+        ("generic-3axis-haas", "G90", "(DRILL_3.3)"),
+        ("generic-3axis-mach3", "G90", "(DRILL_3.3)"),
+        ("linuxcnc-mill", "G53 G0 Z0", "(DRILL_3.3)"),
+    ] {
+        let machine =
+            machine(&format!("extends = \"{name}\"\n[options]\nstop_between_tools = true\n"));
+        let text = written(&sample("three-axes"), &machine);
+        assert_eq!(text.matches("M1\n").count(), 1, "{name}");
+        // The spindle stands, Z is home.
+        assert!(text.contains(&format!("{before}\nM1\n{after}\n")), "{name}: {text}");
+    }
+}
+
+#[test]
+fn a_fanuc_cuts_contours_under_look_ahead_and_nothing_else() {
+    let text = "extends = \"generic-3axis-fanuc\"\n[options]\nhigh_precision = true\n";
+    let machine3 = machine(text);
+    let source = sample("three-axes");
+    let text = written(&source, &machine3);
+    assert!(text.contains("Z2.\nG5.1 Q1\nG1 Z-2. F200.\n"), "{text}");
+    // Off before the tool change, and not on again for holes.
+    assert!(text.contains("G0 Z20.\n(HOLES)\nG5.1 Q0\nM5\n"), "{text}");
+    assert_eq!(text.matches("G5.1").count(), 2, "{text}");
+    // Under the tool centre point it comes after G43.4 and goes before G49.
+    let text = "extends = \"fanuc-table-bc\"\n[options]\nhigh_precision = true\n";
+    let machine = machine(text);
+    let source = sample("five-axes");
+    let text = written(&source, &machine);
+    let at = |what: &str| text.rfind(what).unwrap_or_else(|| panic!("{what}: {text}"));
+    assert!(at("G43.4") < at("G5.1 Q1") && at("G5.1 Q1") < at("G5.1 Q0"));
+    assert!(at("G5.1 Q0") < at("G91 G28 Z0"), "{text}");
+    for was in ["G5.1 Q0\n"] {
+        let wrong = text.replacen(was, "", 1);
+        assert_eq!(rules(&source, &machine, &wrong), ["look-ahead"], "{wrong}");
+    }
+}
+
+#[test]
+fn a_fanuc_retracts_by_g53_where_its_file_says_so() {
+    let machine3 = machine(
+        "extends = \"generic-3axis-fanuc\"\nsafe_height = 0\n[options]\nretract_by_g53 = true\n",
+    );
+    let source = sample("three-axes");
+    let text = written(&source, &machine3);
+    assert!(!text.contains("G28"), "{text}");
+    assert_eq!(text.matches("G53 G0 Z0.\n").count(), 3, "{text}");
+    // Up and away before another work offset: the length is still in force at G53, and ends behind it.
+    let at = |x: f64, z: f64| program::Pose::upright(Vec3::new(x, 0.0, z)).unwrap();
+    let mut source = Program::new("offsets");
+    let offset = |number| Op::WorkOffset(program::WorkOffset::numbered(number).unwrap());
+    for (line, op) in (1..).zip([
+        Op::Tool(Box::new(program::Tool { number: 1, ..Default::default() })),
+        Op::Spindle(program::Spindle::Clockwise(500.0)),
+        Op::Feed(program::Feed::PerMinute(100.0)),
+        Op::Rapid(at(0.0, 20.0)),
+        Op::Line(at(0.0, -1.0)),
+        Op::Rapid(at(0.0, 20.0)),
+        offset(55),
+        Op::Rapid(at(5.0, 20.0)),
+        Op::Line(at(5.0, -1.0)),
+        Op::Rapid(at(5.0, 20.0)),
+        Op::End,
+    ]) {
+        source.push(line, op);
+    }
+    let text = written(&source, &machine3);
+    assert!(text.contains("G0 Z20.\nG53 G0 Z0.\nG49\nG55\n"), "{text}");
+    // Where the top of Z is, nobody guesses.
+    let unsaid = "extends = \"generic-3axis-fanuc\"\n[options]\nretract_by_g53 = true\n";
+    let unsaid = machine::load_text("own.toml", unsaid).unwrap();
+    assert_eq!(post::check(&unsaid).unwrap_err()[0].rule, "safe-height");
+    // In a tilted plane G53 is an alarm: such a machine keeps G28.
+    let machine = machine("extends = \"fanuc-table-bc\"\n[options]\nretract_by_g53 = true\n");
+    assert!(!written(&sample("five-axes"), &machine).contains("G53 "));
+}
