@@ -259,6 +259,10 @@ pub struct Capabilities {
     pub cycles: Vec<CycleName>,
     /// Whether it has cutter radius compensation.
     pub compensation: bool,
+    /// Where the move that switches it on ends.
+    pub compensation_start: CompensationStart,
+    /// Blocks without a move in the plane past which the control sees the next element of a contour; any number without it.
+    pub compensation_blind: Option<u32>,
     /// Whether it has feed per turn.
     pub feed_per_turn: bool,
     /// Whether it has inverse-time feed.
@@ -275,6 +279,17 @@ pub struct Capabilities {
     pub rapid_corridor: f64,
     /// How far beyond all cuts, along its own axis, the tool may go by rapid in any way, mm.
     pub rapid_clearance: f64,
+}
+
+/// Where the move ends that switches cutter compensation on.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum CompensationStart {
+    /// Beside the start of the next one.
+    NextStart,
+    /// Beside its own end: it counts as the first element of the contour. Elements that turn by less than 0.05 rad join
+    /// without a corner, and the way to a rapid is straight (LinuxCNC).
+    OwnEnd,
 }
 
 /// How the axes go in a rapid.

@@ -95,6 +95,8 @@ sheet!(merged CapabilitiesSheet "capabilities" {
     arc_tolerance: Positive, "mm", "Difference of the radii at the ends of an arc that the control accepts.";
     cycles: Vec<CycleName>, "", "Hole cycles that it has: drill, deep, break-chip, tap, ream, bore.";
     compensation: bool, "", "Whether it has cutter radius compensation.";
+    compensation_start: CompensationStart, "", "Where the move that switches cutter compensation on ends: next-start (beside the start of the next one), which is taken where it is missing; or own-end (beside its own end: it has to be longer than the tool's radius, elements that turn by less than 0.05 rad join without a corner, and the way to a rapid is straight: LinuxCNC).";
+    compensation_blind: u32, "", "Most blocks without a move in the plane past which the control sees the next element of a contour: FANUC parameter 19625 less 2, SINUMERIK MD20250; any number where it is missing.";
     feed_per_turn: bool, "", "Whether it has feed per turn.";
     inverse_time: bool, "", "Whether it has inverse-time feed.";
     inverse_time_arcs: bool, "", "Whether inverse-time feed counts the time of an arc as that of a line; FANUC divides by the radius.";

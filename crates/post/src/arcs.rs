@@ -233,6 +233,8 @@ impl Walk<'_> {
                 off.min(PI - off) > most
             };
             self.machine.capabilities.arcs.contains(&facts.plane)
+                // The control offsets a contour in the plane XY alone.
+                && (facts.plane == Plane::XY || !self.is_compensating())
                 && (along.cross(arc.normal) == Vec3::ZERO || !leans())
         })
     }
@@ -390,7 +392,8 @@ impl Walk<'_> {
             let turned = geom::rotate(start - block.center, normal, angle) + normal * rise;
             block.center + turned
         });
-        self.block(name)
+        self.block(name)?;
+        self.follow_arc(self.turned_to.unwrap_or(block.end), block.center, block.sweep)
     }
 
     /// Where the control stands, in the coordinates of its blocks: as the last words say, or as the angle

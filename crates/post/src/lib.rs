@@ -8,6 +8,7 @@
 //! [`catalogue()`] names every block, word and variable that a control file may use. One record at a time
 //! goes through `walk`, which knows what the control has been told; `place` brings the tool into its
 //! orientation, `motion`, `arcs`, `single` and `cycles` say where it goes, `wire` says how a wire stands,
+//! `contour` finds out whether a tool can follow a contour that the control offsets,
 //! `surface` says what Z counts from where the control finds that, and `writer` leaves out what repeats. Before that, `sweep` splits cuts that would swing the tool out of
 //! its way.
 
@@ -15,6 +16,7 @@
 
 mod arcs;
 mod catalogue;
+mod contour;
 mod cycles;
 mod findings;
 #[expect(clippy::wildcard_enum_match_arm, reason = "what is not named is refused")]

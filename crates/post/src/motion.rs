@@ -100,6 +100,7 @@ impl Walk<'_> {
         if self.writer.changes(POSITION) {
             self.check_limits()?;
             self.block(BlockName::Linear)?;
+            self.follow(false)?;
         } else {
             self.writer.unset(Words::MAX);
         }
@@ -231,13 +232,14 @@ impl Walk<'_> {
         let goes_on = pieces == 1 && cut == Cut::Straight && self.can_go_on();
         self.check_limits()?;
         self.say_feed(length, pieces, cut)?;
-        self.compensate();
+        self.compensate()?;
         if self.wire.is_some() {
             self.say_taper();
         }
         self.writer.code(WordName::Motion, motion::LINEAR);
         self.writer.keep();
         self.block(self.straight(BlockName::Linear))?;
+        self.follow(false)?;
         self.goes_on = goes_on;
         Ok(())
     }

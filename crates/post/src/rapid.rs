@@ -283,9 +283,10 @@ impl Walk<'_> {
             return Ok(());
         }
         self.check_limits()?;
-        self.compensate();
+        self.compensate()?;
         self.writer.code(WordName::Motion, motion::RAPID);
-        self.block(self.straight(BlockName::Rapid))
+        self.block(self.straight(BlockName::Rapid))?;
+        self.follow(true)
     }
 
     fn in_pieces(&mut self, pose: &Pose, stances: &[Stance]) -> Done {

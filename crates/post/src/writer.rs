@@ -410,6 +410,12 @@ impl Writer {
         Ok(())
     }
 
+    /// The number of lines so far.
+    #[inline]
+    pub(crate) fn lines(&self) -> usize {
+        self.lines
+    }
+
     /// The text and the number of its lines.
     pub(crate) fn finish(self) -> (Vec<u8>, usize) {
         (self.text, self.lines)

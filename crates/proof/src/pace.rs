@@ -15,6 +15,9 @@ pub(crate) const STANDS: f64 = 1e-6;
 /// A way that is so many times its rounding is long enough to have a speed.
 pub(crate) const TIMED: f64 = 8.0;
 
+/// By how much a difference of times may be off, as a part of them.
+const ROUNDED: f64 = 1e-12;
+
 /// A cut of the program, and what the source wants of it.
 pub(crate) struct Cut<'a> {
     pub gauge: &'a Gauge<'a>,
@@ -26,6 +29,10 @@ pub(crate) struct Cut<'a> {
     pub path: FeedPath,
     /// How far it goes on the way of the source, mm.
     pub way: f64,
+    /// Line of the source's move.
+    pub line: u32,
+    /// Whether the tip may stand in it, but for rounding, in a move whose time the source gives: the axes turn about it.
+    pub stands: bool,
     /// Length of the source's move, mm.
     pub source: f64,
     /// Rounding of the way, mm.
@@ -50,6 +57,20 @@ pub(crate) struct Pace {
     wanted: f64,
     /// The same, but where an axis or F itself cannot go so fast.
     slowest: f64,
+    /// How long the tool may have stood, by F, while axes turned about it.
+    stood: f64,
+    /// What it has stood in the move of the source at hand.
+    within: Within,
+}
+
+/// How long the tool has stood in a move of the source whose time the source gives.
+#[derive(Clone, Copy, Debug, Default)]
+struct Within {
+    /// Line of that move.
+    line: u32,
+    /// Longer than its way takes, and what its axes need at least, minutes.
+    longer: f64,
+    least: f64,
 }
 
 /// An average speed of the tip that has been compared.
@@ -69,6 +90,12 @@ impl Cut<'_> {
             Feed::PerTurn(feed) => feed * state::speed(self.spindle),
             Feed::InverseTime(rate) => rate * self.source,
         }
+    }
+
+    /// Whether F is the speed of the source in mm/min: while the tool turns about its tip it says how fast the axes are.
+    pub fn is_by_number(&self) -> bool {
+        let speed = self.speed();
+        matches!(self.running, Feed::PerMinute(feed) if (feed - speed).abs() <= self.gauge.allowed.feed)
     }
 
     /// Length that the control divides by F, mm.
@@ -130,7 +157,7 @@ impl Pace {
     /// Adds a cut. Compares the speed of the tip as soon as it has gone far enough to have one.
     pub fn add(&mut self, cut: &Cut) -> Option<Compared> {
         let Some(took) = cut.took() else {
-            *self = Pace::default();
+            self.begin();
             return Some(Compared {
                 percent: 0.0,
                 is_slowed: false,
@@ -138,29 +165,61 @@ impl Pace {
             });
         };
         let speed = cut.speed();
-        let way = cut.way + std::mem::take(&mut self.owed);
+        // What an arc is longer by rounding, the tip goes.
+        let way = cut.arc.unwrap_or(cut.way) + std::mem::take(&mut self.owed);
         self.way += way;
         self.rounding = self.rounding.max(cut.rounding);
         for (sum, took) in self.took.iter_mut().zip(took) {
             *sum += took;
         }
         self.wanted += way / speed;
-        self.slowest += (way / speed).max(cut.least(cut.gauge.machine));
+        let least = cut.least(cut.gauge.machine);
+        self.slowest += (way / speed).max(least);
+        if self.within.line != cut.line {
+            self.within = Within { line: cut.line, ..Within::default() };
+        }
+        if cut.stands {
+            self.stood += took[0];
+            self.within.least += least;
+        }
         if self.way <= TIMED * self.rounding {
             return None;
         }
-        let compared = self.compare(cut, speed);
-        *self = Pace::default();
+        let stood = self.standing(cut);
+        let compared = self.compare(cut, speed, stood);
+        self.begin();
         Some(compared)
     }
 
-    fn compare(&self, cut: &Cut, speed: f64) -> Compared {
-        let Pace { way, rounding, took: [least, most], wanted, slowest, .. } = *self;
-        let blur = 2.0 * rounding / way;
+    /// Begins anew, in the same move of the source.
+    fn begin(&mut self) {
+        *self = Pace { within: self.within, ..Pace::default() };
+    }
+
+    /// What part of its way the rounding of the ends is.
+    fn blur(&self) -> f64 {
+        2.0 * self.rounding / self.way
+    }
+
+    /// How long the tool has stood while axes turned about it, minutes: out of a singular pose an axis turns before the tip sets out.
+    /// The source gives the time of its whole move. So long may the tool stand, or as long as the axes need, beside its way.
+    fn standing(&mut self, cut: &Cut) -> f64 {
+        let Feed::InverseTime(rate) = cut.wanted else { return 0.0 };
+        let longer = self.took[0] - self.slowest * (1.0 + self.blur());
+        let stood = longer.min(self.stood).max(0.0);
+        let most = self.within.least.max(1.0 / rate);
+        let stood = stood.min(most - self.within.longer).max(0.0);
+        self.within.longer += stood;
+        stood
+    }
+
+    fn compare(&self, cut: &Cut, speed: f64, stood: f64) -> Compared {
+        let Pace { way, took: [least, most], wanted, slowest, .. } = *self;
+        let (blur, [least, most]) = (self.blur(), [least - stood, most - stood]);
         let took = (least + if most.is_finite() { most } else { least }) / 2.0;
         let is_fast = most < wanted * (1.0 - blur);
         // Not a number is never right.
-        let is_in_time = least <= slowest * (1.0 + blur);
+        let is_in_time = least <= slowest * (1.0 + blur) * (1.0 + ROUNDED);
         let is_slow = !is_in_time;
         let message = || {
             let (goes, should) = (Number(way / took), Number(speed));

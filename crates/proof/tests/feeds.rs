@@ -194,6 +194,29 @@ fn blocks_too_short_to_have_a_speed_are_compared_together() {
     assert!(!fine.is_proven(&machine, &[per_minute(25_000.0)]));
 }
 
+/// The source gives a tenth of a minute for the whole move, which is written in 100 blocks of 0.0017 mm: each takes a thousandth. Before,
+/// blocks so short were not compared.
+#[test]
+fn short_blocks_of_a_move_whose_time_the_source_gives_take_that_time() {
+    let machine = table("fanuc");
+    let pose = |x, c| Pose::upright(on_part(x, c)).unwrap();
+    let timed = Op::Feed(Feed::InverseTime(10.0));
+    let own = source(vec![Op::Rapid(pose(1.0, 0.0)), timed, Op::Line(pose(1.0, 10.0))]);
+    let judged = |rate: f64| {
+        let mut nc = vec![EXACT, Action::Rapid(block(1.0, 0.0, false))];
+        for i in 1..=100 {
+            let tip = on_part(1.0, 0.0).lerp(on_part(1.0, 10.0), f64::from(i) / 100.0);
+            nc.push(Action::Feed(Feed::InverseTime(rate)));
+            nc.push(Action::Line(block(tip.length(), tip.y.atan2(tip.x).to_degrees(), false)));
+        }
+        let report = judge(&machine, &own, nc);
+        assert!(report.proven || rules(&report) == ["feed"], "{:?}", report.mismatches);
+        report.proven
+    };
+    assert!(judged(1000.0));
+    assert!(!judged(2100.0) && !judged(600.0));
+}
+
 /// The tool turns about its tip: F is the number of the source.
 #[test]
 fn a_turn_about_the_tip_has_the_number_of_the_source() {

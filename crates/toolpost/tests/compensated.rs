@@ -4,7 +4,7 @@
 mod files;
 
 use machine::{Machine, load, load_text};
-use program::{CompensatedPath, Compensation, Op, Program, Tool};
+use program::{CompensatedPath, Compensation, Feed, Op, Program, Tool};
 use proof::Report;
 use source::apt::Options;
 use std::path::Path;
@@ -179,15 +179,41 @@ fn report(source: &Program, machine: &Machine, text: &str) -> Report {
     proof::prove(source, machine, "p", text.as_bytes(), &Default::default())
 }
 
-/// The rules of what the proof finds in the program of `source` on each control, which writes it.
+/// The rules of what the proof finds in the program of `source` on each control. It is written with tools whose radius the source
+/// does not say, since the writer would refuse it.
 fn found(source: &Program) -> Vec<&'static str> {
+    let mut unknown = source.clone();
+    for record in &mut unknown.records {
+        if let Op::Tool(tool) = &mut record.op {
+            tool.diameter = None;
+        }
+    }
     let prove = |name: &&str| {
         let machine = load(name).unwrap();
-        let output = post::write(source, &machine).unwrap_or_else(|found| panic!("{}", found[0]));
+        let output = post::write(&unknown, &machine).unwrap_or_else(|found| panic!("{}", found[0]));
         let report = proof::prove(source, &machine, "p", &output.text, &Default::default());
         report.mismatches.first().map_or("proven", |found| found.rule)
     };
     CONTROLS.iter().map(prove).collect()
+}
+
+/// Line and rule of what the writer refuses on each control, with a way out; what it writes is proven.
+fn refused(source: &Program) -> Vec<(u32, &'static str)> {
+    let post = |name: &&str| {
+        let machine = load(name).unwrap();
+        match post::write(source, &machine) {
+            Ok(output) => {
+                let report = proof::prove(source, &machine, "p", &output.text, &Default::default());
+                assert!(report.proven, "{name}: {:?}", report.mismatches);
+                (0, "proven")
+            }
+            Err(found) => {
+                assert!(!found[0].help.is_empty(), "{}", found[0]);
+                (found[0].line, found[0].rule)
+            }
+        }
+    };
+    CONTROLS.iter().map(post).collect()
 }
 
 #[test]
@@ -206,6 +232,7 @@ fn the_control_leads_the_centre_of_the_tool_along_the_contour() {
 fn a_contour_that_the_control_refuses_with_the_tool_is_not_proven() {
     let doubled = Program { compensated_path: Some(CompensatedPath::Contour), ..centre() };
     assert_eq!(found(&doubled), ["compensation-arc-radius"; 4]);
+    assert_eq!(refused(&doubled), [(12, "compensation-arc-radius"); 4]);
     // A step of 3 mm, which is shorter than the radius.
     let mut step = contour();
     let up = step.records.iter_mut().filter_map(|record| match &mut record.op {
@@ -216,6 +243,7 @@ fn a_contour_that_the_control_refuses_with_the_tool_is_not_proven() {
         *pose = pose.at(pose.point().with_y(43.0)).unwrap();
     }
     assert!(found(&step).iter().all(|rule| *rule != "proven"), "{:?}", found(&step));
+    assert_eq!(refused(&step), [(13, "compensation-inner-corner"); 4]);
 }
 
 /// Chords of 0.04 rad around an island of radius 30. LinuxCNC joins them without a corner, which cuts 1 - cos 0.04 = 0.0008 radii into each
@@ -246,10 +274,12 @@ fn linuxcnc_cuts_into_flat_corners_and_a_large_tool_too_deep() {
                 tool.diameter = Some(2.0 * radius);
             }
         }
-        found(&source)
+        (found(&source), refused(&source).into_iter().map(|(_, rule)| rule).collect::<Vec<_>>())
     };
-    assert_eq!(with(5.0), ["proven"; 4]);
-    assert_eq!(with(25.0), ["proven", "proven", "proven", "compensation"]);
+    assert_eq!(with(5.0), (vec!["proven"; 4], vec!["proven"; 4]));
+    let (found, refused) = with(25.0);
+    assert_eq!(found, ["proven", "proven", "proven", "compensation"]);
+    assert_eq!(refused, ["proven", "proven", "proven", "compensation-gouge"]);
 }
 
 /// The source asks for register 2, which is the radius of another tool: 3 mm in place of 5.
@@ -266,8 +296,11 @@ fn a_register_that_holds_the_radius_of_another_tool_is_not_proven() {
     source.records.insert(end, program::Record { line: 1, op: Op::Tool(Box::new(other)) });
     for name in ["generic-3axis-linuxcnc", "generic-3axis-fanuc"] {
         let machine = load(name).unwrap();
-        let text = post::write(&source, &machine).unwrap().text;
-        let report = report(&source, &machine, std::str::from_utf8(&text).unwrap());
+        let found = post::write(&source, &machine).unwrap_err();
+        assert_eq!((found[0].rule, found[0].line), ("compensation", 10), "{name}");
+        let text = posted(&contour(), &machine).unwrap().0;
+        assert!(text.contains("D1 "), "{text}");
+        let report = report(&source, &machine, &text.replacen("D1 ", "D2 ", 1));
         assert_eq!(report.mismatches[0].rule, "compensation", "{name}");
         assert!(report.mismatches[0].message.contains("radius of 5 mm"), "{:?}", report.mismatches);
     }
@@ -288,6 +321,8 @@ fn a_contour_past_whose_blocks_the_control_does_not_see_is_not_proven() {
     let rules = found(&source);
     // SINUMERIK sees past three, FANUC past one; the others read on.
     assert_eq!(rules, ["compensation-look-ahead", "proven", "compensation-look-ahead", "proven"]);
+    let too_many = (14, "compensation-look-ahead");
+    assert_eq!(refused(&source), [too_many, (0, "proven"), too_many, (0, "proven")]);
 }
 
 /// The source with its moves from one place to another in the plane.
@@ -308,6 +343,9 @@ fn moved(mut source: Program, [x, y]: [f64; 2], to: [f64; 2]) -> Program {
 fn a_way_in_through_the_contour_is_not_proven() {
     let rules = found(&moved(contour(), [-20.0, -10.0], [10.0, 15.0]));
     assert_eq!(rules, ["compensation-gouge", "compensation-gouge", "compensation-gouge", "proven"]);
+    let through = (11, "compensation-gouge");
+    let refused = refused(&moved(contour(), [-20.0, -10.0], [10.0, 15.0]));
+    assert_eq!(refused, [through, through, through, (0, "proven")]);
 }
 
 /// To the other side: LinuxCNC does not look, and the judge sees it.
@@ -318,6 +356,79 @@ fn a_way_out_through_the_contour_is_not_proven() {
         rules,
         ["compensation-gouge", "compensation-gouge", "compensation-gouge", "compensation"]
     );
+    let refused = refused(&moved(contour(), [80.0, -8.0], [45.0, -5.0]));
+    assert_eq!(refused, [(23, "compensation-gouge"); 4]);
+}
+
+/// From the end of a wall round 335° of a bore of radius 12 mm: 1.1 mm beside the place from where the tool comes. Elements are looked at
+/// with those on both sides of them.
+#[test]
+fn a_contour_that_comes_back_to_the_element_before_is_refused_by_the_writer_and_by_the_proof() {
+    let text = "UNITS/MM\nCUTTER/10,0\nLOAD/TOOL,1\nSPINDL/RPM,1000,CLW\nRAPID\nGOTO/-30,-30,5\nFEDRAT/300,MMPM\n\
+                GOTO/-30,-30,-3\nCUTCOM/LEFT\nGOTO/0,-20,-3\nGOTO/0,0,-3\nCIRCLE/0,12,-3,0,0,1,12\nGOTO/-5,1.091,-3\n\
+                CUTCOM/OFF\nGOTO/0,14,-3\nRAPID\nGOTO/0,14,5\nFINI\n";
+    let options = Options { cutcom: Some(CompensatedPath::Contour), ..Options::default() };
+    let source = source::apt::read("part.apt", text.as_bytes(), &options).unwrap().program;
+    assert_eq!(refused(&source), [(13, "compensation-inner-corner"); 4]);
+    assert_eq!(found(&source), ["compensation"; 4]);
+}
+
+/// The time of each block is that of the contour, and corners add moves: the feed goes in mm/min. With the times of the source no
+/// control takes it.
+#[test]
+fn a_contour_in_inverse_time_is_written_with_its_feed_in_mm_per_minute() {
+    let mut source = contour();
+    for record in &mut source.records {
+        if let Op::Feed(feed) = &mut record.op {
+            *feed = Feed::InverseTime(6.0);
+        }
+    }
+    for name in CONTROLS {
+        let (text, warnings) = posted(&source, &load(name).unwrap()).unwrap();
+        // The wall from Y -10 to 40 in a sixth of a minute.
+        assert!(text.contains("F300"), "{name}: {text}");
+        assert!(warnings.contains(&"feed-inverse-time"), "{name}: {warnings:?}");
+        assert!(!text.contains("G93 G1 G41"), "{name}: {text}");
+    }
+}
+
+/// From the wall's left to its right side.
+#[test]
+fn compensation_that_changes_its_side_in_the_cut_is_refused() {
+    let mut source = contour();
+    let at = source
+        .records
+        .iter()
+        .position(|record| matches!(&record.op, Op::Line(pose) if pose.point().y == 60.0))
+        .unwrap();
+    let line = source.records[at].line;
+    let op = Op::Compensation(Compensation::Right(None));
+    source.records.insert(at, program::Record { line, op });
+    assert_eq!(refused(&source), [(line, "compensation-change"); 4]);
+}
+
+/// In a plane other than XY the control would not offset: such an arc is written as lines.
+#[test]
+fn an_arc_in_another_plane_goes_as_lines_while_the_control_offsets() {
+    let text = "UNITS/MM\nCUTTER/10,0\nLOAD/TOOL,1\nSPINDL/RPM,1000,CLW\nRAPID\nGOTO/-30,-30,5\nFEDRAT/300,MMPM\n\
+                GOTO/-30,-30,-3\nCUTCOM/LEFT\nGOTO/0,-20,-3\nGOTO/0,0,-3\nCIRCLE/0,10,-3,1,0,0,10\nGOTO/0,10,-13\nGOTO/0,40,-13\n\
+                CUTCOM/OFF\nGOTO/-20,60,-13\nRAPID\nGOTO/-20,60,5\nFINI\n";
+    let options = Options { cutcom: Some(CompensatedPath::Contour), ..Options::default() };
+    let source = source::apt::read("part.apt", text.as_bytes(), &options).unwrap().program;
+    assert_eq!(refused(&source), [(0, "proven"); 4]);
+}
+
+/// A tool of 40 mm on a way in of 20 mm: LinuxCNC wants more, the others only where the tool comes from.
+#[test]
+fn a_way_in_that_is_shorter_than_the_radius_is_refused_where_the_control_needs_more() {
+    let mut source = centre();
+    source.compensated_path = Some(CompensatedPath::Contour);
+    source.records.retain(|record| !matches!(record.op, Op::Arc(_)));
+    let refused = refused(&source);
+    assert_eq!(refused, [(0, "proven"); 4]);
+    let short = moved(source, [0.0, -5.0], [6.0, 0.0]);
+    assert_eq!(self::refused(&short)[3], (10, "compensation-entry"));
+    assert_eq!(found(&short)[3], "compensation-entry");
 }
 
 #[test]

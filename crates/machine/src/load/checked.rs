@@ -376,6 +376,10 @@ impl CheckedSheet {
                 arc_tolerance: capabilities.arc_tolerance.map_or(0.001, |mm| mm.0),
                 cycles: capabilities.cycles.unwrap_or_default(),
                 compensation: capabilities.compensation.unwrap_or(false),
+                compensation_start: capabilities
+                    .compensation_start
+                    .unwrap_or(CompensationStart::NextStart),
+                compensation_blind: capabilities.compensation_blind,
                 feed_per_turn: capabilities.feed_per_turn.unwrap_or(false),
                 inverse_time: capabilities.inverse_time.unwrap_or(false),
                 inverse_time_arcs: capabilities.inverse_time_arcs.unwrap_or(true),

@@ -23,6 +23,8 @@ pub fn machine(rotary: Vec<RotaryAxis>) -> Machine {
             arc_tolerance: 0.01,
             cycles: Vec::new(),
             compensation: true,
+            compensation_start: CompensationStart::NextStart,
+            compensation_blind: None,
             feed_per_turn: true,
             inverse_time: true,
             inverse_time_arcs: true,

@@ -3,10 +3,12 @@
 
 use super::{Done, Walk, refuse};
 use crate::catalogue::{BlockName, WordName};
+use crate::contour::Contour;
 use crate::template::bit;
-use geom::Vec3;
+use geom::{Turn, Vec2, Vec3};
 use machine::ToolRadius;
-use program::{CompensatedPath, Compensation, Diagnostic};
+use program::{CompensatedPath, Compensation, Diagnostic, Op, Record};
+use std::collections::BTreeMap;
 
 impl Walk<'_> {
     pub(super) fn set_compensation(&mut self, compensation: Compensation) -> Done {
@@ -85,9 +87,13 @@ impl Walk<'_> {
     }
 
     /// Says the compensation in the next block, a straight move; one in the plane switches it.
-    pub(crate) fn compensate(&mut self) {
+    ///
+    /// # Errors
+    /// The control cannot begin or end a contour so.
+    pub(crate) fn compensate(&mut self) -> Done {
         let in_plane = bit(WordName::X) | bit(WordName::Y);
         if self.compensation_pending() && self.writer.changes(in_plane) {
+            self.turn_contour()?;
             self.active_compensation = self.compensation;
             let tool = self.tool.as_ref().map(|tool| tool.number);
             match self.compensation {
@@ -100,6 +106,107 @@ impl Walk<'_> {
             }
         }
         self.keep_compensation();
+        Ok(())
+    }
+
+    /// The next block begins a contour, or ends one.
+    fn turn_contour(&mut self) -> Done {
+        let (contour, to) = (self.contour.take(), self.in_plane(self.said));
+        let side = match self.compensation {
+            Compensation::Off => return contour.map_or(Ok(()), |contour| contour.leave(to)),
+            Compensation::Left(_) => 1.0,
+            Compensation::Right(_) => -1.0,
+        };
+        if self.is_compensating() && self.wire.is_none() {
+            let message = "cutter compensation changes its side or its register while it is on";
+            let help = "CUTCOM/OFF and a straight move in the plane before it";
+            return Err(refuse("compensation-change", message).help(help).into());
+        }
+        let from = [WordName::X, WordName::Y].map(|word| self.writer.active(word));
+        let from = match (from, self.turned_to) {
+            (_, Some(at)) => Some(at.truncate()),
+            ([Some(x), Some(y)], None) => Some(Vec2::new(x, y)),
+            _ => None,
+        };
+        if let (Some(from), Some(radius)) = (from, self.contour_radius()?) {
+            self.contour = Some(Box::new(Contour::new(self.machine, from, radius, side)));
+        }
+        Ok(())
+    }
+
+    /// The radius by which the control offsets the contour, mm; nothing where that is not known.
+    ///
+    /// # Errors
+    /// The source names the register of another tool.
+    fn contour_radius(&self) -> Result<Option<f64>, Box<Diagnostic>> {
+        let Some(tool) = self.tool.as_ref().filter(|_| self.wire.is_none()) else {
+            return Ok(None);
+        };
+        let Some(radius) = tool.cutting_radius() else { return Ok(None) };
+        let named = match self.compensation {
+            Compensation::Left(register) | Compensation::Right(register) => register,
+            Compensation::Off => None,
+        };
+        let named = named.filter(|number| {
+            *number != tool.number && self.templates.places(BlockName::Linear, WordName::D)
+        });
+        let Some(named) = named else {
+            let keeps_wear = self.source.compensated_path == Some(CompensatedPath::Center);
+            return Ok(Some(if keeps_wear { 0.0 } else { radius }));
+        };
+        match self.radii().get(&named) {
+            Some(&other) if other != radius => {
+                let message = format!(
+                    "the source names register {named}, in which the radius of another tool stands: {other} mm, and tool {} has {radius} mm",
+                    tool.number
+                );
+                let help = "the register of the tool itself, or none";
+                Err(refuse("compensation", message).help(help).into())
+            }
+            _ => Ok(None),
+        }
+    }
+
+    /// The radii of the source's tools, mm, by their numbers.
+    fn radii(&self) -> &BTreeMap<u32, f64> {
+        self.radii.get_or_init(|| {
+            let radius = |record: &Record| {
+                let Op::Tool(tool) = &record.op else { return None };
+                Some((tool.number, tool.cutting_radius()?))
+            };
+            self.source.records.iter().filter_map(radius).collect()
+        })
+    }
+
+    /// The block that has been written, a straight one, goes on with the contour.
+    #[inline]
+    pub(crate) fn follow(&mut self, rapid: bool) -> Done {
+        match self.contour {
+            Some(_) => self.follow_to(self.in_plane(self.said), None, rapid),
+            None => Ok(()),
+        }
+    }
+
+    /// The same for an arc about +Z through `sweep` radians.
+    pub(crate) fn follow_arc(&mut self, end: Vec3, center: Vec3, sweep: f64) -> Done {
+        self.follow_to(end.truncate(), Some(Turn { center: center.truncate(), sweep }), false)
+    }
+
+    fn follow_to(&mut self, to: Vec2, turn: Option<Turn>, rapid: bool) -> Done {
+        let Some(mut contour) = self.contour.take() else { return Ok(()) };
+        contour.go(to, turn, rapid)?;
+        self.contour = Some(contour);
+        Ok(())
+    }
+
+    /// A place in the plane as its words say it.
+    fn in_plane(&self, at: Vec3) -> Vec2 {
+        Vec2::new(self.writer.rounded(WordName::X, at.x), self.writer.rounded(WordName::Y, at.y))
+    }
+
+    /// Whether the control offsets the next move, or may.
+    pub(super) fn offsets(&self) -> bool {
+        self.is_compensating() || self.compensation != Compensation::Off
     }
 
     /// Says in the next block the compensation that is active.

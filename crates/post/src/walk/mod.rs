@@ -6,6 +6,7 @@ mod technology;
 pub(crate) use technology::{Cut, Turn};
 
 use crate::catalogue::{BlockName, WordName};
+use crate::contour::Contour;
 use crate::findings::Findings;
 use crate::place::{Place, Route, Stop};
 use crate::template::{
@@ -27,6 +28,7 @@ use program::{
     Surface, Tool, WorkOffset, WorkOffsetData,
 };
 use std::cell::{Cell, OnceCell};
+use std::collections::BTreeMap;
 use technology::feed_mode;
 
 /// A step that may be refused.
@@ -61,6 +63,8 @@ pub(crate) struct Walk<'a> {
     cuts: Option<CutBox>,
     /// The fastest feed that the machine is known to take, mm/min; looked for where it is asked for.
     known_feed: OnceCell<Option<f64>>,
+    /// The radii of the source's tools, mm, by their numbers; collected where they are asked for.
+    radii: OnceCell<BTreeMap<u32, f64>>,
     /// Where in its records we are.
     index: usize,
     /// Source line of the record at hand.
@@ -83,6 +87,8 @@ pub(crate) struct Walk<'a> {
     compensation: Compensation,
     active_compensation: Compensation,
     compensation_line: u32,
+    /// The contour at hand, where the control offsets it and the radius of the tool is known.
+    contour: Option<Box<Contour>>,
     pub(crate) cycle: Option<&'a Cycle>,
     /// The definition that the control has, where a cycle is on.
     pub(crate) open_cycle: Option<crate::cycles::Open>,
@@ -151,6 +157,7 @@ impl<'a> Walk<'a> {
             statistics: None,
             cuts: None,
             known_feed: OnceCell::new(),
+            radii: OnceCell::new(),
             index: 0,
             line: 0,
             tool: None,
@@ -166,6 +173,7 @@ impl<'a> Walk<'a> {
             compensation: Compensation::Off,
             active_compensation: Compensation::Off,
             compensation_line: 0,
+            contour: None,
             cycle: None,
             open_cycle: None,
             whole: 0.0,
@@ -472,6 +480,7 @@ impl<'a> Walk<'a> {
     /// Writes a block, where the machine has it.
     pub(crate) fn block(&mut self, name: BlockName) -> Done {
         self.writer.code(WordName::WorkOffset, self.work_offset);
+        let lines = self.writer.lines();
         match self.templates.lines(name) {
             Some(lines) => self.writer.block(lines)?,
             None => {
@@ -487,6 +496,11 @@ impl<'a> Walk<'a> {
                 };
                 self.writer.block(&self.templates.render(name, scope)?)?;
             }
+        }
+        if let Some(contour) = &mut self.contour
+            && name != BlockName::Comment
+        {
+            contour.blocks += self.writer.lines() - lines;
         }
         if self.feeds_rapids && self.templates.places(name, WordName::RapidFeed) {
             self.writer.forget(bit(WordName::F));

@@ -312,7 +312,10 @@ impl Walk<'_> {
             *rate *= if within { self.whole / length } else { pieces as f64 };
         }
         let can = &self.machine.capabilities;
-        let timed = can.inverse_time && (cut != Cut::Arc || can.inverse_time_arcs);
+        // Around the corners of a contour the control adds moves, whose time nobody gives.
+        let timed = can.inverse_time
+            && (cut != Cut::Arc || can.inverse_time_arcs)
+            && !(self.wire.is_none() && self.offsets());
         let speed = speed(self.spindle).unwrap_or_default();
         let per_minute = || lowering::feed_per_minute(feed, length, speed);
         let (mode, value) = match (feed, cut) {

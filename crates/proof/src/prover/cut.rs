@@ -81,13 +81,10 @@ impl Prover<'_> {
             return self.feed_by_number();
         }
         let rounding = self.gauge.slack(to);
-        let moved = self.here.place.tip.distance(to.place.tip);
-        if matches!(wanted, Feed::InverseTime(_)) && moved <= pace::TIMED * rounding {
-            // The time of the source is that of a whole move, in which the tool may stand while axes turn.
-            return None;
-        }
+        let stands = self.here.place.tip.distance(to.place.tip) <= rounding;
         let is_standing = source <= pace::STANDS;
-        if is_standing || way.abs() <= rounding {
+        let is_timed = matches!(wanted, Feed::InverseTime(_)) && stands && !is_standing;
+        if !is_timed && (is_standing || way.abs() <= rounding) {
             let by_number = self.feed_by_number();
             if is_standing || by_number.is_none() {
                 // The tool turns about its tip, which has no speed: the number says how fast the axes are.
@@ -108,7 +105,12 @@ impl Prover<'_> {
             wanted,
             running,
             spindle,
+            line: self.cursor.line,
+            stands: is_timed,
         };
+        if is_timed && cut.is_by_number() {
+            return None;
+        }
         let Compared { percent, is_slowed, difference } = self.pace.add(&cut)?;
         let deviations = &mut self.report.deviations;
         deviations.tip_speed_percent.note(percent.abs(), self.cursor.line, to.line);
