@@ -304,6 +304,7 @@ impl Walk<'_> {
         if self.located {
             self.uncompensated("a new orientation")?;
             self.look_ahead(false)?;
+            self.go_out()?;
             self.tool_center_off()?;
             self.plane_xy()?;
             self.required(BlockName::Retract)?;
@@ -325,8 +326,9 @@ impl Walk<'_> {
         Ok(())
     }
 
-    /// Whatever is on goes off.
+    /// Whatever is on goes off, on the way to home.
     pub(crate) fn leave_place(&mut self) -> Done {
+        self.go_out()?;
         match self.place.kind {
             Kind::Bare => {}
             Kind::Plain | Kind::Machine => {

@@ -11,6 +11,7 @@ use crate::template::{ORIENTATION, POSITION, Words, bit};
 use crate::walk::{Done, Walk, motion, refuse};
 use geom::{Vec3, angle_between, between, nearest_on_segment, off_great_circle};
 use machine::linearise::Stance;
+use machine::plan::Step;
 use machine::{Mount, Unsaid};
 use program::{Diagnostic, Feed, Pose};
 
@@ -193,6 +194,79 @@ impl Walk<'_> {
         }
     }
 
+    /// Z goes home from here, straight up: a tilted tool first goes out along its axis, until it is beyond all cuts on its
+    /// way up until it is above them.
+    pub(crate) fn go_out(&mut self) -> Done {
+        let Some(here) = self.here.filter(|_| self.located) else { return Ok(()) };
+        if self.machine.rotary.iter().all(|rotary| rotary.on == Mount::Table) {
+            return Ok(());
+        }
+        let (mode, degrees) = (self.machine.orientation.positioned, self.place.degrees());
+        let step = degrees.map(|degrees| Step { degrees, rewind: None });
+        let stop = Stop { mode, turning: false, first: false, step };
+        let (axis, mut out) = (here.axis(), 0.0_f64);
+        for up in self.ups(axis, &stop) {
+            out = out.max(self.way_out(&here, up)?);
+        }
+        if out <= 0.0 {
+            return Ok(());
+        }
+        let outside = here.at(here.point() + axis * out)?;
+        if !self.machine.has_straight_rapids() {
+            let message = "the tilted tool has to go out along its axis before Z goes home, and each axis of the machine goes \
+                           at its own speed by rapid";
+            let help = "`rapid_path = \"linear\"` in [settings] where its axes go together by rapid (FANUC: parameter 1401#1 is 1)";
+            return Err(refuse("rapid-path", message).help(help).into());
+        }
+        self.aim(&outside, &stop);
+        self.here = Some(outside);
+        self.check_limits()?;
+        self.writer.code(WordName::Motion, motion::RAPID);
+        self.keep_compensation();
+        self.block(self.straight(BlockName::Rapid))
+    }
+
+    /// How far the tool has to go out along its axis from `pose`, so that it may then go along `up`, mm.
+    fn way_out(&mut self, pose: &Pose, up: Vec3) -> Result<f64, Box<Diagnostic>> {
+        let (tip, axis) = (pose.point(), pose.axis());
+        if same(axis, up) {
+            return Ok(0.0);
+        }
+        let rise = axis.dot(up);
+        let below = self.below(pose, up)?;
+        if below <= 0.0 {
+            return Ok(0.0);
+        }
+        let clearance = self.machine.capabilities.rapid_clearance + ROUNDING;
+        let inside = (self.cut_reach(axis) + clearance - tip.dot(axis)).max(0.0);
+        let hangs = (-rise).max(0.0);
+        Ok(match rise > 0.0 {
+            true => inside.min(below / rise),
+            false => (inside + hangs * below) / (1.0 - hangs * hangs),
+        })
+    }
+
+    /// How far the whole tool at `pose` is below the clearance above all cuts along `up`, mm.
+    ///
+    /// # Errors
+    /// A tool that points down, whose length nobody says, or beside which there is no room.
+    fn below(&mut self, pose: &Pose, up: Vec3) -> Result<f64, Box<Diagnostic>> {
+        let rise = pose.axis().dot(up);
+        let hangs = if rise < -LEVEL { -rise } else { 0.0 };
+        let Some(length) = self.tool_length().or((hangs == 0.0).then_some(0.0)) else {
+            let message = "the tool points down, and how far it hangs there nobody says: its length is missing";
+            return Err(refuse("tool-length", message).help(Unsaid::ToolLength.way_out()).into());
+        };
+        let clearance = self.machine.capabilities.rapid_clearance + ROUNDING;
+        let below = self.cut_reach(up) + clearance + hangs * length - pose.point().dot(up);
+        if below > 0.0 && hangs > NEARLY_DOWN {
+            let message = "the tool points down along Z of the machine: from home it comes to no place beside the part";
+            let help = "another set-up, in which it points to the side or up";
+            return Err(refuse("rapid-path", message).help(help).into());
+        }
+        Ok(below)
+    }
+
     /// Holds home, where its place is known, above all that the source cuts: a table swings the part up to it.
     ///
     /// # Errors
@@ -243,22 +317,11 @@ impl Walk<'_> {
         let mut farthest = 0.0;
         for &up in ups {
             let rise = axis.dot(up);
-            let hangs = if rise < -LEVEL { -rise } else { 0.0 };
-            let Some(length) = self.tool_length().or((hangs == 0.0).then_some(0.0)) else {
-                let message = "the tool points down, and how far it hangs there nobody says: its length is missing";
-                return Err(refuse("tool-length", message)
-                    .help(Unsaid::ToolLength.way_out())
-                    .into());
-            };
-            let below = self.cut_reach(up) + clearance + hangs * length - tip.dot(up);
+            let below = self.below(pose, up)?;
             if below <= 0.0 {
                 continue;
             }
-            if hangs > NEARLY_DOWN {
-                let message = "the tool points down along Z of the machine: from home it comes to no place beside the part";
-                let help = "another set-up, in which it points to the side or up";
-                return Err(refuse("rapid-path", message).help(help).into());
-            }
+            let hangs = if rise < -LEVEL { -rise } else { 0.0 };
             let inside = (self.cut_reach(axis) + clearance - tip.dot(axis)).max(0.0);
             let (out, climb) = if rise >= STEEP || is_level && rise > 0.0 && below / rise <= inside
             {

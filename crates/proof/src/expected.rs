@@ -216,6 +216,11 @@ impl<'a> Cursor<'a> {
         self.tool_change || self.here.is_none()
     }
 
+    /// Whether the tool leaves the part here, whatever comes next: for a tool change, or home.
+    pub fn leaves_part(&self) -> bool {
+        self.at_tool_change() || self.homed
+    }
+
     /// The next motion, whatever dwells and stops come before it.
     fn motion(&self, kind: Kind, pose: &Pose) -> Step {
         Step::Move(Goal {

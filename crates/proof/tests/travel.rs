@@ -170,6 +170,9 @@ fn a_rotary_axis_follows_vectors_on_and_on_to_the_end_of_its_travel() {
             ops.push(Op::Line(Pose::new(tip(i), axis(*at)).unwrap()));
             does.push(Action::Line(Position::new(tip(i), axis(*at))));
         }
+        // Out along the tool before Z goes home.
+        let last = vectors.last().map_or(leaning, |at| axis(*at));
+        does.push(Action::Rapid(Position::new(tip(vectors.len()) + last * 200.0, last)));
         rules(&judge(&machine, &source(ops), does))
     };
     let round: Vec<[f64; 2]> = (1..=7).map(|i| [20.0, 60.0 * f64::from(i)]).collect();

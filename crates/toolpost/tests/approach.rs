@@ -263,16 +263,23 @@ fn the_samples_approach_in_the_machine() {
     }
 }
 
+/// A fork head: A tilts the spindle about X, 200 mm above its gauge line. The spindle is home at Z 400.
+fn fork(more: &str) -> Machine {
+    let text = format!(
+        "extends = \"fanuc-31i\"\nsafe_height = 400\nwork_zero = [0, 0, 0]\n[settings]\ntable_frame_at_zero = true\nrotary_by_sign = false\n\
+         length_moves_axis = false\nlength_along_z = true\nrapid_path = \"linear\"\n{more}[orientation]\n\
+         simultaneous = \"tool-center-angles\"\npositioned = \"tool-center-angles\"\ntolerance = 0.01\n\
+         [[rotary]]\nletter = \"A\"\non = \"head\"\naxis = [1, 0, 0]\npoint = [0, 0, 200]\nmin = -115\nmax = 115\n\
+         rapid = 9000\nacceleration = 300\nmodulo = false\n"
+    );
+    load_text("fork.toml", &text).unwrap_or_else(|why| panic!("{why}"))
+}
+
 /// A fork head at 45° under tool-centre control, into a slot: straight down it would go through its wall, from beyond all
 /// cuts along the tool it comes in as it was drawn.
 #[test]
 fn a_tilted_head_comes_in_along_its_tool() {
-    let text = "extends = \"fanuc-31i\"\nsafe_height = 400\nwork_zero = [0, 0, 0]\n[settings]\ntable_frame_at_zero = true\nrotary_by_sign = false\n\
-         length_moves_axis = false\nlength_along_z = true\nrapid_path = \"linear\"\n[orientation]\n\
-         simultaneous = \"tool-center-angles\"\npositioned = \"tool-center-angles\"\ntolerance = 0.01\n\
-         [[rotary]]\nletter = \"A\"\non = \"head\"\naxis = [1, 0, 0]\npoint = [0, 0, 200]\nmin = -115\nmax = 115\n\
-         rapid = 9000\nacceleration = 300\nmodulo = false\n";
-    let machine = load_text("fork.toml", text).unwrap_or_else(|why| panic!("{why}"));
+    let machine = fork("");
     let source = read(
         "UNITS/MM\nMULTAX/ON\nLOADTL/1,LENGTH,100\nSPINDL/1000,RPM,CLW\nFEDRAT/300,MMPM\n\
          RAPID\nGOTO/0,-30,-28,0,-0.70710678,0.70710678\nGOTO/0,-29,-29\nGOTO/40,-29,-29\nRAPID\nGOTO/40,-69,11\n\
@@ -288,6 +295,96 @@ fn a_tilted_head_comes_in_along_its_tool() {
     let straight =
         [&lines[..at - 2], &["X0. Y-30.", "Z-28."], &lines[at + 1..]].concat().join("\n") + "\n";
     assert_eq!(refused(&source, &machine, &straight), ("rapid-path", "Z-28.".into()));
+}
+
+/// A slot at 45° under a face at Z 0 that reaches to Y -60; the tool ends in it at Y -29 Z -29, then comes `then`.
+fn slot(then: &str) -> Program {
+    read(&format!(
+        "UNITS/MM\nMULTAX/ON\nLOADTL/1,LENGTH,100\nSPINDL/1000,RPM,CLW\nFEDRAT/300,MMPM\n\
+         RAPID\nGOTO/0,-60,20,0,0,1\nGOTO/0,-60,0\nGOTO/40,40,0\nRAPID\nGOTO/40,40,50\n\
+         RAPID\nGOTO/0,-69,11,0,-0.70710678,0.70710678\nRAPID\nGOTO/0,-30,-28\nGOTO/0,-29,-29\nGOTO/40,-29,-29\n{then}"
+    ))
+}
+
+/// A tool change, the end, and another orientation.
+const LEAVES: [&str; 3] = [
+    "LOADTL/2,LENGTH,60\nSPINDL/1000,RPM,CLW\nRAPID\nGOTO/0,0,20,0,0,1\nGOTO/0,0,-1\nRAPID\nGOTO/0,0,50\nFINI\n",
+    "FINI\n",
+    "RAPID\nGOTO/40,40,50,0,0,1\nGOTO/40,40,-1\nRAPID\nGOTO/40,40,50\nFINI\n",
+];
+
+/// Z home brings the machine straight up: from Y -29 Z -29 through the roof of the slot. Out along the tool it is 1.01 mm
+/// above Z 0 after 30.01 mm of Y and of Z, before it is beyond Y -60 along itself.
+#[test]
+fn a_tilted_head_goes_out_along_its_tool_before_z_goes_home() {
+    let head = |name| load(name).unwrap();
+    for (machine, out) in [
+        (fork(""), "Y-59.01 Z1.01"),
+        // In the plane Z is the tool: 30.01 times the root of 2.
+        (head("sinumerik-840d-traori"), "G0 Z42.441"),
+        (head("linuxcnc-xyzbc-head"), "G0 Y-59.01 Z1.01"),
+    ] {
+        for then in LEAVES {
+            let source = slot(then);
+            let good = written(&source, &machine);
+            proven(&source, &machine, &good);
+            let at = good.lines().position(|line| words(line).ends_with(out));
+            let at = at.unwrap_or_else(|| panic!("no {out} in\n{good}"));
+            let mut lines: Vec<&str> = good.lines().collect();
+            lines.remove(at);
+            let (rule, home) = refused(&source, &machine, &(lines.join("\n") + "\n"));
+            let is_home = ["G28", "SUPA", "G53"].iter().any(|word| home.contains(word));
+            assert!(rule == "rapid-path" && is_home, "{rule} {home}\n{good}");
+        }
+    }
+}
+
+/// Half of the way out is not out.
+#[test]
+fn a_tilted_head_that_goes_out_by_less_is_refused() {
+    let (source, machine) = (slot("FINI\n"), fork(""));
+    let good = written(&source, &machine);
+    let other = |block: &str| {
+        let lines = good.lines().map(|line| match line.ends_with("Y-59.01 Z1.01") {
+            true => line.replace("Y-59.01 Z1.01", block),
+            false => line.to_owned(),
+        });
+        lines.map(|line| line + "\n").collect::<String>()
+    };
+    assert_eq!(refused(&source, &machine, &other("Y-58.9 Z0.9")).0, "rapid-path");
+    proven(&source, &machine, &other("Y-59.1 Z1.1"));
+}
+
+/// The same where the tool change itself brings Z up.
+#[test]
+fn a_tool_change_that_retracts_by_itself_takes_no_tilted_head_out_of_a_slot() {
+    let source = slot(LEAVES[0]);
+    let machine = fork("[tools]\nretracts = true\n");
+    let good = written(&source, &machine);
+    proven(&source, &machine, &good);
+    let at = good.lines().position(|line| line.ends_with("Y-59.01 Z1.01")).unwrap();
+    let change = at + good.lines().skip(at).position(|line| line.contains("M6")).unwrap();
+    let stays = |(i, line): (usize, &str)| {
+        (i < at || i >= change || !line.contains("Z")).then(|| line.to_owned() + "\n")
+    };
+    let low: String = good.lines().enumerate().filter_map(stays).collect();
+    let (rule, line) = refused(&source, &machine, &low);
+    assert!(rule == "rapid-path" && line.contains("M6"), "{rule} {line}\n{low}");
+}
+
+/// Under a vector the way out has the same vector, and an undercut needs more than its own depth: 1.01 mm beyond Y 0 along
+/// the tool, and beyond it on the whole way up.
+#[test]
+fn a_tool_that_points_down_goes_out_until_it_is_free_on_its_way_up() {
+    let source = read(
+        "UNITS/MM\nMULTAX/ON\nLOADTL/1,LENGTH,100\nSPINDL/1000,RPM,CLW\nFEDRAT/300,MMPM\n\
+         RAPID\nGOTO/0,-90,-20,0,-0.96592583,-0.25881905\nGOTO/0,-20,-10\nGOTO/0,-20,-10,0,-1,0\n\
+         GOTO/0,-20,-10,0,-0.96592583,-0.25881905\nRAPID\nGOTO/0,-60,-20.717968\nRAPID\nGOTO/40,0,50,0,0,1\n\
+         GOTO/40,0,0\nRAPID\nGOTO/40,0,50\nFINI\n",
+    );
+    let machine = load("sinumerik-840d-traori").unwrap();
+    let good = written(&source, &machine);
+    proven(&source, &machine, &good);
 }
 
 /// Where Z is down before X and Y are known, it has to be above all cuts.

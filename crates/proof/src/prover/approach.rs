@@ -64,6 +64,38 @@ impl Prover<'_> {
         }
     }
 
+    /// Z of the machine goes home from where the tool stands: straight up, which a tilted tool may do only where it is
+    /// beyond all cuts along its own axis until it is above them.
+    pub(super) fn leaves_for_home(&mut self, line: u32) {
+        let Some(at) = self.down.take() else { return };
+        let machine = self.gauge.machine;
+        if machine.rotary.iter().all(|axis| axis.on == Mount::Table) {
+            return;
+        }
+        let ups = self.ups(&at);
+        if is_along(&self.gauge, &ups, at.place.axis) {
+            return;
+        }
+        let is_above = ups.iter().all(|up| self.short_below(&at, *up) <= self.rounding(&at));
+        if is_above && !ups.is_empty() {
+            return;
+        }
+        let short = if ups.is_empty() { f64::INFINITY } else { self.short_aside(&at, &ups) };
+        if short <= self.gauge.slack(&at) {
+            return;
+        }
+        let clearance = Number(machine.capabilities.rapid_clearance);
+        let message = format!(
+            "source line {}: the program sends Z home from {} with a tilted tool, {} mm short of {clearance} mm beyond all \
+             cuts along the tool axis",
+            self.cursor.line,
+            at.place,
+            Number(short)
+        );
+        let help = "go out along the tool axis first";
+        self.found(Diagnostic::error("rapid-path", message).help(help).line(line));
+    }
+
     /// What is wrong with a rapid from a place that nobody knows while Z has not been home since the last move.
     fn wrong_way_on(&mut self, to: &Station) -> Option<Diagnostic> {
         // Where a program begins without home, whoever starts it has brought the tool to a safe place.
@@ -197,16 +229,18 @@ impl Prover<'_> {
         if !self.moves_z_alone(to, ups) {
             return false;
         }
+        is_along(&self.gauge, ups, to.place.axis)
+            || self.short_aside(to, ups) <= self.gauge.slack(to)
+    }
+
+    /// By how much the tool is not the clearance beyond all cuts along its own axis, on the way along Z of the machine
+    /// between `to` and where it is above them, mm.
+    fn short_aside(&mut self, to: &Station, ups: &[Vec3]) -> f64 {
         let Place { tip, axis } = to.place;
-        if is_along(&self.gauge, ups, axis) {
-            return true;
-        }
         let clearance = self.gauge.machine.capabilities.rapid_clearance;
-        let beyond = tip.dot(axis) - self.cut_reach(axis) - clearance + self.gauge.slack(to);
-        ups.iter().all(|up| {
-            let climb = self.short_below(to, *up).max(0.0);
-            beyond + (axis.dot(*up) * climb).min(0.0) >= 0.0
-        })
+        let short = self.cut_reach(axis) + clearance - tip.dot(axis);
+        let more = |up: &Vec3| (-axis.dot(*up)).max(0.0) * self.short_below(to, *up).max(0.0);
+        short + ups.iter().map(more).fold(0.0, f64::max)
     }
 
     /// Whether X and Y of the machine stand at `to` as they stand here.

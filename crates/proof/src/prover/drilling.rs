@@ -92,6 +92,7 @@ impl Prover<'_> {
         }
         self.standing.arrive(&pose.orientation);
         self.here = drilled.retracted;
+        self.stands_at(&drilled.retracted);
         if below {
             self.leg.hole.drilled(&cycle);
             self.leg.stops.clear();

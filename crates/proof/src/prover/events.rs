@@ -19,7 +19,11 @@ impl Prover<'_> {
                         tool change brings Z up by itself";
             self.found(Diagnostic::error("tool-change-height", message).help(help).line(line));
         }
-        self.raised |= self.gauge.machine.tools.retracts;
+        if self.gauge.machine.tools.retracts {
+            self.leaves_for_home(line);
+            self.raised = true;
+        }
+        self.gauge.tool_length = self.cursor.tool_length();
         self.report.compared.tool_changes += 1;
         let name = if tool.number > 0 { tool.number.to_string() } else { tool.name.clone() };
         self.report.program.tool(name);

@@ -68,6 +68,8 @@ pub struct Prover<'a> {
     swivelled: bool,
     /// Whether the tool has stood at a place that is known.
     has_stood: bool,
+    /// Where it stood last, Z not having been home since.
+    down: Option<Station>,
     /// The line along the tool axis on which the tool stands in a tilted plane, at a height that nobody knows.
     over: Option<Place>,
     ended: bool,
@@ -136,6 +138,7 @@ impl<'a> Prover<'a> {
             raised: false,
             swivelled: false,
             has_stood: false,
+            down: None,
             over: None,
             ended: false,
             lost: false,
@@ -376,16 +379,7 @@ impl<'a> Prover<'a> {
                 alike && gauge.at(&to, &goal.to)
             });
         }
-        // Axes that turn while Z is home go nowhere yet: what the source has next may still come.
-        if !matches!(self.cursor.step, Step::Move(_))
-            && gait == Gait::Rapid
-            && self.turns_at_home(&to)
-        {
-            if let Some(found) = self.wrong_approach(&to) {
-                self.found(found);
-            }
-            self.standing.arrive(&to.position.orientation);
-            self.here = to;
+        if gait == Gait::Rapid && self.goes_nowhere_yet(&to) {
             return Ok(());
         }
         self.miss_events(line);
@@ -428,9 +422,37 @@ impl<'a> Prover<'a> {
         self.standing.arrive(&to.position.orientation);
         self.here = to;
         self.raised &= is_up;
-        self.has_stood |= to.place.known();
+        self.stands_at(&to);
         self.over = None;
         outcome
+    }
+
+    /// Whether axes turn while Z is home, or the tool goes out along its axis on the way to home, before what the source has
+    /// next, which is no move: it may still come.
+    fn goes_nowhere_yet(&mut self, to: &Station) -> bool {
+        if matches!(self.cursor.step, Step::Move(_)) {
+            return false;
+        }
+        if self.turns_at_home(to) {
+            if let Some(found) = self.wrong_approach(to) {
+                self.found(found);
+            }
+        } else if !self.cursor.leaves_part() || !stops::lifted(&self.gauge, &self.here, to) {
+            return false;
+        }
+        self.standing.arrive(&to.position.orientation);
+        self.stands_at(to);
+        self.here = *to;
+        self.raised &= to.position.point.z.is_nan();
+        true
+    }
+
+    /// Keeps where the tool stands, where that is known.
+    fn stands_at(&mut self, to: &Station) {
+        if to.place.known() {
+            self.has_stood = true;
+            self.down = Some(*to);
+        }
     }
 
     /// Holds the clamps open of the rotary axes that turn from here on.
@@ -532,7 +554,10 @@ impl<'a> Prover<'a> {
         self.leg.start = Some(self.here);
         self.leg.stops.clear();
         self.leg.left = None;
-        self.gauge.tool_length = self.cursor.tool_length();
+        // On the way to a tool change the last tool is still in the spindle.
+        if self.running.tool.is_none() || !self.cursor.at_tool_change() {
+            self.gauge.tool_length = self.cursor.tool_length();
+        }
         if let Step::Move(Goal { kind: Kind::Hole(cycle), .. }) = &self.cursor.step {
             self.leg.hole.restart(cycle);
         } else {

@@ -236,6 +236,10 @@ impl Prover<'_> {
         if holding && !first && self.leg.left.is_none() {
             self.leg.left = Some(self.here);
         }
+        if z {
+            self.leaves_for_home(line);
+            self.forget_lifts();
+        }
         self.leg.homed |= z;
         self.raised |= z;
         self.over = None;
@@ -266,6 +270,15 @@ impl Prover<'_> {
         }
         self.here = to;
         Ok(())
+    }
+
+    /// Forgets the stops of a rapid on the way to home, where they lead out along the tool axis: the way begins at home.
+    fn forget_lifts(&mut self) {
+        let base = self.leg.start.unwrap_or(self.here);
+        let lifts = |stop: &Station| stops::lifted(&self.gauge, &base, stop);
+        if self.leg.left.is_none() && self.leg.stops.iter().all(lifts) {
+            self.leg.stops.clear();
+        }
     }
 
     /// Whether the tool is beyond every point of the source along its axis, which does not point

@@ -69,6 +69,7 @@ impl Prover<'_> {
             end = self.gauge.station(line, end.position);
         }
         self.arrive(&end);
+        self.stands_at(&to);
         Ok(())
     }
 }
