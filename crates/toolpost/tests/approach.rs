@@ -306,11 +306,12 @@ fn slot(then: &str) -> Program {
     ))
 }
 
-/// A tool change, the end, and another orientation.
-const LEAVES: [&str; 3] = [
+/// A tool change, the end, and another orientation; a tool change with a stop behind it.
+const LEAVES: [&str; 4] = [
     "LOADTL/2,LENGTH,60\nSPINDL/1000,RPM,CLW\nRAPID\nGOTO/0,0,20,0,0,1\nGOTO/0,0,-1\nRAPID\nGOTO/0,0,50\nFINI\n",
     "FINI\n",
     "RAPID\nGOTO/40,40,50,0,0,1\nGOTO/40,40,-1\nRAPID\nGOTO/40,40,50\nFINI\n",
+    "LOADTL/2,LENGTH,60\nOPSTOP\nSPINDL/1000,RPM,CLW\nRAPID\nGOTO/0,0,20,0,0,1\nGOTO/0,0,-1\nRAPID\nGOTO/0,0,50\nFINI\n",
 ];
 
 /// Z home brings the machine straight up: from Y -29 Z -29 through the roof of the slot. Out along the tool it is 1.01 mm
@@ -337,6 +338,27 @@ fn a_tilted_head_goes_out_along_its_tool_before_z_goes_home() {
             assert!(rule == "rapid-path" && is_home, "{rule} {home}\n{good}");
         }
     }
+}
+
+/// Another work offset: on its way home the tool goes by the one that was.
+#[test]
+fn a_tilted_head_goes_out_by_the_old_work_offset() {
+    let machine = load("sinumerik-840d-traori").unwrap();
+    let mut source = slot(LEAVES[2]);
+    let line = source.records.iter().rposition(|record| matches!(record.op, Op::Line(_)));
+    let leaves =
+        source.records[..line.unwrap()].iter().rposition(|record| matches!(record.op, Op::Line(_)));
+    let at = leaves.unwrap() + 1;
+    let offset =
+        |line| program::Record { line, op: Op::WorkOffset(WorkOffset::numbered(55).unwrap()) };
+    source.records.insert(at, offset(source.records[at].line));
+    let good = written(&source, &machine);
+    let out = good.lines().position(|line| words(line) == "G0 Z42.441");
+    assert!(
+        out.is_some_and(|out| good.lines().skip(out).any(|line| words(line) == "G55")),
+        "{good}"
+    );
+    proven(&source, &machine, &good);
 }
 
 /// Half of the way out is not out.
