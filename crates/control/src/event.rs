@@ -351,6 +351,14 @@ impl Risk {
         refused: true,
     };
 
+    /// Haas setting 52 ("G83 Retract Above R"): chips are cleared that far above the R plane.
+    pub(crate) const PECK_RETRACT: Risk = Risk {
+        rule: "peck-retract",
+        what: "clears chips above the R plane of G83, and how far setting 52 says, which the machine file does not state",
+        help: "say `retract_above_r` in mm below [settings] (setting 52 of the control; 0 as it is delivered)",
+        refused: false,
+    };
+
     /// `G5.1 Q1` and `G5 P10000` are for contours; with cycles, a tool change, `G43.4` and `G68.2` the control may give an
     /// alarm, and what it does at the end is a parameter.
     pub(crate) const LOOK_AHEAD: Risk = Risk {

@@ -220,6 +220,8 @@ pub struct Settings {
     pub sets_work_offsets: bool,
     /// Whether taps are held in a chuck that floats along its axis.
     pub floating_holder: bool,
+    /// How far above R a peck cycle takes the tool to clear chips, mm, where that is known (Haas setting 52).
+    pub retract_above_r: Option<f64>,
     /// Numbers of the M functions that the machine's builder has added (clamps, flaps, chip conveyor),
     /// none of which moves an axis or touches spindle and coolant. Any other M function that is not
     /// the control's own is an error.
@@ -342,6 +344,7 @@ impl Settings {
             modulo: [None; 3],
             length_along_z: None,
             floating_holder: false,
+            retract_above_r: None,
             length_moves_axis: None,
             dwell_p_milliseconds: None,
             rotary_by_sign: None,

@@ -79,10 +79,12 @@ pub struct LoadedFrom {
 }
 
 /// Parameters of the control as the machine has them; `None` is not known.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct ControlSettings {
     /// Whether taps are held in a chuck that floats along its axis, so that feed and spindle need not be coupled.
     pub floating_holder: bool,
+    /// How far above R a peck cycle takes the tool to clear chips, mm, where that is known (Haas setting 52).
+    pub retract_above_r: Option<f64>,
     /// Whether the tool length counts along Z in every plane (SINUMERIK SD42940, FANUC parameter 5001).
     pub length_along_z: Option<bool>,
     /// Whether Z moves where a tool length begins, ends or changes (FANUC parameter 5006#6).

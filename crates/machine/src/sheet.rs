@@ -112,6 +112,7 @@ sheet!(merged SettingsSheet "settings" {
     floating_holder: bool, "", "Whether taps are held in a chuck that floats along its axis, so that a tapping cycle need not couple feed and spindle.";
     length_along_z: bool, "", "Whether the tool length counts along Z in every plane: SINUMERIK SD42940 is 17, FANUC parameters 5001#0 and 5001#1 are 0.";
     length_moves_axis: bool, "", "Whether Z moves where a tool length begins, ends or changes: FANUC parameter 5006#6 is 0.";
+    retract_above_r: NotNegative, "mm", "How far above R a peck cycle (G83) takes the tool each time it clears chips: Haas setting 52.";
     rapid_path: RapidPath, "", "How the axes go in a rapid: linear (together, on a straight line) or independent (each at its own speed), which is taken where it is missing. FANUC: linear where parameter 1401#1 is 1; SINUMERIK: MD20730.";
     tool_radius: ToolRadius, "", "What the tool table keeps as the radius of a tool (D, the radius of an edge, R): full, the radius itself, for contours; or wear, its difference from the tool of the toolpath, for paths of the tool's centre.";
     rotary_feed: RotaryFeed, "", "What F in mm/min counts where rotary axes turn in a cut and the control does not keep the tool tip: all-axes (all of them together, a degree as a mm: FANUC where parameter 1408#0 is 0, HEIDENHAIN, SINUMERIK after FGROUP with them) or linear-axes (X, Y and Z alone; LinuxCNC). It is needed where the control has no inverse-time feed.";
@@ -243,6 +244,7 @@ value! {
     Number(f64, "f64") |value| !value.is_nan(), "a number";
     Finite(f64, "f64") |value| value.is_finite(), "a finite number";
     Positive(f64, "f64") |value| *value > 0.0 && value.is_finite(), "a number above 0";
+    NotNegative(f64, "f64") |value| *value >= 0.0 && value.is_finite(), "0 or a number above it";
     Decimals(u8, "u8") |value| *value <= 9, "0 to 9";
     Point([f64; 3], "[f64; 3]") |point| point.iter().all(|value| value.is_finite()), "three finite numbers";
 }

@@ -92,6 +92,13 @@ pub fn missing(machine: &Machine) -> Vec<Missing> {
             );
         }
     }
+    if machine.reader == "haas" && machine.settings.retract_above_r.is_none() {
+        lacks(
+            "[settings]".into(),
+            "retract_above_r = 0",
+            "setting 52 (mm): how far above R G83 clears chips",
+        );
+    }
     if machine.settings.rapid_path.is_none() && machine.wire.is_none() {
         lacks(
             "[settings]".into(),

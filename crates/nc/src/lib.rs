@@ -78,6 +78,7 @@ pub fn settings(machine: &Machine, setup: Setup) -> Result<Settings, Box<Diagnos
         auxiliary: machine.auxiliary.iter().copied().chain(clamps).collect(),
         modulo,
         floating_holder: machine.settings.floating_holder,
+        retract_above_r: machine.settings.retract_above_r,
         length_along_z: machine.settings.length_along_z,
         length_moves_axis: machine.settings.length_moves_axis,
         dwell_p_milliseconds: machine.settings.dwell_p_milliseconds,

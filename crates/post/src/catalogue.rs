@@ -232,6 +232,11 @@ names! {
 pub(crate) const VARIABLES: &[Parameter] = &[
     variable("program.name", "", "Name of the program: letters, digits, `_` and `-` only."),
     variable(
+        "coolant.through",
+        "",
+        "Whether the coolant that was switched on last goes through the tool.",
+    ),
+    variable(
         "program.number",
         "",
         "Number of the program, where its name is one: 1 to 8999, with or without an O before it; otherwise undefined.",

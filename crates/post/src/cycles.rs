@@ -163,7 +163,9 @@ impl Walk<'_> {
 
     /// Checks the levels of a hole that a cycle makes against the limits.
     fn check_hole(&mut self, cycle: &Cycle, pose: &Pose) -> Done {
-        for height in [-cycle.depth, cycle.clearance, cycle.retract] {
+        let above = self.machine.settings.retract_above_r.filter(|_| cycle.kind == CycleKind::Deep);
+        let cleared = above.map(|above| cycle.clearance + above);
+        for height in [-cycle.depth, cycle.clearance, cycle.retract].into_iter().chain(cleared) {
             self.tip = pose.lifted(height)?.point();
             self.said = self.local(self.tip);
             self.check_limits()?;

@@ -271,7 +271,7 @@ impl Scope {
             operation: map([("name", Value::from(operation))]),
             tool: tool_value(machine, &tool, first),
             spindle: spindle_value(first, first, !first),
-            coolant: coolant_value(!first),
+            coolant: coolant_value(!first, !first),
             text: Value::from(text),
             ..Scope::new(machine)
         }
@@ -297,7 +297,7 @@ impl Scope {
             operation: map([("name", Value::from(""))]),
             tool: tool_value(machine, &Tool::default(), true),
             spindle: spindle_value(true, true, false),
-            coolant: coolant_value(false),
+            coolant: coolant_value(false, false),
             text: Value::from(""),
         }
     }
@@ -321,8 +321,8 @@ pub(crate) fn spindle_value(changed: bool, clockwise: bool, stopped: bool) -> Va
 }
 
 /// The coolant as templates see it.
-pub(crate) fn coolant_value(stopped: bool) -> Value {
-    map([("stopped", Value::from(stopped))])
+pub(crate) fn coolant_value(stopped: bool, through: bool) -> Value {
+    map([("stopped", Value::from(stopped)), ("through", Value::from(through))])
 }
 
 /// A tool as templates see it; `first` where none has been called before.

@@ -259,6 +259,8 @@ pub(crate) struct Drilled {
     pub bottom: Station,
     pub r_plane: Station,
     pub retracted: Station,
+    /// Where the control clears chips, where its setting says that this is above the R plane.
+    pub cleared: Option<Station>,
     /// By how much the tool goes aside, in the work frame, mm.
     aside: Option<Vec3>,
     pub cycle: Cycle,
@@ -276,10 +278,13 @@ impl Drilled {
         let moved = |by: Vec3| gauge.station(line, Position { point: pose.point + by, ..*pose });
         let at = |height: f64| moved(along * height);
         let tip = |by: Vec3| moved(by).place.tip;
+        let above =
+            gauge.machine.settings.retract_above_r.filter(|_| cycle.kind == CycleKind::Deep);
         Drilled {
             bottom: at(-cycle.depth),
             r_plane: at(cycle.clearance),
             retracted: at(cycle.retract),
+            cleared: above.map(|above| at(cycle.clearance + above)),
             aside: cycle.kind.withdrawal().map(|way| tip(way.aside) - tip(Vec3::ZERO)),
             cycle,
         }

@@ -134,3 +134,78 @@ fn a_fanuc_retracts_by_g53_where_its_file_says_so() {
     let machine = machine("extends = \"fanuc-table-bc\"\n[options]\nretract_by_g53 = true\n");
     assert!(!written(&sample("five-axes"), &machine).contains("G53 "));
 }
+
+#[test]
+fn a_haas_is_told_how_smooth_it_goes_and_by_how_much_it_may_round_corners() {
+    let source = sample("three-axes");
+    for (options, block) in [
+        ("smoothness = 3\npath_tolerance = 0.01", "G187 P3 E0.01\n"),
+        ("smoothness = 1", "G187 P1\n"),
+    ] {
+        let machine = machine(&format!("extends = \"generic-3axis-haas\"\n[options]\n{options}\n"));
+        let text = written(&source, &machine);
+        assert!(text.contains(&format!("G94 G54\n{block}")), "{text}");
+    }
+    let machine = machine("extends = \"generic-3axis-haas\"\n");
+    assert!(!written(&source, &machine).contains("G187"));
+}
+
+/// M88 starts coolant through the spindle, M89 ends it; M9 does not.
+#[test]
+fn coolant_through_the_spindle_of_a_haas_ends_by_m89() {
+    use program::Coolant;
+    let at = |x: f64, z: f64| program::Pose::upright(Vec3::new(x, 0.0, z)).unwrap();
+    let tool = |number| Op::Tool(Box::new(program::Tool { number, ..Default::default() }));
+    let cut = |x| [Op::Rapid(at(x, 20.0)), Op::Line(at(x, -1.0)), Op::Rapid(at(x, 20.0))];
+    let ops = [tool(1), Op::Spindle(program::Spindle::Clockwise(900.0))].into_iter();
+    let ops = ops.chain([Op::Feed(program::Feed::PerMinute(100.0)), Op::Coolant(Coolant::Through)]);
+    // Through, flood, through, off; the next tool; a stop, which ends both.
+    let ops = ops.chain(cut(1.0)).chain([Op::Coolant(Coolant::Flood)]).chain(cut(2.0));
+    let ops = ops.chain([Op::Coolant(Coolant::Through)]).chain(cut(3.0)).chain([tool(2)]);
+    let ops = ops.chain(cut(4.0)).chain([Op::Stop]).chain(cut(5.0)).chain([Op::End]);
+    let mut source = Program::new("through");
+    for (line, op) in (1..).zip(ops) {
+        source.push(line, op);
+    }
+    let machine = machine("extends = \"generic-3axis-haas\"\n");
+    let text = written(&source, &machine);
+    let coolant: Vec<&str> = text
+        .lines()
+        .filter(|block| ["M8", "M9", "M88", "M89", "M6", "M0"].iter().any(|m| block.ends_with(m)))
+        .collect();
+    let expected =
+        ["M9", "T1 M6", "M88", "M89", "M8", "M9", "M88", "M89", "T2 M6", "M88", "M0", "M88", "M89"];
+    assert_eq!(coolant, expected, "{text}");
+    // What M9 would leave on is refused.
+    let wrong = text.replacen("M89", "M9", 1);
+    assert_eq!(rules(&source, &machine, &wrong).len(), 1, "{wrong}");
+}
+
+/// Setting 52 ("G83 Retract Above R"): chips are cleared above R, where Z has to have room for it.
+#[test]
+fn a_haas_clears_chips_above_r_as_far_as_setting_52_says() {
+    let source = sample("three-axes");
+    let haas = |above: f64| {
+        format!(
+            "extends = \"haas\"\nwork_zero = [0, 0, -30]\n[settings]\nretract_above_r = {above}\n[axes]\n\
+             X = {{ min = -500, max = 500 }}\nY = {{ min = -500, max = 500 }}\nZ = {{ min = -300, max = 0 }}\n"
+        )
+    };
+    // R is at 2 mm, the work zero 30 mm below the end of Z.
+    let near = machine(&haas(25.0));
+    let text = written(&source, &near);
+    let far = machine(&haas(35.0));
+    assert_eq!(
+        rules(&source, &far, &{
+            String::from_utf8(post::write(&source, &near).unwrap().text).unwrap()
+        }),
+        ["axis-limit"],
+        "{text}"
+    );
+    assert_eq!(post::write(&source, &far).unwrap_err()[0].rule, "axis-limit");
+    // A file that does not say it is told so.
+    let unsaid = machine("extends = \"haas\"\n");
+    let text = post::write(&source, &unsaid).unwrap().text;
+    let report = proof::prove(&source, &unsaid, "p", &text, &Default::default());
+    assert!(report.proven && report.warnings.iter().any(|found| found.rule == "peck-retract"));
+}

@@ -394,6 +394,7 @@ impl CheckedSheet {
                 length_along_z: self.settings.length_along_z,
                 length_moves_axis: self.settings.length_moves_axis,
                 dwell_p_milliseconds: self.settings.dwell_p_milliseconds,
+                retract_above_r: self.settings.retract_above_r.map(|mm| mm.0),
                 kinematics,
                 rapid_path: self.settings.rapid_path,
                 tool_radius: self.settings.tool_radius,

@@ -491,7 +491,10 @@ impl<'a> Walk<'a> {
                 let scope = Scope {
                     set: self.writer.set_words(),
                     spindle: spindle_value(self.speed_changed, clockwise, spindle_stopped),
-                    coolant: coolant_value(known && self.active_coolant == Some(Coolant::Off)),
+                    coolant: coolant_value(
+                        known && self.active_coolant == Some(Coolant::Off),
+                        self.last_coolant == Coolant::Through,
+                    ),
                     ..self.scope.clone()
                 };
                 self.writer.block(&self.templates.render(name, scope)?)?;

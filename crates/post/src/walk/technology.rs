@@ -230,14 +230,15 @@ impl Walk<'_> {
         if !stays && self.active_coolant != Some(Coolant::Off) {
             self.required(BlockName::CoolantOff)?;
         }
-        (self.active_coolant, self.last_coolant) = (Some(self.coolant), self.coolant);
         self.coolant_block(match self.coolant {
             Coolant::Off => BlockName::CoolantOff,
             Coolant::Flood => BlockName::CoolantFlood,
             Coolant::Mist => BlockName::CoolantMist,
             Coolant::FloodAndMist => BlockName::CoolantFloodAndMist,
             Coolant::Through => BlockName::CoolantThrough,
-        })
+        })?;
+        (self.active_coolant, self.last_coolant) = (Some(self.coolant), self.coolant);
+        Ok(())
     }
 
     /// Coolant that the control does nothing for is none.

@@ -81,13 +81,15 @@ impl Prover<'_> {
         self.check_drilling(line, cycle.feed, own.feed.or(self.running.feed));
         let summary = &mut self.report.program;
         summary.cutting_length_mm += own.clearance + own.depth;
-        for station in [&drilled.bottom, &drilled.r_plane, &drilled.retracted] {
+        let stations = [&drilled.bottom, &drilled.r_plane, &drilled.retracted];
+        let stations = stations.into_iter().chain(&drilled.cleared);
+        for station in stations.clone() {
             summary.include(&station.position);
         }
         let over = self.here.place.tip.distance(drilled.r_plane.place.tip);
         let out = drilled.bottom.place.tip.distance(drilled.retracted.place.tip);
         summary.rapid_length_mm += if over.is_nan() { out } else { over + out };
-        for station in [&drilled.bottom, &drilled.r_plane, &drilled.retracted] {
+        for station in stations {
             self.hold_travel(station, None);
         }
         self.standing.arrive(&pose.orientation);

@@ -421,6 +421,12 @@ impl Step<'_, '_, '_> {
         if held.canned == Canned::HandBore {
             self.by_hand(at, level, axis, &cycle)?;
         } else {
+            if self.flavor == Flavor::Haas
+                && held.canned == Canned::Deep
+                && !std::mem::replace(&mut self.state.knows_peck_retract, true)
+            {
+                self.actions.push(Action::Risk(Risk::PECK_RETRACT.into()));
+            }
             if held.told.replace(cycle) != Some(cycle) {
                 self.actions.push(Action::Cycle(Box::new(cycle)));
             }

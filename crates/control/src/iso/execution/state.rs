@@ -52,6 +52,8 @@ pub(crate) struct State {
     pub modulo: [Option<bool>; 3],
     /// Whether taps are held in a chuck that floats.
     pub floating_holder: bool,
+    /// Whether it is known how far above R a peck cycle goes to clear chips.
+    pub knows_peck_retract: bool,
     /// Whether the tool length counts along Z in every plane, and whether Z moves where it changes, where that is known.
     pub length_along_z: Option<bool>,
     pub length_moves_axis: Option<bool>,
@@ -214,6 +216,7 @@ impl State {
             rotary: axes.map(|exists| if exists { f64::NAN } else { 0.0 }),
             modulo: settings.modulo,
             floating_holder: settings.floating_holder,
+            knows_peck_retract: settings.retract_above_r.is_some(),
             length_along_z: settings.length_along_z,
             length_moves_axis: settings.length_moves_axis,
             dwell_p_milliseconds: settings.dwell_p_milliseconds,
