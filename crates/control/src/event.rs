@@ -341,13 +341,32 @@ impl Risk {
         refused: true,
     };
 
-    /// How the tool turns within a block under `TRAORI`: about the shortest way between its ends (`ORIVECT`, `ORIWKS`), or as
-    /// its axes turn evenly (`ORIAXES`, `ORIMKS`). Which of the two G groups says it, MD21104 decides.
+    /// How the tool turns within a block while the control keeps its tip: about the shortest way between its ends (`ORIVECT`,
+    /// `ORIWKS`; `PATHCTRL VECTOR`), or as its axes turn evenly (`ORIAXES`, `ORIMKS`; `M128`, `PATHCTRL AXIS`). Which of the two
+    /// G groups says it on a SINUMERIK, MD21104 decides.
     pub(crate) const ORIENTATION_WAY: Risk = Risk {
         rule: "orientation-way",
-        what: "turns the tool under TRAORI, and does not say that it turns the way that its words need",
-        help: "write ORIWKS and ORIVECT where the tool turns by vectors, ORIMKS and ORIAXES where it turns by positions of axes: with both \
-               it is so whatever MD21104 is",
+        what: "turns the tool while the control keeps its tip, and does not say that it turns the way that its words need",
+        help: "SINUMERIK: ORIWKS and ORIVECT where the tool turns by vectors, ORIMKS and ORIAXES where it turns by positions of axes: with \
+               both it is so whatever MD21104 is; HEIDENHAIN: PATHCTRL VECTOR with vectors, M128 or PATHCTRL AXIS with positions",
+        refused: true,
+    };
+
+    /// `TA` of cycle 32 (HEIDENHAIN), `CYCLE832` with `_ORI_...` and `OTOL` (SINUMERIK): by how much the control may turn the tool out
+    /// of the orientation of the program.
+    pub(crate) const ORIENTATION_TOLERANCE: Risk = Risk {
+        rule: "orientation-tolerance",
+        what: "lets the control turn the tool out of its orientation by more than the machine file allows",
+        help: "say how far in `orientation_tolerance` in [options] of the machine file (degrees), or write no more than that",
+        refused: true,
+    };
+
+    /// `M140 MB MAX` (HEIDENHAIN) and `CYCLE800` with `_FR` 4 or 5 (SINUMERIK) go back along the tool, by as much as the travels or a
+    /// word say. Where the tool leans in a head, Z is not home behind it.
+    pub(crate) const LEANING_RETRACT: Risk = Risk {
+        rule: "leaning-retract",
+        what: "goes back along a tool that may lean in its head: how far the axes then are from their ends the program does not say",
+        help: "send Z home in machine coordinates behind it (`L Z+0 R0 FMAX M91`, `SUPA Z0 D0`; CYCLE800 with _FR 0 or 1)",
         refused: true,
     };
 

@@ -235,6 +235,8 @@ pub struct Settings {
     pub wire: Wire,
     /// How far the control may be allowed to leave the path while it smooths it, mm.
     pub path_tolerance: f64,
+    /// By how much the control may be allowed to turn the tool out of its orientation while it smooths the way, degrees.
+    pub orientation_tolerance: f64,
     /// What the operator has set up.
     pub setup: Setup,
 }
@@ -356,6 +358,7 @@ impl Settings {
             kinematics: None,
             wire: Wire::default(),
             path_tolerance: 0.0,
+            orientation_tolerance: 0.0,
             setup: Setup::default(),
         }
     }

@@ -709,3 +709,149 @@ fn in_which_frame_g43_4_counts_with_a_turned_table_the_machine_file_says() {
         );
     }
 }
+
+/// TNC 640 cycles, "Tolerance": TA is how far the rotary axes may be off while the control keeps the tip. SINUMERIK ONE 12/2019, p. 1108:
+/// the tens of S_TOLM say that S_OTOL is a tolerance of the orientation; where they do not it is a version.
+#[test]
+fn a_tolerance_of_the_orientation_is_what_the_machines_file_allows() {
+    let risks_within = |dialect, orientation_tolerance, block: &str| {
+        let settings = Settings {
+            path_tolerance: 0.1,
+            orientation_tolerance,
+            ..Settings::new(dialect, [false, true, true])
+        };
+        rules(&common::ops(&settings, "p.nc", block).unwrap_or_else(|e| panic!("{e}\n{block}")))
+    };
+    let none = [""; 0];
+    let beyond = ["orientation-tolerance"];
+    for (dialect, block) in [
+        (
+            Dialect::Klartext,
+            "CYCL DEF 32.0 TOLERANCE\nCYCL DEF 32.1 T0.05\nCYCL DEF 32.2 HSC-MODE:1 TA0.5",
+        ),
+        (Dialect::Sinumerik, "CYCLE832(0.05,_ORI_ROUGH,0.5)\nM30\n"),
+        (Dialect::Sinumerik, "CYCLE832(0.05,13,0.5)\nM30\n"),
+        (Dialect::Sinumerik, "CYCLE832(0.05,2000011,0.5)\nM30\n"),
+        (Dialect::Sinumerik, "OTOL=0.5\nM30\n"),
+    ] {
+        let block = match dialect {
+            Dialect::Klartext => format!("BEGIN PGM T MM\n{block}\nEND PGM T MM\n"),
+            _ => block.to_owned(),
+        };
+        assert_eq!(risks_within(dialect, 0.0, &block), beyond, "{block}");
+        assert_eq!(risks_within(dialect, 0.49, &block), beyond, "{block}");
+        assert_eq!(risks_within(dialect, 0.5, &block), none, "{block}");
+    }
+    for harmless in
+        ["CYCLE832(0.05,_FINISH,1)", "CYCLE832(0.05,3,1)", "CYCLE832(0,_OFF,1)", "CYCLE832()"]
+    {
+        assert_eq!(risks_within(Dialect::Sinumerik, 0.0, &format!("{harmless}\nM30\n")), none);
+    }
+    for wrong in [
+        "CYCLE832(0.05,_ORI_FINISH)",
+        "CYCLE832(0.05,11,0)",
+        "CYCLE832(0.05,_ORI_OFF,1)",
+        "CYCLE832(0.05,_FINE,1)",
+        "CYCLE832(0.05,25,1)",
+    ] {
+        let error = run(Dialect::Sinumerik, &format!("{wrong}\nM30\n")).unwrap_err();
+        let path = error.rule == "path-tolerance";
+        assert!(path || error.rule == "cycle-parameter", "{wrong}: {error}");
+        let settings = Settings {
+            path_tolerance: 0.1,
+            ..Settings::new(Dialect::Sinumerik, [false, true, true])
+        };
+        let error = common::ops(&settings, "p.nc", &format!("{wrong}\nM30\n")).unwrap_err();
+        assert_eq!(error.rule, "cycle-parameter", "{wrong}");
+    }
+}
+
+/// iTNC 530 user's manual, M140: it goes along the tool axis to the end of the travel, also with tilted planes and with M128, and the tool
+/// axis has to be known from a TOOL CALL. CYCLE800: `_FR` 4 goes along the tool as far as it can, 5 by `_FR_I`.
+#[test]
+fn a_retract_along_the_tool_is_a_way_home_only_where_the_tool_stands_along_z_of_the_machine() {
+    let risks_on = |dialect, table, blocks: &str| {
+        let settings = Settings { table, ..Settings::new(dialect, [false, true, true]) };
+        let actions =
+            common::ops(&settings, "p.nc", blocks).unwrap_or_else(|e| panic!("{e}\n{blocks}"));
+        let home = actions.iter().any(|a| matches!(a, Action::Home(_)));
+        (rules(&actions), home)
+    };
+    let (tables, heads) = ([false, true, true], [false; 3]);
+    let klartext = |turn: &str| {
+        format!(
+            "BEGIN PGM T MM\nTOOL CALL 1 Z S100\nL B+0 C+0 R0 FMAX\nL X+0 Y+0 Z+9 R0 FMAX\n{turn}\nL M140 MB MAX\nEND PGM T MM\n"
+        )
+    };
+    for turn in [
+        "L B+30 R0 FMAX",
+        "PLANE SPATIAL SPA+0 SPB+30 SPC+0 TURN FMAX SEQ+",
+        "M128\nL B+30 F9 M126",
+    ] {
+        let program = klartext(turn);
+        assert_eq!(
+            risks_on(Dialect::Klartext, heads, &program),
+            (vec!["leaning-retract"], true),
+            "{turn}"
+        );
+        assert_eq!(risks_on(Dialect::Klartext, tables, &program), (vec![], true), "{turn}");
+    }
+    assert_eq!(risks_on(Dialect::Klartext, heads, &klartext("M3")), (vec![], true));
+    let before = "BEGIN PGM T MM\nL M140 MB MAX\nEND PGM T MM\n";
+    assert_eq!(run(Dialect::Klartext, before).unwrap_err().rule, "m-function");
+
+    let sinumerik = |retract: u8| {
+        format!(
+            "T1 M6\nG0 X0 Y0 Z9 B20 C0\nCYCLE800({retract},\"\",0,57,0,0,0,0,30,0,0,0,0,-1,50)\nM30\n"
+        )
+    };
+    assert_eq!(risks_on(Dialect::Sinumerik, heads, &sinumerik(1)), (vec![], true));
+    assert_eq!(risks_on(Dialect::Sinumerik, heads, &sinumerik(4)), (vec!["leaning-retract"], true));
+    assert_eq!(risks_on(Dialect::Sinumerik, tables, &sinumerik(4)), (vec![], true));
+    // By how much it goes along the tool says nothing of where Z is home.
+    assert_eq!(risks_on(Dialect::Sinumerik, tables, &sinumerik(5)), (vec![], false));
+}
+
+/// TNC 640, FUNCTION TCPM: with PATHCTRL AXIS (as with M128) the axes turn evenly, with PATHCTRL VECTOR the tool turns in the plane of its
+/// two directions.
+#[test]
+fn the_tool_turns_under_tcpm_as_pathctrl_says() {
+    let turning = |on: &str, words: &str| {
+        let program = format!(
+            "BEGIN PGM T MM\nTOOL CALL 1 Z S100\nL B+0 C+0 R0 FMAX\n{on}\nL X+0 Y+0 Z+9 FMAX\n{words}\nEND PGM T MM\n"
+        );
+        risks_counted(Dialect::Klartext, Some(false), &program)
+    };
+    let tcpm = |axis: &str, way: &str| format!("FUNCTION TCPM F TCP AXIS {axis} PATHCTRL {way}");
+    let wrong = ["orientation-way"];
+    let (positions, vector) = ("L X+5 B+30 F100", "LN X+5 Y+0 Z+9 TX+0.6 TY+0 TZ+0.8 F100");
+    assert_eq!(turning("M128", positions), [""; 0]);
+    assert_eq!(turning(&tcpm("POS", "AXIS"), positions), [""; 0]);
+    assert_eq!(turning(&tcpm("POS", "VECTOR"), positions), wrong);
+    assert_eq!(turning(&tcpm("SPAT", "VECTOR"), positions), [""; 0]);
+    assert_eq!(turning(&tcpm("SPAT", "AXIS"), positions), wrong);
+    assert_eq!(turning(&tcpm("POS", "VECTOR"), vector), [""; 0]);
+    assert_eq!(turning(&tcpm("POS", "AXIS"), vector), wrong);
+    assert_eq!(turning("M128", vector), wrong);
+    // A tool that does not turn goes the same way with both.
+    assert_eq!(turning(&tcpm("POS", "VECTOR"), "L X+5 B+0 F100"), [""; 0]);
+}
+
+/// TNC manuals, "Defining the blank": two corners, the MIN point absolute, the MAX point absolute or incremental.
+#[test]
+fn the_blank_of_a_heidenhain_has_two_corners_and_a_thickness() {
+    let blank = |blocks: &str| {
+        let program = format!("BEGIN PGM T MM\n{blocks}\nEND PGM T MM\n");
+        run(Dialect::Klartext, &program).map(drop).map_err(|error| error.rule)
+    };
+    assert_eq!(blank("BLK FORM 0.1 Z X+0 Y+0 Z-40\nBLK FORM 0.2 X+100 Y+100 Z+0"), Ok(()));
+    assert_eq!(blank("BLK FORM 0.1 Z X+0 Y+0 Z-40\nBLK FORM 0.2 IX+100 IY+100 IZ+40"), Ok(()));
+    for wrong in [
+        "BLK FORM 0.1 Z X+0 Y+0 Z-40\nBLK FORM 0.2 X+100 Y+100 Z-40",
+        "BLK FORM 0.1 Z X+0 Y+0 Z-40\nBLK FORM 0.2 X-1 Y+100 Z+0",
+        "BLK FORM 0.1 Z IX+0 Y+0 Z-40",
+        "BLK FORM 0.2 X+100 Y+100 Z+0",
+    ] {
+        assert_eq!(blank(wrong), Err("blank"), "{wrong}");
+    }
+}

@@ -659,8 +659,19 @@ impl Machine {
     /// How far its control may leave the path while it smooths it, mm: `path_tolerance` of the options,
     /// which the templates write. The proof does not see that deviation.
     pub fn path_tolerance(&self) -> f64 {
-        match self.options.get("path_tolerance") {
-            Some(OptionValue::Number(mm)) => *mm,
+        self.number_of("path_tolerance")
+    }
+
+    /// By how much its control may turn the tool out of its orientation while it smooths the way, degrees:
+    /// `orientation_tolerance` of the options, which the templates write. The proof does not see that deviation.
+    pub fn orientation_tolerance(&self) -> f64 {
+        self.number_of("orientation_tolerance")
+    }
+
+    /// The number of an option; 0 where there is none.
+    fn number_of(&self, option: &str) -> f64 {
+        match self.options.get(option) {
+            Some(OptionValue::Number(number)) => *number,
             _ => 0.0,
         }
     }

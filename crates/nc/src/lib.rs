@@ -97,6 +97,7 @@ pub fn settings(machine: &Machine, setup: Setup) -> Result<Settings, Box<Diagnos
             .kinematics
             .map(|k| control::Kinematics { tip: k.tip, axes: k.axes }),
         path_tolerance: machine.path_tolerance(),
+        orientation_tolerance: machine.orientation_tolerance(),
         setup,
         ..Settings::new(dialect, rotary)
     })

@@ -2,14 +2,16 @@
 //! program does not say.
 
 /// The rules that may be accepted, each with what its acceptance answers for.
-pub const ACCEPTABLE: [(&str, &str); 14] = [
+pub const ACCEPTABLE: [(&str, &str); 16] = [
     ("dwell-unit", "what a dwell counts in"),
     ("floating-tap", "taps are held in a floating chuck"),
+    ("leaning-retract", "a retract along the tool brings Z to its end"),
     ("length-change", "Z moves by the tool length where parameter 5006#6 is 0"),
     ("length-plane", "along which axis the tool length counts in G18 and G19"),
     ("operator-controls", "the operator can neither stop the program nor slow it down"),
     ("operator-data", "work offsets and tool data that the program rewrites"),
-    ("orientation-way", "how the tool turns within a block under TRAORI"),
+    ("orientation-tolerance", "the tool may lean otherwise by more than the machine's file allows"),
+    ("orientation-way", "how the tool turns within a block while the control keeps its tip"),
     ("path-tolerance", "corners may be cut by more than the machine's file allows"),
     ("rapid-path", "room for the tool where it goes by rapid beside the way of the source"),
     ("rotary-way", "which way the rotary axes turn"),

@@ -126,7 +126,13 @@ pub fn rows(proof: &Report, machine: &Machine) -> Vec<(&'static str, String)> {
     }
     if machine.path_tolerance() > 0.0 {
         let most = number(machine.path_tolerance(), 5);
-        let text = format!("by up to {most} mm where the program lets it, which no proof sees");
+        let tool = machine.orientation_tolerance();
+        let tool = match tool > 0.0 {
+            true => format!(", the tool by up to {}°,", number(tool, 5)),
+            false => String::new(),
+        };
+        let text =
+            format!("by up to {most} mm{tool} where the program lets it, which no proof sees");
         rows.push(("smoothing", text));
     }
     if !proof.accepted.is_empty() {

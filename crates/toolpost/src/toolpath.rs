@@ -545,5 +545,6 @@ pub fn describe(machine: &Machine) -> Value {
         "reader": machine.reader,
         "extension": machine.extension,
         "path_tolerance_mm": machine.path_tolerance(),
+        "orientation_tolerance_degrees": machine.orientation_tolerance(),
     })
 }

@@ -4,7 +4,7 @@ use super::hole::{Hole, RAPID_FEED};
 use super::layout::{self, Layout, Unit};
 use super::older::Older;
 use super::state::{Control, TENTH_INCH, Tip};
-use crate::event::Action;
+use crate::event::{Action, Risk};
 use crate::klartext::language::functions::When;
 use crate::klartext::language::registers::{Parameter, Registers};
 use crate::klartext::language::scan::{Result, Scanner, Word};
@@ -394,7 +394,9 @@ impl Control<'_, '_> {
                 Some(Word { address: b"T", number: Some(number), .. }) if number >= 0.0 => {
                     mode = Some(PathMode::Blend(number * self.unit));
                 }
-                Some(word) if word.address == b"TA" && word.number.is_some() => {}
+                Some(Word { address: b"TA", number: Some(degrees), .. }) if degrees >= 0.0 => {
+                    self.hold_orientation(degrees)?;
+                }
                 _ => {
                     let message = "cycle 32 takes T, HSC-MODE and TA";
                     return Err(s.error_block("cycle-parameter", message));
@@ -402,5 +404,14 @@ impl Control<'_, '_> {
             }
         }
         mode.map_or(Ok(()), |mode| self.emit(Action::PathMode(mode)))
+    }
+
+    /// Tells where the control may turn the tool by so many degrees out of its orientation, which is more than it may.
+    fn hold_orientation(&mut self, degrees: f64) -> Result<()> {
+        let turns = self.settings.rotary.contains(&true);
+        if !turns || degrees <= self.settings.orientation_tolerance {
+            return Ok(());
+        }
+        self.emit(Action::Risk(Risk::ORIENTATION_TOLERANCE.into()))
     }
 }

@@ -186,13 +186,17 @@ impl Control<'_, '_> {
                 let message = "TX TY TZ need M128 or FUNCTION TCPM";
                 return Err(s.error_block("tool-center", message));
             }
+            let turns = self.vector != Some(tool);
             self.forget_rotary();
             self.vector = Some(tool);
+            self.hold_turning(turns, true, element.start)?;
         }
         if words.has(ROTARY) {
+            let turns = self.vector.is_some() || self.degrees != degrees;
             self.vector = None;
             self.hold_way(words, degrees, element.start)?;
             self.degrees = degrees;
+            self.hold_turning(turns, self.tip == Tip::KeptSpatial, element.start)?;
             // In a plane that is only declared the tip goes where the turning axes take it.
             if self.tilt.is_some() {
                 if words.has(LINEAR) {
@@ -232,6 +236,16 @@ impl Control<'_, '_> {
             return Ok(());
         }
         self.emit(Action::Risk(Risk::ROTARY_WAY.into()))
+    }
+
+    /// Tells where the tool turns over the part while the control keeps its tip, and not the way that its words need: vectors and
+    /// spatial angles are told as turning on the great circle, positions of axes as turning evenly.
+    fn hold_turning(&mut self, turns: bool, great_circle: bool, here: Vec3) -> Result<()> {
+        let over_part = self.tip != Tip::Free && !here.z.is_nan();
+        if !(turns && over_part) || self.great_circle == great_circle {
+            return Ok(());
+        }
+        self.emit(Action::Risk(Risk::ORIENTATION_WAY.into()))
     }
 
     /// Tells an element of the contour that is cut.

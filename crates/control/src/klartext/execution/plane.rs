@@ -277,7 +277,8 @@ impl Control<'_, '_> {
             (_, span) => return Err(s.error("unknown-word", span, "AXIS takes POS or SPAT")),
         };
         s.expect(b"PATHCTRL")?;
-        if !s.take(b"AXIS") {
+        let great_circle = !s.take(b"AXIS");
+        if great_circle {
             s.expect(b"VECTOR")?;
         }
         // Which point of the tool is kept (newer software); the tip is also what is kept without.
@@ -290,6 +291,7 @@ impl Control<'_, '_> {
             feed_word(s, &word, self.tool_feed)?;
         }
         s.finish()?;
+        self.great_circle = great_circle;
         self.keep_tip(s, tip)
     }
 

@@ -9,7 +9,7 @@ use crate::Settings;
 use crate::ToolData;
 use crate::budget::Budget;
 use crate::compensation::{Compensator, Terms};
-use crate::event::{Action, Event, Orientation, Position};
+use crate::event::{Action, Event, Orientation, Position, Risk};
 use crate::klartext::language::functions::{Function, Functions, When};
 use crate::klartext::language::registers::Registers;
 use crate::klartext::language::scan::{Result, Scanner};
@@ -55,6 +55,8 @@ pub(crate) struct Control<'a, 's> {
     pub(super) outside: Transforms,
     pub(super) tilt: Option<Tilt>,
     pub(super) tip: Tip,
+    /// `PATHCTRL VECTOR`: the tool turns on the great circle between its ends, and not as its axes turn evenly.
+    pub(super) great_circle: bool,
     pub(super) feed: Option<Feed>,
     /// Feed of the last TOOL CALL, for `F AUTO`.
     pub(crate) tool_feed: Option<FeedWord>,
@@ -62,6 +64,8 @@ pub(crate) struct Control<'a, 's> {
     pub(super) defined_tools: HashMap<u32, ToolData>,
     /// Number of the tool, where it is known.
     pub(super) tool_number: Option<u32>,
+    /// Whether a tool has been called, and with it the tool axis.
+    pub(super) has_tool: bool,
     /// Radius of the tool in the tool table, mm.
     pub(super) tool_radius: Option<f64>,
     pub(super) per_turn: bool,
@@ -73,6 +77,8 @@ pub(crate) struct Control<'a, 's> {
     pub(super) coolant: Coolant,
     /// Pole `CC`, mm.
     pub(super) pole: Option<(f64, f64)>,
+    /// The MIN point of the blank, in the unit of the program as `Words` gives it, while its MAX point is to come.
+    pub(super) blank_low: Option<Vec3>,
     /// The last motion, for those that go on in its direction.
     pub(super) path: Option<Element>,
     /// Whether the last positioning was at rapid.
@@ -107,10 +113,12 @@ impl<'a, 's> Control<'a, 's> {
             outside: Transforms::default(),
             tilt: None,
             tip: Tip::Free,
+            great_circle: false,
             feed: None,
             tool_feed: None,
             defined_tools: HashMap::new(),
             tool_number: None,
+            has_tool: false,
             tool_radius: None,
             per_turn: false,
             shorter_way: false,
@@ -120,6 +128,7 @@ impl<'a, 's> Control<'a, 's> {
             coolant: Coolant::Off,
             pole: None,
             path: None,
+            blank_low: None,
             rapid: false,
             waiting: None,
             cycle: None,
@@ -227,6 +236,13 @@ impl<'a, 's> Control<'a, 's> {
             Some(tilt) => tilt.turned,
             None => self.vector.is_none() && self.degrees == [0.0; 3],
         }
+    }
+
+    /// Whether the tool may stand otherwise than along Z of the machine: an axis of the head may have turned.
+    fn may_lean_in_head(&self) -> bool {
+        let stands = self.vector.is_none() && self.tilt.is_none() && self.tip != Tip::KeptSpatial;
+        let (rotary, table) = (self.settings.rotary, self.settings.table);
+        (0..3).any(|i| rotary[i] && !table[i] && !(stands && self.degrees[i] == 0.0))
     }
 
     /// The position of the linear axes is not known any more.
@@ -357,7 +373,10 @@ impl<'a, 's> Control<'a, 's> {
                 Err(s.error_block("program-frame", message))
             }
             Function::End => self.end(),
-            Function::KeepTip => self.keep_tip(s, Tip::Kept),
+            Function::KeepTip => {
+                self.great_circle = false;
+                self.keep_tip(s, Tip::Kept)
+            }
             Function::ReleaseTip => {
                 self.release_tip();
                 Ok(())
@@ -401,7 +420,15 @@ impl<'a, 's> Control<'a, 's> {
 
     /// Back along the tool axis by `distance` mm; infinite is to the end of the travel.
     fn retract(&mut self, s: &Scanner, distance: f64, feed: Option<FeedWord>) -> Result<()> {
+        if !self.has_tool {
+            let message =
+                "M140 before the first TOOL CALL: along which axis it goes is not defined";
+            return Err(s.error_block("m-function", message).help("call the tool first").into());
+        }
         if distance.is_infinite() {
+            if self.may_lean_in_head() {
+                self.emit(Action::Risk(Risk::LEANING_RETRACT.into()))?;
+            }
             self.emit(Action::Home(Axes::Z))?;
             if self.tilt.is_none() && self.stands_upright() {
                 self.here.z = f64::NAN;

@@ -6,6 +6,7 @@ use crate::event::{Action, Risk};
 use crate::klartext::language::registers::Parameter;
 use crate::klartext::language::scan::{Result, Scanner};
 use crate::klartext::language::words::{self, LINEAR, Words, feed_word};
+use geom::Vec3;
 use program::{Compensation, Diagnostic, Spindle, Tool};
 
 impl Control<'_, '_> {
@@ -149,6 +150,7 @@ impl Control<'_, '_> {
         self.tool_radius = data.map(|data| data.radius);
         let number = if tool.name.is_empty() { Some(tool.number) } else { data.map(|d| d.number) };
         self.tool_number = number;
+        self.has_tool = true;
         // In which unit an inch program finds them the manuals do not say.
         let metric = if self.unit == 1.0 { data } else { None };
         self.registers.preassign(108, metric.map_or(f64::NAN, |data| data.radius));
@@ -162,9 +164,12 @@ impl Control<'_, '_> {
     /// `BLK FORM`, from behind `BLK`: the blank, for the screen alone.
     pub(crate) fn blank_form(&mut self, s: &mut Scanner) -> Result<()> {
         s.expect(b"FORM")?;
-        match s.token() {
-            (b"0.1", _) => s.expect(b"Z")?,
-            (b"0.2", _) => {}
+        let is_first = match s.token() {
+            (b"0.1", _) => {
+                s.expect(b"Z")?;
+                true
+            }
+            (b"0.2", _) => false,
             (b"CYLINDER" | b"ROTATION" | b"FILE", _) => {
                 s.skip();
                 return Ok(());
@@ -172,12 +177,35 @@ impl Control<'_, '_> {
             (_, span) => {
                 return Err(s.error("unsupported", span, "this kind of BLK FORM is not known"));
             }
-        }
+        };
         let words = Words::read(s, LINEAR, self)?;
-        if words.has_all(LINEAR) && words.is_plain() {
+        if !words.has_all(LINEAR) || !words.is_plain() {
+            return Err(s.error_block("missing-word", "BLK FORM takes X, Y and Z"));
+        }
+        let low = self.blank_low.take();
+        let corner = |from: Vec3| {
+            Vec3::from_array([0, 1, 2].map(|axis| words.target(axis, from.to_array()[axis])))
+        };
+        if is_first {
+            if words.is_incremental(LINEAR) {
+                let message = "BLK FORM 0.1 takes absolute coordinates";
+                return Err(s.error_block("blank", message));
+            }
+            self.blank_low = Some(corner(Vec3::ZERO));
             return Ok(());
         }
-        Err(s.error_block("missing-word", "BLK FORM takes X, Y and Z"))
+        let Some(low) = low else {
+            let message = "BLK FORM 0.2 without BLK FORM 0.1 before it";
+            return Err(s.error_block("blank", message).help("the MIN point comes first").into());
+        };
+        if corner(low).cmpgt(low).all() {
+            return Ok(());
+        }
+        let message = "the MAX point of BLK FORM is not above the MIN point in every axis";
+        Err(s
+            .error_block("blank", message)
+            .help("give the blank a thickness, or leave both out")
+            .into())
     }
 }
 

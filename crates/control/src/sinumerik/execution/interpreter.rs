@@ -21,7 +21,7 @@ use crate::sinumerik::language::scan::Source;
 use crate::sinumerik::language::system::AXIS_NAMES;
 use crate::sinumerik::language::value::Value;
 use crate::sinumerik::language::variables::{ELEMENTS_IN_A_TURN, Place};
-use program::{Auxiliary, Compensation, Coolant, Cycle, Feed, Spindle, Tool};
+use program::{Auxiliary, Compensation, Coolant, Cycle, Diagnostic, Feed, Spindle, Tool};
 
 /// Runs blocks.
 pub(crate) struct Interpreter<'a, 's> {
@@ -43,6 +43,9 @@ pub(crate) struct Interpreter<'a, 's> {
     pub held: Option<Box<Held>>,
     pub(super) reported_cycle: Option<Cycle>,
 }
+
+/// The kinds of machining of `CYCLE832` by their names (SINUMERIK ONE 12/2019, p. 1108; those behind the first also with `_ORI`).
+const PRECISIONS: [&str; 5] = ["_OFF", "_FINISH", "_SEMIFIN", "_ROUGH", "_PRECISION"];
 
 /// M functions of which a block has at most one, and those that stand for no motion at all.
 const STOPS: &[u32] = &[0, 1, 2, 17, 30];
@@ -147,6 +150,9 @@ impl<'a, 's> Interpreter<'a, 's> {
         self.modes(source, block)?;
         if let Some((name, tolerance)) = block.path_tolerance {
             self.path_tolerance(source, name, tolerance * self.state.unit)?;
+        }
+        if let Some(degrees) = block.orientation_tolerance {
+            self.hold_orientation(source, degrees)?;
         }
         if let Some(rare) = &block.rare {
             if let Some(radius) = rare.modal_round {
@@ -559,15 +565,58 @@ impl<'a, 's> Interpreter<'a, 's> {
         }
     }
 
-    /// `CYCLE832(tolerance, mode, version)`. The older form has a packed second argument that can
-    /// switch the transformation too.
-    fn high_speed(&self, source: &Source, call: &Call) -> Fallible<()> {
-        if matches!(call.arguments.get(1), Some(Argument::Number(n)) if *n > 9999.0) {
-            let message = "the older form of CYCLE832, which can switch TRAORI, is not supported";
-            return Err(source.block_error("unsupported", message));
-        }
+    /// `CYCLE832(S_TOL, S_TOLM, S_OTOL)`: the tolerance of the contour, the kind of machining, and the tolerance of the orientation
+    /// where the kind says so (tens 1, `_ORI_FINISH` and its kin), else a version. The older form has a packed second argument that
+    /// can switch the transformation too.
+    fn high_speed(&mut self, source: &Source, call: &Call) -> Fallible<()> {
+        let tolerates_orientation = match call.arguments.get(1) {
+            None | Some(Argument::None) => false,
+            Some(Argument::Number(kind)) => {
+                // Millions say whether Top Surface smooths; tens and units are the kind.
+                let (top, kind) = (kind.div_euclid(1e6), kind.rem_euclid(1e6));
+                if kind > 9999.0 {
+                    let message =
+                        "the older form of CYCLE832, which can switch TRAORI, is not supported";
+                    return Err(source.block_error("unsupported", message));
+                }
+                let (tens, units) = (kind.div_euclid(10.0), kind.rem_euclid(10.0));
+                if kind.fract() != 0.0 || top > 2.0 || tens > 1.0 || units > 4.0 {
+                    return Err(unknown_kind(source));
+                }
+                tens == 1.0
+            }
+            Some(Argument::Text(name)) => match PRECISIONS.contains(&name.as_str()) {
+                true => false,
+                false => match name.strip_prefix("_ORI") {
+                    Some(rest) if PRECISIONS[1..].contains(&rest) => true,
+                    _ => return Err(unknown_kind(source)),
+                },
+            },
+        };
         let tolerance = call.number(source, 0)?.unwrap_or(0.0);
-        self.path_tolerance(source, call.name, tolerance * self.state.unit)
+        self.path_tolerance(source, call.name, tolerance * self.state.unit)?;
+        if !tolerates_orientation {
+            return Ok(());
+        }
+        match call.number(source, 2)? {
+            Some(degrees) if degrees > 0.0 => self.hold_orientation(source, degrees),
+            _ => {
+                let message =
+                    "this kind of CYCLE832 needs the tolerance of the orientation, in degrees";
+                let mut error = source.block_error("cycle-parameter", message);
+                error.help = "CYCLE832(0.01,_ORI_FINISH,0.05), or CYCLE832(0.01,_FINISH,1)".into();
+                Err(error)
+            }
+        }
+    }
+
+    /// Tells where the control may turn the tool by so many degrees out of its orientation, which is more than it may.
+    fn hold_orientation(&mut self, source: &Source, degrees: f64) -> Fallible<()> {
+        let turns = self.settings.rotary.contains(&true);
+        if !turns || degrees <= self.settings.orientation_tolerance {
+            return Ok(());
+        }
+        self.emit(source, Action::Risk(Risk::ORIENTATION_TOLERANCE.into()))
     }
 
     /// How far the control may leave the path, mm: what it then does is not seen here.
@@ -634,6 +683,15 @@ impl<'a, 's> Interpreter<'a, 's> {
             path => self.emit(source, Action::FeedPath(path)),
         }
     }
+}
+
+fn unknown_kind(source: &Source) -> Box<Diagnostic> {
+    let message = "this kind of machining of CYCLE832 is not known";
+    let mut error = source.block_error("cycle-parameter", message);
+    error.help = "one of _OFF _FINISH _SEMIFIN _ROUGH _PRECISION, or _ORI_FINISH and its kin with a tolerance of the \
+                  orientation"
+        .into();
+    error
 }
 
 /// `GROUP_BEGIN(level, text, spindle, retract)`, `GROUP_END(level, retract)`: nothing, unless the control

@@ -3,7 +3,7 @@
 use super::frames::{swivel_order, swivelled};
 use super::interpreter::Interpreter;
 use super::state::ToolAxis;
-use crate::event::{Action, TiltChoice};
+use crate::event::{Action, Risk, TiltChoice};
 use crate::sinumerik::Fallible;
 use crate::sinumerik::language::call::{Argument, Call};
 use crate::sinumerik::language::scan::Source;
@@ -118,11 +118,14 @@ impl Interpreter<'_, '_> {
                 return Err(source.block_error("unsupported", message));
             }
         };
-        let home = match whole(RETRACT, "_FR")? {
-            0 => Axes::NONE,
-            // Z of the machine; Z, then X and Y; along the tool to the end of travel or by _FR_I.
-            1 => Axes::Z,
-            2 | 4 | 5 => Axes::LINEAR,
+        let retract = whole(RETRACT, "_FR")?;
+        let home = match retract {
+            // None; along the tool by _FR_I: where the axes then are the block does not say.
+            0 | 5 => Axes::NONE,
+            // Z of the machine; along the tool to the end of travel.
+            1 | 4 => Axes::Z,
+            // Z, then X and Y.
+            2 => Axes::LINEAR,
             other => {
                 let message = format!("_FR = {other} of CYCLE800 is not supported");
                 return Err(source.block_error("unsupported", message));
@@ -133,6 +136,9 @@ impl Interpreter<'_, '_> {
             let message = "_DIR of CYCLE800 must be -1 or 1: without it only the frame turns, not the \
                            machine";
             return error("unsupported", message);
+        }
+        if retract == 4 && self.may_lean_in_head() {
+            self.emit(source, Action::Risk(Risk::LEANING_RETRACT.into()))?;
         }
         let unit = self.state.unit;
         let angles = vector(ANGLES, 1.0)?.to_array();
@@ -147,6 +153,13 @@ impl Interpreter<'_, '_> {
             self.emit(source, Action::Home(home))?;
         }
         self.emit(source, Action::Swivel(TiltChoice::Higher(direction > 0.0)))
+    }
+
+    /// Whether the tool may stand otherwise than along Z of the machine: an axis of the head may have turned.
+    fn may_lean_in_head(&self) -> bool {
+        let stands = matches!(self.state.tool_axis, ToolAxis::Rotary);
+        let (rotary, table) = (self.settings.rotary, self.settings.table);
+        (0..3).any(|i| rotary[i] && !table[i] && !(stands && self.state.rotary[i] == 0.0))
     }
 
     /// `CYCLE800()`: no plane; where the rotary axes are left is the machine's business.

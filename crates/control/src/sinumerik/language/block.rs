@@ -118,6 +118,8 @@ pub(crate) struct Block {
     pub m: [Option<u32>; MOST_M],
     /// `CTOL`, `ADIS`: which, and the value.
     pub path_tolerance: Option<(&'static str, f64)>,
+    /// `OTOL=`, degrees.
+    pub orientation_tolerance: Option<f64>,
     /// The words that few blocks have.
     pub rare: Option<Box<Rare>>,
     /// Assignments to R parameters and variables.
@@ -235,6 +237,7 @@ impl Block {
             edge: None,
             m: [None; MOST_M],
             path_tolerance: None,
+            orientation_tolerance: None,
             rare: None,
             assigned: Vec::new(),
             call: None,

@@ -29,6 +29,8 @@ pub(super) enum Setting {
     Peak,
     /// How far the control may leave the path of a cut.
     PathTolerance,
+    /// `OTOL=`: by how much the control may turn the tool out of its orientation.
+    OrientationTolerance,
     /// How rapids and corrections are rounded, and how far the tool axis may turn.
     NoMotion,
 }
@@ -55,7 +57,7 @@ const SETTINGS: &[(&str, Setting)] = &[
     ("ADIS", Setting::PathTolerance),
     ("ADISPOS", Setting::NoMotion),
     ("CTOL", Setting::PathTolerance),
-    ("OTOL", Setting::NoMotion),
+    ("OTOL", Setting::OrientationTolerance),
     ("DISC", Setting::Peak),
 ];
 
@@ -100,6 +102,7 @@ impl Reader<'_, '_> {
             Setting::Rotation => block.rotation.replace(value).is_some(),
             Setting::FixedPoint => block.fixed_point.replace(value).is_some(),
             Setting::PathTolerance => block.path_tolerance.replace((said, value)).is_some(),
+            Setting::OrientationTolerance => block.orientation_tolerance.replace(value).is_some(),
             Setting::Corner(corner) => {
                 let rare = block.rare.get_or_insert_default();
                 rare.corner.replace(corner(value)).is_some()
