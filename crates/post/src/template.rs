@@ -267,7 +267,7 @@ impl Scope {
         program.push(1, Op::Tool(Box::new(tool.clone())));
         Scope {
             set: if first { Words::MAX } else { 0 },
-            program: program_value(machine, &program.name, &program.records),
+            program: program_value(machine, &program.name, &program.records, true),
             operation: map([("name", Value::from(operation))]),
             tool: tool_value(machine, &tool, first),
             spindle: spindle_value(first, first, !first),
@@ -288,11 +288,18 @@ impl Scope {
         });
         let names = [("name", &machine.name), ("title", &machine.title)];
         let names = names.map(|(key, name)| (key, Value::from(clean(name))));
-        let vectors = machine.orientation.simultaneous == OrientationMode::Vectors;
+        let turning = machine.orientation.simultaneous;
+        let vectors = turning == OrientationMode::Vectors;
+        let modes = [
+            ("vectors", vectors),
+            ("tool_center", vectors || turning == OrientationMode::ToolCenterAngles),
+            ("tilted_plane", machine.orientation.positioned == OrientationMode::TiltedPlane),
+        ];
+        let modes = modes.map(|(key, value)| (key, Value::from(value)));
         Scope {
             set: 0,
             program: Value::UNDEFINED,
-            machine: map(names.into_iter().chain([("vectors", Value::from(vectors))])),
+            machine: map(names.into_iter().chain(modes)),
             options: Value::from(options.collect::<BTreeMap<String, Value>>()),
             operation: map([("name", Value::from(""))]),
             tool: tool_value(machine, &Tool::default(), true),
@@ -351,8 +358,13 @@ fn identifies(name: &str) -> bool {
 
 /// A program as templates see it. Its name becomes a file name on the control: the last part of a
 /// path, letters, digits, `_` and `-`, at most 24 of them (SINUMERIK), never empty. Its tools are those that
-/// `records` call.
-pub(crate) fn program_value(machine: &Machine, name: &str, records: &[Record]) -> Value {
+/// `records` call; `cuts` says whether it knows how far its cuts reach.
+pub(crate) fn program_value(
+    machine: &Machine,
+    name: &str,
+    records: &[Record],
+    cuts: bool,
+) -> Value {
     let name = name.rsplit(['/', '\\']).next().unwrap_or_default();
     let name = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
     let kept = |c: &char| c.is_ascii_alphanumeric() || matches!(c, '_' | '-');
@@ -371,7 +383,11 @@ pub(crate) fn program_value(machine: &Machine, name: &str, records: &[Record]) -
         }
     }
     let number = number_of(&name).map(|number| ("number", Value::from(number)));
-    let members = [("name", Value::from(name.as_str())), ("tools", Value::from(tools))];
+    let members = [
+        ("name", Value::from(name.as_str())),
+        ("tools", Value::from(tools)),
+        ("cuts", Value::from(cuts)),
+    ];
     map(members.into_iter().chain(number))
 }
 

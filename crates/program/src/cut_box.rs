@@ -98,6 +98,11 @@ impl CutBox {
         geom::reach_of_box(self.low, self.high, direction)
     }
 
+    /// Its smallest and largest coordinates, mm; none where nothing is cut.
+    pub fn corners(&self) -> Option<(Vec3, Vec3)> {
+        (self.low.x <= self.high.x).then_some((self.low, self.high))
+    }
+
     fn add(&mut self, point: Vec3) {
         self.low = self.low.min(point);
         self.high = self.high.max(point);

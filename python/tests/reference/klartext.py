@@ -58,7 +58,11 @@ class Klartext(Control):
             self.tilt(rest)
         elif head == "CYCL":
             self.define(rest)
-        elif head not in ("BEGIN", "END"):
+        elif text == "FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS":
+            self.function(128)
+        elif text == "FUNCTION RESET TCPM":
+            self.function(129)
+        elif head not in ("BEGIN", "END", "BLK"):
             raise self.fault(f"not known: {text}")
 
     def straight(self, text: str) -> None:

@@ -16,8 +16,8 @@ from .machine import ARRAY, X, Y, Z, matrix
 
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)"
 TOKEN = re.compile(
-    rf"""(?P<call>(?:MCALL\s+)?CYCLE\d+\([^)]*\)|FGROUP\([^)]*\)|MSG\("[^"]*"\))
-    |(?P<name>TRAORI|TRAFOOF|ORIWKS|ORIVECT|SUPA|CIP|MCALL)
+    rf"""(?P<call>(?:MCALL\s+)?CYCLE\d+\([^)]*\)|FGROUP\([^)]*\)|WORKPIECE\([^)]*\)|MSG\("[^"]*"\))
+    |(?P<name>TRAORI|TRAFOOF|ORIWKS|ORIVECT|FFWON|FFWOF|SOFT|BRISK|SUPA|CIP|MCALL)
     |(?P<address>[ABC]3|[IJK]1|TURN|FGREF\[[ABC]\]|[ABCT])=(?P<value>"[^"]*"|DC\({NUMBER}\)|{NUMBER})
         (?P<operator>\+R\d+)?
     |(?P<letter>[NGMTDSFXYZABCIJK])(?P<number>{NUMBER})""",
@@ -96,7 +96,7 @@ class Sinumerik(Control):
         elif name.startswith("MCALL CYCLE"):
             cycle, at = name[-2:], [float(value) if value else np.nan for value in values]
             self.modal = lambda place: self.drill(cycle, at, place)
-        elif name not in ("MSG", "CYCLE832"):
+        elif name not in ("MSG", "CYCLE832", "WORKPIECE"):
             raise self.fault(f"not known: {text}")
 
     def cycle800(self, values: list[str]) -> None:

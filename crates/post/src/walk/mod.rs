@@ -48,6 +48,19 @@ const MOTION: Words = bit(WordName::F) | bit(WordName::Motion);
 /// The entry of the code word `plane` for the plane XY.
 pub(crate) const PLANE_XY: usize = 0;
 
+/// How far the cuts of a program reach: the smallest X, Y, Z, and the largest.
+const EXTENTS: [WordName; 6] = [
+    WordName::LowX,
+    WordName::LowY,
+    WordName::LowZ,
+    WordName::HighX,
+    WordName::HighY,
+    WordName::HighZ,
+];
+
+/// Cuts that reach over less, mm, make no body.
+const THIN: f64 = 0.01;
+
 /// A program being written.
 pub(crate) struct Walk<'a> {
     pub(crate) machine: &'a Machine,
@@ -137,8 +150,13 @@ impl<'a> Walk<'a> {
         crate::promises::check(machine, &templates)?;
         let mut scope = Scope::new(machine);
         let tools = if templates.read_tools() { &program.records[..] } else { &[] };
-        scope.program = program_value(machine, &program.name, tools);
         let mut writer = Writer::new(machine);
+        let reach = EXTENTS.iter().any(|word| templates.places(BlockName::ProgramStart, *word));
+        let reach = if reach { cut_extents(program) } else { None };
+        scope.program = program_value(machine, &program.name, tools, reach.is_some());
+        for (word, value) in EXTENTS.into_iter().zip(reach.into_iter().flatten()) {
+            writer.set(word, value);
+        }
         let feeds_rapids = templates.words().any(|(word, _)| word == WordName::RapidFeed);
         // What the catalogue asks of `program_start`.
         writer.assume(WordName::Plane, PLANE_XY);
@@ -576,6 +594,24 @@ impl<'a> Walk<'a> {
         self.active_coolant = self.active_coolant.filter(|active| *active == Coolant::Off);
         self.required(name)
     }
+}
+
+/// How far the cuts reach, as [`EXTENTS`]: `None` where they make no body, or lie in several work offsets, whose distance
+/// nobody knows.
+fn cut_extents(program: &Program) -> Option<[f64; 6]> {
+    let (mut active, mut moves) = (None, false);
+    for record in &program.records {
+        if let Op::WorkOffset(offset) = record.op {
+            if moves && active != Some(offset) {
+                return None;
+            }
+            active = Some(offset);
+        }
+        moves |= record.op.pose().is_some();
+    }
+    let (low, high) = CutBox::of(program).corners()?;
+    let is_body = (high - low).min_element() > THIN;
+    is_body.then(|| [low.x, low.y, low.z, high.x, high.y, high.z])
 }
 
 /// No block of a mill or a wire machine says this.

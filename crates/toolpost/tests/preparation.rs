@@ -1,0 +1,211 @@
+//! What programs for HEIDENHAIN and SINUMERIK say besides the path: the blank, the tools, tolerances, modes that a break may have left on.
+//! Each program is proven.
+
+mod files;
+
+use machine::{Machine, load, load_text};
+use program::{Diagnostic, Op, Program, Record, WorkOffset};
+
+/// A box of cuts from 0, 0, -3 to 40, 20, 0, with tool 4 and then tool 7.
+const UPRIGHT: &str = "UNITS/MM\nTPRINT/FACE MILL\nLOADTL/4,LENGTH,80\nSPINDL/900,RPM,CLW\nFEDRAT/100,MMPM\nRAPID\nGOTO/0,0,50\nRAPID\nGOTO/0,0,2\n\
+                       GOTO/0,0,-3\nGOTO/40,0,-3\nGOTO/40,20,0\nRAPID\nGOTO/40,20,50\nLOADTL/7,LENGTH,60\nSPINDL/900,RPM,CLW\nRAPID\nGOTO/5,5,50\n\
+                       RAPID\nGOTO/5,5,2\nGOTO/5,5,-1\nGOTO/9,5,-1\nRAPID\nGOTO/9,5,50\nFINI\n";
+
+fn read(text: &str) -> Program {
+    source::apt::read("job.apt", text.as_bytes(), &Default::default()).unwrap().program
+}
+
+fn five_axes() -> Program {
+    let path = files::root().join("machines/samples/five-axes.cls");
+    read(&std::fs::read_to_string(path).unwrap())
+}
+
+fn machine(text: &str) -> Machine {
+    load_text("mill.toml", text).unwrap_or_else(|why| panic!("{why}\n{text}"))
+}
+
+fn written(program: &Program, machine: &Machine) -> String {
+    let output = post::write(program, machine).unwrap_or_else(|why| panic!("{why:#?}"));
+    String::from_utf8(output.text).unwrap()
+}
+
+/// The program, which its own proof accepts.
+fn proven(program: &Program, machine: &Machine) -> String {
+    let text = written(program, machine);
+    let found = found(program, machine, &text);
+    assert!(found.is_empty(), "{found:#?}\n{text}");
+    text
+}
+
+fn found(program: &Program, machine: &Machine, text: &str) -> Vec<Diagnostic> {
+    let report = proof::prove(program, machine, "p.nc", text.as_bytes(), &Default::default());
+    if report.proven { Vec::new() } else { report.mismatches }
+}
+
+/// The blocks without their numbers.
+fn blocks(text: &str) -> Vec<String> {
+    let numbered = |line: &str| {
+        let (number, rest) = line.split_once(' ').unwrap_or(("", line));
+        let is_number = !number.is_empty()
+            && number.trim_start_matches('N').bytes().all(|byte| byte.is_ascii_digit());
+        if is_number { rest.to_owned() } else { line.to_owned() }
+    };
+    text.lines().map(numbered).collect()
+}
+
+#[track_caller]
+fn stands(text: &str, row: &[&str]) {
+    let blocks = blocks(text);
+    assert!(blocks.windows(row.len()).any(|here| here == row), "{row:#?} is not in\n{text}");
+}
+
+#[test]
+fn the_blank_reaches_as_far_as_the_cuts_and_says_that_it_is_not_the_stock() {
+    let job = read(UPRIGHT);
+    let text = proven(&job, &load("generic-3axis-heidenhain").unwrap());
+    stands(
+        &text,
+        &[
+            "BLK FORM 0.1 Z X+0 Y+0 Z-3",
+            "BLK FORM 0.2 X+40 Y+20 Z+0",
+            "; The blank is as large as the cuts reach, it is not the stock",
+        ],
+    );
+    let none = "extends = \"generic-3axis-heidenhain\"\n[options]\nblank = false\n";
+    assert!(!proven(&job, &machine(none)).contains("BLK"));
+    let sinumerik = "extends = \"generic-3axis-sinumerik\"\n[options]\nblank = true\n";
+    stands(
+        &proven(&job, &machine(sinumerik)),
+        &[
+            "; The blank is as large as the cuts reach, it is not the stock",
+            "WORKPIECE(,\"\",,\"BOX\",112,0,-3,-80,0,0,40,20)",
+        ],
+    );
+    assert!(!proven(&job, &load("generic-3axis-sinumerik").unwrap()).contains("WORKPIECE"));
+}
+
+/// A control refuses a blank without a thickness, and how far two work offsets are apart no program says.
+#[test]
+fn cuts_that_make_no_body_have_no_blank() {
+    let heidenhain = load("generic-3axis-heidenhain").unwrap();
+    let flat = UPRIGHT.replace(",-3\n", ",0\n").replace(",-1\n", ",0\n");
+    assert!(!proven(&read(&flat), &heidenhain).contains("BLK"));
+    let job = read(UPRIGHT);
+    let is_second = |record: &Record| matches!(&record.op, Op::Tool(tool) if tool.number == 7);
+    let at = job.records.iter().position(is_second).unwrap();
+    let second = Op::WorkOffset(WorkOffset::numbered(55).unwrap());
+    let mut records = job.records.clone();
+    records.insert(at, Record { line: 15, op: second });
+    assert!(!written(&job.with_records(records), &heidenhain).contains("BLK"));
+}
+
+#[test]
+fn the_tools_of_the_program_stand_at_its_head() {
+    let job = read(&UPRIGHT.replace("LOADTL/7,LENGTH,60", "CUTTER/10\nLOADTL/7,LENGTH,60"));
+    for name in ["generic-3axis-heidenhain", "generic-3axis-sinumerik"] {
+        let text = proven(&job, &load(name).unwrap());
+        let list: Vec<String> = blocks(&text)
+            .into_iter()
+            .filter(|block| ["; T4", "; T7"].iter().any(|tool| block.starts_with(tool)))
+            .collect();
+        assert!(list[0].starts_with("; T4") && list[0].ends_with("L80"), "{text}");
+        assert!(list[1].starts_with("; T7") && list[1].ends_with("D10 L60"), "{text}");
+    }
+}
+
+/// 530 p. 457: `FUNCTION TCPM` with these words is `M128`, and `FUNCTION RESET TCPM` is `M129`.
+#[test]
+fn function_tcpm_may_stand_in_place_of_m128() {
+    let job = five_axes();
+    let m128 = load("dmu50-heidenhain").unwrap();
+    let tcpm = machine("extends = \"dmu50-heidenhain\"\n[options]\ntcpm = true\n");
+    let expected = proven(&job, &m128)
+        .replace("M128", "FUNCTION TCPM F TCP AXIS POS PATHCTRL AXIS")
+        .replace("M129", "FUNCTION RESET TCPM");
+    let text = proven(&job, &tcpm);
+    assert_eq!(text, expected);
+    // The other way of turning is another program.
+    let turned = text.replace("PATHCTRL AXIS", "PATHCTRL VECTOR");
+    let found = found(&job, &tcpm, &turned);
+    assert_eq!(found.first().map(|found| found.rule), Some("orientation-way"), "{found:#?}");
+}
+
+#[test]
+fn the_tolerance_of_the_orientation_is_that_of_the_machine_file() {
+    let job = five_axes();
+    let heidenhain = load("dmu50-heidenhain").unwrap();
+    let text = proven(&job, &heidenhain);
+    stands(&text, &["CYCL DEF 32.1 T0.01", "CYCL DEF 32.2 HSC-MODE:0 TA0.05"]);
+    let wide = text.replace("TA0.05", "TA0.1");
+    assert_eq!(found(&job, &heidenhain, &wide)[0].rule, "orientation-tolerance");
+    let rough =
+        "extends = \"dmu50-heidenhain\"\n[options]\nhsc_mode = 1\norientation_tolerance = 1\n";
+    stands(&proven(&job, &machine(rough)), &["CYCL DEF 32.2 HSC-MODE:1 TA1"]);
+    let silent = "extends = \"dmu50-heidenhain\"\n[options]\norientation_tolerance = 0\n";
+    assert!(!proven(&job, &machine(silent)).contains("32.2"));
+
+    let sinumerik = load("sinumerik-840d-traori").unwrap();
+    let text = proven(&job, &sinumerik);
+    stands(&text, &["CYCLE832(0.01,_ORI_FINISH,0.05)"]);
+    let wide = text.replace("_ORI_FINISH,0.05", "_ORI_FINISH,0.1");
+    assert_eq!(found(&job, &sinumerik, &wide)[0].rule, "orientation-tolerance");
+    let rough = "extends = \"sinumerik-840d-traori\"\n[options]\nmachining = \"ROUGH\"\norientation_tolerance = 0\n";
+    stands(&proven(&job, &machine(rough)), &["CYCLE832(0.01,_ROUGH,1)"]);
+}
+
+/// TNC manuals, M140: back along the tool to the end of the travel; on a tilting table that is Z of the machine.
+#[test]
+fn m140_retracts_where_only_tables_tilt() {
+    let job = five_axes();
+    let text = proven(
+        &job,
+        &machine("extends = \"dmu50-heidenhain\"\n[options]\nretract_by_m140 = true\n"),
+    );
+    stands(&text, &["; SLOPE", "L M140 MB MAX FMAX"]);
+}
+
+#[test]
+fn a_sinumerik_takes_off_what_a_break_may_have_left_on_at_its_start_and_at_each_tool() {
+    let traori = load("sinumerik-840d-traori").unwrap();
+    let text = proven(&five_axes(), &traori);
+    stands(&text, &["TRAFOOF", "CYCLE800()", "G17 G40 G54 G64 G710 G90 G94", "FFWON SOFT"]);
+    stands(&text, &["TRAFOOF", "CYCLE800()", "G17 G54", "G0 SUPA Z0 D0", "T=\"BALL_6\""]);
+    stands(&text, &["FFWOF BRISK", "M30"]);
+    // A machine without rotary axes may have neither the option nor the cycle.
+    let plain = proven(&read(UPRIGHT), &load("generic-3axis-sinumerik").unwrap());
+    stands(&plain, &["G17 G54", "G0 SUPA Z0 D0", "T7"]);
+    assert!(!["TRAFOOF", "CYCLE800", "FFWON"].iter().any(|word| plain.contains(word)), "{plain}");
+}
+
+#[test]
+fn the_swivel_cycle_names_its_data_set_and_its_retract() {
+    let text = "extends = \"sinumerik-840d-traori\"\n[options]\nswivel_retract = 1\nswivel_data = \"HEAD\"\n";
+    let text = proven(&five_axes(), &machine(text));
+    let cycle = blocks(&text).into_iter().find(|block| block.starts_with("CYCLE800(1,"));
+    assert!(cycle.is_some_and(|cycle| cycle.starts_with("CYCLE800(1,\"HEAD\",0,57,")), "{text}");
+}
+
+/// Where nobody has switched them on since, a program stops neither spindle nor coolant twice.
+#[test]
+fn spindle_and_coolant_are_stopped_once() {
+    for (name, job) in [
+        ("dmu50-heidenhain", five_axes()),
+        ("generic-3axis-heidenhain", read(UPRIGHT)),
+        ("sinumerik-840d-traori", five_axes()),
+        ("generic-3axis-sinumerik", read(UPRIGHT)),
+    ] {
+        let text = proven(&job, &load(name).unwrap());
+        let mut turns = true;
+        for block in blocks(&text) {
+            let words: Vec<&str> = block.split(' ').collect();
+            if block.starts_with(';') {
+                continue;
+            }
+            if words.contains(&"M5") {
+                assert!(turns, "{name}: M5 twice\n{text}");
+                turns = false;
+            }
+            turns |= words.contains(&"M3") || words.contains(&"M4");
+        }
+    }
+}
