@@ -30,6 +30,7 @@ const WAYS_OUT: &[(&str, &str)] = &[
         "axis-limit",
         "move the part in the machine (`work_zero`), or choose a machine with more travel",
     ),
+    ("blank", "give two corners, the second above the first in X, Y and Z, or leave both out"),
     ("block-length", "divide the block into several"),
     ("block-number", "give a block number that the control takes, or none"),
     ("board-too-large", "take a part of the board, or a wider tool"),

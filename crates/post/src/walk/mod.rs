@@ -611,7 +611,7 @@ fn cut_extents(program: &Program) -> Option<[f64; 6]> {
     }
     let (low, high) = CutBox::of(program).corners()?;
     let is_body = (high - low).min_element() > THIN;
-    is_body.then(|| [low.x, low.y, low.z, high.x, high.y, high.z])
+    is_body.then_some([low.x, low.y, low.z, high.x, high.y, high.z])
 }
 
 /// No block of a mill or a wire machine says this.
