@@ -54,6 +54,19 @@ impl Side {
         })
     }
 
+    /// The direction of travel at its start (0) or its end (1).
+    fn direction(&self, t: f64) -> f64 {
+        let way = minus(self.to, self.from);
+        let along = match self.arc {
+            None => way,
+            Some((center, sweep)) => {
+                let [x, y] = minus(self.at(t), center);
+                [-y * sweep.signum(), x * sweep.signum()]
+            }
+        };
+        along[1].atan2(along[0])
+    }
+
     fn distance(&self, p: Point) -> f64 {
         let ends = length(minus(p, self.from)).min(length(minus(p, self.to)));
         match self.arc {
@@ -152,6 +165,11 @@ impl Contour {
                     return true;
                 }
                 if length(minus(side.to, other.from)) < 1e-9 {
+                    // In a cusp the last decimal of the corner decides on which side of each other the two are.
+                    let turn = other.direction(0.0) - side.direction(1.0);
+                    if (turn.rem_euclid(TAU) - TAU / 2.0).abs() < 0.02 {
+                        return false;
+                    }
                     distances.reverse();
                 } else if length(minus(side.from, other.to)) > 1e-9 {
                     return distances.iter().all(|&d| d > width);
@@ -161,6 +179,19 @@ impl Contour {
                     && distances[..apart].is_sorted_by(|a, b| a < b)
             })
         })
+    }
+
+    /// How deep LinuxCNC may cut at a joint of less than 0.05 rad, mm: the next way begins where the last one ends, 0.05 radii before or
+    /// behind its own start; on an arc inside which the tool runs, so much farther out.
+    fn joint(&self) -> f64 {
+        let aside = 0.05 * self.radius;
+        let on_arc = |side: &Side| {
+            let (center, sweep) = side.arc?;
+            let concave = (sweep > 0.0) != self.outside;
+            let parallel = length(minus(side.from, center)) - self.radius;
+            (concave && parallel > 0.0).then(|| parallel.hypot(aside) - parallel)
+        };
+        self.sides.iter().filter_map(on_arc).fold(0.002 * self.radius, f64::max)
     }
 
     /// The program; an arc by its radius.
@@ -259,18 +290,19 @@ proptest! {
     #[test]
     fn the_centre_stays_the_radius_away_from_the_contour(contour in contour()) {
         // LinuxCNC joins turns below 0.05 without a corner: a radius·(1 - cos 0.05) nearer.
-        for (dialect, slack, farthest) in [
-            (Dialect::LinuxCnc, 0.002, 1.002),
-            (Dialect::Sinumerik, 0.0, 1.0),
-            (Dialect::Klartext, 0.0, 1.0),
-            (Dialect::Fanuc, 0.0, 2f64.sqrt()),
+        for (dialect, joins, farthest) in [
+            (Dialect::LinuxCnc, true, 1.002),
+            (Dialect::Sinumerik, false, 1.0),
+            (Dialect::Klartext, false, 1.0),
+            (Dialect::Fanuc, false, 2f64.sqrt()),
         ] {
             let Ok(moves) = centre(dialect, &contour) else { continue };
+            let slack = if joins { contour.joint() } else { 0.0 };
             for side in &moves {
                 if let Some((center, _)) = side.arc {
                     let radii = [side.from, side.to].map(|p| length(minus(p, center)));
                     let apart = (radii[0] - radii[1]).abs();
-                    prop_assert!(apart < 0.005 + slack * contour.radius, "{dialect:?} {side:?}");
+                    prop_assert!(apart < 0.005 + slack, "{dialect:?} {side:?}");
                 }
                 if !contour.has_room() {
                     continue;
@@ -280,7 +312,7 @@ proptest! {
                     let nearest = distances.fold(f64::INFINITY, f64::min);
                     let radius = contour.radius;
                     prop_assert!(
-                        nearest > radius * (1.0 - slack) - 0.002
+                        nearest > radius - slack - 0.002
                             && nearest < radius * farthest + 0.002,
                         "{dialect:?}: {nearest} from the contour, radius {radius}\n{}\n{side:?}",
                         contour.program(dialect)

@@ -123,7 +123,7 @@ sheet!(merged SettingsSheet "settings" {
     tilt_second_axis_first: bool, "", "Whether G53.1 compares the turns of the second rotary axis before those of the first, where it chooses between two solutions: FANUC parameter 19608#5 is 1.";
     tilt_within_travel: bool, "", "Whether G53.1 takes only rotary positions within the travel of this file: FANUC parameters 19741 to 19744 hold it.";
     rotary_by_sign: bool, "", "Whether the sign of a rotary word is the direction of an axis that rolls over: FANUC parameter 1008#1 is 1.";
-    table_frame_at_zero: bool, "", "Whether X, Y and Z under G43.4 count in the frame of the part with the table at 0, however the table is turned when G43.4 comes. The manuals of FANUC can be read otherwise (A-79348E, parameter 19696#5): try a place beside the centre of the table.";
+    table_frame_at_zero: bool, "", "Whether X, Y and Z under G43.4 count in the frame of the part with the table at 0, however the table is turned when G43.4 comes: parameter 19696#5 is 0, and the work offset is that of the table at 0. The manuals of FANUC can be read otherwise (A-79348E, parameter 19696#5): try a place beside the centre of the table.";
 });
 
 sheet!(merged FormatSheet "format" {

@@ -140,7 +140,11 @@ impl Contour {
 
     /// How near is on it, mm.
     fn near(&self) -> f64 {
-        2.0 * self.resolution
+        let joint = match self.start {
+            CompensationStart::NextStart => 0.0,
+            CompensationStart::OwnEnd => self.joint,
+        };
+        2.0 * self.resolution + joint
     }
 
     fn smooth(&self) -> f64 {

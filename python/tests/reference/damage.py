@@ -65,6 +65,8 @@ TABLE = [
     Damage("sign of C", r"G0A45C", swap("C=-", "C=")),
     Damage("a cut left out", r"C=26\.302", drop),
     Damage("C of a cut", r"C=8\.", swap("C=8.", "C=7.")),
+    # From 50 mm over the part there would be room for the turn: it comes 2 mm over it.
+    Damage("no retract", r"^N\d+ G75Z0$", swap("G75Z0", "G0Z2")),
 ]
 TRAORI = [
     *SINUMERIK,

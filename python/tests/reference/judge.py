@@ -154,8 +154,8 @@ class Judge:
         self.end = np.array([m.end for m in moves])
         self.lean = np.array([m.axis[0] for m in moves]), np.array([m.axis[1] for m in moves])
         self.cutting = np.array([not m.rapid for m in moves])
-        cut = np.concatenate([self.start[self.cutting], self.end[self.cutting]])
-        self.box = cut.min(0), cut.max(0)
+        self.touched = self.touching()
+        self.box = self.touched.min(0), self.touched.max(0)
         # Runs of cuts without a rapid between them; a hole is a run of its own.
         self.runs: list[tuple[int, int]] = []
         for index, move in enumerate(moves):
@@ -166,6 +166,17 @@ class Judge:
                 self.runs[-1] = (self.runs[-1][0], index + 1)
             else:
                 self.runs.append((index, index + 1))
+
+    def touching(self) -> ARRAY:
+        """Return the ends of cuts, but not the upper one of a cut along the tool: there is air."""
+        of = np.flatnonzero(self.cutting)
+        start, end = self.start[of], self.end[of]
+        way = end - start
+        down = (way * self.lean[0][of]).sum(1)
+        aside = np.linalg.norm(way - down[:, None] * self.lean[0][of], axis=1)
+        hole = np.array([self.moves[k].hole for k in of.tolist()], dtype=bool)
+        alone = (aside < 1e-3) & (apart(self.lean[0][of], self.lean[1][of]) < 1e-6) & ~hole
+        return np.concatenate([start[~(alone & (down < 0))], end[~(alone & (down > 0))]])
 
     # Which piece of the source a row cuts.
 
@@ -418,7 +429,24 @@ class Judge:
             angle = apart(np.tile(self.lean[1][k], (len(here), 1)), self.samples.along[here])
         else:
             far, angle = self.distance(here, np.full(len(here), k))
+            far = np.where(self.over_rapid(here, k), 0, far)
         return np.asarray((far <= self.limits.corridor) & (angle <= self.limits.sweep))
+
+    def over_rapid(self, here: ARRAY, k: int) -> ARRAY:
+        """Above a rapid, along the tool: what it takes up there, it took on the rapid, too."""
+        axis, way = self.lean[0][k], self.end[k] - self.start[k]
+        if apart(axis[None], self.lean[1][k][None])[0] > 1e-6:
+            return np.zeros(len(here), dtype=bool)
+        across = way - (way @ axis) * axis
+        away = self.samples.tip[here] - self.start[k]
+        # A way along the tool counts from its lower end.
+        lower = np.full(len(here), float(way @ axis < 0))
+        length = float(across @ across)
+        share = (away @ across / length).clip(0, 1) if length > 1e-12 else lower
+        away -= share[:, None] * way
+        up = away @ axis
+        side = np.linalg.norm(away - up[:, None] * axis, axis=1)
+        return np.asarray((side <= self.limits.corridor) & (up >= 0))
 
     def on_axis(self, here: ARRAY, tip: ARRAY, axis: ARRAY) -> ARRAY:
         """Above a pose, along its axis."""
@@ -447,8 +475,7 @@ class Judge:
         if not len(tip):
             return np.zeros(0, dtype=bool)
         axes, which = np.unique(np.round(along, 6), axis=0, return_inverse=True)
-        cuts = np.concatenate([self.start[self.cutting], self.end[self.cutting]])
-        farthest = np.array([(cuts @ axis).max() for axis in axes])
+        farthest = np.array([(self.touched @ axis).max() for axis in axes])
         return np.asarray((tip * along).sum(1) > farthest[which.ravel()] + self.limits.clear)
 
     # Speed and travels.
