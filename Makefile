@@ -18,6 +18,9 @@ PREFIX ?= $(HOME)/.local
 # The quick profile is compiled within two minutes; `make install` and `make bench` take the fast one.
 TOOLPOST := cargo run --quiet --locked --profile quick --package toolpost --
 
+# Where that profile puts the command.
+QUICK := $(patsubst $(CURDIR)/%,%,$(or $(CARGO_TARGET_DIR),$(CURDIR)/target)/quick/toolpost)
+
 # What fails stops nothing that does not need it.
 MAKEFLAGS += --keep-going
 
@@ -27,6 +30,8 @@ MAKEFLAGS += --keep-going
 
 ## Post a part, prove it, draw it, and say what to do next.
 demo: rust
+	@echo "Compiling; the first time this takes some minutes."
+	cargo build --locked --profile quick --package toolpost
 	@mkdir -p out
 	$(TOOLPOST) post $(PART) --machine $(MACHINE) --output $(DEMO).mpf
 	@$(TOOLPOST) show $(PART) --output $(DEMO).png > /dev/null
@@ -40,9 +45,9 @@ demo: rust
 	@echo
 	@echo "What to do next:"
 	@echo
-	@echo "    make install             # puts the command toolpost into $(PREFIX)/bin; takes some four minutes"
-	@echo "    toolpost machines list   # the machines that it can write for"
-	@echo "    toolpost post $(PART) --machine fanuc-table-bc --output $(DEMO).nc"
+	@echo "    make install                              # puts the command toolpost into $(PREFIX)/bin; takes some four minutes"
+	@echo "    $(QUICK) machines list   # the machines that it can write for"
+	@echo "    $(QUICK) post $(PART) --machine fanuc-table-bc --output $(DEMO).nc"
 
 ## Put the command toolpost into PREFIX/bin (~/.local/bin), compiled for speed.
 install: rust

@@ -173,7 +173,8 @@ pub struct Summary {
     pub rapid_length_mm: f64,
     /// Programmed positions of X, Y and Z, mm.
     pub linear_extents_mm: [Extent; 3],
-    /// Programmed positions of A, B and C, degrees.
+    /// Positions of A, B and C, degrees: programmed, or to which the control turns them in tilted planes and along vectors; all
+    /// that are possible where several are.
     pub rotary_extents_degrees: [Extent; 3],
 }
 
@@ -208,9 +209,14 @@ impl Summary {
             extent.include(value);
         }
         if let Orientation::Rotary { degrees, .. } = pose.orientation {
-            for (extent, value) in self.rotary_extents_degrees.iter_mut().zip(degrees) {
-                extent.include(value);
-            }
+            self.include_rotary(degrees);
+        }
+    }
+
+    /// Takes positions of A, B and C (degrees) into the extents.
+    pub(crate) fn include_rotary(&mut self, degrees: [f64; 3]) {
+        for (extent, value) in self.rotary_extents_degrees.iter_mut().zip(degrees) {
+            extent.include(value);
         }
     }
 

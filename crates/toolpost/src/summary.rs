@@ -109,7 +109,7 @@ pub fn travel(travel: &TravelChecked) -> String {
     let checked = match travel.linear {
         Travel::Unlimited => "not checked: the machine file gives no travel",
         Travel::Lengths => "only stroke lengths checked; set work_zero to check positions",
-        Travel::MachineCoordinates => "every position checked in machine coordinates",
+        Travel::MachineCoordinates => "positions checked in machine coordinates",
     };
     if travel.linear == Travel::Unlimited || travel.unsaid.is_empty() {
         return checked.to_owned();
@@ -126,7 +126,9 @@ fn unchecked(unsaid: &Unsaid) -> String {
         }
         Unsaid::WorkZero => "X, Y, Z where the table turns (set work_zero)".into(),
         Unsaid::ToolLength => {
-            "Z downwards, and X, Y, Z where a head tilts (give the tool length)".into()
+            "how low Z goes, and X, Y, Z where a head tilts (the source says no tool length: LENGTH in \
+             LOAD/TOOL of cutter-location data, --tools with an NC program)"
+                .into()
         }
         Unsaid::Solution => "tilted planes that have two solutions (set work_zero)".into(),
     }

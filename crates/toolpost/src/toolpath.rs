@@ -248,7 +248,8 @@ fn compensated(cutcom: &Cutcom) -> String {
         (None, _) => String::from("not known which path it means: --cutcom says it"),
         (Some(path), None) => format!("{}, as --cutcom says", path.described()),
         (Some(path), Some(shown)) => format!(
-            "{}: line {} is an arc of radius {} mm with a tool of radius {} mm ({} of {} stretches show it)",
+            "{}: the arc in line {} (radius {} mm) is one that a tool of radius {} mm can only make with its centre; {} of {} \
+             contours show it so",
             path.described(),
             shown.line,
             number(shown.radius, 3),

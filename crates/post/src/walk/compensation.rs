@@ -53,13 +53,14 @@ impl Walk<'_> {
                 Ok(false)
             }
             (Some(CompensatedPath::Center), _) => {
-                let message = "with compensation the source gives the path of the tool's centre: it is written without \
-                               compensation";
+                let message = "the source gives the path of the tool's centre: it is written without radius \
+                               compensation, and offsets at the control do not change the size of what is cut";
                 let help = match self.machine.capabilities.compensation {
                     true => {
-                        "where the tool table keeps nothing but wear: `tool_radius = \"wear\"` in [settings] of the machine file"
+                        "if the tool table of the control keeps wear alone, `tool_radius = \"wear\"` in [settings] of the machine \
+                         file: compensation is written then"
                     }
-                    false => "the control has none",
+                    false => "the control has no compensation",
                 };
                 let found = Diagnostic::warning("compensated-path", message).help(help);
                 self.findings.warn(found.line(self.line));

@@ -19,6 +19,9 @@ impl Prover<'_> {
         self.standing.at(&to.position.orientation);
         let strayed = self.standing.strayed();
         let angles = self.standing.at(&to.position.orientation);
+        if matches!(to.position.orientation, Orientation::Axis(_)) {
+            angles.iter().for_each(|degrees| self.report.program.include_rotary(*degrees));
+        }
         let mut found = self.travel.broken_at(&gauge, angles, &to.position, slack);
         if let (None, Some(strayed)) = (&found, strayed) {
             found = self.travel.turned_too_far(&gauge, strayed);

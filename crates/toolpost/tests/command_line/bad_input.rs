@@ -145,7 +145,7 @@ fn a_limit_in_machine_coordinates_broken_by_a_micrometre() {
     folder.write("part.cls", with_line(12, "GOTO/100,0,-2"));
     let said = folder.run(&post);
     assert_eq!(said.code, 0, "{said:?}");
-    assert!(said.out.contains("travel      every position checked"), "{said:?}");
+    assert!(said.out.contains("travel      positions checked"), "{said:?}");
 }
 
 /// Checks and posts with a machine that extends [`MACHINE`] by `text`; both must refuse it at `place`.

@@ -316,7 +316,7 @@ fn which_path_cutcom_means_is_asked_for_where_no_arc_shows_it() {
     assert!(folder.read("part.ngc").contains("G41 D1"));
     let said = post(&["--cutcom", "centre"]);
     assert_eq!(said.code, 0);
-    assert!(said.err.contains("written without compensation"), "{}", said.err);
+    assert!(said.err.contains("written without radius compensation"), "{}", said.err);
     assert!(said.out.contains("the path of the tool's centre, as --cutcom says"), "{}", said.out);
     assert!(!folder.read("part.ngc").contains("G41"));
     // The program of the contour is no program of the centre.
