@@ -10,8 +10,8 @@ pub(crate) const DEEPEST: usize = 20;
 /// is taken as endless.
 const IDLE: u32 = 200_000;
 
-/// Most jumps and calls of a run.
-const MOST: u64 = 20_000_000;
+/// Most jumps and calls of a run: an endless loop that moves is refused after about 3 s and 200 MB.
+const MOST: u64 = 2_000_000;
 
 /// So much text is read in the time of a jump.
 const BYTES_IN_A_TURN: usize = 16;
@@ -54,7 +54,9 @@ impl Budget {
             return Err(format!("{IDLE} jumps without a move: the program never ends"));
         }
         if self.all > MOST {
-            return Err(format!("{MOST} jumps: a program this long is not followed"));
+            return Err(format!(
+                "{MOST} jumps and calls: a loop that does not end, or a program too long to follow"
+            ));
         }
         Ok(())
     }

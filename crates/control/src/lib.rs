@@ -12,6 +12,7 @@
 mod belt;
 mod budget;
 mod compensation;
+mod corner;
 mod decimal;
 mod event;
 mod folders;

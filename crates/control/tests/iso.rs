@@ -182,13 +182,16 @@ fn a_full_circle_has_a_centre_and_a_helix_a_third_axis() {
 fn the_radii_of_an_arc_may_differ_by_what_the_control_allows() {
     let arc = |end: &str, center: &str| format!("G0 X0. Y0. Z0.\nG2 X{end} Y0. I{center} J0. F9\n");
     // gcode.c: 0.005 mm, or 0.1 % of the radius up to 0.5 mm.
-    for dialect in [GRBL, LINUXCNC] {
-        assert_eq!(arcs(dialect, &arc("10.004", "5.")).len(), 1);
-        assert_eq!(rule(dialect, &arc("10.012", "5.")), "nc-arc");
-        assert_eq!(arcs(dialect, &arc("1000.4", "500.")).len(), 1);
-        assert_eq!(rule(dialect, &arc("1001.1", "500.")), "nc-arc");
-        assert_eq!(rule(dialect, &arc("2001.1", "1000.")), "nc-arc");
-    }
+    assert_eq!(arcs(GRBL, &arc("10.004", "5.")).len(), 1);
+    assert_eq!(rule(GRBL, &arc("10.012", "5.")), "nc-arc");
+    assert_eq!(arcs(GRBL, &arc("1000.4", "500.")).len(), 1);
+    assert_eq!(rule(GRBL, &arc("1001.1", "500.")), "nc-arc");
+    assert_eq!(rule(GRBL, &arc("2001.1", "1000.")), "nc-arc");
+    // `rs274`: 2√2 of 0.01 mm, or 0.1 % of the radius up to a hundred times that; see also its own test.
+    assert_eq!(arcs(LINUXCNC, &arc("10.028", "5.")).len(), 1);
+    assert_eq!(rule(LINUXCNC, &arc("10.0284", "5.")), "nc-arc");
+    assert_eq!(arcs(LINUXCNC, &arc("2001", "1000.")).len(), 1);
+    assert_eq!(rule(LINUXCNC, &arc("1000.6", "500.")), "nc-arc");
     assert_eq!(arcs(FANUC, &arc("10.009", "5.")).len(), 1);
     assert_eq!(rule(FANUC, &arc("10.011", "5.")), "nc-arc");
     // A half circle by rounding: LinuxCNC has 0.000 05 inch to spare, the others have nothing.

@@ -335,6 +335,33 @@ fn arguments_without_a_point_are_units_where_the_machine_is_set_so() {
 }
 
 #[test]
+fn arguments_without_a_point_count_the_increments_of_their_address() {
+    let run = |unit: &str, argument: &str| {
+        let mut settings = settings(Dialect::Fanuc, &[]);
+        settings.setup.whole_numbers = WholeNumbers::Increments;
+        let text = format!("{unit} G0\nG65 P1 {argument}\nM30\nO1\nX[#1+#9+#17+#19+#24]\nM99\n");
+        let got = records(&settings, &text)?;
+        Ok::<_, Box<Diagnostic>>(got.iter().find_map(|(_, op)| op.position()).unwrap().point.x)
+    };
+    for (unit, argument, x) in [
+        ("G21", "X3000", 3.0),
+        ("G21", "Q-1500", -1.5),
+        ("G21", "A45000", 45.0),
+        ("G21", "X3.", 3.0),
+        // S, like D, H, M and T, counts as it is.
+        ("G21", "S12", 12.0),
+        // A ten-thousandth of an inch.
+        ("G20", "X30000", 3.0 * 25.4),
+    ] {
+        assert!((run(unit, argument).unwrap() - x).abs() < 1e-9, "{unit} {argument}");
+    }
+    for (unit, argument) in [("G21", "F100"), ("G20", "A45000")] {
+        let error = run(unit, argument).unwrap_err();
+        assert_eq!((error.rule, error.help.is_empty()), ("nc-decimal-point", false), "{error}");
+    }
+}
+
+#[test]
 fn haas_and_mach3_call_subprograms_too() {
     let run = |dialect, text: &str| {
         let got = records(&settings(dialect, &[]), text).unwrap_or_else(|e| panic!("{e}\n{text}"));

@@ -591,3 +591,15 @@ proptest! {
         }
     }
 }
+
+#[test]
+fn comments_stand_between_the_arguments_of_a_call() {
+    for call in ["[1] (c) [2]", "(d) [1] (c)[2] (e)", "(d [3]) [1](c)[2] ; e"] {
+        agrees(&format!("o<a> sub\nG0 X#1 Y#2 Z0\no<a> endsub\no<a> call {call}"));
+        assert_eq!(
+            path(&format!("G21\no<a> sub\nG0 X#1\no<a> endsub\no<a> call {call}\nM2\n")),
+            [1.0]
+        );
+    }
+    assert_eq!(refused("o<a> sub\no<a> endsub\no<a> call [1] (c").rule, "nc-expression");
+}

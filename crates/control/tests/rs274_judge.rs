@@ -324,3 +324,29 @@ fn what_the_judge_refuses_we_refuse() {
         is_refused_by_both(&format!("{block}\nM2\n"));
     }
 }
+
+#[test]
+fn the_ends_of_an_arc_may_differ_in_radius_as_they_may_on_linuxcnc() {
+    // 2√2 of 0.01 mm or 0.001 inch; a hundred times that where it is 0.1 % of the larger radius.
+    for (unit, radius, apart, taken) in [
+        (21, 5.0, 0.0282, true),
+        (21, 5.0, 0.0284, false),
+        (21, 5.0, -0.0282, true),
+        (21, 100.0, 0.0999, true),
+        (21, 100.0, 0.1002, false),
+        (21, 3000.0, 2.82, true),
+        (21, 3000.0, 2.84, false),
+        (20, 0.5, 0.0028, true),
+        (20, 0.5, 0.0029, false),
+        (20, 10.0, 0.0099, true),
+        (20, 10.0, 0.0102, false),
+    ] {
+        let end = 2.0 * radius + apart;
+        let program = format!("G{unit}\nG90 G0 X0 Y0 Z0\nF50\nG2 X{end} Y0 I{radius} J0\nM2\n");
+        match taken {
+            true => makes_the_same_moves(&program),
+            false => is_refused_by_both(&program),
+        }
+    }
+    is_refused_by_both("G90 G0 X0 Y0 Z0 F50\nG2 X0.001 Y0.001 I0.001 J0\nM2\n");
+}

@@ -368,3 +368,24 @@ fn the_feed_group_and_its_radius_say_what_the_feed_counts() {
         }
     }
 }
+
+#[test]
+fn how_fast_axes_may_be_changes_no_path() {
+    let ops = blocks(
+        "ACC[X]=80 ACCLIMA[Y]=50\nG0 X1 Y2 Z3\nJERKLIMA[Z]=100\nVELOLIMA[X]=90.5\nX2 ACC[Y]=200",
+    );
+    assert_eq!(poses(&ops).last().unwrap().point, v(2.0, 2.0, 3.0));
+    for text in ["ACC[X]=0", "ACC[X]=201", "ACC[Q]=80", "ACC=80", "ACC[X]"] {
+        common::sinumerik::error(text);
+    }
+}
+
+#[test]
+fn where_axes_go_when_the_program_stops_is_refused_with_a_way_out() {
+    blocks("LFOF LFTXT\nLFWP\nLFPOS\nG0 X1 Y2 Z3");
+    for text in ["POLF[Z]=100", "POLFMASK(Z)", "POLFMLIN(X,Z)", "LFON", "ALF=3", "DILF=5"] {
+        let error = common::sinumerik::error(text);
+        assert_eq!(error.rule, "unsupported", "{error}");
+        assert!(error.message.contains("leave it out"), "{error}");
+    }
+}

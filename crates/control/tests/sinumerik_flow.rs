@@ -398,3 +398,27 @@ fn the_words_that_frame_a_program_end_it_or_mean_nothing() {
     assert_eq!(xs(text), [3.0, 1.0]);
     assert_eq!(refused("M30\nGROUP_BEGIN(0,\"A\",0,0)").rule, "program-end");
 }
+
+#[test]
+fn a_program_is_called_by_its_name_with_blanks_comments_and_repeats_behind_it() {
+    let part = "%_N_TEIL_SPF\nG91\nG0 X1\nG90\nM17\n";
+    for (call, times) in [
+        ("TEIL", 1),
+        ("TEIL ", 1),
+        ("TEIL ; rough", 1),
+        ("TEIL P3", 3),
+        ("TEIL P3 ; rough", 3),
+        ("TEIL P=R1", 2),
+        ("TEIL  P = R1", 2),
+        ("teil P2", 2),
+        ("N10 TEIL P2", 2),
+        ("TEIL() P2", 2),
+    ] {
+        let text = format!("%_N_MAIN_MPF\nR1=2\nG0 X0\n{call}\nM30\n{part}");
+        let found = moves(&text).unwrap_or_else(|error| panic!("{error}\n{call}"));
+        let expected: Vec<f64> = (0..=times).map(f64::from).collect();
+        assert_eq!(found.into_iter().map(|(_, x)| x).collect::<Vec<_>>(), expected, "{call}");
+    }
+    let error = moves(&format!("%_N_MAIN_MPF\nTEIL P3 X1\nM30\n{part}")).unwrap_err();
+    assert_eq!((error.rule, error.line), ("syntax", 2), "{error}");
+}

@@ -2,7 +2,7 @@
 
 mod common;
 
-use common::sinumerik::{blocks, degrees, near, points, poses, v};
+use common::sinumerik::{blocks, degrees, error, near, points, poses, v};
 use program::Axes;
 use std::f64::consts::FRAC_1_SQRT_2;
 use toolpost_control::{Action, Orientation, TiltChoice};
@@ -155,4 +155,20 @@ fn the_direction_of_cycle800_chooses_the_solution() {
         let chosen = Action::Swivel(TiltChoice::Higher(is_higher));
         assert!(ops.contains(&chosen), "{direction}: {ops:?}");
     }
+}
+
+#[test]
+fn increments_behind_a_rotation_count_where_it_leaves_the_coordinates_alone() {
+    // The tool stands in the pole of the rotation, and Z is the axis that it turns about.
+    let cos = std::f64::consts::FRAC_1_SQRT_2;
+    near(points("G0 X0 Y0 Z5\nROT RPL=45\nG91 X10")[1], v(10.0 * cos, 10.0 * cos, 5.0));
+    near(points("TRANS X20\nG0 X0 Y0 Z5\nAROT RPL=90\nG91 X10 Z-2")[1], v(20.0, 10.0, 3.0));
+    near(points("G0 X0 Y0 Z5\nROT RPL=45\nX=IC(10)")[1], v(10.0 * cos, 10.0 * cos, 5.0));
+    // Elsewhere it is not documented from where they count.
+    let found = error("G0 X10 Y0 Z5\nROT RPL=45\nG91 X10");
+    assert_eq!((found.rule, found.line), ("unknown-position", 3));
+    assert!(found.help.contains("absolute"), "{found}");
+    // Behind a mirror Y stays what it is.
+    near(points("G0 X10 Y3 Z5\nMIRROR X0\nG91 Y2")[1], v(10.0, 5.0, 5.0));
+    assert_eq!(error("G0 X10 Y3 Z5\nMIRROR X0\nG91 X2").rule, "unknown-position");
 }

@@ -21,15 +21,25 @@ fn radius_slack(flavor: Flavor) -> f64 {
     }
 }
 
-/// Whether a control takes an arc whose ends have these radii (mm) from the programmed centre.
+/// A radius below which LinuxCNC has no arc, mm (`rs274`: 0.000 05 inch).
+const NO_RADIUS: f64 = 0.00127;
+
+/// Whether a control takes an arc whose ends have these radii (mm) from the programmed centre, in a program in inches or not.
 ///
-/// GRBL 1.1 (`gcode.c`, step 20) and LinuxCNC's manual ("G2, G3", centre format) agree: up to
-/// 0.005 mm, or up to 0.5 mm where that is less than 0.1 % of the radius. FANUC: parameter 3410,
-/// which the machine sets; 0.01 mm is assumed.
-fn is_circle(flavor: Flavor, start: f64, end: f64) -> bool {
+/// LinuxCNC: by 2√2 of 0.01 mm or of 0.001 inch, and beyond that up to a hundred times as much where it is at most 0.1 % of
+/// the larger radius (found with `rs274`; `CENTER_ARC_RADIUS_TOLERANCE_MM` and `_INCH` of the INI file set it otherwise).
+///
+/// GRBL 1.1 (`gcode.c`, step 20): up to 0.005 mm, or up to 0.5 mm where that is less than 0.1 % of the radius. FANUC:
+/// parameter 3410, which the machine sets; 0.01 mm is assumed.
+fn is_circle(flavor: Flavor, inches: bool, start: f64, end: f64) -> bool {
     let apart = (start - end).abs();
     match flavor {
         Flavor::Fanuc | Flavor::Haas => apart <= 0.01,
+        Flavor::LinuxCnc => {
+            let unit = if inches { 0.001 * geom::INCH } else { 0.01 };
+            let near = 2.0 * std::f64::consts::SQRT_2 * unit;
+            apart <= near || (apart <= 100.0 * near && apart <= 0.001 * start.max(end))
+        }
         _ => apart <= 0.005 || (apart <= 0.5 && apart <= 0.001 * start),
     }
 }
@@ -47,10 +57,12 @@ impl Step<'_, '_, '_> {
         };
         let radius = |p: Vec3| (p[first] - center[first]).hypot(p[second] - center[second]);
         let (from, to) = (radius(start), radius(target.point));
-        if from < 1e-6 {
+        let least = if self.flavor == Flavor::LinuxCnc { NO_RADIUS } else { 1e-6 };
+        if from < least {
             return Err(self.block.whole("nc-arc", "the arc starts on its own centre"));
         }
-        if !is_circle(self.flavor, from, to) {
+        let inches = self.state.inches == Some(true);
+        if !is_circle(self.flavor, inches, from, to) {
             let message = format!(
                 "the end is {to:.4} mm from the centre and the start {from:.4} mm: not on one circle"
             );

@@ -23,7 +23,7 @@ impl Place {
     pub(super) const SAME: Place = Place { frame: Frame::IDENTITY, rotary: [0.0; 3], same: true };
 
     /// A programmed point in the work frame.
-    pub(super) fn point(&self, p: Vec3) -> Vec3 {
+    pub(crate) fn point(&self, p: Vec3) -> Vec3 {
         if self.same { p } else { times(self.frame.matrix3, p) + self.frame.translation }
     }
 
@@ -47,7 +47,7 @@ impl Place {
 
     /// The unit vector about which a programmed turn about the unit vector `axis` turns: a mirror
     /// reverses it.
-    pub(super) fn normal(&self, axis: Vec3) -> Vec3 {
+    pub(crate) fn normal(&self, axis: Vec3) -> Vec3 {
         if self.same {
             return axis;
         }

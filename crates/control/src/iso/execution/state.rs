@@ -311,7 +311,7 @@ impl State {
 
 impl Plane {
     /// Index of the first, the second and the perpendicular axis, right-handed: `G18` is Z, X, Y.
-    pub(super) fn axes(self) -> [usize; 3] {
+    pub(crate) fn axes(self) -> [usize; 3] {
         match self {
             Plane::Xy => [0, 1, 2],
             Plane::Zx => [2, 0, 1],

@@ -171,7 +171,16 @@ impl<'a> Run<'a, '_> {
         let mut reader = Reader::new(&values, self.here.line, text, rest);
         let mut locals: Locals = [Some(0.0); 34];
         let mut count = 0;
-        while reader.peek() == Some(b'[') {
+        loop {
+            // Comments may stand between the arguments (`rs274`).
+            match reader.peek() {
+                Some(b'(') => reader.pass_comment()?,
+                Some(b'[') => {}
+                _ => break,
+            }
+            if reader.peek() != Some(b'[') {
+                continue;
+            }
             if count == MOST_ARGUMENTS {
                 return Err(reader.wrong(format!("a call has at most {MOST_ARGUMENTS} arguments")));
             }

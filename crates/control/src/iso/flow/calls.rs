@@ -243,7 +243,10 @@ impl<'a> Run<'a, '_> {
 
     /// The called program has ended: it is run again, or its caller goes on.
     pub(super) fn leave(&mut self) -> Result<(), Fault> {
-        self.budget.jump().map_err(|message| self.at_line("nc-endless", message))?;
+        let begin = self.frames.last().map_or(self.here.at, |frame| frame.begin.at);
+        let read = self.here.at.saturating_sub(begin);
+        let counted = self.budget.jump().and_then(|()| self.budget.read(read));
+        counted.map_err(|message| self.at_line("nc-endless", message))?;
         let modes = self.frame().modes.filter(|modes| modes.until_return);
         let Some(frame) = (if self.frames.len() > 1 { self.frames.pop() } else { None }) else {
             return Ok(());

@@ -446,13 +446,41 @@ impl<'a> Run<'a, '_> {
         if counts || word.is_in_units() || word.value == 0.0 {
             return Ok(word.value);
         }
-        if self.settings.setup.whole_numbers == WholeNumbers::Units {
-            return Ok(word.value);
+        match self.settings.setup.whole_numbers {
+            WholeNumbers::Units => Ok(word.value),
+            WholeNumbers::Increments => self.increments(word),
+            WholeNumbers::Unknown => {
+                let message = format!(
+                    "argument {} has no decimal point: units or increments, as the machine is set",
+                    char::from(word.letter)
+                );
+                let fault = self.at_line("nc-decimal-point", message);
+                Err(fault.help("write the point, or say what whole numbers count").into())
+            }
+        }
+    }
+
+    /// An argument without a point counts least input increments of its address (B-63684EN, 16.6): of a length or of an
+    /// angle. Which those of E and F are, and those of A, B and C with inches, depends on the machine.
+    fn increments(&self, word: Word) -> Result<f64, Fault> {
+        let is_angle = matches!(word.letter, b'A'..=b'C');
+        match (self.control.state.inches, word.letter) {
+            (_, b'E' | b'F') => {}
+            (Some(false), _) => return Ok(word.value / 1000.0),
+            (Some(true), _) if !is_angle => return Ok(word.value / 10_000.0),
+            (None, _) if !is_angle => {
+                let message = format!(
+                    "argument {} counts increments, and neither G20 nor G21 has been given",
+                    char::from(word.letter)
+                );
+                return Err(self.at_line("nc-units", message).help("write G20 or G21").into());
+            }
+            _ => {}
         }
         let message = format!(
-            "argument {} has no decimal point: units or increments, as the machine is set",
+            "argument {} has no decimal point: what it counts depends on the machine",
             char::from(word.letter)
         );
-        Err(self.at_line("nc-decimal-point", message))
+        Err(self.at_line("nc-decimal-point", message).help("write the point").into())
     }
 }

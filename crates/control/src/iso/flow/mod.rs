@@ -7,6 +7,7 @@
 pub(super) mod ahead;
 mod branches;
 mod calls;
+mod corners;
 mod macros;
 mod modes;
 mod owords;

@@ -2,6 +2,7 @@
 
 use super::ahead::Ahead;
 use super::calls::{Frame, Kind};
+use super::corners::Held;
 use super::macros;
 use super::owords;
 use super::source::{self, Place, Source};
@@ -35,7 +36,7 @@ pub(crate) struct Run<'a, 's> {
     pub main: &'a Source<'a>,
     pub here: Place<'a>,
     /// The line that is run, and its number.
-    text: (&'a [u8], u32),
+    pub(super) text: (&'a [u8], u32),
     /// The line of the program itself in which a call into another file is under way.
     pub caller: Option<u32>,
     pub frames: Vec<Frame<'a>>,
@@ -50,8 +51,10 @@ pub(crate) struct Run<'a, 's> {
     ahead: Ahead,
     /// The block before has moved, and straight moves go on behind it.
     onward: Option<Onward>,
+    /// The block whose corner waits for the next one.
+    pub(super) held: Option<Held>,
     /// Where the records go.
-    compensator: &'a mut Compensator<'s>,
+    pub(super) compensator: &'a mut Compensator<'s>,
 }
 
 impl<'a, 's> Run<'a, 's> {
@@ -85,6 +88,7 @@ impl<'a, 's> Run<'a, 's> {
             over: false,
             ahead,
             onward: None,
+            held: None,
             compensator,
         }
     }
@@ -244,7 +248,14 @@ impl<'a, 's> Run<'a, 's> {
         let calls = matches!(flow, Some(M::Call | M::CallBlock));
         let call = if calls { Some(self.called_program()?) } else { None };
         let back = if flow == Some(M::Return) { self.whole_word(b'P')? } else { None };
+        let corner = self.block.corner.take();
+        let state = &self.control.state;
+        let start =
+            (corner.is_some() || self.held.is_some()).then(|| state.place.point(state.position));
         self.control.execute(&mut self.block, &mut self.actions)?;
+        if let Some(start) = start {
+            self.go_round(start, corner)?;
+        }
         if self.block.g(Group::Macro) == Some(G::CancelMacroCall) {
             self.frame().modal = None;
         }
@@ -261,7 +272,7 @@ impl<'a, 's> Run<'a, 's> {
         if flow == Some(M::Return) {
             return self.back(back);
         }
-        if self.frame().modal.is_none() {
+        if self.frame().modal.is_none() && self.held.is_none() {
             self.onward = Onward::behind(&self.block, &self.control.state);
         }
         self.after_move()
@@ -288,8 +299,10 @@ impl<'a, 's> Run<'a, 's> {
 
     /// Goes on at byte `at`, behind line `line`.
     pub(super) fn jump(&mut self, at: usize, line: u32) -> Result<(), Fault> {
+        let again = self.here.at.saturating_sub(at);
         (self.here.at, self.here.line) = (at, line);
-        self.budget.jump().map_err(|message| self.at_line("nc-endless", message))
+        let counted = self.budget.jump().and_then(|()| self.budget.read(again));
+        counted.map_err(|message| self.at_line("nc-endless", message))
     }
 
     /// What stands behind a statement: nothing but comments.

@@ -91,6 +91,8 @@ pub(crate) struct Block<'a> {
     prompt: Option<(usize, usize)>,
     /// What the block sets (RS274/NGC), which takes effect when the whole block has been read.
     pub assignments: Vec<(Target<'a>, Value)>,
+    /// `,C` or `,R`: what is put between this block and the next one.
+    pub corner: Option<Word>,
     /// The words behind `G65` or `G66`, in their order.
     pub arguments: Vec<Word>,
     /// The M functions of the machine's builder that stand for themselves, in their order.
@@ -121,6 +123,7 @@ impl<'a> Block<'a> {
             comments: Vec::new(),
             prompt: None,
             assignments: Vec::new(),
+            corner: None,
             arguments: Vec::new(),
             auxiliary: Vec::new(),
         }
@@ -139,6 +142,7 @@ impl<'a> Block<'a> {
         self.comments.clear();
         self.prompt = None;
         self.assignments.clear();
+        self.corner = None;
         self.arguments.clear();
         self.auxiliary.clear();
     }
@@ -178,6 +182,9 @@ impl<'a> Block<'a> {
                 // In ISO code the colon is the O of EIA code.
                 b':' if values.language() == Language::MacroB => {
                     at = self.word(b'O', at, values)?
+                }
+                b',' if matches!(dictionary.flavor, Flavor::Fanuc | Flavor::Haas) => {
+                    at = self.corner(at, values)?
                 }
                 b'(' if dictionary.flavor != Flavor::Marlin => {
                     at = self.comment(at)?;
@@ -243,6 +250,46 @@ impl<'a> Block<'a> {
             && let Some((_, meaning)) = dictionary.m(word.value)
         {
             return Ok(self.prompt(meaning, end));
+        }
+        Ok(end)
+    }
+
+    /// Reads `,C` or `,R` at `at` and gives the place after it.
+    fn corner(&mut self, at: usize, values: &Values) -> Result<usize, Fault> {
+        let skip = |mut at: usize| {
+            while matches!(self.text.get(at), Some(b' ' | b'\t')) {
+                at += 1;
+            }
+            at
+        };
+        let place = skip(at + 1);
+        let from = skip(place + 1);
+        let letter = match self.text.get(place) {
+            Some(&letter @ (b'C' | b'R')) => letter,
+            Some(b'A') => {
+                let message = "a line by its angle (,A) is not followed; write its end";
+                return Err(self.fault("nc-corner", message, at, place + 1));
+            }
+            _ => {
+                let message = "behind a comma stands C or R: a chamfer or a rounding";
+                return Err(self.fault("nc-syntax", message, at, place + 1));
+            }
+        };
+        let number = self.text.get(from..).and_then(decimal::parse);
+        let (word, end) = match number {
+            Some(number) => {
+                let end = from + number.len;
+                (Word::written(letter, &number, at, end), end)
+            }
+            None => {
+                let (value, end) = self.computed(letter, at, from, values)?;
+                let Some(value) = value else { return Ok(end) };
+                let number = Decimal { value, ..Decimal::default() };
+                (Word { computed: true, ..Word::written(letter, &number, at, end) }, end)
+            }
+        };
+        if self.corner.replace(word).is_some() {
+            return Err(self.fault("nc-repeated-word", "a block has one corner", at, end));
         }
         Ok(end)
     }

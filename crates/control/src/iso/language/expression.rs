@@ -58,6 +58,18 @@ impl<'t, 'v> Reader<'t, 'v> {
         self.text.get(self.at).copied()
     }
 
+    /// Passes over the comment that begins here.
+    pub(crate) fn pass_comment(&mut self) -> Result<(), Fault> {
+        let rest = self.text.get(self.at..).unwrap_or_default();
+        match memchr::memchr(b')', rest) {
+            Some(end) => {
+                self.at += end + 1;
+                Ok(())
+            }
+            None => Err(self.wrong("the comment has no end")),
+        }
+    }
+
     /// Takes `byte` where it is here.
     pub(crate) fn take(&mut self, byte: u8) -> bool {
         let here = self.peek() == Some(byte);

@@ -5,11 +5,13 @@
 //! and what is said in between with it.
 
 use super::interpreter::Interpreter;
+pub(super) use crate::corner::Element;
+use crate::corner::{self, Joint, Misfit, Shape};
 use crate::event::{Action, ArcTo, Event};
 use crate::sinumerik::Fallible;
 use crate::sinumerik::language::block::{Block, Corner};
 use crate::sinumerik::language::scan::Source;
-use geom::{Arc, Vec3};
+use geom::Vec3;
 use program::{Diagnostic, Feed};
 
 /// Most records between the two blocks of a corner; our own limit.
@@ -17,19 +19,6 @@ const MOST_BETWEEN: usize = 100;
 
 /// Directions that differ by less, radians, make no corner.
 const STRAIGHT_ON: f64 = 1e-6;
-
-/// The way of a block in the coordinates of the program.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Element {
-    /// Where it starts.
-    pub start: Vec3,
-    /// Where it ends.
-    pub end: Vec3,
-    /// Centre and direction of an arc.
-    pub circle: Option<(Vec3, Vec3)>,
-    /// Whether it can have a corner: a cut without further turns.
-    pub cut: bool,
-}
 
 /// A block whose corner waits for the next one.
 pub(crate) struct Held {
@@ -41,109 +30,6 @@ pub(crate) struct Held {
     line: u32,
     /// What has been said since.
     between: Vec<Event>,
-}
-
-/// Where a corner leaves the first block, where it meets the second, and its arc.
-struct Joint {
-    from: Vec3,
-    to: Vec3,
-    circle: Option<(Vec3, Vec3)>,
-}
-
-impl Element {
-    /// The direction at the start (false) or the end (true), a unit vector.
-    fn direction(&self, end: bool) -> Vec3 {
-        match self.circle {
-            None => (self.end - self.start).normalize_or_zero(),
-            Some((center, normal)) => {
-                let point = if end { self.end } else { self.start };
-                normal.cross(point - center).normalize_or_zero()
-            }
-        }
-    }
-
-    /// Whether `point`, which lies on its line or circle, is within it.
-    fn passes(&self, point: Vec3) -> bool {
-        match self.circle {
-            None => {
-                let way = self.end - self.start;
-                let t = (point - self.start).dot(way) / way.length_squared();
-                (-1e-9..=1.0 + 1e-9).contains(&t)
-            }
-            Some((center, normal)) => {
-                Arc::new(self.start, self.end, center, normal, 0, f64::INFINITY)
-                    .is_ok_and(|arc| arc.nearest(point).1 < 1e-6)
-            }
-        }
-    }
-
-    /// Where centres of arcs of `radius` lie that touch it on its left (1) or right (-1) side: a line by a
-    /// point and its direction, or a circle by its centre and radius.
-    fn beside(&self, up: Vec3, radius: f64, side: f64) -> Locus {
-        match self.circle {
-            None => {
-                let way = self.direction(true);
-                Locus::Line(self.end + up.cross(way) * (side * radius), way)
-            }
-            Some((center, normal)) => {
-                let turn = normal.dot(up).signum();
-                let own = (self.end - center).length();
-                Locus::Circle(center, own - side * turn * radius)
-            }
-        }
-    }
-
-    /// Where an arc about `center` touches it.
-    fn touched(&self, center: Vec3) -> Vec3 {
-        match self.circle {
-            None => {
-                let way = self.direction(true);
-                self.end + way * (center - self.end).dot(way)
-            }
-            Some((own, _)) => own + (center - own).normalize_or_zero() * (self.end - own).length(),
-        }
-    }
-}
-
-/// A line or a circle in the plane.
-#[derive(Clone, Copy)]
-enum Locus {
-    Line(Vec3, Vec3),
-    Circle(Vec3, f64),
-}
-
-impl Locus {
-    /// The point of both that is nearest to `corner`.
-    fn meet(self, other: Locus, up: Vec3, corner: Vec3) -> Option<Vec3> {
-        let nearest = |a: Vec3, b: Vec3| {
-            if a.distance_squared(corner) <= b.distance_squared(corner) { a } else { b }
-        };
-        match (self, other) {
-            (Locus::Line(a, u), Locus::Line(b, v)) => {
-                let cross = up.dot(u.cross(v));
-                (cross.abs() > 1e-12).then(|| a + u * (up.dot((b - a).cross(v)) / cross))
-            }
-            (Locus::Line(a, u), Locus::Circle(c, r)) | (Locus::Circle(c, r), Locus::Line(a, u)) => {
-                let foot = a + u * (c - a).dot(u);
-                let half = r * r - foot.distance_squared(c);
-                (r > 0.0 && half >= 0.0)
-                    .then(|| nearest(foot + u * half.sqrt(), foot - u * half.sqrt()))
-            }
-            (Locus::Circle(c, r), Locus::Circle(d, s)) => {
-                let way = d - c;
-                let apart = way.length();
-                if r <= 0.0 || s <= 0.0 || apart <= 1e-12 {
-                    return None;
-                }
-                let along = (apart * apart + r * r - s * s) / (2.0 * apart);
-                let half = r * r - along * along;
-                let foot = c + way / apart * along;
-                let aside = up.cross(way / apart);
-                (half >= 0.0)
-                    .then(|| nearest(foot + aside * half.sqrt(), foot - aside * half.sqrt()))
-            }
-        }
-    }
 }
 
 impl Interpreter<'_, '_> {
@@ -305,54 +191,28 @@ impl Interpreter<'_, '_> {
 
     /// The corner between two ways in the plane; none where the second goes straight on.
     fn joint(&self, source: &Source, held: &Held, second: &Element) -> Fallible<Option<Joint>> {
-        let error = |message: String| Err(source.block_error("corner", message));
-        let first = &held.element;
-        let up = Vec3::AXES[self.state.plane_normal];
-        let corner = first.end;
-        let (before, behind) = (first.direction(true), second.direction(false));
-        let turn = up.dot(before.cross(behind)).atan2(before.dot(behind));
-        let (Corner::Chamfer(size) | Corner::ChamferSide(size) | Corner::Round(size)) = held.corner;
-        if turn.abs() < STRAIGHT_ON || size == 0.0 {
-            return Ok(None);
-        }
-        if turn.abs() > std::f64::consts::PI - STRAIGHT_ON {
-            return error(format!("the way turns back at the corner of line {}", held.line));
-        }
-        let side = turn.signum();
-        let joint = match held.corner {
-            Corner::Round(radius) => {
-                let one = first.beside(up, radius, side);
-                let other = second.beside(up, radius, side);
-                one.meet(other, up, corner).map(|center| Joint {
-                    from: first.touched(center),
-                    to: second.touched(center),
-                    circle: Some((center, up * side)),
-                })
-            }
-            _ if first.circle.is_some() || second.circle.is_some() => {
-                return error("a chamfer beside an arc is not supported; write its line".into());
-            }
-            Corner::Chamfer(length) => {
-                let back = length / (2.0 * (turn / 2.0).cos());
-                Some(Joint {
-                    from: corner - before * back,
-                    to: corner + behind * back,
-                    circle: None,
-                })
-            }
-            Corner::ChamferSide(back) => Some(Joint {
-                from: corner - before * back,
-                to: corner + behind * back,
-                circle: None,
-            }),
+        let shape = match held.corner {
+            Corner::Chamfer(length) => Shape::Chamfer(length),
+            Corner::ChamferSide(back) => Shape::ChamferSide(back),
+            Corner::Round(radius) => Shape::Round(radius),
         };
-        match joint.filter(|joint| first.passes(joint.from) && second.passes(joint.to)) {
-            Some(joint) => Ok(Some(joint)),
-            None => error(format!(
-                "the corner of line {} with {size} mm does not fit between its blocks",
-                held.line
-            )),
-        }
+        let (Corner::Chamfer(size) | Corner::ChamferSide(size) | Corner::Round(size)) = held.corner;
+        let up = Vec3::AXES[self.state.plane_normal];
+        corner::joint(&held.element, second, up, shape, STRAIGHT_ON).map_err(|misfit| {
+            let line = held.line;
+            let message = match misfit {
+                Misfit::TurnsBack => format!("the way turns back at the corner of line {line}"),
+                Misfit::ChamferAtArc => {
+                    String::from("a chamfer beside an arc is not supported; write its line")
+                }
+                Misfit::TooLarge => {
+                    format!(
+                        "the corner of line {line} with {size} mm does not fit between its blocks"
+                    )
+                }
+            };
+            source.block_error("corner", message)
+        })
     }
 
     /// The record of a way.

@@ -208,7 +208,12 @@ impl Interpreter<'_, '_> {
         }
         if base.is_nan() {
             let message = format!("{name} is incremental, but it is not known from where");
-            return Err(source.block_error("unknown-position", message));
+            let mut error = source.block_error("unknown-position", message);
+            error.help = format!(
+                "write an absolute position of {name} before it (G90, or {name}=AC()), also behind ROT, SCALE and \
+                 MIRROR"
+            );
+            return Err(error);
         }
         Ok(base + value)
     }

@@ -12,6 +12,9 @@ use crate::{Dialect, Settings};
 use geom::{Frame, Vec3};
 use program::{Compensation, Coolant, Feed, Spindle, Tool};
 
+/// Coordinates that differ by less are one, mm: rotations round.
+const SAME_PLACE: Vec3 = Vec3::splat(1e-9);
+
 /// `G500`: none, in the reset state that the maker delivers.
 pub const WORK_OFFSET_AT_RESET: u32 = 500;
 
@@ -374,7 +377,8 @@ impl State {
 
     /// Changes the frames; the axes stay where they are. A translation alone leaves the programmed
     /// values, so that the next incremental word travels the offset as well (SD42440 = 1, the
-    /// delivery state); after a rotation, a scale or a mirror they mean nothing.
+    /// delivery state). After a rotation, a scale or a mirror it is not documented whether increments count from the
+    /// value that was programmed or from where the axis stands in the new frame: they count where both are one.
     pub fn change_frames(&mut self, change: impl FnOnce(&mut Frames)) {
         let base = self.frames.in_work_frame(self.position);
         let moved_only = self.frames.moved_only();
@@ -382,7 +386,9 @@ impl State {
         self.position = self.frames.in_program(base);
         self.heading = Vec3::NAN;
         if !(moved_only && self.frames.moved_only()) {
-            self.programmed = Vec3::NAN;
+            let (programmed, stands) = (self.programmed, self.position);
+            let agree = programmed.cmpeq(stands) | (programmed - stands).abs().cmplt(SAME_PLACE);
+            self.programmed = Vec3::select(agree, programmed, Vec3::NAN);
         }
     }
 }

@@ -111,6 +111,15 @@ const UNSUPPORTED: &[(&str, &str)] = &[
     ("SPCOF", "position control of the spindle"),
     ("LIMS", "a limit of the speed for constant cutting speed"),
     ("GEOAX", "other geometry axes"),
+    ("POLF", LIFT),
+    ("POLFA", LIFT),
+    ("POLFMASK", LIFT),
+    ("POLFMLIN", LIFT),
+    ("LFON", LIFT),
+    ("LIFTFAST", LIFT),
+    ("DILF", LIFT),
+    ("ALF", LIFT),
+    ("SETINT", "an interrupt, which may run at any place of the program; leave it out"),
     ("DRFOF", "overlaid motions"),
     ("MEAS", MEASURING),
     ("MEAW", MEASURING),
@@ -150,6 +159,8 @@ const UNSUPPORTED: &[(&str, &str)] = &[
 ];
 
 const SYNCHRONISED: &str = "synchronised actions";
+const LIFT: &str = "where the axes go when the program is stopped, which nothing here follows; leave it out, and \
+                    retract in the program";
 const MEASURING: &str = "measuring";
 const TURNING: &str = "a turning cycle, whose path the control makes; write the path";
 const MILLING: &str = "a milling cycle, whose path the control makes; write the path";

@@ -332,6 +332,11 @@ pub(super) static COMMANDS: &[Command] = &[
     same("FNORM", 37),
     not("FLIN", 37, FEED_PROFILE),
     not("FCUB", 37, FEED_PROFILE),
+    // 41, 46: whether a thread is left when the program stops, and the plane of that way
+    same("LFOF", 41),
+    same("LFTXT", 46),
+    same("LFWP", 46),
+    same("LFPOS", 46),
     // 45 to 51: path reference, language, contour end, point to point, orientation
     same("SPATH", 45),
     same("UPATH", 45),

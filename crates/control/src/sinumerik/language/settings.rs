@@ -31,6 +31,8 @@ pub(super) enum Setting {
     PathTolerance,
     /// `OTOL=`: by how much the control may turn the tool out of its orientation.
     OrientationTolerance,
+    /// By how much an axis accelerates, jerks or is fast, percent.
+    Dynamics,
     /// How rapids and corrections are rounded, and how far the tool axis may turn.
     NoMotion,
 }
@@ -59,6 +61,10 @@ const SETTINGS: &[(&str, Setting)] = &[
     ("CTOL", Setting::PathTolerance),
     ("OTOL", Setting::OrientationTolerance),
     ("DISC", Setting::Peak),
+    ("ACC", Setting::Dynamics),
+    ("ACCLIMA", Setting::Dynamics),
+    ("JERKLIMA", Setting::Dynamics),
+    ("VELOLIMA", Setting::Dynamics),
 ];
 
 /// The address of that name, as the language has it.
@@ -77,6 +83,7 @@ impl Reader<'_, '_> {
         match setting {
             Setting::Position => return self.positioning(start),
             Setting::FeedReference => return self.feed_reference(start),
+            Setting::Dynamics => return self.dynamics(start, said),
             _ => {}
         }
         self.scanner.expect(b'=')?;
@@ -115,6 +122,7 @@ impl Reader<'_, '_> {
             Setting::SpindlePosition => rare(block, |r| &mut r.spindle_position),
             Setting::Position
             | Setting::FeedReference
+            | Setting::Dynamics
             | Setting::PolarAngle
             | Setting::PolarRadius
             | Setting::NoMotion => false,
@@ -151,6 +159,18 @@ impl Reader<'_, '_> {
         let place = self.block.rare.get_or_insert_default().feed_reference.get_mut(axis);
         let repeated = place.is_some_and(|place| place.replace(radius).is_some());
         self.once(start, repeated)
+    }
+
+    /// `ACC[X]=80`: percent of what the machine data let the axis do; the path stays what it is (Programming Manual 12/2019,
+    /// "Percentage acceleration override", "Influence of acceleration on following axes").
+    fn dynamics(&mut self, start: usize, said: &str) -> Fallible<()> {
+        self.indexed_axis()?;
+        let percent = self.expression()?;
+        if percent > 0.0 && percent <= 200.0 {
+            return Ok(());
+        }
+        let message = format!("{said}[] takes more than 0 and at most 200 percent");
+        Err(self.scanner.error_since(start, "number", message))
     }
 
     /// `POS[X]=...`.

@@ -384,7 +384,7 @@ fn modal_call(scanner: &mut Scanner, evaluator: &Evaluator) -> Fallible<Option<P
 /// A program's name up to here, its arguments, and how often.
 fn named_call(scanner: &mut Scanner, evaluator: &Evaluator, start: usize) -> Fallible<ProgramCall> {
     let name = scanner.source.text.get(start..scanner.at).unwrap_or(&[]);
-    let program = String::from_utf8_lossy(name).into();
+    let program = String::from_utf8_lossy(name.trim_ascii_end()).into();
     let arguments = arguments(scanner, evaluator)?;
     let times = times(scanner, evaluator)?;
     if !scanner.rests() {
