@@ -138,7 +138,7 @@ impl Walk<'_> {
             self.say_hole(at, &levels);
             self.block(name)?;
             self.writer.forget(bit(WordName::Motion));
-        } else if self.open_cycle == Some(open) {
+        } else if self.open_cycle == Some(open) && self.stays_in_cycle(&over, stop) {
             self.say_hole(at, &levels);
             self.block(BlockName::CycleHole)?;
         } else {
@@ -182,11 +182,25 @@ impl Walk<'_> {
         if !same(here.axis(), over.axis()) {
             return self.rapid_to_hole(over, stop);
         }
-        let corner = corner(here.point(), over.point(), over.axis());
-        if corner.distance(here.point()) > self.resolution {
-            self.rapid_to_hole(&over.at(corner)?, stop)?;
+        let corner = over.at(corner(here.point(), over.point(), over.axis()))?;
+        if !self.keeps_to_hole(&here, &corner, stop) || !self.keeps_to_hole(&corner, over, stop) {
+            // Axes that go each at its own speed go across beyond all cuts.
+            let high = corner.lifted(self.under(&corner))?;
+            let up = (high.point() - here.point()).dot(here.axis());
+            let down = (high.point() - over.point()).dot(over.axis());
+            self.rapid_to_hole(&here.lifted(up)?, stop)?;
+            self.rapid_to_hole(&over.lifted(down)?, stop)?;
+            return self.rapid_to_hole(over, stop);
+        }
+        if corner.point().distance(here.point()) > self.resolution {
+            self.rapid_to_hole(&corner, stop)?;
         }
         self.rapid_to_hole(over, stop)
+    }
+
+    /// Whether the cycle that is on may go from hole to hole by itself, to `over` at the level where it retracts.
+    fn stays_in_cycle(&mut self, over: &Pose, stop: &Stop) -> bool {
+        self.here.is_none_or(|here| self.keeps_to_hole(&here, over, stop))
     }
 
     fn say_hole(&mut self, at: Vec3, levels: &Levels) {

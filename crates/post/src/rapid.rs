@@ -97,10 +97,41 @@ impl Walk<'_> {
             true => matches!(self.course(&from, pose, stop, false)?, Course::AtOnce),
             false => !self.vector_strays(pose.axis()) && self.vector_is_beyond(&from, pose),
         };
-        match at_once {
-            true => self.rapid_at_once(pose, stop),
-            false => self.by_home(pose, stop),
+        if !at_once {
+            return self.by_home(pose, stop);
         }
+        if !self.keeps_to_hole(&from, pose, stop) {
+            let message = "each axis of the machine goes at its own speed by rapid, and on the way to this hole that takes the \
+                           tool off its line near the part";
+            let help = "`rapid_path = \"linear\"` in [settings] where its axes go together by rapid (FANUC: parameter 1401#1 is \
+                        1), or a set-up in which the tool stands along Z of the machine";
+            return Err(refuse("rapid-path", message).help(help).into());
+        }
+        self.rapid_at_once(pose, stop)
+    }
+
+    /// Whether a straight rapid to a hole stays on its line, however the axes go, or leaves it beyond all cuts alone.
+    pub(crate) fn keeps_to_hole(&mut self, from: &Pose, to: &Pose, stop: &Stop) -> bool {
+        let machine = self.machine;
+        if machine.has_straight_rapids() {
+            return true;
+        }
+        let (a, b, axis) = (from.point(), to.point(), to.axis());
+        let stances = match &self.place.kind {
+            Kind::Bare | Kind::Plain => vec![[0.0; 3]],
+            Kind::ToolCenter | Kind::Machine => self.place.degrees().into_iter().collect(),
+            Kind::Tilted(..) | Kind::Vectors => self.stances(axis, stop),
+        };
+        let corridor = USED * machine.capabilities.rapid_corridor;
+        let tips: Vec<Vec3> = stances.iter().flat_map(|at| machine.wandering(a, b, *at)).collect();
+        let is_straight = tips.iter().all(|tip| nearest_on_segment(a, b, *tip).1 <= corridor);
+        !stances.is_empty() && (is_straight || tips.iter().all(|tip| self.is_beyond(*tip, axis)))
+    }
+
+    /// How far `pose` has to go out along its axis to be beyond all cuts, mm.
+    pub(crate) fn under(&mut self, pose: &Pose) -> f64 {
+        let clearance = self.machine.capabilities.rapid_clearance + 2.0 * ROUNDING;
+        (self.cut_reach(pose.axis()) + clearance - pose.point().dot(pose.axis())).max(0.0)
     }
 
     /// A rapid in one block, from a known position.

@@ -252,6 +252,80 @@ fn where_each_axis_goes_at_its_own_speed_only_one_moves_near_the_part() {
     assert_eq!(refused(&source, &straight, &good)[0].0, "rapid-feed");
 }
 
+/// A wall at height 10, and three holes at height 0 whose cycle retracts to 2, in a plane with the tool along its Z: along its
+/// X from the first to the second, aslant to the third.
+fn holes_beside_a_wall(retract: f64, [x, y, z]: [Vec3; 3]) -> Program {
+    let at = |[a, b, c]: [f64; 3]| {
+        let (p, axis) = (x * a + y * b + z * c, z);
+        format!("GOTO/{:.6},{:.6},{:.6},{:.8},{:.8},{:.8}\n", p.x, p.y, p.z, axis.x, axis.y, axis.z)
+    };
+    let rapid = |to| format!("RAPID\n{}", at(to));
+    let all = [
+        "UNITS/MM\nMULTAX/ON\nLOADTL/1,LENGTH,60\nSPINDL/1000,RPM,CLW\nFEDRAT/300,MMPM\n"
+            .to_owned(),
+        rapid([-20.0, -20.0, 50.0]),
+        rapid([-20.0, -20.0, 12.0]),
+        at([-20.0, -20.0, 10.0]),
+        at([60.0, -20.0, 10.0]),
+        rapid([60.0, -20.0, 50.0]),
+        rapid([0.0, 0.0, 50.0]),
+        format!("CYCLE/DRILL,RAPTO,2,FEDTO,6,RTRCTO,{retract},MMPM,150\n"),
+        at([0.0; 3]),
+        at([40.0, 0.0, 0.0]),
+        at([0.0, 30.0, 0.0]),
+        "CYCLE/OFF\n".to_owned(),
+        rapid([0.0, 30.0, 50.0]),
+        "FINI\n".to_owned(),
+    ];
+    read(&all.concat())
+}
+
+const LEVEL: [Vec3; 3] = [Vec3::X, Vec3::Y, Vec3::Z];
+
+/// Within a cycle the control goes across by rapid, in the height of the retract level: with each axis at its own speed first
+/// by 45°, which no source asks for. 1 mm and the rounding above the wall there is room for that.
+#[test]
+fn between_holes_a_cycle_goes_across_beyond_all_cuts_or_along_one_axis() {
+    let machine = load("generic-3axis-fanuc").unwrap();
+    let linear = load_text(
+        "m.toml",
+        "extends = \"generic-3axis-fanuc\"\n[settings]\nrapid_path = \"linear\"\n",
+    )
+    .unwrap();
+    let source = holes_beside_a_wall(2.0, LEVEL);
+    let straight = plain(&text(&written(&source, &linear)));
+    proven(&source, &linear, &straight);
+    assert!(straight.contains("\nX40. Y0.\nX0. Y30.\nG80\n"), "{straight}");
+    let third = straight.lines().position(|line| line == "X0. Y30.").unwrap() as u32 + 1;
+    assert_eq!(refused(&source, &machine, &straight), [("rapid-path", third)]);
+    let good = plain(&text(&written(&source, &machine)));
+    proven(&source, &machine, &good);
+    assert!(good.contains("\nX40. Y0.\nG80\nG0 Z11.02\nX0. Y30.\nZ2.\n"), "{good}");
+    // So high does the cycle retract by itself.
+    let high = holes_beside_a_wall(12.0, LEVEL);
+    let good = plain(&text(&written(&high, &machine)));
+    proven(&high, &machine, &good);
+    assert!(good.contains("\nX40. Y0.\nX0. Y30.\nG80\n"), "{good}");
+}
+
+/// The same on a plane that is tilted by 45° about an axis aslant of X and Y: its X is none of the machine's.
+#[test]
+fn in_a_tilted_plane_a_cycle_goes_across_beyond_all_cuts_too() {
+    let z = Vec3::new(0.5, 0.5, 0.5_f64.sqrt());
+    let x = Vec3::new(0.5_f64.sqrt(), -(0.5_f64.sqrt()), 0.0);
+    let source = holes_beside_a_wall(2.0, [x, z.cross(x), z]);
+    let linear = load("fanuc-table-bc").unwrap();
+    let text_of = "extends = \"fanuc-table-bc\"\n[settings]\nrapid_path = \"independent\"\n";
+    let machine = load_text("m.toml", text_of).unwrap();
+    let straight = plain(&text(&written(&source, &linear)));
+    proven(&source, &linear, &straight);
+    let rules: Vec<_> = refused(&source, &machine, &straight);
+    assert!(!rules.is_empty() && rules.iter().all(|(rule, _)| *rule == "rapid-path"), "{rules:?}");
+    let good = plain(&text(&written(&source, &machine)));
+    proven(&source, &machine, &good);
+    assert!(good.matches("G80").count() >= straight.matches("G80").count(), "{good}");
+}
+
 #[test]
 fn from_home_only_z_comes_down() {
     let source = read(

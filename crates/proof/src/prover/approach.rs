@@ -52,9 +52,17 @@ impl Prover<'_> {
         Some(self.way_refused(to, &what))
     }
 
-    /// What is wrong with a cycle that begins at home: it goes across as its coordinates count, and down to its R plane.
+    /// What is wrong with the way of a cycle to its R plane: it goes across as its coordinates count, at the height where the
+    /// tool is, and then along the tool axis.
     pub(super) fn wrong_cycle(&mut self, r_plane: &Station) -> Option<Diagnostic> {
-        if self.here.place.known() || !self.raised {
+        let here = self.here;
+        if here.place.known() {
+            let height = r_plane.place.above(here.place.tip).0;
+            let over = Station { place: r_plane.place.lifted(height), ..*r_plane };
+            let across = self.wrong_dog_leg(&here, &over);
+            return across.or_else(|| self.wrong_dog_leg(&over, r_plane));
+        }
+        if !self.raised {
             return None;
         }
         let ups = self.ups(r_plane);

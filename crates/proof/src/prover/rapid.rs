@@ -58,8 +58,12 @@ impl Prover<'_> {
         Ok(())
     }
 
-    /// Whether a rapid has come to a place on the straight way of the source, and not back.
+    /// Whether a rapid has come to a place on the straight way of the source, and not back. Before a tool change and home no
+    /// place is on it: the way begins behind them.
     fn goes_on_the_way(&mut self, to: &Station) -> bool {
+        if matches!(&self.cursor.step, Step::Move(goal) if goal.tool_change || goal.homed) {
+            return false;
+        }
         let goes_on = |(t, length): &(f64, f64)| (self.leg.t - t) * length <= self.gauge.slack(to);
         let on_the_way = self.on_the_way(to).filter(|_| self.leg.stops.is_empty());
         let Some((t, _)) = on_the_way.filter(goes_on) else { return false };

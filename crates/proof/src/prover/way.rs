@@ -35,8 +35,9 @@ impl Prover<'_> {
         let from = goal.from.unwrap_or(goal.to);
         let (straight, end) = match &goal.kind {
             Kind::Rapid => (goal.from.map(|from| (from, goal.to)), goal.to),
-            // How a cycle goes, it decides itself; what comes from above is looked at there.
-            Kind::Hole(_) if self.leg.hole.over || !turns => return None,
+            // What comes from above is looked at with the hole, and a straight block goes as its ends say.
+            Kind::Hole(_) if !turns => return self.wrong_dog_leg(&here, to),
+            Kind::Hole(_) if self.leg.hole.over => return None,
             Kind::Hole(cycle) => (None, goal.to.lifted(cycle.clearance)),
             Kind::Line | Kind::Arc(_) => (None, self.leg.left.map_or(from, |left| left.place)),
             Kind::Thread(_) | Kind::Probe { .. } | Kind::Broken(_) => return None,
@@ -47,22 +48,44 @@ impl Prover<'_> {
             self.note_rapid(&way, std::iter::once(&to.place), to.line);
             return None;
         }
-        let Some(places) = way.places(&here, to) else {
+        self.wrong_places(&way, &here, to, &end)
+    }
+
+    /// What is wrong with the way to a hole from `here` to `to`, where each axis goes at its own speed: the tool leaves the
+    /// straight line between the two beyond all cuts only.
+    pub(super) fn wrong_dog_leg(&mut self, here: &Station, to: &Station) -> Option<Diagnostic> {
+        let gauge = self.gauge;
+        if gauge.machine.has_straight_rapids() {
+            return None;
+        }
+        let way = Way { gauge: &gauge, straight: Some((here.place, to.place)) };
+        self.wrong_places(&way, here, to, &to.place)
+    }
+
+    /// What is wrong with the places to which the axes lead the tool from `here` to `to`, on the way to `end`.
+    fn wrong_places(
+        &mut self,
+        way: &Way,
+        here: &Station,
+        to: &Station,
+        end: &Place,
+    ) -> Option<Diagnostic> {
+        let Some(places) = way.places(here, to) else {
             let what = "turns axes that go each at its own speed: where the tool goes between the ends is not known";
             return Some(self.way_refused(to, what));
         };
-        if along_axis(&gauge, &here, to, &places, &end) {
+        if along_axis(way.gauge, here, to, &places, end) {
             return None;
         }
         let (on_way, elsewhere): (Vec<&Place>, Vec<&Place>) =
             places.iter().partition(|place| way.holds(place));
-        self.note_rapid(&way, on_way.into_iter(), to.line);
+        self.note_rapid(way, on_way.into_iter(), to.line);
         let short = self.short_of_clearance(elsewhere.iter().copied())?;
-        let slack = self.gauge.slack(&here);
+        let slack = self.gauge.slack(here);
         let low: Vec<&Place> =
             elsewhere.into_iter().filter(|place| self.short(place) > slack).collect();
-        self.note_rapid(&way, low.into_iter(), to.line);
-        let clearance = Number(gauge.machine.capabilities.rapid_clearance);
+        self.note_rapid(way, low.into_iter(), to.line);
+        let clearance = Number(self.gauge.machine.capabilities.rapid_clearance);
         let what = format!(
             "leaves the straight way of the source {} mm short of {clearance} mm beyond all cuts",
             Number(short)
