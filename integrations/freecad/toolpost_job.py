@@ -32,13 +32,29 @@ def job(objects, name):
         controller = part if hasattr(part, "ToolNumber") else _property(part, "ToolController")
         if controller is not None:
             controllers.setdefault(controller.Name, controller)
+    stock = _stock(objects)
     return {
         "toolpost": "freecad-job",
         "version": 1,
         "name": storable(name),
+        **({"stock": stock} if stock else {}),
         "tools": [_tool(controller) for controller in controllers.values()],
         "operations": [_operation(part) for part in parts],
     }
+
+
+def _stock(objects):
+    """Answer the box around the stock of the job that has these objects; None where nobody knows it."""
+    groups = [group for obj in objects for group in getattr(obj, "InList", [])]
+    owners = [owner for group in groups for owner in (group, *getattr(group, "InList", []))]
+    for owner in owners:
+        box = getattr(getattr(getattr(owner, "Stock", None), "Shape", None), "BoundBox", None)
+        if hasattr(owner, "PostProcessorOutputFile") and box is not None and box.isValid():
+            return {
+                "low": [box.XMin, box.YMin, box.ZMin],
+                "high": [box.XMax, box.YMax, box.ZMax],
+            }
+    return None
 
 
 def storable(label):

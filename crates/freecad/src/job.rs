@@ -10,11 +10,22 @@ use serde_json::Value;
 pub struct Job {
     /// What it is called.
     pub name: String,
+    /// The box around its stock, where it says it.
+    pub stock: Option<Stock>,
     /// Its tools. A tool that it does not describe has a number only.
     pub tools: Vec<Tool>,
     /// What it does, in this order: operations, and what stands between them, tool controllers and work
     /// offsets.
     pub operations: Vec<Operation>,
+}
+
+/// The box around the stock of a job, in the coordinates of its commands.
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize)]
+pub struct Stock {
+    /// Smallest X, Y, Z, mm.
+    pub low: [f64; 3],
+    /// Largest X, Y, Z, mm.
+    pub high: [f64; 3],
 }
 
 /// A tool of a job.
@@ -55,6 +66,7 @@ struct Sheet {
     version: u32,
     #[serde(default)]
     name: String,
+    stock: Option<Stock>,
     #[serde(default)]
     tools: Vec<Tool>,
     operations: Vec<OperationSheet>,
@@ -168,5 +180,6 @@ fn from_sheet(sheet: Sheet) -> Result<Job, Box<Diagnostic>> {
         count: operation.count,
         commands: operation.commands,
     });
-    Ok(Job { name: sheet.name, tools: sheet.tools, operations: operations.collect() })
+    let operations = operations.collect();
+    Ok(Job { name: sheet.name, stock: sheet.stock, tools: sheet.tools, operations })
 }

@@ -4,6 +4,7 @@ use crate::job::{Job, Tool};
 use crate::listing::Listing;
 use crate::way::Way;
 use control::Setup;
+use geom::Vec3;
 use machine::Machine;
 use program::{Diagnostic, Op, Program, Record, Spindle};
 use std::collections::HashMap;
@@ -58,7 +59,8 @@ pub fn read(machine: &Machine, file_name: &str, mut job: Job) -> Result<Reading,
         return Err(Diagnostic::error("nc-feed", message).help(help).file(file_name).into());
     }
     let warnings = reading.warnings.into_iter().map(|found| listing.located(found)).collect();
-    let program = Program { name: job.name, records, ..reading.program };
+    let stock = job.stock.map(|stock| [stock.low, stock.high].map(Vec3::from));
+    let program = Program { name: job.name, records, stock, ..reading.program };
     Ok(Reading { program, listing, warnings })
 }
 

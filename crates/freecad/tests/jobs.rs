@@ -45,6 +45,17 @@ fn refused(job: &Value, rule: &str, place: &str, help: &str) {
     assert!(found.help.contains(help), "{found}");
 }
 
+#[test]
+fn the_stock_of_a_job_is_that_of_the_program() {
+    let mut stated = operation(&format!("(Profile)\n{START}"));
+    assert_eq!(read(&stated).unwrap().stock, None);
+    stated["stock"] = json!({ "low": [0, 0, -10], "high": [80, 50, 1] });
+    let corners = [[0.0, 0.0, -10.0], [80.0, 50.0, 1.0]].map(Vec3::from);
+    assert_eq!(read(&stated).unwrap().stock, Some(corners));
+    stated["stock"] = json!({ "low": [0, 0] });
+    assert_eq!(read(&stated).unwrap_err().rule, "freecad-job");
+}
+
 const START: &str = "G0 Z20.000000\nG0 X1.000000 Y2.000000\n";
 
 #[test]

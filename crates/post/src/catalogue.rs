@@ -188,12 +188,12 @@ names! {
         Euler2 Word "E2", "degrees", "Turn about the new X, second.";
         Euler3 Word "E3", "degrees", "Turn about the new Z, third.";
         Direction Word "DIR", "", "Which of the two solutions for a tilted plane the control takes: 1 the one with the higher position of the axis that `swivel_direction` names, -1 the one with the lower. -1 where that makes no difference.";
-        LowX Word "LOW_X", "mm", "Smallest X of the tool tip in all cuts, in the first block of the program, where `program.cuts`.";
-        LowY Word "LOW_Y", "mm", "Smallest Y of all cuts.";
-        LowZ Word "LOW_Z", "mm", "Smallest Z of all cuts.";
-        HighX Word "HIGH_X", "mm", "Largest X of the tool tip in all cuts.";
-        HighY Word "HIGH_Y", "mm", "Largest Y of all cuts.";
-        HighZ Word "HIGH_Z", "mm", "Largest Z of all cuts.";
+        LowX Word "LOW_X", "mm", "Smallest X of the blank, in `program_start`, where `program.blank`: of the stock, or of the tool tip in all cuts.";
+        LowY Word "LOW_Y", "mm", "Smallest Y of the blank.";
+        LowZ Word "LOW_Z", "mm", "Smallest Z of the blank.";
+        HighX Word "HIGH_X", "mm", "Largest X of the blank.";
+        HighY Word "HIGH_Y", "mm", "Largest Y of the blank.";
+        HighZ Word "HIGH_Z", "mm", "Largest Z of the blank.";
         SafeHeight Word "SAFE_HEIGHT", "mm", "The safe height of the machine, in machine coordinates (`safe_height`): in every block.";
         RapidFeed Word "RAPID_FEED", "mm/min", "The fastest rapid of X, Y and Z, for a control whose rapids go at the last F: in every block. F is said anew behind it.";
         Surface Word "SURFACE", "mm", "Cycle: level of the point of the hole.";
@@ -249,9 +249,14 @@ pub(crate) const VARIABLES: &[Parameter] = &[
     ),
     variable("program.tools", "", "The tools in the order of their first use, each as `tool`."),
     variable(
-        "program.cuts",
+        "program.blank",
         "",
-        "Whether its cuts, in one work offset, reach over more than 0.01 mm in X, in Y and in Z: {{LOW_X}} to {{HIGH_Z}} of `program_start` say how far. They are not the stock, which no toolpath says.",
+        "Whether there is a blank, {{LOW_X}} to {{HIGH_Z}} in `program_start`: the stock, or how far the cuts reach, more than 0.01 mm in X, in Y and in Z, in one work offset.",
+    ),
+    variable(
+        "program.stock",
+        "",
+        "Whether that blank is the stock as the source states it, and not how far the cuts reach.",
     ),
     variable("machine.name", "", "Name of the machine, as `--machine` takes it."),
     variable("machine.title", "", "What a person calls the machine."),

@@ -265,9 +265,10 @@ impl Scope {
         };
         let mut program = Program::new("sample");
         program.push(1, Op::Tool(Box::new(tool.clone())));
+        let blank = [("blank", true), ("stock", first)];
         Scope {
             set: if first { Words::MAX } else { 0 },
-            program: program_value(machine, &program.name, &program.records, true),
+            program: program_value(machine, &program.name, &program.records, blank),
             operation: map([("name", Value::from(operation))]),
             tool: tool_value(machine, &tool, first),
             spindle: spindle_value(first, first, !first),
@@ -358,12 +359,12 @@ fn identifies(name: &str) -> bool {
 
 /// A program as templates see it. Its name becomes a file name on the control: the last part of a
 /// path, letters, digits, `_` and `-`, at most 24 of them (SINUMERIK), never empty. Its tools are those that
-/// `records` call; `cuts` says whether it knows how far its cuts reach.
+/// `records` call; `blank` says whether there is a blank, and whether that is the stock.
 pub(crate) fn program_value(
     machine: &Machine,
     name: &str,
     records: &[Record],
-    cuts: bool,
+    blank: [(&'static str, bool); 2],
 ) -> Value {
     let name = name.rsplit(['/', '\\']).next().unwrap_or_default();
     let name = name.rsplit_once('.').map_or(name, |(stem, _)| stem);
@@ -383,12 +384,9 @@ pub(crate) fn program_value(
         }
     }
     let number = number_of(&name).map(|number| ("number", Value::from(number)));
-    let members = [
-        ("name", Value::from(name.as_str())),
-        ("tools", Value::from(tools)),
-        ("cuts", Value::from(cuts)),
-    ];
-    map(members.into_iter().chain(number))
+    let members = [("name", Value::from(name.as_str())), ("tools", Value::from(tools))];
+    let blank = blank.map(|(key, value)| (key, Value::from(value)));
+    map(members.into_iter().chain(blank).chain(number))
 }
 
 /// The digits of a name that is the number of a program. From 9000 on they are those of the machine's builder.

@@ -99,8 +99,8 @@ impl CutBox {
     }
 
     /// Its smallest and largest coordinates, mm; none where nothing is cut.
-    pub fn corners(&self) -> Option<(Vec3, Vec3)> {
-        (self.low.x <= self.high.x).then_some((self.low, self.high))
+    pub fn corners(&self) -> Option<[Vec3; 2]> {
+        (self.low.x <= self.high.x).then_some([self.low, self.high])
     }
 
     fn add(&mut self, point: Vec3) {

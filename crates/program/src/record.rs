@@ -5,7 +5,7 @@ use crate::{
     JointMove, MachineMove, Oriented, Output, PathMode, Pose, Probe, Spindle, Surface, Thread,
     Tool, WorkOffset, WorkOffsetData,
 };
-use geom::Frame;
+use geom::{Frame, Vec3};
 
 /// A program in the neutral vocabulary.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -16,6 +16,8 @@ pub struct Program {
     pub records: Vec<Record>,
     /// Which path the coordinates are where cutter compensation is on; `None` where nobody has said or shown it.
     pub compensated_path: Option<CompensatedPath>,
+    /// Smallest and largest corner of the box around the stock, mm, work frame; `None` where the source does not state it.
+    pub stock: Option<[Vec3; 2]>,
 }
 
 /// One thing that happens, and the line (from 1) of the source that says so.
@@ -259,7 +261,9 @@ impl Program {
 
     /// The same program with other records.
     pub fn with_records(&self, records: Vec<Record>) -> Program {
-        Program { name: self.name.clone(), records, compensated_path: self.compensated_path }
+        let Program { name, records: _, compensated_path, stock } = self;
+        let (compensated_path, stock) = (*compensated_path, *stock);
+        Program { name: name.clone(), records, compensated_path, stock }
     }
 
     /// Adds a record that came from `line` of the source.

@@ -84,6 +84,25 @@ fn the_blank_reaches_as_far_as_the_cuts_and_says_that_it_is_not_the_stock() {
     assert!(!proven(&job, &load("generic-3axis-sinumerik").unwrap()).contains("WORKPIECE"));
 }
 
+#[test]
+fn the_blank_is_the_stock_where_the_source_states_it() {
+    let stock = [[-5.0, -6.0, -20.0], [45.0, 26.0, 1.5]].map(geom::Vec3::from);
+    let job = Program { stock: Some(stock), ..read(UPRIGHT) };
+    stands(
+        &proven(&job, &load("generic-3axis-heidenhain").unwrap()),
+        &[
+            "BLK FORM 0.1 Z X-5 Y-6 Z-20",
+            "BLK FORM 0.2 X+45 Y+26 Z+1.5",
+            "; The blank is the stock of the toolpath",
+        ],
+    );
+    let sinumerik = "extends = \"generic-3axis-sinumerik\"\n[options]\nblank = true\n";
+    stands(
+        &proven(&job, &machine(sinumerik)),
+        &["WORKPIECE(,\"\",,\"BOX\",112,1.5,-20,-80,-5,-6,45,26)"],
+    );
+}
+
 /// A control refuses a blank without a thickness, and how far two work offsets are apart no program says.
 #[test]
 fn cuts_that_make_no_body_have_no_blank() {

@@ -48,7 +48,7 @@ const MOTION: Words = bit(WordName::F) | bit(WordName::Motion);
 /// The entry of the code word `plane` for the plane XY.
 pub(crate) const PLANE_XY: usize = 0;
 
-/// How far the cuts of a program reach: the smallest X, Y, Z, and the largest.
+/// The corners of the blank: the smallest X, Y, Z, and the largest.
 const EXTENTS: [WordName; 6] = [
     WordName::LowX,
     WordName::LowY,
@@ -58,7 +58,7 @@ const EXTENTS: [WordName; 6] = [
     WordName::HighZ,
 ];
 
-/// Cuts that reach over less, mm, make no body.
+/// What reaches over less, mm, is no body.
 const THIN: f64 = 0.01;
 
 /// A program being written.
@@ -152,8 +152,10 @@ impl<'a> Walk<'a> {
         let tools = if templates.read_tools() { &program.records[..] } else { &[] };
         let mut writer = Writer::new(machine);
         let reach = EXTENTS.iter().any(|word| templates.places(BlockName::ProgramStart, *word));
-        let reach = if reach { cut_extents(program) } else { None };
-        scope.program = program_value(machine, &program.name, tools, reach.is_some());
+        let reach = if reach { blank(program) } else { None };
+        let is_stock = reach.is_some() && program.stock.is_some();
+        let blank = [("blank", reach.is_some()), ("stock", is_stock)];
+        scope.program = program_value(machine, &program.name, tools, blank);
         for (word, value) in EXTENTS.into_iter().zip(reach.into_iter().flatten()) {
             writer.set(word, value);
         }
@@ -596,9 +598,9 @@ impl<'a> Walk<'a> {
     }
 }
 
-/// How far the cuts reach, as [`EXTENTS`]: `None` where they make no body, or lie in several work offsets, whose distance
-/// nobody knows.
-fn cut_extents(program: &Program) -> Option<[f64; 6]> {
+/// The blank, as [`EXTENTS`]: the stock, or how far the cuts reach. `None` where that is no body, or where the program has
+/// several work offsets, whose distance nobody knows.
+fn blank(program: &Program) -> Option<[f64; 6]> {
     let (mut active, mut moves) = (None, false);
     for record in &program.records {
         if let Op::WorkOffset(offset) = record.op {
@@ -609,7 +611,7 @@ fn cut_extents(program: &Program) -> Option<[f64; 6]> {
         }
         moves |= record.op.pose().is_some();
     }
-    let (low, high) = CutBox::of(program).corners()?;
+    let [low, high] = program.stock.or_else(|| CutBox::of(program).corners())?;
     let is_body = (high - low).min_element() > THIN;
     is_body.then_some([low.x, low.y, low.z, high.x, high.y, high.z])
 }
