@@ -44,7 +44,7 @@ def job(objects, name):
 
 
 def _stock(objects):
-    """Answer the box around the stock of the job that has these objects; None where nobody knows it."""
+    """Answer the box around the stock of the job of these objects, where there is one."""
     groups = [group for obj in objects for group in getattr(obj, "InList", [])]
     owners = [owner for group in groups for owner in (group, *getattr(group, "InList", []))]
     for owner in owners:

@@ -1,5 +1,6 @@
 """Jobs of FreeCAD's own operations: proven for every mill, and as LinuxCNC understands them."""
 
+import json
 import re
 
 import judge
@@ -46,6 +47,13 @@ def refusals(name, mill):
 def names(folder):
     """Answer the names of the jobs in a folder."""
     return sorted(path.stem for path in folder.glob("*.json"))
+
+
+def test_a_job_says_how_large_its_stock_is(jobs):
+    # The part of 100 x 80 x 20 mm, and 1 mm more on each side, as FreeCAD makes a stock.
+    stock = json.loads((jobs / "profile.json").read_text())["stock"]
+    assert stock["low"] == pytest.approx([-1, -1, -1])
+    assert stock["high"] == pytest.approx([101, 81, 21])
 
 
 def test_every_operation_of_freecad_is_among_the_jobs(jobs):
