@@ -101,6 +101,35 @@ fn look_ahead_is_for_contours() {
     }
 }
 
+/// Haas, "G234 - Tool Center Point Control": of the group of the tool length, ended by `G49`.
+#[test]
+fn g234_of_haas_keeps_the_tool_tip_and_ends_by_g49() {
+    const START: &str = "G21 G90 G94 G17 G98 G54\nT1 M6\nS500 M3\nG53 G0 Z0.\nG0 B30. C0.\n";
+    let center = |text: &str| -> Vec<bool> {
+        let text = format!("{START}{text}\nM30\n");
+        let lines = actions(Dialect::Haas, &text).into_iter().filter_map(|action| match action {
+            Action::Line(Position {
+                orientation: Orientation::Rotary { tool_center, .. }, ..
+            }) => Some(tool_center),
+            _ => None,
+        });
+        lines.collect()
+    };
+    let cut = "G1 X0. Y0. Z0. F100.\nX5. B40.\n";
+    assert_eq!(center(&format!("G234 H1 X0. Y0. Z50.\n{cut}G49\nG53 G0 Z0.")), [true; 2]);
+    assert_eq!(center(&format!("G43 H1 X0. Y0. Z50.\n{cut}")), [false; 2]);
+    for (blocks, rule) in [
+        ("G234 X0. Y0. Z50.", "nc-length"),
+        ("G234 H1 X0. Y0. Z50.\nG53 G0 Z0.", "nc-machine-position"),
+        ("G234 H1 X0. Y0. Z50.\nG91 G28 Z0.", "nc-machine-position"),
+        ("G234 H1 X0. Y0. Z50.\nG81 Z-5. R2. F100.", "nc-cycle"),
+        ("G254", "nc-unknown-word"),
+    ] {
+        let found = run(Dialect::Haas, &format!("{START}{blocks}\nM30\n")).unwrap_err();
+        assert_eq!(found.rule, rule, "{blocks}");
+    }
+}
+
 /// Out of a tilted plane the reference position is reached before `G49` and `G69`; where the tool then stands in the
 /// work nobody knows.
 #[test]

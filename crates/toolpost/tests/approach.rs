@@ -235,6 +235,7 @@ fn the_samples_approach_in_the_machine() {
     };
     for (name, block, z) in [
         ("fanuc-table-bc", "X-16.84 Y6.946 Z48.294", " Z"),
+        ("haas-umc-750", "X-16.84 Y6.946 Z48.294", " Z"),
         ("dmu50-heidenhain", "L X-16.84 Y+6.946 Z+48.294 R0 FMAX", " Z"),
         ("sinumerik-840d-traori", "G0 X7.465 Y10.556 Z77.071", " Z"),
     ] {

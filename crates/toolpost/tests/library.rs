@@ -61,6 +61,7 @@ const REFUSED: &[(&str, &[&str], &str)] = &[
     // From below: no table of these turns that far.
     ("sinumerik-840d-table-ac", &["Sacrifice-Board.apt"], "axis-limit"),
     ("fanuc-table-bc", &["Sacrifice-Board.apt"], "axis-limit"),
+    ("haas-umc-750", &["Sacrifice-Board.apt"], "axis-limit"),
     ("sinumerik-840d-traori", &["Sacrifice-Board.apt"], "axis-limit"),
     ("dmu50-heidenhain", &["Sacrifice-Board.apt"], "unreachable-orientation"),
     ("linuxcnc-xyz", &["Sacrifice-Board.apt"], "axis-limit"),

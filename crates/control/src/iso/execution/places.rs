@@ -277,6 +277,11 @@ impl Step<'_, '_, '_> {
     fn before_fixed_position(&mut self) -> Result<(), Fault> {
         self.counts_machine()?;
         self.not_compensated("a move to a fixed position")?;
+        if self.flavor == Flavor::Haas && self.state.keeps_center() {
+            let message = "a move to a fixed position while G234 keeps the tool centre point";
+            let fault = self.block.at_group(Group::OneShot, "nc-machine-position", message);
+            return Err(fault.help("end it by G49 before").into());
+        }
         if self.state.cycle.is_some() {
             let message = "a move to a fixed position in a cycle; cancel it with G80 first";
             return Err(self.block.at_group(Group::OneShot, "nc-cycle", message));

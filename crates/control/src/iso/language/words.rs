@@ -401,7 +401,7 @@ pub(crate) struct Dictionary {
     /// Which flavour this is.
     pub flavor: Flavor,
     /// By ten times the number.
-    g: [Option<(Group, G)>; 2000],
+    g: [Option<(Group, G)>; 2400],
     /// By the number.
     m: [Option<(Group, M)>; 500],
     refused_g: &'static [Refused],
@@ -416,7 +416,7 @@ impl Dictionary {
     pub(super) const fn new(flavor: Flavor, letters: &[u8], longest: usize) -> Dictionary {
         Dictionary {
             flavor,
-            g: [None; 2000],
+            g: [None; 2400],
             m: [None; 500],
             refused_g: &[],
             refused_m: &[],

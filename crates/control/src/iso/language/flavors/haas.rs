@@ -42,6 +42,7 @@ const G_WORDS: &[GRow] = &[
     (1290, Group::WorkOffset, G::WorkOffset(79)),
     (1540, Group::WorkOffset, G::FurtherOffset { most: 99 }),
     (1870, Group::OneShot, G::Smoothness),
+    (2340, Group::Length, G::ToolCenter),
 ];
 
 const M_WORDS: &[MRow] = &[
@@ -68,6 +69,14 @@ const REFUSED_G: &[Refused] = &[
     (1500, "pocket milling calls a contour in a subprogram; write its moves"),
     (1840, "tapping out of the vertical is not followed"),
     (1740, "tapping out of the vertical is not followed"),
+    (
+        2540,
+        "the dynamic work offset is not followed; write positions for the table as it stands, or G234",
+    ),
+    (
+        2550,
+        "the dynamic work offset is not followed; write positions for the table as it stands, or G234",
+    ),
 ];
 
 pub(super) static WORDS: Dictionary = mill(Flavor::Haas, b"ABCDEFGHIJKLMNOPQRSTXYZ", usize::MAX)
