@@ -1,4 +1,6 @@
 (SAMPLE)
+(T1 MILL_6 D6)
+(T2 DRILL_3.3 D3.3)
 G21 G17 G40 G49 G90 G94 G54
 (What every machine with three axes can make: a)
 (holes. The programs beside it are what the mac)
