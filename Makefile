@@ -151,6 +151,10 @@ images: rust
 	$(TOOLPOST) --quiet show out/lean.mpf --from sinumerik-840d-table-ac --output docs/images/rapid-pieces.png
 	$(TOOLPOST) --quiet show examples/lean-one-block.mpf --from sinumerik-840d-table-ac \
 		--output docs/images/rapid-one-block.png
+	$(TOOLPOST) --quiet show out/lean.mpf --from sinumerik-840d-table-ac --frame machine \
+		--output docs/images/rapid-pieces-machine.png
+	$(TOOLPOST) --quiet show examples/lean-one-block.mpf --from sinumerik-840d-table-ac --frame machine \
+		--output docs/images/rapid-one-block-machine.png
 
 ## The sample programs beside the machines, written anew: to be read before they are committed.
 samples: rust

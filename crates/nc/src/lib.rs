@@ -21,7 +21,7 @@
 use control::{
     Action, Dialect, Ending, Event, FeedPath, Orientation, Position, Risk, Settings, Setup, Wire,
 };
-use geom::Vec3;
+use geom::{Arc, Vec3};
 use machine::{LengthOffset, Machine, Mount, RotaryFeed};
 use program::{
     ArcTo, Axes, Circle, CompensatedPath, Cycle, Diagnostic, Feed, MachineMove, Op, Pose, Probe,
@@ -162,6 +162,99 @@ pub fn read_swinging(
     });
     run.map_err(|found| way_out(machine, found))?;
     Ok(lift.program)
+}
+
+/// The same in the frame of the machine: where X, Y and Z stand, in the coordinates of the work offset, mm. The work turns on its
+/// table, and a straight way of the tool is none of the axes.
+///
+/// # Errors
+/// As [`read`]; `machine-frame` where only the control knows how the axes stand.
+pub fn read_in_machine(
+    machine: &Machine,
+    setup: Setup,
+    file_name: &str,
+    text: &[u8],
+) -> Result<Program, Box<Diagnostic>> {
+    let settings = settings(machine, setup)?;
+    let drop = &mut |_: &mut Vec<Record>, _, _| {};
+    let mut lift = Lift::new(machine, &settings.setup, file_name, drop);
+    let mut program = Program::new(file_name);
+    let mut before: Option<Position> = None;
+    let run = control::read(&settings, file_name, text, &mut |event| {
+        let (line, from) = (event.line, before);
+        before = event.action.position().copied().or(before);
+        if let Action::Tool(tool) = &event.action {
+            program.push(line, Op::Tool(tool.clone()));
+        }
+        let is_rapid = matches!(event.action, Action::Rapid(_));
+        let arc = if let Action::Arc(arc) = &event.action { Some(&**arc) } else { None };
+        if let (Some(from), Some(to)) = (from, event.action.position()) {
+            let length = lift.tool.and_then(|(tool, _)| tool.length);
+            for place in between(&from, to, arc) {
+                let at = axes_at(machine, &place, length).map_err(|found| found.line(line))?;
+                if let Ok(pose) = Pose::upright(at) {
+                    program.push(line, if is_rapid { Op::Rapid(pose) } else { Op::Line(pose) });
+                    // `event` looks at the number of records.
+                    lift.count += 1;
+                }
+            }
+        }
+        lift.event(event).map_err(|found| found.line(line).into())
+    });
+    run.map_err(|found| way_out(machine, found))?;
+    Ok(program)
+}
+
+/// Places of a block between which the axes go nearly straight, its end among them.
+fn between(from: &Position, to: &Position, arc: Option<&control::ArcTo>) -> Vec<Position> {
+    let arc = arc.and_then(|arc| {
+        let ends = (from.point, arc.end.point);
+        Arc::new(ends.0, ends.1, arc.center, arc.normal, arc.turns, f64::INFINITY).ok()
+    });
+    let followed = |position: &Position| {
+        let Orientation::Rotary { degrees, tool_center: true } = position.orientation else {
+            return None;
+        };
+        Some(degrees)
+    };
+    let turns = followed(from).zip(followed(to));
+    let turn =
+        turns.map_or(0.0, |(a, b)| (0..3).map(|i| f64::abs(b[i] - a[i])).fold(0.0, f64::max));
+    let sweep = arc.map_or(0.0, |arc| arc.sweep.to_degrees() / 2.0);
+    let places = turn.max(sweep).ceil().clamp(1.0, MOST_PLACES) as u32;
+    let place = |i: u32| {
+        let part = f64::from(i) / f64::from(places);
+        let point = arc.map_or_else(|| from.point.lerp(to.point, part), |arc| arc.at(part));
+        let orientation = match turns {
+            Some((a, b)) => Orientation::Rotary {
+                degrees: std::array::from_fn(|k| a[k] + (b[k] - a[k]) * part),
+                tool_center: true,
+            },
+            None => to.orientation,
+        };
+        Position { point, orientation }
+    };
+    (1..=places).map(place).collect()
+}
+
+/// Where X, Y and Z stand, in the coordinates of the work offset, mm.
+fn axes_at(
+    machine: &Machine,
+    position: &Position,
+    length: Option<f64>,
+) -> Result<Vec3, Box<Diagnostic>> {
+    match position.orientation {
+        Orientation::Rotary { degrees, tool_center: true } => {
+            Ok(machine.linear_for(position.point, degrees, length.unwrap_or(0.0)))
+        }
+        Orientation::Rotary { tool_center: false, .. } => Ok(position.point),
+        Orientation::Axis(_) if machine.rotary.is_empty() => Ok(position.point),
+        Orientation::Axis(_) => Err(refuse(
+            "machine-frame",
+            "how the axes stand along a vector or in a tilted plane, only the control knows",
+            "draw it in the frame of the part: without `--frame machine`",
+        )),
+    }
 }
 
 /// The same for a caller that has a hand in how the records are kept, as they come. Answers besides whether

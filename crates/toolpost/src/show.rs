@@ -1,12 +1,13 @@
 //! `toolpost show`: what a toolpath amounts to, and what it looks like.
 
 use crate::answer::{Answer, Stop};
-use crate::args::Show;
+use crate::args::{Frame, Show};
 use crate::files::{self, Target};
 use crate::progress::Progress;
 use crate::summary::{Shape, rows};
 use crate::toolpath;
 use drawing::Format;
+use program::Diagnostic;
 use serde_json::json;
 
 /// Counts and measures a toolpath and, where a place is given, draws it.
@@ -23,7 +24,13 @@ pub fn run(args: &Show, silent: bool) -> Result<Answer, Stop> {
     let shape = Shape::of(&toolpath.program);
     if let Some((target, format)) = target {
         progress.step("drawing");
-        let swinging = toolpath::swinging(path, &args.source.origin)?;
+        let swinging = toolpath::swinging(path, &args.source.origin, args.frame)?;
+        if swinging.is_none() && args.frame == Frame::Machine {
+            let message = "only an NC program says where the axes of a machine go";
+            let found = Diagnostic::error("machine-frame", message)
+                .help("name the machine of the program: `--from MACHINE`");
+            return Err(Box::new(found.file(&toolpath.file)).into());
+        }
         let program = swinging.as_ref().unwrap_or(&toolpath.program);
         let picture = format.bytes(drawing::tool_path(&toolpath.file, program))?;
         target.spare(&toolpath.files())?;

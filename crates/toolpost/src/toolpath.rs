@@ -1,7 +1,7 @@
 //! Getting the toolpath and the machine that a command names.
 
 use crate::answer::{Stop, Verdict};
-use crate::args::{Csys, CutcomPath, Origin, Units, Way, WholeNumbers};
+use crate::args::{Csys, CutcomPath, Frame, Origin, Units, Way, WholeNumbers};
 use crate::fcstd;
 use crate::files;
 use crate::summary::{Shape, number};
@@ -196,17 +196,21 @@ fn read_by(
 ///
 /// # Errors
 /// As [`read`].
-pub fn swinging(path: &Path, origin: &Origin) -> Result<Option<Program>, Stop> {
+pub fn swinging(path: &Path, origin: &Origin, frame: Frame) -> Result<Option<Program>, Stop> {
     let Some(from) = origin.from.as_deref().filter(|_| !fcstd::is(path)) else { return Ok(None) };
     let machine = machine::load_origin(from)?;
-    if machine.rotary.is_empty() {
+    if machine.rotary.is_empty() && frame == Frame::Part {
         return Ok(None);
     }
     let bytes = files::text(path)?;
     if Job::begins(&bytes) {
         return Ok(None);
     }
-    let program = nc::read_swinging(&machine, origin.setup()?, &files::name(path), &bytes)?;
+    let name = files::name(path);
+    let program = match frame {
+        Frame::Part => nc::read_swinging(&machine, origin.setup()?, &name, &bytes)?,
+        Frame::Machine => nc::read_in_machine(&machine, origin.setup()?, &name, &bytes)?,
+    };
     Ok(Some(program))
 }
 

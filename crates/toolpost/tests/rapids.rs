@@ -1,7 +1,7 @@
 //! A rapid is a path: the tool goes where the source goes, straight, or beyond all that it cuts, whatever the axes of the
 //! machine do between two blocks.
 
-use geom::Vec3;
+use geom::{Vec3, nearest_on_segment};
 use machine::{Machine, load, load_text};
 use program::{Diagnostic, Program};
 
@@ -168,6 +168,38 @@ fn a_picture_shows_where_the_axes_take_the_tip_by_rapid() {
     };
     assert!((lowest(&bad) - (5.0 - 50.7)).abs() < 0.1, "{}", lowest(&bad));
     assert!((lowest(&good) - 5.0).abs() < 0.1, "{}", lowest(&good));
+}
+
+/// The same two in the frame of the machine: one block is straight there. Half way the table stands at A30, and the tip at Y 0 and Z 5 of the
+/// part: by hand that is Y -5 sin 30° = -2.5 and Z 5 cos 30° = 4.33 of the machine, 50.7 mm beside the way of the block.
+#[test]
+fn in_the_frame_of_the_machine_one_block_is_straight_and_the_pieces_go_round() {
+    let machine = load("sinumerik-840d-table-ac").unwrap();
+    let root = concat!(env!("CARGO_MANIFEST_DIR"), "/../../examples/");
+    let example = |name: &str| std::fs::read_to_string(format!("{root}{name}")).unwrap();
+    let (good, bad) =
+        (text(&written(&read(&example("lean.cls")), &machine)), example("lean-one-block.mpf"));
+    let rapids = |text: &str| -> Vec<Vec3> {
+        let program =
+            nc::read_in_machine(&machine, Default::default(), "p", text.as_bytes()).unwrap();
+        let rapids = program.records.iter().filter_map(|record| match &record.op {
+            program::Op::Rapid(pose) => Some(pose.point()),
+            _ => None,
+        });
+        rapids.collect()
+    };
+    let end = Vec3::new(0.0, -54.33, -84.103);
+    let (one, pieces) = (rapids(&bad), rapids(&good));
+    let place = |rapids: &[Vec3]| rapids.iter().position(|at| at.distance(end) < 0.01).unwrap();
+    // Before it only the two blocks to the first place.
+    assert!(place(&one) <= 3, "{one:?}");
+    let half = Vec3::new(0.0, -2.5, 5.0 * 30f64.to_radians().cos());
+    let near = |rapids: &[Vec3]| {
+        let ways = rapids.windows(2).map(|pair| nearest_on_segment(pair[0], pair[1], half).1);
+        ways.fold(f64::INFINITY, f64::min)
+    };
+    assert!(near(&pieces) < 0.2 && place(&pieces) > 10, "{}", near(&pieces));
+    assert!((near(&one) - 50.7).abs() < 0.1, "{}", near(&one));
 }
 
 /// The axis of C is 30 mm from the bore: C may not turn on the way down unless X and Y follow.

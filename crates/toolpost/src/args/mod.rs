@@ -408,8 +408,20 @@ pub struct Show {
     /// Where to save a drawing, as .svg or .png.
     #[arg(long, short, value_name = "FILE")]
     pub output: Option<PathBuf>,
+    /// In which frame an NC program is drawn.
+    #[arg(long, value_enum, default_value = "part")]
+    pub frame: Frame,
     #[command(flatten)]
     pub source: Source,
+}
+
+/// A frame of a drawing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Frame {
+    /// That of the part: where the tip of the tool goes.
+    Part,
+    /// That of the machine: where X, Y and Z go.
+    Machine,
 }
 
 /// Commands of `machines`.

@@ -109,6 +109,12 @@ fn show_counts_and_draws_the_same_picture_every_time() {
     let png = std::fs::read(folder.path().join("c.png")).unwrap();
     assert!(png.starts_with(b"\x89PNG"));
     assert_eq!(folder.run(&["show", "part.cls", "-o", "d.gif"]).code, 2);
+    let said = folder.run(&["show", "part.cls", "--frame", "machine", "-o", "d.svg"]);
+    assert!(
+        said.code == 2 && said.err.contains("machine-frame") && said.err.contains("--from"),
+        "{}",
+        said.err
+    );
     assert_eq!(folder.names(), ["a.svg", "b.svg", "c.png", "part.cls"]);
 }
 
