@@ -43,6 +43,8 @@ def drop(_: str) -> str:
     return ""
 
 
+#: The slope of the sample.
+PLANE = '(0,"",0,57,0,0,0,-35.26439,30,0,0,0,0,-1,0)'
 SINUMERIK = [
     Damage("X of a cut", r"G1.*X-?\d|^N\d+ X30$", shift("X", 0.1)),
     Damage("Z of a cut", r"G1.*Z-?\d", shift("Z", -0.05)),
@@ -76,7 +78,8 @@ TRAORI = [
     Damage("plane", r"CYCLE800\(0", swap("-35.26439", "-36.26439")),
     Damage("origin of the plane", r"CYCLE800\(0", swap(",57,0,", ",57,1,")),
     Damage("order of the turns", r"CYCLE800\(0", swap(",57,", ",27,")),
-    Damage("plane left on", r"CYCLE800\(\)", drop, last=True),
+    # It is said off twice: before the axes turn back, and at the tool change.
+    Damage("plane on again", r"CYCLE800\(\)", swap("()", PLANE), last=True),
 ]
 FANUC = [
     Damage("X of a cut", r"G1.*X-?\d", shift("X", 0.1)),
