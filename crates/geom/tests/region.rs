@@ -269,6 +269,39 @@ fn more_than_fits_into_memory_is_refused() {
     assert_eq!(Region::union_of(std::iter::repeat_n(&large, 2000)), Err(RegionError::TooLarge));
 }
 
+/// 3,000 strips along X over 3,000 along Y: 36 million corners, some 10 GB.
+#[test]
+fn what_crosses_in_too_many_places_is_refused_before_it_takes_the_memory() {
+    let strip = |i: u32, across: bool| {
+        let (near, far) = (f64::from(i), f64::from(i) + 0.5);
+        let corners = [(near, 0.0), (far, 0.0), (far, 3000.0), (near, 3000.0)];
+        let turned = |(x, y)| if across { Vec2::new(3000.0 - y, x) } else { Vec2::new(x, y) };
+        Ring::polygon(&corners.map(turned)).unwrap()
+    };
+    let strips = |count: u32| -> Vec<Ring> {
+        (0..count).flat_map(|i| [strip(i, false), strip(i, true)]).collect()
+    };
+    let inside = |count| Region::inside(&strips(count), Fill::Positive);
+    assert_eq!(inside(3000), Err(RegionError::TooTangled));
+    // 100 of each: 10,000 holes, less those that would be at two of the sides.
+    assert_eq!(inside(100).unwrap().rings().count(), 1 + 99 * 99);
+}
+
+/// A grid of ways: at each of 14,400 places some 16 lines meet.
+#[test]
+fn ways_that_meet_do_not_count_as_crossing() {
+    let place = |x: u32, y: u32| Vec2::new(f64::from(x), f64::from(y));
+    let ways: Vec<_> = (0..120)
+        .flat_map(|x| (0..120).map(move |y| (x, y)))
+        .flat_map(|(x, y)| {
+            let ends = [place(x + 1, y), place(x, y + 1)];
+            ends.map(|end| (Element::line(place(x, y), end), 0.2))
+        })
+        .collect();
+    let grid = Region::inside(&strokes(&ways).unwrap(), Fill::Positive).unwrap();
+    assert_eq!((grid.islands().len(), grid.rings().count()), (1, 1 + 119 * 119));
+}
+
 #[test]
 fn what_two_readers_make_of_one_corner_leaves_next_to_nothing() {
     // Copper of a board (StickHub), as a plotter and a board file have it: a wide arc and a line, between

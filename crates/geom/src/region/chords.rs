@@ -1,7 +1,7 @@
 //! Elements as chords: what the kernel is given.
 
 use super::kernel::{Keep, Kernel, Operand, Place};
-use super::{Fill, Region, RegionError, refit};
+use super::{Fill, Region, RegionError, crossings, refit};
 use crate::crossing::Carrier;
 use crate::{Element, Turn, Vec2};
 use std::f64::consts::TAU;
@@ -12,6 +12,15 @@ const CHORD_ERROR: f64 = 0.0009;
 
 /// The most edges of one boolean: some 5 GB.
 const MOST_EDGES: usize = 1 << 25;
+
+/// So many edges are taken however few elements they are of: some 1.2 GB.
+const MANY_EDGES: usize = 1 << 23;
+
+/// So many edges of each element are taken, as many as a circle of 5 mm has.
+const EDGES_OF_AN_ELEMENT: usize = 128;
+
+/// So many crossings are taken however few elements there are: some 600 MB.
+const MANY_CROSSINGS: usize = 1 << 20;
 
 /// An end of an arc stands for the place of the grid of angles that is this near, mm.
 const SAME: f64 = 1e-6;
@@ -24,10 +33,14 @@ pub(super) fn boolean<'a>(
     fill: Fill,
 ) -> Result<Region, RegionError> {
     let edges = count(first.clone()).saturating_add(count(second.clone()));
-    if edges > MOST_EDGES {
+    let chains = first.clone().chain(second.clone());
+    let elements: usize = chains.clone().map(<[Element]>::len).sum();
+    if edges > MOST_EDGES.min(MANY_EDGES.max(elements.saturating_mul(EDGES_OF_AN_ELEMENT))) {
         return Err(RegionError::TooLarge);
     }
-    let elements = first.clone().chain(second.clone()).map(<[Element]>::len).sum();
+    if crossings::are_more(chains, MANY_CROSSINGS.max(elements.saturating_mul(4))) {
+        return Err(RegionError::TooTangled);
+    }
     let mut chords = Chords { kernel: Kernel::new(edges), sources: Vec::with_capacity(elements) };
     first.for_each(|chain| chords.add(chain, Operand::First));
     second.for_each(|chain| chords.add(chain, Operand::Second));

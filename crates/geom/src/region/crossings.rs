@@ -5,9 +5,13 @@ use crate::crossing::Carrier;
 use crate::{Element, Vec2};
 use rayon::prelude::*;
 use static_aabb2d_index::Control;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// How deep two elements may cross and count as touching, mm: rounding of the kernel.
 pub(super) const TOUCH: f64 = 2e-6;
+
+/// So many pairs of elements whose boxes overlap are looked at for each crossing that is allowed.
+const PAIRS_OF_A_CROSSING: usize = 32;
 
 /// Where an element of a ring crosses another.
 #[derive(Clone, Copy, Debug)]
@@ -52,6 +56,37 @@ pub(super) fn crossings(rings: &[&[Element]]) -> Vec<Place> {
             Some(Place { ring: *ring, element: *element, point: point? })
         })
         .collect()
+}
+
+/// Whether more than `most` pairs of elements of `chains` cross, or may: no more than so many pairs are looked at.
+pub(super) fn are_more<'a>(
+    chains: impl Iterator<Item = &'a [Element]> + Clone,
+    most: usize,
+) -> bool {
+    let elements: usize = chains.clone().map(<[Element]>::len).sum();
+    if elements.saturating_mul(elements) / 2 <= most {
+        return false;
+    }
+    let elements: Vec<&Element> = chains.flatten().collect();
+    let boxes: Vec<(Vec2, Vec2)> = elements.iter().map(|element| element.extents()).collect();
+    let Some(index) = tree(boxes.iter().copied()) else { return false };
+    let (pairs, found) = (AtomicUsize::new(0), AtomicUsize::new(0));
+    let is_enough = || {
+        found.load(Ordering::Relaxed) > most
+            || pairs.load(Ordering::Relaxed) > most.saturating_mul(PAIRS_OF_A_CROSSING)
+    };
+    elements.par_iter().zip(&boxes).enumerate().for_each(|(i, (element, (low, high)))| {
+        index.visit_query(low.x, low.y, high.x, high.y, &mut |other: usize| {
+            let second = elements.get(other).filter(|_| other > i);
+            if let Some(second) = second {
+                found
+                    .fetch_add(usize::from(crossing(element, second).is_some()), Ordering::Relaxed);
+                pairs.fetch_add(1, Ordering::Relaxed);
+            }
+            if is_enough() { Control::Break(()) } else { Control::Continue }
+        });
+    });
+    is_enough()
 }
 
 /// Where two elements cross deeper than by rounding.

@@ -7,6 +7,12 @@ use crate::stroke::{self, Pen};
 use crate::{Contour, FAR, Piece, Transform};
 use geom::{Element, Vec2};
 
+/// So many lines and arcs of an aperture that erases are worked on as fast as any.
+const FEW: usize = 64;
+
+/// How many times the work of adding it is that of a piece among many that add and erase in turn.
+const ERASING: usize = 250;
+
 /// What a Gerber file describes: objects that are painted one over the other.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Image {
@@ -146,6 +152,28 @@ impl Image {
         let place =
             |object: &Object| Object { shape: object.shape.placed(transform, at), ..*object };
         Image { objects: self.objects.iter().map(place).collect(), ..self.clone() }
+    }
+
+    /// What its objects come to once they are drawn: lines and arcs, those of an aperture that erases so often as
+    /// they are worked on.
+    pub(super) fn size(&self) -> usize {
+        let elements = |contours: &[Contour]| -> usize {
+            contours.iter().map(|contour| contour.elements().len()).sum()
+        };
+        let of_aperture = |aperture: &Aperture| {
+            let drawn: usize = aperture.pieces.iter().map(|piece| elements(&piece.contours)).sum();
+            let erases = aperture.pieces.iter().any(|piece| !piece.solid);
+            if erases && drawn > FEW { drawn.saturating_mul(ERASING) } else { drawn }
+        };
+        let apertures: Vec<usize> = self.apertures.iter().map(of_aperture).collect();
+        let regions: Vec<usize> =
+            self.regions.iter().map(|region| elements(&region.contours)).collect();
+        let size = |object: &Object| match &object.shape {
+            Shape::Flash { aperture, .. } => apertures.get(*aperture as usize).copied(),
+            Shape::Region { region, .. } => regions.get(*region as usize).copied(),
+            Shape::Stroke { .. } => None,
+        };
+        self.objects.iter().map(|o| size(o).unwrap_or(1)).fold(0, usize::saturating_add)
     }
 
     fn aperture(&self, index: u32) -> Option<&Aperture> {

@@ -28,6 +28,12 @@ pub(super) struct Budget {
 /// So many objects and segments are more than the largest boards have, and fit into the memory.
 const MOST: usize = 5_000_000;
 
+/// So many lines and arcs are drawn, some 600 MB of them.
+const MOST_DRAWN: usize = 8_000_000;
+
+/// So often a file may go from dark to clear and back: each change costs a union.
+const MOST_CHANGES: usize = 10_000;
+
 impl Budget {
     /// # Errors
     /// `too-large`
@@ -390,13 +396,39 @@ impl<'a> Reader<'a> {
                 Err(fault("no-end", "the file does not end with M02", help))
             }
         };
-        for fault in [last, region, end].into_iter().filter_map(Result::err) {
+        let size = self.bounded();
+        for fault in [last, region, end, size].into_iter().filter_map(Result::err) {
             self.report.error(self.place, *fault);
         }
         if !self.report.errors.is_empty() {
             return Err(self.report.errors);
         }
         Ok(Reading { image: self.image, warnings: self.report.warnings })
+    }
+}
+
+impl Reader<'_> {
+    /// # Errors
+    /// `too-large` where painting the image takes more memory than boards need, `polarity-changes` where it takes
+    /// more time.
+    fn bounded(&self) -> Outcome {
+        let size = self.image.size();
+        if size > MOST_DRAWN {
+            let message =
+                format!("its objects have {size} lines and arcs; {MOST_DRAWN} are the most");
+            let help =
+                "look at the counts of step and repeat and at the macros, or divide the layer";
+            return Err(fault("too-large", message, help));
+        }
+        let changes = self.image.objects.chunk_by(|a, b| a.dark == b.dark).count();
+        if changes > MOST_CHANGES {
+            let message = format!(
+                "the polarity (%LP) changes {changes} times where objects are painted; {MOST_CHANGES} are the most"
+            );
+            let help = "write the layer again with what is clear in one place, or divide it";
+            return Err(fault("polarity-changes", message, help));
+        }
+        Ok(())
     }
 }
 

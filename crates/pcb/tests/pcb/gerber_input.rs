@@ -104,6 +104,29 @@ fn at_most_twenty_errors() {
     assert_eq!(errors(&text).len(), 20);
 }
 
+/// Each took more than 20 s and up to 4 GB.
+#[test]
+fn what_would_be_painted_for_minutes_is_refused_at_once() {
+    let start = Instant::now();
+    // A macro that adds and erases in turn, flashed four times.
+    let turns = "1,1,1,$1,0*1,0,1,$1,1*".repeat(5000);
+    let erasing = format!("{HEAD}%AMM*{turns}%%ADD100M,1*%D100*{}M02*", "X0Y0D03*".repeat(4));
+    assert_eq!(first(&erasing).0, "too-large");
+    let once = format!("{HEAD}%AMM*{turns}%%ADD100M,1*%D100*X0Y0D03*M02*");
+    assert!(read("once.gbr", once.as_bytes()).is_ok());
+    // A large macro, and a region of a thousand lines, painted often.
+    let disc = format!("%AMM*{}%%ADD100M,1*%D100*", "1,1,1,$1,0*".repeat(10_000));
+    assert_eq!(first(&format!("{HEAD}{disc}{}M02*", "X0Y0D03*".repeat(1000))).0, "too-large");
+    let region: String = (0..1000).map(|i| format!("X{i}000000Y{}D01*", i * i)).collect();
+    let region = format!("G36*X0Y0D02*{region}X0Y1000000000D01*X0Y0D01*G37*");
+    let copies = format!("{HEAD}%SRX100Y100I1J1*%{region}%SR*%M02*");
+    assert_eq!(first(&copies).0, "too-large");
+    // Dark and clear in turn.
+    let turns = "%LPD*%X0Y0D03*%LPC*%X1Y1D03*".repeat(5001);
+    assert_eq!(first(&format!("{HEAD}D10*{turns}M02*")).0, "polarity-changes");
+    assert!(start.elapsed().as_secs() < 60, "{:?}", start.elapsed());
+}
+
 #[test]
 fn what_grows_without_bound_is_refused_at_once() {
     let start = Instant::now();
