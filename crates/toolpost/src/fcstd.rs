@@ -1,5 +1,7 @@
 //! FreeCAD's documents as a source: the FreeCAD that is installed tells what their job is.
 
+mod inflate;
+
 use crate::files;
 use program::Diagnostic;
 use std::fs::{self, File};
@@ -32,6 +34,7 @@ pub fn is(path: &Path) -> bool {
 /// There is no FreeCAD, it takes too long, or the document has no job.
 pub fn job(path: &Path) -> Result<Vec<u8>, Box<Diagnostic>> {
     let about = |message: String| Diagnostic::error("freecad", message).file(files::name(path));
+    inflate::check(&files::read(path)?).map_err(|found| found.file(files::name(path)))?;
     let document = fs::canonicalize(path)
         .map_err(|error| about(format!("cannot be read: {error}")).help("look at its name"))?;
     let folder = tempfile::tempdir()
