@@ -27,7 +27,7 @@ use program::{
     ArcTo, Axes, Circle, CompensatedPath, Cycle, Diagnostic, Feed, MachineMove, Op, Pose, Probe,
     Program, Record, Thread, Tool, WorkOffset,
 };
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 
 /// Most records of a reading, which are kept in memory: a program of a few lines can loop to more.
 const MOST_RECORDS: usize = 20_000_000;
@@ -377,7 +377,11 @@ struct Lift<'a> {
     /// Whether it works in more than the first.
     several: bool,
     /// Numbers of the tools that the program calls, with the names of those that it calls by name.
-    numbers: Vec<(u32, String)>,
+    numbers: HashMap<u32, String>,
+    /// The numbers of those that it calls by name.
+    named: HashMap<String, u32>,
+    /// No number below this is free for a tool that is called by name.
+    free_from: u32,
     /// The program has to call length offsets, since its control takes none with the tool.
     calls_lengths: bool,
     /// The register of the length offset that it has called last, also for another tool.
@@ -457,7 +461,9 @@ impl<'a> Lift<'a> {
             boring: None,
             work_offset: None,
             several: false,
-            numbers: Vec::new(),
+            numbers: HashMap::new(),
+            named: HashMap::new(),
+            free_from: 1,
             calls_lengths: machine.capabilities.length_offset == LengthOffset::ToolNumber,
             length_offset: None,
             bare: BTreeSet::new(),
@@ -793,14 +799,12 @@ impl<'a> Lift<'a> {
     /// Gives a tool that is called by its name a number, of which no other tool has it.
     fn number(&mut self, line: u32, tool: &mut Tool) -> Done {
         if tool.number > 0 {
-            let taken = self.numbers.iter().find(|(n, name)| *n == tool.number && !name.is_empty());
-            if let Some((number, name)) = taken {
-                let message = format!("T{number} is called, and stands for \"{name}\" already");
+            let name = self.numbers.entry(tool.number).or_default();
+            if !name.is_empty() {
+                let message =
+                    format!("T{} is called, and stands for \"{name}\" already", tool.number);
                 let help = "give the tools that are called by name their numbers in a tool table";
                 return Err(refuse("tool-number", message, help));
-            }
-            if self.numbers.iter().all(|(number, _)| *number != tool.number) {
-                self.numbers.push((tool.number, String::new()));
             }
             return Ok(());
         }
@@ -810,16 +814,17 @@ impl<'a> Lift<'a> {
             tool.number = entry.number;
             return Ok(());
         }
-        if let Some((number, _)) = self.numbers.iter().find(|(_, name)| *name == tool.name) {
+        if let Some(number) = self.named.get(&tool.name) {
             tool.number = *number;
             return Ok(());
         }
         let free = |n: &u32| {
-            self.numbers.iter().all(|(number, _)| number != n)
-                && self.setup.tools.iter().all(|entry| entry.number != *n)
+            !self.numbers.contains_key(n) && self.setup.tools.iter().all(|entry| entry.number != *n)
         };
-        tool.number = (1..).find(free).unwrap_or_default();
-        self.numbers.push((tool.number, tool.name.clone()));
+        tool.number = (self.free_from..).find(free).unwrap_or_default();
+        self.free_from = tool.number.saturating_add(1);
+        self.numbers.insert(tool.number, tool.name.clone());
+        self.named.insert(tool.name.clone(), tool.number);
         let message =
             format!("tool \"{}\" is called by its name, and T{} here", tool.name, tool.number);
         let found = Diagnostic::warning("tool-number", message);

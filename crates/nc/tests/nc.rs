@@ -42,6 +42,22 @@ fn at(x: f64, y: f64, z: f64) -> Pose {
     Pose::upright(Vec3::new(x, y, z)).unwrap()
 }
 
+/// It took a minute for 3,000 of them: the third power of their number.
+#[test]
+fn each_of_many_tools_that_are_called_by_name_gets_a_number_of_its_own() {
+    let machine = load_origin("sinumerik-840d").unwrap();
+    let called: String = (1..=20_000).map(|i| format!("T=\"TOOL_{i}\"\nM6\n")).collect();
+    let text = format!("T5\nM6\n{called}T=\"TOOL_7\"\nM6\nM30\n");
+    let program = read_for(&machine, Setup::default(), &text).unwrap().program;
+    let tools = program.records.iter().filter_map(|record| match &record.op {
+        Op::Tool(tool) => Some(tool.number),
+        _ => None,
+    });
+    // 5 is taken.
+    let expected = [5].into_iter().chain((1..=20_001).filter(|number| *number != 5)).chain([8]);
+    assert!(tools.eq(expected));
+}
+
 #[test]
 fn a_rapid_waits_until_every_coordinate_is_known() {
     let program = fanuc("G21 G90 G54 G0\nX10. Y20.\nZ5.\nG1 Z-1. F100.\nM30\n");
