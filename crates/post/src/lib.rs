@@ -33,6 +33,7 @@ mod sweep;
 mod template;
 mod text;
 mod tilt;
+mod upright;
 mod vectors;
 mod walk;
 mod wire;
@@ -61,7 +62,10 @@ pub struct Output {
 /// the source line it comes from; mistakes in the machine's own files with their place there.
 pub fn write(program: &Program, machine: &Machine) -> Result<Output, Vec<Diagnostic>> {
     let Some((records, lines)) = sweep::split(program, machine) else {
-        return walk::Walk::new(program, machine)?.run();
+        let walk = walk::Walk::new(program, machine)?;
+        return upright::check(program, machine)
+            .map_err(|found| vec![found])
+            .and_then(|()| walk.run());
     };
     let mut output = walk::Walk::new(&program.with_records(records), machine)?.run()?;
     let message = format!(
