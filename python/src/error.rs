@@ -1,6 +1,6 @@
 //! What goes wrong, as a `toolpost.Error`.
 
-use program::Diagnostic;
+use program::{Diagnostic, Findings};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyTuple, PyType};
@@ -47,10 +47,14 @@ pub fn raised(py: Python<'_>, found: &[Diagnostic]) -> PyErr {
     error.map_or_else(|failed| failed, PyErr::from_value)
 }
 
-/// Findings as Python has them.
+/// Findings as Python has them; of many like ones a few.
 pub fn findings<'py>(py: Python<'py>, found: &[Diagnostic]) -> PyResult<Bound<'py, PyTuple>> {
     let finding = class(py, "Finding")?;
     let all: PyResult<Vec<_>> = found
+        .iter()
+        .cloned()
+        .collect::<Findings>()
+        .finish()
         .iter()
         .map(|found| {
             let Diagnostic { rule, message, help, file, line, column, excerpt, count, .. } = found;

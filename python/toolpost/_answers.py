@@ -34,7 +34,7 @@ class Finding(NamedTuple):
     message : str
         What is wrong, with values and units.
     help : str
-        The way out; empty where the message says it.
+        The way out.
     file : str
         Name of the file; empty where there is none.
     line, column : int
@@ -42,7 +42,7 @@ class Finding(NamedTuple):
     excerpt : str
         The line, with a mark under the place.
     times : int
-        How often it was found.
+        How often it was found, or one like it that is not listed.
     text : str
         All of that, as the command line prints it.
     """

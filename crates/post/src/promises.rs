@@ -4,11 +4,14 @@
 use crate::catalogue::{BlockName, WordName};
 use crate::template::Templates;
 use machine::{CycleName, HARMLESS_SIGNS, Machine, OrientationMode, Place};
-use program::{Diagnostic, nearest};
+use program::{Diagnostic, Findings, nearest};
 
 /// The first parameter that can keep a height: those below are a subroutine's own (LinuxCNC, "Numbered Parameters": #1 to
 /// #30).
 const FIRST_KEPT: u32 = 31;
+
+/// For so many unknown names it is guessed what they were meant to be.
+const MOST_GUESSED: usize = 20;
 
 /// Checks words against the catalogue, words that blocks place against the words that there are, and
 /// blocks against the capabilities.
@@ -16,16 +19,18 @@ const FIRST_KEPT: u32 = 31;
 /// # Errors
 /// Each promise that is not kept.
 pub(crate) fn check(machine: &Machine, templates: &Templates) -> Result<(), Vec<Diagnostic>> {
-    let mut errors = Vec::new();
+    let mut errors = Findings::default();
     let file = |error: Diagnostic| error.file(machine.file.clone());
     let at = |error: Diagnostic, place: &Place| error.file(place.file.clone()).line(place.line);
-    for (name, word) in &machine.words {
-        if WordName::named(name).is_none() {
-            let near = nearest(name, WordName::TABLE.iter().map(|row| row.name));
-            let help = if near.is_empty() { near } else { format!("did you mean {near}?") };
-            let message = format!("no word is called `{name}`");
-            errors.push(at(Diagnostic::error("word", message).help(help), &word.place));
-        }
+    let unknown = machine.words.iter().filter(|(name, _)| WordName::named(name).is_none());
+    for (i, (name, word)) in unknown.enumerate() {
+        let near = match i < MOST_GUESSED {
+            true => nearest(name, WordName::TABLE.iter().map(|row| row.name)),
+            false => String::new(),
+        };
+        let help = if near.is_empty() { near } else { format!("did you mean {near}?") };
+        let message = format!("no word is called `{name}`");
+        errors.push(at(Diagnostic::error("word", message).help(help), &word.place));
     }
     for (word, block) in templates.words() {
         let name = word.name();
@@ -118,7 +123,8 @@ pub(crate) fn check(machine: &Machine, templates: &Templates) -> Result<(), Vec<
             placed(BlockName::Linear, &[word], why);
         }
     }
-    errors.extend(orientation(machine, templates));
+    orientation(machine, templates).into_iter().for_each(|error| errors.push(error));
+    let errors = errors.finish();
     if errors.is_empty() { Ok(()) } else { Err(errors) }
 }
 

@@ -5,7 +5,7 @@ use serde::Serialize;
 use std::fmt::{self, Write as _};
 
 /// How bad it is.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Severity {
     /// Worth knowing; the result is good.
@@ -35,8 +35,10 @@ pub struct Diagnostic {
     pub width: u32,
     /// The text of the line (cut to a window where it is long); empty where it is not at hand.
     pub excerpt: String,
-    /// How often the same finding occurred; 1 for once.
+    /// How often it occurred, or one like it that is not listed; 1 for once.
     pub count: u32,
+    /// Lines of the first few findings like this one that are not listed; see [`crate::Findings`].
+    pub lines: Vec<u32>,
 }
 
 /// The longest piece of a line that an excerpt keeps, characters.
@@ -65,6 +67,7 @@ impl Diagnostic {
             width: 0,
             excerpt: String::new(),
             count: 1,
+            lines: Vec::new(),
         }
     }
 
@@ -169,11 +172,17 @@ impl fmt::Display for Diagnostic {
         }
         let severity = if self.is_error() { "error" } else { "warning" };
         write!(f, "{severity}[{}]: {}", self.rule, self.message)?;
-        if self.count > 1 {
+        if self.count > 1 && self.lines.is_empty() {
             write!(f, " ({} times, first here)", self.count)?;
         }
         for line in self.excerpt.lines() {
             write!(f, "\n    | {line}")?;
+        }
+        if !self.lines.is_empty() {
+            let lines: Vec<String> = self.lines.iter().map(u32::to_string).collect();
+            let others = thousands(self.count - 1);
+            let on = if (self.count - 1) as usize > lines.len() { " and on" } else { "" };
+            write!(f, "\n    … and {others} more like this, at lines {}{on}", lines.join(", "))?;
         }
         if !self.help.is_empty() {
             write!(f, "\n    = {}", self.help)?;
@@ -183,6 +192,13 @@ impl fmt::Display for Diagnostic {
 }
 
 impl std::error::Error for Diagnostic {}
+
+/// A number with a comma between each three digits.
+fn thousands(number: u32) -> String {
+    let digits = number.to_string();
+    let groups = digits.as_bytes().rchunks(3).rev();
+    groups.map(String::from_utf8_lossy).collect::<Vec<_>>().join(",")
+}
 
 /// The names of `known` that `name` was most likely meant to be, for an error: at most three, the nearest
 /// first; empty where none is near.

@@ -13,6 +13,7 @@
 
 mod builder;
 mod compensated;
+mod counted;
 mod cut_box;
 mod cycle;
 pub mod diagnostic;
@@ -29,6 +30,7 @@ mod ways_out;
 
 pub use builder::Builder;
 pub use compensated::{CompensatedPath, PathEvidence};
+pub use counted::Findings;
 pub use cut_box::CutBox;
 pub use cycle::*;
 pub use diagnostic::{Diagnostic, Severity, line_of, nearest};

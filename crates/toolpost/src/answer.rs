@@ -2,7 +2,7 @@
 //! output, or everything as one JSON object.
 
 use crate::summary;
-use program::Diagnostic;
+use program::{Diagnostic, Findings};
 use serde_json::{Map, Value, json};
 use std::io::{self, Write};
 
@@ -70,7 +70,8 @@ impl Account {
     /// The report that is saved beside a program.
     pub fn report(&self) -> String {
         let mut report = self.data.clone();
-        report["warnings"] = json!(self.findings);
+        let findings = self.findings.iter().cloned().collect::<Findings>().finish();
+        report["warnings"] = json!(findings);
         format!("{report:#}\n")
     }
 }
@@ -124,10 +125,12 @@ impl Answer {
 
     /// Says it, and answers the exit code.
     pub fn say(self, quiet: bool, json: bool) -> u8 {
-        let lost = self.findings.iter().find(|finding| finding.help.is_empty());
+        let findings = self.findings.into_iter().collect::<Findings>().finish();
+        let this = Answer { findings, ..self };
+        let lost = this.findings.iter().find(|finding| finding.help.is_empty());
         debug_assert!(lost.is_none(), "a finding without a way out: {lost:?}");
-        let code = self.verdict.code();
-        let said = if json { self.say_json() } else { self.say_text(quiet) };
+        let code = this.verdict.code();
+        let said = if json { this.say_json() } else { this.say_text(quiet) };
         match said {
             Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
                 let _ = writeln!(io::stderr(), "error: the answer cannot be printed: {error}");

@@ -104,6 +104,42 @@ fn a_cut_that_no_machine_may_make() {
     refused(with_line(4, "$$"), MACHINE, 2, 11, "spindle-off");
 }
 
+/// Said once, with what can be done; each of the moves was a finding without a way out.
+#[test]
+fn a_five_axis_toolpath_on_a_three_axis_machine_is_called_that() {
+    let folder = Folder::new();
+    let tilted = "GOTO/0,0,50,0,0,1\nRAPID\nGOTO/0,0,50,0,0.6,0.8\nRAPID\nGOTO/0,0,60,0.8,0,0.6\nRAPID\nGOTO/0,0,70,0,0,1";
+    folder.write("part.cls", with_line(7, tilted));
+    let said = folder.run(&["post", "part.cls", "-m", "generic-3axis-linuxcnc", "-o", "part.ngc"]);
+    assert_eq!(said.code, 1, "{said:?}");
+    // arccos 0.6
+    let found = "part.cls:9: error[unreachable-orientation]: five-axis toolpath, three-axis machine: the toolpath \
+                 tilts the tool by up to 53.130° from Z, and the machine has no rotary axes (2 times, first here)";
+    assert!(said.err.contains(found), "{}", said.err);
+    assert_eq!(said.err.matches("error[").count(), 1, "{}", said.err);
+    let way_out = "= choose a machine with rotary axes, such as `linuxcnc-xyzac`, `linuxcnc-xyzbc-head`, `linuxcnc-xyzbc`, ";
+    assert!(said.err.contains(way_out), "{}", said.err);
+}
+
+/// A line of `[words]` for each of them.
+#[test]
+fn many_like_findings_are_a_few_and_their_count() {
+    let folder = Folder::new();
+    let words: String = (0..20_000).map(|i| format!("WORD{i} = {{ decimals = 3 }}\n")).collect();
+    let file = format!("extends = \"generic-3axis-linuxcnc\"\n[words]\n{words}");
+    folder.write("mill.toml", file);
+    let said = folder.run(&["machines", "check", "mill.toml"]);
+    assert_eq!(said.code, 2, "{said:?}");
+    assert_eq!(said.err.matches("error[").count(), 3, "{}", said.err);
+    assert!(said.err.contains("… and 19,997 more like this, at lines "), "{}", said.err);
+    let said = folder.run(&["machines", "check", "mill.toml", "--json"]);
+    let answer: serde_json::Value = serde_json::from_str(&said.out).unwrap();
+    let counts: Vec<u64> =
+        answer["errors"].as_array().unwrap().iter().map(|e| e["count"].as_u64().unwrap()).collect();
+    assert_eq!(counts, [1, 1, 19_998]);
+    assert_eq!(answer["errors"][2]["lines"].as_array().unwrap().len(), 5);
+}
+
 #[test]
 fn an_orientation_out_of_reach() {
     let tilted = with_line(7, "GOTO/0,0,50,0,0,1\nRAPID\nGOTO/0,0,50,0,0.6,0.8");
