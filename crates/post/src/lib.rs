@@ -64,7 +64,7 @@ pub fn write(program: &Program, machine: &Machine) -> Result<Output, Vec<Diagnos
     let Some((records, lines)) = sweep::split(program, machine) else {
         let walk = walk::Walk::new(program, machine)?;
         return upright::check(program, machine)
-            .map_err(|found| vec![found])
+            .map_err(|found| vec![*found])
             .and_then(|()| walk.run());
     };
     let mut output = walk::Walk::new(&program.with_records(records), machine)?.run()?;

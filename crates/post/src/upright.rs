@@ -12,7 +12,7 @@ const NAMED: usize = 4;
 ///
 /// # Errors
 /// `unreachable-orientation` once for the whole toolpath, at its first move with a tilted tool.
-pub(crate) fn check(program: &Program, machine: &Machine) -> Result<(), Diagnostic> {
+pub(crate) fn check(program: &Program, machine: &Machine) -> Result<(), Box<Diagnostic>> {
     if !machine.rotary.is_empty() || machine.wire.is_some() {
         return Ok(());
     }
@@ -38,7 +38,7 @@ pub(crate) fn check(program: &Program, machine: &Machine) -> Result<(), Diagnost
         with_rotary_axes(machine)
     );
     let found = Diagnostic::error("unreachable-orientation", message).help(help).line(first);
-    Err(Diagnostic { count, ..found })
+    Err(Box::new(Diagnostic { count, ..found }))
 }
 
 /// Some machines of the library that turn the tool or the part, those of the same control first.

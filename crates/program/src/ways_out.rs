@@ -220,6 +220,10 @@ const WAYS_OUT: &[(&str, &str)] = &[
     ),
     ("nc-coolant", "give one M function of coolant a block, and one that the control knows"),
     (
+        "nc-corner",
+        "put `,R` or `,C` between two moves in the plane, each longer than the corner takes away",
+    ),
+    (
         "nc-cycle",
         "give the words that the cycle needs (depth, retract plane, peck, dwell), each in the range that the control takes",
     ),

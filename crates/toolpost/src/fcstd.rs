@@ -34,7 +34,8 @@ pub fn is(path: &Path) -> bool {
 /// There is no FreeCAD, it takes too long, or the document has no job.
 pub fn job(path: &Path) -> Result<Vec<u8>, Box<Diagnostic>> {
     let about = |message: String| Diagnostic::error("freecad", message).file(files::name(path));
-    inflate::check(&files::read(path)?).map_err(|found| found.file(files::name(path)))?;
+    inflate::check(&files::read(path)?)
+        .map_err(|found| Box::new((*found).file(files::name(path))))?;
     let document = fs::canonicalize(path)
         .map_err(|error| about(format!("cannot be read: {error}")).help("look at its name"))?;
     let folder = tempfile::tempdir()

@@ -15,7 +15,7 @@ const MOST_TIMES: u64 = 40;
 ///
 /// # Errors
 /// `document-size`
-pub fn check(file: &[u8]) -> Result<(), Diagnostic> {
+pub fn check(file: &[u8]) -> Result<(), Box<Diagnostic>> {
     let most = ENOUGH.max(MOST_TIMES.saturating_mul(file.len() as u64));
     if listed(file) <= most && unpacked(file, most) <= most {
         return Ok(());
@@ -26,7 +26,7 @@ pub fn check(file: &[u8]) -> Result<(), Diagnostic> {
         most >> 20
     );
     let help = "open it in FreeCAD and save it again, or post from FreeCAD's window, with the post `toolpost`";
-    Err(Diagnostic::error("document-size", message).help(help))
+    Err(Diagnostic::error("document-size", message).help(help).into())
 }
 
 /// A number of the archive, least byte first; 0 beyond its end.
