@@ -54,8 +54,8 @@ FILES = [
 #: What a machine of the library says when it cannot run a source.
 REFUSED = {"axis-limit", "unreachable-orientation", "cycle-tap"}
 
-#: Open: rapids of tilted heads near the part that are neither on a way of the source nor clear of the
-#: box of all cuts, and C 0.8 degrees beyond its travel along a vector (196).
+#: Open: rapids of tilted heads near the part that are neither on a way of the source nor clear of
+#: the box of all cuts, and C 0.8 degrees beyond its travel along a vector (196).
 OPEN = {
     "linuxcnc-xyzbc-head": {29, 53, 106, 115, 131, 135, 185},
     "sinumerik-840d-traori": {29, 53, 106, 115, 196},
