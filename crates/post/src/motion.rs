@@ -35,6 +35,15 @@ impl Walk<'_> {
         if let Some(degrees) = stop.step.and_then(|step| step.rewind) {
             self.rewind(degrees, stop)?;
         }
+        if let Some(near) = self.vector_past_pole(pose.axis()) {
+            let message = format!(
+                "the tool goes past the pole of the rotary axes at {near:.3}° in this cut: along a vector the control leads it \
+                 through the pole there, or stops"
+            );
+            let help = "tool axes in the source that go round the pole by more than 2° or through it, or positions of the rotary axes \
+                        in place of vectors (`simultaneous = \"tool-center-angles\"` in [orientation] of the machine file)";
+            return Err(refuse("pole-way", message).help(help).into());
+        }
         if self.vector_strays(pose.axis())
             && let Some(here) = self.here
         {
@@ -64,6 +73,12 @@ impl Walk<'_> {
         matches!(self.place.kind, Kind::Vectors)
             && self.place.degrees().is_some()
             && self.vector_ends(axis).is_none()
+    }
+
+    /// How far from the pole, degrees, the tool would go past it along a vector to `axis`, where the control does not follow.
+    pub(crate) fn vector_past_pole(&self, axis: Vec3) -> Option<f64> {
+        let here = self.here.filter(|_| matches!(self.place.kind, Kind::Vectors))?;
+        vectors::passes_pole(&self.inverse, here.axis(), axis)
     }
 
     /// Where the rotary axes have to stand along `from`, so that each stays within its travel on the way to `to`.

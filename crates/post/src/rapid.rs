@@ -73,7 +73,7 @@ impl Walk<'_> {
         let Some(from) = self.here.filter(|_| self.located) else {
             return self.approach(pose, stop);
         };
-        if self.vector_strays(pose.axis()) {
+        if self.vector_strays(pose.axis()) || self.vector_past_pole(pose.axis()).is_some() {
             return self.by_home(pose, stop);
         }
         match self.course(&from, pose, stop, true)? {

@@ -17,6 +17,18 @@ const TURN: f64 = 15.0;
 /// Of two solutions that are nearer than this, degrees, the control may take either.
 const ALIKE: f64 = 0.1;
 
+/// Within this angle of a pole, degrees, the control leads a vector that goes past it through it (MD24530, as delivered).
+const POLE_LIMIT: f64 = 2.0;
+
+/// What is kept from that limit for the rounding of words, degrees.
+const MARGIN: f64 = 0.001;
+
+/// A way that comes nearer to the pole than this, degrees, goes through it.
+const THROUGH_POLE: f64 = 0.0009;
+
+/// So many places are looked at on either side of the middle, each time closer.
+const GRID: i32 = 60;
+
 /// How far a position may be beyond the end of a travel by rounding, degrees.
 const ROUNDING: f64 = 1e-3;
 
@@ -60,6 +72,32 @@ pub(crate) fn arrival(inverse: &Inverse, from: [f64; 3], to: Vec3) -> Option<[f6
         (at, done, points, step) = (next, goal, axis, (2.0 * step).min(LONGEST));
     }
     Some(at)
+}
+
+/// How far from the pole, degrees, the tool goes past it on its turn from `start` to `to`, where the control leads such a
+/// vector through the pole, or stops: both ends farther than [`POLE_LIMIT`], the way nearer.
+pub(crate) fn passes_pole(inverse: &Inverse, start: Vec3, to: Vec3) -> Option<f64> {
+    let away = |axis: Vec3| {
+        let solutions = inverse.solve(axis);
+        solutions.map_or(f64::INFINITY, |all| pole(inverse.machine(), &all)).to_degrees()
+    };
+    let turn = angle_between(start, to).to_degrees();
+    if turn == 0.0 || away(start) + away(to) > turn + 2.0 * POLE_LIMIT {
+        return None;
+    }
+    if away(start).min(away(to)) < POLE_LIMIT - MARGIN {
+        return None;
+    }
+    let (mut at, mut width, mut least) = (0.5, 0.5, f64::INFINITY);
+    // The nearest of so many places, then of so many about it, until they lie together.
+    while width * turn > THROUGH_POLE / 100.0 {
+        let around = (-GRID..=GRID).map(|i| at + width * f64::from(i) / f64::from(GRID));
+        let inside = around.filter(|part| (0.0..=1.0).contains(part));
+        let found = inside.map(|part| (part, away(between(start, to, part))));
+        (at, least) = found.min_by(|a, b| a.1.total_cmp(&b.1))?;
+        width *= 2.0 / f64::from(GRID);
+    }
+    (least < POLE_LIMIT + MARGIN && least > THROUGH_POLE).then_some(least)
 }
 
 /// The positions within the travel that bring the tool along `axis`.

@@ -85,7 +85,46 @@ const POLE_PART: f64 = 0.25;
 /// Nearer to a pole than four times this, radians (0.002°), the tool goes through it.
 const LEAST_STEP: f64 = 3.5e-5;
 
+/// Within this angle of a pole, radians, a SINUMERIK leads a vector that goes past it through it: 2°, MD24530
+/// `$MC_TRAFO5_NON_POLE_LIMIT_1` as it is delivered.
+const POLE_LIMIT: f64 = std::f64::consts::PI / 90.0;
+
+/// A way that comes nearer to the pole than this, radians, goes through it: 0.001°.
+const THROUGH_POLE: f64 = std::f64::consts::PI / 180_000.0;
+
+/// How often the stretch in which a way is nearest to a pole is cut by a third: to 1e-7 of it.
+const POLE_STEPS: u32 = 40;
+
+/// The tool turns at most this much between two places that are looked at near a pole, radians: a tenth of a degree.
+const POLE_SAMPLE: f64 = std::f64::consts::PI / 1800.0;
+
 impl<'a> Standing<'a> {
+    /// How far from the pole, degrees, the vector of a block to `axis` goes past it, where that is so near that the control
+    /// leads it through the pole. Ends that are themselves so near are not judged, nor a way through the pole itself.
+    pub fn passes_pole(&mut self, axis: Vec3) -> Option<f64> {
+        let start = self.axis.filter(|start| *start != axis)?;
+        self.at(&Orientation::Axis(axis));
+        let outside = [self.from_pole, self.next_from_pole].map(|near| near - POLE_LIMIT);
+        let turn = angle_between(start, axis);
+        if outside.iter().any(|far| *far < 0.0) || outside[0] + outside[1] > turn {
+            return None;
+        }
+        let count = (turn / POLE_SAMPLE).ceil().max(2.0) as u32;
+        let near = |part: f64| {
+            let solutions = self.inverse.solve(between(start, axis, part));
+            solutions.map_or(f64::INFINITY, |all| from_pole(self.machine, &all))
+        };
+        let part = |i: u32| f64::from(i) / f64::from(count);
+        let least = (1..count).min_by(|a, b| near(part(*a)).total_cmp(&near(part(*b))))?;
+        let (mut low, mut high) = (part(least - 1), part(least + 1));
+        for _ in 0..POLE_STEPS {
+            let (a, b) = (low + (high - low) / 3.0, high - (high - low) / 3.0);
+            if near(a) < near(b) { high = b } else { low = a }
+        }
+        let nearest = near((low + high) / 2.0);
+        (nearest < POLE_LIMIT && nearest > THROUGH_POLE).then_some(nearest.to_degrees())
+    }
+
     /// Before the first block: nowhere that is known.
     pub fn new(machine: &'a Machine) -> Standing<'a> {
         Standing {

@@ -180,8 +180,13 @@ fn a_rotary_axis_follows_vectors_on_and_on_to_the_end_of_its_travel() {
     assert_eq!(judged(0.0, &round[..4]), ["axis-limit"]);
     assert!(judged(-210.0, &[[20.0, -150.0], [20.0, -90.0], [20.0, 210.0]]).is_empty());
     // 20° before the pole and 20° behind it, 5.3° aside of the diameter: on the great circle 0.95° beside the pole.
-    assert_eq!(judged(170.0, &[[20.0, 344.7]]), ["axis-limit"]);
-    assert!(judged(170.0, &[[20.0, -4.7]]).is_empty());
+    // So near that the control leads it through the pole.
+    assert_eq!(judged(170.0, &[[20.0, 344.7]]), ["pole-way", "axis-limit"]);
+    assert_eq!(judged(170.0, &[[20.0, -4.7]]), ["pole-way"]);
+    // 12° aside of the diameter it passes at 2.1°, and the axes follow; straight through, C stands.
+    assert_eq!(judged(170.0, &[[20.0, 338.0]]), ["axis-limit"]);
+    assert!(judged(170.0, &[[20.0, 2.0]]).is_empty());
+    assert!(judged(170.0, &[[20.0, 350.0]]).is_empty());
 }
 
 #[test]

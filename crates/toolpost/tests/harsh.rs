@@ -34,6 +34,8 @@ const ACCEPTED: &[&str] = &[
     // A coolant that the machine does not have.
     "missing-block",
     "orientation-in-cut",
+    // A vector that goes past a pole so near that the control leads it through it.
+    "pole-way",
     // Each axis goes at its own speed by rapid, and the source has no feed in mm/min.
     "rapid-path",
     "unreachable-orientation",

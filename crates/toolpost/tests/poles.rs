@@ -132,3 +132,22 @@ fn a_rewind_under_tool_centre_control_comes_back_to_where_it_left() {
     let dome = source::apt::read("dome.cls", &dome, &Default::default()).unwrap().program;
     assert!(made(&dome, &machine).1.contains(&"rewind"));
 }
+
+/// The fork head of the library: its pole is Z. From 20° on one side to 20° on the other, 5.3° and 12° aside of the diameter:
+/// tan 20° sin 2.65° is the tangent of 0.96°, and of 2.18° at 6°. MD24530 is 2° as delivered.
+#[test]
+fn a_vector_past_the_pole_within_two_degrees_is_refused_before_it_is_written() {
+    let machine = load("sinumerik-840d-traori").unwrap();
+    let past = |azimuth: f64| post::write(&cut(&[(20.0, 10.0), (20.0, azimuth)]), &machine);
+    let refused = |azimuth: f64| past(azimuth).err().map(|found| found[0].rule);
+    assert_eq!(refused(184.7), Some("pole-way"));
+    assert_eq!(refused(195.3), Some("pole-way"));
+    for azimuth in [178.0, 190.0, 202.0] {
+        let source = cut(&[(20.0, 10.0), (20.0, azimuth)]);
+        let output = post::write(&source, &machine).unwrap_or_else(|found| panic!("{found:?}"));
+        let report = proof::prove(&source, &machine, "p", &output.text, &Default::default());
+        assert!(report.proven, "{azimuth}: {:?}", report.mismatches);
+    }
+    // The way out that it names: farther round the pole.
+    made(&cut(&[(20.0, 10.0), (6.0, 97.0), (20.0, 184.7)]), &machine);
+}

@@ -14,6 +14,7 @@ impl Prover<'_> {
         if gauge.machine.wire.is_some() {
             return;
         }
+        self.check_pole(to);
         let slack = gauge.slack(to);
         let from = single(self.standing.here());
         self.standing.at(&to.position.orientation);
@@ -40,6 +41,24 @@ impl Prover<'_> {
             let message = format!("source line {}: {}", self.cursor.line, found.message);
             self.found(Diagnostic { message, ..found }.line(to.line));
         }
+    }
+
+    /// Refuses a vector that goes past a pole so near that the control leads it through it, or stops.
+    fn check_pole(&mut self, to: &Station) {
+        let Orientation::Axis(axis) = to.position.orientation else { return };
+        if self.standing.has_swivelled() {
+            return;
+        }
+        let Some(near) = self.standing.passes_pole(axis) else { return };
+        let message = format!(
+            "source line {}: the vector of the tool goes past the pole of the rotary axes at {}°: within 2° (MD24530) the \
+             control leads it through the pole, or stops with alarm 14112 (MD24540)",
+            self.cursor.line,
+            Number(near)
+        );
+        let help = "tool axes in the source that go round the pole by more than 2° or through it, or positions of the rotary axes \
+                    in place of vectors (`simultaneous = \"tool-center-angles\"` in [orientation] of the machine file)";
+        self.found(Diagnostic::error("pole-way", message).help(help).line(to.line));
     }
 
     /// What is wrong between the ends of a move in which the rotary axes turn from one place (degrees of A, B, C) to
