@@ -76,6 +76,9 @@ fn open(folders: &[PathBuf], name: &str) -> Result<(PathBuf, Vec<u8>), String> {
         if text.len() as u64 > LARGEST {
             return Err(format!("{name} is larger than {} MB", LARGEST >> 20));
         }
+        if encoding::is_utf_16(&text) {
+            return Err(format!("{name} is in UTF-16: save it as plain text"));
+        }
         text.drain(..text.len() - encoding::without_mark(&text).len());
         return Ok((real, text));
     }

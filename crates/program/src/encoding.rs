@@ -10,6 +10,16 @@ pub fn without_mark(text: &[u8]) -> &[u8] {
     text.strip_prefix(BYTE_ORDER_MARK).unwrap_or(text)
 }
 
+/// Whether a text is in UTF-16, with its byte order mark or without: then every second byte of ASCII is zero.
+pub fn is_utf_16(text: &[u8]) -> bool {
+    let is_ascii = |byte: u8| byte != 0 && byte.is_ascii();
+    match *text {
+        [0xfe, 0xff, ..] | [0xff, 0xfe, ..] => true,
+        [a, 0, b, 0, ..] | [0, a, 0, b, ..] => is_ascii(a) && is_ascii(b),
+        _ => false,
+    }
+}
+
 /// What is said of a file in UTF-16, which no reader takes.
 pub fn utf_16() -> Diagnostic {
     Diagnostic::error("encoding", "this file is in UTF-16")

@@ -54,13 +54,7 @@ pub fn text(path: &Path) -> Result<Vec<u8>, Box<Diagnostic>> {
 /// # Errors
 /// The text is in UTF-16.
 pub fn text_of(path: &Path, mut bytes: Vec<u8>) -> Result<Vec<u8>, Box<Diagnostic>> {
-    let is_utf_16 = match bytes[..] {
-        [0xfe, 0xff, ..] | [0xff, 0xfe, ..] => true,
-        // Without a mark: two letters of ASCII, each with a zero byte.
-        [a, 0, b, 0, ..] | [0, a, 0, b, ..] => a.is_ascii_graphic() && b.is_ascii_graphic(),
-        _ => false,
-    };
-    if is_utf_16 {
+    if encoding::is_utf_16(&bytes) {
         return Err(encoding::utf_16().file(name(path)).into());
     }
     bytes.drain(..bytes.len() - encoding::without_mark(&bytes).len());

@@ -9,6 +9,7 @@ use crate::report::{self, Digests};
 use crate::summary::{self, Shape, number};
 use crate::toolpath::{self, Toolpath};
 use machine::Machine;
+use program::encoding;
 use proof::{Accepted, Report, Tolerances};
 use serde_json::json;
 
@@ -21,7 +22,11 @@ pub fn run(args: &Prove, silent: bool) -> Result<Answer, Stop> {
     let text = files::read(&args.program)?;
     progress.step("proving");
     let file = files::name(&args.program);
-    let mut account = compare(&toolpath, &machine, &file, &text, &args.closeness.tolerances());
+    if encoding::is_utf_16(&text) {
+        return Err(encoding::utf_16().file(file).into());
+    }
+    let read = encoding::without_mark(&text);
+    let mut account = compare(&toolpath, &machine, &file, read, &args.closeness.tolerances());
     match report::pair(&args.program, || Digests::of(&text, &toolpath, &machine)) {
         Ok(pair) => account.rows.extend(pair.map(|text| ("report", text))),
         Err(found) => account.findings.push(*found),

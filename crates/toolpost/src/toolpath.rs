@@ -9,7 +9,7 @@ use control::{Dialect, Setup};
 use freecad::{Job, Listing};
 use geom::Vec3;
 use machine::{Machine, library};
-use program::{CompensatedPath, Diagnostic, Digest, Op, Program, Severity, line_of};
+use program::{CompensatedPath, Diagnostic, Digest, Op, Program, Severity, encoding, line_of};
 use serde_json::{Value, json};
 use source::apt::{self, Cutcom, SetUps};
 use std::path::{Path, PathBuf};
@@ -60,7 +60,8 @@ pub fn read(
         true => fcstd::job(path)?,
         false => files::read(path)?,
     };
-    if !Job::begins(&bytes) {
+    let text = encoding::without_mark(&bytes);
+    if encoding::is_utf_16(&bytes) || !Job::begins(text) {
         return read_by(path, bytes, strict, origin, false, |machine| machine);
     }
     if origin.csys.is_some() {
@@ -78,7 +79,7 @@ pub fn read(
     let named = origin.from.as_deref().map(machine::load_origin).transpose()?;
     let file = files::name(path);
     let digest = Some(Digest::of([&bytes[..]]));
-    let toolpath = read_job(&file, Job::of(&file, &bytes)?, strict, named.as_ref().or(machine))?;
+    let toolpath = read_job(&file, Job::of(&file, text)?, strict, named.as_ref().or(machine))?;
     Ok(Toolpath { path: Some(path.to_owned()), digest, ..toolpath })
 }
 

@@ -4,7 +4,7 @@ use super::{Result, is_path};
 use crate::library;
 use crate::model::{Block, Place};
 use crate::sheet::Sheet;
-use program::{Diagnostic, nearest};
+use program::{Diagnostic, encoding, nearest};
 use std::fs::{self, File};
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -52,6 +52,9 @@ impl SheetFile {
         if bytes.len() as u64 > LARGEST_FILE {
             let message = format!("more than {} MB are no machine file", LARGEST_FILE >> 20);
             return Err(fail(message).into());
+        }
+        if encoding::is_utf_16(&bytes) {
+            return Err(encoding::utf_16().file(shown).into());
         }
         let text =
             String::from_utf8(bytes).map_err(|_| fail(String::from("this file is not UTF-8")))?;

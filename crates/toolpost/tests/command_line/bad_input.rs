@@ -290,3 +290,72 @@ fn a_byte_order_mark_is_no_part_of_a_text_and_utf_16_is_said() {
         }
     }
 }
+
+/// Every kind of text that is read: a file of `fuzz/seeds`, and what reads it.
+const READERS: &[(&str, &str, &[&str])] = &[
+    ("apt/nx.cls", "in.cls", &["show", "in.cls"]),
+    ("iso/linuxcnc.nc", "in.ngc", &["show", "in.ngc", "--from", "linuxcnc"]),
+    ("iso/fanuc-milling.nc", "in.nc", &["show", "in.nc", "--from", "fanuc-31i"]),
+    ("sinumerik/style.mpf", "in.mpf", &["show", "in.mpf", "--from", "sinumerik-840d"]),
+    ("klartext/milling.h", "in.h", &["show", "in.h", "--from", "heidenhain-tnc640"]),
+    ("iso/grbl.nc", "in.nc", &["prove", "in.nc", "--against", "part.cls", "-m", "grbl-3018"]),
+    ("freecad/bracket.json", "in.json", &["show", "in.json"]),
+    ("excellon/holes.drl", "in.drl", &["pcb", "in.drl", "-m", "grbl-3018", "-o", "out"]),
+    ("gerber/pads.gbr", "in.gtl", &["pcb", "in.gtl", "-m", "grbl-3018", "-o", "out"]),
+    ("board/lamp.toml", "in.toml", &["pcb", "in.toml", "-m", "grbl-3018", "-o", "out"]),
+    ("board/two-pins.json", "in.json", &["pcb", "in.json", "-m", "grbl-3018", "-o", "out"]),
+    (
+        "kicad/v9.kicad_pcb",
+        "in.kicad_pcb",
+        &["pcb", "in.kicad_pcb", "-m", "grbl-3018", "-o", "out"],
+    ),
+    (
+        "levelling/table.txt",
+        "in.txt",
+        &[
+            "pcb",
+            "board.toml",
+            "-m",
+            "grbl-3018",
+            "-o",
+            "out",
+            "--only",
+            "front",
+            "--heights",
+            "in.txt",
+        ],
+    ),
+    ("wire/lines.dxf", "in.dxf", &["wire", "in.dxf", "-m", "fanuc-wire", "-o", "out.nc"]),
+    ("import/shop.pp", "in.pp", &["machines", "import", "in.pp", "-o", "mine.toml"]),
+    ("../../machines/grbl-3018.toml", "in.toml", &["machines", "check", "in.toml"]),
+    ("../../machines/grbl-3018.toml", "in.toml", &["machines", "new", "mine", "--from", "in.toml"]),
+];
+
+#[test]
+fn every_reader_passes_over_a_byte_order_mark_and_explains_utf_16() {
+    let seeds = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds");
+    for (seed, name, command) in READERS {
+        let text = std::fs::read(seeds.join(seed)).unwrap();
+        let run = |bytes: &[u8]| {
+            let folder = Folder::new();
+            let board = std::fs::read(seeds.join("board/lamp.toml")).unwrap();
+            folder.write("board.toml", board);
+            folder.write("part.cls", SOURCE);
+            folder.write(name, bytes);
+            folder.run(command)
+        };
+        let (plain, marked) = (run(&text), run(&[b"\xef\xbb\xbf", text.as_slice()].concat()));
+        assert_eq!((plain.code, &plain.err), (marked.code, &marked.err), "{seed}: {command:?}");
+        assert!(!plain.err.contains("UTF"), "{plain:?}");
+        let units = || String::from_utf8_lossy(&text).encode_utf16().collect::<Vec<_>>();
+        let little: Vec<u8> = units().into_iter().flat_map(u16::to_le_bytes).collect();
+        let big: Vec<u8> = units().into_iter().flat_map(u16::to_be_bytes).collect();
+        for wide in
+            [[&[0xff, 0xfe], &little[..]].concat(), [&[0xfe, 0xff], &big[..]].concat(), little]
+        {
+            let said = run(&wide);
+            let explained = said.err.contains("this file is in UTF-16") && said.err.contains(name);
+            assert!(said.code != 0 && explained, "{seed}: {command:?}\n{said:?}");
+        }
+    }
+}
