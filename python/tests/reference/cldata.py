@@ -51,6 +51,8 @@ class Move:
     #: Tool, spindle speed (clockwise positive), coolant on, side of compensation.
     state: tuple[int, float, bool, str]
     hole: bool = False
+    #: Of a hole: how far above the surface of the part its feed begins, mm.
+    clear: float = 0.0
 
 
 @dataclass
@@ -256,6 +258,7 @@ class Reader:
                 self.to(point + height * axis, axis, rapid=True)
         self.to(point + clear * axis, axis, rapid=True)
         self.to(point - depth * axis, axis, rapid=False, feed=feed, hole=True)
+        self.out.moves[-1].clear = clear
         self.to(point + out * axis, axis, rapid=True)
 
 

@@ -154,7 +154,7 @@ class Judge:
         self.end = np.array([m.end for m in moves])
         self.lean = np.array([m.axis[0] for m in moves]), np.array([m.axis[1] for m in moves])
         self.cutting = np.array([not m.rapid for m in moves])
-        self.touched = self.touching()
+        self.touched = touching(moves)
         self.box = self.touched.min(0), self.touched.max(0)
         # Runs of cuts without a rapid between them; a hole is a run of its own.
         self.runs: list[tuple[int, int]] = []
@@ -166,17 +166,6 @@ class Judge:
                 self.runs[-1] = (self.runs[-1][0], index + 1)
             else:
                 self.runs.append((index, index + 1))
-
-    def touching(self) -> ARRAY:
-        """Return the ends of cuts, but not the upper one of a cut along the tool: there is air."""
-        of = np.flatnonzero(self.cutting)
-        start, end = self.start[of], self.end[of]
-        way = end - start
-        down = (way * self.lean[0][of]).sum(1)
-        aside = np.linalg.norm(way - down[:, None] * self.lean[0][of], axis=1)
-        hole = np.array([self.moves[k].hole for k in of.tolist()], dtype=bool)
-        alone = (aside < 1e-3) & (apart(self.lean[0][of], self.lean[1][of]) < 1e-6) & ~hole
-        return np.concatenate([start[~(alone & (down < 0))], end[~(alone & (down > 0))]])
 
     # Which piece of the source a row cuts.
 
@@ -569,3 +558,24 @@ def moving(moves: list[Move]) -> list[Move]:
     turn = np.array([m.axis[1] - m.axis[0] for m in moves])
     apart_by = np.maximum(abs(way).max(1), abs(turn).max(1))
     return [move for move, by in zip(moves, apart_by) if not by < 1e-9 or move.hole]
+
+
+def touching(moves: list[Move]) -> ARRAY:
+    """Return the ends of cuts, but not the upper one of a cut along the tool: there is air.
+
+    A hole begins at the surface of the part, which its source states. The R plane is above it in
+    the air, and the tool comes there by rapid.
+    """
+    cuts = [move for move in moves if not move.rapid]
+    axis = np.array([move.axis[0] for move in cuts])
+    none = np.full(3, np.nan)
+    start = np.array([none if move.start is None else move.start for move in cuts])
+    end = np.array([move.end for move in cuts])
+    way = end - start
+    down = (way * axis).sum(1)
+    aside = np.linalg.norm(way - down[:, None] * axis, axis=1)
+    holes = np.array([move.hole for move in cuts], dtype=bool)
+    turned = apart(axis, np.array([move.axis[1] for move in cuts]))
+    alone = (aside < 1e-3) & (turned < 1e-6) & ~holes
+    start = start - np.array([move.clear for move in cuts])[:, None] * axis
+    return np.concatenate([start[~(alone & (down < 0))], end[~(alone & (down > 0))]])

@@ -11,7 +11,7 @@ from typing import Callable
 
 import numpy as np
 
-from .control import Control, depths
+from .control import Control, Feed, depths
 from .machine import ARRAY, X, Y, Z, matrix
 
 NUMBER = r"[-+]?(?:\d+\.?\d*|\.\d+)"
@@ -26,6 +26,9 @@ TOKEN = re.compile(
 #: Codes that set what this reference takes for granted, or that change nothing it compares.
 ASSUMED = {17, 40, 54, 60, 64, 71, 90, 601, 602, 710}
 POSITIONS = {"X", "Y", "Z", "A", "B", "C", "A3", "B3", "C3"}
+#: Degrees about the pole within which a vector that passes it is led through it: MD24530, as
+#: delivered. Nearer than the second, the way of the source itself goes through it.
+POLE, THROUGH = 2.0, 0.001
 
 
 class Sinumerik(Control):
@@ -232,6 +235,14 @@ class Sinumerik(Control):
         else:
             self.line_to(words, self.motion == 0, along)
 
+    def swing(self, end: ARRAY, along: ARRAY, feed: Feed) -> None:
+        """Refuse a way past the pole, where C ends elsewhere than the great circle has it."""
+        before = self.machine.forward(np.zeros((1, 3)), self.turns[None], np.zeros(1))[1][0]
+        near = pole_passed(before, along)
+        if near is not None and THROUGH < near < POLE:
+            raise self.fault(f"a vector goes past the pole at {near:.3f} degrees")
+        super().swing(end, along, feed)
+
     def through(self, words: dict[str, float]) -> None:
         """Go along CIP: a circle through a point to the end; I1 J1 K1 are absolute under G90."""
         start = self.at
@@ -244,3 +255,22 @@ class Sinumerik(Control):
         rows = np.array([2 * (via - start), 2 * (end - start), normal])
         right = [via @ via - start @ start, end @ end - start @ start, normal @ start]
         self.arc(end, np.linalg.solve(rows, np.array(right)), normal, clockwise=False)
+
+
+def pole_passed(one: ARRAY, two: ARRAY) -> float | None:
+    """Degrees from the pole, where C turns about Z, at which the tool passes it between two axes.
+
+    Nothing where an end is within its limit, or where an end is the nearest place of the way.
+    """
+    across = np.cross(one, two)
+    size = float(np.linalg.norm(across))
+    ends = np.degrees(np.arcsin(np.linalg.norm([one[:2], two[:2]], axis=1).clip(0, 1)))
+    if size < 1e-9 or ends.min() <= POLE:
+        return None
+    normal = across / size
+    foot = Z - (Z @ normal) * normal
+    sides = np.cross(one, foot) @ normal, np.cross(foot, two) @ normal
+    # Both of one sign: the foot of Z on the way lies between the ends, or that of -Z.
+    if sides[0] * sides[1] <= 0:
+        return None
+    return float(np.degrees(np.arcsin(min(abs(Z @ normal), 1.0))))
