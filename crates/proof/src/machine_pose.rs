@@ -249,6 +249,13 @@ impl<'a> Standing<'a> {
         (axis, solutions.map_or(0.0, |all| from_pole(self.machine, &all)))
     }
 
+    /// Where the axes come from one place (degrees of A, B, C) in a short turn of the tool to `axis`.
+    pub fn step_to(&self, from: Degrees, axis: Vec3) -> Degrees {
+        let solutions = self.inverse.solve(axis);
+        let near = solutions.map(|all| tilt::nearest(self.machine, &from, &all));
+        near.ok().and_then(|near| near[0].or(near[1])).unwrap_or(from)
+    }
+
     /// Adds where the axes come from one place in a turn so short that they cannot leave the solution in which they are.
     #[inline]
     fn step(&mut self, from: &Degrees, solutions: &Solutions) {

@@ -189,6 +189,38 @@ fn a_rotary_axis_follows_vectors_on_and_on_to_the_end_of_its_travel() {
     assert!(judged(170.0, &[[20.0, 350.0]]).is_empty());
 }
 
+/// From A 60 and C -60 to C 60 with the tip near the work zero, 50 mm above the axis of A: by positions of the axes A keeps
+/// its 60 degrees, and Y stands near 50 sin 60° = 43.3; along a vector A goes down to atan(tan 60° cos 60°) = 40.9°, and Y to
+/// 50 sin 40.9° = 32.7.
+#[test]
+fn the_slides_follow_the_great_circle_of_a_vector_within_their_travel() {
+    let judged = |least: f64, notation: usize| {
+        let machine = five_axes_within(ZERO, &axes('Y', least, 400.0), WIDE);
+        let tips = [Vec3::ZERO, Vec3::new(0.0, 0.0, -1.0)];
+        let turns = [-60.0, 60.0];
+        let home = Position {
+            point: Vec3::NAN,
+            orientation: Orientation::Rotary { degrees: [60.0, 0.0, -60.0], tool_center: false },
+        };
+        let places = [0, 1].map(|i| notations(&machine, tips[i], 60.0, turns[i])[notation]);
+        let axis = |i: usize| machine.axis_at([60.0, 0.0, turns[i]]);
+        let poses = [0, 1].map(|i| Pose::new(tips[i], axis(i)).unwrap());
+        let does = vec![
+            Action::Home(Axes::Z),
+            Action::Rapid(home),
+            Action::Rapid(places[0]),
+            Action::Rapid(places[1]),
+        ];
+        let found = rules(&judge(&machine, &source(poses.map(Op::Rapid).to_vec()), does));
+        found.contains(&"axis-limit")
+    };
+    for (notation, least, expected) in
+        [(1, 40.0, false), (1, 43.0, true), (2, 40.0, true), (2, 32.0, false)]
+    {
+        assert_eq!(judged(least, notation), expected, "notation {notation}, Y from {least}");
+    }
+}
+
 #[test]
 fn an_arc_and_a_hole_are_within_the_travel_where_their_ends_are_not_all() {
     let arcs = |x: f64| {

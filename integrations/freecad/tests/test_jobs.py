@@ -35,6 +35,7 @@ REFUSED = {
     ("mist", "dmu50-heidenhain"): "missing-block",
     ("mist", "generic-3axis-heidenhain"): "missing-block",
     ("mist", "generic-3axis-haas"): "missing-block",
+    ("mist", "haas-umc-750"): "missing-block",
     ("mist", "generic-3axis-grbl"): "missing-block",
 }
 

@@ -75,9 +75,19 @@ impl Prover<'_> {
             return None;
         }
         let samples = (turned / SAMPLE).ceil().min(360.0) as u32;
+        // Along a vector the tool turns on the great circle, and not the axes evenly.
+        let vector = match to.position.orientation {
+            Orientation::Axis(axis) => Some((self.gauge.machine.axis_at(from), axis)),
+            Orientation::Rotary { .. } => None,
+        };
+        let mut at = from;
         (1..samples).find_map(|i| {
             let part = f64::from(i) / f64::from(samples);
-            let degrees = [0, 1, 2].map(|k| from[k] + (end[k] - from[k]) * part);
+            let degrees = match vector {
+                Some((start, axis)) => self.standing.step_to(at, geom::between(start, axis, part)),
+                None => [0, 1, 2].map(|k| from[k] + (end[k] - from[k]) * part),
+            };
+            at = degrees;
             let orientation = Orientation::Rotary { degrees, tool_center: true };
             let point = self.here.place.tip.lerp(to.place.tip, part);
             let on_way = Position { point, orientation };
