@@ -124,7 +124,12 @@ begin FOOTER
             ("spindle_cw", "{{S}} M3"),
             ("spindle_ccw", "{{S}} M4"),
             // G17 is in the line of the control.
-            ("program_start", "({{ program.name }})\nG21 G17 G40 G49 G90 G94 G54\n(shop)"),
+            (
+                "program_start",
+                "({{ program.name }})\n{% for t in program.tools %}\n(T{{ t.number }}{% if t.name %} \
+                 {{ t.name[:40] }}{% endif %}{% if t.diameter %} D{{ t.diameter }}{% endif %})\n{% endfor %}\n\
+                 G21 G17 G40 G49 G90 G94 G54\n(shop)",
+            ),
             ("program_end", "G53 G0 {{SAFE_HEIGHT}}\nM5\nM2"),
         ],
     );

@@ -75,10 +75,12 @@ impl Prover<'_> {
             return None;
         }
         let samples = (turned / SAMPLE).ceil().min(360.0) as u32;
-        // Along a vector the tool turns on the great circle, and not the axes evenly.
+        // Along a vector the tool turns on the great circle, and not the axes evenly as they do to a tilted plane.
         let vector = match to.position.orientation {
-            Orientation::Axis(axis) => Some((self.gauge.machine.axis_at(from), axis)),
-            Orientation::Rotary { .. } => None,
+            Orientation::Axis(axis) if !self.standing.has_swivelled() => {
+                Some((self.gauge.machine.axis_at(from), axis))
+            }
+            Orientation::Axis(_) | Orientation::Rotary { .. } => None,
         };
         let mut at = from;
         (1..samples).find_map(|i| {
