@@ -149,6 +149,17 @@ fn function_tcpm_may_stand_in_place_of_m128() {
     assert_eq!(found.first().map(|found| found.rule), Some("orientation-way"), "{found:#?}");
 }
 
+/// TNC 620 34056x-04, p. 340: M128 has to be off before `M91` and a tool call, and it stays on behind a break.
+#[test]
+fn a_heidenhain_takes_off_what_a_break_may_have_left_on_before_it_goes_home() {
+    let text = proven(&five_axes(), &load("dmu50-heidenhain").unwrap());
+    let at = |what: &str| text.lines().position(|line| line.contains(what)).unwrap();
+    let [tip, plane, home, tool] = ["M129", "PLANE RESET STAY", "M91", "TOOL CALL"].map(at);
+    assert!(tip < plane && plane < home && home < tool, "{text}");
+    let upright = proven(&read(UPRIGHT), &load("generic-3axis-heidenhain").unwrap());
+    assert!(!upright.contains("M129") && !upright.contains("PLANE RESET"), "{upright}");
+}
+
 #[test]
 fn the_tolerance_of_the_orientation_is_that_of_the_machine_file() {
     let job = five_axes();
