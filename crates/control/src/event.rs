@@ -390,7 +390,7 @@ impl Risk {
     /// Work offsets, tool lengths and radii belong to the operator, who has measured them.
     pub(crate) const OPERATOR_DATA: Risk = Risk {
         rule: "operator-data",
-        what: "rewrites work offsets or tool data of the operator, and they stay so when it has ended",
+        what: "rewrites work offsets, stored positions or tool data of the operator, and they stay so when it has ended",
         help: "leave them to the operator; for one run `--accept operator-data` lets it pass, and a machine whose shop sets its fixtures by G10 L2 says `sets_work_offsets` in [settings]",
         refused: true,
     };

@@ -41,6 +41,10 @@ fn data_that_the_operator_has_measured_are_not_rewritten() {
         ("linuxcnc-mill", "M6", "G10 L2 P2 X0 Y0 Z-50"),
         ("linuxcnc-mill", "M6", "G10 L20 P2 X0"),
         ("linuxcnc-mill", "M6", "G10 L1 P7 Z10"),
+        // "G28.1", "G30.1": kept over the end of the program, and where every G28 goes by rapid.
+        ("linuxcnc-mill", "M6", "G28.1"),
+        ("linuxcnc-mill", "M6", "G30.1"),
+        ("generic-3axis-grbl", "S3000", "G28.1"),
         ("mach3-mill", "M6", "G10 L2 P2 X0 Y0 Z-50"),
         ("generic-3axis-grbl", "S3000", "G10 L2 P2 X0 Y0 Z-50"),
         ("generic-3axis-sinumerik", "M6", "$P_UIFR[2,X,TR]=10"),

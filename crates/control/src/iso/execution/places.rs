@@ -88,6 +88,7 @@ impl Step<'_, '_, '_> {
 
     /// `G28.1`, `G30.1`: the reference position is where the machine stands.
     pub(super) fn store_home(&mut self, second: bool) -> Result<(), Fault> {
+        self.actions.push(Action::Risk(Risk::OPERATOR_DATA.into()));
         self.counts_machine()?;
         self.state.homes[usize::from(second)] = self.machine();
         self.go()
