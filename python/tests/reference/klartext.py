@@ -133,6 +133,11 @@ class Klartext(Control):
 
     def tilt(self, text: str) -> None:
         now = self.turns
+        # STAY: the plane ends, and no axis moves.
+        if text == "RESET STAY":
+            self.plane = None
+            self.enter()
+            return
         if text == "RESET TURN FMAX":
             self.plane = None
             self.enter()
