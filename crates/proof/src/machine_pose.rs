@@ -249,11 +249,15 @@ impl<'a> Standing<'a> {
         (axis, solutions.map_or(0.0, |all| from_pole(self.machine, &all)))
     }
 
-    /// Where the axes come from one place (degrees of A, B, C) in a short turn of the tool to `axis`.
-    pub fn step_to(&self, from: Degrees, axis: Vec3) -> Degrees {
-        let solutions = self.inverse.solve(axis);
-        let near = solutions.map(|all| tilt::nearest(self.machine, &from, &all));
-        near.ok().and_then(|near| near[0].or(near[1])).unwrap_or(from)
+    /// Where the axes come from one place (degrees of A, B, C) while the tool turns on the great circle from one axis to
+    /// another; `None` where several positions are possible, or none.
+    pub fn follow(&mut self, from: Degrees, axes: [Vec3; 2]) -> Option<Degrees> {
+        let solutions = self.inverse.solve(axes[0]).ok()?;
+        let near = from_pole(self.machine, &solutions);
+        match self.followed(from, axes, angle_between(axes[0], axes[1]), near)[..] {
+            [one] => Some(one),
+            _ => None,
+        }
     }
 
     /// Adds where the axes come from one place in a turn so short that they cannot leave the solution in which they are.

@@ -82,14 +82,19 @@ impl Prover<'_> {
             }
             Orientation::Axis(_) | Orientation::Rotary { .. } => None,
         };
-        let mut at = from;
+        let mut at = Some(from);
         (1..samples).find_map(|i| {
-            let part = f64::from(i) / f64::from(samples);
+            let part = |i: u32| f64::from(i) / f64::from(samples);
             let degrees = match vector {
-                Some((start, axis)) => self.standing.step_to(at, geom::between(start, axis, part)),
-                None => [0, 1, 2].map(|k| from[k] + (end[k] - from[k]) * part),
+                Some((start, axis)) => {
+                    let axes = [i - 1, i].map(|i| geom::between(start, axis, part(i)));
+                    // Behind a pole in the middle between two solutions nobody knows which.
+                    at = self.standing.follow(at?, axes);
+                    at?
+                }
+                None => [0, 1, 2].map(|k| from[k] + (end[k] - from[k]) * part(i)),
             };
-            at = degrees;
+            let part = part(i);
             let orientation = Orientation::Rotary { degrees, tool_center: true };
             let point = self.here.place.tip.lerp(to.place.tip, part);
             let on_way = Position { point, orientation };
