@@ -45,7 +45,7 @@ demo: rust
 	@echo
 	@echo "What to do next:"
 	@echo
-	@echo "    make install                              # puts the command toolpost into $(PREFIX)/bin; takes some four minutes"
+	@echo "    make install                         # puts the command toolpost into $(PREFIX)/bin; takes some four minutes"
 	@echo "    $(QUICK) machines list   # the machines that it can write for"
 	@echo "    $(QUICK) post $(PART) --machine fanuc-table-bc --output $(DEMO).nc"
 
