@@ -1,9 +1,23 @@
 //! What goes between two ways in a plane: a chamfer between lines, or an arc that touches both.
 
+use crate::Action;
 use geom::{Arc, Vec3};
 
 /// Ways that turn by less than this from a half turn, radians, go back where they have come.
 const TURNED_BACK: f64 = 1e-6;
+
+/// What a block with a corner, or one between its two ways, may say beside the way.
+pub(crate) fn may_stand_at(action: &Action) -> bool {
+    matches!(
+        action,
+        Action::Feed(_)
+            | Action::Spindle(_)
+            | Action::Coolant(_)
+            | Action::Comment(_)
+            | Action::Message(_)
+            | Action::Risk(_)
+    )
+}
 
 /// The way of a block, in whichever coordinates.
 #[derive(Clone, Copy, Debug)]

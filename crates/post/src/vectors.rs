@@ -82,10 +82,11 @@ pub(crate) fn passes_pole(inverse: &Inverse, start: Vec3, to: Vec3) -> Option<f6
         solutions.map_or(f64::INFINITY, |all| pole(inverse.machine(), &all)).to_degrees()
     };
     let turn = angle_between(start, to).to_degrees();
-    if turn == 0.0 || away(start) + away(to) > turn + 2.0 * POLE_LIMIT {
+    if turn == 0.0 {
         return None;
     }
-    if away(start).min(away(to)) < POLE_LIMIT - MARGIN {
+    let ends = [away(start), away(to)];
+    if ends[0] + ends[1] > turn + 2.0 * POLE_LIMIT || ends[0].min(ends[1]) < POLE_LIMIT - MARGIN {
         return None;
     }
     let (mut at, mut width, mut least) = (0.5, 0.5, f64::INFINITY);

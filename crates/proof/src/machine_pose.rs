@@ -115,7 +115,8 @@ impl<'a> Standing<'a> {
             solutions.map_or(f64::INFINITY, |all| from_pole(self.machine, &all))
         };
         let part = |i: u32| f64::from(i) / f64::from(count);
-        let least = (1..count).min_by(|a, b| near(part(*a)).total_cmp(&near(part(*b))))?;
+        let places = (1..count).map(|i| (i, near(part(i))));
+        let (least, _) = places.min_by(|a, b| a.1.total_cmp(&b.1))?;
         let (mut low, mut high) = (part(least - 1), part(least + 1));
         for _ in 0..POLE_STEPS {
             let (a, b) = (low + (high - low) / 3.0, high - (high - low) / 3.0);

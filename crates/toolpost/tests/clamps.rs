@@ -28,6 +28,12 @@ fn instead(text: &str, line: usize, blocks: &str) -> String {
     lines.filter(|line| !line.is_empty()).collect::<Vec<_>>().join("\n") + "\n"
 }
 
+/// The program without the blocks that say `code` alone.
+fn without(text: &str, code: &str) -> String {
+    let end = format!(" {code}");
+    text.lines().filter(|line| !line.ends_with(&end)).map(|line| format!("{line}\n")).collect()
+}
+
 /// M27 opens A, M26 closes it; M29 and M28 do the same for C.
 #[test]
 fn a_rotary_axis_turns_only_while_its_clamp_is_open() {
@@ -102,12 +108,7 @@ fn a_fanuc_table_opens_each_clamp_in_a_block_of_its_own() {
     let text = posted(&machine);
     assert_eq!(proven(&machine, &text), Ok(()), "{text}");
     for code in ["M11", "M13"] {
-        let without: String = text
-            .lines()
-            .filter(|line| !line.ends_with(&format!(" {code}")))
-            .map(|line| format!("{line}\n"))
-            .collect();
-        assert_eq!(proven(&machine, &without), Err("clamp"), "{code}");
+        assert_eq!(proven(&machine, &without(&text, code)), Err("clamp"), "{code}");
     }
 }
 
@@ -128,12 +129,7 @@ fn clamps_are_open_where_a_plane_is_tilted_and_closed_in_its_cuts() {
     let upright: Vec<usize> = (0..blocks.len()).filter(|&i| blocks[i] == "G0 B0. C0.").collect();
     assert_eq!(blocks[upright[0] + 1..upright[0] + 3], ["M10", "M12"]);
     for code in ["M11", "M13"] {
-        let without: String = text
-            .lines()
-            .filter(|line| !line.ends_with(&format!(" {code}")))
-            .map(|line| format!("{line}\n"))
-            .collect();
-        assert_eq!(proven(&machine, &without), Err("clamp"), "{code}");
+        assert_eq!(proven(&machine, &without(&text, code)), Err("clamp"), "{code}");
     }
     // A plane that the control turns to by itself.
     let alone =

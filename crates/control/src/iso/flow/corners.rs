@@ -35,7 +35,8 @@ impl Run<'_, '_> {
         let held = self.held.take();
         let actions = std::mem::take(&mut self.actions);
         let cuts = actions.iter().filter(|action| cut(action).is_some()).count();
-        let others = actions.iter().all(|action| cut(action).is_some() || says(action));
+        let others =
+            actions.iter().all(|action| cut(action).is_some() || corner::may_stand_at(action));
         if cuts != 1 || !others {
             return Err(self.no_cut(held.as_ref()));
         }
@@ -213,17 +214,4 @@ fn cut(action: &Action) -> Option<(&Position, Option<(Vec3, Vec3)>)> {
         Action::Arc(to) if to.turns == 0 => Some((&to.end, Some((to.center, to.normal)))),
         _ => None,
     }
-}
-
-/// What may be said before and behind a cut with a corner.
-fn says(action: &Action) -> bool {
-    matches!(
-        action,
-        Action::Feed(_)
-            | Action::Spindle(_)
-            | Action::Coolant(_)
-            | Action::Comment(_)
-            | Action::Message(_)
-            | Action::Risk(_)
-    )
 }

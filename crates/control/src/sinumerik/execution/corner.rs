@@ -98,16 +98,7 @@ impl Interpreter<'_, '_> {
     #[cold]
     pub fn keep(&mut self, source: &Source, record: Event) -> Fallible<()> {
         let Some(held) = &mut self.held else { return self.send(record) };
-        let said = matches!(
-            record.action,
-            Action::Feed(_)
-                | Action::Spindle(_)
-                | Action::Coolant(_)
-                | Action::Comment(_)
-                | Action::Message(_)
-                | Action::Risk(_)
-        );
-        if said && held.between.len() < MOST_BETWEEN {
+        if corner::may_stand_at(&record.action) && held.between.len() < MOST_BETWEEN {
             held.between.push(record);
             return Ok(());
         }
