@@ -323,7 +323,7 @@ impl Risk {
         refused: true,
     };
 
-    /// Turns over the part whose way the program does not say ([`way`](crate::way)).
+    /// Turns over the part whose way the program does not say ([`way`](crate::kernel::way)).
     pub(crate) const ROTARY_WAY: Risk = Risk {
         rule: "rotary-way",
         what: "turns a rotary axis, and by which way hangs on whether the control counts it modulo 360°",

@@ -9,26 +9,20 @@
 //! as [`Orientation::Rotary`]; vectors and tilted planes resolved into the work frame as
 //! [`Orientation::Axis`]. Kinematics are not this crate's business.
 
-mod belt;
-mod budget;
-mod compensation;
-mod corner;
-mod decimal;
 mod event;
-mod folders;
 mod iso;
+mod kernel;
 mod klartext;
 mod points;
-mod relay;
 mod sinumerik;
 pub mod tools;
-mod way;
 
-use compensation::Compensator;
 pub use event::{Action, ArcTo, Event, FeedPath, Orientation, Position, Risk, Thread, TiltChoice};
-pub use folders::Folders;
 use geom::Vec3;
 use iso::Flavor;
+use kernel::compensation::{Compensator, Rules};
+pub use kernel::folders::Folders;
+use kernel::relay;
 use program::{Diagnostic, WorkOffset};
 
 /// The languages that are understood.
@@ -110,7 +104,7 @@ impl Dialect {
     /// Whether compensation with a tool of the table is resolved into the path of its centre; with the others such a program is
     /// refused, since how they lead it is not documented well enough.
     pub fn resolves_compensation(self) -> bool {
-        compensation::Rules::of(self).is_some()
+        Rules::of(self).is_some()
     }
 
     /// How a program for this control ends.

@@ -4,9 +4,10 @@
 //! The first point is where the wire is threaded; it cuts to each that follows, and is cut at the last.
 //! Nothing else can be said: `docs/controls/points.md`.
 
-use crate::compensation::Compensator;
+use crate::Settings;
 use crate::event::{Action, Event, Position};
-use crate::{Settings, decimal};
+use crate::kernel::compensation::Compensator;
+use crate::kernel::decimal;
 use geom::{Vec3, direction};
 use program::Diagnostic;
 

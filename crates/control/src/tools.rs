@@ -5,7 +5,8 @@
 //! table counts in the machine's units, here mm. The words are taken for the tool's name, by which other
 //! controls call it.
 
-use crate::{ToolData, decimal};
+use crate::ToolData;
+use crate::kernel::decimal;
 use program::Diagnostic;
 
 /// Offsets along and about the axes other than Z: a tool that has one is no mill on the spindle's axis.

@@ -1,18 +1,19 @@
 //! ISO code: FANUC 30i for milling, Haas, LinuxCNC's RS-274, Mach3, GRBL 1.1, Marlin; of wire-EDM
 //! machines; and what FreeCAD's CAM workbench keeps.
 //!
-//! They share the words and the order of execution and differ in tables ([`language::flavors`]) and in
+//! They share the words and the order of execution and differ in tables ([`dialects`]) and in
 //! the rules that each maker states; `docs/controls/iso.md` and its neighbours say which, with sources.
 //! The [`flow`] of a program takes one line after the other, or leads elsewhere. In its [`language`] the
 //! line becomes a block, and the [`execution`] carries that out with its records held back: a block with
 //! a mistake leaves none.
 
+mod dialects;
 mod execution;
 mod flow;
 mod language;
 
 use crate::Settings;
-use crate::compensation::Compensator;
+use crate::kernel::compensation::Compensator;
 use flow::ahead::Ahead;
 use flow::run::Run;
 use flow::source::Source;

@@ -10,7 +10,7 @@ mod flow;
 mod language;
 
 use crate::Settings;
-use crate::compensation::Compensator;
+use crate::kernel::compensation::Compensator;
 use execution::state::Control;
 use flow::run::Run;
 use language::scan::Result;

@@ -10,7 +10,7 @@ mod flow;
 mod language;
 
 use crate::Settings;
-use crate::compensation::Compensator;
+use crate::kernel::compensation::Compensator;
 use program::Diagnostic;
 
 /// What may go wrong.

@@ -2,10 +2,10 @@
 
 use super::cycles::Holding;
 use super::step::Step;
-use crate::decimal;
 use crate::event::Action;
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::{Canned, FeedMode, G, Group, Motion};
+use crate::kernel::decimal;
 use program::Feed;
 
 /// How many digits FreeCAD's shorter form of a number has (`Command G1 [ F:3.3333 ]`). It leaves zeros
@@ -60,7 +60,7 @@ impl Step<'_, '_, '_> {
 #[cfg(test)]
 mod tests {
     use super::per_minute;
-    use crate::decimal;
+    use crate::kernel::decimal;
 
     fn read(text: &str) -> f64 {
         let number = decimal::parse(&text.as_bytes()[1..]).unwrap();

@@ -5,7 +5,7 @@ use super::step::Step;
 use crate::event::{Action, Risk};
 use crate::iso::language::block::Fault;
 use crate::iso::language::words::{FeedMode, Flavor, G, Group, Motion, bit};
-use crate::way::{self, Modulo};
+use crate::kernel::way::{self, Modulo};
 use geom::{Arc, Vec3};
 use program::{Compensation, Feed};
 

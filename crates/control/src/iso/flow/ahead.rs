@@ -2,9 +2,9 @@
 
 use super::source::Place;
 use crate::LONG;
-use crate::belt::{Feed, Taken, belt};
 use crate::iso::language::block::Word;
 use crate::iso::language::plain;
+use crate::kernel::belt::{Feed, Taken, belt};
 use std::ops::Range;
 use std::{mem, thread};
 

@@ -5,11 +5,11 @@
 
 use super::run::Run;
 use crate::WholeNumbers;
-use crate::corner::{self, Element, Misfit, Shape};
 use crate::event::{Action, ArcTo, Event, Position};
 use crate::iso::execution::state::Tilt;
 use crate::iso::language::block::{Fault, Word};
 use crate::iso::language::words::Flavor;
+use crate::kernel::corner::{self, Element, Misfit, Shape};
 use geom::Vec3;
 use program::{Diagnostic, Feed};
 

@@ -4,11 +4,12 @@
 
 use super::run::Run;
 use super::source::{self, Place, Source};
+use crate::WholeNumbers;
 use crate::event::{Action, Risk};
 use crate::iso::language::arithmetic;
 use crate::iso::language::block::{Fault, Word};
 use crate::iso::language::expression::{Reader, Target};
-use crate::{WholeNumbers, decimal};
+use crate::kernel::decimal;
 use program::Diagnostic;
 use std::collections::HashMap;
 

@@ -4,8 +4,8 @@
 //! one is never looked at for that.
 
 use super::source;
-use crate::decimal;
 use crate::iso::language::block::Fault;
+use crate::kernel::decimal;
 use program::Diagnostic;
 use std::collections::HashMap;
 

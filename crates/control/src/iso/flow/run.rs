@@ -7,18 +7,18 @@ use super::macros;
 use super::owords;
 use super::source::{self, Place, Source};
 use crate::Settings;
-use crate::budget::Budget;
-use crate::compensation::Compensator;
 use crate::event::{Action, Event};
+use crate::iso::dialects;
 use crate::iso::execution::onward::Onward;
 use crate::iso::execution::state::State;
 use crate::iso::execution::step::Control;
 use crate::iso::language::arithmetic;
 use crate::iso::language::block::{Block, Fault};
 use crate::iso::language::expression::Reader;
-use crate::iso::language::flavors;
 use crate::iso::language::parameters::{Language, Parameters, Values};
 use crate::iso::language::words::{Dictionary, Flavor, G, Group, M};
+use crate::kernel::budget::Budget;
+use crate::kernel::compensation::Compensator;
 use program::Diagnostic;
 use std::collections::HashMap;
 use std::ptr;
@@ -66,7 +66,7 @@ impl<'a, 's> Run<'a, 's> {
         ahead: Ahead,
         compensator: &'a mut Compensator<'s>,
     ) -> Run<'a, 's> {
-        let dictionary = flavors::dictionary(flavor);
+        let dictionary = dialects::dictionary(flavor);
         let language = dictionary.flavor.language();
         let here = Place { source: main, at: 0, line: 0, percent_signs: 0 };
         Run {

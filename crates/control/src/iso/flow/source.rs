@@ -2,8 +2,8 @@
 
 use super::macros::Labels;
 use super::owords::OWords;
-use crate::folders::Folders;
 use crate::iso::language::block::Fault;
+use crate::kernel::folders::Folders;
 use program::Diagnostic;
 use std::borrow::Cow;
 use std::cell::OnceCell;

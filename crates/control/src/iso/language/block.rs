@@ -5,7 +5,7 @@ use super::expression::{Reader, Target, Value};
 use super::parameters::{Language, Values};
 use super::words::{Dictionary, Flavor, G, Group, LETTERS, M, bit, index, set};
 use crate::Settings;
-use crate::decimal::{self, Decimal};
+use crate::kernel::decimal::{self, Decimal};
 use program::Diagnostic;
 
 /// From here on a number of FreeCAD's is none: it writes a NaN as -922337203685.477581, and nothing is a

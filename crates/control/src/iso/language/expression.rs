@@ -16,7 +16,7 @@ use super::arithmetic::{
 };
 use super::block::Fault;
 use super::parameters::{Language, Values};
-use crate::decimal;
+use crate::kernel::decimal;
 use program::Diagnostic;
 
 /// A calculated number; `None` is the null of a macro variable that holds nothing.

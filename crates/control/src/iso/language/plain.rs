@@ -2,7 +2,7 @@
 //! does not depend on what has been run before them.
 
 use super::block::Word;
-use crate::decimal;
+use crate::kernel::decimal;
 
 /// Most words of a line: a block has each letter once, and as many G and M words as there are groups.
 const MOST: usize = 100;

@@ -1,5 +1,5 @@
 //! What G and M words mean, and which exclude each other in a block. Which of them a flavour has
-//! stands in its table ([`super::flavors`]); what is not in a table is not understood.
+//! stands in its table ([`crate::iso::dialects`]); what is not in a table is not understood.
 
 /// Which ISO code is read.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -53,7 +53,7 @@ impl Flavor {
     }
 
     /// Whether small letters are the same as capital ones.
-    pub(super) fn has_small_letters(self) -> bool {
+    pub(in crate::iso) fn has_small_letters(self) -> bool {
         !self.is_fanuc() && self != Flavor::Marlin
     }
 
@@ -342,25 +342,25 @@ pub(crate) enum Group {
 
 impl Group {
     /// How many groups there are.
-    pub(super) const COUNT: usize = Group::Kinematics as usize + 1;
+    pub(in crate::iso) const COUNT: usize = Group::Kinematics as usize + 1;
 
     /// The bit of the group in a set of groups.
-    pub(super) const fn bit(self) -> u32 {
+    pub(in crate::iso) const fn bit(self) -> u32 {
         1 << self as u32
     }
 }
 
 /// A G word: ten times its number (`G43.4` is 434), its group, its meaning.
-pub(super) type GRow = (u16, Group, G);
+pub(in crate::iso) type GRow = (u16, Group, G);
 
 /// An M word: its number, its group, its meaning.
-pub(super) type MRow = (u16, Group, M);
+pub(in crate::iso) type MRow = (u16, Group, M);
 
 /// A word that exists and is refused on purpose, with the reason.
-pub(super) type Refused = (u16, &'static str);
+pub(in crate::iso) type Refused = (u16, &'static str);
 
 /// What a word may begin with, beside the letters: LinuxCNC's polar words and the number of a spindle.
-pub(super) const LETTERS: [u8; 30] = *b"ABCDEFGHIJKLMNOPQRSTUVWXYZ@$ ^";
+pub(in crate::iso) const LETTERS: [u8; 30] = *b"ABCDEFGHIJKLMNOPQRSTUVWXYZ@$ ^";
 
 /// Where each byte stands in [`LETTERS`]; 0 where it does not.
 const PLACES: [u8; 128] = {
@@ -386,7 +386,7 @@ pub(crate) const fn bit(letter: u8) -> u32 {
 }
 
 /// The set of these letters, by [`bit`].
-pub(super) const fn set(letters: &[u8]) -> u32 {
+pub(in crate::iso) const fn set(letters: &[u8]) -> u32 {
     let (mut bits, mut at) = (0, 0);
     while at < letters.len() {
         bits |= bit(letters[at]);
@@ -413,7 +413,7 @@ pub(crate) struct Dictionary {
 }
 
 impl Dictionary {
-    pub(super) const fn new(flavor: Flavor, letters: &[u8], longest: usize) -> Dictionary {
+    pub(in crate::iso) const fn new(flavor: Flavor, letters: &[u8], longest: usize) -> Dictionary {
         Dictionary {
             flavor,
             g: [None; 2400],
@@ -426,7 +426,7 @@ impl Dictionary {
     }
 
     /// With these words, too.
-    pub(super) const fn with(mut self, g: &[GRow], m: &[MRow]) -> Dictionary {
+    pub(in crate::iso) const fn with(mut self, g: &[GRow], m: &[MRow]) -> Dictionary {
         let mut row = 0;
         while row < g.len() {
             self.g[g[row].0 as usize] = Some((g[row].1, g[row].2));
@@ -441,7 +441,7 @@ impl Dictionary {
     }
 
     /// With reasons for what it refuses.
-    pub(super) const fn refusing(
+    pub(in crate::iso) const fn refusing(
         mut self,
         g: &'static [Refused],
         m: &'static [Refused],
@@ -451,18 +451,18 @@ impl Dictionary {
     }
 
     /// Group and meaning of the G word with this number.
-    pub(super) fn g(&self, number: f64) -> Option<(Group, G)> {
+    pub(in crate::iso) fn g(&self, number: f64) -> Option<(Group, G)> {
         *self.g.get(tenths(number)?)?
     }
 
     /// Group and meaning of the M word with this number.
-    pub(super) fn m(&self, number: f64) -> Option<(Group, M)> {
+    pub(in crate::iso) fn m(&self, number: f64) -> Option<(Group, M)> {
         *self.m.get(tenths(number).filter(|t| t % 10 == 0)? / 10)?
     }
 
     /// Why a word that the flavour does not take is refused, where there is more to say than that it
     /// is not known.
-    pub(super) fn why_refused(&self, letter: u8, number: f64) -> Option<&'static str> {
+    pub(in crate::iso) fn why_refused(&self, letter: u8, number: f64) -> Option<&'static str> {
         let (table, number) = match letter {
             b'G' => (self.refused_g, tenths(number)?),
             b'M' => (self.refused_m, tenths(number)? / 10),

@@ -3,12 +3,12 @@
 use super::contour::{Bend, Element, left_of};
 use super::state::{AXES, Control, Tip};
 use crate::event::{Action, ArcTo, Orientation, Position, Risk};
+use crate::kernel::way::{self, Modulo};
 use crate::klartext::language::functions::{Function, When};
 use crate::klartext::language::scan::{Result, Scanner};
 use crate::klartext::language::words::{
     LINEAR, PA, PR, RADIUS, ROTARY, TURN, VECTORS, Words, slot,
 };
-use crate::way::{self, Modulo};
 use geom::{Arc, ArcError, Vec3, direction};
 use program::{Axes, Compensation, MachineMove};
 

@@ -2,7 +2,7 @@
 
 use super::run::Run;
 use super::source::{LAST_LABEL, Label, Place, written_label};
-use crate::budget::DEEPEST;
+use crate::kernel::budget::DEEPEST;
 use crate::klartext::language::registers::{Numbers, Parameter, Registers};
 use crate::klartext::language::scan::{Result, Scanner};
 use std::borrow::Cow;

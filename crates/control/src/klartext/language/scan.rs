@@ -1,7 +1,7 @@
 //! Lines and words of the text.
 
 use super::registers::{Parameter, Registers};
-use crate::decimal;
+use crate::kernel::decimal;
 use program::Diagnostic;
 
 /// What a step of the control answers.

@@ -5,9 +5,9 @@
 //! and what is said in between with it.
 
 use super::interpreter::Interpreter;
-pub(super) use crate::corner::Element;
-use crate::corner::{self, Joint, Misfit, Shape};
 use crate::event::{Action, ArcTo, Event};
+pub(super) use crate::kernel::corner::Element;
+use crate::kernel::corner::{self, Joint, Misfit, Shape};
 use crate::sinumerik::Fallible;
 use crate::sinumerik::language::block::{Block, Corner};
 use crate::sinumerik::language::scan::Source;

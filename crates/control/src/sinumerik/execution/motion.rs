@@ -4,14 +4,14 @@ use super::corner::Element;
 use super::interpreter::Interpreter;
 use super::polar::axes_of_plane;
 use super::state::ToolAxis;
-use crate::compensation::{Outer, Terms};
 use crate::event::{Action, Risk};
+use crate::kernel::compensation::{Outer, Terms};
+use crate::kernel::way::{self, Modulo};
 use crate::sinumerik::Fallible;
 use crate::sinumerik::language::block::{Block, Coordinate, Count, Rare};
 use crate::sinumerik::language::commands::{Code, Diameter, Motion};
 use crate::sinumerik::language::scan::Source;
 use crate::sinumerik::language::system::AXIS_NAMES;
-use crate::way::{self, Modulo};
 use geom::{Vec3, direction};
 use program::{Axes, Compensation, MachineMove};
 

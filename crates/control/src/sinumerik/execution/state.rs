@@ -3,8 +3,8 @@
 use super::frames::Frames;
 use super::modal::Modal;
 use super::offsets::WorkOffsets;
-use crate::compensation::Outer;
 use crate::event::{FeedPath, Orientation, Position};
+use crate::kernel::compensation::Outer;
 use crate::sinumerik::language::commands::{Diameter, FeedType, Motion};
 use crate::sinumerik::language::value::Value;
 use crate::sinumerik::language::variables::{Locals, Parameters, Place};

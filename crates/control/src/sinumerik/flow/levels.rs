@@ -3,7 +3,7 @@
 use super::library::Program;
 use super::outline::Place;
 use super::run::{Level, Run, check_rest};
-use crate::budget::DEEPEST;
+use crate::kernel::budget::DEEPEST;
 use crate::sinumerik::Fallible;
 use crate::sinumerik::execution::modal::Modal;
 use crate::sinumerik::execution::state::Modes;

@@ -1,7 +1,7 @@
 //! Programs: the main one, those that travel in the same file, and those of the operator's folders.
 
 use super::outline::Outline;
-use crate::folders::Folders;
+use crate::kernel::folders::Folders;
 use crate::sinumerik::Fallible;
 use crate::sinumerik::language::scan::{Name, Scanner, Source};
 use program::Diagnostic;

@@ -4,7 +4,7 @@ use super::levels::{Caller, LEVELS};
 use super::library::{Library, Program};
 use super::outline::Place;
 use crate::Settings;
-use crate::compensation::Compensator;
+use crate::kernel::compensation::Compensator;
 use crate::sinumerik::Fallible;
 use crate::sinumerik::execution::interpreter::Interpreter;
 use crate::sinumerik::execution::modal::Modal;

@@ -3,7 +3,7 @@
 //! A block has at most one command of a group (Programming Manual 06/2019, 4.3.1); one of each
 //! modal group holds. The table is the only place that knows a command: what it does is a [`Code`].
 
-use crate::compensation::Outer;
+use crate::kernel::compensation::Outer;
 use geom::INCH;
 use program::Compensation;
 

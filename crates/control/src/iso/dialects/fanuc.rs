@@ -1,10 +1,10 @@
 //! FANUC 30i, milling, G code list of B-64484EN-2. Group 09, the canned cycles, is apart from group
 //! 01, the interpolation.
 
-use super::super::words::{
+use super::{END_M, FRAME_G, MACRO_G, MILL_G, POLAR_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
+use crate::iso::language::words::{
     Canned, Dictionary, Flavor, G, GRow, Group, M, MRow, Motion, Path, Refused,
 };
-use super::{END_M, FRAME_G, MACRO_G, MILL_G, POLAR_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
 
 const G_WORDS: &[GRow] = &[
     (50, Group::OneShot, G::LookAhead { letter: b'P', on: 10_000 }),

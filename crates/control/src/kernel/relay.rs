@@ -1,8 +1,8 @@
 //! A control in a thread of its own: while it runs on, its events are dealt with.
 
 use crate::Sink;
-use crate::belt::belt;
 use crate::event::Event;
+use crate::kernel::belt::belt;
 use program::Diagnostic;
 use std::{mem, panic, thread};
 

@@ -1,9 +1,9 @@
 //! Haas NGC mills, "Mill Operator's Manual", chapters G codes and M codes.
 
-use super::super::words::{
+use super::{END_M, FRAME_G, MACRO_G, MILL_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
+use crate::iso::language::words::{
     Canned, Dictionary, Flavor, G, GRow, Group, M, MRow, Path, Pattern, Refused,
 };
-use super::{END_M, FRAME_G, MACRO_G, MILL_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
 
 const G_WORDS: &[GRow] = &[
     (90, Group::OneShot, G::Neutral(b"")),

@@ -2,8 +2,8 @@
 //! (`docs/controls/wire-iso.md`). The M functions that thread and cut the wire stand in the machine's
 //! file.
 
-use super::super::words::{Dictionary, Flavor, G, GRow, Group, Refused, Side};
 use super::{BASIC_G, BASIC_M, END_M, SUBPROGRAM_M, UNITS_20};
+use crate::iso::language::words::{Dictionary, Flavor, G, GRow, Group, Refused, Side};
 
 /// Offset of the wire by the control.
 const COMPENSATION: &[GRow] = &[

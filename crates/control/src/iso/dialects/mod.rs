@@ -9,7 +9,7 @@ mod mach3;
 mod marlin;
 mod wire;
 
-use super::words::{
+use crate::iso::language::words::{
     Canned, Dictionary, FeedMode, Flavor, G, GRow, Group, M, MRow, Motion, Path, Plane, Side,
 };
 

@@ -1,10 +1,10 @@
 //! FreeCAD's own commands, in which its CAM workbench keeps toolpaths (`docs/sources/freecad.md`): lengths
 //! are mm and times s, whatever the job shows: a feed is mm/s.
 
-use super::super::words::{
+use super::{BASIC_G, BASIC_M, END_M, SPINDLE_G, SPINDLE_M, cycles};
+use crate::iso::language::words::{
     Dictionary, FeedMode, Flavor, G, GRow, Group, M, MRow, Motion, Refused, Side,
 };
-use super::{BASIC_G, BASIC_M, END_M, SPINDLE_G, SPINDLE_M, cycles};
 
 const G_WORDS: &[GRow] = &[
     (210, Group::Units, G::Inches(false)),

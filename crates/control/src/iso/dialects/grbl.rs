@@ -1,7 +1,7 @@
 //! GRBL 1.1, wiki page "Grbl v1.1 Commands" and the supported codes in its `gcode.h`.
 
-use super::super::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Motion, Refused};
 use super::{END_M, MILL_G, mill};
+use crate::iso::language::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Motion, Refused};
 
 const G_WORDS: &[GRow] = &[
     (100, Group::OneShot, G::WriteData),

@@ -1,8 +1,8 @@
 //! Mach3, "Mach3 G and M-code Reference", table of G codes. The modal groups are those of RS274/NGC,
 //! on which it is built; `G80` may stand beside `G0` to `G3`.
 
-use super::super::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Path, Refused};
 use super::{END_M, FRAME_G, MILL_G, POLAR_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
+use crate::iso::language::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Path, Refused};
 
 const G_WORDS: &[GRow] = &[
     (100, Group::OneShot, G::WriteData),

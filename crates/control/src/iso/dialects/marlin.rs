@@ -1,8 +1,8 @@
 //! Marlin 2 with the options for mills (`CNC_COORDINATE_SYSTEMS`, `CNC_WORKSPACE_PLANES`,
 //! `SPINDLE_FEATURE` in revolutions, `COOLANT_CONTROL`), from its G-code index.
 
-use super::super::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Refused};
 use super::mill;
+use crate::iso::language::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Refused};
 
 const G_WORDS: &[GRow] = &[
     (591, Group::WorkOffset, G::WorkOffset(60)),

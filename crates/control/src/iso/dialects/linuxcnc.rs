@@ -1,10 +1,10 @@
 //! LinuxCNC, "G-Code Overview", table of modal groups. `G80` may stand beside `G0` to `G3`, so it has
 //! a group of its own.
 
-use super::super::words::{
+use super::{END_M, MILL_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
+use crate::iso::language::words::{
     Dictionary, Flavor, G, GRow, Group, M, MRow, Motion, Path, Refused, Side,
 };
-use super::{END_M, MILL_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
 
 const G_WORDS: &[GRow] = &[
     (50, Group::Motion, G::Motion(Motion::Spline { cubic: true })),
