@@ -446,14 +446,19 @@ proptest! {
         // A union is its own union, but for a step of the grid all along its boundary.
         let again = Region::union_of([&once]).unwrap();
         let step = 1e-7 * once.rings().map(Ring::length).sum::<f64>();
-        prop_assert!((again.area() - once.area()).abs() < 1e-6 + step);
-        // With that step what touches may be joined, and what leads to a corner may be another line.
+        let change = (again.area() - once.area()).abs();
+        // With that step what leads to a corner may be another line.
         let long = |region: &Region| {
             elements(region).iter().filter(|element| element.length() > NEAR).count()
         };
-        match again.islands().len() == once.islands().len() {
-            true => prop_assert_eq!(long(&again), long(&once)),
-            false => prop_assert!(again.islands().len() < once.islands().len()),
+        let parts = |region: &Region| (region.islands().len(), region.rings().count());
+        if parts(&again) == parts(&once) {
+            prop_assert!(change < 1e-6 + step);
+            prop_assert_eq!(long(&again), long(&once));
+        } else {
+            // What touches may be joined, and a hole within the tolerance (0.008 by 0.001 mm) may close.
+            prop_assert!(change < slack(&[&once]));
+            prop_assert!(again.islands().len() <= once.islands().len());
         }
     }
 }
