@@ -10,6 +10,10 @@ use geom::region::Index;
 use spade::handles::{FaceHandle, InnerTag};
 use spade::{DelaunayTriangulation, InsertionError, Triangulation};
 
+/// How much nearer to the conductors a thread may come between two places, of what they have, before it has
+/// a place there.
+const NARROWER: f64 = 0.01;
+
 /// How often a place is moved towards where it is equally far from everything.
 const TRIES: usize = 8;
 
@@ -66,14 +70,46 @@ pub(super) fn threads(
         }) else {
             continue;
         };
-        for (from, to) in [(left, right), (right, left)] {
-            let links = knots.get_mut(from as usize).map(|knot| &mut knot.links);
-            if let Some(free) = links.into_iter().flatten().find(|link| link.is_none()) {
-                *free = Some(to);
+        let corners = edge.vertices().map(|vertex| *vertex.data());
+        match waist(&knots, [left, right], &corners, boundary) {
+            Some(waist) => {
+                let middle = knots.len() as u32;
+                knots.push(Knot { place: Some(waist), links: [None; 3] });
+                link(&mut knots, left, middle);
+                link(&mut knots, middle, right);
             }
+            None => link(&mut knots, left, right),
         }
     }
     Ok(unravelled(&mut knots))
+}
+
+/// Ties two knots.
+fn link(knots: &mut [Knot], one: u32, other: u32) {
+    for (from, to) in [(one, other), (other, one)] {
+        let links = knots.get_mut(from as usize).map(|knot| &mut knot.links);
+        if let Some(free) = links.into_iter().flatten().find(|link| link.is_none()) {
+            *free = Some(to);
+        }
+    }
+}
+
+/// The narrowest place of the thread between two knots, which part two samples, where both knots have more
+/// room: between two corners the thread has no other place.
+fn waist(
+    knots: &[Knot],
+    ends: [u32; 2],
+    samples: &[Sample; 2],
+    boundary: &Boundary,
+) -> Option<Place> {
+    let [left, right] = ends.map(|end| knots.get(end as usize)?.place);
+    let (left, right) = (left?, right?);
+    let [one, other] = samples;
+    let stand = settled((one.at + other.at) / 2.0, samples, boundary);
+    let between = (left.at - stand.at).dot(right.at - stand.at) < 0.0;
+    let narrower = stand.nearest < left.clearance.min(right.clearance) * (1.0 - NARROWER);
+    let islands = [boundary.island(one)?, boundary.island(other)?];
+    (between && narrower).then_some(Place { at: stand.at, clearance: stand.nearest, islands })
 }
 
 /// The place in the middle of a triangle.

@@ -129,6 +129,17 @@ fn a_gap_narrower_than_the_tool_is_told_with_its_place() {
 }
 
 #[test]
+fn a_gap_between_two_corners_is_as_narrow_as_they_are_near() {
+    // √(0.1² + 0.2²) = 0.2236 between the corners; on the way past them nothing else is as near.
+    let copper = copper(&[rectangle((9.7, 7.8), (9.9, 8.7)), rectangle((8.8, 8.9), (9.6, 9.1))]);
+    let division = check(&copper, &rectangle((7.0, 7.0), (11.0, 11.0)), 0.25);
+    let [gap] = &division.narrow[..] else { panic!("{:?}", division.narrow) };
+    assert!(
+        (gap.width - 0.05f64.sqrt()).abs() < 1e-9 && gap.at.distance(Vec2::new(9.65, 8.8)) < 1e-9
+    );
+}
+
+#[test]
 fn widths_that_are_none_are_refused() {
     let copper = copper(&[disc(-5.0, 0.0, 2.0), disc(5.0, 0.0, 2.0)]);
     let board = rectangle((-10.0, -4.0), (10.0, 4.0));
