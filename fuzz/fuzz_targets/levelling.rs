@@ -3,9 +3,10 @@
 #![no_main]
 
 use geom::Vec3;
-use levelling::{Allowed, HeightMap, level, read};
+use levelling::{Allowed, level, read};
 use libfuzzer_sys::fuzz_target;
 use program::Program;
+use program::heights::HeightMap;
 
 const ALLOWED: Allowed = Allowed { deviation: 0.02, outside: 5.0 };
 

@@ -2,7 +2,6 @@
 
 use crate::grid::{Grid, Probing};
 use crate::ground::Ground;
-use crate::heights::HeightMap;
 use crate::level::{Allowed, levelled, refused};
 use geom::Vec3;
 use program::{Diagnostic, Op, Program, Record, Spindle, Surface, lowering};
@@ -54,32 +53,6 @@ pub fn follow(
     let probed: Vec<Record> = probed.map(|op| Record { line, op }).collect();
     records.splice(first + 1..first + 1, probed);
     Ok(program.with_records(records))
-}
-
-/// The program as the control runs it that finds these heights: each pose that counts from the surface raised to it.
-///
-/// # Errors
-/// `no-pose` where a height is not finite.
-pub fn raised(program: &Program, heights: &HeightMap) -> Result<Program, Box<Diagnostic>> {
-    let mut clear = f64::NEG_INFINITY;
-    let mut program = program.clone();
-    for record in &mut program.records {
-        let pose = match &mut record.op {
-            Op::Surface(surface) => {
-                clear = surface.clear();
-                continue;
-            }
-            Op::Rapid(pose) | Op::Line(pose) | Op::Hole(pose) => pose,
-            Op::Arc(arc) => &mut arc.end,
-            Op::Thread(thread) => &mut thread.end,
-            _ => continue,
-        };
-        let point = pose.point();
-        if point.z < clear {
-            *pose = pose.at(point + Vec3::Z * heights.at(point.truncate()))?;
-        }
-    }
-    Ok(program)
 }
 
 /// Where the first tool is called, with which the surface is probed.

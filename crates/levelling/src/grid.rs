@@ -8,7 +8,7 @@ use program::{Diagnostic, Feed, Op, Pose, Probe, Program};
 const MOST_PLACES: usize = 10_000;
 
 /// How near to each other columns and rows may be, mm. The words of a program round them by up to 0.005 mm and the
-/// machine answers in steps; nearer than 0.05 mm a log tells them not apart ([`crate::HeightMap::of`]).
+/// machine answers in steps; nearer than 0.05 mm a log tells them not apart ([`crate::height_map`]).
 const NEAREST: f64 = 2.0 * APART;
 
 /// The names of files that a comment can hold.

@@ -2,8 +2,8 @@
 
 use crate::course::{Way, course};
 use crate::ground::Ground;
-use crate::heights::HeightMap;
 use geom::{Vec2, Vec3};
+use program::heights::HeightMap;
 use program::{
     ArcTo, Circle, Compensation, Diagnostic, Feed, Op, Pose, Program, Record, WorkOffset,
 };

@@ -1,9 +1,10 @@
 //! What a probe has found, as machines and programs write it: LinuxCNC's `PROBEOPEN`, GRBL's answers, tables.
 
-use crate::heights::HeightMap;
+use crate::heights::height_map;
 use geom::Vec3;
 use memchr::memmem;
 use program::Diagnostic;
+use program::heights::HeightMap;
 
 /// After so many errors the reader gives up.
 const MOST_ERRORS: usize = 20;
@@ -28,7 +29,7 @@ const NINE: usize = 9;
 pub fn read(file_name: &str, text: &[u8]) -> Result<HeightMap, Vec<Diagnostic>> {
     let is_grbl = memmem::find(text, PROBED.as_bytes()).is_some();
     let points = if is_grbl { grbl(text) } else { table(text) };
-    let map = points.and_then(|points| HeightMap::of(&points).map_err(|found| vec![*found]));
+    let map = points.and_then(|points| height_map(&points).map_err(|found| vec![*found]));
     map.map_err(|found| found.into_iter().map(|found| found.file(file_name)).collect())
 }
 

@@ -1,11 +1,12 @@
 //! Levelled programs beside the surface that they follow, sample by sample.
 
 use geom::{Arc, Vec2, Vec3};
+use program::heights::HeightMap;
 use program::{
     ArcTo, Circle, Cycle, CycleKind, Feed, Op, Pose, Program, Record, Spindle, Tool, WorkOffset,
 };
 use proptest::prelude::*;
-use toolpost_levelling::{Allowed, Grid, HeightMap, Probing, follow, level, raised, read};
+use toolpost_levelling::{Allowed, Grid, Probing, follow, height_map, level, read};
 
 const ALLOWED: Allowed = Allowed { deviation: 0.005, outside: 5.0 };
 
@@ -14,7 +15,7 @@ fn map(heights: &[f64]) -> HeightMap {
     let (columns, rows) = ([0.0, 13.0, 31.0, 60.0], [0.0, 22.0, 40.0]);
     let places = rows.iter().flat_map(|&y| columns.map(|x| (x, y)));
     let points = places.zip(heights).map(|((x, y), &z)| Vec3::new(x, y, z));
-    HeightMap::of(&points.collect::<Vec<_>>()).unwrap()
+    height_map(&points.collect::<Vec<_>>()).unwrap()
 }
 
 fn pose(x: f64, y: f64, z: f64) -> Pose {
@@ -164,7 +165,7 @@ fn as_steep(heights: &[f64], steepness: f64) -> HeightMap {
     let places = [0.0, 20.0, 40.0].iter().flat_map(|&y| [0.0, 20.0, 40.0, 60.0].map(|x| (x, y)));
     let scale = 20.0 * steepness / steepest;
     let points = places.zip(heights).map(|((x, y), z)| Vec3::new(x, y, z * scale));
-    HeightMap::of(&points.collect::<Vec<_>>()).unwrap()
+    height_map(&points.collect::<Vec<_>>()).unwrap()
 }
 
 /// The tool is called first, with which a surface is found.
@@ -178,7 +179,7 @@ fn with_tool(mut source: Program) -> Program {
 fn found(source: &Program, map: &HeightMap, steepness: f64, allowed: &Allowed) -> Program {
     let grid = Grid::new(Vec2::ZERO, Vec2::new(60.0, 40.0), 4, 3).unwrap();
     let found = follow(&with_tool(source.clone()), &grid, &PROBING, steepness, allowed).unwrap();
-    raised(&found, map).unwrap()
+    map.raise(&found).unwrap()
 }
 
 proptest! {

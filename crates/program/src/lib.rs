@@ -19,6 +19,7 @@ mod cycle;
 pub mod diagnostic;
 mod digest;
 pub mod encoding;
+pub mod heights;
 pub mod lowering;
 mod motion;
 mod pose;

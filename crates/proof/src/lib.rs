@@ -111,7 +111,7 @@ pub fn prove(
     let mut proven: Option<Report> = None;
     for Trial { places, heights } in trials {
         let setup = Setup { surface: places, ..Setup::default() };
-        let report = match levelling::raised(source, &heights) {
+        let report = match heights.raise(source) {
             Ok(raised) => run(&raised, setup),
             Err(found) => return refused(source, machine, tolerances, *found),
         };

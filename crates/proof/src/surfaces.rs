@@ -4,7 +4,7 @@
 //! that have nothing to do with each other, it is right for any.
 
 use geom::Vec3;
-use levelling::HeightMap;
+use program::heights::HeightMap;
 use program::{Diagnostic, Op, Program, Surface};
 
 /// How much of what the probe reaches these surfaces take.

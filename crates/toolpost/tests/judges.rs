@@ -258,8 +258,8 @@ fn linuxcnc_itself_follows_a_surface_that_it_finds() {
     assert_eq!(points.len(), 20);
     let folder = tempfile::tempdir().unwrap();
     let cuts = rs274(folder.path(), text.as_bytes()).unwrap();
-    let heights = levelling::HeightMap::of(&points).unwrap();
-    let raised = levelling::raised(&program, &heights).unwrap();
+    let heights = levelling::height_map(&points).unwrap();
+    let raised = heights.raise(&program).unwrap();
     let (count, _) = assert_same_cuts(&raised, &cuts, 2e-4, false);
     assert!(count > 30, "{count}");
 }
