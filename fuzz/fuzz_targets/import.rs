@@ -1,8 +1,8 @@
 //! Any bytes as a post of another system: no panic, and what comes out is a machine.
 #![no_main]
 
+use import::import;
 use libfuzzer_sys::fuzz_target;
-use machine::import::import;
 use std::path::Path;
 
 fuzz_target!(|data: &[u8]| {

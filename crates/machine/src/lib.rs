@@ -5,15 +5,11 @@
 //! mistake told by file, line and column. The kinematic chain, both ways, lives here and nowhere
 //! else: writers use the inverse, the proof uses the forward, and neither shares more than that.
 //!
-//! Posts and templates of other systems become such files by [`import`].
-//!
 //! Lengths are mm, feeds mm/min, angles of rotary axes degrees where they are axis positions
 //! (`degrees` in the name) and radians elsewhere.
 
 #![deny(clippy::wildcard_enum_match_arm)]
 
-#[expect(clippy::wildcard_enum_match_arm, reason = "a foreign post may say anything")]
-pub mod import;
 pub mod inverse;
 pub mod kinematics;
 pub mod library;
@@ -28,6 +24,6 @@ pub mod upgrade;
 
 pub use inverse::{Inverse, Solutions};
 pub use kinematics::{Unsaid, lean};
-pub use load::{load, load_control, load_origin, load_text};
+pub use load::{is_path, load, load_control, load_origin, load_text};
 pub use model::*;
 pub use sheet::{Key, keys};

@@ -93,7 +93,7 @@ fn import(file: &Path, output: &Path, extends: Option<&str>) -> Result<Answer, S
     let bytes = files::text(file)?;
     let post = files::name(file);
     let folder = output.parent().unwrap_or(Path::new(""));
-    let import = machine::import::import(&post, &bytes, extends, folder).map_err(invalid)?;
+    let import = import::import(&post, &bytes, extends, folder).map_err(invalid)?;
     let saved = output.display().to_string();
     // What is wrong stands in a file that there will not be.
     let unsaved = |found: Vec<Diagnostic>| {

@@ -1,7 +1,7 @@
 //! Posts and templates of other systems, written here in the style that is in use, as machine files: the
 //! blocks that they become, what is told, and that the sample part is proven with each.
 
-use machine::import::{self, Import};
+use import::Import;
 use machine::{Machine, load_text};
 use program::Diagnostic;
 use proptest::prelude::*;

@@ -98,8 +98,8 @@ fn build(file: SheetFile) -> Result<Machine> {
     Ok(Machine { loaded_from: LoadedFrom { files, digest: texts.finish() }, ..machine })
 }
 
-/// Whether it is the path of a file, not a name of the library.
-pub(crate) fn is_path(name: &str) -> bool {
+/// Whether it is the path of a file (with a `/`, or ending in `.toml`), not a name of the library.
+pub fn is_path(name: &str) -> bool {
     name.contains(['/', '\\']) || name.ends_with(".toml")
 }
 

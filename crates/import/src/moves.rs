@@ -1,10 +1,10 @@
 //! Moves: each part is one block of ours, whole, or the control's own stands in its place.
 
-use super::foreign::{Line, Part, Piece};
-use super::items::codes;
-use super::text::{literal, short};
-use super::write::Writing;
-use crate::model::CycleName;
+use crate::foreign::{Line, Part, Piece};
+use crate::items::codes;
+use crate::text::{literal, short};
+use crate::write::Writing;
+use machine::CycleName;
 use std::fmt::Write as _;
 
 /// The parts that are one block of ours each, with the words that it must place: of each group one.
@@ -20,7 +20,7 @@ const MOVES: &[(Part, &str, &[&[&str]])] = &[
 ];
 
 /// What says the circle of an arc.
-pub(super) const CIRCLE: &[&str] = &["I", "CX", "R", "MX", "SWEEP"];
+pub(crate) const CIRCLE: &[&str] = &["I", "CX", "R", "MX", "SWEEP"];
 
 /// The words that only arcs have.
 const OF_ARCS: &[&str] = &[
@@ -43,7 +43,7 @@ const OF_ARCS: &[&str] = &[
 
 impl Writing<'_> {
     /// Makes the blocks of moves.
-    pub(super) fn moves(&mut self) {
+    pub(crate) fn moves(&mut self) {
         for (part, name, needs) in MOVES {
             let Some(lines) = self.post.parts.get(part) else { continue };
             let number = lines.first().map_or(0, |line| line.number);

@@ -1,10 +1,28 @@
-//! Posts and templates of other systems as machine files: what fits becomes blocks and words of ours, and
-//! what does not is told line by line, never dropped in silence.
+//! Posts and templates of other systems as machine files: what fits becomes blocks and words of ours, and what does
+//! not is reported line by line, never dropped in silence.
 //!
-//! Two readers, `vectric` for the posts of VCarve and Aspire and `parameters` for templates with
-//! `@parameter@`, make one `foreign::Post`; `write` makes a file of it that extends a control of the library,
-//! which stands in for what the post does not say. Nothing is evaluated: a template of another system is
-//! text.
+//! Two readers, `vectric` for the posts of VCarve and Aspire and `parameters` for templates with `@parameter@`, make
+//! one `foreign::Post`; `write` makes a file of it that extends a control of the library, which stands in for what the
+//! post does not say. The same bytes give the same file. Lengths are mm, as in every machine file.
+//!
+//! Nothing is evaluated: a template of another system is text. Nothing is proven here either: whoever imports a post
+//! loads the file and proves a program with it.
+//!
+//! ```
+//! let post = r#"POST_NAME = "Router (GRBL)"
+//! VAR X_POSITION = [X|C|X|1.3]
+//! VAR Y_POSITION = [Y|C|Y|1.3]
+//! VAR Z_POSITION = [Z|C|Z|1.3]
+//! begin RAPID_MOVE
+//! "G00[X][Y][Z]"
+//! "#;
+//! let folder = std::path::Path::new("");
+//! let import = toolpost_import::import("router.pp", post.as_bytes(), None, folder).unwrap();
+//! assert_eq!(import.extends, "grbl");
+//! let machine = machine::load_text("router.toml", &import.text).unwrap();
+//! assert_eq!(machine.title, "Router (GRBL)");
+//! assert!(machine.blocks["rapid"].text.contains("G00"));
+//! ```
 
 mod foreign;
 mod items;
@@ -15,7 +33,7 @@ mod text;
 mod vectric;
 mod write;
 
-use crate::load::{is_path, load_origin};
+use machine::{is_path, load_origin};
 use program::Diagnostic;
 use std::path::Path;
 

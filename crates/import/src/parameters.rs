@@ -1,9 +1,9 @@
 //! Templates with `@parameter@`: a head in brackets before the lines of each field. What is accepted is in
 //! `docs/controls/importing.md`.
 
-use super::foreign::{Form, Line, Part, Piece, Post};
-use super::moves::CIRCLE;
-use super::{Findings, text};
+use crate::foreign::{Form, Line, Part, Piece, Post};
+use crate::moves::CIRCLE;
+use crate::{Findings, text};
 
 /// The fields of the drilling and the engraving template, by their words, and the part that each is of
 /// ours.
@@ -80,7 +80,7 @@ const PARAMETERS: &[(&[&str], Piece)] = &[
 ];
 
 /// Reads the templates.
-pub(super) fn read(source: &str, findings: &mut Findings) -> Post {
+pub(crate) fn read(source: &str, findings: &mut Findings) -> Post {
     let mut post = Post::default();
     let mut field: Option<Field> = None;
     // The template, drilling or engraving, that the part was taken from.

@@ -1,20 +1,20 @@
 //! A line of a post cut into the words of a program, each with what it does: a header says at one place
 //! what our files say at several.
 
-use super::foreign::{Line, Part, Piece, Post};
-use super::text;
+use crate::foreign::{Line, Part, Piece, Post};
+use crate::text;
 use std::mem::take;
 
 /// A word of a line, as our template has it.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Item {
+pub(crate) struct Item {
     pub text: String,
     pub role: Role,
 }
 
 /// What a word does.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Role {
+pub(crate) enum Role {
     Blank,
     /// The block number.
     Number,
@@ -57,7 +57,7 @@ pub(super) enum Role {
 }
 
 /// The words of a line of `part`.
-pub(super) fn items(line: &Line, part: Part, post: &Post) -> Vec<Item> {
+pub(crate) fn items(line: &Line, part: Part, post: &Post) -> Vec<Item> {
     let mut cut = Cutter { items: Vec::new(), word: String::new(), comment: None };
     for piece in &line.pieces {
         match piece {
@@ -220,7 +220,7 @@ impl Cutter {
 }
 
 /// A code without its leading zeros: `G00` is `G0`.
-pub(super) fn code(word: &str) -> Option<(char, f64)> {
+pub(crate) fn code(word: &str) -> Option<(char, f64)> {
     let letter = word.chars().next().filter(char::is_ascii_alphabetic)?;
     let number = word.get(1..)?.parse().ok()?;
     Some((letter.to_ascii_uppercase(), number))
@@ -259,7 +259,7 @@ fn role(word: &str) -> Role {
 }
 
 /// The codes of a text: letters with a number.
-pub(super) fn codes(text: &str) -> impl Iterator<Item = (char, f64)> + use<> {
+pub(crate) fn codes(text: &str) -> impl Iterator<Item = (char, f64)> + use<> {
     let mut words: Vec<String> = Vec::new();
     for c in text.chars() {
         match words.last_mut() {

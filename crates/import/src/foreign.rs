@@ -4,7 +4,7 @@ use std::collections::BTreeMap;
 
 /// A post: what it says of words, and the lines of its parts.
 #[derive(Debug, Default)]
-pub(super) struct Post {
+pub(crate) struct Post {
     /// What a person calls it.
     pub title: String,
     /// Ending of its programs.
@@ -23,7 +23,7 @@ pub(super) struct Post {
 
 /// How a word is written.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Form {
+pub(crate) struct Form {
     pub address: String,
     /// Decimals, zeros at the end kept; those of the control where nothing is said.
     pub decimals: Option<u8>,
@@ -34,7 +34,7 @@ pub(super) struct Form {
 
 /// What a part of a post is written for.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub(super) enum Part {
+pub(crate) enum Part {
     Start,
     ToolChange,
     /// A new toolpath with the same tool.
@@ -53,7 +53,7 @@ pub(super) enum Part {
 
 /// A line of a part.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Line {
+pub(crate) struct Line {
     /// Where it stands, from 1.
     pub number: u32,
     pub pieces: Vec<Piece>,
@@ -61,7 +61,7 @@ pub(super) struct Line {
 
 /// A piece of a line.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) enum Piece {
+pub(crate) enum Piece {
     Text(String),
     /// A word of ours.
     Word(&'static str),

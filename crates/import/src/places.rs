@@ -1,10 +1,10 @@
 //! Start, tool change, segment and end: what a header says at one place goes where our files say it.
 
-use super::foreign::{Line, Part, Piece};
-use super::items::{Item, Role, code, codes, items};
-use super::text::short;
-use super::write::Writing;
-use crate::model::LengthOffset;
+use crate::foreign::{Line, Part, Piece};
+use crate::items::{Item, Role, code, codes, items};
+use crate::text::short;
+use crate::write::Writing;
+use machine::LengthOffset;
 use std::fmt::Write as _;
 
 /// What is left of a line where its words have gone to their places.
@@ -23,7 +23,7 @@ struct Rest {
 
 impl Writing<'_> {
     /// Makes the blocks of start, tool change, segment and end.
-    pub(super) fn places(&mut self) {
+    pub(crate) fn places(&mut self) {
         let (mut start, mut first) = (Vec::new(), Vec::new());
         let said: Vec<_> =
             self.base_block("program_start").map(codes).into_iter().flatten().collect();

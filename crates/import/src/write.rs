@@ -1,18 +1,17 @@
 //! The file of ours that a post becomes: its moves, its places, and the words and capabilities that belong
 //! to them.
 
-use super::Findings;
-use super::foreign::{Form, Line, Part, Piece, Post};
-use super::items::codes;
-use super::text::{quoted, short};
-use crate::library::{MACHINES, names};
-use crate::load;
-use crate::model::{Machine, Word};
+use crate::Findings;
+use crate::foreign::{Form, Line, Part, Piece, Post};
+use crate::items::codes;
+use crate::text::{quoted, short};
+use machine::library::{MACHINES, names};
+use machine::{Machine, Word, load};
 use std::collections::BTreeMap;
 use std::fmt::Write as _;
 
 /// The file for `post`, which extends `base`.
-pub(super) fn file(
+pub(crate) fn file(
     post: &Post,
     base: &Machine,
     base_name: &str,
@@ -27,7 +26,7 @@ pub(super) fn file(
 }
 
 /// A file that is being written.
-pub(super) struct Writing<'a> {
+pub(crate) struct Writing<'a> {
     pub post: &'a Post,
     pub base: &'a Machine,
     pub findings: &'a mut Findings,
@@ -41,12 +40,12 @@ pub(super) struct Writing<'a> {
 
 impl Writing<'_> {
     /// A block of the control.
-    pub(super) fn base_block(&self, name: &str) -> Option<&str> {
+    pub(crate) fn base_block(&self, name: &str) -> Option<&str> {
         self.base.blocks.get(name).map(|block| block.text.as_str())
     }
 
     /// Whether the post places block numbers.
-    pub(super) fn numbered(&self) -> bool {
+    pub(crate) fn numbered(&self) -> bool {
         self.post.parts.values().flatten().flat_map(Line::words).any(|word| word == "N")
     }
 

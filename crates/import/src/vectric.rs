@@ -1,9 +1,9 @@
 //! Posts of VCarve and Aspire (`.pp`): `VAR` lines, `begin` blocks with a line of the program in quotes
 //! each. What is believed of the format, with its sources, is in `docs/controls/importing.md`.
 
-use super::foreign::{Form, Line, Part, Piece, Post};
-use super::items::codes;
-use super::{Findings, text};
+use crate::foreign::{Form, Line, Part, Piece, Post};
+use crate::items::codes;
+use crate::{Findings, text};
 use std::collections::BTreeMap;
 
 /// What the variables of a post are in ours.
@@ -82,7 +82,7 @@ struct Block<'a> {
 }
 
 /// Reads a post.
-pub(super) fn read(source: &str, findings: &mut Findings) -> Post {
+pub(crate) fn read(source: &str, findings: &mut Findings) -> Post {
     let mut post = Post::default();
     let mut names: BTreeMap<String, Piece> = BTreeMap::new();
     let mut blocks: Vec<Block> = Vec::new();
