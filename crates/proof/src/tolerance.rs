@@ -53,6 +53,10 @@ pub struct Applied {
 /// how far it may leave that within one move, degrees.
 const SWEEP: f64 = 1.0;
 
+/// How far the tool axis of a source may lean where no axis of the machine turns, radians: CL data have five decimals
+/// or more, and at 100 mm from the tip the tool is 0.001 mm off.
+const UPRIGHT: f64 = 1e-5;
+
 /// A position counts as unchanged below this, mm: noise of the kinematics, far below any word.
 const NOISE: f64 = 1e-6;
 
@@ -83,12 +87,16 @@ impl Applied {
         // U and V are rounded each, at the height of the upper plane.
         let height = machine.wire.and_then(|wire| wire.height).unwrap_or(f64::INFINITY);
         let lean = (step("U", 3) / 2f64.sqrt() / height).atan().to_degrees();
+        let upright = match machine.rotary.is_empty() && machine.wire.is_none() {
+            true => UPRIGHT.to_degrees(),
+            false => 0.0,
+        };
         Applied {
             tip_mm: given.position.unwrap_or(machine.resolution() / 2.0 * 3f64.sqrt()) + NOISE,
             rotary_degrees: rotary,
             axis_degrees: given
                 .angle
-                .unwrap_or((rotary * turns_added(machine)).max(vector).max(lean))
+                .unwrap_or((rotary * turns_added(machine)).max(vector).max(lean).max(upright))
                 + NOISE,
             sweep_degrees: SWEEP,
             linearisation_mm: machine.orientation.tolerance,

@@ -57,6 +57,19 @@ fn half_a_step_on_each_axis_is_rounding_and_more_is_a_mismatch() {
 }
 
 #[test]
+fn a_tool_axis_of_five_decimals_may_lean_by_its_last_on_a_machine_without_rotary_axes() {
+    // The third cut of the square, with a tool axis that leans by so many radians.
+    let leaning = |lean: f64| {
+        let mut ops = square();
+        let axis = Vec3::new(0.0, lean, 1.0);
+        ops[3] = Op::Line(Pose::new(Vec3::new(30.0, 0.0, -1.0), axis).unwrap());
+        rules(&judge(&mill(), &source(ops), square_nc()))
+    };
+    assert!(leaning(0.9e-5).is_empty());
+    assert_eq!(leaning(1.1e-5), ["path"]);
+}
+
+#[test]
 fn a_deviation_is_reported_with_both_lines() {
     let mut nc = square_nc();
     nc[3] = Action::Line(block(30.000_4, 0.0, -1.0));
