@@ -7,6 +7,7 @@ use crate::error::{findings, released};
 use crate::machine::Machine;
 use crate::record::Record;
 use numpy::{PyArray1, PyArray2};
+use program::Purpose;
 use program::statistics::Statistics;
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
@@ -307,7 +308,8 @@ pub fn read(
         csys: csys.map(|given| word(py, "csys", given, &frames)).transpose()?,
         cutcom: cutcom.map(|given| word(py, "cutcom", given, &paths)).transpose()?,
     };
-    released(py, || toolpath::read(&path, strict, &origin, None)).map(Program::from)
+    released(py, || toolpath::read(&path, strict, &origin, None, Purpose::Program))
+        .map(Program::from)
 }
 
 /// Read a job of FreeCAD.
@@ -342,5 +344,6 @@ pub fn read_job(
 ) -> PyResult<Program> {
     let machine = machine.map(|machine| &machine.described);
     let job = job.job(py, file)?;
-    released(py, || toolpath::read_job(file, job, strict, machine)).map(Program::from)
+    released(py, || toolpath::read_job(file, job, strict, machine, Purpose::Program))
+        .map(Program::from)
 }

@@ -238,6 +238,14 @@ impl Risk {
         refused: true,
     };
 
+    /// `M30` without a line end behind it (SINUMERIK, found on an 828D): where the motion goes does not depend on it.
+    pub(crate) const LINE_END: Risk = Risk {
+        rule: "line-end",
+        what: "ends without a line end behind its last block, and a control (828D) may not take it as ended",
+        help: "end the last line of the file by a line feed",
+        refused: true,
+    };
+
     /// P of a dwell counts least increments of time on a FANUC: a millisecond, and a tenth of one with increment system C
     /// and parameter 1015#7 = 0.
     pub(crate) const DWELL_UNIT: Risk = Risk {

@@ -23,7 +23,7 @@ use iso::Flavor;
 use kernel::compensation::{Compensator, Rules};
 pub use kernel::folders::Folders;
 use kernel::relay;
-use program::{Diagnostic, WorkOffset};
+use program::{Diagnostic, Purpose, WorkOffset};
 
 /// The languages that are understood.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -280,6 +280,8 @@ pub struct Setup {
     pub start: Option<Vec3>,
     /// Whether the program is read for its contour in the plane XY alone: Z is 0 while nothing says it.
     pub flat: bool,
+    /// What the program is read for.
+    pub purpose: Purpose,
     /// Points of the part's surface, mm, work frame: straight down onto one of them a probe answers there. Of any
     /// other probing move only the machine knows where it has ended.
     pub surface: Vec<Vec3>,
@@ -288,13 +290,14 @@ pub struct Setup {
 impl Setup {
     /// Where the tool stands in the work frame before the first block, mm; NaN where that is not known.
     pub(crate) fn position_at_start(&self) -> Vec3 {
-        self.start.unwrap_or(self.unknown_position())
+        self.start.unwrap_or(Vec3::NAN)
     }
 
-    /// The position of a tool of which nobody knows where it stands, mm: NaN but for Z of a flat contour.
-    pub(crate) fn unknown_position(&self) -> Vec3 {
-        let z = if self.flat { 0.0 } else { f64::NAN };
-        Vec3::new(f64::NAN, f64::NAN, z)
+    /// Puts the Z that no block has said, or that only the machine knows, on the plane of a flat contour.
+    pub fn flatten(&self, position: &mut Vec3) {
+        if self.flat && position.z.is_nan() {
+            position.z = 0.0;
+        }
     }
 }
 

@@ -6,7 +6,7 @@ use crate::way::Way;
 use control::Setup;
 use geom::Vec3;
 use machine::Machine;
-use program::{Diagnostic, Op, Program, Record, Spindle};
+use program::{Diagnostic, Op, Program, Purpose, Record, Spindle};
 use std::collections::HashMap;
 use std::mem;
 
@@ -27,22 +27,30 @@ pub struct Reading {
 /// # Errors
 /// The first command that means nothing or cannot be told, and what an operation lacks, with the
 /// operation, the command and the way out.
-pub fn read(machine: &Machine, file_name: &str, mut job: Job) -> Result<Reading, Box<Diagnostic>> {
+pub fn read(
+    machine: &Machine,
+    file_name: &str,
+    mut job: Job,
+    purpose: Purpose,
+) -> Result<Reading, Box<Diagnostic>> {
     if let Some((number, what)) = two_tools(&job) {
         let message = format!("two tools of different {what} have the number {number}");
         let help = "give one of the tool controllers another number";
         return Err(Diagnostic::error("two-tools", message).help(help).file(file_name).into());
     }
-    let unfed = without_feed(&job).map(|(operation, tool)| (operation.to_owned(), tool.to_owned()));
+    let unfed = without_feed(&job)
+        .filter(|_| purpose.asks_technology())
+        .map(|(operation, tool)| (operation.to_owned(), tool.to_owned()));
     let listing = Listing::of(file_name, &mut job)?;
     let mut speaks = Machine { reader: String::from("freecad"), ..machine.clone() };
     if !listing.turns() {
         speaks.rotary.clear();
     }
-    let mut told = Told::new(&job, &listing);
+    let mut told = Told::new(&job, &listing, purpose);
     let keep =
         &mut |records: &mut Vec<Record>, record, several| told.keep(records, record, several);
-    let read = nc::read_by(&speaks, Setup::default(), "", listing.text(), keep);
+    let setup = Setup { purpose, ..Setup::default() };
+    let read = nc::read_by(&speaks, setup, "", listing.text(), keep);
     let located = |found: Diagnostic| Box::new(listing.located(found));
     let (mut reading, several) = read.map_err(|found| located(way_out(*found)))?;
     let mut records = std::mem::take(&mut reading.program.records);
@@ -130,6 +138,8 @@ struct Told<'a> {
     /// Number and name of the tool in the spindle.
     tool: Option<(u32, String)>,
     turns: bool,
+    /// Whether a cut needs a spindle that turns.
+    asks_spindle: bool,
     /// The next work offset belongs only to a program that works in others, too.
     is_offset_open: bool,
     /// That one.
@@ -148,7 +158,7 @@ struct Offset {
 }
 
 impl<'a> Told<'a> {
-    fn new(job: &'a Job, listing: &'a Listing) -> Told<'a> {
+    fn new(job: &'a Job, listing: &'a Listing, purpose: Purpose) -> Told<'a> {
         Told {
             job,
             listing,
@@ -159,6 +169,7 @@ impl<'a> Told<'a> {
             at: None,
             tool: None,
             turns: false,
+            asks_spindle: purpose.asks_technology(),
             is_offset_open: false,
             offset: None,
             refused: None,
@@ -313,7 +324,10 @@ impl<'a> Told<'a> {
                     "post it together with its tool controller: order the job by operation or tool";
                 refused("tool-number", message, help)
             }
-            _ if !self.turns && matches!(op, Op::Line(_) | Op::Arc(_) | Op::Hole(_)) => {
+            _ if self.asks_spindle
+                && !self.turns
+                && matches!(op, Op::Line(_) | Op::Arc(_) | Op::Hole(_)) =>
+            {
                 let message = String::from("a cut while the spindle stands");
                 refused("spindle-off", message, "give the tool controller its speed and direction")
             }

@@ -3,7 +3,7 @@
 //! `golden/part.mpf` hold these lines, without the marks for what is left out between the operations.
 
 use machine::Machine;
-use program::{Op, Pose};
+use program::{Op, Pose, Purpose};
 use toolpost_freecad::{self as freecad, Job, Reading};
 
 const DUMP: &str = include_str!("golden/part.dump");
@@ -17,7 +17,7 @@ const LOST: [(&str, &str); 2] =
 fn read(dump: &str) -> Reading {
     let machine = machine::load("emco-concept-mill-105").unwrap();
     let job = Job::of("part.dump", dump.as_bytes()).unwrap();
-    freecad::read(&machine, "part.dump", job).unwrap()
+    freecad::read(&machine, "part.dump", job, Purpose::Program).unwrap()
 }
 
 fn emco_post() -> Machine {

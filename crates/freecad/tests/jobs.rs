@@ -1,7 +1,7 @@
 //! Jobs as FreeCAD gives them: what becomes of their commands, and what is refused.
 
 use geom::Vec3;
-use program::{Coolant, Cycle, CycleKind, Diagnostic, Feed, Op, Program, Spindle};
+use program::{Coolant, Cycle, CycleKind, Diagnostic, Feed, Op, Program, Purpose, Spindle};
 use serde_json::{Value, json};
 use toolpost_freecad::{self as freecad, Job};
 
@@ -24,7 +24,7 @@ fn operation(commands: &str) -> Value {
 fn read_on(machine: &str, job: &Value) -> Result<Program, Box<Diagnostic>> {
     let job = Job::of("part.json", job.to_string().as_bytes())?;
     let machine = machine::load(machine).unwrap();
-    Ok(freecad::read(&machine, "part.json", job)?.program)
+    Ok(freecad::read(&machine, "part.json", job, Purpose::Program)?.program)
 }
 
 fn read(job: &Value) -> Result<Program, Box<Diagnostic>> {
@@ -449,7 +449,7 @@ fn functions_of_the_builder_in_a_custom_operation_are_told() {
     let commands = format!("{START}M10\nG1 F3.333333 Z-1.500000\nM62\n");
     let job = job(json!([{ "label": "Custom", "commands": commands }]));
     let job = Job::of("part.json", job.to_string().as_bytes()).unwrap();
-    let program = freecad::read(&machine, "part.json", job).unwrap().program;
+    let program = freecad::read(&machine, "part.json", job, Purpose::Program).unwrap().program;
     let numbers: Vec<u32> = (program.records.iter())
         .filter_map(|record| match record.op {
             Op::Auxiliary(function) => Some(function.number),

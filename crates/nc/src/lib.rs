@@ -25,7 +25,7 @@ use geom::{Arc, Vec3};
 use machine::{LengthOffset, Machine, Mount, RotaryFeed};
 use program::{
     ArcTo, Axes, Circle, CompensatedPath, Cycle, Diagnostic, Feed, MachineMove, Op, Pose, Probe,
-    Program, Record, Thread, Tool, WorkOffset,
+    Program, Record, Severity, Thread, Tool, WorkOffset,
 };
 use std::collections::{BTreeSet, HashMap};
 
@@ -281,7 +281,10 @@ pub fn read_by(
     });
     run.map_err(|found| way_out(machine, found))?;
     let cut_off = cut_off(settings.dialect, lift.ended, text);
-    if let Some(found) = cut_off {
+    if let Some(mut found) = cut_off {
+        if !settings.setup.purpose.asks_ends() {
+            found.severity = Severity::Warning;
+        }
         let lines = text.iter().filter(|byte| **byte == b'\n').count();
         let last = u32::try_from(lines).unwrap_or(u32::MAX).max(1);
         let found = found.file(file_name).line(last);
@@ -489,6 +492,14 @@ impl<'a> Lift<'a> {
                 match spot.pose() {
                     Some(pose) => self.arrive(line, Op::Rapid(pose))?,
                     None => self.place = Place::At(spot),
+                }
+            }
+            Action::Line(position) if self.starts_a_picture(&position) => {
+                let message = "where the tool comes from is not known: it is drawn from the end of this block on";
+                self.warn_once(line, Diagnostic::warning("unknown-start", message));
+                let spot = self.spot(&position);
+                if let Some(pose) = spot.pose() {
+                    self.arrive(line, Op::Rapid(pose))?;
                 }
             }
             Action::Line(position) => {
@@ -745,6 +756,14 @@ impl<'a> Lift<'a> {
         self.push(line, Op::Cycle(Box::new(cycle)));
     }
 
+    /// Whether a straight cut to `end` comes from where nobody knows, in a program that is only drawn.
+    fn starts_a_picture(&self, end: &Position) -> bool {
+        let drawn = !self.setup.purpose.asks_ends();
+        let known = |spot: &Spot| spot.pose().is_some();
+        let from_home = self.home.is_some() || !self.place.spot().is_some_and(known);
+        drawn && from_home && known(&self.spot(end))
+    }
+
     /// Where a cut ends; it must begin somewhere.
     fn cut(&self, end: &Position) -> Result<Pose, Box<Diagnostic>> {
         let spot = self.spot(end);
@@ -792,7 +811,8 @@ impl<'a> Lift<'a> {
     /// a head has turned, is not known.
     fn spot(&self, position: &Position) -> Spot {
         let length = self.tool.and_then(|(tool, _)| tool.length);
-        let (tip, axis) = resolve(self.machine, position, length);
+        let (mut tip, axis) = resolve(self.machine, position, length);
+        self.setup.flatten(&mut tip);
         Spot { tip, axis }
     }
 
@@ -848,16 +868,20 @@ impl<'a> Lift<'a> {
         Ok(())
     }
 
-    /// Tells of a risk, once for all its lines.
+    /// Reports a risk, once for all its lines.
     fn risk(&mut self, line: u32, risk: Risk) {
         let message = format!("the program {}", risk.what);
-        let same = |found: &&mut Diagnostic| found.rule == risk.rule && found.message == message;
+        self.warn_once(line, Diagnostic::warning(risk.rule, message).help(risk.help));
+    }
+
+    /// Reports a warning with its first line, and counts those that are the same.
+    fn warn_once(&mut self, line: u32, warning: Diagnostic) {
+        let same = |found: &&mut Diagnostic| {
+            found.rule == warning.rule && found.message == warning.message
+        };
         match self.warnings.iter_mut().find(same) {
-            Some(found) => found.count += 1,
-            None => {
-                let found = Diagnostic::warning(risk.rule, message);
-                self.warnings.push(found.help(risk.help).line(line));
-            }
+            Some(found) => found.count = found.count.saturating_add(1),
+            None => self.warnings.push(warning.line(line)),
         }
     }
 

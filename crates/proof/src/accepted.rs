@@ -2,12 +2,13 @@
 //! program does not say.
 
 /// The rules that may be accepted, each with what its acceptance answers for.
-pub const ACCEPTABLE: [(&str, &str); 16] = [
+pub const ACCEPTABLE: [(&str, &str); 17] = [
     ("dwell-unit", "what a dwell counts in"),
     ("floating-tap", "taps are held in a floating chuck"),
     ("leaning-retract", "a retract along the tool brings Z to its end"),
     ("length-change", "Z moves by the tool length where parameter 5006#6 is 0"),
     ("length-plane", "along which axis the tool length counts in G18 and G19"),
+    ("line-end", "the control takes a last block without a line end"),
     ("operator-controls", "the operator can neither stop the program nor slow it down"),
     ("operator-data", "work offsets and tool data that the program rewrites"),
     ("orientation-tolerance", "the tool may lean otherwise by more than the machine's file allows"),

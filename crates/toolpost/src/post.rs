@@ -12,7 +12,7 @@ use crate::toolpath::{self, Toolpath};
 use ::post::Output;
 use machine::Machine;
 use machine::time::Times;
-use program::{Diagnostic, Op, Program, Record};
+use program::{Diagnostic, Op, Program, Purpose, Record};
 use proof::Tolerances;
 use serde_json::json;
 use std::path::Path;
@@ -59,7 +59,13 @@ pub fn run(args: &Post, silent: bool) -> Result<Answer, Stop> {
     let machine = toolpath::machine_with(&args.machine, &args.option)?;
     let progress = Progress::new(4, silent);
     progress.step("reading");
-    let toolpath = toolpath::read(source, args.source.strict, &args.source.origin, Some(&machine))?;
+    let toolpath = toolpath::read(
+        source,
+        args.source.strict,
+        &args.source.origin,
+        Some(&machine),
+        Purpose::Program,
+    )?;
     let file = files::name(&args.output);
     let tolerances = args.closeness.tolerances();
     let posted = proven(&toolpath, &machine, &file, &tolerances, &|what| progress.step(what))?;

@@ -9,7 +9,7 @@ use crate::report::{self, Digests};
 use crate::summary::{self, Shape, number};
 use crate::toolpath::{self, Toolpath};
 use machine::Machine;
-use program::encoding;
+use program::{Purpose, encoding};
 use proof::{Accepted, Report, Tolerances};
 use serde_json::json;
 
@@ -18,7 +18,8 @@ pub fn run(args: &Prove, silent: bool) -> Result<Answer, Stop> {
     let machine = toolpath::machine_with(&args.machine, &args.option)?;
     let progress = Progress::new(2, silent);
     progress.step("reading");
-    let toolpath = toolpath::read(&args.against, false, &args.origin, Some(&machine))?;
+    let toolpath =
+        toolpath::read(&args.against, false, &args.origin, Some(&machine), Purpose::Program)?;
     let text = files::read(&args.program)?;
     progress.step("proving");
     let file = files::name(&args.program);
@@ -46,14 +47,15 @@ pub fn compare(
     // What is told of the toolpath is found meanwhile.
     let prove = || proof::prove(program, machine, file, text, tolerances);
     let (proof, shape) = beside(prove, || Shape::of(program));
-    let warnings = toolpath.warnings.iter().cloned();
+    let mut warnings = toolpath.warnings.clone();
+    toolpath.quote(&mut warnings);
     if !proof.proven {
         let mut account = failed(&proof, toolpath, file);
         account.findings.extend(warnings);
         return account;
     }
     let found = proof.warnings.iter().chain(&proof.accepted);
-    let findings = warnings.chain(found.cloned()).collect();
+    let findings = warnings.into_iter().chain(found.cloned()).collect();
     let data = json!({
         "source": toolpath.describe(&shape),
         "machine": toolpath::describe(machine),

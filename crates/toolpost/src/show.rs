@@ -7,7 +7,7 @@ use crate::progress::Progress;
 use crate::summary::{Shape, rows};
 use crate::toolpath;
 use drawing::Format;
-use program::Diagnostic;
+use program::{Diagnostic, Purpose};
 use serde_json::json;
 
 /// Counts and measures a toolpath and, where a place is given, draws it.
@@ -20,7 +20,8 @@ pub fn run(args: &Show, silent: bool) -> Result<Answer, Stop> {
     };
     let progress = Progress::new(if target.is_some() { 2 } else { 1 }, silent);
     progress.step("reading");
-    let toolpath = toolpath::read(path, args.source.strict, &args.source.origin, None)?;
+    let toolpath =
+        toolpath::read(path, args.source.strict, &args.source.origin, None, Purpose::Picture)?;
     let shape = Shape::of(&toolpath.program);
     if let Some((target, format)) = target {
         progress.step("drawing");

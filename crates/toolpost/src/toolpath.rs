@@ -9,7 +9,9 @@ use control::{Dialect, Setup};
 use freecad::{Job, Listing};
 use geom::Vec3;
 use machine::{Machine, library};
-use program::{CompensatedPath, Diagnostic, Digest, Op, Program, Severity, encoding, line_of};
+use program::{
+    CompensatedPath, Diagnostic, Digest, Op, Program, Purpose, Severity, encoding, line_of,
+};
 use serde_json::{Value, json};
 use source::apt::{self, Cutcom, SetUps};
 use std::path::{Path, PathBuf};
@@ -55,6 +57,7 @@ pub fn read(
     strict: bool,
     origin: &Origin,
     machine: Option<&Machine>,
+    purpose: Purpose,
 ) -> Result<Toolpath, Stop> {
     let bytes = match fcstd::is(path) {
         true => fcstd::job(path)?,
@@ -62,7 +65,7 @@ pub fn read(
     };
     let text = encoding::without_mark(&bytes);
     if encoding::is_utf_16(&bytes) || !Job::begins(text) {
-        return read_by(path, bytes, strict, origin, false, |machine| machine);
+        return read_by(path, bytes, strict, origin, purpose, |machine| machine);
     }
     if origin.csys.is_some() {
         return Err(without_csys(&files::name(path)).into());
@@ -79,7 +82,8 @@ pub fn read(
     let named = origin.from.as_deref().map(machine::load_origin).transpose()?;
     let file = files::name(path);
     let digest = Some(Digest::of([&bytes[..]]));
-    let toolpath = read_job(&file, Job::of(&file, text)?, strict, named.as_ref().or(machine))?;
+    let job = Job::of(&file, text)?;
+    let toolpath = read_job(&file, job, strict, named.as_ref().or(machine), purpose)?;
     Ok(Toolpath { path: Some(path.to_owned()), digest, ..toolpath })
 }
 
@@ -93,12 +97,14 @@ pub fn read_job(
     job: Job,
     strict: bool,
     machine: Option<&Machine>,
+    purpose: Purpose,
 ) -> Result<Toolpath, Stop> {
     let machine = match machine {
         Some(machine) => machine,
         None => &machine::load_control(THREE_AXES)?,
     };
-    let freecad::Reading { program, listing, warnings } = freecad::read(machine, file, job)?;
+    let freecad::Reading { program, listing, warnings } =
+        freecad::read(machine, file, job, purpose)?;
     Ok(Toolpath {
         file: file.to_owned(),
         warnings: held(warnings, strict)?,
@@ -120,7 +126,7 @@ pub fn read_wire(
     origin: &Origin,
     height: Option<f64>,
 ) -> Result<Toolpath, Stop> {
-    read_by(path, files::read(path)?, strict, origin, true, |mut machine| {
+    read_by(path, files::read(path)?, strict, origin, Purpose::Contour, |mut machine| {
         if let Some(wire) = &mut machine.wire {
             wire.height = wire.height.or(height);
         }
@@ -133,7 +139,7 @@ fn read_by(
     bytes: Vec<u8>,
     strict: bool,
     origin: &Origin,
-    is_wire: bool,
+    purpose: Purpose,
     set_up: impl Fn(Machine) -> Machine,
 ) -> Result<Toolpath, Stop> {
     let file = files::name(path);
@@ -143,11 +149,12 @@ fn read_by(
     let (dialect, program, warnings, set_ups, cutcom) = match &origin.from {
         Some(from) => {
             let machine = set_up(machine::load_origin(from)?);
-            let setup = origin.setup()?;
+            let setup = Setup { purpose, ..origin.setup()? };
             let folders = setup.folders.clone();
+            let asked = |found: &Diagnostic| found.rule.ends_with("unknown-position");
             let reading = match nc::read(&machine, setup.clone(), &file, &bytes) {
-                Err(found) if is_wire && found.rule.ends_with("unknown-position") => {
-                    flat(&machine, setup, &file, &bytes).ok_or(found)?
+                Err(found) if purpose != Purpose::Program && asked(&found) => {
+                    flat(&machine, setup, &file, &bytes)?.ok_or(found)?
                 }
                 read => read?,
             };
@@ -165,7 +172,7 @@ fn read_by(
                 CutcomPath::Centre => CompensatedPath::Center,
                 CutcomPath::Contour => CompensatedPath::Contour,
             });
-            let reading = apt::read(&file, &bytes, &apt::Options { strict, csys, cutcom });
+            let reading = apt::read(&file, &bytes, &apt::Options { strict, csys, cutcom, purpose });
             let reading = reading.map_err(|findings| match is_nc(path) {
                 true => without_origin(&file),
                 false => Stop { verdict: Verdict::Invalid, findings },
@@ -208,22 +215,50 @@ pub fn swinging(path: &Path, origin: &Origin, frame: Frame) -> Result<Option<Pro
         return Ok(None);
     }
     let name = files::name(path);
+    let setup = Setup { purpose: Purpose::Picture, ..origin.setup()? };
     let program = match frame {
-        Frame::Part => nc::read_swinging(&machine, origin.setup()?, &name, &bytes)?,
-        Frame::Machine => nc::read_in_machine(&machine, origin.setup()?, &name, &bytes)?,
+        Frame::Part => nc::read_swinging(&machine, setup, &name, &bytes)?,
+        Frame::Machine => nc::read_in_machine(&machine, setup, &name, &bytes)?,
     };
     Ok(Some(program))
 }
 
 /// The program of a mill's control as a contour in the plane XY, at Z 0 where no block says Z: a wire goes through all
 /// heights. Nothing where that is not what it lacks.
-fn flat(machine: &Machine, setup: Setup, file: &str, bytes: &[u8]) -> Option<nc::Reading> {
+///
+/// # Errors
+/// A cut at another Z, which the program says.
+fn flat(
+    machine: &Machine,
+    setup: Setup,
+    file: &str,
+    bytes: &[u8],
+) -> Result<Option<nc::Reading>, Stop> {
     let setup = Setup { flat: true, ..setup };
-    let mut reading = nc::read(machine, setup, file, bytes).ok()?;
+    let Ok(mut reading) = nc::read(machine, setup, file, bytes) else { return Ok(None) };
+    let height = |op: &Op| match op {
+        Op::Line(pose) | Op::Hole(pose) => Some(pose.point().z),
+        Op::Arc(arc) => Some(arc.end.point().z),
+        _ => None,
+    };
+    let heights = reading.program.records.iter().filter_map(|r| height(&r.op).map(|z| (r.line, z)));
+    if let Some((line, z)) = heights.into_iter().find(|(_, z)| z.abs() > SAME_HEIGHT) {
+        let message = format!(
+            "this cut is at Z {}, and one before it at a height that no block says",
+            number(z, 4)
+        );
+        let found = Diagnostic::error("flat-contour", message).file(file);
+        let help = "give Z in the first block, or leave it out of all: then the contour is flat";
+        let text = line_of(bytes, line);
+        return Err(found.help(help).at(line, text, 0, text.trim_ascii_end().len()).into());
+    }
     let message = "the program cuts before a block says Z: it is read as a flat contour, at Z 0";
     reading.warnings.push(Diagnostic::warning("flat-contour", message));
-    Some(reading)
+    Ok(Some(reading))
 }
+
+/// Within which two heights of a flat contour are the same, mm.
+const SAME_HEIGHT: f64 = 1e-6;
 
 /// The warnings; with `strict` they stop the command.
 pub(crate) fn held(warnings: Vec<Diagnostic>, strict: bool) -> Result<Vec<Diagnostic>, Stop> {
@@ -361,6 +396,7 @@ impl Origin {
             block_delete: self.block_delete,
             start: self.start.map(Vec3::from_array),
             flat: false,
+            purpose: Purpose::Program,
             surface: Vec::new(),
         })
     }

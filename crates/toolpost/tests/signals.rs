@@ -2,7 +2,7 @@
 
 use control::Setup;
 use machine::Machine;
-use program::Diagnostic;
+use program::{Diagnostic, Purpose};
 use std::process::{Command, Stdio};
 
 /// A program for LinuxCNC with everything that switches.
@@ -213,13 +213,15 @@ fn functions_of_the_builder_in_operations_of_freecad_are_written_or_refused() {
     for name in MILLS {
         let text = format!("extends = \"generic-3axis-{name}\"\nauxiliary = [10, 11, 162]\n");
         let to = machine(&text);
-        let program = freecad::read(&to, "part.json", job.clone()).unwrap().program;
+        let program =
+            freecad::read(&to, "part.json", job.clone(), Purpose::Program).unwrap().program;
         assert_eq!(called(&program), [10, 162, 11, 10], "{name}");
         let output = post::write(&program, &to).unwrap();
         let report = proof::prove(&program, &to, "new", &output.text, &Default::default());
         assert!(report.proven, "{name}: {:?}", report.mismatches);
         let without = machine(&format!("extends = \"generic-3axis-{name}\"\n"));
-        let found = freecad::read(&without, "part.json", job.clone()).unwrap_err();
+        let found =
+            freecad::read(&without, "part.json", job.clone(), Purpose::Program).unwrap_err();
         assert!(
             found.message.contains("M10") && found.help.contains("auxiliary"),
             "{name}: {found}"

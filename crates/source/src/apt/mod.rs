@@ -31,7 +31,7 @@ use geom::Vec3;
 use motion::Next;
 use program::{
     CompensatedPath, Compensation, Coolant, Diagnostic, Feed, Op, PathEvidence, Pose, Program,
-    Record as Step, Spindle, Tool, encoding,
+    Purpose, Record as Step, Spindle, Tool, encoding,
 };
 use record::{Joiner, Line, Lines, is_blank};
 use report::Report;
@@ -47,6 +47,8 @@ pub struct Options {
     pub csys: Option<Csys>,
     /// Which path the coordinates behind `CUTCOM` are, where the file does not show it.
     pub cutcom: Option<CompensatedPath>,
+    /// What the file is read for.
+    pub purpose: Purpose,
 }
 
 /// Where coordinates and vectors stand that follow a `CSYS` of SolidWorks CAM.
@@ -225,7 +227,7 @@ struct Reader {
     /// Open sections of a Makino file, with their lines.
     sections: Vec<(u32, Box<str>)>,
     ready: Ready,
-    /// A cut with a standing spindle, or without a feed, has been reported.
+    /// A cut with a standing spindle, or without a feed, has been reported, or is not asked about.
     stands: bool,
     no_feed: bool,
     ended: bool,
@@ -280,8 +282,8 @@ impl Reader {
             operation: None,
             sections: Vec::new(),
             ready: Ready::No,
-            stands: false,
-            no_feed: false,
+            stands: !options.purpose.asks_technology(),
+            no_feed: !options.purpose.asks_technology(),
             ended: false,
             known: false,
             hopeless: false,

@@ -7,6 +7,7 @@ mod folder;
 mod freecad;
 mod import;
 mod nc;
+mod questions;
 mod readme;
 mod saving;
 mod wire;

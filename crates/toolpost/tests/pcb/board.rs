@@ -124,7 +124,9 @@ impl<'a> Made<'a> {
     pub fn program(&self, part: &str) -> Program {
         let file = self.folder.path().join(format!("out/{part}.nc"));
         let origin = Origin { from: Some(self.machine.to_owned()), ..Origin::default() };
-        toolpost::toolpath::read(&file, false, &origin, None).unwrap().program
+        toolpost::toolpath::read(&file, false, &origin, None, program::Purpose::Program)
+            .unwrap()
+            .program
     }
 
     /// What is cut with the tip below Z 0, straight down or along.

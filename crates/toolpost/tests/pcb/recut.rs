@@ -46,7 +46,8 @@ impl Made {
     fn cut(&self, side: &str, lines: &Lines) -> Lines {
         let file = self.folder.path().join(side).with_extension("nc");
         let origin = Origin { from: Some(self.machine.to_owned()), ..Origin::default() };
-        let read = toolpost::toolpath::read(&file, false, &origin, None).unwrap();
+        let read = toolpost::toolpath::read(&file, false, &origin, None, program::Purpose::Program)
+            .unwrap();
         let x = |corner: &str| self.report["board"][corner][0].as_f64().unwrap();
         let both = x("low_mm") + x("high_mm");
         let mut cut = lines.clone();

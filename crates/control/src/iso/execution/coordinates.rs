@@ -2,7 +2,7 @@
 
 use super::frames::{Six, Transform, Unknown};
 use super::motion::LINEAR;
-use super::state::{Polar, Tilt};
+use super::state::{Polar, Tilt, UNKNOWN};
 use super::step::Step;
 use crate::event::{Action, Risk};
 use crate::iso::language::block::{Fault, Word};
@@ -62,7 +62,7 @@ impl Step<'_, '_, '_> {
                 let known = self.state.frames.unshift(keep);
                 self.reframe();
                 if !known {
-                    self.state.position = self.state.nowhere;
+                    self.state.position = UNKNOWN;
                 }
             }
             _ => {
@@ -165,9 +165,7 @@ impl Step<'_, '_, '_> {
             let machine = frames.to_machine(self.state.place.point(self.state.position));
             frames.select(number);
             self.state.place = frames.place();
-            let position = self.state.place.programmed(frames.of_machine(machine));
-            let unknown = position.is_nan_mask();
-            self.state.position = Vec3::select(unknown, self.state.nowhere, position);
+            self.state.position = self.state.place.programmed(frames.of_machine(machine));
         }
         self.state.work_offset = Some(number);
         self.actions.extend(WorkOffset::numbered(number).map(Action::WorkOffset));
@@ -475,7 +473,7 @@ impl Step<'_, '_, '_> {
             self.state.tilt = Tilt::None;
             self.state.frames.tilt = None;
             self.state.place = self.state.frames.place();
-            self.state.position = self.state.nowhere;
+            self.state.position = UNKNOWN;
         }
         Ok(())
     }
@@ -505,7 +503,7 @@ impl Step<'_, '_, '_> {
             * Mat3::from_rotation_x(j.to_radians())
             * Mat3::from_rotation_z(k.to_radians());
         self.state.tilt = Tilt::Declared(Frame::from_mat3_translation(turn, Vec3::new(x, y, z)));
-        self.state.position = self.state.nowhere;
+        self.state.position = UNKNOWN;
         Ok(())
     }
 }

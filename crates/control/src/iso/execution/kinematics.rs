@@ -1,6 +1,7 @@
 //! The kinematics of a machine that has two: on a LinuxCNC M functions of the builder choose whether X, Y and Z are the
 //! axes, or the tip of the tool in coordinates that turn with the table (`switchkins`; `docs/controls/linuxcnc.md`).
 
+use super::state::UNKNOWN;
 use super::step::Step;
 use crate::Settings;
 use crate::iso::language::block::Fault;
@@ -46,7 +47,7 @@ impl Step<'_, '_, '_> {
         let to = if follows { Kinematics::Tip } else { Kinematics::Axes };
         if self.state.kinematics != to {
             self.state.kinematics = to;
-            self.state.position = self.state.nowhere;
+            self.state.position = UNKNOWN;
         }
         Ok(())
     }

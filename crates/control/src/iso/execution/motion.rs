@@ -407,7 +407,9 @@ impl Step<'_, '_, '_> {
     pub(super) fn feed_for_cut(&mut self) -> Result<(), Fault> {
         let message = match self.state.feed {
             // A wire goes as fast as its generator lets it.
-            None if self.state.wire.is_some() => return Ok(()),
+            None if self.state.wire.is_some() || !self.state.purpose.asks_technology() => {
+                return Ok(());
+            }
             None => "a move at feed, and no feed has been given by F",
             Some(Feed::InverseTime(_)) if !self.block.gives(b'F') => {
                 "in G93 each move needs its own F"

@@ -337,7 +337,7 @@ impl Step<'_, '_, '_> {
         self.state.tilt = Tilt::Reached(frame);
         self.state.frames.tilt = Some(frame);
         self.state.place = self.state.frames.place();
-        self.state.position = self.state.nowhere;
+        self.state.position = UNKNOWN;
         for axis in 0..3 {
             if self.axes[axis] {
                 self.state.rotary[axis] = f64::NAN;

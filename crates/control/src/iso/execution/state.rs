@@ -10,7 +10,7 @@ use crate::iso::language::words::{FeedMode, Flavor, Motion, Plane, Side};
 use crate::kernel::compensation::Terms;
 use crate::{Settings, Units};
 use geom::{Frame, Vec3};
-use program::{Coolant, Feed, Spindle, WorkOffset};
+use program::{Coolant, Feed, Purpose, Spindle, WorkOffset};
 
 /// The modes, the position and what the machine was last told.
 #[derive(Clone, Debug)]
@@ -42,8 +42,10 @@ pub(crate) struct State {
     pub compensation: Compensation,
     /// What [`Action::WorkOffset`](crate::Action::WorkOffset) has said last.
     pub work_offset: Option<u32>,
-    /// The position of a tool of which nobody knows where it stands.
-    pub nowhere: Vec3,
+    /// Whether Z counts for nothing where no block has said it: a flat contour.
+    pub flat: bool,
+    /// What the program is read for.
+    pub purpose: Purpose,
     /// Programmed position in the frame in which words are read, mm; NaN where not known.
     pub position: Vec3,
     /// Positions of A, B, C in degrees; 0 for axes that the machine lacks, NaN where not known.
@@ -211,7 +213,8 @@ impl State {
                 radius: None,
             },
             work_offset: None,
-            nowhere: settings.setup.unknown_position(),
+            flat: settings.setup.flat,
+            purpose: settings.setup.purpose,
             position: settings.setup.position_at_start(),
             rotary: axes.map(|exists| if exists { f64::NAN } else { 0.0 }),
             modulo: settings.modulo,

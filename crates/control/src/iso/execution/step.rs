@@ -50,6 +50,9 @@ impl Control {
     ) -> Result<(), Fault> {
         let Control { flavor, axes, whole_numbers, state } = self;
         let (flavor, axes, whole_numbers) = (*flavor, *axes, *whole_numbers);
+        if state.flat && state.position.z.is_nan() {
+            state.position.z = 0.0;
+        }
         Step { flavor, axes, whole_numbers, state, block, actions }.run()
     }
 }

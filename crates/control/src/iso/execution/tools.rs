@@ -1,6 +1,6 @@
 //! Tools: their change, their lengths, and the registers that hold these.
 
-use super::state::{Length, Tilt};
+use super::state::{Length, Tilt, UNKNOWN};
 use super::step::Step;
 use crate::ToolData;
 use crate::event::{Action, Risk};
@@ -93,7 +93,7 @@ impl Step<'_, '_, '_> {
         self.put_in(number);
         self.turn(Spindle::Off);
         // The machine may go to a place of its own for the change.
-        self.state.position = self.state.nowhere;
+        self.state.position = UNKNOWN;
         Ok(())
     }
 
@@ -225,7 +225,7 @@ impl Step<'_, '_, '_> {
         // tool centre point in play and the axes turned, in all directions.
         let turned = self.state.rotary != [0.0; 3];
         if turned && (center(length) || center(self.state.length)) {
-            self.state.position = self.state.nowhere;
+            self.state.position = UNKNOWN;
         }
         let registers = &self.state.registers;
         self.state.position.z += self.state.length.value(registers) - length.value(registers);

@@ -532,7 +532,7 @@ impl Control<'_, '_> {
     }
 
     pub(super) fn needs_feed(&self, s: &Scanner, rapid: bool) -> Result<()> {
-        if rapid || self.feed.is_some() {
+        if rapid || self.feed.is_some() || !self.settings.setup.purpose.asks_technology() {
             return Ok(());
         }
         Err(s.error_block("feed", "no feed is active").help("give F or FMAX in the block").into())

@@ -148,6 +148,7 @@ impl<'a, 's> Control<'a, 's> {
         if self.called == 0 {
             self.line = line;
         }
+        self.settings.setup.flatten(&mut self.here);
     }
 
     pub(crate) fn emit(&mut self, action: Action) -> Result<()> {
@@ -247,7 +248,7 @@ impl<'a, 's> Control<'a, 's> {
 
     /// The position of the linear axes is not known any more.
     pub(super) fn forget_position(&mut self) {
-        self.here = self.settings.setup.unknown_position();
+        self.here = Vec3::NAN;
     }
 
     /// The positions of the rotary axes are not known any more.

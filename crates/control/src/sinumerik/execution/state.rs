@@ -111,8 +111,6 @@ pub(crate) struct State {
     pub tool_center: bool,
     /// The frames.
     pub frames: Frames,
-    /// The position of a tool of which nobody knows where it stands.
-    pub nowhere: Vec3,
     /// Where the tool is in the coordinates of the program, mm.
     pub position: Vec3,
     /// The coordinates that were programmed last, mm: what incremental ones count from.
@@ -207,7 +205,6 @@ impl State {
             edge: None,
             tool_center: false,
             frames: Frames::new(),
-            nowhere: settings.setup.unknown_position(),
             position: settings.setup.position_at_start(),
             programmed: settings.setup.position_at_start(),
             heading: Vec3::NAN,
@@ -364,8 +361,8 @@ impl State {
 
     /// Nobody knows any more where the linear axes are.
     pub fn lose_position(&mut self) {
-        self.position = self.nowhere;
-        self.programmed = self.nowhere;
+        self.position = Vec3::NAN;
+        self.programmed = Vec3::NAN;
         self.heading = Vec3::NAN;
     }
 

@@ -186,13 +186,6 @@ impl Run<'_, '_> {
     pub fn end(&mut self, program: &Program, source: &Source, after: Place) -> Fallible<bool> {
         let state = &mut self.interpreter.state;
         let Some(caller) = &mut self.level.caller else {
-            if after.at > program.text.len() {
-                let message = "the last block has no line end, without which the control (828D) does \
-                               not take the program as ended";
-                let mut error = source.block_error("program-end", message);
-                error.help = "end the last line of the file".into();
-                return Err(error);
-            }
             // What stands behind the end is only reached by jumps.
             return if program.has_jumped() { Ok(true) } else { check_rest(program, after) };
         };

@@ -4,6 +4,7 @@ use super::levels::{Caller, LEVELS};
 use super::library::{Library, Program};
 use super::outline::Place;
 use crate::Settings;
+use crate::event::{Action, Risk};
 use crate::kernel::compensation::Compensator;
 use crate::sinumerik::Fallible;
 use crate::sinumerik::execution::interpreter::Interpreter;
@@ -115,6 +116,9 @@ impl<'a, 's> Run<'a, 's> {
                 here = after;
                 continue;
             }
+            if after.at > program.text.len() && self.level.caller.is_none() {
+                self.interpreter.emit(&source, Action::Risk(Risk::LINE_END.into()))?;
+            }
             block.read(source, &self.interpreter.state)?;
             match block.statement.take().map(|statement| *statement) {
                 None => {
@@ -152,6 +156,9 @@ impl<'a, 's> Run<'a, 's> {
             if here.at < after.at {
                 self.interpreter.reads(&source, after.at - here.at)?;
             }
+        }
+        if self.level.caller.is_none() && !self.interpreter.settings.setup.purpose.asks_ends() {
+            return Ok(true);
         }
         let message = "the program has no end: M30, M2, M17 or RET is missing";
         let line = here.line.saturating_sub(1).max(program.first_line - 1);
