@@ -180,18 +180,20 @@ fn an_error_names_its_rule_and_place() {
 
 #[test]
 fn a_program_ends_once_at_its_last_line() {
-    for (text, line) in [
-        ("G0 X1\n", 1),
-        ("", 0),
-        ("G0 X1\nM30", 2),
-        ("M30\nG0 X1\n", 2),
-        ("M17\nM30\n", 2),
-        ("G0 X1 RET\n", 1),
-    ] {
+    for (text, line) in
+        [("G0 X1\n", 1), ("", 0), ("M30\nG0 X1\n", 2), ("M17\nM30\n", 2), ("G0 X1 RET\n", 1)]
+    {
         let error = run(text).unwrap_err();
         assert!(error.line == line && error.is_error(), "{text:?}: {error}");
     }
     assert!(run("RET\n\n; words\n").is_ok());
+    // Where the motion goes does not depend on it: a source is read, and a program that is to be proven refused.
+    let risks =
+        |text| run(text).unwrap().into_iter().filter(|e| matches!(e.action, Action::Risk(_)));
+    assert_eq!(risks("G0 X1\nM30\n").count(), 0);
+    let found: Vec<_> = risks("G0 X1\nM30").map(|event| (event.line, event.action)).collect();
+    let [(2, Action::Risk(risk))] = found.as_slice() else { panic!("{found:?}") };
+    assert!(risk.rule == "line-end" && risk.refused);
 }
 
 #[test]

@@ -32,7 +32,7 @@ pub fn python(module: &str) -> Option<PathBuf> {
         let run = Command::new(python).args(["-c", &format!("import {module}")]).output();
         run.is_ok_and(|run| run.status.success())
     };
-    let found = [ours, "python3".into()].into_iter().find(has);
+    let found = [ours, "python3".into(), "/usr/bin/python3".into()].into_iter().find(has);
     if found.is_none() {
         missing(&format!("no Python has the module {module} (PyPI)"));
     }

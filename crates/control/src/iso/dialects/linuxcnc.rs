@@ -9,6 +9,8 @@ use crate::iso::language::words::{
 const G_WORDS: &[GRow] = &[
     (50, Group::Motion, G::Motion(Motion::Spline { cubic: true })),
     (51, Group::Motion, G::Motion(Motion::Spline { cubic: false })),
+    (52, Group::Motion, G::Motion(Motion::Nurbs)),
+    (53, Group::Motion, G::Motion(Motion::EndOfNurbs)),
     (70, Group::Diameter, G::Diameter(true)),
     (80, Group::Diameter, G::Diameter(false)),
     (100, Group::OneShot, G::WriteData),
@@ -61,8 +63,6 @@ const M_WORDS: &[MRow] = &[
 ];
 
 const REFUSED_G: &[Refused] = &[
-    (52, "NURBS are not followed; write G5 or plain moves"),
-    (53, "NURBS are not followed; write G5 or plain moves"),
     (432, "a second length added to the first is not followed; write their sum in the tool table"),
     (700, "lathe cycles are not followed; write their moves"),
     (710, "lathe cycles are not followed; write their moves"),

@@ -14,6 +14,7 @@ mod freecad;
 mod kinematics;
 mod motion;
 pub(super) mod numbers;
+mod nurbs;
 pub(super) mod onward;
 mod patterns;
 mod places;

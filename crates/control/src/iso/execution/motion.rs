@@ -157,6 +157,8 @@ impl Step<'_, '_, '_> {
             Motion::RigidTap => self.rigid_tap(),
             Motion::Probe { away, must_answer } => self.probe(away, must_answer),
             Motion::Spline { cubic } => self.spline(cubic),
+            Motion::Nurbs => self.control_point(),
+            Motion::EndOfNurbs => self.along_nurbs(),
             Motion::Arc { clockwise } => {
                 let target = self.target(false)?;
                 let asked = matches!(self.block.g(Group::Motion), Some(G::Motion(_)));

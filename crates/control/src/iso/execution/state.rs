@@ -3,6 +3,7 @@
 use super::cycles::Holding;
 use super::frames::{Frames, Place};
 use super::kinematics::Kinematics;
+use super::nurbs::Nurbs;
 use super::tools::Registers;
 use super::wire::Wire;
 use crate::event::{Orientation, Position};
@@ -82,6 +83,8 @@ pub(crate) struct State {
     pub loose: u8,
     /// Polar coordinates are on.
     pub polar: Option<Polar>,
+    /// The curve whose `G5.3` has not come yet (LinuxCNC).
+    pub nurbs: Option<Box<Nurbs>>,
     /// Lathe: X is a diameter.
     pub diameter: bool,
     pub registers: Registers,
@@ -234,6 +237,7 @@ impl State {
             wire: flavor.is_wire().then(|| Wire::new(settings)),
             loose: 0,
             polar: None,
+            nurbs: None,
             diameter: false,
             registers: Registers::new(&settings.setup.tools),
             aside: settings.setup.aside,

@@ -39,6 +39,15 @@ impl Control {
         Control { flavor, axes, whole_numbers, state: State::new(flavor, axes, settings) }
     }
 
+    /// # Errors
+    /// A NURBS is open, along which the tool has not gone.
+    pub(crate) fn ends_no_curve(&self) -> Result<(), &'static str> {
+        match self.state.nurbs {
+            None => Ok(()),
+            Some(_) => Err("the program ends between G5.2 and G5.3"),
+        }
+    }
+
     /// Executes `block` and puts its records into `actions`.
     ///
     /// # Errors
@@ -65,6 +74,7 @@ impl Step<'_, '_, '_> {
         // What is left out where it only moves acts on G and M words of other groups, and on other letters.
         let more = !self.block.only_moves();
         self.one_command()?;
+        self.inside_nurbs()?;
         self.wire()?;
         if more {
             self.m_functions_beside_motion()?;

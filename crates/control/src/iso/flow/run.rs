@@ -130,6 +130,7 @@ impl<'a, 's> Run<'a, 's> {
     /// The text has ended: so has the program, but not one that it has called.
     fn end_of_text(&mut self) -> Result<(), Fault> {
         if self.frames.len() == 1 {
+            self.control.ends_no_curve().map_err(|message| self.at_line("nc-spline", message))?;
             if self.dictionary.flavor.ends_with_text() && !self.control.state.ended {
                 let line = self.here.line.max(1);
                 self.compensator.take(Event { line, action: Action::End })?;

@@ -611,6 +611,12 @@ impl<'a> Block<'a> {
         self.pending & bit(letter) != 0
     }
 
+    /// Whether the block has no letter but these, taken or not.
+    pub(crate) fn gives_only(&self, letters: &[u8]) -> bool {
+        let allowed = letters.iter().fold(0, |bits, &letter| bits | bit(letter));
+        self.given & !allowed == 0
+    }
+
     /// Whether the block has this letter, taken or not.
     pub(crate) fn gives(&self, letter: u8) -> bool {
         self.given & bit(letter) != 0

@@ -328,6 +328,8 @@ fn motion_word(values: &Values) -> Result<f64, String> {
         Some(Motion::RigidTap) => 33.1,
         Some(Motion::Spline { cubic: true }) => 5.0,
         Some(Motion::Spline { cubic: false }) => 5.1,
+        Some(Motion::Nurbs) => 5.2,
+        Some(Motion::EndOfNurbs) => 5.3,
         Some(Motion::Probe { away: false, must_answer: true }) => 38.2,
         Some(Motion::Probe { away: false, must_answer: false }) => 38.3,
         Some(Motion::Probe { away: true, must_answer: true }) => 38.4,

@@ -184,6 +184,10 @@ pub(crate) enum Motion {
     Spline {
         cubic: bool,
     },
+    /// `G5.2`: control points of a NURBS.
+    Nurbs,
+    /// `G5.3`: the tool goes along it.
+    EndOfNurbs,
     /// `G33`
     Thread,
     /// `G33.1`
