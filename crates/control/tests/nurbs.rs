@@ -90,7 +90,7 @@ fn a_nurbs_goes_where_linuxcnc_goes() {
         // Increments count from where the tool stands before the curve.
         "G91 G5.2 X0 Y10 P1\nX20 Y10 P1\nX20 Y0 P1\nG5.3\nG1 X1\n",
         "G20 G1 X1 Y1 Z1\nG5.2 X0 Y1 P1\nX2 Y1 P1\nX2 Y0 P1\nG5.3\n",
-        "#1=5 G5.2 X#1 Y10 P[#1-4]\no1 repeat [3]\n#1=[#1+3]\nX#1 Y[#1*#1/10] P1\no1 endrepeat\nG5.3\n",
+        "#1=5\nG5.2 X#1 Y10 P[#1-4]\no1 repeat [3]\n#1=[#1+3]\nX#1 Y[#1*#1/10] P1\no1 endrepeat\nG5.3\n",
     ];
     for curve in curves {
         let text = format!("{start}{curve}M2\n");
