@@ -123,12 +123,13 @@ judges-long:
 	scripts/setup judges
 	TOOLPOST_JUDGES=long $(MAKE) test
 
-## Licences, sources and versions of all crates, the fuzz targets' too. What is known of their weaknesses is asked of a
-## database on GitHub: `cargo deny check advisories`, where the network reaches it.
+## Licences, sources and versions of all crates, the fuzz targets' too, and their known weaknesses where the network reaches
+## the database of them.
 deny: rust
 	scripts/setup deny
 	cargo deny --locked check licenses bans sources
 	cargo deny --locked --manifest-path fuzz/Cargo.toml --config deny.toml check licenses bans sources
+	scripts/advisories
 
 ## THIRD-PARTY.md, the terms of the crates that are linked into the command and the Python package, written anew.
 notices: rust
