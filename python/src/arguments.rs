@@ -1,6 +1,7 @@
 //! What Python gives: points, directions, arrays, words that stand for something.
 
 use crate::error::{refused, released};
+use app::Stop;
 use freecad::Job;
 use numpy::{AllowTypeChange, PyArrayLike2};
 use program::Diagnostic;
@@ -9,7 +10,6 @@ use pyo3::prelude::*;
 use pyo3::types::{PyBool, PyDict, PyList, PyTuple};
 use serde_json::Value;
 use std::path::PathBuf;
-use toolpost::answer::Stop;
 
 /// A path as text: what names a file, or something of the library.
 pub fn text(path: PathBuf) -> String {

@@ -4,6 +4,7 @@ use crate::arguments::word;
 use crate::error::refused;
 use crate::program::Program;
 use crate::record::{COOLANTS, FEED_UNITS};
+use app::toolpath::Toolpath;
 use geom::Vec3;
 use program::{
     CompensatedPath, Compensation, Cycle, CycleKind, Diagnostic, Feed, Output, OutputValue,
@@ -11,7 +12,6 @@ use program::{
 };
 use pyo3::prelude::*;
 use pyo3::types::PyBool;
-use toolpost::toolpath::Toolpath;
 
 /// Builds a :class:`Program`; every method but :meth:`build` answers the builder, for a chain of calls.
 ///

@@ -1,12 +1,12 @@
 //! What goes wrong, as a `toolpost.Error`.
 
+use app::Stop;
 use program::{Diagnostic, Findings};
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyTuple, PyType};
 use std::panic::{AssertUnwindSafe, catch_unwind, set_hook};
 use std::sync::{Mutex, MutexGuard, PoisonError};
-use toolpost::answer::Stop;
 
 /// What the last panic had to say, and where it was. Work is done on several threads, so that the panic of a call
 /// need not be on its own: of two calls that panic at once both may tell the later one.

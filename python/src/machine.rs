@@ -5,12 +5,12 @@ use crate::columns::array;
 use crate::error::{refused, released};
 use crate::kinematics;
 use ::machine::library::{MACHINES, names};
+use app::Stop;
+use app::toolpath;
 use numpy::{AllowTypeChange, PyArray2, PyArrayLike2};
 use pyo3::prelude::*;
 use pyo3::types::{PyDict, PyTuple};
 use std::path::PathBuf;
-use toolpost::answer::Stop;
-use toolpost::toolpath;
 
 /// Two arrays with one row for each pose.
 type Pair<'py> = (Bound<'py, PyArray2<f64>>, Bound<'py, PyArray2<f64>>);

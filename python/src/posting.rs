@@ -4,15 +4,15 @@ use crate::arguments::{Text, positive};
 use crate::error::{class, findings, raised, released};
 use crate::machine::Machine;
 use crate::program::Program;
+use app::files;
+use app::post::{Posted, proven};
+use app::prove::compare;
+use app::{Account, Stop, Verdict};
 use proof::Tolerances;
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyTuple};
 use std::ffi::OsString;
 use std::path::{Path, PathBuf};
-use toolpost::answer::{Account, Stop, Verdict};
-use toolpost::files::{self, Target};
-use toolpost::post::{Posted, proven};
-use toolpost::prove::compare;
 
 /// Write the program of a machine, and prove it: what is not proven is not given out.
 ///
@@ -64,7 +64,7 @@ pub fn post<'py>(
     });
     let tolerances = tolerances(py, tolerance)?;
     let Posted { text, account } =
-        released(py, || proven(toolpath, machine, &file, &tolerances, &|_| ()))?;
+        released(py, || proven(toolpath, machine, &file, &tolerances, &()))?;
     let report = report(py, &account)?;
     if account.verdict != Verdict::Done {
         let error = raised(py, &account.findings);
@@ -107,9 +107,8 @@ pub fn prove<'py>(
 ) -> PyResult<Bound<'py, PyAny>> {
     let tolerances = tolerances(py, tolerance)?;
     let (toolpath, machine) = (&program.toolpath, &machine.described);
-    let account = released(py, || {
-        Ok::<_, Stop>(compare(toolpath, machine, file, text.bytes(), &tolerances))
-    })?;
+    let account =
+        released(py, || compare(toolpath, machine, file, text.bytes(), &tolerances, &()))?;
     report(py, &account)
 }
 
@@ -136,10 +135,7 @@ pub fn save(
 ) -> PyResult<()> {
     released(py, || {
         let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
-        let target = Target::new(&path, &inputs)?;
-        let Some(report) = report else { return files::save(&[(&target, text)]) };
-        let report_target = Target::new(&files::report_of(&path), &inputs)?;
-        files::save(&[(&report_target, report.as_bytes()), (&target, text)])
+        files::save_program(&path, text, report, &inputs)
     })
 }
 

@@ -6,18 +6,22 @@ use crate::columns::{Columns, Filled};
 use crate::error::{findings, released};
 use crate::machine::Machine;
 use crate::record::Record;
+use app::Stop;
+use app::toolpath::{self, Toolpath};
+use app::{Origin, Source};
+use control::{Units, WholeNumbers};
+use geom::Vec3;
 use numpy::{PyArray1, PyArray2};
+use program::CompensatedPath;
 use program::Purpose;
 use program::statistics::Statistics;
 use pyo3::exceptions::PyIndexError;
 use pyo3::prelude::*;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::{PyDict, PyList, PySlice, PyTuple};
+use source::apt::Csys;
 use std::path::PathBuf;
 use std::sync::atomic::{AtomicUsize, Ordering};
-use toolpost::answer::Stop;
-use toolpost::toolpath::{self, Toolpath};
-use toolpost::{Csys, CutcomPath, Origin, Units, Way, WholeNumbers};
 
 /// A program in the neutral vocabulary: a sequence of records, and its moves as NumPy arrays.
 ///
@@ -287,28 +291,31 @@ pub fn read(
     strict: bool,
 ) -> PyResult<Program> {
     let frames = [("local", Csys::Local), ("world", Csys::World)];
-    let paths = [("centre", CutcomPath::Centre), ("contour", CutcomPath::Contour)];
+    let paths = [("centre", CompensatedPath::Center), ("contour", CompensatedPath::Contour)];
     let counts = [("units", WholeNumbers::Units), ("increments", WholeNumbers::Increments)];
-    let ways = [("+X", Way::PlusX), ("-X", Way::MinusX), ("+Y", Way::PlusY), ("-Y", Way::MinusY)];
-    let lengths = [("mm", Units::Mm), ("inch", Units::Inch)];
+    let ways = [("+X", Vec3::X), ("-X", Vec3::NEG_X), ("+Y", Vec3::Y), ("-Y", Vec3::NEG_Y)];
+    let lengths = [("mm", Units::Millimeters), ("inch", Units::Inches)];
     for coordinate in start.into_iter().flatten() {
         number(py, "a coordinate of the start", coordinate)?;
     }
     let origin = Origin {
         from: control.map(text),
-        tools,
-        folder: folders,
+        tools: tools.map(Source::File),
+        folders,
         whole_numbers: whole_numbers
             .map(|given| word(py, "whole_numbers", given, &counts))
-            .transpose()?,
+            .transpose()?
+            .unwrap_or_default(),
         units: units.map(|given| word(py, "units", given, &lengths)).transpose()?,
         block_delete,
-        start,
+        start: start.map(Vec3::from_array),
         aside: aside.map(|given| word(py, "aside", given, &ways)).transpose()?,
         csys: csys.map(|given| word(py, "csys", given, &frames)).transpose()?,
         cutcom: cutcom.map(|given| word(py, "cutcom", given, &paths)).transpose()?,
+        ..Origin::default()
     };
-    released(py, || toolpath::read(&path, strict, &origin, None, Purpose::Program))
+    let source = Source::File(path);
+    released(py, || toolpath::read(&source, strict, &origin, None, Purpose::Program))
         .map(Program::from)
 }
 

@@ -24,6 +24,6 @@ pub mod upgrade;
 
 pub use inverse::{Inverse, Solutions};
 pub use kinematics::{Unsaid, lean};
-pub use load::{is_path, load, load_control, load_origin, load_text};
+pub use load::{Reach, is_path, load, load_control, load_origin, load_text};
 pub use model::*;
 pub use sheet::{Key, keys};

@@ -33,6 +33,7 @@ pub mod model;
 mod operation;
 pub mod outline;
 mod path;
+pub mod plan;
 mod report;
 pub mod setting;
 mod stroke;

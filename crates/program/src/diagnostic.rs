@@ -213,6 +213,13 @@ pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
     ranked.iter().map(|(_, k)| format!("`{k}`")).collect::<Vec<_>>().join(", ")
 }
 
+/// One finding where there may be several.
+impl From<Box<Diagnostic>> for Vec<Diagnostic> {
+    fn from(finding: Box<Diagnostic>) -> Vec<Diagnostic> {
+        vec![*finding]
+    }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

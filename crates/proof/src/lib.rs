@@ -81,11 +81,24 @@ pub fn prove(
     text: &[u8],
     tolerances: &Tolerances,
 ) -> Report {
+    prove_while(source, machine, file_name, text, tolerances, &|| true)
+}
+
+/// The same for as long as `go_on` says so, which is asked every few thousand events of the control. A proof that ends
+/// before is not proven: its mismatch has the rule `cancelled`.
+pub fn prove_while(
+    source: &Program,
+    machine: &Machine,
+    file_name: &str,
+    text: &[u8],
+    tolerances: &Tolerances,
+    go_on: &dyn Fn() -> bool,
+) -> Report {
     if let Some(found) = compensation::unsettled(source, machine) {
         return refused(source, machine, tolerances, found);
     }
     let run = |source: &Program, setup: Setup| {
-        let report = prove_on(source, machine, setup.clone(), file_name, text, tolerances);
+        let report = prove_on(source, machine, setup.clone(), (file_name, text), tolerances, go_on);
         let mut optional = control::optional_blocks(text);
         let Some((_, level)) = optional.next().filter(|_| report.proven) else { return report };
         if let Some((line, other)) = optional.find(|(_, other)| *other != level) {
@@ -97,7 +110,7 @@ pub fn prove(
         }
         // The operator may have switched the blocks behind `/` off.
         let setup = Setup { block_delete: true, ..setup };
-        let mut without = prove_on(source, machine, setup, file_name, text, tolerances);
+        let mut without = prove_on(source, machine, setup, (file_name, text), tolerances, go_on);
         for found in &mut without.mismatches {
             found.message = format!("without the blocks behind `/`: {}", found.message);
         }
@@ -124,6 +137,9 @@ pub fn prove(
     proven.unwrap_or_default()
 }
 
+/// After so many events of the control the caller is asked whether the proof goes on: some milliseconds.
+const EVENTS_AT_ONCE: u32 = 4096;
+
 /// The report of a proof that cannot begin.
 fn refused(
     source: &Program,
@@ -141,9 +157,9 @@ fn prove_on(
     source: &Program,
     machine: &Machine,
     setup: Setup,
-    file_name: &str,
-    text: &[u8],
+    (file_name, text): (&str, &[u8]),
     tolerances: &Tolerances,
+    go_on: &dyn Fn() -> bool,
 ) -> Report {
     let mut prover = Prover::new(source, machine, tolerances);
     let resolved = compensation::is_resolved(source, machine);
@@ -152,7 +168,17 @@ fn prove_on(
     }
     let run = match nc::settings(machine, setup.clone()) {
         Ok(settings) => {
-            control::read(&settings, file_name, text, &mut |event| prover.event(&event))
+            let mut events: u32 = 0;
+            control::read(&settings, file_name, text, &mut |event| {
+                events = events.wrapping_add(1);
+                if events.is_multiple_of(EVENTS_AT_ONCE) && !go_on() {
+                    let message = "the proof was ended before its end";
+                    return Err(Diagnostic::error("cancelled", message)
+                        .help("prove it again")
+                        .into());
+                }
+                prover.event(&event)
+            })
         }
         Err(found) => Err(found),
     };

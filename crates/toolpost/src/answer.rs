@@ -1,37 +1,18 @@
 //! What a command has to say, and where it is said: findings to the error stream, the rest to the
 //! output, or everything as one JSON object.
 
-use crate::summary;
+use app::{Account, Stop, Verdict, summary};
 use program::{Diagnostic, Findings};
 use serde_json::{Map, Value, json};
 use std::io::{self, Write};
 
-/// How a command ended.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Verdict {
-    /// What was asked for is done.
-    Done,
-    /// The machine cannot do it, or the proof failed.
-    Failed,
-    /// The input or the call is wrong.
-    Invalid,
-}
-
-impl Verdict {
-    fn name(self) -> &'static str {
-        match self {
-            Verdict::Done => "done",
-            Verdict::Failed => "failed",
-            Verdict::Invalid => "invalid",
-        }
-    }
-
-    fn code(self) -> u8 {
-        match self {
-            Verdict::Done => 0,
-            Verdict::Failed => 1,
-            Verdict::Invalid => 2,
-        }
+/// What JSON calls a verdict, and its exit code.
+fn ending(verdict: Verdict) -> (&'static str, u8) {
+    match verdict {
+        Verdict::Done => ("done", 0),
+        Verdict::Failed => ("failed", 1),
+        Verdict::Invalid => ("invalid", 2),
+        Verdict::Cancelled => ("cancelled", crate::INTERRUPTED),
     }
 }
 
@@ -47,62 +28,10 @@ pub struct Answer {
     findings: Vec<Diagnostic>,
 }
 
-/// What is told of a program: in rows for a person, in JSON for a machine.
-#[derive(Debug)]
-pub struct Account {
-    /// Whether it is proven.
-    pub verdict: Verdict,
-    /// What is told of it, and under which head.
-    pub rows: Vec<(&'static str, String)>,
-    /// The same, and more: an object.
-    pub data: Value,
-    /// What is wrong with it, or worth knowing.
-    pub findings: Vec<Diagnostic>,
-}
-
-impl Account {
-    /// The answer where the program is therefore not saved.
-    pub fn not_saved(mut self) -> Answer {
-        self.rows.push(("saved", String::from("nothing: what was there before is as it was")));
-        self.into()
-    }
-
-    /// The report that is saved beside a program.
-    pub fn report(&self) -> String {
-        let mut report = self.data.clone();
-        let findings = self.findings.iter().cloned().collect::<Findings>().finish();
-        report["warnings"] = json!(findings);
-        format!("{report:#}\n")
-    }
-}
-
-/// What stops a command: how it ended, and why.
-#[derive(Debug)]
-pub struct Stop {
-    /// How.
-    pub verdict: Verdict,
-    /// Why.
-    pub findings: Vec<Diagnostic>,
-}
-
-impl Stop {
-    /// What is wrong with the input.
-    pub fn invalid(findings: Vec<Diagnostic>) -> Stop {
-        Stop { verdict: Verdict::Invalid, findings }
-    }
-}
-
-/// A finding that stops a command is about its input, unless the command says otherwise.
-impl From<Box<Diagnostic>> for Stop {
-    fn from(finding: Box<Diagnostic>) -> Stop {
-        Stop { verdict: Verdict::Invalid, findings: vec![*finding] }
-    }
-}
-
-impl From<Diagnostic> for Stop {
-    fn from(finding: Diagnostic) -> Stop {
-        Box::new(finding).into()
-    }
+/// The answer about a program that is not saved.
+pub fn not_saved(mut account: Account) -> Answer {
+    account.rows.push(("saved", String::from("nothing: what was there before is as it was")));
+    account.into()
 }
 
 impl Answer {
@@ -129,12 +58,12 @@ impl Answer {
         let this = Answer { findings, ..self };
         let lost = this.findings.iter().find(|finding| finding.help.is_empty());
         debug_assert!(lost.is_none(), "a finding without a way out: {lost:?}");
-        let code = this.verdict.code();
+        let (_, code) = ending(this.verdict);
         let said = if json { this.say_json() } else { this.say_text(quiet) };
         match said {
             Err(error) if error.kind() != io::ErrorKind::BrokenPipe => {
                 let _ = writeln!(io::stderr(), "error: the answer cannot be printed: {error}");
-                Verdict::Invalid.code().max(code)
+                ending(Verdict::Invalid).1.max(code)
             }
             _ => code,
         }
@@ -157,7 +86,7 @@ impl Answer {
         let (errors, warnings): (Vec<_>, Vec<_>) =
             self.findings.into_iter().partition(Diagnostic::is_error);
         let mut object = Map::new();
-        object.insert("status".into(), self.verdict.name().into());
+        object.insert("status".into(), ending(self.verdict).0.into());
         if let Value::Object(data) = self.data {
             object.extend(data);
         }

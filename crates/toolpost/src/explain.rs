@@ -1,7 +1,7 @@
 //! `toolpost explain`: every name that a machine or control file may use, with unit and help.
 
-use crate::answer::{Answer, Stop};
-use crate::summary;
+use crate::answer::Answer;
+use app::{Stop, summary};
 use machine::Key;
 use program::Diagnostic;
 use serde_json::{Value, json};

@@ -1,31 +1,27 @@
-//! The command line of Toolpost, and what it shares with the Python package.
+//! The command line of Toolpost: arguments, files to write, answers on the terminal.
 //!
-//! Each command is a function from its arguments to an [`answer::Answer`]; printing and exit codes are
-//! the answer's business, files are [`files`]'. Nothing is decided here about toolpaths, machines or
-//! proofs: that is what the crates below are for. Getting a toolpath ([`toolpath`]), writing its proven
-//! program ([`post::proven`]) and holding any program against it ([`prove::compare`]) are functions of
-//! their own, for who has no command line.
+//! Each command is a function from its arguments to an [`answer::Answer`]; printing and exit codes are the answer's
+//! business. Nothing is decided here about toolpaths, machines or proofs: what every front end does (open a source,
+//! write, prove, plan a wire or a board) is the crate `app`, which has no command line.
+//!
+//! ```
+//! let words = ["toolpost", "--quiet", "machines", "show", "iso"];
+//! assert_eq!(toolpost::run(words.map(Into::into)), 0);
+//! ```
 
 pub mod answer;
 mod args;
-mod beside;
 mod explain;
-mod fcstd;
-pub mod files;
 mod machines;
 mod pcb;
-pub mod post;
+mod post;
 mod progress;
-pub mod prove;
-pub mod report;
+mod prove;
 mod show;
-pub mod summary;
-pub mod toolpath;
 mod wire;
 
-pub use args::{Csys, CutcomPath, Origin, Units, Way, WholeNumbers};
-
 use answer::Answer;
+use app::files;
 use args::{Command, CommandLine};
 use clap::{CommandFactory, Parser};
 use serde_json::json;
@@ -37,12 +33,12 @@ fn end_cleanly() {
     let _ = ctrlc::set_handler(|| {
         let _whole = files::saved();
         eprintln!("\ninterrupted");
-        std::process::exit(INTERRUPTED);
+        std::process::exit(INTERRUPTED.into());
     });
 }
 
 /// The exit code of a command that was interrupted: 128 and the number of the signal, as shells have it.
-const INTERRUPTED: i32 = 130;
+const INTERRUPTED: u8 = 130;
 
 /// Obeys a command line, whose first word is the name of the command, and answers the exit code.
 pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {

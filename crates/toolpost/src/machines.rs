@@ -1,10 +1,10 @@
 //! `toolpost machines`: the library, and files of one's own.
 
-use crate::answer::{Answer, Stop, Verdict};
+use crate::answer::Answer;
 use crate::args::Machines;
-use crate::files::{self, Target};
-use crate::summary;
-use crate::toolpath::{self, describe};
+use app::files::{self, Target};
+use app::toolpath::{self, describe};
+use app::{Stop, Verdict, summary};
 use machine::{Machine, library};
 use program::Diagnostic;
 use serde_json::{Value, json};

@@ -1,5 +1,6 @@
 //! What is being done, for who waits: on the error stream, on a terminal only, after a second.
 
+use app::Watch;
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressStyle};
 use std::sync::mpsc::{self, RecvTimeoutError, Sender};
 use std::thread;
@@ -34,9 +35,10 @@ impl Progress {
         }
         Progress { bar, _alive: alive }
     }
+}
 
-    /// The next step begins.
-    pub fn step(&self, what: &'static str) {
+impl Watch for Progress {
+    fn step(&self, what: &'static str) {
         if !self.bar.message().is_empty() {
             self.bar.inc(1);
         }

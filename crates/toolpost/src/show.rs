@@ -1,11 +1,12 @@
 //! `toolpost show`: what a toolpath amounts to, and what it looks like.
 
-use crate::answer::{Answer, Stop};
-use crate::args::{Frame, Show};
-use crate::files::{self, Target};
+use crate::answer::Answer;
+use crate::args::Show;
 use crate::progress::Progress;
-use crate::summary::{Shape, rows};
-use crate::toolpath;
+use app::files::{self, Target};
+use app::summary::{Shape, rows};
+use app::toolpath::{self, Frame};
+use app::{Source, Stop, Watch};
 use drawing::Format;
 use program::{Diagnostic, Purpose};
 use serde_json::json;
@@ -20,12 +21,12 @@ pub fn run(args: &Show, silent: bool) -> Result<Answer, Stop> {
     };
     let progress = Progress::new(if target.is_some() { 2 } else { 1 }, silent);
     progress.step("reading");
-    let toolpath =
-        toolpath::read(path, args.source.strict, &args.source.origin, None, Purpose::Picture)?;
+    let (source, origin) = (Source::from(path.as_path()), args.source.origin.origin());
+    let toolpath = toolpath::read(&source, args.source.strict, &origin, None, Purpose::Picture)?;
     let shape = Shape::of(&toolpath.program);
     if let Some((target, format)) = target {
         progress.step("drawing");
-        let swinging = toolpath::swinging(path, &args.source.origin, args.frame)?;
+        let swinging = toolpath::swinging(&source, &origin, args.frame)?;
         if swinging.is_none() && args.frame == Frame::Machine {
             let message = "only an NC program says where the axes of a machine go";
             let found = Diagnostic::error("machine-frame", message)

@@ -1,6 +1,6 @@
 //! A machine file: where it is found, and places in it.
 
-use super::{Result, is_path};
+use super::{Reach, Result, is_path};
 use crate::library;
 use crate::model::{Block, Place};
 use crate::sheet::Sheet;
@@ -34,7 +34,8 @@ impl SheetFile {
         SheetFile { path, text, own, quoted: true, lines }
     }
 
-    pub(super) fn read(path: &Path) -> Result<SheetFile> {
+    pub(super) fn read(path: &Path, reach: &Reach) -> Result<SheetFile> {
+        reach.check(path)?;
         let shown = path.display().to_string();
         let fail = |why: String| {
             Diagnostic::error("machine-unreadable", why)
@@ -84,10 +85,10 @@ impl SheetFile {
         }
     }
 
-    pub(super) fn parent(&self, parent: &Spanned<String>) -> Result<SheetFile> {
+    pub(super) fn parent(&self, parent: &Spanned<String>, reach: &Reach) -> Result<SheetFile> {
         let name = parent.get_ref();
         let found = if is_path(name) && self.own {
-            self.parent_file(name)
+            self.parent_file(name, reach)
         } else {
             SheetFile::of_library(name, library::EVERYTHING)
         };
@@ -95,7 +96,7 @@ impl SheetFile {
     }
 
     /// The file of that path, from the folder of this one.
-    fn parent_file(&self, name: &str) -> Result<SheetFile> {
+    fn parent_file(&self, name: &str, reach: &Reach) -> Result<SheetFile> {
         let folder = self.path.parent().unwrap_or(Path::new(""));
         let path = folder.join(name);
         let folder = if folder.as_os_str().is_empty() { Path::new(".") } else { folder };
@@ -109,7 +110,7 @@ impl SheetFile {
             return Err(Diagnostic::error("machine-file", message).help(help).into());
         }
         let quoted = self.quoted && is_inside;
-        Ok(SheetFile { quoted, ..SheetFile::read(&path)? })
+        Ok(SheetFile { quoted, ..SheetFile::read(&path, reach)? })
     }
 
     pub(super) fn name(&self) -> String {

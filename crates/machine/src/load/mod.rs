@@ -19,17 +19,80 @@ const LONGEST_CHAIN: usize = 16;
 
 type Result<T> = std::result::Result<T, Box<Diagnostic>>;
 
-/// Loads a machine: a name of the library, or the path of a file (with a `/` or ending in `.toml`).
+/// Where machine files may be read, all that they extend with them. The library is within every reach.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub enum Reach {
+    /// Wherever a path leads: for whoever sits at the computer.
+    #[default]
+    Anywhere,
+    /// In this folder and those in it, by whatever links.
+    Folder(PathBuf),
+    /// Nowhere.
+    Library,
+}
+
+impl Reach {
+    /// Loads a machine: a name of the library, or the path of a file (with a `/` or ending in `.toml`).
+    ///
+    /// # Errors
+    /// The first mistake in the chain of files, with file, line, column and the way out.
+    pub fn load(&self, name_or_path: &str) -> Result<Machine> {
+        let file = if is_path(name_or_path) {
+            SheetFile::read(Path::new(name_or_path), self)?
+        } else {
+            SheetFile::of_library(name_or_path, library::MACHINES)?
+        };
+        build(file, self)
+    }
+
+    /// Loads what a program was written for: a machine as [`Reach::load`] does, or a control of the library.
+    ///
+    /// # Errors
+    /// As [`Reach::load`].
+    pub fn load_origin(&self, name_or_path: &str) -> Result<Machine> {
+        match is_path(name_or_path) {
+            true => self.load(name_or_path),
+            false => build(SheetFile::of_library(name_or_path, library::EVERYTHING)?, self),
+        }
+    }
+
+    /// Loads a machine from TOML text, as if it stood in `file_name`. What it extends by path is looked up from the
+    /// folder of that name.
+    ///
+    /// # Errors
+    /// As [`Reach::load`].
+    pub fn load_text(&self, file_name: &str, text: &str) -> Result<Machine> {
+        build(SheetFile::new(PathBuf::from(file_name), text.to_string(), true), self)
+    }
+
+    /// # Errors
+    /// The file `path` lies elsewhere.
+    fn check(&self, path: &Path) -> Result<()> {
+        let (is_inside, help) = match self {
+            Reach::Anywhere => return Ok(()),
+            Reach::Folder(folder) => {
+                let inside = match (path.canonicalize(), folder.canonicalize()) {
+                    (Ok(file), Ok(folder)) => file.starts_with(folder),
+                    _ => false,
+                };
+                (inside, format!("copy it into {}", folder.display()))
+            }
+            Reach::Library => (false, String::from("name a control or a machine of the library")),
+        };
+        if is_inside {
+            return Ok(());
+        }
+        let found = Diagnostic::error("machine-reach", "this file may not be read here").help(help);
+        Err(found.file(path.display().to_string()).into())
+    }
+}
+
+/// Loads a machine as [`Reach::load`] does, from anywhere.
 ///
 /// # Errors
-/// The first mistake in the chain of files, with file, line, column and the way out.
+/// As there.
 pub fn load(name_or_path: &str) -> Result<Machine> {
-    let file = if is_path(name_or_path) {
-        SheetFile::read(Path::new(name_or_path))?
-    } else {
-        SheetFile::of_library(name_or_path, library::MACHINES)?
-    };
-    build(file)
+    Reach::Anywhere.load(name_or_path)
 }
 
 /// Loads a control of the library by its name, as the machine that says nothing beyond it.
@@ -37,30 +100,26 @@ pub fn load(name_or_path: &str) -> Result<Machine> {
 /// # Errors
 /// As [`load`].
 pub fn load_control(name: &str) -> Result<Machine> {
-    build(SheetFile::of_library(name, library::CONTROLS)?)
+    build(SheetFile::of_library(name, library::CONTROLS)?, &Reach::Library)
 }
 
-/// Loads what a program was written for: a machine as [`load`] does, or a control of the library.
+/// Loads what a program was written for as [`Reach::load_origin`] does, from anywhere.
 ///
 /// # Errors
-/// As [`load`].
+/// As there.
 pub fn load_origin(name_or_path: &str) -> Result<Machine> {
-    match is_path(name_or_path) {
-        true => load(name_or_path),
-        false => build(SheetFile::of_library(name_or_path, library::EVERYTHING)?),
-    }
+    Reach::Anywhere.load_origin(name_or_path)
 }
 
-/// Loads a machine from TOML text, as if it stood in `file_name`. What it extends by path is looked up
-/// from the folder of that name.
+/// Loads a machine from text as [`Reach::load_text`] does; what it extends may be anywhere.
 ///
 /// # Errors
-/// As [`load`].
+/// As there.
 pub fn load_text(file_name: &str, text: &str) -> Result<Machine> {
-    build(SheetFile::new(PathBuf::from(file_name), text.to_string(), true))
+    Reach::Anywhere.load_text(file_name, text)
 }
 
-fn build(file: SheetFile) -> Result<Machine> {
+fn build(file: SheetFile, reach: &Reach) -> Result<Machine> {
     let name = file.path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let shown = file.name();
     let mut control = None;
@@ -80,7 +139,7 @@ fn build(file: SheetFile) -> Result<Machine> {
                 .help("no file may extend itself, not even by way of others")
                 .into());
         }
-        let next = here.parent(&parent)?;
+        let next = here.parent(&parent, reach)?;
         // Of a machine that extends another one, the control is what that one extends.
         if control.as_deref().is_none_or(|name| library::find(name, library::MACHINES).is_some()) {
             control = Some(parent.get_ref().clone());
@@ -243,6 +302,34 @@ max = 200.5
             shown.contains("mine.toml:3:1: ") && shown.contains("not 0 mm and -1 mm"),
             "{shown}"
         );
+        std::fs::remove_dir_all(&folder).unwrap();
+    }
+
+    #[test]
+    fn a_caller_says_where_machine_files_may_be_read() {
+        let folder = std::env::temp_dir().join(format!("toolpost-reach-{}", std::process::id()));
+        std::fs::create_dir_all(folder.join("shop")).unwrap();
+        std::fs::write(folder.join("base.toml"), MILL).unwrap();
+        std::fs::write(folder.join("shop/base.toml"), MILL).unwrap();
+        let within = Reach::Folder(folder.join("shop"));
+        let mine = folder.join("shop/mine.toml").display().to_string();
+        let load = |reach: &Reach, extends: &str| {
+            let text = format!("extends = \"{extends}\"");
+            reach.load_text(&mine, &text).map_err(|found| found.to_string())
+        };
+        for extends in ["base.toml", "../shop/base.toml", "emco-concept-mill-105"] {
+            assert!(load(&within, extends).is_ok(), "{extends}");
+        }
+        for reach in [&within, &Reach::Library] {
+            let shown = load(reach, "../base.toml").unwrap_err();
+            assert!(shown.contains("mine.toml:1:11: ") && shown.contains("may not be read here"));
+        }
+        assert!(load(&Reach::Anywhere, "../base.toml").is_ok());
+        assert!(load(&Reach::Library, "base.toml").is_err());
+        assert!(load(&Reach::Library, "emco-concept-mill-105").is_ok());
+        let outside = folder.join("base.toml").display().to_string();
+        assert_eq!(within.load(&outside).unwrap_err().rule, "machine-reach");
+        assert_eq!(Reach::Library.load_origin(&mine).unwrap_err().rule, "machine-reach");
         std::fs::remove_dir_all(&folder).unwrap();
     }
 

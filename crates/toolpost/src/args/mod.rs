@@ -2,9 +2,22 @@
 
 pub mod pcb;
 
-use clap::{Args, Parser, Subcommand, ValueEnum, value_parser};
+use app::toolpath::Frame;
+use app::wire::Sync;
+use clap::builder::{PossibleValue, PossibleValuesParser, TypedValueParser};
+use clap::{Args, Parser, Subcommand, value_parser};
 use clap_complete::Shell;
+use control::{Units, WholeNumbers};
+use geom::{Vec2, Vec3};
+use program::CompensatedPath;
+use proof::{Accepted, Tolerances};
+use source::apt::Csys;
 use std::path::PathBuf;
+use wire::cutting::Side;
+use wire::plan::Trims;
+use wire::points::Step;
+use wire::taper::Rounding;
+use wire::{Lead, LeadShape};
 
 /// Turns a toolpath into a program that a machine runs, and proves it by reading the program back.
 #[derive(Debug, Parser)]
@@ -86,14 +99,14 @@ pub struct Origin {
     #[arg(long, value_name = "FOLDER", requires = "from")]
     pub folder: Vec<PathBuf>,
     /// What a length without a decimal point counts on a control that can be set either way.
-    #[arg(long, value_name = "WHAT", requires = "from")]
+    #[arg(long, value_name = "WHAT", requires = "from", value_parser = choice(&WHOLE_NUMBERS))]
     pub whole_numbers: Option<WholeNumbers>,
     /// What lengths count before the program says it by G20 or G21.
-    #[arg(long, value_name = "UNIT", requires = "from")]
+    #[arg(long, value_name = "UNIT", requires = "from", value_parser = choice(&UNITS))]
     pub units: Option<Units>,
     /// Which way a boring bar goes from the wall of a hole, where the machine is set to it (G76, G87).
-    #[arg(long, value_name = "WAY", requires = "from", allow_hyphen_values = true)]
-    pub aside: Option<Way>,
+    #[arg(long, value_name = "WAY", requires = "from", allow_hyphen_values = true, value_parser = choice(&ASIDE))]
+    pub aside: Option<Vec3>,
     /// Skip the blocks that begin with `/`.
     #[arg(long, requires = "from")]
     pub block_delete: bool,
@@ -104,6 +117,7 @@ pub struct Origin {
     #[arg(
         long,
         value_name = "FRAME",
+        value_parser = choice(&CSYS),
         conflicts_with = "from",
         help_heading = "SolidWorks CAM as the source"
     )]
@@ -112,63 +126,123 @@ pub struct Origin {
     #[arg(
         long,
         value_name = "PATH",
+        value_parser = choice(&CUTCOM),
         conflicts_with = "from",
         help_heading = "Cutter-location data as the source"
     )]
-    pub cutcom: Option<CutcomPath>,
+    pub cutcom: Option<CompensatedPath>,
 }
 
-/// Which path the coordinates behind `CUTCOM` are.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub enum CutcomPath {
-    /// That of the tool's centre: the CAM system has offset it by the tool.
-    Centre,
-    /// The contour that is cut: the control has to offset it.
-    Contour,
+impl Origin {
+    /// As the toolpath is opened.
+    pub fn origin(&self) -> app::Origin {
+        app::Origin {
+            from: self.from.clone(),
+            tools: self.tools.clone().map(app::Source::File),
+            folders: self.folder.clone(),
+            whole_numbers: self.whole_numbers.unwrap_or_default(),
+            units: self.units,
+            aside: self.aside,
+            block_delete: self.block_delete,
+            start: self.start.map(Vec3::from_array),
+            csys: self.csys,
+            cutcom: self.cutcom,
+            ..app::Origin::default()
+        }
+    }
 }
 
-/// Where the coordinates behind a `CSYS` stand.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub enum Csys {
-    /// In the frame of each CSYS.
-    Local,
-    /// In one frame, whatever CSYS says.
-    World,
-}
+/// Values of `--whole-numbers`.
+const WHOLE_NUMBERS: [Choice<WholeNumbers>; 2] = [
+    ("units", "mm, inches or degrees, as on a calculator", WholeNumbers::Units),
+    (
+        "increments",
+        "Thousandths of a mm, ten-thousandths of an inch, thousandths of a degree",
+        WholeNumbers::Increments,
+    ),
+];
 
-/// What lengths count.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub enum Units {
-    /// Millimetres.
-    Mm,
-    /// Inches.
-    Inch,
-}
+/// Values of `--units`.
+const UNITS: [Choice<Units>; 2] =
+    [("mm", "Millimetres", Units::Millimeters), ("inch", "Inches", Units::Inches)];
 
-/// What a length without a decimal point counts.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub enum WholeNumbers {
-    /// mm, inches or degrees, as on a calculator.
-    Units,
-    /// Thousandths of a mm, ten-thousandths of an inch, thousandths of a degree.
-    Increments,
-}
+/// Values of `--aside`.
+const ASIDE: [Choice<Vec3>; 4] = [
+    ("+X", "Along X", Vec3::X),
+    ("-X", "Against X", Vec3::NEG_X),
+    ("+Y", "Along Y", Vec3::Y),
+    ("-Y", "Against Y", Vec3::NEG_Y),
+];
 
-/// A way along an axis.
-#[derive(Clone, Copy, Debug, ValueEnum)]
-pub enum Way {
-    /// Along X.
-    #[value(name = "+X")]
-    PlusX,
-    /// Against X.
-    #[value(name = "-X")]
-    MinusX,
-    /// Along Y.
-    #[value(name = "+Y")]
-    PlusY,
-    /// Against Y.
-    #[value(name = "-Y")]
-    MinusY,
+/// Values of `--csys`.
+const CSYS: [Choice<Csys>; 2] = [
+    ("local", "In the frame of each CSYS", Csys::Local),
+    ("world", "In one frame, whatever CSYS says", Csys::World),
+];
+
+/// Values of `--cutcom`.
+const CUTCOM: [Choice<CompensatedPath>; 2] = [
+    (
+        "centre",
+        "That of the tool's centre: the CAM system has offset it by the tool",
+        CompensatedPath::Center,
+    ),
+    ("contour", "The contour that is cut: the control has to offset it", CompensatedPath::Contour),
+];
+
+/// Values of `--side`.
+const SIDES: [Choice<Side>; 5] = [
+    ("inside", "Within a closed contour, as for the opening of a die", Side::Inside),
+    ("outside", "Round a closed contour, as for a punch", Side::Outside),
+    (
+        "part",
+        "Round the outer contours and within those inside of them, as for a part with openings",
+        Side::Part,
+    ),
+    ("left", "Left of the way", Side::Left),
+    ("right", "Right of the way", Side::Right),
+];
+
+/// Values of `--trims`.
+const TRIMS: [Choice<Trims>; 2] = [
+    (
+        "alternate",
+        "Each the other way than the one before; the wire stays threaded",
+        Trims::Alternate,
+    ),
+    ("repeat", "Each the way of the first", Trims::Repeat),
+];
+
+/// Values of `--rounding`.
+const ROUNDING: [Choice<Rounding>; 2] = [
+    ("conical", "Their radius grows or shrinks with the lean", Rounding::Conical),
+    ("constant", "They keep their radius", Rounding::Constant),
+];
+
+/// Values of `--sync`.
+const SYNC: [Choice<Sync>; 2] = [
+    ("block", "Both programs have the same moves, block for block", Sync::Block),
+    ("length", "Both ends have covered the same part of their length", Sync::Length),
+];
+
+/// Values of `--frame`.
+const FRAMES: [Choice<Frame>; 2] = [
+    ("part", "That of the part: where the tip of the tool goes", Frame::Part),
+    ("machine", "That of the machine: where X, Y and Z go", Frame::Machine),
+];
+
+/// A word that an option takes, what it means, and what it stands for.
+type Choice<T> = (&'static str, &'static str, T);
+
+/// The parser of an option that takes one of some words.
+fn choice<T: Clone + Send + std::marker::Sync>(
+    all: &'static [Choice<T>],
+) -> impl TypedValueParser<Value = T> {
+    let words = all.iter().map(|(word, help, _)| PossibleValue::new(*word).help(*help));
+    PossibleValuesParser::new(words).try_map(|given| {
+        let found = all.iter().find(|(word, ..)| *word == given);
+        found.map(|(.., meaning)| meaning.clone()).ok_or("it is none of these words")
+    })
 }
 
 /// How close the proof must be.
@@ -184,9 +258,18 @@ pub struct Closeness {
     pub accept: Vec<&'static str>,
 }
 
+impl Closeness {
+    /// As the proof takes it.
+    pub fn tolerances(&self) -> Tolerances {
+        let names = self.accept.iter();
+        let accepted = names.fold(Accepted::default(), |all, name| all.and(name).unwrap_or(all));
+        Tolerances { position: self.tolerance, angle: None, accepted }
+    }
+}
+
 /// The rule of this name, where it may be accepted.
 fn accepted(name: &str) -> Result<&'static str, String> {
-    proof::Accepted::default().and(name)?.names().next().ok_or_else(String::new)
+    Accepted::default().and(name)?.names().next().ok_or_else(String::new)
 }
 
 /// Arguments of `post`.
@@ -236,6 +319,31 @@ pub struct Wire {
     pub division: Division,
 }
 
+impl Wire {
+    /// As the wire is planned.
+    pub fn settings(&self) -> app::wire::Settings {
+        let Ends { upper, sync, pair, height, uv_height } = &self.ends;
+        app::wire::Settings {
+            layers: self.drawing.layer.clone(),
+            close: self.drawing.close,
+            upper: upper.clone().map(app::Source::File),
+            sync: *sync,
+            pairs: pair.clone(),
+            height: *height,
+            uv_height: *uv_height,
+            cutting: self.cutting.cutting(),
+            step: match &self.division {
+                Division { step: Some(step), .. } => Some(Step::Length(*step)),
+                Division { chord_error: Some(error), .. } => Some(Step::ChordError(*error)),
+                Division { fit: true, .. } => Some(Step::Fit),
+                _ => None,
+            },
+            memory: self.division.memory,
+            select: self.select,
+        }
+    }
+}
+
 /// What is read of a drawing.
 #[derive(Debug, Args)]
 #[command(next_help_heading = "Drawing (.dxf) as the source")]
@@ -253,7 +361,7 @@ pub struct Drawing {
 #[command(next_help_heading = "The wire beside the contour")]
 pub struct Cutting {
     /// On which side of the contours the wire runs [default: along the contours themselves].
-    #[arg(long)]
+    #[arg(long, value_parser = choice(&SIDES))]
     pub side: Option<Side>,
     /// Diameter of the wire.
     #[arg(long, value_name = "MM", value_parser = length, requires = "side")]
@@ -265,7 +373,7 @@ pub struct Cutting {
     #[arg(long, value_name = "MM,...", value_parser = length, value_delimiter = ',', requires = "side")]
     pub leave: Vec<f64>,
     /// Which way round the passes after the first go.
-    #[arg(long, value_name = "HOW", default_value = "alternate", requires = "side")]
+    #[arg(long, value_name = "HOW", default_value = "alternate", value_parser = choice(&TRIMS), requires = "side")]
     pub trims: Trims,
     /// Where the wire is threaded; once for each contour, in their order.
     #[arg(long, value_name = "X,Y", value_parser = place, requires = "side", allow_hyphen_values = true)]
@@ -286,7 +394,7 @@ pub struct Cutting {
     #[arg(long, value_name = "DEGREES", requires = "side", allow_hyphen_values = true)]
     pub taper: Option<f64>,
     /// What becomes of rounded corners on the way up.
-    #[arg(long, value_name = "HOW", default_value = "conical", requires = "taper")]
+    #[arg(long, value_name = "HOW", default_value = "conical", value_parser = choice(&ROUNDING), requires = "taper")]
     pub rounding: Rounding,
     /// Let the control offset and lean the wire, each pass by the register of its number: the program is
     /// then that of the contour itself.
@@ -300,37 +408,29 @@ pub struct Cutting {
     pub feed: Vec<f64>,
 }
 
-/// On which side of a contour the wire runs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Side {
-    /// Within a closed contour, as for the opening of a die.
-    Inside,
-    /// Round a closed contour, as for a punch.
-    Outside,
-    /// Round the outer contours and within those inside of them, as for a part with openings.
-    Part,
-    /// Left of the way.
-    Left,
-    /// Right of the way.
-    Right,
-}
-
-/// Which way round the passes after the first go.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Trims {
-    /// Each the other way than the one before; the wire stays threaded.
-    Alternate,
-    /// Each the way of the first.
-    Repeat,
-}
-
-/// What becomes of rounded corners of a contour along which the wire leans.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Rounding {
-    /// Their radius grows or shrinks with the lean.
-    Conical,
-    /// They keep their radius.
-    Constant,
+impl Cutting {
+    /// As the passes are planned.
+    fn cutting(&self) -> wire::cutting::Cutting {
+        wire::cutting::Cutting {
+            side: self.side,
+            wire: self.wire.unwrap_or(0.0),
+            gap: self.gap.unwrap_or(0.0),
+            leave: self.leave.clone(),
+            trims: self.trims,
+            thread: self.thread.iter().copied().map(Vec2::from_array).collect(),
+            lead: Lead {
+                length: self.lead.unwrap_or(0.0),
+                shape: self.lead_arc.map_or(LeadShape::Straight, LeadShape::Arc),
+            },
+            begin: self.begin.map(Vec2::from_array),
+            tab: self.tab,
+            taper: self.taper,
+            rounding: self.rounding,
+            by_control: self.by_control,
+            round_corners: self.round_corners,
+            feeds: self.feed.clone(),
+        }
+    }
 }
 
 /// What the two ends of the wire follow.
@@ -341,7 +441,7 @@ pub struct Ends {
     #[arg(long, value_name = "FILE")]
     pub upper: Option<PathBuf>,
     /// Which point above belongs to which below.
-    #[arg(long, value_name = "HOW", default_value = "block", requires = "upper")]
+    #[arg(long, value_name = "HOW", default_value = "block", value_parser = choice(&SYNC), requires = "upper")]
     pub sync: Sync,
     /// A point below and the one above that belongs to it, instead of --sync; several times in the order
     /// of travel, between which both ends cover the same part of their length.
@@ -353,15 +453,6 @@ pub struct Ends {
     /// Height of the plane in which the machine counts U and V, where its file does not say it (`height` in [wire]).
     #[arg(long, value_name = "MM", value_parser = length)]
     pub uv_height: Option<f64>,
-}
-
-/// Which point above belongs to which below.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Sync {
-    /// Both programs have the same moves, block for block.
-    Block,
-    /// Both ends have covered the same part of their length.
-    Length,
 }
 
 /// Into how many points arcs are divided, for a control that cuts none.
@@ -409,19 +500,10 @@ pub struct Show {
     #[arg(long, short, value_name = "FILE")]
     pub output: Option<PathBuf>,
     /// In which frame an NC program is drawn.
-    #[arg(long, value_enum, default_value = "part")]
+    #[arg(long, default_value = "part", value_parser = choice(&FRAMES))]
     pub frame: Frame,
     #[command(flatten)]
     pub source: Source,
-}
-
-/// A frame of a drawing.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Frame {
-    /// That of the part: where the tip of the tool goes.
-    Part,
-    /// That of the machine: where X, Y and Z go.
-    Machine,
 }
 
 /// Commands of `machines`.

@@ -1,8 +1,12 @@
 //! What can be typed after `toolpost pcb`.
 
-use super::{Closeness, length, lengths, option, place};
+use super::{Choice, Closeness, choice, length, lengths, option, place};
 use ::pcb::board::Face;
-use clap::{Args, ValueEnum};
+use ::pcb::isolation::{Direction, Narrow};
+use ::pcb::plan::{self, Isolate, Part, Settings, Turn};
+use clap::Args;
+use drawing::Format;
+use geom::Vec2;
 use std::path::PathBuf;
 
 /// Arguments of `pcb`.
@@ -22,14 +26,14 @@ pub struct Pcb {
     #[arg(long, value_name = "NAME=VALUE", value_parser = option)]
     pub option: Vec<(String, String)>,
     /// What to make [default: all that the board has and that tools are given for].
-    #[arg(long, value_name = "WHAT,...", value_delimiter = ',')]
+    #[arg(long, value_name = "WHAT,...", value_delimiter = ',', value_parser = choice(&PARTS))]
     pub only: Vec<Part>,
     /// Take every warning about the board as an error.
     #[arg(long)]
     pub strict: bool,
     /// How pictures are saved.
-    #[arg(long, value_name = "FORMAT", default_value = "svg")]
-    pub picture: Picture,
+    #[arg(long, value_name = "FORMAT", default_value = "svg", value_parser = choice(&PICTURES))]
+    pub picture: std::option::Option<Format>,
     #[command(flatten)]
     pub closeness: Closeness,
     #[command(flatten)]
@@ -46,93 +50,124 @@ pub struct Pcb {
     pub running: Running,
 }
 
-/// A program of a board.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Part {
-    /// The copper of the front.
-    Front,
-    /// The copper of the back, from the back.
-    Back,
-    /// The holes.
-    Drill,
-    /// The edge of the board and its cut-outs.
-    Outline,
-    /// The solder mask of the front.
-    FrontMask,
-    /// The solder mask of the back, from the back.
-    BackMask,
-    /// The legend of the front.
-    FrontLegend,
-    /// The legend of the back, from the back.
-    BackLegend,
-}
-
-impl Part {
-    /// All.
-    pub const ALL: [Part; 8] = [
-        Part::Front,
-        Part::FrontMask,
-        Part::FrontLegend,
-        Part::Drill,
-        Part::Back,
-        Part::BackMask,
-        Part::BackLegend,
-        Part::Outline,
-    ];
-
-    /// What its program and picture are called.
-    pub fn name(self) -> &'static str {
-        match self {
-            Part::Front => "front",
-            Part::Back => "back",
-            Part::Drill => "drill",
-            Part::Outline => "outline",
-            Part::FrontMask => "front-mask",
-            Part::BackMask => "back-mask",
-            Part::FrontLegend => "front-legend",
-            Part::BackLegend => "back-legend",
-        }
-    }
-
-    /// What of the board it is about.
-    pub fn what(self) -> &'static str {
-        match self {
-            Part::Front => "copper of the front",
-            Part::Back => "copper of the back",
-            Part::Drill => "hole",
-            Part::Outline => "outline",
-            Part::FrontMask => "solder mask of the front",
-            Part::BackMask => "solder mask of the back",
-            Part::FrontLegend => "legend of the front",
-            Part::BackLegend => "legend of the back",
-        }
-    }
-
-    /// Whether it cuts copper from the top.
-    pub fn is_copper(self) -> bool {
-        matches!(self, Part::Front | Part::Back)
-    }
-
-    /// The side that it is about; `None` for what goes through the board.
-    pub fn face(self) -> Option<Face> {
-        match self {
-            Part::Front | Part::FrontMask | Part::FrontLegend => Some(Face::Front),
-            Part::Back | Part::BackMask | Part::BackLegend => Some(Face::Back),
-            Part::Drill | Part::Outline => None,
+impl Pcb {
+    /// As the board is planned.
+    pub fn settings(&self) -> Settings {
+        let Pcb { isolation, clearing, drilling, outline, placing, running, .. } = self;
+        Settings {
+            only: self.only.clone(),
+            isolation: plan::Isolation {
+                tool: isolation.tool,
+                vee: isolation.vee,
+                tip: isolation.tip,
+                depth: isolation.depth,
+                step: isolation.step,
+                passes: isolation.passes,
+                overlap: isolation.overlap,
+                direction: isolation.direction,
+                narrow: isolation.narrow,
+                isolate: isolation.isolate,
+            },
+            clearing: plan::Clearing {
+                clear: clearing.clear.clone(),
+                margin: clearing.margin,
+                mask_tool: clearing.mask_tool,
+                legend_tool: clearing.legend_tool,
+                engrave: clearing.engrave,
+            },
+            drilling: plan::Drilling {
+                drills: drilling.drills.clone(),
+                drill_tolerance: drilling.drill_tolerance,
+                hole_mill: drilling.hole_mill,
+                peck: drilling.peck,
+                from: drilling.from,
+            },
+            outline: plan::Outline {
+                outline_tool: outline.outline_tool,
+                outline_step: outline.outline_step,
+                tabs: outline.tabs,
+                tab_width: outline.tab_width,
+                tab_height: outline.tab_height,
+            },
+            placing: plan::Placing {
+                thickness: placing.thickness,
+                through: placing.through,
+                corner: placing.corner.map(Vec2::from_array),
+                as_drawn: placing.as_drawn,
+                turn: placing.turn,
+                alignment: placing.alignment,
+                panel: placing.panel,
+                spacing: placing.spacing,
+            },
+            running: plan::Running {
+                feed: running.feed,
+                plunge: running.plunge,
+                drill_feed: running.drill_feed,
+                outline_feed: running.outline_feed,
+                speed: running.speed,
+                travel: running.travel,
+                approach: running.approach,
+                probe: running.probe,
+                on_control: running.on_control,
+            },
         }
     }
 }
 
-/// How pictures are saved.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Picture {
-    /// As lines.
-    Svg,
-    /// As pixels.
-    Png,
-    /// Not at all.
-    None,
-}
+/// Values of `--only`.
+const PARTS: [Choice<Part>; 8] = [
+    ("front", "The copper of the front", Part::Front),
+    ("back", "The copper of the back, from the back", Part::Back),
+    ("drill", "The holes", Part::Drill),
+    ("outline", "The edge of the board and its cut-outs", Part::Outline),
+    ("front-mask", "The solder mask of the front", Part::FrontMask),
+    ("back-mask", "The solder mask of the back, from the back", Part::BackMask),
+    ("front-legend", "The legend of the front", Part::FrontLegend),
+    ("back-legend", "The legend of the back, from the back", Part::BackLegend),
+];
+
+/// Values of `--picture`.
+const PICTURES: [Choice<Option<Format>>; 3] = [
+    ("svg", "As lines", Some(Format::Svg)),
+    ("png", "As pixels", Some(Format::Png)),
+    ("none", "Not at all", None),
+];
+
+/// Values of `--direction`.
+const DIRECTIONS: [Choice<Direction>; 2] = [
+    ("climb", "The edge of the tool leaves the copper that stays: clean edges", Direction::Climb),
+    (
+        "conventional",
+        "The edge of the tool enters at the copper that stays",
+        Direction::Conventional,
+    ),
+];
+
+/// Values of `--narrow`.
+const NARROW: [Choice<Narrow>; 2] = [
+    ("leave-out", "Nothing: the nets stay joined there", Narrow::LeaveOut),
+    ("middle", "A cut down the middle, which takes some copper from both", Narrow::Middle),
+];
+
+/// Values of `--isolate`.
+const ISOLATE: [Choice<Isolate>; 2] = [
+    ("contours", "Around copper, as near as the tool allows", Isolate::Contours),
+    (
+        "middle",
+        "In the middle between nets: they keep all copper that is nearer to them than to others",
+        Isolate::Middle,
+    ),
+];
+
+/// Values of `--from`.
+const FACES: [Choice<Face>; 2] =
+    [("front", "The front", Face::Front), ("back", "The back", Face::Back)];
+
+/// Values of `--turn`.
+const TURNS: [Choice<Turn>; 2] = [
+    ("y", "Along Y: left and right change places", Turn::Y),
+    ("x", "Along X: up and down change places", Turn::X),
+];
 
 /// How copper is isolated.
 #[derive(Debug, Args)]
@@ -160,41 +195,14 @@ pub struct Isolation {
     #[arg(long, value_name = "PART", value_parser = part, default_value = "0.25")]
     pub overlap: f64,
     /// Which way around.
-    #[arg(long, value_name = "HOW", default_value = "climb")]
+    #[arg(long, value_name = "HOW", default_value = "climb", value_parser = choice(&DIRECTIONS))]
     pub direction: Direction,
     /// What is done between nets where the tool is wider than the gap.
-    #[arg(long, value_name = "HOW", default_value = "leave-out")]
+    #[arg(long, value_name = "HOW", default_value = "leave-out", value_parser = choice(&NARROW))]
     pub narrow: Narrow,
     /// Where the cuts are.
-    #[arg(long, value_name = "HOW", default_value = "contours")]
+    #[arg(long, value_name = "HOW", default_value = "contours", value_parser = choice(&ISOLATE))]
     pub isolate: Isolate,
-}
-
-/// Which way around.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Direction {
-    /// The edge of the tool leaves the copper that stays: clean edges.
-    Climb,
-    /// The edge of the tool enters at the copper that stays.
-    Conventional,
-}
-
-/// What is done between nets where the tool is wider than the gap.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Narrow {
-    /// Nothing: the nets stay joined there.
-    LeaveOut,
-    /// A cut down the middle, which takes some copper from both.
-    Middle,
-}
-
-/// Where the cuts are that isolate.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Isolate {
-    /// Around copper, as near as the tool allows.
-    Contours,
-    /// In the middle between nets: they keep all copper that is nearer to them than to others.
-    Middle,
 }
 
 /// What else is cut of copper, mask and legend.
@@ -235,26 +243,8 @@ pub struct Drilling {
     #[arg(long, value_name = "MM", value_parser = step)]
     pub peck: Option<f64>,
     /// From which side holes and edges are cut.
-    #[arg(long, value_name = "SIDE", default_value = "front")]
-    pub from: CutFrom,
-}
-
-/// A side of a board.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum CutFrom {
-    /// The front.
-    Front,
-    /// The back.
-    Back,
-}
-
-impl From<CutFrom> for Face {
-    fn from(side: CutFrom) -> Face {
-        match side {
-            CutFrom::Front => Face::Front,
-            CutFrom::Back => Face::Back,
-        }
-    }
+    #[arg(long, value_name = "SIDE", default_value = "front", value_parser = choice(&FACES))]
+    pub from: Face,
 }
 
 /// How the board is cut out.
@@ -295,7 +285,7 @@ pub struct Placing {
     #[arg(long)]
     pub as_drawn: bool,
     /// How the board is turned over for its back: about a line along Y, or along X, through its middle.
-    #[arg(long, value_name = "LINE", default_value = "y")]
+    #[arg(long, value_name = "LINE", default_value = "y", value_parser = choice(&TURNS))]
     pub turn: Turn,
     /// Diameter of holes beside the board, drilled with the others, by which it is aligned when it is turned.
     #[arg(long, value_name = "MM", value_parser = length)]
@@ -306,15 +296,6 @@ pub struct Placing {
     /// How far the boards of a panel are apart.
     #[arg(long, value_name = "MM", value_parser = not_negative, default_value = "4", requires = "panel")]
     pub spacing: f64,
-}
-
-/// The line about which a board is turned over.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Turn {
-    /// Along Y: left and right change places.
-    Y,
-    /// Along X: up and down change places.
-    X,
 }
 
 /// How the machine runs.
@@ -395,5 +376,29 @@ fn grid(text: &str) -> Result<[u32; 2], String> {
     match parsed {
         Some(grid) if grid.iter().all(|count| (1..=1000).contains(count)) => Ok(grid),
         _ => Err(String::from("columns and rows are needed, such as 2x3, up to 1000 each")),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::{Command, CommandLine};
+    use ::pcb::plan::Settings;
+    use clap::Parser;
+
+    #[test]
+    fn what_nobody_types_is_the_default_of_the_crates() {
+        let parsed = |words: &str| CommandLine::try_parse_from(words.split(' ')).unwrap().command;
+        match parsed("toolpost pcb board.toml -m grbl-3018 -o out") {
+            Command::Pcb(args) => assert_eq!(args.settings(), Settings::default()),
+            other => panic!("{other:?}"),
+        }
+        match parsed("toolpost wire part.nc -m bp-95d -o part.pts") {
+            Command::Wire(args) => {
+                let (typed, default) = (args.settings(), app::wire::Settings::default());
+                assert_eq!(typed.cutting, default.cutting);
+                assert_eq!((typed.close, typed.sync), (default.close, default.sync));
+            }
+            other => panic!("{other:?}"),
+        }
     }
 }

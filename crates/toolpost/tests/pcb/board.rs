@@ -8,12 +8,12 @@
 //! ```
 
 use crate::folder::{Folder, Said};
+use app::Origin;
 use drawing::Segment;
 use geom::Vec2;
 use program::Program;
 use serde_json::Value;
 use std::f64::consts::TAU;
-use toolpost::Origin;
 
 /// What isolates it, on a machine that has room for it.
 pub const CALL: [&str; 8] = ["pcb", "board", "-o", "out", "-m", "grbl-3018", "--tool", "0.4"];
@@ -124,7 +124,7 @@ impl<'a> Made<'a> {
     pub fn program(&self, part: &str) -> Program {
         let file = self.folder.path().join(format!("out/{part}.nc"));
         let origin = Origin { from: Some(self.machine.to_owned()), ..Origin::default() };
-        toolpost::toolpath::read(&file, false, &origin, None, program::Purpose::Program)
+        app::toolpath::read(&file.as_path().into(), false, &origin, None, program::Purpose::Program)
             .unwrap()
             .program
     }

@@ -2,13 +2,13 @@
 //! away from a sheet of copper. What is left has to be the copper of the Gerber file, net by net.
 
 use crate::scanlines::{Groups, Lines};
+use app::Origin;
 use geom::Vec2;
 use pcb::board::Copper;
 use pcb::gerber::{self, Image};
 use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::{Path, PathBuf};
-use toolpost::Origin;
 
 /// From scan line to scan line, mm.
 const STEP: f64 = 0.02;
@@ -46,8 +46,14 @@ impl Made {
     fn cut(&self, side: &str, lines: &Lines) -> Lines {
         let file = self.folder.path().join(side).with_extension("nc");
         let origin = Origin { from: Some(self.machine.to_owned()), ..Origin::default() };
-        let read = toolpost::toolpath::read(&file, false, &origin, None, program::Purpose::Program)
-            .unwrap();
+        let read = app::toolpath::read(
+            &file.as_path().into(),
+            false,
+            &origin,
+            None,
+            program::Purpose::Program,
+        )
+        .unwrap();
         let x = |corner: &str| self.report["board"][corner][0].as_f64().unwrap();
         let both = x("low_mm") + x("high_mm");
         let mut cut = lines.clone();

@@ -1,11 +1,12 @@
 //! The ways of the wire as a neutral program: as they are, or as points.
 
+use crate::points::Points;
+use crate::{Contour, Element, Path};
 use geom::{Vec2, Vec3};
 use program::{ArcTo, Circle, Compensation, Feed, NoPose, Op, Pose, Program};
-use wire::points::Points;
-use wire::{Contour, Element, Path};
 
 /// A way of the wire without a break.
+#[derive(Clone, Debug)]
 pub struct Leg {
     /// Where the wire goes.
     pub path: Path,
@@ -52,7 +53,9 @@ impl ByControl {
 /// Which end of the wire.
 #[derive(Clone, Copy, Debug)]
 pub enum End {
+    /// The one at Z 0.
     Lower,
+    /// The one at the height of the part.
     Upper,
 }
 

@@ -3,6 +3,7 @@
 mod inflate;
 
 use crate::files;
+use crate::input::Source;
 use program::Diagnostic;
 use std::fs::{self, File};
 use std::io;
@@ -28,20 +29,23 @@ pub fn is(path: &Path) -> bool {
     path.extension().is_some_and(|ending| ending.eq_ignore_ascii_case("fcstd"))
 }
 
-/// The job of the document `path`, as JSON.
+/// The job of a document, as JSON.
 ///
 /// # Errors
 /// There is no FreeCAD, it takes too long, or the document has no job.
-pub fn job(path: &Path) -> Result<Vec<u8>, Box<Diagnostic>> {
-    let about = |message: String| Diagnostic::error("freecad", message).file(files::name(path));
-    inflate::check(&files::read(path)?)
-        .map_err(|found| Box::new((*found).file(files::name(path))))?;
-    let document = fs::canonicalize(path)
-        .map_err(|error| about(format!("cannot be read: {error}")).help("look at its name"))?;
-    let folder = tempfile::tempdir()
-        .map_err(|error| about(format!("there is no room to work in: {error}")))?;
-    let [script, json, said] =
-        ["toolpost_job.py", "job.json", "said"].map(|name| folder.path().join(name));
+pub fn job(source: &Source) -> Result<Vec<u8>, Box<Diagnostic>> {
+    let about = |message: String| Diagnostic::error("freecad", message).file(source.name());
+    let bytes = source.read()?;
+    inflate::check(&bytes).map_err(|found| Box::new((*found).file(source.name())))?;
+    let no_room = |error| about(format!("there is no room to work in: {error}"));
+    let folder = tempfile::tempdir().map_err(no_room)?;
+    let [script, json, said, copy] =
+        ["toolpost_job.py", "job.json", "said", "copy.FCStd"].map(|name| folder.path().join(name));
+    let document = match source.file() {
+        Some(path) => fs::canonicalize(path)
+            .map_err(|error| about(format!("cannot be read: {error}")).help("look at its name"))?,
+        None => fs::write(&copy, &bytes).map(|()| copy).map_err(no_room)?,
+    };
     let run = || -> io::Result<Option<ExitStatus>> {
         fs::write(&script, SCRIPT)?;
         let mut child = start(|program| {

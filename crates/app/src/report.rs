@@ -1,4 +1,4 @@
-//! What stands beside a program: the report of what it was made of, and whether the two are still a pair.
+//! The report of a program: what the program was made of, and whether the two are still a pair.
 
 use crate::files;
 use crate::toolpath::Toolpath;
@@ -52,7 +52,7 @@ struct Saved {
     sha256: Digests,
 }
 
-/// What the report beside the program file `path` says about its origin; `now` finds the digests of today. Nothing where
+/// What the report next to the program file `path` says about its origin; `now` finds the digests of today. Nothing where
 /// there is no report.
 ///
 /// # Errors

@@ -1,20 +1,17 @@
 //! What is cut of a board: the operations of each program.
 
-use super::setup::Setup;
-use crate::answer::Stop;
-use crate::args::pcb::{self as args, Part, Pcb};
-use geom::Vec2;
-use geom::region::Region;
-use machine::Machine;
-use pcb::drilling::{Drilling, Mill, Slots};
-use pcb::gerber::Image;
-use pcb::isolation::{Direction, Isolation, Narrow, NarrowGap, Severed, severed};
-use pcb::outline::{Outline, Tabs};
-use pcb::tour::Tour;
-use pcb::{
+use super::{Isolate, Part, Settings, Setup};
+use crate::drilling::{Drilling, Mill, Slots};
+use crate::gerber::Image;
+use crate::isolation::{Direction, Isolation, Narrow, NarrowGap, Severed, severed};
+use crate::outline::{Outline, Tabs};
+use crate::tour::Tour;
+use crate::{
     Board, Clearing, Copper, Cut, Cutter, Division, Engraving, Hole, MERGED, Operation, Path, Tool,
     depths,
 };
+use geom::Vec2;
+use geom::region::Region;
 use program::Diagnostic;
 use rayon::prelude::*;
 
@@ -42,15 +39,20 @@ pub struct Work {
 }
 
 impl Work {
-    /// What is cut for `part` of a board that lies so.
+    /// What is cut for `part` of a board that lies so, by a spindle that turns `fastest` 1/min at most.
     ///
     /// # Errors
     /// Where a tool is missing, or cannot do it.
-    pub fn of(part: Part, setup: &Setup, args: &Pcb, machine: &Machine) -> Result<Work, Stop> {
+    pub fn of(
+        part: Part,
+        setup: &Setup,
+        settings: &Settings,
+        fastest: f64,
+    ) -> Result<Work, Vec<Diagnostic>> {
         let board = &setup.board;
-        let speed = args.running.speed.unwrap_or(USUAL_SPEED.min(machine.spindle.max));
+        let speed = settings.running.speed.unwrap_or(USUAL_SPEED.min(fastest));
         let mut work = Work::default();
-        let worker = Worker { args, speed };
+        let worker = Worker { asked: settings, speed };
         let side = &board.front;
         match part {
             Part::Front | Part::Back => {
@@ -79,52 +81,59 @@ impl Work {
 }
 
 struct Worker<'a> {
-    args: &'a Pcb,
+    asked: &'a Settings,
     speed: f64,
 }
 
 impl Worker<'_> {
     /// Isolates copper, and takes away what is surplus where that is asked for.
-    fn copper(&self, work: &mut Work, copper: &Copper, board: &Board) -> Result<(), Stop> {
-        let settings = &self.args.isolation;
+    fn copper(
+        &self,
+        work: &mut Work,
+        copper: &Copper,
+        board: &Board,
+    ) -> Result<(), Vec<Diagnostic>> {
+        let settings = &self.asked.isolation;
         let bit = self.bit()?;
         let step = settings.step.unwrap_or(settings.depth);
-        pcb::setting::step("the step of the isolation", step, settings.depth)?;
+        crate::setting::step("the step of the isolation", step, settings.depth)?;
         let depths = depths(settings.depth, step);
         let width = bit.cutter.width(settings.depth);
         let paths = match settings.isolate {
-            args::Isolate::Contours => self.around(work, copper, bit.cutter)?,
-            args::Isolate::Middle => self.between(work, copper, board, width)?,
+            Isolate::Contours => self.around(work, copper, bit.cutter)?,
+            Isolate::Middle => self.between(work, copper, board, width)?,
         };
         work.operations.push(Operation {
             name: format!("isolation, {}", bit.name),
             tool: bit,
             cuts: along(&paths, width, &depths),
         });
-        if self.args.clearing.clear.is_empty() {
+        if self.asked.clearing.clear.is_empty() {
             return Ok(());
         }
         let area = area(board)?;
-        let clearing = self.clearing(self.args.clearing.clear.clone());
-        let cleared = clearing.rub_out(&copper.region, self.args.clearing.margin, &area)?;
+        let clearing = self.clearing(self.asked.clearing.clear.clone());
+        let cleared = clearing.rub_out(&copper.region, self.asked.clearing.margin, &area)?;
         self.cleared(work, "surplus copper", &clearing, &cleared.passes, &depths);
         self.missing(work, &cleared.rest, "not cleared: the tools are too wide");
         Ok(())
     }
 
     /// The ways around copper.
-    fn around(&self, work: &mut Work, copper: &Copper, cutter: Cutter) -> Result<Vec<Path>, Stop> {
-        let settings = &self.args.isolation;
+    fn around(
+        &self,
+        work: &mut Work,
+        copper: &Copper,
+        cutter: Cutter,
+    ) -> Result<Vec<Path>, Vec<Diagnostic>> {
+        let settings = &self.asked.isolation;
         let isolation = Isolation {
             cutter,
             depth: settings.depth,
             passes: settings.passes as usize,
             overlap: settings.overlap,
             direction: self.direction(),
-            narrow: match settings.narrow {
-                args::Narrow::LeaveOut => Narrow::LeaveOut,
-                args::Narrow::Middle => Narrow::Middle,
-            },
+            narrow: settings.narrow,
         };
         let isolated = isolation.isolate(copper, None)?;
         tell_severed(work, copper, &isolated.severed);
@@ -139,9 +148,9 @@ impl Worker<'_> {
         copper: &Copper,
         gaps: &[NarrowGap],
         width: f64,
-    ) -> Result<(), Stop> {
+    ) -> Result<(), Vec<Diagnostic>> {
         let Some(widest) = gaps.first().map(NarrowGap::widest_cut) else { return Ok(()) };
-        let middle = self.args.isolation.narrow == args::Narrow::Middle;
+        let middle = self.asked.isolation.narrow == Narrow::Middle;
         for gap in gaps {
             let done = match middle && gap.can_be_cut() {
                 true => format!("cut all the same: {:.3} mm thinner each", gap.thinned(width)),
@@ -170,7 +179,7 @@ impl Worker<'_> {
                 "a cut {width:.3} mm wide fits between no two nets that are not joined elsewhere: \
                  nothing would be isolated"
             );
-            return Err(Diagnostic::error("tool-too-wide", message).help(help).into());
+            return Err(vec![Diagnostic::error("tool-too-wide", message).help(help)]);
         }
         let done = if middle { "cut down the middle" } else { "left out" };
         let gaps = counted(gaps.len(), "gap");
@@ -186,16 +195,16 @@ impl Worker<'_> {
         copper: &Copper,
         board: &Board,
         width: f64,
-    ) -> Result<Vec<Path>, Stop> {
-        if self.args.isolation.passes > 1 {
+    ) -> Result<Vec<Path>, Vec<Diagnostic>> {
+        if self.asked.isolation.passes > 1 {
             let message =
                 "one way in the middle divides two nets, and several passes are asked for";
             let help = "leave out --passes, or --isolate middle";
-            return Err(Diagnostic::error("passes", message).help(help).into());
+            return Err(vec![Diagnostic::error("passes", message).help(help)]);
         }
-        let Division { mut paths, narrow } = pcb::divided(copper, &area(board)?, width)?;
+        let Division { mut paths, narrow } = crate::divided(copper, &area(board)?, width)?;
         self.narrow(work, copper, &narrow, width)?;
-        if self.args.isolation.narrow == args::Narrow::Middle {
+        if self.asked.isolation.narrow == Narrow::Middle {
             let middles: Vec<Path> = narrow.into_iter().filter_map(|gap| gap.middle).collect();
             tell_severed(work, copper, &severed(copper, &middles, width)?);
             paths.extend(middles);
@@ -204,12 +213,12 @@ impl Worker<'_> {
     }
 
     /// Drills, and mills what no drill makes.
-    fn drill(&self, work: &mut Work, holes: &[Hole]) -> Result<(), Stop> {
+    fn drill(&self, work: &mut Work, holes: &[Hole]) -> Result<(), Vec<Diagnostic>> {
         let (settings, placing, running) =
-            (&self.args.drilling, &self.args.placing, &self.args.running);
+            (&self.asked.drilling, &self.asked.placing, &self.asked.running);
         let mill = settings.hole_mill.map(|diameter| Mill {
             tool: Tool { feed: running.outline_feed, ..self.end_mill(diameter) },
-            step: self.args.outline.outline_step,
+            step: self.asked.outline.outline_step,
             direction: self.direction(),
             instead: f64::INFINITY,
         });
@@ -225,18 +234,18 @@ impl Worker<'_> {
             mill,
             from: Vec2::ZERO,
         };
-        let drilled = drilling.drill(holes).map_err(Stop::invalid)?;
+        let drilled = drilling.drill(holes)?;
         work.operations.extend(drilled.operations);
         work.warnings.extend(drilled.warnings);
         Ok(())
     }
 
     /// Cuts the board out.
-    fn outline(&self, work: &mut Work, board: &Board) -> Result<(), Stop> {
-        let (settings, placing) = (&self.args.outline, &self.args.placing);
+    fn outline(&self, work: &mut Work, board: &Board) -> Result<(), Vec<Diagnostic>> {
+        let (settings, placing) = (&self.asked.outline, &self.asked.placing);
         let outline = Outline {
             tool: Tool {
-                feed: self.args.running.outline_feed,
+                feed: self.asked.running.outline_feed,
                 ..self.end_mill(settings.outline_tool)
             },
             thickness: placing.thickness,
@@ -250,7 +259,7 @@ impl Worker<'_> {
             }),
             from: Vec2::ZERO,
         };
-        let cut = outline.cut(&area(board)?).map_err(Stop::invalid)?;
+        let cut = outline.cut(&area(board)?)?;
         let name = format!("outline, {}", cut.operation.tool.name);
         work.operations.push(Operation { name, ..cut.operation });
         work.warnings.extend(cut.warnings);
@@ -258,29 +267,29 @@ impl Worker<'_> {
     }
 
     /// Opens solder mask.
-    fn mask(&self, work: &mut Work, mask: &Region) -> Result<(), Stop> {
-        let clearing = self.clearing(self.args.clearing.mask_tool.into_iter().collect());
+    fn mask(&self, work: &mut Work, mask: &Region) -> Result<(), Vec<Diagnostic>> {
+        let clearing = self.clearing(self.asked.clearing.mask_tool.into_iter().collect());
         let cleared = clearing.clear(mask)?;
         self.cleared(
             work,
             "solder mask",
             &clearing,
             &cleared.passes,
-            &[self.args.clearing.engrave],
+            &[self.asked.clearing.engrave],
         );
         self.missing(work, &cleared.rest, "not opened: the tool is too wide");
         Ok(())
     }
 
     /// Engraves what is printed.
-    fn legend(&self, work: &mut Work, legend: &Image) -> Result<(), Stop> {
-        let width = self.args.clearing.legend_tool.unwrap_or(0.0);
-        let Engraving { paths, rest } = pcb::engraved(legend, width)?;
+    fn legend(&self, work: &mut Work, legend: &Image) -> Result<(), Vec<Diagnostic>> {
+        let width = self.asked.clearing.legend_tool.unwrap_or(0.0);
+        let Engraving { paths, rest } = crate::engraved(legend, width)?;
         let tool = self.end_mill(width);
         work.operations.push(Operation {
             name: format!("legend, {}", tool.name),
             tool,
-            cuts: along(&paths, width, &[self.args.clearing.engrave]),
+            cuts: along(&paths, width, &[self.asked.clearing.engrave]),
         });
         self.missing(work, &rest, "not engraved: the tool is too wide");
         Ok(())
@@ -329,15 +338,12 @@ impl Worker<'_> {
     }
 
     fn direction(&self) -> Direction {
-        match self.args.isolation.direction {
-            args::Direction::Climb => Direction::Climb,
-            args::Direction::Conventional => Direction::Conventional,
-        }
+        self.asked.isolation.direction
     }
 
     /// The tool that isolates.
-    fn bit(&self) -> Result<Tool, Stop> {
-        let settings = &self.args.isolation;
+    fn bit(&self) -> Result<Tool, Vec<Diagnostic>> {
+        let settings = &self.asked.isolation;
         match (settings.tool, settings.vee) {
             (Some(diameter), _) => Ok(self.end_mill(diameter)),
             (None, Some(degrees)) => {
@@ -348,7 +354,7 @@ impl Worker<'_> {
                 let message = "no tool is given that cuts around copper";
                 let help = "give --tool with the width of an end mill, or --vee with the angle of a V-bit; \
                             or leave copper out with --only";
-                Err(Diagnostic::error("no-tool", message).help(help).into())
+                Err(vec![Diagnostic::error("no-tool", message).help(help)])
             }
         }
     }
@@ -359,7 +365,7 @@ impl Worker<'_> {
 
     /// A tool for copper.
     fn tool(&self, name: String, cutter: Cutter) -> Tool {
-        let running = &self.args.running;
+        let running = &self.asked.running;
         Tool { name, cutter, feed: running.feed, plunge: running.plunge, speed: self.speed }
     }
 }
@@ -414,7 +420,7 @@ fn along(paths: &[Path], width: f64, depths: &[f64]) -> Vec<Cut> {
     let mut ways = tour.of_paths(&ways);
     if depths.len() == 1 {
         // Deeper, a way that is not closed any more would be cut the other way round.
-        ways = pcb::joined(&ways, width, JOINED);
+        ways = crate::joined(&ways, width, JOINED);
     }
     let at = ways.last().map_or(Vec2::ZERO, Path::end);
     let order = Tour { from: at, ..tour }.of_points(&dots);
@@ -425,13 +431,13 @@ fn along(paths: &[Path], width: f64, depths: &[f64]) -> Vec<Cut> {
 }
 
 /// Where there is board.
-fn area(board: &Board) -> Result<Region, Stop> {
+fn area(board: &Board) -> Result<Region, Vec<Diagnostic>> {
     if let Some(outline) = &board.outline {
         return Ok(outline.clone());
     }
     let message = "no file says where the board ends";
     let help = "give the layer of its outline too";
-    Err(Diagnostic::error("no-outline", message).help(help).into())
+    Err(vec![Diagnostic::error("no-outline", message).help(help)])
 }
 
 /// Whether gaps that are left out join all conductors, which are more than one, with each other.

@@ -1,11 +1,11 @@
 //! How a board lies on the machine with one of its sides up.
 
-use super::plan::empty;
-use crate::answer::Stop;
-use crate::args::pcb::{Pcb, Turn};
+use super::empty;
+use super::{Settings, Turn};
+use crate::board::{Axis, Face};
+use crate::{Board, Hole};
 use geom::Vec2;
-use pcb::board::{Axis, Face};
-use pcb::{Board, Hole};
+use program::Diagnostic;
 
 /// How much is left between the pins that align a board and the way on which it is cut out, mm.
 const PINS_BESIDE: f64 = 1.0;
@@ -19,12 +19,12 @@ pub struct Setup {
 }
 
 impl Setup {
-    /// The board put where `args` say, with this side up.
+    /// The board put where `settings` say, with this side up.
     ///
     /// # Errors
     /// Where it cannot be put there.
-    pub fn of(face: Face, board: Board, args: &Pcb) -> Result<Setup, Stop> {
-        let placing = &args.placing;
+    pub fn of(face: Face, board: Board, settings: &Settings) -> Result<Setup, Box<Diagnostic>> {
+        let placing = &settings.placing;
         let board = match placing.panel {
             Some([columns, rows]) => {
                 board.panel(columns as usize, rows as usize, Vec2::splat(placing.spacing))?
@@ -32,7 +32,7 @@ impl Setup {
             None => board,
         };
         let (low, _) = board.extents().ok_or_else(empty)?;
-        let corner = placing.corner.map_or(Vec2::ZERO, Vec2::from);
+        let corner = placing.corner.unwrap_or_default();
         let front = if placing.as_drawn { board } else { board.moved(corner - low)? };
         let axis = match placing.turn {
             Turn::Y => Axis::X(front.middle().x),
@@ -40,7 +40,7 @@ impl Setup {
         };
         let pins = match placing.alignment {
             Some(diameter) => {
-                let beside = args.outline.outline_tool + PINS_BESIDE;
+                let beside = settings.outline.outline_tool + PINS_BESIDE;
                 front.pins(axis, diameter, beside)?.to_vec()
             }
             None => Vec::new(),

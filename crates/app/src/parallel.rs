@@ -1,9 +1,9 @@
-//! Something that is done beside something else.
+//! Two pieces of work at the same time.
 
 use std::{panic, thread};
 
 /// What both answer: `work` on this thread, `other` meanwhile in one of its own.
-pub(crate) fn beside<A, B: Send>(
+pub(crate) fn parallel<A, B: Send>(
     work: impl FnOnce() -> A,
     other: impl FnOnce() -> B + Send,
 ) -> (A, B) {

@@ -1,10 +1,11 @@
 //! Which board is meant: a folder of files, some files, a board of KiCad, or a model.
 
-use crate::answer::Stop;
+use crate::account::Stop;
 use crate::files;
+use crate::input;
 use pcb::board::{Artwork, File};
 use program::Diagnostic;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 /// The most files of a folder that are looked at.
 const MOST_FILES: usize = 1000;
@@ -16,22 +17,25 @@ pub struct Source {
     /// Its files, and what each holds.
     pub layers: Vec<(String, String)>,
     /// The files that were read.
-    pub files: Vec<PathBuf>,
+    pub files: Vec<input::Source>,
 }
 
-/// Reads the board that `paths` name.
-pub fn read(paths: &[PathBuf]) -> Result<Source, Stop> {
-    let name = name(paths);
-    let given = match paths {
-        [folder] if folder.is_dir() => within(folder)?,
+/// Reads the board that `given` is.
+///
+/// # Errors
+/// What is wrong with a file, or with all of them together.
+pub fn read(given: &[input::Source]) -> Result<Source, Stop> {
+    let name = name(given);
+    let all = match given {
+        [input::Source::File(folder)] if folder.is_dir() => within(folder)?,
         files => files.to_vec(),
     };
-    let files = chosen(paths, given)?;
+    let files = chosen(given, all)?;
     let mut texts = Vec::with_capacity(files.len());
     for file in &files {
-        texts.push((files::name(file), files::text(file)?));
+        texts.push((file.name(), file.text()?));
     }
-    let (artwork, layers) = match (&texts[..], files.first().map(|file| ending(file))) {
+    let (artwork, layers) = match (&texts[..], files.first().map(ending)) {
         ([(file, text)], Some(kind)) if kind == "kicad_pcb" => {
             let artwork = pcb::kicad::artwork(file, text).map_err(Stop::invalid)?;
             (artwork, vec![(file.clone(), String::from("a board of KiCad"))])
@@ -60,18 +64,18 @@ const COPY: &str = "_autosave-";
 /// Endings of boards as models.
 const MODEL: [&str; 2] = ["toml", "json"];
 
-fn ending(file: &Path) -> String {
-    file.extension().unwrap_or_default().to_string_lossy().to_lowercase()
+fn ending(file: &input::Source) -> String {
+    file.path().extension().unwrap_or_default().to_string_lossy().to_lowercase()
 }
 
 /// The files that are read: those of layers, or one that is a board by itself.
-fn chosen(paths: &[PathBuf], given: Vec<PathBuf>) -> Result<Vec<PathBuf>, Stop> {
-    let is_whole = |file: &&PathBuf| {
+fn chosen(named: &[input::Source], given: Vec<input::Source>) -> Result<Vec<input::Source>, Stop> {
+    let is_whole = |file: &&input::Source| {
         let ending = ending(file);
         ending == "kicad_pcb" || given.len() == 1 && MODEL.contains(&ending.as_str())
     };
-    let is_named = |file: &&&PathBuf| paths.contains(file);
-    let wholes: Vec<&PathBuf> = given.iter().filter(is_whole).collect();
+    let is_named = |file: &&&input::Source| named.iter().any(|named| named.path() == file.path());
+    let wholes: Vec<&input::Source> = given.iter().filter(is_whole).collect();
     match &wholes[..] {
         [] => Ok(given),
         [one] if given.len() == 1 => Ok(vec![(*one).clone()]),
@@ -80,7 +84,7 @@ fn chosen(paths: &[PathBuf], given: Vec<PathBuf>) -> Result<Vec<PathBuf>, Stop> 
         _ if given.iter().any(|file| PLOTS.contains(&ending(file).as_str())) => Ok(given),
         [one] => Ok(vec![(*one).clone()]),
         _ => {
-            let names: Vec<String> = wholes.iter().map(|file| files::name(file)).collect();
+            let names: Vec<String> = wholes.iter().map(|file| file.name()).collect();
             let message = format!("there are several boards in this folder: {}", names.join(", "));
             let found = Diagnostic::error("board", message).help("give the file of the one");
             Err(found.into())
@@ -89,16 +93,16 @@ fn chosen(paths: &[PathBuf], given: Vec<PathBuf>) -> Result<Vec<PathBuf>, Stop> 
 }
 
 /// What the board is called.
-fn name(paths: &[PathBuf]) -> String {
-    let named = |path: &Path| match path.is_dir() {
-        true => files::name(&std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())),
-        false => path.file_stem().unwrap_or_default().to_string_lossy().into_owned(),
+fn name(given: &[input::Source]) -> String {
+    let named = |source: &input::Source| match source.file().filter(|path| path.is_dir()) {
+        Some(path) => files::name(&std::fs::canonicalize(path).unwrap_or_else(|_| path.to_owned())),
+        None => source.path().file_stem().unwrap_or_default().to_string_lossy().into_owned(),
     };
-    paths.first().map_or_else(String::new, |path| named(path))
+    given.first().map_or_else(String::new, named)
 }
 
 /// The files of a folder, in the order of their names.
-fn within(folder: &Path) -> Result<Vec<PathBuf>, Stop> {
+fn within(folder: &Path) -> Result<Vec<input::Source>, Stop> {
     let about =
         |message: String| Diagnostic::error("folder", message).file(folder.display().to_string());
     let entries = std::fs::read_dir(folder)
@@ -120,13 +124,13 @@ fn within(folder: &Path) -> Result<Vec<PathBuf>, Stop> {
         return Err(about(message).help(help).into());
     }
     files.sort();
-    Ok(files)
+    Ok(files.into_iter().map(input::Source::File).collect())
 }
 
-fn not_alone(board: &Path) -> Stop {
+fn not_alone(board: &input::Source) -> Stop {
     let message = "it is a whole board, and other files are given with it";
     Diagnostic::error("board", message)
         .help("give it alone, or the Gerber and Excellon files alone")
-        .file(files::name(board))
+        .file(board.name())
         .into()
 }

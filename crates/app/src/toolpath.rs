@@ -1,26 +1,64 @@
-//! Getting the toolpath and the machine that a command names.
+//! Opening toolpaths and machines.
 
-use crate::answer::{Stop, Verdict};
-use crate::args::{Csys, CutcomPath, Frame, Origin, Units, Way, WholeNumbers};
+use crate::account::{Stop, Verdict};
 use crate::fcstd;
 use crate::files;
+use crate::input::Source;
 use crate::summary::{Shape, number};
-use control::{Dialect, Setup};
+use control::{Dialect, Setup, Units, WholeNumbers};
 use freecad::{Job, Listing};
 use geom::Vec3;
-use machine::{Machine, library};
+use machine::{Machine, Reach, library};
 use program::{
     CompensatedPath, Diagnostic, Digest, Op, Program, Purpose, Severity, encoding, line_of,
 };
 use serde_json::{Value, json};
-use source::apt::{self, Cutcom, SetUps};
+use source::apt::{self, Csys, Cutcom, SetUps};
 use std::path::{Path, PathBuf};
+
+/// What a source does not say itself: what an NC program was written for and what the operator has set up, and how
+/// records of cutter-location data are meant.
+#[derive(Clone, Debug, Default)]
+pub struct Origin {
+    /// The source is an NC program of this control or machine: a name in the library, or the path of a file. A job of
+    /// FreeCAD's has the rotary axes of this machine.
+    pub from: Option<String>,
+    /// Where the file of that machine and all that it extends may lie.
+    pub reach: Reach,
+    /// Tool table (LinuxCNC's format): with it cutter radius compensation becomes the path of the tool's centre.
+    pub tools: Option<Source>,
+    /// Folders in which called programs are looked for; nothing outside them is opened.
+    pub folders: Vec<PathBuf>,
+    /// What a length without a decimal point counts on a control that can be set either way.
+    pub whole_numbers: WholeNumbers,
+    /// What lengths count before the program says it.
+    pub units: Option<Units>,
+    /// Which way a boring bar goes from the wall of a hole, along X or Y, where the machine is set to it.
+    pub aside: Option<Vec3>,
+    /// Whether blocks that begin with `/` are skipped.
+    pub block_delete: bool,
+    /// Where the tool stands when the program starts, mm.
+    pub start: Option<Vec3>,
+    /// Where the coordinates behind a `CSYS` of SolidWorks CAM stand; else as the file says it.
+    pub csys: Option<Csys>,
+    /// Which path the coordinates behind `CUTCOM` are; else what an arc in the file shows.
+    pub cutcom: Option<CompensatedPath>,
+}
+
+/// A frame of a drawing.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Frame {
+    /// That of the part: where the tip of the tool goes.
+    Part,
+    /// That of the machine: where X, Y and Z go.
+    Machine,
+}
 
 /// A toolpath as it was read.
 #[derive(Debug)]
 pub struct Toolpath {
-    /// Where it was read from; nowhere where it was put together in memory.
-    path: Option<PathBuf>,
+    /// What it was read from; nothing where it was put together in memory.
+    source: Option<Source>,
     /// What else was read for it: the tool table, called programs.
     read_with: Vec<PathBuf>,
     /// SHA-256 of what was read (of a FreeCAD document, of its job), in hexadecimal digits; none for what was put
@@ -53,38 +91,37 @@ const NC_ENDINGS: [&str; 13] =
 /// # Errors
 /// What is wrong with the file; with `strict` also what would be a warning.
 pub fn read(
-    path: &Path,
+    source: &Source,
     strict: bool,
     origin: &Origin,
     machine: Option<&Machine>,
     purpose: Purpose,
 ) -> Result<Toolpath, Stop> {
-    let bytes = match fcstd::is(path) {
-        true => fcstd::job(path)?,
-        false => files::read(path)?,
+    let bytes = match fcstd::is(source.path()) {
+        true => fcstd::job(source)?,
+        false => source.read()?,
     };
+    let file = source.name();
     let text = encoding::without_mark(&bytes);
     if encoding::is_utf_16(&bytes) || !Job::begins(text) {
-        return read_by(path, bytes, strict, origin, purpose, |machine| machine);
+        return read_by(source, bytes, strict, origin, purpose, |machine| machine);
     }
     if origin.csys.is_some() {
-        return Err(without_csys(&files::name(path)).into());
+        return Err(without_csys(&file).into());
     }
     if origin.cutcom.is_some() {
-        return Err(without_cutcom(&files::name(path)).into());
+        return Err(without_cutcom(&file).into());
     }
     if origin.has_set_up() {
         let message = "a job of FreeCAD's runs on no control that somebody has set up";
         let help = "leave out the tool table, units and the like: the job says them itself";
-        let file = files::name(path);
         return Err(Diagnostic::error("origin", message).help(help).file(file).into());
     }
-    let named = origin.from.as_deref().map(machine::load_origin).transpose()?;
-    let file = files::name(path);
+    let named = origin.from.as_deref().map(|from| origin.reach.load_origin(from)).transpose()?;
     let digest = Some(Digest::of([&bytes[..]]));
     let job = Job::of(&file, text)?;
     let toolpath = read_job(&file, job, strict, named.as_ref().or(machine), purpose)?;
-    Ok(Toolpath { path: Some(path.to_owned()), digest, ..toolpath })
+    Ok(Toolpath { source: Some(source.clone()), digest, ..toolpath })
 }
 
 /// Reads a job of FreeCAD's, which is called `file`. Words for rotary axes are those of
@@ -120,13 +157,13 @@ const THREE_AXES: &str = "iso";
 ///
 /// # Errors
 /// As [`read`].
-pub fn read_wire(
-    path: &Path,
+pub(crate) fn read_wire(
+    source: &Source,
     strict: bool,
     origin: &Origin,
     height: Option<f64>,
 ) -> Result<Toolpath, Stop> {
-    read_by(path, files::read(path)?, strict, origin, Purpose::Contour, |mut machine| {
+    read_by(source, source.read()?, strict, origin, Purpose::Contour, |mut machine| {
         if let Some(wire) = &mut machine.wire {
             wire.height = wire.height.or(height);
         }
@@ -135,20 +172,20 @@ pub fn read_wire(
 }
 
 fn read_by(
-    path: &Path,
+    source: &Source,
     bytes: Vec<u8>,
     strict: bool,
     origin: &Origin,
     purpose: Purpose,
     set_up: impl Fn(Machine) -> Machine,
 ) -> Result<Toolpath, Stop> {
-    let file = files::name(path);
+    let file = source.name();
     let digest = Some(Digest::of([&bytes[..]]));
-    let bytes = files::text_of(path, bytes)?;
+    let bytes = files::text_of(source.path(), bytes)?;
     let mut read_with = Vec::new();
     let (dialect, program, warnings, set_ups, cutcom) = match &origin.from {
         Some(from) => {
-            let machine = set_up(machine::load_origin(from)?);
+            let machine = set_up(origin.reach.load_origin(from)?);
             let setup = Setup { purpose, ..origin.setup()? };
             let folders = setup.folders.clone();
             let asked = |found: &Diagnostic| found.rule.ends_with("unknown-position");
@@ -158,22 +195,15 @@ fn read_by(
                 }
                 read => read?,
             };
-            read_with.extend(origin.tools.clone());
+            read_with.extend(origin.tools.as_ref().and_then(Source::file).map(Path::to_owned));
             read_with.extend(machine.loaded_from.files.clone());
             read_with.extend(folders.files_read());
             (machine.title, reading.program, reading.warnings, None, None)
         }
         None => {
-            let csys = origin.csys.map(|csys| match csys {
-                Csys::Local => apt::Csys::Local,
-                Csys::World => apt::Csys::World,
-            });
-            let cutcom = origin.cutcom.map(|path| match path {
-                CutcomPath::Centre => CompensatedPath::Center,
-                CutcomPath::Contour => CompensatedPath::Contour,
-            });
+            let Origin { csys, cutcom, .. } = *origin;
             let reading = apt::read(&file, &bytes, &apt::Options { strict, csys, cutcom, purpose });
-            let reading = reading.map_err(|findings| match is_nc(path) {
+            let reading = reading.map_err(|findings| match is_nc(source.path()) {
                 true => without_origin(&file),
                 false => Stop { verdict: Verdict::Invalid, findings },
             })?;
@@ -184,10 +214,9 @@ fn read_by(
         }
     };
     let warnings = held(warnings, strict)?;
-    let path = Some(path.to_owned());
     let listing = None;
     Ok(Toolpath {
-        path,
+        source: Some(source.clone()),
         read_with,
         digest,
         file,
@@ -204,17 +233,18 @@ fn read_by(
 ///
 /// # Errors
 /// As [`read`].
-pub fn swinging(path: &Path, origin: &Origin, frame: Frame) -> Result<Option<Program>, Stop> {
-    let Some(from) = origin.from.as_deref().filter(|_| !fcstd::is(path)) else { return Ok(None) };
-    let machine = machine::load_origin(from)?;
+pub fn swinging(source: &Source, origin: &Origin, frame: Frame) -> Result<Option<Program>, Stop> {
+    let from = origin.from.as_deref().filter(|_| !fcstd::is(source.path()));
+    let Some(from) = from else { return Ok(None) };
+    let machine = origin.reach.load_origin(from)?;
     if machine.rotary.is_empty() && frame == Frame::Part {
         return Ok(None);
     }
-    let bytes = files::text(path)?;
+    let bytes = source.text()?;
     if Job::begins(&bytes) {
         return Ok(None);
     }
-    let name = files::name(path);
+    let name = source.name();
     let setup = Setup { purpose: Purpose::Picture, ..origin.setup()? };
     let program = match frame {
         Frame::Part => nc::read_swinging(&machine, setup, &name, &bytes)?,
@@ -260,7 +290,7 @@ fn flat(
 /// Within which two heights of a flat contour are the same, mm.
 const SAME_HEIGHT: f64 = 1e-6;
 
-/// The warnings; with `strict` they stop the command.
+/// The warnings; with `strict` they stop the work.
 pub(crate) fn held(warnings: Vec<Diagnostic>, strict: bool) -> Result<Vec<Diagnostic>, Stop> {
     if !strict || warnings.is_empty() {
         return Ok(warnings);
@@ -301,10 +331,10 @@ fn compensated(cutcom: &Cutcom) -> String {
 }
 
 /// What the frame of set-ups is called.
-fn name(csys: apt::Csys) -> &'static str {
+fn name(csys: Csys) -> &'static str {
     match csys {
-        apt::Csys::Local => "local",
-        apt::Csys::World => "world",
+        Csys::Local => "local",
+        Csys::World => "world",
     }
 }
 
@@ -316,8 +346,8 @@ fn told(set_ups: &SetUps) -> String {
         n => format!("the CSYS origin changes {n} times"),
     };
     let frame = match set_ups.csys {
-        apt::Csys::Local => "in the frame of each CSYS",
-        apt::Csys::World => "in the world",
+        Csys::Local => "in the frame of each CSYS",
+        Csys::World => "in the world",
     };
     let why = match set_ups.is_given {
         true => "as --csys says",
@@ -347,8 +377,9 @@ impl Origin {
     fn has_set_up(&self) -> bool {
         let Origin {
             from: _,
+            reach: _,
             tools,
-            folder,
+            folders,
             whole_numbers,
             units,
             aside,
@@ -358,9 +389,9 @@ impl Origin {
             cutcom: _,
         } = self;
         *block_delete
-            || !folder.is_empty()
+            || !folders.is_empty()
             || tools.is_some()
-            || whole_numbers.is_some()
+            || *whole_numbers != WholeNumbers::Unknown
             || units.is_some()
             || aside.is_some()
             || start.is_some()
@@ -370,31 +401,19 @@ impl Origin {
     fn setup(&self) -> Result<Setup, Stop> {
         let tools = match &self.tools {
             None => Vec::new(),
-            Some(path) => {
-                let found = control::tools::read(&files::text(path)?);
-                found.map_err(|found| found.file(files::name(path)))?
+            Some(table) => {
+                let found = control::tools::read(&table.text()?);
+                found.map_err(|found| found.file(table.name()))?
             }
         };
         Ok(Setup {
             tools,
-            folders: self.folder.clone().into(),
-            whole_numbers: match self.whole_numbers {
-                None => control::WholeNumbers::Unknown,
-                Some(WholeNumbers::Units) => control::WholeNumbers::Units,
-                Some(WholeNumbers::Increments) => control::WholeNumbers::Increments,
-            },
-            units: self.units.map(|units| match units {
-                Units::Mm => control::Units::Millimeters,
-                Units::Inch => control::Units::Inches,
-            }),
-            aside: self.aside.map(|way| match way {
-                Way::PlusX => Vec3::X,
-                Way::MinusX => Vec3::NEG_X,
-                Way::PlusY => Vec3::Y,
-                Way::MinusY => Vec3::NEG_Y,
-            }),
+            folders: self.folders.clone().into(),
+            whole_numbers: self.whole_numbers,
+            units: self.units,
+            aside: self.aside,
             block_delete: self.block_delete,
-            start: self.start.map(Vec3::from_array),
+            start: self.start,
             flat: false,
             purpose: Purpose::Program,
             surface: Vec::new(),
@@ -404,12 +423,12 @@ impl Origin {
 
 impl Toolpath {
     /// A drawing, which has contours and no moves.
-    pub fn of_drawing(path: &Path, bytes: &[u8], dialect: &str) -> Toolpath {
-        let name = path.file_stem().unwrap_or_default().to_string_lossy();
+    pub(crate) fn of_drawing(source: &Source, bytes: &[u8], dialect: &str) -> Toolpath {
+        let name = source.path().file_stem().unwrap_or_default().to_string_lossy();
         Toolpath {
-            path: Some(path.to_owned()),
+            source: Some(source.clone()),
             digest: Some(Digest::of([bytes])),
-            file: files::name(path),
+            file: source.name(),
             ..Toolpath::of_program(Program::new(name), dialect)
         }
     }
@@ -417,7 +436,7 @@ impl Toolpath {
     /// A program that no file says: its lines are what who put it together counts.
     pub fn of_program(program: Program, dialect: &str) -> Toolpath {
         Toolpath {
-            path: None,
+            source: None,
             read_with: Vec::new(),
             digest: None,
             file: program.name.clone(),
@@ -430,13 +449,8 @@ impl Toolpath {
         }
     }
 
-    /// The file that it was read from, where there is one.
-    pub fn path(&self) -> Option<&Path> {
-        self.path.as_deref()
-    }
-
     /// With another toolpath that it was read together with: the upper contour of a wire.
-    pub fn read_with(mut self, other: Toolpath) -> Toolpath {
+    pub(crate) fn read_with(mut self, other: Toolpath) -> Toolpath {
         self.read_with.extend(other.files().into_iter().map(Path::to_owned));
         let both = self.digest.iter().chain(&other.digest).map(String::as_bytes);
         self.digest = Some(Digest::of(both));
@@ -446,7 +460,8 @@ impl Toolpath {
 
     /// All files that it was read from.
     pub fn files(&self) -> Vec<&Path> {
-        self.path().into_iter().chain(self.read_with.iter().map(PathBuf::as_path)).collect()
+        let own = self.source.as_ref().and_then(Source::file);
+        own.into_iter().chain(self.read_with.iter().map(PathBuf::as_path)).collect()
     }
 
     /// SHA-256 of what was read, in hexadecimal digits; none where nothing was.
@@ -454,11 +469,15 @@ impl Toolpath {
         self.digest.as_deref()
     }
 
-    /// With what was not passed on; with `strict` that stops the command.
+    /// With what was not passed on; with `strict` that stops the work.
     ///
     /// # Errors
     /// The warnings, where they do.
-    pub fn warned(mut self, warnings: Vec<Diagnostic>, strict: bool) -> Result<Toolpath, Stop> {
+    pub(crate) fn warned(
+        mut self,
+        warnings: Vec<Diagnostic>,
+        strict: bool,
+    ) -> Result<Toolpath, Stop> {
         self.warnings = held(warnings, strict)?;
         Ok(self)
     }
@@ -478,7 +497,7 @@ impl Toolpath {
         }
     }
 
-    /// What stops the command because of the toolpath, with the text of its line.
+    /// What stops the work because of the toolpath, with the text of its line.
     pub fn refused(&self, found: Diagnostic) -> Stop {
         let mut findings = vec![found];
         self.quote(&mut findings);
@@ -547,7 +566,7 @@ impl Toolpath {
 
     /// The text of the source, as far as there is one still.
     fn text(&self) -> Vec<u8> {
-        self.path.as_deref().and_then(|path| files::text(path).ok()).unwrap_or_default()
+        self.source.as_ref().and_then(|source| source.text().ok()).unwrap_or_default()
     }
 }
 
@@ -556,7 +575,28 @@ impl Toolpath {
 /// # Errors
 /// Where there is none, or its file has a mistake.
 pub fn machine(name_or_path: &str) -> Result<Machine, Stop> {
-    let machine = machine::load(name_or_path)?;
+    machine_within(name_or_path, &Reach::Anywhere)
+}
+
+/// The same, whose files lie where `reach` says.
+///
+/// # Errors
+/// As [`machine()`], and a file that lies elsewhere.
+pub fn machine_within(name_or_path: &str, reach: &Reach) -> Result<Machine, Stop> {
+    checked(reach.load(name_or_path)?)
+}
+
+/// The machine of a text, as if it stood in the file `name`. What it extends lies where `reach` says.
+///
+/// # Errors
+/// As [`machine_within`].
+pub fn machine_of(name: &str, text: &str, reach: &Reach) -> Result<Machine, Stop> {
+    checked(reach.load_text(name, text)?)
+}
+
+/// # Errors
+/// It writes for no machine.
+fn checked(machine: Machine) -> Result<Machine, Stop> {
     let settings = nc::settings(&machine, Setup::default())?;
     if settings.dialect == Dialect::FreeCad {
         let message = "no machine reads FreeCAD's commands: they are a source alone";

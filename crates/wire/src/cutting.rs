@@ -1,42 +1,112 @@
-//! How the contours are cut: along them, or beside them in passes with leads and tabs.
+//! How contours are cut: along them, or offset from them in passes with leads and tabs.
 
-use super::leg::{ByControl, Leg};
-use crate::args::{Cutting, Rounding, Side, Trims};
-use ::wire::offset::Corners;
-use ::wire::plan::{self, Opening, Pass, Settings, Taper, plan};
-use ::wire::{Beside, Contour, Lead, LeadShape, Path, taper};
+use crate::leg::{ByControl, Leg};
+use crate::offset::{Corner, Corners};
+use crate::plan::{self, Opening, Pass, Settings, Taper, Trims, plan};
+use crate::taper::Rounding;
+use crate::{Beside, Contour, Lead, LeadShape, Path};
 use geom::Vec2;
 use program::{Compensation, Diagnostic};
 
-/// The ways of the wire along `paths`, and what is worth knowing of them; `beside` is what the source says
-/// of each, and `height` that of the upper contour, mm.
+/// How contours are cut.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cutting {
+    /// On which side of the contours the wire runs; `None`: along the contours themselves.
+    pub side: Option<Side>,
+    /// Diameter of the wire, mm.
+    pub wire: f64,
+    /// Spark gap of the last pass, mm.
+    pub gap: f64,
+    /// What each pass but the last leaves for those after it, mm.
+    pub leave: Vec<f64>,
+    /// Which way round the passes after the first go.
+    pub trims: Trims,
+    /// Where the wire is threaded: one place for each contour, in their order, mm.
+    pub thread: Vec<Vec2>,
+    /// How the wire comes to a contour.
+    pub lead: Lead,
+    /// Where the cut of a closed contour begins: the place nearest to this point, mm.
+    pub begin: Option<Vec2>,
+    /// How much of each closed contour holds the part until all else is cut, mm.
+    pub tab: Option<f64>,
+    /// How far the wire leans: the part larger at the top, or smaller where negative; degrees, as [`program::Op::Taper`]
+    /// counts them.
+    pub taper: Option<f64>,
+    /// What becomes of rounded corners on the way up.
+    pub rounding: Rounding,
+    /// Whether the control offsets and leans the wire, each pass by the register of its number.
+    pub by_control: bool,
+    /// Whether inner corners that the wire is too thick for become as round as the wire.
+    pub round_corners: bool,
+    /// Feeds, mm/s: none, one for all passes, or one for each.
+    pub feeds: Vec<f64>,
+}
+
+/// Along the contours themselves, at no feed that is known.
+impl Default for Cutting {
+    fn default() -> Cutting {
+        Cutting {
+            side: None,
+            wire: 0.0,
+            gap: 0.0,
+            leave: Vec::new(),
+            trims: Trims::default(),
+            thread: Vec::new(),
+            lead: Lead { length: 0.0, shape: LeadShape::Straight },
+            begin: None,
+            tab: None,
+            taper: None,
+            rounding: Rounding::default(),
+            by_control: false,
+            round_corners: false,
+            feeds: Vec::new(),
+        }
+    }
+}
+
+/// On which side of contours the wire runs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Side {
+    /// Within closed contours, as for the openings of a die.
+    Inside,
+    /// Round closed contours, as for punches.
+    Outside,
+    /// Round the outer contours and within those inside of them, as for a part with openings.
+    Part,
+    /// Left of the way.
+    Left,
+    /// Right of the way.
+    Right,
+}
+
+/// The ways of the wire along `paths`, and what is worth knowing of them; `offset` is how the source has its control
+/// lead the wire along each, and `height` that of the upper contour, mm.
 ///
 /// # Errors
 /// What the call asks for and the contours do not allow.
 pub fn legs(
     paths: Vec<Path>,
-    beside: &[Beside],
+    offset: &[Beside],
     how: &Cutting,
     height: Option<f64>,
 ) -> Result<(Vec<Leg>, Vec<Diagnostic>), Box<Diagnostic>> {
     let passes = how.leave.len() + 1;
-    if !matches!(how.feed.len(), 0 | 1) && how.feed.len() != passes {
-        let message = format!("{} feeds for {passes} passes", how.feed.len());
+    if !matches!(how.feeds.len(), 0 | 1) && how.feeds.len() != passes {
+        let message = format!("{} feeds for {passes} passes", how.feeds.len());
         return Err(Diagnostic::error("feed", message).help("one feed, or one for each").into());
     }
-    let feed = |pass: usize| how.feed.get(pass).or(how.feed.first()).map(|feed| feed * 60.0);
-    let begin = how.begin.map(Vec2::from_array);
+    let feed = |pass: usize| how.feeds.get(pass).or(how.feeds.first()).map(|feed| feed * 60.0);
     let Some(side) = how.side else {
         let legs = paths.into_iter().enumerate().map(|(opening, path)| Leg {
             feed: feed(0),
             opening,
-            ..Leg::of(begun(path, begin))
+            ..Leg::of(begun(path, how.begin))
         });
         return Ok((legs.collect(), Vec::new()));
     };
-    let openings = openings(&paths, beside, side, how)?;
+    let openings = openings(&paths, offset, side, how)?;
     let plan = plan(&openings, &settings(how, height, feed)?)?;
-    let corner = |(_, corner): &(usize, ::wire::offset::Corner)| {
+    let corner = |(_, corner): &(usize, Corner)| {
         let (place, left) = (corner.place, corner.left);
         let message = format!(
             "the inner corner at X{:.4} Y{:.4} becomes as round as the wire: {left:.4} mm stay",
@@ -89,7 +159,7 @@ fn begun(path: Path, begin: Option<Vec2>) -> Path {
 
 fn openings(
     paths: &[Path],
-    beside: &[Beside],
+    offset: &[Beside],
     side: Side,
     how: &Cutting,
 ) -> Result<Vec<Opening>, Box<Diagnostic>> {
@@ -123,13 +193,13 @@ fn openings(
         contour: contour.clone(),
         side: side_of(contour),
         thread: match how.thread.get(i) {
-            Some(place) => Some(Vec2::from_array(*place)),
-            None => beside.get(i).map(|source| source.thread),
+            Some(place) => Some(*place),
+            None => offset.get(i).map(|source| source.thread),
         },
-        start: how.begin.map(Vec2::from_array),
+        start: how.begin,
     };
     let openings: Vec<Opening> = paths.iter().map(Path::lower).enumerate().map(opening).collect();
-    for (opening, source) in openings.iter().zip(beside) {
+    for (opening, source) in openings.iter().zip(offset) {
         if opening.left() != source.left {
             let (word, side) = if source.left { ("G41", "left") } else { ("G42", "right") };
             let message =
@@ -147,7 +217,7 @@ fn settings(
     height: Option<f64>,
     feed: impl Fn(usize) -> Option<f64>,
 ) -> Result<Settings, Box<Diagnostic>> {
-    let offset = how.wire.unwrap_or(0.0) / 2.0 + how.gap.unwrap_or(0.0);
+    let offset = how.wire / 2.0 + how.gap;
     let leave = how.leave.iter().copied().chain([0.0]).enumerate();
     // The plan wants a feed for its own estimate, which is not used.
     let pass = |(i, leave)| plan::Cut { offset: offset + leave, feed: feed(i).unwrap_or(1.0) };
@@ -156,27 +226,18 @@ fn settings(
             let message = "a taper, and the height of the upper contour is not known";
             Box::new(Diagnostic::error("wire-height", message).help("give it with --height"))
         };
-        let rounding = match how.rounding {
-            Rounding::Conical => taper::Rounding::Conical,
-            Rounding::Constant => taper::Rounding::Constant,
-        };
+        let height = height.ok_or_else(missing)?;
         Ok::<_, Box<Diagnostic>>(Taper {
             angle: degrees.to_radians(),
-            height: height.ok_or_else(missing)?,
-            rounding,
+            height,
+            rounding: how.rounding,
         })
     });
     let taper = taper.transpose()?;
     Ok(Settings {
         passes: leave.map(pass).collect(),
-        trims: match how.trims {
-            Trims::Alternate => plan::Trims::Alternate,
-            Trims::Repeat => plan::Trims::Repeat,
-        },
-        lead: Lead {
-            length: how.lead.unwrap_or(0.0),
-            shape: how.lead_arc.map_or(LeadShape::Straight, LeadShape::Arc),
-        },
+        trims: how.trims,
+        lead: how.lead,
         tab: how.tab.unwrap_or(0.0),
         corners: if how.round_corners { Corners::Round } else { Corners::Refuse },
         taper,

@@ -318,6 +318,22 @@ pub fn save(files: &[(&Target, &[u8])]) -> Result<(), Box<Diagnostic>> {
     Ok(())
 }
 
+/// Saves a program at `path`, and its report under [`report_of`] that name: both or neither, and over none of `inputs`.
+///
+/// # Errors
+/// Why nothing was saved.
+pub fn save_program(
+    path: &Path,
+    text: &[u8],
+    report: Option<&str>,
+    inputs: &[&Path],
+) -> Result<(), Box<Diagnostic>> {
+    let target = Target::new(path, inputs)?;
+    let Some(report) = report else { return save(&[(&target, text)]) };
+    let report_target = Target::new(&report_of(path), inputs)?;
+    save(&[(&report_target, report.as_bytes()), (&target, text)])
+}
+
 /// A finding about a file as a whole.
 fn about(path: &Path, rule: &'static str, message: String) -> Diagnostic {
     Diagnostic::error(rule, message).file(path.display().to_string())

@@ -1,15 +1,15 @@
 //! The proof of a wire's program: against the contour with its arcs where the wire stands upright;
 //! where it leans against its points, and each end of the wire against its own contour besides.
 
-use super::leg::{End, Leg};
 use super::report::Cut;
 use control::{Action, Position, Setup};
 use geom::Vec3;
 use machine::Machine;
 use program::{NoPose, Program};
 use proof::{Prover, Report, Tolerances};
+use wire::leg::{End, Leg};
 
-/// Runs `text` on the control of `machine` and holds it against what `cut` wants.
+/// Runs `text` on the control of `machine` and compares it with what `cut` wants, for as long as `go_on` says so.
 ///
 /// # Errors
 /// A contour with a point that is not finite.
@@ -20,12 +20,14 @@ pub fn of(
     file: &str,
     text: &[u8],
     tolerances: &Tolerances,
+    go_on: &dyn Fn() -> bool,
 ) -> Result<Report, NoPose> {
     if !cut.legs.iter().any(Leg::leans) {
         let contour = cut.end(name, End::Lower)?;
-        return Ok(proof::prove(&contour, machine, file, text, tolerances));
+        return Ok(proof::prove_while(&contour, machine, file, text, tolerances, go_on));
     }
-    let mut report = proof::prove(&cut.program(name)?, machine, file, text, tolerances);
+    let program = cut.program(name)?;
+    let mut report = proof::prove_while(&program, machine, file, text, tolerances, go_on);
     for end in [End::Lower, End::Upper] {
         if report.proven {
             let contour = cut.end(name, end)?;
@@ -45,7 +47,7 @@ pub fn of(
     Ok(report)
 }
 
-/// Holds the way of one end of the wire, the upper one so many mm up, against the contour that it follows.
+/// Compares the way of one end of the wire, the upper one so many mm up, with the contour that it follows.
 fn one_end(
     contour: &Program,
     (end, height): (End, Option<f64>),
@@ -111,7 +113,7 @@ mod tests {
         let cut = Cut::of(vec![leg], Some(30.0), &machine);
         machine.capabilities.lowering_tolerance = 0.01;
         let written = post::write(&cut.program("cone").unwrap(), &machine).unwrap().text;
-        of(&cut, &machine, "cone", "cone.pts", &written, &Tolerances::default()).unwrap()
+        of(&cut, &machine, "cone", "cone.pts", &written, &Tolerances::default(), &|| true).unwrap()
     }
 
     #[test]

@@ -1,9 +1,9 @@
 //! What is to be cut: the contours of the source, for both ends of the wire.
 
-use crate::answer::Stop;
-use crate::args::{self, Sync};
-use crate::files;
-use crate::toolpath::{self, Toolpath};
+use super::{Settings, Sync};
+use crate::account::Stop;
+use crate::input;
+use crate::toolpath::{self, Origin, Toolpath};
 use geom::Vec2;
 use program::{Circle, Diagnostic, NoPose, Op, Pose, Program};
 use wire::{Beside, Contour, Element, Path, beside, contours, cuts, dxf};
@@ -29,20 +29,25 @@ enum File {
 }
 
 impl Source {
-    /// Reads what `args` names.
+    /// Reads `source`, and the upper contour that `settings` name.
     ///
     /// # Errors
     /// What is wrong with a file, or cannot be cut.
-    pub fn read(args: &args::Wire) -> Result<Source, Stop> {
-        let height = height(args)?;
-        let start = args.source.origin.start.map(|[x, y, _]| Vec2::new(x, y));
-        let lower = File::read(&args.source.path, args)?;
-        let upper = match &args.ends.upper {
-            Some(path) => Some(File::read(path, args)?),
+    pub fn read(
+        source: &input::Source,
+        strict: bool,
+        origin: &Origin,
+        settings: &Settings,
+    ) -> Result<Source, Stop> {
+        let height = height(origin, settings)?;
+        let start = origin.start.map(|start| start.truncate());
+        let lower = File::read(source, strict, origin, settings)?;
+        let upper = match &settings.upper {
+            Some(source) => Some(File::read(source, strict, origin, settings)?),
             None => None,
         };
         let beside = match (&lower, &upper) {
-            (File::Program(below), None) if args.cutting.side.is_some() => {
+            (File::Program(below), None) if settings.cutting.side.is_some() => {
                 let found = lower.in_one_frame().and_then(|()| beside(&below.program, start));
                 found.map_err(|found| below.refused(*found))?.unwrap_or_default()
             }
@@ -61,15 +66,15 @@ impl Source {
             (_, None) => lower.contours(start).map(upright),
             (_, Some(upper)) => {
                 let above = |found: Box<Diagnostic>| upper.toolpath().refused(*found);
-                match args.ends.sync {
-                    Sync::Block if args.ends.pair.is_empty() => {
+                match settings.sync {
+                    Sync::Block if settings.pairs.is_empty() => {
                         let above = upper.cuts(start).map_err(above)?;
                         lower.cuts(start).and_then(|below| by_block(below, above))
                     }
                     Sync::Block | Sync::Length => {
                         let above = upper.contours(start).map_err(above)?;
                         let below = lower.contours(start);
-                        below.and_then(|below| by_points(&below, &above, &args.ends.pair))
+                        below.and_then(|below| by_points(&below, &above, &settings.pairs))
                     }
                 }
             }
@@ -88,32 +93,36 @@ impl Source {
 }
 
 impl File {
-    fn read(path: &std::path::Path, args: &args::Wire) -> Result<File, Stop> {
-        let ending = path.extension().unwrap_or_default();
+    fn read(
+        source: &input::Source,
+        strict: bool,
+        origin: &Origin,
+        settings: &Settings,
+    ) -> Result<File, Stop> {
+        let ending = source.path().extension().unwrap_or_default();
         if !ending.eq_ignore_ascii_case("dxf") {
-            let (strict, origin) = (args.source.strict, &args.source.origin);
-            let toolpath = toolpath::read_wire(path, strict, origin, args.ends.height);
+            let toolpath = toolpath::read_wire(source, strict, origin, settings.height);
             let toolpath = toolpath.map_err(without_height)?;
             let mut warnings = left_out(&toolpath.program);
             toolpath.quote(&mut warnings);
             warnings.splice(0..0, toolpath.warnings.clone());
             return Ok(File::Program(toolpath.warned(warnings, strict)?));
         }
-        if args.source.origin.csys.is_some() {
-            return Err(toolpath::without_csys(&files::name(path)).into());
+        if origin.csys.is_some() {
+            return Err(toolpath::without_csys(&source.name()).into());
         }
-        if args.source.origin.cutcom.is_some() {
-            return Err(toolpath::without_cutcom(&files::name(path)).into());
+        if origin.cutcom.is_some() {
+            return Err(toolpath::without_cutcom(&source.name()).into());
         }
-        let text = files::text(path)?;
+        let text = source.text()?;
         let options = dxf::Options {
-            layers: args.drawing.layer.clone(),
-            gap: args.drawing.close,
+            layers: settings.layers.clone(),
+            gap: settings.close,
             ..dxf::Options::default()
         };
-        let toolpath = Toolpath::of_drawing(path, &text, "DXF");
+        let toolpath = Toolpath::of_drawing(source, &text, "DXF");
         let drawing = dxf::read(&text, &options).map_err(|found| toolpath.refused(*found))?;
-        let toolpath = toolpath.warned(drawing.warnings, args.source.strict)?;
+        let toolpath = toolpath.warned(drawing.warnings, strict)?;
         Ok(File::Drawing(toolpath, drawing.contours))
     }
 
@@ -246,9 +255,9 @@ fn without_height_of_part() -> Diagnostic {
 }
 
 /// Height of the part, mm: as the call says it, else that of the plane in which a source counts U and V.
-fn height(args: &args::Wire) -> Result<Option<f64>, Stop> {
-    match (args.ends.height, &args.source.origin.from) {
-        (None, Some(from)) => Ok(machine::load_origin(from)?.wire.and_then(|wire| wire.height)),
+fn height(origin: &Origin, settings: &Settings) -> Result<Option<f64>, Stop> {
+    match (settings.height, &origin.from) {
+        (None, Some(from)) => Ok(origin.reach.load_origin(from)?.wire.and_then(|wire| wire.height)),
         (said, _) => Ok(said),
     }
 }

@@ -1,7 +1,7 @@
 //! What a wire cuts, in numbers: points, chord errors, areas, time, and what came from which line.
 
-use super::leg::{self, End, Leg};
 use crate::summary::{duration, length, number};
+use ::wire::leg::{self, End, Leg};
 use ::wire::points::Step;
 use ::wire::{Accuracy, Chords};
 use drawing::{WireLeg, WirePicture};

@@ -1,33 +1,26 @@
-//! What is told of the programs of a board.
+//! What is reported of the programs of a board.
 
-use super::Made;
-use crate::args::pcb::{Pcb, Turn};
+use super::{Made, Program};
 use crate::summary::{duration, length, number};
 use crate::toolpath;
 use machine::Machine;
-use pcb::Board;
 use pcb::board::Face;
+use pcb::plan::{Settings, Turn};
 use program::Diagnostic;
 use serde_json::{Value, json};
 
 /// The most places that a summary lists.
 const MOST_PLACES: usize = 12;
 
-/// What is told: in rows for a person, in JSON for a machine.
+/// What is reported: in rows for a person, in JSON for a machine.
 pub struct Report {
     pub rows: Vec<(&'static str, String)>,
     pub data: Value,
 }
 
-/// The report of `programs` for a board that lies so, from files that hold these `layers`.
-pub fn of(
-    layers: &[(String, String)],
-    board: &Board,
-    args: &Pcb,
-    programs: &[Made],
-    machine: &Machine,
-    warnings: &[Diagnostic],
-) -> Report {
+/// The report of programs that are all proven.
+pub fn of(made: &Made, settings: &Settings, machine: &Machine, warnings: &[Diagnostic]) -> Report {
+    let Made { layers, front: board, programs, .. } = made;
     let (low, high) = board.extents().unwrap_or_default();
     let size = high - low;
     let mut rows = vec![
@@ -47,7 +40,7 @@ pub fn of(
     let mut up = Face::Front;
     for made in programs {
         if let Some(face) = made.up.filter(|face| *face != up) {
-            let line = if args.placing.turn == Turn::Y { "Y" } else { "X" };
+            let line = if settings.placing.turn == Turn::Y { "Y" } else { "X" };
             rows.push((
                 "turn",
                 format!("the board over, about a line along {line}: its {face} is up"),
@@ -77,13 +70,13 @@ pub fn of(
             "holes": board.holes.len(),
         },
         "machine": toolpath::describe(machine),
-        "programs": programs.iter().map(Made::describe).collect::<Vec<_>>(),
+        "programs": programs.iter().map(Program::describe).collect::<Vec<_>>(),
         "warnings": warnings,
     });
     Report { rows, data }
 }
 
-impl Made {
+impl Program {
     /// A line for each tool, and what the program amounts to.
     fn rows(&self) -> Vec<(&'static str, String)> {
         let account = &self.posted.account;

@@ -1,0 +1,82 @@
+//! How work ended, and what is reported of it.
+
+use program::{Diagnostic, Findings};
+use serde_json::{Value, json};
+
+/// How work ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Verdict {
+    /// What was asked for is done.
+    Done,
+    /// The machine cannot do it, or the proof failed.
+    Failed,
+    /// The input or the call is wrong.
+    Invalid,
+    /// The caller has ended it ([`crate::Watch::is_cancelled`]).
+    Cancelled,
+}
+
+/// What is reported of a program: in rows for a person, in JSON for a machine.
+#[derive(Clone, Debug)]
+pub struct Account {
+    /// Whether it is proven.
+    pub verdict: Verdict,
+    /// What is reported of it, and under which head.
+    pub rows: Vec<(&'static str, String)>,
+    /// The same, and more: an object.
+    pub data: Value,
+    /// What is wrong with it, or worth knowing.
+    pub findings: Vec<Diagnostic>,
+}
+
+impl Account {
+    /// The report that is saved next to a program, as JSON.
+    pub fn report(&self) -> String {
+        let mut report = self.data.clone();
+        let findings = self.findings.iter().cloned().collect::<Findings>().finish();
+        report["warnings"] = json!(findings);
+        format!("{report:#}\n")
+    }
+}
+
+/// What stops work: how it ended, and why.
+#[derive(Debug)]
+pub struct Stop {
+    /// How.
+    pub verdict: Verdict,
+    /// Why.
+    pub findings: Vec<Diagnostic>,
+}
+
+impl Stop {
+    /// What is wrong with the input.
+    pub fn invalid(findings: Vec<Diagnostic>) -> Stop {
+        Stop { verdict: Verdict::Invalid, findings }
+    }
+
+    /// The caller has ended the work.
+    pub(crate) fn cancelled() -> Stop {
+        let found = Diagnostic::error("cancelled", "the work was cancelled: there is no result")
+            .help("start it again for one");
+        Stop { verdict: Verdict::Cancelled, findings: vec![found] }
+    }
+}
+
+/// A finding that stops work is about its input, unless the work says otherwise.
+impl From<Box<Diagnostic>> for Stop {
+    fn from(finding: Box<Diagnostic>) -> Stop {
+        Stop::invalid(vec![*finding])
+    }
+}
+
+impl From<Diagnostic> for Stop {
+    fn from(finding: Diagnostic) -> Stop {
+        Box::new(finding).into()
+    }
+}
+
+impl From<Vec<Diagnostic>> for Stop {
+    fn from(findings: Vec<Diagnostic>) -> Stop {
+        Stop::invalid(findings)
+    }
+}

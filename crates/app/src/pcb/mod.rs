@@ -1,0 +1,404 @@
+//! Circuit boards: a board in, the proven programs that isolate, drill and cut it out. What each program cuts is planned by
+//! the crate `pcb`.
+
+mod report;
+mod source;
+
+use crate::account::{Account, Stop, Verdict};
+use crate::input;
+use crate::post::{self, Posted};
+use crate::toolpath::{self, Toolpath};
+use crate::watch::Watch;
+use ::pcb::board::Face;
+use ::pcb::job::{self, Heights};
+use ::pcb::plan::{self, Part, Running, Settings, Setup, Work};
+use ::pcb::{Board, Operation};
+use drawing::{BoardPicture, Format};
+use geom::Vec2;
+use levelling::{Allowed, Grid, Probing, follow, level};
+use machine::Machine;
+use program::heights::HeightMap;
+use program::{Diagnostic, Op, Record};
+use proof::Tolerances;
+use rayon::prelude::*;
+
+/// What is made of a board, and on which machine.
+pub struct Job<'a> {
+    machine: &'a Machine,
+    settings: &'a Settings,
+    tolerances: &'a Tolerances,
+    heights: Heights,
+    /// Measured heights that the programs follow: what a probing program has logged, or X, Y and Z in columns.
+    pub surface: Option<input::Source>,
+    /// How a picture is drawn next to each program; `None`: not at all.
+    pub picture: Option<Format>,
+    /// Whether a warning about the board stops the work.
+    pub strict: bool,
+}
+
+/// The programs of a board, proven or not.
+pub struct Made {
+    /// In the order in which they are run.
+    pub programs: Vec<Program>,
+    /// The files that were read.
+    pub files: Vec<input::Source>,
+    layers: Vec<(String, String)>,
+    front: Board,
+    warnings: Vec<Diagnostic>,
+}
+
+impl<'a> Job<'a> {
+    /// What `settings` ask for, on `machine`.
+    ///
+    /// # Errors
+    /// The machine is no mill, or the settings contradict each other.
+    pub fn new(
+        machine: &'a Machine,
+        settings: &'a Settings,
+        tolerances: &'a Tolerances,
+    ) -> Result<Job<'a>, Stop> {
+        if machine.wire.is_some() {
+            let message = format!("`{}` cuts by wire: it mills and drills nothing", machine.name);
+            let help = "name a mill: `toolpost machines` lists what there is";
+            return Err(Diagnostic::error("machine-kind", message).help(help).into());
+        }
+        let heights = heights(&settings.running)?;
+        let (surface, picture, strict) = (None, None, false);
+        Ok(Job { machine, settings, tolerances, heights, surface, picture, strict })
+    }
+
+    /// Writes the programs of the board that `board` is (a folder of files, some files, a board of KiCad's, a model) and
+    /// proves them, all at the same time.
+    ///
+    /// # Errors
+    /// What is wrong with the board, or cannot be cut. Where a program is not proven, its account says so.
+    pub fn make(&self, board: &[input::Source], watch: &dyn Watch) -> Result<Made, Stop> {
+        watch.begin("reading")?;
+        let Job { machine, settings, .. } = *self;
+        let source = source::read(board)?;
+        let parts = plan::parts(&source.artwork, settings)?;
+        let surface = surface(&parts, settings, self.surface.as_ref())?;
+        let running = &settings.running;
+        if let Some(places) = running.probe.filter(|_| running.on_control) {
+            can_probe(&parts, places, machine)?;
+        }
+        watch.begin("planning")?;
+        let side =
+            |face: Face, board: Board| planned(face, board, &parts, settings, machine.spindle.max);
+        let ([front, back], mut warnings) = source.artwork.each_side(side)?;
+        let ((front, mut works), (back, more)) = (front?, back?);
+        works.extend(more);
+        works.sort_by_key(|(part, _)| plan::order(*part, settings));
+        warnings.extend(plan::late_pins(&parts, settings));
+        let rack = Rack::of(&works);
+        watch.begin("writing and proving")?;
+        let shop = Shop { job: self, front, back, rack, watch, surface };
+        let mut programs = Vec::with_capacity(works.len() + 1);
+        if let Some(grid) = running.probe.filter(|_| !running.on_control) {
+            programs.push(shop.probing(grid)?);
+        }
+        let made: Vec<_> = works.par_iter().map(|(part, work)| shop.made(*part, work)).collect();
+        for (made, (part, work)) in made.into_iter().zip(works) {
+            let (posted, picture) = made?;
+            let probes = shop.probes(part, &work);
+            let up = Some(plan::face(part, settings));
+            programs.push(Program { name: part.name(), up, work, posted, picture, probes });
+        }
+        for made in &programs {
+            let file = format!("{}.nc", made.name);
+            warnings.extend(made.work.warnings.iter().map(|found| found.clone().file(&file)));
+        }
+        if programs.iter().all(|made| made.posted.account.verdict == Verdict::Done) {
+            warnings = toolpath::held(warnings, self.strict)?;
+        }
+        let source::Source { layers, files, .. } = source;
+        Ok(Made { programs, files, layers, front: shop.front.board, warnings })
+    }
+}
+
+impl Made {
+    /// What is reported of all programs together, and of `more` that the caller has found; of a program that is not
+    /// proven, that.
+    pub fn account(&self, job: &Job, more: Option<Diagnostic>) -> Account {
+        let failed = self.programs.iter().map(|made| &made.posted.account);
+        if let Some(failed) = failed.clone().find(|account| account.verdict != Verdict::Done) {
+            return failed.clone();
+        }
+        let mut findings = self.warnings.clone();
+        findings.extend(more);
+        let report = report::of(self, job.settings, job.machine, &findings);
+        Account { verdict: Verdict::Done, rows: report.rows, data: report.data, findings }
+    }
+}
+
+/// Every program is written and proven for who watches all of them: their steps are not reported.
+struct Quiet<'a>(&'a dyn Watch);
+
+impl Watch for Quiet<'_> {
+    fn is_cancelled(&self) -> bool {
+        self.0.is_cancelled()
+    }
+}
+
+/// How the board lies with a side up, and what is cut of it then.
+fn planned(
+    face: Face,
+    board: Board,
+    parts: &[Part],
+    settings: &Settings,
+    fastest: f64,
+) -> Result<(Setup, Vec<(Part, Work)>), Stop> {
+    let setup = Setup::of(face, board, settings)?;
+    let parts = parts.par_iter().filter(|part| plan::face(**part, settings) == face);
+    let works = parts.map(|part| Ok((*part, Work::of(*part, &setup, settings, fastest)?)));
+    let works = works.collect::<Vec<_>>().into_iter().collect::<Result<_, Stop>>()?;
+    Ok((setup, works))
+}
+
+/// The tools of all programs of a board: each has one number, whichever program calls it.
+struct Rack(Vec<String>);
+
+impl Rack {
+    fn of(works: &[(Part, Work)]) -> Rack {
+        let mut names: Vec<String> = Vec::new();
+        for operation in works.iter().flat_map(|(_, work)| &work.operations) {
+            if !names.contains(&operation.tool.name) {
+                names.push(operation.tool.name.clone());
+            }
+        }
+        Rack(names)
+    }
+
+    /// The number of a tool, from 1.
+    fn number(&self, tool: &str) -> u32 {
+        let place = self.0.iter().position(|name| name == tool).unwrap_or(self.0.len());
+        u32::try_from(place + 1).unwrap_or(u32::MAX)
+    }
+
+    /// The first number that no tool has.
+    fn next(&self) -> u32 {
+        self.number("")
+    }
+}
+
+/// How high tools are above the board.
+fn heights(running: &Running) -> Result<Heights, Stop> {
+    let heights = Heights { travel: running.travel, approach: running.approach };
+    let Heights { travel, approach } = heights;
+    if travel >= approach {
+        return Ok(heights);
+    }
+    let message =
+        format!("rapid moves are {travel} mm over the board, and tools feed from {approach} mm on");
+    let help = "give --travel no less than --approach";
+    Err(Diagnostic::error("travel", message).help(help).into())
+}
+
+/// How far inside the edge of the board the outermost places are, mm: on the edge itself there may be no copper.
+const INSIDE: f64 = 1.0;
+
+/// How closely programs follow the surface that was measured, and up to 5 mm beyond the board the height of the
+/// outermost places.
+const LEVELLED: Allowed = Allowed { deviation: 0.005, outside: INSIDE + 5.0 };
+
+/// The surface that programs follow, where one was measured.
+fn surface(
+    parts: &[Part],
+    settings: &Settings,
+    heights: Option<&input::Source>,
+) -> Result<Option<HeightMap>, Stop> {
+    let Some(file) = heights else { return Ok(None) };
+    let is_up = |face| parts.iter().any(|part| plan::face(*part, settings) == face);
+    if is_up(Face::Front) && is_up(Face::Back) {
+        let message = "the heights are those of one side, and programs of both are asked for";
+        let help = "make the programs of each side with its own heights: name them with --only";
+        return Err(Diagnostic::error("heights", message).help(help).into());
+    }
+    let text = file.text()?;
+    Ok(Some(levelling::read(&file.name(), &text)?))
+}
+
+/// How much a surface rises on which programs that measure it keep to that, mm a mm.
+const STEEPNESS: f64 = 0.02;
+
+/// # Errors
+/// The control cannot keep what a probe finds at so many places, or a program cuts what no tool feels.
+fn can_probe(parts: &[Part], [columns, rows]: [u32; 2], machine: &Machine) -> Result<(), Stop> {
+    let wrong = |message: String, help: &str| {
+        Err(Diagnostic::error("on-control", message).help(help).into())
+    };
+    if !machine.blocks.contains_key("keep_height") {
+        let message = format!(
+            "`{}` has a control that keeps no heights to calculate with: it cannot follow what it measures",
+            machine.name
+        );
+        let help = "leave out --on-control: run probe.nc first, and give its heights by --heights";
+        return wrong(message, help);
+    }
+    let kept =
+        machine.words.get("HEIGHT").map_or(0.0, |word| word.max - f64::from(word.first) + 1.0);
+    if f64::from(columns) * f64::from(rows) > kept {
+        let message = format!("{columns} by {rows} places, and the control keeps {kept} heights");
+        return wrong(message, "fewer columns or rows");
+    }
+    let is_coated = |part: &&Part| part.face().is_some() && !part.is_copper();
+    if let Some(part) = parts.iter().find(is_coated) {
+        let message = format!("the {} conducts nothing: the tool does not feel it", part.what());
+        return wrong(
+            message,
+            "make the programs of the copper by themselves: name them with --only",
+        );
+    }
+    match parts.iter().any(|part| part.is_copper()) {
+        true => Ok(()),
+        false => wrong(
+            "no program cuts copper: none would measure".into(),
+            "leave out --probe and --on-control",
+        ),
+    }
+}
+
+/// A program that was made.
+pub struct Program {
+    /// What it and its picture are called.
+    pub name: &'static str,
+    /// The side of the board that is up when it runs; `None` where it is run for either.
+    up: Option<Face>,
+    work: Work,
+    /// The program, and what is reported of it.
+    pub posted: Posted,
+    /// Its picture, where one was asked for.
+    pub picture: Option<Vec<u8>>,
+    /// Columns and rows of the heights that it measures itself.
+    probes: Option<[u32; 2]>,
+}
+
+/// How the height of the board is probed: slowly, and a millimetre above what it may rise to from place to place.
+const PROBED: Probing = Probing { travel: 2.0, reach: 1.0, feed: 50.0 };
+
+/// What the program is called that measures the height of the board.
+pub const PROBE: &str = "probe";
+
+/// The file in which LinuxCNC keeps what it finds; to other controls it is a comment.
+const HEIGHTS: &str = "heights.txt";
+
+/// What all programs of a board share.
+struct Shop<'a> {
+    job: &'a Job<'a>,
+    /// The board with its front up.
+    front: Setup,
+    /// The board with its back up.
+    back: Setup,
+    rack: Rack,
+    watch: &'a dyn Watch,
+    /// The surface that programs follow, where one was measured.
+    surface: Option<HeightMap>,
+}
+
+impl Shop<'_> {
+    /// How the board lies for a program.
+    fn setup(&self, part: Part) -> &Setup {
+        match plan::face(part, self.job.settings) {
+            Face::Front => &self.front,
+            Face::Back => &self.back,
+        }
+    }
+
+    /// The program of a part of the board, proven, and its picture.
+    fn made(&self, part: Part, work: &Work) -> Result<(Posted, Option<Vec<u8>>), Stop> {
+        let board = &self.setup(part).board;
+        let name = format!("{}-{}", board.name, part.name());
+        let number = |operation: &Operation| self.rack.number(&operation.tool.name);
+        let operations: Vec<(u32, &Operation)> =
+            work.operations.iter().map(|operation| (number(operation), operation)).collect();
+        let mut program =
+            job::program(&name, &operations, &self.job.heights).map_err(Box::<Diagnostic>::from)?;
+        if let Some(surface) = &self.surface {
+            program = level(&program, surface, &LEVELLED)?;
+        }
+        if let Some(places) = self.probes(part, work) {
+            let grid = grid(board, places)?;
+            self.touches(part, work, &grid)?;
+            program = follow(&program, &grid, &PROBED, STEEPNESS, &LEVELLED)?;
+        }
+        let toolpath = Toolpath::of_program(program, "board");
+        let format = self.job.picture;
+        let widths: Vec<f64> = work.operations.iter().map(Operation::width).collect();
+        let picture = BoardPicture {
+            outline: board.outline.as_ref(),
+            copper: board.front.copper.as_ref(),
+            holes: &board.holes,
+            program: &toolpath.program,
+            widths: &widths,
+            problems: &work.places,
+        };
+        let (posted, picture) = rayon::join(
+            || self.proven(&toolpath, part.name()),
+            || format.map(|format| format.bytes(drawing::board(&name, &picture))).transpose(),
+        );
+        Ok((posted?, picture?))
+    }
+
+    /// Columns and rows of the heights that the program of a part measures itself, where it cuts anything.
+    fn probes(&self, part: Part, work: &Work) -> Option<[u32; 2]> {
+        let running = &self.job.settings.running;
+        let cuts = work.operations.iter().any(|operation| !operation.cuts.is_empty());
+        running.probe.filter(|_| running.on_control && part.is_copper() && cuts)
+    }
+
+    /// # Errors
+    /// A place at which the tool touches the rim of a hole, or nothing, since the holes are there already. What counts
+    /// is the width that it has at the surface when its tip is as deep as it probes.
+    fn touches(&self, part: Part, work: &Work, grid: &Grid) -> Result<(), Stop> {
+        if !plan::is_drilled(part, self.job.settings) {
+            return Ok(());
+        }
+        let width = |operation: &Operation| operation.tool.cutter.width(PROBED.reach);
+        let beside = work.operations.first().map_or(0.0, width) / 2.0;
+        for place in grid.places() {
+            let mut holes = self.setup(part).drilled();
+            let Some(hole) = holes.find(|hole| hole.distance(place) < beside) else { continue };
+            let (low, high) = hole.extents();
+            let at = low.midpoint(high);
+            let message = format!(
+                "the height is measured at X{:.3} Y{:.3}, in the hole of {} mm at X{:.3} Y{:.3} or less than {beside:.3} mm \
+                 beside it, and it is drilled before",
+                place.x, place.y, hole.diameter, at.x, at.y
+            );
+            let help = "another number of columns or rows, or --from back: then holes are drilled after the back is cut";
+            let found = Diagnostic::error("probe-in-hole", message).help(help);
+            return Err(found.file(format!("{}.nc", part.name())).into());
+        }
+        Ok(())
+    }
+
+    /// The program that measures the height of the board.
+    fn probing(&self, places: [u32; 2]) -> Result<Program, Stop> {
+        let grid = grid(&self.front.board, places)?;
+        let name = format!("{}-{PROBE}", self.front.board.name);
+        let mut program = PROBED.program(&name, &grid, Some(HEIGHTS))?;
+        let tool = program::Tool {
+            number: self.rack.next(),
+            name: String::from(PROBE),
+            ..program::Tool::default()
+        };
+        program.records.insert(0, Record { line: 0, op: Op::Tool(Box::new(tool)) });
+        let posted = self.proven(&Toolpath::of_program(program, "board"), PROBE)?;
+        let (work, picture, probes) = (Work::default(), None, None);
+        Ok(Program { name: PROBE, up: None, work, posted, picture, probes })
+    }
+
+    /// The text of a program, proven.
+    fn proven(&self, toolpath: &Toolpath, name: &str) -> Result<Posted, Stop> {
+        let file = format!("{name}.nc");
+        let Job { machine, tolerances, .. } = self.job;
+        post::proven(toolpath, machine, &file, tolerances, &Quiet(self.watch))
+    }
+}
+
+/// So many columns and rows of places over a board, [`INSIDE`] its edge; on a small one a quarter of it.
+fn grid(board: &Board, [columns, rows]: [u32; 2]) -> Result<Grid, Stop> {
+    let (low, high) = board.extents().unwrap_or_default();
+    let inside = Vec2::splat(INSIDE).min((high - low) / 4.0);
+    Ok(Grid::new(low + inside, high - inside, columns as usize, rows as usize)?)
+}

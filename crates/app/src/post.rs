@@ -1,0 +1,149 @@
+//! Writing a program, and proving it.
+
+use crate::account::{Account, Stop, Verdict};
+use crate::parallel::parallel;
+use crate::prove;
+use crate::report::{self, Digests};
+use crate::summary::{Shape, time};
+use crate::toolpath::{self, Toolpath};
+use crate::watch::Watch;
+use ::post::Output;
+use machine::Machine;
+use machine::time::Times;
+use program::{Diagnostic, Op, Program, Record};
+use proof::Tolerances;
+use serde_json::json;
+
+/// Rules whose findings say that the machine cannot do what the toolpath asks for. All others of the
+/// writer are mistakes of the input: of the toolpath, or of the machine's file.
+const MACHINE_CANNOT: [&str; 18] = [
+    "arc-orientation",
+    "axis-limit",
+    "cycle-missing",
+    "cycle-tap",
+    "feed-range",
+    "line-length",
+    "memory",
+    "number-range",
+    "one-opening",
+    "orientation-in-cut",
+    "spindle-range",
+    "taper",
+    "taper-limit",
+    "tool-range",
+    "unreachable-orientation",
+    "unsupported",
+    "uv-limit",
+    "wire-leans",
+];
+
+/// A program that is proven, or is not, and what is reported of it.
+#[derive(Debug)]
+pub struct Posted {
+    /// The program. Nobody should have it whose account does not say that it is proven.
+    pub text: Vec<u8>,
+    /// What is reported of it.
+    pub account: Account,
+}
+
+/// Writes the program of `toolpath`, which is called `file`, and proves it.
+///
+/// # Errors
+/// Why there is no program.
+pub fn proven(
+    toolpath: &Toolpath,
+    machine: &Machine,
+    file: &str,
+    tolerances: &Tolerances,
+    watch: &dyn Watch,
+) -> Result<Posted, Stop> {
+    if machine.wire.is_some() {
+        let message = format!("`{}` cuts by wire: it has no spindle and no tools", machine.name);
+        let help = "`toolpost wire` writes for it";
+        return Err(Diagnostic::error("machine-kind", message).help(help).into());
+    }
+    let mut warnings = toolpath.warnings.clone();
+    watch.begin("writing")?;
+    let program = &toolpath.program;
+    // What is reported of the toolpath is found meanwhile.
+    let headed = headed(program, tolerances);
+    let (output, (shape, times)) = parallel(
+        || write(headed.as_ref().unwrap_or(program), machine, toolpath, &mut warnings),
+        || (Shape::of(program), Times::of(program, machine)),
+    );
+    let output = output?;
+    watch.begin("proving")?;
+    let go_on = || !watch.is_cancelled();
+    let proof = proof::prove_while(program, machine, file, &output.text, tolerances, &go_on);
+    watch.go_on()?;
+    if !proof.proven {
+        let mut account = prove::failed(&proof, toolpath, file);
+        account.findings.extend(warnings);
+        return Ok(Posted { text: output.text, account });
+    }
+
+    warnings.extend(proof.warnings.iter().chain(&proof.accepted).cloned());
+    let data = json!({
+        "schema": report::SCHEMA,
+        "toolpost": env!("CARGO_PKG_VERSION"),
+        "sha256": Digests::of(&output.text, toolpath, machine),
+        "source": toolpath.describe(&shape),
+        "machine": toolpath::describe(machine),
+        "program": { "file": file, "blocks": output.blocks, "bytes": output.text.len() },
+        "time_s": { "total": times.total(), "cutting": times.cutting, "rapid": times.rapid },
+        "proof": proof,
+    });
+    let mut rows = toolpath.rows(Some(machine));
+    rows.extend(shape.rows());
+    rows.push(("time", time(&times)));
+    rows.extend(prove::rows(&proof, machine));
+    let account = Account { verdict: Verdict::Done, rows, data, findings: warnings };
+    Ok(Posted { text: output.text, account })
+}
+
+/// The program with the rules that are let pass in its head, where there are some.
+fn headed(program: &Program, tolerances: &Tolerances) -> Option<Program> {
+    let names: Vec<&str> = tolerances.accepted.names().collect();
+    if names.is_empty() {
+        return None;
+    }
+    let mut headed = program.clone();
+    let op = Op::Comment(format!("accepted for this run: {}", names.join(", ")).into());
+    headed.records.insert(0, Record { line: 0, op });
+    Some(headed)
+}
+
+/// Writes `program`, which came from `toolpath`. What the writer has to say goes behind the warnings that
+/// there are, with the text of its lines.
+///
+/// # Errors
+/// The same, where nothing could be written.
+pub(crate) fn write(
+    program: &Program,
+    machine: &Machine,
+    toolpath: &Toolpath,
+    warnings: &mut Vec<Diagnostic>,
+) -> Result<Output, Stop> {
+    match ::post::write(program, machine) {
+        Ok(mut output) => {
+            warnings.append(&mut output.warnings);
+            toolpath.quote(warnings);
+            Ok(output)
+        }
+        Err(mut findings) => {
+            let verdict = verdict(&findings);
+            warnings.append(&mut findings);
+            toolpath.quote(warnings);
+            Err(Stop { verdict, findings: std::mem::take(warnings) })
+        }
+    }
+}
+
+/// Whose fault it is that nothing could be written.
+fn verdict(findings: &[Diagnostic]) -> Verdict {
+    let mut errors = findings.iter().filter(|finding| finding.is_error());
+    match errors.all(|error| MACHINE_CANNOT.contains(&error.rule)) {
+        true => Verdict::Failed,
+        false => Verdict::Invalid,
+    }
+}

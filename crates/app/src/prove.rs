@@ -1,0 +1,142 @@
+//! Proving any program, also one edited by hand.
+
+use crate::account::{Account, Stop, Verdict};
+use crate::parallel::parallel;
+use crate::summary::{self, Shape, number};
+use crate::toolpath::{self, Toolpath};
+use crate::watch::Watch;
+use machine::Machine;
+use proof::{Report, Tolerances};
+use serde_json::json;
+
+/// Proves the program `text`, which is called `file`, against `toolpath`.
+///
+/// # Errors
+/// The caller has ended it.
+pub fn compare(
+    toolpath: &Toolpath,
+    machine: &Machine,
+    file: &str,
+    text: &[u8],
+    tolerances: &Tolerances,
+    watch: &dyn Watch,
+) -> Result<Account, Stop> {
+    watch.begin("proving")?;
+    let program = &toolpath.program;
+    // What is reported of the toolpath is found meanwhile.
+    let go_on = || !watch.is_cancelled();
+    let prove = || proof::prove_while(program, machine, file, text, tolerances, &go_on);
+    let (proof, shape) = parallel(prove, || Shape::of(program));
+    watch.go_on()?;
+    let mut warnings = toolpath.warnings.clone();
+    toolpath.quote(&mut warnings);
+    if !proof.proven {
+        let mut account = failed(&proof, toolpath, file);
+        account.findings.extend(warnings);
+        return Ok(account);
+    }
+    let found = proof.warnings.iter().chain(&proof.accepted);
+    let findings = warnings.into_iter().chain(found.cloned()).collect();
+    let data = json!({
+        "source": toolpath.describe(&shape),
+        "machine": toolpath::describe(machine),
+        "program": { "file": file, "blocks": proof.program.blocks, "bytes": text.len() },
+        "proof": proof,
+    });
+    let mut rows = toolpath.rows(Some(machine));
+    rows.extend(shape.rows());
+    rows.extend(self::rows(&proof, machine));
+    Ok(Account { verdict: Verdict::Done, rows, data, findings })
+}
+
+/// The lines of a summary about a program and its proof, which held.
+pub(crate) fn rows(proof: &Report, machine: &Machine) -> Vec<(&'static str, String)> {
+    let (program, worst, allowed) = (&proof.program, &proof.deviations, &proof.tolerances);
+    let mut rows = vec![("program", format!("{} blocks", program.blocks))];
+    let linear = ["X", "Y", "Z"].into_iter().zip(program.linear_extents_mm);
+    let linear = linear.take(if machine.wire.is_some() { 2 } else { 3 });
+    let rotary = ["A", "B", "C"].into_iter().zip(program.rotary_extents_degrees);
+    let rotary =
+        rotary.filter(|(letter, _)| machine.rotary.iter().any(|r| letter.starts_with(r.letter)));
+    let axes = linear.map(|axis| (axis, "mm")).chain(rotary.map(|axis| (axis, "degrees")));
+    for ((letter, extent), unit) in axes {
+        if let (Some(min), Some(max)) = (extent.min, extent.max) {
+            rows.push((letter, summary::extent(min, max, unit)));
+        }
+    }
+    if machine.wire.is_none() {
+        rows.push(("travel", summary::travel(&proof.travel)));
+    }
+    let compared = &proof.compared;
+    let moves = compared.rapids + compared.lines + compared.arcs + compared.holes;
+    rows.push(("proof", format!("all {moves} moves are those of the toolpath")));
+    if compared.contours > 0 {
+        let text = format!(
+            "{}, beside each of which the control leads the tool as it has to",
+            compared.contours
+        );
+        rows.push(("contours", text));
+    }
+    let deviation = |value: f64, allowed: f64, unit: &str, line: u32| {
+        let place = if line > 0 { format!(" (line {line})") } else { String::new() };
+        format!("{} {unit} at most{place}; {} allowed", number(value, 5), number(allowed, 5))
+    };
+    let (tip, axis) = (worst.tip_mm, worst.axis_degrees);
+    rows.push(("tip off by", deviation(tip.value, allowed.tip_mm, "mm", tip.program_line)));
+    if axis.value > 0.0 {
+        let text = deviation(axis.value, allowed.axis_degrees, "degrees", axis.program_line);
+        rows.push(("axis off by", text));
+    }
+    let rapid = worst.rapid_mm;
+    if rapid.value > allowed.tip_mm {
+        let corridor = machine.capabilities.rapid_corridor;
+        rows.push(("rapids off by", deviation(rapid.value, corridor, "mm", rapid.program_line)));
+    }
+    let speed = worst.tip_speed_percent;
+    if speed.value > 0.0 {
+        let slowed = match compared.slowed {
+            0 => String::new(),
+            count => format!(
+                "; slower than its feed in {count} cuts, in which an axis or F goes no faster"
+            ),
+        };
+        let (percent, line) = (number(speed.value, 2), speed.program_line);
+        rows.push(("tip speed", format!("off by {percent} % at most (line {line}){slowed}")));
+    }
+    if machine.path_tolerance() > 0.0 {
+        let most = number(machine.path_tolerance(), 5);
+        let tool = machine.orientation_tolerance();
+        let tool = match tool > 0.0 {
+            true => format!(", the tool by up to {}°,", number(tool, 5)),
+            false => String::new(),
+        };
+        let text =
+            format!("by up to {most} mm{tool} where the program lets it, which no proof sees");
+        rows.push(("smoothing", text));
+    }
+    if !proof.accepted.is_empty() {
+        let rules: Vec<&str> = proof.accepted.iter().map(|found| found.rule).collect();
+        rows.push(("accepted", format!("{}, which the proof would refuse", rules.join(", "))));
+    }
+    if compared.excursions > 0 {
+        rows.push(("excursions", format!("{}, listed in the report", compared.excursions)));
+    }
+    rows
+}
+
+/// What is reported of a program whose proof failed: the first mismatch side by side, and all of them as
+/// findings.
+pub(crate) fn failed(proof: &Report, source: &Toolpath, program: &str) -> Account {
+    let mut rows = vec![
+        ("proof", String::from("FAILED")),
+        ("program", String::from("it makes another motion")),
+    ];
+    if let Some(first) = &proof.first_mismatch {
+        let (place, text) = source.place(first.source_line);
+        rows.push(("source says", format!("{place}  {}", text.trim())));
+        let block = first.block.trim();
+        rows.push(("program says", format!("{program}:{}  {block}", first.program_line)));
+    }
+    let (data, findings) = (json!({ "proof": proof }), proof.mismatches.clone());
+    Account { verdict: Verdict::Failed, rows, data, findings }
+}

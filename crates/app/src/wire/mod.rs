@@ -1,0 +1,239 @@
+//! Wire EDM: a contour in, the proven program of a machine out. The ways of the wire are planned by the crate `wire`.
+
+mod proof;
+mod report;
+mod source;
+
+use crate::account::{Account, Stop, Verdict};
+use crate::input;
+use crate::post::{self, Posted};
+use crate::prove;
+use crate::report::{Digests, SCHEMA};
+use crate::toolpath::{self, Origin, Toolpath};
+use crate::watch::Watch;
+use ::proof::Tolerances;
+use ::wire::Contour;
+use ::wire::cutting::{self, Cutting};
+use ::wire::leg::Leg;
+use ::wire::points::{Refusal, Step, points};
+use machine::{Machine, Wire};
+use program::Diagnostic;
+use report::Cut;
+use serde_json::json;
+use source::Source;
+
+/// What is cut, and how.
+#[derive(Clone, Debug)]
+pub struct Settings {
+    /// Layers of a drawing that are read; none: all.
+    pub layers: Vec<String>,
+    /// How far ends in a drawing that belong together may be apart, mm.
+    pub close: f64,
+    /// The upper contour; the source is then the lower one.
+    pub upper: Option<input::Source>,
+    /// Which point above belongs to which below.
+    pub sync: Sync,
+    /// Points below (X, Y) and those above that belong to them (X, Y), instead of `sync`, mm; in the order of travel,
+    /// between which both ends cover the same part of their length.
+    pub pairs: Vec<[f64; 4]>,
+    /// Height of the part, mm: of the upper contour over the lower; else, of a source with U and V, that of its plane.
+    pub height: Option<f64>,
+    /// Height of the plane in which the machine counts U and V, mm, where its file does not say it.
+    pub uv_height: Option<f64>,
+    /// How the wire goes along the contours.
+    pub cutting: Cutting,
+    /// Into which points the ways are divided; `None`: into none where the control cuts arcs, else by its lowering
+    /// tolerance.
+    pub step: Option<Step>,
+    /// How many points the control holds; else what its machine file says.
+    pub memory: Option<usize>,
+    /// The line of the source whose points are marked in the summary and the picture.
+    pub select: Option<u32>,
+}
+
+impl Default for Settings {
+    fn default() -> Settings {
+        Settings {
+            layers: Vec::new(),
+            close: 0.01,
+            upper: None,
+            sync: Sync::Block,
+            pairs: Vec::new(),
+            height: None,
+            uv_height: None,
+            cutting: Cutting::default(),
+            step: None,
+            memory: None,
+            select: None,
+        }
+    }
+}
+
+/// Which point above belongs to which below.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Sync {
+    /// Both programs have the same moves, block for block.
+    Block,
+    /// Both ends have covered the same part of their length.
+    Length,
+}
+
+/// The program of a wire.
+pub struct Made {
+    /// The program, and what is reported of it.
+    pub posted: Posted,
+    /// The report to save next to it, as JSON.
+    pub report: String,
+    /// What it was read from.
+    pub toolpath: Toolpath,
+    cut: Cut,
+    select: Option<u32>,
+}
+
+impl Made {
+    /// The contour, its points and the ruled surface as an SVG drawing.
+    pub fn picture(&self) -> String {
+        drawing::wire_path(&self.toolpath.file, &self.cut.picture(self.select))
+    }
+}
+
+/// Writes the program, which is called `file`, that cuts the contours of `source` on `machine`, and proves it.
+///
+/// # Errors
+/// Why there is no program.
+#[expect(
+    clippy::too_many_arguments,
+    reason = "what is cut, by what, how, how closely, and for whom"
+)]
+pub fn make(
+    source: &input::Source,
+    strict: bool,
+    origin: &Origin,
+    mut machine: Machine,
+    settings: &Settings,
+    file: &str,
+    tolerances: &Tolerances,
+    watch: &dyn Watch,
+) -> Result<Made, Stop> {
+    set_up(&mut machine, settings)?;
+    watch.begin("reading")?;
+    let Source { mut toolpath, paths, beside, height } =
+        Source::read(source, strict, origin, settings)?;
+    let mut warnings = std::mem::take(&mut toolpath.warnings);
+    watch.begin("writing")?;
+    let planned = cutting::legs(paths, &beside, &settings.cutting, height);
+    let (mut legs, rounded) = planned.map_err(|found| toolpath.refused(*found))?;
+    warnings.extend(rounded);
+    divide(&mut legs, settings.step, &machine)?;
+    let cut = Cut::of(legs, height, &machine);
+    let program = cut.program(&toolpath.program.name).map_err(Box::<Diagnostic>::from)?;
+    let output = post::write(&program, &machine, &toolpath, &mut warnings)?;
+    watch.begin("proving")?;
+    if cut.points().is_some() {
+        // Chords may leave their arcs by what the conversion has made of them, and by no more.
+        machine.capabilities.lowering_tolerance = cut.chord_error();
+    }
+    let (name, go_on) = (&toolpath.program.name, || !watch.is_cancelled());
+    let proof = proof::of(&cut, &machine, name, file, &output.text, tolerances, &go_on)
+        .map_err(Box::<Diagnostic>::from)?;
+    watch.go_on()?;
+    let select = settings.select;
+    if !proof.proven {
+        let mut account = prove::failed(&proof, &toolpath, file);
+        account.findings.extend(warnings);
+        let report = account.report();
+        let posted = Posted { text: output.text, account };
+        return Ok(Made { posted, report, toolpath, cut, select });
+    }
+
+    warnings.extend(proof.warnings.iter().cloned());
+    let data = json!({
+        "schema": SCHEMA,
+        "toolpost": env!("CARGO_PKG_VERSION"),
+        "sha256": Digests::of(&output.text, &toolpath, &machine),
+        "source": { "file": toolpath.file, "dialect": toolpath.dialect },
+        "machine": toolpath::describe(&machine),
+        "program": { "file": file, "blocks": output.blocks, "bytes": output.text.len() },
+        "wire": cut.summary(select),
+        "proof": proof,
+    });
+    let mut report = data.clone();
+    report["instructions"] = cut.instructions();
+    report["warnings"] = json!(warnings);
+    let report = format!("{report:#}\n");
+    let mut rows = toolpath.rows(Some(&machine));
+    rows.extend(cut.rows(select));
+    rows.extend(prove::rows(&proof, &machine));
+    let account = Account { verdict: Verdict::Done, rows, data, findings: warnings };
+    Ok(Made { posted: Posted { text: output.text, account }, report, toolpath, cut, select })
+}
+
+/// The machine with what the call says of it.
+fn set_up(machine: &mut Machine, settings: &Settings) -> Result<(), Stop> {
+    let Some(wire) = machine.wire else {
+        let message = format!("`{}` is a mill: its file has no [wire] table", machine.name);
+        let help = "`toolpost post` writes for mills; `toolpost machines list` names the machines";
+        return Err(Diagnostic::error("machine-kind", message).help(help).into());
+    };
+    if settings.cutting.by_control && !machine.capabilities.compensation {
+        let message = format!("the control of `{}` offsets no wire", machine.name);
+        let help = "leave --by-control out: the way of the wire's centre is then worked out here";
+        return Err(Diagnostic::error("by-control", message).help(help).into());
+    }
+    if settings.cutting.tab.is_some() && !machine.blocks.contains_key("stop") {
+        let message = format!(
+            "a tab is cut while the operator holds the part, and `{}` has no block `stop`",
+            machine.name
+        );
+        let help = "leave --tab out, or write how the control stops into the machine's file";
+        return Err(Diagnostic::error("tab", message).help(help).into());
+    }
+    let height = match (wire.height, settings.uv_height) {
+        (Some(own), Some(said)) if own != said => {
+            let message = format!(
+                "`{}` counts U and V in a plane {own} mm up, and --uv-height says {said} mm",
+                machine.name
+            );
+            let help = "leave --uv-height out, or change `height` in [wire] of the machine's file";
+            return Err(Diagnostic::error("wire-height", message).help(help).into());
+        }
+        (own, said) => own.or(said),
+    };
+    machine.wire = Some(Wire { height, memory: settings.memory.or(wire.memory), ..wire });
+    Ok(())
+}
+
+/// Makes points of the ways, where the control cannot cut all of them as they are, and where a step is
+/// asked for.
+fn divide(legs: &mut [Leg], asked: Option<Step>, machine: &Machine) -> Result<(), Stop> {
+    let arcs = |contour: &Contour| contour.elements().iter().any(|e| e.turn.is_some());
+    let no_arcs = machine.capabilities.arcs.is_empty();
+    let cannot = |leg: &Leg| leg.leans() || (no_arcs && arcs(leg.path.lower()));
+    if asked.is_none() && !legs.iter().any(cannot) {
+        return Ok(());
+    }
+    let step = asked.unwrap_or(Step::ChordError(machine.capabilities.lowering_tolerance));
+    let memory = machine.wire.and_then(|wire| wire.memory);
+    let paths: Vec<_> = legs.iter().map(|leg| &leg.path).collect();
+    let all = points(&paths, step, memory).map_err(refused)?;
+    for (leg, points) in legs.iter_mut().zip(all) {
+        leg.points = Some(points);
+    }
+    Ok(())
+}
+
+/// Why there are no points, with the step that would do where one would.
+fn refused(Refusal { diagnostic, offer }: Refusal) -> Stop {
+    let finest = |mm: f64| (mm * 1e6).ceil() / 1e6;
+    let way_out = match offer {
+        Some(Step::Length(mm)) => {
+            format!("--step {} is the finest that fits, or --fit", finest(mm))
+        }
+        Some(Step::ChordError(mm)) => {
+            format!("--chord-error {} is the smallest that fits, or --fit", finest(mm))
+        }
+        _ => diagnostic.help.clone(),
+    };
+    let verdict = if diagnostic.rule == "memory" { Verdict::Failed } else { Verdict::Invalid };
+    Stop { verdict, findings: vec![diagnostic.help(way_out)] }
+}

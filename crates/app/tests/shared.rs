@@ -1,0 +1,189 @@
+//! What every front end relies on: sources in memory, reach, steps, cancelling, wires and boards without a command line.
+
+use machine::Reach;
+use pcb::plan::Settings;
+use program::Purpose;
+use proof::Tolerances;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::sync::atomic::{AtomicUsize, Ordering};
+use toolpost_app::{Origin, Source, Stop, Verdict, Watch, pcb as board, post, toolpath, wire};
+
+fn example(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("../../examples").join(name)
+}
+
+/// A file of the examples, and the same in memory.
+fn both(name: &str) -> [Source; 2] {
+    let bytes = std::fs::read(example(name)).unwrap();
+    [Source::File(example(name)), Source::memory(name, bytes)]
+}
+
+/// The program and the report of a toolpath.
+fn posted(
+    source: &Source,
+    origin: &Origin,
+    machine: &str,
+    watch: &dyn Watch,
+) -> Result<(Vec<u8>, String), Stop> {
+    let machine = toolpath::machine(machine)?;
+    let toolpath = toolpath::read(source, false, origin, Some(&machine), Purpose::Program)?;
+    let posted = post::proven(&toolpath, &machine, "p", &Tolerances::default(), watch)?;
+    assert_eq!(posted.account.verdict, Verdict::Done, "{:?}", posted.account.findings);
+    let report = posted.account.report();
+    Ok((posted.text, report))
+}
+
+#[test]
+fn a_source_in_memory_gives_the_program_and_the_report_of_its_file() {
+    let made = |origin: &Origin, [file, memory]: [Source; 2]| {
+        let file = posted(&file, origin, "generic-3axis-linuxcnc", &()).unwrap();
+        assert_eq!(file, posted(&memory, origin, "generic-3axis-linuxcnc", &()).unwrap());
+        file
+    };
+    made(&Origin::default(), both("plate.cls"));
+    let [table, in_memory] = both("flange.tbl");
+    let from = Some(String::from("fanuc-31i"));
+    let with = |tools| Origin { from: from.clone(), tools: Some(tools), ..Origin::default() };
+    assert_eq!(made(&with(table), both("flange.nc")), made(&with(in_memory), both("flange.nc")));
+}
+
+#[test]
+fn a_finding_quotes_the_line_of_a_source_in_memory() {
+    let source = Source::memory("bad.cls", *b"PPRINT/A\nGOTO/1,2\n");
+    let stop =
+        toolpath::read(&source, false, &Origin::default(), None, Purpose::Program).unwrap_err();
+    let shown = stop.findings[0].to_string();
+    assert!(shown.starts_with("bad.cls:2:") && shown.contains("GOTO/1,2"), "{shown}");
+}
+
+#[test]
+fn the_machine_of_an_nc_program_is_read_within_the_reach_of_the_caller() {
+    let folder = tempfile::tempdir().unwrap();
+    let [inside, outside] = ["shop/mine.toml", "other.toml"].map(|name| folder.path().join(name));
+    std::fs::create_dir(folder.path().join("shop")).unwrap();
+    std::fs::write(&outside, "extends = \"fanuc-31i\"\n").unwrap();
+    let [source, _] = both("flange.nc");
+    let read = |extends: &str| {
+        std::fs::write(&inside, format!("extends = \"{extends}\"\n")).unwrap();
+        let reach = Reach::Folder(folder.path().join("shop"));
+        let from = Some(inside.display().to_string());
+        toolpath::read(
+            &source,
+            false,
+            &Origin { from, reach, ..Origin::default() },
+            None,
+            Purpose::Program,
+        )
+    };
+    assert!(read("fanuc-31i").is_ok());
+    let stop = read("../other.toml").unwrap_err();
+    assert!(stop.findings[0].message.contains("may not be read here"), "{:?}", stop.findings);
+    assert!(toolpath::machine_of("page.toml", "extends = \"grbl-3018\"", &Reach::Library).is_ok());
+    let stop = toolpath::machine_of("page.toml", "extends = \"./x.toml\"", &Reach::Library);
+    assert!(stop.unwrap_err().findings[0].message.contains("may not be read here"));
+}
+
+/// Notes the steps, and cancels after it was asked so many times.
+struct Patience {
+    left: AtomicUsize,
+    steps: Mutex<Vec<&'static str>>,
+}
+
+impl Patience {
+    fn of(asked: usize) -> Patience {
+        Patience { left: AtomicUsize::new(asked), steps: Mutex::default() }
+    }
+
+    fn steps(&self) -> Vec<&'static str> {
+        self.steps.lock().unwrap().clone()
+    }
+}
+
+impl Watch for Patience {
+    fn step(&self, what: &'static str) {
+        self.steps.lock().unwrap().push(what);
+    }
+
+    fn is_cancelled(&self) -> bool {
+        self.left.fetch_update(Ordering::SeqCst, Ordering::SeqCst, |n| n.checked_sub(1)).is_err()
+    }
+}
+
+#[test]
+fn who_watches_is_told_each_step_and_ends_the_work_between_two_and_within_a_proof() {
+    let mut text = String::from(
+        "PPRINT/LONG\nUNITS/MM\nLOADTL/1\nSPINDL/900,CLW\nRAPID\nGOTO/0,0,10\nFEDRAT/90\n",
+    );
+    (0..20_000).for_each(|i| text.push_str(&format!("GOTO/{}.5,{},-1\n", i % 100, i % 7)));
+    text.push_str("RAPID\nGOTO/0,0,10\n");
+    let source = Source::memory("long.cls", text.into_bytes());
+    let post = |watch: &Patience| {
+        posted(&source, &Origin::default(), "generic-3axis-linuxcnc", watch).map_err(|stop| {
+            assert_eq!(stop.findings[0].rule, "cancelled");
+            stop.verdict
+        })
+    };
+    let patient = Patience::of(usize::MAX);
+    post(&patient).unwrap();
+    assert_eq!(patient.steps(), ["writing", "proving"]);
+    let asked = usize::MAX - patient.left.load(Ordering::SeqCst);
+    // Once before each step, once after the proof, and every 4096 of its 20,000 events.
+    assert!((3 + 4..3 + 6).contains(&asked), "{asked}");
+    for (asked, steps) in [(0, &[][..]), (1, &["writing"]), (4, &["writing", "proving"])] {
+        let watch = Patience::of(asked);
+        assert_eq!(post(&watch), Err(Verdict::Cancelled), "{asked}");
+        assert_eq!(watch.steps(), steps);
+    }
+}
+
+#[test]
+fn a_wire_is_cut_without_a_command_line_from_memory_as_from_a_file() {
+    let made = both("sector.nc").map(|source| {
+        let origin = Origin { from: Some("fanuc-31i".into()), ..Origin::default() };
+        let machine = toolpath::machine("bp-95d").unwrap();
+        let cutting = ::wire::cutting::Cutting {
+            side: Some(::wire::cutting::Side::Inside),
+            wire: 0.25,
+            gap: 0.02,
+            leave: vec![0.03],
+            thread: vec![geom::Vec2::new(15.0, 15.0)],
+            round_corners: true,
+            feeds: vec![0.1, 0.2],
+            ..Default::default()
+        };
+        let settings = wire::Settings { cutting, ..wire::Settings::default() };
+        let tolerances = Tolerances::default();
+        let made =
+            wire::make(&source, false, &origin, machine, &settings, "p", &tolerances, &()).unwrap();
+        assert_eq!(made.posted.account.verdict, Verdict::Done);
+        assert!(made.picture().starts_with("<svg"));
+        (made.posted.text, made.report)
+    });
+    assert_eq!(made[0], made[1]);
+    let sample = include_bytes!("../../../machines/samples/bp-95d.pts");
+    assert!(made[0].0 == sample, "the sample of the machine is cut with the same settings");
+}
+
+#[test]
+fn a_board_is_made_without_a_command_line_from_memory_as_from_a_file() {
+    let machine = toolpath::machine("grbl-3018").unwrap();
+    let mut settings = Settings::default();
+    settings.isolation.tool = Some(0.3);
+    let tolerances = Tolerances::default();
+    let made = both("lamp.toml").map(|source| {
+        let job = board::Job::new(&machine, &settings, &tolerances).unwrap();
+        let watch = Patience::of(usize::MAX);
+        let made = job.make(&[source], &watch).unwrap();
+        assert_eq!(watch.steps(), ["reading", "planning", "writing and proving"]);
+        let account = made.account(&job, None);
+        assert_eq!(account.verdict, Verdict::Done);
+        let texts = made.programs.iter().map(|program| (program.name, program.posted.text.clone()));
+        (texts.collect::<Vec<_>>(), account.report())
+    });
+    assert_eq!(
+        made[0].0.iter().map(|(name, _)| *name).collect::<Vec<_>>(),
+        ["front", "drill", "back", "outline"]
+    );
+    assert_eq!(made[0], made[1]);
+}

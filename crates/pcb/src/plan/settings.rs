@@ -1,0 +1,311 @@
+//! What a user asks for: which programs, by which tools, how deep, how fast.
+
+use crate::board::Face;
+use crate::isolation::{Direction, Narrow};
+use geom::Vec2;
+
+/// How a board is made. The default has no tool that cuts around copper.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Settings {
+    /// What to make; nothing: all that the board has and that tools are given for.
+    pub only: Vec<Part>,
+    /// How copper is isolated.
+    pub isolation: Isolation,
+    /// What else is cut of copper, mask and legend.
+    pub clearing: Clearing,
+    /// How holes are made.
+    pub drilling: Drilling,
+    /// How the board is cut out.
+    pub outline: Outline,
+    /// Where the board lies on the machine.
+    pub placing: Placing,
+    /// How the machine runs.
+    pub running: Running,
+}
+
+/// A program of a board.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Part {
+    /// The copper of the front.
+    Front,
+    /// The copper of the back, from the back.
+    Back,
+    /// The holes.
+    Drill,
+    /// The edge of the board and its cut-outs.
+    Outline,
+    /// The solder mask of the front.
+    FrontMask,
+    /// The solder mask of the back, from the back.
+    BackMask,
+    /// The legend of the front.
+    FrontLegend,
+    /// The legend of the back, from the back.
+    BackLegend,
+}
+
+impl Part {
+    /// All.
+    pub const ALL: [Part; 8] = [
+        Part::Front,
+        Part::FrontMask,
+        Part::FrontLegend,
+        Part::Drill,
+        Part::Back,
+        Part::BackMask,
+        Part::BackLegend,
+        Part::Outline,
+    ];
+
+    /// What its program and picture are called.
+    pub fn name(self) -> &'static str {
+        match self {
+            Part::Front => "front",
+            Part::Back => "back",
+            Part::Drill => "drill",
+            Part::Outline => "outline",
+            Part::FrontMask => "front-mask",
+            Part::BackMask => "back-mask",
+            Part::FrontLegend => "front-legend",
+            Part::BackLegend => "back-legend",
+        }
+    }
+
+    /// What of the board it is about.
+    pub fn what(self) -> &'static str {
+        match self {
+            Part::Front => "copper of the front",
+            Part::Back => "copper of the back",
+            Part::Drill => "hole",
+            Part::Outline => "outline",
+            Part::FrontMask => "solder mask of the front",
+            Part::BackMask => "solder mask of the back",
+            Part::FrontLegend => "legend of the front",
+            Part::BackLegend => "legend of the back",
+        }
+    }
+
+    /// Whether it cuts copper from the top.
+    pub fn is_copper(self) -> bool {
+        matches!(self, Part::Front | Part::Back)
+    }
+
+    /// The side that it is about; `None` for what goes through the board.
+    pub fn face(self) -> Option<Face> {
+        match self {
+            Part::Front | Part::FrontMask | Part::FrontLegend => Some(Face::Front),
+            Part::Back | Part::BackMask | Part::BackLegend => Some(Face::Back),
+            Part::Drill | Part::Outline => None,
+        }
+    }
+}
+
+/// How copper is isolated.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Isolation {
+    /// Width of the end mill that cuts around copper, mm.
+    pub tool: Option<f64>,
+    /// Angle between the edges of a V-bit that does it, degrees; its width follows from `tip` and `depth`.
+    pub vee: Option<f64>,
+    /// Width of the tip of the V-bit, mm.
+    pub tip: f64,
+    /// How deep below the surface, mm.
+    pub depth: f64,
+    /// How deep at once, mm; `None`: all of `depth`.
+    pub step: Option<f64>,
+    /// How often around, each time farther out.
+    pub passes: u32,
+    /// Which part of the width passes overlap.
+    pub overlap: f64,
+    /// Which way around.
+    pub direction: Direction,
+    /// What is done between nets where the tool is wider than the gap.
+    pub narrow: Narrow,
+    /// Where the cuts are.
+    pub isolate: Isolate,
+}
+
+impl Default for Isolation {
+    fn default() -> Isolation {
+        Isolation {
+            tool: None,
+            vee: None,
+            tip: 0.1,
+            depth: 0.1,
+            step: None,
+            passes: 1,
+            overlap: 0.25,
+            direction: Direction::Climb,
+            narrow: Narrow::LeaveOut,
+            isolate: Isolate::Contours,
+        }
+    }
+}
+
+/// Where the cuts are that isolate.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Isolate {
+    /// Around copper, as near as the tool allows.
+    Contours,
+    /// In the middle between nets: they keep all copper that is nearer to them than to others.
+    Middle,
+}
+
+/// What else is cut of copper, mask and legend.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Clearing {
+    /// Widths of end mills that take away all copper that is part of no net, the widest first, mm.
+    pub clear: Vec<f64>,
+    /// How far they stay from nets, mm.
+    pub margin: f64,
+    /// Width of the end mill that opens the solder mask over pads, mm.
+    pub mask_tool: Option<f64>,
+    /// Width of the tool that engraves the legend, mm.
+    pub legend_tool: Option<f64>,
+    /// How deep masks and legends are cut, mm.
+    pub engrave: f64,
+}
+
+impl Default for Clearing {
+    fn default() -> Clearing {
+        Clearing {
+            clear: Vec::new(),
+            margin: 0.0,
+            mask_tool: None,
+            legend_tool: None,
+            engrave: 0.05,
+        }
+    }
+}
+
+/// How holes are made.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Drilling {
+    /// The drills that there are, mm; none: one for each width of holes.
+    pub drills: Vec<f64>,
+    /// By how much a drill may be wider or narrower than its hole, mm.
+    pub drill_tolerance: f64,
+    /// Width of the end mill for holes without a drill, for slots and routes, mm.
+    pub hole_mill: Option<f64>,
+    /// How deep a drill goes at once, mm; `None`: through.
+    pub peck: Option<f64>,
+    /// From which side holes and edges are cut.
+    pub from: Face,
+}
+
+impl Default for Drilling {
+    fn default() -> Drilling {
+        Drilling {
+            drills: Vec::new(),
+            drill_tolerance: 0.05,
+            hole_mill: None,
+            peck: None,
+            from: Face::Front,
+        }
+    }
+}
+
+/// How the board is cut out.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Outline {
+    /// Width of the end mill, mm.
+    pub outline_tool: f64,
+    /// How deep at once, mm.
+    pub outline_step: f64,
+    /// How many tabs hold the board.
+    pub tabs: u32,
+    /// How wide a tab is, mm.
+    pub tab_width: f64,
+    /// How high a tab is, mm.
+    pub tab_height: f64,
+}
+
+impl Default for Outline {
+    fn default() -> Outline {
+        Outline { outline_tool: 2.0, outline_step: 0.5, tabs: 4, tab_width: 2.0, tab_height: 0.6 }
+    }
+}
+
+/// Where the board lies on the machine.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Placing {
+    /// How thick the board is, mm.
+    pub thickness: f64,
+    /// How far drills and mills go through it, mm.
+    pub through: f64,
+    /// Where the lower left corner of the board is put, mm; `None`: at 0, 0.
+    pub corner: Option<Vec2>,
+    /// Whether the board stays where its files have it.
+    pub as_drawn: bool,
+    /// The line through its middle about which the board is turned over for its back.
+    pub turn: Turn,
+    /// Diameter of holes next to the board, drilled with the others, by which it is aligned when it is turned, mm.
+    pub alignment: Option<f64>,
+    /// Columns and rows of a panel of boards.
+    pub panel: Option<[u32; 2]>,
+    /// How far the boards of a panel are apart, mm.
+    pub spacing: f64,
+}
+
+impl Default for Placing {
+    fn default() -> Placing {
+        Placing {
+            thickness: 1.6,
+            through: 0.2,
+            corner: None,
+            as_drawn: false,
+            turn: Turn::Y,
+            alignment: None,
+            panel: None,
+            spacing: 4.0,
+        }
+    }
+}
+
+/// The line about which a board is turned over.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Turn {
+    /// Along Y: left and right change places.
+    Y,
+    /// Along X: up and down change places.
+    X,
+}
+
+/// How the machine runs.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Running {
+    /// Feed along copper, mm/min.
+    pub feed: f64,
+    /// Feed straight down into copper, mm/min.
+    pub plunge: f64,
+    /// Feed of drills, mm/min.
+    pub drill_feed: f64,
+    /// Feed of the end mill that cuts the board out, mm/min.
+    pub outline_feed: f64,
+    /// Speed of the spindle, 1/min; `None`: 10000, or what the machine has.
+    pub speed: Option<f64>,
+    /// Height of rapid moves over the board, mm.
+    pub travel: f64,
+    /// Height from which tools feed, mm.
+    pub approach: f64,
+    /// Columns and rows of the places at which the height of the board is measured.
+    pub probe: Option<[u32; 2]>,
+    /// Whether the programs that cut copper measure these heights themselves, with the tool that cuts, and follow them.
+    pub on_control: bool,
+}
+
+impl Default for Running {
+    fn default() -> Running {
+        Running {
+            feed: 200.0,
+            plunge: 60.0,
+            drill_feed: 100.0,
+            outline_feed: 150.0,
+            speed: None,
+            travel: 2.0,
+            approach: 0.5,
+            probe: None,
+            on_control: false,
+        }
+    }
+}
