@@ -1,10 +1,12 @@
-//! `toolpost explain`: every name that a machine or control file may use, with unit and help.
+//! `toolpost explain`: every name that a machine or control file may use, with unit and help; of a single
+//! block also how the controls of the library write it.
 
 use crate::answer::Answer;
 use app::{Stop, summary};
 use machine::Key;
+use machine::library::{CONTROLS, names};
 use program::Diagnostic;
-use serde_json::{Value, json};
+use serde_json::{Map, Value, json};
 
 /// A name, as it is listed.
 struct Row {
@@ -41,7 +43,29 @@ pub fn run(topic: Option<&str>) -> Result<Answer, Stop> {
     }
     let lines: Vec<_> = found.iter().map(|row| (row.name.as_str(), row.text.clone())).collect();
     let data: Vec<_> = found.iter().map(|row| &row.data).collect();
-    Ok(Answer::product(summary::rows(&lines), json!({ "names": data })))
+    let written = match &found[..] {
+        [row] => written(&row.name)?,
+        _ => Vec::new(),
+    };
+    let mut text = summary::rows(&lines);
+    for (control, block) in &written {
+        text.push_str(&format!("\n{control}\n"));
+        text.extend(block.trim().lines().map(|line| format!("    {line}\n")));
+    }
+    let written: Map<String, Value> =
+        written.into_iter().map(|(control, block)| (control.into(), block.into())).collect();
+    Ok(Answer::product(text, json!({ "names": data, "written": written })))
+}
+
+/// What the controls of the library write for the block of that name: each that has it, with its text.
+fn written(block: &str) -> Result<Vec<(&'static str, String)>, Stop> {
+    let mut all = Vec::new();
+    for control in names(CONTROLS) {
+        let machine = machine::load_control(control)?;
+        let text = machine.blocks.get(block).map(|block| block.text.clone());
+        all.extend(text.filter(|text| !text.trim().is_empty()).map(|text| (control, text)));
+    }
+    Ok(all)
 }
 
 /// Whether `topic` is `name` or its last part.

@@ -191,6 +191,11 @@ fn explain_gives_unit_and_help_of_every_name() {
     assert!(names.len() > 30);
     assert!(names.iter().all(|name| name["help"].as_str().is_some_and(|help| !help.is_empty())));
     assert_eq!(folder.run(&["explain", "nonesuch"]).code, 2);
+    // Of a block it says what each control writes that has it: GRBL tilts no plane.
+    let flood = folder.run(&["explain", "coolant_flood"]).out;
+    assert!(flood.contains("\nfanuc-31i\n    {{N}} M8\n"), "{flood}");
+    let tilt = folder.run(&["explain", "plane_tilt"]).out;
+    assert!(tilt.contains("\nfanuc-31i\n") && !tilt.contains("\ngrbl\n"), "{tilt}");
     // The keys of the files too: each table that has one of the name, with its own unit.
     let min = folder.run(&["explain", "min"]).out;
     for row in ["axes.X.min   Lower end of", "rotary.min   Lower", "spindle.min  The slowest"] {
