@@ -19,7 +19,7 @@ pub mod tools;
 
 pub use event::{Action, ArcTo, Event, FeedPath, Orientation, Position, Risk, Thread, TiltChoice};
 use geom::Vec3;
-use iso::Flavor;
+use iso::dialects::{fanuc, freecad, grbl, haas, linuxcnc, mach3, marlin, wire};
 use kernel::compensation::{Compensator, Rules};
 pub use kernel::folders::Folders;
 use kernel::relay;
@@ -403,16 +403,16 @@ pub fn read(
         let mut compensator = Compensator::new(settings, sink);
         let to = &mut compensator;
         match settings.dialect {
-            Dialect::Fanuc => iso::run(Flavor::Fanuc, settings, text, to),
-            Dialect::Haas => iso::run(Flavor::Haas, settings, text, to),
-            Dialect::LinuxCnc => iso::run(Flavor::LinuxCnc, settings, text, to),
-            Dialect::Mach3 => iso::run(Flavor::Mach3, settings, text, to),
-            Dialect::Grbl => iso::run(Flavor::Grbl, settings, text, to),
-            Dialect::Marlin => iso::run(Flavor::Marlin, settings, text, to),
-            Dialect::FanucWire => iso::run(Flavor::FanucWire, settings, text, to),
-            Dialect::Sodick => iso::run(Flavor::Sodick, settings, text, to),
-            Dialect::Agie => iso::run(Flavor::Agie, settings, text, to),
-            Dialect::FreeCad => iso::run(Flavor::FreeCad, settings, text, to),
+            Dialect::Fanuc => iso::run(&fanuc::FACTS, settings, text, to),
+            Dialect::Haas => iso::run(&haas::FACTS, settings, text, to),
+            Dialect::LinuxCnc => iso::run(&linuxcnc::FACTS, settings, text, to),
+            Dialect::Mach3 => iso::run(&mach3::FACTS, settings, text, to),
+            Dialect::Grbl => iso::run(&grbl::FACTS, settings, text, to),
+            Dialect::Marlin => iso::run(&marlin::FACTS, settings, text, to),
+            Dialect::FanucWire => iso::run(&wire::FANUC, settings, text, to),
+            Dialect::Sodick => iso::run(&wire::SODICK, settings, text, to),
+            Dialect::Agie => iso::run(&wire::AGIE, settings, text, to),
+            Dialect::FreeCad => iso::run(&freecad::FACTS, settings, text, to),
             Dialect::Sinumerik | Dialect::Sinumerik828d => sinumerik::run(settings, text, to),
             Dialect::Klartext => klartext::run(settings, text, to),
             Dialect::Points => points::run(settings, text, to),

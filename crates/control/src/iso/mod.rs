@@ -7,26 +7,26 @@
 //! line becomes a block, and the [`execution`] carries that out with its records held back: a block with
 //! a mistake leaves none.
 
-mod dialects;
+pub(crate) mod dialects;
 mod execution;
 mod flow;
 mod language;
 
 use crate::Settings;
 use crate::kernel::compensation::Compensator;
+use dialects::facts::Facts;
 use flow::ahead::Ahead;
 use flow::run::Run;
 use flow::source::Source;
 use language::block::Fault;
-pub(crate) use language::words::Flavor;
 
-/// Runs a program of this flavour.
+/// Runs a program of the dialect of these facts.
 pub(crate) fn run(
-    flavor: Flavor,
+    facts: &'static Facts,
     settings: &Settings,
     text: &[u8],
     compensator: &mut Compensator,
 ) -> Result<(), Fault> {
     let main = Source::program(text);
-    Ahead::of(text, |ahead| Run::new(flavor, settings, &main, ahead, compensator).run())
+    Ahead::of(text, |ahead| Run::new(facts, settings, &main, ahead, compensator).run())
 }

@@ -1,9 +1,14 @@
 //! FANUC 30i, milling, G code list of B-64484EN-2. Group 09, the canned cycles, is apart from group
 //! 01, the interpolation.
 
+use super::facts::{
+    Arcs, CornerWords, Cycles, DwellUnit, Facts, FeedMeaning, FeedRules, FrameRules, Functions,
+    Homes, MotionRules, Numbers, Offsets, Rollover, Syntax, Tools, further, within_a_hundredth,
+};
 use super::{END_M, FRAME_G, MACRO_G, MILL_G, POLAR_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
+use crate::iso::language::parameters::Language;
 use crate::iso::language::words::{
-    Canned, Dictionary, Flavor, G, GRow, Group, M, MRow, Motion, Path, Refused,
+    Canned, Dictionary, G, GRow, Group, M, MRow, Motion, Path, Refused,
 };
 
 const G_WORDS: &[GRow] = &[
@@ -45,7 +50,7 @@ const REFUSED_G: &[Refused] = &[
     (960, "constant surface speed is for turning"),
 ];
 
-pub(super) static WORDS: Dictionary = mill(Flavor::Fanuc, b"ABCDFGHIJKLMNOPQRSTXYZ", usize::MAX)
+const WORDS: Dictionary = mill(b"ABCDFGHIJKLMNOPQRSTXYZ", usize::MAX)
     .with(MILL_G, END_M)
     .with(TOOL_G, TOOL_M)
     .with(FRAME_G, SUBPROGRAM_M)
@@ -54,3 +59,38 @@ pub(super) static WORDS: Dictionary = mill(Flavor::Fanuc, b"ABCDFGHIJKLMNOPQRSTX
     .with(&cycles(Group::Cycle), &[])
     .with(G_WORDS, M_WORDS)
     .refusing(REFUSED_G, &[]);
+
+pub(crate) static FACTS: Facts = Facts {
+    syntax: Syntax { corners: CornerWords::AtAll, repeats_in_p: true, ..Syntax::FANUC },
+    numbers: Numbers {
+        factor_needs_point: true,
+        // Parameters 1013, 1015#7 say how long an increment is.
+        dwell: DwellUnit::AsSetUp,
+        dwell_letter: Some(b'X'),
+        dwells_by_turns: true,
+        ..Numbers::FANUC
+    },
+    feed: FeedRules { meaning: FeedMeaning::PointedTime, ..FeedRules::FANUC },
+    functions: Functions {
+        // It is the choice of the builder.
+        end_switches_off: false,
+        ..Functions::FANUC
+    },
+    motion: MotionRules { rollover: Rollover::AsSetUp, units_alone: true, ..MotionRules::FANUC },
+    arcs: Arcs {
+        // Parameter 3410, which the machine sets.
+        is_circle: within_a_hundredth,
+        counts_radii: true,
+        ..Arcs::ISO
+    },
+    cycles: Cycles { repeats: (b'K', 0), ..Cycles::FANUC },
+    offsets: Offsets { written: |l, p, _| further(300, l, p), external: true, ..Offsets::FANUC },
+    frames: FrameRules {
+        // Parameter 5400#0 says whether it does.
+        turns_add: false,
+        ..FrameRules::FANUC
+    },
+    homes: Homes { leaves_tilt: true, names_axes: true, ..Homes::FANUC },
+    tools: Tools { remembers_registers: true, length_as_set_up: true, ..Tools::FANUC },
+    ..Facts::fanuc(WORDS, Language::MacroB)
+};

@@ -1,9 +1,14 @@
 //! FreeCAD's own commands, in which its CAM workbench keeps toolpaths (`docs/sources/freecad.md`): lengths
 //! are mm and times s, whatever the job shows: a feed is mm/s.
 
+use super::facts::{
+    Arcs, Brackets, Cycles, Facts, FeedMeaning, FeedRules, OuterCenter, Reset, Semicolon, Syntax,
+    Tools,
+};
 use super::{BASIC_G, BASIC_M, END_M, SPINDLE_G, SPINDLE_M, cycles};
+use crate::iso::language::parameters::Language;
 use crate::iso::language::words::{
-    Dictionary, FeedMode, Flavor, G, GRow, Group, M, MRow, Motion, Refused, Side,
+    Dictionary, FeedMode, G, GRow, Group, M, MRow, Motion, Refused, Side,
 };
 
 const G_WORDS: &[GRow] = &[
@@ -41,10 +46,25 @@ const REFUSED_G: &[Refused] = &[
     (490, "the post calls the length of the tool with the tool"),
 ];
 
-pub(super) static WORDS: Dictionary =
-    Dictionary::new(Flavor::FreeCad, b"ABCDFGIJKLMNPQRSTXYZ", usize::MAX)
-        .with(BASIC_G, BASIC_M)
-        .with(SPINDLE_G, SPINDLE_M)
-        .with(&cycles(Group::Motion), END_M)
-        .with(G_WORDS, M_WORDS)
-        .refusing(REFUSED_G, &[]);
+const WORDS: Dictionary = Dictionary::new(b"ABCDFGIJKLMNPQRSTXYZ", usize::MAX)
+    .with(BASIC_G, BASIC_M)
+    .with(SPINDLE_G, SPINDLE_M)
+    .with(&cycles(Group::Motion), END_M)
+    .with(G_WORDS, M_WORDS)
+    .refusing(REFUSED_G, &[]);
+
+pub(crate) static FACTS: Facts = Facts {
+    syntax: Syntax {
+        brackets: Brackets::Line,
+        semicolon: Semicolon::Refused,
+        writes_nothing: true,
+        ends_with_text: true,
+        ..Syntax::ISO
+    },
+    feed: FeedRules { meaning: FeedMeaning::PerSecond, ..FeedRules::ISO },
+    arcs: Arcs { outer_center: OuterCenter::Ignored, ..Arcs::ISO },
+    cycles: Cycles { chuck_is_open: true, returns: Some(false), ..Cycles::ISO },
+    tools: Tools { numbered: true, ..Tools::ISO },
+    reset: Reset { millimeters: true, ..Reset::ISO },
+    ..Facts::iso(WORDS, Language::Plain)
+};

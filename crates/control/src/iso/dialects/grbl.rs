@@ -1,7 +1,12 @@
 //! GRBL 1.1, wiki page "Grbl v1.1 Commands" and the supported codes in its `gcode.h`.
 
+use super::facts::{
+    Arcs, Brackets, Facts, FeedRules, FeedUnit, Functions, Homes, Offsets, OuterCenter, Reset,
+    Syntax, Tools, six,
+};
 use super::{END_M, MILL_G, mill};
-use crate::iso::language::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Motion, Refused};
+use crate::iso::language::parameters::Language;
+use crate::iso::language::words::{Dictionary, G, GRow, Group, M, MRow, Motion, Refused};
 
 const G_WORDS: &[GRow] = &[
     (100, Group::OneShot, G::WriteData),
@@ -35,7 +40,25 @@ const REFUSED_M: &[Refused] = &[
     (99, "this control has no subprograms"),
 ];
 
-pub(super) static WORDS: Dictionary = mill(Flavor::Grbl, b"FGIJKLMNPRSTXYZ", 79)
+const WORDS: Dictionary = mill(b"FGIJKLMNPRSTXYZ", 79)
     .with(MILL_G, END_M)
     .with(G_WORDS, M_WORDS)
     .refusing(REFUSED_G, REFUSED_M);
+
+pub(crate) static FACTS: Facts = Facts {
+    syntax: Syntax { brackets: Brackets::AnyComment, percent: false, console: true, ..Syntax::ISO },
+    feed: FeedRules { unit: FeedUnit::OfBlock, ..FeedRules::ISO },
+    functions: Functions { ignores_optional_stop: true, ..Functions::ISO },
+    arcs: Arcs { needs_axis: true, outer_center: OuterCenter::Ignored, ..Arcs::ISO },
+    offsets: Offsets {
+        written: |l, p, active| match p {
+            Some(0) => Some(active),
+            p => six(l, p, active),
+        },
+        ..Offsets::ISO
+    },
+    homes: Homes { stored: true, ..Homes::ISO },
+    tools: Tools { by_hand: true, ..Tools::ISO },
+    reset: Reset { rapid: true, three_axes: true, ..Reset::ISO },
+    ..Facts::iso(WORDS, Language::Plain)
+};

@@ -1,8 +1,13 @@
 //! Haas NGC mills, "Mill Operator's Manual", chapters G codes and M codes.
 
+use super::facts::{
+    Arcs, CornerWords, Cycles, DwellUnit, Facts, FrameRules, Functions, Homes, Numbers, Offsets,
+    Syntax, Tools, further, within_a_hundredth,
+};
 use super::{END_M, FRAME_G, MACRO_G, MILL_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
+use crate::iso::language::parameters::Language;
 use crate::iso::language::words::{
-    Canned, Dictionary, Flavor, G, GRow, Group, M, MRow, Path, Pattern, Refused,
+    Canned, Dictionary, G, GRow, Group, M, MRow, Path, Pattern, Refused,
 };
 
 const G_WORDS: &[GRow] = &[
@@ -79,7 +84,7 @@ const REFUSED_G: &[Refused] = &[
     ),
 ];
 
-pub(super) static WORDS: Dictionary = mill(Flavor::Haas, b"ABCDEFGHIJKLMNOPQRSTXYZ", usize::MAX)
+const WORDS: Dictionary = mill(b"ABCDEFGHIJKLMNOPQRSTXYZ", usize::MAX)
     .with(MILL_G, END_M)
     .with(TOOL_G, TOOL_M)
     .with(FRAME_G, SUBPROGRAM_M)
@@ -87,3 +92,26 @@ pub(super) static WORDS: Dictionary = mill(Flavor::Haas, b"ABCDEFGHIJKLMNOPQRSTX
     .with(&cycles(Group::Cycle), &[])
     .with(G_WORDS, M_WORDS)
     .refusing(REFUSED_G, &[]);
+
+pub(crate) static FACTS: Facts = Facts {
+    syntax: Syntax { corners: CornerWords::AtLines, ..Syntax::FANUC },
+    numbers: Numbers { dwell: DwellUnit::ByPoint, ..Numbers::FANUC },
+    functions: Functions {
+        // *Mill Operator's Manual*, M00.
+        stop_switches_off: true,
+        ..Functions::FANUC
+    },
+    arcs: Arcs { is_circle: within_a_hundredth, ..Arcs::ISO },
+    cycles: Cycles {
+        turns_spindle: true,
+        repeats: (b'L', 0),
+        // Setting 52.
+        peck_retract_is_set: true,
+        ..Cycles::FANUC
+    },
+    offsets: Offsets { written: |l, p, _| further(99, l, p), ..Offsets::FANUC },
+    frames: FrameRules { mirrors_at_zero: true, ..FrameRules::FANUC },
+    homes: Homes { cancels_length: true, ..Homes::FANUC },
+    tools: Tools { remembers_registers: true, ..Tools::FANUC },
+    ..Facts::fanuc(WORDS, Language::MacroB)
+};

@@ -1,9 +1,14 @@
 //! LinuxCNC, "G-Code Overview", table of modal groups. `G80` may stand beside `G0` to `G3`, so it has
 //! a group of its own.
 
+use super::facts::{
+    Arcs, Cycles, Facts, FeedRules, FeedUnit, Functions, Homes, MotionRules, Offsets, OuterCenter,
+    Rollover, Syntax, Tools,
+};
 use super::{END_M, MILL_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
+use crate::iso::language::parameters::Language;
 use crate::iso::language::words::{
-    Dictionary, Flavor, G, GRow, Group, M, MRow, Motion, Path, Refused, Side,
+    Dictionary, G, GRow, Group, M, MRow, Motion, Path, Refused, Side,
 };
 
 const G_WORDS: &[GRow] = &[
@@ -73,10 +78,53 @@ const REFUSED_G: &[Refused] = &[
     (870, "LinuxCNC's back boring is not followed; write its moves"),
 ];
 
-pub(super) static WORDS: Dictionary = mill(Flavor::LinuxCnc, b"ABCDEFGHIJKLMNPQRSTXYZ@^$", 254)
+const WORDS: Dictionary = mill(b"ABCDEFGHIJKLMNPQRSTXYZ@^$", 254)
     .with(MILL_G, END_M)
     .with(TOOL_G, TOOL_M)
     .with(&[], SUBPROGRAM_M)
     .with(&cycles(Group::Motion), &[])
     .with(G_WORDS, M_WORDS)
     .refusing(REFUSED_G, &[]);
+
+/// By 2√2 of 0.01 mm or of 0.001 inch, and beyond that up to a hundred times as much where it is at most 0.1 % of the larger
+/// radius (found with `rs274`; `CENTER_ARC_RADIUS_TOLERANCE_MM` and `_INCH` of the INI file set it otherwise).
+fn is_circle(inches: bool, start: f64, end: f64) -> bool {
+    let apart = (start - end).abs();
+    let unit = if inches { 0.001 * geom::INCH } else { 0.01 };
+    let near = 2.0 * std::f64::consts::SQRT_2 * unit;
+    apart <= near || (apart <= 100.0 * near && apart <= 0.001 * start.max(end))
+}
+
+pub(crate) static FACTS: Facts = Facts {
+    syntax: Syntax { extended_m: true, ..Syntax::ISO },
+    feed: FeedRules { unit: FeedUnit::OfBefore, ..FeedRules::ISO },
+    functions: Functions { orients_by_pq: true, ..Functions::ISO },
+    motion: MotionRules {
+        rollover: Rollover::BySign,
+        any_line_compensates: true,
+        ..MotionRules::ISO
+    },
+    arcs: Arcs {
+        is_circle,
+        // Both 0.000 05 inch, found with `rs274`.
+        radius_slack: 0.00127,
+        least_radius: 0.00127,
+        may_compensate: true,
+        outer_center: OuterCenter::Refused,
+        counts_turns: true,
+        ..Arcs::ISO
+    },
+    cycles: Cycles { taps_in_g17: true, dwell_stays: true, ..Cycles::ISO },
+    offsets: Offsets {
+        written: |_, p, active| match p? {
+            0 => Some(active),
+            p @ 1..=9 => Some(53 + p),
+            _ => None,
+        },
+        turn: true,
+        ..Offsets::ISO
+    },
+    homes: Homes { stored: true, ..Homes::ISO },
+    tools: Tools { follows_tool: true, rs274_data: true, ..Tools::ISO },
+    ..Facts::iso(WORDS, Language::Ngc)
+};

@@ -1,8 +1,10 @@
 //! Mach3, "Mach3 G and M-code Reference", table of G codes. The modal groups are those of RS274/NGC,
 //! on which it is built; `G80` may stand beside `G0` to `G3`.
 
+use super::facts::{Facts, FrameRules, Offsets, Tools};
 use super::{END_M, FRAME_G, MILL_G, POLAR_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
-use crate::iso::language::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Path, Refused};
+use crate::iso::language::parameters::Language;
+use crate::iso::language::words::{Dictionary, G, GRow, Group, M, MRow, Path, Refused};
 
 const G_WORDS: &[GRow] = &[
     (100, Group::OneShot, G::WriteData),
@@ -34,7 +36,7 @@ const REFUSED_G: &[Refused] = &[
 
 const REFUSED_M: &[Refused] = &[(47, "a program that begins again from its first line never ends")];
 
-pub(super) static WORDS: Dictionary = mill(Flavor::Mach3, b"ABCDFGHIJKLMNOPQRSTXYZ", usize::MAX)
+const WORDS: Dictionary = mill(b"ABCDFGHIJKLMNOPQRSTXYZ", usize::MAX)
     .with(MILL_G, END_M)
     .with(TOOL_G, TOOL_M)
     .with(FRAME_G, SUBPROGRAM_M)
@@ -42,3 +44,17 @@ pub(super) static WORDS: Dictionary = mill(Flavor::Mach3, b"ABCDFGHIJKLMNOPQRSTX
     .with(&cycles(Group::Motion), &[])
     .with(G_WORDS, M_WORDS)
     .refusing(REFUSED_G, REFUSED_M);
+
+/// How many work offsets there are.
+const OFFSETS: u32 = 254;
+
+pub(crate) static FACTS: Facts = Facts {
+    offsets: Offsets {
+        by_g59: Some(OFFSETS),
+        written: |l, p, _| p.filter(|p| l == 2 && (1..=OFFSETS).contains(p)).map(|p| 53 + p),
+        ..Offsets::ISO
+    },
+    frames: FrameRules { scales_by_axis: true, turn_center: Some(*b"AB"), ..FrameRules::ISO },
+    tools: Tools { rs274_data: true, ..Tools::ISO },
+    ..Facts::iso(WORDS, Language::Rs274)
+};

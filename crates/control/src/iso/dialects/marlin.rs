@@ -1,8 +1,10 @@
 //! Marlin 2 with the options for mills (`CNC_COORDINATE_SYSTEMS`, `CNC_WORKSPACE_PLANES`,
 //! `SPINDLE_FEATURE` in revolutions, `COOLANT_CONTROL`), from its G-code index.
 
+use super::facts::{BlockDelete, Brackets, DwellUnit, Facts, Homes, Numbers, Syntax, Tools};
 use super::mill;
-use crate::iso::language::words::{Dictionary, Flavor, G, GRow, Group, M, MRow, Refused};
+use crate::iso::language::parameters::Language;
+use crate::iso::language::words::{Dictionary, G, GRow, Group, M, MRow, Refused};
 
 const G_WORDS: &[GRow] = &[
     (591, Group::WorkOffset, G::WorkOffset(60)),
@@ -49,6 +51,22 @@ const REFUSED_M: &[Refused] = &[
     (220, "it changes every feed that follows"),
 ];
 
-pub(super) static WORDS: Dictionary = mill(Flavor::Marlin, b"ABCFGIJKMNPRSTXYZ", 95)
-    .with(G_WORDS, M_WORDS)
-    .refusing(REFUSED_G, REFUSED_M);
+const WORDS: Dictionary =
+    mill(b"ABCFGIJKMNPRSTXYZ", 95).with(G_WORDS, M_WORDS).refusing(REFUSED_G, REFUSED_M);
+
+pub(crate) static FACTS: Facts = Facts {
+    syntax: Syntax {
+        small_letters: false,
+        brackets: Brackets::None,
+        block_delete: BlockDelete::None,
+        percent: false,
+        one_command: true,
+        ends_with_text: true,
+        refused_letter: Some((b'E', "an extruder is no tool of a mill")),
+        ..Syntax::ISO
+    },
+    numbers: Numbers { dwell: DwellUnit::Milliseconds, dwell_letter: Some(b'S'), ..Numbers::ISO },
+    homes: Homes { switches: true, ..Homes::ISO },
+    tools: Tools { by_hand: true, ..Tools::ISO },
+    ..Facts::iso(WORDS, Language::Plain)
+};

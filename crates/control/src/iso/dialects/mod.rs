@@ -1,35 +1,21 @@
-//! The words of each flavour: which it has, in which modal group, and why it refuses others.
+//! The dialects, each a file of [`facts`]: which words it has, in which modal group, why it refuses others, and in what it
+//! differs from others besides. No other file asks for a maker by name.
 
-mod fanuc;
-mod freecad;
-mod grbl;
-mod haas;
-mod linuxcnc;
-mod mach3;
-mod marlin;
-mod wire;
+pub(super) mod facts;
+pub(crate) mod fanuc;
+pub(crate) mod freecad;
+pub(crate) mod grbl;
+pub(crate) mod haas;
+pub(crate) mod linuxcnc;
+pub(crate) mod mach3;
+pub(crate) mod marlin;
+pub(crate) mod wire;
 
 use crate::iso::language::words::{
-    Canned, Dictionary, FeedMode, Flavor, G, GRow, Group, M, MRow, Motion, Path, Plane, Side,
+    Canned, Dictionary, FeedMode, G, GRow, Group, M, MRow, Motion, Path, Plane, Side,
 };
 
-/// The words of `flavor`.
-pub(crate) fn dictionary(flavor: Flavor) -> &'static Dictionary {
-    match flavor {
-        Flavor::Fanuc => &fanuc::WORDS,
-        Flavor::Haas => &haas::WORDS,
-        Flavor::LinuxCnc => &linuxcnc::WORDS,
-        Flavor::Mach3 => &mach3::WORDS,
-        Flavor::Grbl => &grbl::WORDS,
-        Flavor::Marlin => &marlin::WORDS,
-        Flavor::FanucWire => &wire::FANUC,
-        Flavor::Sodick => &wire::SODICK,
-        Flavor::Agie => &wire::AGIE,
-        Flavor::FreeCad => &freecad::WORDS,
-    }
-}
-
-/// What every flavour has.
+/// What every dialect has.
 const BASIC_G: &[GRow] = &[
     (0, Group::Motion, G::Motion(Motion::Rapid)),
     (10, Group::Motion, G::Motion(Motion::Line)),
@@ -47,14 +33,14 @@ const BASIC_G: &[GRow] = &[
     (920, Group::OneShot, G::ShiftHere),
 ];
 
-/// What every flavour has.
+/// What every dialect has.
 const BASIC_M: &[MRow] = &[(0, Group::Flow, M::Stop), (1, Group::Flow, M::OptionalStop)];
 
 /// Units as FANUC says them.
 const UNITS_20: &[GRow] =
     &[(200, Group::Units, G::Inches(true)), (210, Group::Units, G::Inches(false))];
 
-/// What every flavour of a mill has besides.
+/// What every dialect of a mill has besides.
 const SPINDLE_G: &[GRow] = &[
     (40, Group::OneShot, G::Dwell),
     (180, Group::Plane, G::Plane(Plane::Zx)),
@@ -63,7 +49,7 @@ const SPINDLE_G: &[GRow] = &[
     (530, Group::OneShot, G::Machine),
 ];
 
-/// What every flavour of a mill has besides.
+/// What every dialect of a mill has besides.
 const SPINDLE_M: &[MRow] = &[
     (3, Group::Spindle, M::Clockwise),
     (4, Group::Spindle, M::CounterClockwise),
@@ -72,7 +58,7 @@ const SPINDLE_M: &[MRow] = &[
     (9, Group::Coolant, M::CoolantOff),
 ];
 
-/// What every flavour has that is a control of a mill by itself.
+/// What every dialect has that is a control of a mill by itself.
 const MILL_G: &[GRow] = &[
     (300, Group::OneShot, G::SecondHome),
     (400, Group::Compensation, G::Compensation(Side::Off)),
@@ -127,9 +113,9 @@ const FRAME_G: &[GRow] = &[
     (690, Group::Tilt, G::Upright),
 ];
 
-/// The words of a mill, as far as every flavour has them.
-const fn mill(flavor: Flavor, letters: &[u8], longest: usize) -> Dictionary {
-    Dictionary::new(flavor, letters, longest)
+/// The words of a mill, as far as every dialect has them.
+const fn mill(letters: &[u8], longest: usize) -> Dictionary {
+    Dictionary::new(letters, longest)
         .with(BASIC_G, BASIC_M)
         .with(UNITS_20, &[])
         .with(SPINDLE_G, SPINDLE_M)

@@ -2,8 +2,10 @@
 //! (`docs/controls/wire-iso.md`). The M functions that thread and cut the wire stand in the machine's
 //! file.
 
+use super::facts::{Facts, Tools, WireRules};
 use super::{BASIC_G, BASIC_M, END_M, SUBPROGRAM_M, UNITS_20};
-use crate::iso::language::words::{Dictionary, Flavor, G, GRow, Group, Refused, Side};
+use crate::iso::language::parameters::Language;
+use crate::iso::language::words::{Dictionary, G, GRow, Group, Refused, Side};
 
 /// Offset of the wire by the control.
 const COMPENSATION: &[GRow] = &[
@@ -28,23 +30,40 @@ const REFUSED_BY_AGIE: &[Refused] = &[
     (520, "how this control says a taper is not known; give U and V"),
 ];
 
-pub(super) static FANUC: Dictionary =
-    Dictionary::new(Flavor::FanucWire, b"DFGIJLMNOPRSTUVXY", usize::MAX)
-        .with(BASIC_G, BASIC_M)
-        .with(COMPENSATION, END_M)
-        .with(UNITS_20, SUBPROGRAM_M)
-        .with(TAPER, &[]);
+pub(crate) static FANUC: Facts = Facts {
+    wire: Some(WireRules { conditions: b"S", taper_letter: b'T' }),
+    ..Facts::fanuc(
+        Dictionary::new(b"DFGIJLMNOPRSTUVXY", usize::MAX)
+            .with(BASIC_G, BASIC_M)
+            .with(COMPENSATION, END_M)
+            .with(UNITS_20, SUBPROGRAM_M)
+            .with(TAPER, &[]),
+        Language::Plain,
+    )
+};
 
-pub(super) static SODICK: Dictionary =
-    Dictionary::new(Flavor::Sodick, b"ACFGHIJLMNOPRTUVXY", usize::MAX)
-        .with(BASIC_G, BASIC_M)
-        .with(COMPENSATION, END_M)
-        .with(UNITS_20, SUBPROGRAM_M)
-        .with(UNITS_70, &[])
-        .with(TAPER, &[]);
+pub(crate) static SODICK: Facts = Facts {
+    tools: Tools { radius_letter: b'H', ..Tools::FANUC },
+    wire: Some(WireRules { conditions: b"CT", taper_letter: b'A' }),
+    ..Facts::fanuc(
+        Dictionary::new(b"ACFGHIJLMNOPRTUVXY", usize::MAX)
+            .with(BASIC_G, BASIC_M)
+            .with(COMPENSATION, END_M)
+            .with(UNITS_20, SUBPROGRAM_M)
+            .with(UNITS_70, &[])
+            .with(TAPER, &[]),
+        Language::Plain,
+    )
+};
 
-pub(super) static AGIE: Dictionary = Dictionary::new(Flavor::Agie, b"DFGIJMNPSTUVXY", usize::MAX)
-    .with(BASIC_G, BASIC_M)
-    .with(COMPENSATION, END_M)
-    .with(UNITS_70, &[])
-    .refusing(REFUSED_BY_AGIE, &[]);
+pub(crate) static AGIE: Facts = Facts {
+    wire: Some(WireRules { conditions: b"PST", taper_letter: b'T' }),
+    ..Facts::fanuc(
+        Dictionary::new(b"DFGIJMNPSTUVXY", usize::MAX)
+            .with(BASIC_G, BASIC_M)
+            .with(COMPENSATION, END_M)
+            .with(UNITS_70, &[])
+            .refusing(REFUSED_BY_AGIE, &[]),
+        Language::Plain,
+    )
+};

@@ -4,45 +4,12 @@ use super::motion::Target;
 use super::state::Tilt;
 use super::step::Step;
 use crate::event::{Action, ArcTo};
+use crate::iso::dialects::facts::OuterCenter;
 use crate::iso::language::block::Fault;
-use crate::iso::language::words::Flavor;
 use geom::Vec3;
 
 /// The letters of the centre, by axis.
 const CENTER: [u8; 3] = *b"IJK";
-
-/// By how much half the chord may be longer than R where the arc is a half circle by rounding, mm.
-/// LinuxCNC: 0.000 05 inch, found with `rs274`; GRBL takes the square root of what is then negative
-/// and refuses; FANUC's alarm PS0023 names no tolerance.
-fn radius_slack(flavor: Flavor) -> f64 {
-    match flavor {
-        Flavor::LinuxCnc => 0.00127,
-        _ => 1e-9,
-    }
-}
-
-/// A radius below which LinuxCNC has no arc, mm (`rs274`: 0.000 05 inch).
-const NO_RADIUS: f64 = 0.00127;
-
-/// Whether a control takes an arc whose ends have these radii (mm) from the programmed centre, in a program in inches or not.
-///
-/// LinuxCNC: by 2√2 of 0.01 mm or of 0.001 inch, and beyond that up to a hundred times as much where it is at most 0.1 % of
-/// the larger radius (found with `rs274`; `CENTER_ARC_RADIUS_TOLERANCE_MM` and `_INCH` of the INI file set it otherwise).
-///
-/// GRBL 1.1 (`gcode.c`, step 20): up to 0.005 mm, or up to 0.5 mm where that is less than 0.1 % of the radius. FANUC:
-/// parameter 3410, which the machine sets; 0.01 mm is assumed.
-fn is_circle(flavor: Flavor, inches: bool, start: f64, end: f64) -> bool {
-    let apart = (start - end).abs();
-    match flavor {
-        Flavor::Fanuc | Flavor::Haas => apart <= 0.01,
-        Flavor::LinuxCnc => {
-            let unit = if inches { 0.001 * geom::INCH } else { 0.01 };
-            let near = 2.0 * std::f64::consts::SQRT_2 * unit;
-            apart <= near || (apart <= 100.0 * near && apart <= 0.001 * start.max(end))
-        }
-        _ => apart <= 0.005 || (apart <= 0.5 && apart <= 0.001 * start),
-    }
-}
 
 impl Step<'_, '_, '_> {
     /// An arc or helix to `target`.
@@ -57,12 +24,12 @@ impl Step<'_, '_, '_> {
         };
         let radius = |p: Vec3| (p[first] - center[first]).hypot(p[second] - center[second]);
         let (from, to) = (radius(start), radius(target.point));
-        let least = if self.flavor == Flavor::LinuxCnc { NO_RADIUS } else { 1e-6 };
-        if from < least {
+        let rules = &self.facts.arcs;
+        if from < rules.least_radius {
             return Err(self.block.whole("nc-arc", "the arc starts on its own centre"));
         }
         let inches = self.state.inches == Some(true);
-        if !is_circle(self.flavor, inches, from, to) {
+        if !(rules.is_circle)(inches, from, to) {
             let message = format!(
                 "the end is {to:.4} mm from the centre and the start {from:.4} mm: not on one circle"
             );
@@ -99,7 +66,7 @@ impl Step<'_, '_, '_> {
             return Err(self.block.whole("nc-arc", message));
         }
         // LinuxCNC may begin it on an arc; where that arc then leads needs the tool's radius.
-        let begins = self.flavor == Flavor::LinuxCnc && self.state.compensation.is_on();
+        let begins = self.facts.arcs.may_compensate && self.state.compensation.is_on();
         if self.compensation_waits() && !begins {
             let message = "radius compensation starts and ends on a straight move, not on an arc";
             return Err(self.block.whole("nc-compensation", message));
@@ -110,7 +77,7 @@ impl Step<'_, '_, '_> {
             let message = "an arc while the axes of the plane have two scales is no arc";
             return Err(self.block.whole("nc-frame", message));
         }
-        if self.flavor == Flavor::Grbl && target.named & (1 << first | 1 << second) == 0 {
+        if self.facts.arcs.needs_axis && target.named & (1 << first | 1 << second) == 0 {
             let message = "an arc needs an axis word of its plane";
             return Err(self.block.whole("nc-arc", message));
         }
@@ -132,7 +99,7 @@ impl Step<'_, '_, '_> {
             let message = "an arc by R ends where it starts: a full circle needs its centre";
             return Err(self.block.at_word(b'R', "nc-arc", message));
         }
-        if chord / 2.0 > radius.abs() + radius_slack(self.flavor) {
+        if chord / 2.0 > radius.abs() + self.facts.arcs.radius_slack {
             let message = format!(
                 "the radius {:.4} mm does not reach: the ends are {chord:.4} mm apart",
                 radius.abs()
@@ -175,9 +142,10 @@ impl Step<'_, '_, '_> {
     /// own posts do; LinuxCNC refuses it (found with `rs274`); that it is 0 says nothing anywhere.
     fn pass_outer_center(&mut self, letter: u8) -> Result<(), Fault> {
         let Some(word) = self.block.take(letter) else { return Ok(()) };
-        let is_nothing = word.value == 0.0 && self.flavor != Flavor::LinuxCnc;
-        if is_nothing || matches!(self.flavor, Flavor::Grbl | Flavor::FreeCad) {
-            return Ok(());
+        match self.facts.arcs.outer_center {
+            OuterCenter::Ignored => return Ok(()),
+            OuterCenter::Zero if word.value == 0.0 => return Ok(()),
+            OuterCenter::Zero | OuterCenter::Refused => {}
         }
         let plane = self.state.plane.name();
         let message = format!("{} has no meaning in an arc in {plane}", char::from(letter));
@@ -187,7 +155,7 @@ impl Step<'_, '_, '_> {
     /// LinuxCNC: `P` counts the turns begun, 1 where it is not given.
     fn turns(&mut self) -> Result<u32, Fault> {
         // Beside G4 the P is that of the dwell, which has taken it.
-        if self.flavor != Flavor::LinuxCnc {
+        if !self.facts.arcs.counts_turns {
             return Ok(0);
         }
         match self.take_whole(b'P')? {

@@ -6,15 +6,12 @@ use super::state::{Polar, Tilt, UNKNOWN};
 use super::step::Step;
 use crate::event::{Action, Risk};
 use crate::iso::language::block::{Fault, Word};
-use crate::iso::language::words::{Flavor, G, Group};
+use crate::iso::language::words::{G, Group};
 use geom::{Frame, Mat3, Vec3};
 use program::{WorkOffset, WorkOffsetData};
 
 /// The letters of the axes, in the order of [`Six`].
 const AXES: [u8; 6] = *b"XYZABC";
-
-/// How many work offsets Mach3 has.
-const MACH3_OFFSETS: u32 = 254;
 
 impl Step<'_, '_, '_> {
     /// `G92` and its kin, `G52`, `G10`.
@@ -30,7 +27,7 @@ impl Step<'_, '_, '_> {
         match word {
             G::ShiftHere => {
                 // It stays when the program has ended. A wire-EDM machine knows no other origin: its programs begin so.
-                if !self.flavor.is_wire() {
+                if self.facts.wire.is_none() {
                     self.actions.push(Action::Risk(Risk::OPERATOR_DATA.into()));
                 }
                 let values = self.axis_values()?;
@@ -44,7 +41,7 @@ impl Step<'_, '_, '_> {
             }
             G::ShiftTo => {
                 let values = self.axis_values()?;
-                if self.flavor.is_fanuc() {
+                if self.facts.offsets.local_apart {
                     for (local, value) in self.state.frames.local.iter_mut().zip(values) {
                         *local = value.unwrap_or(*local);
                     }
@@ -149,11 +146,13 @@ impl Step<'_, '_, '_> {
     pub(super) fn work_offset(&mut self) -> Result<(), Fault> {
         let number = match self.block.g(Group::WorkOffset) {
             Some(G::FurtherOffset { most }) => 59 + self.further_offset(most)?,
-            // The first six of Mach3 are G54 to G59.
-            Some(G::WorkOffset(59)) if self.flavor == Flavor::Mach3 && self.block.has(b'P') => {
-                53 + self.further_offset(MACH3_OFFSETS)?
-            }
-            Some(G::WorkOffset(number)) => number,
+            // The first six of these are G54 to G59.
+            Some(G::WorkOffset(number)) => match self.facts.offsets.by_g59 {
+                Some(most) if number == 59 && self.block.has(b'P') => {
+                    53 + self.further_offset(most)?
+                }
+                _ => number,
+            },
             _ => return Ok(()),
         };
         if self.state.work_offset == Some(number) {
@@ -210,26 +209,17 @@ impl Step<'_, '_, '_> {
         }
         let which = self.take_whole(b'P')?;
         let active = self.state.frames.active();
-        let number = match (self.flavor, kind, which) {
-            (Flavor::LinuxCnc | Flavor::Grbl, _, Some(0)) => Some(active),
-            (Flavor::LinuxCnc, _, Some(p @ 7..=9)) => Some(53 + p),
-            (Flavor::Fanuc, 20, Some(p @ 1..=300)) | (Flavor::Haas, 20, Some(p @ 1..=99)) => {
-                Some(59 + p)
-            }
-            (Flavor::Mach3, 2, Some(p @ 7..=MACH3_OFFSETS)) => Some(53 + p),
-            (Flavor::Fanuc | Flavor::Haas | Flavor::Mach3, 20, _) => None,
-            (_, _, Some(p @ 1..=6)) => Some(53 + p),
-            _ => None,
-        };
-        let external = (self.flavor, kind, which) == (Flavor::Fanuc, 2, Some(0));
+        let offsets = &self.facts.offsets;
+        let number = (offsets.written)(kind, which, active);
+        let external = offsets.external && (kind, which) == (2, Some(0));
         let Some(number) = number.or(external.then_some(active)) else {
             let message = "P names no work offset that can be written here";
             return Err(self.block.at_group(Group::OneShot, "nc-data", message));
         };
-        let sets_here = kind == 20 && !self.flavor.is_fanuc();
-        let angle = match self.flavor {
-            Flavor::LinuxCnc if !sets_here => self.take_degrees(b'R')?,
-            _ => None,
+        let sets_here = kind == 20 && offsets.sets_here;
+        let angle = match offsets.turn && !sets_here {
+            true => self.take_degrees(b'R')?,
+            false => None,
         };
         let values = if angle.is_some() && !AXES.iter().any(|&letter| self.block.has(letter)) {
             [None; 6]
@@ -237,7 +227,7 @@ impl Step<'_, '_, '_> {
             self.axis_values()?
         };
         // Values that are added, turned or counted from the tool are not the place of a zero.
-        let add = self.flavor.is_fanuc() && self.state.incremental;
+        let add = offsets.adds && self.state.incremental;
         let places_zero = !sets_here && !external && !add && angle.is_none();
         if !(places_zero && self.state.sets_work_offsets) {
             self.actions.push(Action::Risk(Risk::OPERATOR_DATA.into()));
@@ -283,7 +273,7 @@ impl Step<'_, '_, '_> {
         match self.block.g(Group::Polar) {
             Some(G::Polar(true)) => {
                 // FANUC counts from the zero, Mach3 from where the tool stands.
-                let at_zero = self.flavor.is_fanuc();
+                let at_zero = self.facts.frames.pole_at_zero;
                 let pole = if at_zero { Vec3::ZERO } else { self.state.position };
                 self.state.polar = Some(Polar { pole, radius: f64::NAN, angle: f64::NAN });
             }
@@ -331,7 +321,7 @@ impl Step<'_, '_, '_> {
         let mut named = 0;
         for (axis, letter) in LINEAR.into_iter().enumerate() {
             if let Some(at) = self.take_length(letter)? {
-                if self.flavor == Flavor::Haas && at != 0.0 {
+                if self.facts.frames.mirrors_at_zero && at != 0.0 {
                     let message = "G101 mirrors about the zero: write 0";
                     return Err(self.block.at_word(letter, "nc-frame", message));
                 }
@@ -368,8 +358,7 @@ impl Step<'_, '_, '_> {
     }
 
     fn factors_and_center(&mut self) -> Result<(Vec3, Vec3), Fault> {
-        // Mach3 names the factor of each axis by the axis, and scales about the zero.
-        let by_axis = self.flavor == Flavor::Mach3;
+        let by_axis = self.facts.frames.scales_by_axis;
         let letters = if by_axis { *b"XYZ" } else { *b"IJK" };
         let one = if by_axis { None } else { self.factor(b'P')? };
         let (mut factors, mut center) = (Vec3::splat(one.unwrap_or(1.0)), Vec3::ZERO);
@@ -399,7 +388,7 @@ impl Step<'_, '_, '_> {
     /// thousandths (FANUC, parameter 5400#7).
     fn factor(&mut self, letter: u8) -> Result<Option<f64>, Fault> {
         let Some(Word { value, point, .. }) = self.block.take(letter) else { return Ok(None) };
-        if self.flavor == Flavor::Fanuc && !point {
+        if self.facts.numbers.factor_needs_point && !point {
             let message = "a factor without a point counts thousandths or hundred thousandths";
             return Err(self.block.at_word(letter, "nc-decimal-point", message));
         }
@@ -429,7 +418,7 @@ impl Step<'_, '_, '_> {
         }
         let degrees = match before {
             // Haas adds in G91; on FANUC parameter 5400#0 says whether it does.
-            Some((.., turned)) if self.state.incremental && self.flavor != Flavor::Fanuc => {
+            Some((.., turned)) if self.state.incremental && self.facts.frames.turns_add => {
                 turned + degrees
             }
             Some(_) if self.state.incremental => {
@@ -438,11 +427,7 @@ impl Step<'_, '_, '_> {
             }
             _ => degrees,
         };
-        // Mach3 names the centre by A and B.
-        let letters = match self.flavor {
-            Flavor::Mach3 => [b'A', b'B'],
-            _ => [AXES[first], AXES[second]],
-        };
+        let letters = self.facts.frames.turn_center.unwrap_or([AXES[first], AXES[second]]);
         // What the turn replaces does not count for where the tool stands.
         transform.turn = None;
         self.transformed(transform, Group::Tilt)?;

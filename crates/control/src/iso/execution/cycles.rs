@@ -4,8 +4,9 @@ use super::motion::{LINEAR, Target};
 use super::state::Tilt;
 use super::step::Step;
 use crate::event::{Action, Orientation, Risk};
+use crate::iso::dialects::facts::Cycles;
 use crate::iso::language::block::Fault;
-use crate::iso::language::words::{Canned, Flavor, G, Group};
+use crate::iso::language::words::{Canned, G, Group};
 use geom::Vec3;
 use program::{Cycle, CycleKind, Feed, Spindle, Withdrawal};
 
@@ -49,17 +50,17 @@ impl Canned {
         matches!(self, Canned::FineBore | Canned::BackBore)
     }
 
-    fn needs_dwell(self, flavor: Flavor) -> bool {
+    fn needs_dwell(self, rules: &Cycles) -> bool {
         match self {
             Canned::DwellDrill | Canned::DwellReam | Canned::HandBore => true,
             // RS274 asks for P; FANUC's G86 has none.
-            Canned::Bore => !flavor.is_fanuc(),
+            Canned::Bore => rules.bore_dwells,
             _ => false,
         }
     }
 
-    fn may_dwell(self, flavor: Flavor) -> bool {
-        self.needs_dwell(flavor)
+    fn may_dwell(self, rules: &Cycles) -> bool {
+        self.needs_dwell(rules)
             || self.goes_aside()
             || matches!(self, Canned::Tap | Canned::LeftTap)
     }
@@ -86,19 +87,19 @@ impl Step<'_, '_, '_> {
             return Err(self.block.whole("nc-cycle", message));
         }
         let axis = self.state.plane.axes()[2];
-        if self.flavor.is_fanuc() && axis != 2 {
+        if self.facts.cycles.apart && axis != 2 {
             let message = "a cycle out of the plane G17: the drilling axis is a setting (5101#0)";
             return Err(self.block.whole("nc-cycle", message));
         }
         // LinuxCNC feeds along another axis than that of the plane there (found with `rs274`).
-        if self.flavor == Flavor::LinuxCnc
+        if self.facts.cycles.taps_in_g17
             && axis != 2
             && matches!(canned, Canned::Tap | Canned::LeftTap)
         {
             let message = "G84 and G74 are followed in G17 only";
             return Err(self.block.whole("nc-cycle", message));
         }
-        if !self.flavor.is_fanuc() {
+        if !self.facts.cycles.apart {
             self.state.motion = None;
         }
         let fresh = Holding {
@@ -115,7 +116,7 @@ impl Step<'_, '_, '_> {
         self.state.cycle = Some(match self.state.cycle {
             None => fresh,
             // FANUC keeps the data until G80; LinuxCNC while the same word is repeated.
-            Some(held) if self.flavor.is_fanuc() || held.canned == canned => {
+            Some(held) if self.facts.cycles.apart || held.canned == canned => {
                 Holding { canned, ..held }
             }
             Some(held) => {
@@ -142,7 +143,7 @@ impl Step<'_, '_, '_> {
     pub(super) fn holes(&mut self) -> Result<(), Fault> {
         let Some(mut held) = self.state.cycle else { return Ok(()) };
         let drills = b"XYZ@^".iter().any(|&letter| self.block.has(letter))
-            || self.flavor.is_fanuc() && self.block.has(b'R');
+            || self.facts.cycles.apart && self.block.has(b'R');
         if !drills {
             let asked = matches!(self.block.g(Group::Motion), Some(G::Cycle(_)));
             return if asked { Err(self.wrong("a cycle without an axis word")) } else { Ok(()) };
@@ -215,7 +216,7 @@ impl Step<'_, '_, '_> {
         let level = |from: f64, value: f64| if incremental { from + value } else { value };
         let (r, z) = (self.take_length(b'R')?, self.take_length(LINEAR[axis])?);
         (held.words.0, held.words.1) = (r.or(held.words.0), z.or(held.words.1));
-        if self.flavor.is_fanuc() {
+        if self.facts.cycles.apart {
             // The levels stay, whatever becomes of G90 and G91.
             if let Some(value) = r {
                 held.r = Some(level(held.initial, value));
@@ -237,11 +238,8 @@ impl Step<'_, '_, '_> {
             }
             held.q = Some(value);
         }
-        if held.canned.may_dwell(self.flavor) {
-            let seconds = match self.flavor {
-                Flavor::Fanuc => self.dwell_increments()?,
-                _ => self.dwell_p(),
-            };
+        if held.canned.may_dwell(&self.facts.cycles) {
+            let seconds = self.dwell_p()?;
             if seconds.is_some_and(|s| s < 0.0) {
                 return Err(self.block.at_word(b'P', "nc-cycle", "P is below 0"));
             }
@@ -265,7 +263,7 @@ impl Step<'_, '_, '_> {
             let message = format!("the {lower} {bottom} is not below the {upper} {top}");
             return Err(self.wrong(message));
         }
-        if held.initial < top && self.flavor.is_fanuc() {
+        if held.initial < top && self.facts.cycles.apart {
             let message =
                 format!("the {upper} {top} lies above the initial level {}", held.initial);
             return Err(self.wrong(message));
@@ -275,12 +273,12 @@ impl Step<'_, '_, '_> {
         } else {
             None
         };
-        if held.canned.needs_dwell(self.flavor) && held.dwell.is_none() {
+        if held.canned.needs_dwell(&self.facts.cycles) && held.dwell.is_none() {
             return Err(self.wrong("this cycle needs its dwell P"));
         }
-        let dwell = if !held.canned.may_dwell(self.flavor) {
+        let dwell = if !held.canned.may_dwell(&self.facts.cycles) {
             None
-        } else if self.flavor == Flavor::LinuxCnc {
+        } else if self.facts.cycles.dwell_stays {
             // Tapping without P dwells as long as the last cycle that had one (found with `rs274`).
             self.state.cycle_dwell
         } else {
@@ -361,13 +359,13 @@ impl Step<'_, '_, '_> {
         let needed =
             if left { Spindle::CounterClockwise(speed) } else { Spindle::Clockwise(speed) };
         // Haas turns the spindle itself in any case.
-        if self.state.rigid || self.flavor == Flavor::Haas {
+        if self.state.rigid || self.facts.cycles.turns_spindle {
             held.rigid = true;
             self.turn(needed);
         } else if self.state.spindle != needed {
             let message = "the spindle does not turn the way this tapping cycle needs";
             return Err(self.wrong(message));
-        } else if !self.state.floating_holder && self.flavor != Flavor::FreeCad {
+        } else if !self.state.floating_holder && !self.facts.cycles.chuck_is_open {
             self.actions.push(Action::Risk(Risk::FLOATING_TAP.into()));
         }
         let pitch = match self.state.feed {
@@ -380,11 +378,7 @@ impl Step<'_, '_, '_> {
 
     /// How often the hole is made: FANUC K, LinuxCNC L.
     fn repeats(&mut self) -> Result<u32, Fault> {
-        let (letter, least) = match self.flavor {
-            Flavor::Fanuc => (b'K', 0),
-            Flavor::Haas => (b'L', 0),
-            _ => (b'L', 1),
-        };
+        let (letter, least) = self.facts.cycles.repeats;
         match self.take_whole(letter)? {
             None => Ok(1),
             Some(repeats) if (least..=MOST_REPEATS).contains(&repeats) => Ok(repeats),
@@ -421,7 +415,7 @@ impl Step<'_, '_, '_> {
         if held.canned == Canned::HandBore {
             self.by_hand(at, level, axis, &cycle)?;
         } else {
-            if self.flavor == Flavor::Haas
+            if self.facts.cycles.peck_retract_is_set
                 && held.canned == Canned::Deep
                 && !std::mem::replace(&mut self.state.knows_peck_retract, true)
             {

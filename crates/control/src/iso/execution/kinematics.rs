@@ -4,8 +4,9 @@
 use super::state::UNKNOWN;
 use super::step::Step;
 use crate::Settings;
+use crate::iso::dialects::facts::Facts;
 use crate::iso::language::block::Fault;
-use crate::iso::language::words::{Flavor, G, Group, M, bit};
+use crate::iso::language::words::{G, Group, M, bit};
 
 /// What X, Y and Z are.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -22,9 +23,9 @@ pub(crate) enum Kinematics {
 
 impl Kinematics {
     /// At the start of a program.
-    pub(super) fn at_start(flavor: Flavor, settings: &Settings) -> Kinematics {
+    pub(super) fn at_start(facts: &Facts, settings: &Settings) -> Kinematics {
         match settings.kinematics {
-            Some(_) if flavor == Flavor::LinuxCnc => Kinematics::Unknown,
+            Some(_) if facts.syntax.extended_m => Kinematics::Unknown,
             _ => Kinematics::Single,
         }
     }

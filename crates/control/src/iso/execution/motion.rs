@@ -3,8 +3,9 @@
 use super::state::{Polar, Tilt};
 use super::step::Step;
 use crate::event::{Action, Risk};
+use crate::iso::dialects::facts::Rollover;
 use crate::iso::language::block::Fault;
-use crate::iso::language::words::{FeedMode, Flavor, G, Group, Motion, bit};
+use crate::iso::language::words::{FeedMode, G, Group, Motion, bit};
 use crate::kernel::way::{self, Modulo};
 use geom::{Arc, Vec3};
 use program::{Compensation, Feed};
@@ -85,11 +86,11 @@ impl Step<'_, '_, '_> {
     /// Another word of the block uses its axis words, too.
     fn has_the_axis_words(&self, word: G) -> Result<(), Fault> {
         let motion = self.block.g(Group::Motion);
-        let fanuc = self.flavor.is_fanuc();
+        let takes = self.facts.motion.one_shot_beside_motion;
         let beside = match motion {
             None => return Ok(()),
-            Some(G::Motion(Motion::Rapid)) => fanuc || word == G::Machine,
-            Some(G::Motion(Motion::Line)) => word == G::Machine || fanuc && word == G::Skip,
+            Some(G::Motion(Motion::Rapid)) => takes || word == G::Machine,
+            Some(G::Motion(Motion::Line)) => word == G::Machine || takes && word == G::Skip,
             Some(_) => false,
         };
         if beside {
@@ -127,7 +128,7 @@ impl Step<'_, '_, '_> {
                 G::CancelCycle => {
                     self.end_cycle();
                     // FANUC goes on with the interpolation of before: a cycle is no part of group 01.
-                    if !self.flavor.is_fanuc() {
+                    if !self.facts.cycles.apart {
                         self.state.motion = None;
                     }
                 }
@@ -170,7 +171,7 @@ impl Step<'_, '_, '_> {
                 let (from, first) =
                     (self.state.place.point(self.state.position), self.actions.len());
                 self.arc(target, clockwise)?;
-                if self.flavor == Flavor::Fanuc {
+                if self.facts.arcs.counts_radii {
                     self.count_radii(from, first);
                 }
                 Ok(())
@@ -236,11 +237,11 @@ impl Step<'_, '_, '_> {
     /// FANUC turns an axis that rolls over (parameter 1008#0) the shorter way, or by the sign of its word (1008#1), LinuxCNC by
     /// the sign (`WRAPPED_ROTARY`). Away from the part it may turn as it likes.
     fn hold_way(&mut self, axis: usize, from: f64, to: f64) {
-        let modulo = match (self.flavor, self.state.rotary_by_sign) {
-            (Flavor::LinuxCnc, _) | (Flavor::Fanuc, Some(true)) => Modulo::BySign,
-            (Flavor::Fanuc, Some(false)) => Modulo::Shorter,
-            (Flavor::Fanuc, None) => Modulo::ShorterOrBySign,
-            _ => return,
+        let modulo = match (self.facts.motion.rollover, self.state.rotary_by_sign) {
+            (Rollover::BySign, _) | (Rollover::AsSetUp, Some(true)) => Modulo::BySign,
+            (Rollover::AsSetUp, Some(false)) => Modulo::Shorter,
+            (Rollover::AsSetUp, None) => Modulo::ShorterOrBySign,
+            (Rollover::NotFollowed, _) => return,
         };
         let sure = way::is_sure(from, to, self.state.modulo[axis], modulo);
         let away = self.state.z_is_home || self.state.position.z.is_nan();
@@ -419,7 +420,7 @@ impl Step<'_, '_, '_> {
             Some(_) if self.state.feed_mode == FeedMode::PerTurn && self.spindle_stands() => {
                 "a feed per turn while the spindle stands"
             }
-            Some(_) if self.state.awaits_tool(self.flavor) => {
+            Some(_) if self.state.awaits_tool(self.facts) => {
                 let message = "T has named a tool, and no M0 has stopped the program to put it in";
                 return Err(self.block.whole("nc-tool", message));
             }
@@ -471,7 +472,9 @@ impl Step<'_, '_, '_> {
         }
         // On LinuxCNC with any straight move (`rs274`).
         let [first, second, _] = self.state.plane.axes();
-        if from[first] != to[first] || from[second] != to[second] || self.flavor == Flavor::LinuxCnc
+        if from[first] != to[first]
+            || from[second] != to[second]
+            || self.facts.motion.any_line_compensates
         {
             self.switch_compensation();
         }

@@ -3,9 +3,9 @@
 use super::step::Step;
 use crate::WholeNumbers;
 use crate::event::{Action, Risk};
+use crate::iso::dialects::facts::DwellUnit;
 use crate::iso::language::arithmetic;
 use crate::iso::language::block::Fault;
-use crate::iso::language::words::Flavor;
 
 impl Step<'_, '_, '_> {
     /// mm in the unit of length, for the word of this letter.
@@ -81,7 +81,7 @@ impl Step<'_, '_, '_> {
     /// The whole number of this letter.
     pub(super) fn take_whole(&mut self, letter: u8) -> Result<Option<u32>, Fault> {
         let Some(word) = self.block.take(letter) else { return Ok(None) };
-        let pointed = word.point && self.flavor.is_fanuc();
+        let pointed = word.point && self.facts.numbers.point_counts;
         let value = if word.computed { arithmetic::whole(word.value) } else { exact(word.value) };
         match value.filter(|&value| !pointed && value <= 99_999_999) {
             Some(value) => Ok(Some(value)),
@@ -94,7 +94,7 @@ impl Step<'_, '_, '_> {
 
     /// The dwell of a FANUC in P, s: least increments of time, of which it is not known how long they are where the
     /// machine's file does not say it.
-    pub(super) fn dwell_increments(&mut self) -> Result<Option<f64>, Fault> {
+    fn dwell_increments(&mut self) -> Result<Option<f64>, Fault> {
         let Some(increments) = self.take_whole(b'P')? else { return Ok(None) };
         if self.state.dwell_p_milliseconds.is_none() && increments > 0 {
             self.actions.push(Action::Risk(Risk::DWELL_UNIT.into()));
@@ -104,13 +104,17 @@ impl Step<'_, '_, '_> {
         Ok(Some(f64::from(increments) / a_second))
     }
 
-    /// The dwell in P, s. Haas counts milliseconds where there is no point, Marlin always.
-    pub(super) fn dwell_p(&mut self) -> Option<f64> {
-        self.block.take(b'P').map(|word| match self.flavor {
-            Flavor::Haas if !word.point => word.value / 1000.0,
-            Flavor::Marlin => word.value / 1000.0,
+    /// The dwell in P, s.
+    pub(super) fn dwell_p(&mut self) -> Result<Option<f64>, Fault> {
+        let unit = self.facts.numbers.dwell;
+        if unit == DwellUnit::AsSetUp {
+            return self.dwell_increments();
+        }
+        Ok(self.block.take(b'P').map(|word| match unit {
+            DwellUnit::ByPoint if !word.point => word.value / 1000.0,
+            DwellUnit::Milliseconds => word.value / 1000.0,
             _ => word.value,
-        })
+        }))
     }
 }
 

@@ -37,7 +37,7 @@ impl Onward {
             && state.loose == 0
             && !state.frames.lost
             && state.compensation.active == state.compensation.asked
-            && !state.awaits_tool(block.dictionary.flavor);
+            && !state.awaits_tool(block.facts);
         let goes = is_simple && block.only_moves() && is_feed_per_minute && state.cut && state.told;
         // FreeCAD's F beside a rapid is none of the moves behind it, and FANUC's beside G33 is a pitch.
         let cuts = matches!(state.motion, Some(Motion::Line | Motion::Arc { .. }));

@@ -6,7 +6,7 @@ use super::state::{Length, Tilt, UNKNOWN};
 use super::step::Step;
 use crate::event::{Action, Risk, TiltChoice};
 use crate::iso::language::block::Fault;
-use crate::iso::language::words::{Flavor, Group, Motion};
+use crate::iso::language::words::{Group, Motion};
 use geom::Vec3;
 use program::{Axes, MachineMove, Probe};
 
@@ -20,13 +20,13 @@ impl Step<'_, '_, '_> {
     pub(super) fn home(&mut self, second: bool) -> Result<(), Fault> {
         self.before_fixed_position()?;
         // FANUC goes to the reference position out of a tilted plane (B-64484EN-2, "Tilted working plane").
-        if self.state.tilt != Tilt::None && self.flavor != Flavor::Fanuc {
+        if self.state.tilt != Tilt::None && !self.facts.homes.leaves_tilt {
             return Err(self.in_tilted_plane());
         }
-        if self.flavor == Flavor::Marlin {
+        if self.facts.homes.switches {
             return self.home_switches();
         }
-        if second && self.flavor.is_fanuc() {
+        if second && self.facts.homes.numbered {
             let message = "P names the reference position 2, 3 or 4";
             if !matches!(self.take_whole(b'P')?, None | Some(2..=4)) {
                 return Err(self.block.at_word(b'P', "nc-home", message));
@@ -34,7 +34,7 @@ impl Step<'_, '_, '_> {
         }
         let mut target = self.target(true)?;
         if target.named == 0 {
-            if self.flavor == Flavor::Fanuc {
+            if self.facts.homes.names_axes {
                 let message = "name the axes that go to the reference position";
                 return Err(self.block.at_group(Group::OneShot, "nc-home", message));
             }
@@ -51,7 +51,7 @@ impl Step<'_, '_, '_> {
         }
         self.state.via = Some(self.state.place.point(target.point));
         // "G28 ... also cancels tool length offsets" is the Haas manual's word for it.
-        if self.flavor == Flavor::Haas {
+        if self.facts.homes.cancels_length {
             self.change_length(Length::None);
         }
         let home = self.state.homes[usize::from(second)];
@@ -59,7 +59,7 @@ impl Step<'_, '_, '_> {
             let action = home_action(target.named);
             return self.go_to_machine(home, target.named, true, action);
         }
-        let is_stored = second || matches!(self.flavor, Flavor::LinuxCnc | Flavor::Grbl);
+        let is_stored = second || self.facts.homes.stored;
         if is_stored && target.named & 4 != 0 {
             self.actions.push(Action::Risk(Risk::STORED_POSITION.into()));
         }
@@ -231,7 +231,7 @@ impl Step<'_, '_, '_> {
             let message = "G53 takes absolute positions; write G90";
             return Err(self.block.at_group(Group::OneShot, "nc-machine-position", message));
         }
-        let rapid = self.flavor.is_fanuc() || self.state.motion == Some(Motion::Rapid);
+        let rapid = self.facts.homes.numbered || self.state.motion == Some(Motion::Rapid);
         if !rapid && self.state.motion != Some(Motion::Line) {
             let message = "G53 needs G0 or G1";
             return Err(self.block.at_group(Group::OneShot, "nc-machine-position", message));
@@ -278,7 +278,7 @@ impl Step<'_, '_, '_> {
     fn before_fixed_position(&mut self) -> Result<(), Fault> {
         self.counts_machine()?;
         self.not_compensated("a move to a fixed position")?;
-        if self.flavor == Flavor::Haas && self.state.keeps_center() {
+        if self.facts.homes.cancels_length && self.state.keeps_center() {
             let message = "a move to a fixed position while G234 keeps the tool centre point";
             let fault = self.block.at_group(Group::OneShot, "nc-machine-position", message);
             return Err(fault.help("end it by G49 before").into());

@@ -7,7 +7,8 @@ use super::nurbs::Nurbs;
 use super::tools::Registers;
 use super::wire::Wire;
 use crate::event::{Orientation, Position};
-use crate::iso::language::words::{FeedMode, Flavor, Motion, Plane, Side};
+use crate::iso::dialects::facts::Facts;
+use crate::iso::language::words::{FeedMode, Motion, Plane, Side};
 use crate::kernel::compensation::Terms;
 use crate::{Settings, Units};
 use geom::{Frame, Vec3};
@@ -185,19 +186,18 @@ pub(super) const UNKNOWN: Vec3 = Vec3::NAN;
 impl State {
     /// The state at the start of a program: that of a control after power on. FANUC: parameters 3401
     /// and 3402 as delivered; LinuxCNC: `RS274NGC_STARTUP_CODE` empty; GRBL: its first `$G` report.
-    pub(super) fn new(flavor: Flavor, axes: [bool; 3], settings: &Settings) -> State {
+    pub(super) fn new(facts: &Facts, axes: [bool; 3], settings: &Settings) -> State {
         let all_zero = settings.setup.start.is_some();
         // A FANUC goes on in the work offset of the program before.
         let work_offset = settings.dialect.work_offset_at_reset().map_or(0, WorkOffset::number);
-        let turns_offsets = flavor == Flavor::LinuxCnc;
         State {
-            motion: (flavor == Flavor::Grbl).then_some(Motion::Rapid),
+            motion: facts.reset.rapid.then_some(Motion::Rapid),
             plane: Plane::Xy,
             incremental: false,
             centers_absolute: false,
-            inches: match flavor {
-                Flavor::FreeCad => Some(false),
-                _ => settings.setup.units.map(|units| units == Units::Inches),
+            inches: match facts.reset.millimeters {
+                true => Some(false),
+                false => settings.setup.units.map(|units| units == Units::Inches),
             },
             feed_mode: FeedMode::PerMinute,
             feed: None,
@@ -230,11 +230,11 @@ impl State {
             table: settings.table,
             table_frame_at_zero: settings.table_frame_at_zero,
             sets_work_offsets: settings.sets_work_offsets,
-            frames: Frames::new(work_offset, all_zero, turns_offsets),
+            frames: Frames::new(work_offset, all_zero, facts.offsets.turn),
             place: Place::SAME,
             tilt: Tilt::None,
-            kinematics: Kinematics::at_start(flavor, settings),
-            wire: flavor.is_wire().then(|| Wire::new(settings)),
+            kinematics: Kinematics::at_start(facts, settings),
+            wire: facts.wire.map(|_| Wire::new(settings)),
             loose: 0,
             polar: None,
             nurbs: None,
@@ -245,7 +245,7 @@ impl State {
             touches: settings.setup.surface.clone(),
             probed: None,
             via: None,
-            return_to_r: (flavor.is_fanuc() || flavor == Flavor::FreeCad).then_some(false),
+            return_to_r: facts.cycles.returns,
             cycle_dwell: None,
             cycle: None,
             told: all_zero,
@@ -294,8 +294,8 @@ impl State {
     }
 
     /// T has named another tool, which the operator puts in at the next `M0`.
-    pub(super) fn awaits_tool(&self, flavor: Flavor) -> bool {
-        flavor.changes_by_hand() && self.selected != self.tool
+    pub(super) fn awaits_tool(&self, facts: &Facts) -> bool {
+        facts.tools.by_hand && self.selected != self.tool
     }
 
     /// What compensation has to know of the block that switches it.

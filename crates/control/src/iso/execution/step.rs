@@ -2,15 +2,16 @@
 
 use super::state::State;
 use crate::event::{Action, Risk};
+use crate::iso::dialects::facts::{Facts, FeedMeaning, FeedUnit};
 use crate::iso::language::block::{Block, Fault};
-use crate::iso::language::words::{FeedMode, Flavor, G, Group, M, Motion, Path, Plane, Side};
+use crate::iso::language::words::{FeedMode, G, Group, M, Motion, Path, Plane, Side};
 use crate::{Settings, WholeNumbers};
 use program::{Coolant, Feed, PathMode, Spindle};
 
-/// A virtual control: its flavour, its axes and its state.
+/// A virtual control: its dialect, its axes and its state.
 #[derive(Debug)]
 pub(crate) struct Control {
-    pub flavor: Flavor,
+    pub facts: &'static Facts,
     /// Which of A, B, C exist.
     pub axes: [bool; 3],
     pub whole_numbers: WholeNumbers,
@@ -19,7 +20,7 @@ pub(crate) struct Control {
 
 /// A block in the making: the control's rules, the state as it changes, the records so far.
 pub(super) struct Step<'s, 'b, 't> {
-    pub flavor: Flavor,
+    pub facts: &'static Facts,
     pub axes: [bool; 3],
     pub whole_numbers: WholeNumbers,
     pub state: &'s mut State,
@@ -29,14 +30,13 @@ pub(super) struct Step<'s, 'b, 't> {
 
 impl Control {
     /// The control of `settings` at the start of a program.
-    pub(crate) fn new(settings: &Settings, flavor: Flavor) -> Control {
-        // GRBL drives three axes only.
-        let axes = if flavor == Flavor::Grbl { [false; 3] } else { settings.rotary };
-        let whole_numbers = match flavor.is_fanuc() {
+    pub(crate) fn new(settings: &Settings, facts: &'static Facts) -> Control {
+        let axes = if facts.reset.three_axes { [false; 3] } else { settings.rotary };
+        let whole_numbers = match facts.numbers.point_counts {
             true => settings.setup.whole_numbers,
             false => WholeNumbers::Units,
         };
-        Control { flavor, axes, whole_numbers, state: State::new(flavor, axes, settings) }
+        Control { facts, axes, whole_numbers, state: State::new(facts, axes, settings) }
     }
 
     /// # Errors
@@ -57,12 +57,12 @@ impl Control {
         block: &mut Block,
         actions: &mut Vec<Action>,
     ) -> Result<(), Fault> {
-        let Control { flavor, axes, whole_numbers, state } = self;
-        let (flavor, axes, whole_numbers) = (*flavor, *axes, *whole_numbers);
+        let Control { facts, axes, whole_numbers, state } = self;
+        let (facts, axes, whole_numbers) = (*facts, *axes, *whole_numbers);
         if state.flat && state.position.z.is_nan() {
             state.position.z = 0.0;
         }
-        Step { flavor, axes, whole_numbers, state, block, actions }.run()
+        Step { facts, axes, whole_numbers, state, block, actions }.run()
     }
 }
 
@@ -101,7 +101,7 @@ impl Step<'_, '_, '_> {
     /// Marlin takes the first command of a line and what follows as its parameters; a line without one
     /// means nothing to it (`GCODE_MOTION_MODES` as delivered).
     fn one_command(&mut self) -> Result<(), Fault> {
-        if self.flavor != Flavor::Marlin {
+        if !self.facts.syntax.one_command {
             return Ok(());
         }
         self.state.motion = None;
@@ -118,7 +118,7 @@ impl Step<'_, '_, '_> {
     /// FANUC runs one M function a block (parameter 3404, bit 7, as delivered), and only the builder
     /// says whether it comes before or after the motion beside it.
     fn m_functions_beside_motion(&mut self) -> Result<(), Fault> {
-        if self.block.m_count == 0 || !self.flavor.is_fanuc() {
+        if self.block.m_count == 0 || !self.facts.functions.builders {
             return Ok(());
         }
         if self.block.m_count > 1 {
@@ -154,14 +154,15 @@ impl Step<'_, '_, '_> {
             self.state.feed_mode = mode;
             self.state.feed = None;
         }
-        // FANUC's G33 has its pitch there.
-        if self.flavor.is_fanuc() && self.motion_of_block() == Some(Motion::Thread) {
+        if self.facts.feed.pitch_by_f && self.motion_of_block() == Some(Motion::Thread) {
             return Ok(());
         }
-        if self.flavor == Flavor::FreeCad {
+        if self.facts.feed.meaning == FeedMeaning::PerSecond {
             return self.feed_of_command();
         }
-        if self.flavor == Flavor::Fanuc && self.state.feed_mode == FeedMode::InverseTime {
+        if self.facts.feed.meaning == FeedMeaning::PointedTime
+            && self.state.feed_mode == FeedMode::InverseTime
+        {
             return self.feed_as_time();
         }
         let Some(word) = self.block.take(b'F') else { return Ok(()) };
@@ -198,17 +199,15 @@ impl Step<'_, '_, '_> {
         Ok(())
     }
 
-    /// The unit that F is in, where the block itself changes units, too. GRBL takes that of the block
-    /// (`gcode.c`, step 3), FANUC that of all its modal words; LinuxCNC takes F first (found with
-    /// `rs274`), and so does Mach3 by its order of execution.
+    /// The unit that F is in, where the block itself changes units, too.
     fn inches_of_feed(&self) -> Result<Option<bool>, Fault> {
         let before = self.state.inches;
         let Some(G::Inches(inches)) = self.block.g(Group::Units) else { return Ok(before) };
-        match self.flavor {
-            Flavor::Grbl => Ok(Some(inches)),
+        match self.facts.feed.unit {
+            FeedUnit::OfBlock => Ok(Some(inches)),
             _ if before == Some(inches) => Ok(before),
-            Flavor::LinuxCnc if before.is_some() => Ok(before),
-            _ if before.is_none() && self.flavor.is_fanuc() => Ok(Some(inches)),
+            FeedUnit::OfBefore if before.is_some() => Ok(before),
+            FeedUnit::OfFirst if before.is_none() => Ok(Some(inches)),
             _ => {
                 let message = "F in the block that changes the units counts in those of before";
                 let fault = self.block.at_word(b'F', "nc-feed", message);
@@ -219,7 +218,7 @@ impl Step<'_, '_, '_> {
 
     fn speed(&mut self) -> Result<(), Fault> {
         // On Marlin S belongs to the command of its line: the seconds of G4, and the like.
-        if self.flavor == Flavor::Marlin && self.block.m(Group::Spindle).is_none() {
+        if self.facts.syntax.one_command && self.block.m(Group::Spindle).is_none() {
             return Ok(());
         }
         self.surface_speed()?;
@@ -308,19 +307,19 @@ impl Step<'_, '_, '_> {
             }
             Some(M::Orient) => {
                 self.block.take(b'R');
-                if self.flavor == Flavor::LinuxCnc {
+                if self.facts.functions.orients_by_pq {
                     self.block.pass(b"PQ");
                 }
                 self.turn(Spindle::Off);
             }
-            Some(_) if !self.flavor.is_fanuc() => self.turn(Spindle::Off),
+            Some(_) if !self.facts.functions.builders => self.turn(Spindle::Off),
             _ => {}
         }
         match self.block.m(Group::Coolant) {
             Some(M::Mist) => self.cool(Coolant::Mist)?,
             Some(M::Flood) => self.cool(Coolant::Flood)?,
             Some(M::Through) => self.cool(Coolant::Through)?,
-            Some(_) if !self.flavor.is_fanuc() => self.cool(Coolant::Off)?,
+            Some(_) if !self.facts.functions.builders => self.cool(Coolant::Off)?,
             _ => {}
         }
         Ok(())
@@ -348,7 +347,7 @@ impl Step<'_, '_, '_> {
         let coolant = match (running, coolant) {
             (Coolant::Flood | Coolant::FloodAndMist, Coolant::Mist)
             | (Coolant::Mist | Coolant::FloodAndMist, Coolant::Flood)
-                if !self.flavor.is_fanuc() =>
+                if !self.facts.functions.builders =>
             {
                 Coolant::FloodAndMist
             }
@@ -372,21 +371,20 @@ impl Step<'_, '_, '_> {
         if self.block.g(Group::OneShot) != Some(G::Dwell) {
             return Ok(());
         }
-        let seconds = match self.flavor {
-            Flavor::Fanuc if self.block.has(b'X') => {
-                self.take_pointed(b'X')?.map(|(value, increments)| match increments {
+        let letter = self.facts.numbers.dwell_letter.filter(|&letter| self.block.has(letter));
+        let seconds = match letter {
+            Some(letter) => {
+                self.take_pointed(letter)?.map(|(value, increments)| match increments {
                     true => value / 1000.0,
                     false => value,
                 })
             }
-            Flavor::Fanuc => self.dwell_increments()?,
-            Flavor::Marlin if self.block.has(b'S') => self.block.take(b'S').map(|word| word.value),
-            _ => self.dwell_p(),
+            None => self.dwell_p()?,
         };
         match seconds {
             Some(seconds) if seconds >= 0.0 => {
                 let per_turn = self.state.feed_mode == FeedMode::PerTurn;
-                if self.flavor == Flavor::Fanuc && per_turn && seconds > 0.0 {
+                if self.facts.numbers.dwells_by_turns && per_turn && seconds > 0.0 {
                     self.actions.push(Action::Risk(Risk::DWELL_TURNS.into()));
                 }
                 self.actions.push(Action::Dwell(seconds));
@@ -440,13 +438,13 @@ impl Step<'_, '_, '_> {
             && self.state.inches != Some(inches)
         {
             self.not_compensated("a change of units")?;
-            if self.flavor.is_fanuc() && self.state.moved {
+            if self.facts.motion.units_at_start && self.state.moved {
                 let message = "this control takes G20 or G21 before the first move only";
                 return Err(self.block.at_group(Group::Units, "nc-units", message));
             }
             self.state.inches = Some(inches);
         }
-        if self.flavor == Flavor::Fanuc
+        if self.facts.motion.units_alone
             && self.block.g(Group::Units).is_some()
             && !self.block.has_only(&[], Group::Units)
         {
@@ -490,7 +488,7 @@ impl Step<'_, '_, '_> {
             },
             _ => return Ok(()),
         };
-        if self.flavor == Flavor::LinuxCnc && side != Side::Off {
+        if self.facts.tools.follows_tool && side != Side::Off {
             if self.state.compensation.is_on() {
                 return refused(self, "compensation is on already: G40 first".into());
             }
@@ -499,13 +497,13 @@ impl Step<'_, '_, '_> {
             }
         }
         if side != Side::Off && radius.is_none() {
-            register = match self.flavor.remembers_registers() {
+            register = match self.facts.tools.remembers_registers {
                 true => self.state.registers.d,
-                false => self.take_whole(self.flavor.radius_letter())?,
+                false => self.take_whole(self.facts.tools.radius_letter)?,
             };
             self.radius_is_set_up(register)?;
-            if register.is_none() && self.flavor.is_fanuc() {
-                let letter = char::from(self.flavor.radius_letter());
+            if register.is_none() && self.facts.tools.needs_radius_register {
+                let letter = char::from(self.facts.tools.radius_letter);
                 return refused(self, format!("G41 and G42 need their register {letter}"));
             }
         }
@@ -516,7 +514,7 @@ impl Step<'_, '_, '_> {
 
     /// Stops and the end; on FANUC what switches off, too, since it comes with the end of a move.
     fn flow(&mut self) -> Result<(), Fault> {
-        if self.flavor.is_fanuc() {
+        if self.facts.functions.builders {
             if self.block.m(Group::Spindle) == Some(M::SpindleOff) {
                 self.turn(Spindle::Off);
             }
@@ -531,7 +529,7 @@ impl Step<'_, '_, '_> {
             }
         }
         match self.block.m(Group::Flow) {
-            Some(M::Stop) if self.state.awaits_tool(self.flavor) => {
+            Some(M::Stop) if self.state.awaits_tool(self.facts) => {
                 if self.state.spindle != Spindle::Off {
                     let message =
                         "a tool is changed by hand while the spindle turns; write M5 first";
@@ -543,8 +541,7 @@ impl Step<'_, '_, '_> {
                 self.actions.push(Action::Stop);
                 self.stop_all()?;
             }
-            // GRBL reads M1 and does nothing.
-            Some(M::OptionalStop) if self.flavor != Flavor::Grbl => {
+            Some(M::OptionalStop) if !self.facts.functions.ignores_optional_stop => {
                 self.actions.push(Action::OptionalStop);
                 self.stop_all()?;
             }
@@ -552,7 +549,7 @@ impl Step<'_, '_, '_> {
                 self.ends_with_axes()?;
                 self.looks_ahead_no_more();
                 // The others switch off by themselves; on FANUC it is the builder's choice.
-                if self.flavor != Flavor::Fanuc {
+                if self.facts.functions.end_switches_off {
                     self.turn(Spindle::Off);
                     self.cool(Coolant::Off)?;
                 }
@@ -567,7 +564,7 @@ impl Step<'_, '_, '_> {
     /// `M0` and `M1` of Haas stop the spindle and the coolant, and nothing starts them again (*Mill Operator's Manual*,
     /// M00). `M1` counts as if the operator had asked for it.
     fn stop_all(&mut self) -> Result<(), Fault> {
-        if self.flavor == Flavor::Haas {
+        if self.facts.functions.stop_switches_off {
             self.turn(Spindle::Off);
             self.cool(Coolant::Off)?;
         }

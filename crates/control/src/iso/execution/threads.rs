@@ -17,11 +17,11 @@ impl Step<'_, '_, '_> {
         if target.named >= 8 {
             return Err(self.block.whole("nc-thread", "a rotary axis in a thread"));
         }
-        if self.flavor.is_fanuc() && target.named.count_ones() > 1 {
+        if self.facts.motion.threads_along_one_axis && target.named.count_ones() > 1 {
             let message = "a thread along more than one axis";
             return Err(self.block.whole("nc-thread", message));
         }
-        let pitch = self.pitch(if self.flavor.is_fanuc() { b'F' } else { b'K' })?;
+        let pitch = self.pitch(if self.facts.feed.pitch_by_f { b'F' } else { b'K' })?;
         self.spindle_turns()?;
         let end = self.state.pose(target.point, target.rotary);
         self.actions.push(Action::Thread(Box::new(Thread { end, pitch })));

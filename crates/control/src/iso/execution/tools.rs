@@ -5,7 +5,7 @@ use super::step::Step;
 use crate::ToolData;
 use crate::event::{Action, Risk};
 use crate::iso::language::block::Fault;
-use crate::iso::language::words::{Flavor, G, Group, M, Plane, bit};
+use crate::iso::language::words::{G, Group, M, Plane, bit};
 use program::{Spindle, Tool};
 
 /// What the program can know of the tool registers.
@@ -15,7 +15,7 @@ pub(crate) struct Registers {
     lengths: Vec<(u32, f64)>,
     /// Registers whose radius the program has written.
     radii: Vec<u32>,
-    /// The last D and the last H, where the flavour remembers them.
+    /// The last D and the last H, where the dialect remembers them.
     pub d: Option<u32>,
     pub h: Option<u32>,
 }
@@ -54,7 +54,7 @@ impl Step<'_, '_, '_> {
     pub(super) fn tool(&mut self) -> Result<(), Fault> {
         let number = self.take_whole(b'T')?;
         self.state.selected = number.or(self.state.selected);
-        if self.flavor.changes_by_hand() {
+        if self.facts.tools.by_hand {
             // There is no tool change: the first T names the tool that is set up.
             if self.state.tool.is_none() && !self.state.cut {
                 self.change_by_hand();
@@ -84,7 +84,7 @@ impl Step<'_, '_, '_> {
             let message = "M6 and no tool has been named by T";
             return Err(self.block.at_group(Group::ToolChange, "nc-tool", message));
         };
-        if number == 0 && self.flavor == Flavor::FreeCad {
+        if number == 0 && self.facts.tools.numbered {
             let message = "the tool has no number";
             return Err(self.block.at_group(Group::ToolChange, "nc-tool", message));
         }
@@ -112,7 +112,7 @@ impl Step<'_, '_, '_> {
     /// D and H are modal by themselves (B-64484EN-2, "Tool length compensation", "Cutter compensation"):
     /// while `G43` is on, another H is another length at once.
     pub(super) fn remember_registers(&mut self) -> Result<(), Fault> {
-        if !self.block.has_any(bit(b'D') | bit(b'H')) || !self.flavor.remembers_registers() {
+        if !self.block.has_any(bit(b'D') | bit(b'H')) || !self.facts.tools.remembers_registers {
             return Ok(());
         }
         if let Some(register) = self.take_whole(b'D')? {
@@ -139,9 +139,9 @@ impl Step<'_, '_, '_> {
         Ok(())
     }
 
-    /// The register that H names: in the block, or before where the flavour remembers it.
+    /// The register that H names: in the block, or before where the dialect remembers it.
     fn length_register(&mut self) -> Result<Option<u32>, Fault> {
-        if self.flavor.remembers_registers() {
+        if self.facts.tools.remembers_registers {
             return Ok(self.state.registers.h);
         }
         self.take_whole(b'H')
@@ -149,15 +149,15 @@ impl Step<'_, '_, '_> {
 
     /// `G43` and its kin, `G49`.
     pub(super) fn length(&mut self) -> Result<(), Fault> {
-        if self.flavor == Flavor::LinuxCnc && self.block.g(Group::Length).is_some() {
+        if self.facts.tools.follows_tool && self.block.g(Group::Length).is_some() {
             self.not_compensated("another length offset")?;
         }
         let length = match self.block.g(Group::Length) {
             Some(G::Length) => match self.length_register()? {
-                Some(0) if self.flavor.is_fanuc() => Length::None,
+                Some(0) if self.facts.tools.h0_cancels => Length::None,
                 Some(register) => Length::Register(register),
                 // LinuxCNC: without H the tool in the spindle.
-                None if self.flavor == Flavor::LinuxCnc => {
+                None if self.facts.tools.follows_tool => {
                     Length::Register(self.state.tool.ok_or_else(|| self.no_register())?)
                 }
                 None => return Err(self.no_register()),
@@ -185,7 +185,7 @@ impl Step<'_, '_, '_> {
         if length == self.state.length {
             return Ok(());
         }
-        if self.flavor == Flavor::Fanuc {
+        if self.facts.tools.length_as_set_up {
             self.hold_length(length);
         }
         self.keeps_length()?;
@@ -256,7 +256,7 @@ impl Step<'_, '_, '_> {
             Length::Register(active) | Length::Center(active) => active == register,
             Length::None | Length::Value(_) => false,
         };
-        let ngc = matches!(self.flavor, Flavor::LinuxCnc | Flavor::Mach3);
+        let ngc = self.facts.tools.rs274_data;
         let (length, radius) = match kind {
             1 if ngc => (self.take_length(b'Z')?, self.take_length(b'R')?),
             // Measured at the machine: the length follows from where the tool stands.

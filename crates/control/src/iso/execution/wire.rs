@@ -40,12 +40,10 @@ impl Step<'_, '_, '_> {
     /// What a wire machine does before it moves. It has no Z, and its generator's conditions move
     /// nothing.
     pub(super) fn wire(&mut self) -> Result<(), Fault> {
-        if self.state.wire.is_none() {
-            return Ok(());
-        }
+        let Some(rules) = &self.facts.wire else { return Ok(()) };
         self.state.position.z = 0.0;
-        self.taper()?;
-        self.block.pass(self.flavor.conditions());
+        self.taper(rules.taper_letter)?;
+        self.block.pass(rules.conditions);
         let action = match self.block.m(Group::Wire) {
             None => return Ok(()),
             Some(M::ThreadWire) => Action::ThreadWire,
@@ -68,11 +66,10 @@ impl Step<'_, '_, '_> {
     }
 
     /// `G50` to `G52`.
-    fn taper(&mut self) -> Result<(), Fault> {
+    fn taper(&mut self, letter: u8) -> Result<(), Fault> {
         let Some(G::Taper(side)) = self.block.g(Group::Taper) else { return Ok(()) };
         let mut angle = 0.0;
         if side != Side::Off {
-            let letter = self.flavor.taper_letter();
             angle = match self.take_degrees(letter)? {
                 Some(angle) if angle > 0.0 && angle < 90.0 => angle,
                 _ => {

@@ -8,7 +8,7 @@ use crate::event::{Action, Risk};
 use crate::iso::language::arithmetic;
 use crate::iso::language::block::{Block, Fault};
 use crate::iso::language::parameters::{Language, Locals};
-use crate::iso::language::words::{Flavor, G, Group, M};
+use crate::iso::language::words::{G, Group, M};
 
 /// How many calls LinuxCNC nests (`INTERP_SUB_ROUTINE_LEVELS` less that of the program).
 const NGC_CALLS: usize = 9;
@@ -105,7 +105,7 @@ impl<'a> Run<'a, '_> {
         // FANUC without L: four digits of the program behind those of the repeats.
         let (program, turns) = match turns {
             Some(turns) => (program, turns),
-            None if self.dictionary.flavor == Flavor::Fanuc && program > 9999 => {
+            None if self.facts.syntax.repeats_in_p && program > 9999 => {
                 (program % 10_000, program / 10_000)
             }
             None => (program, 1),

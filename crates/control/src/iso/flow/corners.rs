@@ -6,9 +6,9 @@
 use super::run::Run;
 use crate::WholeNumbers;
 use crate::event::{Action, ArcTo, Event, Position};
+use crate::iso::dialects::facts::CornerWords;
 use crate::iso::execution::state::Tilt;
 use crate::iso::language::block::{Fault, Word};
-use crate::iso::language::words::Flavor;
 use crate::kernel::corner::{self, Element, Misfit, Shape};
 use geom::Vec3;
 use program::{Diagnostic, Feed};
@@ -147,8 +147,8 @@ impl Run<'_, '_> {
                 "a corner (,C ,R) in turned, scaled, mirrored or tilted coordinates is not followed",
             );
         }
-        let is_arc_of_haas = element.circle.is_some() && self.dictionary.flavor == Flavor::Haas;
-        if is_arc_of_haas {
+        let is_arc = element.circle.is_some() && self.facts.syntax.corners == CornerWords::AtLines;
+        if is_arc {
             return fault("a Haas puts corners (,C ,R) between straight cuts only: write the arc");
         }
         if matches!(state.feed, Some(Feed::InverseTime(_))) {

@@ -8,7 +8,7 @@ use super::owords;
 use super::source::{self, Place, Source};
 use crate::Settings;
 use crate::event::{Action, Event};
-use crate::iso::dialects;
+use crate::iso::dialects::facts::Facts;
 use crate::iso::execution::onward::Onward;
 use crate::iso::execution::state::State;
 use crate::iso::execution::step::Control;
@@ -16,7 +16,7 @@ use crate::iso::language::arithmetic;
 use crate::iso::language::block::{Block, Fault};
 use crate::iso::language::expression::Reader;
 use crate::iso::language::parameters::{Language, Parameters, Values};
-use crate::iso::language::words::{Dictionary, Flavor, G, Group, M};
+use crate::iso::language::words::{G, Group, M};
 use crate::kernel::budget::Budget;
 use crate::kernel::compensation::Compensator;
 use program::Diagnostic;
@@ -26,7 +26,7 @@ use std::ptr;
 /// A program on its way through a control.
 pub(crate) struct Run<'a, 's> {
     pub settings: &'a Settings,
-    pub dictionary: &'static Dictionary,
+    pub facts: &'static Facts,
     pub language: Language,
     pub control: Control,
     pub parameters: Parameters,
@@ -60,22 +60,20 @@ pub(crate) struct Run<'a, 's> {
 impl<'a, 's> Run<'a, 's> {
     /// At the start of `main`.
     pub(crate) fn new(
-        flavor: Flavor,
+        facts: &'static Facts,
         settings: &'a Settings,
         main: &'a Source<'a>,
         ahead: Ahead,
         compensator: &'a mut Compensator<'s>,
     ) -> Run<'a, 's> {
-        let dictionary = dialects::dictionary(flavor);
-        let language = dictionary.flavor.language();
         let here = Place { source: main, at: 0, line: 0, percent_signs: 0 };
         Run {
             settings,
-            dictionary,
-            language,
-            control: Control::new(settings, dictionary.flavor),
-            parameters: Parameters::new(language),
-            block: Block::new(dictionary, settings),
+            facts,
+            language: facts.language,
+            control: Control::new(settings, facts),
+            parameters: Parameters::new(facts.language),
+            block: Block::new(facts, settings),
             actions: Vec::new(),
             main,
             here,
@@ -101,10 +99,10 @@ impl<'a, 's> Run<'a, 's> {
             if from >= source.text.len() {
                 return self.end_of_text();
             }
-            let plain = match self.dictionary.flavor {
+            let plain = match self.facts.syntax.one_command {
                 // Texts without brackets stand behind some of its words.
-                Flavor::Marlin => None,
-                _ => self.ahead.line(&self.here, ptr::eq(source, self.main)),
+                true => None,
+                false => self.ahead.line(&self.here, ptr::eq(source, self.main)),
             };
             let (text, line) = self.here.next(plain);
             self.text = (text, line);
@@ -131,7 +129,7 @@ impl<'a, 's> Run<'a, 's> {
     fn end_of_text(&mut self) -> Result<(), Fault> {
         if self.frames.len() == 1 {
             self.control.ends_no_curve().map_err(|message| self.at_line("nc-spline", message))?;
-            if self.dictionary.flavor.ends_with_text() && !self.control.state.ended {
+            if self.facts.syntax.ends_with_text && !self.control.state.ended {
                 let line = self.here.line.max(1);
                 self.compensator.take(Event { line, action: Action::End })?;
             }
@@ -148,7 +146,7 @@ impl<'a, 's> Run<'a, 's> {
     /// Whether the plain line `text` is a straight move behind another one: that has then been executed.
     fn goes_on(&mut self, text: &[u8]) -> bool {
         let Some(onward) = &self.onward else { return false };
-        if text.len() > self.dictionary.longest {
+        if text.len() > self.facts.words.longest {
             return false;
         }
         let Some(action) = self.control.go_on(onward, self.ahead.words()) else { return false };
@@ -165,7 +163,7 @@ impl<'a, 's> Run<'a, 's> {
         is_plain: bool,
     ) -> Result<(), Fault> {
         self.onward = None;
-        if text.first() == Some(&b'%') && !self.dictionary.flavor.changes_by_hand() {
+        if text.first() == Some(&b'%') && self.facts.syntax.percent {
             return self.percent(text, line);
         }
         if self.settings.setup.block_delete && text.trim_ascii_start().first() == Some(&b'/') {

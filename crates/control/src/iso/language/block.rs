@@ -3,8 +3,9 @@
 use super::arithmetic;
 use super::expression::{Reader, Target, Value};
 use super::parameters::{Language, Values};
-use super::words::{Dictionary, Flavor, G, Group, LETTERS, M, bit, index, set};
+use super::words::{G, Group, LETTERS, M, bit, index, set};
 use crate::Settings;
+use crate::iso::dialects::facts::{BlockDelete, Brackets, CornerWords, Facts, Semicolon};
 use crate::kernel::decimal::{self, Decimal};
 use program::Diagnostic;
 
@@ -64,7 +65,7 @@ impl Word {
 /// What a block says. A word is *taken* by what uses it; a word that nothing took is a mistake.
 #[derive(Debug)]
 pub(crate) struct Block<'a> {
-    pub dictionary: &'static Dictionary,
+    pub facts: &'static Facts,
     /// The machine, for the M functions that its builder has added.
     settings: &'a Settings,
     /// The line as it stands.
@@ -100,12 +101,12 @@ pub(crate) struct Block<'a> {
 }
 
 impl<'a> Block<'a> {
-    /// A block without words, for programs in the words of `dictionary` and the M functions that the
+    /// A block without words, for programs of the dialect of `facts` with the M functions that the
     /// builder of the machine has added: those of the wire, and others that change nothing that is
     /// followed here.
-    pub(crate) fn new(dictionary: &'static Dictionary, settings: &'a Settings) -> Block<'a> {
+    pub(crate) fn new(facts: &'static Facts, settings: &'a Settings) -> Block<'a> {
         Block {
-            dictionary,
+            facts,
             settings,
             text: b"",
             line: 0,
@@ -150,7 +151,7 @@ impl<'a> Block<'a> {
     /// Takes the words of `text` from byte `at` on in place of those of the last block.
     ///
     /// # Errors
-    /// What is no word of the flavour, a number that is none, a word given twice, two words of a
+    /// What is no word of the dialect, a number that is none, a word given twice, two words of a
     /// modal group, a comment without an end, a block that is too long, a calculation without a result.
     pub(crate) fn read(
         &mut self,
@@ -159,7 +160,7 @@ impl<'a> Block<'a> {
         mut at: usize,
         values: &Values,
     ) -> Result<(), Fault> {
-        let dictionary = self.dictionary;
+        let facts = self.facts;
         self.clear(line, text);
         let mut length = 0;
         while let Some(&byte) = text.get(at) {
@@ -170,10 +171,10 @@ impl<'a> Block<'a> {
                     continue;
                 }
                 b'A'..=b'Z' => at = self.word(byte, at, values)?,
-                b'@' | b'^' | b'$' if dictionary.letters & bit(byte) != 0 => {
+                b'@' | b'^' | b'$' if facts.words.letters & bit(byte) != 0 => {
                     at = self.word(byte, at, values)?
                 }
-                b'a'..=b'z' if dictionary.flavor.has_small_letters() => {
+                b'a'..=b'z' if facts.syntax.small_letters => {
                     at = self.word(byte.to_ascii_uppercase(), at, values)?;
                 }
                 b'#' if matches!(values.language(), Language::Ngc | Language::Rs274) => {
@@ -183,19 +184,19 @@ impl<'a> Block<'a> {
                 b':' if values.language() == Language::MacroB => {
                     at = self.word(b'O', at, values)?
                 }
-                b',' if matches!(dictionary.flavor, Flavor::Fanuc | Flavor::Haas) => {
+                b',' if facts.syntax.corners != CornerWords::None => {
                     at = self.corner(at, values)?
                 }
-                b'(' if dictionary.flavor != Flavor::Marlin => {
+                b'(' if facts.syntax.brackets != Brackets::None => {
                     at = self.comment(at)?;
                     continue;
                 }
-                b';' if dictionary.flavor.is_fanuc() => {
+                b';' if facts.syntax.semicolon == Semicolon::EndOfBlock => {
                     self.end_of_block(at)?;
                     break;
                 }
                 // FreeCAD itself passes over it and takes the words behind it.
-                b';' if dictionary.flavor == Flavor::FreeCad => {
+                b';' if facts.syntax.semicolon == Semicolon::Refused => {
                     let message = "FreeCAD knows no comment behind ;";
                     let fault = self.fault("nc-syntax", message, at, text.len());
                     return Err(fault.help("put it into ( ) as a command of its own").into());
@@ -205,10 +206,10 @@ impl<'a> Block<'a> {
                     break;
                 }
                 // The proof holds for the block-delete switch off: the block is run.
-                b'/' if self.is_empty && dictionary.flavor != Flavor::Marlin => {
-                    at = after_block_delete(dictionary.flavor, text, at)
+                b'/' if self.is_empty && facts.syntax.block_delete != BlockDelete::None => {
+                    at = after_block_delete(facts.syntax.block_delete, text, at)
                 }
-                _ => return Err(self.stray(dictionary.flavor, byte, at)),
+                _ => return Err(self.stray(byte, at)),
             }
             self.is_empty = false;
             length += at - from;
@@ -218,7 +219,7 @@ impl<'a> Block<'a> {
 
     /// Reads the word at `at` and gives the place after it.
     fn word(&mut self, letter: u8, at: usize, values: &Values) -> Result<usize, Fault> {
-        let dictionary = self.dictionary;
+        let facts = self.facts;
         let mut from = at + 1;
         while matches!(self.text.get(from), Some(b' ' | b'\t')) {
             from += 1;
@@ -230,9 +231,7 @@ impl<'a> Block<'a> {
                 (Word::written(letter, &number, at, end), end)
             }
             // Marlin's G28 X: an axis that is named.
-            None if self.g(Group::OneShot) == Some(G::Home)
-                && dictionary.flavor == Flavor::Marlin =>
-            {
+            None if self.g(Group::OneShot) == Some(G::Home) && facts.syntax.one_command => {
                 (Word::written(letter, &Decimal::default(), at, at + 1), at + 1)
             }
             None => {
@@ -246,8 +245,8 @@ impl<'a> Block<'a> {
         };
         self.add(&word)?;
         if letter == b'M'
-            && dictionary.flavor == Flavor::Marlin
-            && let Some((_, meaning)) = dictionary.m(word.value)
+            && facts.syntax.one_command
+            && let Some((_, meaning)) = facts.words.m(word.value)
         {
             return Ok(self.prompt(meaning, end));
         }
@@ -317,7 +316,7 @@ impl<'a> Block<'a> {
     /// # Errors
     /// The block has so many characters, and more than the control takes.
     fn is_short(&self, length: usize) -> Result<(), Fault> {
-        let longest = self.dictionary.longest;
+        let longest = self.facts.words.longest;
         if length <= longest {
             return Ok(());
         }
@@ -328,12 +327,12 @@ impl<'a> Block<'a> {
     /// Adds a word.
     ///
     /// # Errors
-    /// It is none of the flavour, or does not go together with those before it.
+    /// It is none of the dialect, or does not go together with those before it.
     fn add(&mut self, word: &Word) -> Result<(), Fault> {
-        let dictionary = self.dictionary;
+        let facts = self.facts;
         let letter = word.letter;
         let (at, end) = (word.start as usize, word.end as usize);
-        if dictionary.flavor == Flavor::FreeCad && word.value.abs() >= NOTHING {
+        if facts.syntax.writes_nothing && word.value.abs() >= NOTHING {
             return Err(self.nothing(at, end));
         }
         if self.calls && !matches!(letter, b'N' | b'P' | b'L' | b'G') {
@@ -341,7 +340,7 @@ impl<'a> Block<'a> {
             return Ok(());
         }
         match letter {
-            b'G' => match dictionary.g(word.value) {
+            b'G' => match facts.words.g(word.value) {
                 Some((group, meaning)) => {
                     if self.groups & group.bit() != 0 {
                         return Err(self.same_group(group, at, end));
@@ -354,7 +353,8 @@ impl<'a> Block<'a> {
                 None => return Err(self.unknown(letter, word)),
             },
             // What does nothing on the control itself is the builder's where the machine's file says so.
-            b'M' => match dictionary
+            b'M' => match facts
+                .words
                 .m(word.value)
                 .filter(|(_, meaning)| {
                     !matches!(meaning, M::Neutral(_)) || self.auxiliary(word.value).is_none()
@@ -380,7 +380,7 @@ impl<'a> Block<'a> {
             },
             _ => {
                 let letter_bit = bit(letter);
-                if dictionary.letters & letter_bit == 0 {
+                if facts.words.letters & letter_bit == 0 {
                     return Err(self.unknown(letter, word));
                 }
                 if self.given & letter_bit != 0 {
@@ -435,20 +435,19 @@ impl<'a> Block<'a> {
     /// runs a program of LinuxCNC's (`M100` to `M199`), to which P and Q belong.
     fn of_the_machine(&self, number: f64) -> Option<(Group, M)> {
         let is = |function: Option<u32>| function.map(f64::from) == Some(number);
-        let kinematics =
-            self.settings.kinematics.filter(|_| self.dictionary.flavor == Flavor::LinuxCnc);
+        let kinematics = self.settings.kinematics.filter(|_| self.facts.syntax.extended_m);
         for (function, follows) in kinematics.iter().flat_map(|k| [(k.tip, true), (k.axes, false)])
         {
             if is(Some(function)) {
                 return Some((Group::Kinematics, M::FollowTip(follows)));
             }
         }
-        let runs = self.dictionary.flavor == Flavor::LinuxCnc && (100.0..200.0).contains(&number);
+        let runs = self.facts.syntax.extended_m && (100.0..200.0).contains(&number);
         if let Some(number) = self.auxiliary(number).filter(|_| runs) {
             return Some((Group::Output, M::Program(number)));
         }
         match self.settings.wire {
-            _ if !self.dictionary.flavor.is_wire() => None,
+            _ if self.facts.wire.is_none() => None,
             wire if is(wire.thread) => Some((Group::Wire, M::ThreadWire)),
             wire if is(wire.cut) => Some((Group::Wire, M::CutWire)),
             _ => None,
@@ -530,12 +529,12 @@ impl<'a> Block<'a> {
     /// One of FreeCAD is a command of its own, and may hold the brackets of a label.
     fn comment(&mut self, at: usize) -> Result<usize, Fault> {
         let rest = self.text.get(at + 1..).unwrap_or_default();
-        if self.dictionary.flavor == Flavor::FreeCad {
+        if self.facts.syntax.brackets == Brackets::Line {
             let text = rest.strip_suffix(b")").unwrap_or(rest);
             self.comments.push((at + 1, at + 1 + text.len()));
             return Ok(self.text.len());
         }
-        let nests = self.dictionary.flavor != Flavor::Grbl;
+        let nests = self.facts.syntax.brackets != Brackets::AnyComment;
         match rest.iter().position(|&b| b == b')' || nests && b == b'(') {
             Some(n) if rest[n] == b')' => {
                 self.comments.push((at + 1, at + 1 + n));
@@ -663,7 +662,7 @@ impl<'a> Block<'a> {
 }
 
 /// The place after `/`, or on FANUC `/1` to `/9`.
-fn after_block_delete(flavor: Flavor, text: &[u8], at: usize) -> usize {
-    let numbered = flavor.is_fanuc() && matches!(text.get(at + 1), Some(b'1'..=b'9'));
+fn after_block_delete(switch: BlockDelete, text: &[u8], at: usize) -> usize {
+    let numbered = switch == BlockDelete::Numbered && matches!(text.get(at + 1), Some(b'1'..=b'9'));
     at + 1 + usize::from(numbered)
 }

@@ -2,7 +2,7 @@
 
 use super::block::{Block, Fault, Word};
 use super::parameters::Language;
-use super::words::{Flavor, Group, index};
+use super::words::{Group, index};
 use program::Diagnostic;
 
 impl Block<'_> {
@@ -87,7 +87,7 @@ impl Block<'_> {
             format!("{} is no word of this control", char::from(letter))
         };
         let fault = Diagnostic::error("nc-unknown-word", message);
-        let fault = match self.dictionary.why_refused(letter, word.value) {
+        let fault = match self.facts.why_refused(letter, word.value) {
             Some(reason) => fault.help(reason),
             None if letter == b'M' => fault.help(
                 "where the builder of the machine has added it and nothing moves for it, list it under \
@@ -101,10 +101,8 @@ impl Block<'_> {
     #[cold]
     pub(super) fn no_number(&self, letter: u8, at: usize, from: usize) -> Fault {
         match self.text.get(from) {
-            Some(&byte @ (b'#' | b'[')) => self.stray(self.dictionary.flavor, byte, from),
-            Some(byte)
-                if self.dictionary.flavor == Flavor::FreeCad && !byte.is_ascii_whitespace() =>
-            {
+            Some(&byte @ (b'#' | b'[')) => self.stray(byte, from),
+            Some(byte) if self.facts.syntax.writes_nothing && !byte.is_ascii_whitespace() => {
                 let rest = self.text.get(from..).unwrap_or_default();
                 let length = rest.iter().take_while(|byte| !byte.is_ascii_whitespace()).count();
                 self.nothing(at, from + length)
@@ -127,35 +125,35 @@ impl Block<'_> {
     }
 
     #[cold]
-    pub(super) fn stray(&self, flavor: Flavor, byte: u8, at: usize) -> Fault {
-        let by_hand = flavor.changes_by_hand();
+    pub(super) fn stray(&self, byte: u8, at: usize) -> Fault {
+        let syntax = &self.facts.syntax;
         let message = match byte {
-            b'#' | b'[' if flavor.language() == Language::Plain => {
+            b'#' | b'[' if self.facts.language == Language::Plain => {
                 "this control has no parameters and does not calculate".to_owned()
             }
             b'#' => "a variable is set at the start of a block that has nothing else".to_owned(),
             b'[' | b']' | b'=' => "an expression without its word".to_owned(),
-            b'$' if flavor == Flavor::Grbl => {
+            b'$' if syntax.console => {
                 "$ begins a command of the console ($H homes, $J jogs, $X unlocks, $n= sets), no block"
                     .to_owned()
             }
-            b'%' if by_hand => {
+            b'%' if !syntax.percent => {
                 "% begins no block; a line with it is for the sender (%name = sets its variables)"
                     .to_owned()
             }
             b'%' => "% stands alone on its line".to_owned(),
             b'(' => "( begins no comment on this control".to_owned(),
             b'0'..=b'9' | b'.' | b'+' | b'-' => "a number without its letter".to_owned(),
-            b'a'..=b'z' if !flavor.has_small_letters() => "small letters are no words".to_owned(),
+            b'a'..=b'z' if !syntax.small_letters => "small letters are no words".to_owned(),
             b'!'..=b'~' => format!("{} begins no word", char::from(byte)),
             _ => format!("byte {byte:#04x} begins no word"),
         };
         let fault = self.fault("nc-syntax", message, at, at + 1);
         match byte {
-            b'$' if flavor == Flavor::Grbl => {
+            b'$' if syntax.console => {
                 fault.help("take it out, and give it by hand before the start").into()
             }
-            b'%' if by_hand => {
+            b'%' if !syntax.percent => {
                 fault.help("take the line out; the variables of a sender are its own").into()
             }
             b'(' => fault.help("write a comment behind ;").into(),

@@ -1,6 +1,6 @@
 //! The language: a line becomes a block of words, and what is wrong with it is said at its place.
 //!
-//! What a word means stands in one list ([`words`]), which of them a flavour has in its table
+//! What a word means stands in one list ([`words`]), which of them a dialect has in its table
 //! ([`super::dialects`]). A line is taken apart by that ([`block`], [`faults`]), a plain one ahead of
 //! its run ([`plain`]); its numbers are calculated where it says so ([`expression`], [`arithmetic`]) from
 //! what the program has set ([`parameters`]) and what the control says of itself ([`system`]).

@@ -2,7 +2,6 @@
 
 use super::expression::{Target, Value};
 use super::system;
-use super::words::Flavor;
 use crate::iso::execution::state::State;
 use std::collections::HashMap;
 
@@ -17,23 +16,6 @@ pub(crate) enum Language {
     Ngc,
     /// Custom macro B.
     MacroB,
-}
-
-impl Flavor {
-    /// How its programs calculate.
-    pub(crate) fn language(self) -> Language {
-        match self {
-            Flavor::LinuxCnc => Language::Ngc,
-            Flavor::Mach3 => Language::Rs274,
-            Flavor::Fanuc | Flavor::Haas => Language::MacroB,
-            Flavor::Grbl
-            | Flavor::Marlin
-            | Flavor::FanucWire
-            | Flavor::Sodick
-            | Flavor::Agie
-            | Flavor::FreeCad => Language::Plain,
-        }
-    }
 }
 
 /// Arguments of a call and what a subprogram keeps for itself: `#1` to `#30`, in macro B to `#33`.

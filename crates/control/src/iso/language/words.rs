@@ -1,72 +1,5 @@
-//! What G and M words mean, and which exclude each other in a block. Which of them a flavour has
+//! What G and M words mean, and which exclude each other in a block. Which of them a dialect has
 //! stands in its table ([`crate::iso::dialects`]); what is not in a table is not understood.
-
-/// Which ISO code is read.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Flavor {
-    Fanuc,
-    Haas,
-    LinuxCnc,
-    Mach3,
-    Grbl,
-    Marlin,
-    FanucWire,
-    Sodick,
-    Agie,
-    FreeCad,
-}
-
-impl Flavor {
-    /// FANUC, and those that follow it.
-    pub(crate) fn is_fanuc(self) -> bool {
-        matches!(self, Flavor::Fanuc | Flavor::Haas) || self.is_wire()
-    }
-
-    /// Wire-EDM machines.
-    pub(crate) fn is_wire(self) -> bool {
-        matches!(self, Flavor::FanucWire | Flavor::Sodick | Flavor::Agie)
-    }
-
-    /// The letters of the generator's conditions on a wire-EDM machine.
-    pub(crate) fn conditions(self) -> &'static [u8] {
-        match self {
-            Flavor::FanucWire => b"S",
-            Flavor::Sodick => b"CT",
-            Flavor::Agie => b"PST",
-            _ => b"",
-        }
-    }
-
-    /// The letter of the angle by which the control leans a wire.
-    pub(crate) fn taper_letter(self) -> u8 {
-        if self == Flavor::Sodick { b'A' } else { b'T' }
-    }
-
-    /// Whether D and H stay when they stand alone, for the `G41` and `G43` to come.
-    pub(crate) fn remembers_registers(self) -> bool {
-        matches!(self, Flavor::Fanuc | Flavor::Haas)
-    }
-
-    /// The letter of the register of the tool's or the wire's radius.
-    pub(crate) fn radius_letter(self) -> u8 {
-        if self == Flavor::Sodick { b'H' } else { b'D' }
-    }
-
-    /// Whether small letters are the same as capital ones.
-    pub(in crate::iso) fn has_small_letters(self) -> bool {
-        !self.is_fanuc() && self != Flavor::Marlin
-    }
-
-    /// Whether a program ends with its last line, without a word for it.
-    pub(crate) fn ends_with_text(self) -> bool {
-        matches!(self, Flavor::Marlin | Flavor::FreeCad)
-    }
-
-    /// GRBL and Marlin have no tool changer: T says which tool the operator puts in.
-    pub(crate) fn changes_by_hand(self) -> bool {
-        matches!(self, Flavor::Grbl | Flavor::Marlin)
-    }
-}
 
 /// The meaning of a G word.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -399,27 +332,24 @@ pub(in crate::iso) const fn set(letters: &[u8]) -> u32 {
     bits
 }
 
-/// The words of one flavour, found by number.
+/// The words of one dialect, found by number.
 #[derive(Debug)]
 pub(crate) struct Dictionary {
-    /// Which flavour this is.
-    pub flavor: Flavor,
     /// By ten times the number.
     g: [Option<(Group, G)>; 2400],
     /// By the number.
     m: [Option<(Group, M)>; 500],
     refused_g: &'static [Refused],
     refused_m: &'static [Refused],
-    /// The letters that the flavour has, by [`bit`].
+    /// The letters that the dialect has, by [`bit`].
     pub letters: u32,
     /// The longest block in bytes, blanks and comments apart.
     pub longest: usize,
 }
 
 impl Dictionary {
-    pub(in crate::iso) const fn new(flavor: Flavor, letters: &[u8], longest: usize) -> Dictionary {
+    pub(in crate::iso) const fn new(letters: &[u8], longest: usize) -> Dictionary {
         Dictionary {
-            flavor,
             g: [None; 2400],
             m: [None; 500],
             refused_g: &[],
@@ -464,15 +394,12 @@ impl Dictionary {
         *self.m.get(tenths(number).filter(|t| t % 10 == 0)? / 10)?
     }
 
-    /// Why a word that the flavour does not take is refused, where there is more to say than that it
+    /// Why a word that the dialect does not take is refused, where there is more to say than that it
     /// is not known.
     pub(in crate::iso) fn why_refused(&self, letter: u8, number: f64) -> Option<&'static str> {
         let (table, number) = match letter {
             b'G' => (self.refused_g, tenths(number)?),
             b'M' => (self.refused_m, tenths(number)? / 10),
-            b'E' if self.flavor == Flavor::Marlin => {
-                return Some("an extruder is no tool of a mill");
-            }
             b'U' | b'V' | b'W' => return Some("the axes followed are X Y Z and A B C"),
             _ => return None,
         };
