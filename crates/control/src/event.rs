@@ -238,6 +238,14 @@ impl Risk {
         refused: true,
     };
 
+    /// `LFON`, `POLF`, `POLFMASK` and their kin (SINUMERIK, "Rapid retraction"): ways that the axes take at a stop alone.
+    pub(crate) const STOP_RETRACT: Risk = Risk {
+        rule: "stop-retract",
+        what: "says where the axes go when it is stopped (LFON, POLF and the like), which is not followed",
+        help: "nothing to do, if the machine may stop where it stands",
+        refused: false,
+    };
+
     /// `M30` without a line end behind it (SINUMERIK, found on an 828D): where the motion goes does not depend on it.
     pub(crate) const LINE_END: Risk = Risk {
         rule: "line-end",

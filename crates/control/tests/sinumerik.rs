@@ -380,12 +380,43 @@ fn how_fast_axes_may_be_changes_no_path() {
     }
 }
 
+/// Programming Manual, "Rapid retraction during thread cutting": they act at a stop, and move nothing by themselves.
 #[test]
-fn where_axes_go_when_the_program_stops_is_refused_with_a_way_out() {
-    blocks("LFOF LFTXT\nLFWP\nLFPOS\nG0 X1 Y2 Z3");
-    for text in ["POLF[Z]=100", "POLFMASK(Z)", "POLFMLIN(X,Z)", "LFON", "ALF=3", "DILF=5"] {
-        let error = common::sinumerik::error(text);
-        assert_eq!(error.rule, "unsupported", "{error}");
-        assert!(error.message.contains("leave it out"), "{error}");
+fn where_axes_go_when_the_program_stops_moves_nothing_and_is_reported() {
+    let plain = poses(&blocks("G0 X1 Y2 Z3\nG1 X5 F100"));
+    let quiet = blocks("LFOF LFTXT\nLFWP\nLFPOS\nG0 X1 Y2 Z3");
+    assert!(!quiet.iter().any(|op| matches!(op, Action::Risk(_))), "{quiet:?}");
+    let words = [
+        "POLF[Z]=100",
+        "POLF[Z]=IC(5) POLF[X]=AC(R1)",
+        "POLFMASK(Z)",
+        "POLFMASK()",
+        "POLFMLIN(X,Z)",
+        "LFON",
+        "ALF=3",
+        "DILF=5",
+        "LFON LFPOS DILF=2",
+        "POLFA(Z,2,50)",
+    ];
+    for text in words {
+        let ops = blocks(&format!("R1=7\n{text}\nG0 X1 Y2 Z3\nG1 X5 F100"));
+        assert_eq!(poses(&ops), plain, "{text}");
+        let risks: Vec<_> = ops
+            .iter()
+            .filter_map(|op| {
+                if let Action::Risk(risk) = op { Some((risk.rule, risk.refused)) } else { None }
+            })
+            .collect();
+        assert_eq!(risks, [("stop-retract", false)], "{text}");
+    }
+    // An interrupt runs a program of its own, wherever it comes.
+    for text in [
+        "SETINT(1) PRIO=1 LIFT_Z",
+        "SETINT(2) PRIO=1 LIFTFAST",
+        "POLF[Q]=1",
+        "POLF=1",
+        "POLFMASK(Q)",
+    ] {
+        common::sinumerik::error(text);
     }
 }

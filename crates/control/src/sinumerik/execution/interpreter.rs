@@ -257,6 +257,10 @@ impl<'a, 's> Interpreter<'a, 's> {
         if smooths && self.settings.path_tolerance == 0.0 {
             self.emit(source, Action::Risk(Risk::SMOOTHING.into()))?;
         }
+        let lifts = block.rare.as_ref().is_some_and(|rare| rare.lifts);
+        if lifts || matches!(block.code(41), Some(Code::Lift)) {
+            self.emit(source, Action::Risk(Risk::STOP_RETRACT.into()))?;
+        }
         if let Some(Code::Motion(motion)) = block.code(1) {
             self.state.motion = motion;
         }
@@ -533,6 +537,7 @@ impl<'a, 's> Interpreter<'a, 's> {
         }
         match call.procedure {
             Procedure::NoMotion => Ok(()),
+            Procedure::Lift => self.emit(source, Action::Risk(Risk::STOP_RETRACT.into())),
             Procedure::Group => group(source, call),
             Procedure::MasterSpindle => match call.number(source, 0)? {
                 None | Some(1.0) => Ok(()),

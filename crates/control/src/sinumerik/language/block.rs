@@ -57,6 +57,8 @@ pub(crate) enum Corner {
 /// The words that few blocks have.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Rare {
+    /// It says where axes go when the program is stopped.
+    pub lifts: bool,
     /// AP, degrees.
     pub polar_angle: Option<Coordinate>,
     /// RP.

@@ -24,6 +24,8 @@ pub(crate) enum Procedure {
     Group,
     /// Nothing that moves an axis or changes where one goes.
     NoMotion,
+    /// `POLFMASK` and its kin: which axes go where when the program is stopped.
+    Lift,
     /// `MCALL` without a cycle.
     EndOfModalCall,
     /// A drilling cycle.
@@ -76,6 +78,9 @@ const PROCEDURES: &[(&str, Procedure)] = &[
     ("STOPRE", Procedure::NoMotion),
     // The raw part, for the control's picture.
     ("WORKPIECE", Procedure::NoMotion),
+    ("POLFA", Procedure::Lift),
+    ("POLFMASK", Procedure::Lift),
+    ("POLFMLIN", Procedure::Lift),
     ("SETMS", Procedure::MasterSpindle),
     ("RET", Procedure::Return),
     ("ENDPROC", Procedure::Return),
@@ -111,15 +116,8 @@ const UNSUPPORTED: &[(&str, &str)] = &[
     ("SPCOF", "position control of the spindle"),
     ("LIMS", "a limit of the speed for constant cutting speed"),
     ("GEOAX", "other geometry axes"),
-    ("POLF", LIFT),
-    ("POLFA", LIFT),
-    ("POLFMASK", LIFT),
-    ("POLFMLIN", LIFT),
-    ("LFON", LIFT),
-    ("LIFTFAST", LIFT),
-    ("DILF", LIFT),
-    ("ALF", LIFT),
-    ("SETINT", "an interrupt, which may run at any place of the program; leave it out"),
+    ("SETINT", INTERRUPT),
+    ("LIFTFAST", INTERRUPT),
     ("DRFOF", "overlaid motions"),
     ("MEAS", MEASURING),
     ("MEAW", MEASURING),
@@ -159,8 +157,7 @@ const UNSUPPORTED: &[(&str, &str)] = &[
 ];
 
 const SYNCHRONISED: &str = "synchronised actions";
-const LIFT: &str = "where the axes go when the program is stopped, which nothing here follows; leave it out, and \
-                    retract in the program";
+const INTERRUPT: &str = "an interrupt, which may run at any place of the program; leave it out";
 const MEASURING: &str = "measuring";
 const TURNING: &str = "a turning cycle, whose path the control makes; write the path";
 const MILLING: &str = "a milling cycle, whose path the control makes; write the path";

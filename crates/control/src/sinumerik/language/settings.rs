@@ -33,6 +33,9 @@ pub(super) enum Setting {
     OrientationTolerance,
     /// By how much an axis accelerates, jerks or is fast, percent.
     Dynamics,
+    /// Where an axis goes when the program is stopped, how far and which way.
+    LiftTo,
+    Lift,
     /// How rapids and corrections are rounded, and how far the tool axis may turn.
     NoMotion,
 }
@@ -65,6 +68,9 @@ const SETTINGS: &[(&str, Setting)] = &[
     ("ACCLIMA", Setting::Dynamics),
     ("JERKLIMA", Setting::Dynamics),
     ("VELOLIMA", Setting::Dynamics),
+    ("POLF", Setting::LiftTo),
+    ("DILF", Setting::Lift),
+    ("ALF", Setting::Lift),
 ];
 
 /// The address of that name, as the language has it.
@@ -84,6 +90,13 @@ impl Reader<'_, '_> {
             Setting::Position => return self.positioning(start),
             Setting::FeedReference => return self.feed_reference(start),
             Setting::Dynamics => return self.dynamics(start, said),
+            Setting::LiftTo => {
+                self.indexed_axis()?;
+                // Absolute or by an increment: it moves nothing.
+                self.counted(false)?;
+                self.block.rare.get_or_insert_default().lifts = true;
+                return Ok(());
+            }
             _ => {}
         }
         self.scanner.expect(b'=')?;
@@ -115,6 +128,10 @@ impl Reader<'_, '_> {
                 rare.corner.replace(corner(value)).is_some()
             }
             Setting::Peak => rare(block, |r| &mut r.peak),
+            Setting::Lift => {
+                block.rare.get_or_insert_default().lifts = true;
+                false
+            }
             Setting::Angle => rare(block, |r| &mut r.angle),
             Setting::ModalRound => rare(block, |r| &mut r.modal_round),
             Setting::CornerFeed => rare(block, |r| &mut r.corner_feed),
@@ -123,6 +140,7 @@ impl Reader<'_, '_> {
             Setting::Position
             | Setting::FeedReference
             | Setting::Dynamics
+            | Setting::LiftTo
             | Setting::PolarAngle
             | Setting::PolarRadius
             | Setting::NoMotion => false,
