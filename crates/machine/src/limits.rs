@@ -224,7 +224,8 @@ impl<'a> Limits<'a> {
                 "{letter} moves from {low} to {high}: {:.4} mm more than its travel of {travel} mm",
                 way - travel
             );
-            let help = "divide the work, or take a larger machine";
+            let help = "lower the clearance planes in the CAM system where only retracts go that far; else divide the work, or take a larger \
+                            machine";
             Some(Diagnostic::error("axis-limit", message).help(help).line(line))
         })
     }

@@ -85,6 +85,8 @@ pub struct ControlSettings {
     pub floating_holder: bool,
     /// How far above R a peck cycle takes the tool to clear chips, mm, where that is known (Haas setting 52).
     pub retract_above_r: Option<f64>,
+    /// The feed of rapids near the part that are written as straight cuts, mm/min.
+    pub high_feed: Option<f64>,
     /// Whether the tool length counts along Z in every plane (SINUMERIK SD42940, FANUC parameter 5001).
     pub length_along_z: Option<bool>,
     /// Whether Z moves where a tool length begins, ends or changes (FANUC parameter 5006#6).

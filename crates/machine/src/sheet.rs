@@ -110,6 +110,7 @@ sheet!(merged CapabilitiesSheet "capabilities" {
 sheet!(merged SettingsSheet "settings" {
     dwell_p_milliseconds: bool, "", "Whether P of a dwell counts milliseconds, or tenths of them: FANUC increment system B (parameter 1013), or 1015#7 is 1.";
     floating_holder: bool, "", "Whether taps are held in a chuck that floats along its axis, so that a tapping cycle need not couple feed and spindle.";
+    high_feed: Positive, "mm/min", "The feed of rapids near the part that are written as G1, since each axis goes at its own speed by rapid: as fast as the machine is to go through the air there.";
     length_along_z: bool, "", "Whether the tool length counts along Z in every plane: SINUMERIK SD42940 is 17, FANUC parameters 5001#0 and 5001#1 are 0.";
     length_moves_axis: bool, "", "Whether Z moves where a tool length begins, ends or changes: FANUC parameter 5006#6 is 0.";
     retract_above_r: NotNegative, "mm", "How far above R a peck cycle (G83) takes the tool each time it clears chips: Haas setting 52.";

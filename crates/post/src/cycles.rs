@@ -55,7 +55,8 @@ impl Walk<'_> {
             None if matches!(cycle.kind, CycleKind::Tap { .. }) => {
                 let message =
                     "the control has no tapping cycle for this hole, and moves cannot tap";
-                Err(refuse("cycle-tap", message))
+                let help = "tap by hand or mill the thread, or take a machine whose control has a tapping cycle";
+                Err(refuse("cycle-tap", message).help(help).into())
             }
             None if cycle.kind.withdrawal().is_some() => {
                 let message = "no cycle of this machine's file goes aside from the wall of a hole, and moves \

@@ -440,8 +440,11 @@ impl Walk<'_> {
 
 fn unreachable(axis: Vec3) -> Box<Diagnostic> {
     let message = format!(
-        "the machine cannot bring the tool axis to ({:.6}, {:.6}, {:.6})",
-        axis.x, axis.y, axis.z
+        "the machine cannot bring the tool axis to ({:.6}, {:.6}, {:.6}), {:.3}° from Z of the part",
+        axis.x,
+        axis.y,
+        axis.z,
+        axis.angle_between(Vec3::Z).to_degrees()
     );
     refuse("unreachable-orientation", message)
 }

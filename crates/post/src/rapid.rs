@@ -8,7 +8,7 @@
 use crate::catalogue::{BlockName, WordName};
 use crate::place::{Kind, Stop, same};
 use crate::template::{ORIENTATION, POSITION, Words, bit};
-use crate::walk::{Done, Walk, motion, refuse};
+use crate::walk::{ByFeed, Done, Walk, motion, refuse};
 use geom::{Vec3, angle_between, between, nearest_on_segment, off_great_circle};
 use machine::linearise::Stance;
 use machine::plan::Step;
@@ -30,6 +30,9 @@ const SAMPLE: f64 = 1.0;
 
 /// A rapid that takes more pieces goes home instead.
 const MOST_PIECES: usize = 200;
+
+/// What to state where the axes go together by rapid.
+const RAPID_PATH_HELP: &str = "`rapid_path = \"linear\"` in [settings] where its axes go together by rapid (FANUC: parameter 1401#1 is 1)";
 
 /// How a rapid is written.
 enum Course {
@@ -246,7 +249,7 @@ impl Walk<'_> {
         if !self.machine.has_straight_rapids() {
             let message = "the tilted tool has to go out along its axis before Z goes home, and each axis of the machine goes \
                            at its own speed by rapid";
-            let help = "`rapid_path = \"linear\"` in [settings] where its axes go together by rapid (FANUC: parameter 1401#1 is 1)";
+            let help = RAPID_PATH_HELP;
             return Err(refuse("rapid-path", message).help(help).into());
         }
         self.aim(&outside, &stop);
@@ -396,18 +399,43 @@ impl Walk<'_> {
         Ok(())
     }
 
-    fn by_feed(&mut self, pose: &Pose, stop: &Stop) -> Done {
-        let help = "`rapid_path = \"linear\"` in [settings] where its axes go together by rapid (FANUC: parameter 1401#1 is 1)";
-        let Some(feed) = self.known_feed() else {
-            let message = "a rapid near the part, where each axis of the machine goes at its own speed, and no feed is known \
-                           by which it could be written instead";
-            return Err(refuse("rapid-path", message).help(help).into());
+    /// The warning about rapids that are written by feed, with the time that they take.
+    pub(crate) fn slow_rapids(&self) -> Option<Diagnostic> {
+        let ByFeed { count, line, length } = self.by_feed;
+        let feed = self.known_feed().filter(|_| count > 0)?;
+        let time = match 60.0 * length / feed {
+            seconds if seconds < 60.0 => format!("{seconds:.0} s"),
+            seconds => format!("{:.1} min", seconds / 60.0),
         };
         let message = format!(
             "rapids near the part are written with a feed of {feed} mm/min: each axis of the machine goes at its own speed \
-             by rapid"
+             by rapid; together {:.2} m, {time}",
+            length / 1000.0
         );
-        self.findings.warn(Diagnostic::warning("rapid-path", message).help(help).line(self.line));
+        let help = match self.machine.settings.high_feed {
+            Some(_) => RAPID_PATH_HELP.to_owned(),
+            None => format!(
+                "`high_feed` (mm/min) in [settings] gives them a feed of their own; {RAPID_PATH_HELP}"
+            ),
+        };
+        let mut found = Diagnostic::warning("rapid-path", message).help(help).line(line);
+        found.count = count;
+        Some(found)
+    }
+
+    fn by_feed(&mut self, pose: &Pose, stop: &Stop) -> Done {
+        let Some(feed) = self.known_feed() else {
+            let message = "a rapid near the part, where each axis of the machine goes at its own speed, and no feed is known \
+                           by which it could be written instead";
+            let help = format!("`high_feed` (mm/min) in [settings] says one; {RAPID_PATH_HELP}");
+            return Err(refuse("rapid-path", message).help(help).into());
+        };
+        let by_feed = &mut self.by_feed;
+        by_feed.count = by_feed.count.saturating_add(1);
+        if by_feed.count == 1 {
+            by_feed.line = self.line;
+        }
+        by_feed.length += self.here.map_or(0.0, |from| from.point().distance(pose.point()));
         let wanted = self.feed.replace(Feed::PerMinute(feed));
         let done = self.line_to(pose, stop);
         self.feed = wanted;

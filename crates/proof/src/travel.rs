@@ -144,7 +144,8 @@ impl Travel {
                         "{letter} moves by {way:.4} mm in all, {:.4} mm more than its travel of {travel} mm",
                         way - travel
                     );
-                    let help = "divide the work, or take a larger machine";
+                    let help = "lower the clearance planes in the CAM system where only retracts go that far; else divide the work, or take a larger \
+                            machine";
                     return Some(Diagnostic::error("axis-limit", message).help(help));
                 }
                 continue;

@@ -28,18 +28,40 @@ fn list() -> Result<Answer, Stop> {
     let controls: Result<Vec<Machine>, Stop> =
         library::names(library::CONTROLS).map(|name| Ok(machine::load_control(name)?)).collect();
     let (machines, controls) = (machines?, controls?);
-    let rows = |all: &[Machine]| {
-        let lines: Vec<_> = all.iter().map(|m| (m.name.as_str(), m.title.clone())).collect();
+    let rows = |all: &[Machine], text: &dyn Fn(&Machine) -> String| {
+        let lines: Vec<_> = all.iter().map(|m| (m.name.as_str(), text(m))).collect();
         summary::rows(&lines)
     };
     let text = format!(
         "{}\ncontrols, for machines of your own to extend:\n{}",
-        rows(&machines),
-        rows(&controls)
+        rows(&machines, &|machine| format!("{}: {}", machine.title, abilities(machine))),
+        rows(&controls, &|machine| machine.title.clone())
     );
     let data = |all: &[Machine]| all.iter().map(describe).collect::<Vec<Value>>();
     let data = json!({ "machines": data(&machines), "controls": data(&controls) });
     Ok(Answer::product(text, data))
+}
+
+/// The axes of a machine, its travel (mm), and the command that writes for it.
+fn abilities(machine: &Machine) -> String {
+    let rotary = machine.rotary.iter().map(|axis| ['A', 'B', 'C'][axis.index()]);
+    let axes: String = match machine.wire {
+        Some(_) => "XYUV".into(),
+        None => "XYZ".chars().chain(rotary).collect(),
+    };
+    let travels: Vec<String> =
+        machine.linear.iter().map(|axis| axis.max - axis.min).map(travel).collect();
+    let travel = match machine.linear.iter().all(|axis| (axis.max - axis.min).is_infinite()) {
+        true => String::from("no travel stated"),
+        false => format!("{} mm", travels.join(" x ")),
+    };
+    let command = if machine.wire.is_some() { "wire" } else { "post" };
+    format!("{axes}, {travel}, {command}")
+}
+
+/// The travel of an axis, mm.
+fn travel(length: f64) -> String {
+    if length.is_finite() { summary::number(length, 1) } else { String::from("?") }
 }
 
 /// The text of a file of the library.
@@ -47,6 +69,33 @@ fn show(name: &str) -> Result<Answer, Stop> {
     let text = library_text(name)?;
     Ok(Answer::product(text, json!({ "name": name, "text": text })))
 }
+
+/// What a shop states of its machine, below the copy of one of the library.
+const KEYS: &str = r#"
+# What else a shop states of its machine, with units: take the `#` away. Keys stand in the table that heads them, those of the first
+# group above all tables. `toolpost explain NAME` says more of each, docs/machines.md what is taken where one is missing.
+#
+# safe_height = 0         # mm: Z in machine coordinates where the tool is clear of the part
+# work_zero = [0, 0, 0]   # mm: the zero of the part in machine coordinates
+# feed_max = 5000         # mm/min
+# auxiliary = [88, 89]    # M functions of the builder that move no axis
+#
+# [axes]                  # min, max in mm; rapid in mm/min; acceleration in m/s²
+# X = { min = -500, max = 0, rapid = 20000, acceleration = 2 }
+# Y = { min = -400, max = 0, rapid = 20000, acceleration = 2 }
+# Z = { min = -450, max = 0, rapid = 20000, acceleration = 2 }
+#
+# [spindle]               # 1/min
+# min = 50
+# max = 12000
+#
+# [settings]
+# rapid_path = "linear"   # G0 goes straight; "independent" where each axis goes at its own speed
+# high_feed = 5000        # mm/min: rapids near the part that are written as G1
+#
+# [blocks]
+# coolant_flood = "{{N}} M8"
+"#;
 
 /// Copies a machine to a new file of this folder.
 fn new(name: &str, from: &str) -> Result<Answer, Stop> {
@@ -71,7 +120,7 @@ fn new(name: &str, from: &str) -> Result<Answer, Stop> {
         String::from_utf8(bytes)
             .map_err(|_| Diagnostic::error("encoding", "this file is not UTF-8").file(from))?
     } else {
-        library_text(from)?.to_owned()
+        format!("{}{KEYS}", library_text(from)?)
     };
     let file = path.display().to_string();
     let machine = machine::load_text(&file, &text)?;
@@ -147,9 +196,28 @@ fn sample(machine: &Machine) -> Result<(), Vec<Diagnostic>> {
 fn check(file: &str) -> Result<Answer, Stop> {
     let machine = toolpath::machine(file)?;
     post::check(&machine).map_err(|findings| Stop { verdict: Verdict::Invalid, findings })?;
-    let lines = [("machine", machine.title.clone()), ("mistakes", String::from("none"))];
-    let data = json!({ "machine": describe(&machine) });
+    let unchecked = unchecked(&machine);
+    let lines = [
+        ("machine", machine.title.clone()),
+        ("mistakes", String::from("none")),
+        ("not checked", unchecked.join("; ")),
+    ];
+    let data = json!({ "machine": describe(&machine), "not_checked": unchecked });
     Ok(Answer::summary(Verdict::Done, summary::rows(&lines), data))
+}
+
+/// What a file without mistakes leaves open.
+fn unchecked(machine: &Machine) -> Vec<&'static str> {
+    let endless = |axis: &machine::LinearAxis| axis.min.is_infinite() || axis.max.is_infinite();
+    let has_no_end = machine.linear.iter().any(endless);
+    let mut open = Vec::new();
+    if has_no_end {
+        open.push("the travel of programs: an axis has no min or no max in [axes]");
+    } else if machine.work_zero.is_none() {
+        open.push("where programs stand in the travel: work_zero is missing, their size alone is compared with it");
+    }
+    open.push("whether the machine does what the words of the blocks say: post a program that you know, and read it");
+    open
 }
 
 /// Says which keys a file lacks that is older than they are.

@@ -2,7 +2,7 @@
 //! machine do between two blocks.
 
 use geom::{Vec3, nearest_on_segment};
-use machine::{Machine, load, load_text};
+use machine::{ControlSettings, Machine, load, load_text};
 use program::{Diagnostic, Program};
 
 fn read(text: &str) -> Program {
@@ -264,7 +264,8 @@ fn where_each_axis_goes_at_its_own_speed_only_one_moves_near_the_part() {
         at_once.contains("G0 X60. Y20. Z2.\n") && at_once.contains("G0 X0. Z-4.\nX30. Y0.\n"),
         "{at_once}"
     );
-    let machine = load("generic-3axis-fanuc").unwrap();
+    let mut machine = load("generic-3axis-fanuc").unwrap();
+    let high_feed = machine.settings.high_feed.take();
     let found = found(&source, &machine, &at_once);
     let rules: Vec<_> = found.iter().map(|found| (found.rule, found.count)).collect();
     assert_eq!(rules, [("rapid-path", 3)], "{at_once}");
@@ -277,6 +278,22 @@ fn where_each_axis_goes_at_its_own_speed_only_one_moves_near_the_part() {
     let warnings: Vec<_> =
         output.warnings.iter().filter(|found| found.rule == "rapid-path").collect();
     assert!(warnings.len() == 1 && warnings[0].message.contains("300 mm/min"), "{warnings:?}");
+    // From X60 Y20 Z-5 to X0 Y20 Z-4 and on to X30 Y0: 60.01 mm and 36.06 mm, 19.2 s at F300.
+    assert!(warnings[0].message.ends_with("together 0.10 m, 19 s"), "{warnings:?}");
+    assert!(warnings[0].help.contains("high_feed") && warnings[0].count == 2, "{warnings:?}");
+    // The machine file may say how fast the machine goes through the air there.
+    assert_eq!(high_feed, Some(5000.0));
+    let fast =
+        Machine { settings: ControlSettings { high_feed, ..machine.settings }, ..machine.clone() };
+    let output = written(&source, &fast);
+    let text = plain(&text(&output));
+    proven(&source, &fast, &text);
+    assert!(text.contains("X0. Z-4. F5000.\nX30. Y0.\nZ-5. F300.\n"), "{text}");
+    let warning = output.warnings.iter().find(|found| found.rule == "rapid-path").unwrap();
+    assert!(
+        warning.message.contains("5000 mm/min") && warning.message.ends_with("1 s"),
+        "{warning}"
+    );
     // A feed in place of a rapid that does not keep to the way is none.
     let beside = good.replace("X30. Y0.\nZ-5.", "X0. Y0.\nX30.\nZ-5.");
     assert_eq!(refused(&source, &machine, &beside)[0].0, "path");

@@ -73,13 +73,16 @@ impl SheetFile {
                 Err(Diagnostic::error("machine-is-control", message).help(help).into())
             }
             None => {
-                let known = library::names(kinds).collect::<Vec<_>>().join(", ");
                 let message = format!("`{name}` is not in the library");
-                let meant = match nearest(name, library::names(kinds)).as_str() {
-                    "" => String::new(),
-                    meant => format!("did you mean {meant}? "),
+                let help = match nearest(name, library::names(kinds)).as_str() {
+                    "" => {
+                        let known = library::names(kinds).collect::<Vec<_>>().join(", ");
+                        format!("there are {known}; or give the path of a file")
+                    }
+                    meant => format!(
+                        "did you mean {meant}? `toolpost machines list` names all; or give the path of a file"
+                    ),
                 };
-                let help = format!("{meant}There are {known}; or give the path of a file");
                 Err(Diagnostic::error("machine-unknown", message).help(help).into())
             }
         }

@@ -61,6 +61,14 @@ const EXTENTS: [WordName; 6] = [
 /// What reaches over less, mm, is no body.
 const THIN: f64 = 0.01;
 
+/// Rapids that are written by feed: how many, from which line of the source on, and how far together, mm.
+#[derive(Debug, Default)]
+pub(crate) struct ByFeed {
+    pub(crate) count: u32,
+    pub(crate) line: u32,
+    pub(crate) length: f64,
+}
+
 /// A program being written.
 pub(crate) struct Walk<'a> {
     pub(crate) machine: &'a Machine,
@@ -74,8 +82,10 @@ pub(crate) struct Walk<'a> {
     statistics: Option<Statistics>,
     /// What it cuts; counted where it is asked for.
     cuts: Option<CutBox>,
-    /// The fastest feed that the machine is known to take, mm/min; looked for where it is asked for.
+    /// The feed for the air, else the fastest that the machine is known to take, mm/min; looked for where it is asked for.
     known_feed: OnceCell<Option<f64>>,
+    /// Rapids that are written by feed.
+    pub(crate) by_feed: ByFeed,
     /// The radii of the source's tools, mm, by their numbers; collected where they are asked for.
     radii: OnceCell<BTreeMap<u32, f64>>,
     /// Where in its records we are.
@@ -177,6 +187,7 @@ impl<'a> Walk<'a> {
             statistics: None,
             cuts: None,
             known_feed: OnceCell::new(),
+            by_feed: ByFeed::default(),
             radii: OnceCell::new(),
             index: 0,
             line: 0,
@@ -221,6 +232,9 @@ impl<'a> Walk<'a> {
     pub(crate) fn run(mut self) -> Result<crate::Output, Vec<Diagnostic>> {
         if let Err(error) = self.records() {
             self.findings.error(*error);
+        }
+        if let Some(found) = self.slow_rapids() {
+            self.findings.warn(found);
         }
         for error in self.limits.ways() {
             self.findings.error(error);
@@ -486,6 +500,9 @@ impl<'a> Walk<'a> {
     /// The fastest feed that the machine is known to take, mm/min: its own, or the fastest that the source has.
     pub(crate) fn known_feed(&self) -> Option<f64> {
         *self.known_feed.get_or_init(|| {
+            if let Some(feed) = self.machine.settings.high_feed {
+                return Some(feed.min(self.machine.feed_max));
+            }
             if self.machine.feed_max.is_finite() {
                 return Some(self.machine.feed_max);
             }

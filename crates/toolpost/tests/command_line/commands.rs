@@ -128,6 +128,11 @@ fn every_machine_of_the_library_is_listed_and_has_no_mistake() {
     }
     let listed = folder.run(&["machines", "list"]).out;
     assert!(listed.contains("\ncontrols,") && listed.contains("\ngrbl "), "{listed}");
+    let row = |name: &str| listed.lines().find(|line| line.starts_with(name)).unwrap();
+    assert!(row("grbl-3018").ends_with("XYZ, 300 x 180 x 45 mm, post"), "{listed}");
+    assert!(row("fanuc-table-bc").contains("XYZBC, 850 x 700 x 800 mm, post"), "{listed}");
+    assert!(row("bp-95d").ends_with(", wire"), "{listed}");
+    assert!(row("generic-3axis-fanuc").contains("no travel stated"), "{listed}");
     for machine in machines {
         let said = folder.run(&["machines", "check", machine["name"].as_str().unwrap()]);
         assert_eq!(said.code, 0, "{said:?}");
@@ -138,7 +143,17 @@ fn every_machine_of_the_library_is_listed_and_has_no_mistake() {
 fn a_machine_of_ones_own_starts_as_a_copy() {
     let folder = Folder::new();
     assert_eq!(folder.run(&["machines", "new", "mine", "--from", MACHINE]).code, 0);
-    assert_eq!(folder.read("mine.toml"), folder.run(&["machines", "show", MACHINE]).out);
+    let (copy, shown) = (folder.read("mine.toml"), folder.run(&["machines", "show", MACHINE]).out);
+    let added = copy.strip_prefix(&shown).unwrap();
+    // What it may state besides is there as comments, and each group is what a machine file takes.
+    assert!(added.lines().all(|line| line.is_empty() || line.starts_with('#')), "{added}");
+    assert!(added.contains("work_zero") && added.contains("mm/min"), "{added}");
+    let (_, keys) = added.split_once("#\n").unwrap();
+    let keys = keys.replace("\n# ", "\n").replace("\n#\n", "\n\n");
+    let keys = keys.trim_start_matches("# ");
+    folder.write("keys.toml", &format!("extends = \"generic-3axis-fanuc\"\ntitle = \"A\"\n{keys}"));
+    let said = folder.run(&["machines", "check", "keys.toml"]);
+    assert_eq!(said.code, 0, "{said:?}\n{keys}");
     assert_eq!(folder.run(&["machines", "check", "mine.toml"]).code, 0);
     let said = folder.run(&["machines", "new", "mine", "--from", MACHINE]);
     assert_eq!(said.code, 2);
@@ -151,6 +166,24 @@ fn a_machine_of_ones_own_starts_as_a_copy() {
         assert_eq!(said.code, 2, "{name}");
         assert!(said.err.contains("machine-name"), "{said:?}");
     }
+}
+
+#[test]
+fn a_check_says_what_it_leaves_open() {
+    let folder = Folder::new();
+    let check = |name: &str| folder.run(&["machines", "check", name]).out;
+    assert!(check("generic-3axis-fanuc").contains("no min or no max"));
+    assert!(check("grbl-3018").contains("work_zero is missing"));
+    let stated = check("haas-umc-750");
+    assert!(!stated.contains("work_zero") && stated.contains("read it"), "{stated}");
+}
+
+#[test]
+fn a_mistyped_machine_brings_the_nearest_alone() {
+    let folder = Folder::new();
+    let said = folder.run(&["post", "part.cls", "-m", "generic-3axis-fanuk", "-o", "out.nc"]);
+    assert!(said.err.contains("did you mean `generic-3axis-fanuc`"), "{said:?}");
+    assert!(!said.err.contains("marlin"), "{said:?}");
 }
 
 #[test]

@@ -6,6 +6,7 @@ use crate::event::{Action, Risk};
 use crate::iso::dialects::facts::DwellUnit;
 use crate::iso::language::arithmetic;
 use crate::iso::language::block::Fault;
+use crate::iso::language::words::WHOLE_NUMBERS_HELP;
 
 impl Step<'_, '_, '_> {
     /// mm in the unit of length, for the word of this letter.
@@ -75,7 +76,7 @@ impl Step<'_, '_, '_> {
             "{shown} has no decimal point: units or least increments, as the machine is set"
         );
         let fault = self.block.at_word(letter, "nc-decimal-point", message);
-        fault.help("write the point, or say what whole numbers count").into()
+        fault.help(WHOLE_NUMBERS_HELP).into()
     }
 
     /// The whole number of this letter.

@@ -9,6 +9,7 @@ use crate::event::{Action, ArcTo, Event, Position};
 use crate::iso::dialects::facts::CornerWords;
 use crate::iso::execution::state::Tilt;
 use crate::iso::language::block::{Fault, Word};
+use crate::iso::language::words::WHOLE_NUMBERS_HELP;
 use crate::kernel::corner::{self, Element, Misfit, Shape};
 use geom::Vec3;
 use program::{Diagnostic, Feed};
@@ -185,7 +186,7 @@ impl Run<'_, '_> {
                 let message = "the corner has no decimal point: units or least increments, as the \
                                machine is set";
                 let fault = at("nc-decimal-point", message);
-                let help = "write the point, or say what whole numbers count";
+                let help = WHOLE_NUMBERS_HELP;
                 return Err(fault.help(help).into());
             }
         };

@@ -9,6 +9,7 @@ use crate::event::{Action, Risk};
 use crate::iso::language::arithmetic;
 use crate::iso::language::block::{Fault, Word};
 use crate::iso::language::expression::{Reader, Target};
+use crate::iso::language::words::WHOLE_NUMBERS_HELP;
 use crate::kernel::decimal;
 use program::Diagnostic;
 use std::collections::HashMap;
@@ -456,7 +457,7 @@ impl<'a> Run<'a, '_> {
                     char::from(word.letter)
                 );
                 let fault = self.at_line("nc-decimal-point", message);
-                Err(fault.help("write the point, or say what whole numbers count").into())
+                Err(fault.help(WHOLE_NUMBERS_HELP).into())
             }
         }
     }

@@ -105,6 +105,10 @@ pub(crate) enum Pattern {
     Line,
 }
 
+/// What to do about a number without its point.
+pub(crate) const WHOLE_NUMBERS_HELP: &str = "write the point, or say what whole numbers count: `--whole-numbers units` where X10 is 10 mm, \
+                                             `--whole-numbers increments` where it is 0.010 mm (FANUC parameter 3401#0, Haas setting 162)";
+
 /// Interpolation (`G0` to `G3` and the like).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Motion {
