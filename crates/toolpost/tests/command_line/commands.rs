@@ -151,7 +151,7 @@ fn a_machine_of_ones_own_starts_as_a_copy() {
     let (_, keys) = added.split_once("#\n").unwrap();
     let keys = keys.replace("\n# ", "\n").replace("\n#\n", "\n\n");
     let keys = keys.trim_start_matches("# ");
-    folder.write("keys.toml", &format!("extends = \"generic-3axis-fanuc\"\ntitle = \"A\"\n{keys}"));
+    folder.write("keys.toml", format!("extends = \"generic-3axis-fanuc\"\ntitle = \"A\"\n{keys}"));
     let said = folder.run(&["machines", "check", "keys.toml"]);
     assert_eq!(said.code, 0, "{said:?}\n{keys}");
     assert_eq!(folder.run(&["machines", "check", "mine.toml"]).code, 0);
