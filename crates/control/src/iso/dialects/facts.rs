@@ -3,7 +3,6 @@
 //!
 //! `ISO` of a group is what RS274/NGC and most others do; `FANUC` is FANUC and what follows it.
 
-use crate::iso::language::parameters::Language;
 use crate::iso::language::words::Dictionary;
 
 /// A dialect of ISO code.
@@ -74,6 +73,19 @@ impl Facts {
             _ => self.words.why_refused(letter, number),
         }
     }
+}
+
+/// How a program calculates.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Language {
+    /// Not at all.
+    Plain,
+    /// RS274/NGC as it was first written down: numbered parameters, no comparisons.
+    Rs274,
+    /// RS274/NGC as LinuxCNC has it: named parameters and O-words, too.
+    Ngc,
+    /// Custom macro B.
+    MacroB,
 }
 
 /// How a block is written.

@@ -3,10 +3,10 @@
 
 use super::facts::{
     Arcs, CornerWords, Cycles, DwellUnit, Facts, FeedMeaning, FeedRules, FrameRules, Functions,
-    Homes, MotionRules, Numbers, Offsets, Rollover, Syntax, Tools, further, within_a_hundredth,
+    Homes, Language, MotionRules, Numbers, Offsets, Rollover, Syntax, Tools, further,
+    within_a_hundredth,
 };
 use super::{END_M, FRAME_G, MACRO_G, MILL_G, POLAR_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
-use crate::iso::language::parameters::Language;
 use crate::iso::language::words::{
     Canned, Dictionary, G, GRow, Group, M, MRow, Motion, Path, Refused,
 };

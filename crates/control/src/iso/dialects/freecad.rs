@@ -2,11 +2,10 @@
 //! are mm and times s, whatever the job shows: a feed is mm/s.
 
 use super::facts::{
-    Arcs, Brackets, Cycles, Facts, FeedMeaning, FeedRules, OuterCenter, Reset, Semicolon, Syntax,
-    Tools,
+    Arcs, Brackets, Cycles, Facts, FeedMeaning, FeedRules, Language, OuterCenter, Reset, Semicolon,
+    Syntax, Tools,
 };
 use super::{BASIC_G, BASIC_M, END_M, SPINDLE_G, SPINDLE_M, cycles};
-use crate::iso::language::parameters::Language;
 use crate::iso::language::words::{
     Dictionary, FeedMode, G, GRow, Group, M, MRow, Motion, Refused, Side,
 };

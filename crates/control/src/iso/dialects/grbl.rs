@@ -1,11 +1,10 @@
 //! GRBL 1.1, wiki page "Grbl v1.1 Commands" and the supported codes in its `gcode.h`.
 
 use super::facts::{
-    Arcs, Brackets, Facts, FeedRules, FeedUnit, Functions, Homes, Offsets, OuterCenter, Reset,
-    Syntax, Tools, six,
+    Arcs, Brackets, Facts, FeedRules, FeedUnit, Functions, Homes, Language, Offsets, OuterCenter,
+    Reset, Syntax, Tools, six,
 };
 use super::{END_M, MILL_G, mill};
-use crate::iso::language::parameters::Language;
 use crate::iso::language::words::{Dictionary, G, GRow, Group, M, MRow, Motion, Refused};
 
 const G_WORDS: &[GRow] = &[

@@ -1,11 +1,10 @@
 //! Haas NGC mills, "Mill Operator's Manual", chapters G codes and M codes.
 
 use super::facts::{
-    Arcs, CornerWords, Cycles, DwellUnit, Facts, FrameRules, Functions, Homes, Numbers, Offsets,
-    Syntax, Tools, further, within_a_hundredth,
+    Arcs, CornerWords, Cycles, DwellUnit, Facts, FrameRules, Functions, Homes, Language, Numbers,
+    Offsets, Syntax, Tools, further, within_a_hundredth,
 };
 use super::{END_M, FRAME_G, MACRO_G, MILL_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
-use crate::iso::language::parameters::Language;
 use crate::iso::language::words::{
     Canned, Dictionary, G, GRow, Group, M, MRow, Path, Pattern, Refused,
 };

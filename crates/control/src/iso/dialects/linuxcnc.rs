@@ -2,11 +2,10 @@
 //! a group of its own.
 
 use super::facts::{
-    Arcs, Cycles, Facts, FeedRules, FeedUnit, Functions, Homes, MotionRules, Offsets, OuterCenter,
-    Rollover, Syntax, Tools,
+    Arcs, Cycles, Facts, FeedRules, FeedUnit, Functions, Homes, Language, MotionRules, Offsets,
+    OuterCenter, Rollover, Syntax, Tools,
 };
 use super::{END_M, MILL_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
-use crate::iso::language::parameters::Language;
 use crate::iso::language::words::{
     Dictionary, G, GRow, Group, M, MRow, Motion, Path, Refused, Side,
 };

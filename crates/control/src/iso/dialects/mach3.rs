@@ -1,9 +1,8 @@
 //! Mach3, "Mach3 G and M-code Reference", table of G codes. The modal groups are those of RS274/NGC,
 //! on which it is built; `G80` may stand beside `G0` to `G3`.
 
-use super::facts::{Facts, FrameRules, Offsets, Tools};
+use super::facts::{Facts, FrameRules, Language, Offsets, Tools};
 use super::{END_M, FRAME_G, MILL_G, POLAR_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
-use crate::iso::language::parameters::Language;
 use crate::iso::language::words::{Dictionary, G, GRow, Group, M, MRow, Path, Refused};
 
 const G_WORDS: &[GRow] = &[

@@ -1,9 +1,10 @@
 //! Marlin 2 with the options for mills (`CNC_COORDINATE_SYSTEMS`, `CNC_WORKSPACE_PLANES`,
 //! `SPINDLE_FEATURE` in revolutions, `COOLANT_CONTROL`), from its G-code index.
 
-use super::facts::{BlockDelete, Brackets, DwellUnit, Facts, Homes, Numbers, Syntax, Tools};
+use super::facts::{
+    BlockDelete, Brackets, DwellUnit, Facts, Homes, Language, Numbers, Syntax, Tools,
+};
 use super::mill;
-use crate::iso::language::parameters::Language;
 use crate::iso::language::words::{Dictionary, G, GRow, Group, M, MRow, Refused};
 
 const G_WORDS: &[GRow] = &[

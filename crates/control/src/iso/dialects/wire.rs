@@ -2,9 +2,8 @@
 //! (`docs/controls/wire-iso.md`). The M functions that thread and cut the wire stand in the machine's
 //! file.
 
-use super::facts::{Facts, Tools, WireRules};
+use super::facts::{Facts, Language, Tools, WireRules};
 use super::{BASIC_G, BASIC_M, END_M, SUBPROGRAM_M, UNITS_20};
-use crate::iso::language::parameters::Language;
 use crate::iso::language::words::{Dictionary, G, GRow, Group, Refused, Side};
 
 /// Offset of the wire by the control.

@@ -5,9 +5,10 @@ use super::modes::Modes;
 use super::run::Run;
 use super::source::Place;
 use crate::event::{Action, Risk};
+use crate::iso::dialects::facts::Language;
 use crate::iso::language::arithmetic;
 use crate::iso::language::block::{Block, Fault};
-use crate::iso::language::parameters::{Language, Locals};
+use crate::iso::language::parameters::Locals;
 use crate::iso::language::words::{G, Group, M};
 
 /// How many calls LinuxCNC nests (`INTERP_SUB_ROUTINE_LEVELS` less that of the program).

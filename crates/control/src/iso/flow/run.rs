@@ -8,14 +8,14 @@ use super::owords;
 use super::source::{self, Place, Source};
 use crate::Settings;
 use crate::event::{Action, Event};
-use crate::iso::dialects::facts::Facts;
+use crate::iso::dialects::facts::{Facts, Language};
 use crate::iso::execution::onward::Onward;
 use crate::iso::execution::state::State;
 use crate::iso::execution::step::Control;
 use crate::iso::language::arithmetic;
 use crate::iso::language::block::{Block, Fault};
 use crate::iso::language::expression::Reader;
-use crate::iso::language::parameters::{Language, Parameters, Values};
+use crate::iso::language::parameters::{Parameters, Values};
 use crate::iso::language::words::{G, Group, M};
 use crate::kernel::budget::Budget;
 use crate::kernel::compensation::Compensator;
@@ -412,5 +412,5 @@ fn values<'v>(
     parameters: &'v Parameters,
     line: u32,
 ) -> Values<'v> {
-    Values { parameters, state, fresh: settings.setup.start.is_some(), line }
+    Values { parameters, system: state, fresh: settings.setup.start.is_some(), line }
 }

@@ -1,7 +1,7 @@
 //! What operators and functions calculate, in RS274/NGC and in custom macro B.
 
 use super::expression::Value;
-use super::parameters::Language;
+use crate::iso::dialects::facts::Language;
 
 /// How near two numbers are taken as equal in RS274/NGC, and a number as a whole one.
 const NEAR: f64 = 1e-4;

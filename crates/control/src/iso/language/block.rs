@@ -2,10 +2,10 @@
 
 use super::arithmetic;
 use super::expression::{Reader, Target, Value};
-use super::parameters::{Language, Values};
+use super::parameters::Values;
 use super::words::{G, Group, LETTERS, M, bit, index, set};
 use crate::Settings;
-use crate::iso::dialects::facts::{BlockDelete, Brackets, CornerWords, Facts, Semicolon};
+use crate::iso::dialects::facts::{BlockDelete, Brackets, CornerWords, Facts, Language, Semicolon};
 use crate::kernel::decimal::{self, Decimal};
 use program::Diagnostic;
 

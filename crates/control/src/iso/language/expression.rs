@@ -15,7 +15,8 @@ use super::arithmetic::{
     macro_function, ngc_binary, ngc_function, truth, whole,
 };
 use super::block::Fault;
-use super::parameters::{Language, Values};
+use super::parameters::Values;
+use crate::iso::dialects::facts::Language;
 use crate::kernel::decimal;
 use program::Diagnostic;
 

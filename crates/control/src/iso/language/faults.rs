@@ -1,8 +1,8 @@
 //! What is wrong with a block, at its place and with the way out.
 
 use super::block::{Block, Fault, Word};
-use super::parameters::Language;
 use super::words::{Group, index};
+use crate::iso::dialects::facts::Language;
 use program::Diagnostic;
 
 impl Block<'_> {

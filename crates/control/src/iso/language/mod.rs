@@ -3,7 +3,8 @@
 //! What a word means stands in one list ([`words`]), which of them a dialect has in its table
 //! ([`super::dialects`]). A line is taken apart by that ([`block`], [`faults`]), a plain one ahead of
 //! its run ([`plain`]); its numbers are calculated where it says so ([`expression`], [`arithmetic`]) from
-//! what the program has set ([`parameters`]) and what the control says of itself ([`system`]).
+//! what the program has set ([`parameters`]) and what the control says of itself
+//! ([`parameters::System`]).
 
 pub(super) mod arithmetic;
 pub(super) mod block;
@@ -11,5 +12,4 @@ pub(super) mod expression;
 mod faults;
 pub(super) mod parameters;
 pub(super) mod plain;
-mod system;
 pub(super) mod words;

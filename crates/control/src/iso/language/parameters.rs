@@ -1,22 +1,8 @@
 //! The parameters of RS274/NGC and the variables of macro B: what a program has set.
 
 use super::expression::{Target, Value};
-use super::system;
-use crate::iso::execution::state::State;
+use crate::iso::dialects::facts::Language;
 use std::collections::HashMap;
-
-/// How a program calculates.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Language {
-    /// Not at all.
-    Plain,
-    /// RS274/NGC as it was first written down: numbered parameters, no comparisons.
-    Rs274,
-    /// RS274/NGC as LinuxCNC has it: named parameters and O-words, too.
-    Ngc,
-    /// Custom macro B.
-    MacroB,
-}
 
 /// Arguments of a call and what a subprogram keeps for itself: `#1` to `#30`, in macro B to `#33`.
 pub(crate) type Locals = [Value; 34];
@@ -40,10 +26,94 @@ pub(crate) struct Parameters {
 #[derive(Clone, Copy)]
 pub(crate) struct Values<'v> {
     pub parameters: &'v Parameters,
-    pub state: &'v State,
+    pub system: &'v dyn System,
     /// The control has just been switched on and everything in it is 0.
     pub fresh: bool,
     pub line: u32,
+}
+
+/// What a control says of itself.
+///
+/// # Errors
+/// Only the machine knows it, or there is no such value.
+pub(crate) trait System {
+    /// LinuxCNC's parameter of that number, from 5001 on.
+    fn ngc_parameter(&self, values: &Values, number: u32) -> Result<f64, String>;
+
+    /// LinuxCNC's predefined parameter of that name (lower case); none where there is none.
+    fn ngc_named(&self, values: &Values, name: &[u8]) -> Option<Result<f64, String>>;
+
+    /// FANUC's system variable of that number.
+    fn macro_variable(&self, values: &Values, number: u32) -> Result<f64, String>;
+}
+
+/// Names that programs cannot set.
+const NGC_NAMES: [&[u8]; 59] = [
+    b"_x",
+    b"_y",
+    b"_z",
+    b"_a",
+    b"_b",
+    b"_c",
+    b"_u",
+    b"_v",
+    b"_w",
+    b"_metric",
+    b"_imperial",
+    b"_feed",
+    b"_rpm",
+    b"_current_tool",
+    b"_selected_tool",
+    b"_plane",
+    b"_absolute",
+    b"_incremental",
+    b"_inverse_time",
+    b"_units_per_minute",
+    b"_units_per_rev",
+    b"_coord_system",
+    b"_ccomp",
+    b"_tool_offset",
+    b"_retract_r_plane",
+    b"_retract_old_z",
+    b"_ijk_absolute_mode",
+    b"_motion_mode",
+    b"_spindle_on",
+    b"_spindle_cw",
+    b"_spindle_rpm_mode",
+    b"_lathe_radius_mode",
+    b"_spindle_css_mode",
+    b"_lathe_diameter_mode",
+    b"_mist",
+    b"_flood",
+    b"_value",
+    b"_value_returned",
+    b"_call_level",
+    b"_remap_level",
+    b"_task",
+    b"_line",
+    b"_vmajor",
+    b"_vminor",
+    b"_current_pocket",
+    b"_selected_pocket",
+    b"_speed_override",
+    b"_feed_override",
+    b"_adaptive_feed",
+    b"_feed_hold",
+    b"_abs_x",
+    b"_abs_y",
+    b"_abs_z",
+    b"_abs_a",
+    b"_abs_b",
+    b"_abs_c",
+    b"_abs_u",
+    b"_abs_v",
+    b"_abs_w",
+];
+
+/// Whether this (lower case) is a name of the control's own.
+pub(crate) fn is_ngc_name(name: &[u8]) -> bool {
+    matches!(name.get(..5), Some(b"_hal[" | b"_ini["))
+        || name.first() == Some(&b'_') && NGC_NAMES.contains(&name)
 }
 
 impl Parameters {
@@ -55,7 +125,7 @@ impl Parameters {
     }
 
     /// How many calls with values of their own are under way.
-    pub(super) fn level(&self) -> usize {
+    pub(crate) fn level(&self) -> usize {
         self.levels.len().saturating_sub(1)
     }
 
@@ -137,7 +207,7 @@ impl Parameters {
             }
             Target::Name(name) => {
                 let name = plain(name);
-                if system::is_ngc_name(&name) {
+                if is_ngc_name(&name) {
                     return Err(format!("#<{}> can only be read", String::from_utf8_lossy(&name)));
                 }
                 let names = match name.first() {
@@ -187,8 +257,8 @@ impl Values<'_> {
                 }
                 if !self.parameters.is_local(number) && !self.parameters.is_common(number) {
                     return match self.parameters.language {
-                        Language::MacroB => system::macro_variable(self, number).map(Some),
-                        Language::Ngc => system::ngc_parameter(self, number).map(Some),
+                        Language::MacroB => self.system.macro_variable(self, number).map(Some),
+                        Language::Ngc => self.system.ngc_parameter(self, number).map(Some),
                         _ => Err(format!("what #{number} holds is known only at the machine")),
                     };
                 }
@@ -206,7 +276,7 @@ impl Values<'_> {
                 if let Some(value) = self.parameters.named(&name) {
                     return Ok(Some(value));
                 }
-                let value = system::ngc_named(self, &name).unwrap_or_else(|| {
+                let value = self.system.ngc_named(self, &name).unwrap_or_else(|| {
                     Err(format!("no block has set #<{}>", String::from_utf8_lossy(&name)))
                 });
                 value.map(Some)
@@ -226,7 +296,7 @@ impl Values<'_> {
                 if let Some(b"_hal[" | b"_ini[") = name.get(..5) {
                     return Err("only the machine knows which pins and settings it has".into());
                 }
-                Ok(self.parameters.named(&name).is_some() || system::is_ngc_name(&name))
+                Ok(self.parameters.named(&name).is_some() || is_ngc_name(&name))
             }
         }
     }

@@ -13,7 +13,7 @@ use crate::kernel::compensation::{Compensator, Terms};
 use crate::klartext::language::functions::{Function, Functions, When};
 use crate::klartext::language::registers::Registers;
 use crate::klartext::language::scan::{Result, Scanner};
-use crate::klartext::language::words::FeedWord;
+use crate::klartext::language::words::{FeedWord, Readable};
 use geom::Vec3;
 use program::{Auxiliary, Axes, Compensation, Coolant, Cycle, Feed, Spindle};
 
@@ -98,6 +98,24 @@ pub(crate) struct Control<'a, 's> {
     /// How many called programs run within each other.
     called: usize,
     budget: Budget,
+}
+
+impl Readable for Control<'_, '_> {
+    fn registers(&self) -> &Registers {
+        &self.registers
+    }
+
+    fn unit(&self) -> f64 {
+        self.unit
+    }
+
+    fn tool_feed(&self) -> Option<FeedWord> {
+        self.tool_feed
+    }
+
+    fn auxiliary(&self) -> &[u32] {
+        &self.settings.auxiliary
+    }
 }
 
 impl<'a, 's> Control<'a, 's> {

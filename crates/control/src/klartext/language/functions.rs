@@ -1,8 +1,7 @@
 //! M functions: what they are and when in a block they act.
 
 use super::scan::{Result, Scanner, Word};
-use super::words::{FeedWord, feed_word, unknown};
-use crate::klartext::execution::state::Control;
+use super::words::{FeedWord, Readable, feed_word, unknown};
 
 /// An M function with what belongs to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -110,7 +109,7 @@ pub(crate) enum When {
 
 impl Function {
     /// What the word `M..` says, with the words that belong to it.
-    pub(super) fn read(s: &mut Scanner, word: &Word, control: &Control) -> Result<Function> {
+    pub(super) fn read(s: &mut Scanner, word: &Word, control: &dyn Readable) -> Result<Function> {
         let Some(number) = word.number.filter(|_| word.sign == 0.0) else {
             return Err(unknown(s, word));
         };
@@ -125,7 +124,7 @@ impl Function {
             }
             return Ok(*function);
         }
-        let added = control.settings.auxiliary.iter().find(|n| f64::from(**n) == number);
+        let added = control.auxiliary().iter().find(|n| f64::from(**n) == number);
         if let Some(number) = added {
             return Ok(Function::Auxiliary(*number));
         }
@@ -157,11 +156,11 @@ impl Function {
 }
 
 /// Behind `M140`: `MB MAX` or `MB 50 F750`. The feed is that of the retraction alone.
-fn retract(s: &mut Scanner, control: &Control) -> Result<Function> {
+fn retract(s: &mut Scanner, control: &dyn Readable) -> Result<Function> {
     let distance = if s.take(b"MB") {
-        if s.take(b"MAX") { f64::INFINITY } else { s.value(&control.registers)? }
+        if s.take(b"MAX") { f64::INFINITY } else { s.value(control.registers())? }
     } else {
-        match s.word(&control.registers)? {
+        match s.word(control.registers())? {
             Some(Word { address: b"MB", number: Some(distance), .. }) => distance,
             _ => return Err(s.error_block("m-function", "M140 needs MB with a distance or MAX")),
         }
@@ -169,16 +168,16 @@ fn retract(s: &mut Scanner, control: &Control) -> Result<Function> {
     if distance <= 0.0 {
         return Err(s.error_block("m-function", "M140 retracts: MB must be greater than 0"));
     }
-    Ok(Function::Retract(distance * control.unit, own_feed(s, control)?))
+    Ok(Function::Retract(distance * control.unit(), own_feed(s, control)?))
 }
 
 /// The feed that belongs to the function before it, where there is one.
-fn own_feed(s: &mut Scanner, control: &Control) -> Result<Option<FeedWord>> {
+fn own_feed(s: &mut Scanner, control: &dyn Readable) -> Result<Option<FeedWord>> {
     if !s.peek().starts_with(b"F") {
         return Ok(None);
     }
-    match s.word(&control.registers)? {
-        Some(word) => feed_word(s, &word, control.tool_feed).map(Some),
+    match s.word(control.registers())? {
+        Some(word) => feed_word(s, &word, control.tool_feed()).map(Some),
         None => Ok(None),
     }
 }

@@ -1,8 +1,8 @@
 //! The words of a positioning block, read and checked before anything moves.
 
 use super::functions::{Function, Functions};
+use super::registers::Registers;
 use super::scan::{Result, Scanner, Word};
-use crate::klartext::execution::state::Control;
 use program::Compensation;
 
 /// Where a word's value is kept. The first six are the axes in the order of their coordinates.
@@ -63,6 +63,21 @@ pub(crate) enum FeedWord {
     Max,
 }
 
+/// What the words of a block can read of the control.
+pub(crate) trait Readable {
+    /// The Q parameters.
+    fn registers(&self) -> &Registers;
+
+    /// mm in the unit of the program.
+    fn unit(&self) -> f64;
+
+    /// The feed of the last TOOL CALL.
+    fn tool_feed(&self) -> Option<FeedWord>;
+
+    /// The M functions that the builder has added.
+    fn auxiliary(&self) -> &[u32];
+}
+
 /// The words of one block. Lengths are mm.
 #[derive(Default)]
 pub(crate) struct Words {
@@ -82,9 +97,9 @@ pub(crate) struct Words {
 impl Words {
     /// Reads words to the end of the block. Those of `allowed` may stand there, besides feed, radius
     /// compensation and M functions.
-    pub(crate) fn read(s: &mut Scanner, allowed: u32, control: &Control) -> Result<Words> {
+    pub(crate) fn read(s: &mut Scanner, allowed: u32, control: &dyn Readable) -> Result<Words> {
         let mut words = Words::default();
-        while let Some(word) = s.word(&control.registers)? {
+        while let Some(word) = s.word(control.registers())? {
             words.add(s, &word, allowed, control)?;
         }
         Ok(words)
@@ -135,8 +150,14 @@ impl Words {
         }
     }
 
-    fn add(&mut self, s: &mut Scanner, word: &Word, allowed: u32, control: &Control) -> Result<()> {
-        let unit = control.unit;
+    fn add(
+        &mut self,
+        s: &mut Scanner,
+        word: &Word,
+        allowed: u32,
+        control: &dyn Readable,
+    ) -> Result<()> {
+        let unit = control.unit();
         let (incremental, address) = match word.address {
             [b'I', rest @ ..] if !rest.is_empty() => (true, rest),
             address => (false, address),
@@ -148,7 +169,7 @@ impl Words {
             b"PA" => (slot::PA, 1.0),
             _ if incremental => return Err(unknown(s, word)),
             [b'F', ..] => {
-                let feed = feed_word(s, word, control.tool_feed)?;
+                let feed = feed_word(s, word, control.tool_feed())?;
                 return once(s, word, &mut self.feed, feed);
             }
             b"M" => return self.add_function(s, word, control),
@@ -190,7 +211,7 @@ impl Words {
         Ok(())
     }
 
-    fn add_function(&mut self, s: &mut Scanner, word: &Word, control: &Control) -> Result<()> {
+    fn add_function(&mut self, s: &mut Scanner, word: &Word, control: &dyn Readable) -> Result<()> {
         let function = Function::read(s, word, control)?;
         self.functions.push(function).map_err(|message| s.error("m-function", word.span, message))
     }

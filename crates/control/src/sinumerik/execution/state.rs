@@ -7,7 +7,7 @@ use crate::event::{FeedPath, Orientation, Position};
 use crate::kernel::compensation::Outer;
 use crate::sinumerik::language::commands::{Diameter, FeedType, Motion};
 use crate::sinumerik::language::value::Value;
-use crate::sinumerik::language::variables::{Locals, Parameters, Place};
+use crate::sinumerik::language::variables::{Locals, Parameters, Place, Readable};
 use crate::{Dialect, Settings};
 use geom::{Frame, Vec3};
 use program::{Compensation, Coolant, Feed, Spindle, Tool};
@@ -173,6 +173,66 @@ pub(crate) struct Modes {
     pub goes_around: bool,
 }
 
+impl Readable for State {
+    fn locals(&self) -> &Locals {
+        &self.locals
+    }
+
+    fn parameters(&self) -> &Parameters {
+        &self.parameters
+    }
+
+    fn is_828d(&self) -> bool {
+        self.is_828d
+    }
+
+    fn counts_plainly(&self) -> bool {
+        self.unit == 1.0 && self.diameter == Diameter::Off
+    }
+
+    fn position_of(&self, axis: usize) -> f64 {
+        match axis {
+            0..=2 => self.position[axis],
+            _ => self.rotary.get(axis - 3).copied().unwrap_or(f64::NAN),
+        }
+    }
+
+    fn machine_position_of(&self, axis: usize) -> f64 {
+        if axis > 2 {
+            return self.position_of(axis);
+        }
+        let plain = self.machine_known
+            && self.edge.is_none()
+            && !self.tool_center
+            && self.frames.swivel().is_none();
+        if !plain {
+            return f64::NAN;
+        }
+        let first = self.work_offsets.first(self.work_offset).unwrap_or(self.active_offset);
+        self.frames.in_work_frame(self.position)[axis] + first[axis]
+    }
+
+    fn active_feed(&self) -> Option<Feed> {
+        State::active_feed(self)
+    }
+
+    fn translation(&self, axis: usize) -> f64 {
+        self.frames.programmable().translation[axis]
+    }
+
+    fn work_offset(&self, number: u32, axis: usize) -> f64 {
+        self.work_offsets.get(number)[axis]
+    }
+
+    fn edge(&self) -> Option<u32> {
+        self.edge
+    }
+
+    fn tool_number(&self) -> Option<u32> {
+        self.tool.as_ref().filter(|tool| tool.name.is_empty()).map(|tool| tool.number)
+    }
+}
+
 impl State {
     /// The reset state that the maker delivers (Programming Manual 06/2019, 4.3; `G1 G17 G40 G500 G71
     /// G90 G94 ORIWKS`); where the axes stand is not known.
@@ -267,31 +327,6 @@ impl State {
                 Some(self.work_offsets.get(number)[axis]).filter(|value| !value.is_nan())
             }
         }
-    }
-
-    /// Where axis 0 to 5 (X to C) is in the coordinates of the program, mm or degrees; NaN where that
-    /// is not known.
-    pub fn position_of(&self, axis: usize) -> f64 {
-        match axis {
-            0..=2 => self.position[axis],
-            _ => self.rotary.get(axis - 3).copied().unwrap_or(f64::NAN),
-        }
-    }
-
-    /// Where an axis is in the coordinates of the machine: with all offsets, without the tool's length.
-    pub fn machine_position_of(&self, axis: usize) -> f64 {
-        if axis > 2 {
-            return self.position_of(axis);
-        }
-        let plain = self.machine_known
-            && self.edge.is_none()
-            && !self.tool_center
-            && self.frames.swivel().is_none();
-        if !plain {
-            return f64::NAN;
-        }
-        let first = self.work_offsets.first(self.work_offset).unwrap_or(self.active_offset);
-        self.frames.in_work_frame(self.position)[axis] + first[axis]
     }
 
     /// What a program with `SAVE` gives back.

@@ -12,9 +12,8 @@ use super::operators::{Operator, bits, reduce};
 use super::scan::Scanner;
 use super::system;
 use super::value::Value;
-use super::variables::Place;
+use super::variables::{Place, Readable};
 use crate::sinumerik::Fallible;
-use crate::sinumerik::execution::state::State;
 use program::Diagnostic;
 use std::cell::Cell;
 use std::rc::Rc;
@@ -25,7 +24,7 @@ const DEEPEST: usize = 32;
 /// Evaluates the expressions of one block.
 pub(crate) struct Evaluator<'a> {
     /// Before the block.
-    pub(super) state: &'a State,
+    pub(super) state: &'a dyn Readable,
     /// What the block has assigned so far.
     pub(super) assigned: &'a [(Place, Value)],
     /// The operator's parameter that the expression has added; it counts as 0.
@@ -34,7 +33,7 @@ pub(crate) struct Evaluator<'a> {
 
 impl<'a> Evaluator<'a> {
     /// For a block that has assigned `assigned` so far.
-    pub fn new(state: &'a State, assigned: &'a [(Place, Value)]) -> Evaluator<'a> {
+    pub fn new(state: &'a dyn Readable, assigned: &'a [(Place, Value)]) -> Evaluator<'a> {
         Evaluator { state, assigned, offset: Cell::new(None) }
     }
 
@@ -295,7 +294,7 @@ impl<'a> Evaluator<'a> {
     fn named(&self, scanner: &mut Scanner, depth: usize) -> Fallible<Value> {
         let start = scanner.at;
         let name = scanner.name()?;
-        if let Some(index) = self.state.locals.find(&name) {
+        if let Some(index) = self.state.locals().find(&name) {
             return self.variable(scanner, start, index);
         }
         match name.as_str() {

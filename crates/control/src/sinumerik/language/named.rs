@@ -10,7 +10,7 @@ use crate::sinumerik::Fallible;
 impl Evaluator<'_> {
     /// Whether that name is a variable of the program.
     pub fn is_variable(&self, name: &Name) -> bool {
-        self.state.locals.find(name).is_some()
+        self.state.locals().find(name).is_some()
     }
 
     /// Takes what a value is assigned to.
@@ -24,8 +24,8 @@ impl Evaluator<'_> {
             }
             _ => {
                 let name = scanner.name()?;
-                let index = self.state.locals.find(&name);
-                let variable = index.and_then(|i| Some((i, self.state.locals.get(i)?)));
+                let index = self.state.locals().find(&name);
+                let variable = index.and_then(|i| Some((i, self.state.locals().get(i)?)));
                 let Some((index, variable)) = variable else {
                     let message = format!("'{}' is not a variable (alarm 12550)", name.as_str());
                     let mut error = scanner.error_since(start, "unknown-word", message);
@@ -40,7 +40,7 @@ impl Evaluator<'_> {
     /// The type of a place, and how many elements there are from it on.
     pub fn room(&self, place: Place) -> (Kind, usize) {
         match place {
-            Place::Element(index, element) => match self.state.locals.get(index) {
+            Place::Element(index, element) => match self.state.locals().get(index) {
                 Some(variable) if variable.sizes.is_empty() => (variable.kind, 1),
                 Some(variable) => (variable.kind, variable.values.len().saturating_sub(element)),
                 None => (Kind::Real, 0),
@@ -60,8 +60,9 @@ impl Evaluator<'_> {
             return Ok(None);
         }
         let name = scanner.name()?;
-        let index = self.state.locals.find(&name);
-        if let Some((index, variable)) = index.and_then(|i| Some((i, self.state.locals.get(i)?))) {
+        let index = self.state.locals().find(&name);
+        if let Some((index, variable)) = index.and_then(|i| Some((i, self.state.locals().get(i)?)))
+        {
             let array = !variable.sizes.is_empty() && scanner.peek() != b'[';
             let element = if array { None } else { Some(self.element(scanner, variable)?) };
             scanner.blanks();
@@ -139,7 +140,7 @@ impl Evaluator<'_> {
                 format!("R{index} is set and read in one block"),
             ));
         }
-        match self.state.parameters.get(index) {
+        match self.state.parameters().get(index) {
             Parameter::Set(value) => Ok(value),
             Parameter::Operator => {
                 self.offset.set(Some(index));
@@ -159,7 +160,7 @@ impl Evaluator<'_> {
 
     /// The value of the variable `index`, whose name stands from `start`, or of one of its elements.
     pub fn variable(&self, scanner: &mut Scanner, start: usize, index: usize) -> Fallible<Value> {
-        let Some(variable) = self.state.locals.get(index) else {
+        let Some(variable) = self.state.locals().get(index) else {
             return Err(scanner.error_since(start, "unknown-word", "there is no such variable"));
         };
         let element = self.element(scanner, variable)?;

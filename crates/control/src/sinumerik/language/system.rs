@@ -1,12 +1,10 @@
 //! System variables (`$...`): those whose value the program itself gives or the operator has said.
 
-use super::commands::Diameter;
 use super::expression::Evaluator;
 use super::scan::Scanner;
 use super::value::Value;
-use super::variables::Place;
+use super::variables::{Place, Readable};
 use crate::sinumerik::Fallible;
-use crate::sinumerik::execution::state::State;
 use program::{Diagnostic, Feed};
 
 /// The names of the axes, in the order of their numbers.
@@ -23,13 +21,16 @@ pub(super) fn axis_name(index: usize) -> &'static str {
 }
 
 /// Takes a system variable and gives its value.
-pub(super) fn read(evaluator: &Evaluator, state: &State, scanner: &mut Scanner) -> Fallible<Value> {
+pub(super) fn read(
+    evaluator: &Evaluator,
+    state: &dyn Readable,
+    scanner: &mut Scanner,
+) -> Fallible<Value> {
     let start = scanner.at;
     scanner.at += 1;
     let name = scanner.name()?;
     let lengths = ["AA_IW", "AA_IM", "P_EP", "P_PFRAME", "P_UIFR", "P_F"];
-    let plain = state.unit == 1.0 && state.diameter == Diameter::Off;
-    if !plain && lengths.contains(&name.as_str()) {
+    if !state.counts_plainly() && lengths.contains(&name.as_str()) {
         let message =
             format!("${} while inches or diameters are programmed is not supported", name.as_str());
         return Err(scanner.error_since(start, "unsupported", message));
@@ -67,11 +68,11 @@ pub(super) fn read(evaluator: &Evaluator, state: &State, scanner: &mut Scanner) 
         }
         "P_PFRAME" => {
             let axis = frame_component(evaluator, scanner, false)?.1;
-            known(scanner, state.frames.programmable().translation[axis], "the frame")
+            known(scanner, state.translation(axis), "the frame")
         }
         "P_UIFR" => {
             let (number, axis) = frame_component(evaluator, scanner, true)?;
-            known(scanner, state.work_offsets.get(number)[axis], "the value of that work offset")
+            known(scanner, state.work_offset(number, axis), "the value of that work offset")
         }
         "P_F" => match state.active_feed() {
             Some(Feed::PerMinute(value) | Feed::PerTurn(value) | Feed::InverseTime(value)) => {
@@ -79,10 +80,10 @@ pub(super) fn read(evaluator: &Evaluator, state: &State, scanner: &mut Scanner) 
             }
             None => Err(unknown(scanner, "the feed")),
         },
-        "P_TOOL" => Ok(Value::Int(i64::from(state.edge.unwrap_or(0)))),
-        "P_TOOLNO" => match &state.tool {
-            Some(tool) if tool.name.is_empty() => Ok(Value::Int(i64::from(tool.number))),
-            _ => Err(unknown(scanner, "the number of the tool")),
+        "P_TOOL" => Ok(Value::Int(i64::from(state.edge().unwrap_or(0)))),
+        "P_TOOLNO" => match state.tool_number() {
+            Some(number) => Ok(Value::Int(i64::from(number))),
+            None => Err(unknown(scanner, "the number of the tool")),
         },
         _ => Err(not_known(scanner, start, name.as_str())),
     }

@@ -2,7 +2,45 @@
 
 use super::scan::Name;
 use super::value::{Kind, Value};
+use program::Feed;
 use std::collections::HashMap;
+
+/// What a block can read: the values before it. Axes are X, Y, Z, A, B, C; lengths mm, angles degrees; NaN is what is not
+/// known.
+pub(crate) trait Readable {
+    /// The variables of the program.
+    fn locals(&self) -> &Locals;
+
+    /// The R parameters.
+    fn parameters(&self) -> &Parameters;
+
+    /// Whether the control is an 828D.
+    fn is_828d(&self) -> bool;
+
+    /// Whether lengths are programmed in mm and as radii.
+    fn counts_plainly(&self) -> bool;
+
+    /// The position of an axis in the frame of the program.
+    fn position_of(&self, axis: usize) -> f64;
+
+    /// The position of an axis of the machine.
+    fn machine_position_of(&self, axis: usize) -> f64;
+
+    /// The translation of the programmable frame along an axis.
+    fn translation(&self, axis: usize) -> f64;
+
+    /// A settable offset along an axis, by the number of its G command.
+    fn work_offset(&self, number: u32, axis: usize) -> f64;
+
+    /// The feed that holds.
+    fn active_feed(&self) -> Option<Feed>;
+
+    /// The cutting edge that is active.
+    fn edge(&self) -> Option<u32>;
+
+    /// The number of the tool, where it is called by one.
+    fn tool_number(&self) -> Option<u32>;
+}
 
 /// How many R parameters there are (`R0` to `R999`; the machine's builder says how many, MD28050).
 pub(super) const R_PARAMETERS: usize = 1000;

@@ -10,16 +10,15 @@ use super::scan::{Scanner, Source};
 use super::settings;
 use super::statement;
 use super::structure::Word;
-use super::variables::Place;
+use super::variables::{Place, Readable};
 use crate::sinumerik::Fallible;
-use crate::sinumerik::execution::state::State;
 
 impl Block {
     /// Reads a block. Expressions have the values before it.
     ///
     /// # Errors
     /// The first word that is not understood, repeated, or against the rules of a block.
-    pub fn read(&mut self, source: Source, state: &State) -> Fallible<()> {
+    pub fn read(&mut self, source: Source, state: &dyn Readable) -> Fallible<()> {
         *self = Block::empty();
         let mut reader = Reader { scanner: Scanner::new(source), state, block: self };
         reader.scanner.head()?;
@@ -42,7 +41,7 @@ impl Block {
 
 pub(super) struct Reader<'a, 'b> {
     pub(super) scanner: Scanner<'a>,
-    pub(super) state: &'a State,
+    pub(super) state: &'a dyn Readable,
     pub(super) block: &'b mut Block,
 }
 
@@ -347,7 +346,7 @@ impl Reader<'_, '_> {
 
     fn numbered_command(&mut self, start: usize, number: u32) -> Fallible<()> {
         // Fundamentals 12/2019, "Settable work offset": on an 828D G58 and G59 are the fifth and the sixth.
-        let is_828d = self.state.is_828d;
+        let is_828d = self.state.is_828d();
         if is_828d && matches!(number, 505 | 506) {
             let message = format!("there is no G{number} on an 828D: write G{}", number - 447);
             return Err(self.scanner.error_since(start, "unknown-word", message));
@@ -387,7 +386,7 @@ impl Reader<'_, '_> {
     fn named_word(&mut self, first: bool) -> Fallible<()> {
         let start = self.scanner.at;
         let whole_name = self.scanner.name()?;
-        if self.state.locals.find(&whole_name).is_some() {
+        if self.state.locals().find(&whole_name).is_some() {
             self.scanner.at = start;
             return self.assignment();
         }

@@ -2,35 +2,49 @@
 //!
 //! What only the machine knows is an error that says so.
 
-use super::parameters::Values;
-use super::words::{FeedMode, Motion, Plane};
-use crate::iso::execution::state::Length;
+use super::state::{Length, State};
+use crate::iso::language::parameters::{System, Values, is_ngc_name};
+use crate::iso::language::words::{FeedMode, Motion, Plane};
 use program::{Compensation, Coolant, Spindle};
 
+impl System for State {
+    fn ngc_parameter(&self, values: &Values, number: u32) -> Result<f64, String> {
+        ngc_parameter(self, values, number)
+    }
+
+    fn ngc_named(&self, values: &Values, name: &[u8]) -> Option<Result<f64, String>> {
+        ngc_named(self, values, name)
+    }
+
+    fn macro_variable(&self, values: &Values, number: u32) -> Result<f64, String> {
+        macro_variable(self, values, number)
+    }
+}
+
 /// LinuxCNC's parameters from 5001 on ("Numbered Parameters").
-pub(super) fn ngc_parameter(values: &Values, number: u32) -> Result<f64, String> {
+fn ngc_parameter(state: &State, values: &Values, number: u32) -> Result<f64, String> {
     match number {
-        5420..=5428 => position(values, number - 5420),
-        5220 => match values.state.work_offset {
+        5420..=5428 => position(state, number - 5420),
+        5220 => match state.work_offset {
             Some(offset) => Ok(f64::from(offset) - 53.0),
             None => fresh(values, 1.0, "which work offset is active"),
         },
-        5161..=5169 | 5181..=5189 if values.state.homes.iter().all(|home| home.is_nan()) => {
+        5161..=5169 | 5181..=5189 if state.homes.iter().all(|home| home.is_nan()) => {
             fresh(values, 0.0, "where the reference position is")
         }
-        5210..=5219 | 5221..=5390 if values.state.frames.is_fresh() => {
+        5210..=5219 | 5221..=5390 if state.frames.is_fresh() => {
             fresh(values, 0.0, "how large the offset is")
         }
         5161..=5169 | 5181..=5189 | 5210..=5219 | 5221..=5390 => {
             Err("what the program has written there is kept in the machine's unit".into())
         }
-        5400 => tool_number(values),
-        5401..=5413 => match values.state.tool {
+        5400 => tool_number(state, values),
+        5401..=5413 => match state.tool {
             None | Some(0) => fresh(values, 0.0, "which tool is in the spindle"),
             Some(_) => Err("the tool table counts in the units of the machine".into()),
         },
         5599 => Ok(1.0),
-        5061..=5070 => match (values.state.probed, number) {
+        5061..=5070 => match (state.probed, number) {
             (Some(probed), 5061..=5063) => Ok(probed[number as usize - 5061]),
             _ => Err("the result of probing is known only at the machine".into()),
         },
@@ -41,8 +55,7 @@ pub(super) fn ngc_parameter(values: &Values, number: u32) -> Result<f64, String>
 }
 
 /// LinuxCNC's predefined named parameters; none where there is none of that name.
-pub(super) fn ngc_named(values: &Values, name: &[u8]) -> Option<Result<f64, String>> {
-    let state = values.state;
+fn ngc_named(state: &State, values: &Values, name: &[u8]) -> Option<Result<f64, String>> {
     let yes = |holds: bool| f64::from(u8::from(holds));
     let units = |inches: bool| match state.inches {
         Some(is_inches) => Ok(yes(is_inches == inches)),
@@ -54,21 +67,21 @@ pub(super) fn ngc_named(values: &Values, name: &[u8]) -> Option<Result<f64, Stri
         Spindle::CounterClockwise(_) => Some(false),
     };
     Some(Ok(match name {
-        b"_x" => return Some(position(values, 0)),
-        b"_y" => return Some(position(values, 1)),
-        b"_z" => return Some(position(values, 2)),
-        b"_a" => return Some(position(values, 3)),
-        b"_b" => return Some(position(values, 4)),
-        b"_c" => return Some(position(values, 5)),
-        b"_u" | b"_v" | b"_w" => return Some(position(values, 6)),
+        b"_x" => return Some(position(state, 0)),
+        b"_y" => return Some(position(state, 1)),
+        b"_z" => return Some(position(state, 2)),
+        b"_a" => return Some(position(state, 3)),
+        b"_b" => return Some(position(state, 4)),
+        b"_c" => return Some(position(state, 5)),
+        b"_u" | b"_v" | b"_w" => return Some(position(state, 6)),
         b"_metric" => return Some(units(false)),
         b"_imperial" => return Some(units(true)),
-        b"_feed" => return Some(feed(values)),
+        b"_feed" => return Some(feed(state, values)),
         b"_rpm" => match state.speed {
             Some(speed) => speed,
             None => return Some(fresh(values, 0.0, "the speed")),
         },
-        b"_current_tool" => return Some(tool_number(values)),
+        b"_current_tool" => return Some(tool_number(state, values)),
         b"_selected_tool" => state.selected.map_or(-1.0, f64::from),
         b"_plane" => f64::from(plane_word(state.plane)) * 10.0,
         b"_absolute" => yes(!state.incremental),
@@ -94,7 +107,7 @@ pub(super) fn ngc_named(values: &Values, name: &[u8]) -> Option<Result<f64, Stri
             None => return Some(Err("neither G98 nor G99 has been given".into())),
         },
         b"_ijk_absolute_mode" => yes(state.centers_absolute),
-        b"_motion_mode" => return Some(motion_word(values).map(|word| word * 10.0)),
+        b"_motion_mode" => return Some(motion_word(state).map(|word| word * 10.0)),
         b"_spindle_on" => yes(turns.is_some()),
         b"_spindle_cw" => yes(turns == Some(true)),
         b"_spindle_rpm_mode" => yes(state.surface.is_none()),
@@ -120,80 +133,10 @@ pub(super) fn ngc_named(values: &Values, name: &[u8]) -> Option<Result<f64, Stri
     }))
 }
 
-/// Names that programs cannot set.
-const NGC_NAMES: [&[u8]; 59] = [
-    b"_x",
-    b"_y",
-    b"_z",
-    b"_a",
-    b"_b",
-    b"_c",
-    b"_u",
-    b"_v",
-    b"_w",
-    b"_metric",
-    b"_imperial",
-    b"_feed",
-    b"_rpm",
-    b"_current_tool",
-    b"_selected_tool",
-    b"_plane",
-    b"_absolute",
-    b"_incremental",
-    b"_inverse_time",
-    b"_units_per_minute",
-    b"_units_per_rev",
-    b"_coord_system",
-    b"_ccomp",
-    b"_tool_offset",
-    b"_retract_r_plane",
-    b"_retract_old_z",
-    b"_ijk_absolute_mode",
-    b"_motion_mode",
-    b"_spindle_on",
-    b"_spindle_cw",
-    b"_spindle_rpm_mode",
-    b"_lathe_radius_mode",
-    b"_spindle_css_mode",
-    b"_lathe_diameter_mode",
-    b"_mist",
-    b"_flood",
-    b"_value",
-    b"_value_returned",
-    b"_call_level",
-    b"_remap_level",
-    b"_task",
-    b"_line",
-    b"_vmajor",
-    b"_vminor",
-    b"_current_pocket",
-    b"_selected_pocket",
-    b"_speed_override",
-    b"_feed_override",
-    b"_adaptive_feed",
-    b"_feed_hold",
-    b"_abs_x",
-    b"_abs_y",
-    b"_abs_z",
-    b"_abs_a",
-    b"_abs_b",
-    b"_abs_c",
-    b"_abs_u",
-    b"_abs_v",
-    b"_abs_w",
-];
-
-/// Whether this (lower case) is a name of the control's own.
-pub(super) fn is_ngc_name(name: &[u8]) -> bool {
-    matches!(name.get(..5), Some(b"_hal[" | b"_ini["))
-        || name.first() == Some(&b'_') && NGC_NAMES.contains(&name)
-}
-
 /// FANUC's system variables that follow from the program (B-63684EN, 16.2).
-pub(super) fn macro_variable(values: &Values, number: u32) -> Result<f64, String> {
-    let state = values.state;
+fn macro_variable(state: &State, values: &Values, number: u32) -> Result<f64, String> {
     Ok(match number {
-        4001 => return motion_word(values),
+        4001 => return motion_word(state),
         4002 => f64::from(plane_word(state.plane)),
         4003 => 90.0 + f64::from(u8::from(state.incremental)),
         4005 => match state.feed_mode {
@@ -223,7 +166,7 @@ pub(super) fn macro_variable(values: &Values, number: u32) -> Result<f64, String
             Some(register) => f64::from(register),
             None => return Err("no block has given D".into()),
         },
-        4109 => return feed(values),
+        4109 => return feed(state, values),
         4111 => match state.registers.h {
             Some(register) => f64::from(register),
             None => return Err("no block has given H".into()),
@@ -238,8 +181,8 @@ pub(super) fn macro_variable(values: &Values, number: u32) -> Result<f64, String
         },
         // Axis by axis; which axes beyond the third there are is the machine's. At the end of the last
         // block and now are the same where no block runs.
-        5001..=5003 => return position(values, number - 5001),
-        5041..=5043 => return position(values, number - 5041),
+        5001..=5003 => return position(state, number - 5001),
+        5041..=5043 => return position(state, number - 5041),
         5021..=5026 => return Err("a machine position is known only at the machine".into()),
         5061..=5066 => return Err("where G31 was stopped is known only at the machine".into()),
         2001..=2999 | 10001..=14999 | 5081..=5086 => {
@@ -254,15 +197,14 @@ pub(super) fn macro_variable(values: &Values, number: u32) -> Result<f64, String
 }
 
 /// The programmed position of an axis in units of the program: 0 is X, 3 is A, 6 is U.
-fn position(values: &Values, axis: u32) -> Result<f64, String> {
-    let state = values.state;
+fn position(state: &State, axis: u32) -> Result<f64, String> {
     if state.compensation.asked != Compensation::Off
         || state.compensation.active != Compensation::Off
     {
         return Err("a position cannot be read while radius compensation is on".into());
     }
     let value = match axis {
-        0..=2 => state.position[axis as usize] / unit(values)?,
+        0..=2 => state.position[axis as usize] / unit(state)?,
         3..=5 => state.rotary[axis as usize - 3],
         _ => 0.0,
     };
@@ -274,8 +216,8 @@ fn position(values: &Values, axis: u32) -> Result<f64, String> {
 }
 
 /// mm in the unit of the program.
-fn unit(values: &Values) -> Result<f64, String> {
-    match values.state.inches {
+fn unit(state: &State) -> Result<f64, String> {
+    match state.inches {
         Some(true) => Ok(geom::INCH),
         Some(false) => Ok(1.0),
         None => Err("a length, and neither G20 nor G21 has been given".into()),
@@ -283,15 +225,15 @@ fn unit(values: &Values) -> Result<f64, String> {
 }
 
 /// F as it was written last: another unit does not change the number (`rs274`).
-fn feed(values: &Values) -> Result<f64, String> {
-    match values.state.f {
+fn feed(state: &State, values: &Values) -> Result<f64, String> {
+    match state.f {
         Some(f) => Ok(f),
         None => fresh(values, 0.0, "the feed"),
     }
 }
 
-fn tool_number(values: &Values) -> Result<f64, String> {
-    match values.state.tool {
+fn tool_number(state: &State, values: &Values) -> Result<f64, String> {
+    match state.tool {
         Some(tool) => Ok(f64::from(tool)),
         None => fresh(values, 0.0, "which tool is in the spindle"),
     }
@@ -315,11 +257,11 @@ fn plane_word(plane: Plane) -> u8 {
 }
 
 /// The G word of the active motion; 80 for none.
-fn motion_word(values: &Values) -> Result<f64, String> {
-    if values.state.cycle.is_some() {
+fn motion_word(state: &State) -> Result<f64, String> {
+    if state.cycle.is_some() {
         return Err("the motion word is that of a cycle; write G80 first".into());
     }
-    Ok(match values.state.motion {
+    Ok(match state.motion {
         Some(Motion::Rapid) => 0.0,
         Some(Motion::Line) => 1.0,
         Some(Motion::Arc { clockwise: true }) => 2.0,
