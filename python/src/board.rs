@@ -10,7 +10,8 @@ use pyo3::types::PyTuple;
 use serde_json::{Map, Value, json};
 use std::path::PathBuf;
 
-/// A printed circuit board; ``toolpost pcb`` takes what :meth:`save` saves.
+/// A printed circuit board; :func:`toolpost.pcb` makes its programs, and ``toolpost pcb`` of what
+/// :meth:`save` saves.
 #[pyclass(module = "toolpost", frozen)]
 pub struct Board {
     reading: model::Reading,
@@ -30,13 +31,13 @@ impl Board {
 
     /// What it is called.
     #[getter]
-    fn name(&self) -> &str {
+    pub fn name(&self) -> &str {
         &self.reading.board.name
     }
 
     /// The board as JSON.
     #[getter]
-    fn text(&self) -> &str {
+    pub fn text(&self) -> &str {
         &self.text
     }
 

@@ -11,9 +11,11 @@ mod columns;
 mod error;
 mod kinematics;
 mod machine;
+mod pcb;
 mod posting;
 mod program;
 mod record;
+mod wire;
 
 use pyo3::prelude::*;
 
@@ -25,9 +27,11 @@ mod _native {
         board::{Board, BoardBuilder},
         builder::Builder,
         machine::{Machine, library, machine},
+        pcb::{pcb, save_in},
         posting::{post, prove, run_command, save},
         program::{Program, read, read_job},
         record::Record,
+        wire::wire,
     };
 
     use pyo3::prelude::*;

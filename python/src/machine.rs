@@ -59,7 +59,7 @@ impl Machine {
         PyTuple::new(py, self.described.rotary.iter().map(|axis| axis.letter))
     }
 
-    /// Whether it is a machine for wire EDM, for which the command ``toolpost wire`` writes.
+    /// Whether it is a machine for wire EDM, for which :func:`toolpost.wire` writes.
     #[getter]
     fn wire(&self) -> bool {
         self.described.wire.is_some()

@@ -112,15 +112,24 @@ pub fn prove<'py>(
     report(py, &account)
 }
 
-fn tolerances(py: Python<'_>, position: Option<f64>) -> PyResult<Tolerances> {
+pub fn tolerances(py: Python<'_>, position: Option<f64>) -> PyResult<Tolerances> {
     let position = position.map(|mm| positive(py, "tolerance", mm)).transpose()?;
     Ok(Tolerances { position, ..Tolerances::default() })
 }
 
 fn report<'py>(py: Python<'py>, account: &Account) -> PyResult<Bound<'py, PyAny>> {
+    reported(py, account, &account.report())
+}
+
+/// What Python has as a report: an account, and the text that is saved of it.
+pub fn reported<'py>(
+    py: Python<'py>,
+    account: &Account,
+    saved: &str,
+) -> PyResult<Bound<'py, PyAny>> {
     let rows = PyTuple::new(py, &account.rows)?;
     let proven = account.verdict == Verdict::Done;
-    class(py, "Report")?.call1((proven, rows, findings(py, &account.findings)?, account.report()))
+    class(py, "Report")?.call1((proven, rows, findings(py, &account.findings)?, saved))
 }
 
 /// Save a program and its report, both or neither, and over none of the files that it was made of: files

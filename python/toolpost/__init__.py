@@ -10,7 +10,7 @@ a :class:`toolpost.Error`. Threads may share every object but a builder; what ta
 others run.
 """
 
-from ._answers import Error, Finding, Kind, Report, Result
+from ._answers import BoardResult, Error, Finding, Kind, Report, Result
 from ._native import (
     Board,
     BoardBuilder,
@@ -21,15 +21,18 @@ from ._native import (
     __version__,
     library,
     machine,
+    pcb,
     post,
     prove,
     read,
     read_job,
+    wire,
 )
 
 __all__ = [
     "Board",
     "BoardBuilder",
+    "BoardResult",
     "Builder",
     "Error",
     "Finding",
@@ -42,8 +45,10 @@ __all__ = [
     "__version__",
     "library",
     "machine",
+    "pcb",
     "post",
     "prove",
     "read",
     "read_job",
+    "wire",
 ]

@@ -187,3 +187,50 @@ class Result:
 
     def __repr__(self) -> str:
         return f"<Result: {len(self.data)} bytes, {self.report!r}>"
+
+
+class BoardResult:
+    """The proven programs of a circuit board.
+
+    Attributes
+    ----------
+    programs : dict of str to bytes
+        The programs by their names (``front``, ``drill``), in the order in which they are run.
+    files : dict of str to bytes
+        All that is saved, by file name: programs, pictures and the report.
+    report : Report
+        What is reported of all programs together.
+    """
+
+    def __init__(
+        self,
+        files: dict[str, bytes],
+        order: Sequence[str],
+        report: Report,
+        inputs: Sequence[str | os.PathLike[str]] = (),
+    ) -> None:
+        self.files = files
+        self.programs = {file.rsplit(".", 1)[0]: files[file] for file in order}
+        self.report = report
+        # The files that they were made of, which stay.
+        self._inputs = tuple(inputs)
+
+    def save(self, folder: str | os.PathLike[str]) -> None:
+        """Save all files in a folder, which is made where it is missing: all or none.
+
+        Parameters
+        ----------
+        folder : str or os.PathLike
+            Where. No file can be one that the programs were made of.
+
+        Raises
+        ------
+        toolpost.Error
+            Where that cannot be done; what was there before is as it was.
+        """
+        from ._native import save_in  # noqa: PLC0415 - which imports this module
+
+        save_in(folder, list(self.files.items()), self._inputs)
+
+    def __repr__(self) -> str:
+        return f"<BoardResult: {', '.join(self.programs)}, {self.report!r}>"

@@ -7,7 +7,7 @@ from typing import Any, Literal, SupportsIndex, TypeAlias, final, overload
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 
-from ._answers import Finding, Report, Result
+from ._answers import BoardResult, Finding, Report, Result
 
 __all__ = [
     "Board",
@@ -19,12 +19,15 @@ __all__ = [
     "__version__",
     "library",
     "machine",
+    "pcb",
     "post",
     "prove",
     "read",
     "read_job",
     "run_command",
     "save",
+    "save_in",
+    "wire",
 ]
 
 __version__: str
@@ -36,6 +39,16 @@ _Tuple3: TypeAlias = tuple[float, float, float]
 
 _Node: TypeAlias = str | Sequence[float] | NDArray[np.float64]
 _Layer: TypeAlias = Literal["front", "back", "both"]
+_Part: TypeAlias = Literal[
+    "front",
+    "back",
+    "drill",
+    "outline",
+    "front-mask",
+    "back-mask",
+    "front-legend",
+    "back-legend",
+]
 
 @final
 class Board:
@@ -258,5 +271,94 @@ def prove(
     file: str = "program",
     tolerance: float | None = None,
 ) -> Report: ...
+def wire(
+    path: _Path,
+    machine: Machine,
+    control: _Path | None = None,
+    *,
+    side: Literal["inside", "outside", "part", "left", "right"] | None = None,
+    wire: float = 0.0,
+    gap: float = 0.0,
+    leave: Sequence[float] = ...,
+    trims: Literal["alternate", "repeat"] = "alternate",
+    thread: Sequence[_Point] = ...,
+    lead: float = 0.0,
+    lead_arc: float | None = None,
+    begin: _Point | None = None,
+    tab: float | None = None,
+    taper: float | None = None,
+    rounding: Literal["conical", "constant"] = "conical",
+    by_control: bool = False,
+    round_corners: bool = False,
+    feed: Sequence[float] = ...,
+    upper: _Path | None = None,
+    sync: Literal["block", "length"] = "block",
+    height: float | None = None,
+    uv_height: float | None = None,
+    layers: Sequence[str] = ...,
+    close: float = 0.01,
+    step: float | None = None,
+    chord_error: float | None = None,
+    fit: bool = False,
+    memory: int | None = None,
+    file: str | None = None,
+    tolerance: float | None = None,
+    strict: bool = False,
+) -> Result: ...
+def pcb(
+    board: Board | _Path | Sequence[_Path],
+    machine: Machine,
+    *,
+    only: Sequence[_Part] = ...,
+    tool: float | None = None,
+    vee: float | None = None,
+    tip: float = 0.1,
+    depth: float = 0.1,
+    step: float | None = None,
+    passes: int = 1,
+    overlap: float = 0.25,
+    direction: Literal["climb", "conventional"] = "climb",
+    narrow: Literal["leave-out", "middle"] = "leave-out",
+    isolate: Literal["contours", "middle"] = "contours",
+    clear: Sequence[float] = ...,
+    margin: float = 0.0,
+    mask_tool: float | None = None,
+    legend_tool: float | None = None,
+    engrave: float = 0.05,
+    drills: Sequence[float] = ...,
+    drill_tolerance: float = 0.05,
+    hole_mill: float | None = None,
+    peck: float | None = None,
+    from_side: Literal["front", "back"] = "front",
+    outline_tool: float = 2.0,
+    outline_step: float = 0.5,
+    tabs: int = 4,
+    tab_width: float = 2.0,
+    tab_height: float = 0.6,
+    thickness: float = 1.6,
+    through: float = 0.2,
+    corner: _Point | None = None,
+    as_drawn: bool = False,
+    turn: Literal["y", "x"] = "y",
+    alignment: float | None = None,
+    panel: tuple[int, int] | None = None,
+    spacing: float = 4.0,
+    feed: float = 200.0,
+    plunge: float = 60.0,
+    drill_feed: float = 100.0,
+    outline_feed: float = 150.0,
+    speed: float | None = None,
+    travel: float = 2.0,
+    approach: float = 0.5,
+    probe: tuple[int, int] | None = None,
+    on_control: bool = False,
+    heights: _Path | None = None,
+    picture: Literal["svg", "png"] | None = None,
+    tolerance: float | None = None,
+    strict: bool = False,
+) -> BoardResult: ...
+def save_in(
+    folder: _Path, contents: Sequence[tuple[str, bytes]], inputs: Sequence[_Path]
+) -> None: ...
 def save(path: _Path, text: bytes, report: str | None, inputs: Sequence[_Path]) -> None: ...
 def run_command(words: Sequence[str]) -> int: ...

@@ -334,6 +334,24 @@ pub fn save_program(
     save(&[(&report_target, report.as_bytes()), (&target, text)])
 }
 
+/// Saves files in a folder, which is made where it is missing: all or none, and over none of `inputs`.
+///
+/// # Errors
+/// Why nothing was saved.
+pub fn save_in(
+    path: &Path,
+    contents: &[(String, &[u8])],
+    inputs: &[&Path],
+) -> Result<(), Box<Diagnostic>> {
+    let made = folder(path)?;
+    let target = |(name, _): &(String, &[u8])| Target::new(&path.join(name), inputs);
+    let targets = contents.iter().map(target).collect::<Result<Vec<_>, _>>()?;
+    let bytes = contents.iter().map(|(_, bytes)| *bytes);
+    save(&targets.iter().zip(bytes).collect::<Vec<_>>())?;
+    made.keep();
+    Ok(())
+}
+
 /// A finding about a file as a whole.
 fn about(path: &Path, rule: &'static str, message: String) -> Diagnostic {
     Diagnostic::error(rule, message).file(path.display().to_string())

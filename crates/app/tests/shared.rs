@@ -187,3 +187,23 @@ fn a_board_is_made_without_a_command_line_from_memory_as_from_a_file() {
     );
     assert_eq!(made[0], made[1]);
 }
+
+#[test]
+fn a_setting_that_makes_no_sense_is_refused_by_its_name() {
+    let machine = toolpath::machine("grbl-3018").unwrap();
+    let refused = |change: &dyn Fn(&mut Settings)| {
+        let mut settings = Settings::default();
+        change(&mut settings);
+        let stop = board::Job::new(&machine, &settings, &Tolerances::default()).err().unwrap();
+        assert_eq!(stop.findings[0].rule, "setting");
+        stop.findings[0].message.clone()
+    };
+    assert_eq!(refused(&|s| s.isolation.tool = Some(-1.0)), "`tool` is -1");
+    assert_eq!(refused(&|s| s.running.feed = f64::NAN), "`feed` is NaN");
+    assert_eq!(refused(&|s| s.outline.tabs = 101), "`tabs` is 101");
+    assert_eq!(refused(&|s| s.placing.panel = Some([3, 0])), "`panel` is 0");
+    assert!(
+        refused(&|s| (s.placing.corner, s.placing.as_drawn) = (Some(geom::Vec2::ONE), true))
+            .starts_with("`corner` and `as_drawn`")
+    );
+}

@@ -213,6 +213,23 @@ pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
     ranked.iter().map(|(_, k)| format!("`{k}`")).collect::<Vec<_>>().join(", ")
 }
 
+/// Checks that a setting is a number within its bounds.
+///
+/// # Errors
+/// `setting`
+pub fn within(name: &str, value: f64, low: f64, high: f64) -> Result<(), Box<Diagnostic>> {
+    if (low..=high).contains(&value) {
+        return Ok(());
+    }
+    let help = match (low == f64::MIN_POSITIVE, high == f64::MAX) {
+        (true, true) => String::from("give a number above 0"),
+        (true, false) => format!("give a number above 0, up to {high}"),
+        (false, true) => format!("give a number, {low} or more"),
+        (false, false) => format!("give a number from {low} to {high}"),
+    };
+    Err(Diagnostic::error("setting", format!("`{name}` is {value}")).help(help).into())
+}
+
 /// One finding where there may be several.
 impl From<Box<Diagnostic>> for Vec<Diagnostic> {
     fn from(finding: Box<Diagnostic>) -> Vec<Diagnostic> {

@@ -5,10 +5,8 @@ use crate::answer::{Answer, not_saved};
 use crate::args::pcb::Pcb;
 use crate::progress::Progress;
 use ::pcb::plan::Part;
-use app::files::{self, Target};
 use app::pcb::{Job, PROBE, Program};
-use app::{Source, Stop, Verdict, Watch, toolpath};
-use drawing::Format;
+use app::{Source, Stop, Verdict, Watch, files, toolpath};
 use program::Diagnostic;
 use std::path::Path;
 
@@ -30,7 +28,10 @@ pub fn run(args: &Pcb, silent: bool) -> Result<Answer, Stop> {
     }
     progress.step("saving");
     let inputs: Vec<&Path> = made.files.iter().filter_map(Source::file).collect();
-    let saved = save(args, &inputs, &made.programs, &format!("{:#}\n", account.data))?;
+    let report = format!("{:#}\n", account.data);
+    let contents = made.contents(&job, &report);
+    files::save_in(&args.output, &contents, &inputs)?;
+    let saved: Vec<String> = contents.into_iter().map(|(name, _)| name).collect();
     let folder = args.output.display();
     account.rows.push(("saved", format!("in {folder}: {}", saved.join(", "))));
     Ok(account.into())
@@ -60,31 +61,4 @@ fn older(args: &Pcb, programs: &[Program]) -> Option<Diagnostic> {
         let help = "they are not of these programs: remove them, or save in a new folder";
         Diagnostic::warning("file-older", message).help(help)
     })
-}
-
-/// Saves everything, or nothing; answers the names of the files.
-fn save(
-    args: &Pcb,
-    inputs: &[&Path],
-    programs: &[Program],
-    report: &str,
-) -> Result<Vec<String>, Stop> {
-    let mut contents: Vec<(String, &[u8])> = vec![("report.json".into(), report.as_bytes())];
-    let ending = if matches!(args.picture, Some(Format::Png)) { "png" } else { "svg" };
-    for made in programs {
-        let name = made.name;
-        contents.extend(made.picture.as_deref().map(|bytes| (format!("{name}.{ending}"), bytes)));
-    }
-    for made in programs {
-        contents.push((format!("{}.nc", made.name), &made.posted.text));
-    }
-    let made = files::folder(&args.output)?;
-    let mut targets = Vec::with_capacity(contents.len());
-    for (name, _) in &contents {
-        targets.push(Target::new(&args.output.join(name), inputs)?);
-    }
-    let bytes = contents.iter().map(|(_, bytes)| *bytes);
-    files::save(&targets.iter().zip(bytes).collect::<Vec<_>>())?;
-    made.keep();
-    Ok(contents.into_iter().map(|(name, _)| name).collect())
 }

@@ -6,7 +6,7 @@ use crate::plan::{self, Opening, Pass, Settings, Taper, Trims, plan};
 use crate::taper::Rounding;
 use crate::{Beside, Contour, Lead, LeadShape, Path};
 use geom::Vec2;
-use program::{Compensation, Diagnostic};
+use program::{Compensation, Diagnostic, within};
 
 /// How contours are cut.
 #[derive(Clone, Debug, PartialEq)]
@@ -40,6 +40,41 @@ pub struct Cutting {
     pub round_corners: bool,
     /// Feeds, mm/s: none, one for all passes, or one for each.
     pub feeds: Vec<f64>,
+}
+
+impl Cutting {
+    /// Checks that every number is one that makes sense by itself.
+    ///
+    /// # Errors
+    /// `setting`, with the name of the first that does not; a setting of the wire's side where no side is given.
+    pub fn check(&self) -> Result<(), Box<Diagnostic>> {
+        const ANY: f64 = f64::MAX;
+        let above = |name, values: &[f64]| {
+            values.iter().try_for_each(|value| within(name, *value, f64::MIN_POSITIVE, ANY))
+        };
+        within("wire", self.wire, 0.0, ANY)?;
+        within("gap", self.gap, 0.0, ANY)?;
+        within("lead", self.lead.length, 0.0, ANY)?;
+        if let LeadShape::Arc(radius) = self.lead.shape {
+            above("lead_arc", &[radius])?;
+        }
+        above("leave", &self.leave)?;
+        above("feed", &self.feeds)?;
+        above("tab", self.tab.as_slice())?;
+        for place in self.thread.iter().chain(&self.begin) {
+            [place.x, place.y].into_iter().try_for_each(|mm| within("thread", mm, -ANY, ANY))?;
+        }
+        let wants_side = Cutting { begin: None, feeds: Vec::new(), ..self.clone() };
+        if self.side.is_none() && wants_side != Cutting::default() {
+            let message = "how the wire runs next to the contours is given, and not on which side";
+            return Err(Diagnostic::error("setting", message).help("give `side`").into());
+        }
+        if self.by_control && self.tab.is_some() {
+            let message = "`by_control` and `tab` are given: a tab is cut along the wire's own way";
+            return Err(Diagnostic::error("setting", message).help("leave one of them out").into());
+        }
+        Ok(())
+    }
 }
 
 /// Along the contours themselves, at no feed that is known.

@@ -62,6 +62,7 @@ impl<'a> Job<'a> {
             let help = "name a mill: `toolpost machines` lists what there is";
             return Err(Diagnostic::error("machine-kind", message).help(help).into());
         }
+        settings.check()?;
         let heights = heights(&settings.running)?;
         let (surface, picture, strict) = (None, None, false);
         Ok(Job { machine, settings, tolerances, heights, surface, picture, strict })
@@ -128,6 +129,20 @@ impl Made {
         findings.extend(more);
         let report = report::of(self, job.settings, job.machine, &findings);
         Account { verdict: Verdict::Done, rows: report.rows, data: report.data, findings }
+    }
+}
+
+impl Made {
+    /// All files that are saved, by their names: the report first, pictures, and the programs at last.
+    pub fn contents<'a>(&'a self, job: &Job, report: &'a str) -> Vec<(String, &'a [u8])> {
+        let ending = if matches!(job.picture, Some(Format::Png)) { "png" } else { "svg" };
+        let mut contents = vec![(String::from("report.json"), report.as_bytes())];
+        for Program { name, picture, .. } in &self.programs {
+            contents.extend(picture.as_deref().map(|bytes| (format!("{name}.{ending}"), bytes)));
+        }
+        let text = |made: &'a Program| (format!("{}.nc", made.name), &made.posted.text[..]);
+        contents.extend(self.programs.iter().map(text));
+        contents
     }
 }
 

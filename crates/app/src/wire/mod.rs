@@ -17,7 +17,7 @@ use ::wire::cutting::{self, Cutting};
 use ::wire::leg::Leg;
 use ::wire::points::{Refusal, Step, points};
 use machine::{Machine, Wire};
-use program::Diagnostic;
+use program::{Diagnostic, within};
 use report::Cut;
 use serde_json::json;
 use source::Source;
@@ -49,6 +49,20 @@ pub struct Settings {
     pub memory: Option<usize>,
     /// The line of the source whose points are marked in the summary and the picture.
     pub select: Option<u32>,
+}
+
+impl Settings {
+    /// Checks that every number is one that makes sense by itself.
+    ///
+    /// # Errors
+    /// `setting`, with the name of the first that does not.
+    fn check(&self) -> Result<(), Box<Diagnostic>> {
+        const ABOVE: f64 = f64::MIN_POSITIVE;
+        self.cutting.check()?;
+        within("close", self.close, ABOVE, f64::MAX)?;
+        within("height", self.height.unwrap_or(ABOVE), ABOVE, f64::MAX)?;
+        within("uv_height", self.uv_height.unwrap_or(ABOVE), ABOVE, f64::MAX)
+    }
 }
 
 impl Default for Settings {
@@ -115,6 +129,7 @@ pub fn make(
     tolerances: &Tolerances,
     watch: &dyn Watch,
 ) -> Result<Made, Stop> {
+    settings.check()?;
     set_up(&mut machine, settings)?;
     watch.begin("reading")?;
     let Source { mut toolpath, paths, beside, height } =

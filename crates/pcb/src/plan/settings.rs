@@ -3,6 +3,7 @@
 use crate::board::Face;
 use crate::isolation::{Direction, Narrow};
 use geom::Vec2;
+use program::{Diagnostic, within};
 
 /// How a board is made. The default has no tool that cuts around copper.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -21,6 +22,87 @@ pub struct Settings {
     pub placing: Placing,
     /// How the machine runs.
     pub running: Running,
+}
+
+/// A number greater than 0.
+const ABOVE: f64 = f64::MIN_POSITIVE;
+
+/// No upper bound.
+const ANY: f64 = f64::MAX;
+
+/// The thinnest step down that a machine makes, mm.
+const THINNEST: f64 = 0.001;
+
+/// The most times around, and tabs.
+const MOST: f64 = 100.0;
+
+/// The most columns and rows.
+const MOST_LINES: f64 = 1000.0;
+
+impl Settings {
+    /// Checks that every number is one that makes sense by itself.
+    ///
+    /// # Errors
+    /// `setting`, with the name of the first that does not; two settings of which one leaves the other no meaning.
+    pub fn check(&self) -> Result<(), Box<Diagnostic>> {
+        let Settings { only: _, isolation, clearing, drilling, outline, placing, running } = self;
+        let given = |name, value: Option<f64>, low| (name, value.unwrap_or(low), low, ANY);
+        let lines = |name, [a, b]: [u32; 2]| [a, b].map(|n| (name, f64::from(n), 1.0, MOST_LINES));
+        let widths = clearing.clear.iter().map(|width| ("clear", *width, ABOVE, ANY));
+        let drills = drilling.drills.iter().map(|width| ("drills", *width, ABOVE, ANY));
+        let corner = placing.corner.unwrap_or_default();
+        let all = [
+            given("tool", isolation.tool, ABOVE),
+            ("vee", isolation.vee.unwrap_or(ABOVE), ABOVE, 180.0),
+            ("tip", isolation.tip, 0.0, ANY),
+            ("depth", isolation.depth, ABOVE, ANY),
+            given("step", isolation.step, THINNEST),
+            ("passes", f64::from(isolation.passes), 1.0, MOST),
+            ("overlap", isolation.overlap, 0.0, 0.95),
+            ("margin", clearing.margin, 0.0, ANY),
+            given("mask_tool", clearing.mask_tool, ABOVE),
+            given("legend_tool", clearing.legend_tool, ABOVE),
+            ("engrave", clearing.engrave, ABOVE, ANY),
+            ("drill_tolerance", drilling.drill_tolerance, 0.0, ANY),
+            given("hole_mill", drilling.hole_mill, ABOVE),
+            given("peck", drilling.peck, THINNEST),
+            ("outline_tool", outline.outline_tool, ABOVE, ANY),
+            ("outline_step", outline.outline_step, THINNEST, ANY),
+            ("tabs", f64::from(outline.tabs), 0.0, MOST),
+            ("tab_width", outline.tab_width, ABOVE, ANY),
+            ("tab_height", outline.tab_height, ABOVE, ANY),
+            ("thickness", placing.thickness, ABOVE, ANY),
+            ("through", placing.through, 0.0, ANY),
+            ("corner", corner.x, -ANY, ANY),
+            ("corner", corner.y, -ANY, ANY),
+            given("alignment", placing.alignment, ABOVE),
+            ("spacing", placing.spacing, 0.0, ANY),
+            ("feed", running.feed, ABOVE, ANY),
+            ("plunge", running.plunge, ABOVE, ANY),
+            ("drill_feed", running.drill_feed, ABOVE, ANY),
+            ("outline_feed", running.outline_feed, ABOVE, ANY),
+            given("speed", running.speed, ABOVE),
+            ("travel", running.travel, ABOVE, ANY),
+            ("approach", running.approach, ABOVE, ANY),
+        ];
+        let grids = lines("panel", placing.panel.unwrap_or([1, 1])).into_iter();
+        let grids = grids.chain(lines("probe", running.probe.unwrap_or([1, 1])));
+        for (name, value, low, high) in all.into_iter().chain(widths).chain(drills).chain(grids) {
+            within(name, value, low, high)?;
+        }
+        let contradictions = [
+            (isolation.tool.is_some() && isolation.vee.is_some(), "`tool` and `vee`"),
+            (placing.corner.is_some() && placing.as_drawn, "`corner` and `as_drawn`"),
+        ];
+        match contradictions.iter().find(|(both, _)| *both) {
+            None => Ok(()),
+            Some((_, names)) => {
+                let message =
+                    format!("{names} are given, of which one leaves the other no meaning");
+                Err(Diagnostic::error("setting", message).help("leave one of them out").into())
+            }
+        }
+    }
 }
 
 /// A program of a board.

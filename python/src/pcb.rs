@@ -1,0 +1,257 @@
+//! Making circuit boards.
+
+use crate::arguments::word;
+use crate::board::Board;
+use crate::error::{class, raised, released};
+use crate::machine::Machine;
+use crate::posting::{reported, tolerances};
+use ::pcb::board::Face;
+use ::pcb::isolation::{Direction, Narrow};
+use ::pcb::plan::{
+    Clearing, Drilling, Isolate, Isolation, Outline, Part, Placing, Running, Settings, Turn,
+};
+use app::pcb::Job;
+use app::{Source, Stop, Verdict, files};
+use drawing::Format;
+use geom::Vec2;
+use pyo3::prelude::*;
+use pyo3::types::{PyBytes, PyDict};
+use std::path::{Path, PathBuf};
+
+/// What board is meant.
+#[derive(FromPyObject)]
+pub enum Given<'py> {
+    Built(PyRef<'py, Board>),
+    Path(PathBuf),
+    Paths(Vec<PathBuf>),
+}
+
+impl Given<'_> {
+    fn sources(&self) -> Vec<Source> {
+        match self {
+            Given::Built(board) => {
+                let (name, text) = (format!("{}.json", board.name()), board.text());
+                vec![Source::memory(name, text.as_bytes())]
+            }
+            Given::Path(path) => vec![Source::File(path.clone())],
+            Given::Paths(paths) => paths.iter().cloned().map(Source::File).collect(),
+        }
+    }
+}
+
+/// Write the programs that isolate, drill and cut out a circuit board, and prove them: where one is not proven, none is
+/// given out.
+///
+/// Lengths are mm, feeds mm/min, speeds 1/min. The keywords are the options of the command ``toolpost pcb``, with its
+/// meanings and defaults (``docs/pcb.md``).
+///
+/// Parameters
+/// ----------
+/// board : Board, str, os.PathLike or sequence of those paths
+///     A board that was built; or a folder of Gerber and Excellon files, such files, a board of KiCad (.kicad_pcb), a
+///     board of nodes, tracks and pads (.toml, .json).
+/// machine : Machine
+///     The mill.
+/// only : sequence of str
+///     What to make: ``front``, ``back``, ``drill``, ``outline``, ``front-mask``, ``back-mask``, ``front-legend``,
+///     ``back-legend``; by default all that the board has and that tools are given for.
+/// tool, vee : float, optional
+///     Width of the end mill that cuts around copper, or the angle of a V-bit in degrees.
+/// tip, depth, step, passes, overlap, direction, narrow, isolate
+///     How copper is isolated; ``direction`` is ``climb`` or ``conventional``, ``narrow`` is ``leave-out`` or
+///     ``middle``, ``isolate`` is ``contours`` or ``middle``.
+/// clear, margin, mask_tool, legend_tool, engrave
+///     What else is cut of copper, mask and legend.
+/// drills, drill_tolerance, hole_mill, peck, from_side
+///     How holes are made, from ``front`` or ``back``.
+/// outline_tool, outline_step, tabs, tab_width, tab_height
+///     How the board is cut out.
+/// thickness, through, corner, as_drawn, turn, alignment, panel, spacing
+///     Where the board lies; it is turned over about a line along ``y`` or ``x``; ``panel`` is columns and rows.
+/// feed, plunge, drill_feed, outline_feed, speed, travel, approach
+///     How the machine runs.
+/// probe : tuple of 2 ints, optional
+///     Columns and rows of the places at which the height of the board is measured.
+/// on_control : bool
+///     Let the programs that cut copper measure these heights themselves, and follow them.
+/// heights : str or os.PathLike, optional
+///     Measured heights that the programs follow.
+/// picture : {"svg", "png"}, optional
+///     How a picture is drawn next to each program; by default not at all.
+/// tolerance : float, optional
+///     Largest distance of the tool tip; by default what the resolution of the program's words explains.
+/// strict : bool
+///     Take every warning about the board as an error.
+///
+/// Returns
+/// -------
+/// BoardResult
+///     The programs in the order in which they are run, and one report.
+///
+/// Raises
+/// ------
+/// toolpost.Error
+///     Where there are no programs; or one is not proven, with its :attr:`~toolpost.Error.report`.
+#[pyfunction]
+#[pyo3(signature = (board, machine, *, only=Vec::new(), tool=None, vee=None, tip=0.1, depth=0.1, step=None, passes=1,
+                    overlap=0.25, direction="climb", narrow="leave-out", isolate="contours", clear=Vec::new(), margin=0.0,
+                    mask_tool=None, legend_tool=None, engrave=0.05, drills=Vec::new(), drill_tolerance=0.05,
+                    hole_mill=None, peck=None, from_side="front", outline_tool=2.0, outline_step=0.5, tabs=4,
+                    tab_width=2.0, tab_height=0.6, thickness=1.6, through=0.2, corner=None, as_drawn=false, turn="y",
+                    alignment=None, panel=None, spacing=4.0, feed=200.0, plunge=60.0, drill_feed=100.0,
+                    outline_feed=150.0, speed=None, travel=2.0, approach=0.5, probe=None, on_control=false, heights=None,
+                    picture=None, tolerance=None, strict=false))]
+#[expect(clippy::too_many_arguments, reason = "keywords of Python")]
+pub fn pcb<'py>(
+    py: Python<'py>,
+    board: Given<'py>,
+    machine: &Machine,
+    only: Vec<String>,
+    tool: Option<f64>,
+    vee: Option<f64>,
+    tip: f64,
+    depth: f64,
+    step: Option<f64>,
+    passes: u32,
+    overlap: f64,
+    direction: &str,
+    narrow: &str,
+    isolate: &str,
+    clear: Vec<f64>,
+    margin: f64,
+    mask_tool: Option<f64>,
+    legend_tool: Option<f64>,
+    engrave: f64,
+    drills: Vec<f64>,
+    drill_tolerance: f64,
+    hole_mill: Option<f64>,
+    peck: Option<f64>,
+    from_side: &str,
+    outline_tool: f64,
+    outline_step: f64,
+    tabs: u32,
+    tab_width: f64,
+    tab_height: f64,
+    thickness: f64,
+    through: f64,
+    corner: Option<[f64; 2]>,
+    as_drawn: bool,
+    turn: &str,
+    alignment: Option<f64>,
+    panel: Option<[u32; 2]>,
+    spacing: f64,
+    feed: f64,
+    plunge: f64,
+    drill_feed: f64,
+    outline_feed: f64,
+    speed: Option<f64>,
+    travel: f64,
+    approach: f64,
+    probe: Option<[u32; 2]>,
+    on_control: bool,
+    heights: Option<PathBuf>,
+    picture: Option<&str>,
+    tolerance: Option<f64>,
+    strict: bool,
+) -> PyResult<Bound<'py, PyAny>> {
+    let parts = Part::ALL.map(|part| (part.name(), part));
+    let only = only.iter().map(|given| word(py, "only", given, &parts)).collect::<PyResult<_>>()?;
+    let directions = [("climb", Direction::Climb), ("conventional", Direction::Conventional)];
+    let gaps = [("leave-out", Narrow::LeaveOut), ("middle", Narrow::Middle)];
+    let cuts = [("contours", Isolate::Contours), ("middle", Isolate::Middle)];
+    let settings = Settings {
+        only,
+        isolation: Isolation {
+            tool,
+            vee,
+            tip,
+            depth,
+            step,
+            passes,
+            overlap,
+            direction: word(py, "direction", direction, &directions)?,
+            narrow: word(py, "narrow", narrow, &gaps)?,
+            isolate: word(py, "isolate", isolate, &cuts)?,
+        },
+        clearing: Clearing { clear, margin, mask_tool, legend_tool, engrave },
+        drilling: Drilling {
+            drills,
+            drill_tolerance,
+            hole_mill,
+            peck,
+            from: word(
+                py,
+                "from_side",
+                from_side,
+                &[("front", Face::Front), ("back", Face::Back)],
+            )?,
+        },
+        outline: Outline { outline_tool, outline_step, tabs, tab_width, tab_height },
+        placing: Placing {
+            thickness,
+            through,
+            corner: corner.map(Vec2::from_array),
+            as_drawn,
+            turn: word(py, "turn", turn, &[("y", Turn::Y), ("x", Turn::X)])?,
+            alignment,
+            panel,
+            spacing,
+        },
+        running: Running {
+            feed,
+            plunge,
+            drill_feed,
+            outline_feed,
+            speed,
+            travel,
+            approach,
+            probe,
+            on_control,
+        },
+    };
+    let formats = [("svg", Format::Svg), ("png", Format::Png)];
+    let picture = picture.map(|given| word(py, "picture", given, &formats)).transpose()?;
+    let (sources, tolerances) = (board.sources(), tolerances(py, tolerance)?);
+    let (machine, surface) = (&machine.described, heights.map(Source::File));
+    let (account, contents, order, inputs) = released(py, || {
+        let mut job = Job::new(machine, &settings, &tolerances)?;
+        (job.surface, job.picture, job.strict) = (surface, picture, strict);
+        let made = job.make(&sources, &())?;
+        let account = made.account(&job, None);
+        let report = format!("{:#}\n", account.data);
+        let contents = made.contents(&job, &report).into_iter();
+        let contents: Vec<_> = contents.map(|(name, bytes)| (name, bytes.to_vec())).collect();
+        let order: Vec<String> =
+            made.programs.iter().map(|made| format!("{}.nc", made.name)).collect();
+        let read = made.files.iter().filter_map(Source::file).map(Path::to_owned);
+        let inputs: Vec<PathBuf> = read.chain(machine.loaded_from.files.iter().cloned()).collect();
+        Ok::<_, Stop>((account, contents, order, inputs))
+    })?;
+    let report = reported(py, &account, &format!("{:#}\n", account.data))?;
+    if account.verdict != Verdict::Done {
+        let error = raised(py, &account.findings);
+        error.value(py).setattr("report", report)?;
+        return Err(error);
+    }
+    let files = PyDict::new(py);
+    for (name, bytes) in &contents {
+        files.set_item(name, PyBytes::new(py, bytes))?;
+    }
+    class(py, "BoardResult")?.call1((files, order, report, inputs))
+}
+
+/// Save files in a folder, all or none, and over none of those that they were made of.
+#[pyfunction]
+pub fn save_in(
+    py: Python<'_>,
+    folder: PathBuf,
+    contents: Vec<(String, Vec<u8>)>,
+    inputs: Vec<PathBuf>,
+) -> PyResult<()> {
+    released(py, || {
+        let contents: Vec<(String, &[u8])> =
+            contents.iter().map(|(name, bytes)| (name.clone(), &bytes[..])).collect();
+        let inputs: Vec<&Path> = inputs.iter().map(PathBuf::as_path).collect();
+        files::save_in(&folder, &contents, &inputs)
+    })
+}
