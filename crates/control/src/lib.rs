@@ -19,6 +19,7 @@ pub mod tools;
 
 pub use event::{Action, ArcTo, Event, FeedPath, Orientation, Position, Risk, Thread, TiltChoice};
 use geom::Vec3;
+use iso::dialects::facts::Facts;
 use iso::dialects::{fanuc, freecad, grbl, haas, linuxcnc, mach3, marlin, wire};
 use kernel::compensation::{Compensator, Rules};
 pub use kernel::folders::Folders;
@@ -82,22 +83,31 @@ impl Dialect {
         Dialect::NAMES.iter().find(|(n, _)| *n == name).map(|(_, dialect)| *dialect)
     }
 
+    /// Which interpreter reads it.
+    fn language(self) -> Language {
+        match self {
+            Dialect::Fanuc => Language::Iso(&fanuc::FACTS),
+            Dialect::Haas => Language::Iso(&haas::FACTS),
+            Dialect::LinuxCnc => Language::Iso(&linuxcnc::FACTS),
+            Dialect::Mach3 => Language::Iso(&mach3::FACTS),
+            Dialect::Grbl => Language::Iso(&grbl::FACTS),
+            Dialect::Marlin => Language::Iso(&marlin::FACTS),
+            Dialect::FanucWire => Language::Iso(&wire::FANUC),
+            Dialect::Sodick => Language::Iso(&wire::SODICK),
+            Dialect::Agie => Language::Iso(&wire::AGIE),
+            Dialect::FreeCad => Language::Iso(&freecad::FACTS),
+            Dialect::Sinumerik | Dialect::Sinumerik828d => Language::Sinumerik,
+            Dialect::Klartext => Language::Klartext,
+            Dialect::Points => Language::Points,
+        }
+    }
+
     /// By how much this control leaves the path at corners where it is said no bound (`G64` alone, or nothing at all).
     pub fn corners(self) -> Corners {
-        match self {
-            Dialect::LinuxCnc | Dialect::Klartext => Corners::Unbounded,
-            Dialect::Mach3 => Corners::AsSetUp,
-            Dialect::Fanuc
-            | Dialect::Haas
-            | Dialect::Grbl
-            | Dialect::Marlin
-            | Dialect::Sinumerik
-            | Dialect::Sinumerik828d
-            | Dialect::FanucWire
-            | Dialect::Sodick
-            | Dialect::Agie
-            | Dialect::Points
-            | Dialect::FreeCad => Corners::Followed,
+        match self.language() {
+            Language::Iso(facts) => facts.reset.corners,
+            Language::Klartext => Corners::Unbounded,
+            Language::Sinumerik | Language::Points => Corners::Followed,
         }
     }
 
@@ -109,58 +119,41 @@ impl Dialect {
 
     /// How a program for this control ends.
     pub fn ending(self) -> Ending {
-        match self {
-            Dialect::LinuxCnc => Ending::CodeOrPercent,
-            Dialect::Fanuc
-            | Dialect::Haas
-            | Dialect::Sinumerik
-            | Dialect::Sinumerik828d
-            | Dialect::Klartext
-            | Dialect::FanucWire
-            | Dialect::Sodick
-            | Dialect::Agie => Ending::Code,
-            Dialect::Mach3 | Dialect::Grbl => Ending::CodeOrText,
-            Dialect::Marlin | Dialect::Points | Dialect::FreeCad => Ending::Text,
+        match self.language() {
+            Language::Iso(facts) => facts.syntax.ending,
+            Language::Sinumerik | Language::Klartext => Ending::Code,
+            Language::Points => Ending::Text,
         }
     }
 
     /// Along which way this control counts the feed before a program says it (docs/controls, "F where rotary axes turn").
     pub fn feed_path(self) -> FeedPath {
-        match self {
-            Dialect::Sinumerik | Dialect::Sinumerik828d => FeedPath::Group([0.0; 3]),
-            Dialect::Klartext | Dialect::Grbl => FeedPath::AllAxes,
-            Dialect::LinuxCnc | Dialect::Marlin => FeedPath::LinearAxes,
-            // FANUC 1408#0 (rotary feed by a radius), Haas settings 34 and 79, Mach3 "Use Radius for Feedrate".
-            Dialect::Fanuc
-            | Dialect::Haas
-            | Dialect::Mach3
-            | Dialect::FanucWire
-            | Dialect::Sodick
-            | Dialect::Agie
-            | Dialect::Points
-            | Dialect::FreeCad => FeedPath::AsSetUp,
+        match self.language() {
+            Language::Iso(facts) => facts.reset.feed_path,
+            Language::Sinumerik => FeedPath::Group([0.0; 3]),
+            Language::Klartext => FeedPath::AllAxes,
+            Language::Points => FeedPath::AsSetUp,
         }
     }
 
     /// The work offset that is active before a program names one: on a SINUMERIK `G500`, which is none.
     /// A FANUC may keep that of the last program, and Klartext takes the operator's preset.
     pub fn work_offset_at_reset(self) -> Option<WorkOffset> {
-        match self {
-            Dialect::Sinumerik | Dialect::Sinumerik828d => Some(WorkOffset::NONE),
-            Dialect::LinuxCnc
-            | Dialect::Grbl
-            | Dialect::Mach3
-            | Dialect::Haas
-            | Dialect::FreeCad => Some(WorkOffset::FIRST),
-            Dialect::Fanuc
-            | Dialect::Marlin
-            | Dialect::Klartext
-            | Dialect::FanucWire
-            | Dialect::Sodick
-            | Dialect::Agie
-            | Dialect::Points => None,
+        match self.language() {
+            Language::Iso(facts) => facts.reset.work_offset,
+            Language::Sinumerik => Some(WorkOffset::NONE),
+            Language::Klartext | Language::Points => None,
         }
     }
+}
+
+/// An interpreter.
+enum Language {
+    /// With the facts of its dialect.
+    Iso(&'static Facts),
+    Sinumerik,
+    Klartext,
+    Points,
 }
 
 /// How a program ends.
@@ -402,20 +395,11 @@ pub fn read(
     let run = |sink: &mut Sink| {
         let mut compensator = Compensator::new(settings, sink);
         let to = &mut compensator;
-        match settings.dialect {
-            Dialect::Fanuc => iso::run(&fanuc::FACTS, settings, text, to),
-            Dialect::Haas => iso::run(&haas::FACTS, settings, text, to),
-            Dialect::LinuxCnc => iso::run(&linuxcnc::FACTS, settings, text, to),
-            Dialect::Mach3 => iso::run(&mach3::FACTS, settings, text, to),
-            Dialect::Grbl => iso::run(&grbl::FACTS, settings, text, to),
-            Dialect::Marlin => iso::run(&marlin::FACTS, settings, text, to),
-            Dialect::FanucWire => iso::run(&wire::FANUC, settings, text, to),
-            Dialect::Sodick => iso::run(&wire::SODICK, settings, text, to),
-            Dialect::Agie => iso::run(&wire::AGIE, settings, text, to),
-            Dialect::FreeCad => iso::run(&freecad::FACTS, settings, text, to),
-            Dialect::Sinumerik | Dialect::Sinumerik828d => sinumerik::run(settings, text, to),
-            Dialect::Klartext => klartext::run(settings, text, to),
-            Dialect::Points => points::run(settings, text, to),
+        match settings.dialect.language() {
+            Language::Iso(facts) => iso::run(facts, settings, text, to),
+            Language::Sinumerik => sinumerik::run(settings, text, to),
+            Language::Klartext => klartext::run(settings, text, to),
+            Language::Points => points::run(settings, text, to),
         }?;
         compensator.finish()
     };

@@ -4,6 +4,8 @@
 //! `ISO` of a group is what RS274/NGC and most others do; `FANUC` is FANUC and what follows it.
 
 use crate::iso::language::words::Dictionary;
+use crate::{Corners, Ending, FeedPath};
+use program::WorkOffset;
 
 /// A dialect of ISO code.
 #[derive(Debug)]
@@ -62,6 +64,7 @@ impl Facts {
             frames: FrameRules::FANUC,
             homes: Homes::FANUC,
             tools: Tools::FANUC,
+            reset: Reset::FANUC,
             ..Facts::iso(words, language)
         }
     }
@@ -106,8 +109,8 @@ pub(crate) struct Syntax {
     pub writes_nothing: bool,
     /// `$` begins a command of the console.
     pub console: bool,
-    /// A program ends with its last line, without a word for it.
-    pub ends_with_text: bool,
+    /// How a program ends.
+    pub ending: Ending,
     /// P of a call without L: four digits of the program behind those of the repeats.
     pub repeats_in_p: bool,
     /// `M100` to `M199` run programs of the user, and functions of the builder may switch the kinematics.
@@ -170,13 +173,14 @@ impl Syntax {
         one_command: false,
         writes_nothing: false,
         console: false,
-        ends_with_text: false,
+        ending: Ending::CodeOrText,
         repeats_in_p: false,
         extended_m: false,
         refused_letter: None,
     };
     pub const FANUC: Syntax = Syntax {
         small_letters: false,
+        ending: Ending::Code,
         semicolon: Semicolon::EndOfBlock,
         block_delete: BlockDelete::Numbered,
         ..Syntax::ISO
@@ -585,8 +589,23 @@ pub(crate) struct Reset {
     pub millimeters: bool,
     /// The control drives X, Y and Z only.
     pub three_axes: bool,
+    /// What happens at corners of which the program says nothing.
+    pub corners: Corners,
+    /// Along which path F counts.
+    pub feed_path: FeedPath,
+    /// The work offset that is active; none where it is that of the last program, or there is none.
+    pub work_offset: Option<WorkOffset>,
 }
 
 impl Reset {
-    pub const ISO: Reset = Reset { rapid: false, millimeters: false, three_axes: false };
+    pub const ISO: Reset = Reset {
+        rapid: false,
+        millimeters: false,
+        three_axes: false,
+        corners: Corners::Followed,
+        // FANUC 1408#0 (rotary feed by a radius), Haas settings 34 and 79, Mach3 "Use Radius for Feedrate".
+        feed_path: FeedPath::AsSetUp,
+        work_offset: Some(WorkOffset::FIRST),
+    };
+    pub const FANUC: Reset = Reset { work_offset: None, ..Reset::ISO };
 }

@@ -6,6 +6,7 @@ use super::facts::{
     Syntax, Tools,
 };
 use super::{BASIC_G, BASIC_M, END_M, SPINDLE_G, SPINDLE_M, cycles};
+use crate::Ending;
 use crate::iso::language::words::{
     Dictionary, FeedMode, G, GRow, Group, M, MRow, Motion, Refused, Side,
 };
@@ -57,7 +58,7 @@ pub(crate) static FACTS: Facts = Facts {
         brackets: Brackets::Line,
         semicolon: Semicolon::Refused,
         writes_nothing: true,
-        ends_with_text: true,
+        ending: Ending::Text,
         ..Syntax::ISO
     },
     feed: FeedRules { meaning: FeedMeaning::PerSecond, ..FeedRules::ISO },

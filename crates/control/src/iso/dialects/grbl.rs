@@ -5,6 +5,7 @@ use super::facts::{
     Reset, Syntax, Tools, six,
 };
 use super::{END_M, MILL_G, mill};
+use crate::FeedPath;
 use crate::iso::language::words::{Dictionary, G, GRow, Group, M, MRow, Motion, Refused};
 
 const G_WORDS: &[GRow] = &[
@@ -58,6 +59,6 @@ pub(crate) static FACTS: Facts = Facts {
     },
     homes: Homes { stored: true, ..Homes::ISO },
     tools: Tools { by_hand: true, ..Tools::ISO },
-    reset: Reset { rapid: true, three_axes: true, ..Reset::ISO },
+    reset: Reset { feed_path: FeedPath::AllAxes, rapid: true, three_axes: true, ..Reset::ISO },
     ..Facts::iso(WORDS, Language::Plain)
 };

@@ -2,12 +2,13 @@
 
 use super::facts::{
     Arcs, CornerWords, Cycles, DwellUnit, Facts, FrameRules, Functions, Homes, Language, Numbers,
-    Offsets, Syntax, Tools, further, within_a_hundredth,
+    Offsets, Reset, Syntax, Tools, further, within_a_hundredth,
 };
 use super::{END_M, FRAME_G, MACRO_G, MILL_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
 use crate::iso::language::words::{
     Canned, Dictionary, G, GRow, Group, M, MRow, Path, Pattern, Refused,
 };
+use program::WorkOffset;
 
 const G_WORDS: &[GRow] = &[
     (90, Group::OneShot, G::Neutral(b"")),
@@ -112,5 +113,6 @@ pub(crate) static FACTS: Facts = Facts {
     frames: FrameRules { mirrors_at_zero: true, ..FrameRules::FANUC },
     homes: Homes { cancels_length: true, ..Homes::FANUC },
     tools: Tools { remembers_registers: true, ..Tools::FANUC },
+    reset: Reset { work_offset: Some(WorkOffset::FIRST), ..Reset::FANUC },
     ..Facts::fanuc(WORDS, Language::MacroB)
 };

@@ -3,12 +3,13 @@
 
 use super::facts::{
     Arcs, Cycles, Facts, FeedRules, FeedUnit, Functions, Homes, Language, MotionRules, Offsets,
-    OuterCenter, Rollover, Syntax, Tools,
+    OuterCenter, Reset, Rollover, Syntax, Tools,
 };
 use super::{END_M, MILL_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
 use crate::iso::language::words::{
     Dictionary, G, GRow, Group, M, MRow, Motion, Path, Refused, Side,
 };
+use crate::{Corners, Ending, FeedPath};
 
 const G_WORDS: &[GRow] = &[
     (50, Group::Motion, G::Motion(Motion::Spline { cubic: true })),
@@ -95,7 +96,7 @@ fn is_circle(inches: bool, start: f64, end: f64) -> bool {
 }
 
 pub(crate) static FACTS: Facts = Facts {
-    syntax: Syntax { extended_m: true, ..Syntax::ISO },
+    syntax: Syntax { ending: Ending::CodeOrPercent, extended_m: true, ..Syntax::ISO },
     feed: FeedRules { unit: FeedUnit::OfBefore, ..FeedRules::ISO },
     functions: Functions { orients_by_pq: true, ..Functions::ISO },
     motion: MotionRules {
@@ -125,5 +126,6 @@ pub(crate) static FACTS: Facts = Facts {
     },
     homes: Homes { stored: true, ..Homes::ISO },
     tools: Tools { follows_tool: true, rs274_data: true, ..Tools::ISO },
+    reset: Reset { corners: Corners::Unbounded, feed_path: FeedPath::LinearAxes, ..Reset::ISO },
     ..Facts::iso(WORDS, Language::Ngc)
 };

@@ -1,8 +1,9 @@
 //! Mach3, "Mach3 G and M-code Reference", table of G codes. The modal groups are those of RS274/NGC,
 //! on which it is built; `G80` may stand beside `G0` to `G3`.
 
-use super::facts::{Facts, FrameRules, Language, Offsets, Tools};
+use super::facts::{Facts, FrameRules, Language, Offsets, Reset, Tools};
 use super::{END_M, FRAME_G, MILL_G, POLAR_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
+use crate::Corners;
 use crate::iso::language::words::{Dictionary, G, GRow, Group, M, MRow, Path, Refused};
 
 const G_WORDS: &[GRow] = &[
@@ -55,5 +56,6 @@ pub(crate) static FACTS: Facts = Facts {
     },
     frames: FrameRules { scales_by_axis: true, turn_center: Some(*b"AB"), ..FrameRules::ISO },
     tools: Tools { rs274_data: true, ..Tools::ISO },
+    reset: Reset { corners: Corners::AsSetUp, ..Reset::ISO },
     ..Facts::iso(WORDS, Language::Rs274)
 };

@@ -2,10 +2,11 @@
 //! `SPINDLE_FEATURE` in revolutions, `COOLANT_CONTROL`), from its G-code index.
 
 use super::facts::{
-    BlockDelete, Brackets, DwellUnit, Facts, Homes, Language, Numbers, Syntax, Tools,
+    BlockDelete, Brackets, DwellUnit, Facts, Homes, Language, Numbers, Reset, Syntax, Tools,
 };
 use super::mill;
 use crate::iso::language::words::{Dictionary, G, GRow, Group, M, MRow, Refused};
+use crate::{Ending, FeedPath};
 
 const G_WORDS: &[GRow] = &[
     (591, Group::WorkOffset, G::WorkOffset(60)),
@@ -62,12 +63,13 @@ pub(crate) static FACTS: Facts = Facts {
         block_delete: BlockDelete::None,
         percent: false,
         one_command: true,
-        ends_with_text: true,
+        ending: Ending::Text,
         refused_letter: Some((b'E', "an extruder is no tool of a mill")),
         ..Syntax::ISO
     },
     numbers: Numbers { dwell: DwellUnit::Milliseconds, dwell_letter: Some(b'S'), ..Numbers::ISO },
     homes: Homes { switches: true, ..Homes::ISO },
     tools: Tools { by_hand: true, ..Tools::ISO },
+    reset: Reset { feed_path: FeedPath::LinearAxes, work_offset: None, ..Reset::ISO },
     ..Facts::iso(WORDS, Language::Plain)
 };

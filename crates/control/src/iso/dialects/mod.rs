@@ -1,7 +1,7 @@
 //! The dialects, each a file of [`facts`]: which words it has, in which modal group, why it refuses others, and in what it
 //! differs from others besides. No other file asks for a maker by name.
 
-pub(super) mod facts;
+pub(crate) mod facts;
 pub(crate) mod fanuc;
 pub(crate) mod freecad;
 pub(crate) mod grbl;

@@ -189,7 +189,7 @@ impl State {
     pub(super) fn new(facts: &Facts, axes: [bool; 3], settings: &Settings) -> State {
         let all_zero = settings.setup.start.is_some();
         // A FANUC goes on in the work offset of the program before.
-        let work_offset = settings.dialect.work_offset_at_reset().map_or(0, WorkOffset::number);
+        let work_offset = facts.reset.work_offset.map_or(0, WorkOffset::number);
         State {
             motion: facts.reset.rapid.then_some(Motion::Rapid),
             plane: Plane::Xy,

@@ -6,6 +6,7 @@ use super::corners::Held;
 use super::macros;
 use super::owords;
 use super::source::{self, Place, Source};
+use crate::Ending;
 use crate::Settings;
 use crate::event::{Action, Event};
 use crate::iso::dialects::facts::{Facts, Language};
@@ -129,7 +130,7 @@ impl<'a, 's> Run<'a, 's> {
     fn end_of_text(&mut self) -> Result<(), Fault> {
         if self.frames.len() == 1 {
             self.control.ends_no_curve().map_err(|message| self.at_line("nc-spline", message))?;
-            if self.facts.syntax.ends_with_text && !self.control.state.ended {
+            if self.facts.syntax.ending == Ending::Text && !self.control.state.ended {
                 let line = self.here.line.max(1);
                 self.compensator.take(Event { line, action: Action::End })?;
             }
