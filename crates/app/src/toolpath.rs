@@ -186,7 +186,8 @@ fn read_by(
     let (dialect, program, warnings, set_ups, cutcom) = match &origin.from {
         Some(from) => {
             let machine = set_up(origin.reach.load_origin(from)?);
-            let setup = Setup { purpose, ..origin.setup()? };
+            let rotary_at_zero = is_control(from);
+            let setup = Setup { purpose, rotary_at_zero, ..origin.setup()? };
             let folders = setup.folders.clone();
             let asked = |found: &Diagnostic| found.rule.ends_with("unknown-position");
             let reading = match nc::read(&machine, setup.clone(), &file, &bytes) {
@@ -245,12 +246,19 @@ pub fn swinging(source: &Source, origin: &Origin, frame: Frame) -> Result<Option
         return Ok(None);
     }
     let name = source.name();
-    let setup = Setup { purpose: Purpose::Picture, ..origin.setup()? };
+    let rotary_at_zero = is_control(from);
+    let setup = Setup { purpose: Purpose::Picture, rotary_at_zero, ..origin.setup()? };
     let program = match frame {
         Frame::Part => nc::read_swinging(&machine, setup, &name, &bytes)?,
         Frame::Machine => nc::read_in_machine(&machine, setup, &name, &bytes)?,
     };
     Ok(Some(program))
+}
+
+/// Whether the origin of a program is a control of the library, of whose machine nothing is known.
+fn is_control(from: &str) -> bool {
+    library::find(from, library::CONTROLS).is_some()
+        && library::find(from, library::MACHINES).is_none()
 }
 
 /// The program of a mill's control as a contour in the plane XY, at Z 0 where no block says Z: a wire goes through all
@@ -416,6 +424,7 @@ impl Origin {
             start: self.start,
             flat: false,
             purpose: Purpose::Program,
+            rotary_at_zero: false,
             surface: Vec::new(),
         })
     }

@@ -246,6 +246,14 @@ impl Risk {
         refused: false,
     };
 
+    /// `A0` in a program of which only the control is known.
+    pub(crate) const ROTARY_AT_ZERO: Risk = Risk {
+        rule: "rotary-at-zero",
+        what: "has rotary axes that stand at 0 throughout: it is read as that of a machine without them",
+        help: "nothing to do, if they are not meant to turn; `--from` with the machine's file says what they do",
+        refused: false,
+    };
+
     /// `M30` without a line end behind it (SINUMERIK, found on an 828D): where the motion goes does not depend on it.
     pub(crate) const LINE_END: Risk = Risk {
         rule: "line-end",

@@ -275,6 +275,9 @@ pub struct Setup {
     pub flat: bool,
     /// What the program is read for.
     pub purpose: Purpose,
+    /// Whether words that leave a rotary axis at 0 are taken where the machine has none (ISO code): only the control is known
+    /// that the program was written for, and not its machine.
+    pub rotary_at_zero: bool,
     /// Points of the part's surface, mm, work frame: straight down onto one of them a probe answers there. Of any
     /// other probing move only the machine knows where it has ended.
     pub surface: Vec<Vec3>,

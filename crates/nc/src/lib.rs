@@ -160,7 +160,7 @@ pub fn read_swinging(
         before = event.action.position().copied().or(before);
         lift.event(event).map_err(told)
     });
-    run.map_err(|found| way_out(machine, found))?;
+    run.map_err(|found| way_out(found))?;
     Ok(lift.program)
 }
 
@@ -201,7 +201,7 @@ pub fn read_in_machine(
         }
         lift.event(event).map_err(|found| found.line(line).into())
     });
-    run.map_err(|found| way_out(machine, found))?;
+    run.map_err(|found| way_out(found))?;
     Ok(program)
 }
 
@@ -279,7 +279,7 @@ pub fn read_by(
         let line = event.line;
         lift.event(event).map_err(|found| found.line(line).into())
     });
-    run.map_err(|found| way_out(machine, found))?;
+    run.map_err(|found| way_out(found))?;
     let cut_off = cut_off(settings.dialect, lift.ended, text);
     if let Some(mut found) = cut_off {
         if !settings.setup.purpose.asks_ends() {
@@ -338,12 +338,8 @@ fn cut_off(dialect: Dialect, ended: bool, text: &[u8]) -> Option<Diagnostic> {
 }
 
 /// Adds to what a control refuses what the user of a source can do about it.
-fn way_out(machine: &Machine, mut found: Box<Diagnostic>) -> Box<Diagnostic> {
+fn way_out(mut found: Box<Diagnostic>) -> Box<Diagnostic> {
     let way_out = match found.rule {
-        "nc-axis" | "unknown-axis" if machine.rotary.is_empty() => {
-            "name the machine that the program was written for, not the control alone: its file says \
-             what its rotary axes do"
-        }
         "nc-unknown-position" | "unknown-position" => "or say where the tool stands at the start",
         _ => return found,
     };

@@ -129,3 +129,31 @@ fn a_missing_line_end_behind_m30_changes_no_source_and_is_refused_in_a_program()
     let said = folder.run(&[&call[..], &["--from", "sinumerik-840d"]].concat());
     assert!(said.code == 1 && said.err.contains("error[line-end]"), "{said:?}");
 }
+
+#[test]
+fn rotary_axes_that_stay_at_0_need_no_machine_and_others_do() {
+    let folder = Folder::empty();
+    let source = "G21 G90 G17\nT1 M6\nS1000 M3\nG0 X0 Y0 A0 B0\nG43 H1 Z5\nG1 Z-1 F100\nX40 A0\nG0 Z5\nM5\nM2\n";
+    folder.write("old.ngc", source);
+    let call = |from: &str| {
+        folder.run(&["post", "old.ngc", "--from", from, "-m", "generic-3axis-iso", "-o", "new.nc"])
+    };
+    let said = call("linuxcnc");
+    assert_eq!(said.code, 0, "{said:?}");
+    assert!(said.err.contains("warning[rotary-at-zero]"), "{said:?}");
+    assert!(folder.read("new.nc").contains("X40"));
+    // A machine of which it is known that it has no such axis stops there.
+    let said = call("generic-3axis-linuxcnc");
+    assert!(said.code == 2 && said.err.contains("error[nc-axis]"), "{said:?}");
+    // Where the tip goes that a table turns, only the machine says: it is asked for once.
+    for source in [source.replace("X40 A0", "X40 A30"), source.replace("X40 A0", "G91 X40 A0")] {
+        folder.write("old.ngc", &source);
+        let said = call("linuxcnc");
+        assert!(said.code == 2 && said.err.contains("error[nc-axis]"), "{said:?}");
+        assert_eq!(
+            said.err.matches("name the machine that the program was written for").count(),
+            1,
+            "{said:?}"
+        );
+    }
+}

@@ -218,6 +218,9 @@ impl Step<'_, '_, '_> {
             if !self.block.has(letter) {
                 continue;
             }
+            if self.stays_at_zero(axis, letter)? {
+                continue;
+            }
             self.has_axis(axis, letter)?;
             if self.state.tilt != Tilt::None {
                 let message =
@@ -365,6 +368,19 @@ impl Step<'_, '_, '_> {
         (target.point.x, target.point.y) = (radius * cos, radius * sin);
         target.named |= 3;
         Ok(())
+    }
+
+    /// Whether the word leaves a rotary axis at 0 of which the machine is not known; it then counts as used.
+    fn stays_at_zero(&mut self, axis: usize, letter: u8) -> Result<bool, Fault> {
+        if !self.state.rotary_at_zero || self.axes[axis] || self.state.incremental {
+            return Ok(false);
+        }
+        if self.take_degrees(letter)? != Some(0.0) {
+            self.block.again(&[letter]);
+            return Ok(false);
+        }
+        self.actions.push(Action::Risk(Risk::ROTARY_AT_ZERO.into()));
+        Ok(true)
     }
 
     /// # Errors

@@ -48,6 +48,8 @@ pub(crate) struct State {
     pub flat: bool,
     /// What the program is read for.
     pub purpose: Purpose,
+    /// Whether words of rotary axes that the machine lacks may say 0.
+    pub rotary_at_zero: bool,
     /// Programmed position in the frame in which words are read, mm; NaN where not known.
     pub position: Vec3,
     /// Positions of A, B, C in degrees; 0 for axes that the machine lacks, NaN where not known.
@@ -218,6 +220,7 @@ impl State {
             work_offset: None,
             flat: settings.setup.flat,
             purpose: settings.setup.purpose,
+            rotary_at_zero: settings.setup.rotary_at_zero,
             position: settings.setup.position_at_start(),
             rotary: axes.map(|exists| if exists { f64::NAN } else { 0.0 }),
             modulo: settings.modulo,
