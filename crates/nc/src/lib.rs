@@ -160,7 +160,7 @@ pub fn read_swinging(
         before = event.action.position().copied().or(before);
         lift.event(event).map_err(told)
     });
-    run.map_err(|found| way_out(found))?;
+    run.map_err(way_out)?;
     Ok(lift.program)
 }
 
@@ -201,7 +201,7 @@ pub fn read_in_machine(
         }
         lift.event(event).map_err(|found| found.line(line).into())
     });
-    run.map_err(|found| way_out(found))?;
+    run.map_err(way_out)?;
     Ok(program)
 }
 
@@ -279,7 +279,7 @@ pub fn read_by(
         let line = event.line;
         lift.event(event).map_err(|found| found.line(line).into())
     });
-    run.map_err(|found| way_out(found))?;
+    run.map_err(way_out)?;
     let cut_off = cut_off(settings.dialect, lift.ended, text);
     if let Some(mut found) = cut_off {
         if !settings.setup.purpose.asks_ends() {
