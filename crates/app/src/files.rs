@@ -2,7 +2,8 @@
 //!
 //! New contents are written under a name of their own in the folder of the file, and renamed at the end. Whoever does
 //! that has locked the folder, so that of two commands that save the same files one saves all of them. The system
-//! opens the lock of a process that is killed; what such a process left is removed by the next one.
+//! opens the lock of a process that is killed; what such a process left is removed by the next one that is to save there,
+//! when it begins, whatever comes of it.
 
 use program::{Diagnostic, encoding};
 use std::collections::BTreeSet;
@@ -124,6 +125,7 @@ impl Target {
         }
         let target = Target { given: path.to_owned(), path: resolved, folder };
         target.spare(inputs)?;
+        sweep_idle(&target.folder);
         Ok(target)
     }
 
@@ -257,6 +259,30 @@ impl Locked {
     }
 }
 
+/// Removes the files that a killed process has begun in a folder, unless somebody is saving there now.
+fn sweep_idle(folder: &Path) {
+    let Ok(locked) = File::open(folder) else { return };
+    if locked.try_lock().is_ok() {
+        sweep(folder);
+    }
+}
+
+/// Checks that the system lets this process write a file of so many bytes (`ulimit -f`): a larger one would end the process by
+/// a signal (SIGXFSZ), without a word.
+fn check_size(bytes: usize) -> io::Result<()> {
+    #[cfg(unix)]
+    {
+        use rustix::process::{Resource, getrlimit};
+        let most = getrlimit(Resource::Fsize).current.unwrap_or(u64::MAX);
+        if bytes as u64 > most {
+            let why =
+                format!("it has {bytes} bytes, and this process may write {most} (`ulimit -f`)");
+            return Err(io::Error::other(why));
+        }
+    }
+    Ok(())
+}
+
 /// Removes the files that a killed process has begun in a folder. Nobody else may be saving there.
 fn sweep(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else { return };
@@ -283,6 +309,7 @@ pub fn save(files: &[(&Target, &[u8])]) -> Result<(), Box<Diagnostic>> {
     for (i, (target, bytes)) in files.iter().enumerate() {
         let kept = i + 1 < files.len() && target.path.exists();
         let stage = || -> io::Result<_> {
+            check_size(bytes.len())?;
             let mut new = target.beside()?;
             new.write_all(bytes)?;
             let old = kept.then(|| target.beside()).transpose()?;

@@ -16,13 +16,14 @@ use serde_json::json;
 
 /// Rules whose findings say that the machine cannot do what the toolpath asks for. All others of the
 /// writer are mistakes of the input: of the toolpath, or of the machine's file.
-const MACHINE_CANNOT: [&str; 18] = [
+const MACHINE_CANNOT: [&str; 19] = [
     "arc-orientation",
     "axis-limit",
     "cycle-missing",
     "cycle-tap",
     "feed-range",
     "line-length",
+    "linearisation",
     "memory",
     "number-range",
     "one-opening",

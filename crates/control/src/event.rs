@@ -77,6 +77,8 @@ pub enum Action {
     Feed(Feed),
     /// Which axes the feed of a cut is the speed of, from here on.
     FeedPath(FeedPath),
+    /// Whether the axes of a rapid go together, on a straight line, from here on; `None` is as the control is set up.
+    RapidsTogether(Option<bool>),
     /// Spindle from here on.
     Spindle(Spindle),
     /// Constant surface speed from here on, m/min; `None` is the speed of the spindle itself again.
@@ -230,10 +232,11 @@ pub struct Risk {
 
 impl Risk {
     /// `#3003`, `#3004` of FANUC and Haas (B-64484EN-2, "Automatic operation control"): they hold until the control is
-    /// reset.
+    /// reset. `M49`, `M50 P0`, `M51 P0`, `M53 P0` of LinuxCNC ("M Codes", "Override Control"), `M49` of the others, `G63` of
+    /// FANUC ("Cutting feedrate control") and of SINUMERIK.
     pub(crate) const OPERATOR_CONTROLS: Risk = Risk {
         rule: "operator-controls",
-        what: "takes single block, feed hold, feed override or exact stop from the operator",
+        what: "takes single block, feed hold, an override or exact stop from the operator",
         help: "leave it out; where the operator knows of it, `--accept operator-controls` lets it pass",
         refused: true,
     };
@@ -259,6 +262,50 @@ impl Risk {
         rule: "line-end",
         what: "ends without a line end behind its last block, and a control (828D) may not take it as ended",
         help: "end the last line of the file by a line feed",
+        refused: true,
+    };
+
+    /// `WALIMOF` of SINUMERIK (PM, "Working area limitation"): the limits that whoever set the machine up has entered hold
+    /// no longer.
+    pub(crate) const WORK_AREA_OFF: Risk = Risk {
+        rule: "operator-controls",
+        what: "switches off the limits of the work area, which protect what the operator has set up",
+        help: "leave WALIMOF out; where the operator knows of it, `--accept operator-controls` lets it pass",
+        refused: true,
+    };
+
+    /// `M107` and `M141` of HEIDENHAIN (iTNC 530, "Miscellaneous functions"): the control no longer stops for a replacement
+    /// tool with a positive delta value, nor for a touch probe that touches.
+    pub(crate) const MONITORING_OFF: Risk = Risk {
+        rule: "operator-controls",
+        what: "switches off a check at which the control stops: oversize of replacement tools (M107), the touch probe (M141)",
+        help: "leave it out; where the operator knows of it, `--accept operator-controls` lets it pass",
+        refused: true,
+    };
+
+    /// `M52` of LinuxCNC ("M Codes", "Adaptive Feed Control"): F times the value of a pin.
+    pub(crate) const ADAPTIVE_FEED: Risk = Risk {
+        rule: "adaptive-feed",
+        what: "has an input of the machine multiply the feed (M52), so that F is not the speed of the cut",
+        help: "write M52 P0, or leave it out",
+        refused: true,
+    };
+
+    /// `ACC`, `ACCLIMA`, `JERKLIMA`, `VELOLIMA` of SINUMERIK above 100 percent (PM, "Percentage acceleration override"): more
+    /// than the machine data let the axis do.
+    pub(crate) const AXIS_DYNAMICS: Risk = Risk {
+        rule: "axis-dynamics",
+        what: "lets an axis accelerate, jerk or go faster than the machine data allow it: more than 100 percent",
+        help: "write at most 100 percent, as in ACC[X]=100",
+        refused: true,
+    };
+
+    /// `M41` to `M45` of SINUMERIK (PM 2.13): a gear stage holds the spindle within the speeds of the stage (S1, "Minimum /
+    /// maximum speed of the gear stage").
+    pub(crate) const GEAR: Risk = Risk {
+        rule: "gear",
+        what: "chooses a gear of the spindle (M41 to M45): in which gear the speeds of the program are reached it does not say",
+        help: "leave it out or write M40; a machine with gears lists the number in `auxiliary`",
         refused: true,
     };
 
@@ -339,11 +386,12 @@ impl Risk {
         refused: true,
     };
 
-    /// `G642` to `G645` and the compressors of SINUMERIK keep to tolerances of machine data (MD33100, MD33120).
+    /// `G642` to `G645` and the compressors of SINUMERIK keep to tolerances of machine data (MD33100, MD33120), unless CTOL or
+    /// CYCLE832 says another; G644 never takes that of CTOL (B1, "Contour/Orientation tolerance").
     pub(crate) const SMOOTHING: Risk = Risk {
         rule: "path-tolerance",
         what: "lets the control leave the path by as much as its machine data say",
-        help: "write G64, or say how far in `path_tolerance` in [options] of the machine file",
+        help: "write G64 (G64 in place of G644 in any case), or say how far by CTOL= or CYCLE832 before the first move",
         refused: true,
     };
 
@@ -376,7 +424,8 @@ impl Risk {
         refused: true,
     };
 
-    /// `TA` of cycle 32 (HEIDENHAIN), `CYCLE832` with `_ORI_...` and `OTOL` (SINUMERIK): by how much the control may turn the tool out
+    /// `TA` of cycle 32 (HEIDENHAIN), `CYCLE832` with `_ORI_...` and `OTOL` (SINUMERIK), `OSC` to `OST` and `ORISON`, which go by
+    /// setting data: by how much the control may turn the tool out
     /// of the orientation of the program.
     pub(crate) const ORIENTATION_TOLERANCE: Risk = Risk {
         rule: "orientation-tolerance",
@@ -408,6 +457,67 @@ impl Risk {
         rule: "look-ahead",
         what: "has look-ahead on at a cycle, a tool change, G43.4, a tilted plane or the end, where not every control takes that",
         help: "write G5.1 Q0 (G5 P0) in a block of its own before it",
+        refused: true,
+    };
+
+    /// SST1 of CYCLE84 (PGZ, "CYCLE84": 0 is as SST), Q403 of cycle 209: the speed of the spindle on the way out of a thread.
+    pub(crate) const TAP_RETURN: Risk = Risk {
+        rule: "spindle",
+        what: "comes out of a thread at another speed than it goes in (SST1 of CYCLE84, Q403 of cycle 209)",
+        help: "leave SST1 out or write that of SST; Q403=+1",
+        refused: true,
+    };
+
+    /// SDAC of CYCLE84 (PGZ): what the spindle does behind the cycle.
+    pub(crate) const TURNS_BACK: Risk = Risk {
+        rule: "spindle",
+        what: "leaves the spindle turning against the tool behind a thread (SDAC of CYCLE84)",
+        help: "write SDAC as the spindle turns before the cycle: 3 for M3, 4 for M4; or 5, which stops it",
+        refused: true,
+    };
+
+    /// DTS of CYCLE83 (PGZ: with VARI 1, seconds or, below 0, turns), and DTB beside a `_DTD` that differs: dwells that the
+    /// source does not have.
+    pub(crate) const PECK_DWELL: Risk = Risk {
+        rule: "dwell",
+        what: "dwells between the pecks of CYCLE83 (DTS, or DTB beside another _DTD)",
+        help: "write DTS as 0, and leave _DTD out",
+        refused: true,
+    };
+
+    /// Q258, Q259 of cycle 205, Q200 of 200 and 203 (TNC 640 cycles): how far above the last depth the rapid back into the hole
+    /// ends.
+    pub(crate) const RAPID_TO_DEPTH: Risk = Risk {
+        rule: "peck",
+        what: "goes back into the hole by rapid down to the last depth itself: what keeps it above is 0 (Q258, Q259 of cycle 205; Q200 \
+               of cycles 200 and 203)",
+        help: "write more than 0, as in Q258=+0.5 and Q259=+0.5",
+        refused: true,
+    };
+
+    /// `G25`, `G26` of SINUMERIK (PM, "Working area limitation", "Programmable spindle speed limitation"): SD43420, SD43430,
+    /// SD43210, SD43220 keep them.
+    pub(crate) const LIMITS_WRITTEN: Risk = Risk {
+        rule: "operator-data",
+        what: "rewrites the limits of the work area or of the spindle (G25, G26), and they stay so when it has ended",
+        help: "leave them to the operator; for one run `--accept operator-data` lets it pass",
+        refused: true,
+    };
+
+    /// R parameters in `operator_parameters` of the machine file: what the operator has entered there shifts a rotary axis.
+    pub(crate) const OPERATOR_PARAMETER: Risk = Risk {
+        rule: "operator-data",
+        what: "sets a parameter that the operator sets at the machine (`operator_parameters`), and it stays so when it has ended",
+        help: "leave it to the operator, or calculate with another parameter",
+        refused: true,
+    };
+
+    /// `#500` to `#999` of FANUC and Haas, QR of HEIDENHAIN: they stay when the power is switched off, and macros of the shop
+    /// and of probes keep their data there.
+    pub(crate) const KEPT_VARIABLE: Risk = Risk {
+        rule: "operator-data",
+        what: "sets a variable that is kept when it has ended and the power is off, where macros of the shop keep their data",
+        help: "use #100 to #149 (FANUC, Haas), Q0 to Q99 (HEIDENHAIN); for one run `--accept operator-data` lets it pass",
         refused: true,
     };
 
@@ -481,6 +591,7 @@ impl Action {
             | Action::CycleOff
             | Action::Feed(_)
             | Action::FeedPath(_)
+            | Action::RapidsTogether(_)
             | Action::Spindle(_)
             | Action::SurfaceSpeed(_)
             | Action::Coolant(_)

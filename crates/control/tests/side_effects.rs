@@ -475,7 +475,8 @@ fn a_stored_position_is_no_reference_position() {
 }
 
 /// GRBL and LinuxCNC: `G43.1` puts a length in; Marlin: `G28` goes to the switches; SINUMERIK *Fundamentals*, "Smoothing", and
-/// "Compressor": MD33100 and MD33120 say how far, CTOL where it is written.
+/// "Compressor": MD33100 and MD33120 say how far, CTOL where it is written (Basic Functions 09/2011 p. 204: not for G644; below 0 it
+/// takes back what was programmed).
 #[test]
 fn lengths_switches_and_smoothing_that_nobody_states_are_told() {
     let risks_within = |dialect, path_tolerance, block: &str| {
@@ -488,11 +489,23 @@ fn lengths_switches_and_smoothing_that_nobody_states_are_told() {
     assert_eq!(risks_within(Dialect::Grbl, 0.0, "G43.1 Z10"), ["operator-data"]);
     assert_eq!(risks_within(Dialect::Marlin, 0.0, "G28 Z"), ["stored-position"]);
     assert_eq!(risks_within(Dialect::Marlin, 0.0, "G28 X Y"), [""; 0]);
-    for word in ["G642", "G645", "COMPCAD", "COMPON"] {
-        assert_eq!(risks_within(Dialect::Sinumerik, 0.0, word), ["path-tolerance"], "{word}");
-        assert_eq!(risks_within(Dialect::Sinumerik, 0.01, word), [""; 0], "{word}");
+    // What the machine file allows is not what the machine data say.
+    for word in ["G642", "G643", "G644", "G645", "COMPCAD", "COMPON", "CTOL=0\nCTOL=-1\nG645"] {
+        for allowed in [0.0, 0.01] {
+            let found = risks_within(Dialect::Sinumerik, allowed, word);
+            assert_eq!(found, ["path-tolerance"], "{word}");
+        }
     }
-    assert_eq!(risks_within(Dialect::Sinumerik, 0.0, "G64\nCOMPOF\nG60"), [""; 0]);
+    for bounded in ["CTOL=0.01 G642", "COMPCAD G645\nCTOL=0.01", "G645\nCYCLE832(0.01,_FINISH,1)"] {
+        assert_eq!(risks_within(Dialect::Sinumerik, 0.01, bounded), [""; 0], "{bounded}");
+    }
+    // No tolerance of CTOL counts for G644, and none is left when CYCLE832 has ended.
+    for word in ["CTOL=0.01 G644", "G645\nCYCLE832(0.01,_FINISH,1)\nCYCLE832(0,_OFF,1)"] {
+        assert_eq!(risks_within(Dialect::Sinumerik, 0.01, word), ["path-tolerance"], "{word}");
+    }
+    for off in ["G64\nCOMPOF\nG60", "G642\nG64", "COMPCAD\nCOMPOF", "G641 ADIS=0 ADISPOS=0"] {
+        assert_eq!(risks_within(Dialect::Sinumerik, 0.0, off), [""; 0], "{off}");
+    }
     let error = common::ops(
         &Settings::new(Dialect::Fanuc, [false; 3]),
         "p.nc",
@@ -585,6 +598,14 @@ fn data_and_keys_of_the_operator_are_told() {
         (Dialect::LinuxCnc, "G43.1 Z5", "operator-data"),
         (Dialect::LinuxCnc, "M61 Q2", "operator-data"),
         (Dialect::Sinumerik, "$P_UIFR[1,X,TR]=5", "operator-data"),
+        (Dialect::Sinumerik, "G25 X-5", "operator-data"),
+        (Dialect::Sinumerik, "G26 Z900", "operator-data"),
+        (Dialect::Sinumerik, "G26 S3000", "operator-data"),
+        (Dialect::Fanuc, "#500=5.", "operator-data"),
+        (Dialect::Fanuc, "#999=5.", "operator-data"),
+        (Dialect::Haas, "#700=5.", "operator-data"),
+        (Dialect::Klartext, "QR5 = 3", "operator-data"),
+        (Dialect::Klartext, "FN 0: QR5 = 3", "operator-data"),
         (Dialect::Klartext, "TOOL DEF 5 L+10 R+3", "operator-data"),
     ] {
         let text = match dialect {
@@ -594,6 +615,219 @@ fn data_and_keys_of_the_operator_are_told() {
         };
         assert_eq!(risks(dialect, &text), [rule], "{dialect:?} {block}");
     }
+}
+
+/// LinuxCNC "M Codes", "Override Control": P1, or none, is on. B-64154EN/01 p. 53 (G61 to G64); PM, "Working area limitation"; iTNC
+/// 530, "M107", "M141".
+#[test]
+fn overrides_and_guards_stay_with_the_operator() {
+    const LOCKED: &[&str] = &["operator-controls"];
+    for (dialect, block, expected) in [
+        (Dialect::LinuxCnc, "M48", &[][..]),
+        (Dialect::LinuxCnc, "M49", LOCKED),
+        (Dialect::LinuxCnc, "M50 P0", LOCKED),
+        (Dialect::LinuxCnc, "M50 P1", &[]),
+        (Dialect::LinuxCnc, "M51", &[]),
+        (Dialect::LinuxCnc, "M51 P0", LOCKED),
+        (Dialect::LinuxCnc, "M52 P0", &[]),
+        (Dialect::LinuxCnc, "M52 P1", &["adaptive-feed"]),
+        (Dialect::LinuxCnc, "M52", &["adaptive-feed"]),
+        (Dialect::LinuxCnc, "M53 P0", LOCKED),
+        (Dialect::LinuxCnc, "M53", &[]),
+        (Dialect::Fanuc, "M48", &[]),
+        (Dialect::Fanuc, "M49", LOCKED),
+        (Dialect::Fanuc, "G63", LOCKED),
+        (Dialect::Fanuc, "G62", &[]),
+        (Dialect::Haas, "M49", LOCKED),
+        (Dialect::Mach3, "M49", LOCKED),
+        (Dialect::Sinumerik, "WALIMOF", LOCKED),
+        (Dialect::Sinumerik, "WALIMON", &[]),
+        (Dialect::Sinumerik, "S100 M3\nG63 X1 F100", LOCKED),
+        (Dialect::Klartext, "M107", LOCKED),
+        (Dialect::Klartext, "M108", &[]),
+        (Dialect::Klartext, "M141", LOCKED),
+    ] {
+        let text = match dialect {
+            Dialect::Klartext => numbered(&format!("TOOL CALL 5 Z S100\n{block}\nM30")),
+            Dialect::Sinumerik => format!("G90 G94\n{block}\nM30\n"),
+            _ => format!("G21\nG90 G94 G17 G54\n{block}\nM30\n"),
+        };
+        assert_eq!(risks(dialect, &text), expected, "{dialect:?} {block}");
+    }
+}
+
+/// An R parameter of `operator_parameters` counts as 0 and holds what the operator has entered: a program sets it by no value.
+#[test]
+fn no_program_sets_a_parameter_of_the_operator() {
+    let settings = Settings {
+        operator_parameters: vec![24],
+        ..Settings::new(Dialect::Sinumerik, [true, false, true])
+    };
+    let risks = |blocks: &str| {
+        let text = format!("G90 G94\n{blocks}\nM30\n");
+        rules(&common::ops(&settings, "p.mpf", &text).unwrap_or_else(|e| panic!("{e}\n{text}")))
+    };
+    for set in ["R24=0", "R[24]=45", "$R[24]=360", "FOR R24=1 TO 1\nENDFOR", "G0 C=R24\nR24=0"] {
+        assert!(risks(set).contains(&"operator-data"), "{set}");
+    }
+    assert!(risks("R25=0\nG0 C=30+R24").is_empty());
+}
+
+/// PM19 p. 181: RTLIOF, each axis by itself; not with a transformation. With RTLION all arrive together, whatever MD20730 is.
+#[test]
+fn rtlion_and_rtliof_say_how_the_axes_go_in_a_rapid() {
+    let settings = Settings::new(Dialect::Sinumerik, [true, false, true]);
+    let said = |blocks: &str| {
+        let text = format!("G90 G94\n{blocks}\nM30\n");
+        let found =
+            common::ops(&settings, "p.mpf", &text).unwrap_or_else(|e| panic!("{e}\n{text}"));
+        let together = |action: &Action| match action {
+            Action::RapidsTogether(together) => Some(*together),
+            _ => None,
+        };
+        found.iter().filter_map(together).collect::<Vec<_>>()
+    };
+    assert_eq!(said("G0 X1"), []);
+    assert_eq!(said("RTLIOF\nRTLIOF\nG0 X1\nRTLION"), [Some(false), Some(true)]);
+    assert_eq!(said("RTLIOF\nTRAORI\nTRAFOOF"), [Some(false), Some(true), Some(false)]);
+    assert_eq!(said("TRAORI\nTRAFOOF\nRTLION\nTRAORI"), [Some(true)]);
+    let called = "N1 GOTOF BEHIND\nBEHIND:\nUP\nM30\n%_N_UP_SPF\nPROC UP SAVE\nRTLIOF\nRET\n";
+    let text = format!("%_N_P_MPF\n{called}");
+    let found = common::ops(&settings, "p.mpf", &text).unwrap_or_else(|e| panic!("{e}\n{text}"));
+    let said: Vec<&Action> =
+        found.iter().filter(|action| matches!(action, Action::RapidsTogether(_))).collect();
+    assert_eq!(said, [&Action::RapidsTogether(Some(false)), &Action::RapidsTogether(None)]);
+}
+
+/// PGZ 2-86 and the cycles of the TNC 640 ([cycles](../../../docs/controls/cycles.md)): what a call asks for beside the hole.
+#[test]
+fn what_a_cycle_does_beside_its_hole_is_told() {
+    let sinumerik = |call: &str| {
+        let text = format!("G90 G94 F100 S1000 M3\nG0 X5 Y6\n{call}\nM30\n");
+        risks(Dialect::Sinumerik, &text)
+    };
+    let none = [""; 0];
+    for (call, expected) in [
+        ("CYCLE84(10,0,2,-20,,0,3,,1.25,0,400,400)", &none[..]),
+        ("CYCLE84(10,0,2,-20,,0,3,,1.25,0,400,0)", &none),
+        ("CYCLE84(10,0,2,-20,,0,3,,1.25,0,400)", &none),
+        ("CYCLE84(10,0,2,-20,,0,5,,1.25,0,400,400)", &none),
+        ("CYCLE84(10,0,2,-20,,0,4,,-1.25,0,400,400)", &none),
+        ("CYCLE84(10,0,2,-20,,0,3,,-1.25,0,400,400)", &none),
+        ("CYCLE84(10,0,2,-20,,0,3,,1.25,0,400,401)", &["spindle"]),
+        ("CYCLE84(10,0,2,-20,,0,3,,1.25,0,400,4000)", &["spindle"]),
+        ("CYCLE84(10,0,2,-20,,0,4,,1.25,0,400,400)", &["spindle"]),
+        ("CYCLE83(50,0,1,-25,,,5,0,0,0,1,1)", &none),
+        ("CYCLE83(50,0,1,-25,,,5,0,0,1,1,1)", &["dwell"]),
+        ("CYCLE83(50,0,1,-25,,,5,0,0,-999,1,1)", &["dwell"]),
+        // Only where chips are cleared does it go up and wait.
+        ("CYCLE83(50,0,1,-25,,,5,0,0,1,1,0)", &none),
+        ("CYCLE83(50,0,1,-25,,,5,0,0.2,0,1,1,,,,0.2)", &none),
+        ("CYCLE83(50,0,1,-25,,,5,0,9,0,1,1,,,,0.2)", &["dwell"]),
+    ] {
+        assert_eq!(sinumerik(call), expected, "{call}");
+    }
+    let klartext = |number: u32, parameters: &str| {
+        let cycle = format!("CYCL DEF {number} NAME {parameters}");
+        let blocks = format!(
+            "TOOL CALL 5 Z S100\nL X+0 Y+0 Z+9 B+0 C+0 R0 FMAX M3\n{cycle}\nCYCL CALL\nM30"
+        );
+        risks(Dialect::Klartext, &numbered(&blocks))
+    };
+    let tap = "Q200=+2 Q201=-20 Q239=+1 Q203=+0 Q204=+50 Q257=+5 Q256=+1 Q336=+0";
+    assert_eq!(klartext(209, tap), none);
+    assert_eq!(klartext(209, &format!("{tap} Q403=+1")), none);
+    assert_eq!(klartext(209, &format!("{tap} Q403=+3")), ["spindle"]);
+    let pecks = |stop: &str, chip: &str| {
+        format!(
+            "Q200=+2 Q201=-20 Q206=+100 Q202=+5 Q203=+0 Q204=+50 Q212=+0 Q205=+0 {stop} {chip} Q256=+0.5 Q211=+0 Q379=+0 Q253=+750"
+        )
+    };
+    assert_eq!(klartext(205, &pecks("Q258=+0.5 Q259=+0.5", "Q257=+0")), none);
+    assert_eq!(klartext(205, &pecks("Q258=+0 Q259=+0.5", "Q257=+0")), ["peck"]);
+    assert_eq!(klartext(205, &pecks("Q258=+0.5 Q259=+0", "Q257=+0")), ["peck"]);
+    let plain = |clearance: &str| {
+        format!("Q200={clearance} Q201=-20 Q206=+100 Q202=+5 Q210=+0 Q203=+0 Q204=+50 Q211=+0")
+    };
+    assert_eq!(klartext(200, &plain("+2")), none);
+    assert_eq!(klartext(200, &plain("+0")), ["peck"]);
+}
+
+/// PM 2.13 and "Percentage acceleration override"; S1, "Minimum / maximum speed of the gear stage".
+#[test]
+fn gears_and_axes_beyond_their_machine_data_are_told() {
+    let on_machine = |auxiliary: &[u32], block: &str| {
+        let auxiliary = auxiliary.to_vec();
+        let settings = Settings { auxiliary, ..Settings::new(Dialect::Sinumerik, [false; 3]) };
+        let text = format!("G90 G94\n{block}\nM30\n");
+        rules(&common::ops(&settings, "p.mpf", &text).unwrap_or_else(|e| panic!("{e}\n{text}")))
+    };
+    for gear in 41..=45 {
+        assert_eq!(on_machine(&[], &format!("M{gear}")), ["gear"]);
+        assert_eq!(on_machine(&[gear], &format!("M{gear}")), [""; 0]);
+    }
+    assert_eq!(on_machine(&[], "M40"), [""; 0]);
+    assert_eq!(on_machine(&[], "ACC[X]=100 VELOLIMA[X]=80"), [""; 0]);
+    for word in ["ACC[X]=200", "ACCLIMA[X]=101", "JERKLIMA[Z]=150", "VELOLIMA[Y]=120"] {
+        assert_eq!(on_machine(&[], word), ["axis-dynamics"], "{word}");
+    }
+}
+
+/// H2 and PM 2.6: M3 takes the S that is there, and nobody knows which that is before the program has said one.
+#[test]
+fn a_sinumerik_starts_no_spindle_at_a_speed_that_nobody_has_said() {
+    let started = |blocks: &str| {
+        let text = format!("G90 G94\n{blocks}\nM30\n");
+        run(Dialect::Sinumerik, &text).map(drop).map_err(|error| error.rule)
+    };
+    for block in ["M3", "M4", "M1=3", "G0 X0 Y0\nCYCLE84(10,0,2,-20,,0,3,,1.25,0,400)"] {
+        assert_eq!(started(block), Err("spindle"), "{block}");
+    }
+    assert_eq!(started("S100 M3"), Ok(()));
+    assert_eq!(started("S100\nM4"), Ok(()));
+    assert_eq!(started("M5"), Ok(()));
+    assert_eq!(started("CYCLE832(-0.99,_FINISH,1)"), Err("cycle-parameter"));
+    assert_eq!(started("ADIS=-1"), Err("number"));
+}
+
+/// LinuxCNC "G92.1, G92.2 Reset G92 Offsets": the finding names the word that stands there.
+#[test]
+fn what_g92_2_takes_away_is_reported_as_that_of_g92_2() {
+    for word in ["G92.1", "G92.2"] {
+        let text = format!("G21 G90 G94 G17\nG54\nG0 X1 Y1 Z1\n{word}\nX2\nM2\n");
+        let error = run(Dialect::LinuxCnc, &text).unwrap_err();
+        assert_eq!(error.rule, "nc-unknown-shift");
+        assert!(error.message.starts_with(word), "{}", error.message);
+    }
+}
+
+/// B-64484EN-2: `G29` "immediately following the G28 command"; `G49` and another tool leave no H to lean on; and a cycle says where its
+/// holes are.
+#[test]
+fn a_word_that_leans_on_an_older_block_is_refused() {
+    const START: &str = "G21\nG90 G94 G17 G98 G54\nT1 M6\nS100 M3\nG0 X0. Y0.\nG43 H1 Z50.\n";
+    for (blocks, rule) in [
+        ("G91 G28 Z0.\nG29 Z-5.", None),
+        ("G91 G28 Z0.\nG90 G0 Z50.\nG91 G29 Z0.", Some("nc-home")),
+        ("G91 G28 Z0.\nT2 M6\nG29 Z-5.", Some("nc-home")),
+        ("G91 G28 Z0.\nG49\nG90 G43 Z50.", Some("nc-length")),
+        ("G91 G28 Z0.\nT2 M6\nG90 G43 Z50.", Some("nc-length")),
+        ("G91 G28 Z0.\nG49\nH2\nG90 G43 Z50.", None),
+        ("G81 Z-5. R2. F100.\nG81", Some("nc-cycle")),
+        ("G81 Z-5. R2. F100.\nG80", None),
+        ("G95\nM29 S100\nG84 Z-5. R2. F1.\nG80", None),
+    ] {
+        for dialect in [Dialect::Fanuc, Dialect::Haas] {
+            if dialect == Dialect::Haas && blocks.contains("M29") {
+                continue;
+            }
+            let found = run(dialect, &format!("{START}{blocks}\nM30\n"));
+            assert_eq!(found.err().map(|found| found.rule), rule, "{dialect:?} {blocks}");
+        }
+    }
+    // "Between M29 and G84 no axis moves."
+    let between = run(Dialect::Fanuc, &format!("{START}M29 S100\nG1 Z1. F100.\nM30\n"));
+    assert_eq!(between.unwrap_err().rule, "nc-cycle");
 }
 
 /// B-64484EN-2, "M99": in a main program it goes back to its begin.
@@ -776,6 +1010,12 @@ fn a_tolerance_of_the_orientation_is_what_the_machines_file_allows() {
     {
         assert_eq!(risks_within(Dialect::Sinumerik, 0.0, &format!("{harmless}\nM30\n")), none);
     }
+    // SD42674 to SD42678 say by how much, and nobody has said these.
+    for loose in ["OSC", "OSS", "OSSE", "OSD", "OST", "ORISON"] {
+        let program = format!("{loose}\nM30\n");
+        assert_eq!(risks_within(Dialect::Sinumerik, 0.5, &program), beyond, "{loose}");
+    }
+    assert_eq!(risks_within(Dialect::Sinumerik, 0.0, "OSOF ORISOF\nM30\n"), none);
     for wrong in [
         "CYCLE832(0.05,_ORI_FINISH)",
         "CYCLE832(0.05,11,0)",

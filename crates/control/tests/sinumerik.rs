@@ -96,7 +96,7 @@ fn header_labels_skip_marks_and_comments_are_read() {
 #[test]
 fn words_that_do_not_move_leave_no_trace() {
     let text = "G60 G601 SOFT FFWON COMPCAD G642 ADIS=0.1 DYNFINISH\nCYCLE832(0.01,_FINISH,1)\n\
-                FGROUP(X,Y,Z)\nM41\nM26 M28\nSTOPRE\nCYCLE832()\nORIWKS ORIAXES\nFNORM\nSETMS\n\
+                FGROUP(X,Y,Z)\nM40\nM26 M28\nSTOPRE\nCYCLE832()\nORIWKS ORIAXES\nFNORM\nSETMS\n\
                 SETMS(1)\nGROUP_BEGIN(0,\"HEAD\",0,0)\nGROUP_ADDEND(0,0)\nGROUP_END(0,0)";
     let text = text.replace("ORIWKS ORIAXES", "ORIWKS\nORIAXES");
     let text = text.replace("G60 G601", "G601");

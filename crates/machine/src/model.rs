@@ -1,5 +1,6 @@
 //! What a machine is, after its files are merged.
 
+use crate::sheet::wrong_option;
 use geom::Vec3;
 use program::{Axes, CycleKind, Diagnostic, Digest, MachineMove};
 use serde::Deserialize;
@@ -540,6 +541,9 @@ impl Machine {
             OptionValue::Flag(_) => (value.parse().ok().map(OptionValue::Flag), "true or false"),
             OptionValue::Number(_) => {
                 let number = value.parse().ok().filter(|number: &f64| number.is_finite());
+                if let Some(wrong) = number.and_then(|number| wrong_option(name, number)) {
+                    return Err(refused(format!("option `{name}`: {wrong}"), String::new()));
+                }
                 (number.map(OptionValue::Number), "a number")
             }
             // It reaches the program as it is: it must not make a block of its own.

@@ -75,24 +75,24 @@ sheet!(Sheet "" {
     blocks: BTreeMap<String, Spanned<String>>, "", "Table: the templates of the blocks.";
     axes: BTreeMap<LinearName, Spanned<LinearSheet>>, "", "Table: X, Y and Z.";
     rotary: Spanned<Vec<Spanned<RotarySheet>>>, "", "Tables [[rotary]]: the rotary axes from the machine's frame outwards, at most two.";
-    work_zero: Point, "mm", "The work zero (G54) in machine coordinates, where it is known: travels are then checked in machine coordinates, otherwise only their length.";
-    safe_height: Spanned<Finite>, "mm", "Z of the gauge line in machine coordinates at which every tool is clear of every part: where the control shows it, homed and at its top. Retracts in machine coordinates (G53, SUPA, M91) go there; without it none is written.";
+    work_zero: Place3, "mm", "The work zero (G54) in machine coordinates, where it is known: travels are then checked in machine coordinates, otherwise only their length.";
+    safe_height: Spanned<Position>, "mm", "Z of the gauge line in machine coordinates at which every tool is clear of every part: where the control shows it, homed and at its top. Retracts in machine coordinates (G53, SUPA, M91) go there; without it none is written.";
     orientation: Spanned<OrientationSheet>, "", "Table: how a tool axis is written.";
     wire: Spanned<WireSheet>, "", "Table: the wire of a machine for wire EDM; a machine without it is a mill.";
     spindle: Spanned<SpindleSheet>, "", "Table: the speeds of the spindle.";
-    feed_max: Positive, "mm/min", "The fastest feed of the machine; a program that asks for more is refused.";
+    feed_max: Rate, "mm/min", "The fastest feed of the machine; a program that asks for more is refused.";
     tools: ToolsSheet, "", "Table: what the magazine takes.";
     auxiliary: Vec<u32>, "", "Numbers of the M functions of the builder that programs use; none moves an axis that the program drives.";
     operator_parameters: Vec<OperatorParameter>, "", "R parameters with which the operator shifts the zero of a rotary axis, such as [\"R24\"] (SINUMERIK).";
     approach: Spanned<Vec<String>>, "", "In which order the axes go to the first position after a tool change: each entry names axes that move together.";
-    options: BTreeMap<String, OptionSheet>, "", "Table: values of this machine that its templates read.";
+    options: BTreeMap<String, Spanned<OptionSheet>>, "", "Table: values of this machine that its templates read.";
 });
 
 sheet!(merged CapabilitiesSheet "capabilities" {
     arcs: Vec<Plane>, "", "Planes in which it cuts arcs: XY, XZ, YZ.";
     helix: bool, "", "Whether an arc may rise along the normal of the plane.";
     full_circle: bool, "", "Whether one block may turn a full circle.";
-    arc_tolerance: Positive, "mm", "Difference of the radii at the ends of an arc that the control accepts.";
+    arc_tolerance: Tolerance, "mm", "Difference of the radii at the ends of an arc that the control accepts.";
     cycles: Vec<CycleName>, "", "Hole cycles that it has: drill, deep, break-chip, tap, ream, bore.";
     compensation: bool, "", "Whether it has cutter radius compensation.";
     compensation_start: CompensationStart, "", "Where the move that switches cutter compensation on ends: next-start (beside the start of the next one), which is taken where it is missing; or own-end (beside its own end: it has to be longer than the tool's radius, elements that turn by less than 0.05 rad join without a corner, and the way to a rapid is straight: LinuxCNC).";
@@ -102,18 +102,18 @@ sheet!(merged CapabilitiesSheet "capabilities" {
     inverse_time_arcs: bool, "", "Whether inverse-time feed counts the time of an arc as that of a line; FANUC divides by the radius.";
     length_offset: LengthOffset, "", "How the tool length offset is called: implicit, one, tool-number.";
     line_length: usize, "", "Most characters of a line, its end not counted.";
-    lowering_tolerance: Positive, "mm", "How far arcs and curves that are split into lines may leave the path.";
-    rapid_corridor: Positive, "mm", "How far a rapid may be from the straight way of the source where it is not beyond all cuts; 0.1 where it is missing.";
-    rapid_clearance: Positive, "mm", "How far the tool must be beyond all cuts, along its own axis, to go by rapid in any way; 1 where it is missing.";
+    lowering_tolerance: Tolerance, "mm", "How far arcs and curves that are split into lines may leave the path.";
+    rapid_corridor: Tolerance, "mm", "How far a rapid may be from the straight way of the source where it is not beyond all cuts; 0.1 where it is missing.";
+    rapid_clearance: Clearance, "mm", "How far the tool must be beyond all cuts, along its own axis, to go by rapid in any way; 1 where it is missing.";
 });
 
 sheet!(merged SettingsSheet "settings" {
     dwell_p_milliseconds: bool, "", "Whether P of a dwell counts milliseconds, or tenths of them: FANUC increment system B (parameter 1013), or 1015#7 is 1.";
     floating_holder: bool, "", "Whether taps are held in a chuck that floats along its axis, so that a tapping cycle need not couple feed and spindle.";
-    high_feed: Positive, "mm/min", "The feed of rapids near the part that are written as G1, since each axis goes at its own speed by rapid: as fast as the machine is to go through the air there.";
+    high_feed: Rate, "mm/min", "The feed of rapids near the part that are written as G1, since each axis goes at its own speed by rapid: as fast as the machine is to go through the air there.";
     length_along_z: bool, "", "Whether the tool length counts along Z in every plane: SINUMERIK SD42940 is 17, FANUC parameters 5001#0 and 5001#1 are 0.";
     length_moves_axis: bool, "", "Whether Z moves where a tool length begins, ends or changes: FANUC parameter 5006#6 is 0.";
-    retract_above_r: NotNegative, "mm", "How far above R a peck cycle (G83) takes the tool each time it clears chips: Haas setting 52.";
+    retract_above_r: Retract, "mm", "How far above R a peck cycle (G83) takes the tool each time it clears chips: Haas setting 52.";
     rapid_path: RapidPath, "", "How the axes go in a rapid: linear (together, on a straight line) or independent (each at its own speed), which is taken where it is missing. FANUC: linear where parameter 1401#1 is 1; SINUMERIK: MD20730.";
     tool_radius: ToolRadius, "", "What the tool table keeps as the radius of a tool (D, the radius of an edge, R): full, the radius itself, for contours; or wear, its difference from the tool of the toolpath, for paths of the tool's centre.";
     rotary_feed: RotaryFeed, "", "What F in mm/min counts where rotary axes turn in a cut and the control does not keep the tool tip: all-axes (all of them together, a degree as a mm: FANUC where parameter 1408#0 is 0, HEIDENHAIN, SINUMERIK after FGROUP with them) or linear-axes (X, Y and Z alone; LinuxCNC). It is needed where the control has no inverse-time feed.";
@@ -150,60 +150,60 @@ sheet!(merged WordSheet "words.NAME" {
     within_turn: bool, "", "Whether a position of a rotary axis is written within a turn, from 0 to below 360: what DC() of a SINUMERIK takes.";
     step: u32, "", "Block number: what it grows by; 0 for none.";
     first: u32, "", "Block number, parameters that keep heights: the first one.";
-    scale: Positive, "", "What the value is multiplied with before it is written: 1000 for a dwell in milliseconds.";
-    max: Positive, "", "Largest number that the control takes, as it is written. A block number starts over behind it.";
+    scale: Scale, "", "What the value is multiplied with before it is written: 1000 for a dwell in milliseconds.";
+    max: Largest, "", "Largest number that the control takes, as it is written. A block number starts over behind it.";
     codes: BTreeMap<String, String>, "", "Texts of a word that is no number, by what they mean.";
 });
 
 sheet!(merged LinearSheet "axes.X" {
-    min: Number, "mm", "Lower end of the travel in machine coordinates; without one there is no limit.";
-    max: Number, "mm", "Upper end of the travel.";
-    rapid: Positive, "mm/min", "Speed of a rapid move.";
-    acceleration: Positive, "m/s²", "Acceleration.";
+    min: Position, "mm", "Lower end of the travel in machine coordinates; without one there is no limit.";
+    max: Position, "mm", "Upper end of the travel.";
+    rapid: Rate, "mm/min", "Speed of a rapid move.";
+    acceleration: Acceleration, "m/s²", "Acceleration.";
 });
 
 sheet!(RotarySheet "rotary" {
     letter: char, "", "Its address: A, B or C.";
     on: Mount, "", "What it carries: table (the part) or head (the tool).";
-    axis: Point, "", "Direction of the axis while all others stand at zero.";
-    point: Point, "mm", "A point of the axis: of a table in machine coordinates, of a head from the gauge point of the spindle.";
+    axis: Direction, "", "Direction of the axis while all others stand at zero.";
+    point: Place3, "mm", "A point of the axis: of a table in machine coordinates, of a head from the gauge point of the spindle.";
     sign: f64, "", "1 where a growing position turns what the axis carries right-handed about it, -1 where left-handed.";
-    offset: Finite, "degrees", "Position at which the axis stands in its kinematic zero.";
-    min: Number, "degrees", "Lower end of the travel; without one there is no limit.";
-    max: Number, "degrees", "Upper end of the travel.";
-    rapid: Positive, "degrees/min", "Speed of a rapid move.";
-    acceleration: Positive, "degrees/s²", "Acceleration.";
+    offset: Angle, "degrees", "Position at which the axis stands in its kinematic zero.";
+    min: Angle, "degrees", "Lower end of the travel; without one there is no limit.";
+    max: Angle, "degrees", "Upper end of the travel.";
+    rapid: TurnRate, "degrees/min", "Speed of a rapid move.";
+    acceleration: TurnAcceleration, "degrees/s²", "Acceleration.";
     modulo: bool, "", "Whether its control counts it modulo 360 degrees; an axis whose travel ends within a turn is not, of another it is not known.";
     clamp_open: u32, "", "M function that opens its clamp: the axis turns only after it.";
     clamp_close: u32, "", "M function that closes its clamp. A machine whose axes have clamps needs the blocks `unclamp` and `clamp`.";
-    prefer: Finite, "", "Which solution is taken where nothing else decides: the one in which this axis is positive (1) or negative (-1).";
+    prefer: Angle, "", "Which solution is taken where nothing else decides: the one in which this axis is positive (1) or negative (-1).";
 });
 
 sheet!(merged OrientationSheet "orientation" {
     simultaneous: OrientationMode, "", "How the tool axis is written while it turns in the cut: fixed, machine-angles, tool-center-angles, vectors, tilted-plane.";
     positioned: OrientationMode, "", "The same while it stands still (3+2); as `simultaneous` where it is missing.";
-    tolerance: Positive, "mm", "How far the tool tip may leave the line between two points before a point is added.";
+    tolerance: Tolerance, "mm", "How far the tool tip may leave the line between two points before a point is added.";
 });
 
 sheet!(merged WireSheet "wire" {
-    height: Positive, "mm", "Height of the upper plane over the lower: U and V say how far the wire is beside X and Y there.";
-    uv_travel: Positive, "mm", "Farthest U and V either way; without it there is no limit.";
-    taper_max: Positive, "degrees", "How far the wire may lean from upright; without it there is no limit.";
+    height: Length, "mm", "Height of the upper plane over the lower: U and V say how far the wire is beside X and Y there.";
+    uv_travel: Length, "mm", "Farthest U and V either way; without it there is no limit.";
+    taper_max: Lean, "degrees", "How far the wire may lean from upright; without it there is no limit.";
     thread: u32, "", "Number of the M function that threads the wire.";
     cut: u32, "", "Number of the M function that cuts the wire.";
     memory: u32, "", "The most points that the control holds, one a line.";
 });
 
 sheet!(merged SpindleSheet "spindle" {
-    min: Number, "1/min", "The slowest speed.";
-    max: Number, "1/min", "The fastest speed.";
-    dwell: Positive, "s", "How long the spindle takes to reach its speed where the control does not wait for it: programs dwell so long behind each start.";
+    min: Speed, "1/min", "The slowest speed.";
+    max: Speed, "1/min", "The fastest speed.";
+    dwell: Wait, "s", "How long the spindle takes to reach its speed where the control does not wait for it: programs dwell so long behind each start.";
 });
 
 sheet!(merged ToolsSheet "tools" {
     max_number: u32, "", "Highest number of a tool.";
-    max_diameter: Positive, "mm", "Largest diameter.";
-    max_length: Positive, "mm", "Longest tool.";
+    max_diameter: Length, "mm", "Largest diameter.";
+    max_length: Length, "mm", "Longest tool.";
     retracts: bool, "", "Whether the tool change brings Z up by itself; without it Z has to be home before each.";
 });
 
@@ -241,13 +241,47 @@ macro_rules! value {
     )*};
 }
 
+/// Whether a number is above 0 and at most `most`.
+fn above_0(value: f64, most: f64) -> bool {
+    value > 0.0 && value <= most
+}
+
+// What no machine has by far is a slip of the pen: a figure in another unit, or a digit too many.
 value! {
-    Number(f64, "f64") |value| !value.is_nan(), "a number";
-    Finite(f64, "f64") |value| value.is_finite(), "a finite number";
-    Positive(f64, "f64") |value| *value > 0.0 && value.is_finite(), "a number above 0";
-    NotNegative(f64, "f64") |value| *value >= 0.0 && value.is_finite(), "0 or a number above it";
+    Position(f64, "f64") |mm| mm.abs() <= 1e5, "a number from -100000 to 100000 mm";
+    Place3([f64; 3], "[f64; 3]") |point| point.iter().all(|mm| mm.abs() <= 1e5), "three numbers from -100000 to 100000 mm";
+    Direction([f64; 3], "[f64; 3]") |axis| axis.iter().all(|part| part.abs() <= 1e6), "three numbers from -1000000 to 1000000";
+    Length(f64, "f64") |mm| above_0(*mm, 1e4), "a number above 0, at most 10000 mm,";
+    Clearance(f64, "f64") |mm| above_0(*mm, 1e3), "a number above 0, at most 1000 mm,";
+    Tolerance(f64, "f64") |mm| (1e-6..=10.0).contains(mm), "a number from 0.000001 to 10 mm";
+    Retract(f64, "f64") |mm| (0.0..=1e3).contains(mm), "a number from 0 to 1000 mm";
+    Rate(f64, "f64") |rate| above_0(*rate, 1e6), "a number above 0, at most 1000000 mm/min,";
+    Acceleration(f64, "f64") |rate| above_0(*rate, 1e3), "a number above 0, at most 1000 m/s²,";
+    Angle(f64, "f64") |degrees| degrees.abs() <= 1e6, "a number from -1000000 to 1000000 degrees";
+    Lean(f64, "f64") |degrees| above_0(*degrees, 90.0), "a number above 0, at most 90 degrees,";
+    TurnRate(f64, "f64") |rate| above_0(*rate, 1e7), "a number above 0, at most 10000000 degrees/min,";
+    TurnAcceleration(f64, "f64") |rate| above_0(*rate, 1e7), "a number above 0, at most 10000000 degrees/s²,";
+    Speed(f64, "f64") |speed| (0.0..=1e6).contains(speed), "a number from 0 to 1000000 1/min";
+    Wait(f64, "f64") |seconds| above_0(*seconds, 600.0), "a number above 0, at most 600 s,";
+    Scale(f64, "f64") |scale| (1e-6..=1e6).contains(scale), "a number from 0.000001 to 1000000";
+    Largest(f64, "f64") |most| above_0(*most, 1e15), "a number above 0, at most 10^15,";
     Decimals(u8, "u8") |value| *value <= 9, "0 to 9";
-    Point([f64; 3], "[f64; 3]") |point| point.iter().all(|value| value.is_finite()), "three finite numbers";
+}
+
+/// What the options that are no mere texts of the templates may be: the name, the most, the unit.
+const MEASURED_OPTIONS: [(&str, f64, &str); 2] =
+    [("path_tolerance", 10.0, "mm"), ("orientation_tolerance", 45.0, "degrees")];
+
+/// Why a number cannot be the value of that option.
+pub(crate) fn wrong_option(name: &str, value: f64) -> Option<String> {
+    let known = MEASURED_OPTIONS.iter().find(|(option, ..)| *option == name);
+    let (good, need) = match known {
+        Some((_, most, unit)) => {
+            ((0.0..=*most).contains(&value), format!("a number from 0 to {most} {unit}"))
+        }
+        None => (value.abs() <= 1e9, String::from("a number from -10^9 to 10^9")),
+    };
+    (!good).then(|| format!("{value:?} is given, and {need} is needed"))
 }
 
 /// `R24`.

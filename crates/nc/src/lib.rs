@@ -571,6 +571,8 @@ impl<'a> Lift<'a> {
                 self.push(line, Op::Feed(feed));
             }
             Action::FeedPath(path) => self.feed_path = path,
+            // A rapid of a source has its ends only.
+            Action::RapidsTogether(_) => {}
             Action::Spindle(spindle) => self.push(line, Op::Spindle(spindle)),
             Action::SurfaceSpeed(speed) => self.push(line, Op::SurfaceSpeed(speed)),
             Action::Coolant(coolant) => self.push(line, Op::Coolant(coolant)),

@@ -42,7 +42,7 @@ mod writer;
 pub use catalogue::{Kind, Parameter, catalogue};
 
 use machine::Machine;
-use program::{Diagnostic, Program};
+use program::{Diagnostic, Program, Severity};
 
 /// A written program.
 #[derive(Clone, Debug, Default)]
@@ -61,6 +61,19 @@ pub struct Output {
 /// Everything that keeps the program from being written, up to a fixed number of findings, each with
 /// the source line it comes from; mistakes in the machine's own files with their place there.
 pub fn write(program: &Program, machine: &Machine) -> Result<Output, Vec<Diagnostic>> {
+    let is_error = |found: &Diagnostic| found.severity == Severity::Error;
+    let (errors, warnings) = program.tools_under_one_number().into_iter().partition(is_error);
+    let errors: Vec<Diagnostic> = errors;
+    if !errors.is_empty() {
+        return Err(errors);
+    }
+    let mut output = write_moves(program, machine)?;
+    let warnings: Vec<Diagnostic> = warnings;
+    output.warnings.extend(warnings);
+    Ok(output)
+}
+
+fn write_moves(program: &Program, machine: &Machine) -> Result<Output, Vec<Diagnostic>> {
     let Some((records, lines)) = sweep::split(program, machine) else {
         let walk = walk::Walk::new(program, machine)?;
         return upright::check(program, machine)

@@ -21,6 +21,7 @@ mod digest;
 pub mod encoding;
 pub mod heights;
 pub mod lowering;
+mod magazine;
 mod motion;
 mod pose;
 mod purpose;

@@ -417,6 +417,10 @@ const WAYS_OUT: &[(&str, &str)] = &[
     ("tool-number", "give the tool its number in a tool table (`--tools`)"),
     ("tool-range", "choose a tool within the range of the machine, or correct the tool's data"),
     (
+        "tool-twice",
+        "give each tool a number of its own in the toolpath, or the same data everywhere where it is one tool",
+    ),
+    (
         "transformation",
         "end one transformation before the next begins, and give it the words that the control takes",
     ),

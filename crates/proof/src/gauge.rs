@@ -12,6 +12,8 @@ pub(crate) struct Gauge<'a> {
     pub allowed: Applied,
     /// mm, where the source says it.
     pub tool_length: Option<f64>,
+    /// Whether the axes go together in a rapid, on a straight line.
+    pub straight_rapids: bool,
 }
 
 impl Gauge<'_> {

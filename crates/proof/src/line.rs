@@ -132,10 +132,13 @@ pub(crate) fn blend(from: &Position, to: &Position, t: f64) -> Position {
     Position { point, orientation }
 }
 
-/// Refuses a deviation that is larger than allowed, or not a number.
+/// Refuses a deviation that is larger than allowed, or not known.
 pub(crate) fn within(what: &str, value: f64, allowed: f64, unit: &str) -> Result<(), String> {
     match value <= allowed {
         true => Ok(()),
+        false if value.is_nan() => {
+            Err(format!("whether it {what} is not known: no block says all of its coordinates"))
+        }
         false => Err(format!("{what} by {} {unit} ({} allowed)", Number(value), Number(allowed))),
     }
 }

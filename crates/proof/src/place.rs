@@ -52,15 +52,21 @@ impl Place {
     }
 }
 
-/// `X1 Y2 Z3`, with the tool axis behind where it is not +Z; a `?` for what is not known.
+/// `X1 Y2 Z3`, with the tool axis behind where it is not +Z; `X1 (Y and Z not known)` where that is so.
 impl fmt::Display for Place {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        for (i, (letter, value)) in "XYZ".chars().zip(self.tip.to_array()).enumerate() {
+        let all = ["X", "Y", "Z"].into_iter().zip(self.tip.to_array());
+        let (unknown, known): (Vec<_>, Vec<_>) = all.partition(|(_, value)| value.is_nan());
+        if known.is_empty() {
+            return write!(f, "a place that is not known");
+        }
+        for (i, (letter, value)) in known.into_iter().enumerate() {
             let gap = if i > 0 { " " } else { "" };
-            match value.is_nan() {
-                true => write!(f, "{gap}{letter}?")?,
-                false => write!(f, "{gap}{letter}{}", Number(value))?,
-            }
+            write!(f, "{gap}{letter}{}", Number(value))?;
+        }
+        if !unknown.is_empty() {
+            let letters: Vec<&str> = unknown.into_iter().map(|(letter, _)| letter).collect();
+            write!(f, " ({} not known)", letters.join(" and "))?;
         }
         if !self.axis.abs_diff_eq(Vec3::Z, 1e-9) {
             let [i, j, k] = self.axis.to_array();
@@ -77,11 +83,20 @@ impl From<&Pose> for Place {
     }
 }
 
-/// A number for a person: at most four decimals, no trailing zeros, no `-0`.
+/// From here on a number is shown by its power of ten.
+const TOO_LONG: f64 = 1e12;
+
+/// A number for a person: at most four decimals, no trailing zeros, no `-0`, no more than twelve digits before the point.
 pub(crate) struct Number(pub f64);
 
 impl fmt::Display for Number {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        if self.0.is_nan() {
+            return write!(f, "unknown");
+        }
+        if self.0.abs() >= TOO_LONG {
+            return write!(f, "{:e}", self.0);
+        }
         let rounded = (self.0 * 1e4).round() / 1e4;
         write!(f, "{}", if rounded == 0.0 { 0.0 } else { rounded })
     }

@@ -93,6 +93,20 @@ const ISO_BLOCKS: &[&str] = &[
     "M29 S100",
     "G5.1 Q1",
     "G187 P3 E5.",
+    "M48",
+    "M49",
+    "M50 P0",
+    "M51 P0",
+    "M52 P1",
+    "M53 P0",
+    "G63",
+    "#500=5",
+    "#700=5",
+    "G81",
+    "G29 Z0",
+    "G43",
+    "G28.1",
+    "G30.1",
     "M61 Q9",
     "G90",
     "G17",
@@ -179,6 +193,20 @@ const SINUMERIK_BLOCKS: &[&str] = &[
     "FNORM",
     "SPOS=0",
     "AROT Z5",
+    "R24=0",
+    "RTLIOF",
+    "RTLION",
+    "G25 X-5",
+    "G26 X10",
+    "G26 S500",
+    "WALIMOF",
+    "G644",
+    "G641 ADISPOS=5",
+    "CTOL=0.01 G645",
+    "CYCLE832(-0.99,_FINISH,1)",
+    "M41",
+    "ACC[X]=200",
+    "G63 X1",
 ];
 
 /// Blocks for Klartext, whose numbers are made anew.
@@ -231,6 +259,9 @@ const KLARTEXT_BLOCKS: &[&str] = &[
     "LBL 1",
     "CALL LBL 1",
     "; WORDS",
+    "M107",
+    "M141",
+    "QR5 = +3",
 ];
 
 /// A program that is proven, and what it is proven against.
@@ -305,8 +336,14 @@ impl Sample {
         };
         // Behind the start, before the end.
         let place = 2 + random.index(lines.len() - 4);
+        let dialect = control::Dialect::named(&self.machine.reader).unwrap();
         match random.index(8) {
             0 => lines[place].insert(0, '/'),
+            // Any word that the tables of the dialect hold.
+            1..=3 => {
+                let words = control::vocabulary(dialect);
+                lines.insert(place, format!("{}\n", words[random.index(words.len())]));
+            }
             _ => lines.insert(place, format!("{}\n", pointed(blocks[random.index(blocks.len())]))),
         }
         if self.machine.reader == "klartext" {

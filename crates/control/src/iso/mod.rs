@@ -20,6 +20,11 @@ use flow::run::Run;
 use flow::source::Source;
 use language::block::Fault;
 
+/// The G and M words of the dialect of these facts.
+pub(crate) fn vocabulary(facts: &Facts) -> Vec<String> {
+    facts.words.vocabulary()
+}
+
 /// Runs a program of the dialect of these facts.
 pub(crate) fn run(
     facts: &'static Facts,

@@ -15,6 +15,11 @@ use execution::state::Control;
 use flow::run::Run;
 use language::scan::Result;
 
+/// Its M functions.
+pub(crate) fn vocabulary() -> Vec<String> {
+    language::functions::vocabulary().map(|number| format!("M{number}")).collect()
+}
+
 /// Runs a program.
 pub(crate) fn run(settings: &Settings, text: &[u8], compensator: &mut Compensator) -> Result<()> {
     let mut control = Control::new(settings, compensator);

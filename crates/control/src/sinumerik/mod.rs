@@ -16,6 +16,12 @@ use program::Diagnostic;
 /// What may go wrong.
 type Fallible<T> = Result<T, Box<Diagnostic>>;
 
+/// Its commands, addresses, calls and cycles, and the M functions of the control itself.
+pub(crate) fn vocabulary() -> Vec<String> {
+    let words = language::vocabulary().into_iter();
+    words.chain((0..=45).chain([70]).map(|number| format!("M{number}"))).collect()
+}
+
 /// Runs a program.
 pub(crate) fn run(settings: &Settings, text: &[u8], compensator: &mut Compensator) -> Fallible<()> {
     flow::run::Run::main(settings, text, compensator)

@@ -57,12 +57,12 @@ pub(super) struct CheckedSheet {
     blocks: BTreeMap<String, Block>,
     axes: BTreeMap<LinearName, Placed<LinearSheet>>,
     rotary: Option<Placed<Vec<RotaryAxis>>>,
-    work_zero: Option<Point>,
-    safe_height: Option<Placed<Finite>>,
+    work_zero: Option<Place3>,
+    safe_height: Option<Placed<Position>>,
     orientation: Option<Placed<OrientationSheet>>,
     wire: Option<Placed<WireSheet>>,
     spindle: Option<Placed<SpindleSheet>>,
-    feed_max: Option<Positive>,
+    feed_max: Option<Rate>,
     tools: ToolsSheet,
     auxiliary: Option<Vec<u32>>,
     operator_parameters: Option<Vec<OperatorParameter>>,
@@ -76,14 +76,19 @@ impl CheckedSheet {
         let word = |(name, word)| (name, file.placed(word));
         let axis = |(name, axis): (LinearName, Spanned<LinearSheet>)| {
             let placed = Placed::new(file, &format!("axes.{name:?}"), axis);
-            check_range(&placed.place, placed.sheet.min, placed.sheet.max, "mm")?;
+            check_range(
+                &placed.place,
+                placed.sheet.min.map(|mm| mm.0),
+                placed.sheet.max.map(|mm| mm.0),
+                "mm",
+            )?;
             Ok((name, placed))
         };
         let axes: Result<_> = sheet.axes.unwrap_or_default().into_iter().map(axis).collect();
         let blocks = sheet.blocks.unwrap_or_default().into_iter();
         let spindle = sheet.spindle.map(|spindle| Placed::new(file, "spindle", spindle));
         if let Some(Placed { sheet, place }) = &spindle {
-            check_range(place, sheet.min, sheet.max, "1/min")?;
+            check_range(place, sheet.min.map(|s| s.0), sheet.max.map(|s| s.0), "1/min")?;
         }
         Ok(CheckedSheet {
             extends: sheet.extends,
@@ -107,25 +112,38 @@ impl CheckedSheet {
             auxiliary: sheet.auxiliary,
             operator_parameters: sheet.operator_parameters,
             approach: sheet.approach.map(|order| check_approach(file, order)).transpose()?,
-            options: sheet.options.unwrap_or_default(),
+            options: check_options(file, sheet.options.unwrap_or_default())?,
         })
     }
 }
 
 /// Refuses a range that holds nothing.
-fn check_range(
-    place: &Diagnostic,
-    min: Option<Number>,
-    max: Option<Number>,
-    unit: &str,
-) -> Result<()> {
+fn check_range(place: &Diagnostic, min: Option<f64>, max: Option<f64>, unit: &str) -> Result<()> {
     match (min, max) {
-        (Some(Number(min)), Some(Number(max))) if min >= max => {
+        (Some(min), Some(max)) if min >= max => {
             let message = format!("`min` is less than `max`, not {min} {unit} and {max} {unit}");
             Err(wrong(place, &message))
         }
         _ => Ok(()),
     }
+}
+
+/// The values of the options, each within its range.
+fn check_options(
+    file: &SheetFile,
+    options: BTreeMap<String, Spanned<OptionSheet>>,
+) -> Result<BTreeMap<String, OptionSheet>> {
+    let checked = |(name, value): (String, Spanned<OptionSheet>)| {
+        let wrong = match value.get_ref() {
+            OptionSheet::Number(number) => wrong_option(&name, *number),
+            OptionSheet::Flag(_) | OptionSheet::Text(_) => None,
+        };
+        match wrong {
+            Some(message) => Err(file.at(&name, &value, &message).into()),
+            None => Ok((name, value.into_inner())),
+        }
+    };
+    options.into_iter().map(checked).collect()
 }
 
 /// Every linear axis comes once.
@@ -169,12 +187,7 @@ fn check_rotary(
         }
         let min = sheet.min.map_or(f64::NEG_INFINITY, |min| min.0);
         let max = sheet.max.map_or(f64::INFINITY, |max| max.0);
-        check_range(
-            &file.at(&what, &spanned, ""),
-            Some(Number(min)),
-            Some(Number(max)),
-            "degrees",
-        )?;
+        check_range(&file.at(&what, &spanned, ""), Some(min), Some(max), "degrees")?;
         let clamp = match (sheet.clamp_open, sheet.clamp_close) {
             (None, None) => None,
             (Some(open), Some(close)) if open != close => Some(Clamp { open, close }),
@@ -293,7 +306,7 @@ impl CheckedSheet {
         let mut linear = [LinearAxis::default(); 3];
         for (axis, name) in linear.iter_mut().zip([LinearName::X, LinearName::Y, LinearName::Z]) {
             if let Some(Placed { sheet, place }) = self.axes.remove(&name) {
-                check_range(&place, sheet.min, sheet.max, "mm")?;
+                check_range(&place, sheet.min.map(|mm| mm.0), sheet.max.map(|mm| mm.0), "mm")?;
                 *axis = finish_linear(&sheet);
             }
         }
@@ -301,7 +314,7 @@ impl CheckedSheet {
         let safe_height = safe_height.transpose()?;
         let (mut spindle, mut orientation) = (SpindleSheet::default(), OrientationSheet::default());
         if let Some(Placed { sheet, place }) = self.spindle {
-            check_range(&place, sheet.min, sheet.max, "1/min")?;
+            check_range(&place, sheet.min.map(|s| s.0), sheet.max.map(|s| s.0), "1/min")?;
             spindle = sheet;
         }
         let (mut rotary, mut rotary_place) = (Vec::new(), None);
@@ -459,7 +472,7 @@ impl CheckedSheet {
 }
 
 /// The safe height, which Z must reach.
-fn check_safe_height(safe: &Placed<Finite>, z: &LinearAxis) -> Result<f64> {
+fn check_safe_height(safe: &Placed<Position>, z: &LinearAxis) -> Result<f64> {
     let (height, LinearAxis { min, max, .. }) = (safe.sheet.0, *z);
     if height < min || height > max {
         let message = format!("{height} mm, and Z travels from {min} to {max} mm");

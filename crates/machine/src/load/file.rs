@@ -124,11 +124,23 @@ impl SheetFile {
         toml::from_str(&self.text).map_err(|e| {
             let span = e.span().unwrap_or(0..0);
             let message = match self.quoted {
-                true => e.message().trim().replace('\n', "; "),
+                true => {
+                    let key = self.key_before(span.start);
+                    format!("{key}{}", e.message().trim().replace('\n', "; "))
+                }
                 false => String::from("this is no machine file"),
             };
             self.diagnostic("machine-file", message, span).into()
         })
+    }
+
+    /// The key whose value begins at a byte, as `key: `; nothing where none stands before it.
+    fn key_before(&self, value: usize) -> String {
+        let before = self.text.get(..value).unwrap_or_default();
+        let line = before.rsplit('\n').next().unwrap_or_default().trim_end();
+        let key = line.strip_suffix('=').unwrap_or_default();
+        let key = key.rsplit(['{', ',']).next().unwrap_or_default().trim();
+        if key.is_empty() { String::new() } else { format!("{key}: ") }
     }
 
     pub(super) fn at<T>(&self, what: &str, place: &Spanned<T>, message: &str) -> Diagnostic {

@@ -254,11 +254,19 @@ max = 200.5
             assert!(shown.contains(what), "{shown}");
         };
         refused("[axes]\nX = { min = 100, max = -100 }", "2:5", "axes.X: `min` is less than `max`");
-        refused("[axes]\nY = { rapid = 0 }", "2:15", "a number above 0 is needed");
+        refused(
+            "[axes]\nY = { rapid = 0 }",
+            "2:15",
+            "rapid: 0.0 is given, and a number above 0, at most 1000000 mm/min, is needed",
+        );
         refused("[spindle]\nmin = 9\nmax = 1", "1:1", "spindle: `min`");
         refused("approach = [\"XY\"]", "1:12", "approach: X, Y and Z come once each");
-        refused("[tools]\nmax_length = -1", "2:14", "a number above 0 is needed");
-        refused("work_zero = [0, nan, 0]", "1:13", "three finite numbers");
+        refused(
+            "[tools]\nmax_length = -1",
+            "2:14",
+            "max_length: -1.0 is given, and a number above 0, at most 10000 mm, is needed",
+        );
+        refused("work_zero = [0, nan, 0]", "1:13", "three numbers from -100000 to 100000 mm");
         assert!(refusal("title = \"no reader\"").contains("`reader`"));
     }
 

@@ -90,6 +90,7 @@ impl Part<'_> {
             | Action::CycleOff
             | Action::Feed(_)
             | Action::FeedPath(_)
+            | Action::RapidsTogether(_)
             | Action::Spindle(_)
             | Action::SurfaceSpeed(_)
             | Action::Coolant(_)

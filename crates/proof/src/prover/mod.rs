@@ -29,7 +29,8 @@ use geom::{Arc, Vec3};
 use machine::{Machine, Mount};
 use program::statistics::Statistics;
 use program::{
-    Axes, Compensation, CutBox, Diagnostic, Feed, MachineMove, Probe, Program, Spindle, Tool,
+    Axes, Compensation, CutBox, Diagnostic, Feed, MachineMove, Probe, Program, Severity, Spindle,
+    Tool,
 };
 
 /// The way out of a difference.
@@ -114,7 +115,12 @@ impl<'a> Prover<'a> {
     pub fn new(source: &'a Program, machine: &'a Machine, tolerances: &Tolerances) -> Prover<'a> {
         let allowed = Applied::new(machine, tolerances);
         let cursor = Cursor::new(machine, source);
-        let gauge = Gauge { machine, allowed, tool_length: cursor.tool_length() };
+        let gauge = Gauge {
+            machine,
+            allowed,
+            tool_length: cursor.tool_length(),
+            straight_rapids: machine.has_straight_rapids(),
+        };
         let unknown = Position {
             point: Vec3::NAN,
             orientation: Orientation::Rotary { degrees: [f64::NAN; 3], tool_center: false },
@@ -143,8 +149,22 @@ impl<'a> Prover<'a> {
             ended: false,
             lost: false,
         };
+        prover.look_for_two_tools();
         prover.enter();
         prover
+    }
+
+    /// Refuses a source with two different tools under one number: the control skips the change from the one to the other.
+    fn look_for_two_tools(&mut self) {
+        for found in self.source.tools_under_one_number() {
+            let message = format!("source line {}: {}", found.line, found.message);
+            let line = found.line;
+            let found = Diagnostic { message, ..found }.line(0);
+            match found.severity {
+                Severity::Error => self.report.mismatch(line, found),
+                Severity::Warning => self.report.warn(found),
+            }
+        }
     }
 
     /// Keeps the stretches in which the program compensates.
@@ -300,6 +320,10 @@ impl<'a> Prover<'a> {
             }
             Action::Feed(feed) => running.feed = Some(*feed),
             Action::FeedPath(path) => running.feed_path = *path,
+            Action::RapidsTogether(together) => {
+                let machine = self.gauge.machine;
+                self.gauge.straight_rapids = together.unwrap_or(machine.has_straight_rapids());
+            }
             Action::Spindle(spindle) => {
                 running.switch_spindle(line, *spindle, self.gauge.machine.spindle.dwell);
             }

@@ -9,7 +9,7 @@ impl Prover<'_> {
         let Step::Move(goal) = &self.cursor.step else { return Ok(()) };
         if gait == Gait::Feed {
             let from_a_place = self.here.place.known() && goal.from.is_some();
-            let straight = self.gauge.machine.has_straight_rapids();
+            let straight = self.gauge.straight_rapids;
             if !straight && from_a_place && self.leg.stops.is_empty() {
                 return self.rapid_by_feed(to);
             }
@@ -341,6 +341,9 @@ impl Prover<'_> {
     pub(super) fn not_reached(&self, stop: &Station) -> String {
         let Step::Move(goal) = &self.cursor.step else { return String::new() };
         let (tip, axis) = stop.place.apart(&goal.to);
+        if tip.is_nan() || axis.is_nan() {
+            return format!("goes to {}, and the source goes to {}", stop.place, goal.to);
+        }
         format!(
             "goes to {}, but the source goes to {}: {} mm and {}° apart",
             stop.place,

@@ -43,7 +43,7 @@ impl Prover<'_> {
             Kind::Thread(_) | Kind::Probe { .. } | Kind::Broken(_) => return None,
         };
         let way = Way { gauge: &gauge, straight };
-        let is_straight = gauge.machine.has_straight_rapids() && !turns;
+        let is_straight = gauge.straight_rapids && !turns;
         if is_straight && way.holds(&here.place) && way.holds(&to.place) {
             self.note_rapid(&way, std::iter::once(&to.place), to.line);
             return None;
@@ -55,7 +55,7 @@ impl Prover<'_> {
     /// straight line between the two beyond all cuts only.
     pub(super) fn wrong_dog_leg(&mut self, here: &Station, to: &Station) -> Option<Diagnostic> {
         let gauge = self.gauge;
-        if gauge.machine.has_straight_rapids() {
+        if gauge.straight_rapids {
             return None;
         }
         let way = Way { gauge: &gauge, straight: Some((here.place, to.place)) };
@@ -149,6 +149,9 @@ impl Prover<'_> {
             self.cursor.line, to.place
         );
         let help = match self.gauge.machine.settings.rapid_path {
+            _ if self.gauge.machine.has_straight_rapids() && !self.gauge.straight_rapids => {
+                "go away from the part first, along the tool axis; or leave RTLIOF out, by which each axis goes at its own speed"
+            }
             Some(_) => "go away from the part first, along the tool axis",
             None => {
                 "go away from the part first, along the tool axis; or say `rapid_path = \"linear\"` in [settings] of the \
@@ -187,7 +190,7 @@ impl Way<'_> {
     fn places(&self, here: &Station, to: &Station) -> Option<Vec<Place>> {
         let machine = self.gauge.machine;
         let turns = here.position.orientation != to.position.orientation;
-        if machine.has_straight_rapids() {
+        if self.gauge.straight_rapids {
             return Some(if turns { self.turning(here, to) } else { vec![here.place, to.place] });
         }
         let stances = if turns { Vec::new() } else { self.stances(to) };

@@ -281,6 +281,37 @@ fn what_a_killed_command_left_is_removed_and_nothing_else() {
     assert_eq!(folder.names(), kept);
 }
 
+/// Also where nothing comes of the next command: the input is wrong, and nothing is saved.
+#[test]
+fn what_a_killed_command_left_is_removed_by_the_next_one_whatever_comes_of_it() {
+    let folder = Folder::new();
+    folder.write("part.cls", SOURCE.replace("GOTO/0,0,5\n", "GOTO/0,0,5,0,0.6,0.8\n"));
+    folder.write(".toolpost-aB3dE9.tmp", "half");
+    assert_eq!(folder.post().code, 1);
+    assert_eq!(folder.names(), ["part.cls"]);
+}
+
+/// A file beyond `ulimit -f` ends a process by SIGXFSZ, without a word and with what it had begun left behind.
+#[cfg(unix)]
+#[test]
+fn a_program_beyond_the_largest_file_of_the_shell_is_not_begun() {
+    let folder = Folder::new();
+    let mut long = SOURCE.replace("FINI\n", "");
+    for i in 0..2000 {
+        long.push_str(&format!("GOTO/{},{},-2\n", i % 97, i % 89));
+    }
+    folder.write("long.cls", long + "FINI\n");
+    let call = format!(
+        "ulimit -f 4; exec {} --quiet post long.cls -m {MACHINE} -o out.mpf",
+        env!("CARGO_BIN_EXE_toolpost")
+    );
+    let said = Command::new("sh").args(["-c", &call]).current_dir(folder.path()).output().unwrap();
+    let err = String::from_utf8_lossy(&said.stderr).into_owned();
+    assert_eq!(said.status.code(), Some(2), "{err}");
+    assert!(err.contains("error[output]") && err.contains("ulimit -f"), "{err}");
+    assert_eq!(folder.names(), ["long.cls", "part.cls"]);
+}
+
 /// The digest that the report beside `out.mpf` gives for it is that of `out.mpf`.
 fn is_a_pair(folder: &Folder) -> bool {
     let report: serde_json::Value =

@@ -27,7 +27,7 @@ const G_WORDS: &[GRow] = &[
     (541, Group::WorkOffset, G::FurtherOffset { most: 300 }),
     (600, Group::OneShot, G::OneSided),
     (620, Group::Path, G::Neutral(b"")),
-    (630, Group::Path, G::Neutral(b"")),
+    (630, Group::Path, G::LockOverrides),
     (640, Group::Path, G::Path(Path::Blend { bounded: false })),
     (682, Group::Tilt, G::Tilt),
     (760, Group::Cycle, G::Cycle(Canned::FineBore)),

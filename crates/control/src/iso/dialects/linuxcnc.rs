@@ -48,10 +48,10 @@ const G_WORDS: &[GRow] = &[
 
 const M_WORDS: &[MRow] = &[
     (7, Group::Coolant, M::Mist),
-    (50, Group::Override, M::Neutral(b"P")),
-    (51, Group::Override, M::Neutral(b"P")),
-    (52, Group::Override, M::Neutral(b"P")),
-    (53, Group::Override, M::Neutral(b"P")),
+    (50, Group::Override, M::Override),
+    (51, Group::Override, M::Override),
+    (52, Group::Override, M::AdaptiveFeed),
+    (53, Group::Override, M::Override),
     (60, Group::Flow, M::Stop),
     (61, Group::ToolChange, M::ToolIsIn),
     (62, Group::Output, M::Digital { on: true, with_motion: true }),

@@ -88,7 +88,7 @@ const TOOL_M: &[MRow] = &[
     (6, Group::ToolChange, M::ChangeTool),
     (19, Group::Spindle, M::Orient),
     (48, Group::Override, M::Neutral(b"")),
-    (49, Group::Override, M::Neutral(b"")),
+    (49, Group::Override, M::LockOverrides),
 ];
 
 /// Subprograms.

@@ -145,7 +145,9 @@ impl Step<'_, '_, '_> {
         let drills = b"XYZ@^".iter().any(|&letter| self.block.has(letter))
             || self.facts.cycles.apart && self.block.has(b'R');
         if !drills {
-            let asked = matches!(self.block.g(Group::Motion), Some(G::Cycle(_)));
+            let asked = [Group::Motion, Group::Cycle]
+                .iter()
+                .any(|&group| matches!(self.block.g(group), Some(G::Cycle(_))));
             return if asked { Err(self.wrong("a cycle without an axis word")) } else { Ok(()) };
         }
         let level = self.series(&mut held)?;

@@ -233,7 +233,7 @@ pub(crate) struct Frames {
     /// control, or where `G92` has set the zero before any position was known.
     beyond: Six,
     /// `G92.1` has taken away what is not known.
-    pub lost: bool,
+    pub lost: Option<&'static str>,
     /// What `G92.3` brings back.
     stored: Option<Six>,
     /// `G52`.
@@ -256,7 +256,7 @@ impl Frames {
             turns_offsets,
             shift: [0.0; 6],
             beyond: [untouched; 6],
-            lost: false,
+            lost: None,
             stored: all_zero.then_some([0.0; 6]),
             local: [0.0; 6],
             transform: Transform::NONE,
@@ -508,7 +508,9 @@ impl Frames {
     /// `G92.1` and, with `keep`, `G92.2`. Answers whether it is known what goes away.
     pub(super) fn unshift(&mut self, keep: bool) -> bool {
         let known = !self.beyond.iter().any(|v| v.is_nan());
-        self.lost |= !known && self.is_used();
+        if !known && self.is_used() {
+            self.lost = self.lost.or(Some(if keep { "G92.2" } else { "G92.1" }));
+        }
         let kept = if known { self.stored } else { None };
         self.stored = if keep { kept } else { Some([0.0; 6]) };
         (self.shift, self.beyond) = ([0.0; 6], [0.0; 6]);

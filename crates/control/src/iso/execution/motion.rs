@@ -28,6 +28,7 @@ impl Step<'_, '_, '_> {
     /// What the block moves.
     pub(super) fn motion(&mut self) -> Result<(), Fault> {
         self.counts_axes()?;
+        self.taps_behind_rigid()?;
         let Some(word) = self.block.g(Group::OneShot) else {
             return self.interpolation().and_then(|()| self.go());
         };
@@ -101,6 +102,20 @@ impl Step<'_, '_, '_> {
     }
 
     /// The motion word of the block: on LinuxCNC and GRBL also a cycle or `G80`.
+    /// "Between M29 and G84 no axis moves" (B-64484EN-2, "Rigid tapping"; alarm PS0204).
+    fn taps_behind_rigid(&self) -> Result<(), Fault> {
+        let waits = self.state.rigid && self.state.cycle.is_none();
+        let is_cycle = matches!(self.block.g(Group::Cycle), Some(G::Cycle(_)));
+        let moves = self.block.g(Group::OneShot).is_none()
+            && b"XYZABC".iter().any(|&letter| self.block.has(letter));
+        if !waits || is_cycle || !moves {
+            return Ok(());
+        }
+        let message = "an axis moves between M29 and its G84 or G74 (alarm PS0204)";
+        let fault = self.block.whole("nc-cycle", message);
+        Err(fault.help("write M29 right before the block of the cycle").into())
+    }
+
     pub(super) fn motion_of_block(&self) -> Option<Motion> {
         match self.block.g(Group::Motion) {
             Some(G::Motion(motion)) => Some(motion),
@@ -204,10 +219,11 @@ impl Step<'_, '_, '_> {
         if self.block.has_any(bit(b'A') | bit(b'B') | bit(b'C')) {
             self.turned(&mut target, unknown_stays)?;
         }
-        if self.state.frames.lost && target.named != 0 {
-            let message = "G92.1 has moved the zero by what the control held before the program";
+        if let Some(word) = self.state.frames.lost.filter(|_| target.named != 0) {
+            let message =
+                format!("{word} has moved the zero by what the control held before the program");
             let fault = self.block.whole("nc-unknown-shift", message);
-            return Err(fault.help("write G92.1 before the first move").into());
+            return Err(fault.help(format!("write {word} before the first move")).into());
         }
         Ok(target)
     }

@@ -35,7 +35,7 @@ impl Onward {
             && state.wire.is_none()
             && state.tilt == Tilt::None
             && state.loose == 0
-            && !state.frames.lost
+            && state.frames.lost.is_none()
             && state.compensation.active == state.compensation.asked
             && !state.awaits_tool(block.facts);
         let goes = is_simple && block.only_moves() && is_feed_per_minute && state.cut && state.told;

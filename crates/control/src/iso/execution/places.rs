@@ -104,6 +104,16 @@ impl Step<'_, '_, '_> {
             let message = "G29 goes through the point of the last G28, and there was none";
             return Err(self.block.at_group(Group::OneShot, "nc-home", message));
         };
+        // "In general, it is commanded immediately following the G28 command" (B-64484EN-2, "Reference position return").
+        let away = |axis: usize| self.block.has(LINEAR[axis]) && self.state.position[axis].is_nan();
+        if !(0..3).any(away) {
+            let message =
+                "G29 comes from the reference position, and no axis that it names is there";
+            let fault = self.block.at_group(Group::OneShot, "nc-home", message);
+            return Err(fault
+                .help("write it right behind its G28; or G0 to the place itself")
+                .into());
+        }
         let via = self.state.place.programmed(via);
         let mut first = self.place_of_tool();
         for axis in 0..3 {

@@ -331,6 +331,16 @@ impl Step<'_, '_, '_> {
         for group in [Group::Override, Group::Output] {
             match self.block.m(group) {
                 Some(M::Neutral(letters)) => self.block.pass(letters),
+                Some(M::LockOverrides) => {
+                    self.actions.push(Action::Risk(Risk::OPERATOR_CONTROLS.into()));
+                }
+                // P0 is off; P1, and the word without P, is on (LinuxCNC, "M Codes").
+                Some(M::Override) if self.is_switched_off() => {
+                    self.actions.push(Action::Risk(Risk::OPERATOR_CONTROLS.into()));
+                }
+                Some(M::AdaptiveFeed) if !self.is_switched_off() => {
+                    self.actions.push(Action::Risk(Risk::ADAPTIVE_FEED.into()));
+                }
                 Some(M::IdleTime) if self.block.take(b'S').is_none() => {
                     let message =
                         "the axes are let go: where the tool stands afterwards is not known";
@@ -340,6 +350,11 @@ impl Step<'_, '_, '_> {
             }
         }
         Ok(())
+    }
+
+    /// Whether P of the block is 0.
+    fn is_switched_off(&mut self) -> bool {
+        self.block.take(b'P').is_some_and(|word| word.value == 0.0)
     }
 
     fn cool(&mut self, coolant: Coolant) -> Result<(), Fault> {
@@ -398,6 +413,9 @@ impl Step<'_, '_, '_> {
     /// What happens at corners. LinuxCNC cuts them by P, and makes one line of lines within Q, or P without it; by any
     /// amount without P or with P 0 (G codes, "G64 Path Blending"; P 0 found on LinuxCNC 2.9 itself).
     fn corners(&mut self) -> Result<(), Fault> {
+        if self.block.g(Group::Path) == Some(G::LockOverrides) {
+            self.actions.push(Action::Risk(Risk::OPERATOR_CONTROLS.into()));
+        }
         let mode = match (self.block.g(Group::Path), self.block.g(Group::OneShot)) {
             (Some(G::Path(Path::ExactStop)), _) => PathMode::ExactStop,
             (Some(G::Path(Path::Exact)), _) => PathMode::ExactPath,

@@ -106,6 +106,8 @@ impl Step<'_, '_, '_> {
 
     fn put_in(&mut self, number: u32) {
         self.state.tool = Some(number);
+        // The place of the last G28 and the H of another tool are not meant.
+        (self.state.via, self.state.registers.h) = (None, None);
         self.actions.push(Action::Tool(Box::new(Tool { number, ..Tool::default() })));
     }
 
@@ -179,7 +181,10 @@ impl Step<'_, '_, '_> {
                 self.actions.push(Action::Risk(Risk::OPERATOR_DATA.into()));
                 Length::Value(self.take_length(b'Z')?.unwrap_or(0.0))
             }
-            Some(_) => Length::None,
+            Some(_) => {
+                self.state.registers.h = None;
+                Length::None
+            }
             None => return Ok(()),
         };
         if length == self.state.length {

@@ -360,6 +360,11 @@ impl<'a> Run<'a, '_> {
             // Clocks, and the keys of the operator given back.
             3001..=3004 | 3011 | 3012 => Ok(()),
             0 => Err(self.wrong(text, at, "#0 is null and cannot be set")),
+            // Common variables that stay when the power is off (B-64484EN-2, "Variables"; Haas, "Macro Variable Table").
+            500..=999 => {
+                self.tell(Action::Risk(Risk::KEPT_VARIABLE.into()));
+                self.parameters.set(target, value).map_err(|message| self.wrong(text, at, message))
+            }
             _ => {
                 self.parameters.set(target, value).map_err(|message| self.wrong(text, at, message))
             }

@@ -33,6 +33,8 @@ pub(crate) enum G {
     Neutral(&'static [u8]),
     /// `G61`, `G61.1`, `G64`: what happens at corners.
     Path(Path),
+    /// `G63` of FANUC: overrides and feed hold do nothing from here on.
+    LockOverrides,
     /// Haas `G187`: P how smooth, E by how much corners are cut.
     Smoothness,
     /// `G68`
@@ -223,6 +225,12 @@ pub(crate) enum M {
     CutWire,
     /// Nothing moves for it; the letters may stand beside it.
     Neutral(&'static [u8]),
+    /// `M49`: overrides do nothing from here on.
+    LockOverrides,
+    /// `M50`, `M51`, `M53`: an override, or the feed hold, does nothing from here on where P is 0.
+    Override,
+    /// `M52`: a pin multiplies the feed from here on, unless P is 0.
+    AdaptiveFeed,
     /// `M117`: a text for the operator.
     Message,
     /// Marlin's `M18`, `M84`: with S after how many idle seconds the axes are let go.
@@ -386,6 +394,17 @@ impl Dictionary {
     ) -> Dictionary {
         (self.refused_g, self.refused_m) = (g, m);
         self
+    }
+
+    /// Its words: `G0`, `G43.4`, `M30`.
+    pub(in crate::iso) fn vocabulary(&self) -> Vec<String> {
+        let g = self.g.iter().enumerate().filter(|(_, row)| row.is_some());
+        let g = g.map(|(tenths, _)| match tenths % 10 {
+            0 => format!("G{}", tenths / 10),
+            tenth => format!("G{}.{tenth}", tenths / 10),
+        });
+        let m = self.m.iter().enumerate().filter(|(_, row)| row.is_some());
+        g.chain(m.map(|(number, _)| format!("M{number}"))).collect()
     }
 
     /// Group and meaning of the G word with this number.

@@ -270,6 +270,13 @@ impl Control<'_, '_> {
             }
         };
         let mut cycle = cycle.map_err(|message| s.error_block("cycle-parameter", message))?;
+        let risk = match &self.cycle {
+            Some(Defined::Parameters(definition)) => definition.hole(&self.registers).risk(&cycle),
+            Some(Defined::Older(_)) | None => None,
+        };
+        if let Some(risk) = risk {
+            self.emit(Action::Risk(risk.into()))?;
+        }
         if let Some(level) = level {
             cycle.retract = level - point;
         }

@@ -1,6 +1,7 @@
 //! Hole cycles: what they do, from their parameters.
 
 use super::cycle::Definition;
+use crate::event::Risk;
 use crate::klartext::language::registers::{Parameter, Registers};
 use geom::Vec3;
 use program::{Cycle, CycleKind, Feed, Withdrawal};
@@ -96,6 +97,22 @@ impl Hole<'_> {
             _ => self.rigid_tapping(&mut cycle)?,
         }
         Ok(cycle)
+    }
+
+    /// What its parameters ask for that a source cannot say.
+    pub(super) fn risk(&self, cycle: &Cycle) -> Option<Risk> {
+        // The factor by which the spindle is faster on the way out.
+        let faster = self.find(403).is_some_and(|factor| factor != 1.0);
+        let clears = cycle.kind == CycleKind::Deep && cycle.first_peck.is_some();
+        let above = match self.definition.number() {
+            205 => self.get(258).min(self.get(259)),
+            _ => cycle.clearance,
+        };
+        if faster {
+            Some(Risk::TAP_RETURN)
+        } else {
+            (clears && above <= 0.0).then_some(Risk::RAPID_TO_DEPTH)
+        }
     }
 
     /// How the tool leaves the wall, by `distance`: Q214 says which way, Q336 how the spindle stands.

@@ -47,6 +47,11 @@ impl Control<'_, '_> {
         let bad = |message: &str| {
             s.error_block("cycle-parameter", format!("cycle {}: {message}", pattern.number()))
         };
+        if q.get(365) != 0.0 {
+            return Err(bad(
+                "on a circle from point to point (Q365=1) is not followed: write Q365=+0",
+            ));
+        }
         let points = if pattern.number() == 220 {
             let number = count(q.get(241)).ok_or_else(|| bad("Q241 is a number of points"))?;
             let span = q.get(246) - q.get(245);

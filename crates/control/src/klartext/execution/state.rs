@@ -422,6 +422,7 @@ impl<'a, 's> Control<'a, 's> {
                 self.call_cycle(s)
             }
             Function::Auxiliary(number) => self.emit(Action::Auxiliary(Auxiliary::of(number))),
+            Function::MonitoringOff => self.emit(Action::Risk(Risk::MONITORING_OFF.into())),
             Function::MachineCoordinates { .. } | Function::Nothing => Ok(()),
         }
     }

@@ -2,7 +2,7 @@
 
 use super::calls::Calls;
 use super::source::{Line, Place, Source};
-use crate::event::Action;
+use crate::event::{Action, Risk};
 use crate::klartext::execution::cycle::Designation;
 use crate::klartext::execution::older::parts_needed;
 use crate::klartext::execution::state::Control;
@@ -260,7 +260,16 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
                 registers.assign(parameter, value)
             }
         };
-        assigned.map_err(|message| s.error("parameter", span, message))
+        assigned.map_err(|message| s.error("parameter", span, message))?;
+        self.tell_kept(parameter)
+    }
+
+    /// QR parameters are kept when the power is off.
+    fn tell_kept(&mut self, parameter: Parameter) -> Result<()> {
+        match parameter {
+            Parameter::Lasting(_) => self.control.emit(Action::Risk(Risk::KEPT_VARIABLE.into())),
+            Parameter::Global(_) | Parameter::Local(_) | Parameter::Text(_) => Ok(()),
+        }
     }
 
     /// `FN n: ...`, from behind `FN`.
@@ -286,7 +295,8 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
                     _ => formula::calculated(s, number, &self.control.registers)?,
                 };
                 let assigned = self.control.registers.assign(parameter, value);
-                assigned.map_err(|message| s.error("parameter", span, message))
+                assigned.map_err(|message| s.error("parameter", span, message))?;
+                self.tell_kept(parameter)
             }
             9..=12 => {
                 let holds = formula::condition(s, number, &self.control.registers)?;

@@ -40,13 +40,15 @@ pub(crate) enum Function {
     Auxiliary(u32),
     /// Moves nothing and changes no path.
     Nothing,
+    /// Switches off a check at which the control stops: `M107`, `M141`.
+    MonitoringOff,
     /// Retracts along the tool axis: by so many mm, infinite for `M140 MB MAX`; at a feed of its own
     /// or by rapid.
     Retract(f64, Option<FeedWord>),
 }
 
 /// The number of an M function, and what it is. M140 takes its distance from the text.
-const FUNCTIONS: [(u16, Function); 22] = [
+const FUNCTIONS: [(u16, Function); 24] = [
     (0, Function::Stop),
     (1, Function::OptionalStop),
     (2, Function::End),
@@ -63,18 +65,20 @@ const FUNCTIONS: [(u16, Function); 22] = [
     (91, Function::MachineCoordinates { builders: false }),
     (92, Function::MachineCoordinates { builders: true }),
     (99, Function::CallCycle),
+    (107, Function::MonitoringOff),
     (126, Function::ShorterWay(true)),
     (127, Function::ShorterWay(false)),
     (128, Function::KeepTip),
     (129, Function::ReleaseTip),
     (136, Function::FeedPerTurn(true)),
     (137, Function::FeedPerTurn(false)),
+    (141, Function::MonitoringOff),
 ];
 
 /// Functions that change neither where the tool goes nor what it does there: the speed in corners
-/// (M90, M134, M135), sister tools (M101, M102, M107, M108), feed in arcs as it is without (M111), the
-/// ends of what is refused (M117, M121, M145), probe monitoring (M141), lift-off at a stop (M148, M149).
-const NEUTRAL: [u16; 14] = [90, 101, 102, 107, 108, 111, 117, 121, 134, 135, 141, 145, 148, 149];
+/// (M90, M134, M135), sister tools (M101, M102, M108), feed in arcs as it is without (M111), the
+/// ends of what is refused (M117, M121, M145), lift-off at a stop (M148, M149).
+const NEUTRAL: [u16; 12] = [90, 101, 102, 108, 111, 117, 121, 134, 135, 145, 148, 149];
 
 /// Functions that are refused, and why.
 const REFUSED: [(u16, &str); 18] = [
@@ -97,6 +101,12 @@ const REFUSED: [(u16, &str); 18] = [
     (144, "compensates the geometry of the machine"),
     (197, "rounds the corners of the compensated path"),
 ];
+
+/// The numbers of the functions that it knows.
+pub(in crate::klartext) fn vocabulary() -> impl Iterator<Item = u16> {
+    let known = FUNCTIONS.iter().map(|(number, _)| *number).chain(NEUTRAL);
+    known.chain(REFUSED.iter().map(|(number, _)| *number)).chain([140])
+}
 
 /// When in its block a function acts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -4,6 +4,7 @@
 //! manuals. What a call asks for and [`Cycle`] cannot say is refused.
 
 use super::state::State;
+use crate::event::Risk;
 use crate::sinumerik::Fallible;
 use crate::sinumerik::language::call::Call;
 use crate::sinumerik::language::commands::FeedType;
@@ -103,6 +104,8 @@ pub(crate) struct Drilling {
     pub spindle_after: Option<Spindle>,
     /// Whether it drills at the active feed.
     pub needs_feed: bool,
+    /// What the call asks for that a source cannot say.
+    pub risks: Vec<Risk>,
 }
 
 /// The arguments of a call, by name.
@@ -227,6 +230,7 @@ impl Drilling {
             spindle_before: None,
             spindle_after: None,
             needs_feed: true,
+            risks: Vec::new(),
         };
         match form.action {
             Operation::Drill => {}
@@ -269,9 +273,15 @@ impl Drilling {
             }
         };
         // The dwell at the final depth is DTB unless _DTD says another.
-        let final_dwell = arguments.or_zero("_DTD")?;
+        let (dwell, final_dwell) = (arguments.or_zero("DTB")?, arguments.or_zero("_DTD")?);
         if final_dwell != 0.0 {
             self.dwell = Pause::signed(final_dwell);
+        }
+        // DTB is then that of the other depths alone; DTS is that above the hole, where chips are cleared.
+        let differs = final_dwell != 0.0 && dwell != 0.0 && dwell != final_dwell;
+        let clears = self.cycle.kind == CycleKind::Deep && arguments.or_zero("DTS")? != 0.0;
+        if differs || clears {
+            self.risks.push(Risk::PECK_DWELL);
         }
         self.cycle.first_peck = Some(first);
         self.cycle.peck = Some(first);
@@ -310,6 +320,10 @@ impl Drilling {
     /// `SDAC`: what the spindle does after the cycle.
     fn direction(arguments: &Arguments, name: &str, speed: f64) -> Fallible<Spindle> {
         match arguments.or_zero(name)? {
+            3.0 | 4.0 if speed.is_nan() => Err(arguments.error(
+                "spindle",
+                format!("{name} starts the spindle, and no speed has been given by S"),
+            )),
             3.0 => Ok(Spindle::Clockwise(speed)),
             4.0 => Ok(Spindle::CounterClockwise(speed)),
             5.0 if name == "SDAC" => Ok(Spindle::Off),
@@ -326,14 +340,26 @@ impl Drilling {
         if speed <= 0.0 {
             return Err(arguments.error("cycle-parameter", "the tapping speed SST must be above 0"));
         }
-        if arguments.or_zero("SST1")? < 0.0 {
+        let back = arguments.or_zero("SST1")?;
+        if back < 0.0 {
             return Err(arguments.error("cycle-parameter", "SST1 has no sign"));
+        }
+        if back != 0.0 && back != speed {
+            self.risks.push(Risk::TAP_RETURN);
         }
         self.cycle.kind = CycleKind::Tap { pitch, left };
         self.needs_feed = false;
         self.spindle_before =
             Some(if left { Spindle::CounterClockwise(speed) } else { Spindle::Clockwise(speed) });
-        self.spindle_after = Some(Drilling::direction(arguments, "SDAC", state.speed)?);
+        let after = Drilling::direction(arguments, "SDAC", state.speed)?;
+        let turns_so = |spindle: Option<Spindle>| {
+            spindle.is_some_and(|s| std::mem::discriminant(&s) == std::mem::discriminant(&after))
+        };
+        if after != Spindle::Off && !turns_so(Some(state.spindle)) && !turns_so(self.spindle_before)
+        {
+            self.risks.push(Risk::TURNS_BACK);
+        }
+        self.spindle_after = Some(after);
         Ok(())
     }
 

@@ -51,12 +51,13 @@ const PRECISIONS: [&str; 5] = ["_OFF", "_FINISH", "_SEMIFIN", "_ROUGH", "_PRECIS
 const STOPS: &[u32] = &[0, 1, 2, 17, 30];
 const SPINDLE: &[u32] = &[3, 4, 5];
 const COOLANT: &[u32] = &[7, 8, 9];
-/// Automatic gear stage, gear stages 1 to 5.
-const GEARS: std::ops::RangeInclusive<u32> = 40..=45;
+/// The control chooses the gear of the spindle itself; gears 1 to 5.
+const AUTOMATIC_GEAR: u32 = 40;
+const GEARS: std::ops::RangeInclusive<u32> = 41..=45;
 
 /// Whether an M function is the control's own, and not one of the builder's.
 fn is_own(m: u32) -> bool {
-    matches!(m, 6 | 19)
+    matches!(m, 6 | 19 | AUTOMATIC_GEAR)
         || [STOPS, SPINDLE, COOLANT].iter().any(|group| group.contains(&m))
         || GEARS.contains(&m)
 }
@@ -117,8 +118,16 @@ impl<'a, 's> Interpreter<'a, 's> {
         self.state.assign(place, value);
         match place {
             Place::WorkOffset(..) => self.emit(source, Action::Risk(Risk::OPERATOR_DATA.into())),
+            Place::Parameter(index) if self.is_operators(index) => {
+                self.emit(source, Action::Risk(Risk::OPERATOR_PARAMETER.into()))
+            }
             Place::Parameter(_) | Place::Element(..) => Ok(()),
         }
+    }
+
+    /// Whether the operator sets R parameter `index` at the machine.
+    fn is_operators(&self, index: usize) -> bool {
+        self.settings.operator_parameters.iter().any(|own| *own as usize == index)
     }
 
     /// Carries out a block.
@@ -150,13 +159,14 @@ impl<'a, 's> Interpreter<'a, 's> {
             self.check_m(source, block)?;
         }
         self.modes(source, block)?;
-        if let Some((name, tolerance)) = block.path_tolerance {
-            self.path_tolerance(source, name, tolerance * self.state.unit)?;
-        }
         if let Some(degrees) = block.orientation_tolerance {
             self.hold_orientation(source, degrees)?;
         }
         if let Some(rare) = &block.rare {
+            self.tolerances(source, rare.tolerances)?;
+            if rare.is_dynamic {
+                self.emit(source, Action::Risk(Risk::AXIS_DYNAMICS.into()))?;
+            }
             if let Some(radius) = rare.modal_round {
                 self.state.modal_round = radius.max(0.0) * self.state.unit;
             }
@@ -165,8 +175,11 @@ impl<'a, 's> Interpreter<'a, 's> {
         }
         // What the builder has added, before the motion; a gear that its machine's file lists does something there.
         for m in block.m.iter().flatten() {
-            if self.settings.auxiliary.contains(m) && (!is_own(*m) || GEARS.contains(m)) {
+            let is_gear = GEARS.contains(m) || *m == AUTOMATIC_GEAR;
+            if self.settings.auxiliary.contains(m) && (!is_own(*m) || is_gear) {
                 self.emit(source, Action::Auxiliary(Auxiliary::of(*m)))?;
+            } else if GEARS.contains(m) {
+                self.emit(source, Action::Risk(Risk::GEAR.into()))?;
             }
         }
         match block.code(3) {
@@ -179,6 +192,7 @@ impl<'a, 's> Interpreter<'a, 's> {
             Some(Code::Dwell) => return self.dwell(source, block),
             Some(Code::FloatingTap) => {
                 self.technology(source, block)?;
+                self.emit(source, Action::Risk(Risk::OPERATOR_CONTROLS.into()))?;
                 self.floating_tap(source, block)?;
             }
             Some(Code::Home) => {
@@ -193,6 +207,9 @@ impl<'a, 's> Interpreter<'a, 's> {
                     && block.axes[..3].iter().any(Option::is_some)
                 {
                     self.emit(source, Action::Risk(Risk::LENGTH_PLANE.into()))?;
+                }
+                if self.state.smoothed.is_loose() {
+                    self.hold_smoothing(source, block)?;
                 }
                 self.motion(source, block)?;
             }
@@ -251,11 +268,18 @@ impl<'a, 's> Interpreter<'a, 's> {
 
     /// The modal G commands.
     fn modes(&mut self, source: &Source, block: &Block) -> Fallible<()> {
-        let smooths =
-            [10, 30].iter().any(|&group| matches!(block.code(group), Some(Code::Smoothing)));
-        // How far the machine data let it leave the path, the machine file says.
-        if smooths && self.settings.path_tolerance == 0.0 {
-            self.emit(source, Action::Risk(Risk::SMOOTHING.into()))?;
+        self.state.smoothed.switch(block);
+        let turns_loosely =
+            [34, 61].iter().any(|&group| block.code(group) == Some(Code::TurnsLoosely(true)));
+        if turns_loosely && self.settings.rotary.contains(&true) {
+            self.emit(source, Action::Risk(Risk::ORIENTATION_TOLERANCE.into()))?;
+        }
+        if block.code(28) == Some(Code::WorkArea(false)) {
+            self.emit(source, Action::Risk(Risk::WORK_AREA_OFF.into()))?;
+        }
+        if let Some(Code::RapidsTogether(together)) = block.code(55) {
+            self.state.rapids_together = Some(together);
+            self.report_rapids(source)?;
         }
         let lifts = block.rare.as_ref().is_some_and(|rare| rare.lifts);
         if lifts || matches!(block.code(41), Some(Code::Lift)) {
@@ -315,6 +339,17 @@ impl<'a, 's> Interpreter<'a, 's> {
             Some(Code::WorkOffset(number)) => self.work_offset(source, number),
             _ => Ok(()),
         }
+    }
+
+    /// Says how rapids go where that is news. `RTLIOF` does nothing with a transformation (PM19 p. 181; nor with G64, a
+    /// compressor or G41, which hang on more words than these).
+    pub fn report_rapids(&mut self, source: &Source) -> Fallible<()> {
+        let together = self.state.rapids_together.map(|said| said || self.state.tool_center);
+        if together == self.state.reported_rapids {
+            return Ok(());
+        }
+        self.state.reported_rapids = together;
+        self.emit(source, Action::RapidsTogether(together))
     }
 
     fn select_compensation(&mut self, source: &Source, compensation: Compensation) -> Fallible<()> {
@@ -429,6 +464,12 @@ impl<'a, 's> Interpreter<'a, 's> {
         }
         let speed = self.state.speed;
         let running = self.state.spindle;
+        if speed.is_nan() && (block.has_m(3) || block.has_m(4)) {
+            let message = "the spindle starts and no speed has been given by S";
+            let mut error = source.block_error("spindle", message);
+            error.help = "write S beside M3 or M4, or before".into();
+            return Err(error);
+        }
         let spindle = match block.m.iter().flatten().find(|m| SPINDLE.contains(m)) {
             Some(3) => Spindle::Clockwise(speed),
             Some(4) => Spindle::CounterClockwise(speed),
@@ -481,6 +522,7 @@ impl<'a, 's> Interpreter<'a, 's> {
     /// that, the control stops; it goes nowhere else.
     fn limit(&mut self, source: &Source, block: &Block, upper: bool) -> Fallible<()> {
         plain_values(source, block)?;
+        self.emit(source, Action::Risk(Risk::LIMITS_WRITTEN.into()))?;
         if !block.only_group(3) || block.feed.is_some() || block.has_rotary() {
             let message = format!("{} stands in a block of its own", block.command(3));
             return Err(source.block_error("syntax", message));
@@ -560,6 +602,9 @@ impl<'a, 's> Interpreter<'a, 's> {
             Procedure::Pattern(pattern) => self.pattern(source, call, pattern),
             Procedure::Drill(form) => {
                 let drilling = Drilling::read(source, call, form, &self.state)?;
+                for risk in &drilling.risks {
+                    self.emit(source, Action::Risk((*risk).into()))?;
+                }
                 if call.modal {
                     self.may_change_modal(source)?;
                     self.state.modal = Modal::Cycle(drilling);
@@ -604,7 +649,7 @@ impl<'a, 's> Interpreter<'a, 's> {
             },
         };
         let tolerance = call.number(source, 0)?.unwrap_or(0.0);
-        self.path_tolerance(source, call.name, tolerance * self.state.unit)?;
+        self.cycle_tolerance(source, call.name, tolerance * self.state.unit)?;
         if !tolerates_orientation {
             return Ok(());
         }
@@ -627,21 +672,6 @@ impl<'a, 's> Interpreter<'a, 's> {
             return Ok(());
         }
         self.emit(source, Action::Risk(Risk::ORIENTATION_TOLERANCE.into()))
-    }
-
-    /// How far the control may leave the path, mm: what it then does is not seen here.
-    fn path_tolerance(&self, source: &Source, name: &str, tolerance: f64) -> Fallible<()> {
-        let most = self.settings.path_tolerance;
-        if tolerance <= most {
-            return Ok(());
-        }
-        let message = format!(
-            "{name} lets the control leave the path by {tolerance} mm, the machine file allows {most} \
-             mm"
-        );
-        let mut error = source.block_error("path-tolerance", message);
-        error.help = "path_tolerance in [options] of the machine file says how far".into();
-        Err(error)
     }
 
     /// `FGROUP(...)`: the axes that F is the speed of. Without one of X, Y, Z the tool would move at

@@ -3,7 +3,7 @@
 //! The [`interpreter`] goes through the block in the order of the control. It sends the axes where the
 //! block says ([`motion`], [`polar`], [`arc`], [`thread`]), with a [`corner`] between two moves, drills
 //! ([`cycles`], [`pattern`]) or calls again behind it ([`modal`]), and changes the [`frames`]
-//! ([`programmable`], [`offsets`], [`orientation`]). What holds is the [`state`].
+//! ([`programmable`], [`offsets`], [`orientation`]), and keeps to the path as [`smoothing`] says. What holds is the [`state`].
 
 mod arc;
 mod corner;
@@ -17,5 +17,6 @@ mod orientation;
 mod pattern;
 mod polar;
 mod programmable;
-pub(super) mod state;
+pub(super) mod smoothing;
+pub(crate) mod state;
 mod thread;

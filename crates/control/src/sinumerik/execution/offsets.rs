@@ -120,14 +120,17 @@ impl Interpreter<'_, '_> {
         state.feed_type = modes.feed_type;
         state.vectors_in_work_frame = modes.vectors_in_work_frame;
         state.turning = modes.turning;
+        state.smoothed = state.smoothed.with_modes_of(modes.smoothed);
+        state.rapids_together = modes.rapids_together;
         (state.corner, state.goes_around) = (modes.corner, modes.goes_around);
         state.compensation = modes.compensation;
         if frame {
             let (frame, fine) = modes.programmable;
             state.change_frames(|frames| frames.set_programmable(frame, fine));
         }
+        self.report_rapids(source)?;
         // With the same G command the offset stays as it is now.
-        if modes.work_offset == state.work_offset {
+        if modes.work_offset == self.state.work_offset {
             return Ok(());
         }
         self.work_offset(source, modes.work_offset)

@@ -43,7 +43,7 @@ impl Interpreter<'_, '_> {
             self.state.tool_center = true;
             self.state.lose_position();
         }
-        Ok(())
+        self.report_rapids(source)
     }
 
     /// `TRAFOOF`: positions are those of the axes again; where those stand is not known.
@@ -56,7 +56,7 @@ impl Interpreter<'_, '_> {
                 self.state.tool_axis = ToolAxis::Rotary;
             }
         }
-        Ok(())
+        self.report_rapids(source)
     }
 
     fn check_compensation_off(&self, source: &Source, name: &str) -> Fallible<()> {

@@ -3,6 +3,7 @@
 use super::frames::Frames;
 use super::modal::Modal;
 use super::offsets::WorkOffsets;
+use super::smoothing::Smoothed;
 use crate::event::{FeedPath, Orientation, Position};
 use crate::kernel::compensation::Outer;
 use crate::sinumerik::language::commands::{Diameter, FeedType, Motion};
@@ -75,6 +76,12 @@ pub(crate) struct State {
     pub vectors_in_work_frame: bool,
     /// What the program has said of how the tool turns within a block.
     pub turning: Turning,
+    /// G groups 10 and 30.
+    pub smoothed: Smoothed,
+    /// G group 55: whether the axes of a rapid go together, where the program says it.
+    pub rapids_together: Option<bool>,
+    /// The same as it was reported last, with the transformation.
+    pub reported_rapids: Option<bool>,
     /// G group 8: 500 for none.
     pub work_offset: u32,
     /// G group 7 as the blocks say.
@@ -95,7 +102,7 @@ pub(crate) struct State {
     pub mm_per_degree: [f64; 3],
     /// The feed that was reported last.
     pub reported_feed: Option<Feed>,
-    /// `S`, 1/min.
+    /// `S`, 1/min; NaN where no block has said it.
     pub speed: f64,
     /// `M3`, `M4`, `M5`, as reported.
     pub spindle: Spindle,
@@ -165,6 +172,8 @@ pub(crate) struct Modes {
     pub feed_type: FeedType,
     pub vectors_in_work_frame: bool,
     pub turning: Turning,
+    pub smoothed: Smoothed,
+    pub rapids_together: Option<bool>,
     pub work_offset: u32,
     pub compensation: Compensation,
     pub programmable: (Frame, Vec3),
@@ -247,6 +256,9 @@ impl State {
             diameter: Diameter::Off,
             vectors_in_work_frame: true,
             turning: Turning::default(),
+            smoothed: Smoothed::default(),
+            rapids_together: None,
+            reported_rapids: None,
             work_offset: WORK_OFFSET_AT_RESET,
             compensation: Compensation::Off,
             compensation_in_effect: Compensation::Off,
@@ -257,7 +269,7 @@ impl State {
             feed_group: [false; 3],
             mm_per_degree: [1.0; 3],
             reported_feed: None,
-            speed: 0.0,
+            speed: f64::NAN,
             spindle: Spindle::Off,
             coolant: Coolant::Off,
             selected: None,
@@ -339,6 +351,8 @@ impl State {
             feed_type: self.feed_type,
             vectors_in_work_frame: self.vectors_in_work_frame,
             turning: self.turning,
+            smoothed: self.smoothed,
+            rapids_together: self.rapids_together,
             work_offset: self.work_offset,
             compensation: self.compensation,
             programmable: (self.frames.programmable(), self.frames.fine()),

@@ -39,7 +39,7 @@ impl Interpreter<'_, '_> {
             (Motion::TapIn | Motion::TapOut, _) => Some(Spindle::CounterClockwise(speed)),
             _ => None,
         };
-        if spindle.is_some() && speed <= 0.0 {
+        if spindle.is_some() && (speed.is_nan() || speed <= 0.0) {
             return error("tapping needs a speed of the spindle (S)");
         }
         if spindle.is_none() && (pitch < 0.0 || self.state.spindle == Spindle::Off) {

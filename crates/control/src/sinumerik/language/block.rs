@@ -81,6 +81,10 @@ pub(crate) struct Rare {
     pub positioned: [Option<Coordinate>; 6],
     /// FGREF of A B C, in the units of the program.
     pub feed_reference: [Option<f64>; 3],
+    /// CTOL, ADIS, ADISPOS.
+    pub tolerances: [Option<f64>; 3],
+    /// ACC and its kin above 100 percent.
+    pub is_dynamic: bool,
 }
 
 /// Most M functions in a block (Programming Manual 06/2019, 2.13).
@@ -118,8 +122,6 @@ pub(crate) struct Block {
     pub edge: Option<u32>,
     /// M functions.
     pub m: [Option<u32>; MOST_M],
-    /// `CTOL`, `ADIS`: which, and the value.
-    pub path_tolerance: Option<(&'static str, f64)>,
     /// `OTOL=`, degrees.
     pub orientation_tolerance: Option<f64>,
     /// The words that few blocks have.
@@ -238,7 +240,6 @@ impl Block {
             tool: None,
             edge: None,
             m: [None; MOST_M],
-            path_tolerance: None,
             orientation_tolerance: None,
             rare: None,
             assigned: Vec::new(),

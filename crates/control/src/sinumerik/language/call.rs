@@ -162,6 +162,14 @@ const MEASURING: &str = "measuring";
 const TURNING: &str = "a turning cycle, whose path the control makes; write the path";
 const MILLING: &str = "a milling cycle, whose path the control makes; write the path";
 
+/// Each word that is called, and each cycle with the arguments that all of them have.
+pub(super) fn vocabulary() -> impl Iterator<Item = String> {
+    let procedures = PROCEDURES.iter().map(|(name, _)| (*name).to_owned());
+    let unsupported = UNSUPPORTED.iter().map(|(name, _)| (*name).to_owned());
+    let cycles = CYCLES.iter().map(|form| format!("{}(10,0,2,-5)", form.name));
+    procedures.chain(cycles).chain(unsupported).chain([String::from("MCALL")])
+}
+
 /// Whether `name` is a word that is called.
 pub(super) fn is_known(name: &str) -> bool {
     name == "MCALL"

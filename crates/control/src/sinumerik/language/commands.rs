@@ -34,8 +34,12 @@ pub(crate) enum Code {
     Approach { around: bool },
     /// Settable work offset, 500 for none.
     WorkOffset(u32),
-    /// The path is smoothed within tolerances of machine data (`G642` to `G645`, the compressors).
-    Smoothing,
+    /// The path is smoothed within tolerances of machine data (`G642` to `G645`, the compressors), or not.
+    Smoothing(Smoothing),
+    /// `WALIMON` (true), `WALIMOF`: the limits of the work area hold.
+    WorkArea(bool),
+    /// `RTLION` (true), `RTLIOF`: the axes of a rapid go together.
+    RapidsTogether(bool),
     /// Every offset is off for this block.
     MachineCoordinates,
     /// Length of a unit of the program in mm; whether feeds are counted in it too.
@@ -50,6 +54,8 @@ pub(crate) enum Code {
     VectorsInWorkFrame(bool),
     /// The tool turns on the great circle between two orientations, or its axes turn evenly.
     GreatCircle(bool),
+    /// The control smooths how the tool turns, by its setting data, or not.
+    TurnsLoosely(bool),
     /// How the control drives along the path, not where: dynamics, rounding and compression within
     /// the machine's tolerances, interpolation of the orientation between given ends.
     NoMotion,
@@ -57,6 +63,18 @@ pub(crate) enum Code {
     Lift,
     /// Known and not supported, with the reason.
     Unsupported(&'static str),
+}
+
+/// By how much the control leaves the path while it smooths it.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) enum Smoothing {
+    /// It does not.
+    #[default]
+    Off,
+    /// By the tolerance of `CTOL`, where the program says one.
+    Programmed,
+    /// `G644`: by machine data, whatever the program says.
+    MachineData,
 }
 
 /// How the axes move.
@@ -256,13 +274,14 @@ pub(super) static COMMANDS: &[Command] = &[
     g("G153", 9, Code::MachineCoordinates),
     g("SUPA", 9, Code::MachineCoordinates),
     // 10 to 12: exact stop, continuous path
-    same("G60", 10),
-    same("G64", 10),
-    same("G641", 10),
-    g("G642", 10, Code::Smoothing),
-    g("G643", 10, Code::Smoothing),
-    g("G644", 10, Code::Smoothing),
-    g("G645", 10, Code::Smoothing),
+    g("G60", 10, Code::Smoothing(Smoothing::Off)),
+    g("G64", 10, Code::Smoothing(Smoothing::Off)),
+    // By ADIS, which is 0 where the program does not say it.
+    g("G641", 10, Code::Smoothing(Smoothing::Off)),
+    g("G642", 10, Code::Smoothing(Smoothing::Programmed)),
+    g("G643", 10, Code::Smoothing(Smoothing::Programmed)),
+    g("G644", 10, Code::Smoothing(Smoothing::MachineData)),
+    g("G645", 10, Code::Smoothing(Smoothing::Programmed)),
     same("G9", 11),
     same("G601", 12),
     same("G602", 12),
@@ -313,23 +332,23 @@ pub(super) static COMMANDS: &[Command] = &[
     g("ORIWKS", 25, Code::VectorsInWorkFrame(true)),
     g("ORIMKS", 25, Code::VectorsInWorkFrame(false)),
     // 28 to 30: work area limits, diameters, compression
-    same("WALIMOF", 28),
-    same("WALIMON", 28),
+    g("WALIMOF", 28, Code::WorkArea(false)),
+    g("WALIMON", 28, Code::WorkArea(true)),
     g("DIAMOF", 29, Code::Diameter(Diameter::Off)),
     g("DIAMON", 29, Code::Diameter(Diameter::On)),
     g("DIAM90", 29, Code::Diameter(Diameter::Absolute)),
-    same("COMPOF", 30),
-    g("COMPON", 30, Code::Smoothing),
-    g("COMPCURV", 30, Code::Smoothing),
-    g("COMPCAD", 30, Code::Smoothing),
-    g("COMPSURF", 30, Code::Smoothing),
+    g("COMPOF", 30, Code::Smoothing(Smoothing::Off)),
+    g("COMPON", 30, Code::Smoothing(Smoothing::Programmed)),
+    g("COMPCURV", 30, Code::Smoothing(Smoothing::Programmed)),
+    g("COMPCAD", 30, Code::Smoothing(Smoothing::Programmed)),
+    g("COMPSURF", 30, Code::Smoothing(Smoothing::Programmed)),
     // 34: smoothing of the orientation
-    same("OSOF", 34),
-    same("OSC", 34),
-    same("OSS", 34),
-    same("OSSE", 34),
-    same("OSD", 34),
-    same("OST", 34),
+    g("OSOF", 34, Code::TurnsLoosely(false)),
+    g("OSC", 34, Code::TurnsLoosely(true)),
+    g("OSS", 34, Code::TurnsLoosely(true)),
+    g("OSSE", 34, Code::TurnsLoosely(true)),
+    g("OSD", 34, Code::TurnsLoosely(true)),
+    g("OST", 34, Code::TurnsLoosely(true)),
     // 37: how the feed changes within a block
     same("FNORM", 37),
     not("FLIN", 37, FEED_PROFILE),
@@ -364,8 +383,8 @@ pub(super) static COMMANDS: &[Command] = &[
     not("TOROT", 53, TOOL_FRAME),
     not("TOFRAME", 53, TOOL_FRAME),
     // 55, 57, 59, 61: rapid interpolation, corner slow-down, dynamics, smoothing
-    same("RTLION", 55),
-    same("RTLIOF", 55),
+    g("RTLION", 55, Code::RapidsTogether(true)),
+    g("RTLIOF", 55, Code::RapidsTogether(false)),
     same("FENDNORM", 57),
     same("DYNNORM", 59),
     same("DYNPOS", 59),
@@ -373,8 +392,8 @@ pub(super) static COMMANDS: &[Command] = &[
     same("DYNSEMIFIN", 59),
     same("DYNFINISH", 59),
     same("DYNPREC", 59),
-    same("ORISOF", 61),
-    same("ORISON", 61),
+    g("ORISOF", 61, Code::TurnsLoosely(false)),
+    g("ORISON", 61, Code::TurnsLoosely(true)),
 ];
 
 /// Largest `G` number with an entry, plus one.

@@ -23,3 +23,9 @@ pub(super) mod system;
 pub(super) mod value;
 pub(super) mod variables;
 mod words;
+
+/// The names of its tables, with a value where one is needed.
+pub(super) fn vocabulary() -> Vec<String> {
+    let commands = commands::COMMANDS.iter().map(|command| command.name.to_owned());
+    commands.chain(settings::vocabulary()).chain(call::vocabulary()).collect()
+}

@@ -5,6 +5,7 @@ use super::expression::Evaluator;
 use super::value::Value;
 use super::words::Reader;
 use crate::sinumerik::Fallible;
+use crate::sinumerik::execution::smoothing::TOLERANCES;
 
 /// An address of several letters.
 #[derive(Clone, Copy)]
@@ -27,8 +28,8 @@ pub(super) enum Setting {
     FeedReference,
     /// How far an outer corner is from an arc.
     Peak,
-    /// How far the control may leave the path of a cut.
-    PathTolerance,
+    /// By how much the control may leave the path, by its place among the tolerances of a block.
+    PathTolerance(usize),
     /// `OTOL=`: by how much the control may turn the tool out of its orientation.
     OrientationTolerance,
     /// By how much an axis accelerates, jerks or is fast, percent.
@@ -36,8 +37,6 @@ pub(super) enum Setting {
     /// Where an axis goes when the program is stopped, how far and which way.
     LiftTo,
     Lift,
-    /// How rapids and corrections are rounded, and how far the tool axis may turn.
-    NoMotion,
 }
 
 /// The addresses of several letters.
@@ -59,9 +58,9 @@ const SETTINGS: &[(&str, Setting)] = &[
     ("SPOS", Setting::SpindlePosition),
     ("POS", Setting::Position),
     ("FGREF", Setting::FeedReference),
-    ("ADIS", Setting::PathTolerance),
-    ("ADISPOS", Setting::NoMotion),
-    ("CTOL", Setting::PathTolerance),
+    (TOLERANCES[0], Setting::PathTolerance(0)),
+    (TOLERANCES[1], Setting::PathTolerance(1)),
+    (TOLERANCES[2], Setting::PathTolerance(2)),
     ("OTOL", Setting::OrientationTolerance),
     ("DISC", Setting::Peak),
     ("ACC", Setting::Dynamics),
@@ -72,6 +71,15 @@ const SETTINGS: &[(&str, Setting)] = &[
     ("DILF", Setting::Lift),
     ("ALF", Setting::Lift),
 ];
+
+/// Each address with a value.
+pub(super) fn vocabulary() -> impl Iterator<Item = String> {
+    SETTINGS.iter().map(|(name, setting)| match setting {
+        Setting::Position | Setting::Dynamics | Setting::LiftTo => format!("{name}[X]=150"),
+        Setting::FeedReference => format!("{name}[C]=150"),
+        _ => format!("{name}=1"),
+    })
+}
 
 /// The address of that name, as the language has it.
 pub(super) fn named(name: &str) -> Option<(&'static str, Setting)> {
@@ -121,7 +129,10 @@ impl Reader<'_, '_> {
             Setting::Turns => block.turns.replace(value).is_some(),
             Setting::Rotation => block.rotation.replace(value).is_some(),
             Setting::FixedPoint => block.fixed_point.replace(value).is_some(),
-            Setting::PathTolerance => block.path_tolerance.replace((said, value)).is_some(),
+            Setting::PathTolerance(place) => {
+                let rare = block.rare.get_or_insert_default();
+                rare.tolerances.get_mut(place).is_some_and(|p| p.replace(value).is_some())
+            }
             Setting::OrientationTolerance => block.orientation_tolerance.replace(value).is_some(),
             Setting::Corner(corner) => {
                 let rare = block.rare.get_or_insert_default();
@@ -142,8 +153,7 @@ impl Reader<'_, '_> {
             | Setting::Dynamics
             | Setting::LiftTo
             | Setting::PolarAngle
-            | Setting::PolarRadius
-            | Setting::NoMotion => false,
+            | Setting::PolarRadius => false,
         };
         self.once(start, repeated)
     }
@@ -185,6 +195,7 @@ impl Reader<'_, '_> {
         self.indexed_axis()?;
         let percent = self.expression()?;
         if percent > 0.0 && percent <= 200.0 {
+            self.block.rare.get_or_insert_default().is_dynamic |= percent > 100.0;
             return Ok(());
         }
         let message = format!("{said}[] takes more than 0 and at most 200 percent");
