@@ -5,6 +5,7 @@ use super::interpreter::Interpreter;
 use crate::event::{Action, Risk};
 use crate::sinumerik::Fallible;
 use crate::sinumerik::language::block::Block;
+use crate::sinumerik::language::block::TOLERANCES;
 use crate::sinumerik::language::commands::{Code, Smoothing};
 use crate::sinumerik::language::scan::Source;
 
@@ -111,9 +112,6 @@ impl Interpreter<'_, '_> {
         Err(error)
     }
 }
-
-/// The addresses of tolerances of the path: of a contour, of corners, of corners between rapids.
-pub(crate) const TOLERANCES: [&str; 3] = ["CTOL", "ADIS", "ADISPOS"];
 
 /// Place of `CTOL` among [`TOLERANCES`].
 const CONTOUR: usize = 0;

@@ -54,6 +54,9 @@ pub(crate) enum Corner {
     Round(f64),
 }
 
+/// The addresses of tolerances of the path: of a contour, of corners, of corners between rapids.
+pub(crate) const TOLERANCES: [&str; 3] = ["CTOL", "ADIS", "ADISPOS"];
+
 /// The words that few blocks have.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub(crate) struct Rare {

@@ -1,11 +1,10 @@
 //! Addresses of several letters: `CR=`, `RND=`, `POS[X]=` and their kin.
 
-use super::block::{Block, Corner, Rare};
+use super::block::{Block, Corner, Rare, TOLERANCES};
 use super::expression::Evaluator;
 use super::value::Value;
 use super::words::Reader;
 use crate::sinumerik::Fallible;
-use crate::sinumerik::execution::smoothing::TOLERANCES;
 
 /// An address of several letters.
 #[derive(Clone, Copy)]
