@@ -322,7 +322,7 @@ const TAKEN: &[(&str, &str, &str)] = &[
         "M3 M8 M13 M126 M127 M129 M137 M90 M101 M102 M108 M111 M117 M121 M134 M135 M145 M148 M149",
     ),
     // The same; a motion that the next block replaces; frames and poles without values; how the path is driven
-    // within its tolerances; addresses of corners that are not there.
+    // within its tolerances; addresses of corners that are not there; where the axes go at a stop (POLF and its kin, with a warning).
     (
         "sinumerik-840d-traori",
         "machines/samples/five-axes.cls",
