@@ -1,5 +1,5 @@
 //! The dialects, each a file of [`facts`]: which words it has, in which modal group, why it refuses others, and in what it
-//! differs from others besides. No other file asks for a maker by name.
+//! differs from others besides. No other file of `iso` asks for a maker by name; compensation has its table in `kernel`.
 
 pub(crate) mod facts;
 pub(crate) mod fanuc;
