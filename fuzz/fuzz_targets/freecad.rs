@@ -4,7 +4,7 @@
 use freecad::{Job, read};
 use libfuzzer_sys::fuzz_target;
 use machine::Machine;
-use program::Op;
+use program::{Op, Purpose};
 use std::sync::LazyLock;
 
 static MILL: LazyLock<Machine> =
@@ -18,7 +18,7 @@ fuzz_target!(|data: &[u8]| {
             return;
         }
     };
-    match read(&MILL, "fuzz.json", job) {
+    match read(&MILL, "fuzz.json", job, Purpose::Program) {
         Ok(reading) => {
             let records = &reading.program.records;
             assert!(

@@ -161,7 +161,7 @@ fn what_the_control_does_not_take_is_not_proven() {
     assert_eq!(broken(" X41.000 Y30.000 Z13.750", " X41.000 Z13.750"), "helix-end-point");
     assert_eq!(broken(" X41.000 Y30.000 Z13.750", " Y30.000 Z13.750"), "helix-end-point");
     // M30 ends the program, and a line end M30.
-    assert_eq!(broken(" M30\n", " M30"), "program-end");
+    assert_eq!(broken(" M30\n", " M30"), "line-end");
     assert_eq!(broken(" M30\n", " M5\n"), "program-end");
     // One G function of a group in a block.
     assert_eq!(broken(" G17 G40", " G17 G18"), "group-conflict");
