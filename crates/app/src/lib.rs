@@ -5,7 +5,7 @@
 //! ([`Origin`]). [`toolpath::machine`] opens a machine; where its file and all that it extends may lie is the caller's to
 //! say ([`Reach`](machine::Reach)). [`post::proven`] writes and proves, [`prove::compare`] proves any text,
 //! [`wire::make`] and [`pcb::Job`] plan, write and prove what a wire or a board needs. [`files::save_program`] saves a
-//! program with its report, or neither. Whoever waits hands over a [`Watch`], which is told each step and may end the work.
+//! program with its report, or neither. Whoever waits hands over a [`Watch`], which hears of each step and may end the work.
 //!
 //! Lengths are mm, feeds mm/min, times s, as in every crate. The same input gives the same program, report and findings,
 //! whoever watches: there is no clock in them, no order of threads and no folder.

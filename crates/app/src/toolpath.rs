@@ -186,8 +186,7 @@ fn read_by(
     let (dialect, program, warnings, set_ups, cutcom) = match &origin.from {
         Some(from) => {
             let machine = set_up(origin.reach.load_origin(from)?);
-            let rotary_at_zero = is_control(from);
-            let setup = Setup { purpose, rotary_at_zero, ..origin.setup()? };
+            let setup = origin.setup(from, purpose)?;
             let folders = setup.folders.clone();
             let asked = |found: &Diagnostic| found.rule.ends_with("unknown-position");
             let reading = match nc::read(&machine, setup.clone(), &file, &bytes) {
@@ -246,8 +245,7 @@ pub fn swinging(source: &Source, origin: &Origin, frame: Frame) -> Result<Option
         return Ok(None);
     }
     let name = source.name();
-    let rotary_at_zero = is_control(from);
-    let setup = Setup { purpose: Purpose::Picture, rotary_at_zero, ..origin.setup()? };
+    let setup = origin.setup(from, Purpose::Picture)?;
     let program = match frame {
         Frame::Part => nc::read_swinging(&machine, setup, &name, &bytes)?,
         Frame::Machine => nc::read_in_machine(&machine, setup, &name, &bytes)?,
@@ -405,8 +403,8 @@ impl Origin {
             || start.is_some()
     }
 
-    /// What the operator has set up at the control.
-    fn setup(&self) -> Result<Setup, Stop> {
+    /// What the operator has set up at the control of `from`, for a program that is read for `purpose`.
+    fn setup(&self, from: &str, purpose: Purpose) -> Result<Setup, Stop> {
         let tools = match &self.tools {
             None => Vec::new(),
             Some(table) => {
@@ -423,8 +421,8 @@ impl Origin {
             block_delete: self.block_delete,
             start: self.start,
             flat: false,
-            purpose: Purpose::Program,
-            rotary_at_zero: false,
+            purpose,
+            rotary_at_zero: is_control(from),
             surface: Vec::new(),
         })
     }

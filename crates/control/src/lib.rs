@@ -376,20 +376,11 @@ pub fn optional_blocks(text: &[u8]) -> impl Iterator<Item = (u32, u8)> {
 /// Blocks of one word each: every G and M word, command, address and call of the tables of `dialect`, with a value where it
 /// needs one and in the order of the tables. A test puts them into programs; what they do there, [`read`] says.
 pub fn vocabulary(dialect: Dialect) -> Vec<String> {
-    match dialect {
-        Dialect::Sinumerik | Dialect::Sinumerik828d => sinumerik::vocabulary(),
-        Dialect::Klartext => klartext::vocabulary(),
-        Dialect::Points => Vec::new(),
-        Dialect::Fanuc => iso::vocabulary(&fanuc::FACTS),
-        Dialect::Haas => iso::vocabulary(&haas::FACTS),
-        Dialect::LinuxCnc => iso::vocabulary(&linuxcnc::FACTS),
-        Dialect::Mach3 => iso::vocabulary(&mach3::FACTS),
-        Dialect::Grbl => iso::vocabulary(&grbl::FACTS),
-        Dialect::Marlin => iso::vocabulary(&marlin::FACTS),
-        Dialect::FanucWire => iso::vocabulary(&wire::FANUC),
-        Dialect::Sodick => iso::vocabulary(&wire::SODICK),
-        Dialect::Agie => iso::vocabulary(&wire::AGIE),
-        Dialect::FreeCad => iso::vocabulary(&freecad::FACTS),
+    match dialect.language() {
+        Language::Iso(facts) => iso::vocabulary(facts),
+        Language::Sinumerik => sinumerik::vocabulary(),
+        Language::Klartext => klartext::vocabulary(),
+        Language::Points => Vec::new(),
     }
 }
 

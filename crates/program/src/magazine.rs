@@ -12,15 +12,15 @@ impl Program {
     /// warning where they have no size in common and their names differ. One for each number.
     pub fn tools_under_one_number(&self) -> Vec<Diagnostic> {
         let mut first: HashMap<u32, (u32, &Tool)> = HashMap::new();
-        let (mut found, mut told) = (Vec::new(), Vec::new());
+        let (mut found, mut reported) = (Vec::new(), Vec::new());
         for record in &self.records {
             let Op::Tool(tool) = &record.op else { continue };
-            if tool.number == 0 || told.contains(&tool.number) {
+            if tool.number == 0 || reported.contains(&tool.number) {
                 continue;
             }
             let (line, other) = *first.entry(tool.number).or_insert((record.line, tool));
             let Some((differs, is_sure)) = difference(other, tool) else { continue };
-            told.push(tool.number);
+            reported.push(tool.number);
             let message = format!(
                 "two tools have the number {}: {differs} (the first is in line {line})",
                 tool.number

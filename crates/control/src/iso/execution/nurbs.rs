@@ -34,16 +34,11 @@ pub(crate) struct Nurbs {
 impl Step<'_, '_, '_> {
     /// Between `G5.2` and `G5.3` there are control points, F and comments; `rs274` passes over or drops all else.
     pub(super) fn inside_nurbs(&self) -> Result<(), Fault> {
-        let asked = self.block.g(Group::Motion);
-        let opens = asked == Some(G::Motion(Motion::Nurbs));
-        if self.state.nurbs.is_none() && !opens {
-            return Ok(());
-        }
-        let closes = asked == Some(G::Motion(Motion::EndOfNurbs));
-        // What else may stand in the first block acts before it, as with any motion.
+        // What else stands in the first block acts before it, as with any motion.
         if self.state.nurbs.is_none() {
             return Ok(());
         }
+        let closes = self.block.g(Group::Motion) == Some(G::Motion(Motion::EndOfNurbs));
         let letters: &[u8] = if closes { b"N" } else { b"NXYPF" };
         let others = self.block.m_count > 0 || self.block.commands() > usize::from(closes);
         if others || !self.block.gives_only(letters) {
@@ -175,7 +170,7 @@ fn halve(curve: Vec<Vec3>, depth: u32, ends: &mut Vec<Vec3>) -> bool {
     else {
         return true;
     };
-    let is_flat = curve.iter().all(|point| beside(first, last, plain(*point)) <= TOLERANCE);
+    let is_flat = curve.iter().all(|point| from_chord(first, last, plain(*point)) <= TOLERANCE);
     if is_flat {
         ends.push(last);
         return true;
@@ -195,7 +190,7 @@ fn halve(curve: Vec<Vec3>, depth: u32, ends: &mut Vec<Vec3>) -> bool {
 }
 
 /// Distance of `point` from the straight line between two others, mm.
-fn beside(from: Vec3, to: Vec3, point: Vec3) -> f64 {
+fn from_chord(from: Vec3, to: Vec3, point: Vec3) -> f64 {
     let way = to - from;
     let part = match way.length_squared() {
         0.0 => 0.0,

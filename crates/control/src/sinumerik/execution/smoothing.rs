@@ -4,8 +4,7 @@
 use super::interpreter::Interpreter;
 use crate::event::{Action, Risk};
 use crate::sinumerik::Fallible;
-use crate::sinumerik::language::block::Block;
-use crate::sinumerik::language::block::TOLERANCES;
+use crate::sinumerik::language::block::{Block, TOLERANCES};
 use crate::sinumerik::language::commands::{Code, Smoothing};
 use crate::sinumerik::language::scan::Source;
 
@@ -19,7 +18,7 @@ pub(crate) struct Smoothed {
     /// Whether the program says the tolerance (`CTOL`, `CYCLE832`).
     is_bounded: bool,
     /// Whether it has been reported that the machine data say it.
-    is_told: bool,
+    is_reported: bool,
 }
 
 impl Smoothed {
@@ -30,12 +29,12 @@ impl Smoothed {
             Smoothing::Programmed => !self.is_bounded,
             Smoothing::MachineData => true,
         };
-        !self.is_told && (loose(self.rounding) || loose(self.compressor))
+        !self.is_reported && (loose(self.rounding) || loose(self.compressor))
     }
 
     /// The program says a tolerance, or takes it back.
     fn bound(&mut self, is_bounded: bool) {
-        *self = Smoothed { is_bounded, is_told: false, ..*self };
+        *self = Smoothed { is_bounded, is_reported: false, ..*self };
     }
 
     /// The modes of a block.
@@ -47,24 +46,24 @@ impl Smoothed {
         if let Some(Code::Smoothing(compressor)) = block.code(30) {
             self.compressor = compressor;
         }
-        self.is_told &= *self == before;
+        self.is_reported &= *self == before;
     }
 
     /// The modes of `other`, with the tolerance as it is now.
     pub fn with_modes_of(self, other: Smoothed) -> Smoothed {
-        Smoothed { is_bounded: self.is_bounded, is_told: false, ..other }
+        Smoothed { is_bounded: self.is_bounded, is_reported: false, ..other }
     }
 }
 
 impl Interpreter<'_, '_> {
-    /// Tells where the path of the block is smoothed and the program does not say by how much. Machine data do (MD33100,
+    /// Reports where the path of the block is smoothed and the program does not say by how much. Machine data do (MD33100,
     /// MD33120): they are not known, and so not 0.
     #[cold]
     pub fn hold_smoothing(&mut self, source: &Source, block: &Block) -> Fallible<()> {
         if !(block.has_position() || block.has_arc_word()) {
             return Ok(());
         }
-        self.state.smoothed.is_told = true;
+        self.state.smoothed.is_reported = true;
         self.emit(source, Action::Risk(Risk::SMOOTHING.into()))
     }
 
