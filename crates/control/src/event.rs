@@ -283,6 +283,23 @@ impl Risk {
         refused: true,
     };
 
+    /// `M101` of HEIDENHAIN (iTNC 530, "Automatic tool change if the tool life expires").
+    pub(crate) const REPLACEMENT_TOOL: Risk = Risk {
+        rule: "replacement-tool",
+        what: "changes a tool whose life is over for its replacement by itself (M101): between which blocks, and by which way, the \
+               program does not say",
+        help: "leave M101 out, or write M102 before the cut",
+        refused: true,
+    };
+
+    /// `_TC` of CYCLE800 (PM p. 678): the swivel data set is the kinematics by which the plane is reached.
+    pub(crate) const SWIVEL_DATA: Risk = Risk {
+        rule: "swivel-data",
+        what: "swivels by another swivel data set than the machine file names: another kinematics",
+        help: "name the data set of this machine in `swivel_data` in [options] of the machine file, and in _TC",
+        refused: true,
+    };
+
     /// `M52` of LinuxCNC ("M Codes", "Adaptive Feed Control"): F times the value of a pin.
     pub(crate) const ADAPTIVE_FEED: Risk = Risk {
         rule: "adaptive-feed",

@@ -217,6 +217,8 @@ pub struct Settings {
     /// R parameters that the operator sets at the machine to shift the zero of a rotary axis
     /// (SINUMERIK). They count as 0; any other that no block has set is an error.
     pub operator_parameters: Vec<u32>,
+    /// Name of the swivel data set that describes the machine (`_TC` of CYCLE800); empty where it has one only.
+    pub swivel_data: String,
     /// The M functions that switch the kinematics, where the machine has two (LinuxCNC).
     pub kinematics: Option<Kinematics>,
     /// The wire, where the machine has one.
@@ -353,6 +355,7 @@ impl Settings {
             wire: Wire::default(),
             path_tolerance: 0.0,
             orientation_tolerance: 0.0,
+            swivel_data: String::new(),
             setup: Setup::default(),
         }
     }

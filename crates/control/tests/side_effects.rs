@@ -75,8 +75,7 @@ fn a_length_that_changes_on_fanuc_moves_z_or_does_not() {
 #[test]
 fn look_ahead_is_for_contours() {
     const START: &str = "G21 G90 G94 G17 G98 G54\nT1 M6\nS500 M3\nG91 G28 Z0.\nG90 G0 X0. Y0. B0. C0.\nG43 H1 Z50.\n";
-    for on in ["G5.1 Q1", "G5 P10000"] {
-        let off = if on == "G5.1 Q1" { "G5.1 Q0" } else { "G5 P0" };
+    for (on, off) in [("G5.1 Q1", "G5.1 Q0"), ("G5 P10000", "G5 P0"), ("G8 P1", "G8 P0")] {
         for (blocks, harmless) in [
             (format!("{on}\nG1 Z1. F100.\n{off}"), true),
             (format!("{on}\nG1 Z1. F100."), false),
@@ -99,6 +98,67 @@ fn look_ahead_is_for_contours() {
             );
         }
     }
+}
+
+/// A number that is missing is not 0, and look-ahead neither begins nor ends by a word that says which of both nowhere.
+#[test]
+fn look_ahead_goes_on_and_off_by_its_number_in_a_block_of_its_own() {
+    for block in
+        ["G5.1", "G5", "G8", "G5.1 P1", "G8 Q1", "G8 P2", "G5 P1", "G5.1 Q1 X5.", "G8 P1 G0"]
+    {
+        let text = format!("G21 G90 G94 G17\nG0 X0. Y0. Z5.\n{block}\nM30\n");
+        let found = run(Dialect::Fanuc, &text).map(|_| ()).map_err(|error| error.rule);
+        assert!(found.is_err(), "{block}");
+    }
+}
+
+/// iTNC 530 (60642x-04) p. 202: M101 changes to a replacement tool by itself, between two blocks, when the life of the tool is over;
+/// TNC 320 (77185x-01) p. 355: M148 takes the tool off the contour by up to 2 mm at a stop.
+#[test]
+fn a_heidenhain_that_changes_a_worn_tool_or_lifts_it_off_by_itself_is_told() {
+    let told = |function: &str| {
+        let program = format!(
+            "BEGIN PGM T MM\nTOOL CALL 5 Z S100\nL X+0 Y+0 Z+9 B+0 C+0 R0 FMAX {function}\nL X+5 F100\nEND PGM T MM\n"
+        );
+        let risk = |action: &Action| match action {
+            Action::Risk(risk) => Some((risk.rule, risk.refused)),
+            _ => None,
+        };
+        actions(Dialect::Klartext, &program).iter().filter_map(risk).collect::<Vec<_>>()
+    };
+    assert_eq!(told("M101"), [("replacement-tool", true)]);
+    assert_eq!(told("M101 BT10"), [("replacement-tool", true)]);
+    assert_eq!(told("M102"), []);
+    assert_eq!(told("M148"), [("stop-retract", false)]);
+    assert_eq!(told("M149"), []);
+}
+
+/// PM p. 678: `_TC` names the swivel data set; the name may be left out where the machine has one only. Another set is
+/// another kinematics.
+#[test]
+fn a_swivel_data_set_is_the_one_of_the_machines_file() {
+    let found = |stated: &str, named: &str, rotary: [bool; 3]| {
+        let settings =
+            Settings { swivel_data: stated.into(), ..Settings::new(Dialect::Sinumerik, rotary) };
+        let text =
+            format!("T1 M6\nG0 X0 Y0 Z9\nCYCLE800(1,{named},0,57,0,0,0,30,0,0,0,0,0,-1)\nM30\n");
+        rules(&common::ops(&settings, "p.mpf", &text).unwrap_or_else(|e| panic!("{e}\n{text}")))
+    };
+    let five = [true, false, true];
+    for (stated, named, same) in [
+        ("", "\"\"", true),
+        ("", "", true),
+        ("", "\"R_DATA\"", false),
+        ("TABLE", "\"TABLE\"", true),
+        ("TABLE", "\"HEAD\"", false),
+        ("TABLE", "\"\"", false),
+        ("TABLE", "", false),
+    ] {
+        let expected: &[&str] = if same { &[] } else { &["swivel-data"] };
+        assert_eq!(found(stated, named, five), expected, "{stated} {named}");
+    }
+    // Without rotary axes the plane is a frame, and no kinematics is asked for.
+    assert_eq!(found("", "\"R_DATA\"", [false; 3]), [""; 0]);
 }
 
 /// Haas, "G234 - Tool Center Point Control": of the group of the tool length, ended by `G49`.

@@ -58,6 +58,55 @@ fn variables_have_types_and_keep_values() {
     }
 }
 
+/// PM19 p. 383: any name but the keywords of the language. (What is refused stands below: `DEF REAL NUMBER`.)
+#[test]
+fn a_variable_may_have_any_name_that_is_no_word_of_the_language() {
+    for name in [
+        "NUMBERS",
+        "NUM",
+        "COUNT",
+        "DEPTH",
+        "STEP",
+        "RADIUS",
+        "LENGTH",
+        "WIDTH",
+        "ANGLE",
+        "SIZE",
+        "LEVEL",
+        "TOTAL",
+        "NEXT",
+        "LAST",
+        "OFFSET",
+        "START_X",
+        "X_POS",
+        "FEED",
+        "SPEED",
+        "TOOL",
+        "PART",
+        "INDEX_1",
+        "MAXIMUM",
+        "UMAX",
+        "_LOCAL",
+        "RR1",
+        "XX",
+        "TTOOL",
+        "MYCYCLE",
+        "WHILE_1",
+        "LOOPS",
+        "PROCESS",
+        "CASES",
+        "TOWER",
+        "ELSEWHERE",
+        "DIVISOR",
+        "MODULE",
+        "NOTE",
+        "ORDER",
+        "ANDY",
+    ] {
+        assert_eq!(xs(&format!("DEF REAL {name}=3\nG0 X={name}")), [3.0], "{name}");
+    }
+}
+
 #[test]
 fn operators_have_the_ranks_of_the_manual() {
     for (expression, x) in [
@@ -362,6 +411,10 @@ fn what_is_wrong_with_flow_is_said_where_it_stands() {
         ("DEF REAL R1", "definition", 1),
         ("DEF FRAME AA", "unsupported", 1),
         ("DEF NUMBER AA", "definition", 1),
+        ("DEF REAL NUMBER", "definition", 1),
+        ("DEF REAL INDEX", "definition", 1),
+        ("DEF REAL TRANS", "definition", 1),
+        ("DEF REAL CYCLE81", "definition", 1),
         ("G0 X1\nDEF REAL AA", "definition", 2),
         ("DEF REAL AA\nAA=1 AA=2", "repeated-word", 2),
         ("DEF REAL AA\nAA=1 X=AA", "variable", 2),

@@ -130,3 +130,19 @@ fn what_a_wire_cannot_do_or_nobody_knows_is_refused() {
     let arc = "G21 G90 G0 X0. Y0. U1.\nM60\nG2 X10. I5. U2.\n";
     assert_eq!(run(Dialect::FanucWire, arc, Some(9.0)).unwrap_err().rule, "nc-wire");
 }
+
+/// FANUC, parameter 3410: the machine sets by how much the two radii of an arc may differ, and 0.01 mm is assumed, as on its
+/// mills. A thousandth of the radius, as GRBL has it, is no rule of these controls.
+#[test]
+fn an_arc_whose_radii_differ_by_more_than_a_hundredth_is_refused() {
+    for dialect in [Dialect::FanucWire, Dialect::Sodick, Dialect::Agie] {
+        let units = if dialect == Dialect::Agie { "G71" } else { "G21" };
+        let arc = |end: &str| {
+            let text = format!("{units} G90 G0 X0. Y0.\nM60\nG2 X{end} Y0. I200. J0.\nM50\nM2\n");
+            run(dialect, &text, None).map(|_| ()).map_err(|error| error.rule)
+        };
+        assert_eq!(arc("400."), Ok(()), "{dialect:?}");
+        assert_eq!(arc("400.008"), Ok(()), "{dialect:?}");
+        assert_eq!(arc("400.15"), Err("nc-arc"), "{dialect:?}");
+    }
+}

@@ -674,6 +674,14 @@ impl Machine {
         self.number_of("orientation_tolerance")
     }
 
+    /// The name of the swivel data set that describes the machine: `swivel_data` of the options; empty where none is named.
+    pub fn swivel_data(&self) -> &str {
+        match self.options.get("swivel_data") {
+            Some(OptionValue::Text(name)) => name,
+            _ => "",
+        }
+    }
+
     /// The number of an option; 0 where there is none.
     fn number_of(&self, option: &str) -> f64 {
         match self.options.get(option) {

@@ -96,6 +96,7 @@ pub fn settings(machine: &Machine, setup: Setup) -> Result<Settings, Box<Diagnos
             .settings
             .kinematics
             .map(|k| control::Kinematics { tip: k.tip, axes: k.axes }),
+        swivel_data: machine.swivel_data().to_owned(),
         path_tolerance: machine.path_tolerance(),
         orientation_tolerance: machine.orientation_tolerance(),
         setup,

@@ -2,7 +2,7 @@
 //! program does not say.
 
 /// The rules that may be accepted, each with what its acceptance answers for.
-pub const ACCEPTABLE: [(&str, &str); 20] = [
+pub const ACCEPTABLE: [(&str, &str); 22] = [
     ("adaptive-feed", "an input of the machine multiplies the feed"),
     ("axis-dynamics", "axes may be faster than their machine data allow"),
     ("dwell-unit", "what a dwell counts in"),
@@ -18,8 +18,10 @@ pub const ACCEPTABLE: [(&str, &str); 20] = [
     ("orientation-way", "how the tool turns within a block while the control keeps its tip"),
     ("path-tolerance", "corners may be cut by more than the machine's file allows"),
     ("rapid-path", "room for the tool where it goes by rapid beside the way of the source"),
+    ("replacement-tool", "where and how the control changes a tool whose life is over"),
     ("rotary-way", "which way the rotary axes turn"),
     ("stored-position", "where the stored position is to which Z goes"),
+    ("swivel-data", "the data set that the program names is that of this kinematics"),
     ("table-frame", "in which frame X, Y and Z count behind G43.4 with a turned table"),
     ("tool-change-height", "the tool change of the machine brings Z up by itself"),
     ("turn-height", "room for the part and the tool where rotary axes turn"),

@@ -109,16 +109,39 @@ fn constant_velocity_of_mach3_is_as_its_file_says() {
     assert_eq!(proven(&smooth, &text), Ok(()));
 }
 
+/// Haas, "G187": without E corners are rounded as setting 85 says, with the word or without, and nothing of a program bounds
+/// that; `G61` stops in each.
 #[test]
-fn a_tolerance_beyond_the_machines_file_is_refused_on_other_controls() {
+fn a_haas_rounds_corners_as_far_as_g187_says_and_no_program_leaves_that_to_setting_85() {
     let haas = load("generic-3axis-haas").unwrap();
     let text = posted(&haas);
-    for (line, held) in [("G187 P3 E5.", false), ("G187 P1 E0.", true), ("G187 P2", true)] {
-        let start = text.find("T1 M6").map(|at| text[..at].rfind('\n').unwrap() + 1).unwrap();
-        let damaged = format!("{}{line}\n{}", &text[..start], &text[start..]);
+    let written = "G187 E0.01";
+    assert!(text.contains(written), "{text}");
+    assert_eq!(proven(&haas, &text), Ok(()));
+    for (line, held) in [
+        ("G187 P3 E5.", false),
+        ("G187 P1 E0.", true),
+        ("G187 P2", false),
+        ("G187", false),
+        ("", false),
+        ("G61", true),
+        ("G187 E0.01\nG61\nG64", true),
+        ("G187 E0.01\nG187 P3", false),
+        ("G64", false),
+    ] {
+        let damaged = text.replacen(written, line, 1);
         let expected = if held { Ok(()) } else { Err("path-tolerance") };
         assert_eq!(proven(&haas, &damaged), expected, "{line}");
     }
+    let exact = "extends = \"generic-3axis-haas\"\n[options]\npath_tolerance = 0\n";
+    let exact = load_text("own.toml", exact).unwrap();
+    let text = posted(&exact);
+    assert!(text.contains("G61\n") && !text.contains("G187"), "{text}");
+    assert_eq!(proven(&exact, &text), Ok(()));
+}
+
+#[test]
+fn a_tolerance_beyond_the_machines_file_is_refused_on_other_controls() {
     let heidenhain = load("generic-3axis-heidenhain").unwrap();
     let text = posted(&heidenhain);
     assert_eq!(proven(&heidenhain, &text), Ok(()));

@@ -139,15 +139,16 @@ fn a_fanuc_retracts_by_g53_where_its_file_says_so() {
 fn a_haas_is_told_how_smooth_it_goes_and_by_how_much_it_may_round_corners() {
     let source = sample("three-axes");
     for (options, block) in [
-        ("smoothness = 3\npath_tolerance = 0.01", "G187 P3 E0.01\n"),
-        ("smoothness = 1", "G187 P1\n"),
+        ("smoothness = 3\npath_tolerance = 0.05", "G187 P3 E0.05\n"),
+        ("smoothness = 1", "G187 P1 E0.01\n"),
+        ("path_tolerance = 0", "G61\n"),
     ] {
         let machine = machine(&format!("extends = \"generic-3axis-haas\"\n[options]\n{options}\n"));
         let text = written(&source, &machine);
         assert!(text.contains(&format!("G94 G54\n{block}")), "{text}");
     }
     let machine = machine("extends = \"generic-3axis-haas\"\n");
-    assert!(!written(&source, &machine).contains("G187"));
+    assert!(written(&source, &machine).contains("G94 G54\nG187 E0.01\n"));
 }
 
 /// M88 starts coolant through the spindle, M89 ends it; M9 does not.

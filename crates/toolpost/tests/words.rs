@@ -98,6 +98,12 @@ fn a_word_that_takes_something_from_the_operator_is_refused_wherever_it_stands()
         ("generic-3axis-haas", "examples/plate.cls", &["#500=5.", "#700=5."], "operator-data"),
         ("generic-3axis-heidenhain", "examples/plate.cls", &["QR5 = 3"], "operator-data"),
         ("generic-3axis-heidenhain", "examples/plate.cls", &["M107", "M141"], "operator-controls"),
+        (
+            "generic-3axis-heidenhain",
+            "examples/plate.cls",
+            &["M101", "M101 BT5"],
+            "replacement-tool",
+        ),
         ("generic-3axis-fanuc", "examples/plate.cls", &["M49", "G63"], "operator-controls"),
         ("generic-3axis-haas", "examples/plate.cls", &["M49"], "operator-controls"),
         ("mach3-mill", "machines/samples/three-axes.cls", &["M49"], "operator-controls"),
@@ -279,14 +285,14 @@ const TAKEN: &[(&str, &str, &str)] = &[
     (
         "generic-3axis-fanuc",
         "examples/plate.cls",
-        "G0 G1 G8 G9 G15 G17 G21 G40 G43 G50 G54 G60 G61 G62 G64 G67 G69 G80 G90 G94 G97 G98 G99 M3 M8 \
+        "G0 G1 G9 G15 G17 G21 G40 G43 G50 G54 G60 G61 G62 G64 G67 G69 G80 G90 G94 G97 G98 G99 M3 M8 \
          M48",
     ),
-    // The same; G103, G187 to what the settings say; M89 ends what is not on.
+    // The same; G103; M89 ends what is not on.
     (
         "generic-3axis-haas",
         "examples/plate.cls",
-        "G0 G1 G9 G17 G21 G40 G43 G50 G54 G60 G61 G64 G67 G69 G80 G90 G94 G97 G98 G99 G103 G187 M3 M8 M48 \
+        "G0 G1 G9 G17 G21 G40 G43 G50 G54 G60 G61 G64 G67 G69 G80 G90 G94 G97 G98 G99 G103 M3 M8 M48 \
          M89",
     ),
     // The same; M48 and M50 to M53 give overrides and feed hold back; M70 to M73 keep modes.
@@ -314,12 +320,12 @@ const TAKEN: &[(&str, &str, &str)] = &[
         "machines/samples/three-axes.cls",
         "G0 G1 G17 G21 G54 G80 G90 M3 M9 M17 M82 M83 M117 M400",
     ),
-    // The same; M126 and M127 on a machine without rotary axes; speeds in corners, sister tools, ends of what is not
-    // on, lift-off at a stop.
+    // The same; M126 and M127 on a machine without rotary axes; speeds in corners, ends of what is not on, lift-off at a
+    // stop (with a warning).
     (
         "generic-3axis-heidenhain",
         "examples/plate.cls",
-        "M3 M8 M13 M126 M127 M129 M137 M90 M101 M102 M108 M111 M117 M121 M134 M135 M145 M148 M149",
+        "M3 M8 M13 M126 M127 M129 M137 M148 M90 M102 M108 M111 M117 M121 M134 M135 M145 M149",
     ),
     // The same; a motion that the next block replaces; frames and poles without values; how the path is driven
     // within its tolerances; addresses of corners that are not there; where the axes go at a stop (POLF and its kin, with a warning).

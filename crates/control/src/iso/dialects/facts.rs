@@ -73,6 +73,7 @@ impl Facts {
     pub(in crate::iso) fn why_refused(&self, letter: u8, number: f64) -> Option<&'static str> {
         match self.syntax.refused_letter {
             Some((refused, reason)) if refused == letter => Some(reason),
+            _ if matches!(letter, b'U' | b'V' | b'W') => Some(self.syntax.further_axes),
             _ => self.words.why_refused(letter, number),
         }
     }
@@ -117,6 +118,8 @@ pub(crate) struct Syntax {
     pub extended_m: bool,
     /// Why a letter that is none of its words is refused, where there is a reason of its own.
     pub refused_letter: Option<(u8, &'static str)>,
+    /// What U, V and W are that are none of its words.
+    pub further_axes: &'static str,
 }
 
 /// `,C` and `,R`.
@@ -177,12 +180,15 @@ impl Syntax {
         repeats_in_p: false,
         extended_m: false,
         refused_letter: None,
+        further_axes: "U, V and W are axes parallel to X, Y and Z (ISO 6983), and not followed: write the move as X, Y and Z",
     };
     pub const FANUC: Syntax = Syntax {
         small_letters: false,
         ending: Ending::Code,
         semicolon: Semicolon::EndOfBlock,
         block_delete: BlockDelete::Numbered,
+        further_axes: "U, V and W are further axes where parameter 1020 names them, on lathes (G code system A) increments of X, Y \
+                       and Z; neither is followed: write X, Y and Z, with G91 where they are increments",
         ..Syntax::ISO
     };
 }

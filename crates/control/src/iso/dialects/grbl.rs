@@ -46,7 +46,13 @@ const WORDS: Dictionary = mill(b"FGIJKLMNPRSTXYZ", 79)
     .refusing(REFUSED_G, REFUSED_M);
 
 pub(crate) static FACTS: Facts = Facts {
-    syntax: Syntax { brackets: Brackets::AnyComment, percent: false, console: true, ..Syntax::ISO },
+    syntax: Syntax {
+        brackets: Brackets::AnyComment,
+        percent: false,
+        console: true,
+        further_axes: "this control has X, Y and Z, and gives error 20 for another axis: write the move with them",
+        ..Syntax::ISO
+    },
     feed: FeedRules { unit: FeedUnit::OfBlock, ..FeedRules::ISO },
     functions: Functions { ignores_optional_stop: true, ..Functions::ISO },
     arcs: Arcs { needs_axis: true, outer_center: OuterCenter::Ignored, ..Arcs::ISO },

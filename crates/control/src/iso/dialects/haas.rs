@@ -5,6 +5,7 @@ use super::facts::{
     Offsets, Reset, Syntax, Tools, further, within_a_hundredth,
 };
 use super::{END_M, FRAME_G, MACRO_G, MILL_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
+use crate::Corners;
 use crate::iso::language::words::{
     Canned, Dictionary, G, GRow, Group, M, MRow, Path, Pattern, Refused,
 };
@@ -94,7 +95,12 @@ const WORDS: Dictionary = mill(b"ABCDEFGHIJKLMNOPQRSTXYZ", usize::MAX)
     .refusing(REFUSED_G, &[]);
 
 pub(crate) static FACTS: Facts = Facts {
-    syntax: Syntax { corners: CornerWords::AtLines, ..Syntax::FANUC },
+    syntax: Syntax {
+        corners: CornerWords::AtLines,
+        further_axes: "U, V and W are auxiliary axes, on lathes increments of X, Y and Z; neither is followed: write X, Y and Z, with \
+                       G91 where they are increments",
+        ..Syntax::FANUC
+    },
     numbers: Numbers { dwell: DwellUnit::ByPoint, ..Numbers::FANUC },
     functions: Functions {
         // *Mill Operator's Manual*, M00.
@@ -113,6 +119,11 @@ pub(crate) static FACTS: Facts = Facts {
     frames: FrameRules { mirrors_at_zero: true, ..FrameRules::FANUC },
     homes: Homes { cancels_length: true, ..Homes::FANUC },
     tools: Tools { remembers_registers: true, ..Tools::FANUC },
-    reset: Reset { work_offset: Some(WorkOffset::FIRST), ..Reset::FANUC },
+    reset: Reset {
+        // By as much as setting 85 says, which no program sees.
+        corners: Corners::Unbounded,
+        work_offset: Some(WorkOffset::FIRST),
+        ..Reset::FANUC
+    },
     ..Facts::fanuc(WORDS, Language::MacroB)
 };

@@ -96,7 +96,12 @@ fn is_circle(inches: bool, start: f64, end: f64) -> bool {
 }
 
 pub(crate) static FACTS: Facts = Facts {
-    syntax: Syntax { ending: Ending::CodeOrPercent, extended_m: true, ..Syntax::ISO },
+    syntax: Syntax {
+        ending: Ending::CodeOrPercent,
+        extended_m: true,
+        further_axes: "U, V and W are axes of machines whose [TRAJ]COORDINATES name them, and not followed: write the move as X, Y and Z",
+        ..Syntax::ISO
+    },
     feed: FeedRules { unit: FeedUnit::OfBefore, ..FeedRules::ISO },
     functions: Functions { orients_by_pq: true, ..Functions::ISO },
     motion: MotionRules {

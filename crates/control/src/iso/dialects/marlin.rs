@@ -65,6 +65,8 @@ pub(crate) static FACTS: Facts = Facts {
         one_command: true,
         ending: Ending::Text,
         refused_letter: Some((b'E', "an extruder is no tool of a mill")),
+        further_axes: "U, V and W are axes of a firmware that is built with them (AXIS4_NAME to AXIS9_NAME), and passed over by others: \
+                       take the word out",
         ..Syntax::ISO
     },
     numbers: Numbers { dwell: DwellUnit::Milliseconds, dwell_letter: Some(b'S'), ..Numbers::ISO },

@@ -2,7 +2,7 @@
 //! (`docs/controls/wire-iso.md`). The M functions that thread and cut the wire stand in the machine's
 //! file.
 
-use super::facts::{Facts, Language, Tools, WireRules};
+use super::facts::{Arcs, Facts, Language, Syntax, Tools, WireRules, within_a_hundredth};
 use super::{BASIC_G, BASIC_M, END_M, SUBPROGRAM_M, UNITS_20};
 use crate::iso::language::words::{Dictionary, G, GRow, Group, Refused, Side};
 
@@ -29,40 +29,50 @@ const REFUSED_BY_AGIE: &[Refused] = &[
     (520, "how this control says a taper is not known; give U and V"),
 ];
 
+/// A wire machine with these words.
+const fn wire(words: Dictionary) -> Facts {
+    Facts {
+        syntax: Syntax {
+            further_axes: "a wire has X, Y, U and V; what moves Z or W is set up at the machine: take the word out",
+            ..Syntax::FANUC
+        },
+        // FANUC parameter 3410, which the machine sets; of the others no rule is known.
+        arcs: Arcs { is_circle: within_a_hundredth, ..Arcs::ISO },
+        ..Facts::fanuc(words, Language::Plain)
+    }
+}
+
 pub(crate) static FANUC: Facts = Facts {
     wire: Some(WireRules { conditions: b"S", taper_letter: b'T' }),
-    ..Facts::fanuc(
+    ..wire(
         Dictionary::new(b"DFGIJLMNOPRSTUVXY", usize::MAX)
             .with(BASIC_G, BASIC_M)
             .with(COMPENSATION, END_M)
             .with(UNITS_20, SUBPROGRAM_M)
             .with(TAPER, &[]),
-        Language::Plain,
     )
 };
 
 pub(crate) static SODICK: Facts = Facts {
     tools: Tools { radius_letter: b'H', ..Tools::FANUC },
     wire: Some(WireRules { conditions: b"CT", taper_letter: b'A' }),
-    ..Facts::fanuc(
+    ..wire(
         Dictionary::new(b"ACFGHIJLMNOPRTUVXY", usize::MAX)
             .with(BASIC_G, BASIC_M)
             .with(COMPENSATION, END_M)
             .with(UNITS_20, SUBPROGRAM_M)
             .with(UNITS_70, &[])
             .with(TAPER, &[]),
-        Language::Plain,
     )
 };
 
 pub(crate) static AGIE: Facts = Facts {
     wire: Some(WireRules { conditions: b"PST", taper_letter: b'T' }),
-    ..Facts::fanuc(
+    ..wire(
         Dictionary::new(b"DFGIJMNPSTUVXY", usize::MAX)
             .with(BASIC_G, BASIC_M)
             .with(COMPENSATION, END_M)
             .with(UNITS_70, &[])
             .refusing(REFUSED_BY_AGIE, &[]),
-        Language::Plain,
     )
 };

@@ -553,6 +553,10 @@ impl Step<'_, '_, '_> {
     /// Look-ahead, which changes how fast the path is run and not where it is; R says how exactly (B-64484EN,
     /// "Machining condition selecting function").
     fn look_ahead(&mut self, letter: u8, on: u32) -> Result<(), Fault> {
+        if !self.block.has_only(&[letter, b'R'], Group::OneShot) {
+            let message = "look-ahead goes on and off in a block of its own";
+            return Err(self.block.at_group(Group::OneShot, "nc-look-ahead", message));
+        }
         self.take_whole(b'R')?;
         match self.take_whole(letter)? {
             Some(number) if number == on || number == 0 => {

@@ -118,6 +118,8 @@ pub(crate) struct State {
     pub cut: bool,
     /// Look-ahead is on (FANUC `G5.1 Q1`, `G5 P10000`).
     pub looks_ahead: bool,
+    /// By how much corners are cut at the most, mm, where `G187 E` has said it (Haas).
+    pub rounds_corners: Option<f64>,
     /// `M2` or `M30` has been executed.
     pub ended: bool,
 }
@@ -256,6 +258,7 @@ impl State {
             moved: false,
             cut: false,
             looks_ahead: false,
+            rounds_corners: None,
             ended: false,
         }
     }

@@ -433,15 +433,21 @@ impl Step<'_, '_, '_> {
                     _ => PathMode::AsSetUp,
                 }
             }
-            (Some(G::Path(Path::Blend { .. })), _) => PathMode::AsSetUp,
+            (Some(G::Path(Path::Blend { .. })), _) => self.smoothness(),
             (_, Some(G::Smoothness)) => {
                 self.block.take(b'P');
-                self.take_length(b'E')?.map_or(PathMode::AsSetUp, PathMode::Blend)
+                self.state.rounds_corners = self.take_length(b'E')?;
+                self.smoothness()
             }
             _ => return Ok(()),
         };
         self.actions.push(Action::PathMode(mode));
         Ok(())
+    }
+
+    /// By how much corners are cut as `G187` says, or as the control is set up.
+    fn smoothness(&self) -> PathMode {
+        self.state.rounds_corners.map_or(PathMode::AsSetUp, PathMode::Blend)
     }
 
     /// Plane, units, compensation, length, work offset, path, distance, return, tilt.

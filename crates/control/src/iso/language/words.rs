@@ -35,7 +35,7 @@ pub(crate) enum G {
     Path(Path),
     /// `G63` of FANUC: overrides and feed hold do nothing from here on.
     LockOverrides,
-    /// Haas `G187`: P how smooth, E by how much corners are cut.
+    /// Haas `G187`: P how smooth, E by how much corners are cut; without E as setting 85 says.
     Smoothness,
     /// `G68`
     Turn,
@@ -63,7 +63,7 @@ pub(crate) enum G {
     /// `G29`
     FromHome,
     Machine,
-    /// `G5 P`, `G5.1 Q`: on with this number and off with 0.
+    /// `G5 P`, `G5.1 Q`, `G8 P`: on with this number and off with 0.
     LookAhead {
         letter: u8,
         on: u32,
@@ -423,7 +423,6 @@ impl Dictionary {
         let (table, number) = match letter {
             b'G' => (self.refused_g, tenths(number)?),
             b'M' => (self.refused_m, tenths(number)? / 10),
-            b'U' | b'V' | b'W' => return Some("the axes followed are X Y Z and A B C"),
             _ => return None,
         };
         table.iter().find(|(n, _)| usize::from(*n) == number).map(|(_, reason)| *reason)

@@ -423,6 +423,8 @@ impl<'a, 's> Control<'a, 's> {
             }
             Function::Auxiliary(number) => self.emit(Action::Auxiliary(Auxiliary::of(number))),
             Function::MonitoringOff => self.emit(Action::Risk(Risk::MONITORING_OFF.into())),
+            Function::ReplacesTool => self.emit(Action::Risk(Risk::REPLACEMENT_TOOL.into())),
+            Function::LiftsOff => self.emit(Action::Risk(Risk::STOP_RETRACT.into())),
             Function::MachineCoordinates { .. } | Function::Nothing => Ok(()),
         }
     }

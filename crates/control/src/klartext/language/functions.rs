@@ -42,13 +42,17 @@ pub(crate) enum Function {
     Nothing,
     /// Switches off a check at which the control stops: `M107`, `M141`.
     MonitoringOff,
+    /// Changes a tool whose life is over for a replacement by itself, between two blocks: `M101`.
+    ReplacesTool,
+    /// Takes the tool off the contour where the program is stopped: `M148`.
+    LiftsOff,
     /// Retracts along the tool axis: by so many mm, infinite for `M140 MB MAX`; at a feed of its own
     /// or by rapid.
     Retract(f64, Option<FeedWord>),
 }
 
 /// The number of an M function, and what it is. M140 takes its distance from the text.
-const FUNCTIONS: [(u16, Function); 24] = [
+const FUNCTIONS: [(u16, Function); 26] = [
     (0, Function::Stop),
     (1, Function::OptionalStop),
     (2, Function::End),
@@ -65,6 +69,7 @@ const FUNCTIONS: [(u16, Function); 24] = [
     (91, Function::MachineCoordinates { builders: false }),
     (92, Function::MachineCoordinates { builders: true }),
     (99, Function::CallCycle),
+    (101, Function::ReplacesTool),
     (107, Function::MonitoringOff),
     (126, Function::ShorterWay(true)),
     (127, Function::ShorterWay(false)),
@@ -73,12 +78,13 @@ const FUNCTIONS: [(u16, Function); 24] = [
     (136, Function::FeedPerTurn(true)),
     (137, Function::FeedPerTurn(false)),
     (141, Function::MonitoringOff),
+    (148, Function::LiftsOff),
 ];
 
 /// Functions that change neither where the tool goes nor what it does there: the speed in corners
-/// (M90, M134, M135), sister tools (M101, M102, M108), feed in arcs as it is without (M111), the
-/// ends of what is refused (M117, M121, M145), lift-off at a stop (M148, M149).
-const NEUTRAL: [u16; 12] = [90, 101, 102, 108, 111, 117, 121, 134, 135, 145, 148, 149];
+/// (M90, M134, M135), feed in arcs as it is without (M111), the ends of what is told or refused (M102, M108, M117, M121,
+/// M145, M149).
+const NEUTRAL: [u16; 10] = [90, 102, 108, 111, 117, 121, 134, 135, 145, 149];
 
 /// Functions that are refused, and why.
 const REFUSED: [(u16, &str); 18] = [
@@ -132,6 +138,9 @@ impl Function {
             if *function == Function::KeepTip {
                 own_feed(s, control)?;
             }
+            if *function == Function::ReplacesTool {
+                delay(s, control)?;
+            }
             return Ok(*function);
         }
         let added = control.auxiliary().iter().find(|n| f64::from(**n) == number);
@@ -179,6 +188,14 @@ fn retract(s: &mut Scanner, control: &dyn Readable) -> Result<Function> {
         return Err(s.error_block("m-function", "M140 retracts: MB must be greater than 0"));
     }
     Ok(Function::Retract(distance * control.unit(), own_feed(s, control)?))
+}
+
+/// Behind `M101`: by how many blocks the change may be late, `BT10`.
+fn delay(s: &mut Scanner, control: &dyn Readable) -> Result<()> {
+    if s.peek().starts_with(b"BT") {
+        s.word(control.registers())?;
+    }
+    Ok(())
 }
 
 /// The feed that belongs to the function before it, where there is one.

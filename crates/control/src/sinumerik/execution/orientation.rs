@@ -137,6 +137,13 @@ impl Interpreter<'_, '_> {
                            machine";
             return error("unsupported", message);
         }
+        let data_set = match call.arguments.get(DATA_SET) {
+            Some(Argument::Text(name)) => name.as_str(),
+            _ => "",
+        };
+        if data_set != self.settings.swivel_data && self.settings.rotary.contains(&true) {
+            self.emit(source, Action::Risk(Risk::SWIVEL_DATA.into()))?;
+        }
         if retract == 4 && self.may_lean_in_head() {
             self.emit(source, Action::Risk(Risk::LEANING_RETRACT.into()))?;
         }

@@ -88,9 +88,16 @@ fn haas_refuses_with_the_reason() {
         assert!(!error.help.is_empty(), "{word}");
     }
     // How far it may leave the path: G187 with E, and without it as the machine is set up.
-    let corners =
-        [PathMode::Blend(0.01), PathMode::AsSetUp, PathMode::ExactStop, PathMode::AsSetUp];
-    let said = "G103 P1\nG21\nG187 P3 E0.01\nG187 P2\nG61\nG64\n";
+    let corners = [
+        PathMode::Blend(0.01),
+        PathMode::ExactStop,
+        PathMode::Blend(0.01),
+        PathMode::AsSetUp,
+        PathMode::AsSetUp,
+        PathMode::ExactStop,
+        PathMode::AsSetUp,
+    ];
+    let said = "G103 P1\nG21\nG187 P3 E0.01\nG61\nG64\nG187 P2\nG187\nG61\nG64\n";
     assert_eq!(ops(Dialect::Haas, said), corners.map(Action::PathMode));
     assert_eq!(rule(Dialect::Haas, "G21\nG0 X1\n"), "nc-decimal-point");
 }
@@ -228,5 +235,35 @@ fn grbl_writes_offsets_homes_and_probes() {
     }
     for words in ["$H", "$J=G91X1", "G43 H1", "G10 L1 P1 Z1", "G92.2", "G52 X1", "M6"] {
         assert!(run(Dialect::Grbl, &format!("G21\n{words}\n")).is_err(), "{words}");
+    }
+}
+
+/// U, V and W are axes that run along X, Y and Z where a machine has them, and on lathes their increments: no machine of ours has
+/// them, and a block that moves them is never read as one that does not.
+#[test]
+fn further_axes_are_refused_by_what_they_are_on_each_control() {
+    for (dialect, says) in [
+        (Dialect::Fanuc, "parameter 1020"),
+        (Dialect::Haas, "auxiliary"),
+        (Dialect::LinuxCnc, "[TRAJ]COORDINATES"),
+        (Dialect::Mach3, "six axes"),
+        (Dialect::Grbl, "error 20"),
+        (Dialect::Marlin, "AXIS4_NAME"),
+        (Dialect::FanucWire, "a wire has X, Y, U and V"),
+        (Dialect::Sodick, "a wire has X, Y, U and V"),
+        (Dialect::Agie, "a wire has X, Y, U and V"),
+    ] {
+        let units = if dialect == Dialect::Agie { "G71" } else { "G21" };
+        for word in ["U5.", "V5.", "W5.", "X1. W0."] {
+            let is_wire = matches!(dialect, Dialect::FanucWire | Dialect::Sodick | Dialect::Agie);
+            if is_wire && !word.contains('W') {
+                continue;
+            }
+            let z = if is_wire { "" } else { "Z5. " };
+            let error = run(dialect, &format!("{units}\nG90\nG0 X0. Y0. {z}\nG0 {word}\n"));
+            let error = error.map(|_| ()).unwrap_err();
+            assert_eq!(error.rule, "nc-unknown-word", "{dialect:?} {word}");
+            assert!(error.help.contains(says), "{dialect:?}: {}", error.help);
+        }
     }
 }
