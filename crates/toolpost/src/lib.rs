@@ -12,6 +12,7 @@
 pub mod answer;
 mod args;
 mod explain;
+mod glass;
 mod machines;
 mod pcb;
 mod post;
@@ -56,6 +57,7 @@ pub fn run(words: impl IntoIterator<Item = OsString>) -> u8 {
         Command::Post(args) => post::run(&args, silent),
         Command::Wire(args) => wire::run(&args, silent),
         Command::Pcb(args) => pcb::run(&args, silent),
+        Command::Glass(args) => glass::run(&args),
         Command::Prove(args) => prove::run(&args, silent),
         Command::Machines(command) => machines::run(&command),
         Command::Show(args) => show::run(&args, silent),

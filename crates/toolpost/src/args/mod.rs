@@ -1,5 +1,6 @@
 //! What can be typed.
 
+pub mod glass;
 pub mod pcb;
 
 use app::toolpath::Frame;
@@ -49,6 +50,8 @@ pub enum Command {
     /// Write the programs that isolate, drill and cut out a printed circuit board, prove them, and save them
     /// with a picture of each and a report.
     Pcb(Box<pcb::Pcb>),
+    /// Engrave inside glass.
+    Glass(Box<glass::Glass>),
     /// Hold any program, also one edited by hand, against the toolpath it should make.
     Prove(Prove),
     /// The library of machines, and machines of your own.

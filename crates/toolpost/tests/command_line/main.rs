@@ -5,6 +5,7 @@ mod commands;
 #[path = "../folder/mod.rs"]
 mod folder;
 mod freecad;
+mod glass;
 mod import;
 mod nc;
 mod questions;

@@ -1,0 +1,316 @@
+//! Points on the surface of a mesh: no two nearer than a spacing, and no place of the surface farther than 1.3 spacings
+//! from a point.
+//!
+//! Darts are thrown into cells of the surface, triangles at most three quarters of a spacing long. A dart that hits nothing
+//! within a spacing becomes a point, which then covers its cell. Where it hits something, the cell is halved, unless a point covers
+//! it whole. A cell of at most [`FINEST`] spacings is given up: its dart lies within a spacing of a point, so all of it lies
+//! within 1 + `FINEST` spacings. That is the bound of the largest gap.
+//!
+//! **Border rule of tiles.** Space is divided into cubes of [`TILE`] spacings. A cell belongs to the cube that holds its centroid.
+//! Cubes are worked on in eight turns, by whether their three numbers are odd or even: two cubes of a turn are a whole cube
+//! apart, farther than a spacing and two halves of a cell, so neither sees the other's points; a cube sees the points of all earlier
+//! turns. The result hangs on neither the threads nor who works on which cube.
+
+use crate::cloud::Point;
+use crate::mesh::Mesh;
+use glam::DVec3;
+use rayon::prelude::*;
+
+/// Longest edge of a cell that darts are thrown into first, spacings.
+const COARSEST: f64 = 0.75;
+
+/// Longest edge of a cell that is given up, spacings.
+const FINEST: f64 = 0.25;
+
+/// The largest distance of a place of the surface from a point, spacings, but for the rounding of points to whole µm.
+pub const LARGEST_GAP: f64 = 1.0 + FINEST;
+
+/// Side of a tile, spacings.
+const TILE: f64 = 16.0;
+
+/// How far from its tile a cell's points may be, and how far those may be that they must see, spacings.
+const BORDER: f64 = COARSEST + 1.0;
+
+/// Cells of the look-up grid of a tile along each axis: as large as a spacing.
+const CELLS: usize = (TILE + 2.0 * BORDER) as usize + 2;
+
+type Triangle = [DVec3; 3];
+
+/// Points on all faces of `mesh` (mm), at least `spacing` (µm, 1 at least) apart. Another `seed` gives other points.
+pub fn surface(mesh: &Mesh, spacing: u32, seed: u64) -> Vec<Point> {
+    let spacing = f64::from(spacing.max(1));
+    let tiles = tiles(mesh, spacing);
+    let mut done: Vec<Vec<Point>> = vec![Vec::new(); tiles.len()];
+    for turn in 0..8 {
+        let in_turn = |at: &usize| {
+            let odd = tiles[*at].0.map(|number| number.rem_euclid(2));
+            odd[0] + 2 * odd[1] + 4 * odd[2] == turn
+        };
+        let turn: Vec<usize> = (0..tiles.len()).filter(in_turn).collect();
+        let work = |room: &mut Room, &at: &usize| {
+            let (tile, triangles) = &tiles[at];
+            room.enter(*tile, spacing);
+            for near in around(*tile) {
+                if let Ok(near) = tiles.binary_search_by_key(&near, |(tile, _)| *tile) {
+                    done[near].iter().for_each(|&point| room.see(point));
+                }
+            }
+            (at, room.fill(mesh, triangles, seed))
+        };
+        let new: Vec<_> = turn.par_iter().map_init(Room::default, work).collect();
+        new.into_iter().for_each(|(at, points)| done[at] = points);
+    }
+    done.concat()
+}
+
+/// The tiles that triangles of `mesh` may reach into, in order, with those triangles.
+fn tiles(mesh: &Mesh, spacing: f64) -> Vec<([i32; 3], Vec<u32>)> {
+    let side = TILE * spacing;
+    let number = |value: f64| (value / side).floor() as i32;
+    let of = |triangle: u32| {
+        let corners = mesh.corners(triangle).map(|corner| corner * 1e3);
+        let (low, high) = box_of(&corners);
+        let [from, to] = [low, high].map(|corner| corner.to_array().map(number));
+        let normal = (corners[1] - corners[0]).cross(corners[2] - corners[0]).normalize_or_zero();
+        let crossed = move |tile: &[i32; 3]| {
+            let middle = (DVec3::from_array(tile.map(f64::from)) + 0.5) * side;
+            // Half the diagonal of a tile, and some for rounding.
+            normal.dot(middle - corners[0]).abs() <= 0.9 * side
+        };
+        let rows = (from[2]..=to[2]).flat_map(move |z| (from[1]..=to[1]).map(move |y| (y, z)));
+        let all = rows.flat_map(move |(y, z)| (from[0]..=to[0]).map(move |x| [x, y, z]));
+        all.filter(crossed).map(move |tile| (tile, triangle))
+    };
+    let count = mesh.triangles.len() as u32;
+    let mut all: Vec<([i32; 3], u32)> = (0..count).into_par_iter().flat_map_iter(of).collect();
+    all.par_sort_unstable();
+    let same = |a: &([i32; 3], u32), b: &([i32; 3], u32)| a.0 == b.0;
+    all.chunk_by(same)
+        .map(|of| (of[0].0, of.iter().map(|(_, triangle)| *triangle).collect()))
+        .collect()
+}
+
+/// The 26 tiles that touch one.
+fn around(tile: [i32; 3]) -> impl Iterator<Item = [i32; 3]> {
+    let ways = (0..27).filter(|&i| i != 13);
+    ways.map(move |i| [tile[0] + i % 3 - 1, tile[1] + i / 3 % 3 - 1, tile[2] + i / 9 - 1])
+}
+
+fn box_of(corners: &Triangle) -> (DVec3, DVec3) {
+    let [a, b, c] = *corners;
+    (a.min(b).min(c), a.max(b).max(c))
+}
+
+/// The longest edge of a triangle: its square, and the number of the corner opposite to it.
+fn longest(&[a, b, c]: &Triangle) -> (f64, usize) {
+    let edges = [b.distance_squared(c), c.distance_squared(a), a.distance_squared(b)];
+    let at = if edges[0] >= edges[1] && edges[0] >= edges[2] {
+        0
+    } else if edges[1] >= edges[2] {
+        1
+    } else {
+        2
+    };
+    (edges[at], at)
+}
+
+/// Both halves of a triangle, cut from corner `at` to the middle of its edge. The same two corners give the same middle in
+/// whichever order they come.
+fn halves(triangle: &Triangle, at: usize) -> [Triangle; 2] {
+    let [a, b, c] = [0, 1, 2].map(|i| triangle[(at + i) % 3]);
+    let middle = (b + c) * 0.5;
+    [[a, b, middle], [a, middle, c]]
+}
+
+/// A tile being filled: the points that its darts must see, in cubes as large as a spacing.
+struct Room {
+    spacing: f64,
+    /// Corner of the look-up grid, µm.
+    low: DVec3,
+    /// The tile's own box, µm.
+    tile: (DVec3, DVec3),
+    number: [i32; 3],
+    /// The last point of each cube, and of each point the one before it in its cube; 0 is none, 1 the first point.
+    last: Vec<u32>,
+    before: Vec<u32>,
+    points: Vec<[f64; 3]>,
+}
+
+impl Default for Room {
+    fn default() -> Room {
+        Room {
+            spacing: 1.0,
+            low: DVec3::ZERO,
+            tile: (DVec3::ZERO, DVec3::ZERO),
+            number: [0; 3],
+            last: vec![0; CELLS * CELLS * CELLS],
+            before: Vec::new(),
+            points: Vec::new(),
+        }
+    }
+}
+
+impl Room {
+    fn enter(&mut self, number: [i32; 3], spacing: f64) {
+        for i in 0..self.points.len() {
+            if let Some(cube) = self.cube(DVec3::from_array(self.points[i])) {
+                self.last[cube] = 0;
+            }
+        }
+        self.points.clear();
+        self.before.clear();
+        let corner = DVec3::from_array(number.map(f64::from)) * (TILE * spacing);
+        self.tile = (corner, corner + TILE * spacing);
+        // One cube more below, so that the cubes around a dart are all there.
+        self.low = corner - (BORDER + 1.0) * spacing;
+        (self.spacing, self.number) = (spacing, number);
+    }
+
+    /// The cube of a place that darts can see.
+    fn cube(&self, place: DVec3) -> Option<usize> {
+        let cell = (place - self.low) / self.spacing;
+        let inside = cell.min_element() >= 0.0 && cell.max_element() < CELLS as f64;
+        inside.then(|| (cell.z as usize * CELLS + cell.y as usize) * CELLS + cell.x as usize)
+    }
+
+    fn see(&mut self, point: Point) {
+        let place = DVec3::from_array(point.map(f64::from));
+        if let Some(cube) = self.cube(place) {
+            self.points.push(place.to_array());
+            self.before.push(self.last[cube]);
+            self.last[cube] = self.points.len() as u32;
+        }
+    }
+
+    /// Throws darts into the cells of `triangles` that belong to this tile; answers the points that they left.
+    fn fill(&mut self, mesh: &Mesh, triangles: &[u32], seed: u64) -> Vec<Point> {
+        let seed = self.number.iter().fold(seed, |seed, number| mixed(seed ^ *number as u64));
+        let mut dice = Dice(seed);
+        let mut cells = Vec::new();
+        for &triangle in triangles {
+            self.divide(mesh.corners(triangle).map(|corner| corner * 1e3), &mut cells);
+        }
+        let (mut points, mut halved) = (Vec::new(), Vec::new());
+        let finest = (FINEST * self.spacing).powi(2);
+        while !cells.is_empty() {
+            dice.shuffle(&mut cells);
+            for cell in cells.drain(..) {
+                let dart = dice.within(&cell).round();
+                match self.hit(dart, &cell) {
+                    Hit::Nothing => {
+                        let point = dart.to_array().map(|value| value as i32);
+                        self.see(point);
+                        points.push(point);
+                    }
+                    Hit::Covers => {}
+                    Hit::Point => {
+                        let (edge, at) = longest(&cell);
+                        if edge > finest {
+                            halved.extend(halves(&cell, at));
+                        }
+                    }
+                }
+            }
+            std::mem::swap(&mut cells, &mut halved);
+        }
+        points
+    }
+
+    /// The cells of `triangle` whose centroids are in this tile.
+    fn divide(&self, triangle: Triangle, cells: &mut Vec<Triangle>) {
+        let coarsest = (COARSEST * self.spacing).powi(2);
+        let mut open = vec![triangle];
+        while let Some(triangle) = open.pop() {
+            let (low, high) = box_of(&triangle);
+            if high.cmplt(self.tile.0).any() || low.cmpgt(self.tile.1).any() {
+                continue;
+            }
+            let (edge, at) = longest(&triangle);
+            if edge > coarsest {
+                open.extend(halves(&triangle, at));
+                continue;
+            }
+            let middle = (triangle[0] + triangle[1] + triangle[2]) / 3.0;
+            if middle.cmpge(self.tile.0).all() && middle.cmplt(self.tile.1).all() {
+                cells.push(triangle);
+            }
+        }
+    }
+
+    /// What a dart in `cell` hits within a spacing. Darts and points are whole µm: the comparison is exact.
+    fn hit(&self, dart: DVec3, cell: &Triangle) -> Hit {
+        let Some(cube) = self.cube(dart) else { return Hit::Covers };
+        let square = self.spacing * self.spacing;
+        let mut hit = Hit::Nothing;
+        for rows in [cube - CELLS * CELLS, cube, cube + CELLS * CELLS] {
+            for row in [rows - CELLS, rows, rows + CELLS] {
+                for &last in &self.last[row - 1..=row + 1] {
+                    let mut at = last;
+                    while at > 0 {
+                        let point = DVec3::from_array(self.points[at as usize - 1]);
+                        if point.distance_squared(dart) < square {
+                            if cell.iter().all(|corner| corner.distance_squared(point) < square) {
+                                return Hit::Covers;
+                            }
+                            hit = Hit::Point;
+                        }
+                        at = self.before[at as usize - 1];
+                    }
+                }
+            }
+        }
+        hit
+    }
+}
+
+/// What is within a spacing of a dart.
+#[derive(Clone, Copy, PartialEq)]
+enum Hit {
+    Nothing,
+    /// A point that does not cover the cell of the dart.
+    Point,
+    /// A point that covers it.
+    Covers,
+}
+
+/// Numbers that look like chance and are the same in every run (splitmix64).
+pub(crate) struct Dice(pub u64);
+
+/// One step of splitmix64.
+fn mixed(seed: u64) -> u64 {
+    let mut z = seed.wrapping_add(0x9e37_79b9_7f4a_7c15);
+    z = (z ^ (z >> 30)).wrapping_mul(0xbf58_476d_1ce4_e5b9);
+    z = (z ^ (z >> 27)).wrapping_mul(0x94d0_49bb_1331_11eb);
+    z ^ (z >> 31)
+}
+
+impl Dice {
+    pub(crate) fn roll(&mut self) -> u64 {
+        let rolled = mixed(self.0);
+        self.0 = self.0.wrapping_add(0x9e37_79b9_7f4a_7c15);
+        rolled
+    }
+
+    /// From 0 to 1, 1 left out.
+    pub(crate) fn part(&mut self) -> f64 {
+        (self.roll() >> 11) as f64 / (1u64 << 53) as f64
+    }
+
+    /// From 0 to `count` (1 at least), `count` left out.
+    pub(crate) fn below(&mut self, count: usize) -> usize {
+        ((u128::from(self.roll()) * count as u128) >> 64) as usize
+    }
+
+    fn shuffle<T>(&mut self, all: &mut [T]) {
+        for i in (1..all.len()).rev() {
+            all.swap(i, self.below(i + 1));
+        }
+    }
+
+    /// A place in a triangle, every one as likely as every other.
+    fn within(&mut self, &[a, b, c]: &Triangle) -> DVec3 {
+        let (u, v) = (self.part(), self.part());
+        let (u, v) = if u + v > 1.0 { (1.0 - u, 1.0 - v) } else { (u, v) };
+        a + (b - a) * u + (c - a) * v
+    }
+}

@@ -1,0 +1,88 @@
+//! Points on surfaces: the minimum distance holds exactly, gaps are bounded, threads change nothing.
+
+mod bodies;
+
+use bodies::{sphere, torus};
+use glam::DVec3;
+use toolpost_glass::cloud::{distances, squared};
+use toolpost_glass::mesh::Mesh;
+use toolpost_glass::sample::{LARGEST_GAP, surface};
+
+#[test]
+fn no_two_points_of_a_sampled_surface_are_nearer_than_the_spacing() {
+    for (mesh, spacing) in [(sphere(3.0, 60), 90), (torus(3.0, 1.0, 40), 130), (sphere(1.0, 4), 90)]
+    {
+        let points = surface(&mesh, spacing, 1);
+        let found = distances(&points, i64::from(spacing));
+        assert_eq!((found.too_close, found.crowded), (0, 0));
+        // The saturated random packing has 0.6966 points in a square of the spacing; curved surfaces hold a few more.
+        let density = points.len() as f64 * (f64::from(spacing) * 1e-3).powi(2) / mesh.area();
+        assert!((0.65..0.75).contains(&density), "{density}");
+        // Every pair once more, without the grid.
+        let pairs = points
+            .iter()
+            .enumerate()
+            .flat_map(|(i, a)| points[..i].iter().map(move |b| squared(*a, *b)));
+        let nearest = (pairs.min().unwrap() as f64).sqrt() * 1e-3;
+        assert_eq!(found.nearest.unwrap().distance, nearest);
+    }
+}
+
+#[test]
+fn no_place_of_the_surface_is_farther_from_a_point_than_1_3_spacings() {
+    let spacing = 130u32;
+    // Triangles smaller than a spacing, and faces that are much larger.
+    for mesh in [sphere(2.0, 100), sphere(2.0, 3)] {
+        let points = surface(&mesh, spacing, 7);
+        let mut worst = 0.0f64;
+        for triangle in 0..mesh.triangles.len() as u32 {
+            let [a, b, c] = mesh.corners(triangle).map(|corner| corner * 1e3);
+            let parts = (a.distance(b).max(a.distance(c)) / 40.0).ceil().clamp(1.0, 30.0) as u32;
+            for i in 0..=parts {
+                for j in 0..=parts - i {
+                    let (u, v) = (f64::from(i) / f64::from(parts), f64::from(j) / f64::from(parts));
+                    let place = a + (b - a) * u + (c - a) * v;
+                    let gap =
+                        |p: &[i32; 3]| DVec3::from_array(p.map(f64::from)).distance_squared(place);
+                    worst = worst.max(points.iter().map(gap).fold(f64::MAX, f64::min).sqrt());
+                }
+            }
+        }
+        let worst = worst / f64::from(spacing);
+        assert!(worst <= LARGEST_GAP + 0.02 && LARGEST_GAP <= 1.3, "{worst}");
+        assert!(worst > 0.8, "{worst}");
+    }
+}
+
+#[test]
+fn the_points_are_the_same_on_one_thread_and_on_four() {
+    let mesh = torus(3.0, 1.0, 40);
+    let on = |threads| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| surface(&mesh, 90, 3))
+    };
+    assert_eq!(on(1), on(4));
+    assert_ne!(on(1), surface(&mesh, 90, 4));
+}
+
+#[test]
+fn the_nearest_pair_of_a_cloud_is_named_and_the_pairs_that_are_too_close_are_counted() {
+    let cloud = [[0, 0, 0], [0, 0, 130], [500, 0, 0], [500, 129, 0], [600, 129, 0]];
+    let found = distances(&cloud, 130);
+    assert_eq!((found.too_close, found.crowded), (2, 3));
+    let nearest = found.nearest.unwrap();
+    assert_eq!((nearest.points, nearest.distance), ([3, 4], 0.1));
+    assert_eq!(distances(&cloud[..1], 130).nearest, None);
+    assert_eq!(distances(&[], 130).too_close, 0);
+    // Equal points.
+    assert_eq!(distances(&[[7; 3], [7; 3]], 1).too_close, 1);
+}
+
+#[test]
+fn a_mesh_without_area_or_without_triangles_gives_no_endless_work() {
+    assert!(surface(&Mesh::default(), 90, 1).is_empty());
+    let line =
+        Mesh { vertices: vec![DVec3::ZERO, DVec3::X, DVec3::X * 2.0], triangles: vec![[0, 1, 2]] };
+    let points = surface(&line, 90, 1);
+    assert_eq!(distances(&points, 90).too_close, 0);
+}
