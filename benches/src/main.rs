@@ -13,10 +13,11 @@
 //!
 //! The toolpath is generated ([`path`]). NC programs are run on the virtual controls ([`programs`]), the contour of a
 //! wire becomes points ([`wire`]). Circuit boards: copper united and grown ([`copper`]), a Gerber layer read
-//! ([`layer`]), real boards made whole ([`board`]). Memory is what the program asks the allocator for
+//! ([`layer`]), real boards made whole ([`board`]). Joints of an arm are found for frames ([`mod@arm`]). Memory is what the program asks the allocator for
 //! ([`memory`]), the most of all rounds. A path ten times as long, for the first machine, shows that time
 //! and memory grow no faster. Then come real files ([`library`]).
 
+mod arm;
 mod board;
 mod clock;
 mod copper;
@@ -64,6 +65,9 @@ struct Arguments {
     /// Strokes of a copper layer; 0 leaves it out.
     #[arg(long, default_value_t = 16_000)]
     strokes: usize,
+    /// Frames that an arm is to reach; 0 leaves it out.
+    #[arg(long, default_value_t = 200_000)]
+    frames: usize,
     /// Folder of a real circuit board, to be made whole; may be given several times.
     #[arg(long)]
     board: Vec<PathBuf>,
@@ -107,6 +111,9 @@ fn run(arguments: &Arguments) -> Result<(), Vec<Diagnostic>> {
     }
     if arguments.strokes > 0 {
         layer::measure(arguments.strokes, arguments.rounds)?;
+    }
+    if arguments.frames > 0 {
+        arm::measure(arguments.frames, arguments.rounds)?;
     }
     board::measure(&arguments.board, arguments.rounds)?;
     if arguments.records > 0 {

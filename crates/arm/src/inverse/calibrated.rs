@@ -1,0 +1,93 @@
+//! A calibrated arm has no closed form: the joints of the nominal one, corrected until the measured links reach the frame.
+
+use super::Ways;
+use crate::arm::{Arm, Joints, Structure};
+use geom::{Frame, Mat3, Vec3, wrap};
+
+/// Steps at most: each squares what is left.
+const MOST_STEPS: usize = 12;
+/// What is left at the end, mm and radians.
+const CLOSE: f64 = 1e-9;
+
+/// The nominal joints `near` a frame, corrected; those that do not come to rest, close to a singularity, are left out.
+pub(super) fn refine(arm: &Arm, flange: &Frame, near: &Ways) -> Ways {
+    let mut ways = Ways::NONE;
+    for (posture, joints) in near.iter() {
+        if let Some(joints) = corrected(arm, flange, *joints) {
+            ways.set(posture, joints.map(wrap));
+        }
+    }
+    ways
+}
+
+fn corrected(arm: &Arm, flange: &Frame, mut joints: Joints) -> Option<Joints> {
+    for _ in 0..MOST_STEPS {
+        let (axes, reached) = axes(arm, &joints)?;
+        let gap = flange.translation - reached.translation;
+        let turn = turn(&(flange.matrix3 * reached.matrix3.transpose()));
+        if gap.length() < CLOSE && turn.length() < CLOSE {
+            return Some(joints);
+        }
+        let step = solve(&axes, &reached.translation, gap, turn)?;
+        // A step of a radian has left the neighbourhood in which steps get smaller.
+        if step.iter().any(|angle| angle.abs() > 1.0) {
+            return None;
+        }
+        joints = std::array::from_fn(|i| joints[i] + step[i]);
+    }
+    None
+}
+
+/// A point and the direction of each axis, and the flange.
+fn axes(arm: &Arm, joints: &Joints) -> Option<([(Vec3, Vec3); 6], Frame)> {
+    let Structure::Ur(_, Some(calibration)) = &arm.structure else { return None };
+    let mut here = Frame::from_translation(Vec3::new(0.0, 0.0, -arm.world_height));
+    let axes = std::array::from_fn(|i| {
+        here *= calibration.0[i];
+        let axis = (here.translation, here.matrix3.z_axis);
+        here *= Frame::from_mat3(Mat3::from_rotation_z(joints[i]));
+        axis
+    });
+    Some((axes, here))
+}
+
+/// The rotation vector of a rotation by less than half a revolution.
+fn turn(rotation: &Mat3) -> Vec3 {
+    let (x, y, z) = (rotation.x_axis, rotation.y_axis, rotation.z_axis);
+    let twice = Vec3::new(y.z - z.y, z.x - x.z, x.y - y.x);
+    let (sin, cos) = (twice.length() / 2.0, (x.x + y.y + z.z - 1.0) / 2.0);
+    let angle = sin.atan2(cos);
+    if sin > 0.0 { twice * (angle / (2.0 * sin)) } else { Vec3::ZERO }
+}
+
+/// The changes of the joints that move the flange by `gap` and `turn`: six equations, by elimination with pivots.
+fn solve(axes: &[(Vec3, Vec3); 6], flange: &Vec3, gap: Vec3, turn: Vec3) -> Option<Joints> {
+    // Turns count as much as a metre, so that rows are of one size.
+    const METRE: f64 = 1000.0;
+    let mut rows = [[0.0; 7]; 6];
+    for (i, (point, axis)) in axes.iter().enumerate() {
+        let moved = axis.cross(*flange - *point);
+        for k in 0..3 {
+            rows[k][i] = moved[k];
+            rows[k + 3][i] = axis[k] * METRE;
+        }
+    }
+    for k in 0..3 {
+        rows[k][6] = gap[k];
+        rows[k + 3][6] = turn[k] * METRE;
+    }
+    for column in 0..6 {
+        let pivot =
+            (column..6).max_by(|a, b| rows[*a][column].abs().total_cmp(&rows[*b][column].abs()))?;
+        rows.swap(column, pivot);
+        if rows[column][column].abs() < 1e-6 {
+            return None;
+        }
+        let head = rows[column];
+        for (_, row) in rows.iter_mut().enumerate().filter(|(i, _)| *i != column) {
+            let share = row[column] / head[column];
+            row.iter_mut().zip(&head).for_each(|(cell, from)| *cell -= share * from);
+        }
+    }
+    Some(std::array::from_fn(|i| rows[i][6] / rows[i][i]))
+}
