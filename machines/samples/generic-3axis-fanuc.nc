@@ -5,10 +5,10 @@ N20 G0 G17 G40 G49 G80 G90 G94 G54
 N30 (What every machine with three axes can make: a slot with a round end  a helix into a ring  two)
 N40 (holes. The programs beside it are what the machines of the library run for it.)
 N50 (SLOT)
-N60 M5
-N70 M9
-N80 G91 G28 Z0
-N90 G90
+N60 G91 G28 Z0
+N70 G90
+N80 M5
+N90 M9
 N100 (MILL_6)
 N110 T1 M6
 N120 S3000 M3
@@ -28,9 +28,9 @@ N250 G2 X32.5 Y20. Z-1. I-2.5 J0. F300.
 N260 X32.5 Y20. I-2.5 J0.
 N270 G0 Z20.
 N280 (HOLES)
-N290 M5
-N300 G91 G28 Z0
-N310 G90
+N290 G91 G28 Z0
+N300 G90
+N310 M5
 N320 (DRILL_3.3)
 N330 T2 M6
 N340 S2500 M3

@@ -9,9 +9,9 @@
 8 ; What every machine with three axes can make: a slot with a round end  a helix into a ring  two
 9 ; holes. The programs beside it are what the machines of the library run for it.
 10 ; SLOT
-11 M5
-12 M9
-13 L Z+0 R0 FMAX M91
+11 L Z+0 R0 FMAX M91
+12 M5
+13 M9
 14 ; MILL_6
 15 TOOL CALL 1 Z S3000
 16 M3
@@ -35,8 +35,8 @@
 34 C X+32.5 Y+20 DR-
 35 L Z+20 R0 FMAX
 36 ; HOLES
-37 M5
-38 L Z+0 R0 FMAX M91
+37 L Z+0 R0 FMAX M91
+38 M5
 39 ; DRILL_3.3
 40 TOOL CALL 2 Z S2500
 41 M3

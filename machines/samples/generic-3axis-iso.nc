@@ -4,10 +4,10 @@ N30 G17 G40 G49 G80 G90 G94 G54
 N40 (What every machine with three axes can make: a slot with a round end  a helix into a ring  two)
 N50 (holes. The programs beside it are what the machines of the library run for it.)
 N60 (SLOT)
-N70 M5
-N80 M9
-N90 G91 G28 Z0
-N100 G90
+N70 G91 G28 Z0
+N80 G90
+N90 M5
+N100 M9
 N110 (MILL_6)
 N120 T1 M6
 N130 S3000 M3
@@ -27,9 +27,9 @@ N260 G2 X32.5 Y20. Z-1. I-2.5 J0. F300.
 N270 X32.5 Y20. I-2.5 J0.
 N280 G0 Z20.
 N290 (HOLES)
-N300 M5
-N310 G91 G28 Z0
-N320 G90
+N300 G91 G28 Z0
+N310 G90
+N320 M5
 N330 (DRILL_3.3)
 N340 T2 M6
 N350 S2500 M3

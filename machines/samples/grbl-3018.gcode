@@ -5,8 +5,8 @@ G21 G17 G40 G49 G90 G94 G54
 (What every machine with three axes can make: a)
 (holes. The programs beside it are what the mac)
 (SLOT)
-M5
 G53 G0 Z0
+M5
 T1
 (MILL_6)
 (machine zero must be at the top of Z)
@@ -28,8 +28,8 @@ G2 X32.5 Y20 Z-1 I-2.5 J0 F300
 X32.5 Y20 I-2.5 J0
 G0 Z20
 (HOLES)
-M5
 G53 G0 Z0
+M5
 T2
 (DRILL_3.3)
 (change the tool by hand; its tip must stand where the last one stood)

@@ -6,9 +6,9 @@ N30 (What machines with five axes can make: a face with the tool upright  a slop
 N40 (degrees  a ridge over which the tool turns while it cuts. The programs beside it are what the)
 N50 (machines of the library run for it.)
 N60 (FACE)
-N70 M5
-N80 M9
-N90 G53 G0 Z0.
+N70 G53 G0 Z0.
+N80 M5
+N90 M9
 N100 (MILL_10)
 N110 T1 M6
 N120 S4000 M3
@@ -35,9 +35,9 @@ N320 Z47.071
 N330 G98 G81 X12.929 Y-7.071 Z21.071 R29.071 F150.
 N340 G80
 N350 (RIDGE)
-N360 M5
-N370 M9
-N380 G53 G0 Z0.
+N360 G53 G0 Z0.
+N370 M5
+N380 M9
 N390 (BALL_6)
 N400 T2 M6
 N410 S8000 M3
@@ -56,6 +56,6 @@ N530 M5
 N540 G49
 N550 G53 G0 Z0.
 N560 M9
-N570 G53 G0 Z0.
+N570 G0 B0. C0.
 N580 M30
 %

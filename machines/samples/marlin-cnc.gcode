@@ -8,9 +8,9 @@ G54
 ; What every machine with three axes can make: a slot with a round end  a
 ; holes. The programs beside it are what the machines of the library run 
 ; SLOT
+G53 G0 Z0 F6000
 M5
 M9
-G53 G0 Z0 F6000
 T1
 ; MILL_6
 M3 S3000
@@ -31,8 +31,8 @@ G2 X32.5 Y20 Z-1 I-2.5 J0 F300
 G2 X32.5 Y20 I-2.5 J0
 G0 Z20 F6000
 ; HOLES
-M5
 G53 G0 Z0 F6000
+M5
 T2
 ; DRILL_3.3
 ; its tip must stand where the last one stood

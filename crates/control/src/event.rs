@@ -367,6 +367,16 @@ impl Risk {
         refused: false,
     };
 
+    /// A stop behind which somebody opens the door, reaches in or jogs, while the spindle turns or coolant runs. That the
+    /// control stops both is sure on Haas alone (*Mill Operator's Manual*, M00); on a HEIDENHAIN `M0` stops the spindle.
+    pub(crate) const STOP_RUNNING: Risk = Risk {
+        rule: "stop-running",
+        what: "stops and waits for somebody while the spindle turns or coolant runs: this control need not stop them",
+        help: "write M5 and M9 before it, with the tool out of the cut; where the machine's builder has M0 and M1 stop both, \
+               `--accept stop-running` lets it pass",
+        refused: true,
+    };
+
     /// `G84` and `G74` that do not couple feed and spindle: LinuxCNC ("Canned Cycles": for a floating chuck), Mach3, and
     /// FANUC without `M29` (parameter 5200#0).
     pub(crate) const FLOATING_TAP: Risk = Risk {

@@ -284,6 +284,53 @@ fn a_stop_of_haas_stops_the_spindle_and_the_coolant() {
     }
 }
 
+/// Somebody opens the door behind a stop. That spindle and coolant then stand is sure on Haas (*Mill Operator's Manual*, M00), and
+/// of the spindle of a HEIDENHAIN at `M0` (TNC 640, "M0": spindle STOP; `M1`: as the machine's builder has it). GRBL's `M0` is a feed
+/// hold, which leaves both on (wiki, "Grbl v1.1 Commands"); LinuxCNC's pauses the program ("M0, M1"). `M1` of GRBL does nothing.
+#[test]
+fn a_stop_with_spindle_or_coolant_running_is_told_where_the_control_need_not_stop_them() {
+    use Dialect as D;
+    for (dialect, stops, running) in [
+        (D::Fanuc, ["M0", "M1"], [true; 3]),
+        (D::Haas, ["M0", "M1"], [false; 3]),
+        (D::LinuxCnc, ["M0", "M1"], [true; 3]),
+        (D::Mach3, ["M0", "M1"], [true; 3]),
+        (D::Grbl, ["M0", "M0"], [true; 3]),
+        (D::Grbl, ["M1", "M1"], [false; 3]),
+        (D::Marlin, ["M0", "M0"], [true; 3]),
+        (D::Sinumerik, ["M0", "M1"], [true; 3]),
+        (D::Klartext, ["M0", "STOP"], [true, false, true]),
+        (D::Klartext, ["M1", "M1"], [true; 3]),
+    ] {
+        for stop in stops {
+            let on = [("M3", "M8"), ("M3", "M9"), ("M5", "M8")];
+            for ((spindle, coolant), running) in on.into_iter().zip(running) {
+                let blocks = match dialect {
+                    D::Klartext => {
+                        numbered(&format!("TOOL CALL 1 Z S100\n{spindle}\n{coolant}\n{stop}\nM30"))
+                    }
+                    D::Sinumerik => {
+                        format!("G54 G90 G94\nT1\nM6\nS1000 {spindle}\n{coolant}\n{stop}\nM30\n")
+                    }
+                    D::Grbl | D::Marlin => {
+                        format!("G21\nG90\nG54\n{spindle} S1000\n{coolant}\n{stop}\n")
+                    }
+                    _ => {
+                        format!("G90 G94 G17 G54\nT1 M6\nS1000 {spindle}\n{coolant}\n{stop}\nM30\n")
+                    }
+                };
+                let expected: &[&str] = if running { &["stop-running"] } else { &[] };
+                assert_eq!(risks(dialect, &blocks), expected, "{dialect:?}\n{blocks}");
+            }
+        }
+    }
+    // A tool that is put in by hand, and the stop of a macro.
+    let by_hand = "G21 G90 G94 G17 G54\nT1\nM0\nM8\nT2\nM0\nM30\n";
+    assert_eq!(risks(D::Grbl, by_hand), ["stop-running"]);
+    let by_macro = "G21 G90 G94 G17 G54\nT1 M6\nS1000 M3\n#3006=1 (LOOK)\nM30\n";
+    assert_eq!(risks(D::Fanuc, by_macro), ["stop-running"]);
+}
+
 /// B-62764EN, "Inverse time feed": on an arc F is the feed divided by the radius. Half a circle of radius 10 at
 /// 200 mm/min: F20, and a π·10/200 of a minute. Haas counts strokes a minute there too.
 #[test]

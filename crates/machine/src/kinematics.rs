@@ -66,6 +66,9 @@ impl fmt::Display for Unsaid {
     }
 }
 
+/// Rounding of a whole turn, turns.
+const WHOLE: f64 = 1e-12;
+
 impl Machine {
     /// The tool tip (mm, work frame) and the tool axis (unit vector, work frame) for positions of the
     /// linear axes (mm) and the rotary axes (degrees of A, B, C), with a tool of `tool_length` mm.
@@ -135,7 +138,11 @@ impl Machine {
     /// know where its axis lies, a table also where the work lies on it, and a tilted head how long its tool is.
     #[inline]
     pub fn unsaid(&self, degrees: [f64; 3], tool_length: Option<f64>) -> Option<Unsaid> {
-        let turns = |axis: &&RotaryAxis| axis.turned(degrees[axis.index()]) != 0.0;
+        // Whole turns are none, wherever the axis lies.
+        let turns = |axis: &&RotaryAxis| {
+            let turns = axis.turned(degrees[axis.index()]) / std::f64::consts::TAU;
+            (turns - turns.round()).abs() > WHOLE
+        };
         let mut turned = self.rotary.iter().filter(turns);
         if let Some(axis) = turned.clone().find(|axis| !axis.is_placed) {
             return Some(Unsaid::AxisPoint(axis.letter));

@@ -505,6 +505,8 @@ pub struct ToolRange {
     pub max_length: f64,
     /// Whether the tool change brings Z up by itself.
     pub retracts: bool,
+    /// Whether the tool change turns the axes of a head to 0 by itself.
+    pub turns_upright: bool,
 }
 
 /// A value of `[options]`.

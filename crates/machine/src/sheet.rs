@@ -205,6 +205,7 @@ sheet!(merged ToolsSheet "tools" {
     max_diameter: Length, "mm", "Largest diameter.";
     max_length: Length, "mm", "Longest tool.";
     retracts: bool, "", "Whether the tool change brings Z up by itself; without it Z has to be home before each.";
+    turns_upright: bool, "", "Whether the tool change turns the axes of a head to 0 by itself; without it they have to stand there before each.";
 });
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize)]

@@ -103,7 +103,8 @@ names! {
         Unclamp Block "unclamp", "", "The clamps of the rotary axes open: before they turn, where they may be closed.";
         Clamp Block "clamp", "", "The clamps of the rotary axes close: behind `rotate`, where the axes then stand in the cut.";
         PlaneTilt Block "plane_tilt", "", "Tilted plane of work on: frame and swivelling. Which solution the control takes is said by {{sequence}}, by {{DIR}}, or by a move of the rotary axes to it before, where the block places their words.";
-        PlaneTiltOff Block "plane_tilt_off", "", "Tilted plane of work off, rotary axes to zero.";
+        PlaneTiltOff Block "plane_tilt_off", "", "Tilted plane of work off. The rotary axes stay where they are; a block that places their words turns them to 0.";
+        PlaneOrigin Block "plane_origin", "", "Where the origin of a tilted plane ({{OX}} {{OY}} {{OZ}}) is told by a block of its own: before `plane_tilt` where it is another than the last one, and with 0 where the tool stands upright again.";
         LookAheadOn Block "look_ahead_on", "", "Before the first line or arc that cuts: the control looks ahead from here on.";
         LookAheadOff Block "look_ahead_off", "", "Before what look-ahead must not be on for: a hole cycle, a thread, a probing move, a tool change, a turn of the rotary axes, a work offset, the end.";
         ToolCenterOn Block "tool_center_on", "", "Tool center point control on.";
@@ -298,6 +299,26 @@ pub(crate) const VARIABLES: &[Parameter] = &[
         "coolant.stopped",
         "",
         "Whether the coolant is known to be off: since the program has switched it off, or changed a tool.",
+    ),
+    variable(
+        "place.home",
+        "",
+        "Whether Z is known to be home: since a `retract` or a tool change, and nothing has moved.",
+    ),
+    variable(
+        "place.turned",
+        "",
+        "In `tool_change` and `program_end`: whether a rotary axis whose word the block places has to turn to 0, or on an axis without an end to the nearest whole turn.",
+    ),
+    variable(
+        "place.tool_center_off",
+        "",
+        "Whether `tool_center_off` has just been written: nothing has moved since.",
+    ),
+    variable(
+        "place.plane_off",
+        "",
+        "Whether `plane_tilt_off` has just been written: nothing has moved since.",
     ),
     variable("text", "", "The text of a comment or a message."),
     variable("options", "", "The values of `[options]` of the machine: `{{ options.NAME }}`."),

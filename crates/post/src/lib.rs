@@ -15,6 +15,7 @@
 #![deny(clippy::wildcard_enum_match_arm)]
 
 mod arcs;
+mod away;
 mod catalogue;
 mod contour;
 mod cycles;

@@ -2,12 +2,13 @@
 //! tool center point control by angles or vectors, or the positions of the machine's own axes.
 
 use crate::catalogue::{BlockName, WordName};
-use crate::template::{LENGTH_OFFSET, ORIENTATION, POSITION, Words, bit};
+use crate::template::{LENGTH_OFFSET, ORIENTATION, POSITION, Words, bit, place_value};
 use crate::tilt::Solution;
 use crate::walk::{Done, Walk, motion, refuse};
 use geom::{ANGLE_EPSILON, Euler, Frame, Mat3, Vec3, angle_between};
 use machine::plan::{self, Plan, Step, Target, TargetKind};
 use machine::{Machine, OrientationMode};
+use minijinja::value::Value;
 use program::{Diagnostic, Op, Pose, Record};
 
 /// How the control counts at the moment.
@@ -37,13 +38,33 @@ pub(crate) struct Place {
     set_up: Frame,
     /// Rotary positions that the control may take for the tilted plane that is on.
     solutions: Vec<Solution>,
+    /// The origin of the tilted plane that the control has been told last, as it is written.
+    origin: Vec3,
+    /// Whether a rotary axis that the block places has to turn.
+    pub(crate) turned: bool,
+    /// Whether nothing has moved since the control stopped keeping the tip, or since a tilted plane went off.
+    pub(crate) just_off: [bool; 2],
 }
 
 impl Place {
     pub(crate) fn start(machine: &Machine) -> Place {
         let fixed = machine.rotary.is_empty();
         let kind = if fixed { Kind::Plain } else { Kind::Bare };
-        Place { kind, degrees: None, set_up: Frame::IDENTITY, solutions: Vec::new() }
+        Place {
+            kind,
+            degrees: None,
+            set_up: Frame::IDENTITY,
+            solutions: Vec::new(),
+            origin: Vec3::ZERO,
+            turned: false,
+            just_off: [false; 2],
+        }
+    }
+
+    /// The place as templates see it; `home` where Z is home.
+    pub(crate) fn value(&self, home: bool) -> Value {
+        let [tool_center_off, plane_off] = self.just_off;
+        place_value(home, self.turned, tool_center_off, plane_off)
     }
 
     pub(crate) fn degrees(&self) -> Option<[f64; 3]> {
@@ -251,22 +272,20 @@ impl Walk<'_> {
     /// The tool leaves the part, the rotary axes turn, and the control counts as `stop` says.
     pub(crate) fn turn(&mut self, axis: Vec3, stop: &Stop) -> Done {
         let upright = same(axis, Vec3::Z) && stop.mode == OrientationMode::TiltedPlane;
-        if upright && matches!(self.place.kind, Kind::Bare) && self.place.degrees == Some([0.0; 3])
-        {
-            self.place.kind = Kind::Plain;
-            return self.clamp();
-        }
         self.leave_part()?;
         self.leave_place()?;
         self.lose_position();
+        if upright || stop.mode != OrientationMode::TiltedPlane {
+            self.plane_origin(Vec3::ZERO)?;
+        }
         match stop.mode {
             OrientationMode::Fixed => return Err(unreachable(axis)),
             OrientationMode::TiltedPlane if upright => {
-                if self.place.degrees != Some([0.0; 3]) {
-                    self.plane_tilt_off()?;
+                match self.place.degrees == Some(self.upright()) {
+                    true => self.clamp()?,
+                    false => self.rotate(Some(self.upright()), false)?,
                 }
                 self.place.kind = Kind::Plain;
-                self.clamp()?;
             }
             OrientationMode::TiltedPlane => self.tilt(axis)?,
             mode @ (OrientationMode::ToolCenterAngles
@@ -291,7 +310,7 @@ impl Walk<'_> {
     /// Positions are written in full from here on.
     pub(crate) fn lose_position(&mut self) {
         let vector = bit(WordName::VX) | bit(WordName::VY) | bit(WordName::VZ);
-        self.writer.forget(POSITION | LENGTH_OFFSET | vector | bit(WordName::Motion));
+        self.writer.forget(POSITION | vector | bit(WordName::Motion));
         self.located = false;
         self.turned_to = None;
         self.checked = None;
@@ -301,13 +320,16 @@ impl Walk<'_> {
     /// the axes only while the control does not keep the tool tip: SINUMERIK's `SUPA` leaves `TRAORI`
     /// on, and HEIDENHAIN wants `M129` before `M91`.
     pub(crate) fn leave_part(&mut self) -> Done {
-        if self.located {
+        let keeps_tip = matches!(self.place.kind, Kind::ToolCenter | Kind::Vectors);
+        if self.located || keeps_tip {
             self.uncompensated("a new orientation")?;
             self.look_ahead(false)?;
             self.go_out()?;
             self.tool_center_off()?;
             self.plane_xy()?;
             self.required(BlockName::Retract)?;
+            // Some retracts end the length: `D0`, `G28` of Haas, `G49`.
+            self.writer.forget(LENGTH_OFFSET);
             self.lose_position();
         }
         Ok(())
@@ -316,11 +338,13 @@ impl Walk<'_> {
     fn tool_center_off(&mut self) -> Done {
         if matches!(self.place.kind, Kind::ToolCenter | Kind::Vectors) {
             self.required(BlockName::ToolCenterOff)?;
+            self.place.just_off[0] = true;
             if matches!(self.place.kind, Kind::Vectors) {
                 // Where the rotary axes stand now, the control has chosen.
                 self.writer.forget(ORIENTATION);
             }
             self.place.kind = Kind::Bare;
+            self.writer.forget(LENGTH_OFFSET);
             self.lose_position();
         }
         Ok(())
@@ -341,14 +365,14 @@ impl Walk<'_> {
                 self.plane_tilt_off()?;
                 self.lose_position();
             }
-            Kind::ToolCenter | Kind::Vectors => self.tool_center_off()?,
+            Kind::ToolCenter | Kind::Vectors => self.leave_part()?,
         }
         Ok(())
     }
 
     /// The rotary axes to these positions, while the tool is clear of the part.
     /// They are clamped there, unless they turn in the cuts that follow.
-    fn rotate(&mut self, degrees: Option<[f64; 3]>, turning: bool) -> Done {
+    pub(crate) fn rotate(&mut self, degrees: Option<[f64; 3]>, turning: bool) -> Done {
         let Some(degrees) = degrees else { return Ok(()) };
         self.say_degrees(degrees);
         let turns = self.writer.changes(ORIENTATION);
@@ -376,7 +400,7 @@ impl Walk<'_> {
     }
 
     /// The clamps open, where they may be closed.
-    fn unclamp(&mut self) -> Done {
+    pub(crate) fn unclamp(&mut self) -> Done {
         if self.machine.has_clamps() && self.clamped != Some(false) {
             self.clamped = Some(false);
             self.required(BlockName::Unclamp)?;
@@ -390,15 +414,49 @@ impl Walk<'_> {
         }
     }
 
+    /// The clamps close where the program has opened them.
+    pub(crate) fn clamp_again(&mut self) -> Done {
+        if self.clamped == Some(false) { self.clamp() } else { Ok(()) }
+    }
+
+    /// The tilted plane goes off. The rotary axes stay, unless the block itself turns them to 0.
     fn plane_tilt_off(&mut self) -> Done {
-        self.unclamp()?;
-        self.writer.forget(ORIENTATION);
-        self.say_degrees([0.0; 3]);
-        self.writer.code(WordName::Motion, motion::RAPID);
+        let turns =
+            self.machine.rotary.iter().any(|axis| {
+                self.templates.places(BlockName::PlaneTiltOff, rotary_word(axis.index()))
+            });
+        if turns {
+            self.unclamp()?;
+            self.writer.forget(ORIENTATION);
+            self.say_degrees([0.0; 3]);
+            self.writer.code(WordName::Motion, motion::RAPID);
+        }
         self.required(BlockName::PlaneTiltOff)?;
+        self.place.just_off[1] = true;
         self.place.kind = Kind::Bare;
-        self.place.degrees = Some([0.0; 3]);
+        if turns {
+            self.place.degrees = Some([0.0; 3]);
+        }
         Ok(())
+    }
+
+    /// The control is told another origin of the tilted plane, where it has a block of its own for that.
+    pub(crate) fn plane_origin(&mut self, origin: Vec3) -> Done {
+        if !self.templates.has(BlockName::PlaneOrigin) {
+            return Ok(());
+        }
+        let words = [WordName::OX, WordName::OY, WordName::OZ];
+        let mut written = origin;
+        for (i, word) in words.into_iter().enumerate() {
+            written[i] = self.writer.rounded(word, origin[i]);
+            self.writer.set(word, origin[i]);
+        }
+        if written == self.place.origin {
+            self.writer.unset(Words::MAX);
+            return Ok(());
+        }
+        self.place.origin = written;
+        self.block(BlockName::PlaneOrigin)
     }
 
     /// A tilted plane whose Z is `axis`: that of the set-up where it fits, else the one that turns
@@ -411,6 +469,8 @@ impl Walk<'_> {
         } else {
             (leaning(axis), Vec3::ZERO)
         };
+        self.plane_origin(origin)?;
+        self.say_length_offset();
         let origin_words = [WordName::OX, WordName::OY, WordName::OZ];
         let mut written = origin;
         for (i, word) in origin_words.into_iter().enumerate() {

@@ -233,7 +233,7 @@ impl Walk<'_> {
     pub(crate) fn go_out(&mut self) -> Done {
         let Some(here) = self.here.filter(|_| self.located) else { return Ok(()) };
         if self.machine.rotary.iter().all(|rotary| rotary.on == Mount::Table) {
-            return Ok(());
+            return self.draw_back();
         }
         let (mode, degrees) = (self.machine.orientation.positioned, self.place.degrees());
         let step = degrees.map(|degrees| Step { degrees, rewind: None });
@@ -252,12 +252,7 @@ impl Walk<'_> {
             let help = RAPID_PATH_HELP;
             return Err(refuse("rapid-path", message).help(help).into());
         }
-        self.aim(&outside, &stop);
-        self.here = Some(outside);
-        self.check_limits()?;
-        self.writer.code(WordName::Motion, motion::RAPID);
-        self.keep_compensation();
-        self.block(self.straight(BlockName::Rapid))
+        self.rapid_out(&outside)
     }
 
     /// How far the tool has to go out along its axis from `pose`, so that it may then go along `up`, mm.

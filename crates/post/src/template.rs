@@ -206,6 +206,7 @@ pub(crate) struct Scope {
     pub(crate) tool: Value,
     pub(crate) spindle: Value,
     pub(crate) coolant: Value,
+    pub(crate) place: Value,
     pub(crate) text: Value,
 }
 
@@ -219,6 +220,7 @@ impl Object for Scope {
             "tool" => &self.tool,
             "spindle" => &self.spindle,
             "coolant" => &self.coolant,
+            "place" => &self.place,
             "text" => &self.text,
             name => {
                 let word = WordName::named(name)?;
@@ -273,6 +275,7 @@ impl Scope {
             tool: tool_value(machine, &tool, first),
             spindle: spindle_value(first, first, !first),
             coolant: coolant_value(!first, !first),
+            place: place_value(!first, first, !first, !first),
             text: Value::from(text),
             ..Scope::new(machine)
         }
@@ -306,6 +309,7 @@ impl Scope {
             tool: tool_value(machine, &Tool::default(), true),
             spindle: spindle_value(true, true, false),
             coolant: coolant_value(false, false),
+            place: place_value(false, false, false, false),
             text: Value::from(""),
         }
     }
@@ -331,6 +335,22 @@ pub(crate) fn spindle_value(changed: bool, clockwise: bool, stopped: bool) -> Va
 /// The coolant as templates see it.
 pub(crate) fn coolant_value(stopped: bool, through: bool) -> Value {
     map([("stopped", Value::from(stopped)), ("through", Value::from(through))])
+}
+
+/// Where the tool is, as templates see it.
+pub(crate) fn place_value(
+    home: bool,
+    turned: bool,
+    tool_center_off: bool,
+    plane_off: bool,
+) -> Value {
+    let members = [
+        ("home", home),
+        ("turned", turned),
+        ("tool_center_off", tool_center_off),
+        ("plane_off", plane_off),
+    ];
+    map(members.map(|(key, value)| (key, Value::from(value))))
 }
 
 /// A tool as templates see it; `first` where none has been called before.
@@ -515,9 +535,10 @@ impl<'a> Templates<'a> {
     fn check_variable(&self, block: &Block, name: &str) -> Result<(), Box<Diagnostic>> {
         let known = match name.split_once('.') {
             Some(("options", option)) => self.machine.options.contains_key(option),
-            Some(("tool" | "spindle" | "coolant" | "operation" | "program" | "machine", _)) => {
-                VARIABLES.iter().any(|row| row.name == name)
-            }
+            Some((
+                "tool" | "spindle" | "coolant" | "place" | "operation" | "program" | "machine",
+                _,
+            )) => VARIABLES.iter().any(|row| row.name == name),
             _ => {
                 let root = |row: &crate::Parameter| row.name.split('.').next() == Some(name);
                 VARIABLES.iter().any(root)

@@ -228,6 +228,15 @@ impl Writer {
         self.known |= bit(word);
     }
 
+    /// The control has this value of a number without being told.
+    pub(crate) fn is_at(&mut self, word: WordName, value: f64) {
+        let Form::Number(number) = &self.forms[self.form(word) as usize] else { return };
+        if let Some(key) = number.key(value) {
+            self.active[word as usize] = key;
+            self.known |= bit(word);
+        }
+    }
+
     /// The active values of `words` are not known: they are written again.
     #[inline]
     pub(crate) fn forget(&mut self, words: Words) {

@@ -2,7 +2,7 @@
 //! program does not say.
 
 /// The rules that may be accepted, each with what its acceptance answers for.
-pub const ACCEPTABLE: [(&str, &str); 22] = [
+pub const ACCEPTABLE: [(&str, &str); 24] = [
     ("adaptive-feed", "an input of the machine multiplies the feed"),
     ("axis-dynamics", "axes may be faster than their machine data allow"),
     ("dwell-unit", "what a dwell counts in"),
@@ -20,10 +20,12 @@ pub const ACCEPTABLE: [(&str, &str); 22] = [
     ("rapid-path", "room for the tool where it goes by rapid beside the way of the source"),
     ("replacement-tool", "where and how the control changes a tool whose life is over"),
     ("rotary-way", "which way the rotary axes turn"),
+    ("stop-running", "M0 and M1 of the machine stop spindle and coolant"),
     ("stored-position", "where the stored position is to which Z goes"),
     ("swivel-data", "the data set that the program names is that of this kinematics"),
     ("table-frame", "in which frame X, Y and Z count behind G43.4 with a turned table"),
     ("tool-change-height", "the tool change of the machine brings Z up by itself"),
+    ("tool-change-tilt", "the tool change of the machine turns the head upright by itself"),
     ("turn-height", "room for the part and the tool where rotary axes turn"),
 ];
 

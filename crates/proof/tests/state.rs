@@ -7,6 +7,18 @@ use control::Action;
 use machine::{LengthOffset, Machine};
 use program::*;
 
+const MILL_OF_HEADS: &str = r#"
+reader = "fanuc"
+[settings]
+rapid_path = "linear"
+[words]
+X = { decimals = 3 }
+A = { decimals = 3 }
+C = { decimals = 3 }
+[orientation]
+simultaneous = "tool-center-angles"
+"#;
+
 fn cut() -> Vec<Op> {
     vec![
         Op::Rapid(at(0.0, 0.0, 5.0)),
@@ -28,6 +40,44 @@ fn cut_nc() -> Vec<Action> {
 /// The work offset of that number.
 fn offset(number: u32) -> WorkOffset {
     WorkOffset::numbered(number).unwrap()
+}
+
+/// The magazine of a portal mill takes the tool with the head upright. `unknown` is before the first block has turned it.
+#[test]
+fn a_tool_is_changed_with_the_head_upright() {
+    const FORK: &str = r#"
+[[rotary]]
+letter = "C"
+on = "head"
+axis = [0, 0, 1]
+rapid = 1e4
+acceleration = 100
+[[rotary]]
+letter = "A"
+on = "head"
+axis = [1, 0, 0]
+point = [0, 0, 200]
+rapid = 1e4
+acceleration = 100
+"#;
+    let turned = |a: f64, c: f64| {
+        Action::Rapid(control::Position {
+            point: geom::Vec3::NAN,
+            orientation: control::Orientation::Rotary { degrees: [a, 0.0, c], tool_center: false },
+        })
+    };
+    let judged = |more: &str, turn: Option<Action>| {
+        let machine = machine::load_text("fork.toml", &format!("{MILL_OF_HEADS}{more}{FORK}"));
+        let start = [Action::Home(Axes::Z)].into_iter().chain(turn);
+        let report = run(&machine.unwrap(), &source(cut()), start.chain(nc_start()).collect());
+        rules(&report).contains(&"tool-change-tilt")
+    };
+    assert!(judged("", None));
+    assert!(judged("", Some(turned(-45.0, 0.0))));
+    assert!(judged("", Some(turned(0.0, 30.0))));
+    assert!(!judged("", Some(turned(0.0, 0.0))));
+    assert!(!judged("", Some(turned(0.0, 720.0))));
+    assert!(!judged("[tools]\nturns_upright = true\n", None));
 }
 
 /// Judges the cut with this before its first event.

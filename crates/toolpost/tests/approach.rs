@@ -382,7 +382,7 @@ fn a_tilted_head_that_goes_out_by_less_is_refused() {
 #[test]
 fn a_tool_change_that_retracts_by_itself_takes_no_tilted_head_out_of_a_slot() {
     let source = slot(LEAVES[0]);
-    let machine = fork("[tools]\nretracts = true\n");
+    let machine = fork("[tools]\nretracts = true\nturns_upright = true\n");
     let good = written(&source, &machine);
     proven(&source, &machine, &good);
     let at = good.lines().position(|line| line.ends_with("Y-59.01 Z1.01")).unwrap();

@@ -46,7 +46,8 @@ fn a_rotary_axis_turns_only_while_its_clamp_is_open() {
     };
     let [first, second, third] = of("M27M29")[..] else { panic!("{text}") };
     // Nothing is clamped while the third operation turns the axes in the cut.
-    let [after_first, after_second] = of("M26M28")[..] else { panic!("{text}") };
+    let [after_first, after_second, at_end] = of("M26M28")[..] else { panic!("{text}") };
+    assert!(text.lines().nth(at_end - 2).unwrap().ends_with("G0A0C=0+R24"), "{text}");
     assert!(after_first == first + 2 && after_second == second + 2 && third > after_second);
     for (line, blocks, rule) in [
         (first, "", Err("clamp")),

@@ -38,6 +38,8 @@ const ACCEPTED: &[&str] = &[
     "pole-way",
     // Each axis goes at its own speed by rapid, and the source has no feed in mm/min.
     "rapid-path",
+    // Somebody would open the door while the tool is in the cut.
+    "stop-in-cut",
     "unreachable-orientation",
 ];
 

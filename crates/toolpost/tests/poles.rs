@@ -49,7 +49,9 @@ fn turns(text: &str) -> Vec<[Option<f64>; 2]> {
         let word = block.split(' ').find(|word| word.starts_with(letter) && word.len() > 1)?;
         word[1..].parse().ok()
     };
-    let all = text.lines().map(|line| ['B', 'C'].map(|letter| word(line, letter)));
+    // Behind the last cut the table goes home.
+    let cuts = text.lines().take_while(|line| !line.ends_with("M129") || line.starts_with("2 "));
+    let all = cuts.map(|line| ['B', 'C'].map(|letter| word(line, letter)));
     all.filter(|turn| turn.iter().any(Option::is_some)).collect()
 }
 

@@ -199,11 +199,13 @@ fn a_sinumerik_takes_off_what_a_break_may_have_left_on_at_its_start_and_at_each_
     let traori = load("sinumerik-840d-traori").unwrap();
     let text = proven(&five_axes(), &traori);
     stands(&text, &["TRAFOOF", "CYCLE800()", "G17 G40 G54 G64 G710 G90 G94", "FFWON SOFT"]);
-    stands(&text, &["TRAFOOF", "CYCLE800()", "G17 G54", "G0 SUPA Z0 D0", "T=\"BALL_6\""]);
+    // Z is home since the plane went off, and the head turns upright for the magazine.
+    let change = ["G0 SUPA Z0 D0", "CYCLE800()", "TRAFOOF", "G17 G54", "M5", "M9", "G0 A0 C0"];
+    stands(&text, &[&change[..], &["T=\"BALL_6\""]].concat());
     stands(&text, &["FFWOF BRISK", "M30"]);
     // A machine without rotary axes may have neither the option nor the cycle.
     let plain = proven(&read(UPRIGHT), &load("generic-3axis-sinumerik").unwrap());
-    stands(&plain, &["G17 G54", "G0 SUPA Z0 D0", "T7"]);
+    stands(&plain, &["G17 G54", "G0 SUPA Z0 D0", "M5", "T7"]);
     assert!(!["TRAFOOF", "CYCLE800", "FFWON"].iter().any(|word| plain.contains(word)), "{plain}");
 }
 

@@ -60,10 +60,10 @@ fn a_program_whose_name_is_a_number_has_that_number() {
 #[test]
 fn a_stop_for_the_operator_stands_before_each_further_tool() {
     for (name, before, after) in [
-        ("generic-3axis-fanuc", "G90", "(DRILL_3.3)"),
-        ("generic-3axis-haas", "G90", "(DRILL_3.3)"),
-        ("generic-3axis-mach3", "G90", "(DRILL_3.3)"),
-        ("linuxcnc-mill", "G53 G0 Z0", "(DRILL_3.3)"),
+        ("generic-3axis-fanuc", "M5", "(DRILL_3.3)"),
+        ("generic-3axis-haas", "M5", "(DRILL_3.3)"),
+        ("generic-3axis-mach3", "M5", "(DRILL_3.3)"),
+        ("linuxcnc-mill", "M5", "(DRILL_3.3)"),
     ] {
         let machine =
             machine(&format!("extends = \"{name}\"\n[options]\nstop_between_tools = true\n"));
@@ -82,7 +82,7 @@ fn a_fanuc_cuts_contours_under_look_ahead_and_nothing_else() {
     let text = written(&source, &machine3);
     assert!(text.contains("Z2.\nG5.1 Q1\nG1 Z-2. F200.\n"), "{text}");
     // Off before the tool change, and not on again for holes.
-    assert!(text.contains("G0 Z20.\n(HOLES)\nG5.1 Q0\nM5\n"), "{text}");
+    assert!(text.contains("G0 Z20.\n(HOLES)\nG5.1 Q0\nG91 G28 Z0\nG90\nM5\n"), "{text}");
     assert_eq!(text.matches("G5.1").count(), 2, "{text}");
     // Under the tool centre point it comes after G43.4 and goes before G49.
     let text = "extends = \"fanuc-table-bc\"\n[options]\nhigh_precision = true\n";
@@ -174,8 +174,10 @@ fn coolant_through_the_spindle_of_a_haas_ends_by_m89() {
         .lines()
         .filter(|block| ["M8", "M9", "M88", "M89", "M6", "M0"].iter().any(|m| block.ends_with(m)))
         .collect();
-    let expected =
-        ["M9", "T1 M6", "M88", "M89", "M8", "M9", "M88", "M89", "T2 M6", "M88", "M0", "M88", "M89"];
+    let expected = [
+        "M9", "T1 M6", "M88", "M89", "M8", "M9", "M88", "M89", "T2 M6", "M88", "M89", "M0", "M88",
+        "M89",
+    ];
     assert_eq!(coolant, expected, "{text}");
     // What M9 would leave on is refused.
     let wrong = text.replacen("M89", "M9", 1);

@@ -697,8 +697,8 @@ fn the_joints_of_a_real_control_bring_the_tool_where_the_source_does() {
 /// A damage of a proven program, and the block that it puts in.
 const DAMAGES: [(&str, &str, &str); 4] = [
     ("another length by the kinematics of the tip", "M428\n", "M428\nG43 H1\n"),
-    ("up by the kinematics of the tip", "M429\nM9\n", "M9\nG53 G0 Z300\nM429\n"),
-    ("home by the kinematics of the tip", "M429\nM9\n", "M9\nG91 G28 Z0\nG90\nM429\n"),
+    ("up by the kinematics of the tip", "M429\nG53 G0 Z300\n", "G53 G0 Z300\nM429\n"),
+    ("home by the kinematics of the tip", "M429\nG53 G0 Z300\n", "G91 G28 Z0\nG90\nM429\n"),
     ("whatever kinematics the program before has left", "\nM429\nG64", "\nG64"),
 ];
 

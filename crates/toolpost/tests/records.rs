@@ -167,8 +167,11 @@ fn sample(kind: Kind) -> Sample {
         Kind::CutWire => alone(Op::CutWire),
         Kind::Taper => alone(Op::Taper(2.0)),
         Kind::Dwell => alone(Op::Dwell(2.0)),
-        Kind::Stop => alone(Op::Stop),
-        Kind::OptionalStop => alone(Op::OptionalStop),
+        // Out of the cut.
+        Kind::Stop => Sample { before: vec![up()], op: Op::Stop, after: Vec::new() },
+        Kind::OptionalStop => {
+            Sample { before: vec![up()], op: Op::OptionalStop, after: Vec::new() }
+        }
         Kind::Operation => alone(Op::Operation("SLOT".into())),
         Kind::EndOfOperation => alone(Op::EndOfOperation),
         Kind::Comment => alone(Op::Comment("here".into())),

@@ -215,7 +215,11 @@ fn assemble(pieces: &[Piece]) -> Program {
                 here = top(here);
                 push(Op::Rapid(pose(here)));
             }
-            Piece::Stop => push(Op::Stop),
+            Piece::Stop => {
+                here = top(here);
+                push(Op::Rapid(pose(here)));
+                push(Op::Stop);
+            }
         }
     }
     push(Op::Rapid(pose(top(here))));

@@ -114,7 +114,9 @@ fn a_coolant_goes_off_before_another_one_runs() {
         cut(20.0),
         Op::Coolant(Coolant::Mist),
         cut(30.0),
+        Op::Rapid(at(30.0, 0.0, 50.0)),
         Op::Stop,
+        Op::Rapid(at(30.0, 0.0, 20.0)),
         Op::Coolant(Coolant::Flood),
         cut(40.0),
     ];

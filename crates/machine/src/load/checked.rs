@@ -454,6 +454,7 @@ impl CheckedSheet {
                 max_diameter: self.tools.max_diameter.map_or(f64::INFINITY, |mm| mm.0),
                 max_length: self.tools.max_length.map_or(f64::INFINITY, |mm| mm.0),
                 retracts: self.tools.retracts.unwrap_or(false),
+                turns_upright: self.tools.turns_upright.unwrap_or(false),
             },
             auxiliary: self.auxiliary.unwrap_or_default(),
             operator_parameters: (self.operator_parameters.into_iter().flatten())

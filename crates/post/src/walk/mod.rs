@@ -89,7 +89,7 @@ pub(crate) struct Walk<'a> {
     /// The radii of the source's tools, mm, by their numbers; collected where they are asked for.
     radii: OnceCell<BTreeMap<u32, f64>>,
     /// Where in its records we are.
-    index: usize,
+    pub(crate) index: usize,
     /// Source line of the record at hand.
     pub(crate) line: u32,
     pub(crate) tool: Option<Tool>,
@@ -103,9 +103,9 @@ pub(crate) struct Walk<'a> {
     /// Up to which record no cut needs the spindle.
     idle_until: usize,
     coolant: Coolant,
-    active_coolant: Option<Coolant>,
+    pub(crate) active_coolant: Option<Coolant>,
     /// The coolant that has been switched last: after a stop nobody knows whether it runs.
-    last_coolant: Coolant,
+    pub(crate) last_coolant: Coolant,
     pub(crate) feed: Option<Feed>,
     compensation: Compensation,
     active_compensation: Compensation,
@@ -124,6 +124,10 @@ pub(crate) struct Walk<'a> {
     /// Whether nothing but cuts has been since a straight one, and a straight one in the same orientation differs
     /// from that in where it goes alone.
     pub(crate) goes_on: bool,
+    /// Where the tool has been before it went home for a stop, until something moves.
+    pub(crate) comes_back: Option<Pose>,
+    /// Whether Z is home: since a retract, or a tool change.
+    pub(crate) is_home: bool,
     /// Whether the control looks ahead.
     pub(crate) looks_ahead: bool,
     /// Whether the clamps of the rotary axes are closed; `None` where the program has not said it.
@@ -211,6 +215,8 @@ impl<'a> Walk<'a> {
             here: None,
             located: false,
             goes_on: false,
+            comes_back: None,
+            is_home: false,
             looks_ahead: false,
             clamped: None,
             place: Place::start(machine),
@@ -290,6 +296,7 @@ impl<'a> Walk<'a> {
             Op::Line(pose) if goes_on && self.keeps_orientation(pose) => self.line_on(pose),
             Op::Rapid(pose) => self.motion(stop, |walk, stop| walk.rapid(pose, stop)),
             Op::Line(pose) => {
+                self.come_back(stop.as_ref())?;
                 let mut goes_on = false;
                 let done = self.motion(stop, |walk, stop| {
                     let done = walk.line(pose, stop);
@@ -300,12 +307,16 @@ impl<'a> Walk<'a> {
                 done
             }
             Op::Arc(to) => {
+                self.come_back(stop.as_ref())?;
                 let done = self.motion(stop, |walk, stop| walk.arc(to, stop));
                 // It changes nothing but how the control moves.
                 self.goes_on = goes_on && done.is_ok();
                 done
             }
-            Op::Thread(thread) => self.motion(stop, |walk, stop| walk.thread(thread, stop)),
+            Op::Thread(thread) => {
+                self.come_back(stop.as_ref())?;
+                self.motion(stop, |walk, stop| walk.thread(thread, stop))
+            }
             Op::Hole(pose) => self.motion(stop, |walk, stop| {
                 walk.not_over_surface("a hole cycle")?;
                 walk.hole(pose, stop)
@@ -322,7 +333,10 @@ impl<'a> Walk<'a> {
                 "a move to a position that counts from the zero of the machine",
                 "leave it out: where the tool leaves the part, the machine file says it",
             )),
-            Op::Probe(probe) => self.probe(probe),
+            Op::Probe(probe) => {
+                self.come_back(stop.as_ref())?;
+                self.probe(probe)
+            }
             Op::Cycle(cycle) => {
                 self.end_cycle()?;
                 self.cycle = Some(cycle);
@@ -450,6 +464,8 @@ impl<'a> Walk<'a> {
         self.end_cycle()?;
         self.leave_part()?;
         self.leave_place()?;
+        self.plane_origin(Vec3::ZERO)?;
+        self.comes_back = None;
         self.work_offset = index;
         self.required(BlockName::WorkOffsetSelect)?;
         self.lose_position();
@@ -485,6 +501,10 @@ impl<'a> Walk<'a> {
         self.required(BlockName::WorkOffsetData)?;
         self.writer.forget(axes);
         Ok(())
+    }
+
+    pub(crate) fn source(&self) -> &'_ Program {
+        self.source
     }
 
     /// How far the source reaches along the unit vector `direction`, mm.
@@ -532,10 +552,20 @@ impl<'a> Walk<'a> {
                         known && self.active_coolant == Some(Coolant::Off),
                         self.last_coolant == Coolant::Through,
                     ),
+                    place: self.place.value(self.is_home),
                     ..self.scope.clone()
                 };
                 self.writer.block(&self.templates.render(name, scope)?)?;
             }
+        }
+        match name {
+            BlockName::Retract => self.is_home = true,
+            BlockName::ToolChange => (self.is_home, self.place.just_off) = (true, [false; 2]),
+            BlockName::Rapid
+            | BlockName::RapidVector
+            | BlockName::Linear
+            | BlockName::LinearVector => (self.is_home, self.place.just_off) = (false, [false; 2]),
+            _ => {}
         }
         if let Some(contour) = &mut self.contour
             && name != BlockName::Comment
@@ -570,11 +600,20 @@ impl<'a> Walk<'a> {
         self.uncompensated("the end of the program")?;
         self.end_cycle()?;
         self.look_ahead(false)?;
+        self.warn_of_cut("ends");
         self.leave_place()?;
         if self.compensation != self.active_compensation {
             let message = "cutter compensation is switched here, and no move in the plane follows";
             let found = Diagnostic::warning("compensation-pending", message);
             self.findings.warn(found.line(self.compensation_line));
+        }
+        self.plane_origin(Vec3::ZERO)?;
+        self.place.turned = self.say_unturned(BlockName::ProgramEnd);
+        if self.place.turned && self.machine.has_clamps() {
+            self.writer.unset(Words::MAX);
+            self.leave_part()?;
+            self.unclamp()?;
+            self.say_unturned(BlockName::ProgramEnd);
         }
         self.block(BlockName::ProgramEnd)
     }
@@ -603,15 +642,6 @@ impl<'a> Walk<'a> {
         }
         self.writer.set(WordName::P, seconds);
         self.required(BlockName::Dwell)
-    }
-
-    /// A stop, after which spindle and coolant that were on are switched on anew: some controls switch both off for it
-    /// (HEIDENHAIN's `M0`), and so may the operator. None switches on what is off.
-    fn stop(&mut self, name: BlockName) -> Done {
-        self.end_cycle()?;
-        self.active_spindle = self.active_spindle.filter(|active| *active == Spindle::Off);
-        self.active_coolant = self.active_coolant.filter(|active| *active == Coolant::Off);
-        self.required(name)
     }
 }
 

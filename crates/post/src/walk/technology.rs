@@ -76,7 +76,9 @@ impl Walk<'_> {
         self.uncompensated("the tool change")?;
         self.end_cycle()?;
         self.look_ahead(false)?;
+        self.warn_of_cut("changes the tool");
         self.leave_place()?;
+        self.clamp_again()?;
         self.limits.tool(tool, self.line)?;
         let number = f64::from(tool.number);
         let edge = self.machine.capabilities.length_offset != LengthOffset::ToolNumber;
@@ -88,6 +90,7 @@ impl Walk<'_> {
             LengthOffset::One => Some(1.0),
             LengthOffset::ToolNumber => Some(tool.offset.map_or(number, f64::from)),
         };
+        let stands_upright = self.upright_for_tool()?;
         // The plane may say along which axis the length counts.
         self.plane_xy()?;
         self.writer.set(WordName::T, number);
@@ -97,9 +100,21 @@ impl Walk<'_> {
             self.writer.set(WordName::S, speed);
         }
         self.scope.tool = tool_value(self.machine, tool, self.tool.is_none());
+        let upright = self.upright();
+        self.place.turned = self.say_unturned(BlockName::ToolChange);
         self.required(BlockName::ToolChange)?;
         self.tool = Some(tool.clone());
-        self.writer.forget(POSITION | ORIENTATION | MOTION | bit(WordName::D));
+        self.comes_back = None;
+        self.writer.forget(POSITION | MOTION | bit(WordName::D));
+        if stands_upright {
+            self.place.turn_to(upright);
+        } else {
+            self.writer.forget(ORIENTATION);
+        }
+        if self.machine.capabilities.length_offset == LengthOffset::One {
+            // M6 makes the first edge active (SINUMERIK MD20270, as it is delivered).
+            self.writer.is_at(WordName::H, 1.0);
+        }
         self.turned_to = None;
         self.located = false;
         (self.active_spindle, self.active_coolant) = (Some(Spindle::Off), Some(Coolant::Off));

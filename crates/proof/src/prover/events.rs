@@ -1,6 +1,7 @@
 //! Tool changes, dwells, stops, the wire, outputs and inputs, functions of the machine's builder.
 
 use super::*;
+use machine::RotaryAxis;
 use program::{Output, OutputValue};
 
 impl Prover<'_> {
@@ -23,12 +24,42 @@ impl Prover<'_> {
             self.leaves_for_home(line);
             self.raised = true;
         }
+        self.upright_for_tool(line);
         self.gauge.tool_length = self.cursor.tool_length();
         self.report.compared.tool_changes += 1;
         let name = if tool.number > 0 { tool.number.to_string() } else { tool.name.clone() };
         self.report.program.tool(name);
         self.running.change_tool(line, tool.clone());
         Ok(())
+    }
+
+    /// Holds the axes of a head at 0, or whole turns from it, where the magazine takes the tool.
+    fn upright_for_tool(&mut self, line: u32) {
+        let machine = self.gauge.machine;
+        if machine.tools.turns_upright {
+            return;
+        }
+        let rounding = machine.rotary_resolution();
+        let stances = self.standing.at(&self.here.position.orientation);
+        let turned = |axis: &&RotaryAxis| {
+            let off = |degrees: &[f64; 3]| (degrees[axis.index()] / 360.0).fract().abs() * 360.0;
+            let is_upright = |degrees: &[f64; 3]| {
+                let off = off(degrees);
+                off.min(360.0 - off) <= rounding
+            };
+            axis.on == Mount::Head && (stances.is_empty() || !stances.iter().all(is_upright))
+        };
+        let Some(letter) = machine.rotary.iter().find(turned).map(|axis| axis.letter) else {
+            return;
+        };
+        let message = format!(
+            "source line {}: the program changes the tool while the head is turned: {letter} does not stand at 0, or nobody knows \
+             that it does",
+            self.cursor.line
+        );
+        let help = "turn the axes of the head to 0 behind the retract, or say `turns_upright = true` in [tools] of the machine's \
+                    file where its tool change does that by itself";
+        self.found(Diagnostic::error("tool-change-tilt", message).help(help).line(line));
     }
 
     /// Something that happens between motions: a dwell, a stop, an output.

@@ -88,6 +88,8 @@ struct Leg {
     stops: Vec<Station>,
     /// Where an excursion left the path.
     left: Option<Station>,
+    /// Where the tool has left the path for a stop of the program, for which it goes home.
+    away: Option<Station>,
     /// Whether Z was sent home since.
     homed: bool,
     hole: Run,
@@ -461,6 +463,8 @@ impl<'a> Prover<'a> {
             if let Some(found) = self.wrong_approach(to) {
                 self.found(found);
             }
+        } else if stops::lifted(&self.gauge, &self.here, to) && self.stops_next() {
+            self.leg.away.get_or_insert(self.here);
         } else if !self.cursor.leaves_part() || !stops::lifted(&self.gauge, &self.here, to) {
             return false;
         }
@@ -469,6 +473,22 @@ impl<'a> Prover<'a> {
         self.here = *to;
         self.raised &= to.position.point.z.is_nan();
         true
+    }
+
+    /// Whether the source has a stop next.
+    fn stops_next(&self) -> bool {
+        matches!(self.cursor.step, Step::Stop | Step::OptionalStop)
+    }
+
+    /// Behind a stop for which the tool has gone home it comes back to where it was, before a cut that begins there.
+    fn comes_back(&mut self) {
+        let Step::Move(goal) = &self.cursor.step else { return };
+        let cuts = matches!(goal.kind, Kind::Line | Kind::Arc(_));
+        let away = self.leg.away.take().filter(|_| self.leg.homed && cuts && goal.from.is_some());
+        if let Some(away) = away {
+            self.leg.left = Some(away);
+            self.leg.stops.push(self.here);
+        }
     }
 
     /// Keeps where the tool stands, where that is known.
@@ -578,6 +598,7 @@ impl<'a> Prover<'a> {
         self.leg.start = Some(self.here);
         self.leg.stops.clear();
         self.leg.left = None;
+        self.comes_back();
         // On the way to a tool change the last tool is still in the spindle.
         if self.running.tool.is_none() || !self.cursor.at_tool_change() {
             self.gauge.tool_length = self.cursor.tool_length();

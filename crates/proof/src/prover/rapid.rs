@@ -242,6 +242,9 @@ impl Prover<'_> {
         if holding && !first && self.leg.left.is_none() {
             self.leg.left = Some(self.here);
         }
+        if z && self.stops_next() && self.here.place.known() {
+            self.leg.away.get_or_insert(self.here);
+        }
         if z {
             self.leaves_for_home(line);
             self.forget_lifts();

@@ -101,7 +101,9 @@ const KINDS: [(&[&str], Kind); 15] = [
     (&["TAP", "FLOAT"], Kind::Tap),
     (&["TAP"], Kind::Tap),
     (&["REAM"], Kind::Ream),
-    (&["BORE"], Kind::Bore),
+    // The bore that stops the spindle is BORE,DRAG; this one feeds out again (Siemens NX, its posts: G85 and G86; Autodesk
+    // FeatureCAM: "Bore (F-F)"). G85 where G86 was meant scraps no bore; a standing insert dragged up the wall does.
+    (&["BORE"], Kind::Ream),
 ];
 
 /// Bores of Siemens NX that are none of the kinds, and why.
@@ -340,9 +342,7 @@ impl Reader {
         if matches!(record.fields.get(words.len()), Some(Field::Number(_))) {
             return Err(self.by_position().fields(words.len(), 1));
         }
-        // Siemens NX calls the bore that stops the spindle BORE,DRAG; its BORE feeds out again.
-        let feeds_out = self.dialect == Dialect::Nx && *words == ["BORE"];
-        Ok((words.len(), if feeds_out { Kind::Ream } else { *kind }))
+        Ok((words.len(), *kind))
     }
 
     /// The refusal of a cycle whose values have no words. What each place means is not in the file:

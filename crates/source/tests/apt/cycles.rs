@@ -56,7 +56,8 @@ fn every_cycle_gives_its_kind_and_its_numbers() {
         (format!("CYCLE/DRILL,DEEP,STEP,2,{all}"), deep),
         (format!("CYCLE/BRKCHP,{all},STEP,2"), Cycle { kind: CycleKind::BreakChip, ..deep }),
         (format!("CYCLE/REAM,{all}"), Cycle { kind: CycleKind::Ream, ..drill }),
-        (format!("CYCLE/BORE,{all}"), Cycle { kind: CycleKind::Bore, ..drill }),
+        (format!("CYCLE/BORE,{all}"), Cycle { kind: CycleKind::Ream, ..drill }),
+        (format!("CYCLE/BORE,DRAG,{all}"), Cycle { kind: CycleKind::Bore, ..drill }),
         // 200 mm/min at 1000 1/min.
         (format!("CYCLE/TAP,{all}"), Cycle { kind: tap(0.2, false), ..drill }),
         (format!("CYCLE/TAP,{all},TPI,20"), Cycle { kind: tap(1.27, false), ..drill }),

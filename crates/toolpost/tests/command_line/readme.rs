@@ -59,11 +59,11 @@ fn every_command_of_the_readme_does_what_it_says() {
     for words in &commands {
         let proves = words[0] == "prove";
         if proves {
-            // The mistyped Y of the page: in block N380.
+            // The mistyped Y of the page: in block N360.
             let program = folder.read(words[1]);
-            assert!(text.contains("    | N380 G1 Y-42."));
-            assert!(program.contains("N380 G1 Y-24."), "{program}");
-            folder.write(words[1], program.replace("N380 G1 Y-24.", "N380 G1 Y-42."));
+            assert!(text.contains("    | N360 G1 Y-42."));
+            assert!(program.contains("N360 G1 Y-24."), "{program}");
+            folder.write(words[1], program.replace("N360 G1 Y-24.", "N360 G1 Y-42."));
         }
         let said = folder.run(words);
         assert_eq!(said.code, i32::from(proves), "{words:?}: {said:?}");

@@ -278,6 +278,8 @@ pub(crate) struct Functions {
     pub builders: bool,
     /// Stops switch spindle and coolant off.
     pub stop_switches_off: bool,
+    /// Nothing guarantees that a stop switches them off.
+    pub stop_leaves_on: bool,
     /// `M1` is read and does nothing.
     pub ignores_optional_stop: bool,
     /// The end of the program switches spindle and coolant off.
@@ -290,6 +292,7 @@ impl Functions {
     pub const ISO: Functions = Functions {
         builders: false,
         stop_switches_off: false,
+        stop_leaves_on: true,
         ignores_optional_stop: false,
         end_switches_off: true,
         orients_by_pq: false,

@@ -2,8 +2,8 @@
 //! are mm and times s, whatever the job shows: a feed is mm/s.
 
 use super::facts::{
-    Arcs, Brackets, Cycles, Facts, FeedMeaning, FeedRules, Language, OuterCenter, Reset, Semicolon,
-    Syntax, Tools,
+    Arcs, Brackets, Cycles, Facts, FeedMeaning, FeedRules, Functions, Language, OuterCenter, Reset,
+    Semicolon, Syntax, Tools,
 };
 use super::{BASIC_G, BASIC_M, END_M, SPINDLE_G, SPINDLE_M, cycles};
 use crate::Ending;
@@ -66,5 +66,7 @@ pub(crate) static FACTS: Facts = Facts {
     cycles: Cycles { chuck_is_open: true, returns: Some(false), ..Cycles::ISO },
     tools: Tools { numbered: true, ..Tools::ISO },
     reset: Reset { millimeters: true, ..Reset::ISO },
+    // What the machine does at a stop, the post knows.
+    functions: Functions { stop_leaves_on: false, ..Functions::ISO },
     ..Facts::iso(WORDS, Language::Plain)
 };

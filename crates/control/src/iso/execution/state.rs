@@ -299,6 +299,11 @@ impl State {
         self.frames.used();
     }
 
+    /// Whether the spindle turns or coolant runs.
+    pub(crate) fn is_running(&self) -> bool {
+        self.spindle != Spindle::Off || self.coolant != Coolant::Off
+    }
+
     /// T has named another tool, which the operator puts in at the next `M0`.
     pub(super) fn awaits_tool(&self, facts: &Facts) -> bool {
         facts.tools.by_hand && self.selected != self.tool

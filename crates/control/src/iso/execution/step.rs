@@ -559,13 +559,16 @@ impl Step<'_, '_, '_> {
                         "a tool is changed by hand while the spindle turns; write M5 first";
                     return Err(self.block.at_group(Group::Flow, "nc-tool", message));
                 }
+                self.stops_while_running();
                 self.change_by_hand();
             }
             Some(M::Stop) => {
+                self.stops_while_running();
                 self.actions.push(Action::Stop);
                 self.stop_all()?;
             }
             Some(M::OptionalStop) if !self.facts.functions.ignores_optional_stop => {
+                self.stops_while_running();
                 self.actions.push(Action::OptionalStop);
                 self.stop_all()?;
             }
@@ -583,6 +586,13 @@ impl Step<'_, '_, '_> {
             _ => {}
         }
         Ok(())
+    }
+
+    /// Tells of a stop with spindle or coolant on.
+    fn stops_while_running(&mut self) {
+        if self.facts.functions.stop_leaves_on && self.state.is_running() {
+            self.actions.push(Action::Risk(Risk::STOP_RUNNING.into()));
+        }
     }
 
     /// `M0` and `M1` of Haas stop the spindle and the coolant, and nothing starts them again (*Mill Operator's Manual*,

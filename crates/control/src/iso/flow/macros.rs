@@ -350,6 +350,9 @@ impl<'a> Run<'a, '_> {
                 Err(Diagnostic::error("nc-alarm", message).at(line, text, at, text.len()).into())
             }
             3006 => {
+                if self.control.state.is_running() && self.facts.functions.stop_leaves_on {
+                    self.tell(Action::Risk(Risk::STOP_RUNNING.into()));
+                }
                 self.tell(Action::Stop);
                 Ok(())
             }

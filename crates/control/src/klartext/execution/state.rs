@@ -380,10 +380,13 @@ impl<'a, 's> Control<'a, 's> {
             Function::Coolant => self.set_coolant(Coolant::Flood),
             Function::CoolantOff => self.set_coolant(Coolant::Off),
             Function::Stop => {
+                // On every TNC it stops the spindle; the coolant on the older ones (TNC 360, 640: "M0").
+                self.stops_while(self.coolant != Coolant::Off)?;
                 self.emit(Action::Stop)?;
                 self.stop_all()
             }
             Function::OptionalStop => {
+                self.stops_while(self.spindle != Spindle::Off || self.coolant != Coolant::Off)?;
                 self.emit(Action::OptionalStop)?;
                 self.stop_all()
             }
@@ -427,6 +430,11 @@ impl<'a, 's> Control<'a, 's> {
             Function::LiftsOff => self.emit(Action::Risk(Risk::STOP_RETRACT.into())),
             Function::MachineCoordinates { .. } | Function::Nothing => Ok(()),
         }
+    }
+
+    /// Tells of a stop while something may be running.
+    fn stops_while(&mut self, running: bool) -> Result<()> {
+        if running { self.emit(Action::Risk(Risk::STOP_RUNNING.into())) } else { Ok(()) }
     }
 
     /// Spindle and coolant off: what a stop of the program, its end and a tool change bring.

@@ -537,7 +537,12 @@ impl<'a, 's> Interpreter<'a, 's> {
         if block.m[0].is_none() {
             return Ok(());
         }
-        match block.m.iter().flatten().find(|m| STOPS.contains(m)) {
+        let stop = block.m.iter().flatten().find(|m| STOPS.contains(m));
+        let running = self.state.spindle != Spindle::Off || self.state.coolant != Coolant::Off;
+        if running && matches!(stop, Some(0 | 1)) {
+            self.emit(source, Action::Risk(Risk::STOP_RUNNING.into()))?;
+        }
+        match stop {
             Some(0) => self.emit(source, Action::Stop),
             Some(1) => self.emit(source, Action::OptionalStop),
             Some(_) => self.end(source),

@@ -1,0 +1,184 @@
+//! Away from the part: for a stop of the program, for a tool change and at the end; and back to it.
+
+use crate::catalogue::{BlockName, WordName};
+use crate::place::{Kind, Stop, rotary_word};
+use crate::template::{LENGTH_OFFSET, bit};
+use crate::walk::{Done, Walk, motion, refuse};
+use geom::Vec3;
+use machine::plan::Step;
+use machine::{Mount, RotaryAxis};
+use program::{Coolant, Diagnostic, Op, Pose, Record, Spindle};
+
+/// How far beside the tool axis a cut may end that has drawn the tool back along it, mm.
+const ALONG: f64 = 1e-3;
+
+/// How far the tool is drawn back along its axis before the control stops keeping its tip, mm.
+pub(crate) const DRAWN_BACK: f64 = 5.0;
+
+impl Walk<'_> {
+    /// A stop, for which somebody opens the door, jogs, or puts his hands in: not every control stops spindle and coolant for it.
+    /// So the tool goes home before it, both are off, and what the source does next begins at home.
+    pub(crate) fn stop(&mut self, name: BlockName) -> Done {
+        self.end_cycle()?;
+        if self.wire.is_some() {
+            return self.required(name);
+        }
+        if self.stands_in_cut() {
+            let message = "the program stops for somebody while the tool is in the cut: the spindle would have to stop there, too";
+            let help = "draw the tool back in the toolpath before STOP or OPSTOP, by rapid or along the tool axis";
+            return Err(refuse("stop-in-cut", message).help(help).into());
+        }
+        self.uncompensated("a stop")?;
+        if self.located && self.here.is_some() {
+            let back = self.here;
+            self.leave_part()?;
+            self.comes_back = back;
+        }
+        self.halt()?;
+        self.required(name)
+    }
+
+    /// Spindle and coolant off, where they are not known to be.
+    fn halt(&mut self) -> Done {
+        if self.active_spindle != Some(Spindle::Off) {
+            self.required(BlockName::SpindleOff)?;
+            self.active_spindle = Some(Spindle::Off);
+        }
+        if self.active_coolant != Some(Coolant::Off) {
+            self.required(BlockName::CoolantOff)?;
+            (self.active_coolant, self.last_coolant) = (Some(Coolant::Off), Coolant::Off);
+        }
+        Ok(())
+    }
+
+    /// From home behind a stop back to where the tool has been, before a cut that begins there.
+    pub(crate) fn come_back(&mut self, stop: Option<&Stop>) -> Done {
+        let back = self.comes_back.take().filter(|_| !self.located);
+        let (Some(back), Some(stop)) = (back, stop) else { return Ok(()) };
+        let held = self.place.degrees().map(|degrees| Step { degrees, rewind: None });
+        let held = Stop { step: held.or(stop.step), ..*stop };
+        self.settle(&back, &held, false)?;
+        self.approach(&back, &held)
+    }
+
+    /// Whether the last motion of the source is a cut that has not drawn the tool back along its axis.
+    fn stands_in_cut(&self) -> bool {
+        let mut before = self.source().records[..self.index].iter().rev();
+        let ends = |record: &Record| match &record.op {
+            Op::Line(_) | Op::Arc(_) | Op::Thread(_) => Some(true),
+            Op::Rapid(_) | Op::Hole(_) | Op::Probe(_) | Op::Tool(_) | Op::Home => Some(false),
+            Op::WorkOffset(_) => Some(false),
+            op => op.pose().map(|_| true),
+        };
+        let (cut, last) = loop {
+            let Some(record) = before.next() else { return false };
+            if let Some(cut) = ends(record) {
+                break (cut, record);
+            }
+        };
+        let (true, Op::Line(to)) = (cut, &last.op) else { return cut };
+        let Some(from) = before.find_map(|record| record.op.pose()) else { return true };
+        let way: Vec3 = to.point() - from.point();
+        let out = way.dot(to.axis());
+        out <= 0.0 || (way - to.axis() * out).length() > ALONG
+    }
+
+    /// The source ends, or changes the tool, in the cut: the tool is drawn back along its axis, which nobody has asked for.
+    pub(crate) fn warn_of_cut(&mut self, where_to: &str) {
+        if self.wire.is_none() && self.located && self.stands_in_cut() {
+            let message = format!(
+                "the tool is in the cut where the source {where_to}: it goes out along its axis from there"
+            );
+            let help = "retract in the toolpath; a file that ends in a cut may be cut off";
+            let found = Diagnostic::warning("ends-in-cut", message).help(help);
+            self.findings.warn(found.line(self.line));
+        }
+    }
+
+    /// Out of a cut along the tool axis, while the control keeps the tip: it gives the tip up a little beside the wall.
+    pub(crate) fn draw_back(&mut self) -> Done {
+        let keeps_tip = matches!(self.place.kind, Kind::ToolCenter | Kind::Vectors);
+        let tables = self.machine.rotary.iter().all(|rotary| rotary.on == Mount::Table);
+        let Some(here) = self.here.filter(|_| keeps_tip && tables && self.located) else {
+            return Ok(());
+        };
+        if !self.stands_in_cut() {
+            return Ok(());
+        }
+        let out = here.at(here.point() + here.axis() * DRAWN_BACK)?;
+        self.rapid_out(&out)
+    }
+
+    /// By rapid to a place from which the tool goes home, with the rotary axes as they stand.
+    pub(crate) fn rapid_out(&mut self, out: &Pose) -> Done {
+        let (mode, degrees) = (self.machine.orientation.positioned, self.place.degrees());
+        let step = degrees.map(|degrees| Step { degrees, rewind: None });
+        self.aim(out, &Stop { mode, turning: false, first: false, step });
+        self.here = Some(*out);
+        self.check_limits()?;
+        self.writer.code(WordName::Motion, motion::RAPID);
+        self.keep_compensation();
+        self.block(self.straight(BlockName::Rapid))
+    }
+
+    /// Where a rotary axis counts as not turned: 0, or on an axis without an end the nearest whole turn, to which nothing
+    /// is unwound. `None` where the axis has no end and nobody knows where it stands.
+    fn unturned(&self, axis: &RotaryAxis) -> Option<f64> {
+        if axis.min.is_finite() || axis.max.is_finite() {
+            return Some(0.0);
+        }
+        let turns = |degrees: [f64; 3]| (degrees[axis.index()] / 360.0).round() * 360.0;
+        match self.place.degrees() {
+            Some(degrees) => Some(turns(degrees)),
+            None => (axis.on == Mount::Head).then_some(0.0),
+        }
+    }
+
+    /// Degrees of A, B, C with the tool upright, where nothing is unwound.
+    pub(crate) fn upright(&self) -> [f64; 3] {
+        let mut upright = [0.0; 3];
+        for axis in &self.machine.rotary {
+            upright[axis.index()] = self.unturned(axis).unwrap_or(0.0);
+        }
+        upright
+    }
+
+    /// Turns the head upright for a tool change whose block does not place the words of its axes. Whether the axes are known
+    /// to stand so behind the change.
+    pub(crate) fn upright_for_tool(&mut self) -> Result<bool, Box<Diagnostic>> {
+        let placed = |axis: &RotaryAxis| {
+            self.templates.places(BlockName::ToolChange, rotary_word(axis.index()))
+        };
+        let machine = self.machine;
+        let all_placed = machine.rotary.iter().all(placed);
+        let by_hand = machine.rotary.iter().any(|axis| axis.on == Mount::Head && !placed(axis));
+        if machine.tools.turns_upright || !by_hand {
+            return Ok(all_placed);
+        }
+        if !self.is_home {
+            self.plane_xy()?;
+            self.required(BlockName::Retract)?;
+            self.writer.forget(LENGTH_OFFSET);
+            self.lose_position();
+        }
+        self.rotate(Some(self.upright()), false)?;
+        Ok(true)
+    }
+
+    /// Says the rotary axes that the block `name` places, not turned. Whether one of them has to turn.
+    pub(crate) fn say_unturned(&mut self, name: BlockName) -> bool {
+        let mut words = 0;
+        for axis in &self.machine.rotary {
+            let word = rotary_word(axis.index());
+            if let Some(degrees) = self.unturned(axis)
+                && self.templates.places(name, word)
+            {
+                self.writer.set(word, degrees);
+                words |= bit(word);
+            }
+        }
+        self.writer.forget(bit(WordName::Motion));
+        self.writer.code(WordName::Motion, motion::RAPID);
+        self.writer.changes(words)
+    }
+}
