@@ -102,11 +102,12 @@ fn records_keep_their_order_around_a_corner() {
             Action::Coolant(_) => "coolant".into(),
             Action::Line(_) => "line".into(),
             Action::Arc(_) => "arc".into(),
+            Action::Risk(_) => "risk".into(),
             Action::Stop => "stop".into(),
             _ => "end".into(),
         })
         .collect();
-    assert_eq!(names, ["one", "line", "two", "coolant", "arc", "line", "stop", "end"]);
+    assert_eq!(names, ["one", "line", "two", "coolant", "arc", "line", "risk", "stop", "end"]);
 }
 
 #[test]

@@ -67,8 +67,8 @@ fn between_four_places_each_corner_has_its_part() {
     let text = text(&program);
     let blocks = blocks(&text);
     let probing = "G0 X0 Y0|G43 Z2 H1|G38.2 Z-1 F50|#1001=#5063|G0 Z2|X40|G38.2 Z-1|#1002=#5063|G0 Z2|Y20|G38.2 Z-1|\
-        #1004=#5063|G0 Z2|X0|G38.2 Z-1|#1003=#5063|G0 Z3|(MSG, take the probe off the tool)|M0|S9000 M3";
-    let cut = "X10 Y5|Z[0.5+0.5625*#1001+0.1875*#1002+0.1875*#1003+0.0625*#1004]|\
+        #1004=#5063|G0 Z2|X0|G38.2 Z-1|#1003=#5063|G0 Z3|(MSG, take the probe off the tool)|G53 G0 Z0|M0|S9000 M3";
+    let cut = "G0 X10 Y5|G43 Z3 H1|Z[0.5+0.5625*#1001+0.1875*#1002+0.1875*#1003+0.0625*#1004]|\
         G1 Z[-0.1+0.5625*#1001+0.1875*#1002+0.1875*#1003+0.0625*#1004] F60|\
         X30 Z[-0.1+0.1875*#1001+0.5625*#1002+0.0625*#1003+0.1875*#1004]|G0 X10 Y15 Z3";
     for right in [probing, cut] {
@@ -157,7 +157,7 @@ fn a_wrong_part_of_a_height_is_no_proof() {
         ("Z3\n(MSG, take", "Z0.5\n(MSG, take"),
         ("G1 Z[-0.1", "G1 Z[-0.2"),
         ("M0\nG0", "G0"),
-        ("tool)\nM0\nS9000", "tool)\nS9000"),
+        ("Z0\nM0\nS9000", "Z0\nS9000"),
         ("M0\nG0", "M0\nS9000 M3\nG0"),
     ] {
         let wrong = text.replacen(was, is, 1);

@@ -64,18 +64,12 @@ impl Walk<'_> {
     /// Whether the last motion of the source is a cut that has not drawn the tool back along its axis.
     fn stands_in_cut(&self) -> bool {
         let mut before = self.source().records[..self.index].iter().rev();
-        let ends = |record: &Record| match &record.op {
-            Op::Line(_) | Op::Arc(_) | Op::Thread(_) => Some(true),
-            Op::Rapid(_) | Op::Hole(_) | Op::Probe(_) | Op::Tool(_) | Op::Home => Some(false),
-            Op::WorkOffset(_) => Some(false),
-            op => op.pose().map(|_| true),
+        let ends = |record: &&Record| {
+            let parts = matches!(record.op, Op::Tool(_) | Op::Home | Op::WorkOffset(_));
+            parts || record.op.pose().is_some()
         };
-        let (cut, last) = loop {
-            let Some(record) = before.next() else { return false };
-            if let Some(cut) = ends(record) {
-                break (cut, record);
-            }
-        };
+        let Some(last) = before.find(ends) else { return false };
+        let cut = matches!(last.op, Op::Line(_) | Op::Arc(_) | Op::Thread(_));
         let (true, Op::Line(to)) = (cut, &last.op) else { return cut };
         let Some(from) = before.find_map(|record| record.op.pose()) else { return true };
         let way: Vec3 = to.point() - from.point();

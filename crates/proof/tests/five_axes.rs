@@ -141,6 +141,7 @@ fn a_whole_turn_of_the_table_in_a_cut_is_refused() {
 fn the_length_of_the_tool_counts_where_a_head_swings_it() {
     let text = r#"
         reader = "fanuc"
+        tools.turns_upright = true
         [orientation]
         simultaneous = "machine-angles"
         [[rotary]]
@@ -352,6 +353,7 @@ fn half_a_step_of_two_words_that_turn_the_tool_the_same_way_is_rounding() {
 fn a_head_that_is_turned_about_its_tool_goes_home_by_z() {
     let text = r#"
         reader = "fanuc"
+        tools.turns_upright = true
         [orientation]
         simultaneous = "tool-center-angles"
         [[rotary]]

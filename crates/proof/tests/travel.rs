@@ -151,7 +151,8 @@ fn a_way_that_leaves_the_travel_between_its_ends_is_refused() {
 /// pole lies to the left or to the right.
 #[test]
 fn a_rotary_axis_follows_vectors_on_and_on_to_the_end_of_its_travel() {
-    let machine = machine::load("sinumerik-840d-traori").unwrap();
+    let file = "extends = \"sinumerik-840d-traori\"\ntools.turns_upright = true\n";
+    let machine = machine::load_text("own.toml", file).unwrap();
     let judged = |start: f64, vectors: &[[f64; 2]]| {
         let axis = |[a, c]: [f64; 2]| machine.axis_at([a, 0.0, c]);
         let tip = |i: usize| Vec3::new(10.0 * i as f64, 0.0, 0.0);

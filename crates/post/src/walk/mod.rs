@@ -558,15 +558,7 @@ impl<'a> Walk<'a> {
                 self.writer.block(&self.templates.render(name, scope)?)?;
             }
         }
-        match name {
-            BlockName::Retract => self.is_home = true,
-            BlockName::ToolChange => (self.is_home, self.place.just_off) = (true, [false; 2]),
-            BlockName::Rapid
-            | BlockName::RapidVector
-            | BlockName::Linear
-            | BlockName::LinearVector => (self.is_home, self.place.just_off) = (false, [false; 2]),
-            _ => {}
-        }
+        self.note_home(name);
         if let Some(contour) = &mut self.contour
             && name != BlockName::Comment
         {
@@ -576,6 +568,18 @@ impl<'a> Walk<'a> {
             self.writer.forget(bit(WordName::F));
         }
         Ok(())
+    }
+
+    /// Whether Z is home behind a block.
+    fn note_home(&mut self, name: BlockName) {
+        use BlockName as B;
+        if [B::Rapid, B::RapidVector, B::Linear, B::LinearVector].contains(&name) {
+            (self.is_home, self.place.just_off) = (false, [false; 2]);
+        } else if name == B::ToolChange {
+            (self.is_home, self.place.just_off) = (true, [false; 2]);
+        } else {
+            self.is_home |= name == B::Retract;
+        }
     }
 
     /// Writes a block that must be there.

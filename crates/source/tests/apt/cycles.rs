@@ -36,7 +36,7 @@ fn every_cycle_gives_its_kind_and_its_numbers() {
     let all = "FEDTO,10,MMPM,200,RAPTO,3,RTRCTO,25";
     let deep = Cycle { kind: CycleKind::Deep, peck: Some(2.0), ..drill };
     let tap = |pitch, left| CycleKind::Tap { pitch, left };
-    let cases: [(String, Cycle); 19] = [
+    let cases: [(String, Cycle); 20] = [
         (format!("CYCLE/DRILL,{all}"), drill),
         (format!("CYCLE/DRILL,{all},DWELL,0"), drill),
         (format!("CYCLE/DRILL,{all},DWELL,1.5"), Cycle { dwell: 1.5, ..drill }),
