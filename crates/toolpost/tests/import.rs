@@ -336,7 +336,7 @@ M30
         &[
             ("linear", "G1 {{X}} {{Y}} {{Z}} {{F}}"),
             ("arc_cw", "CIP {{X}} {{Y}} {{Z}} {{MX}} {{MY}} {{MZ}} {{F}}"),
-            ("tool_change", "{{N}} G0 SUPA {{SAFE_HEIGHT}} D0\n{{N}} D1\n{{T}}\nM6"),
+            ("tool_change", "{{N}} G0 SUPA {{SAFE_HEIGHT}} D0\n{{T}}\nM6"),
         ],
     );
     let lost: Vec<u32> = told(&import).into_iter().map(|(line, _)| line).collect();
