@@ -17,7 +17,7 @@ use std::fmt::Write as _;
 /// Where the board is drawn: low and high corner, pixels. The legend stands right of it.
 const FIELD: [DVec2; 2] = [DVec2::new(40.0, 40.0), DVec2::new(880.0, 720.0)];
 
-/// How far a drawn line may be from the way, pixels; doubled until the picture is small enough.
+/// How far a drawn line may be from the path, pixels; doubled until the picture is small enough.
 const TOLERANCE: f64 = 0.1;
 
 /// The most points of all lines together: about four megabytes.

@@ -1,4 +1,4 @@
-//! Pictures, as SVG or PNG: of a tool path, of the way of a wire, of a board.
+//! Pictures, as SVG or PNG: of a tool path, of the path of a wire, of a board.
 //!
 //! All are drawn from straight pieces ([`walk()`] makes them of a program); letters are strokes of our own. The same input gives the same bytes on every machine: there are no fonts in them. Their size is
 //! bounded, however long the program.
@@ -17,7 +17,7 @@ mod wire_path;
 pub use board::{BoardPicture, board};
 pub use tool_path::tool_path;
 pub use walk::{Segment, walk};
-pub use wire_path::{WireLeg, WirePicture, wire_path};
+pub use wire_path::{WirePicture, WireSegment, wire_path};
 
 use program::Diagnostic;
 use std::path::Path;

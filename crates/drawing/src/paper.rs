@@ -17,7 +17,7 @@ pub const INK: &str = "#3a3f45";
 /// Colour of rapid moves.
 pub const RAPID: &str = "#a4abb3";
 
-/// Colours of the tools (red, green, blue), told apart with any colour sight.
+/// Colours of the tools (red, green, blue), which can be distinguished with any colour vision.
 pub const COLORS: [[f64; 3]; 8] = [
     [38.0, 120.0, 190.0],
     [222.0, 122.0, 24.0],

@@ -39,7 +39,7 @@ fn round(value: f64) -> f64 {
 
 /// Hands every segment of `program` to `draw`, arcs as chords within `tolerance` mm, and answers the
 /// names of the tools in the order of their first calls; the first is that of a program that cuts
-/// before it calls one. The first pose has no way to it.
+/// before it calls one. No move leads to the first pose.
 pub fn walk(program: &Program, tolerance: f64, draw: &mut dyn FnMut(Segment)) -> Vec<String> {
     let mut names = vec![String::from("TOOL WITHOUT A CALL")];
     let mut calls = BTreeMap::new();
@@ -91,7 +91,7 @@ pub fn walk(program: &Program, tolerance: f64, draw: &mut dyn FnMut(Segment)) ->
                     }
                 }
             }
-            // The way there is not known.
+            // The move to it is not known.
             Op::Joints(_) | Op::MachineMove(_) => here = None,
             Op::Cycle(c) => cycle = Some(**c),
             Op::CycleOff => cycle = None,

@@ -1,4 +1,4 @@
-//! The way of a wire: the contour from above with its points, the chord error along it, and the
+//! The path of a wire: the contour from above with its points, the chord error along it, and the
 //! surface between the two ends of the wire.
 
 use crate::lettering;
@@ -20,13 +20,13 @@ const ERROR: [DVec2; 2] = [DVec2::new(60.0, 570.0), DVec2::new(580.0, 700.0)];
 /// That of the surface.
 const SURFACE: [DVec2; 2] = [DVec2::new(660.0, 110.0), DVec2::new(1150.0, 660.0)];
 
-/// How far a drawn line may be from the way, pixels; doubled until the picture is small enough.
+/// How far a drawn line may be from the path, pixels; doubled until the picture is small enough.
 const TOLERANCE: f64 = 0.1;
 
 /// The most points of a line.
 const MAX_POINTS: usize = 100_000;
 
-/// Dots stand at least so far apart, pixels.
+/// Dots are at least so far apart, pixels.
 const APART: f64 = 6.0;
 
 /// The most strips that make the surface.
@@ -46,26 +46,26 @@ const QUIET: &str = "#7b828a";
 
 /// What is drawn.
 pub struct WirePicture<'a> {
-    /// The ways of the wire.
-    pub legs: Vec<WireLeg<'a>>,
+    /// The segments of the wire path.
+    pub segments: Vec<WireSegment<'a>>,
     /// Height of the upper contour, mm.
     pub height: Option<f64>,
     /// The line of the source whose part is marked.
     pub selected: Option<u32>,
 }
 
-/// A way of the wire without a break.
+/// A segment of the wire path, cut without a break.
 #[derive(Clone, Copy)]
-pub struct WireLeg<'a> {
+pub struct WireSegment<'a> {
     /// The contours that its two ends follow.
     pub path: &'a Path,
     /// Its points, where it is written as such.
     pub points: Option<&'a Points>,
-    /// Whether the wire is threaded at its start; otherwise it goes on from the leg before.
+    /// Whether the wire is threaded at its start; otherwise it goes on from the segment before.
     pub threaded: bool,
 }
 
-/// Draws the way of a wire as SVG under a title.
+/// Draws the path of a wire as SVG under a title.
 pub fn wire_path(title: &str, picture: &WirePicture) -> String {
     let mut out = begin(&format!("Way of the wire of {title}"));
     write_text(&mut out, &shorten(title, 60), DVec2::new(40.0, 40.0), 12.0, INK);
@@ -79,9 +79,9 @@ pub fn wire_path(title: &str, picture: &WirePicture) -> String {
 impl WirePicture<'_> {
     /// The box around both ends, from the lower plane to `height`.
     fn corners(&self, height: f64) -> [Vec3; 2] {
-        let ends = self.legs.iter().flat_map(|leg| {
-            let lower = leg.path.lower();
-            [lower.extents(), leg.path.upper().unwrap_or(lower).extents()]
+        let ends = self.segments.iter().flat_map(|segment| {
+            let lower = segment.path.lower();
+            [lower.extents(), segment.path.upper().unwrap_or(lower).extents()]
         });
         let (low, high) =
             ends.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1))).unwrap_or((Vec2::ZERO, Vec2::ONE));
@@ -89,28 +89,32 @@ impl WirePicture<'_> {
     }
 
     fn leans(&self) -> bool {
-        self.legs.iter().any(|leg| leg.path.upper().is_some())
+        self.segments.iter().any(|segment| segment.path.upper().is_some())
     }
 }
 
 /// The contour from above: both ends, points, start, selection.
 fn plan(out: &mut String, picture: &WirePicture) {
     let view = View::plan(picture.corners(0.0), PLAN);
-    let lower = || picture.legs.iter().flat_map(|leg| leg.path.lower().elements());
-    let upper = picture.legs.iter().filter_map(|leg| leg.path.upper());
+    let lower = || picture.segments.iter().flat_map(|segment| segment.path.lower().elements());
+    let upper = picture.segments.iter().filter_map(|segment| segment.path.upper());
     drawn(out, &view, 0.0, upper.flat_map(|contour| contour.elements()), (UPPER, 1.2));
     drawn(out, &view, 0.0, lower(), (LOWER, 1.2));
     let chosen = lower().filter(|element| Some(element.line) == picture.selected);
     drawn(out, &view, 0.0, chosen, (SELECTED, 4.0));
-    let points = || picture.legs.iter().filter_map(|leg| leg.points);
+    let points = || picture.segments.iter().filter_map(|segment| segment.points);
     dots(out, &view, points().map(|points| &points.upper[..]), UPPER);
     let all = picture
-        .legs
+        .segments
         .iter()
-        .filter_map(|leg| Some(leg.points?.lower.len() - usize::from(!leg.threaded)));
+        .filter_map(|segment| Some(segment.points?.lower.len() - usize::from(!segment.threaded)));
     let all: usize = all.sum();
     let shown = dots(out, &view, points().map(|points| &points.lower[..]), LOWER);
-    picture.legs.iter().filter(|leg| leg.threaded).for_each(|leg| start(out, leg, &view));
+    picture
+        .segments
+        .iter()
+        .filter(|segment| segment.threaded)
+        .for_each(|segment| start(out, segment, &view));
     let points = match all {
         0 => String::new(),
         _ if all == shown => format!(", {all} POINTS"),
@@ -195,16 +199,16 @@ fn dots<'p>(
     count
 }
 
-/// A ring where the wire is threaded, and an arrow the way it goes.
-fn start(out: &mut String, leg: &WireLeg, view: &View) {
-    let contour = leg.path.lower();
+/// A ring where the wire is threaded, and an arrow in the direction of the cut.
+fn start(out: &mut String, segment: &WireSegment, view: &View) {
+    let contour = segment.path.lower();
     let Some(first) = contour.elements().first() else { return };
     let at = view.at(contour.start().extend(0.0));
-    let way = first.tangent(0.0);
-    let (way, side) = (DVec2::new(way.x, -way.y), DVec2::new(way.y, way.x));
-    let tip = at + way * 30.0;
-    let (left, right) = (tip - way * 8.0 + side * 4.0, tip - way * 8.0 - side * 4.0);
-    let foot = at + way * 6.0;
+    let along = first.tangent(0.0);
+    let (along, side) = (DVec2::new(along.x, -along.y), DVec2::new(along.y, along.x));
+    let tip = at + along * 30.0;
+    let (left, right) = (tip - along * 8.0 + side * 4.0, tip - along * 8.0 - side * 4.0);
+    let foot = at + along * 6.0;
     let _ = writeln!(
         out,
         "<circle cx=\"{:.1}\" cy=\"{:.1}\" r=\"6\" stroke=\"{START}\" stroke-width=\"1.8\"/>\n\
@@ -214,7 +218,7 @@ fn start(out: &mut String, leg: &WireLeg, view: &View) {
     );
 }
 
-/// A chord between two points: where it is along the way of the lower end, and how far either end of the
+/// A chord between two points: where it is along the path of the lower end, and how far either end of the
 /// wire leaves its arc, mm.
 struct Chord {
     from: f64,
@@ -224,9 +228,9 @@ struct Chord {
 
 fn chords(picture: &WirePicture) -> Vec<Chord> {
     let mut chords: Vec<Chord> = Vec::new();
-    for leg in &picture.legs {
-        let Some(points) = leg.points else { continue };
-        for (i, (below, above)) in leg.path.elements().enumerate() {
+    for segment in &picture.segments {
+        let Some(points) = segment.points else { continue };
+        for (i, (below, above)) in segment.path.elements().enumerate() {
             for point in points.of_element(i) {
                 let length = |places: &[Vec2]| match places.get(point.wrapping_sub(1)..=point) {
                     Some(ends) => ends[0].distance(ends[1]),
@@ -242,10 +246,10 @@ fn chords(picture: &WirePicture) -> Vec<Chord> {
     chords
 }
 
-/// How far the chords between the points leave their arcs, along the way of the lower end.
+/// How far the chords between the points leave their arcs, along the path of the lower end.
 fn chord_error(out: &mut String, picture: &WirePicture) {
     let chords = chords(picture);
-    let way = chords.last().map_or(0.0, |chord| chord.to);
+    let length = chords.last().map_or(0.0, |chord| chord.to);
     let most = chords.iter().flat_map(|chord| chord.errors).fold(0.0, f64::max);
     let [low, high] = ERROR;
     if most == 0.0 {
@@ -261,7 +265,7 @@ fn chord_error(out: &mut String, picture: &WirePicture) {
     );
     let room = high - low;
     let at = |along: f64, error: f64| {
-        DVec2::new(low.x + room.x * along / way, high.y - room.y * error / most)
+        DVec2::new(low.x + room.x * along / length, high.y - room.y * error / most)
     };
     let ends = if picture.leans() { &[(1, UPPER), (0, LOWER)][..] } else { &[(0, LOWER)] };
     for &(end, color) in ends {
@@ -271,7 +275,7 @@ fn chord_error(out: &mut String, picture: &WirePicture) {
             let error = chord.errors[end];
             [at(chord.from, error), at(chord.to, error)]
         });
-        for point in corners.chain([at(way, 0.0)]) {
+        for point in corners.chain([at(length, 0.0)]) {
             trace.segment(last, point);
             last = point;
         }
@@ -279,7 +283,7 @@ fn chord_error(out: &mut String, picture: &WirePicture) {
     }
     let below = high.y + 18.0;
     write_text(out, "0", DVec2::new(low.x, below), 8.0, QUIET);
-    let text = format!("{way:.1} MM");
+    let text = format!("{length:.1} MM");
     let left = high.x - lettering::width(&text, 8.0);
     write_text(out, &text, DVec2::new(left, below), 8.0, QUIET);
 }
@@ -305,10 +309,11 @@ fn surface(out: &mut String, picture: &WirePicture) {
     };
     caption(out, &text, SURFACE);
     let mut strips: Vec<[Vec3; 4]> = Vec::new();
-    let every = picture.legs.iter().map(|leg| rulings(leg).count()).sum::<usize>() / STRIPS + 1;
-    for leg in &picture.legs {
-        let count = rulings(leg).count();
-        let some = rulings(leg).enumerate().filter(|(i, _)| i % every == 0 || i + 1 == count);
+    let every =
+        picture.segments.iter().map(|segment| rulings(segment).count()).sum::<usize>() / STRIPS + 1;
+    for segment in &picture.segments {
+        let count = rulings(segment).count();
+        let some = rulings(segment).enumerate().filter(|(i, _)| i % every == 0 || i + 1 == count);
         let stand = |(below, above): (Vec2, Vec2)| (below.extend(0.0), above.extend(height));
         let some: Vec<(Vec3, Vec3)> = some.map(|(_, ruling)| stand(ruling)).collect();
         strips.extend(some.windows(2).map(|s| [s[0].0, s[1].0, s[1].1, s[0].1]));
@@ -333,19 +338,19 @@ fn surface(out: &mut String, picture: &WirePicture) {
             corners.join(" ")
         );
     }
-    for leg in &picture.legs {
-        let lower = leg.path.lower();
-        let upper = leg.path.upper().unwrap_or(lower);
-        let above = if leg.path.upper().is_some() { UPPER } else { LOWER };
+    for segment in &picture.segments {
+        let lower = segment.path.lower();
+        let upper = segment.path.upper().unwrap_or(lower);
+        let above = if segment.path.upper().is_some() { UPPER } else { LOWER };
         drawn(out, &view, 0.0, lower.elements().iter(), (LOWER, 1.6));
         drawn(out, &view, height, upper.elements().iter(), (above, 1.6));
-        let pairs = leg.path.elements();
+        let pairs = segment.path.elements();
         let chosen = pairs.filter(|(below, _)| Some(below.line) == picture.selected);
         for (below, above) in chosen {
             drawn(out, &view, 0.0, std::iter::once(below), (SELECTED, 3.0));
             drawn(out, &view, height, std::iter::once(above), (SELECTED, 3.0));
         }
-        if leg.threaded {
+        if segment.threaded {
             let mut wire = Trace::new(TOLERANCE);
             let (below, above) = (lower.start().extend(0.0), upper.start().extend(height));
             wire.segment(view.at(below), view.at(above));
@@ -356,11 +361,11 @@ fn surface(out: &mut String, picture: &WirePicture) {
     scale_bar(out, &view, DVec2::new(SURFACE[1].x, SIZE.y - 30.0));
 }
 
-/// Where the wire stands along a leg: below and above.
-fn rulings(leg: &WireLeg) -> impl Iterator<Item = (Vec2, Vec2)> {
+/// The ends of the wire along a segment: below and above.
+fn rulings(segment: &WireSegment) -> impl Iterator<Item = (Vec2, Vec2)> {
     let turned = |element: &Element| element.turn.map_or(0.0, |turn| turn.sweep.abs());
-    let starts = leg.path.elements().take(1).map(|(below, above)| (below.start, above.start));
-    let along = leg.path.elements().flat_map(move |(below, above)| {
+    let starts = segment.path.elements().take(1).map(|(below, above)| (below.start, above.start));
+    let along = segment.path.elements().flat_map(move |(below, above)| {
         let parts = (turned(below).max(turned(above)) / STRIP).ceil().max(4.0) as usize;
         (1..=parts).map(move |i| i as f64 / parts as f64).map(|t| (below.at(t), above.at(t)))
     });

@@ -12,9 +12,9 @@ pub struct Contour {
     elements: Vec<Element>,
 }
 
-/// A place on a contour.
+/// A point on a contour.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Place {
+pub struct ContourPoint {
     /// Index of the element.
     pub element: usize,
     /// How far along the element, 0 to 1.
@@ -131,47 +131,50 @@ impl Contour {
         Contour { elements: self.elements.iter().rev().map(Element::reversed).collect() }
     }
 
-    /// The place nearest to `point`; of equally near ones the first.
-    pub fn nearest(&self, point: Vec2) -> Place {
-        let mut best = Place { element: 0, t: 0.0, point: self.start() };
+    /// The point of the contour nearest to `point`; of equally near ones the first.
+    pub fn nearest(&self, point: Vec2) -> ContourPoint {
+        let mut best = ContourPoint { element: 0, t: 0.0, point: self.start() };
         let mut least = f64::INFINITY;
         for (i, element) in self.elements.iter().enumerate() {
             let (t, distance) = element.nearest(point);
             if distance < least {
-                (least, best) = (distance, Place::on(element, i, t));
+                (least, best) = (distance, ContourPoint::on(element, i, t));
             }
         }
         best
     }
 
-    /// The place `along` mm after the start, at most the end.
-    pub fn place_at(&self, along: f64) -> Place {
+    /// The point `along` mm after the start, at most the end.
+    pub fn point_at(&self, along: f64) -> ContourPoint {
         let mut left = along.max(0.0);
         for (i, element) in self.elements.iter().enumerate() {
             let length = element.length();
             if left < length {
-                return Place::on(element, i, left / length);
+                return ContourPoint::on(element, i, left / length);
             }
             left -= length;
         }
-        Place { element: self.elements.len().saturating_sub(1), t: 1.0, point: self.end() }
+        ContourPoint { element: self.elements.len().saturating_sub(1), t: 1.0, point: self.end() }
     }
 
-    /// A closed contour with its start moved to `place`; an open one as it is.
-    pub fn started_at(&self, place: &Place) -> Contour {
-        if !self.is_closed() || place.point == self.start() {
+    /// A closed contour with its start moved to `start`; an open one as it is.
+    pub fn started_at(&self, start: &ContourPoint) -> Contour {
+        if !self.is_closed() || start.point == self.start() {
             return self.clone();
         }
-        let parts = place.up_to(&self.place_at(f64::INFINITY));
-        let parts = parts.chain(self.place_at(0.0).up_to(place));
+        let parts = start.up_to(&self.point_at(f64::INFINITY));
+        let parts = parts.chain(self.point_at(0.0).up_to(start));
         let part = |(i, from, to): (usize, f64, f64)| Some(self.elements.get(i)?.part(from, to));
         Contour { elements: parts.filter_map(part).collect() }
     }
 }
 
-impl Place {
-    /// The parts of elements from here to a later place: index, start and end.
-    pub(crate) fn up_to(&self, to: &Place) -> impl Iterator<Item = (usize, f64, f64)> + use<> {
+impl ContourPoint {
+    /// The parts of elements from here to a later point: index, start and end.
+    pub(crate) fn up_to(
+        &self,
+        to: &ContourPoint,
+    ) -> impl Iterator<Item = (usize, f64, f64)> + use<> {
         let (from, to) = (*self, *to);
         let parts = (from.element..=to.element).map(move |i| {
             let start = if i == from.element { from.t } else { 0.0 };
@@ -181,13 +184,13 @@ impl Place {
     }
 
     /// At `t` of element `index`; what is nearly its end is its end.
-    fn on(element: &Element, index: usize, t: f64) -> Place {
+    fn on(element: &Element, index: usize, t: f64) -> ContourPoint {
         let length = element.length();
         let t = match t {
             t if t * length < 1e-6 => 0.0,
             t if (1.0 - t) * length < 1e-6 => 1.0,
             t => t,
         };
-        Place { element: index, t, point: element.at(t) }
+        ContourPoint { element: index, t, point: element.at(t) }
     }
 }

@@ -1,10 +1,10 @@
 //! How contours are cut: along them, or offset from them in passes with leads and tabs.
 
-use crate::leg::{ByControl, Leg};
 use crate::offset::{Corner, Corners};
 use crate::plan::{self, Opening, Pass, Settings, Taper, Trims, plan};
+use crate::segment::{ByControl, Segment};
 use crate::taper::Rounding;
-use crate::{Beside, Contour, Lead, LeadShape, Path};
+use crate::{Contour, Lead, LeadShape, OffsetContour, Path};
 use geom::Vec2;
 use program::{Compensation, Diagnostic, within};
 
@@ -19,7 +19,7 @@ pub struct Cutting {
     pub gap: f64,
     /// What each pass but the last leaves for those after it, mm.
     pub leave: Vec<f64>,
-    /// Which way round the passes after the first go.
+    /// In which direction the passes after the first run.
     pub trims: Trims,
     /// Where the wire is threaded: one place for each contour, in their order, mm.
     pub thread: Vec<Vec2>,
@@ -32,7 +32,7 @@ pub struct Cutting {
     /// How far the wire leans: the part larger at the top, or smaller where negative; degrees, as [`program::Op::Taper`]
     /// counts them.
     pub taper: Option<f64>,
-    /// What becomes of rounded corners on the way up.
+    /// What becomes of rounded corners between the lower and the upper contour.
     pub rounding: Rounding,
     /// Whether the control offsets and leans the wire, each pass by the register of its number.
     pub by_control: bool,
@@ -70,7 +70,8 @@ impl Cutting {
             return Err(Diagnostic::error("setting", message).help("give `side`").into());
         }
         if self.by_control && self.tab.is_some() {
-            let message = "`by_control` and `tab` are given: a tab is cut along the wire's own way";
+            let message =
+                "`by_control` and `tab` are both given: a tab needs a path that is offset here";
             return Err(Diagnostic::error("setting", message).help("leave one of them out").into());
         }
         Ok(())
@@ -108,23 +109,23 @@ pub enum Side {
     Outside,
     /// Round the outer contours and within those inside of them, as for a part with openings.
     Part,
-    /// Left of the way.
+    /// On the left of the path.
     Left,
-    /// Right of the way.
+    /// On the right of the path.
     Right,
 }
 
-/// The ways of the wire along `paths`, and what is worth knowing of them; `offset` is how the source has its control
-/// lead the wire along each, and `height` that of the upper contour, mm.
+/// The segments of the wire path along `paths`, and warnings about them; `offset` says how the control of the source
+/// offsets the wire along each path, `height` is that of the upper contour, mm.
 ///
 /// # Errors
 /// What the call asks for and the contours do not allow.
-pub fn legs(
+pub fn segments(
     paths: Vec<Path>,
-    offset: &[Beside],
+    offset: &[OffsetContour],
     how: &Cutting,
     height: Option<f64>,
-) -> Result<(Vec<Leg>, Vec<Diagnostic>), Box<Diagnostic>> {
+) -> Result<(Vec<Segment>, Vec<Diagnostic>), Box<Diagnostic>> {
     let passes = how.leave.len() + 1;
     if !matches!(how.feeds.len(), 0 | 1) && how.feeds.len() != passes {
         let message = format!("{} feeds for {passes} passes", how.feeds.len());
@@ -132,12 +133,12 @@ pub fn legs(
     }
     let feed = |pass: usize| how.feeds.get(pass).or(how.feeds.first()).map(|feed| feed * 60.0);
     let Some(side) = how.side else {
-        let legs = paths.into_iter().enumerate().map(|(opening, path)| Leg {
+        let segments = paths.into_iter().enumerate().map(|(opening, path)| Segment {
             feed: feed(0),
             opening,
-            ..Leg::of(begun(path, how.begin))
+            ..Segment::of(begun(path, how.begin))
         });
-        return Ok((legs.collect(), Vec::new()));
+        return Ok((segments.collect(), Vec::new()));
     };
     let openings = openings(&paths, offset, side, how)?;
     let plan = plan(&openings, &settings(how, height, feed)?)?;
@@ -150,7 +151,7 @@ pub fn legs(
         Diagnostic::warning("corner-rounded", message).line(corner.line)
     };
     let warnings = plan.rounded.iter().map(corner).collect();
-    let legs = plan.passes.into_iter().map(|pass| Leg {
+    let segments = plan.passes.into_iter().map(|pass| Segment {
         feed: feed(pass.number),
         opening: pass.opening,
         pass: pass.number,
@@ -159,9 +160,9 @@ pub fn legs(
         thread: pass.thread,
         cut: pass.cut,
         stop: pass.stop,
-        ..Leg::of(pass.path)
+        ..Segment::of(pass.path)
     });
-    Ok((legs.collect(), warnings))
+    Ok((segments.collect(), warnings))
 }
 
 /// What the control does to the wire in a pass.
@@ -181,7 +182,7 @@ fn by_control(pass: &Pass, openings: &[Opening], taper: Option<f64>) -> ByContro
     ByControl { offset, taper: if counter_clockwise { -taper } else { taper } }
 }
 
-/// The path with its start moved to the place nearest to `begin`.
+/// The path with its start moved to the point nearest to `begin`.
 fn begun(path: Path, begin: Option<Vec2>) -> Path {
     match begin {
         Some(begin) if path.upper().is_none() => {
@@ -194,23 +195,23 @@ fn begun(path: Path, begin: Option<Vec2>) -> Path {
 
 fn openings(
     paths: &[Path],
-    offset: &[Beside],
+    offset: &[OffsetContour],
     side: Side,
     how: &Cutting,
 ) -> Result<Vec<Opening>, Box<Diagnostic>> {
     if paths.iter().any(|path| path.upper().is_some()) {
-        let message = "the wire leans between two contours, and its offset is asked for";
-        let help = "leave --side out: two contours are the way of the wire itself";
+        let message = "a wire between two contours cannot be offset";
+        let help = "leave --side out: two contours are the path of the wire itself";
         return Err(Diagnostic::error("side", message).help(help).into());
     }
     if how.by_control && paths.iter().any(|path| !path.lower().is_closed()) {
-        // The offset ends with the straight way out, which only a closed contour is sure to have.
-        let message = "an open contour, and the control is to offset the wire";
-        let help = "leave --by-control out: the way of the wire's centre is then worked out here";
+        // The offset ends with a straight lead-out, which only a closed contour is sure to have.
+        let message = "an open contour cannot be offset by the control";
+        let help = "leave --by-control out: the path of the wire's centre is then calculated here";
         return Err(Diagnostic::error("by-control", message).help(help).into());
     }
     if how.thread.len() > paths.len() {
-        let message = format!("{} places to thread for {} contours", how.thread.len(), paths.len());
+        let message = format!("{} thread points for {} contours", how.thread.len(), paths.len());
         return Err(Diagnostic::error("thread", message).help("one for each contour").into());
     }
     let side_of = |contour: &Contour| match side {

@@ -32,7 +32,7 @@ impl Deref for Element {
     }
 }
 
-/// Which way an arc turns.
+/// The direction of an arc.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
     /// `G2`.
@@ -193,7 +193,7 @@ pub(crate) fn finite(points: &[Vec2]) -> Result<(), Box<Diagnostic>> {
     match points.iter().find(|p| !p.to_array().iter().all(|v| v.abs() <= FAR)) {
         None => Ok(()),
         Some(p) => {
-            let message = format!("X {} Y {} is not a place within {FAR} mm", p.x, p.y);
+            let message = format!("X {} Y {} is not a point within {FAR} mm", p.x, p.y);
             Err(Diagnostic::error("not-a-place", message)
                 .help("look at the values of the line, and at the unit of the drawing")
                 .into())

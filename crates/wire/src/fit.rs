@@ -7,7 +7,7 @@ use std::f64::consts::PI;
 /// How often a piece of a curve is halved at most.
 const DEEPEST: u32 = 30;
 
-/// At how many places of a pair of arcs the distance is measured.
+/// At how many points of a pair of arcs the distance is measured.
 const MEASURED: i32 = 12;
 
 /// A smooth curve in the plane.
@@ -85,7 +85,7 @@ fn tangent_arc(start: Vec2, travel: Vec2, end: Vec2) -> Option<Element> {
 fn near(curve: &impl Curve, from: f64, to: f64, tolerance: f64, pair: &[Element; 2]) -> bool {
     (1..MEASURED).all(|i| {
         let point = curve.at(from + (to - from) * f64::from(i) / f64::from(MEASURED));
-        // Between the places that are measured the curve may be a little farther away.
+        // Between the measured points the curve may be a little farther away.
         let distance = pair[0].nearest(point).1.min(pair[1].nearest(point).1);
         distance <= 0.9 * tolerance
     })
@@ -198,7 +198,7 @@ impl Curve for Spline {
         if slope.length() > 1e-9 * weight {
             return slope;
         }
-        // Where poles fall together the direction is that of the way just around.
+        // Where control points coincide, the direction is that of the curve next to them.
         let around = width * 1e-4;
         self.at(t + around) - self.at(t - around)
     }

@@ -9,13 +9,13 @@ use std::f64::consts::FRAC_PI_2;
 /// How the wire comes to the contour; it leaves it likewise.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Lead {
-    /// How far beside the start the wire is threaded where no place is given, mm.
+    /// How far from the start of the contour the wire is threaded where no thread point is given, mm.
     pub length: f64,
-    /// The way from there.
+    /// The shape of the path from there.
     pub shape: LeadShape,
 }
 
-/// The way from where the wire is threaded.
+/// The path from where the wire is threaded.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum LeadShape {
     /// Straight to the start.

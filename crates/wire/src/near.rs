@@ -1,4 +1,4 @@
-//! Which elements of a chain are near a place, without looking at all of them.
+//! Which elements of a chain are near a point, without looking at all of them.
 
 use crate::crossing::TOUCH;
 use crate::element::Element;

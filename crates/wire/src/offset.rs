@@ -1,7 +1,7 @@
-//! Where the wire's centre goes beside a contour: half its diameter and the spark gap away.
+//! The path of the wire's centre: offset from a contour by half the wire's diameter and the spark gap.
 //!
-//! The offset itself is made by the crate `cavalier_contours`; what it gives is not believed but
-//! measured, both ways: the wire's centre is nowhere nearer to the contour than it must be, it is on
+//! The crate `cavalier_contours` calculates the offset; its result is measured in both
+//! directions: the wire's centre is nowhere nearer to the contour than it must be, it is on
 //! the right side, and what of the contour it does not reach is found.
 
 use crate::contour::Contour;
@@ -42,10 +42,10 @@ pub struct Corner {
     pub left: f64,
 }
 
-/// The way of the wire's centre.
+/// The path of the wire's centre.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Offset {
-    /// The way; each element has the line of that which it lies beside.
+    /// The path; each element has the source line of the element that it is offset from.
     pub contour: Contour,
     /// The inner corners that became round.
     pub rounded: Vec<Corner>,
@@ -68,20 +68,19 @@ pub fn offset(
     if distance.abs() < SAME {
         return Ok(Offset { contour: contour.clone(), rounded: Vec::new() });
     }
-    let mut beside = polyline(contour).parallel_offset(distance);
-    beside.retain(|line| line.path_length() > 10.0 * EXACT);
+    let mut parallel = polyline(contour).parallel_offset(distance);
+    parallel.retain(|line| line.path_length() > 10.0 * EXACT);
     let first = contour.elements().first().map_or(0, |element| element.line);
-    let found = match beside.len() {
+    let found = match parallel.len() {
         0 => {
-            let message =
-                format!("no room for the wire {:.4} mm beside the contour", distance.abs());
+            let message = format!("no room for the wire {:.4} mm from the contour", distance.abs());
             let refused = Diagnostic::error("offset-vanishes", message);
             return Err(refused.help("take a thinner wire, or the other side").line(first).into());
         }
-        1 => elements(&beside[0]),
+        1 => elements(&parallel[0]),
         many => {
             let message = format!(
-                "the way {:.4} mm beside the contour falls into {many} pieces: a neck is narrower",
+                "the path {:.4} mm from the contour falls into {many} pieces: a neck is too narrow",
                 distance.abs()
             );
             let refused = Diagnostic::error("offset-divides", message);
@@ -145,7 +144,7 @@ fn elements(line: &Polyline) -> Vec<Element> {
         .collect()
 }
 
-/// Gives each element the line of what it lies beside, joins the pieces of one arc, and measures:
+/// Gives each element the source line of the element that it is offset from, joins the pieces of one arc, and checks:
 /// nowhere nearer than the offset, in the middle just as far, on the right side.
 fn verified(
     contour: &Contour,
@@ -159,20 +158,20 @@ fn verified(
             continue;
         }
         let middle = element.at(0.5);
-        let Some(beside) = near.nearest(middle, distance.abs() + EXACT) else { continue };
-        let source = &contour.elements()[beside.element];
+        let Some(nearest) = near.nearest(middle, distance.abs() + EXACT) else { continue };
+        let source = &contour.elements()[nearest.element];
         let element = element.from_line(source.line);
         if let Some(least) = near.clearance(&element, distance.abs() - EXACT) {
             return Err(unsure(source.line, &format!("{least:.5} mm from the contour")));
         }
-        if beside.distance > distance.abs() + EXACT {
+        if nearest.distance > distance.abs() + EXACT {
             return Err(unsure(
                 source.line,
-                &format!("{:.5} mm from the contour", beside.distance),
+                &format!("{:.5} mm from the contour", nearest.distance),
             ));
         }
-        let side = source.tangent(beside.t).perp_dot(middle - source.at(beside.t));
-        let inner = beside.t > 1e-6 && beside.t < 1.0 - 1e-6;
+        let side = source.tangent(nearest.t).perp_dot(middle - source.at(nearest.t));
+        let inner = nearest.t > 1e-6 && nearest.t < 1.0 - 1e-6;
         if inner && side.signum() != distance.signum() {
             return Err(unsure(source.line, "the wrong side of the contour"));
         }
@@ -203,7 +202,7 @@ fn one_arc(a: &Element, b: &Element) -> Option<Element> {
         .then(|| Element::arc(a.start, b.end, p.center, sweep).from_line(a.line))
 }
 
-/// The places of `contour` that are farther from the wire's centre than the offset: of neighbours
+/// The points of `contour` that are farther from the wire's centre than the offset: of neighbours
 /// the farthest.
 fn unreached(contour: &Contour, found: &Contour, distance: f64) -> Vec<Corner> {
     let mut near = Near::new(found.elements());

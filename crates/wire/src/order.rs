@@ -54,8 +54,8 @@ fn nearest_next(inner: &[Vec<usize>], threads: &[Vec2]) -> Vec<usize> {
         let next = match order.last() {
             None => open.min(),
             Some(last) => open.min_by(|i, j| {
-                let way = |i: usize| threads[i].distance_squared(threads[*last]);
-                way(*i).total_cmp(&way(*j))
+                let distance = |i: usize| threads[i].distance_squared(threads[*last]);
+                distance(*i).total_cmp(&distance(*j))
             }),
         };
         let Some(next) = next else { break };
@@ -65,17 +65,18 @@ fn nearest_next(inner: &[Vec<usize>], threads: &[Vec2]) -> Vec<usize> {
     order
 }
 
-/// Moves single openings to where they shorten the way; whether any was.
+/// Moves single openings to where they shorten the route; whether any was moved.
 fn improve(order: &mut Vec<usize>, inner: &[Vec<usize>], threads: &[Vec2]) -> bool {
     let mut better = false;
     for from in 1..order.len() {
         let moved = order[from];
-        let way = |i: Option<&usize>, j: Option<&usize>| match (i, j) {
+        let distance = |i: Option<&usize>, j: Option<&usize>| match (i, j) {
             (Some(i), Some(j)) => threads[*i].distance(threads[*j]),
             _ => 0.0,
         };
         let (before, after) = (order.get(from - 1), order.get(from + 1));
-        let saved = way(before, Some(&moved)) + way(Some(&moved), after) - way(before, after);
+        let saved = distance(before, Some(&moved)) + distance(Some(&moved), after)
+            - distance(before, after);
         // After everything within it, and before everything around it.
         let first = (0..from).rev().find(|i| inner[moved].contains(&order[*i])).unwrap_or(0);
         let last = (from + 1..order.len()).find(|i| inner[order[*i]].contains(&moved));
@@ -83,7 +84,7 @@ fn improve(order: &mut Vec<usize>, inner: &[Vec<usize>], threads: &[Vec2]) -> bo
         let places = (first + 1..last + 1).filter(|to| *to != from && *to != from + 1);
         let cost = |to: usize| {
             let (p, q) = (order.get(to - 1), order.get(to));
-            way(p, Some(&moved)) + way(Some(&moved), q) - way(p, q)
+            distance(p, Some(&moved)) + distance(Some(&moved), q) - distance(p, q)
         };
         let best = places.map(|to| (to, cost(to))).min_by(|a, b| a.1.total_cmp(&b.1));
         if let Some((to, cost)) = best

@@ -1,10 +1,10 @@
 //! Where the wire goes: its lower end, and its upper end where it leans.
 
-use crate::contour::{Contour, Place};
+use crate::contour::{Contour, ContourPoint};
 use crate::element::{Element, SAME};
 use program::Diagnostic;
 
-/// The way of the wire. Where it leans, each element of the lower contour has its element of the
+/// The path of the wire. Where it leans, each element of the lower contour has its element of the
 /// upper one, and both ends run through them evenly at the same time: the cut is the ruled surface
 /// between the two.
 #[derive(Clone, Debug, PartialEq)]
@@ -43,14 +43,18 @@ impl Path {
         self.upper.as_ref()
     }
 
-    /// The elements in pairs; those of an upright wire beside themselves.
+    /// The elements in pairs; those of an upright wire each with itself.
     pub fn elements(&self) -> impl Iterator<Item = (&Element, &Element)> {
         let upper = self.upper.as_ref().unwrap_or(&self.lower);
         self.lower.elements().iter().zip(upper.elements())
     }
 
-    /// The elements in pairs from `from` to `to`, places of the lower contour.
-    pub(crate) fn between(&self, from: &Place, to: &Place) -> Vec<(Element, Element)> {
+    /// The elements in pairs from `from` to `to`, points of the lower contour.
+    pub(crate) fn between(
+        &self,
+        from: &ContourPoint,
+        to: &ContourPoint,
+    ) -> Vec<(Element, Element)> {
         let upper = self.upper.as_ref().unwrap_or(&self.lower);
         let part = |(i, start, end): (usize, f64, f64)| {
             let (below, above) = (self.lower.elements().get(i)?, upper.elements().get(i)?);

@@ -16,11 +16,11 @@ use std::f64::consts::FRAC_PI_3;
 /// A contour to cut.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Opening {
-    /// What shall remain, on the lower face of the part. The first pass goes its way round.
+    /// What shall remain, on the lower face of the part. The first pass runs in its direction.
     pub contour: Contour,
     /// On which side of it the wire runs.
     pub side: Side,
-    /// Where the wire is threaded. `None`: [`Lead::length`] beside the start, on the wire's side.
+    /// Where the wire is threaded. `None`: [`Lead::length`] from the start of the contour, on the wire's side.
     pub thread: Option<Vec2>,
     /// Where the cut of a closed contour starts: the place nearest to this point. `None`: nearest to
     /// where the wire is threaded, or else where the contour starts, and where that is an inner corner
@@ -58,7 +58,7 @@ pub enum Side {
 pub struct Settings {
     /// The rough pass and the trim passes after it.
     pub passes: Vec<Cut>,
-    /// Which way round the trim passes go.
+    /// In which direction the trim passes run.
     pub trims: Trims,
     /// From where the wire is threaded to the contour, and back.
     pub lead: Lead,
@@ -83,13 +83,13 @@ pub struct Cut {
     pub feed: f64,
 }
 
-/// Which way round the trim passes go.
+/// In which direction the trim passes run.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Trims {
     /// Each the other way than the one before: the wire stays threaded.
     #[default]
     Alternate,
-    /// Each the way of the first. A tab leaves no way back: the wire is cut and threaded again.
+    /// Each in the direction of the first. A tab blocks the path back: the wire is cut and threaded again.
     Repeat,
 }
 
@@ -101,11 +101,11 @@ pub struct Taper {
     pub angle: f64,
     /// Height of the part, mm: how far the upper contour lies above the lower one.
     pub height: f64,
-    /// What becomes of rounded corners on the way up.
+    /// What becomes of rounded corners between the lower and the upper contour.
     pub rounding: Rounding,
 }
 
-/// One way of the wire without a break.
+/// One pass, cut without a break.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Pass {
     /// Index of the opening.
@@ -143,7 +143,7 @@ impl Plan {
         self.passes.iter().map(|pass| pass.path.length() / pass.settings.feed * 60.0).sum()
     }
 
-    /// Way from opening to opening without a wire, mm.
+    /// Length of the moves from opening to opening without a wire, mm.
     pub fn travel(&self) -> f64 {
         let ends = self.passes.windows(2);
         let ends = ends.map(|p| p[0].path.lower().end().distance(p[1].path.lower().start()));
@@ -151,7 +151,7 @@ impl Plan {
     }
 }
 
-/// Plans the cutting of `openings`: inner ones before those around them, then the shortest way found;
+/// Plans the cutting of `openings`: inner ones before those around them, then the shortest route found;
 /// of each the rough pass, the trim passes, and last the tab.
 ///
 /// # Errors
@@ -230,9 +230,9 @@ fn sensible(settings: &Settings) -> Result<(), Box<Diagnostic>> {
 }
 
 impl Settings {
-    /// How far the centre of the wire runs beside the contour on the lower face, mm: what is round
+    /// How far the centre of the wire runs from the contour on the lower face, mm: what is round
     /// across a leaning wire is longer in the plane.
-    pub(crate) fn beside(&self, cut: &Cut) -> f64 {
+    pub(crate) fn wire_offset(&self, cut: &Cut) -> f64 {
         cut.offset / self.taper.map_or(1.0, |taper| taper.angle.cos())
     }
 }

@@ -9,7 +9,7 @@ use cavalier_contours::static_aabb2d_index::Control;
 use geom::Vec2;
 use program::Diagnostic;
 
-/// How near to its own end a lead may touch the way of the last pass above, mm.
+/// How near to its own end a lead may touch the upper path of the last pass, mm.
 const JOINS: f64 = 0.01;
 
 /// What remains of all openings.
@@ -29,7 +29,7 @@ struct Offer {
 }
 
 impl<'a> Room<'a> {
-    /// Between the contours of `remaining`, and the last ways `leaning` of wires on the upper face.
+    /// The room between the contours `remaining` and the last paths of wires on the upper face, `leaning`.
     pub fn new(
         remaining: &'a [Element],
         leaning: &'a [Element],
@@ -104,12 +104,12 @@ impl<'a> Room<'a> {
 
     /// Refuses a pass that comes nearer to any contour than the last one may.
     fn unhurt(&self, pass: &Pass) -> Result<(), Box<Diagnostic>> {
-        let last = self.settings.passes.last().map_or(0.0, |cut| self.settings.beside(cut));
+        let last = self.settings.passes.last().map_or(0.0, |cut| self.settings.wire_offset(cut));
         for element in pass.path.lower().elements() {
             if let Some(distance) = self.below.clearance(element, last - EXACT) {
                 let lines = pass.path.lower().elements().iter().map(|e| e.line);
                 let message = format!(
-                    "pass {} of opening {} comes as near as {distance:.4} mm to a contour on its way \
+                    "pass {} of opening {} comes as near as {distance:.4} mm to a contour on its path \
                      from X{:.4} Y{:.4} to X{:.4} Y{:.4}, and the last offset is {last:.4} mm",
                     pass.number + 1,
                     pass.opening + 1,
@@ -138,7 +138,8 @@ impl<'a> Room<'a> {
         let mut place = round.threads_in_part().then(|| round.thread());
         for element in lead {
             self.above.around(element, 0.0, &mut |i| {
-                let meets = self.leaning.get(i).into_iter().flat_map(|way| way.meets(element, 0.0));
+                let meets =
+                    self.leaning.get(i).into_iter().flat_map(|other| other.meets(element, 0.0));
                 place = place.or(meets.into_iter().find(|at| at.distance(end) > JOINS));
                 if place.is_some() { Control::Break(()) } else { Control::Continue }
             });

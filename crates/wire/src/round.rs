@@ -1,6 +1,6 @@
 //! The passes round one opening.
 
-use crate::contour::{Contour, Place};
+use crate::contour::{Contour, ContourPoint};
 use crate::element::{Element, SAME};
 use crate::lead::{LeadShape, Pairs, reversed};
 use crate::offset::{Corner, Corners, offset};
@@ -13,20 +13,20 @@ use program::Diagnostic;
 /// From which turn on, radians, a contour has a corner.
 const CORNER: f64 = 0.02;
 
-/// An opening with the ways of its passes.
+/// An opening with the path of each of its passes.
 pub(crate) struct Round {
     /// Where the wire is threaded; `None`: at the start of an open contour.
     thread: Option<Vec2>,
     /// Where the cut starts, on the contour.
-    start: Place,
+    start: ContourPoint,
     /// Whether the wire runs on the left of the contour.
     left: bool,
-    /// For each pass its way along the contour, from its start.
-    ways: Vec<Path>,
+    /// The path of each pass along the contour, from its start.
+    paths: Vec<Path>,
 }
 
 impl Round {
-    /// The ways of the wire's centre, and the corners that became round.
+    /// The paths of the wire's centre, and the corners that became round.
     pub fn new(
         opening: &Opening,
         settings: &Settings,
@@ -50,56 +50,56 @@ impl Round {
         let start = match opening.start.or(opening.thread) {
             Some(point) if closed => contour.nearest(point),
             None if closed && narrows(contour, left, settings) => middle(contour),
-            _ => contour.place_at(0.0),
+            _ => contour.point_at(0.0),
         };
         let thread = match opening.thread {
             None if closed => {
                 if settings.lead.length <= 0.0 {
-                    let message = "nobody says where the wire is threaded".into();
-                    let way_out = "give the place, or the length of the lead-in";
+                    let message = "the thread point is not given".into();
+                    let way_out = "give the thread point, or the length of the lead-in";
                     return Err(refused("no-thread", message, way_out));
                 }
                 let travel =
                     contour.elements().get(start.element).map(|element| element.tangent(start.t));
-                let beside = settings.lead.length * if left { 1.0 } else { -1.0 };
-                Some(start.point + travel.unwrap_or_default().perp() * beside)
+                let away = settings.lead.length * if left { 1.0 } else { -1.0 };
+                Some(start.point + travel.unwrap_or_default().perp() * away)
             }
             given => given,
         };
-        let mut round = Round { thread, start, left, ways: Vec::new() };
+        let mut round = Round { thread, start, left, paths: Vec::new() };
         let mut corners = Vec::new();
         for (number, cut) in settings.passes.iter().enumerate() {
             // What a pass leaves in a corner the next may take: only the last has to reach it.
             let last = number + 1 == settings.passes.len();
             let strict = if last { settings.corners } else { Corners::Round };
-            let (way, rounded) = round.way(opening, settings, cut, strict)?;
-            if settings.tab > 0.0 && settings.tab >= way.lower().length() {
+            let (path, rounded) = round.pass_path(opening, settings, cut, strict)?;
+            if settings.tab > 0.0 && settings.tab >= path.lower().length() {
                 let message = format!(
-                    "a tab of {} mm on a way of {:.4} mm",
+                    "a tab of {} mm on a path of {:.4} mm",
                     settings.tab,
-                    way.lower().length()
+                    path.lower().length()
                 );
                 return Err(refused("tab", message, "a tab is shorter than the contour"));
             }
             corners = rounded;
-            round.ways.push(way);
+            round.paths.push(path);
         }
         Ok((round, corners))
     }
 
-    /// The way of one pass: beside the contour, and leaning.
-    fn way(
+    /// The path of one pass: offset from the contour, with its taper.
+    fn pass_path(
         &self,
         opening: &Opening,
         settings: &Settings,
         cut: &Cut,
         corners: Corners,
     ) -> Result<(Path, Vec<Corner>), Box<Diagnostic>> {
-        let distance = settings.beside(cut) * if self.left { 1.0 } else { -1.0 };
-        let beside = offset(&opening.contour, distance, corners)?;
+        let distance = settings.wire_offset(cut) * if self.left { 1.0 } else { -1.0 };
+        let centre = offset(&opening.contour, distance, corners)?;
         let start = self.start.point + self.out(&opening.contour) * distance.abs();
-        let lower = beside.contour.started_at(&beside.contour.nearest(start));
-        let Some(taper) = settings.taper else { return Ok((Path::upright(lower), beside.rounded)) };
+        let lower = centre.contour.started_at(&centre.contour.nearest(start));
+        let Some(taper) = settings.taper else { return Ok((Path::upright(lower), centre.rounded)) };
         // Larger at the top is to the right of what goes round counter-clockwise.
         let out = if opening.contour.area() > 0.0 { -1.0 } else { 1.0 };
         let aside = out * taper.height * taper.angle.tan();
@@ -110,7 +110,7 @@ impl Round {
             Diagnostic::error("taper-corner", message).help("lean less").line(found.line)
         })?;
         let path = Path::by_block(lower.elements().to_vec(), upper.elements().to_vec())?;
-        Ok((path, beside.rounded))
+        Ok((path, centre.rounded))
     }
 
     /// From the start to the wire: across the contour, and from a corner towards the thread.
@@ -123,123 +123,124 @@ impl Round {
         thread.filter(|_| corner).unwrap_or(across)
     }
 
-    /// The same round along the contour itself, where the control offsets and leans.
+    /// The same passes along the contour itself, for a control that offsets and tilts the wire.
     pub fn at_contour(&self, opening: &Opening) -> Round {
-        let way = Path::upright(opening.contour.started_at(&self.start));
-        Round { ways: self.ways.iter().map(|_| way.clone()).collect(), ..*self }
+        let path = Path::upright(opening.contour.started_at(&self.start));
+        Round { paths: self.paths.iter().map(|_| path.clone()).collect(), ..*self }
     }
 
     /// Where the wire is threaded.
     pub fn thread(&self) -> Vec2 {
-        let start = || self.ways.first().map(|way| way.lower().start());
+        let start = || self.paths.first().map(|path| path.lower().start());
         self.thread.or_else(start).unwrap_or_default()
     }
 
     /// Where the upper end of a leaning wire goes in the last pass.
     pub fn last_above(&self) -> &[Element] {
-        let upper = self.ways.last().and_then(Path::upper);
+        let upper = self.paths.last().and_then(Path::upper);
         upper.map_or(&[], Contour::elements)
     }
 
     /// The leads of a leaning wire on the upper face, each from where it is threaded to the contour.
     pub fn leads_above(&self, settings: &Settings) -> impl Iterator<Item = Vec<Element>> {
-        let leaning = self.ways.iter().filter(|way| way.upper().is_some());
-        leaning.flat_map(move |way| {
-            let into = self.lead_in(settings, way, self.left);
-            let out = reversed(&self.lead_out(settings, way, self.left));
+        let leaning = self.paths.iter().filter(|path| path.upper().is_some());
+        leaning.flat_map(move |path| {
+            let into = self.lead_in(settings, path, self.left);
+            let out = reversed(&self.lead_out(settings, path, self.left));
             [into, out].map(|pairs| pairs.into_iter().map(|(_, above)| above).collect())
         })
     }
 
     /// Whether the wire is threaded where the part is on the upper face.
     pub fn threads_in_part(&self) -> bool {
-        let Some(last) = self.ways.last().and_then(Path::upper) else { return false };
+        let Some(last) = self.paths.last().and_then(Path::upper) else { return false };
         let inside = self.left == (last.area() > 0.0);
         last.is_closed() && self.thread.is_some_and(|thread| last.encloses(thread) != inside)
     }
 
-    /// How far from the contour the wire has to be threaded so that both of its ends come to it from there, mm.
+    /// How far from the contour the wire has to be threaded for both of its ends to reach it, mm.
     pub fn reach(&self, settings: &Settings) -> f64 {
         let arc = if let LeadShape::Arc(radius) = settings.lead.shape { radius } else { 0.0 };
-        let reach = |way: &Path| {
-            let (below, above) = (way.lower().start(), way.upper().unwrap_or(way.lower()).start());
+        let reach = |path: &Path| {
+            let (below, above) =
+                (path.lower().start(), path.upper().unwrap_or(path.lower()).start());
             let out = (below - self.start.point).normalize_or_zero();
             below.distance(self.start.point) + (above - below).dot(out).max(0.0) + arc
         };
-        self.ways.iter().map(reach).fold(0.0, f64::max)
+        self.paths.iter().map(reach).fold(0.0, f64::max)
     }
 
     /// The passes in their order.
     pub fn passes(&self, index: usize, settings: &Settings) -> Result<Vec<Pass>, Box<Diagnostic>> {
-        let leans = self.ways.iter().any(|way| way.upper().is_some());
-        let mut strands = Strands { index, settings, leans, passes: Vec::new() };
+        let leans = self.paths.iter().any(|path| path.upper().is_some());
+        let mut passes = Passes { index, settings, leans, made: Vec::new() };
         if settings.tab > 0.0 {
-            self.with_tab(&mut strands)?;
+            self.with_tab(&mut passes)?;
         } else {
-            self.whole(&mut strands)?;
+            self.whole(&mut passes)?;
         }
-        if let Some(last) = strands.passes.last_mut() {
+        if let Some(last) = passes.made.last_mut() {
             last.cut = true;
         }
-        Ok(strands.passes)
+        Ok(passes.made)
     }
 
     /// Each pass along the whole contour.
-    fn whole(&self, strands: &mut Strands) -> Result<(), Box<Diagnostic>> {
-        let repeat = strands.settings.trims == Trims::Repeat;
-        for (number, way) in self.ways.iter().enumerate() {
+    fn whole(&self, passes: &mut Passes) -> Result<(), Box<Diagnostic>> {
+        let repeat = passes.settings.trims == Trims::Repeat;
+        for (number, path) in self.paths.iter().enumerate() {
             let back = !repeat && number % 2 == 1;
-            let reversed = way.reversed();
-            let (way, left) = if back { (&reversed, !self.left) } else { (way, self.left) };
-            let closed = way.lower().is_closed();
+            let reversed = path.reversed();
+            let (path, left) = if back { (&reversed, !self.left) } else { (path, self.left) };
+            let closed = path.lower().is_closed();
             let mut pairs = Pairs::new();
             // An open contour has its lead at its start only.
             if closed || !back {
-                pairs.extend(self.lead_in(strands.settings, way, left));
+                pairs.extend(self.lead_in(passes.settings, path, left));
             }
-            pairs.extend(way.elements().map(|(below, above)| (*below, *above)));
+            pairs.extend(path.elements().map(|(below, above)| (*below, *above)));
             if closed || back {
-                pairs.extend(self.lead_out(strands.settings, way, left));
+                pairs.extend(self.lead_out(passes.settings, path, left));
             }
             let thread = number == 0 || (repeat && !closed);
-            strands.add(Strand { number, tab: false, left, thread, pairs })?;
+            passes.add(PassDraft { number, tab: false, left, thread, pairs })?;
         }
         Ok(())
     }
 
     /// Each pass up to the tab, and then each pass through the tab.
-    fn with_tab(&self, strands: &mut Strands) -> Result<(), Box<Diagnostic>> {
-        let settings = strands.settings;
+    fn with_tab(&self, passes: &mut Passes) -> Result<(), Box<Diagnostic>> {
+        let settings = passes.settings;
         let repeat = settings.trims == Trims::Repeat;
-        let tab = |way: &Path| way.lower().place_at(way.lower().length() - settings.tab);
-        let end = |way: &Path| way.lower().place_at(f64::INFINITY);
+        let tab = |path: &Path| path.lower().point_at(path.lower().length() - settings.tab);
+        let end = |path: &Path| path.lower().point_at(f64::INFINITY);
         let mut at_tab = false;
-        for (number, way) in self.ways.iter().enumerate() {
-            let mut pairs = self.lead_in(settings, way, self.left);
-            pairs.extend(way.between(&way.lower().place_at(0.0), &tab(way)));
+        for (number, path) in self.paths.iter().enumerate() {
+            let mut pairs = self.lead_in(settings, path, self.left);
+            pairs.extend(path.between(&path.lower().point_at(0.0), &tab(path)));
             let back = at_tab && !repeat;
             let pairs = if back { reversed(&pairs) } else { pairs };
             let (left, thread) = (self.left != back, number == 0 || repeat);
-            strands.add(Strand { number, tab: false, left, thread, pairs })?;
+            passes.add(PassDraft { number, tab: false, left, thread, pairs })?;
             at_tab = !back;
         }
-        for (number, way) in self.ways.iter().enumerate() {
-            let mut pairs = way.between(&tab(way), &end(way));
-            pairs.extend(self.lead_out(settings, way, self.left));
+        for (number, path) in self.paths.iter().enumerate() {
+            let mut pairs = path.between(&tab(path), &end(path));
+            pairs.extend(self.lead_out(settings, path, self.left));
             let pairs = if at_tab { pairs } else { reversed(&pairs) };
             let left = self.left == at_tab;
-            strands.add(Strand { number, tab: true, left, thread: false, pairs })?;
+            passes.add(PassDraft { number, tab: true, left, thread: false, pairs })?;
             at_tab = !at_tab;
         }
         Ok(())
     }
 
-    fn lead_in(&self, settings: &Settings, way: &Path, left: bool) -> Pairs {
-        self.thread.map_or_else(Pairs::new, |thread| settings.lead.shape.into(thread, way, left))
+    fn lead_in(&self, settings: &Settings, path: &Path, left: bool) -> Pairs {
+        self.thread.map_or_else(Pairs::new, |thread| settings.lead.shape.into(thread, path, left))
     }
 
-    fn lead_out(&self, settings: &Settings, way: &Path, left: bool) -> Pairs {
-        self.thread.map_or_else(Pairs::new, |thread| settings.lead.shape.out(thread, way, left))
+    fn lead_out(&self, settings: &Settings, path: &Path, left: bool) -> Pairs {
+        self.thread.map_or_else(Pairs::new, |thread| settings.lead.shape.out(thread, path, left))
     }
 }
 
@@ -250,7 +251,7 @@ fn narrows(contour: &Contour, left: bool, settings: &Settings) -> bool {
     let (Some(first), Some(last)) = (elements.first(), elements.last()) else { return false };
     let side = if left { 1.0 } else { -1.0 };
     let turn = turn_angle(last.tangent(1.0), first.tangent(0.0));
-    let widest = settings.passes.first().map_or(0.0, |cut| settings.beside(cut));
+    let widest = settings.passes.first().map_or(0.0, |cut| settings.wire_offset(cut));
     let fillet = |element: &Element| {
         let inner = element.turn.is_some_and(|turn| turn.sweep * side > 0.0);
         inner && element.radius().is_some_and(|radius| radius < widest)
@@ -259,7 +260,7 @@ fn narrows(contour: &Contour, left: bool, settings: &Settings) -> bool {
 }
 
 /// The middle of the longest element.
-pub(crate) fn middle(contour: &Contour) -> Place {
+pub(crate) fn middle(contour: &Contour) -> ContourPoint {
     let (mut along, mut longest, mut place) = (0.0, 0.0, 0.0);
     for length in contour.elements().iter().map(|element| element.length()) {
         if length > longest {
@@ -267,11 +268,11 @@ pub(crate) fn middle(contour: &Contour) -> Place {
         }
         along += length;
     }
-    contour.place_at(place)
+    contour.point_at(place)
 }
 
-/// One pass to be.
-struct Strand {
+/// A pass before its path is checked.
+struct PassDraft {
     number: usize,
     tab: bool,
     left: bool,
@@ -280,18 +281,18 @@ struct Strand {
 }
 
 /// The passes so far.
-struct Strands<'a> {
+struct Passes<'a> {
     index: usize,
     settings: &'a Settings,
     leans: bool,
-    passes: Vec<Pass>,
+    made: Vec<Pass>,
 }
 
-impl Strands<'_> {
-    /// Adds a pass. Where the wire stays threaded, straight from where it stands.
-    fn add(&mut self, strand: Strand) -> Result<(), Box<Diagnostic>> {
-        let Strand { number, tab, left, thread, mut pairs } = strand;
-        if let (Some(before), Some(&(below, above))) = (self.passes.last_mut(), pairs.first()) {
+impl Passes<'_> {
+    /// Adds a pass. Where the wire stays threaded, a straight line leads from its position to the start of the pass.
+    fn add(&mut self, draft: PassDraft) -> Result<(), Box<Diagnostic>> {
+        let PassDraft { number, tab, left, thread, mut pairs } = draft;
+        if let (Some(before), Some(&(below, above))) = (self.made.last_mut(), pairs.first()) {
             if thread {
                 before.cut = true;
             } else {
@@ -311,7 +312,7 @@ impl Strands<'_> {
         };
         let Some(settings) = self.settings.passes.get(number).copied() else { return Ok(()) };
         let (opening, stop) = (self.index, tab && number == 0);
-        self.passes.push(Pass {
+        self.made.push(Pass {
             opening,
             number,
             tab,
@@ -326,7 +327,7 @@ impl Strands<'_> {
     }
 }
 
-/// The wires do not cross along the way itself: where they do, it is on a lead that is shorter than the wire leans.
+/// Along the contour the ends of the wire do not cross: where they do, a lead is shorter than the wire leans.
 fn short(found: Box<Diagnostic>) -> Box<Diagnostic> {
     if found.rule != "wires-cross" {
         return found;

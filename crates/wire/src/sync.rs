@@ -11,7 +11,7 @@ use std::f64::consts::PI;
 const ON: f64 = 0.01;
 
 /// Stations closer than this are one, mm: a corner that both contours have is not cut twice, though each
-/// is rounded in its own way.
+/// is rounded by itself.
 const STATION: f64 = 1e-3;
 
 impl Path {
@@ -66,7 +66,7 @@ impl Path {
             let message = "of the lower and the upper contour one is closed and the other open";
             return Err(Diagnostic::error("sync-closed", message).help("close both").into());
         }
-        let (below, above) = (Ruler::new(lower), Ruler::new(upper));
+        let (below, above) = (ArcLength::new(lower), ArcLength::new(upper));
         let mut held = vec![(0.0, 0.0)];
         for &(p, q) in points {
             let (s, t) = held.last().copied().unwrap_or_default();
@@ -90,20 +90,20 @@ impl Path {
     }
 }
 
-/// A contour by its length.
-struct Ruler<'a> {
+/// Positions on a contour by the length along it.
+struct ArcLength<'a> {
     contour: &'a Contour,
     /// Length from the start to the end of each element, mm.
     ends: Vec<f64>,
 }
 
-impl<'a> Ruler<'a> {
-    fn new(contour: &'a Contour) -> Ruler<'a> {
+impl<'a> ArcLength<'a> {
+    fn new(contour: &'a Contour) -> ArcLength<'a> {
         let ends = contour.elements().iter().scan(0.0, |sum, element| {
             *sum += element.length();
             Some(*sum)
         });
-        Ruler { contour, ends: ends.collect() }
+        ArcLength { contour, ends: ends.collect() }
     }
 
     fn total(&self) -> f64 {
@@ -132,14 +132,14 @@ impl<'a> Ruler<'a> {
         })
     }
 
-    /// The corners between `from` and `to`, as parts of this way.
+    /// The corners between `from` and `to`, as fractions of the length between them.
     fn corners(&self, from: f64, to: f64) -> impl Iterator<Item = f64> + '_ {
         let first = self.ends.partition_point(|end| *end <= from + STATION);
         let inner = self.ends.iter().skip(first).take_while(move |end| **end < to - STATION);
         inner.map(move |end| (end - from) / (to - from))
     }
 
-    /// The way from `from` to `to`, between which there is no corner.
+    /// The elements from `from` to `to`, between which there is no corner.
     fn part(&self, from: f64, to: f64) -> Element {
         let middle = f64::midpoint(from, to);
         let i = self.ends.partition_point(|end| *end < middle).min(self.ends.len() - 1);
@@ -166,8 +166,8 @@ impl<'a> Ruler<'a> {
 
 /// Adds the stations of one span: the corners of both contours, each once, and the end of the span.
 fn between(
-    below: &Ruler,
-    above: &Ruler,
+    below: &ArcLength,
+    above: &ArcLength,
     from: (f64, f64),
     to: (f64, f64),
     stations: &mut Vec<(f64, f64)>,
@@ -197,9 +197,9 @@ fn uncrossed(path: &Path) -> Result<(), Box<Diagnostic>> {
     let mut travel = (Vec2::ZERO, Vec2::ZERO);
     let mut apart = 0.0;
     for (below, above) in path.elements() {
-        let ways = [0.0, 1.0].map(|t| (heading(below, t), heading(above, t)));
-        let [start, end] = ways.map(|(p, q)| (known(p, travel.0), known(q, travel.1)));
-        // Both ends go round a corner at the same time, each the short way.
+        let headings = [0.0, 1.0].map(|t| (heading(below, t), heading(above, t)));
+        let [start, end] = headings.map(|(p, q)| (known(p, travel.0), known(q, travel.1)));
+        // Both ends go round a corner at the same time, each by the smaller angle.
         apart += match travel {
             (Vec2::ZERO, _) | (_, Vec2::ZERO) => turn_angle(start.0, start.1),
             (p, q) => turn_angle(q, start.1) - turn_angle(p, start.0),

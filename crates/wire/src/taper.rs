@@ -14,7 +14,7 @@ const WIDEST: f64 = 5.0 / 6.0 * PI;
 /// radians at most.
 const SMOOTH: (f64, f64, f64) = (1e-4, 2e-3, 0.2);
 
-/// What becomes of rounded corners on the way up.
+/// What becomes of rounded corners between the lower and the upper contour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Rounding {
     /// Their radius grows or shrinks with the lean: every corner is a piece of a cone.
@@ -37,8 +37,8 @@ pub struct Remains<'a> {
 /// The contour that lies `distance` mm to the left of `lower`, element by element: each keeps its
 /// partner, lines meet where they cross. To the right where it is negative.
 ///
-/// Where `lower` is the way of a wire beside a contour that `remains`, an arc of it about a sharp corner of that contour has no
-/// radius of the part: it goes about the corner above, with the radius that it has below.
+/// Where `lower` is the path of a wire offset from a contour that `remains`, an arc about a sharp corner of that contour is
+/// no radius of the part: above it runs about the upper corner, with the radius that it has below.
 ///
 /// # Errors
 /// `taper-corner` where an element has no partner: an arc whose radius would pass zero, a side that
@@ -84,7 +84,7 @@ pub fn lean(
     Contour::joined(upper, SAME)
 }
 
-/// Arcs that keep their radius on the way up: those about a sharp corner of the part, and where corners are
+/// Arcs that keep their radius on the upper contour: those about a sharp corner of the part, and where corners are
 /// [`Rounding::Constant`] those between two lines.
 struct Kept<'a> {
     lower: &'a Contour,
@@ -234,26 +234,26 @@ fn meeting(before: &Element, after: &Element) -> Option<Vec2> {
     nearest.or_else(|| (apart < 1e-3).then_some(middle))
 }
 
-/// The moved element between new ends; it must still go the way of the one below.
+/// The moved element between new ends; it must still run in the direction of the one below.
 fn trimmed(
     below: &Element,
-    beside: &Element,
+    moved: &Element,
     start: Vec2,
     end: Vec2,
 ) -> Result<Element, Box<Diagnostic>> {
     let vanishes = || refused(below, "the element would turn round", "lean less");
-    let Some(turn) = beside.turn else {
+    let Some(turn) = moved.turn else {
         if (end - start).dot(below.tangent(0.0)) < -SAME && below.turn.is_none() {
             return Err(vanishes());
         }
-        return Ok(beside.shaped(geom::Element { start, end, turn: None }));
+        return Ok(moved.shaped(geom::Element { start, end, turn: None }));
     };
     let turned = |from: Vec2, to: Vec2| turn_angle(from - turn.center, to - turn.center);
-    let sweep = turn.sweep - turned(beside.start, start) + turned(beside.end, end);
+    let sweep = turn.sweep - turned(moved.start, start) + turned(moved.end, end);
     if sweep * turn.sweep.signum() < 0.0 || sweep.abs() > TAU + 1e-9 {
         return Err(vanishes());
     }
-    Ok(beside.shaped(geom::Element { start, end, turn: Some(Turn { sweep, ..turn }) }))
+    Ok(moved.shaped(geom::Element { start, end, turn: Some(Turn { sweep, ..turn }) }))
 }
 
 fn refused(element: &Element, what: &str, way_out: &str) -> Box<Diagnostic> {

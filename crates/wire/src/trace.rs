@@ -18,7 +18,7 @@ pub fn contours(program: &Program, start: Option<Vec2>) -> Result<Vec<Contour>, 
 /// The same move by move: also those that only the other end of the wire makes.
 ///
 /// # Errors
-/// The first record that is no way of a wire: an arc out of the plane, a leaning or turned tool, a
+/// The first record that a wire cannot follow: an arc out of the plane, a tilted or turned tool, a
 /// hole cycle, a compensation that is not resolved, a cut from an unknown place; and what
 /// [`Element::arc_by_center`] refuses. `empty-contour` where nothing is cut.
 pub fn cuts(program: &Program, start: Option<Vec2>) -> Result<Vec<Vec<Element>>, Box<Diagnostic>> {
@@ -49,7 +49,8 @@ pub fn cuts(program: &Program, start: Option<Vec2>) -> Result<Vec<Vec<Element>>,
             }
             Op::Compensation(Compensation::Left(_) | Compensation::Right(_)) => {
                 let what = "a wire offset whose amount is not known";
-                let way_out = "--side with --wire and --gap: the way beside the contour is then worked out here";
+                let way_out =
+                    "--side with --wire and --gap: the offset path is then calculated here";
                 return Err(at(refused("open-compensation", what, way_out)));
             }
             _ => continue,
@@ -71,9 +72,9 @@ pub fn cuts(program: &Program, start: Option<Vec2>) -> Result<Vec<Vec<Element>>,
     Ok(cuts)
 }
 
-/// A contour beside which the control of the source leads the wire.
+/// A contour from which the control of the source program offsets the wire.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Beside {
+pub struct OffsetContour {
     /// The moves between the lead-in and the lead-out.
     pub contour: Contour,
     /// Whether the wire runs on its left (`G41`).
@@ -88,10 +89,10 @@ pub struct Beside {
 /// # Errors
 /// `open-compensation` where a cut goes without the offset, or a rapid with it; `source-passes` where a
 /// contour is cut more than once; and those of [`contours`].
-pub fn beside(
+pub fn offset_contours(
     program: &Program,
     start: Option<Vec2>,
-) -> Result<Option<Vec<Beside>>, Box<Diagnostic>> {
+) -> Result<Option<Vec<OffsetContour>>, Box<Diagnostic>> {
     let on = |op: &Op| matches!(op, Op::Compensation(side) if *side != Compensation::Off);
     if !program.records.iter().any(|record| on(&record.op)) {
         return Ok(None);
@@ -156,7 +157,9 @@ pub fn beside(
         return Err(refused("open-compensation", what, "take G41 and G42 out there"));
     }
     let found = contours.into_iter().zip(sides);
-    Ok(Some(found.map(|(contour, (left, thread))| Beside { contour, left, thread }).collect()))
+    Ok(Some(
+        found.map(|(contour, (left, thread))| OffsetContour { contour, left, thread }).collect(),
+    ))
 }
 
 /// The place of a pose whose wire stands upright.

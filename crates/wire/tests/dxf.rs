@@ -131,7 +131,7 @@ fn layers_are_chosen_and_what_is_not_read_is_counted() {
     assert!(refused.help.contains("CUT, NOTES"), "{refused}");
 }
 
-/// Scale −2 in X, 2 in Y, turned by 90°, twice beside each other: (1, 0) goes to (0, −2).
+/// Scale −2 in X, 2 in Y, turned by 90°, twice next to each other: (1, 0) goes to (0, −2).
 #[test]
 fn blocks_are_placed_turned_mirrored_and_repeated() {
     let block = "0 BLOCK 8 0 2 b 10 1 20 0 0 LINE 8 0 10 1 20 0 11 2 21 0 0 ENDBLK";

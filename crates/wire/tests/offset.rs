@@ -1,4 +1,4 @@
-//! The wire's centre beside a contour: known offsets, distances everywhere, refusals.
+//! The path of the wire's centre: known offsets, distances everywhere, refusals.
 
 use geom::Vec2;
 use proptest::prelude::*;
@@ -33,12 +33,12 @@ fn slot(length: f64, radius: f64) -> Contour {
 /// Outside a rectangle: its area, a strip along each side, and a quarter circle at each corner.
 #[test]
 fn outside_a_rectangle_the_corners_become_arcs() {
-    let way = offset(&rectangle(30.0, 20.0), -0.15, Corners::Refuse).unwrap();
+    let offset_path = offset(&rectangle(30.0, 20.0), -0.15, Corners::Refuse).unwrap();
     let area = 600.0 + 0.15 * 100.0 + PI * 0.15 * 0.15;
-    assert!((way.contour.area() - area).abs() < 1e-9, "{}", way.contour.area());
-    assert_eq!(way.contour.elements().len(), 8);
-    assert!(way.rounded.is_empty());
-    let arcs = way.contour.elements().iter().filter_map(|e| e.turn);
+    assert!((offset_path.contour.area() - area).abs() < 1e-9, "{}", offset_path.contour.area());
+    assert_eq!(offset_path.contour.elements().len(), 8);
+    assert!(offset_path.rounded.is_empty());
+    let arcs = offset_path.contour.elements().iter().filter_map(|e| e.turn);
     assert!(arcs.clone().all(|turn| (turn.sweep - PI / 2.0).abs() < 1e-9));
     assert_eq!(arcs.count(), 4);
 }
@@ -49,22 +49,22 @@ fn inside_sharp_corners_are_refused_with_their_place_or_become_round() {
     let refused = offset(&rectangle(30.0, 20.0), 0.15, Corners::Refuse).unwrap_err();
     assert_eq!((refused.rule, refused.line), ("inner-corner", 1));
     assert!(refused.message.contains("X0.0000 Y0.0000: 0.0621 mm stay (4 such"), "{refused}");
-    let way = offset(&rectangle(30.0, 20.0), 0.15, Corners::Round).unwrap();
-    assert!((way.contour.area() - 29.7 * 19.7).abs() < 1e-9);
-    let places: Vec<Vec2> = way.rounded.iter().map(|corner| corner.place).collect();
+    let offset_path = offset(&rectangle(30.0, 20.0), 0.15, Corners::Round).unwrap();
+    assert!((offset_path.contour.area() - 29.7 * 19.7).abs() < 1e-9);
+    let places: Vec<Vec2> = offset_path.rounded.iter().map(|corner| corner.place).collect();
     let corners = rectangle(30.0, 20.0);
     assert_eq!(places, corners.elements().iter().map(|e| e.start).collect::<Vec<_>>());
 }
 
 #[test]
 fn arcs_stay_arcs_and_keep_their_lines() {
-    let way = offset(&slot(10.0, 3.0), 0.5, Corners::Refuse).unwrap();
+    let offset_path = offset(&slot(10.0, 3.0), 0.5, Corners::Refuse).unwrap();
     let expected = 10.0 * 5.0 + PI * 2.5 * 2.5;
-    assert!((way.contour.area() - expected).abs() < 1e-9);
-    let mut lines: Vec<u32> = way.contour.elements().iter().map(|e| e.line).collect();
+    assert!((offset_path.contour.area() - expected).abs() < 1e-9);
+    let mut lines: Vec<u32> = offset_path.contour.elements().iter().map(|e| e.line).collect();
     lines.sort_unstable();
     assert_eq!(lines, [1, 2, 3, 4]);
-    let radii = way.contour.elements().iter().filter_map(|e| e.radius());
+    let radii = offset_path.contour.elements().iter().filter_map(|e| e.radius());
     assert!(radii.clone().all(|radius| (radius - 2.5).abs() < 1e-9) && radii.count() == 2);
 }
 
@@ -73,8 +73,8 @@ fn a_full_circle_stays_one_whichever_way_it_goes() {
     let p = Vec2::new(5.0, 0.0);
     for (sweep, expected) in [(TAU, 4.9), (-TAU, 5.1)] {
         let circle = Contour::new(vec![Element::arc(p, p, Vec2::ZERO, sweep)], 0.0).unwrap();
-        let way = offset(&circle, 0.1, Corners::Refuse).unwrap();
-        let [element] = way.contour.elements() else { panic!("{way:?}") };
+        let offset_path = offset(&circle, 0.1, Corners::Refuse).unwrap();
+        let [element] = offset_path.contour.elements() else { panic!("{offset_path:?}") };
         assert!((element.radius().unwrap() - expected).abs() < 1e-9);
         assert!((element.turn.unwrap().sweep - sweep).abs() < 1e-9);
     }
@@ -100,12 +100,12 @@ fn an_inner_arc_smaller_than_the_wire_is_found_with_its_line() {
     assert_eq!((refused.rule, refused.line), ("inner-corner", 2));
     let left = 0.05 * 2f64.sqrt() - 0.05;
     assert!(refused.message.contains(&format!("{left:.4} mm stay (1 such")), "{refused}");
-    let way = offset(&rounded(0.2), 0.15, Corners::Refuse).unwrap();
-    assert_eq!(way.contour.elements().len(), 3);
-    assert!(!way.contour.is_closed());
+    let offset_path = offset(&rounded(0.2), 0.15, Corners::Refuse).unwrap();
+    assert_eq!(offset_path.contour.elements().len(), 3);
+    assert!(!offset_path.contour.is_closed());
     // On its other side the corner is an outer one.
-    let way = offset(&rounded(0.1), -0.15, Corners::Refuse).unwrap();
-    assert!((way.contour.elements()[1].radius().unwrap() - 0.25).abs() < 1e-9);
+    let offset_path = offset(&rounded(0.1), -0.15, Corners::Refuse).unwrap();
+    assert!((offset_path.contour.elements()[1].radius().unwrap() - 0.25).abs() < 1e-9);
 }
 
 #[test]
@@ -160,12 +160,15 @@ fn nan_and_zero_offsets() {
     assert_eq!(offset(&slot(1.0, 1.0), f64::NAN, Corners::Round).unwrap_err().rule, "not-a-place");
     assert_eq!(offset(&slot(1.0, 1.0), 0.0, Corners::Refuse).unwrap().contour, slot(1.0, 1.0));
     let line = Contour::new(vec![Element::line(Vec2::ZERO, Vec2::X * 10.0)], 0.0).unwrap();
-    let way = offset(&line, 0.1, Corners::Refuse).unwrap().contour;
-    assert!(way.start().distance(Vec2::new(0.0, 0.1)) < 1e-12 && way.elements().len() == 1);
+    let offset_path = offset(&line, 0.1, Corners::Refuse).unwrap().contour;
+    assert!(
+        offset_path.start().distance(Vec2::new(0.0, 0.1)) < 1e-12
+            && offset_path.elements().len() == 1
+    );
 }
 
 proptest! {
-    /// Star-shaped contours of lines and arcs: from outside every point of the way is exactly as far
+    /// Star-shaped contours of lines and arcs: from outside every point of the path is exactly as far
     /// from the contour as the offset, measured point against point.
     #[test]
     fn the_distance_is_the_offset_everywhere(
@@ -186,14 +189,14 @@ proptest! {
         }).collect();
         let contour = Contour::new(elements, 0.0).unwrap();
         let signed = if inside { distance } else { -distance };
-        let Ok(way) = offset(&contour, signed, Corners::Round) else { return Ok(()) };
-        for element in way.contour.elements() {
+        let Ok(offset_path) = offset(&contour, signed, Corners::Round) else { return Ok(()) };
+        for element in offset_path.contour.elements() {
             for i in 0..8 {
                 let p = element.at(f64::from(i) / 8.0);
                 let found = contour.nearest(p).point.distance(p);
                 prop_assert!((found - distance).abs() < 2e-4, "{found} for {distance} at {p}");
             }
         }
-        prop_assert_eq!(way.contour.area() < contour.area(), inside);
+        prop_assert_eq!(offset_path.contour.area() < contour.area(), inside);
     }
 }

@@ -211,10 +211,10 @@ fn where_the_control_offsets_the_path_is_the_contour() {
 fn a_die_that_starts_in_its_corner_is_cut_from_the_middle_of_a_long_side() {
     let round = Settings { corners: Corners::Round, ..settings(&[0.15]) };
     let plan = planned(opening(plate(), Side::Inside), &round);
-    let way = plan.passes[0].path.lower();
-    assert_eq!(way.start(), p(15.0, 5.0));
-    assert!(way.elements()[0].end.distance(p(15.0, 0.15)) < 1e-9);
-    // Outside nothing is in the way.
+    let path = plan.passes[0].path.lower();
+    assert_eq!(path.start(), p(15.0, 5.0));
+    assert!(path.elements()[0].end.distance(p(15.0, 0.15)) < 1e-9);
+    // Outside nothing is in the path.
     let plan = planned(opening(plate(), Side::Outside), &round);
     assert_eq!(plan.passes[0].path.lower().start(), p(0.0, -5.0));
 }
@@ -265,7 +265,7 @@ fn only_the_last_pass_has_to_reach_the_corners() {
     assert_eq!(rule(corner, &settings(&[0.25, 0.2])), "inner-corner");
 }
 
-/// Threaded straight out from a corner, the wire comes to it the shortest way.
+/// Threaded straight out from a corner, the wire reaches it by the shortest path.
 #[test]
 fn a_cut_may_start_at_a_corner() {
     let corner = Opening { thread: Some(p(-3.0, -4.0)), ..opening(plate(), Side::Outside) };

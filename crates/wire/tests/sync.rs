@@ -57,7 +57,7 @@ fn one_end_may_stand_still() {
 
 #[test]
 fn by_length_corners_of_both_contours_are_stations() {
-    // A square of 80 mm and a circle from the same side: each corner at a quarter of the way.
+    // A square of 80 mm and a circle from the same side: each corner at a quarter of the length.
     let lower = polygon(&[(10.0, 0.0), (10.0, 10.0), (-10.0, 10.0), (-10.0, -10.0), (10.0, -10.0)]);
     let path = Path::by_length(&lower, &circle(5.0, 0.0)).unwrap();
     assert_eq!(path.lower().elements().len(), 5);
@@ -156,7 +156,7 @@ proptest! {
     }
 }
 
-/// Lower and upper corners fall on the same eighths of the way, but for the rounding of the upper ones
+/// Lower and upper corners fall on the same eighths of the length, but for the rounding of the upper ones
 /// to so many mm.
 #[test]
 fn corners_that_rounding_parts_are_one() {

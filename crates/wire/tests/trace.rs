@@ -5,7 +5,7 @@ use geom::Vec2;
 use program::{ArcTo, Axes, Circle, Compensation, Cycle, CycleKind, Op, Pose, Program};
 use std::f64::consts::PI;
 use toolpost_wire::points::{Step, points};
-use toolpost_wire::{Path, beside, contours, cuts};
+use toolpost_wire::{Path, contours, cuts, offset_contours};
 
 type Vec3 = geom::Vec3;
 
@@ -149,13 +149,13 @@ fn a_million_tiny_moves() {
     assert_eq!((refused.diagnostic.rule, refused.offer), ("memory", None));
 }
 
-/// A square of 20 mm with the wire in it, and one beside it with the wire outside.
+/// A square of 20 mm with the wire in it, and one next to it with the wire outside.
 const TWO: &str = "O1 G21 G90 G17 G94\nG0 X10. Y10. Z0.\nG1 G41 D1 X0. F6.\nY0.\nX20.\nY20.\nX0.\nY10.\n\
                    G1 G40 X10.\nG0 X50. Y-5.\nG1 G42 D1 Y0.\nX60.\nY20.\nX40.\nY0.\nX50.\nG1 G40 Y-5.\nM30\n";
 
 #[test]
 fn what_the_control_would_offset_is_a_contour_with_its_side_and_thread_point() {
-    let found = beside(&program(TWO), None).unwrap().unwrap();
+    let found = offset_contours(&program(TWO), None).unwrap().unwrap();
     let [inner, outer] = found.as_slice() else { panic!("{found:?}") };
     assert_eq!((inner.left, inner.thread), (true, Vec2::new(10.0, 10.0)));
     assert_eq!((outer.left, outer.thread), (false, Vec2::new(50.0, -5.0)));
@@ -163,13 +163,16 @@ fn what_the_control_would_offset_is_a_contour_with_its_side_and_thread_point() {
     assert!(inner.contour.is_closed() && outer.contour.is_closed());
     assert_eq!((inner.contour.area(), outer.contour.area()), (400.0, 400.0));
     assert_eq!(inner.contour.elements()[0].line, 4);
-    assert_eq!(beside(&program("G21 G90\nG0 X0. Y0. Z0.\nG1 X1. F1.\nM30\n"), None), Ok(None));
+    assert_eq!(
+        offset_contours(&program("G21 G90\nG0 X0. Y0. Z0.\nG1 X1. F1.\nM30\n"), None),
+        Ok(None)
+    );
 }
 
 #[test]
 fn an_offset_that_is_no_lead_contour_and_lead_is_refused_with_its_line() {
     let rule = |from: &str, to: &str| {
-        let found = beside(&program(&TWO.replace(from, to)), None).unwrap_err();
+        let found = offset_contours(&program(&TWO.replace(from, to)), None).unwrap_err();
         (found.rule, found.line)
     };
     assert_eq!(rule("G0 X50. Y-5.\n", "G1 X50. Y-5.\n"), ("open-compensation", 10));
@@ -181,5 +184,5 @@ fn an_offset_that_is_no_lead_contour_and_lead_is_refused_with_its_line() {
         Op::Line(pose(1.0, 1.0)),
         Op::Line(pose(2.0, 1.0)),
     ]);
-    assert_eq!(beside(&nowhere, None).unwrap_err().rule, "nc-unknown-position");
+    assert_eq!(offset_contours(&nowhere, None).unwrap_err().rule, "nc-unknown-position");
 }

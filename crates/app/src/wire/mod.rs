@@ -1,4 +1,4 @@
-//! Wire EDM: a contour in, the proven program of a machine out. The ways of the wire are planned by the crate `wire`.
+//! Wire EDM: a contour in, the proven program of a machine out. The path of the wire is planned by the crate `wire`.
 
 mod proof;
 mod report;
@@ -14,8 +14,8 @@ use crate::watch::Watch;
 use ::proof::Tolerances;
 use ::wire::Contour;
 use ::wire::cutting::{self, Cutting};
-use ::wire::leg::Leg;
 use ::wire::points::{Refusal, Step, points};
+use ::wire::segment::Segment;
 use machine::{Machine, Wire};
 use program::{Diagnostic, within};
 use report::Cut;
@@ -42,7 +42,7 @@ pub struct Settings {
     pub uv_height: Option<f64>,
     /// How the wire goes along the contours.
     pub cutting: Cutting,
-    /// Into which points the ways are divided; `None`: into none where the control cuts arcs, else by its lowering
+    /// Into which points the paths are divided; `None`: into none where the control cuts arcs, else by its lowering
     /// tolerance.
     pub step: Option<Step>,
     /// How many points the control holds; else what its machine file says.
@@ -132,15 +132,15 @@ pub fn make(
     settings.check()?;
     set_up(&mut machine, settings)?;
     watch.begin("reading")?;
-    let Source { mut toolpath, paths, beside, height } =
+    let Source { mut toolpath, paths, offset, height } =
         Source::read(source, strict, origin, settings)?;
     let mut warnings = std::mem::take(&mut toolpath.warnings);
     watch.begin("writing")?;
-    let planned = cutting::legs(paths, &beside, &settings.cutting, height);
-    let (mut legs, rounded) = planned.map_err(|found| toolpath.refused(*found))?;
+    let planned = cutting::segments(paths, &offset, &settings.cutting, height);
+    let (mut segments, rounded) = planned.map_err(|found| toolpath.refused(*found))?;
     warnings.extend(rounded);
-    divide(&mut legs, settings.step, &machine)?;
-    let cut = Cut::of(legs, height, &machine);
+    divide(&mut segments, settings.step, &machine)?;
+    let cut = Cut::of(segments, height, &machine);
     let program = cut.program(&toolpath.program.name).map_err(Box::<Diagnostic>::from)?;
     let output = post::write(&program, &machine, &toolpath, &mut warnings)?;
     watch.begin("proving")?;
@@ -192,7 +192,7 @@ fn set_up(machine: &mut Machine, settings: &Settings) -> Result<(), Stop> {
     };
     if settings.cutting.by_control && !machine.capabilities.compensation {
         let message = format!("the control of `{}` offsets no wire", machine.name);
-        let help = "leave --by-control out: the way of the wire's centre is then worked out here";
+        let help = "leave --by-control out: the path of the wire's centre is then calculated here";
         return Err(Diagnostic::error("by-control", message).help(help).into());
     }
     if settings.cutting.tab.is_some() && !machine.blocks.contains_key("stop") {
@@ -218,21 +218,21 @@ fn set_up(machine: &mut Machine, settings: &Settings) -> Result<(), Stop> {
     Ok(())
 }
 
-/// Makes points of the ways, where the control cannot cut all of them as they are, and where a step is
+/// Divides the paths into points, where the control cannot cut all of them as they are, and where a step is
 /// asked for.
-fn divide(legs: &mut [Leg], asked: Option<Step>, machine: &Machine) -> Result<(), Stop> {
+fn divide(segments: &mut [Segment], asked: Option<Step>, machine: &Machine) -> Result<(), Stop> {
     let arcs = |contour: &Contour| contour.elements().iter().any(|e| e.turn.is_some());
     let no_arcs = machine.capabilities.arcs.is_empty();
-    let cannot = |leg: &Leg| leg.leans() || (no_arcs && arcs(leg.path.lower()));
-    if asked.is_none() && !legs.iter().any(cannot) {
+    let cannot = |segment: &Segment| segment.leans() || (no_arcs && arcs(segment.path.lower()));
+    if asked.is_none() && !segments.iter().any(cannot) {
         return Ok(());
     }
     let step = asked.unwrap_or(Step::ChordError(machine.capabilities.lowering_tolerance));
     let memory = machine.wire.and_then(|wire| wire.memory);
-    let paths: Vec<_> = legs.iter().map(|leg| &leg.path).collect();
+    let paths: Vec<_> = segments.iter().map(|segment| &segment.path).collect();
     let all = points(&paths, step, memory).map_err(refused)?;
-    for (leg, points) in legs.iter_mut().zip(all) {
-        leg.points = Some(points);
+    for (segment, points) in segments.iter_mut().zip(all) {
+        segment.points = Some(points);
     }
     Ok(())
 }

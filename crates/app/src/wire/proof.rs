@@ -7,7 +7,7 @@ use geom::Vec3;
 use machine::Machine;
 use program::{NoPose, Program};
 use proof::{Prover, Report, Tolerances};
-use wire::leg::{End, Leg};
+use wire::segment::{End, Segment};
 
 /// Runs `text` on the control of `machine` and compares it with what `cut` wants, for as long as `go_on` says so.
 ///
@@ -22,7 +22,7 @@ pub fn of(
     tolerances: &Tolerances,
     go_on: &dyn Fn() -> bool,
 ) -> Result<Report, NoPose> {
-    if !cut.legs.iter().any(Leg::leans) {
+    if !cut.segments.iter().any(Segment::leans) {
         let contour = cut.end(name, End::Lower)?;
         return Ok(proof::prove_while(&contour, machine, file, text, tolerances, go_on));
     }
@@ -47,7 +47,7 @@ pub fn of(
     Ok(report)
 }
 
-/// Compares the way of one end of the wire, the upper one so many mm up, with the contour that it follows.
+/// Compares the path of one end of the wire, the upper one at this height in mm, with the contour that it follows.
 fn one_end(
     contour: &Program,
     (end, height): (End, Option<f64>),
@@ -107,10 +107,10 @@ mod tests {
         let path = Path::by_block(circle(5.0), circle(10.0)).unwrap();
         let mut all = points(&[&path], Step::ChordError(0.01), None).unwrap();
         all[0].upper[9].y += moved;
-        let leg = Leg { points: all.pop(), ..Leg::of(path) };
+        let segment = Segment { points: all.pop(), ..Segment::of(path) };
         let text = "extends = \"bp-95d\"\n[wire]\nheight = 30\n";
         let mut machine = machine::load_text("shop.toml", text).unwrap();
-        let cut = Cut::of(vec![leg], Some(30.0), &machine);
+        let cut = Cut::of(vec![segment], Some(30.0), &machine);
         machine.capabilities.lowering_tolerance = 0.01;
         let written = post::write(&cut.program("cone").unwrap(), &machine).unwrap().text;
         of(&cut, &machine, "cone", "cone.pts", &written, &Tolerances::default(), &|| true).unwrap()

@@ -1,21 +1,21 @@
 //! What a wire cuts, in numbers: points, chord errors, areas, time, and what came from which line.
 
 use crate::summary::{duration, length, number};
-use ::wire::leg::{self, End, Leg};
 use ::wire::points::Step;
+use ::wire::segment::{self, End, Segment};
 use ::wire::{Accuracy, Chords};
-use drawing::{WireLeg, WirePicture};
+use drawing::{WirePicture, WireSegment};
 use machine::Machine;
 use program::{NoPose, Program};
 use serde_json::{Value, json};
 
-/// The most ways that a summary lists.
+/// The most segments that a summary lists.
 const MOST_ROWS: usize = 12;
 
 /// What is cut.
 pub struct Cut {
-    /// The ways of the wire, in their order.
-    pub legs: Vec<Leg>,
+    /// The segments of the wire path, in their order.
+    pub segments: Vec<Segment>,
     /// How well the points of each follow the lower and the upper contour.
     accuracy: Vec<(Accuracy, Option<Accuracy>)>,
     /// Height of the part, and so of the upper contour, mm.
@@ -26,22 +26,22 @@ pub struct Cut {
 }
 
 impl Cut {
-    /// `legs` as `machine` cuts them, in a part `height` mm high.
-    pub fn of(legs: Vec<Leg>, height: Option<f64>, machine: &Machine) -> Cut {
-        let measured = |leg: &Leg| match &leg.points {
-            Some(points) => Accuracy::of(&leg.path, points),
+    /// `segments` as `machine` cuts them, in a part `height` mm high.
+    pub fn of(segments: Vec<Segment>, height: Option<f64>, machine: &Machine) -> Cut {
+        let measured = |segment: &Segment| match &segment.points {
+            Some(points) => Accuracy::of(&segment.path, points),
             None => (Accuracy::default(), None),
         };
         Cut {
-            accuracy: legs.iter().map(measured).collect(),
+            accuracy: segments.iter().map(measured).collect(),
             height,
             memory: machine.wire.and_then(|wire| wire.memory),
             says_feed: machine.words.contains_key("F"),
-            legs,
+            segments,
         }
     }
 
-    /// Height of the part, mm, where it is said.
+    /// Height of the part, mm, where it is given.
     pub fn height(&self) -> Option<f64> {
         self.height
     }
@@ -51,15 +51,15 @@ impl Cut {
     /// # Errors
     /// A point that is not finite.
     pub fn program(&self, name: &str) -> Result<Program, NoPose> {
-        leg::program(name, &self.legs, self.height.unwrap_or(f64::INFINITY), self.says_feed)
+        segment::program(name, &self.segments, self.height.unwrap_or(f64::INFINITY), self.says_feed)
     }
 
-    /// The same as one end of the wire goes, arcs and all.
+    /// The same for one end of the wire, with its arcs.
     ///
     /// # Errors
     /// A point that is not finite.
     pub fn end(&self, name: &str, end: End) -> Result<Program, NoPose> {
-        leg::end(name, &self.legs, end, self.says_feed)
+        segment::end(name, &self.segments, end, self.says_feed)
     }
 
     /// The chord errors of both ends together.
@@ -84,29 +84,34 @@ impl Cut {
         self.chords().largest
     }
 
-    /// Points of the program: a leg that goes on from where the last one ended begins with its last.
+    /// Points of the program: a segment that goes on from where the last one ended begins with its last.
     pub fn points(&self) -> Option<usize> {
-        let points = |leg: &Leg| Some(leg.points.as_ref()?.lower.len() - usize::from(!leg.thread));
-        self.legs.iter().map(points).sum()
+        let points = |segment: &Segment| {
+            Some(segment.points.as_ref()?.lower.len() - usize::from(!segment.thread))
+        };
+        self.segments.iter().map(points).sum()
     }
 
-    /// The legs with the number of points before each, which its own are counted on from.
-    fn counted(&self) -> impl Iterator<Item = (usize, &Leg)> {
+    /// The segments with the number of points before each, which its own are counted on from.
+    fn counted(&self) -> impl Iterator<Item = (usize, &Segment)> {
         let mut all = 0;
-        self.legs.iter().map(move |leg| {
-            let before = all - usize::from(!leg.thread);
-            all = before + leg.points.as_ref().map_or(1, |points| points.lower.len());
-            (before, leg)
+        self.segments.iter().map(move |segment| {
+            let before = all - usize::from(!segment.thread);
+            all = before + segment.points.as_ref().map_or(1, |points| points.lower.len());
+            (before, segment)
         })
     }
 
     fn length(&self) -> f64 {
-        self.legs.iter().map(|leg| leg.path.length()).sum()
+        self.segments.iter().map(|segment| segment.path.length()).sum()
     }
 
     /// Cutting time, s.
     fn time(&self) -> Option<f64> {
-        self.legs.iter().map(|leg| leg.feed.map(|feed| leg.path.length() / feed * 60.0)).sum()
+        self.segments
+            .iter()
+            .map(|segment| segment.feed.map(|feed| segment.path.length() / feed * 60.0))
+            .sum()
     }
 
     /// By how much the area within the points differs from that within the contour, mm².
@@ -120,23 +125,24 @@ impl Cut {
 
     /// The points that came from a line, first and last, as the program counts them from 1.
     fn of_line(&self, line: u32) -> impl Iterator<Item = (usize, usize)> {
-        self.counted().flat_map(move |(before, leg)| {
-            let ranges = leg.points.iter().flat_map(move |points| points.of_line(line));
+        self.counted().flat_map(move |(before, segment)| {
+            let ranges = segment.points.iter().flat_map(move |points| points.of_line(line));
             ranges.map(move |range| (before + range.start + 1, before + range.end))
         })
     }
 
     /// The numbers, as JSON.
     pub fn summary(&self, selected: Option<u32>) -> Value {
-        let legs = self.legs.iter().zip(&self.accuracy);
-        let ways: Vec<Value> = legs.map(|(leg, accuracy)| way(leg, accuracy)).collect();
+        let segments = self.segments.iter().zip(&self.accuracy);
+        let segments: Vec<Value> =
+            segments.map(|(segment, accuracy)| data(segment, accuracy)).collect();
         let ranges = |line| -> Vec<Value> {
             let found = self.of_line(line);
             found.map(|(first, last)| json!({ "first": first, "last": last })).collect()
         };
         let selected = selected.map(|line| json!({ "line": line, "points": ranges(line) }));
         json!({
-            "ways": ways,
+            "ways": segments,
             "height_mm": self.height,
             "memory": self.memory,
             "points": self.points(),
@@ -152,9 +158,9 @@ impl Cut {
     /// Which points came from which line of the source, as JSON; points count from 1.
     pub fn instructions(&self) -> Value {
         let mut all = Vec::new();
-        for (before, leg) in self.counted() {
-            let Some(points) = &leg.points else { continue };
-            for (element, found) in leg.path.lower().elements().iter().enumerate() {
+        for (before, segment) in self.counted() {
+            let Some(points) = &segment.points else { continue };
+            for (element, found) in segment.path.lower().elements().iter().enumerate() {
                 let range = points.of_element(element);
                 all.push(json!({
                     "line": found.line,
@@ -169,15 +175,15 @@ impl Cut {
     /// The lines of a summary.
     pub fn rows(&self, selected: Option<u32>) -> Vec<(&'static str, String)> {
         let mut rows = Vec::new();
-        for (i, leg) in self.legs.iter().enumerate().take(MOST_ROWS) {
-            rows.push((if i == 0 { "ways" } else { "" }, told(leg)));
+        for (i, segment) in self.segments.iter().enumerate().take(MOST_ROWS) {
+            rows.push((if i == 0 { "segments" } else { "" }, row(segment)));
         }
-        if self.legs.len() > MOST_ROWS {
-            rows.push(("", format!("and {} more", self.legs.len() - MOST_ROWS)));
+        if self.segments.len() > MOST_ROWS {
+            rows.push(("", format!("and {} more", self.segments.len() - MOST_ROWS)));
         }
         rows.push(("length", length(self.length())));
         if let Some(points) = self.points() {
-            let step = self.legs.iter().find_map(|leg| Some(leg.points.as_ref()?.step));
+            let step = self.segments.iter().find_map(|segment| Some(segment.points.as_ref()?.step));
             rows.push(("points", format!("{points}, {}", step.map_or(String::new(), shown))));
             let chords = self.chords();
             if chords.count > 0 {
@@ -216,39 +222,40 @@ impl Cut {
 
     /// What is drawn.
     pub fn picture(&self, selected: Option<u32>) -> WirePicture<'_> {
-        let legs = self.legs.iter().map(|leg| WireLeg {
-            path: &leg.path,
-            points: leg.points.as_ref(),
-            threaded: leg.thread,
+        let segments = self.segments.iter().map(|segment| WireSegment {
+            path: &segment.path,
+            points: segment.points.as_ref(),
+            threaded: segment.thread,
         });
-        WirePicture { legs: legs.collect(), height: self.height, selected }
+        WirePicture { segments: segments.collect(), height: self.height, selected }
     }
 }
 
-fn way(leg: &Leg, (lower, upper): &(Accuracy, Option<Accuracy>)) -> Value {
-    let contour = leg.path.lower();
+/// A segment of the wire path, as JSON.
+fn data(segment: &Segment, (lower, upper): &(Accuracy, Option<Accuracy>)) -> Value {
+    let contour = segment.path.lower();
     let arcs = |accuracy: &Accuracy| -> Vec<Value> {
         let arcs = accuracy.arcs.iter();
         arcs.map(|arc| json!({ "line": arc.line, "radius_mm": arc.radius, "chord_error": chords(&arc.chords) }))
             .collect()
     };
-    let step = leg.points.as_ref().map(|points| match points.step {
+    let step = segment.points.as_ref().map(|points| match points.step {
         Step::Length(mm) => json!({ "arc_length_mm": mm }),
         Step::ChordError(mm) => json!({ "chord_error_mm": mm }),
         Step::Fit => json!("fit"),
     });
     json!({
-        "contour": leg.opening + 1,
-        "pass": leg.pass + 1,
-        "tab": leg.tab,
-        "line": leg.line(),
-        "feed_mm_per_s": leg.feed.map(|feed| feed / 60.0),
+        "contour": segment.opening + 1,
+        "pass": segment.pass + 1,
+        "tab": segment.tab,
+        "line": segment.line(),
+        "feed_mm_per_s": segment.feed.map(|feed| feed / 60.0),
         "closed": contour.is_closed(),
         "start_mm": contour.start().to_array(),
         "area_mm2": contour.is_closed().then(|| contour.area().abs()),
-        "length_mm": leg.path.length(),
-        "leans": leg.leans(),
-        "points": leg.points.as_ref().map(|points| points.lower.len()),
+        "length_mm": segment.path.length(),
+        "leans": segment.leans(),
+        "points": segment.points.as_ref().map(|points| points.lower.len()),
         "step": step,
         "arcs": arcs(lower),
         "upper_arcs": upper.as_ref().map(arcs),
@@ -266,19 +273,23 @@ fn chords(chords: &Chords) -> Value {
     })
 }
 
-/// A way of the wire, for a person.
-fn told(leg: &Leg) -> String {
-    let contour = leg.path.lower();
+/// A segment of the wire path, for a person.
+fn row(segment: &Segment) -> String {
+    let contour = segment.path.lower();
     let area = match contour.is_closed() {
         true => format!("closed, {} mm²", number(contour.area().abs(), 3)),
         false => String::from("open"),
     };
-    let pass = match (leg.tab, leg.pass) {
+    let pass = match (segment.tab, segment.pass) {
         (true, _) => String::from("the tab"),
         (false, pass) => format!("pass {}", pass + 1),
     };
-    let leans = if leg.leans() { ", the wire leans" } else { "" };
-    format!("contour {}, {pass}: {}, {area}{leans}", leg.opening + 1, length(leg.path.length()))
+    let leans = if segment.leans() { ", the wire leans" } else { "" };
+    format!(
+        "contour {}, {pass}: {}, {area}{leans}",
+        segment.opening + 1,
+        length(segment.path.length())
+    )
 }
 
 fn shown(step: Step) -> String {

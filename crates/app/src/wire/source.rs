@@ -6,17 +6,17 @@ use crate::input;
 use crate::toolpath::{self, Origin, Toolpath};
 use geom::Vec2;
 use program::{Circle, Diagnostic, NoPose, Op, Pose, Program};
-use wire::{Beside, Contour, Element, Path, beside, contours, cuts, dxf};
+use wire::{Contour, Element, OffsetContour, Path, contours, cuts, dxf, offset_contours};
 
-/// A source with the ways that it gives the wire.
+/// A source with the wire paths that it gives.
 pub struct Source {
     /// The source; the lower contour where there are two.
     pub toolpath: Toolpath,
-    /// One way for each opening.
+    /// One path for each opening.
     pub paths: Vec<Path>,
-    /// How the program has its control lead the wire beside each; empty where it does not.
-    pub beside: Vec<Beside>,
-    /// Height of the part, mm, where it is said: of the upper contour over the lower.
+    /// The contours from which the control of the source program offsets the wire; empty where it does not.
+    pub offset: Vec<OffsetContour>,
+    /// Height of the part, mm, where it is given: of the upper contour over the lower.
     pub height: Option<f64>,
 }
 
@@ -46,16 +46,17 @@ impl Source {
             Some(source) => Some(File::read(source, strict, origin, settings)?),
             None => None,
         };
-        let beside = match (&lower, &upper) {
+        let offset = match (&lower, &upper) {
             (File::Program(below), None) if settings.cutting.side.is_some() => {
-                let found = lower.in_one_frame().and_then(|()| beside(&below.program, start));
+                let found =
+                    lower.in_one_frame().and_then(|()| offset_contours(&below.program, start));
                 found.map_err(|found| below.refused(*found))?.unwrap_or_default()
             }
             _ => Vec::new(),
         };
-        let contours_beside = || beside.iter().map(|found| found.contour.clone()).collect();
+        let contours_offset = || offset.iter().map(|found| found.contour.clone()).collect();
         let paths = match (&lower, &upper) {
-            _ if !beside.is_empty() => Ok(upright(contours_beside())),
+            _ if !offset.is_empty() => Ok(upright(contours_offset())),
             (File::Program(below), None) => match leaning(&below.program, height) {
                 Some(ends) => ends.and_then(|(below, above)| {
                     lower.in_one_frame()?;
@@ -88,7 +89,7 @@ impl Source {
         if let Some(File::Drawing(above, _) | File::Program(above)) = upper {
             toolpath = toolpath.read_with(above);
         }
-        Ok(Source { toolpath, paths, beside, height })
+        Ok(Source { toolpath, paths, offset, height })
     }
 }
 
@@ -262,7 +263,7 @@ fn height(origin: &Origin, settings: &Settings) -> Result<Option<f64>, Stop> {
     }
 }
 
-/// The ways of both ends of a wire that leans by itself, such as by U and V.
+/// The paths of both ends of a wire that the program itself tilts, such as by U and V.
 fn leaning(
     program: &Program,
     height: Option<f64>,

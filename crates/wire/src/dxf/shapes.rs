@@ -194,7 +194,7 @@ fn close(piece: &mut [Element], closed: bool) {
     }
 }
 
-/// Lines and arcs between corners, each with the bulge of the way to the next: the tangent of a
+/// Lines and arcs between corners, each with the bulge to the next: the tangent of a
 /// quarter of the sweep.
 fn polyline(corners: &[(Vec2, f64)], closed: bool) -> Vec<Element> {
     let next = corners.iter().cycle().skip(1);

@@ -1,13 +1,13 @@
-//! The ways of the wire as a neutral program: as they are, or as points.
+//! The path of the wire as a neutral program: as lines and arcs, or as points.
 
 use crate::points::Points;
 use crate::{Contour, Element, Path};
 use geom::{Vec2, Vec3};
 use program::{ArcTo, Circle, Compensation, Feed, NoPose, Op, Pose, Program};
 
-/// A way of the wire without a break.
+/// A segment of the wire path: what is cut without a break, such as one pass with its leads.
 #[derive(Clone, Debug)]
-pub struct Leg {
+pub struct Segment {
     /// Where the wire goes.
     pub path: Path,
     /// The same as points, where the control takes those.
@@ -18,11 +18,11 @@ pub struct Leg {
     pub opening: usize,
     /// 0 for the first pass there.
     pub pass: usize,
-    /// What the control does to the wire, where it does.
+    /// What the control itself does to the wire; `None`: nothing.
     pub by_control: Option<ByControl>,
-    /// Whether it cuts the tab that has held the part.
+    /// Whether it cuts the tab that held the part.
     pub tab: bool,
-    /// Whether the wire is threaded at its start; otherwise it stands there already.
+    /// Whether the wire is threaded at its start; otherwise it is there already.
     pub thread: bool,
     /// Whether the wire is cut at its end.
     pub cut: bool,
@@ -35,14 +35,14 @@ pub struct Leg {
 pub struct ByControl {
     /// On which side and by which register it offsets it.
     pub offset: Compensation,
-    /// By how much it leans it, degrees as [`Op::Taper`] counts them.
+    /// The taper, degrees as [`Op::Taper`] counts them.
     pub taper: f64,
 }
 
 impl ByControl {
     const OFF: ByControl = ByControl { offset: Compensation::Off, taper: 0.0 };
 
-    fn say(self, program: &mut Program, line: u32, leans: bool) {
+    fn push(self, program: &mut Program, line: u32, leans: bool) {
         program.push(line, Op::Compensation(self.offset));
         if leans {
             program.push(line, Op::Taper(self.taper));
@@ -59,10 +59,10 @@ pub enum End {
     Upper,
 }
 
-impl Leg {
+impl Segment {
     /// A whole opening along `path`.
-    pub fn of(path: Path) -> Leg {
-        Leg {
+    pub fn of(path: Path) -> Segment {
+        Segment {
             path,
             points: None,
             feed: None,
@@ -96,63 +96,68 @@ impl Leg {
     }
 }
 
-/// The program of `legs`: as points where they have them, else with their arcs. Leaning wires reach
-/// the upper contour at `height` mm. With `feeds` it says how fast.
+/// The program of `segments`: as points where they have them, else with their arcs. Wires with a taper reach
+/// the upper contour at `height` mm. With `feeds` the program has feeds.
 ///
 /// # Errors
 /// A point that is not finite.
-pub fn program(name: &str, legs: &[Leg], height: f64, feeds: bool) -> Result<Program, NoPose> {
-    assemble(name, legs, feeds, |leg| match &leg.points {
-        Some(points) => divided(points, leg.line(), height),
-        None => exact(leg.path.lower()),
+pub fn program(
+    name: &str,
+    segments: &[Segment],
+    height: f64,
+    feeds: bool,
+) -> Result<Program, NoPose> {
+    assemble(name, segments, feeds, |segment| match &segment.points {
+        Some(points) => divided(points, segment.line(), height),
+        None => exact(segment.path.lower()),
     })
 }
 
-/// The same with every arc, as one end of the wire goes.
+/// The same with every arc, for one end of the wire.
 ///
 /// # Errors
 /// A point that is not finite.
-pub fn end(name: &str, legs: &[Leg], end: End, feeds: bool) -> Result<Program, NoPose> {
-    assemble(name, legs, feeds, |leg| exact(leg.contour(end)))
+pub fn end(name: &str, segments: &[Segment], end: End, feeds: bool) -> Result<Program, NoPose> {
+    assemble(name, segments, feeds, |segment| exact(segment.contour(end)))
 }
 
-/// Where a leg starts, and its moves with their lines of the source.
+/// Where a segment starts, and its moves with their lines of the source.
 type Moves = Result<(Pose, Vec<(u32, Op)>), NoPose>;
 
 fn assemble(
     name: &str,
-    legs: &[Leg],
+    segments: &[Segment],
     feeds: bool,
-    moves: impl Fn(&Leg) -> Moves,
+    moves: impl Fn(&Segment) -> Moves,
 ) -> Result<Program, NoPose> {
     let mut program = Program::new(name);
     let mut feed = None;
     let mut line = 0;
-    for leg in legs {
-        let (start, moves) = moves(leg)?;
-        line = leg.line();
-        if leg.stop {
+    for segment in segments {
+        let (start, moves) = moves(segment)?;
+        line = segment.line();
+        if segment.stop {
             program.push(line, Op::Stop);
         }
-        if leg.thread {
+        if segment.thread {
             program.push(line, Op::Rapid(start));
             program.push(line, Op::ThreadWire);
         }
-        if let Some(new) = leg.feed.filter(|new| feeds && feed.replace(*new) != Some(*new)) {
+        if let Some(new) = segment.feed.filter(|new| feeds && feed.replace(*new) != Some(*new)) {
             program.push(line, Op::Feed(Feed::PerMinute(new)));
         }
-        // The control offsets and leans the wire from the first move on, and ends that with the last.
+        // The control offsets and tilts the wire from the first move on, and ends that with the last.
         let last = moves.len().saturating_sub(1);
         for (i, (from, op)) in moves.into_iter().enumerate() {
             line = from;
-            match leg.by_control {
-                Some(it) if i == 0 => it.say(&mut program, line, it.taper != 0.0),
-                Some(it) if i == last => ByControl::OFF.say(&mut program, line, it.taper != 0.0),
+            match segment.by_control {
+                Some(it) if i == 0 => it.push(&mut program, line, it.taper != 0.0),
+                Some(it) if i == last => ByControl::OFF.push(&mut program, line, it.taper != 0.0),
                 _ => {}
             }
             program.push(line, op);
         }
-        if leg.cut {
+        if segment.cut {
             program.push(line, Op::CutWire);
         }
     }
