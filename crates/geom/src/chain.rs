@@ -151,8 +151,8 @@ fn mated(pieces: &[Piece], gap: f64, gaps: &mut Vec<(Vec2, Vec2)>) -> Result<Mat
     let mut pairs = Vec::new();
     for (i, end) in ends.iter().enumerate().filter(|(i, _)| mates[*i].is_none()) {
         let (x, y) = cell(*end);
-        let beside = |x: i64, y: i64| (-1..=1).map(move |dy| (x, y.saturating_add(dy)));
-        for place in (-1..=1).flat_map(|dx| beside(x.saturating_add(dx), y)) {
+        let column = |x: i64, y: i64| (-1..=1).map(move |dy| (x, y.saturating_add(dy)));
+        for place in (-1..=1).flat_map(|dx| column(x.saturating_add(dx), y)) {
             for &j in cells.get(&place).into_iter().flatten() {
                 looks += 1;
                 let apart = end.distance(ends[j]);

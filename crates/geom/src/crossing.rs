@@ -34,7 +34,7 @@ impl Element {
         let places =
             if lines && slope.abs() < PARALLEL { [None; 2] } else { first.meets(&second, SAME) };
         places.into_iter().flatten().filter_map(move |point| {
-            let (from_end, from_start) = (back.way_to(point)?, next.way_to(point)?);
+            let (from_end, from_start) = (back.distance_to(point)?, next.distance_to(point)?);
             Some(Crossing {
                 point,
                 on_first: 1.0 - from_end / first_length,
@@ -84,7 +84,7 @@ impl Element {
         consider(self.end, foot(self.end, other));
         consider(foot(other.start, self), other.start);
         consider(foot(other.end, self), other.end);
-        // Else the shortest way between two inner points is at right angles to both: on an arc it
+        // Else the shortest distance between two inner points is at right angles to both: on an arc it
         // points at the centre.
         for (arc, rest, is_this) in [(self, other, true), (other, self, false)] {
             let Some(turn) = arc.turn else { continue };
@@ -112,9 +112,9 @@ impl Element {
 
     /// How far along this element `point` lies, mm, which is on its line or circle; `None` beyond its
     /// ends.
-    fn way_to(&self, point: Vec2) -> Option<f64> {
+    fn distance_to(&self, point: Vec2) -> Option<f64> {
         let length = self.length();
-        let way = match self.turn {
+        let distance = match self.turn {
             None => (point - self.start).dot(self.tangent(0.0)),
             Some(Turn { center, sweep }) => {
                 let (from, to) = (self.start - center, point - center);
@@ -125,7 +125,7 @@ impl Element {
                 angle / sweep.abs() * length
             }
         };
-        (way > -SAME && way < length + SAME).then(|| way.clamp(0.0, length))
+        (distance > -SAME && distance < length + SAME).then(|| distance.clamp(0.0, length))
     }
 }
 
@@ -152,7 +152,7 @@ impl Carrier {
         }
     }
 
-    /// Its direction, one way or the other, where it passes `at`.
+    /// Its direction, forwards or backwards, where it passes `at`.
     pub(crate) fn direction_at(&self, at: Vec2) -> Vec2 {
         match self {
             Carrier::Line { along, .. } => *along,
@@ -165,8 +165,8 @@ impl Carrier {
     pub(crate) fn meets(&self, other: &Carrier, reach: f64) -> [Option<Vec2>; 2] {
         match (self, other) {
             (Carrier::Line { point, along }, Carrier::Line { point: q, along: other }) => {
-                let way = (*q - *point).perp_dot(*other) / along.perp_dot(*other);
-                [way.is_finite().then(|| *point + *along * way), None]
+                let distance = (*q - *point).perp_dot(*other) / along.perp_dot(*other);
+                [distance.is_finite().then(|| *point + *along * distance), None]
             }
             (Carrier::Line { point, along }, Carrier::Circle { center, radius })
             | (Carrier::Circle { center, radius }, Carrier::Line { point, along }) => {

@@ -38,7 +38,7 @@ impl Element {
         Element { start, end, turn: Some(Turn { center, sweep }) }
     }
 
-    /// The same way back.
+    /// The same element, run backwards.
     pub fn reversed(&self) -> Element {
         let turn = self.turn.map(|turn| Turn { sweep: -turn.sweep, ..turn });
         Element { start: self.end, end: self.start, turn }
@@ -174,16 +174,16 @@ impl Element {
         triangle + segment
     }
 
-    /// By how much the way turns to the left, radians for each mm; 0 for a line.
+    /// By how much the element turns to the left, radians per mm; 0 for a line.
     pub fn curvature(&self) -> f64 {
         self.turn.map_or(0.0, |turn| turn.sweep.signum() / self.start.distance(turn.center))
     }
 
-    /// The element that runs beside this one at `distance` mm on its left (on its right where
+    /// The element parallel to this one at `distance` mm on its left (on its right where
     /// negative): an arc stays an arc about its centre. `None` where the element has no length, or
     /// nothing is left of the radius of an arc.
     pub fn parallel(&self, distance: f64) -> Option<Element> {
-        let beside = |p: Vec2, tangent: Vec2| p + tangent.perp() * distance;
+        let moved = |p: Vec2, tangent: Vec2| p + tangent.perp() * distance;
         let (first, last) = (self.tangent(0.0), self.tangent(1.0));
         if first == Vec2::ZERO || last == Vec2::ZERO {
             return None;
@@ -194,11 +194,11 @@ impl Element {
                 return None;
             }
         }
-        Some(Element { start: beside(self.start, first), end: beside(self.end, last), ..*self })
+        Some(Element { start: moved(self.start, first), end: moved(self.end, last), ..*self })
     }
 }
 
-/// The angle by which the way turns from the direction `first` to `next`, radians in (−π, π], positive
+/// The angle from the direction `first` to `next`, radians in (−π, π], positive
 /// to the left; 0 where one has no direction.
 pub fn turn_angle(first: Vec2, next: Vec2) -> f64 {
     let angle = first.perp_dot(next).atan2(first.dot(next));

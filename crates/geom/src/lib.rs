@@ -1,8 +1,28 @@
-//! Points, lines and arcs in space, and letters made of lines.
+//! Points, lines and arcs in space, regions of the plane, and letters made of lines.
 //!
-//! Coordinates are millimetres in a right-handed frame, angles are radians, and every function is a
-//! pure function of its arguments: the same input gives the same bits on every machine and thread.
-//! There is no input or output here and nothing knows of a machine.
+//! The crate promises geometry that keeps arcs as arcs, with bounds on its errors that are stated where a function has any
+//! ([`region`]).
+//!
+//! Coordinates are millimetres in a right-handed frame, angles are radians, counter-clockwise is positive, and every function
+//! is a pure function of its arguments: the same input gives the same bits on every machine and thread.
+//!
+//! ```
+//! use toolpost_geom::Vec2;
+//! use toolpost_geom::region::Region;
+//!
+//! # fn main() -> Result<(), toolpost_geom::region::RegionError> {
+//! // A disc of 10 mm and the hole of 4 mm in it: where may the centre of a tool of 1 mm go?
+//! let disc = Region::disc(Vec2::ZERO, 5.0)?;
+//! let ring = disc.difference(&Region::disc(Vec2::ZERO, 2.0)?)?;
+//! let room = ring.offset(-0.5)?;
+//! // Between the radii 4.5 mm and 2.5 mm, and the arcs are still arcs.
+//! assert!((room.area() - std::f64::consts::PI * (4.5 * 4.5 - 2.5 * 2.5)).abs() < 1e-6);
+//! assert!(room.rings().flat_map(|ring| ring.elements()).all(|element| element.turn.is_some()));
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! It never reads or writes anything, and it knows nothing of a machine.
 
 mod arc;
 mod chain;
@@ -40,7 +60,7 @@ pub fn angle_between(a: Vec3, b: Vec3) -> f64 {
     a.cross(b).length().atan2(a.dot(b))
 }
 
-/// The unit vector `t` (0 to 1) of the way from `a` to `b` on their great circle.
+/// The unit vector at the fraction `t` (0 to 1) of the great circle from `a` to `b`.
 pub fn between(a: Vec3, b: Vec3, t: f64) -> Vec3 {
     let angle = angle_between(a, b);
     let (from, to) = match angle > 0.1 && angle < 3.1 {
@@ -51,7 +71,7 @@ pub fn between(a: Vec3, b: Vec3, t: f64) -> Vec3 {
     (a * from + b * to).normalize_or(b)
 }
 
-/// How far the unit vector `v` is from the way from `a` to `b` on their great circle, radians.
+/// How far the unit vector `v` is from the great circle between `a` and `b`, radians.
 pub fn off_great_circle(a: Vec3, b: Vec3, v: Vec3) -> f64 {
     let normal = a.cross(b);
     let ends = angle_between(v, a).min(angle_between(v, b));

@@ -1,4 +1,4 @@
-//! Rotations as three angles, the ways in which controls write a tilted plane.
+//! Rotations as three angles, in the orders in which controls write a tilted plane.
 
 use crate::{ANGLE_EPSILON, Mat3, wrap};
 

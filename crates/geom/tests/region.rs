@@ -287,18 +287,18 @@ fn what_crosses_in_too_many_places_is_refused_before_it_takes_the_memory() {
     assert_eq!(inside(100).unwrap().rings().count(), 1 + 99 * 99);
 }
 
-/// A grid of ways: at each of 14,400 places some 16 lines meet.
+/// A grid of strokes: at each of 14,400 points some 16 lines meet.
 #[test]
-fn ways_that_meet_do_not_count_as_crossing() {
+fn strokes_that_meet_do_not_count_as_crossing() {
     let place = |x: u32, y: u32| Vec2::new(f64::from(x), f64::from(y));
-    let ways: Vec<_> = (0..120)
+    let network: Vec<_> = (0..120)
         .flat_map(|x| (0..120).map(move |y| (x, y)))
         .flat_map(|(x, y)| {
             let ends = [place(x + 1, y), place(x, y + 1)];
             ends.map(|end| (Element::line(place(x, y), end), 0.2))
         })
         .collect();
-    let grid = Region::inside(&strokes(&ways).unwrap(), Fill::Positive).unwrap();
+    let grid = Region::inside(&strokes(&network).unwrap(), Fill::Positive).unwrap();
     assert_eq!((grid.islands().len(), grid.rings().count()), (1, 1 + 119 * 119));
 }
 
@@ -463,10 +463,10 @@ proptest! {
     }
 }
 
-/// Ways on a grid, where many meet, go straight on or back on each other, with dots and arcs.
-fn network() -> impl Strategy<Value = Vec<(Element, f64)>> {
+/// Strokes on a grid, where many meet, go straight on or back on each other, with dots and arcs.
+fn any_network() -> impl Strategy<Value = Vec<(Element, f64)>> {
     let spot = (0..4i32, 0..4i32).prop_map(|(x, y)| Vec2::new(f64::from(x), f64::from(y)));
-    let way = (spot.clone(), spot, 0..4u32, 0..2u32).prop_map(|(from, to, form, wide)| {
+    let stroke = (spot.clone(), spot, 0..4u32, 0..2u32).prop_map(|(from, to, form, wide)| {
         let width = [0.4, 2.6][wide as usize];
         let (middle, half) = ((from + to) / 2.0, (to - from) / 2.0);
         let element = match form {
@@ -477,20 +477,20 @@ fn network() -> impl Strategy<Value = Vec<(Element, f64)>> {
         };
         (element, width)
     });
-    proptest::collection::vec(way, 1..12)
+    proptest::collection::vec(stroke, 1..12)
 }
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(512))]
 
     #[test]
-    fn a_network_of_strokes_covers_what_its_strokes_cover(ways in network()) {
-        let together = Region::inside(&strokes(&ways).unwrap(), Fill::Positive).unwrap();
-        let each: Vec<Region> = ways
+    fn a_network_of_strokes_covers_what_its_strokes_cover(network in any_network()) {
+        let together = Region::inside(&strokes(&network).unwrap(), Fill::Positive).unwrap();
+        let each: Vec<Region> = network
             .iter()
-            .map(|(way, width)| match way.length() > 0.0 {
-                true => Region::stroke(way, *width, Cap::Round).unwrap(),
-                false => Region::disc(way.start, width / 2.0).unwrap(),
+            .map(|(stroke, width)| match stroke.length() > 0.0 {
+                true => Region::stroke(stroke, *width, Cap::Round).unwrap(),
+                false => Region::disc(stroke.start, width / 2.0).unwrap(),
             })
             .collect();
         let united = Region::union_of(&each).unwrap();
@@ -519,11 +519,11 @@ fn between_strokes_that_go_on_nearly_straight_there_is_no_slit() {
         let place = |x: f64, y: f64| Vec2::from_angle(angle).rotate(Vec2::new(x, y));
         let center = place(skew * 1e-6, 0.275);
         let end = center + Vec2::from_angle(1.0).rotate(-center);
-        let ways = [
+        let network = [
             Element::line(place(-1.0, 0.0), Vec2::ZERO),
             Element::arc(Vec2::ZERO, end, center, 1.0),
         ];
-        let rings = strokes(&ways.map(|way| (way, 0.3))).unwrap();
+        let rings = strokes(&network.map(|stroke| (stroke, 0.3))).unwrap();
         let region = Region::inside(&rings, Fill::Positive).unwrap();
         close(region.area(), 0.3 * 1.275 + PI * 0.0225);
         assert_eq!((region.islands().len(), region.rings().count()), (1, 1), "{skew}");
@@ -542,12 +542,12 @@ proptest! {
     fn a_way_of_strokes_at_any_angle_is_one(
         turns in proptest::collection::vec((-1.0..1.0f64, 0.2..2.0f64), 1..6), bends in 0..2u32
     ) {
-        let (mut at, mut angle, mut ways) = (Vec2::new(7.1, -3.3), 0.0, Vec::new());
+        let (mut at, mut angle, mut network) = (Vec2::new(7.1, -3.3), 0.0, Vec::new());
         for (turn, length) in turns {
             angle += turn;
             let along = Vec2::from_angle(angle);
             let center = at + along.perp();
-            let way = match bends {
+            let stroke = match bends {
                 0 => Element::line(at, at + along * length),
                 _ => {
                     let end = center + Vec2::from_angle(length).rotate(at - center);
@@ -555,10 +555,10 @@ proptest! {
                     Element::arc(at, end, center, length)
                 }
             };
-            at = way.end;
-            ways.push((way, 0.31));
+            at = stroke.end;
+            network.push((stroke, 0.31));
         }
-        let region = Region::inside(&strokes(&ways).unwrap(), Fill::Positive).unwrap();
+        let region = Region::inside(&strokes(&network).unwrap(), Fill::Positive).unwrap();
         prop_assert_eq!(region.islands().len(), 1);
     }
 }

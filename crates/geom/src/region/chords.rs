@@ -1,6 +1,6 @@
 //! Elements as chords: what the kernel is given.
 
-use super::kernel::{Keep, Kernel, Operand, Place};
+use super::kernel::{GridPoint, Keep, Kernel, Operand};
 use super::{Fill, Region, RegionError, crossings, refit};
 use crate::crossing::Carrier;
 use crate::{Element, Turn, Vec2};
@@ -68,7 +68,7 @@ struct Chords {
 
 impl Chords {
     fn add(&mut self, chain: &[Element], operand: Operand) {
-        let starts = chain.iter().map(|element| Place::of(element.start));
+        let starts = chain.iter().map(|element| GridPoint::of(element.start));
         let ends = starts.clone().cycle().skip(1);
         for (element, (mut from, end)) in chain.iter().zip(starts.zip(ends)) {
             // There are no more sources than edges.
@@ -129,14 +129,14 @@ impl Inner {
         usize::try_from(self.last - self.first + 1).unwrap_or(0)
     }
 
-    fn places(&self) -> impl Iterator<Item = Place> {
+    fn places(&self) -> impl Iterator<Item = GridPoint> {
         // Circles that are one but for rounding get the same places.
-        let center = Place::of(self.center).point();
-        let radius = Place::of(Vec2::splat(self.radius)).point().x;
+        let center = GridPoint::of(self.center).point();
+        let radius = GridPoint::of(Vec2::splat(self.radius)).point().x;
         (0..=self.last - self.first).map(move |i| {
             let step = if self.backwards { self.last - i } else { self.first + i };
             let angle = step.rem_euclid(self.steps) as f64 / self.steps as f64 * TAU;
-            Place::of(center + Vec2::from_angle(angle) * radius)
+            GridPoint::of(center + Vec2::from_angle(angle) * radius)
         })
     }
 }

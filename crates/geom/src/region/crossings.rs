@@ -15,14 +15,14 @@ const PAIRS_OF_A_CROSSING: usize = 32;
 
 /// Where an element of a ring crosses another.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(super) struct RingCrossing {
     pub ring: usize,
     pub element: usize,
     pub point: Vec2,
 }
 
-/// For each element of `rings` that crosses others one place where it does, in their order.
-pub(super) fn crossings(rings: &[&[Element]]) -> Vec<Place> {
+/// For each element of `rings` that crosses others one crossing, in their order.
+pub(super) fn crossings(rings: &[&[Element]]) -> Vec<RingCrossing> {
     let elements: Vec<(usize, usize, &Element)> = rings
         .iter()
         .enumerate()
@@ -53,7 +53,7 @@ pub(super) fn crossings(rings: &[&[Element]]) -> Vec<Place> {
     let found = elements.iter().zip(places);
     found
         .filter_map(|((ring, element, _), point)| {
-            Some(Place { ring: *ring, element: *element, point: point? })
+            Some(RingCrossing { ring: *ring, element: *element, point: point? })
         })
         .collect()
 }
@@ -97,10 +97,10 @@ fn crossing(first: &Element, second: &Element) -> Option<Vec2> {
     let is_deep = |point: Vec2, other: Option<Vec2>| {
         let direction = |of: &Element| Carrier::of(of, of.start).direction_at(point);
         let across = direction(first).perp_dot(direction(second)).abs();
-        // On the way to an end, or to the other crossing, the one gets beside the other by no more
-        // than the way times the angle of the two.
-        let mut beside = ends.iter().copied().chain(other).map(|end| end.distance(point) * across);
-        beside.all(|beside| beside > TOUCH)
+        // Between here and an end, or the other crossing, the two get no farther apart than the distance
+        // times the angle between them.
+        let mut apart = ends.iter().copied().chain(other).map(|end| end.distance(point) * across);
+        apart.all(|apart| apart > TOUCH)
     };
     one.filter(|point| is_deep(*point, other)).or(other.filter(|point| is_deep(*point, one)))
 }

@@ -52,7 +52,7 @@ impl<'a> Index<'a> {
         Index { pieces, tree }
     }
 
-    /// The island that `point` is in. On the boundary either may be told.
+    /// The island that `point` is in. On the boundary the answer may be either.
     pub fn island_at(&self, point: Vec2) -> Option<usize> {
         // What winds around the point is on its right.
         let mut windings: Vec<(usize, i32)> = self

@@ -22,15 +22,15 @@ const UNITS: f64 = 1e7;
 /// The kernel takes up to 2⁶² units; half of that is 200 000 km.
 const FARTHEST: f64 = (1u64 << 61) as f64;
 
-/// A place on the grid of units.
+/// A point of the grid of units.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-pub(super) struct Place(IntPoint<i64>);
+pub(super) struct GridPoint(IntPoint<i64>);
 
-impl Place {
+impl GridPoint {
     /// The nearest to `point`, mm.
-    pub fn of(point: Vec2) -> Place {
+    pub fn of(point: Vec2) -> GridPoint {
         let units = |mm: f64| (mm * UNITS).round().clamp(-FARTHEST, FARTHEST) as i64;
-        Place(IntPoint::new(units(point.x), units(point.y)))
+        GridPoint(IntPoint::new(units(point.x), units(point.y)))
     }
 
     /// In mm.
@@ -43,8 +43,8 @@ impl Place {
 /// A straight piece of the boundary of a result.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Edge {
-    pub start: Place,
-    pub end: Place,
+    pub start: GridPoint,
+    pub end: GridPoint,
     /// Number of the element that it is a piece of.
     pub source: usize,
 }
@@ -92,7 +92,7 @@ impl Kernel {
     }
 
     /// Adds an edge of a closed chain. One without length adds nothing.
-    pub fn add(&mut self, start: Place, end: Place, source: u32, operand: Operand) {
+    pub fn add(&mut self, start: GridPoint, end: GridPoint, source: u32, operand: Operand) {
         let shape = match operand {
             Operand::First => ShapeType::Subject,
             Operand::Second => ShapeType::Clip,
@@ -115,8 +115,8 @@ impl Kernel {
             Fill::Positive => FillRule::Positive,
         };
         let edge = |edge: DataVectorEdge<i64, Carried>| Edge {
-            start: Place(edge.a),
-            end: Place(edge.b),
+            start: GridPoint(edge.a),
+            end: GridPoint(edge.b),
             source: edge.data.0 as usize,
         };
         let ring = |ring: Vec<_>| ring.into_iter().map(edge).collect();

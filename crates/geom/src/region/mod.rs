@@ -14,8 +14,8 @@
 //! Arcs are cut into `chords`; the `kernel` does the boolean in whole numbers, which has no wrong
 //! answer where edges lie on each other, circles touch and ends meet, as on a board they all do;
 //! `refit` puts the arcs back. An `offset` is the union of what each element of the boundary sweeps,
-//! in the same kernel. [`strokes`] makes the rings of a network of ways, without the parts of them that
-//! others cover; an [`Index`] finds what of a region is near a place.
+//! in the same kernel. [`strokes`] makes the rings of a network of strokes, without the parts of them that
+//! others cover; an [`Index`] finds what of a region is near a point.
 //!
 //! # What is promised
 //!
@@ -23,9 +23,9 @@
 //!   the corner is where they do, to rounding, however flat; where only the lines or circles that they
 //!   are pieces of would, it is where their chords do.
 //! - Each operation adds less than 1 µm to what a boundary is off, and no arc gets longer than what it is
-//!   made of. What is thinner than 1 µm may vanish, also where boundaries run beside each other, and arcs
+//!   made of. What is thinner than 1 µm may vanish, also where boundaries run next to each other, and arcs
 //!   that come nearer to something than 1 µm may be joined with it, or not. Where they would cross it,
-//!   they are left as chords, up to 0.9 µm beside the arc; nothing else is. Where an arc does not reach
+//!   they are left as chords, up to 0.9 µm from the arc; nothing else is. Where an arc does not reach
 //!   the place that it must end in, a line of less than 1 µm leads there.
 //! - What goes back on itself within 2 nm is no boundary: there are no slits or spikes of rounding.
 //! - The rings of a region cross neither themselves nor each other, but by rounding (2 nm). They may
@@ -81,7 +81,7 @@ pub struct Island {
 pub enum Fill {
     /// An odd number of times.
     EvenOdd,
-    /// More often one way than the other.
+    /// More often in one direction than in the other.
     NonZero,
     /// More often counter-clockwise than clockwise.
     Positive,
@@ -229,7 +229,7 @@ impl Region {
         boxes.reduce(|(low, high), (other, second)| (low.min(other), high.max(second)))
     }
 
-    /// Whether `point` is in it. On the boundary either may be told.
+    /// Whether `point` is in it. On the boundary the answer may be either.
     pub fn contains(&self, point: Vec2) -> bool {
         self.islands.iter().any(|island| island.contains(point))
     }

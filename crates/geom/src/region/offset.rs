@@ -1,14 +1,14 @@
 //! A region grown or shrunk by a distance: where the centre of a tool of that radius may go.
 //!
-//! What grows a region is swept by its boundary: beside a line a rectangle, beside an arc a sector of a
-//! ring, about a corner that points outwards a pie. All of these run counter-clockwise, and where they
-//! share a side, the one runs along it forth and the other back. So their outlines and those of the
-//! region add up to one chain: beside each element its parallel, about a corner that points outwards an
-//! arc, and at one that points inwards the way by the corner itself. The grown region is what the
+//! The boundary of a region sweeps the area by which the region grows: a line sweeps a rectangle, an arc a sector of a
+//! ring, a corner that points outwards a pie. All of these run counter-clockwise, and where they
+//! share a side, one runs along it forwards and the other backwards. So their outlines and those of the
+//! region add up to one chain: for each element its parallel, about a corner that points outwards an
+//! arc, and at one that points inwards two lines through the corner itself. The grown region is what the
 //! chain runs around at least once ([`Fill::Positive`]), however often it crosses itself. Shrinking is
 //! growing what is outside: the same chain on the other side.
 //!
-//! Where parallels of lines cross at a corner that points inwards, the chain goes on there, without the way by
+//! Where parallels of lines cross at a corner that points inwards, the chain goes on there, without the lines through
 //! the corner: the kernel has fewer crossings to look for.
 
 use super::chords::boolean;
@@ -21,11 +21,11 @@ use std::iter;
 /// Tips of parallels this near to each other need nothing between them, mm.
 const SAME: f64 = 1e-6;
 
-/// A turn that is so near to half a turn is one, radians: rounding of places.
+/// A turn that is so near to half a turn is one, radians: rounding of coordinates.
 const BACK: f64 = 1e-5;
 
 impl Region {
-    /// All places up to `distance` mm from this region; where negative, all places in it that are
+    /// All points up to `distance` mm from this region; where negative, all points in it that are
     /// farther than that from its boundary. Corners become round.
     ///
     /// # Errors
@@ -34,13 +34,13 @@ impl Region {
         if distance.is_nan() || distance.abs() > FAR {
             return Err(RegionError::NotALength(distance));
         }
-        let chains: Vec<_> = self.chains().map(|chain| beside(chain, distance)).collect();
+        let chains: Vec<_> = self.chains().map(|chain| chain_at(chain, distance)).collect();
         boolean(chains.iter().map(Vec::as_slice), iter::empty(), Keep::Union, Fill::Positive)
     }
 }
 
 /// The chain at `distance` mm on the right of a ring.
-fn beside(ring: &[Element], distance: f64) -> Vec<Element> {
+fn chain_at(ring: &[Element], distance: f64) -> Vec<Element> {
     let mut sides: Vec<Side> = ring.iter().map(|element| Side::of(element, distance)).collect();
     for i in 0..ring.len() {
         trim(ring, &mut sides, i, distance);
@@ -49,20 +49,20 @@ fn beside(ring: &[Element], distance: f64) -> Vec<Element> {
     let nexts = ring.iter().zip(&sides).cycle().skip(1);
     for ((element, side), (next, after)) in ring.iter().zip(&sides).zip(nexts) {
         let corner = next.start;
-        let from = match side.way {
-            Way::Parallel(parallel) => {
+        let from = match side.curve {
+            OffsetCurve::Parallel(parallel) => {
                 chain.push(parallel);
                 parallel.end
             }
-            Way::Around(center) => {
+            OffsetCurve::Around(center) => {
                 chain.push(Element::line(element.start, center));
                 chain.push(Element::line(center, corner));
                 corner
             }
         };
-        let to = match after.way {
-            Way::Parallel(parallel) => parallel.start,
-            Way::Around(_) => corner,
+        let to = match after.curve {
+            OffsetCurve::Parallel(parallel) => parallel.start,
+            OffsetCurve::Around(_) => corner,
         };
         let line = |from, to| (from != to).then(|| Element::line(from, to));
         let turn = turn_at(element, next);
@@ -79,8 +79,8 @@ fn beside(ring: &[Element], distance: f64) -> Vec<Element> {
 }
 
 /// Lets the parallels of line `i` and the next one end where they cross, at a corner that points inwards and
-/// is not sharp. What of the chain is left out there runs around what lies beside both lines: without it,
-/// the chain runs around that once less, and still once.
+/// is not sharp. The part of the chain that is left out there runs around the area swept by both lines: without it,
+/// the chain runs around that area once less, and still once.
 fn trim(ring: &[Element], sides: &mut [Side], i: usize, distance: f64) {
     let k = (i + 1) % ring.len();
     let (Some(element), Some(next)) = (ring.get(i), ring.get(k)) else { return };
@@ -90,20 +90,23 @@ fn trim(ring: &[Element], sides: &mut [Side], i: usize, distance: f64) {
         return;
     }
     let Ok(
-        [Side { way: Way::Parallel(way), end, .. }, Side { way: Way::Parallel(after), start, .. }],
+        [
+            Side { curve: OffsetCurve::Parallel(before), end, .. },
+            Side { curve: OffsetCurve::Parallel(after), start, .. },
+        ],
     ) = sides.get_disjoint_mut([i, k])
     else {
         return;
     };
-    // The one's end is beside the other line too, and neither parallel gets turned round.
+    // The end of one is also at right angles to the other line, and neither parallel gets reversed.
     let (from, to) = (*end - next.start, *start - next.start);
     let crossing = next.start + (from + to) / (1.0 + along.dot(then));
     if (*start - element.start).dot(along) >= 0.0
         && (next.end - *end).dot(then) >= 0.0
-        && (crossing - way.start).dot(along) > 0.0
+        && (crossing - before.start).dot(along) > 0.0
         && (after.end - crossing).dot(then) > 0.0
     {
-        way.end = crossing;
+        before.end = crossing;
         after.start = crossing;
     }
 }
@@ -111,39 +114,39 @@ fn trim(ring: &[Element], sides: &mut [Side], i: usize, distance: f64) {
 /// The angle by which a ring turns between two elements, radians, positive to the left.
 fn turn_at(element: &Element, next: &Element) -> f64 {
     let turn = turn_angle(element.tangent(1.0), next.tangent(0.0));
-    // The two run back on each other, as where circles touch: they bend apart, and to which side, their
-    // curvatures tell.
+    // The two run back on each other, as where circles touch: they bend apart, and their curvatures
+    // show to which side.
     let apart = element.curvature() + next.curvature();
     if PI - turn.abs() < BACK && apart != 0.0 { -PI.copysign(apart) } else { turn }
 }
 
-/// What runs beside an element.
+/// The parallel of an element.
 struct Side {
-    way: Way,
-    /// What is beside its start, and its end.
+    curve: OffsetCurve,
+    /// The points at the distance from the start of the element, and from its end.
     start: Vec2,
     end: Vec2,
 }
 
-enum Way {
+enum OffsetCurve {
     Parallel(Element),
-    /// By the centre of an arc, which is nearer than the distance: what such an arc sweeps is its whole
+    /// Through the centre of an arc, which is nearer than the distance: such an arc sweeps its whole
     /// sector.
     Around(Vec2),
 }
 
 impl Side {
     fn of(element: &Element, distance: f64) -> Side {
-        let way = match (element.parallel(-distance), element.turn) {
-            (Some(parallel), _) => Way::Parallel(parallel),
-            (None, Some(turn)) => Way::Around(turn.center),
-            (None, None) => Way::Around(element.start),
+        let curve = match (element.parallel(-distance), element.turn) {
+            (Some(parallel), _) => OffsetCurve::Parallel(parallel),
+            (None, Some(turn)) => OffsetCurve::Around(turn.center),
+            (None, None) => OffsetCurve::Around(element.start),
         };
-        let beside = |at: Vec2, along: Vec2| at - along.perp() * distance;
+        let moved = |at: Vec2, along: Vec2| at - along.perp() * distance;
         Side {
-            way,
-            start: beside(element.start, element.tangent(0.0)),
-            end: beside(element.end, element.tangent(1.0)),
+            curve,
+            start: moved(element.start, element.tangent(0.0)),
+            end: moved(element.end, element.tangent(1.0)),
         }
     }
 }

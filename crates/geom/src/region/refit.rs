@@ -2,16 +2,16 @@
 //!
 //! Edges that follow each other on one line or circle are a run. Where two runs meet, the crossing of
 //! their lines and circles takes the place of the crossing of their chords, and a run becomes one
-//! element again. An arc turns by what its chords turn together: its ends alone would not tell a
-//! whole circle from nothing.
+//! element again. An arc turns by what its chords turn together: its ends alone would not distinguish a
+//! whole circle from a point.
 //!
-//! The chords cross nothing, but what is fitted lies up to [a chord's error](super::chords) beside
-//! them. So elements that cross all the same are taken back to chords, where they do.
+//! The chords cross nothing, but what is fitted lies up to [a chord's error](super::chords) away from
+//! them. Elements that cross nevertheless become chords again, where they cross.
 
 use super::chords::Source;
 use super::crossings::{TOUCH, crossings};
 use super::index::tree;
-use super::kernel::{Edge, Place};
+use super::kernel::{Edge, GridPoint};
 use super::{Island, Region, Ring};
 use crate::crossing::Carrier;
 use crate::{Element, Vec2, turn_angle};
@@ -30,7 +30,7 @@ const ON: f64 = 4e-7;
 /// run into each other.
 const REACH: f64 = 1.0;
 
-/// How far apart two lines or circles may be where their chords cross, mm: twice what a chord is beside
+/// How far apart two lines or circles may be where their chords cross, mm: twice the distance of a chord from
 /// its arc, and twice that where the two bend apart.
 const APART: f64 = 0.004;
 
@@ -228,7 +228,7 @@ impl Outline {
     }
 
     /// Where a run is turned round by its corners, three lines or circles meet nearly in one point, and
-    /// those beside it cross before it: then it goes, if its edges are as good as a neighbour's. Otherwise
+    /// its neighbours cross before it: then it goes, if its edges are as good as a neighbour's. Otherwise
     /// its corners stay where the chords cross.
     fn give_way(&mut self, i: usize, sources: &[Source]) {
         let n = self.runs.len();
@@ -261,7 +261,7 @@ impl Outline {
         let edges = self.edges.get(edges.clone()).unwrap_or_default();
         let carrier = self.runs.get(i).and_then(|run| run.carrier(sources));
         carrier.is_some_and(|carrier| {
-            let near = |place: Place| carrier.distance(place.point()) < NEAR;
+            let near = |place: GridPoint| carrier.distance(place.point()) < NEAR;
             edges.iter().all(|edge| near(edge.start) && near(edge.end))
         })
     }
@@ -282,7 +282,7 @@ impl Outline {
         Corner { chords, at: at.unwrap_or(chords) }
     }
 
-    /// The place of the kernel where a run starts.
+    /// The point of the kernel's grid where a run starts.
     fn vertex(&self, run: &Run) -> Vec2 {
         self.edges.get(run.edges.start).map_or(Vec2::ZERO, |edge| edge.start.point())
     }
@@ -295,9 +295,9 @@ impl Outline {
             return Some(place);
         }
         let near = |crossing: &Vec2| {
-            let way = crossing.distance(place);
+            let distance = crossing.distance(place);
             let across = on_first.direction_at(*crossing).perp_dot(on_next.direction_at(*crossing));
-            way < REACH && way * across.abs() < APART
+            distance < REACH && distance * across.abs() < APART
         };
         let reached = |crossing: &Vec2| {
             [first, next].into_iter().all(|i| self.reaches(i, *crossing, sources))

@@ -51,7 +51,7 @@ impl Ring {
         Ring::new(points.iter().zip(nexts).map(|(a, b)| Element::line(*a, *b)).collect())
     }
 
-    /// The same elsewhere, and travelled the same way round: transformed about the origin, which goes to
+    /// The same elsewhere, run in the same direction: transformed about the origin, which goes to
     /// `at`.
     pub(super) fn placed(&self, transform: &Transform, at: Vec2) -> Ring {
         let place = |element: &Element| transform.element(element, at);

@@ -128,7 +128,7 @@ fn around_center(middle: &Element, turn: Turn, half: f64, cap: Cap) -> Result<Re
     Region::union_of(&pieces)
 }
 
-/// The circle about `center`, from its rightmost point through `sweep` radians: once around, either way.
+/// The circle about `center`, from its rightmost point through `sweep` radians: once around, in either direction.
 pub(super) fn circle(center: Vec2, radius: f64, sweep: f64) -> Ring {
     let start = center + Vec2::X * radius;
     Ring { elements: vec![Element::arc(start, start, center, sweep)] }

@@ -1,11 +1,11 @@
-//! What round pens cover on their ways.
+//! The area that round pens cover along their strokes.
 //!
-//! A place that a pen covers has a nearest point on the pen's ways. Where that is within a line or an arc, the
-//! place is straight beside it: in a rectangle, or in a sector of a ring. Where it is an end, the place is
-//! not in front of any way that leaves this end: in what remains of a disc. So a network of thousands of ways
-//! needs whole discs nowhere, and mostly no part of them; their arcs are what a union takes its time for.
+//! A covered point has a nearest point on the strokes. Where that is within a line or an arc, the covered point is at
+//! right angles to it: in a rectangle, or in a sector of a ring. Where it is an end, the covered point is not in front of
+//! any stroke that leaves this end: it is in what remains of a disc. So a network of thousands of strokes needs no whole
+//! disc, and mostly no part of one: most of the time of a union goes into the arcs of discs.
 
-use super::kernel::Place;
+use super::kernel::GridPoint;
 use super::ring::place;
 use super::shape::circle;
 use super::{FAR, RegionError, Ring};
@@ -16,34 +16,34 @@ use std::f64::consts::{PI, TAU};
 /// Tips of an arc this near to each other need nothing between them, mm.
 const SAME: f64 = 1e-6;
 
-/// The rings, all counter-clockwise, that together enclose what round pens cover on `ways`, each with the
-/// width of its pen, mm; a way without length is a dot. Rings overlap: see [`super::Fill::Positive`].
+/// The rings, all counter-clockwise, that together enclose what round pens cover on `strokes`, each with the
+/// width of its pen, mm; a stroke without length is a dot. Rings overlap: see [`super::Fill::Positive`].
 ///
 /// # Errors
 /// Where a value is no number, too large, or a width not above zero; where an arc misses its ends.
-pub fn strokes(ways: &[(Element, f64)]) -> Result<Vec<Ring>, RegionError> {
-    let mut rings = Vec::with_capacity(2 * ways.len());
+pub fn strokes(strokes: &[(Element, f64)]) -> Result<Vec<Ring>, RegionError> {
+    let mut rings = Vec::with_capacity(2 * strokes.len());
     let mut ends = Ends::default();
-    for (way, width) in ways {
-        place(way.start)?;
-        place(way.end)?;
+    for (stroke, width) in strokes {
+        place(stroke.start)?;
+        place(stroke.end)?;
         if !(*width > 0.0 && *width <= FAR) {
             return Err(RegionError::NotALength(*width));
         }
         let radius = width / 2.0;
-        if way.turn.is_some() {
+        if stroke.turn.is_some() {
             // Checks the arc: there and back it is closed.
-            Ring::new(vec![*way, way.reversed()])?;
+            Ring::new(vec![*stroke, stroke.reversed()])?;
         }
-        match way.turn {
+        match stroke.turn {
             Some(turn) if turn.sweep.abs() >= TAU * (1.0 - 1e-9) => {
-                around(&mut rings, way, turn, radius)
+                around(&mut rings, stroke, turn, radius)
             }
-            _ if way.length() <= SAME => ends.add(way.start, radius, None),
+            _ if stroke.length() <= SAME => ends.add(stroke.start, radius, None),
             turn => {
-                beside(&mut rings, way, turn, radius);
-                ends.add(way.start, radius, Some(way.tangent(0.0)));
-                ends.add(way.end, radius, Some(-way.tangent(1.0)));
+                sides(&mut rings, stroke, turn, radius);
+                ends.add(stroke.start, radius, Some(stroke.tangent(0.0)));
+                ends.add(stroke.end, radius, Some(-stroke.tangent(1.0)));
             }
         }
     }
@@ -51,28 +51,29 @@ pub fn strokes(ways: &[(Element, f64)]) -> Result<Vec<Ring>, RegionError> {
     Ok(rings)
 }
 
-/// What is straight beside a line or an arc.
-fn beside(rings: &mut Vec<Ring>, way: &Element, turn: Option<Turn>, radius: f64) {
+/// The area at right angles to a line or an arc.
+fn sides(rings: &mut Vec<Ring>, stroke: &Element, turn: Option<Turn>, radius: f64) {
     // Counter-clockwise, so that the outer side of an arc is on its right.
-    let way = if turn.is_some_and(|turn| turn.sweep < 0.0) { way.reversed() } else { *way };
-    let Some(right) = way.parallel(-radius) else { return };
-    let (inside, back) = match (way.parallel(radius), turn) {
+    let stroke =
+        if turn.is_some_and(|turn| turn.sweep < 0.0) { stroke.reversed() } else { *stroke };
+    let Some(right) = stroke.parallel(-radius) else { return };
+    let (inside, back) = match (stroke.parallel(radius), turn) {
         (Some(left), _) => (left.end, vec![left.reversed()]),
         (None, Some(turn)) => (turn.center, Vec::new()),
         (None, None) => return,
     };
-    // By the ends of the way, as the ends' own rings: sides with the same corners leave nothing between.
+    // Through the ends of the stroke, as the rings of the ends: sides with the same corners leave no gap.
     let mut elements =
-        vec![right, Element::line(right.end, way.end), Element::line(way.end, inside)];
+        vec![right, Element::line(right.end, stroke.end), Element::line(stroke.end, inside)];
     elements.extend(back);
     let last = elements.last().map_or(inside, |last| last.end);
-    elements.extend([Element::line(last, way.start), Element::line(way.start, right.start)]);
+    elements.extend([Element::line(last, stroke.start), Element::line(stroke.start, right.start)]);
     rings.push(Ring { elements });
 }
 
-/// What is covered on a whole turn. The ring runs once around the outside and back around the inside.
-fn around(rings: &mut Vec<Ring>, way: &Element, turn: Turn, radius: f64) {
-    let middle = way.start.distance(turn.center);
+/// The area that is covered on a whole turn. The ring runs once around the outside and back around the inside.
+fn around(rings: &mut Vec<Ring>, stroke: &Element, turn: Turn, radius: f64) {
+    let middle = stroke.start.distance(turn.center);
     let mut elements = circle(turn.center, middle + radius, TAU).elements;
     if middle - radius > SAME {
         let inner = circle(turn.center, middle - radius, TAU).elements;
@@ -85,25 +86,25 @@ fn around(rings: &mut Vec<Ring>, way: &Element, turn: Turn, radius: f64) {
     rings.push(Ring { elements });
 }
 
-/// Where ways begin and end, and meet: once for each place and width.
+/// Where strokes begin, end and meet: once for each point and width.
 #[derive(Default)]
 struct Ends {
     all: Vec<End>,
-    /// Index of the end at a place with a radius.
-    known: HashMap<(Place, u64), usize>,
+    /// Index of the end at a point with a radius.
+    known: HashMap<(GridPoint, u64), usize>,
 }
 
-/// A place where ways of one width end.
+/// A point where strokes of one width end.
 struct End {
     at: Vec2,
     radius: f64,
     cone: Cone,
 }
 
-/// The directions that are not in front of any way.
+/// The directions that are not in front of any stroke.
 #[derive(Clone, Copy)]
 enum Cone {
-    /// All: no way leaves.
+    /// All: no stroke leaves.
     All,
     /// From the first to the second, unit vectors, counter-clockwise, by up to half a turn.
     Between(Vec2, Vec2),
@@ -112,10 +113,10 @@ enum Cone {
 }
 
 impl Ends {
-    /// A way leaves `at` in the direction `ahead`; a dot leaves in none.
+    /// A stroke leaves `at` in the direction `ahead`; a dot leaves in none.
     fn add(&mut self, at: Vec2, radius: f64, ahead: Option<Vec2>) {
         let new = self.all.len();
-        let index = *self.known.entry((Place::of(at), radius.to_bits())).or_insert(new);
+        let index = *self.known.entry((GridPoint::of(at), radius.to_bits())).or_insert(new);
         if index == new {
             self.all.push(End { at, radius, cone: Cone::All });
         }
@@ -126,7 +127,7 @@ impl Ends {
 }
 
 impl Cone {
-    /// What of it is not in front of a way in the direction `ahead`.
+    /// What of it is not in front of a stroke in the direction `ahead`.
     fn behind(self, ahead: Vec2) -> Cone {
         let (first, last) = (ahead.perp(), -ahead.perp());
         let (from, to) = match self {
@@ -134,10 +135,10 @@ impl Cone {
             Cone::Between(from, to) => (from, to),
             Cone::Nothing => return Cone::Nothing,
         };
-        // What is as good as straight beside counts as behind: the ways may go straight on.
+        // A direction nearly at right angles counts as behind: the strokes may go straight on.
         let behind = |direction: Vec2| direction.dot(ahead) <= 1e-12;
         match (behind(from), behind(to)) {
-            // Both at the sides of a way that goes straight on: half a turn, in front of it or behind it.
+            // Both at the sides of a stroke that goes straight on: half a turn, in front of it or behind it.
             (true, true) if from.dot(to) < -0.5 && from.perp().dot(ahead) > 0.5 => Cone::Nothing,
             (true, true) => Cone::Between(from, to),
             (true, false) => Cone::Between(from, last),

@@ -57,33 +57,33 @@ impl Curve {
         }
     }
 
-    /// The point that is `way` mm along.
-    pub fn at(&self, way: f64) -> Vec2 {
+    /// The point that is `distance` mm along.
+    pub fn at(&self, distance: f64) -> Vec2 {
         match *self {
-            Curve::Line { from, along, .. } => from + along * way,
+            Curve::Line { from, along, .. } => from + along * distance,
             Curve::Arc { center, radius, from, .. } => {
-                center + Vec2::from_angle(from + way / radius) * radius
+                center + Vec2::from_angle(from + distance / radius) * radius
             }
         }
     }
 
     /// Unit vector to the outside.
-    pub fn outwards(&self, way: f64) -> Vec2 {
+    pub fn outwards(&self, distance: f64) -> Vec2 {
         match *self {
             Curve::Line { along, .. } => -along.perp(),
-            Curve::Arc { radius, from, .. } => Vec2::from_angle(from + way / radius),
+            Curve::Arc { radius, from, .. } => Vec2::from_angle(from + distance / radius),
         }
     }
 
     /// How far along `point` is, which is on its line or circle; `None` beyond the ends.
-    pub fn way_to(&self, point: Vec2) -> Option<f64> {
-        let way = match *self {
+    pub fn distance_to(&self, point: Vec2) -> Option<f64> {
+        let distance = match *self {
             Curve::Line { from, along, .. } => (point - from).dot(along),
             Curve::Arc { center, radius, from, .. } => {
                 (((point - center).to_angle() - from).rem_euclid(TAU)) * radius
             }
         };
-        (way > 0.0 && way < self.length()).then_some(way)
+        (distance > 0.0 && distance < self.length()).then_some(distance)
     }
 
     /// The piece that an element of a region is.
@@ -136,7 +136,7 @@ impl Curve {
         }
     }
 
-    /// Twice the area between the piece from one way to another and the origin.
+    /// Twice the area between the origin and the piece from one distance along the curve to another.
     fn twice_area(&self, low: f64, high: f64) -> f64 {
         let (from, to) = (self.at(low), self.at(high));
         match *self {
@@ -175,7 +175,9 @@ pub fn of(board: &Board, grown: f64) -> Exact {
             }
             let ends = [second.at(0.0), second.at(second.length())];
             let on = ends.into_iter().filter(|end| curve.is_on(*end));
-            cuts.extend(curve.meets(second).into_iter().chain(on).filter_map(|p| curve.way_to(p)));
+            cuts.extend(
+                curve.meets(second).into_iter().chain(on).filter_map(|p| curve.distance_to(p)),
+            );
         }
         cuts.sort_by(f64::total_cmp);
         for pair in cuts.windows(2) {
@@ -216,9 +218,9 @@ pub fn of(board: &Board, grown: f64) -> Exact {
     exact
 }
 
-/// Whether the boundary of a shape at `way` is the boundary of all of them.
-fn is_outside(shape: usize, curve: &Curve, way: f64, shapes: &[Shape]) -> bool {
-    let (point, outwards) = (curve.at(way), curve.outwards(way));
+/// Whether the boundary of a shape at `distance` is the boundary of all of them.
+fn is_outside(shape: usize, curve: &Curve, distance: f64, shapes: &[Shape]) -> bool {
+    let (point, outwards) = (curve.at(distance), curve.outwards(distance));
     shapes.iter().enumerate().all(|(i, other)| {
         let away = away(other, point);
         if i == shape || away > 1e-10 {

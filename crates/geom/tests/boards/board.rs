@@ -66,7 +66,7 @@ impl Board {
 }
 
 /// Eight directions.
-const WAYS: [(f64, f64); 8] = [
+const DIRECTIONS: [(f64, f64); 8] = [
     (1.0, 0.0),
     (1.0, 1.0),
     (0.0, 1.0),
@@ -91,13 +91,14 @@ pub fn on_a_grid(random: &mut Random) -> Board {
     }
     for _ in 0..1 + random.below(4) {
         let mut from = random.of(&shapes).to;
-        let mut way = random.below(8);
+        let mut direction = random.below(8);
         let radius = if random.below(3) > 0 { width } else { random.of(&radii) };
         for _ in 0..1 + random.below(4) {
-            let to = from + Vec2::from(WAYS[way % 8]) * GRID * (1 + random.below(6)) as f64;
+            let to =
+                from + Vec2::from(DIRECTIONS[direction % 8]) * GRID * (1 + random.below(6)) as f64;
             shapes.push(Shape { from, to, radius });
             from = to;
-            way += random.of(&[7, 0, 1, 2, 4]);
+            direction += random.of(&[7, 0, 1, 2, 4]);
         }
     }
     Board { shapes }

@@ -13,15 +13,16 @@ pub fn never(region: &Region) {
     for (i, first) in elements.iter().enumerate() {
         for second in &elements[i + 1..] {
             let (one, other) = (Curve::of_element(first), Curve::of_element(second));
-            let on_both = |p: &Vec2| one.way_to(*p).is_some() && other.way_to(*p).is_some();
+            let on_both =
+                |p: &Vec2| one.distance_to(*p).is_some() && other.distance_to(*p).is_some();
             let points: Vec<Vec2> = one.meets(&other).into_iter().filter(on_both).collect();
             for point in &points {
-                let outwards = |curve: &Curve| curve.outwards(curve.way_to(*point).unwrap());
+                let outwards = |curve: &Curve| curve.outwards(curve.distance_to(*point).unwrap());
                 let across = outwards(&one).perp_dot(outwards(&other)).abs();
                 let ends = [first.start, first.end, second.start, second.end];
                 let others = points.iter().filter(|p| *p != point);
-                let beside = ends.iter().chain(others).map(|end| end.distance(*point) * across);
-                let deep = beside.fold(f64::INFINITY, f64::min);
+                let apart = ends.iter().chain(others).map(|end| end.distance(*point) * across);
+                let deep = apart.fold(f64::INFINITY, f64::min);
                 assert!(deep < DEEP, "{first:?} and {second:?} cross at {point}, {deep} mm deep");
             }
         }

@@ -6,10 +6,10 @@
 //! polygons ([`polygons`]).
 
 mod arrangement;
-mod beside;
 mod board;
 mod crossing;
 mod field;
+mod neighbours;
 mod polygons;
 
 use board::{Board, Random};
@@ -24,7 +24,7 @@ const UNITED: u64 = 5000;
 const OFFSET: u64 = 1500;
 
 /// Pairs of regions that are nearly one.
-const BESIDE: u64 = 4000;
+const NEIGHBOURS: u64 = 4000;
 
 /// How far a boundary is off by rounding, mm.
 const ROUNDING: f64 = 1e-6;
@@ -168,8 +168,8 @@ fn a_board_that_is_shrunk_is_what_is_far_enough_from_its_boundary() {
 
 #[test]
 fn booleans_of_regions_that_are_nearly_one_are_right() {
-    on_all(BESIDE, beside::pair, |pair, random| {
-        beside::judge(pair, random);
+    on_all(NEIGHBOURS, neighbours::pair, |pair, random| {
+        neighbours::judge(pair, random);
         Verdict::Exact
     });
 }

@@ -1,4 +1,4 @@
-//! Two regions whose boundaries run beside each other, between 1 nm and 5 µm apart, and what booleans
+//! Two regions whose boundaries run next to each other, between 1 nm and 5 µm apart, and what booleans
 //! make of them.
 
 use super::board::Random;
@@ -96,7 +96,7 @@ fn form(kind: usize, size: f64, narrow: f64) -> Vec<Element> {
     }
 }
 
-/// An element as chords whose middles are `error` beside it.
+/// An element as chords whose middles are `error` away from it.
 fn flat(element: &Element, error: f64) -> Vec<Element> {
     let Some(turn) = element.turn else { return vec![*element] };
     let step = (8.0 * error / element.start.distance(turn.center)).sqrt();
