@@ -71,10 +71,7 @@ pub(crate) fn rows(proof: &Report, machine: &Machine) -> Vec<(&'static str, Stri
     let moves = compared.rapids + compared.lines + compared.arcs + compared.holes;
     rows.push(("proof", format!("all {moves} moves are those of the toolpath")));
     if compared.contours > 0 {
-        let text = format!(
-            "{}, beside each of which the control leads the tool as it has to",
-            compared.contours
-        );
+        let text = format!("{}, each with the tool on the right side of it", compared.contours);
         rows.push(("contours", text));
     }
     let deviation = |value: f64, allowed: f64, unit: &str, line: u32| {
@@ -132,7 +129,7 @@ pub(crate) fn failed(proof: &Report, source: &Toolpath, program: &str) -> Accoun
         ("program", String::from("it makes another motion")),
     ];
     if let Some(first) = &proof.first_mismatch {
-        let (place, text) = source.place(first.source_line);
+        let (place, text) = source.location(first.source_line);
         rows.push(("source says", format!("{place}  {}", text.trim())));
         let block = first.block.trim();
         rows.push(("program says", format!("{program}:{}  {block}", first.program_line)));

@@ -29,17 +29,17 @@ pub struct Origin {
     pub tools: Option<Source>,
     /// Folders in which called programs are looked for; nothing outside them is opened.
     pub folders: Vec<PathBuf>,
-    /// What a length without a decimal point counts on a control that can be set either way.
+    /// Whether `X10` means 10 mm or 10 increments, on a control that can be set to both.
     pub whole_numbers: WholeNumbers,
     /// What lengths count before the program says it.
     pub units: Option<Units>,
-    /// Which way a boring bar goes from the wall of a hole, along X or Y, where the machine is set to it.
+    /// In which direction a boring bar moves off the wall of a hole, along X or Y, where a parameter of the control decides.
     pub aside: Option<Vec3>,
     /// Whether blocks that begin with `/` are skipped.
     pub block_delete: bool,
-    /// Where the tool stands when the program starts, mm.
+    /// The position of the tool when the program starts, mm.
     pub start: Option<Vec3>,
-    /// Where the coordinates behind a `CSYS` of SolidWorks CAM stand; else as the file says it.
+    /// The frame of the coordinates behind a `CSYS` of SolidWorks CAM; `None`: as the file says.
     pub csys: Option<Csys>,
     /// Which path the coordinates behind `CUTCOM` are; else what an arc in the file shows.
     pub cutcom: Option<CompensatedPath>,
@@ -72,7 +72,7 @@ pub struct Toolpath {
     pub program: Program,
     /// What was not passed on.
     pub warnings: Vec<Diagnostic>,
-    /// Of a job of FreeCAD's, the commands that the lines of the program stand for.
+    /// The commands of a FreeCAD job that the lines of the program come from.
     listing: Option<Listing>,
     /// The set-ups of SolidWorks CAM, where it matters in which frame they are read.
     set_ups: Option<SetUps>,
@@ -150,7 +150,7 @@ pub fn read_job(
     })
 }
 
-/// The control on which a job runs of which nobody has said the machine: it has three axes.
+/// The control of a job without a named machine: it has three axes.
 const THREE_AXES: &str = "iso";
 
 /// The same for a wire, whose upper contour is `height` mm over the lower where that is given.
@@ -247,7 +247,7 @@ pub fn swinging(source: &Source, origin: &Origin, frame: Frame) -> Result<Option
     let name = source.name();
     let setup = origin.setup(from, Purpose::Picture)?;
     let program = match frame {
-        Frame::Part => nc::read_swinging(&machine, setup, &name, &bytes)?,
+        Frame::Part => nc::read_with_rapids_sampled(&machine, setup, &name, &bytes)?,
         Frame::Machine => nc::read_in_machine(&machine, setup, &name, &bytes)?,
     };
     Ok(Some(program))
@@ -345,7 +345,7 @@ fn name(csys: Csys) -> &'static str {
 }
 
 /// In which frame set-ups have been read, and why.
-fn told(set_ups: &SetUps) -> String {
+fn set_up_frame(set_ups: &SetUps) -> String {
     let count = match set_ups.changes {
         0 => String::from("one CSYS origin"),
         1 => String::from("the CSYS origin changes once"),
@@ -368,7 +368,7 @@ fn is_nc(path: &Path) -> bool {
     NC_ENDINGS.contains(&ending.as_str())
 }
 
-/// What stops an NC program of which nobody has said what it was written for.
+/// The refusal of an NC program without a named control.
 fn without_origin(file: &str) -> Stop {
     let controls = library::names(library::CONTROLS).collect::<Vec<_>>();
     let message = "this is no cutter-location data, and as an NC program it has no control named";
@@ -546,7 +546,7 @@ impl Toolpath {
             machine.map(|machine| ("machine", format!("{} ({})", machine.title, machine.name))),
         );
         if let Some(set_ups) = &self.set_ups {
-            rows.push(("set-ups", told(set_ups)));
+            rows.push(("set-ups", set_up_frame(set_ups)));
         }
         if let Some(cutcom) = &self.cutcom {
             rows.push(("CUTCOM", compensated(cutcom)));
@@ -561,11 +561,11 @@ impl Toolpath {
         rows
     }
 
-    /// Where a line of the source is, and its text; empty where there is none.
-    pub fn place(&self, number: u32) -> (String, String) {
-        if let Some(place) = self.listing.as_ref().map(|listing| listing.place(number)) {
-            let text = String::from_utf8_lossy(place.text).into_owned();
-            return (format!("{}:{}", place.file, place.command), text);
+    /// The location of a line of the source, and its text; empty where there is none.
+    pub fn location(&self, number: u32) -> (String, String) {
+        if let Some(location) = self.listing.as_ref().map(|listing| listing.location(number)) {
+            let text = String::from_utf8_lossy(location.text).into_owned();
+            return (format!("{}:{}", location.file, location.command), text);
         }
         let text = String::from_utf8_lossy(line_of(&self.text(), number)).into_owned();
         (format!("{}:{number}", self.file), text)

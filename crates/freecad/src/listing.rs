@@ -1,4 +1,4 @@
-//! The commands of a job as one text, and the way back from its lines to the operations.
+//! The commands of a job as one text, and which operation each of its lines comes from.
 
 use crate::job::Job;
 use program::{Coolant, Diagnostic};
@@ -30,19 +30,19 @@ struct Section {
     from: u32,
 }
 
-/// Where a command stands.
+/// The location of a command in its job.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Place<'a> {
+pub struct CommandLocation<'a> {
     /// The file and the operation.
     pub file: String,
-    /// Number of the command in its operation, from 1; 0 where the job itself has said it.
+    /// Number of the command in its operation, from 1; 0 for a command that the job itself adds.
     pub command: u32,
     /// The command.
     pub text: &'a [u8],
 }
 
 impl Listing {
-    /// The commands of `job`, which stands in `file`: they are moved here.
+    /// The commands of `job` of the file `file`: they are moved here.
     ///
     /// # Errors
     /// An operation that has not as many lines as commands.
@@ -87,7 +87,7 @@ impl Listing {
     /// Adds commands, one a line.
     fn push(&mut self, commands: String) {
         let (mut names, mut lines) = (false, 0);
-        // Each piece is near while all is done with it.
+        // Each piece stays in the cache while it is examined.
         for piece in commands.as_bytes().chunks(PIECE) {
             names |= names_rotary_axis(piece);
             lines += memchr::memchr_iter(b'\n', piece).count();
@@ -126,24 +126,24 @@ impl Listing {
     }
 
     /// Where line `line` (from 1) of the listing comes from.
-    pub fn place(&self, line: u32) -> Place<'_> {
+    pub fn location(&self, line: u32) -> CommandLocation<'_> {
         let mut lines = self.text.split(|&byte| byte == b'\n');
         let text = lines.nth(line.saturating_sub(1) as usize).unwrap_or_default();
         let section = self.sections.get(self.operation(line));
         let label = section.map_or("", |section| section.label.as_str());
         let before = section.map_or(0, |section| section.before);
         let file = format!("{}: operation `{label}`", self.file);
-        Place { file, command: line.saturating_sub(before), text }
+        CommandLocation { file, command: line.saturating_sub(before), text }
     }
 
     /// The finding, which has a line of the listing, with its operation and command.
     pub fn located(&self, mut found: Diagnostic) -> Diagnostic {
-        let place = self.place(found.line);
+        let location = self.location(found.line);
         if found.excerpt.is_empty() {
-            found = found.on(place.command, place.text);
+            found = found.on(location.command, location.text);
         }
-        found.line = place.command;
-        found.file(place.file)
+        found.line = location.command;
+        found.file(location.file)
     }
 
     /// The operations: label, and the line of the listing before their first command.

@@ -143,7 +143,7 @@ fn holes_of_one_cycle_stay_together() {
     assert!(matches!(ops[from + 3..], [Op::CycleOff, Op::Rapid(_), Op::EndOfOperation, Op::End]));
 }
 
-/// What lies on the way to the next hole is gone to, and a cycle with another depth is another one.
+/// Points between two holes are kept, and a cycle with another depth is another one.
 #[test]
 fn a_way_that_is_not_that_of_the_cycle_stays() {
     let hole = |y: f64, z: f64| format!("G81 F1.5 R2.0 X0.0 Y{y:.1} Z{z:.1}\n");
@@ -443,7 +443,7 @@ fn a_tool_controller_without_a_horizontal_feed_is_refused_where_it_cuts_sideways
 
 /// What the builder of the machine has added reaches the program, from a Custom operation too.
 #[test]
-fn functions_of_the_builder_in_a_custom_operation_are_told() {
+fn functions_of_the_builder_in_a_custom_operation_are_reported() {
     let text = "extends = \"generic-3axis-fanuc\"\nauxiliary = [10, 62]\n";
     let machine = machine::load_text("m.toml", text).unwrap();
     let commands = format!("{START}M10\nG1 F3.333333 Z-1.500000\nM62\n");

@@ -4,17 +4,17 @@ use crate::heights::APART;
 use geom::{Vec2, Vec3};
 use program::{Diagnostic, Feed, Op, Pose, Probe, Program};
 
-/// The most places that a grid has: a probe takes seconds for each.
+/// The most points that a grid has: a probe takes seconds for each.
 const MOST_PLACES: usize = 10_000;
 
 /// How near to each other columns and rows may be, mm. The words of a program round them by up to 0.005 mm and the
-/// machine answers in steps; nearer than 0.05 mm a log tells them not apart ([`crate::height_map`]).
+/// machine answers in steps; nearer than 0.05 mm a log does not distinguish them ([`crate::height_map`]).
 const NEAREST: f64 = 2.0 * APART;
 
 /// The names of files that a comment can hold.
 const NAME: &str = "letters, digits and . - _ /";
 
-/// Places at even distances over a rectangle, its corners among them.
+/// Points at even distances over a rectangle, its corners among them.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Grid {
     from: Vec2,

@@ -1,11 +1,11 @@
 //! A program that follows a surface.
 
-use crate::course::{Way, course};
 use crate::ground::Ground;
+use crate::surface_line::{SurfaceLine, heights_along};
 use geom::{Vec2, Vec3};
 use program::heights::HeightMap;
 use program::{
-    ArcTo, Circle, Compensation, Diagnostic, Feed, Op, Pose, Program, Record, WorkOffset,
+    ArcTo, Circle, Compensation, Diagnostic, Feed, Op, Outcome, Pose, Program, Record, WorkOffset,
 };
 use std::f64::consts::TAU;
 
@@ -14,9 +14,6 @@ const MOST_RECORDS: usize = 20_000_000;
 
 /// Pieces of an arc that are shorter go straight, mm: rounded, they could be taken for full circles.
 const SHORT: f64 = 0.01;
-
-/// A step that may be refused.
-type Done = Result<(), Box<Diagnostic>>;
 
 /// What two radii of an arc may differ by, mm.
 const ROUND: f64 = 0.01;
@@ -40,11 +37,7 @@ pub struct Allowed {
 /// What cannot be levelled, with its line: a cut outside the map, a tilted tool, an arc in another plane than
 /// XY, threads and probing moves, a cycle that retracts to less than the highest place, radius compensation, feeds as inverse time, a rapid along the board below its
 /// surface, several work offsets, a cut from an unknown place.
-pub fn level(
-    program: &Program,
-    map: &HeightMap,
-    allowed: &Allowed,
-) -> Result<Program, Box<Diagnostic>> {
+pub fn level(program: &Program, map: &HeightMap, allowed: &Allowed) -> Outcome<Program> {
     let levelled = levelled(program, Ground::Known(map), allowed)?;
     Ok(program.with_records(levelled.records))
 }
@@ -54,7 +47,7 @@ pub(crate) fn levelled<'a>(
     program: &Program,
     ground: Ground<'a>,
     allowed: &'a Allowed,
-) -> Result<Level<'a>, Box<Diagnostic>> {
+) -> Outcome<Level<'a>> {
     let mut level = Level::new(ground, allowed)?;
     for record in &program.records {
         level.record(record).map_err(|found| Box::new(found.line(record.line)))?;
@@ -62,10 +55,10 @@ pub(crate) fn levelled<'a>(
     Ok(level)
 }
 
-/// Where the tool is: as the program says it, and how high it really is.
+/// Where the tool is: as the program has it, and its height over the surface.
 #[derive(Clone, Copy, Debug)]
-struct Place {
-    said: Vec3,
+struct ToolPosition {
+    planned: Vec3,
     height: f64,
 }
 
@@ -75,7 +68,7 @@ pub(crate) struct Level<'a> {
     allowed: &'a Allowed,
     /// By how much rapids are higher, mm.
     lift: f64,
-    place: Option<Place>,
+    tool_at: Option<ToolPosition>,
     /// Retract level of the cycle that holds, mm above the point of a hole.
     retract: f64,
     work_offset: Option<WorkOffset>,
@@ -89,7 +82,7 @@ pub(crate) struct Level<'a> {
 impl<'a> Level<'a> {
     /// # Errors
     /// Tolerances that nothing keeps.
-    fn new(ground: Ground<'a>, allowed: &'a Allowed) -> Result<Level<'a>, Box<Diagnostic>> {
+    fn new(ground: Ground<'a>, allowed: &'a Allowed) -> Outcome<Level<'a>> {
         if !(allowed.deviation >= 1e-4 && allowed.deviation.is_finite() && allowed.outside >= 0.0) {
             let message = format!(
                 "a deviation of {} mm, {} mm outside the map",
@@ -102,7 +95,7 @@ impl<'a> Level<'a> {
             ground,
             allowed,
             lift: ground.highest().max(0.0),
-            place: None,
+            tool_at: None,
             retract: 0.0,
             work_offset: None,
             follows: f64::NEG_INFINITY,
@@ -111,19 +104,19 @@ impl<'a> Level<'a> {
         })
     }
 
-    fn record(&mut self, record: &Record) -> Done {
+    fn record(&mut self, record: &Record) -> Outcome {
         let line = record.line;
         match &record.op {
             Op::Rapid(pose) => {
-                let said = upright(pose)?;
-                self.rapid(line, said)
+                let planned = upright(pose)?;
+                self.rapid(line, planned)
             }
             Op::Line(pose) => {
                 let to = upright(pose)?;
                 let from = self.start(line, to)?;
                 self.inside(from, to)?;
-                for (t, z) in self.course(Way::Line(from, to))? {
-                    let at = Way::Line(from, to).at(t);
+                for (t, z) in self.heights_along(SurfaceLine::Line(from, to))? {
+                    let at = SurfaceLine::Line(from, to).at(t);
                     self.push(line, Op::Line(Pose::upright(at.with_z(z))?))?;
                 }
                 self.arrive(to);
@@ -154,11 +147,11 @@ impl<'a> Level<'a> {
     }
 
     /// What is no move and stays as it is.
-    fn modal(&mut self, op: &Op) -> Done {
+    fn modal(&mut self, op: &Op) -> Outcome {
         match op {
             Op::Rapid(_) | Op::Line(_) | Op::Arc(_) | Op::Hole(_) => {}
             Op::Cycle(cycle) => self.retract = cycle.retract,
-            Op::Tool(_) | Op::Home => self.place = None,
+            Op::Tool(_) | Op::Home => self.tool_at = None,
             Op::WorkOffset(number) => match self.work_offset.replace(*number) {
                 Some(before) if before != *number => {
                     let message = "the program works in several work offsets, the map in one";
@@ -176,8 +169,9 @@ impl<'a> Level<'a> {
                 return Err(refused(message, "post it as a program of its own"));
             }
             Op::Compensation(Compensation::Left(_) | Compensation::Right(_)) => {
-                let message = "radius compensation: the way of the tool's middle is the control's";
-                return Err(refused(message, "post the way of the tool's middle"));
+                let message =
+                    "radius compensation: the control decides the path of the tool's centre";
+                return Err(refused(message, "post the path of the tool's centre"));
             }
             Op::Feed(Feed::InverseTime(_)) => {
                 let message = "a feed as inverse time, and moves that are divided";
@@ -214,7 +208,7 @@ impl<'a> Level<'a> {
         Ok(())
     }
 
-    fn push(&mut self, line: u32, op: Op) -> Done {
+    fn push(&mut self, line: u32, op: Op) -> Outcome {
         if self.records.len() >= MOST_RECORDS {
             let message = format!("the levelled program has more than {MOST_RECORDS} records");
             return Err(refused(message, "allow a larger deviation, or level it in parts"));
@@ -226,67 +220,69 @@ impl<'a> Level<'a> {
         Ok(())
     }
 
-    /// The tool stands at the surface's height over `said`.
-    fn arrive(&mut self, said: Vec3) {
-        let height = said.z + self.ground.at(said.truncate());
-        self.place = Some(Place { said, height });
+    /// The tool is at the height of the surface above `planned`.
+    fn arrive(&mut self, planned: Vec3) {
+        let height = planned.z + self.ground.at(planned.truncate());
+        self.tool_at = Some(ToolPosition { planned, height });
     }
 
-    fn rapid(&mut self, line: u32, said: Vec3) -> Done {
-        let from = self.place.map(|place| place.said);
-        let upright = from.filter(|from| from.truncate() == said.truncate());
-        let is_down = upright.is_some_and(|from| said.z < from.z);
-        if said.z < 0.0 && upright.is_none() {
-            let message = format!("a rapid along the board to Z{} mm, below it", said.z);
+    fn rapid(&mut self, line: u32, planned: Vec3) -> Outcome {
+        let from = self.tool_at.map(|at| at.planned);
+        let upright = from.filter(|from| from.truncate() == planned.truncate());
+        let is_down = upright.is_some_and(|from| planned.z < from.z);
+        if planned.z < 0.0 && upright.is_none() {
+            let message = format!("a rapid along the board to Z{} mm, below it", planned.z);
             return Err(refused(message, "go there at feed, or above the board"));
         }
-        if said.z < 0.0 || is_down {
-            let height = said.z + self.ground.at(said.truncate());
+        if planned.z < 0.0 || is_down {
+            let height = planned.z + self.ground.at(planned.truncate());
             self.follows = self.follows.max(height);
-            return self.rapid_to(line, said, height);
+            return self.rapid_to(line, planned, height);
         }
         // Before it goes on across the board, what has come down goes up again.
-        let low = self.place.filter(|place| place.height < place.said.z + self.lift);
-        if let Some(Place { said, .. }) = low.filter(|low| upright.is_none() && low.said.z >= 0.0) {
-            self.lifted(line, said)?;
+        let low = self.tool_at.filter(|at| at.height < at.planned.z + self.lift);
+        if let Some(ToolPosition { planned, .. }) =
+            low.filter(|low| upright.is_none() && low.planned.z >= 0.0)
+        {
+            self.lifted(line, planned)?;
         }
-        self.lifted(line, said)
+        self.lifted(line, planned)
     }
 
-    /// By rapid to a place above all of the surface.
-    fn lifted(&mut self, line: u32, said: Vec3) -> Done {
-        let height = said.z + self.lift;
+    /// By rapid to a point above all of the surface.
+    fn lifted(&mut self, line: u32, planned: Vec3) -> Outcome {
+        let height = planned.z + self.lift;
         self.clears = self.clears.min(height);
-        self.rapid_to(line, said, height)
+        self.rapid_to(line, planned, height)
     }
 
-    fn rapid_to(&mut self, line: u32, said: Vec3, height: f64) -> Done {
-        self.place = Some(Place { said, height });
-        self.push(line, Op::Rapid(Pose::upright(said.with_z(height))?))
+    fn rapid_to(&mut self, line: u32, planned: Vec3, height: f64) -> Outcome {
+        self.tool_at = Some(ToolPosition { planned, height });
+        self.push(line, Op::Rapid(Pose::upright(planned.with_z(height))?))
     }
 
     /// Where a cut to `to` starts: the tool goes down to the surface's height there, unless the cut itself goes
     /// straight down.
-    fn start(&mut self, line: u32, to: Vec3) -> Result<Vec3, Box<Diagnostic>> {
-        let Some(Place { said, height }) = self.place else {
-            let message = "a cut from a place that is not known";
+    fn start(&mut self, line: u32, to: Vec3) -> Outcome<Vec3> {
+        let Some(ToolPosition { planned, height }) = self.tool_at else {
+            let message = "a cut from a position that is not known";
             return Err(refused(message, "a rapid to its start before it"));
         };
-        let wanted = said.z + self.ground.at(said.truncate());
-        if wanted != height && said.truncate() != to.truncate() {
-            self.push(line, Op::Line(Pose::upright(said.with_z(wanted))?))?;
+        let wanted = planned.z + self.ground.at(planned.truncate());
+        if wanted != height && planned.truncate() != to.truncate() {
+            self.push(line, Op::Line(Pose::upright(planned.with_z(wanted))?))?;
         }
-        Ok(said)
+        Ok(planned)
     }
 
-    fn course(&self, way: Way) -> Result<Vec<(f64, f64)>, Box<Diagnostic>> {
-        course(way, &self.ground, self.allowed.deviation).ok_or_else(|| {
+    fn heights_along(&self, line: SurfaceLine) -> Outcome<Vec<(f64, f64)>> {
+        heights_along(line, &self.ground, self.allowed.deviation).ok_or_else(|| {
             let message = "a move over so much of the surface that it has more than 100000 pieces";
             refused(message, "allow a larger deviation, or divide it")
         })
     }
 
-    fn arc(&mut self, line: u32, to: &ArcTo) -> Done {
+    fn arc(&mut self, line: u32, to: &ArcTo) -> Outcome {
         let end = upright(&to.end)?;
         if to.circle.normal().truncate() != Vec2::ZERO {
             let message = "an arc that does not turn in the plane XY";
@@ -300,10 +296,10 @@ impl<'a> Level<'a> {
         })?;
         let (low, high) = arc.extents();
         self.inside(low, high)?;
-        let way = Way::Arc(&arc);
+        let along = SurfaceLine::Arc(&arc);
         let mut before = 0.0;
-        for (t, z) in self.course(way)? {
-            let pose = Pose::upright(way.at(t).with_z(z))?;
+        for (t, z) in self.heights_along(along)? {
+            let pose = Pose::upright(along.at(t).with_z(z))?;
             let sweep = (t - before) * arc.sweep;
             let op = match sweep * arc.radius() < SHORT {
                 true => Op::Line(pose),
@@ -323,7 +319,7 @@ impl<'a> Level<'a> {
 
     /// # Errors
     /// A cut between two corners goes further outside the map than is allowed.
-    fn inside(&self, one: Vec3, other: Vec3) -> Done {
+    fn inside(&self, one: Vec3, other: Vec3) -> Outcome {
         let (from, to) = self.ground.extents();
         let (low, high) = (one.min(other).truncate(), one.max(other).truncate());
         let outside = (from - low).max(high - to).max_element();
@@ -339,7 +335,7 @@ impl<'a> Level<'a> {
 }
 
 /// The point of a pose whose tool is upright.
-fn upright(pose: &Pose) -> Result<Vec3, Box<Diagnostic>> {
+fn upright(pose: &Pose) -> Outcome<Vec3> {
     if pose.axis() != Vec3::Z {
         return Err(refused("the tool is tilted", "level a program whose tool is upright"));
     }

@@ -143,7 +143,7 @@ fn grbl(text: &[u8]) -> Result<Vec<Vec3>, Vec<Diagnostic>> {
         let point = place.and_then(|(place, touched)| Some((numbers(place.as_bytes())?, touched)));
         let point = match point.as_ref().map(|(place, touched)| (&place[..], *touched)) {
             Some(([x, y, z, ..], "1")) => Vec3::new(*x, *y, *z),
-            // Nothing was touched: an alarm has told so, or `$#` that nothing was probed.
+            // Nothing was touched: an alarm has reported that, or `$#` that nothing was probed.
             Some((_, "0")) => continue,
             _ => {
                 let help = "an answer is [PRB:x,y,z:1]";
@@ -212,7 +212,7 @@ mod tests {
         let last = "[PRB:-100.000,-60.000,-19.900:1]\nok\n";
         let before = format!("{numbers}[PRB:0.000,0.000,0.000:0]\nok\n{GRBL}");
         let behind = format!("{GRBL}{numbers}{last}");
-        // An earlier touch-off beside the surface is the last answer there.
+        // An earlier touch-off next to the surface is the last answer there.
         let touched = format!("{numbers}[PRB:-5.000,-5.000,-42.000:1]\nok\n{GRBL}");
         for text in [&status, &before, &behind, &touched] {
             assert!((height(text, 0.0, 0.0) + 0.1).abs() < 1e-9, "{text}");

@@ -17,7 +17,7 @@ fn grid(columns: usize, rows: usize) -> Grid {
     Grid::new(Vec2::ZERO, Vec2::new(40.0, 20.0), columns, rows).unwrap()
 }
 
-/// A tool, a way down at (10, 5), and these cuts.
+/// A tool, a move down at (10, 5), and these cuts.
 fn board(cuts: Vec<Op>) -> Program {
     let mut program = Program::new("board");
     let mut push = |op| program.push(0, op);
@@ -59,8 +59,8 @@ fn followed(cuts: Vec<Op>, columns: usize, rows: usize) -> Program {
     follow(&board(cuts), &grid(columns, rows), &PROBING, 0.02, &ALLOWED).unwrap()
 }
 
-/// By hand: (10, 5) is a quarter of the way along and a quarter across, so its height is 9/16 of that of the corner
-/// at the zero, 3/16 of those beside that, 1/16 of the one opposite. A line along X stays one on any bilinear surface.
+/// By hand: (10, 5) is a quarter of the width along and a quarter of the height across, so its height is 9/16 of that of the corner
+/// at the zero, 3/16 of those next to that, 1/16 of the one opposite. A line along X stays one on any bilinear surface.
 #[test]
 fn between_four_places_each_corner_has_its_part() {
     let program = followed(vec![Op::Line(pose(30.0, 5.0, -0.1))], 2, 2);

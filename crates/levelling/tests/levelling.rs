@@ -1,4 +1,4 @@
-//! Levelled programs beside the surface that they follow, sample by sample.
+//! Levelled programs compared with the surface that they follow, sample by sample.
 
 use geom::{Arc, Vec2, Vec3};
 use program::heights::HeightMap;
@@ -28,31 +28,31 @@ fn program(ops: Vec<Op>) -> Program {
     program
 }
 
-/// The moves of a program as ways in space: rapid or not, and the point at any part of each.
-fn ways(program: &Program) -> Vec<(u32, bool, Arc, bool)> {
+/// The moves of a program as moves in space: rapid or not, and the point at any part of each.
+fn program_moves(program: &Program) -> Vec<(u32, bool, Arc, bool)> {
     let mut here: Option<Vec3> = None;
-    let mut ways = Vec::new();
+    let mut moves = Vec::new();
     for record in &program.records {
         let Some(end) = record.op.pose().map(|pose| pose.point()) else { continue };
         if let Some(start) = here.replace(end) {
             let line = Arc { start, end, center: start, normal: Vec3::Z, sweep: 0.0 };
             match &record.op {
                 Op::Arc(arc) => {
-                    let way = arc.circle.arc(start, end, 0.02).unwrap();
-                    ways.push((record.line, false, way, true));
+                    let arc = arc.circle.arc(start, end, 0.02).unwrap();
+                    moves.push((record.line, false, arc, true));
                 }
-                op => ways.push((record.line, matches!(op, Op::Rapid(_)), line, false)),
+                op => moves.push((record.line, matches!(op, Op::Rapid(_)), line, false)),
             }
         }
     }
-    ways
+    moves
 }
 
-/// Points of a way, its ends among them.
-fn samples(way: &Arc, is_arc: bool, count: usize) -> impl Iterator<Item = Vec3> + '_ {
+/// Points of a move, its ends among them.
+fn samples(arc: &Arc, is_arc: bool, count: usize) -> impl Iterator<Item = Vec3> + '_ {
     (0..=count).map(move |n| {
         let t = n as f64 / count as f64;
-        if is_arc { way.at(t) } else { way.start.lerp(way.end, t) }
+        if is_arc { arc.at(t) } else { arc.start.lerp(arc.end, t) }
     })
 }
 
@@ -114,20 +114,20 @@ fn source(moves: &[Move]) -> Program {
 /// Each cut of `source`, sampled densely, is where `source` has it in X and Y, within `deviation` of the height of the
 /// surface above it, from its start to its end; how far it is off that at most.
 fn off(source: &Program, levelled: &Program, map: &HeightMap, deviation: f64) -> f64 {
-    let cuts = ways(source).into_iter().filter(|(_, rapid, ..)| !rapid);
-    let levelled = ways(levelled);
+    let cuts = program_moves(source).into_iter().filter(|(_, rapid, ..)| !rapid);
+    let levelled = program_moves(levelled);
     let mut most = 0.0f64;
-    for (line, _, way, is_arc) in cuts {
+    for (line, _, arc, is_arc) in cuts {
         let pieces: Vec<_> = levelled.iter().filter(|(of, ..)| *of == line).collect();
         assert!(!pieces.is_empty());
         let flat = match is_arc {
-            true => way.radius() * way.sweep,
-            false => way.start.truncate().distance(way.end.truncate()),
+            true => arc.radius() * arc.sweep,
+            false => arc.start.truncate().distance(arc.end.truncate()),
         };
-        if way.start.truncate() == way.end.truncate() && !is_arc {
+        if arc.start.truncate() == arc.end.truncate() && !is_arc {
             // Straight down from above.
             assert_eq!(pieces.len(), 1);
-            assert!((pieces[0].2.end.z - way.end.z - map.at(way.end.truncate())).abs() < 1e-9);
+            assert!((pieces[0].2.end.z - arc.end.z - map.at(arc.end.truncate())).abs() < 1e-9);
             continue;
         }
         let mut gone = 0.0;
@@ -140,9 +140,9 @@ fn off(source: &Program, levelled: &Program, map: &HeightMap, deviation: f64) ->
             for (n, point) in samples(piece, *bent, 64).enumerate() {
                 // Where the source is when it has gone as far in the plane.
                 let t = ((gone + own * n as f64 / 64.0) / flat).min(1.0);
-                let said = if is_arc { way.at(t) } else { way.start.lerp(way.end, t) };
-                let beside = said.truncate().distance(point.truncate());
-                assert!(beside < 2e-3, "{t}: {said} {point}");
+                let said = if is_arc { arc.at(t) } else { arc.start.lerp(arc.end, t) };
+                let off = said.truncate().distance(point.truncate());
+                assert!(off < 2e-3, "{t}: {said} {point}");
                 let wanted = said.z + map.at(said.truncate());
                 most = most.max((point.z - wanted).abs());
                 let allowed = deviation + 1e-3 * 0.2;
@@ -338,7 +338,7 @@ fn refuses(ops: Vec<Op>, message: &str) {
 #[test]
 fn what_cannot_be_levelled_is_refused_with_its_line() {
     let above = Op::Rapid(pose(1.0, 1.0, 2.0));
-    refuses(vec![Op::Line(pose(1.0, 1.0, 0.0))], "a place that is not known");
+    refuses(vec![Op::Line(pose(1.0, 1.0, 0.0))], "a position that is not known");
     refuses(vec![above.clone(), Op::Line(pose(66.0, 1.0, 0.0))], "6.000 mm beyond");
     refuses(vec![above.clone(), Op::Rapid(pose(2.0, 1.0, -1.0))], "a rapid along the board");
     let tilted = Pose::new(Vec3::ZERO, Vec3::X).unwrap();

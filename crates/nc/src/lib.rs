@@ -1,20 +1,38 @@
-//! NC programs as a source: what a virtual control makes of one, as a neutral program.
+//! NC programs as a source: the events of a virtual control become a neutral program.
 //!
-//! A control's records say what its blocks say: positions of rotary axes, coordinates that nobody knows
-//! yet, axes sent home. A neutral program says where the tool is: every pose complete and in the work
-//! frame. This crate goes from the one to the other, and no other place does:
+//! The crate promises that every pose of the neutral program is complete and in the work frame, or that the program is
+//! refused with its line. The events of a control have positions of rotary axes, coordinates that are not known yet, and
+//! axes sent home. Only this crate converts them:
 //!
 //! - Rotary positions become a tool axis by the kinematics of the machine that the program was
 //!   written for.
 //! - A rapid whose end is not known in every coordinate waits for the next ones, as after a reference
-//!   return: `X10 Y20`, then `Z5`, is one way to a known place. A cut from such a place is refused.
-//! - Z sent home between two moves stays, as [`Op::Home`]. At a tool change and at the end it goes: a
+//!   return: `X10 Y20`, then `Z5`, is one rapid to a known position. A cut from a position that is not known is refused.
+//! - Z sent home between two moves stays, as [`Op::Home`]. At a tool change and at the end it is left out: a
 //!   writer brings the tool home there by itself.
-//! - A change of the work offset stays; the tool comes to the first place in it from above.
+//! - A change of the work offset stays; the tool comes to its first position in it from above.
 //! - A length offset becomes the register of the tool; a tool that is called by its name gets a number,
 //!   and one of the tool table its diameter and length.
 //!
-//! What cannot be told truly is refused with its line.
+//! Lengths are mm in the work frame, feeds mm/min, times s, angles of rotary axes degrees. The same text, machine and set-up
+//! give the same program.
+//!
+//! ```
+//! use control::Setup;
+//! use program::{Op, Purpose};
+//! use toolpost_nc as nc;
+//!
+//! let machine = machine::load("generic-3axis-linuxcnc").unwrap();
+//! let setup = Setup { purpose: Purpose::Contour, ..Setup::default() };
+//! let text = b"G21 G90 G17\nG0 X0. Y0. Z5.\nG1 Z-1. F100.\nX10.\nM30\n";
+//! let program = nc::read(&machine, setup, "slot.ngc", text).unwrap().program;
+//! let ends = program.records.iter().filter_map(|record| record.op.pose());
+//! let ends: Vec<[f64; 3]> = ends.map(|pose| pose.point().to_array()).collect();
+//! assert_eq!(ends, [[0.0, 0.0, 5.0], [0.0, 0.0, -1.0], [10.0, 0.0, -1.0]]);
+//! ```
+//!
+//! It never guesses: a coordinate, a tool length or a unit that the program does not give is refused or asked for, and it does
+//! not parse NC text itself (`control` does).
 
 #![deny(clippy::wildcard_enum_match_arm)]
 
@@ -24,19 +42,16 @@ use control::{
 use geom::{Arc, Vec3};
 use machine::{LengthOffset, Machine, Mount, RotaryFeed};
 use program::{
-    ArcTo, Axes, Circle, CompensatedPath, Cycle, Diagnostic, Feed, MachineMove, Op, Pose, Probe,
-    Program, Record, Severity, Thread, Tool, WorkOffset,
+    ArcTo, Axes, Circle, CompensatedPath, Cycle, Diagnostic, Feed, MachineMove, Op, Outcome, Pose,
+    Probe, Program, Record, Severity, Thread, Tool, WorkOffset,
 };
 use std::collections::{BTreeSet, HashMap};
 
 /// Most records of a reading, which are kept in memory: a program of a few lines can loop to more.
 const MOST_RECORDS: usize = 20_000_000;
 
-/// Most places of one rapid in a picture.
+/// The most points of one rapid in a picture.
 const MOST_PLACES: f64 = 1440.0;
-
-/// A step that may be refused.
-type Done = Result<(), Box<Diagnostic>>;
 
 /// What was read.
 #[derive(Clone, Debug, Default)]
@@ -47,15 +62,15 @@ pub struct Reading {
     pub warnings: Vec<Diagnostic>,
 }
 
-/// How a record is put to those before it, and whether the program has worked in several work offsets so far.
-/// It may hold records back, but no tool of a source that has length offsets: these correct the last tool.
-pub type Keep<'a> = dyn FnMut(&mut Vec<Record>, Record, bool) + 'a;
+/// Adds a record to those before it; the last argument says whether the program has worked in several work offsets so far.
+/// It may delay records, but no tool of a source that has length offsets: these correct the last tool.
+pub type Sink<'a> = dyn FnMut(&mut Vec<Record>, Record, bool) + 'a;
 
-/// The virtual control of `machine`, with what the operator has set up.
+/// The settings of the virtual control of `machine`, with what the operator has set up.
 ///
 /// # Errors
 /// `reader` where there is no control of the name that the machine file gives.
-pub fn settings(machine: &Machine, setup: Setup) -> Result<Settings, Box<Diagnostic>> {
+pub fn settings(machine: &Machine, setup: Setup) -> Outcome<Settings> {
     let Some(dialect) = Dialect::named(&machine.reader) else {
         let message = format!("there is no virtual control `{}`", machine.reader);
         let names = Dialect::NAMES.map(|(name, _)| name).join(", ");
@@ -104,8 +119,8 @@ pub fn settings(machine: &Machine, setup: Setup) -> Result<Settings, Box<Diagnos
     })
 }
 
-/// Along which way the control of `machine` counts the feed before a program says it. What a parameter of the control decides,
-/// the machine's file may say.
+/// Along which path the control of `machine` counts the feed until a program states it. Where a parameter of the control
+/// decides, the machine file may state it.
 pub fn feed_path(machine: &Machine) -> FeedPath {
     let path = Dialect::named(&machine.reader).map_or(FeedPath::AsSetUp, Dialect::feed_path);
     match (path, machine.settings.rotary_feed) {
@@ -118,14 +133,9 @@ pub fn feed_path(machine: &Machine) -> FeedPath {
 /// Reads the NC program `text`, which was written for `machine`.
 ///
 /// # Errors
-/// The first block that the control does not understand, or that cannot be told as a neutral program,
+/// The first block that the control does not understand, or that a neutral program cannot express,
 /// with `file_name`, line and the way out.
-pub fn read(
-    machine: &Machine,
-    setup: Setup,
-    file_name: &str,
-    text: &[u8],
-) -> Result<Reading, Box<Diagnostic>> {
+pub fn read(machine: &Machine, setup: Setup, file_name: &str, text: &[u8]) -> Outcome<Reading> {
     let keep = &mut |records: &mut Vec<Record>, record, _| records.push(record);
     let (mut reading, several) = read_by(machine, setup, file_name, text, keep)?;
     let records = &mut reading.program.records;
@@ -137,48 +147,48 @@ pub fn read(
     Ok(reading)
 }
 
-/// The same for a picture: a rapid that turns rotary axes without tool-centre control is as many as its tip takes to be seen where
-/// it really goes, all axes going together.
+/// The same for a picture: a rapid that turns rotary axes without tool-centre control becomes several, so that the picture shows
+/// the real path of the tip, with all axes moving together.
 ///
 /// # Errors
 /// As [`read`].
-pub fn read_swinging(
+pub fn read_with_rapids_sampled(
     machine: &Machine,
     setup: Setup,
     file_name: &str,
     text: &[u8],
-) -> Result<Program, Box<Diagnostic>> {
+) -> Outcome<Program> {
     let settings = settings(machine, setup)?;
     let keep = &mut |records: &mut Vec<Record>, record, _| records.push(record);
-    let mut lift = Lift::new(machine, &settings.setup, file_name, keep);
+    let mut conversion = Conversion::new(machine, &settings.setup, file_name, keep);
     let mut before: Option<Position> = None;
     let run = control::read(&settings, file_name, text, &mut |event| {
         let line = event.line;
-        let told = |found: Box<Diagnostic>| found.line(line).into();
+        let located = |found: Box<Diagnostic>| Box::new(found.line(line));
         if let (Action::Rapid(to), Some(from)) = (&event.action, before) {
-            lift.swing(line, &from, to).map_err(told)?;
+            conversion.sample_rapid(line, &from, to).map_err(located)?;
         }
         before = event.action.position().copied().or(before);
-        lift.event(event).map_err(told)
+        conversion.event(event).map_err(located)
     });
     run.map_err(way_out)?;
-    Ok(lift.program)
+    Ok(conversion.program)
 }
 
-/// The same in the frame of the machine: where X, Y and Z stand, in the coordinates of the work offset, mm. The work turns on its
-/// table, and a straight way of the tool is none of the axes.
+/// The same in the frame of the machine: the positions of X, Y and Z, in the coordinates of the work offset, mm. The work turns on
+/// its table, so a straight line of the tool is no straight line of the axes.
 ///
 /// # Errors
-/// As [`read`]; `machine-frame` where only the control knows how the axes stand.
+/// As [`read`]; `machine-frame` where only the control knows the positions of the axes.
 pub fn read_in_machine(
     machine: &Machine,
     setup: Setup,
     file_name: &str,
     text: &[u8],
-) -> Result<Program, Box<Diagnostic>> {
+) -> Outcome<Program> {
     let settings = settings(machine, setup)?;
     let drop = &mut |_: &mut Vec<Record>, _, _| {};
-    let mut lift = Lift::new(machine, &settings.setup, file_name, drop);
+    let mut conversion = Conversion::new(machine, &settings.setup, file_name, drop);
     let mut program = Program::new(file_name);
     let mut before: Option<Position> = None;
     let run = control::read(&settings, file_name, text, &mut |event| {
@@ -190,23 +200,23 @@ pub fn read_in_machine(
         let is_rapid = matches!(event.action, Action::Rapid(_));
         let arc = if let Action::Arc(arc) = &event.action { Some(&**arc) } else { None };
         if let (Some(from), Some(to)) = (from, event.action.position()) {
-            let length = lift.tool.and_then(|(tool, _)| tool.length);
+            let length = conversion.tool.and_then(|(tool, _)| tool.length);
             for place in between(&from, to, arc) {
                 let at = axes_at(machine, &place, length).map_err(|found| found.line(line))?;
                 if let Ok(pose) = Pose::upright(at) {
                     program.push(line, if is_rapid { Op::Rapid(pose) } else { Op::Line(pose) });
                     // `event` looks at the number of records.
-                    lift.count += 1;
+                    conversion.count += 1;
                 }
             }
         }
-        lift.event(event).map_err(|found| found.line(line).into())
+        conversion.event(event).map_err(|found| found.line(line).into())
     });
     run.map_err(way_out)?;
     Ok(program)
 }
 
-/// Places of a block between which the axes go nearly straight, its end among them.
+/// Positions of a block between which the axes go nearly straight; the last is its end.
 fn between(from: &Position, to: &Position, arc: Option<&control::ArcTo>) -> Vec<Position> {
     let arc = arc.and_then(|arc| {
         let ends = (from.point, arc.end.point);
@@ -238,12 +248,8 @@ fn between(from: &Position, to: &Position, arc: Option<&control::ArcTo>) -> Vec<
     (1..=places).map(place).collect()
 }
 
-/// Where X, Y and Z stand, in the coordinates of the work offset, mm.
-fn axes_at(
-    machine: &Machine,
-    position: &Position,
-    length: Option<f64>,
-) -> Result<Vec3, Box<Diagnostic>> {
+/// The positions of X, Y and Z, in the coordinates of the work offset, mm.
+fn axes_at(machine: &Machine, position: &Position, length: Option<f64>) -> Outcome<Vec3> {
     match position.orientation {
         Orientation::Rotary { degrees, tool_center: true } => {
             Ok(machine.linear_for(position.point, degrees, length.unwrap_or(0.0)))
@@ -252,15 +258,14 @@ fn axes_at(
         Orientation::Axis(_) if machine.rotary.is_empty() => Ok(position.point),
         Orientation::Axis(_) => Err(refuse(
             "machine-frame",
-            "how the axes stand along a vector or in a tilted plane, only the control knows",
+            "only the control knows the positions of the axes along a vector or in a tilted plane",
             "draw it in the frame of the part: without `--frame machine`",
         )),
     }
 }
 
-/// The same for a caller that has a hand in how the records are kept, as they come. Answers besides whether
-/// the program works in more than the first work offset; one that does not leaves it to the machine, and what
-/// it says of it does not belong to its records.
+/// The same with a function that receives each record. The second answer is whether the program works in more than the
+/// first work offset; where it does not, the machine decides the offset, and the record of it does not belong to the program.
 ///
 /// # Errors
 /// As [`read`].
@@ -269,19 +274,19 @@ pub fn read_by(
     setup: Setup,
     file_name: &str,
     text: &[u8],
-    keep: &mut Keep,
-) -> Result<(Reading, bool), Box<Diagnostic>> {
+    keep: &mut Sink,
+) -> Outcome<(Reading, bool)> {
     let settings = settings(machine, setup)?;
     let name = file_name.rsplit_once('.').map_or(file_name, |(stem, _)| stem);
-    let mut lift = Lift::new(machine, &settings.setup, name, keep);
+    let mut conversion = Conversion::new(machine, &settings.setup, name, keep);
     // FreeCAD's commands call no lengths: the post does.
-    lift.calls_lengths &= settings.dialect != Dialect::FreeCad;
+    conversion.calls_lengths &= settings.dialect != Dialect::FreeCad;
     let run = control::read(&settings, file_name, text, &mut |event| {
         let line = event.line;
-        lift.event(event).map_err(|found| found.line(line).into())
+        conversion.event(event).map_err(|found| found.line(line).into())
     });
     run.map_err(way_out)?;
-    let cut_off = cut_off(settings.dialect, lift.ended, text);
+    let cut_off = cut_off(settings.dialect, conversion.ended, text);
     if let Some(mut found) = cut_off {
         if !settings.setup.purpose.asks_ends() {
             found.severity = Severity::Warning;
@@ -292,7 +297,7 @@ pub fn read_by(
         if found.is_error() {
             return Err(found.into());
         }
-        lift.warnings.push(found);
+        conversion.warnings.push(found);
     }
     let mut optional = control::optional_blocks(text);
     if let Some((line, _)) = optional.next() {
@@ -304,12 +309,12 @@ pub fn read_by(
             format!("the blocks behind `/`, which the operator may switch off, are read as {done}");
         let mut found = Diagnostic::warning("block-skip", message).help(other).line(line);
         found.count += u32::try_from(optional.count()).unwrap_or(u32::MAX - 1);
-        lift.warnings.push(found);
+        conversion.warnings.push(found);
     }
-    Ok((Reading { program: lift.program, warnings: lift.warnings }, lift.several))
+    Ok((Reading { program: conversion.program, warnings: conversion.warnings }, conversion.several))
 }
 
-/// What says that the program in `text` is only the first part of one; `ended` is whether a code has ended it.
+/// The finding that the program in `text` is only the first part of one; `ended` is whether a code has ended it.
 fn cut_off(dialect: Dialect, ended: bool, text: &[u8]) -> Option<Diagnostic> {
     const HELP: &str = "the file may be cut off: send it once more";
     if text.trim_ascii().is_empty() {
@@ -341,26 +346,28 @@ fn cut_off(dialect: Dialect, ended: bool, text: &[u8]) -> Option<Diagnostic> {
 /// Adds to what a control refuses what the user of a source can do about it.
 fn way_out(mut found: Box<Diagnostic>) -> Box<Diagnostic> {
     let way_out = match found.rule {
-        "nc-unknown-position" | "unknown-position" => "or say where the tool stands at the start",
+        "nc-unknown-position" | "unknown-position" => {
+            "or give the position of the tool at the start"
+        }
         _ => return found,
     };
     found.help_too(way_out);
     found
 }
 
-/// The events of a control on their way into a neutral program.
-struct Lift<'a> {
+/// The conversion of the events of a control into a neutral program.
+struct Conversion<'a> {
     machine: &'a Machine,
     setup: &'a Setup,
     program: Program,
-    keep: &'a mut Keep<'a>,
+    keep: &'a mut Sink<'a>,
     /// How many records there have been.
     count: usize,
     /// A code has ended the program.
     ended: bool,
     warnings: Vec<Diagnostic>,
-    place: Place,
-    /// What the last block that moved has said, where the axes have not gone home since.
+    tool_at: ToolPosition,
+    /// The position of the last block that moved, unless the axes have gone home since.
     position: Option<Position>,
     /// The active feed, what it counts, and the feed of the last record.
     feed: Option<Feed>,
@@ -370,7 +377,7 @@ struct Lift<'a> {
     home: Option<u32>,
     /// The tool in the spindle, and whether nothing has moved since it was called.
     tool: Option<(Loaded, bool)>,
-    /// The cycle that goes aside from the wall, as the control says it, and the way aside of the last hole.
+    /// The cycle that withdraws from the wall, as the control has it, and the withdrawal at the last hole.
     boring: Option<(Cycle, Option<Vec3>)>,
     /// The work offset that the program names.
     work_offset: Option<WorkOffset>,
@@ -386,7 +393,7 @@ struct Lift<'a> {
     calls_lengths: bool,
     /// The register of the length offset that it has called last, also for another tool.
     length_offset: Option<u32>,
-    /// Registers of the tools that are told to cut without a length offset.
+    /// Registers of the tools that are reported to cut without a length offset.
     bare: BTreeSet<u32>,
 }
 
@@ -404,40 +411,45 @@ struct Loaded {
 
 /// A tool tip (mm) and a tool axis (unit vector) in the work frame; what is not known is NaN.
 #[derive(Clone, Copy, Debug)]
-struct Spot {
+struct PartialPose {
     tip: Vec3,
     axis: Vec3,
 }
 
-impl Spot {
-    /// The pose that it is, where everything is known.
-    fn pose(self) -> Option<Pose> {
+impl PartialPose {
+    /// The same as a pose, where everything is known.
+    fn complete(self) -> Option<Pose> {
         Pose::new(self.tip, self.axis).ok()
     }
 }
 
-/// Where the tool is, as far as the program says it.
+/// The position of the tool, as far as the program determines it.
 #[derive(Clone, Copy, Debug)]
-enum Place {
-    /// Where it was said to stand at the start: a cut from there begins with the way to it.
-    Start(Spot),
-    /// Where the last block has sent it.
-    At(Spot),
-    Nowhere,
+enum ToolPosition {
+    /// The given position at the start: a cut from there begins with a rapid to it.
+    Start(PartialPose),
+    /// The end of the last block.
+    At(PartialPose),
+    Unknown,
 }
 
-impl Place {
-    fn spot(&self) -> Option<&Spot> {
+impl ToolPosition {
+    fn pose(&self) -> Option<&PartialPose> {
         match self {
-            Place::Start(spot) | Place::At(spot) => Some(spot),
-            Place::Nowhere => None,
+            ToolPosition::Start(pose) | ToolPosition::At(pose) => Some(pose),
+            ToolPosition::Unknown => None,
         }
     }
 }
 
-impl<'a> Lift<'a> {
-    fn new(machine: &'a Machine, setup: &'a Setup, name: &str, keep: &'a mut Keep<'a>) -> Lift<'a> {
-        Lift {
+impl<'a> Conversion<'a> {
+    fn new(
+        machine: &'a Machine,
+        setup: &'a Setup,
+        name: &str,
+        keep: &'a mut Sink<'a>,
+    ) -> Conversion<'a> {
+        Conversion {
             machine,
             setup,
             program: Program {
@@ -449,9 +461,9 @@ impl<'a> Lift<'a> {
             count: 0,
             ended: false,
             warnings: Vec::new(),
-            place: setup
-                .start
-                .map_or(Place::Nowhere, |tip| Place::Start(Spot { tip, axis: Vec3::Z })),
+            tool_at: setup.start.map_or(ToolPosition::Unknown, |tip| {
+                ToolPosition::Start(PartialPose { tip, axis: Vec3::Z })
+            }),
             position: None,
             feed: None,
             feed_path: feed_path(machine),
@@ -470,7 +482,7 @@ impl<'a> Lift<'a> {
         }
     }
 
-    fn event(&mut self, event: Event) -> Done {
+    fn event(&mut self, event: Event) -> Outcome {
         let line = event.line;
         if self.count >= MOST_RECORDS {
             let message = format!("the program makes more than {MOST_RECORDS} records");
@@ -485,17 +497,17 @@ impl<'a> Lift<'a> {
         }
         match event.action {
             Action::Rapid(position) => {
-                let spot = self.spot(&position);
-                match spot.pose() {
+                let pose = self.partial_pose(&position);
+                match pose.complete() {
                     Some(pose) => self.arrive(line, Op::Rapid(pose))?,
-                    None => self.place = Place::At(spot),
+                    None => self.tool_at = ToolPosition::At(pose),
                 }
             }
             Action::Line(position) if self.starts_a_picture(&position) => {
                 let message = "where the tool comes from is not known: it is drawn from the end of this block on";
                 self.warn_once(line, Diagnostic::warning("unknown-start", message));
-                let spot = self.spot(&position);
-                if let Some(pose) = spot.pose() {
+                let pose = self.partial_pose(&position);
+                if let Some(pose) = pose.complete() {
                     self.arrive(line, Op::Rapid(pose))?;
                 }
             }
@@ -517,17 +529,18 @@ impl<'a> Lift<'a> {
                 let end = self.cut(&probe.end)?;
                 let probe = Probe { end, away, must_answer, place };
                 self.arrive(line, Op::Probe(Box::new(probe)))?;
-                self.place = Place::Nowhere;
+                self.tool_at = ToolPosition::Unknown;
             }
             Action::Hole(position) => {
-                let spot = self.spot(&position);
-                let way = self.boring.as_ref().and_then(|(cycle, _)| cycle.kind.withdrawal());
-                let aside = way.map(|way| {
-                    let beside = Position { point: position.point + way.aside, ..position };
-                    self.spot(&beside).tip - spot.tip
+                let pose = self.partial_pose(&position);
+                let withdrawal =
+                    self.boring.as_ref().and_then(|(cycle, _)| cycle.kind.withdrawal());
+                let aside = withdrawal.map(|withdrawal| {
+                    let moved = Position { point: position.point + withdrawal.aside, ..position };
+                    self.partial_pose(&moved).tip - pose.tip
                 });
-                let Some(pose) = spot.pose() else {
-                    return Err(self.lost("a hole", &position, &spot));
+                let Some(pose) = pose.complete() else {
+                    return Err(self.lost("a hole", &position, &pose));
                 };
                 self.bore(line, aside);
                 self.arrive(line, Op::Hole(pose))?;
@@ -564,7 +577,7 @@ impl<'a> Lift<'a> {
             Action::Swivel(_) => {}
             Action::Across(position) => {
                 let nowhere = Position { point: Vec3::NAN, ..*position };
-                self.place = Place::At(self.spot(&nowhere));
+                self.tool_at = ToolPosition::At(self.partial_pose(&nowhere));
             }
             Action::CycleOff => self.push(line, Op::CycleOff),
             Action::Feed(feed) => {
@@ -606,8 +619,8 @@ impl<'a> Lift<'a> {
         Ok(())
     }
 
-    /// Places of a rapid on which rotary axes turn that the tip does not follow, a degree apart.
-    fn swing(&mut self, line: u32, from: &Position, to: &Position) -> Done {
+    /// Points of a rapid on which rotary axes turn without tool-centre control, a degree apart.
+    fn sample_rapid(&mut self, line: u32, from: &Position, to: &Position) -> Outcome {
         let (
             Orientation::Rotary { degrees: a, tool_center: false },
             Orientation::Rotary { degrees: b, tool_center: false },
@@ -622,20 +635,20 @@ impl<'a> Lift<'a> {
             let degrees = std::array::from_fn(|k| a[k] + (b[k] - a[k]) * part);
             let orientation = Orientation::Rotary { degrees, tool_center: false };
             let place = Position { point: from.point.lerp(to.point, part), orientation };
-            if let Some(pose) = self.spot(&place).pose() {
+            if let Some(pose) = self.partial_pose(&place).complete() {
                 self.arrive(line, Op::Rapid(pose))?;
             }
         }
         Ok(())
     }
 
-    /// Says the feed of a straight cut to `to` where its number is not the speed of the tip: as the time that the cut takes.
+    /// Adds the feed of a straight cut to `to`: as inverse time where its number is not the speed of the tip.
     fn time_cut(&mut self, line: u32, to: &Position) {
         let Some(feed) = self.feed else { return };
         let turned = self.position.filter(|from| !self.feed_path.is_of_tip(from, to));
         let counted = turned.and_then(|from| self.feed_path.length(&from, to));
         let feed = match (feed, counted) {
-            (Feed::PerMinute(f), Some(way)) if way > 0.0 => Feed::InverseTime(f / way),
+            (Feed::PerMinute(f), Some(length)) if length > 0.0 => Feed::InverseTime(f / length),
             (feed, None) if turned.is_some() && matches!(feed, Feed::PerMinute(_)) => {
                 self.unknown_speed(line);
                 feed
@@ -645,7 +658,7 @@ impl<'a> Lift<'a> {
         self.say_feed(line, feed);
     }
 
-    /// Says a feed that the last record of a feed does not.
+    /// Adds a record of the feed where it differs from the last one.
     fn say_feed(&mut self, line: u32, feed: Feed) {
         if self.written_feed != Some(feed) {
             self.written_feed = Some(feed);
@@ -653,20 +666,20 @@ impl<'a> Lift<'a> {
         }
     }
 
-    /// F is taken as the speed of the tip where nobody knows what it counts.
+    /// F is taken as the speed of the tip where it is not known what it counts.
     #[cold]
     fn unknown_speed(&mut self, line: u32) {
         // FreeCAD's feeds are those of the tool.
         if Dialect::named(&self.machine.reader) == Some(Dialect::FreeCad) {
             return;
         }
-        let message = "rotary axes turn in the cut, and which axes F in mm/min counts, a parameter of the control decides: it is \
+        let message = "rotary axes turn in the cut, and a parameter of the control decides which axes F in mm/min counts: it is \
                        taken as the speed of the tool tip";
         if let Some(known) = self.warnings.iter_mut().find(|found| found.rule == "rotary-feed") {
             known.count = known.count.saturating_add(1);
             return;
         }
-        let help = "say `rotary_feed` in [settings] of the machine file (FANUC: parameter 1408#0)";
+        let help = "set `rotary_feed` in [settings] of the machine file (FANUC: parameter 1408#0)";
         self.warnings.push(Diagnostic::warning("rotary-feed", message).help(help).line(line));
     }
 
@@ -676,14 +689,14 @@ impl<'a> Lift<'a> {
     }
 
     /// The tool moves, from home where it was sent there.
-    fn arrive(&mut self, line: u32, op: Op) -> Done {
+    fn arrive(&mut self, line: u32, op: Op) -> Outcome {
         if self.calls_lengths && !matches!(op, Op::Rapid(_)) {
             self.see_length(line)?;
         }
-        match (self.home.take(), self.place) {
+        match (self.home.take(), self.tool_at) {
             (Some(line), _) => self.push(line, Op::Home),
-            (None, Place::Start(start)) if !matches!(op, Op::Rapid(_)) => {
-                let start = start.pose().map(Op::Rapid);
+            (None, ToolPosition::Start(start)) if !matches!(op, Op::Rapid(_)) => {
+                let start = start.complete().map(Op::Rapid);
                 start.into_iter().for_each(|start| self.push(line, start));
             }
             _ => {}
@@ -691,18 +704,19 @@ impl<'a> Lift<'a> {
         if let Some((_, fresh)) = &mut self.tool {
             *fresh = false;
         }
-        let at = |pose: &Pose| Place::At(Spot { tip: pose.point(), axis: pose.axis() });
-        self.place = op.pose().map_or(Place::Nowhere, at);
+        let at =
+            |pose: &Pose| ToolPosition::At(PartialPose { tip: pose.point(), axis: pose.axis() });
+        self.tool_at = op.pose().map_or(ToolPosition::Unknown, at);
         self.push(line, op);
         Ok(())
     }
 
     /// The tool cuts: whether a length offset is on, and whose. The new program calls that of the tool in any case.
-    fn see_length(&mut self, line: u32) -> Done {
+    fn see_length(&mut self, line: u32) -> Outcome {
         let Some((tool, _)) = &mut self.tool else { return Ok(()) };
         let (register, active) = (tool.register, self.length_offset);
         if tool.offset.replace(active.is_some()).is_some_and(|before| before != active.is_some()) {
-            let message = "the tool cuts with its length offset and without: a tool with two lengths cannot be told";
+            let message = "the tool cuts with its length offset and without: a tool with two lengths cannot be converted";
             let help = "post the parts with the offset and without as programs of their own";
             return Err(refuse("length-offset", message, help));
         }
@@ -744,79 +758,81 @@ impl<'a> Lift<'a> {
         }
     }
 
-    /// Says the boring cycle anew where its way aside, which turns with the table, is another one.
+    /// Adds the boring cycle again where its withdrawal, which turns with the table, has another direction.
     fn bore(&mut self, line: u32, aside: Option<Vec3>) {
-        let (Some((cycle, told)), Some(aside)) = (&mut self.boring, aside) else { return };
-        if told.is_some_and(|told| told.distance(aside) < ROUNDING) {
+        let (Some((cycle, last)), Some(aside)) = (&mut self.boring, aside) else { return };
+        if last.is_some_and(|last| last.distance(aside) < ROUNDING) {
             return;
         }
-        *told = Some(aside);
+        *last = Some(aside);
         let cycle = Cycle { kind: cycle.kind.with_aside(aside), ..*cycle };
         self.push(line, Op::Cycle(Box::new(cycle)));
     }
 
-    /// Whether a straight cut to `end` comes from where nobody knows, in a program that is only drawn.
+    /// Whether the start of a straight cut to `end` is not known, in a program that is only drawn.
     fn starts_a_picture(&self, end: &Position) -> bool {
         let drawn = !self.setup.purpose.asks_ends();
-        let known = |spot: &Spot| spot.pose().is_some();
-        let from_home = self.home.is_some() || !self.place.spot().is_some_and(known);
-        drawn && from_home && known(&self.spot(end))
+        let known = |pose: &PartialPose| pose.complete().is_some();
+        let from_home = self.home.is_some() || !self.tool_at.pose().is_some_and(known);
+        drawn && from_home && known(&self.partial_pose(end))
     }
 
     /// Where a cut ends; it must begin somewhere.
-    fn cut(&self, end: &Position) -> Result<Pose, Box<Diagnostic>> {
-        let spot = self.spot(end);
-        let start = self.place.spot().filter(|_| self.home.is_none());
-        let nowhere = Spot { tip: Vec3::NAN, axis: Vec3::Z };
+    fn cut(&self, end: &Position) -> Outcome<Pose> {
+        let pose = self.partial_pose(end);
+        let start = self.tool_at.pose().filter(|_| self.home.is_none());
+        let nowhere = PartialPose { tip: Vec3::NAN, axis: Vec3::Z };
         match start.copied().unwrap_or(nowhere) {
-            start if start.pose().is_none() => Err(self.lost("the start of a cut", end, &start)),
-            _ => spot.pose().ok_or_else(|| self.lost("the end of a cut", end, &spot)),
+            start if start.complete().is_none() => {
+                Err(self.lost("the start of a cut", end, &start))
+            }
+            _ => pose.complete().ok_or_else(|| self.lost("the end of a cut", end, &pose)),
         }
     }
 
-    /// What is refused because nobody knows where `spot` is, of a block that goes to `end`.
+    /// The refusal of a block that goes to `end` because `pose` is not known.
     #[cold]
-    fn lost(&self, what: &str, end: &Position, spot: &Spot) -> Box<Diagnostic> {
+    fn lost(&self, what: &str, end: &Position, pose: &PartialPose) -> Box<Diagnostic> {
         let Orientation::Rotary { degrees, tool_center: false } = end.orientation else {
-            return unknown(what, spot);
+            return unknown(what, pose);
         };
         let length = self.tool.and_then(|(tool, _)| tool.length);
         match self.machine.unsaid(degrees, length) {
             Some(unsaid) => {
-                let message = format!("{what} hangs on what nobody says: {unsaid}");
+                let message = format!("{what} depends on what is not given: {unsaid}");
                 refuse(unsaid.rule(), message, &unsaid.way_out())
             }
-            None => unknown(what, spot),
+            None => unknown(what, pose),
         }
     }
 
     /// An arc in the work frame: its centre and its axis turn with the table, as its end does.
-    fn arc(&self, arc: &control::ArcTo) -> Result<ArcTo, Box<Diagnostic>> {
+    fn arc(&self, arc: &control::ArcTo) -> Outcome<ArcTo> {
         let control::ArcTo { mut center, mut normal, turns, .. } = *arc;
         if !self.machine.rotary.is_empty() {
-            let of = |point| self.spot(&Position { point, ..arc.end }).tip;
+            let of = |point| self.partial_pose(&Position { point, ..arc.end }).tip;
             center = of(arc.center);
             normal = (of(arc.center + arc.normal) - center).normalize();
         }
         let end = self.cut(&arc.end)?;
         let circle = Circle::new(center, normal, turns);
         let circle = circle.map_err(|_| {
-            unknown("the centre of an arc", &Spot { tip: center, axis: end.axis() })
+            unknown("the centre of an arc", &PartialPose { tip: center, axis: end.axis() })
         })?;
         Ok(ArcTo { end, circle })
     }
 
-    /// A position as a block gives it, in the work frame. Where the tip of a tool of unknown length is that
-    /// a head has turned, is not known.
-    fn spot(&self, position: &Position) -> Spot {
+    /// A position as a block gives it, in the work frame. The tip of a tool of unknown length that a head has
+    /// turned is not known.
+    fn partial_pose(&self, position: &Position) -> PartialPose {
         let length = self.tool.and_then(|(tool, _)| tool.length);
         let (mut tip, axis) = resolve(self.machine, position, length);
         self.setup.flatten(&mut tip);
-        Spot { tip, axis }
+        PartialPose { tip, axis }
     }
 
-    /// Gives a tool that is called by its name a number, of which no other tool has it.
-    fn number(&mut self, line: u32, tool: &mut Tool) -> Done {
+    /// Gives a tool that is called by its name a number that no other tool has.
+    fn number(&mut self, line: u32, tool: &mut Tool) -> Outcome {
         if tool.number > 0 {
             let name = self.numbers.entry(tool.number).or_default();
             if !name.is_empty() {
@@ -851,17 +867,17 @@ impl<'a> Lift<'a> {
         Ok(())
     }
 
-    /// Axes go to a fixed place of the machine. Only what Z does there matters: the others come back
-    /// by words of their own, and their way is the machine's.
-    fn go_home(&mut self, line: u32, axes: Axes) -> Done {
-        let is_known = self.place.spot().is_some_and(|spot| spot.pose().is_some());
+    /// Axes go to a fixed position of the machine. Only Z matters there: the other axes come back
+    /// by words of their own, and the machine decides their path.
+    fn go_home(&mut self, line: u32, axes: Axes) -> Outcome {
+        let is_known = self.tool_at.pose().is_some_and(|pose| pose.complete().is_some());
         if !axes.contains(Axes::Z) && self.home.is_none() && is_known {
             let message =
-                "axes are sent home while Z is not: the way there beside the part is the machine's";
+                "axes are sent home while Z is not: the machine decides their path past the part";
             let help = "send Z home before";
             return Err(refuse("home", message, help));
         }
-        if axes.contains(Axes::Z) && self.place.spot().is_some() {
+        if axes.contains(Axes::Z) && self.tool_at.pose().is_some() {
             self.home.get_or_insert(line);
         }
         Ok(())
@@ -884,9 +900,9 @@ impl<'a> Lift<'a> {
         }
     }
 
-    /// A move in machine coordinates is a way home where Z goes to its safe height. Where the machine's file does not
-    /// say that, Z 0 or above is taken for it, as on machines whose Z counts down from its top.
-    fn machine_move(&mut self, line: u32, to: &MachineMove) -> Done {
+    /// A move in machine coordinates is a move home where Z goes to its safe height. Where the machine file has no
+    /// safe height, Z 0 or above is taken for it, as on machines whose Z counts down from its top.
+    fn machine_move(&mut self, line: u32, to: &MachineMove) -> Outcome {
         if let Some(z) = to.linear[2] {
             let safe = self.machine.safe_height;
             if z.is_nan() || z < safe.unwrap_or(0.0) - ROUNDING {
@@ -913,7 +929,7 @@ impl<'a> Lift<'a> {
         self.go_home(line, to.axes())
     }
 
-    fn length_offset(&mut self, line: u32, register: Option<u32>) -> Done {
+    fn length_offset(&mut self, line: u32, register: Option<u32>) -> Outcome {
         self.length_offset = register;
         let Some(register) = register else { return Ok(()) };
         let Some((tool, fresh)) = &mut self.tool else {
@@ -935,7 +951,7 @@ impl<'a> Lift<'a> {
         }
         if edges || !*fresh {
             let message = format!(
-                "length offset {register} where {own} is the tool's: a tool with two lengths cannot be told"
+                "length offset {register} where {own} is the tool's: a tool with two lengths cannot be converted"
             );
             let help = "post the parts with each offset as programs of their own";
             return Err(refuse("length-offset", message, help));
@@ -953,16 +969,16 @@ impl<'a> Lift<'a> {
             return;
         }
         self.several |= offset != WorkOffset::FIRST;
-        // Where the tool stands at the start is said with all offsets at 0.
-        if let Place::At(_) = self.place {
+        // The position at the start is given with all offsets at 0.
+        if let ToolPosition::At(_) = self.tool_at {
             self.several = true;
-            self.place = Place::Nowhere;
+            self.tool_at = ToolPosition::Unknown;
         }
         self.push(line, Op::WorkOffset(offset));
     }
 }
 
-/// What two places that are the same may be apart after a turn of the table, mm.
+/// How far apart two equal points may be after a turn of the table, mm.
 const ROUNDING: f64 = 1e-9;
 
 /// The tool tip (mm) and the tool axis (unit vector), both in the work frame, of a position as a block gives it,
@@ -981,12 +997,12 @@ pub fn resolve(machine: &Machine, position: &Position, tool_length: Option<f64>)
     }
 }
 
-/// What is refused because of coordinates that no block has given.
+/// The refusal of coordinates that no block has given.
 #[cold]
-fn unknown(what: &str, spot: &Spot) -> Box<Diagnostic> {
-    let letters = ["X", "Y", "Z"].into_iter().zip(spot.tip.to_array());
+fn unknown(what: &str, pose: &PartialPose) -> Box<Diagnostic> {
+    let letters = ["X", "Y", "Z"].into_iter().zip(pose.tip.to_array());
     let mut missing: Vec<&str> = letters.filter(|(_, v)| v.is_nan()).map(|(l, _)| l).collect();
-    if !spot.axis.is_finite() {
+    if !pose.axis.is_finite() {
         missing.push("the rotary axes");
     }
     let message = match missing.is_empty() {

@@ -1,4 +1,4 @@
-//! What becomes of a control's records on their way into a neutral program.
+//! What becomes of a control's events in a neutral program.
 
 use control::{Setup, ToolData};
 use geom::Vec3;
@@ -33,7 +33,7 @@ fn refused(text: &str) -> Box<Diagnostic> {
 }
 
 /// What moves the tool, sends it home or changes it.
-fn ways(program: &Program) -> Vec<(u32, &Op)> {
+fn moves(program: &Program) -> Vec<(u32, &Op)> {
     let moves = |op: &Op| op.pose().is_some() || matches!(op, Op::Home | Op::Tool(_));
     program.records.iter().filter(|r| moves(&r.op)).map(|r| (r.line, &r.op)).collect()
 }
@@ -62,7 +62,7 @@ fn each_of_many_tools_that_are_called_by_name_gets_a_number_of_its_own() {
 fn a_rapid_waits_until_every_coordinate_is_known() {
     let program = fanuc("G21 G90 G54 G0\nX10. Y20.\nZ5.\nG1 Z-1. F100.\nM30\n");
     let expected = [(3, &Op::Rapid(at(10.0, 20.0, 5.0))), (4, &Op::Line(at(10.0, 20.0, -1.0)))];
-    assert_eq!(ways(&program), expected);
+    assert_eq!(moves(&program), expected);
 }
 
 #[test]
@@ -77,15 +77,15 @@ fn where_z_is_at_its_switch_g92_says() {
         &Op::Line(at(0.0, 0.0, -1.0)),
         &Op::Line(at(5.0, 0.0, -1.0)),
     ];
-    let ways: Vec<_> = ways(&program).into_iter().map(|(_, op)| op).collect();
-    assert_eq!(ways, expected);
+    let found: Vec<_> = moves(&program).into_iter().map(|(_, op)| op).collect();
+    assert_eq!(found, expected);
     // Where X and Y are nobody has said.
     let error = read_for(&machine, Setup::default(), text).unwrap_err();
     assert_eq!(error.rule, "unknown-position");
 }
 
 /// The boring bar goes aside along X of the machine: on a table that has turned by 90 degrees that is
-/// another way in the work.
+/// another direction in the work.
 #[test]
 fn a_boring_bar_goes_aside_as_the_table_stands() {
     let machine = table();
@@ -97,7 +97,7 @@ fn a_boring_bar_goes_aside_as_the_table_stands() {
         );
         let program = read_for(&machine, setup, &text).unwrap().program;
         let aside = |op: &Op| match op {
-            Op::Cycle(cycle) => cycle.kind.withdrawal().map(|way| way.aside),
+            Op::Cycle(cycle) => cycle.kind.withdrawal().map(|withdrawal| withdrawal.aside),
             _ => None,
         };
         program.records.iter().filter_map(|record| aside(&record.op)).collect::<Vec<_>>()
@@ -114,7 +114,7 @@ fn z_home_stays_between_two_moves_and_goes_where_the_tool_is_changed() {
     let text = "G21 G90 G54 G0\nT1 M6\nX0. Y0.\nG43 Z5. H1\nG91 G28 Z0\nG90 X9. Y9.\nZ5.\n\
                 G91 G28 Z0\nG90 T2 M6\nX1. Y1.\nG43 Z5. H2\nG91 G28 Z0\nM30\n";
     let program = fanuc(text);
-    let told: Vec<_> = ways(&program).into_iter().map(|(line, op)| (line, op.pose())).collect();
+    let found: Vec<_> = moves(&program).into_iter().map(|(line, op)| (line, op.pose())).collect();
     let expected = [
         (2, None),
         (4, Some(&at(0.0, 0.0, 5.0))),
@@ -123,11 +123,11 @@ fn z_home_stays_between_two_moves_and_goes_where_the_tool_is_changed() {
         (9, None),
         (11, Some(&at(1.0, 1.0, 5.0))),
     ];
-    assert_eq!(told.len(), expected.len());
-    for ((line, pose), (wanted, expected)) in told.iter().zip(expected) {
+    assert_eq!(found.len(), expected.len());
+    for ((line, pose), (wanted, expected)) in found.iter().zip(expected) {
         assert_eq!((*line, *pose), (wanted, expected));
     }
-    assert_eq!(ways(&program)[2].1, &Op::Home);
+    assert_eq!(moves(&program)[2].1, &Op::Home);
 }
 
 #[test]
@@ -151,7 +151,7 @@ fn where_the_tool_stands_at_the_start_stays_known_when_the_first_offset_is_named
 #[test]
 fn the_register_of_a_length_offset_is_that_of_the_tool() {
     let program = fanuc("G21 G90 G54\nT3 M6\nG0 X0. Y0.\nG43 Z5. H13\nM30\n");
-    let Op::Tool(tool) = ways(&program)[0].1 else { panic!("no tool") };
+    let Op::Tool(tool) = moves(&program)[0].1 else { panic!("no tool") };
     assert_eq!((tool.number, tool.offset), (3, Some(13)));
     let found = refused("G21 G90 G54\nT3 M6\nG0 X0. Y0.\nG43 Z5. H3\nG43 Z4. H13\nM30\n");
     assert_eq!((found.rule, found.line), ("length-offset", 5));
@@ -164,13 +164,13 @@ fn rotary_positions_become_a_tool_axis_by_the_machine_of_the_program() {
     let text = "G21 G90 G54\nT1 M6\nG0 B0 C90.\nX10. Y0.\nG43 Z5. H1\nG1 Z1. F100.\nM30\n";
     let reading = read_for(&machine, Setup::default(), text).unwrap();
     let poses: Vec<Vec3> =
-        ways(&reading.program).iter().filter_map(|(_, op)| op.pose()).map(|p| p.point()).collect();
+        moves(&reading.program).iter().filter_map(|(_, op)| op.pose()).map(|p| p.point()).collect();
     assert_eq!(poses.len(), 2);
     assert!(poses[0].distance(Vec3::new(0.0, 10.0, 5.0)) < 1e-9, "{}", poses[0]);
     // B tilts the table: what stood upright leans towards X.
     let text = "G21 G90 G54\nT1 M6\nG0 B-30. C0.\nG43.4 H1 X0. Y0. Z5.\nG1 Z1. F100.\nM30\n";
     let reading = read_for(&machine, Setup::default(), text).unwrap();
-    let axis = ways(&reading.program)[1].1.pose().unwrap().axis();
+    let axis = moves(&reading.program)[1].1.pose().unwrap().axis();
     let leaning = Vec3::new(-0.5, 0.0, 0.75_f64.sqrt());
     assert!(axis.distance(leaning) < 1e-9, "{axis}");
 }
@@ -181,7 +181,7 @@ fn an_arc_on_a_turned_table_turns_with_it() {
     let text =
         "G21 G90 G54\nT1 M6\nG0 B0 C90.\nX10. Y0.\nG43 Z5. H1\nG3 X0. Y10. I-10. J0. F100.\nM30\n";
     let reading = read_for(&machine, Setup::default(), text).unwrap();
-    let Op::Arc(arc) = ways(&reading.program)[2].1 else { panic!("no arc") };
+    let Op::Arc(arc) = moves(&reading.program)[2].1 else { panic!("no arc") };
     let apart = |a: Vec3, b: Vec3| a.distance(b) < 1e-9;
     assert!(apart(arc.end.point(), Vec3::new(-10.0, 0.0, 5.0)), "{}", arc.end.point());
     assert!(
@@ -266,7 +266,7 @@ fn a_cut_may_begin_where_g92_says_that_the_tool_stands() {
     };
     let program = wire("G21 G90\nG92 X5. Y-3.\nG1 X10.\nM2\n").unwrap();
     let expected = [(3, &Op::Rapid(at(5.0, -3.0, 0.0))), (3, &Op::Line(at(10.0, -3.0, 0.0)))];
-    assert_eq!(ways(&program), expected);
+    assert_eq!(moves(&program), expected);
     assert_eq!(wire("G21 G90\nG92 X5.\nG1 X10. Y0.\nM2\n").unwrap_err().rule, "unknown-position");
 }
 
@@ -279,7 +279,7 @@ fn a_program_that_is_cut_off_is_refused_where_its_control_knows_an_end() {
         match nc::read(&machine, Setup::default(), "p.nc", text.as_bytes()) {
             Ok(reading) => {
                 let ends = reading.warnings.iter().find(|found| found.rule == "program-end");
-                ends.map_or("whole", |_| "told")
+                ends.map_or("whole", |_| "reported")
             }
             Err(error) => {
                 assert!(error.line > 0 && !error.help.is_empty(), "{error}");
@@ -293,8 +293,8 @@ fn a_program_that_is_cut_off_is_refused_where_its_control_knows_an_end() {
         ("generic-3axis-haas", "program-end", "program-end"),
         ("generic-3axis-iso", "program-end", "program-end"),
         ("generic-3axis-linuxcnc", "program-end", "program-end"),
-        ("generic-3axis-mach3", "told", "program-end"),
-        ("generic-3axis-grbl", "told", "nc-syntax"),
+        ("generic-3axis-mach3", "reported", "program-end"),
+        ("generic-3axis-grbl", "reported", "nc-syntax"),
         ("generic-3axis-marlin", "whole", "nc-syntax"),
     ] {
         let body =
@@ -309,11 +309,11 @@ fn a_program_that_is_cut_off_is_refused_where_its_control_knows_an_end() {
     }
     assert_eq!(found("generic-3axis-linuxcnc", &format!("%\n{body}%\n")), "whole");
     assert_eq!(found("generic-3axis-fanuc", &format!("%\nO1\n{body}%\n")), "program-end");
-    assert_eq!(found("generic-3axis-fanuc", &format!("%\nO1\n{body}M30\n")), "told");
+    assert_eq!(found("generic-3axis-fanuc", &format!("%\nO1\n{body}M30\n")), "reported");
     assert_eq!(found("generic-3axis-fanuc", &format!("%\nO1\n{body}M30\n%\n")), "whole");
 }
 
-/// The registers of the tools of a program, and what is told of its lengths.
+/// The registers of the tools of a program, and the findings about its lengths.
 fn registers(control: &str, text: &str) -> (Vec<(u32, Option<u32>)>, Vec<Diagnostic>) {
     let machine = load_origin(control).unwrap();
     let reading = read_for(&machine, Setup::default(), text).unwrap_or_else(|e| panic!("{e}"));
@@ -321,21 +321,21 @@ fn registers(control: &str, text: &str) -> (Vec<(u32, Option<u32>)>, Vec<Diagnos
         Op::Tool(tool) => Some((tool.number, tool.offset)),
         _ => None,
     });
-    let told = reading.warnings.into_iter().filter(|found| found.rule == "length-offset");
-    (tools.collect(), told.collect())
+    let findings = reading.warnings.into_iter().filter(|found| found.rule == "length-offset");
+    (tools.collect(), findings.collect())
 }
 
 const CUT: &str = "G0 X0. Y0. Z5.\nG1 Z-1. F90.\nX9.\nG0 Z5.\n";
 
 #[test]
-fn a_tool_that_cuts_without_a_length_offset_is_told_once() {
+fn a_tool_that_cuts_without_a_length_offset_is_reported_once() {
     for control in ["fanuc-31i", "haas", "linuxcnc", "mach3"] {
         let text = format!("G21 G90 G94 G54\nT2 M6\nS900 M3\n{CUT}T2 M6\n{CUT}M30\n");
-        let (tools, told) = registers(control, &text);
+        let (tools, findings) = registers(control, &text);
         assert_eq!(tools, [(2, None), (2, None)], "{control}");
-        let [found] = &told[..] else { panic!("{control}: {told:?}") };
+        let [found] = &findings[..] else { panic!("{control}: {findings:?}") };
         assert!(found.line == 5 && found.message.contains("register 2"), "{control}: {found}");
-        // With G43 nothing is told.
+        // With G43 nothing is reported.
         let text = format!("G21 G90 G94 G54\nT2 M6\nS900 M3\nG0 X0. Y0.\nG43 H2 Z9.\n{CUT}M30\n");
         assert_eq!(registers(control, &text), (vec![(2, None)], vec![]), "{control}");
     }
@@ -350,14 +350,14 @@ fn a_tool_that_cuts_without_a_length_offset_is_told_once() {
 
 /// G43 and its register stay on through a tool change: the control cuts with the length of the other tool.
 #[test]
-fn a_length_offset_that_was_called_before_the_tool_stays_its_own_and_is_told() {
+fn a_length_offset_that_was_called_before_the_tool_stays_its_own_and_is_reported() {
     let first = format!("T1 M6\nS900 M3\nG0 X0. Y0.\nG43 H1 Z9.\n{CUT}");
     for second in ["", "G43 H1\n"] {
         for control in ["fanuc-31i", "haas", "linuxcnc"] {
             let text = format!("G21 G90 G94 G54\n{first}T2 M6\nS900 M3\n{second}{CUT}M30\n");
-            let (tools, told) = registers(control, &text);
+            let (tools, findings) = registers(control, &text);
             assert_eq!(tools, [(1, None), (2, Some(1))], "{control}: {second}");
-            let [found] = &told[..] else { panic!("{control}: {told:?}") };
+            let [found] = &findings[..] else { panic!("{control}: {findings:?}") };
             assert!(
                 found.message.contains("offset 1") && found.message.contains("place of 2"),
                 "{found}"
@@ -365,8 +365,8 @@ fn a_length_offset_that_was_called_before_the_tool_stays_its_own_and_is_told() {
         }
     }
     let text = format!("G21 G90 G94 G54\nG43 H1\nT2 M6\nS900 M3\n{CUT}M30\n");
-    let (tools, told) = registers("fanuc-31i", &text);
-    assert_eq!((&tools[..], told.len()), (&[(2, Some(1))][..], 2));
+    let (tools, findings) = registers("fanuc-31i", &text);
+    assert_eq!((&tools[..], findings.len()), (&[(2, Some(1))][..], 2));
 }
 
 #[test]

@@ -14,6 +14,9 @@ pub enum Severity {
     Error,
 }
 
+/// What a step makes, or the finding that refuses it.
+pub type Outcome<T = ()> = Result<T, Box<Diagnostic>>;
+
 /// One finding: where, which rule, what, and the way out.
 #[derive(Clone, Debug, PartialEq, Serialize)]
 pub struct Diagnostic {

@@ -36,7 +36,7 @@ pub use compensated::{CompensatedPath, PathEvidence};
 pub use counted::Findings;
 pub use cut_box::CutBox;
 pub use cycle::*;
-pub use diagnostic::{Diagnostic, Severity, line_of, nearest, within};
+pub use diagnostic::{Diagnostic, Outcome, Severity, line_of, nearest, within};
 pub use digest::Digest;
 pub use motion::*;
 pub use pose::{FullPose, NoPose, Pose};

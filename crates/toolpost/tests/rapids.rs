@@ -159,7 +159,8 @@ fn a_picture_shows_where_the_axes_take_the_tip_by_rapid() {
     assert!(found.iter().any(|found| found.0 == "rapid-path"), "{found:?}");
     let lowest = |text: &str| {
         let program =
-            nc::read_swinging(&machine, Default::default(), "p", text.as_bytes()).unwrap();
+            nc::read_with_rapids_sampled(&machine, Default::default(), "p", text.as_bytes())
+                .unwrap();
         let rapids = program.records.iter().filter_map(|record| match &record.op {
             program::Op::Rapid(pose) => Some(pose.point().z),
             _ => None,

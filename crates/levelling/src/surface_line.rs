@@ -1,47 +1,47 @@
-//! The height of the surface along a way, as few straight pieces as a tolerance allows.
+//! The height of the surface along a line or arc, in as few straight pieces as a tolerance allows.
 
 use crate::ground::Ground;
 use geom::{Arc, Vec2, Vec3};
 use std::f64::consts::TAU;
 
-/// At how many places of one way the height is looked at, at most.
+/// The most points of one line at which the height is sampled.
 const MOST: usize = 100_000;
 
-/// A way over the surface, from 0 at its start to 1 at its end.
+/// A line or arc over the surface, from 0 at its start to 1 at its end.
 #[derive(Clone, Copy, Debug)]
-pub(crate) enum Way<'a> {
+pub(crate) enum SurfaceLine<'a> {
     /// Straight.
     Line(Vec3, Vec3),
     /// About the vertical.
     Arc(&'a Arc),
 }
 
-impl Way<'_> {
+impl SurfaceLine<'_> {
     /// The point at `t`.
     pub(crate) fn at(&self, t: f64) -> Vec3 {
         match self {
-            Way::Line(from, to) if t < 1.0 => from.lerp(*to, t),
-            Way::Line(_, to) => *to,
-            Way::Arc(arc) => arc.at(t),
+            SurfaceLine::Line(from, to) if t < 1.0 => from.lerp(*to, t),
+            SurfaceLine::Line(_, to) => *to,
+            SurfaceLine::Arc(arc) => arc.at(t),
         }
     }
 
-    /// How often it goes round; as a line, half.
+    /// How many turns it has; a line counts as half.
     fn turns(&self) -> f64 {
         match self {
-            Way::Line(..) => 0.5,
-            Way::Arc(arc) => arc.sweep / TAU,
+            SurfaceLine::Line(..) => 0.5,
+            SurfaceLine::Arc(arc) => arc.sweep / TAU,
         }
     }
 
     /// Where it crosses a line of the grid, in no order. An arc of several turns crosses it in each.
     fn crossings(&self, axis: usize, line: f64, crossings: &mut Vec<f64>) {
         match self {
-            Way::Line(from, to) => {
+            SurfaceLine::Line(from, to) => {
                 let t = (line - from[axis]) / (to[axis] - from[axis]);
                 crossings.extend(Some(t).filter(|t| *t > 0.0 && *t < 1.0));
             }
-            Way::Arc(arc) => {
+            SurfaceLine::Arc(arc) => {
                 let from = arc.start - arc.center;
                 let side = arc.normal.cross(from);
                 // from · cos + side · sin reaches the line.
@@ -61,15 +61,17 @@ impl Way<'_> {
         }
     }
 
-    /// Into how many parts of one patch a part of the way goes, so that in none the surface leaves the chord
+    /// How many pieces the part from `from` to `to`, within one patch, needs so that the surface leaves no chord
     /// by more than `tolerance`: a part of length d (of 1) whose height has the second derivative f'' bulges by
     /// at most f'' d² / 8.
     fn parts(&self, ground: &Ground, from: f64, to: f64, tolerance: f64) -> usize {
         let middle = self.at((from + to) / 2.0);
         let patch = ground.patch(Vec2::new(middle.x, middle.y));
         let second = match self {
-            Way::Line(from, to) => 2.0 * (patch.twist * (to.x - from.x) * (to.y - from.y)).abs(),
-            Way::Arc(arc) => {
+            SurfaceLine::Line(from, to) => {
+                2.0 * (patch.twist * (to.x - from.x) * (to.y - from.y)).abs()
+            }
+            SurfaceLine::Arc(arc) => {
                 let radius = arc.radius().max((arc.end - arc.center).truncate().length());
                 let bend = radius * patch.slope + radius * radius * patch.twist.abs();
                 bend * arc.sweep * arc.sweep
@@ -79,23 +81,27 @@ impl Way<'_> {
     }
 }
 
-/// Where a way is cut into pieces, each with the height that the tool has there: between two of them the
-/// height that rises evenly is within `tolerance` mm of that of the way over the surface. The last is the end.
-/// `None` where the height would have to be looked at in too many places.
-pub(crate) fn course(way: Way, ground: &Ground, tolerance: f64) -> Option<Vec<(f64, f64)>> {
+/// The points that divide a line into pieces, each with the height of the tool: between two of them a
+/// height that changes evenly is within `tolerance` mm of the height over the surface. The last is the end.
+/// `None` where the height would have to be sampled at too many points.
+pub(crate) fn heights_along(
+    along: SurfaceLine,
+    ground: &Ground,
+    tolerance: f64,
+) -> Option<Vec<(f64, f64)>> {
     let [columns, rows] = ground.lines();
     // A line of the grid is crossed twice in a turn.
-    let crossings = 2.0 * way.turns().ceil() * (columns.len() + rows.len()) as f64;
+    let crossings = 2.0 * along.turns().ceil() * (columns.len() + rows.len()) as f64;
     if crossings > MOST as f64 {
         return None;
     }
     let mut seams = vec![0.0, 1.0];
     for (axis, lines) in [columns, rows].into_iter().enumerate() {
-        lines.iter().for_each(|&line| way.crossings(axis, line, &mut seams));
+        lines.iter().for_each(|&line| along.crossings(axis, line, &mut seams));
     }
     seams.sort_by(f64::total_cmp);
     let height = |t: f64| {
-        let point = way.at(t);
+        let point = along.at(t);
         point.z + ground.at(Vec2::new(point.x, point.y))
     };
     // Half of the tolerance for what lies between two samples, half for the samples: these are passed over where
@@ -104,7 +110,7 @@ pub(crate) fn course(way: Way, ground: &Ground, tolerance: f64) -> Option<Vec<(f
     let half = if is_known { tolerance / 2.0 } else { tolerance };
     let mut samples = vec![(0.0, height(0.0))];
     for seam in seams.windows(2).filter(|seam| seam[1] > seam[0]) {
-        let parts = way.parts(ground, seam[0], seam[1], half);
+        let parts = along.parts(ground, seam[0], seam[1], half);
         if samples.len().saturating_add(parts) > MOST {
             return None;
         }

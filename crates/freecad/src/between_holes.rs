@@ -1,25 +1,25 @@
-//! The way from hole to hole, which the cycle goes by itself.
+//! Moves from hole to hole, which the cycle makes by itself.
 //!
-//! Between two holes of one cycle FreeCAD goes by rapid to the place over the next one. A control does
-//! that without being told, and its cycle stays on. So does the neutral program.
+//! Between two holes of one cycle FreeCAD writes a rapid to the point above the next one. The cycle of a control makes this
+//! move by itself and stays on. So does the cycle of the neutral program.
 
 use geom::Vec3;
 use program::{Cycle, Op, Pose, Record};
 
-/// What of the records on their way is held back: those between two holes.
+/// Holds back the records between two holes until it is known whether the cycle goes on.
 #[derive(Debug, Default)]
-pub(crate) struct Way {
-    /// Where the tool is, as far as the last record says it.
+pub(crate) struct BetweenHoles {
+    /// The position of the tool, where the last record determines it.
     here: Option<Pose>,
     /// The cycle that is on.
     cycle: Option<Cycle>,
-    /// The cycle has been switched off over this place, and nothing but the way to the next has followed.
+    /// The cycle has been switched off above this point, and only moves to the next hole have followed.
     left: Option<Vec3>,
     held: Vec<Record>,
 }
 
-impl Way {
-    /// Puts the next record to `records`.
+impl BetweenHoles {
+    /// Adds the next record to `records`.
     pub(crate) fn push(&mut self, records: &mut Vec<Record>, record: Record) {
         match &record.op {
             // To where it is.
@@ -57,7 +57,7 @@ impl Way {
         records.push(record);
     }
 
-    /// Whether what is held back leads to the place over the hole `to`, and the same cycle drills it.
+    /// Whether the held records lead to the point above the hole `to`, and the same cycle drills it.
     fn goes_to(&self, to: &Pose) -> bool {
         let (Some(left), Some(cycle)) = (self.left, self.cycle) else { return false };
         let over = to.point() + Vec3::Z * cycle.retract;
@@ -66,7 +66,7 @@ impl Way {
         same && over.z == left.z && stops.all(|stop| stop.point() == over)
     }
 
-    /// What has been held back goes on: something else follows.
+    /// Adds the held records: something else follows.
     pub(crate) fn end(&mut self, records: &mut Vec<Record>) {
         records.append(&mut self.held);
         self.left = None;

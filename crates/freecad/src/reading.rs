@@ -1,8 +1,8 @@
 //! From a job to a neutral program.
 
+use crate::between_holes::BetweenHoles;
 use crate::job::{Job, Tool};
 use crate::listing::Listing;
-use crate::way::Way;
 use control::Setup;
 use geom::Vec3;
 use machine::Machine;
@@ -21,11 +21,11 @@ pub struct Reading {
     pub warnings: Vec<Diagnostic>,
 }
 
-/// Reads `job`, which stands in `file_name`, for `machine`: words for rotary axes are positions of its
+/// Reads `job` of the file `file_name` for `machine`: words for rotary axes are positions of its
 /// axes.
 ///
 /// # Errors
-/// The first command that means nothing or cannot be told, and what an operation lacks, with the
+/// The first command that means nothing or cannot be converted, and what an operation lacks, with the
 /// operation, the command and the way out.
 pub fn read(
     machine: &Machine,
@@ -46,15 +46,15 @@ pub fn read(
     if !listing.turns() {
         speaks.rotary.clear();
     }
-    let mut told = Told::new(&job, &listing, purpose);
+    let mut collector = Collector::new(&job, &listing, purpose);
     let keep =
-        &mut |records: &mut Vec<Record>, record, several| told.keep(records, record, several);
+        &mut |records: &mut Vec<Record>, record, several| collector.keep(records, record, several);
     let setup = Setup { purpose, ..Setup::default() };
     let read = nc::read_by(&speaks, setup, "", listing.text(), keep);
     let located = |found: Diagnostic| Box::new(listing.located(found));
     let (mut reading, several) = read.map_err(|found| located(way_out(*found)))?;
     let mut records = std::mem::take(&mut reading.program.records);
-    told.finish(&mut records, several).map_err(|found| match found.line {
+    collector.finish(&mut records, several).map_err(|found| match found.line {
         0 => Box::new(found.file(file_name)),
         _ => located(*found),
     })?;
@@ -106,7 +106,7 @@ fn without_feed(job: &Job) -> Option<(&str, &str)> {
     })
 }
 
-/// Adds to what the control refuses where in FreeCAD it is set right.
+/// Adds to a finding of the control where FreeCAD corrects it.
 fn way_out(mut found: Diagnostic) -> Diagnostic {
     let way_out = match found.rule {
         "nc-feed" => {
@@ -121,18 +121,18 @@ fn way_out(mut found: Diagnostic) -> Diagnostic {
     found
 }
 
-/// The records on their way, with what the job says of them.
-struct Told<'a> {
+/// Collects the records of the control, with what the job says of them.
+struct Collector<'a> {
     job: &'a Job,
     listing: &'a Listing,
     /// Which of the operations have moved.
     moves: Vec<bool>,
     /// The last operation of which there is a record.
     last: usize,
-    /// Its records, and what has come between them, while it has not moved: what is told of an operation that
-    /// moves stands before them.
+    /// Its records, and what has come between them, while it has not moved: the name of an operation that
+    /// moves comes before them.
     waiting: Vec<Record>,
-    way: Way,
+    between_holes: BetweenHoles,
     /// The operation of the record at hand.
     at: Option<usize>,
     /// Number and name of the tool in the spindle.
@@ -144,7 +144,7 @@ struct Told<'a> {
     is_offset_open: bool,
     /// That one.
     offset: Option<Offset>,
-    /// What is wrong with the first record that cannot be told.
+    /// What is wrong with the first record that cannot be converted.
     refused: Option<Box<Diagnostic>>,
 }
 
@@ -157,15 +157,15 @@ struct Offset {
     opens: bool,
 }
 
-impl<'a> Told<'a> {
-    fn new(job: &'a Job, listing: &'a Listing, purpose: Purpose) -> Told<'a> {
-        Told {
+impl<'a> Collector<'a> {
+    fn new(job: &'a Job, listing: &'a Listing, purpose: Purpose) -> Collector<'a> {
+        Collector {
             job,
             listing,
             moves: vec![false; job.operations.len()],
             last: 0,
             waiting: Vec::new(),
-            way: Way::default(),
+            between_holes: BetweenHoles::default(),
             at: None,
             tool: None,
             turns: false,
@@ -176,49 +176,49 @@ impl<'a> Told<'a> {
         }
     }
 
-    /// Puts the next record to `records`, as soon as it is known whether its operation moves.
+    /// Adds the next record to `records`, as soon as it is known whether its operation moves.
     fn keep(&mut self, records: &mut Vec<Record>, record: Record, several: bool) {
         self.is_offset_open |= !several && matches!(record.op, Op::WorkOffset(_));
         let at = self.listing.operation(record.line);
         if at > self.last {
             self.last = at;
-            self.tell_waiting(records);
+            self.add_waiting(records);
         }
         if is_move(&record.op)
             && let Some(moves @ false) = self.moves.get_mut(at)
         {
             *moves = true;
             if at == self.last {
-                self.tell_waiting(records);
+                self.add_waiting(records);
             }
         }
         match self.moves.get(self.last) {
-            Some(true) => self.tell(records, at, record),
+            Some(true) => self.add(records, at, record),
             _ => self.waiting.push(record),
         }
     }
 
-    fn tell_waiting(&mut self, records: &mut Vec<Record>) {
+    fn add_waiting(&mut self, records: &mut Vec<Record>) {
         for record in mem::take(&mut self.waiting) {
-            self.tell(records, self.listing.operation(record.line), record);
+            self.add(records, self.listing.operation(record.line), record);
         }
     }
 
     /// The program is complete; it works in `several` work offsets.
     ///
     /// # Errors
-    /// Nothing moves, or the first of what cannot be told.
+    /// Nothing moves, or the first record that cannot be converted.
     fn finish(mut self, records: &mut Vec<Record>, several: bool) -> Result<(), Box<Diagnostic>> {
         if !self.moves.contains(&true) {
             let message = "no operation of the job moves the tool";
             let help = "give the job operations, make them active, and recompute";
             return Err(Diagnostic::error("no-motion", message).help(help).into());
         }
-        self.tell_waiting(records);
+        self.add_waiting(records);
         if let Some(refused) = self.refused {
             return Err(refused);
         }
-        self.way.end(records);
+        self.between_holes.end(records);
         if let Some(offset) = self.offset.filter(|_| several) {
             offset.insert(records, self.listing);
         }
@@ -226,7 +226,7 @@ impl<'a> Told<'a> {
     }
 
     /// Adds the record, which is of operation `at`, and what the job says of that.
-    fn tell(&mut self, records: &mut Vec<Record>, at: usize, record: Record) {
+    fn add(&mut self, records: &mut Vec<Record>, at: usize, record: Record) {
         if self.refused.is_some() {
             return;
         }
@@ -254,13 +254,14 @@ impl<'a> Told<'a> {
 
     fn end(&mut self, records: &mut Vec<Record>, line: u32) {
         if self.within() {
-            self.way.push(records, Record { line: line.saturating_sub(1), op: Op::EndOfOperation });
+            self.between_holes
+                .push(records, Record { line: line.saturating_sub(1), op: Op::EndOfOperation });
         }
     }
 
     fn begin(&mut self, records: &mut Vec<Record>, at: usize, line: u32) {
         let label = self.job.operations.get(at).map_or("", |operation| operation.label.as_str());
-        self.way.push(records, Record { line, op: Op::Operation(label.into()) });
+        self.between_holes.push(records, Record { line, op: Op::Operation(label.into()) });
     }
 
     fn record(
@@ -270,7 +271,7 @@ impl<'a> Told<'a> {
     ) -> Result<(), Box<Diagnostic>> {
         let line = record.line;
         match &mut record.op {
-            Op::Comment(text) if self.is_told(text) => return Ok(()),
+            Op::Comment(text) if self.is_repeated(text) => return Ok(()),
             Op::Tool(tool) => {
                 let described = self.job.tools.iter().find(|entry| entry.number == tool.number);
                 if let Some(Tool { name, diameter, .. }) = described {
@@ -294,12 +295,12 @@ impl<'a> Told<'a> {
             op if is_move(op) => self.may_move(op, line)?,
             _ => {}
         }
-        self.way.push(records, record);
+        self.between_holes.push(records, record);
         Ok(())
     }
 
     /// Whether a comment repeats what is said otherwise: the label of an operation, the name of a tool.
-    fn is_told(&self, text: &str) -> bool {
+    fn is_repeated(&self, text: &str) -> bool {
         let operation = self.at.and_then(|at| self.job.operations.get(at));
         let label = operation.map_or("", |operation| operation.label.as_str());
         text == label && (self.within() || self.job.tools.iter().any(|tool| tool.name == text))
@@ -337,7 +338,7 @@ impl<'a> Told<'a> {
 }
 
 impl Offset {
-    /// Puts it where it has been left out. Where it opens its operation, what is told of that stands before it.
+    /// Inserts it where it was left out. Where it is the first of its operation, the name of the operation comes before it.
     fn insert(self, records: &mut Vec<Record>, listing: &Listing) {
         let Offset { record, before: mut at, opens } = self;
         if opens {
