@@ -329,7 +329,7 @@ mod tests {
     use super::*;
     use geom::region::Fill;
     use pcb::job::{Heights, program};
-    use pcb::{Cut, Cutter, Operation, Stretch, Tool};
+    use pcb::{Cut, Cutter, Operation, Segment, Tool};
 
     #[test]
     fn a_board_shows_its_copper_its_cut_as_wide_as_the_tool_and_its_problems() {
@@ -338,9 +338,9 @@ mod tests {
         let ring = copper.region.offset(0.5).unwrap();
         let corners = [(0.0, 0.0), (20.0, 0.0), (20.0, 20.0), (0.0, 20.0)].map(Vec2::from);
         let outline = Region::inside(&[Ring::polygon(&corners).unwrap()], Fill::NonZero).unwrap();
-        let stretches = ring.rings().flat_map(|ring| ring.elements().to_vec());
+        let segments = ring.rings().flat_map(|ring| ring.elements().to_vec());
         let cuts =
-            vec![Cut::Way(stretches.map(|element| Stretch { element, depth: 0.1 }).collect())];
+            vec![Cut::Path(segments.map(|element| Segment { element, depth: 0.1 }).collect())];
         let cutter = Cutter::Cylinder { diameter: 1.0 };
         let tool = Tool { name: "MILL".into(), cutter, feed: 100.0, plunge: 50.0, speed: 9000.0 };
         let operation = Operation { name: "isolation".into(), tool, cuts };

@@ -44,7 +44,7 @@ impl Contour {
         Contour::polygon(&[low, Vec2::new(high.x, low.y), high, Vec2::new(low.x, high.y)])
     }
 
-    /// What a disc covers on the straight way from `from` to `to`.
+    /// What a disc covers on the straight line from `from` to `to`.
     pub(crate) fn stadium(from: Vec2, to: Vec2, radius: f64) -> Contour {
         let Some(along) = (to - from).try_normalize() else {
             return Contour::circle(from, radius);
@@ -95,12 +95,12 @@ impl Contour {
         if self.area() < 0.0 { self.reversed() } else { self }
     }
 
-    /// The same, travelled the other way.
+    /// The same, run in the other direction.
     pub(crate) fn reversed(&self) -> Contour {
         Contour::new(self.elements.iter().rev().map(Element::reversed).collect())
     }
 
-    /// The same elsewhere, and travelled the same way round.
+    /// The same elsewhere, run in the same direction.
     pub(crate) fn placed(&self, transform: &Transform, at: Vec2) -> Contour {
         let elements = self.elements.iter().map(|element| transform.element(element, at)).collect();
         let placed = Contour::new(elements);

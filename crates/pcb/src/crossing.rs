@@ -9,7 +9,7 @@ use geom::{Element, Vec2};
 /// How far a chord may leave its arc, mm.
 const CHORD: f64 = 0.0005;
 
-/// So many chords are more than those of any layer, beside four for each element.
+/// So many chords are more than those of any layer, in addition to four for each element.
 const CHORDS: usize = 2_000_000;
 
 /// So many pairs of chords are looked at for each chord before the contour is given up.

@@ -7,19 +7,19 @@ use crate::report::{Fault, Outcome, fault};
 use geom::Element;
 use geom::region::{Index, Region, RegionError};
 
-/// What is no farther than this from a place that the tool reaches counts as reached, mm.
+/// What is no farther than this from a point that the tool reaches counts as reached, mm.
 const SLIVER: f64 = 0.005;
 
 /// What is engraved.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Engraving {
-    /// The ways of the middle of the tool. One without length is a dot.
+    /// The paths of the centre of the tool. One without length is a dot.
     pub paths: Vec<Path>,
     /// What is too narrow for the tool, but for places up to 5 µm from one that it reaches.
     pub rest: Region,
 }
 
-/// The ways of a tool of `width` mm that engrave what `image` says: strokes of a round pen that is not wider
+/// The paths of a tool of `width` mm that engrave what `image` says: strokes of a round pen that is not wider
 /// than the tool along their middle, and everything else along its outline, from inside.
 ///
 /// # Errors
@@ -44,7 +44,7 @@ pub fn engraved(image: &Image, width: f64) -> Outcome<Engraving> {
     Ok(engraving)
 }
 
-/// The ways of a tool of `width` mm along the outline of `region`, from inside.
+/// The paths of a tool of `width` mm along the outline of `region`, from inside.
 ///
 /// # Errors
 /// `tool-width` where the width makes no sense; `too-much` where the region is too large.
@@ -59,10 +59,10 @@ fn outlined(region: &Region, width: f64) -> Outcome<Engraving> {
     Ok(Engraving { paths: middles.rings().filter_map(Path::around).collect(), rest })
 }
 
-/// Paths along `ways`; each that starts where the one before ends goes on with that.
-fn chained(ways: impl Iterator<Item = Element>) -> Vec<Path> {
-    let ways: Vec<Element> = ways.collect();
-    let chains = ways.chunk_by(|way, next| way.end == next.start);
+/// Paths along `lines`; a line that starts where the one before ends continues its path.
+fn chained(lines: impl Iterator<Item = Element>) -> Vec<Path> {
+    let lines: Vec<Element> = lines.collect();
+    let chains = lines.chunk_by(|line, next| line.end == next.start);
     chains.filter_map(|chain| Path::new(chain.to_vec())).collect()
 }
 

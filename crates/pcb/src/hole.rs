@@ -13,7 +13,7 @@ pub struct Hole {
     pub plated: Option<bool>,
 }
 
-/// Where a hole is, and of which form: the way of the middle of a round tool as wide as the hole.
+/// Where a hole is, and of which form: the path of the centre of a round tool as wide as the hole.
 #[derive(Clone, Debug, PartialEq)]
 pub enum HoleShape {
     /// Round.

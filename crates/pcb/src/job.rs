@@ -3,7 +3,7 @@
 //! The surface of the board is Z 0. Between two cuts the tool is above the board by [`Heights::travel`];
 //! it feeds from [`Heights::approach`] on.
 
-use crate::{Cut, Operation, Stretch, Tool};
+use crate::{Cut, Operation, Segment, Tool};
 use geom::{Vec2, Vec3};
 use program::{ArcTo, Circle, Cycle, CycleKind, Feed, NoPose, Op, Pose, Program, Spindle};
 
@@ -71,7 +71,7 @@ impl Writer {
         for cut in cuts {
             match cut {
                 Cut::Hole { at, depth, peck } => self.hole(tool, *at, *depth, *peck)?,
-                Cut::Way(stretches) => self.way(tool, stretches)?,
+                Cut::Path(segments) => self.path(tool, segments)?,
             }
         }
         self.end_of_cycle();
@@ -100,13 +100,13 @@ impl Writer {
         Ok(())
     }
 
-    fn way(&mut self, tool: &Tool, stretches: &[Stretch]) -> Result<(), NoPose> {
-        let Some(first) = stretches.first() else { return Ok(()) };
+    fn path(&mut self, tool: &Tool, segments: &[Segment]) -> Result<(), NoPose> {
+        let Some(first) = segments.first() else { return Ok(()) };
         self.end_of_cycle();
         let start = first.element.start;
         self.over(start)?;
         self.rapid(start.extend(self.heights.approach))?;
-        for Stretch { element, depth } in stretches {
+        for Segment { element, depth } in segments {
             self.line(tool, element.start.extend(-depth))?;
             self.set_feed(tool.feed);
             let end = element.end.extend(-depth);
@@ -178,7 +178,7 @@ mod tests {
     }
 
     /// The ops as short words: R rapid, L line, F feed, H hole.
-    fn told(program: &Program) -> Vec<String> {
+    fn listed(program: &Program) -> Vec<String> {
         let at = |pose: &Pose| pose.point().to_array().map(|value| value.to_string()).join(" ");
         let word = |op: &Op| match op {
             Op::Rapid(pose) => Some(format!("R {}", at(pose))),
@@ -194,11 +194,11 @@ mod tests {
     #[test]
     fn a_way_goes_down_along_deeper_and_out() {
         let forth = Element::line(Vec2::ZERO, Vec2::X);
-        let stretches = [(forth, 0.1), (forth.reversed(), 0.2)];
-        let cuts = vec![Cut::Way(
-            stretches
+        let segments = [(forth, 0.1), (forth.reversed(), 0.2)];
+        let cuts = vec![Cut::Path(
+            segments
                 .iter()
-                .map(|(element, depth)| Stretch { element: *element, depth: *depth })
+                .map(|(element, depth)| Segment { element: *element, depth: *depth })
                 .collect(),
         )];
         let operation = Operation { name: "cut".into(), tool: tool(), cuts };
@@ -216,7 +216,7 @@ mod tests {
             "L 0 0 -0.2",
             "R 0 0 2",
         ];
-        assert_eq!(told(&program("a", &[(1, &operation)], &heights).unwrap()), right);
+        assert_eq!(listed(&program("a", &[(1, &operation)], &heights).unwrap()), right);
     }
 
     #[test]
@@ -234,6 +234,6 @@ mod tests {
             )
             .collect();
         assert_eq!(cycles, [2.0, 1.0]);
-        assert_eq!(told(&program), ["R 1 0 2", "H 1 0 0", "H 2 0 0", "R 3 0 2", "H 3 0 0"]);
+        assert_eq!(listed(&program), ["R 1 0 2", "H 1 0 0", "H 2 0 0", "R 3 0 2", "H 3 0 0"]);
     }
 }

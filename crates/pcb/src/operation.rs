@@ -19,9 +19,7 @@ impl Operation {
     pub fn width(&self) -> f64 {
         let depths = self.cuts.iter().map(|cut| match cut {
             Cut::Hole { depth, .. } => *depth,
-            Cut::Way(stretches) => {
-                stretches.iter().map(|stretch| stretch.depth).fold(0.0, f64::max)
-            }
+            Cut::Path(segments) => segments.iter().map(|segment| segment.depth).fold(0.0, f64::max),
         });
         self.tool.cutter.width(depths.fold(0.0, f64::max))
     }
@@ -40,9 +38,9 @@ pub enum Cut {
         /// at once.
         peck: Option<f64>,
     },
-    /// Down where the first stretch starts, along all of them, and out at the end. Each starts where the
+    /// Down where the first segment starts, along all of them, and out at the end. Each starts where the
     /// one before ends; where their depths differ, the tool goes straight down or up between them.
-    Way(Vec<Stretch>),
+    Path(Vec<Segment>),
 }
 
 impl Cut {
@@ -50,9 +48,7 @@ impl Cut {
     pub fn start(&self) -> Vec2 {
         match self {
             Cut::Hole { at, .. } => *at,
-            Cut::Way(stretches) => {
-                stretches.first().map_or(Vec2::ZERO, |first| first.element.start)
-            }
+            Cut::Path(segments) => segments.first().map_or(Vec2::ZERO, |first| first.element.start),
         }
     }
 
@@ -60,7 +56,7 @@ impl Cut {
     pub fn end(&self) -> Vec2 {
         match self {
             Cut::Hole { at, .. } => *at,
-            Cut::Way(stretches) => stretches.last().map_or(Vec2::ZERO, |last| last.element.end),
+            Cut::Path(segments) => segments.last().map_or(Vec2::ZERO, |last| last.element.end),
         }
     }
 
@@ -68,11 +64,11 @@ impl Cut {
     /// closed, else there and back.
     pub fn along(path: &Path, depths: &[f64]) -> Cut {
         let back = if path.is_closed() { path.clone() } else { path.reversed() };
-        let ways = [path, &back].into_iter().cycle().zip(depths);
-        let stretches = ways.flat_map(|(way, &depth)| {
-            way.elements().iter().map(move |&element| Stretch { element, depth })
+        let paths = [path, &back].into_iter().cycle().zip(depths);
+        let segments = paths.flat_map(|(path, &depth)| {
+            path.elements().iter().map(move |&element| Segment { element, depth })
         });
-        Cut::Way(stretches.collect())
+        Cut::Path(segments.collect())
     }
 }
 
@@ -88,8 +84,8 @@ pub fn depths(depth: f64, step: f64) -> Vec<f64> {
 
 /// A line or arc at one depth.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stretch {
-    /// The way of the middle of the tool.
+pub struct Segment {
+    /// The path of the centre of the tool.
     pub element: Element,
     /// How deep its tip is, mm below the surface.
     pub depth: f64,
@@ -164,12 +160,12 @@ mod tests {
     fn a_ring_is_gone_around_again_and_a_line_there_and_back() {
         let (a, b) = (Vec2::ZERO, Vec2::X);
         let line = Path::new(vec![Element::line(a, b)]).unwrap();
-        let Cut::Way(way) = Cut::along(&line, &[1.0, 2.0, 3.0]) else { panic!("a hole") };
-        let there = |depth| Stretch { element: Element::line(a, b), depth };
-        let back = |depth| Stretch { element: Element::line(b, a), depth };
-        assert_eq!(way, [there(1.0), back(2.0), there(3.0)]);
+        let Cut::Path(cut) = Cut::along(&line, &[1.0, 2.0, 3.0]) else { panic!("a hole") };
+        let there = |depth| Segment { element: Element::line(a, b), depth };
+        let back = |depth| Segment { element: Element::line(b, a), depth };
+        assert_eq!(cut, [there(1.0), back(2.0), there(3.0)]);
         let ring = Path::new(vec![Element::line(a, b), Element::line(b, a)]).unwrap();
-        let Cut::Way(way) = Cut::along(&ring, &[1.0, 2.0]) else { panic!("a hole") };
-        assert_eq!(way, [there(1.0), back(1.0), there(2.0), back(2.0)]);
+        let Cut::Path(cut) = Cut::along(&ring, &[1.0, 2.0]) else { panic!("a hole") };
+        assert_eq!(cut, [there(1.0), back(1.0), there(2.0), back(2.0)]);
     }
 }

@@ -1,4 +1,4 @@
-//! Ways of a tool over the board.
+//! Paths of a tool over the board.
 
 use crate::SAME;
 use geom::region::{Index, Ring};
@@ -11,20 +11,20 @@ pub struct Path {
     elements: Vec<Element>,
 }
 
-/// A place on a path.
+/// A point on a path, by its element.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Site {
+pub struct PathPoint {
     /// Index of its element.
     pub element: usize,
     /// How far along the element, from 0 at its start to below 1.
     pub t: f64,
 }
 
-/// How many places of one element are looked at, at most.
-const MOST_SITES: f64 = 1000.0;
+/// How many points of one element are looked at, at most.
+const MOST_POINTS: f64 = 1000.0;
 
 impl Path {
-    /// The way along `elements`; `None` where there are none. Where one does not start where the one
+    /// The path along `elements`; `None` where there are none. Where one does not start where the one
     /// before ends, its start is put there: ends apart by more than rounding are the caller's mistake.
     pub fn new(mut elements: Vec<Element>) -> Option<Path> {
         let mut end = elements.first()?.start;
@@ -35,7 +35,7 @@ impl Path {
         Some(Path { elements })
     }
 
-    /// Once around `ring`, which is on the left of a way around an island, and on the right of one around
+    /// Once around `ring`, which is on the left of a path around an island, and on the right of one around
     /// a hole.
     pub fn around(ring: &Ring) -> Option<Path> {
         let mut path = Path::new(ring.elements().to_vec())?;
@@ -72,60 +72,61 @@ impl Path {
         self.elements.iter().map(Element::length).sum()
     }
 
-    /// The same closed way, begun elsewhere on it; the same where it is not closed.
-    pub fn starting_at(&self, site: Site) -> Path {
-        let (Some(cut), true) = (self.elements.get(site.element), self.is_closed()) else {
+    /// The same closed path with another start; the same where it is not closed.
+    pub fn starting_at(&self, point: PathPoint) -> Path {
+        let (Some(cut), true) = (self.elements.get(point.element), self.is_closed()) else {
             return self.clone();
         };
         if let ([_], Some(_)) = (&self.elements[..], cut.turn) {
             // A circle stays one.
-            let start = cut.at(site.t);
+            let start = cut.at(point.t);
             return Path { elements: vec![Element { start, end: start, ..*cut }] };
         }
-        let (before, after) = (&self.elements[..site.element], &self.elements[site.element + 1..]);
+        let (before, after) =
+            (&self.elements[..point.element], &self.elements[point.element + 1..]);
         let mut elements = Vec::with_capacity(self.elements.len() + 1);
-        elements.push(cut.part(site.t, 1.0));
+        elements.push(cut.part(point.t, 1.0));
         elements.extend(after);
         elements.extend(before);
-        if site.t > 0.0 {
-            elements.push(cut.part(0.0, site.t));
+        if point.t > 0.0 {
+            elements.push(cut.part(0.0, point.t));
         }
         Path { elements }
     }
 
     /// Where it may begin: at its corners, and on elements longer than `stride` mm as often as that, evenly.
-    pub(crate) fn sites(&self, stride: f64) -> impl Iterator<Item = Site> {
+    pub(crate) fn points(&self, stride: f64) -> impl Iterator<Item = PathPoint> {
         self.elements.iter().enumerate().flat_map(move |(element, long)| {
-            let parts = (long.length() / stride).ceil().clamp(1.0, MOST_SITES);
-            (0..parts as usize).map(move |part| Site { element, t: part as f64 / parts })
+            let parts = (long.length() / stride).ceil().clamp(1.0, MOST_POINTS);
+            (0..parts as usize).map(move |part| PathPoint { element, t: part as f64 / parts })
         })
     }
 
     /// The point of a place on it, mm; its start where there is no such place.
-    pub fn at(&self, site: Site) -> Vec2 {
-        self.elements.get(site.element).map_or(self.start(), |element| element.at(site.t))
+    pub fn at(&self, point: PathPoint) -> Vec2 {
+        self.elements.get(point.element).map_or(self.start(), |element| element.at(point.t))
     }
 
     /// Its place nearest to `point`; the end of an element is the start of the next.
-    pub fn nearest(&self, point: Vec2) -> Site {
+    pub fn nearest(&self, point: Vec2) -> PathPoint {
         let all = self.elements.iter().enumerate().map(|(i, element)| (i, element.nearest(point)));
         let nearest = all.min_by(|a, b| a.1.1.total_cmp(&b.1.1));
         let (element, (t, _)) = nearest.unwrap_or_default();
         let length = self.elements.get(element).map_or(0.0, Element::length);
         match (t * length <= SAME, (1.0 - t) * length <= SAME) {
-            (true, _) => Site { element, t: 0.0 },
-            (_, true) => Site { element: (element + 1) % self.elements.len(), t: 0.0 },
-            _ => Site { element, t },
+            (true, _) => PathPoint { element, t: 0.0 },
+            (_, true) => PathPoint { element: (element + 1) % self.elements.len(), t: 0.0 },
+            _ => PathPoint { element, t },
         }
     }
 
-    /// The same way back.
+    /// The same path, run backwards.
     pub fn reversed(&self) -> Path {
         Path { elements: self.elements.iter().rev().map(Element::reversed).collect() }
     }
 
     /// The parts of it that are in the region of which `area` is the boundary, in their order. On the
-    /// boundary either may be told.
+    /// boundary the answer may be either.
     pub fn within(&self, area: &Index) -> Vec<Path> {
         let mut parts: Vec<Vec<Element>> = Vec::new();
         let mut was_inside = false;
@@ -138,7 +139,7 @@ impl Path {
             }
             was_inside = is_inside;
         }
-        // What ends at the start of a closed way goes on there.
+        // A part that ends at the start of a closed path goes on there.
         let starts = parts.first().and_then(|part| part.first()).map(|piece| piece.start);
         if self.is_closed() && was_inside && parts.len() > 1 && starts == Some(self.start()) {
             let mut last = parts.pop().unwrap_or_default();

@@ -2,25 +2,23 @@
 
 use memchr::{memchr2, memrchr2};
 use program::Diagnostic;
+pub(crate) use program::Outcome;
 
 /// After so many errors the reader gives up: what follows is mostly the echo of the first.
 const MAX_ERRORS: usize = 20;
 
-/// A finding whose place is not known yet.
+/// A finding whose location is not known yet.
 pub(crate) type Fault = Box<Diagnostic>;
 
-/// What a handler gives back.
-pub(crate) type Outcome<T = ()> = Result<T, Fault>;
-
-/// An error of `rule`, to be placed by who knows where.
+/// An error of `rule`; its caller adds the location.
 #[cold]
 pub(crate) fn fault(rule: &'static str, message: impl Into<String>, help: &str) -> Fault {
     Diagnostic::error(rule, message).help(help).into()
 }
 
-/// Bytes of the text, and the line (from 1) in which they begin.
+/// A range of bytes of the text, and the line (from 1) in which it begins.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub(crate) struct Place {
+pub(crate) struct Location {
     pub(crate) line: u32,
     pub(crate) start: usize,
     pub(crate) end: usize,
@@ -46,38 +44,44 @@ impl<'a> Report<'a> {
         self.errors.len() >= MAX_ERRORS
     }
 
-    /// Adds an error at `place`.
+    /// Adds an error at `location`.
     #[cold]
-    pub(crate) fn error(&mut self, place: Place, error: Diagnostic) {
+    pub(crate) fn error(&mut self, location: Location, error: Diagnostic) {
         if !self.is_full() {
-            self.errors.push(self.locate(place, error));
+            self.errors.push(self.locate(location, error));
         }
     }
 
-    /// Adds a warning at `place`; one that was given before only counts. What is the same says the
+    /// Adds a warning at `location`; one that was given before only counts. What is the same says the
     /// message.
     #[cold]
-    pub(crate) fn warn(&mut self, place: Place, rule: &'static str, message: &str, help: &str) {
+    pub(crate) fn warn(
+        &mut self,
+        location: Location,
+        rule: &'static str,
+        message: &str,
+        help: &str,
+    ) {
         let known = |d: &&mut Diagnostic| d.rule == rule && d.message == message;
         match self.warnings.iter_mut().find(known) {
             Some(known) => known.count = known.count.saturating_add(1),
             None => {
                 let warning = Diagnostic::warning(rule, message).help(help);
-                self.warnings.push(self.locate(place, warning));
+                self.warnings.push(self.locate(location, warning));
             }
         }
     }
 
-    fn locate(&self, place: Place, finding: Diagnostic) -> Diagnostic {
-        let end = place.end.min(self.text.len());
-        let start = place.start.min(end);
+    fn locate(&self, location: Location, finding: Diagnostic) -> Diagnostic {
+        let end = location.end.min(self.text.len());
+        let start = location.start.min(end);
         let line_start = memrchr2(b'\n', b'\r', &self.text[..start]).map_or(0, |at| at + 1);
         let rest = &self.text[line_start..];
         let line = &rest[..memchr2(b'\n', b'\r', rest).unwrap_or(rest.len())];
         let finding = finding.file(self.file);
-        if place.line == 0 {
+        if location.line == 0 {
             return finding;
         }
-        finding.at(place.line, line, start - line_start, end - line_start)
+        finding.at(location.line, line, start - line_start, end - line_start)
     }
 }

@@ -21,7 +21,7 @@ pub(crate) fn length(what: &str, mm: f64) -> Outcome {
     Err(fault("length", format!("{what} is {mm} mm"), &help))
 }
 
-/// Refuses what is no step on the way down to `depth` mm, or takes too many.
+/// Refuses what is no step down to `depth` mm, or takes too many steps.
 ///
 /// # Errors
 /// `length`, `step`
@@ -51,7 +51,7 @@ pub(crate) fn diameter(tool: &Tool) -> Outcome<f64> {
     }
 }
 
-/// A number of mm as it is told: to a tenth of a micrometre, without idle zeros.
+/// A number of mm as it is printed: to a tenth of a micrometre, without trailing zeros.
 pub(crate) fn shown(mm: f64) -> f64 {
     (mm * 1e4).round() / 1e4
 }

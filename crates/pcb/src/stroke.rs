@@ -1,4 +1,4 @@
-//! What a pen covers on its way along a line or an arc.
+//! What a pen covers along a line or an arc.
 
 use crate::contour::{Contour, Piece, hull};
 use crate::{SAME, Transform};

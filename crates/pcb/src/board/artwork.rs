@@ -41,7 +41,7 @@ impl Artwork {
     /// outline.
     ///
     /// # Errors
-    /// `layers-apart` where a layer lies beside the board as a whole; `layer` where copper cannot be united that
+    /// `layers-apart` where a layer lies wholly outside the board; `layer` where copper cannot be united that
     /// reaches beyond the outline.
     pub(crate) fn whole(mut self) -> Result<Artwork, Vec<Diagnostic>> {
         if !(self.is_within(&self.front) && self.is_within(&self.back)) {

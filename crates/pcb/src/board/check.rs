@@ -69,10 +69,10 @@ pub(super) fn holes(board: &Board, index: Option<&Index>) -> Option<Diagnostic> 
     Some(Diagnostic::warning("hole-outside", message).help(help))
 }
 
-/// Each layer against the outline, or else the first layer that there is.
+/// Compares each layer with the outline, or with the first layer where there is no outline.
 ///
 /// # Errors
-/// `layers-apart` where a layer lies beside the board as a whole: its origin is another one.
+/// `layers-apart` where a layer lies wholly outside the board: it has another origin.
 pub(super) fn layers(board: &Board) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> {
     let of = |region: Option<&Region>| region.and_then(Region::extents);
     let copper = |copper: &Option<Copper>| of(copper.as_ref().map(|copper| &copper.region));
@@ -100,10 +100,11 @@ pub(super) fn layers(board: &Board) -> Result<Vec<Diagnostic>, Vec<Diagnostic>> 
         let size = |low: Vec2, high: Vec2| (high - low).max(Vec2::splat(1e-3)).element_product();
         let (low, high) = (extents.0.max(board.0), extents.1.min(board.1));
         if low.x > high.x || low.y > high.y {
-            let found = Diagnostic::error("layers-apart", message("a layer lies beside the board"));
+            let found =
+                Diagnostic::error("layers-apart", message("a layer lies outside the board"));
             errors.push(found.help(help));
         } else if size(low, high) < 0.5 * size(extents.0, extents.1) && !name.ends_with("legend") {
-            let message = message("more than half of a layer lies beside the board");
+            let message = message("more than half of a layer lies outside the board");
             warnings.push(Diagnostic::warning("layers-shifted", message).help(help));
         }
     }
@@ -118,8 +119,8 @@ fn outside(copper: &Copper, outline: &Region, index: &Index) -> Result<Region, R
     };
     let suspect = copper.region.islands().iter().filter(|island| {
         let elements = island.outer().elements();
-        let beside = |first: &Element| index.island_at(first.start).is_none();
-        elements.first().is_some_and(beside) || elements.iter().any(near)
+        let off_board = |first: &Element| index.island_at(first.start).is_none();
+        elements.first().is_some_and(off_board) || elements.iter().any(near)
     });
     suspect.cloned().collect::<Region>().difference(outline)
 }

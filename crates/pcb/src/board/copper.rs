@@ -23,7 +23,7 @@ pub struct Copper {
 /// A shape of copper.
 #[derive(Clone, Debug, PartialEq)]
 pub enum Shape {
-    /// What a round pen of this width, mm, covers on its way.
+    /// What a round pen of this width, mm, covers along its path.
     Stroke(Element, f64),
     /// What remains of pieces that are added and taken away in their order.
     Pieces(Vec<Piece>),
@@ -87,7 +87,7 @@ impl Shape {
     /// The corners of the smallest box around it, mm; `None` where nothing is added.
     fn extents(&self) -> Option<(Vec2, Vec2)> {
         match self {
-            Shape::Stroke(way, width) => stroke::extents(way, *width),
+            Shape::Stroke(path, width) => stroke::extents(path, *width),
             Shape::Pieces(pieces) => contour::extents(pieces),
         }
     }
@@ -117,7 +117,7 @@ impl Copper {
         let named = image.objects.iter().filter(|object| object.dark).filter_map(|object| {
             let net = image.attributes(object).nets.as_ref()?.first()?;
             let spot = match image.stroke(object) {
-                Some((way, _)) => way.start,
+                Some((path, _)) => path.start,
                 None => spot(&image.pieces(object))?,
             };
             Some((spot, net.as_str()))
@@ -133,13 +133,13 @@ impl Copper {
         let mut all = Shapes::default();
         for (shape, _) in shapes {
             match shape {
-                Shape::Stroke(way, width) => all.strokes.push((*way, *width)),
+                Shape::Stroke(path, width) => all.strokes.push((*path, *width)),
                 Shape::Pieces(pieces) => all.add(pieces)?,
             }
         }
         let named = shapes.iter().filter_map(|(shape, net)| {
             let spot = match shape {
-                Shape::Stroke(way, _) => way.start,
+                Shape::Stroke(path, _) => path.start,
                 Shape::Pieces(pieces) => spot(pieces)?,
             };
             Some((spot, net.as_deref()?))
@@ -216,7 +216,7 @@ pub fn covered(image: &Image) -> Result<Region, RegionError> {
 /// Shapes that are to be united.
 #[derive(Default)]
 pub(crate) struct Shapes {
-    /// The ways of round pens, with their width, mm.
+    /// The paths of round pens, with their width, mm.
     pub(crate) strokes: Vec<(Element, f64)>,
     /// What others are inside of.
     rings: Vec<Ring>,
@@ -312,7 +312,7 @@ mod tests {
     }
 
     #[test]
-    fn nets_that_touch_are_told() {
+    fn nets_that_touch_are_reported() {
         let touching = NAMED.replace("Y3000000D03", "Y1000000D03");
         let reading = read("named.gbr", touching.as_bytes()).unwrap();
         let (_, joined) = Copper::of_image(&reading.image).unwrap();

@@ -48,7 +48,7 @@ pub fn read(name: &str, files: &[File]) -> Result<Reading, Vec<Diagnostic>> {
 ///
 /// # Errors
 /// `layer-twice` where two files hold the same layer, `layer-negative`, `no-board` where no file has
-/// anything of a board, `layers-apart` where a layer lies beside the board as a whole, and all that the readers
+/// anything of a board, `layers-apart` where a layer lies wholly outside the board, and all that the readers
 /// and [`outline::of_image`] refuse; `layer` where copper cannot be united that reaches beyond the outline.
 pub fn artwork(name: &str, files: &[File]) -> Result<(Artwork, Layers), Vec<Diagnostic>> {
     let mut artwork = Artwork::default();

@@ -16,9 +16,9 @@ pub(super) fn of_drill(drill: Drill, plated: Option<bool>) -> Vec<Hole> {
         let (diameter, plated) = (tool.diameter, tool.plated.or(plated));
         let shape = match cut.path {
             // Some systems write slots so.
-            HoleShape::Route(way) => match way[..] {
+            HoleShape::Route(route) => match route[..] {
                 [only] => drawn(only),
-                _ => HoleShape::Route(way),
+                _ => HoleShape::Route(route),
             },
             shape => shape,
         };

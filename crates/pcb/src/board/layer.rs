@@ -170,7 +170,7 @@ const EXTENSIONS: [(&[&str], Layer); 10] = [
     (&["gbp", "crs", "bsp", "spb", "gpb"], Layer::Other),
 ];
 
-/// Endings of drawings, pictures and models that CAD systems save beside the layers, under the same names.
+/// Endings of drawings, pictures and models that CAD systems save in the same folder as the layers, under the same names.
 const DRAWINGS: [&str; 14] = [
     "pdf", "svg", "png", "jpg", "dxf", "ps", "eps", "step", "stp", "wrl", "zip", "html", "csv",
     "gbrjob",
@@ -231,7 +231,7 @@ mod tests {
             ("G04 x*\n%FSLAX36Y36*%", Some(Format::Gerber)),
             ("; made by hand\r\nM48\r\nINCH\r\n", Some(Format::Excellon)),
             ("%\nT01\nX01Y-02.5\nM30\n", Some(Format::Excellon)),
-            // What EAGLE writes beside the holes: the drills alone.
+            // What EAGLE writes in addition to the holes: the drills alone.
             ("T01  0.024in\nT02  0.031in\n", None),
             ("Ref,Val,X,Y\n", None),
             ("X marks the spot", None),

@@ -5,7 +5,7 @@
 //!                 edge ──outline──▶
 //! ```
 //!
-//! `layer` tells which file is which, `holes` what is drilled, `copper` what is copper; [`Artwork`] is a board of which
+//! `layer` recognises which file is which, `holes` what is drilled, `copper` what is copper; [`Artwork`] is a board of which
 //! each side is united by itself. What is done to a board as a whole is in `placed`: moved, turned over, on a panel.
 
 mod artwork;

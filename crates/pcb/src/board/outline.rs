@@ -19,7 +19,7 @@ pub const GAP: f64 = 0.05;
 /// The widest gap that is closed without a word, mm: rounding. Crossings of less are none.
 const ROUNDING: f64 = 1e-3;
 
-/// After so many open ends the rest is not told.
+/// The most open ends that are reported.
 const MOST_ENDS: usize = 20;
 
 /// An outline, and what had to be mended.
@@ -41,7 +41,7 @@ pub fn of_image(image: &Image) -> Result<Outlined, Vec<Diagnostic>> {
         }
     }
     match (areas, lines.is_empty()) {
-        (Some(area), false) => Err(vec![mixed(area, "an area is filled beside lines")]),
+        (Some(area), false) => Err(vec![mixed(area, "an area is filled next to lines")]),
         (Some(area), true) => {
             let region = covered(image).map_err(|error| vec![refused(area.line, &error)])?;
             Ok((region, Vec::new()))
@@ -146,7 +146,7 @@ fn open_ends(open: &[&Chain], lines: &[(Element, u32)]) -> Vec<Diagnostic> {
         let line = lines.get(*piece).map_or(0, |(_, line)| *line);
         let others = || lines.iter().enumerate().filter(|(other, _)| other != piece);
         let on = others().find(|(_, (element, _))| element.nearest(*end).1 <= GAP);
-        // Where an end is on the middle of another line, that one is in the way, not far away.
+        // An end on the middle of another line touches that line: it is a branch, not a gap.
         if let Some((_, (_, other))) = on {
             let message = format!(
                 "a line of the outline ends on another one, of line {other}, at {}",
@@ -158,9 +158,9 @@ fn open_ends(open: &[&Chain], lines: &[(Element, u32)]) -> Vec<Diagnostic> {
         }
         let rest = ends.iter().enumerate().filter(|(j, _)| *j != i).map(|(_, (other, _))| *other);
         let nearest = rest.min_by(|a, b| a.distance(*end).total_cmp(&b.distance(*end)));
-        // Each gap is told at its first end.
-        let told = |place: Vec2| ends.iter().take(i).any(|(earlier, _)| *earlier == place);
-        if let Some(nearest) = nearest.filter(|nearest| !told(*nearest)) {
+        // Each gap is reported at its first end.
+        let reported = |place: Vec2| ends.iter().take(i).any(|(earlier, _)| *earlier == place);
+        if let Some(nearest) = nearest.filter(|nearest| !reported(*nearest)) {
             let message = format!(
                 "the outline is not closed: from {} to the nearest end, {}, there is a gap of \
                  {:.4} mm",
@@ -168,7 +168,7 @@ fn open_ends(open: &[&Chain], lines: &[(Element, u32)]) -> Vec<Diagnostic> {
                 shown(nearest),
                 end.distance(nearest)
             );
-            let help = format!("close it; gaps of up to {GAP} mm are closed of themselves");
+            let help = format!("close it; gaps of up to {GAP} mm are closed automatically");
             found.push(Diagnostic::error("outline-open", message).help(help).line(line));
         }
     }

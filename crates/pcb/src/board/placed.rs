@@ -69,8 +69,8 @@ impl Board {
     }
 
     /// Two holes of `diameter` mm for pins that hold the board in place while it is turned over about
-    /// `axis`: the axis is in the middle between them, and they are halfway along it beside the
-    /// board, their edges `distance` mm from it or more.
+    /// `axis`: the axis is in the middle between them, and they are next to the board, halfway along
+    /// it, their edges at least `distance` mm from the board.
     ///
     /// # Errors
     /// `pins` where the diameter is not above 0, the distance is below 0, or there is no board.
@@ -87,17 +87,17 @@ impl Board {
             let help = "give a diameter above 0, and a distance of 0 or more";
             return Err(Diagnostic::error("pins", message).help(help).into());
         };
-        let beside = distance + diameter / 2.0;
+        let away = distance + diameter / 2.0;
         let middle = low.midpoint(high);
         let place = |side: f64| match axis {
-            Axis::X(x) => Vec2::new(x + side * ((high.x - x).max(x - low.x) + beside), middle.y),
-            Axis::Y(y) => Vec2::new(middle.x, y + side * ((high.y - y).max(y - low.y) + beside)),
+            Axis::X(x) => Vec2::new(x + side * ((high.x - x).max(x - low.x) + away), middle.y),
+            Axis::Y(y) => Vec2::new(middle.x, y + side * ((high.y - y).max(y - low.y) + away)),
         };
         let pin = |side| Hole { shape: HoleShape::Round(place(side)), diameter, plated: None };
         Ok([pin(-1.0), pin(1.0)])
     }
 
-    /// A panel of the board: so many beside and above each other, `spacing` mm between what is
+    /// A panel of the board: so many next to and above each other, `spacing` mm between what is
     /// outermost of each. The first keeps its place. Each has nets of its own: `GND` of the second from
     /// the left in the lowest row is `GND (2,1)`.
     ///

@@ -17,7 +17,7 @@ const SLIVER: f64 = 0.005;
 /// The finest step between rings, mm: regions are exact to a fifth of it.
 const FINEST: f64 = 0.005;
 
-/// The longest way of a tool, mm: 10 km, at 1 m/min a week.
+/// The longest path of a tool, mm: 10 km, at 1 m/min a week.
 const LONGEST: f64 = 1e7;
 
 /// How an area is cleared.
@@ -27,14 +27,14 @@ pub struct Clearing {
     pub widths: Vec<f64>,
     /// Which part of its width a ring shares with the one before at least: 0 or more, less than 1.
     pub overlap: f64,
-    /// Which way around.
+    /// In which direction around.
     pub direction: Direction,
 }
 
 /// An area that is cleared.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Cleared {
-    /// The ways of the middle of each tool, from the edge of the area inwards; closed, but for those along
+    /// The paths of the centre of each tool, from the edge of the area inwards; closed, but for those along
     /// ridges between rings.
     pub passes: Vec<Vec<Path>>,
     /// What no tool reaches, but for places up to 10 µm from one that is cut.
@@ -42,7 +42,7 @@ pub struct Cleared {
 }
 
 impl Clearing {
-    /// The ways that clear `board` of all copper that is farther than `margin` mm from `copper`.
+    /// The paths that clear `board` of all copper that is farther than `margin` mm from `copper`.
     ///
     /// # Errors
     /// As [`Clearing::clear`].
@@ -51,10 +51,10 @@ impl Clearing {
         self.clear(&board.difference(&kept).map_err(too_large)?)
     }
 
-    /// The ways that clear `area`, such as where solder mask is to be open, and cut nothing else.
+    /// The paths that clear `area`, such as where solder mask is to be open, and cut nothing else.
     ///
     /// # Errors
-    /// `tool-width` and `overlap` where these make no sense; `too-much` where a way would be longer than
+    /// `tool-width` and `overlap` where these make no sense; `too-much` where a path would be longer than
     /// 10 km or a region is too large.
     pub fn clear(&self, area: &Region) -> Outcome<Cleared> {
         self.check()?;
@@ -65,9 +65,9 @@ impl Clearing {
             let step = width * (1.0 - self.overlap);
             let idle = reached.offset(-width / 2.0).map_err(too_large)?;
             let busy = middles.difference(&idle).map_err(too_large)?;
-            let way = busy.area() / step;
-            if way > LONGEST {
-                let message = format!("clearing by steps of {step} mm takes {:.0} m", way / 1e3);
+            let length = busy.area() / step;
+            if length > LONGEST {
+                let message = format!("clearing by steps of {step} mm takes {:.0} m", length / 1e3);
                 return Err(fault("too-much", message, "use a wider tool first, or clear less"));
             }
             // Not where the middle may be, but where it goes: what is as small as the rounding of regions may be
@@ -76,11 +76,11 @@ impl Clearing {
             reached = reached.union(&cut).map_err(too_large)?;
             let rings = rings::of(busy, *width, step).map_err(too_large)?;
             // The rings have on their right what stays.
-            let ways = rings.into_iter().map(|ring| match self.direction {
+            let paths = rings.into_iter().map(|ring| match self.direction {
                 Direction::Climb | Direction::Either => ring,
                 Direction::Conventional => ring.reversed(),
             });
-            passes.push(ways.collect());
+            passes.push(paths.collect());
         }
         Ok(Cleared { passes, rest: area.difference(&reached).map_err(too_large)? })
     }

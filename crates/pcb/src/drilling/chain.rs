@@ -20,7 +20,7 @@ pub(super) fn places(a: Vec2, b: Vec2, drill: f64, scallop: f64) -> Option<Vec<V
     if length == 0.0 {
         return Some(vec![a]);
     }
-    // At first holes beside each other, then one in the middle between each two, and again.
+    // At first holes next to each other, then one in the middle between each two, and again.
     let mut parts = ((length / drill).floor() as usize).max(1);
     let place = |part: usize, parts: usize| a.lerp(b, part as f64 / parts as f64);
     let mut places: Vec<Vec2> = (0..=parts).map(|part| place(part, parts)).collect();

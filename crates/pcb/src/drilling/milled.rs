@@ -4,7 +4,7 @@ use super::{Mill, of};
 use crate::isolation::Direction;
 use crate::report::{Fault, Outcome, fault};
 use crate::setting;
-use crate::{Cut, Hole, HoleShape, Path, Stretch, depths};
+use crate::{Cut, Hole, HoleShape, Path, Segment, depths};
 use geom::Element;
 use geom::region::{Cap, Region, RegionError};
 
@@ -63,7 +63,7 @@ fn along(hole: &Hole) -> Option<Vec<Element>> {
     }
 }
 
-/// The ways at `reach` mm from the middle line.
+/// The paths at `reach` mm from the middle line.
 fn rings(hole: &Hole, reach: f64) -> Result<Vec<Path>, RegionError> {
     let swept = match along(hole) {
         None => Region::disc(super::place(hole), reach)?,
@@ -78,29 +78,30 @@ fn rings(hole: &Hole, reach: f64) -> Result<Vec<Path>, RegionError> {
 /// Around rings that lie in each other, from the innermost out, at each depth; back inwards the tool goes
 /// where it has cut.
 fn outwards(rings: &[Path], depths: &[f64]) -> Cut {
-    let mut ways: Vec<Path> = Vec::with_capacity(rings.len());
+    let mut paths: Vec<Path> = Vec::with_capacity(rings.len());
     for ring in rings {
-        let ring =
-            ways.last().map_or(ring.clone(), |inner| ring.starting_at(ring.nearest(inner.start())));
-        ways.push(ring);
+        let ring = paths
+            .last()
+            .map_or(ring.clone(), |inner| ring.starting_at(ring.nearest(inner.start())));
+        paths.push(ring);
     }
     let links: Vec<Element> =
-        ways.windows(2).map(|pair| Element::line(pair[0].start(), pair[1].start())).collect();
-    let mut stretches = Vec::new();
+        paths.windows(2).map(|pair| Element::line(pair[0].start(), pair[1].start())).collect();
+    let mut segments = Vec::new();
     for (level, &depth) in depths.iter().enumerate() {
         if level > 0 {
             // Still at the depth before.
             let above = depths[level - 1];
             let back = links.iter().rev().map(Element::reversed);
-            stretches.extend(back.map(|element| Stretch { element, depth: above }));
+            segments.extend(back.map(|element| Segment { element, depth: above }));
         }
-        for (i, way) in ways.iter().enumerate() {
+        for (i, path) in paths.iter().enumerate() {
             let link = i.checked_sub(1).and_then(|i| links.get(i));
-            let elements = link.into_iter().chain(way.elements());
-            stretches.extend(elements.map(|&element| Stretch { element, depth }));
+            let elements = link.into_iter().chain(path.elements());
+            segments.extend(elements.map(|&element| Segment { element, depth }));
         }
     }
-    Cut::Way(stretches)
+    Cut::Path(segments)
 }
 
 fn too_large(hole: &Hole, error: &RegionError) -> Fault {

@@ -63,7 +63,7 @@ pub struct Mill {
     pub tool: Tool,
     /// How much deeper it goes each time around, mm.
     pub step: f64,
-    /// Which way around.
+    /// In which direction around.
     pub direction: Direction,
     /// Holes of this diameter (mm) and wider are milled though there is a drill; infinite where none is.
     pub instead: f64,
@@ -248,9 +248,9 @@ impl Drilling {
 /// then where it is.
 fn in_order(mut groups: Vec<Vec<Cut>>, at: &mut Vec2) -> Vec<Cut> {
     let ends = |group: &Vec<Cut>| Some((group.first()?.start(), group.last()?.end()));
-    let ways: Vec<(Vec2, Vec2)> =
+    let lines: Vec<(Vec2, Vec2)> =
         groups.iter().map(|group| ends(group).unwrap_or((*at, *at))).collect();
-    let order = Tour { from: *at, to: None, either_way: false }.of_ways(&ways);
+    let order = Tour { from: *at, to: None, reversible: false }.of_lines(&lines);
     let cuts: Vec<Cut> = order.into_iter().flat_map(|i| std::mem::take(&mut groups[i])).collect();
     *at = cuts.last().map_or(*at, Cut::end);
     cuts

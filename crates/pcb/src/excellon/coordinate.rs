@@ -86,7 +86,7 @@ impl Notation {
             return Err(fault("format", message, help));
         }
         let places = match self.zeros {
-            // Nothing was left out, or there is nothing to tell.
+            // No zeros were left out, so nothing distinguishes the two.
             _ if digits == before + after || decimal(text) == Some(0.0) => after,
             Some(Zeros::Trailing) => after,
             Some(Zeros::Leading) => {

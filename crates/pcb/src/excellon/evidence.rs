@@ -77,7 +77,7 @@ impl Evidence {
     fn coordinate(&mut self, number: &[u8]) {
         let sign = number.iter().take_while(|c| !c.is_ascii_digit()).count();
         let digits = number.get(sign..).unwrap_or_default();
-        // Zero may be written as one digit in either way, and six digits leave nothing out.
+        // Zero may be written as one digit in either format, and six digits leave nothing out.
         if digits.len() < 6 && digits.iter().any(|c| *c != b'0') {
             self.begins_with_zero |= digits.first() == Some(&b'0');
             self.ends_with_zero |= digits.last() == Some(&b'0');

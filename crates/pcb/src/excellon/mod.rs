@@ -86,7 +86,7 @@ pub struct Reading {
     pub warnings: Vec<Diagnostic>,
 }
 
-/// Reads a drill file. `file_name` is for the messages, and tells holes that are plated from others where the
+/// Reads a drill file. `file_name` is for the messages, and distinguishes plated holes from others where the
 /// file itself does not (`-PTH`, `-NPTH`).
 ///
 /// Time and memory are linear in `text` and in the number of holes that repeats make, which is limited

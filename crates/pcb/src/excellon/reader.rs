@@ -9,7 +9,7 @@ use super::{Cut, Drill, Reading};
 use crate::FAR;
 use crate::HoleShape;
 use crate::decimal::whole;
-use crate::report::{Outcome, Place, Report, fault};
+use crate::report::{Location, Outcome, Report, fault};
 use geom::{Element, Vec2};
 use program::{Diagnostic, encoding};
 
@@ -20,7 +20,7 @@ const MOST_CUTS: usize = 1_000_000;
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Mode {
     Drill,
-    /// Routing, on the way to where a route starts.
+    /// Routing, before a route starts.
     Position,
     Line,
     Clockwise,
@@ -30,7 +30,7 @@ enum Mode {
 /// What has been read, and what holds.
 struct Reader<'a> {
     report: Report<'a>,
-    place: Place,
+    location: Location,
     cuts: Vec<Cut>,
     tools: Tools,
     evidence: Evidence,
@@ -52,7 +52,7 @@ pub(super) fn read(file_name: &str, text: &[u8]) -> Result<Reading, Vec<Diagnost
     let evidence = Evidence::of(text);
     let mut reader = Reader {
         report: Report::new(file_name, text),
-        place: Place::default(),
+        location: Location::default(),
         cuts: Vec::new(),
         tools: Tools::of_file(file_name),
         notation: evidence.comments,
@@ -69,10 +69,10 @@ pub(super) fn read(file_name: &str, text: &[u8]) -> Result<Reading, Vec<Diagnost
         if text.is_empty() {
             continue;
         }
-        reader.place = Place { line, start, end: start + text.len() };
+        reader.location = Location { line, start, end: start + text.len() };
         if let Err(fault) = reader.obey(text) {
             let hopeless = fault.rule == "too-large";
-            reader.report.error(reader.place, *fault);
+            reader.report.error(reader.location, *fault);
             if hopeless || reader.report.is_full() {
                 return Err(reader.report.errors);
             }
@@ -88,7 +88,12 @@ impl Reader<'_> {
             return Ok(());
         }
         if self.ended {
-            self.report.warn(self.place, "after-end", "lines after the end", "they are not read");
+            self.report.warn(
+                self.location,
+                "after-end",
+                "lines after the end",
+                "they are not read",
+            );
             return Ok(());
         }
         match text {
@@ -118,7 +123,7 @@ impl Reader<'_> {
                 if !known && !text.first().is_some_and(u8::is_ascii_digit) {
                     let help = "it is not known and not used";
                     self.report.warn(
-                        self.place,
+                        self.location,
                         "header",
                         "a line of the header is not known",
                         help,
@@ -311,7 +316,7 @@ impl Reader<'_> {
         let route = std::mem::take(&mut self.route);
         // What was cut had a tool.
         if let (false, Ok(tool)) = (route.is_empty(), self.tools.selected()) {
-            self.cuts.push(Cut { line: self.place.line, tool, path: HoleShape::Route(route) });
+            self.cuts.push(Cut { line: self.location.line, tool, path: HoleShape::Route(route) });
         }
     }
 
@@ -334,7 +339,7 @@ impl Reader<'_> {
         self.tools.selected()?;
         if !self.down {
             let help = "the route is cut: say M15 where it begins and M16 where it ends";
-            self.report.warn(self.place, "no-plunge", "a route without M15", help);
+            self.report.warn(self.location, "no-plunge", "a route without M15", help);
         }
         let start = start.ok_or_else(no_point)?;
         let element = match self.mode {
@@ -372,7 +377,7 @@ impl Reader<'_> {
         if self.cuts.len() >= MOST_CUTS {
             return Err(too_large());
         }
-        self.cuts.push(Cut { line: self.place.line, tool, path });
+        self.cuts.push(Cut { line: self.location.line, tool, path });
         Ok(())
     }
 
@@ -439,7 +444,7 @@ impl Reader<'_> {
                 }
             };
             let help = format!("say {name} in the header, if that is right");
-            self.report.warn(self.place, "zeros-concluded", message, &help);
+            self.report.warn(self.location, "zeros-concluded", message, &help);
         }
     }
 
@@ -453,7 +458,7 @@ impl Reader<'_> {
                 Unit::Metric => ("METRIC", "the diameters can only be mm: so are the coordinates"),
             };
             let help = format!("say {name} in the header, if that is right");
-            self.report.warn(self.place, "unit-concluded", message, &help);
+            self.report.warn(self.location, "unit-concluded", message, &help);
         }
     }
 
@@ -461,7 +466,7 @@ impl Reader<'_> {
         if !self.ended {
             let help = "the file may be cut off: write it again";
             let error = fault("no-end", "the file does not end with M30", help);
-            self.report.error(self.place, *error);
+            self.report.error(self.location, *error);
         }
         match self.report.errors.is_empty() {
             true => {

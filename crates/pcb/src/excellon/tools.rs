@@ -19,7 +19,7 @@ pub(super) struct Tools {
 }
 
 impl Tools {
-    /// None yet. Names of files tell plated holes from others by the habit of KiCad: `board-PTH.drl`,
+    /// None yet. Names of files distinguish plated holes from others by the habit of KiCad: `board-PTH.drl`,
     /// `board-NPTH.drl`.
     pub(super) fn of_file(name: &str) -> Tools {
         let name = name.rsplit(['/', '\\']).next().unwrap_or_default().to_ascii_uppercase();

@@ -1,6 +1,6 @@
 //! The commands of a file: what stands between its `*` and `%`.
 
-use crate::report::{Outcome, Place, fault};
+use crate::report::{Location, Outcome, fault};
 use memchr::{memchr, memchr_iter, memchr2};
 use program::encoding;
 
@@ -13,20 +13,20 @@ pub(super) enum Token<'a> {
     Close,
 }
 
-/// The commands of a text, with the place of the last one.
+/// The commands of a text, with the location of the last one.
 pub(super) struct Blocks<'a> {
     text: &'a [u8],
     at: usize,
     line: u32,
     extended: bool,
-    /// Place of the last token.
-    pub(super) place: Place,
+    /// Location of the last token.
+    pub(super) location: Location,
 }
 
 impl<'a> Blocks<'a> {
     pub(super) fn of(text: &'a [u8]) -> Blocks<'a> {
         let at = text.len() - encoding::without_mark(text).len();
-        Blocks { text, at, line: 1, extended: false, place: Place::default() }
+        Blocks { text, at, line: 1, extended: false, location: Location::default() }
     }
 
     /// The next token, `None` at the end of the text.
@@ -38,7 +38,7 @@ impl<'a> Blocks<'a> {
             let rest = &self.text[self.at..];
             let Some(blank) = rest.iter().position(|c| !c.is_ascii_whitespace() && *c != 0) else {
                 self.advance(rest.len());
-                self.place = Place { line: self.line, start: self.at, end: self.at };
+                self.location = Location { line: self.line, start: self.at, end: self.at };
                 if std::mem::take(&mut self.extended) {
                     return Err(unterminated("the extended command at the end lacks its %"));
                 }
@@ -46,7 +46,7 @@ impl<'a> Blocks<'a> {
             };
             self.advance(blank);
             let rest = &rest[blank..];
-            self.place = Place { line: self.line, start: self.at, end: self.at + 1 };
+            self.location = Location { line: self.line, start: self.at, end: self.at + 1 };
             if rest.first() == Some(&b'%') {
                 self.advance(1);
                 self.extended = !self.extended;
@@ -63,7 +63,7 @@ impl<'a> Blocks<'a> {
                 None => (rest.len(), false),
             };
             let text = &rest[..length];
-            self.place.end = self.at + text.trim_ascii_end().len();
+            self.location.end = self.at + text.trim_ascii_end().len();
             self.advance(length + usize::from(closed));
             if !closed {
                 let shown = String::from_utf8_lossy(&text[..length.min(30)]);
@@ -100,7 +100,7 @@ mod tests {
         let mut seen = Vec::new();
         while let Some(token) = blocks.next().unwrap() {
             if let Token::Block { text, extended } = token {
-                seen.push((std::str::from_utf8(text).unwrap(), extended, blocks.place.line));
+                seen.push((std::str::from_utf8(text).unwrap(), extended, blocks.location.line));
             }
         }
         let expected = [

@@ -59,7 +59,7 @@ pub enum Shape {
         aperture: u32,
         /// How it is transformed about its origin.
         transform: Transform,
-        /// The way of its origin, mm.
+        /// The path of its origin, mm.
         path: Element,
     },
     /// A region.
@@ -102,7 +102,7 @@ impl Image {
         }
     }
 
-    /// The way of a round pen and its diameter, mm, where that is what an object is.
+    /// The path of a round pen and its diameter, mm, where an object is a stroke.
     pub fn stroke(&self, object: &Object) -> Option<(Element, f64)> {
         let Shape::Stroke { aperture, transform, path } = &object.shape else { return None };
         match self.aperture(*aperture)?.pen? {
@@ -137,7 +137,7 @@ impl Image {
     pub fn extents(&self) -> Option<(Vec2, Vec2)> {
         let dark = self.objects.iter().filter(|object| object.dark);
         let boxes = dark.filter_map(|object| match (self.stroke(object), object.shape) {
-            (Some((way, diameter)), _) => stroke::extents(&way, diameter),
+            (Some((path, diameter)), _) => stroke::extents(&path, diameter),
             (None, Shape::Region { region, transform, at }) => {
                 let contours = &self.regions.get(region as usize)?.contours;
                 contours.iter().map(|contour| contour.placed_extents(&transform, at)).reduce(around)

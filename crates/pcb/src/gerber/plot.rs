@@ -9,7 +9,7 @@ use crate::{FAR, SAME, arc};
 use geom::{Element, INCH, Vec2};
 use std::f64::consts::FRAC_PI_2;
 
-/// How the way from point to point runs.
+/// How a move from point to point runs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Mode {
     Linear,

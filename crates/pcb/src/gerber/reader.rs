@@ -14,7 +14,7 @@ use super::template::Template;
 use crate::Transform;
 use crate::contour::Contour;
 use crate::decimal::whole;
-use crate::report::{Outcome, Place, Report, fault};
+use crate::report::{Location, Outcome, Report, fault};
 use geom::Vec2;
 use program::Diagnostic;
 use std::collections::HashMap;
@@ -63,7 +63,7 @@ pub(super) enum Entry {
 /// What has been read, and what holds.
 pub(super) struct Reader<'a> {
     report: Report<'a>,
-    place: Place,
+    location: Location,
     pub(super) image: Image,
     pub(super) budget: Budget,
     /// mm in the unit of the file.
@@ -90,7 +90,7 @@ pub(super) struct Reader<'a> {
 pub(super) fn read(file_name: &str, text: &[u8]) -> Result<Reading, Vec<Diagnostic>> {
     let mut reader = Reader {
         report: Report::new(file_name, text),
-        place: Place::default(),
+        location: Location::default(),
         image: Image::default(),
         budget: Budget { left: MOST },
         unit: None,
@@ -112,7 +112,7 @@ pub(super) fn read(file_name: &str, text: &[u8]) -> Result<Reading, Vec<Diagnost
     let mut blocks = Blocks::of(text);
     loop {
         let token = blocks.next();
-        reader.place = blocks.place;
+        reader.location = blocks.location;
         let obeyed = match token {
             Ok(None) => break,
             Ok(Some(token)) => reader.obey(token),
@@ -120,7 +120,7 @@ pub(super) fn read(file_name: &str, text: &[u8]) -> Result<Reading, Vec<Diagnost
         };
         if let Err(fault) = obeyed {
             let hopeless = fault.rule == "too-large";
-            reader.report.error(reader.place, *fault);
+            reader.report.error(reader.location, *fault);
             if hopeless || reader.report.is_full() {
                 return Err(reader.report.errors);
             }
@@ -143,7 +143,7 @@ impl<'a> Reader<'a> {
             }
             Token::Block { .. } if self.ended => {
                 self.report.warn(
-                    self.place,
+                    self.location,
                     "after-end",
                     "commands after M02",
                     "they are not read",
@@ -166,7 +166,7 @@ impl<'a> Reader<'a> {
     /// Obeys a command between two `%`.
     fn extended(&mut self, text: &'a [u8]) -> Outcome {
         if let Some((_, template)) = &mut self.open_template {
-            return template.push(self.place, text);
+            return template.push(self.location, text);
         }
         let Some((name, rest)) = text.split_first_chunk::<2>() else {
             return Err(unknown(text));
@@ -224,8 +224,8 @@ impl<'a> Reader<'a> {
                     fault("missing-macro", format!("there is no macro {name}"), help)
                 })?;
                 let drawn = template.pieces(&definition.values, unit, &mut self.budget);
-                let pieces = drawn.map_err(|(place, mut fault)| {
-                    self.place = place;
+                let pieces = drawn.map_err(|(location, mut fault)| {
+                    self.location = location;
                     fault.message.push_str(&format!(", in {name} for D{}", definition.number));
                     fault
                 })?;
@@ -244,7 +244,7 @@ impl<'a> Reader<'a> {
         if self.entries.insert(number, entry).is_some() {
             let help = "what comes after it uses the new one";
             self.report.warn(
-                self.place,
+                self.location,
                 "aperture-again",
                 "an aperture that is defined again",
                 help,
@@ -324,7 +324,7 @@ impl<'a> Reader<'a> {
     pub(super) fn paint(&mut self, shape: Shape) -> Outcome {
         self.budget.spend(1)?;
         let attributes = self.attributes.index(&mut self.image);
-        let (line, dark) = (self.place.line, self.loaded.dark);
+        let (line, dark) = (self.location.line, self.loaded.dark);
         self.objects().push(Object { line, dark, attributes, shape });
         Ok(())
     }
@@ -370,7 +370,7 @@ impl<'a> Reader<'a> {
     #[cold]
     pub(super) fn deprecated(&mut self, what: &str) {
         let help = "it is read as chapter 8 of the Gerber specification says";
-        self.report.warn(self.place, "deprecated", what, help);
+        self.report.warn(self.location, "deprecated", what, help);
     }
 
     fn finish(mut self) -> Result<Reading, Vec<Diagnostic>> {
@@ -398,7 +398,7 @@ impl<'a> Reader<'a> {
         };
         let size = self.bounded();
         for fault in [last, region, end, size].into_iter().filter_map(Result::err) {
-            self.report.error(self.place, *fault);
+            self.report.error(self.location, *fault);
         }
         if !self.report.errors.is_empty() {
             return Err(self.report.errors);

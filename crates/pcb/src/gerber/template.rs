@@ -6,12 +6,12 @@ use super::reader::Budget;
 use crate::FAR;
 use crate::contour::{Contour, Piece};
 use crate::decimal::whole;
-use crate::report::{Fault, Outcome, Place, fault};
+use crate::report::{Fault, Location, Outcome, fault};
 
 /// The template of an aperture.
 #[derive(Default)]
 pub(super) struct Template {
-    statements: Vec<(Place, Statement)>,
+    statements: Vec<(Location, Statement)>,
 }
 
 enum Statement {
@@ -24,7 +24,7 @@ impl Template {
     ///
     /// # Errors
     /// `macro-expression`, and `macro-primitive` for what is neither a primitive nor an assignment.
-    pub(super) fn push(&mut self, place: Place, text: &[u8]) -> Outcome {
+    pub(super) fn push(&mut self, location: Location, text: &[u8]) -> Outcome {
         let text = text.trim_ascii();
         // Primitive 0 is a comment.
         if text.first() == Some(&b'0') {
@@ -50,7 +50,7 @@ impl Template {
                 Statement::Primitive(code, fields.map(Expression::of).collect::<Outcome<_>>()?)
             }
         };
-        self.statements.push((place, statement));
+        self.statements.push((location, statement));
         Ok(())
     }
 
@@ -58,16 +58,16 @@ impl Template {
     /// mm.
     ///
     /// # Errors
-    /// What is wrong, with the place of the statement.
+    /// What is wrong, with the location of the statement.
     pub(super) fn pieces(
         &self,
         values: &[f64],
         unit: f64,
         budget: &mut Budget,
-    ) -> Result<Vec<Piece>, (Place, Fault)> {
+    ) -> Result<Vec<Piece>, (Location, Fault)> {
         let mut variables: Variables = (1..).zip(values.iter().copied()).collect();
         let mut pieces = Vec::new();
-        for (place, statement) in &self.statements {
+        for (location, statement) in &self.statements {
             let drawn: Outcome<Vec<Piece>> = match statement {
                 Statement::Assign(variable, value) => budget
                     .spend(value.steps())
@@ -86,14 +86,14 @@ impl Template {
                 budget.spend(drawn.len())?;
                 Ok(drawn)
             });
-            pieces.extend(drawn.map_err(|fault| (*place, fault))?);
+            pieces.extend(drawn.map_err(|fault| (*location, fault))?);
         }
         Ok(pieces)
     }
 
     /// Whether it uses a primitive that is deprecated (chapter 8).
     pub(super) fn is_deprecated(&self) -> bool {
-        let old = |(_, statement): &(Place, Statement)| {
+        let old = |(_, statement): &(Location, Statement)| {
             matches!(statement, Statement::Primitive(2 | 6 | 22, _))
         };
         self.statements.iter().any(old)

@@ -20,8 +20,8 @@ pub(super) struct Edge<'a> {
 }
 
 impl<'a> Edge<'a> {
-    /// Whether the shortest way to `point` begins outside of the conductor, which is on its left. At a sharp
-    /// corner that may be told of one of its edges only.
+    /// Whether the shortest line to `point` begins outside of the conductor, which is on its left. At a sharp
+    /// corner only one of the two edges may show it.
     pub fn is_left_towards(&self, point: Vec2) -> bool {
         let (t, _) = self.element.nearest(point);
         self.element.tangent(t).perp_dot(point - self.element.at(t)) <= 0.0
@@ -51,7 +51,7 @@ pub(super) struct Foot<'a> {
     pub at: Vec2,
     /// How far away, mm.
     pub away: f64,
-    /// Whether it is seen from outside of the conductor, as far as that can be told.
+    /// Whether it is seen from outside of the conductor, as far as that can be known.
     pub is_outside: bool,
 }
 

@@ -2,7 +2,7 @@
 
 use super::field::Field;
 use super::lines::{Line, TooMany, lines};
-use super::middle::Station;
+use super::middle::LinePoint;
 use crate::Path;
 use geom::{Element, Vec2};
 
@@ -46,9 +46,9 @@ impl NarrowGap {
     }
 }
 
-/// What is between conductors that are too near for two ways of a cut side by side.
+/// The gaps between conductors that are too near each other for two cuts side by side.
 pub(super) struct Gaps {
-    /// Ways down the middle where the cut just fits.
+    /// Paths down the middle where the cut just fits.
     pub fitting: Vec<Path>,
     /// Where it does not; the narrowest first.
     pub narrow: Vec<NarrowGap>,
@@ -56,12 +56,12 @@ pub(super) struct Gaps {
 
 /// The gaps that are narrower than a cut of `width` mm, or as wide.
 pub(super) fn gaps(field: &Field, width: f64) -> Result<Gaps, TooMany> {
-    // Where a cut fits exactly, by rounding, its ways beside the one and the other conductor are one.
+    // Where a cut fits exactly, by rounding, the paths along the two conductors are one.
     let lines = lines(field, (width + FITS) / 2.0)?;
     let mut gaps = Gaps { fitting: Vec::new(), narrow: Vec::new() };
     for line in &lines {
         for run in runs(line, (width - FITS) / 2.0) {
-            let path = path(&run.stations);
+            let path = path(&run.points);
             let length = path.as_ref().map_or(0.0, Path::length);
             if run.is_narrow {
                 gaps.narrow.extend(narrow(field, line.pair, &run, length, path));
@@ -78,24 +78,24 @@ pub(super) fn gaps(field: &Field, width: f64) -> Result<Gaps, TooMany> {
 /// Places of a line that are all too narrow, or all wide enough.
 struct Run {
     is_narrow: bool,
-    stations: Vec<Station>,
+    points: Vec<LinePoint>,
 }
 
 /// The line, cut where the conductors are `least` mm away.
 fn runs(line: &Line, least: f64) -> Vec<Run> {
     let mut runs: Vec<Run> = Vec::new();
-    for &station in &line.stations {
-        let is_narrow = station.away < least;
+    for &point in &line.points {
+        let is_narrow = point.away < least;
         match runs.last_mut() {
-            Some(run) if run.is_narrow == is_narrow => run.stations.push(station),
-            Some(Run { stations, .. }) => {
-                let before = *stations.last().unwrap_or(&station);
-                let t = (least - before.away) / (station.away - before.away);
-                let cut = Station { at: before.at.lerp(station.at, t), away: least };
-                stations.push(cut);
-                runs.push(Run { is_narrow, stations: vec![cut, station] });
+            Some(run) if run.is_narrow == is_narrow => run.points.push(point),
+            Some(Run { points, .. }) => {
+                let before = *points.last().unwrap_or(&point);
+                let t = (least - before.away) / (point.away - before.away);
+                let cut = LinePoint { at: before.at.lerp(point.at, t), away: least };
+                points.push(cut);
+                runs.push(Run { is_narrow, points: vec![cut, point] });
             }
-            None => runs.push(Run { is_narrow, stations: vec![station] }),
+            None => runs.push(Run { is_narrow, points: vec![point] }),
         }
     }
     runs
@@ -108,25 +108,25 @@ fn narrow(
     length: f64,
     middle: Option<Path>,
 ) -> Option<NarrowGap> {
-    let least = run.stations.iter().min_by(|a, b| a.away.total_cmp(&b.away))?;
+    let least = run.points.iter().min_by(|a, b| a.away.total_cmp(&b.away))?;
     let mut islands = field.islands(least.at, pair, least.away)?;
     islands.sort_unstable();
     Some(NarrowGap { at: least.at, islands, width: 2.0 * least.away, length, middle })
 }
 
-/// The way through places, as few chords as are near enough.
-fn path(stations: &[Station]) -> Option<Path> {
+/// The path through `points`, in as few chords as stay near enough.
+fn path(points: &[LinePoint]) -> Option<Path> {
     let mut elements = Vec::new();
     let mut start = 0;
-    while start + 1 < stations.len() {
+    while start + 1 < points.len() {
         // As far as all places between are near the chord: twice as far as long as that is so, and then
         // back.
-        let from = stations[start].at;
+        let from = points[start].at;
         let is_straight = |end: usize| {
-            let Some(last) = stations.get(end) else { return false };
+            let Some(last) = points.get(end) else { return false };
             let chord = Element::line(from, last.at);
-            let between = stations.get(start + 1..end).unwrap_or_default();
-            between.iter().all(|station| chord.nearest(station.at).1 <= STRAIGHT)
+            let between = points.get(start + 1..end).unwrap_or_default();
+            between.iter().all(|point| chord.nearest(point.at).1 <= STRAIGHT)
         };
         let (mut good, mut reach) = (start + 1, 2);
         while is_straight(start + reach) {
@@ -138,7 +138,7 @@ fn path(stations: &[Station]) -> Option<Path> {
             let middle = good.midpoint(bad);
             if is_straight(middle) { good = middle } else { bad = middle }
         }
-        elements.push(Element::line(from, stations[good].at));
+        elements.push(Element::line(from, points[good].at));
         start = good;
     }
     Path::new(elements)

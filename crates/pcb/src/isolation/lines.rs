@@ -6,7 +6,7 @@
 //! corner, and from there so do others.
 
 use super::field::{Field, Foot};
-use super::middle::{CHORD, End, Middle, Station};
+use super::middle::{CHORD, End, LinePoint, Middle};
 use geom::{Element, Vec2};
 use static_aabb2d_index::{StaticAABB2DIndex, StaticAABB2DIndexBuilder};
 use std::collections::BTreeMap;
@@ -25,7 +25,7 @@ pub(super) struct Line {
     /// The two conductors.
     pub pair: [usize; 2],
     /// At least one place; the last is the first where it is closed.
-    pub stations: Vec<Station>,
+    pub points: Vec<LinePoint>,
 }
 
 /// More is near each other than can be looked at.
@@ -47,14 +47,14 @@ pub(super) fn lines(field: &Field, limit: f64) -> Result<Vec<Line>, TooMany> {
 /// Where two conductors are nearest to each other.
 struct Seed {
     pair: [usize; 2],
-    station: Station,
+    point: LinePoint,
     /// Whether a line goes through it.
     is_passed: bool,
 }
 
 /// A place that is as far from three conductors or more.
 struct Corner {
-    station: Station,
+    point: LinePoint,
     branches: Vec<Branch>,
 }
 
@@ -84,7 +84,7 @@ impl<'f, 'a> Lines<'f, 'a> {
     fn new(field: &'f Field<'a>, limit: f64) -> Result<Self, TooMany> {
         let seeds = seeds(field, limit)?;
         let mut tree = StaticAABB2DIndexBuilder::new(seeds.len());
-        for Seed { station: Station { at, .. }, .. } in &seeds {
+        for Seed { point: LinePoint { at, .. }, .. } in &seeds {
             tree.add(at.x, at.y, at.x, at.y);
         }
         Ok(Lines {
@@ -100,92 +100,92 @@ impl<'f, 'a> Lines<'f, 'a> {
         })
     }
 
-    /// Both ways from a seed, if no line has come through it.
+    /// In both directions from a seed, if no line has come through it.
     fn follow_seed(&mut self, seed: usize) -> Result<(), TooMany> {
-        let Some(&Seed { pair, station, is_passed: false }) = self.seeds.get(seed) else {
+        let Some(&Seed { pair, point, is_passed: false }) = self.seeds.get(seed) else {
             return Ok(());
         };
-        let mut middle = Middle::new(self.field, pair, self.limit, station);
-        let mut stations = vec![station];
-        if let Some(along) = middle.direction(station.at) {
-            let (on, end) = middle.walk(station, along);
-            self.arrive(&on, station, pair, end);
-            stations.extend(on);
+        let mut middle = Middle::new(self.field, pair, self.limit, point);
+        let mut points = vec![point];
+        if let Some(along) = middle.direction(point.at) {
+            let (on, end) = middle.walk(point, along);
+            self.arrive(&on, point, pair, end);
+            points.extend(on);
             if end != End::Closed {
-                let (back, end) = middle.walk(station, -along);
-                self.arrive(&back, station, pair, end);
-                stations.splice(0..0, back.into_iter().rev());
+                let (back, end) = middle.walk(point, -along);
+                self.arrive(&back, point, pair, end);
+                points.splice(0..0, back.into_iter().rev());
             }
             // In a corner another line has been there before, or comes there from here.
-            if end == End::Corner && is_short(&stations) {
+            if end == End::Corner && is_short(&points) {
                 return Ok(());
             }
         }
-        self.add(stations, pair)
+        self.add(points, pair)
     }
 
     /// From a corner along one of its branches, if that is not known.
     fn follow_branch(&mut self, corner: usize, branch: usize) -> Result<(), TooMany> {
-        let Some(Corner { station, branches }) = self.corners.get_mut(corner) else {
+        let Some(Corner { point, branches }) = self.corners.get_mut(corner) else {
             return Ok(());
         };
-        let station = *station;
+        let point = *point;
         let Some(Branch { pair, along, is_known: is_known @ false }) = branches.get_mut(branch)
         else {
             return Ok(());
         };
         *is_known = true;
         let (pair, along) = (*pair, *along);
-        let mut middle = Middle::new(self.field, pair, self.limit, station);
-        let (on, end) = middle.walk(station, along);
-        self.arrive(&on, station, pair, end);
-        let stations: Vec<Station> = [station].into_iter().chain(on).collect();
-        if is_short(&stations) { Ok(()) } else { self.add(stations, pair) }
+        let mut middle = Middle::new(self.field, pair, self.limit, point);
+        let (on, end) = middle.walk(point, along);
+        self.arrive(&on, point, pair, end);
+        let points: Vec<LinePoint> = [point].into_iter().chain(on).collect();
+        if is_short(&points) { Ok(()) } else { self.add(points, pair) }
     }
 
-    /// Adds a line, and marks the seeds that it passes; where they are narrower than what is beside them,
+    /// Adds a line, and marks the seeds that it passes; where they are narrower than their neighbours,
     /// they become places of it.
-    fn add(&mut self, stations: Vec<Station>, pair: [usize; 2]) -> Result<(), TooMany> {
-        self.taken += stations.len();
+    fn add(&mut self, points: Vec<LinePoint>, pair: [usize; 2]) -> Result<(), TooMany> {
+        self.taken += points.len();
         if self.taken > MOST {
             return Err(TooMany);
         }
         // Of each seed the chord that is nearest, and the place along it.
         let mut passed: BTreeMap<usize, (f64, usize, f64)> = BTreeMap::new();
-        for (i, ends) in stations.windows(2).enumerate() {
+        for (i, ends) in points.windows(2).enumerate() {
             let chord = Element::line(ends[0].at, ends[1].at);
             let (low, high) = chord.extents();
             let (low, high) = (low - CHORD, high + CHORD);
             let trees = self.seeds_at.iter();
             for seed in trees.flat_map(|tree| tree.query(low.x, low.y, high.x, high.y)) {
-                let Some(Seed { pair: of, station, .. }) = self.seeds.get(seed) else { continue };
-                let (t, off) = chord.nearest(station.at);
+                let Some(Seed { pair: of, point, .. }) = self.seeds.get(seed) else { continue };
+                let (t, off) = chord.nearest(point.at);
                 let is_nearest = passed.get(&seed).is_none_or(|(least, ..)| off < *least);
                 if *of == pair && off <= CHORD && is_nearest {
                     passed.insert(seed, (off, i, t));
                 }
             }
         }
-        let mut places: Vec<(usize, f64, Station)> =
-            stations.iter().enumerate().map(|(i, station)| (i, 0.0, *station)).collect();
+        let mut places: Vec<(usize, f64, LinePoint)> =
+            points.iter().enumerate().map(|(i, point)| (i, 0.0, *point)).collect();
         for (seed, (_, i, t)) in passed {
             let Some(seed) = self.seeds.get_mut(seed) else { continue };
             seed.is_passed = true;
-            let beside = stations.iter().skip(i).take(2).map(|station| station.away);
-            if seed.station.away < beside.fold(f64::INFINITY, f64::min) {
-                places.push((i, t, seed.station));
+            let neighbours = points.iter().skip(i).take(2).map(|point| point.away);
+            if seed.point.away < neighbours.fold(f64::INFINITY, f64::min) {
+                places.push((i, t, seed.point));
             }
         }
         places.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
-        let stations = places.into_iter().map(|(_, _, station)| station).collect();
-        self.lines.push(Line { pair, stations });
+        let points = places.into_iter().map(|(_, _, point)| point).collect();
+        self.lines.push(Line { pair, points });
         Ok(())
     }
 
     /// Notes that a line comes to its end, from `start` by `on`.
-    fn arrive(&mut self, on: &[Station], start: Station, pair: [usize; 2], end: End) {
+    fn arrive(&mut self, on: &[LinePoint], start: LinePoint, pair: [usize; 2], end: End) {
         let (End::Corner, Some(last)) = (end, on.last()) else { return };
-        let before = on.iter().rev().nth(1).map_or(start, |station| *station);
+        let before = on.iter().rev().nth(1).map_or(start, |point| *point);
         let corner = self.corner_at(*last);
         let Some(Corner { branches, .. }) = self.corners.get_mut(corner) else { return };
         let back = before.at - last.at;
@@ -201,33 +201,33 @@ impl<'f, 'a> Lines<'f, 'a> {
     }
 
     /// The corner at a place, with all its branches.
-    fn corner_at(&mut self, station: Station) -> usize {
-        let cell = (station.at / (2.0 * SAME)).round();
+    fn corner_at(&mut self, point: LinePoint) -> usize {
+        let cell = (point.at / (2.0 * SAME)).round();
         let cell = [cell.x as i64, cell.y as i64];
         for dx in -1..=1 {
             for dy in -1..=1 {
-                let beside = [cell[0].saturating_add(dx), cell[1].saturating_add(dy)];
-                let Some(&known) = self.corners_at.get(&beside) else { continue };
-                let is_here = |corner: &Corner| corner.station.at.distance(station.at) < SAME;
+                let neighbour = [cell[0].saturating_add(dx), cell[1].saturating_add(dy)];
+                let Some(&known) = self.corners_at.get(&neighbour) else { continue };
+                let is_here = |corner: &Corner| corner.point.at.distance(point.at) < SAME;
                 if self.corners.get(known).is_some_and(is_here) {
                     return known;
                 }
             }
         }
-        let window = self.field.window(station.at, station.away + SAME);
-        let branches = branches(station.at, window.nearest(station.at, SAME));
+        let window = self.field.window(point.at, point.away + SAME);
+        let branches = branches(point.at, window.nearest(point.at, SAME));
         let corner = self.corners.len();
         self.open.extend((0..branches.len()).map(|branch| (corner, branch)));
-        self.corners.push(Corner { station, branches });
+        self.corners.push(Corner { point, branches });
         self.corners_at.insert(cell, corner);
         corner
     }
 }
 
 /// Whether places are all about one.
-fn is_short(stations: &[Station]) -> bool {
-    let ends = stations.first().zip(stations.last());
-    ends.is_none_or(|(first, last)| stations.len() <= 4 && first.at.distance(last.at) < 10.0 * SAME)
+fn is_short(points: &[LinePoint]) -> bool {
+    let ends = points.first().zip(points.last());
+    ends.is_none_or(|(first, last)| points.len() <= 4 && first.at.distance(last.at) < 10.0 * SAME)
 }
 
 /// The lines that end in a corner: between each two of its feet that are next to each other around it.
@@ -263,12 +263,12 @@ fn seeds(field: &Field, limit: f64) -> Result<Vec<Seed>, TooMany> {
                 continue;
             }
             let (a, b) = edge.element.closest(other.element);
-            let station = Station { at: a.midpoint(b), away: a.distance(b) / 2.0 };
+            let point = LinePoint { at: a.midpoint(b), away: a.distance(b) / 2.0 };
             let is_outside = edge.is_left_towards(b) && other.is_left_towards(a);
-            let is_near = station.away < limit && (is_outside || station.away < SAME);
-            if is_near && field.is_free(station.at, station.away - SAME) {
+            let is_near = point.away < limit && (is_outside || point.away < SAME);
+            if is_near && field.is_free(point.at, point.away - SAME) {
                 let pair = [edge.conductor, other.conductor];
-                seeds.push(Seed { pair, station, is_passed: false });
+                seeds.push(Seed { pair, point, is_passed: false });
             }
         }
         if looked_at > MOST {

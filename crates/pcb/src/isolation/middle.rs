@@ -2,7 +2,7 @@
 //!
 //! A step goes straight on, and from there at right angles to the line until both are as far. It is
 //! halved until its chord is near the line all along, and until it is so short that nothing third can have
-//! been nearer on the way: on a step of 1 mm the distance of anything changes by 1 mm at most.
+//! been nearer in between: on a step of 1 mm the distance of anything changes by 1 mm at most.
 
 use super::field::{Field, Near, Window};
 use geom::{Element, Vec2};
@@ -19,15 +19,15 @@ const EXACT: f64 = 1e-7;
 /// How often a place off the line is moved to it.
 const TRIES: usize = 16;
 
-/// A place of the line.
+/// A point of the line.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Station {
+pub(super) struct LinePoint {
     pub at: Vec2,
     /// How far the two conductors are, mm.
     pub away: f64,
 }
 
-/// Where a way along the line ends.
+/// Where a walk along the line ends.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum End {
     /// Where the two are as far away as is asked for.
@@ -58,11 +58,11 @@ struct Placed<'a> {
 }
 
 impl Placed<'_> {
-    fn station(&self) -> Station {
-        Station { at: self.at, away: self.near.away() }
+    fn point(&self) -> LinePoint {
+        LinePoint { at: self.at, away: self.near.away() }
     }
 
-    /// The way in which the distance of the first grows over that of the second: at right angles to the
+    /// The direction in which the distance of the first grows over that of the second: at right angles to the
     /// line.
     fn across(&self) -> Vec2 {
         let [first, second] = self.near.feet.map(|foot| (self.at - foot.at) / foot.away);
@@ -82,7 +82,7 @@ impl Placed<'_> {
 }
 
 impl<'f, 'a> Middle<'f, 'a> {
-    pub fn new(field: &'f Field<'a>, pair: [usize; 2], limit: f64, start: Station) -> Self {
+    pub fn new(field: &'f Field<'a>, pair: [usize; 2], limit: f64, start: LinePoint) -> Self {
         let window = field.window(start.at, 0.0);
         Middle { field, pair, limit, away: start.away, window }
     }
@@ -93,9 +93,9 @@ impl<'f, 'a> Middle<'f, 'a> {
         (along != Vec2::ZERO).then_some(along)
     }
 
-    /// The way from `start` in the direction `along`; the start itself is left out.
-    pub fn walk(&mut self, start: Station, mut along: Vec2) -> (Vec<Station>, End) {
-        let mut stations: Vec<Station> = Vec::new();
+    /// The points from `start` in the direction `along`; the start itself is left out.
+    pub fn walk(&mut self, start: LinePoint, mut along: Vec2) -> (Vec<LinePoint>, End) {
+        let mut points: Vec<LinePoint> = Vec::new();
         let mut from = start;
         let mut margin = self.placed(start.at).map_or(0.0, |placed| placed.near.margin().max(0.0));
         // What starts in a corner ends in one.
@@ -108,20 +108,20 @@ impl<'f, 'a> Middle<'f, 'a> {
             };
             if self.is_beyond(&next) {
                 let (last, end) = self.end_between(from, next);
-                stations.push(last);
-                return (stations, end);
+                points.push(last);
+                return (points, end);
             }
             has_left |= !is_corner && from.at.distance(start.at) > 2.0 * CHORD;
             if has_left && Element::line(from.at, next.at).nearest(start.at).1 < CHORD {
-                stations.push(start);
-                return (stations, End::Closed);
+                points.push(start);
+                return (points, End::Closed);
             }
             step = (2.0 * from.at.distance(next.at)).min(8.0 * next.near.away().max(SHORT));
             along = next.along() * (next.at - from.at).dot(next.along()).signum();
-            (from, margin) = (next.station(), next.near.margin());
-            stations.push(from);
+            (from, margin) = (next.point(), next.near.margin());
+            points.push(from);
         }
-        (stations, End::Touch)
+        (points, End::Touch)
     }
 
     /// The next place of the line, some `step` mm on; `None` where that is too far.
@@ -151,13 +151,13 @@ impl<'f, 'a> Middle<'f, 'a> {
     }
 
     /// The last place between one of the line and one beyond its end.
-    fn end_between(&mut self, mut from: Station, mut beyond: Placed<'a>) -> (Station, End) {
+    fn end_between(&mut self, mut from: LinePoint, mut beyond: Placed<'a>) -> (LinePoint, End) {
         while from.at.distance(beyond.at) > EXACT {
             let Some(middle) = self.settled(from.at.midpoint(beyond.at)) else { break };
             if self.is_beyond(&middle) {
                 beyond = middle;
             } else {
-                from = middle.station();
+                from = middle.point();
             }
         }
         (from, if beyond.near.margin() < 0.0 { End::Corner } else { End::Open })

@@ -1,12 +1,12 @@
-//! Isolation: the ways of a tool around the copper, and the places where it does not fit.
+//! Isolation: the paths of a tool around the copper, and the places where it does not fit.
 //!
 //! A pass is the boundary of the copper grown by half the width of the cut, and more for each pass after
-//! the first. The grown copper is a region, so no way crosses another, and none comes nearer to copper
+//! the first. The grown copper is a region, so no path crosses another, and none comes nearer to copper
 //! than half its width. Where two passes would meet there is nothing left to cut, and they end.
 //!
 //! Where two conductors are nearer to each other than the cut is wide, the passes run around both, and what
 //! is between them stays. Such a gap is found by the line in its middle: a [`NarrowGap`], which is left
-//! out or cut along that line, as the user says. What that does to thin copper is told: a conductor that it
+//! out or cut along that line, as the user says. What that does to thin copper is reported: a conductor that it
 //! leaves in pieces is [`Severed`].
 
 mod field;
@@ -34,7 +34,7 @@ pub struct Isolation {
     pub passes: usize,
     /// By which part of its width a pass overlaps the one before: 0 or more, less than 1.
     pub overlap: f64,
-    /// Which way around.
+    /// In which direction around.
     pub direction: Direction,
     /// What is done where the cut is too wide.
     pub narrow: Narrow,
@@ -43,7 +43,7 @@ pub struct Isolation {
 /// How a tool goes along what stays, as the machine sees it and with a spindle that turns clockwise (M3).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Direction {
-    /// What stays is on the right: there the teeth move against the tool's way, and so with the feed of
+    /// What stays is on the right: there the teeth move against the direction of the tool, and so with the feed of
     /// the work.
     Climb,
     /// What stays is on the left.
@@ -64,7 +64,7 @@ pub enum Narrow {
 /// Copper that is isolated.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Isolated {
-    /// The ways of the middle of the tool, pass by pass, and then down the middle of gaps; closed but for
+    /// The paths of the centre of the tool, pass by pass, and then down the middle of gaps; closed but for
     /// those in gaps, and where they leave the area.
     pub paths: Vec<Path>,
     /// Where the cut is too wide, whether it is made or not; the narrowest first.
@@ -79,7 +79,7 @@ impl Isolation {
         self.cutter.width(self.depth)
     }
 
-    /// The ways around `copper`, within `area` where one is given.
+    /// The paths around `copper`, within `area` where one is given.
     ///
     /// # Errors
     /// Where there is more than can be computed: `board-too-large`, and `cut-too-wide` where the cut is

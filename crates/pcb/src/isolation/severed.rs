@@ -59,11 +59,11 @@ fn left(copper: &Copper, paths: &[Path], width: f64) -> Result<Region, RegionErr
     copper.region.difference(&Region::union_of(&strokes?)?)
 }
 
-/// A place in an island; none where it is but a sliver.
+/// A point in an island; none where the island is only a sliver.
 fn place_in(island: &Island) -> Option<Vec2> {
-    let beside = island.outer().elements().iter().map(|element| {
+    let inside = island.outer().elements().iter().map(|element| {
         // The island is on the left of its boundary.
         element.at(0.5) + element.tangent(0.5).perp() * INSIDE
     });
-    beside.into_iter().find(|place| island.contains(*place))
+    inside.into_iter().find(|place| island.contains(*place))
 }

@@ -3,7 +3,7 @@
 use crate::arc;
 use geom::{Element, Vec2};
 
-/// How far the arcs may be beside the curve, mm.
+/// How far the arcs may be from the curve, mm.
 const TOLERANCE: f64 = 0.5e-3;
 
 /// How often a curve is halved at most: of the largest curve that KiCad can hold such a part is below the
@@ -21,8 +21,8 @@ fn fit(points: [Vec2; 4], halvings: u32, elements: &mut Vec<Element>) {
     let [start, .., end] = points;
     let (first, second) = halves(points);
     let arc = arc::through(start, second[0], end);
-    let beside = |i: u32| arc.nearest(at(points, f64::from(i) / 8.0)).1;
-    if halvings == 0 || (1..8).all(|i| beside(i) <= TOLERANCE) {
+    let off = |i: u32| arc.nearest(at(points, f64::from(i) / 8.0)).1;
+    if halvings == 0 || (1..8).all(|i| off(i) <= TOLERANCE) {
         elements.push(arc);
     } else {
         fit(first, halvings - 1, elements);
@@ -66,7 +66,7 @@ mod tests {
     #[test]
     fn within_a_micrometre_and_few() {
         let corners = |p: [(f64, f64); 4]| p.map(|(x, y)| Vec2::new(x, y));
-        // The usual quarter of a circle: 2.7e-4 of its radius beside one.
+        // The usual quarter of a circle: 2.7e-4 of its radius away from a circle.
         let quarter = [(10.0, 0.0), (10.0, 5.522_847), (5.522_847, 10.0), (0.0, 10.0)];
         assert!(assert_fits(corners(quarter)) <= 8);
         assert!(assert_fits(corners([(0.0, 0.0), (30.0, 40.0), (-10.0, 40.0), (20.0, 0.0)])) < 80);

@@ -48,7 +48,7 @@ impl Frame {
     /// Where a shape of the item goes.
     pub(super) fn shape(&self, shape: &Shape) -> Shape {
         match shape {
-            Shape::Stroke(way, width) => Shape::Stroke(self.element(way), *width),
+            Shape::Stroke(path, width) => Shape::Stroke(self.element(path), *width),
             Shape::Pieces(pieces) => {
                 let placed = pieces.iter().map(|piece| piece.placed(&self.turned, self.at));
                 Shape::Pieces(placed.collect())

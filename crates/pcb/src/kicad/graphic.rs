@@ -13,7 +13,7 @@ use std::f64::consts::TAU;
 /// An arc of a larger radius is taken as a line, where that is within [`FLAT`], mm.
 const MAX_RADIUS: f64 = 50_000.0;
 
-/// How far a line may be beside such an arc, mm.
+/// How far a line may be from such an arc, mm.
 const FLAT: f64 = 0.5e-3;
 
 /// Something that is drawn: lines and arcs, each of which starts where the one before ends.
@@ -78,7 +78,7 @@ impl Graphic {
     /// What it covers.
     pub(super) fn shapes(&self, item: Node) -> Outcome<Vec<Shape>> {
         let mut shapes: Vec<Shape> = match self.width > 0.0 {
-            true => self.elements.iter().map(|way| Shape::Stroke(*way, self.width)).collect(),
+            true => self.elements.iter().map(|path| Shape::Stroke(*path, self.width)).collect(),
             false => Vec::new(),
         };
         if self.filled && !self.elements.is_empty() {
@@ -146,9 +146,9 @@ pub(super) fn chain(pts: Node) -> Outcome<Vec<Element>> {
 pub(super) fn joined(parts: &[Element]) -> Vec<Element> {
     let mut elements = Vec::with_capacity(parts.len());
     for (part, next) in parts.iter().zip(parts.iter().cycle().skip(1)) {
-        let way = Element::line(part.end, next.start);
+        let link = Element::line(part.end, next.start);
         let whole = |element: &Element| element.turn.is_some() || element.start != element.end;
-        elements.extend([*part, way].into_iter().filter(whole));
+        elements.extend([*part, link].into_iter().filter(whole));
     }
     elements
 }

@@ -84,8 +84,7 @@ pub(super) fn copper(item: Node, drilled: bool) -> Outcome<Layers> {
         let zones: Vec<&[u8]> =
             connected.into_iter().flat_map(Node::items).map(|name| name.word()).collect();
         if !(zones.contains(&&b"F.Cu"[..]) && zones.contains(&&b"B.Cu"[..])) {
-            let message =
-                "its annular rings are on connected layers only, which the file does not tell";
+            let message = "its annular rings are on connected layers only, and the file does not say which these are";
             let help = "in KiCad, set its annular rings to \"All copper layers\", or to \
                 \"Start, end, and connected layers\"";
             return Err(item.fault("unused-layers", message, help));
@@ -123,7 +122,7 @@ fn drill_size(drill: Node) -> Outcome<Option<Vec2>> {
     Ok(Some(Vec2::new(width, height)))
 }
 
-/// Whether nothing of a round pad is left beside its hole: KiCad has no copper there.
+/// Whether nothing of a round pad is left around its hole: KiCad has no copper there.
 fn is_hole_only(shape: &[u8], size: Vec2, drill: Option<Node>) -> Outcome<bool> {
     let Some(drill) = drill.map(drill_size).transpose()?.flatten() else { return Ok(false) };
     Ok(matches!(shape, b"circle" | b"oval") && size.cmple(drill).all())

@@ -16,7 +16,7 @@ use program::Diagnostic;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
-/// The first version that is read: `module` became `footprint`, on the way to KiCad 6.
+/// The first version that is read: `module` became `footprint`, before KiCad 6.
 const FIRST_VERSION: u32 = 20201115;
 
 /// The last version that is read: that of KiCad 9.
@@ -65,7 +65,7 @@ pub(super) fn read(file_name: &str, text: &[u8]) -> Result<Artwork, Vec<Diagnost
         Ok(())
     });
     if let Err(fault) = board {
-        reader.report.error(fault.place, *fault.what);
+        reader.report.error(fault.location, *fault.what);
     }
     reader.finish(file_name)
 }
@@ -115,7 +115,7 @@ impl Reader<'_> {
                 _ => self.item(item, Frame::BOARD),
             };
             if let Err(fault) = done {
-                self.report.error(fault.place, *fault.what);
+                self.report.error(fault.location, *fault.what);
             }
             if self.report.is_full() {
                 return;
@@ -131,7 +131,7 @@ impl Reader<'_> {
                 _ => self.item(item, frame),
             };
             if let Err(fault) = done {
-                self.report.error(fault.place, *fault.what);
+                self.report.error(fault.location, *fault.what);
             }
         }
         Ok(())
@@ -151,7 +151,7 @@ impl Reader<'_> {
             b"gr_text" | b"fp_text" | b"property" | b"target" if !layers.copper() => {
                 let message = "texts and targets on Edge.Cuts are left out";
                 let help = "they are no edge: move them to another layer";
-                self.report.warn(item.place(), "not-an-edge", message, help);
+                self.report.warn(item.location(), "not-an-edge", message, help);
                 Ok(())
             }
             name => {
@@ -171,7 +171,7 @@ impl Reader<'_> {
 
     fn graphic(&mut self, item: Node, graphic: &Graphic, layers: Layers, frame: &Frame) -> Outcome {
         if layers.edge {
-            let line = item.place().line;
+            let line = item.location().line;
             let placed = graphic.elements.iter().map(|element| (frame.element(element), line));
             self.edges.extend(placed);
         }
@@ -183,7 +183,7 @@ impl Reader<'_> {
                 String::from_utf8_lossy(style)
             );
             let help = "on copper draw the dashes one by one";
-            self.report.warn(item.place(), "line-style", &message, help);
+            self.report.warn(item.location(), "line-style", &message, help);
         }
         if layers.copper() {
             let net = self.net(item)?;
@@ -245,8 +245,8 @@ impl Reader<'_> {
             let shape = match hole.shape {
                 HoleShape::Round(at) => HoleShape::Round(frame.point(at)),
                 HoleShape::Slot(a, b) => HoleShape::Slot(frame.point(a), frame.point(b)),
-                HoleShape::Route(way) => {
-                    HoleShape::Route(way.iter().map(|element| frame.element(element)).collect())
+                HoleShape::Route(route) => {
+                    HoleShape::Route(route.iter().map(|element| frame.element(element)).collect())
                 }
             };
             Hole { shape, ..hole }
@@ -263,7 +263,7 @@ impl Reader<'_> {
         if zone.hollow {
             let message = "a zone has no fill on a side of the board: there it is no copper";
             let help = "fill all zones (key B) in KiCad, and save; if it stays so, the zone has no room there";
-            self.report.warn(item.place(), "zone-fill", message, help);
+            self.report.warn(item.location(), "zone-fill", message, help);
         }
         Ok(())
     }
@@ -276,14 +276,14 @@ impl Reader<'_> {
                 let message = "a text on copper is drawn with other letters than KiCad's, which are \
                     narrower or wider";
                 let help = "look at the picture where it stands close to other copper";
-                self.report.warn(item.place(), "text-letters", message, help);
+                self.report.warn(item.location(), "text-letters", message, help);
                 let frame = footprint.of(item)?;
                 shapes.iter().map(|shape| frame.shape(shape)).collect()
             }
             Text::Variable => {
                 let message = "a text on copper with variables (${…}) is left out";
                 let help = "write out in KiCad what is to be there";
-                self.report.warn(item.place(), "text-variable", message, help);
+                self.report.warn(item.location(), "text-variable", message, help);
                 Vec::new()
             }
         };
@@ -304,7 +304,7 @@ impl Reader<'_> {
         if layers.inner && !layers.outer() {
             let message = "copper within the board is left out";
             let help = "only the two sides can be milled";
-            self.report.warn(item.place(), "inner-layer", message, help);
+            self.report.warn(item.location(), "inner-layer", message, help);
         }
     }
 

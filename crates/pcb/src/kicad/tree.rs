@@ -1,7 +1,7 @@
-//! Symbolic expressions: lists of words and lists, each with its place in the file.
+//! Symbolic expressions: lists of words and lists, each with its location in the file.
 
 use crate::decimal::{decimal, whole};
-use crate::report::{self, Place};
+use crate::report::{self, Location};
 use geom::Vec2;
 
 /// How deep lists may stand in each other: boards go seven deep.
@@ -10,9 +10,9 @@ const MAX_DEPTH: usize = 64;
 /// The largest number that is taken: coordinates of KiCad's are 32-bit nanometres.
 const MAX_NUMBER: f64 = 2_147.483_648;
 
-/// An error at its place.
+/// An error with its location.
 pub(super) struct Fault {
-    pub(super) place: Place,
+    pub(super) location: Location,
     pub(super) what: report::Fault,
 }
 
@@ -47,7 +47,7 @@ impl<'a> Tree<'a> {
     /// # Errors
     /// `file-size`, `list-open`, `list-closed`, `list-depth`, `text-open`, and `not-kicad` where there is no list.
     pub(super) fn new(text: &'a [u8]) -> Outcome<Tree<'a>> {
-        let start = Place { line: 1, start: 0, end: 0 };
+        let start = Location { line: 1, start: 0, end: 0 };
         if u32::try_from(text.len()).is_err() {
             let message = format!("{} bytes are more than this reader counts", text.len());
             return Err(fault(start, "file-size", message, "files of up to 4 GiB are read"));
@@ -57,36 +57,36 @@ impl<'a> Tree<'a> {
         let mut open: Vec<usize> = Vec::new();
         let (mut at, mut line) = (0, 1);
         while let Some(byte) = text.get(at) {
-            let place = Place { line, start: at, end: at + 1 };
+            let location = Location { line, start: at, end: at + 1 };
             match byte {
                 b'\n' => (at, line) = (at + 1, line + 1),
                 byte if byte.is_ascii_whitespace() => at += 1,
                 b')' => {
                     let Some(list) = open.pop() else {
                         let message = "a parenthesis closes what was never opened";
-                        return Err(fault(place, "list-closed", message, DAMAGED));
+                        return Err(fault(location, "list-closed", message, DAMAGED));
                     };
                     at += 1;
                     tree.close(list, at);
                 }
                 _ if open.is_empty() && (*byte != b'(' || !tree.entries.is_empty()) => {
                     let message = "there is something outside the one list that a board is";
-                    return Err(fault(place, "not-kicad", message, NO_BOARD));
+                    return Err(fault(location, "not-kicad", message, NO_BOARD));
                 }
                 b'(' => {
                     if open.len() == MAX_DEPTH {
                         let message = format!("more than {MAX_DEPTH} lists in each other");
-                        return Err(fault(place, "list-depth", message, DAMAGED));
+                        return Err(fault(location, "list-depth", message, DAMAGED));
                     }
                     open.push(tree.entries.len());
-                    tree.push(place);
+                    tree.push(location);
                     at += 1;
                 }
                 b'"' => {
                     let Some(end) = closing_quote(text, at) else {
-                        return Err(fault(place, "text-open", "a text is not closed", DAMAGED));
+                        return Err(fault(location, "text-open", "a text is not closed", DAMAGED));
                     };
-                    tree.push(Place { end, ..place });
+                    tree.push(Location { end, ..location });
                     let inside = text.get(at..end).unwrap_or_default();
                     line += memchr::memchr_iter(b'\n', inside).count() as u32;
                     at = end;
@@ -95,14 +95,14 @@ impl<'a> Tree<'a> {
                     let rest = text.get(at..).unwrap_or_default();
                     let ends = |b: &u8| b.is_ascii_whitespace() || matches!(b, b'(' | b')' | b'"');
                     let end = at + rest.iter().position(ends).unwrap_or(rest.len());
-                    tree.push(Place { end, ..place });
+                    tree.push(Location { end, ..location });
                     at = end;
                 }
             }
         }
         if let Some(entry) = open.last().and_then(|list| tree.entries.get(*list)) {
             let message = "this list is not closed: the end of the file is missing";
-            return Err(fault(entry.place(), "list-open", message, DAMAGED));
+            return Err(fault(entry.location(), "list-open", message, DAMAGED));
         }
         if tree.entries.is_empty() {
             return Err(fault(start, "not-kicad", "there is nothing in the file", NO_BOARD));
@@ -110,11 +110,11 @@ impl<'a> Tree<'a> {
         Ok(tree)
     }
 
-    fn push(&mut self, place: Place) {
+    fn push(&mut self, location: Location) {
         // The text is shorter than 2³² bytes, and an entry takes at least one.
         let next = self.entries.len() as u32 + 1;
-        let (start, end) = (place.start as u32, place.end as u32);
-        self.entries.push(Entry { start, end, line: place.line, next });
+        let (start, end) = (location.start as u32, location.end as u32);
+        self.entries.push(Entry { start, end, line: location.line, next });
     }
 
     fn close(&mut self, list: usize, end: usize) {
@@ -134,8 +134,8 @@ const DAMAGED: &str = "the file is damaged: save it again in KiCad";
 const NO_BOARD: &str = "a board of KiCad 6 to 9 begins with \"(kicad_pcb\" (.kicad_pcb)";
 
 impl Entry {
-    fn place(&self) -> Place {
-        Place { line: self.line, start: self.start as usize, end: self.end as usize }
+    fn location(&self) -> Location {
+        Location { line: self.line, start: self.start as usize, end: self.end as usize }
     }
 }
 
@@ -152,8 +152,8 @@ fn closing_quote(text: &[u8], start: usize) -> Option<usize> {
 }
 
 #[cold]
-fn fault(place: Place, rule: &'static str, message: impl Into<String>, help: &str) -> Fault {
-    Fault { place, what: report::fault(rule, message, help) }
+fn fault(location: Location, rule: &'static str, message: impl Into<String>, help: &str) -> Fault {
+    Fault { location, what: report::fault(rule, message, help) }
 }
 
 impl<'t> Node<'t> {
@@ -163,12 +163,13 @@ impl<'t> Node<'t> {
     }
 
     /// Where it is: of a list the parenthesis and the name.
-    pub(super) fn place(&self) -> Place {
-        let whole = self.entry().place();
+    pub(super) fn location(&self) -> Location {
+        let whole = self.entry().location();
         match self.is_list() {
-            true => {
-                Place { end: self.children().next().map_or(whole.end, |n| n.place().end), ..whole }
-            }
+            true => Location {
+                end: self.children().next().map_or(whole.end, |n| n.location().end),
+                ..whole
+            },
             false => whole,
         }
     }
@@ -181,12 +182,12 @@ impl<'t> Node<'t> {
         message: impl Into<String>,
         help: &str,
     ) -> Fault {
-        fault(self.place(), rule, message, help)
+        fault(self.location(), rule, message, help)
     }
 
     fn bytes(&self) -> &'t [u8] {
-        let place = self.entry().place();
-        self.tree.text.get(place.start..place.end).unwrap_or_default()
+        let range = self.entry().location();
+        self.tree.text.get(range.start..range.end).unwrap_or_default()
     }
 
     /// Whether it is a list.
@@ -363,7 +364,7 @@ mod tests {
         assert_eq!(root.all("e").count(), 2);
         assert!(root.says("f") && root.says("e") && root.says("g"));
         assert!(!root.says("h") && !root.says("c") && !root.says("yes"));
-        assert_eq!(root.item(5).map(|h| h.place().line), Some(3));
+        assert_eq!(root.item(5).map(|h| h.location().line), Some(3));
         assert_eq!(root.item(6).map(|empty| empty.name()), Some(&b""[..]));
         assert_eq!((root.item(7).is_none(), root.find("c").is_none()), (true, true));
     }

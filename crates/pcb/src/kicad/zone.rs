@@ -30,7 +30,7 @@ impl Zone {
                 "fill all zones (key B) in KiCad, and save",
             ));
         }
-        // Up to KiCad 9 a fill is the way of a pen of the least thickness, and what is within, unless the
+        // Up to KiCad 9 a fill is the path of a pen of the least thickness, and what is within, unless the
         // zone says otherwise.
         let solid = item.find("filled_areas_thickness").and_then(|list| list.item(0));
         let solid = solid.is_some_and(|word| word.word() == b"no");
@@ -46,7 +46,7 @@ impl Zone {
                 continue;
             }
             if width > 0.0 {
-                let edge = outline.iter().map(|way| (on, Shape::Stroke(*way, width)));
+                let edge = outline.iter().map(|path| (on, Shape::Stroke(*path, width)));
                 zone.fills.extend(edge);
             }
             let area = Piece::new(true, Contour::new(outline).counter_clockwise());

@@ -1,12 +1,12 @@
-//! The division of a way into the fewest elements.
+//! The division of a path into the fewest elements.
 
 use super::fit::Run;
 use super::{LEAST, SHORT};
 use geom::{Element, Turn, Vec2, turn_angle};
 use std::f64::consts::{FRAC_PI_4, PI};
 
-/// How far beside a corner of the way an element may end, of the tolerance: the rest is for rounding.
-const BESIDE: f64 = 0.9;
+/// How far from a corner of the path an element may end, as a part of the tolerance: the rest is for rounding.
+const OFF_CORNER: f64 = 0.9;
 
 /// What turns by less, radians, may be a corner of two lines.
 const BEND: f64 = 0.6 * PI;
@@ -26,7 +26,7 @@ const NEAR: usize = 16;
 /// More pieces than these are divided side by side.
 const LONG: usize = 256;
 
-/// A way that is divided: pieces of its elements, and the nodes between them.
+/// A path that is divided: pieces of its elements, and the nodes between them.
 pub(super) struct Division {
     pieces: Vec<Element>,
     /// Of which element each piece is.
@@ -42,24 +42,24 @@ pub(super) struct Division {
 
 /// Where an element may end and the next one start.
 struct Node {
-    /// On the way, but for the middle of a bend; then beside it.
+    /// On the path, but for the middle of a bend; then next to it.
     places: [Vec2; 3],
     /// How many of them there are.
     count: usize,
-    /// Whether the first is on the way.
+    /// Whether the first is on the path.
     is_on: bool,
     /// Whether no element goes on here.
     is_sharp: bool,
 }
 
-/// How a place is reached best.
+/// How a point is reached best.
 #[derive(Clone, Copy)]
 struct Reached {
     /// By how many elements.
     elements: usize,
-    /// Squares of how far they are from the way, in tolerances, together.
+    /// Sum of the squares of how far they are from the path, in tolerances.
     strain: f64,
-    /// From where the last of them leads: node and place.
+    /// From where the last of them leads: node and point.
     from: (usize, usize),
 }
 
@@ -135,9 +135,9 @@ impl Division {
                 false => Node { places: [apex; 3], count: 1, is_on, is_sharp },
             };
         }
-        let beside = normal * (BESIDE * self.tolerance);
+        let off = normal * (OFF_CORNER * self.tolerance);
         Node {
-            places: [on, on + beside, on - beside],
+            places: [on, on + off, on - off],
             count: if is_sharp { 1 } else { 3 },
             is_on: true,
             is_sharp,
@@ -154,19 +154,19 @@ impl Division {
         sharpness(before, next) > SHARP * self.tolerance
     }
 
-    /// Whether no element goes on over the start of a closed way.
+    /// Whether no element goes on over the start of a closed path.
     pub(super) fn starts_sharp(&self) -> bool {
         let ends = self.pieces.last().zip(self.pieces.first());
         ends.is_some_and(|(before, next)| self.is_sharp(before, next))
     }
 
-    /// The whole circle as which a closed way is as good.
+    /// The whole circle that is as good as a closed path.
     pub(super) fn circle(&self) -> Option<Element> {
         let is_round = self.pieces.len() > 2 && !self.starts_sharp();
         self.run(0, self.pieces.len()).circle(self.tolerance).filter(|_| is_round)
     }
 
-    /// The fewest elements; among such, those that are nearest to the way. And of which element of the way the
+    /// The fewest elements; among such, those that are nearest to the path. And of which element of the path the
     /// middle one of them starts.
     pub(super) fn fewest(&self) -> Option<(Vec<Element>, usize)> {
         let fewest = self.fewest_within(0, self.pieces.len())?;
@@ -231,7 +231,7 @@ impl Division {
         self.whole(from, to).or_else(|| Some(run.nearest(fitted()?)))
     }
 
-    /// Looks for elements from the places of a node, reached as told, to those after it.
+    /// Looks for elements from the points of a node, reached as `at` says, to those after it.
     fn onwards(
         &self,
         from: usize,

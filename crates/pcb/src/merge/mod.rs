@@ -1,4 +1,4 @@
-//! Ways in fewer elements, and fewer ways.
+//! Paths in fewer elements, and fewer paths.
 //!
 //! ```text
 //!   Path ──division──▶ the fewest elements ◀──fit── of a run of it, ◀──walk── near it all along
@@ -12,7 +12,7 @@ use crate::Path;
 use division::{Division, sharpness};
 use geom::Element;
 
-/// How far ways may be from what they were worked out as, mm.
+/// How far merged paths may be from the calculated ones, mm.
 pub const MERGED: f64 = 0.005;
 
 /// Of the tolerance: shorter elements are none.
@@ -26,8 +26,8 @@ const GREATEST: f64 = 1000.0;
 const LEAST: f64 = 0.01;
 
 impl Path {
-    /// The same way in few elements. Followed side by side from end to end, without ever turning back, the two
-    /// are nowhere farther apart than `tolerance` mm: so a way back along itself stays one. No element is
+    /// The same path in few elements. Followed side by side from end to end, without ever turning back, the two
+    /// are nowhere farther apart than `tolerance` mm: so a path that goes back along itself stays so. No element is
     /// shorter than a quarter of that, no arc has a radius of less than 10 µm. Elements stay as they are
     /// where that takes no more of them.
     /// What is closed stays closed, though it may begin elsewhere. `None` where nothing is left.
@@ -71,25 +71,25 @@ impl Path {
 /// one starts where that widens a cut of `width` mm by no more than `tolerance` mm.
 pub fn joined(paths: &[Path], width: f64, tolerance: f64) -> Vec<Path> {
     let reach = pitch(width, tolerance);
-    let mut ways: Vec<Vec<Element>> = Vec::new();
+    let mut joined: Vec<Vec<Element>> = Vec::new();
     for path in paths {
-        let end = ways.last().and_then(|way| way.last()).map(|element| element.end);
-        match (ways.last_mut(), end) {
-            (Some(way), Some(end)) if end.distance(path.start()) <= reach => {
+        let end = joined.last().and_then(|before| before.last()).map(|element| element.end);
+        match (joined.last_mut(), end) {
+            (Some(before), Some(end)) if end.distance(path.start()) <= reach => {
                 let mut next = path.elements().to_vec();
                 match next.first_mut() {
                     // No machine goes so little between them.
                     Some(first) if end.distance(first.start) < SHORT * MERGED => {
                         *first = fit::started(first, end);
                     }
-                    _ => way.push(Element::line(end, path.start())),
+                    _ => before.push(Element::line(end, path.start())),
                 }
-                way.extend(next);
+                before.extend(next);
             }
-            _ => ways.push(path.elements().to_vec()),
+            _ => joined.push(path.elements().to_vec()),
         }
     }
-    ways.into_iter().filter_map(Path::new).collect()
+    joined.into_iter().filter_map(Path::new).collect()
 }
 
 /// How far apart (mm) discs of `width` mm may be that what stays between two of them and their common

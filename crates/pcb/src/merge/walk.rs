@@ -1,15 +1,15 @@
-//! Whether two ways are near each other all along.
+//! Whether two paths are near each other all along.
 //!
-//! Two ways are as far apart as two walkers are at most who follow one each from end to end, neither of whom
-//! ever goes back (Fréchet). A piece goes along an element, or beside it, without turning back between the
-//! points where it is along or across its normal: so these are all that need be looked at.
+//! The distance of two paths is the greatest distance of two points that follow one path each from end to end, neither of
+//! which ever goes back (Fréchet). Between the points where a piece is parallel to an element or to its normal it does not
+//! turn back along the element: only these points need be looked at.
 
 use geom::{Element, Turn, Vec2, turn_angle};
 use std::f64::consts::TAU;
 
-/// A walk along an element, beside points of a way in their order.
+/// A walk along an element that follows the points of a path in their order.
 pub(super) struct Walk {
-    course: Course,
+    curve: Curve,
     ends: [Vec2; 2],
     length: f64,
     /// How far from it the points may be, mm.
@@ -20,7 +20,7 @@ pub(super) struct Walk {
     reached: (f64, f64),
 }
 
-enum Course {
+enum Curve {
     /// Along a unit vector.
     Line(Vec2),
     Arc {
@@ -37,9 +37,9 @@ impl Walk {
     /// At the start of `element`, which has a length.
     pub(super) fn along(element: &Element, tolerance: f64) -> Walk {
         let length = element.length();
-        let course = match element.turn {
-            None => Course::Line((element.end - element.start) / length),
-            Some(Turn { center, sweep }) => Course::Arc {
+        let curve = match element.turn {
+            None => Curve::Line((element.end - element.start) / length),
+            Some(Turn { center, sweep }) => Curve::Arc {
                 center,
                 radius: element.start.distance(center),
                 sense: sweep.signum(),
@@ -47,7 +47,7 @@ impl Walk {
             },
         };
         let ends = [element.start, element.end];
-        Walk { course, ends, length, tolerance, away: 0.0, reached: (0.0, 0.0) }
+        Walk { curve, ends, length, tolerance, away: 0.0, reached: (0.0, 0.0) }
     }
 
     /// Whether it may be at its start yet.
@@ -60,56 +60,56 @@ impl Walk {
         self.reached.1 >= self.length
     }
 
-    /// Goes on to beside `point`; `None` where that is too far away or back.
+    /// Goes on to where `point` is nearest; `None` where that is too far away or back.
     pub(super) fn pass(&mut self, point: Vec2) -> Option<()> {
         let [start, end] = self.ends;
-        let (way, beside, stretch) = match &mut self.course {
-            Course::Line(along) => {
+        let (distance, off, stretch) = match &mut self.curve {
+            Curve::Line(along) => {
                 let from = point - start;
                 (from.dot(*along), from.perp_dot(*along).abs(), 1.0)
             }
-            Course::Arc { center, radius, sense, turned } => {
+            Curve::Arc { center, radius, sense, turned } => {
                 let out = point - *center;
                 let angle = turn_angle(start - *center, out) * *sense;
                 *turned = angle + TAU * ((*turned - angle) / TAU).round();
                 let distance = out.length();
-                // On a smaller circle the same angle is a shorter way.
+                // On a smaller circle the same angle is a shorter distance.
                 let stretch = *radius / distance.max(*radius);
                 (*turned * *radius, (distance - *radius).abs(), stretch)
             }
         };
-        let (way, away, reach) = if way < 0.0 {
+        let (distance, away, reach) = if distance < 0.0 {
             let away = point.distance(start);
             (0.0, away, self.tolerance - away)
-        } else if way > self.length {
+        } else if distance > self.length {
             let away = point.distance(end);
             (self.length, away, self.tolerance - away)
         } else {
-            let squared = self.tolerance * self.tolerance - beside * beside;
-            (way, beside, squared.max(0.0).sqrt() * stretch)
+            let squared = self.tolerance * self.tolerance - off * off;
+            (distance, off, squared.max(0.0).sqrt() * stretch)
         };
-        if away > self.tolerance || self.reached.0 > way + reach {
+        if away > self.tolerance || self.reached.0 > distance + reach {
             return None;
         }
-        self.reached = (self.reached.0.max(way - reach), way + reach);
+        self.reached = (self.reached.0.max(distance - reach), distance + reach);
         self.away = self.away.max(away);
         Some(())
     }
 
-    /// The points between the ends of `piece`, in order, where it may be farthest from the course, or turns
-    /// back beside it. An arc turns by π at most.
+    /// The points between the ends of `piece`, in order, where it may be farthest from the curve, or turns
+    /// back along it. An arc turns by π at most.
     pub(super) fn extremes(&self, piece: &Element) -> [Option<Vec2>; 4] {
         let mut points = [None; 4];
-        let (Turn { center, sweep }, normal, cosine) = match (&self.course, piece.turn) {
-            (Course::Line(_), None) => return points,
-            (Course::Arc { center, .. }, None) => {
+        let (Turn { center, sweep }, normal, cosine) = match (&self.curve, piece.turn) {
+            (Curve::Line(_), None) => return points,
+            (Curve::Arc { center, .. }, None) => {
                 let along = piece.end - piece.start;
                 let t = (*center - piece.start).dot(along) / along.length_squared();
                 points[0] = (t > 0.0 && t < 1.0).then(|| piece.start + along * t);
                 return points;
             }
-            (Course::Line(along), Some(turn)) => (turn, along.perp(), 0.0),
-            (Course::Arc { center, .. }, Some(turn)) => {
+            (Curve::Line(along), Some(turn)) => (turn, along.perp(), 0.0),
+            (Curve::Arc { center, .. }, Some(turn)) => {
                 let to = *center - turn.center;
                 let cosine = piece.start.distance(turn.center) / to.length();
                 (turn, to.normalize_or_zero(), cosine)
@@ -117,7 +117,7 @@ impl Walk {
         };
         let (from, to) = (piece.start - center, piece.end - center);
         let before = |a: Vec2, b: Vec2| a.perp_dot(b) * sweep > 0.0;
-        // It turns back where the centre of the course is on its tangent.
+        // It turns back where the centre of the curve is on its tangent.
         let tangent = Vec2::new(cosine, (1.0 - cosine * cosine).max(0.0).sqrt());
         let outs = [
             normal,

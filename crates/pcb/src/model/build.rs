@@ -17,7 +17,7 @@ const WIDTHS: std::ops::RangeInclusive<f64> = 0.01..=1e4;
 /// Shapes of copper, each with its element.
 type Shapes = Vec<(Shape, usize)>;
 
-/// The board that `root`, of a file, describes; some of it where errors were told.
+/// The board that `root`, of a file, describes; part of it where errors were reported.
 pub(super) fn artwork(root: &Spanned<Group>, file_name: &str, findings: &mut Findings) -> Artwork {
     let mut maker = Maker {
         scopes: Scopes::of(root, findings),

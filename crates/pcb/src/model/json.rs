@@ -29,7 +29,7 @@ fn branch<'a>(value: &'a RawValue, text: &'a str, depth: usize) -> Result<Placed
     let span = start..start + raw.len();
     let Some(depth) = depth.checked_sub(1) else {
         let message = format!("lists and tables lie more than {DEEPEST} deep in each other");
-        return Err(Mistake::new(message, "put groups beside each other", span));
+        return Err(Mistake::new(message, "put groups next to each other", span));
     };
     let wrong = |error| mistake(&error, text, start);
     let value = match raw.as_bytes().first() {

@@ -6,7 +6,7 @@
 //!   JSON ────json─────▶
 //! ```
 //!
-//! Both are read into the same tree, in which every value knows its place in the text; `sheet` has all that
+//! Both are read into the same tree, in which every value knows its location in the text; `sheet` has all that
 //! may be said. `scope` finds what a name means in a group, `build` makes shapes, and `net` says which of them
 //! are joined. What the form is, with an example: `docs/sources/board.md`.
 
@@ -17,7 +17,7 @@ mod scope;
 mod sheet;
 
 use crate::board::{Artwork, Board};
-use crate::report::{Place, Report};
+use crate::report::{Location, Report};
 use program::{Diagnostic, nearest};
 use serde::Deserialize;
 use sheet::{Group, KEYS};
@@ -156,8 +156,8 @@ impl<'a> Findings<'a> {
         let rest = self.text.get(span.clone()).unwrap_or_default();
         let length = rest.iter().position(|byte| matches!(byte, b'\n' | b'\r'));
         let end = length.map_or(span.end, |length| span.start + length);
-        let place = Place { line: self.line(&span), start: span.start, end };
-        self.report.error(place, found);
+        let location = Location { line: self.line(&span), start: span.start, end };
+        self.report.error(location, found);
     }
 
     /// The line (from 1) on which a value begins.

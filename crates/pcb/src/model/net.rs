@@ -57,12 +57,12 @@ impl<'a> Nets<'a> {
         firsts.iter().map(|first| nets.get(first).cloned()).collect()
     }
 
-    /// The element that all that are joined with this one lead to; the ways there become shorter.
+    /// The element that stands for all that are joined with this one; the links to it become shorter.
     fn first(&mut self, mut element: usize) -> usize {
         while let Some(next) = self.next.get(element).copied().filter(|next| *next != element) {
             let beyond = self.next.get(next).copied().unwrap_or(next);
-            if let Some(way) = self.next.get_mut(element) {
-                *way = beyond;
+            if let Some(link) = self.next.get_mut(element) {
+                *link = beyond;
             }
             element = beyond;
         }

@@ -53,7 +53,7 @@ impl<'a> Scopes<'a> {
         let group = placed.get_ref();
         if depth > DEEPEST {
             let message = format!("groups lie more than {DEEPEST} deep in each other");
-            let found = Diagnostic::error("group", message).help("put groups beside each other");
+            let found = Diagnostic::error("group", message).help("put groups next to each other");
             return findings.error(placed.span(), found);
         }
         let around = outer.and_then(|outer| self.all.get(outer));
@@ -88,7 +88,7 @@ impl<'a> Scopes<'a> {
                 && let Some(scope) = self.all.get_mut(index)
                 && scope.groups.insert(name, next).is_some()
             {
-                let message = format!("two groups beside each other are called `{name}`");
+                let message = format!("two groups on one level are called `{name}`");
                 let found = Diagnostic::error("group", message).help("call one of them otherwise");
                 findings.error(inner.span(), found);
             }
@@ -101,7 +101,7 @@ impl<'a> Scopes<'a> {
         self.nodes.get(node).copied().unwrap_or_default()
     }
 
-    /// The node that is meant in a group; `None` is an error that was told.
+    /// The node that is meant in a group; `None` is an error that was reported.
     pub(super) fn node(
         &mut self,
         scope: Option<usize>,

@@ -1,9 +1,9 @@
 //! Outline: the board is cut out, along the outside of its edges and the inside of its cut-outs.
 //!
-//! The ways are the boundary of the board grown by half the width of the tool, so they leave all of it.
+//! The paths are the boundary of the board grown by half the width of the tool, so all of the board stays.
 //! What lies within another contour is cut before it, and the outer edge at last: until then the
-//! board is held. [`Tabs`] hold it after that. Where the tool is too wide to cut what the outline says,
-//! that is found (`narrow`).
+//! board is held. [`Tabs`] hold it after that. Where the tool is too wide for the outline,
+//! that is reported (`narrow`).
 
 mod narrow;
 mod tabs;
@@ -14,7 +14,7 @@ use crate::isolation::Direction;
 use crate::report::{Fault, Outcome, fault};
 use crate::setting;
 use crate::tour::Tour;
-use crate::{Cut, MERGED, Operation, Path, Stretch, Tool, depths};
+use crate::{Cut, MERGED, Operation, Path, Segment, Tool, depths};
 use geom::Vec2;
 use geom::region::{Fill, Region, RegionError, Ring};
 use program::Diagnostic;
@@ -30,7 +30,7 @@ pub struct Outline {
     pub below: f64,
     /// How much deeper it goes each time around, mm.
     pub step: f64,
-    /// Which way around.
+    /// In which direction around.
     pub direction: Direction,
     /// What holds the pieces; `None` where something else does.
     pub tabs: Option<Tabs>,
@@ -91,7 +91,7 @@ impl Outline {
         let mut cuts = Vec::new();
         let mut at = self.from;
         for contours in levels(&grown) {
-            let tour = Tour { from: at, to: None, either_way: false };
+            let tour = Tour { from: at, to: None, reversible: false };
             for path in tour.of_paths(&contours) {
                 let Some(contour) = path.merged(MERGED) else { continue };
                 let mut spans = Vec::new();
@@ -117,12 +117,12 @@ impl Outline {
             Direction::Conventional | Direction::Either => parts,
         };
         let level = |&depth: &f64| {
-            parts.iter().map(move |part| Stretch {
+            parts.iter().map(move |part| Segment {
                 element: part.element,
                 depth: if part.tab { depth.min(top) } else { depth },
             })
         };
-        Cut::Way(depths.iter().flat_map(level).collect())
+        Cut::Path(depths.iter().flat_map(level).collect())
     }
 }
 

@@ -6,7 +6,7 @@ use geom::region::{Fill, Index, Island, Region, RegionError, Ring};
 use program::Diagnostic;
 use std::collections::BTreeMap;
 
-/// What is left of a corner is told from this width on, mm.
+/// What is left of a corner is reported from this width on, mm.
 const SLIVER: f64 = 0.02;
 
 /// The largest tool that fits is looked for among so many widths up to that of the tool.
@@ -42,7 +42,7 @@ pub(super) fn cutouts(board: &Region, width: f64) -> Result<Vec<Diagnostic>, Reg
     Ok(errors)
 }
 
-/// An error for each piece of `board` that a tool of `width` mm does not part from one beside it.
+/// An error for each piece of `board` that a tool of `width` mm does not separate from its neighbour.
 pub(super) fn pieces(board: &Region, width: f64) -> Result<Vec<Diagnostic>, RegionError> {
     let together = together(board, width)?;
     let mut fits: Vec<Option<f64>> = vec![None; together.len()];
@@ -58,10 +58,10 @@ pub(super) fn pieces(board: &Region, width: f64) -> Result<Vec<Diagnostic>, Regi
         }
     }
     let mut errors = Vec::new();
-    for ((piece, beside), fits) in together.into_iter().zip(fits) {
-        let [at, other] = [piece, beside].map(|i| middle(board.islands()[i].outer()));
+    for ((piece, neighbour), fits) in together.into_iter().zip(fits) {
+        let [at, other] = [piece, neighbour].map(|i| middle(board.islands()[i].outer()));
         let message = format!(
-            "a tool of {} mm does not part the piece around X {:.3} Y {:.3} from that around \
+            "a tool of {} mm does not separate the piece around X {:.3} Y {:.3} from that around \
              X {:.3} Y {:.3}",
             shown(width),
             at.x,
@@ -131,7 +131,7 @@ fn list(findings: &mut Vec<Diagnostic>, finding: Diagnostic) {
     }
 }
 
-/// What a tool of `width` mm leaves beside the board that is no part of it, but for slivers.
+/// What a tool of `width` mm leaves outside the board although it is no part of it, without slivers.
 fn unreached(board: &Region, width: f64) -> Result<Region, RegionError> {
     let left = board.offset(width / 2.0)?.offset(-width / 2.0)?.difference(board)?;
     left.offset(-SLIVER / 2.0)

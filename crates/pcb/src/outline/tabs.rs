@@ -9,7 +9,7 @@ use program::Diagnostic;
 /// More tabs than this are a mistake.
 const MOST: usize = 1000;
 
-/// How many ways to lay tabs evenly around a contour are tried.
+/// How many even layouts of tabs around a contour are tried.
 const PHASES: usize = 64;
 
 /// Bridges between a piece and what is around it.
@@ -89,7 +89,7 @@ impl Tabs {
                 at.x,
                 at.y
             );
-            let help = "give fewer or narrower tabs, or hold the piece in another way";
+            let help = "give fewer or narrower tabs, or hold the piece otherwise";
             warnings.push(Diagnostic::warning("tabs-left-out", message).help(help));
         }
         if straight.is_empty() && !middles.is_empty() {
@@ -130,8 +130,8 @@ fn laid(count: usize, length: f64, span: f64, straight: &[(f64, f64)]) -> Option
         for i in 0..count {
             let even = (i as f64 + phase as f64 / PHASES as f64) * apart;
             let middle = nearest(even, length, straight);
-            let way = (middle - even).abs();
-            moved += way.min(length - way).powi(2);
+            let away = (middle - even).abs();
+            moved += away.min(length - away).powi(2);
             middles.push(middle);
         }
         middles.sort_by(f64::total_cmp);
@@ -151,8 +151,8 @@ fn nearest(even: f64, length: f64, straight: &[(f64, f64)]) -> f64 {
     let before = next.checked_sub(1).and_then(|i| straight.get(i)).or(straight.last());
     let after = straight.get(next).or(straight.first());
     let away = |place: f64| {
-        let way = (place - even).abs();
-        way.min(length - way)
+        let apart = (place - even).abs();
+        apart.min(length - apart)
     };
     let places = [before, after].into_iter().flatten().map(|(from, to)| match even {
         even if even < *from || even > *to => {

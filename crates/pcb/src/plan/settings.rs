@@ -199,7 +199,7 @@ pub struct Isolation {
     pub passes: u32,
     /// Which part of the width passes overlap.
     pub overlap: f64,
-    /// Which way around.
+    /// In which direction around.
     pub direction: Direction,
     /// What is done between nets where the tool is wider than the gap.
     pub narrow: Narrow,

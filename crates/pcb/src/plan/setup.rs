@@ -7,14 +7,14 @@ use crate::{Board, Hole};
 use geom::Vec2;
 use program::Diagnostic;
 
-/// How much is left between the pins that align a board and the way on which it is cut out, mm.
-const PINS_BESIDE: f64 = 1.0;
+/// How much is left between the pins that align a board and the cut around it, mm.
+const PINS_AWAY: f64 = 1.0;
 
 /// A board on the machine.
 pub struct Setup {
     /// The board as it lies there: its front is up, whichever side that is.
     pub board: Board,
-    /// Holes beside the board by which it is aligned when it is turned over.
+    /// Holes next to the board by which it is aligned when it is turned over.
     pins: Vec<Hole>,
 }
 
@@ -40,8 +40,8 @@ impl Setup {
         };
         let pins = match placing.alignment {
             Some(diameter) => {
-                let beside = settings.outline.outline_tool + PINS_BESIDE;
-                front.pins(axis, diameter, beside)?.to_vec()
+                let away = settings.outline.outline_tool + PINS_AWAY;
+                front.pins(axis, diameter, away)?.to_vec()
             }
             None => Vec::new(),
         };

@@ -18,7 +18,7 @@ use rayon::prelude::*;
 /// The speed of a spindle that has no limit in its machine file, 1/min.
 const USUAL_SPEED: f64 = 10_000.0;
 
-/// By how much the cut may be wider where the tool goes on to the next way without leaving the board, mm.
+/// By how much the cut may be wider where the tool goes on to the next path without leaving the board, mm.
 const JOINED: f64 = 0.002;
 
 /// How high may be what stays between the holes of a slot along its wall, mm.
@@ -119,7 +119,7 @@ impl Worker<'_> {
         Ok(())
     }
 
-    /// The ways around copper.
+    /// The paths around copper.
     fn around(
         &self,
         work: &mut Work,
@@ -188,7 +188,7 @@ impl Worker<'_> {
         Ok(())
     }
 
-    /// The ways in the middle between conductors.
+    /// The paths in the middle between conductors.
     fn between(
         &self,
         work: &mut Work,
@@ -197,8 +197,7 @@ impl Worker<'_> {
         width: f64,
     ) -> Result<Vec<Path>, Vec<Diagnostic>> {
         if self.asked.isolation.passes > 1 {
-            let message =
-                "one way in the middle divides two nets, and several passes are asked for";
+            let message = "one path in the middle separates two nets: several passes do not apply";
             let help = "leave out --passes, or --isolate middle";
             return Err(vec![Diagnostic::error("passes", message).help(help)]);
         }
@@ -406,28 +405,28 @@ fn net(copper: &Copper, island: usize) -> String {
 
 /// Cuts along `paths` at each depth, in an order of short travel. A path without length is a dot.
 fn along(paths: &[Path], width: f64, depths: &[f64]) -> Vec<Cut> {
-    let mut ways = Vec::with_capacity(paths.len());
+    let mut lines = Vec::with_capacity(paths.len());
     let mut dots = Vec::new();
     let merged: Vec<Option<Path>> =
         paths.par_iter().with_max_len(1).map(|path| path.merged(MERGED)).collect();
-    for (path, way) in paths.iter().zip(merged) {
-        match way {
-            Some(way) => ways.push(way),
+    for (path, line) in paths.iter().zip(merged) {
+        match line {
+            Some(line) => lines.push(line),
             None => dots.push(path.start()),
         }
     }
-    let tour = Tour { from: Vec2::ZERO, to: None, either_way: true };
-    let mut ways = tour.of_paths(&ways);
+    let tour = Tour { from: Vec2::ZERO, to: None, reversible: true };
+    let mut lines = tour.of_paths(&lines);
     if depths.len() == 1 {
         // Deeper, a way that is not closed any more would be cut the other way round.
-        ways = crate::joined(&ways, width, JOINED);
+        lines = crate::joined(&lines, width, JOINED);
     }
-    let at = ways.last().map_or(Vec2::ZERO, Path::end);
+    let at = lines.last().map_or(Vec2::ZERO, Path::end);
     let order = Tour { from: at, ..tour }.of_points(&dots);
     let depth = depths.iter().copied().fold(0.0, f64::max);
     let dot = |at: &Vec2| Cut::Hole { at: *at, depth, peck: None };
     let dots = order.into_iter().filter_map(|index| dots.get(index)).map(dot);
-    ways.iter().map(|path| Cut::along(path, depths)).chain(dots).collect()
+    lines.iter().map(|path| Cut::along(path, depths)).chain(dots).collect()
 }
 
 /// Where there is board.
@@ -446,7 +445,7 @@ fn all_joined(copper: &Copper, gaps: &[&NarrowGap]) -> bool {
     let conductors = group.iter().enumerate().filter(|(island, first)| island == *first).count();
     fn root(group: &mut [usize], mut of: usize) -> usize {
         while let Some(up) = group.get(of).copied().filter(|up| *up != of) {
-            // The way up is halved.
+            // The distance up is halved.
             let beyond = group.get(up).copied().unwrap_or(up);
             if let Some(place) = group.get_mut(of) {
                 *place = beyond;

@@ -1,4 +1,4 @@
-//! The order of cuts: short ways between them.
+//! The order of cuts: short moves between them.
 //!
 //! The nearest cut comes next; then the order is improved by turning round a part of it (2-opt) and by
 //! moving up to three cuts elsewhere (Or-opt), and at last shaken and improved again where that shortens
@@ -23,8 +23,8 @@ pub struct Tour {
     pub from: Vec2,
     /// Where it goes after all cuts, mm; `None` where it may stay.
     pub to: Option<Vec2>,
-    /// Whether open paths may be cut from their end to their start.
-    pub either_way: bool,
+    /// Whether open paths may also be cut from their end to their start.
+    pub reversible: bool,
 }
 
 /// How often the order and the starts are improved in turn.
@@ -35,13 +35,13 @@ const WORTH: f64 = 2e-3;
 
 impl Tour {
     /// `paths` in an order of short travel: closed ones begin where that is best, open ones may be
-    /// turned round where [`either_way`](Tour::either_way) says so.
+    /// turned round where [`reversible`](Tour::reversible) says so.
     pub fn of_paths(&self, paths: &[Path]) -> Vec<Path> {
-        let (stops, sites) = Stops::of_paths(paths, self.either_way);
+        let (stops, points) = Stops::of_paths(paths, self.reversible);
         let visit = |visit: Visit| {
             let path = paths.get(visit.stop)?;
-            Some(match sites.get(visit.place)? {
-                Some(site) => path.starting_at(*site),
+            Some(match points.get(visit.place)? {
+                Some(point) => path.starting_at(*point),
                 None if visit.turned => path.reversed(),
                 None => path.clone(),
             })
@@ -51,13 +51,13 @@ impl Tour {
 
     /// The indices of `points` in an order of short travel.
     pub fn of_points(&self, points: &[Vec2]) -> Vec<usize> {
-        let ways: Vec<(Vec2, Vec2)> = points.iter().map(|point| (*point, *point)).collect();
-        self.of_ways(&ways)
+        let lines: Vec<(Vec2, Vec2)> = points.iter().map(|point| (*point, *point)).collect();
+        self.of_lines(&lines)
     }
 
-    /// The indices of `ways`, each from its first point to its second, in an order of short travel.
-    pub(crate) fn of_ways(&self, ways: &[(Vec2, Vec2)]) -> Vec<usize> {
-        self.visits(&Stops::of_ways(ways)).into_iter().map(|visit| visit.stop).collect()
+    /// The indices of `lines`, each from its first point to its second, in an order of short travel.
+    pub(crate) fn of_lines(&self, lines: &[(Vec2, Vec2)]) -> Vec<usize> {
+        self.visits(&Stops::of_lines(lines)).into_iter().map(|visit| visit.stop).collect()
     }
 
     /// How far the tool travels between `paths`, cut in this order, mm: from where it comes, and to

@@ -4,7 +4,7 @@ use super::tree::Tree;
 use geom::Vec2;
 use std::collections::VecDeque;
 
-/// How many neighbours of each stop are tried beside it.
+/// How many neighbours of each stop are tried next to it.
 const NEIGHBOURS: usize = 8;
 
 /// How many stops at most are moved elsewhere together.
@@ -141,7 +141,7 @@ impl Order {
 
     /// How far it is between all of them, mm.
     pub(super) fn travel(&self) -> f64 {
-        (0..self.sequence.len()).map(|at| self.leg(at)).sum()
+        (0..self.sequence.len()).map(|at| self.link(at)).sum()
     }
 
     /// Where the tool is before it enters `stop`, and where it goes after.
@@ -170,7 +170,7 @@ impl Order {
     }
 
     /// How far it is from the stop at `at` to the next.
-    fn leg(&self, at: usize) -> f64 {
+    fn link(&self, at: usize) -> f64 {
         self.to_enter(self.leave(at), at + 1)
     }
 
@@ -201,18 +201,18 @@ impl Order {
             mixed = (mixed ^ (mixed >> 27)).wrapping_mul(0x94D0_49BB_1331_11EB);
             ((mixed ^ (mixed >> 31)) % bound.max(1) as u64) as usize
         };
-        // Place after place: what is looked at together is near in memory too.
+        // Stop after stop: what is looked at together is near in memory too.
         for low in (0..SHAKES).flat_map(|_| 1..last) {
             let middle = low + 1 + below(SHAKEN.min(last - low));
             let high = middle + 1 + below(SHAKEN.min(last - middle));
             let places = [low - 1, middle - 1, high - 1];
-            let legs = |order: &Order, places: [usize; 3]| -> f64 {
-                places.into_iter().map(|at| order.leg(at)).sum()
+            let links = |order: &Order, places: [usize; 3]| -> f64 {
+                places.into_iter().map(|at| order.link(at)).sum()
             };
-            let before = legs(self, places);
+            let before = links(self, places);
             self.make(Step::Rotate { low, middle, high });
             let places = [low - 1, low + high - middle - 1, high - 1];
-            let longer = legs(self, places) - before;
+            let longer = links(self, places) - before;
             for at in places {
                 self.wait_at(at);
                 self.wait_at(at + 1);
@@ -289,22 +289,22 @@ impl Order {
         best
     }
 
-    /// Turns that bring the stop at `at` beside one that is near to it.
+    /// Turns that bring the stop at `at` next to one that is near it.
     fn turns(&self, at: usize, take: &mut impl FnMut(f64, Move)) {
         let mut turn = |i: usize, j: usize| {
             let (after, last) = (i.min(j), i.max(j));
             if after < last && last <= self.movable {
-                let beside = self.leave(after).distance(self.leave(last))
+                let joined = self.leave(after).distance(self.leave(last))
                     + self.to_enter(self.enter(after + 1), last + 1);
-                let gain = self.leg(after) + self.leg(last) - beside;
+                let gain = self.link(after) + self.link(last) - joined;
                 take(gain, Move::Turn { after, last });
             }
         };
-        for other in self.near(at, false, self.leg(at)) {
+        for other in self.near(at, false, self.link(at)) {
             turn(at, other);
         }
         if at > 0 {
-            for other in self.near(at, true, self.leg(at - 1)) {
+            for other in self.near(at, true, self.link(at - 1)) {
                 if other > 0 {
                     turn(at - 1, other - 1);
                 }
@@ -313,24 +313,24 @@ impl Order {
     }
 
     /// Shifts of the stops from `first` to `last` that bring the first (the last, where not
-    /// `by_first`) beside one that is near to it.
+    /// `by_first`) next to one that is near it.
     fn shifts(&self, first: usize, last: usize, by_first: bool, take: &mut impl FnMut(f64, Move)) {
         let (enter, leave) = (self.enter(first), self.leave(last));
         let freed =
-            self.leg(first - 1) + self.leg(last) - self.to_enter(self.leave(first - 1), last + 1);
+            self.link(first - 1) + self.link(last) - self.to_enter(self.leave(first - 1), last + 1);
         if freed <= WORTH {
             return;
         }
         for other in self.near(if by_first { first } else { last }, by_first, freed) {
-            // Beside the other on its far side, and on its near side the other way round.
+            // Behind the other as it is, or before it and reversed.
             for (after, turned) in [(other, !by_first), (other.wrapping_sub(1), by_first)] {
                 let outside = after > last || after + 1 < first;
                 if after > self.movable || !outside {
                     continue;
                 }
                 let (start, end) = if turned { (leave, enter) } else { (enter, leave) };
-                let beside = self.leave(after).distance(start) + self.to_enter(end, after + 1);
-                let gain = freed + self.leg(after) - beside;
+                let joined = self.leave(after).distance(start) + self.to_enter(end, after + 1);
+                let gain = freed + self.link(after) - joined;
                 take(gain, Move::Shift { first, last, after, turned });
             }
         }

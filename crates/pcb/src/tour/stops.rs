@@ -3,7 +3,7 @@
 use super::order::Order;
 use super::tree::Tree;
 use crate::Path;
-use crate::path::Site;
+use crate::path::PathPoint;
 use geom::Vec2;
 use std::ops::Range;
 
@@ -37,7 +37,7 @@ pub(super) enum Form {
     /// Entered in one of its two places and left in the other.
     Open,
     /// Entered in the first of its two places and left in the other.
-    OneWay,
+    Directed,
 }
 
 /// A stop in a tour.
@@ -51,42 +51,42 @@ pub(super) struct Visit {
 }
 
 impl Stops {
-    /// Ways from the first point to the second.
-    pub(super) fn of_ways(ways: &[(Vec2, Vec2)]) -> Stops {
+    /// Lines from the first point to the second.
+    pub(super) fn of_lines(lines: &[(Vec2, Vec2)]) -> Stops {
         let mut all = Stops::default();
-        for (start, end) in ways {
+        for (start, end) in lines {
             all.places.push(*start);
             if start != end {
                 all.places.push(*end);
             }
-            all.stop(if start == end { Form::Round } else { Form::OneWay });
+            all.stop(if start == end { Form::Round } else { Form::Directed });
         }
         all
     }
 
     /// The stops, and for each place of a closed path where on it that is.
-    pub(super) fn of_paths(paths: &[Path], either_way: bool) -> (Stops, Vec<Option<Site>>) {
+    pub(super) fn of_paths(paths: &[Path], reversible: bool) -> (Stops, Vec<Option<PathPoint>>) {
         let mut all = Stops::default();
-        let mut sites = Vec::new();
+        let mut points = Vec::new();
         for path in paths {
-            let form = match (path.is_closed(), either_way) {
+            let form = match (path.is_closed(), reversible) {
                 (true, _) => Form::Round,
                 (false, true) => Form::Open,
-                (false, false) => Form::OneWay,
+                (false, false) => Form::Directed,
             };
             if form == Form::Round {
-                for site in path.sites(STRIDE) {
-                    all.places.push(path.at(site));
-                    all.between.push(site.t > 0.0);
-                    sites.push(Some(site));
+                for point in path.points(STRIDE) {
+                    all.places.push(path.at(point));
+                    all.between.push(point.t > 0.0);
+                    points.push(Some(point));
                 }
             } else {
                 all.places.extend([path.start(), path.end()]);
-                sites.extend([None; 2]);
+                points.extend([None; 2]);
             }
             all.stop(form);
         }
-        (all, sites)
+        (all, points)
     }
 
     /// A stop of the places that belong to none yet.
@@ -102,7 +102,7 @@ impl Stops {
         let mut tree = Tree::new(&self.places);
         for (i, stop) in self.stops.iter().enumerate() {
             stop_of.extend(stop.places.clone().map(|_| i));
-            if stop.form == Form::OneWay {
+            if stop.form == Form::Directed {
                 tree.remove(stop.places.end - 1);
             }
         }
@@ -118,7 +118,7 @@ impl Stops {
                 _ if turned => self.places[places.start],
                 _ => self.places[places.end - 1],
             };
-            let there = if *form == Form::OneWay { 1 } else { places.len() };
+            let there = if *form == Form::Directed { 1 } else { places.len() };
             places.clone().take(there).for_each(|place| tree.remove(place));
         }
         visits
@@ -134,11 +134,11 @@ impl Stops {
                 _ => [self.places[places.start], self.places[places.end - 1]],
             };
         }
-        let one_way = self.stops.iter().map(|stop| stop.form == Form::OneWay).collect();
+        let one_way = self.stops.iter().map(|stop| stop.form == Form::Directed).collect();
         Order::new((from, to), ends, one_way, visits.iter().map(|visit| (visit.stop, visit.turned)))
     }
 
-    /// The visits in this order, each round stop entered where that is best on the way from the one
+    /// The visits in this order, each round stop entered where that is best between the one
     /// before to the next.
     pub(super) fn visits(&self, order: &mut Order) -> Vec<Visit> {
         let stops: Vec<(usize, bool)> = order.stops().collect();

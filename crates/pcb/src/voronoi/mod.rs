@@ -1,25 +1,25 @@
 //! Boards divided among their conductors: each keeps all copper that is nearer to it than to another.
 //!
 //! ```text
-//!  boundaries ──samples──▶ points ──web──▶ places as near to one conductor as to another, in threads
+//!  boundaries ──samples──▶ points ──diagram──▶ places as near to one conductor as to another, in chains
 //!     ──straight──▶ lines, cut off at the edge of the board
 //! ```
 //!
-//! One way between two conductors is all that it takes, in the middle of the gap, where it is farthest
-//! from both; all copper stays. Ways are in that middle to 5 µm, or a fiftieth of the gap where this is more.
+//! One path between two conductors is enough, in the middle of the gap, where it is farthest
+//! from both; all copper stays. Paths are in that middle to 5 µm, or a fiftieth of the gap where this is more.
 //!
 //! The triangles between the points are the work of the crate `spade`, whose predicates are exact.
 
+mod diagram;
 mod samples;
 mod straight;
-mod web;
 
 use crate::isolation::{FITS, NarrowGap};
 use crate::report::{Outcome, fault};
 use crate::{Copper, Path};
+use diagram::DiagramPoint;
 use geom::region::{Index, Region};
 use samples::{Boundary, frame};
-use web::Place;
 
 /// The most points on boundaries: some 500 MB.
 const MOST: usize = 2_000_000;
@@ -30,13 +30,13 @@ struct TooMany;
 /// How a board is divided among its conductors.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Division {
-    /// The ways of the middle of the tool.
+    /// The paths of the centre of the tool.
     pub paths: Vec<Path>,
-    /// Where it would cut into copper, each with its way; the narrowest first.
+    /// Where it would cut into copper, each with its path; the narrowest first.
     pub narrow: Vec<NarrowGap>,
 }
 
-/// The ways of a tool of `width` mm that divide `area` among the [conductors](Copper::conductors) of `copper`.
+/// The paths of a tool of `width` mm that divide `area` among the [conductors](Copper::conductors) of `copper`.
 ///
 /// # Errors
 /// `tool-width` where the width makes no sense; `too-much` where there are too many gaps.
@@ -55,13 +55,13 @@ pub fn divided(copper: &Copper, area: &Region, width: f64) -> Outcome<Division> 
         fault("too-much", message, "divide the board in parts")
     })?;
     samples.extend(frame(board.0.min(around.0), board.1.max(around.1)));
-    let threads = web::threads(&boundary, samples, &index)
+    let chains = diagram::chains(&boundary, samples, &index)
         .map_err(|error| fault("not-a-place", error.to_string(), "look at the copper's places"))?;
     let mut division = Division::default();
     let area = Index::new(area);
-    let fits = |ends: &[Place]| ends.iter().all(|end| 2.0 * end.clearance >= width - FITS);
-    for thread in &threads {
-        for run in runs(thread, fits) {
+    let fits = |ends: &[DiagramPoint]| ends.iter().all(|end| 2.0 * end.clearance >= width - FITS);
+    for chain in &chains {
+        for run in runs(chain, fits) {
             let path = straight::path(run.iter().map(|place| place.at));
             let paths = path.map(|path| path.within(&area)).unwrap_or_default();
             if fits(run) {
@@ -69,7 +69,7 @@ pub fn divided(copper: &Copper, area: &Region, width: f64) -> Outcome<Division> 
                 continue;
             }
             // The narrowest place of those that are in the area, if any is.
-            let outside = |place: &Place| area.island_at(place.at).is_none();
+            let outside = |place: &DiagramPoint| area.island_at(place.at).is_none();
             let narrowest = run.iter().min_by(|a, b| {
                 outside(a).cmp(&outside(b)).then(a.clearance.total_cmp(&b.clearance))
             });
@@ -88,13 +88,13 @@ pub fn divided(copper: &Copper, area: &Region, width: f64) -> Outcome<Division> 
     Ok(division)
 }
 
-/// The runs of a thread along which the tool fits everywhere, or nowhere; each ends where the next begins.
-fn runs(thread: &[Place], fits: impl Fn(&[Place]) -> bool) -> Vec<&[Place]> {
-    let pieces: Vec<bool> = thread.windows(2).map(fits).collect();
+/// The runs of a chain along which the tool fits everywhere, or nowhere; each ends where the next begins.
+fn runs(chain: &[DiagramPoint], fits: impl Fn(&[DiagramPoint]) -> bool) -> Vec<&[DiagramPoint]> {
+    let pieces: Vec<bool> = chain.windows(2).map(fits).collect();
     let mut from = 0;
     let run = |alike: &[bool]| {
         let to = from + alike.len();
-        let run = thread.get(from..=to);
+        let run = chain.get(from..=to);
         from = to;
         run
     };

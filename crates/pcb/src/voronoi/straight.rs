@@ -44,14 +44,14 @@ impl Line {
 
     /// Whether a line to `place` passes all places so far; then it is one of them.
     fn takes(&mut self, place: Vec2) -> bool {
-        let way = place - self.start;
-        let length = way.length();
+        let step = place - self.start;
+        let length = step.length();
         if length <= FLAT {
             // It is passed whatever the direction, but a line from farther on does not come back to it.
             return self.length <= FLAT;
         }
-        let (along, low, high) = self.cone.unwrap_or((way, -PI, PI));
-        let (angle, play) = (turn_angle(along, way), (FLAT / length).asin());
+        let (along, low, high) = self.cone.unwrap_or((step, -PI, PI));
+        let (angle, play) = (turn_angle(along, step), (FLAT / length).asin());
         let passes = low <= angle && angle <= high && length >= self.length - FLAT;
         if passes {
             self.cone = Some((along, low.max(angle - play), high.min(angle + play)));

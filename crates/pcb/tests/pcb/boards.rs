@@ -315,10 +315,10 @@ fn how_large_a_board_is_is_known_before_its_copper_is_united() {
 
 #[test]
 fn each_side_has_its_copper_and_what_is_odd_comes_in_order() {
-    // On each side two nets that touch; on the back, and in a hole, beside the ring that is the board.
+    // On each side two nets that touch; on the back, and in a hole, next to the ring that is the board.
     let touching = |x: f64| {
-        let (at, beside) = ((x * 1e3) as i64, (x * 1e3) as i64 + 800);
-        format!("D11*\n%TO.N,A*%X{at}Y10000D03*\n%TO.N,B*%X{beside}Y10000D03*\n")
+        let (at, next) = ((x * 1e3) as i64, (x * 1e3) as i64 + 800);
+        format!("D11*\n%TO.N,A*%X{at}Y10000D03*\n%TO.N,B*%X{next}Y10000D03*\n")
     };
     let edge =
         layer("", &(square() + &lines(&[(8.0, 8.0), (12.0, 8.0), (12.0, 12.0), (8.0, 8.0)])));
@@ -348,7 +348,7 @@ fn each_side_has_its_copper_and_what_is_odd_comes_in_order() {
 }
 
 #[test]
-fn holes_that_do_not_go_through_are_told() {
+fn holes_that_do_not_go_through_are_reported() {
     let drill = b"M48\nMETRIC\nT1C0.8\n%\nT1\nX10.0Y10.0\nM30\n";
     let blind = b"M48\n; #@! TF.FileFunction,Plated,1,2,Blind,Drill\nMETRIC\nT1C0.3\n%\nT1\nX2.0Y2.0\nM30\n";
     let reading = read(&[("a.drl", drill), ("b.drl", blind)]).unwrap();
@@ -417,13 +417,13 @@ proptest! {
             let (from, to, code) = if back[i] { (to, from, 2) } else { (from, to, 3) };
             let start = format!("D10*\nG01X{}Y{}D02*\n", units(from.0), units(from.1));
             let end = format!("X{}Y{}", units(to.0), units(to.1));
-            let way = match center {
+            let move_ = match center {
                 None => format!("G01{end}D01*\n"),
                 Some((x, y)) => {
                     format!("G0{code}{end}I{}J{}D01*\n", units(x - from.0), units(y - from.1))
                 }
             };
-            start + &way
+            start + &move_
         };
         // All eleven, and one of them again.
         let mut pieces: Vec<usize> = (0..11).collect();

@@ -1,4 +1,4 @@
-//! Cleared areas against hand calculation, and against what the tools sweep on the way.
+//! Cleared areas against hand calculation, and against what the tools sweep on the path.
 
 use crate::data;
 use geom::Vec2;
@@ -94,7 +94,7 @@ fn wide_steps_leave_no_ridges() {
 }
 
 #[test]
-fn what_is_too_narrow_is_told() {
+fn what_is_too_narrow_is_reported() {
     let area = rectangle((0.0, 0.0), (10.0, 0.9));
     let clearing = cleared(&area, &[1.0], 0.4);
     assert!(clearing.passes[0].is_empty());
@@ -102,7 +102,7 @@ fn what_is_too_narrow_is_told() {
 }
 
 /// Between a pad and the corner of the board a tool of 1.7 mm has 1.5 µm of room: its middle may be 0.85 mm from both
-/// edges, which is 0.8515 mm from the corner of the pad. Whether it goes there or not, nothing stays but what is told.
+/// edges, which is 0.8515 mm from the corner of the pad. Whether it goes there or not, nothing stays but what is reported.
 #[test]
 fn where_a_tool_just_fits_it_cuts_or_leaves_it_to_the_next() {
     let board = rectangle((-1.0, -1.0), (11.0, 11.0));
@@ -141,17 +141,17 @@ fn the_kept_copper_is_on_the_right_when_climbing() {
     // A pad in the middle of a square board: one ring around the pad, one along the edge.
     let pad = Region::disc(Vec2::ZERO, 2.0).unwrap();
     let board = rectangle((-4.5, -4.5), (4.5, 4.5));
-    let ways = |direction| {
+    let paths = |direction| {
         let clearing = Clearing { widths: vec![2.0], overlap: 0.0, direction };
         let passes = clearing.rub_out(&pad, 0.3, &board).unwrap().passes;
-        passes[0].iter().filter(|way| way.is_closed()).cloned().collect::<Vec<Path>>()
+        passes[0].iter().filter(|path| path.is_closed()).cloned().collect::<Vec<Path>>()
     };
-    let area = |way: &Path| way.elements().iter().map(|e| e.area(Vec2::ZERO)).sum::<f64>();
+    let area = |path: &Path| path.elements().iter().map(|e| e.area(Vec2::ZERO)).sum::<f64>();
     // Where 0.2 mm are between the two rings: 3.5² · 4 and −3.3² · π.
-    let climbing: Vec<f64> = ways(Direction::Climb).iter().map(area).collect();
+    let climbing: Vec<f64> = paths(Direction::Climb).iter().map(area).collect();
     assert_eq!(climbing.len(), 2);
     assert!((climbing[0] - 49.0).abs() < 1e-6 && (climbing[1] + 10.89 * PI).abs() < 1e-2);
-    let other: Vec<f64> = ways(Direction::Conventional).iter().map(area).collect();
+    let other: Vec<f64> = paths(Direction::Conventional).iter().map(area).collect();
     assert!(other.iter().zip(&climbing).all(|(a, b)| (a + b).abs() < 1e-9));
 }
 

@@ -6,7 +6,7 @@ use geom::{Element, Vec2};
 use std::f64::consts::PI;
 use toolpost_pcb::drilling::{Drilled, Drilling, Mill, Slots};
 use toolpost_pcb::isolation::Direction;
-use toolpost_pcb::{Cut, Cutter, Hole, HoleShape, Operation, Stretch, Tool};
+use toolpost_pcb::{Cut, Cutter, Hole, HoleShape, Operation, Segment, Tool};
 
 fn drilling() -> Drilling {
     Drilling {
@@ -47,17 +47,17 @@ fn places(operation: &Operation) -> Vec<(f64, f64)> {
             assert_eq!(*depth, 2.0);
             (at.x, at.y)
         }
-        Cut::Way(_) => panic!("a way"),
+        Cut::Path(_) => panic!("a path"),
     };
     operation.cuts.iter().map(place).collect()
 }
 
-fn stretches(operation: &Operation) -> Vec<Vec<Stretch>> {
-    let way = |cut: &Cut| match cut {
+fn segments(operation: &Operation) -> Vec<Vec<Segment>> {
+    let segments = |cut: &Cut| match cut {
         Cut::Hole { .. } => panic!("a hole"),
-        Cut::Way(stretches) => stretches.clone(),
+        Cut::Path(segments) => segments.clone(),
     };
-    operation.cuts.iter().map(way).collect()
+    operation.cuts.iter().map(segments).collect()
 }
 
 #[test]
@@ -106,10 +106,10 @@ fn a_hole_is_milled_ring_by_ring_and_level_by_level() {
     let milling = Drilling { mill: Some(mill(2.0)), drills: Some(vec![]), ..drilling() };
     // 3 mm by 2 mm: one ring of radius 0.5, four levels of 0.5 mm.
     let made_ = made(&milling, &[round(10.0, 0.0, 3.0)]);
-    let way = &stretches(&made_.operations[0])[0];
-    let depths: Vec<f64> = way.iter().map(|stretch| stretch.depth).collect();
+    let path = &segments(&made_.operations[0])[0];
+    let depths: Vec<f64> = path.iter().map(|segment| segment.depth).collect();
     assert_eq!(depths, [0.5, 1.0, 1.5, 2.0]);
-    for Stretch { element, .. } in way {
+    for Segment { element, .. } in path {
         let turn = element.turn.unwrap();
         // Counter-clockwise within a hole: the wall on the right, climb.
         assert!(turn.sweep > 0.0 && turn.center == Vec2::new(10.0, 0.0));
@@ -118,27 +118,27 @@ fn a_hole_is_milled_ring_by_ring_and_level_by_level() {
     let against = Mill { direction: Direction::Conventional, ..mill(2.0) };
     let against =
         made(&Drilling { mill: Some(against), ..milling.clone() }, &[round(0.0, 0.0, 3.0)]);
-    assert!(stretches(&against.operations[0])[0][0].element.turn.unwrap().sweep < 0.0);
-    // 7 mm by 2 mm: radii 0.8333, 1.6667 and 2.5, at 2π·5 mm a level, and ways in between of 0.8333.
+    assert!(segments(&against.operations[0])[0][0].element.turn.unwrap().sweep < 0.0);
+    // 7 mm by 2 mm: radii 0.8333, 1.6667 and 2.5, at 2π·5 mm a level, and steps in between of 0.8333.
     let wide = made(&milling, &[round(0.0, 0.0, 7.0)]);
-    let way = &stretches(&wide.operations[0])[0];
-    let length: f64 = way.iter().map(|stretch| stretch.element.length()).sum();
+    let path = &segments(&wide.operations[0])[0];
+    let length: f64 = path.iter().map(|segment| segment.element.length()).sum();
     assert!((length - 4.0 * 10.0 * PI - (4.0 + 3.0) * 5.0 / 3.0).abs() < 1e-6, "{length}");
-    for pair in way.windows(2) {
+    for pair in path.windows(2) {
         assert_eq!(pair[0].element.end, pair[1].element.start);
     }
     // As wide as the cutter: straight down.
     let tight = made(&milling, &[round(4.0, 0.0, 2.0)]);
-    let Cut::Hole { at, peck, .. } = tight.operations[0].cuts[0] else { panic!("a way") };
+    let Cut::Hole { at, peck, .. } = tight.operations[0].cuts[0] else { panic!("a path") };
     assert_eq!((at, peck), (Vec2::new(4.0, 0.0), Some(0.5)));
 }
 
-/// What the milled ways of an operation take away at full depth.
+/// What the milled paths of an operation take away at full depth.
 fn swept(operation: &Operation, width: f64) -> Region {
-    let ways = stretches(operation).concat();
-    let last = ways.iter().filter(|stretch| stretch.depth == 2.0);
+    let paths = segments(operation).concat();
+    let last = paths.iter().filter(|segment| segment.depth == 2.0);
     let strokes: Vec<Region> =
-        last.map(|stretch| Region::stroke(&stretch.element, width, Cap::Round).unwrap()).collect();
+        last.map(|segment| Region::stroke(&segment.element, width, Cap::Round).unwrap()).collect();
     Region::union_of(&strokes).unwrap()
 }
 

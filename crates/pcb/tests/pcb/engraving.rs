@@ -38,7 +38,7 @@ fn wide_strokes_are_engraved_along_their_outline() {
 }
 
 #[test]
-fn shapes_that_the_tool_does_not_fit_into_are_told() {
+fn shapes_that_the_tool_does_not_fit_into_are_reported() {
     let flash = image("%ADD10R,5X0.3*%D10*X0Y0D03*");
     let engraving = engraved(&flash, 0.4).unwrap();
     assert!(engraving.paths.is_empty() && (engraving.rest.area() - 1.5).abs() < 1e-6);

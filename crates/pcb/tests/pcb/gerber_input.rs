@@ -167,7 +167,7 @@ fn a_thousand_blocks_in_each_other_are_read() {
 #[test]
 fn a_tangle_is_refused_or_read_but_never_endless() {
     let start = Instant::now();
-    // A comb of long teeth, all above each other: no crossing, and no quick way to see that.
+    // A comb of long teeth, all above each other: no crossing, and no quick test for that.
     let teeth: String =
         (0..20_000).map(|i| format!("X{}Y{}D01*", (i % 2) * 900_000_000, i * 10)).collect();
     let comb = format!("{HEAD}G36*X-1000000Y0D02*{teeth}X-1000000D01*Y0D01*G37*M02*");

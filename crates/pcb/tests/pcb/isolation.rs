@@ -1,4 +1,4 @@
-//! The ways around copper: hand calculation, and the distances of points to the copper.
+//! The paths around copper, compared with hand calculation and with the distances of points to the copper.
 
 use crate::data;
 use geom::region::{Cap, Fill, Index, Region, Ring};
@@ -113,7 +113,7 @@ fn two_tracks_side_by_side_are_one_gap() {
         let [gap] = &*narrow(&copper(&tracks), 0.2) else { panic!("{turned}") };
         near(gap.width, 0.1, 1e-6);
         near(gap.length, 10.0 + 2.0 * (0.249f64.powi(2) - 0.04).sqrt(), 2e-3);
-        // Apart by just as much as the cut is wide: one way between them, and no finding.
+        // Apart by just as much as the cut is wide: one path between them, and no finding.
         let fits = [0.0, 0.5].map(|y| track(at(0.0, y), at(10.0, y), 0.3));
         let Isolated { paths, narrow, .. } = ISOLATION.isolate(&copper(&fits), None).unwrap();
         assert!(narrow.is_empty(), "{narrow:?}");
@@ -184,17 +184,17 @@ fn pads_that_touch_have_a_gap_of_nothing() {
 fn ways_across_a_track_sever_it_and_one_along_it_leaves_nothing() {
     let tracks = [0.0, 1.0, 2.0].map(|y| track((0.0, y), (10.0, y), 0.3));
     let copper = copper(&tracks);
-    let way = |from: (f64, f64), to: (f64, f64)| {
+    let line = |from: (f64, f64), to: (f64, f64)| {
         Path::new(vec![Element::line(from.into(), to.into())]).unwrap()
     };
-    // Twice across the lowest, at 3 and 9 mm, along the middle one, and beside the uppermost.
-    let ways = [
-        way((3.0, -0.5), (3.0, 0.5)),
-        way((9.0, -0.5), (9.0, 0.5)),
-        way((-1.0, 1.0), (11.0, 1.0)),
-        way((-1.0, 2.2), (11.0, 2.2)),
+    // Twice across the lowest, at 3 and 9 mm, along the middle one, and next to the uppermost.
+    let paths = [
+        line((3.0, -0.5), (3.0, 0.5)),
+        line((9.0, -0.5), (9.0, 0.5)),
+        line((-1.0, 1.0), (11.0, 1.0)),
+        line((-1.0, 2.2), (11.0, 2.2)),
     ];
-    let mut pieces: Vec<(f64, usize, Vec2)> = severed(&copper, &ways, 0.4)
+    let mut pieces: Vec<(f64, usize, Vec2)> = severed(&copper, &paths, 0.4)
         .unwrap()
         .iter()
         .map(|one| (copper.region.islands()[one.island].outer().extents().0.y, one.pieces, one.at))
@@ -217,7 +217,7 @@ fn swept(paths: &[Path], width: f64) -> Region {
     Region::union_of(&strokes).unwrap()
 }
 
-/// Cuts isolation out of the board and holds what is left against what was told.
+/// Cuts the isolation out of the board and compares what is left with what was reported.
 fn judge(name: &str, copper: &Copper, width: f64, narrow: Narrow) {
     let isolation = Isolation { cutter: Cutter::Cylinder { diameter: width }, narrow, ..ISOLATION };
     let isolated = isolation.isolate(copper, None).unwrap();
@@ -252,7 +252,7 @@ fn judge(name: &str, copper: &Copper, width: f64, narrow: Narrow) {
     let left = board.offset(1.0).unwrap().difference(&cut).unwrap();
     let pieces = Index::new(&left);
     let mut conductors = BTreeMap::<usize, BTreeSet<usize>>::new();
-    let told: BTreeSet<usize> = isolated.severed.iter().map(|severed| severed.island).collect();
+    let reported: BTreeSet<usize> = isolated.severed.iter().map(|severed| severed.island).collect();
     for (i, island) in copper.region.islands().iter().enumerate() {
         let inside = |element: &Element| element.at(0.5) + element.tangent(0.5).perp() * 0.005;
         let places = island.outer().elements().iter().map(inside);
@@ -260,7 +260,11 @@ fn judge(name: &str, copper: &Copper, width: f64, narrow: Narrow) {
         for &piece in &of {
             conductors.entry(piece).or_default().insert(i);
         }
-        assert!(of.len() < 2 || told.contains(&i), "{name}: island {i} is in {} pieces", of.len());
+        assert!(
+            of.len() < 2 || reported.contains(&i),
+            "{name}: island {i} is in {} pieces",
+            of.len()
+        );
     }
     for mut together in conductors.into_values() {
         let mut reached: Vec<usize> = together.pop_first().into_iter().collect();

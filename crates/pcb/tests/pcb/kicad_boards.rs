@@ -347,7 +347,7 @@ fn zones_have_the_fill_that_is_stored() {
     assert_eq!(rules(&both), [""; 0]);
     assert_area(front(&both), 16.0);
     assert_area(back(&both), 16.0);
-    // The way of a pen, where the zone does not say that it is not.
+    // The path of a pen, where the zone does not say that it is not.
     let stroked = zone("(layer \"F.Cu\")", &format!("(filled_polygon (layer \"F.Cu\") {square})"));
     assert_area(front(&stroked), 16.0 + 4.0 * 0.4 + PI * 0.01);
     // A hole that is cut into the outline, as KiCad stores it.

@@ -69,12 +69,12 @@ impl Boundary {
     }
 }
 
-fn way(shape: &HoleShape) -> (Vec2, Vec2) {
+fn ends(shape: &HoleShape) -> (Vec2, Vec2) {
     match shape {
         HoleShape::Round(at) => (*at, *at),
         HoleShape::Slot(a, b) => (*a, *b),
         // KiCad's drill files route slots.
-        HoleShape::Route(way) => (way[0].start, way[way.len() - 1].end),
+        HoleShape::Route(route) => (route[0].start, route[route.len() - 1].end),
     }
 }
 
@@ -86,7 +86,7 @@ fn copper_is_what_kicad_plots() {
         // Copper within a hole is drilled away; the plots have marks there.
         let within_hole = |point: Vec2| {
             reading.board.holes.iter().any(|hole| {
-                let (a, b) = way(&hole.shape);
+                let (a, b) = ends(&hole.shape);
                 Element::line(a, b).nearest(point).1 < hole.diameter / 2.0 + 1e-3
             })
         };
@@ -98,16 +98,16 @@ fn copper_is_what_kicad_plots() {
                 let other = Boundary::of(other);
                 for element in one.rings().flat_map(|ring| ring.elements()) {
                     for point in [0.0, 0.25, 0.5, 0.75].map(|t| element.at(t)) {
-                        let beside = other.distance(point);
+                        let off = other.distance(point);
                         let across = element.tangent(0.5).perp() * 1e-3;
                         // What is thinner than 1 µm is nothing (geom::region).
                         let slit = || [point - across, point + across].map(|p| one.contains(p));
-                        if beside >= 1e-3 && (within_hole(point) || slit() == [true; 2]) {
+                        if off >= 1e-3 && (within_hole(point) || slit() == [true; 2]) {
                             continue;
                         }
                         if !within_hole(point) {
-                            assert!(beside < 1e-3, "{name} {layer}: {beside} mm at {point}");
-                            worst = worst.max(beside);
+                            assert!(off < 1e-3, "{name} {layer}: {off} mm at {point}");
+                            worst = worst.max(off);
                         }
                     }
                 }
@@ -134,9 +134,9 @@ fn holes_are_where_kicad_drills() {
         let mut ours = board(&folder, name).board.holes;
         assert_eq!(ours.len(), theirs.len(), "{name}");
         for hole in &theirs {
-            let (a, b) = way(&hole.shape);
+            let (a, b) = ends(&hole.shape);
             let same = |other: &Hole| {
-                let (c, d) = way(&other.shape);
+                let (c, d) = ends(&other.shape);
                 let near = |a: Vec2, b: Vec2| a.distance(b) < 1e-3;
                 (near(a, c) && near(b, d) || near(a, d) && near(b, c))
                     && (hole.diameter - other.diameter).abs() < 1e-3

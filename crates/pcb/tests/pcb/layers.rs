@@ -208,12 +208,12 @@ fn regions() {
 
 #[test]
 fn contours_of_a_region_are_united_whichever_way_they_run() {
-    // Sections 4.10.4.2 and 4.10.4.3: a diamond beside a square, and within it.
+    // Sections 4.10.4.2 and 4.10.4.3: a diamond next to a square, and within it.
     let square = "G01*G36*X0Y5000000D02*Y10000000D01*X10000000D01*Y0D01*X0D01*Y5000000D01*";
-    let beside = "X-1000000D02*X-5000000Y1000000D01*X-9000000Y5000000D01*X-5000000Y9000000D01*X-1000000Y5000000D01*G37*";
+    let diamond = "X-1000000D02*X-5000000Y1000000D01*X-9000000Y5000000D01*X-5000000Y9000000D01*X-1000000Y5000000D01*G37*";
     let within = "X1000000D02*X5000000Y1000000D01*X9000000Y5000000D01*X5000000Y9000000D01*X1000000Y5000000D01*G37*";
     let other_way = "X1000000D02*X5000000Y9000000D01*X9000000Y5000000D01*X5000000Y1000000D01*X1000000Y5000000D01*G37*";
-    assert_area(&image(&format!("{square}{beside}")), 100.0 + 32.0);
+    assert_area(&image(&format!("{square}{diamond}")), 100.0 + 32.0);
     assert_area(&image(&format!("{square}{within}")), 100.0);
     assert_area(&image(&format!("{square}{other_way}")), 100.0);
     // A cut-in makes a hole (section 4.10.4.7): 10 by 8 with a disc of radius 3.
@@ -359,7 +359,7 @@ fn attributes_are_kept() {
          %TO.N,A\\u002CB,C*%X0Y0D03*",
     );
     let image = &reading.image;
-    let told = |i: usize| {
+    let reported = |i: usize| {
         let object = &image.objects[i];
         let attributes = image.attributes(object);
         let nets = attributes.nets.as_deref().unwrap_or_default().join("|");
@@ -368,10 +368,10 @@ fn attributes_are_kept() {
         (nets, component, pin, image.function(object).unwrap_or_default().to_string())
     };
     let say = |a: &str, b: &str, c: &str, d: &str| (a.into(), b.into(), c.into(), d.into());
-    assert_eq!(told(0), say("GND", "U1", "7", "SMDPad,CuDef"));
-    assert_eq!(told(1), say("GND", "", "", ""));
-    assert_eq!(told(2), say("", "", "", "Conductor"));
-    assert_eq!(told(3), say("A,B|C", "", "", ""));
+    assert_eq!(reported(0), say("GND", "U1", "7", "SMDPad,CuDef"));
+    assert_eq!(reported(1), say("GND", "", "", ""));
+    assert_eq!(reported(2), say("", "", "", "Conductor"));
+    assert_eq!(reported(3), say("A,B|C", "", "", ""));
     assert_eq!(image.file_attribute(".FileFunction").unwrap(), ["Copper", "L1", "Top"]);
     assert_eq!(image.file_attribute(".Part").unwrap(), ["Single"]);
     assert!(reading.warnings.is_empty(), "{:?}", reading.warnings);

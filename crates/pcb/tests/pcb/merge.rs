@@ -1,4 +1,4 @@
-//! Merged ways: fewer elements, the same way.
+//! Merged paths: fewer elements, the same path.
 
 use crate::data;
 use geom::region::Ring;
@@ -27,7 +27,7 @@ fn lines_that_go_on_are_one_and_ways_back_are_not() {
     let merged = |points_: &[(f64, f64)]| points(&lines(points_).merged(0.004).unwrap());
     let corner = [(0.0, 0.0), (10.0, 0.0), (10.0, 5.0)];
     assert_eq!(merged(&[(0.0, 0.0), (3.0, 0.0), (4.0, 0.0005), (10.0, 0.0), (10.0, 5.0)]), corner);
-    // More than the tolerance beside the line is not on it, nor on one arc.
+    // More than the tolerance off the line is not on it, nor on one arc.
     let bent = [(0.0, 0.0), (4.0, 0.0041), (10.0, 0.0)];
     assert_eq!(merged(&bent), bent);
     let back = [(0.0, 0.0), (10.0, 0.0), (5.0, 0.0)];
@@ -276,7 +276,7 @@ fn any_chain() -> impl Strategy<Value = Vec<Element>> {
     })
 }
 
-/// Points on a way, so near that chords between them leave it by 0.1 µm at most.
+/// Points on a path, so near that chords between them leave it by 0.1 µm at most.
 fn chords(path: &Path) -> Vec<Vec2> {
     let mut points = vec![path.start()];
     for element in path.elements() {
@@ -289,7 +289,7 @@ fn chords(path: &Path) -> Vec<Vec2> {
     points
 }
 
-/// Which part of the way from `a` to `b` is within `reach` of `point`.
+/// Which part of the line from `a` to `b` is within `reach` of `point`.
 fn near(a: Vec2, b: Vec2, point: Vec2, reach: f64) -> Option<(f64, f64)> {
     let (from, along) = (a - point, b - a);
     let (p, q) = (from.dot(along), along.length_squared());
@@ -301,7 +301,7 @@ fn near(a: Vec2, b: Vec2, point: Vec2, reach: f64) -> Option<(f64, f64)> {
     (root >= 0.0 && low <= 1.0 && high >= 0.0).then_some((low.max(0.0), high.min(1.0)))
 }
 
-/// Whether two walkers can follow the ways from end to end, never back, and never farther apart than `reach`:
+/// Whether two points can follow the paths from end to end, never back, and never farther apart than `reach`:
 /// what of each cell of the pairs of chords can be come to from the cells before it (Alt and Godau, Computing the
 /// Fréchet distance between two polygonal curves, 1995).
 fn walk_together(path: &Path, other: &Path, reach: f64) -> bool {

@@ -176,7 +176,7 @@ fn what_shares_a_node_is_one_net() {
     assert_eq!(nets(copper(&board(&text("back", "")), Face::Back)), [""]);
     let found = refused(&text("front", "net = \"B\"\n"), "net-twice", (18, 7), "`B`");
     assert!(found.message.contains("`A`"));
-    // Copper that touches without a node is told by what the copper is.
+    // Copper that touches without a node is reported by what the copper is.
     let touching = "[[pads]]\nnode = [2, 0]\nshape = \"circle\"\nsize = 2\nnet = \"C\"\n";
     let reading = read(&(text("front", "") + touching)).unwrap();
     assert_eq!(reading.warnings[0].rule, "nets-joined");

@@ -7,7 +7,7 @@ use proptest::prelude::*;
 use std::f64::consts::{PI, TAU};
 use toolpost_pcb::isolation::Direction;
 use toolpost_pcb::outline::{CutOut, Outline, Tabs};
-use toolpost_pcb::{Cut, Cutter, Stretch, Tool};
+use toolpost_pcb::{Cut, Cutter, Segment, Tool};
 
 fn outline(tabs: Option<Tabs>) -> Outline {
     Outline {
@@ -36,25 +36,25 @@ fn region(rings: &[Ring]) -> Region {
     Region::inside(rings, Fill::EvenOdd).unwrap()
 }
 
-fn ways(cut: &CutOut) -> Vec<Vec<Stretch>> {
-    let way = |cut: &Cut| match cut {
+fn paths(cut: &CutOut) -> Vec<Vec<Segment>> {
+    let segments = |cut: &Cut| match cut {
         Cut::Hole { .. } => panic!("a hole"),
-        Cut::Way(stretches) => stretches.clone(),
+        Cut::Path(segments) => segments.clone(),
     };
-    cut.operation.cuts.iter().map(way).collect()
+    cut.operation.cuts.iter().map(segments).collect()
 }
 
 /// What is taken away at `depth` mm.
 fn swept(cut: &CutOut, depth: f64) -> Region {
-    let ways = ways(cut).concat();
-    let there = ways.iter().filter(|stretch| stretch.depth >= depth);
+    let paths = paths(cut).concat();
+    let there = paths.iter().filter(|segment| segment.depth >= depth);
     let strokes: Vec<Region> =
-        there.map(|stretch| Region::stroke(&stretch.element, 2.0, Cap::Round).unwrap()).collect();
+        there.map(|segment| Region::stroke(&segment.element, 2.0, Cap::Round).unwrap()).collect();
     Region::union_of(&strokes).unwrap()
 }
 
-fn area(way: &[Stretch]) -> f64 {
-    way.iter().map(|stretch| stretch.element.area(way[0].element.start)).sum()
+fn area(path: &[Segment]) -> f64 {
+    path.iter().map(|segment| segment.element.area(path[0].element.start)).sum()
 }
 
 #[test]
@@ -65,28 +65,28 @@ fn cut_outs_come_first_and_the_edge_is_cut_outside() {
         rectangle((25.0, 5.0), (30.0, 15.0)),
     ]);
     let cut = outline(None).cut(&board).unwrap();
-    let ways = ways(&cut);
-    assert_eq!(ways.len(), 3);
+    let paths = paths(&cut);
+    assert_eq!(paths.len(), 3);
     // 1.8 mm in three levels. Around the outside 2·(40 + 20) and a circle of 1 mm.
-    for way in &ways {
-        let mut depths: Vec<f64> = way.iter().map(|stretch| stretch.depth).collect();
+    for path in &paths {
+        let mut depths: Vec<f64> = path.iter().map(|segment| segment.depth).collect();
         depths.dedup();
         assert_eq!(depths, [0.6, 1.2, 1.8].map(|depth: f64| depth / 1.8 * 1.8));
-        for pair in way.windows(2) {
+        for pair in path.windows(2) {
             assert_eq!(pair[0].element.end, pair[1].element.start);
         }
     }
-    let level = |i: usize| ways[i].len() / 3;
+    let level = |i: usize| paths[i].len() / 3;
     let length = |i: usize| -> f64 {
-        ways[i][..level(i)].iter().map(|stretch| stretch.element.length()).sum()
+        paths[i][..level(i)].iter().map(|segment| segment.element.length()).sum()
     };
     assert!((length(2) - 120.0 - TAU).abs() < 1e-6);
     // Within the cut-outs 2·(5 + 3) and 2·(3 + 8).
     assert!((length(0) - 16.0).abs() < 1e-6 && (length(1) - 22.0).abs() < 1e-6);
     // What stays is on the left: around the outside counter-clockwise, in cut-outs clockwise.
-    assert!(area(&ways[2][..level(2)]) > 0.0 && area(&ways[0][..level(0)]) < 0.0);
+    assert!(area(&paths[2][..level(2)]) > 0.0 && area(&paths[0][..level(0)]) < 0.0);
     let climb = Outline { direction: Direction::Climb, ..outline(None) }.cut(&board).unwrap();
-    let turned: Vec<f64> = self::ways(&climb).iter().map(|way| area(way)).collect();
+    let turned: Vec<f64> = self::paths(&climb).iter().map(|path| area(path)).collect();
     assert!(turned[2] < 0.0 && turned[0] > 0.0 && turned[1] > 0.0);
     // Four corners in each cut-out stay round.
     let corners: Vec<&str> = cut.warnings.iter().map(|warning| warning.rule).collect();
@@ -99,26 +99,26 @@ fn tabs_are_on_straight_pieces_and_keep_their_width() {
     let board = region(&[rectangle((0.0, 0.0), (40.0, 20.0))]);
     let cut = outline(Some(tabs)).cut(&board).unwrap();
     assert!(cut.warnings.is_empty(), "{:?}", cut.warnings);
-    let way = &ways(&cut)[0];
+    let path = &paths(&cut)[0];
     // At 0.6 mm all around; deeper than 0.8 mm not over tabs.
-    let over: Vec<&Stretch> = way.iter().filter(|stretch| stretch.depth == 0.8).collect();
+    let over: Vec<&Segment> = path.iter().filter(|segment| segment.depth == 0.8).collect();
     assert_eq!(over.len(), 8);
     for tab in &over {
         assert!(tab.element.turn.is_none() && (tab.element.length() - 5.0).abs() < 1e-9);
     }
     assert!(
-        way.iter()
-            .all(|stretch| [0.6, 0.8, 1.2, 1.8].iter().any(|d| (stretch.depth - d).abs() < 1e-9))
+        path.iter()
+            .all(|segment| [0.6, 0.8, 1.2, 1.8].iter().any(|d| (segment.depth - d).abs() < 1e-9))
     );
-    assert!(way[0].depth < 0.7);
+    assert!(path[0].depth < 0.7);
     // Each tab is 5 mm by 2 mm less two half circles of the tool.
     let left = swept(&cut, 0.5).difference(&swept(&cut, 1.7)).unwrap();
     assert_eq!(left.islands().len(), 4);
     assert!((left.area() - 4.0 * (10.0 - PI)).abs() < 1e-3, "{}", left.area());
-    // Evenly: a quarter of the way apart, 120 mm and a circle of 1 mm in all.
+    // Evenly: a quarter of the length apart, 120 mm and a circle of 1 mm in all.
     let mut at = 0.0;
     let mut middles = Vec::new();
-    for Stretch { element, depth } in way.iter().filter(|stretch| stretch.depth != 0.6) {
+    for Segment { element, depth } in path.iter().filter(|segment| segment.depth != 0.6) {
         if *depth == 0.8 && middles.len() < 4 {
             middles.push(at + element.length() / 2.0);
         }
@@ -145,7 +145,7 @@ fn a_round_board_has_its_tabs_on_the_arc_and_a_small_one_fewer() {
     // Of a cut-out that the tool clears nothing comes loose.
     let ring = [rectangle((0.0, 0.0), (40.0, 20.0)), rectangle((5.0, 5.0), (8.5, 15.0))];
     let cut = outline(Some(tabs)).cut(&region(&ring)).unwrap();
-    assert!(ways(&cut)[0].iter().all(|stretch| stretch.depth != 0.8));
+    assert!(paths(&cut)[0].iter().all(|segment| segment.depth != 0.8));
 }
 
 #[test]
@@ -176,7 +176,7 @@ fn pieces_that_the_tool_does_not_part_are_refused() {
     assert_eq!(error.rule, "not-parted");
     assert!(error.message.contains("X 16.500 Y 5.000"), "{error}");
     assert!(error.help.contains("1.375"), "{error}");
-    assert_eq!(ways(&outline(None).cut(&panel(2.1)).unwrap()).len(), 2);
+    assert_eq!(paths(&outline(None).cut(&panel(2.1)).unwrap()).len(), 2);
     // Nor is a piece in the cut-out of a frame.
     let frame =
         [((0.0, 0.0), (40.0, 40.0)), ((5.0, 5.0), (35.0, 35.0)), ((6.5, 6.5), (33.5, 33.5))];
@@ -219,10 +219,10 @@ fn what_lies_within_is_cut_before_what_is_around_it() {
         rectangle((20.0, 20.0), (40.0, 40.0)),
     ];
     let cut = outline(None).cut(&region(&rings)).unwrap();
-    let sides: Vec<f64> = ways(&cut)
+    let sides: Vec<f64> = paths(&cut)
         .iter()
-        .map(|way| {
-            let xs = way.iter().map(|stretch| stretch.element.start.x);
+        .map(|path| {
+            let xs = path.iter().map(|segment| segment.element.start.x);
             xs.clone().fold(f64::MIN, f64::max) - xs.fold(f64::MAX, f64::min)
         })
         .map(f64::round)

@@ -123,11 +123,11 @@ fn what_is_no_panel() {
         assert_eq!(rule(columns, rows, x, y), "panel");
     }
     assert_eq!(rule(9999, 1, 2.0, 2.0), "not-a-place");
-    // 17 million holes are more than fit into memory beside those of the other side.
+    // 17 million holes are more than fit into memory together with those of the other side.
     let holes = vec![board.holes[0].clone(); 1700];
     let many = Board { holes, ..Board::default() };
     assert_eq!(many.panel(100, 100, Vec2::ONE).unwrap_err().rule, "panel");
-    // Where there is nothing beside, the spacing does not count.
+    // Where there is no second board, the spacing does not count.
     assert_eq!(board.panel(1, 2, Vec2::new(0.0, 1.0)).unwrap().holes.len(), 4);
     assert_eq!(Board::default().panel(2, 2, Vec2::ONE).unwrap_err().rule, "panel");
 }

@@ -6,7 +6,7 @@ use toolpost_pcb::Path;
 use toolpost_pcb::tour::Tour;
 
 fn tour(from: Vec2, to: Option<Vec2>) -> Tour {
-    Tour { from, to, either_way: true }
+    Tour { from, to, reversible: true }
 }
 
 /// Points all over a square of 100 mm.
@@ -76,9 +76,9 @@ fn bound(points: &[Vec2]) -> f64 {
                 .min_by(|i, j| tree[*i].0.total_cmp(&tree[*j].0))
                 .unwrap_or(0);
         }
-        let mut ways: Vec<usize> = (1..count).collect();
-        ways.sort_by(|i, j| cost(0, *i).total_cmp(&cost(0, *j)));
-        for i in &ways[..2] {
+        let mut order: Vec<usize> = (1..count).collect();
+        order.sort_by(|i, j| cost(0, *i).total_cmp(&cost(0, *j)));
+        for i in &order[..2] {
             length += cost(0, *i);
             degree[0] += 1;
             degree[*i] += 1;
@@ -153,7 +153,7 @@ fn square(low: Vec2, side: f64) -> Path {
 
 #[test]
 fn a_closed_path_begins_where_the_travel_is_shortest() {
-    // On the way from its right to the far upper right: at its upper right corner, 1.118 + 2.010 mm;
+    // Between its right side and the far upper right: at its upper right corner, 1.118 + 2.010 mm;
     // the lower right one is 1.118 + 2.332 mm away.
     let tour = tour(Vec2::new(2.0, 0.5), Some(Vec2::new(3.0, 1.2)));
     let paths = tour.of_paths(&[square(Vec2::ZERO, 1.0)]);
@@ -173,7 +173,7 @@ fn open_paths_are_turned_round_where_they_may_be() {
     let lines: Vec<Path> = [3.0, 1.0, 2.0, 0.0].map(line).to_vec();
     let there_and_back = tour(Vec2::ZERO, None);
     assert_eq!(there_and_back.travel(&there_and_back.of_paths(&lines)), 3.0);
-    let one_way = Tour { either_way: false, ..there_and_back };
+    let one_way = Tour { reversible: false, ..there_and_back };
     let paths = one_way.of_paths(&lines);
     assert!(paths.iter().all(|path| path.start().x == 0.0));
     assert!((one_way.travel(&paths) - 3.0 * 82f64.sqrt()).abs() < 1e-9);
@@ -191,7 +191,7 @@ fn any_path() -> impl Strategy<Value = Path> {
     ]
 }
 
-/// What a path is, wherever it begins and whichever way an open one runs, to 0.1 µm.
+/// What a path is, wherever it begins and in whichever direction an open one runs, to 0.1 µm.
 fn nature(path: &Path) -> [i64; 6] {
     let area: f64 = path.elements().iter().map(|element| element.area(Vec2::ZERO)).sum();
     let area = if path.is_closed() { area } else { area.abs() };
@@ -207,9 +207,9 @@ proptest! {
     fn every_path_is_cut_once(
         paths in prop::collection::vec(any_path(), 0..40),
         back in any::<bool>(),
-        either_way in any::<bool>(),
+        reversible in any::<bool>(),
     ) {
-        let tour = Tour { from: Vec2::ZERO, to: back.then_some(Vec2::ZERO), either_way };
+        let tour = Tour { from: Vec2::ZERO, to: back.then_some(Vec2::ZERO), reversible };
         let ordered = tour.of_paths(&paths);
         let sorted = |paths: &[Path]| {
             let mut all: Vec<_> = paths.iter().map(nature).collect();
@@ -219,7 +219,7 @@ proptest! {
         prop_assert_eq!(ordered.len(), paths.len());
         prop_assert_eq!(sorted(&ordered), sorted(&paths));
         for path in &ordered {
-            prop_assert!(either_way || path.is_closed() || paths.contains(path));
+            prop_assert!(reversible || path.is_closed() || paths.contains(path));
         }
         prop_assert!(tour.travel(&ordered) <= tour.travel(&paths) + 1e-9);
         prop_assert_eq!(&tour.of_paths(&paths), &ordered);

@@ -30,7 +30,7 @@ fn swept<'a>(paths: impl IntoIterator<Item = &'a Path>, width: f64) -> Region {
     Region::union_of(&strokes).unwrap()
 }
 
-/// Asserts that no path is in the copper, that all conductors are apart on the board, and that ways are in the
+/// Asserts that no path is in the copper, that all conductors are apart on the board, and that paths are in the
 /// middle.
 fn check(copper: &Copper, board: &Region, width: f64) -> Division {
     let division = divided(copper, board, width).unwrap();
@@ -39,7 +39,7 @@ fn check(copper: &Copper, board: &Region, width: f64) -> Division {
     let near = (width / 45.0).max(0.005);
     let hurt = cut.intersection(&copper.region.offset(-near).unwrap()).unwrap();
     assert!(hurt.area() < 1e-9, "{} mm² of copper at {:?}", hurt.area(), hurt.extents());
-    // Where it is too wide the tool would cut copper; there a thin one shows that the way divides.
+    // Where it is too wide the tool would cut copper; there a thin one shows that the path divides.
     let middles = division.narrow.iter().filter_map(|gap| gap.middle.as_ref());
     let cut = cut.union(&swept(middles, 0.02)).unwrap();
     let pieces = board.difference(&cut).unwrap();
@@ -120,7 +120,7 @@ fn a_gap_narrower_than_the_tool_is_told_with_its_place() {
     let board = rectangle((-10.0, -4.0), (10.0, 4.0));
     let division = check(&copper, &board, 0.5);
     let [gap] = &division.narrow[..] else { panic!("{:?}", division.narrow) };
-    // To the spacing of places along the way.
+    // To the spacing of points along the path.
     assert!((gap.width - 0.3).abs() < 2e-3 && gap.at.length() < 0.1, "{gap:?}");
     assert_eq!(division.paths.len(), 2);
     // Its ends are where |p − f| = 2.25.
@@ -130,7 +130,7 @@ fn a_gap_narrower_than_the_tool_is_told_with_its_place() {
 
 #[test]
 fn a_gap_between_two_corners_is_as_narrow_as_they_are_near() {
-    // √(0.1² + 0.2²) = 0.2236 between the corners; on the way past them nothing else is as near.
+    // √(0.1² + 0.2²) = 0.2236 between the corners; on the path past them nothing else is as near.
     let copper = copper(&[rectangle((9.7, 7.8), (9.9, 8.7)), rectangle((8.8, 8.9), (9.6, 9.1))]);
     let division = check(&copper, &rectangle((7.0, 7.0), (11.0, 11.0)), 0.25);
     let [gap] = &division.narrow[..] else { panic!("{:?}", division.narrow) };

@@ -1,7 +1,7 @@
-//! The web of all places that are as near to one conductor as to another.
+//! The Voronoi diagram of the conductors: all points that are as near to one conductor as to another.
 //!
-//! The Voronoi diagram of points on the boundaries has the right threads, in the right order round each
-//! conductor, and nearly in the right place: each of its corners is then moved to where it is equally far
+//! The diagram of points on the boundaries has the right chains of edges, in the right order round each
+//! conductor, and nearly in the right place: each of its vertices is then moved to where it is equally far
 //! from the boundaries themselves.
 
 use super::samples::{Boundary, Sample};
@@ -10,16 +10,16 @@ use geom::region::Index;
 use spade::handles::{FaceHandle, InnerTag};
 use spade::{DelaunayTriangulation, InsertionError, Triangulation};
 
-/// How much nearer to the conductors a thread may come between two places, of what they have, before it has
-/// a place there.
+/// How much nearer to the conductors a chain may come between two vertices, as a part of their clearance, before a
+/// vertex is added there.
 const NARROWER: f64 = 0.01;
 
-/// How often a place is moved towards where it is equally far from everything.
+/// How often a vertex is moved towards where it is equally far from everything.
 const TRIES: usize = 8;
 
-/// A place of the web.
+/// A point of the diagram.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Place {
+pub(super) struct DiagramPoint {
     pub(super) at: Vec2,
     /// How far it is from the nearest conductor, mm.
     pub(super) clearance: f64,
@@ -27,28 +27,28 @@ pub(super) struct Place {
     pub(super) islands: [usize; 2],
 }
 
-/// A place and the neighbours that threads lead to.
-struct Knot {
-    /// None where it is lost between conductors that all but touch.
-    place: Option<Place>,
+/// A vertex and the neighbours that edges lead to.
+struct Vertex {
+    /// None where it is lost between conductors that nearly touch.
+    place: Option<DiagramPoint>,
     links: [Option<u32>; 3],
 }
 
 type Triangle<'a> = FaceHandle<'a, InnerTag, Sample, (), (), ()>;
 
-/// The threads of the web between `samples` of different conductors, each from where three or more meet to
-/// the next such place, or closed.
+/// The chains of edges between `samples` of different conductors, each from where three or more meet to
+/// the next such vertex, or closed.
 ///
 /// # Errors
 /// Where a sample is no place.
-pub(super) fn threads(
+pub(super) fn chains(
     boundary: &Boundary,
     samples: Vec<Sample>,
     copper: &Index,
-) -> Result<Vec<Vec<Place>>, InsertionError> {
+) -> Result<Vec<Vec<DiagramPoint>>, InsertionError> {
     let triangles = DelaunayTriangulation::<Sample>::bulk_load(samples)?;
     // The middles of the circles about the triangles, where these have several conductors.
-    let mut knots: Vec<Knot> = Vec::new();
+    let mut vertices: Vec<Vertex> = Vec::new();
     let mut of_triangle = vec![None; triangles.num_all_faces()];
     for edge in triangles.undirected_edges() {
         let [one, other] = edge.vertices().map(|vertex| boundary.conductor(vertex.data()));
@@ -63,62 +63,68 @@ pub(super) fn threads(
             let known = of_triangle.get_mut(side.index())?;
             *known.get_or_insert_with(|| {
                 let corners = side.vertices().map(|vertex| *vertex.data());
-                knots
-                    .push(Knot { place: place(side, corners, boundary, copper), links: [None; 3] });
-                u32::try_from(knots.len() - 1).ok()
+                vertices.push(Vertex {
+                    place: place(side, corners, boundary, copper),
+                    links: [None; 3],
+                });
+                u32::try_from(vertices.len() - 1).ok()
             })
         }) else {
             continue;
         };
         let corners = edge.vertices().map(|vertex| *vertex.data());
-        match waist(&knots, [left, right], &corners, boundary) {
+        match waist(&vertices, [left, right], &corners, boundary) {
             Some(waist) => {
-                let middle = knots.len() as u32;
-                knots.push(Knot { place: Some(waist), links: [None; 3] });
-                link(&mut knots, left, middle);
-                link(&mut knots, middle, right);
+                let middle = vertices.len() as u32;
+                vertices.push(Vertex { place: Some(waist), links: [None; 3] });
+                link(&mut vertices, left, middle);
+                link(&mut vertices, middle, right);
             }
-            None => link(&mut knots, left, right),
+            None => link(&mut vertices, left, right),
         }
     }
-    Ok(unravelled(&mut knots))
+    Ok(chains_of(&mut vertices))
 }
 
-/// Ties two knots.
-fn link(knots: &mut [Knot], one: u32, other: u32) {
+/// Links two vertices.
+fn link(vertices: &mut [Vertex], one: u32, other: u32) {
     for (from, to) in [(one, other), (other, one)] {
-        let links = knots.get_mut(from as usize).map(|knot| &mut knot.links);
+        let links = vertices.get_mut(from as usize).map(|vertex| &mut vertex.links);
         if let Some(free) = links.into_iter().flatten().find(|link| link.is_none()) {
             *free = Some(to);
         }
     }
 }
 
-/// The narrowest place of the thread between two knots, which part two samples, where both knots have more
-/// room: between two corners the thread has no other place.
+/// The narrowest point of the edge between two vertices, which separates two samples, where both vertices have more
+/// room: between two corners the edge has no other vertex.
 fn waist(
-    knots: &[Knot],
+    vertices: &[Vertex],
     ends: [u32; 2],
     samples: &[Sample; 2],
     boundary: &Boundary,
-) -> Option<Place> {
-    let [left, right] = ends.map(|end| knots.get(end as usize)?.place);
+) -> Option<DiagramPoint> {
+    let [left, right] = ends.map(|end| vertices.get(end as usize)?.place);
     let (left, right) = (left?, right?);
     let [one, other] = samples;
-    let stand = settled((one.at + other.at) / 2.0, samples, boundary);
-    let between = (left.at - stand.at).dot(right.at - stand.at) < 0.0;
-    let narrower = stand.nearest < left.clearance.min(right.clearance) * (1.0 - NARROWER);
+    let candidate = settled((one.at + other.at) / 2.0, samples, boundary);
+    let between = (left.at - candidate.at).dot(right.at - candidate.at) < 0.0;
+    let narrower = candidate.nearest < left.clearance.min(right.clearance) * (1.0 - NARROWER);
     let islands = [boundary.island(one)?, boundary.island(other)?];
-    (between && narrower).then_some(Place { at: stand.at, clearance: stand.nearest, islands })
+    (between && narrower).then_some(DiagramPoint {
+        at: candidate.at,
+        clearance: candidate.nearest,
+        islands,
+    })
 }
 
-/// The place in the middle of a triangle.
+/// The point in the middle of a triangle.
 fn place(
     triangle: Triangle,
     corners: [Sample; 3],
     boundary: &Boundary,
     copper: &Index,
-) -> Option<Place> {
+) -> Option<DiagramPoint> {
     let center = triangle.circumcenter();
     let mut at = Vec2::new(center.x, center.y);
     if !at.is_finite() {
@@ -135,29 +141,30 @@ fn place(
             None => nearest.push(corner),
         }
     }
-    let stand = settled(at, &nearest, boundary);
-    // Where conductors all but touch, the points of one do not keep the circle out of it.
-    let lost = corners.iter().any(|corner| corner.touches) && copper.island_at(stand.at).is_some();
+    let candidate = settled(at, &nearest, boundary);
+    // Where conductors nearly touch, the points of one do not keep the circle out of it.
+    let lost =
+        corners.iter().any(|corner| corner.touches) && copper.island_at(candidate.at).is_some();
     if lost {
         return None;
     }
     let mut islands = nearest.iter().filter_map(|sample| boundary.island(sample));
     let islands = [islands.next()?, islands.next()?];
-    Some(Place { at: stand.at, clearance: stand.nearest, islands })
+    Some(DiagramPoint { at: candidate.at, clearance: candidate.nearest, islands })
 }
 
-/// The place near `at` that is equally far from what is about all of some samples.
-fn settled(at: Vec2, samples: &[Sample], boundary: &Boundary) -> Stand {
-    // Points are near to each other for the gap, and so the place is near by.
+/// The point near `at` that is equally far from the boundaries around all of `samples`.
+fn settled(at: Vec2, samples: &[Sample], boundary: &Boundary) -> Candidate {
+    // Samples are near each other compared with the gap, so the point is near.
     let reach = samples.first().map_or(0.0, |sample| sample.at.distance(at) / 2.0);
-    let mut best = Stand::at(at, samples, boundary);
+    let mut best = Candidate::at(at, samples, boundary);
     for _ in 0..TRIES {
         let guess = match best.feet[..] {
             [a, b] => between(best.at, a, b),
             [a, b, c] => amid(a, b, c),
             _ => None,
         };
-        let Some(next) = guess.map(|at| Stand::at(at, samples, boundary)) else { break };
+        let Some(next) = guess.map(|at| Candidate::at(at, samples, boundary)) else { break };
         let better = next.farthest - next.nearest < best.farthest - best.nearest;
         if !better || next.at.distance(at) > reach {
             break;
@@ -167,21 +174,21 @@ fn settled(at: Vec2, samples: &[Sample], boundary: &Boundary) -> Stand {
     best
 }
 
-/// A place, and the nearest of each conductor about it.
-struct Stand {
+/// A point, and the nearest point of each conductor around it.
+struct Candidate {
     at: Vec2,
     feet: Vec<Vec2>,
     nearest: f64,
     farthest: f64,
 }
 
-impl Stand {
-    fn at(at: Vec2, samples: &[Sample], boundary: &Boundary) -> Stand {
+impl Candidate {
+    fn at(at: Vec2, samples: &[Sample], boundary: &Boundary) -> Candidate {
         let feet: Vec<Vec2> = samples.iter().map(|sample| boundary.foot(sample, at)).collect();
         let away = || feet.iter().map(|foot| foot.distance(at));
         let (nearest, farthest) =
             (away().fold(f64::INFINITY, f64::min), away().fold(0.0, f64::max));
-        Stand { at, feet, nearest, farthest }
+        Candidate { at, feet, nearest, farthest }
     }
 }
 
@@ -198,43 +205,43 @@ fn amid(a: Vec2, b: Vec2, c: Vec2) -> Option<Vec2> {
     middle.is_finite().then_some(a + middle)
 }
 
-/// The threads between knots, which lose their links.
-fn unravelled(knots: &mut [Knot]) -> Vec<Vec<Place>> {
-    let links = |knot: &Knot| knot.links.iter().flatten().count();
+/// The chains between vertices; their links are used up.
+fn chains_of(vertices: &mut [Vertex]) -> Vec<Vec<DiagramPoint>> {
+    let links = |vertex: &Vertex| vertex.links.iter().flatten().count();
     let ends: Vec<u32> =
-        (0..).zip(&*knots).filter(|(_, k)| links(k) != 2).map(|(i, _)| i).collect();
-    let all = 0..knots.len() as u32;
-    let is_end: Vec<bool> = knots.iter().map(|knot| links(knot) != 2).collect();
-    let mut threads = Vec::new();
+        (0..).zip(&*vertices).filter(|(_, k)| links(k) != 2).map(|(i, _)| i).collect();
+    let all = 0..vertices.len() as u32;
+    let is_end: Vec<bool> = vertices.iter().map(|vertex| links(vertex) != 2).collect();
+    let mut chains = Vec::new();
     // What is closed has no end to begin with.
     for from in ends.into_iter().chain(all) {
-        while let Some(thread) = thread(knots, from, &is_end) {
-            threads.push(thread);
+        while let Some(chain) = chain(vertices, from, &is_end) {
+            chains.push(chain);
         }
     }
-    threads
+    chains
 }
 
-/// The thread that begins at a knot, to the next end or back; `None` where none is left.
-fn thread(knots: &mut [Knot], from: u32, is_end: &[bool]) -> Option<Vec<Place>> {
+/// The chain from a vertex to the next end, or back to it; `None` where none is left.
+fn chain(vertices: &mut [Vertex], from: u32, is_end: &[bool]) -> Option<Vec<DiagramPoint>> {
     let mut at = from;
-    let mut thread = Vec::new();
-    while let Some(next) = untie(knots, at) {
-        thread.push(at);
+    let mut chain = Vec::new();
+    while let Some(next) = take_link(vertices, at) {
+        chain.push(at);
         at = next;
         if at == from || is_end.get(at as usize) == Some(&true) {
             break;
         }
     }
-    thread.push(at);
-    let place = |knot: u32| knots.get(knot as usize)?.place;
-    (thread.len() > 1).then(|| thread.into_iter().filter_map(place).collect())
+    chain.push(at);
+    let place = |vertex: u32| vertices.get(vertex as usize)?.place;
+    (chain.len() > 1).then(|| chain.into_iter().filter_map(place).collect())
 }
 
-/// Takes one link of a knot away, and tells where it led to.
-fn untie(knots: &mut [Knot], at: u32) -> Option<u32> {
-    let to = knots.get_mut(at as usize)?.links.iter_mut().find_map(Option::take)?;
-    let mut back = knots.get_mut(to as usize)?.links.iter_mut();
+/// Removes one link of a vertex; the answer is where it led to.
+fn take_link(vertices: &mut [Vertex], at: u32) -> Option<u32> {
+    let to = vertices.get_mut(at as usize)?.links.iter_mut().find_map(Option::take)?;
+    let mut back = vertices.get_mut(to as usize)?.links.iter_mut();
     *back.find(|link| **link == Some(at))? = None;
     Some(to)
 }
