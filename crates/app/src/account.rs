@@ -6,7 +6,7 @@ use serde_json::{Value, json};
 /// How work ended.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Verdict {
-    /// What was asked for is done.
+    /// The command is done.
     Done,
     /// The machine cannot do it, or the proof failed.
     Failed,

@@ -149,7 +149,7 @@ impl Target {
     }
 
     /// A file in the same folder, gone when it is dropped.
-    fn beside(&self) -> io::Result<NamedTempFile> {
+    fn temporary(&self) -> io::Result<NamedTempFile> {
         let mut builder = Builder::new();
         builder.prefix(TEMPORARY.0).suffix(TEMPORARY.1);
         #[cfg(unix)]
@@ -310,9 +310,9 @@ pub fn save(files: &[(&Target, &[u8])]) -> Result<(), Box<Diagnostic>> {
         let kept = i + 1 < files.len() && target.path.exists();
         let stage = || -> io::Result<_> {
             check_size(bytes.len())?;
-            let mut new = target.beside()?;
+            let mut new = target.temporary()?;
             new.write_all(bytes)?;
-            let old = kept.then(|| target.beside()).transpose()?;
+            let old = kept.then(|| target.temporary()).transpose()?;
             if let Some(old) = &old {
                 fs::copy(&target.path, old.path())?;
             }

@@ -14,7 +14,7 @@ pub enum Source {
     Memory {
         /// The name of the file, for findings and reports.
         name: PathBuf,
-        /// What stands in it.
+        /// Its content.
         bytes: Arc<[u8]>,
     },
 }

@@ -162,14 +162,14 @@ mod tests {
 
     #[test]
     fn times_are_told_in_the_units_of_a_watch() {
-        let told = [0.4, 59.6, 3599.0, 3661.0].map(duration);
-        assert_eq!(told, ["0 s", "1 min 00 s", "59 min 59 s", "1 h 01 min"]);
+        let printed = [0.4, 59.6, 3599.0, 3661.0].map(duration);
+        assert_eq!(printed, ["0 s", "1 min 00 s", "59 min 59 s", "1 h 01 min"]);
     }
 
     #[test]
     fn numbers_have_no_needless_zeros() {
-        let told = [-0.0001, 100.0, -2.5, 0.12345].map(|value| number(value, 3));
-        assert_eq!(told, ["0", "100", "-2.5", "0.123"]);
+        let printed = [-0.0001, 100.0, -2.5, 0.12345].map(|value| number(value, 3));
+        assert_eq!(printed, ["0", "100", "-2.5", "0.123"]);
     }
 
     #[test]

@@ -1,7 +1,29 @@
 //! Pictures, as SVG or PNG: of a tool path, of the path of a wire, of a board.
 //!
-//! All are drawn from straight pieces ([`walk()`] makes them of a program); letters are strokes of our own. The same input gives the same bytes on every machine: there are no fonts in them. Their size is
-//! bounded, however long the program.
+//! The crate promises the same bytes for the same input on every machine (letters are strokes of our own, there are no fonts in
+//! them), of bounded size, however long the program.
+//!
+//! Coordinates are mm of the work frame, in a stated view; sizes of pictures are pixels. All pictures are drawn from straight
+//! pieces ([`walk()`] makes them of a program).
+//!
+//! ```
+//! use program::{Op, Pose, Program};
+//! use toolpost_drawing::walk;
+//!
+//! # fn main() -> Result<(), program::NoPose> {
+//! let mut program = Program::new("slot");
+//! for (x, z) in [(0.0, 5.0), (0.0, -1.0), (10.0, -1.0)] {
+//!     let pose = Pose::upright(geom::Vec3::new(x, 0.0, z))?;
+//!     program.push(1, if z > 0.0 { Op::Rapid(pose) } else { Op::Line(pose) });
+//! }
+//! let mut cuts = 0;
+//! walk(&program, 0.01, &mut |segment| cuts += usize::from(segment.cuts));
+//! assert_eq!(cuts, 2, "down, and along");
+//! # Ok(())
+//! # }
+//! ```
+//!
+//! It never checks what it draws: a picture is no proof.
 
 #![deny(clippy::wildcard_enum_match_arm)]
 

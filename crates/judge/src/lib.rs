@@ -39,11 +39,12 @@ pub fn python(module: &str) -> Option<PathBuf> {
     found
 }
 
-/// A folder of the real input: of `TOOLPOST_DATA`, or of `../shared/data` beside the project.
+/// A folder of the real input: of `TOOLPOST_DATA`, or of `../shared/data` next to the project.
 #[track_caller]
 pub fn data(folder: &str) -> Option<PathBuf> {
-    let beside = || project().join("../shared/data");
-    let data = env::var_os("TOOLPOST_DATA").map_or_else(beside, PathBuf::from).join(folder);
+    let next_to_project = || project().join("../shared/data");
+    let data =
+        env::var_os("TOOLPOST_DATA").map_or_else(next_to_project, PathBuf::from).join(folder);
     if data.is_dir() {
         return Some(data);
     }
@@ -51,12 +52,12 @@ pub fn data(folder: &str) -> Option<PathBuf> {
     None
 }
 
-/// The script that runs a program on a whole LinuxCNC: of `TOOLPOST_TOOLS`, or of `../shared/tools` beside the project.
+/// The script that runs a program on a whole LinuxCNC: of `TOOLPOST_TOOLS`, or of `../shared/tools` next to the project.
 /// `None` as well where the package `linuxcnc-uspace` is not installed.
 #[track_caller]
 pub fn linuxcnc() -> Option<PathBuf> {
-    let beside = || project().join("../shared/tools");
-    let tools = env::var_os("TOOLPOST_TOOLS").map_or_else(beside, PathBuf::from);
+    let next_to_project = || project().join("../shared/tools");
+    let tools = env::var_os("TOOLPOST_TOOLS").map_or_else(next_to_project, PathBuf::from);
     let script = tools.join("linuxcnc-run/linuxcnc-run");
     if !program("linuxcnc", "Debian package linuxcnc-uspace") {
         return None;

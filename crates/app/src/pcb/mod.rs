@@ -225,7 +225,7 @@ fn surface(
     let Some(file) = heights else { return Ok(None) };
     let is_up = |face| parts.iter().any(|part| plan::face(*part, settings) == face);
     if is_up(Face::Front) && is_up(Face::Back) {
-        let message = "the heights are those of one side, and programs of both are asked for";
+        let message = "a height map is of one side, and programs of both sides would be written";
         let help = "make the programs of each side with its own heights: name them with --only";
         return Err(Diagnostic::error("heights", message).help(help).into());
     }
@@ -282,7 +282,7 @@ pub struct Program {
     work: Work,
     /// The program, and what is reported of it.
     pub posted: Posted,
-    /// Its picture, where one was asked for.
+    /// Its picture, where the caller wants one.
     pub picture: Option<Vec<u8>>,
     /// Columns and rows of the heights that it measures itself.
     probes: Option<[u32; 2]>,
@@ -369,15 +369,15 @@ impl Shop<'_> {
             return Ok(());
         }
         let width = |operation: &Operation| operation.tool.cutter.width(PROBED.reach);
-        let beside = work.operations.first().map_or(0.0, width) / 2.0;
+        let radius = work.operations.first().map_or(0.0, width) / 2.0;
         for place in grid.places() {
             let mut holes = self.setup(part).drilled();
-            let Some(hole) = holes.find(|hole| hole.distance(place) < beside) else { continue };
+            let Some(hole) = holes.find(|hole| hole.distance(place) < radius) else { continue };
             let (low, high) = hole.extents();
             let at = low.midpoint(high);
             let message = format!(
-                "the height is measured at X{:.3} Y{:.3}, in the hole of {} mm at X{:.3} Y{:.3} or less than {beside:.3} mm \
-                 beside it, and it is drilled before",
+                "the height is measured at X{:.3} Y{:.3}, in the hole of {} mm at X{:.3} Y{:.3} or less than {radius:.3} mm \
+                 from it, and the hole is drilled before",
                 place.x, place.y, hole.diameter, at.x, at.y
             );
             let help = "another number of columns or rows, or --from back: then holes are drilled after the back is cut";

@@ -117,7 +117,7 @@ impl Program {
         let account = &self.posted.account;
         let mut data = account.data.clone();
         if let Some(data) = data.as_object_mut() {
-            // Said once for all programs.
+            // Reported once for all programs.
             data.retain(|key, _| key != "toolpost" && key != "machine");
         }
         data["name"] = json!(self.name);

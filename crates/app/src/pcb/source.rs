@@ -48,14 +48,14 @@ pub fn read(given: &[input::Source]) -> Result<Source, Stop> {
             let all = texts.iter().map(|(name, text)| File { name, layer: None, text });
             let all: Vec<File> = all.collect();
             let (artwork, layers) = pcb::board::artwork(&name, &all).map_err(Stop::invalid)?;
-            let told = |(name, layer): (String, pcb::board::Layer)| (name, layer.to_string());
-            (artwork, layers.into_iter().map(told).collect())
+            let named = |(name, layer): (String, pcb::board::Layer)| (name, layer.to_string());
+            (artwork, layers.into_iter().map(named).collect())
         }
     };
     Ok(Source { artwork, layers, files })
 }
 
-/// Endings that plots of layers have mostly: with such files beside it, a board of KiCad's is not read.
+/// Endings that plots of layers have mostly: where such files are in the same folder, a KiCad board is not read.
 const PLOTS: [&str; 9] = ["gbr", "ger", "gtl", "gbl", "cmp", "sol", "top", "bot", "drl"];
 
 /// What the names of copies begin with that KiCad makes while a board is edited.

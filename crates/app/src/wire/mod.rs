@@ -204,15 +204,15 @@ fn set_up(machine: &mut Machine, settings: &Settings) -> Result<(), Stop> {
         return Err(Diagnostic::error("tab", message).help(help).into());
     }
     let height = match (wire.height, settings.uv_height) {
-        (Some(own), Some(said)) if own != said => {
+        (Some(own), Some(given)) if own != given => {
             let message = format!(
-                "`{}` counts U and V in a plane {own} mm up, and --uv-height says {said} mm",
+                "`{}` counts U and V in a plane {own} mm up, and --uv-height says {given} mm",
                 machine.name
             );
             let help = "leave --uv-height out, or change `height` in [wire] of the machine's file";
             return Err(Diagnostic::error("wire-height", message).help(help).into());
         }
-        (own, said) => own.or(said),
+        (own, given) => own.or(given),
     };
     machine.wire = Some(Wire { height, memory: settings.memory.or(wire.memory), ..wire });
     Ok(())

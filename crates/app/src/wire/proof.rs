@@ -1,4 +1,4 @@
-//! The proof of a wire's program: against the contour with its arcs where the wire stands upright;
+//! The proof of a wire's program: against the contour with its arcs where the wire is upright;
 //! where it leans against its points, and each end of the wire against its own contour besides.
 
 use super::report::Cut;
@@ -66,7 +66,7 @@ fn one_end(
     let position = tolerances.position.unwrap_or(rounded * machine.resolution() / 2f64.sqrt());
     let tolerances = Tolerances { position: Some(position), ..*tolerances };
     let mut prover = Prover::new(contour, machine, &tolerances);
-    let stand = |position: &mut Position| {
+    let shift = |position: &mut Position| {
         let lean =
             position.axis().and_then(|axis| machine::lean(axis, height?)).unwrap_or_default();
         let by = match end {
@@ -79,8 +79,8 @@ fn one_end(
     let run = nc::settings(machine, Setup::default()).and_then(|settings| {
         control::read(&settings, file, text, &mut |mut event| {
             match &mut event.action {
-                Action::Rapid(position) | Action::Line(position) => drop(stand(position)),
-                Action::Arc(arc) => arc.center += stand(&mut arc.end),
+                Action::Rapid(position) | Action::Line(position) => drop(shift(position)),
+                Action::Arc(arc) => arc.center += shift(&mut arc.end),
                 _ => {}
             }
             prover.event(&event)

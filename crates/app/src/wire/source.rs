@@ -249,7 +249,7 @@ fn as_many(below: usize, above: usize) -> Result<(), Box<Diagnostic>> {
     Err(Diagnostic::error("sync-openings", message).help(help).into())
 }
 
-/// Where the upper contour is, nobody has said.
+/// The refusal of an upper contour without a height.
 fn without_height_of_part() -> Diagnostic {
     let message = "the wire leans, and the height of the part is not known";
     Diagnostic::error("wire-height", message).help("give it with --height")
@@ -259,7 +259,7 @@ fn without_height_of_part() -> Diagnostic {
 fn height(origin: &Origin, settings: &Settings) -> Result<Option<f64>, Stop> {
     match (settings.height, &origin.from) {
         (None, Some(from)) => Ok(origin.reach.load_origin(from)?.wire.and_then(|wire| wire.height)),
-        (said, _) => Ok(said),
+        (given, _) => Ok(given),
     }
 }
 
@@ -280,7 +280,7 @@ fn leaning(
             return Some(Err(without_height_of_part().line(below.line).into()));
         };
         if let Err(numbers) =
-            stand(&mut below.op, Vec2::ZERO).and_then(|()| stand(&mut above.op, lean))
+            shift(&mut below.op, Vec2::ZERO).and_then(|()| shift(&mut above.op, lean))
         {
             return Some(Err(numbers.into()));
         }
@@ -289,7 +289,7 @@ fn leaning(
 }
 
 /// The same move of an upright wire, moved by `by`.
-fn stand(op: &mut Op, by: Vec2) -> Result<(), NoPose> {
+fn shift(op: &mut Op, by: Vec2) -> Result<(), NoPose> {
     let upright = |pose: &mut Pose| {
         *pose = Pose::upright(pose.point() + by.extend(0.0))?;
         Ok(())

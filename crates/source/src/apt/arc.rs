@@ -1,9 +1,9 @@
 //! Arcs: `CIRCLE` and `GOTO`, and the `TLON` of CATIA and Creo.
 //!
-//! A `CIRCLE` gives centre and axis, the `GOTO` after it the end. Which way the arc turns about the axis
-//! is a habit of the CAM system ([`Dialect::turn`]). The path itself tells whether the habit was taken
-//! rightly: contours are smooth, so an arc that turns the wrong way reverses the path at a straight
-//! move beside it. [`judge`] holds every file against that.
+//! A `CIRCLE` gives centre and axis, the `GOTO` after it the end. In which direction the arc turns about
+//! the axis is a habit of the CAM system ([`Dialect::turn`]). The path itself shows whether the habit was taken
+//! rightly: contours are smooth, so an arc in the wrong direction reverses the path at a straight
+//! move next to it. [`judge`] checks every file for that.
 
 use super::Reader;
 use super::dialect::{Dialect, Turn};
@@ -174,7 +174,7 @@ impl Reader {
         let so_far = arc(to.end.point()).map_err(|error| not_an_arc(&error))?;
         let further = arc(point).map_err(|error| not_an_arc(&error))?;
         if further.sweep <= so_far.sweep {
-            let message = "the points of this arc do not follow each other the way it turns";
+            let message = "the points of this arc do not follow each other in its direction";
             return Err(Fault::new("arc-direction", message));
         }
         let end = to.end.at(point)?;
@@ -184,7 +184,7 @@ impl Reader {
         Ok(true)
     }
 
-    /// Creo may list several points of an arc. In `GOTO`s of their own they could not be told from
+    /// Creo may list several points of an arc. In `GOTO`s of their own they could not be distinguished from
     /// chords, so a line of Creo to a further point of the circle it has just left is refused. The line
     /// back to its start is the chord that closes the contour: a full circle ends at its start in its
     /// own record.
@@ -276,18 +276,18 @@ fn not_an_arc(error: &ArcError) -> Box<Fault> {
     }
 }
 
-/// What the straight moves beside the arcs of a file say about the way they turn.
+/// What the straight moves next to the arcs of a file show about the direction of the arcs.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub(super) struct Evidence {
     /// Arcs that go on smoothly from or into a straight move.
     pub(super) smooth: usize,
-    /// Arcs that would do so if they turned the other way, and reverse the path as they are.
+    /// Arcs that would do so in the other direction, and reverse the path as they are.
     pub(super) reversed: usize,
     /// Line of the first of these.
     pub(super) first_reversed: u32,
 }
 
-/// Weighs the arcs of `program` against the straight moves beside them.
+/// Compares the arcs of `program` with the straight moves next to them.
 pub(super) fn weigh(program: &Program) -> Evidence {
     let mut evidence = Evidence::default();
     // Direction of the straight cut that ended at `here`, and the arc (line, tangents) after it.
@@ -300,11 +300,11 @@ pub(super) fn weigh(program: &Program) -> Evidence {
             _ => None,
         };
         if let Some((line, before, start, end)) = open.take() {
-            let beside = [before.map(|b| b.dot(start)), straight.map(|s| s.dot(end))];
-            let mut beside = beside.into_iter().flatten().peekable();
-            // A cusp at one end is a corner being cleaned; one at every end is the wrong way round.
-            let reversed = beside.peek().is_some() && beside.clone().all(|c| c < -SMOOTH);
-            let smooth = beside.any(|c| c > SMOOTH);
+            let joints = [before.map(|b| b.dot(start)), straight.map(|s| s.dot(end))];
+            let mut joints = joints.into_iter().flatten().peekable();
+            // A cusp at one end is a corner being cleaned; one at every end is the wrong direction.
+            let reversed = joints.peek().is_some() && joints.clone().all(|c| c < -SMOOTH);
+            let smooth = joints.any(|c| c > SMOOTH);
             evidence.smooth += usize::from(smooth);
             if reversed {
                 if evidence.reversed == 0 {
@@ -325,13 +325,13 @@ pub(super) fn weigh(program: &Program) -> Evidence {
     evidence
 }
 
-/// Holds the arcs of `program` against the path they are in. It is an error where more of them reverse
+/// Checks the arcs of `program` against their path. It is an error where more of them reverse
 /// the path than go on smoothly: then the habit of the file is another than was taken.
 pub(super) fn judge(program: &Program, dialect: Dialect) -> Option<Diagnostic> {
     let Evidence { smooth, reversed, first_reversed } = weigh(program);
     if reversed > smooth {
         let message = format!(
-            "the path says that the arcs turn the other way: {reversed} of them reverse it, {smooth} \
+            "the path shows that the arcs turn in the other direction: {reversed} of them reverse it, {smooth} \
              go on smoothly"
         );
         let help = "let the CAM system write lines for arcs, or TLON with INDIRV";
@@ -339,14 +339,14 @@ pub(super) fn judge(program: &Program, dialect: Dialect) -> Option<Diagnostic> {
     }
     if reversed > 0 {
         let message = format!(
-            "{reversed} arcs reverse the path, and would not if they turned the other way; {smooth} go \
+            "{reversed} arcs reverse the path, and would not in the other direction; {smooth} go \
              on smoothly"
         );
         let warning = Diagnostic::warning("arc-direction", message);
         return Some(warning.help("look at the path here").line(first_reversed));
     }
     if smooth == 0 && dialect.turn().is_none() {
-        let message = "neither the file nor its path says which way arcs turn: taken as \
+        let message = "neither the file nor its path shows in which direction arcs turn: taken as \
                        counter-clockwise about the vector of CIRCLE";
         return Some(Diagnostic::warning("arc-direction", message).help("look at the arcs"));
     }

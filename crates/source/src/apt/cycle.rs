@@ -110,9 +110,9 @@ const KINDS: [(&[&str], Kind); 15] = [
 const OTHER_BORES: [(&str, &str); 3] = [
     (
         "NODRAG",
-        "orients the spindle and moves off the wall before it goes out, by a way that is not given",
+        "orients the spindle and moves off the wall before it goes out, on a path that is not given",
     ),
-    ("BACK", "goes in beside the axis and bores upwards, by a way that is not given"),
+    ("BACK", "goes in off the axis and bores upwards, on a path that is not given"),
     ("MANUAL", "stops in the hole for the operator to take the tool out"),
 ];
 
@@ -131,8 +131,8 @@ pub(super) struct ActiveCycle {
     to_initial: bool,
     /// Where the tool was before the cycle, where that is known.
     initial: Option<Vec3>,
-    /// What was last told to the writers.
-    told: Option<Cycle>,
+    /// The cycle of the last `Op::Cycle`.
+    written: Option<Cycle>,
 }
 
 impl ActiveCycle {
@@ -190,7 +190,7 @@ impl Reader {
 
     fn end_cycle(&mut self, record: &Record) {
         let Some(mut active) = self.cycle.take() else { return };
-        if active.told.take().is_some() {
+        if active.written.take().is_some() {
             self.push(record.line, Op::CycleOff);
         }
         self.last_cycle = Some(active);
@@ -238,12 +238,12 @@ impl Reader {
             peck,
         };
         let (threads, turns) = (parts.get(Part::ThreadsPerInch), parts.get(Part::DwellTurns));
-        let (initial, told) = match &self.cycle {
-            Some(active) => (active.initial, active.told),
+        let (initial, written) = match &self.cycle {
+            Some(active) => (active.initial, active.written),
             None => (self.tip.map(|tip| tip.point()), None),
         };
         let (line, to_initial) = (record.line, parts.to_initial);
-        Ok(ActiveCycle { line, cycle, threads, turns, to_initial, initial, told })
+        Ok(ActiveCycle { line, cycle, threads, turns, to_initial, initial, written })
     }
 
     /// The words and values of `record` from field `i` on.
@@ -448,11 +448,11 @@ impl Reader {
             };
             cycle.retract = cycle.clearance.max((initial - pose.point()).dot(axis));
         }
-        if active.told != Some(cycle) {
+        if active.written != Some(cycle) {
             let line = active.line;
             self.push(line, Op::Cycle(Box::new(cycle)));
             if let Some(active) = &mut self.cycle {
-                active.told = Some(cycle);
+                active.written = Some(cycle);
             }
         }
         self.push(record.line, Op::Hole(pose));

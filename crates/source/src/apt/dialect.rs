@@ -1,4 +1,4 @@
-//! Which CAM system wrote a file, told by what is in it, and what follows from that.
+//! Which CAM system wrote a file, as its content shows, and what follows from that.
 
 use super::record::{Lines, is_blank};
 use std::fmt;
@@ -6,7 +6,7 @@ use std::fmt;
 /// The CAM system whose habits a file shows.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Dialect {
-    /// No habit of a known system: ISO 4343 as it stands.
+    /// No habit of a known system: ISO 4343 without changes.
     Iso,
     /// Siemens NX, CLSF (`.cls`).
     Nx,
@@ -107,7 +107,7 @@ mod tests {
     use super::*;
 
     #[test]
-    fn each_system_is_told_by_its_habits() {
+    fn each_system_is_detected_by_its_habits() {
         for (text, dialect) in [
             ("GOTO/1,2,3\n", Dialect::Iso),
             ("UNITS/MM\nTOOL PATH/A,TOOL,B\n", Dialect::Nx),

@@ -32,8 +32,8 @@ pub(super) struct Setup {
     shift: Vec3,
     /// The frame of the set-up, without origin and shift.
     base: Frame,
-    /// Orientation that was last told to the writers.
-    told: Mat3,
+    /// The orientation of the last `Op::Frame`.
+    written: Mat3,
     /// `TRNTYP/WORLD` was given: coordinates are in the world whatever `CSYS` says.
     world: bool,
     /// What the options say of the coordinates behind `CSYS`.
@@ -56,7 +56,7 @@ impl Setup {
             origin: Vec3::ZERO,
             shift: Vec3::ZERO,
             base: Frame::IDENTITY,
-            told: Mat3::IDENTITY,
+            written: Mat3::IDENTITY,
             world: false,
             csys,
             csys_origin: None,
@@ -177,18 +177,18 @@ impl Reader {
         self.setup.base = base;
         self.reframe();
         self.axis = base.matrix3.z_axis;
-        self.tell(line, base);
+        self.write_plane(line, base);
     }
 
-    /// Tells the writers of the plane of work, where its orientation changed.
-    fn tell(&mut self, line: u32, frame: Frame) {
-        if !frame.matrix3.abs_diff_eq(self.setup.told, 1e-9) {
-            self.setup.told = frame.matrix3;
+    /// Adds a record of the plane of work where its orientation changed.
+    fn write_plane(&mut self, line: u32, frame: Frame) {
+        if !frame.matrix3.abs_diff_eq(self.setup.written, 1e-9) {
+            self.setup.written = frame.matrix3;
             self.push(line, Op::Frame(Box::new(frame)));
         }
     }
 
-    /// Works out where coordinates stand after a change.
+    /// Calculates the frame of the coordinates after a change.
     fn reframe(&mut self) {
         let shift = Frame::from_translation(self.setup.shift - self.setup.origin);
         self.setup.to_work = self.setup.base * shift;
@@ -228,7 +228,7 @@ impl Reader {
     }
 
     /// `CSYS/xx,yx,zx,ox,xy,yy,zy,oy,xz,yz,zz,oz`: the set-up of a SolidWorks CAM operation. Behind `TRNTYP/WORLD`
-    /// points and vectors are in the world already, and the set-up tells the plane of work; so it is also where the origin
+    /// points and vectors are in the world already, and the set-up gives the plane of work; so it is also where the origin
     /// changes: read in the frame of each, set-ups of one part drill their holes in the same places, and read in the
     /// world the holes lie apart and within the stock.
     pub(super) fn csys(&mut self, record: &Record) -> Outcome {
@@ -244,10 +244,10 @@ impl Reader {
         }
         let is_known = self.setup.world || self.setup.csys.is_some();
         if !is_known && (is_another || frame.matrix3 != Mat3::IDENTITY) {
-            let message = "without TRNTYP/WORLD it is not known whether the coordinates stand in the world or in \
+            let message = "without TRNTYP/WORLD it is not known whether the coordinates are in the world or in \
                            this CSYS";
             let help =
-                "let the CAM system write TRNTYP/WORLD, or say it by --csys local or --csys world";
+                "let the CAM system write TRNTYP/WORLD, or give --csys local or --csys world";
             return Err(Fault::new("frame", message).help(help));
         }
         if self.setup.csys == Some(Csys::Local) {
@@ -259,7 +259,7 @@ impl Reader {
             return Ok(());
         }
         self.axis = frame.matrix3.z_axis;
-        self.tell(record.line, Frame::from_mat3(frame.matrix3));
+        self.write_plane(record.line, Frame::from_mat3(frame.matrix3));
         Ok(())
     }
 

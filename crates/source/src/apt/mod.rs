@@ -2,7 +2,7 @@
 //!
 //! [`read`] takes the bytes of a file and gives a [`Program`] whose poses are all in the work frame
 //! and in mm: inches, frames, relative motion, surface speeds and modal words are resolved. The CAM
-//! system is told by what is in the file ([`Dialect`]); nothing has to be set.
+//! system is detected from the content of the file ([`Dialect`]).
 //!
 //! What cannot be resolved is an error with file, line and column, never a guess and never left out
 //! silently. What is known not to matter for the program is ignored; what is not known is a warning,
@@ -43,7 +43,7 @@ use technology::FeedUnit;
 pub struct Options {
     /// Warnings are errors.
     pub strict: bool,
-    /// Where the coordinates of a file with `CSYS` stand, for whoever knows better than the file.
+    /// In which frame the coordinates of a file with `CSYS` are, where the file does not show it.
     pub csys: Option<Csys>,
     /// Which path the coordinates behind `CUTCOM` are, where the file does not show it.
     pub cutcom: Option<CompensatedPath>,
@@ -51,7 +51,7 @@ pub struct Options {
     pub purpose: Purpose,
 }
 
-/// Where coordinates and vectors stand that follow a `CSYS` of SolidWorks CAM.
+/// The frame of coordinates and vectors that follow a `CSYS` of SolidWorks CAM.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Csys {
     /// In the frame of that `CSYS`.
@@ -406,7 +406,7 @@ impl Reader {
         }
     }
 
-    /// Whether the arcs turn the way the path says.
+    /// Whether the arcs turn as the path shows.
     fn judge_the_arcs(&mut self, text: &[u8]) {
         if !self.circles {
             return;

@@ -45,7 +45,7 @@ pub(super) fn plain_goto(text: &[u8]) -> Option<([f64; 6], bool)> {
             [b',', after @ ..] => rest = after,
             [] => break,
             _ if rest.iter().all(|c| is_blank(*c)) => break,
-            // A blank before the comma, a remark, a continuation: the long way reads them.
+            // A blank before the comma, a remark, a continuation: the full reader takes them.
             _ => return None,
         }
     }
@@ -172,7 +172,7 @@ impl Reader {
         self.work_axis(axis).map_err(|fault| fault.fields(first, 3))
     }
 
-    /// Goes to `pose` the way the records before have asked for.
+    /// Goes to `pose` by rapid, line or arc, as the records before state.
     fn go(&mut self, record: &Record, pose: Pose) -> Outcome {
         match std::mem::take(&mut self.next) {
             Next::Arc(circle) => self.arc(record, &circle, pose),
@@ -224,7 +224,7 @@ impl Reader {
             && cut
         {
             let message = "the first motion from FROM is a cut: a rapid to FROM goes before it";
-            self.report.warn(record, "from", message, "check that the way there is free");
+            self.report.warn(record, "from", message, "check that the path there is free");
             self.push(line, Op::Rapid(pose));
         }
         self.ready = Ready::Rapid;
@@ -292,7 +292,7 @@ impl Reader {
                 "line {} moves before the first tool is loaded (line {load}): the tool is loaded first",
                 record.line
             );
-            let help = "check that the way there is free with this tool";
+            let help = "check that the path there is free with this tool";
             self.report.warn(record, "tool-number", &message, help);
             let (line, records) = (record.line, self.program.records.len());
             self.early = Some(Early { line, records, diameter: self.next_tool.diameter });

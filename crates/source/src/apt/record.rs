@@ -60,7 +60,7 @@ impl<'t> Iterator for Lines<'t> {
 pub(super) fn first_load(text: &[u8]) -> Option<u32> {
     let loads = |line: &Line| {
         let first = line.text.iter().find(|c| !is_blank(**c));
-        // Most lines are told by their first letter.
+        // The first letter decides for most lines.
         if !matches!(first, Some(b'L' | b'l')) {
             return false;
         }

@@ -35,7 +35,7 @@ fn corner(side: &str, direction: i32) -> String {
 
 #[test]
 fn an_arc_towards_the_tool_that_is_smaller_than_the_tool_is_no_contour() {
-    // Left of the way and counter-clockwise, right of it and clockwise: the tool is where the centre of the arc is.
+    // Left of the path and counter-clockwise, right of it and clockwise: the tool is where the centre of the arc is.
     for (side, direction) in [("LEFT", 1), ("RIGHT", -1)] {
         assert_eq!(shown("10,0", &corner(side, direction)), Some((Center, 12)), "{side}");
         // A tool of that radius, or a smaller one, may cut it.
@@ -67,7 +67,7 @@ fn an_island_that_the_tool_would_cut_away_is_a_contour() {
     // In two halves; in three quarters, of which two are enough.
     assert_eq!(shown("10,0", &round(&["10,-4", "10,0"], -1, "")), Some((Contour, 12)));
     assert_eq!(shown("10,0", &round(&["12,-2", "10,-4", "8,-2"], -1, "")), Some((Contour, 14)));
-    // A quarter is a rounded corner; a larger island stays; a helix is a way in.
+    // A quarter is a rounded corner; a larger island stays; a helix leads in.
     assert_eq!(shown("10,0", &round(&["12,-2"], -1, "")), None);
     assert_eq!(shown("4,0", &round(&["10,0"], -1, "")), None);
     assert_eq!(shown("10,0", &round(&["10,0"], -1, ".5")), None);

@@ -79,8 +79,8 @@ fn every_cycle_gives_its_kind_and_its_numbers() {
 
 #[test]
 fn pitch_hand_and_turns_are_those_at_the_hole() {
-    // Kinds and dwells of the cycles told, in their order.
-    let told = |text: &str| -> Vec<(CycleKind, f64)> {
+    // Kinds and dwells of the cycles written, in their order.
+    let written = |text: &str| -> Vec<(CycleKind, f64)> {
         let cycles = ops(text).into_iter().filter_map(|op| match op {
             Op::Cycle(cycle) => Some((cycle.kind, cycle.dwell)),
             _ => None,
@@ -90,21 +90,21 @@ fn pitch_hand_and_turns_are_those_at_the_hole() {
     let tap = |pitch, left| (CycleKind::Tap { pitch, left }, 0.0);
     // The speed comes after the cycle: 500 mm/min at 500 1/min, not at 1000.
     let late = "CYCLE/TAP,FEDTO,10,RAPTO,5,MMPM,500\nSPINDL/RPM,500,CLW\nGOTO/30,10,0";
-    assert_eq!(told(late), [tap(1.0, false)]);
+    assert_eq!(written(late), [tap(1.0, false)]);
     // The feed changes between two holes: 500 / 500, then 625 / 500; the third is as the second.
     let between = "SPINDL/500,CLW\nFEDRAT/500,MMPM\nCYCLE/TAP,FEDTO,10,RAPTO,5\nGOTO/10,0,0\n\
                    FEDRAT/625,MMPM\nGOTO/20,0,0\nGOTO/30,0,0";
-    assert_eq!(told(between), [tap(1.0, false), tap(1.25, false)]);
+    assert_eq!(written(between), [tap(1.0, false), tap(1.25, false)]);
     let hand = "FEDRAT/1,MMPR\nCYCLE/TAP,FEDTO,10,RAPTO,5\nSPINDL/RPM,400,CCLW\nFEDRAT/1.5,MMPR\n\
                 GOTO/30,10,0";
-    assert_eq!(told(hand), [tap(1.5, true)]);
+    assert_eq!(written(hand), [tap(1.5, true)]);
     // Five turns are 0.6 s at 500 1/min and 0.3 s at 1000.
     let dwell = "CYCLE/FACE,FEDTO,10,RAPTO,5,DWELL,REV,5\nSPINDL/500,CLW\nGOTO/1,0,0\n\
                  SPINDL/1000,CLW\nGOTO/2,0,0";
-    assert_eq!(told(dwell), [(CycleKind::Drill, 0.6), (CycleKind::Drill, 0.3)]);
+    assert_eq!(written(dwell), [(CycleKind::Drill, 0.6), (CycleKind::Drill, 0.3)]);
     // The pitch is asked for where the hole is.
     let inverse = "FEDRAT/INVERS,2\nCYCLE/TAP,FEDTO,5,RAPTO,3";
-    assert_eq!(told(&format!("{inverse}\nFEDRAT/1,MMPR\nGOTO/1,0,0")), [tap(1.0, false)]);
+    assert_eq!(written(&format!("{inverse}\nFEDRAT/1,MMPR\nGOTO/1,0,0")), [tap(1.0, false)]);
     assert_eq!(error(&format!("{inverse}\nGOTO/1,0,0")), "tap-pitch");
 }
 

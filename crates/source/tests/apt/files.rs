@@ -160,7 +160,7 @@ fn arcs(program: &Program) -> Vec<(Arc, Option<Vec3>, Option<Vec3>)> {
 #[test]
 fn arcs_go_on_smoothly_from_the_straight_cuts_beside_them() {
     // By system: arcs with a tangent straight cut (within 3 degrees) if turned as read, arcs in all; none
-    // would have all its straight cuts tangent if turned the other way.
+    // would have all its straight cuts tangent in the other direction.
     for (system, expected, all) in [("makino", 49, 58), ("nx", 469, 647), ("solidworks", 700, 1571)]
     {
         let (mut count, mut smooth, mut reversed) = (0, 0, 0);
@@ -168,9 +168,9 @@ fn arcs_go_on_smoothly_from_the_straight_cuts_beside_them() {
             let Some(reading) = reading(name) else { return };
             for (arc, before, after) in arcs(&reading.program) {
                 let back = Arc { start: arc.end, end: arc.start, normal: -arc.normal, ..arc };
-                let beside =
+                let joints =
                     [before.map(|d| (d, arc.tangent())), after.map(|d| (d, -back.tangent()))];
-                let angles: Vec<f64> = beside
+                let angles: Vec<f64> = joints
                     .iter()
                     .flatten()
                     .map(|(d, t)| angle_between(*d, *t).to_degrees())
