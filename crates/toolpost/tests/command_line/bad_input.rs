@@ -291,61 +291,142 @@ fn a_byte_order_mark_is_no_part_of_a_text_and_utf_16_is_said() {
     }
 }
 
-/// Every kind of text that is read: a file of `fuzz/seeds`, and what reads it.
-const READERS: &[(&str, &str, &[&str])] = &[
-    ("apt/nx.cls", "in.cls", &["show", "in.cls"]),
-    ("iso/linuxcnc.nc", "in.ngc", &["show", "in.ngc", "--from", "linuxcnc"]),
-    ("iso/fanuc-milling.nc", "in.nc", &["show", "in.nc", "--from", "fanuc-31i"]),
-    ("sinumerik/style.mpf", "in.mpf", &["show", "in.mpf", "--from", "sinumerik-840d"]),
-    ("klartext/milling.h", "in.h", &["show", "in.h", "--from", "heidenhain-tnc640"]),
-    ("iso/grbl.nc", "in.nc", &["prove", "in.nc", "--against", "part.cls", "-m", "grbl-3018"]),
-    ("freecad/bracket.json", "in.json", &["show", "in.json"]),
-    ("excellon/holes.drl", "in.drl", &["pcb", "in.drl", "-m", "grbl-3018", "-o", "out"]),
-    ("gerber/pads.gbr", "in.gtl", &["pcb", "in.gtl", "-m", "grbl-3018", "-o", "out"]),
-    ("board/lamp.toml", "in.toml", &["pcb", "in.toml", "-m", "grbl-3018", "-o", "out"]),
-    ("board/two-pins.json", "in.json", &["pcb", "in.json", "-m", "grbl-3018", "-o", "out"]),
+/// Every kind of text that is read: a file of `fuzz/seeds`, its name, and what reads it.
+const READERS: &[(&str, &str, &str)] = &[
+    ("apt/nx.cls", "in.cls", "show in.cls"),
+    ("apt/nx.cls", "in.cls", "wire in.cls -m fanuc-wire -o out.nc"),
+    ("../../examples/plate.cls", "in.cls", "post in.cls -m generic-3axis-fanuc -o out.nc"),
     (
-        "kicad/v9.kicad_pcb",
-        "in.kicad_pcb",
-        &["pcb", "in.kicad_pcb", "-m", "grbl-3018", "-o", "out"],
+        "../../machines/samples/three-axes.cls",
+        "in.cls",
+        "prove fanuc.nc -m generic-3axis-fanuc --against in.cls",
     ),
+    ("iso/linuxcnc.nc", "in.ngc", "show in.ngc --from linuxcnc"),
+    ("iso/fanuc-milling.nc", "in.nc", "show in.nc --from fanuc-31i"),
+    ("iso/haas-subprograms.nc", "in.nc", "show in.nc --from haas"),
+    ("iso/grbl.nc", "in.nc", "prove in.nc --against part.cls -m grbl-3018"),
+    ("../../machines/samples/generic-3axis-iso.nc", "in.nc", "show in.nc --from iso"),
+    ("../../machines/samples/mach3-mill.tap", "in.tap", "show in.tap --from mach3"),
+    ("../../machines/samples/marlin-cnc.gcode", "in.gcode", "show in.gcode --from marlin"),
+    ("../../machines/samples/fanuc-wire.nc", "in.nc", "show in.nc --from fanuc-wire"),
+    ("../../machines/samples/sodick-iso.nc", "in.nc", "show in.nc --from sodick-iso"),
+    ("../../machines/samples/agie-iso.nc", "in.nc", "show in.nc --from agie-iso"),
+    ("../../machines/samples/bp-95d.pts", "in.pts", "prove in.pts -m bp-95d --against part.cls"),
+    ("sinumerik/style.mpf", "in.mpf", "show in.mpf --from sinumerik-840d"),
+    ("sinumerik/style.mpf", "in.mpf", "show in.mpf --from sinumerik-828d"),
+    ("klartext/milling.h", "in.h", "show in.h --from heidenhain-tnc640"),
+    (
+        "../../examples/flange.tbl",
+        "in.tbl",
+        "post flange.nc --from fanuc-31i --tools in.tbl -m generic-3axis-fanuc -o out.nc",
+    ),
+    ("../../examples/flange.tbl", "in.tbl", "show flange.nc --from fanuc-31i --tools in.tbl"),
+    (
+        "../../examples/flange.tbl",
+        "in.tbl",
+        "wire flange.nc --from fanuc-31i --tools in.tbl -m fanuc-wire -o out.nc",
+    ),
+    (
+        "../../examples/flange.tbl",
+        "in.tbl",
+        "prove fanuc.nc -m generic-3axis-fanuc --against flange.nc --from fanuc-31i --tools in.tbl",
+    ),
+    ("CALLED", "O0100", "show calls.nc --from fanuc-31i --folder ."),
+    (
+        "CALLED",
+        "O0100",
+        "post calls.nc --from fanuc-31i --folder . -m generic-3axis-fanuc -o out.nc",
+    ),
+    ("CALLED", "O0100", "wire calls.nc --from fanuc-31i --folder . -m fanuc-wire -o out.nc"),
+    (
+        "CALLED",
+        "O0100",
+        "prove calls.nc --folder . -m generic-3axis-fanuc --against calls.nc --from fanuc-31i",
+    ),
+    ("freecad/bracket.json", "in.json", "show in.json"),
+    ("freecad/part.dump", "in.dump", "show in.dump"),
+    ("excellon/holes.drl", "in.drl", "pcb in.drl -m grbl-3018 -o out"),
+    ("gerber/pads.gbr", "in.gtl", "pcb in.gtl -m grbl-3018 -o out"),
+    ("gerber/pads.gbr", "plots/in.gtl", "pcb plots -m grbl-3018 -o out"),
+    ("board/lamp.toml", "in.toml", "pcb in.toml -m grbl-3018 -o out"),
+    ("board/two-pins.json", "in.json", "pcb in.json -m grbl-3018 -o out"),
+    ("kicad/v6.kicad_pcb", "in.kicad_pcb", "pcb in.kicad_pcb -m grbl-3018 -o out"),
+    ("kicad/v9.kicad_pcb", "in.kicad_pcb", "pcb in.kicad_pcb -m grbl-3018 -o out"),
     (
         "levelling/table.txt",
         "in.txt",
-        &[
-            "pcb",
-            "board.toml",
-            "-m",
-            "grbl-3018",
-            "-o",
-            "out",
-            "--only",
-            "front",
-            "--heights",
-            "in.txt",
-        ],
+        "pcb board.toml -m grbl-3018 -o out --only front --heights in.txt",
     ),
-    ("wire/lines.dxf", "in.dxf", &["wire", "in.dxf", "-m", "fanuc-wire", "-o", "out.nc"]),
-    ("import/shop.pp", "in.pp", &["machines", "import", "in.pp", "-o", "mine.toml"]),
-    ("../../machines/grbl-3018.toml", "in.toml", &["machines", "check", "in.toml"]),
-    ("../../machines/grbl-3018.toml", "in.toml", &["machines", "new", "mine", "--from", "in.toml"]),
+    (
+        "levelling/grbl.txt",
+        "in.txt",
+        "pcb board.toml -m grbl-3018 -o out --only front --heights in.txt",
+    ),
+    (
+        "levelling/linuxcnc.txt",
+        "in.txt",
+        "pcb board.toml -m grbl-3018 -o out --only front --heights in.txt",
+    ),
+    ("wire/lines.dxf", "in.dxf", "wire in.dxf -m fanuc-wire -o out.nc"),
+    ("wire/lines.dxf", "in.dxf", "wire part.cls --upper in.dxf -m fanuc-wire -o out.nc"),
+    ("import/shop.pp", "in.pp", "machines import in.pp -o mine.toml"),
+    ("import/board.txt", "in.txt", "machines import in.txt -o mine.toml"),
+    ("MACHINE", "in.toml", "machines import shop.pp --extends in.toml -o mine.toml"),
+    ("MACHINE", "in.toml", "machines check in.toml"),
+    ("MACHINE", "in.toml", "machines check extends.toml"),
+    ("MACHINE", "in.toml", "machines new mine --from in.toml"),
+    ("MACHINE", "in.toml", "post part.cls -m in.toml -o out.nc"),
+    ("MACHINE", "in.toml", "prove fanuc.nc -m in.toml --against part.cls"),
+    ("MACHINE", "in.toml", "pcb board.toml -m in.toml -o out --only front"),
+    ("MACHINE", "in.toml", "post fanuc.nc --from in.toml -m generic-3axis-fanuc -o out.nc"),
+    (
+        "MACHINE",
+        "in.toml",
+        "prove fanuc.nc -m generic-3axis-fanuc --against fanuc.nc --from in.toml",
+    ),
+    ("MACHINE", "in.toml", "show fanuc.nc --from in.toml"),
+    ("MACHINE", "in.toml", "wire fanuc.nc --from in.toml -m fanuc-wire -o out.nc"),
+    ("WIRE", "in.toml", "wire part.cls -m in.toml -o out.nc"),
 ];
+
+/// The text of a row of [`READERS`].
+fn text_of(seed: &str) -> Vec<u8> {
+    match seed {
+        "CALLED" => b"%\nO0100\nG1 X40. F200.\nM99\n%\n".to_vec(),
+        "MACHINE" => b"extends = \"generic-3axis-fanuc\"\n".to_vec(),
+        "WIRE" => b"extends = \"fanuc-wire\"\n".to_vec(),
+        file => std::fs::read(seeds().join(file)).unwrap_or_else(|e| panic!("{file}: {e}")),
+    }
+}
+
+fn seeds() -> std::path::PathBuf {
+    std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds")
+}
+
+/// What the command of a row of [`READERS`] says where `name` has these bytes.
+fn reads(name: &str, bytes: &[u8], command: &str) -> Said {
+    const CALLS: &str = "%\nO0001\nG21 G90 G94 G17 G54\nT1 M6\nS900 M3\nG0 X0. Y0.\nG43 H1 Z5.\nG1 Z-1. F100.\nM98 P100\nG0 Z20.\nM5\n\
+                         G91 G28 Z0.\nG90\nM30\n%\n";
+    let folder = Folder::new();
+    folder.write("board.toml", text_of("board/lamp.toml"));
+    folder.write("flange.nc", text_of("../../examples/flange.nc"));
+    folder.write("fanuc.nc", text_of("../../machines/samples/generic-3axis-fanuc.nc"));
+    folder.write("shop.pp", text_of("import/shop.pp"));
+    folder.write("calls.nc", CALLS);
+    folder.write("extends.toml", "extends = \"in.toml\"\n");
+    folder.write("part.cls", SOURCE);
+    std::fs::create_dir(folder.path().join("plots")).unwrap();
+    folder.write(name, bytes);
+    folder.run(&command.split(' ').collect::<Vec<_>>())
+}
 
 #[test]
 fn every_reader_passes_over_a_byte_order_mark_and_explains_utf_16() {
-    let seeds = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("../../fuzz/seeds");
     for (seed, name, command) in READERS {
-        let text = std::fs::read(seeds.join(seed)).unwrap();
-        let run = |bytes: &[u8]| {
-            let folder = Folder::new();
-            let board = std::fs::read(seeds.join("board/lamp.toml")).unwrap();
-            folder.write("board.toml", board);
-            folder.write("part.cls", SOURCE);
-            folder.write(name, bytes);
-            folder.run(command)
-        };
-        let (plain, marked) = (run(&text), run(&[b"\xef\xbb\xbf", text.as_slice()].concat()));
-        assert_eq!((plain.code, &plain.err), (marked.code, &marked.err), "{seed}: {command:?}");
+        let text = text_of(seed);
+        let plain = reads(name, &text, command);
+        let marked = reads(name, &[b"\xef\xbb\xbf", text.as_slice()].concat(), command);
+        assert_eq!((plain.code, &plain.err), (marked.code, &marked.err), "{seed}: {command}");
         assert!(!plain.err.contains("UTF"), "{plain:?}");
         let units = || String::from_utf8_lossy(&text).encode_utf16().collect::<Vec<_>>();
         let little: Vec<u8> = units().into_iter().flat_map(u16::to_le_bytes).collect();
@@ -353,9 +434,86 @@ fn every_reader_passes_over_a_byte_order_mark_and_explains_utf_16() {
         for wide in
             [[&[0xff, 0xfe], &little[..]].concat(), [&[0xfe, 0xff], &big[..]].concat(), little]
         {
-            let said = run(&wide);
-            let explained = said.err.contains("this file is in UTF-16") && said.err.contains(name);
-            assert!(said.code != 0 && explained, "{seed}: {command:?}\n{said:?}");
+            let said = reads(name, &wide, command);
+            let file = name.rsplit('/').next().unwrap();
+            let explained = said.err.contains("is in UTF-16") && said.err.contains(file);
+            assert!(said.code != 0 && explained, "{seed}: {command}\n{said:?}");
         }
     }
+}
+
+/// A file that a command comes to read stands in [`READERS`], and so does a language: each place of a file in the help of a command,
+/// each control of the library, each folder of seeds.
+#[test]
+fn every_file_that_is_read_stands_in_the_list_of_readers() {
+    let folder = Folder::new();
+    let mut missing = Vec::new();
+    for command in [
+        "post",
+        "prove",
+        "show",
+        "wire",
+        "pcb",
+        "machines new",
+        "machines check",
+        "machines import",
+    ] {
+        let mut words: Vec<&str> = command.split(' ').collect();
+        words.push("--help");
+        let help = folder.run(&words).out;
+        for line in help.lines().map(str::trim).filter(|line| line.starts_with(['-', '<'])) {
+            let Some((before, place)) = line.split_once('<') else { continue };
+            let place = place.split_once('>').map_or(place, |(place, _)| place);
+            let flag = before.split([',', ' ']).filter(|word| word.starts_with('-')).next_back();
+            let is_file =
+                ["FILE", "NAME|FILE", "FOLDER", "SOURCE", "PROGRAM", "BOARD"].contains(&place);
+            // What is written.
+            if !is_file || matches!(flag, Some("--output" | "--picture")) {
+                continue;
+            }
+            let short = before.split([',', ' ']).find(|word| word.len() == 2);
+            let stands = READERS.iter().any(|(_, name, line)| {
+                let first = name.split('/').next().unwrap();
+                let Some(rest) = line.strip_prefix(command) else { return false };
+                let words: Vec<&str> = rest.split_whitespace().collect();
+                let at = words
+                    .iter()
+                    .position(|word| *word == first || *word == "." || *word == "extends.toml");
+                let Some(at) = at else { return false };
+                match flag {
+                    Some(_) => at > 0 && [flag, short].contains(&Some(words[at - 1])),
+                    None => at == 0,
+                }
+            });
+            if !stands {
+                missing.push(format!("{command} {} <{place}>", flag.unwrap_or_default()));
+            }
+        }
+    }
+    for control in std::fs::read_dir(seeds().join("../../controls")).unwrap() {
+        let name = control.unwrap().path().file_stem().unwrap().to_string_lossy().into_owned();
+        // These are read as the machines that build on them.
+        let machines: &[&str] = match name.as_str() {
+            "points" => &["bp-95d"],
+            "wire-iso" => &["fanuc-wire"],
+            "linuxcnc-switchkins" => &["linuxcnc"],
+            "grbl" => &["grbl-3018"],
+            _ => &[],
+        };
+        let named =
+            |line: &str| line.split(' ').any(|word| word == name || machines.contains(&word));
+        if !READERS.iter().any(|(_, _, line)| named(line)) {
+            missing.push(name);
+        }
+    }
+    for kind in std::fs::read_dir(seeds()).unwrap() {
+        let name = kind.unwrap().file_name().to_string_lossy().into_owned();
+        // Cutter-location data for the writer, and bytes that draw regions.
+        if !["post", "region"].contains(&name.as_str())
+            && !READERS.iter().any(|(seed, _, _)| seed.starts_with(&format!("{name}/")))
+        {
+            missing.push(name);
+        }
+    }
+    assert!(missing.is_empty(), "{missing:?}");
 }
