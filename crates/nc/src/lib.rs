@@ -43,12 +43,21 @@ use geom::{Arc, Vec3};
 use machine::{LengthOffset, Machine, Mount, RotaryFeed};
 use program::{
     ArcTo, Axes, Circle, CompensatedPath, Cycle, Diagnostic, Feed, MachineMove, Op, Outcome, Pose,
-    Probe, Program, Record, Severity, Thread, Tool, WorkOffset,
+    Probe, Program, Record, Severity, Spindle, Thread, Tool, WorkOffset,
 };
 use std::collections::{BTreeSet, HashMap};
 
 /// Most records of a reading, which are kept in memory: a program of a few lines can loop to more.
 const MOST_RECORDS: usize = 20_000_000;
+
+/// The farthest place, mm, as in cutter-location data.
+const FARTHEST: f64 = 1e6;
+
+/// The farthest centre of an arc, mm: one that is nearly straight has a far one.
+const FARTHEST_CENTER: f64 = 1e9;
+
+/// The largest feed, speed (1/min) and dwell (s).
+const LARGEST: f64 = 1e9;
 
 /// The most points of one rapid in a picture.
 const MOST_PLACES: f64 = 1440.0;
@@ -490,6 +499,7 @@ impl<'a> Conversion<'a> {
             return Err(refuse("program-length", message, help));
         }
         let position = event.action.position().copied();
+        within_reach(&event.action)?;
         if let (Action::Arc(_) | Action::Hole(_) | Action::Probe(_), Some(feed)) =
             (&event.action, self.feed)
         {
@@ -1014,6 +1024,33 @@ fn unknown(what: &str, pose: &PartialPose) -> Box<Diagnostic> {
 }
 
 /// An error; its line is that of the record at hand.
+/// Refuses what is beyond every machine: sums over such places and times are infinite.
+fn within_reach(action: &Action) -> Outcome {
+    let place = action.position().map_or(0.0, |to| to.point.abs().max_element());
+    let (what, number, most, unit) = if let Action::Arc(arc) = action
+        && place <= FARTHEST
+    {
+        ("the centre lies", arc.center.abs().max_element(), FARTHEST_CENTER, " mm away")
+    } else if let Action::Dwell(seconds) = action {
+        ("the dwell takes", *seconds, LARGEST, " s")
+    } else if let Action::Feed(feed) = action {
+        ("the feed is", feed.value(), LARGEST, "")
+    } else if let Action::Spindle(Spindle::Clockwise(speed) | Spindle::CounterClockwise(speed)) =
+        action
+    {
+        ("the spindle speed is", *speed, LARGEST, "")
+    } else {
+        ("the place lies", place, FARTHEST, " mm away")
+    };
+    // What nobody knows is not far.
+    if number.is_nan() || number <= most {
+        return Ok(());
+    }
+    let message =
+        format!("{what} {number:e}{unit}: more than {most}{unit} is beyond every machine");
+    Err(refuse("out-of-range", message, "check the numbers of the block, and the unit (G20, G21)"))
+}
+
 fn refuse(rule: &'static str, message: impl Into<String>, help: &str) -> Box<Diagnostic> {
     Diagnostic::error(rule, message).help(help).into()
 }

@@ -379,3 +379,25 @@ fn a_tool_that_cuts_with_and_without_its_length_offset_is_refused() {
     // Up and home without it is no cut.
     fanuc(&format!("{start}G43 H2\n{CUT}G49 G0 Z9.\nM30\n"));
 }
+
+/// Nothing is 1 km away, as in cutter-location data: sums over such places are infinite, and no summary could say them.
+#[test]
+fn a_place_beyond_every_machine_is_refused_with_its_line() {
+    let digits = "9".repeat(300);
+    const START: &str = "G21 G90 G94\nT1 M6\nS100 M3\nG0 X0. Y0. Z5.\n";
+    for block in [
+        format!("G1 Z-{digits}. F100."),
+        "G0 X1000001.".into(),
+        format!("G2 X10. Y0. I{digits}. J0. F100."),
+        "G91 G0 X900000.\nX900000.".into(),
+    ] {
+        let error = refused(&format!("{START}{block}\nM30\n"));
+        let line = 5 + block.matches('\n').count() as u32;
+        assert_eq!((error.rule, error.line), ("out-of-range", line), "{block}");
+        assert!(error.message.len() < 200, "{error}");
+    }
+    for block in [format!("G4 X{digits}."), format!("G1 X5. F{digits}."), format!("S{digits} M3")] {
+        assert_eq!(refused(&format!("{START}{block}\nM30\n")).rule, "out-of-range", "{block}");
+    }
+    assert!(ways(&fanuc(&format!("{START}G1 X1000000. F100.\nM30\n"))).len() > 1);
+}

@@ -62,7 +62,7 @@ impl Diagnostic {
         Diagnostic {
             severity,
             rule,
-            message,
+            message: readable(message),
             help: way_out(rule).into(),
             file: String::new(),
             line: 0,
@@ -78,7 +78,7 @@ impl Diagnostic {
     pub fn help(mut self, help: impl Into<String>) -> Diagnostic {
         let help = help.into();
         if !help.is_empty() {
-            self.help = help;
+            self.help = readable(help);
         }
         self
     }
@@ -196,6 +196,25 @@ impl fmt::Display for Diagnostic {
 
 impl std::error::Error for Diagnostic {}
 
+/// The most digits in a row that a message says.
+const MOST_DIGITS: usize = 24;
+
+/// A text in which no number is longer than anybody reads.
+fn readable(text: String) -> String {
+    let digits = |part: &str| part.bytes().all(|byte| byte.is_ascii_digit());
+    if !text.as_bytes().windows(MOST_DIGITS + 1).any(|part| part.iter().all(u8::is_ascii_digit)) {
+        return text;
+    }
+    let parts = text.as_bytes().chunk_by(|a, b| a.is_ascii_digit() == b.is_ascii_digit());
+    let parts = parts.map(String::from_utf8_lossy).map(|part| {
+        match part.len() > MOST_DIGITS && digits(&part) {
+            true => format!("{}…", &part[..16]),
+            false => part.into_owned(),
+        }
+    });
+    parts.collect()
+}
+
 /// A number with a comma between each three digits.
 fn thousands(number: u32) -> String {
     let digits = number.to_string();
@@ -216,6 +235,12 @@ pub fn nearest<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> String {
     ranked.iter().map(|(_, k)| format!("`{k}`")).collect::<Vec<_>>().join(", ")
 }
 
+/// The least length (mm), feed or speed that a setting takes where it is above 0.
+pub const LEAST_SETTING: f64 = 1e-6;
+
+/// The largest length (mm), feed (mm/min) or speed (1/min) that a setting takes: beyond every machine.
+pub const MOST_SETTING: f64 = 1e5;
+
 /// Checks that a setting is a number within its bounds.
 ///
 /// # Errors
@@ -224,12 +249,7 @@ pub fn within(name: &str, value: f64, low: f64, high: f64) -> Result<(), Box<Dia
     if (low..=high).contains(&value) {
         return Ok(());
     }
-    let help = match (low == f64::MIN_POSITIVE, high == f64::MAX) {
-        (true, true) => String::from("give a number above 0"),
-        (true, false) => format!("give a number above 0, up to {high}"),
-        (false, true) => format!("give a number, {low} or more"),
-        (false, false) => format!("give a number from {low} to {high}"),
-    };
+    let help = format!("give a number from {low} to {high}");
     Err(Diagnostic::error("setting", format!("`{name}` is {value}")).help(help).into())
 }
 
@@ -243,6 +263,17 @@ impl From<Box<Diagnostic>> for Vec<Diagnostic> {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn a_number_of_many_digits_is_cut() {
+        let digits = "1234567890".repeat(30);
+        let found = Diagnostic::error("path", format!("Q1 is {digits}, not -0.{digits} mm"))
+            .help(format!("give {digits}"));
+        assert_eq!(found.message, "Q1 is 1234567890123456…, not -0.1234567890123456… mm");
+        assert_eq!(found.help, "give 1234567890123456…");
+        let kept = "at X 1234567890123456789012.5, 2026-11-24";
+        assert_eq!(Diagnostic::warning("path", kept).message, kept);
+    }
 
     #[test]
     fn a_slip_of_the_keyboard_finds_the_name_that_was_meant() {

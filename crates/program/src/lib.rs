@@ -36,7 +36,9 @@ pub use compensated::{CompensatedPath, PathEvidence};
 pub use counted::Findings;
 pub use cut_box::CutBox;
 pub use cycle::*;
-pub use diagnostic::{Diagnostic, Outcome, Severity, line_of, nearest, within};
+pub use diagnostic::{
+    Diagnostic, LEAST_SETTING, MOST_SETTING, Outcome, Severity, line_of, nearest, within,
+};
 pub use digest::Digest;
 pub use motion::*;
 pub use pose::{FullPose, NoPose, Pose};

@@ -6,7 +6,7 @@ use crate::segment::{ByControl, Segment};
 use crate::taper::Rounding;
 use crate::{Contour, Lead, LeadShape, OffsetContour, Path};
 use geom::Vec2;
-use program::{Compensation, Diagnostic, within};
+use program::{Compensation, Diagnostic, LEAST_SETTING, MOST_SETTING, within};
 
 /// How contours are cut.
 #[derive(Clone, Debug, PartialEq)]
@@ -48,13 +48,12 @@ impl Cutting {
     /// # Errors
     /// `setting`, with the name of the first that does not; a setting of the wire's side where no side is given.
     pub fn check(&self) -> Result<(), Box<Diagnostic>> {
-        const ANY: f64 = f64::MAX;
         let above = |name, values: &[f64]| {
-            values.iter().try_for_each(|value| within(name, *value, f64::MIN_POSITIVE, ANY))
+            values.iter().try_for_each(|value| within(name, *value, LEAST_SETTING, MOST_SETTING))
         };
-        within("wire", self.wire, 0.0, ANY)?;
-        within("gap", self.gap, 0.0, ANY)?;
-        within("lead", self.lead.length, 0.0, ANY)?;
+        within("wire", self.wire, 0.0, MOST_SETTING)?;
+        within("gap", self.gap, 0.0, MOST_SETTING)?;
+        within("lead", self.lead.length, 0.0, MOST_SETTING)?;
         if let LeadShape::Arc(radius) = self.lead.shape {
             above("lead_arc", &[radius])?;
         }
@@ -62,7 +61,9 @@ impl Cutting {
         above("feed", &self.feeds)?;
         above("tab", self.tab.as_slice())?;
         for place in self.thread.iter().chain(&self.begin) {
-            [place.x, place.y].into_iter().try_for_each(|mm| within("thread", mm, -ANY, ANY))?;
+            [place.x, place.y]
+                .into_iter()
+                .try_for_each(|mm| within("thread", mm, -MOST_SETTING, MOST_SETTING))?;
         }
         let wants_side = Cutting { begin: None, feeds: Vec::new(), ..self.clone() };
         if self.side.is_none() && wants_side != Cutting::default() {

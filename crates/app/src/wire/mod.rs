@@ -17,7 +17,7 @@ use ::wire::cutting::{self, Cutting};
 use ::wire::points::{Refusal, Step, points};
 use ::wire::segment::Segment;
 use machine::{Machine, Wire};
-use program::{Diagnostic, within};
+use program::{Diagnostic, LEAST_SETTING, MOST_SETTING, within};
 use report::Cut;
 use serde_json::json;
 use source::Source;
@@ -57,11 +57,10 @@ impl Settings {
     /// # Errors
     /// `setting`, with the name of the first that does not.
     fn check(&self) -> Result<(), Box<Diagnostic>> {
-        const ABOVE: f64 = f64::MIN_POSITIVE;
         self.cutting.check()?;
-        within("close", self.close, ABOVE, f64::MAX)?;
-        within("height", self.height.unwrap_or(ABOVE), ABOVE, f64::MAX)?;
-        within("uv_height", self.uv_height.unwrap_or(ABOVE), ABOVE, f64::MAX)
+        within("close", self.close, LEAST_SETTING, MOST_SETTING)?;
+        within("height", self.height.unwrap_or(LEAST_SETTING), LEAST_SETTING, MOST_SETTING)?;
+        within("uv_height", self.uv_height.unwrap_or(LEAST_SETTING), LEAST_SETTING, MOST_SETTING)
     }
 }
 

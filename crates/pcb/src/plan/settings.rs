@@ -3,7 +3,7 @@
 use crate::board::Face;
 use crate::isolation::{Direction, Narrow};
 use geom::Vec2;
-use program::{Diagnostic, within};
+use program::{Diagnostic, LEAST_SETTING, MOST_SETTING, within};
 
 /// How a board is made. The default has no tool that cuts around copper.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -24,11 +24,8 @@ pub struct Settings {
     pub running: Running,
 }
 
-/// A number greater than 0.
-const ABOVE: f64 = f64::MIN_POSITIVE;
-
-/// No upper bound.
-const ANY: f64 = f64::MAX;
+/// The least angle of a V-bit, and the least by which it is no flat end, degrees.
+const SHARPEST: f64 = 0.1;
 
 /// The thinnest step down that a machine makes, mm.
 const THINNEST: f64 = 0.001;
@@ -46,44 +43,46 @@ impl Settings {
     /// `setting`, with the name of the first that does not; two settings of which one leaves the other no meaning.
     pub fn check(&self) -> Result<(), Box<Diagnostic>> {
         let Settings { only: _, isolation, clearing, drilling, outline, placing, running } = self;
-        let given = |name, value: Option<f64>, low| (name, value.unwrap_or(low), low, ANY);
+        let given = |name, value: Option<f64>, low| (name, value.unwrap_or(low), low, MOST_SETTING);
         let lines = |name, [a, b]: [u32; 2]| [a, b].map(|n| (name, f64::from(n), 1.0, MOST_LINES));
-        let widths = clearing.clear.iter().map(|width| ("clear", *width, ABOVE, ANY));
-        let drills = drilling.drills.iter().map(|width| ("drills", *width, ABOVE, ANY));
+        let widths =
+            clearing.clear.iter().map(|width| ("clear", *width, LEAST_SETTING, MOST_SETTING));
+        let drills =
+            drilling.drills.iter().map(|width| ("drills", *width, LEAST_SETTING, MOST_SETTING));
         let corner = placing.corner.unwrap_or_default();
         let all = [
-            given("tool", isolation.tool, ABOVE),
-            ("vee", isolation.vee.unwrap_or(ABOVE), ABOVE, 180.0),
-            ("tip", isolation.tip, 0.0, ANY),
-            ("depth", isolation.depth, ABOVE, ANY),
+            given("tool", isolation.tool, LEAST_SETTING),
+            ("vee", isolation.vee.unwrap_or(SHARPEST), SHARPEST, 180.0 - SHARPEST),
+            ("tip", isolation.tip, 0.0, MOST_SETTING),
+            ("depth", isolation.depth, LEAST_SETTING, MOST_SETTING),
             given("step", isolation.step, THINNEST),
             ("passes", f64::from(isolation.passes), 1.0, MOST),
             ("overlap", isolation.overlap, 0.0, 0.95),
-            ("margin", clearing.margin, 0.0, ANY),
-            given("mask_tool", clearing.mask_tool, ABOVE),
-            given("legend_tool", clearing.legend_tool, ABOVE),
-            ("engrave", clearing.engrave, ABOVE, ANY),
-            ("drill_tolerance", drilling.drill_tolerance, 0.0, ANY),
-            given("hole_mill", drilling.hole_mill, ABOVE),
+            ("margin", clearing.margin, 0.0, MOST_SETTING),
+            given("mask_tool", clearing.mask_tool, LEAST_SETTING),
+            given("legend_tool", clearing.legend_tool, LEAST_SETTING),
+            ("engrave", clearing.engrave, LEAST_SETTING, MOST_SETTING),
+            ("drill_tolerance", drilling.drill_tolerance, 0.0, MOST_SETTING),
+            given("hole_mill", drilling.hole_mill, LEAST_SETTING),
             given("peck", drilling.peck, THINNEST),
-            ("outline_tool", outline.outline_tool, ABOVE, ANY),
-            ("outline_step", outline.outline_step, THINNEST, ANY),
+            ("outline_tool", outline.outline_tool, LEAST_SETTING, MOST_SETTING),
+            ("outline_step", outline.outline_step, THINNEST, MOST_SETTING),
             ("tabs", f64::from(outline.tabs), 0.0, MOST),
-            ("tab_width", outline.tab_width, ABOVE, ANY),
-            ("tab_height", outline.tab_height, ABOVE, ANY),
-            ("thickness", placing.thickness, ABOVE, ANY),
-            ("through", placing.through, 0.0, ANY),
-            ("corner", corner.x, -ANY, ANY),
-            ("corner", corner.y, -ANY, ANY),
-            given("alignment", placing.alignment, ABOVE),
-            ("spacing", placing.spacing, 0.0, ANY),
-            ("feed", running.feed, ABOVE, ANY),
-            ("plunge", running.plunge, ABOVE, ANY),
-            ("drill_feed", running.drill_feed, ABOVE, ANY),
-            ("outline_feed", running.outline_feed, ABOVE, ANY),
-            given("speed", running.speed, ABOVE),
-            ("travel", running.travel, ABOVE, ANY),
-            ("approach", running.approach, ABOVE, ANY),
+            ("tab_width", outline.tab_width, LEAST_SETTING, MOST_SETTING),
+            ("tab_height", outline.tab_height, LEAST_SETTING, MOST_SETTING),
+            ("thickness", placing.thickness, LEAST_SETTING, MOST_SETTING),
+            ("through", placing.through, 0.0, MOST_SETTING),
+            ("corner", corner.x, -MOST_SETTING, MOST_SETTING),
+            ("corner", corner.y, -MOST_SETTING, MOST_SETTING),
+            given("alignment", placing.alignment, LEAST_SETTING),
+            ("spacing", placing.spacing, 0.0, MOST_SETTING),
+            ("feed", running.feed, LEAST_SETTING, MOST_SETTING),
+            ("plunge", running.plunge, LEAST_SETTING, MOST_SETTING),
+            ("drill_feed", running.drill_feed, LEAST_SETTING, MOST_SETTING),
+            ("outline_feed", running.outline_feed, LEAST_SETTING, MOST_SETTING),
+            given("speed", running.speed, LEAST_SETTING),
+            ("travel", running.travel, LEAST_SETTING, MOST_SETTING),
+            ("approach", running.approach, LEAST_SETTING, MOST_SETTING),
         ];
         let grids = lines("panel", placing.panel.unwrap_or([1, 1])).into_iter();
         let grids = grids.chain(lines("probe", running.probe.unwrap_or([1, 1])));

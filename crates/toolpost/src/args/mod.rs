@@ -10,7 +10,7 @@ use clap::{Args, Parser, Subcommand, value_parser};
 use clap_complete::Shell;
 use control::{Units, WholeNumbers};
 use geom::{Vec2, Vec3};
-use program::CompensatedPath;
+use program::{CompensatedPath, LEAST_SETTING, MOST_SETTING};
 use proof::{Accepted, Tolerances};
 use source::apt::Csys;
 use std::path::PathBuf;
@@ -549,11 +549,13 @@ pub enum Machines {
     },
 }
 
-/// A length in mm, greater than 0.
+/// A length, a feed or a speed, greater than 0.
 fn length(text: &str) -> Result<f64, String> {
     match text.parse::<f64>() {
-        Ok(mm) if mm > 0.0 && mm.is_finite() => Ok(mm),
-        _ => Err(String::from("a length in mm greater than 0 is needed, such as 0.01")),
+        Ok(mm) if (LEAST_SETTING..=MOST_SETTING).contains(&mm) => Ok(mm),
+        _ => Err(format!(
+            "a number greater than 0 is needed, {LEAST_SETTING} to {MOST_SETTING}, such as 0.01"
+        )),
     }
 }
 
@@ -594,9 +596,10 @@ fn pair(text: &str) -> Result<[f64; 4], String> {
     lengths(text).ok_or_else(|| String::from("four lengths in mm are needed, such as 10,-5,12,-6"))
 }
 
-/// So many finite numbers, parted by commas.
+/// So many numbers, none beyond what a setting takes, parted by commas.
 fn lengths<const N: usize>(text: &str) -> Option<[f64; N]> {
-    let part = |part: &str| part.trim().parse().ok().filter(|value: &f64| value.is_finite());
+    let part =
+        |part: &str| part.trim().parse().ok().filter(|value: &f64| value.abs() <= MOST_SETTING);
     let parts: Option<Vec<f64>> = text.split(',').map(part).collect();
     parts?.try_into().ok()
 }

@@ -341,7 +341,7 @@ pub struct Running {
 fn not_negative(text: &str) -> Result<f64, String> {
     match lengths(text) {
         Some([mm]) if mm >= 0.0 => Ok(mm),
-        _ => Err(String::from("a length in mm is needed, 0 or more, such as 0.1")),
+        _ => Err(String::from("a length in mm is needed, from 0 to 100000, such as 0.1")),
     }
 }
 
@@ -349,15 +349,19 @@ fn not_negative(text: &str) -> Result<f64, String> {
 fn step(text: &str) -> Result<f64, String> {
     match lengths(text) {
         Some([mm]) if mm >= 0.001 => Ok(mm),
-        _ => Err(String::from("a length in mm is needed, 0.001 or more, such as 0.1")),
+        _ => {
+            Err(String::from("a length in mm is needed, 0.001 or more, up to 100000, such as 0.1"))
+        }
     }
 }
 
 /// An angle between the edges of a V-bit, degrees.
 fn angle(text: &str) -> Result<f64, String> {
     match lengths(text) {
-        Some([degrees]) if degrees > 0.0 && degrees < 180.0 => Ok(degrees),
-        _ => Err(String::from("an angle above 0 and below 180 degrees is needed, such as 30")),
+        Some([degrees]) if (0.1..=179.9).contains(&degrees) => Ok(degrees),
+        _ => Err(String::from(
+            "an angle above 0 and below 180 degrees is needed, 0.1 to 179.9, such as 30",
+        )),
     }
 }
 

@@ -517,3 +517,29 @@ fn every_file_that_is_read_stands_in_the_list_of_readers() {
     }
     assert!(missing.is_empty(), "{missing:?}");
 }
+
+/// A number of 300 digits in place of some numbers of a text: nothing that is said of it repeats them but the line itself, which is
+/// cut, and names that hold them.
+#[test]
+fn no_message_says_a_number_of_300_digits() {
+    let many = "9".repeat(300);
+    for (seed, name, command) in READERS {
+        let text = String::from_utf8_lossy(&text_of(seed)).into_owned();
+        let bytes = text.as_bytes();
+        let begins = |at: &usize| {
+            bytes[*at].is_ascii_digit()
+                && !bytes[at - 1].is_ascii_alphanumeric()
+                && bytes[at - 1] != b'.'
+        };
+        let starts: Vec<usize> = (1..bytes.len()).filter(begins).collect();
+        for &at in starts.iter().step_by(1 + starts.len() / 4) {
+            let end = at + bytes[at..].iter().take_while(|b| b.is_ascii_digit()).count();
+            let text = format!("{}{many}{}", &text[..at], &text[end..]);
+            let said = reads(name, text.as_bytes(), command);
+            let long = |line: &&str| !line.starts_with("    | ") && line.contains(&many[..40]);
+            let zeros = |line: &&str| line.contains(&"0".repeat(40));
+            let found = said.err.lines().find(|line| long(line) || zeros(line));
+            assert_eq!(found, None, "{command}: {}", &text[at.saturating_sub(30)..at]);
+        }
+    }
+}

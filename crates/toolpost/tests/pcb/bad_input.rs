@@ -414,3 +414,46 @@ fn an_output_among_the_files_of_the_board() {
     assert_eq!(said.code, 2);
     assert!(said.err.contains("error[output-folder]"), "{}", said.err);
 }
+
+/// A tool of 10^300 mm took minutes and gigabytes; one of 10^-300 mm was written out with all its noughts.
+#[test]
+fn numbers_beyond_every_machine_are_refused_at_once() {
+    let folder = small();
+    for name in [
+        "depth",
+        "step",
+        "clear",
+        "mask-tool",
+        "legend-tool",
+        "engrave",
+        "drills",
+        "hole-mill",
+        "peck",
+        "outline-tool",
+        "outline-step",
+        "tab-width",
+        "tab-height",
+        "thickness",
+        "through",
+        "alignment",
+        "feed",
+        "plunge",
+        "drill-feed",
+        "outline-feed",
+        "speed",
+        "travel",
+        "approach",
+    ] {
+        let option = format!("--{name}");
+        for number in ["1e300", "100001"] {
+            bad_call(&folder, &[&option, number], &[&option, "100000"]);
+        }
+    }
+    for [option, number] in
+        [["--tool", "1e300"], ["--tool", "1e-300"], ["--vee", "1e-300"], ["--vee", "179.99"]]
+    {
+        let call = ["pcb", "board", "-o", "out", "-m", "grbl-3018", option, number];
+        refused(&folder, &call, 2, &[option]);
+    }
+    bad_call(&folder, &["--corner", "1e300,0"], &["--corner"]);
+}
