@@ -442,29 +442,34 @@ fn every_reader_passes_over_a_byte_order_mark_and_explains_utf_16() {
     }
 }
 
+/// The commands below one, that have none below them.
+fn commands(folder: &Folder, above: &str) -> Vec<String> {
+    let words: Vec<&str> =
+        above.split(' ').filter(|word| !word.is_empty()).chain(["--help"]).collect();
+    let help = folder.run(&words).out;
+    let Some((_, list)) = help.split_once("Commands:\n") else { return vec![above.to_owned()] };
+    let names = list.lines().take_while(|line| !line.is_empty());
+    let names = names.filter(|line| line.starts_with("  ") && !line.starts_with("   "));
+    let names =
+        names.filter_map(|line| line.split_whitespace().next()).filter(|name| *name != "help");
+    names.flat_map(|name| commands(folder, format!("{above} {name}").trim())).collect()
+}
+
 /// A file that a command comes to read stands in [`READERS`], and so does a language: each place of a file in the help of a command,
 /// each control of the library, each folder of seeds.
 #[test]
 fn every_file_that_is_read_stands_in_the_list_of_readers() {
     let folder = Folder::new();
     let mut missing = Vec::new();
-    for command in [
-        "post",
-        "prove",
-        "show",
-        "wire",
-        "pcb",
-        "machines new",
-        "machines check",
-        "machines import",
-    ] {
+    for command in commands(&folder, "") {
+        let command = command.as_str();
         let mut words: Vec<&str> = command.split(' ').collect();
         words.push("--help");
         let help = folder.run(&words).out;
         for line in help.lines().map(str::trim).filter(|line| line.starts_with(['-', '<'])) {
             let Some((before, place)) = line.split_once('<') else { continue };
             let place = place.split_once('>').map_or(place, |(place, _)| place);
-            let flag = before.split([',', ' ']).filter(|word| word.starts_with('-')).next_back();
+            let flag = before.split([',', ' ']).rfind(|word| word.starts_with('-'));
             let is_file =
                 ["FILE", "NAME|FILE", "FOLDER", "SOURCE", "PROGRAM", "BOARD"].contains(&place);
             // What is written.
