@@ -399,5 +399,5 @@ fn a_place_beyond_every_machine_is_refused_with_its_line() {
     for block in [format!("G4 X{digits}."), format!("G1 X5. F{digits}."), format!("S{digits} M3")] {
         assert_eq!(refused(&format!("{START}{block}\nM30\n")).rule, "out-of-range", "{block}");
     }
-    assert!(ways(&fanuc(&format!("{START}G1 X1000000. F100.\nM30\n"))).len() > 1);
+    assert!(fanuc(&format!("{START}G1 X1000000. F100.\nM30\n")).records.len() > 3);
 }
