@@ -10,6 +10,7 @@ pub(crate) mod budget;
 pub(crate) mod compensation;
 pub(crate) mod corner;
 pub(crate) mod decimal;
+pub(crate) mod expression;
 pub(crate) mod folders;
 pub(crate) mod relay;
 pub(crate) mod way;

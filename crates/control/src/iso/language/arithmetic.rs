@@ -10,7 +10,7 @@ const NEAR: f64 = 1e-4;
 const MOST_BITS: f64 = 2_147_483_647.0;
 
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(super) enum Binary {
+pub(crate) enum Binary {
     Power,
     Times,
     Divide,

@@ -18,13 +18,11 @@ use super::block::Fault;
 use super::parameters::Values;
 use crate::iso::dialects::facts::Language;
 use crate::kernel::decimal;
+use crate::kernel::expression::{Grammar, Next, Rank, Span, evaluate};
 use program::Diagnostic;
 
 /// A calculated number; `None` is the null of a macro variable that holds nothing.
 pub(super) type Value = Option<f64>;
-
-/// How deep brackets, signs and `##` may nest.
-const DEEPEST: u32 = 100;
 
 /// How deep brackets may nest in macro B (B-63684EN, 16.3: alarm 118).
 const DEEPEST_MACRO: u32 = 5;
@@ -36,7 +34,7 @@ pub(crate) struct Reader<'t, 'v> {
     text: &'t [u8],
     /// The next byte.
     pub at: usize,
-    depth: u32,
+    depth: usize,
     brackets: u32,
 }
 
@@ -80,27 +78,21 @@ impl<'t, 'v> Reader<'t, 'v> {
 
     /// A number: written, of a parameter, of a function, or in brackets; with signs.
     pub(crate) fn value(&mut self) -> Result<Value, Fault> {
-        if self.depth >= DEEPEST {
-            return Err(self.wrong("the expression nests too deep"));
-        }
-        self.depth += 1;
-        let value = match self.peek() {
-            Some(b'[') => self.expression(),
-            Some(b'#') => self.parameter(),
+        self.nested(|reader| match reader.peek() {
+            Some(b'[') => reader.expression(),
+            Some(b'#') => reader.parameter(),
             Some(b'+') => {
-                self.at += 1;
-                self.value()
+                reader.at += 1;
+                reader.value()
             }
             Some(b'-') => {
-                self.at += 1;
-                self.value().map(|value| value.map(|value| -value))
+                reader.at += 1;
+                reader.value().map(|value| value.map(|value| -value))
             }
-            Some(b'0'..=b'9' | b'.') => self.number(),
-            Some(b'A'..=b'Z' | b'a'..=b'z') => self.function(),
-            _ => Err(self.wrong("a number is missing")),
-        }?;
-        self.depth -= 1;
-        Ok(value)
+            Some(b'0'..=b'9' | b'.') => reader.number(),
+            Some(b'A'..=b'Z' | b'a'..=b'z') => reader.function(),
+            _ => Err(reader.wrong("a number is missing")),
+        })
     }
 
     fn number(&mut self) -> Result<Value, Fault> {
@@ -112,13 +104,13 @@ impl<'t, 'v> Reader<'t, 'v> {
 
     /// Numbers and operators, as they stand behind the `=` of macro B.
     pub(crate) fn formula(&mut self) -> Result<Value, Fault> {
-        self.chain(0)
+        evaluate(self)
     }
 
     /// An expression in brackets.
     pub(crate) fn expression(&mut self) -> Result<Value, Fault> {
         self.open()?;
-        let value = self.chain(0)?;
+        let value = evaluate(self)?;
         self.close()?;
         Ok(value)
     }
@@ -178,45 +170,6 @@ impl<'t, 'v> Reader<'t, 'v> {
         self.values.get(target).map_err(|message| self.fault("nc-parameter", message, start))
     }
 
-    /// Numbers and operators of rank `least` and above.
-    fn chain(&mut self, least: u8) -> Result<Value, Fault> {
-        let start = self.at;
-        let mut left = self.value()?;
-        while let Some((operator, length)) = self.operator() {
-            let rank = operator.rank(self.values.language());
-            if rank < least {
-                break;
-            }
-            self.at += length;
-            let right = self.chain(rank + 1)?;
-            let result = match self.values.language() {
-                Language::MacroB => macro_binary(operator, left, right),
-                _ => ngc_binary(operator, left.unwrap_or(0.0), right.unwrap_or(0.0)).map(Some),
-            };
-            left = self.checked(result, start)?;
-        }
-        Ok(left)
-    }
-
-    /// The operator here and its length.
-    fn operator(&mut self) -> Option<(Binary, usize)> {
-        let symbol = match self.peek()? {
-            b'+' => Binary::Plus,
-            b'-' => Binary::Minus,
-            b'/' => Binary::Divide,
-            b'*' if self.text.get(self.at + 1) == Some(&b'*')
-                && self.values.language() != Language::MacroB =>
-            {
-                return Some((Binary::Power, 2));
-            }
-            b'*' => Binary::Times,
-            // The first RS274/NGC does not compare.
-            _ if self.values.language() == Language::Rs274 => return self.word(&BINARY[6..]),
-            _ => return self.word(&BINARY),
-        };
-        Some((symbol, 1))
-    }
-
     /// The word of `table` that stands here and its length. Macro B has no small letters.
     fn word<T: Copy>(&self, table: &[(&[u8], T)]) -> Option<(T, usize)> {
         let rest = self.text.get(self.at..)?;
@@ -244,14 +197,14 @@ impl<'t, 'v> Reader<'t, 'v> {
         if function == Function::Exists {
             return self.exists();
         }
-        let first = self.chain(0)?;
+        let first = evaluate(self)?;
         let second = self.second_argument(function)?;
         let result = match (self.values.language(), second) {
             (Language::MacroB, second) => macro_function(function, first, second),
             (_, Some(second)) => Ok(first.unwrap_or(0.0).atan2(second).to_degrees()),
             (_, None) => ngc_function(function, first.unwrap_or(0.0)),
         };
-        self.checked(result.map(Some), start)
+        self.checked(result.map(Some), start, self.at)
     }
 
     /// The second argument of `ATAN[ ]/[ ]`, `ATAN[ , ]` and `POW[ , ]`, behind the first one.
@@ -259,7 +212,7 @@ impl<'t, 'v> Reader<'t, 'v> {
         let macro_b = self.values.language() == Language::MacroB;
         let pair = macro_b && matches!(function, Function::Atan | Function::Pow);
         if pair && self.take(b',') {
-            let second = self.chain(0)?;
+            let second = evaluate(self)?;
             self.close()?;
             return Ok(Some(second.unwrap_or(0.0)));
         }
@@ -290,12 +243,18 @@ impl<'t, 'v> Reader<'t, 'v> {
 
     /// # Errors
     /// There is no result, or none that is a number.
-    fn checked(&self, result: Result<Value, &'static str>, start: usize) -> Result<Value, Fault> {
-        match result {
-            Ok(value) if value.is_none_or(f64::is_finite) => Ok(value),
-            Ok(_) => Err(self.fault("nc-arithmetic", "the result is beyond all numbers", start)),
-            Err(message) => Err(self.fault("nc-arithmetic", message, start)),
-        }
+    fn checked(
+        &self,
+        result: Result<Value, &'static str>,
+        start: usize,
+        end: usize,
+    ) -> Result<Value, Fault> {
+        let message = match result {
+            Ok(value) if value.is_none_or(f64::is_finite) => return Ok(value),
+            Ok(_) => "the result is beyond all numbers",
+            Err(message) => message,
+        };
+        Err(self.fault_between("nc-arithmetic", message, start, end))
     }
 
     /// A finding at what stands here.
@@ -321,6 +280,65 @@ impl<'t, 'v> Reader<'t, 'v> {
         end: usize,
     ) -> Fault {
         Diagnostic::error(rule, message).at(self.line, self.text, start, end).into()
+    }
+}
+
+impl Grammar for Reader<'_, '_> {
+    type Value = Value;
+    type Operator = Binary;
+    type Error = Fault;
+    const DEEPEST: usize = 100;
+
+    fn depth(&mut self) -> &mut usize {
+        &mut self.depth
+    }
+
+    fn too_deep(&mut self) -> Fault {
+        self.wrong("the expression nests too deep")
+    }
+
+    fn start(&mut self) -> usize {
+        self.at
+    }
+
+    fn end(&self) -> usize {
+        self.at
+    }
+
+    fn operand(&mut self) -> Result<Value, Fault> {
+        self.value()
+    }
+
+    fn operator(&mut self) -> Option<Next<Binary>> {
+        let language = self.values.language();
+        let (operator, length) = match self.peek()? {
+            b'+' => (Binary::Plus, 1),
+            b'-' => (Binary::Minus, 1),
+            b'/' => (Binary::Divide, 1),
+            b'*' if self.text.get(self.at + 1) == Some(&b'*') && language != Language::MacroB => {
+                (Binary::Power, 2)
+            }
+            b'*' => (Binary::Times, 1),
+            // The first RS274/NGC does not compare.
+            _ if language == Language::Rs274 => self.word(&BINARY[6..])?,
+            _ => self.word(&BINARY)?,
+        };
+        let at = self.at;
+        self.at += length;
+        Some(Next { operator, rank: Rank::Left(operator.rank(language)), at })
+    }
+
+    fn apply(
+        &mut self,
+        operator: Binary,
+        [left, right]: [Value; 2],
+        span: Span,
+    ) -> Result<Value, Fault> {
+        let result = match self.values.language() {
+            Language::MacroB => macro_binary(operator, left, right),
+            _ => ngc_binary(operator, left.unwrap_or(0.0), right.unwrap_or(0.0)).map(Some),
+        };
+        self.checked(result, span.start, span.end)
     }
 }
 

@@ -5,14 +5,12 @@
 
 use super::registers::{LONGEST, Parameter, Registers};
 use super::scan::{Result, Scanner};
+use crate::kernel::expression::{Grammar, Next, Rank, Span, evaluate};
 use std::f64::consts::PI;
-
-/// Deepest nesting of parentheses and functions.
-const DEEPEST: usize = 50;
 
 /// A formula to the end of its block.
 pub(crate) fn formula(s: &mut Scanner, registers: &Registers) -> Result<f64> {
-    let value = Formula { s, registers, depth: 0 }.sum()?;
+    let value = evaluate(&mut Formula { s, registers, depth: 0 })?.value;
     s.finish()?;
     Ok(value)
 }
@@ -62,65 +60,6 @@ struct Formula<'s, 't, 'r> {
 }
 
 impl Formula<'_, '_, '_> {
-    fn sum(&mut self) -> Result<f64> {
-        let mut value = self.product()?;
-        loop {
-            if self.s.take_symbol(b"+") {
-                value += self.product()?;
-            } else if self.s.take_symbol(b"-") {
-                value -= self.product()?;
-            } else {
-                return Ok(value);
-            }
-        }
-    }
-
-    fn product(&mut self) -> Result<f64> {
-        let mut value = self.power()?;
-        let (mut points, mut remainders) = (0, 0);
-        loop {
-            let from = *self.s;
-            if self.s.take_symbol(b"*") {
-                points += 1;
-                value *= self.power()?;
-            } else if self.s.take_symbol(b"/") {
-                points += 1;
-                let divisor = self.power()?;
-                if divisor == 0.0 {
-                    return Err(self.wrong(from, "a division by 0"));
-                }
-                value /= divisor;
-            } else if self.s.take_symbol(b"%") {
-                remainders += 1;
-                let divisor = self.power()?;
-                if divisor == 0.0 || value < 0.0 || divisor < 0.0 {
-                    return Err(self.wrong(from, "a remainder is taken of positive numbers here"));
-                }
-                value %= divisor;
-            } else {
-                return Ok(value);
-            }
-            if remainders > 1 || (remainders > 0 && points > 0) {
-                let message = "the manuals do not say in which order % is calculated here";
-                return Err(self.wrong(from, message));
-            }
-        }
-    }
-
-    fn power(&mut self) -> Result<f64> {
-        let from = *self.s;
-        let base = self.signed()?;
-        if !self.s.take_symbol(b"^") {
-            return Ok(base);
-        }
-        let exponent = self.nested(Self::power)?;
-        let power = base.powf(exponent);
-        if power.is_finite() {
-            return Ok(power);
-        }
-        Err(self.wrong(from, &format!("{base} cannot be raised to the power of {exponent}")))
-    }
-
     /// A value with its sign, or a function of one.
     fn signed(&mut self) -> Result<f64> {
         if self.s.take_symbol(b"-") {
@@ -130,7 +69,7 @@ impl Formula<'_, '_, '_> {
             return self.nested(Self::signed);
         }
         if self.s.take_symbol(b"(") {
-            let value = self.nested(Self::sum)?;
+            let value = self.nested(evaluate)?.value;
             if self.s.take_symbol(b")") {
                 return Ok(value);
             }
@@ -169,19 +108,94 @@ impl Formula<'_, '_, '_> {
         Err(self.wrong(from, &format!("{shown} of {argument} cannot be calculated")))
     }
 
-    fn nested(&mut self, part: fn(&mut Self) -> Result<f64>) -> Result<f64> {
-        self.depth += 1;
-        if self.depth > DEEPEST {
-            let message = format!("the formula is nested more than {DEEPEST} deep");
-            return Err(self.s.error_here("formula", message));
-        }
-        let value = part(self);
-        self.depth -= 1;
-        value
-    }
-
     fn wrong(&self, from: Scanner, message: &str) -> Box<program::Diagnostic> {
         self.s.error("formula", (from.at(), self.s.at()), message)
+    }
+}
+
+/// A number, and what it was calculated from.
+struct Number {
+    value: f64,
+    /// Whether by `*` or `/`, or by `%`.
+    points: bool,
+    remainder: bool,
+}
+
+impl Number {
+    fn of(value: f64) -> Number {
+        Number { value, points: false, remainder: false }
+    }
+}
+
+impl Grammar for Formula<'_, '_, '_> {
+    type Value = Number;
+    type Operator = u8;
+    type Error = Box<program::Diagnostic>;
+    const DEEPEST: usize = 50;
+
+    fn depth(&mut self) -> &mut usize {
+        &mut self.depth
+    }
+
+    fn too_deep(&mut self) -> Self::Error {
+        let message = format!("the formula is nested more than {} deep", Self::DEEPEST);
+        self.s.error_here("formula", message)
+    }
+
+    fn start(&mut self) -> usize {
+        self.s.is_done();
+        self.s.at()
+    }
+
+    fn end(&self) -> usize {
+        self.s.at()
+    }
+
+    fn operand(&mut self) -> Result<Number> {
+        self.signed().map(Number::of)
+    }
+
+    fn operator(&mut self) -> Option<Next<u8>> {
+        let operator = self.s.peek().first().copied()?;
+        let rank = match operator {
+            b'+' | b'-' => Rank::Left(0),
+            b'*' | b'/' | b'%' => Rank::Left(1),
+            b'^' => Rank::Right(2),
+            _ => return None,
+        };
+        let at = self.s.at();
+        self.s.take_symbol(&[operator]);
+        Some(Next { operator, rank, at })
+    }
+
+    fn apply(&mut self, operator: u8, [left, right]: [Number; 2], span: Span) -> Result<Number> {
+        let (a, b) = (left.value, right.value);
+        let wrong = |from, message: &str| Err(self.s.error("formula", (from, span.end), message));
+        let (value, points, remainder) = match operator {
+            b'+' => (a + b, false, false),
+            b'-' => (a - b, false, false),
+            b'*' => (a * b, true, false),
+            b'/' if b == 0.0 => return wrong(span.operator, "a division by 0"),
+            b'/' => (a / b, true, false),
+            b'%' if b == 0.0 || a < 0.0 || b < 0.0 => {
+                let message = "a remainder is taken of positive numbers here";
+                return wrong(span.operator, message);
+            }
+            b'%' => (a % b, false, true),
+            _ => {
+                let power = a.powf(b);
+                if !power.is_finite() {
+                    let message = format!("{a} cannot be raised to the power of {b}");
+                    return wrong(span.start, &message);
+                }
+                (power, false, false)
+            }
+        };
+        if points && left.remainder || remainder && (left.points || left.remainder) {
+            let message = "the manuals do not say in which order % is calculated here";
+            return wrong(span.operator, message);
+        }
+        Ok(Number { value, points, remainder })
     }
 }
 

@@ -8,18 +8,15 @@
 //! something else; where the two readings differ the block is refused.
 
 use super::functions::{self, MOST_ARGUMENTS};
-use super::operators::{Operator, bits, reduce};
+use super::operators::{Operator, bits};
 use super::scan::Scanner;
 use super::system;
 use super::value::Value;
 use super::variables::{Place, Readable};
+use crate::kernel::expression::{Grammar, Next, Rank, Span, Stack};
 use crate::sinumerik::Fallible;
 use program::Diagnostic;
-use std::cell::Cell;
 use std::rc::Rc;
-
-/// How deep brackets and signs may nest.
-const DEEPEST: usize = 32;
 
 /// Evaluates the expressions of one block.
 pub(crate) struct Evaluator<'a> {
@@ -27,24 +24,32 @@ pub(crate) struct Evaluator<'a> {
     pub(super) state: &'a dyn Readable,
     /// What the block has assigned so far.
     pub(super) assigned: &'a [(Place, Value)],
-    /// The operator's parameter that the expression has added; it counts as 0.
-    pub(super) offset: Cell<Option<usize>>,
+}
+
+/// A value, and the operator's parameter that is added to it, which counts as 0.
+#[derive(Clone)]
+pub(super) struct Operand {
+    pub value: Value,
+    pub offset: Option<usize>,
+}
+
+impl From<Value> for Operand {
+    fn from(value: Value) -> Operand {
+        Operand { value, offset: None }
+    }
 }
 
 impl<'a> Evaluator<'a> {
     /// For a block that has assigned `assigned` so far.
     pub fn new(state: &'a dyn Readable, assigned: &'a [(Place, Value)]) -> Evaluator<'a> {
-        Evaluator { state, assigned, offset: Cell::new(None) }
+        Evaluator { state, assigned }
     }
 
     /// Takes an expression of any type.
     pub fn value(&self, scanner: &mut Scanner) -> Fallible<Value> {
         let start = scanner.at;
-        let value = self.finite(scanner)?;
-        match self.offset.get() {
-            None => Ok(value),
-            Some(index) => Err(only_added(scanner, start, index)),
-        }
+        let found = self.finite(scanner)?;
+        without_offset(scanner, start, found)
     }
 
     /// Takes a number.
@@ -58,8 +63,8 @@ impl<'a> Evaluator<'a> {
     /// that, and the parameter.
     pub fn offset_expression(&self, scanner: &mut Scanner) -> Fallible<(f64, Option<usize>)> {
         let start = scanner.at;
-        let value = self.finite(scanner)?;
-        Ok((number(scanner, start, &value)?, self.offset.take()))
+        let found = self.finite(scanner)?;
+        Ok((number(scanner, start, &found.value)?, found.offset))
     }
 
     /// Takes a condition.
@@ -105,197 +110,134 @@ impl<'a> Evaluator<'a> {
         Err(scanner.error_since(start, "number", message))
     }
 
-    fn finite(&self, scanner: &mut Scanner) -> Fallible<Value> {
+    fn finite(&self, scanner: &mut Scanner) -> Fallible<Operand> {
         let start = scanner.at;
-        let value = self.chain(scanner, 0)?;
-        if value.number().is_none_or(f64::is_finite) {
-            return Ok(value);
+        let found = Expression { evaluator: self, scanner, depth: 0 }.whole()?;
+        if found.value.number().is_none_or(f64::is_finite) {
+            return Ok(found);
         }
         Err(scanner.error_since(start, "arithmetic", "the result is not a finite number"))
     }
+}
 
-    /// Sums, joined by comparisons and logic.
-    fn chain(&self, scanner: &mut Scanner, depth: usize) -> Fallible<Value> {
-        if depth > DEEPEST {
-            return Err(scanner.error_here("syntax", "brackets nest too deep"));
-        }
-        scanner.blanks();
-        let start = scanner.at;
-        let first = self.sum(scanner, depth)?;
-        let Some(operator) = Operator::take(scanner) else { return Ok(first) };
-        if let Some(index) = self.offset.get() {
-            return Err(only_added(scanner, start, index));
-        }
-        let (mut operands, mut operators) = (vec![first], vec![operator]);
-        loop {
-            operands.push(self.sum(scanner, depth)?);
-            match Operator::take(scanner) {
-                Some(operator) => operators.push(operator),
-                None => break,
-            }
-        }
-        if let Some(index) = self.offset.get() {
-            return Err(only_added(scanner, start, index));
-        }
-        let doubtful = operators.len() > 1 && operators.iter().any(|o| o.compares());
-        let usual = doubtful.then(|| reduce(operands.clone(), &operators, Operator::usual_rank));
-        let value = reduce(operands, &operators, Operator::rank)
-            .map_err(|message| scanner.error_since(start, "type", message))?;
-        if usual.is_none_or(|usual| usual.as_ref() == Ok(&value)) {
-            return Ok(value);
-        }
-        Err(rank_in_doubt(scanner, start))
-    }
+/// An expression on its way through its block.
+struct Expression<'e, 'a, 's, 't> {
+    evaluator: &'e Evaluator<'a>,
+    scanner: &'s mut Scanner<'t>,
+    depth: usize,
+}
 
-    fn sum(&self, scanner: &mut Scanner, depth: usize) -> Fallible<Value> {
-        let start = scanner.at;
-        let mut value = self.term(scanner, depth, true)?;
-        loop {
-            let added = scanner.take(b'+');
-            if !added && !scanner.take(b'-') {
-                return Ok(value);
+impl Expression<'_, '_, '_, '_> {
+    /// An expression. It is read by the ranks of the control, and where it compares also by the usual ones.
+    fn whole(&mut self) -> Fallible<Operand> {
+        let start = self.start();
+        let first = self.operand()?;
+        let mut own = Stack::new(first.clone(), [start, self.end()]);
+        let mut read: Vec<(Next<Operator>, Operand, [usize; 2])> = Vec::new();
+        while let Some(next) = self.operator() {
+            own = own.settle(Some(next.rank), |o, values, span| self.apply(o, values, span))?;
+            let from = self.start();
+            let right = self.operand()?;
+            let place = [from, self.end()];
+            read.push((next, right.clone(), place));
+            own = own.push(next, right, place);
+        }
+        let found = own.settle(None, |o, values, span| self.apply(o, values, span))?.value();
+        let logical = read.iter().filter(|(next, ..)| next.operator.is_logic()).count();
+        if logical < 2 || !read.iter().any(|(next, ..)| next.operator.compares()) {
+            return Ok(found);
+        }
+        let usual = (|| {
+            let mut usual = Stack::new(first, [start, start]);
+            for (next, right, place) in read {
+                let next = Next { rank: Rank::Left(next.operator.usual_rank()), ..next };
+                usual = usual.settle(Some(next.rank), |o, v, span| self.apply(o, v, span))?;
+                usual = usual.push(next, right, place);
             }
-            let term = self.term(scanner, depth, added)?;
-            value = match (value.whole(), term.whole()) {
-                (Some(a), Some(b)) => {
-                    let sum = if added { a.checked_add(b) } else { a.checked_sub(b) };
-                    Value::Int(sum.ok_or_else(|| too_large(scanner, start))?)
-                }
-                _ => {
-                    let a = number(scanner, start, &value)?;
-                    let b = number(scanner, start, &term)?;
-                    Value::Real(if added { a + b } else { a - b })
-                }
-            };
+            usual.settle(None, |o, v, span| self.apply(o, v, span)).map(Stack::value)
+        })();
+        match usual {
+            Ok(usual) if usual.value == found.value => Ok(found),
+            _ => Err(rank_in_doubt(self.scanner, start)),
         }
     }
 
-    /// A product, which is added or taken off. A parameter of the operator is one by itself, outside
-    /// of brackets and added: anything else would not be an offset.
-    fn term(&self, scanner: &mut Scanner, depth: usize, added: bool) -> Fallible<Value> {
-        scanner.blanks();
-        let start = scanner.at;
-        let before = self.offset.take();
-        let value = self.product(scanner, depth)?;
-        let Some(index) = self.offset.get() else {
-            self.offset.set(before);
-            return Ok(value);
-        };
-        let text = scanner.source.text.get(start..scanner.at).unwrap_or_default().trim_ascii();
-        let alone = text.iter().skip(1).all(u8::is_ascii_digit);
-        if alone && added && depth == 0 && before.is_none() {
-            return Ok(value);
-        }
-        Err(only_added(scanner, start, index))
-    }
-
-    fn product(&self, scanner: &mut Scanner, depth: usize) -> Fallible<Value> {
-        let start = scanner.at;
-        let mut value = self.signed(scanner, depth)?;
-        loop {
-            let at = scanner.at;
-            if scanner.take(b'*') {
-                let factor = self.signed(scanner, depth)?;
-                value = match (value.whole(), factor.whole()) {
-                    (Some(a), Some(b)) => {
-                        Value::Int(a.checked_mul(b).ok_or_else(|| too_large(scanner, start))?)
-                    }
-                    _ => Value::Real(
-                        number(scanner, start, &value)? * number(scanner, start, &factor)?,
-                    ),
-                };
-                continue;
-            }
-            let division = if scanner.take(b'/') {
-                Division::Exact
-            } else if scanner.take_word("DIV") {
-                Division::Whole
-            } else if scanner.take_word("MOD") {
-                Division::Rest
-            } else {
-                return Ok(value);
-            };
-            let divisor = self.signed(scanner, depth)?;
-            let (a, b) = (number(scanner, start, &value)?, number(scanner, start, &divisor)?);
-            if b == 0.0 {
-                return Err(scanner.error_since(at, "arithmetic", "division by zero"));
-            }
-            let whole = value.whole().is_some() && divisor.whole().is_some();
-            value = match division {
-                Division::Exact => Value::Real(a / b),
-                // Whole numbers that doubles do not hold do not come out of INT variables.
-                Division::Whole if whole => Value::Int((a / b).trunc() as i64),
-                Division::Rest if whole => Value::Int((a % b) as i64),
-                Division::Whole => Value::Real((a / b).trunc()),
-                Division::Rest => Value::Real(a % b),
-            };
-        }
+    /// An expression in brackets, behind the first of them.
+    fn inner(&mut self) -> Fallible<Value> {
+        let start = self.scanner.at;
+        let found = self.nested(Self::whole)?;
+        without_offset(self.scanner, start, found)
     }
 
     /// An operand behind signs, `NOT` and `B_NOT`.
-    fn signed(&self, scanner: &mut Scanner, depth: usize) -> Fallible<Value> {
-        if depth > DEEPEST {
-            return Err(scanner.error_here("syntax", "signs nest too deep"));
-        }
-        scanner.blanks();
-        let start = scanner.at;
-        match scanner.peek() {
-            b'-' => {
-                scanner.at += 1;
-                match self.signed(scanner, depth + 1)? {
-                    Value::Int(value) => Ok(Value::Int(value.saturating_neg())),
-                    other => Ok(Value::Real(-number(scanner, start, &other)?)),
+    fn signed(&mut self) -> Fallible<Operand> {
+        self.scanner.blanks();
+        let start = self.scanner.at;
+        let sign = match self.scanner.peek() {
+            sign @ (b'-' | b'+') => {
+                self.scanner.at += 1;
+                sign
+            }
+            b'N' if self.scanner.take_word("NOT") => b'N',
+            b'B' if self.scanner.take_word("B_NOT") => b'B',
+            _ => return self.operand_alone(),
+        };
+        let found = self.nested(Self::signed)?;
+        let value = without_offset(self.scanner, start, found)?;
+        Ok(Operand::from(match (sign, value) {
+            (b'+', value) => value,
+            (b'-', Value::Int(value)) => Value::Int(value.saturating_neg()),
+            (b'-', value) => Value::Real(-number(self.scanner, start, &value)?),
+            (b'N', value) => {
+                let back = self.scanner.at;
+                if Operator::take(self.scanner).is_some_and(Operator::compares) {
+                    return Err(rank_in_doubt(self.scanner, start));
                 }
+                self.scanner.at = back;
+                let truth = value.truth();
+                Value::Bool(
+                    !truth.ok_or_else(|| {
+                        self.scanner.error_since(start, "type", no_number(&value))
+                    })?,
+                )
             }
-            b'+' => {
-                scanner.at += 1;
-                self.signed(scanner, depth + 1)
+            (_, value) => {
+                let bits = bits(&value)
+                    .ok_or_else(|| self.scanner.error_since(start, "type", no_number(&value)))?;
+                Value::Int(!bits)
             }
-            b'N' if scanner.take_word("NOT") => {
-                let value = self.signed(scanner, depth + 1)?;
-                let back = scanner.at;
-                if Operator::take(scanner).is_some_and(Operator::compares) {
-                    return Err(rank_in_doubt(scanner, start));
-                }
-                scanner.at = back;
-                let truth = value.truth().ok_or_else(|| no_number(scanner, start, &value))?;
-                Ok(Value::Bool(!truth))
-            }
-            b'B' if scanner.take_word("B_NOT") => {
-                let value = self.signed(scanner, depth + 1)?;
-                let bits = bits(&value).ok_or_else(|| no_number(scanner, start, &value))?;
-                Ok(Value::Int(!bits))
-            }
-            _ => self.operand(scanner, depth),
-        }
+        }))
     }
 
-    fn operand(&self, scanner: &mut Scanner, depth: usize) -> Fallible<Value> {
-        match scanner.peek() {
+    fn operand_alone(&mut self) -> Fallible<Operand> {
+        let scanner = &mut *self.scanner;
+        let value = match scanner.peek() {
             b'(' => {
                 scanner.at += 1;
-                let value = self.chain(scanner, depth + 1)?;
-                scanner.expect(b')')?;
-                Ok(value)
+                let value = self.inner()?;
+                self.scanner.expect(b')')?;
+                value
             }
-            b'0'..=b'9' | b'.' => constant(scanner),
-            b'"' => scanner.quoted().map(Value::text),
-            b'\'' => based_constant(scanner),
+            b'0'..=b'9' | b'.' => constant(scanner)?,
+            b'"' => Value::text(scanner.quoted()?),
+            b'\'' => based_constant(scanner)?,
             b'R' if scanner.peek_at(1).is_ascii_digit() || scanner.peek_at(1) == b'[' => {
-                self.parameter(scanner).map(Value::Real)
+                return self.evaluator.parameter(scanner);
             }
-            b'$' => system::read(self, self.state, scanner),
-            b'A'..=b'Z' | b'_' => self.named(scanner, depth),
-            _ => Err(scanner.error_here("syntax", "a value is missing here")),
-        }
+            b'$' => system::read(self.evaluator, self.evaluator.state, scanner)?,
+            b'A'..=b'Z' | b'_' => self.named()?,
+            _ => return Err(scanner.error_here("syntax", "a value is missing here")),
+        };
+        Ok(value.into())
     }
 
     /// A variable, a function, a constant or an axis.
-    fn named(&self, scanner: &mut Scanner, depth: usize) -> Fallible<Value> {
+    fn named(&mut self) -> Fallible<Value> {
+        let scanner = &mut *self.scanner;
         let start = scanner.at;
         let name = scanner.name()?;
-        if let Some(index) = self.state.locals().find(&name) {
-            return self.variable(scanner, start, index);
+        if let Some(index) = self.evaluator.state.locals().find(&name) {
+            return self.evaluator.variable(scanner, start, index);
         }
         match name.as_str() {
             "TRUE" => return Ok(Value::Bool(true)),
@@ -317,48 +259,130 @@ impl<'a> Evaluator<'a> {
         let mut arguments = [const { Value::Int(0) }; MOST_ARGUMENTS];
         let mut count = 0;
         for argument in &mut arguments {
-            *argument = self.chain(scanner, depth + 1)?;
+            *argument = self.inner()?;
             count += 1;
-            if !scanner.take(b',') {
+            if !self.scanner.take(b',') {
                 break;
             }
         }
-        scanner.expect(b')')?;
+        self.scanner.expect(b')')?;
         let arguments = arguments.get(..count).unwrap_or(&[]);
         let value = function(arguments).and_then(|value| match value.number() {
             Some(number) if !number.is_finite() => Err(String::from("it has no value here")),
             _ => Ok(value),
         });
         value.map_err(|message| {
-            scanner.error_since(start, "arithmetic", format!("{name}: {message}"))
+            self.scanner.error_since(start, "arithmetic", format!("{name}: {message}"))
         })
     }
 }
 
-/// How a division is made.
-#[derive(Clone, Copy)]
-enum Division {
-    /// `/`.
-    Exact,
-    /// `DIV`: the whole quotient.
-    Whole,
-    /// `MOD`: what remains.
-    Rest,
+/// A sum, difference, product or quotient of two numbers.
+///
+/// # Errors
+/// The rule and what to say where there is none.
+fn calculated(operator: Operator, a: &Value, b: &Value) -> Result<Value, (&'static str, String)> {
+    let number = |value: &Value| value.number().ok_or_else(|| ("type", no_number(value)));
+    let (x, y) = (number(a)?, number(b)?);
+    let divides = !matches!(operator, Operator::Plus | Operator::Minus | Operator::Times);
+    if divides && y == 0.0 {
+        return Err(("arithmetic", "division by zero".into()));
+    }
+    let Some((m, n)) = a.whole().zip(b.whole()) else {
+        return Ok(Value::Real(match operator {
+            Operator::Plus => x + y,
+            Operator::Minus => x - y,
+            Operator::Times => x * y,
+            Operator::Quotient => (x / y).trunc(),
+            Operator::Remainder => x % y,
+            _ => x / y,
+        }));
+    };
+    let whole = match operator {
+        Operator::Plus => m.checked_add(n),
+        Operator::Minus => m.checked_sub(n),
+        Operator::Times => m.checked_mul(n),
+        // Whole numbers that doubles do not hold do not come out of INT variables.
+        Operator::Quotient => Some((x / y).trunc() as i64),
+        Operator::Remainder => Some((x % y) as i64),
+        _ => return Ok(Value::Real(x / y)),
+    };
+    whole
+        .map(Value::Int)
+        .ok_or_else(|| ("arithmetic", "the result is beyond the whole numbers".into()))
+}
+
+impl Grammar for Expression<'_, '_, '_, '_> {
+    type Value = Operand;
+    type Operator = Operator;
+    type Error = Box<Diagnostic>;
+    const DEEPEST: usize = 32;
+
+    fn depth(&mut self) -> &mut usize {
+        &mut self.depth
+    }
+
+    fn too_deep(&mut self) -> Box<Diagnostic> {
+        self.scanner.error_here("syntax", "brackets and signs nest too deep")
+    }
+
+    fn start(&mut self) -> usize {
+        self.scanner.blanks();
+        self.scanner.at
+    }
+
+    fn end(&self) -> usize {
+        self.scanner.at
+    }
+
+    fn operand(&mut self) -> Fallible<Operand> {
+        self.signed()
+    }
+
+    fn operator(&mut self) -> Option<Next<Operator>> {
+        let at = self.scanner.at;
+        let operator = Operator::take(self.scanner)?;
+        Some(Next { operator, rank: Rank::Left(operator.rank()), at })
+    }
+
+    /// A parameter of the operator is only added: anything else would not be an offset.
+    fn apply(
+        &mut self,
+        operator: Operator,
+        [left, right]: [Operand; 2],
+        span: Span,
+    ) -> Fallible<Operand> {
+        let error =
+            |rule, message| Err(self.scanner.source.error(rule, span.start..span.end, message));
+        let offset = match (left.offset, right.offset) {
+            (None, None) => None,
+            (None, Some(index)) if operator == Operator::Plus => Some(index),
+            (Some(index), None) if matches!(operator, Operator::Plus | Operator::Minus) => {
+                Some(index)
+            }
+            (_, Some(index)) | (Some(index), None) => {
+                return error("operator-offset", only_added(index));
+            }
+        };
+        let (a, b) = (left.value, right.value);
+        let value = match operator.is_logic() {
+            true => operator.apply(a, b).map_err(|message| ("type", message)),
+            false => calculated(operator, &a, &b),
+        };
+        match value {
+            Ok(value) => Ok(Operand { value, offset }),
+            Err((rule, message)) => error(rule, message),
+        }
+    }
 }
 
 fn number(scanner: &Scanner, start: usize, value: &Value) -> Fallible<f64> {
-    value.number().ok_or_else(|| no_number(scanner, start, value))
+    value.number().ok_or_else(|| scanner.error_since(start, "type", no_number(value)))
 }
 
 #[cold]
-fn no_number(scanner: &Scanner, start: usize, value: &Value) -> Box<Diagnostic> {
-    let message = format!("a number must stand here, not {}", value.name());
-    scanner.error_since(start, "type", message)
-}
-
-#[cold]
-fn too_large(scanner: &Scanner, start: usize) -> Box<Diagnostic> {
-    scanner.error_since(start, "arithmetic", "the result is beyond the whole numbers")
+fn no_number(value: &Value) -> String {
+    format!("a number must stand here, not {}", value.name())
 }
 
 #[cold]
@@ -405,10 +429,18 @@ fn based_constant(scanner: &mut Scanner) -> Fallible<Value> {
     }
 }
 
-fn only_added(scanner: &Scanner, start: usize, index: usize) -> Box<Diagnostic> {
-    let message = format!(
+/// The value of an operand to which no parameter of the operator is added.
+pub(super) fn without_offset(scanner: &Scanner, start: usize, found: Operand) -> Fallible<Value> {
+    match found.offset {
+        None => Ok(found.value),
+        Some(index) => Err(scanner.error_since(start, "operator-offset", only_added(index))),
+    }
+}
+
+#[cold]
+fn only_added(index: usize) -> String {
+    format!(
         "R{index} is the operator's: it is only added to the position of a rotary axis, once, as in \
          C=45+R{index}"
-    );
-    scanner.error_since(start, "operator-offset", message)
+    )
 }

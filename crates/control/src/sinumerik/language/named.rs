@@ -1,6 +1,6 @@
 //! What a name in an expression stands for: R parameters, variables and their elements.
 
-use super::expression::Evaluator;
+use super::expression::{Evaluator, Operand, without_offset};
 use super::scan::{Name, Scanner};
 use super::system;
 use super::value::{Kind, LONGEST_TEXT, Value};
@@ -114,10 +114,11 @@ impl Evaluator<'_> {
         Err(scanner.error_since(start, "array-index", "the array has no such element"))
     }
 
-    /// Takes an R parameter: its value.
-    pub fn parameter(&self, scanner: &mut Scanner) -> Fallible<f64> {
+    /// Takes an R parameter: its value. That of the operator is added where it is named by its number.
+    pub(super) fn parameter(&self, scanner: &mut Scanner) -> Fallible<Operand> {
         let start = scanner.at;
         scanner.at += 1;
+        let by_number = scanner.digit_next();
         let index = self.index(scanner)?;
         let operator = ["AND", "OR", "XOR", "DIV", "MOD", "B_AND", "B_OR", "B_XOR"];
         let back = scanner.at;
@@ -128,11 +129,17 @@ impl Evaluator<'_> {
             ));
         }
         scanner.at = back;
-        self.parameter_value(scanner, start, index)
+        let found = self.parameter_value(scanner, start, index)?;
+        if by_number { Ok(found) } else { without_offset(scanner, start, found).map(Operand::from) }
     }
 
     /// The value of an R parameter, whose name stands from `start`.
-    pub fn parameter_value(&self, scanner: &Scanner, start: usize, index: usize) -> Fallible<f64> {
+    pub(super) fn parameter_value(
+        &self,
+        scanner: &Scanner,
+        start: usize,
+        index: usize,
+    ) -> Fallible<Operand> {
         if self.assigned.iter().any(|(place, _)| *place == Place::Parameter(index)) {
             return Err(scanner.error_since(
                 start,
@@ -141,11 +148,8 @@ impl Evaluator<'_> {
             ));
         }
         match self.state.parameters().get(index) {
-            Parameter::Set(value) => Ok(value),
-            Parameter::Operator => {
-                self.offset.set(Some(index));
-                Ok(0.0)
-            }
+            Parameter::Set(value) => Ok(Value::Real(value).into()),
+            Parameter::Operator => Ok(Operand { value: Value::Real(0.0), offset: Some(index) }),
             Parameter::Unknown => {
                 let message = format!("R{index} is read, and no block before has set it");
                 let mut error = scanner.error_since(start, "r-parameter", message);

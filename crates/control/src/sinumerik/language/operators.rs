@@ -1,4 +1,4 @@
-//! The operators of logic, texts and comparisons, with the rank of each.
+//! The operators, with the rank of each.
 
 use super::scan::Scanner;
 use super::system;
@@ -8,9 +8,18 @@ use super::value::{LONGEST_TEXT, Value};
 /// 3.1.3.4: relative equality).
 const RELATIVE_EQUALITY: f64 = 1e-12;
 
-/// An operator that ranks below the sums.
+/// An operator between two values.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Operator {
+    Times,
+    /// `/`: a real number, also of two whole ones.
+    Divide,
+    /// `DIV`: the whole quotient.
+    Quotient,
+    /// `MOD`: what remains.
+    Remainder,
+    Plus,
+    Minus,
     BitAnd,
     BitXor,
     BitOr,
@@ -27,13 +36,15 @@ pub(super) enum Operator {
 }
 
 /// The operators that are words.
-const WORDS: [(&str, Operator); 6] = [
+const WORDS: [(&str, Operator); 8] = [
     ("AND", Operator::And),
     ("OR", Operator::Or),
     ("XOR", Operator::Xor),
     ("B_AND", Operator::BitAnd),
     ("B_OR", Operator::BitOr),
     ("B_XOR", Operator::BitXor),
+    ("DIV", Operator::Quotient),
+    ("MOD", Operator::Remainder),
 ];
 
 impl Operator {
@@ -48,9 +59,15 @@ impl Operator {
             (b'<', b'<') => (Operator::Chain, 2),
             (b'<', b'=') => (Operator::LessOrEqual, 2),
             (b'>', b'=') => (Operator::GreaterOrEqual, 2),
+            (b'+', _) => (Operator::Plus, 1),
+            (b'-', _) => (Operator::Minus, 1),
+            (b'*', _) => (Operator::Times, 1),
+            (b'/', _) => (Operator::Divide, 1),
             (b'<', _) => (Operator::Less, 1),
             (b'>', _) => (Operator::Greater, 1),
-            (b'A' | b'O' | b'X' | b'B', next) if next == b'_' || next.is_ascii_alphabetic() => {
+            (b'A' | b'O' | b'X' | b'B' | b'D' | b'M', next)
+                if next == b'_' || next.is_ascii_alphabetic() =>
+            {
                 let found = WORDS.iter().find(|(word, _)| scanner.take_word(word));
                 if found.is_none() {
                     scanner.at = back;
@@ -68,33 +85,45 @@ impl Operator {
 
     /// Whether it is a comparison.
     pub fn compares(self) -> bool {
-        self.rank() == 11
+        self.rank() == 0
     }
 
-    /// The rank of the control, the first binds closest.
+    /// Whether it joins texts, truths, bits or comparisons, and ranks below the sums.
+    pub fn is_logic(self) -> bool {
+        self.rank() < 8
+    }
+
+    /// The rank of the control, the highest binds closest.
     pub fn rank(self) -> u8 {
         match self {
-            Operator::BitAnd => 4,
-            Operator::BitXor => 5,
-            Operator::BitOr => 6,
-            Operator::And => 7,
-            Operator::Xor => 8,
-            Operator::Or => 9,
-            Operator::Chain => 10,
-            _ => 11,
+            Operator::Times | Operator::Divide | Operator::Quotient | Operator::Remainder => 9,
+            Operator::Plus | Operator::Minus => 8,
+            Operator::BitAnd => 7,
+            Operator::BitXor => 6,
+            Operator::BitOr => 5,
+            Operator::And => 4,
+            Operator::Xor => 3,
+            Operator::Or => 2,
+            Operator::Chain => 1,
+            _ => 0,
         }
     }
 
     /// The rank of the usual languages, where comparisons come before logic.
     pub fn usual_rank(self) -> u8 {
         match self {
-            Operator::Chain => 6,
-            Operator::And | Operator::Xor | Operator::Or => self.rank() + 10,
+            Operator::Chain => 5,
+            Operator::And | Operator::Xor | Operator::Or => self.rank() - 1,
+            _ if self.compares() => 4,
             other => other.rank(),
         }
     }
 
-    fn apply(self, a: Value, b: Value) -> Result<Value, String> {
+    /// What logic, a comparison or `<<` makes of two values.
+    ///
+    /// # Errors
+    /// They have no such result.
+    pub fn apply(self, a: Value, b: Value) -> Result<Value, String> {
         let truth = |value: &Value| {
             value.truth().ok_or_else(|| format!("{} is no operand of AND, OR, XOR", value.name()))
         };
@@ -143,35 +172,6 @@ impl Operator {
             _ => order != Greater,
         })
     }
-}
-
-/// Applies the operators between the operands, those of the first rank first.
-pub(super) fn reduce(
-    operands: Vec<Value>,
-    operators: &[Operator],
-    rank: fn(Operator) -> u8,
-) -> Result<Value, String> {
-    let mut values: Vec<Value> = Vec::with_capacity(operands.len());
-    let mut pending: Vec<Operator> = Vec::new();
-    let fold = |values: &mut Vec<Value>, operator: Operator| -> Result<(), String> {
-        if let (Some(b), Some(a)) = (values.pop(), values.pop()) {
-            values.push(operator.apply(a, b)?);
-        }
-        Ok(())
-    };
-    let mut operands = operands.into_iter();
-    values.extend(operands.next());
-    for (operator, operand) in operators.iter().zip(operands) {
-        while let Some(before) = pending.pop_if(|before| rank(*before) <= rank(*operator)) {
-            fold(&mut values, before)?;
-        }
-        pending.push(*operator);
-        values.push(operand);
-    }
-    while let Some(operator) = pending.pop() {
-        fold(&mut values, operator)?;
-    }
-    values.pop().ok_or_else(|| String::from("there is no value"))
 }
 
 /// A value as `<<` writes it.

@@ -1,6 +1,6 @@
 //! System variables (`$...`): those whose value the program itself gives or the operator has said.
 
-use super::expression::Evaluator;
+use super::expression::{Evaluator, without_offset};
 use super::scan::Scanner;
 use super::value::Value;
 use super::variables::{Place, Readable};
@@ -44,7 +44,8 @@ pub(super) fn read(
     match name.as_str() {
         "R" => {
             let index = evaluator.index(scanner)?;
-            evaluator.parameter_value(scanner, start, index).map(Value::Real)
+            let found = evaluator.parameter_value(scanner, start, index)?;
+            without_offset(scanner, start, found)
         }
         "PI" => Ok(Value::Real(std::f64::consts::PI)),
         // Program and machine run in automatic mode, from the start.
