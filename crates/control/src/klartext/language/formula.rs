@@ -156,7 +156,8 @@ impl Grammar for Formula<'_, '_, '_> {
     }
 
     fn operator(&mut self) -> Option<Next<u8>> {
-        let operator = self.s.peek().first().copied()?;
+        self.s.is_done();
+        let operator = self.s.byte()?;
         let rank = match operator {
             b'+' | b'-' => Rank::Left(0),
             b'*' | b'/' | b'%' => Rank::Left(1),
