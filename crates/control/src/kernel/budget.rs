@@ -2,10 +2,6 @@
 
 use crate::event::Action;
 
-/// Deepest nesting of calls. FANUC has 4 with macros 5 more, SINUMERIK 16, LinuxCNC 10 (`interp_internal.hh`),
-/// HEIDENHAIN 19: each control states its own and none goes beyond this.
-pub(crate) const DEEPEST: usize = 20;
-
 /// Most jumps and calls between two places that the tool goes to: a loop that goes nowhere for so long
 /// is taken as endless.
 const IDLE: u32 = 200_000;

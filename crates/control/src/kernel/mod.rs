@@ -11,6 +11,7 @@ pub(crate) mod compensation;
 pub(crate) mod corner;
 pub(crate) mod decimal;
 pub(crate) mod expression;
+pub(crate) mod flow;
 pub(crate) mod folders;
 pub(crate) mod relay;
 pub(crate) mod way;

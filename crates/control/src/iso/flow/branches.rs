@@ -17,10 +17,11 @@ impl<'a> Run<'a, '_> {
         self.flows = true;
         let source = self.here.source;
         let words = source.o_words(self.settings.setup.block_delete)?;
-        let Some(index) = words.find(from) else {
+        let Some(index) = words.words.find(from) else {
             return Err(self.wrong(text, o, "this O-word stands behind the end of the program"));
         };
-        let word = &words.words[index];
+        let mark = &words.words[index];
+        let word = &mark.word;
         if let Some(first) = word.twin
             && *self.twins.entry((source.text.as_ptr(), first)).or_insert(index) != index
         {
@@ -30,7 +31,7 @@ impl<'a> Run<'a, '_> {
         }
         match word.keyword {
             // A definition is passed by; a called subprogram begins behind its O-word.
-            Keyword::Sub => self.go(words, word.partner),
+            Keyword::Sub => self.go(words, mark.partner),
             Keyword::Program => self.rest(text, word.rest),
             Keyword::EndSub | Keyword::Return => {
                 let values = self.values();
@@ -50,26 +51,26 @@ impl<'a> Run<'a, '_> {
             Keyword::Call => self.call_subroutine(text, o),
             Keyword::If => match self.holds(text, word.rest)? {
                 true => Ok(()),
-                false => self.clause(words, word.partner),
+                false => self.clause(words, mark.partner),
             },
-            Keyword::ElseIf | Keyword::Else => self.go(words, word.end),
+            Keyword::ElseIf | Keyword::Else => self.go(words, words.words.end(index)),
             Keyword::EndIf | Keyword::Do => self.rest(text, word.rest),
             Keyword::While => match self.holds(text, word.rest)? {
                 true => Ok(()),
-                false => self.go(words, word.partner),
+                false => self.go(words, mark.partner),
             },
             Keyword::EndWhile => {
                 self.rest(text, word.rest)?;
-                self.back_to(words, word.partner)
+                self.back_to(words, mark.partner)
             }
             Keyword::DoWhile => match self.holds(text, word.rest)? {
-                true => self.back_to(words, word.partner),
+                true => self.back_to(words, mark.partner),
                 false => Ok(()),
             },
             Keyword::Repeat => {
                 let times = self.number(text, word.rest)?.round();
                 if times < 1.0 {
-                    return self.go(words, word.partner);
+                    return self.go(words, mark.partner);
                 }
                 let repeat = Repeat { word: index, left: times };
                 self.frame().repeats.push(repeat);
@@ -78,7 +79,7 @@ impl<'a> Run<'a, '_> {
             Keyword::EndRepeat => {
                 self.rest(text, word.rest)?;
                 let repeats = &mut self.frame().repeats;
-                let Some(repeat) = repeats.last_mut().filter(|last| last.word == word.partner)
+                let Some(repeat) = repeats.last_mut().filter(|last| last.word == mark.partner)
                 else {
                     return Ok(());
                 };
@@ -87,20 +88,20 @@ impl<'a> Run<'a, '_> {
                     repeats.pop();
                     return Ok(());
                 }
-                self.go(words, word.partner)
+                self.go(words, mark.partner)
             }
             Keyword::Break | Keyword::Continue => {
                 self.rest(text, word.rest)?;
-                let begin = word.partner;
+                let begin = mark.partner;
                 // Repeats inside of the loop are left with it.
-                let end = words.words[begin].partner;
+                let end = words.words.end(begin);
                 self.frame().repeats.retain(|repeat| !(begin..end).contains(&repeat.word));
                 if word.keyword == Keyword::Break {
                     return self.go(words, end);
                 }
                 self.back_to_line(
                     words,
-                    if words.words[begin].keyword == Keyword::Do { end } else { begin },
+                    if words.words[begin].word.keyword == Keyword::Do { end } else { begin },
                 )
             }
         }
@@ -108,13 +109,12 @@ impl<'a> Run<'a, '_> {
 
     /// Goes on behind the O-word of this index.
     fn go(&mut self, words: &OWords, index: usize) -> Result<(), Fault> {
-        let word = &words.words[index];
-        self.jump(word.next, word.line)
+        self.jump(words.words[index].after)
     }
 
     /// Goes on behind a `do`, or at the condition of a `while`.
     fn back_to(&mut self, words: &OWords, index: usize) -> Result<(), Fault> {
-        match words.words[index].keyword {
+        match words.words[index].word.keyword {
             Keyword::Do => self.go(words, index),
             _ => self.back_to_line(words, index),
         }
@@ -122,23 +122,22 @@ impl<'a> Run<'a, '_> {
 
     /// Goes on at the line of an O-word.
     fn back_to_line(&mut self, words: &OWords, index: usize) -> Result<(), Fault> {
-        let word = &words.words[index];
-        self.jump(word.from, word.line.saturating_sub(1))
+        self.jump(words.words[index].place)
     }
 
     /// Goes on in the first clause from `index` on whose condition holds, or behind the branch.
     fn clause(&mut self, words: &OWords, mut index: usize) -> Result<(), Fault> {
         loop {
             self.go(words, index)?;
-            let word = &words.words[index];
-            if word.keyword != Keyword::ElseIf {
+            let mark = &words.words[index];
+            if mark.word.keyword != Keyword::ElseIf {
                 return Ok(());
             }
-            let text = self.here.source.text.get(word.from..word.next).unwrap_or_default();
-            if self.holds(text.trim_ascii_end(), word.rest)? {
+            let text = self.here.source.text.get(mark.place.at..mark.after.at).unwrap_or_default();
+            if self.holds(text.trim_ascii_end(), mark.word.rest)? {
                 return Ok(());
             }
-            index = word.partner;
+            index = mark.partner;
         }
     }
 
@@ -216,9 +215,8 @@ impl<'a> Run<'a, '_> {
             let words = source.o_words(self.settings.setup.block_delete)?;
             let base = name.rsplit(|&b| b == b'/').next().unwrap_or(name);
             Ok(words.subroutines.get(base).map(|&index| {
-                let word = &words.words[index];
-                let place = Place { source, at: word.next, line: word.line, percent_signs: 1 };
-                (place, word.keyword)
+                let mark = &words.words[index];
+                (Place::called(source, mark.after), mark.word.keyword)
             }))
         };
         for source in [self.here.source, self.main] {

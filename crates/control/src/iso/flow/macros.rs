@@ -3,7 +3,7 @@
 //! Numbers of blocks and programs are looked up in the file when the first jump or call needs them.
 
 use super::run::Run;
-use super::source::{self, Place, Source};
+use super::source::{self, Source};
 use crate::WholeNumbers;
 use crate::event::{Action, Risk};
 use crate::iso::language::arithmetic;
@@ -11,8 +11,8 @@ use crate::iso::language::block::{Fault, Word};
 use crate::iso::language::expression::{Reader, Target};
 use crate::iso::language::words::WHOLE_NUMBERS_HELP;
 use crate::kernel::decimal;
+use crate::kernel::flow::{self, Labels, Place, Structures};
 use program::Diagnostic;
-use std::collections::HashMap;
 
 /// What begins a statement.
 const KEYWORDS: [(&[u8], Keyword); 10] = [
@@ -39,35 +39,15 @@ enum Keyword {
     Print,
 }
 
-/// A loop: from `WHILE [..] DO1` to `END1`.
-#[derive(Debug)]
-struct Loop {
-    /// Where its first line begins and its number, and the same of the line behind `END`.
-    from: usize,
-    line: u32,
-    behind: usize,
-    end_line: u32,
-    /// Where the line with `END` begins.
-    end: usize,
-    /// The loop around it.
-    around: Option<usize>,
-}
-
-/// A program in a file.
-#[derive(Debug)]
-struct Program {
-    from: usize,
-    line: u32,
-}
-
 /// The numbers of programs and blocks and the loops of a file.
 #[derive(Debug, Default)]
-pub(super) struct Labels {
-    programs: Vec<Program>,
-    by_number: HashMap<u32, usize>,
-    /// Number of the block, where its line begins, the number of the line; in this order.
-    blocks: Vec<(u32, usize, u32)>,
-    loops: Vec<Loop>,
+pub(super) struct Numbers {
+    /// Where each program begins.
+    programs: Vec<usize>,
+    by_number: Labels<u32>,
+    blocks: Labels<u32>,
+    /// Each `DO` and `END` by its number.
+    loops: Structures<usize>,
 }
 
 /// Where the statement of a line stands, if the line is one.
@@ -114,15 +94,13 @@ fn do_of(line: &[u8], at: usize) -> Option<usize> {
     }
 }
 
-impl Labels {
+impl Numbers {
     /// Finds the numbers and loops of `text`; those in blocks with `/` are none where block delete is on
     /// (`deletes`).
-    pub(super) fn of(text: &[u8], deletes: bool) -> Result<Labels, Fault> {
-        let mut found = Labels::default();
-        found.programs.push(Program { from: 0, line: 0 });
-        let mut open: Vec<(usize, usize)> = Vec::new();
+    pub(super) fn of(text: &[u8], deletes: bool) -> Result<Numbers, Fault> {
+        let mut found = Numbers { programs: vec![0], ..Numbers::default() };
         let mut percent_signs = 0;
-        for (from, next, line, content) in source::lines(text) {
+        for (place, after, content) in flow::lines(text) {
             percent_signs += u8::from(content.first() == Some(&b'%'));
             if percent_signs == 2 {
                 break;
@@ -133,11 +111,11 @@ impl Labels {
                 continue;
             }
             if let Some(number) = number {
-                found.blocks.push((number, from, line));
+                found.blocks.add(number, place);
             }
             let fault = |message: &str| -> Fault {
                 let fault = Diagnostic::error("nc-macro", message);
-                fault.at(line, content, start, content.len()).into()
+                fault.at(place.line, content, start, content.len()).into()
             };
             if let Some(b'O' | b':') = content.get(start) {
                 let rest = content.get(start + 1..).unwrap_or_default();
@@ -145,14 +123,11 @@ impl Labels {
                 let Some(number) = number.and_then(|n| arithmetic::whole(n.value)) else {
                     return Err(fault("O needs the number of the program"));
                 };
-                let index = found.programs.len();
-                found.programs.push(Program { from, line: line - 1 });
-                if found.by_number.insert(number, index).is_some() {
+                found.programs.push(place.at);
+                if !found.by_number.add(number, place) {
                     return Err(fault("two programs of this number are in the file"));
                 }
-                if let Some((first, _)) = open.first() {
-                    return Err(unended(text, &found.loops[*first]));
-                }
+                found.loops_end(text)?;
                 continue;
             }
             let Some(statement) = at(content) else { continue };
@@ -160,83 +135,46 @@ impl Labels {
                 let Some(number) = loop_number(content, behind) else {
                     return Err(fault("DO needs its number 1, 2 or 3"));
                 };
-                if open.iter().any(|(_, other)| *other == number) {
+                let loops = &found.loops;
+                if loops.unclosed().any(|[first, _]| loops[first].word == number) {
                     return Err(fault("a loop of this number is around this one"));
                 }
-                let around = open.last().map(|(index, _)| *index);
-                open.push((found.loops.len(), number));
-                let unknown = usize::MAX;
-                let fresh = Loop {
-                    from,
-                    line: line - 1,
-                    behind: next,
-                    end_line: line,
-                    end: unknown,
-                    around,
-                };
-                found.loops.push(fresh);
+                found.loops.open(number, [place, after]);
             } else if let Some((Keyword::End, length)) = keyword(content, statement) {
-                let number = loop_number(content, statement + length);
-                match open.pop() {
-                    Some((index, begun)) if Some(begun) == number => {
-                        let ended = &mut found.loops[index];
-                        (ended.end, ended.behind, ended.end_line) = (from, next, line);
-                    }
-                    _ => return Err(fault("END without its DO, or across another loop")),
-                }
+                let begun = found.loops.unclosed().next_back();
+                let begun = begun.map(|[first, _]| found.loops[first].word);
+                let Some(number) =
+                    begun.filter(|_| begun == loop_number(content, statement + length))
+                else {
+                    return Err(fault("END without its DO, or across another loop"));
+                };
+                found.loops.close(number, [place, after]);
             }
         }
-        if let Some((index, _)) = open.first() {
-            return Err(unended(text, &found.loops[*index]));
-        }
-        found.blocks.sort_unstable();
+        found.loops_end(text)?;
         Ok(found)
     }
 
-    /// The innermost loop around the line that begins at `from`, its own lines included.
-    fn innermost(&self, from: usize) -> Option<usize> {
-        let mut index = self.loops.partition_point(|l| l.from <= from).checked_sub(1);
-        while let Some(i) = index
-            && self.loops[i].end < from
-        {
-            index = self.loops[i].around;
-        }
-        index
-    }
-
-    /// Whether the loop `outer` is `inner` or around it.
-    fn is_around(&self, outer: usize, mut inner: Option<usize>) -> bool {
-        while let Some(index) = inner {
-            if index == outer {
-                return true;
-            }
-            inner = self.loops[index].around;
-        }
-        false
+    /// # Errors
+    /// A loop has no end.
+    fn loops_end(&self, text: &[u8]) -> Result<(), Fault> {
+        let Some([begun, _]) = self.loops.unclosed().next() else { return Ok(()) };
+        let place = self.loops[begun].place;
+        let rest = text.get(place.at..).unwrap_or_default();
+        let content = rest.split(|&b| b == b'\n').next().unwrap_or_default();
+        let fault = Diagnostic::error("nc-macro", "the DO has no END");
+        Err(fault.at(place.line, content, 0, content.len()).into())
     }
 
     /// The block of this number that a jump from byte `from` finds: downwards to the end of the program,
     /// then from its start.
-    fn block(&self, number: u32, from: usize) -> Option<(usize, u32)> {
-        let program = self.programs.partition_point(|p| p.from <= from).saturating_sub(1);
-        let start = self.programs.get(program)?.from;
-        let end = self.programs.get(program + 1).map_or(usize::MAX, |p| p.from);
-        let first = self.blocks.partition_point(|&(n, at, _)| (n, at) < (number, from));
-        let below = self.blocks.get(first).filter(|&&(n, at, _)| n == number && at < end);
-        let above = || {
-            let first = self.blocks.partition_point(|&(n, at, _)| (n, at) < (number, start));
-            self.blocks.get(first).filter(|&&(n, at, _)| n == number && at < end)
-        };
-        below.or_else(above).map(|&(_, at, line)| (at, line - 1))
+    fn block(&self, number: u32, from: usize) -> Option<Place> {
+        let program = self.programs.partition_point(|at| *at <= from).saturating_sub(1);
+        let start = *self.programs.get(program)?;
+        let end = self.programs.get(program + 1).copied().unwrap_or(usize::MAX);
+        let find = |from| self.blocks.behind(&number, from).filter(|place| place.at < end);
+        find(from).or_else(|| find(start))
     }
-}
-
-/// What is wrong with a loop that has no end.
-fn unended(text: &[u8], begun: &Loop) -> Fault {
-    let rest = text.get(begun.from..).unwrap_or_default();
-    let content = rest.split(|&b| b == b'\n').next().unwrap_or_default();
-    let fault = Diagnostic::error("nc-macro", "the DO has no END");
-    fault.at(begun.line + 1, content, 0, content.len()).into()
 }
 
 /// The local variable of an argument's letter (argument specification I; B-63684EN, 16.6).
@@ -296,7 +234,7 @@ impl<'a> Run<'a, '_> {
                 self.go_to_from(from, label)
             }
             Keyword::While | Keyword::Do => {
-                let labels = self.here.source.labels(deletes)?;
+                let numbers = self.here.source.numbers(deletes)?;
                 let holds = keyword == Keyword::Do || self.condition(text, behind)?.0;
                 if let Some(behind) = do_of(text, at) {
                     let number = text.get(behind..).unwrap_or_default();
@@ -305,20 +243,15 @@ impl<'a> Run<'a, '_> {
                 } else {
                     return Err(self.wrong(text, at, "WHILE [..] needs DO"));
                 }
-                match labels.innermost(from).map(|index| &labels.loops[index]) {
-                    Some(around) if around.from == from && !holds => {
-                        self.jump(around.behind, around.end_line)
-                    }
+                match numbers.loops.partner(from) {
+                    Some(end) if !holds => self.jump(end.after),
                     _ => Ok(()),
                 }
             }
-            Keyword::End => {
-                let labels = self.here.source.labels(deletes)?;
-                match labels.innermost(from).map(|index| &labels.loops[index]) {
-                    Some(around) if around.end == from => self.jump(around.from, around.line),
-                    _ => Err(self.wrong(text, at, "END without its DO")),
-                }
-            }
+            Keyword::End => match self.here.source.numbers(deletes)?.loops.partner(from) {
+                Some(begun) => self.jump(begun.place),
+                None => Err(self.wrong(text, at, "END without its DO")),
+            },
             Keyword::Print => {
                 let shown = String::from_utf8_lossy(text.get(at..).unwrap_or_default());
                 self.tell(Action::Comment(shown.trim().into()));
@@ -398,41 +331,41 @@ impl<'a> Run<'a, '_> {
 
     /// Goes on at the block N of this number, looked for from byte `from` on.
     fn go_to_from(&mut self, from: usize, label: u32) -> Result<(), Fault> {
-        let labels = self.here.source.labels(self.settings.setup.block_delete)?;
-        let Some((at, line)) = labels.block(label, from) else {
+        let numbers = self.here.source.numbers(self.settings.setup.block_delete)?;
+        let Some(place) = numbers.block(label, from) else {
             let message = format!("there is no block N{label} in this program");
             return Err(self.at_line("nc-macro", message));
         };
-        if let Some(target) = labels.innermost(at)
-            && labels.loops[target].from != at
-            && !labels.is_around(target, labels.innermost(from))
-        {
+        if !numbers.loops.may_jump(from, place.at) {
             let message = format!("N{label} is inside of a loop: a jump into it is not allowed");
             return Err(self.at_line("nc-macro", message));
         }
-        self.jump(at, line)
+        self.jump(place)
     }
 
     /// Where the block N of this number is (Haas `M97`).
-    pub(super) fn block_of_program(&self, label: u32) -> Result<Result<Place<'a>, String>, Fault> {
+    pub(super) fn block_of_program(
+        &self,
+        label: u32,
+    ) -> Result<Result<source::Place<'a>, String>, Fault> {
         let source = self.here.source;
-        let labels = source.labels(self.settings.setup.block_delete)?;
-        Ok(match labels.block(label, self.here.at) {
-            Some((at, line)) => Ok(Place { source, at, line, percent_signs: 1 }),
+        let numbers = source.numbers(self.settings.setup.block_delete)?;
+        Ok(match numbers.block(label, self.here.at) {
+            Some(place) => Ok(source::Place::called(source, place)),
             None => Err(format!("there is no block N{label} in this program")),
         })
     }
 
     /// Where the program of this number begins: in this file, in the program's own, or in one of its
     /// name.
-    pub(super) fn macro_program(&self, number: u32) -> Result<Result<Place<'a>, String>, Fault> {
+    pub(super) fn macro_program(
+        &self,
+        number: u32,
+    ) -> Result<Result<source::Place<'a>, String>, Fault> {
         let deletes = self.settings.setup.block_delete;
-        let find = |source: &'a Source<'a>| -> Result<Option<Place<'a>>, Fault> {
-            let labels = source.labels(deletes)?;
-            Ok(labels.by_number.get(&number).map(|&index| {
-                let program = &labels.programs[index];
-                Place { source, at: program.from, line: program.line, percent_signs: 1 }
-            }))
+        let find = |source: &'a Source<'a>| -> Result<Option<source::Place<'a>>, Fault> {
+            let place = source.numbers(deletes)?.by_number.first(&number);
+            Ok(place.map(|place| source::Place::called(source, place)))
         };
         for source in [self.here.source, self.main] {
             if let Some(place) = find(source)? {

@@ -6,6 +6,7 @@
 use super::source;
 use crate::iso::language::block::Fault;
 use crate::kernel::decimal;
+use crate::kernel::flow::{self, Place, Structures};
 use program::Diagnostic;
 use std::collections::HashMap;
 
@@ -58,25 +59,17 @@ const KEYWORDS: [(&[u8], Keyword); 15] = [
 #[derive(Debug)]
 pub(super) struct OWord {
     pub keyword: Keyword,
-    /// Where the line begins, and where the next one does.
-    pub from: usize,
-    pub next: usize,
-    pub line: u32,
+    name: Vec<u8>,
     /// Place in the line behind the keyword.
     pub rest: usize,
-    /// The O-word that belongs to this one: the next clause of a branch, the other end of a loop or a
-    /// subroutine, the loop that is left.
-    pub partner: usize,
-    /// The end of the branch that a clause belongs to.
-    pub end: usize,
-    /// The first O-word of this name in the subroutine, where it begins more than one branch or loop.
+    /// Of what begins a branch or loop, the first O-word of this name in the subroutine that does.
     pub twin: Option<usize>,
 }
 
-/// The O-words of a file.
+/// The O-words of a file. The partner of a `break` or `continue` is the loop that it leaves.
 #[derive(Debug, Default)]
 pub(super) struct OWords {
-    pub words: Vec<OWord>,
+    pub words: Structures<OWord>,
     pub subroutines: HashMap<Box<[u8]>, usize>,
 }
 
@@ -177,25 +170,15 @@ fn skip_brackets(text: &[u8]) -> Option<usize> {
     None
 }
 
-/// What is open while the O-words of a file are matched.
-struct Open {
-    /// The O-word that began it.
-    word: usize,
-    /// The clause of a branch that came last.
-    last: usize,
-    name: Vec<u8>,
-}
-
 impl OWords {
     /// Finds the O-words of `text` and matches them; those in blocks with `/` are none where block
     /// delete is on (`deletes`).
     pub(super) fn of(text: &[u8], deletes: bool) -> Result<OWords, Fault> {
         let mut found = OWords::default();
-        let mut open: Vec<Open> = Vec::new();
         // The names of branches and loops, within their subroutine.
         let mut names: HashMap<(Vec<u8>, Vec<u8>), usize> = HashMap::new();
         let mut percent_signs = 0;
-        for (from, next, line, content) in source::lines(text) {
+        for (place, after, content) in flow::lines(text) {
             percent_signs += u8::from(content.first() == Some(&b'%'));
             if percent_signs == 2 {
                 break;
@@ -205,142 +188,125 @@ impl OWords {
                 continue;
             }
             let fault = |message: &str| -> Fault {
-                Diagnostic::error("nc-o-word", message).at(line, content, o, content.len()).into()
+                let fault = Diagnostic::error("nc-o-word", message);
+                fault.at(place.line, content, o, content.len()).into()
             };
             let (name, keyword, rest) = parse(content, o).map_err(fault)?;
-            let index = found.words.len();
-            let mut word =
-                OWord { keyword, from, next, line, rest, partner: index, end: index, twin: None };
             let name = match name {
                 Name::Written(name) => name,
                 Name::Calculated if keyword == Keyword::Call => Vec::new(),
                 Name::Calculated => return Err(fault("only a call may calculate its O number")),
             };
-            if open.len() > DEEPEST {
-                return Err(fault("O-words nest too deep"));
-            }
-            let top = open.last().map(|open| (open.word, found.words[open.word].keyword));
-            let closes = |keyword: Keyword| {
-                let here = open.last().filter(|open| open.name == name);
-                here.is_some() && top.is_some_and(|(_, begun)| begun == keyword)
-            };
-            match keyword {
-                Keyword::Call => {}
-                Keyword::Sub | Keyword::Program => {
-                    if !open.is_empty() {
-                        return Err(fault("a subroutine begins inside of another O-word"));
-                    }
-                    if found.subroutines.insert(name.as_slice().into(), index).is_some() {
-                        return Err(fault("this subroutine is defined twice"));
-                    }
-                    if keyword == Keyword::Sub {
-                        open.push(Open { word: index, last: index, name });
-                    }
-                }
-                Keyword::EndSub => {
-                    if !closes(Keyword::Sub) {
-                        return Err(fault(&unmatched(&found, &open, "sub")));
-                    }
-                    if let Some(sub) = open.pop() {
-                        word.partner = sub.word;
-                        found.words[sub.word].partner = index;
-                    }
-                }
-                Keyword::Return => {
-                    let begun = open.first();
-                    if begun.is_none_or(|sub| found.words[sub.word].keyword != Keyword::Sub) {
-                        return Err(fault("a return outside of a subroutine"));
-                    }
-                }
-                Keyword::While if closes(Keyword::Do) => {
-                    word.keyword = Keyword::DoWhile;
-                    if let Some(begun) = open.pop() {
-                        word.partner = begun.word;
-                        found.words[begun.word].partner = index;
-                    }
-                }
-                Keyword::If | Keyword::While | Keyword::Do | Keyword::Repeat => {
-                    let within = open.first().map_or(Vec::new(), |sub| match sub.word {
-                        word if found.words[word].keyword == Keyword::Sub => sub.name.clone(),
-                        _ => Vec::new(),
-                    });
-                    let first = *names.entry((within, name.clone())).or_insert(index);
-                    if first != index {
-                        word.twin = Some(first);
-                        found.words[first].twin = Some(first);
-                    }
-                    open.push(Open { word: index, last: index, name });
-                }
-                Keyword::ElseIf | Keyword::Else | Keyword::EndIf => {
-                    if !closes(Keyword::If) {
-                        return Err(fault(&unmatched(&found, &open, "if")));
-                    }
-                    let Some(branch) = open.last_mut() else { continue };
-                    let last = std::mem::replace(&mut branch.last, index);
-                    found.words[last].partner = index;
-                    if keyword == Keyword::EndIf
-                        && let Some(branch) = open.pop()
-                    {
-                        let mut clause = branch.word;
-                        while clause != index {
-                            let word = &mut found.words[clause];
-                            (word.end, clause) = (index, word.partner);
-                        }
-                    }
-                }
-                Keyword::EndWhile | Keyword::EndRepeat => {
-                    let (begin, shown) = match keyword {
-                        Keyword::EndWhile => (Keyword::While, "while"),
-                        _ => (Keyword::Repeat, "repeat"),
-                    };
-                    if !closes(begin) {
-                        return Err(fault(&unmatched(&found, &open, shown)));
-                    }
-                    if let Some(begun) = open.pop() {
-                        word.partner = begun.word;
-                        found.words[begun.word].partner = index;
-                    }
-                }
-                Keyword::Break | Keyword::Continue => {
-                    let around = open.iter().rev().find(|open| {
-                        let begun = found.words[open.word].keyword;
-                        open.name == name && matches!(begun, Keyword::While | Keyword::Do)
-                    });
-                    let Some(around) = around else {
-                        return Err(fault("no while or do with this number is around it"));
-                    };
-                    word.partner = around.word;
-                }
-                // `parse` gives none of these.
-                Keyword::DoWhile => {}
-            }
-            found.words.push(word);
+            found.add(&mut names, name, keyword, rest, [place, after]).map_err(|m| fault(&m))?;
         }
-        if let Some(open) = open.last() {
-            let word = &found.words[open.word];
-            let content = text.get(word.from..word.next).unwrap_or_default().trim_ascii_end();
-            let message = "what begins here has no end";
-            let fault = Diagnostic::error("nc-o-word", message);
-            return Err(fault.at(word.line, content, 0, content.len()).into());
+        if let Some([begun, _]) = found.words.unclosed().next_back() {
+            let mark = &found.words[begun];
+            let content = text.get(mark.place.at..mark.after.at).unwrap_or_default();
+            let content = content.trim_ascii_end();
+            let fault = Diagnostic::error("nc-o-word", "what begins here has no end");
+            return Err(fault.at(mark.place.line, content, 0, content.len()).into());
         }
         Ok(found)
     }
 
-    /// The O-word of the line that begins at `from`.
-    pub(super) fn find(&self, from: usize) -> Option<usize> {
-        self.words.binary_search_by_key(&from, |word| word.from).ok()
+    /// Adds an O-word, and says what is wrong where it does not fit to those before it.
+    fn add(
+        &mut self,
+        names: &mut HashMap<(Vec<u8>, Vec<u8>), usize>,
+        name: Vec<u8>,
+        mut keyword: Keyword,
+        rest: usize,
+        place: [Place; 2],
+    ) -> Result<(), String> {
+        let words = &mut self.words;
+        if words.unclosed().len() > DEEPEST {
+            return Err("O-words nest too deep".into());
+        }
+        let inmost = words.unclosed().next_back().map(|[first, _]| &words[first].word);
+        let inmost = inmost.map(|word| (word.keyword, word.name == name));
+        let closes = |keyword: Keyword| inmost == Some((keyword, true));
+        if keyword == Keyword::While && closes(Keyword::Do) {
+            keyword = Keyword::DoWhile;
+        }
+        let wanted = keyword.begins();
+        if let Some((begins, shown)) = wanted
+            && !closes(begins)
+        {
+            return Err(unmatched(words, shown));
+        }
+        let outmost = words.unclosed().next().map(|[first, _]| &words[first].word);
+        let sub = outmost.filter(|word| word.keyword == Keyword::Sub);
+        let mut word = OWord { keyword, name, rest, twin: None };
+        match keyword {
+            Keyword::Call => words.single(word, place, None),
+            Keyword::Sub | Keyword::Program => {
+                if outmost.is_some() {
+                    return Err("a subroutine begins inside of another O-word".into());
+                }
+                let name = word.name.as_slice().into();
+                let index = match keyword {
+                    Keyword::Sub => words.open(word, place),
+                    _ => words.single(word, place, None),
+                };
+                if self.subroutines.insert(name, index).is_some() {
+                    return Err("this subroutine is defined twice".into());
+                }
+                index
+            }
+            Keyword::Return if sub.is_none() => {
+                return Err("a return outside of a subroutine".into());
+            }
+            Keyword::Return => words.single(word, place, None),
+            Keyword::If | Keyword::While | Keyword::Do | Keyword::Repeat => {
+                let within = sub.map_or(Vec::new(), |sub| sub.name.clone());
+                let key = (within, word.name.clone());
+                word.twin = Some(*names.entry(key).or_insert(place[0].at));
+                words.open(word, place)
+            }
+            Keyword::Break | Keyword::Continue => {
+                let is_loop = |begun: &OWord| {
+                    begun.name == word.name && matches!(begun.keyword, Keyword::While | Keyword::Do)
+                };
+                let begun = words.unclosed().rev().find(|[first, _]| is_loop(&words[*first].word));
+                if begun.is_none() {
+                    return Err("no while or do with this number is around it".into());
+                }
+                words.single(word, place, begun.map(|[first, _]| first))
+            }
+            Keyword::ElseIf | Keyword::Else => words.clause(word, place).unwrap_or_default(),
+            Keyword::EndSub
+            | Keyword::DoWhile
+            | Keyword::EndIf
+            | Keyword::EndWhile
+            | Keyword::EndRepeat => words.close(word, place).unwrap_or_default(),
+        };
+        Ok(())
+    }
+}
+
+impl Keyword {
+    /// What this one continues or ends, and how that is shown.
+    fn begins(self) -> Option<(Keyword, &'static str)> {
+        match self {
+            Keyword::EndSub => Some((Keyword::Sub, "sub")),
+            Keyword::DoWhile => Some((Keyword::Do, "do")),
+            Keyword::ElseIf | Keyword::Else | Keyword::EndIf => Some((Keyword::If, "if")),
+            Keyword::EndWhile => Some((Keyword::While, "while")),
+            Keyword::EndRepeat => Some((Keyword::Repeat, "repeat")),
+            _ => None,
+        }
     }
 }
 
 /// What is wrong where an end has not its beginning.
-fn unmatched(found: &OWords, open: &[Open], wanted: &str) -> String {
-    match open.last() {
+fn unmatched(words: &Structures<OWord>, wanted: &str) -> String {
+    match words.unclosed().next_back() {
         None => format!("there is no {wanted} that this belongs to"),
-        Some(open) => format!(
+        Some([first, _]) => format!(
             "this does not belong to the {:?} o{} of line {}, which ends first",
-            found.words[open.word].keyword,
-            String::from_utf8_lossy(&open.name),
-            found.words[open.word].line
+            words[first].word.keyword,
+            String::from_utf8_lossy(&words[first].word.name),
+            words[first].place.line
         ),
     }
 }

@@ -20,6 +20,7 @@ use crate::iso::language::parameters::{Parameters, Values};
 use crate::iso::language::words::{G, Group, M};
 use crate::kernel::budget::Budget;
 use crate::kernel::compensation::Compensator;
+use crate::kernel::flow;
 use program::Diagnostic;
 use std::collections::HashMap;
 use std::ptr;
@@ -297,10 +298,10 @@ impl<'a, 's> Run<'a, 's> {
         }
     }
 
-    /// Goes on at byte `at`, behind line `line`.
-    pub(super) fn jump(&mut self, at: usize, line: u32) -> Result<(), Fault> {
-        let again = self.here.at.saturating_sub(at);
-        (self.here.at, self.here.line) = (at, line);
+    /// Goes on at a block of this file.
+    pub(super) fn jump(&mut self, to: flow::Place) -> Result<(), Fault> {
+        let again = self.here.at.saturating_sub(to.at);
+        (self.here.at, self.here.line) = (to.at, to.line - 1);
         let counted = self.budget.jump().and_then(|()| self.budget.read(again));
         counted.map_err(|message| self.at_line("nc-endless", message))
     }

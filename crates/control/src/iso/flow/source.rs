@@ -1,8 +1,9 @@
 //! The files of a run: the program and those it calls, each read once, with the places to jump to.
 
-use super::macros::Labels;
+use super::macros::Numbers;
 use super::owords::OWords;
 use crate::iso::language::block::Fault;
+use crate::kernel::flow;
 use crate::kernel::folders::Folders;
 use program::Diagnostic;
 use std::borrow::Cow;
@@ -17,7 +18,7 @@ pub(crate) struct Source<'t> {
     /// Its name; empty for the program itself, whose name the caller knows.
     pub name: String,
     pub text: Cow<'t, [u8]>,
-    labels: OnceCell<Labels>,
+    numbers: OnceCell<Numbers>,
     o_words: OnceCell<OWords>,
     next: OnceCell<Box<Source<'t>>>,
 }
@@ -41,8 +42,8 @@ impl<'t> Source<'t> {
     }
 
     fn new(name: String, text: Cow<'t, [u8]>) -> Source<'t> {
-        let (labels, o_words, next) = (OnceCell::new(), OnceCell::new(), OnceCell::new());
-        Source { name, text, labels, o_words, next }
+        let (numbers, o_words, next) = (OnceCell::new(), OnceCell::new(), OnceCell::new());
+        Source { name, text, numbers, o_words, next }
     }
 
     /// The first of the files `names` that the folders have; read where it has not been before.
@@ -94,12 +95,12 @@ impl<'t> Source<'t> {
     ///
     /// # Errors
     /// They do not fit together.
-    pub(super) fn labels(&self, deletes: bool) -> Result<&Labels, Fault> {
-        if let Some(labels) = self.labels.get() {
-            return Ok(labels);
+    pub(super) fn numbers(&self, deletes: bool) -> Result<&Numbers, Fault> {
+        if let Some(numbers) = self.numbers.get() {
+            return Ok(numbers);
         }
-        let labels = Labels::of(&self.text, deletes).map_err(|fault| self.located(fault))?;
-        Ok(self.labels.get_or_init(|| labels))
+        let numbers = Numbers::of(&self.text, deletes).map_err(|fault| self.located(fault))?;
+        Ok(self.numbers.get_or_init(|| numbers))
     }
 
     /// The finding with the name of this file.
@@ -113,6 +114,11 @@ impl<'t> Source<'t> {
 }
 
 impl<'a> Place<'a> {
+    /// A block to which a call goes.
+    pub(super) fn called(source: &'a Source<'a>, to: flow::Place) -> Place<'a> {
+        Place { source, at: to.at, line: to.line - 1, percent_signs: 1 }
+    }
+
     /// The next line and its number; how many bytes it has may be known.
     pub(super) fn next(&mut self, length: Option<usize>) -> (&'a [u8], u32) {
         let rest = self.source.text.get(self.at..).unwrap_or_default();
@@ -122,19 +128,6 @@ impl<'a> Place<'a> {
         self.line = self.line.saturating_add(1);
         (line.strip_suffix(b"\r").unwrap_or(line), self.line)
     }
-}
-
-/// The lines of a text: where each begins, where the next one does, its number, what it says.
-pub(super) fn lines(text: &[u8]) -> impl Iterator<Item = (usize, usize, u32, &[u8])> {
-    let (mut at, mut number) = (0, 0u32);
-    std::iter::from_fn(move || {
-        let rest = text.get(at..).filter(|rest| !rest.is_empty())?;
-        let (from, length) = (at, memchr::memchr(b'\n', rest).unwrap_or(rest.len()));
-        at = (from + length + 1).min(text.len());
-        number = number.saturating_add(1);
-        let line = &rest[..length];
-        Some((from, at, number, line.strip_suffix(b"\r").unwrap_or(line)))
-    })
 }
 
 /// Where the words of a line begin, behind blanks, `/` and `N`; and the number of that N.

@@ -2,7 +2,7 @@
 
 use super::run::Run;
 use super::source::{LAST_LABEL, Label, Place, written_label};
-use crate::kernel::budget::DEEPEST;
+use crate::kernel::flow;
 use crate::klartext::language::registers::{Numbers, Parameter, Registers};
 use crate::klartext::language::scan::{Result, Scanner};
 use std::borrow::Cow;
@@ -11,8 +11,6 @@ use std::result::Result as StdResult;
 /// Deepest nesting of subprograms, and of programs (TNC 640; older controls have fewer).
 const NESTING: usize = 19;
 
-const _: () = assert!(NESTING < DEEPEST);
-
 /// Opening a called program takes as long as reading so many bytes.
 const FILE: usize = 4096;
 
@@ -20,9 +18,8 @@ const FILE: usize = 4096;
 const REPETITIONS: usize = 1000;
 
 /// Where subprograms return to and what is left of repetitions.
-#[derive(Default)]
 pub(super) struct Calls {
-    returns: Vec<Return>,
+    returns: flow::Calls<Return>,
     repetitions: Vec<Repetition>,
 }
 
@@ -43,25 +40,27 @@ struct Repetition {
 }
 
 impl Calls {
+    pub(super) fn new() -> Calls {
+        Calls { returns: flow::Calls::new(NESTING), repetitions: Vec::new() }
+    }
+
     /// A subprogram is called and will return to a place; answers why it cannot be.
     pub(super) fn call(&mut self, to: Place) -> StdResult<(), String> {
-        if self.returns.len() >= NESTING {
-            return Err(format!("subprograms are nested more than {NESTING} deep"));
-        }
-        self.returns.push(Return { to, repetitions: self.repetitions.len() });
-        Ok(())
+        let back = Return { to, repetitions: self.repetitions.len() };
+        let entered = self.returns.enter(back);
+        entered.map_err(|most| format!("subprograms are nested more than {most} deep"))
     }
 
     /// The end of a subprogram: where it returns to, if it was called.
     pub(super) fn end(&mut self) -> Option<Place> {
-        let back = self.returns.pop()?;
+        let back = self.returns.leave()?;
         self.repetitions.truncate(back.repetitions);
         Some(back.to)
     }
 
     /// Whether a subprogram has not returned yet.
     pub(super) fn is_open(&self) -> bool {
-        !self.returns.is_empty()
+        self.returns.last().is_some()
     }
 
     /// A `CALL LBL REP` is reached: whether the part from the label to it runs once more. Answers why

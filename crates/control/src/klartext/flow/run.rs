@@ -55,7 +55,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
         };
         s.finish()?;
         control.set_unit(unit);
-        Ok(Run { control, source, name, calls: Calls::default(), part: None, closed: false })
+        Ok(Run { control, source, name, calls: Calls::new(), part: None, closed: false })
     }
 
     /// Runs the program up to its `END PGM`.

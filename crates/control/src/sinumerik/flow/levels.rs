@@ -1,9 +1,8 @@
 //! Program levels: a call, its parameters, and the way back.
 
 use super::library::Program;
-use super::outline::Place;
 use super::run::{Level, Run, check_rest};
-use crate::kernel::budget::DEEPEST;
+use crate::kernel::flow::Place;
 use crate::sinumerik::Fallible;
 use crate::sinumerik::execution::modal::Modal;
 use crate::sinumerik::execution::state::Modes;
@@ -15,7 +14,6 @@ use crate::sinumerik::language::variables::{Locals, Variable};
 
 /// Most program levels, that of the main program included (Programming Manual 12/2019, 3.2.1.3).
 pub(super) const LEVELS: usize = 16;
-const _: () = assert!(LEVELS <= DEEPEST);
 
 /// What a caller gets back.
 pub(crate) struct Caller {
@@ -44,10 +42,6 @@ impl Run<'_, '_> {
     pub fn call(&mut self, source: &Source, call: ProgramCall) -> Fallible<()> {
         self.turn(source)?;
         let error = |rule, message: String| source.block_error(rule, message);
-        if self.callers.len() + 2 > LEVELS {
-            let message = format!("calls nest deeper than {LEVELS} program levels (alarm 12620)");
-            return Err(error("call-depth", message));
-        }
         let program = self.library.find(&call.program).map_err(|message| {
             let mut error = error("unknown-program", message);
             error.message =
@@ -72,7 +66,10 @@ impl Run<'_, '_> {
             if program.file.is_some() { line.or(Some(source.line)) } else { None };
         let caller = Caller { locals, references, modes, line, modal: None, again };
         let level = Level::new(program, Some(caller));
-        self.callers.push(std::mem::replace(&mut self.level, level));
+        self.callers.enter(std::mem::replace(&mut self.level, level)).map_err(|_| {
+            let message = format!("calls nest deeper than {LEVELS} program levels (alarm 12620)");
+            error("call-depth", message)
+        })?;
         self.interpreter.called = true;
         Ok(())
     }
@@ -96,7 +93,7 @@ impl Run<'_, '_> {
 
     /// The `PROC` line of a program, where it begins with one.
     fn signature(&self, program: &Program) -> Fallible<Signature> {
-        let mut place = Place { at: 0, line: program.first_line };
+        let mut place = program.start();
         while let Some((source, next)) = program.block(place.at, place.line) {
             place = Place { at: next, line: place.line.saturating_add(1) };
             let mut scanner = Scanner::new(source);
@@ -193,7 +190,7 @@ impl Run<'_, '_> {
         if caller.again.0 > 0 {
             caller.again.0 -= 1;
             state.locals = enter(caller.again.1.clone());
-            self.level.next = Place { at: 0, line: program.first_line };
+            self.level.next = program.start();
             self.level.working = false;
             self.turn(source)?;
             return Ok(false);
@@ -217,10 +214,10 @@ impl Run<'_, '_> {
             self.interpreter.restore(source, *modes)?;
         }
         self.interpreter.line = caller.line;
-        if let Some(level) = self.callers.pop() {
+        if let Some(level) = self.callers.leave() {
             self.level = level;
         }
-        self.interpreter.called = !self.callers.is_empty();
+        self.interpreter.called = self.callers.last().is_some();
         if !self.level.sections.is_empty() {
             self.level.next = self.repeat(source, self.level.next)?;
         }

@@ -1,6 +1,7 @@
 //! Programs: the main one, those that travel in the same file, and those of the operator's folders.
 
 use super::outline::Outline;
+use crate::kernel::flow::Place;
 use crate::kernel::folders::Folders;
 use crate::sinumerik::Fallible;
 use crate::sinumerik::language::scan::{Name, Scanner, Source};
@@ -26,6 +27,11 @@ pub(crate) struct Program<'a> {
 }
 
 impl Program<'_> {
+    /// Where its first block starts.
+    pub fn start(&self) -> Place {
+        Place { at: 0, line: self.first_line }
+    }
+
     /// The block that starts at byte `at` on that line, and where the next one starts.
     #[inline]
     pub fn block(&self, at: usize, line: u32) -> Option<(Source<'_>, usize)> {

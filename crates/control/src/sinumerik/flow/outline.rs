@@ -1,41 +1,23 @@
 //! Where jumps go: the labels and block numbers of a program, and its control structures.
 
 use super::library::Program;
+use crate::kernel::flow::{Labels, Place, Structures};
 use crate::sinumerik::Fallible;
 use crate::sinumerik::language::scan::{Name, Scanner, Source};
 use crate::sinumerik::language::structure::Word;
-use std::collections::HashMap;
 
 /// How deep control structures nest on each level (Job Planning 04.00, 1.13).
 const DEEPEST: usize = 16;
 
-/// Where a block starts: its byte in the program, and its line.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) struct Place {
-    /// Byte within the text of the program.
-    pub at: usize,
-    /// Line within the file.
-    pub line: u32,
-}
-
-/// A block that is part of a control structure.
-struct Mark {
-    place: Place,
-    /// The block behind it.
-    after: Place,
-    word: Word,
-    /// The next block of the same structure; for the last one, the first.
-    partner: usize,
-    /// The structure that the blocks behind it stand in, by its last word before them.
-    inside: Option<usize>,
-}
-
 /// What is known of a program's blocks without running them.
+#[derive(Default)]
 pub(crate) struct Outline {
-    labels: HashMap<Name, Vec<Place>>,
-    numbers: HashMap<u32, Vec<Place>>,
-    /// In the order of the program.
-    marks: Vec<Mark>,
+    /// The blocks with labels.
+    pub labels: Labels<Name>,
+    /// The blocks with numbers.
+    pub numbers: Labels<u32>,
+    /// The control structures.
+    pub structures: Structures<Word>,
 }
 
 impl Outline {
@@ -44,39 +26,32 @@ impl Outline {
     /// # Errors
     /// Control structures that do not fit together.
     pub fn of(program: &Program) -> Fallible<Outline> {
-        let mut outline =
-            Outline { labels: HashMap::new(), numbers: HashMap::new(), marks: Vec::new() };
-        let mut open: Vec<usize> = Vec::new();
-        let mut place = Place { at: 0, line: program.first_line };
+        let mut outline = Outline::default();
+        let mut place = program.start();
         while let Some((source, next)) = program.block(place.at, place.line) {
             let after = Place { at: next, line: place.line.saturating_add(1) };
-            outline.add(&source, place, after, &mut open)?;
+            outline.add(&source, place, after)?;
             place = after;
         }
-        let Some(mark) = open.last().and_then(|index| outline.marks.get(*index)) else {
+        let Some([_, index]) = outline.structures.unclosed().next_back() else {
             return Ok(outline);
         };
+        let mark = &outline.structures[index];
         let text = program.block(mark.place.at, mark.place.line).map_or(&[][..], |b| b.0.text);
         let source = Source { line: mark.place.line, text };
         let message = format!("{} has no end (alarm 12640)", mark.word.name());
         Err(source.block_error("control-structure", message))
     }
 
-    fn add(
-        &mut self,
-        source: &Source,
-        place: Place,
-        after: Place,
-        open: &mut Vec<usize>,
-    ) -> Fallible<()> {
+    fn add(&mut self, source: &Source, place: Place, after: Place) -> Fallible<()> {
         let mut scanner = Scanner::new(*source);
         // What is wrong with a block that is never run is nobody's business.
         let Ok(head) = scanner.head() else { return Ok(()) };
         if let Some(number) = head.number {
-            self.numbers.entry(number).or_default().push(place);
+            self.numbers.add(number, place);
         }
         if let Some(label) = head.label {
-            self.labels.entry(label).or_default().push(place);
+            self.labels.add(label, place);
         }
         scanner.blanks();
         if !scanner.name_next() {
@@ -91,83 +66,23 @@ impl Outline {
             return Ok(());
         }
         let error = |message: String| Err(source.block_error("control-structure", message));
-        let index = self.marks.len();
-        let mut mark = Mark { place, after, word, partner: index, inside: Some(index) };
-        if let Some(opener) = word.opener() {
-            let before = open.pop().and_then(|index| self.marks.get_mut(index).map(|m| (index, m)));
-            let fits = |m: &Mark| m.word == opener || word == Word::EndIf && m.word == Word::Else;
-            let Some((before, last)) = before.filter(|(_, m)| fits(m)) else {
-                let message =
-                    format!("{} without its {} (alarm 12640)", word.name(), opener.name());
-                return error(message);
-            };
-            let first = if last.word == Word::Else { last.partner } else { before };
-            last.partner = index;
-            mark.partner = first;
-            if word == Word::Else {
-                open.push(index);
-            } else {
-                mark.inside = open.last().copied();
-            }
-        } else {
-            if open.len() >= DEEPEST {
+        let (structures, places) = (&mut self.structures, [place, after]);
+        let Some(opener) = word.opener() else {
+            if structures.unclosed().len() >= DEEPEST {
                 return error(format!("control structures nest deeper than {DEEPEST}"));
             }
-            open.push(index);
+            structures.open(word, places);
+            return Ok(());
+        };
+        let before = structures.unclosed().next_back().map(|[_, last]| structures[last].word);
+        if before != Some(opener) && (word, before) != (Word::EndIf, Some(Word::Else)) {
+            return error(format!("{} without its {} (alarm 12640)", word.name(), opener.name()));
         }
-        self.marks.push(mark);
+        match word {
+            Word::Else => structures.clause(word, places),
+            _ => structures.close(word, places),
+        };
         Ok(())
-    }
-
-    fn mark(&self, at: usize) -> Option<&Mark> {
-        let index = self.marks.binary_search_by_key(&at, |mark| mark.place.at).ok()?;
-        self.marks.get(index)
-    }
-
-    /// The block of the control structure behind the one at `at`: `ELSE` or `ENDIF` behind `IF`, the
-    /// end behind the beginning, the beginning behind the end.
-    pub fn partner(&self, at: usize) -> Option<(Place, Place)> {
-        let partner = self.marks.get(self.mark(at)?.partner)?;
-        Some((partner.place, partner.after))
-    }
-
-    /// The structures that the block at `at` stands in, from the inmost to the outmost, by their last
-    /// words before it.
-    fn around(&self, at: usize) -> impl Iterator<Item = usize> {
-        let before = self.marks.partition_point(|mark| mark.place.at < at);
-        let mut inside = before.checked_sub(1).and_then(|i| self.marks.get(i)?.inside);
-        std::iter::from_fn(move || {
-            let index = inside?;
-            // What is around a structure is what its first word stands in.
-            let mark = self.marks.get(index)?;
-            let first = if mark.word == Word::Else { self.first_of(index) } else { index };
-            inside = first.checked_sub(1).and_then(|i| self.marks.get(i)?.inside);
-            Some(index)
-        })
-    }
-
-    /// The `IF` of an `ELSE`.
-    fn first_of(&self, otherwise: usize) -> usize {
-        let end = self.marks.get(otherwise).map_or(otherwise, |mark| mark.partner);
-        self.marks.get(end).map_or(otherwise, |mark| mark.partner)
-    }
-
-    /// Whether a jump from the block at `from` to the one at `to` enters no control structure.
-    pub fn may_jump(&self, from: usize, to: usize) -> bool {
-        match self.around(to).next() {
-            None => true,
-            Some(inmost) => self.around(from).any(|index| index == inmost),
-        }
-    }
-
-    /// The blocks with that label, in the order of the program.
-    pub fn labelled(&self, name: &Name) -> &[Place] {
-        self.labels.get(name).map_or(&[], Vec::as_slice)
-    }
-
-    /// The blocks with that number, in the order of the program.
-    pub fn numbered(&self, number: u32) -> &[Place] {
-        self.numbers.get(&number).map_or(&[], Vec::as_slice)
     }
 }
 

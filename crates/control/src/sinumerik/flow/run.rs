@@ -2,10 +2,10 @@
 
 use super::levels::{Caller, LEVELS};
 use super::library::{Library, Program};
-use super::outline::Place;
 use crate::Settings;
 use crate::event::{Action, Risk};
 use crate::kernel::compensation::Compensator;
+use crate::kernel::flow::{Calls, Labels, Place};
 use crate::sinumerik::Fallible;
 use crate::sinumerik::execution::interpreter::Interpreter;
 use crate::sinumerik::execution::modal::Modal;
@@ -17,6 +17,7 @@ use crate::sinumerik::language::structure::Word;
 use crate::sinumerik::language::value::Value;
 use crate::sinumerik::language::variables::ELEMENTS_IN_A_TURN;
 use program::Diagnostic;
+use std::hash::Hash;
 use std::rc::Rc;
 
 /// Most characters of a block, its end included (Programming Manual 06/2019, 2.2.2.2).
@@ -53,13 +54,13 @@ pub(crate) struct Run<'a, 's> {
     pub library: Library<'a>,
     pub interpreter: Interpreter<'a, 's>,
     pub level: Level<'a>,
-    pub callers: Vec<Level<'a>>,
+    pub callers: Calls<Level<'a>>,
 }
 
 impl<'a> Level<'a> {
     /// At the start of a program.
     pub fn new(program: Rc<Program<'a>>, caller: Option<Caller>) -> Level<'a> {
-        let next = Place { at: 0, line: program.first_line };
+        let next = program.start();
         let (sections, counts) = (Vec::new(), Vec::new());
         Level { program, next, working: false, sections, counts, caller }
     }
@@ -76,7 +77,7 @@ impl<'a, 's> Run<'a, 's> {
         let Some(program) = library.main() else { return Ok(()) };
         let interpreter = Interpreter::new(settings, compensator);
         let level = Level::new(program, None);
-        let mut run = Run { library, interpreter, level, callers: Vec::new() };
+        let mut run = Run { library, interpreter, level, callers: Calls::new(LEVELS - 1) };
         let mut block = Block::empty();
         loop {
             let program = Rc::clone(&run.level.program);
@@ -180,9 +181,10 @@ impl<'a, 's> Run<'a, 's> {
         statement: Statement,
     ) -> Fallible<Place> {
         let partner = || -> Fallible<(Place, Place)> {
-            program.outline()?.partner(here.at).ok_or_else(|| {
+            let mark = program.outline()?.structures.partner(here.at).ok_or_else(|| {
                 source.block_error("control-structure", "the control structure is not complete")
-            })
+            })?;
+            Ok((mark.place, mark.after))
         };
         if let Statement::Define(_) | Statement::Declaration = statement {
             if self.level.working {
@@ -295,24 +297,24 @@ impl<'a, 's> Run<'a, 's> {
     ) -> Fallible<Place> {
         let outline = program.outline()?;
         let error = |message: String| Err(source.block_error("jump", message));
-        let (name, places) = match &jump.target {
-            Target::Label(name) => (name.as_str().to_owned(), outline.labelled(name)),
-            Target::Number(number) => (format!("N{number}"), outline.numbered(*number)),
-            Target::Start => {
-                let start = Place { at: 0, line: program.first_line };
-                return self.land(program, source, here, start);
+        // A block in front of the jump, or the one in which it stands, and one behind it.
+        fn both<K: Eq + Hash>(labels: &Labels<K>, label: &K, at: usize) -> [Option<Place>; 2] {
+            [labels.before(label, at + 1), labels.behind(label, at + 1)]
+        }
+        let (name, [backward, forward]) = match &jump.target {
+            Target::Label(name) => (name.as_str().to_owned(), both(&outline.labels, name, here.at)),
+            Target::Number(number) => {
+                (format!("N{number}"), both(&outline.numbers, number, here.at))
             }
+            Target::Start => return self.land(program, source, here, program.start()),
         };
-        let behind = places.partition_point(|place| place.at <= here.at);
-        let forward = places.get(behind);
-        let backward = behind.checked_sub(1).and_then(|index| places.get(index));
         let found = match jump.search {
             Search::Forward => forward,
             Search::Backward => backward,
             Search::Both | Search::Optional | Search::Start => forward.or(backward),
         };
         match (found, jump.search) {
-            (Some(target), _) => self.land(program, source, here, *target),
+            (Some(target), _) => self.land(program, source, here, target),
             (None, Search::Optional) => Ok(after),
             (None, Search::Forward) if backward.is_some() => {
                 error(format!("{name} stands before the jump, not behind it (alarm 14080)"))
@@ -332,7 +334,7 @@ impl<'a, 's> Run<'a, 's> {
         here: Place,
         target: Place,
     ) -> Fallible<Place> {
-        if !program.outline()?.may_jump(here.at, target.at) {
+        if !program.outline()?.structures.may_jump(here.at, target.at) {
             let message = format!("the jump to line {} enters a control structure", target.line);
             return Err(source.block_error("jump", message));
         }
@@ -356,9 +358,8 @@ impl<'a, 's> Run<'a, 's> {
         let outline = program.outline()?;
         // A label is looked for towards the start of the program, then towards its end.
         let find = |name: &Name| {
-            let places = outline.labelled(name);
-            let behind = places.partition_point(|place| place.at <= here.at);
-            behind.checked_sub(1).and_then(|i| places.get(i)).or(places.get(behind)).copied()
+            let labels = &outline.labels;
+            labels.before(name, here.at + 1).or_else(|| labels.behind(name, here.at))
         };
         let missing = |name: &Name| {
             let message = format!("the label {} is not there (alarm 14080)", name.as_str());
@@ -366,10 +367,7 @@ impl<'a, 's> Run<'a, 's> {
         };
         let behind = |place: Place| program.block(place.at, place.line).map_or(place.at, |b| b.1);
         let from = find(&section.from).ok_or_else(|| missing(&section.from))?;
-        let end_label = || {
-            let ends = outline.labelled(&Name::of("ENDLABEL")?);
-            ends.iter().find(|place| place.at >= from.at).copied()
-        };
+        let end_label = || outline.labels.behind(&Name::of("ENDLABEL")?, from.at);
         let last = match &section.to {
             _ if section.one_block => Some(from),
             Some(to) => Some(find(to).ok_or_else(|| missing(to))?),
