@@ -280,13 +280,18 @@ impl Expression<'_, '_, '_, '_> {
 /// A sum, difference, product or quotient of two numbers.
 ///
 /// # Errors
-/// The rule and what to say where there is none.
-fn calculated(operator: Operator, a: &Value, b: &Value) -> Result<Value, (&'static str, String)> {
-    let number = |value: &Value| value.number().ok_or_else(|| ("type", no_number(value)));
+/// The rule, the byte from which on the block is meant, and what to say where there is none.
+fn calculated(
+    operator: Operator,
+    a: &Value,
+    b: &Value,
+    span: Span,
+) -> Result<Value, (&'static str, usize, String)> {
+    let number = |v: &Value| v.number().ok_or_else(|| ("type", span.start, no_number(v)));
     let (x, y) = (number(a)?, number(b)?);
     let divides = !matches!(operator, Operator::Plus | Operator::Minus | Operator::Times);
     if divides && y == 0.0 {
-        return Err(("arithmetic", "division by zero".into()));
+        return Err(("arithmetic", span.operator, "division by zero".into()));
     }
     let Some((m, n)) = a.whole().zip(b.whole()) else {
         return Ok(Value::Real(match operator {
@@ -309,7 +314,7 @@ fn calculated(operator: Operator, a: &Value, b: &Value) -> Result<Value, (&'stat
     };
     whole
         .map(Value::Int)
-        .ok_or_else(|| ("arithmetic", "the result is beyond the whole numbers".into()))
+        .ok_or_else(|| ("arithmetic", span.start, "the result is beyond the whole numbers".into()))
 }
 
 impl Grammar for Expression<'_, '_, '_, '_> {
@@ -352,8 +357,9 @@ impl Grammar for Expression<'_, '_, '_, '_> {
         [left, right]: [Operand; 2],
         span: Span,
     ) -> Fallible<Operand> {
-        let error =
-            |rule, message| Err(self.scanner.source.error(rule, span.start..span.end, message));
+        let error = |(rule, start, message): (_, _, String)| {
+            self.scanner.source.error(rule, start..span.end, message)
+        };
         let offset = match (left.offset, right.offset) {
             (None, None) => None,
             (None, Some(index)) if operator == Operator::Plus => Some(index),
@@ -361,18 +367,15 @@ impl Grammar for Expression<'_, '_, '_, '_> {
                 Some(index)
             }
             (_, Some(index)) | (Some(index), None) => {
-                return error("operator-offset", only_added(index));
+                return Err(error(("operator-offset", span.start, only_added(index))));
             }
         };
         let (a, b) = (left.value, right.value);
         let value = match operator.is_logic() {
-            true => operator.apply(a, b).map_err(|message| ("type", message)),
-            false => calculated(operator, &a, &b),
+            true => operator.apply(a, b).map_err(|message| ("type", span.start, message)),
+            false => calculated(operator, &a, &b, span),
         };
-        match value {
-            Ok(value) => Ok(Operand { value, offset }),
-            Err((rule, message)) => error(rule, message),
-        }
+        Ok(Operand { value: value.map_err(error)?, offset })
     }
 }
 
