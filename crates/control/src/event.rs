@@ -548,6 +548,12 @@ impl Risk {
         refused: true,
     };
 
+    /// A state that the control keeps, or may keep, when the program has ended, and that each program takes as off at its start
+    /// (`docs/proof.md`, "What a program finds, and what it leaves"). `what` begins with "ends".
+    pub(crate) const fn left_on(what: &'static str, help: &'static str) -> Risk {
+        Risk { rule: "left-on", what, help, refused: true }
+    }
+
     /// Work offsets, tool lengths and radii belong to the operator, who has measured them.
     pub(crate) const OPERATOR_DATA: Risk = Risk {
         rule: "operator-data",

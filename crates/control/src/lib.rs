@@ -145,6 +145,12 @@ impl Dialect {
             Language::Klartext | Language::Points => None,
         }
     }
+
+    /// Whether the work offset of the program before may be active when a program starts: as FANUC parameter 3402#6, Haas
+    /// setting 56 and the page "Logic" of Mach3's configuration say.
+    pub fn may_keep_work_offset(self) -> bool {
+        matches!(self, Dialect::Fanuc | Dialect::Haas | Dialect::Mach3)
+    }
 }
 
 /// An interpreter.

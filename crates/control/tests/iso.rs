@@ -82,7 +82,7 @@ fn a_fanuc_program_from_start_to_end() {
     let got = ops_3(
         FANUC,
         "%\nO0001(PART)\nN10 G17 G21 G40 G49 G80 G90 G94\nG91 G28 Z0\nT5 M6\nG90 G54\nS3000 M3\n\
-         G0 X1. Y2.\nG43 H5 Z50. M8\nG1 Z-1. F100.\nX10. M26\nG0 Z50. M9\nM5\nG91 G28 Z0\nM30\n%\n",
+         G0 X1. Y2.\nG43 H5 Z50. M8\nG1 Z-1. F100.\nX10. M26\nG0 Z50. M9\nM5\nG91 G28 Z0\nG90\nM30\n%\n",
     );
     let nan = f64::NAN;
     let tool = program::Tool { number: 5, ..Default::default() };
@@ -398,8 +398,9 @@ fn a_grbl_block_has_79_characters_at_most_blanks_and_comments_apart() {
 }
 
 #[test]
-fn grbl_starts_in_g0_and_the_others_need_a_motion_word() {
-    assert_eq!(ops(GRBL, "X1 Y2 Z3\n"), [Action::Rapid(at(1.0, 2.0, 3.0))]);
+fn a_program_says_itself_how_it_moves_first() {
+    // G0 after power on, G1 behind the M30 of the program before (`gcode.c`, step 21).
+    assert_eq!(rule(GRBL, "X1 Y2 Z3\n"), "nc-no-motion");
     assert_eq!(rule(LINUXCNC, "X1\n"), "nc-no-motion");
     assert_eq!(rule(FANUC, "X1.\n"), "nc-no-motion");
     assert_eq!(rule(GRBL, "G0 X1\nG80\nX2\n"), "nc-no-motion");

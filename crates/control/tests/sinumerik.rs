@@ -165,10 +165,18 @@ fn spindle_and_coolant_are_reported_where_they_change() {
 #[test]
 fn spindle_comes_before_the_motion_and_a_stop_after_it() {
     let ops = blocks("G1 X5 S100 M3 M0");
-    let [Action::Spindle(_), Action::Line(_), Action::Risk(_), Action::Stop, Action::End] = ops[..]
+    let [
+        Action::Spindle(_),
+        Action::Line(_),
+        Action::Risk(_),
+        Action::Stop,
+        Action::Spindle(off),
+        Action::End,
+    ] = ops[..]
     else {
         panic!("{ops:?}")
     };
+    assert_eq!(off, Spindle::Off);
 }
 
 #[test]

@@ -78,7 +78,9 @@ fn cycle84_turns_the_spindle_itself_and_takes_the_hand_from_the_sign_of_the_pitc
     assert_eq!(cycle, Cycle { kind: right, dwell: 0.3, ..drill(20.0, 2.0, 10.0) });
     let spindles: Vec<_> = ops.iter().filter(|op| matches!(op, Action::Spindle(_))).collect();
     let clockwise = |speed| Action::Spindle(Spindle::Clockwise(speed));
-    assert_eq!(spindles, [&clockwise(1000.0), &clockwise(400.0), &clockwise(1000.0)]);
+    // M30 stops it.
+    let off = Action::Spindle(Spindle::Off);
+    assert_eq!(spindles, [&clockwise(1000.0), &clockwise(400.0), &clockwise(1000.0), &off]);
     let left = hole("CYCLE84(10,0,2,-20,,0,5,,-2,0,400)");
     assert_eq!(left.kind, CycleKind::Tap { pitch: 2.0, left: true });
     // M10 has a coarse pitch of 1.5 mm.
@@ -109,11 +111,13 @@ fn cycle85_and_89_feed_in_and_out() {
 
 #[test]
 fn cycle86_leaves_the_spindle_standing() {
-    let ops = blocks("S1000 M3\nCYCLE86(10,0,2,-15,,0.4,3,0,0,0,45)");
+    let ops = blocks("S1000 M3\nCYCLE86(10,0,2,-15,,0.4,3,0,0,0,45)\nG0 X5");
     let (_, cycle) = holes(&ops)[0];
     assert_eq!(cycle, Cycle { kind: CycleKind::Bore, dwell: 0.4, ..drill(15.0, 2.0, 10.0) });
-    let last = ops.iter().rev().find(|op| matches!(op, Action::Spindle(_))).unwrap();
-    assert_eq!(*last, Action::Spindle(Spindle::Off));
+    // In front of the move behind it, and so not by M30.
+    let last = ops.iter().rposition(|op| matches!(op, Action::Rapid(_))).unwrap();
+    let off = ops.iter().rposition(|op| *op == Action::Spindle(Spindle::Off)).unwrap();
+    assert!(off < last, "{ops:?}");
 }
 
 #[test]

@@ -290,8 +290,10 @@ fn a_feed_group_without_a_linear_axis_makes_another_feed() {
     assert_eq!(error("FGROUP(X,Y,Z,Q)").rule, "feed-group");
     assert_eq!(error("FGROUP(X,Y,Z,B)").rule, "unknown-axis");
     let group = |c| Action::FeedPath(FeedPath::Group([1.0, 0.0, c]));
-    let path = [group(1.0), group(20f64.to_radians()), Action::End];
-    assert_eq!(blocks("FGROUP()\nFGROUP(X,Y,Z)\nFGROUP(X,Y,Z,A,C)\nFGREF[C]=20"), path);
+    let none = Action::FeedPath(FeedPath::Group([0.0; 3]));
+    let path = [group(1.0), group(20f64.to_radians()), group(1.0), none, Action::End];
+    let program = "FGROUP()\nFGROUP(X,Y,Z)\nFGROUP(X,Y,Z,A,C)\nFGREF[C]=20\nFGREF[C]=57.29577951308232\nFGROUP()";
+    assert_eq!(blocks(program), path);
     assert_eq!(error("FGREF[X]=20").rule, "feed-group");
     assert_eq!(error("FGREF[C]=0").rule, "feed-group");
 }

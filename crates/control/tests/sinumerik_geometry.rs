@@ -126,15 +126,18 @@ fn threads_go_in_step_with_the_spindle() {
         Action::Spindle(Spindle::Clockwise(200.0)),
         Action::Spindle(Spindle::Off),
         Action::Spindle(Spindle::Clockwise(200.0)),
+        // M30 stops it.
+        Action::Spindle(Spindle::Off),
     ];
     assert_eq!(spindles, expected.iter().collect::<Vec<_>>());
 }
 
 #[test]
 fn spindle_and_axes_are_positioned() {
-    let ops = blocks("S500 M3\nSPOS=90\nM3\nM19\nPOS[X]=5 POS[C]=DC(90)\nY3");
+    let ops = blocks("S500 M3\nSPOS=90\nM3\nM19\nPOS[X]=5 POS[C]=DC(90)\nY3\nM3");
     let off = ops.iter().filter(|op| **op == Action::Spindle(Spindle::Off)).count();
-    assert_eq!(off, 2);
+    // SPOS, M19, and M30.
+    assert_eq!(off, 3);
     let moves: Vec<_> =
         ops.iter().filter(|op| matches!(op, Action::Rapid(_) | Action::Line(_))).collect();
     assert!(matches!(moves[..], [Action::Rapid(first), Action::Rapid(_)] if first.point.x == 5.0));

@@ -38,7 +38,7 @@ fn a_die_with_the_controls_offset() {
 
 #[test]
 fn u_and_v_count_at_the_upper_plane_and_stay() {
-    let text = "G21 G90 G0 X1. Y2. U3.\nM60\nG1 X5. F6.\nU0. V-4.\nG91 V4. X1.\nM50\nM30\n";
+    let text = "G21 G90 G0 X1. Y2. U3.\nM60\nG1 X5. F6.\nU0. V-4.\nG91 V4. X1.\nM50\nG90\nM30\n";
     // 3-4-5, and 45 degrees.
     let (half, point) = (0.5f64.sqrt(), |x: f64, y: f64| Vec3::new(x, y, 0.0));
     let over = |x: f64, y: f64| Position::new(point(x, y), Vec3::new(0.6, 0.0, 0.8));

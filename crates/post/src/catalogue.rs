@@ -68,7 +68,7 @@ names! {
     /// The blocks.
     BlockName {
         ProgramStart Block "program_start", "", "Once, first. It has to bring the control to millimetres, absolute positions, plane XY, feed per minute, no cutter compensation and the work offset.";
-        ProgramEnd Block "program_end", "", "Once, last: retract, spindle and coolant off, end of program.";
+        ProgramEnd Block "program_end", "", "Once, last: retract, spindle and coolant off, F in mm/min again ({{feed_mode}}), end of program.";
         OperationStart Block "operation_start", "", "At the start of each operation of the source.";
         OperationEnd Block "operation_end", "", "At the end of each operation of the source.";
         Comment Block "comment", "", "For each comment of the source; `text` is the comment.";

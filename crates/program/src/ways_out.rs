@@ -119,6 +119,7 @@ const WAYS_OUT: &[(&str, &str)] = &[
     ),
     ("empty-contour", "choose the layer by `--layer`, or draw a closed contour"),
     ("encoding", "save the file as UTF-8"),
+    ("end-height", "send Z home before the end of the program"),
     (
         "endless",
         "correct the condition that ends the loop; the control follows a limited number of blocks",
@@ -174,6 +175,7 @@ const WAYS_OUT: &[(&str, &str)] = &[
         "give each label once, and call only labels that are there; a subprogram ends with its own end block",
     ),
     ("layers-apart", "plot all layers with the same origin"),
+    ("left-on", "switch it off before the end of the program: the next one takes it as off"),
     ("length", "choose a tool within the range of the machine, or correct the tool's data"),
     ("length-offset", "activate the length offset of the tool that is in the spindle"),
     ("line-length", "shorten the text in the source, or the block in the control's file"),

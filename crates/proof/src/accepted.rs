@@ -2,13 +2,14 @@
 //! program does not say.
 
 /// The rules that may be accepted, each with what its acceptance answers for.
-pub const ACCEPTABLE: [(&str, &str); 24] = [
+pub const ACCEPTABLE: [(&str, &str); 25] = [
     ("adaptive-feed", "an input of the machine multiplies the feed"),
     ("axis-dynamics", "axes may be faster than their machine data allow"),
     ("dwell-unit", "what a dwell counts in"),
     ("floating-tap", "taps are held in a floating chuck"),
     ("gear", "in which gear the spindle reaches its speeds"),
     ("leaning-retract", "a retract along the tool brings Z to its end"),
+    ("left-on", "what the program leaves on for the next one"),
     ("length-change", "Z moves by the tool length where parameter 5006#6 is 0"),
     ("length-plane", "along which axis the tool length counts in G18 and G19"),
     ("line-end", "the control takes a last block without a line end"),

@@ -55,7 +55,9 @@ impl Running {
             compensation: Compensation::Off,
             taper: 0.0,
             length_offset: None,
-            work_offset: dialect.and_then(Dialect::work_offset_at_reset),
+            work_offset: dialect
+                .filter(|dialect| !dialect.may_keep_work_offset())
+                .and_then(Dialect::work_offset_at_reset),
             cycle: None,
             path: PathMode::AsSetUp,
             clamps: [None; 3],
@@ -144,6 +146,22 @@ pub(crate) fn at_stop(machine: &Machine, wanted: &Wanted, running: &Running) -> 
     }
 }
 
+/// The work offset, or the register of a tool length, that is active at the end and was not in the last cut. The first work offset
+/// may stay, and the one at reset.
+pub(crate) fn offset_left(machine: &Machine, wanted: &Wanted, running: &Running) -> Option<String> {
+    let at_reset = Dialect::named(&machine.reader).and_then(Dialect::work_offset_at_reset);
+    let may_stay = [wanted.work_offset, at_reset, Some(WorkOffset::FIRST)];
+    if let Some(active) = running.work_offset.filter(|active| !may_stay.contains(&Some(*active))) {
+        let number = active.number();
+        return Some(format!(
+            "work offset {number} active (54 is the first), in which it has not cut last"
+        ));
+    }
+    running.length_offset?;
+    let difference = set_up(machine, wanted, running)?;
+    (difference.0 == "length-offset").then_some(difference.1)
+}
+
 fn work_offset(machine: &Machine, wanted: &Wanted, running: &Running) -> Option<Difference> {
     let expected = wanted.work_offset.unwrap_or(WorkOffset::FIRST);
     match running.work_offset {
@@ -157,7 +175,7 @@ fn work_offset(machine: &Machine, wanted: &Wanted, running: &Running) -> Option<
             let message = format!("no work offset is named, but should be {expected}");
             Some(("work-offset", message))
         }
-        None if Dialect::named(&machine.reader) == Some(Dialect::Fanuc) => {
+        None if Dialect::named(&machine.reader).is_some_and(Dialect::may_keep_work_offset) => {
             let message = "no work offset is named: that of the last program may be active";
             Some(("work-offset", message.into()))
         }

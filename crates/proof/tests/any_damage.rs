@@ -129,7 +129,8 @@ fn both(pieces: &[Piece]) -> (Vec<Op>, Vec<Action>) {
     // A last cut, so that no word stands where it does nothing.
     here.z += if here.z > 0.0 { -31.0 } else { 31.0 };
     go(here, &mut own, &mut nc, Op::Line);
-    nc.extend([Action::Home(Axes::Z), Action::End]);
+    nc.push(Action::Home(Axes::Z));
+    nc.extend(end());
     (own, nc)
 }
 

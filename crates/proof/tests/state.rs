@@ -80,6 +80,11 @@ acceleration = 100
     assert!(!judged("[tools]\nturns_upright = true\n", None));
 }
 
+/// Spindle and coolant off.
+fn off() -> Vec<Action> {
+    vec![Action::Spindle(Spindle::Off), Action::Coolant(Coolant::Off)]
+}
+
 /// Judges the cut with this before its first event.
 fn after_start(words: Vec<Action>) -> Vec<&'static str> {
     rules(&judge(&mill(), &source(cut()), [words, cut_nc()].concat()))
@@ -96,7 +101,7 @@ fn at_record(index: usize, ops: Vec<Op>, actions: Vec<Action>) -> Vec<&'static s
 /// Judges the cut of a program that lacks an event of its start.
 fn without(missing: impl Fn(&Action) -> bool) -> Vec<&'static str> {
     let start = nc_start().into_iter().filter(|action| !missing(action));
-    let nc = start.chain(cut_nc()).chain([Action::Home(Axes::Z), Action::End]).collect();
+    let nc = start.chain(cut_nc()).chain([Action::Home(Axes::Z)]).chain(end()).collect();
     rules(&run(&mill(), &source(cut()), nc))
 }
 
@@ -163,9 +168,11 @@ fn a_wrong_offset_or_tool_is_refused() {
     assert_eq!(after_start(vec![Action::LengthOffset(Some(2))]), ["length-offset"]);
     assert_eq!(after_start(vec![Action::LengthOffset(None)]), ["length-offset"]);
     assert_eq!(after_start(vec![Action::WorkOffset(offset(55))]), ["work-offset"]);
-    // Without a word a FANUC may keep that of the last program, and a SINUMERIK has none.
-    let nc = [nc_start(), cut_nc(), vec![Action::End]].concat();
-    for (reader, wrong) in [("fanuc", true), ("sinumerik", true), ("grbl", false)] {
+    // Without a word a FANUC and a Haas may keep that of the last program, and a SINUMERIK has none.
+    // `G61`, without which setting 85 of a Haas rounds the corners.
+    let exact = vec![Action::PathMode(PathMode::ExactPath)];
+    let nc = [nc_start(), exact, cut_nc(), end()].concat();
+    for (reader, wrong) in [("fanuc", true), ("haas", true), ("sinumerik", true), ("grbl", false)] {
         let machine = Machine { reader: reader.into(), ..mill() };
         proven(&run(&machine, &source(cut()), nc.clone()));
         let unsaid = run(&machine, &source(cut()), nc[1..].to_vec());
@@ -174,7 +181,7 @@ fn a_wrong_offset_or_tool_is_refused() {
     }
     let mut start = nc_start();
     start[1] = Action::Tool(tool(2));
-    let nc = [start, cut_nc(), vec![Action::End]].concat();
+    let nc = [start, cut_nc(), end()].concat();
     assert_eq!(rules(&run(&mill(), &source(cut()), nc)), ["tool"]);
 }
 
@@ -349,7 +356,7 @@ fn a_tool_is_called_by_its_number_or_by_its_own_name() {
             Box::new(Tool { number, name: name.into(), ..Tool::default() })
         };
         let own = program([vec![Op::Tool(tool(source))], start()[1..].to_vec(), cut()].concat());
-        let mut nc = [nc_start(), cut_nc(), vec![Action::End]].concat();
+        let mut nc = [nc_start(), cut_nc(), end()].concat();
         nc[1] = Action::Tool(tool(block));
         run(&implicit, &own, nc).proven
     };
@@ -419,7 +426,7 @@ fn a_lift_along_the_tool_axis_and_back_is_an_excursion() {
 #[test]
 fn after_the_last_motion_the_tool_only_leaves() {
     let ending = |end: Vec<Action>| {
-        rules(&run(&mill(), &source(cut()), [nc_start(), cut_nc(), end].concat()))
+        rules(&run(&mill(), &source(cut()), [nc_start(), cut_nc(), off(), end].concat()))
     };
     let away = Action::Rapid(block(30.0, 0.0, 100.0));
     let (up, aside) = (Action::Home(Axes::Z), Action::Home(Axes::X | Axes::Y));
@@ -431,6 +438,37 @@ fn after_the_last_motion_the_tool_only_leaves() {
     assert_eq!(ending(vec![aside, Action::End]), ["home"]);
     assert_eq!(ending(vec![Action::End, away]), ["after-end"]);
     assert_eq!(ending(vec![Action::End, Action::Spindle(Spindle::Clockwise(9.0))]), ["after-end"]);
+}
+
+#[test]
+fn what_a_program_leaves_on_at_its_end_is_refused() {
+    let ending = |end: Vec<Action>| {
+        let nc = [nc_start(), cut_nc(), vec![Action::Home(Axes::Z)], end, vec![Action::End]];
+        rules(&run(&mill(), &source(cut()), nc.concat()))
+    };
+    let and_off = |more: Action| [off(), vec![more]].concat();
+    assert_eq!(ending(off()), [""; 0]);
+    assert_eq!(ending(vec![]), ["left-on"]);
+    assert_eq!(ending(off()[1..].to_vec()), ["left-on"]);
+    assert_eq!(ending(off()[..1].to_vec()), ["left-on"]);
+    assert_eq!(ending(and_off(Action::Spindle(Spindle::Clockwise(9.0)))), ["left-on"]);
+    assert_eq!(ending(and_off(Action::WorkOffset(offset(55)))), ["left-on"]);
+    assert_eq!(ending(and_off(Action::LengthOffset(Some(2)))), ["left-on"]);
+    assert_eq!(ending(and_off(Action::Taper(1.0))), ["left-on"]);
+    // The length of the tool that has cut may stay or end, and so may the first work offset.
+    assert_eq!(ending(and_off(Action::LengthOffset(None))), [""; 0]);
+    assert_eq!(ending(and_off(Action::WorkOffset(WorkOffset::FIRST))), [""; 0]);
+}
+
+#[test]
+fn a_program_that_ends_with_the_tool_over_the_part_is_told_of() {
+    let warned = |between: Vec<Action>| {
+        let report = run(&mill(), &source(cut()), [nc_start(), cut_nc(), between, end()].concat());
+        proven(&report);
+        report.warnings.iter().any(|found| found.rule == "end-height")
+    };
+    assert!(warned(vec![]));
+    assert!(!warned(vec![Action::Home(Axes::Z)]));
 }
 
 #[test]

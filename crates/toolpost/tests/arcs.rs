@@ -149,7 +149,8 @@ fn a_radius_is_negative_over_a_half_circle_and_what_it_cannot_say_is_cut() {
 #[test]
 fn a_centre_is_absolute_where_the_control_counts_it_so() {
     let text = words(false, &[("CX", "I"), ("CY", "J"), ("CZ", "K")])
-        + "program_start = \"{{N}} G21 G17 G40 G49 G80 G90 G90.1 G94 G54 G61\"";
+        + "program_start = \"{{N}} G21 G17 G40 G49 G80 G90 G90.1 G94 G54 G61\"\n\
+           program_end = \"M5\\nM9\\nG53 G0 {{SAFE_HEIGHT}}\\nG91.1\\nM2\"";
     let blocks = ["G3 X0 Y20 I0 J0", "X10 Y10 I0 J10", "X10 Y10 I5 J10", "G2 X30 I20 J10"];
     assert_eq!(arcs(&mill("generic-3axis-linuxcnc", &text, CENTER)), blocks);
     let text = words(false, &[("CX", "I=AC(#)"), ("CY", "J=AC(#)"), ("CZ", "K=AC(#)")]);

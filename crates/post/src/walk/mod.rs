@@ -619,6 +619,8 @@ impl<'a> Walk<'a> {
             self.unclamp()?;
             self.say_unturned(BlockName::ProgramEnd);
         }
+        // What the next program finds: F counts mm/min again, where the block places the word.
+        self.writer.code(WordName::FeedMode, feed_mode::PER_MINUTE);
         self.block(BlockName::ProgramEnd)
     }
 

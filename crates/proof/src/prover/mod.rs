@@ -3,6 +3,7 @@
 mod approach;
 mod cut;
 mod drilling;
+mod ending;
 mod events;
 mod rapid;
 mod single;
@@ -29,8 +30,8 @@ use geom::{Arc, Vec3};
 use machine::{Machine, Mount};
 use program::statistics::Statistics;
 use program::{
-    Axes, Compensation, CutBox, Diagnostic, Feed, MachineMove, Probe, Program, Severity, Spindle,
-    Tool,
+    Axes, Compensation, Coolant, CutBox, Diagnostic, Feed, MachineMove, Probe, Program, Severity,
+    Spindle, Tool,
 };
 
 /// The way out of a difference.
@@ -358,7 +359,7 @@ impl<'a> Prover<'a> {
                     self.report.warn(found.line(line));
                 }
             }
-            Action::End => self.ended = true,
+            Action::End => self.ends(line),
             // A tool that is made ready changes nothing, and words are for people.
             Action::Preselect(_) | Action::Comment(_) | Action::Message(_) => {}
         }

@@ -164,6 +164,11 @@ pub fn nc_start() -> Vec<Action> {
     does
 }
 
+/// What the end of a program switches on a control that switches off by itself.
+pub fn end() -> Vec<Action> {
+    vec![Action::Spindle(Spindle::Off), Action::Coolant(Coolant::Off), Action::End]
+}
+
 /// A source of these motions, after the start.
 pub fn source(motions: Vec<Op>) -> Program {
     program([start(), motions].concat())
@@ -171,7 +176,7 @@ pub fn source(motions: Vec<Op>) -> Program {
 
 /// The report on a program that begins and ends well and does this between.
 pub fn judge(machine: &Machine, source: &Program, between: Vec<Action>) -> Report {
-    run(machine, source, [nc_start(), between, vec![Action::Home(Axes::Z), Action::End]].concat())
+    run(machine, source, [nc_start(), between, vec![Action::Home(Axes::Z)], end()].concat())
 }
 
 /// The report on a control that does this, on line 1, 2 ...

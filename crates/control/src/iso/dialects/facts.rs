@@ -589,11 +589,9 @@ pub(crate) struct WireRules {
     pub taper_letter: u8,
 }
 
-/// What holds at the start of a program.
+/// What holds at the start of a program, and behind its end.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Reset {
-    /// `G0` is active.
-    pub rapid: bool,
     /// Lengths are mm whatever is set up.
     pub millimeters: bool,
     /// The control drives X, Y and Z only.
@@ -604,17 +602,30 @@ pub(crate) struct Reset {
     pub feed_path: FeedPath,
     /// The work offset that is active; none where it is that of the last program, or there is none.
     pub work_offset: Option<WorkOffset>,
+    /// What becomes of it at the end of a program.
+    pub at_end: AtEnd,
+}
+
+/// What the end of a program does to plane, distance, feed mode, compensation, cycle and work offset.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum AtEnd {
+    /// It brings them back to those of a start.
+    Resets,
+    /// It keeps them, or a setting of the machine says whether it does.
+    Keeps,
+    /// No machine reads the program.
+    Unread,
 }
 
 impl Reset {
     pub const ISO: Reset = Reset {
-        rapid: false,
         millimeters: false,
         three_axes: false,
         corners: Corners::Followed,
         // FANUC 1408#0 (rotary feed by a radius), Haas settings 34 and 79, Mach3 "Use Radius for Feedrate".
         feed_path: FeedPath::AsSetUp,
         work_offset: Some(WorkOffset::FIRST),
+        at_end: AtEnd::Keeps,
     };
     pub const FANUC: Reset = Reset { work_offset: None, ..Reset::ISO };
 }

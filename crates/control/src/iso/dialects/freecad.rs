@@ -2,8 +2,8 @@
 //! are mm and times s, whatever the job shows: a feed is mm/s.
 
 use super::facts::{
-    Arcs, Brackets, Cycles, Facts, FeedMeaning, FeedRules, Functions, Language, OuterCenter, Reset,
-    Semicolon, Syntax, Tools,
+    Arcs, AtEnd, Brackets, Cycles, Facts, FeedMeaning, FeedRules, Functions, Language, OuterCenter,
+    Reset, Semicolon, Syntax, Tools,
 };
 use super::{BASIC_G, BASIC_M, END_M, SPINDLE_G, SPINDLE_M, cycles};
 use crate::Ending;
@@ -65,7 +65,7 @@ pub(crate) static FACTS: Facts = Facts {
     arcs: Arcs { outer_center: OuterCenter::Ignored, ..Arcs::ISO },
     cycles: Cycles { chuck_is_open: true, returns: Some(false), ..Cycles::ISO },
     tools: Tools { numbered: true, ..Tools::ISO },
-    reset: Reset { millimeters: true, ..Reset::ISO },
+    reset: Reset { millimeters: true, at_end: AtEnd::Unread, ..Reset::ISO },
     // What the machine does at a stop, the post knows.
     functions: Functions { stop_leaves_on: false, ..Functions::ISO },
     ..Facts::iso(WORDS, Language::Plain)

@@ -1,8 +1,8 @@
 //! GRBL 1.1, wiki page "Grbl v1.1 Commands" and the supported codes in its `gcode.h`.
 
 use super::facts::{
-    Arcs, Brackets, Facts, FeedRules, FeedUnit, Functions, Homes, Language, Offsets, OuterCenter,
-    Reset, Syntax, Tools, six,
+    Arcs, AtEnd, Brackets, Facts, FeedRules, FeedUnit, Functions, Homes, Language, Offsets,
+    OuterCenter, Reset, Syntax, Tools, six,
 };
 use super::{END_M, MILL_G, mill};
 use crate::FeedPath;
@@ -65,6 +65,12 @@ pub(crate) static FACTS: Facts = Facts {
     },
     homes: Homes { stored: true, ..Homes::ISO },
     tools: Tools { by_hand: true, ..Tools::ISO },
-    reset: Reset { feed_path: FeedPath::AllAxes, rapid: true, three_axes: true, ..Reset::ISO },
+    reset: Reset {
+        feed_path: FeedPath::AllAxes,
+        three_axes: true,
+        // `gcode.c`, step 21.
+        at_end: AtEnd::Resets,
+        ..Reset::ISO
+    },
     ..Facts::iso(WORDS, Language::Plain)
 };

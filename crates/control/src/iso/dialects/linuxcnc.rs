@@ -2,8 +2,8 @@
 //! a group of its own.
 
 use super::facts::{
-    Arcs, Cycles, Facts, FeedRules, FeedUnit, Functions, Homes, Language, MotionRules, Offsets,
-    OuterCenter, Reset, Rollover, Syntax, Tools,
+    Arcs, AtEnd, Cycles, Facts, FeedRules, FeedUnit, Functions, Homes, Language, MotionRules,
+    Offsets, OuterCenter, Reset, Rollover, Syntax, Tools,
 };
 use super::{END_M, MILL_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
 use crate::iso::language::words::{
@@ -131,6 +131,12 @@ pub(crate) static FACTS: Facts = Facts {
     },
     homes: Homes { stored: true, ..Homes::ISO },
     tools: Tools { follows_tool: true, rs274_data: true, ..Tools::ISO },
-    reset: Reset { corners: Corners::Unbounded, feed_path: FeedPath::LinearAxes, ..Reset::ISO },
+    reset: Reset {
+        corners: Corners::Unbounded,
+        feed_path: FeedPath::LinearAxes,
+        // M codes, "M2, M30 Program End".
+        at_end: AtEnd::Resets,
+        ..Reset::ISO
+    },
     ..Facts::iso(WORDS, Language::Ngc)
 };

@@ -1,7 +1,7 @@
 //! Mach3, "Mach3 G and M-code Reference", table of G codes. The modal groups are those of RS274/NGC,
 //! on which it is built; `G80` may stand beside `G0` to `G3`.
 
-use super::facts::{Facts, FrameRules, Language, Offsets, Reset, Syntax, Tools};
+use super::facts::{Facts, FrameRules, Functions, Language, Offsets, Reset, Syntax, Tools};
 use super::{END_M, FRAME_G, MILL_G, POLAR_G, SUBPROGRAM_M, TOOL_G, TOOL_M, cycles, mill};
 use crate::Corners;
 use crate::iso::language::words::{Dictionary, G, GRow, Group, M, MRow, Path, Refused};
@@ -52,6 +52,11 @@ pub(crate) static FACTS: Facts = Facts {
     syntax: Syntax {
         further_axes: "this control has six axes, X Y Z and A B C: write the move with them",
         ..Syntax::ISO
+    },
+    functions: Functions {
+        // Its page "Logic", the choice of the operator.
+        end_switches_off: false,
+        ..Functions::ISO
     },
     offsets: Offsets {
         by_g59: Some(OFFSETS),

@@ -77,7 +77,7 @@ impl Step<'_, '_, '_> {
     pub(super) fn counts_machine(&self) -> Result<(), Fault> {
         let what =
             "a fixed position by the kinematics of the tip, where it counts in the turned work";
-        self.by_axes(Group::OneShot, what, "first")
+        self.by_axes(Group::OneShot, what)
     }
 
     /// # Errors
@@ -85,24 +85,16 @@ impl Step<'_, '_, '_> {
     pub(super) fn keeps_length(&self) -> Result<(), Fault> {
         let what =
             "another tool length by the kinematics of the tip: the axes jump by what it changes";
-        self.by_axes(Group::Length, what, "first")
+        self.by_axes(Group::Length, what)
     }
 
-    /// # Errors
-    /// The program ends with the kinematics of the tip, which the next one then has.
-    pub(super) fn ends_with_axes(&self) -> Result<(), Fault> {
-        let what =
-            "the program ends with the kinematics of the tip, by which the next one then moves";
-        self.by_axes(Group::Flow, what, "before")
-    }
-
-    /// Refuses `what` by the kinematics of the tip: those of the axes come `when`.
-    fn by_axes(&self, group: Group, what: &str, when: &str) -> Result<(), Fault> {
+    /// Refuses `what` by the kinematics of the tip: those of the axes come first.
+    fn by_axes(&self, group: Group, what: &str) -> Result<(), Fault> {
         if self.state.kinematics != Kinematics::Tip {
             return Ok(());
         }
         let fault = self.block.at_group(group, "nc-kinematics", what);
-        Err(fault.help(format!("switch to the kinematics of the axes {when}")).into())
+        Err(fault.help("switch to the kinematics of the axes first").into())
     }
 
     fn wrong_kinematics(&self, message: &str) -> Fault {

@@ -9,6 +9,7 @@
 mod arcs;
 mod coordinates;
 mod cycles;
+mod ending;
 mod frames;
 mod freecad;
 mod kinematics;

@@ -189,13 +189,14 @@ pub(super) const UNKNOWN: Vec3 = Vec3::NAN;
 
 impl State {
     /// The state at the start of a program: that of a control after power on. FANUC: parameters 3401
-    /// and 3402 as delivered; LinuxCNC: `RS274NGC_STARTUP_CODE` empty; GRBL: its first `$G` report.
+    /// and 3402 as delivered; LinuxCNC: `RS274NGC_STARTUP_CODE` empty; GRBL: its first `$G` report, but for the motion: `G0` after
+    /// power on, `G1` behind `M2` and `M30`.
     pub(super) fn new(facts: &Facts, axes: [bool; 3], settings: &Settings) -> State {
         let all_zero = settings.setup.start.is_some();
         // A FANUC goes on in the work offset of the program before.
         let work_offset = facts.reset.work_offset.map_or(0, WorkOffset::number);
         State {
-            motion: facts.reset.rapid.then_some(Motion::Rapid),
+            motion: None,
             plane: Plane::Xy,
             incremental: false,
             centers_absolute: false,

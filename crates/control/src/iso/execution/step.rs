@@ -2,11 +2,11 @@
 
 use super::state::State;
 use crate::event::{Action, Risk};
-use crate::iso::dialects::facts::{Facts, FeedMeaning, FeedUnit};
+use crate::iso::dialects::facts::{AtEnd, Facts, FeedMeaning, FeedUnit};
 use crate::iso::language::block::{Block, Fault};
 use crate::iso::language::words::{FeedMode, G, Group, M, Motion, Path, Plane, Side};
 use crate::{Settings, WholeNumbers};
-use program::{Coolant, Feed, PathMode, Spindle};
+use program::{Coolant, Feed, PathMode, Spindle, WorkOffset};
 
 /// A virtual control: its dialect, its axes and its state.
 #[derive(Debug)]
@@ -573,18 +573,30 @@ impl Step<'_, '_, '_> {
                 self.stop_all()?;
             }
             Some(M::End) => {
-                self.ends_with_axes()?;
                 self.looks_ahead_no_more();
-                // The others switch off by themselves; on FANUC it is the builder's choice.
-                if self.facts.functions.end_switches_off {
-                    self.turn(Spindle::Off);
-                    self.cool(Coolant::Off)?;
-                }
-                self.state.ended = true;
-                self.actions.push(Action::End);
+                self.end()?;
             }
             _ => {}
         }
+        Ok(())
+    }
+
+    /// `M2` and `M30`.
+    fn end(&mut self) -> Result<(), Fault> {
+        let left_on = self.state.left_on(self.facts);
+        self.actions.extend(left_on.map(|risk| Action::Risk(risk.into())));
+        // The others switch off by themselves; on FANUC it is the builder's choice, on Mach3 the operator's.
+        if self.facts.functions.end_switches_off {
+            self.turn(Spindle::Off);
+            self.cool(Coolant::Off)?;
+        }
+        if self.facts.reset.at_end == AtEnd::Resets
+            && self.state.work_offset.is_some_and(|number| number != WorkOffset::FIRST.number())
+        {
+            self.actions.push(Action::WorkOffset(WorkOffset::FIRST));
+        }
+        self.state.ended = true;
+        self.actions.push(Action::End);
         Ok(())
     }
 

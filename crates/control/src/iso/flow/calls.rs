@@ -283,6 +283,10 @@ impl<'a> Run<'a, '_> {
             // The control begins the program again: what follows is not reached.
             (Kind::Main, None) => {
                 self.actions.push(Action::Risk(Risk::PROGRAM_REPEATS.into()));
+                self.leave_on();
+                if self.control.state.is_down() {
+                    self.actions.push(Action::Risk(Risk::TOOL_DOWN.into()));
+                }
                 self.actions.push(Action::End);
                 self.control.state.ended = true;
                 Ok(())

@@ -8,7 +8,7 @@ use super::owords;
 use super::source::{self, Place, Source};
 use crate::Ending;
 use crate::Settings;
-use crate::event::{Action, Event};
+use crate::event::{Action, Event, Risk};
 use crate::iso::dialects::facts::{Facts, Language};
 use crate::iso::execution::onward::Onward;
 use crate::iso::execution::state::State;
@@ -133,6 +133,9 @@ impl<'a, 's> Run<'a, 's> {
             self.control.ends_no_curve().map_err(|message| self.at_line("nc-spline", message))?;
             if self.facts.syntax.ending == Ending::Text && !self.control.state.ended {
                 let line = self.here.line.max(1);
+                for risk in self.control.state.left_on(self.facts) {
+                    self.compensator.take(Event { line, action: Action::Risk(risk.into()) })?;
+                }
                 self.compensator.take(Event { line, action: Action::End })?;
             }
             return Ok(());
@@ -249,6 +252,9 @@ impl<'a, 's> Run<'a, 's> {
         let calls = matches!(flow, Some(M::Call | M::CallBlock));
         let call = if calls { Some(self.called_program()?) } else { None };
         let back = if flow == Some(M::Return) { self.whole_word(b'P')? } else { None };
+        if flow == Some(M::End) && self.frames.iter().any(|frame| frame.modal.is_some()) {
+            self.tell(Action::Risk(Risk::MODAL_MACRO.into()));
+        }
         let corner = self.block.corner.take();
         let state = &self.control.state;
         let start =
@@ -386,6 +392,15 @@ impl<'a, 's> Run<'a, 's> {
     /// Adds a record.
     pub(super) fn tell(&mut self, action: Action) {
         self.actions.push(action);
+    }
+
+    /// Reports what the program leaves on where `M99` begins it again.
+    pub(super) fn leave_on(&mut self) {
+        let left_on = self.control.state.left_on(self.facts);
+        self.actions.extend(left_on.map(|risk| Action::Risk(risk.into())));
+        if self.frames.iter().any(|frame| frame.modal.is_some()) {
+            self.tell(Action::Risk(Risk::MODAL_MACRO.into()));
+        }
     }
 
     /// What the comments of the block say.

@@ -7,6 +7,7 @@
 mod approach;
 mod contour;
 pub(super) mod cycle;
+mod ending;
 mod helix;
 mod hole;
 mod layout;

@@ -489,6 +489,7 @@ impl<'a, 's> Control<'a, 's> {
 
     /// The end of the program.
     pub(crate) fn end(&mut self) -> Result<()> {
+        self.report_left_on()?;
         self.stop_all()?;
         self.ended = true;
         self.emit(Action::End)

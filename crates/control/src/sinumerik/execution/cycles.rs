@@ -318,14 +318,14 @@ impl Drilling {
     }
 
     /// `SDAC`: what the spindle does after the cycle.
-    fn direction(arguments: &Arguments, name: &str, speed: f64) -> Fallible<Spindle> {
+    fn direction(arguments: &Arguments, name: &str, speed: Option<f64>) -> Fallible<Spindle> {
+        let given = || {
+            let message = format!("{name} starts the spindle and no speed has been given by S");
+            speed.ok_or_else(|| arguments.error("spindle", message))
+        };
         match arguments.or_zero(name)? {
-            3.0 | 4.0 if speed.is_nan() => Err(arguments.error(
-                "spindle",
-                format!("{name} starts the spindle, and no speed has been given by S"),
-            )),
-            3.0 => Ok(Spindle::Clockwise(speed)),
-            4.0 => Ok(Spindle::CounterClockwise(speed)),
+            3.0 => Ok(Spindle::Clockwise(given()?)),
+            4.0 => Ok(Spindle::CounterClockwise(given()?)),
             5.0 if name == "SDAC" => Ok(Spindle::Off),
             other => Err(arguments.error(
                 "cycle-parameter",

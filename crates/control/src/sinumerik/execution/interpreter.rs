@@ -49,6 +49,8 @@ const PRECISIONS: [&str; 5] = ["_OFF", "_FINISH", "_SEMIFIN", "_ROUGH", "_PRECIS
 
 /// M functions of which a block has at most one, and those that stand for no motion at all.
 const STOPS: &[u32] = &[0, 1, 2, 17, 30];
+/// Back to the program that has called.
+const RETURN: u32 = 17;
 const SPINDLE: &[u32] = &[3, 4, 5];
 const COOLANT: &[u32] = &[7, 8, 9];
 /// The control chooses the gear of the spindle itself; gears 1 to 5.
@@ -460,24 +462,20 @@ impl<'a, 's> Interpreter<'a, 's> {
             if speed < 0.0 {
                 return Err(source.block_error("spindle", "the speed of the spindle has no sign"));
             }
-            self.state.speed = speed;
-        }
-        let speed = self.state.speed;
-        let running = self.state.spindle;
-        if speed.is_nan() && (block.has_m(3) || block.has_m(4)) {
-            let message = "the spindle starts and no speed has been given by S";
-            let mut error = source.block_error("spindle", message);
-            error.help = "write S beside M3 or M4, or before".into();
-            return Err(error);
+            self.state.speed = Some(speed);
         }
         let spindle = match block.m.iter().flatten().find(|m| SPINDLE.contains(m)) {
-            Some(3) => Spindle::Clockwise(speed),
-            Some(4) => Spindle::CounterClockwise(speed),
+            Some(3) => Spindle::Clockwise(self.given_speed(source)?),
+            Some(4) => Spindle::CounterClockwise(self.given_speed(source)?),
             Some(_) => Spindle::Off,
-            None => match running {
+            None => match self.state.spindle {
                 Spindle::Off => Spindle::Off,
-                Spindle::Clockwise(_) => Spindle::Clockwise(speed),
-                Spindle::CounterClockwise(_) => Spindle::CounterClockwise(speed),
+                Spindle::Clockwise(before) => {
+                    Spindle::Clockwise(self.state.speed.unwrap_or(before))
+                }
+                Spindle::CounterClockwise(before) => {
+                    Spindle::CounterClockwise(self.state.speed.unwrap_or(before))
+                }
             },
         };
         let positioned = block.rare.as_ref().is_some_and(|rare| rare.spindle_position.is_some());
@@ -490,6 +488,19 @@ impl<'a, 's> Interpreter<'a, 's> {
             None => self.state.coolant,
         };
         self.report_coolant(source, coolant)
+    }
+
+    /// The speed that the program has given, 1/min.
+    ///
+    /// # Errors
+    /// It has given none: the spindle would turn as the program before has left it.
+    fn given_speed(&self, source: &Source) -> Fallible<f64> {
+        self.state.speed.ok_or_else(|| {
+            let message = "the spindle starts and no speed has been given by S";
+            let mut error = source.block_error("spindle", message);
+            error.help = "write S next to M3 or M4, or before".into();
+            error
+        })
     }
 
     /// The coolant is this from here on.
@@ -545,14 +556,26 @@ impl<'a, 's> Interpreter<'a, 's> {
         match stop {
             Some(0) => self.emit(source, Action::Stop),
             Some(1) => self.emit(source, Action::OptionalStop),
-            Some(_) => self.end(source),
+            Some(number) => self.end(source, *number == RETURN),
             None => Ok(()),
         }
     }
 
-    fn end(&mut self, source: &Source) -> Fallible<()> {
+    /// The end of a program, by which the main one `returns` to whatever has called it, or ends.
+    fn end(&mut self, source: &Source, returns: bool) -> Fallible<()> {
         self.state.ended = true;
-        if self.called { Ok(()) } else { self.emit(source, Action::End) }
+        if self.called {
+            return Ok(());
+        }
+        let left_on: Vec<Risk> = self.state.left_on(returns).collect();
+        for risk in left_on {
+            self.emit(source, Action::Risk(risk.into()))?;
+        }
+        // MD35040 as delivered; what becomes of the coolant the PLC says.
+        if !returns {
+            self.report_spindle(source, Spindle::Off)?;
+        }
+        self.emit(source, Action::End)
     }
 
     /// `G4`: in a block of its own; its `F` (seconds) and `S` (turns) change neither feed nor speed.
@@ -598,7 +621,7 @@ impl<'a, 's> Interpreter<'a, 's> {
             Procedure::Traori => self.traori(source, call),
             Procedure::Trafoof => self.trafoof(source),
             Procedure::Swivel => self.swivel(source, call),
-            Procedure::Return => self.end(source),
+            Procedure::Return => self.end(source, true),
             Procedure::EndOfModalCall => {
                 self.may_change_modal(source)?;
                 self.state.modal = Modal::None;

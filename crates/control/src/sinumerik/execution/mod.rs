@@ -8,6 +8,7 @@
 mod arc;
 mod corner;
 mod cycles;
+mod ending;
 mod frames;
 pub(super) mod interpreter;
 pub(super) mod modal;

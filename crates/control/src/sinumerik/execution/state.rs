@@ -102,8 +102,8 @@ pub(crate) struct State {
     pub mm_per_degree: [f64; 3],
     /// The feed that was reported last.
     pub reported_feed: Option<Feed>,
-    /// `S`, 1/min; NaN where no block has said it.
-    pub speed: f64,
+    /// `S`, 1/min; none before the program has given it: the control keeps that of the program before.
+    pub speed: Option<f64>,
     /// `M3`, `M4`, `M5`, as reported.
     pub spindle: Spindle,
     /// `M7`, `M8`, `M9`, as reported.
@@ -269,7 +269,7 @@ impl State {
             feed_group: [false; 3],
             mm_per_degree: [1.0; 3],
             reported_feed: None,
-            speed: f64::NAN,
+            speed: None,
             spindle: Spindle::Off,
             coolant: Coolant::Off,
             selected: None,

@@ -33,13 +33,13 @@ impl Interpreter<'_, '_> {
         let Some(pitch) = self.state.pitch.filter(|pitch| *pitch != 0.0) else {
             return error("the thread has no pitch: give I, J or K");
         };
-        let speed = self.state.speed;
+        let speed = self.state.speed.unwrap_or(0.0);
         let spindle = match (motion, pitch > 0.0) {
             (Motion::TapIn, true) | (Motion::TapOut, false) => Some(Spindle::Clockwise(speed)),
             (Motion::TapIn | Motion::TapOut, _) => Some(Spindle::CounterClockwise(speed)),
             _ => None,
         };
-        if spindle.is_some() && (speed.is_nan() || speed <= 0.0) {
+        if spindle.is_some() && speed <= 0.0 {
             return error("tapping needs a speed of the spindle (S)");
         }
         if spindle.is_none() && (pitch < 0.0 || self.state.spindle == Spindle::Off) {
