@@ -29,7 +29,7 @@ pub struct Solutions {
     /// Degrees of A, B, C, each in (−180, 180]; the preferred solution first. Equal where there is
     /// only one.
     pub degrees: [[f64; 3]; 2],
-    /// Place (0 for A, 1 for B, 2 for C) of the axis that may stand anywhere, where there is one; it
+    /// Index (0 for A, 1 for B, 2 for C) of the axis that may have any position, where there is one; it
     /// is given in its kinematic zero.
     pub free: Option<usize>,
 }
@@ -128,7 +128,7 @@ impl Turn {
 pub(crate) struct Bearings {
     /// Where the tool axis stands about the outer axis.
     around: Turn,
-    /// By how much the inner axis is turned out of the plane of the two axes, one way or the other.
+    /// By how much the inner axis is turned out of the plane of the two axes, in either direction.
     inner: Turn,
     /// What that makes about the outer axis: 0 to half a turn, or [`Bearings::FREE`].
     outer: Turn,
@@ -189,7 +189,7 @@ impl Chain {
     /// B, C) has it.
     pub(crate) fn new(machine: &Machine, held: [f64; 3]) -> Chain {
         let side = |mount| machine.rotary.iter().filter(move |axis| axis.on == mount);
-        // With growing position a table turns the tool axis, as the part sees it, the other way.
+        // With growing position a table turns the tool axis, as the part sees it, in the other direction.
         let links: Vec<_> = side(Mount::Table)
             .rev()
             .map(|axis| (axis, -axis.axis * axis.sign))

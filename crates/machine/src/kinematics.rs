@@ -95,7 +95,7 @@ impl Machine {
     }
 
     /// How far the tool axis leaves the great circle between two tool axes (unit vectors, work frame), radians, while the
-    /// rotary axes turn evenly from one of `degrees` to the other, seen at seven places on the way.
+    /// rotary axes turn evenly from one of `degrees` to the other, sampled at seven points in between.
     pub fn swing(&self, degrees: [[f64; 3]; 2], axes: [Vec3; 2]) -> f64 {
         let off = |t: f64| {
             let turned = [0, 1, 2].map(|i| degrees[0][i] + t * (degrees[1][i] - degrees[0][i]));
@@ -190,7 +190,7 @@ impl Wire {
     }
 }
 
-/// How far a wire along `axis` (a unit vector, upwards) is `height` mm up beside where it crosses Z 0, mm; nothing
+/// How far a wire along `axis` (a unit vector, upwards) is from where it crosses Z 0 at a height of `height` mm, mm; nothing
 /// where it leans and lies flat.
 pub fn lean(axis: Vec3, height: f64) -> Option<Vec2> {
     let across = axis.truncate();

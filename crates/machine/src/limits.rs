@@ -1,27 +1,27 @@
 //! Whether a program stays within what the machine can do.
 //!
-//! Where the work zero is known, every axis is held against its travel in machine coordinates: the
+//! Where the work zero is known, every axis is checked against its travel in machine coordinates: the
 //! position of the tool tip, the work zero and, along Z, the length of the tool. Otherwise only what
-//! can be said without it is: no axis may need more way than its travel is long.
+//! can be checked without it is: the stroke of no axis may be longer than its travel.
 
 use crate::{LinearAxis, Machine};
 use geom::{Arc, Vec2, Vec3, angle_between};
 use program::{Diagnostic, Feed, Spindle, Tool};
 use serde::Serialize;
 
-/// What rounding may add to a position that stands exactly on a limit, mm or degrees.
+/// What rounding may add to a position exactly on a limit, mm or degrees.
 const ROUNDING: f64 = 1e-6;
 
-/// What is known of the travel of the linear axes, and so how a program is held against it.
+/// What is known of the travel of the linear axes, and so how a program is checked.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Travel {
     /// No axis has a limit.
     #[default]
     Unlimited,
-    /// The work zero is not known: no axis may need more way than its travel is long.
+    /// The work zero is not known: only strokes are compared with the length of the travel.
     Lengths,
-    /// Every position is held against the travel in machine coordinates.
+    /// Every position is compared with the travel in machine coordinates.
     MachineCoordinates,
 }
 
@@ -58,7 +58,7 @@ impl<'a> Limits<'a> {
     /// Checks positions of the linear axes (mm, as a program gives them) and the rotary axes (degrees
     /// of A, B, C) with a tool of `tool_length` mm, asked for by `line` of the source. A coordinate
     /// that is not known (NaN) breaks no limit, and how low the slide of a tool of unknown length goes is not known.
-    /// Where the work zero is not known, [`Limits::ways`] tells about the linear axes.
+    /// Where the work zero is not known, [`Limits::ways`] reports the linear axes.
     ///
     /// # Errors
     /// `axis-limit`, with the axis, its position, the limit and by how much it is broken.
@@ -167,15 +167,15 @@ impl<'a> Limits<'a> {
     }
 
     /// Checks the feed of a cut, with the spindle as it turns. How fast a feed in inverse time is
-    /// depends on the way of each block: it is not checked here.
+    /// depends on the path of each block: it is not checked here.
     ///
     /// # Errors
     /// `feed-range`.
     pub fn feed(&self, feed: Feed, spindle: Spindle, line: u32) -> Result<(), Box<Diagnostic>> {
         let speed = match (feed, spindle) {
             (Feed::PerMinute(speed), _) => speed,
-            (Feed::PerTurn(way), Spindle::Clockwise(turns) | Spindle::CounterClockwise(turns)) => {
-                way * turns
+            (Feed::PerTurn(feed), Spindle::Clockwise(turns) | Spindle::CounterClockwise(turns)) => {
+                feed * turns
             }
             (Feed::PerTurn(_), Spindle::Off) | (Feed::InverseTime(_), _) => return Ok(()),
         };
@@ -209,20 +209,20 @@ impl<'a> Limits<'a> {
         })
     }
 
-    /// What is wrong with the way that each axis has needed: where the work zero is not known, that may not
+    /// What is wrong with the stroke of each axis: where the work zero is not known, it may not
     /// be longer than its travel (`axis-limit`).
     pub fn ways(&self) -> impl Iterator<Item = Diagnostic> {
         let axes = self.machine.linear.iter().zip(self.extent).zip(['X', 'Y', 'Z']);
         axes.zip(self.too_far).filter_map(|(((axis, ends), letter), line)| {
             let line = line?;
-            let (way, travel) = (ends[1].0 - ends[0].0, axis.max - axis.min);
+            let (stroke, travel) = (ends[1].0 - ends[0].0, axis.max - axis.min);
             let [low, high] = ends.map(|(at, line)| match line {
                 0 => format!("{at:.4} mm"),
                 line => format!("{at:.4} mm (line {line})"),
             });
             let message = format!(
                 "{letter} moves from {low} to {high}: {:.4} mm more than its travel of {travel} mm",
-                way - travel
+                stroke - travel
             );
             let help = "lower the clearance planes in the CAM system where only retracts go that far; else divide the work, or take a larger \
                             machine";

@@ -100,7 +100,7 @@ impl Machine {
 }
 
 impl Stance {
-    /// The stance after `i` of `count` equal parts of the way to `to`.
+    /// The stance after `i` of `count` equal steps to `to`.
     fn toward(&self, to: &Stance, i: usize, count: usize) -> Stance {
         let part = i as f64 / count as f64;
         let mut degrees = self.degrees;

@@ -163,7 +163,7 @@ pub struct RotaryAxis {
     /// Whether its file says where it lies.
     pub is_placed: bool,
     /// What a growing position does: +1 turns what the axis carries right-handed about `axis`, −1
-    /// left-handed (the way ISO 841 counts a table).
+    /// left-handed (as ISO 841 counts a table).
     pub sign: f64,
     /// Position in degrees at which the axis stands in its kinematic zero.
     pub offset: f64,
@@ -205,16 +205,16 @@ pub enum Mount {
 }
 
 /// The wire of a machine for wire EDM. Its lower end moves in the plane Z 0 by X and Y; U and V say how
-/// far the wire is beside that where it crosses the upper plane.
+/// far from there the wire crosses the upper plane.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Wire {
     /// Height of the upper plane over the lower, mm; without it no wire can lean.
     pub height: Option<f64>,
-    /// Farthest U and V either way, mm; infinite where none is given.
+    /// Largest U and V in both directions, mm; infinite where none is given.
     pub uv_travel: f64,
     /// How far the wire may lean from upright, degrees; 90 where nothing is given.
     pub taper_max: f64,
-    /// Number of the M function that threads it, where the control is told so.
+    /// Number of the M function that threads it, where the control has one.
     pub thread: Option<u32>,
     /// Number of the M function that cuts it.
     pub cut: Option<u32>,
@@ -233,7 +233,7 @@ pub struct OrientationSettings {
     pub tolerance: f64,
 }
 
-/// The ways to write a tool orientation.
+/// How a tool orientation can be written.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum OrientationMode {
@@ -280,9 +280,9 @@ pub struct Capabilities {
     pub line_length: usize,
     /// Chord error of arcs and curves that are split into lines, mm.
     pub lowering_tolerance: f64,
-    /// How far a rapid may be from the straight way of the source where it is near the part, mm.
+    /// How far a rapid may be from the straight line of the source where it is near the part, mm.
     pub rapid_corridor: f64,
-    /// How far beyond all cuts, along its own axis, the tool may go by rapid in any way, mm.
+    /// How far beyond all cuts, along its own axis, the tool may go by rapid on any path, mm.
     pub rapid_clearance: f64,
 }
 
@@ -290,10 +290,10 @@ pub struct Capabilities {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum CompensationStart {
-    /// Beside the start of the next one.
+    /// At right angles to the start of the next one.
     NextStart,
-    /// Beside its own end: it counts as the first element of the contour. Elements that turn by less than 0.05 rad join
-    /// without a corner, and the way to a rapid is straight (LinuxCNC).
+    /// At right angles to its own end: it counts as the first element of the contour. Elements that turn by less than 0.05 rad join
+    /// without a corner, and the path to a rapid is straight (LinuxCNC).
     OwnEnd,
 }
 
@@ -301,7 +301,7 @@ pub enum CompensationStart {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RapidPath {
-    /// Together, so that the way is straight.
+    /// Together, so that the path is straight.
     Linear,
     /// Each at its own speed: where the tool goes between the ends is not known.
     Independent,
@@ -321,9 +321,9 @@ pub enum ToolRadius {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum RotaryFeed {
-    /// The ways of all axes together, a degree as a mm.
+    /// The path of all axes together, a degree as a mm.
     AllAxes,
-    /// The way of X, Y and Z, with which the rotary axes arrive; the degrees of these where X, Y and Z stand still.
+    /// The path of X, Y and Z, with which the rotary axes arrive; the degrees of the rotary axes where X, Y and Z do not move.
     LinearAxes,
 }
 
@@ -416,7 +416,7 @@ pub struct Format {
     /// Whether each operation says anew what the one before has left active: where the tool is, the kind
     /// of motion, the feed.
     pub fresh_operations: bool,
-    /// The signs that a comment may hold, beside letters and digits.
+    /// The signs that a comment may hold, in addition to letters and digits.
     pub comment_signs: String,
     /// Most characters of a comment.
     pub comment_length: usize,
@@ -648,7 +648,7 @@ impl Machine {
         self.rotary.iter().any(|axis| axis.clamp.is_some())
     }
 
-    /// Whether its axes go together in a rapid. Where nobody says it, each goes at its own speed.
+    /// Whether its axes go together in a rapid. Where it is not stated, each goes at its own speed.
     pub fn has_straight_rapids(&self) -> bool {
         self.settings.rapid_path == Some(RapidPath::Linear)
     }
@@ -670,7 +670,7 @@ impl Machine {
         self.number_of("path_tolerance")
     }
 
-    /// By how much its control may turn the tool out of its orientation while it smooths the way, degrees:
+    /// By how much its control may turn the tool out of its orientation while it smooths the path, degrees:
     /// `orientation_tolerance` of the options, which the templates write. The proof does not see that deviation.
     pub fn orientation_tolerance(&self) -> f64 {
         self.number_of("orientation_tolerance")

@@ -95,7 +95,7 @@ sheet!(merged CapabilitiesSheet "capabilities" {
     arc_tolerance: Tolerance, "mm", "Difference of the radii at the ends of an arc that the control accepts.";
     cycles: Vec<CycleName>, "", "Hole cycles that it has: drill, deep, break-chip, tap, ream, bore.";
     compensation: bool, "", "Whether it has cutter radius compensation.";
-    compensation_start: CompensationStart, "", "Where the move that switches cutter compensation on ends: next-start (beside the start of the next one), which is taken where it is missing; or own-end (beside its own end: it has to be longer than the tool's radius, elements that turn by less than 0.05 rad join without a corner, and the way to a rapid is straight: LinuxCNC).";
+    compensation_start: CompensationStart, "", "Where the move that switches cutter compensation on ends: next-start (at right angles to the start of the next one), which is taken where it is missing; or own-end (at right angles to its own end: it has to be longer than the tool's radius, elements that turn by less than 0.05 rad join without a corner, and the path to a rapid is straight: LinuxCNC).";
     compensation_blind: u32, "", "Most blocks without a move in the plane past which the control sees the next element of a contour: FANUC parameter 19625 less 2, SINUMERIK MD20250; any number where it is missing.";
     feed_per_turn: bool, "", "Whether it has feed per turn.";
     inverse_time: bool, "", "Whether it has inverse-time feed.";
@@ -103,8 +103,8 @@ sheet!(merged CapabilitiesSheet "capabilities" {
     length_offset: LengthOffset, "", "How the tool length offset is called: implicit, one, tool-number.";
     line_length: usize, "", "Most characters of a line, its end not counted.";
     lowering_tolerance: Tolerance, "mm", "How far arcs and curves that are split into lines may leave the path.";
-    rapid_corridor: Tolerance, "mm", "How far a rapid may be from the straight way of the source where it is not beyond all cuts; 0.1 where it is missing.";
-    rapid_clearance: Clearance, "mm", "How far the tool must be beyond all cuts, along its own axis, to go by rapid in any way; 1 where it is missing.";
+    rapid_corridor: Tolerance, "mm", "How far a rapid may be from the straight line of the source where it is not beyond all cuts; 0.1 where it is missing.";
+    rapid_clearance: Clearance, "mm", "How far the tool must be beyond all cuts, along its own axis, to go by rapid on any path; 1 where it is missing.";
 });
 
 sheet!(merged SettingsSheet "settings" {
@@ -124,7 +124,7 @@ sheet!(merged SettingsSheet "settings" {
     tilt_second_axis_first: bool, "", "Whether G53.1 compares the turns of the second rotary axis before those of the first, where it chooses between two solutions: FANUC parameter 19608#5 is 1.";
     tilt_within_travel: bool, "", "Whether G53.1 takes only rotary positions within the travel of this file: FANUC parameters 19741 to 19744 hold it.";
     rotary_by_sign: bool, "", "Whether the sign of a rotary word is the direction of an axis that rolls over: FANUC parameter 1008#1 is 1.";
-    table_frame_at_zero: bool, "", "Whether X, Y and Z under G43.4 count in the frame of the part with the table at 0, however the table is turned when G43.4 comes: parameter 19696#5 is 0, and the work offset is that of the table at 0. The manuals of FANUC can be read otherwise (A-79348E, parameter 19696#5): try a place beside the centre of the table.";
+    table_frame_at_zero: bool, "", "Whether X, Y and Z under G43.4 count in the frame of the part with the table at 0, however the table is turned when G43.4 comes: parameter 19696#5 is 0, and the work offset is that of the table at 0. The manuals of FANUC can be read otherwise (A-79348E, parameter 19696#5): try a point off the centre of the table.";
 });
 
 sheet!(merged FormatSheet "format" {
@@ -133,7 +133,7 @@ sheet!(merged FormatSheet "format" {
     comment_start: String, "", "What opens a comment.";
     comment_end: String, "", "What closes a comment; empty where the end of the line does.";
     fresh_operations: bool, "", "Whether each operation says position, kind of motion and feed anew, as if the control had forgotten them.";
-    comment_signs: String, "", "The signs that a comment may hold, beside letters and digits of ASCII: some of ` .:+-*/=_<>&@#`, without it all of them. What is none of them is spelt with letters (`é` as e) or left blank.";
+    comment_signs: String, "", "The signs that a comment may hold, in addition to letters and digits of ASCII: some of ` .:+-*/=_<>&@#`, without it all of them. What is none of them is spelt with letters (`é` as e) or left blank.";
     comment_length: usize, "", "Most characters of a comment; the length of a line less 24 where it is missing.";
 });
 
@@ -186,7 +186,7 @@ sheet!(merged OrientationSheet "orientation" {
 });
 
 sheet!(merged WireSheet "wire" {
-    height: Length, "mm", "Height of the upper plane over the lower: U and V say how far the wire is beside X and Y there.";
+    height: Length, "mm", "Height of the upper plane over the lower: U and V are the offset of the wire from X and Y there.";
     uv_travel: Length, "mm", "Farthest U and V either way; without it there is no limit.";
     taper_max: Lean, "degrees", "How far the wire may lean from upright; without it there is no limit.";
     thread: u32, "", "Number of the M function that threads the wire.";
@@ -223,7 +223,7 @@ pub(crate) enum OptionSheet {
     Text(String),
 }
 
-/// Values that are looked at when they are read, so that a mistake is told where it stands.
+/// Values that are looked at when they are read, so that a mistake is reported at its location.
 macro_rules! value {
     ($($name:ident($type:ty, $as:literal) $good:expr, $need:literal;)*) => {$(
         #[derive(Clone, Copy, Deserialize)]

@@ -21,7 +21,7 @@ const UNKNOWN_RAPID: f64 = 10_000.0;
 /// A tool change, seconds: a common machining centre, chip to chip.
 pub const TOOL_CHANGE: f64 = 6.0;
 
-/// A way of the tip below this, mm, is none.
+/// A move of the tip below this, mm, is none.
 const STANDS: f64 = 1e-6;
 
 /// Seconds that a program takes, by what they are spent on.
@@ -238,24 +238,24 @@ impl<'a> Clock<'a> {
             self.times.dwell += cycle.dwell;
             self.rapid(at(cycle.retract));
         } else if let Some(way) = cycle.kind.withdrawal() {
-            let beside = |height: f64| Spot { point: at(height).point + way.aside, axis };
+            let moved = |height: f64| Spot { point: at(height).point + way.aside, axis };
             if let CycleKind::BackBore { through, .. } = cycle.kind {
                 let bored = self.feed;
-                self.rapid(beside(cycle.clearance));
+                self.rapid(moved(cycle.clearance));
                 self.feed = through.unwrap_or(bored);
                 match through {
-                    Some(_) => self.line(beside(-cycle.depth)),
-                    None => self.rapid(beside(-cycle.depth)),
+                    Some(_) => self.line(moved(-cycle.depth)),
+                    None => self.rapid(moved(-cycle.depth)),
                 }
                 self.rapid(at(-cycle.depth));
                 self.feed = bored;
                 self.line(at(0.0));
             } else {
                 self.line(at(-cycle.depth));
-                self.rapid(beside(-cycle.depth));
+                self.rapid(moved(-cycle.depth));
             }
             self.times.dwell += cycle.dwell;
-            self.rapid(beside(cycle.retract));
+            self.rapid(moved(cycle.retract));
             self.rapid(at(cycle.retract));
         } else {
             let moves = lowering::hole(&cycle, pose, self.spindle).unwrap_or_default();
@@ -264,7 +264,7 @@ impl<'a> Clock<'a> {
         self.feed = feed;
     }
 
-    /// Moves to a spot; returns the way of the linear axes in mm and of A, B, C in degrees.
+    /// Moves to a pose; returns how far the linear axes move, mm, and A, B, C, degrees.
     fn go(&mut self, to: Spot) -> (Vec3, [f64; 3]) {
         let degrees = match self.here.is_some_and(|here| here.axis == to.axis) {
             true => self.degrees,
@@ -303,7 +303,7 @@ impl<'a> Clock<'a> {
     }
 }
 
-/// Where the tool is on its way: tip and axis.
+/// The pose of the tool: tip and axis.
 #[derive(Clone, Copy, Debug)]
 struct Spot {
     point: Vec3,
@@ -321,7 +321,7 @@ fn rapid_of(axis: &LinearAxis) -> f64 {
     axis.rapid.unwrap_or(UNKNOWN_RAPID)
 }
 
-/// Seconds for `way` with the speed (per s) and the acceleration (per s²) of an axis.
+/// Seconds for the distance `way` with the speed (per s) and the acceleration (per s²) of an axis.
 fn from_rest_to_rest(way: f64, speed: f64, acceleration: f64) -> f64 {
     let way = way.abs();
     if way >= speed * speed / acceleration {

@@ -162,7 +162,7 @@ pub fn missing(machine: &Machine) -> Vec<Missing> {
         lacks(
             "[settings]".into(),
             "table_frame_at_zero = true",
-            "no parameter alone says it (19696#5): try G43.4 with a turned table at a place beside its centre",
+            "no parameter alone says it (19696#5): try G43.4 with a turned table at a point off its centre",
         );
     }
     for axis in &machine.rotary {

@@ -31,7 +31,7 @@ fn assert_near(found: [f64; 3], wanted: [f64; 3]) {
     assert!(near, "{found:?}, not {wanted:?}");
 }
 
-/// A trunnion whose table turns once each way.
+/// A trunnion whose table turns once in each direction.
 fn limited_ac() -> Machine {
     machine(vec![
         prefer(1.0, within(-30.0, 120.0, axis('A', Mount::Table, Vec3::X, 1.0))),
@@ -216,7 +216,7 @@ fn any_path() -> impl Strategy<Value = Vec<Target>> {
                 if dice == 1 { rapid(v) } else { feed(v) }
             })
             .enumerate()
-            // The way to the first is a long one.
+            // The turn to the first is a long one.
             .map(|(i, target)| if i == 0 { rapid(target.axis) } else { target })
             .collect()
     })
@@ -271,7 +271,7 @@ proptest! {
         });
         let planned = plan(&machine, start, path.clone());
         let Ok(plan) = planned else {
-            // With a turn of travel on both axes there is always a way.
+            // With a turn of travel on both axes there is always a sequence.
             let tight = machine.rotary.iter().any(|axis| axis.max - axis.min < 400.0);
             prop_assert!(tight, "{}", planned.unwrap_err());
             return Ok(());

@@ -9,7 +9,7 @@ use program::Diagnostic;
 use std::collections::BTreeMap;
 use toml::Spanned;
 
-/// A part of a file, with the place to tell where it turns out wrong after merging.
+/// A part of a file, with the location to report where it turns out wrong after merging.
 struct Placed<T> {
     sheet: T,
     place: Diagnostic,
@@ -21,7 +21,7 @@ impl<T> Placed<T> {
         Placed { sheet: spanned.into_inner(), place }
     }
 
-    /// Both have been in order by themselves; what is wrong together is told at the nearer place.
+    /// Both were right by themselves; an error of both together is reported at the nearer location.
     fn under(self, nearer: Placed<T>, join: impl Fn(T, T) -> T) -> Placed<T> {
         Placed { sheet: join(self.sheet, nearer.sheet), place: nearer.place }
     }
@@ -71,7 +71,7 @@ pub(super) struct CheckedSheet {
 }
 
 impl CheckedSheet {
-    /// What serde cannot see, told at its place in the file.
+    /// Checks what serde cannot see; errors are reported at their location in the file.
     pub(super) fn new(sheet: Sheet, file: &SheetFile) -> Result<CheckedSheet> {
         let word = |(name, word)| (name, file.placed(word));
         let axis = |(name, axis): (LinearName, Spanned<LinearSheet>)| {
@@ -344,7 +344,7 @@ impl CheckedSheet {
         if let Some(Placed { place, .. }) = self.wire.as_ref().filter(|_| !rotary.is_empty()) {
             return Err(wrong(
                 place,
-                "a wire leans by U and V: there are no [[rotary]] axes beside",
+                "a wire leans by U and V: a wire machine has no [[rotary]] axes",
             ));
         }
         let simultaneous = orientation.simultaneous.unwrap_or(OrientationMode::Fixed);

@@ -109,7 +109,7 @@ impl SheetFile {
         };
         if !is_inside && !name.ends_with(".toml") {
             let message = "a file outside the folder of this one, whose name does not end in .toml, is not read";
-            let help = "copy it beside this file";
+            let help = "copy it into the folder of this file";
             return Err(Diagnostic::error("machine-file", message).help(help).into());
         }
         let quoted = self.quoted && is_inside;

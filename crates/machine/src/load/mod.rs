@@ -136,7 +136,7 @@ fn build(file: SheetFile, reach: &Reach) -> Result<Machine> {
         if depth == LONGEST_CHAIN {
             return Err(here
                 .at("extends", &parent, "the chain of `extends` has no end")
-                .help("no file may extend itself, not even by way of others")
+                .help("no file may extend itself, not even through others")
                 .into());
         }
         let next = here.parent(&parent, reach)?;

@@ -73,7 +73,7 @@ impl Axis {
         position.max(self.min).min(self.max)
     }
 
-    /// The way from one position to the other, degrees: the short way round where the axis turns for
+    /// The turn from one position to the other, degrees: the shorter one where the axis turns for
     /// ever.
     pub(super) fn way(&self, from: f64, to: f64) -> f64 {
         let way = to - from;

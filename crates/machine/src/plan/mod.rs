@@ -1,15 +1,15 @@
 //! The rotary positions of a whole operation.
 //!
 //! Every tool axis has up to two solutions, and on a limited axis each of them may stand in several
-//! turns: those are the states of a target. The way through the states is chosen for the whole
+//! turns: those are the states of a target. The sequence of states is chosen for the whole
 //! operation at once (dynamic programming), in this order:
 //!
 //! 1. no rotary axis leaves its travel;
 //! 2. in a cut the tool axis keeps within 0.9° of the great circle of its turn, and no axis turns by more
-//!    than half a turn: where the travel leaves no such way on, the tool must leave the part, turn back
+//!    than half a turn: where the travel allows no such turn, the tool must leave the part, turn back
 //!    and come in again, as late and therefore as seldom as possible;
 //! 3. the rotary travel within the operation is the shortest;
-//! 4. the preferred solution at its start; 5. the shortest way from where the axes stand to it.
+//! 4. the preferred solution at its start; 5. the shortest turn from the positions of the axes to it.
 //!
 //! Unlimited axes wind on and never jump by a turn. In a singular pose, where one axis may stand
 //! anywhere, it holds its position, and turns to where it is needed next in the last rapid before that,
@@ -65,7 +65,7 @@ pub struct Plan {
     near: f64,
     start: [f64; 2],
     cells: Vec<Cell>,
-    /// Where the travel leaves no way on, in order.
+    /// Where the travel allows no further turn, in order.
     pub rewinds: Vec<Rewind>,
 }
 
@@ -85,7 +85,7 @@ pub struct Rewind {
 pub struct Step {
     /// Degrees of A, B, C at the target.
     pub degrees: [f64; 3],
-    /// Where the travel leaves no way on: the degrees of A, B, C to which the axes turn first, at the
+    /// Where the travel allows no further turn: the degrees of A, B, C to which the axes turn first, at the
     /// tip of the target before, with the tool drawn back along its axis and brought in again.
     pub rewind: Option<[f64; 3]>,
 }

@@ -1,4 +1,4 @@
-//! The search for the best way through the states of an operation.
+//! The search for the best sequence of states of an operation.
 
 use super::axis::{Axis, SLACK};
 use super::{Cell, Plan, Rewind, TURN, TURNS, Target, TargetKind};
@@ -15,25 +15,25 @@ const BITS: u32 = 3;
 /// Every state follows from the state of the same number.
 const SAME: u32 = 0o76_543_210;
 
-/// The farthest that the tool axis may leave its way in a cut, radians: 0.9°, of the 1° that a proof allows.
+/// The farthest that the tool axis may leave its great circle in a cut, radians: 0.9°, of the 1° that a proof allows.
 const SWING: f64 = PI / 200.0;
-/// Turns of rotary axes of less than this in all, degrees, swing the tool axis off its way by less than 0.9°. Both the way
+/// Turns of rotary axes of less than this in all, degrees, swing the tool axis off its great circle by less than 0.9°. Both the way
 /// that the axes make and the great circle bend by no more than the square of the turn w, so that between their common ends
 /// they are apart by w² / 4 at the most.
 pub const NEAR: f64 = 14.0;
 /// Where the control itself turns the tool along a vector: turns of less than this, degrees, within one solution stay near.
 const NEAR_BY_VECTOR: f64 = 90.0;
-/// What not being the preferred solution costs, in degrees of travel: it decides between ways of the
+/// What not being the preferred solution costs, in degrees of travel: it decides between sequences of the
 /// same length, which differ by rounding only.
 const PREFERENCE: f64 = 0.05;
-/// What a degree of the way to the operation costs, in degrees of travel within: less than preference.
+/// What a degree of the turn to the operation costs, in degrees of travel within: less than preference.
 const APPROACH: f64 = 1e-5;
 
 /// What a target can be in: positions of the outer and the inner axis by the number of the state, the
 /// first solution from 0 on, the second from [`TURNS`] on; infinite where there is no such state.
 type States = [[f64; 2]; STATES];
 
-/// The best way to each state of a target.
+/// The best sequence to each state of a target.
 #[derive(Clone)]
 struct Front {
     states: States,
@@ -41,12 +41,12 @@ struct Front {
     axis: Vec3,
     /// Whether that is a singular pose; the outer axis may then stand in other places as well.
     singular: bool,
-    /// By how many degrees, at least, each state is reached better by its own way than by a change
+    /// By how many degrees, at least, each state is reached better without than by a change
     /// from any other state: a step of less than half of that changes no state.
     margin: f64,
 }
 
-/// What the axes may do on the way to a target.
+/// What the axes may do in the move to a target.
 #[derive(Clone, Copy, PartialEq)]
 enum Freedom {
     /// It is cut.
@@ -57,7 +57,7 @@ enum Freedom {
     All,
 }
 
-/// A search on its way through the targets.
+/// A search through the targets.
 pub(super) struct Search<'a> {
     machine: &'a Machine,
     known: bool,
@@ -151,7 +151,7 @@ impl<'a> Search<'a> {
         let bearings =
             self.plan.chain.bearings(target.axis).map_err(|e| unreachable(target, &e))?;
         let mut cell = Cell { bearings, link: SAME };
-        // The way to the first target is not cut, unless it follows on the operation before.
+        // The move to the first target is no cut, unless it follows on the operation before.
         let approach = target.kind == TargetKind::Rapid || (index == 0 && !self.known);
         if bearings.free() {
             if approach || (self.front.singular && target.kind == TargetKind::Feed) {
@@ -173,7 +173,7 @@ impl<'a> Search<'a> {
         }
     }
 
-    /// Carries the best ways on to a singular target: the outer axis holds.
+    /// Continues the best sequences to a singular target: the outer axis holds.
     fn pass(&mut self, target: &Target, bearings: &Bearings) -> Result<(), Box<Diagnostic>> {
         if self.plan.inner(bearings, 0.0).is_none() {
             return Err(self.out_of_travel(target, bearings));
@@ -189,7 +189,7 @@ impl<'a> Search<'a> {
         Ok(())
     }
 
-    /// Carries the best ways on to a target that is not singular; returns its links.
+    /// Continues the best sequences to a target that is not singular; returns its links.
     fn advance(
         &mut self,
         target: &Target,
@@ -201,7 +201,7 @@ impl<'a> Search<'a> {
             return Err(self.out_of_travel(target, bearings));
         }
         (self.next.axis, self.next.singular, self.next.margin) = (target.axis, false, 0.0);
-        // On the way to a rapid the free axis turns in that, at the latest.
+        // Before a rapid the free axis turns in that rapid, at the latest.
         let mut turn_at = self.turn_at.take().filter(|(_, rapid)| *rapid || !approach);
         let loose = approach || matches!(turn_at, Some((_, true)));
         let freedom = match turn_at {
@@ -256,7 +256,7 @@ impl<'a> Search<'a> {
             self.plan.states(&bearings, &mut front.states);
         }
         for (state, cost) in front.states.iter().zip(&mut front.cost) {
-            // Of ways of the same length the one that leaves most travel on both sides.
+            // Of sequences of the same length the one that leaves most travel on both sides.
             let off_center: f64 = (0..2).map(|k| self.plan.axes[k].off_center(state[k])).sum();
             *cost = self.plan.travel(&left, state) + 1e-3 * off_center;
         }
@@ -375,7 +375,7 @@ impl Plan {
     }
 
     /// Goes on in every state of `front` where the way to `next` is so short that no change can be
-    /// better, which the triangle inequality tells without looking at any; whether it was.
+    /// better, which follows from the triangle inequality without looking at any; whether it was.
     fn keep(&self, front: &Front, next: &mut Front) -> bool {
         let mut longest: f64 = 0.0;
         for first in [0, TURNS].into_iter().take(self.chain.families()) {
@@ -394,7 +394,7 @@ impl Plan {
     }
 
     /// By how much, at least, going on in a state of `front` is better than changing to it; nothing
-    /// where there is a state that no way leads to yet.
+    /// where there is a state that no sequence leads to yet.
     fn margin(&self, front: &Front) -> f64 {
         let mut states = front.states.iter().zip(&front.cost);
         if states.any(|(state, cost)| exists(state) && *cost == f64::INFINITY) {
@@ -412,7 +412,7 @@ impl Plan {
         margin
     }
 
-    /// The best way to each state of `next` from those of `front`; `None` where none can be reached.
+    /// The best sequence to each state of `next` from those of `front`; `None` where none can be reached.
     fn relax(
         &self,
         machine: &Machine,
@@ -461,8 +461,8 @@ impl Plan {
         reached.then_some(link)
     }
 
-    /// Whether the tool keeps to its way from one position to the other; where the control turns it by itself, whether
-    /// half way it would still be between the two tool axes.
+    /// Whether the tool axis keeps to its great circle from one position to the other; where the control turns it by itself, whether
+    /// in the middle it would still be between the two tool axes.
     fn stays_near(
         &self,
         machine: &Machine,
@@ -478,7 +478,7 @@ impl Plan {
         };
         let axis = machine.axis_at(part(0.5));
         if !self.by_vector {
-            // Half way says it of most positions that leave the way.
+            // The middle shows it for most positions that leave the great circle.
             return angle_between(axis, between(front.axis, next.axis, 0.5)) <= SWING
                 && machine.swing([part(0.0), part(1.0)], [front.axis, next.axis]) <= SWING;
         }
