@@ -2,8 +2,8 @@
 //! not is reported line by line, never dropped in silence.
 //!
 //! Two readers, `vectric` for the posts of VCarve and Aspire and `parameters` for templates with `@parameter@`, make
-//! one `foreign::Post`; `write` makes a file of it that extends a control of the library, which stands in for what the
-//! post does not say. The same bytes give the same file. Lengths are mm, as in every machine file.
+//! one `foreign::Post`; `write` makes a file of it that extends a control of the library, which provides what the
+//! post does not have. The same bytes give the same file. Lengths are mm, as in every machine file.
 //!
 //! Nothing is evaluated: a template of another system is text. Nothing is proven here either: whoever imports a post
 //! loads the file and proves a program with it.
@@ -40,7 +40,7 @@ use std::path::Path;
 /// The largest file that is taken for a post, bytes.
 const LARGEST: usize = 1 << 20;
 
-/// The most findings that are told.
+/// The most findings that are reported.
 const MOST_FINDINGS: usize = 200;
 
 /// A machine file made of a post.
@@ -48,9 +48,9 @@ const MOST_FINDINGS: usize = 200;
 pub struct Import {
     /// The file, in TOML.
     pub text: String,
-    /// The control or machine that it extends, a file by its way from the folder.
+    /// The control or machine that it extends, a file by its path from the folder.
     pub extends: String,
-    /// What could not be carried over, or stands otherwise than in the post, each with its line.
+    /// What could not be imported, or was imported in another form than in the post, each with its line.
     pub findings: Vec<Diagnostic>,
 }
 
@@ -84,7 +84,7 @@ pub fn import(
             .push(refused("import", "no block of a program is in it".to_owned()).help(help));
     }
     if findings.failed() {
-        return Err(findings.told());
+        return Err(findings.listed());
     }
     let name = match extends.or_else(|| named(&[&post.title, file])) {
         Some(name) => name.to_owned(),
@@ -103,7 +103,7 @@ pub fn import(
         false => name,
     };
     let text = write::file(&post, &base, &name, file, &mut findings);
-    Ok(Import { text, extends: name, findings: findings.told() })
+    Ok(Import { text, extends: name, findings: findings.listed() })
 }
 
 /// The way from a folder to a file, as `extends` has it.
@@ -147,11 +147,11 @@ fn named(names: &[&str]) -> Option<&'static str> {
     })
 }
 
-/// What is told of a post.
+/// The findings about a post.
 struct Findings {
     file: String,
     list: Vec<Diagnostic>,
-    /// How many are not told.
+    /// How many are not reported.
     more: u32,
 }
 
@@ -161,7 +161,7 @@ impl Findings {
         self.add(Diagnostic::error("import", message), line);
     }
 
-    /// What is not carried over.
+    /// What is not imported.
     fn lost(&mut self, line: u32, message: impl Into<String>) {
         self.add(Diagnostic::warning("not-carried-over", message), line);
     }
@@ -188,10 +188,10 @@ impl Findings {
         self.list.iter().any(Diagnostic::is_error)
     }
 
-    fn told(mut self) -> Vec<Diagnostic> {
+    fn listed(mut self) -> Vec<Diagnostic> {
         self.list.sort_by_key(|found| found.line);
         if self.more > 0 {
-            let message = format!("{} more findings are not told", self.more);
+            let message = format!("{} more findings are not shown", self.more);
             self.list.push(Diagnostic::warning("not-carried-over", message).file(self.file));
         }
         self.list

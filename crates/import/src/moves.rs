@@ -152,7 +152,7 @@ impl Writing<'_> {
                 }
                 Piece::Value(name) => return Err(format!("{name} has no value there")),
                 Piece::Home { .. } => {
-                    return Err(String::from("it goes to a place that only the job knows"));
+                    return Err(String::from("it goes to a position that only the job knows"));
                 }
                 Piece::Unknown(text, why) => return Err(format!("`{text}` {why}")),
             }

@@ -1,4 +1,4 @@
-//! Start, tool change, segment and end: what a header says at one place goes where our files say it.
+//! Start, tool change, segment and end: what a header has in one block goes into the blocks that our files have for it.
 
 use crate::foreign::{Line, Part, Piece};
 use crate::items::{Item, Role, code, codes, items};
@@ -7,7 +7,7 @@ use crate::write::Writing;
 use machine::LengthOffset;
 use std::fmt::Write as _;
 
-/// What is left of a line where its words have gone to their places.
+/// What is left of a line after its words have been sorted into blocks.
 #[derive(Default)]
 struct Rest {
     line: u32,
@@ -16,7 +16,7 @@ struct Rest {
     tool: bool,
     change: bool,
     stop: bool,
-    /// Whether it goes to a place in machine coordinates.
+    /// Whether it goes to a position in machine coordinates.
     reference: bool,
     end: bool,
 }
@@ -168,7 +168,7 @@ impl Writing<'_> {
             let up = any(&items, |role| *role == Role::Place { z: true });
             let message = match up {
                 true => "the way to a home or safe height is the control's own way up",
-                false => "no way to a home place: the toolpath says where the tool goes",
+                false => "no move to a home position: the toolpath determines where the tool goes",
             };
             self.findings.otherwise(number, message);
             items.retain(|item| {
@@ -190,7 +190,7 @@ impl Writing<'_> {
             (Role::Coolant, "coolant is the toolpath's"),
             (Role::Tape, "a tape mark is no part of the program"),
             (Role::Feed, "the feed is the toolpath's"),
-            (Role::Motion, "a motion without a place"),
+            (Role::Motion, "a motion without an end position"),
         ] {
             self.leave_out(&mut items, role, number, why);
         }

@@ -47,7 +47,7 @@ const NAMED: &[(&str, Piece)] = &[
 ];
 
 /// The blocks of a post: the part that each is of ours, the first of two of a part winning; the others
-/// differ from it by the feed at most, or are told.
+/// differ from it by the feed at most, or are reported.
 const BLOCKS: &[(&str, Part)] = &[
     ("HEADER", Part::Start),
     ("TOOLCHANGE", Part::ToolChange),

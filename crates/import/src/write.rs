@@ -144,7 +144,7 @@ impl Writing<'_> {
         fields.extend(first.map(|first| format!("first = {first}")));
         fields.extend(most.filter(|most| *most > 0).map(|most| format!("max = {most}")));
         let _ = writeln!(out, "N = {{ {} }}", fields.join(", "));
-        // Moves that say G0 or G1 in their own words do not tell the others which is active.
+        // Moves that have G0 or G1 in their own words do not set the active one for the others.
         out.push_str("motion = { modal = false }\n");
         // A feed within a rapid changes the one that is active.
         let fed = |lines: &Vec<Line>| {
