@@ -1,5 +1,5 @@
-//! Real boards, from their files to proven programs: time, memory, blocks and ways, beside their marks, and a
-//! panel of sixteen boards beside one.
+//! Real boards, from their files to proven programs: time, memory, blocks and paths, compared with their marks, and a
+//! panel of sixteen boards compared with one.
 
 use crate::clock::{self, Taken};
 use crate::memory;
@@ -31,7 +31,7 @@ pub fn measure(boards: &[impl AsRef<Path>], rounds: usize) -> Result<(), Vec<Dia
     for board in boards {
         let board = board.as_ref();
         let one = fastest(board, &[], rounds)?;
-        println!("{}: {}", board.display(), one.told());
+        println!("{}: {}", board.display(), one.described());
         let name = board.file_name().unwrap_or_default();
         for (_, mark) in MARKS.iter().filter(|(of, _)| name == *of) {
             println!("  {mark}");
@@ -39,7 +39,7 @@ pub fn measure(boards: &[impl AsRef<Path>], rounds: usize) -> Result<(), Vec<Dia
         let panel = fastest(board, &["--panel", "4x4"], 1)?;
         println!(
             "  a panel of 16: {}\n    divided by one board: {}",
-            panel.told(),
+            panel.described(),
             panel.time.times(one.time)
         );
     }
@@ -58,7 +58,7 @@ struct Made {
 }
 
 impl Made {
-    fn told(&self) -> String {
+    fn described(&self) -> String {
         format!(
             "{}, {} MB, {} blocks, cuts {:.2} m, rapid {:.2} m",
             self.time,

@@ -1,4 +1,4 @@
-//! A circuit board: its copper united, and grown by the radius of a tool, beside another library's union
+//! A circuit board: its copper united, and grown by the radius of a tool, compared with another library's union
 //! and growth of the same copper as polygons.
 
 use crate::clock::Taken;

@@ -1,4 +1,4 @@
-//! A copper layer of many strokes, flashes and a large region, read beside the floor of reading its numbers
+//! A copper layer of many strokes, flashes and a large region, read, compared with the floor of reading its numbers
 //! and printing them back.
 
 use crate::{fastest, floor};

@@ -7,7 +7,7 @@ use machine::library::{MACHINES, names};
 use program::Diagnostic;
 use std::path::{Path, PathBuf};
 
-/// Prints what all `files` take on all machines, beside the floor for as many bytes.
+/// Prints what all `files` take on all machines, compared with the floor for as many bytes.
 ///
 /// # Errors
 /// A file that cannot be read.

@@ -1,10 +1,10 @@
-//! How fast a five-axis program is read, written and proven, and how much memory that takes, beside a
+//! How fast a five-axis program is read, written and proven, and how much memory that takes, compared with a
 //! floor in the same run.
 //!
 //! Every figure is two: **processor time**, which counts all threads of the process together, also those that have
 //! ended, and **wall**, from start to end ([`clock`]). A program that works on two threads takes more processor time
 //! than wall. Each stage runs `--rounds` times, a short one until 0.3 s have gone by; the round that is fastest by
-//! wall counts, with its own processor time. Beside a floor or a peer, processor time is divided by processor time and wall by wall. Other work on the
+//! wall counts, with its own processor time. Against a floor or a peer, processor time is divided by processor time and wall by wall. Other work on the
 //! machine makes the wall longer and changes the processor time little: compare runs by processor time, and wall
 //! only on an idle machine.
 //!
@@ -156,7 +156,7 @@ fn five_axes(arguments: &Arguments) -> Result<(), Vec<Diagnostic>> {
         table.row("read, kinematics, write, prove", &proving, &by_hand, &standard);
         println!(
             "  the proof: {:.3}\n    all divided by all without the proof: {:.2}\n  \
-             program text {} MB; beside the texts {} bytes a move to write, {} to prove",
+             program text {} MB; in addition to the texts {} bytes a move to write, {} to prove",
             proving.time.beyond(writing.time),
             proving.time.times(writing.time),
             output.text.len() / 1_000_000,

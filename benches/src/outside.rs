@@ -113,12 +113,12 @@ fn verdict(name: &str, here: Taken, there: Taken) -> Result<(), Vec<Diagnostic>>
     if AGREES.contains(&part) {
         return Ok(());
     }
-    let told = format!(
+    let message = format!(
         "{name}: the clock says {} of the processor time that the system accounts to the same work; \
          {asked}, so no figure of this run can be trusted",
         percent(part)
     );
-    Err(vec![Diagnostic::error("clock", told)])
+    Err(vec![Diagnostic::error("clock", message)])
 }
 
 /// What the whole command `toolpost` with these words takes as a process of its own, start-up and files included: the

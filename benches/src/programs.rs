@@ -1,6 +1,6 @@
 //! NC programs of each control, run on its virtual control: plain blocks, and loops with expressions.
 //! The floor is to read the numbers of the text and to print them back; the peer is LinuxCNC's `rs274`. It reads a file
-//! and prints what it has run, so beside the virtual control stands the whole command `toolpost show`, which reads the
+//! and prints what it has run, so the virtual control is measured next to the whole command `toolpost show`, which reads the
 //! same file.
 
 use crate::clock::{Taken, time_children};
@@ -37,7 +37,7 @@ pub fn measure(blocks: usize, rounds: usize) -> Result<(), Vec<Diagnostic>> {
             };
             row(&format!("{name}: {what}"), blocks, &ours, by_hand.as_ref());
             if dialect.0 == Dialect::LinuxCnc {
-                beside(text, what, ours.time, rounds)?;
+                compared(text, what, ours.time, rounds)?;
             }
         }
     }
@@ -60,7 +60,7 @@ fn row(name: &str, blocks: usize, ours: &Measured, by_hand: Option<&Measured>) {
 }
 
 /// Prints what the whole command takes for the program, and the peer.
-fn beside(text: &str, what: &str, ours: Taken, rounds: usize) -> Result<(), Vec<Diagnostic>> {
+fn compared(text: &str, what: &str, ours: Taken, rounds: usize) -> Result<(), Vec<Diagnostic>> {
     let folder = tempfile::tempdir().map_err(|error| outside::failed(&error))?;
     let file = folder.path().join("program.ngc");
     fs::write(&file, text).map_err(|error| outside::failed(&error))?;

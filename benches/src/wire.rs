@@ -1,4 +1,4 @@
-//! A contour of many arcs: read from a drawing, divided into points, and offset, beside the floor of
+//! A contour of many arcs: read from a drawing, divided into points, and offset, compared with the floor of
 //! reading the numbers of the drawing and printing them back.
 
 use crate::{fastest, floor};
@@ -13,8 +13,8 @@ use std::fmt::Write;
 /// Chord error of the points, mm.
 const CHORD_ERROR: f64 = 0.001;
 
-/// How far beside the contour the wire runs, mm.
-const BESIDE: f64 = 0.13;
+/// How far from the contour the wire runs, mm.
+const OFFSET: f64 = 0.13;
 
 /// Prints what a closed contour of `arcs` arcs takes.
 ///
@@ -34,11 +34,11 @@ pub fn measure(arcs: usize, rounds: usize) -> Result<(), Vec<Diagnostic>> {
     let one = |found: Box<Diagnostic>| vec![*found];
     let read = || dxf::read(text.as_bytes(), &Options::default()).map_err(one);
     let mut count = 0;
-    for (what, beside) in [("read, points", None), ("read, offset, points", Some(BESIDE))] {
+    for (what, distance) in [("read, points", None), ("read, offset, points", Some(OFFSET))] {
         let taken = fastest(rounds, &mut || {
             let mut contour = read()?.contours.remove(0);
-            if let Some(beside) = beside {
-                contour = offset(&contour, beside, Corners::Refuse).map_err(one)?.contour;
+            if let Some(distance) = distance {
+                contour = offset(&contour, distance, Corners::Refuse).map_err(one)?.contour;
             }
             let path = Path::upright(contour);
             let made = points(&[&path], Step::ChordError(CHORD_ERROR), None);

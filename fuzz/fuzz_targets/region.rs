@@ -16,12 +16,12 @@ fn next(bytes: &mut &[u8]) -> f64 {
     i16::from_le_bytes(*pair).into()
 }
 
-/// A place within 8 mm, on a grid of 0.25 mm or less than 5 µm beside it.
+/// A point within 8 mm, on a grid of 0.25 mm or less than 5 µm off it.
 fn place(bytes: &mut &[u8]) -> Vec2 {
     let mut along = || {
         let value = next(bytes);
-        let beside = (value.rem_euclid(512.0) - 256.0) / 256.0;
-        (value / 1024.0).floor() * 0.25 + beside.powi(5) * 0.005
+        let apart = (value.rem_euclid(512.0) - 256.0) / 256.0;
+        (value / 1024.0).floor() * 0.25 + apart.powi(5) * 0.005
     };
     Vec2::new(along(), along())
 }
@@ -59,8 +59,8 @@ fn is_sound(region: &Region) {
                 let across = along(one).perp_dot(along(other)).abs();
                 let ends = [one.start, one.end, other.start, other.end];
                 let others = points.iter().filter(|other| *other != point);
-                let beside = ends.iter().chain(others).map(|end| end.distance(*point) * across);
-                let deep = beside.fold(f64::INFINITY, f64::min);
+                let apart = ends.iter().chain(others).map(|end| end.distance(*point) * across);
+                let deep = apart.fold(f64::INFINITY, f64::min);
                 assert!(deep < 3e-6, "{one:?} and {other:?} cross at {point}, {deep} mm deep");
             }
         }
@@ -84,7 +84,7 @@ fuzz_target!(|data: &[u8]| {
     same(first.area(), rest.area() + common.area());
     same(either.area(), union.area() - common.area());
     let distance = next(&mut bytes) / 65536.0;
-    let beside = first.offset(distance).unwrap();
-    assert!((beside.area() - first.area()) * distance >= -1e-6 - NEAR * length);
-    [first, second, union, common, rest, either, beside].iter().for_each(is_sound);
+    let apart = first.offset(distance).unwrap();
+    assert!((apart.area() - first.area()) * distance >= -1e-6 - NEAR * length);
+    [first, second, union, common, rest, either, apart].iter().for_each(is_sound);
 });

@@ -1,4 +1,4 @@
-//! Any bytes as a drawing, and what it holds as points and beside the wire: no panic, bounds hold.
+//! Any bytes as a drawing, and its contours as points and offset for the wire: no panic, bounds hold.
 #![no_main]
 
 use libfuzzer_sys::fuzz_target;
@@ -24,8 +24,8 @@ fuzz_target!(|data: &[u8]| {
         if elements.len() > 200 {
             continue;
         }
-        let Ok(beside) = offset(contour, 0.15, Corners::Round) else { continue };
-        for element in beside.contour.elements() {
+        let Ok(parallel) = offset(contour, 0.15, Corners::Round) else { continue };
+        for element in parallel.contour.elements() {
             let middle = element.at(0.5);
             let distance = contour.nearest(middle).point.distance(middle);
             assert!((distance - 0.15).abs() < 1e-3, "{distance}");

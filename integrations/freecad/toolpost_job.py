@@ -21,7 +21,7 @@ OFFSET = re.compile(r"^G5(?:[4-8]|9(?:\.[1-9])?)$", re.MULTILINE)
 
 
 class JobError(Exception):
-    """What cannot be told of a job, with the way out."""
+    """What cannot be exported of a job, with the way out."""
 
 
 def job(objects, name):

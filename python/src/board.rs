@@ -214,7 +214,7 @@ impl BoardBuilder {
         let (depth, length) = (group.depth + 1, slf.length + group.length);
         if depth > model::DEEPEST {
             let message = format!("groups lie more than {} deep in each other", model::DEEPEST);
-            return refuse("group", message, "put groups beside each other");
+            return refuse("group", message, "put groups next to each other");
         }
         if length > model::LONGEST {
             let message = format!("{length} bytes are no board; {} are the most", model::LONGEST);

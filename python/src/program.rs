@@ -132,19 +132,19 @@ impl Program {
     /// of the tool tips.
     fn statistics<'py>(&self, py: Python<'py>) -> PyResult<Bound<'py, PyDict>> {
         let found = released(py, || Ok::<_, Stop>(Statistics::of(&self.toolpath.program)))?;
-        let told = PyDict::new(py);
-        told.set_item("records", found.records)?;
-        told.set_item("rapids", found.rapids)?;
-        told.set_item("lines", found.lines)?;
-        told.set_item("arcs", found.arcs)?;
-        told.set_item("holes", found.holes)?;
-        told.set_item("tools", found.tools)?;
-        told.set_item("cutting_length", found.cutting_length)?;
-        told.set_item("rapid_length", found.rapid_length)?;
-        told.set_item("low", found.low)?;
-        told.set_item("high", found.high)?;
-        told.set_item("tilted", found.tilted)?;
-        Ok(told)
+        let counts = PyDict::new(py);
+        counts.set_item("records", found.records)?;
+        counts.set_item("rapids", found.rapids)?;
+        counts.set_item("lines", found.lines)?;
+        counts.set_item("arcs", found.arcs)?;
+        counts.set_item("holes", found.holes)?;
+        counts.set_item("tools", found.tools)?;
+        counts.set_item("cutting_length", found.cutting_length)?;
+        counts.set_item("rapid_length", found.rapid_length)?;
+        counts.set_item("low", found.low)?;
+        counts.set_item("high", found.high)?;
+        counts.set_item("tilted", found.tilted)?;
+        Ok(counts)
     }
 
     /// The path of the tool as an SVG drawing.

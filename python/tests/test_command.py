@@ -1,4 +1,4 @@
-"""The command that the package puts in place, beside the one without Python."""
+"""The command that the package installs, compared with the one without Python."""
 
 from __future__ import annotations
 

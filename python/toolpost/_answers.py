@@ -100,7 +100,7 @@ class Report:
     findings : tuple of Finding
         What is wrong, where it is not proven; and what is worth knowing.
     json : str
-        The report in full, as it is saved beside the program.
+        The report in full, as it is saved next to the program.
     """
 
     def __init__(
@@ -149,7 +149,7 @@ class Result:
     data : bytes
         The program, as it is saved.
     report : Report
-        What is told of it.
+        The findings about it.
     """
 
     def __init__(
@@ -166,7 +166,7 @@ class Result:
         return self.data.decode()
 
     def save(self, path: str | os.PathLike[str], *, report: bool = True) -> None:
-        """Save the program, and its report beside it: both or neither.
+        """Save the program, and its report next to it: both or neither.
 
         Parameters
         ----------

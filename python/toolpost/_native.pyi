@@ -1,4 +1,4 @@
-# The compiled part. What each does is told by its own docstring: help(toolpost.post).
+# The compiled part. Its docstrings explain each name: help(toolpost.post).
 
 import os
 from collections.abc import Iterator, Sequence

@@ -1,4 +1,4 @@
-"""Runs inside `freecadcmd`: how long posting takes beside FreeCAD's own `linuxcnc_post`.
+"""Runs inside `freecadcmd`: how long posting takes, compared with FreeCAD's own `linuxcnc_post`.
 
     freecadcmd integrations/freecad/bench/speed.py
 

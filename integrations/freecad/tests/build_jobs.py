@@ -2,7 +2,7 @@
 
     TOOLPOST_JOBS=folder freecadcmd build_jobs.py
 
-Beside each job `NAME.json` lies `NAME.ngc`, what FreeCAD's own `linuxcnc_post` makes of it.
+Next to each job `NAME.json` is `NAME.ngc`, what FreeCAD's own `linuxcnc_post` makes of it.
 """
 
 import json

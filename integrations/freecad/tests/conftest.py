@@ -88,7 +88,7 @@ def toolpost(*words):
 
 @pytest.fixture(scope="session")
 def jobs(tmp_path_factory):
-    """Make the folder with the jobs, and with FreeCAD's own programs beside them."""
+    """Make the folder with the jobs, and with FreeCAD's own programs next to them."""
     folder = tmp_path_factory.mktemp("jobs")
     freecad("build_jobs.py", tmp_path_factory.mktemp("home"), TOOLPOST_JOBS=folder)
     return folder

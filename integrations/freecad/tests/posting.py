@@ -190,7 +190,7 @@ def two_fixtures():
 
 
 def order():
-    """Our lists of a job beside those of FreeCAD."""
+    """Our lists of a job, compared with those of FreeCAD."""
     work = Work("order")
     other = work.tool("Mill 8", "endmill.fcstd", 8, 3)
     work.job.Fixtures = ["G54", "G55"]

@@ -184,7 +184,7 @@ def test_axes_found_for_a_pose_lead_back_to_it(name):
 
 def test_a_fork_head_swings_the_tip_by_hand_calculation():
     machine = reference("sinumerik-840d-traori")
-    # A 90: what hung 220 + 100 below the pivot lies 320 beside it, at its height.
+    # A 90: what was 220 + 100 below the pivot is 320 to its side, at its height.
     tip, along = machine.tool(np.array([[0.0, 90.0]]), np.array([100.0]))
     np.testing.assert_allclose(tip, [[0, 320, 220]], atol=1e-9)
     np.testing.assert_allclose(along, [[0, -1, 0]], atol=1e-12)

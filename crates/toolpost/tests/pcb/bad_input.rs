@@ -320,9 +320,9 @@ fn heights_are_not_measured_in_holes() {
         "X16.000 Y5.000, in the hole of 0.8 mm at X16.000 Y5.000",
     ];
     refused(&folder, &[&call[..], &inside].concat(), 2, &words);
-    let beside = ["4x3", "--vee", "90"];
+    let more = ["4x3", "--vee", "90"];
     let words = ["X7.000 Y5.000", "hole of 0.8 mm at X6.000 Y5.000", "1.050 mm", "--from back"];
-    refused(&folder, &[&call[..], &beside].concat(), 2, &words);
+    refused(&folder, &[&call[..], &more].concat(), 2, &words);
     for (good, run) in [
         (&["4x3", "--tool", "0.4"][..], &["front", "drill", "back", "outline"][..]),
         (&[&inside[..], &["--from", "back"]].concat(), &["front", "back", "drill", "outline"]),

@@ -96,13 +96,13 @@ impl<'a> Made<'a> {
         Made { folder, machine, said }
     }
 
-    /// The report beside the programs.
+    /// The report next to the programs.
     pub fn report(&self) -> Value {
         serde_json::from_str(&self.folder.read("out/report.json")).unwrap()
     }
 
     /// What the report says of the program of a part.
-    pub fn told(&self, part: &str) -> Value {
+    pub fn report_of(&self, part: &str) -> Value {
         let report = self.report();
         let programs = report["programs"].as_array().unwrap();
         programs.iter().find(|program| program["name"] == part).unwrap().clone()
@@ -110,8 +110,8 @@ impl<'a> Made<'a> {
 
     /// What its tools do, one after the other.
     pub fn operations(&self, part: &str) -> Vec<String> {
-        let told = self.told(part);
-        let names = told["operations"].as_array().unwrap().iter();
+        let reported = self.report_of(part);
+        let names = reported["operations"].as_array().unwrap().iter();
         names.map(|name| name.as_str().unwrap().to_owned()).collect()
     }
 

@@ -32,7 +32,7 @@ fn a_board_is_isolated_drilled_and_cut_out() {
     assert_eq!(made.operations("front"), ["isolation, end mill 0.4 mm"]);
     assert_eq!(made.operations("drill"), ["drill 0.8 mm"]);
     for part in ["front", "back", "drill", "outline"] {
-        assert_eq!(made.told(part)["proof"]["proven"], true);
+        assert_eq!(made.report_of(part)["proof"]["proven"], true);
     }
 }
 
@@ -46,7 +46,7 @@ fn a_board_is_turned_over_about_either_line() {
 #[test]
 fn pins_are_where_they_were_when_the_board_is_turned() {
     let folder = small();
-    // Beside the way of the mill that cuts the board out, which is 2 mm wide: 1 mm is left between them.
+    // Next to the cut of the mill that cuts the board out, which is 2 mm wide: 1 mm is left between them.
     for (turn, pins, holes) in [
         ("y", [[-4.5, 5.0], [24.5, 5.0]], [[6.0, 5.0], [16.0, 5.0]]),
         ("x", [[10.0, -4.5], [10.0, 14.5]], [[4.0, 5.0], [14.0, 5.0]]),
@@ -69,10 +69,11 @@ fn it_is_told_when_the_board_is_turned() {
     let turns = |more: &[&str]| -> Vec<String> {
         let made = made(&folder, more);
         let up = |part: &Value| part["up"].as_str().unwrap().to_owned();
-        let told: Vec<_> = made.report()["programs"].as_array().unwrap().iter().map(up).collect();
+        let reported: Vec<_> =
+            made.report()["programs"].as_array().unwrap().iter().map(up).collect();
         let rows = made.said.out.lines().filter(|line| line.starts_with("turn "));
-        assert_eq!(rows.count(), told.windows(2).filter(|two| two[0] != two[1]).count());
-        told
+        assert_eq!(rows.count(), reported.windows(2).filter(|two| two[0] != two[1]).count());
+        reported
     };
     // Front, holes, back, outline; front, back, holes, outline.
     assert_eq!(turns(&[]), ["front", "front", "back", "front"]);
@@ -200,9 +201,9 @@ fn a_narrow_gap_is_left_out_or_cut_down_its_middle() {
         "{}",
         left.said.err
     );
-    let told = left.told("front");
-    let place = &told["places"][0];
-    // Between the corners, 0.3 mm apart, the way is 0.2 mm from both 0.132 mm farther out: √(0.2² - 0.15²).
+    let reported = left.report_of("front");
+    let place = &reported["places"][0];
+    // Between the corners, 0.3 mm apart, the path is 0.2 mm from both 0.132 mm farther out: √(0.2² - 0.15²).
     let what = place["what"].as_str().unwrap();
     assert!(what.contains("0.300 mm apart over 2.26 mm") && what.contains("left out"), "{what}");
     let (x, y) = (place["x"].as_f64().unwrap(), place["y"].as_f64().unwrap());
@@ -210,9 +211,12 @@ fn a_narrow_gap_is_left_out_or_cut_down_its_middle() {
     let cut = made(&folder, &["--only", "front", "--narrow", "middle"]);
     let length = between(&cut);
     assert!((length - 2.265).abs() < 0.01, "{length}");
-    let told = cut.told("front");
+    let reported = cut.report_of("front");
     // Half of what the tool is wider than the gap.
-    assert!(told["places"][0]["what"].as_str().unwrap().contains("0.050 mm thinner"), "{told}");
+    assert!(
+        reported["places"][0]["what"].as_str().unwrap().contains("0.050 mm thinner"),
+        "{reported}"
+    );
 }
 
 #[test]
@@ -253,7 +257,7 @@ fn solder_mask_is_opened() {
     assert!(ends().all(|end| end.z == -0.05));
     // Where a tool is given, it is among the programs that are made without being asked for.
     let made = self::made(&folder, &["--mask-tool", "0.4"]);
-    assert_eq!(made.told("front-mask")["proof"]["proven"], true);
+    assert_eq!(made.report_of("front-mask")["proof"]["proven"], true);
     assert_eq!(made.report()["programs"].as_array().unwrap().len(), 5);
 }
 
@@ -346,7 +350,7 @@ fn tabs_hold_the_board() {
     };
     let none = made(&folder, &["--tabs", "0", "--only", "outline"]);
     near(at(&none, -1.8), AROUND);
-    // A tab of 2 mm is 4 mm of the way of a tool of 2 mm.
+    // A tab of 2 mm is 4 mm of the path of a tool of 2 mm.
     let two = ["--tabs", "2", "--tab-width", "2", "--tab-height", "0.6", "--only", "outline"];
     let two = made(&folder, &two);
     near(at(&two, -1.8), AROUND - 8.0);
@@ -456,9 +460,9 @@ fn programs_that_cut_copper_measure_its_height_themselves() {
         places.iter().map(|&(x, y)| Vec3::new(x, y, height(x, y))).collect()
     };
     for part in ["front", "back"] {
-        assert_eq!(made.told(part)["proof"]["proven"], true);
-        let told = &made.told(part)["measures_heights"];
-        assert_eq!(*told, serde_json::json!({ "columns": 3, "rows": 3 }));
+        assert_eq!(made.report_of(part)["proof"]["proven"], true);
+        let reported = &made.report_of(part)["measures_heights"];
+        assert_eq!(*reported, serde_json::json!({ "columns": 3, "rows": 3 }));
         let text = made.text(part);
         assert_eq!((text.matches("G38.2").count(), text.matches("\nM0").count()), (9, 2), "{text}");
         let cuts = cuts_on(&text, "linuxcnc-mill", surface(&plane));
@@ -489,21 +493,21 @@ fn a_program_that_cuts_nothing_measures_nothing() {
     let more = ["--tool", "0.4", "--isolate", "middle", "--probe", "3x3", "--on-control"];
     let made = Made::of(&folder, "board", "linuxcnc-mill", &more);
     for (part, probes) in [("front", 9), ("back", 0)] {
-        assert_eq!(made.told(part)["measures_heights"].is_null(), probes == 0);
+        assert_eq!(made.report_of(part)["measures_heights"].is_null(), probes == 0);
         let text = made.text(part);
         assert_eq!(text.matches("G38.2").count(), probes, "{text}");
         assert_eq!(text.contains("M0"), probes > 0, "{text}");
     }
 }
 
-/// The way of the middle of a tool as points 0.05 mm apart, and by squares of 0.1 mm.
-struct Way {
+/// The path of the centre of a tool as points 0.05 mm apart, and by squares of 0.1 mm.
+struct ToolPath {
     points: Vec<Vec2>,
     squares: BTreeSet<(i64, i64)>,
 }
 
-impl Way {
-    fn of(made: &Made, part: &str) -> Way {
+impl ToolPath {
+    fn of(made: &Made, part: &str) -> ToolPath {
         let mut points = Vec::new();
         for cut in made.cuts(part) {
             let steps = (cut.length / 0.05).ceil().max(1.0);
@@ -511,18 +515,18 @@ impl Way {
                 points.push(cut.from.lerp(cut.to, f64::from(step) / steps).truncate());
             }
         }
-        let squares = points.iter().map(|at| Way::square(*at)).collect();
-        Way { points, squares }
+        let squares = points.iter().map(|at| ToolPath::square(*at)).collect();
+        ToolPath { points, squares }
     }
 
     fn square(at: Vec2) -> (i64, i64) {
         ((at.x * 10.0).floor() as i64, (at.y * 10.0).floor() as i64)
     }
 
-    /// How many of its points are not in a square of the other way, or beside one.
-    fn beside(&self, other: &Way) -> usize {
+    /// How many of its points are not in a square of the other path, or next to one.
+    fn off(&self, other: &ToolPath) -> usize {
         let near = |at: &&Vec2| {
-            let (x, y) = Way::square(**at);
+            let (x, y) = ToolPath::square(**at);
             (-1..=1).all(|dx| (-1..=1).all(|dy| !other.squares.contains(&(x + dx, y + dy))))
         };
         self.points.iter().filter(near).count()
@@ -548,8 +552,8 @@ fn a_board_of_kicad_and_its_plots_are_the_same_programs() {
     for part in ["front", "back", "outline"] {
         let (one, other) = (plots.length(part), board.length(part));
         assert!((one / other - 1.0).abs() < 2e-3, "{part}: {one} mm and {other} mm");
-        let (one, other) = (Way::of(&plots, part), Way::of(&board, part));
-        assert_eq!((one.beside(&other), other.beside(&one)), (0, 0), "{part}");
+        let (one, other) = (ToolPath::of(&plots, part), ToolPath::of(&board, part));
+        assert_eq!((one.off(&other), other.off(&one)), (0, 0), "{part}");
     }
 }
 
@@ -639,8 +643,8 @@ fn programs_of_an_earlier_call_are_told() {
     let call = ["pcb", "board", "-o", "out", "-m", "grbl-3018", "--tool", "0.4"];
     assert_eq!(folder.run(&call).code, 0);
     let said = folder.run(&[&call[..], &["--only", "front"]].concat());
-    let told = "there are still drill.nc, back.nc, outline.nc";
-    assert!(said.code == 0 && said.err.contains(told), "{}", said.err);
+    let reported = "there are still drill.nc, back.nc, outline.nc";
+    assert!(said.code == 0 && said.err.contains(reported), "{}", said.err);
 }
 
 #[test]

@@ -13,7 +13,7 @@ use std::path::{Path, PathBuf};
 /// From scan line to scan line, mm.
 const STEP: f64 = 0.02;
 
-/// How far a cut may be from where it was planned, mm: ways are merged within 5 µm, words have three
+/// How far a cut may be from where it was planned, mm: paths are merged within 5 µm, words have three
 /// decimals.
 const TOLERANCE: f64 = 0.006;
 

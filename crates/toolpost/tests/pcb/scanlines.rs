@@ -1,4 +1,4 @@
-//! Areas as scan lines, a test's own way to say what is copper and what a tool cuts: it shares nothing
+//! Areas as scan lines, a test's own description of what is copper and what a tool cuts: it shares nothing
 //! with the regions of the program.
 
 use geom::{Element, Vec2};
@@ -103,7 +103,7 @@ impl Lines {
         }
     }
 
-    /// Adds what a disc covers on its straight way.
+    /// Adds what a disc covers along a straight line.
     pub fn sweep(&mut self, from: Vec2, to: Vec2, radius: f64) {
         for line in self.between(from.y.min(to.y) - radius, from.y.max(to.y) + radius) {
             let y = self.y(line);
