@@ -1,6 +1,6 @@
 //! Straight lines of the tool tip on a machine that only knows its axes.
 //!
-//! Without tool center point control every axis moves in proportion to the others, so that the tip
+//! Without tool-centre control every axis moves in proportion to the others, so that the tip
 //! follows a curve where a rotary axis turns. Points are added on the commanded line until it leaves
 //! that line by no more than a tolerance. The rotary axes turn evenly from end to end, so the points
 //! change nothing in the orientations that are passed through.
