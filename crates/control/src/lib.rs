@@ -11,7 +11,7 @@
 
 mod event;
 mod iso;
-mod kernel;
+pub mod kernel;
 mod klartext;
 mod points;
 mod sinumerik;
@@ -21,9 +21,8 @@ pub use event::{Action, ArcTo, Event, FeedPath, Orientation, Position, Risk, Thr
 use geom::Vec3;
 use iso::dialects::facts::Facts;
 use iso::dialects::{fanuc, freecad, grbl, haas, linuxcnc, mach3, marlin, wire};
-use kernel::compensation::{Compensator, Rules};
+use kernel::compensation::Rules;
 pub use kernel::folders::Folders;
-use kernel::relay;
 use program::{Diagnostic, Purpose, WorkOffset};
 
 /// The languages that are understood.
@@ -399,9 +398,6 @@ pub fn percent_signs(text: &[u8]) -> usize {
     lines.filter(|line| line.trim_ascii_start().first() == Some(&b'%')).count()
 }
 
-/// Length of a program, bytes, from which its control runs in a thread of its own.
-const LONG: usize = 1 << 16;
-
 /// Runs `text` on the virtual control of `settings` and hands each event to `sink`, in order. The
 /// line of an event is the line of the program (from 1); in a program that is called from another
 /// file, the line of the call in `text`.
@@ -415,27 +411,10 @@ pub fn read(
     text: &[u8],
     sink: &mut Sink,
 ) -> Result<(), Box<Diagnostic>> {
-    let run = |sink: &mut Sink| {
-        let mut compensator = Compensator::new(settings, sink);
-        let to = &mut compensator;
-        match settings.dialect.language() {
-            Language::Iso(facts) => iso::run(facts, settings, text, to),
-            Language::Sinumerik => sinumerik::run(settings, text, to),
-            Language::Klartext => klartext::run(settings, text, to),
-            Language::Points => points::run(settings, text, to),
-        }?;
-        compensator.finish()
-    };
-    let read = if text.len() < LONG { run(sink) } else { relay::relayed(run, sink) };
-    read.map_err(|d| if d.file.is_empty() { shown(*d, text).file(file_name).into() } else { d })
-}
-
-/// With the block that it is about, where only its line is known.
-fn shown(found: Diagnostic, text: &[u8]) -> Diagnostic {
-    let line = found.line;
-    if line == 0 || found.column > 0 || !found.excerpt.is_empty() {
-        return found;
-    }
-    let block = program::line_of(text, line);
-    found.at(line, block, 0, block.trim_ascii_end().len())
+    kernel::run(settings, file_name, text, sink, |channel| match settings.dialect.language() {
+        Language::Iso(facts) => iso::run(facts, settings, text, channel),
+        Language::Sinumerik => sinumerik::run(settings, text, channel),
+        Language::Klartext => klartext::run(settings, text, channel),
+        Language::Points => points::run(settings, text, channel),
+    })
 }

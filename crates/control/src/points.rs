@@ -5,34 +5,34 @@
 //! Nothing else can be said: `docs/controls/points.md`.
 
 use crate::Settings;
-use crate::event::{Action, Event, Position};
-use crate::kernel::compensation::Compensator;
+use crate::event::{Action, Position};
 use crate::kernel::decimal;
+use crate::kernel::source::Source;
+use crate::kernel::{Channel, Fallible};
 use geom::{Vec3, direction};
 use program::Diagnostic;
-
-type Result<T> = std::result::Result<T, Box<Diagnostic>>;
 
 /// The most numbers of a line.
 const MOST: usize = 4;
 
 /// Runs a list.
-pub(crate) fn run(settings: &Settings, text: &[u8], path: &mut Compensator) -> Result<()> {
+pub(crate) fn run(settings: &Settings, text: &[u8], channel: &mut Channel) -> Fallible<()> {
     let text = text.strip_suffix(b"\n").unwrap_or(text);
     let mut width = 0;
     let mut last = 0;
     for (index, bytes) in text.split(|&b| b == b'\n').enumerate() {
         let bytes = bytes.strip_suffix(b"\r").unwrap_or(bytes);
-        let line = Line { number: u32::try_from(index + 1).unwrap_or(u32::MAX), bytes };
+        let number = u32::try_from(index + 1).unwrap_or(u32::MAX);
+        let line = Line(Source { line: number, text: bytes });
         let mut values = [0.0; MOST];
         let count = line.read(&mut values)?;
         if index > 0 && count != width {
             let message = format!("{count} numbers, where the first line has {width}");
             return Err(line.error("nc-syntax", (0, bytes.len()), message).into());
         }
-        (width, last) = (count, line.number);
+        (width, last) = (count, number);
         let pose = line.pose(values, count, settings.wire.height)?;
-        let mut tell = |action| path.take(Event { line: line.number, action });
+        let mut tell = |action| channel.report(line.0.line, action);
         if index == 0 {
             tell(Action::Rapid(pose))?;
             tell(Action::ThreadWire)?;
@@ -40,28 +40,25 @@ pub(crate) fn run(settings: &Settings, text: &[u8], path: &mut Compensator) -> R
             tell(Action::Line(pose))?;
         }
     }
-    path.take(Event { line: last, action: Action::CutWire })?;
-    path.take(Event { line: last, action: Action::End })
+    channel.report(last, Action::CutWire)?;
+    channel.report(last, Action::End)
 }
 
 /// A line of a list.
-struct Line<'a> {
-    number: u32,
-    bytes: &'a [u8],
-}
+struct Line<'a>(Source<'a>);
 
 impl Line<'_> {
     /// Reads two or four numbers into `values`; how many there are.
-    fn read(&self, values: &mut [f64; MOST]) -> Result<usize> {
+    fn read(&self, values: &mut [f64; MOST]) -> Fallible<usize> {
         let blanks = |at: usize| {
-            let rest = self.bytes.get(at..).unwrap_or_default();
+            let rest = self.0.text.get(at..).unwrap_or_default();
             at + rest.iter().take_while(|b| matches!(b, b' ' | b'\t')).count()
         };
         let (mut at, mut count) = (blanks(0), 0);
-        while at < self.bytes.len() {
-            let number = decimal::parse(self.bytes.get(at..).unwrap_or_default());
+        while at < self.0.text.len() {
+            let number = decimal::parse(self.0.text.get(at..).unwrap_or_default());
             let Some((number, value)) = number.zip(values.get_mut(count)) else {
-                let found = self.bytes.get(at).map_or(' ', |&b| char::from(b));
+                let found = self.0.text.get(at).map_or(' ', |&b| char::from(b));
                 let message = format!("`{found}` where a number or the end of the line is needed");
                 return Err(self.error("nc-syntax", (at, at + 1), message).into());
             };
@@ -73,7 +70,7 @@ impl Line<'_> {
             *value = number.value;
             count += 1;
             at = blanks(end);
-            if at == end && at < self.bytes.len() {
+            if at == end && at < self.0.text.len() {
                 let message = "a blank is needed between two numbers";
                 return Err(self.error("nc-syntax", (at, at + 1), message).into());
             }
@@ -82,7 +79,7 @@ impl Line<'_> {
             return Ok(count);
         }
         let message = format!("{count} numbers: a point is X Y, or X Y U V");
-        Err(self.error("nc-syntax", (0, self.bytes.len()), message).into())
+        Err(self.error("nc-syntax", (0, self.0.text.len()), message).into())
     }
 
     fn pose(
@@ -90,19 +87,19 @@ impl Line<'_> {
         [x, y, u, v]: [f64; MOST],
         count: usize,
         height: Option<f64>,
-    ) -> Result<Position> {
+    ) -> Fallible<Position> {
         let lower = Vec3::new(x, y, 0.0);
         if count == 2 {
             return Ok(Position::new(lower, Vec3::Z));
         }
         let Some(height) = height else {
             let message = "U and V, and the height of the upper plane is not known";
-            let found = self.error("upper-plane", (0, self.bytes.len()), message);
+            let found = self.error("upper-plane", (0, self.0.text.len()), message);
             return Err(found.help("`height` in the [wire] table of the machine").into());
         };
         let Some(axis) = direction(Vec3::new(u, v, height)) else {
             let message = "U and V lie so far out that the wire has no direction";
-            return Err(self.error("nc-number", (0, self.bytes.len()), message).into());
+            return Err(self.error("nc-number", (0, self.0.text.len()), message).into());
         };
         Ok(Position::new(lower, axis))
     }
@@ -114,6 +111,6 @@ impl Line<'_> {
         message: impl Into<String>,
     ) -> Diagnostic {
         let help = "a list of coordinates has one point a line: X Y, or X Y U V, parted by blanks";
-        Diagnostic::error(rule, message).at(self.number, self.bytes, start, end).help(help)
+        self.0.error(rule, start..end, message).help(help)
     }
 }

@@ -13,7 +13,7 @@ mod flow;
 mod language;
 
 use crate::Settings;
-use crate::kernel::compensation::Compensator;
+use crate::kernel::Channel;
 use dialects::facts::Facts;
 use flow::ahead::Ahead;
 use flow::run::Run;
@@ -30,8 +30,8 @@ pub(crate) fn run(
     facts: &'static Facts,
     settings: &Settings,
     text: &[u8],
-    compensator: &mut Compensator,
+    channel: &mut Channel,
 ) -> Result<(), Fault> {
     let main = Source::program(text);
-    Ahead::of(text, |ahead| Run::new(facts, settings, &main, ahead, compensator).run())
+    Ahead::of(text, |ahead| Run::new(facts, settings, &main, ahead, channel).run())
 }

@@ -14,7 +14,7 @@ const BYTES_IN_A_TURN: usize = 16;
 
 /// Counts the jumps of a run.
 #[derive(Debug, Default)]
-pub(crate) struct Budget {
+pub struct Budget {
     idle: u32,
     all: u64,
     /// Bits of the last place that was gone to after a jump.
@@ -26,7 +26,7 @@ impl Budget {
     ///
     /// # Errors
     /// What to say of a program that jumps without end.
-    pub(crate) fn jump(&mut self) -> Result<(), String> {
+    pub fn jump(&mut self) -> Result<(), String> {
         self.spend(1)
     }
 
@@ -34,15 +34,24 @@ impl Budget {
     ///
     /// # Errors
     /// As [`Budget::jump`].
-    pub(crate) fn read(&mut self, bytes: usize) -> Result<(), String> {
+    pub fn read(&mut self, bytes: usize) -> Result<(), String> {
         self.spend((bytes / BYTES_IN_A_TURN).min(IDLE as usize / 10))
+    }
+
+    /// A jump back, or a call: so many bytes are read again.
+    ///
+    /// # Errors
+    /// As [`Budget::jump`].
+    pub fn again(&mut self, bytes: usize) -> Result<(), String> {
+        self.jump()?;
+        self.read(bytes)
     }
 
     /// Something that takes as long as so many jumps.
     ///
     /// # Errors
     /// As [`Budget::jump`].
-    pub(crate) fn spend(&mut self, turns: usize) -> Result<(), String> {
+    pub fn spend(&mut self, turns: usize) -> Result<(), String> {
         let turns = u32::try_from(turns).unwrap_or(u32::MAX);
         self.idle = self.idle.saturating_add(turns);
         self.all += u64::from(turns);

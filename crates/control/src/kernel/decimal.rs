@@ -2,7 +2,7 @@
 
 /// A number and how it was written.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub(crate) struct Decimal {
+pub struct Decimal {
     /// Its value, the nearest double.
     pub value: f64,
     /// How many bytes it takes, the sign included.
@@ -27,7 +27,7 @@ const SCALES: [u64; 9] = [1, 10, 100, 1000, 10_000, 100_000, 1_000_000, 10_000_0
 /// The value is correctly rounded: up to 15 digits the digits and the power of ten are both exact
 /// doubles, so one division rounds once (Clinger 1990); longer ones go to the standard library.
 #[inline]
-pub(crate) fn parse(text: &[u8]) -> Option<Decimal> {
+pub fn parse(text: &[u8]) -> Option<Decimal> {
     let (negative, sign) = match text.first() {
         Some(b'-') => (true, 1),
         Some(b'+') => (false, 1),

@@ -15,18 +15,22 @@ pub struct Place {
     pub line: u32,
 }
 
-/// The lines of a text, ended by LF or CR LF: where each begins, where the next one does, and what it says.
+/// The line at a place of a text, ended by LF or CR LF, and where the next one begins; `None` behind the last.
+pub fn line(text: &[u8], place: Place) -> Option<(&[u8], Place)> {
+    let rest = text.get(place.at..).filter(|rest| !rest.is_empty())?;
+    let length = memchr::memchr(b'\n', rest).unwrap_or(rest.len());
+    let at = (place.at + length + 1).min(text.len());
+    let line = rest.get(..length).unwrap_or(rest);
+    let next = Place { at, line: place.line.saturating_add(1) };
+    Some((line.strip_suffix(b"\r").unwrap_or(line), next))
+}
+
+/// The lines of a text: where each begins, where the next one does, and what it says.
 pub fn lines(text: &[u8]) -> impl Iterator<Item = (Place, Place, &[u8])> {
     let mut place = Place { at: 0, line: 1 };
     std::iter::from_fn(move || {
-        let rest = text.get(place.at..).filter(|rest| !rest.is_empty())?;
-        let length = memchr::memchr(b'\n', rest).unwrap_or(rest.len());
-        let next = Place {
-            at: (place.at + length + 1).min(text.len()),
-            line: place.line.saturating_add(1),
-        };
-        let line = rest.get(..length).unwrap_or(rest);
-        Some((std::mem::replace(&mut place, next), next, line.strip_suffix(b"\r").unwrap_or(line)))
+        let (line, next) = line(text, place)?;
+        Some((std::mem::replace(&mut place, next), next, line))
     })
 }
 

@@ -1,17 +1,32 @@
 //! What every language needs: the kernel under the controls. It knows no language and no word of one.
 //!
-//! A text is read: [`decimal`] numbers, and [`folders`] in which called programs are looked for. It runs: a [`budget`] ends
-//! endless loops. It moves: a [`corner`] is put between two segments, a rotary [`way`] is certain or not, and
-//! [`compensation`] leads the tool's centre. It reports: [`belt`] takes batches from one thread to another, and
-//! [`relay`] a whole control's events.
+//! A new language is a grammar on top of it: what stands in a block, and what that does. Its text is taken apart with
+//! [`flow::lines`], [`source`] and [`decimal`]; its formulas are a [`Grammar`](expression::Grammar) of operands and ranks; its
+//! jumps, loops and calls are looked up in the tables of [`flow`]; its arcs come from [`arc`], its chamfers and rounded corners
+//! from `corner`. [`run`] gives it a [`Channel`] for its records, which leads the tool's centre where compensation is resolved,
+//! ends loops that never move (the [`budget`]), and hands over what a long program does while it is read. Called programs are
+//! looked for in [`Folders`](crate::Folders).
+//!
+//! `tests/fourth_language.rs` is a whole language of this kind: labels, variables, a loop, subprograms, arcs by a point between
+//! their ends. Lengths are mm, angles degrees where a text says them; a coordinate that nobody knows is NaN.
 
+pub mod arc;
 pub(crate) mod belt;
-pub(crate) mod budget;
+pub mod budget;
+mod channel;
 pub(crate) mod compensation;
 pub(crate) mod corner;
-pub(crate) mod decimal;
-pub(crate) mod expression;
-pub(crate) mod flow;
+pub mod decimal;
+pub mod expression;
+pub mod flow;
 pub(crate) mod folders;
-pub(crate) mod relay;
+mod relay;
+pub mod source;
 pub(crate) mod way;
+
+pub(crate) use channel::LONG;
+pub use channel::{Channel, run};
+use program::Diagnostic;
+
+/// What a step of a control answers: what is wrong stops the run.
+pub type Fallible<T> = Result<T, Box<Diagnostic>>;

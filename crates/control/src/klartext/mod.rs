@@ -10,10 +10,9 @@ mod flow;
 mod language;
 
 use crate::Settings;
-use crate::kernel::compensation::Compensator;
+use crate::kernel::{Channel, Fallible};
 use execution::state::Control;
 use flow::run::Run;
-use language::scan::Result;
 
 /// Its M functions.
 pub(crate) fn vocabulary() -> Vec<String> {
@@ -21,7 +20,7 @@ pub(crate) fn vocabulary() -> Vec<String> {
 }
 
 /// Runs a program.
-pub(crate) fn run(settings: &Settings, text: &[u8], compensator: &mut Compensator) -> Result<()> {
-    let mut control = Control::new(settings, compensator);
+pub(crate) fn run(settings: &Settings, text: &[u8], channel: &mut Channel) -> Fallible<()> {
+    let mut control = Control::new(settings, channel);
     Run::begin(&mut control, "", text)?.finish()
 }

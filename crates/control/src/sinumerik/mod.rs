@@ -10,11 +10,7 @@ mod flow;
 mod language;
 
 use crate::Settings;
-use crate::kernel::compensation::Compensator;
-use program::Diagnostic;
-
-/// What may go wrong.
-type Fallible<T> = Result<T, Box<Diagnostic>>;
+use crate::kernel::{Channel, Fallible};
 
 /// Its commands, addresses, calls and cycles, and the M functions of the control itself.
 pub(crate) fn vocabulary() -> Vec<String> {
@@ -23,6 +19,6 @@ pub(crate) fn vocabulary() -> Vec<String> {
 }
 
 /// Runs a program.
-pub(crate) fn run(settings: &Settings, text: &[u8], compensator: &mut Compensator) -> Fallible<()> {
-    flow::run::Run::main(settings, text, compensator)
+pub(crate) fn run(settings: &Settings, text: &[u8], channel: &mut Channel) -> Fallible<()> {
+    flow::run::Run::main(settings, text, channel)
 }

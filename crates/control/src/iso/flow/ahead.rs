@@ -1,9 +1,9 @@
 //! Plain lines of a long program, taken apart in a thread of their own ahead of their run.
 
 use super::source::Place;
-use crate::LONG;
 use crate::iso::language::block::Word;
 use crate::iso::language::plain;
+use crate::kernel::LONG;
 use crate::kernel::belt::{Feed, Taken, belt};
 use std::ops::Range;
 use std::{mem, thread};

@@ -217,7 +217,7 @@ impl<'a> Run<'a, '_> {
         if turns == 0 {
             return Ok(());
         }
-        self.budget.jump()?;
+        self.channel.budget.jump()?;
         let macros = self.frames.iter().filter(|f| matches!(f.kind, Kind::Macro { .. })).count();
         let calls = self.frames.len();
         let (most, now) = match (self.language, kind) {
@@ -246,7 +246,7 @@ impl<'a> Run<'a, '_> {
     pub(super) fn leave(&mut self) -> Result<(), Fault> {
         let begin = self.frames.last().map_or(self.here.at, |frame| frame.begin.at);
         let read = self.here.at.saturating_sub(begin);
-        let counted = self.budget.jump().and_then(|()| self.budget.read(read));
+        let counted = self.channel.budget.again(read);
         counted.map_err(|message| self.at_line("nc-endless", message))?;
         let modes = self.frame().modes.filter(|modes| modes.until_return);
         let Some(frame) = (if self.frames.len() > 1 { self.frames.pop() } else { None }) else {

@@ -5,7 +5,7 @@
 
 use super::run::Run;
 use crate::WholeNumbers;
-use crate::event::{Action, ArcTo, Event, Position};
+use crate::event::{Action, ArcTo, Position};
 use crate::iso::dialects::facts::CornerWords;
 use crate::iso::execution::state::Tilt;
 use crate::iso::language::block::{Fault, Word};
@@ -123,8 +123,7 @@ impl Run<'_, '_> {
 
     /// Reports what happens in line `line`.
     fn send(&mut self, line: u32, action: Action) -> Result<(), Fault> {
-        self.budget.record(&action);
-        self.compensator.take(Event { line, action })
+        self.channel.report(line, action)
     }
 
     /// The unit vector across the plane, in the work frame.

@@ -18,9 +18,7 @@ use crate::iso::language::block::{Block, Fault};
 use crate::iso::language::expression::Reader;
 use crate::iso::language::parameters::{Parameters, Values};
 use crate::iso::language::words::{G, Group, M};
-use crate::kernel::budget::Budget;
-use crate::kernel::compensation::Compensator;
-use crate::kernel::flow;
+use crate::kernel::{Channel, flow};
 use program::Diagnostic;
 use std::collections::HashMap;
 use std::ptr;
@@ -42,7 +40,6 @@ pub(crate) struct Run<'a, 's> {
     /// The line of the program itself in which a call into another file is under way.
     pub caller: Option<u32>,
     pub frames: Vec<Frame<'a>>,
-    pub budget: Budget,
     /// Which of several O-words of a name (of a file, the first) has been run.
     pub twins: HashMap<(*const u8, usize), usize>,
     /// The program has jumped, called or calculated: what stands behind its end may belong to it.
@@ -56,7 +53,7 @@ pub(crate) struct Run<'a, 's> {
     /// The block whose corner waits for the next one.
     pub(super) held: Option<Held>,
     /// Where the records go.
-    pub(super) compensator: &'a mut Compensator<'s>,
+    pub(super) channel: &'a mut Channel<'s>,
 }
 
 impl<'a, 's> Run<'a, 's> {
@@ -66,7 +63,7 @@ impl<'a, 's> Run<'a, 's> {
         settings: &'a Settings,
         main: &'a Source<'a>,
         ahead: Ahead,
-        compensator: &'a mut Compensator<'s>,
+        channel: &'a mut Channel<'s>,
     ) -> Run<'a, 's> {
         let here = Place { source: main, at: 0, line: 0, percent_signs: 0 };
         Run {
@@ -82,14 +79,13 @@ impl<'a, 's> Run<'a, 's> {
             text: (b"", 0),
             caller: None,
             frames: vec![Frame::new(Kind::Main, here, here)],
-            budget: Budget::default(),
             twins: HashMap::new(),
             flows: false,
             over: false,
             ahead,
             onward: None,
             held: None,
-            compensator,
+            channel,
         }
     }
 
@@ -114,13 +110,12 @@ impl<'a, 's> Run<'a, 's> {
             }
             let line = self.caller.unwrap_or(line);
             for action in self.actions.drain(..) {
-                self.budget.record(&action);
                 match action {
                     Action::Compensation(side) => {
                         let terms = self.control.state.compensation_terms();
-                        self.compensator.switch(line, side, terms)?;
+                        self.channel.switch(line, side, terms)?;
                     }
-                    action => self.compensator.take(Event { line, action })?,
+                    action => self.channel.take(Event { line, action })?,
                 }
             }
         }
@@ -134,9 +129,9 @@ impl<'a, 's> Run<'a, 's> {
             if self.facts.syntax.ending == Ending::Text && !self.control.state.ended {
                 let line = self.here.line.max(1);
                 for risk in self.control.state.left_on(self.facts) {
-                    self.compensator.take(Event { line, action: Action::Risk(risk.into()) })?;
+                    self.channel.report(line, Action::Risk(risk.into()))?;
                 }
-                self.compensator.take(Event { line, action: Action::End })?;
+                self.channel.report(line, Action::End)?;
             }
             return Ok(());
         }
@@ -308,7 +303,7 @@ impl<'a, 's> Run<'a, 's> {
     pub(super) fn jump(&mut self, to: flow::Place) -> Result<(), Fault> {
         let again = self.here.at.saturating_sub(to.at);
         (self.here.at, self.here.line) = (to.at, to.line - 1);
-        let counted = self.budget.jump().and_then(|()| self.budget.read(again));
+        let counted = self.channel.budget.again(again);
         counted.map_err(|message| self.at_line("nc-endless", message))
     }
 

@@ -1,8 +1,9 @@
 //! The way off a contour, and the way to it: neither may cut into it.
 
 use super::plane::Plane;
-use super::{Fallible, SAME, error};
+use super::{SAME, error};
 use crate::event::Position;
+use crate::kernel::Fallible;
 use geom::{Element, Vec2};
 
 /// The end of a contour that the tool has not left yet.

@@ -12,14 +12,13 @@ mod plane;
 mod rules;
 
 use crate::event::{Action, Event, Orientation, Position};
+use crate::kernel::Fallible;
 use crate::{Dialect, Settings, Sink, ToolData};
 use geom::Vec3;
 use leaving::Leaving;
 use path::Path;
 use program::{Axes, Compensation, Diagnostic, Feed};
 pub(crate) use rules::{Outer, Rules};
-
-type Fallible<T> = Result<T, Box<Diagnostic>>;
 
 /// Points closer than this are one, mm: rounding of what is computed from four decimals.
 const SAME: f64 = 1e-6;

@@ -1,7 +1,9 @@
 //! Elements of a contour, and the corners between them.
 
 use super::state::Control;
-use crate::klartext::language::scan::{Result, Scanner};
+use crate::kernel::Fallible;
+use crate::kernel::corner::{self, Misfit, Shape};
+use crate::klartext::language::scan::Scanner;
 use crate::klartext::language::words::{FeedWord, RADIUS, Words, feed_word, slot};
 use geom::{Vec3, direction};
 use program::Feed;
@@ -37,19 +39,11 @@ pub(super) enum Waiting {
 /// How a corner is cut off, and the feed for that.
 #[derive(Clone, Copy)]
 pub(super) struct Cut {
-    kind: CutKind,
+    shape: Shape,
     feed: Option<FeedWord>,
 }
 
-#[derive(Clone, Copy)]
-enum CutKind {
-    /// `RND`: by an arc of this radius.
-    Rounding(f64),
-    /// `CHF`: by a line that begins and ends so far from the corner.
-    Chamfer(f64),
-}
-
-/// Sines up to which two directions count as the same.
+/// Angles, radians, up to which two directions count as the same.
 const SMOOTH: f64 = 1e-6;
 
 impl Element {
@@ -78,55 +72,12 @@ impl Element {
         self.start.z == self.end.z
     }
 
-    /// The curve at distance `by` to the left.
-    fn offset(&self, by: f64) -> Option<Curve> {
-        match self.arc {
-            None => {
-                let along = self.tangent_at_start()?;
-                Some(Curve::Line(self.start + left_of(along) * by, along))
-            }
-            Some(Bend { center, sense, .. }) => {
-                let radius = (self.start - center).with_z(0.0).length() - by * sense;
-                (radius > 0.0).then_some(Curve::Circle(center, radius))
-            }
-        }
+    /// As a part of a corner.
+    fn part(&self) -> corner::Element {
+        let turn = |bend: Bend| (bend.center.with_z(self.start.z), Vec3::Z * bend.sense);
+        let circle = self.arc.map(turn);
+        corner::Element { start: self.start, end: self.end, circle, cut: true }
     }
-
-    /// The point of the element nearest to a point that is beside it.
-    fn foot(&self, p: Vec3) -> Option<Vec3> {
-        match self.arc {
-            None => {
-                let along = self.tangent_at_start()?;
-                Some(self.start + along * (p - self.start).dot(along))
-            }
-            Some(Bend { center, .. }) => {
-                let center = center.with_z(self.start.z);
-                let radius = (self.start - center).length();
-                Some(center + direction((p - center).with_z(0.0))? * radius)
-            }
-        }
-    }
-
-    /// How far along the element a point of it is: 0 at the start, 1 at the end.
-    fn parameter(&self, p: Vec3) -> f64 {
-        let Some(Bend { center, sense, .. }) = self.arc else {
-            let way = (self.end - self.start).with_z(0.0);
-            return (p - self.start).dot(way) / way.length_squared();
-        };
-        let angle = |q: Vec3| {
-            let (a, b) = ((self.start - center).with_z(0.0), (q - center).with_z(0.0));
-            (a.cross(b).z * sense).atan2(a.dot(b)).rem_euclid(std::f64::consts::TAU)
-        };
-        let whole = angle(self.end);
-        angle(p) / if whole < 1e-9 { std::f64::consts::TAU } else { whole }
-    }
-}
-
-/// What an offset element lies on.
-enum Curve {
-    /// Through a point along a unit vector.
-    Line(Vec3, Vec3),
-    Circle(Vec3, f64),
 }
 
 /// A unit vector in the plane turned to the left.
@@ -134,83 +85,29 @@ pub(super) fn left_of(along: Vec3) -> Vec3 {
     Vec3::new(-along.y, along.x, 0.0)
 }
 
-/// Where two curves meet, at most twice; NaN where they do not.
-fn meet(a: &Curve, b: &Curve) -> [Vec3; 2] {
-    match (a, b) {
-        (Curve::Line(p, d), Curve::Line(q, e)) => {
-            let along = (*q - *p).cross(*e).z / d.cross(*e).z;
-            [*p + *d * along; 2]
-        }
-        (Curve::Line(p, d), Curve::Circle(center, radius))
-        | (Curve::Circle(center, radius), Curve::Line(p, d)) => {
-            let middle = *p + *d * (*center - *p).dot(*d);
-            let away = (middle - *center).with_z(0.0).length_squared();
-            let half = (radius * radius - away).sqrt();
-            [middle + *d * half, middle - *d * half]
-        }
-        (Curve::Circle(p, r), Curve::Circle(q, t)) => {
-            let way = (*q - *p).with_z(0.0);
-            let apart = way.length();
-            let along = (apart * apart + r * r - t * t) / (2.0 * apart);
-            let half = (r * r - along * along).sqrt();
-            let middle = *p + way * (along / apart);
-            let across = left_of(way / apart) * half;
-            [middle + across, middle - across]
-        }
-    }
-}
-
 /// The element that replaces the corner between two others, or why that cannot be.
-fn cut_off(
-    first: &Element,
-    second: &Element,
-    kind: CutKind,
-) -> std::result::Result<Element, String> {
-    let (Some(before), Some(after)) = (first.tangent_at_end(), second.tangent_at_start()) else {
-        return Err("where an element beside the corner leads is not known".into());
-    };
+fn cut_off(first: &Element, second: &Element, shape: Shape) -> Result<Element, &'static str> {
+    if first.tangent_at_end().is_none() || second.tangent_at_start().is_none() {
+        return Err("where an element beside the corner leads is not known");
+    }
     if !first.is_plane() || !second.is_plane() {
-        return Err("the elements beside the corner must lie in the plane XY".into());
+        return Err("the elements beside the corner must lie in the plane XY");
     }
-    let bend = before.cross(after).z;
-    if bend.abs() < SMOOTH {
-        return Err("there is no corner: the elements run into each other or back".into());
-    }
-    let corner = first.end;
-    let (from, center, to) = match kind {
-        CutKind::Chamfer(_) if first.arc.is_some() || second.arc.is_some() => {
-            return Err("a chamfer stands between two straight lines".into());
-        }
-        CutKind::Chamfer(length) => (corner - before * length, None, corner + after * length),
-        CutKind::Rounding(radius) => {
-            let side = bend.signum();
-            let offset = |element: &Element| {
-                element
-                    .offset(side * radius)
-                    .ok_or("the radius is larger than that of the arc beside it")
-            };
-            let near = |p: &Vec3| p.distance_squared(corner);
-            let center = meet(&offset(first)?, &offset(second)?)
-                .into_iter()
-                .filter(|p| p.is_finite())
-                .min_by(|p, q| near(p).total_cmp(&near(q)))
-                .ok_or("no arc of this radius touches both elements")?;
-            let feet = first.foot(center).zip(second.foot(center));
-            let (from, to) = feet.ok_or("no arc of this radius touches both elements")?;
-            (from, Some(Bend { center, sense: side, turns: 0 }), to)
-        }
-    };
-    let fits = |t: f64| (-1e-9..=1.0 + 1e-9).contains(&t);
-    if fits(first.parameter(from)) && fits(second.parameter(to)) {
-        let arc = center.map(|bend| Bend { center: bend.center.with_z(corner.z), ..bend });
-        return Ok(Element { start: from.with_z(corner.z), end: to.with_z(corner.z), arc });
-    }
-    Err("an element beside the corner is too short for it".into())
+    let no_corner = "there is no corner: the elements run into each other or back";
+    let joint = corner::joint(&first.part(), &second.part(), Vec3::Z, shape, SMOOTH);
+    let joint = joint.map_err(|misfit| match misfit {
+        Misfit::TurnsBack => no_corner,
+        Misfit::ChamferAtArc => "a chamfer stands between two straight lines",
+        Misfit::TooLarge => "no such corner fits between its elements: one of them is too short",
+    });
+    let joint = joint?.ok_or(no_corner)?;
+    let arc = joint.circle.map(|(center, turn)| Bend { center, sense: turn.z, turns: 0 });
+    Ok(Element { start: joint.from, end: joint.to, arc })
 }
 
 impl Control<'_, '_> {
     /// `RND R5 F100`.
-    pub(crate) fn rounding(&mut self, s: &mut Scanner) -> Result<()> {
+    pub(crate) fn rounding(&mut self, s: &mut Scanner) -> Fallible<()> {
         let words = Words::read(s, RADIUS, self)?;
         let radius = words.get(slot::R).filter(|radius| *radius > 0.0);
         let Some(radius) = radius.filter(|_| {
@@ -218,11 +115,11 @@ impl Control<'_, '_> {
         }) else {
             return Err(s.error_block("missing-word", "RND takes R with a radius, and F"));
         };
-        self.cut(s, Cut { kind: CutKind::Rounding(radius), feed: words.feed })
+        self.cut(s, Cut { shape: Shape::Round(radius), feed: words.feed })
     }
 
     /// `CHF 12 F250`.
-    pub(crate) fn chamfer(&mut self, s: &mut Scanner) -> Result<()> {
+    pub(crate) fn chamfer(&mut self, s: &mut Scanner) -> Fallible<()> {
         let length = s.value(&self.registers)? * self.unit;
         let feed = match s.word(&self.registers)? {
             Some(word) => Some(feed_word(s, &word, self.tool_feed)?),
@@ -232,10 +129,10 @@ impl Control<'_, '_> {
         if length <= 0.0 || feed == Some(FeedWord::Max) {
             return Err(s.error_block("missing-word", "CHF takes a length, and F"));
         }
-        self.cut(s, Cut { kind: CutKind::Chamfer(length), feed })
+        self.cut(s, Cut { shape: Shape::ChamferSide(length), feed })
     }
 
-    fn cut(&mut self, s: &Scanner, with: Cut) -> Result<()> {
+    fn cut(&mut self, s: &Scanner, with: Cut) -> Fallible<()> {
         match &mut self.waiting {
             Some(Waiting::Corner { cut: cut @ None, .. }) => {
                 *cut = Some(with);
@@ -254,7 +151,7 @@ impl Control<'_, '_> {
         s: &Scanner,
         element: Element,
         corner: bool,
-    ) -> Result<()> {
+    ) -> Fallible<()> {
         if corner {
             self.here = element.end;
             self.waiting = Some(Waiting::Corner { first: element, cut: None });
@@ -265,15 +162,15 @@ impl Control<'_, '_> {
 
     /// The next element of the contour is known: what waits for it is told, up to where the element
     /// begins then.
-    pub(super) fn meet(&mut self, s: &Scanner, next: &Element) -> Result<()> {
+    pub(super) fn meet(&mut self, s: &Scanner, next: &Element) -> Fallible<()> {
         let Some(waiting) = self.waiting.take() else { return Ok(()) };
         let (first, cut) = match waiting {
             Waiting::Corner { first, cut: Some(cut) } => (first, cut),
             Waiting::Corner { first, cut: None } => return self.tell(s, first),
             Waiting::Approach(approach) => return self.finish_approach(s, &approach, next),
         };
-        let corner =
-            cut_off(&first, next, cut.kind).map_err(|message| s.error_block("contour", message))?;
+        let corner = cut_off(&first, next, cut.shape)
+            .map_err(|message| s.error_block("contour", message))?;
         self.tell(s, Element { end: corner.start, ..first })?;
         let feed = self.feed;
         self.set_feed(s, cut.feed)?;
@@ -282,7 +179,7 @@ impl Control<'_, '_> {
     }
 
     /// Another feed from here on.
-    pub(super) fn take_feed(&mut self, feed: Feed) -> Result<()> {
+    pub(super) fn take_feed(&mut self, feed: Feed) -> Fallible<()> {
         if self.feed == Some(feed) {
             return Ok(());
         }
@@ -291,7 +188,7 @@ impl Control<'_, '_> {
     }
 
     /// Goes back to the feed from before a block with a feed of its own.
-    pub(super) fn restore_feed(&mut self, feed: Option<Feed>) -> Result<()> {
+    pub(super) fn restore_feed(&mut self, feed: Option<Feed>) -> Fallible<()> {
         match feed {
             Some(feed) => self.take_feed(feed),
             None => {
@@ -302,7 +199,7 @@ impl Control<'_, '_> {
     }
 
     /// A block that is no part of a contour: nothing may wait.
-    pub(crate) fn contour_is_closed(&self, s: &Scanner) -> Result<()> {
+    pub(crate) fn contour_is_closed(&self, s: &Scanner) -> Fallible<()> {
         if self.waiting.is_none() {
             return Ok(());
         }

@@ -4,7 +4,8 @@ use super::contour::{Bend, Element};
 use super::hole::Hole;
 use super::state::Control;
 use crate::event::Action;
-use crate::klartext::language::scan::{Result, Scanner};
+use crate::kernel::Fallible;
+use crate::klartext::language::scan::Scanner;
 use geom::Vec3;
 use program::{Feed, Spindle};
 
@@ -29,7 +30,7 @@ pub(super) struct Helix {
 
 impl Hole<'_> {
     /// Cycle 208, or why it cannot be milled; the radius of the tool is looked at where it is given.
-    pub(super) fn helix(&self, tool_radius: Option<f64>) -> std::result::Result<Helix, String> {
+    pub(super) fn helix(&self, tool_radius: Option<f64>) -> Result<Helix, String> {
         let (clearance, depth, pitch) = (self.get(200), -self.get(201), self.get(334));
         if !(depth > 0.0 && clearance >= 0.0 && self.get(204) >= 0.0) {
             return Err("the depth Q201 must be negative, Q200 and Q204 must not be".into());
@@ -74,7 +75,7 @@ impl Hole<'_> {
 impl Control<'_, '_> {
     /// Runs cycle 208 where the tool stands: over the surface to the wall on an arc that touches it, down
     /// on the helix, once round at the bottom, to the axis and out by rapid.
-    pub(super) fn mill_bore(&mut self, s: &Scanner, rise: f64, level: Option<f64>) -> Result<()> {
+    pub(super) fn mill_bore(&mut self, s: &Scanner, rise: f64, level: Option<f64>) -> Fallible<()> {
         let bad = |message| s.error_block("cycle-parameter", message);
         let tool_radius = self.tool_radius.ok_or_else(|| {
             let error = bad("how wide the helix is depends on the tool, which is not known");
@@ -107,7 +108,7 @@ impl Control<'_, '_> {
     }
 
     /// The ways at the feed, from the axis above the bore to the axis at its bottom.
-    fn helix(&mut self, s: &Scanner, helix: &Helix, axis: Vec3) -> Result<()> {
+    fn helix(&mut self, s: &Scanner, helix: &Helix, axis: Vec3) -> Fallible<()> {
         let &Helix { radius, sense, turns, .. } = helix;
         let wall = |turned: f64, height: f64| {
             let (sin, cos) = (turned.fract() * sense * std::f64::consts::TAU).sin_cos();

@@ -3,9 +3,10 @@
 use super::contour::{Bend, Element, left_of};
 use super::state::{AXES, Control, Tip};
 use crate::event::{Action, ArcTo, Orientation, Position, Risk};
+use crate::kernel::Fallible;
 use crate::kernel::way::{self, Modulo};
 use crate::klartext::language::functions::{Function, When};
-use crate::klartext::language::scan::{Result, Scanner};
+use crate::klartext::language::scan::Scanner;
 use crate::klartext::language::words::{
     LINEAR, PA, PR, RADIUS, ROTARY, TURN, VECTORS, Words, slot,
 };
@@ -24,20 +25,20 @@ const PLANE: u32 = 1 << slot::X | 1 << slot::Y;
 
 impl Control<'_, '_> {
     /// `L`: a straight line, or M functions alone. `corner`: RND or CHF follows.
-    pub(crate) fn line(&mut self, s: &mut Scanner, corner: bool) -> Result<()> {
+    pub(crate) fn line(&mut self, s: &mut Scanner, corner: bool) -> Fallible<()> {
         let words = Words::read(s, LINEAR | ROTARY, self)?;
         self.positioning(s, &words, corner)
     }
 
     /// `LP`: a straight line to a point in polar coordinates about the pole.
-    pub(crate) fn polar_line(&mut self, s: &mut Scanner, corner: bool) -> Result<()> {
+    pub(crate) fn polar_line(&mut self, s: &mut Scanner, corner: bool) -> Fallible<()> {
         let mut words = Words::read(s, PR | PA | 1 << slot::Z, self)?;
         self.polar(s, &mut words)?;
         self.positioning(s, &words, corner)
     }
 
     /// `LN`: a straight line with the surface normal, and the direction of the tool.
-    pub(crate) fn vector_line(&mut self, s: &mut Scanner) -> Result<()> {
+    pub(crate) fn vector_line(&mut self, s: &mut Scanner) -> Fallible<()> {
         let words = Words::read(s, LINEAR | VECTORS, self)?;
         // The normal turns tool oversizes into an offset, and oversizes are refused at TOOL CALL.
         vector(s, &words, slot::NX)?;
@@ -46,7 +47,7 @@ impl Control<'_, '_> {
     }
 
     /// Puts X and Y in the place of a polar radius and angle. What the block does not give stays.
-    pub(super) fn polar(&self, s: &Scanner, words: &mut Words) -> Result<()> {
+    pub(super) fn polar(&self, s: &Scanner, words: &mut Words) -> Fallible<()> {
         if !words.has(PR | PA) {
             return Ok(());
         }
@@ -67,7 +68,7 @@ impl Control<'_, '_> {
     }
 
     /// Moves as the words say: M functions of the start, the motion, M functions of the end.
-    fn positioning(&mut self, s: &Scanner, words: &Words, corner: bool) -> Result<()> {
+    fn positioning(&mut self, s: &Scanner, words: &Words, corner: bool) -> Fallible<()> {
         let moves = words.has(LINEAR | ROTARY | VECTORS);
         // What waits ends elsewhere than at the corner from which the words count.
         let mut to = None;
@@ -107,7 +108,7 @@ impl Control<'_, '_> {
         words: &Words,
         moves: bool,
         corner: bool,
-    ) -> Result<()> {
+    ) -> Fallible<()> {
         if corner && (self.calls_modally || words.functions.at(When::End).next().is_some()) {
             let message = "nothing can happen at a corner that RND or CHF cuts off";
             return Err(s.error_block("contour", message));
@@ -120,7 +121,7 @@ impl Control<'_, '_> {
     }
 
     /// Where the axes go: X, Y, Z in mm and A, B, C in degrees.
-    pub(super) fn targets(&self, s: &Scanner, words: &Words) -> Result<(Vec3, [f64; 3])> {
+    pub(super) fn targets(&self, s: &Scanner, words: &Words) -> Fallible<(Vec3, [f64; 3])> {
         self.transforms_are_clear(s)?;
         let here = self.here;
         let to = Vec3::new(
@@ -146,7 +147,7 @@ impl Control<'_, '_> {
         Ok((to, self.degrees))
     }
 
-    fn check_rotary(&self, s: &Scanner, words: &Words, axis: usize) -> Result<()> {
+    fn check_rotary(&self, s: &Scanner, words: &Words, axis: usize) -> Fallible<()> {
         if !words.has(1 << (slot::A + axis)) {
             return Ok(());
         }
@@ -173,7 +174,7 @@ impl Control<'_, '_> {
         (to, degrees): (Vec3, [f64; 3]),
         rapid: bool,
         corner: bool,
-    ) -> Result<()> {
+    ) -> Fallible<()> {
         if corner && (rapid || words.has(ROTARY | VECTORS)) {
             let message = "RND and CHF cut off the corner of a contour, not that of this motion";
             return Err(s.error_block("contour", message));
@@ -224,7 +225,7 @@ impl Control<'_, '_> {
     }
 
     /// Tells where nobody knows which way an axis turns that goes to `degrees` from the place `here` of the tool.
-    fn hold_way(&mut self, words: &Words, degrees: [f64; 3], here: Vec3) -> Result<()> {
+    fn hold_way(&mut self, words: &Words, degrees: [f64; 3], here: Vec3) -> Fallible<()> {
         let modulo = if self.shorter_way { Modulo::Shorter } else { Modulo::AsSetUp };
         let is_sure = |i: usize| {
             let (from, counted) = (self.degrees[i], self.settings.modulo[i]);
@@ -240,7 +241,7 @@ impl Control<'_, '_> {
 
     /// Tells where the tool turns over the part while the control keeps its tip, and not the way that its words need: vectors and
     /// spatial angles are told as turning on the great circle, positions of axes as turning evenly.
-    fn hold_turning(&mut self, turns: bool, great_circle: bool, here: Vec3) -> Result<()> {
+    fn hold_turning(&mut self, turns: bool, great_circle: bool, here: Vec3) -> Fallible<()> {
         let over_part = self.tip != Tip::Free && !here.z.is_nan();
         if !(turns && over_part) || self.great_circle == great_circle {
             return Ok(());
@@ -249,7 +250,7 @@ impl Control<'_, '_> {
     }
 
     /// Tells an element of the contour that is cut.
-    pub(super) fn tell(&mut self, s: &Scanner, element: Element) -> Result<()> {
+    pub(super) fn tell(&mut self, s: &Scanner, element: Element) -> Fallible<()> {
         self.here = element.end;
         self.path = Some(element);
         let end = self.cutting_pose(s, element.end)?;
@@ -272,7 +273,7 @@ impl Control<'_, '_> {
     }
 
     /// In a turned plane nothing goes down at a place that is not known.
-    pub(super) fn check_descent(&self, s: &Scanner) -> Result<()> {
+    pub(super) fn check_descent(&self, s: &Scanner) -> Fallible<()> {
         let [x, y, z] = self.here.to_array();
         let known = x.is_finite() && y.is_finite();
         if self.tilt.as_ref().is_some_and(|tilt| tilt.turned) && z.is_finite() && !known {
@@ -284,7 +285,7 @@ impl Control<'_, '_> {
     }
 
     /// The pose at a programmed position where something is cut, which must be known.
-    pub(super) fn cutting_pose(&self, s: &Scanner, programmed: Vec3) -> Result<Position> {
+    pub(super) fn cutting_pose(&self, s: &Scanner, programmed: Vec3) -> Fallible<Position> {
         let pose = self.pose(programmed);
         let rotary_known = match pose.orientation {
             Orientation::Axis(axis) => axis.is_finite(),
@@ -305,7 +306,7 @@ impl Control<'_, '_> {
     }
 
     /// `M91`, `M92`: the axes go to a place of the machine; where that is in the work is not known.
-    fn machine_position(&mut self, s: &Scanner, words: &Words, builders: bool) -> Result<()> {
+    fn machine_position(&mut self, s: &Scanner, words: &Words, builders: bool) -> Fallible<()> {
         if words.is_incremental(LINEAR | ROTARY) {
             let message = "an incremental word with M91 is not supported";
             return Err(s.error_block("unsupported", message));
@@ -347,7 +348,7 @@ impl Control<'_, '_> {
     }
 
     /// `CC`: the pole; without coordinates where the tool is.
-    pub(crate) fn circle_center(&mut self, s: &mut Scanner) -> Result<()> {
+    pub(crate) fn circle_center(&mut self, s: &mut Scanner) -> Fallible<()> {
         let words = Words::read(s, PLANE, self)?;
         if !words.is_plain() {
             return Err(s.error_block("unknown-word", "CC takes coordinates alone"));
@@ -364,7 +365,7 @@ impl Control<'_, '_> {
     }
 
     /// `C`: an arc about the pole.
-    pub(crate) fn arc(&mut self, s: &mut Scanner, corner: bool) -> Result<()> {
+    pub(crate) fn arc(&mut self, s: &mut Scanner, corner: bool) -> Fallible<()> {
         let words = Words::read(s, LINEAR | TURN, self)?;
         let center = self.center(s)?;
         let (end, _) = self.targets(s, &words)?;
@@ -375,7 +376,7 @@ impl Control<'_, '_> {
     }
 
     /// `CR`: an arc of given radius; positive for at most a half circle, negative for more.
-    pub(crate) fn arc_of_radius(&mut self, s: &mut Scanner, corner: bool) -> Result<()> {
+    pub(crate) fn arc_of_radius(&mut self, s: &mut Scanner, corner: bool) -> Fallible<()> {
         let words = Words::read(s, LINEAR | RADIUS | TURN, self)?;
         let (end, _) = self.targets(s, &words)?;
         let Some(radius) = words.get(slot::R).filter(|r| *r != 0.0) else {
@@ -406,7 +407,7 @@ impl Control<'_, '_> {
     }
 
     /// `CP`: an arc or a helix about the pole by a polar angle.
-    pub(crate) fn polar_arc(&mut self, s: &mut Scanner, corner: bool) -> Result<()> {
+    pub(crate) fn polar_arc(&mut self, s: &mut Scanner, corner: bool) -> Fallible<()> {
         let words = Words::read(s, PA | 1 << slot::Z | TURN, self)?;
         let center = self.center(s)?;
         let Some(angle) = words.get(slot::PA) else {
@@ -441,7 +442,7 @@ impl Control<'_, '_> {
         self.arc_to(s, &words, bend, end.with_z(height), corner)
     }
 
-    pub(super) fn center(&self, s: &Scanner) -> Result<Vec3> {
+    pub(super) fn center(&self, s: &Scanner) -> Fallible<Vec3> {
         let (x, y) = self
             .pole
             .ok_or_else(|| s.error_block("missing-word", "no pole: a CC block must come before"))?;
@@ -449,19 +450,19 @@ impl Control<'_, '_> {
     }
 
     /// `CT`: an arc that goes on in the direction of the element before it.
-    pub(crate) fn tangential_arc(&mut self, s: &mut Scanner, corner: bool) -> Result<()> {
+    pub(crate) fn tangential_arc(&mut self, s: &mut Scanner, corner: bool) -> Fallible<()> {
         let words = Words::read(s, LINEAR, self)?;
         self.tangential_to(s, &words, corner)
     }
 
     /// `CTP`: the same to polar coordinates.
-    pub(crate) fn polar_tangential_arc(&mut self, s: &mut Scanner, corner: bool) -> Result<()> {
+    pub(crate) fn polar_tangential_arc(&mut self, s: &mut Scanner, corner: bool) -> Fallible<()> {
         let mut words = Words::read(s, PR | PA | 1 << slot::Z, self)?;
         self.polar(s, &mut words)?;
         self.tangential_to(s, &words, corner)
     }
 
-    fn tangential_to(&mut self, s: &Scanner, words: &Words, corner: bool) -> Result<()> {
+    fn tangential_to(&mut self, s: &Scanner, words: &Words, corner: bool) -> Fallible<()> {
         let (end, _) = self.targets(s, words)?;
         let before = self.path.filter(|path| path.end == self.here && self.waiting.is_none());
         let Some(tangent) = before.and_then(|path| path.tangent_at_end()) else {
@@ -491,7 +492,7 @@ impl Control<'_, '_> {
         bend: Bend,
         end: Vec3,
         corner: bool,
-    ) -> Result<()> {
+    ) -> Fallible<()> {
         if bend.sense == 0.0 {
             return Err(
                 s.error_block("missing-word", "the sense of rotation DR+ or DR- is missing")
@@ -531,7 +532,7 @@ impl Control<'_, '_> {
         self.after_motion(s, words, true, corner)
     }
 
-    pub(super) fn needs_feed(&self, s: &Scanner, rapid: bool) -> Result<()> {
+    pub(super) fn needs_feed(&self, s: &Scanner, rapid: bool) -> Fallible<()> {
         if rapid || self.feed.is_some() || !self.settings.setup.purpose.asks_technology() {
             return Ok(());
         }
@@ -540,7 +541,7 @@ impl Control<'_, '_> {
 }
 
 /// The unit vector of three words from `first`, where the block gives them.
-fn vector(s: &Scanner, words: &Words, first: usize) -> Result<Option<Vec3>> {
+fn vector(s: &Scanner, words: &Words, first: usize) -> Fallible<Option<Vec3>> {
     let all = 0b111 << first;
     if !words.has(all) {
         return Ok(None);

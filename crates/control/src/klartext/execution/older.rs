@@ -2,7 +2,8 @@
 //! stands, at the set-up clearance above the surface, and end there (TNC 407 ISO p. 8-4, TNC 370 p. 8-6).
 
 use super::state::{Control, TENTH_INCH};
-use crate::klartext::language::scan::{Result, Scanner};
+use crate::kernel::Fallible;
+use crate::klartext::language::scan::Scanner;
 use program::{Cycle, CycleKind, Feed};
 
 /// An older cycle with the values of its parts, `1.1` first, in mm, mm/min and s.
@@ -30,7 +31,7 @@ impl Older {
     }
 
     /// The cycle in the neutral vocabulary, or why that cannot be.
-    pub(super) fn cycle(&self) -> std::result::Result<Cycle, String> {
+    pub(super) fn cycle(&self) -> Result<Cycle, String> {
         let [_, depth, third, fourth, fifth] = self.values;
         if depth >= 0.0 {
             return Err("the depth must be negative".into());
@@ -73,7 +74,7 @@ impl Control<'_, '_> {
         s: &mut Scanner,
         number: u32,
         part: u32,
-    ) -> Result<Option<Older>> {
+    ) -> Fallible<Option<Older>> {
         let value = self.named_value(s)?;
         let feed = if self.unit == 1.0 { 1.0 } else { TENTH_INCH };
         let unit = match (number, part) {
@@ -99,7 +100,7 @@ impl Control<'_, '_> {
     }
 
     /// A value behind its name, which is of one or two words in the language of the control.
-    fn named_value(&self, s: &mut Scanner) -> Result<f64> {
+    fn named_value(&self, s: &mut Scanner) -> Fallible<f64> {
         let mut value = None;
         while value.is_none() && matches!(s.peek(), [b'A'..=b'P' | b'R'..=b'Z', ..]) {
             if !s.take(b"V.ZEIT") {

@@ -3,8 +3,9 @@
 use super::cycle::Definition;
 use super::state::Control;
 use crate::event::Action;
+use crate::kernel::Fallible;
 use crate::klartext::language::functions::When;
-use crate::klartext::language::scan::{Result, Scanner};
+use crate::klartext::language::scan::Scanner;
 use crate::klartext::language::words::Words;
 use geom::Vec3;
 
@@ -42,7 +43,7 @@ fn count(value: f64) -> Option<u32> {
 impl Control<'_, '_> {
     /// Cycles 220 and 221: call the cycle defined before at their points, with the clearances and the
     /// surface that they set.
-    pub(super) fn point_pattern(&mut self, s: &Scanner, pattern: &Definition) -> Result<()> {
+    pub(super) fn point_pattern(&mut self, s: &Scanner, pattern: &Definition) -> Fallible<()> {
         let q = pattern.hole(&self.registers);
         let bad = |message: &str| {
             s.error_block("cycle-parameter", format!("cycle {}: {message}", pattern.number()))
@@ -93,7 +94,7 @@ impl Control<'_, '_> {
     }
 
     /// One line of `PATTERN DEF`: `POS1 (X+25 Y+33.5 Z+0)`, `ROW1 (...)` and so on.
-    pub(crate) fn pattern_line(&mut self, s: &mut Scanner, points: &mut Vec<Vec3>) -> Result<()> {
+    pub(crate) fn pattern_line(&mut self, s: &mut Scanner, points: &mut Vec<Vec3>) -> Fallible<()> {
         while !s.is_done() {
             let from = *s;
             let kind = s.letters();
@@ -115,7 +116,7 @@ impl Control<'_, '_> {
     }
 
     /// The last line of `PATTERN DEF` is read.
-    pub(crate) fn close_pattern(&mut self, s: &Scanner, points: Vec<Vec3>) -> Result<()> {
+    pub(crate) fn close_pattern(&mut self, s: &Scanner, points: Vec<Vec3>) -> Fallible<()> {
         if points.is_empty() {
             return Err(s.error_block("pattern", "PATTERN DEF has no points"));
         }
@@ -125,7 +126,7 @@ impl Control<'_, '_> {
 
     /// `CYCL CALL PAT`: at every point of the pattern; the tool goes between them at the height at
     /// which it is, or the second clearance where that is higher.
-    pub(super) fn pattern_call(&mut self, s: &mut Scanner) -> Result<()> {
+    pub(super) fn pattern_call(&mut self, s: &mut Scanner) -> Fallible<()> {
         let words = Words::read(s, 0, self)?;
         if self.pattern.is_empty() {
             return Err(s.error_block("cycle", "no PATTERN DEF comes before"));
@@ -153,7 +154,7 @@ impl Control<'_, '_> {
     }
 
     /// Drills at points whose Z adds to the surface, and goes from one to the next at a height.
-    fn drill_at(&mut self, s: &Scanner, points: &[Vec3], level: f64) -> Result<()> {
+    fn drill_at(&mut self, s: &Scanner, points: &[Vec3], level: f64) -> Fallible<()> {
         for point in points {
             self.count_jump(s, 0)?;
             // Upwards before it goes in the plane.
@@ -178,7 +179,7 @@ const PLAIN: [&[u8]; 9] =
     [b"NUM", b"NUMX", b"NUMY", b"ROT", b"ROTX", b"ROTY", b"START", b"STEP", b"END"];
 
 impl PatternWords {
-    fn read(s: &mut Scanner, control: &Control) -> Result<PatternWords> {
+    fn read(s: &mut Scanner, control: &Control) -> Fallible<PatternWords> {
         let mut words = PatternWords::default();
         while let Some(word) = s.word(&control.registers)? {
             let plain = PLAIN.contains(&word.address);
@@ -203,18 +204,18 @@ impl PatternWords {
         self.0.iter().find(|(known, _)| known == address).map(|(_, value)| *value)
     }
 
-    fn get(&self, address: &[u8]) -> std::result::Result<f64, String> {
+    fn get(&self, address: &[u8]) -> Result<f64, String> {
         let missing = || format!("{} is missing", String::from_utf8_lossy(address));
         self.find(address).ok_or_else(missing)
     }
 
-    fn count(&self, address: &[u8]) -> std::result::Result<u32, String> {
+    fn count(&self, address: &[u8]) -> Result<u32, String> {
         let message = || format!("{} is a whole number from 1", String::from_utf8_lossy(address));
         count(self.get(address)?).ok_or_else(message)
     }
 
     /// The points, or why there are none.
-    fn points(&self, kind: &[u8]) -> std::result::Result<Vec<Vec3>, String> {
+    fn points(&self, kind: &[u8]) -> Result<Vec<Vec3>, String> {
         let takes: &[&[u8]] = match kind {
             b"POS" => &[],
             b"ROW" => &[b"D", b"NUM", b"ROT"],

@@ -7,12 +7,12 @@ use super::plane::Tilt;
 use super::transform::Transforms;
 use crate::Settings;
 use crate::ToolData;
-use crate::event::{Action, Event, Orientation, Position, Risk};
-use crate::kernel::budget::Budget;
-use crate::kernel::compensation::{Compensator, Terms};
+use crate::event::{Action, Orientation, Position, Risk};
+use crate::kernel::compensation::Terms;
+use crate::kernel::{Channel, Fallible};
 use crate::klartext::language::functions::{Function, Functions, When};
 use crate::klartext::language::registers::Registers;
-use crate::klartext::language::scan::{Result, Scanner};
+use crate::klartext::language::scan::Scanner;
 use crate::klartext::language::words::{FeedWord, Readable};
 use geom::Vec3;
 use program::{Auxiliary, Axes, Compensation, Coolant, Cycle, Feed, Spindle};
@@ -39,7 +39,7 @@ pub(super) enum Tip {
 /// The state of the control.
 pub(crate) struct Control<'a, 's> {
     pub(crate) settings: &'a Settings,
-    compensator: &'a mut Compensator<'s>,
+    channel: &'a mut Channel<'s>,
     /// Line of the block that runs.
     line: u32,
     /// mm in the unit of length of the program.
@@ -97,7 +97,6 @@ pub(crate) struct Control<'a, 's> {
     pub(crate) registers: Registers,
     /// How many called programs run within each other.
     called: usize,
-    budget: Budget,
 }
 
 impl Readable for Control<'_, '_> {
@@ -119,10 +118,10 @@ impl Readable for Control<'_, '_> {
 }
 
 impl<'a, 's> Control<'a, 's> {
-    pub(crate) fn new(settings: &'a Settings, compensator: &'a mut Compensator<'s>) -> Self {
+    pub(crate) fn new(settings: &'a Settings, channel: &'a mut Channel<'s>) -> Self {
         Control {
             settings,
-            compensator,
+            channel,
             line: 0,
             unit: 1.0,
             here: settings.setup.position_at_start(),
@@ -157,7 +156,6 @@ impl<'a, 's> Control<'a, 's> {
             ended: false,
             registers: Registers::new(),
             called: 0,
-            budget: Budget::default(),
         }
     }
 
@@ -169,15 +167,14 @@ impl<'a, 's> Control<'a, 's> {
         self.settings.setup.flatten(&mut self.here);
     }
 
-    pub(crate) fn emit(&mut self, action: Action) -> Result<()> {
-        self.budget.record(&action);
-        self.compensator.take(Event { line: self.line, action })
+    pub(crate) fn emit(&mut self, action: Action) -> Fallible<()> {
+        self.channel.report(self.line, action)
     }
 
     /// A jump, a call or a return, after which so many bytes are read again: programs that never end
     /// are refused.
-    pub(crate) fn count_jump(&mut self, s: &Scanner, bytes: usize) -> Result<()> {
-        let counted = self.budget.jump().and_then(|()| self.budget.read(bytes));
+    pub(crate) fn count_jump(&mut self, s: &Scanner, bytes: usize) -> Fallible<()> {
+        let counted = self.channel.budget.again(bytes);
         counted.map_err(|message| s.error_block("endless", message))
     }
 
@@ -285,7 +282,7 @@ impl<'a, 's> Control<'a, 's> {
     }
 
     /// Takes over the F word of a block; answers whether the block is a rapid.
-    pub(super) fn set_feed(&mut self, s: &Scanner, word: Option<FeedWord>) -> Result<bool> {
+    pub(super) fn set_feed(&mut self, s: &Scanner, word: Option<FeedWord>) -> Fallible<bool> {
         let feed = match word {
             None => return Ok(false),
             Some(FeedWord::Max) => return Ok(true),
@@ -302,7 +299,7 @@ impl<'a, 's> Control<'a, 's> {
         Ok(false)
     }
 
-    pub(super) fn set_spindle(&mut self, spindle: Spindle) -> Result<()> {
+    pub(super) fn set_spindle(&mut self, spindle: Spindle) -> Fallible<()> {
         let code = match (spindle, self.spindle) {
             (Spindle::Clockwise(_), _) => Some(0.0),
             (Spindle::CounterClockwise(_), _) => Some(1.0),
@@ -320,7 +317,7 @@ impl<'a, 's> Control<'a, 's> {
         Ok(())
     }
 
-    pub(super) fn set_coolant(&mut self, coolant: Coolant) -> Result<()> {
+    pub(super) fn set_coolant(&mut self, coolant: Coolant) -> Fallible<()> {
         self.registers.preassign(111, f64::from(coolant != Coolant::Off));
         if self.coolant != coolant {
             self.coolant = coolant;
@@ -329,7 +326,7 @@ impl<'a, 's> Control<'a, 's> {
         Ok(())
     }
 
-    pub(super) fn set_compensation(&mut self, compensation: Compensation) -> Result<()> {
+    pub(super) fn set_compensation(&mut self, compensation: Compensation) -> Fallible<()> {
         if self.compensation == compensation {
             return Ok(());
         }
@@ -347,11 +344,11 @@ impl<'a, 's> Control<'a, 's> {
             outer: None,
             around: false,
         };
-        self.compensator.switch(self.line, side, terms)
+        self.channel.switch(self.line, side, terms)
     }
 
     /// Does the M functions of a block that act at that moment.
-    pub(crate) fn functions(&mut self, s: &Scanner, all: Functions, when: When) -> Result<()> {
+    pub(crate) fn functions(&mut self, s: &Scanner, all: Functions, when: When) -> Fallible<()> {
         if all.is_empty() {
             return Ok(());
         }
@@ -361,7 +358,7 @@ impl<'a, 's> Control<'a, 's> {
         Ok(())
     }
 
-    fn function(&mut self, s: &Scanner, function: Function) -> Result<()> {
+    fn function(&mut self, s: &Scanner, function: Function) -> Fallible<()> {
         if self.ended {
             return Err(s.error_block("program-frame", "nothing may follow M2 or M30 in its block"));
         }
@@ -433,23 +430,23 @@ impl<'a, 's> Control<'a, 's> {
     }
 
     /// Tells of a stop while something may be running.
-    fn stops_while(&mut self, running: bool) -> Result<()> {
+    fn stops_while(&mut self, running: bool) -> Fallible<()> {
         if running { self.emit(Action::Risk(Risk::STOP_RUNNING.into())) } else { Ok(()) }
     }
 
     /// Spindle and coolant off: what a stop of the program, its end and a tool change bring.
-    pub(super) fn stop_all(&mut self) -> Result<()> {
+    pub(super) fn stop_all(&mut self) -> Fallible<()> {
         self.set_spindle(Spindle::Off)?;
         self.set_coolant(Coolant::Off)
     }
 
-    fn needs_speed(&self, s: &Scanner) -> Result<f64> {
+    fn needs_speed(&self, s: &Scanner) -> Fallible<f64> {
         self.speed
             .ok_or_else(|| s.error_block("spindle", "the spindle has no speed yet: no S before"))
     }
 
     /// Back along the tool axis by `distance` mm; infinite is to the end of the travel.
-    fn retract(&mut self, s: &Scanner, distance: f64, feed: Option<FeedWord>) -> Result<()> {
+    fn retract(&mut self, s: &Scanner, distance: f64, feed: Option<FeedWord>) -> Fallible<()> {
         if !self.has_tool {
             let message =
                 "M140 before the first TOOL CALL: along which axis it goes is not defined";
@@ -488,7 +485,7 @@ impl<'a, 's> Control<'a, 's> {
     }
 
     /// The end of the program.
-    pub(crate) fn end(&mut self) -> Result<()> {
+    pub(crate) fn end(&mut self) -> Fallible<()> {
         self.report_left_on()?;
         self.stop_all()?;
         self.ended = true;
@@ -496,7 +493,7 @@ impl<'a, 's> Control<'a, 's> {
     }
 
     /// `FN 18: SYSREAD`, from behind its `=`: `ID270 NR1 IDX1`. Lengths are mm in every program.
-    pub(crate) fn system_datum(&self, s: &mut Scanner) -> Result<f64> {
+    pub(crate) fn system_datum(&self, s: &mut Scanner) -> Fallible<f64> {
         let from = *s;
         let [mut id, mut number, mut index] = [None; 3];
         while let Some(word) = s.word(&self.registers)? {

@@ -2,11 +2,11 @@
 
 use super::run::Run;
 use super::source::{LAST_LABEL, Label, Place, written_label};
+use crate::kernel::Fallible;
 use crate::kernel::flow;
 use crate::klartext::language::registers::{Numbers, Parameter, Registers};
-use crate::klartext::language::scan::{Result, Scanner};
+use crate::klartext::language::scan::Scanner;
 use std::borrow::Cow;
-use std::result::Result as StdResult;
 
 /// Deepest nesting of subprograms, and of programs (TNC 640; older controls have fewer).
 const NESTING: usize = 19;
@@ -45,7 +45,7 @@ impl Calls {
     }
 
     /// A subprogram is called and will return to a place; answers why it cannot be.
-    pub(super) fn call(&mut self, to: Place) -> StdResult<(), String> {
+    pub(super) fn call(&mut self, to: Place) -> Result<(), String> {
         let back = Return { to, repetitions: self.repetitions.len() };
         let entered = self.returns.enter(back);
         entered.map_err(|most| format!("subprograms are nested more than {most} deep"))
@@ -65,12 +65,7 @@ impl Calls {
 
     /// A `CALL LBL REP` is reached: whether the part from the label to it runs once more. Answers why
     /// that cannot be said.
-    pub(super) fn repeat(
-        &mut self,
-        from: Place,
-        call: Place,
-        times: u32,
-    ) -> StdResult<bool, String> {
+    pub(super) fn repeat(&mut self, from: Place, call: Place, times: u32) -> Result<bool, String> {
         let own = self.returns.last().map_or(0, |back| back.repetitions);
         let active = self.repetitions.iter().skip(own).position(|r| r.call == call.offset);
         let index = match active {
@@ -113,7 +108,7 @@ impl Calls {
 
 impl<'t> Run<'t, '_, '_, '_> {
     /// `LBL`: a place, which does nothing where the program passes it, or the end of a subprogram.
-    pub(super) fn label(&mut self, s: &mut Scanner) -> Result<()> {
+    pub(super) fn label(&mut self, s: &mut Scanner) -> Fallible<()> {
         let label = written_label(s)?;
         s.finish()?;
         if label == Label::Number(0)
@@ -124,7 +119,7 @@ impl<'t> Run<'t, '_, '_, '_> {
         Ok(())
     }
 
-    pub(super) fn jump(&mut self, s: &Scanner, to: Place) -> Result<()> {
+    pub(super) fn jump(&mut self, s: &Scanner, to: Place) -> Fallible<()> {
         let again = self.source.place().offset.saturating_sub(to.offset);
         self.control.count_jump(s, again)?;
         self.source.jump(to);
@@ -132,7 +127,7 @@ impl<'t> Run<'t, '_, '_, '_> {
     }
 
     /// `CALL LBL`, `CALL PGM`.
-    pub(super) fn call(&mut self, s: &mut Scanner, place: Place) -> Result<()> {
+    pub(super) fn call(&mut self, s: &mut Scanner, place: Place) -> Fallible<()> {
         if s.take(b"PGM") {
             self.control.contour_is_closed(s)?;
             return self.call_program(s);
@@ -158,7 +153,7 @@ impl<'t> Run<'t, '_, '_, '_> {
     }
 
     /// How often a part is repeated: `5`, `Q5`, and `5/5` as older controls show it.
-    fn repetitions(&mut self, s: &mut Scanner) -> Result<u32> {
+    fn repetitions(&mut self, s: &mut Scanner) -> Fallible<u32> {
         s.is_done();
         let from = *s;
         let (_, number) = s.number_or_parameter(&self.control.registers)?;
@@ -176,7 +171,7 @@ impl<'t> Run<'t, '_, '_, '_> {
     }
 
     /// The place of a label that is called: `5`, `"NAME"`, or a Q parameter.
-    pub(super) fn labelled(&mut self, s: &mut Scanner) -> Result<Place> {
+    pub(super) fn labelled(&mut self, s: &mut Scanner) -> Fallible<Place> {
         s.is_done();
         let from = *s;
         let label = match s.parameter()? {
@@ -197,7 +192,7 @@ impl<'t> Run<'t, '_, '_, '_> {
     }
 
     /// `CALL PGM NAME`: a program of the folders, in which labels and QL parameters are its own.
-    fn call_program(&mut self, s: &mut Scanner) -> Result<()> {
+    fn call_program(&mut self, s: &mut Scanner) -> Fallible<()> {
         let (name, span) = self.program_name(s)?;
         s.finish()?;
         let depth = self.control.enter_program();
@@ -224,7 +219,7 @@ impl<'t> Run<'t, '_, '_, '_> {
     }
 
     /// The name of a called program as a file below the folders.
-    fn program_name(&mut self, s: &mut Scanner) -> Result<(String, (usize, usize))> {
+    fn program_name(&mut self, s: &mut Scanner) -> Fallible<(String, (usize, usize))> {
         s.is_done();
         let from = *s;
         let name = match s.parameter()? {
@@ -260,7 +255,7 @@ impl<'t> Run<'t, '_, '_, '_> {
 }
 
 /// The label that a Q parameter holds.
-fn label_in<'r>(registers: &Registers, parameter: Parameter) -> StdResult<Label<'r>, String> {
+fn label_in<'r>(registers: &Registers, parameter: Parameter) -> Result<Label<'r>, String> {
     if let Parameter::Text(index) = parameter {
         let name = registers.text(index)?;
         return Ok(Label::Name(Cow::Owned(name.to_vec())));

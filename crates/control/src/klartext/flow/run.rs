@@ -3,13 +3,14 @@
 use super::calls::Calls;
 use super::source::{Line, Place, Source};
 use crate::event::{Action, Risk};
+use crate::kernel::Fallible;
 use crate::klartext::execution::cycle::Designation;
 use crate::klartext::execution::older::parts_needed;
 use crate::klartext::execution::state::Control;
 use crate::klartext::language::formula;
 use crate::klartext::language::functions::{Function, Functions, When};
 use crate::klartext::language::registers::Parameter;
-use crate::klartext::language::scan::{Result, Scanner};
+use crate::klartext::language::scan::Scanner;
 use crate::klartext::language::words::Words;
 use program::{Diagnostic, encoding};
 
@@ -31,7 +32,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
         control: &'c mut Control<'a, 's>,
         file: &'t str,
         text: &'t [u8],
-    ) -> Result<Self> {
+    ) -> Fallible<Self> {
         // A text may begin with the mark of its encoding.
         let text = encoding::without_mark(text);
         let mut source = Source::new(file, text, control.settings.setup.block_delete);
@@ -59,7 +60,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
     }
 
     /// Runs the program up to its `END PGM`.
-    pub(crate) fn finish(mut self) -> Result<()> {
+    pub(crate) fn finish(mut self) -> Fallible<()> {
         let mut last = self.source.place();
         // Behind M30 there are subprograms, which begin with a label.
         let mut subprograms = false;
@@ -80,7 +81,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
     }
 
     /// A block behind the end of the program.
-    fn unreached(&mut self, line: Line<'t>, subprograms: &mut bool) -> Result<()> {
+    fn unreached(&mut self, line: Line<'t>, subprograms: &mut bool) -> Fallible<()> {
         let mut s = line.scanner;
         match s.peek() {
             b"END" => {
@@ -103,7 +104,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
     }
 
     /// One block, from behind its number.
-    fn block(&mut self, line: Line<'t>, place: Place) -> Result<()> {
+    fn block(&mut self, line: Line<'t>, place: Place) -> Fallible<()> {
         let Line { mut scanner, continued } = line;
         let s = &mut scanner;
         let part = self.part.take();
@@ -163,7 +164,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
         keyword: &[u8],
         span: (usize, usize),
         place: Place,
-    ) -> Result<()> {
+    ) -> Fallible<()> {
         let control = &mut *self.control;
         match keyword {
             b"LN" => control.vector_line(s),
@@ -213,7 +214,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
     }
 
     /// A comment: the words behind `;` or `*`.
-    fn comment(&mut self, line: Line<'t>) -> Result<()> {
+    fn comment(&mut self, line: Line<'t>) -> Fallible<()> {
         if line.scanner.rest().is_empty() {
             return Err(line.scanner.error_block("syntax", "the block is empty"));
         }
@@ -229,7 +230,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
     }
 
     /// `END PGM NAME MM`.
-    fn end(&mut self, s: &mut Scanner) -> Result<()> {
+    fn end(&mut self, s: &mut Scanner) -> Fallible<()> {
         s.expect(b"PGM")?;
         let (name, span) = s.token();
         if name != self.name {
@@ -247,7 +248,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
     }
 
     /// `Q5 = 3 * Q2`, `QS1 = "A" || QS2`, from its first parameter.
-    fn assignment(&mut self, s: &mut Scanner) -> Result<()> {
+    fn assignment(&mut self, s: &mut Scanner) -> Fallible<()> {
         let (parameter, span) = target(s)?;
         let registers = &mut self.control.registers;
         let assigned = match parameter {
@@ -265,7 +266,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
     }
 
     /// QR parameters are kept when the power is off.
-    fn tell_kept(&mut self, parameter: Parameter) -> Result<()> {
+    fn tell_kept(&mut self, parameter: Parameter) -> Fallible<()> {
         match parameter {
             Parameter::Lasting(_) => self.control.emit(Action::Risk(Risk::KEPT_VARIABLE.into())),
             Parameter::Global(_) | Parameter::Local(_) | Parameter::Text(_) => Ok(()),
@@ -273,7 +274,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
     }
 
     /// `FN n: ...`, from behind `FN`.
-    fn numbered_function(&mut self, s: &mut Scanner) -> Result<()> {
+    fn numbered_function(&mut self, s: &mut Scanner) -> Fallible<()> {
         s.is_done();
         let from = *s;
         let number = s.digits(99)?;
@@ -338,7 +339,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
         s: &mut Scanner<'t>,
         part: Option<(u32, u32)>,
         continued: bool,
-    ) -> Result<()> {
+    ) -> Fallible<()> {
         self.control.contour_is_closed(s)?;
         s.is_done();
         let from = s.at();
@@ -372,7 +373,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
         cycle: u32,
         span: (usize, usize),
         mut continued: bool,
-    ) -> Result<()> {
+    ) -> Fallible<()> {
         let mut open = self.control.open_cycle(s, cycle, span)?;
         let mut line = *s;
         self.control.cycle_line(&mut line, &mut open)?;
@@ -385,7 +386,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
     }
 
     /// `PATTERN DEF`, from behind `PATTERN`: points in its line and the lines that follow.
-    fn pattern_definition(&mut self, s: &mut Scanner<'t>, mut continued: bool) -> Result<()> {
+    fn pattern_definition(&mut self, s: &mut Scanner<'t>, mut continued: bool) -> Fallible<()> {
         s.expect(b"DEF")?;
         let mut pattern = Vec::new();
         let mut line = *s;
@@ -403,7 +404,7 @@ impl<'t, 'c, 'a, 's> Run<'t, 'c, 'a, 's> {
 }
 
 /// The parameter that a block assigns to, up to behind its `=`, and where it stands.
-fn target(s: &mut Scanner) -> Result<(Parameter, (usize, usize))> {
+fn target(s: &mut Scanner) -> Fallible<(Parameter, (usize, usize))> {
     s.is_done();
     let from = s.at();
     let Some(parameter) = s.parameter()? else {

@@ -1,6 +1,7 @@
 //! The text of a program: its blocks one after the other, and where its labels are.
 
-use crate::klartext::language::scan::{Result, Scanner};
+use crate::kernel::Fallible;
+use crate::klartext::language::scan::Scanner;
 use program::Diagnostic;
 use std::borrow::Cow;
 use std::collections::HashMap;
@@ -82,7 +83,7 @@ impl<'t> Text<'t> {
     }
 
     /// The block at a place, which goes on behind its first line. `None` at the end.
-    fn block(&self, at: &mut Place) -> Result<Option<Line<'t>>> {
+    fn block(&self, at: &mut Place) -> Fallible<Option<Line<'t>>> {
         loop {
             let Some(mut s) = self.line(at) else { return Ok(None) };
             if s.is_blank() {
@@ -134,7 +135,7 @@ impl<'t> Source<'t> {
 
     /// Takes the next block; `None` where the text ends.
     #[inline]
-    pub(super) fn next(&mut self) -> Result<Option<Line<'t>>> {
+    pub(super) fn next(&mut self) -> Fallible<Option<Line<'t>>> {
         let place = self.at;
         let block = self.text.block(&mut self.at)?;
         if place.offset == self.unseen.offset
@@ -171,7 +172,7 @@ impl<'t> Source<'t> {
     }
 
     /// Where a label is.
-    pub(super) fn label(&mut self, label: &Label) -> Result<Option<Place>> {
+    pub(super) fn label(&mut self, label: &Label) -> Fallible<Option<Place>> {
         while !self.labels.contains_key(label) {
             let place = self.unseen;
             let mut end = place;
@@ -203,7 +204,7 @@ impl<'t> Source<'t> {
     }
 
     /// The program is closed: only blank lines follow.
-    pub(super) fn close(&mut self) -> Result<()> {
+    pub(super) fn close(&mut self) -> Fallible<()> {
         while let Some(line) = self.text.line(&mut self.at) {
             if !line.rest().is_empty() {
                 return Err(line.error_block("program-frame", "nothing may follow END PGM"));
@@ -214,11 +215,11 @@ impl<'t> Source<'t> {
 
     /// Notes the label of a block, if it has one.
     #[inline(always)]
-    fn note(&mut self, place: Place, s: &Scanner<'t>) -> Result<()> {
+    fn note(&mut self, place: Place, s: &Scanner<'t>) -> Fallible<()> {
         if s.is_at_label() { self.note_label(place, *s) } else { Ok(()) }
     }
 
-    fn note_label(&mut self, place: Place, mut s: Scanner<'t>) -> Result<()> {
+    fn note_label(&mut self, place: Place, mut s: Scanner<'t>) -> Fallible<()> {
         s.take_symbol(b"LBL");
         let label = written_label(&mut s)?;
         if label != Label::Number(0) && self.labels.contains_key(&label) {
@@ -231,7 +232,7 @@ impl<'t> Source<'t> {
 }
 
 /// A label that is written as it is: `5`, `"NAME"`.
-pub(super) fn written_label<'t>(s: &mut Scanner<'t>) -> Result<Label<'t>> {
+pub(super) fn written_label<'t>(s: &mut Scanner<'t>) -> Fallible<Label<'t>> {
     if s.peek().starts_with(b"\"") {
         return s.quoted().map(|name| Label::Name(Cow::Borrowed(name)));
     }
@@ -241,7 +242,7 @@ pub(super) fn written_label<'t>(s: &mut Scanner<'t>) -> Result<Label<'t>> {
 /// The number at the start of a block. It says nothing to the control, which numbers the blocks anew; but
 /// one that does not ascend tells of blocks that have changed places.
 #[inline]
-fn block_number(s: &mut Scanner, least: &mut u32) -> Result<()> {
+fn block_number(s: &mut Scanner, least: &mut u32) -> Fallible<()> {
     let before = *s;
     match s.whole_number() {
         Some(number) if number >= *least => {

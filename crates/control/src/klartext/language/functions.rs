@@ -1,7 +1,8 @@
 //! M functions: what they are and when in a block they act.
 
-use super::scan::{Result, Scanner, Word};
+use super::scan::{Scanner, Word};
 use super::words::{FeedWord, Readable, feed_word, unknown};
+use crate::kernel::Fallible;
 
 /// An M function with what belongs to it.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -125,7 +126,7 @@ pub(crate) enum When {
 
 impl Function {
     /// What the word `M..` says, with the words that belong to it.
-    pub(super) fn read(s: &mut Scanner, word: &Word, control: &dyn Readable) -> Result<Function> {
+    pub(super) fn read(s: &mut Scanner, word: &Word, control: &dyn Readable) -> Fallible<Function> {
         let Some(number) = word.number.filter(|_| word.sign == 0.0) else {
             return Err(unknown(s, word));
         };
@@ -175,7 +176,7 @@ impl Function {
 }
 
 /// Behind `M140`: `MB MAX` or `MB 50 F750`. The feed is that of the retraction alone.
-fn retract(s: &mut Scanner, control: &dyn Readable) -> Result<Function> {
+fn retract(s: &mut Scanner, control: &dyn Readable) -> Fallible<Function> {
     let distance = if s.take(b"MB") {
         if s.take(b"MAX") { f64::INFINITY } else { s.value(control.registers())? }
     } else {
@@ -191,7 +192,7 @@ fn retract(s: &mut Scanner, control: &dyn Readable) -> Result<Function> {
 }
 
 /// Behind `M101`: by how many blocks the change may be late, `BT10`.
-fn delay(s: &mut Scanner, control: &dyn Readable) -> Result<()> {
+fn delay(s: &mut Scanner, control: &dyn Readable) -> Fallible<()> {
     if s.peek().starts_with(b"BT") {
         s.word(control.registers())?;
     }
@@ -199,7 +200,7 @@ fn delay(s: &mut Scanner, control: &dyn Readable) -> Result<()> {
 }
 
 /// The feed that belongs to the function before it, where there is one.
-fn own_feed(s: &mut Scanner, control: &dyn Readable) -> Result<Option<FeedWord>> {
+fn own_feed(s: &mut Scanner, control: &dyn Readable) -> Fallible<Option<FeedWord>> {
     if !s.peek().starts_with(b"F") {
         return Ok(None);
     }
@@ -220,7 +221,7 @@ impl Functions {
     }
 
     /// Adds one; answers why it cannot stand there.
-    pub(super) fn push(&mut self, function: Function) -> std::result::Result<(), &'static str> {
+    pub(super) fn push(&mut self, function: Function) -> Result<(), &'static str> {
         let place = self.0.iter_mut().find(|place| place.is_none());
         *place.ok_or("a block takes two M functions")? = Some(function);
         Ok(())

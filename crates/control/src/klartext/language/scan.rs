@@ -1,11 +1,8 @@
 //! Lines and words of the text.
 
 use super::registers::{Parameter, Registers};
-use crate::kernel::decimal;
+use crate::kernel::{Fallible, decimal};
 use program::Diagnostic;
-
-/// What a step of the control answers.
-pub(crate) type Result<T> = std::result::Result<T, Box<Diagnostic>>;
 
 /// A place in a line.
 #[derive(Clone, Copy)]
@@ -124,7 +121,7 @@ impl<'t> Scanner<'t> {
     }
 
     /// Takes `expected`, which must come next.
-    pub(crate) fn expect(&mut self, expected: &[u8]) -> Result<()> {
+    pub(crate) fn expect(&mut self, expected: &[u8]) -> Fallible<()> {
         if self.take(expected) {
             return Ok(());
         }
@@ -133,7 +130,7 @@ impl<'t> Scanner<'t> {
     }
 
     /// Takes the next word, a Q parameter as its value; `None` at the end of the block.
-    pub(crate) fn word(&mut self, registers: &Registers) -> Result<Option<Word<'t>>> {
+    pub(crate) fn word(&mut self, registers: &Registers) -> Fallible<Option<Word<'t>>> {
         if self.is_done() {
             return Ok(None);
         }
@@ -162,7 +159,7 @@ impl<'t> Scanner<'t> {
         address: &'t [u8],
         (mut sign, mut number): (f64, Option<f64>),
         registers: &Registers,
-    ) -> Result<Word<'t>> {
+    ) -> Fallible<Word<'t>> {
         if number.is_none() {
             if sign == 0.0 && matches!(self.byte(), Some(b' ' | b'\t')) {
                 (sign, number) = self.number_apart();
@@ -179,7 +176,7 @@ impl<'t> Scanner<'t> {
     }
 
     /// A number that stands alone (after blanks).
-    pub(crate) fn value(&mut self, registers: &Registers) -> Result<f64> {
+    pub(crate) fn value(&mut self, registers: &Registers) -> Fallible<f64> {
         let done = self.is_done();
         let start = self.at;
         let (_, number) = self.number_or_parameter(registers)?;
@@ -193,7 +190,7 @@ impl<'t> Scanner<'t> {
     }
 
     /// Takes a text between quotes.
-    pub(crate) fn quoted(&mut self) -> Result<&'t [u8]> {
+    pub(crate) fn quoted(&mut self) -> Fallible<&'t [u8]> {
         self.is_done();
         let rest = self.text.get(self.at..self.end).unwrap_or_default();
         let length = rest.iter().skip(1).position(|b| *b == b'"');
@@ -207,7 +204,7 @@ impl<'t> Scanner<'t> {
     }
 
     /// Whether the block ends here; anything more is an error.
-    pub(crate) fn finish(&mut self) -> Result<()> {
+    pub(crate) fn finish(&mut self) -> Fallible<()> {
         if self.is_done() { Ok(()) } else { Err(self.unknown()) }
     }
 
@@ -281,7 +278,7 @@ impl<'t> Scanner<'t> {
     }
 
     /// Takes the digits that stand next, as a number of at most `most`.
-    pub(crate) fn digits(&mut self, most: u32) -> Result<u32> {
+    pub(crate) fn digits(&mut self, most: u32) -> Fallible<u32> {
         let start = self.at;
         while matches!(self.byte(), Some(b'0'..=b'9')) {
             self.at += 1;
@@ -314,7 +311,7 @@ impl<'t> Scanner<'t> {
     }
 
     /// Takes the name of a Q parameter, if one stands next after blanks.
-    pub(crate) fn parameter(&mut self) -> Result<Option<Parameter>> {
+    pub(crate) fn parameter(&mut self) -> Fallible<Option<Parameter>> {
         if self.is_done() || self.byte() != Some(b'Q') {
             return Ok(None);
         }
@@ -361,7 +358,7 @@ impl<'t> Scanner<'t> {
     pub(crate) fn number_or_parameter(
         &mut self,
         registers: &Registers,
-    ) -> Result<(f64, Option<f64>)> {
+    ) -> Fallible<(f64, Option<f64>)> {
         let (sign, mut number) = self.number();
         if number.is_none() && self.byte() == Some(b'Q') {
             number = Some(self.parameter_value(sign, registers)?);
@@ -371,7 +368,7 @@ impl<'t> Scanner<'t> {
 
     /// What the parameter holds that stands next, with the sign before it.
     #[cold]
-    fn parameter_value(&mut self, sign: f64, registers: &Registers) -> Result<f64> {
+    fn parameter_value(&mut self, sign: f64, registers: &Registers) -> Fallible<f64> {
         let start = self.at;
         let Some(parameter) = self.parameter()? else { return Err(self.unknown()) };
         let value = registers

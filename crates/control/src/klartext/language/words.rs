@@ -2,7 +2,8 @@
 
 use super::functions::{Function, Functions};
 use super::registers::Registers;
-use super::scan::{Result, Scanner, Word};
+use super::scan::{Scanner, Word};
+use crate::kernel::Fallible;
 use program::Compensation;
 
 /// Where a word's value is kept. The first six are the axes in the order of their coordinates.
@@ -97,7 +98,7 @@ pub(crate) struct Words {
 impl Words {
     /// Reads words to the end of the block. Those of `allowed` may stand there, besides feed, radius
     /// compensation and M functions.
-    pub(crate) fn read(s: &mut Scanner, allowed: u32, control: &dyn Readable) -> Result<Words> {
+    pub(crate) fn read(s: &mut Scanner, allowed: u32, control: &dyn Readable) -> Fallible<Words> {
         let mut words = Words::default();
         while let Some(word) = s.word(control.registers())? {
             words.add(s, &word, allowed, control)?;
@@ -156,7 +157,7 @@ impl Words {
         word: &Word,
         allowed: u32,
         control: &dyn Readable,
-    ) -> Result<()> {
+    ) -> Fallible<()> {
         let unit = control.unit();
         let (incremental, address) = match word.address {
             [b'I', rest @ ..] if !rest.is_empty() => (true, rest),
@@ -211,7 +212,12 @@ impl Words {
         Ok(())
     }
 
-    fn add_function(&mut self, s: &mut Scanner, word: &Word, control: &dyn Readable) -> Result<()> {
+    fn add_function(
+        &mut self,
+        s: &mut Scanner,
+        word: &Word,
+        control: &dyn Readable,
+    ) -> Fallible<()> {
         let function = Function::read(s, word, control)?;
         self.functions.push(function).map_err(|message| s.error("m-function", word.span, message))
     }
@@ -223,7 +229,7 @@ pub(crate) fn feed_word(
     s: &mut Scanner,
     word: &Word,
     automatic: Option<FeedWord>,
-) -> Result<FeedWord> {
+) -> Fallible<FeedWord> {
     match (word.address, word.number) {
         (b"FMAX", None) => Ok(FeedWord::Max),
         (b"F", None) if word.sign == 0.0 && s.take(b"MAX") => Ok(FeedWord::Max),
@@ -254,7 +260,7 @@ pub(crate) fn feed_word(
     }
 }
 
-fn once<T>(s: &Scanner, word: &Word, place: &mut Option<T>, value: T) -> Result<()> {
+fn once<T>(s: &Scanner, word: &Word, place: &mut Option<T>, value: T) -> Fallible<()> {
     match place.replace(value) {
         None => Ok(()),
         Some(_) => Err(twice(s, word)),

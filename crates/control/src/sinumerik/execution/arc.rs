@@ -3,10 +3,10 @@
 use super::corner::Element;
 use super::interpreter::Interpreter;
 use crate::event::Action;
-use crate::sinumerik::Fallible;
+use crate::kernel::source::Source;
+use crate::kernel::{Fallible, arc};
 use crate::sinumerik::language::block::{Block, Coordinate, Count};
 use crate::sinumerik::language::commands::{Diameter, Motion};
-use crate::sinumerik::language::scan::Source;
 use geom::{Arc, ArcError, Vec3, direction, rotate};
 
 /// How far the radii at the ends of an arc may be apart: mm for small arcs, part of the radius for
@@ -182,16 +182,10 @@ impl Interpreter<'_, '_> {
                 None => return error("CIP needs I1=, J1= and K1= for each axis that moves"),
             }
         }
-        let (a, b) = (point - ends.start, ends.end - ends.start);
-        let across = a.cross(b);
-        // The points must span a triangle that is not all rounding.
-        if across.length() <= 1e-6 * a.length().max(b.length()) {
-            return error("the three points of CIP lie on a line (alarm 14920)");
+        match arc::through(ends.start, point, ends.end) {
+            Some((center, normal)) => Ok(Circle { center, normal }),
+            None => error("the three points of CIP lie on a line (alarm 14920)"),
         }
-        let center = ends.start
-            + (b.length_squared() * across.cross(a) + a.length_squared() * b.cross(across))
-                / (2.0 * across.length_squared());
-        Ok(Circle { center, normal: across.normalize() })
     }
 }
 

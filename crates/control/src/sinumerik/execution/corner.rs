@@ -6,11 +6,11 @@
 
 use super::interpreter::Interpreter;
 use crate::event::{Action, ArcTo, Event};
+use crate::kernel::Fallible;
 pub(super) use crate::kernel::corner::Element;
 use crate::kernel::corner::{self, Joint, Misfit, Shape};
-use crate::sinumerik::Fallible;
+use crate::kernel::source::Source;
 use crate::sinumerik::language::block::{Block, Corner};
-use crate::sinumerik::language::scan::Source;
 use geom::Vec3;
 use program::{Diagnostic, Feed};
 

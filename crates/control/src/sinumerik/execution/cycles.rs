@@ -5,11 +5,11 @@
 
 use super::state::State;
 use crate::event::Risk;
-use crate::sinumerik::Fallible;
+use crate::kernel::Fallible;
+use crate::kernel::source::Source;
 use crate::sinumerik::language::call::Call;
 use crate::sinumerik::language::commands::FeedType;
 use crate::sinumerik::language::forms::{Form, Operation};
-use crate::sinumerik::language::scan::Source;
 use geom::Vec3;
 use program::{Cycle, CycleKind, Diagnostic, Feed, Spindle, Withdrawal};
 

@@ -11,13 +11,13 @@ use super::programmable::plain_values;
 use super::state::State;
 use crate::Settings;
 use crate::event::{Action, Event, FeedPath, Risk};
-use crate::kernel::budget::Budget;
-use crate::kernel::compensation::{Compensator, Terms};
-use crate::sinumerik::Fallible;
+use crate::kernel::Channel;
+use crate::kernel::Fallible;
+use crate::kernel::compensation::Terms;
+use crate::kernel::source::Source;
 use crate::sinumerik::language::block::{Block, ToolCall};
 use crate::sinumerik::language::call::{Argument, Call, Procedure};
 use crate::sinumerik::language::commands::{Code, FeedType, Motion};
-use crate::sinumerik::language::scan::Source;
 use crate::sinumerik::language::system::AXIS_NAMES;
 use crate::sinumerik::language::value::Value;
 use crate::sinumerik::language::variables::{ELEMENTS_IN_A_TURN, Place};
@@ -30,9 +30,7 @@ pub(crate) struct Interpreter<'a, 's> {
     /// The machine.
     pub settings: &'a Settings,
     /// Where the records go.
-    compensator: &'a mut Compensator<'s>,
-    /// Jumps and calls.
-    pub budget: Budget,
+    channel: &'a mut Channel<'s>,
     /// The line of the main program that records carry, where another file runs.
     pub line: Option<u32>,
     /// Whether a called program runs.
@@ -66,15 +64,11 @@ fn is_own(m: u32) -> bool {
 
 impl<'a, 's> Interpreter<'a, 's> {
     /// At the start of a program.
-    pub fn new(
-        settings: &'a Settings,
-        compensator: &'a mut Compensator<'s>,
-    ) -> Interpreter<'a, 's> {
+    pub fn new(settings: &'a Settings, channel: &'a mut Channel<'s>) -> Interpreter<'a, 's> {
         Interpreter {
             state: State::new(settings),
             settings,
-            compensator,
-            budget: Budget::default(),
+            channel,
             line: None,
             called: false,
             stopped: false,
@@ -92,8 +86,7 @@ impl<'a, 's> Interpreter<'a, 's> {
 
     #[inline]
     pub fn send(&mut self, record: Event) -> Fallible<()> {
-        self.budget.record(&record.action);
-        self.compensator.take(record).inspect_err(|_| self.stopped = true)
+        self.channel.take(record).inspect_err(|_| self.stopped = true)
     }
 
     /// Reports that compensation changes with the move that follows.
@@ -102,17 +95,17 @@ impl<'a, 's> Interpreter<'a, 's> {
         if self.held.is_some() {
             return self.keep(source, Event { line, action: Action::Compensation(side) });
         }
-        self.compensator.switch(line, side, terms).inspect_err(|_| self.stopped = true)
+        self.channel.switch(line, side, terms).inspect_err(|_| self.stopped = true)
     }
 
     /// Turns of loops, jumps and calls, of which there may not be too many between two records.
     pub fn spend(&mut self, source: &Source, turns: usize) -> Fallible<()> {
-        self.budget.spend(turns).map_err(|message| source.block_error("endless", message))
+        self.channel.budget.spend(turns).map_err(|message| source.block_error("endless", message))
     }
 
     /// So many bytes are read, again or in a called program.
     pub fn reads(&mut self, source: &Source, bytes: usize) -> Fallible<()> {
-        self.budget.read(bytes).map_err(|message| source.block_error("endless", message))
+        self.channel.budget.read(bytes).map_err(|message| source.block_error("endless", message))
     }
 
     /// Sets what a block or a loop assigns to.

@@ -3,8 +3,8 @@
 use super::cycles::Drilling;
 use super::interpreter::Interpreter;
 use crate::event::Action;
-use crate::sinumerik::Fallible;
-use crate::sinumerik::language::scan::Source;
+use crate::kernel::Fallible;
+use crate::kernel::source::Source;
 use crate::sinumerik::language::statement::ProgramCall;
 use geom::Vec3;
 use program::Cycle;

@@ -3,8 +3,8 @@
 use super::interpreter::Interpreter;
 use super::state::{Modes, place};
 use crate::event::Action;
-use crate::sinumerik::Fallible;
-use crate::sinumerik::language::scan::Source;
+use crate::kernel::Fallible;
+use crate::kernel::source::Source;
 use geom::Vec3;
 use program::{Compensation, WorkOffset};
 use std::collections::HashMap;

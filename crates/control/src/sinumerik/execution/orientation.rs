@@ -4,9 +4,9 @@ use super::frames::{swivel_order, swivelled};
 use super::interpreter::Interpreter;
 use super::state::ToolAxis;
 use crate::event::{Action, Risk, TiltChoice};
-use crate::sinumerik::Fallible;
+use crate::kernel::Fallible;
+use crate::kernel::source::Source;
 use crate::sinumerik::language::call::{Argument, Call};
-use crate::sinumerik::language::scan::Source;
 use geom::{Frame, Vec3};
 use program::{Axes, Compensation};
 

@@ -3,10 +3,10 @@
 use super::interpreter::Interpreter;
 use super::modal::Modal;
 use crate::event::Action;
-use crate::sinumerik::Fallible;
+use crate::kernel::Fallible;
+use crate::kernel::source::Source;
 use crate::sinumerik::language::call::{Argument, Call};
 use crate::sinumerik::language::forms::Pattern;
-use crate::sinumerik::language::scan::Source;
 use geom::Vec3;
 
 /// Most holes of a pattern; our own limit.

@@ -3,10 +3,10 @@
 
 use super::interpreter::Interpreter;
 use super::programmable::plain_values;
-use crate::sinumerik::Fallible;
+use crate::kernel::Fallible;
+use crate::kernel::source::Source;
 use crate::sinumerik::language::block::{Block, Count};
 use crate::sinumerik::language::commands::{Diameter, Origin};
-use crate::sinumerik::language::scan::Source;
 use geom::Vec3;
 
 /// The two axes of the plane, the first and the second, by the axis perpendicular to it.

@@ -2,10 +2,10 @@
 
 use super::frames::{about, roll_pitch_yaw};
 use super::interpreter::Interpreter;
-use crate::sinumerik::Fallible;
+use crate::kernel::Fallible;
+use crate::kernel::source::Source;
 use crate::sinumerik::language::block::{Block, Coordinate, Count};
 use crate::sinumerik::language::commands::{Diameter, FrameCommand};
-use crate::sinumerik::language::scan::Source;
 use geom::{Frame, Vec3};
 use program::Compensation;
 

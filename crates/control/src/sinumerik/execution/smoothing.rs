@@ -3,10 +3,10 @@
 
 use super::interpreter::Interpreter;
 use crate::event::{Action, Risk};
-use crate::sinumerik::Fallible;
+use crate::kernel::Fallible;
+use crate::kernel::source::Source;
 use crate::sinumerik::language::block::{Block, TOLERANCES};
 use crate::sinumerik::language::commands::{Code, Smoothing};
-use crate::sinumerik::language::scan::Source;
 
 /// What a program has said of the smoothing of the path.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

@@ -2,10 +2,10 @@
 
 use super::interpreter::Interpreter;
 use crate::event::{Action, Thread};
-use crate::sinumerik::Fallible;
+use crate::kernel::Fallible;
+use crate::kernel::source::Source;
 use crate::sinumerik::language::block::Block;
 use crate::sinumerik::language::commands::Motion;
-use crate::sinumerik::language::scan::Source;
 use program::Spindle;
 
 impl Interpreter<'_, '_> {

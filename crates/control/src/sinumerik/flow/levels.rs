@@ -2,13 +2,14 @@
 
 use super::library::Program;
 use super::run::{Level, Run, check_rest};
+use crate::kernel::Fallible;
 use crate::kernel::flow::Place;
-use crate::sinumerik::Fallible;
+use crate::kernel::source::Source;
 use crate::sinumerik::execution::modal::Modal;
 use crate::sinumerik::execution::state::Modes;
 use crate::sinumerik::language::definition::Signature;
 use crate::sinumerik::language::expression::Evaluator;
-use crate::sinumerik::language::scan::{Name, Scanner, Source};
+use crate::sinumerik::language::scan::{Name, Scanner};
 use crate::sinumerik::language::statement::ProgramCall;
 use crate::sinumerik::language::variables::{Locals, Variable};
 

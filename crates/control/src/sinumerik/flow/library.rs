@@ -1,10 +1,11 @@
 //! Programs: the main one, those that travel in the same file, and those of the operator's folders.
 
 use super::outline::Outline;
+use crate::kernel::Fallible;
 use crate::kernel::flow::Place;
 use crate::kernel::folders::Folders;
-use crate::sinumerik::Fallible;
-use crate::sinumerik::language::scan::{Name, Scanner, Source};
+use crate::kernel::source::Source;
+use crate::sinumerik::language::scan::{Name, Scanner};
 use program::Diagnostic;
 use std::borrow::Cow;
 use std::cell::OnceCell;

@@ -1,9 +1,10 @@
 //! Where jumps go: the labels and block numbers of a program, and its control structures.
 
 use super::library::Program;
+use crate::kernel::Fallible;
 use crate::kernel::flow::{Labels, Place, Structures};
-use crate::sinumerik::Fallible;
-use crate::sinumerik::language::scan::{Name, Scanner, Source};
+use crate::kernel::source::Source;
+use crate::sinumerik::language::scan::{Name, Scanner};
 use crate::sinumerik::language::structure::Word;
 
 /// How deep control structures nest on each level (Job Planning 04.00, 1.13).

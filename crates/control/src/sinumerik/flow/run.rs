@@ -4,14 +4,15 @@ use super::levels::{Caller, LEVELS};
 use super::library::{Library, Program};
 use crate::Settings;
 use crate::event::{Action, Risk};
-use crate::kernel::compensation::Compensator;
+use crate::kernel::Channel;
+use crate::kernel::Fallible;
 use crate::kernel::flow::{Calls, Labels, Place};
-use crate::sinumerik::Fallible;
+use crate::kernel::source::Source;
 use crate::sinumerik::execution::interpreter::Interpreter;
 use crate::sinumerik::execution::modal::Modal;
 use crate::sinumerik::language::block::Block;
 use crate::sinumerik::language::expression::Evaluator;
-use crate::sinumerik::language::scan::{Name, Scanner, Source};
+use crate::sinumerik::language::scan::{Name, Scanner};
 use crate::sinumerik::language::statement::{Count, Jump, Search, Section, Statement, Target};
 use crate::sinumerik::language::structure::Word;
 use crate::sinumerik::language::value::Value;
@@ -71,11 +72,11 @@ impl<'a, 's> Run<'a, 's> {
     pub fn main(
         settings: &'a Settings,
         text: &'a [u8],
-        compensator: &'a mut Compensator<'s>,
+        channel: &'a mut Channel<'s>,
     ) -> Fallible<()> {
         let library = Library::new(&settings.setup.folders, text)?;
         let Some(program) = library.main() else { return Ok(()) };
-        let interpreter = Interpreter::new(settings, compensator);
+        let interpreter = Interpreter::new(settings, channel);
         let level = Level::new(program, None);
         let mut run = Run { library, interpreter, level, callers: Calls::new(LEVELS - 1) };
         let mut block = Block::empty();

@@ -2,9 +2,10 @@
 
 use super::expression::Evaluator;
 use super::forms::{CYCLES, Form, Pattern};
-use super::scan::{Scanner, Source};
+use super::scan::Scanner;
 use super::value::Value;
-use crate::sinumerik::Fallible;
+use crate::kernel::Fallible;
+use crate::kernel::source::Source;
 use program::Diagnostic;
 
 /// What a call does.

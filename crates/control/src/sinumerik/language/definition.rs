@@ -5,7 +5,7 @@ use super::scan::{Name, Scanner};
 use super::value::{Kind, LONGEST_TEXT, Value};
 use super::variables::{MOST_ELEMENTS, Variable};
 use super::words::reserved;
-use crate::sinumerik::Fallible;
+use crate::kernel::Fallible;
 
 /// Most dimensions of an array.
 const DIMENSIONS: usize = 3;

@@ -13,8 +13,8 @@ use super::scan::Scanner;
 use super::system;
 use super::value::Value;
 use super::variables::{Place, Readable};
+use crate::kernel::Fallible;
 use crate::kernel::expression::{Grammar, Next, Rank, Span, Stack};
-use crate::sinumerik::Fallible;
 use program::Diagnostic;
 use std::rc::Rc;
 

@@ -5,7 +5,7 @@ use super::scan::{Name, Scanner};
 use super::system;
 use super::value::{Kind, LONGEST_TEXT, Value};
 use super::variables::{Parameter, Place, R_PARAMETERS, Variable};
-use crate::sinumerik::Fallible;
+use crate::kernel::Fallible;
 
 impl Evaluator<'_> {
     /// Whether that name is a variable of the program.

@@ -1,6 +1,7 @@
 //! Characters to names, numbers and texts.
 
-use crate::sinumerik::Fallible;
+use crate::kernel::Fallible;
+use crate::kernel::source::Source;
 use program::Diagnostic;
 use std::ops::Range;
 
@@ -10,39 +11,6 @@ const LARGEST: f64 = 99_999_999.999_9;
 
 /// Longest name (variables have 31 characters, labels 32; Fundamentals, identifiers).
 const LONGEST_NAME: usize = 32;
-
-/// One block of the program text.
-#[derive(Clone, Copy)]
-pub(crate) struct Source<'a> {
-    /// Its line, from 1.
-    pub line: u32,
-    /// Its bytes without the line end.
-    pub text: &'a [u8],
-}
-
-impl Source<'_> {
-    /// An error about a piece of the block.
-    #[cold]
-    pub fn error(
-        &self,
-        rule: &'static str,
-        piece: Range<usize>,
-        message: impl Into<String>,
-    ) -> Box<Diagnostic> {
-        Diagnostic::error(rule, message).at(self.line, self.text, piece.start, piece.end).into()
-    }
-
-    /// An error about the whole block.
-    #[cold]
-    pub fn block_error(&self, rule: &'static str, message: impl Into<String>) -> Box<Diagnostic> {
-        let blanks = |bytes: &mut dyn Iterator<Item = &u8>| {
-            bytes.take_while(|b| b.is_ascii_whitespace()).count()
-        };
-        let start = blanks(&mut self.text.iter());
-        let end = self.text.len() - blanks(&mut self.text.iter().rev());
-        self.error(rule, start..end.max(start), message)
-    }
-}
 
 /// A name in capitals.
 #[derive(Clone, Copy, PartialEq, Eq, Hash)]

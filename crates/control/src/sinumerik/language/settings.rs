@@ -4,7 +4,7 @@ use super::block::{Block, Corner, Rare, TOLERANCES};
 use super::expression::Evaluator;
 use super::value::Value;
 use super::words::Reader;
-use crate::sinumerik::Fallible;
+use crate::kernel::Fallible;
 
 /// An address of several letters.
 #[derive(Clone, Copy)]

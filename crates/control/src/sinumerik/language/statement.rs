@@ -8,7 +8,7 @@ use super::scan::{Name, Scanner};
 use super::structure::Word;
 use super::value::Value;
 use super::variables::{Place, Variable};
-use crate::sinumerik::Fallible;
+use crate::kernel::Fallible;
 use std::rc::Rc;
 
 /// Most repetitions of a call or a section (`P`; Job Planning 04.00, 1.15 and 2.5).

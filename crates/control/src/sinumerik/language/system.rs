@@ -4,7 +4,7 @@ use super::expression::{Evaluator, without_offset};
 use super::scan::Scanner;
 use super::value::Value;
 use super::variables::{Place, Readable};
-use crate::sinumerik::Fallible;
+use crate::kernel::Fallible;
 use program::{Diagnostic, Feed};
 
 /// The names of the axes, in the order of their numbers.

@@ -6,12 +6,13 @@ use super::commands::{self, Code, GROUPS};
 use super::definition::Filling;
 use super::expression::Evaluator;
 use super::functions;
-use super::scan::{Scanner, Source};
+use super::scan::Scanner;
 use super::settings;
 use super::statement;
 use super::structure::Word;
 use super::variables::{Place, Readable};
-use crate::sinumerik::Fallible;
+use crate::kernel::Fallible;
+use crate::kernel::source::Source;
 
 impl Block {
     /// Reads a block. Expressions have the values before it.
