@@ -601,9 +601,30 @@ pub fn machine_of(name: &str, text: &str, reach: &Reach) -> Result<Machine, Stop
     checked(reach.load_text(name, text)?)
 }
 
+/// The same, or an arm for which no programs are written.
+///
+/// # Errors
+/// As [`machine()`], but for such an arm.
+pub fn machine_or_arm(name_or_path: &str) -> Result<Machine, Stop> {
+    let machine = machine::load(name_or_path)?;
+    if machine.has_control() { checked(machine) } else { Ok(machine) }
+}
+
 /// # Errors
 /// It writes for no machine.
 fn checked(machine: Machine) -> Result<Machine, Stop> {
+    if !machine.has_control() {
+        let message = format!(
+            "{} is an arm whose kinematics alone are known: no programs are written for it",
+            machine.title
+        );
+        let help =
+            format!("`toolpost machines check {}` prints its reach and its joints", machine.name);
+        return Err(Diagnostic::error("arm-kinematics", message)
+            .help(help)
+            .file(&machine.file)
+            .into());
+    }
     let settings = nc::settings(&machine, Setup::default())?;
     if settings.dialect == Dialect::FreeCad {
         let message = "no machine reads FreeCAD's commands: they are a source alone";

@@ -24,6 +24,7 @@
 //! assert!(machine.blocks["rapid"].text.contains("G00"));
 //! ```
 
+mod arms;
 mod foreign;
 mod items;
 mod moves;
@@ -32,6 +33,8 @@ mod places;
 mod text;
 mod vectric;
 mod write;
+
+pub use arms::{import_calibration, import_urdf};
 
 use machine::{is_path, load_origin};
 use program::Diagnostic;

@@ -4,6 +4,7 @@ use include_dir::{Dir, include_dir};
 
 static CONTROL_FILES: Dir = include_dir!("$CARGO_MANIFEST_DIR/../../controls");
 static MACHINE_FILES: Dir = include_dir!("$CARGO_MANIFEST_DIR/../../machines");
+static ARM_FILES: Dir = include_dir!("$CARGO_MANIFEST_DIR/../../machines/arms");
 
 /// A folder of the library.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -12,14 +13,20 @@ pub enum Kind {
     Control,
     /// Machines.
     Machine,
+    /// Arms, as kinematics: no programs are written for them.
+    Arm,
 }
 
 /// The machines alone.
 pub const MACHINES: &[Kind] = &[Kind::Machine];
 /// The controls alone.
 pub const CONTROLS: &[Kind] = &[Kind::Control];
-/// Machines and controls.
-pub const EVERYTHING: &[Kind] = &[Kind::Machine, Kind::Control];
+/// The arms alone.
+pub const ARMS: &[Kind] = &[Kind::Arm];
+/// Machines and arms: what is loaded by its name.
+pub const LOADABLE: &[Kind] = &[Kind::Machine, Kind::Arm];
+/// Machines, arms and controls.
+pub const EVERYTHING: &[Kind] = &[Kind::Machine, Kind::Arm, Kind::Control];
 
 /// Path (within the library) and text of the file of that name.
 pub fn find(name: &str, kinds: &[Kind]) -> Option<(&'static str, &'static str)> {
@@ -40,6 +47,7 @@ fn files(kinds: &[Kind]) -> impl Iterator<Item = (&'static str, &'static str)> {
     let folders = kinds.iter().map(|kind| match kind {
         Kind::Control => ("controls", &CONTROL_FILES),
         Kind::Machine => ("machines", &MACHINE_FILES),
+        Kind::Arm => ("machines/arms", &ARM_FILES),
     });
     folders.flat_map(|(_, folder)| {
         let mut files: Vec<_> = (folder.files())

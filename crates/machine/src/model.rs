@@ -21,7 +21,7 @@ pub struct Machine {
     /// The control it extends, itself or by another machine.
     pub control: String,
     /// The dialect whose virtual control proves its programs (`sinumerik`, `fanuc`, `linuxcnc`,
-    /// `grbl`, `klartext`).
+    /// `grbl`, `klartext`); empty for an arm of which the kinematics alone are known.
     pub reader: String,
     /// Where that is said.
     pub reader_place: Place,
@@ -52,6 +52,8 @@ pub struct Machine {
     pub orientation: OrientationSettings,
     /// The wire, where the machine is one for wire EDM; a mill has none.
     pub wire: Option<Wire>,
+    /// The arm, where the machine is a robot.
+    pub arm: Option<arm::Arm>,
     /// What the spindle can do.
     pub spindle: SpindleRange,
     /// Fastest feed, mm/min; infinite where none is given.
@@ -525,6 +527,11 @@ pub const SAFE_HEIGHT_HELP: &str = "add `safe_height = 0` to the machine's file,
      machine coordinates once the axis is homed and at its top (mm)";
 
 impl Machine {
+    /// Whether programs are written for it: an arm of which the kinematics alone are known has no virtual control.
+    pub fn has_control(&self) -> bool {
+        !self.reader.is_empty()
+    }
+
     /// Gives a value of `[options]` another one, in its own kind.
     ///
     /// # Errors

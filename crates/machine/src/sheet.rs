@@ -33,6 +33,10 @@ pub fn keys() -> impl Iterator<Item = &'static Key> {
         WireSheet::KEYS,
         SpindleSheet::KEYS,
         ToolsSheet::KEYS,
+        ArmSheet::KEYS,
+        LengthsSheet::KEYS,
+        DhSheet::KEYS,
+        JointSheet::KEYS,
     ];
     tables.into_iter().flatten()
 }
@@ -80,6 +84,7 @@ sheet!(Sheet "" {
     orientation: Spanned<OrientationSheet>, "", "Table: how a tool axis is written.";
     wire: Spanned<WireSheet>, "", "Table: the wire of a machine for wire EDM; a machine without it is a mill.";
     spindle: Spanned<SpindleSheet>, "", "Table: the speeds of the spindle.";
+    arm: Spanned<ArmSheet>, "", "Table: a six-axis arm. A file with it and without `reader` says how the arm moves; programs are written for no such file.";
     feed_max: Rate, "mm/min", "The fastest feed of the machine; a program that asks for more is refused.";
     tools: ToolsSheet, "", "Table: what the magazine takes.";
     auxiliary: Vec<u32>, "", "Numbers of the M functions of the builder that programs use; none moves an axis that the program drives.";
@@ -208,6 +213,56 @@ sheet!(merged ToolsSheet "tools" {
     turns_upright: bool, "", "Whether the tool change turns the axes of a head to 0 by itself; without it they have to stand there before each.";
 });
 
+sheet!(merged ArmSheet "arm" {
+    lengths: Spanned<LengthsSheet>, "", "Table: an arm whose last three axes meet in one point, by its seven lengths.";
+    dh: Spanned<DhSheet>, "", "Table: an arm of Universal Robots, by its Denavit-Hartenberg parameters.";
+    offsets: SixAngles, "degrees", "What is taken from each joint: joint i has the angle sign * position - offset, and with all those angles 0 the arm stands straight up. With `lengths` alone.";
+    signs: [f64; 6], "", "1 or -1: which way each joint counts. With `lengths` alone.";
+    coupling: CouplingSheet, "", "How the controller counts joint 3: none (against the upper arm), less-joint-2 (against the horizontal: what it shows is the joint less joint 2, FANUC), plus-joint-2 (by a parallel rod, ABB). Without it no joint positions are written: look at the controller.";
+    coupled_min: Angle, "degrees", "Lower limit of joint 3 as the controller counts it, beyond that of the joint itself.";
+    coupled_max: Angle, "degrees", "Upper limit of the same.";
+    world_height: Position, "mm", "How far the origin of the controller's world lies above the foot of the arm.";
+    reach: Length, "mm", "What the data sheet states from axis 1 to the wrist centre. Lengths that reach more than 2 % farther or less far are refused.";
+    joints: Spanned<Vec<JointSheet>>, "", "Tables: the six joints from the foot upwards, each { min, max, speed, acceleration }.";
+    calibration: Spanned<Vec<[f64; 6]>>, "mm, degrees", "What the factory has measured of an arm of Universal Robots: of each joint x, y, z and the turns about the fixed X, Y and Z axes in the frame of the one before it.";
+});
+
+sheet!(LengthsSheet "arm.lengths" {
+    a1: Position, "mm", "From axis 1 forward to axis 2.";
+    a2: Position, "mm", "From axis 3 across to axis 4: negative where axis 4 lies above axis 3 while the forearm is level.";
+    b: Position, "mm", "Sideways from axis 1 to the plane in which the arm bends.";
+    c1: Position, "mm", "From the foot up to axis 2.";
+    c2: Position, "mm", "From axis 2 to axis 3.";
+    c3: Position, "mm", "From axis 3 along the forearm to the wrist centre.";
+    c4: Position, "mm", "From the wrist centre to the flange.";
+});
+
+sheet!(DhSheet "arm.dh" {
+    d1: Position, "mm", "From the foot up to axis 2.";
+    a2: Position, "mm", "Upper arm, negative.";
+    a3: Position, "mm", "Forearm, negative.";
+    d4: Position, "mm", "Sideways from axis 1 to axis 5.";
+    d5: Position, "mm", "From axis 4 to axis 6.";
+    d6: Position, "mm", "From axis 5 to the flange.";
+});
+
+sheet!(JointSheet "arm.joints" {
+    min: Angle, "degrees", "Lower limit.";
+    max: Angle, "degrees", "Upper limit.";
+    speed: JointRate, "degrees/s", "Fastest.";
+    acceleration: JointAcceleration, "degrees/s²", "Acceleration, where the maker states one.";
+});
+
+#[derive(Clone, Copy, Deserialize)]
+pub(crate) enum CouplingSheet {
+    #[serde(rename = "none")]
+    None,
+    #[serde(rename = "less-joint-2")]
+    LessJoint2,
+    #[serde(rename = "plus-joint-2")]
+    PlusJoint2,
+}
+
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Deserialize)]
 pub(crate) enum LinearName {
     X,
@@ -260,6 +315,9 @@ value! {
     Acceleration(f64, "f64") |rate| above_0(*rate, 1e3), "a number above 0, at most 1000 m/s²,";
     Angle(f64, "f64") |degrees| degrees.abs() <= 1e6, "a number from -1000000 to 1000000 degrees";
     Lean(f64, "f64") |degrees| above_0(*degrees, 90.0), "a number above 0, at most 90 degrees,";
+    SixAngles([f64; 6], "[f64; 6]") |six| six.iter().all(|degrees| degrees.abs() <= 360.0), "six numbers from -360 to 360 degrees";
+    JointRate(f64, "f64") |rate| above_0(*rate, 1e5), "a number above 0, at most 100000 degrees/s,";
+    JointAcceleration(f64, "f64") |rate| above_0(*rate, 1e6), "a number above 0, at most 1000000 degrees/s²,";
     TurnRate(f64, "f64") |rate| above_0(*rate, 1e7), "a number above 0, at most 10000000 degrees/min,";
     TurnAcceleration(f64, "f64") |rate| above_0(*rate, 1e7), "a number above 0, at most 10000000 degrees/s²,";
     Speed(f64, "f64") |speed| (0.0..=1e6).contains(speed), "a number from 0 to 1000000 1/min";

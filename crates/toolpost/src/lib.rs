@@ -11,6 +11,7 @@
 
 pub mod answer;
 mod args;
+mod arms;
 mod explain;
 mod glass;
 mod machines;

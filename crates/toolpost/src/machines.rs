@@ -2,6 +2,7 @@
 
 use crate::answer::Answer;
 use crate::args::Machines;
+use crate::arms;
 use app::files::{self, Target};
 use app::toolpath::{self, describe};
 use app::{Stop, Verdict, summary};
@@ -16,7 +17,9 @@ pub fn run(command: &Machines) -> Result<Answer, Stop> {
         Machines::List => list(),
         Machines::Show { name } => show(name),
         Machines::New { name, from } => new(name, from),
-        Machines::Import { file, output, extends } => import(file, output, extends.as_deref()),
+        Machines::Import { file, output, extends, reach } => {
+            import(file, output, extends.as_deref(), *reach)
+        }
         Machines::Check { file, upgrade: true } => upgrade(file),
         Machines::Check { file, upgrade: false } => check(file),
     }
@@ -27,18 +30,22 @@ fn list() -> Result<Answer, Stop> {
         library::names(library::MACHINES).map(toolpath::machine).collect();
     let controls: Result<Vec<Machine>, Stop> =
         library::names(library::CONTROLS).map(|name| Ok(machine::load_control(name)?)).collect();
-    let (machines, controls) = (machines?, controls?);
+    let arms: Result<Vec<Machine>, Stop> =
+        library::names(library::ARMS).map(toolpath::machine_or_arm).collect();
+    let (machines, arms, controls) = (machines?, arms?, controls?);
     let rows = |all: &[Machine], text: &dyn Fn(&Machine) -> String| {
         let lines: Vec<_> = all.iter().map(|m| (m.name.as_str(), text(m))).collect();
         summary::rows(&lines)
     };
     let text = format!(
-        "{}\ncontrols, for machines of your own to extend:\n{}",
+        "{}\narms, as kinematics alone:\n{}\ncontrols, for machines of your own to extend:\n{}",
         rows(&machines, &|machine| format!("{}: {}", machine.title, abilities(machine))),
+        rows(&arms, &|machine| format!("{}: {}", machine.title, arms::abilities(machine))),
         rows(&controls, &|machine| machine.title.clone())
     );
     let data = |all: &[Machine]| all.iter().map(describe).collect::<Vec<Value>>();
-    let data = json!({ "machines": data(&machines), "controls": data(&controls) });
+    let data =
+        json!({ "machines": data(&machines), "arms": data(&arms), "controls": data(&controls) });
     Ok(Answer::product(text, data))
 }
 
@@ -115,19 +122,27 @@ fn new(name: &str, from: &str) -> Result<Answer, Stop> {
             .help("give another name, or edit the file that is there")
             .into());
     }
-    let text = if from.contains(['/', '\\']) || from.ends_with(".toml") {
+    let is_file = from.contains(['/', '\\']) || from.ends_with(".toml");
+    let text = if is_file {
         let bytes = files::text(Path::new(from))?;
         String::from_utf8(bytes)
             .map_err(|_| Diagnostic::error("encoding", "this file is not UTF-8").file(from))?
     } else {
-        format!("{}{KEYS}", library_text(from)?)
+        library_text(from)?.to_owned()
     };
     let file = path.display().to_string();
     let machine = machine::load_text(&file, &text)?;
+    let text = match machine.has_control() && !is_file {
+        true => format!("{text}{KEYS}"),
+        false => text,
+    };
     let target = Target::new(&path, &[])?;
     files::save(&[(&target, text.as_bytes())])?;
-    let lines =
-        [("saved", file.clone()), ("use it", format!("toolpost post ... --machine {file}"))];
+    let command = match machine.has_control() {
+        true => format!("toolpost post ... --machine {file}"),
+        false => format!("toolpost machines check {file}"),
+    };
+    let lines = [("saved", file.clone()), ("use it", command)];
     let data = json!({ "file": file, "machine": describe(&machine) });
     Ok(Answer::summary(Verdict::Done, summary::rows(&lines), data))
 }
@@ -136,7 +151,34 @@ fn new(name: &str, from: &str) -> Result<Answer, Stop> {
 const SAMPLE: &str = include_str!("../../../machines/samples/three-axes.cls");
 
 /// Makes a machine file of a post, says what it could not carry over, and proves a sample program.
-fn import(file: &Path, output: &Path, extends: Option<&str>) -> Result<Answer, Stop> {
+fn import(
+    file: &Path,
+    output: &Path,
+    extends: Option<&str>,
+    reach: Option<f64>,
+) -> Result<Answer, Stop> {
+    let ending = file.extension().map(|ending| ending.to_string_lossy().to_ascii_lowercase());
+    match (ending.as_deref(), extends, reach) {
+        (Some("urdf"), None, reach) => {
+            let read = |name: &str, bytes: &[u8]| import::import_urdf(name, bytes, reach);
+            return import_arm(file, output, &read);
+        }
+        (Some("yaml" | "yml"), extends, None) => {
+            let read = |name: &str, bytes: &[u8]| import::import_calibration(name, bytes, extends);
+            return import_arm(file, output, &read);
+        }
+        (_, _, None) if ending.as_deref() != Some("urdf") => {}
+        (Some("urdf"), Some(_), _) => {
+            let message = "the file of an arm extends no other one";
+            return Err(Diagnostic::error("arm-extends", message)
+                .help("leave --extends out")
+                .into());
+        }
+        _ => {
+            let message = "--reach is for the description of an arm (.urdf)";
+            return Err(Diagnostic::error("arm-reach", message).help("leave --reach out").into());
+        }
+    }
     let invalid = |findings| Stop { verdict: Verdict::Invalid, findings };
     let target = Target::new(output, &[file])?;
     let bytes = files::text(file)?;
@@ -183,6 +225,23 @@ fn import(file: &Path, output: &Path, extends: Option<&str>) -> Result<Answer, S
     Ok(Answer::summary(verdict, summary::rows(&lines), data).findings(findings))
 }
 
+/// How a description of an arm is read: its name and its bytes.
+type ReadArm<'a> = dyn Fn(&str, &[u8]) -> Result<import::Import, Vec<Diagnostic>> + 'a;
+
+/// Makes a machine file of the description of an arm.
+fn import_arm(file: &Path, output: &Path, read: &ReadArm<'_>) -> Result<Answer, Stop> {
+    let invalid = |findings| Stop { verdict: Verdict::Invalid, findings };
+    let target = Target::new(output, &[file])?;
+    let import = read(&files::name(file), &files::text(file)?).map_err(invalid)?;
+    let saved = output.display().to_string();
+    let machine = machine::load_text(&saved, &import.text)?;
+    files::save(&[(&target, import.text.as_bytes())])?;
+    let arm = arms::abilities(&machine);
+    let lines = [("saved", saved.clone()), ("arm", arm)];
+    let data = json!({ "file": saved, "extends": import.extends, "machine": describe(&machine) });
+    Ok(Answer::summary(Verdict::Done, summary::rows(&lines), data).findings(import.findings))
+}
+
 /// Writes the sample for a machine and proves it.
 fn sample(machine: &Machine) -> Result<(), Vec<Diagnostic>> {
     let sample = source::apt::read("three-axes.cls", SAMPLE.as_bytes(), &Default::default())?;
@@ -194,7 +253,10 @@ fn sample(machine: &Machine) -> Result<(), Vec<Diagnostic>> {
 
 /// Loads a file and compiles its templates.
 fn check(file: &str) -> Result<Answer, Stop> {
-    let machine = toolpath::machine(file)?;
+    let machine = toolpath::machine_or_arm(file)?;
+    if let Some(arm) = machine.arm.as_ref().filter(|_| !machine.has_control()) {
+        return Ok(arms::check(&machine, arm));
+    }
     post::check(&machine).map_err(|findings| Stop { verdict: Verdict::Invalid, findings })?;
     let unchecked = unchecked(&machine);
     let lines = [

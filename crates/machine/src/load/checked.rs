@@ -1,6 +1,7 @@
 //! Sheets that are in order by themselves, merged, and the machine that they make.
 
 use super::Result;
+use super::arm::{self, PlacedArm};
 use super::file::SheetFile;
 use crate::model::*;
 use crate::sheet::*;
@@ -61,6 +62,7 @@ pub(super) struct CheckedSheet {
     safe_height: Option<Placed<Position>>,
     orientation: Option<Placed<OrientationSheet>>,
     wire: Option<Placed<WireSheet>>,
+    arm: Option<PlacedArm>,
     spindle: Option<Placed<SpindleSheet>>,
     feed_max: Option<Rate>,
     tools: ToolsSheet,
@@ -106,6 +108,7 @@ impl CheckedSheet {
             safe_height: sheet.safe_height.map(|z| Placed::new(file, "safe_height", z)),
             orientation: sheet.orientation.map(|o| Placed::new(file, "orientation", o)),
             wire: sheet.wire.map(|wire| Placed::new(file, "wire", wire)),
+            arm: sheet.arm.map(|sheet| PlacedArm::new(file, sheet)),
             spindle,
             feed_max: sheet.feed_max,
             tools: sheet.tools.unwrap_or_default(),
@@ -286,6 +289,7 @@ impl CheckedSheet {
             safe_height: nearer.safe_height.or(self.safe_height),
             orientation: joined(self.orientation, nearer.orientation, OrientationSheet::under),
             wire: joined(self.wire, nearer.wire, WireSheet::under),
+            arm: arm::under(self.arm, nearer.arm),
             spindle: joined(self.spindle, nearer.spindle, SpindleSheet::under),
             feed_max: nearer.feed_max.or(self.feed_max),
             tools: self.tools.under(nearer.tools),
@@ -347,6 +351,10 @@ impl CheckedSheet {
                 "a wire leans by U and V: a wire machine has no [[rotary]] axes",
             ));
         }
+        let arm = self.arm.map(PlacedArm::finish).transpose()?;
+        if arm.is_some() && (!rotary.is_empty() || self.wire.is_some()) {
+            return Err(missing("a machine that is only one of arm, mill and wire machine"));
+        }
         let simultaneous = orientation.simultaneous.unwrap_or(OrientationMode::Fixed);
         let positioned = orientation.positioned.unwrap_or(simultaneous);
         if let Some(place) = rotary_place.filter(|_| rotary.iter().any(|axis| axis.clamp.is_some()))
@@ -365,8 +373,11 @@ impl CheckedSheet {
         let capabilities = self.capabilities;
         let format = self.format;
         let line_length = capabilities.line_length.unwrap_or(256);
-        let (reader, reader_place) =
-            self.reader.ok_or_else(|| missing("`reader`, the virtual control,"))?;
+        let (reader, reader_place) = match self.reader {
+            Some(reader) => reader,
+            None if arm.is_some() => (String::new(), Place { file: file.clone(), line: 0 }),
+            None => return Err(missing("`reader`, the virtual control,")),
+        };
         if kinematics.is_some() && reader != "linuxcnc" {
             let message = format!(
                 "`tip_kinematics` in [settings] is for LinuxCNC, and the reader is `{reader}`"
@@ -443,6 +454,7 @@ impl CheckedSheet {
                 tolerance: orientation.tolerance.map_or(0.005, |mm| mm.0),
             },
             wire: self.wire.map(|wire| finish_wire(&wire.sheet)),
+            arm,
             spindle: SpindleRange {
                 min: spindle.min.map_or(0.0, |speed| speed.0),
                 max: spindle.max.map_or(f64::INFINITY, |speed| speed.0),

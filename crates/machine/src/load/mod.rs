@@ -4,6 +4,7 @@
 //! there. The sheets of a chain are [`checked`] and merged, the nearer one winning field by field, and the
 //! result must be whole.
 
+mod arm;
 mod checked;
 mod file;
 
@@ -40,7 +41,7 @@ impl Reach {
         let file = if is_path(name_or_path) {
             SheetFile::read(Path::new(name_or_path), self)?
         } else {
-            SheetFile::of_library(name_or_path, library::MACHINES)?
+            SheetFile::of_library(name_or_path, library::LOADABLE)?
         };
         build(file, self)
     }

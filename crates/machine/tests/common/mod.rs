@@ -51,6 +51,7 @@ pub fn machine(rotary: Vec<RotaryAxis>) -> Machine {
         work_zero: Some(Vec3::ZERO),
         safe_height: None,
         wire: None,
+        arm: None,
         orientation: OrientationSettings {
             simultaneous: OrientationMode::MachineAngles,
             positioned: OrientationMode::MachineAngles,

@@ -527,9 +527,10 @@ pub enum Machines {
         #[arg(long, value_name = "NAME|FILE")]
         from: String,
     },
-    /// Make a machine file of a post of VCarve or Aspire (.pp), or of templates with @parameter@.
+    /// Make a machine file of a post of VCarve or Aspire (.pp), of templates with @parameter@, of an arm (.urdf), or of the
+    /// calibration of an arm of Universal Robots (.yaml).
     Import {
-        /// The post, or the templates.
+        /// The post, the templates, or the description of the arm.
         file: PathBuf,
         /// Where to save the machine file.
         #[arg(long, short, value_name = "FILE")]
@@ -538,6 +539,9 @@ pub enum Machines {
         /// [default: the control that the post names].
         #[arg(long, value_name = "NAME|FILE")]
         extends: Option<String>,
+        /// Reach of an arm from axis 1 to the wrist centre as its data sheet states it, mm: another one is refused.
+        #[arg(long, value_name = "MM", value_parser = length)]
+        reach: Option<f64>,
     },
     /// Look for mistakes in a machine file.
     Check {

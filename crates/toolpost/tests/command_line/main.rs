@@ -1,5 +1,6 @@
 //! The command line as its users meet it: the program is run, in a folder of its own.
 
+mod arms;
 mod bad_input;
 mod commands;
 #[path = "../folder/mod.rs"]

@@ -1,0 +1,174 @@
+//! The table `[arm]`: lengths, joints and limits that have to make an arm together.
+
+use super::Result;
+use super::file::SheetFile;
+use crate::sheet::{ArmSheet, CouplingSheet, DhSheet, JointSheet, LengthsSheet};
+use arm::{
+    Arm, Calibration, Coupling, CouplingLimit, Dh, Frame, Joint, Spherical, Structure, Vec3,
+};
+use geom::Euler;
+use program::Diagnostic;
+use toml::Spanned;
+
+/// How far lengths may be from the stated reach, as a part of it.
+const REACH: f64 = 0.02;
+
+/// An `[arm]` of a file, with the place to report where it turns out wrong after merging.
+pub(super) struct PlacedArm {
+    sheet: ArmSheet,
+    place: Diagnostic,
+}
+
+impl PlacedArm {
+    pub(super) fn new(file: &SheetFile, sheet: Spanned<ArmSheet>) -> PlacedArm {
+        PlacedArm { place: file.at("arm", &sheet, ""), sheet: sheet.into_inner() }
+    }
+
+    /// The arm.
+    ///
+    /// # Errors
+    /// What is missing, or does not go together.
+    pub(super) fn finish(self) -> Result<Arm> {
+        let PlacedArm { sheet, place } = self;
+        let wrong = |message: &str| {
+            let message = format!("{}{message}", place.message);
+            Box::new(Diagnostic { message, ..place.clone() })
+        };
+        arm(&sheet).map_err(|why| wrong(&why))
+    }
+}
+
+/// Both files' tables, the nearer one winning key by key.
+pub(super) fn under(farther: Option<PlacedArm>, nearer: Option<PlacedArm>) -> Option<PlacedArm> {
+    match (farther, nearer) {
+        (Some(farther), Some(nearer)) => {
+            Some(PlacedArm { sheet: farther.sheet.under(nearer.sheet), place: nearer.place })
+        }
+        (farther, nearer) => nearer.or(farther),
+    }
+}
+
+type Said<T> = std::result::Result<T, String>;
+
+fn needed<T>(key: &str, value: Option<T>) -> Said<T> {
+    value.ok_or_else(|| format!("`{key}` is missing"))
+}
+
+fn arm(sheet: &ArmSheet) -> Said<Arm> {
+    let structure = match (&sheet.lengths, &sheet.dh) {
+        (Some(lengths), None) => spherical(sheet, lengths.get_ref())?,
+        (None, Some(dh)) => ur(sheet, dh.get_ref())?,
+        _ => {
+            return Err(String::from(
+                "one of `lengths` and `dh` says how its links are put together",
+            ));
+        }
+    };
+    let coupling = sheet.coupling.map(|coupling| match coupling {
+        CouplingSheet::None => Coupling::None,
+        CouplingSheet::LessJoint2 => Coupling::LessJoint2,
+        CouplingSheet::PlusJoint2 => Coupling::PlusJoint2,
+    });
+    let height = needed("world_height", sheet.world_height)?.0;
+    let arm =
+        Arm::new(structure, joints(sheet)?, coupling, height).map_err(|why| why.to_string())?;
+    if let Some(stated) = sheet.reach {
+        check_reach(&arm, stated.0)?;
+    }
+    match (sheet.coupled_min, sheet.coupled_max) {
+        (None, None) => Ok(arm),
+        (Some(_), Some(_)) if matches!(coupling, None | Some(Coupling::None)) => Err(String::from(
+            "`coupled_min` and `coupled_max` are of a joint 3 that `coupling` couples",
+        )),
+        (Some(min), Some(max)) => {
+            let limit = CouplingLimit { min: min.0.to_radians(), max: max.0.to_radians() };
+            arm.with_coupling_limit(limit).map_err(|why| why.to_string())
+        }
+        _ => Err(String::from("`coupled_min` and `coupled_max` are given both or not at all")),
+    }
+}
+
+fn check_reach(arm: &Arm, stated: f64) -> Said<()> {
+    let made = arm.reach();
+    match (made - stated).abs() <= REACH * stated {
+        true => Ok(()),
+        false => Err(format!("its lengths reach {made:.1} mm, and `reach` states {stated} mm")),
+    }
+}
+
+fn spherical(sheet: &ArmSheet, lengths: &LengthsSheet) -> Said<Structure> {
+    if sheet.calibration.is_some() {
+        return Err(String::from("a `calibration` is that of an arm with `dh`"));
+    }
+    let length = |name: &str, value: Option<crate::sheet::Position>| {
+        needed(&format!("lengths.{name}"), value).map(|mm| mm.0)
+    };
+    let offsets = needed("offsets", sheet.offsets)?.0.map(f64::to_radians);
+    let signs = needed("signs", sheet.signs)?;
+    Ok(Structure::Spherical(Spherical {
+        a1: length("a1", lengths.a1)?,
+        a2: length("a2", lengths.a2)?,
+        b: length("b", lengths.b)?,
+        c1: length("c1", lengths.c1)?,
+        c2: length("c2", lengths.c2)?,
+        c3: length("c3", lengths.c3)?,
+        c4: length("c4", lengths.c4)?,
+        offsets,
+        signs,
+    }))
+}
+
+fn ur(sheet: &ArmSheet, dh: &DhSheet) -> Said<Structure> {
+    if sheet.offsets.is_some() || sheet.signs.is_some() {
+        return Err(String::from("`offsets` and `signs` are those of an arm with `lengths`"));
+    }
+    let length = |name: &str, value: Option<crate::sheet::Position>| {
+        needed(&format!("dh.{name}"), value).map(|mm| mm.0)
+    };
+    let nominal = Dh {
+        d1: length("d1", dh.d1)?,
+        a2: length("a2", dh.a2)?,
+        a3: length("a3", dh.a3)?,
+        d4: length("d4", dh.d4)?,
+        d5: length("d5", dh.d5)?,
+        d6: length("d6", dh.d6)?,
+    };
+    let measured =
+        sheet.calibration.as_ref().map(|rows| calibration(rows.get_ref())).transpose()?;
+    Ok(Structure::Ur(nominal, measured.map(Box::new)))
+}
+
+fn calibration(rows: &[[f64; 6]]) -> Said<Calibration> {
+    let good = rows.iter().flatten().all(|number| number.abs() <= 1e5);
+    match <[[f64; 6]; 6]>::try_from(rows) {
+        Ok(rows) if good => Ok(Calibration(rows.map(|[x, y, z, roll, pitch, yaw]| {
+            let turns = [roll, pitch, yaw].map(f64::to_radians);
+            Frame::from_mat3_translation(Euler::FixedXyz.matrix(turns), Vec3::new(x, y, z))
+        }))),
+        _ => Err(String::from("`calibration` has six rows of six numbers from -100000 to 100000")),
+    }
+}
+
+fn joints(sheet: &ArmSheet) -> Said<[Joint; 6]> {
+    let listed = needed("joints", sheet.joints.as_ref())?.get_ref();
+    let mut joints = Vec::with_capacity(6);
+    for (number, joint) in (1..).zip(listed) {
+        joints.push(finish_joint(number, joint)?);
+    }
+    <[Joint; 6]>::try_from(joints)
+        .map_err(|joints| format!("six `joints` are needed, not {}", joints.len()))
+}
+
+fn finish_joint(number: usize, sheet: &JointSheet) -> Said<Joint> {
+    let angle = |key: &str, value: Option<crate::sheet::Angle>| {
+        needed(&format!("{key}` of joint {number} in `joints"), value)
+            .map(|degrees| degrees.0.to_radians())
+    };
+    let speed = needed(&format!("speed` of joint {number} in `joints"), sheet.speed)?;
+    Ok(Joint {
+        min: angle("min", sheet.min)?,
+        max: angle("max", sheet.max)?,
+        speed: speed.0.to_radians(),
+        acceleration: sheet.acceleration.map(|rate| rate.0.to_radians()),
+    })
+}

@@ -1,0 +1,100 @@
+//! Arms in the library: listed, checked, copied, and refused where a program is asked for.
+
+use crate::folder::Folder;
+
+#[test]
+fn arms_are_listed_with_their_reach() {
+    let folder = Folder::new();
+    let said = folder.run(&["machines", "list"]).out;
+    let row = said.lines().find(|line| line.contains("kuka-kr6-r900-sixx")).unwrap();
+    assert!(row.contains("KUKA KR 6 R900 sixx: six joints, reach 901.5 mm"), "{row}");
+    let listed = folder.run(&["machines", "list", "--json"]).json();
+    assert_eq!(listed["arms"].as_array().unwrap().len(), 12);
+    for arm in listed["arms"].as_array().unwrap() {
+        let said = folder.run(&["machines", "check", arm["name"].as_str().unwrap()]);
+        assert!(said.code == 0 && said.out.contains("joint 6"), "{said:?}");
+    }
+}
+
+#[test]
+fn what_the_file_of_an_arm_leaves_open_is_said() {
+    let folder = Folder::new();
+    let said = folder.run(&["machines", "check", "abb-irb2400"]).out;
+    assert!(
+        said.contains("`coupling` is missing in [arm]") && said.contains("times are estimates"),
+        "{said}"
+    );
+    let said = folder.run(&["machines", "check", "kuka-kr6-r900-sixx"]).out;
+    assert!(!said.contains("coupling") && !said.contains("estimates"), "{said}");
+    assert!(said.contains("-190 to 45 degrees, 300 degrees/s"), "{said}");
+    let said = folder.run(&["machines", "check", "kuka-kr6-r900"]);
+    assert!(said.code == 2 && said.err.contains("did you mean `kuka-kr6-r900-sixx`"), "{said:?}");
+}
+
+#[test]
+fn an_arm_is_copied_and_checked_and_no_program_is_written_for_it() {
+    let folder = Folder::new();
+    assert_eq!(folder.run(&["machines", "new", "mine", "--from", "ur5e"]).code, 0);
+    let text = folder.read("mine.toml");
+    assert!(text.contains("[arm]") && !text.contains("[spindle]"), "{text}");
+    assert_eq!(folder.run(&["machines", "check", "mine.toml"]).code, 0);
+    folder.write("part.cls", "GOTO/0,0,0\n");
+    for machine in ["mine.toml", "ur5e"] {
+        let said = folder.run(&["post", "part.cls", "--machine", machine, "-o", "out.txt"]);
+        assert_eq!(said.code, 2, "{said:?}");
+        assert!(said.err.contains("no programs are written for it"), "{said:?}");
+        assert!(!folder.names().contains(&"out.txt".to_string()));
+    }
+}
+
+const CALIBRATION: &str = "kinematics:\n  shoulder: # mm\n    x: 0\n    y: 0\n    z: 0.1626\n    roll: 0\n    pitch: 0\n    yaw: 0\n";
+
+#[test]
+fn descriptions_of_arms_are_imported_by_their_ending_and_nothing_is_saved_of_what_is_refused() {
+    let folder = Folder::new();
+    let refused = |words: &[&str], what: &str| {
+        let said = folder.run(words);
+        assert!(said.code == 2 && said.err.contains(what), "{words:?}: {said:?}");
+        assert!(!folder.names().contains(&"mine.toml".to_string()));
+    };
+    folder.write("arm.urdf", "<robot/>");
+    folder.write("calibration.yaml", CALIBRATION);
+    refused(&["machines", "import", "arm.urdf", "-o", "mine.toml"], "there is no joint in it");
+    refused(
+        &["machines", "import", "arm.urdf", "-o", "mine.toml", "--extends", "ur5e"],
+        "leave --extends out",
+    );
+    refused(
+        &["machines", "import", "arm.urdf", "-o", "mine.toml", "--reach", "0"],
+        "a length in mm",
+    );
+    refused(
+        &["machines", "import", "calibration.yaml", "-o", "mine.toml"],
+        "`x` of `upper_arm` is missing",
+    );
+    let words = ["machines", "import", "calibration.yaml", "-o", "mine.toml", "--reach", "850"];
+    refused(&words, "--reach is for the description of an arm");
+    let links = [
+        "upper_arm:\n    x: 0\n    y: 0\n    z: 0\n    roll: 1.570796327\n    pitch: 0\n    yaw: 0",
+        "forearm:\n    x: -0.425\n    y: 0\n    z: 0\n    roll: 0\n    pitch: 0\n    yaw: 0",
+        "wrist_1:\n    x: -0.3922\n    y: 0\n    z: 0.1333\n    roll: 0\n    pitch: 0\n    yaw: 0",
+        "wrist_2:\n    x: 0\n    y: -0.0997\n    z: 0\n    roll: 1.570796327\n    pitch: 0\n    yaw: 0",
+        "wrist_3:\n    x: 0\n    y: 0.0996\n    z: 0\n    roll: 1.570796327\n    pitch: 3.141592654\n    yaw: 3.141592654",
+    ];
+    folder.write(
+        "calibration.yaml",
+        format!("{CALIBRATION}  {}\n  hash: calib_1\n", links.join("\n  ")),
+    );
+    let said = folder.run(&[
+        "machines",
+        "import",
+        "calibration.yaml",
+        "--extends",
+        "ur5e",
+        "-o",
+        "mine.toml",
+    ]);
+    assert!(said.code == 0 && said.err.contains("mm from `ur5e`"), "{said:?}");
+    let said = folder.run(&["machines", "check", "mine.toml"]);
+    assert!(said.code == 0 && said.out.contains("as the factory has measured them"), "{said:?}");
+}
