@@ -1,7 +1,9 @@
-//! All joints that put the flange of an arm into a frame, next to rs-opw-kinematics in the same run.
+//! All joints that put the flange of an arm into a frame, next to rs-opw-kinematics in the same run; and the choice of turn and posture
+//! along a path, next to the joints of all its turns alone.
 
 use crate::fastest;
-use ::arm::{Arm, Coupling, Frame, Joint, Joints, Spherical, Structure};
+use ::arm::{Arm, Coupling, Frame, Joint, Joints, Mat3, Spherical, Structure, Vec3};
+use armpath::{Cell, Point, Wishes, choose};
 use program::Diagnostic;
 use rs_opw_kinematics::kinematic_traits::{Kinematics, Pose};
 use rs_opw_kinematics::kinematics_impl::OPWKinematics;
@@ -27,7 +29,7 @@ const LENGTHS: Spherical = Spherical {
 /// None comes; the figures are those of other stages.
 pub fn measure(poses: usize, rounds: usize) -> Result<(), Vec<Diagnostic>> {
     let misfit = |why: ::arm::Misfit| vec![Diagnostic::error("arm", why.to_string())];
-    let joint = Joint { min: -6.0, max: 6.0, speed: 5.0, acceleration: None };
+    let joint = Joint { min: -3.0, max: 3.0, speed: 6.0, acceleration: None };
     let structure = Structure::Spherical(LENGTHS);
     let arm = Arm::new(structure, [joint; 6], Some(Coupling::None), 0.0).map_err(misfit)?;
     let joints: Vec<Joints> = (0..poses).map(spread).collect();
@@ -56,7 +58,48 @@ pub fn measure(poses: usize, rounds: usize) -> Result<(), Vec<Diagnostic>> {
     println!("  inverse: {}; {} solutions", ours.time, found[1]);
     println!("    the peer divided by it: {}", by_peer.time.times(ours.time));
     println!("  forward: {}", forward.time);
+    path(poses / 2, rounds, &arm)
+}
+
+/// Prints what the choice along a path of so many points takes.
+fn path(count: usize, rounds: usize, arm: &Arm) -> Result<(), Vec<Diagnostic>> {
+    let out = Frame::from_translation(Vec3::new(0.0, 0.0, 80.0));
+    let leaning = Frame::from_mat3(Mat3::from_rotation_y(std::f64::consts::FRAC_PI_4));
+    let part = Frame::from_translation(Vec3::new(500.0, 0.0, 150.0));
+    let cell = Cell { tool: out * leaning * out, part };
+    let points: Vec<Point> = (0..count).map(|i| dome(i, count)).collect();
+    let (wishes, flange) = (Wishes::default(), cell.tool.inverse());
+    let turns = usize::from(wishes.turns);
+    let floor = fastest(1, &mut || {
+        for point in &points {
+            let at = Frame::from_translation(part.transform_point3(point.tip));
+            for turn in 0..turns {
+                let turned = Frame::from_rotation_z(turn as f64);
+                black_box(arm.inverse(&(at * turned * flange), 0.0));
+            }
+        }
+        Ok(())
+    })?;
+    let mut sections = 0;
+    let ours = fastest(rounds.min(2), &mut || {
+        let way = choose(arm, &cell, &points, &wishes);
+        let blocked = |why: armpath::Blocked| vec![Diagnostic::error("arm", why.to_string())];
+        sections = way.map_err(blocked)?.sections.len();
+        Ok(())
+    })?;
+    println!("turn and posture of an arm along {count} points, {turns} turns; {sections} section");
+    println!("  floor: the joints of all turns, on one thread: {}", floor.time);
+    println!("  choice: {}; peak {} MB", ours.time, ours.peak / 1_000_000);
+    println!("    divided by the floor: {}", ours.time.times(floor.time));
     Ok(())
+}
+
+/// A point of rings on a dome, with the tool at right angles to it.
+fn dome(i: usize, count: usize) -> Point {
+    let part = i as f64 / count as f64;
+    let (turn, lean) = (part * 200.0 * std::f64::consts::TAU, (2.0 + 38.0 * part).to_radians());
+    let axis = Vec3::new(lean.sin() * turn.cos(), lean.sin() * turn.sin(), lean.cos());
+    Point { tip: (axis - Vec3::Z) * 120.0, axis, side: None, cut: i > 0, feed: 1800.0 }
 }
 
 fn peer() -> OPWKinematics {

@@ -1,0 +1,208 @@
+//! Along a path that says where the tool tip is and how its axis stands, an arm is free to turn the tool about that axis, and to
+//! choose its posture: [`choose`] picks both for the whole path, so that no limit, no singularity and no joint that is too slow
+//! falls into a cut.
+//!
+//! **Units and frames.** Lengths are mm, angles radians, times s, feeds mm/min. The axis points from the tip to the spindle, as
+//! everywhere; the Z of the tool frame points the other way, out of the tool.
+//!
+//! **How.** A cut is a *section*: points that follow each other by straight lines. In it the posture stays, and the turn changes by
+//! at most [`Wishes::turn_rate`]. The turns are divided into [`Wishes::turns`] steps, and time into intervals long enough for one
+//! step. First every step and posture is followed through each interval; then the cheapest way through the intervals is found,
+//! from each step to itself or to a neighbour (dynamic programming); then that way is followed exactly, with the turn changing
+//! evenly within an interval, and every figure is checked at each point and between points ([`SPACING`]). Between sections the arm
+//! is free to take another posture. Where no way leads through a section it is divided: the arm draws back, turns and enters
+//! again ([`Section::reentry`]). Memory is some 300 bytes an interval; the result depends on the arguments alone, whatever the
+//! number of threads.
+//!
+//! **What is not done.** Collisions are not looked at. Between two sections the way of the arm is not looked at. The cost of a
+//! section counts from the cheapest end of the one before, not from all its ends.
+
+mod follow;
+mod grid;
+mod samples;
+mod search;
+
+use arm::{Arm, Frame, Joints, Posture, Vec3};
+use std::fmt;
+
+/// A point is checked at least every so many mm, and every 2 degrees of the tool axis.
+pub const SPACING: f64 = 5.0;
+
+/// A point of a path, in the frame of the part.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Point {
+    /// The tool tip, mm.
+    pub tip: Vec3,
+    /// Unit vector from the tip towards the spindle.
+    pub axis: Vec3,
+    /// Unit vector of the tool's own X, where the source says how the tool is turned; else the turn is free.
+    pub side: Option<Vec3>,
+    /// Whether the tool cuts on the way to this point, straight and at `feed`; else the arm comes here from outside.
+    pub cut: bool,
+    /// Feed on the way to this point, mm/min.
+    pub feed: f64,
+}
+
+/// Where the tool and the part are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Cell {
+    /// The tool in the frame of the flange: its tip, and its Z out of the tool.
+    pub tool: Frame,
+    /// The part in the world of the controller.
+    pub part: Frame,
+}
+
+/// What is asked of a way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Wishes {
+    /// Steps of the turn about the tool axis, 1 to 360.
+    pub turns: u16,
+    /// Fastest turn of the tool while it cuts, of its axis and about it, radians/s: where the path turns it faster than that at
+    /// its feed the arm goes slower, as controllers do.
+    pub turn_rate: f64,
+    /// Least distance of joint 5 from stretched or folded, radians.
+    pub wrist: f64,
+    /// Least distance of the wrist from axis 1, mm.
+    pub shoulder: f64,
+    /// Least distance of the elbow from stretched or folded, radians.
+    pub elbow: f64,
+    /// Least distance of each joint from its limits, radians.
+    pub limit: f64,
+    /// Largest part of a joint's speed that a cut may use, above 0, at most 1.
+    pub speed: f64,
+}
+
+impl Default for Wishes {
+    /// Steps of 10 degrees, turned at most 60 degrees/s; 5 degrees and 20 mm from singularities; 1 degree from limits; 90 % of the
+    /// speeds.
+    fn default() -> Wishes {
+        Wishes {
+            turns: 36,
+            turn_rate: 60_f64.to_radians(),
+            wrist: 5_f64.to_radians(),
+            shoulder: 20.0,
+            elbow: 5_f64.to_radians(),
+            limit: 1_f64.to_radians(),
+            speed: 0.9,
+        }
+    }
+}
+
+/// How the arm stands at a point.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Stand {
+    /// Its joints, without jumps within a section and within the limits.
+    pub joints: Joints,
+    /// Unit vector of the tool's own X, in the frame of the part.
+    pub side: Vec3,
+}
+
+/// Points that the arm passes in one posture without leaving the path.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Section {
+    /// The number of its first point.
+    pub first: usize,
+    /// Its posture.
+    pub posture: Posture,
+    /// How the arm stands at each point, from the first on.
+    pub stands: Vec<Stand>,
+    /// Whether it begins where the section before it ends, within a cut: the arm draws back there, turns and enters again.
+    pub reentry: bool,
+}
+
+/// The least margins of a way, and where they are.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Worst {
+    /// Of joint 5 from stretched or folded, radians, and at which point.
+    pub wrist: (f64, usize),
+    /// Of the wrist from axis 1, mm, and at which point.
+    pub shoulder: (f64, usize),
+    /// Of the elbow from stretched or folded, radians, and at which point.
+    pub elbow: (f64, usize),
+    /// Of a joint from its limit, radians, and at which point.
+    pub limit: (f64, usize),
+    /// The largest part of a joint's speed in a cut, and at which point.
+    pub speed: (f64, usize),
+}
+
+/// The way of an arm along a path.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Way {
+    /// Its sections, which have every point; one at which the arm enters again is in two of them.
+    pub sections: Vec<Section>,
+    /// Its least margins.
+    pub worst: Worst,
+}
+
+/// Why there is no way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Blocked {
+    /// The number of the point at which it ends, or on the way to which.
+    pub point: usize,
+    /// What ends it in the turn and posture that come nearest.
+    pub why: Why,
+}
+
+/// What ends a way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Why {
+    /// No posture reaches the point, whatever the turn: how much too far it is from the shoulder, mm; negative where it is too
+    /// near.
+    Reach(f64),
+    /// A joint would be beyond its limit (number from 1; radians; the margin that is asked for counts).
+    Limit(usize, f64),
+    /// Joint 5 would be this near to stretched or folded, radians.
+    Wrist(f64),
+    /// The wrist would be this near to axis 1, mm.
+    Shoulder(f64),
+    /// The elbow would be this near to stretched or folded, radians.
+    Elbow(f64),
+    /// A joint would need this part of its speed (number from 1).
+    Speed(usize, f64),
+    /// Single points are reached, but no turn and posture leads from one to the next.
+    Apart,
+    /// The point, the feed or the wishes are no numbers that make sense.
+    Numbers,
+}
+
+impl fmt::Display for Blocked {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        let degrees = |angle: f64| angle.to_degrees();
+        match self.why {
+            Why::Reach(mm) if mm < 0.0 => write!(f, "it is {:.1} mm too near to the arm", -mm),
+            Why::Reach(mm) => write!(f, "it is {mm:.1} mm out of reach"),
+            Why::Limit(joint, by) => {
+                write!(f, "joint {joint} would be {:.2} degrees beyond its limit", degrees(by))
+            }
+            Why::Wrist(angle) => {
+                write!(f, "joint 5 would be {:.2} degrees from stretched", degrees(angle))
+            }
+            Why::Shoulder(mm) => write!(f, "the wrist would be {mm:.1} mm from axis 1"),
+            Why::Elbow(angle) => {
+                write!(f, "the elbow would be {:.2} degrees from stretched", degrees(angle))
+            }
+            Why::Speed(joint, share) => {
+                write!(
+                    f,
+                    "joint {joint} would need {:.0} % of its speed at this feed",
+                    100.0 * share
+                )
+            }
+            Why::Apart => {
+                f.write_str("no turn about the tool and no posture leads on from the point before")
+            }
+            Why::Numbers => f.write_str("its numbers make no point of a path"),
+        }
+    }
+}
+
+impl std::error::Error for Blocked {}
+
+/// The turns about the tool and the postures with which an arm follows a path.
+///
+/// # Errors
+/// The first point that cannot be reached, or on the way to which nothing leads.
+pub fn choose(arm: &Arm, cell: &Cell, points: &[Point], wishes: &Wishes) -> Result<Way, Blocked> {
+    let job = samples::Job::new(arm, cell, points, wishes)?;
+    search::search(&job)
+}

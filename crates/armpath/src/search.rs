@@ -1,0 +1,252 @@
+//! The cheapest way through the intervals of each cut.
+
+use crate::follow::{self, Taken};
+use crate::grid::{self, Node, POSTURES, Row};
+use crate::samples::{Cut, Job};
+use crate::{Blocked, Section, Way, Why, Worst};
+use arm::{Arm, Joints, Posture};
+use std::collections::BTreeSet;
+use std::f64::consts::TAU;
+use std::ops::Range;
+
+/// Intervals whose rows are in memory at the same time.
+const BLOCK: usize = 512;
+
+/// How often a way that turns out not to be passed exactly is looked for anew.
+const TRIES: usize = 16;
+
+/// The turn of an edge: from the step below, the same, or from the step above.
+const TURNS: [i32; 3] = [-1, 0, 1];
+
+/// What an edge costs for turning the tool by a step, s.
+const TURNING: f32 = 0.02;
+
+/// The cheapest way to a node.
+#[derive(Clone, Copy)]
+struct Label {
+    cost: f32,
+    /// Joints without jumps, and the range in which each has been since the start.
+    joints: [f32; 6],
+    low: [f32; 6],
+    high: [f32; 6],
+}
+
+impl Label {
+    const DEAD: Label =
+        Label { cost: f32::INFINITY, joints: [0.0; 6], low: [0.0; 6], high: [0.0; 6] };
+}
+
+/// An edge that turned out not to be passed: the knot at its end (its sample), its node there, and whence it came.
+pub(crate) type Edge = (usize, usize, i32);
+
+pub(crate) fn search(job: &Job) -> Result<Way, Blocked> {
+    let mut way = Way { sections: Vec::new(), worst: follow::NO_WORST };
+    let mut stood: Option<Joints> = None;
+    for cut in &job.cuts {
+        let knots = knots(job, cut);
+        let mut from = 0;
+        loop {
+            let passed = section(job, cut, &knots[from..], stood, &mut way.worst)?;
+            stood = passed.section.stands.last().map(|stand| stand.joints);
+            way.sections.push(Section { reentry: from > 0, ..passed.section });
+            from += passed.intervals;
+            if from + 1 >= knots.len() {
+                break;
+            }
+        }
+    }
+    Ok(way)
+}
+
+/// Samples of a cut at which the turn may have changed by a step: all of them points.
+fn knots(job: &Job, cut: &Cut) -> Vec<usize> {
+    let least = if cut.fixed { 0.0 } else { job.step_angle() / job.wishes.turn_rate };
+    let Range { start, end } = cut.samples;
+    let (mut knots, mut time) = (vec![start], 0.0);
+    for at in start + 1..end {
+        time += job.samples[at].time;
+        let is_last = at + 1 == end;
+        if job.samples[at].is_point && (time >= least || is_last) {
+            knots.push(at);
+            time = 0.0;
+        }
+    }
+    knots
+}
+
+/// A section that is passed, and how many intervals it has.
+struct Passed {
+    section: Section,
+    intervals: usize,
+}
+
+/// The longest section from the first knot on.
+fn section(
+    job: &Job,
+    cut: &Cut,
+    knots: &[usize],
+    stood: Option<Joints>,
+    worst: &mut Worst,
+) -> Result<Passed, Blocked> {
+    let mut forbidden = BTreeSet::new();
+    for _ in 0..TRIES {
+        let (steps, posture) = cheapest(job, cut, knots, stood, &forbidden)?;
+        match follow::follow(job, &knots[..steps.len()], &steps, posture, stood, worst) {
+            Taken::Passed(section) => return Ok(Passed { section, intervals: steps.len() - 1 }),
+            Taken::Stopped(interval) => {
+                let node = steps[interval] * POSTURES + posture.index();
+                let turn = turn(steps[interval - 1], steps[interval], job.steps(cut));
+                forbidden.insert((knots[interval], node, turn));
+            }
+            Taken::Nowhere => break,
+        }
+    }
+    Err(Blocked { point: job.samples[knots[usize::from(knots.len() > 1)]].point, why: Why::Apart })
+}
+
+/// The turn that leads from one step to a neighbour, as in [`TURNS`] but the other way round.
+fn turn(from: usize, to: usize, steps: usize) -> i32 {
+    match (to + steps - from) % steps {
+        0 => 0,
+        1 => 1,
+        _ => -1,
+    }
+}
+
+/// The steps of the turn at each knot as far as a way leads, and its posture.
+fn cheapest(
+    job: &Job,
+    cut: &Cut,
+    knots: &[usize],
+    stood: Option<Joints>,
+    forbidden: &BTreeSet<Edge>,
+) -> Result<(Vec<usize>, Posture), Blocked> {
+    let steps = job.steps(cut);
+    let first = grid::start(job, knots[0], steps);
+    let mut labels: Vec<Label> = first.iter().map(|node| begin(job.arm, node, stood)).collect();
+    let mut nodes = first;
+    if nodes.iter().all(Node::is_dead) {
+        let sample = &job.samples[knots[0]];
+        return Err(Blocked { point: sample.point, why: follow::nearest(job, sample, steps) });
+    }
+    // Whence the cheapest way comes, at each knot behind the first.
+    let mut back: Vec<Vec<i8>> = Vec::new();
+    'all: for block in (0..knots.len() - 1).step_by(BLOCK) {
+        let until = (block + BLOCK).min(knots.len() - 1);
+        for (i, row) in grid::rows(job, &knots[block..=until], steps).into_iter().enumerate() {
+            let knot = knots[block + i + 1];
+            let time: f64 =
+                job.samples[knots[block + i] + 1..=knot].iter().map(|sample| sample.time).sum();
+            let (next, from) = layer(job, &labels, &nodes, &row, time, knot, forbidden);
+            if next.iter().all(|label| label.cost.is_infinite()) {
+                break 'all;
+            }
+            (labels, nodes) = (next, row);
+            back.push(from);
+        }
+    }
+    if back.is_empty() && knots.len() > 1 {
+        let samples = &job.samples[knots[0]..=knots[1]];
+        let (point, why) = follow::stopped(job, samples, steps);
+        return Err(Blocked { point, why });
+    }
+    let cheapest = (0..labels.len()).min_by(|a, b| labels[*a].cost.total_cmp(&labels[*b].cost));
+    let end = cheapest.unwrap_or_default();
+    let (mut step, posture) = (end / POSTURES, Posture::ALL[end % POSTURES]);
+    let mut taken = vec![step];
+    for from in back.iter().rev() {
+        let turn = i32::from(from[step * POSTURES + posture.index()]);
+        step = neighbour(step, turn, steps);
+        taken.push(step);
+    }
+    taken.reverse();
+    Ok((taken, posture))
+}
+
+/// The step from which a turn comes.
+fn neighbour(step: usize, turn: i32, steps: usize) -> usize {
+    (step as i32 + turn).rem_euclid(steps as i32) as usize
+}
+
+/// The label of a node at the start: what the arm needs to come here from where it stood.
+fn begin(arm: &Arm, node: &Node, stood: Option<Joints>) -> Label {
+    if node.is_dead() {
+        return Label::DEAD;
+    }
+    let way = |i: usize, before: f64| {
+        let change = follow::turned(arm, i, f64::from(node.end[i]), before) - before;
+        change.abs() / arm.joints()[i].speed
+    };
+    let time = stood.map_or(0.0, |stood| (0..6).map(|i| way(i, stood[i])).fold(0.0, f64::max));
+    Label { cost: node.cost + time as f32, joints: node.end, low: node.end, high: node.end }
+}
+
+/// The labels at the end of an interval, and whence each came.
+fn layer(
+    job: &Job,
+    labels: &[Label],
+    before: &Row,
+    row: &Row,
+    time: f64,
+    knot: usize,
+    forbidden: &BTreeSet<Edge>,
+) -> (Vec<Label>, Vec<i8>) {
+    let steps = row.len() / POSTURES;
+    let mut next = vec![Label::DEAD; row.len()];
+    let mut from = vec![0_i8; row.len()];
+    let turns = if steps < 3 { &TURNS[1..2] } else { &TURNS[..] };
+    for (at, node) in row.iter().enumerate().filter(|(_, node)| !node.is_dead()) {
+        let (step, posture) = (at / POSTURES, at % POSTURES);
+        for turn in turns {
+            let source = neighbour(step, *turn, steps) * POSTURES + posture;
+            let (label, beside) = (&labels[source], &row[source]);
+            // In an interval in which the tool turns, both of the steps have to be passed.
+            let dead = label.cost.is_infinite() || before[source].is_dead() || beside.is_dead();
+            if dead || forbidden.contains(&(knot, at, -turn)) {
+                continue;
+            }
+            if let Some(label) = extend(job, label, beside, node, *turn, time)
+                && label.cost < next[at].cost
+            {
+                (next[at], from[at]) = (label, *turn as i8);
+            }
+        }
+    }
+    (next, from)
+}
+
+/// The label behind an interval that begins with the step of `beside` and ends with that of `node`.
+fn extend(
+    job: &Job,
+    label: &Label,
+    beside: &Node,
+    node: &Node,
+    turn: i32,
+    time: f64,
+) -> Option<Label> {
+    let mut next = Label { cost: label.cost + beside.cost.max(node.cost), ..*label };
+    if turn != 0 {
+        next.cost += TURNING;
+    }
+    for i in 0..6 {
+        let turned = wrap32(node.end[i] - beside.end[i]);
+        // The turn comes on top of the way along the path.
+        let used = f64::from(beside.speed.max(node.speed))
+            + grid::share(job.arm, i, f64::from(turned), time);
+        if turn != 0 && used > job.wishes.speed {
+            return None;
+        }
+        next.low[i] = next.low[i].min(label.joints[i] + beside.low[i]);
+        next.high[i] = next.high[i].max(label.joints[i] + beside.high[i]);
+        next.joints[i] += beside.net[i] + turned;
+        next.low[i] = next.low[i].min(next.joints[i]);
+        next.high[i] = next.high[i].max(next.joints[i]);
+        follow::fitting(job, i, f64::from(next.low[i]), f64::from(next.high[i]))?;
+    }
+    Some(next)
+}
+
+fn wrap32(angle: f32) -> f32 {
+    let turn = TAU as f32;
+    angle - turn * (angle / turn).round()
+}

@@ -1,0 +1,282 @@
+//! Ways of an arm along paths, checked by its forward kinematics alone.
+
+use arm::{Arm, Coupling, CouplingLimit, Frame, Joint, Mat3, Spherical, Structure, Vec3};
+use std::f64::consts::{FRAC_PI_2, PI, TAU};
+use toolpost_armpath::{Blocked, Cell, Point, Way, Why, Wishes, choose};
+
+/// KUKA KR 6 R900 sixx.
+fn kuka() -> Arm {
+    let structure = Structure::Spherical(Spherical {
+        a1: 25.0,
+        a2: -35.0,
+        b: 0.0,
+        c1: 400.0,
+        c2: 455.0,
+        c3: 420.0,
+        c4: 80.0,
+        offsets: [0.0, -FRAC_PI_2, 0.0, 0.0, 0.0, 0.0],
+        signs: [-1.0, 1.0, 1.0, -1.0, 1.0, -1.0],
+    });
+    let limits = [
+        (-170.0, 170.0, 360.0),
+        (-190.0, 45.0, 300.0),
+        (-120.0, 156.0, 360.0),
+        (-185.0, 185.0, 381.0),
+        (-120.0, 120.0, 388.0),
+        (-350.0, 350.0, 615.0),
+    ];
+    let joint = |(min, max, speed): (f64, f64, f64)| Joint {
+        min: min.to_radians(),
+        max: max.to_radians(),
+        speed: speed.to_radians(),
+        acceleration: None,
+    };
+    Arm::new(structure, limits.map(joint), Some(Coupling::None), 0.0).unwrap()
+}
+
+/// The part 500 mm in front of the foot and 150 mm above it; a spindle that leans by an angle against the flange.
+fn cell(lean: f64) -> Cell {
+    let out = Frame::from_translation(Vec3::new(0.0, 0.0, 80.0));
+    Cell {
+        tool: out * Frame::from_mat3(Mat3::from_rotation_y(lean)) * out,
+        part: Frame::from_translation(Vec3::new(500.0, 0.0, 150.0)),
+    }
+}
+
+const LEANING: f64 = std::f64::consts::FRAC_PI_4;
+
+/// Points along a curve, all of them cut but the first, at 1800 mm/min with the tool upright.
+fn upright(count: usize, curve: impl Fn(f64) -> Vec3) -> Vec<Point> {
+    let point = |i: usize| Point {
+        tip: curve(i as f64 / (count - 1) as f64),
+        axis: Vec3::Z,
+        side: None,
+        cut: i > 0,
+        feed: 1800.0,
+    };
+    (0..count).map(point).collect()
+}
+
+/// Rings on a dome, leaning up to 40 degrees.
+fn dome(count: usize) -> Vec<Point> {
+    let point = |i: usize| {
+        let t = i as f64 / count as f64;
+        let (turn, lean) = (t * 12.0 * TAU, (2.0 + 38.0 * t).to_radians());
+        let axis = Vec3::new(lean.sin() * turn.cos(), lean.sin() * turn.sin(), lean.cos());
+        Point { tip: axis * 120.0 - Vec3::Z * 120.0, axis, side: None, cut: i > 0, feed: 1800.0 }
+    };
+    (0..count).map(point).collect()
+}
+
+/// That every point is reached, in order and once in each section, and that the joints do what a way promises.
+fn proven(arm: &Arm, cell: &Cell, points: &[Point], wishes: &Wishes, way: &Way) {
+    let mut next = 0;
+    for section in &way.sections {
+        assert_eq!(section.first, if section.reentry { next - 1 } else { next });
+        assert!(
+            section.reentry || !points[section.first].cut || points[section.first].side.is_some()
+        );
+        for (i, stand) in section.stands.iter().enumerate() {
+            let point = &points[section.first + i];
+            let tip = cell.part.inverse() * arm.flange(&stand.joints) * cell.tool;
+            assert!(tip.translation.distance(point.tip) < 1e-6, "{i}: {tip:?} {point:?}");
+            assert!((tip.matrix3.z_axis + point.axis).length() < 1e-9, "{i}");
+            assert!((tip.matrix3.x_axis - stand.side).length() < 1e-9, "{i}");
+            assert!(
+                arm.allows(&stand.joints) && arm.posture(&stand.joints) == section.posture,
+                "{i}"
+            );
+            let margins = arm.margins(&stand.joints);
+            assert!(
+                margins.wrist >= wishes.wrist
+                    && margins.elbow >= wishes.elbow
+                    && margins.shoulder >= wishes.shoulder
+            );
+            let Some(before) = i.checked_sub(1).map(|i| section.stands[i].joints) else { continue };
+            let length = point.tip.distance(points[section.first + i - 1].tip);
+            let turned = points[section.first + i - 1].axis.angle_between(point.axis);
+            let time = (length / (point.feed / 60.0)).max(turned / wishes.turn_rate);
+            for (k, joint) in arm.joints().iter().enumerate() {
+                let change = (stand.joints[k] - before[k]).abs();
+                assert!(
+                    change <= joint.speed * time * (wishes.speed + 1e-6) + 1e-9,
+                    "joint {} at {i}: {change}",
+                    k + 1
+                );
+            }
+        }
+        next = section.first + section.stands.len();
+    }
+    assert_eq!(next, points.len());
+}
+
+fn way(cell: &Cell, points: &[Point]) -> Result<Way, Blocked> {
+    let (arm, wishes) = (kuka(), Wishes::default());
+    let way = choose(&arm, cell, points, &wishes)?;
+    proven(&arm, cell, points, &wishes, &way);
+    Ok(way)
+}
+
+#[test]
+fn a_dome_is_cut_in_one_section_with_a_leaning_spindle() {
+    let points = dome(4000);
+    let way = way(&cell(LEANING), &points).unwrap();
+    assert_eq!(way.sections.len(), 1);
+    assert!(way.worst.wrist.0 > 5_f64.to_radians() && way.worst.speed.0 < 0.9, "{:?}", way.worst);
+}
+
+#[test]
+fn a_spindle_along_axis_6_has_no_free_turn_and_a_singular_wrist_in_a_cut_is_refused_with_its_point()
+{
+    // Leaning the tool through the direction of the forearm: joint 5 passes 0, whatever the turn.
+    let axis = |t: f64| Vec3::new(-(t.sin()), 0.0, t.cos());
+    let points: Vec<Point> = (0..=90)
+        .map(|i| Point {
+            tip: Vec3::new(0.0, 0.0, 350.0),
+            axis: axis(f64::from(i).to_radians()),
+            side: None,
+            cut: i > 0,
+            feed: 1800.0,
+        })
+        .collect();
+    let blocked = way(&cell(0.0), &points).unwrap_err();
+    assert!(
+        matches!(blocked.why, Why::Wrist(_)) && (1..90).contains(&blocked.point),
+        "{blocked:?}"
+    );
+    assert!(blocked.to_string().contains("degrees from stretched"), "{blocked}");
+    // The same with a leaning spindle: the turn goes round the singularity.
+    way(&cell(LEANING), &points).unwrap();
+}
+
+#[test]
+fn a_turn_that_the_source_says_is_kept() {
+    let mut points = upright(200, |t| Vec3::new(100.0 * t, 50.0 - 100.0 * t, 0.0));
+    let side = Vec3::new(0.6, 0.8, 0.0);
+    points.iter_mut().for_each(|point| point.side = Some(side));
+    let way = way(&cell(LEANING), &points).unwrap();
+    assert!(
+        way.sections
+            .iter()
+            .flat_map(|section| &section.stands)
+            .all(|stand| stand.side.distance(side) < 1e-9)
+    );
+}
+
+#[test]
+fn what_is_out_of_reach_or_too_near_is_refused_with_how_much() {
+    let far = upright(60, |t| Vec3::new(600.0 * t, 0.0, 0.0));
+    let blocked = way(&cell(LEANING), &far).unwrap_err();
+    assert!(matches!(blocked.why, Why::Reach(mm) if mm > 0.0 && mm < 20.0), "{blocked:?}");
+    assert!(blocked.to_string().contains("mm out of reach"), "{blocked}");
+    // In the foot of the arm.
+    let near = upright(60, |t| Vec3::new(-500.0 * t, 0.0, 0.0));
+    let blocked = way(&cell(0.0), &near).unwrap_err();
+    assert!(blocked.point > 0, "{blocked:?}");
+    // Behind the base.
+    let behind = upright(2, |t| Vec3::new(-1700.0 - t, 0.0, 0.0));
+    let blocked = way(&cell(0.0), &behind).unwrap_err();
+    assert!(
+        blocked.point == 0 && matches!(blocked.why, Why::Reach(mm) if mm > 100.0),
+        "{blocked:?}"
+    );
+}
+
+#[test]
+fn a_feed_that_is_too_fast_for_a_joint_is_refused_far_from_any_singularity() {
+    let line = |feed: f64| {
+        let mut points = upright(200, |t| Vec3::new(0.0, 200.0 * t - 100.0, 0.0));
+        points.iter_mut().for_each(|point| point.feed = feed);
+        points
+    };
+    let slow = way(&cell(LEANING), &line(30_000.0)).unwrap();
+    assert!(slow.worst.speed.0 > 0.05, "{:?}", slow.worst);
+    let blocked = way(&cell(LEANING), &line(3_000_000.0)).unwrap_err();
+    assert!(matches!(blocked.why, Why::Speed(_, share) if share > 0.9), "{blocked:?}");
+    assert!(blocked.to_string().contains("% of its speed at this feed"), "{blocked}");
+}
+
+#[test]
+fn a_ring_round_the_foot_is_divided_where_joint_1_ends() {
+    // One and a half times round: joint 1 turns 340 degrees.
+    let ring = upright(1200, |t| {
+        let angle = t * 3.0 * PI;
+        Vec3::new(500.0 * angle.cos() - 500.0, 500.0 * angle.sin(), 0.0)
+    });
+    let way = way(&cell(LEANING), &ring).unwrap();
+    assert!(way.sections.len() >= 2 && way.sections[1].reentry, "{}", way.sections.len());
+    assert!(way.sections.len() <= 4, "{}", way.sections.len());
+}
+
+#[test]
+fn a_tool_that_is_turned_round_and_round_by_its_source_is_divided_where_joint_6_ends() {
+    let mut points = upright(800, |t| Vec3::new(0.0, 100.0 * t, 0.0));
+    for (i, point) in points.iter_mut().enumerate() {
+        let angle = i as f64 * 4.0 * TAU / 800.0;
+        (point.side, point.feed) = (Some(Vec3::new(angle.cos(), angle.sin(), 0.0)), 100.0);
+    }
+    let (arm, wishes) = (kuka(), Wishes::default());
+    let way = choose(&arm, &cell(0.0), &points, &wishes).unwrap();
+    // 1440 degrees in spans of at most 698.
+    assert!((3..=4).contains(&way.sections.len()), "{}", way.sections.len());
+    let all = way.sections.iter().flat_map(|section| &section.stands);
+    assert!(all.clone().all(|stand| arm.allows(&stand.joints)));
+}
+
+#[test]
+fn cuts_with_a_rapid_between_them_are_sections_of_their_own() {
+    let mut points = dome(600);
+    points[300].cut = false;
+    let way = way(&cell(LEANING), &points).unwrap();
+    assert_eq!(way.sections.iter().map(|section| section.first).collect::<Vec<_>>(), [0, 300]);
+    assert!(way.sections.iter().all(|section| !section.reentry));
+}
+
+#[test]
+fn limits_of_joint_3_as_the_controller_counts_it_hold_on_the_way() {
+    let free = kuka();
+    let points = upright(100, |t| Vec3::new(100.0 * t, 0.0, 0.0));
+    let (cell, wishes) = (cell(LEANING), Wishes::default());
+    let way = choose(&free, &cell, &points, &wishes).unwrap();
+    let coupled =
+        Arm::new(free.structure().clone(), *free.joints(), Some(Coupling::LessJoint2), 0.0)
+            .unwrap();
+    let shown = |stand: &toolpost_armpath::Stand| coupled.shown(&stand.joints).unwrap()[2];
+    let highest = way.sections[0].stands.iter().map(shown).fold(f64::NEG_INFINITY, f64::max);
+    let limit =
+        |max: f64| coupled.clone().with_coupling_limit(CouplingLimit { min: -9.0, max }).unwrap();
+    assert!(choose(&limit(highest + 0.01), &cell, &points, &wishes).is_ok());
+    if let Ok(other) = choose(&limit(highest - 0.05), &cell, &points, &wishes) {
+        let all = other.sections.iter().flat_map(|section| &section.stands);
+        assert!(all.clone().all(|stand| shown(stand) <= highest - 0.05));
+    }
+    assert!(choose(&limit(-8.0), &cell, &points, &wishes).is_err());
+}
+
+#[test]
+fn what_is_no_number_is_refused_with_its_point() {
+    let with = |change: &dyn Fn(&mut Point)| {
+        let mut points = dome(20);
+        change(&mut points[7]);
+        way(&cell(LEANING), &points).unwrap_err()
+    };
+    let refused = Blocked { point: 7, why: Why::Numbers };
+    assert_eq!(with(&|point| point.tip.x = f64::NAN), refused);
+    assert_eq!(with(&|point| point.axis = Vec3::ZERO), refused);
+    assert_eq!(with(&|point| point.feed = 0.0), refused);
+    assert_eq!(with(&|point| point.side = Some(point.axis)), refused);
+    assert_eq!(with(&|point| point.tip.x = 1e9), refused);
+    let wishes = Wishes { turns: 0, ..Wishes::default() };
+    assert!(choose(&kuka(), &cell(0.0), &dome(5), &wishes).is_err());
+    assert!(choose(&kuka(), &cell(0.0), &[], &Wishes::default()).unwrap().sections.is_empty());
+}
+
+#[test]
+fn the_way_is_the_same_on_one_thread_and_on_many() {
+    let (arm, cell, points) = (kuka(), cell(LEANING), dome(1500));
+    let run = |threads: usize| {
+        let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
+        pool.install(|| choose(&arm, &cell, &points, &Wishes::default()).unwrap())
+    };
+    assert_eq!(run(1), run(3));
+}
