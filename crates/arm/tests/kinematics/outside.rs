@@ -3,6 +3,7 @@
 use crate::robots::{UR5E, UR10E, apart, frame, free, spherical};
 use geom::wrap;
 use serde_json::{Value, json};
+use std::f64::consts::TAU;
 use std::fs;
 use std::path::Path;
 use std::process::Command;
@@ -40,7 +41,7 @@ fn joints(count: usize) -> Vec<Joints> {
     let mut angle = || {
         state =
             state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        ((state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5) * 6.28
+        ((state >> 11) as f64 / (1_u64 << 53) as f64 - 0.5) * TAU
     };
     (0..count).map(|_| std::array::from_fn(|_| angle())).collect()
 }

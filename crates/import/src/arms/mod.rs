@@ -11,7 +11,7 @@ mod write;
 pub use calibration::import as import_calibration;
 
 use crate::Import;
-use program::Diagnostic;
+use program::{Diagnostic, encoding};
 
 /// The largest description that is taken, bytes.
 const LARGEST: usize = 4 << 20;
@@ -64,6 +64,9 @@ fn text(bytes: &[u8]) -> Read<&str> {
         return fail(
             Diagnostic::error("import", message).help("leave meshes in files of their own"),
         );
+    }
+    if encoding::is_utf_16(bytes) {
+        return Err(encoding::utf_16().into());
     }
     let text = std::str::from_utf8(bytes).map_err(|_| {
         Diagnostic::error("encoding", "this file is not UTF-8").help("save it as UTF-8")

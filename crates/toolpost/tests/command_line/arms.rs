@@ -66,7 +66,7 @@ fn descriptions_of_arms_are_imported_by_their_ending_and_nothing_is_saved_of_wha
     );
     refused(
         &["machines", "import", "arm.urdf", "-o", "mine.toml", "--reach", "0"],
-        "a length in mm",
+        "a number greater than 0 is needed",
     );
     refused(
         &["machines", "import", "calibration.yaml", "-o", "mine.toml"],

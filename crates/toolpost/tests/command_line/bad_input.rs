@@ -370,6 +370,8 @@ const READERS: &[(&str, &str, &str)] = &[
     ("wire/lines.dxf", "in.dxf", "wire in.dxf -m fanuc-wire -o out.nc"),
     ("wire/lines.dxf", "in.dxf", "wire part.cls --upper in.dxf -m fanuc-wire -o out.nc"),
     ("import/shop.pp", "in.pp", "machines import in.pp -o mine.toml"),
+    ("urdf/small.urdf", "in.urdf", "machines import in.urdf -o mine.toml"),
+    ("calibration/ur5e.yaml", "in.yaml", "machines import in.yaml --extends ur5e -o mine.toml"),
     ("import/board.txt", "in.txt", "machines import in.txt -o mine.toml"),
     ("MACHINE", "in.toml", "machines import shop.pp --extends in.toml -o mine.toml"),
     ("MACHINE", "in.toml", "machines check in.toml"),
