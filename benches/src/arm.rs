@@ -3,7 +3,7 @@
 
 use crate::fastest;
 use ::arm::{Arm, Coupling, Frame, Joint, Joints, Mat3, Spherical, Structure, Vec3};
-use armpath::{Cell, Point, Wishes, choose};
+use armpath::{Cell, Point, Settings, choose};
 use program::Diagnostic;
 use rs_opw_kinematics::kinematic_traits::{Kinematics, Pose};
 use rs_opw_kinematics::kinematics_impl::OPWKinematics;
@@ -68,8 +68,8 @@ fn path(count: usize, rounds: usize, arm: &Arm) -> Result<(), Vec<Diagnostic>> {
     let part = Frame::from_translation(Vec3::new(500.0, 0.0, 150.0));
     let cell = Cell { tool: out * leaning * out, part };
     let points: Vec<Point> = (0..count).map(|i| dome(i, count)).collect();
-    let (wishes, flange) = (Wishes::default(), cell.tool.inverse());
-    let turns = usize::from(wishes.turns);
+    let (settings, flange) = (Settings::default(), cell.tool.inverse());
+    let turns = usize::from(settings.turns);
     let floor = fastest(1, &mut || {
         for point in &points {
             let at = Frame::from_translation(part.transform_point3(point.tip));
@@ -82,9 +82,9 @@ fn path(count: usize, rounds: usize, arm: &Arm) -> Result<(), Vec<Diagnostic>> {
     })?;
     let mut sections = 0;
     let ours = fastest(rounds.min(2), &mut || {
-        let way = choose(arm, &cell, &points, &wishes);
+        let choice = choose(arm, &cell, &points, &settings);
         let blocked = |why: armpath::Blocked| vec![Diagnostic::error("arm", why.to_string())];
-        sections = way.map_err(blocked)?.sections.len();
+        sections = choice.map_err(blocked)?.sections.len();
         Ok(())
     })?;
     println!("turn and posture of an arm along {count} points, {turns} turns; {sections} section");

@@ -5,10 +5,10 @@
 //! ([`Coupling`]); [`Arm::shown`] and [`Arm::model`] go between the two. A flange is a [`Frame`] in the **world of the
 //! controller**, whose origin lies [`Arm::world_height`] above the foot of the arm.
 //!
-//! **Nouns.** A [`Posture`] is one of the eight ways in which an arm reaches a frame: rear or front, elbow below or above, wrist
+//! **Nouns.** A [`Posture`] is one of the eight solutions in which an arm reaches a frame: rear or front, elbow below or above, wrist
 //! flipped or not. A *turn* is a position of a joint that differs by 360 degrees and leaves the flange where it is.
 //!
-//! **Both ways, written apart.** [`Arm::flange`] multiplies the links one after the other. [`Arm::inverse`] is a closed form
+//! **Both solutions, written apart.** [`Arm::flange`] multiplies the links one after the other. [`Arm::inverse`] is a closed form
 //! that solves the equations of the wrist centre. They share no code: a proof by the first of what the second has found is
 //! worth something. Every function depends on its arguments alone.
 //!
@@ -25,9 +25,9 @@
 //! let joints = [0.0, -90.0, 90.0, 0.0, 45.0, 0.0].map(f64::to_radians);
 //! let flange = arm.flange(&joints);
 //! assert!((flange.translation.x - 501.5685).abs() < 1e-4);
-//! let ways = arm.inverse(&flange, 0.0);
-//! assert_eq!(ways.iter().count(), 8);
-//! let same = ways.get(Posture::of(false, false, false)).unwrap();
+//! let solutions = arm.inverse(&flange, 0.0);
+//! assert_eq!(solutions.iter().count(), 8);
+//! let same = solutions.get(Posture::of(false, false, false)).unwrap();
 //! assert!(same.iter().zip(&joints).all(|(a, b)| (a - b).abs() < 1e-9));
 //! ```
 //!
@@ -43,5 +43,5 @@ pub use arm::{
     Arm, Calibration, Coupling, CouplingLimit, Dh, Joint, Joints, Misfit, Spherical, Structure,
 };
 pub use geom::{Frame, Mat3, Vec3};
-pub use inverse::Ways;
+pub use inverse::Solutions;
 pub use posture::{Margins, Posture};

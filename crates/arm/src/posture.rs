@@ -2,7 +2,7 @@
 
 use crate::arm::{Arm, Joints, Structure};
 
-/// One of the eight ways in which an arm reaches a frame.
+/// One of the eight solutions in which an arm reaches a frame.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub struct Posture(u8);
 

@@ -1,8 +1,8 @@
-//! A way that was found, followed exactly: joints at every sample, without jumps, and every figure checked.
+//! Steps that were found, followed exactly: joints at every sample, without jumps, and every figure checked.
 
-use crate::grid::{share, stands};
+use crate::grid::{cost_at, share};
 use crate::samples::{Job, Sample};
-use crate::{Section, Stand, Why, Worst};
+use crate::{Position, Section, Why, Worst};
 use arm::{Arm, Joints, Posture, Structure, Vec3};
 use geom::wrap;
 use std::f64::consts::TAU;
@@ -16,7 +16,7 @@ pub(crate) const NO_WORST: Worst = Worst {
     speed: (0.0, 0),
 };
 
-/// What comes of following a way.
+/// What comes of following the steps.
 pub(crate) enum Taken {
     /// It is passed.
     Passed(Section),
@@ -32,7 +32,7 @@ pub(crate) fn follow(
     knots: &[usize],
     steps: &[usize],
     posture: Posture,
-    stood: Option<Joints>,
+    last: Option<Joints>,
     worst: &mut Worst,
 ) -> Taken {
     let first = knots[0];
@@ -47,7 +47,7 @@ pub(crate) fn follow(
     for interval in 1..knots.len() {
         let samples = &job.samples[knots[interval - 1] + 1..=knots[interval]];
         let whole: f64 = samples.iter().map(|sample| sample.time).sum();
-        let count = i64::from(job.wishes.turns);
+        let count = i64::from(job.settings.turns);
         let by = (steps[interval] as i64 - steps[interval - 1] as i64).rem_euclid(count);
         let by = (if by * 2 > count { by - count } else { by }) as f64 * angle;
         let (start, mut elapsed) = (turn, 0.0);
@@ -62,7 +62,7 @@ pub(crate) fn follow(
             let joints: Joints = std::array::from_fn(|k| before[k] + wrap(found[k] - before[k]));
             for k in 0..6 {
                 let used = share(job.arm, k, joints[k] - before[k], sample.time);
-                if used > job.wishes.speed {
+                if used > job.settings.speed {
                     return Taken::Stopped(interval);
                 }
                 if used > speed.0 {
@@ -72,31 +72,31 @@ pub(crate) fn follow(
             passed.push((joints, turn));
         }
     }
-    let Some(shift) = shift(job, &passed, stood) else { return Taken::Stopped(knots.len() - 1) };
+    let Some(shift) = shift(job, &passed, last) else { return Taken::Stopped(knots.len() - 1) };
     if speed.0 > worst.speed.0 {
         worst.speed = speed;
     }
-    let mut stands = Vec::new();
+    let mut positions = Vec::new();
     for ((joints, turn), sample) in passed.iter().zip(&job.samples[first..]) {
         let joints: Joints = std::array::from_fn(|k| joints[k] + shift[k]);
         note(job.arm, &joints, sample.point, worst);
         if sample.is_point {
-            stands.push(Stand { joints, side: job.side_in_part(sample, *turn) });
+            positions.push(Position { joints, side: job.side_in_part(sample, *turn) });
         }
     }
-    Taken::Passed(Section { first: job.samples[first].point, posture, stands, reentry: false })
+    Taken::Passed(Section { first: job.samples[first].point, posture, positions, reentry: false })
 }
 
-/// The joints of a sample, where the arm may stand there.
+/// The joints of a sample, where the settings allow them.
 fn solve(job: &Job, sample: &Sample, turn: f64, posture: Posture) -> Option<Joints> {
-    let ways = job.arm.inverse(&job.frame(sample, turn), 0.0);
-    let joints = ways.get(posture)?;
-    stands(job.arm, joints, job.wishes).ok()?;
+    let solutions = job.arm.inverse(&job.frame(sample, turn), 0.0);
+    let joints = solutions.get(posture)?;
+    cost_at(job.arm, joints, job.settings).ok()?;
     Some(*joints)
 }
 
-/// Whole turns for each joint, by which all of the way is within the limits; those that are nearest to where the arm stood.
-fn shift(job: &Job, passed: &[(Joints, f64)], stood: Option<Joints>) -> Option<Joints> {
+/// Whole turns for each joint, that bring the whole section within the limits; those nearest to where the section before ended.
+fn shift(job: &Job, passed: &[(Joints, f64)], last: Option<Joints>) -> Option<Joints> {
     let mut shift = [0.0; 6];
     for (k, shift) in shift.iter_mut().enumerate() {
         let of = |joints: &(Joints, f64)| joints.0[k];
@@ -105,7 +105,7 @@ fn shift(job: &Job, passed: &[(Joints, f64)], stood: Option<Joints>) -> Option<J
         let (least, most) = fitting(job, k, low, high)?;
         let start = passed.first().map_or(0.0, of);
         let joint = &job.arm.joints()[k];
-        let wanted = stood.map_or((joint.min + joint.max) / 2.0, |stood| stood[k]);
+        let wanted = last.map_or((joint.min + joint.max) / 2.0, |last| last[k]);
         *shift = TAU * ((wanted - start) / TAU).round().clamp(least, most);
     }
     let within = |(joints, _): &(Joints, f64)| {
@@ -118,7 +118,8 @@ fn shift(job: &Job, passed: &[(Joints, f64)], stood: Option<Joints>) -> Option<J
 pub(crate) fn fitting(job: &Job, joint: usize, low: f64, high: f64) -> Option<(f64, f64)> {
     let limits = &job.arm.joints()[joint];
     // Half a microradian for what single precision has rounded.
-    let (min, max) = (limits.min + job.wishes.limit - 5e-7, limits.max - job.wishes.limit + 5e-7);
+    let (min, max) =
+        (limits.min + job.settings.limit - 5e-7, limits.max - job.settings.limit + 5e-7);
     let (least, most) = (((min - low) / TAU).ceil(), ((max - high) / TAU).floor());
     (least <= most).then_some((least, most))
 }
@@ -156,7 +157,7 @@ pub(crate) fn nearest(job: &Job, sample: &Sample, steps: usize) -> Why {
     for step in 0..steps {
         let flange = job.frame(sample, step as f64 * job.step_angle());
         for (_, joints) in job.arm.inverse(&flange, 0.0).iter() {
-            if let Err(why) = stands(job.arm, joints, job.wishes)
+            if let Err(why) = cost_at(job.arm, joints, job.settings)
                 && found.is_none_or(|found| is_nearer(why, found))
             {
                 found = Some(why);
@@ -210,7 +211,7 @@ fn out_of_reach(job: &Job, sample: &Sample, steps: usize) -> f64 {
     (0..steps).map(off).min_by(|a, b| a.abs().total_cmp(&b.abs())).unwrap_or_default()
 }
 
-/// What ends every way in an interval: the first sample that is not reached at all, or the least speed that is too much.
+/// What ends every choice in an interval: the first sample that is not reached at all, or the least speed that is too much.
 pub(crate) fn stopped(job: &Job, samples: &[Sample], steps: usize) -> (usize, Why) {
     for pair in samples.windows(2) {
         let (mut speed, mut reached): (Option<Why>, bool) = (None, false);
@@ -232,7 +233,7 @@ pub(crate) fn stopped(job: &Job, samples: &[Sample], steps: usize) -> (usize, Wh
         }
         match speed {
             _ if !reached => return (pair[1].point, nearest(job, &pair[1], steps)),
-            Some(Why::Speed(_, used)) if used <= job.wishes.speed => {}
+            Some(Why::Speed(_, used)) if used <= job.settings.speed => {}
             Some(why) => return (pair[1].point, why),
             None => return (pair[1].point, Why::Apart),
         }

@@ -1,7 +1,7 @@
 //! Every step of the turn and every posture, followed through each interval with the turn standing still.
 
 use crate::samples::{Job, Sample};
-use crate::{Why, Wishes};
+use crate::{Settings, Why};
 use arm::{Arm, Joints, Margins, Posture};
 use geom::wrap;
 use rayon::prelude::*;
@@ -49,7 +49,7 @@ impl Node {
 /// The nodes of an interval: those of the first step's eight postures, then of the next.
 pub(crate) type Row = Vec<Node>;
 
-/// The joints of a sample, with the turn at a step, in a posture; and what it costs to stand there.
+/// The joints of a sample, with the turn at a step, in a posture; and what it costs to be there.
 type Place = Option<(Joints, f32)>;
 
 /// The nodes at the start of a cut, at a sample.
@@ -118,7 +118,7 @@ fn advance(node: &mut Node, from: &Place, to: &Place, time: f64, job: &Job) {
     node.speed = node.speed.max(fastest as f32);
     // Half of the cost is standing near to where the arm must not be, half the effort of its joints.
     node.cost += (time as f32) * (cost + fastest as f32);
-    if fastest > job.wishes.speed {
+    if fastest > job.settings.speed {
         *node = Node::DEAD;
     }
 }
@@ -133,27 +133,28 @@ pub(crate) fn share(arm: &Arm, joint: usize, change: f64, time: f64) -> f64 {
 fn places(job: &Job, sample: &Sample, steps: usize) -> Vec<Place> {
     let mut places = Vec::with_capacity(steps * POSTURES);
     for step in 0..steps {
-        let ways = job.arm.inverse(&job.frame(sample, step as f64 * job.step_angle()), 0.0);
+        let solutions = job.arm.inverse(&job.frame(sample, step as f64 * job.step_angle()), 0.0);
         for posture in Posture::ALL {
-            let joints = ways.get(posture);
+            let joints = solutions.get(posture);
             places.push(
-                joints
-                    .and_then(|joints| Some((*joints, stands(job.arm, joints, job.wishes).ok()?))),
+                joints.and_then(|joints| {
+                    Some((*joints, cost_at(job.arm, joints, job.settings).ok()?))
+                }),
             );
         }
     }
     places
 }
 
-/// What it costs to stand at joints, at most some tens.
+/// What it costs to be at these joints, at most some tens.
 ///
 /// # Errors
 /// Where it must not.
-pub(crate) fn stands(arm: &Arm, joints: &Joints, wishes: &Wishes) -> Result<f32, Why> {
+pub(crate) fn cost_at(arm: &Arm, joints: &Joints, settings: &Settings) -> Result<f32, Why> {
     let mut cost = 0.0;
     let mut turned = *joints;
     for (i, (joint, q)) in arm.joints().iter().zip(&mut turned).enumerate() {
-        let (low, high) = (joint.min + wishes.limit, joint.max - wishes.limit);
+        let (low, high) = (joint.min + settings.limit, joint.max - settings.limit);
         *q += TAU * ((low - *q) / TAU).ceil();
         if *q > high {
             // The nearer of the limits, with this turn or the one below.
@@ -168,13 +169,13 @@ pub(crate) fn stands(arm: &Arm, joints: &Joints, wishes: &Wishes) -> Result<f32,
         return Err(Why::Limit(3, 0.0));
     }
     let Margins { wrist, shoulder, elbow } = arm.margins(joints);
-    if wrist < wishes.wrist {
+    if wrist < settings.wrist {
         return Err(Why::Wrist(wrist));
     }
-    if shoulder < wishes.shoulder {
+    if shoulder < settings.shoulder {
         return Err(Why::Shoulder(shoulder));
     }
-    if elbow < wishes.elbow {
+    if elbow < settings.elbow {
         return Err(Why::Elbow(elbow));
     }
     Ok((cost + near(wrist, 0.3) + near(shoulder, 100.0) + near(elbow, 0.3)) as f32)

@@ -1,20 +1,41 @@
-//! Along a path that says where the tool tip is and how its axis stands, an arm is free to turn the tool about that axis, and to
+//! Along a path that says where the tool tip is and where its axis points, an arm is free to turn the tool about that axis, and to
 //! choose its posture: [`choose`] picks both for the whole path, so that no limit, no singularity and no joint that is too slow
 //! falls into a cut.
 //!
 //! **Units and frames.** Lengths are mm, angles radians, times s, feeds mm/min. The axis points from the tip to the spindle, as
-//! everywhere; the Z of the tool frame points the other way, out of the tool.
+//! everywhere; the Z of the tool frame points the opposite direction, out of the tool.
 //!
 //! **How.** A cut is a *section*: points that follow each other by straight lines. In it the posture stays, and the turn changes by
-//! at most [`Wishes::turn_rate`]. The turns are divided into [`Wishes::turns`] steps, and time into intervals long enough for one
-//! step. First every step and posture is followed through each interval; then the cheapest way through the intervals is found,
-//! from each step to itself or to a neighbour (dynamic programming); then that way is followed exactly, with the turn changing
+//! at most [`Settings::turn_rate`]. The turns are divided into [`Settings::turns`] steps, and time into intervals long enough for one
+//! step. First every step and posture is followed through each interval; then the cheapest sequence of steps is found,
+//! from each step to itself or to a neighbour (dynamic programming); then that sequence is followed exactly, with the turn changing
 //! evenly within an interval, and every figure is checked at each point and between points ([`SPACING`]). Between sections the arm
-//! is free to take another posture. Where no way leads through a section it is divided: the arm draws back, turns and enters
+//! is free to take another posture. Where no sequence passes a whole section it is divided: the arm draws back, turns and enters
 //! again ([`Section::reentry`]). Memory is some 300 bytes an interval; the result depends on the arguments alone, whatever the
 //! number of threads.
 //!
-//! **What is not done.** Collisions are not looked at. Between two sections the way of the arm is not looked at. The cost of a
+//! ```
+//! use arm::{Arm, Coupling, Dh, Frame, Joint, Structure, Vec3};
+//! use toolpost_armpath::{Cell, Point, Settings, choose};
+//! let ur5e = Dh { d1: 162.5, a2: -425.0, a3: -392.2, d4: 133.3, d5: 99.7, d6: 99.6 };
+//! let joint = Joint { min: -6.28, max: 6.28, speed: 3.14, acceleration: None };
+//! let arm = Arm::new(Structure::Ur(ur5e, None), [joint; 6], Some(Coupling::None), 0.0).unwrap();
+//! let cell = Cell {
+//!     tool: Frame::from_translation(Vec3::new(0.0, 0.0, 150.0)),
+//!     part: Frame::from_translation(Vec3::new(450.0, 0.0, 150.0)),
+//! };
+//! let point = |x: f64, cut: bool| Point { tip: Vec3::new(x, 0.0, 0.0), axis: Vec3::Z, side: None, cut, feed: 1200.0 };
+//! let path = [point(0.0, false), point(60.0, true), point(120.0, true)];
+//! let choice = choose(&arm, &cell, &path, &Settings::default()).unwrap();
+//! assert_eq!(choice.sections.len(), 1);
+//! let end = arm.flange(&choice.sections[0].positions[2].joints) * cell.tool;
+//! assert!(end.translation.distance(Vec3::new(570.0, 0.0, 150.0)) < 1e-6);
+//! // Ten metres away nothing reaches.
+//! let far = choose(&arm, &cell, &[point(10_000.0, false)], &Settings::default()).unwrap_err();
+//! assert!(far.to_string().contains("out of reach"));
+//! ```
+//!
+//! **What is not done.** Collisions are not looked at. Nor is the path of the arm between two sections. The cost of a
 //! section counts from the cheapest end of the one before, not from all its ends.
 
 mod follow;
@@ -52,9 +73,9 @@ pub struct Cell {
     pub part: Frame,
 }
 
-/// What is asked of a way.
+/// What is asked of a choice.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Wishes {
+pub struct Settings {
     /// Steps of the turn about the tool axis, 1 to 360.
     pub turns: u16,
     /// Fastest turn of the tool while it cuts, of its axis and about it, radians/s: where the path turns it faster than that at
@@ -72,11 +93,11 @@ pub struct Wishes {
     pub speed: f64,
 }
 
-impl Default for Wishes {
+impl Default for Settings {
     /// Steps of 10 degrees, turned at most 60 degrees/s; 5 degrees and 20 mm from singularities; 1 degree from limits; 90 % of the
     /// speeds.
-    fn default() -> Wishes {
-        Wishes {
+    fn default() -> Settings {
+        Settings {
             turns: 36,
             turn_rate: 60_f64.to_radians(),
             wrist: 5_f64.to_radians(),
@@ -88,9 +109,9 @@ impl Default for Wishes {
     }
 }
 
-/// How the arm stands at a point.
+/// The position of the arm at a point of the path.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Stand {
+pub struct Position {
     /// Its joints, without jumps within a section and within the limits.
     pub joints: Joints,
     /// Unit vector of the tool's own X, in the frame of the part.
@@ -104,13 +125,13 @@ pub struct Section {
     pub first: usize,
     /// Its posture.
     pub posture: Posture,
-    /// How the arm stands at each point, from the first on.
-    pub stands: Vec<Stand>,
+    /// Its position at each point, from the first on.
+    pub positions: Vec<Position>,
     /// Whether it begins where the section before it ends, within a cut: the arm draws back there, turns and enters again.
     pub reentry: bool,
 }
 
-/// The least margins of a way, and where they are.
+/// The least margins, and where they are.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Worst {
     /// Of joint 5 from stretched or folded, radians, and at which point.
@@ -125,16 +146,16 @@ pub struct Worst {
     pub speed: (f64, usize),
 }
 
-/// The way of an arm along a path.
+/// What is chosen for a path.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Way {
+pub struct Choice {
     /// Its sections, which have every point; one at which the arm enters again is in two of them.
     pub sections: Vec<Section>,
     /// Its least margins.
     pub worst: Worst,
 }
 
-/// Why there is no way.
+/// Why nothing can be chosen.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Blocked {
     /// The number of the point at which it ends, or on the way to which.
@@ -143,7 +164,7 @@ pub struct Blocked {
     pub why: Why,
 }
 
-/// What ends a way.
+/// What ends a section of which nothing is left.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Why {
     /// No posture reaches the point, whatever the turn: how much too far it is from the shoulder, mm; negative where it is too
@@ -161,7 +182,7 @@ pub enum Why {
     Speed(usize, f64),
     /// Single points are reached, but no turn and posture leads from one to the next.
     Apart,
-    /// The point, the feed or the wishes are no numbers that make sense.
+    /// The point, the feed or the settings are no numbers that make sense.
     Numbers,
 }
 
@@ -202,7 +223,12 @@ impl std::error::Error for Blocked {}
 ///
 /// # Errors
 /// The first point that cannot be reached, or on the way to which nothing leads.
-pub fn choose(arm: &Arm, cell: &Cell, points: &[Point], wishes: &Wishes) -> Result<Way, Blocked> {
-    let job = samples::Job::new(arm, cell, points, wishes)?;
+pub fn choose(
+    arm: &Arm,
+    cell: &Cell,
+    points: &[Point],
+    settings: &Settings,
+) -> Result<Choice, Blocked> {
+    let job = samples::Job::new(arm, cell, points, settings)?;
     search::search(&job)
 }

@@ -1,6 +1,6 @@
 //! A path as samples in the world: its points, and some between points that are far apart.
 
-use crate::{Blocked, Cell, Point, SPACING, Why, Wishes};
+use crate::{Blocked, Cell, Point, SPACING, Settings, Why};
 use arm::{Arm, Frame, Vec3};
 use geom::{Mat3, angle_between, between, direction};
 use std::f64::consts::TAU;
@@ -40,7 +40,7 @@ pub(crate) struct Cut {
 /// What is to be followed.
 pub(crate) struct Job<'a> {
     pub(crate) arm: &'a Arm,
-    pub(crate) wishes: &'a Wishes,
+    pub(crate) settings: &'a Settings,
     pub(crate) cuts: Vec<Cut>,
     pub(crate) samples: Vec<Sample>,
     /// The flange in the frame of the tool.
@@ -54,13 +54,13 @@ impl<'a> Job<'a> {
         arm: &'a Arm,
         cell: &Cell,
         points: &[Point],
-        wishes: &'a Wishes,
+        settings: &'a Settings,
     ) -> Result<Job<'a>, Blocked> {
-        let good = (1..=360).contains(&wishes.turns)
-            && wishes.turn_rate > 0.0
-            && wishes.speed > 0.0
-            && wishes.speed <= 1.0
-            && [wishes.wrist, wishes.shoulder, wishes.elbow, wishes.limit]
+        let good = (1..=360).contains(&settings.turns)
+            && settings.turn_rate > 0.0
+            && settings.speed > 0.0
+            && settings.speed <= 1.0
+            && [settings.wrist, settings.shoulder, settings.elbow, settings.limit]
                 .iter()
                 .all(|least| *least >= 0.0)
             && cell.tool.is_finite()
@@ -70,7 +70,7 @@ impl<'a> Job<'a> {
         }
         let mut job = Job {
             arm,
-            wishes,
+            settings,
             cuts: Vec::new(),
             samples: Vec::with_capacity(points.len()),
             flange: cell.tool.inverse(),
@@ -120,7 +120,7 @@ impl<'a> Job<'a> {
         let turned = if fixed { angle_between(last.side, end.side) } else { 0.0 };
         let count = (length / SPACING).max(lean / LEAN).max(turned / LEAN).ceil().max(1.0);
         // Controllers go slower than the feed where the tool would turn too fast.
-        let time = (length / speed).max((lean + turned) / self.wishes.turn_rate);
+        let time = (length / speed).max((lean + turned) / self.settings.turn_rate);
         if count > MOST {
             return Err(Blocked { point: end.point, why: Why::Numbers });
         }
@@ -152,12 +152,12 @@ impl<'a> Job<'a> {
 
     /// How many steps the turn of a cut has.
     pub(crate) fn steps(&self, cut: &Cut) -> usize {
-        if cut.fixed { 1 } else { usize::from(self.wishes.turns) }
+        if cut.fixed { 1 } else { usize::from(self.settings.turns) }
     }
 
     /// The angle of a step.
     pub(crate) fn step_angle(&self) -> f64 {
-        TAU / f64::from(self.wishes.turns)
+        TAU / f64::from(self.settings.turns)
     }
 
     /// The flange for a sample with the tool turned by an angle.

@@ -1,9 +1,9 @@
-//! The cheapest way through the intervals of each cut.
+//! The cheapest steps through the intervals of each cut.
 
 use crate::follow::{self, Taken};
 use crate::grid::{self, Node, POSTURES, Row};
 use crate::samples::{Cut, Job};
-use crate::{Blocked, Section, Way, Why, Worst};
+use crate::{Blocked, Choice, Section, Why, Worst};
 use arm::{Arm, Joints, Posture};
 use std::collections::BTreeSet;
 use std::f64::consts::TAU;
@@ -12,7 +12,7 @@ use std::ops::Range;
 /// Intervals whose rows are in memory at the same time.
 const BLOCK: usize = 512;
 
-/// How often a way that turns out not to be passed exactly is looked for anew.
+/// How often steps are searched anew, where they turn out not to be passed exactly.
 const TRIES: usize = 16;
 
 /// The turn of an edge: from the step below, the same, or from the step above.
@@ -21,7 +21,7 @@ const TURNS: [i32; 3] = [-1, 0, 1];
 /// What an edge costs for turning the tool by a step, s.
 const TURNING: f32 = 0.02;
 
-/// The cheapest way to a node.
+/// The cheapest steps to a node.
 #[derive(Clone, Copy)]
 struct Label {
     cost: f32,
@@ -39,28 +39,28 @@ impl Label {
 /// An edge that turned out not to be passed: the knot at its end (its sample), its node there, and whence it came.
 pub(crate) type Edge = (usize, usize, i32);
 
-pub(crate) fn search(job: &Job) -> Result<Way, Blocked> {
-    let mut way = Way { sections: Vec::new(), worst: follow::NO_WORST };
-    let mut stood: Option<Joints> = None;
+pub(crate) fn search(job: &Job) -> Result<Choice, Blocked> {
+    let mut choice = Choice { sections: Vec::new(), worst: follow::NO_WORST };
+    let mut last: Option<Joints> = None;
     for cut in &job.cuts {
         let knots = knots(job, cut);
         let mut from = 0;
         loop {
-            let passed = section(job, cut, &knots[from..], stood, &mut way.worst)?;
-            stood = passed.section.stands.last().map(|stand| stand.joints);
-            way.sections.push(Section { reentry: from > 0, ..passed.section });
+            let passed = section(job, cut, &knots[from..], last, &mut choice.worst)?;
+            last = passed.section.positions.last().map(|position| position.joints);
+            choice.sections.push(Section { reentry: from > 0, ..passed.section });
             from += passed.intervals;
             if from + 1 >= knots.len() {
                 break;
             }
         }
     }
-    Ok(way)
+    Ok(choice)
 }
 
 /// Samples of a cut at which the turn may have changed by a step: all of them points.
 fn knots(job: &Job, cut: &Cut) -> Vec<usize> {
-    let least = if cut.fixed { 0.0 } else { job.step_angle() / job.wishes.turn_rate };
+    let least = if cut.fixed { 0.0 } else { job.step_angle() / job.settings.turn_rate };
     let Range { start, end } = cut.samples;
     let (mut knots, mut time) = (vec![start], 0.0);
     for at in start + 1..end {
@@ -85,13 +85,13 @@ fn section(
     job: &Job,
     cut: &Cut,
     knots: &[usize],
-    stood: Option<Joints>,
+    last: Option<Joints>,
     worst: &mut Worst,
 ) -> Result<Passed, Blocked> {
     let mut forbidden = BTreeSet::new();
     for _ in 0..TRIES {
-        let (steps, posture) = cheapest(job, cut, knots, stood, &forbidden)?;
-        match follow::follow(job, &knots[..steps.len()], &steps, posture, stood, worst) {
+        let (steps, posture) = cheapest(job, cut, knots, last, &forbidden)?;
+        match follow::follow(job, &knots[..steps.len()], &steps, posture, last, worst) {
             Taken::Passed(section) => return Ok(Passed { section, intervals: steps.len() - 1 }),
             Taken::Stopped(interval) => {
                 let node = steps[interval] * POSTURES + posture.index();
@@ -104,7 +104,7 @@ fn section(
     Err(Blocked { point: job.samples[knots[usize::from(knots.len() > 1)]].point, why: Why::Apart })
 }
 
-/// The turn that leads from one step to a neighbour, as in [`TURNS`] but the other way round.
+/// The turn that leads from one step to a neighbour, as in [`TURNS`] with the opposite sign.
 fn turn(from: usize, to: usize, steps: usize) -> i32 {
     match (to + steps - from) % steps {
         0 => 0,
@@ -113,23 +113,23 @@ fn turn(from: usize, to: usize, steps: usize) -> i32 {
     }
 }
 
-/// The steps of the turn at each knot as far as a way leads, and its posture.
+/// The steps of the turn at each knot as far as they pass, and its posture.
 fn cheapest(
     job: &Job,
     cut: &Cut,
     knots: &[usize],
-    stood: Option<Joints>,
+    last: Option<Joints>,
     forbidden: &BTreeSet<Edge>,
 ) -> Result<(Vec<usize>, Posture), Blocked> {
     let steps = job.steps(cut);
     let first = grid::start(job, knots[0], steps);
-    let mut labels: Vec<Label> = first.iter().map(|node| begin(job.arm, node, stood)).collect();
+    let mut labels: Vec<Label> = first.iter().map(|node| begin(job.arm, node, last)).collect();
     let mut nodes = first;
     if nodes.iter().all(Node::is_dead) {
         let sample = &job.samples[knots[0]];
         return Err(Blocked { point: sample.point, why: follow::nearest(job, sample, steps) });
     }
-    // Whence the cheapest way comes, at each knot behind the first.
+    // From which step the cheapest comes, at each knot behind the first.
     let mut back: Vec<Vec<i8>> = Vec::new();
     'all: for block in (0..knots.len() - 1).step_by(BLOCK) {
         let until = (block + BLOCK).min(knots.len() - 1);
@@ -168,16 +168,16 @@ fn neighbour(step: usize, turn: i32, steps: usize) -> usize {
     (step as i32 + turn).rem_euclid(steps as i32) as usize
 }
 
-/// The label of a node at the start: what the arm needs to come here from where it stood.
-fn begin(arm: &Arm, node: &Node, stood: Option<Joints>) -> Label {
+/// The label of a node at the start: what the arm needs to come here from where the section before ended.
+fn begin(arm: &Arm, node: &Node, last: Option<Joints>) -> Label {
     if node.is_dead() {
         return Label::DEAD;
     }
-    let way = |i: usize, before: f64| {
+    let seconds = |i: usize, before: f64| {
         let change = follow::turned(arm, i, f64::from(node.end[i]), before) - before;
         change.abs() / arm.joints()[i].speed
     };
-    let time = stood.map_or(0.0, |stood| (0..6).map(|i| way(i, stood[i])).fold(0.0, f64::max));
+    let time = last.map_or(0.0, |last| (0..6).map(|i| seconds(i, last[i])).fold(0.0, f64::max));
     Label { cost: node.cost + time as f32, joints: node.end, low: node.end, high: node.end }
 }
 
@@ -230,10 +230,10 @@ fn extend(
     }
     for i in 0..6 {
         let turned = wrap32(node.end[i] - beside.end[i]);
-        // The turn comes on top of the way along the path.
+        // The turn comes on top of the motion along the path.
         let used = f64::from(beside.speed.max(node.speed))
             + grid::share(job.arm, i, f64::from(turned), time);
-        if turn != 0 && used > job.wishes.speed {
+        if turn != 0 && used > job.settings.speed {
             return None;
         }
         next.low[i] = next.low[i].min(label.joints[i] + beside.low[i]);

@@ -1,8 +1,8 @@
 //! Ways of an arm along paths, checked by its forward kinematics alone.
 
-use arm::{Arm, Coupling, CouplingLimit, Frame, Joint, Mat3, Spherical, Structure, Vec3};
+use arm::{Arm, Coupling, CouplingLimit, Dh, Frame, Joint, Mat3, Spherical, Structure, Vec3};
 use std::f64::consts::{FRAC_PI_2, PI, TAU};
-use toolpost_armpath::{Blocked, Cell, Point, Way, Why, Wishes, choose};
+use toolpost_armpath::{Blocked, Cell, Choice, Point, Settings, Why, choose};
 
 /// KUKA KR 6 R900 sixx.
 fn kuka() -> Arm {
@@ -69,14 +69,14 @@ fn dome(count: usize) -> Vec<Point> {
 }
 
 /// That every point is reached, in order and once in each section, and that the joints do what a way promises.
-fn proven(arm: &Arm, cell: &Cell, points: &[Point], wishes: &Wishes, way: &Way) {
+fn proven(arm: &Arm, cell: &Cell, points: &[Point], settings: &Settings, way: &Choice) {
     let mut next = 0;
     for section in &way.sections {
         assert_eq!(section.first, if section.reentry { next - 1 } else { next });
         assert!(
             section.reentry || !points[section.first].cut || points[section.first].side.is_some()
         );
-        for (i, stand) in section.stands.iter().enumerate() {
+        for (i, stand) in section.positions.iter().enumerate() {
             let point = &points[section.first + i];
             let tip = cell.part.inverse() * arm.flange(&stand.joints) * cell.tool;
             assert!(tip.translation.distance(point.tip) < 1e-6, "{i}: {tip:?} {point:?}");
@@ -88,32 +88,34 @@ fn proven(arm: &Arm, cell: &Cell, points: &[Point], wishes: &Wishes, way: &Way) 
             );
             let margins = arm.margins(&stand.joints);
             assert!(
-                margins.wrist >= wishes.wrist
-                    && margins.elbow >= wishes.elbow
-                    && margins.shoulder >= wishes.shoulder
+                margins.wrist >= settings.wrist
+                    && margins.elbow >= settings.elbow
+                    && margins.shoulder >= settings.shoulder
             );
-            let Some(before) = i.checked_sub(1).map(|i| section.stands[i].joints) else { continue };
+            let Some(before) = i.checked_sub(1).map(|i| section.positions[i].joints) else {
+                continue;
+            };
             let length = point.tip.distance(points[section.first + i - 1].tip);
             let turned = points[section.first + i - 1].axis.angle_between(point.axis);
-            let time = (length / (point.feed / 60.0)).max(turned / wishes.turn_rate);
+            let time = (length / (point.feed / 60.0)).max(turned / settings.turn_rate);
             for (k, joint) in arm.joints().iter().enumerate() {
                 let change = (stand.joints[k] - before[k]).abs();
                 assert!(
-                    change <= joint.speed * time * (wishes.speed + 1e-6) + 1e-9,
+                    change <= joint.speed * time * (settings.speed + 1e-6) + 1e-9,
                     "joint {} at {i}: {change}",
                     k + 1
                 );
             }
         }
-        next = section.first + section.stands.len();
+        next = section.first + section.positions.len();
     }
     assert_eq!(next, points.len());
 }
 
-fn way(cell: &Cell, points: &[Point]) -> Result<Way, Blocked> {
-    let (arm, wishes) = (kuka(), Wishes::default());
-    let way = choose(&arm, cell, points, &wishes)?;
-    proven(&arm, cell, points, &wishes, &way);
+fn way(cell: &Cell, points: &[Point]) -> Result<Choice, Blocked> {
+    let (arm, settings) = (kuka(), Settings::default());
+    let way = choose(&arm, cell, points, &settings)?;
+    proven(&arm, cell, points, &settings, &way);
     Ok(way)
 }
 
@@ -123,6 +125,17 @@ fn a_dome_is_cut_in_one_section_with_a_leaning_spindle() {
     let way = way(&cell(LEANING), &points).unwrap();
     assert_eq!(way.sections.len(), 1);
     assert!(way.worst.wrist.0 > 5_f64.to_radians() && way.worst.speed.0 < 0.9, "{:?}", way.worst);
+}
+
+#[test]
+fn an_arm_of_universal_robots_cuts_the_same_dome() {
+    let dh = Dh { d1: 162.5, a2: -425.0, a3: -392.2, d4: 133.3, d5: 99.7, d6: 99.6 };
+    let joint = Joint { min: -TAU, max: TAU, speed: PI, acceleration: None };
+    let arm = Arm::new(Structure::Ur(dh, None), [joint; 6], Some(Coupling::None), 0.0).unwrap();
+    let (cell, points, settings) = (cell(LEANING), dome(1500), Settings::default());
+    let choice = choose(&arm, &cell, &points, &settings).unwrap();
+    proven(&arm, &cell, &points, &settings, &choice);
+    assert_eq!(choice.sections.len(), 1);
 }
 
 #[test]
@@ -158,7 +171,7 @@ fn a_turn_that_the_source_says_is_kept() {
     assert!(
         way.sections
             .iter()
-            .flat_map(|section| &section.stands)
+            .flat_map(|section| &section.positions)
             .all(|stand| stand.side.distance(side) < 1e-9)
     );
 }
@@ -215,11 +228,11 @@ fn a_tool_that_is_turned_round_and_round_by_its_source_is_divided_where_joint_6_
         let angle = i as f64 * 4.0 * TAU / 800.0;
         (point.side, point.feed) = (Some(Vec3::new(angle.cos(), angle.sin(), 0.0)), 100.0);
     }
-    let (arm, wishes) = (kuka(), Wishes::default());
-    let way = choose(&arm, &cell(0.0), &points, &wishes).unwrap();
+    let (arm, settings) = (kuka(), Settings::default());
+    let way = choose(&arm, &cell(0.0), &points, &settings).unwrap();
     // 1440 degrees in spans of at most 698.
     assert!((3..=4).contains(&way.sections.len()), "{}", way.sections.len());
-    let all = way.sections.iter().flat_map(|section| &section.stands);
+    let all = way.sections.iter().flat_map(|section| &section.positions);
     assert!(all.clone().all(|stand| arm.allows(&stand.joints)));
 }
 
@@ -236,21 +249,21 @@ fn cuts_with_a_rapid_between_them_are_sections_of_their_own() {
 fn limits_of_joint_3_as_the_controller_counts_it_hold_on_the_way() {
     let free = kuka();
     let points = upright(100, |t| Vec3::new(100.0 * t, 0.0, 0.0));
-    let (cell, wishes) = (cell(LEANING), Wishes::default());
-    let way = choose(&free, &cell, &points, &wishes).unwrap();
+    let (cell, settings) = (cell(LEANING), Settings::default());
+    let way = choose(&free, &cell, &points, &settings).unwrap();
     let coupled =
         Arm::new(free.structure().clone(), *free.joints(), Some(Coupling::LessJoint2), 0.0)
             .unwrap();
-    let shown = |stand: &toolpost_armpath::Stand| coupled.shown(&stand.joints).unwrap()[2];
-    let highest = way.sections[0].stands.iter().map(shown).fold(f64::NEG_INFINITY, f64::max);
+    let shown = |stand: &toolpost_armpath::Position| coupled.shown(&stand.joints).unwrap()[2];
+    let highest = way.sections[0].positions.iter().map(shown).fold(f64::NEG_INFINITY, f64::max);
     let limit =
         |max: f64| coupled.clone().with_coupling_limit(CouplingLimit { min: -9.0, max }).unwrap();
-    assert!(choose(&limit(highest + 0.01), &cell, &points, &wishes).is_ok());
-    if let Ok(other) = choose(&limit(highest - 0.05), &cell, &points, &wishes) {
-        let all = other.sections.iter().flat_map(|section| &section.stands);
+    assert!(choose(&limit(highest + 0.01), &cell, &points, &settings).is_ok());
+    if let Ok(other) = choose(&limit(highest - 0.05), &cell, &points, &settings) {
+        let all = other.sections.iter().flat_map(|section| &section.positions);
         assert!(all.clone().all(|stand| shown(stand) <= highest - 0.05));
     }
-    assert!(choose(&limit(-8.0), &cell, &points, &wishes).is_err());
+    assert!(choose(&limit(-8.0), &cell, &points, &settings).is_err());
 }
 
 #[test]
@@ -266,9 +279,9 @@ fn what_is_no_number_is_refused_with_its_point() {
     assert_eq!(with(&|point| point.feed = 0.0), refused);
     assert_eq!(with(&|point| point.side = Some(point.axis)), refused);
     assert_eq!(with(&|point| point.tip.x = 1e9), refused);
-    let wishes = Wishes { turns: 0, ..Wishes::default() };
-    assert!(choose(&kuka(), &cell(0.0), &dome(5), &wishes).is_err());
-    assert!(choose(&kuka(), &cell(0.0), &[], &Wishes::default()).unwrap().sections.is_empty());
+    let settings = Settings { turns: 0, ..Settings::default() };
+    assert!(choose(&kuka(), &cell(0.0), &dome(5), &settings).is_err());
+    assert!(choose(&kuka(), &cell(0.0), &[], &Settings::default()).unwrap().sections.is_empty());
 }
 
 #[test]
@@ -276,7 +289,7 @@ fn the_way_is_the_same_on_one_thread_and_on_many() {
     let (arm, cell, points) = (kuka(), cell(LEANING), dome(1500));
     let run = |threads: usize| {
         let pool = rayon::ThreadPoolBuilder::new().num_threads(threads).build().unwrap();
-        pool.install(|| choose(&arm, &cell, &points, &Wishes::default()).unwrap())
+        pool.install(|| choose(&arm, &cell, &points, &Settings::default()).unwrap())
     };
     assert_eq!(run(1), run(3));
 }

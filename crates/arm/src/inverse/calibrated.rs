@@ -1,6 +1,6 @@
 //! A calibrated arm has no closed form: the joints of the nominal one, corrected until the measured links reach the frame.
 
-use super::Ways;
+use super::Solutions;
 use crate::arm::{Arm, Joints, Structure};
 use geom::{Frame, Mat3, Vec3, wrap};
 
@@ -10,14 +10,14 @@ const MOST_STEPS: usize = 12;
 const CLOSE: f64 = 1e-9;
 
 /// The nominal joints `near` a frame, corrected; those that do not come to rest, close to a singularity, are left out.
-pub(super) fn refine(arm: &Arm, flange: &Frame, near: &Ways) -> Ways {
-    let mut ways = Ways::NONE;
+pub(super) fn refine(arm: &Arm, flange: &Frame, near: &Solutions) -> Solutions {
+    let mut solutions = Solutions::NONE;
     for (posture, joints) in near.iter() {
         if let Some(joints) = corrected(arm, flange, *joints) {
-            ways.set(posture, joints.map(wrap));
+            solutions.set(posture, joints.map(wrap));
         }
     }
-    ways
+    solutions
 }
 
 fn corrected(arm: &Arm, flange: &Frame, mut joints: Joints) -> Option<Joints> {

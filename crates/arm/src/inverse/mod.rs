@@ -13,10 +13,10 @@ const WRIST_FREE: f64 = 1e-9;
 
 /// The joints that put the flange into a frame, one set for each posture that reaches it; each joint is in (-π, π].
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Ways([Option<Joints>; 8]);
+pub struct Solutions([Option<Joints>; 8]);
 
-impl Ways {
-    pub(crate) const NONE: Ways = Ways([None; 8]);
+impl Solutions {
+    pub(crate) const NONE: Solutions = Solutions([None; 8]);
 
     /// The joints in a posture, where it reaches the frame.
     pub fn get(&self, posture: Posture) -> Option<&Joints> {
@@ -37,7 +37,7 @@ impl Ways {
 impl Arm {
     /// The joints that put the flange into a frame of the controller's world, whether they are within the limits or not.
     /// Where the wrist is stretched its first free joint (4; on Universal Robots 6) takes the position `free`, radians.
-    pub fn inverse(&self, flange: &Frame, free: f64) -> Ways {
+    pub fn inverse(&self, flange: &Frame, free: f64) -> Solutions {
         let foot = flange.translation + Vec3::new(0.0, 0.0, self.world_height);
         match &self.structure {
             Structure::Spherical(arm) => spherical::inverse(arm, &flange.matrix3, foot, free),

@@ -1,6 +1,6 @@
 //! Seven lengths: the wrist centre gives joints 1 to 3, what is left of the orientation gives 4 to 6.
 
-use super::{WRIST_FREE, Ways, root};
+use super::{Solutions, WRIST_FREE, root};
 use crate::arm::Spherical;
 use crate::posture::Posture;
 use geom::{Mat3, Vec3};
@@ -27,12 +27,12 @@ impl Direction {
     }
 }
 
-pub(super) fn inverse(arm: &Spherical, axes: &Mat3, flange: Vec3, free: f64) -> Ways {
-    let mut ways = Ways::NONE;
+pub(super) fn inverse(arm: &Spherical, axes: &Mat3, flange: Vec3, free: f64) -> Solutions {
+    let mut solutions = Solutions::NONE;
     let centre = flange - axes.z_axis * arm.c4 - Vec3::new(0.0, 0.0, arm.c1);
     // The plane of the arm passes axis 1 at the distance b.
     let square = centre.x * centre.x + centre.y * centre.y;
-    let Some(front) = root(square - arm.b * arm.b, square) else { return ways };
+    let Some(front) = root(square - arm.b * arm.b, square) else { return solutions };
     for rear in [false, true] {
         let front = if rear { -front } else { front };
         let first = match square > 0.0 {
@@ -43,9 +43,9 @@ pub(super) fn inverse(arm: &Spherical, axes: &Mat3, flange: Vec3, free: f64) -> 
             // The wrist centre is on axis 1, which may stand anywhere.
             false => Direction { sin: 0.0, cos: 1.0 },
         };
-        bent(arm, axes, first, [front - arm.a1, centre.z], free, rear, &mut ways);
+        bent(arm, axes, first, [front - arm.a1, centre.z], free, rear, &mut solutions);
     }
-    ways
+    solutions
 }
 
 /// Both positions of the elbow, for the wrist centre `ahead` and `up` of axis 2 in the plane of the arm.
@@ -56,7 +56,7 @@ fn bent(
     [ahead, up]: [f64; 2],
     free: f64,
     rear: bool,
-    ways: &mut Ways,
+    solutions: &mut Solutions,
 ) {
     let forearm = arm.a2.hypot(arm.c3);
     let bend = Direction { sin: arm.a2 / forearm, cos: arm.c3 / forearm };
@@ -81,8 +81,8 @@ fn bent(
         let [t4, t5, t6] = wrist(axes, first, second.plus(third), free);
         let plain = [t1, t2, t3, t4, t5, t6];
         let flipped = [t1, t2, t3, t4 + PI, -t5, t6 + PI];
-        ways.set(Posture::of(rear, below, false), arm.joints(&plain));
-        ways.set(Posture::of(rear, below, true), arm.joints(&flipped));
+        solutions.set(Posture::of(rear, below, false), arm.joints(&plain));
+        solutions.set(Posture::of(rear, below, true), arm.joints(&flipped));
     }
 }
 

@@ -1,18 +1,18 @@
 //! Universal Robots: joints 2, 3 and 4 turn about one direction, which joint 1 sets.
 
-use super::{WRIST_FREE, Ways, root};
+use super::{Solutions, WRIST_FREE, root};
 use crate::arm::Dh;
 use crate::posture::Posture;
 use geom::{Mat3, Vec3, wrap};
 
-pub(super) fn inverse(dh: &Dh, axes: &Mat3, flange: Vec3, free: f64) -> Ways {
-    let mut ways = Ways::NONE;
+pub(super) fn inverse(dh: &Dh, axes: &Mat3, flange: Vec3, free: f64) -> Solutions {
+    let mut solutions = Solutions::NONE;
     // The end of the wrist lies at the distance d4 from the plane through axis 1 in which the links bend.
     let end = flange - axes.z_axis * dh.d6;
     let square = end.x * end.x + end.y * end.y;
-    let Some(front) = root(square - dh.d4 * dh.d4, square) else { return ways };
+    let Some(front) = root(square - dh.d4 * dh.d4, square) else { return solutions };
     if square == 0.0 {
-        return ways;
+        return solutions;
     }
     for rear in [false, true] {
         let front = if rear { -front } else { front };
@@ -22,10 +22,10 @@ pub(super) fn inverse(dh: &Dh, axes: &Mat3, flange: Vec3, free: f64) -> Ways {
         let across = Vec3::new(ahead.y, -ahead.x, 0.0);
         let shoulder = Shoulder { ahead, across, rear };
         for flip in [false, true] {
-            wrist(dh, axes, end, &shoulder, flip, free, &mut ways);
+            wrist(dh, axes, end, &shoulder, flip, free, &mut solutions);
         }
     }
-    ways
+    solutions
 }
 
 /// How joint 1 stands.
@@ -43,7 +43,7 @@ fn wrist(
     shoulder: &Shoulder,
     flip: bool,
     free: f64,
-    ways: &mut Ways,
+    solutions: &mut Solutions,
 ) {
     let Shoulder { ahead, across, rear } = shoulder;
     let [x, y, z] = [axes.x_axis, axes.y_axis, axes.z_axis].map(|axis| axis.dot(*across));
@@ -67,6 +67,6 @@ fn wrist(
         let q3 = if below { -sin } else { sin }.atan2(cos);
         let q2 = up.atan2(along) - (dh.a3 * q3.sin()).atan2(dh.a2 + dh.a3 * q3.cos());
         let joints = [q1, q2, q3, sum - q2 - q3, q5, q6].map(wrap);
-        ways.set(Posture::of(*rear, below, flip), joints);
+        solutions.set(Posture::of(*rear, below, flip), joints);
     }
 }

@@ -1,4 +1,4 @@
-//! Both ways of the kinematics, compared with what others have computed and with each other.
+//! Both solutions of the kinematics, compared with what others have computed and with each other.
 
 mod outside;
 mod properties;

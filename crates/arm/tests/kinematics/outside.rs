@@ -21,17 +21,17 @@ for job in jobs:
         from eaik.IK_HP import HPRobot
         robot = HPRobot(np.array(job["H"], dtype=float), np.array(job["P"], dtype=float))
         forward = [np.asarray(robot.fwdKin(np.array(q, dtype=float))) for q in job["joints"]]
-        ways = []
+        solutions = []
         for pose in poses:
             found = robot.IK(pose)
             exact = [not bool(ls) for ls in found.is_LS] if hasattr(found, "is_LS") else [True] * len(found.Q)
-            ways.append([list(map(float, q)) for q, good in zip(found.Q, exact) if good])
+            solutions.append([list(map(float, q)) for q, good in zip(found.Q, exact) if good])
     else:
         import ur_analytic_ik
         robot = getattr(ur_analytic_ik, job["judge"])
         forward = [robot.forward_kinematics(*q) for q in job["joints"]]
-        ways = [[list(map(float, q)) for q in robot.inverse_kinematics(pose)] for pose in poses]
-    out.append({"forward": [f.flatten().tolist() for f in forward], "ways": ways})
+        solutions = [[list(map(float, q)) for q in robot.inverse_kinematics(pose)] for pose in poses]
+    out.append({"forward": [f.flatten().tolist() for f in forward], "solutions": solutions})
 json.dump(out, sys.stdout)
 "#;
 
@@ -71,37 +71,40 @@ fn solved(python: &Path, jobs: &Value) -> Vec<Value> {
 /// Compares what a judge says of an arm; `scale` is the length of its unit in ours.
 fn compare(name: &str, arm: &Arm, all: &[Joints], said: &Value, scale: f64, tolerance: f64) {
     let list = |value: &Value| -> Vec<f64> { serde_json::from_value(value.clone()).unwrap() };
-    let mut solutions = 0;
+    let mut count = 0;
     for (i, joints) in all.iter().enumerate() {
         let flange = arm.flange(joints);
         let (mm, turned) = apart(&flange, &frame_of(&list(&said["forward"][i]), scale));
         assert!(mm < 1e-6 && turned < 1e-9, "{name} forward {joints:?}: {mm} mm, {turned}");
-        let ways = arm.inverse(&flange, joints[3]);
+        let solutions = arm.inverse(&flange, joints[3]);
         // Near a singularity angles are worth fewer digits.
         let good = |q: &Joints| {
             let margins = arm.margins(q);
             margins.wrist > 0.02 && margins.elbow > 0.02 && margins.shoulder > 5.0
         };
-        if !ways.iter().all(|(_, q)| good(q)) {
+        if !solutions.iter().all(|(_, q)| good(q)) {
             continue;
         }
-        let theirs: Vec<Joints> = (said["ways"][i].as_array().unwrap().iter())
+        let theirs: Vec<Joints> = (said["solutions"][i].as_array().unwrap().iter())
             .map(|q| list(q).try_into().unwrap())
             .collect();
         let near =
             |a: &Joints, b: &Joints| a.iter().zip(b).all(|(a, b)| wrap(a - b).abs() < tolerance);
-        for (posture, ours) in ways.iter() {
+        for (posture, ours) in solutions.iter() {
             assert!(
                 theirs.iter().any(|q| near(q, ours)),
                 "{name} {posture:?} {ours:?} in {theirs:?}"
             );
         }
         for q in &theirs {
-            assert!(ways.iter().any(|(_, ours)| near(q, ours)), "{name} {q:?} in {ways:?}");
+            assert!(
+                solutions.iter().any(|(_, ours)| near(q, ours)),
+                "{name} {q:?} in {solutions:?}"
+            );
         }
-        solutions += ways.iter().count();
+        count += solutions.iter().count();
     }
-    assert!(solutions > 3 * all.len(), "{name}: {solutions} solutions of {} frames", all.len());
+    assert!(count > 3 * all.len(), "{name}: {count} solutions of {} frames", all.len());
 }
 
 #[test]

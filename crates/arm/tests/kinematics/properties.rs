@@ -1,4 +1,4 @@
-//! Both ways undo each other, on arms of every kind.
+//! Both solutions undo each other, on arms of every kind.
 
 use crate::robots::{UR5E, apart, spherical};
 use geom::{Euler, wrap};
@@ -55,8 +55,8 @@ fn measured(off: [f64; 6]) -> Arm {
 fn returns(arm: &Arm, joints: &Joints, mm: f64, turned: f64) -> Result<(), TestCaseError> {
     let margins = arm.margins(joints);
     let flange = arm.flange(joints);
-    let ways = arm.inverse(&flange, joints[3]);
-    for (posture, found) in ways.iter() {
+    let solutions = arm.inverse(&flange, joints[3]);
+    for (posture, found) in solutions.iter() {
         let off = apart(&arm.flange(found), &flange);
         prop_assert!(off.0 < mm && off.1 < turned, "{posture:?} {found:?}: {off:?}");
         prop_assert!(found.iter().all(|q| *q > -PI - 1e-12 && *q <= PI + 1e-12));
@@ -68,9 +68,9 @@ fn returns(arm: &Arm, joints: &Joints, mm: f64, turned: f64) -> Result<(), TestC
     }
     // The joints of a singularity come back as joints of the same frame, not as themselves.
     if margins.wrist > 1e-3 && margins.elbow > 1e-3 && margins.shoulder > 1.0 {
-        let same = ways.get(arm.posture(joints));
+        let same = solutions.get(arm.posture(joints));
         let off = |found: &Joints| found.iter().zip(joints).all(|(a, b)| wrap(a - b).abs() < 1e-7);
-        prop_assert!(same.is_some_and(off), "{joints:?} in {ways:?}");
+        prop_assert!(same.is_some_and(off), "{joints:?} in {solutions:?}");
     }
     Ok(())
 }
@@ -121,10 +121,10 @@ proptest! {
         // Near a singularity the nominal arm, from which the search starts, may reach in no posture.
         prop_assume!(margins.wrist > 0.05 && margins.elbow > 0.3 && margins.shoulder > 30.0);
         let flange = arm.flange(&joints);
-        let ways = arm.inverse(&flange, 0.0);
+        let solutions = arm.inverse(&flange, 0.0);
         let near = |found: &Joints| found.iter().zip(&joints).all(|(a, b)| wrap(a - b).abs() < 1e-7);
-        prop_assert!(ways.iter().any(|(_, found)| near(found)), "{joints:?} in {ways:?}");
-        for (_, found) in ways.iter() {
+        prop_assert!(solutions.iter().any(|(_, found)| near(found)), "{joints:?} in {solutions:?}");
+        for (_, found) in solutions.iter() {
             let off = apart(&arm.flange(found), &flange);
             prop_assert!(off.0 < 1e-8 && off.1 < 1e-8, "{off:?}");
         }
@@ -146,8 +146,8 @@ fn a_frame_out_of_reach_has_no_way() {
 fn a_stretched_wrist_keeps_the_joint_4_that_it_had() {
     let arm = arm(spherical("abb", [0.0, -70.0, 0.0, 290.0, 270.0, 302.0, 72.0]));
     let joints = [0.2, 0.3, -0.4, 1.1, 0.0, -0.7];
-    let ways = arm.inverse(&arm.flange(&joints), 1.1);
-    let same = ways.get(Posture::of(false, false, false)).unwrap();
+    let solutions = arm.inverse(&arm.flange(&joints), 1.1);
+    let same = solutions.get(Posture::of(false, false, false)).unwrap();
     assert!(same.iter().zip(&joints).all(|(a, b)| (a - b).abs() < 1e-9), "{same:?}");
 }
 

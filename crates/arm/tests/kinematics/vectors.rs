@@ -40,13 +40,14 @@ fn posture(flags: &Value) -> Posture {
 
 /// That the inverse has exactly the joints listed, each in the posture listed where one is.
 fn has_exactly(arm: &Arm, flange: &Frame, listed: &[Value], what: &str) {
-    let ways = arm.inverse(flange, 0.0);
-    assert_eq!(ways.iter().count(), listed.len(), "{what}: {ways:?}");
+    let solutions = arm.inverse(flange, 0.0);
+    assert_eq!(solutions.iter().count(), listed.len(), "{what}: {solutions:?}");
     for solution in listed {
         // Ten digits of degrees: near a stretched elbow or wrist the seventh counts.
         let joints = degrees(&solution["joints_deg"]);
-        let found = ways.iter().find(|(_, found)| near(found, &joints, 5e-5));
-        let (found_in, found) = found.unwrap_or_else(|| panic!("{what}: {joints:?} in {ways:?}"));
+        let found = solutions.iter().find(|(_, found)| near(found, &joints, 5e-5));
+        let (found_in, found) =
+            found.unwrap_or_else(|| panic!("{what}: {joints:?} in {solutions:?}"));
         if let Some(flags) = solution.get("rear_below_flip") {
             assert_eq!(found_in, posture(flags), "{what}");
             assert_eq!(arm.posture(found), found_in, "{what}");
@@ -141,11 +142,11 @@ fn both_ways_agree_with_opw_kinematics_in_cpp() {
         let flange = arm.flange(&joints);
         let (mm, turned) = apart(&flange, &frame(at, notations(&stated)[0]));
         assert!(mm < 1e-9 && turned < 1e-12, "{name} {joints:?}: {mm} mm, {turned}");
-        let ways = arm.inverse(&flange, joints[3]);
+        let solutions = arm.inverse(&flange, joints[3]);
         for solution in case["solutions_deg"].as_array().unwrap() {
             let solution = degrees(solution);
-            let found = ways.iter().any(|(_, found)| near(found, &solution, 5e-5));
-            assert!(found, "{name} {joints:?}: {solution:?} in {ways:?}");
+            let found = solutions.iter().any(|(_, found)| near(found, &solution, 5e-5));
+            assert!(found, "{name} {joints:?}: {solution:?} in {solutions:?}");
         }
     }
     assert_eq!(all.len(), 80);
@@ -199,9 +200,9 @@ fn a_point_read_from_a_fanuc_says_where_its_world_is_and_how_it_counts_joint_3()
     let arm = Arm::new(structure, [joint; 6], Some(Coupling::LessJoint2), 670.0).unwrap();
     let [x, y, z, w, p, r] = named(&case["pose"], ["X", "Y", "Z", "W", "P", "R"]);
     let axes = Euler::FixedXyz.matrix([w, p, r].map(f64::to_radians));
-    let ways = arm.inverse(&frame([x, y, z], axes), 0.0);
+    let solutions = arm.inverse(&frame([x, y, z], axes), 0.0);
     // N U T: neither flipped nor below nor rear; on a FANUC J5 < 0 is N, which is a positive angle of the model.
-    let shown = arm.shown(ways.get(Posture::of(false, false, false)).unwrap()).unwrap();
+    let shown = arm.shown(solutions.get(Posture::of(false, false, false)).unwrap()).unwrap();
     for (i, stated) in case["joints_controller_deg"].as_array().unwrap().iter().take(3).enumerate()
     {
         let off = shown[i].to_degrees() - stated.as_f64().unwrap();
